@@ -11,7 +11,10 @@ use std::{hint::black_box, time::Instant};
 
 use nalgebra::{DMatrix, DVector, Vector3};
 use nima_core::{
-    impedance::{Baseline, Factor, Identifier, Mode, ModeSet, Sample, Settings, SlidingWindow, Solution},
+    impedance::{
+        Baseline, Identifier, ImpedanceFactor, ImpedanceSettings, ImpedanceSolution, Mode, ModeSet, Sample,
+        SlidingWindow,
+    },
     signal::Lanes,
 };
 
@@ -61,17 +64,17 @@ fn times_us(calls: usize, mut work: impl FnMut(usize)) -> Vec<f64> {
     times
 }
 
-fn percentile(times: &[f64], share: f64) -> f64 {
-    times[((times.len() - 1) as f64 * share).round() as usize]
+fn percentile(times: &[f64], fraction: f64) -> f64 {
+    times[((times.len() - 1) as f64 * fraction).round() as usize]
 }
 
-fn sliding(block: usize) -> (SlidingWindow<Factor>, Solution) {
-    let ridge = Factor::with_ridge(COLUMNS, 2e-6 * block as f64);
-    (SlidingWindow::new(block, Factor::new(COLUMNS), ridge), Solution::new(COLUMNS))
+fn sliding(block: usize) -> (SlidingWindow<ImpedanceFactor>, ImpedanceSolution) {
+    let ridge = ImpedanceFactor::with_ridge(COLUMNS, 2e-6 * block as f64);
+    (SlidingWindow::new(block, ImpedanceFactor::new(COLUMNS), ridge), ImpedanceSolution::new(COLUMNS))
 }
 
 fn identifier(window: usize, modes: ModeSet) -> Identifier {
-    let settings = Settings { window_s: window as f64 / RATE_HZ, modes, ..Settings::default() };
+    let settings = ImpedanceSettings { window_s: window as f64 / RATE_HZ, modes, ..ImpedanceSettings::default() };
     Identifier::new(&settings).expect("settings are in range")
 }
 
@@ -117,7 +120,7 @@ fn fresh_qr(rows: &[[Lanes; ROW]]) -> f64 {
 
 /// Prints p50, p99 and the maximum of sorted times; returns p50.
 fn print(window: usize, name: &str, times: &[f64]) -> f64 {
-    let [p50, p99, max] = [0.5, 0.99, 1.0].map(|share| percentile(times, share));
+    let [p50, p99, max] = [0.5, 0.99, 1.0].map(|fraction| percentile(times, fraction));
     println!("{window:>6}  {name:<44} {p50:>10.2} {p99:>10.2} {max:>10.2}");
     p50
 }
@@ -126,19 +129,19 @@ fn print(window: usize, name: &str, times: &[f64]) -> f64 {
 /// is used, so that only its own work counts and not what interrupted it.
 fn worst_to_median(window: usize, rows: &[[Lanes; ROW]]) -> f64 {
     let ticks = 3 * window / 2;
-    let mut least = vec![f64::INFINITY; ticks];
+    let mut min = vec![f64::INFINITY; ticks];
     for _ in 0..15 {
         let (mut slide, mut solution) = sliding(window / 2);
         rows[..2 * window].iter().for_each(|row| slide.push(row));
-        for (least, row) in least.iter_mut().zip(&rows[2 * window..]) {
+        for (min, row) in min.iter_mut().zip(&rows[2 * window..]) {
             let start = Instant::now();
             slide.push(row);
             solution.solve(slide.current());
-            *least = least.min(start.elapsed().as_secs_f64());
+            *min = min.min(start.elapsed().as_secs_f64());
         }
     }
-    least.sort_by(f64::total_cmp);
-    percentile(&least, 1.0) / percentile(&least, 0.5)
+    min.sort_by(f64::total_cmp);
+    percentile(&min, 1.0) / percentile(&min, 0.5)
 }
 
 /// Prints all results for one window length; returns p50 of our routine, us.
@@ -202,14 +205,14 @@ fn ratios(window: usize) {
         solution.solve(slide.current());
         black_box(&solution);
     };
-    let mut tell = |name: &str, theirs: fn(&[[Lanes; ROW]]) -> f64| {
-        ratio::tell(&format!("identification_{window}_{name}"), &mut ours, || {
+    let mut report = |name: &str, theirs: fn(&[[Lanes; ROW]]) -> f64| {
+        ratio::report(&format!("identification_{window}_{name}"), &mut ours, || {
             black_box(theirs(&rows[..window]));
         });
     };
-    tell("svd", svd);
-    tell("normal_equations", normal_equations);
-    tell("fresh_qr", fresh_qr);
+    report("svd", svd);
+    report("normal_equations", normal_equations);
+    report("fresh_qr", fresh_qr);
 }
 
 fn main() {

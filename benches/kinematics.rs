@@ -35,8 +35,8 @@ fn main() {
     let mut inverse = Inverse::new(arm, rcm, 1e-3, &ready.joint_rad).unwrap();
     report("step through the trocar", |k| {
         let t_s = f64::from(k) * 1e-3;
-        let way_m = Vector3::new((3.0 * t_s).sin(), (2.3 * t_s).cos(), (1.7 * t_s).sin()) * 0.04;
-        inverse.step(&(middle_m + way_m)).joint_rad[0]
+        let travel_m = Vector3::new((3.0 * t_s).sin(), (2.3 * t_s).cos(), (1.7 * t_s).sin()) * 0.04;
+        inverse.step(&(middle_m + travel_m)).joint_rad[0]
     });
     report("forward kinematics", |k| arm.pose(&(ready.joint_rad + Joints::repeat(f64::from(k) * 1e-6))).tip_m.x);
 }
@@ -50,6 +50,6 @@ fn report(name: &str, mut call: impl FnMut(u32) -> f64) {
         })
         .collect();
     times_us.sort_by(f64::total_cmp);
-    let at = |share: f64| times_us[(share * f64::from(STEPS - 1)) as usize];
+    let at = |fraction: f64| times_us[(fraction * f64::from(STEPS - 1)) as usize];
     println!("{name}: p50 {:.2} us, p99 {:.2} us, p99.9 {:.2} us", at(0.5), at(0.99), at(0.999));
 }

@@ -8,7 +8,7 @@ pub(crate) fn alone() -> bool {
 }
 
 /// Runs ours and theirs in turn, so that a disturbance affects both; prints the median of the rounds.
-pub(crate) fn tell(name: &str, mut ours: impl FnMut(), mut theirs: impl FnMut()) {
+pub(crate) fn report(name: &str, mut ours: impl FnMut(), mut theirs: impl FnMut()) {
     const ROUND_S: f64 = 0.02;
     const ROUNDS: usize = 25;
     let [our_calls, their_calls] = [calls(ROUND_S, &mut ours), calls(ROUND_S, &mut theirs)];

@@ -12,34 +12,35 @@ use std::{hint::black_box, time::Instant};
 
 use nalgebra::DMatrix;
 use nima_core::tip_force::{FeatureSettings, TrainingSettings};
-use nima_study::validation::isolation::{ROWS, Reached, Sessions};
+use nima_study::validation::isolation::{IsolationSessions, NetworkErrors, ROWS};
 
 const SIZES: [&[usize]; 7] = [&[8], &[16], &[32], &[16, 16], &[32, 32], &[64, 64], &[128, 128]];
 
 /// The same arithmetic with a matrix library as a multiple of ours, although ours also computes the uncertainty.
 fn ratios() {
-    let sessions = Sessions::record(1, ROWS, FeatureSettings::default()).unwrap();
+    let sessions = IsolationSessions::record(1, ROWS, FeatureSettings::default()).unwrap();
     let settings = TrainingSettings { epochs: Some(1), ..TrainingSettings::default() };
     let (mut estimator, _) = sessions.train(None, &settings).unwrap();
     let input = vec![0.1; estimator.model().inputs.len()];
     let ours = || {
         black_box(estimator.estimate(black_box(&input)));
     };
-    ratio::tell("tip_force_matrices", ours, matrices());
+    ratio::report("tip_force_matrices", ours, matrices());
 }
 
 fn main() {
     if ratio::alone() {
         return ratios();
     }
-    let sessions = Sessions::record(1, ROWS, FeatureSettings::default()).unwrap();
+    let sessions = IsolationSessions::record(1, ROWS, FeatureSettings::default()).unwrap();
     println!(
         "{:>10} {:>24} {:>8} {:>18} {:>10}",
         "hidden", "MAE x y z (N)", "free sd", "answer p50/p99 us", "training s"
     );
     for hidden in SIZES {
         let settings = TrainingSettings { hidden: hidden.to_vec(), ..TrainingSettings::default() };
-        let (_, Reached { truth, no_contact, inference_us, training_s, .. }) = sessions.train(None, &settings).unwrap();
+        let (_, NetworkErrors { truth, no_contact, inference_us, training_s, .. }) =
+            sessions.train(None, &settings).unwrap();
         let mae: Vec<String> =
             truth.methods[0].outputs.iter().flatten().map(|stats| format!("{:.3}", stats.mae)).collect();
         let free = no_contact.iter().map(|free| free.sd).fold(0.0, f64::max);
@@ -49,8 +50,8 @@ fn main() {
     println!("\nsmoothing of the wrench and the depth (ms), usual size:");
     for smoothing_s in [0.001, 0.002, 0.005, 0.010, 0.020] {
         let features = FeatureSettings { smoothing_s, ..FeatureSettings::default() };
-        let sessions = Sessions::record(1, ROWS, features).unwrap();
-        let (_, Reached { truth, no_contact, .. }) = sessions.train(None, &TrainingSettings::default()).unwrap();
+        let sessions = IsolationSessions::record(1, ROWS, features).unwrap();
+        let (_, NetworkErrors { truth, no_contact, .. }) = sessions.train(None, &TrainingSettings::default()).unwrap();
         let mae = truth.methods[0].outputs.iter().flatten().map(|stats| stats.mae).fold(0.0, f64::max);
         let free = no_contact.iter().map(|free| free.sd).fold(0.0, f64::max);
         println!("{:>6.0} worst MAE {mae:.3} N, free sd {free:.3} N", 1e3 * smoothing_s);

@@ -61,7 +61,7 @@ fn main() {
         let engaged = control.pairs().all(|pair| pair.state() == LoopState::Engaged);
         assert!(engaged, "{mode}: the replay did not engage");
         times_us.sort_by(f64::total_cmp);
-        let at = |share: f64| times_us[(share * (TICKS - 1) as f64) as usize];
+        let at = |fraction: f64| times_us[(fraction * (TICKS - 1) as f64) as usize];
         println!(
             "whole tick, two arms, {mode}: p50 {:.1} us, p99 {:.1} us, p99.9 {:.1} us, max {:.1} us, {allocations} allocations in {TICKS} ticks",
             at(0.5),

@@ -10,7 +10,7 @@ use nima_devices::bota;
 use nima_emulation::emulated::{EmulatedRig, HandFrame, provide_handles};
 use nima_machine::{
     config::{RigConfig, RigFile},
-    rig::{SensorPlace, SensorSettings, Settings, Side},
+    rig::{RigSettings, SensorPlace, SensorSettings, Side},
 };
 use nima_simulation::scene::Scene;
 
@@ -41,7 +41,7 @@ fn free_port() -> u16 {
 }
 
 /// The built-in rig on free ports and in its own folder.
-pub fn elsewhere(folder: &Path) -> Settings {
+pub fn elsewhere(folder: &Path) -> RigSettings {
     provide_handles();
     let mut devices = RigConfig::load("emulated").unwrap().devices.unwrap();
     let within = |port: &str| folder.join(Path::new(port).file_name().unwrap()).display().to_string();
@@ -72,7 +72,7 @@ pub fn elsewhere(folder: &Path) -> Settings {
 }
 
 /// The built-in rig as a file with the devices at these addresses.
-pub fn rig_file(devices: &Settings) -> RigFile {
+pub fn rig_file(devices: &RigSettings) -> RigFile {
     let mut file = RigFile::of("emulated").unwrap();
     for side in Side::ALL {
         let set = devices.arm(side).unwrap();
@@ -97,7 +97,7 @@ pub fn rig_file(devices: &Settings) -> RigFile {
 }
 
 /// The same with its sensors at the tips, where they measure only the tissue and need no calibration.
-pub fn at_tip(folder: &Path) -> Settings {
+pub fn at_tip(folder: &Path) -> RigSettings {
     let mut devices = elsewhere(folder);
     for set in [&mut devices.right, &mut devices.left].into_iter().flatten() {
         set.sensor_at = SensorPlace::Tip;
@@ -106,17 +106,17 @@ pub fn at_tip(folder: &Path) -> Settings {
 }
 
 /// Only its right arm: handle, arm, sensor and servos.
-pub fn right_arm(folder: &Path) -> Settings {
-    Settings { left: None, tissue_sensor: None, tracker: None, endoscope: None, pedal: None, ..at_tip(folder) }
+pub fn right_arm(folder: &Path) -> RigSettings {
+    RigSettings { left: None, tissue_sensor: None, tracker: None, endoscope: None, pedal: None, ..at_tip(folder) }
 }
 
 /// Starts the emulated devices of that rig, in the scene of two arms, whose pegs are within reach of each arm.
-pub fn started(devices: &Settings) -> EmulatedRig {
+pub fn started(devices: &RigSettings) -> EmulatedRig {
     started_in(&Scene::load("bimanual").unwrap(), devices)
 }
 
 /// Starts the emulated devices in another scene.
-pub fn started_in(scene: &Scene, devices: &Settings) -> EmulatedRig {
+pub fn started_in(scene: &Scene, devices: &RigSettings) -> EmulatedRig {
     EmulatedRig::start(
         devices,
         scene,

@@ -1,9 +1,9 @@
 //! A gravity calibration for tests, recorded like a technician's.
 
-use nima_core::calibration::gravity::{GravityRecord, GravitySession, SessionSettings};
+use nima_core::calibration::gravity::{GravityRecord, GravitySession, GravitySessionSettings};
 use nima_machine::{
     config::RigConfig,
-    rig::{Outputs, Prompt, Sensed, Side},
+    rig::{Outputs, Prompt, SensedForce, Side},
 };
 use nima_recording::store::utc_now;
 use nima_simulation::{World, scene::Scene};
@@ -12,12 +12,13 @@ use nima_simulation::{World, scene::Scene};
 pub fn gravity() -> GravityRecord {
     let scene = Scene::load("gravity").unwrap();
     let mut world = World::new(&scene, 1000.0);
-    let mut session = GravitySession::new(SessionSettings::default());
+    let mut session = GravitySession::new(GravitySessionSettings::default());
     for tick in 1..90_000 {
         let Some(target) = session.target() else { break };
         let t_s = f64::from(tick) * 1e-3;
         let prompt = Prompt::Hold { world_from_s1: target.world_from_s1() };
-        let Sensed::AtWrist(sample) = world.exchange(t_s, &Outputs { prompt, ..Outputs::SAFE }).unwrap().sensed else {
+        let SensedForce::AtWrist(sample) = world.exchange(t_s, &Outputs { prompt, ..Outputs::SAFE }).unwrap().sensed
+        else {
             panic!("a calibration scene without a wrist");
         };
         session.step(&sample, t_s);

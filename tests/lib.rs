@@ -10,12 +10,12 @@ pub mod gravity;
 pub mod studies;
 
 use nima_machine::config::RigConfig;
-use nima_simulation::{Plan, scene::Scene};
+use nima_simulation::{SimulationPlan, scene::Scene};
 
 /// The simulated rig in this scene, without calibrations; it engages by itself. The methods of others can be chosen in it.
-pub fn plan(scene: &str) -> Plan {
+pub fn plan(scene: &str) -> SimulationPlan {
     nima_baselines::provide();
-    Plan {
+    SimulationPlan {
         rig: RigConfig::load("simulated").unwrap(),
         scene: Scene::load(scene).unwrap(),
         calibrations: Default::default(),

@@ -7,8 +7,8 @@ use std::{env, error::Error, path::Path, time::Instant};
 
 use nalgebra::Vector3;
 use nima_core::impedance::{Mode, Recipe, Sample};
-use nima_recording::csv::Recording;
-use nima_study::replay::{Options, replay};
+use nima_recording::csv::CsvRecording;
+use nima_study::replay::{ReplayOptions, replay};
 
 /// The motion of `tests/speed.py`.
 fn sample(i: usize) -> Sample {
@@ -22,9 +22,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut number = |name| numbers.next().ok_or_else(|| format!("give {name}"));
     let samples = number("SAMPLES")??;
     let runs = number("RUNS")??;
-    let recording = Recording::of_samples(Path::new("speed"), vec![0, 1, 2], (0..samples).map(sample).collect())?;
+    let recording = CsvRecording::of_samples(Path::new("speed"), vec![0, 1, 2], (0..samples).map(sample).collect())?;
     let literal = Recipe::default();
-    let options = Options { mode: Mode::Best, window_s: 0.3, delay_s: 0.05, max_degree: 5, cross_talk: false, literal };
+    let options =
+        ReplayOptions { mode: Mode::Best, window_s: 0.3, delay_s: 0.05, max_degree: 5, cross_talk: false, literal };
     for _ in 0..runs {
         let begin = Instant::now();
         let mut sum = 0.0;

@@ -13,12 +13,12 @@ use crate::errors::value;
 const UNIT_TOLERANCE: f64 = 0.01;
 
 /// One array for each axis, with any memory layout.
-pub(crate) struct Axes<'a> {
+pub(crate) struct ArrayAxes<'a> {
     name: &'static str,
     columns: Vec<ArrayView1<'a, f64>>,
 }
 
-impl<'a> Axes<'a> {
+impl<'a> ArrayAxes<'a> {
     /// Checks that all have the same length and are finite.
     pub(crate) fn new(name: &'static str, arrays: &'a [PyReadonlyArray1<'_, f64>]) -> PyResult<Self> {
         let columns: Vec<_> = arrays.iter().map(PyReadonlyArray1::as_array).collect();

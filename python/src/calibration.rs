@@ -3,8 +3,8 @@
 use nalgebra::{UnitQuaternion, Vector3};
 use nima_core::{
     calibration::{
-        correspondence::{self, Pair},
-        gravity::{self, GravityModel, ModelKind, Orientation, Pose, Source},
+        correspondence::{self, PushPair},
+        gravity::{self, GravityModel, GravityPose, GravitySource, ModelKind, Orientation},
     },
     frames::{Wrench, WristSample},
 };
@@ -17,7 +17,7 @@ use crate::{
 };
 
 /// A table returned to Python.
-type Given<'py> = Bound<'py, PyArray2<f64>>;
+type PythonTable<'py> = Bound<'py, PyArray2<f64>>;
 /// An optional table.
 type Optional<'py> = Option<PyReadonlyArray2<'py, f64>>;
 
@@ -65,7 +65,7 @@ pub(crate) fn fit_gravity(
     let accelerations = optional("accelerations_m_s2", &accelerations_m_s2, 3, rows)?;
     let rotations = optional("world_from_sensor_wxyz", &world_from_sensor_wxyz, 4, rows)?;
     let orientations = orientations(rows, accelerations.as_ref(), rotations.as_ref())?;
-    let pose = |(row, orientation)| Pose {
+    let pose = |(row, orientation)| GravityPose {
         wrench: Wrench {
             force_n: vector(&forces, row),
             torque_nm: torques.as_ref().map_or_else(Vector3::zeros, |torques| vector(torques, row)),
@@ -73,17 +73,17 @@ pub(crate) fn fit_gravity(
         has_torque: torques.is_some(),
         orientation,
     };
-    let poses: Vec<Pose> = orientations.into_iter().enumerate().map(pose).collect();
+    let poses: Vec<GravityPose> = orientations.into_iter().enumerate().map(pose).collect();
     let kind = |name: &str| {
         let known = ModelKind::ALL.into_iter().find(|kind| kind.name() == name);
         known.ok_or_else(|| {
             value(format_args!("model is {name:?}; give one of {}", ModelKind::ALL.map(ModelKind::name).join(", ")))
         })
     };
-    let settings = gravity::Settings {
+    let settings = gravity::GravitySettings {
         model: model.map(kind).transpose()?,
         imu_sign: if flip_imu { -1 } else { 1 },
-        ..gravity::Settings::default()
+        ..gravity::GravitySettings::default()
     };
     guarded(|| {
         py.detach(|| {
@@ -102,7 +102,7 @@ pub(crate) fn remove_gravity<'py>(
     torques_nm: Optional<'py>,
     accelerations_m_s2: Optional<'py>,
     world_from_sensor_wxyz: Optional<'py>,
-) -> PyResult<(Given<'py>, Option<Given<'py>>)> {
+) -> PyResult<(PythonTable<'py>, Option<PythonTable<'py>>)> {
     let model: GravityModel =
         serde_json::from_str(model).map_err(|error| value(format_args!("model is not a gravity model: {error}")))?;
     if let Some(fault) = model.fault() {
@@ -118,7 +118,8 @@ pub(crate) fn remove_gravity<'py>(
     let mut free_nm = Vec::new();
     for (row, orientation) in orientations.iter().enumerate() {
         let field_m_s2 = field(&model, orientation).ok_or_else(|| {
-            let source = if model.source == Source::Imu { "accelerations_m_s2" } else { "world_from_sensor_wxyz" };
+            let source =
+                if model.source == GravitySource::Imu { "accelerations_m_s2" } else { "world_from_sensor_wxyz" };
             value(format_args!("row {row}: no direction of gravity; this model needs {source}"))
         })?;
         let predicted = model.predict(&field_m_s2);
@@ -155,14 +156,17 @@ pub(crate) fn fit_correspondence(
     let rotations = optional("sensor_from_camera_wxyz", &sensor_from_camera_wxyz, 4, rows)?;
     let pair = |row| {
         let s1_from_c = rotations.as_ref().map(|rotations| rotation("sensor_from_camera_wxyz", rotations, row));
-        Ok(Pair {
+        Ok(PushPair {
             f1_n: vector(&wrist, row),
             f2_n: vector(&tissue, row),
             s1_from_c: s1_from_c.transpose()?.unwrap_or_else(UnitQuaternion::identity),
         })
     };
-    let pairs: Vec<Pair> = (0..rows).map(pair).collect::<PyResult<_>>()?;
-    let options = correspondence::Options { flip_s2: flip_tissue, ..correspondence::Options::default() };
+    let pairs: Vec<PushPair> = (0..rows).map(pair).collect::<PyResult<_>>()?;
+    let options = correspondence::CorrespondenceOptions {
+        flip_s2: flip_tissue,
+        ..correspondence::CorrespondenceOptions::default()
+    };
     guarded(|| {
         py.detach(|| {
             let report = correspondence::fit(&pairs, &options).map_err(value)?;

@@ -3,13 +3,13 @@
 use std::path::PathBuf;
 
 use nima_core::{
-    impedance::{AXES, Choice, LiteralModel, MOTION_COLUMNS, Mode, Parcel, Reading, Recipe, Sample},
+    impedance::{AXES, DegreeChoice, IncrementReading, LinkPacket, LiteralModel, MOTION_COLUMNS, Mode, Recipe, Sample},
     safety::Gate,
 };
 use nima_machine::rig::Side;
-use nima_recording::csv::{self, AXIS_NAMES, Mapping, Recording, RecordingError, Source};
-use nima_session::plotted;
-use nima_study::replay::{Motion, Options, Row, replay_motion};
+use nima_recording::csv::{self, AXIS_NAMES, ColumnMapping, ColumnSource, CsvRecording, RecordingError};
+use nima_session::plot_channels;
+use nima_study::replay::{ReplayMotion, ReplayOptions, ReplayRow, replay_motion};
 use numpy::{IntoPyArray as _, PyReadonlyArray1};
 use pyo3::{
     prelude::*,
@@ -18,7 +18,7 @@ use pyo3::{
 use serde::de::DeserializeOwned;
 
 use crate::{
-    arrays::{Axes, given2, given3, rising},
+    arrays::{ArrayAxes, given2, given3, rising},
     errors::{guarded, of_file, value},
 };
 
@@ -43,7 +43,7 @@ pub(crate) fn rate_of(times_s: PyReadonlyArray1<'_, f64>) -> PyResult<f64> {
 }
 
 /// The rows of a replay, column by column.
-struct Rows {
+struct IdentificationRows {
     axes: usize,
     forces_n: Vec<f64>,
     held_n: Vec<f64>,
@@ -56,8 +56,8 @@ struct Rows {
 /// The data that cross the link, column by column.
 #[derive(Default)]
 struct Parcels {
-    literal: Paper,
-    linear: Paper,
+    literal: PaperModel,
+    linear: PaperModel,
     anchored_motion: Vec<f64>,
     anchored_constant_n: Vec<f64>,
     anchored_gain: Vec<f64>,
@@ -69,13 +69,13 @@ struct Parcels {
 
 /// A model `f = M X` of the paper.
 #[derive(Default)]
-struct Paper {
+struct PaperModel {
     degree: Vec<u8>,
     constant_n: Vec<f64>,
     coefficients: Vec<f64>,
 }
 
-impl Rows {
+impl IdentificationRows {
     fn new(samples: usize, axes: usize, parcels: bool) -> Self {
         Self {
             axes,
@@ -88,7 +88,7 @@ impl Rows {
         }
     }
 
-    fn push(&mut self, row: &Row, parcel: &Parcel) {
+    fn push(&mut self, row: &ReplayRow, parcel: &LinkPacket) {
         for (forces_n, force_n) in [(&mut self.forces_n, &row.rendered), (&mut self.held_n, &row.held)] {
             // NaN rather than zero: nothing had arrived yet, or the force is invalid.
             forces_n.extend((0..self.axes).map(|lane| force_n.map_or(f64::NAN, |force_n| force_n[lane])));
@@ -115,7 +115,7 @@ impl Rows {
 }
 
 impl Parcels {
-    fn push(&mut self, parcel: &Parcel, axes: usize) {
+    fn push(&mut self, parcel: &LinkPacket, axes: usize) {
         self.literal.push(&parcel.models.literal, axes);
         self.linear.push(&parcel.models.linear, axes);
         let anchored = &parcel.models.anchored;
@@ -143,7 +143,7 @@ impl Parcels {
     }
 }
 
-impl Paper {
+impl PaperModel {
     fn push(&mut self, model: &LiteralModel, axes: usize) {
         self.degree.push(model.degree);
         self.constant_n.extend((0..axes).map(|lane| model.constant_n[lane]));
@@ -186,17 +186,18 @@ pub(crate) fn identify<'py>(
     parcels: bool,
 ) -> PyResult<Bound<'py, PyDict>> {
     let mode: Mode = mode.parse().map_err(value)?;
-    let reading = word::<Reading>("reading", reading)?;
-    let choice = word::<Choice>("choice", choice)?;
+    let reading = word::<IncrementReading>("reading", reading)?;
+    let choice = word::<DegreeChoice>("choice", choice)?;
     let literal = Recipe { reading, choice, constant, ridge };
-    let options = Options { mode, window_s, delay_s, max_degree, cross_talk, literal };
-    let positions = Axes::new("positions_m", &positions_m)?;
-    let forces = Axes::new("forces_n", &forces_n)?;
+    let options = ReplayOptions { mode, window_s, delay_s, max_degree, cross_talk, literal };
+    let positions = ArrayAxes::new("positions_m", &positions_m)?;
+    let forces = ArrayAxes::new("forces_n", &forces_n)?;
     positions.fits(&forces)?;
     if !(1..=AXES).contains(&positions.count()) || axes.len() != positions.count() {
         return Err(value(format_args!("positions_m has {} axes; it must be 1, 2 or 3", positions.count())));
     }
-    let leader = leader_positions_m.as_deref().map(|arrays| Axes::new("leader_positions_m", arrays)).transpose()?;
+    let leader =
+        leader_positions_m.as_deref().map(|arrays| ArrayAxes::new("leader_positions_m", arrays)).transpose()?;
     leader.as_ref().map_or(Ok(()), |leader| leader.fits(&positions))?;
     let times_s = times_s.as_ref().map(PyReadonlyArray1::as_array);
     if let Some(times_s) = &times_s {
@@ -219,8 +220,9 @@ pub(crate) fn identify<'py>(
             };
             let leader = leader.as_ref().map(|leader| move |i: usize| leader.at(i));
             let leader_m = leader.as_ref().map(|leader| leader as &dyn Fn(usize) -> nalgebra::Vector3<f64>);
-            let motion = Motion { name: NAME.to_owned(), axes: &axes, rate_hz, samples, sample: &sample, leader_m };
-            let mut rows = Rows::new(samples, positions.count(), parcels);
+            let motion =
+                ReplayMotion { name: NAME.to_owned(), axes: &axes, rate_hz, samples, sample: &sample, leader_m };
+            let mut rows = IdentificationRows::new(samples, positions.count(), parcels);
             let figures = replay_motion(&motion, &options, |row, parcel| rows.push(row, parcel)).map_err(value)?;
             Ok((serde_json::to_string(&figures).map_err(value)?, rows))
         })
@@ -250,13 +252,13 @@ pub(crate) fn read_recording<'py>(
         )));
     }
     let arm = arm.map(side).transpose()?;
-    let mapping = Mapping::parse(&map).map_err(value)?;
+    let mapping = ColumnMapping::parse(&map).map_err(value)?;
     let recording = guarded(|| {
         py.detach(|| {
             if is_session {
-                return plotted::recording(&path, arm).map_err(|error| of_file(&path, error));
+                return plot_channels::recording(&path, arm).map_err(|error| of_file(&path, error));
             }
-            Recording::read(&path, &mapping).map_err(|error: RecordingError| of_file(&path, error))
+            CsvRecording::read(&path, &mapping).map_err(|error: RecordingError| of_file(&path, error))
         })
     })?;
     let lanes = recording.axes.len();
@@ -270,10 +272,9 @@ pub(crate) fn read_recording<'py>(
     result.set_item("axes", PyList::new(py, recording.axes.iter().map(|axis| AXIS_NAMES[*axis]))?)?;
     result.set_item("positions_m", given2(py, flat(|sample| &sample.position_m), lanes)?)?;
     result.set_item("forces_n", given2(py, flat(|sample| &sample.force_n), lanes)?)?;
-    let leader = recording
-        .leader_m
-        .as_ref()
-        .map(|leader_m| leader_m.iter().flat_map(|at_m| (0..lanes).map(move |lane| at_m[lane])).collect::<Vec<f64>>());
+    let leader = recording.leader_m.as_ref().map(|leader_m| {
+        leader_m.iter().flat_map(|position_m| (0..lanes).map(move |lane| position_m[lane])).collect::<Vec<f64>>()
+    });
     result.set_item("leader_positions_m", leader.map(|leader| given2(py, leader, lanes)).transpose()?)?;
     Ok(result)
 }
@@ -281,8 +282,8 @@ pub(crate) fn read_recording<'py>(
 /// Returns full name, column and factor of each mapped quantity.
 #[pyfunction]
 pub(crate) fn parse_map(map: Vec<String>) -> PyResult<Vec<(&'static str, String, f64)>> {
-    let mapping = Mapping::parse(&map).map_err(value)?;
-    let of = |(quantity, source): (&'static str, &Source)| (quantity, source.column().to_owned(), source.scale());
+    let mapping = ColumnMapping::parse(&map).map_err(value)?;
+    let of = |(quantity, source): (&'static str, &ColumnSource)| (quantity, source.column().to_owned(), source.scale());
     Ok(mapping.sources().map(of).collect())
 }
 

@@ -10,9 +10,9 @@ use nalgebra::Vector3;
 use nima_machine::rig::Side;
 use nima_recording::{
     messages::{JointStateDecoder, foxglove::Log},
-    session::{Attachment, Reader},
+    session::{Attachment, SessionReader},
 };
-use nima_session::plotted::{self, PlottedError, PlottedTick};
+use nima_session::plot_channels::{self, PlottedError, PlottedTick};
 use numpy::IntoPyArray as _;
 use prost::Message as _;
 use pyo3::{
@@ -35,13 +35,13 @@ const NAMED_NUMBERS: &str = "sensor_msgs/msg/JointState";
 #[pyclass(module = "nima._nima", frozen)]
 pub(crate) struct Session {
     path: PathBuf,
-    reader: Reader,
+    reader: SessionReader,
     begin_ns: u64,
 }
 
 /// A tick, in columns.
 #[derive(Default)]
-struct Columns {
+struct TickColumns {
     times_s: Vec<f64>,
     times_ns: Vec<u64>,
     vectors: [Vec<f64>; VECTORS.len()],
@@ -51,7 +51,7 @@ struct Columns {
 /// Names of a tick's vectors.
 const VECTORS: [&str; 6] = ["tip_m", "leader_m", "measured_n", "delayed_n", "asked_n", "rendered_n"];
 
-impl Columns {
+impl TickColumns {
     fn push(&mut self, tick: &PlottedTick) {
         self.times_s.push(tick.t_s);
         self.times_ns.push(tick.time_ns);
@@ -88,7 +88,7 @@ impl Session {
 
     fn arm(&self, arm: Option<&str>) -> PyResult<Side> {
         let asked = arm.map(side).transpose()?;
-        plotted::arm(&self.reader, &self.path, asked).map_err(value)
+        plot_channels::arm(&self.reader, &self.path, asked).map_err(value)
     }
 
     fn wrong(&self, error: impl std::fmt::Display) -> PyErr {
@@ -102,8 +102,8 @@ impl Session {
     #[new]
     fn new(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
         let open = |path: &Path| {
-            let reader = Reader::open(path).map_err(|error| of_file(path, error))?;
-            let begin_ns = plotted::beginning_ns(&reader).map_err(|error| of_file(path, error))?;
+            let reader = SessionReader::open(path).map_err(|error| of_file(path, error))?;
+            let begin_ns = plot_channels::beginning_ns(&reader).map_err(|error| of_file(path, error))?;
             Ok((reader, begin_ns))
         };
         let (reader, begin_ns) = guarded(|| py.detach(|| open(&path)))?;
@@ -125,7 +125,7 @@ impl Session {
     /// The plotted arms.
     #[getter]
     fn arms(&self) -> Vec<&'static str> {
-        plotted::arms(&self.reader).into_iter().map(Side::word).collect()
+        plot_channels::arms(&self.reader).into_iter().map(Side::word).collect()
     }
 
     /// Begin of the session, ns since 1970 (UTC).
@@ -143,7 +143,7 @@ impl Session {
     /// Topic, schema, and number of messages if the file states it.
     #[getter]
     fn channels(&self) -> Vec<(String, String, Option<u64>)> {
-        let of = |channel: &nima_recording::session::Channel| {
+        let of = |channel: &nima_recording::session::ReaderChannel| {
             (channel.topic.clone(), channel.encoding.schema.clone(), channel.messages)
         };
         self.reader.channels().iter().map(of).collect()
@@ -188,10 +188,10 @@ impl Session {
     ) -> PyResult<Bound<'py, PyDict>> {
         let arm = self.arm(arm)?;
         let times_ns = self.stretch(from_s, to_s)?;
-        let mut columns = Columns::default();
+        let mut columns = TickColumns::default();
         guarded(|| {
             py.detach(|| {
-                plotted::each_tick(&self.reader, &self.path, arm, times_ns, |tick| {
+                plot_channels::each_tick(&self.reader, &self.path, arm, times_ns, |tick| {
                     columns.push(&tick);
                     Ok::<_, PlottedError>(())
                 })
@@ -217,7 +217,7 @@ impl Session {
         from_s: Option<f64>,
         to_s: Option<f64>,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let is_wanted = |channel: &&nima_recording::session::Channel| channel.topic == topic;
+        let is_wanted = |channel: &&nima_recording::session::ReaderChannel| channel.topic == topic;
         let channel = self.reader.channels().iter().find(is_wanted).ok_or_else(|| {
             value(format_args!("session {} has no channel {topic:?}; see channels", self.path.display()))
         })?;

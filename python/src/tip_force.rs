@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use nalgebra::Vector3;
 use nima_core::{
     frames::{Wrench, WristSample},
-    tip_force::{Estimator, Fallback, Model, TipForce},
+    tip_force::{Estimator, Fallback, ForceModel, LiveTipForce},
 };
 use nima_recording::tip_force::load_model;
 use numpy::{IntoPyArray as _, PyReadonlyArray1, PyReadonlyArray2};
@@ -19,7 +19,7 @@ use crate::{
 /// A trained network.
 #[pyclass(module = "nima._nima", frozen)]
 pub(crate) struct TipForceModel {
-    model: Model,
+    model: ForceModel,
 }
 
 #[pymethods]
@@ -107,9 +107,9 @@ impl TipForceModel {
         }
         let turned: Vec<_> =
             (0..rows).map(|row| rotation("world_from_sensor_wxyz", &rotations, row)).collect::<PyResult<_>>()?;
-        let mut tip_force = TipForce::new(self.model.clone(), fallback).map_err(value)?;
+        let mut tip_force = LiveTipForce::new(self.model.clone(), fallback).map_err(value)?;
         let mut force_n = Vec::new();
-        let mut share = Vec::new();
+        let mut fraction = Vec::new();
         let mut doubt = Vec::new();
         guarded(|| {
             py.detach(|| {
@@ -122,7 +122,7 @@ impl TipForceModel {
                     };
                     let report = tip_force.step(times_s[row], &wrench, &sample);
                     force_n.extend(Vector3::iter(&report.force_s1_n).copied());
-                    share.push(report.network_share);
+                    fraction.push(report.network_fraction);
                     doubt.push(f64::from(report.doubt));
                 }
             });
@@ -130,7 +130,7 @@ impl TipForceModel {
         })?;
         let result = PyDict::new(py);
         result.set_item("forces_n", given2(py, force_n, 3)?)?;
-        result.set_item("network_share", share.into_pyarray(py))?;
+        result.set_item("network_share", fraction.into_pyarray(py))?;
         result.set_item("doubt", doubt.into_pyarray(py))?;
         Ok(result)
     }

@@ -26,7 +26,7 @@ pub struct Axis {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Style {
+pub enum SeriesStyle {
     Points,
     Line,
     Dashed,
@@ -38,7 +38,7 @@ pub struct Series {
     pub name: String,
     /// Index into [`COLOURS`]; also selects the marker's shape.
     pub colour: usize,
-    pub style: Style,
+    pub style: SeriesStyle,
     /// `(x, y)`.
     pub points: Vec<[f64; 2]>,
 }
@@ -196,8 +196,8 @@ fn colour(series: &Series) -> &'static str {
 fn draw(out: &mut String, chart: &Chart, series: &Series) {
     let place = |[x, y]: [f64; 2]| Some([across(chart.x.place(x)?), down(chart.y.place(y)?)]);
     let points: Vec<[f64; 2]> = series.points.iter().filter_map(|point| place(*point)).collect();
-    if series.style != Style::Points && !points.is_empty() {
-        let dashes = if series.style == Style::Dashed { " stroke-dasharray=\"5 4\"" } else { "" };
+    if series.style != SeriesStyle::Points && !points.is_empty() {
+        let dashes = if series.style == SeriesStyle::Dashed { " stroke-dasharray=\"5 4\"" } else { "" };
         write!(out, "<polyline fill=\"none\" stroke=\"{}\" stroke-width=\"1.5\"{dashes} points=\"", colour(series))
             .ok();
         for [x, y] in &points {
@@ -205,7 +205,7 @@ fn draw(out: &mut String, chart: &Chart, series: &Series) {
         }
         out.push_str("\"/>\n");
     }
-    if series.style != Style::Dashed {
+    if series.style != SeriesStyle::Dashed {
         for [x, y] in points {
             marker(out, series, x, y);
         }
@@ -242,13 +242,13 @@ fn legend_of(out: &mut String, chart: &Chart) {
     for (i, series) in named(chart).enumerate() {
         let x = LEFT + (i % 2) as f64 * (WIDTH - LEFT - RIGHT) / 2.0;
         let y = HEIGHT + (i / 2) as f64 * LEGEND_LINE;
-        if series.style == Style::Points {
+        if series.style == SeriesStyle::Points {
             marker(out, series, x + 10.0, y);
         } else {
-            let dashes = if series.style == Style::Dashed { " stroke-dasharray=\"5 4\"" } else { "" };
+            let dashes = if series.style == SeriesStyle::Dashed { " stroke-dasharray=\"5 4\"" } else { "" };
             let colour = colour(series);
             writeln!(out, "<path d=\"M{x:.1} {y:.1}h20\" stroke=\"{colour}\" stroke-width=\"1.5\"{dashes}/>").ok();
-            if series.style == Style::Line {
+            if series.style == SeriesStyle::Line {
                 marker(out, series, x + 10.0, y);
             }
         }
@@ -281,7 +281,7 @@ mod tests {
     #[test]
     fn a_document_with_everything_in_it() {
         let points = vec![[1.0, 2.0], [f64::NAN, 1.0], [3.0, 4.0]];
-        let series = [Style::Points, Style::Line, Style::Dashed].map(|style| Series {
+        let series = [SeriesStyle::Points, SeriesStyle::Line, SeriesStyle::Dashed].map(|style| Series {
             name: "a < b".into(),
             colour: 1,
             style,

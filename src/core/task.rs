@@ -15,16 +15,16 @@ pub enum TaskKind {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Happening {
+pub struct TimedTaskEvent {
     /// Time, s, on the clock of the samples.
     pub t_s: f64,
-    pub event: Event,
+    pub event: TaskEvent,
 }
 
 /// Events of a trial. Rings, pegs and lumps are counted from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Event {
+pub enum TaskEvent {
     /// The trial begins. Everything before it is discarded.
     Begun,
     /// The task is complete: this is the end of the measured time.

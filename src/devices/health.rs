@@ -31,7 +31,7 @@ impl Loss {
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Standing {
+pub enum ConnectionState {
     #[default]
     Closed,
     /// Being opened and configured, on another thread.
@@ -45,7 +45,7 @@ pub enum Standing {
 /// State and counters of a device since it was opened. A reading is a complete, checked frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Health {
-    pub standing: Standing,
+    pub standing: ConnectionState,
     pub readings: u64,
     /// Number of readings that never arrived, according to the device's counter or clock.
     pub lost: u64,
@@ -78,7 +78,7 @@ const RATE_WINDOW_S: f64 = 0.5;
 impl Health {
     /// Returns the health of a device that is being opened.
     pub fn opening() -> Self {
-        Self { standing: Standing::Opening, ..Self::default() }
+        Self { standing: ConnectionState::Opening, ..Self::default() }
     }
 
     pub fn accept(&mut self, now_s: f64) {
@@ -91,14 +91,14 @@ impl Health {
         self.in_window += 1;
         self.newest_s = Some(now_s);
         self.readings += 1;
-        self.standing = Standing::Connected;
+        self.standing = ConnectionState::Connected;
     }
 
     /// Marks the device as lost; the first cause is kept. Returns true if it was not lost before.
     pub const fn lose(&mut self, loss: Loss) -> bool {
-        let newly = !matches!(self.standing, Standing::Lost(_));
+        let newly = !matches!(self.standing, ConnectionState::Lost(_));
         if newly {
-            self.standing = Standing::Lost(loss);
+            self.standing = ConnectionState::Lost(loss);
         }
         newly
     }
@@ -120,7 +120,7 @@ pub(super) struct Outages {
 impl Outages {
     /// Updates the outages from the current state of the device, and copies them into `health`.
     pub(super) fn follow(&mut self, health: &mut Health, now_s: f64) {
-        if matches!(health.standing, Standing::Lost(_)) && self.since_s.is_none() {
+        if matches!(health.standing, ConnectionState::Lost(_)) && self.since_s.is_none() {
             self.count += 1;
             self.since_s = Some(health.newest_s.unwrap_or(now_s));
         }
@@ -128,7 +128,7 @@ impl Outages {
             self.longest_s = self.longest_s.max(now_s - since_s);
         }
         // A device that a person disconnects does not have an outage.
-        if matches!(health.standing, Standing::Connected | Standing::Closed) {
+        if matches!(health.standing, ConnectionState::Connected | ConnectionState::Closed) {
             self.since_s = None;
         }
         health.outages = self.count;
@@ -137,7 +137,7 @@ impl Outages {
 }
 
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
-pub struct Identity {
+pub struct DeviceIdentity {
     pub product: String,
     pub serial: String,
     pub firmware: String,
@@ -170,8 +170,8 @@ mod tests {
         assert!(health.age_s(3.0).is_infinite());
         health.accept(1.0);
         assert!(health.lose(Loss::Silent) && !health.lose(Loss::Disconnected));
-        assert_eq!(health.standing, Standing::Lost(Loss::Silent));
+        assert_eq!(health.standing, ConnectionState::Lost(Loss::Silent));
         health.accept(2.0);
-        assert_eq!(health.standing, Standing::Connected);
+        assert_eq!(health.standing, ConnectionState::Connected);
     }
 }

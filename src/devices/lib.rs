@@ -7,6 +7,7 @@
 pub mod bota;
 pub mod discovery;
 pub mod dynamixel;
+mod error;
 pub mod external;
 pub mod force_dimension;
 pub mod haply;
@@ -22,19 +23,18 @@ mod parts;
 mod reading;
 pub mod simulated_arm;
 mod slot;
+mod stream_buffer;
 pub mod transport;
-mod trouble;
-mod unread;
 
-pub use health::{Health, Identity, Loss, Standing, same_serial};
+pub use error::DeviceError;
+pub use health::{ConnectionState, DeviceIdentity, Health, Loss, same_serial};
 pub use lever::Lever;
 pub use parts::{Follower, ForceSensor, Leader, Switch, Tracker};
 pub use reading::{
     ARM_JOINTS, ArmReading, CapReading, ForceReading, ForceStatus, HandleReading, PedalReading, SERVOS, ServoReading,
-    Stamped, TRACKED_TOOLS, Tracked, TrackerReading,
+    TRACKED_TOOLS, TimedReading, TrackedTool, TrackerReading,
 };
-pub use slot::{Slot, SlotReport, SlotView};
-pub use trouble::Trouble;
+pub use slot::{DeviceSlot, SlotReport, SlotView};
 
 /// An open device.
 ///
@@ -45,16 +45,16 @@ pub trait Device: Send {
     /// Handles everything that has arrived until `now_s` (loop time) and returns the newest reading since the last
     /// call, if any. Lost, damaged and refused data are counted in [`Device::health`]; a lost device stays lost until
     /// it is reopened.
-    fn poll(&mut self, now_s: f64) -> Option<Stamped<Self::Reading>>;
+    fn poll(&mut self, now_s: f64) -> Option<TimedReading<Self::Reading>>;
 
-    fn about(&self) -> (&Health, &Identity);
+    fn about(&self) -> (&Health, &DeviceIdentity);
 
     fn health(&self) -> &Health {
         self.about().0
     }
 
     /// Returns the identity that the device reported.
-    fn identity(&self) -> &Identity {
+    fn identity(&self) -> &DeviceIdentity {
         self.about().1
     }
 }

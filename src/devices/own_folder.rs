@@ -54,12 +54,12 @@ mod unix {
     /// # Errors
     /// I/O errors; [`ErrorKind::PermissionDenied`], with the reason and what to do, if another user could interfere.
     pub fn prepare(folder: &Path) -> Result<()> {
-        let told = |error: Error| Error::new(error.kind(), format!("folder {}: {error}", folder.display()));
-        DirBuilder::new().recursive(true).mode(0o700).create(folder).map_err(told)?;
+        let report = |error: Error| Error::new(error.kind(), format!("folder {}: {error}", folder.display()));
+        DirBuilder::new().recursive(true).mode(0o700).create(folder).map_err(report)?;
         // A link must be as trustworthy as the folder that it points to.
         let foreign = |there: &Metadata| ![0, user_id()].contains(&there.uid());
-        let link = fs::symlink_metadata(folder).map_err(told)?;
-        let there = fs::metadata(folder).map_err(told)?;
+        let link = fs::symlink_metadata(folder).map_err(report)?;
+        let there = fs::metadata(folder).map_err(report)?;
         let reason = if foreign(&link) || foreign(&there) {
             "belongs to another user"
         } else if there.mode() & (WORLD_WRITABLE | STICKY) == WORLD_WRITABLE {
@@ -67,11 +67,11 @@ mod unix {
         } else {
             return Ok(());
         };
-        let told = format!(
+        let report = format!(
             "folder {} {reason}: remove it, or choose another folder for the emulated devices",
             folder.display()
         );
-        Err(Error::new(ErrorKind::PermissionDenied, told))
+        Err(Error::new(ErrorKind::PermissionDenied, report))
     }
 
     /// Opens a file for locking: creates it if necessary, does not follow links, does not truncate.
@@ -80,8 +80,8 @@ mod unix {
     /// I/O errors, for instance if the path is a link.
     pub fn lock_file(path: &Path) -> Result<File> {
         let refuse = |reason: &str| {
-            let told = format!("{} {reason}: remove it, or choose another folder", path.display());
-            Error::new(ErrorKind::AlreadyExists, told)
+            let report = format!("{} {reason}: remove it, or choose another folder", path.display());
+            Error::new(ErrorKind::AlreadyExists, report)
         };
         let mut options = OpenOptions::new();
         options.read(true).write(true).create(true).truncate(false).mode(0o600);
@@ -152,8 +152,8 @@ mod tests {
         let refused = |at: &Path, reason: &str| {
             let error = prepare(at).unwrap_err();
             assert_eq!(error.kind(), ErrorKind::PermissionDenied);
-            let told = error.to_string();
-            assert!(told.contains(reason) && told.contains(&at.display().to_string()), "{told}");
+            let report = error.to_string();
+            assert!(report.contains(reason) && report.contains(&at.display().to_string()), "{report}");
         };
         let open = folder.path().join("open");
         prepare(&open).unwrap();
@@ -177,8 +177,8 @@ mod tests {
         let lock = folder.path().join(".tty.lock");
         fs::write(&victim, "kept").unwrap();
         symlink(&victim, &lock).unwrap();
-        let told = lock_file(&lock).unwrap_err().to_string();
-        assert!(told.contains("is a link") && told.contains(".tty.lock"), "{told}");
+        let report = lock_file(&lock).unwrap_err().to_string();
+        assert!(report.contains("is a link") && report.contains(".tty.lock"), "{report}");
         assert_eq!(fs::read_to_string(&victim).unwrap(), "kept");
         fs::remove_file(&lock).unwrap();
         fs::hard_link(&victim, &lock).unwrap();
@@ -186,6 +186,6 @@ mod tests {
         assert_eq!(fs::read_to_string(&victim).unwrap(), "kept");
         fs::remove_file(&lock).unwrap();
         assert!(std::process::Command::new("mkfifo").arg(&lock).status().unwrap().success());
-        assert!(lock_file(&lock).unwrap_err().to_string().contains("no emulator's"));
+        assert!(lock_file(&lock).unwrap_err().to_string().contains("does not belong to an emulator"));
     }
 }

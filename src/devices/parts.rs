@@ -2,14 +2,14 @@
 //! its kind in its own folder.
 //!
 //! Every part is a [`Device`] with a fixed type of reading; force sensors, trackers and switches need nothing else.
-//! Commands neither wait nor allocate. A rig stores parts as `Slot<Box<dyn Leader>>` and so on; a virtual call costs a
+//! Commands neither wait nor allocate. A rig stores parts as `DeviceSlot<Box<dyn Leader>>` and so on; a virtual call costs a
 //! few nanoseconds.
 
 use nalgebra::Vector3;
 
 use crate::{
-    ARM_JOINTS, ArmReading, Device, ForceReading, HandleReading, Health, Identity, Lever, PedalReading, Stamped,
-    TrackerReading,
+    ARM_JOINTS, ArmReading, Device, DeviceIdentity, ForceReading, HandleReading, Health, Lever, PedalReading,
+    TimedReading, TrackerReading,
 };
 
 pub trait Leader: Device<Reading = HandleReading> {
@@ -62,11 +62,11 @@ impl<D: Device<Reading = PedalReading>> Switch for D {}
 impl<D: Device + ?Sized> Device for Box<D> {
     type Reading = D::Reading;
 
-    fn poll(&mut self, now_s: f64) -> Option<Stamped<D::Reading>> {
+    fn poll(&mut self, now_s: f64) -> Option<TimedReading<D::Reading>> {
         (**self).poll(now_s)
     }
 
-    fn about(&self) -> (&Health, &Identity) {
+    fn about(&self) -> (&Health, &DeviceIdentity) {
         (**self).about()
     }
 }

@@ -4,7 +4,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 use nima_core::frames::Wrench;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stamped<T> {
+pub struct TimedReading<T> {
     /// Time on the device's own clock, s, unwrapped across overflows of its counter; `None` if the device sends no
     /// time.
     pub device_s: Option<f64>,
@@ -92,7 +92,7 @@ pub struct HandleReading {
 pub const TRACKED_TOOLS: usize = 4;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum Tracked {
+pub enum TrackedTool {
     /// No tool is assigned to this index.
     #[default]
     Absent,
@@ -118,7 +118,7 @@ pub enum Tracked {
 pub struct TrackerReading {
     pub frame: u32,
     /// The tools, in the order of their definition.
-    pub tools: [Tracked; TRACKED_TOOLS],
+    pub tools: [TrackedTool; TRACKED_TOOLS],
 }
 
 /// State of a foot pedal or of other switches; a switch that cannot be read counts as released.

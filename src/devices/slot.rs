@@ -16,15 +16,15 @@ use std::{
 use crossbeam_channel::{Receiver, Sender, bounded};
 use tracing::{info, warn};
 
-use super::{Device, Health, Identity, Stamped, Standing, Trouble, health::Outages};
+use super::{ConnectionState, Device, DeviceError, DeviceIdentity, Health, TimedReading, health::Outages};
 
 /// State of a slot for threads other than the real-time thread.
 #[derive(Clone, Debug, Default)]
 pub struct SlotReport {
     /// Identity that the device reported when it was opened.
-    pub identity: Option<Identity>,
+    pub identity: Option<DeviceIdentity>,
     /// Reason why the last attempt to open the device failed; `None` once it is open.
-    pub trouble: Option<Trouble>,
+    pub trouble: Option<DeviceError>,
     /// Number of times that the device has been opened.
     pub opened: u64,
 }
@@ -35,27 +35,27 @@ const RETRY: Duration = Duration::from_millis(500);
 const NAP: Duration = Duration::from_millis(20);
 
 /// The slot of one device. Dropping it closes the device and ends its thread.
-pub struct Slot<D: Device> {
+pub struct DeviceSlot<D: Device> {
     device: Option<D>,
     health: Health,
     outages: Outages,
     opened: Receiver<D>,
     lost: Sender<D>,
-    shared: Shared,
+    shared: SlotShared,
     thread: Option<JoinHandle<()>>,
 }
 
-impl<D: Device + 'static> Slot<D> {
+impl<D: Device + 'static> DeviceSlot<D> {
     /// Creates a slot. `open` is called on a separate thread, repeatedly while the device is wanted and not open.
     ///
     /// # Errors
     /// If the operating system cannot create the thread.
-    pub fn start(name: &str, open: impl FnMut() -> Result<D, Trouble> + Send + 'static) -> std::io::Result<Self> {
+    pub fn start(name: &str, open: impl FnMut() -> Result<D, DeviceError> + Send + 'static) -> std::io::Result<Self> {
         let (give, opened) = bounded(1);
         let (lost, take) = bounded(1);
-        let shared = Shared::default();
+        let shared = SlotShared::default();
         shared.wanted.store(true, Ordering::Release);
-        let keeper = Keeper { name: name.to_owned(), give, take, shared: shared.clone() };
+        let keeper = SlotWorker { name: name.to_owned(), give, take, shared: shared.clone() };
         let thread = Builder::new().name(format!("open {name}")).spawn(move || keeper.run(open))?;
         let health = Health::opening();
         Ok(Self { device: None, health, outages: Outages::default(), opened, lost, shared, thread: Some(thread) })
@@ -63,13 +63,13 @@ impl<D: Device + 'static> Slot<D> {
 
     /// Polls the device if it is open. Also accepts a device that was just opened, and returns a lost or unwanted one
     /// to the thread.
-    pub fn poll(&mut self, now_s: f64) -> Option<Stamped<D::Reading>> {
+    pub fn poll(&mut self, now_s: f64) -> Option<TimedReading<D::Reading>> {
         let reading = self.poll_device(now_s);
         self.outages.follow(&mut self.health, now_s);
         reading
     }
 
-    fn poll_device(&mut self, now_s: f64) -> Option<Stamped<D::Reading>> {
+    fn poll_device(&mut self, now_s: f64) -> Option<TimedReading<D::Reading>> {
         if self.device.is_none() {
             self.device = self.opened.try_recv().ok();
         }
@@ -77,21 +77,21 @@ impl<D: Device + 'static> Slot<D> {
         let Some(device) = self.device.as_mut() else {
             // A device that is not open can also be disconnected and connected.
             match (wanted, self.health.standing) {
-                (false, _) => self.health.standing = Standing::Closed,
-                (true, Standing::Closed) => self.health.standing = Standing::Opening,
+                (false, _) => self.health.standing = ConnectionState::Closed,
+                (true, ConnectionState::Closed) => self.health.standing = ConnectionState::Opening,
                 (true, _) => {}
             }
             return None;
         };
         let reading = device.poll(now_s);
         self.health = *device.health();
-        if !wanted || matches!(self.health.standing, Standing::Lost(_)) {
+        if !wanted || matches!(self.health.standing, ConnectionState::Lost(_)) {
             if let Some(Err(full)) = self.device.take().map(|device| self.lost.try_send(device)) {
                 // The thread has not taken the previous device yet; try again in the next poll.
                 self.device = Some(full.into_inner());
             }
             if !wanted {
-                self.health.standing = Standing::Closed;
+                self.health.standing = ConnectionState::Closed;
             }
             return None;
         }
@@ -117,13 +117,13 @@ impl<D: Device + 'static> Slot<D> {
     }
 }
 
-impl<D: Device> std::fmt::Debug for Slot<D> {
+impl<D: Device> std::fmt::Debug for DeviceSlot<D> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Slot").field("health", &self.health).finish_non_exhaustive()
     }
 }
 
-impl<D: Device> Slot<D> {
+impl<D: Device> DeviceSlot<D> {
     /// Ends the slot: its thread closes the device. To end several slots, call this for all of them before dropping the
     /// first: an arm that is not served while another one brakes would report a fault.
     pub fn retire(&mut self) {
@@ -138,7 +138,7 @@ impl<D: Device> Slot<D> {
     }
 }
 
-impl<D: Device> Drop for Slot<D> {
+impl<D: Device> Drop for DeviceSlot<D> {
     fn drop(&mut self) {
         self.retire();
         if let Some(thread) = self.thread.take() {
@@ -148,7 +148,7 @@ impl<D: Device> Drop for Slot<D> {
 }
 
 #[derive(Clone, Debug, Default)]
-struct Shared {
+struct SlotShared {
     report: Arc<Mutex<SlotReport>>,
     wanted: Arc<AtomicBool>,
     stop: Arc<AtomicBool>,
@@ -158,7 +158,7 @@ struct Shared {
 /// that never opens.
 #[derive(Clone, Debug, Default)]
 pub struct SlotView {
-    shared: Shared,
+    shared: SlotShared,
 }
 
 impl SlotView {
@@ -171,17 +171,17 @@ impl SlotView {
     }
 }
 
-struct Keeper<D> {
+struct SlotWorker<D> {
     name: String,
     give: Sender<D>,
     take: Receiver<D>,
-    shared: Shared,
+    shared: SlotShared,
 }
 
-impl<D: Device> Keeper<D> {
-    fn run(self, mut open: impl FnMut() -> Result<D, Trouble>) {
+impl<D: Device> SlotWorker<D> {
+    fn run(self, mut open: impl FnMut() -> Result<D, DeviceError>) {
         let mut out = false;
-        let mut told = None;
+        let mut report = None;
         while !self.shared.stop.load(Ordering::Acquire) {
             if let Ok(lost) = self.take.try_recv() {
                 warn!(device = self.name, standing = ?lost.health().standing, "closed");
@@ -196,8 +196,8 @@ impl<D: Device> Keeper<D> {
             match open() {
                 Ok(device) => {
                     info!(device = self.name, "open");
-                    told = None;
-                    self.tell(|report| {
+                    report = None;
+                    self.report(|report| {
                         report.identity = Some(device.identity().clone());
                         report.trouble = None;
                         report.opened += 1;
@@ -206,11 +206,11 @@ impl<D: Device> Keeper<D> {
                 }
                 Err(trouble) => {
                     // The same trouble, twice a second, is one line.
-                    if told.as_ref() != Some(&trouble) {
+                    if report.as_ref() != Some(&trouble) {
                         warn!(device = self.name, %trouble, "not open");
-                        told = Some(trouble.clone());
+                        report = Some(trouble.clone());
                     }
-                    self.tell(|report| report.trouble = Some(trouble));
+                    self.report(|report| report.trouble = Some(trouble));
                     self.nap(RETRY);
                 }
             }
@@ -218,7 +218,7 @@ impl<D: Device> Keeper<D> {
         self.take.try_iter().for_each(drop);
     }
 
-    fn tell(&self, change: impl FnOnce(&mut SlotReport)) {
+    fn report(&self, change: impl FnOnce(&mut SlotReport)) {
         change(&mut self.shared.report.lock().unwrap_or_else(PoisonError::into_inner));
     }
 
@@ -241,29 +241,32 @@ mod tests {
 
     struct Flaky {
         health: Health,
-        identity: Identity,
+        identity: DeviceIdentity,
         left: u32,
     }
 
     impl Device for Flaky {
         type Reading = u32;
 
-        fn poll(&mut self, now_s: f64) -> Option<Stamped<u32>> {
+        fn poll(&mut self, now_s: f64) -> Option<TimedReading<u32>> {
             if self.left == 0 {
                 self.health.lose(Loss::Silent);
                 return None;
             }
             self.left -= 1;
             self.health.accept(now_s);
-            Some(Stamped { device_s: None, arrival_s: now_s, value: self.left })
+            Some(TimedReading { device_s: None, arrival_s: now_s, value: self.left })
         }
 
-        fn about(&self) -> (&Health, &Identity) {
+        fn about(&self) -> (&Health, &DeviceIdentity) {
             (&self.health, &self.identity)
         }
     }
 
-    fn until(slot: &mut Slot<Flaky>, good: impl Fn(&Slot<Flaky>, Option<Stamped<u32>>) -> bool) -> bool {
+    fn until(
+        slot: &mut DeviceSlot<Flaky>,
+        good: impl Fn(&DeviceSlot<Flaky>, Option<TimedReading<u32>>) -> bool,
+    ) -> bool {
         let begin = Instant::now();
         while begin.elapsed() < Duration::from_secs(5) {
             let reading = slot.poll(begin.elapsed().as_secs_f64());
@@ -281,11 +284,11 @@ mod tests {
     impl Device for Slow {
         type Reading = u32;
 
-        fn poll(&mut self, now_s: f64) -> Option<Stamped<u32>> {
+        fn poll(&mut self, now_s: f64) -> Option<TimedReading<u32>> {
             self.0.poll(now_s)
         }
 
-        fn about(&self) -> (&Health, &Identity) {
+        fn about(&self) -> (&Health, &DeviceIdentity) {
             self.0.about()
         }
     }
@@ -309,8 +312,9 @@ mod tests {
             let mut slots = [(); 2].map(|()| {
                 let closing = Arc::clone(&closing);
                 let together = Arc::clone(&together);
-                let flaky = || Flaky { health: Health::default(), identity: Identity::default(), left: u32::MAX };
-                Slot::start("slow", move || Ok(Slow(flaky(), Arc::clone(&closing), Arc::clone(&together)))).unwrap()
+                let flaky = || Flaky { health: Health::default(), identity: DeviceIdentity::default(), left: u32::MAX };
+                DeviceSlot::start("slow", move || Ok(Slow(flaky(), Arc::clone(&closing), Arc::clone(&together))))
+                    .unwrap()
             });
             let begin = Instant::now();
             while !slots.iter_mut().all(|slot| slot.device().is_some()) && begin.elapsed() < Duration::from_secs(5) {
@@ -319,7 +323,7 @@ mod tests {
                 }
                 std::thread::sleep(Duration::from_millis(1));
             }
-            slots.iter_mut().for_each(Slot::retire);
+            slots.iter_mut().for_each(DeviceSlot::retire);
             drop(slots);
             assert_eq!(together.load(Ordering::Acquire), 2, "one after the other: the second arm would miss its cycle");
         });
@@ -330,15 +334,15 @@ mod tests {
         judged(|| {
             let attempts = Arc::new(AtomicU64::new(0));
             let count = Arc::clone(&attempts);
-            let mut slot = Slot::start("flaky", move || match count.fetch_add(1, Ordering::Relaxed) {
-                0 => Err(Trouble::Absent { place: "/dev/ttyX".to_owned() }),
-                _ => Ok(Flaky { health: Health::default(), identity: Identity::default(), left: 3 }),
+            let mut slot = DeviceSlot::start("flaky", move || match count.fetch_add(1, Ordering::Relaxed) {
+                0 => Err(DeviceError::Absent { place: "/dev/ttyX".to_owned() }),
+                _ => Ok(Flaky { health: Health::default(), identity: DeviceIdentity::default(), left: 3 }),
             })
             .unwrap();
             let view = slot.view();
-            assert_eq!(slot.health().standing, Standing::Opening);
+            assert_eq!(slot.health().standing, ConnectionState::Opening);
             assert!(until(&mut slot, |_, reading| reading.is_some()));
-            assert!(until(&mut slot, |slot, _| slot.health().standing == Standing::Lost(Loss::Silent)));
+            assert!(until(&mut slot, |slot, _| slot.health().standing == ConnectionState::Lost(Loss::Silent)));
             assert!(until(&mut slot, |_, _| view.report().opened >= 2), "it is opened again");
             assert!(until(&mut slot, |_, reading| reading.is_some()), "and delivers");
             assert!(view.report().trouble.is_none());
@@ -347,7 +351,7 @@ mod tests {
             assert!(until(&mut slot, |slot, _| slot.health().outages > outages), "the next one is counted");
             // The device is absent at this moment; disconnecting it counts as closed, not lost.
             view.want(false);
-            assert!(until(&mut slot, |slot, _| slot.health().standing == Standing::Closed));
+            assert!(until(&mut slot, |slot, _| slot.health().standing == ConnectionState::Closed));
             let opened = view.report().opened;
             std::thread::sleep(Duration::from_millis(50));
             assert_eq!(view.report().opened, opened, "not wanted, not opened");

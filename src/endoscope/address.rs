@@ -5,7 +5,7 @@ use std::{fmt, path::PathBuf, str::FromStr};
 use percent_encoding::percent_decode_str;
 
 /// Maximum length of an address.
-const LENGTH_MOST: usize = 2000;
+const LENGTH_MAX: usize = 2000;
 
 /// Address of an image source.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -104,7 +104,7 @@ impl FromStr for Address {
         if text.is_empty() {
             return wrong("give http://HOST:PORT/PATH, rtsp://HOST/PATH, /dev/video0, or the path of a file or folder");
         }
-        if text.len() > LENGTH_MOST || text.chars().any(char::is_control) {
+        if text.len() > LENGTH_MAX || text.chars().any(char::is_control) {
             return wrong("it is too long, or has characters that no address has");
         }
         if let Some(rest) = text.strip_prefix("v4l2:") {
@@ -287,8 +287,8 @@ mod tests {
             ("http://cam/a b", "blanks"),
             ("http://cam/a\r\nX: y", "characters"),
         ] {
-            let told = text.parse::<Address>().unwrap_err().to_string();
-            assert!(told.contains(word) && !told.contains('\n'), "{text}: {told}");
+            let report = text.parse::<Address>().unwrap_err().to_string();
+            assert!(report.contains(word) && !report.contains('\n'), "{text}: {report}");
         }
     }
 

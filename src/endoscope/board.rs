@@ -26,7 +26,7 @@ const BEHIND: f64 = 92.0;
 
 /// A checkerboard.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Board {
+pub struct Checkerboard {
     /// Inner corners along x and y.
     corners: [usize; 2],
     square_m: f64,
@@ -38,19 +38,19 @@ pub enum BoardError {
     #[error("\"{0}\" is not a board size; give its inner corners, such as 9x6")]
     Text(String),
     /// A side has too few or too many corners.
-    #[error("a board cannot have {0} inner corners along a side; give {least} to {most}", least = CORNERS.start(), most = CORNERS.end())]
+    #[error("a board cannot have {0} inner corners along a side; give {min} to {max}", min = CORNERS.start(), max = CORNERS.end())]
     Corners(usize),
     #[error("a board of {0}x{1} inner corners looks the same upside down; give an odd and an even number, such as 9x6")]
     Ambiguous(usize, usize),
-    #[error("squares cannot have a side of {0} mm; give {least} to {most} mm", least = SQUARE_M.start() * 1e3, most = SQUARE_M.end() * 1e3)]
+    #[error("squares cannot have a side of {0} mm; give {min} to {max} mm", min = SQUARE_M.start() * 1e3, max = SQUARE_M.end() * 1e3)]
     Square(f64),
 }
 
 /// Inner corners along both sides, written as `9x6`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Corners(pub [usize; 2]);
+pub struct BoardCorners(pub [usize; 2]);
 
-impl FromStr for Corners {
+impl FromStr for BoardCorners {
     type Err = BoardError;
 
     fn from_str(text: &str) -> Result<Self, BoardError> {
@@ -60,7 +60,7 @@ impl FromStr for Corners {
     }
 }
 
-impl Board {
+impl Checkerboard {
     /// Makes a board with these inner corners and this side of a square.
     ///
     /// # Errors
@@ -127,7 +127,7 @@ impl Board {
     /// Returns the board as a drawing in its true size, for printing.
     ///
     /// ```
-    /// let board = nima_endoscope::Board::new([9, 6], 0.010)?;
+    /// let board = nima_endoscope::Checkerboard::new([9, 6], 0.010)?;
     /// let svg = board.svg();
     /// assert!(svg.contains("width=\"120mm\" height=\"90mm\""));
     /// assert_eq!(svg.matches("M").count(), 35, "half of the 10 x 7 squares");
@@ -177,7 +177,7 @@ impl Portrait {
     }
 
     /// Returns the grey values, 0 to 255, row by row, of a board at this pose in the camera's frame.
-    pub fn draw(&self, board: &Board, camera_from_board: &Isometry3<f64>) -> Vec<f32> {
+    pub fn draw(&self, board: &Checkerboard, camera_from_board: &Isometry3<f64>) -> Vec<f32> {
         let [width, height] = self.size_px;
         let from = camera_from_board.inverse();
         let way = camera_from_board.rotation.inverse();
@@ -210,14 +210,14 @@ impl Portrait {
 }
 
 /// Brightness of a pixel whose sides span these vectors on the board.
-fn shade(board: &Board, middle: &Vector2<f64>, across: &Vector2<f64>, down: &Vector2<f64>) -> f64 {
+fn shade(board: &Checkerboard, middle: &Vector2<f64>, across: &Vector2<f64>, down: &Vector2<f64>) -> f64 {
     let reach = (across.abs() + down.abs()) * 0.5;
     let is_even = middle.iter().zip(&reach).all(|(at, reach)| (at - at.round()).abs() > *reach);
     if is_even {
         return board.grey(middle).unwrap_or(BEHIND);
     }
-    let share = |k: usize| (k as f64 + 0.5) / SAMPLES as f64 - 0.5;
-    let samples = (0..SAMPLES).flat_map(|row| (0..SAMPLES).map(move |column| [share(column), share(row)]));
+    let fraction = |k: usize| (k as f64 + 0.5) / SAMPLES as f64 - 0.5;
+    let samples = (0..SAMPLES).flat_map(|row| (0..SAMPLES).map(move |column| [fraction(column), fraction(row)]));
     let sum: f64 = samples.map(|[u, v]| board.grey(&(middle + across * u + down * v)).unwrap_or(BEHIND)).sum();
     sum / (SAMPLES * SAMPLES) as f64
 }
@@ -237,16 +237,17 @@ mod tests {
             ("9x6", 0.0, "0.5 to 200 mm"),
             ("9x6", f64::NAN, "0.5 to 200 mm"),
         ] {
-            let made = text.parse::<Corners>().and_then(|Corners(corners)| Board::new(corners, square_m));
-            let told = made.unwrap_err().to_string();
-            assert!(told.contains(word), "{text}: {told}");
+            let made =
+                text.parse::<BoardCorners>().and_then(|BoardCorners(corners)| Checkerboard::new(corners, square_m));
+            let report = made.unwrap_err().to_string();
+            assert!(report.contains(word), "{text}: {report}");
         }
-        assert_eq!("9x6".parse::<Corners>().map(|Corners(corners)| corners), Ok([9, 6]));
+        assert_eq!("9x6".parse::<BoardCorners>().map(|BoardCorners(corners)| corners), Ok([9, 6]));
     }
 
     #[test]
     fn its_picture_has_the_first_corner_where_the_lens_says_and_black_above_it() {
-        let board = Board::new([5, 4], 0.01).unwrap();
+        let board = Checkerboard::new([5, 4], 0.01).unwrap();
         let lens = Lens::simple([320, 240], 300.0, -0.2);
         let camera_from_board = Isometry3::translation(-0.02, -0.015, 0.15);
         let greys = Portrait::new(&lens).draw(&board, &camera_from_board);

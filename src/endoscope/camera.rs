@@ -11,7 +11,7 @@ const NEAREST_M: f64 = 1e-4;
 /// Steps of Newton's method; four are enough for the distortion of real lenses.
 const STEPS: usize = 12;
 /// Tangent of the largest angle that a lens of this kind can see: 75 degrees from the axis.
-const TANGENT_MOST: f64 = 3.8;
+const TANGENT_MAX: f64 = 3.8;
 
 /// A lens with its image size.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -77,16 +77,16 @@ impl Bend {
     }
 
     /// Returns the tangent at which the image folds back on itself: directions beyond it are not seen.
-    pub fn tangent_most(&self) -> f64 {
+    pub fn tangent_max(&self) -> f64 {
         // The first zero of 1 + 3 k1 t^2 + 5 k2 t^4.
         let half = 3.0 * self.k1;
         let discriminant = 9.0 * self.k1 * self.k1 - 20.0 * self.k2;
         if discriminant < 0.0 {
-            return TANGENT_MOST;
+            return TANGENT_MAX;
         }
         let squares = [2.0 / (-half + discriminant.sqrt()), 2.0 / (-half - discriminant.sqrt())];
         let turns = squares.into_iter().filter(|square| *square > 0.0).fold(f64::INFINITY, f64::min);
-        turns.sqrt().min(TANGENT_MOST)
+        turns.sqrt().min(TANGENT_MAX)
     }
 
     /// Returns the direction that appears at `bent`; `None` if there is none.
@@ -98,13 +98,13 @@ impl Bend {
         if far < 1e-12 && self.p1 == 0.0 && self.p2 == 0.0 {
             return Some(*bent);
         }
-        let most = self.tangent_most();
-        let mut tangent = far.min(0.999 * most);
+        let max = self.tangent_max();
+        let mut tangent = far.min(0.999 * max);
         for _ in 0..STEPS {
             let square = tangent * tangent;
             let miss = tangent * self.radially(square) - far;
             let slope = 1.0 + square * (3.0 * self.k1 + 5.0 * self.k2 * square);
-            tangent = (tangent - miss / slope).clamp(0.0, 0.999_999 * most);
+            tangent = (tangent - miss / slope).clamp(0.0, 0.999_999 * max);
         }
         let mut flat = bent * (tangent / far.max(1e-12));
         if self.p1 != 0.0 || self.p2 != 0.0 {
@@ -112,7 +112,7 @@ impl Bend {
                 flat -= self.slope(&flat).try_inverse()? * (self.at(&flat) - bent);
             }
         }
-        let found = (self.at(&flat) - bent).norm() < 1e-9 * (1.0 + far) && flat.norm() < most;
+        let found = (self.at(&flat) - bent).norm() < 1e-9 * (1.0 + far) && flat.norm() < max;
         found.then_some(flat)
     }
 }
@@ -129,7 +129,7 @@ impl Lens {
     pub fn project(&self, point_m: &Vector3<f64>) -> Option<Vector2<f64>> {
         let ahead = point_m.z > NEAREST_M && point_m.iter().all(|x| x.is_finite());
         let flat = ahead.then(|| point_m.xy() / point_m.z)?;
-        let seen = flat.norm() < self.bend.tangent_most();
+        let seen = flat.norm() < self.bend.tangent_max();
         seen.then(|| self.centre_px + self.bend.at(&flat).component_mul(&self.focal_px))
     }
 

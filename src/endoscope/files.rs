@@ -9,45 +9,45 @@ use std::{
     time::{Duration, Instant},
 };
 
-use crate::{Compressed, Format, Source, Trouble, h264, jpeg::Splitter};
+use crate::{CompressedFrame, EndoscopeError, Format, ImageSource, h264, jpeg::JpegSplitter};
 
 /// Time from one image to the next.
 const PERIOD: Duration = Duration::from_nanos(33_333_333);
 /// Maximum time that a source blocks its caller.
 const PATIENCE: Duration = Duration::from_millis(100);
 /// Maximum size of a file with one image, and maximum number of files in a folder.
-const BYTES_MOST: u64 = 16 << 20;
-const FILES_MOST: usize = 100_000;
+const BYTES_MAX: u64 = 16 << 20;
+const FILES_MAX: usize = 100_000;
 const READ_BYTES: usize = 256 << 10;
 
-pub(crate) fn open(path: &Path) -> Result<Box<dyn Source>, Trouble> {
+pub(crate) fn open(path: &Path) -> Result<Box<dyn ImageSource>, EndoscopeError> {
     let about = fs::metadata(path).map_err(|error| trouble(path, &error))?;
     if about.is_dir() {
-        return Ok(Box::new(Paced::of(Folder { path: path.to_owned(), files: Vec::new().into_iter() })));
+        return Ok(Box::new(PacedSeries::of(Folder { path: path.to_owned(), files: Vec::new().into_iter() })));
     }
     if is_jpeg(path) {
-        return Ok(Box::new(Still { path: path.to_owned(), given: false }));
+        return Ok(Box::new(StillImage { path: path.to_owned(), given: false }));
     }
     if is_stream(path) {
         if !h264::IS_BUILT {
-            return Err(Trouble::NotBuilt { what: "RTSP and H.264" });
+            return Err(EndoscopeError::NotBuilt { what: "RTSP and H.264" });
         }
-        return Ok(Box::new(Paced::of(Stream::open(path)?)));
+        return Ok(Box::new(PacedSeries::of(FileStream::open(path)?)));
     }
-    Ok(Box::new(Paced::of(Film::open(path)?)))
+    Ok(Box::new(PacedSeries::of(JpegFile::open(path)?)))
 }
 
-fn trouble(path: &Path, error: &std::io::Error) -> Trouble {
+fn trouble(path: &Path, error: &std::io::Error) -> EndoscopeError {
     let reason = match error.kind() {
         std::io::ErrorKind::NotFound => "no such file or folder".to_owned(),
         std::io::ErrorKind::PermissionDenied => "this user may not read it".to_owned(),
         _ => error.to_string(),
     };
-    Trouble::File { path: path.display().to_string(), reason }
+    EndoscopeError::File { path: path.display().to_string(), reason }
 }
 
-fn without_pictures(path: &Path) -> Trouble {
-    Trouble::File { path: path.display().to_string(), reason: "there is no whole JPEG in it".to_owned() }
+fn without_images(path: &Path) -> EndoscopeError {
+    EndoscopeError::File { path: path.display().to_string(), reason: "there is no whole JPEG in it".to_owned() }
 }
 
 fn is_jpeg(path: &Path) -> bool {
@@ -58,28 +58,28 @@ fn is_stream(path: &Path) -> bool {
     path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("h264") || ending.eq_ignore_ascii_case("264"))
 }
 
-fn read(path: &Path) -> Result<Vec<u8>, Trouble> {
+fn read(path: &Path) -> Result<Vec<u8>, EndoscopeError> {
     let mut bytes = Vec::new();
     let file = File::open(path).map_err(|error| trouble(path, &error))?;
-    file.take(BYTES_MOST + 1).read_to_end(&mut bytes).map_err(|error| trouble(path, &error))?;
-    if bytes.len() as u64 > BYTES_MOST {
-        let reason = format!("a picture has at most {} MB", BYTES_MOST >> 20);
-        return Err(Trouble::File { path: path.display().to_string(), reason });
+    file.take(BYTES_MAX + 1).read_to_end(&mut bytes).map_err(|error| trouble(path, &error))?;
+    if bytes.len() as u64 > BYTES_MAX {
+        let reason = format!("a picture has at most {} MB", BYTES_MAX >> 20);
+        return Err(EndoscopeError::File { path: path.display().to_string(), reason });
     }
     Ok(bytes)
 }
 
-fn now(jpeg: Vec<u8>) -> Compressed {
-    Compressed::jpeg(jpeg, Instant::now(), None)
+fn now(jpeg: Vec<u8>) -> CompressedFrame {
+    CompressedFrame::jpeg(jpeg, Instant::now(), None)
 }
 
-struct Still {
+struct StillImage {
     path: PathBuf,
     given: bool,
 }
 
-impl Source for Still {
-    fn next(&mut self) -> Result<Option<Compressed>, Trouble> {
+impl ImageSource for StillImage {
+    fn next(&mut self) -> Result<Option<CompressedFrame>, EndoscopeError> {
         if self.given {
             thread::sleep(PATIENCE);
             return Ok(None);
@@ -94,8 +94,8 @@ impl Source for Still {
 }
 
 /// A sequence of images, as fast as they are requested.
-trait Series: Send {
-    fn next(&mut self) -> Result<Vec<u8>, Trouble>;
+trait ImageSeries: Send {
+    fn next(&mut self) -> Result<Vec<u8>, EndoscopeError>;
 
     /// Format of its images.
     fn format(&self, _: &[u8]) -> Format {
@@ -104,26 +104,26 @@ trait Series: Send {
 }
 
 /// Delivers a series at the frame rate of a camera.
-struct Paced<S> {
+struct PacedSeries<S> {
     series: S,
     due: Instant,
 }
 
-impl<S: Series> Paced<S> {
+impl<S: ImageSeries> PacedSeries<S> {
     fn of(series: S) -> Self {
         Self { series, due: Instant::now() }
     }
 }
 
-impl<S: Series> Source for Paced<S> {
-    fn next(&mut self) -> Result<Option<Compressed>, Trouble> {
+impl<S: ImageSeries> ImageSource for PacedSeries<S> {
+    fn next(&mut self) -> Result<Option<CompressedFrame>, EndoscopeError> {
         let bytes = self.series.next()?;
         let now_is = Instant::now();
         thread::sleep(self.due.saturating_duration_since(now_is));
         // Missed images are skipped.
         self.due = self.due.max(now_is) + PERIOD;
         let format = self.series.format(&bytes);
-        Ok(Some(Compressed { format, ..now(bytes) }))
+        Ok(Some(CompressedFrame { format, ..now(bytes) }))
     }
 }
 
@@ -133,41 +133,41 @@ struct Folder {
     files: std::vec::IntoIter<PathBuf>,
 }
 
-impl Series for Folder {
-    fn next(&mut self) -> Result<Vec<u8>, Trouble> {
+impl ImageSeries for Folder {
+    fn next(&mut self) -> Result<Vec<u8>, EndoscopeError> {
         if let Some(file) = self.files.next() {
             return read(&file);
         }
         let entries = fs::read_dir(&self.path).map_err(|error| trouble(&self.path, &error))?;
         let paths = entries.flatten().map(|entry| entry.path()).filter(|path| is_jpeg(path));
-        let mut files: Vec<PathBuf> = paths.take(FILES_MOST).collect();
+        let mut files: Vec<PathBuf> = paths.take(FILES_MAX).collect();
         files.sort();
         self.files = files.into_iter();
-        self.files.next().map_or_else(|| Err(without_pictures(&self.path)), |file| read(&file))
+        self.files.next().map_or_else(|| Err(without_images(&self.path)), |file| read(&file))
     }
 }
 
 /// A sequence of JPEGs in one file.
-struct Film {
+struct JpegFile {
     path: PathBuf,
     file: File,
-    splitter: Splitter,
+    splitter: JpegSplitter,
     buffer: Vec<u8>,
     /// Images since the beginning of the file.
     found: u64,
 }
 
-impl Film {
-    fn open(path: &Path) -> Result<Self, Trouble> {
+impl JpegFile {
+    fn open(path: &Path) -> Result<Self, EndoscopeError> {
         let file = File::open(path).map_err(|error| trouble(path, &error))?;
-        let splitter = Splitter::default();
+        let splitter = JpegSplitter::default();
         let buffer = vec![0; READ_BYTES];
         Ok(Self { path: path.to_owned(), file, splitter, buffer, found: 0 })
     }
 }
 
-impl Series for Film {
-    fn next(&mut self) -> Result<Vec<u8>, Trouble> {
+impl ImageSeries for JpegFile {
+    fn next(&mut self) -> Result<Vec<u8>, EndoscopeError> {
         loop {
             if let Some(jpeg) = self.splitter.next() {
                 self.found += 1;
@@ -177,7 +177,7 @@ impl Series for Film {
             self.splitter.take(&self.buffer[..count]);
             if count == 0 {
                 if self.found == 0 {
-                    return Err(without_pictures(&self.path));
+                    return Err(without_images(&self.path));
                 }
                 *self = Self::open(&self.path)?;
             }
@@ -186,25 +186,25 @@ impl Series for Film {
 }
 
 /// An H.264 stream in a file, as written by `ffmpeg -f h264`.
-struct Stream {
+struct FileStream {
     path: PathBuf,
     file: File,
-    splitter: h264::Splitter,
+    splitter: h264::H264Splitter,
     buffer: Vec<u8>,
     found: bool,
 }
 
-impl Stream {
-    fn open(path: &Path) -> Result<Self, Trouble> {
+impl FileStream {
+    fn open(path: &Path) -> Result<Self, EndoscopeError> {
         let file = File::open(path).map_err(|error| trouble(path, &error))?;
-        let splitter = h264::Splitter::default();
+        let splitter = h264::H264Splitter::default();
         let buffer = vec![0; READ_BYTES];
         Ok(Self { path: path.to_owned(), file, splitter, buffer, found: false })
     }
 }
 
-impl Series for Stream {
-    fn next(&mut self) -> Result<Vec<u8>, Trouble> {
+impl ImageSeries for FileStream {
+    fn next(&mut self) -> Result<Vec<u8>, EndoscopeError> {
         loop {
             if let Some(unit) = self.splitter.next() {
                 self.found = true;
@@ -216,7 +216,7 @@ impl Series for Stream {
                 let last = self.splitter.rest();
                 if last.is_none() && !self.found {
                     let reason = "there is no picture of H.264 in it".to_owned();
-                    return Err(Trouble::File { path: self.path.display().to_string(), reason });
+                    return Err(EndoscopeError::File { path: self.path.display().to_string(), reason });
                 }
                 *self = Self::open(&self.path)?;
                 if let Some(last) = last {
@@ -240,7 +240,7 @@ mod tests {
         jpeg::encode(&[value; 3 * 64], [8, 8], 90)
     }
 
-    fn next(source: &mut dyn Source) -> Result<Compressed, Trouble> {
+    fn next(source: &mut dyn ImageSource) -> Result<CompressedFrame, EndoscopeError> {
         loop {
             if let Some(compressed) = source.next()? {
                 return Ok(compressed);
@@ -273,21 +273,21 @@ mod tests {
     #[test]
     fn what_is_not_there_or_has_no_picture_is_told() {
         let folder = tempfile::tempdir().unwrap();
-        let told = |path: PathBuf| {
+        let report = |path: PathBuf| {
             let mut source = match Address::File(path).open() {
                 Ok(source) => source,
                 Err(trouble) => return trouble.to_string(),
             };
             next(&mut *source).unwrap_err().to_string()
         };
-        assert!(told(folder.path().join("missing.mjpeg")).contains("no such file or folder"));
-        assert!(told(folder.path().to_owned()).contains("no whole JPEG"));
+        assert!(report(folder.path().join("missing.mjpeg")).contains("no such file or folder"));
+        assert!(report(folder.path().to_owned()).contains("no whole JPEG"));
         let text = folder.path().join("text");
         fs::write(&text, "no picture").unwrap();
-        assert!(told(text).contains("no whole JPEG"));
+        assert!(report(text).contains("no whole JPEG"));
         let stream = folder.path().join("text.h264");
         fs::write(&stream, "no picture").unwrap();
         let expected = if h264::IS_BUILT { "no picture of H.264" } else { "built without RTSP and H.264" };
-        assert!(told(stream).contains(expected));
+        assert!(report(stream).contains(expected));
     }
 }

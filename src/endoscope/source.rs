@@ -8,11 +8,11 @@ use std::{
     time::Instant,
 };
 
-use crate::{Address, Damage, Picture, Raw, Trouble, files, http, jpeg};
+use crate::{Address, Damage, DecodedImage, EndoscopeError, RawLayout, files, http, jpeg};
 
 /// One image as received, not decoded.
 #[derive(Clone, Debug)]
-pub struct Compressed {
+pub struct CompressedFrame {
     pub format: Format,
     /// As sent by the camera.
     pub bytes: Vec<u8>,
@@ -30,7 +30,7 @@ pub enum Format {
     /// A whole JPEG, if the camera sent one.
     Jpeg,
     /// Uncompressed.
-    Raw(Raw),
+    Raw(RawLayout),
     /// A frame of an H.264 stream (an access unit, annex B), which refers to earlier ones.
     H264 {
         /// Whether it refers to no other frame, so that a decoder can begin with it.
@@ -38,7 +38,7 @@ pub enum Format {
     },
 }
 
-impl Compressed {
+impl CompressedFrame {
     /// A JPEG that arrived at this moment, with the camera's time stamp.
     pub(crate) const fn jpeg(bytes: Vec<u8>, arrived: Instant, stamp_s: Option<f64>) -> Self {
         Self { format: Format::Jpeg, bytes, arrived, stamp_s, taken: None }
@@ -53,22 +53,22 @@ impl Compressed {
     ///
     /// # Errors
     /// The fault of the image.
-    pub fn decode(&self) -> Result<Picture, Damage> {
+    pub fn decode(&self) -> Result<DecodedImage, Damage> {
         match self.format {
             Format::Jpeg => jpeg::decode(&self.bytes),
-            Format::Raw(raw) => raw.picture(&self.bytes),
+            Format::Raw(raw) => raw.image(&self.bytes),
             Format::H264 { .. } => Err(Damage::Undecodable { reason: "it refers to other pictures".to_owned() }),
         }
     }
 }
 
 /// Delivers a sequence of images. Runs on its own thread, which it may block until it is stopped.
-pub trait Source: Send {
+pub trait ImageSource: Send {
     /// Returns the next image; `None` if none arrived within about 0.1 s.
     ///
     /// # Errors
     /// Why no more images will arrive: the source is then reopened.
-    fn next(&mut self) -> Result<Option<Compressed>, Trouble>;
+    fn next(&mut self) -> Result<Option<CompressedFrame>, EndoscopeError>;
 
     /// Whether it has a single image, which is not a fault when it never changes.
     fn is_still(&self) -> bool {
@@ -81,17 +81,19 @@ impl Address {
     ///
     /// # Errors
     /// Why there is no image.
-    pub fn open(&self) -> Result<Box<dyn Source>, Trouble> {
+    pub fn open(&self) -> Result<Box<dyn ImageSource>, EndoscopeError> {
         match self {
             Self::Http(endpoint) => Ok(Box::new(http::Http::open(endpoint)?)),
             #[cfg(feature = "h264")]
             Self::Rtsp(endpoint) => crate::rtsp::open(endpoint),
             #[cfg(not(feature = "h264"))]
-            Self::Rtsp(_) => Err(Trouble::NotBuilt { what: "RTSP and H.264" }),
+            Self::Rtsp(_) => Err(EndoscopeError::NotBuilt { what: "RTSP and H.264" }),
             #[cfg(all(target_os = "linux", target_pointer_width = "64"))]
             Self::Camera { path, capture } => crate::v4l2::open(path, *capture),
             #[cfg(not(all(target_os = "linux", target_pointer_width = "64")))]
-            Self::Camera { .. } => Err(Trouble::NotBuilt { what: "cameras of this computer (64-bit Linux only)" }),
+            Self::Camera { .. } => {
+                Err(EndoscopeError::NotBuilt { what: "cameras of this computer (64-bit Linux only)" })
+            }
             Self::File(path) => files::open(path),
         }
     }
@@ -99,9 +101,9 @@ impl Address {
 
 /// Whether images are still needed.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Wanted(Arc<AtomicBool>);
+pub(crate) struct ImageDemand(Arc<AtomicBool>);
 
-impl Wanted {
+impl ImageDemand {
     pub(crate) fn end(&self) {
         self.0.store(true, Ordering::Release);
     }

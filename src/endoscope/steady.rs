@@ -33,12 +33,14 @@ mod tests {
 
     use super::*;
 
-    fn reading(noise: &mut Noise, at_m: Vector3<f64>) -> Isometry3<f64> {
+    fn reading(noise: &mut Noise, position_m: Vector3<f64>) -> Isometry3<f64> {
         let mut white = |sd: f64| Vector3::from_fn(|_, _| sd * noise.gaussian());
         let miss_m = white(0.000_25);
         let turn = UnitQuaternion::from_scaled_axis(white(0.001));
-        let pose =
-            Isometry3::from_parts((at_m + miss_m).into(), turn * UnitQuaternion::from_euler_angles(2.0, 0.5, 3.0));
+        let pose = Isometry3::from_parts(
+            (position_m + miss_m).into(),
+            turn * UnitQuaternion::from_euler_angles(2.0, 0.5, 3.0),
+        );
         // Uses the other quaternion of the same rotation from time to time.
         let flipped = UnitQuaternion::new_unchecked(-pose.rotation.into_inner());
         if noise.gaussian() > 0.0 { Isometry3::from_parts(pose.translation, flipped) } else { pose }

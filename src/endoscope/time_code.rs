@@ -8,7 +8,7 @@ const ROWS: usize = 2;
 const TIME_BITS: u32 = 52;
 const CHECK_BITS: u32 = 12;
 /// Minimum difference in brightness between black and white.
-const CONTRAST_LEAST: u32 = 64;
+const CONTRAST_MIN: u32 = 64;
 
 /// Returns width and height of the code with squares of this side, px.
 pub const fn size_px(square_px: usize) -> [usize; 2] {
@@ -44,7 +44,7 @@ pub fn read(square_px: usize, mut brightness: impl FnMut(usize, usize) -> u8) ->
     }
     let low = values.iter().min()?;
     let high = values.iter().max()?;
-    if high - low < CONTRAST_LEAST {
+    if high - low < CONTRAST_MIN {
         return None;
     }
     let middle = u32::midpoint(*low, *high);

@@ -1,6 +1,6 @@
 //! Brightness, contrast and gamma of the displayed image.
 
-use crate::Picture;
+use crate::DecodedImage;
 
 /// Display settings of an image. The default changes nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,18 +43,18 @@ impl Tone {
     fn table(&self) -> [u8; 256] {
         let Self { brightness, contrast, gamma } = self.limited();
         std::array::from_fn(|value| {
-            let share = (value as f64 / 255.0 - 0.5) * contrast + 0.5 + brightness;
-            (255.0 * share.clamp(0.0, 1.0).powf(1.0 / gamma)).round() as u8
+            let fraction = (value as f64 / 255.0 - 0.5) * contrast + 0.5 + brightness;
+            (255.0 * fraction.clamp(0.0, 1.0).powf(1.0 / gamma)).round() as u8
         })
     }
 
     /// Applies the settings to an image.
-    pub fn apply(&self, picture: &mut Picture) {
+    pub fn apply(&self, image: &mut DecodedImage) {
         if self.is_plain() {
             return;
         }
         let table = self.table();
-        for pixel in picture.rgba.chunks_exact_mut(4) {
+        for pixel in image.rgba.chunks_exact_mut(4) {
             for value in &mut pixel[..3] {
                 *value = table[usize::from(*value)];
             }
@@ -67,11 +67,11 @@ mod tests {
     use super::*;
 
     fn of(tone: Tone, value: u8) -> u8 {
-        let mut picture = Picture { size_px: [1, 1], rgba: vec![value, value, value, 255] };
-        tone.apply(&mut picture);
-        assert_eq!(picture.rgba[3], 255);
-        assert!(picture.rgba[..3].iter().all(|one| *one == picture.rgba[0]));
-        picture.rgba[0]
+        let mut image = DecodedImage { size_px: [1, 1], rgba: vec![value, value, value, 255] };
+        tone.apply(&mut image);
+        assert_eq!(image.rgba[3], 255);
+        assert!(image.rgba[..3].iter().all(|one| *one == image.rgba[0]));
+        image.rgba[0]
     }
 
     #[test]

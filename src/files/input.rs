@@ -24,16 +24,16 @@ const NAP: Duration = Duration::from_millis(2);
 /// Returns all bytes of a regular file.
 ///
 /// # Errors
-/// The file does not exist, is not a regular file, or has more than `most` bytes.
-pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
+/// The file does not exist, is not a regular file, or has more than `max` bytes.
+pub fn read(path: &Path, max: u64) -> io::Result<Vec<u8>> {
     let (file, metadata) = open(path, false)?;
-    if metadata.len() > most {
-        return Err(too_large(most));
+    if metadata.len() > max {
+        return Err(too_large(max));
     }
     let mut bytes = Vec::with_capacity(metadata.len() as usize);
     // Limits the bytes that are read, because the file may grow meanwhile.
-    if file.take(most + 1).read_to_end(&mut bytes)? as u64 > most {
-        return Err(too_large(most));
+    if file.take(max + 1).read_to_end(&mut bytes)? as u64 > max {
+        return Err(too_large(max));
     }
     Ok(bytes)
 }
@@ -52,9 +52,9 @@ pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
 /// assert!(nima_files::read_text(folder.path(), 100).is_err(), "a folder is not a file");
 /// # Ok::<(), std::io::Error>(())
 /// ```
-pub fn read_text(path: &Path, most: u64) -> io::Result<String> {
+pub fn read_text(path: &Path, max: u64) -> io::Result<String> {
     let no_text = |_| io::Error::new(io::ErrorKind::InvalidData, "it is not UTF-8 text; is it the right file?");
-    String::from_utf8(read(path, most)?).map_err(no_text)
+    String::from_utf8(read(path, max)?).map_err(no_text)
 }
 
 /// Opens a table (CSV) for reading as a stream: a regular file, or a pipe such as `<(zcat x.csv.gz)` or `/dev/stdin`.
@@ -199,8 +199,8 @@ fn is_socket(_: &Metadata) -> bool {
     false
 }
 
-fn too_large(most: u64) -> io::Error {
-    let size = if most >= 1 << 20 { format!("{} MiB", most >> 20) } else { format!("{most} bytes") };
+fn too_large(max: u64) -> io::Error {
+    let size = if max >= 1 << 20 { format!("{} MiB", max >> 20) } else { format!("{max} bytes") };
     io::Error::new(
         io::ErrorKind::FileTooLarge,
         format!("it is larger than the limit of {size}; check that this is the right file"),

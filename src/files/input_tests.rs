@@ -37,7 +37,7 @@ fn a_file_that_has_no_size_of_its_own_is_read_up_to_the_limit() {
     let path = Path::new("/proc/self/maps");
     if path.exists() {
         assert!(read(path, CONFIG_MAX).unwrap().len() > 100);
-        assert!(read(path, 100).unwrap_err().to_string().contains("larger than 100 bytes"));
+        assert!(read(path, 100).unwrap_err().to_string().contains("larger than the limit of 100 bytes"));
     }
 }
 

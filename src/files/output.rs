@@ -44,7 +44,7 @@ const HELD_MAX: Duration = Duration::from_millis(500);
 /// # Ok::<(), Error>(())
 /// ```
 pub fn write_atomically(path: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
-    let target = Target::at(path)?;
+    let target = OutputTarget::at(path)?;
     target.replace(target.old.as_ref(), fill)
 }
 
@@ -54,7 +54,7 @@ pub fn write_atomically(path: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Re
 /// The errors of [`write_atomically`]; `from` does not exist or is not a regular file.
 pub fn copy_atomically(from: &Path, to: &Path) -> io::Result<()> {
     let (mut old, metadata) = open(from, false)?;
-    Target::at(to)?.replace(Some(&metadata), |file| io::copy(&mut old, file).map(drop))
+    OutputTarget::at(to)?.replace(Some(&metadata), |file| io::copy(&mut old, file).map(drop))
 }
 
 /// Writes a new file that only its owner can read, for keys.
@@ -95,7 +95,7 @@ pub fn write_private(path: &Path, text: &str) -> io::Result<()> {
 /// # Ok::<(), std::io::Error>(())
 /// ```
 pub fn check_output(path: &Path, inputs: &[&Path]) -> io::Result<()> {
-    let target = Target::at(path)?;
+    let target = OutputTarget::at(path)?;
     fs::metadata(target.folder())?;
     if let Some(old) = &target.old
         && let Some(input) = inputs.iter().find(|input| is_same(old, &target.path, input))
@@ -106,12 +106,12 @@ pub fn check_output(path: &Path, inputs: &[&Path]) -> io::Result<()> {
 }
 
 /// The final path of a file, with links followed, and the existing file.
-struct Target {
+struct OutputTarget {
     path: PathBuf,
     old: Option<Metadata>,
 }
 
-impl Target {
+impl OutputTarget {
     fn at(path: &Path) -> io::Result<Self> {
         let here = match fs::symlink_metadata(path) {
             Err(error) if error.kind() == io::ErrorKind::NotFound => {

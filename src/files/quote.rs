@@ -13,17 +13,17 @@ pub fn quoted(text: &str) -> String {
 }
 
 /// The same with another limit. The rest is replaced by `...` and the size of the whole text.
-pub fn shortened(text: &str, most: usize) -> String {
+pub fn shortened(text: &str, max: usize) -> String {
     let mut short = String::new();
-    // Reads at most `most` characters: the text may be a whole file.
-    for character in text.chars().take(most) {
+    // Reads at most `max` characters: the text may be a whole file.
+    for character in text.chars().take(max) {
         match character {
             '"' | '\'' | '\\' => short.push(character),
             // Escapes what a terminal would interpret (colours, line breaks, changes of direction).
             _ => short.extend(character.escape_debug()),
         }
     }
-    if text.chars().nth(most).is_some() {
+    if text.chars().nth(max).is_some() {
         // Writing into a String cannot fail.
         write!(short, "... ({} bytes)", text.len()).ok();
     }

@@ -99,7 +99,7 @@ const MISTAKES: [(&str, &str); 13] = [
 
 #[test]
 fn each_mistake_is_told_with_its_line() {
-    let told = MISTAKES.map(|(from, to)| {
+    let report = MISTAKES.map(|(from, to)| {
         let text = WHOLE.replace(from, to);
         let misfit = from_toml::<Everything>(&text).unwrap_err();
         format!("{}: {misfit}", misfit.line(&text))
@@ -119,14 +119,14 @@ fn each_mistake_is_told_with_its_line() {
         "10: unexpected `=` in array, expected value, `]`",
         "10: unknown variant `foot`, expected `hand` or `nothing`",
     ];
-    assert_eq!(told, expected);
+    assert_eq!(report, expected);
 }
 
 #[test]
 fn an_array_that_is_too_long_is_not_cut() {
     // The library's plain values cannot hold numbers beyond `i64`.
     let small = WHOLE.replace("0xffff_ffff_ffff_ffff", "7");
-    for (from, to, told) in [
+    for (from, to, report) in [
         ("-3e-2]", "-3e-2, 4]", "6: invalid length 4, expected fewer elements in array"),
         (
             "[named.a]\nx = 1",
@@ -136,6 +136,6 @@ fn an_array_that_is_too_long_is_not_cut() {
     ] {
         let text = small.replace(from, to);
         let misfit = from_toml::<Everything>(&text).unwrap_err();
-        assert_eq!(format!("{}: {misfit}", misfit.line(&text)), told);
+        assert_eq!(format!("{}: {misfit}", misfit.line(&text)), report);
     }
 }

@@ -5,7 +5,7 @@ use nima_files::quoted;
 use toml::de::{DeTable, DeValue};
 
 /// Maximum length of a text, characters: names, addresses, ports, paths. Chosen.
-const MOST: usize = 512;
+const MAX: usize = 512;
 
 /// Returns key and fault of the first text that cannot be displayed.
 pub(crate) fn fault(table: &DeTable<'_>) -> Option<String> {
@@ -33,8 +33,8 @@ fn of_text(text: &str) -> Option<String> {
     if text.chars().any(char::is_control) {
         return Some(format!("= \"{}\" contains a control character; use printable characters", quoted(text)));
     }
-    let long = text.chars().nth(MOST).is_some();
-    long.then(|| format!("= \"{}\" is too long; use at most {MOST} characters", quoted(text)))
+    let long = text.chars().nth(MAX).is_some();
+    long.then(|| format!("= \"{}\" is too long; use at most {MAX} characters", quoted(text)))
 }
 
 #[cfg(test)]
@@ -46,7 +46,7 @@ mod tests {
         let fault = |text: &str| fault(DeTable::parse(text).unwrap().get_ref());
         assert_eq!(fault("name = \"x\"\nn = 1\n[a]\nports = [\"/dev/ttyUSB0\"]\n"), None);
         let coloured = fault("[a]\nports = [\"x\", \"\\u001b[31m\"]\n").unwrap();
-        assert!(coloured.starts_with("a.ports[1] = \"\\u{1b}[31m\" has a control character"), "{coloured}");
+        assert!(coloured.starts_with("a.ports[1] = \"\\u{1b}[31m\" contains a control character"), "{coloured}");
         let long = fault(&format!("name = \"{}\"\n", "x".repeat(1 << 20))).unwrap();
         assert!(long.starts_with("name = \"xxx") && long.contains("at most 512") && long.len() < 300, "{long}");
     }

@@ -16,24 +16,23 @@ use nima_recording::{
         JointStateDecoder,
         foxglove::{self, FrameTransforms, Level, Log, SceneUpdate},
     },
-    session::{ChannelId, Message, Reader, Writer},
+    session::{ChannelId, SessionMessage, SessionReader, SessionWriter},
 };
 use prost::Message as _;
 
 use crate::{
-    cut::{self, CutError, stretch},
-    kept::{FIGURES, VERDICTS, verdicts},
+    calibration_metadata::{FIGURES, VERDICTS, verdicts},
     layouts::layouts,
-    logged::Logged,
-    objects,
-    outlet::{Channel, Outlet},
-    plotted,
-    recorder::Attached,
+    logged::LogValue,
+    objects, plot_channels,
+    recorder::AttachedFile,
+    sinks::{SessionSinks, SinkChannel},
     topics::{
         ALARM_LINE, ARROWS_TOPIC, FRAMES_TOPIC, HAPPENING_LINE, HAPPENINGS_TOPIC, LINE, LOG_TOPIC, MARK_LINE,
-        MARKS_TOPIC, RINGS_TOPIC, Words, happenings_channel, line, marks, marks_channel, marks_of, plot::Plot, plots,
-        redrawn, rings, rings_channel, rings_of,
+        MARKS_TOPIC, RINGS_TOPIC, SentenceChannel, happenings_channel, line, marks, marks_channel, marks_of,
+        plot::Plot, plots, redrawn, rings, rings_channel, rings_of,
     },
+    trim::{self, CutError, stretch},
 };
 
 /// Replaces a text that may identify someone.
@@ -49,18 +48,18 @@ const CALIBRATIONS: &str = "calibrations ";
 const NUMBERS: [&str; 2] = ["rate_hz", "delay_s"];
 
 /// Input of the caller, in addition to the session itself.
-pub struct Known<'a> {
+pub struct SessionFacts<'a> {
     /// Name and version of this program.
     pub program: &'a str,
     /// Files to attach instead of the session's own.
-    pub files: &'a [Attached],
+    pub files: &'a [AttachedFile],
     /// Texts for the values of the log.
-    pub words: Words,
+    pub words: SentenceChannel,
     /// The devices of the session's rig, in the order of its roster.
     pub devices: &'a [DeviceName],
 }
 
-impl std::fmt::Debug for Known<'_> {
+impl std::fmt::Debug for SessionFacts<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Known").field("files", &self.files).finish_non_exhaustive()
     }
@@ -72,14 +71,14 @@ impl std::fmt::Debug for Known<'_> {
 /// # Errors
 /// [`CutError`] if the session cannot be read or the file cannot be written. The caller must then delete the file.
 pub fn write(
-    reader: &Reader,
-    known: &Known<'_>,
+    reader: &SessionReader,
+    known: &SessionFacts<'_>,
     times_ns: &Range<u64>,
     to: &Path,
     asked: &AtomicBool,
 ) -> Result<u64, CutError> {
-    let begin_ns = plotted::beginning_ns(reader)?;
-    let mut writer = Writer::create(to, known.program)?;
+    let begin_ns = plot_channels::beginning_ns(reader)?;
+    let mut writer = SessionWriter::create(to, known.program)?;
     for (name, entries) in reader.metadata()? {
         if name == TABLE {
             writer.metadata(TABLE, &about(&entries))?;
@@ -87,22 +86,24 @@ pub fn write(
             writer.metadata(&name, &kept(&entries, &VERDICTS.map(|key| (key, verdicts().collect())), &FIGURES))?;
         }
     }
-    writer
-        .metadata(cut::TABLE, &stretch(0, &(times_ns.start.saturating_sub(begin_ns)..since(times_ns.end, begin_ns))))?;
+    writer.metadata(
+        trim::TABLE,
+        &stretch(0, &(times_ns.start.saturating_sub(begin_ns)..since(times_ns.end, begin_ns))),
+    )?;
     let forces = Side::ALL.map(|side| format!("{}/forces", side.word()));
     let sides = forces.map(|topic| reader.channels().iter().any(|channel| channel.topic == topic));
-    for Attached { name, media_type, data } in known.files.iter().chain(&layouts(sides)) {
+    for AttachedFile { name, media_type, data } in known.files.iter().chain(&layouts(sides)) {
         writer.attachment(name, media_type, 0, data)?;
     }
-    let mut out = Outlet::of(writer);
-    let mut topics: BTreeMap<ChannelId, Topic> = BTreeMap::new();
+    let mut out = SessionSinks::of(writer);
+    let mut topics: BTreeMap<ChannelId, RewrittenTopic> = BTreeMap::new();
     for channel in reader.channels() {
-        if let Some(topic) = Topic::named(&channel.topic, &mut out)? {
+        if let Some(topic) = RewrittenTopic::named(&channel.topic, &mut out)? {
             topics.insert(channel.id, topic);
         }
     }
     for message in reader.messages(&[], times_ns.clone()) {
-        let message = cut::unless(asked, message)?;
+        let message = trim::unless(asked, message)?;
         if let Some(topic) = topics.get_mut(&message.channel()) {
             topic.pass(&mut out, since(message.log_time_ns(), begin_ns), &message, known)?;
         }
@@ -149,19 +150,19 @@ fn is_ours(of: &str) -> bool {
 }
 
 /// A topic that is rebuilt.
-enum Topic {
+enum RewrittenTopic {
     Numbers { topic: String, names: Vec<String>, forces: bool, decoder: JointStateDecoder, plot: Option<Plot> },
-    Frames(Channel),
-    Arrows(Channel),
-    Rings(Channel),
-    Marks(Channel),
-    Happenings(Channel),
-    Log(Channel),
+    Frames(SinkChannel),
+    Arrows(SinkChannel),
+    Rings(SinkChannel),
+    Marks(SinkChannel),
+    Happenings(SinkChannel),
+    Log(SinkChannel),
 }
 
-impl Topic {
+impl RewrittenTopic {
     /// Returns the topic of this name; `None` for a topic that is left out.
-    fn named(name: &str, out: &mut Outlet) -> Result<Option<Self>, CutError> {
+    fn named(name: &str, out: &mut SessionSinks) -> Result<Option<Self>, CutError> {
         Ok(match name {
             FRAMES_TOPIC => Some(Self::Frames(out.channel(name, foxglove::encoding::<FrameTransforms>())?)),
             ARROWS_TOPIC => Some(Self::Arrows(out.channel(name, foxglove::encoding::<SceneUpdate>())?)),
@@ -180,7 +181,13 @@ impl Topic {
     }
 
     /// Rebuilds the message; an unreadable message is left out.
-    fn pass(&mut self, out: &mut Outlet, time_ns: u64, message: &Message, known: &Known<'_>) -> Result<(), CutError> {
+    fn pass(
+        &mut self,
+        out: &mut SessionSinks,
+        time_ns: u64,
+        message: &SessionMessage,
+        known: &SessionFacts<'_>,
+    ) -> Result<(), CutError> {
         let data = message.data();
         match self {
             Self::Numbers { topic, names, forces, decoder, plot } => {
@@ -232,7 +239,7 @@ impl Topic {
                         .into_iter()
                         .find(|name| *name == log.name)
                         .unwrap_or(LINE);
-                    let value = log.value.as_deref().and_then(Logged::decode);
+                    let value = log.value.as_deref().and_then(LogValue::decode);
                     let words = value.as_ref().map_or_else(
                         || WITHHELD.to_owned(),
                         |value| known.words.of(value, known.devices).unwrap_or(log.message),

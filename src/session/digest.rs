@@ -7,11 +7,11 @@ use nima_machine::{
     rig::{Outputs, SIDES, Side},
 };
 
-use crate::codec::{Put, Sink, Source, Take, Wrong, record};
+use crate::codec::{CodecError, FromWords, ToWords, WordSink, WordSource, record};
 
 /// A stage of a tick, in the order in which the loop computes them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Stage {
+pub enum TickStage {
     /// The force at the tip, from the sensor and its calibrations.
     ForcePath,
     /// The identification at the follower.
@@ -26,7 +26,7 @@ pub enum Stage {
 
 pub const STAGES: usize = 5;
 
-impl Stage {
+impl TickStage {
     /// Every stage, in the order of the loop.
     pub const ALL: [Self; STAGES] = [Self::ForcePath, Self::Identification, Self::Rendering, Self::Gates, Self::State];
 
@@ -43,16 +43,16 @@ impl Stage {
 
 /// The digest of a tick's outputs, as stored in a journal.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Check {
+pub struct DigestCheck {
     /// Digest of all outputs.
     pub all: u64,
     /// Sixteen bits of the digest of each stage of each side; they only locate a difference.
     pub stages: [[u16; STAGES]; SIDES],
 }
 
-record!(Check { all: u64, stages: [[u16; STAGES]; SIDES] });
+record!(DigestCheck { all: u64, stages: [[u16; STAGES]; SIDES] });
 
-impl Check {
+impl DigestCheck {
     pub fn of<'a>(
         events: impl Iterator<Item = &'a Event>,
         outputs: &[Outputs; SIDES],
@@ -72,8 +72,9 @@ impl Check {
     /// Returns the first stage, in the order of the loop, whose digest differs, and its side. `None` if only the
     /// overall digest differs: then the difference is in an event, or in a stage whose sixteen bits are equal by
     /// chance.
-    pub fn differs(&self, other: &Self) -> Option<(Side, Stage)> {
-        let places = Stage::ALL.into_iter().enumerate().flat_map(|(k, stage)| Side::ALL.map(|side| (k, side, stage)));
+    pub fn differs(&self, other: &Self) -> Option<(Side, TickStage)> {
+        let places =
+            TickStage::ALL.into_iter().enumerate().flat_map(|(k, stage)| Side::ALL.map(|side| (k, side, stage)));
         places
             .filter(|(k, side, _)| self.stages[side.index()][*k] != other.stages[side.index()][*k])
             .map(|(_, side, stage)| (side, stage))
@@ -157,7 +158,7 @@ impl Default for Digest {
     }
 }
 
-impl Sink for Digest {
+impl WordSink for Digest {
     fn word(&mut self, word: u64) {
         let lane = &mut self.lanes[(self.count & 1) as usize];
         let mixed = (*lane ^ word).wrapping_mul(GOLDEN);

@@ -5,21 +5,21 @@ use std::{iter, ops::Range, path::Path, sync::Arc, thread::Builder};
 use crossbeam_channel::bounded;
 use nima_recording::{
     messages::foxglove::{Level, Log},
-    session::{ReadError, Reader},
+    session::{ReadError, SessionReader},
 };
 use prost::Message as _;
 
 use crate::{
-    cut,
-    journal::{Message, Start, decode},
-    logged::Logged,
-    plotted,
+    journal::{JournalMessage, JournalStart, decode},
+    logged::LogValue,
+    plot_channels,
     recorder::JOURNAL_TOPIC,
-    replay::{Cursor, Journal, Keyframe, Messages, ReplayError, decoded},
+    replay::{Journal, Keyframe, ReplayCursor, ReplayError, StepsMessages, decoded},
     topics::{HAPPENING_LINE, MARK_LINE},
+    trim,
 };
 
-pub struct Recorded(Arc<Reader>);
+pub struct RecordedFile(Arc<SessionReader>);
 
 /// Number of journal messages read ahead of the loop: one second of the session when starting from a keyframe, ...
 const AHEAD: usize = 5;
@@ -30,7 +30,7 @@ const FAR_AHEAD: usize = 80;
 const MARGIN_NS: u64 = 1_000_000;
 
 #[derive(Clone, Debug, PartialEq)]
-pub struct Line {
+pub struct LogLine {
     /// ns since 1970 (UTC).
     pub time_ns: u64,
     /// Kind of event.
@@ -38,7 +38,7 @@ pub struct Line {
     /// English text.
     pub words: String,
     /// The same as a value; `None` in a session of an earlier version, and where the text may contain a name.
-    pub value: Option<Logged>,
+    pub value: Option<LogValue>,
 }
 
 /// Kind of a log line, the most urgent first.
@@ -57,7 +57,7 @@ pub enum LineKind {
 
 /// Summary of a session file that is available without replaying it.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct About {
+pub struct SessionInfo {
     /// Begin (UTC, ISO 8601).
     pub started: Option<String>,
     /// Name of the rig.
@@ -68,21 +68,21 @@ pub struct About {
     pub stretch_from_s: Option<f64>,
 }
 
-impl About {
+impl SessionInfo {
     /// Returns the duration of the file's contents, s.
     pub fn length_s(&self) -> f64 {
         self.seconds - self.stretch_from_s.unwrap_or_default()
     }
 }
 
-impl Recorded {
+impl RecordedFile {
     /// # Errors
     /// [`ReadError`] if it is not a session file or is damaged.
     pub fn open(path: &Path) -> Result<Self, ReadError> {
-        Reader::open(path).map(|reader| Self(Arc::new(reader)))
+        SessionReader::open(path).map(|reader| Self(Arc::new(reader)))
     }
 
-    pub fn reader(&self) -> &Reader {
+    pub fn reader(&self) -> &SessionReader {
         &self.0
     }
 
@@ -90,15 +90,15 @@ impl Recorded {
     ///
     /// # Errors
     /// [`ReadError`] if its tables cannot be read.
-    pub fn about(&self) -> Result<About, ReadError> {
-        let begin_ns = plotted::beginning_ns(&self.0)?;
+    pub fn about(&self) -> Result<SessionInfo, ReadError> {
+        let begin_ns = plot_channels::beginning_ns(&self.0)?;
         let tables = self.0.metadata()?;
         let table = |wanted: &str| tables.iter().find(|(name, _)| name == wanted).map(|(_, table)| table);
-        let told = |key: &str| table("session").and_then(|told| told.get(key)).cloned();
+        let report = |key: &str| table("session").and_then(|report| report.get(key)).cloned();
         let [first_s, seconds] =
             <[u64; 2]>::from(self.0.statistics().times_ns).map(|time_ns| time_ns.saturating_sub(begin_ns) as f64 / 1e9);
-        let stretch_from_s = table(cut::TABLE).map(|_| first_s);
-        Ok(About { started: told("started"), rig: told("rig"), seconds, stretch_from_s })
+        let stretch_from_s = table(trim::TABLE).map(|_| first_s);
+        Ok(SessionInfo { started: report("started"), rig: report("rig"), seconds, stretch_from_s })
     }
 
     /// Whether the recording was closed. If not, it is still running, the program was killed, or the file was cut.
@@ -108,15 +108,15 @@ impl Recorded {
     pub fn is_closed(&self) -> Result<bool, ReadError> {
         let last_ns = self.0.statistics().times_ns.1;
         let end = self.0.messages(&[JOURNAL_TOPIC], last_ns..u64::MAX).last().transpose()?;
-        Ok(end.is_some_and(|end| matches!(decode(end.data()), Ok((_, Message::End(_))))))
+        Ok(end.is_some_and(|end| matches!(decode(end.data()), Ok((_, JournalMessage::End(_))))))
     }
 
     /// Returns the lines of the log between these times (ns).
     ///
     /// # Errors
     /// [`ReadError`] if the log cannot be read.
-    pub fn log(&self, times_ns: Range<u64>) -> Result<Vec<Line>, ReadError> {
-        let line = |message: Result<nima_recording::session::Message, ReadError>| {
+    pub fn log(&self, times_ns: Range<u64>) -> Result<Vec<LogLine>, ReadError> {
+        let line = |message: Result<nima_recording::session::SessionMessage, ReadError>| {
             let message = message?;
             let Ok(line) = Log::decode(message.data()) else { return Ok(None) };
             let kind = match (line.level(), line.name.as_str()) {
@@ -126,8 +126,8 @@ impl Recorded {
                 (Level::Warning, _) => LineKind::Warning,
                 _ => LineKind::Told,
             };
-            let value = line.value.as_deref().and_then(Logged::decode);
-            Ok(Some(Line { time_ns: message.log_time_ns(), kind, words: line.message, value }))
+            let value = line.value.as_deref().and_then(LogValue::decode);
+            Ok(Some(LogLine { time_ns: message.log_time_ns(), kind, words: line.message, value }))
         };
         self.0.messages(&["log"], times_ns).map(line).filter_map(Result::transpose).collect()
     }
@@ -148,12 +148,12 @@ impl Recorded {
 
     /// # Errors
     /// [`ReplayError`] if it has no journal or the journal's beginning cannot be read.
-    pub fn journal(&self) -> Result<Journal<Messages>, ReplayError> {
+    pub fn journal(&self) -> Result<Journal<StepsMessages>, ReplayError> {
         Journal::open(ahead(Arc::clone(&self.0), 0, 0, FAR_AHEAD))
     }
 
     /// Returns a loop at this keyframe of its journal, whose beginning is `start`. `begin_ns` is the session's begin.
-    pub fn cursor(&self, start: &Start, keyframe: Keyframe, begin_ns: u64) -> Cursor<Messages> {
+    pub fn cursor(&self, start: &JournalStart, keyframe: Keyframe, begin_ns: u64) -> ReplayCursor<StepsMessages> {
         let from_ns = (begin_ns + (keyframe.t_s() * 1e9) as u64).saturating_sub(MARGIN_NS);
         let messages = ahead(Arc::clone(&self.0), from_ns, keyframe.read(), AHEAD);
         keyframe.cursor(start.clone(), messages)
@@ -162,8 +162,8 @@ impl Recorded {
 
 /// Reads the messages of a journal from this time on, after the first `read` messages. A separate thread reads and
 /// decodes them ahead of the loop; it ends when the receiver is dropped.
-fn ahead(file: Arc<Reader>, from_ns: u64, read: u64, most: usize) -> Messages {
-    let (send, receive) = bounded(most);
+fn ahead(file: Arc<SessionReader>, from_ns: u64, read: u64, max: usize) -> StepsMessages {
+    let (send, receive) = bounded(max);
     let go_ahead = move || {
         let messages = file.messages(&[JOURNAL_TOPIC], from_ns..u64::MAX);
         let mut messages = decoded(messages.map(|message| Ok(message?.data().to_vec())), read);

@@ -6,7 +6,7 @@ use nima_machine::rig::{SIDES, Side};
 use serde_json::{Value, json};
 
 use crate::{
-    recorder::Attached,
+    recorder::AttachedFile,
     topics::{ARROWS_TOPIC, FORCES, FRAMES_TOPIC, LOG_TOPIC, MARKS_TOPIC, OF_GATES, RINGS_TOPIC, gates},
 };
 
@@ -20,8 +20,8 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 const CURVES: [(&str, &str); 3] = [("measured", "#2f6fb4"), ("delayed", "#8a8f98"), ("rendered", "#d2641e")];
 
 /// Returns both layouts, for a session of these arms.
-pub(crate) fn layouts(sides: [bool; SIDES]) -> [Attached; 2] {
-    let file = |name: &str, media_type: &str, text: String| Attached {
+pub(crate) fn layouts(sides: [bool; SIDES]) -> [AttachedFile; 2] {
+    let file = |name: &str, media_type: &str, text: String| AttachedFile {
         name: name.to_owned(),
         media_type: media_type.to_owned(),
         data: text.into_bytes(),

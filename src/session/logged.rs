@@ -3,14 +3,14 @@
 //! A session stores it in addition to the English text, so that other texts, without names or in another language, can
 //! be built from it.
 
-use nima_core::task::Event as Happening;
+use nima_core::task::TaskEvent as Happening;
 use nima_machine::{messages::Event, runtime::Operation};
 
-use crate::codec::{Put, Sink, Source, Take, Wrong, choice, number, take_number};
+use crate::codec::{CodecError, FromWords, ToWords, WordSink, WordSource, choice, number, take_number};
 
 /// The value of a line. It never contains a name that a person gave.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Logged {
+pub enum LogValue {
     /// An event reported by the loop.
     Event(Event),
     /// An operation on the loop.
@@ -21,7 +21,7 @@ pub enum Logged {
     Screen,
 }
 
-choice!(Logged {
+choice!(LogValue {
     0 => Event { 0: event: Event },
     1 => Operation { 0: operation: Operation },
     2 => Happening { 0: happening: Happening },
@@ -31,7 +31,7 @@ choice!(Logged {
 /// First word of a value: version of the encoding that follows.
 const VERSION: u64 = 1;
 
-impl Logged {
+impl LogValue {
     /// Returns its bytes for a session.
     pub(crate) fn encode(&self) -> Vec<u8> {
         let mut words = vec![VERSION];
@@ -66,18 +66,18 @@ mod tests {
     fn a_value_survives_its_bytes_and_no_other_bytes_are_one() {
         let fault = Fault::LoopStalled { periods: 3 };
         for value in [
-            Logged::Event(Event::FaultRaised { t_s: 0.25, side: Side::Left, fault }),
-            Logged::Operation(Operation::Command { command: Command::SetGain(0.35), t_s: 1.0 }),
-            Logged::Happening(Happening::RingDropped { ring: 3, side: Side::Left, in_view: false }),
-            Logged::Happening(Happening::LumpMarked { side: Side::Right, lump: None }),
-            Logged::Screen,
+            LogValue::Event(Event::FaultRaised { t_s: 0.25, side: Side::Left, fault }),
+            LogValue::Operation(Operation::Command { command: Command::SetGain(0.35), t_s: 1.0 }),
+            LogValue::Happening(Happening::RingDropped { ring: 3, side: Side::Left, in_view: false }),
+            LogValue::Happening(Happening::LumpMarked { side: Side::Right, lump: None }),
+            LogValue::Screen,
         ] {
             let bytes = value.encode();
-            assert_eq!(Logged::decode(&bytes), Some(value));
-            assert_eq!(Logged::decode(&bytes[..bytes.len() - 1]), None, "cut off");
-            assert_eq!(Logged::decode(&[&*bytes, &[0]].concat()), None, "longer");
+            assert_eq!(LogValue::decode(&bytes), Some(value));
+            assert_eq!(LogValue::decode(&bytes[..bytes.len() - 1]), None, "cut off");
+            assert_eq!(LogValue::decode(&[&*bytes, &[0]].concat()), None, "longer");
         }
-        assert_eq!(Logged::decode(b"a name"), None);
-        assert_eq!(Logged::decode(b""), None);
+        assert_eq!(LogValue::decode(b"a name"), None);
+        assert_eq!(LogValue::decode(b""), None);
     }
 }

@@ -4,12 +4,12 @@ use std::f64::consts::TAU;
 
 use nalgebra::Vector3;
 use nima_core::noise::Noise;
-use nima_machine::rig::{Act, Acts};
+use nima_machine::rig::{Acts, TaskAction};
 
 use crate::{
-    feeling::Feeling,
-    scene::{Hand as HandConfig, Scene},
-    searching::Searching,
+    force_response::ForceResponse,
+    palpation_task::PalpationTask,
+    scene::{Scene, SceneHand as HandConfig},
 };
 
 /// Height above the targets at which the hand moves between them, m.
@@ -30,7 +30,7 @@ const CAUGHT_UP_M: f64 = 5e-4;
 
 /// One movement of the task: minimum jerk from one point to another in a given time.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Move {
+pub(super) struct HandMove {
     pub(super) from_m: Vector3<f64>,
     pub(super) to_m: Vector3<f64>,
     pub(super) seconds: f64,
@@ -38,14 +38,14 @@ pub(super) struct Move {
 
 /// One part of a hand's task.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Part {
-    pub(super) way: Move,
+pub(super) struct HandTaskPart {
+    pub(super) way: HandMove,
     /// Opening of the gripper at its beginning and at its end, rad.
     pub(super) grip_rad: [f64; 2],
-    pub(super) then: Option<Act>,
+    pub(super) then: Option<TaskAction>,
 }
 
-impl Move {
+impl HandMove {
     /// Intended position (m) and velocity (m/s) after `t_s` of the move (Flash and Hogan 1985).
     pub(super) fn at(&self, t_s: f64) -> (Vector3<f64>, Vector3<f64>) {
         if self.seconds <= 0.0 {
@@ -53,18 +53,18 @@ impl Move {
         }
         let s = (t_s / self.seconds).clamp(0.0, 1.0);
         let way = self.to_m - self.from_m;
-        let share = s * s * s * (10.0 + s * (-15.0 + 6.0 * s));
+        let fraction = s * s * s * (10.0 + s * (-15.0 + 6.0 * s));
         let speed = 30.0 * s * s * (1.0 - s) * (1.0 - s) / self.seconds;
-        (self.from_m + way * share, way * speed)
+        (self.from_m + way * fraction, way * speed)
     }
 }
 
-impl Part {
+impl HandTaskPart {
     /// Opening of the gripper after `t_s`, rad.
     fn grip_rad_at(&self, t_s: f64) -> f64 {
         let [from_rad, to_rad] = self.grip_rad;
-        let share = if self.way.seconds > 0.0 { (t_s / self.way.seconds).clamp(0.0, 1.0) } else { 1.0 };
-        from_rad + (to_rad - from_rad) * share
+        let fraction = if self.way.seconds > 0.0 { (t_s / self.way.seconds).clamp(0.0, 1.0) } else { 1.0 };
+        from_rad + (to_rad - from_rad) * fraction
     }
 }
 
@@ -72,13 +72,13 @@ impl Part {
 #[derive(Clone, Debug)]
 pub struct Hand {
     config: HandConfig,
-    task: Vec<Part>,
+    task: Vec<HandTaskPart>,
     current: usize,
     in_move_s: f64,
     /// The search that determines its task, in a palpation.
-    search: Option<Box<Searching>>,
+    search: Option<Box<PalpationTask>>,
     /// Its response to the force; `None` if it has no force perception.
-    feeling: Option<Box<Feeling>>,
+    feeling: Option<Box<ForceResponse>>,
     /// Pace of its own task, and the common pace of both hands if they share a task.
     pace: f64,
     shared_pace: Option<f64>,
@@ -106,7 +106,7 @@ impl Hand {
     }
 
     /// The hand of `scene` with this task, which it repeats.
-    pub(super) fn with_task(scene: &Scene, mut task: Vec<Part>) -> Self {
+    pub(super) fn with_task(scene: &Scene, mut task: Vec<HandTaskPart>) -> Self {
         for part in &mut task {
             part.way.seconds /= scene.hand.pace;
         }
@@ -119,7 +119,7 @@ impl Hand {
             current: 0,
             in_move_s: 0.0,
             search: None,
-            feeling: scene.hand.intended_n.map(|intended_n| Box::new(Feeling::new(intended_n, scene.seed))),
+            feeling: scene.hand.intended_n.map(|intended_n| Box::new(ForceResponse::new(intended_n, scene.seed))),
             pace: 1.0,
             shared_pace: None,
             acts: Acts::NONE,
@@ -137,7 +137,7 @@ impl Hand {
     }
 
     /// The hand of `scene` with a task that depends on what is felt.
-    pub(super) fn searching(scene: &Scene, task: Vec<Part>, search: Box<Searching>) -> Self {
+    pub(super) fn searching(scene: &Scene, task: Vec<HandTaskPart>, search: Box<PalpationTask>) -> Self {
         Self { search: Some(search), ..Self::with_task(scene, task) }
     }
 
@@ -159,7 +159,7 @@ impl Hand {
     /// Leads the hand to this position instead of its task; `None` resumes the task. The intended position is
     /// continuous in both cases.
     pub fn guide(&mut self, guide_m: Option<Vector3<f64>>) {
-        self.guide_m = guide_m.filter(|at_m| at_m.iter().all(|x| x.is_finite()));
+        self.guide_m = guide_m.filter(|position_m| position_m.iter().all(|x| x.is_finite()));
         if self.guide_m.is_some() {
             self.led_m.get_or_insert(self.position_m);
         }
@@ -196,12 +196,12 @@ impl Hand {
             let offset_m = self.feeling.as_ref().map_or_else(Vector3::zeros, |feeling| feeling.offset_m());
             return (task_m + offset_m + self.tremor_m(), task_m_s * self.pace);
         };
-        let way_m = aside_m.unwrap_or(task_m) - *led_m;
+        let travel_m = aside_m.unwrap_or(task_m) - *led_m;
         let step_m = GUIDE_M_S * dt_s;
-        let share = if way_m.norm() > step_m { step_m / way_m.norm() } else { 1.0 };
-        *led_m += way_m * share;
-        let intended = (*led_m, way_m * (share / dt_s));
-        if aside_m.is_none() && way_m.norm() < CAUGHT_UP_M {
+        let fraction = if travel_m.norm() > step_m { step_m / travel_m.norm() } else { 1.0 };
+        *led_m += travel_m * fraction;
+        let intended = (*led_m, travel_m * (fraction / dt_s));
+        if aside_m.is_none() && travel_m.norm() < CAUGHT_UP_M {
             self.led_m = None;
         }
         intended
@@ -248,7 +248,7 @@ impl Hand {
     }
 
     /// Sets the pace shared with the other hand: in a task of both hands, neither may run ahead.
-    pub(super) const fn share_pace(&mut self, pace: f64) {
+    pub(super) const fn fraction_pace(&mut self, pace: f64) {
         self.shared_pace = Some(pace);
     }
 
@@ -304,7 +304,7 @@ impl Hand {
 }
 
 /// Returns the repeated task: above each target move down, press, drag a little, hold, lift, and move on to the next.
-fn task(hand: &HandConfig, targets_m: &[Vector3<f64>]) -> Vec<Part> {
+fn task(hand: &HandConfig, targets_m: &[Vector3<f64>]) -> Vec<HandTaskPart> {
     let lift = Vector3::new(0.0, 0.0, CARRY_HEIGHT_M);
     let press = Vector3::new(0.0, 0.0, -hand.press_depth_m);
     let drag = Vector3::new(hand.drag_m, -0.5 * hand.drag_m, 0.0);
@@ -314,8 +314,8 @@ fn task(hand: &HandConfig, targets_m: &[Vector3<f64>]) -> Vec<Part> {
         let stations =
             [target + lift, target + press, target + press + drag, target + press + drag, target + lift, next + lift];
         let seconds = [hand.press_s, hand.hold_s, hand.hold_s, hand.press_s, hand.reach_s];
-        parts.extend(stations.windows(2).zip(seconds).map(|(pair, seconds)| Part {
-            way: Move { from_m: pair[0], to_m: pair[1], seconds },
+        parts.extend(stations.windows(2).zip(seconds).map(|(pair, seconds)| HandTaskPart {
+            way: HandMove { from_m: pair[0], to_m: pair[1], seconds },
             grip_rad: [0.0; 2],
             then: None,
         }));
@@ -329,7 +329,7 @@ mod tests {
 
     #[test]
     fn a_minimum_jerk_move_starts_and_ends_at_rest() {
-        let way = Move { from_m: Vector3::zeros(), to_m: Vector3::x(), seconds: 2.0 };
+        let way = HandMove { from_m: Vector3::zeros(), to_m: Vector3::x(), seconds: 2.0 };
         assert_eq!(way.at(0.0), (Vector3::zeros(), Vector3::zeros()));
         let (end, speed) = way.at(2.0);
         assert!((end - Vector3::x()).norm() < 1e-12 && speed.norm() < 1e-12);

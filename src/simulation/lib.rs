@@ -4,32 +4,32 @@
 //! simulation; parts that are not listed are not computed. Values that are not finite are ignored.
 
 pub mod camera;
-mod carrying;
-mod desk;
-mod feeling;
+mod force_response;
 mod hand;
-mod held;
-mod person;
+mod haptic_input;
+mod input_devices;
+mod object_feed;
+mod palpation_task;
 pub mod physics;
 mod plan;
-mod playing;
+mod ring_task;
 pub mod scene;
 pub mod screen;
-mod searching;
-mod threading;
+mod simulated_person;
 mod tissue;
+mod training_task;
 mod trocar;
-mod watched;
+mod wire_task;
 mod world;
 mod worlds;
 mod wrist;
 
-pub use desk::Desk;
 pub use hand::Hand;
-pub use person::Person;
-pub use plan::{Plan, run_virtual, run_virtual_on, start, start_on, start_simulated, start_watched};
+pub use input_devices::InputDevices;
+pub use object_feed::{LoopObservation, MARKS_MAX, ObjectFeed, ObjectMoment, PlaceMark, RINGS_MAX, Training};
+pub use plan::{SimulationPlan, run_virtual, run_virtual_on, start, start_on, start_simulated, start_watched};
+pub use simulated_person::Person;
 pub use tissue::Tissue;
 pub use trocar::Trocar;
-pub use watched::{LoopSeen, MARKS_MAX, Mark, Moment, RINGS_MAX, Training, Watched};
-pub use world::{Touch, World};
+pub use world::{HandForces, World};
 pub use worlds::Worlds;

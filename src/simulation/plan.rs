@@ -5,21 +5,21 @@ use nima_machine::{
     config::{RigConfig, SchedulingClass},
     messages::{Command, Tick},
     rig::{DeviceRig, Rig, RigError, Roster, SIDES, Side},
-    runtime::{self, Assembly, Clock, Handle, StartError, Summary, VirtualClock},
-    teleop::{Calibrations, Loop, Origin},
+    runtime::{self, Assembly, LoopHandle, LoopStartError, RuntimeClock, RuntimeSummary, VirtualClock},
+    teleop::{Calibrations, Loop, LoopOrigin},
 };
 
-use crate::{Desk, Watched, Worlds, scene::Scene};
+use crate::{InputDevices, ObjectFeed, Worlds, scene::Scene};
 
 /// Access to the objects of a simulated rig's scene, if there are any.
-type Objects = Option<Watched>;
+type ObjectOutput = Option<ObjectFeed>;
 
 #[derive(Clone, Debug)]
-pub struct Plan {
+pub struct SimulationPlan {
     pub rig: RigConfig,
     pub scene: Scene,
     /// Calibrations of the wrist sensor and tool of each side; may be empty if the force is measured at the tip. They
-    /// are not used on a rig with devices, where [`Handle::put_in_force`] sets them once a sensor has reported its
+    /// are not used on a rig with devices, where [`LoopHandle::activate`] sets them once a sensor has reported its
     /// identity.
     pub calibrations: [Calibrations; SIDES],
     /// Engage as soon as every device delivers data. Ignored with real devices ([`RigConfig::is_harmless`]), which a
@@ -27,7 +27,7 @@ pub struct Plan {
     pub engage: bool,
 }
 
-impl Plan {
+impl SimulationPlan {
     /// Whether there is an arm pair on this side.
     pub fn has(&self, side: Side) -> bool {
         self.scene.has(&self.rig, side)
@@ -48,12 +48,12 @@ impl Plan {
     }
 
     /// Returns the origin of this plan's loop.
-    pub fn origin(&self) -> Origin {
+    pub fn origin(&self) -> LoopOrigin {
         // Cross-talk is identified only if the scene contains it.
         let mut rig = self.rig.clone();
         rig.identification.cross_talk |= self.scene.cross_talk;
         let calibrations = Side::ALL.map(|side| self.has(side).then(|| self.calibrations[side.index()].clone()));
-        Origin { rig, calibrations, suspended: self.rig.devices.is_some() }
+        LoopOrigin { rig, calibrations, suspended: self.rig.devices.is_some() }
     }
 
     /// Creates the loop for this plan.
@@ -67,8 +67,8 @@ impl Plan {
     /// Returns the loop of this plan with its rig, ready to start.
     ///
     /// # Errors
-    /// [`StartError`] if settings or devices are invalid.
-    pub fn assembly(&self) -> Result<Assembly, StartError> {
+    /// [`LoopStartError`] if settings or devices are invalid.
+    pub fn assembly(&self) -> Result<Assembly, LoopStartError> {
         Ok(self.watched_assembly()?.0)
     }
 
@@ -76,7 +76,7 @@ impl Plan {
     ///
     /// # Errors
     /// As [`assembly`](Self::assembly).
-    pub fn watched_assembly(&self) -> Result<(Assembly, Option<Watched>), StartError> {
+    pub fn watched_assembly(&self) -> Result<(Assembly, Option<ObjectFeed>), LoopStartError> {
         let (rig, roster, watched) = self.rig()?;
         let assembly = self.on(rig, roster)?;
         Ok((Assembly { engage: self.engage && self.rig.is_harmless(), ..assembly }, watched))
@@ -86,7 +86,7 @@ impl Plan {
     ///
     /// # Errors
     /// As [`simulated`](Self::simulated).
-    pub fn watched(&self) -> Result<(Assembly, Option<Watched>), SettingsError> {
+    pub fn watched(&self) -> Result<(Assembly, Option<ObjectFeed>), SettingsError> {
         let (worlds, watched) = Worlds::watched(&self.scene, self.rig.rate_hz);
         Ok((self.on(Box::new(worlds), Roster::new())?, watched))
     }
@@ -100,11 +100,11 @@ impl Plan {
     }
 
     /// Creates the rig and the list of its devices.
-    fn rig(&self) -> Result<(Box<dyn Rig>, Roster, Objects), RigError> {
+    fn rig(&self) -> Result<(Box<dyn Rig>, Roster, ObjectOutput), RigError> {
         let worlds = || Worlds::watched(&self.scene, self.rig.rate_hz);
         if let Some(desk) = &self.rig.desk {
             let (worlds, watched) = worlds();
-            let (desk, roster) = Desk::start(desk, worlds)?;
+            let (desk, roster) = InputDevices::start(desk, worlds)?;
             return Ok((Box::new(desk), roster, watched));
         }
         let Some(devices) = &self.rig.devices else {
@@ -126,15 +126,15 @@ impl Plan {
         let scheduling = self.rig.scheduling;
         let engage = self.engage;
         let control = self.control()?;
-        Ok(Assembly { control, rig, roster, rate_hz, clock: Clock::Real, scheduling, engage, tap: None })
+        Ok(Assembly { control, rig, roster, rate_hz, clock: RuntimeClock::Real, scheduling, engage, tap: None })
     }
 }
 
 /// Starts the loop of this plan in its own thread.
 ///
 /// # Errors
-/// [`StartError`] if settings or devices are invalid, or a thread cannot be created.
-pub fn start(plan: &Plan) -> Result<Handle, StartError> {
+/// [`LoopStartError`] if settings or devices are invalid, or a thread cannot be created.
+pub fn start(plan: &SimulationPlan) -> Result<LoopHandle, LoopStartError> {
     runtime::start(plan.assembly()?)
 }
 
@@ -142,7 +142,7 @@ pub fn start(plan: &Plan) -> Result<Handle, StartError> {
 ///
 /// # Errors
 /// As [`start`].
-pub fn start_on(plan: &Plan, rig: Box<dyn Rig>, roster: Roster) -> Result<Handle, StartError> {
+pub fn start_on(plan: &SimulationPlan, rig: Box<dyn Rig>, roster: Roster) -> Result<LoopHandle, LoopStartError> {
     runtime::start(plan.on(rig, roster)?)
 }
 
@@ -151,7 +151,7 @@ pub fn start_on(plan: &Plan, rig: Box<dyn Rig>, roster: Roster) -> Result<Handle
 ///
 /// # Errors
 /// As [`start`].
-pub fn start_simulated(plan: &Plan, speed: f64) -> Result<Handle, StartError> {
+pub fn start_simulated(plan: &SimulationPlan, speed: f64) -> Result<LoopHandle, LoopStartError> {
     Ok(start_watched(plan, speed)?.0)
 }
 
@@ -159,10 +159,10 @@ pub fn start_simulated(plan: &Plan, speed: f64) -> Result<Handle, StartError> {
 ///
 /// # Errors
 /// As [`start`].
-pub fn start_watched(plan: &Plan, speed: f64) -> Result<(Handle, Option<Watched>), StartError> {
+pub fn start_watched(plan: &SimulationPlan, speed: f64) -> Result<(LoopHandle, Option<ObjectFeed>), LoopStartError> {
     let (assembly, watched) = plan.watched()?;
     let scheduling = SchedulingClass::Ordinary;
-    let handle = runtime::start(Assembly { clock: Clock::Simulated { speed }, scheduling, ..assembly })?;
+    let handle = runtime::start(Assembly { clock: RuntimeClock::Simulated { speed }, scheduling, ..assembly })?;
     Ok((handle, watched))
 }
 
@@ -174,9 +174,9 @@ pub fn start_watched(plan: &Plan, speed: f64) -> Result<(Handle, Option<Watched>
 ///
 /// ```
 /// use nima_machine::{config::RigConfig, messages::LoopState};
-/// use nima_simulation::{Plan, run_virtual, scene::Scene};
+/// use nima_simulation::{SimulationPlan, run_virtual, scene::Scene};
 ///
-/// let plan = Plan {
+/// let plan = SimulationPlan {
 ///     rig: RigConfig::load("simulated")?,
 ///     scene: Scene::load("peg_transfer")?,
 ///     calibrations: Default::default(),
@@ -192,10 +192,10 @@ pub fn start_watched(plan: &Plan, speed: f64) -> Result<(Handle, Option<Watched>
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn run_virtual(
-    plan: &Plan,
+    plan: &SimulationPlan,
     seconds: f64,
     each: impl FnMut(&Tick) -> Option<Command>,
-) -> Result<Summary, SettingsError> {
+) -> Result<RuntimeSummary, SettingsError> {
     run_virtual_on(plan, VirtualClock::PERFECT, seconds, each)
 }
 
@@ -204,11 +204,11 @@ pub fn run_virtual(
 /// # Errors
 /// As [`run_virtual`].
 pub fn run_virtual_on(
-    plan: &Plan,
+    plan: &SimulationPlan,
     clock: VirtualClock,
     seconds: f64,
     each: impl FnMut(&Tick) -> Option<Command>,
-) -> Result<Summary, SettingsError> {
+) -> Result<RuntimeSummary, SettingsError> {
     Ok(runtime::run_virtual_on(clock, plan.simulated()?, seconds, each))
 }
 
@@ -226,8 +226,8 @@ mod tests {
 
     use super::*;
 
-    fn plan() -> Plan {
-        Plan {
+    fn plan() -> SimulationPlan {
+        SimulationPlan {
             rig: RigConfig::load("simulated").unwrap(),
             scene: Scene::load("peg_transfer").unwrap(),
             calibrations: Default::default(),
@@ -236,7 +236,7 @@ mod tests {
     }
 
     /// Waits until a tick satisfies `good`; returns that tick.
-    fn wait_for(handle: &Handle, good: impl Fn(&Tick) -> bool) -> Option<Tick> {
+    fn wait_for(handle: &LoopHandle, good: impl Fn(&Tick) -> bool) -> Option<Tick> {
         let until = Instant::now() + Duration::from_secs(10);
         let mut found = None;
         while found.is_none() && Instant::now() < until {
@@ -323,7 +323,7 @@ mod tests {
     fn in_simulated_time_a_loop_that_was_held_up_is_later_and_nothing_else() {
         let plan = plan();
         let assembly = plan.on(Box::new(HeldUp(plan.worlds())), Roster::new()).unwrap();
-        let handle = runtime::start(Assembly { clock: Clock::Simulated { speed: 20.0 }, ..assembly }).unwrap();
+        let handle = runtime::start(Assembly { clock: RuntimeClock::Simulated { speed: 20.0 }, ..assembly }).unwrap();
         let tick = wait_for(&handle, |tick| tick.t_s > 1.5).unwrap();
         assert_eq!(tick.state, LoopState::Engaged);
         let summary = handle.stop_and_join().unwrap();

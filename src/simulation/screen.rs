@@ -3,12 +3,12 @@
 use std::{fmt, str::FromStr};
 
 use nalgebra::{Quaternion, UnitQuaternion, UnitVector3, Vector3};
-use nima_core::calibration::frames::Move;
+use nima_core::calibration::frames::ViewMove;
 use nima_machine::rig::{Prompt, Side};
 
 /// The task of the person at the arms.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Task {
+pub enum PersonTask {
     /// No calibration: the instrument is in the trocar, and no one touches the arm.
     #[default]
     Surgery,
@@ -30,7 +30,7 @@ pub enum Task {
     View,
 }
 
-impl Task {
+impl PersonTask {
     const ALL: [(Self, &'static str); 9] = [
         (Self::Surgery, "surgery"),
         (Self::Gravity, "gravity"),
@@ -50,9 +50,9 @@ impl Task {
 ///
 /// ```
 /// use nima_machine::rig::{Prompt, Side};
-/// use nima_simulation::screen::{Screen, Task};
+/// use nima_simulation::screen::{Screen, PersonTask};
 ///
-/// let screen = Screen { side: Side::Left, task: Task::TipForce, prompt: Prompt::Work };
+/// let screen = Screen { side: Side::Left, task: PersonTask::TipForce, prompt: Prompt::Work };
 /// assert_eq!(screen.to_string(), "left tip-force work");
 /// assert_eq!("left tip-force work".parse(), Ok(screen));
 /// assert!("left tip-force sing".parse::<Screen>().is_err());
@@ -60,13 +60,13 @@ impl Task {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Screen {
     pub side: Side,
-    pub task: Task,
+    pub task: PersonTask,
     pub prompt: Prompt,
 }
 
 impl fmt::Display for Screen {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let task = Task::ALL.iter().find(|(task, _)| *task == self.task).map_or("", |(_, word)| word);
+        let task = PersonTask::ALL.iter().find(|(task, _)| *task == self.task).map_or("", |(_, word)| word);
         write!(f, "{} {task} ", self.side.word())?;
         match &self.prompt {
             Prompt::Rest => f.write_str("rest"),
@@ -86,8 +86,8 @@ impl fmt::Display for Screen {
 }
 
 /// Returns the index of a move in the order in which moves are requested.
-fn number_of(way: Move) -> usize {
-    Move::ALL.iter().position(|known| *known == way).unwrap_or_default()
+fn number_of(way: ViewMove) -> usize {
+    ViewMove::ALL.iter().position(|known| *known == way).unwrap_or_default()
 }
 
 /// Parses a whole number from 0 up.
@@ -95,8 +95,8 @@ fn whole(x: f64) -> Result<u8, NoScreen> {
     if x.fract() == 0.0 && (0.0..=255.0).contains(&x) { Ok(x as u8) } else { Err(NoScreen) }
 }
 
-fn way(x: f64) -> Result<Move, NoScreen> {
-    Move::ALL.get(usize::from(whole(x)?)).copied().ok_or(NoScreen)
+fn way(x: f64) -> Result<ViewMove, NoScreen> {
+    ViewMove::ALL.get(usize::from(whole(x)?)).copied().ok_or(NoScreen)
 }
 
 /// A line that is not a valid screen.
@@ -115,7 +115,7 @@ impl FromStr for Screen {
         let words: Vec<&str> = line.split_whitespace().collect();
         let [side, task, prompt, numbers @ ..] = &words[..] else { return Err(NoScreen) };
         let side = Side::ALL.into_iter().find(|known| known.word() == *side).ok_or(NoScreen)?;
-        let (task, _) = Task::ALL.into_iter().find(|(_, word)| word == task).ok_or(NoScreen)?;
+        let (task, _) = PersonTask::ALL.into_iter().find(|(_, word)| word == task).ok_or(NoScreen)?;
         let numbers: Vec<f64> = numbers.iter().map(|x| x.parse().map_err(|_| NoScreen)).collect::<Result<_, _>>()?;
         let prompt = match (*prompt, &numbers[..]) {
             ("rest", []) => Prompt::Rest,
@@ -161,10 +161,10 @@ mod tests {
             Prompt::Turn,
             Prompt::PivotInTrocar,
             Prompt::Touch { point: 3 },
-            Prompt::MoveTip(Move::Deeper),
-            Prompt::MoveHandle(Move::Back),
+            Prompt::MoveTip(ViewMove::Deeper),
+            Prompt::MoveHandle(ViewMove::Back),
         ];
-        for (task, _) in Task::ALL {
+        for (task, _) in PersonTask::ALL {
             for (side, prompt) in Side::ALL.into_iter().flat_map(|side| prompts.map(|prompt| (side, prompt))) {
                 let read: Screen = Screen { side, task, prompt }.to_string().parse().unwrap();
                 assert_eq!((read.side, read.task), (side, task));

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::scene::Trocar as TrocarConfig;
+use crate::scene::TrocarModel as TrocarConfig;
 
 /// Seal of the trocar. Its state is its elastic deformation along and across the shaft.
 #[derive(Clone, Debug)]
@@ -61,18 +61,18 @@ impl Trocar {
 
     /// Friction along the shaft (N, against inward motion): the `LuGre` model, integrated semi-implicitly so that it is
     /// stable for any step.
-    fn along_n(&mut self, way_m: f64, load_n: f64, dt_s: f64) -> f64 {
+    fn along_n(&mut self, travel_m: f64, load_n: f64, dt_s: f64) -> f64 {
         let TrocarConfig { coulomb_n, static_n, stribeck_m_s, viscous_n_s_m, presliding_m, friction_per_load, .. } =
             self.config;
         if coulomb_n <= 0.0 {
-            return viscous_n_s_m * way_m / dt_s;
+            return viscous_n_s_m * travel_m / dt_s;
         }
-        let speed_m_s = way_m / dt_s;
+        let speed_m_s = travel_m / dt_s;
         let sliding_n = coulomb_n + friction_per_load * load_n;
         let breakaway = static_n / coulomb_n.max(1e-9);
         let slow = (-(speed_m_s / stribeck_m_s).powi(2)).exp();
         let stretch_max_m = presliding_m * (1.0 + (breakaway - 1.0) * slow);
-        self.stretch_along_m = (self.stretch_along_m + way_m) / (1.0 + way_m.abs() / stretch_max_m);
+        self.stretch_along_m = (self.stretch_along_m + travel_m) / (1.0 + travel_m.abs() / stretch_max_m);
         sliding_n / presliding_m * self.stretch_along_m + viscous_n_s_m * speed_m_s
     }
 
@@ -93,9 +93,9 @@ impl Trocar {
 
 /// Direction from the wall to the tip, and its distance, m. Straight down if the tip is in the wall itself.
 pub(super) fn shaft(wall_m: &Vector3<f64>, tip_m: &Vector3<f64>) -> (Vector3<f64>, f64) {
-    let way_m = tip_m - wall_m;
-    let depth_m = way_m.norm();
-    if depth_m < 1e-6 { (-Vector3::z(), depth_m) } else { (way_m / depth_m, depth_m) }
+    let travel_m = tip_m - wall_m;
+    let depth_m = travel_m.norm();
+    if depth_m < 1e-6 { (-Vector3::z(), depth_m) } else { (travel_m / depth_m, depth_m) }
 }
 
 #[cfg(test)]

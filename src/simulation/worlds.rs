@@ -6,19 +6,19 @@
 use nalgebra::Vector3;
 use nima_machine::rig::{Inputs, Outputs, Rig, SIDES, Side};
 
-use super::{World, carrying, threading};
+use super::{World, ring_task, wire_task};
 use crate::{
-    playing::Playing,
+    object_feed::{self, ObjectFeed},
+    palpation_task::PalpationTask,
     scene::Scene,
-    searching::Searching,
-    watched::{self, Watched},
-    world::{Doing, ROUNDING_PERIODS},
+    training_task::TrainingTask,
+    world::{HandActivity, ROUNDING_PERIODS},
 };
 
 #[derive(Clone, Debug)]
 pub struct Worlds {
     arms: [Option<World>; SIDES],
-    playing: Option<Playing>,
+    playing: Option<TrainingTask>,
     period_s: f64,
     /// How far the hands are ahead of the objects, s.
     ahead_s: f64,
@@ -27,14 +27,14 @@ pub struct Worlds {
 }
 
 /// Activity of each hand in a scene with objects; `None` in other scenes.
-fn doing(scene: &Scene) -> [Option<Doing>; SIDES] {
+fn doing(scene: &Scene) -> [Option<HandActivity>; SIDES] {
     if let Some(setting) = &scene.objects {
-        return carrying::ways(setting, scene.left.is_some()).map(|task| Some(Doing::Carrying(task)));
+        return ring_task::ways(setting, scene.left.is_some()).map(|task| Some(HandActivity::Carrying(task)));
     }
     let of_side = |side: Side| {
         let scene = scene.of_side(side)?;
-        let of_wire = |setting| Doing::Threading(threading::way(setting, &scene.hand, scene.seed));
-        let of_lumps = || scene.is_searched().then(|| Doing::Searching(Searching::of(&scene)));
+        let of_wire = |setting| HandActivity::Threading(wire_task::way(setting, &scene.hand, scene.seed));
+        let of_lumps = || scene.is_searched().then(|| HandActivity::Searching(PalpationTask::of(&scene)));
         scene.wire.as_ref().map(of_wire).or_else(of_lumps)
     };
     Side::ALL.map(of_side)
@@ -47,10 +47,10 @@ impl Worlds {
     }
 
     /// Like [`new`](Self::new), with access to the objects of the scene, if there are any.
-    pub fn watched(scene: &Scene, rate_hz: f64) -> (Self, Option<Watched>) {
+    pub fn watched(scene: &Scene, rate_hz: f64) -> (Self, Option<ObjectFeed>) {
         let period_s = 1.0 / rate_hz;
-        let (teller, watched) = watched::ends();
-        let playing = Playing::of(scene, period_s, teller);
+        let (publisher, watched) = object_feed::ends();
+        let playing = TrainingTask::of(scene, period_s, publisher);
         let watched = playing.is_some().then_some(watched);
         let mut doing = doing(scene);
         let arms = Side::ALL.map(|side| {
@@ -81,7 +81,7 @@ impl Worlds {
         }
         while left_s > ROUNDING_PERIODS * *period_s {
             let pace = arms.iter().flatten().map(|world| world.hand().felt_pace()).fold(1.0, f64::min);
-            arms.iter_mut().flatten().for_each(|world| world.share_pace(pace));
+            arms.iter_mut().flatten().for_each(|world| world.fraction_pace(pace));
             let step_s = left_s.min(*period_s - *ahead_s);
             arms.iter_mut().flatten().for_each(|world| world.step(step_s));
             left_s -= step_s;

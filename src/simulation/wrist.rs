@@ -6,11 +6,11 @@ use nima_core::{
     noise::Noise,
 };
 
-use crate::scene::{TissueSensor, Wrist as WristConfig};
+use crate::scene::{TissueSensor, WristModel as WristConfig};
 
 /// Forces on the instrument, N (`world`), by point of action.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Loads {
+pub(super) struct WristLoads {
     /// Tissue on the tip.
     pub(super) tip_n: Vector3<f64>,
     /// Torque of the object in the jaws, about the tip, N m.
@@ -39,7 +39,7 @@ impl Wrist {
         Vector3::from_fn(|_, _| sigma * self.noise.gaussian())
     }
 
-    pub(super) fn measure(&mut self, world_from_s1: &UnitQuaternion<f64>, loads: &Loads) -> WristSample {
+    pub(super) fn measure(&mut self, world_from_s1: &UnitQuaternion<f64>, loads: &WristLoads) -> WristSample {
         let mut sample = WristSample::of(self.wrench(world_from_s1, loads));
         sample.world_from_s1 = Some(*world_from_s1);
         sample.insertion_m = loads.wall.map(|(_, depth_m)| depth_m);
@@ -55,7 +55,7 @@ impl Wrist {
         sample
     }
 
-    fn wrench(&mut self, world_from_s1: &UnitQuaternion<f64>, loads: &Loads) -> Wrench {
+    fn wrench(&mut self, world_from_s1: &UnitQuaternion<f64>, loads: &WristLoads) -> Wrench {
         let s1_from_world = world_from_s1.inverse();
         let weight_n = s1_from_world * Vector3::new(0.0, 0.0, -GRAVITY_M_S2 * self.config.tool_mass_kg);
         let at_com_n = weight_n + s1_from_world * loads.touch_n;
@@ -79,7 +79,7 @@ impl Wrist {
         &mut self,
         sample: &mut WristSample,
         world_from_s1: &UnitQuaternion<f64>,
-        loads: &Loads,
+        loads: &WristLoads,
         sensor: &TissueSensor,
     ) {
         let world_from_m = world_from_s1 * from_roll_pitch_yaw_deg(&sensor.s1_from_m_deg);
@@ -129,7 +129,7 @@ mod tests {
     #[test]
     fn weight_is_read_down_and_the_accelerometer_up() {
         let (mut wrist, config, _) = quiet("gravity");
-        let sample = wrist.measure(&UnitQuaternion::identity(), &Loads::default());
+        let sample = wrist.measure(&UnitQuaternion::identity(), &WristLoads::default());
         let weight_n = GRAVITY_M_S2 * config.tool_mass_kg;
         assert!((sample.raw.force_n - Vector3::new(0.0, 0.0, -weight_n)).norm() < 1e-12);
         let by_hand = config.com_m.cross(&Vector3::new(0.0, 0.0, -weight_n));
@@ -144,7 +144,7 @@ mod tests {
         let (mut wrist, config, sensor) = quiet("correspondence");
         let world_from_s1 = along_shaft(&Vector3::new(0.2, -0.3, -0.9).normalize());
         let push = Vector3::new(0.5, -1.0, 2.0);
-        let loads = Loads { tip_n: push, ..Loads::default() };
+        let loads = WristLoads { tip_n: push, ..WristLoads::default() };
         let sample = wrist.measure(&world_from_s1, &loads);
         let weight_n = world_from_s1.inverse() * Vector3::new(0.0, 0.0, -GRAVITY_M_S2 * config.tool_mass_kg);
         let at_wrist_n = sample.raw.force_n - weight_n;
@@ -159,10 +159,10 @@ mod tests {
     fn a_force_at_the_tip_and_one_at_the_wall_differ_in_torque() {
         let (mut wrist, config, _) = quiet("isolation");
         let side = Vector3::new(1.0, 0.0, 0.0);
-        let mut torque = |loads: &Loads| wrist.measure(&UnitQuaternion::identity(), loads).raw.torque_nm.y;
-        let none = torque(&Loads::default());
-        let tip = torque(&Loads { tip_n: side, ..Loads::default() }) - none;
-        let wall = torque(&Loads { wall: Some((side, 0.15)), ..Loads::default() }) - none;
+        let mut torque = |loads: &WristLoads| wrist.measure(&UnitQuaternion::identity(), loads).raw.torque_nm.y;
+        let none = torque(&WristLoads::default());
+        let tip = torque(&WristLoads { tip_n: side, ..WristLoads::default() }) - none;
+        let wall = torque(&WristLoads { wall: Some((side, 0.15)), ..WristLoads::default() }) - none;
         assert!((tip - config.shaft_m).abs() < 1e-12 && (wall - (config.shaft_m - 0.15)).abs() < 1e-12);
     }
 
@@ -170,9 +170,9 @@ mod tests {
     fn the_torque_of_what_jaws_hold_reaches_the_wrist_about_the_shaft() {
         let (mut wrist, ..) = quiet("isolation");
         let direction = Vector3::new(0.2, -0.3, -0.9).normalize();
-        let mut torque = |loads: &Loads| wrist.measure(&along_shaft(&direction), loads).raw.torque_nm;
-        let none = torque(&Loads::default());
-        let twist = torque(&Loads { twist_nm: direction * 2e-4, ..Loads::default() }) - none;
+        let mut torque = |loads: &WristLoads| wrist.measure(&along_shaft(&direction), loads).raw.torque_nm;
+        let none = torque(&WristLoads::default());
+        let twist = torque(&WristLoads { twist_nm: direction * 2e-4, ..WristLoads::default() }) - none;
         assert!((twist - Vector3::new(0.0, 0.0, 2e-4)).norm() < 1e-15, "{twist}");
     }
 

@@ -1,7 +1,7 @@
 //! Contrast of two colours as WCAG 2 defines it.
 
 /// The least contrast of text at level AA.
-pub const LEAST: f64 = 4.5;
+pub const MIN: f64 = 4.5;
 
 /// The contrast of two colours in sRGB, 1 to 21.
 pub fn contrast(a: [u8; 3], b: [u8; 3]) -> f64 {

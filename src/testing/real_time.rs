@@ -27,10 +27,10 @@ const NAP: Duration = Duration::from_millis(1);
 const LATE: Duration = Duration::from_millis(3);
 const PAUSE: Duration = Duration::from_millis(20);
 /// With a smaller idle fraction of processor time, threads other than the sleeping one may be delayed unnoticed.
-const IDLE_SHARE: f64 = 0.1;
+const IDLE_FRACTION: f64 = 0.1;
 /// With a larger fraction of time taken by the virtual machine's host, threads are delayed in a way that no clock here
 /// shows.
-const STOLEN_SHARE: f64 = 0.03;
+const STOLEN_FRACTION: f64 = 0.03;
 
 /// Lets only one test of a program run at a time: devices in real time appear silent while other work takes every core.
 pub fn alone() -> MutexGuard<'static, ()> {
@@ -50,7 +50,7 @@ pub fn too_busy() -> ! {
 /// after all others.
 pub fn judged(test: impl Fn()) {
     let watch = || {
-        let watch = Watch::start();
+        let watch = WakeWatch::start();
         move || watch.was_busy()
     };
     let left = PATIENCE_OF_ALL.saturating_sub(Duration::from_millis(HELD_UP_MS.load(Relaxed)));
@@ -83,30 +83,30 @@ fn judged_on<Busy: FnOnce() -> bool>(test: impl Fn(), watch: impl Fn() -> Busy, 
 }
 
 /// A thread that sleeps for one millisecond at a time and counts how often it wakes late.
-struct Watch {
+struct WakeWatch {
     end: Arc<AtomicBool>,
     thread: JoinHandle<bool>,
-    spent: Option<Spent>,
+    spent: Option<ProcessorTime>,
 }
 
 /// Time of all processors since the machine started, in kernel ticks.
 #[derive(Clone, Copy, Debug)]
-struct Spent {
+struct ProcessorTime {
     idle: f64,
     stolen: f64,
     all: f64,
 }
 
 /// `None` where the kernel does not report it.
-fn spent() -> Option<Spent> {
+fn spent() -> Option<ProcessorTime> {
     let text = std::fs::read_to_string("/proc/stat").ok()?;
     let times = text.lines().next()?.strip_prefix("cpu ")?.split_whitespace().take(8);
     let times: Vec<f64> = times.map_while(|field| field.parse().ok()).collect();
     // user, nice, system, idle, iowait, irq, softirq, steal
-    Some(Spent { idle: times.get(3)? + times.get(4)?, stolen: *times.get(7)?, all: times.iter().sum() })
+    Some(ProcessorTime { idle: times.get(3)? + times.get(4)?, stolen: *times.get(7)?, all: times.iter().sum() })
 }
 
-impl Watch {
+impl WakeWatch {
     fn start() -> Self {
         let end = Arc::new(AtomicBool::new(false));
         let ends = Arc::clone(&end);
@@ -134,9 +134,9 @@ impl Watch {
     }
 }
 
-fn is_full(before: Spent, now: Spent) -> bool {
+fn is_full(before: ProcessorTime, now: ProcessorTime) -> bool {
     let all = now.all - before.all;
-    now.idle - before.idle < IDLE_SHARE * all || now.stolen - before.stolen > STOLEN_SHARE * all
+    now.idle - before.idle < IDLE_FRACTION * all || now.stolen - before.stolen > STOLEN_FRACTION * all
 }
 
 #[cfg(test)]
@@ -159,8 +159,9 @@ mod tests {
 
     #[test]
     fn processors_that_never_rest_or_are_taken_away_are_full() {
-        let before = Spent { idle: 100.0, stolen: 50.0, all: 1000.0 };
-        let after = |idle, stolen| is_full(before, Spent { idle: 100.0 + idle, stolen: 50.0 + stolen, all: 1200.0 });
+        let before = ProcessorTime { idle: 100.0, stolen: 50.0, all: 1000.0 };
+        let after =
+            |idle, stolen| is_full(before, ProcessorTime { idle: 100.0 + idle, stolen: 50.0 + stolen, all: 1200.0 });
         assert!(after(5.0, 0.0) && !after(50.0, 0.0));
         assert!(after(50.0, 10.0) && !after(50.0, 4.0), "taken by the host");
         let machine = spent();

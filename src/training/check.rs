@@ -6,7 +6,7 @@
 
 use nima_core::{
     calibration::{Judgement, Verdict},
-    tip_force::{Check, Estimator, NO_MODEL},
+    tip_force::{Estimator, NO_MODEL, OriginCheck},
 };
 use nima_recording::{
     store::utc_now,
@@ -25,12 +25,12 @@ const DOUBT: f64 = 0.10;
 const ROWS: usize = 1000;
 const OF_EACH: usize = 150;
 
-/// Judges a model by these data. Returns the check to be stored in [`nima_core::tip_force::Origin::check`] and all
+/// Judges a model by these data. Returns the check to be stored in [`nima_core::tip_force::ModelOrigin::check`] and all
 /// errors.
 ///
 /// # Errors
 /// [`TipForceError`] if the columns are not the model's.
-pub fn check(estimator: &mut Estimator, data: &DataSet) -> Result<(Check, Evaluation), TipForceError> {
+pub fn check(estimator: &mut Estimator, data: &DataSet) -> Result<(OriginCheck, Evaluation), TipForceError> {
     if data.outputs.len() != 3 || data.contact.is_none() {
         let reason = "a check needs the three forces at the tip and the column \"contact\"".to_owned();
         return Err(TipForceError::Columns { reason });
@@ -44,7 +44,7 @@ pub fn check(estimator: &mut Estimator, data: &DataSet) -> Result<(Check, Evalua
         std::array::from_fn(|axis| stats.get(axis).copied().flatten().map_or(f64::INFINITY, |stats| value(&stats)))
     };
     let at_rest = |value: &dyn Fn(&super::NoContact) -> f64| std::array::from_fn(|axis| value(&part.no_contact[axis]));
-    let check = Check {
+    let check = OriginCheck {
         judgement: Judgement::new(verdict, reason),
         date: utc_now(),
         rows: data.rows(),
@@ -52,7 +52,7 @@ pub fn check(estimator: &mut Estimator, data: &DataSet) -> Result<(Check, Evalua
         sd_n: of(&|stats| stats.sd),
         free_mean_n: at_rest(&|rest| rest.mean),
         free_sd_n: at_rest(&|rest| rest.sd),
-        doubt_share: part.doubt_share,
+        doubt_fraction: part.doubt_fraction,
     };
     Ok((check, evaluation))
 }
@@ -65,7 +65,7 @@ fn judge(evaluation: &Evaluation, [rows, free]: [usize; 2]) -> (Verdict, String)
     let mae_n = worst(&part.methods[0]);
     let wrist_n = part.methods.iter().find(|method| method.method == NO_MODEL).map_or(f64::INFINITY, worst);
     let free_n = part.no_contact.iter().map(|rest| rest.mean.abs()).fold(0.0, f64::max);
-    let doubt = part.doubt_share;
+    let doubt = part.doubt_fraction;
     if !evaluation.trained_on.is_empty() {
         (Verdict::PoorData, "the model was trained on these data; record new data".to_owned())
     } else if rows < ROWS || free < OF_EACH || rows - free < OF_EACH {

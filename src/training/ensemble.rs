@@ -16,15 +16,15 @@ use std::{
 };
 
 use nima_core::tip_force::{
-    Baselines, DEFAULT_INPUTS, Doubt, Expansion, Member, MemberFigures, Model, Network, Normalisation, Origin,
-    TrainingSettings, linear,
+    Baselines, DEFAULT_INPUTS, Doubt, Expansion, ForceModel, Member, MemberFigures, ModelOrigin, Normalisation,
+    TipForceNetwork, TrainingSettings, linear,
 };
 use nima_recording::{
     store::utc_now,
     tip_force::{DataSet, TipForceError},
 };
 
-use super::{fit::Fit, folds::Folds};
+use super::{fit::TrainingFit, folds::Folds};
 
 pub const MIN_ROWS: usize = 200;
 
@@ -53,7 +53,7 @@ fn checked(settings: &TrainingSettings) -> Result<(), TipForceError> {
 
 /// Progress after one epoch of one member.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
-pub struct Progress {
+pub struct TrainingProgress {
     /// From 0.
     pub member: usize,
     pub members: usize,
@@ -73,7 +73,7 @@ pub struct Progress {
 
 /// A trained ensemble and everything needed to use it.
 #[derive(Clone, Debug)]
-pub struct Trained {
+pub struct TrainedEnsemble {
     pub members: Vec<Member>,
     pub figures: Vec<MemberFigures>,
     pub expansion: Expansion,
@@ -118,8 +118,8 @@ pub fn train(
     data: &DataSet,
     settings: &TrainingSettings,
     cancel: &AtomicBool,
-    progress: &(dyn Fn(&Progress) + Sync),
-) -> Result<Trained, TipForceError> {
+    progress: &(dyn Fn(&TrainingProgress) + Sync),
+) -> Result<TrainedEnsemble, TipForceError> {
     checked(settings)?;
     if data.rows() < MIN_ROWS {
         return Err(TipForceError::TooFewRows { found: data.rows(), needed: MIN_ROWS });
@@ -145,16 +145,16 @@ pub fn train(
     y.chunks_mut(data.outputs.len()).for_each(|row| outputs.apply(row));
     let folds = Folds::of(data, settings.members, settings.seed);
     let alone = Mutex::new(());
-    let report = |now: &Progress| {
+    let report = |now: &TrainingProgress| {
         let _one_at_a_time = alone.lock();
-        progress(&Progress { elapsed_s: start.elapsed().as_secs_f64(), ..*now });
+        progress(&TrainingProgress { elapsed_s: start.elapsed().as_secs_f64(), ..*now });
     };
     let shape = (expansion.width(), data.outputs.len());
     let skip = linear::solve(&x, &y, shape, &(0..data.rows()).collect::<Vec<_>>());
-    let fit = Fit { x: &x, y: &y, shape, skip: &skip, settings, cancel, progress: &report };
+    let fit = TrainingFit { x: &x, y: &y, shape, skip: &skip, settings, cancel, progress: &report };
     let (members, figures) = all_members(&fit, &folds)?.into_iter().unzip();
     let folds = (0..folds.count()).map(|fold| folds.split(fold)).collect();
-    Ok(Trained {
+    Ok(TrainedEnsemble {
         members,
         figures,
         expansion,
@@ -178,7 +178,7 @@ fn nothing_to_learn_from(inputs: &[String], constant: &[String], width: usize) -
 }
 
 /// Trains the members on as many threads as there are cores; the first error ends them all.
-fn all_members(fit: &Fit<'_>, folds: &Folds) -> Result<Vec<(Member, MemberFigures)>, TipForceError> {
+fn all_members(fit: &TrainingFit<'_>, folds: &Folds) -> Result<Vec<(Member, MemberFigures)>, TipForceError> {
     let count = fit.settings.members;
     let workers = thread::available_parallelism().map_or(1, usize::from).min(count);
     let next = AtomicUsize::new(0);
@@ -244,10 +244,10 @@ pub fn train_model(
     settings: &TrainingSettings,
     [sensor, tool]: [Option<String>; 2],
     cancel: &AtomicBool,
-    progress: &(dyn Fn(&Progress) + Sync),
-) -> Result<Model, TipForceError> {
+    progress: &(dyn Fn(&TrainingProgress) + Sync),
+) -> Result<ForceModel, TipForceError> {
     let trained = train(data, settings, cancel, progress)?;
-    let mut network = Network::new(trained.members).ok_or(TipForceError::Shapes)?;
+    let mut network = TipForceNetwork::new(trained.members).ok_or(TipForceError::Shapes)?;
     let width = trained.expansion.width();
     let mut x = features_of(data, &trained.expansion);
     x.chunks_mut(width).for_each(|row| trained.features.apply(row));
@@ -262,7 +262,7 @@ pub fn train_model(
     // If every trajectory is its own file, each held-out fold is a different session.
     let whole_sessions = data.files.len() > 1 && data.trajectories.len() == data.files.len();
     let doubt = Doubt::fit(&x, width, measured, &trained.folds, spreads, whole_sessions, settings.seed);
-    let origin = Origin {
+    let origin = ModelOrigin {
         sensor,
         tool,
         date: utc_now(),
@@ -274,7 +274,7 @@ pub fn train_model(
         constant: trained.constant,
         check: None,
     };
-    Ok(Model {
+    Ok(ForceModel {
         inputs: data.inputs.clone(),
         outputs: data.outputs.clone(),
         baselines: Baselines::fit(&data.inputs, &data.outputs, &data.x, &data.y),

@@ -39,13 +39,14 @@ pub struct NoContact {
 
 /// Errors on a subset of the rows.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Part {
+pub struct EvaluationPart {
     /// The file, or `all`.
     pub name: String,
     /// The network first, then [`BASELINES`].
     pub methods: Vec<MethodFigures>,
     /// Fraction of rows flagged as uncertain.
-    pub doubt_share: f64,
+    #[serde(rename = "doubt_share")]
+    pub doubt_fraction: f64,
     /// Per output, for rows without contact; empty if the data have no column `contact`.
     pub no_contact: Vec<NoContact>,
 }
@@ -55,8 +56,8 @@ pub struct Part {
 pub struct Evaluation {
     /// Names of the outputs, which contain the unit.
     pub outputs: Vec<String>,
-    pub files: Vec<Part>,
-    pub overall: Part,
+    pub files: Vec<EvaluationPart>,
+    pub overall: EvaluationPart,
     /// The files among these that the model was trained on: their errors say nothing about new data.
     pub trained_on: Vec<String>,
     /// Time of one prediction, microseconds.
@@ -91,7 +92,7 @@ pub fn evaluate(estimator: &mut Estimator, data: &DataSet) -> Result<Evaluation,
             method.push(predicted);
         }
     }
-    let part = |name: String, rows: &[usize]| Part {
+    let part = |name: String, rows: &[usize]| EvaluationPart {
         name,
         methods: method_names()
             .zip(&methods)
@@ -100,7 +101,7 @@ pub fn evaluate(estimator: &mut Estimator, data: &DataSet) -> Result<Evaluation,
                 outputs: (0..outputs).map(|o| stats(data, predicted, rows, o)).collect(),
             })
             .collect(),
-        doubt_share: rows.iter().filter(|row| in_doubt[**row]).count() as f64 / rows.len().max(1) as f64,
+        doubt_fraction: rows.iter().filter(|row| in_doubt[**row]).count() as f64 / rows.len().max(1) as f64,
         no_contact: no_contact(data, &methods[0], rows),
     };
     let all: Vec<usize> = (0..data.rows()).collect();

@@ -7,7 +7,7 @@ use nima_core::tip_force::{Member, MemberFigures, TrainingSettings};
 use nima_recording::tip_force::TipForceError;
 
 use super::{
-    Progress,
+    TrainingProgress,
     adamw::AdamW,
     perceptron::{Batch, Perceptron},
 };
@@ -18,7 +18,7 @@ const PATIENCE: f64 = 0.25;
 const CHUNK: usize = 1024;
 
 /// Data common to all members: normalised features and outputs, row by row, and their column counts.
-pub(super) struct Fit<'a> {
+pub(super) struct TrainingFit<'a> {
     pub(super) x: &'a [f32],
     pub(super) y: &'a [f32],
     pub(super) shape: (usize, usize),
@@ -26,10 +26,10 @@ pub(super) struct Fit<'a> {
     pub(super) skip: &'a [f32],
     pub(super) settings: &'a TrainingSettings,
     pub(super) cancel: &'a AtomicBool,
-    pub(super) progress: &'a (dyn Fn(&Progress) + Sync),
+    pub(super) progress: &'a (dyn Fn(&TrainingProgress) + Sync),
 }
 
-impl Fit<'_> {
+impl TrainingFit<'_> {
     /// Trains one member on the training rows, with early stopping on the held-out rows.
     pub(super) fn member(
         &self,
@@ -63,7 +63,7 @@ impl Fit<'_> {
             }
             let finished = epoch == epochs_max || epoch - figures.epoch >= patience;
             figures.epochs = epoch;
-            (self.progress)(&Progress {
+            (self.progress)(&TrainingProgress {
                 member,
                 members: self.settings.members,
                 epoch,

@@ -1,6 +1,6 @@
 //! Training and evaluation of the network that estimates the force at the tip.
 //!
-//! Takes a data set; returns a [`Model`](nima_core::tip_force::Model) and its errors on held-out rows. Runs on a
+//! Takes a data set; returns a [`Model`](nima_core::tip_force::ForceModel) and its errors on held-out rows. Runs on a
 //! background thread, never in the loop.
 
 mod adamw;
@@ -14,5 +14,5 @@ mod perceptron;
 mod tests;
 
 pub use check::check;
-pub use ensemble::{MIN_ROWS, Progress, Trained, train, train_model};
-pub use evaluation::{Evaluation, MethodFigures, NoContact, Part, Stats, evaluate};
+pub use ensemble::{MIN_ROWS, TrainedEnsemble, TrainingProgress, train, train_model};
+pub use evaluation::{Evaluation, EvaluationPart, MethodFigures, NoContact, Stats, evaluate};

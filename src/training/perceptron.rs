@@ -1,13 +1,13 @@
 //! A member during training: its loss on a batch, and the gradient of the loss by back-propagation.
 //!
-//! The function is the one used for inference (`nima_core::tip_force::Network`): activation `a(z) = z / sqrt(1 + z^2)`,
+//! The function is the one used for inference (`nima_core::tip_force::TipForceNetwork`): activation `a(z) = z / sqrt(1 + z^2)`,
 //! whose slope is `(1 + z^2)^(-3/2)`. A batch has one column per row of the data, so that every product is a matrix
 //! product.
 
 use std::ops::Range;
 
 use nalgebra::{DMatrix, DMatrixView};
-use nima_core::tip_force::{Layer, Member};
+use nima_core::tip_force::{Member, TipForceLayer};
 
 /// Layers in parallel to a linear path, which is not trained. Outside the training data only the linear path remains.
 #[derive(Clone, Debug)]
@@ -26,7 +26,7 @@ pub(super) struct Batch {
 }
 
 /// Outputs of a hidden layer, and the slope of its activation there.
-struct Hidden {
+struct HiddenLayer {
     output: DMatrix<f32>,
     slope: DMatrix<f32>,
 }
@@ -85,8 +85,8 @@ impl Perceptron {
         z
     }
 
-    fn forward(&self, x: &DMatrix<f32>) -> (Vec<Hidden>, DMatrix<f32>) {
-        let mut hidden: Vec<Hidden> = Vec::with_capacity(self.layers() - 1);
+    fn forward(&self, x: &DMatrix<f32>) -> (Vec<HiddenLayer>, DMatrix<f32>) {
+        let mut hidden: Vec<HiddenLayer> = Vec::with_capacity(self.layers() - 1);
         for layer in 0..self.layers() - 1 {
             let mut output = self.affine(layer, hidden.last().map_or(x, |before| &before.output));
             let mut slope = output.clone();
@@ -95,7 +95,7 @@ impl Perceptron {
                 *z *= root;
                 *slope = root * root * root;
             }
-            hidden.push(Hidden { output, slope });
+            hidden.push(HiddenLayer { output, slope });
         }
         let mut output = self.affine(self.layers() - 1, hidden.last().map_or(x, |before| &before.output));
         output.gemm(1.0, &self.skip, x, 1.0);
@@ -132,11 +132,11 @@ impl Perceptron {
     pub(super) fn member(&self) -> Option<Member> {
         let layer = |k: usize| {
             let [weights, bias] = self.places(k).map(|place| &self.parameters[place]);
-            Layer::new(self.widths[k], self.widths[k + 1], weights, bias)
+            TipForceLayer::new(self.widths[k], self.widths[k + 1], weights, bias)
         };
         let layers = (0..self.layers()).map(layer).collect::<Option<_>>()?;
         let (outputs, inputs) = self.skip.shape();
-        Member::new(layers, Layer::new(inputs, outputs, self.skip.as_slice(), &vec![0.0; outputs])?)
+        Member::new(layers, TipForceLayer::new(inputs, outputs, self.skip.as_slice(), &vec![0.0; outputs])?)
     }
 }
 
@@ -176,7 +176,7 @@ mod tests {
 
     #[test]
     fn what_is_trained_and_what_is_used_are_the_same_function() {
-        use nima_core::tip_force::Network;
+        use nima_core::tip_force::TipForceNetwork;
         let mut generator = fastrand::Rng::with_seed(3);
         let mut draw =
             |rows: usize, columns: usize| DMatrix::from_fn(rows, columns, |_, _| 2.0 * generator.f32() - 1.0);
@@ -186,7 +186,7 @@ mod tests {
         let start = draw(network.parameters.len(), 1);
         network.parameters.copy_from_slice(start.as_slice());
         let (_, said) = network.forward(&x);
-        let mut used = Network::new(vec![network.member().unwrap()]).unwrap();
+        let mut used = TipForceNetwork::new(vec![network.member().unwrap()]).unwrap();
         for (x, said) in x.column_iter().zip(said.column_iter()) {
             let answer = used.answer(x.as_slice(), 1.0).mean;
             for (a, b) in answer.iter().zip(said.iter()) {

@@ -2,7 +2,7 @@
 
 use std::{path::PathBuf, sync::atomic::AtomicBool};
 
-use nima_core::tip_force::{Estimator, Model, Origin, TrainingSettings};
+use nima_core::tip_force::{Estimator, ForceModel, ModelOrigin, TrainingSettings};
 use nima_recording::tip_force::{DataSet, Trajectory, load_model, save_model};
 
 use super::*;
@@ -41,7 +41,7 @@ fn quick() -> TrainingSettings {
     TrainingSettings { hidden: vec![16], members: 2, epochs: Some(12), ..TrainingSettings::default() }
 }
 
-fn trained(data: &DataSet) -> Model {
+fn trained(data: &DataSet) -> ForceModel {
     train_model(data, &quick(), [None, None], &AtomicBool::new(false), &|_| {}).unwrap()
 }
 
@@ -52,7 +52,7 @@ fn friction_is_taken_out_of_unseen_trajectories_and_doubt_knows_its_limits() {
     let figures = evaluate(&mut estimator, &unseen).unwrap().overall;
     let mae = |k: usize| figures.methods[k].outputs[0].unwrap().mae;
     assert!(mae(0) < 0.5 * mae(1) && mae(0) < 0.8 * mae(2), "network {}, none {}, linear {}", mae(0), mae(1), mae(2));
-    assert!(figures.doubt_share <= 0.05, "{}", figures.doubt_share);
+    assert!(figures.doubt_fraction <= 0.05, "{}", figures.doubt_fraction);
     let flagged = |edit: &dyn Fn(&mut [f32])| {
         let doubted = (0..unseen.rows()).filter(|row| {
             let mut inputs = unseen.input(*row).to_vec();
@@ -84,7 +84,7 @@ fn a_model_comes_back_from_its_file_bit_by_bit_and_a_seed_repeats_it() {
         // JSON may change the last bit of an f64.
         assert!((a.validation_loss - b.validation_loss).abs() < 1e-12 && a.epoch == b.epoch);
     }
-    assert_eq!(before, Origin { figures: before.figures.clone(), ..after });
+    assert_eq!(before, ModelOrigin { figures: before.figures.clone(), ..after });
     for row in 0..200 {
         let [ours, again, loaded] = [0, 1, 2].map(|k| estimators[k].estimate(data.input(row)));
         assert_eq!(ours, again);
@@ -139,7 +139,7 @@ fn training_refuses_what_cannot_be_learned_and_stops_when_asked() {
     let mut short = world(1, 5);
     short.x.truncate(30);
     short.y.truncate(10);
-    assert!(attempt(&short, &quick(), false).contains("10 rows"));
+    assert!(attempt(&short, &quick(), false).contains("too few rows: 10"));
 }
 
 #[test]
@@ -176,13 +176,13 @@ fn inputs_that_never_change_are_refused() {
             .map(|error| error.to_string())
     };
     let words = "no force at the wrist changes over the whole data set";
-    assert!(refusal(&|x| x.fill(0.0)).is_some_and(|told| told.contains(words)));
-    assert!(refusal(&|x| (x[0], x[1]) = (1.3, -2.1)).is_some_and(|told| told.contains(words)), "both forces hang");
+    assert!(refusal(&|x| x.fill(0.0)).is_some_and(|report| report.contains(words)));
+    assert!(refusal(&|x| (x[0], x[1]) = (1.3, -2.1)).is_some_and(|report| report.contains(words)), "both forces hang");
     assert_eq!(refusal(&|x| x[0] = 0.0), None, "one axis may be unused");
     // Columns with other names are not known to be forces; but something in the data must change.
     let mut data = world(12, 5);
     data.inputs = ["a", "b", "c"].map(str::to_owned).to_vec();
     data.x.fill(1.0);
-    let told = train_model(&data, &quick(), [None, None], &AtomicBool::new(false), &|_| {}).unwrap_err().to_string();
-    assert!(told.contains("no input changes over the whole data set"), "{told}");
+    let report = train_model(&data, &quick(), [None, None], &AtomicBool::new(false), &|_| {}).unwrap_err().to_string();
+    assert!(report.contains("no input changes over the whole data set"), "{report}");
 }

@@ -4,12 +4,12 @@
 use std::time::{Duration, Instant};
 
 use nima_devices::{
-    Device as _, Standing,
-    bota::{Driver, Settings, Transport},
+    ConnectionState, Device as _,
+    bota::{BotaDriver, BotaSettings, Transport},
 };
 use nima_emulation::emulators::{
     EmulatedFault,
-    bota::{Emulated, slow_motion},
+    bota::{EmulatedBota, slow_motion},
 };
 use nima_testing::real_time::{alone, judged};
 
@@ -19,8 +19,8 @@ use crate::counting::calls;
 fn polling_allocates_nothing_also_in_a_damaged_stream_and_when_the_sensor_is_lost() {
     let _alone = alone();
     judged(|| {
-        let serving = Emulated::default().with(slow_motion()).serve().unwrap();
-        let mut driver = Driver::open(&Settings::new(Transport::GenA, serving.endpoint.clone())).unwrap();
+        let serving = EmulatedBota::default().with(slow_motion()).serve().unwrap();
+        let mut driver = BotaDriver::open(&BotaSettings::new(Transport::GenA, serving.endpoint.clone())).unwrap();
         let begin = Instant::now();
         for fault in [EmulatedFault::None, EmulatedFault::Garbage, EmulatedFault::Reorder, EmulatedFault::BadChecksum] {
             serving.faults.set(fault);
@@ -33,6 +33,6 @@ fn polling_allocates_nothing_also_in_a_damaged_stream_and_when_the_sensor_is_los
         }
         let health = driver.health();
         assert!(health.readings > 50 && health.damaged > 0, "{health:?}");
-        assert!(matches!(health.standing, Standing::Lost(_)));
+        assert!(matches!(health.standing, ConnectionState::Lost(_)));
     });
 }

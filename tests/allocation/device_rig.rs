@@ -3,7 +3,7 @@
 
 use std::time::{Duration, Instant};
 
-use nima_devices::Standing;
+use nima_devices::ConnectionState;
 use nima_machine::rig::{DeviceRig, Outputs, Rig as _, SIDES};
 use nima_testing::real_time::{alone, judged, too_busy};
 use nima_tests::emulated::{elsewhere, started};
@@ -21,7 +21,7 @@ fn reading_the_devices_and_handing_over_what_they_delivered_allocates_nothing() 
         let begin = Instant::now();
         let now_s = || begin.elapsed().as_secs_f64();
         let all_there = |rig: &DeviceRig| {
-            rig.health().devices[..roster.len()].iter().all(|health| health.standing == Standing::Connected)
+            rig.health().devices[..roster.len()].iter().all(|health| health.standing == ConnectionState::Connected)
         };
         while !all_there(&rig) {
             if begin.elapsed() > Duration::from_mins(2) {

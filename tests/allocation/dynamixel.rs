@@ -5,9 +5,9 @@ use std::time::Instant;
 
 use nima_devices::{
     Device as _,
-    dynamixel::{Settings, Taken, open},
+    dynamixel::{DynamixelSettings, GoalResult, open},
 };
-use nima_emulation::emulators::dynamixel::Emulated;
+use nima_emulation::emulators::dynamixel::EmulatedDynamixel;
 use nima_testing::real_time::{alone, judged};
 
 use crate::counting::calls;
@@ -18,11 +18,11 @@ const SERVO: &str = "position_min_rad = -1.0\nposition_max_rad = 1.0\ncurrent_li
 fn running_servos_allocates_nothing() {
     let _alone = alone();
     judged(|| {
-        let emulated = Emulated { baud: 4_000_000, ..Emulated::default() };
+        let emulated = EmulatedDynamixel { baud: 4_000_000, ..EmulatedDynamixel::default() };
         let serving = emulated.with(None).unwrap().serve().unwrap();
         let servos = [1, 2, 3, 4].map(|id| format!("[[servos]]\nid = {id}\n{SERVO}")).concat();
         let text = format!("port = \"{}\"\nbaud = 4000000\nsilence_s = 0.5\n{servos}", serving.endpoint);
-        let settings: Settings = toml::from_str(&text).unwrap();
+        let settings: DynamixelSettings = toml::from_str(&text).unwrap();
         let mut driver = open(&settings).unwrap();
         let begin = Instant::now();
         let before = calls();
@@ -33,7 +33,7 @@ fn running_servos_allocates_nothing() {
                 driver.set_torque(true);
             }
             if driver.is_torque_on() {
-                assert_ne!(driver.set_goals(&[0.1; 4]), Taken::Refused);
+                assert_ne!(driver.set_goals(&[0.1; 4]), GoalResult::Refused);
             }
             std::thread::yield_now();
         }

@@ -11,10 +11,10 @@ use std::{
 
 use nalgebra::Vector3;
 use nima_devices::{
-    Device as _, Leader as _, Standing,
+    ConnectionState, Device as _, Leader as _,
     external::{
-        Handle, Kind, Settings,
-        codec::{BYTES_MAX, Datagram, Message},
+        ExternalHandle, ExternalKind, ExternalSettings,
+        codec::{BYTES_MAX, Datagram, ExternalMessage},
     },
 };
 use nima_testing::real_time::{alone, judged};
@@ -32,13 +32,14 @@ fn program(port: u16, does: &AtomicU8) {
     let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
     socket.connect(("127.0.0.1", port)).unwrap();
     socket.set_nonblocking(true).unwrap();
-    let mut reading = Datagram { session: 5, watchdog_us: 20_000, ..Datagram::blank(Message::Reading(Kind::Handle)) };
+    let mut reading =
+        Datagram { session: 5, watchdog_us: 20_000, ..Datagram::blank(ExternalMessage::Reading(ExternalKind::Handle)) };
     let begin = Instant::now();
     let mut wire = [0; BYTES_MAX];
-    let mut heard = [0; BYTES_MAX];
+    let mut received = [0; BYTES_MAX];
     while does.load(Relaxed) != ENDS {
-        while let Ok(count) = socket.recv(&mut heard) {
-            reading.echo_us = Datagram::decode(&heard[..count]).unwrap().time_us;
+        while let Ok(count) = socket.recv(&mut received) {
+            reading.echo_us = Datagram::decode(&received[..count]).unwrap().time_us;
         }
         for _ in 0..if does.load(Relaxed) == FLOODS { 300 } else { 1 } {
             reading.sequence += 1;
@@ -61,10 +62,14 @@ fn polling_and_answering_allocate_nothing_also_when_the_program_floods_and_ends(
         let does = Arc::new(AtomicU8::new(SENDS));
         let of_thread = Arc::clone(&does);
         let thread = std::thread::spawn(move || program(port, &of_thread));
-        let settings = Settings { age_max_ms: 20.0, silence_ms: 20.0, ..Settings::at(([127, 0, 0, 1], port).into()) };
-        let opened = Handle::open(&settings);
+        let settings = ExternalSettings {
+            age_max_ms: 20.0,
+            silence_ms: 20.0,
+            ..ExternalSettings::at(([127, 0, 0, 1], port).into())
+        };
+        let opened = ExternalHandle::open(&settings);
         let begin = Instant::now();
-        let judge = |mut handle: Handle| {
+        let judge = |mut handle: ExternalHandle| {
             handle.switch_force(true);
             for what in [SENDS, SENDS_NONSENSE, FLOODS, ENDS] {
                 does.store(what, Relaxed);
@@ -78,7 +83,7 @@ fn polling_and_answering_allocate_nothing_also_when_the_program_floods_and_ends(
             }
             let health = handle.health();
             assert!(health.readings > 100 && health.damaged > 10, "{health:?}");
-            assert!(matches!(health.standing, Standing::Lost(_)));
+            assert!(matches!(health.standing, ConnectionState::Lost(_)));
         };
         // The thread must end in any case.
         let result = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| judge(opened.unwrap())));

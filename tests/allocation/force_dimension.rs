@@ -5,9 +5,9 @@ use std::time::{Duration, Instant};
 use nalgebra::Vector3;
 use nima_devices::{
     Device as _,
-    force_dimension::{Settings, open},
+    force_dimension::{ForceDimensionSettings, open},
 };
-use nima_emulation::emulators::force_dimension::{Emulated, Held, stand_in};
+use nima_emulation::emulators::force_dimension::{EmulatedForceDimension, EmulatedHand, stand_in};
 use nima_testing::real_time::{alone, judged};
 
 use crate::counting::calls;
@@ -16,11 +16,12 @@ use crate::counting::calls;
 fn a_tick_with_the_handle_allocates_nothing() {
     let _alone = alone();
     judged(|| {
-        let serving = Emulated::default().with(Held::default().body()).serve().unwrap();
+        let serving = EmulatedForceDimension::default().with(EmulatedHand::default().body()).serve().unwrap();
         let emulator = Some(serving.endpoint.parse().unwrap());
         let library = stand_in();
         assert!(library.is_some(), "cargo builds the stand-in library before the tests");
-        let mut driver = open(&Settings { library, emulator, ..Settings::default() }).unwrap();
+        let mut driver =
+            open(&ForceDimensionSettings { library, emulator, ..ForceDimensionSettings::default() }).unwrap();
         driver.enable_force();
         let begin = Instant::now();
         let mut readings = 0;

@@ -10,12 +10,12 @@ use std::{
 
 use nalgebra::Vector3;
 use nima_devices::{
-    Device as _, Leader as _, Loss, Standing,
+    ConnectionState, Device as _, Leader as _, Loss,
     haply::{
-        CENTRE_M, Driver, Settings,
-        codec::{DeviceInfo, State, WAKE_UP},
+        CENTRE_M, HaplyDriver, HaplySettings,
+        codec::{DeviceInfo, HaplyState, WAKE_UP},
     },
-    transport::Bytes,
+    transport::ByteStream,
 };
 use nima_testing::real_time::alone;
 
@@ -31,7 +31,7 @@ struct Line {
     waiting: Mutex<VecDeque<u8>>,
 }
 
-impl Bytes for Line {
+impl ByteStream for Line {
     fn receive(&mut self, buffer: &mut [u8]) -> Result<usize, Loss> {
         let mut waiting = self.waiting.lock().unwrap();
         let count = waiting.len().min(buffer.len());
@@ -41,7 +41,7 @@ impl Bytes for Line {
 
     fn send(&mut self, bytes: &[u8]) -> Result<(), Loss> {
         let mut waiting = self.waiting.lock().unwrap();
-        let mut state = State { position_m: CENTRE_M.map(|axis| axis as f32), velocity_m_s: [0.0; 3] };
+        let mut state = HaplyState { position_m: CENTRE_M.map(|axis| axis as f32), velocity_m_s: [0.0; 3] };
         match self.does.load(Relaxed) {
             ANSWERS if bytes == [WAKE_UP] => waiting.extend(DeviceInfo::default().encode()),
             ANSWERS => waiting.extend(state.encode()),
@@ -62,7 +62,7 @@ fn polling_and_pushing_allocate_nothing_also_when_the_handle_talks_nonsense_or_i
     for wrong in [ANSWERS_NONSENSE, IS_SILENT] {
         let does = Arc::new(AtomicU8::new(ANSWERS));
         let line = Line { does: Arc::clone(&does), waiting: Mutex::new(VecDeque::with_capacity(4096)) };
-        let mut driver = Driver::over(Box::new(line), &Settings::at("/dev/ttyACM0")).unwrap();
+        let mut driver = HaplyDriver::over(Box::new(line), &HaplySettings::at("/dev/ttyACM0")).unwrap();
         driver.switch_force(true);
         let mut now_s = 0.0;
         for what in [ANSWERS, wrong] {
@@ -76,6 +76,6 @@ fn polling_and_pushing_allocate_nothing_also_when_the_handle_talks_nonsense_or_i
             assert_eq!(calls() - before, 0, "{what}");
         }
         let health = driver.health();
-        assert!(health.readings > 90 && matches!(health.standing, Standing::Lost(_)), "{health:?}");
+        assert!(health.readings > 90 && matches!(health.standing, ConnectionState::Lost(_)), "{health:?}");
     }
 }

@@ -4,7 +4,7 @@
 use std::time::{Duration, Instant};
 
 use nima_devices::{
-    CapReading, Device, Loss, PedalReading, Standing,
+    CapReading, ConnectionState, Device, Loss, PedalReading,
     hid::{CapDriver, CapSettings, PedalDriver, PedalSettings},
 };
 use nima_emulation::emulators::{
@@ -52,7 +52,7 @@ fn polling_allocates_nothing_while_good_damaged_and_lost() {
             assert_eq!(allocated, 0, "pedal, {fault:?}");
             assert!(readings > 0 || !speaks);
         }
-        assert_eq!(cap_driver.health().standing, Standing::Lost(Loss::Disconnected));
+        assert_eq!(cap_driver.health().standing, ConnectionState::Lost(Loss::Disconnected));
         let before = calls();
         drop(std::hint::black_box(vec![1_u8; 10]));
         assert_eq!(calls() - before, 2, "the counter counts");

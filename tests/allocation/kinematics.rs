@@ -2,7 +2,8 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 use nima_core::kinematics::{
-    Arm, ArmSettings, Hand, HandEye, Inverse, Mapping, Rcm, RcmSettings, Target, find, view_from_omega,
+    Arm, ArmSettings, HandEyeCoupling, HandPose, Inverse, MotionMapping, Rcm, RcmSettings, TipTarget, find,
+    view_from_omega,
 };
 use nima_testing::real_time::alone;
 
@@ -26,9 +27,9 @@ fn hand_eye_mapping_and_inverse_kinematics_allocate_nothing() {
     let tip_m = trocar_m - Vector3::z() * 0.12;
     let ready = find(&arm, &rcm, &tip_m).unwrap();
     let mut inverse = Inverse::new(arm, rcm, 1e-3, &ready.joint_rad).unwrap();
-    let mapping = Mapping::new(&UnitQuaternion::identity(), &view_from_omega(), 0.5).unwrap();
-    let target = Target { tip_m, world_from_jaws: UnitQuaternion::identity() };
-    let mut hand_eye = HandEye::new(mapping, target);
+    let mapping = MotionMapping::new(&UnitQuaternion::identity(), &view_from_omega(), 0.5).unwrap();
+    let target = TipTarget { tip_m, world_from_jaws: UnitQuaternion::identity() };
+    let mut hand_eye = HandEyeCoupling::new(mapping, target);
     hand_eye.engage(target);
     let before = calls();
     for k in 0..3000 {
@@ -38,7 +39,7 @@ fn hand_eye_mapping_and_inverse_kinematics_allocate_nothing() {
             position_m.y = f64::NAN;
         }
         let orientation = Some(UnitQuaternion::from_scaled_axis(Vector3::x() * t_s));
-        let target = hand_eye.step(&Hand { position_m, orientation });
+        let target = hand_eye.step(&HandPose { position_m, orientation });
         inverse.step(&if k % 500 == 200 { Vector3::repeat(f64::NAN) } else { target.tip_m });
     }
     assert_eq!(calls() - before, 0);

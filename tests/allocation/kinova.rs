@@ -6,18 +6,23 @@ use std::{thread::sleep, time::Duration};
 use nalgebra::Vector3;
 use nima_devices::{
     Device as _,
-    kinova::{Driver, Settings, ToolTwist, open},
+    kinova::{KinovaDriver, KinovaSettings, ToolTwist, open},
 };
 use nima_emulation::emulators::{
     EmulatedFault,
-    kinova::{Emulated, StandIn},
+    kinova::{EmulatedKinova, StandIn},
 };
 use nima_testing::real_time::{alone, judged};
 
 use crate::counting::calls;
 
 /// Polls once per millisecond; returns the number of allocations.
-fn allocations(driver: &mut Driver, now_s: &mut f64, ticks: u32, mut command: impl FnMut(&mut Driver)) -> u64 {
+fn allocations(
+    driver: &mut KinovaDriver,
+    now_s: &mut f64,
+    ticks: u32,
+    mut command: impl FnMut(&mut KinovaDriver),
+) -> u64 {
     let mut count = 0;
     for _ in 0..ticks {
         sleep(Duration::from_millis(1));
@@ -34,21 +39,21 @@ fn allocations(driver: &mut Driver, now_s: &mut f64, ticks: u32, mut command: im
 fn a_tick_of_the_arm_allocates_nothing() {
     let _alone = alone();
     judged(|| {
-        let arm = Emulated { watchdog_ms: 5_000.0, ..Emulated::default() };
+        let arm = EmulatedKinova { watchdog_ms: 5_000.0, ..EmulatedKinova::default() };
         let serving = arm.with(StandIn::swaying()).serve().unwrap();
-        let mut driver = open(&Settings::at(&serving.endpoint).unwrap()).unwrap();
+        let mut driver = open(&KinovaSettings::at(&serving.endpoint).unwrap()).unwrap();
         let mut now_s = 0.0;
         // Long enough for several keep-alive messages on both connections.
         assert_eq!(allocations(&mut driver, &mut now_s, 400, |_| {}), 0, "reading");
         let twist = ToolTwist { linear_m_s: Vector3::new(0.0, 0.02, 0.0), ..ToolTwist::default() };
-        let moving = |driver: &mut Driver| driver.twist(&twist).unwrap();
+        let moving = |driver: &mut KinovaDriver| driver.twist(&twist).unwrap();
         assert_eq!(allocations(&mut driver, &mut now_s, 100, moving), 0, "twist");
         driver.stop();
         let before = calls();
         driver.enter_low_level().unwrap();
         assert_eq!(calls() - before, 0);
         let mut served = 0;
-        let servoing = |driver: &mut Driver| {
+        let servoing = |driver: &mut KinovaDriver| {
             let angles = *driver.command_rad();
             served += u32::from(driver.aim(&angles).is_ok());
         };

@@ -4,17 +4,17 @@ use std::time::{Duration, Instant};
 
 use nima_devices::{
     Device as _,
-    ndi::{Driver, Settings},
+    ndi::{NdiDriver, NdiSettings},
 };
-use nima_emulation::emulators::ndi::{Profile, wandering};
+use nima_emulation::emulators::ndi::{NdiProfile, wandering};
 use nima_testing::real_time::{alone, judged};
 
 use crate::counting::calls;
 
 /// Polls until there are 20 readings; returns the allocations of this thread.
 #[expect(clippy::unwrap_used, reason = "a test fails by panicking")]
-fn allocations(settings: &Settings) -> u64 {
-    let mut driver = Driver::open(settings).unwrap();
+fn allocations(settings: &NdiSettings) -> u64 {
+    let mut driver = NdiDriver::open(settings).unwrap();
     let begin = Instant::now();
     let before = calls();
     let mut readings = 0;
@@ -37,14 +37,14 @@ fn polling_allocates_nothing() {
         let folder = tempfile::tempdir().unwrap();
         let tool = folder.path().join("tool.rom");
         std::fs::write(&tool, [&b"NDI\0"[..], &[0; 748]].concat()).unwrap();
-        let settings = Settings { tools: vec![tool], ..Settings::default() };
+        let settings = NdiSettings { tools: vec![tool], ..NdiSettings::default() };
         for firmware in ["Polaris Vega 014", "Polaris Vega 008"] {
-            let profile = Profile { firmware: firmware.to_owned(), ..Profile::default() };
+            let profile = NdiProfile { firmware: firmware.to_owned(), ..NdiProfile::default() };
             let served = profile.on_network(0, wandering).serve().unwrap();
-            let settings = Settings { address: Some(served.endpoint.clone()), ..settings.clone() };
+            let settings = NdiSettings { address: Some(served.endpoint.clone()), ..settings.clone() };
             assert_eq!(allocations(&settings), 0, "{firmware}");
         }
-        let served = Profile::default().on_line(None, wandering).serve().unwrap();
-        assert_eq!(allocations(&Settings { port: Some(served.endpoint.clone()), ..settings }), 0, "line");
+        let served = NdiProfile::default().on_line(None, wandering).serve().unwrap();
+        assert_eq!(allocations(&NdiSettings { port: Some(served.endpoint.clone()), ..settings }), 0, "line");
     });
 }

@@ -8,8 +8,8 @@ use std::{
 };
 
 use nima_network::{
-    endpoint::{Config, Endpoint, LinkState, Role},
-    keys::{Keys, Peers, PublicKey},
+    endpoint::{Endpoint, EndpointConfig, EndpointRole, LinkState},
+    keys::{NetworkKeys, Peers, PublicKey},
 };
 use nima_testing::real_time::{alone, judged};
 
@@ -17,8 +17,8 @@ use crate::counting::calls;
 
 const TICK: Duration = Duration::from_millis(1);
 
-fn console(keys: &Keys, follower: SocketAddr, key: PublicKey) -> Endpoint {
-    Endpoint::open(Config::new(Role::Console { follower, key }, keys.clone())).unwrap()
+fn console(keys: &NetworkKeys, follower: SocketAddr, key: PublicKey) -> Endpoint {
+    Endpoint::open(EndpointConfig::new(EndpointRole::Console { follower, key }, keys.clone())).unwrap()
 }
 
 /// Runs one tick: takes the due payloads and sends one.
@@ -36,12 +36,13 @@ fn tick(end: &mut Endpoint, now_s: f64) -> usize {
 fn a_tick_of_an_open_link_allocates_nothing() {
     let _alone = alone();
     judged(|| {
-        let [theirs, ours, others] = [0; 3].map(|_| Keys::random().unwrap());
+        let [theirs, ours, others] = [0; 3].map(|_| NetworkKeys::random().unwrap());
         let mut consoles = Peers::default();
         consoles.add("first", ours.public()).unwrap();
         consoles.add("second", others.public()).unwrap();
         let at = Some((Ipv4Addr::LOCALHOST, 0).into());
-        let mut far = Endpoint::open(Config::new(Role::Follower { at, consoles }, theirs.clone())).unwrap();
+        let mut far =
+            Endpoint::open(EndpointConfig::new(EndpointRole::Follower { at, consoles }, theirs.clone())).unwrap();
         let address = far.address().unwrap();
         let mut near = console(&ours, address, theirs.public());
         let begin = Instant::now();

@@ -5,7 +5,7 @@ use std::sync::Mutex;
 use nima_machine::{
     config::RigConfig,
     messages::{Command, LoopState},
-    remote::{FarFollower, FarLeader, MESSAGE_MAX, Wire, at_follower},
+    remote::{FarFollower, FarLeader, MESSAGE_MAX, RemoteWire, at_follower},
     rig::Rig,
     runtime::tick,
     teleop::{Calibrations, Loop},
@@ -29,7 +29,7 @@ static WAYS: [Slot; 2] = [Slot::empty(), Slot::empty()];
 /// One end, with its number.
 struct InPlace(usize);
 
-impl Wire for InPlace {
+impl RemoteWire for InPlace {
     fn send(&mut self, _: f64, message: &[u8]) {
         let mut way = WAYS[self.0].0.lock().unwrap();
         way.0[..message.len()].copy_from_slice(message);

@@ -2,7 +2,7 @@
 
 use std::sync::atomic::AtomicBool;
 
-use nima_core::tip_force::{DEFAULT_INPUTS, Estimator, Fallback, FeatureSettings, TipForce, TrainingSettings};
+use nima_core::tip_force::{DEFAULT_INPUTS, Estimator, Fallback, FeatureSettings, LiveTipForce, TrainingSettings};
 use nima_machine::{
     config::RigConfig,
     messages::{Command, ForceSource},
@@ -12,8 +12,8 @@ use nima_machine::{
 use nima_recording::tip_force::{DataSet, Selection};
 use nima_simulation::{World, scene::Scene};
 use nima_study::validation::{
-    experiment::Experiment,
-    isolation::{Known, record},
+    experiment::SimulatedExperiment,
+    isolation::{PriorCalibrations, record},
 };
 use nima_testing::real_time::alone;
 use nima_training::train_model;
@@ -51,12 +51,12 @@ fn an_answer_on_the_default_inputs_with_the_default_network_allocates_nothing() 
 #[test]
 fn the_loop_with_a_network_in_it_allocates_nothing() {
     let _alone = alone();
-    let known = Known::calibrate(2).unwrap();
-    let session = Experiment::scene("isolation", 2).unwrap();
+    let known = PriorCalibrations::calibrate(2).unwrap();
+    let session = SimulatedExperiment::scene("isolation", 2).unwrap();
     let data = record(&session, &known, FeatureSettings::default(), 4000, 7.0).unwrap().data(None).unwrap();
     let settings = TrainingSettings { epochs: Some(2), ..TrainingSettings::default() };
     let model = train_model(&data, &settings, [None, None], &AtomicBool::new(false), &|_| {}).unwrap();
-    let tip_force = Some(TipForce::new(model, Fallback::HoldAndFade).unwrap());
+    let tip_force = Some(LiveTipForce::new(model, Fallback::HoldAndFade).unwrap());
     let rig = RigConfig::load("simulated").unwrap();
     let calibrations = Calibrations { gravity: Some(known.gravity), tip_force, ..Calibrations::default() };
     let mut control = Pair::new(&rig, Side::Right, &calibrations).unwrap();

@@ -1,7 +1,7 @@
 //! A tick of a hand that looks for lumps, and of one that leads a loop along a wire, allocates nothing.
 
-use nima_core::task::Event;
-use nima_machine::rig::{Outputs, Rig as _, SIDES, Sensed, Side};
+use nima_core::task::TaskEvent;
+use nima_machine::rig::{Outputs, Rig as _, SIDES, SensedForce, Side};
 use nima_simulation::{Worlds, scene::Scene};
 use nima_testing::real_time::alone;
 
@@ -23,14 +23,14 @@ fn a_tick_of_a_training_task_allocates_nothing_until_its_end() {
             if let Some(inputs) = worlds.read(now_s)[right] {
                 outputs[right].tip_command_m = Some(inputs.hand.position_m);
                 // Ideal force feedback.
-                if let Sensed::AtTip(force_n) = inputs.sensed {
+                if let SensedForce::AtTip(force_n) = inputs.sensed {
                     outputs[right].hand_force_n = force_n;
                 }
             }
             worlds.write(now_s, &outputs);
             for happening in watched.happenings() {
                 happened += 1;
-                ended |= happening.event == Event::Ended;
+                ended |= happening.event == TaskEvent::Ended;
             }
         }
         assert_eq!(calls() - before, 0, "{scene}");

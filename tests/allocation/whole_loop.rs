@@ -2,14 +2,16 @@
 
 use nalgebra::Vector3;
 use nima_core::{
-    impedance::{Choice, Identifier, Mode, ModeSet, Reading, Recipe, Renderer, Sample, Settings},
+    impedance::{
+        DegreeChoice, Identifier, ImpedanceSettings, IncrementReading, Mode, ModeSet, Recipe, Renderer, Sample,
+    },
     signal::DifferentiatorKind,
 };
 use nima_machine::{
     config::RigConfig,
     messages::Command,
     rig::Rig as _,
-    runtime::{Passed, TICKS_TAPPED_MAX, tap},
+    runtime::{TICKS_TAPPED_MAX, TapPayload, tap},
     teleop::{Calibrations, Loop, Timing},
 };
 use nima_simulation::{Worlds, scene::Scene};
@@ -32,7 +34,7 @@ fn sample(k: u32) -> Sample {
 
 /// Three seconds of both ends: the delay changes, modes are disabled and enabled, everything is reset.
 #[expect(clippy::unwrap_used, reason = "a test fails by panicking")]
-fn run_both_ends(settings: &Settings, words: &str) {
+fn run_both_ends(settings: &ImpedanceSettings, words: &str) {
     let mut identifier = Identifier::new(settings).unwrap();
     let mut renderer = Renderer::new(settings).unwrap();
     let before = calls();
@@ -60,12 +62,20 @@ fn run_both_ends(settings: &Settings, words: &str) {
 #[test]
 fn identification_and_rendering_allocate_nothing() {
     let _alone = alone();
-    let every_key = Recipe { reading: Reading::Displacement, choice: Choice::Next, constant: true, ridge: 3e-3 };
+    let every_key =
+        Recipe { reading: IncrementReading::Displacement, choice: DegreeChoice::Next, constant: true, ridge: 3e-3 };
     for differentiator in DifferentiatorKind::ALL {
         for (cross_talk, literal) in [(false, Recipe::default()), (true, every_key)] {
             let modes = ModeSet::ALL;
             let delay_s = 0.05;
-            let settings = Settings { differentiator, cross_talk, literal, modes, delay_s, ..Settings::default() };
+            let settings = ImpedanceSettings {
+                differentiator,
+                cross_talk,
+                literal,
+                modes,
+                delay_s,
+                ..ImpedanceSettings::default()
+            };
             run_both_ends(&settings, &format!("{differentiator:?}, cross-talk {cross_talk}"));
         }
     }
@@ -79,7 +89,7 @@ fn baselines_allocate_nothing() {
     let _alone = alone();
     nima_baselines::provide();
     for mode in Mode::BASELINES {
-        let settings = Settings { modes: ModeSet::only(mode), delay_s: 0.05, ..Settings::default() };
+        let settings = ImpedanceSettings { modes: ModeSet::only(mode), delay_s: 0.05, ..ImpedanceSettings::default() };
         run_both_ends(&settings, mode.name());
     }
 }
@@ -122,7 +132,7 @@ fn a_tick_of_the_whole_loop_and_of_the_simulation_allocates_nothing() {
         }
         if let Some(end) = end.as_ref().filter(|_| k < 4000) {
             for entry in end.entries.try_iter() {
-                if let Passed::Stepped(stepped) = entry.passed {
+                if let TapPayload::Stepped(stepped) = entry.passed {
                     end.give_back(stepped);
                 }
             }

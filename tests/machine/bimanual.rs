@@ -3,18 +3,18 @@
 use std::cell::Cell;
 
 use nalgebra::{UnitQuaternion, Vector3};
-use nima_core::{kinematics::StartError, safety::Why};
-use nima_devices::{Loss, Standing};
+use nima_core::{kinematics::ArmStartError, safety::TransitionCause};
+use nima_devices::{ConnectionState, Loss};
 use nima_machine::{
     config::RigConfig,
     messages::{Command, Event, Fault, LoopState, Refusal, Tick},
-    rig::{DeviceEvent, Inputs, Obstacle, Outputs, Rig as _, SIDES, Side, Switches, View},
+    rig::{DeviceEvent, EngageBlocker, Inputs, Outputs, Rig as _, SIDES, Side, Switches, ViewOrientation},
     teleop::{Calibrations, Loop, Timing},
 };
 use nima_simulation::{Worlds, run_virtual, scene::Scene};
 use nima_tests::plan;
 
-struct Bench {
+struct Fixture {
     worlds: Worlds,
     control: Loop,
     outputs: [Outputs; SIDES],
@@ -27,7 +27,7 @@ fn stepped(control: &mut Loop, inputs: &[Option<Inputs>; SIDES], tick: u64) -> (
     (outputs, ticks.map(Option::unwrap))
 }
 
-impl Bench {
+impl Fixture {
     fn new() -> Self {
         Self::of(&RigConfig::load("simulated").unwrap())
     }
@@ -97,7 +97,7 @@ fn each_hand_works_on_its_own_pegs_and_both_feel() {
 
 #[test]
 fn one_hand_may_engage_and_a_stop_is_for_both() {
-    let mut bench = Bench::new();
+    let mut bench = Fixture::new();
     bench.obey(Command::EngageOne(Side::Left));
     bench.run(5, AS_IT_IS);
     assert_eq!(bench.states(), [LoopState::Idle, LoopState::Engaged]);
@@ -117,10 +117,10 @@ fn one_hand_may_engage_and_a_stop_is_for_both() {
 
 #[test]
 fn a_refused_engagement_says_why_and_one_arm_that_obeys_does_not_hide_the_other() {
-    let obstacle = Obstacle::Start(StartError::AtLimit { joint: 4, angle_deg: 148.0, limit_deg: 147.8 });
+    let obstacle = EngageBlocker::Start(ArmStartError::AtLimit { joint: 4, angle_deg: 148.0, limit_deg: 147.8 });
     let stuck =
         |side: Side, inputs: Inputs| Some(Inputs { obstacle: (side == Side::Left).then_some(obstacle), ..inputs });
-    let mut bench = Bench::new();
+    let mut bench = Fixture::new();
     bench.run(5, stuck);
     bench.obey(Command::Engage);
     assert_eq!(bench.refusals(), [(Side::Left, Refusal::Obstacle(obstacle))]);
@@ -147,7 +147,7 @@ type Edit = fn(Side, Inputs) -> Option<Inputs>;
 #[test]
 fn an_engagement_that_is_given_up_says_what_it_waited_for() {
     let edits: [(Refusal, Edit); 4] = [
-        (Refusal::EndoscopeUnseen, |_, inputs| Some(Inputs { view: View::Unseen, ..inputs })),
+        (Refusal::EndoscopeUnseen, |_, inputs| Some(Inputs { view: ViewOrientation::Unseen, ..inputs })),
         (Refusal::DrivesOff, |_, inputs| Some(Inputs { powered: false, ..inputs })),
         (Refusal::HandAbsent, |_, inputs| {
             Some(Inputs { switches: Switches { clutch: false, presence: Some(false) }, ..inputs })
@@ -157,7 +157,7 @@ fn an_engagement_that_is_given_up_says_what_it_waited_for() {
         }),
     ];
     for (why, edit) in edits {
-        let mut bench = Bench::new();
+        let mut bench = Fixture::new();
         bench.run(5, edit);
         bench.obey(Command::EngageOne(Side::Right));
         bench.run(1990, edit);
@@ -169,7 +169,7 @@ fn an_engagement_that_is_given_up_says_what_it_waited_for() {
 
 #[test]
 fn a_fault_of_one_takes_the_other_out_of_engagement() {
-    let mut bench = Bench::new();
+    let mut bench = Fixture::new();
     bench.obey(Command::Engage);
     bench.run(500, AS_IT_IS);
     bench.run(25, |side, inputs| (side == Side::Right).then_some(inputs));
@@ -181,8 +181,9 @@ fn a_fault_of_one_takes_the_other_out_of_engagement() {
 
 #[test]
 fn a_lost_device_is_a_fault_at_once_and_only_while_it_matters() {
-    let lost = |t_s| DeviceEvent { t_s, device: 2, standing: Standing::Lost(Loss::Silent), of_side: [true, false] };
-    let mut bench = Bench::new();
+    let lost =
+        |t_s| DeviceEvent { t_s, device: 2, standing: ConnectionState::Lost(Loss::Silent), of_side: [true, false] };
+    let mut bench = Fixture::new();
     bench.control.notice(&lost(bench.now_s()));
     assert_eq!(bench.states(), [LoopState::Idle; SIDES], "idle: it is shown, no fault");
     bench.obey(Command::Engage);
@@ -195,7 +196,7 @@ fn a_lost_device_is_a_fault_at_once_and_only_while_it_matters() {
 
 #[test]
 fn the_clutch_frees_the_hand_and_coupling_again_never_moves_the_tip() {
-    let mut bench = Bench::new();
+    let mut bench = Fixture::new();
     bench.obey(Command::Engage);
     bench.run(2000, AS_IT_IS);
     for tick in 1..=300_u32 {
@@ -228,12 +229,12 @@ fn the_clutch_frees_the_hand_and_coupling_again_never_moves_the_tip() {
 
 #[test]
 fn engaging_begins_where_the_tip_is_and_the_force_rises_over_a_fifth_of_a_second() {
-    let mut bench = Bench::new();
+    let mut bench = Fixture::new();
     // Pressed against the tissue while idle: the tip is in the tissue, the hand elsewhere.
     bench.obey(Command::SetStaticHold(true));
     bench.obey(Command::SetMode(nima_core::impedance::Mode::Dfr));
     let pressed = |_: Side, inputs: Inputs| {
-        Some(Inputs { sensed: nima_machine::rig::Sensed::AtTip(Vector3::new(0.0, 0.0, 3.0)), ..inputs })
+        Some(Inputs { sensed: nima_machine::rig::SensedForce::AtTip(Vector3::new(0.0, 0.0, 3.0)), ..inputs })
     };
     bench.run(500, pressed);
     bench.obey(Command::Engage);
@@ -255,7 +256,7 @@ fn a_hand_that_lets_go_ends_the_engagement_and_drives_that_switch_off_are_a_faul
     let absent = |_: Side, inputs: Inputs| {
         Some(Inputs { switches: Switches { clutch: false, presence: Some(false) }, ..inputs })
     };
-    let mut bench = Bench::new();
+    let mut bench = Fixture::new();
     bench.obey(Command::Engage);
     bench.run(10, AS_IT_IS);
     bench.step(absent);
@@ -270,7 +271,7 @@ fn a_hand_that_lets_go_ends_the_engagement_and_drives_that_switch_off_are_a_faul
 
 #[test]
 fn a_scale_changes_the_way_and_never_the_place() {
-    let mut bench = Bench::new();
+    let mut bench = Fixture::new();
     bench.obey(Command::Engage);
     bench.run(300, AS_IT_IS);
     bench.obey(Command::SetScale(0.2));
@@ -283,10 +284,10 @@ fn a_scale_changes_the_way_and_never_the_place() {
 
 #[test]
 fn an_endoscope_that_is_tracked_turns_the_mapping_and_one_that_is_not_seen_keeps_hand_and_tip_apart() {
-    let mut bench = Bench::new();
+    let mut bench = Fixture::new();
     let world_from_view = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), 0.7);
     let by_side = |side: Side, inputs: Inputs| {
-        let view = if side == Side::Right { View::Seen(world_from_view) } else { View::Unseen };
+        let view = if side == Side::Right { ViewOrientation::Seen(world_from_view) } else { ViewOrientation::Unseen };
         Some(Inputs { view, ..inputs })
     };
     bench.run(10, by_side);
@@ -320,7 +321,7 @@ fn an_endoscope_that_is_tracked_turns_the_mapping_and_one_that_is_not_seen_keeps
 fn a_handle_that_is_let_go_is_an_absent_hand_and_nothing_resumes() {
     let mut rig = RigConfig::load("simulated").unwrap();
     rig.gates.static_hold = true;
-    let mut bench = Bench::of(&rig);
+    let mut bench = Fixture::of(&rig);
     bench.obey(Command::SetGainAboveOne(2.0));
     bench.obey(Command::Engage);
     let hand_m = Cell::new([Vector3::zeros(); 20]);
@@ -342,25 +343,25 @@ fn a_handle_that_is_let_go_is_an_absent_hand_and_nothing_resumes() {
     // From here on the handle is alone, 0.25 kg and 0.5 N s/m, read in steps of 10 um.
     let last_m = hand_m.get();
     let from_m = last_m[0];
-    let mut way_m = Vector3::zeros();
+    let mut travel_m = Vector3::zeros();
     let mut speed_m_s = (last_m[0] - last_m[19]) / 19e-3;
     for after in 1..=1000 {
         speed_m_s += (bench.outputs[0].hand_force_n - speed_m_s * 0.5) * (1e-3 / 0.25);
-        way_m += speed_m_s * 1e-3;
+        travel_m += speed_m_s * 1e-3;
         bench.control.clear_events();
         bench.step(|side, mut inputs| {
             if side == Side::Right {
-                inputs.hand.position_m = (from_m + way_m).map(|x| (x / 1e-5).round() * 1e-5);
+                inputs.hand.position_m = (from_m + travel_m).map(|x| (x / 1e-5).round() * 1e-5);
             }
             Some(inputs)
         });
-        assert!(speed_m_s.norm() < 0.12 && way_m.norm() < 2e-3, "after {after} ms: {way_m:?} {speed_m_s:?}");
+        assert!(speed_m_s.norm() < 0.12 && travel_m.norm() < 2e-3, "after {after} ms: {travel_m:?} {speed_m_s:?}");
         let change = bench.control.events().find_map(|event| match *event {
             Event::StateChanged { side: Side::Right, to, why, .. } => Some((to, why)),
             _ => None,
         });
         if let Some(change) = change {
-            assert_eq!(change, (LoopState::Idle, Why::Absent), "after {after} ms");
+            assert_eq!(change, (LoopState::Idle, TransitionCause::Absent), "after {after} ms");
             assert!(after >= 150, "after {after} ms");
             assert_eq!(bench.outputs[0].hand_force_n.norm().to_bits(), 0);
             bench.run(500, AS_IT_IS);

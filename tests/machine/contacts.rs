@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 use nima_core::impedance::Mode;
 use nima_machine::{
     messages::{Command, Fault, LoopState},
-    rig::{Inputs, Outputs, Rig, SIDES, Sensed, Side},
+    rig::{Inputs, Outputs, Rig, SIDES, SensedForce, Side},
     runtime::{self, Assembly},
 };
 use nima_tests::plan;
@@ -15,17 +15,17 @@ use nima_tests::plan;
 type Sample = (Vector3<f64>, Vector3<f64>);
 
 /// Stores a rig's measurements.
-struct Keeper {
+struct Measurements {
     rig: Box<dyn Rig>,
     kept: Arc<Mutex<[Vec<Sample>; SIDES]>>,
 }
 
-impl Rig for Keeper {
+impl Rig for Measurements {
     fn read(&mut self, now_s: f64) -> [Option<Inputs>; SIDES] {
         let inputs = self.rig.read(now_s);
         let mut kept = self.kept.lock().unwrap();
         for (kept, inputs) in kept.iter_mut().zip(&inputs) {
-            if let Some(Inputs { sensed: Sensed::AtTip(force_n), tip_m, .. }) = inputs {
+            if let Some(Inputs { sensed: SensedForce::AtTip(force_n), tip_m, .. }) = inputs {
                 kept.push((*force_n, *tip_m));
             }
         }
@@ -38,14 +38,14 @@ impl Rig for Keeper {
 }
 
 /// How a run ended, and its measurements.
-struct Ran {
+struct RunResult {
     seconds: f64,
     fault: Option<Fault>,
     samples: [Vec<Sample>; SIDES],
 }
 
 /// Two hands without force perception, with their own pace and tremor, or the single hand of another scene.
-fn run(scene: &str, (mode, gain, delay_s): (Mode, f64, f64), seed: u64, seconds: f64) -> Ran {
+fn run(scene: &str, (mode, gain, delay_s): (Mode, f64, f64), seed: u64, seconds: f64) -> RunResult {
     let mut plan = plan(scene);
     plan.rig.mode = mode;
     plan.rig.gates.gain = gain;
@@ -56,7 +56,7 @@ fn run(scene: &str, (mode, gain, delay_s): (Mode, f64, f64), seed: u64, seconds:
     plan.scene.hand.tremor_m = 5e-5 + 1e-4 * lot.f64();
     let assembly = plan.simulated().unwrap();
     let kept = Arc::new(Mutex::new([Vec::new(), Vec::new()]));
-    let rig = Box::new(Keeper { rig: assembly.rig, kept: Arc::clone(&kept) });
+    let rig = Box::new(Measurements { rig: assembly.rig, kept: Arc::clone(&kept) });
     let mut fault = None;
     let mut after = 0;
     let summary = runtime::run_virtual(Assembly { rig, ..assembly }, seconds, |tick| {
@@ -67,18 +67,18 @@ fn run(scene: &str, (mode, gain, delay_s): (Mode, f64, f64), seed: u64, seconds:
         (after > 16).then_some(Command::Shutdown)
     });
     let samples = std::mem::take(&mut *kept.lock().unwrap());
-    Ran { seconds: summary.seconds, fault, samples }
+    RunResult { seconds: summary.seconds, fault, samples }
 }
 
 /// Returns where the force changes by more than half a newton plus 5 N for each millimetre of the tip's travel: the
 /// change, and the forces around it, N.
 fn leaps(samples: &[Sample]) -> Vec<(usize, Vec<f64>)> {
-    let way_m = |k: usize| (samples[k].1 - samples[k - 1].1).norm();
+    let travel_m = |k: usize| (samples[k].1 - samples[k - 1].1).norm();
     let mut found: Vec<(usize, Vec<f64>)> = Vec::new();
     for k in 10..samples.len().saturating_sub(8) {
-        let most_n = 0.5 + 5e3 * (k - 3..=k).map(way_m).fold(0.0, f64::max);
+        let max_n = 0.5 + 5e3 * (k - 3..=k).map(travel_m).fold(0.0, f64::max);
         let is_new = found.last().is_none_or(|(before, _)| k > before + 12);
-        if is_new && (samples[k].0 - samples[k - 3].0).norm() > most_n + 0.3 {
+        if is_new && (samples[k].0 - samples[k - 3].0).norm() > max_n + 0.3 {
             found.push((k, (k - 5..k + 8).map(|k| samples[k].0.norm()).collect()));
         }
     }

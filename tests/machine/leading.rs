@@ -2,7 +2,7 @@
 //! other side and back.
 
 use nalgebra::Vector3;
-use nima_core::{impedance::Mode, task::Event};
+use nima_core::{impedance::Mode, task::TaskEvent};
 use nima_machine::{
     messages::{Command, LoopState},
     rig::{SIDES, Side},
@@ -22,7 +22,7 @@ const LET_GO_M: f64 = 0.016;
 struct Script {
     t_s: f64,
     commands: Vec<(f64, Command)>,
-    at_m: [Vector3<f64>; SIDES],
+    position_m: [Vector3<f64>; SIDES],
 }
 
 /// From the middle of a ring to the middle of its tube, m.
@@ -36,10 +36,10 @@ fn rim_m(side: Side, [x, y]: [f64; 2], height_m: f64) -> Vector3<f64> {
 
 impl Script {
     fn begin() -> Self {
-        let at_m = [Vector3::new(0.03, 0.0, 0.06), Vector3::new(-0.03, 0.0, 0.06)];
-        let mut script = Self { t_s: 0.5, commands: Vec::new(), at_m };
+        let position_m = [Vector3::new(0.03, 0.0, 0.06), Vector3::new(-0.03, 0.0, 0.06)];
+        let mut script = Self { t_s: 0.5, commands: Vec::new(), position_m };
         for side in Side::ALL {
-            script.commands.push((script.t_s, Command::Guide(side, Some(at_m[side.index()]))));
+            script.commands.push((script.t_s, Command::Guide(side, Some(position_m[side.index()]))));
         }
         script.t_s += 0.6;
         script
@@ -47,13 +47,13 @@ impl Script {
 
     fn go(&mut self, side: Side, to_m: Vector3<f64>) {
         self.commands.push((self.t_s, Command::Guide(side, Some(to_m))));
-        let from_m = std::mem::replace(&mut self.at_m[side.index()], to_m);
+        let from_m = std::mem::replace(&mut self.position_m[side.index()], to_m);
         self.t_s += (to_m - from_m).norm() / LED_M_S + SETTLES_S;
     }
 
     fn up(&mut self, side: Side, height_m: f64) {
-        let at_m = self.at_m[side.index()];
-        self.go(side, Vector3::new(at_m.x, at_m.y, height_m));
+        let position_m = self.position_m[side.index()];
+        self.go(side, Vector3::new(position_m.x, position_m.y, height_m));
     }
 
     fn jaws(&mut self, side: Side, open: bool) {
@@ -88,7 +88,7 @@ impl Script {
 }
 
 /// Returns the events of the rings during these commands, and the distance that the left tip moved in this time, m.
-fn played(script: &Script, while_s: [f64; 2]) -> (Vec<Event>, f64) {
+fn played(script: &Script, while_s: [f64; 2]) -> (Vec<TaskEvent>, f64) {
     let mut plan = plan("rings");
     plan.rig.mode = Mode::Matched;
     let (assembly, watched) = plan.watched().unwrap();
@@ -117,21 +117,21 @@ fn played(script: &Script, while_s: [f64; 2]) -> (Vec<Event>, f64) {
 
 #[test]
 fn a_ring_goes_over_and_back_and_the_hand_that_is_not_led_stays_and_holds() {
-    let pegs = plan("rings").scene.objects.unwrap().pegs.at_m;
+    let pegs = plan("rings").scene.objects.unwrap().pegs.position_m;
     let mut script = Script::begin();
     let held_s = script.over(Side::Left, pegs[3], pegs[9]);
     script.over(Side::Right, pegs[9], pegs[3]);
     let (events, went_m) = played(&script, held_s);
     let of = |ring, giver, taker, peg| {
         [
-            Event::RingGrasped { ring, side: giver },
-            Event::RingLifted { ring, side: giver },
-            Event::RingTransferred { ring, to: taker },
-            Event::RingPlaced { ring, side: taker, peg },
+            TaskEvent::RingGrasped { ring, side: giver },
+            TaskEvent::RingLifted { ring, side: giver },
+            TaskEvent::RingTransferred { ring, to: taker },
+            TaskEvent::RingPlaced { ring, side: taker, peg },
         ]
     };
     let [left, right] = Side::LEFT_TO_RIGHT;
-    let wanted: Vec<Event> = of(3, left, right, 9).into_iter().chain(of(3, right, left, 3)).collect();
+    let wanted: Vec<TaskEvent> = of(3, left, right, 9).into_iter().chain(of(3, right, left, 3)).collect();
     assert_eq!(events, wanted);
     assert!(went_m < 0.002, "while the other one takes the ring: {went_m} m");
 }

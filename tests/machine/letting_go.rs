@@ -4,7 +4,7 @@ use nima_core::impedance::Mode;
 use nima_machine::{
     config::RigConfig,
     messages::{Command, LoopState, Refusal, Tick},
-    rig::{Act, Acts, Inputs, Side},
+    rig::{Acts, Inputs, Side, TaskAction},
     teleop::{Calibrations, Pair, Timing},
 };
 use nima_simulation::run_virtual;
@@ -70,11 +70,11 @@ fn an_act_of_a_task_is_counted_once_and_refused_in_a_stop() {
         let timing = Timing { now_s: 0.0, wake_s: 0.0, work_s: 0.0, sample_to_force_s: None, missed_now: 0 };
         pair.step(false, Some(Inputs::NOTHING), &timing).0.acts
     };
-    assert_eq!(pair.obey(Command::Task(Side::Right, Act::Mark), 0.0), Ok(()));
+    assert_eq!(pair.obey(Command::Task(Side::Right, TaskAction::Mark), 0.0), Ok(()));
     let marked = Acts { marks: 1, ..Acts::NONE };
     assert_eq!([acts(&mut pair), acts(&mut pair)], [marked; 2]);
     assert_eq!(pair.obey(Command::Stop, 0.0), Ok(()));
-    let refused = pair.obey(Command::Task(Side::Right, Act::Mark), 0.0);
+    let refused = pair.obey(Command::Task(Side::Right, TaskAction::Mark), 0.0);
     assert!(matches!(refused, Err(Refusal::State(LoopState::Stopped))), "{refused:?}");
     assert_eq!(acts(&mut pair), marked);
 }
@@ -85,7 +85,7 @@ fn where_a_person_may_hold_the_handle_neither_is_obeyed() {
         let rig = RigConfig::load(name).unwrap();
         let mut pair = Pair::new(&rig, Side::Right, &Calibrations::default()).unwrap();
         let acts = [
-            Command::Task(Side::Right, Act::Mark),
+            Command::Task(Side::Right, TaskAction::Mark),
             Command::LetGo(true),
             Command::SetGovernor(false),
             Command::SetGovernor(true),

@@ -4,7 +4,7 @@
 mod bimanual;
 mod contacts;
 mod davinci;
-mod feeling;
+mod force_response;
 mod leading;
 mod letting_go;
 mod over_a_network;

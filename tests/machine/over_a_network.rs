@@ -10,7 +10,7 @@ use nima_core::{impedance::Mode, safety::Implausible};
 use nima_machine::{
     config::RigConfig,
     messages::{Command, Event, FarStop, Fault, ForceSource, LoopState, Refusal, Tick},
-    remote::{FarFollower, FarLeader, Wire, at_follower},
+    remote::{FarFollower, FarLeader, RemoteWire, at_follower},
     rig::Rig,
     runtime::tick,
     teleop::{Calibrations, Loop},
@@ -19,18 +19,18 @@ use nima_simulation::{Worlds, run_virtual, scene::Scene};
 use nima_tests::plan;
 
 /// Messages in transit in one direction, with their arrival times, s.
-type Way = Arc<Mutex<VecDeque<(f64, Vec<u8>)>>>;
+type Direction = Arc<Mutex<VecDeque<(f64, Vec<u8>)>>>;
 
 /// A link with a constant delay; `ahead_s` is how far this end's clock is ahead of the other's.
 struct Constant {
-    out: Way,
-    back: Way,
+    out: Direction,
+    back: Direction,
     delay_s: f64,
     ahead_s: f64,
     is_cut: Arc<Mutex<bool>>,
 }
 
-impl Wire for Constant {
+impl RemoteWire for Constant {
     fn send(&mut self, now_s: f64, message: &[u8]) {
         if !*self.is_cut.lock().unwrap() {
             self.out.lock().unwrap().push_back((now_s - self.ahead_s + self.delay_s, message.to_vec()));
@@ -67,23 +67,23 @@ impl<R: Rig> Machine<R> {
     }
 }
 
-struct Bench {
+struct Fixture {
     leader: Machine<FarFollower<Worlds, Constant>>,
     follower: Machine<FarLeader<Worlds, Constant>>,
     is_cut: Arc<Mutex<bool>>,
     ticks: u64,
 }
 
-impl Bench {
+impl Fixture {
     /// With this delay in each direction, s; the clocks are half an hour apart.
     fn new(delay_s: f64, mode: Mode) -> Self {
         let mut rig = RigConfig::load("simulated").unwrap();
         rig.mode = mode;
         rig.delay_s = 0.0;
         let worlds = || Worlds::new(&Scene::load("peg_transfer").unwrap(), rig.rate_hz);
-        let (there, back): (Way, Way) = Default::default();
+        let (there, back): (Direction, Direction) = Default::default();
         let is_cut = Arc::<Mutex<bool>>::default();
-        let wire = |out: &Way, back: &Way, ahead_s| Constant {
+        let wire = |out: &Direction, back: &Direction, ahead_s| Constant {
             out: out.clone(),
             back: back.clone(),
             delay_s,
@@ -153,7 +153,7 @@ const FROM_MS: usize = 12_000;
 /// Rms error of the force at the hand, N, compared with the force at the tip when the follower has the current command,
 /// and the maximum force.
 fn over_a_network(delay_s: f64, mode: Mode) -> [f64; 2] {
-    let mut bench = Bench::engaged(delay_s, mode);
+    let mut bench = Fixture::engaged(delay_s, mode);
     let mut felt_n = Vec::new();
     let mut tip_n = Vec::new();
     let mut hand_n = 0.0_f64;
@@ -198,7 +198,7 @@ fn the_force_is_as_good_as_over_the_same_delay_in_one_place() {
 
 #[test]
 fn a_force_that_the_line_no_longer_brings_is_unknown_before_the_line_is_a_fault() {
-    let mut bench = Bench::engaged(0.005, Mode::Best);
+    let mut bench = Fixture::engaged(0.005, Mode::Best);
     assert!(bench.leader.tick.unwrap().known_n().is_some());
     bench.cut(true);
     bench.run(40);
@@ -212,7 +212,7 @@ fn a_force_that_the_line_no_longer_brings_is_unknown_before_the_line_is_a_fault(
 
 #[test]
 fn either_end_stops_both_and_neither_resumes_by_itself() {
-    let mut bench = Bench::engaged(0.02, Mode::Best);
+    let mut bench = Fixture::engaged(0.02, Mode::Best);
     bench.step_with(Some(Command::Stop), None);
     bench.run(60);
     assert_eq!(bench.states(), [LoopState::Stopped; 2]);
@@ -241,7 +241,7 @@ fn either_end_stops_both_and_neither_resumes_by_itself() {
 
 #[test]
 fn a_stop_while_nothing_is_engaged_is_told_and_released_from_the_screen() {
-    let mut bench = Bench::new(0.02, Mode::Best);
+    let mut bench = Fixture::new(0.02, Mode::Best);
     bench.run(300);
     bench.step_with(None, Some(Command::Stop));
     bench.run(60);
@@ -260,10 +260,10 @@ fn a_stop_while_nothing_is_engaged_is_told_and_released_from_the_screen() {
 
 #[test]
 fn another_console_that_has_released_more_stops_releases_none_here() {
-    let mut bench = Bench::engaged(0.02, Mode::Best);
+    let mut bench = Fixture::engaged(0.02, Mode::Best);
     bench.step_with(None, Some(Command::Stop));
     bench.run(60);
-    let mut other = Bench::new(0.02, Mode::Best).leader;
+    let mut other = Fixture::new(0.02, Mode::Best).leader;
     let wire = bench.leader.rig.wire();
     other.rig.wire_mut().out = wire.out.clone();
     other.rig.wire_mut().back = wire.back.clone();
@@ -283,7 +283,7 @@ fn another_console_that_has_released_more_stops_releases_none_here() {
 
 #[test]
 fn a_cut_takes_the_force_within_20_ms_and_what_comes_back_resumes_nothing() {
-    let mut bench = Bench::engaged(0.02, Mode::Best);
+    let mut bench = Fixture::engaged(0.02, Mode::Best);
     let mut waited = 0;
     while bench.leader.tick.unwrap().rendered_n.norm() < 0.3 && waited < 20_000 {
         bench.run(1);
@@ -304,9 +304,9 @@ fn a_cut_takes_the_force_within_20_ms_and_what_comes_back_resumes_nothing() {
     bench.cut(false);
     let mut step_m = 0.0_f64;
     for _ in 0..1000 {
-        let at_m = bench.tip_m();
+        let position_m = bench.tip_m();
         bench.run(1);
-        step_m = step_m.max((bench.tip_m() - at_m).norm());
+        step_m = step_m.max((bench.tip_m() - position_m).norm());
         assert!(bench.leader.tick.unwrap().rendered_n.norm() < 1e-9);
     }
     assert!(bench.states().iter().all(|state| state.is_latched()), "{:?}", bench.states());
@@ -315,7 +315,7 @@ fn a_cut_takes_the_force_within_20_ms_and_what_comes_back_resumes_nothing() {
 
 #[test]
 fn garbage_and_silence_move_nothing() {
-    let mut bench = Bench::engaged(0.01, Mode::Best);
+    let mut bench = Fixture::engaged(0.01, Mode::Best);
     for ticks in 0..400_usize {
         // Truncated messages, and messages with flipped bits, in both directions.
         for way in [&bench.leader.rig.wire().out, &bench.follower.rig.wire().out] {

@@ -1,15 +1,15 @@
 //! Peg transfer in the closed loop: two hands carry six rings over and back.
 
-use nima_core::{impedance::Mode, task::Event};
+use nima_core::{impedance::Mode, task::TaskEvent};
 use nima_machine::{
     messages::LoopState,
     rig::{Rig as _, SIDES, Side},
     runtime,
 };
-use nima_simulation::{Plan, Worlds, scene::Scene};
+use nima_simulation::{SimulationPlan, Worlds, scene::Scene};
 use nima_tests::plan;
 
-fn matched() -> Plan {
+fn matched() -> SimulationPlan {
     let mut plan = plan("rings");
     plan.rig.mode = Mode::Matched;
     plan
@@ -29,13 +29,13 @@ fn six_rings_go_over_and_back_from_hand_to_hand_and_none_is_dropped() {
         None
     });
     assert_eq!(summary.final_state, LoopState::Engaged);
-    let count = |wanted: fn(&Event) -> bool| events.iter().filter(|event| wanted(event)).count();
+    let count = |wanted: fn(&TaskEvent) -> bool| events.iter().filter(|event| wanted(event)).count();
     let counts = [
-        count(|event| matches!(event, Event::RingTransferred { .. })),
-        count(|event| matches!(event, Event::RingPlaced { .. })),
-        count(|event| matches!(event, Event::RingDropped { .. } | Event::RingKnockedOff { .. })),
+        count(|event| matches!(event, TaskEvent::RingTransferred { .. })),
+        count(|event| matches!(event, TaskEvent::RingPlaced { .. })),
+        count(|event| matches!(event, TaskEvent::RingDropped { .. } | TaskEvent::RingKnockedOff { .. })),
     ];
-    assert_eq!((counts, events.last()), ([12, 12, 0], Some(&Event::Ended)), "{events:?}");
+    assert_eq!((counts, events.last()), ([12, 12, 0], Some(&TaskEvent::Ended)), "{events:?}");
     assert!((1.0..6.0).contains(&grip_n), "the jaws press: {grip_n} N");
 }
 

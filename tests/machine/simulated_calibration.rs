@@ -5,24 +5,24 @@ use nima_core::{
         Verdict,
         correspondence::{self, CorrespondenceReport, CorrespondenceSession},
         gravity::{
-            CheckPass, Compensator, DEFAULT_TIME_CONSTANT_S, Drift, DriftCheck, GravityModel, GravitySession,
-            NotChecked, Phase, Precheck, SessionSettings, StillSettings, TARGETS,
+            CheckPass, Compensator, DEFAULT_TIME_CONSTANT_S, DriftCheck, GravityDrift, GravityModel, GravityPhase,
+            GravitySession, GravitySessionSettings, NotChecked, Precheck, StillSettings, TARGETS,
         },
     },
     frames::{WristSample, from_roll_pitch_yaw_deg},
 };
-use nima_machine::rig::{Outputs, Prompt, Sensed};
+use nima_machine::rig::{Outputs, Prompt, SensedForce};
 use nima_simulation::{
     World,
     scene::{Flaw, Scene},
 };
 
-struct Bench {
+struct Fixture {
     world: World,
     t_s: f64,
 }
 
-impl Bench {
+impl Fixture {
     fn new(scene: &Scene) -> Self {
         Self { world: World::new(scene, 1000.0), t_s: 0.0 }
     }
@@ -30,15 +30,15 @@ impl Bench {
     fn sample(&mut self, prompt: Prompt) -> WristSample {
         self.t_s += 1e-3;
         match self.world.exchange(self.t_s, &Outputs { prompt, ..Outputs::SAFE }).unwrap().sensed {
-            Sensed::AtWrist(sample) => sample,
+            SensedForce::AtWrist(sample) => sample,
             sensed => panic!("a calibration scene without a wrist: {sensed:?}"),
         }
     }
 }
 
 /// Follows the session's targets for at most `seconds`; returns the phases that occurred.
-fn follow(bench: &mut Bench, session: &mut GravitySession, seconds: f64) -> Vec<Phase> {
-    let mut seen: Vec<Phase> = Vec::new();
+fn follow(bench: &mut Fixture, session: &mut GravitySession, seconds: f64) -> Vec<GravityPhase> {
+    let mut seen: Vec<GravityPhase> = Vec::new();
     for _ in 0..(seconds * 1e3) as u32 {
         let Some(target) = session.target() else { break };
         let sample = bench.sample(Prompt::Hold { world_from_s1: target.world_from_s1() });
@@ -50,9 +50,9 @@ fn follow(bench: &mut Bench, session: &mut GravitySession, seconds: f64) -> Vec<
     seen
 }
 
-fn calibrate(scene: &Scene) -> (Bench, GravitySession) {
-    let mut bench = Bench::new(scene);
-    let mut session = GravitySession::new(SessionSettings::default());
+fn calibrate(scene: &Scene) -> (Fixture, GravitySession) {
+    let mut bench = Fixture::new(scene);
+    let mut session = GravitySession::new(GravitySessionSettings::default());
     follow(&mut bench, &mut session, 90.0);
     (bench, session)
 }
@@ -87,21 +87,21 @@ fn a_followed_guide_ends_in_an_accepted_calibration_that_proves_itself() {
 
 #[test]
 fn a_hand_on_the_tool_is_noticed() {
-    let mut session = GravitySession::new(SessionSettings::default());
-    let seen = follow(&mut Bench::new(&flawed(Flaw::Touches)), &mut session, 90.0);
-    let told = seen.iter().any(|phase| matches!(phase, Phase::Disturbed | Phase::Touched { .. }));
+    let mut session = GravitySession::new(GravitySessionSettings::default());
+    let seen = follow(&mut Fixture::new(&flawed(Flaw::Touches)), &mut session, 90.0);
+    let reported = seen.iter().any(|phase| matches!(phase, GravityPhase::Disturbed | GravityPhase::Touched { .. }));
     let refused = session.report().map_or(true, |report| report.verdict != Verdict::Accepted);
-    assert!(told && refused, "{seen:?} {:?}", session.report());
+    assert!(reported && refused, "{seen:?} {:?}", session.report());
 }
 
 #[test]
 fn a_trembling_tool_gives_no_pose_and_one_orientation_gives_one() {
-    let mut session = GravitySession::new(SessionSettings::default());
-    follow(&mut Bench::new(&flawed(Flaw::Trembles)), &mut session, 20.0);
+    let mut session = GravitySession::new(GravitySessionSettings::default());
+    follow(&mut Fixture::new(&flawed(Flaw::Trembles)), &mut session, 20.0);
     assert_eq!(session.poses().len(), 0);
-    let seen = follow(&mut Bench::new(&flawed(Flaw::KeepsOneOrientation)), &mut session, 20.0);
+    let seen = follow(&mut Fixture::new(&flawed(Flaw::KeepsOneOrientation)), &mut session, 20.0);
     assert_eq!(session.poses().len(), 1);
-    assert!(seen.contains(&Phase::TakenHere));
+    assert!(seen.contains(&GravityPhase::TakenHere));
 }
 
 #[test]
@@ -121,15 +121,16 @@ fn an_accelerometer_that_reads_the_other_way_is_named() {
 fn without_an_accelerometer_the_arm_gives_the_orientation() {
     let mut scene = Scene::load("gravity").unwrap();
     scene.wrist.as_mut().unwrap().imu = None;
-    let mut session = GravitySession::new(SessionSettings { use_arm: true, ..SessionSettings::default() });
-    follow(&mut Bench::new(&scene), &mut session, 90.0);
+    let mut session =
+        GravitySession::new(GravitySessionSettings { use_arm: true, ..GravitySessionSettings::default() });
+    follow(&mut Fixture::new(&scene), &mut session, 90.0);
     assert_eq!(session.report().unwrap().verdict, Verdict::Accepted, "{}", session.report().unwrap().reason);
 }
 
 /// Result of the drift check after `seconds` in this scene, with this instruction, idle or not.
-fn drift(session: &GravitySession, scene: &Scene, prompt: Prompt, idle: bool, seconds: f64) -> Drift {
+fn drift(session: &GravitySession, scene: &Scene, prompt: Prompt, idle: bool, seconds: f64) -> GravityDrift {
     let record = session.report().unwrap().record("S", "T", "2026-01-31T12:00:00Z").unwrap();
-    let mut bench = Bench::new(scene);
+    let mut bench = Fixture::new(scene);
     let mut check = DriftCheck::new(record.model, record.drift_limit_n(), StillSettings::default());
     for _ in 0..(seconds * 1e3) as u32 {
         let sample = bench.sample(prompt);
@@ -143,17 +144,17 @@ fn a_bias_that_moved_is_noticed_at_the_start_and_one_that_did_not_is_fine() {
     let mut scene = Scene::load("gravity").unwrap();
     let (_, session) = calibrate(&scene);
     let at_rest = |scene: &Scene, seconds| drift(&session, scene, Prompt::Rest, true, seconds);
-    assert_eq!(at_rest(&scene, 1.5), Drift::Waiting, "not before the sensor has settled");
-    assert!(matches!(at_rest(&scene, 4.0), Drift::Fine { by_n } if by_n < 0.05), "{:?}", at_rest(&scene, 4.0));
+    assert_eq!(at_rest(&scene, 1.5), GravityDrift::Waiting, "not before the sensor has settled");
+    assert!(matches!(at_rest(&scene, 4.0), GravityDrift::Fine { by_n } if by_n < 0.05), "{:?}", at_rest(&scene, 4.0));
     for (axis, step_n) in [(0, 0.4), (1, -0.4), (2, 0.25)] {
         let mut moved = scene.clone();
         moved.wrist.as_mut().unwrap().force_bias_n[axis] += step_n;
         let found = at_rest(&moved, 6.0);
-        assert!(matches!(found, Drift::Moved { by_n } if (by_n - f64::abs(step_n)).abs() < 0.05), "{found:?}");
+        assert!(matches!(found, GravityDrift::Moved { by_n } if (by_n - f64::abs(step_n)).abs() < 0.05), "{found:?}");
     }
     scene.wrist.as_mut().unwrap().force_bias_n.x += 0.03;
     assert!(
-        matches!(at_rest(&scene, 4.0), Drift::Fine { .. }),
+        matches!(at_rest(&scene, 4.0), GravityDrift::Fine { .. }),
         "a step within the noise of the model does not count as drift"
     );
 }
@@ -163,7 +164,7 @@ fn a_tool_that_moves_or_is_touched_or_used_is_not_checked() {
     let scene = Scene::load("gravity").unwrap();
     let (_, session) = calibrate(&scene);
     let not_checked = |scene: &Scene, prompt, idle, seconds| match drift(&session, scene, prompt, idle, seconds) {
-        Drift::NotChecked(why) => why,
+        GravityDrift::NotChecked(why) => why,
         other => panic!("{other:?}"),
     };
     assert_eq!(not_checked(&scene, Prompt::Wave, true, 9.0), NotChecked::Moving);
@@ -178,7 +179,7 @@ fn a_tool_that_moves_or_is_touched_or_used_is_not_checked() {
 fn a_hand_taken_off_the_tool_takes_the_bad_verdict_back() {
     let scene = Scene::load("gravity").unwrap();
     let (_, session) = calibrate(&scene);
-    let mut bench = Bench::new(&scene);
+    let mut bench = Fixture::new(&scene);
     let mut check = DriftCheck::new(model_of(&session), 0.15, StillSettings::default());
     let mut run = |push_n: f64, silent: bool, seconds: f64| {
         for _ in 0..(seconds * 1e3) as u32 {
@@ -188,15 +189,15 @@ fn a_hand_taken_off_the_tool_takes_the_bad_verdict_back() {
         }
         check.drift()
     };
-    assert_eq!(run(0.0, true, 8.0), Drift::NotChecked(NotChecked::NoSample));
-    let sample = Bench::new(&scene).sample(Prompt::Rest);
+    assert_eq!(run(0.0, true, 8.0), GravityDrift::NotChecked(NotChecked::NoSample));
+    let sample = Fixture::new(&scene).sample(Prompt::Rest);
     let mut hung = DriftCheck::new(model_of(&session), 0.15, StillSettings::default());
     (0..8000).for_each(|tick| _ = hung.step(Some(&sample), true, f64::from(tick) * 1e-3));
-    assert_eq!(hung.drift(), Drift::NotChecked(NotChecked::NoSample), "a reading that hangs is not still");
-    assert!(matches!(run(0.6, false, 4.0), Drift::Moved { by_n } if by_n > 0.5));
-    assert!(matches!(run(0.0, true, 1.0), Drift::Moved { .. }), "silence takes no verdict back");
-    assert!(matches!(run(0.0, false, 3.0), Drift::Fine { .. }));
-    assert!(matches!(run(0.6, false, 4.0), Drift::Fine { .. }), "one good verdict is enough for a start");
+    assert_eq!(hung.drift(), GravityDrift::NotChecked(NotChecked::NoSample), "a reading that hangs is not still");
+    assert!(matches!(run(0.6, false, 4.0), GravityDrift::Moved { by_n } if by_n > 0.5));
+    assert!(matches!(run(0.0, true, 1.0), GravityDrift::Moved { .. }), "silence takes no verdict back");
+    assert!(matches!(run(0.0, false, 3.0), GravityDrift::Fine { .. }));
+    assert!(matches!(run(0.6, false, 4.0), GravityDrift::Fine { .. }), "one good verdict is enough for a start");
 }
 
 /// Root mean square per axis of the remaining force without contact, N.
@@ -226,8 +227,8 @@ fn the_simulated_sensor_passes_the_check_before_the_first_pose_and_worse_ones_do
     let checked = |edit: fn(&mut Scene)| {
         let mut scene = Scene::load("gravity").unwrap();
         edit(&mut scene);
-        let mut bench = Bench::new(&scene);
-        let mut precheck = Precheck::new(SessionSettings::default());
+        let mut bench = Fixture::new(&scene);
+        let mut precheck = Precheck::new(GravitySessionSettings::default());
         for _ in 0..2000 {
             let sample = bench.sample(Prompt::Rest);
             precheck.step(Some(&sample), bench.t_s);
@@ -248,8 +249,8 @@ fn push(flaw: Option<Flaw>, pushes: usize, seconds: f64) -> CorrespondenceSessio
     let mut gravity = Compensator::new(gravity, DEFAULT_TIME_CONSTANT_S, 1e-3);
     let mut scene = Scene::load("correspondence").unwrap();
     scene.person.as_mut().unwrap().flaw = flaw;
-    let mut bench = Bench::new(&scene);
-    let mut session = CorrespondenceSession::new(correspondence::SessionSettings::default());
+    let mut bench = Fixture::new(&scene);
+    let mut session = CorrespondenceSession::new(correspondence::CorrespondenceSessionSettings::default());
     let mut prompt = Prompt::Rest;
     for _ in 0..(seconds * 1e3) as u32 {
         let sample = bench.sample(prompt);
@@ -258,7 +259,10 @@ fn push(flaw: Option<Flaw>, pushes: usize, seconds: f64) -> CorrespondenceSessio
         if session.pushes() == pushes {
             break;
         }
-        if !matches!(phase, correspondence::Phase::Resting { .. } | correspondence::Phase::Missing(_)) {
+        if !matches!(
+            phase,
+            correspondence::CorrespondencePhase::Resting { .. } | correspondence::CorrespondencePhase::Missing(_)
+        ) {
             let all = correspondence::TARGETS;
             let target = session.target().unwrap_or(all[session.pushes() % all.len()]);
             prompt = Prompt::Push { direction: UnitVector3::new_normalize(target.push_in_world) };

@@ -3,10 +3,10 @@ use nalgebra::{UnitQuaternion, Vector3};
 use nima_core::frames::{GRAVITY_M_S2, WristSample, from_roll_pitch_yaw_deg};
 use nima_machine::{
     messages::{Command, ForceSource, LoopState},
-    rig::{Outputs, Prompt, Sensed, Side},
+    rig::{Outputs, Prompt, SensedForce, Side},
 };
 use nima_simulation::{
-    Plan, World, run_virtual,
+    SimulationPlan, World, run_virtual,
     scene::{Flaw, Scene},
 };
 use nima_tests::plan;
@@ -18,7 +18,7 @@ fn samples(world: &mut World, from_s: f64, seconds: f64, prompt: Prompt) -> Vec<
         .map(|i| {
             let inputs = world.exchange(from_s + f64::from(i) * 1e-3, &outputs).unwrap();
             match inputs.sensed {
-                Sensed::AtWrist(sample) => (sample, world.true_tip_n()),
+                SensedForce::AtWrist(sample) => (sample, world.true_tip_n()),
                 sensed => panic!("a calibration scene without a wrist: {sensed:?}"),
             }
         })
@@ -119,7 +119,7 @@ fn each_flaw_shows_in_the_data() {
 fn a_prompt_reaches_the_arm_in_idle_only() {
     for (engage, expected) in [(false, Prompt::Wave), (true, Prompt::Rest)] {
         let mut last = Prompt::Rest;
-        run_virtual(&Plan { engage, ..plan("peg_transfer") }, 0.1, |tick| {
+        run_virtual(&SimulationPlan { engage, ..plan("peg_transfer") }, 0.1, |tick| {
             last = tick.prompt;
             (tick.index == 10).then_some(Command::Prompt(Side::Right, Prompt::Wave))
         })
@@ -130,7 +130,7 @@ fn a_prompt_reaches_the_arm_in_idle_only() {
 
 #[test]
 fn an_uncalibrated_wrist_gives_no_force_and_cannot_be_engaged() {
-    run_virtual(&Plan { engage: false, ..plan("palpation") }, 2.0, |tick| {
+    run_virtual(&SimulationPlan { engage: false, ..plan("palpation") }, 2.0, |tick| {
         assert_eq!(tick.force.source, ForceSource::Uncalibrated);
         assert_eq!(tick.state, LoopState::Idle);
         assert!(tick.rendered_n.norm() < 1e-12 && tick.measured_n.iter().all(|x| x.is_nan()));

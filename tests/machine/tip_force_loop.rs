@@ -2,7 +2,7 @@
 use std::sync::{OnceLock, atomic::AtomicBool};
 
 use nalgebra::Vector3;
-use nima_core::tip_force::{Fallback, FeatureSettings, Model, TipForce, TrainingSettings, Unsure};
+use nima_core::tip_force::{Fallback, FeatureSettings, ForceModel, LiveTipForce, TrainingSettings, Unsure};
 use nima_machine::{
     messages::{ForceReport, ForceSource},
     rig::{Outputs, Prompt, Side},
@@ -10,17 +10,17 @@ use nima_machine::{
 };
 use nima_simulation::{World, scene::Scene};
 use nima_study::validation::{
-    experiment::Experiment,
-    isolation::{Known, record},
+    experiment::SimulatedExperiment,
+    isolation::{PriorCalibrations, record},
 };
 use nima_training::train_model;
 
 /// Calibrated and trained once for all tests in this file.
-fn trained() -> &'static (Known, Model) {
-    static TRAINED: OnceLock<(Known, Model)> = OnceLock::new();
+fn trained() -> &'static (PriorCalibrations, ForceModel) {
+    static TRAINED: OnceLock<(PriorCalibrations, ForceModel)> = OnceLock::new();
     TRAINED.get_or_init(|| {
-        let known = Known::calibrate(3).unwrap();
-        let scene = Experiment::scene("isolation", 3).unwrap();
+        let known = PriorCalibrations::calibrate(3).unwrap();
+        let scene = SimulatedExperiment::scene("isolation", 3).unwrap();
         let data = record(&scene, &known, FeatureSettings::default(), 12_000, 7.0).unwrap().data(None).unwrap();
         let settings = TrainingSettings { members: 2, epochs: Some(20), ..TrainingSettings::default() };
         let model = train_model(&data, &settings, [None, None], &AtomicBool::new(false), &|_| {}).unwrap();
@@ -30,7 +30,7 @@ fn trained() -> &'static (Known, Model) {
 
 fn path(fallback: Option<Fallback>) -> ForcePath {
     let (known, model) = trained();
-    let tip_force = fallback.map(|fallback| TipForce::new(model.clone(), fallback).unwrap());
+    let tip_force = fallback.map(|fallback| LiveTipForce::new(model.clone(), fallback).unwrap());
     ForcePath::new(&Calibrations { gravity: Some(known.gravity), tip_force, ..Calibrations::default() }, 1e-3)
 }
 
@@ -48,7 +48,7 @@ fn work(mut path: ForcePath, scene: &Scene, seconds: f64) -> Vec<(ForceReport, V
 }
 
 fn scene(seed: u64) -> Scene {
-    Experiment::scene("isolation", seed).unwrap()
+    SimulatedExperiment::scene("isolation", seed).unwrap()
 }
 
 /// Another tool, for which the network was not trained.
@@ -92,8 +92,8 @@ fn a_little_outside_its_training_the_network_is_better_than_the_wrist_force() {
     // Both contain 1.2 N of weight that is unknown to every calibration.
     let scene = heavier_by(0.12, 11);
     let all = work(path(Some(Fallback::WristForce)), &scene, 20.0);
-    let share = |source| all.iter().filter(|(report, _)| report.source == source).count() as f64 / all.len() as f64;
-    assert!(share(ForceSource::Extrapolated) > 0.3, "{}", share(ForceSource::Extrapolated));
+    let fraction = |source| all.iter().filter(|(report, _)| report.source == source).count() as f64 / all.len() as f64;
+    assert!(fraction(ForceSource::Extrapolated) > 0.3, "{}", fraction(ForceSource::Extrapolated));
     let outside: Vec<_> = all
         .iter()
         .zip(work(path(None), &scene, 20.0))
@@ -110,8 +110,8 @@ fn another_tool_is_flagged_and_the_chosen_fallback_is_used() {
         let all = work(path(Some(fallback)), &heavier(11), 10.0);
         let doubt = ForceSource::InDoubt { unsure: Unsure::OutsideTraining, fallback };
         let late = all[3000..].to_vec();
-        let share = late.iter().filter(|(report, _)| report.source == doubt).count() as f64 / late.len() as f64;
-        assert!(share > 0.95, "{share}");
+        let fraction = late.iter().filter(|(report, _)| report.source == doubt).count() as f64 / late.len() as f64;
+        assert!(fraction > 0.95, "{fraction}");
         late
     };
     let wrist = doubtful(Fallback::WristForce);
@@ -190,7 +190,7 @@ fn a_technician_s_recording_covers_the_speeds_of_the_task() {
         let data = record(&scene, known, FeatureSettings::default(), 12_000, 7.0).unwrap().data(None).unwrap();
         let none = AtomicBool::new(false);
         let model = train_model(&data, &TrainingSettings::default(), [None, None], &none, &|_| {}).unwrap();
-        let tip_force = Some(TipForce::new(model, Fallback::WristForce).unwrap());
+        let tip_force = Some(LiveTipForce::new(model, Fallback::WristForce).unwrap());
         let calibrations = Calibrations { gravity: Some(known.gravity), tip_force, ..Calibrations::default() };
         let sd_n = free_sd_n(ForcePath::new(&calibrations, 1e-3), &scene, 20.0);
         println!("{side:?}: standard deviation without contact {sd_n:.3?} N");

@@ -3,24 +3,24 @@
 use nalgebra::Vector3;
 use nima_core::{
     impedance::Mode,
-    task::{Event, Happening},
+    task::{TaskEvent, TimedTaskEvent},
 };
 use nima_machine::{
     messages::{Command, LoopState},
-    rig::{Act, Side},
+    rig::{Side, TaskAction},
     runtime,
 };
-use nima_simulation::Plan;
+use nima_simulation::SimulationPlan;
 use nima_tests::plan;
 
-fn of(scene: &str, mode: Mode) -> Plan {
+fn of(scene: &str, mode: Mode) -> SimulationPlan {
     let mut plan = plan(scene);
     plan.rig.mode = mode;
     plan
 }
 
 /// Runs this many seconds with these commands at these times; returns the events, and the bits of the measurements.
-fn played(plan: &Plan, seconds: f64, commands: &[(f64, Command)]) -> (Vec<Happening>, Vec<u64>) {
+fn played(plan: &SimulationPlan, seconds: f64, commands: &[(f64, Command)]) -> (Vec<TimedTaskEvent>, Vec<u64>) {
     let (assembly, watched) = plan.watched().unwrap();
     let watched = watched.unwrap();
     let mut happenings = Vec::new();
@@ -47,7 +47,7 @@ fn a_hand_that_feels_lumps_finds_them_wherever_they_are() {
         plan.scene.seed = seed;
         let (happenings, _) = played(&plan, 115.0, &[]);
         let marks = happenings.iter().filter_map(|happening| match happening.event {
-            Event::LumpMarked { lump, .. } => Some(lump),
+            TaskEvent::LumpMarked { lump, .. } => Some(lump),
             _ => None,
         });
         let marks: Vec<Option<usize>> = marks.collect();
@@ -56,7 +56,7 @@ fn a_hand_that_feels_lumps_finds_them_wherever_they_are() {
         found.dedup();
         let wrong = marks.iter().filter(|lump| lump.is_none()).count();
         assert!(found.len() >= 4 && wrong <= 1, "seed {seed}, {mode}: {marks:?}");
-        assert_eq!(happenings.last().map(|happening| happening.event), Some(Event::Ended));
+        assert_eq!(happenings.last().map(|happening| happening.event), Some(TaskEvent::Ended));
     }
 }
 
@@ -66,8 +66,8 @@ fn a_hand_that_follows_the_wire_reaches_its_end_and_one_that_aims_better_touches
         let mut plan = of("wire", Mode::Matched);
         plan.scene.hand.aim_error_m = aim_error_m;
         let (happenings, _) = played(&plan, 40.0, &[]);
-        assert_eq!(happenings.last().map(|happening| happening.event), Some(Event::Ended), "{aim_error_m}");
-        happenings.iter().filter(|happening| matches!(happening.event, Event::WireTouched { .. })).count()
+        assert_eq!(happenings.last().map(|happening| happening.event), Some(TaskEvent::Ended), "{aim_error_m}");
+        happenings.iter().filter(|happening| matches!(happening.event, TaskEvent::WireTouched { .. })).count()
     };
     let counts = [0.0, 0.0022, 0.0036].map(touches);
     assert!(counts[0] == 0 && counts[1] >= 1 && counts[2] > counts[1], "{counts:?}");
@@ -87,23 +87,23 @@ fn the_same_training_gives_the_same_bits() {
 fn a_person_marks_begins_anew_and_ends_from_the_screen() {
     let plan = of("find_lumps", Mode::Matched);
     let lump = plan.scene.placed_lumps().unwrap().list[2];
-    let beside = Vector3::new(lump.at_m[0], lump.at_m[1], 0.004);
-    let task = |at_s: f64, act: Act| (at_s, Command::Task(Side::Right, act));
+    let beside = Vector3::new(lump.position_m[0], lump.position_m[1], 0.004);
+    let task = |at_s: f64, act: TaskAction| (at_s, Command::Task(Side::Right, act));
     let commands = [
         (0.5, Command::Guide(Side::Right, Some(beside))),
-        task(2.5, Act::Mark),
-        task(2.6, Act::Begin),
-        task(2.7, Act::Mark),
+        task(2.5, TaskAction::Mark),
+        task(2.6, TaskAction::Begin),
+        task(2.7, TaskAction::Mark),
         (2.8, Command::Guide(Side::Right, Some(Vector3::new(0.055, 0.042, 0.004)))),
-        task(4.8, Act::Mark),
-        task(4.9, Act::End),
-        task(5.0, Act::Mark),
-        task(5.1, Act::End),
+        task(4.8, TaskAction::Mark),
+        task(4.9, TaskAction::End),
+        task(5.0, TaskAction::Mark),
+        task(5.1, TaskAction::End),
     ];
     let (happenings, _) = played(&plan, 6.0, &commands);
     let side = Side::Right;
-    let found = Event::LumpMarked { side, lump: Some(2) };
-    let wrong = Event::LumpMarked { side, lump: None };
-    let events: Vec<Event> = happenings.iter().map(|happening| happening.event).collect();
-    assert_eq!(events, [found, Event::Begun, found, wrong, Event::Ended]);
+    let found = TaskEvent::LumpMarked { side, lump: Some(2) };
+    let wrong = TaskEvent::LumpMarked { side, lump: None };
+    let events: Vec<TaskEvent> = happenings.iter().map(|happening| happening.event).collect();
+    assert_eq!(events, [found, TaskEvent::Begun, found, wrong, TaskEvent::Ended]);
 }

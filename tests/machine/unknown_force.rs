@@ -4,25 +4,25 @@ use nima_core::frames::{Wrench, WristSample};
 use nima_machine::{
     config::RigConfig,
     messages::{Command, ForceSource, LoopState, Tick},
-    rig::{Inputs, Sensed, Side},
+    rig::{Inputs, SensedForce, Side},
     teleop::{Calibrations, Loop, Timing},
 };
 
 const DELAY_MS: u32 = 50;
 
-struct Bench {
+struct Fixture {
     control: Loop,
     now_ms: u32,
 }
 
-impl Bench {
+impl Fixture {
     fn new() -> Self {
         let rig = RigConfig { delay_s: f64::from(DELAY_MS) * 1e-3, ..RigConfig::load("simulated").unwrap() };
         Self { control: Loop::new(&rig, &[Some(Calibrations::default()), None]).unwrap(), now_ms: 0 }
     }
 
     /// Runs this many ticks with the result of `sensed` at each time (s); returns the last tick.
-    fn run(&mut self, ticks: u32, sensed: impl Fn(f64) -> Option<Sensed>) -> Tick {
+    fn run(&mut self, ticks: u32, sensed: impl Fn(f64) -> Option<SensedForce>) -> Tick {
         let mut last = None;
         for _ in 0..ticks {
             self.now_ms += 1;
@@ -48,15 +48,15 @@ fn force_n(now_s: f64) -> Vector3<f64> {
 }
 
 #[expect(clippy::unnecessary_wraps, reason = "as the bench asks for it: a sensor may deliver nothing")]
-fn at_tip(now_s: f64) -> Option<Sensed> {
-    Some(Sensed::AtTip(force_n(now_s)))
+fn at_tip(now_s: f64) -> Option<SensedForce> {
+    Some(SensedForce::AtTip(force_n(now_s)))
 }
 
 #[expect(clippy::unnecessary_wraps, reason = "as the bench asks for it: a sensor may deliver nothing")]
-fn at_wrist(now_s: f64) -> Option<Sensed> {
+fn at_wrist(now_s: f64) -> Option<SensedForce> {
     let world_from_s1 = Some(UnitQuaternion::identity());
     let wrench = Wrench { force_n: force_n(now_s), torque_nm: Vector3::zeros() };
-    Some(Sensed::AtWrist(WristSample { world_from_s1, ..WristSample::of(wrench) }))
+    Some(SensedForce::AtWrist(WristSample { world_from_s1, ..WristSample::of(wrench) }))
 }
 
 fn is_unknown(force_n: Vector3<f64>) -> bool {
@@ -65,7 +65,7 @@ fn is_unknown(force_n: Vector3<f64>) -> bool {
 
 #[test]
 fn before_the_first_sample_and_after_a_silence_no_force_is_known() {
-    let mut bench = Bench::new();
+    let mut bench = Fixture::new();
     let tick = bench.run(1, |_| None);
     assert_eq!(tick.force.source, ForceSource::NoSample);
     assert!(is_unknown(tick.measured_n) && is_unknown(tick.delayed_n));
@@ -95,14 +95,14 @@ fn before_the_first_sample_and_after_a_silence_no_force_is_known() {
 
 #[test]
 fn the_readings_of_a_silent_wrist_sensor_are_not_repeated() {
-    let mut bench = Bench::new();
+    let mut bench = Fixture::new();
     assert!(bench.run(50, at_wrist).wrist.is_some());
     assert!(bench.run(25, |_| None).wrist.is_none());
 }
 
 #[test]
 fn without_a_calibration_nothing_is_known_learnt_or_judged() {
-    let mut bench = Bench::new();
+    let mut bench = Fixture::new();
     let tick = bench.run(1000, at_wrist);
     assert_eq!((tick.force.source, tick.state), (ForceSource::Uncalibrated, LoopState::Idle));
     assert!(is_unknown(tick.measured_n) && is_unknown(tick.delayed_n) && is_unknown(tick.force.tip_n));
@@ -112,7 +112,7 @@ fn without_a_calibration_nothing_is_known_learnt_or_judged() {
 
 #[test]
 fn an_arm_is_engaged_once_its_force_is_known_and_feels_what_the_link_brings() {
-    let mut bench = Bench::new();
+    let mut bench = Fixture::new();
     bench.run(500, at_wrist);
     bench.run(3, at_tip);
     bench.control.obey(Command::Engage, f64::from(bench.now_ms) * 1e-3);

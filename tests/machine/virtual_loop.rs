@@ -5,18 +5,18 @@ use std::sync::{
 };
 
 use nalgebra::Vector3;
-use nima_core::impedance::{Mode, ModeSet, OwnMotion, Parcel};
+use nima_core::impedance::{LinkPacket, Mode, ModeSet, OwnMotion};
 use nima_machine::{
     config::RigConfig,
     messages::{Command, Event, Fault, LoopState, Refusal, Tick},
-    rig::{Inputs, Outputs, Sensed, Side},
-    runtime::Summary,
+    rig::{Inputs, Outputs, SensedForce, Side},
+    runtime::RuntimeSummary,
     teleop::{Calibrations, Link, Pair, ProgrammedLink, Timing},
 };
-use nima_simulation::{Plan, World, run_virtual};
+use nima_simulation::{SimulationPlan, World, run_virtual};
 use nima_tests::plan;
 
-fn error_of(summary: &Summary, mode: Mode) -> f64 {
+fn error_of(summary: &RuntimeSummary, mode: Mode) -> f64 {
     summary.error.iter().find(|error| error.mode == mode).unwrap().mae_n
 }
 
@@ -39,7 +39,7 @@ fn a_change_of_mode_takes_no_force_from_the_hand_and_leaves_one_mode_computed() 
     plan.rig.delay_s = 0.3;
     plan.rig.gates.static_hold = true;
     let mut changed_s = None;
-    let mut least_n = f64::INFINITY;
+    let mut min_n = f64::INFINITY;
     let mut computed = Vec::new();
     run_virtual(&plan, 20.0, |tick: &Tick| {
         let felt_n = tick.rendered_n.norm();
@@ -48,7 +48,7 @@ fn a_change_of_mode_takes_no_force_from_the_hand_and_leaves_one_mode_computed() 
                 changed_s = Some(tick.t_s);
                 return Some(Command::SetMode(Mode::Matched));
             }
-            Some(at_s) if tick.t_s < at_s + 0.1 => least_n = least_n.min(felt_n),
+            Some(at_s) if tick.t_s < at_s + 0.1 => min_n = min_n.min(felt_n),
             _ => {}
         }
         computed.push(tick.identification.modes);
@@ -56,7 +56,7 @@ fn a_change_of_mode_takes_no_force_from_the_hand_and_leaves_one_mode_computed() 
     })
     .unwrap();
     let changed_s = changed_s.expect("the tip presses on the tissue");
-    assert!(least_n > 0.8, "{least_n} N just after {changed_s} s");
+    assert!(min_n > 0.8, "{min_n} N just after {changed_s} s");
     let of = |mode| ModeSet::only(mode);
     assert_eq!((computed[0], *computed.last().unwrap()), (of(Mode::Best), of(Mode::Matched)));
     assert!(computed.contains(&of(Mode::Matched).with(Mode::Best)), "both while the new one learns");
@@ -171,16 +171,16 @@ fn a_command_out_of_range_is_refused_and_changes_nothing() {
 }
 
 /// Steps a loop and a world by hand, so that samples can be removed or corrupted.
-struct Bench {
+struct Fixture {
     world: World,
     control: Pair,
     outputs: Outputs,
     tick: u64,
 }
 
-impl Bench {
+impl Fixture {
     fn engaged(mode: Mode) -> Self {
-        let Plan { mut rig, scene, .. } = plan("peg_transfer");
+        let SimulationPlan { mut rig, scene, .. } = plan("peg_transfer");
         rig.mode = mode;
         let mut control = Pair::new(&rig, Side::Right, &Calibrations::default()).unwrap();
         control.obey(Command::Engage, 0.0).unwrap();
@@ -210,10 +210,10 @@ impl Bench {
 
 #[test]
 fn a_silent_or_poisoned_source_takes_the_force_away_within_20_ms_and_latches() {
-    let poison = |inputs: Inputs| Some(Inputs { sensed: Sensed::AtTip(Vector3::repeat(f64::NAN)), ..inputs });
+    let poison = |inputs: Inputs| Some(Inputs { sensed: SensedForce::AtTip(Vector3::repeat(f64::NAN)), ..inputs });
     for edit in [&poison as &dyn Fn(Inputs) -> Option<Inputs>, &|_| None] {
         for mode in Mode::ALL {
-            let mut bench = Bench::until_contact(mode);
+            let mut bench = Fixture::until_contact(mode);
             let after: Vec<Tick> = (0..40).map(|_| bench.step(edit)).collect();
             assert!(
                 after[20].rendered_n.norm() < f64::EPSILON,
@@ -237,7 +237,7 @@ fn a_silent_or_poisoned_source_takes_the_force_away_within_20_ms_and_latches() {
 
 #[test]
 fn who_engages_right_after_a_silence_waits_for_the_first_new_parcel() {
-    let mut bench = Bench::until_contact(Mode::Dfr);
+    let mut bench = Fixture::until_contact(Mode::Dfr);
     for _ in 0..300 {
         bench.step(|_| None);
     }
@@ -267,20 +267,20 @@ impl Link for Cut {
         self.link.clear();
     }
 
-    fn send(&mut self, parcel: &Parcel) {
+    fn send(&mut self, parcel: &LinkPacket) {
         if !self.is_cut.load(Relaxed) {
             self.link.send(parcel);
         }
     }
 
-    fn receive(&mut self, now_s: f64) -> Option<&Parcel> {
+    fn receive(&mut self, now_s: f64) -> Option<&LinkPacket> {
         self.link.receive(now_s)
     }
 }
 
 #[test]
 fn over_a_link_that_stays_silent_nobody_is_engaged() {
-    let Plan { rig, scene, .. } = plan("peg_transfer");
+    let SimulationPlan { rig, scene, .. } = plan("peg_transfer");
     let is_cut = Arc::new(AtomicBool::new(false));
     let link = Cut { link: ProgrammedLink::new(rig.rate_hz, rig.delay_s), is_cut: Arc::clone(&is_cut) };
     let mut control = Pair::over(&rig, Side::Right, &Calibrations::default(), link).unwrap();
@@ -296,9 +296,9 @@ fn over_a_link_that_stays_silent_nobody_is_engaged() {
             control.obey(Command::Engage, now_s).unwrap();
         }
         let inputs = world.exchange(now_s, &outputs);
-        let told = control.step(false, inputs, &Timing { now_s, ..Timing::default() });
-        outputs = told.0;
-        assert!(matches!(told.1.state, LoopState::Idle | LoopState::Ready), "{:?}", told.1.state);
+        let report = control.step(false, inputs, &Timing { now_s, ..Timing::default() });
+        outputs = report.0;
+        assert!(matches!(report.1.state, LoopState::Idle | LoopState::Ready), "{:?}", report.1.state);
         refused.extend(control.events().filter_map(|event| match event {
             Event::CommandRefused { why, .. } => Some(*why),
             _ => None,
@@ -309,7 +309,7 @@ fn over_a_link_that_stays_silent_nobody_is_engaged() {
 
 #[test]
 fn a_stall_is_a_fault_with_zero_force() {
-    let mut bench = Bench::until_contact(Mode::Dfr);
+    let mut bench = Fixture::until_contact(Mode::Dfr);
     let inputs = bench.world.exchange(bench.tick as f64 * 1e-3, &bench.outputs);
     let timing = Timing { now_s: bench.tick as f64 * 1e-3 + 0.1, missed_now: 100, ..Timing::default() };
     let (outputs, tick) = bench.control.step(false, inputs, &timing);
@@ -319,7 +319,7 @@ fn a_stall_is_a_fault_with_zero_force() {
 
 #[test]
 fn a_stall_while_no_drives_are_on_harms_nobody_and_is_no_fault() {
-    let Plan { rig, scene, .. } = plan("peg_transfer");
+    let SimulationPlan { rig, scene, .. } = plan("peg_transfer");
     let mut control = Pair::new(&rig, Side::Right, &Calibrations::default()).unwrap();
     let inputs = World::new(&scene, rig.rate_hz).exchange(0.1, &Outputs::SAFE);
     let (outputs, tick) = control.step(false, inputs, &Timing { now_s: 0.1, missed_now: 100, ..Timing::default() });

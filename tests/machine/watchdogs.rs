@@ -13,11 +13,11 @@ use nima_machine::{
     rig::{Inputs, Outputs, Rig, Roster, SIDES, Side},
     teleop::{Calibrations, Loop, Timing},
 };
-use nima_simulation::{Plan, Worlds, run_virtual, start_on};
+use nima_simulation::{SimulationPlan, Worlds, run_virtual, start_on};
 
-fn plan(engage: bool) -> Plan {
+fn plan(engage: bool) -> SimulationPlan {
     let plan = nima_tests::plan("peg_transfer");
-    Plan { scene: plan.scene.with_left_hand(), engage, ..plan }
+    SimulationPlan { scene: plan.scene.with_left_hand(), engage, ..plan }
 }
 
 /// Returns the sequence of states of both arms; the test begins at 0.3 s, is released as soon as both are faulted, and
@@ -144,7 +144,9 @@ fn while_one_arm_is_not_idle_no_watchdog_is_tested() {
         let refused = control.events().filter(|event| matches!(event, Event::CommandRefused { .. })).count();
         assert_eq!(refused, 1);
         let why = Refusal::State(LoopState::Engaged);
-        assert!(control.events().any(|event| matches!(event, Event::CommandRefused { why: told, .. } if *told == why)));
+        assert!(
+            control.events().any(|event| matches!(event, Event::CommandRefused { why: report, .. } if *report == why))
+        );
         assert!(!control.withholds_beat());
     }
     let after = (400..1000).map(|k| tick(&mut control, k)).last();

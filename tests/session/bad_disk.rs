@@ -12,11 +12,11 @@ use std::{
     time::{Duration, Instant},
 };
 
-use nima_machine::runtime::{self, Assembly, Clock, Handle, tap};
-use nima_recording::session::{Encoding, Reader};
+use nima_machine::runtime::{self, Assembly, LoopHandle, RuntimeClock, tap};
+use nima_recording::session::{Encoding, SessionReader};
 use nima_session::{
-    outlet::{Audience, Destination},
-    recorder::{RecordError, Recorder},
+    recorder::{RecordError, SessionRecorder},
+    sinks::{Audience, Destination},
 };
 use nima_testing::real_time::judged;
 use nima_tests::plan;
@@ -46,11 +46,12 @@ impl Audience for Watching {
     }
 }
 
-fn run(to: Destination<'_>) -> (Recorder, Handle) {
+fn run(to: Destination<'_>) -> (SessionRecorder, LoopHandle) {
     let plan = plan("peg_transfer");
     let (tap, end) = tap();
-    let recorder = Recorder::start(to, about(), plan.origin(), end).unwrap();
-    let assembly = Assembly { tap: Some(tap), clock: Clock::Simulated { speed: 4.0 }, ..plan.simulated().unwrap() };
+    let recorder = SessionRecorder::start(to, about(), plan.origin(), end).unwrap();
+    let assembly =
+        Assembly { tap: Some(tap), clock: RuntimeClock::Simulated { speed: 4.0 }, ..plan.simulated().unwrap() };
     (recorder, runtime::start(assembly).unwrap())
 }
 
@@ -63,7 +64,7 @@ fn wait_for(mut what: impl FnMut() -> bool) {
 }
 
 /// Waits until the loop has made this many more ticks.
-fn wait_for_ticks(handle: &Handle, count: u64) {
+fn wait_for_ticks(handle: &LoopHandle, count: u64) {
     let mut first = None;
     let mut newest = 0;
     wait_for(|| {
@@ -90,7 +91,7 @@ fn unplug(path: &Path) {
 }
 
 fn times(path: &Path) -> Vec<u64> {
-    let reader = Reader::open(path).unwrap();
+    let reader = SessionReader::open(path).unwrap();
     assert!(reader.notes().is_empty(), "{:?}", reader.notes());
     reader.messages(&["right/forces"], 0..u64::MAX).map(|message| message.unwrap().log_time_ns()).collect()
 }
@@ -115,13 +116,17 @@ fn a_slow_disk_is_told_and_the_loop_goes_on_and_the_file_says_what_is_missing() 
         wait_for_ticks(&handle, 1000);
         wait_for(|| recorder.progress().waits < Duration::from_millis(200));
         let summary = handle.stop_and_join().unwrap();
-        let told = recorder.finish().unwrap();
-        assert!(told.ticks + told.lost >= summary.ticks && told.ticks < summary.ticks, "{told:?}, {}", summary.ticks);
+        let report = recorder.finish().unwrap();
+        assert!(
+            report.ticks + report.lost >= summary.ticks && report.ticks < summary.ticks,
+            "{report:?}, {}",
+            summary.ticks
+        );
         let outcome = replayed(&path).unwrap();
         let hole = outcome.hole.unwrap();
-        assert!(outcome.differs.is_none() && hole.tick > 500 && hole.lost == told.lost, "{outcome:?}, {told:?}");
+        assert!(outcome.differs.is_none() && hole.tick > 500 && hole.lost == report.lost, "{outcome:?}, {report:?}");
         let times = times(&path);
-        assert_eq!(times.len() as u64, told.ticks, "later data are present too");
+        assert_eq!(times.len() as u64, report.ticks, "later data are present too");
         assert!(times.windows(2).any(|pair| pair[1] - pair[0] > 500_000_000), "and a stretch between is not");
     });
 }

@@ -7,27 +7,27 @@ use std::{
 
 use nalgebra::{UnitQuaternion, Vector3};
 use nima_core::{
-    calibration::gravity::{GravityModel, Parameters, Source},
+    calibration::gravity::{GravityModel, GravityParameters, GravitySource},
     frames::{GRAVITY_M_S2, Wrench, WristSample},
-    kinematics::Hand,
+    kinematics::HandPose,
 };
-use nima_devices::{Loss, SlotView, Standing};
+use nima_devices::{ConnectionState, Loss, SlotView};
 use nima_machine::{
     config::SchedulingClass,
     messages::{Command, Fault, ForceSource, LoopState},
-    rig::{DeviceEvent, Inputs, Outputs, Part, Rig, RosterEntry, SIDES, Sensed, Side},
-    runtime::{self, Assembly, Clock, tap},
+    rig::{DeviceEvent, Inputs, Outputs, Rig, RigPart, RosterEntry, SIDES, SensedForce, Side},
+    runtime::{self, Assembly, RuntimeClock, tap},
     teleop::{Calibrations, Timing},
 };
 use nima_session::{
-    digest::Stage,
-    journal::{Block, BlockWriter, Encoder, Message, Noted, Start, decode},
-    replay::{Differs, Hole, ReplayError},
+    digest::TickStage,
+    journal::{BlockWriter, JournalBlock, JournalEncoder, JournalMessage, JournalStart, TickNote, decode},
+    replay::{Differs, JournalGap, ReplayError},
 };
 use nima_simulation::Worlds;
 use nima_tests::plan;
 
-use crate::bench::{Kept, record, record_on, start_of};
+use crate::bench::{JournalMessages, record, record_on, start_of};
 
 /// A world whose measurements are corrupted at times.
 struct Spoilt<F> {
@@ -63,7 +63,7 @@ fn faults_are_replayed_with_their_causes() {
         }),
         ("frozen", |t_s, inputs| {
             if let (true, Some(right)) = (t_s > 2.0, &mut inputs[0]) {
-                right.sensed = Sensed::AtTip(Vector3::new(0.1, 0.2, 1.3));
+                right.sensed = SensedForce::AtTip(Vector3::new(0.1, 0.2, 1.3));
             }
         }),
         ("handle jumps", |t_s, inputs| {
@@ -103,7 +103,7 @@ fn faults_are_replayed_with_their_causes() {
 /// An arm at rest with a wrist sensor that connects, disconnects and connects again.
 struct AtWrist {
     t_s: f64,
-    events: Vec<(f64, Standing)>,
+    events: Vec<(f64, ConnectionState)>,
 }
 
 impl Rig for AtWrist {
@@ -116,9 +116,9 @@ impl Rig for AtWrist {
             ..WristSample::of(Wrench { force_n, torque_nm: Vector3::zeros() })
         };
         let right = Inputs {
-            hand: Hand::at(Vector3::new(1e-6 * now_s, 0.0, 0.0)),
+            hand: HandPose::at(Vector3::new(1e-6 * now_s, 0.0, 0.0)),
             tip_m: Vector3::new(0.0, 1e-7 * now_s, 0.0),
-            sensed: Sensed::AtWrist(sample),
+            sensed: SensedForce::AtWrist(sample),
             powered: true,
             ..Inputs::NOTHING
         };
@@ -137,9 +137,10 @@ impl Rig for AtWrist {
 
 fn calibrated(mass_kg: f64) -> Calibrations {
     let s1_from_source_wxyz = [1.0, 0.0, 0.0, 0.0];
-    let parameters = Parameters::Physical { mass_kg, s1_from_source_wxyz, bias_n: [0.1, 0.2, 0.3], torque: None };
+    let parameters =
+        GravityParameters::Physical { mass_kg, s1_from_source_wxyz, bias_n: [0.1, 0.2, 0.3], torque: None };
     Calibrations {
-        gravity: Some(GravityModel { source: Source::Imu, imu_sign: 1, parameters }),
+        gravity: Some(GravityModel { source: GravitySource::Imu, imu_sign: 1, parameters }),
         ..Calibrations::default()
     }
 }
@@ -148,17 +149,17 @@ fn calibrated(mass_kg: f64) -> Calibrations {
 fn calibrations_put_in_force_while_the_loop_runs_are_in_the_journal() {
     let mut plan = plan("peg_transfer");
     plan.engage = false;
-    let roster = vec![RosterEntry::of(Part::Sensor(Side::Right), "", SlotView::default())];
-    let lost = Standing::Lost(Loss::Disconnected);
-    let events = vec![(0.2, Standing::Connected), (1.5, lost), (2.0, Standing::Connected)];
+    let roster = vec![RosterEntry::of(RigPart::Sensor(Side::Right), "", SlotView::default())];
+    let lost = ConnectionState::Lost(Loss::Disconnected);
+    let events = vec![(0.2, ConnectionState::Connected), (1.5, lost), (2.0, ConnectionState::Connected)];
     let rig = Box::new(AtWrist { t_s: 0.0, events });
     let (tap, end) = tap();
     let start = start_of(&plan);
-    let reader = thread::spawn(move || Kept::of(&start, &end));
+    let reader = thread::spawn(move || JournalMessages::of(&start, &end));
     let assembly = Assembly {
         rig,
         roster,
-        clock: Clock::Simulated { speed: 5.0 },
+        clock: RuntimeClock::Simulated { speed: 5.0 },
         scheduling: SchedulingClass::Ordinary,
         tap: Some(tap),
         ..plan.simulated().unwrap()
@@ -173,7 +174,7 @@ fn calibrations_put_in_force_while_the_loop_runs_are_in_the_journal() {
         if change.is_there() && seen != Some(change) {
             // A different one each time.
             let mass_kg = if seen.is_none() { 0.4 } else { 0.39 };
-            seen = handle.put_in_force(change, &calibrated(mass_kg)).then_some(change);
+            seen = handle.activate(change, &calibrated(mass_kg)).then_some(change);
         }
         handle.drain_ticks(|tick| t_s = tick.t_s);
         if t_s > 0.8 && !asked {
@@ -184,7 +185,7 @@ fn calibrations_put_in_force_while_the_loop_runs_are_in_the_journal() {
     handle.stop_and_join().unwrap();
     let kept = reader.join().unwrap();
     let messages: Vec<_> = kept.0.iter().map(|bytes| decode(bytes).unwrap().1).collect();
-    let calibrations = messages.iter().filter(|message| matches!(message, Message::Calibrations { .. })).count();
+    let calibrations = messages.iter().filter(|message| matches!(message, JournalMessage::Calibrations { .. })).count();
     assert!(calibrations >= 2, "{calibrations} calibrations in the journal");
     let mut sources = Vec::new();
     let mut states = Vec::new();
@@ -204,8 +205,8 @@ fn calibrations_put_in_force_while_the_loop_runs_are_in_the_journal() {
     let lost = LoopState::Faulted(Fault::DeviceLost { device: 0, loss: Loss::Disconnected });
     assert!(states.contains(&LoopState::Engaged) && states.contains(&lost), "{states:?}");
     // Without the calibrations the replay reports an error instead of continuing.
-    let mut without = Kept(kept.0.clone());
-    without.0.retain(|bytes| !matches!(decode(bytes), Ok((_, Message::Calibrations { .. }))));
+    let mut without = JournalMessages(kept.0.clone());
+    without.0.retain(|bytes| !matches!(decode(bytes), Ok((_, JournalMessage::Calibrations { .. }))));
     assert!(matches!(without.replayed(|_| {}), Err(ReplayError::Missing { .. })));
 }
 
@@ -219,7 +220,7 @@ fn a_hole_is_told_and_nothing_behind_it_is_compared() {
         // Read too late for the queue's capacity.
         move || {
             thread::sleep(Duration::from_millis(300));
-            Kept::of(&start, &end)
+            JournalMessages::of(&start, &end)
         }
     });
     for k in 0..10_000_u32 {
@@ -233,21 +234,21 @@ fn a_hole_is_told_and_nothing_behind_it_is_compared() {
     }
     drop(tap);
     let outcome = reader.join().unwrap().replayed(|_| {}).unwrap();
-    let Some(Hole { tick, lost }) = outcome.hole else { panic!("{outcome:?}") };
+    let Some(JournalGap { tick, lost }) = outcome.hole else { panic!("{outcome:?}") };
     assert_eq!((outcome.ticks, outcome.differs), (tick, None));
     assert!((2000..3000).contains(&tick) && lost > 3000, "{outcome:?}");
 }
 
 /// The same journal with a modification of the block with this number, including correct checksums.
-fn forged(kept: &Kept, which: usize, change: impl Fn(&mut Block)) -> Kept {
-    let mut encoder = Encoder::default();
-    let mut start = None::<Start>;
+fn forged(kept: &JournalMessages, which: usize, change: impl Fn(&mut JournalBlock)) -> JournalMessages {
+    let mut encoder = JournalEncoder::default();
+    let mut start = None::<JournalStart>;
     let mut blocks = Vec::new();
     for bytes in &kept.0 {
         match decode(bytes).unwrap().1 {
-            Message::Start(told) => start = Some(told),
-            Message::Block(block) => blocks.push(block),
-            Message::Calibrations { .. } | Message::End(_) => {}
+            JournalMessage::Start(report) => start = Some(report),
+            JournalMessage::Block(block) => blocks.push(block),
+            JournalMessage::Calibrations { .. } | JournalMessage::End(_) => {}
         }
     }
     let mut messages = vec![encoder.start(&start.unwrap()).unwrap()];
@@ -261,7 +262,7 @@ fn forged(kept: &Kept, which: usize, change: impl Fn(&mut Block)) -> Kept {
         }
         messages.push(encoder.block(&mut writer));
     }
-    Kept(messages)
+    JournalMessages(messages)
 }
 
 #[test]
@@ -270,21 +271,21 @@ fn a_changed_bit_of_an_input_is_found_at_its_tick_and_stage_even_with_right_chec
     let same = forged(&kept, 12, |_| {}).replayed(|_| {}).unwrap();
     assert_eq!((same.ticks, same.differs, same.closed), (5000, None, false), "without the end it was not closed");
     let nudged = forged(&kept, 12, |block| {
-        let Some(Inputs { sensed: Sensed::AtTip(force_n), .. }) = &mut block.rows[34].inputs[0] else { panic!() };
+        let Some(Inputs { sensed: SensedForce::AtTip(force_n), .. }) = &mut block.rows[34].inputs[0] else { panic!() };
         force_n.y = f64::from_bits(force_n.y.to_bits() ^ 1);
     });
     let Some(Differs { tick, place, .. }) = nudged.replayed(|_| {}).unwrap().differs else { panic!("not found") };
-    assert_eq!((tick, place), (12 * 200 + 34, Some((Side::Right, Stage::ForcePath))));
+    assert_eq!((tick, place), (12 * 200 + 34, Some((Side::Right, TickStage::ForcePath))));
     let moved = forged(&kept, 12, |block| {
         let Some(Inputs { hand, .. }) = &mut block.rows[34].inputs[0] else { panic!() };
         hand.position_m.z += 1e-4;
     });
     let differs = moved.replayed(|_| {}).unwrap().differs.unwrap();
     assert_eq!(differs.tick, 12 * 200 + 34);
-    assert_ne!(differs.place, Some((Side::Right, Stage::ForcePath)), "the handle changes no measured force");
+    assert_ne!(differs.place, Some((Side::Right, TickStage::ForcePath)), "the handle changes no measured force");
     let commanded = forged(&kept, 12, |block| {
         let operation = runtime::Operation::Command { command: Command::Stop, t_s: 2.4 };
-        block.noted.push((34, Noted::Operation(operation)));
+        block.noted.push((34, TickNote::Operation(operation)));
     });
     assert_eq!(commanded.replayed(|_| {}).unwrap().differs.unwrap().tick, 12 * 200 + 34);
 }

@@ -10,31 +10,31 @@ use std::{
 use nima_core::impedance::Mode;
 use nima_machine::{
     messages::{Command, Tick},
-    runtime::{self, Assembly, Clock, tap},
+    runtime::{self, Assembly, RuntimeClock, tap},
 };
-use nima_recording::session::{ReadError, Reader, WriteError, Writer};
+use nima_recording::session::{ReadError, SessionReader, SessionWriter, WriteError};
 use nima_session::{
-    Words,
-    file::Recorded,
-    outlet::Destination,
-    recorder::{About, Attached, JOURNAL_TOPIC, Progress, RecordError, Recorder},
-    replay::{Change, Outcome, ReplayError, compare, replay, verify},
+    SentenceChannel,
+    file::RecordedFile,
+    recorder::{AttachedFile, JOURNAL_TOPIC, RecordError, RecordingInfo, RecordingProgress, SessionRecorder},
+    replay::{ReplayError, ReplayOutcome, WhatIfChange, compare, replay, verify},
+    sinks::Destination,
 };
-use nima_simulation::Plan;
+use nima_simulation::SimulationPlan;
 use nima_tests::plan;
 
-pub(crate) fn about() -> About {
+pub(crate) fn about() -> RecordingInfo {
     let seed = BTreeMap::from([("seed".to_owned(), "1".to_owned())]);
-    About {
+    RecordingInfo {
         program: "test".to_owned(),
         started_ns: 1_700_000_000_000_000_000,
         metadata: BTreeMap::from([("session".to_owned(), seed)]),
-        files: vec![Attached {
+        files: vec![AttachedFile {
             name: "scene.toml".into(),
             media_type: "application/toml".into(),
             data: b"name = \"x\"".into(),
         }],
-        words: Words {
+        words: SentenceChannel {
             event: |event, _| format!("{event:?}"),
             operation: |operation, _| format!("{operation:?}"),
             happening: |event| format!("{event:?}"),
@@ -42,15 +42,20 @@ pub(crate) fn about() -> About {
     }
 }
 
-pub(crate) fn recorded(path: &Path, plan: &Plan, seconds: f64, each: impl FnMut(&Tick) -> Option<Command>) -> Progress {
+pub(crate) fn recorded(
+    path: &Path,
+    plan: &SimulationPlan,
+    seconds: f64,
+    each: impl FnMut(&Tick) -> Option<Command>,
+) -> RecordingProgress {
     let (tap, end) = tap();
-    let recorder = Recorder::start(Destination::file(path), about(), plan.origin(), end).unwrap();
+    let recorder = SessionRecorder::start(Destination::file(path), about(), plan.origin(), end).unwrap();
     runtime::run_virtual(Assembly { tap: Some(tap), ..plan.simulated().unwrap() }, seconds, each);
     recorder.finish().unwrap()
 }
 
-pub(crate) fn replayed(path: &Path) -> Result<Outcome, ReplayError> {
-    let file = Recorded::open(path)?;
+pub(crate) fn replayed(path: &Path) -> Result<ReplayOutcome, ReplayError> {
+    let file = RecordedFile::open(path)?;
     replay(file.journal()?, |_| {})
 }
 
@@ -60,12 +65,12 @@ const WHOLE: Range<f64> = 0.0..f64::INFINITY;
 fn a_session_file_replays_and_can_be_plotted() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("session.mcap");
-    let told =
+    let report =
         recorded(&path, &plan("bimanual"), 6.0, |tick| (tick.index == 2000).then_some(Command::SetMode(Mode::Dfr)));
-    assert_eq!((told.ticks, told.lost), (6000, 0));
+    assert_eq!((report.ticks, report.lost), (6000, 0));
     let outcome = replayed(&path).unwrap();
     assert_eq!((outcome.ticks, outcome.differs, outcome.hole, outcome.closed), (6000, None, None, true));
-    let reader = Reader::open(&path).unwrap();
+    let reader = SessionReader::open(&path).unwrap();
     assert!(reader.notes().is_empty(), "{:?}", reader.notes());
     for topic in ["right/forces", "left/forces", "right/poses", "left/gates"] {
         let messages: Vec<_> = reader.messages(&[topic], 0..u64::MAX).collect::<Result<_, _>>().unwrap();
@@ -87,17 +92,17 @@ fn a_change_differs_where_it_was_made_and_nothing_changed_differs_nowhere() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("session.mcap");
     recorded(&path, &plan("peg_transfer"), 10.0, |tick| (tick.index == 4000).then_some(Command::SetGain(0.8)));
-    let file = Recorded::open(&path).unwrap();
-    let with = |change: Change| compare(&mut file.journal().unwrap(), &change, &WHOLE, |_, _| {}).unwrap();
-    let ([right, left], ticks, hole) = with(Change::default());
+    let file = RecordedFile::open(&path).unwrap();
+    let with = |change: WhatIfChange| compare(&mut file.journal().unwrap(), &change, &WHOLE, |_, _| {}).unwrap();
+    let ([right, left], ticks, hole) = with(WhatIfChange::default());
     let same = right.unwrap();
     assert!(left.is_none() && ticks == 10_000 && hole.is_none());
     assert!(same.rendered.max_n < f64::EPSILON && same.engaged > 8000 && same.apart == 0, "{same:?}");
-    let none = with(Change { gain: Some(0.0), ..Change::default() }).0[0].unwrap();
+    let none = with(WhatIfChange { gain: Some(0.0), ..WhatIfChange::default() }).0[0].unwrap();
     assert!((none.rendered.mean_n - mean_rendered_n(&file)).abs() < 1e-9, "{none:?}");
-    let late = with(Change { delay_s: Some(0.3), ..Change::default() }).0[0].unwrap();
+    let late = with(WhatIfChange { delay_s: Some(0.3), ..WhatIfChange::default() }).0[0].unwrap();
     assert!(late.changed_error.mean_n > 1.5 * late.recorded_error.mean_n, "{late:?}");
-    let reflected = with(Change { mode: Some(Mode::Dfr), ..Change::default() }).0[0].unwrap();
+    let reflected = with(WhatIfChange { mode: Some(Mode::Dfr), ..WhatIfChange::default() }).0[0].unwrap();
     assert!(reflected.rendered.mean_n > 0.01, "{reflected:?}");
 }
 
@@ -106,9 +111,9 @@ fn a_stretch_is_compared_alone_after_all_before_it_was_replayed() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("session.mcap");
     recorded(&path, &plan("bimanual"), 5.0, |tick| (tick.index == 2100).then_some(Command::SetGain(0.8)));
-    let file = Recorded::open(&path).unwrap();
+    let file = RecordedFile::open(&path).unwrap();
     let stretch = |stretch_s: Range<f64>| {
-        let Outcome { before, ticks, differs, closed, .. } =
+        let ReplayOutcome { before, ticks, differs, closed, .. } =
             verify(file.journal().unwrap(), &stretch_s, |_| ()).unwrap();
         assert_eq!(differs, None);
         (before, ticks, closed)
@@ -118,13 +123,13 @@ fn a_stretch_is_compared_alone_after_all_before_it_was_replayed() {
     assert_eq!(stretch(3.217..f64::INFINITY), (3217, 1783, true));
     assert_eq!(stretch(0.0..0.05), (0, 50, false));
     // The same difference, tick by tick, as in the whole session.
-    let change = Change { mode: Some(Mode::Dfr), ..Change::default() };
+    let change = WhatIfChange { mode: Some(Mode::Dfr), ..WhatIfChange::default() };
     let forces_n = |stretch_s: &Range<f64>| {
         let mut forces_n = Vec::new();
-        let told = compare(&mut file.journal().unwrap(), &change, stretch_s, |was, would| {
+        let report = compare(&mut file.journal().unwrap(), &change, stretch_s, |was, would| {
             forces_n.push((was.rendered_n, would.rendered_n));
         });
-        (told.unwrap().1, forces_n)
+        (report.unwrap().1, forces_n)
     };
     let (_, whole) = forces_n(&WHOLE);
     let (ticks, part) = forces_n(&(2.05..3.217));
@@ -133,7 +138,7 @@ fn a_stretch_is_compared_alone_after_all_before_it_was_replayed() {
 }
 
 /// Mean of the rendered force while engaged, N.
-fn mean_rendered_n(file: &Recorded) -> f64 {
+fn mean_rendered_n(file: &RecordedFile) -> f64 {
     let mut sum_n = 0.0;
     let mut count = 0;
     replay(file.journal().unwrap(), |replayed| {
@@ -180,7 +185,7 @@ fn files_that_cannot_be_replayed_are_named() {
     assert!(matches!(replayed(&at("empty")), Err(ReplayError::File(ReadError::Empty { .. }))));
     std::fs::write(at("foreign"), "t_s,x_m\n0,1\n").unwrap();
     assert!(matches!(replayed(&at("foreign")), Err(ReplayError::File(ReadError::Foreign { .. }))));
-    Writer::create(&at("other.mcap"), "another program").unwrap().finish().unwrap();
+    SessionWriter::create(&at("other.mcap"), "another program").unwrap().finish().unwrap();
     assert!(matches!(replayed(&at("other.mcap")), Err(ReplayError::NoJournal)));
     recorded(&at("whole"), &plan("peg_transfer"), 4.0, |_| None);
     let whole = std::fs::read(at("whole")).unwrap();
@@ -195,7 +200,7 @@ fn files_that_cannot_be_replayed_are_named() {
     }
     assert!(
         matches!(
-            Recorder::start(Destination::file(&at("whole")), about(), plan("peg_transfer").origin(), tap().1),
+            SessionRecorder::start(Destination::file(&at("whole")), about(), plan("peg_transfer").origin(), tap().1),
             Err(RecordError::Write(WriteError::Create { .. }))
         ),
         "a session is never overwritten"
@@ -208,8 +213,9 @@ fn a_folder_that_is_gone_is_told_at_once_and_the_loop_goes_on() {
     let path = folder.path().join("session.mcap");
     let plan = plan("peg_transfer");
     let (tap, end) = tap();
-    let recorder = Recorder::start(Destination::file(&path), about(), plan.origin(), end).unwrap();
-    let assembly = Assembly { tap: Some(tap), clock: Clock::Simulated { speed: 4.0 }, ..plan.simulated().unwrap() };
+    let recorder = SessionRecorder::start(Destination::file(&path), about(), plan.origin(), end).unwrap();
+    let assembly =
+        Assembly { tap: Some(tap), clock: RuntimeClock::Simulated { speed: 4.0 }, ..plan.simulated().unwrap() };
     let handle = runtime::start(assembly).unwrap();
     let begin = Instant::now();
     let wait_for = |what: &dyn Fn() -> bool| {

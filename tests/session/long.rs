@@ -3,12 +3,12 @@
 use std::{fs, time::Instant};
 
 use nima_machine::runtime::{self, Assembly, tap};
-use nima_recording::session::{Reader, Writer};
+use nima_recording::session::{SessionReader, SessionWriter};
 use nima_session::{
-    file::Recorded,
-    outlet::Destination,
-    recorder::{JOURNAL_TOPIC, Recorder},
-    replay::{Journal, Messages, Outcome, replay, verify},
+    file::RecordedFile,
+    recorder::{JOURNAL_TOPIC, SessionRecorder},
+    replay::{Journal, ReplayOutcome, StepsMessages, replay, verify},
+    sinks::Destination,
 };
 use nima_tests::plan;
 
@@ -30,7 +30,7 @@ fn figures_of_a_long_session() {
     let [path, journal] = ["session.mcap", "journal.mcap"].map(|name| folder.path().join(name));
     let plan = plan("bimanual");
     let (tap, end) = tap();
-    let recorder = Recorder::start(Destination::file(&path), about(), plan.origin(), end).unwrap();
+    let recorder = SessionRecorder::start(Destination::file(&path), about(), plan.origin(), end).unwrap();
     let begin = Instant::now();
     let mut memory = Vec::new();
     runtime::run_virtual(Assembly { tap: Some(tap), ..plan.simulated().unwrap() }, minutes as f64 * 60.0, |tick| {
@@ -39,14 +39,14 @@ fn figures_of_a_long_session() {
         }
         None
     });
-    let told = recorder.finish().unwrap();
+    let report = recorder.finish().unwrap();
     let took_s = begin.elapsed().as_secs_f64();
-    assert_eq!((told.ticks, told.lost), (minutes * 60_000, 0));
-    let reader = Reader::open(&path).unwrap();
+    assert_eq!((report.ticks, report.lost), (minutes * 60_000, 0));
+    let reader = SessionReader::open(&path).unwrap();
     let forces = reader.channels().iter().find(|channel| channel.topic == "left/forces").unwrap();
     assert_eq!(forces.messages, Some(minutes * 60_000), "every sample is present");
     // Only the journal, in chunks as long as the session's.
-    let mut alone = Writer::create(&journal, "figures").unwrap();
+    let mut alone = SessionWriter::create(&journal, "figures").unwrap();
     let channel = reader.channels().iter().find(|channel| channel.topic == JOURNAL_TOPIC).unwrap();
     let channel = alone.channel(JOURNAL_TOPIC, channel.encoding.clone()).unwrap();
     for message in reader.messages(&[JOURNAL_TOPIC], 0..u64::MAX) {
@@ -59,7 +59,7 @@ fn figures_of_a_long_session() {
     let journal_mb = per_minute(&journal);
     println!(
         "{minutes} min in {took_s:.0} s: {} ticks, 0 lost; all {all_mb:.1} MB/min, journal {journal_mb:.1} MB/min; 8 h: {:.1} GB",
-        told.ticks,
+        report.ticks,
         all_mb * 0.48
     );
     println!("memory after each minute, MB: {memory:.1?}");
@@ -80,8 +80,8 @@ fn figures_of_replay() {
     for scene in ["bimanual", "peg_transfer"] {
         let path = folder.path().join(scene);
         recorded(&path, &plan(scene), SECONDS, |_| None);
-        let file = Recorded::open(&path).unwrap();
-        let timed = |way: &dyn Fn(Journal<Messages>) -> Outcome| {
+        let file = RecordedFile::open(&path).unwrap();
+        let timed = |way: &dyn Fn(Journal<StepsMessages>) -> ReplayOutcome| {
             let begin = Instant::now();
             let outcome = way(file.journal().unwrap());
             assert!(outcome.differs.is_none() && outcome.closed, "{outcome:?}");

@@ -4,7 +4,7 @@ use std::sync::atomic::AtomicBool;
 
 use nima_core::{
     calibration::{Judgement, Verdict},
-    tip_force::{Check, Fallback, FeatureSettings, Model, TipForce, TrainingSettings},
+    tip_force::{Fallback, FeatureSettings, ForceModel, LiveTipForce, OriginCheck, TrainingSettings},
 };
 use nima_machine::{
     config::RigConfig,
@@ -12,10 +12,10 @@ use nima_machine::{
     rig::{Prompt, Side},
     teleop::Calibrations,
 };
-use nima_simulation::Plan;
+use nima_simulation::SimulationPlan;
 use nima_study::validation::{
-    experiment::Experiment,
-    isolation::{Known, record as recorded},
+    experiment::SimulatedExperiment,
+    isolation::{PriorCalibrations, record as recorded},
 };
 use nima_training::train_model;
 
@@ -24,8 +24,8 @@ use crate::bench::record;
 const SOMEBODY: &str = "Dr Somebody";
 
 /// A network that was accepted by a person although it was not proven.
-fn network(known: &Known) -> Model {
-    let scene = Experiment::scene("isolation", 3).unwrap();
+fn network(known: &PriorCalibrations) -> ForceModel {
+    let scene = SimulatedExperiment::scene("isolation", 3).unwrap();
     let data = recorded(&scene, known, FeatureSettings::default(), 6000, 7.0).unwrap().data(None).unwrap();
     let settings = TrainingSettings { members: 2, epochs: Some(10), ..TrainingSettings::default() };
     let mut model = train_model(&data, &settings, [None, None], &AtomicBool::new(false), &|_| {}).unwrap();
@@ -34,7 +34,7 @@ fn network(known: &Known) -> Model {
         override_reason: Some(format!("{SOMEBODY} was in a hurry")),
         ..Judgement::new(Verdict::PoorData, "too few rows")
     };
-    model.origin.check = Some(Check {
+    model.origin.check = Some(OriginCheck {
         judgement,
         date: "2026-11-23T08:00:00Z".to_owned(),
         rows: 1,
@@ -42,20 +42,20 @@ fn network(known: &Known) -> Model {
         sd_n: [0.1; 3],
         free_mean_n: [0.0; 3],
         free_sd_n: [0.0; 3],
-        doubt_share: 0.0,
+        doubt_fraction: 0.0,
     });
     model
 }
 
 #[test]
 fn a_network_in_force_replays_to_the_bit_and_tells_no_name_of_a_person() {
-    let known = Known::calibrate(3).unwrap();
+    let known = PriorCalibrations::calibrate(3).unwrap();
     let model = network(&known);
     for fallback in [Fallback::WristForce, Fallback::HoldAndFade] {
-        let tip_force = Some(TipForce::new(model.clone(), fallback).unwrap());
-        let plan = Plan {
+        let tip_force = Some(LiveTipForce::new(model.clone(), fallback).unwrap());
+        let plan = SimulationPlan {
             rig: RigConfig::load("simulated").unwrap(),
-            scene: Experiment::scene("isolation", 4).unwrap(),
+            scene: SimulatedExperiment::scene("isolation", 4).unwrap(),
             calibrations: [
                 Calibrations { gravity: Some(known.gravity), tip_force, ..Calibrations::default() },
                 Calibrations::default(),

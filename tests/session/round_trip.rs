@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 use nima_core::impedance::Mode;
 use nima_machine::{
     messages::{Command, Tick},
-    rig::{Act, Side},
+    rig::{Side, TaskAction},
 };
 use nima_simulation::scene::Scene;
 use nima_tests::plan;
@@ -77,7 +77,7 @@ fn by_mouse(tick: &Tick) -> Option<Command> {
         9_500 => Command::Grip(Side::Right, Some(0.7)),
         11_000 => Command::Guide(Side::Right, Some(Vector3::new(0.02, 0.0, 0.004))),
         12_000 => Command::Grip(Side::Right, Some(0.0)),
-        13_000 => Command::Task(Side::Right, Act::Begin),
+        13_000 => Command::Task(Side::Right, TaskAction::Begin),
         14_000 => Command::Grip(Side::Right, None),
         14_500 => Command::Guide(Side::Right, None),
         _ => return None,
@@ -94,12 +94,12 @@ fn rings_and_a_wire_replay_bit_for_bit_and_are_the_same_when_they_are_done_again
             felt.collect::<Vec<u64>>()
         };
         let done = || {
-            let mut told = Vec::new();
+            let mut report = Vec::new();
             let kept = record(&plan, 30.0, |tick| {
-                told.extend(bits(tick));
+                report.extend(bits(tick));
                 by_mouse(tick)
             });
-            (kept, told)
+            (kept, report)
         };
         let [(kept, first), (_, second)] = [done(), done()];
         assert!(first == second, "{scene}: the same commands give the same simulation");

@@ -3,16 +3,16 @@
 use std::path::Path;
 
 use nima_machine::rig::Side;
-use nima_recording::{csv::RecordingError, session::Reader};
-use nima_session::plotted::{PlottedError, PlottedTick, each_tick, recording};
-use nima_simulation::Plan;
+use nima_recording::{csv::RecordingError, session::SessionReader};
+use nima_session::plot_channels::{PlottedError, PlottedTick, each_tick, recording};
+use nima_simulation::SimulationPlan;
 use nima_tests::plan;
 
 use crate::file::{recorded, replayed};
 
 fn ticks(path: &Path) -> Vec<PlottedTick> {
     let mut ticks = Vec::new();
-    let reader = Reader::open(path).unwrap();
+    let reader = SessionReader::open(path).unwrap();
     each_tick(&reader, path, Side::Right, 0..u64::MAX, |tick| {
         ticks.push(tick);
         Ok::<_, PlottedError>(())
@@ -25,7 +25,7 @@ fn ticks(path: &Path) -> Vec<PlottedTick> {
 fn an_uncalibrated_arm_has_no_force_in_its_session() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("session.mcap");
-    recorded(&path, &Plan { engage: false, ..plan("palpation") }, 1.0, |_| None);
+    recorded(&path, &SimulationPlan { engage: false, ..plan("palpation") }, 1.0, |_| None);
     assert_eq!(replayed(&path).unwrap().differs, None, "a number that is none is replayed too");
     let ticks = ticks(&path);
     assert_eq!(ticks.len(), 1000);

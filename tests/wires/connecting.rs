@@ -3,14 +3,14 @@
 #![cfg(target_os = "linux")]
 use std::time::{Duration, Instant};
 
-use nima_devices::{Standing, force_dimension};
+use nima_devices::{ConnectionState, force_dimension};
 use nima_emulation::emulators::EmulatedFault;
 use nima_machine::{
-    config::{Chosen, RigConfig},
-    rig::{Gauge, Gauges, Healths, Part, PartKind, Side},
-    runtime::Handle,
+    config::{ChosenDevice, RigConfig},
+    rig::{Gauge, Gauges, Healths, PartKind, RigPart, Side},
+    runtime::LoopHandle,
 };
-use nima_simulation::{Plan, scene::Scene};
+use nima_simulation::{SimulationPlan, scene::Scene};
 use nima_testing::real_time::{alone, judged, too_busy};
 use nima_tests::emulated::{elsewhere, rig_file, started};
 
@@ -18,7 +18,7 @@ const TIMEOUT: Duration = Duration::from_secs(20);
 
 /// A running machine, and the last status of its devices.
 struct Machine {
-    handle: Handle,
+    handle: LoopHandle,
     healths: Healths,
     gauges: Option<Gauges>,
 }
@@ -26,7 +26,7 @@ struct Machine {
 impl Machine {
     fn start(rig: RigConfig) -> Self {
         let scene = Scene::load("peg_transfer").unwrap();
-        let plan = Plan { rig, scene, calibrations: Default::default(), engage: false };
+        let plan = SimulationPlan { rig, scene, calibrations: Default::default(), engage: false };
         Self { handle: nima_simulation::start(&plan).unwrap(), healths: Healths::default(), gauges: None }
     }
 
@@ -44,23 +44,23 @@ impl Machine {
         }
     }
 
-    fn place(&self, part: Part) -> usize {
+    fn place(&self, part: RigPart) -> usize {
         self.handle.roster().iter().position(|entry| entry.part == Some(part)).unwrap()
     }
 
-    fn is(&self, part: Part, standing: impl Fn(Standing) -> bool) -> bool {
+    fn is(&self, part: RigPart, standing: impl Fn(ConnectionState) -> bool) -> bool {
         standing(self.healths.devices[self.place(part)].standing)
     }
 
     fn all_connected(&self) -> bool {
-        Part::ALL.into_iter().all(|part| self.is(part, |standing| standing == Standing::Connected))
+        RigPart::ALL.into_iter().all(|part| self.is(part, |standing| standing == ConnectionState::Connected))
     }
 
-    fn serial(&self, part: Part) -> String {
+    fn serial(&self, part: RigPart) -> String {
         self.handle.roster()[self.place(part)].view.report().identity.unwrap().serial
     }
 
-    fn gauge(&self, part: Part) -> Option<&Gauge> {
+    fn gauge(&self, part: RigPart) -> Option<&Gauge> {
         self.gauges.as_ref().map(|gauges| &gauges.devices[self.place(part)])
     }
 }
@@ -76,25 +76,27 @@ fn the_chosen_handle_and_the_exchanged_sensors_are_the_ones_that_the_machine_use
         // Emulated handles report their hands, like real ones, so a swap must be set explicitly.
         file.set("devices.right.handle.hand", "right");
         file.set("devices.left.handle.hand", "left");
-        file.choose(Part::Handle(Side::Right), &Chosen::Of(Part::Handle(Side::Left)));
+        file.choose(RigPart::Handle(Side::Right), &ChosenDevice::Of(RigPart::Handle(Side::Left)));
         file.exchange_sides(PartKind::Sensor);
         file.exchange_sides(PartKind::Servos);
         let path = folder.path().join("exchanged.toml");
         file.save(&path).unwrap();
         let mut machine = Machine::start(RigConfig::load(path.to_str().unwrap()).unwrap());
         machine.until("all connected", Machine::all_connected);
-        let serials = [Part::Handle(Side::Right), Part::Handle(Side::Left)].map(|part| machine.serial(part));
+        let serials = [RigPart::Handle(Side::Right), RigPart::Handle(Side::Left)].map(|part| machine.serial(part));
         assert_eq!(serials, ["4712", "4711"]);
-        let serials = [Part::Sensor(Side::Right), Part::Sensor(Side::Left)].map(|part| machine.serial(part));
+        let serials = [RigPart::Sensor(Side::Right), RigPart::Sensor(Side::Left)].map(|part| machine.serial(part));
         assert_eq!(serials, ["SN000902", "SN000901"]);
 
         // A device that falls silent shows which part it serves.
-        for (device, part) in [("left sensor", Part::Sensor(Side::Right)), ("left servos", Part::Servos(Side::Right))] {
+        for (device, part) in
+            [("left sensor", RigPart::Sensor(Side::Right)), ("left servos", RigPart::Servos(Side::Right))]
+        {
             machine.until("all connected", Machine::all_connected);
             assert!(emulated.set_fault(device, EmulatedFault::Silence));
-            machine.until(device, |machine| machine.is(part, |standing| matches!(standing, Standing::Lost(_))));
+            machine.until(device, |machine| machine.is(part, |standing| matches!(standing, ConnectionState::Lost(_))));
             let other = part.kind().of(Side::Left).unwrap();
-            assert!(machine.is(other, |standing| standing == Standing::Connected), "only the one behind it");
+            assert!(machine.is(other, |standing| standing == ConnectionState::Connected), "only the one behind it");
             assert!(emulated.set_fault(device, EmulatedFault::None));
         }
     });
@@ -109,29 +111,30 @@ fn what_every_device_delivers_reaches_the_screen() {
         let emulated = started(&devices);
         let mut machine = Machine::start(rig_file(&devices).rig().unwrap());
         machine.until("all connected", Machine::all_connected);
-        let delivers = |machine: &Machine, part: Part| {
+        let delivers = |machine: &Machine, part: RigPart| {
             let numbers = match part.kind() {
                 PartKind::Handle | PartKind::Arm => 7,
                 // The one under the tissue is of the first generation and has no accelerometer.
-                PartKind::Sensor if part == Part::TissueSensor => 6,
+                PartKind::Sensor if part == RigPart::TissueSensor => 6,
                 PartKind::Sensor | PartKind::Tracker => 9,
                 PartKind::Servos => 4,
                 PartKind::Pedal => 1,
             };
             machine.gauge(part).is_some_and(|gauge| gauge.channels[..numbers].iter().all(|one| one.count > 0))
         };
-        for part in Part::ALL {
+        for part in RigPart::ALL {
             machine.until(part.name(), |machine| delivers(machine, part));
         }
         let gravity = |machine: &Machine, side| {
-            let up = &machine.gauge(Part::Sensor(side)).unwrap().channels[6..9];
+            let up = &machine.gauge(RigPart::Sensor(side)).unwrap().channels[6..9];
             up.iter().map(|one| one.mean * one.mean).sum::<f64>().sqrt()
         };
         for side in Side::ALL {
             assert!((gravity(&machine, side) - 9.81).abs() < 0.3, "{side:?}: {}", gravity(&machine, side));
         }
         emulated.press(1);
-        machine.until("the pedal", |machine| machine.gauge(Part::Pedal).is_some_and(|one| one.channels[0].high > 0.5));
+        machine
+            .until("the pedal", |machine| machine.gauge(RigPart::Pedal).is_some_and(|one| one.channels[0].high > 0.5));
     });
 }
 
@@ -143,7 +146,7 @@ fn handles_that_nobody_uses_are_found_by_their_serial_numbers() {
         let devices = elsewhere(folder.path());
         let _emulated = started(&devices);
         let [right, left] = Side::ALL.map(|side| devices.arm(side).unwrap().handle.force_dimension().unwrap().clone());
-        let serials = |settings: &force_dimension::Settings| -> Vec<u16> {
+        let serials = |settings: &force_dimension::ForceDimensionSettings| -> Vec<u16> {
             force_dimension::attached(settings).unwrap().into_iter().map(|(serial, _)| serial).collect()
         };
         serials(&right);

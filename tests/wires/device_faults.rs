@@ -8,21 +8,21 @@ use std::{
 };
 
 use nima_core::impedance::Mode;
-use nima_devices::{Health, Loss, Standing, Trouble};
+use nima_devices::{ConnectionState, DeviceError, Health, Loss};
 use nima_emulation::{emulated::EmulatedRig, emulators::EmulatedFault};
 use nima_machine::{
     config::RigConfig,
     messages::{Command, Event, LoopState, Tick},
-    rig::Settings,
-    runtime::Handle,
+    rig::RigSettings,
+    runtime::LoopHandle,
 };
-use nima_simulation::{Plan, scene::Scene};
+use nima_simulation::{SimulationPlan, scene::Scene};
 use nima_testing::real_time::{alone, judged, too_busy};
 use nima_tests::emulated::{at_tip, started_in};
 
 /// Time limit for the event of a device; a tracker sends 60 frames per second.
-const TOLD_MS: f64 = 20.0;
-const TRACKER_TOLD_MS: f64 = 100.0;
+const REPORT_MS: f64 = 20.0;
+const TRACKER_REPORT_MS: f64 = 100.0;
 /// Allowance for the test's polling and for a shared computer.
 const SLACK_MS: f64 = 15.0;
 /// Time limit for a device to recover after the end of its fault.
@@ -42,16 +42,16 @@ const LEFT_ALONE: Duration = Duration::from_millis(300);
 const SETS: [&[&str]; 4] =
     [&["right handle"], &["right arm"], &["right sensor"], &["right servos", "tissue sensor", "tracker", "pedal"]];
 
-struct Bench {
+struct Fixture {
     rig: EmulatedRig,
-    handle: Handle,
+    handle: LoopHandle,
     newest: Option<Tick>,
     healths: [Health; 16],
     lost: Vec<(Instant, usize, Loss)>,
 }
 
-impl Bench {
-    fn new(devices: &Settings) -> Self {
+impl Fixture {
+    fn new(devices: &RigSettings) -> Self {
         let mut scene = Scene::load("peg_transfer").unwrap();
         // The faults must remove a force, so the hand presses all the time.
         scene.hand.hold_s = 1e4;
@@ -60,7 +60,7 @@ impl Bench {
         config.devices = Some(devices.clone());
         config.mode = Mode::Dfr;
         config.gates.static_hold = true;
-        let plan = Plan { rig: config, scene, calibrations: Default::default(), engage: true };
+        let plan = SimulationPlan { rig: config, scene, calibrations: Default::default(), engage: true };
         let handle = nima_simulation::start(&plan).unwrap();
         let healths = [Health::default(); 16];
         Self { rig, handle, newest: None, healths, lost: Vec::new() }
@@ -74,7 +74,7 @@ impl Bench {
         self.handle.drain_ticks(|tick| *newest = Some(*tick));
         self.handle.drain_events(|event| {
             if let Event::Device(event) = event
-                && let Standing::Lost(loss) = event.standing
+                && let ConnectionState::Lost(loss) = event.standing
             {
                 lost.push((now, usize::from(event.device), loss));
             }
@@ -147,8 +147,8 @@ impl Bench {
 struct Row {
     device: &'static str,
     fault: &'static str,
-    told: String,
-    told_ms: Option<f64>,
+    report: String,
+    reported_ms: Option<f64>,
     zero_ms: Option<f64>,
     state: &'static str,
     back_s: Option<f64>,
@@ -158,11 +158,12 @@ struct Row {
 impl Row {
     /// Checks the result.
     fn verdict(&self) -> Result<(), String> {
-        let Self { device, fault, told, told_ms, zero_ms, state, back_s, by_itself } = self;
-        let seen =
-            format!("{told:?} after {told_ms:?} ms, no force after {zero_ms:?} ms, {state}, back after {back_s:?} s");
+        let Self { device, fault, report, reported_ms, zero_ms, state, back_s, by_itself } = self;
+        let seen = format!(
+            "{report:?} after {reported_ms:?} ms, no force after {zero_ms:?} ms, {state}, back after {back_s:?} s"
+        );
         let wrong = |what: String| Err(format!("{device}, {fault}: {what} ({seen})"));
-        let limit_ms = SLACK_MS + if *device == "tracker" { TRACKER_TOLD_MS } else { TOLD_MS };
+        let limit_ms = SLACK_MS + if *device == "tracker" { TRACKER_REPORT_MS } else { REPORT_MS };
         let carries_force = !["pedal", "right servos", "tissue sensor", "tracker"].contains(device);
         // Frames are affected at random: while enough good ones arrive they are only counted, and the device is lost
         // when too many in a row are bad, which may happen at any time.
@@ -170,24 +171,24 @@ impl Row {
         let by_chance = ["loss", "garbage", "reorder"].contains(fault) || asked_and_late;
         // A device that is polled for each frame answers late: frames are missing, and it is lost only if one of them
         // is too late.
-        if asked_and_late && told.is_empty() {
+        if asked_and_late && report.is_empty() {
             return wrong("missing frames are not counted".to_owned());
         }
         // A pedal sends only when a foot moves.
-        if told_ms.is_none() && !by_chance && *device != "pedal" {
+        if reported_ms.is_none() && !by_chance && *device != "pedal" {
             return wrong("never told".to_owned());
         }
-        if carries_force && told_ms.is_some() && zero_ms.is_none() {
+        if carries_force && reported_ms.is_some() && zero_ms.is_none() {
             return wrong("the force stays".to_owned());
         }
         if !carries_force && *state != "Engaged" {
             return wrong(format!("the loop is not engaged any more: {state}"));
         }
         let in_time = carries_force || *device == "tracker";
-        if in_time && !by_chance && told_ms.is_some_and(|ms| ms > limit_ms) {
-            return wrong(format!("told after {told_ms:?} ms"));
+        if in_time && !by_chance && reported_ms.is_some_and(|ms| ms > limit_ms) {
+            return wrong(format!("told after {reported_ms:?} ms"));
         }
-        let limit_ms = if by_chance { told_ms.unwrap_or(limit_ms).max(limit_ms) } else { limit_ms };
+        let limit_ms = if by_chance { reported_ms.unwrap_or(limit_ms).max(limit_ms) } else { limit_ms };
         if zero_ms.is_some_and(|ms| ms > limit_ms + 5.0) {
             return wrong(format!("force until {zero_ms:?} ms"));
         }
@@ -208,8 +209,8 @@ fn counted(before: &Health, after: &Health) -> String {
         ("out of order", after.out_of_order.saturating_sub(before.out_of_order)),
         ("refused", after.refused.saturating_sub(before.refused)),
     ];
-    let told: Vec<_> = counters.iter().filter(|(_, n)| *n > 0).map(|(name, n)| format!("{n} {name}")).collect();
-    if told.is_empty() { String::new() } else { format!("counted: {}", told.join(", ")) }
+    let report: Vec<_> = counters.iter().filter(|(_, n)| *n > 0).map(|(name, n)| format!("{n} {name}")).collect();
+    if report.is_empty() { String::new() } else { format!("counted: {}", report.join(", ")) }
 }
 
 /// A device with a fault, and the observations of it.
@@ -218,40 +219,41 @@ struct Trial {
     place: usize,
     before: Health,
     loss: Option<(Instant, Loss)>,
-    told: String,
+    report: String,
     back_s: Option<f64>,
 }
 
 impl Trial {
-    fn begin(bench: &Bench, device: &'static str) -> Self {
+    fn begin(bench: &Fixture, device: &'static str) -> Self {
         let place = bench.place(device);
-        Self { device, place, before: bench.healths[place], loss: None, told: String::new(), back_s: None }
+        Self { device, place, before: bench.healths[place], loss: None, report: String::new(), back_s: None }
     }
 
-    fn look(&mut self, bench: &Bench) {
+    fn look(&mut self, bench: &Fixture) {
         let of_it = bench.lost.iter().find(|(_, at, _)| *at == self.place);
         self.loss = self.loss.or(of_it.map(|&(at, _, loss)| (at, loss)));
-        self.told = match self.loss {
+        self.report = match self.loss {
             Some((_, loss)) => loss.cause().to_owned(),
             None => counted(&self.before, &bench.healths[self.place]),
         };
     }
 
     /// Observes it at this time after the end of the fault, until it has recovered.
-    fn look_for_it(&mut self, bench: &Bench, after: Duration) {
+    fn look_for_it(&mut self, bench: &Fixture, after: Duration) {
         let entry = &bench.handle.roster()[self.place];
         // A fault of the device itself is cleared by a command, as from the console's button.
-        if let (Some(Trouble::DeviceFault { .. }), Some(clear)) = (entry.view.report().trouble, &entry.clear_faults) {
+        if let (Some(DeviceError::DeviceFault { .. }), Some(clear)) = (entry.view.report().trouble, &entry.clear_faults)
+        {
             clear.command();
         }
-        if self.back_s.is_none() && bench.healths[self.place].standing == Standing::Connected {
+        if self.back_s.is_none() && bench.healths[self.place].standing == ConnectionState::Connected {
             self.back_s = Some(after.as_secs_f64());
         }
     }
 }
 
 /// Tests the same fault of these devices together.
-fn try_out(bench: &mut Bench, devices: &[&'static str], fault: EmulatedFault) -> Vec<Row> {
+fn try_out(bench: &mut Fixture, devices: &[&'static str], fault: EmulatedFault) -> Vec<Row> {
     bench.pressing();
     bench.lost.clear();
     let mut trials: Vec<_> = devices.iter().map(|device| Trial::begin(bench, device)).collect();
@@ -291,11 +293,11 @@ fn try_out(bench: &mut Bench, devices: &[&'static str], fault: EmulatedFault) ->
         bench.again();
     }
     let ms = |at: Duration| at.as_secs_f64() * 1e3;
-    let row = |Trial { device, loss, told, back_s, .. }: Trial| Row {
+    let row = |Trial { device, loss, report, back_s, .. }: Trial| Row {
         device,
         fault: fault.name(),
-        told,
-        told_ms: loss.map(|(at, _)| ms(at - begin)),
+        report,
+        reported_ms: loss.map(|(at, _)| ms(at - begin)),
         zero_ms: zero.map(ms),
         state,
         back_s,
@@ -309,10 +311,10 @@ fn table(rows: &[Row]) -> String {
     let mut out = String::from(
         "| device | fault | told | event after ms | zero force after ms | loop | back after s |\n|---|---|---|---|---|---|---|\n",
     );
-    for Row { device, fault, told, told_ms, zero_ms, state, back_s, .. } in rows {
-        let told = if told.is_empty() { "nothing: harmless" } else { told };
+    for Row { device, fault, report, reported_ms, zero_ms, state, back_s, .. } in rows {
+        let report = if report.is_empty() { "nothing: harmless" } else { report };
         let back = back_s.map_or_else(|| "not".to_owned(), |s| format!("{s:.1}"));
-        writeln!(out, "| {device} | {fault} | {told} | {} | {} | {state} | {back} |", ms(*told_ms), ms(*zero_ms))
+        writeln!(out, "| {device} | {fault} | {report} | {} | {} | {state} | {back} |", ms(*reported_ms), ms(*zero_ms))
             .unwrap();
     }
     out
@@ -340,8 +342,8 @@ fn every_fault_of_every_device_is_told_takes_the_force_away_and_passes() {
 fn all_pass(faults: &[EmulatedFault]) -> Vec<Row> {
     let _alone = alone();
     let folder = tempfile::tempdir().unwrap();
-    let devices = Settings { left: None, ..at_tip(folder.path()) };
-    let bench = RefCell::new(Bench::new(&devices));
+    let devices = RigSettings { left: None, ..at_tip(folder.path()) };
+    let bench = RefCell::new(Fixture::new(&devices));
     let mut rows = Vec::new();
     for devices in SETS {
         let first = rows.len();

@@ -9,14 +9,14 @@ use nima_core::{
     kinematics::{Arm, Inverse, Rcm, find},
     signal::PidGains,
 };
-use nima_devices::{Device, Standing, Trouble, bota, dynamixel, force_dimension, hid, kinova, ndi};
+use nima_devices::{ConnectionState, Device, DeviceError, bota, dynamixel, force_dimension, hid, kinova, ndi};
 use nima_emulation::{
     emulated::{EmulatedRig, HandFrame},
     emulators::EmulatedFault,
 };
 use nima_machine::{
     config::RigConfig,
-    rig::{ArmSet, DeviceRig, Outputs, Rig as _, SIDES, Settings, Side, View},
+    rig::{ArmSet, DeviceRig, Outputs, Rig as _, RigSettings, SIDES, Side, ViewOrientation},
 };
 use nima_simulation::scene::Scene;
 use nima_testing::real_time::{alone, judged, too_busy};
@@ -35,7 +35,7 @@ fn until<D: Device>(device: &mut D, what: &str, mut good: impl FnMut(&mut D, Opt
     panic!("{what}: {:?}", device.health());
 }
 
-fn delivers<D: Device>(what: &str, opened: Result<D, Trouble>) {
+fn delivers<D: Device>(what: &str, opened: Result<D, DeviceError>) {
     let mut device = opened.unwrap_or_else(|trouble| panic!("{what}: {trouble}"));
     until(&mut device, what, |device, _| device.health().readings >= 20);
     let health = *device.health();
@@ -57,15 +57,18 @@ fn every_device_of_the_embedded_rig_delivers_at_its_place() {
                 let set = devices.arm(side).unwrap();
                 scope.spawn(move || delivers("handle", force_dimension::open(set.handle.force_dimension().unwrap())));
                 scope.spawn(move || delivers("arm", kinova::open(set.arm.kinova().unwrap())));
-                scope.spawn(move || delivers("sensor", bota::Driver::open(set.sensor.bota().unwrap())));
+                scope.spawn(move || delivers("sensor", bota::BotaDriver::open(set.sensor.bota().unwrap())));
                 if let Some(servos) = &set.servos {
                     scope.spawn(move || delivers("servos", dynamixel::open(servos)));
                 }
             }
             scope.spawn(|| {
-                delivers("tissue sensor", bota::Driver::open(devices.tissue_sensor.as_ref().unwrap().bota().unwrap()));
+                delivers(
+                    "tissue sensor",
+                    bota::BotaDriver::open(devices.tissue_sensor.as_ref().unwrap().bota().unwrap()),
+                );
             });
-            scope.spawn(|| delivers("tracker", ndi::Driver::open(devices.tracker.as_ref().unwrap())));
+            scope.spawn(|| delivers("tracker", ndi::NdiDriver::open(devices.tracker.as_ref().unwrap())));
         });
     });
     let mut pedal = hid::PedalDriver::open(devices.pedal.as_ref().unwrap()).unwrap();
@@ -78,7 +81,7 @@ fn a_second_rig_at_the_same_places_is_refused_and_a_new_one_comes_after_the_firs
     let _alone = alone();
     judged(|| {
         let folder = tempfile::tempdir().unwrap();
-        let devices = Settings { left: None, ..elsewhere(folder.path()) };
+        let devices = RigSettings { left: None, ..elsewhere(folder.path()) };
         let scene = Scene::load("peg_transfer").unwrap();
         let first = started(&devices);
         let refused = EmulatedRig::start(&devices, &scene, &[HandFrame::default(); 2]).unwrap_err();
@@ -96,12 +99,12 @@ const DEPTH_M: f64 = 0.005;
 /// meanwhile, or the arm does not servo.
 fn pressed(rig: &EmulatedRig, set: &ArmSet) -> Option<[Vec<Vector3<f64>>; 2]> {
     let mut arm = kinova::open(set.arm.kinova().unwrap()).unwrap();
-    let mut sensor = bota::Driver::open(set.sensor.bota().unwrap()).unwrap();
+    let mut sensor = bota::BotaDriver::open(set.sensor.bota().unwrap()).unwrap();
     let model = Arm::new(&set.mount).unwrap();
     let rcm = Rcm::new(&set.rcm).unwrap();
     let truth = rig.truth(Side::Right).unwrap();
     let mut inverse = Inverse::new(model, rcm, 1e-3, &truth.joint_rad.into()).unwrap();
-    let way_m = Vector3::new(0.0, 0.0, -DEPTH_M - truth.tip_m.z);
+    let travel_m = Vector3::new(0.0, 0.0, -DEPTH_M - truth.tip_m.z);
     let begin = Instant::now();
     let mut tick = 0_u32;
     let mut felt = [Vec::new(), Vec::new()];
@@ -123,8 +126,8 @@ fn pressed(rig: &EmulatedRig, set: &ArmSet) -> Option<[Vec<Vector3<f64>>; 2]> {
         let newest = sensor.poll(t_s).map(|stamped| stamped.value);
         // After a delay of a busy computer the motion continues without a jump.
         while servoing && ticked_s < t_s {
-            let share = (f64::from(tick) * 1e-3).min(1.0) - (f64::from(tick) * 1e-3 - 2.0).clamp(0.0, 1.0);
-            inverse.step(&(truth.tip_m + way_m * share));
+            let fraction = (f64::from(tick) * 1e-3).min(1.0) - (f64::from(tick) * 1e-3 - 2.0).clamp(0.0, 1.0);
+            inverse.step(&(truth.tip_m + travel_m * fraction));
             tick += 1;
             ticked_s = (ticked_s + 1e-3).max(t_s - 5e-3);
         }
@@ -132,7 +135,7 @@ fn pressed(rig: &EmulatedRig, set: &ArmSet) -> Option<[Vec<Vector3<f64>>; 2]> {
             return None;
         }
         arm.aim(&(*inverse.joint_rad()).into()).ok();
-        if [arm.health(), sensor.health()].iter().any(|health| matches!(health.standing, Standing::Lost(_))) {
+        if [arm.health(), sensor.health()].iter().any(|health| matches!(health.standing, ConnectionState::Lost(_))) {
             return None;
         }
         if let Some(reading) = newest {
@@ -202,7 +205,7 @@ fn the_tracker_tells_how_the_endoscope_looks_whatever_the_rig_file_has() {
     while seen.iter().any(Option::is_none) && begin.elapsed() < Duration::from_mins(2) {
         let inputs = rig.read(begin.elapsed().as_secs_f64());
         for side in Side::ALL {
-            if let Some(View::Seen(view)) = inputs[side.index()].map(|inputs| inputs.view) {
+            if let Some(ViewOrientation::Seen(view)) = inputs[side.index()].map(|inputs| inputs.view) {
                 seen[side.index()] = Some(view.angle_to(&world_from_view).to_degrees());
             }
         }
@@ -220,7 +223,8 @@ fn the_tracker_tells_how_the_endoscope_looks_whatever_the_rig_file_has() {
     assert!(emulated.set_fault("tracker", EmulatedFault::Silence));
     let blind = |rig: &mut DeviceRig| {
         let inputs = rig.read(begin.elapsed().as_secs_f64());
-        inputs.iter().flatten().count() == SIDES && inputs.iter().flatten().all(|inputs| inputs.view == View::Unseen)
+        inputs.iter().flatten().count() == SIDES
+            && inputs.iter().flatten().all(|inputs| inputs.view == ViewOrientation::Unseen)
     };
     let since = Instant::now();
     while !blind(&mut rig) {
@@ -256,7 +260,7 @@ impl JawsShown {
 }
 
 /// The jaws rotate about all three axes against the load of their cables.
-fn jaws_in_motion(devices: &Settings) -> JawsShown {
+fn jaws_in_motion(devices: &RigSettings) -> JawsShown {
     let (mut rig, _) = DeviceRig::start(devices, 1e-3, [false; SIDES]).unwrap();
     let begin = Instant::now();
     let mut outputs = [Outputs::SAFE; SIDES];

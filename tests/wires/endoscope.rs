@@ -9,9 +9,9 @@ use std::{
 
 use nalgebra::{Isometry3, Vector2, Vector3};
 use nima_emulation::emulators::EmulatedFault;
-use nima_endoscope::{Camera, Feed, Picture};
+use nima_endoscope::{Camera, DecodedImage, EndoscopeFeed};
 use nima_machine::{
-    config::Endoscope,
+    config::EndoscopeConfig,
     rig::{DeviceRig, Rig, SIDES, Side},
 };
 use nima_simulation::{
@@ -38,18 +38,18 @@ fn both_tips_are_in_the_picture_where_the_world_has_them() {
     let mut settings = usual(&scene);
     settings.k1 = 0.3;
     let url = format!("http://127.0.0.1:{port}/");
-    let endoscope = Endoscope { url: url.clone(), camera: Some(settings), ..Endoscope::default() };
-    let elsewhere = Endoscope { url: "http://192.0.2.1/".to_owned(), ..endoscope.clone() };
-    let told = rig.show(&elsewhere, &devices, &scene).unwrap_err().to_string();
-    assert!(told.contains("endoscope") && told.contains("127.0.0.1"), "{told}");
+    let endoscope = EndoscopeConfig { url: url.clone(), camera: Some(settings), ..EndoscopeConfig::default() };
+    let elsewhere = EndoscopeConfig { url: "http://192.0.2.1/".to_owned(), ..endoscope.clone() };
+    let report = rig.show(&elsewhere, &devices, &scene).unwrap_err().to_string();
+    assert!(report.contains("endoscope") && report.contains("127.0.0.1"), "{report}");
     rig.show(&endoscope, &devices, &scene).unwrap();
     assert_eq!(rig.servings().last().map(|device| device.name.as_str()), Some("endoscope"));
 
-    let feed = Feed::start(url.parse().unwrap(), Some(settings.size_px), || {}).unwrap();
+    let feed = EndoscopeFeed::start(url.parse().unwrap(), Some(settings.size_px), || {}).unwrap();
     let begin = Instant::now();
-    let picture = loop {
-        if let Some((_, picture)) = feed.look(Instant::now()).picture {
-            break picture;
+    let image = loop {
+        if let Some((_, image)) = feed.look(Instant::now()).image {
+            break image;
         }
         assert!(begin.elapsed() < Duration::from_secs(30), "{:?}", feed.standing(Instant::now()));
         thread::sleep(Duration::from_millis(5));
@@ -57,8 +57,8 @@ fn both_tips_are_in_the_picture_where_the_world_has_them() {
     // The arms are not driven, so the tips have not moved.
     for side in Side::ALL {
         let place_px = camera_of(&settings).project(&rig.truth(side).unwrap().tip_m).unwrap();
-        let at = 4 * (picture.size_px[0] * place_px.y as usize + place_px.x as usize);
-        let [r, g, b] = [0, 1, 2].map(|colour| picture.rgba[at + colour]);
+        let at = 4 * (image.size_px[0] * place_px.y as usize + place_px.x as usize);
+        let [r, g, b] = [0, 1, 2].map(|colour| image.rgba[at + colour]);
         assert!(g > 150 && r < 90 && b < 150, "{side:?}: {r} {g} {b} at {place_px}");
     }
 }
@@ -68,9 +68,9 @@ fn is_tip(pixel: &[u8]) -> bool {
 }
 
 /// The middle of the tip that is visible near here, px; `None` if there is none.
-fn tip_px(picture: &Picture, near_px: &Vector2<f64>) -> Option<Vector2<f64>> {
-    let width = picture.size_px[0];
-    let places = picture.rgba.chunks_exact(4).enumerate().filter(|(_, pixel)| is_tip(pixel));
+fn tip_px(image: &DecodedImage, near_px: &Vector2<f64>) -> Option<Vector2<f64>> {
+    let width = image.size_px[0];
+    let places = image.rgba.chunks_exact(4).enumerate().filter(|(_, pixel)| is_tip(pixel));
     let places = places.map(|(at, _)| Vector2::new((at % width) as f64 + 0.5, (at / width) as f64 + 0.5));
     let near: Vec<_> = places.filter(|place_px| (place_px - near_px).norm() < 40.0).collect();
     (near.len() > 20).then(|| near.iter().sum::<Vector2<f64>>() / near.len() as f64)
@@ -103,7 +103,7 @@ fn the_camera_goes_with_the_marker_on_a_pushed_endoscope() {
         }
         let settings = usual(&scene);
         let url = format!("http://127.0.0.1:{}/", free_port());
-        let endoscope = Endoscope { url: url.clone(), camera: Some(settings), ..Endoscope::default() };
+        let endoscope = EndoscopeConfig { url: url.clone(), camera: Some(settings), ..EndoscopeConfig::default() };
         emulated.show(&endoscope, &devices, &scene).unwrap();
         let (mut rig, _) = DeviceRig::start(&devices, 1e-3, [false; SIDES]).unwrap();
         let begin = Instant::now();
@@ -114,19 +114,19 @@ fn the_camera_goes_with_the_marker_on_a_pushed_endoscope() {
         let fixed = camera_of(&settings);
         let n_from_camera = seen.expect("the tracker sees the endoscope").inverse() * fixed.world_from_camera;
 
-        let feed = Feed::start(url.parse().unwrap(), Some(settings.size_px), || {}).unwrap();
+        let feed = EndoscopeFeed::start(url.parse().unwrap(), Some(settings.size_px), || {}).unwrap();
         assert!(emulated.set_fault("endoscope", EmulatedFault::Moved));
         // The first image from there takes some tenths of a second to render.
         let end = Instant::now() + Duration::from_secs(20);
         let misses_px = loop {
             let world_from_n = marker(&mut rig, begin, Duration::from_millis(500)).unwrap();
             let camera = Camera { world_from_camera: world_from_n * n_from_camera, ..fixed };
-            let picture = feed.look(Instant::now()).picture;
+            let image = feed.look(Instant::now()).image;
             let misses = Side::ALL.map(|side| {
                 let tip_m = emulated.truth(side).unwrap().tip_m;
                 let [before_px, drawn_px] = [&fixed, &camera].map(|camera| camera.project(&tip_m).unwrap());
                 assert!((before_px - drawn_px).norm() > 20.0 || Instant::now() < end, "{before_px} {drawn_px}");
-                let is_px = tip_px(&picture.as_ref()?.1, &drawn_px)?;
+                let is_px = tip_px(&image.as_ref()?.1, &drawn_px)?;
                 Some((is_px - drawn_px).norm()).filter(|_| (before_px - drawn_px).norm() > 20.0)
             });
             if let [Some(right_px), Some(left_px)] = misses {

@@ -12,13 +12,13 @@ use nima_core::{
     impedance::Mode,
     kinematics::{Arm, Joints, START_MISS_M},
 };
-use nima_devices::{Health, Loss, Standing, Trouble};
+use nima_devices::{ConnectionState, DeviceError, Health, Loss};
 use nima_machine::{
     config::RigConfig,
     messages::{Command, Event, LoopState, Tick},
-    runtime::Handle,
+    runtime::LoopHandle,
 };
-use nima_simulation::{Plan, scene::Scene};
+use nima_simulation::{SimulationPlan, scene::Scene};
 use nima_testing::{
     real_time::{alone, judged, too_busy},
     unjudged,
@@ -124,18 +124,18 @@ impl Drop for Running {
     }
 }
 
-struct Bench {
-    handle: Handle,
+struct Fixture {
+    handle: LoopHandle,
     newest: Option<Tick>,
     ticks: Vec<Tick>,
     healths: [Health; 3],
     lost: Vec<(usize, Loss)>,
 }
 
-impl Bench {
+impl Fixture {
     fn new(rig: RigConfig) -> Self {
         let scene = Scene::load("peg_transfer").unwrap();
-        let plan = Plan { rig, scene, calibrations: Default::default(), engage: false };
+        let plan = SimulationPlan { rig, scene, calibrations: Default::default(), engage: false };
         let handle = nima_simulation::start(&plan).unwrap();
         Self { handle, newest: None, ticks: Vec::new(), healths: [Health::default(); 3], lost: Vec::new() }
     }
@@ -151,7 +151,7 @@ impl Bench {
         });
         self.handle.drain_events(|event| {
             if let Event::Device(event) = event
-                && let Standing::Lost(loss) = event.standing
+                && let ConnectionState::Lost(loss) = event.standing
             {
                 lost.push((usize::from(event.device), loss));
             }
@@ -190,7 +190,7 @@ impl Bench {
     fn engage(&mut self) {
         // The status may date from before a loss.
         self.healths = [Health::default(); 3];
-        self.until("all connected", |bench| bench.healths.iter().all(|h| h.standing == Standing::Connected));
+        self.until("all connected", |bench| bench.healths.iter().all(|h| h.standing == ConnectionState::Connected));
         // A release is refused until the first readings have arrived.
         let begin = Instant::now();
         while self.is_faulted() && begin.elapsed() < WAIT {
@@ -258,13 +258,13 @@ fn when_a_program_in_c_dies_or_stands_still_the_force_is_gone_and_the_cause_is_t
         let ports = free_ports();
         let mut hand = examples.start("handle", &ports[..1]);
         let mut arm = examples.start("arm_and_sensor", &ports[1..]);
-        let mut bench = Bench::new(rig(ports));
+        let mut bench = Fixture::new(rig(ports));
         bench.engage();
         let names: Vec<_> =
             bench.handle.roster().iter().map(|entry| entry.view.report().identity.unwrap().product).collect();
         assert_eq!(names, ["spring hand", "simulated arm", "pushed sensor"]);
         let judge =
-            |bench: &mut Bench, what: &str, act: &dyn Fn(&mut Running), running: &mut Running, devices: &[usize]| {
+            |bench: &mut Fixture, what: &str, act: &dyn Fn(&mut Running), running: &mut Running, devices: &[usize]| {
                 let (loss, gone_s) = bench.after(|| act(running), devices);
                 println!("{what}: {loss:?}, no force after {:.1} ms", gone_s * 1e3);
                 assert!(gone_s <= GONE_S, "{what}: force for {gone_s} s");
@@ -276,7 +276,7 @@ fn when_a_program_in_c_dies_or_stands_still_the_force_is_gone_and_the_cause_is_t
         assert_eq!(judge(&mut bench, "handle killed", kill, &mut hand, HANDLE), Loss::Disconnected);
         bench.until("the cause", |bench| {
             let trouble = bench.handle.roster()[0].view.report().trouble;
-            trouble.is_some_and(|trouble| matches!(trouble, Trouble::NobodySends { .. }))
+            trouble.is_some_and(|trouble| matches!(trouble, DeviceError::NobodySends { .. }))
         });
         hand = examples.start("handle", &ports[..1]);
         bench.engage();
@@ -288,7 +288,7 @@ fn when_a_program_in_c_dies_or_stands_still_the_force_is_gone_and_the_cause_is_t
         assert_eq!(judge(&mut bench, "sensor stopped", stop, &mut arm, ARM_AND_SENSOR), Loss::Silent);
         std::thread::sleep(Duration::from_millis(300));
         arm.signal(libc::SIGCONT);
-        bench.until("connected again", |bench| bench.healths.iter().all(|h| h.standing == Standing::Connected));
+        bench.until("connected again", |bench| bench.healths.iter().all(|h| h.standing == ConnectionState::Connected));
         assert!(bench.is_faulted() && bench.rendered_n() == 0.0, "nothing resumes by itself: {:?}", bench.state());
         bench.engage();
 
@@ -314,7 +314,7 @@ fn nobody_else_is_heard_beside_the_first_program_and_its_double_waits() {
         let ports = free_ports();
         let hand = examples.start("handle", &ports[..1]);
         let arm = examples.start("arm_and_sensor", &ports[1..]);
-        let mut bench = Bench::new(rig(ports));
+        let mut bench = Fixture::new(rig(ports));
         bench.engage();
         let double = examples.start("handle", &ports[..1]);
         let stranger = UdpSocket::bind("127.0.0.1:0").unwrap();
@@ -342,7 +342,7 @@ fn minute(examples: &Examples, seconds: u64) {
     let ports = free_ports();
     let hand = examples.start("handle", &ports[..1]);
     let arm = examples.start("arm_and_sensor", &ports[1..]);
-    let mut bench = Bench::new(rig(ports));
+    let mut bench = Fixture::new(rig(ports));
     bench.engage();
     let begin = Instant::now();
     let before = bench.healths;
@@ -360,7 +360,7 @@ fn minute(examples: &Examples, seconds: u64) {
     let after = bench.healths;
     let mut ages_s: Vec<f64> = bench.ticks.iter().filter_map(|tick| tick.sample_to_force_s).collect();
     ages_s.sort_by(f64::total_cmp);
-    let at = |share: f64| ages_s[((ages_s.len() - 1) as f64 * share) as usize] * 1e3;
+    let at = |fraction: f64| ages_s[((ages_s.len() - 1) as f64 * fraction) as usize] * 1e3;
     println!(
         "{} s, {:?} at the end, {} ticks, {} missed",
         last.t_s - first.t_s,
@@ -417,7 +417,7 @@ fn the_examples_in_python_lead_the_loop_too() {
         let ports = free_ports();
         let hand = Examples::Python.start("handle", &ports[..1]);
         let arm = Examples::Python.start("arm_and_sensor", &ports[1..]);
-        let mut bench = Bench::new(rig(ports));
+        let mut bench = Fixture::new(rig(ports));
         bench.engage();
         bench.ticks.clear();
         bench.until("a while", |bench| bench.ticks.len() > 300);

@@ -6,21 +6,26 @@ use nalgebra::{Isometry3, Point3, Vector3};
 use nima_core::{
     calibration::{
         Verdict,
-        frames::{Calibration, FrameReport, FrameSession, HandEye, Tip, Trocar},
+        frames::{Calibration, FrameReport, FrameSession, HandEyeSettings, TipSettings, TrocarSettings},
     },
     kinematics::Arm,
 };
 use nima_machine::rig::{Prompt, Side};
-use nima_simulation::screen::Task;
+use nima_simulation::screen::PersonTask;
 use nima_testing::real_time::{alone, judged, too_busy};
 use nima_tests::emulated::{elsewhere, started};
 
-use super::technician::Bench;
+use super::technician::Fixture;
 
 const SIDE: Side = Side::Right;
 
 /// Lets the technician work until nothing is missing; on a machine that is too busy the test is not judged.
-fn run<C: Calibration>(bench: &mut Bench, calibration: C, task: Task, prompt: Prompt) -> FrameReport<C::Found> {
+fn run<C: Calibration>(
+    bench: &mut Fixture,
+    calibration: C,
+    task: PersonTask,
+    prompt: Prompt,
+) -> FrameReport<C::Solution> {
     let mut session = FrameSession::new(calibration);
     // The technician carries the arm to the start.
     bench.show(SIDE, task, Prompt::Rest);
@@ -30,7 +35,7 @@ fn run<C: Calibration>(bench: &mut Bench, calibration: C, task: Task, prompt: Pr
         if tick.index % 4 == 0 {
             session.step(&tick.frames, tick.t_s);
         }
-        session.coverage().share >= 1.0
+        session.coverage().fraction >= 1.0
     });
     if !complete {
         println!("{task:?}: {:?} after {} poses", session.coverage(), session.samples().len());
@@ -47,8 +52,8 @@ fn pose(isometry: &nalgebra::IsometryMatrix3<f64>) -> Isometry3<f64> {
 }
 
 /// Determines the poses of the tracker and the marker by rotating an instrument whose tip is known.
-fn find_hand_eye(bench: &mut Bench, arm: &Arm, tip_m: Vector3<f64>) {
-    let found = run(bench, HandEye::new(tip_m), Task::HandEye, Prompt::Turn).found.unwrap();
+fn find_hand_eye(bench: &mut Fixture, arm: &Arm, tip_m: Vector3<f64>) {
+    let found = run(bench, HandEyeSettings::new(tip_m), PersonTask::HandEye, Prompt::Turn).found.unwrap();
     let known = bench.rig.truth(SIDE).unwrap();
     let flange = arm.pose(&known.joint_rad.into()).chain.world_from_flange;
     let base_from_world = pose(arm.world_from_base()).inverse();
@@ -83,8 +88,8 @@ fn tip_hand_eye_and_trocar_are_found_within_half_a_millimetre() {
     wrong.mount.sensor_m.x += 0.003;
     wrong.rcm.trocar_m.y += 0.004;
     judged(|| {
-        let mut bench = Bench::start(started(&truth), &believed);
-        let tip = run(&mut bench, Tip::by_arm(), Task::Tip, Prompt::PivotInDimple);
+        let mut bench = Fixture::start(started(&truth), &believed);
+        let tip = run(&mut bench, TipSettings::by_arm(), PersonTask::Tip, Prompt::PivotInDimple);
         let tip_m = Vector3::from(tip.found.unwrap().tip_in_carrier_m);
         let miss_mm = (tip_m - true_tip_m(&arm)).norm() * 1e3;
         println!("tip: {miss_mm:.3} mm off");
@@ -93,9 +98,10 @@ fn tip_hand_eye_and_trocar_are_found_within_half_a_millimetre() {
         find_hand_eye(&mut bench, &arm, tip_m);
 
         // With the instrument in its trocar again.
-        bench.show(SIDE, Task::Surgery, Prompt::Rest);
+        bench.show(SIDE, PersonTask::Surgery, Prompt::Rest);
         bench.rests(SIDE);
-        let trocar = run(&mut bench, Trocar::by_arm(&arm), Task::Trocar, Prompt::PivotInTrocar).found.unwrap();
+        let trocar =
+            run(&mut bench, TrocarSettings::by_arm(&arm), PersonTask::Trocar, Prompt::PivotInTrocar).found.unwrap();
         let base_from_world = pose(arm.world_from_base()).inverse();
         let true_m = base_from_world * Point3::from(set.rcm.trocar_m);
         let miss_mm = (Vector3::from(trocar.trocar_m) - true_m.coords).norm() * 1e3;

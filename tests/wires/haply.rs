@@ -5,20 +5,20 @@ use std::time::{Duration, Instant};
 use nalgebra::Vector3;
 use nima_core::impedance::Mode;
 use nima_devices::{
-    Loss, Standing,
-    haply::{Settings, codec::State},
+    ConnectionState, Loss,
+    haply::{HaplySettings, codec::HaplyState},
 };
 use nima_emulation::emulators::{
-    EmulatedFault, Serving,
-    haply::{Emulated, Felt},
+    EmulatedFault, EmulatorThread,
+    haply::{EmulatedHaply, HapticForce},
 };
 use nima_machine::{
     config::RigConfig,
     messages::{Command, Event, LoopState, Tick},
     rig::LeaderSettings,
-    runtime::Handle,
+    runtime::LoopHandle,
 };
-use nima_simulation::{Plan, scene::Scene};
+use nima_simulation::{SimulationPlan, scene::Scene};
 use nima_testing::real_time::{alone, judged};
 
 /// Depth of the hand's motion into the tissue, m, and its speed, m/s.
@@ -27,11 +27,11 @@ const SPEED_M_S: f64 = 0.02;
 const WAIT: Duration = Duration::from_secs(15);
 
 /// A hand that rests for two seconds and then moves down, held by a stiff spring.
-fn pressing(felt: &Felt, begins: std::sync::Arc<std::sync::atomic::AtomicBool>) -> Serving {
+fn pressing(felt: &HapticForce, begins: std::sync::Arc<std::sync::atomic::AtomicBool>) -> EmulatorThread {
     let mut body = felt.on_a_circle();
     let mut since_s = None;
-    let emulated = Emulated::default().with(Box::new(move |now_s, force_n| {
-        let mut state: State = body(0.0, force_n);
+    let emulated = EmulatedHaply::default().with(Box::new(move |now_s, force_n| {
+        let mut state: HaplyState = body(0.0, force_n);
         let down_m = if begins.load(std::sync::atomic::Ordering::Relaxed) {
             (SPEED_M_S * (now_s - *since_s.get_or_insert(now_s))).min(DEEP_M)
         } else {
@@ -44,13 +44,13 @@ fn pressing(felt: &Felt, begins: std::sync::Arc<std::sync::atomic::AtomicBool>) 
     emulated.serve().unwrap()
 }
 
-struct Bench {
-    handle: Handle,
+struct Fixture {
+    handle: LoopHandle,
     newest: Option<Tick>,
     lost: Vec<Loss>,
 }
 
-impl Bench {
+impl Fixture {
     fn until(&mut self, what: &str, good: impl Fn(&Self) -> bool) {
         let begin = Instant::now();
         while !good(self) {
@@ -65,7 +65,7 @@ impl Bench {
             self.handle.drain_ticks(|tick| *newest = Some(*tick));
             self.handle.drain_events(|event| {
                 if let Event::Device(event) = event
-                    && let Standing::Lost(loss) = event.standing
+                    && let ConnectionState::Lost(loss) = event.standing
                 {
                     assert_eq!(event.of_side, [true, false], "the right force needs the handle");
                     lost.push(loss);
@@ -84,26 +84,26 @@ impl Bench {
 fn a_haply_handle_feels_the_simulated_tissue_and_a_silent_one_takes_the_force_away() {
     let _alone = alone();
     judged(|| {
-        let felt = Felt::default();
+        let felt = HapticForce::default();
         let begins = std::sync::Arc::default();
         let serving = pressing(&felt, std::sync::Arc::clone(&begins));
         let mut rig = RigConfig::load("haply-desk").unwrap();
         assert!(!rig.is_harmless() && !rig.has_simulated_hand(), "only a person engages it");
-        rig.desk.as_mut().unwrap().handle = Some(LeaderSettings::Haply(Settings::at(serving.endpoint.as_str())));
+        rig.desk.as_mut().unwrap().handle = Some(LeaderSettings::Haply(HaplySettings::at(serving.endpoint.as_str())));
         rig.validate().unwrap();
         assert_eq!(rig.device_names()[0].to_string(), "right handle (Haply)");
         rig.mode = Mode::Dfr;
         rig.gates.static_hold = true;
         let scene = Scene::load("peg_transfer").unwrap();
         // A request that is refused: a person's hand may be at the handle.
-        let plan = Plan { rig, scene, calibrations: Default::default(), engage: true };
+        let plan = SimulationPlan { rig, scene, calibrations: Default::default(), engage: true };
         let handle = nima_simulation::start(&plan).unwrap();
         assert_eq!(handle.roster()[0].name(), "right handle");
-        let mut bench = Bench { handle, newest: None, lost: Vec::new() };
+        let mut bench = Fixture { handle, newest: None, lost: Vec::new() };
         bench.until("half a second", |bench| bench.newest.is_some_and(|tick| tick.t_s > 0.5));
         assert!(bench.is(LoopState::Idle) && felt.force_n() == Vector3::zeros());
         bench.until("connected", |bench| {
-            bench.handle.healths().is_none_or(|h| h.devices[0].standing == Standing::Connected)
+            bench.handle.healths().is_none_or(|h| h.devices[0].standing == ConnectionState::Connected)
         });
         let connected_s = bench.newest.unwrap().t_s;
         bench.until("half a second more", |bench| bench.newest.is_some_and(|tick| tick.t_s > connected_s + 0.5));

@@ -9,13 +9,13 @@ use std::{
 use nima_core::impedance::Mode;
 use nima_emulation::{
     emulated::{Truth, provide_handles},
-    emulators::force_dimension::Mode as Motors,
+    emulators::force_dimension::FirmwareMode as Motors,
 };
 use nima_machine::{
     config::RigConfig,
-    rig::{Settings, Side},
+    rig::{RigSettings, Side},
 };
-use nima_simulation::Plan;
+use nima_simulation::SimulationPlan;
 use nima_testing::real_time::{alone, judged};
 use nima_tests::{
     emulated::{right_arm, started},
@@ -37,13 +37,13 @@ const SLACK_S: f64 = 0.030;
 fn the_loop_of_another_process() {
     let Ok(rig) = std::env::var(RIG) else { return };
     provide_handles();
-    let plan = Plan { rig: RigConfig::load(&rig).unwrap(), ..plan("peg_transfer") };
+    let plan = SimulationPlan { rig: RigConfig::load(&rig).unwrap(), ..plan("peg_transfer") };
     let _handle = nima_simulation::start(&plan).unwrap();
     std::thread::sleep(Duration::from_mins(1));
 }
 
 /// A rig that presses on tissue and holds still, so that the hand feels a steady force.
-fn pressing_rig(devices: Settings) -> RigConfig {
+fn pressing_rig(devices: RigSettings) -> RigConfig {
     let mut rig = RigConfig { devices: Some(devices), mode: Mode::Dfr, ..RigConfig::load("emulated").unwrap() };
     rig.gates.static_hold = true;
     rig

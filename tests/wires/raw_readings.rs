@@ -14,7 +14,7 @@ use std::{
 };
 
 use nima_core::{
-    calibration::gravity::{GravityModel, Parameters, Source},
+    calibration::gravity::{GravityModel, GravityParameters, GravitySource},
     impedance::Mode,
 };
 use nima_devices::external::codec::{BYTES_MAX, Datagram};
@@ -25,11 +25,11 @@ use nima_emulation::{
 use nima_machine::{
     config::RigConfig,
     messages::{Command, Event, LoopState, Tick},
-    rig::{SensorPlace, Settings, Side},
-    runtime::Handle,
+    rig::{RigSettings, SensorPlace, Side},
+    runtime::LoopHandle,
     teleop::Calibrations,
 };
-use nima_simulation::{Plan, scene::Scene};
+use nima_simulation::{SimulationPlan, scene::Scene};
 use nima_testing::real_time::{alone, judged, too_busy};
 use nima_tests::emulated::{at_tip, started_in};
 
@@ -47,8 +47,8 @@ const MIDDLE_N: f64 = 1.0;
 /// Ticks that the loop may miss during a judgement.
 const MISSED_MAX: u64 = 4;
 
-struct Bench {
-    handle: Handle,
+struct Fixture {
+    handle: LoopHandle,
     /// For the sensor at the wrist; applied once the sensor is connected.
     calibrations: Option<Calibrations>,
     newest: Option<Tick>,
@@ -56,8 +56,8 @@ struct Bench {
     raised: Vec<String>,
 }
 
-impl Bench {
-    fn new(plan: &Plan) -> Self {
+impl Fixture {
+    fn new(plan: &SimulationPlan) -> Self {
         let calibrations = Some(plan.calibrations[0].clone()).filter(|known| known.gravity.is_some());
         let handle = nima_simulation::start(plan).unwrap();
         Self { handle, calibrations, newest: None, ticks: Vec::new(), raised: Vec::new() }
@@ -109,7 +109,7 @@ impl Bench {
             }
             let change = self.handle.wrist_change(Side::Right);
             if let Some(known) = self.calibrations.as_ref().filter(|_| change.is_there()) {
-                self.handle.put_in_force(change, known);
+                self.handle.activate(change, known);
                 self.within(Duration::from_millis(20), |_| false);
             }
             self.handle.send(Command::Engage);
@@ -139,7 +139,7 @@ impl Bench {
 }
 
 /// Tests each fault `times` times; prints the results.
-fn tried(name: &str, bench: &mut Bench, times: usize, set: impl Fn(EmulatedFault)) {
+fn tried(name: &str, bench: &mut Fixture, times: usize, set: impl Fn(EmulatedFault)) {
     for fault in EmulatedFault::OF_SENSORS {
         let mut gone_ms = Vec::new();
         for _ in 0..times {
@@ -162,9 +162,9 @@ fn times() -> usize {
 }
 
 /// The emulated rig, its right arm, with the sensor at this location.
-fn emulated(folder: &Path, place: SensorPlace) -> (EmulatedRig, Plan) {
+fn emulated(folder: &Path, place: SensorPlace) -> (EmulatedRig, SimulationPlan) {
     let mut devices = at_tip(folder);
-    devices = Settings { left: None, tissue_sensor: None, tracker: None, endoscope: None, pedal: None, ..devices };
+    devices = RigSettings { left: None, tissue_sensor: None, tracker: None, endoscope: None, pedal: None, ..devices };
     devices.right.as_mut().unwrap().sensor_at = place;
     devices.right.as_mut().unwrap().servos = None;
     let mut scene = Scene::load(if place == SensorPlace::Tip { "peg_transfer" } else { "palpation" }).unwrap();
@@ -177,7 +177,7 @@ fn emulated(folder: &Path, place: SensorPlace) -> (EmulatedRig, Plan) {
     config.endoscope = None;
     let gravity = (place == SensorPlace::Wrist).then(|| nima_study::validation::experiment::gravity(1).unwrap());
     let calibrations = [Calibrations { gravity, ..Calibrations::default() }, Calibrations::default()];
-    (rig, Plan { rig: config, scene, calibrations, engage: false })
+    (rig, SimulationPlan { rig: config, scene, calibrations, engage: false })
 }
 
 #[test]
@@ -188,7 +188,7 @@ fn an_emulated_sensor_that_repeats_itself_takes_the_force_away() {
         judged(|| {
             let folder = tempfile::tempdir().unwrap();
             let (rig, plan) = emulated(folder.path(), place);
-            let mut bench = Bench::new(&plan);
+            let mut bench = Fixture::new(&plan);
             tried(name, &mut bench, times(), |fault| assert!(rig.set_fault("right sensor", fault)));
         });
     }
@@ -295,7 +295,7 @@ impl Spoiler {
 }
 
 /// The guide's rig, on these ports.
-fn external(ports: [u16; 3], place: SensorPlace) -> Plan {
+fn external(ports: [u16; 3], place: SensorPlace) -> SimulationPlan {
     let guide =
         std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/external-device.md")).unwrap();
     let (_, after) = guide.split_once("```toml\n").unwrap();
@@ -309,16 +309,16 @@ fn external(ports: [u16; 3], place: SensorPlace) -> Plan {
     rig.gates.static_hold = true;
     rig.devices.as_mut().unwrap().right.as_mut().unwrap().sensor_at = place;
     // The example's sensor has no tool to weigh.
-    let parameters = Parameters::Physical {
+    let parameters = GravityParameters::Physical {
         mass_kg: 0.0,
         s1_from_source_wxyz: [1.0, 0.0, 0.0, 0.0],
         bias_n: [0.0; 3],
         torque: None,
     };
-    let gravity = GravityModel { source: Source::Arm, imu_sign: 1, parameters };
+    let gravity = GravityModel { source: GravitySource::Arm, imu_sign: 1, parameters };
     let gravity = (place == SensorPlace::Wrist).then_some(gravity);
     let calibrations = [Calibrations { gravity, ..Calibrations::default() }, Calibrations::default()];
-    Plan { rig, scene: Scene::load("peg_transfer").unwrap(), calibrations, engage: false }
+    SimulationPlan { rig, scene: Scene::load("peg_transfer").unwrap(), calibrations, engage: false }
 }
 
 #[test]
@@ -334,7 +334,7 @@ fn an_external_sensor_that_repeats_itself_takes_the_force_away() {
             let folder = tempfile::tempdir().unwrap();
             let start = |name: &str, ports: &[u16]| Example::start(name, folder.path(), ports);
             let _running = [start("handle", &[handle]), start("arm_and_sensor", &[arm, between])];
-            let mut bench = Bench::new(&external([handle, arm, sensor], place));
+            let mut bench = Fixture::new(&external([handle, arm, sensor], place));
             tried(name, &mut bench, times(), |fault| faults.set(fault));
         });
     }

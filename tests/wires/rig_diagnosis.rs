@@ -4,16 +4,16 @@
 use std::time::{Duration, Instant};
 
 use nima_devices::{
-    Trouble, bota,
-    discovery::{Diagnosis, Outcome, TIMEOUT, diagnose},
+    DeviceError, bota,
+    discovery::{DiscoveryDiagnosis, TIMEOUT, TestOutcome, diagnose},
     force_dimension,
 };
-use nima_emulation::emulators::{EmulatedFault, force_dimension::Held};
-use nima_machine::rig::{Settings, rig_probes};
+use nima_emulation::emulators::{EmulatedFault, force_dimension::EmulatedHand};
+use nima_machine::rig::{RigSettings, rig_probes};
 use nima_testing::real_time::{alone, judged};
 use nima_tests::emulated::{elsewhere, started};
 
-fn tried(devices: &Settings) -> Vec<Diagnosis> {
+fn tried(devices: &RigSettings) -> Vec<DiscoveryDiagnosis> {
     let of_right = devices.right.as_ref().map(|right| right.sensor.bota().unwrap().transport);
     let right_is_first_generation = of_right == Some(bota::Transport::Gen0);
     let begin = Instant::now();
@@ -22,35 +22,35 @@ fn tried(devices: &Settings) -> Vec<Diagnosis> {
     for one in &found {
         // A first-generation sensor restarts when it is opened.
         let starts_anew = one.name == "tissue sensor" || one.name == "right sensor" && right_is_first_generation;
-        let most_s = if starts_anew { 2.0 } else { 1.0 };
-        assert!(one.took_s < most_s, "{one:?}");
+        let max_s = if starts_anew { 2.0 } else { 1.0 };
+        assert!(one.took_s < max_s, "{one:?}");
         println!("{:14} {:4.0} ms {}", one.name, one.took_s * 1e3, words(one));
     }
     found
 }
 
-fn words(one: &Diagnosis) -> String {
+fn words(one: &DiscoveryDiagnosis) -> String {
     match &one.outcome {
-        Outcome::Connected(found) => {
+        TestOutcome::Connected(found) => {
             format!("connected: {}, {:?} Hz, {} lost", found.identity.product, found.rate_hz, found.lost)
         }
-        Outcome::Trouble { cause, cure, .. } => format!("{cause} -> {cure}"),
+        TestOutcome::Trouble { cause, cure, .. } => format!("{cause} -> {cure}"),
     }
 }
 
-fn trouble<'a>(found: &'a [Diagnosis], name: &str) -> &'a Trouble {
+fn trouble<'a>(found: &'a [DiscoveryDiagnosis], name: &str) -> &'a DeviceError {
     let one = found.iter().find(|one| one.name == name).unwrap();
     match &one.outcome {
-        Outcome::Trouble { trouble, cure, .. } => {
+        TestOutcome::Trouble { trouble, cure, .. } => {
             assert!(cure.len() > 10, "{one:?}");
             trouble
         }
-        Outcome::Connected(_) => panic!("{name} is well: {one:?}"),
+        TestOutcome::Connected(_) => panic!("{name} is well: {one:?}"),
     }
 }
 
 /// Asserts the kind of trouble of each device.
-macro_rules! assert_told {
+macro_rules! assert_reported {
     ($found:expr, $($name:literal => $kind:pat),+ $(,)?) => {{
         let found = &$found;
         $(assert!(matches!(trouble(found, $name), $kind), "{}: {:?}", $name, trouble(found, $name));)+
@@ -58,10 +58,10 @@ macro_rules! assert_told {
 }
 
 /// Whether all are connected at their expected rates.
-fn all_well(found: &[Diagnosis]) -> bool {
+fn all_well(found: &[DiscoveryDiagnosis]) -> bool {
     found.iter().all(|one| match &one.outcome {
-        Outcome::Trouble { .. } => false,
-        Outcome::Connected(connected) => {
+        TestOutcome::Trouble { .. } => false,
+        TestOutcome::Connected(connected) => {
             // Devices that are polled, or report only changes, have no inherent rate.
             let usual_hz = match one.name.as_str() {
                 "tracker" => Some(60.0),
@@ -96,16 +96,16 @@ fn a_rig_that_does_not_run_is_reported_device_by_device() {
     let _alone = alone();
     let folder = tempfile::tempdir().unwrap();
     let found = tried(&elsewhere(folder.path()));
-    assert_told!(found,
-        "right handle" => Trouble::Absent { .. },
-        "left arm" => Trouble::NobodyListens { .. },
-        "right sensor" => Trouble::Absent { .. },
-        "left sensor" => Trouble::NobodyListens { .. },
-        "right servos" => Trouble::Absent { .. },
-        "tissue sensor" => Trouble::Absent { .. },
-        "pedal" => Trouble::Absent { .. },
+    assert_reported!(found,
+        "right handle" => DeviceError::Absent { .. },
+        "left arm" => DeviceError::NobodyListens { .. },
+        "right sensor" => DeviceError::Absent { .. },
+        "left sensor" => DeviceError::NobodyListens { .. },
+        "right servos" => DeviceError::Absent { .. },
+        "tissue sensor" => DeviceError::Absent { .. },
+        "pedal" => DeviceError::Absent { .. },
     );
-    assert!(found.iter().all(|one| matches!(one.outcome, Outcome::Trouble { .. })), "{found:?}");
+    assert!(found.iter().all(|one| matches!(one.outcome, TestOutcome::Trouble { .. })), "{found:?}");
 }
 
 #[test]
@@ -127,19 +127,19 @@ fn wrong_settings_are_reported_with_the_device_that_answers() {
         wrong.tissue_sensor.as_mut().unwrap().bota_mut().unwrap().baud = 921_600;
         wrong.tracker.as_mut().unwrap().tools[0] = folder.path().join("none.rom");
         let found = tried(&wrong);
-        assert_told!(found,
-            "right handle" => Trouble::SdkMissing { .. },
-            "right arm" => Trouble::RefusedLogin { .. },
-            "right sensor" => Trouble::WrongProduct { .. },
-            "right servos" => Trouble::WrongBaud { .. },
-            "left handle" => Trouble::Absent { .. },
-            "left sensor" => Trouble::OtherSerial { .. },
-            "tissue sensor" => Trouble::WrongBaud { .. },
-            "tracker" => Trouble::File { .. },
+        assert_reported!(found,
+            "right handle" => DeviceError::SdkMissing { .. },
+            "right arm" => DeviceError::RefusedLogin { .. },
+            "right sensor" => DeviceError::WrongProduct { .. },
+            "right servos" => DeviceError::WrongBaud { .. },
+            "left handle" => DeviceError::Absent { .. },
+            "left sensor" => DeviceError::OtherSerial { .. },
+            "tissue sensor" => DeviceError::WrongBaud { .. },
+            "tracker" => DeviceError::File { .. },
         );
         let mut other = devices;
         other.right.as_mut().unwrap().servos.as_mut().unwrap().servos[2].model = Some("XM540-W270".to_owned());
-        assert_told!(tried(&other), "right servos" => Trouble::WrongProduct { .. });
+        assert_reported!(tried(&other), "right servos" => DeviceError::WrongProduct { .. });
     });
 }
 
@@ -156,24 +156,24 @@ fn silence_and_faults_of_every_device_are_reported() {
             std::thread::sleep(Duration::from_millis(20));
         };
         all(EmulatedFault::Silence);
-        assert_told!(tried(&devices),
-            "right handle" => Trouble::Absent { .. },
-            "right arm" => Trouble::Silent { .. },
-            "right sensor" => Trouble::Silent { .. },
-            "right servos" => Trouble::Silent { .. },
-            "left sensor" => Trouble::Silent { .. },
-            "tissue sensor" => Trouble::Silent { .. },
-            "tracker" => Trouble::Silent { .. },
+        assert_reported!(tried(&devices),
+            "right handle" => DeviceError::Absent { .. },
+            "right arm" => DeviceError::Silent { .. },
+            "right sensor" => DeviceError::Silent { .. },
+            "right servos" => DeviceError::Silent { .. },
+            "left sensor" => DeviceError::Silent { .. },
+            "tissue sensor" => DeviceError::Silent { .. },
+            "tracker" => DeviceError::Silent { .. },
         );
         all(EmulatedFault::DeviceFault);
-        assert_told!(tried(&devices),
-            "right handle" => Trouble::DeviceFault { .. },
-            "right arm" => Trouble::DeviceFault { .. },
-            "right sensor" => Trouble::DeviceFault { .. },
-            "right servos" => Trouble::DeviceFault { .. },
-            "left sensor" => Trouble::DeviceFault { .. },
-            "tissue sensor" => Trouble::DeviceFault { .. },
-            "tracker" => Trouble::DeviceFault { .. },
+        assert_reported!(tried(&devices),
+            "right handle" => DeviceError::DeviceFault { .. },
+            "right arm" => DeviceError::DeviceFault { .. },
+            "right sensor" => DeviceError::DeviceFault { .. },
+            "right servos" => DeviceError::DeviceFault { .. },
+            "left sensor" => DeviceError::DeviceFault { .. },
+            "tissue sensor" => DeviceError::DeviceFault { .. },
+            "tracker" => DeviceError::DeviceFault { .. },
         );
     });
 }
@@ -184,25 +184,25 @@ fn a_device_in_use_and_one_that_waits_for_calibration_are_reported() {
     judged(|| {
         let folder = tempfile::tempdir().unwrap();
         let mut devices =
-            Settings { left: None, tracker: None, endoscope: None, pedal: None, ..elsewhere(folder.path()) };
+            RigSettings { left: None, tracker: None, endoscope: None, pedal: None, ..elsewhere(folder.path()) };
         let rig = started(&devices);
         let right = devices.right.as_ref().unwrap();
-        let sensor = bota::Driver::open(right.sensor.bota().unwrap()).unwrap();
+        let sensor = bota::BotaDriver::open(right.sensor.bota().unwrap()).unwrap();
         let held = (sensor, force_dimension::open(right.handle.force_dimension().unwrap()).unwrap());
-        assert_told!(tried(&devices),
-            "right sensor" => Trouble::Busy { .. },
-            "right handle" => Trouble::Busy { .. },
+        assert_reported!(tried(&devices),
+            "right sensor" => DeviceError::Busy { .. },
+            "right handle" => DeviceError::Busy { .. },
         );
         drop((held, rig));
-        let waiting = nima_emulation::emulators::force_dimension::Emulated {
+        let waiting = nima_emulation::emulators::force_dimension::EmulatedForceDimension {
             serial: 77,
             reset: true,
-            ..nima_emulation::emulators::force_dimension::Emulated::default()
+            ..nima_emulation::emulators::force_dimension::EmulatedForceDimension::default()
         };
-        let serving = waiting.with(Held::default().body()).serve().unwrap();
+        let serving = waiting.with(EmulatedHand::default().body()).serve().unwrap();
         let handle = devices.right.as_mut().unwrap().handle.force_dimension_mut().unwrap();
         handle.serial = Some(77);
         handle.emulator = Some(serving.endpoint.parse().unwrap());
-        assert_told!(tried(&devices), "right handle" => Trouble::NotReady { .. });
+        assert_reported!(tried(&devices), "right handle" => DeviceError::NotReady { .. });
     });
 }

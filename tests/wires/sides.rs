@@ -8,16 +8,16 @@ use std::{
 
 use nalgebra::Isometry3;
 use nima_core::frames::to_roll_pitch_yaw_deg;
-use nima_devices::{Standing, Trouble, bota};
+use nima_devices::{ConnectionState, DeviceError, bota};
 use nima_emulation::emulated::{EmulatedRig, Truth};
 use nima_machine::{
     config::RigConfig,
     messages::{Command, Event, LoopState, Refusal},
-    rig::{ArmSet, Exchange, Healths, Obstacle, Part, Settings, Side},
-    runtime::Handle,
+    rig::{ArmSet, EngageBlocker, Healths, RigPart, RigSettings, Side, SideSwap},
+    runtime::LoopHandle,
 };
 use nima_recording::store::{CheckedDevice, ReadyRecord};
-use nima_simulation::{Plan, scene::Scene};
+use nima_simulation::{SimulationPlan, scene::Scene};
 use nima_testing::real_time::{alone, judged, too_busy};
 use nima_tests::emulated::{at_tip, started};
 
@@ -27,32 +27,32 @@ const DATE: &str = "2026-08-21T10:20:30Z";
 /// The swapped parts: on the wires (the devices themselves), in the rig file, or on the instruments.
 struct Row {
     place: &'static str,
-    wire: fn(&mut Settings),
-    file: fn(&mut Settings),
+    wire: fn(&mut RigSettings),
+    file: fn(&mut RigSettings),
     markers: bool,
-    told: Told,
+    report: ReportSource,
 }
 
 /// How it is detected.
-enum Told {
+enum ReportSource {
     /// The devices of these parts are rejected.
     Kept(&'static [&'static str]),
-    Obstacle(Exchange),
+    Obstacle(SideSwap),
     /// Not at all: the devices are found automatically, and each is where it belongs.
     Harmless,
 }
 
-fn row(place: &'static str, told: Told) -> Row {
-    Row { place, wire: |_| (), file: |_| (), markers: false, told }
+fn row(place: &'static str, report: ReportSource) -> Row {
+    Row { place, wire: |_| (), file: |_| (), markers: false, report }
 }
 
-fn sets(devices: &mut Settings) -> [&mut ArmSet; 2] {
+fn sets(devices: &mut RigSettings) -> [&mut ArmSet; 2] {
     [devices.right.as_mut().unwrap(), devices.left.as_mut().unwrap()]
 }
 
 /// The built-in rig on other ports, with a tissue sensor of the wrist sensors' generation; its trocars are next to each
 /// other.
-fn rig(folder: &Path) -> Settings {
+fn rig(folder: &Path) -> RigSettings {
     let mut devices = at_tip(folder);
     let tissue = devices.tissue_sensor.as_mut().unwrap().bota_mut().unwrap();
     tissue.transport = bota::Transport::GenA;
@@ -74,7 +74,7 @@ pub(crate) fn hand_eye(set: &mut ArmSet, truth: &Truth) {
 }
 
 /// Swaps the cables of right and left: the device and its world stay, its address changes.
-fn exchange_sensors(devices: &mut Settings) {
+fn exchange_sensors(devices: &mut RigSettings) {
     let [right, left] = sets(devices);
     std::mem::swap(&mut right.sensor, &mut left.sensor);
     let right = right.sensor.bota_mut().unwrap();
@@ -82,7 +82,7 @@ fn exchange_sensors(devices: &mut Settings) {
     std::mem::swap(&mut right.serial_number, &mut left.serial_number);
 }
 
-fn exchange_arms(devices: &mut Settings) {
+fn exchange_arms(devices: &mut RigSettings) {
     let [right, left] = sets(devices);
     let right = right.arm.kinova_mut().unwrap();
     let left = left.arm.kinova_mut().unwrap();
@@ -90,24 +90,24 @@ fn exchange_arms(devices: &mut Settings) {
     std::mem::swap(&mut right.udp_port, &mut left.udp_port);
 }
 
-fn exchange_with_tissue(devices: &mut Settings) {
+fn exchange_with_tissue(devices: &mut RigSettings) {
     let tissue = devices.tissue_sensor.as_mut().unwrap().bota_mut().unwrap();
     let right = devices.right.as_mut().unwrap().sensor.bota_mut().unwrap();
     std::mem::swap(&mut right.port, &mut tissue.port);
 }
 
-fn exchange_servos(devices: &mut Settings) {
+fn exchange_servos(devices: &mut RigSettings) {
     let [right, left] = sets(devices);
     std::mem::swap(&mut right.servos.as_mut().unwrap().port, &mut left.servos.as_mut().unwrap().port);
 }
 
-fn nameless_arms(devices: &mut Settings) {
+fn nameless_arms(devices: &mut RigSettings) {
     for set in sets(devices) {
         set.arm.kinova_mut().unwrap().serial_number = None;
     }
 }
 
-fn nameless_sensors(devices: &mut Settings) {
+fn nameless_sensors(devices: &mut RigSettings) {
     for set in sets(devices) {
         set.sensor.bota_mut().unwrap().serial_number = None;
     }
@@ -115,7 +115,7 @@ fn nameless_sensors(devices: &mut Settings) {
 }
 
 /// As after a passed ready check with everything in its place.
-fn checked(devices: &mut Settings) {
+fn checked(devices: &mut RigSettings) {
     let serials = [
         ("right handle", "4711"),
         ("right arm", "EMULATED-1"),
@@ -142,7 +142,7 @@ fn checked(devices: &mut Settings) {
         devices: serials.map(device).into(),
         items: Vec::new(),
     };
-    devices.checked = Some(nima_machine::rig::Checked::of(&record));
+    devices.checked = Some(nima_machine::rig::CheckedDevices::of(&record));
 }
 
 fn rows() -> Vec<Row> {
@@ -154,7 +154,7 @@ fn rows() -> Vec<Row> {
                 let left = left.handle.force_dimension_mut();
                 std::mem::swap(&mut right.unwrap().emulator, &mut left.unwrap().emulator);
             },
-            ..row("cables of the handles", Told::Harmless)
+            ..row("cables of the handles", ReportSource::Harmless)
         },
         Row {
             file: |devices| {
@@ -163,35 +163,44 @@ fn rows() -> Vec<Row> {
                 let left = left.handle.force_dimension_mut();
                 std::mem::swap(&mut right.unwrap().serial, &mut left.unwrap().serial);
             },
-            ..row("serial numbers of the handles in the file", Told::Kept(&["right handle", "left handle"]))
+            ..row("serial numbers of the handles in the file", ReportSource::Kept(&["right handle", "left handle"]))
         },
-        Row { wire: exchange_arms, ..row("cables of the arms", Told::Kept(&["right arm", "left arm"])) },
-        Row { file: exchange_arms, ..row("addresses of the arms in the file", Told::Kept(&["right arm", "left arm"])) },
+        Row { wire: exchange_arms, ..row("cables of the arms", ReportSource::Kept(&["right arm", "left arm"])) },
+        Row {
+            file: exchange_arms,
+            ..row("addresses of the arms in the file", ReportSource::Kept(&["right arm", "left arm"]))
+        },
         Row {
             wire: exchange_arms,
             file: |devices| {
                 nameless_arms(devices);
                 checked(devices);
             },
-            ..row("cables of arms that only a ready check knows", Told::Kept(&["right arm", "left arm"]))
+            ..row("cables of arms that only a ready check knows", ReportSource::Kept(&["right arm", "left arm"]))
         },
         Row {
             wire: exchange_arms,
             file: nameless_arms,
-            ..row("cables of unknown arms", Told::Obstacle(Exchange::Arms))
+            ..row("cables of unknown arms", ReportSource::Obstacle(SideSwap::Arms))
         },
-        Row { wire: exchange_sensors, ..row("cables of the sensors", Told::Kept(&["right sensor", "left sensor"])) },
+        Row {
+            wire: exchange_sensors,
+            ..row("cables of the sensors", ReportSource::Kept(&["right sensor", "left sensor"]))
+        },
         Row {
             wire: exchange_sensors,
             file: |devices| {
                 nameless_sensors(devices);
                 checked(devices);
             },
-            ..row("cables of sensors that only a ready check knows", Told::Kept(&["right sensor", "left sensor"]))
+            ..row(
+                "cables of sensors that only a ready check knows",
+                ReportSource::Kept(&["right sensor", "left sensor"]),
+            )
         },
         Row {
             wire: exchange_with_tissue,
-            ..row("cables of wrist and tissue sensor", Told::Kept(&["right sensor", "tissue sensor"]))
+            ..row("cables of wrist and tissue sensor", ReportSource::Kept(&["right sensor", "tissue sensor"]))
         },
         Row {
             wire: exchange_with_tissue,
@@ -199,17 +208,20 @@ fn rows() -> Vec<Row> {
                 nameless_sensors(devices);
                 checked(devices);
             },
-            ..row("the same, known by a ready check only", Told::Kept(&["right sensor", "tissue sensor"]))
+            ..row("the same, known by a ready check only", ReportSource::Kept(&["right sensor", "tissue sensor"]))
         },
-        Row { wire: exchange_servos, ..row("cables of the servos", Told::Kept(&["right servos", "left servos"])) },
-        Row { markers: true, ..row("markers on the instruments", Told::Obstacle(Exchange::Markers)) },
+        Row {
+            wire: exchange_servos,
+            ..row("cables of the servos", ReportSource::Kept(&["right servos", "left servos"]))
+        },
+        Row { markers: true, ..row("markers on the instruments", ReportSource::Obstacle(SideSwap::Markers)) },
         Row {
             file: |devices| {
                 let [right, left] = sets(devices);
                 std::mem::swap(&mut right.s1_from_m_deg, &mut left.s1_from_m_deg);
                 std::mem::swap(&mut right.s1_from_m_m, &mut left.s1_from_m_m);
             },
-            ..row("values of the markers in the file", Told::Obstacle(Exchange::Markers))
+            ..row("values of the markers in the file", ReportSource::Obstacle(SideSwap::Markers))
         },
         Row {
             file: |devices| {
@@ -217,55 +229,55 @@ fn rows() -> Vec<Row> {
                 std::mem::swap(&mut right.base_from_c_m, &mut left.base_from_c_m);
                 std::mem::swap(&mut right.base_from_c_deg, &mut left.base_from_c_deg);
             },
-            ..row("values of the camera in the file", Told::Obstacle(Exchange::Markers))
+            ..row("values of the camera in the file", ReportSource::Obstacle(SideSwap::Markers))
         },
         Row {
             file: |devices| {
                 let [right, left] = sets(devices);
                 std::mem::swap(&mut right.mount, &mut left.mount);
             },
-            ..row("mounts of the arms in the file", Told::Obstacle(Exchange::Arms))
+            ..row("mounts of the arms in the file", ReportSource::Obstacle(SideSwap::Arms))
         },
         Row {
             file: |devices| {
                 let [right, left] = sets(devices);
                 std::mem::swap(&mut right.rcm, &mut left.rcm);
             },
-            ..row("trocars in the file", Told::Obstacle(Exchange::Trocars))
+            ..row("trocars in the file", ReportSource::Obstacle(SideSwap::Trocars))
         },
     ]
 }
 
 /// A running machine, and its reports.
 struct Machine {
-    handle: Handle,
+    handle: LoopHandle,
     healths: Healths,
     refusals: Vec<Refusal>,
     engaged: bool,
-    most_n: f64,
+    max_n: f64,
     tick_count: u64,
 }
 
 impl Machine {
-    fn start(devices: Settings) -> Self {
+    fn start(devices: RigSettings) -> Self {
         let rig = RigConfig { devices: Some(devices), ..RigConfig::load("emulated").unwrap() };
         rig.validate().unwrap();
         let scene = Scene::load("peg_transfer").unwrap();
-        let plan = Plan { rig, scene, calibrations: Default::default(), engage: false };
+        let plan = SimulationPlan { rig, scene, calibrations: Default::default(), engage: false };
         let handle = nima_simulation::start(&plan).unwrap();
         let healths = Healths::default();
-        Self { handle, healths, refusals: Vec::new(), engaged: false, most_n: 0.0, tick_count: 0 }
+        Self { handle, healths, refusals: Vec::new(), engaged: false, max_n: 0.0, tick_count: 0 }
     }
 
     /// Processes its reports, and commands an engagement.
     fn look(&mut self) {
         std::thread::sleep(Duration::from_millis(10));
-        let Self { handle, healths, refusals, engaged, most_n, tick_count } = self;
+        let Self { handle, healths, refusals, engaged, max_n, tick_count } = self;
         let mut latched = false;
         handle.drain_ticks(|tick| {
             latched |= tick.state.is_latched();
             *engaged |= tick.state == LoopState::Engaged;
-            *most_n = most_n.max(tick.rendered_n.norm());
+            *max_n = max_n.max(tick.rendered_n.norm());
             *tick_count += 1;
         });
         handle.drain_events(|event| {
@@ -294,7 +306,7 @@ impl Machine {
         }
     }
 
-    fn troubles(&self) -> Vec<(String, Trouble)> {
+    fn troubles(&self) -> Vec<(String, DeviceError)> {
         let trouble =
             |entry: &nima_machine::rig::RosterEntry| Some((entry.name().to_owned(), entry.view.report().trouble?));
         self.handle.roster().iter().filter_map(trouble).collect()
@@ -302,42 +314,42 @@ impl Machine {
 
     fn all_connected(&self) -> bool {
         let devices = &self.healths.devices[..self.handle.roster().len()];
-        devices.iter().all(|health| health.standing == Standing::Connected)
+        devices.iter().all(|health| health.standing == ConnectionState::Connected)
     }
 
-    fn told(&mut self, row: &Row) -> Vec<String> {
-        match row.told {
-            Told::Kept(parts) => {
+    fn report(&mut self, row: &Row) -> Vec<String> {
+        match row.report {
+            ReportSource::Kept(parts) => {
                 let kept = |machine: &Self| {
-                    let is_exchanged = |(_, trouble): &(String, Trouble)| trouble.cure().contains("xchange");
+                    let is_exchanged = |(_, trouble): &(String, DeviceError)| trouble.cure().contains("xchange");
                     let names: Vec<_> =
                         machine.troubles().into_iter().filter(is_exchanged).map(|(name, _)| name).collect();
                     parts.iter().all(|part| names.iter().any(|name| name == part))
                 };
                 self.until(row.place, kept);
-                let words = |(name, trouble): (String, Trouble)| {
+                let words = |(name, trouble): (String, DeviceError)| {
                     assert!(parts.contains(&name.as_str()), "{}: only they are kept out: {name}", row.place);
                     format!("{name}: {trouble}: {}", trouble.cure())
                 };
-                let told: Vec<_> = self.troubles().into_iter().map(words).collect();
-                assert!(told.iter().all(|words| words.contains("xchange")), "{told:?}");
-                told
+                let report: Vec<_> = self.troubles().into_iter().map(words).collect();
+                assert!(report.iter().all(|words| words.contains("xchange")), "{report:?}");
+                report
             }
-            Told::Obstacle(exchange) => {
-                let named = Obstacle::Exchanged(exchange);
+            ReportSource::Obstacle(exchange) => {
+                let named = EngageBlocker::Exchanged(exchange);
                 self.until(row.place, |machine| {
                     machine.healths.obstacles == [Some(named); 2]
                         && machine.refusals.contains(&Refusal::Obstacle(named))
                 });
                 vec![named.to_string()]
             }
-            Told::Harmless => {
-                self.until(row.place, |machine| machine.all_connected() && machine.most_n > 0.0);
-                let serial = |part: Part| {
+            ReportSource::Harmless => {
+                self.until(row.place, |machine| machine.all_connected() && machine.max_n > 0.0);
+                let serial = |part: RigPart| {
                     let entry = self.handle.roster().iter().find(|entry| entry.part == Some(part)).unwrap();
                     entry.view.report().identity.unwrap().serial
                 };
-                assert_eq!(Side::ALL.map(|side| serial(Part::Handle(side))), ["4711", "4712"]);
+                assert_eq!(Side::ALL.map(|side| serial(RigPart::Handle(side))), ["4711", "4712"]);
                 Vec::new()
             }
         }
@@ -367,15 +379,15 @@ fn right_and_left_exchanged_at_any_place_are_told_before_any_force() {
         judged(|| {
             let folder = tempfile::tempdir().unwrap();
             let (_emulated, mut machine) = start(&row, folder.path());
-            let told = machine.told(&row);
-            println!("{}: {told:?}", row.place);
-            if !matches!(row.told, Told::Harmless) {
+            let report = machine.report(&row);
+            println!("{}: {report:?}", row.place);
+            if !matches!(row.report, ReportSource::Harmless) {
                 // Repeated commands have no effect.
                 let end = Instant::now() + Duration::from_millis(200);
                 while Instant::now() < end {
                     machine.look();
                 }
-                assert!(!machine.engaged && machine.most_n == 0.0 && machine.tick_count > 0, "{}", row.place);
+                assert!(!machine.engaged && machine.max_n == 0.0 && machine.tick_count > 0, "{}", row.place);
             }
         });
     }
@@ -386,17 +398,17 @@ fn where_nothing_is_exchanged_nothing_is_told() {
     let _alone = alone();
     judged(|| {
         let folder = tempfile::tempdir().unwrap();
-        let row = Row { file: checked, ..row("nothing", Told::Harmless) };
+        let row = Row { file: checked, ..row("nothing", ReportSource::Harmless) };
         let (_emulated, mut machine) = start(&row, folder.path());
-        machine.until("force", |machine| machine.most_n > 0.0);
+        machine.until("force", |machine| machine.max_n > 0.0);
         let end = Instant::now() + Duration::from_secs(1);
         while Instant::now() < end {
             machine.look();
             assert_eq!(machine.troubles(), []);
-            let is_exchanged = |obstacle: &Option<Obstacle>| matches!(obstacle, Some(Obstacle::Exchanged(_)));
+            let is_exchanged = |obstacle: &Option<EngageBlocker>| matches!(obstacle, Some(EngageBlocker::Exchanged(_)));
             assert!(!machine.healths.obstacles.iter().any(is_exchanged), "{:?}", machine.healths.obstacles);
         }
-        let exchanged = |why: &&Refusal| matches!(why, Refusal::Obstacle(Obstacle::Exchanged(_)));
+        let exchanged = |why: &&Refusal| matches!(why, Refusal::Obstacle(EngageBlocker::Exchanged(_)));
         assert_eq!(machine.refusals.iter().find(exchanged), None);
     });
 }

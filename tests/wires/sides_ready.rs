@@ -6,22 +6,22 @@ use std::time::{Duration, Instant};
 use nima_machine::{
     config::RigConfig,
     messages::LoopState,
-    ready::{Arm, Ask, Cause, Check, Session, State, Subject},
-    rig::{Exchange, Prompt, SIDES, Side},
+    ready::{CheckSubject, PersonRequest, ReadyArm, ReadyCause, ReadyPoint, ReadySession, ReadyState},
+    rig::{Prompt, SIDES, Side, SideSwap},
 };
 use nima_simulation::{
-    Plan,
+    SimulationPlan,
     scene::Scene,
-    screen::{Screen, Task},
+    screen::{PersonTask, Screen},
 };
 use nima_testing::real_time::{alone, judged, too_busy};
 use nima_tests::emulated::{at_tip, started};
 
 const TIMEOUT: Duration = Duration::from_secs(40);
-const OWN: Check = Check::Own(Side::Right);
+const OWN: ReadyPoint = ReadyPoint::Own(Side::Right);
 
 /// Result of the item, with the markers swapped or not.
-fn found(are_exchanged: bool) -> State {
+fn found(are_exchanged: bool) -> ReadyState {
     let folder = tempfile::tempdir().unwrap();
     let devices = at_tip(folder.path());
     let emulated = started(&devices);
@@ -30,12 +30,12 @@ fn found(are_exchanged: bool) -> State {
     }
     let rig = RigConfig { devices: Some(devices), ..RigConfig::load("emulated").unwrap() };
     let scene = Scene::load("peg_transfer").unwrap();
-    let plan = Plan { rig: rig.clone(), scene, calibrations: Default::default(), engage: false };
+    let plan = SimulationPlan { rig: rig.clone(), scene, calibrations: Default::default(), engage: false };
     let handle = nima_simulation::start(&plan).unwrap();
-    let arms = [(); SIDES].map(|()| Some(Arm { at_wrist: false, gravity: None, has_person: true }));
+    let arms = [(); SIDES].map(|()| Some(ReadyArm { at_wrist: false, gravity: None, has_person: true }));
     let parts = handle.roster().iter().map(|entry| entry.part).collect();
     let gates_in_file = Some(rig.gates);
-    let mut session = Session::new(Subject { rig, arms, parts, gates_in_file, is_date_behind: false });
+    let mut session = ReadySession::new(CheckSubject { rig, arms, parts, gates_in_file, is_date_behind: false });
     let technician = emulated.technician();
     let begin = Instant::now();
     loop {
@@ -49,10 +49,11 @@ fn found(are_exchanged: bool) -> State {
             session.healths(&healths);
         }
         session.look(begin.elapsed().as_secs_f64());
-        let task = if session.ask() == Ask::Move(Side::Right) { Task::Gravity } else { Task::Surgery };
+        let task =
+            if session.ask() == PersonRequest::Move(Side::Right) { PersonTask::Gravity } else { PersonTask::Surgery };
         technician.reads(&Screen { side: Side::Right, task, prompt: Prompt::Rest });
         let state = session.list().iter().find(|entry| entry.check == OWN).unwrap().state;
-        if matches!(state, State::Passed(_) | State::Failed(_)) {
+        if matches!(state, ReadyState::Passed(_) | ReadyState::Failed(_)) {
             return state;
         }
         if begin.elapsed() > TIMEOUT {
@@ -66,12 +67,12 @@ fn found(are_exchanged: bool) -> State {
 #[ignore = "ten seconds of real time: `./dev test` runs it alone"]
 fn a_marker_that_follows_the_other_instrument_is_told_as_exchanged() {
     let _alone = alone();
-    judged(|| assert_eq!(found(true), State::Failed(Cause::Exchanged(Exchange::Markers))));
+    judged(|| assert_eq!(found(true), ReadyState::Failed(ReadyCause::Exchanged(SideSwap::Markers))));
 }
 
 #[test]
 #[ignore = "ten seconds of real time, and the first day by commands passes the same check: `./dev walk` runs it"]
 fn an_instrument_with_its_own_arm_and_marker_passes() {
     let _alone = alone();
-    judged(|| assert!(matches!(found(false), State::Passed(_))));
+    judged(|| assert!(matches!(found(false), ReadyState::Passed(_))));
 }

@@ -3,19 +3,19 @@
 #![cfg(target_os = "linux")]
 use std::time::{Duration, Instant};
 
-use nima_core::calibration::gravity::{GravitySession, SessionSettings};
+use nima_core::calibration::gravity::{GravitySession, GravitySessionSettings};
 use nima_devices::ARM_JOINTS;
 use nima_emulation::emulated::EmulatedRig;
 use nima_machine::{
     config::RigConfig,
     messages::Tick,
-    rig::{Prompt, SIDES, Settings, Side},
-    runtime::Handle,
+    rig::{Prompt, RigSettings, SIDES, Side},
+    runtime::LoopHandle,
 };
 use nima_simulation::{
-    Plan,
+    SimulationPlan,
     scene::Scene,
-    screen::{Screen, Task},
+    screen::{PersonTask, Screen},
 };
 use nima_testing::real_time::{alone, judged};
 use nima_tests::emulated::{elsewhere, started};
@@ -27,18 +27,18 @@ const STILL_RAD: f64 = 1e-4;
 const STILL_S: f64 = 0.3;
 
 /// An emulated rig and the loop over its wires.
-pub(super) struct Bench {
+pub(super) struct Fixture {
     pub(super) rig: EmulatedRig,
-    handle: Handle,
+    handle: LoopHandle,
     newest: [Option<Tick>; SIDES],
 }
 
-impl Bench {
+impl Fixture {
     /// The loop of these devices, idle, over the emulators of `rig`.
-    pub(super) fn start(rig: EmulatedRig, devices: &Settings) -> Self {
+    pub(super) fn start(rig: EmulatedRig, devices: &RigSettings) -> Self {
         let config = RigConfig { devices: Some(devices.clone()), ..RigConfig::load("emulated").unwrap() };
         let scene = Scene::load("peg_transfer").unwrap();
-        let plan = Plan { rig: config, scene, calibrations: Default::default(), engage: false };
+        let plan = SimulationPlan { rig: config, scene, calibrations: Default::default(), engage: false };
         let handle = nima_simulation::start(&plan).unwrap();
         Self { rig, handle, newest: [None; SIDES] }
     }
@@ -61,7 +61,7 @@ impl Bench {
         false
     }
 
-    pub(super) fn show(&self, side: Side, task: Task, prompt: Prompt) {
+    pub(super) fn show(&self, side: Side, task: PersonTask, prompt: Prompt) {
         self.rig.technician().reads(&Screen { side, task, prompt });
     }
 
@@ -93,24 +93,24 @@ fn the_technician_takes_poses_at_the_arm_that_is_calibrated_and_puts_the_instrum
     let folder = tempfile::tempdir().unwrap();
     let devices = elsewhere(folder.path());
     judged(|| {
-        let mut bench = Bench::start(started(&devices), &devices);
+        let mut bench = Fixture::start(started(&devices), &devices);
         for side in Side::ALL {
             let other = bench.rig.truth(side.other()).unwrap().joint_rad;
-            let mut session = GravitySession::new(SessionSettings::default());
+            let mut session = GravitySession::new(GravitySessionSettings::default());
             let taken = bench.until(side, Duration::from_secs(40), |bench, tick| {
                 let target = session.target().unwrap();
-                bench.show(side, Task::Gravity, Prompt::Hold { world_from_s1: target.world_from_s1() });
+                bench.show(side, PersonTask::Gravity, Prompt::Hold { world_from_s1: target.world_from_s1() });
                 if let Some(sample) = &tick.wrist {
                     session.step(sample, tick.t_s);
                 }
                 session.poses().len() == POSES
             });
             assert!(taken, "{side:?}: {} poses", session.poses().len());
-            assert!(!Bench::is_in_trocar(&bench.newest[side.index()].unwrap()), "{side:?}: it is out of the trocar");
+            assert!(!Fixture::is_in_trocar(&bench.newest[side.index()].unwrap()), "{side:?}: it is out of the trocar");
             let still = bench.rig.truth(side.other()).unwrap().joint_rad;
             assert_eq!(other.map(f64::to_bits), still.map(f64::to_bits), "{side:?}: he is at one arm only");
-            bench.show(side, Task::Surgery, Prompt::Rest);
-            let back = bench.until(side, Duration::from_secs(20), |_, tick| Bench::is_in_trocar(tick));
+            bench.show(side, PersonTask::Surgery, Prompt::Rest);
+            let back = bench.until(side, Duration::from_secs(20), |_, tick| Fixture::is_in_trocar(tick));
             assert!(back, "{side:?}: the instrument is not in its trocar again");
             // The technician has left, so the arm rests.
             bench.rests(side);

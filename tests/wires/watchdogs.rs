@@ -5,15 +5,15 @@ use std::time::{Duration, Instant};
 use nima_machine::{
     config::RigConfig,
     messages::{Command, LoopState, Tick, Watchdog},
-    runtime::Handle,
+    runtime::LoopHandle,
 };
-use nima_simulation::{Plan, scene::Scene};
+use nima_simulation::{SimulationPlan, scene::Scene};
 use nima_testing::real_time::{alone, judged, too_busy};
 use nima_tests::emulated::{right_arm, started};
 
 /// Waits for such a tick; in a state without drives no force may be commanded. On a machine that is too busy the test
 /// is not judged.
-fn until(handle: &Handle, what: &str, good: impl Fn(&Tick) -> bool) {
+fn until(handle: &LoopHandle, what: &str, good: impl Fn(&Tick) -> bool) {
     let began = Instant::now();
     let mut newest = None;
     while !newest.as_ref().is_some_and(&good) {
@@ -40,7 +40,7 @@ fn every_watchdog_bites_in_idle_twice_and_the_arm_engages_afterwards() {
         let _rig = started(&devices);
         let config = RigConfig { devices: Some(devices.clone()), ..RigConfig::load("emulated").unwrap() };
         let scene = Scene::load("peg_transfer").unwrap();
-        let plan = Plan { rig: config, scene, calibrations: Default::default(), engage: false };
+        let plan = SimulationPlan { rig: config, scene, calibrations: Default::default(), engage: false };
         let handle = nima_simulation::start(&plan).unwrap();
         let is = |state: LoopState| move |tick: &Tick| tick.state == state;
         // It starts idle, before its devices are connected.

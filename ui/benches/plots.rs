@@ -15,8 +15,8 @@ use egui::{Context, Pos2, RawInput, Rect, Ui, vec2};
 use egui_plot::{Line, Plot, PlotPoint, PlotPoints};
 use nima_console::console::{
     history::CHANNELS,
-    live::Live,
-    panels::{ForcesState, forces_ui},
+    live::LiveState,
+    panels::{TracesState, force_traces_ui},
     theme,
 };
 use nima_machine::{config::RigConfig, rig::Side};
@@ -37,7 +37,7 @@ fn force_n(t_s: f64, channel: usize) -> f64 {
 }
 
 /// Both hands' histories up to a time.
-fn fill(live: &mut Live, from_s: f64, to_s: f64) {
+fn fill(live: &mut LiveState, from_s: f64, to_s: f64) {
     let first = (from_s * RATE_HZ).round() as u64;
     let end = (to_s * RATE_HZ).round() as u64;
     for sample in first..end {
@@ -68,12 +68,12 @@ fn frame_ms(ctx: &Context, number: usize, content: &mut dyn FnMut(&mut Ui)) -> f
 
 /// A frame of our panel, twice: three plots with two traces for each hand. Returns its time, ms.
 fn ours() -> impl FnMut() -> f64 {
-    let mut live = Live::new(RigConfig::load("simulated").unwrap(), Scene::load("bimanual").unwrap());
+    let mut live = LiveState::new(RigConfig::load("simulated").unwrap(), Scene::load("bimanual").unwrap());
     let mut now_s = SECONDS;
     fill(&mut live, 0.0, now_s);
     let ctx = Context::default();
     theme::apply(&ctx);
-    let mut states = Side::ALL.map(ForcesState::of);
+    let mut states = Side::ALL.map(TracesState::of);
     for state in &mut states {
         state.show_last(SECONDS);
     }
@@ -84,7 +84,7 @@ fn ours() -> impl FnMut() -> f64 {
         frame_ms(&ctx, numbers.next().unwrap(), &mut |ui| {
             ui.columns(2, |columns| {
                 for (ui, state) in columns.iter_mut().zip(&mut states) {
-                    ui.push_id(state.side().word(), |ui| forces_ui(ui, &mut live, state, &[0, 1, 2]));
+                    ui.push_id(state.side().word(), |ui| force_traces_ui(ui, &mut live, state, &[0, 1, 2]));
                 }
             });
         })
@@ -131,13 +131,13 @@ fn runs(frames: usize, mut frame: impl FnMut() -> f64) -> Vec<Vec<f64>> {
 }
 
 /// Prints the percentiles of each run; returns the median of all.
-fn told(name: &str, runs: &[Vec<f64>]) -> f64 {
-    let at = |sorted: &[f64], share: f64| sorted[((share * sorted.len() as f64) as usize).min(sorted.len() - 1)];
+fn report(name: &str, runs: &[Vec<f64>]) -> f64 {
+    let at = |sorted: &[f64], fraction: f64| sorted[((fraction * sorted.len() as f64) as usize).min(sorted.len() - 1)];
     let mut all = Vec::new();
     for (number, run) in runs.iter().enumerate() {
         let mut sorted = run.clone();
         sorted.sort_by(f64::total_cmp);
-        let [p10, p50, p90, p99] = [0.1, 0.5, 0.9, 0.99].map(|share| at(&sorted, share));
+        let [p10, p50, p90, p99] = [0.1, 0.5, 0.9, 0.99].map(|fraction| at(&sorted, fraction));
         println!("{name}, run {}: p10 {p10:.2}, p50 {p50:.2}, p90 {p90:.2}, p99 {p99:.2} ms a frame", number + 1);
         all.extend(sorted);
     }
@@ -149,7 +149,7 @@ fn main() {
     let mut ours = ours();
     let mut theirs = all_samples();
     if ratio::alone() {
-        ratio::tell(
+        ratio::report(
             "plots_every_sample",
             || {
                 ours();
@@ -162,6 +162,6 @@ fn main() {
     }
     println!("12 traces of {SECONDS:.0} s at {RATE_HZ:.0} Hz, {RUNS} runs");
     let (ours_ms, theirs_ms) =
-        (told("this panel", &runs(FRAMES, ours)), told("every sample", &runs(FRAMES / 4, theirs)));
+        (report("this panel", &runs(FRAMES, ours)), report("every sample", &runs(FRAMES / 4, theirs)));
     println!("medians: this panel {ours_ms:.2} ms, every sample {theirs_ms:.2} ms, ratio {:.1}", theirs_ms / ours_ms);
 }

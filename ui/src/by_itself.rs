@@ -21,7 +21,7 @@ pub(crate) enum Starter {
 
 /// Location of the rig's arm.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Arm {
+pub(crate) enum ArmLocation {
     Here,
     /// At a `nima follower` on this machine, to try the two-machine setup.
     Loopback,
@@ -29,11 +29,13 @@ pub(crate) enum Arm {
 }
 
 /// Whether the loop of this rig, loaded by this name or path, engages automatically.
-pub(crate) fn engages(starter: Starter, name: &str, rig: &RigConfig, arm: Arm) -> bool {
+pub(crate) fn engages(starter: Starter, name: &str, rig: &RigConfig, arm: ArmLocation) -> bool {
     let may = match (starter, arm) {
-        (Starter::Window, Arm::Here) => BUILT_IN.contains(&name),
-        (Starter::Run, Arm::Here | Arm::Loopback) => true,
-        (Starter::Window, Arm::Loopback | Arm::Elsewhere) | (Starter::Run, Arm::Elsewhere) => false,
+        (Starter::Window, ArmLocation::Here) => BUILT_IN.contains(&name),
+        (Starter::Run, ArmLocation::Here | ArmLocation::Loopback) => true,
+        (Starter::Window, ArmLocation::Loopback | ArmLocation::Elsewhere) | (Starter::Run, ArmLocation::Elsewhere) => {
+            false
+        }
     };
     may && rig.is_harmless()
 }
@@ -42,7 +44,7 @@ pub(crate) fn engages(starter: Starter, name: &str, rig: &RigConfig, arm: Arm) -
 mod tests {
     use super::*;
 
-    fn engaging(starter: Starter, arm: Arm, names: &[String]) -> Vec<String> {
+    fn engaging(starter: Starter, arm: ArmLocation, names: &[String]) -> Vec<String> {
         let engages = |name: &&String| engages(starter, name, &RigConfig::load(name).unwrap(), arm);
         names.iter().filter(engages).cloned().collect()
     }
@@ -66,20 +68,20 @@ mod tests {
         ]
         .map(file)
         .into();
-        assert_eq!(engaging(Starter::Window, Arm::Here, &built_in), ["simulated", "emulated"]);
-        assert_eq!(engaging(Starter::Window, Arm::Here, &files), [""; 0]);
+        assert_eq!(engaging(Starter::Window, ArmLocation::Here, &built_in), ["simulated", "emulated"]);
+        assert_eq!(engaging(Starter::Window, ArmLocation::Here, &files), [""; 0]);
         // The command `nima run` is enough where no one can be hurt.
-        assert_eq!(engaging(Starter::Run, Arm::Here, &built_in), ["simulated", "desk", "emulated"]);
-        assert_eq!(engaging(Starter::Run, Arm::Here, &files), files[..4]);
+        assert_eq!(engaging(Starter::Run, ArmLocation::Here, &built_in), ["simulated", "desk", "emulated"]);
+        assert_eq!(engaging(Starter::Run, ArmLocation::Here, &files), files[..4]);
     }
 
     #[test]
     fn an_arm_at_another_machine_may_be_a_real_one() {
         let simulated = ["simulated".to_owned()];
-        for arm in [Arm::Loopback, Arm::Elsewhere] {
+        for arm in [ArmLocation::Loopback, ArmLocation::Elsewhere] {
             assert_eq!(engaging(Starter::Window, arm, &simulated), [""; 0]);
         }
-        assert_eq!(engaging(Starter::Run, Arm::Loopback, &simulated), simulated);
-        assert_eq!(engaging(Starter::Run, Arm::Elsewhere, &simulated), [""; 0]);
+        assert_eq!(engaging(Starter::Run, ArmLocation::Loopback, &simulated), simulated);
+        assert_eq!(engaging(Starter::Run, ArmLocation::Elsewhere, &simulated), [""; 0]);
     }
 }

@@ -12,9 +12,9 @@ use std::{
 };
 
 use anyhow::{Context as _, bail};
-use nima_machine::rig::{SIDES, Settings, Side};
+use nima_machine::rig::{RigSettings, SIDES, Side};
 
-use crate::{console::reader::Reader, extras};
+use crate::{console::reader::ScreenReader, extras};
 
 /// Before they serve, the emulators of arms search for a start pose.
 const READY_WITHIN: Duration = Duration::from_mins(1);
@@ -24,12 +24,12 @@ const READY_WITHIN: Duration = Duration::from_mins(1);
 pub(crate) struct Emulators {
     child: Child,
     input: Arc<Mutex<Option<ChildStdin>>>,
-    told: Option<Receiver<String>>,
+    report: Option<Receiver<String>>,
 }
 
 impl Emulators {
     /// Starts the emulators if the rig of this name is emulated, with the scene of that name, and waits until they serve.
-    pub(crate) fn start(rig: &str, scene: &str, devices: Option<&Settings>) -> anyhow::Result<Option<Self>> {
+    pub(crate) fn start(rig: &str, scene: &str, devices: Option<&RigSettings>) -> anyhow::Result<Option<Self>> {
         let program = std::env::current_exe().context("cannot find the path of this program")?;
         Self::start_by(&program, rig, scene, devices)
     }
@@ -39,7 +39,7 @@ impl Emulators {
         program: &Path,
         rig: &str,
         scene: &str,
-        devices: Option<&Settings>,
+        devices: Option<&RigSettings>,
     ) -> anyhow::Result<Option<Self>> {
         let Some(devices) = devices.filter(|devices| devices.emulated) else { return Ok(None) };
         if !extras::emulates() {
@@ -53,18 +53,18 @@ impl Emulators {
         let mut child =
             command.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().context("cannot start the emulators")?;
         let input = Arc::new(Mutex::new(child.stdin.take()));
-        let mut this = Self { child, input, told: None };
+        let mut this = Self { child, input, report: None };
         this.wait(count(devices))?;
         Ok(Some(this))
     }
 
     /// Each emulator prints its endpoint in one line when it serves.
     fn wait(&mut self, devices: usize) -> anyhow::Result<()> {
-        let Some(told) = self.child.stdout.take() else { return Ok(()) };
+        let Some(report) = self.child.stdout.take() else { return Ok(()) };
         let (line, lines) = std::sync::mpsc::channel();
         std::thread::spawn(move || {
             // Reads until the end, because the emulators would block on a full pipe.
-            for text in BufReader::new(told).lines().map_while(Result::ok) {
+            for text in BufReader::new(report).lines().map_while(Result::ok) {
                 line.send(text).ok();
             }
         });
@@ -76,24 +76,24 @@ impl Emulators {
                 );
             }
         }
-        self.told = Some(lines);
+        self.report = Some(lines);
         Ok(())
     }
 
     /// The simulated technician, who follows the screen.
-    pub(crate) fn technician(&self) -> Reader {
+    pub(crate) fn technician(&self) -> ScreenReader {
         let input = Arc::clone(&self.input);
-        Reader::new(move |screen| write(&input, &format!("screen {screen}")))
+        ScreenReader::new(move |screen| write(&input, &format!("screen {screen}")))
     }
 
     /// Requests reports of the true tip forces at this rate.
-    pub(crate) fn tell_truth(&self, rate_hz: u32) {
+    pub(crate) fn print_truth(&self, rate_hz: u32) {
         write(&self.input, &format!("truth {rate_hz}"));
     }
 
     /// Lines reported since the last call.
-    pub(crate) fn told(&self) -> impl Iterator<Item = String> {
-        self.told.iter().flat_map(Receiver::try_iter)
+    pub(crate) fn report(&self) -> impl Iterator<Item = String> {
+        self.report.iter().flat_map(Receiver::try_iter)
     }
 }
 
@@ -119,7 +119,7 @@ impl Drop for Emulators {
     }
 }
 
-fn count(devices: &Settings) -> usize {
+fn count(devices: &RigSettings) -> usize {
     let of_side = |side| devices.arm(side).map_or(0, |set| 3 + usize::from(set.servos.is_some()));
     let shared = [devices.tissue_sensor.is_some(), devices.tracker.is_some(), devices.pedal.is_some()];
     let sides: [usize; SIDES] = Side::ALL.map(of_side);

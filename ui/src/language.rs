@@ -110,8 +110,8 @@ pub(crate) fn word(english: &'static str, german: &'static str) -> &'static str 
     Text::of(english, german).get()
 }
 
-/// A text with values: `told!("{a} of {b}", "{a} von {b}")`, with further arguments as for `format!`.
-macro_rules! told {
+/// A text with values: `report!("{a} of {b}", "{a} von {b}")`, with further arguments as for `format!`.
+macro_rules! text_format {
     ($english:literal, $german:literal $(, $($argument:tt)*)?) => {
         if $crate::language::current() == $crate::language::Language::German {
             format!($german $(, $($argument)*)?)
@@ -120,7 +120,7 @@ macro_rules! told {
         }
     };
 }
-pub(crate) use told;
+pub(crate) use text_format;
 
 pub(crate) fn plain_or_pseudo(english: String) -> String {
     if current() == Language::Pseudo { pseudo(&english) } else { english }
@@ -192,13 +192,13 @@ mod tests {
         assert_eq!((PAUSE.get(), word("of", "von")), ("Pause", "of"));
         let a = 1;
         let b = 2;
-        let told = with(Language::German, || {
+        let report = with(Language::German, || {
             let there = std::thread::spawn(|| PAUSE.get()).join().unwrap();
             let carried = std::thread::spawn(carried(|| PAUSE.get())).join().unwrap();
-            (PAUSE.to_string(), told!("{a} of {}", "{a} von {}", b), there, carried)
+            (PAUSE.to_string(), text_format!("{a} of {}", "{a} von {}", b), there, carried)
         });
-        assert_eq!(told, ("Anhalten".to_owned(), "1 von 2".to_owned(), "Pause", "Anhalten"));
-        assert_eq!((current(), told!("{a} of {b}", "{a} von {b}")), (Language::English, "1 of 2".to_owned()));
+        assert_eq!(report, ("Anhalten".to_owned(), "1 von 2".to_owned(), "Pause", "Anhalten"));
+        assert_eq!((current(), text_format!("{a} of {b}", "{a} von {b}")), (Language::English, "1 of 2".to_owned()));
     }
 
     #[test]
@@ -215,7 +215,7 @@ mod tests {
         let once = pseudo(english);
         let ratio = letters(&once) as f64 / letters(english) as f64;
         assert!((1.4..1.45).contains(&ratio), "{ratio}: {once}");
-        let within = with(Language::Pseudo, || told!("{once}: {}", "{once}: {}", 12.5));
+        let within = with(Language::Pseudo, || text_format!("{once}: {}", "{once}: {}", 12.5));
         assert_eq!(within, format!("{once}: 12.5"));
         assert!(with(Language::Pseudo, || std::ptr::eq(PAUSE.get(), PAUSE.get())), "it stays where it is");
         assert_eq!(pseudo("0.5 \u{2026}"), "0.5 \u{2026}");

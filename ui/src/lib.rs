@@ -1,5 +1,5 @@
 //! The user interfaces of NIMA Console: command line and window.
-// These macros panic if stderr or stdout is closed: use `telling` and `command::output` instead.
+// These macros panic if stderr or stdout is closed: use `stderr` and `command::output` instead.
 #![cfg_attr(not(test), deny(clippy::print_stderr, clippy::print_stdout))]
 
 mod by_itself;
@@ -7,16 +7,16 @@ pub mod command;
 pub mod console;
 mod emulators;
 mod extras;
+mod ground_truth;
+mod image_recorder;
 pub mod language;
-pub mod leaving;
 mod link;
 mod logging;
 mod objects;
-mod pictures;
 mod recording;
 mod report;
+mod report_text;
 mod scoring;
-pub mod telling;
-mod truth;
+pub mod shutdown;
+pub mod stderr;
 mod watching;
-mod words;

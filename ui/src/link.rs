@@ -3,34 +3,34 @@
 use std::fmt::Debug;
 
 use egui::Ui;
-use nima_machine::{config::RigConfig, rig::Ends, runtime::Assembly};
+use nima_machine::{config::RigConfig, rig::RigEnds, runtime::Assembly};
 use nima_simulation::scene::Scene;
 
 /// Opens links to a machine with the arm.
-pub(crate) trait Way: Sync {
+pub(crate) trait ArmLink: Sync {
     /// Whether this host is this machine. An unresolved host counts as another machine; opening the link reports the error.
     fn is_loopback(&self, host: &str) -> bool;
 
     /// Opens the link to this host, and reduces the rig to the parts at this machine.
-    fn open(&self, host: &str, rig: &mut RigConfig, scene: &Scene) -> anyhow::Result<Box<dyn Line>>;
+    fn open(&self, host: &str, rig: &mut RigConfig, scene: &Scene) -> anyhow::Result<Box<dyn RemoteLine>>;
 }
 
 /// One end of a link, before the loop drives it.
-pub(crate) trait Line {
+pub(crate) trait RemoteLine {
     /// Devices at this end.
-    fn here(&self) -> Ends;
+    fn here(&self) -> RigEnds;
 
     /// The handle for other threads.
-    fn door(&self) -> Box<dyn LineDoor>;
+    fn door(&self) -> Box<dyn LineConnection>;
 
     /// The assembly with the other half of its rig at the other end.
     fn join(self: Box<Self>, assembly: Assembly) -> Assembly;
 }
 
 /// Handle of the window and the commands for a link that the loop drives.
-pub(crate) trait LineDoor: Debug + Send {
+pub(crate) trait LineConnection: Debug + Send {
     /// Receives reports; returns the text of a state change.
-    fn hear(&mut self) -> Option<String>;
+    fn receive(&mut self) -> Option<String>;
 
     fn has_reported(&self) -> bool;
 
@@ -53,20 +53,20 @@ pub(crate) trait LineDoor: Debug + Send {
     fn figures(&self) -> Option<serde_json::Value>;
 }
 
-type Open = dyn Fn(&mut RigConfig, &Scene) -> anyhow::Result<Option<Box<dyn Line>>>;
+type LineOpener = dyn Fn(&mut RigConfig, &Scene) -> anyhow::Result<Option<Box<dyn RemoteLine>>>;
 
 /// Opens another link to the same follower, for a loop that restarts.
-pub(crate) struct Reopen(Box<Open>);
+pub(crate) struct Reopen(Box<LineOpener>);
 
 impl Reopen {
     pub(crate) fn new(
-        open: impl Fn(&mut RigConfig, &Scene) -> anyhow::Result<Option<Box<dyn Line>>> + 'static,
+        open: impl Fn(&mut RigConfig, &Scene) -> anyhow::Result<Option<Box<dyn RemoteLine>>> + 'static,
     ) -> Self {
         Self(Box::new(open))
     }
 
     /// Opens the link for this rig, which is reduced to the parts at this machine.
-    pub(crate) fn open(&self, rig: &mut RigConfig, scene: &Scene) -> anyhow::Result<Option<Box<dyn Line>>> {
+    pub(crate) fn open(&self, rig: &mut RigConfig, scene: &Scene) -> anyhow::Result<Option<Box<dyn RemoteLine>>> {
         (self.0)(rig, scene)
     }
 }

@@ -8,16 +8,16 @@ use std::{
 use nima_machine::runtime::{ClockProfile, Tap, VirtualClock, tap};
 use nima_recording::store::utc_now;
 use nima_session::{
-    Words,
-    outlet::Destination,
-    recorder::{About, Attached, RecordError, Recorder},
+    SentenceChannel,
+    recorder::{AttachedFile, RecordError, RecordingInfo, SessionRecorder},
+    sinks::Destination,
 };
-use nima_simulation::Plan;
+use nima_simulation::SimulationPlan;
 
-use crate::words::{event, happening, operation};
+use crate::report_text::{event, happening, operation};
 
 /// Texts of the log.
-pub(crate) const WORDS: Words = Words { event, operation, happening };
+pub(crate) const WORDS: SentenceChannel = SentenceChannel { event, operation, happening };
 
 pub(crate) const PROGRAM: &str = concat!("nima ", env!("CARGO_PKG_VERSION"));
 
@@ -26,25 +26,25 @@ pub(crate) const RIG: &str = "rig.toml";
 /// Name of the attached scene file.
 pub(crate) const SCENE: &str = "scene.toml";
 
-pub(crate) fn toml_file(name: &str, text: String) -> Attached {
-    Attached { name: name.to_owned(), media_type: "application/toml".to_owned(), data: text.into_bytes() }
+pub(crate) fn toml_file(name: &str, text: String) -> AttachedFile {
+    AttachedFile { name: name.to_owned(), media_type: "application/toml".to_owned(), data: text.into_bytes() }
 }
 
 /// Starts the recording of a loop of this plan; the tap is for its [`nima_machine::runtime::Assembly`]. `clock`: the virtual
 /// clock, `None` for the real one.
 pub(crate) fn begin(
     to: Destination<'_>,
-    plan: &Plan,
+    plan: &SimulationPlan,
     clock: Option<VirtualClock>,
-) -> Result<(Tap, Recorder), RecordError> {
+) -> Result<(Tap, SessionRecorder), RecordError> {
     let (tap, end) = tap();
-    let recorder = Recorder::start(to, about(plan, clock), plan.origin(), end)?;
+    let recorder = SessionRecorder::start(to, about(plan, clock), plan.origin(), end)?;
     Ok((tap, recorder))
 }
 
-fn about(plan: &Plan, clock: Option<VirtualClock>) -> About {
+fn about(plan: &SimulationPlan, clock: Option<VirtualClock>) -> RecordingInfo {
     let started_ns = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_nanos() as u64);
-    let Plan { rig, scene, .. } = plan;
+    let SimulationPlan { rig, scene, .. } = plan;
     let build = if cfg!(debug_assertions) { "debug" } else { "release" };
     let session = [
         ("program", PROGRAM.to_owned()),
@@ -67,7 +67,7 @@ fn about(plan: &Plan, clock: Option<VirtualClock>) -> About {
     // The active settings, including changes from the command line.
     let texts = [(RIG, toml::to_string(rig)), (SCENE, toml::to_string(scene))];
     let file = |(name, text): (&str, Result<String, _>)| Some(toml_file(name, text.ok()?));
-    About {
+    RecordingInfo {
         program: PROGRAM.to_owned(),
         started_ns,
         metadata: BTreeMap::from([("session".to_owned(), session)]),

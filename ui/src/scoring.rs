@@ -4,7 +4,7 @@ use std::fmt::Debug;
 
 use nima_machine::messages::Tick;
 
-pub(crate) trait Scorer: Debug {
+pub(crate) trait RunScorer: Debug {
     fn tick(&mut self, tick: &Tick);
 
     /// The score for JSON output; `None` if no arm was engaged.

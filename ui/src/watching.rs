@@ -6,9 +6,9 @@ use std::{
 };
 
 use clap::Args;
-use nima_endoscope::Reel;
-use nima_session::outlet::Audience;
-use nima_simulation::Plan;
+use nima_endoscope::FrameQueue;
+use nima_session::sinks::Audience;
+use nima_simulation::SimulationPlan;
 
 use crate::extras;
 
@@ -24,7 +24,7 @@ const LSL_HELP: &str =
     "Send event marks over the Lab Streaming Layer, with this liblsl file (without a value: the installed one)";
 
 #[derive(Clone, Debug, Default, Args)]
-pub(crate) struct Watching {
+pub(crate) struct WatchArguments {
     #[arg(long, value_name = "ADDRESS", num_args = 0..=1, default_missing_value = "127.0.0.1:8765", help = LIVE_HELP)]
     live: Option<SocketAddr>,
     #[arg(long, value_name = "ADDRESS", num_args = 0..=1, default_missing_value = "0.0.0.0:7447", help = SHARE_HELP)]
@@ -53,33 +53,33 @@ impl Show {
         }
     }
 
-    fn start(self, at: SocketAddr) -> anyhow::Result<Box<dyn Server>> {
+    fn start(self, at: SocketAddr) -> anyhow::Result<Box<dyn WatchServer>> {
         let [option, feature] = self.names();
         extras::part(|extra| extra.server(self, at)).unwrap_or_else(|| Err(extras::not_built(option, feature)))
     }
 }
 
-fn marks_by(library: &Path) -> anyhow::Result<Box<dyn Server>> {
+fn marks_by(library: &Path) -> anyhow::Result<Box<dyn WatchServer>> {
     extras::part(|extra| extra.marks(library)).unwrap_or_else(|| Err(extras::not_built("`--lsl`", "bridges")))
 }
 
-pub(crate) trait Server: std::fmt::Debug {
+pub(crate) trait WatchServer: std::fmt::Debug {
     /// For the recorder of the next session, of this plan; its endoscope images come through this queue.
-    fn audience(&self, plan: &Plan, reel: &Reel) -> Box<dyn Audience>;
+    fn audience(&self, plan: &SimulationPlan, reel: &FrameQueue) -> Box<dyn Audience>;
     /// For a trial of a blind study with this name, whose condition must stay hidden from viewers. `None`: the trial is not
     /// shown.
-    fn blind_audience(&self, _plan: &Plan, _trial: &str) -> Option<Box<dyn Audience>> {
+    fn blind_audience(&self, _plan: &SimulationPlan, _trial: &str) -> Option<Box<dyn Audience>> {
         None
     }
-    fn shows_pictures(&self) -> bool {
+    fn shows_images(&self) -> bool {
         false
     }
-    fn shown(&self) -> Shown;
+    fn shown(&self) -> WatchStatus;
 }
 
 /// Address and number of viewers.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Shown {
+pub(crate) struct WatchStatus {
     /// The address that a viewer enters.
     pub(crate) at: String,
     pub(crate) watchers: usize,
@@ -87,9 +87,9 @@ pub(crate) struct Shown {
 
 /// Servers for live viewers, for all sessions of this process.
 #[derive(Debug, Default)]
-pub(crate) struct Servers(Vec<Box<dyn Server>>);
+pub(crate) struct Servers(Vec<Box<dyn WatchServer>>);
 
-impl Watching {
+impl WatchArguments {
     /// Starts the requested servers.
     pub(crate) fn start(&self) -> anyhow::Result<Servers> {
         let places = [(self.live, Show::Live), (self.share, Show::Share), (self.igtl, Show::Igtl)];
@@ -100,24 +100,24 @@ impl Watching {
 
 impl Servers {
     /// For the recorder of the next session, of this plan; its endoscope images come through this queue.
-    pub(crate) fn audiences(&self, plan: &Plan, reel: &Reel) -> Vec<Box<dyn Audience>> {
+    pub(crate) fn audiences(&self, plan: &SimulationPlan, reel: &FrameQueue) -> Vec<Box<dyn Audience>> {
         self.0.iter().map(|server| server.audience(plan, reel)).collect()
     }
 
     /// For the recorder of a trial of a blind study with this name: only servers that hide its condition.
-    pub(crate) fn blind_audiences(&self, plan: &Plan, trial: &str) -> Vec<Box<dyn Audience>> {
+    pub(crate) fn blind_audiences(&self, plan: &SimulationPlan, trial: &str) -> Vec<Box<dyn Audience>> {
         self.0.iter().filter_map(|server| server.blind_audience(plan, trial)).collect()
     }
 
-    pub(crate) fn show_pictures(&self) -> bool {
-        self.0.iter().any(|server| server.shows_pictures())
+    pub(crate) fn show_images(&self) -> bool {
+        self.0.iter().any(|server| server.shows_images())
     }
 
     pub(crate) fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
 
-    pub(crate) fn shown(&self) -> Vec<Shown> {
+    pub(crate) fn shown(&self) -> Vec<WatchStatus> {
         self.0.iter().map(|server| server.shown()).collect()
     }
 }
@@ -135,9 +135,9 @@ mod tests {
         let servers = Servers(vec![Show::Igtl.start("127.0.0.1:0".parse().unwrap()).unwrap()]);
         let rig = RigConfig::load("simulated").unwrap();
         let scene = Scene::load("rings").unwrap();
-        let plan = Plan { rig, scene, calibrations: Default::default(), engage: false };
+        let plan = SimulationPlan { rig, scene, calibrations: Default::default(), engage: false };
         assert!(servers.blind_audiences(&plan, "P03 4").is_empty());
-        assert_eq!(servers.audiences(&plan, &Reel::default()).len(), 1);
+        assert_eq!(servers.audiences(&plan, &FrameQueue::default()).len(), 1);
         assert!(servers.shown()[0].at.starts_with("igtl://127.0.0.1:"));
     }
 }

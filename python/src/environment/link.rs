@@ -1,7 +1,7 @@
 //! A link that can also deliver a force requested by an external controller.
 
 use nalgebra::Vector3;
-use nima_core::impedance::Parcel;
+use nima_core::impedance::LinkPacket;
 use nima_machine::teleop::{Link, ProgrammedLink};
 
 /// The programmed link. While an external controller renders, a packet with the requested force replaces the newest
@@ -12,7 +12,7 @@ pub(super) struct OwnLink {
     delay_s: f64,
     /// The force requested by the external controller, N, and the packet that contains it.
     asked_n: Option<Vector3<f64>>,
-    own: Parcel,
+    own: LinkPacket,
     turned: bool,
     /// The force last delivered by the link itself, N.
     pub(super) delayed_n: Option<Vector3<f64>>,
@@ -21,7 +21,7 @@ pub(super) struct OwnLink {
 impl OwnLink {
     pub(super) fn new(rate_hz: f64, delay_s: f64) -> Self {
         let under = ProgrammedLink::new(rate_hz, delay_s);
-        let own = Parcel { fresh: true, ..Parcel::BLANK };
+        let own = LinkPacket { fresh: true, ..LinkPacket::BLANK };
         Self { under, delay_s, asked_n: None, own, turned: false, delayed_n: None }
     }
 
@@ -41,11 +41,11 @@ impl Link for OwnLink {
         self.under.clear();
     }
 
-    fn send(&mut self, parcel: &Parcel) {
+    fn send(&mut self, parcel: &LinkPacket) {
         self.under.send(parcel);
     }
 
-    fn receive(&mut self, now_s: f64) -> Option<&Parcel> {
+    fn receive(&mut self, now_s: f64) -> Option<&LinkPacket> {
         let delivered = self.under.receive(now_s);
         self.delayed_n = delivered.map(|parcel| parcel.force_n);
         let Some(asked_n) = self.asked_n else { return self.under.receive(now_s) };

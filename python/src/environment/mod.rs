@@ -12,23 +12,23 @@ use nima_machine::{
     rig::{GRIP_MAX_RAD, SIDES},
     teleop::Calibrations,
 };
-use nima_simulation::{Plan, scene::Scene};
+use nima_simulation::{SimulationPlan, scene::Scene};
 use numpy::PyArray1;
 use pyo3::{prelude::*, types::PyDict};
 
-use self::running::{Action, Known, Running};
+use self::running::{ControllerAction, SimulationRun, StepObservation};
 use crate::errors::{guarded, value};
 
 /// The quantity that an external controller sets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Control {
+enum EnvironmentControl {
     Nothing,
     HandlePosition,
     HandleForce,
     RenderedForce,
 }
 
-impl Control {
+impl EnvironmentControl {
     const ALL: [(&'static str, Self); 4] = [
         ("nothing", Self::Nothing),
         ("handle_position", Self::HandlePosition),
@@ -47,11 +47,11 @@ impl Control {
 /// A loop with its simulated world.
 #[pyclass(module = "nima._nima")]
 pub(crate) struct Simulation {
-    plan: Plan,
-    control: Control,
+    plan: SimulationPlan,
+    control: EnvironmentControl,
     substeps: u32,
     has_jaws: bool,
-    running: Option<Running>,
+    running: Option<SimulationRun>,
 }
 
 /// Maximum number of ticks of a step.
@@ -70,7 +70,7 @@ impl Simulation {
         control: &str,
         substeps: u32,
     ) -> PyResult<Self> {
-        let control = Control::of(control)?;
+        let control = EnvironmentControl::of(control)?;
         if !(1..=SUBSTEPS_MAX).contains(&substeps) {
             return Err(value(format_args!("substeps is {substeps}; it must be 1 to {SUBSTEPS_MAX}")));
         }
@@ -82,20 +82,20 @@ impl Simulation {
         }
         let mode: Option<Mode> = mode.map(str::parse).transpose().map_err(value)?;
         rig.mode = match (control, mode) {
-            (Control::RenderedForce, None) => Mode::Dfr,
-            (Control::RenderedForce, Some(mode)) => {
+            (EnvironmentControl::RenderedForce, None) => Mode::Dfr,
+            (EnvironmentControl::RenderedForce, Some(mode)) => {
                 return Err(value(format_args!(
                     "mode is {mode}, and control \"rendered_force\" renders the force itself; omit mode"
                 )));
             }
             (_, mode) => mode.unwrap_or(rig.mode),
         };
-        rig.identification.compare &= control != Control::RenderedForce;
+        rig.identification.compare &= control != EnvironmentControl::RenderedForce;
         rig.delay_s = delay_s.unwrap_or(rig.delay_s);
         rig.validate().map_err(value)?;
         let calibrations: [Calibrations; SIDES] = Default::default();
         let has_jaws = scene.objects.is_some();
-        let plan = Plan { rig, scene, calibrations, engage: true };
+        let plan = SimulationPlan { rig, scene, calibrations, engage: true };
         if !plan.may_engage() {
             return Err(value(format_args!(
                 "scene \"{}\" cannot be engaged: its force is measured at the wrist, which needs calibrations; give a scene that measures at the tip",
@@ -146,8 +146,8 @@ impl Simulation {
             plan.scene.seed = seed;
             plan.scene = plan.scene.drawn_anew(seed);
         }
-        let begin = || -> PyResult<(Running, Known)> {
-            let mut running = Running::new(&plan).map_err(value)?;
+        let begin = || -> PyResult<(SimulationRun, StepObservation)> {
+            let mut running = SimulationRun::new(&plan).map_err(value)?;
             let known = running.engage().map_err(value)?;
             Ok((running, known))
         };
@@ -172,28 +172,29 @@ impl Simulation {
 
     /// The score as JSON; `None` in a scene without a task, or after the first call.
     fn score(&mut self) -> PyResult<Option<String>> {
-        let score = self.running.as_mut().and_then(Running::end);
+        let score = self.running.as_mut().and_then(SimulationRun::end);
         score.map(|score| serde_json::to_string(&score).map_err(value)).transpose()
     }
 }
 
 impl Simulation {
-    fn action(&self, numbers: &[f64]) -> PyResult<(Action, Option<f64>)> {
-        let grips = self.has_jaws && matches!(self.control, Control::HandlePosition | Control::HandleForce);
-        let needed = if self.control == Control::Nothing { 0 } else { 3 + usize::from(grips) };
+    fn action(&self, numbers: &[f64]) -> PyResult<(ControllerAction, Option<f64>)> {
+        let grips = self.has_jaws
+            && matches!(self.control, EnvironmentControl::HandlePosition | EnvironmentControl::HandleForce);
+        let needed = if self.control == EnvironmentControl::Nothing { 0 } else { 3 + usize::from(grips) };
         if numbers.len() != needed {
             return Err(value(format_args!("the action has {} numbers, {needed} are needed", numbers.len())));
         }
         if let Some(number) = numbers.iter().find(|number| !number.is_finite()) {
             return Err(value(format_args!("the action contains {number}; give finite numbers")));
         }
-        let &[x, y, z, ..] = numbers else { return Ok((Action::Watch, None)) };
+        let &[x, y, z, ..] = numbers else { return Ok((ControllerAction::Watch, None)) };
         let vector = Vector3::new(x, y, z);
         let action = match self.control {
-            Control::Nothing => Action::Watch,
-            Control::HandlePosition => Action::Place(vector),
-            Control::HandleForce => Action::Push(vector),
-            Control::RenderedForce => Action::Render(vector),
+            EnvironmentControl::Nothing => ControllerAction::Watch,
+            EnvironmentControl::HandlePosition => ControllerAction::Place(vector),
+            EnvironmentControl::HandleForce => ControllerAction::Push(vector),
+            EnvironmentControl::RenderedForce => ControllerAction::Render(vector),
         };
         Ok((action, numbers.get(3).copied()))
     }
@@ -204,7 +205,7 @@ fn array<'py>(py: Python<'py>, vector: &Vector3<f64>) -> Bound<'py, PyArray1<f64
 }
 
 /// The information available to a controller at the leader.
-fn observation<'py>(py: Python<'py>, known: &Known) -> PyResult<Bound<'py, PyDict>> {
+fn observation<'py>(py: Python<'py>, known: &StepObservation) -> PyResult<Bound<'py, PyDict>> {
     let all = PyDict::new(py);
     let vectors = [
         ("handle_m", &known.handle_m),
@@ -221,7 +222,7 @@ fn observation<'py>(py: Python<'py>, known: &Known) -> PyResult<Bound<'py, PyDic
 }
 
 /// Additional information.
-fn info<'py>(py: Python<'py>, known: &Known) -> PyResult<Bound<'py, PyDict>> {
+fn info<'py>(py: Python<'py>, known: &StepObservation) -> PyResult<Bound<'py, PyDict>> {
     let tick = &known.tick;
     let all = PyDict::new(py);
     all.set_item("t_s", tick.t_s)?;
@@ -240,7 +241,7 @@ fn info<'py>(py: Python<'py>, known: &Known) -> PyResult<Bound<'py, PyDict>> {
     };
     let task = PyDict::new(py);
     task.set_item("ended", training.ended)?;
-    task.set_item("share", training.share)?;
+    task.set_item("share", training.fraction)?;
     task.set_item("placed", training.placed)?;
     task.set_item("dropped", training.dropped)?;
     task.set_item("touches", training.touches)?;

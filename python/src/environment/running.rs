@@ -3,18 +3,18 @@
 use std::collections::VecDeque;
 
 use nalgebra::Vector3;
-use nima_core::{impedance::SettingsError, task::Event};
+use nima_core::{impedance::SettingsError, task::TaskEvent};
 use nima_machine::{
     messages::{Command, LoopState, Tick},
     rig::{GRIP_MAX_RAD, GUIDE_MAX_M, Inputs, Side},
     runtime,
     teleop::Loop,
 };
-use nima_score::{Score, TaskFile, scored::LiveTrial};
-use nima_simulation::{Plan, Training, Watched, Worlds};
+use nima_score::{Score, TaskFile, trial_score::LiveTrial};
+use nima_simulation::{ObjectFeed, SimulationPlan, Training, Worlds};
 
 use super::{
-    handle::{Handled, Holder},
+    handle::{HandleWorlds, Holder},
     link::OwnLink,
 };
 
@@ -25,7 +25,7 @@ const ENGAGED_WITHIN_S: f64 = 5.0;
 
 /// Action of an external controller in a step.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Action {
+pub(super) enum ControllerAction {
     /// None: the scene's hand holds the handle, and a mode renders.
     Watch,
     /// Sets the position of the handle, m.
@@ -38,7 +38,7 @@ pub(super) enum Action {
 
 /// Information after a step.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Known {
+pub(super) struct StepObservation {
     pub(super) tick: Tick,
     pub(super) handle_m: Vector3<f64>,
     pub(super) handle_m_s: Vector3<f64>,
@@ -51,10 +51,10 @@ pub(super) struct Known {
     pub(super) training: Option<Training>,
 }
 
-pub(super) struct Running {
+pub(super) struct SimulationRun {
     control: Loop<OwnLink>,
-    rig: Handled,
-    watched: Option<Watched>,
+    rig: HandleWorlds,
+    watched: Option<ObjectFeed>,
     training: Option<Training>,
     trial: Option<LiveTrial>,
     ticks: u64,
@@ -62,16 +62,16 @@ pub(super) struct Running {
     /// Positions of the tip until one delay ago, the oldest first, m.
     tips_m: VecDeque<Vector3<f64>>,
     handle_before_m: Option<Vector3<f64>>,
-    known: Option<Known>,
+    known: Option<StepObservation>,
 }
 
-impl Running {
-    pub(super) fn new(plan: &Plan) -> Result<Self, SettingsError> {
+impl SimulationRun {
+    pub(super) fn new(plan: &SimulationPlan) -> Result<Self, SettingsError> {
         let origin = plan.origin();
         let control = Loop::over(&origin.rig, &origin.calibrations, OwnLink::new)?;
         let (worlds, watched) = Worlds::watched(&plan.scene, plan.rig.rate_hz);
         let period_s = 1.0 / plan.rig.rate_hz;
-        let rig = Handled::new(worlds, SIDE, plan.scene.leader, plan.scene.hand.mass_kg, period_s);
+        let rig = HandleWorlds::new(worlds, SIDE, plan.scene.leader, plan.scene.hand.mass_kg, period_s);
         let training = None;
         let tips_m = VecDeque::new();
         let task = plan.scene.task.as_ref().and_then(|task| TaskFile::of(task).ok());
@@ -82,7 +82,7 @@ impl Running {
     }
 
     /// Runs until the pair is engaged.
-    pub(super) fn engage(&mut self) -> Result<Known, String> {
+    pub(super) fn engage(&mut self) -> Result<StepObservation, String> {
         let mut command = Some(Command::Engage);
         while (self.ticks as f64) * self.period_s < ENGAGED_WITHIN_S {
             let known = self.tick(command.take());
@@ -95,34 +95,39 @@ impl Running {
     }
 
     /// One step of this many ticks.
-    pub(super) fn step(&mut self, action: Action, grip_rad: Option<f64>, ticks: u32) -> Option<Known> {
+    pub(super) fn step(
+        &mut self,
+        action: ControllerAction,
+        grip_rad: Option<f64>,
+        ticks: u32,
+    ) -> Option<StepObservation> {
         self.take(action, ticks);
         if let Some(grip_rad) = grip_rad {
             self.obey(Command::Grip(SIDE, Some(grip_rad.clamp(0.0, GRIP_MAX_RAD))));
         }
         for _ in 0..ticks {
             // The scene's hand waits at the handle, and the loop is informed that the handle is led.
-            let guide = |at_m: Vector3<f64>| at_m.map(|x| x.clamp(-GUIDE_MAX_M, GUIDE_MAX_M));
-            let command = self.rig.at_m().map(|at_m| Command::Guide(SIDE, Some(guide(at_m))));
+            let guide = |position_m: Vector3<f64>| position_m.map(|x| x.clamp(-GUIDE_MAX_M, GUIDE_MAX_M));
+            let command = self.rig.position_m().map(|position_m| Command::Guide(SIDE, Some(guide(position_m))));
             self.tick(command)?;
         }
         self.known
     }
 
-    fn take(&mut self, action: Action, ticks: u32) {
+    fn take(&mut self, action: ControllerAction, ticks: u32) {
         let measured_m = self.rig.seen.map_or_else(Vector3::zeros, |seen: Inputs| seen.hand.position_m);
-        let at_m = self.rig.at_m().unwrap_or(measured_m);
+        let position_m = self.rig.position_m().unwrap_or(measured_m);
         match action {
-            Action::Watch => {}
-            Action::Place(to_m) => self.rig.holder = Holder::Placed { at_m, to_m, ticks },
-            Action::Push(force_n) => {
+            ControllerAction::Watch => {}
+            ControllerAction::Place(to_m) => self.rig.holder = Holder::Placed { position_m, to_m, ticks },
+            ControllerAction::Push(force_n) => {
                 let speed_m_s = match self.rig.holder {
                     Holder::Pushed { speed_m_s, .. } => speed_m_s,
                     Holder::Scene | Holder::Placed { .. } => Vector3::zeros(),
                 };
-                self.rig.holder = Holder::Pushed { at_m, speed_m_s, force_n };
+                self.rig.holder = Holder::Pushed { position_m, speed_m_s, force_n };
             }
-            Action::Render(force_n) => {
+            ControllerAction::Render(force_n) => {
                 if let Some(link) = self.control.link_mut(SIDE) {
                     link.ask(force_n);
                 }
@@ -134,7 +139,7 @@ impl Running {
         self.control.obey(command, self.ticks as f64 * self.period_s);
     }
 
-    fn tick(&mut self, command: Option<Command>) -> Option<Known> {
+    fn tick(&mut self, command: Option<Command>) -> Option<StepObservation> {
         let now_s = self.ticks as f64 * self.period_s;
         let ticks = runtime::tick(&mut self.control, &mut self.rig, now_s, command);
         self.ticks += 1;
@@ -147,7 +152,7 @@ impl Running {
             self.tips_m.pop_front();
         }
         let delivered_n = self.control.link_mut(SIDE).and_then(|link| link.delayed_n);
-        let known = Known {
+        let known = StepObservation {
             tick,
             handle_m,
             handle_m_s: (handle_m - before_m) / self.period_s,
@@ -163,11 +168,11 @@ impl Running {
 
     /// Adds a tick to the score.
     fn score(&mut self, ticks: &[Option<Tick>]) {
-        let moments: Vec<_> = self.watched.iter().flat_map(Watched::moments).collect();
+        let moments: Vec<_> = self.watched.iter().flat_map(ObjectFeed::moments).collect();
         self.training = moments.last().map(|moment| moment.training).or(self.training);
-        let happenings: Vec<_> = self.watched.iter().flat_map(Watched::happenings).collect();
+        let happenings: Vec<_> = self.watched.iter().flat_map(ObjectFeed::happenings).collect();
         if let Some(training) = &mut self.training {
-            training.ended |= happenings.iter().any(|happening| happening.event == Event::Ended);
+            training.ended |= happenings.iter().any(|happening| happening.event == TaskEvent::Ended);
         }
         let Some(trial) = &mut self.trial else { return };
         for moment in &moments {
@@ -183,7 +188,7 @@ impl Running {
 
     /// Ends the score and returns it. `None` in a scene without a task.
     pub(super) fn end(&mut self) -> Option<Score> {
-        let nobody_tells = self.watched.is_none();
-        self.trial.take().and_then(|trial| trial.end(nobody_tells))
+        let has_no_publisher = self.watched.is_none();
+        self.trial.take().and_then(|trial| trial.end(has_no_publisher))
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! `gravity` removes the tool's weight and the sensor's bias from a wrist sensor's readings; `correspondence` finds the
 //! rotation between the sensor under the tissue and the one at the wrist; `frames` finds the poses of tip, marker,
-//! tracker, trocar, table, camera image and wrist sensor. Each is stored as a [`Record`], which is bound to sensor,
+//! tracker, trocar, table, camera image and wrist sensor. Each is stored as a [`CalibrationRecord`], which is bound to sensor,
 //! tool and date. SI units; frames as in [`crate::frames`].
 
 pub mod correspondence;
@@ -12,5 +12,5 @@ mod record;
 mod rotation_mean;
 mod verdict;
 
-pub use record::{Judgement, Record, RecordHead};
+pub use record::{CalibrationRecord, Judgement, RecordHead};
 pub use verdict::{AxisStats, Residuals, Verdict};

@@ -53,7 +53,7 @@ impl Judgement {
 
 /// The content of a calibration file. A record has a field `kind` with the value [`KIND`](Self::KIND), and denies
 /// unknown keys.
-pub trait Record: Serialize + DeserializeOwned {
+pub trait CalibrationRecord: Serialize + DeserializeOwned {
     /// Kind of the record, also the first part of the file's name.
     const KIND: &'static str;
     fn head(&self) -> &RecordHead;

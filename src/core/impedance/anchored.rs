@@ -11,13 +11,13 @@
 use super::{
     Mode, Models,
     envelope::Envelope,
-    messages::{Parcel, Posture, Report, clip},
-    method::{Follower, Leader, Method, Moment, Place, Seen},
+    messages::{IdentificationReport, LinkPacket, Posture, clip},
+    method::{AnchoredMoment, BaselineMethod, FollowerEnd, LeaderEnd, MethodInput, Place},
     mixture::Mixture,
-    packed::{Numbers, Reader, Writer},
-    regression::{LENGTHS, NESTED, RIDGES, Regression, Solutions, predict},
-    regressors::{Background, REGRESSORS, Regressors, Stance, Surroundings, at, motion_changes},
-    settings::{MAX_DELAY_S, ModeSet, Settings},
+    packed::{PackedNumbers, PackedReader, PackedWriter},
+    regression::{ImpedanceRegression, LENGTHS, NESTED, RIDGES, Solutions, predict},
+    regressors::{Background, BackgroundBuilder, MotionState, REGRESSORS, Regressors, at, motion_changes},
+    settings::{ImpedanceSettings, MAX_DELAY_S, ModeSet},
 };
 use crate::signal::{DelayLine, Lanes, settled};
 
@@ -40,33 +40,33 @@ const FIRST_S: f64 = 0.3;
 
 /// Anchored rendering.
 #[derive(Clone, Debug)]
-pub(super) struct Anchored;
+pub(super) struct AnchoredMethod;
 
-impl Method for Anchored {
+impl BaselineMethod for AnchoredMethod {
     const NAME: &'static str = "anchored";
     const ABOUT: &'static str = "our rendering: delayed force plus its learned change";
     const PARAMETERS: Option<Place> = Some(|models| &mut models.anchored);
 
-    fn follower(settings: &Settings, delay_ticks: usize) -> Option<Box<dyn Follower>> {
+    fn follower(settings: &ImpedanceSettings, delay_ticks: usize) -> Option<Box<dyn FollowerEnd>> {
         Some(Box::new(Learner::new(settings, delay_ticks)))
     }
 
-    fn leader(_settings: &Settings) -> Box<dyn Leader> {
+    fn leader(_settings: &ImpedanceSettings) -> Box<dyn LeaderEnd> {
         Box::new(Self)
     }
 
-    fn degree(report: &Report) -> u8 {
+    fn degree(report: &IdentificationReport) -> u8 {
         report.degree
     }
 
-    fn note(models: &Models, report: &mut Report) {
+    fn note(models: &Models, report: &mut IdentificationReport) {
         report.degree = models.anchored.degree;
         report.gain = models.anchored.gain;
     }
 }
 
-impl Leader for Anchored {
-    fn render(&mut self, moment: &Moment<'_>) -> Option<Lanes> {
+impl LeaderEnd for AnchoredMethod {
+    fn render(&mut self, moment: &AnchoredMoment<'_>) -> Option<Lanes> {
         Some(moment.parcel.models.anchored.force(moment.measured_n, moment.now, moment.then))
     }
 }
@@ -125,10 +125,10 @@ impl AnchoredModel {
     }
 }
 
-impl Numbers for AnchoredModel {
+impl PackedNumbers for AnchoredModel {
     const NONE: Self = Self::NONE;
 
-    fn write(&self, row: &mut Writer<'_>) {
+    fn write(&self, row: &mut PackedWriter<'_>) {
         row.put(f64::from(self.degree));
         row.put(self.gain);
         row.put(self.bound_n);
@@ -138,7 +138,7 @@ impl Numbers for AnchoredModel {
         row.row(&self.motion);
     }
 
-    fn read(row: &mut Reader<'_>) -> Option<Self> {
+    fn read(row: &mut PackedReader<'_>) -> Option<Self> {
         let degree = row.count(3)? as u8;
         let gain = row.take()?;
         let bound_n = row.take()?;
@@ -158,8 +158,8 @@ struct Learner {
     delay_ticks: usize,
     every: usize,
     tick: usize,
-    surroundings: Surroundings,
-    regression: Regression,
+    surroundings: BackgroundBuilder,
+    regression: ImpedanceRegression,
     /// Solutions of each ridge.
     found: [DelayLine<Solutions>; RIDGES],
     moments: DelayLine<Instant>,
@@ -173,12 +173,12 @@ struct Learner {
 #[derive(Clone, Copy, Debug, Default)]
 struct Instant {
     good: bool,
-    stance: Stance,
+    stance: MotionState,
     background: Background,
 }
 
 impl Learner {
-    fn new(settings: &Settings, delay_ticks: usize) -> Self {
+    fn new(settings: &ImpedanceSettings, delay_ticks: usize) -> Self {
         let rate_hz = settings.rate_hz;
         let every = ((rate_hz / SOLVE_HZ).round() as usize).max(1);
         let max_delay = (MAX_DELAY_S * rate_hz).ceil() as usize;
@@ -187,8 +187,8 @@ impl Learner {
             delay_ticks,
             every,
             tick: 0,
-            surroundings: Surroundings::new(settings),
-            regression: Regression::new(rate_hz),
+            surroundings: BackgroundBuilder::new(settings),
+            regression: ImpedanceRegression::new(rate_hz),
             found: std::array::from_fn(|_| DelayLine::new(max_delay / every + 1, UNKNOWN)),
             moments: DelayLine::new(max_delay, Instant::default()),
             mixture: Mixture::new(rate_hz),
@@ -200,7 +200,7 @@ impl Learner {
 
     /// Adds the follower's newest motion and force; `good`: the sample was measured, not bridged; `learn`: the sample
     /// is informative.
-    fn step(&mut self, stance: &Stance, force_n: Lanes, good: bool, learn: bool) -> AnchoredModel {
+    fn step(&mut self, stance: &MotionState, force_n: Lanes, good: bool, learn: bool) -> AnchoredModel {
         let d = self.delay_ticks;
         let usual = (self.tick > 2 * d).then(|| self.regression.mean_squares());
         let background = self.surroundings.step(stance, force_n, usual);
@@ -285,7 +285,7 @@ impl Learner {
     }
 
     /// Combines experts and weights into the model that the leader needs.
-    fn model(&self, stance: &Stance, background: &Background) -> AnchoredModel {
+    fn model(&self, stance: &MotionState, background: &Background) -> AnchoredModel {
         let weights = self.mixture.weights();
         let mut p = [Lanes::ZERO; REGRESSORS];
         for (found, weights) in self.found.iter().zip(weights.chunks_exact(NESTED)) {
@@ -348,12 +348,12 @@ impl Learner {
     }
 }
 
-impl Follower for Learner {
+impl FollowerEnd for Learner {
     fn serves(&self, modes: ModeSet) -> bool {
         modes.contains(Mode::Anchored)
     }
 
-    fn take(&mut self, seen: &Seen<'_>, parcel: &mut Parcel, report: &mut Report) {
+    fn take(&mut self, seen: &MethodInput<'_>, parcel: &mut LinkPacket, report: &mut IdentificationReport) {
         parcel.models.anchored = self.step(&seen.posture.stance, seen.force_n, seen.good, seen.learn);
         if seen.learn {
             report.degree = parcel.models.anchored.degree;

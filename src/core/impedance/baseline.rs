@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::packed::{Numbers, Reader, Writer};
+use super::packed::{PackedNumbers, PackedReader, PackedWriter};
 use crate::signal::Lanes;
 
 /// A method of others, computed to compare with; see [`add_baselines`](super::add_baselines).
@@ -44,7 +44,7 @@ pub enum BaselineModel {
     /// No baseline is computed, or it knows nothing yet.
     Nothing,
     /// Model-mediated teleoperation: the contact.
-    Contact(Contact),
+    Contact(HuntCrossleyContact),
     /// Wave variables: the returning wave.
     Wave(Wave),
     /// Time-domain passivity: the energy that the tissue has returned so far (J).
@@ -68,7 +68,7 @@ pub enum BaselineModel {
 
 /// A Hunt-Crossley contact on each side of a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Contact {
+pub struct HuntCrossleyContact {
     /// The surface (m).
     pub surface_m: Lanes,
     /// Depth by which depths are divided (m).
@@ -91,10 +91,10 @@ pub struct Wave {
     pub impedance_n_s_m: Lanes,
 }
 
-impl Numbers for BaselineModel {
+impl PackedNumbers for BaselineModel {
     const NONE: Self = Self::Nothing;
 
-    fn write(&self, row: &mut Writer<'_>) {
+    fn write(&self, row: &mut PackedWriter<'_>) {
         match self {
             Self::Nothing => row.put(0.0),
             Self::Contact(contact) => {
@@ -127,7 +127,7 @@ impl Numbers for BaselineModel {
         }
     }
 
-    fn read(row: &mut Reader<'_>) -> Option<Self> {
+    fn read(row: &mut PackedReader<'_>) -> Option<Self> {
         Some(match row.count(5)? {
             0 => Self::Nothing,
             1 => {
@@ -135,7 +135,7 @@ impl Numbers for BaselineModel {
                 let reach_m = row.lanes()?;
                 let exponent = row.lanes()?;
                 let bounds_n = [row.lanes()?, row.lanes()?];
-                Self::Contact(Contact { surface_m, reach_m, exponent, parameters: row.row()?, bounds_n })
+                Self::Contact(HuntCrossleyContact { surface_m, reach_m, exponent, parameters: row.row()?, bounds_n })
             }
             2 => Self::Wave(Wave { returning: row.lanes()?, impedance_n_s_m: row.lanes()? }),
             3 => Self::Returned { energy_j: row.lanes()? },

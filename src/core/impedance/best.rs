@@ -4,10 +4,10 @@
 
 use super::{
     Mode, SLOTS,
-    messages::{Parcel, Report},
-    method::{Leader, Method, Moment},
-    pace::{newest_share, share},
-    settings::{MAX_DELAY_S, Settings},
+    messages::{IdentificationReport, LinkPacket},
+    method::{AnchoredMoment, BaselineMethod, LeaderEnd},
+    motion_clock::{fraction, newest_fraction},
+    settings::{ImpedanceSettings, MAX_DELAY_S},
 };
 use crate::signal::{DelayLine, Lanes};
 
@@ -33,22 +33,22 @@ pub(super) struct Best {
     judge: Option<Judge>,
 }
 
-impl Method for Best {
+impl BaselineMethod for Best {
     const NAME: &'static str = "best";
     const ABOUT: &'static str = "anchored and matched, weighted by their recent errors";
     const PARTS: &'static [Mode] = &[Mode::Anchored, Mode::Matched];
 
-    fn leader(settings: &Settings) -> Box<dyn Leader> {
+    fn leader(settings: &ImpedanceSettings) -> Box<dyn LeaderEnd> {
         Box::new(Self { judge: settings.modes.contains(Mode::Best).then(|| Judge::new(settings)) })
     }
 
-    fn degree(report: &Report) -> u8 {
+    fn degree(report: &IdentificationReport) -> u8 {
         report.matched_degree
     }
 }
 
-impl Leader for Best {
-    fn render(&mut self, moment: &Moment<'_>) -> Option<Lanes> {
+impl LeaderEnd for Best {
+    fn render(&mut self, moment: &AnchoredMoment<'_>) -> Option<Lanes> {
         let weight = self.judge.as_ref().map_or(Lanes::ZERO, Judge::anchored);
         let anchored = moment.forces_n[Mode::Anchored.index()]?;
         let matched = moment.forces_n[Mode::Matched.index()];
@@ -59,8 +59,8 @@ impl Leader for Best {
         self.judge.iter_mut().for_each(|judge| judge.say(forces_n, pace));
     }
 
-    fn judge(&mut self, parcel: &Parcel, age_ticks: usize) {
-        self.judge.iter_mut().for_each(|judge| judge.hear(parcel, age_ticks));
+    fn judge(&mut self, parcel: &LinkPacket, age_ticks: usize) {
+        self.judge.iter_mut().for_each(|judge| judge.receive(parcel, age_ticks));
     }
 
     fn reset(&mut self) {
@@ -87,8 +87,8 @@ struct Judge {
     judged: f64,
     anchored_n: Lanes,
     matched_n: Lanes,
-    lasting: Lasting,
-    trial: Trial,
+    lasting: LastingError,
+    trial: MixtureTrial,
     anchored: Lanes,
 }
 
@@ -101,19 +101,19 @@ struct Said {
 
 /// Mean errors (N) of the mixture and of anchored rendering.
 #[derive(Clone, Copy, Debug, Default)]
-struct Trial {
+struct MixtureTrial {
     judged: f64,
     anchored_n: Lanes,
     mixed_n: Lanes,
 }
 
-impl Trial {
+impl MixtureTrial {
     /// Returns the degree to which the mixture is to be abandoned, 0 to 1.
     fn step(&mut self, [anchored_n, mixed_n]: [Lanes; 2], pace: f64, rate_hz: f64) -> Lanes {
         self.judged += pace;
-        let share = share(pace, self.judged, TRIAL_S * rate_hz);
-        follow(&mut self.anchored_n, anchored_n, share);
-        follow(&mut self.mixed_n, mixed_n, share);
+        let fraction = fraction(pace, self.judged, TRIAL_S * rate_hz);
+        follow(&mut self.anchored_n, anchored_n, fraction);
+        follow(&mut self.mixed_n, mixed_n, fraction);
         let odds = odds(self.mixed_n, self.anchored_n);
         // Twice the exponent, so that the mixture is rarely worse by more than a few per cent.
         (odds * odds).map(|odds| 1.0 / (1.0 + odds.recip()))
@@ -122,27 +122,27 @@ impl Trial {
 
 /// The smallest error (N) of the current block of ticks and of the previous one.
 #[derive(Clone, Copy, Debug, Default)]
-struct Lasting {
+struct LastingError {
     ticks: usize,
-    least_n: [Lanes; 2],
+    min_n: [Lanes; 2],
 }
 
-impl Lasting {
+impl LastingError {
     fn step(&mut self, block: usize, error_n: Lanes) -> Lanes {
         if self.ticks.is_multiple_of(block) {
-            let [newest_n, _] = self.least_n;
+            let [newest_n, _] = self.min_n;
             // No error has lasted before there is a block to compare with.
-            self.least_n = [error_n, if self.ticks > 0 { newest_n } else { Lanes::ZERO }];
+            self.min_n = [error_n, if self.ticks > 0 { newest_n } else { Lanes::ZERO }];
         }
         self.ticks += 1;
-        let [newest_n, before_n] = &mut self.least_n;
+        let [newest_n, before_n] = &mut self.min_n;
         *newest_n = newest_n.zip(error_n, f64::min);
         newest_n.zip(*before_n, f64::min)
     }
 }
 
 impl Judge {
-    fn new(settings: &Settings) -> Self {
+    fn new(settings: &ImpedanceSettings) -> Self {
         let none = Lanes::ZERO;
         Self {
             rate_hz: settings.rate_hz,
@@ -150,8 +150,8 @@ impl Judge {
             judged: 0.0,
             anchored_n: none,
             matched_n: none,
-            lasting: Lasting::default(),
-            trial: Trial::default(),
+            lasting: LastingError::default(),
+            trial: MixtureTrial::default(),
             anchored: none,
         }
     }
@@ -169,7 +169,7 @@ impl Judge {
     }
 
     /// Judges what was rendered `age` ticks ago by the force of that time, which has just come.
-    fn hear(&mut self, parcel: &Parcel, age: usize) {
+    fn receive(&mut self, parcel: &LinkPacket, age: usize) {
         if !parcel.modes.contains(Mode::Best) {
             self.forget();
             return;
@@ -181,10 +181,10 @@ impl Judge {
         let force_n = Lanes::from(parcel.force_n);
         self.judged += pace;
         let memory = MEMORY_S * self.rate_hz;
-        let share = newest_share(pace, self.judged, memory);
+        let fraction = newest_fraction(pace, self.judged, memory);
         let [anchored_n, matched_n, mixed_n] = said_n.map(|said_n| (force_n - said_n).map(f64::abs));
-        follow(&mut self.anchored_n, anchored_n, share);
-        follow(&mut self.matched_n, matched_n, share);
+        follow(&mut self.anchored_n, anchored_n, fraction);
+        follow(&mut self.matched_n, matched_n, fraction);
         let block = ((0.5 * LASTING_S * self.rate_hz).round() as usize).max(1);
         let lasting_n = self.lasting.step(block, matched_n) * LASTING;
         let full = (self.judged / memory).min(1.0);
@@ -204,8 +204,8 @@ impl Judge {
         self.anchored_n = none;
         self.matched_n = none;
         self.anchored = none;
-        self.lasting = Lasting::default();
-        self.trial = Trial::default();
+        self.lasting = LastingError::default();
+        self.trial = MixtureTrial::default();
     }
 
     fn reset(&mut self) {
@@ -215,8 +215,8 @@ impl Judge {
 }
 
 /// Moves a mean error (N) towards the newest.
-fn follow(mean_n: &mut Lanes, error_n: Lanes, share: f64) {
-    *mean_n = (*mean_n + (error_n - *mean_n) * share).settled();
+fn follow(mean_n: &mut Lanes, error_n: Lanes, fraction: f64) {
+    *mean_n = (*mean_n + (error_n - *mean_n) * fraction).settled();
 }
 
 /// Returns the odds against a mode that errs by `error_n`, compared with a mode that errs by `other_n`.
@@ -240,16 +240,16 @@ mod tests {
     const DELAY: usize = 100;
 
     /// A leader that hears of a force of `0` what `errors_n` (anchored, matched) said one delay before.
-    struct Bench(Judge);
+    struct Fixture(Judge);
 
-    impl Bench {
+    impl Fixture {
         fn new() -> Self {
-            Self(Judge::new(&Settings::default()))
+            Self(Judge::new(&ImpedanceSettings::default()))
         }
 
         /// Runs for some ticks; returns the weight of anchored rendering afterwards.
         fn run(&mut self, ticks: usize, errors_n: [f64; 2]) -> f64 {
-            let parcel = Parcel { fresh: true, modes: ModeSet::only(Mode::Best), ..Parcel::BLANK };
+            let parcel = LinkPacket { fresh: true, modes: ModeSet::only(Mode::Best), ..LinkPacket::BLANK };
             for _ in 0..ticks {
                 let mut forces_n = [None; SLOTS];
                 let weight = self.0.anchored()[0];
@@ -260,7 +260,7 @@ mod tests {
                     forces_n[mode.index()] = Some(Lanes::splat(error_n));
                 }
                 self.0.say(&forces_n, 1.0);
-                self.0.hear(&parcel, DELAY);
+                self.0.receive(&parcel, DELAY);
             }
             self.0.anchored()[0]
         }
@@ -268,7 +268,7 @@ mod tests {
 
     #[test]
     fn an_error_that_does_not_go_away_tells_another_tissue_before_anchored_has_been_right_again() {
-        let mut bench = Bench::new();
+        let mut bench = Fixture::new();
         assert!(bench.run(5000, [0.1, 0.05]) < 0.01, "on a known tissue matched is the better");
         // Both err by the new tissue: anchored for one delay. When it is right again, no newer error is known yet.
         bench.run(DELAY, [0.6, 0.6]);
@@ -278,7 +278,7 @@ mod tests {
 
     #[test]
     fn an_error_that_passes_changes_little() {
-        let mut bench = Bench::new();
+        let mut bench = Fixture::new();
         bench.run(5000, [0.1, 0.05]);
         for _ in 0..20 {
             let weight = bench.run(20, [0.1, 0.3]).max(bench.run(180, [0.1, 0.03]));
@@ -288,7 +288,7 @@ mod tests {
 
     #[test]
     fn what_was_learnt_first_says_little_and_everything_ends_in_the_better() {
-        let mut bench = Bench::new();
+        let mut bench = Fixture::new();
         assert!(bench.run(DELAY, [0.1, 0.5]) <= 0.0, "nothing was judged: matched has all the weight");
         assert!(bench.run(300, [0.1, 0.5]) > 0.9);
         assert!(bench.run(5000, [0.1, 0.05]) < 0.01);
@@ -297,7 +297,7 @@ mod tests {
 
     #[test]
     fn where_the_tissue_changes_at_every_touch_matched_is_given_up_although_it_is_better_in_between() {
-        let mut bench = Bench::new();
+        let mut bench = Fixture::new();
         let mut touches = |count: usize, changed_n: f64| {
             let touch = |_| {
                 bench.run(300, [0.1, changed_n]);

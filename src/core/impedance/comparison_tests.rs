@@ -19,7 +19,7 @@ fn recording(name: &str) -> Option<Vec<Sample>> {
 }
 
 /// Returns the mean 3-D error (N) of every mode over a recording.
-fn mean_errors(samples: &[Sample], settings: &Settings) -> [f64; MODES] {
+fn mean_errors(samples: &[Sample], settings: &ImpedanceSettings) -> [f64; MODES] {
     let mut identifier = Identifier::new(settings).unwrap();
     let mut sums = [0.0; MODES];
     let mut count = 0.0_f64;
@@ -46,7 +46,12 @@ fn real_recordings() {
             let Some(samples) = recording(&name) else { return };
             for delay_ms in [0, 10, 50, 100, 300] {
                 let modes = ModeSet::only(Mode::Anchored);
-                let settings = Settings { axes: 1, delay_s: f64::from(delay_ms) * 1e-3, modes, ..Settings::default() };
+                let settings = ImpedanceSettings {
+                    axes: 1,
+                    delay_s: f64::from(delay_ms) * 1e-3,
+                    modes,
+                    ..ImpedanceSettings::default()
+                };
                 let errors = mean_errors(&samples, &settings);
                 let dfr = errors[Mode::Dfr.index()];
                 let anchored = if delay_ms == 0 { 1.0 } else { errors[Mode::Anchored.index()] / dfr };
@@ -76,8 +81,12 @@ fn the_best_of_two_on_real_recordings() {
             for run in runs {
                 for material in ["foam", "spring", "rigid", "free_motion"] {
                     let Some(samples) = recording(&format!("{run}_{material}.csv")) else { return };
-                    let settings =
-                        Settings { axes: 1, delay_s, modes: ModeSet::only(Mode::Best), ..Settings::default() };
+                    let settings = ImpedanceSettings {
+                        axes: 1,
+                        delay_s,
+                        modes: ModeSet::only(Mode::Best),
+                        ..ImpedanceSettings::default()
+                    };
                     let errors_n = mean_errors(&samples, &settings);
                     sum += errors_n[Mode::Best.index()] / errors_n[Mode::Dfr.index()];
                     count += 1.0;
@@ -170,7 +179,7 @@ fn what_is_sudden_or_still_is_never_rendered_worse_than_reflected() {
                 .collect();
             for delay_s in [0.016, 0.05, 0.1, 0.3] {
                 let modes = ModeSet::only(Mode::Anchored);
-                let settings = Settings { rate_hz, delay_s, modes, ..Settings::default() };
+                let settings = ImpedanceSettings { rate_hz, delay_s, modes, ..ImpedanceSettings::default() };
                 let errors = mean_errors(&samples, &settings);
                 let ratio = errors[Mode::Anchored.index()] / errors[Mode::Dfr.index()];
                 eprintln!("{name:<24} {rate_hz:>5} Hz, {:>3.0} ms: {ratio:.3}", 1e3 * delay_s);
@@ -182,7 +191,7 @@ fn what_is_sudden_or_still_is_never_rendered_worse_than_reflected() {
 
 #[test]
 fn what_comes_later_changes_nothing_before() {
-    let settings = Settings { delay_s: 0.04, ..Settings::default() };
+    let settings = ImpedanceSettings { delay_s: 0.04, ..ImpedanceSettings::default() };
     let mut plain = Identifier::new(&settings).unwrap();
     let mut other = Identifier::new(&settings).unwrap();
     for k in 0..2000 {

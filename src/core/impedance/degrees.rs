@@ -3,36 +3,40 @@
 
 use super::{
     Mode,
-    factor::{Factor, MAX_ROW},
+    factor::{ImpedanceFactor, MAX_ROW},
     horizon::Horizon,
     information::{excitation, rank},
-    messages::{Parcel, Report, active},
-    method::{Follower, Seen},
-    settings::{ModeSet, Settings},
-    solution::Solution,
+    messages::{IdentificationReport, LinkPacket, active},
+    method::{FollowerEnd, MethodInput},
+    settings::{ImpedanceSettings, ModeSet},
+    solution::ImpedanceSolution,
     window::SlidingWindow,
 };
 use crate::signal::Lanes;
 
 /// Slides the window, solves every nested degree on it, and evaluates each at the prediction horizon.
 #[derive(Clone, Debug)]
-pub(super) struct Degrees {
-    window: SlidingWindow<Factor>,
+pub(super) struct ImpedanceDegrees {
+    window: SlidingWindow<ImpedanceFactor>,
     ridge: f64,
-    solution: Solution,
+    solution: ImpedanceSolution,
     horizon: Horizon,
-    settings: Settings,
+    settings: ImpedanceSettings,
 }
 
-impl Degrees {
-    pub(super) fn new(settings: &Settings, delay_ticks: usize) -> Self {
+impl ImpedanceDegrees {
+    pub(super) fn new(settings: &ImpedanceSettings, delay_ticks: usize) -> Self {
         let block = settings.block();
         let columns = 1 + 3 * settings.max_degree;
         let ridge = settings.ridge * 2.0 * block as f64;
         Self {
-            window: SlidingWindow::new(block, Factor::new(columns), Factor::with_ridge(columns, ridge)),
+            window: SlidingWindow::new(
+                block,
+                ImpedanceFactor::new(columns),
+                ImpedanceFactor::with_ridge(columns, ridge),
+            ),
             ridge,
-            solution: Solution::new(columns),
+            solution: ImpedanceSolution::new(columns),
             horizon: Horizon::new(settings, delay_ticks),
             settings: settings.clone(),
         }
@@ -44,12 +48,12 @@ impl Degrees {
     }
 }
 
-impl Follower for Degrees {
+impl FollowerEnd for ImpedanceDegrees {
     fn serves(&self, modes: ModeSet) -> bool {
         Self::are_wanted(modes)
     }
 
-    fn take(&mut self, seen: &Seen<'_>, _parcel: &mut Parcel, report: &mut Report) {
+    fn take(&mut self, seen: &MethodInput<'_>, _parcel: &mut LinkPacket, report: &mut IdentificationReport) {
         let features = &seen.posture.features;
         if !seen.learn {
             self.horizon.rest(features, seen.force_n);
@@ -82,7 +86,7 @@ impl Follower for Degrees {
         self.horizon.reset();
     }
 
-    fn nested(&self) -> Option<&Solution> {
+    fn nested(&self) -> Option<&ImpedanceSolution> {
         Some(&self.solution)
     }
 }

@@ -1,8 +1,8 @@
 //! Direct force reflection: what every other mode is compared with.
 
 use super::{
-    method::{Leader, Method, Moment},
-    settings::Settings,
+    method::{AnchoredMoment, BaselineMethod, LeaderEnd},
+    settings::ImpedanceSettings,
 };
 use crate::signal::Lanes;
 
@@ -10,17 +10,17 @@ use crate::signal::Lanes;
 #[derive(Clone, Debug)]
 pub(super) struct Dfr;
 
-impl Method for Dfr {
+impl BaselineMethod for Dfr {
     const NAME: &'static str = "dfr";
     const ABOUT: &'static str = "the delayed force itself, for comparison";
 
-    fn leader(_settings: &Settings) -> Box<dyn Leader> {
+    fn leader(_settings: &ImpedanceSettings) -> Box<dyn LeaderEnd> {
         Box::new(Self)
     }
 }
 
-impl Leader for Dfr {
-    fn render(&mut self, moment: &Moment<'_>) -> Option<Lanes> {
+impl LeaderEnd for Dfr {
+    fn render(&mut self, moment: &AnchoredMoment<'_>) -> Option<Lanes> {
         Some(moment.measured_n)
     }
 }

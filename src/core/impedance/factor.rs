@@ -1,6 +1,6 @@
 //! The triangular factor of a least-squares problem, built by orthogonal operations only.
 
-use super::{features::MOTION_COLUMNS, window::Summary};
+use super::{features::MOTION_COLUMNS, window::WindowSummary};
 use crate::signal::Lanes;
 
 /// Maximum number of unknowns: a constant and the motion columns.
@@ -25,12 +25,12 @@ pub(super) const fn column_start(j: usize) -> usize {
 /// solve. Diagonal entries may have either sign. Squares of entries must neither overflow nor all underflow: entries
 /// between 1e-150 and 1e150 (the identifier ensures this).
 #[derive(Clone, Debug)]
-pub struct Factor {
+pub struct ImpedanceFactor {
     columns: usize,
     elements: [Lanes; MAX_ELEMENTS],
 }
 
-impl Factor {
+impl ImpedanceFactor {
     /// Creates the factor of no rows, for `columns <= 16` unknowns.
     pub fn new(columns: usize) -> Self {
         Self { columns: columns.min(MAX_COLUMNS), elements: [Lanes::ZERO; MAX_ELEMENTS] }
@@ -57,7 +57,7 @@ impl Factor {
     }
 }
 
-impl Summary for Factor {
+impl WindowSummary for ImpedanceFactor {
     /// `columns` entries, then the right-hand side at index `columns`; further entries are ignored. A row of zeros
     /// changes nothing.
     type Row = [Lanes; MAX_ROW];
@@ -109,7 +109,7 @@ fn norm_of(squares: Lanes) -> Lanes {
 /// Adds one row to each of several factors of the same size, column by column: while the square root and the division
 /// of one rotation are pending, the others proceed.
 #[inline]
-fn add_rows<const COUNT: usize>(mut targets: [&mut Factor; COUNT], rows: [&[Lanes; MAX_ROW]; COUNT]) {
+fn add_rows<const COUNT: usize>(mut targets: [&mut ImpedanceFactor; COUNT], rows: [&[Lanes; MAX_ROW]; COUNT]) {
     let n = targets.iter().map(|target| target.columns).min().unwrap_or(0);
     let mut rotations = [[(Lanes::ZERO, Lanes::ZERO); MAX_ROW]; COUNT];
     for j in 0..=n {

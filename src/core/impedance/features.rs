@@ -9,7 +9,7 @@ use crate::signal::{Lanes, Motion};
 pub const MOTION_COLUMNS: usize = 3 * MAX_DEGREE;
 
 /// `u, u', u'', u^2, u'^2, u''^2, ...`: 15 entries, ordered by degree, so that a lower degree is a prefix of a higher one.
-pub type Features = [Lanes; MOTION_COLUMNS];
+pub type ImpedanceFeatures = [Lanes; MOTION_COLUMNS];
 
 /// Typical magnitudes of motion and force; columns are divided by them before they are raised to a power.
 ///
@@ -40,7 +40,7 @@ const FLUSH: f64 = 1e-20;
 impl Scales {
     /// Returns the features of `motion` up to `degree`, each divided by its scale; columns beyond the degree are zero.
     #[inline]
-    pub fn features(&self, motion: &Motion, degree: usize) -> Features {
+    pub fn features(&self, motion: &Motion, degree: usize) -> ImpedanceFeatures {
         let scaled = Motion {
             x: motion.x * self.position_m.recip(),
             v: motion.v * self.velocity_m_s.recip(),
@@ -53,7 +53,7 @@ impl Scales {
 /// Returns the powers 1 to `degree` of a motion: `u, u', u'', u^2, u'^2, u''^2, ...`; columns beyond the degree are
 /// zero.
 #[inline]
-pub(super) fn features(motion: &Motion, degree: usize) -> Features {
+pub(super) fn features(motion: &Motion, degree: usize) -> ImpedanceFeatures {
     let mut columns = [Lanes::ZERO; MOTION_COLUMNS];
     let base = [motion.x, motion.v, motion.a].map(|u| u.map(|u| if u.abs() < FLUSH { 0.0 } else { u }));
     let mut power = base;

@@ -2,8 +2,8 @@
 
 use super::{
     factor::column_start,
-    features::{Features, MOTION_COLUMNS},
-    window::Summary,
+    features::{ImpedanceFeatures, MOTION_COLUMNS},
+    window::WindowSummary,
 };
 use crate::signal::Lanes;
 
@@ -48,9 +48,9 @@ impl Gram {
         &self.elements[column_start(j)..=column_start(j) + j]
     }
 
-    /// Returns a row for [`Summary::add`].
+    /// Returns a row for [`WindowSummary::add`].
     #[inline]
-    pub(super) fn row(&self, features: &Features, force_n: Lanes) -> [Lanes; GRAM_ROW] {
+    pub(super) fn row(&self, features: &ImpedanceFeatures, force_n: Lanes) -> [Lanes; GRAM_ROW] {
         let mut row = [Lanes::ZERO; GRAM_ROW];
         let first = self.constants();
         row[0] = self.constant.unwrap_or(Lanes::ZERO);
@@ -60,7 +60,7 @@ impl Gram {
     }
 }
 
-impl Summary for Gram {
+impl WindowSummary for Gram {
     /// `columns` columns, then the force at index `columns`; further entries are ignored.
     type Row = [Lanes; GRAM_ROW];
 

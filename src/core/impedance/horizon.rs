@@ -2,10 +2,10 @@
 
 use super::{
     factor::column_start,
-    features::{Features, MOTION_COLUMNS},
+    features::{ImpedanceFeatures, MOTION_COLUMNS},
     messages::clip,
-    settings::{MAX_DELAY_S, Settings},
-    solution::{Increments, PRODUCTS, Solution},
+    settings::{ImpedanceSettings, MAX_DELAY_S},
+    solution::{ImpedanceSolution, Increments, PRODUCTS},
 };
 use crate::signal::{DelayLine, Lanes, settled};
 
@@ -24,7 +24,7 @@ const RENEW_HZ: f64 = 200.0;
 #[derive(Clone, Debug)]
 pub(super) struct Horizon {
     solutions: DelayLine<Increments>,
-    past: DelayLine<Past>,
+    past: DelayLine<HorizonHistory>,
     candidates: usize,
     delay_ticks: usize,
     every: usize,
@@ -35,16 +35,16 @@ pub(super) struct Horizon {
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Past {
-    features: Features,
+struct HorizonHistory {
+    features: ImpedanceFeatures,
     force_n: Lanes,
     bound_n: f64,
 }
 
 impl Horizon {
-    pub(super) fn new(settings: &Settings, delay_ticks: usize) -> Self {
-        let Settings { rate_hz, max_degree, .. } = *settings;
-        let blank = Past { features: [Lanes::ZERO; MOTION_COLUMNS], force_n: Lanes::ZERO, bound_n: 0.0 };
+    pub(super) fn new(settings: &ImpedanceSettings, delay_ticks: usize) -> Self {
+        let ImpedanceSettings { rate_hz, max_degree, .. } = *settings;
+        let blank = HorizonHistory { features: [Lanes::ZERO; MOTION_COLUMNS], force_n: Lanes::ZERO, bound_n: 0.0 };
         let max_delay = (MAX_DELAY_S * rate_hz).ceil() as usize;
         let every = ((rate_hz / RENEW_HZ).round() as usize).max(1);
         let forget = 1.0 - libm::exp(-1.0 / (MEMORY_S * rate_hz));
@@ -63,7 +63,7 @@ impl Horizon {
     }
 
     /// Advances without evaluating: only the data for later evaluations are stored.
-    pub(super) fn rest(&mut self, features: &Features, force_n: Lanes) {
+    pub(super) fn rest(&mut self, features: &ImpedanceFeatures, force_n: Lanes) {
         self.keep(features, force_n);
         if self.tick.is_multiple_of(self.every)
             && let Some(solution) = self.solutions.get(0).copied()
@@ -73,13 +73,19 @@ impl Horizon {
         self.tick += 1;
     }
 
-    fn keep(&mut self, features: &Features, force_n: Lanes) {
-        self.past.push(Past { features: *features, force_n, bound_n: BOUND * self.largest_change_n });
+    fn keep(&mut self, features: &ImpedanceFeatures, force_n: Lanes) {
+        self.past.push(HorizonHistory { features: *features, force_n, bound_n: BOUND * self.largest_change_n });
     }
 
     /// Evaluates all candidates on the newest sample and returns the columns of the best. `good`: the force is a
     /// measurement.
-    pub(super) fn step(&mut self, solution: &Solution, features: &Features, force_n: Lanes, good: bool) -> usize {
+    pub(super) fn step(
+        &mut self,
+        solution: &ImpedanceSolution,
+        features: &ImpedanceFeatures,
+        force_n: Lanes,
+        good: bool,
+    ) -> usize {
         if good && self.delay_ticks > 0 {
             self.judge(features, force_n);
         }
@@ -91,7 +97,7 @@ impl Horizon {
         self.choice()
     }
 
-    fn judge(&mut self, features: &Features, force_n: Lanes) {
+    fn judge(&mut self, features: &ImpedanceFeatures, force_n: Lanes) {
         // This runs before the tick is stored: the newest entry is one tick old.
         let Some(then) = self.past.get(self.delay_ticks - 1) else { return };
         let age = (self.tick - 1) / self.every - (self.tick - self.delay_ticks) / self.every;

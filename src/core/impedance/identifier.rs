@@ -4,13 +4,13 @@ use nalgebra::Vector3;
 
 use super::{
     Mode, SLOTS,
-    features::Features,
+    features::ImpedanceFeatures,
     literal::LiteralSolver,
-    messages::{Parcel, Posture, Report, Sample, active},
-    method::{Followers, Leaders, Seen},
-    settings::{MAX_DELAY_S, ModeSet, Settings, SettingsError},
-    solution::Solution,
-    track::{Track, usable_force, usable_position},
+    messages::{IdentificationReport, LinkPacket, Posture, Sample, active},
+    method::{Followers, Leaders, MethodInput},
+    settings::{ImpedanceSettings, MAX_DELAY_S, ModeSet, SettingsError},
+    solution::ImpedanceSolution,
+    track::{MotionTrack, usable_force, usable_position},
 };
 use crate::signal::{DelayLine, Lanes, settled};
 
@@ -19,7 +19,7 @@ const ERROR_MEMORY_S: f64 = 0.5;
 
 /// Identifies the impedance in a sliding window, one [`Sample`] per tick.
 ///
-/// Each tick produces a [`Parcel`] for the link and a [`Report`] for the screen. Nothing is allocated after
+/// Each tick produces a [`LinkPacket`] for the link and a [`IdentificationReport`] for the screen. Nothing is allocated after
 /// construction.
 ///
 /// The follower presses a spring of 100 N/m. 50 ms later its packet arrives at the leader, which renders the force for
@@ -27,11 +27,11 @@ const ERROR_MEMORY_S: f64 = 0.5;
 ///
 /// ```
 /// use nalgebra::Vector3;
-/// use nima_core::impedance::{Identifier, Mode, Parcel, Renderer, Sample, Settings};
+/// use nima_core::impedance::{Identifier, Mode, LinkPacket, Renderer, Sample, ImpedanceSettings};
 ///
-/// let settings = Settings { rate_hz: 1000.0, delay_s: 0.05, ..Settings::default() };
+/// let settings = ImpedanceSettings { rate_hz: 1000.0, delay_s: 0.05, ..ImpedanceSettings::default() };
 /// let (mut follower, mut leader) = (Identifier::new(&settings)?, Renderer::new(&settings)?);
-/// let mut link: Vec<Parcel> = Vec::new();
+/// let mut link: Vec<LinkPacket> = Vec::new();
 /// let mut worst_n = 0.0_f64;
 /// for tick in 0..2000 {
 ///     let t_s = f64::from(tick) * 1e-3;
@@ -52,9 +52,9 @@ const ERROR_MEMORY_S: f64 = 0.5;
 /// ```
 #[derive(Clone, Debug)]
 pub struct Identifier {
-    settings: Settings,
+    settings: ImpedanceSettings,
     delay_ticks: usize,
-    track: Track,
+    track: MotionTrack,
     last_t_s: f64,
     last_force_n: Lanes,
     computed: ModeSet,
@@ -63,10 +63,10 @@ pub struct Identifier {
     followers: Followers,
     /// Those of a leader that makes the follower's own motion.
     leaders: Leaders,
-    sent: DelayLine<(Parcel, Posture)>,
+    sent: DelayLine<(LinkPacket, Posture)>,
     forget: f64,
-    parcel: Parcel,
-    report: Report,
+    parcel: LinkPacket,
+    report: IdentificationReport,
 }
 
 impl Identifier {
@@ -74,23 +74,23 @@ impl Identifier {
     ///
     /// # Errors
     /// The name of the first setting that is out of its range.
-    pub fn new(settings: &Settings) -> Result<Self, SettingsError> {
+    pub fn new(settings: &ImpedanceSettings) -> Result<Self, SettingsError> {
         settings.validate()?;
         let delay_ticks = settings.delay_ticks(settings.delay_s);
         let max_delay = (MAX_DELAY_S * settings.rate_hz).ceil() as usize;
         Ok(Self {
             delay_ticks,
-            track: Track::new(settings),
+            track: MotionTrack::new(settings),
             last_t_s: f64::NEG_INFINITY,
             last_force_n: Lanes::ZERO,
             computed: settings.modes,
             idle_ticks: 0,
             followers: Followers::new(settings, delay_ticks),
             leaders: Leaders::new(settings),
-            sent: DelayLine::new(max_delay, (Parcel::BLANK, Posture::BLANK)),
+            sent: DelayLine::new(max_delay, (LinkPacket::BLANK, Posture::BLANK)),
             forget: 1.0 - libm::exp(-1.0 / (ERROR_MEMORY_S * settings.rate_hz)),
-            parcel: Parcel { modes: settings.modes, ..Parcel::BLANK },
-            report: Report { modes: settings.modes, ..Report::BLANK },
+            parcel: LinkPacket { modes: settings.modes, ..LinkPacket::BLANK },
+            report: IdentificationReport { modes: settings.modes, ..IdentificationReport::BLANK },
             settings: settings.clone(),
         })
     }
@@ -106,14 +106,23 @@ impl Identifier {
         }
         self.leaders.each().for_each(|leader| leader.compute(before, modes));
         self.idle_ticks = 0;
-        let Parcel { t_s, force_n, fresh, .. } = self.parcel;
-        self.parcel = Parcel { t_s, force_n, fresh, modes, ..Parcel::BLANK };
-        let Report { t_s, learnt, rejected, restarts, literal_failures, mut horizon_error_n, .. } = self.report;
+        let LinkPacket { t_s, force_n, fresh, .. } = self.parcel;
+        self.parcel = LinkPacket { t_s, force_n, fresh, modes, ..LinkPacket::BLANK };
+        let IdentificationReport { t_s, learnt, rejected, restarts, literal_failures, mut horizon_error_n, .. } =
+            self.report;
         for mode in self.settings.modes.modes().filter(|mode| begins(*mode) || !modes.contains(*mode)) {
             horizon_error_n[mode.index()] = 0.0;
         }
-        self.report =
-            Report { t_s, modes, learnt, rejected, restarts, literal_failures, horizon_error_n, ..Report::BLANK };
+        self.report = IdentificationReport {
+            t_s,
+            modes,
+            learnt,
+            rejected,
+            restarts,
+            literal_failures,
+            horizon_error_n,
+            ..IdentificationReport::BLANK
+        };
     }
 
     /// Adds one sample.
@@ -144,7 +153,7 @@ impl Identifier {
         self.parcel.force_n = self.last_force_n.vector();
         self.parcel.fresh = good;
         self.parcel.resting = !learn;
-        let seen = Seen {
+        let seen = MethodInput {
             posture: &now,
             x: &x,
             force_n: self.last_force_n,
@@ -172,7 +181,7 @@ impl Identifier {
     }
 
     /// Computes the force of every mode for this tick from the packet that is one delay old, and its running error.
-    fn predict(&mut self, now: &Posture, x: &Features, good: bool) {
+    fn predict(&mut self, now: &Posture, x: &ImpedanceFeatures, good: bool) {
         let arrived = self.sent.get(self.delay_ticks).filter(|(parcel, _)| parcel.t_s.is_finite());
         let forces = arrived
             .map_or([None; SLOTS], |(parcel, then)| self.leaders.render(parcel, [now, then], x, self.delay_ticks));
@@ -195,17 +204,17 @@ impl Identifier {
         }
     }
 
-    pub fn parcel(&self) -> &Parcel {
+    pub fn parcel(&self) -> &LinkPacket {
         &self.parcel
     }
 
-    pub fn report(&self) -> &Report {
+    pub fn report(&self) -> &IdentificationReport {
         &self.report
     }
 
     /// Returns every nested solution on the newest window, in scaled columns (N); `None` unless both anchored and
     /// literal are computed.
-    pub fn solution(&self) -> Option<&Solution> {
+    pub fn solution(&self) -> Option<&ImpedanceSolution> {
         self.followers.find(|follower| follower.nested())
     }
 
@@ -230,7 +239,7 @@ impl Identifier {
         self.followers.each().for_each(|follower| follower.reset());
         self.leaders.each().for_each(|leader| leader.reset());
         self.sent.clear();
-        self.parcel = Parcel { modes: self.computed, ..Parcel::BLANK };
-        self.report = Report { modes: self.computed, ..Report::BLANK };
+        self.parcel = LinkPacket { modes: self.computed, ..LinkPacket::BLANK };
+        self.report = IdentificationReport { modes: self.computed, ..IdentificationReport::BLANK };
     }
 }

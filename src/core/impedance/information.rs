@@ -1,11 +1,11 @@
 //! Measures how much information about the impedance the motion in a window contains.
 
-use super::{factor::Factor, messages::Excitation, settings::Settings};
+use super::{factor::ImpedanceFactor, messages::ImpedanceExcitation, settings::ImpedanceSettings};
 use crate::signal::Lanes;
 
 /// Returns the number of motion columns whose part orthogonal to the preceding columns exceeds the ridge (and
 /// rounding), on the axis with the fewest.
-pub(super) fn rank(factor: &Factor, ridge: f64, axes: usize) -> u8 {
+pub(super) fn rank(factor: &ImpedanceFactor, ridge: f64, axes: usize) -> u8 {
     let mut ranks = [0_u8; 4];
     for j in 1..factor.columns() {
         let column = factor.column(j);
@@ -20,14 +20,14 @@ pub(super) fn rank(factor: &Factor, ridge: f64, axes: usize) -> u8 {
 
 /// Returns the standard deviations of x, v and a in the window, from the first columns of the factor without the
 /// constant's row.
-pub(super) fn excitation(factor: &Factor, ridge: f64, settings: &Settings) -> Excitation {
+pub(super) fn excitation(factor: &ImpedanceFactor, ridge: f64, settings: &ImpedanceSettings) -> ImpedanceExcitation {
     let rows = factor.column(0)[0];
     let deviation = |j: usize, scale: f64| {
         let squares = factor.column(j)[1..].iter().fold(Lanes::ZERO, |sum, r| sum + *r * *r);
         let variance = (squares - Lanes::splat(ridge)).map(|s| s.max(0.0));
         (variance.sqrt() * rows.recip_or_zero().map(f64::abs) * scale).vector()
     };
-    Excitation {
+    ImpedanceExcitation {
         position_m: deviation(1, settings.scales.position_m),
         velocity_m_s: deviation(2, settings.scales.velocity_m_s),
         acceleration_m_s2: deviation(3, settings.scales.acceleration_m_s2),

@@ -4,8 +4,8 @@ use nalgebra::Vector3;
 
 use super::{
     MAX_DEGREE, Mode, Models, SLOTS,
-    features::{Features, MOTION_COLUMNS, Scales},
-    regressors::Stance,
+    features::{ImpedanceFeatures, MOTION_COLUMNS, Scales},
+    regressors::MotionState,
     settings::ModeSet,
 };
 use crate::signal::{LANES, Lanes, Motion};
@@ -24,12 +24,12 @@ pub struct Sample {
 /// One end's motion at one tick, as the models see it.
 #[derive(Clone, Copy, Debug)]
 pub struct Posture {
-    pub(super) features: Features,
-    pub(super) stance: Stance,
+    pub(super) features: ImpedanceFeatures,
+    pub(super) stance: MotionState,
 }
 
 impl Posture {
-    pub(super) const BLANK: Self = Self { features: [Lanes::ZERO; MOTION_COLUMNS], stance: Stance::BLANK };
+    pub(super) const BLANK: Self = Self { features: [Lanes::ZERO; MOTION_COLUMNS], stance: MotionState::BLANK };
 
     /// Position (m), velocity (m/s) and acceleration (m/s^2).
     pub fn motion(&self, scales: &Scales) -> Motion {
@@ -56,7 +56,7 @@ pub(super) fn clip(force: Lanes, bound_n: f64) -> Lanes {
 
 /// Data that the follower sends over the link each tick: fixed size, plain numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Parcel {
+pub struct LinkPacket {
     pub t_s: f64,
     /// Tip force at that time (N); the last good one if the sample was rejected.
     pub force_n: Vector3<f64>,
@@ -70,7 +70,7 @@ pub struct Parcel {
     pub models: Models,
 }
 
-impl Parcel {
+impl LinkPacket {
     pub const BLANK: Self = Self {
         t_s: f64::NEG_INFINITY,
         force_n: Vector3::new(0.0, 0.0, 0.0),
@@ -83,14 +83,14 @@ impl Parcel {
 
 /// Forces rendered at the leader, not yet limited (the gates of `safety` follow).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Rendered {
+pub struct RenderedForces {
     /// Force of every mode (N), by [`Mode::index`](super::Mode::index); zero if not valid.
     pub force_n: [Vector3<f64>; SLOTS],
     /// Whether the mode had a finite force to render.
     pub valid: [bool; SLOTS],
 }
 
-impl Rendered {
+impl RenderedForces {
     /// Returns the force of `mode` (N); `None` if it has no valid force.
     pub fn force(&self, mode: Mode) -> Option<Vector3<f64>> {
         self.valid[mode.index()].then(|| self.force_n[mode.index()])
@@ -102,7 +102,7 @@ impl Rendered {
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Excitation {
+pub struct ImpedanceExcitation {
     pub position_m: Vector3<f64>,
     pub velocity_m_s: Vector3<f64>,
     pub acceleration_m_s2: Vector3<f64>,
@@ -110,7 +110,7 @@ pub struct Excitation {
 
 /// Data of one tick for the screen and the trace.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Report {
+pub struct IdentificationReport {
     pub t_s: f64,
     pub modes: ModeSet,
     /// Whether the identification rests, because there is no contact and nothing to learn.
@@ -143,7 +143,7 @@ pub struct Report {
     /// Motion columns with more information than the ridge, on the axis with the fewest.
     pub rank: u8,
     /// Variation of the motion in the window.
-    pub excitation: Excitation,
+    pub excitation: ImpedanceExcitation,
     /// Number of rejected samples so far (not finite, absurd, or time not advancing).
     pub rejected: u64,
     /// Number of times that anchored rendering had to restart learning because a number was not finite.
@@ -154,7 +154,7 @@ pub struct Report {
     pub horizon_error_n: [f64; SLOTS],
 }
 
-impl Report {
+impl IdentificationReport {
     /// Returns the force that `mode` would render now (N) from data up to `t - D`; `None` if it has no valid force.
     pub fn prediction(&self, mode: Mode) -> Option<Vector3<f64>> {
         self.prediction_valid[mode.index()].then(|| self.prediction_n[mode.index()])
@@ -166,7 +166,7 @@ impl Report {
     }
 
     /// Takes over what a parcel tells of the identification, where the parcel is all that there is of it.
-    pub fn note(&mut self, parcel: &Parcel) {
+    pub fn note(&mut self, parcel: &LinkPacket) {
         self.t_s = parcel.t_s;
         self.modes = parcel.modes;
         self.resting = parcel.resting;
@@ -193,7 +193,7 @@ impl Report {
         gain: 0.0,
         condition: 1.0,
         rank: 0,
-        excitation: Excitation {
+        excitation: ImpedanceExcitation {
             position_m: Vector3::new(0.0, 0.0, 0.0),
             velocity_m_s: Vector3::new(0.0, 0.0, 0.0),
             acceleration_m_s2: Vector3::new(0.0, 0.0, 0.0),

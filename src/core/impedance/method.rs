@@ -8,19 +8,19 @@ use dyn_clone::{DynClone, clone_trait_object};
 
 use super::{
     Mode, SLOTS,
-    degrees::Degrees,
-    features::Features,
+    degrees::ImpedanceDegrees,
+    features::ImpedanceFeatures,
     literal::LiteralSolver,
-    messages::{Parcel, Posture, Report},
+    messages::{IdentificationReport, LinkPacket, Posture},
     mode::Models,
-    packed::Parameters,
-    settings::{ModeSet, Settings},
-    solution::Solution,
+    packed::PackedParameters,
+    settings::{ImpedanceSettings, ModeSet},
+    solution::ImpedanceSolution,
 };
 use crate::signal::Lanes;
 
 /// A way to render. Its error at the horizon is that of its leader's part, which the identifier also runs on the follower's own motion.
-pub trait Method {
+pub trait BaselineMethod {
     /// The name on the command line, in files and on the screen.
     const NAME: &'static str;
     /// Short description for tables.
@@ -37,24 +37,24 @@ pub trait Method {
     const PARAMETERS: Option<Place> = None;
 
     /// The follower's part; `None` if the measured force and the parameters of other modes are enough.
-    fn follower(_settings: &Settings, _delay_ticks: usize) -> Option<Box<dyn Follower>> {
+    fn follower(_settings: &ImpedanceSettings, _delay_ticks: usize) -> Option<Box<dyn FollowerEnd>> {
         None
     }
 
     /// The leader's part.
-    fn leader(settings: &Settings) -> Box<dyn Leader>;
+    fn leader(settings: &ImpedanceSettings) -> Box<dyn LeaderEnd>;
 
     /// The degree that it uses; 0: none.
-    fn degree(_report: &Report) -> u8 {
+    fn degree(_report: &IdentificationReport) -> u8 {
         0
     }
 
     /// Enters into a report what a parcel tells of the follower's part.
-    fn note(_models: &Models, _report: &mut Report) {}
+    fn note(_models: &Models, _report: &mut IdentificationReport) {}
 }
 
 /// Where the parameters of a method are in a parcel.
-pub type Place = fn(&mut Models) -> &mut dyn Parameters;
+pub type Place = fn(&mut Models) -> &mut dyn PackedParameters;
 
 /// A method as a row of the list.
 #[derive(Clone, Copy, Debug)]
@@ -66,15 +66,15 @@ pub struct Entry {
     pub(super) is_damped: bool,
     pub(super) parts: &'static [Mode],
     pub(super) parameters: Option<Place>,
-    pub(super) follower: fn(&Settings, usize) -> Option<Box<dyn Follower>>,
-    pub(super) leader: fn(&Settings) -> Box<dyn Leader>,
-    pub(super) degree: fn(&Report) -> u8,
-    pub(super) note: fn(&Models, &mut Report),
+    pub(super) follower: fn(&ImpedanceSettings, usize) -> Option<Box<dyn FollowerEnd>>,
+    pub(super) leader: fn(&ImpedanceSettings) -> Box<dyn LeaderEnd>,
+    pub(super) degree: fn(&IdentificationReport) -> u8,
+    pub(super) note: fn(&Models, &mut IdentificationReport),
 }
 
 impl Entry {
     /// The row of a method.
-    pub const fn of<M: Method>() -> Self {
+    pub const fn of<M: BaselineMethod>() -> Self {
         Self {
             name: M::NAME,
             about: M::ABOUT,
@@ -93,10 +93,10 @@ impl Entry {
 
 /// What the follower's part of a method sees of a sample.
 #[derive(Clone, Copy, Debug)]
-pub struct Seen<'a> {
+pub struct MethodInput<'a> {
     pub posture: &'a Posture,
     /// The paper's `X`.
-    pub x: &'a Features,
+    pub x: &'a ImpedanceFeatures,
     /// The force, or the last good one, N.
     pub force_n: Lanes,
     /// The sample was measured, not bridged.
@@ -106,11 +106,11 @@ pub struct Seen<'a> {
     /// There is something to learn from.
     pub learn: bool,
     /// The parcel that the leader has now; without a delay the last one stands for it.
-    pub sent: Option<&'a Parcel>,
+    pub sent: Option<&'a LinkPacket>,
 }
 
 /// The follower's part of a method: learns from samples and writes its parameters into the parcel.
-pub trait Follower: Debug + DynClone + Send + Sync {
+pub trait FollowerEnd: Debug + DynClone + Send + Sync {
     /// Whether it is at work while these modes are computed.
     fn serves(&self, modes: ModeSet) -> bool;
 
@@ -119,7 +119,7 @@ pub trait Follower: Debug + DynClone + Send + Sync {
         self.serves(now) && !self.serves(before)
     }
 
-    fn take(&mut self, seen: &Seen<'_>, parcel: &mut Parcel, report: &mut Report);
+    fn take(&mut self, seen: &MethodInput<'_>, parcel: &mut LinkPacket, report: &mut IdentificationReport);
 
     fn set_delay(&mut self, _delay_ticks: usize) {}
 
@@ -131,46 +131,46 @@ pub trait Follower: Debug + DynClone + Send + Sync {
     }
 
     /// The nested solutions on the newest window, if it solves them.
-    fn nested(&self) -> Option<&Solution> {
+    fn nested(&self) -> Option<&ImpedanceSolution> {
         None
     }
 }
 
-clone_trait_object!(Follower);
+clone_trait_object!(FollowerEnd);
 
 /// The follower's parts that there is memory for.
 #[derive(Clone, Debug)]
-pub(super) struct Followers(Vec<Box<dyn Follower>>);
+pub(super) struct Followers(Vec<Box<dyn FollowerEnd>>);
 
 impl Followers {
-    pub(super) fn new(settings: &Settings, delay_ticks: usize) -> Self {
+    pub(super) fn new(settings: &ImpedanceSettings, delay_ticks: usize) -> Self {
         let modes = settings.modes;
         let parts = modes.modes().filter_map(|mode| (mode.entry()?.follower)(settings, delay_ticks));
-        let degrees = Degrees::are_wanted(modes).then(|| Degrees::new(settings, delay_ticks));
-        Self(parts.chain(degrees.map(|degrees| Box::new(degrees) as Box<dyn Follower>)).collect())
+        let degrees = ImpedanceDegrees::are_wanted(modes).then(|| ImpedanceDegrees::new(settings, delay_ticks));
+        Self(parts.chain(degrees.map(|degrees| Box::new(degrees) as Box<dyn FollowerEnd>)).collect())
     }
 
-    pub(super) fn each(&mut self) -> impl Iterator<Item = &mut Box<dyn Follower>> {
+    pub(super) fn each(&mut self) -> impl Iterator<Item = &mut Box<dyn FollowerEnd>> {
         self.0.iter_mut()
     }
 
     /// The first thing of this kind that one of them has.
-    pub(super) fn find<'a, T>(&'a self, of: impl Fn(&'a dyn Follower) -> Option<T>) -> Option<T> {
+    pub(super) fn find<'a, T>(&'a self, of: impl Fn(&'a dyn FollowerEnd) -> Option<T>) -> Option<T> {
         self.0.iter().find_map(|follower| of(&**follower))
     }
 }
 
 /// What the leader's part of a method sees in a tick.
 #[derive(Clone, Copy, Debug)]
-pub struct Moment<'a> {
-    pub parcel: &'a Parcel,
+pub struct AnchoredMoment<'a> {
+    pub parcel: &'a LinkPacket,
     /// The force in the parcel, N; it is finite.
     pub measured_n: Lanes,
     /// The leader's own motion now, and at the time of the parcel.
     pub now: &'a Posture,
     pub then: &'a Posture,
     /// The paper's `X` of the leader's own motion.
-    pub x: &'a Features,
+    pub x: &'a ImpedanceFeatures,
     /// Age of the parcel.
     pub age_ticks: usize,
     /// The forces of the modes that come before in the list, N, by [`Mode::index`].
@@ -178,15 +178,15 @@ pub struct Moment<'a> {
 }
 
 /// The leader's part of a method: makes a force of the newest parcel and the leader's own motion.
-pub trait Leader: Debug + DynClone + Send + Sync {
+pub trait LeaderEnd: Debug + DynClone + Send + Sync {
     /// The force (N) of this tick; `None` without parameters or where it is not finite.
-    fn render(&mut self, moment: &Moment<'_>) -> Option<Lanes>;
+    fn render(&mut self, moment: &AnchoredMoment<'_>) -> Option<Lanes>;
 
     /// Takes the forces of all modes in this tick, N. `pace`: how fast time runs by the motion.
     fn keep(&mut self, _forces_n: &[Option<Lanes>; SLOTS], _pace: f64) {}
 
     /// Takes a parcel that has just come, to judge what was kept `age_ticks` ago.
-    fn judge(&mut self, _parcel: &Parcel, _age_ticks: usize) {}
+    fn judge(&mut self, _parcel: &LinkPacket, _age_ticks: usize) {}
 
     /// The modes `now` take the place of those `before`.
     fn compute(&mut self, _before: ModeSet, _now: ModeSet) {}
@@ -195,14 +195,14 @@ pub trait Leader: Debug + DynClone + Send + Sync {
     fn reset(&mut self) {}
 }
 
-clone_trait_object!(Leader);
+clone_trait_object!(LeaderEnd);
 
 /// The leader's parts of all modes, by [`Mode::index`]; of the baselines that of the one in the settings.
 #[derive(Clone, Debug)]
-pub(super) struct Leaders(Vec<Box<dyn Leader>>);
+pub(super) struct Leaders(Vec<Box<dyn LeaderEnd>>);
 
 impl Leaders {
-    pub(super) fn new(settings: &Settings) -> Self {
+    pub(super) fn new(settings: &ImpedanceSettings) -> Self {
         let modes = Mode::ALL.into_iter().chain(settings.modes.baseline().map(Mode::Baseline));
         Self(modes.filter_map(|mode| Some((mode.entry()?.leader)(settings))).collect())
     }
@@ -211,9 +211,9 @@ impl Leaders {
     /// their edges.
     pub(super) fn render(
         &mut self,
-        parcel: &Parcel,
+        parcel: &LinkPacket,
         [now, then]: [&Posture; 2],
-        x: &Features,
+        x: &ImpedanceFeatures,
         age_ticks: usize,
     ) -> [Option<Lanes>; SLOTS] {
         let mut forces_n = [None; SLOTS];
@@ -222,7 +222,7 @@ impl Leaders {
             return forces_n;
         }
         for (slot, leader) in self.0.iter_mut().enumerate() {
-            let moment = Moment { parcel, measured_n, now, then, x, age_ticks, forces_n: &forces_n };
+            let moment = AnchoredMoment { parcel, measured_n, now, then, x, age_ticks, forces_n: &forces_n };
             forces_n[slot] = leader.render(&moment);
         }
         for mode in Mode::ALL.into_iter().filter(|mode| !parcel.modes.contains(*mode)) {
@@ -231,7 +231,7 @@ impl Leaders {
         forces_n
     }
 
-    pub(super) fn each(&mut self) -> impl Iterator<Item = &mut Box<dyn Leader>> {
+    pub(super) fn each(&mut self) -> impl Iterator<Item = &mut Box<dyn LeaderEnd>> {
         self.0.iter_mut()
     }
 }

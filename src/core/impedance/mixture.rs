@@ -36,17 +36,17 @@ impl<const EXPERTS: usize> Mixture<EXPERTS> {
     /// counts `caution` times.
     pub(super) fn judge(&mut self, said: &[Lanes; EXPERTS], change: Lanes, caution: f64) {
         self.judged += 1.0;
-        let share = 1.0 / self.judged.min(MEMORY_S * self.rate_hz);
-        let follow = |mean_n: Lanes, error_n: Lanes| (mean_n + (error_n.map(f64::abs) - mean_n) * share).settled();
+        let fraction = 1.0 / self.judged.min(MEMORY_S * self.rate_hz);
+        let follow = |mean_n: Lanes, error_n: Lanes| (mean_n + (error_n.map(f64::abs) - mean_n) * fraction).settled();
         self.held_n = follow(self.held_n, change);
         let held_n = self.held_n * caution;
-        let mut least_n = held_n;
+        let mut min_n = held_n;
         for (error_n, said) in self.errors_n.iter_mut().zip(said) {
             *error_n = follow(*error_n, change - *said);
-            least_n = least_n.zip(*error_n, f64::min);
+            min_n = min_n.zip(*error_n, f64::min);
         }
         let equal_n = Lanes::splat(EQUAL_N);
-        let odds = |error_n: Lanes| eighth_power((least_n + equal_n) / (error_n + equal_n));
+        let odds = |error_n: Lanes| eighth_power((min_n + equal_n) / (error_n + equal_n));
         self.weights = self.errors_n.map(odds);
         let sum = self.weights.iter().fold(odds(held_n), |sum, weight| sum + *weight);
         let trust = (self.judged / (RAMP_S * self.rate_hz)).min(1.0);

@@ -2,7 +2,7 @@
 //! the hand.
 //!
 //! Takes: tip positions (m, workspace frame) and tip forces (N, same frame), one [`Sample`] per tick at a fixed rate.
-//! Returns: a [`Parcel`] of parameters for the link (follower side, [`Identifier`]) and a force (N) rendered from the
+//! Returns: a [`LinkPacket`] of parameters for the link (follower side, [`Identifier`]) and a force (N) rendered from the
 //! leader's own motion (leader side, [`Renderer`]). Pure and deterministic; nothing is allocated after construction; no
 //! devices, files or threads are used. Bad input (NaN, infinite, absurdly large, or a time stamp that does not advance)
 //! is counted, left out of the window, and bridged by a prediction of the motion; it never reaches a parameter. Dead
@@ -20,7 +20,7 @@
 //! | `baseline` | the names of the methods of others, to compare with; at most one is computed |
 //! | `regressors`, `regression`, `mixture` | experts of anchored rendering and their trust |
 //! | `damper` | the damping that keeps a force of the handle's own motion from driving the hand |
-//! | `pace`, `envelope` | a clock that motion drives; the range of forces seen |
+//! | `motion_clock`, `envelope` | a clock that motion drives; the range of forces seen |
 //! | `identifier`, `information`, `renderer`, `messages` | the two ends of the link, and what goes between them |
 
 mod anchored;
@@ -42,8 +42,8 @@ mod messages;
 mod method;
 mod mixture;
 mod mode;
+mod motion_clock;
 mod normal;
-mod pace;
 mod packed;
 mod paper;
 mod recipe;
@@ -65,24 +65,24 @@ mod rest_tests;
 mod tests;
 
 pub use anchored::AnchoredModel;
-pub use baseline::{Baseline, BaselineModel, Contact, Wave};
+pub use baseline::{Baseline, BaselineModel, HuntCrossleyContact, Wave};
 pub use envelope::Envelope;
-pub use factor::Factor;
-pub use features::{Features, MOTION_COLUMNS, Scales};
+pub use factor::ImpedanceFactor;
+pub use features::{ImpedanceFeatures, MOTION_COLUMNS, Scales};
 pub use gram::Gram;
 pub use identifier::Identifier;
 pub use literal::LiteralSolver;
-pub use matched::{Form, MatchedModel};
-pub use messages::{Excitation, Parcel, Posture, Rendered, Report, Sample};
-pub use method::{Entry, Follower, Leader, Method, Moment, Place, Seen};
+pub use matched::{MatchedModel, ModelForm};
+pub use messages::{IdentificationReport, ImpedanceExcitation, LinkPacket, Posture, RenderedForces, Sample};
+pub use method::{AnchoredMoment, BaselineMethod, Entry, FollowerEnd, LeaderEnd, MethodInput, Place};
 pub use mode::{MODES, Mode, Models, ParseModeError, SLOTS, add_baselines};
-pub use packed::{PACKED_MAX, Packed};
+pub use packed::{PACKED_MAX, ParameterPack};
 pub use paper::LiteralModel;
-pub use recipe::{Choice, Reading, Recipe};
+pub use recipe::{DegreeChoice, IncrementReading, Recipe};
 pub use renderer::Renderer;
-pub use settings::{MAX_DELAY_S, ModeSet, OwnMotion, Settings, SettingsError};
-pub use solution::Solution;
-pub use window::{SlidingWindow, Summary};
+pub use settings::{ImpedanceSettings, MAX_DELAY_S, ModeSet, OwnMotion, SettingsError};
+pub use solution::ImpedanceSolution;
+pub use window::{SlidingWindow, WindowSummary};
 
 /// Number of axes handled in parallel: x, y, z of the workspace.
 pub const AXES: usize = 3;

@@ -5,16 +5,16 @@ use std::{fmt, str::FromStr, sync::OnceLock};
 use serde::{Deserialize, Serialize};
 
 use super::{
-    anchored::{Anchored, AnchoredModel},
+    anchored::{AnchoredMethod, AnchoredModel},
     baseline::{Baseline, BaselineModel},
     best::Best,
     dfr::Dfr,
-    matched::{Matched, MatchedModel, Nima},
+    matched::{MatchedMethod, MatchedModel, Nima},
     method::{Entry, Place},
     paper::{Linear, Literal, LiteralModel},
 };
 
-/// Declares the modes from one list, each with the [`Method`](super::Method) that it stands for.
+/// Declares the modes from one list, each with the [`BaselineMethod`](super::BaselineMethod) that it stands for.
 macro_rules! modes {
     ($(#[$attribute:meta])* enum Mode { $($(#[$doc:meta])* $mode:ident: $method:ty,)* }) => {
         $(#[$attribute])*
@@ -68,9 +68,9 @@ modes! {
         /// Direct force reflection: the measured force, as late as the link delivers it.
         Dfr: Dfr,
         /// Anchored rendering: the last measured force, corrected by the identified impedance over the link's delay.
-        Anchored: Anchored,
+        Anchored: AnchoredMethod,
         /// Matched rendering: parameters cross the link, the force is made of the hand's own motion (NIMA as it was meant).
-        Matched: Matched,
+        Matched: MatchedMethod,
         /// The paper's columns under the rules of matched rendering.
         Nima: Nima,
         /// Anchored and matched rendering, weighted by their errors of late.

@@ -6,9 +6,9 @@
 #![expect(clippy::inline_always, reason = "they must be inlined into the function that is compiled for wider vectors")]
 
 use super::factor::column_start;
-use crate::signal::{Lanes, NOTHING, Vector, Work, widest};
+use crate::signal::{Lanes, NOTHING, SimdLoop, SimdVector, widest};
 
-pub(super) const MOST: usize = 25;
+pub(super) const MAX: usize = 25;
 /// A pivot below this fraction of its column's square is rounding: the column is left out.
 const ROUNDING: f64 = 1e-12;
 /// Columns that are factorised together, because their sums do not depend on each other.
@@ -36,11 +36,11 @@ struct Accumulate<'a> {
     fade: Lanes,
 }
 
-impl Work for Accumulate<'_> {
+impl SimdLoop for Accumulate<'_> {
     type Output = ();
 
     #[inline(always)]
-    fn run<V: Vector>(self) {
+    fn run<V: SimdVector>(self) {
         let fade = V::of(&self.fade);
         let weight = V::of(&self.weight);
         let value = V::of(&self.value);
@@ -68,11 +68,11 @@ struct Dot<'a> {
     b: &'a [Lanes],
 }
 
-impl Work for Dot<'_> {
+impl SimdLoop for Dot<'_> {
     type Output = Lanes;
 
     #[inline(always)]
-    fn run<V: Vector>(self) -> Lanes {
+    fn run<V: SimdVector>(self) -> Lanes {
         let none = V::of(&Lanes::ZERO);
         self.a.iter().zip(self.b).fold(none, |sum, (a, b)| sum.plus(V::of(a).times(V::of(b)))).lanes()
     }
@@ -80,16 +80,16 @@ impl Work for Dot<'_> {
 
 /// Cholesky factor of sums with a ridge, and the transformed right-hand side.
 #[derive(Clone, Debug)]
-pub(super) struct Factor {
-    elements: [Lanes; MOST * (MOST + 1) / 2],
-    inverse: [Lanes; MOST],
-    right: [Lanes; MOST],
+pub(super) struct NormalFactor {
+    elements: [Lanes; MAX * (MAX + 1) / 2],
+    inverse: [Lanes; MAX],
+    right: [Lanes; MAX],
 }
 
-impl Factor {
+impl NormalFactor {
     pub(super) const fn new() -> Self {
-        let none = [Lanes::ZERO; MOST];
-        Self { elements: [Lanes::ZERO; MOST * (MOST + 1) / 2], inverse: none, right: none }
+        let none = [Lanes::ZERO; MAX];
+        Self { elements: [Lanes::ZERO; MAX * (MAX + 1) / 2], inverse: none, right: none }
     }
 
     /// Factorises the sums of `right.len()` columns with `ridge` added to their diagonal. Sums that have decayed to
@@ -107,24 +107,24 @@ impl Factor {
 }
 
 struct Renew<'a> {
-    factor: &'a mut Factor,
+    factor: &'a mut NormalFactor,
     gram: &'a [Lanes],
     right: &'a [Lanes],
     ridge: &'a [Lanes],
 }
 
-impl Work for Renew<'_> {
+impl SimdLoop for Renew<'_> {
     type Output = ();
 
     #[inline(always)]
-    fn run<V: Vector>(self) {
+    fn run<V: SimdVector>(self) {
         let none = V::of(&Lanes::ZERO);
         let columns = self.right.len();
         let mut first = 0;
         while first < columns {
             let width = BLOCK.min(columns - first);
             // The entries of these columns, row by row, and the sums of products of each two of them.
-            let mut rows = [[none; BLOCK]; MOST];
+            let mut rows = [[none; BLOCK]; MAX];
             let mut products = [[none; BLOCK]; BLOCK];
             let mut z = [none; BLOCK];
             for c in 0..width {
@@ -176,7 +176,7 @@ impl Work for Renew<'_> {
 
 /// Adds the products of each two of a row's columns, from `from` on.
 #[inline(always)]
-fn add_products<V: Vector>(products: &mut [[V; BLOCK]; BLOCK], row: &[V; BLOCK], from: usize) {
+fn add_products<V: SimdVector>(products: &mut [[V; BLOCK]; BLOCK], row: &[V; BLOCK], from: usize) {
     for p in from..BLOCK {
         for c in p..BLOCK {
             products[p][c] = products[p][c].plus(row[p].times(row[c]));
@@ -191,15 +191,15 @@ fn inverse_root(pivot: Lanes, own: Lanes) -> Lanes {
 }
 
 struct Solve<'a> {
-    factor: &'a Factor,
+    factor: &'a NormalFactor,
     found: &'a mut [Lanes],
 }
 
-impl Work for Solve<'_> {
+impl SimdLoop for Solve<'_> {
     type Output = ();
 
     #[inline(always)]
-    fn run<V: Vector>(self) {
+    fn run<V: SimdVector>(self) {
         let Self { factor, found } = self;
         let columns = found.len();
         found.copy_from_slice(&factor.right[..columns]);
@@ -238,10 +238,10 @@ mod tests {
 
     #[test]
     fn every_nested_solution_is_that_of_a_general_solver() {
-        for columns in [1, 2, 3, 4, 5, 8, 11, 13, 16, 22, MOST] {
+        for columns in [1, 2, 3, 4, 5, 8, 11, 13, 16, 22, MAX] {
             let (mut gram, mut right) = sums(columns);
             let ridge: Vec<Lanes> = (0..columns).map(|j| number(j).map(|r| 0.01 * r.abs())).collect();
-            let mut factor = Factor::new();
+            let mut factor = NormalFactor::new();
             factor.renew(&mut gram, &mut right, &ridge);
             for nested in 1..=columns {
                 let mut found = vec![Lanes::ZERO; nested];
@@ -263,7 +263,7 @@ mod tests {
 
     #[test]
     fn wider_vectors_give_the_same_bits() {
-        for columns in [3, 13, 22, MOST] {
+        for columns in [3, 13, 22, MAX] {
             let (gram, mut right) = sums(columns);
             let mut narrow_gram = vec![Lanes::ZERO; gram.len()];
             let mut narrow_right = vec![Lanes::ZERO; columns];
@@ -278,8 +278,8 @@ mod tests {
             assert_eq!((&gram, &right), (&narrow_gram, &narrow_right));
 
             let ridge = vec![Lanes::splat(0.01); columns];
-            let mut wide = Factor::new();
-            let mut narrow = Factor::new();
+            let mut wide = NormalFactor::new();
+            let mut narrow = NormalFactor::new();
             wide.renew(&mut gram.clone(), &mut right, &ridge);
             Renew { factor: &mut narrow, gram: &gram, right: &right, ridge: &ridge }.run::<f64x4>();
             let [mut by_wide, mut by_narrow] = [vec![Lanes::ZERO; columns], vec![Lanes::ZERO; columns]];
@@ -299,7 +299,7 @@ mod tests {
             let row = [a, b, a + b * 2.0];
             accumulate(&mut gram, &mut right, &row, a * 3.0 - b, Lanes::splat(1.0), 1.0);
         }
-        let mut factor = Factor::new();
+        let mut factor = NormalFactor::new();
         factor.renew(&mut gram, &mut right, &[Lanes::ZERO; 3]);
         let mut found = [Lanes::ZERO; 3];
         factor.solve(&mut found);

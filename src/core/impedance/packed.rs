@@ -3,52 +3,52 @@
 //! The numbers are 32 bits wide: a parameter that is accurate to 1 in 10 million changes no force that a hand can feel,
 //! and half the bytes leave room for the repair of losses. Columns that a model does not use are omitted.
 
-use super::{MODES, Mode, ModeSet, Parcel, matched::COLUMNS as MATCHED_COLUMNS};
+use super::{LinkPacket, MODES, Mode, ModeSet, matched::COLUMNS as MATCHED_COLUMNS};
 use crate::signal::Lanes;
 
 /// Maximum number of numbers in one packed model: matched rendering with every column in use.
 pub const PACKED_MAX: usize = 3 * MATCHED_COLUMNS + 24;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Packed {
+pub struct ParameterPack {
     /// Mode of the parameters: index into [`Mode::ALL`]; [`MODES`] for a baseline.
     pub slot: u8,
     /// Number of entries in use.
     pub len: u8,
-    /// The parameters, SI units, in the order in which [`Packed::of`] writes them.
+    /// The parameters, SI units, in the order in which [`ParameterPack::of`] writes them.
     pub numbers: [f32; PACKED_MAX],
 }
 
 /// The parameters of one rendering, taken apart into numbers and put together again.
-pub trait Numbers: Sized {
+pub trait PackedNumbers: Sized {
     /// No parameters.
     const NONE: Self;
 
     /// Appends the parameters to a row.
-    fn write(&self, row: &mut Writer<'_>);
+    fn write(&self, row: &mut PackedWriter<'_>);
 
     /// Returns the parameters, or `None` if the numbers are invalid or not finite.
-    fn read(row: &mut Reader<'_>) -> Option<Self>;
+    fn read(row: &mut PackedReader<'_>) -> Option<Self>;
 }
 
 /// The parameters of one rendering in their place in a parcel.
-pub trait Parameters {
+pub trait PackedParameters {
     /// Appends them to a row.
-    fn write(&self, row: &mut Writer<'_>);
+    fn write(&self, row: &mut PackedWriter<'_>);
 
     /// Replaces the parameters; returns false, and changes nothing, if the new ones are invalid or not finite.
-    fn renew(&mut self, row: &mut Reader<'_>) -> bool;
+    fn renew(&mut self, row: &mut PackedReader<'_>) -> bool;
 
     /// Nothing is known any more.
     fn forget(&mut self);
 }
 
-impl<T: Numbers> Parameters for T {
-    fn write(&self, row: &mut Writer<'_>) {
-        Numbers::write(self, row);
+impl<T: PackedNumbers> PackedParameters for T {
+    fn write(&self, row: &mut PackedWriter<'_>) {
+        PackedNumbers::write(self, row);
     }
 
-    fn renew(&mut self, row: &mut Reader<'_>) -> bool {
+    fn renew(&mut self, row: &mut PackedReader<'_>) -> bool {
         T::read(row).map(|model| *self = model).is_some()
     }
 
@@ -57,10 +57,10 @@ impl<T: Numbers> Parameters for T {
     }
 }
 
-impl Parcel {
+impl LinkPacket {
     /// Returns the parameters of the rendering in this slot; `None` if that rendering has none. Every slot after the
     /// program's own modes is the baseline's.
-    fn parameters(&mut self, slot: usize) -> Option<&mut dyn Parameters> {
+    fn parameters(&mut self, slot: usize) -> Option<&mut dyn PackedParameters> {
         match Mode::ALL.get(slot) {
             Some(mode) => mode.parameters().map(|place| place(&mut self.models)),
             None => Some(&mut self.models.baseline),
@@ -68,7 +68,7 @@ impl Parcel {
     }
 }
 
-impl Packed {
+impl ParameterPack {
     pub const NONE: Self = Self { slot: MODES as u8, len: 0, numbers: [0.0; PACKED_MAX] };
 
     pub fn used(&self) -> &[f32] {
@@ -87,37 +87,37 @@ impl Packed {
 
     /// Packs the parameters of the rendering whose turn it is among those in the packet; returns `None` if there are
     /// none.
-    pub fn of(parcel: &Parcel, turn: usize) -> Option<Self> {
+    pub fn of(parcel: &LinkPacket, turn: usize) -> Option<Self> {
         let turn = turn.checked_rem(Self::turns(parcel.modes))?;
         let slot = Self::renderings(parcel.modes).nth(turn)?.index();
         let mut packed = Self { slot: slot as u8, ..Self::NONE };
         // A copy, because `parameters` returns mutable references.
         let mut parcel = *parcel;
-        parcel.parameters(slot)?.write(&mut Writer { packed: &mut packed });
+        parcel.parameters(slot)?.write(&mut PackedWriter { packed: &mut packed });
         Some(packed)
     }
 
     /// Removes the parameters of this slot from the packet: they are too old to compute a force.
-    pub fn forget(slot: u8, parcel: &mut Parcel) {
+    pub fn forget(slot: u8, parcel: &mut LinkPacket) {
         if let Some(parameters) = parcel.parameters(usize::from(slot)) {
             parameters.forget();
         }
     }
 
     /// Writes the parameters into the packet. Returns false, and changes nothing, if they are invalid or not finite.
-    pub fn put_into(&self, parcel: &mut Parcel) -> bool {
+    pub fn put_into(&self, parcel: &mut LinkPacket) -> bool {
         let parameters = parcel.parameters(usize::from(self.slot));
-        parameters.is_some_and(|parameters| parameters.renew(&mut Reader { rest: self.used() }))
+        parameters.is_some_and(|parameters| parameters.renew(&mut PackedReader { rest: self.used() }))
     }
 }
 
 /// A row of numbers that is being written.
 #[derive(Debug)]
-pub struct Writer<'a> {
-    packed: &'a mut Packed,
+pub struct PackedWriter<'a> {
+    packed: &'a mut ParameterPack,
 }
 
-impl Writer<'_> {
+impl PackedWriter<'_> {
     pub(super) fn put(&mut self, number: f64) {
         if let Some(place) = self.packed.numbers.get_mut(usize::from(self.packed.len)) {
             *place = number as f32;
@@ -141,22 +141,22 @@ impl Writer<'_> {
 
 /// The rest of a row of numbers.
 #[derive(Debug)]
-pub struct Reader<'a> {
+pub struct PackedReader<'a> {
     rest: &'a [f32],
 }
 
-impl Reader<'_> {
+impl PackedReader<'_> {
     pub(super) fn take(&mut self) -> Option<f64> {
         let (first, rest) = self.rest.split_first()?;
         self.rest = rest;
         first.is_finite().then(|| f64::from(*first))
     }
 
-    /// A whole number up to `most`.
-    pub(super) fn count(&mut self, most: usize) -> Option<usize> {
+    /// A whole number up to `max`.
+    pub(super) fn count(&mut self, max: usize) -> Option<usize> {
         let number = self.take()?;
         let count = number as usize;
-        ((count as f64 - number).abs() < f64::EPSILON && count <= most).then_some(count)
+        ((count as f64 - number).abs() < f64::EPSILON && count <= max).then_some(count)
     }
 
     pub(super) fn lanes(&mut self) -> Option<Lanes> {
@@ -178,11 +178,14 @@ mod tests {
     use nalgebra::Vector3;
 
     use super::*;
-    use crate::impedance::{Baseline, BaselineModel, Contact, Identifier, Models, SLOTS, Sample, Settings, Wave};
+    use crate::impedance::{
+        Baseline, BaselineModel, HuntCrossleyContact, Identifier, ImpedanceSettings, Models, SLOTS, Sample, Wave,
+    };
 
     /// The last parcel of two seconds of pressing, with every rendering of our own and a model of a method of others.
-    fn parcel(baseline: &BaselineModel) -> Parcel {
-        let mut identifier = Identifier::new(&Settings { delay_s: 0.05, ..Settings::default() }).unwrap();
+    fn parcel(baseline: &BaselineModel) -> LinkPacket {
+        let mut identifier =
+            Identifier::new(&ImpedanceSettings { delay_s: 0.05, ..ImpedanceSettings::default() }).unwrap();
         for i in 0..2000_u32 {
             let t_s = f64::from(i) * 1e-3;
             let depth_m = 0.004 * (6.0 * t_s).sin();
@@ -198,7 +201,7 @@ mod tests {
 
     const LANES: Lanes = Lanes([0.5, -2.0, 0.25, 0.0]);
 
-    const CONTACT: Contact = Contact {
+    const CONTACT: HuntCrossleyContact = HuntCrossleyContact {
         surface_m: LANES,
         reach_m: LANES,
         exponent: LANES,
@@ -235,30 +238,30 @@ mod tests {
     fn every_model_arrives_as_it_was_packed() {
         for baseline in &BASELINES {
             let parcel = parcel(baseline);
-            let mut arrived = Parcel { modes: parcel.modes, ..Parcel::BLANK };
+            let mut arrived = LinkPacket { modes: parcel.modes, ..LinkPacket::BLANK };
             assert!(!close(&parcel.models, &arrived.models));
-            let turns = Packed::turns(parcel.modes);
+            let turns = ParameterPack::turns(parcel.modes);
             for turn in 0..turns {
-                assert!(Packed::of(&parcel, turn).unwrap().put_into(&mut arrived), "turn {turn}");
+                assert!(ParameterPack::of(&parcel, turn).unwrap().put_into(&mut arrived), "turn {turn}");
             }
             assert!(close(&parcel.models, &arrived.models), "{baseline:?}");
-            (0..SLOTS as u8).for_each(|slot| Packed::forget(slot, &mut arrived));
-            assert_eq!(arrived, Parcel { modes: parcel.modes, ..Parcel::BLANK });
+            (0..SLOTS as u8).for_each(|slot| ParameterPack::forget(slot, &mut arrived));
+            assert_eq!(arrived, LinkPacket { modes: parcel.modes, ..LinkPacket::BLANK });
         }
     }
 
     #[test]
     fn a_set_without_parameters_has_none_to_send() {
-        let parcel = Parcel { modes: ModeSet::only(Mode::Dfr), ..Parcel::BLANK };
-        assert_eq!((Packed::turns(parcel.modes), Packed::of(&parcel, 0)), (0, None));
-        assert_eq!(Packed::turns(ModeSet::only(Mode::Best)), 2);
+        let parcel = LinkPacket { modes: ModeSet::only(Mode::Dfr), ..LinkPacket::BLANK };
+        assert_eq!((ParameterPack::turns(parcel.modes), ParameterPack::of(&parcel, 0)), (0, None));
+        assert_eq!(ParameterPack::turns(ModeSet::only(Mode::Best)), 2);
     }
 
     #[test]
     fn what_makes_no_sense_changes_nothing() {
         let parcel = parcel(&BASELINES[0]);
-        for turn in 0..Packed::turns(parcel.modes) {
-            let good = Packed::of(&parcel, turn).unwrap();
+        for turn in 0..ParameterPack::turns(parcel.modes) {
+            let good = ParameterPack::of(&parcel, turn).unwrap();
             for at in 0..usize::from(good.len) {
                 for bad in [f32::NAN, f32::INFINITY] {
                     let mut packed = good;
@@ -267,12 +270,12 @@ mod tests {
                     assert!(!packed.put_into(&mut arrived), "turn {turn}, number {at}");
                     assert_eq!(arrived, parcel);
                 }
-                let cut = Packed { len: at as u8, ..good };
+                let cut = ParameterPack { len: at as u8, ..good };
                 assert!(!cut.put_into(&mut parcel.clone()), "turn {turn}, cut at {at}");
             }
-            assert!(!Packed { slot: Mode::Best.index() as u8, ..good }.put_into(&mut parcel.clone()));
+            assert!(!ParameterPack { slot: Mode::Best.index() as u8, ..good }.put_into(&mut parcel.clone()));
         }
-        let mut packed = Packed::of(&parcel, 3).unwrap();
+        let mut packed = ParameterPack::of(&parcel, 3).unwrap();
         packed.numbers[0] = 17.0;
         assert!(!packed.put_into(&mut parcel.clone()), "no such form");
     }

@@ -4,15 +4,15 @@ use nalgebra::Vector3;
 
 use super::{
     MAX_DEGREE, Mode, Models,
-    features::{Features, MOTION_COLUMNS},
+    features::{ImpedanceFeatures, MOTION_COLUMNS},
     gram::Gram,
     literal::LiteralSolver,
-    messages::{Parcel, Report, active},
-    method::{Follower, Leader, Method, Moment, Place, Seen},
-    packed::{Numbers, Reader, Writer},
-    recipe::{Choice, Next},
-    settings::{ModeSet, Settings},
-    window::{SlidingWindow, Summary as _},
+    messages::{IdentificationReport, LinkPacket, active},
+    method::{AnchoredMoment, BaselineMethod, FollowerEnd, LeaderEnd, MethodInput, Place},
+    packed::{PackedNumbers, PackedReader, PackedWriter},
+    recipe::{DegreeChoice, NextDegree},
+    settings::{ImpedanceSettings, ModeSet},
+    window::{SlidingWindow, WindowSummary as _},
 };
 use crate::signal::Lanes;
 
@@ -20,32 +20,32 @@ use crate::signal::Lanes;
 #[derive(Clone, Debug)]
 pub(super) struct Literal;
 
-impl Method for Literal {
+impl BaselineMethod for Literal {
     const NAME: &'static str = "literal";
     const ABOUT: &'static str = ABOUT;
     const HAS_WINDOW: bool = true;
     const HAS_DEGREES: bool = true;
     const PARAMETERS: Option<Place> = Some(|models| &mut models.literal);
 
-    fn follower(settings: &Settings, _delay_ticks: usize) -> Option<Box<dyn Follower>> {
-        Some(Box::new(Paper::new(Mode::Literal, settings)))
+    fn follower(settings: &ImpedanceSettings, _delay_ticks: usize) -> Option<Box<dyn FollowerEnd>> {
+        Some(Box::new(PaperMethod::new(Mode::Literal, settings)))
     }
 
-    fn leader(_settings: &Settings) -> Box<dyn Leader> {
+    fn leader(_settings: &ImpedanceSettings) -> Box<dyn LeaderEnd> {
         Box::new(Self)
     }
 
-    fn degree(report: &Report) -> u8 {
+    fn degree(report: &IdentificationReport) -> u8 {
         report.paper_degree
     }
 
-    fn note(models: &Models, report: &mut Report) {
+    fn note(models: &Models, report: &mut IdentificationReport) {
         report.paper_degree = models.literal.degree;
     }
 }
 
-impl Leader for Literal {
-    fn render(&mut self, moment: &Moment<'_>) -> Option<Lanes> {
+impl LeaderEnd for Literal {
+    fn render(&mut self, moment: &AnchoredMoment<'_>) -> Option<Lanes> {
         moment.parcel.models.literal.force(moment.x)
     }
 }
@@ -54,27 +54,27 @@ impl Leader for Literal {
 #[derive(Clone, Debug)]
 pub(super) struct Linear;
 
-impl Method for Linear {
+impl BaselineMethod for Linear {
     const NAME: &'static str = "linear";
     const ABOUT: &'static str = ABOUT;
     const HAS_WINDOW: bool = true;
     const PARAMETERS: Option<Place> = Some(|models| &mut models.linear);
 
-    fn follower(settings: &Settings, _delay_ticks: usize) -> Option<Box<dyn Follower>> {
-        Some(Box::new(Paper::new(Mode::Linear, settings)))
+    fn follower(settings: &ImpedanceSettings, _delay_ticks: usize) -> Option<Box<dyn FollowerEnd>> {
+        Some(Box::new(PaperMethod::new(Mode::Linear, settings)))
     }
 
-    fn leader(_settings: &Settings) -> Box<dyn Leader> {
+    fn leader(_settings: &ImpedanceSettings) -> Box<dyn LeaderEnd> {
         Box::new(Self)
     }
 
-    fn degree(report: &Report) -> u8 {
+    fn degree(report: &IdentificationReport) -> u8 {
         u8::from(report.paper_degree > 0)
     }
 }
 
-impl Leader for Linear {
-    fn render(&mut self, moment: &Moment<'_>) -> Option<Lanes> {
+impl LeaderEnd for Linear {
+    fn render(&mut self, moment: &AnchoredMoment<'_>) -> Option<Lanes> {
         moment.parcel.models.linear.force(moment.x)
     }
 }
@@ -98,44 +98,44 @@ impl LiteralModel {
 
     /// `M X` (N), `X` in SI units as the recipe reads it.
     #[inline]
-    pub(super) fn product(&self, x: &Features) -> Lanes {
+    pub(super) fn product(&self, x: &ImpedanceFeatures) -> Lanes {
         let terms = self.coefficients.iter().zip(x).take(3 * usize::from(self.degree));
         terms.fold(self.constant_n, |sum, (m, x)| sum + *m * *x)
     }
 
     /// The same; `None` without a model or where the product is not finite.
-    pub(super) fn force(&self, x: &Features) -> Option<Lanes> {
+    pub(super) fn force(&self, x: &ImpedanceFeatures) -> Option<Lanes> {
         let force = self.product(x);
         (self.degree > 0 && force.is_finite()).then_some(force)
     }
 }
 
-impl Numbers for LiteralModel {
+impl PackedNumbers for LiteralModel {
     const NONE: Self = Self::NONE;
 
-    fn write(&self, row: &mut Writer<'_>) {
+    fn write(&self, row: &mut PackedWriter<'_>) {
         row.put(f64::from(self.degree));
         row.lanes(self.constant_n);
         row.row(&self.coefficients);
     }
 
-    fn read(row: &mut Reader<'_>) -> Option<Self> {
+    fn read(row: &mut PackedReader<'_>) -> Option<Self> {
         Some(Self { degree: row.count(MAX_DEGREE)? as u8, constant_n: row.lanes()?, coefficients: row.row()? })
     }
 }
 
 #[derive(Clone, Debug)]
-pub(super) struct Paper {
+pub(super) struct PaperMethod {
     mode: Mode,
     window: SlidingWindow<Gram>,
     solver: LiteralSolver,
     /// Used if the degree is chosen by the data after the window.
-    next: Option<Next>,
+    next: Option<NextDegree>,
 }
 
-impl Paper {
+impl PaperMethod {
     /// Creates the model for the mode literal, or for linear alone, by the recipe of the settings.
-    pub(super) fn new(mode: Mode, settings: &Settings) -> Self {
+    pub(super) fn new(mode: Mode, settings: &ImpedanceSettings) -> Self {
         let degree = if mode == Mode::Linear { 1 } else { settings.max_degree };
         let recipe = &settings.literal;
         let one = active(&Vector3::repeat(1.0), settings.axes);
@@ -144,12 +144,12 @@ impl Paper {
             mode,
             window: SlidingWindow::new(settings.block(), empty.clone(), empty),
             solver: LiteralSolver::new(degree, settings.axes, recipe, &settings.scales),
-            next: (recipe.choice == Choice::Next).then(|| Next::new(settings.rate_hz)),
+            next: (recipe.choice == DegreeChoice::Next).then(|| NextDegree::new(settings.rate_hz)),
         }
     }
 }
 
-impl Follower for Paper {
+impl FollowerEnd for PaperMethod {
     fn serves(&self, modes: ModeSet) -> bool {
         modes.contains(self.mode) && (self.mode == Mode::Literal || !modes.contains(Mode::Literal))
     }
@@ -161,7 +161,7 @@ impl Follower for Paper {
         begins(Mode::Literal) || begins(Mode::Linear) || ends
     }
 
-    fn take(&mut self, seen: &Seen<'_>, parcel: &mut Parcel, report: &mut Report) {
+    fn take(&mut self, seen: &MethodInput<'_>, parcel: &mut LinkPacket, report: &mut IdentificationReport) {
         if !seen.learn {
             return;
         }
@@ -188,7 +188,7 @@ impl Follower for Paper {
     fn reset(&mut self) {
         self.window.reset();
         self.solver.reset();
-        self.next.iter_mut().for_each(Next::reset);
+        self.next.iter_mut().for_each(NextDegree::reset);
     }
 
     fn paper(&self) -> Option<&LiteralSolver> {

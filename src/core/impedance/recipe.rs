@@ -4,18 +4,18 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     LiteralModel, MAX_DEGREE,
-    features::{Features, MOTION_COLUMNS, Scales},
+    features::{ImpedanceFeatures, MOTION_COLUMNS, Scales},
     literal::LiteralSolver,
 };
 use crate::signal::Lanes;
 
-/// Time after a window in which [`Choice::Next`] evaluates its fits (s).
+/// Time after a window in which [`DegreeChoice::Next`] evaluates its fits (s).
 const JUDGED_S: f64 = 0.01;
 
 /// Meaning of the paper's `u`, the "incremental positional changes of the instrument within a time interval".
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Reading {
+pub enum IncrementReading {
     /// The changes of position, velocity and acceleration over the window: zero one window after the hand has stopped.
     #[default]
     Increments,
@@ -26,7 +26,7 @@ pub enum Reading {
 /// Error by which the degree is chosen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Choice {
+pub enum DegreeChoice {
     /// The error in the window to which the degrees were fitted.
     #[default]
     Window,
@@ -38,8 +38,8 @@ pub enum Choice {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Recipe {
-    pub reading: Reading,
-    pub choice: Choice,
+    pub reading: IncrementReading,
+    pub choice: DegreeChoice,
     /// Whether a free constant force is part of the fit.
     pub constant: bool,
     /// Ridge, per row of the window and in columns divided by the workspace's [`Scales`]; 0 for none.
@@ -65,7 +65,7 @@ impl Recipe {
 /// Chooses the degree that best predicted the data after its window: all degrees of a window are evaluated for 10 ms,
 /// then those of the window that ends there.
 #[derive(Clone, Debug)]
-pub(super) struct Next {
+pub(super) struct NextDegree {
     ticks: usize,
     models: [LiteralModel; MAX_DEGREE],
     squares_n2: [f64; MAX_DEGREE],
@@ -74,7 +74,7 @@ pub(super) struct Next {
     degree: usize,
 }
 
-impl Next {
+impl NextDegree {
     pub(super) fn new(rate_hz: f64) -> Self {
         Self {
             ticks: ((JUDGED_S * rate_hz).round() as usize).max(1),
@@ -88,7 +88,7 @@ impl Next {
 
     /// Adds the newest row (force in N), `None` if nothing was measured, and the fits of the window that ends with it.
     /// Returns the current degree, 0 before one is known.
-    pub(super) fn step(&mut self, row: Option<(&Features, Lanes)>, newest: &LiteralSolver) -> usize {
+    pub(super) fn step(&mut self, row: Option<(&ImpedanceFeatures, Lanes)>, newest: &LiteralSolver) -> usize {
         self.waited += 1;
         if let Some((features, force_n)) = row {
             self.judged += 1;

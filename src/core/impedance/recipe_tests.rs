@@ -5,20 +5,21 @@ use nalgebra::Vector3;
 
 use super::{tests::sample, *};
 
-const PRINTED: Recipe = Recipe { reading: Reading::Increments, choice: Choice::Window, constant: false, ridge: 0.0 };
+const PRINTED: Recipe =
+    Recipe { reading: IncrementReading::Increments, choice: DegreeChoice::Window, constant: false, ridge: 0.0 };
 /// The default, every key alone, and all keys together.
 const RECIPES: [Recipe; 6] = [
     PRINTED,
-    Recipe { reading: Reading::Displacement, ..PRINTED },
-    Recipe { choice: Choice::Next, ..PRINTED },
+    Recipe { reading: IncrementReading::Displacement, ..PRINTED },
+    Recipe { choice: DegreeChoice::Next, ..PRINTED },
     Recipe { constant: true, ..PRINTED },
     Recipe { ridge: 3e-3, ..PRINTED },
-    Recipe { reading: Reading::Displacement, choice: Choice::Next, constant: true, ridge: 3e-3 },
+    Recipe { reading: IncrementReading::Displacement, choice: DegreeChoice::Next, constant: true, ridge: 3e-3 },
 ];
 
-fn settings(literal: Recipe) -> Settings {
+fn settings(literal: Recipe) -> ImpedanceSettings {
     let modes = ModeSet::only(Mode::Literal).with(Mode::Linear);
-    Settings { window_s: 0.1, delay_s: 0.03, modes, literal, ..Settings::default() }
+    ImpedanceSettings { window_s: 0.1, delay_s: 0.03, modes, literal, ..ImpedanceSettings::default() }
 }
 
 /// Returns a number from 0 to 1, identical in every run.
@@ -29,17 +30,17 @@ fn uneven(state: &mut u64) -> f64 {
 
 /// Presses and rests, without sines, whose last bits differ between computers.
 fn pressed(k: u32, state: &mut u64) -> Sample {
-    let share = f64::from(k % 700).min(400.0) / 400.0;
-    let depth_m = 0.01 * 4.0 * share * (1.0 - 0.5 * share);
+    let fraction = f64::from(k % 700).min(400.0) / 400.0;
+    let depth_m = 0.01 * 4.0 * fraction * (1.0 - 0.5 * fraction);
     let noise_n = Vector3::from_fn(|_, _| 0.01 * (uneven(state) - 0.5));
-    let position_m = Vector3::new(0.3 * depth_m, 0.002 * share * share, -depth_m);
-    let force_n = Vector3::new(40.0 * depth_m, 10.0 * share, 300.0 * depth_m + 9000.0 * depth_m * depth_m);
+    let position_m = Vector3::new(0.3 * depth_m, 0.002 * fraction * fraction, -depth_m);
+    let force_n = Vector3::new(40.0 * depth_m, 10.0 * fraction, 300.0 * depth_m + 9000.0 * depth_m * depth_m);
     Sample { t_s: f64::from(k) * 1e-3, position_m, force_n: force_n + noise_n }
 }
 
 #[test]
 fn the_default_is_what_it_was_before_there_was_a_choice_to_the_bit() {
-    let mut identifier = Identifier::new(&Settings::default()).unwrap();
+    let mut identifier = Identifier::new(&ImpedanceSettings::default()).unwrap();
     let mut state = 1;
     let mut bits = 0xcbf2_9ce4_8422_2325_u64;
     let mut mix = |value: f64| bits = (bits ^ value.to_bits()).wrapping_mul(0x0100_0000_01b3);
@@ -120,8 +121,8 @@ fn the_next_samples_choose_no_degree_for_the_noise() {
         }
         sum
     };
-    let window = mean_degree(Choice::Window);
-    let next = mean_degree(Choice::Next);
+    let window = mean_degree(DegreeChoice::Window);
+    let next = mean_degree(DegreeChoice::Next);
     assert!(next + 1.0 < window, "{window} {next}");
 }
 
@@ -144,7 +145,7 @@ fn a_constant_and_a_ridge_hold_a_force_at_rest_and_the_printed_recipe_does_not()
 
 #[test]
 fn with_a_constant_the_origin_of_the_displacement_does_not_matter() {
-    let recipe = Recipe { reading: Reading::Displacement, constant: true, ..PRINTED };
+    let recipe = Recipe { reading: IncrementReading::Displacement, constant: true, ..PRINTED };
     let mut linear_n = [0.0, 0.3].map(|shift_m| {
         let mut identifier = Identifier::new(&settings(recipe)).unwrap();
         for k in 0..1000 {

@@ -1,7 +1,7 @@
 //! Recursive regression of the change of force over the delay, with forgetting, for several ridges at once.
 
 use super::{
-    normal::{Factor, accumulate, dot},
+    normal::{NormalFactor, accumulate, dot},
     regressors::{LINEAR_REGRESSORS, REGRESSORS, Regressors},
 };
 use crate::signal::{Lanes, settled};
@@ -36,7 +36,7 @@ pub(super) fn predict(parameters: &Regressors, regressors: &Regressors, length: 
 /// proportion to each regressor's own mean square, which bounds the scaled condition to about 1e5, so that normal
 /// equations are safe in f64. The result is the same in every unit of length and force.
 #[derive(Clone, Debug)]
-pub(super) struct Regression {
+pub(super) struct ImpedanceRegression {
     rate_hz: f64,
     forget: f64,
     gram: [Lanes; ELEMENTS],
@@ -44,10 +44,10 @@ pub(super) struct Regression {
     mean_squares: Regressors,
     mean_error_n: f64,
     learnt: f64,
-    factor: Factor,
+    factor: NormalFactor,
 }
 
-impl Regression {
+impl ImpedanceRegression {
     pub(super) fn new(rate_hz: f64) -> Self {
         Self {
             rate_hz,
@@ -57,7 +57,7 @@ impl Regression {
             mean_squares: [Lanes::ZERO; REGRESSORS],
             mean_error_n: 0.0,
             learnt: 0.0,
-            factor: Factor::new(),
+            factor: NormalFactor::new(),
         }
     }
 
@@ -70,13 +70,13 @@ impl Regression {
     /// the weight.
     pub(super) fn learn(&mut self, q: &Regressors, change_n: Lanes, newest: &Regressors) {
         self.learnt += 1.0;
-        let share = 1.0 / self.learnt.min(ENERGY_S * self.rate_hz);
+        let fraction = 1.0 / self.learnt.min(ENERGY_S * self.rate_hz);
         for (square, q) in self.mean_squares.iter_mut().zip(q) {
-            *square = (*square + (*q * *q - *square) * share).settled();
+            *square = (*square + (*q * *q - *square) * fraction).settled();
         }
         let error_n = (change_n - predict(newest, q, REGRESSORS)).norm();
-        let share = 1.0 / self.learnt.min(ERROR_S * self.rate_hz);
-        self.mean_error_n = settled(self.mean_error_n + (error_n - self.mean_error_n) * share);
+        let fraction = 1.0 / self.learnt.min(ERROR_S * self.rate_hz);
+        self.mean_error_n = settled(self.mean_error_n + (error_n - self.mean_error_n) * fraction);
         let weight = if self.mean_error_n > 0.0 { 1.0 / (error_n / self.mean_error_n + FLATTEN) } else { 1.0 };
         accumulate(&mut self.gram, &mut self.right, q, change_n, Lanes::splat(weight), self.forget);
     }

@@ -1,6 +1,6 @@
 //! The quantities that explain a change of force over the delay.
 
-use super::settings::Settings;
+use super::settings::ImpedanceSettings;
 use crate::signal::{BANK, LANES, Lanes, LowPassBank};
 
 /// Shortest and longest time constants of the filter bank (s). Chosen as in `anchored.rs`.
@@ -41,17 +41,17 @@ pub(super) type Regressors = [Lanes; REGRESSORS];
 
 /// Position and its differences from the low-pass bank; the follower uses its tip, the leader its own motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Stance {
+pub(super) struct MotionState {
     pub(super) x: Lanes,
     pub(super) u: [Lanes; BANK],
     /// The first difference's own difference from its low-pass: acceleration.
     pub(super) surge: Lanes,
-    /// Motion at which dry friction saturates, and the pace of time, by this end's [`Clock`](super::pace::Clock).
+    /// Motion at which dry friction saturates, and the pace of time, by this end's [`MotionClock`](super::motion_clock::MotionClock).
     pub(super) knee: Lanes,
     pub(super) pace: f64,
 }
 
-impl Stance {
+impl MotionState {
     pub(super) const BLANK: Self =
         Self { x: Lanes::ZERO, u: [Lanes::ZERO; BANK], surge: Lanes::ZERO, knee: Lanes::ZERO, pace: 0.0 };
 }
@@ -70,12 +70,12 @@ pub(super) struct Background {
 }
 
 /// Creates the filter bank for positions, identical at both ends of the link.
-pub(super) fn position_bank(settings: &Settings) -> LowPassBank {
+pub(super) fn position_bank(settings: &ImpedanceSettings) -> LowPassBank {
     LowPassBank::new(BANK_S[0], BANK_S[1], settings.rate_hz)
 }
 
 /// Returns the fraction of a change that the low-pass with the bank's shortest time constant follows in one sample.
-pub(super) fn shortest_share(settings: &Settings) -> f64 {
+pub(super) fn shortest_fraction(settings: &ImpedanceSettings) -> f64 {
     -libm::expm1(-1.0 / (BANK_S[0] * settings.rate_hz).max(1.0))
 }
 
@@ -89,7 +89,7 @@ pub(super) fn saturated(u: Lanes, knee: Lanes) -> Lanes {
 /// Returns the changes from `then` to `now` that depend only on the motion, in the order
 /// [position, four differences, friction, square, cube, product].
 #[inline]
-pub(super) fn motion_changes(now: &Stance, then: &Stance, centre: Lanes, knee: Lanes) -> [Lanes; 9] {
+pub(super) fn motion_changes(now: &MotionState, then: &MotionState, centre: Lanes, knee: Lanes) -> [Lanes; 9] {
     let a = now.x - centre;
     let b = then.x - centre;
     let [u0, u1, u2, u3] = std::array::from_fn(|j| now.u[j] - then.u[j]);
@@ -108,7 +108,7 @@ pub(super) fn motion_changes(now: &Stance, then: &Stance, centre: Lanes, knee: L
 
 impl Background {
     /// Returns the regressors for the motion `now`, anchored at `then` with this background.
-    pub(super) fn regressors(&self, now: &Stance, then: &Stance) -> Regressors {
+    pub(super) fn regressors(&self, now: &MotionState, then: &MotionState) -> Regressors {
         let [dx, u0, u1, u2, u3, friction, square, cube, product] = motion_changes(now, then, self.centre, self.knee);
         let [g0, g1, g2, g3] = self.force_trend;
         let [m0, m1, m2, m3] = self.motion_trend;
@@ -126,20 +126,20 @@ impl Background {
 
 /// Computes [`Background`]s from the follower's motion and force.
 #[derive(Clone, Debug)]
-pub(super) struct Surroundings {
+pub(super) struct BackgroundBuilder {
     force_bank: LowPassBank,
-    share: f64,
+    fraction: f64,
     centre: Lanes,
     force_level: Lanes,
     speed: Lanes,
     started: bool,
 }
 
-impl Surroundings {
-    pub(super) fn new(settings: &Settings) -> Self {
+impl BackgroundBuilder {
+    pub(super) fn new(settings: &ImpedanceSettings) -> Self {
         Self {
             force_bank: LowPassBank::new(BANK_S[0], BANK_S[1], settings.rate_hz),
-            share: -libm::expm1(-1.0 / (SLOW_S * settings.rate_hz)),
+            fraction: -libm::expm1(-1.0 / (SLOW_S * settings.rate_hz)),
             centre: Lanes::ZERO,
             force_level: Lanes::ZERO,
             speed: Lanes::ZERO,
@@ -149,14 +149,14 @@ impl Surroundings {
 
     /// Returns the background of this tick. `usual`: mean squares of the regressors so far, `None` while there are too
     /// few samples.
-    pub(super) fn step(&mut self, stance: &Stance, force_n: Lanes, usual: Option<&Regressors>) -> Background {
+    pub(super) fn step(&mut self, stance: &MotionState, force_n: Lanes, usual: Option<&Regressors>) -> Background {
         if !self.started {
             self.centre = stance.x;
             self.force_level = force_n;
             self.speed = Lanes::ZERO;
             self.started = true;
         }
-        let follow = |mean: Lanes, value: Lanes| (mean + (value - mean) * self.share).settled();
+        let follow = |mean: Lanes, value: Lanes| (mean + (value - mean) * self.fraction).settled();
         self.centre = follow(self.centre, stance.x);
         self.force_level = follow(self.force_level, force_n);
         self.speed = follow(self.speed, stance.u[1].map(f64::abs));

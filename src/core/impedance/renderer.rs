@@ -5,10 +5,10 @@ use nalgebra::Vector3;
 use super::{
     Mode, SLOTS,
     damper::Damper,
-    messages::{Parcel, Posture, Rendered, active},
+    messages::{LinkPacket, Posture, RenderedForces, active},
     method::Leaders,
-    settings::{MAX_DELAY_S, OwnMotion, Settings, SettingsError},
-    track::{Track, usable_position},
+    settings::{ImpedanceSettings, MAX_DELAY_S, OwnMotion, SettingsError},
+    track::{MotionTrack, usable_position},
 };
 use crate::signal::DelayLine;
 
@@ -16,21 +16,21 @@ use crate::signal::DelayLine;
 ///
 /// ```
 /// use nalgebra::Vector3;
-/// use nima_core::impedance::{Mode, Parcel, Renderer, Settings};
+/// use nima_core::impedance::{Mode, LinkPacket, Renderer, ImpedanceSettings};
 ///
-/// let mut renderer = Renderer::new(&Settings::default())?;
+/// let mut renderer = Renderer::new(&ImpedanceSettings::default())?;
 /// let here = Vector3::zeros();
 /// assert_eq!(renderer.step(&here, None).force(Mode::Dfr), None, "no packet, no force");
 ///
-/// let parcel = Parcel { t_s: 0.0, force_n: Vector3::new(0.0, 0.0, 1.5), fresh: true, ..Parcel::BLANK };
+/// let parcel = LinkPacket { t_s: 0.0, force_n: Vector3::new(0.0, 0.0, 1.5), fresh: true, ..LinkPacket::BLANK };
 /// assert_eq!(renderer.step(&here, Some(&parcel)).force(Mode::Dfr), Some(parcel.force_n), "dfr reflects the received force");
 /// # Ok::<(), nima_core::impedance::SettingsError>(())
 /// ```
 #[derive(Clone, Debug)]
 pub struct Renderer {
-    settings: Settings,
+    settings: ImpedanceSettings,
     delay_ticks: usize,
-    track: Track,
+    track: MotionTrack,
     postures: DelayLine<Posture>,
     leaders: Leaders,
     /// What is rendered from the handle's own motion must not drive the hand.
@@ -44,14 +44,14 @@ impl Renderer {
     ///
     /// # Errors
     /// The name of the first setting that is out of its range.
-    pub fn new(settings: &Settings) -> Result<Self, SettingsError> {
+    pub fn new(settings: &ImpedanceSettings) -> Result<Self, SettingsError> {
         settings.validate()?;
         let max_delay = (MAX_DELAY_S * settings.rate_hz).ceil() as usize;
         let is_handle = settings.own_motion == OwnMotion::Handle;
         let damped = Mode::ALL.into_iter().filter(|mode| is_handle && mode.is_damped());
         Ok(Self {
             delay_ticks: settings.delay_ticks(settings.delay_s),
-            track: Track::new(settings),
+            track: MotionTrack::new(settings),
             postures: DelayLine::new(2 * max_delay, Posture::BLANK),
             leaders: Leaders::new(settings),
             dampers: damped.map(|mode| (mode, Damper::new(settings.rate_hz))).collect(),
@@ -67,7 +67,7 @@ impl Renderer {
     /// sample. `parcel`: the newest packet from the link, one delay old on arrival. Without a newer packet (`None`, or
     /// the same or an older one again) the age of the last packet increases with each tick, and the correction
     /// continues from the same anchor.
-    pub fn step(&mut self, position_m: &Vector3<f64>, parcel: Option<&Parcel>) -> Rendered {
+    pub fn step(&mut self, position_m: &Vector3<f64>, parcel: Option<&LinkPacket>) -> RenderedForces {
         let position = usable_position(active(position_m, self.settings.axes), &self.settings.scales);
         let now = self.track.step(position);
         let x = self.track.paper_x();
@@ -76,7 +76,7 @@ impl Renderer {
         let Some(parcel) = parcel.filter(|parcel| parcel.t_s.is_finite()) else {
             self.waiting = self.waiting.saturating_add(1);
             self.leaders.each().for_each(|leader| leader.keep(&[None; SLOTS], 0.0));
-            return Rendered::default();
+            return RenderedForces::default();
         };
         if parcel.t_s > self.parcel_t_s {
             self.parcel_t_s = parcel.t_s;
@@ -98,7 +98,7 @@ impl Renderer {
             let force_n = &mut forces[mode.index()];
             *force_n = force_n.map(|force_n| damper.step(&now.stance, force_n));
         }
-        Rendered::new(&forces)
+        RenderedForces::new(&forces)
     }
 
     /// Changes the programmed delay, exact to one sample, at most [`MAX_DELAY_S`].

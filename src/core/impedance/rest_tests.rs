@@ -8,8 +8,8 @@ use super::{tests::sample, *};
 
 const REST_N: f64 = 0.1;
 
-fn settings() -> Settings {
-    Settings { window_s: 0.1, delay_s: 0.03, rest_n: REST_N, ..Settings::default() }
+fn settings() -> ImpedanceSettings {
+    ImpedanceSettings { window_s: 0.1, delay_s: 0.03, rest_n: REST_N, ..ImpedanceSettings::default() }
 }
 
 /// Presses into a spring of 200 N/m twice per second until 1.5 s and from 4.5 s on; in between the tip moves above it.
@@ -25,7 +25,7 @@ fn touched(k: usize) -> Sample {
 #[test]
 fn without_contact_nothing_is_learnt_and_learning_goes_on_with_the_next_contact() {
     for mode in [Mode::Dfr, Mode::Linear, Mode::Anchored, Mode::Matched, Mode::Nima, Mode::Best] {
-        let mut identifier = Identifier::new(&Settings { modes: ModeSet::only(mode), ..settings() }).unwrap();
+        let mut identifier = Identifier::new(&ImpedanceSettings { modes: ModeSet::only(mode), ..settings() }).unwrap();
         let mut learnt = [0; 3];
         let mut touches = 0;
         for k in 0..6000 {
@@ -49,7 +49,7 @@ fn without_contact_nothing_is_learnt_and_learning_goes_on_with_the_next_contact(
 
 #[test]
 fn what_was_learnt_before_a_rest_is_there_at_the_next_touch() {
-    let settings = |rest_n| Settings { modes: ModeSet::only(Mode::Best), rest_n, ..settings() };
+    let settings = |rest_n| ImpedanceSettings { modes: ModeSet::only(Mode::Best), rest_n, ..settings() };
     let [mut resting, mut restless] = [REST_N, 0.0].map(|rest_n| Box::new(Identifier::new(&settings(rest_n)).unwrap()));
     let mut errors_n = [0.0; 3];
     for k in 0..5500 {
@@ -69,9 +69,9 @@ fn what_was_learnt_before_a_rest_is_there_at_the_next_touch() {
 
 #[test]
 fn a_mode_that_nobody_chose_is_not_computed() {
-    let mut identifier = Identifier::new(&Settings { rest_n: 0.0, ..settings() }).unwrap();
+    let mut identifier = Identifier::new(&ImpedanceSettings { rest_n: 0.0, ..settings() }).unwrap();
     let mut alone =
-        Identifier::new(&Settings { modes: ModeSet::only(Mode::Matched), rest_n: 0.0, ..settings() }).unwrap();
+        Identifier::new(&ImpedanceSettings { modes: ModeSet::only(Mode::Matched), rest_n: 0.0, ..settings() }).unwrap();
     identifier.compute(ModeSet::only(Mode::Matched));
     for k in 0..500 {
         identifier.step(&sample(k, 1000.0));
@@ -100,7 +100,7 @@ fn a_mode_that_nobody_chose_is_not_computed() {
         identifier.step(&sample(k, 1000.0));
     }
     let mut linear =
-        Identifier::new(&Settings { modes: ModeSet::only(Mode::Linear), rest_n: 0.0, ..settings() }).unwrap();
+        Identifier::new(&ImpedanceSettings { modes: ModeSet::only(Mode::Linear), rest_n: 0.0, ..settings() }).unwrap();
     for k in 0..2000 {
         linear.step(&sample(k, 1000.0));
     }
@@ -110,6 +110,6 @@ fn a_mode_that_nobody_chose_is_not_computed() {
 #[test]
 fn a_force_that_counts_as_none_must_be_small() {
     for rest_n in [-0.1, 1.1, f64::NAN, f64::INFINITY] {
-        assert!(matches!(Settings { rest_n, ..settings() }.validate(), Err(SettingsError::Rest { .. })));
+        assert!(matches!(ImpedanceSettings { rest_n, ..settings() }.validate(), Err(SettingsError::Rest { .. })));
     }
 }

@@ -98,7 +98,7 @@ pub enum OwnMotion {
 /// link; both ends must use the same settings.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub struct Settings {
+pub struct ImpedanceSettings {
     /// Samples per second, 20 to 10 000.
     pub rate_hz: f64,
     /// Length of the sliding window (s); 10 to 10 000 samples. The paper's 0.3.
@@ -128,7 +128,7 @@ pub struct Settings {
     pub literal: Recipe,
 }
 
-impl Default for Settings {
+impl Default for ImpedanceSettings {
     fn default() -> Self {
         Self {
             rate_hz: 1000.0,
@@ -148,17 +148,17 @@ impl Default for Settings {
     }
 }
 
-impl Settings {
+impl ImpedanceSettings {
     /// Checks every range.
     ///
     /// # Errors
     /// The first setting that is out of its range.
     ///
     /// ```
-    /// use nima_core::impedance::{Settings, SettingsError};
+    /// use nima_core::impedance::{ImpedanceSettings, SettingsError};
     ///
-    /// assert!(Settings::default().validate().is_ok());
-    /// let endless = Settings { delay_s: f64::INFINITY, ..Settings::default() };
+    /// assert!(ImpedanceSettings::default().validate().is_ok());
+    /// let endless = ImpedanceSettings { delay_s: f64::INFINITY, ..ImpedanceSettings::default() };
     /// assert!(matches!(endless.validate(), Err(SettingsError::Delay { .. })));
     /// ```
     pub fn validate(&self) -> Result<(), SettingsError> {

@@ -1,6 +1,6 @@
 //! Every nested least-squares solution from one triangular factor.
 
-use super::factor::{Factor, MAX_COLUMNS, column_start};
+use super::factor::{ImpedanceFactor, MAX_COLUMNS, column_start};
 use crate::signal::Lanes;
 
 /// Number of rows of the inverse computed together: four independent chains of additions, so that the processor does
@@ -15,7 +15,7 @@ pub(super) const PRODUCTS: usize = MAX_COLUMNS * (MAX_COLUMNS + 1) / 2;
 /// contain all of them: prefix `p` is the sum of their first `p` columns. Its sum of squared residuals is
 /// `sum_{j >= p} z_j^2 + rho^2`. A column without information (zero on the diagonal) gets the coefficient 0.
 #[derive(Clone, Debug)]
-pub struct Solution {
+pub struct ImpedanceSolution {
     columns: usize,
     /// `W`, row by row; zero below the diagonal.
     inverse: [[Lanes; MAX_COLUMNS]; MAX_COLUMNS],
@@ -27,7 +27,7 @@ pub struct Solution {
     condition: [Lanes; MAX_COLUMNS + 1],
 }
 
-impl Solution {
+impl ImpedanceSolution {
     /// Allocates the solutions of `columns <= 16` unknowns, all zero.
     pub fn new(columns: usize) -> Self {
         Self {
@@ -44,7 +44,7 @@ impl Solution {
     }
 
     /// Solves for every prefix of the factor's columns.
-    pub fn solve(&mut self, factor: &Factor) {
+    pub fn solve(&mut self, factor: &ImpedanceFactor) {
         let n = self.columns.min(factor.columns());
         let mut norm = Lanes::ZERO;
         let mut inverse_norm = Lanes::ZERO;
@@ -133,7 +133,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::impedance::{factor::MAX_ROW, window::Summary as _};
+    use crate::impedance::{factor::MAX_ROW, window::WindowSummary as _};
 
     fn rows(n: usize, columns: usize, seed: u64) -> Vec<[f64; MAX_ROW]> {
         let mut state = seed.wrapping_mul(2).wrapping_add(1);
@@ -170,14 +170,14 @@ mod tests {
             columns in 1_usize..=16, count in 20_usize..60, seed in any::<u64>(), split in 0.0..1.0_f64,
         ) {
             let rows = rows(count, columns, seed);
-            let mut first = Factor::new(columns);
-            let mut second = Factor::new(columns);
+            let mut first = ImpedanceFactor::new(columns);
+            let mut second = ImpedanceFactor::new(columns);
             for (i, row) in rows.iter().enumerate() {
                 let lanes = row.map(|entry| Lanes([entry, 2.0 * entry, 0.0, 0.0]));
                 if (i as f64) < split * count as f64 { first.add(&lanes) } else { second.add(&lanes) }
             }
             first.merge(&mut second);
-            let mut solution = Solution::new(columns);
+            let mut solution = ImpedanceSolution::new(columns);
             solution.solve(&first);
             for prefix in 1..=columns {
                 let (expected, residual) = by_svd(&rows, prefix, columns);
@@ -194,14 +194,14 @@ mod tests {
 
     #[test]
     fn a_column_without_information_gets_zero() {
-        let mut factor = Factor::new(4);
+        let mut factor = ImpedanceFactor::new(4);
         for i in 0..20 {
             let x = f64::from(i);
             let mut row = [Lanes::ZERO; MAX_ROW];
             row[..5].copy_from_slice(&[1.0, x, 0.0, x * x, 3.0 + 2.0 * x].map(Lanes::splat));
             factor.add(&row);
         }
-        let mut solution = Solution::new(4);
+        let mut solution = ImpedanceSolution::new(4);
         solution.solve(&factor);
         let found = solution.coefficients(4).map(|lanes| lanes[0]);
         for (found, expected) in found.iter().zip([3.0, 2.0, 0.0, 0.0]) {
@@ -212,8 +212,8 @@ mod tests {
     #[test]
     fn a_row_without_a_column_still_counts_in_the_others() {
         // The second column is zero in the first rows, which arrive by a merge as in the sliding window.
-        let mut early = Factor::new(3);
-        let mut late = Factor::new(3);
+        let mut early = ImpedanceFactor::new(3);
+        let mut late = ImpedanceFactor::new(3);
         for (i, factor) in [0, 1, 2, 3].into_iter().zip([true, true, false, false]) {
             let t = f64::from(i);
             let mut row = [Lanes::ZERO; MAX_ROW];
@@ -221,7 +221,7 @@ mod tests {
             if factor { early.add(&row) } else { late.add(&row) }
         }
         late.merge(&mut early);
-        let mut solution = Solution::new(3);
+        let mut solution = ImpedanceSolution::new(3);
         solution.solve(&late);
         let rows: Vec<[f64; MAX_ROW]> = (0..4)
             .map(|i| {
@@ -240,8 +240,8 @@ mod tests {
     #[test]
     fn vanishing_entries_neither_overflow_nor_spoil_the_others() {
         for tiny in [1e-130, 1e-145, 1e-155, 1e-165, 1e-300] {
-            let mut early = Factor::new(3);
-            let mut late = Factor::new(3);
+            let mut early = ImpedanceFactor::new(3);
+            let mut late = ImpedanceFactor::new(3);
             for i in 0..8 {
                 let t = f64::from(i);
                 let mut row = [Lanes::ZERO; MAX_ROW];
@@ -249,7 +249,7 @@ mod tests {
                 if i < 4 { early.add(&row) } else { late.add(&row) }
             }
             late.merge(&mut early);
-            let mut solution = Solution::new(3);
+            let mut solution = ImpedanceSolution::new(3);
             solution.solve(&late);
             let found = solution.coefficients(3).map(|lanes| lanes[0]);
             assert!((found[0] - 3.0).abs() < 1e-12 && (found[2] - 2.0).abs() < 1e-12, "{tiny:e}: {found:?}");

@@ -23,12 +23,12 @@ pub(super) fn sample(k: usize, rate_hz: f64) -> Sample {
     Sample { t_s: t, position_m: x, force_n: Vector3::new(force(x.x, v.x), force(x.y, v.y), force(x.z, v.z)) }
 }
 
-fn settings() -> Settings {
-    Settings { window_s: 0.1, delay_s: 0.03, ..Settings::default() }
+fn settings() -> ImpedanceSettings {
+    ImpedanceSettings { window_s: 0.1, delay_s: 0.03, ..ImpedanceSettings::default() }
 }
 
-fn assert_finite(report: &Report, parcel: &Parcel) {
-    let Report { prediction_n, reconstruction_n, condition, excitation, horizon_error_n, .. } = report;
+fn assert_finite(report: &IdentificationReport, parcel: &LinkPacket) {
+    let IdentificationReport { prediction_n, reconstruction_n, condition, excitation, horizon_error_n, .. } = report;
     let vectors = prediction_n.iter().chain(reconstruction_n).chain([
         &excitation.position_m,
         &excitation.velocity_m_s,
@@ -62,7 +62,7 @@ fn anchored_beats_delayed_reflection_on_contact() {
 
 #[test]
 fn without_delay_reflection_and_anchored_are_the_measured_force() {
-    let mut identifier = Identifier::new(&Settings { delay_s: 0.0, ..settings() }).unwrap();
+    let mut identifier = Identifier::new(&ImpedanceSettings { delay_s: 0.0, ..settings() }).unwrap();
     for k in 0..500 {
         let sample = sample(k, 1000.0);
         identifier.step(&sample);
@@ -76,7 +76,7 @@ fn without_delay_reflection_and_anchored_are_the_measured_force() {
 
 #[test]
 fn delay_is_exact_and_can_change() {
-    let mut identifier = Identifier::new(&Settings { modes: ModeSet::only(Mode::Dfr), ..settings() }).unwrap();
+    let mut identifier = Identifier::new(&ImpedanceSettings { modes: ModeSet::only(Mode::Dfr), ..settings() }).unwrap();
     let mut delay = 30;
     for k in 0..4000_usize {
         if k == 1500 || k == 2700 {
@@ -112,7 +112,7 @@ fn the_leader_renders_what_the_follower_predicted() {
 /// of force.
 #[test]
 fn the_best_of_two_is_judged_by_what_the_leader_rendered() {
-    let settings = Settings { delay_s: 0.01, ..settings() };
+    let settings = ImpedanceSettings { delay_s: 0.01, ..settings() };
     let mut identifier = Identifier::new(&settings).unwrap();
     let mut renderer = Renderer::new(&settings).unwrap();
     let mut link = Vec::new();
@@ -176,7 +176,7 @@ fn metres_and_millimetres_agree() {
         force_n,
     };
     let mut a = Identifier::new(&metres).unwrap();
-    let mut b = Identifier::new(&Settings { scales, ..metres }).unwrap();
+    let mut b = Identifier::new(&ImpedanceSettings { scales, ..metres }).unwrap();
     let mut worst = 0.0_f64;
     for k in 0..2000 {
         let s = sample(k, 1000.0);
@@ -239,7 +239,7 @@ fn standstill_renders_what_was_measured() {
 
 #[test]
 fn one_axis_leaves_the_others_alone() {
-    let mut identifier = Identifier::new(&Settings { axes: 1, ..settings() }).unwrap();
+    let mut identifier = Identifier::new(&ImpedanceSettings { axes: 1, ..settings() }).unwrap();
     for k in 0..1000 {
         let mut s = sample(k, 1000.0);
         s.position_m.y = f64::NAN;
@@ -274,7 +274,7 @@ fn every_rate_and_amplitude_stays_finite() {
     for rate_hz in [20.0_f64, 66.0, 1000.0, 10_000.0] {
         for amplitude in [1e-6, 1e-3, 0.2, 50.0] {
             let window_s = (12.0 / rate_hz).max(0.02);
-            let settings = Settings { rate_hz, window_s, ..Settings::default() };
+            let settings = ImpedanceSettings { rate_hz, window_s, ..ImpedanceSettings::default() };
             let mut identifier = Identifier::new(&settings).unwrap();
             for k in 0..1500 {
                 let mut s = sample(k, rate_hz);
@@ -288,7 +288,7 @@ fn every_rate_and_amplitude_stays_finite() {
 
 #[test]
 fn nothing_that_comes_in_makes_a_number_that_is_not_finite() {
-    let settings = Settings { cross_talk: true, ..settings() };
+    let settings = ImpedanceSettings { cross_talk: true, ..settings() };
     let mut identifier = Identifier::new(&settings).unwrap();
     let mut renderer = Renderer::new(&settings).unwrap();
     let mut state = 1_u64;
@@ -322,17 +322,17 @@ fn nothing_that_comes_in_makes_a_number_that_is_not_finite() {
 
 #[test]
 fn settings_out_of_range_are_refused_with_one_line() {
-    let good = Settings::default;
+    let good = ImpedanceSettings::default;
     let bad = [
-        Settings { rate_hz: 10.0, ..good() },
-        Settings { rate_hz: f64::NAN, ..good() },
-        Settings { window_s: 0.001, ..good() },
-        Settings { delay_s: 1.5, ..good() },
-        Settings { delay_s: f64::NAN, ..good() },
-        Settings { max_degree: 6, ..good() },
-        Settings { axes: 0, ..good() },
-        Settings { scales: Scales { position_m: 0.0, ..Scales::default() }, ..good() },
-        Settings { ridge: -1.0, ..good() },
+        ImpedanceSettings { rate_hz: 10.0, ..good() },
+        ImpedanceSettings { rate_hz: f64::NAN, ..good() },
+        ImpedanceSettings { window_s: 0.001, ..good() },
+        ImpedanceSettings { delay_s: 1.5, ..good() },
+        ImpedanceSettings { delay_s: f64::NAN, ..good() },
+        ImpedanceSettings { max_degree: 6, ..good() },
+        ImpedanceSettings { axes: 0, ..good() },
+        ImpedanceSettings { scales: Scales { position_m: 0.0, ..Scales::default() }, ..good() },
+        ImpedanceSettings { ridge: -1.0, ..good() },
     ];
     for settings in bad {
         let error = Identifier::new(&settings).unwrap_err();

@@ -1,12 +1,12 @@
 //! The motion at one end of the link: derivatives, increments over the window, and a bridge over missing samples.
 
 use super::{
-    features::{Features, Scales, features},
+    features::{ImpedanceFeatures, Scales, features},
     messages::Posture,
-    pace::Clock,
-    recipe::Reading,
-    regressors::{Stance, position_bank, shortest_share},
-    settings::Settings,
+    motion_clock::MotionClock,
+    recipe::IncrementReading,
+    regressors::{MotionState, position_bank, shortest_fraction},
+    settings::ImpedanceSettings,
 };
 use crate::signal::{DelayLine, Differentiator, Lanes, LowPassBank, Motion};
 
@@ -20,14 +20,14 @@ const ABSURD: f64 = 1e4;
 
 /// Computes [`Motion`] from positions and stores it over one window.
 #[derive(Clone, Debug)]
-pub(super) struct Track {
+pub(super) struct MotionTrack {
     differentiator: Differentiator,
     bank: LowPassBank,
     speed_m: Lanes,
-    clock: Clock,
-    speed_share: f64,
+    clock: MotionClock,
+    speed_fraction: f64,
     scales: Scales,
-    reading: Reading,
+    reading: IncrementReading,
     degree: usize,
     posture: Posture,
     history: DelayLine<Motion>,
@@ -37,14 +37,14 @@ pub(super) struct Track {
     missing: usize,
 }
 
-impl Track {
-    pub(super) fn new(settings: &Settings) -> Self {
+impl MotionTrack {
+    pub(super) fn new(settings: &ImpedanceSettings) -> Self {
         Self {
             differentiator: Differentiator::new(settings.differentiator, settings.rate_hz),
             bank: position_bank(settings),
             speed_m: Lanes::ZERO,
-            clock: Clock::new(settings.rate_hz),
-            speed_share: shortest_share(settings),
+            clock: MotionClock::new(settings.rate_hz),
+            speed_fraction: shortest_fraction(settings),
             scales: settings.scales,
             reading: settings.literal.reading,
             degree: settings.max_degree,
@@ -73,11 +73,11 @@ impl Track {
         self.last = self.differentiator.step(position);
         self.history.push(self.last);
         let u = self.bank.step(position);
-        self.speed_m = (self.speed_m + (u[0] - self.speed_m) * self.speed_share).settled();
+        self.speed_m = (self.speed_m + (u[0] - self.speed_m) * self.speed_fraction).settled();
         self.clock.step(u[1]);
         self.posture = Posture {
             features: self.scales.features(&self.last, self.degree),
-            stance: Stance {
+            stance: MotionState {
                 x: position,
                 u,
                 surge: u[0] - self.speed_m,
@@ -90,8 +90,8 @@ impl Track {
 
     /// Returns the paper's features `X` (SI units) of `u`: the changes of position, velocity and acceleration over the
     /// window (over the time since the first sample, while that is shorter), or their values.
-    pub(super) fn paper_x(&self) -> Features {
-        if self.reading == Reading::Displacement {
+    pub(super) fn paper_x(&self) -> ImpedanceFeatures {
+        if self.reading == IncrementReading::Displacement {
             return features(&self.last, self.degree);
         }
         let window = self.history.max_delay();

@@ -4,7 +4,7 @@
 ///
 /// Adding rows one by one and merging two summaries must agree: the summary of a sequence equals the merged summaries
 /// of its parts, in any order, up to rounding.
-pub trait Summary: Clone {
+pub trait WindowSummary: Clone {
     /// Entries of one sample.
     type Row: Copy;
     const BLANK_ROW: Self::Row;
@@ -30,7 +30,7 @@ pub trait Summary: Clone {
 /// one array: at each tick the ending just read makes room for the new one, which the next block reads in the opposite
 /// direction.
 #[derive(Clone, Debug)]
-pub struct SlidingWindow<S: Summary> {
+pub struct SlidingWindow<S: WindowSummary> {
     block: usize,
     /// Rows of the previous block (first or second half) and of this block (the other half).
     rows: Vec<S::Row>,
@@ -49,7 +49,7 @@ pub struct SlidingWindow<S: Summary> {
     current: S,
 }
 
-impl<S: Summary> SlidingWindow<S> {
+impl<S: WindowSummary> SlidingWindow<S> {
     /// Creates a window of `2 * block` rows. `empty` is the summary of no rows; `prior` is the initial content of every
     /// window (for example a ridge), or the same as `empty`.
     pub fn new(block: usize, empty: S, prior: S) -> Self {
@@ -149,7 +149,7 @@ mod tests {
 
     use super::*;
     use crate::{
-        impedance::{Factor, Solution, factor::MAX_ROW},
+        impedance::{ImpedanceFactor, ImpedanceSolution, factor::MAX_ROW},
         signal::Lanes,
     };
 
@@ -157,7 +157,7 @@ mod tests {
     #[derive(Clone, Debug, Default, PartialEq)]
     struct Numbers(Vec<usize>);
 
-    impl Summary for Numbers {
+    impl WindowSummary for Numbers {
         type Row = usize;
         const BLANK_ROW: usize = usize::MAX;
         fn add(&mut self, row: &usize) {
@@ -201,10 +201,10 @@ mod tests {
     #[test]
     fn a_slid_factor_solves_like_a_fresh_one() {
         for (block, columns) in [(5, 4), (20, 16), (150, 16), (33, 7)] {
-            let ridge = Factor::with_ridge(columns, 1e-6 * block as f64);
-            let mut window = SlidingWindow::new(block, Factor::new(columns), ridge.clone());
-            let mut slid = Solution::new(columns);
-            let mut fresh = Solution::new(columns);
+            let ridge = ImpedanceFactor::with_ridge(columns, 1e-6 * block as f64);
+            let mut window = SlidingWindow::new(block, ImpedanceFactor::new(columns), ridge.clone());
+            let mut slid = ImpedanceSolution::new(columns);
+            let mut fresh = ImpedanceSolution::new(columns);
             for k in 0..7 * block {
                 window.push(&row(k));
                 slid.solve(window.current());
@@ -233,12 +233,12 @@ mod tests {
         fn any_window_solves_like_a_fresh_one(
             block in 5_usize..60, columns in 1_usize..=16, length in 0_usize..300, rejected in 2_usize..40, ridge in 1e-8..1e-2_f64,
         ) {
-            let prior = Factor::with_ridge(columns, ridge);
-            let mut window = SlidingWindow::new(block, Factor::new(columns), prior.clone());
-            let blank = |k: usize| if k.is_multiple_of(rejected) { Factor::BLANK_ROW } else { row(k) };
+            let prior = ImpedanceFactor::with_ridge(columns, ridge);
+            let mut window = SlidingWindow::new(block, ImpedanceFactor::new(columns), prior.clone());
+            let blank = |k: usize| if k.is_multiple_of(rejected) { ImpedanceFactor::BLANK_ROW } else { row(k) };
             (0..length).for_each(|k| window.push(&blank(k)));
-            let mut slid = Solution::new(columns);
-            let mut fresh = Solution::new(columns);
+            let mut slid = ImpedanceSolution::new(columns);
+            let mut fresh = ImpedanceSolution::new(columns);
             slid.solve(window.current());
             let mut factor = prior;
             (length.saturating_sub(2 * block)..length).for_each(|k| factor.add(&blank(k)));
@@ -253,8 +253,8 @@ mod tests {
     }
 
     /// Condition number squared: the amplification of rounding errors in a solution of magnitude one.
-    fn solution_size(factor: &Factor, lane: usize) -> f64 {
-        let mut solution = Solution::new(factor.columns());
+    fn solution_size(factor: &ImpedanceFactor, lane: usize) -> f64 {
+        let mut solution = ImpedanceSolution::new(factor.columns());
         solution.solve(factor);
         let size = solution.coefficients(factor.columns()).iter().map(|m| m[lane].abs()).fold(1.0, f64::max);
         size * solution.condition(factor.columns())[lane].max(1.0).powi(2)
@@ -264,11 +264,11 @@ mod tests {
     fn nothing_drifts_and_a_long_window_is_exact() {
         for (block, ticks) in [(150, 200_000), (5000, 25_000)] {
             let columns = 7;
-            let ridge = Factor::with_ridge(columns, 1e-6 * block as f64);
-            let mut window = SlidingWindow::new(block, Factor::new(columns), ridge.clone());
+            let ridge = ImpedanceFactor::with_ridge(columns, 1e-6 * block as f64);
+            let mut window = SlidingWindow::new(block, ImpedanceFactor::new(columns), ridge.clone());
             (0..ticks).for_each(|k| window.push(&row(k)));
-            let mut slid = Solution::new(columns);
-            let mut fresh = Solution::new(columns);
+            let mut slid = ImpedanceSolution::new(columns);
+            let mut fresh = ImpedanceSolution::new(columns);
             slid.solve(window.current());
             let mut factor = ridge;
             (ticks - 2 * block..ticks).for_each(|k| factor.add(&row(k)));

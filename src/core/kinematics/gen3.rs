@@ -27,13 +27,13 @@ pub(super) const SHOULDER_M: f64 = 0.284_81;
 pub(super) const REACH_M: f64 = 0.420_76 + 0.314_36 + 0.167_455 + 0.002;
 
 #[derive(Clone, Copy)]
-enum Turn {
+enum LinkTurn {
     Half,
     Quarter,
     QuarterBack,
 }
 
-impl Turn {
+impl LinkTurn {
     /// Returns `rotation * Rx(angle)`, exact because only columns and signs are swapped.
     fn after(self, rotation: &Matrix3<f64>) -> Matrix3<f64> {
         let [x, y, z] = [0, 1, 2].map(|i| rotation.column(i).into_owned());
@@ -47,20 +47,20 @@ impl Turn {
 
 /// From each joint to the next: translation (m) in the frame of the previous one, then rotation. The last one is the
 /// flange.
-const LINKS: [([f64; 3], Turn); JOINTS + 1] = [
-    ([0.0, 0.0, 0.156_43], Turn::Half),
-    ([0.0, 0.005_375, -0.128_38], Turn::Quarter),
-    ([0.0, -0.210_38, -0.006_375], Turn::QuarterBack),
-    ([0.0, 0.006_375, -0.210_38], Turn::Quarter),
-    ([0.0, -0.208_43, -0.006_375], Turn::QuarterBack),
-    ([0.0, 0.000_175_05, -0.105_93], Turn::Quarter),
-    ([0.0, -0.105_93, -0.000_175_05], Turn::QuarterBack),
-    ([0.0, 0.0, -0.061_525], Turn::Half),
+const LINKS: [([f64; 3], LinkTurn); JOINTS + 1] = [
+    ([0.0, 0.0, 0.156_43], LinkTurn::Half),
+    ([0.0, 0.005_375, -0.128_38], LinkTurn::Quarter),
+    ([0.0, -0.210_38, -0.006_375], LinkTurn::QuarterBack),
+    ([0.0, 0.006_375, -0.210_38], LinkTurn::Quarter),
+    ([0.0, -0.208_43, -0.006_375], LinkTurn::QuarterBack),
+    ([0.0, 0.000_175_05, -0.105_93], LinkTurn::Quarter),
+    ([0.0, -0.105_93, -0.000_175_05], LinkTurn::QuarterBack),
+    ([0.0, 0.0, -0.061_525], LinkTurn::Half),
 ];
 
 /// Positions and axes of all joints for one set of joint angles, in the frame `world` in which the base is mounted.
 #[derive(Clone, Copy, Debug)]
-pub struct Chain {
+pub struct JointChain {
     /// A point on each joint's axis, m.
     pub origin_m: [Vector3<f64>; JOINTS],
     /// Each joint's axis, unit length; positive angles are right-handed about it.
@@ -69,7 +69,7 @@ pub struct Chain {
     pub world_from_flange: IsometryMatrix3<f64>,
 }
 
-impl Chain {
+impl JointChain {
     /// Computes the forward kinematics of an arm with its base at `world_from_base`.
     pub fn new(world_from_base: &IsometryMatrix3<f64>, joint_rad: &Joints) -> Self {
         let mut rotation = *world_from_base.rotation.matrix();
@@ -137,7 +137,7 @@ mod tests {
     use super::*;
 
     fn flange(joint_rad: &Joints) -> IsometryMatrix3<f64> {
-        Chain::new(&IsometryMatrix3::identity(), joint_rad).world_from_flange
+        JointChain::new(&IsometryMatrix3::identity(), joint_rad).world_from_flange
     }
 
     fn random_joints() -> Joints {
@@ -192,7 +192,7 @@ mod tests {
         let mount = IsometryMatrix3::new(Vector3::new(0.3, -0.2, 0.1), Vector3::new(0.4, 0.3, -1.0));
         for _ in 0..50 {
             let joint_rad = random_joints();
-            let chain = Chain::new(&mount, &joint_rad);
+            let chain = JointChain::new(&mount, &joint_rad);
             let on_flange_m = Vector3::new(0.02, -0.01, 0.4);
             let point_m = chain.world_from_flange * nalgebra::Point3::from(on_flange_m);
             let jacobian = chain.jacobian(&point_m.coords);
@@ -200,7 +200,7 @@ mod tests {
                 let at = |step: f64| {
                     let mut moved = joint_rad;
                     moved[joint] += step;
-                    Chain::new(&mount, &moved).world_from_flange
+                    JointChain::new(&mount, &moved).world_from_flange
                 };
                 let before = at(-H);
                 let after = at(H);

@@ -10,7 +10,7 @@ use thiserror::Error;
 use crate::limits::SCALE;
 
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
-pub enum MappingError {
+pub enum MotionMappingError {
     #[error("the rotation from the leader to the arm's base is not finite: enter the endoscope's pose again")]
     Rotation,
     #[error("the motion scale {scale} is out of range: use {SCALE}")]
@@ -38,46 +38,46 @@ pub fn world_from_tracked_view(
 ///
 /// ```
 /// use nalgebra::{UnitQuaternion, Vector3};
-/// use nima_core::kinematics::{Mapping, MappingError, view_from_omega};
+/// use nima_core::kinematics::{MotionMapping, MotionMappingError, view_from_omega};
 ///
-/// let mapping = Mapping::new(&UnitQuaternion::identity(), &view_from_omega(), 0.5)?;
+/// let mapping = MotionMapping::new(&UnitQuaternion::identity(), &view_from_omega(), 0.5)?;
 /// let hand_m = Vector3::new(0.02, 0.0, 0.0);
 /// assert!((mapping.to_tip(&hand_m).norm() - 0.01).abs() < 1e-12, "half the travel");
 /// let force_n = mapping.force_to_hand(&mapping.to_tip(&hand_m).normalize());
 /// assert!((force_n - Vector3::x()).norm() < 1e-12, "a force along the tip's path is felt along the hand's path");
-/// assert_eq!(mapping.scaled(100.0), Err(MappingError::Scale { scale: 100.0 }));
-/// # Ok::<(), MappingError>(())
+/// assert_eq!(mapping.scaled(100.0), Err(MotionMappingError::Scale { scale: 100.0 }));
+/// # Ok::<(), MotionMappingError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Mapping {
+pub struct MotionMapping {
     world_from_leader: UnitQuaternion<f64>,
     scale: f64,
 }
 
-impl Default for Mapping {
+impl Default for MotionMapping {
     /// The leader's axes coincide with the workspace axes; scale 1.
     fn default() -> Self {
         Self { world_from_leader: UnitQuaternion::identity(), scale: 1.0 }
     }
 }
 
-impl Mapping {
+impl MotionMapping {
     /// Creates the mapping `world_from_view * view_from_leader`; `scale` is the tip's travel per travel of the hand.
     ///
     /// # Errors
-    /// [`MappingError`] if a rotation is not finite or the scale is not within [`SCALE`].
+    /// [`MotionMappingError`] if a rotation is not finite or the scale is not within [`SCALE`].
     pub fn new(
         world_from_view: &UnitQuaternion<f64>,
         view_from_leader: &UnitQuaternion<f64>,
         scale: f64,
-    ) -> Result<Self, MappingError> {
+    ) -> Result<Self, MotionMappingError> {
         let product = world_from_view.into_inner() * view_from_leader.into_inner();
-        let world_from_leader = UnitQuaternion::try_new(product, 1e-6).ok_or(MappingError::Rotation)?;
+        let world_from_leader = UnitQuaternion::try_new(product, 1e-6).ok_or(MotionMappingError::Rotation)?;
         if !world_from_leader.coords.iter().all(|x| x.is_finite()) {
-            return Err(MappingError::Rotation);
+            return Err(MotionMappingError::Rotation);
         }
         if !SCALE.contains(scale) {
-            return Err(MappingError::Scale { scale });
+            return Err(MotionMappingError::Scale { scale });
         }
         Ok(Self { world_from_leader, scale })
     }
@@ -85,9 +85,9 @@ impl Mapping {
     /// Returns the mapping with another scale.
     ///
     /// # Errors
-    /// [`MappingError`] if the scale is not within [`SCALE`].
-    pub fn scaled(&self, scale: f64) -> Result<Self, MappingError> {
-        if SCALE.contains(scale) { Ok(Self { scale, ..*self }) } else { Err(MappingError::Scale { scale }) }
+    /// [`MotionMappingError`] if the scale is not within [`SCALE`].
+    pub fn scaled(&self, scale: f64) -> Result<Self, MotionMappingError> {
+        if SCALE.contains(scale) { Ok(Self { scale, ..*self }) } else { Err(MotionMappingError::Scale { scale }) }
     }
 
     /// Returns the rotation from the leader's frame to `world`.
@@ -114,14 +114,14 @@ impl Mapping {
 
 /// The hand's pose measured by its device, in the leader's frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Hand {
+pub struct HandPose {
     /// Position in the leader's frame, m.
     pub position_m: Vector3<f64>,
     /// Orientation; `None` if the device has no wrist.
     pub orientation: Option<UnitQuaternion<f64>>,
 }
 
-impl Hand {
+impl HandPose {
     /// Creates a hand on a device without a wrist.
     pub const fn at(position_m: Vector3<f64>) -> Self {
         Self { position_m, orientation: None }
@@ -135,37 +135,37 @@ impl Hand {
 
 /// Commanded pose of the tip, in `world`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Target {
+pub struct TipTarget {
     pub tip_m: Vector3<f64>,
     pub world_from_jaws: UnitQuaternion<f64>,
 }
 
 #[derive(Clone, Copy, Debug)]
-pub struct HandEye {
-    mapping: Mapping,
-    target: Target,
+pub struct HandEyeCoupling {
+    mapping: MotionMapping,
+    target: TipTarget,
     /// The hand's pose in the previous step; `None` while not coupled.
-    hand: Option<Hand>,
+    hand: Option<HandPose>,
     engaged: bool,
 }
 
-impl HandEye {
+impl HandEyeCoupling {
     /// Creates an uncoupled state in which the tip holds `target`.
-    pub const fn new(mapping: Mapping, target: Target) -> Self {
+    pub const fn new(mapping: MotionMapping, target: TipTarget) -> Self {
         Self { mapping, target, hand: None, engaged: false }
     }
 
-    pub const fn mapping(&self) -> &Mapping {
+    pub const fn mapping(&self) -> &MotionMapping {
         &self.mapping
     }
 
     /// Changes the mapping (the endoscope moved, the scale changed); it applies to motion from now on.
-    pub const fn set_mapping(&mut self, mapping: Mapping) {
+    pub const fn set_mapping(&mut self, mapping: MotionMapping) {
         self.mapping = mapping;
     }
 
     /// Couples the hand to the tip from the next step on. `target` is the current command to the tip.
-    pub const fn engage(&mut self, target: Target) {
+    pub const fn engage(&mut self, target: TipTarget) {
         self.target = target;
         self.hand = None;
         self.engaged = true;
@@ -181,7 +181,7 @@ impl HandEye {
     }
 
     /// Updates the hand's pose and returns the command to the tip.
-    pub fn step(&mut self, hand: &Hand) -> Target {
+    pub fn step(&mut self, hand: &HandPose) -> TipTarget {
         if !self.engaged || !hand.is_finite() {
             return self.target;
         }
@@ -205,12 +205,12 @@ mod tests {
     use super::*;
     use crate::frames::from_roll_pitch_yaw_deg;
 
-    fn hand(x: f64, y: f64, z: f64) -> Hand {
-        Hand { position_m: Vector3::new(x, y, z), orientation: None }
+    fn hand(x: f64, y: f64, z: f64) -> HandPose {
+        HandPose { position_m: Vector3::new(x, y, z), orientation: None }
     }
 
-    fn target() -> Target {
-        Target {
+    fn target() -> TipTarget {
+        TipTarget {
             tip_m: Vector3::new(0.4, 0.0, -0.1),
             world_from_jaws: from_roll_pitch_yaw_deg(&Vector3::new(180.0, 0.0, 20.0)),
         }
@@ -222,8 +222,8 @@ mod tests {
         UnitQuaternion::from_rotation_matrix(&Rotation3::from_basis_unchecked(&columns))
     }
 
-    fn hand_eye(scale: f64) -> HandEye {
-        HandEye::new(Mapping::new(&looking_down(), &view_from_omega(), scale).unwrap(), target())
+    fn hand_eye(scale: f64) -> HandEyeCoupling {
+        HandEyeCoupling::new(MotionMapping::new(&looking_down(), &view_from_omega(), scale).unwrap(), target())
     }
 
     #[test]
@@ -231,8 +231,8 @@ mod tests {
         let view = view_from_omega();
         let right_up_away = [Vector3::y(), Vector3::z(), -Vector3::x()];
         let in_the_picture = [Vector3::x(), -Vector3::y(), Vector3::z()];
-        for (hand, picture) in right_up_away.iter().zip(in_the_picture) {
-            assert!((view * hand - picture).norm() < 1e-12, "{hand}");
+        for (hand, image) in right_up_away.iter().zip(in_the_picture) {
+            assert!((view * hand - image).norm() < 1e-12, "{hand}");
         }
         let mut hand_eye = hand_eye(0.5);
         hand_eye.engage(target());
@@ -261,7 +261,7 @@ mod tests {
         assert_eq!(hand_eye.step(&hand(0.03, -0.02, 0.05)), target(), "engaged wherever the hand is");
         let moved = hand_eye.step(&hand(0.03, -0.01, 0.05));
         assert!((moved.tip_m - target().tip_m).norm() > 3e-3);
-        hand_eye.set_mapping(Mapping::new(&UnitQuaternion::identity(), &view_from_omega(), 2.0).unwrap());
+        hand_eye.set_mapping(MotionMapping::new(&UnitQuaternion::identity(), &view_from_omega(), 2.0).unwrap());
         assert_eq!(hand_eye.step(&hand(0.03, -0.01, 0.05)), moved, "a new mapping at rest");
         hand_eye.release();
         assert_eq!(hand_eye.step(&hand(-0.2, 0.1, 0.0)), moved, "released again");
@@ -276,8 +276,8 @@ mod tests {
         let start = from_roll_pitch_yaw_deg(&Vector3::new(5.0, 10.0, 15.0));
         let turned = UnitQuaternion::from_scaled_axis(-Vector3::x() * 0.3) * start;
         let held = hand(0.0, 0.0, 0.0);
-        hand_eye.step(&Hand { orientation: Some(start), ..held });
-        let jaws = hand_eye.step(&Hand { orientation: Some(turned), ..held });
+        hand_eye.step(&HandPose { orientation: Some(start), ..held });
+        let jaws = hand_eye.step(&HandPose { orientation: Some(turned), ..held });
         // A rotation about the line of sight (away from the user) becomes one about the image's z: the base's -z.
         let expected = UnitQuaternion::from_scaled_axis(-Vector3::z() * 0.3) * target().world_from_jaws;
         assert!(jaws.world_from_jaws.angle_to(&expected) < 1e-12);
@@ -303,9 +303,9 @@ mod tests {
         assert_eq!(hand_eye.step(&hand(f64::NAN, 0.0, 0.0)), target());
         let identity = UnitQuaternion::identity();
         for scale in [0.0, -1.0, f64::NAN, f64::INFINITY, 6.0] {
-            assert!(matches!(Mapping::new(&identity, &identity, scale), Err(MappingError::Scale { .. })));
+            assert!(matches!(MotionMapping::new(&identity, &identity, scale), Err(MotionMappingError::Scale { .. })));
         }
         let broken = UnitQuaternion::new_unchecked(nalgebra::Quaternion::new(f64::NAN, 0.0, 0.0, 0.0));
-        assert_eq!(Mapping::new(&broken, &identity, 1.0), Err(MappingError::Rotation));
+        assert_eq!(MotionMapping::new(&broken, &identity, 1.0), Err(MotionMappingError::Rotation));
     }
 }

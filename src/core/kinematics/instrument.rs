@@ -7,7 +7,7 @@ use nalgebra::{IsometryMatrix3, Rotation3, Translation3, UnitQuaternion, Vector3
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use super::gen3::{Chain, Joints};
+use super::gen3::{JointChain, Joints};
 use crate::frames::from_roll_pitch_yaw_deg;
 
 /// Mounting of the arm and geometry of its instrument. All values are measured on the rig, so there are no defaults.
@@ -98,13 +98,13 @@ impl Arm {
     }
 
     /// Returns the pose of arm and instrument for these joint angles (rad).
-    pub fn pose(&self, joint_rad: &Joints) -> Pose {
-        let chain = Chain::new(&self.world_from_base, joint_rad);
+    pub fn pose(&self, joint_rad: &Joints) -> InstrumentPose {
+        let chain = JointChain::new(&self.world_from_base, joint_rad);
         let world_from_s1 = chain.world_from_flange * self.flange_from_s1;
         let axis = |i: usize| world_from_s1.rotation.matrix().column(i).into_owned();
         let direction = axis(2);
         let tip_m = world_from_s1.translation.vector + direction * self.shaft_m;
-        Pose { chain, across: [axis(0), axis(1)], direction, tip_m, world_from_s1 }
+        InstrumentPose { chain, across: [axis(0), axis(1)], direction, tip_m, world_from_s1 }
     }
 }
 
@@ -115,8 +115,8 @@ fn isometry(place_m: &Vector3<f64>, angles_deg: &Vector3<f64>) -> IsometryMatrix
 
 /// Arm and instrument for one set of joint angles, all in `world`.
 #[derive(Clone, Copy, Debug)]
-pub struct Pose {
-    pub chain: Chain,
+pub struct InstrumentPose {
+    pub chain: JointChain,
     pub world_from_s1: IsometryMatrix3<f64>,
     /// Directions of the sensor's x and y, across the shaft.
     pub across: [Vector3<f64>; 2],
@@ -125,7 +125,7 @@ pub struct Pose {
     pub tip_m: Vector3<f64>,
 }
 
-impl Pose {
+impl InstrumentPose {
     /// Returns the orientation of the wrist sensor, in the form of [`crate::frames::WristSample`].
     pub fn orientation(&self) -> UnitQuaternion<f64> {
         UnitQuaternion::from_rotation_matrix(&self.world_from_s1.rotation)
@@ -139,8 +139,8 @@ impl Pose {
     /// Returns the vector from a point to the nearest point of the shaft's axis, m; its length is the distance between
     /// axis and point.
     pub fn axis_miss_m(&self, trocar_m: &Vector3<f64>) -> Vector3<f64> {
-        let way_m = self.tip_m - trocar_m;
-        way_m - self.direction * way_m.dot(&self.direction)
+        let travel_m = self.tip_m - trocar_m;
+        travel_m - self.direction * travel_m.dot(&self.direction)
     }
 }
 

@@ -10,17 +10,18 @@ use nalgebra::{Vector2, Vector3};
 
 use super::{
     gen3::{JOINTS, Joints, LIMIT_RAD, limit_margin_rad},
-    instrument::{Arm, Pose},
+    instrument::{Arm, InstrumentPose},
     limits::JointLimits,
-    pace, posture,
-    rcm::{Confined, Rcm, Shaft},
-    start::{StartError, check_joints},
-    velocity::{LENGTH_M, Parts, Task, Wish, turn_towards},
+    posture,
+    rcm::{Rcm, RcmCorrection, RcmShaft},
+    speed_scale,
+    start::{ArmStartError, check_joints},
+    velocity::{LENGTH_M, MotionRequest, StepParts, VelocityTask, turn_towards},
 };
 
 /// Fraction of the joints' speed limits that is used for motion; the manufacturer's planning limits (`ros_kortex`, hard
 /// joint limits) are 95 %. The remainder is reserved for keeping the shaft in the trocar while braking.
-const SPEED_SHARE: f64 = 0.95;
+const SPEED_FRACTION: f64 = 0.95;
 /// Maximum speed of the tip and of the shaft's rotation: the manufacturer's twist limits (`ros_kortex`,
 /// `twist_limits.yaml`), m/s and rad/s.
 pub(super) const TIP_SPEED_M_S: f64 = 0.5;
@@ -32,18 +33,18 @@ pub const KEEP_OFF_RAD: f64 = 0.02;
 const APPROACH_PER_S: f64 = 20.0;
 /// Fraction of the acceleration used for stopping at a target or a joint limit; the remainder is for the curvature of
 /// the path.
-const BRAKING_SHARE: f64 = 0.5;
+const BRAKING_FRACTION: f64 = 0.5;
 /// Averaging time of the target's own motion, s, so that tremor and noise of the handle are not followed.
 const TARGET_MOTION_S: f64 = 0.005;
 /// Speed of the posture's optimisation along the gradient, rad/s, and the fraction of the joints' speed that it may
 /// use. Chosen.
 const POSTURE_PER_S: f64 = 1.0;
-const POSTURE_SHARE: f64 = 0.2;
+const POSTURE_FRACTION: f64 = 0.2;
 /// If the shaft misses the trocar by more than this at the start, m, the instrument is not in the trocar.
 pub const START_MISS_M: f64 = 5e-3;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Measures {
+pub struct PoseQuality {
     /// Distance of the shaft's axis from the trocar, m.
     pub axis_miss_m: f64,
     /// Distance of the tip from the permitted target, m; NaN if the target was not finite.
@@ -58,10 +59,10 @@ pub struct Measures {
 }
 
 #[derive(Clone, Copy, Debug)]
-pub struct Step {
+pub struct InverseStep {
     pub joint_rad: Joints,
-    pub confined: Confined,
-    pub measures: Measures,
+    pub confined: RcmCorrection,
+    pub measures: PoseQuality,
 }
 
 /// The commanded state of the arm; plans the motion from one target to the next.
@@ -101,13 +102,13 @@ pub struct Inverse {
     /// Maximum change of each joint's step from one period to the next, rad.
     change_rad: Joints,
     joint_rad: Joints,
-    pose: Pose,
+    pose: InstrumentPose,
     dexterity: f64,
     moved_rad: Joints,
     /// Difference between command and measured angle, rad.
     ahead_rad: Joints,
     /// The last target, and its motion per period: rotation times [`LENGTH_M`] and sliding inwards, m.
-    last_goal: Option<Shaft>,
+    last_goal: Option<RcmShaft>,
     target_motion_m: Vector3<f64>,
 }
 
@@ -115,15 +116,15 @@ impl Inverse {
     /// Starts from these joint angles (rad), for a loop of this period (s).
     ///
     /// # Errors
-    /// [`StartError`] if the arm cannot start from there.
-    pub fn new(arm: Arm, rcm: Rcm, period_s: f64, joint_rad: &Joints) -> Result<Self, StartError> {
+    /// [`ArmStartError`] if the arm cannot start from there.
+    pub fn new(arm: Arm, rcm: Rcm, period_s: f64, joint_rad: &Joints) -> Result<Self, ArmStartError> {
         // Written so that NaN is refused as well.
         if !(period_s > 0.0 && period_s <= 0.02) {
-            return Err(StartError::Period { period_s });
+            return Err(ArmStartError::Period { period_s });
         }
         let insertion_max_m = rcm.settings().insertion_max_m;
         if arm.shaft_m() <= insertion_max_m {
-            return Err(StartError::ShortShaft { shaft_m: arm.shaft_m(), insertion_max_m });
+            return Err(ArmStartError::ShortShaft { shaft_m: arm.shaft_m(), insertion_max_m });
         }
         check_joints(joint_rad)?;
         let pose = arm.pose(joint_rad);
@@ -131,10 +132,10 @@ impl Inverse {
         let miss_m = pose.axis_miss_m(&trocar_m).norm();
         let insertion_m = pose.insertion_m(&trocar_m);
         if miss_m > START_MISS_M {
-            return Err(StartError::BesideTrocar { miss_m, most_m: START_MISS_M });
+            return Err(ArmStartError::BesideTrocar { miss_m, max_m: START_MISS_M });
         }
         if insertion_m <= 0.0 {
-            return Err(StartError::NotInserted { insertion_m });
+            return Err(ArmStartError::NotInserted { insertion_m });
         }
         let inverse = Self {
             arm,
@@ -173,7 +174,7 @@ impl Inverse {
         &self.joint_rad
     }
 
-    pub const fn pose(&self) -> &Pose {
+    pub const fn pose(&self) -> &InstrumentPose {
         &self.pose
     }
 
@@ -187,7 +188,7 @@ impl Inverse {
     }
 
     /// Advances by one period towards a tip position (m, `world`).
-    pub fn step(&mut self, target_m: &Vector3<f64>) -> Step {
+    pub fn step(&mut self, target_m: &Vector3<f64>) -> InverseStep {
         if !target_m.iter().all(|x| x.is_finite()) {
             return self.brake();
         }
@@ -198,25 +199,29 @@ impl Inverse {
     }
 
     /// Slows down along a path through the trocar, then holds.
-    pub fn brake(&mut self) -> Step {
+    pub fn brake(&mut self) -> InverseStep {
         self.last_goal = None;
         self.target_motion_m = Vector3::zeros();
         if self.moved_rad.iter().zip(&self.change_rad).all(|(moved, change)| moved.abs() <= *change) {
             self.moved_rad = Joints::zeros();
         } else {
-            let wish = Wish { at_trocar_m: self.to_trocar_m(), moved_rad: self.moved_rad, ..Wish::default() };
+            let wish = MotionRequest {
+                at_trocar_m: self.to_trocar_m(),
+                moved_rad: self.moved_rad,
+                ..MotionRequest::default()
+            };
             if let Some(parts) = self.solve(&wish) {
-                let correction = parts.correction * self.correction_share(&parts, &self.bounds());
+                let correction = parts.correction * self.correction_fraction(&parts, &self.bounds());
                 let coast = parts.coast + correction;
-                self.go(pace::towards(&self.moved_rad, &coast, &correction, &self.change_rad));
+                self.go(speed_scale::towards(&self.moved_rad, &coast, &correction, &self.change_rad));
             }
         }
-        self.answer(None, Confined::default(), 0.0)
+        self.answer(None, RcmCorrection::default(), 0.0)
     }
 
     /// Returns the components of the step; `None` if they cannot be computed, in which case the arm holds.
-    fn solve(&mut self, wish: &Wish) -> Option<Parts> {
-        let task = Task::new(&self.pose, &self.rcm.settings().trocar_m);
+    fn solve(&mut self, wish: &MotionRequest) -> Option<StepParts> {
+        let task = VelocityTask::new(&self.pose, &self.rcm.settings().trocar_m);
         let parts = task.solve(wish, &posture::freedom(&self.joint_rad));
         match &parts {
             Some(parts) => self.dexterity = parts.dexterity,
@@ -226,41 +231,41 @@ impl Inverse {
     }
 
     /// Returns the motion wanted in this period, before limits.
-    fn wish(&mut self, goal: &Shaft) -> Wish {
-        let way_m = self.way_m(goal);
-        let moved_m = self.last_goal.map_or_else(Vector3::zeros, |last| way_m - self.way_m(&last));
+    fn wish(&mut self, goal: &RcmShaft) -> MotionRequest {
+        let travel_m = self.travel_m(goal);
+        let moved_m = self.last_goal.map_or_else(Vector3::zeros, |last| travel_m - self.travel_m(&last));
         self.last_goal = Some(*goal);
         // The distance to the target is limited in speed; the motion of the target itself is followed without lag.
-        let moved_m = moved_m * self.twist_share(&moved_m, goal.insertion_m);
+        let moved_m = moved_m * self.twist_fraction(&moved_m, goal.insertion_m);
         self.target_motion_m += (moved_m - self.target_motion_m) * (self.period_s / TARGET_MOTION_S).min(1.0);
         let relief =
             posture::relief(&self.arm, &self.rcm, &self.pose, &self.joint_rad) * (POSTURE_PER_S * self.period_s);
         let step_rad = self.limits.speed_rad_s * self.period_s;
         let fastest = relief.iter().zip(&step_rad).map(|(r, v)| r.abs() / v).fold(0.0, f64::max);
-        Wish {
+        MotionRequest {
             at_trocar_m: self.to_trocar_m(),
-            motion_m: way_m - self.target_motion_m,
+            motion_m: travel_m - self.target_motion_m,
             carried_m: self.target_motion_m,
             moved_rad: self.moved_rad,
-            posture_rad: relief * (POSTURE_SHARE / fastest.max(POSTURE_SHARE)),
+            posture_rad: relief * (POSTURE_FRACTION / fastest.max(POSTURE_FRACTION)),
         }
     }
 
-    /// Returns the displacement that brings the axis back to the trocar, along `Pose::across`, m.
+    /// Returns the displacement that brings the axis back to the trocar, along `InstrumentPose::across`, m.
     fn to_trocar_m(&self) -> Vector2<f64> {
         let miss_m = self.pose.axis_miss_m(&self.rcm.settings().trocar_m);
         -Vector2::new(miss_m.dot(&self.pose.across[0]), miss_m.dot(&self.pose.across[1]))
     }
 
-    /// Returns the displacement to a shaft: rotation along `Pose::across` times [`LENGTH_M`], and sliding inwards, m.
-    fn way_m(&self, goal: &Shaft) -> Vector3<f64> {
+    /// Returns the displacement to a shaft: rotation along `InstrumentPose::across` times [`LENGTH_M`], and sliding inwards, m.
+    fn travel_m(&self, goal: &RcmShaft) -> Vector3<f64> {
         let turn = turn_towards(&self.pose, &goal.direction) * LENGTH_M;
         Vector3::new(turn.x, turn.y, goal.insertion_m - self.pose.insertion_m(&self.rcm.settings().trocar_m))
     }
 
-    /// Returns the fraction of a motion (as in [`Self::way_m`]) that tip and shaft may make in one period while
+    /// Returns the fraction of a motion (as in [`Self::travel_m`]) that tip and shaft may make in one period while
     /// rotating and sliding in proportion.
-    fn twist_share(&self, motion_m: &Vector3<f64>, insertion_m: f64) -> f64 {
+    fn twist_fraction(&self, motion_m: &Vector3<f64>, insertion_m: f64) -> f64 {
         let turn_rad = motion_m.xy().norm() / LENGTH_M;
         let insertion_m = insertion_m.max(self.pose.insertion_m(&self.rcm.settings().trocar_m));
         let tip = (TIP_SPEED_M_S * self.period_s) / libm::hypot(turn_rad * insertion_m, motion_m.z);
@@ -269,32 +274,35 @@ impl Inverse {
     }
 
     /// Returns the fraction of the correction that may be made in this period; its acceleration is limited too.
-    fn correction_share(&self, parts: &Parts, [least, most]: &[Joints; 2]) -> f64 {
-        let braking = BRAKING_SHARE * pace::braking(&parts.correction, &self.change_rad);
-        let stopping = pace::stopping_step(1.0, braking).min((parts.returning + braking).max(0.0));
-        stopping * pace::share_within(&(parts.correction * stopping), least, most)
+    fn correction_fraction(&self, parts: &StepParts, [min, max]: &[Joints; 2]) -> f64 {
+        let braking = BRAKING_FRACTION * speed_scale::braking(&parts.correction, &self.change_rad);
+        let stopping = speed_scale::stopping_step(1.0, braking).min((parts.returning + braking).max(0.0));
+        stopping * speed_scale::fraction_within(&(parts.correction * stopping), min, max)
     }
 
     /// Moves the joints by as much of the components as the limits allow, the correction at the trocar first; returns
     /// the fraction of the motion.
-    fn take(&mut self, parts: &Parts, wish: &Wish, insertion_m: f64) -> f64 {
-        let reserve_rad = self.change_rad * BRAKING_SHARE;
-        let approach = pace::stopping_step(1.0, pace::braking(&parts.motion, &reserve_rad));
-        let twist = self.twist_share(&(wish.carried_m + wish.motion_m * approach), insertion_m);
+    fn take(&mut self, parts: &StepParts, wish: &MotionRequest, insertion_m: f64) -> f64 {
+        let reserve_rad = self.change_rad * BRAKING_FRACTION;
+        let approach = speed_scale::stopping_step(1.0, speed_scale::braking(&parts.motion, &reserve_rad));
+        let twist = self.twist_fraction(&(wish.carried_m + wish.motion_m * approach), insertion_m);
         let motion = (parts.carried + parts.motion * approach) * twist;
-        let [least, most] = self.bounds();
-        let correction = parts.correction * self.correction_share(parts, &[least, most]);
-        let moving = pace::share_within(&motion, &(least - correction), &(most - correction));
+        let [min, max] = self.bounds();
+        let correction = parts.correction * self.correction_fraction(parts, &[min, max]);
+        let moving = speed_scale::fraction_within(&motion, &(min - correction), &(max - correction));
         let mut pushing = motion * moving;
-        let left = [least - correction - pushing, most - correction - pushing];
-        pushing += parts.posture * pace::share_within(&parts.posture, &left[0], &left[1]);
+        let left = [min - correction - pushing, max - correction - pushing];
+        pushing += parts.posture * speed_scale::fraction_within(&parts.posture, &left[0], &left[1]);
         let room_rad = self.room_rad();
-        let ends = pace::stopping_step(pace::periods(&pushing, &room_rad), pace::braking(&pushing, &reserve_rad));
+        let ends = speed_scale::stopping_step(
+            speed_scale::periods(&pushing, &room_rad),
+            speed_scale::braking(&pushing, &reserve_rad),
+        );
         let wanted = correction + pushing * ends.min(1.0);
         let coast = parts.coast + correction;
-        let mut step_rad = pace::towards(&self.moved_rad, &coast, &wanted, &self.change_rad);
-        if !pace::can_stop(&step_rad, &room_rad, &self.change_rad) {
-            step_rad = pace::towards(&self.moved_rad, &coast, &correction, &self.change_rad);
+        let mut step_rad = speed_scale::towards(&self.moved_rad, &coast, &wanted, &self.change_rad);
+        if !speed_scale::can_stop(&step_rad, &room_rad, &self.change_rad) {
+            step_rad = speed_scale::towards(&self.moved_rad, &coast, &correction, &self.change_rad);
         }
         self.go(step_rad);
         moving * ends.min(1.0)
@@ -315,31 +323,31 @@ impl Inverse {
     /// Returns the smallest and largest change of each joint in this period, rad: limited by its speed, by the distance
     /// to the end of its range, and, if the arm is blocked, by its distance from the measured angle.
     fn bounds(&self) -> [Joints; 2] {
-        let mut least = Joints::zeros();
-        let mut most = Joints::zeros();
+        let mut min = Joints::zeros();
+        let mut max = Joints::zeros();
         let approach = (APPROACH_PER_S * self.period_s).min(1.0);
         let [below_rad, above_rad] = self.room_rad();
         for joint in 0..JOINTS {
-            let fastest = SPEED_SHARE * self.limits.speed_rad_s[joint] * self.period_s;
+            let fastest = SPEED_FRACTION * self.limits.speed_rad_s[joint] * self.period_s;
             let ahead_rad = self.ahead_rad[joint];
             if ahead_rad < self.limits.lead_rad {
-                most[joint] = (approach * above_rad[joint]).clamp(0.0, fastest);
+                max[joint] = (approach * above_rad[joint]).clamp(0.0, fastest);
             }
             if ahead_rad > -self.limits.lead_rad {
-                least[joint] = -(approach * below_rad[joint]).clamp(0.0, fastest);
+                min[joint] = -(approach * below_rad[joint]).clamp(0.0, fastest);
             }
         }
-        [least, most]
+        [min, max]
     }
 
-    fn answer(&self, goal: Option<&Shaft>, confined: Confined, granted: f64) -> Step {
-        let measures = Measures {
+    fn answer(&self, goal: Option<&RcmShaft>, confined: RcmCorrection, granted: f64) -> InverseStep {
+        let measures = PoseQuality {
             axis_miss_m: self.pose.axis_miss_m(&self.rcm.settings().trocar_m).norm(),
             tip_miss_m: goal.map_or(f64::NAN, |goal| (self.rcm.tip_m(goal) - self.pose.tip_m).norm()),
             limit_margin_rad: limit_margin_rad(&self.joint_rad),
             dexterity: self.dexterity,
             granted,
         };
-        Step { joint_rad: self.joint_rad, confined, measures }
+        InverseStep { joint_rad: self.joint_rad, confined, measures }
     }
 }

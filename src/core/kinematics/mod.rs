@@ -6,7 +6,7 @@
 //! reason. A tick always has a result: the nearest permitted position, or standing still. Nothing in a tick allocates,
 //! waits or loops without bound.
 //!
-//! `HandEye::step` → target of the tip → `Inverse::step` → joint angles. To start: find a pose with [`find`], move
+//! `HandEyeCoupling::step` → target of the tip → `Inverse::step` → joint angles. To start: find a pose with [`find`], move
 //! there, then call `Inverse::new`.
 
 mod gen3;
@@ -14,22 +14,24 @@ mod hand_eye;
 mod instrument;
 mod inverse;
 mod limits;
-mod pace;
 mod posture;
 mod rcm;
-mod ready;
+mod speed_scale;
 mod start;
+mod start_pose;
 #[cfg(test)]
 mod tests;
 mod velocity;
 mod wrist;
 
-pub use gen3::{ACCELERATION_RAD_S2, Chain, JOINTS, Joints, LIMIT_RAD, SPEED_RAD_S, limit_margin_rad};
-pub use hand_eye::{Hand, HandEye, Mapping, MappingError, Target, view_from_omega, world_from_tracked_view};
-pub use instrument::{Arm, ArmError, ArmSettings, Pose};
-pub use inverse::{Inverse, KEEP_OFF_RAD, Measures, START_MISS_M, Step};
+pub use gen3::{ACCELERATION_RAD_S2, JOINTS, JointChain, Joints, LIMIT_RAD, SPEED_RAD_S, limit_margin_rad};
+pub use hand_eye::{
+    HandEyeCoupling, HandPose, MotionMapping, MotionMappingError, TipTarget, view_from_omega, world_from_tracked_view,
+};
+pub use instrument::{Arm, ArmError, ArmSettings, InstrumentPose};
+pub use inverse::{Inverse, InverseStep, KEEP_OFF_RAD, PoseQuality, START_MISS_M};
 pub use limits::JointLimits;
-pub use rcm::{Confined, Rcm, RcmError, RcmSettings, Shaft};
-pub use ready::{Ready, ReadyError, find};
-pub use start::StartError;
-pub use wrist::{Jaws, PITCH_MAX_RAD};
+pub use rcm::{Rcm, RcmCorrection, RcmError, RcmSettings, RcmShaft};
+pub use start::ArmStartError;
+pub use start_pose::{Ready, ReadyError, find};
+pub use wrist::{PITCH_MAX_RAD, WristJaws};

@@ -6,9 +6,9 @@
 
 use super::{
     gen3::{JOINTS, Joints, LIMIT_RAD},
-    instrument::{Arm, Pose},
+    instrument::{Arm, InstrumentPose},
     rcm::Rcm,
-    velocity::Task,
+    velocity::VelocityTask,
 };
 
 /// Distance from a limit at which the cost of a joint begins, rad. Chosen.
@@ -29,10 +29,10 @@ const HIGH_JOINTS: [usize; 2] = [3, 5];
 
 /// Returns the cost of a posture: terms for joint limits and clearance, which are zero far from them, and the logarithm
 /// of the manipulability.
-fn null_space_cost(pose: &Pose, joint_rad: &Joints, rcm: &Rcm) -> f64 {
+fn null_space_cost(pose: &InstrumentPose, joint_rad: &Joints, rcm: &Rcm) -> f64 {
     let limits: f64 = joint_rad.iter().zip(LIMIT_RAD).map(|(q, limit)| lack(limit - q.abs(), SOFT_RAD)).sum();
     let low: f64 = heights_m(pose, rcm).iter().map(|height_m| lack(*height_m, CLEARANCE_M)).sum();
-    let squared = Task::new(pose, &rcm.settings().trocar_m).manipulability_squared().max(0.0);
+    let squared = VelocityTask::new(pose, &rcm.settings().trocar_m).manipulability_squared().max(0.0);
     limits + CLEARANCE_WEIGHT * low - 0.5 * MANIPULABILITY_WEIGHT * libm::log(squared + LOST)
 }
 
@@ -42,17 +42,17 @@ fn lack(have: f64, enough: f64) -> f64 {
     0.5 * (deficit * deficit)
 }
 
-fn heights_m(pose: &Pose, rcm: &Rcm) -> [f64; HIGH_JOINTS.len()] {
+fn heights_m(pose: &InstrumentPose, rcm: &Rcm) -> [f64; HIGH_JOINTS.len()] {
     HIGH_JOINTS.map(|joint| (rcm.settings().trocar_m - pose.chain.origin_m[joint]).dot(rcm.inward()))
 }
 
 /// Returns the height of elbow and wrist above the trocar (against the direction into the body), m.
-pub(super) fn clearance_m(pose: &Pose, rcm: &Rcm) -> f64 {
+pub(super) fn clearance_m(pose: &InstrumentPose, rcm: &Rcm) -> f64 {
     heights_m(pose, rcm).into_iter().fold(f64::INFINITY, f64::min)
 }
 
 /// Returns the negative gradient of the cost, per rad.
-pub(super) fn relief(arm: &Arm, rcm: &Rcm, pose: &Pose, joint_rad: &Joints) -> Joints {
+pub(super) fn relief(arm: &Arm, rcm: &Rcm, pose: &InstrumentPose, joint_rad: &Joints) -> Joints {
     let here = null_space_cost(pose, joint_rad, rcm);
     let mut relief = Joints::zeros();
     for joint in 0..JOINTS {
@@ -67,8 +67,8 @@ pub(super) fn relief(arm: &Arm, rcm: &Rcm, pose: &Pose, joint_rad: &Joints) -> J
 pub(super) fn freedom(joint_rad: &Joints) -> Joints {
     let mut freedom = Joints::repeat(1.0);
     for joint in 0..JOINTS {
-        let share = ((LIMIT_RAD[joint] - joint_rad[joint].abs()) / SOFT_RAD).clamp(0.0, 1.0);
-        freedom[joint] = (share * share * (3.0 - 2.0 * share)).max(1e-4);
+        let fraction = ((LIMIT_RAD[joint] - joint_rad[joint].abs()) / SOFT_RAD).clamp(0.0, 1.0);
+        freedom[joint] = (fraction * fraction * (3.0 - 2.0 * fraction)).max(1e-4);
     }
     freedom
 }

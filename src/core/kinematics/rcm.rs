@@ -31,10 +31,10 @@ pub enum RcmError {
     NotFinite { what: &'static str },
     #[error("the trocar's {setting} is {value}: {wanted}")]
     Setting { setting: &'static str, value: f64, wanted: &'static str },
-    #[error("the tip is {insertion_m:.4} m beyond the trocar (minimum {least_m} m): push the instrument in")]
-    TooNear { insertion_m: f64, least_m: f64 },
-    #[error("the tip is {insertion_m:.4} m beyond the trocar (limit {most_m} m): pull the instrument back")]
-    TooDeep { insertion_m: f64, most_m: f64 },
+    #[error("the tip is {insertion_m:.4} m beyond the trocar (minimum {min_m} m): push the instrument in")]
+    TooNear { insertion_m: f64, min_m: f64 },
+    #[error("the tip is {insertion_m:.4} m beyond the trocar (limit {max_m} m): pull the instrument back")]
+    TooDeep { insertion_m: f64, max_m: f64 },
     #[error("the shaft is tilted by {tilt_deg:.1} degrees (limit {cone_deg} degrees): straighten it or widen the cone")]
     OutsideCone {
         /// Angle from the axis of the cone, degrees.
@@ -45,7 +45,7 @@ pub enum RcmError {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Shaft {
+pub struct RcmShaft {
     /// Direction from the trocar to the tip, unit length.
     pub direction: Vector3<f64>,
     /// Distance of the tip beyond the trocar, m.
@@ -53,13 +53,13 @@ pub struct Shaft {
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Confined {
+pub struct RcmCorrection {
     pub too_near: bool,
     pub too_deep: bool,
     pub outside_cone: bool,
 }
 
-impl Confined {
+impl RcmCorrection {
     pub const fn is_untouched(self) -> bool {
         !self.too_near && !self.too_deep && !self.outside_cone
     }
@@ -136,7 +136,7 @@ impl Rcm {
     }
 
     /// Returns the position of the tip of a shaft, m.
-    pub fn tip_m(&self, shaft: &Shaft) -> Vector3<f64> {
+    pub fn tip_m(&self, shaft: &RcmShaft) -> Vector3<f64> {
         self.settings.trocar_m + shaft.direction * shaft.insertion_m
     }
 
@@ -144,51 +144,51 @@ impl Rcm {
     ///
     /// # Errors
     /// [`RcmError`] if the tip is not finite, too close, too deep, or outside the cone.
-    pub fn resolve(&self, tip_m: &Vector3<f64>) -> Result<Shaft, RcmError> {
+    pub fn resolve(&self, tip_m: &Vector3<f64>) -> Result<RcmShaft, RcmError> {
         if !tip_m.iter().all(|x| x.is_finite()) {
             return Err(RcmError::NotFinite { what: "the tip's position" });
         }
         let RcmSettings { trocar_m, cone_deg, insertion_min_m, insertion_max_m, .. } = self.settings;
-        let way_m = tip_m - trocar_m;
-        let insertion_m = way_m.norm();
+        let travel_m = tip_m - trocar_m;
+        let insertion_m = travel_m.norm();
         if insertion_m < insertion_min_m {
-            return Err(RcmError::TooNear { insertion_m, least_m: insertion_min_m });
+            return Err(RcmError::TooNear { insertion_m, min_m: insertion_min_m });
         }
         if insertion_m > insertion_max_m {
-            return Err(RcmError::TooDeep { insertion_m, most_m: insertion_max_m });
+            return Err(RcmError::TooDeep { insertion_m, max_m: insertion_max_m });
         }
-        let tilt_rad = angle_rad(&self.inward, &way_m);
+        let tilt_rad = angle_rad(&self.inward, &travel_m);
         if tilt_rad > self.cone_rad {
             return Err(RcmError::OutsideCone { tilt_deg: tilt_rad.to_degrees(), cone_deg });
         }
-        Ok(Shaft { direction: way_m / insertion_m, insertion_m })
+        Ok(RcmShaft { direction: travel_m / insertion_m, insertion_m })
     }
 
     /// Returns the permitted shaft nearest to this tip (m, finite), and what had to be changed.
-    pub fn confine(&self, tip_m: &Vector3<f64>) -> (Shaft, Confined) {
+    pub fn confine(&self, tip_m: &Vector3<f64>) -> (RcmShaft, RcmCorrection) {
         let RcmSettings { trocar_m, insertion_min_m, insertion_max_m, .. } = self.settings;
-        let way_m = tip_m - trocar_m;
-        let tilt_rad = angle_rad(&self.inward, &way_m);
-        let length_m = way_m.norm();
-        let mut confined = Confined::default();
+        let travel_m = tip_m - trocar_m;
+        let tilt_rad = angle_rad(&self.inward, &travel_m);
+        let length_m = travel_m.norm();
+        let mut confined = RcmCorrection::default();
         let (direction, wanted_m) = if length_m < POINT_M {
             (self.inward, 0.0)
         } else if tilt_rad > self.cone_rad {
             confined.outside_cone = true;
             // Project onto the cone, so that the tip slides along it; behind its apex the projection is the apex.
             let excess_rad = tilt_rad - self.cone_rad;
-            (self.on_the_cone(&way_m), length_m * libm::cos(excess_rad).max(0.0))
+            (self.on_the_cone(&travel_m), length_m * libm::cos(excess_rad).max(0.0))
         } else {
-            (way_m / length_m, length_m)
+            (travel_m / length_m, length_m)
         };
         confined.too_near = wanted_m < insertion_min_m;
         confined.too_deep = wanted_m > insertion_max_m;
-        (Shaft { direction, insertion_m: wanted_m.clamp(insertion_min_m, insertion_max_m) }, confined)
+        (RcmShaft { direction, insertion_m: wanted_m.clamp(insertion_min_m, insertion_max_m) }, confined)
     }
 
-    /// Returns the direction on the cone's surface on the same side as `way_m`, unit length.
-    fn on_the_cone(&self, way_m: &Vector3<f64>) -> Vector3<f64> {
-        let sideways = way_m - self.inward * way_m.dot(&self.inward);
+    /// Returns the direction on the cone's surface on the same side as `travel_m`, unit length.
+    fn on_the_cone(&self, travel_m: &Vector3<f64>) -> Vector3<f64> {
+        let sideways = travel_m - self.inward * travel_m.dot(&self.inward);
         let side = if sideways.norm() > POINT_M {
             sideways.normalize()
         } else {
@@ -258,7 +258,7 @@ mod tests {
             let rcm = Rcm::new(&settings()).unwrap();
             let side = rcm.inward.cross(&Vector3::y()).normalize();
             let across = side * round.cos() + rcm.inward.cross(&side) * round.sin();
-            let shaft = Shaft { direction: rcm.inward * tilt.cos() + across * tilt.sin(), insertion_m };
+            let shaft = RcmShaft { direction: rcm.inward * tilt.cos() + across * tilt.sin(), insertion_m };
             let tip_m = rcm.tip_m(&shaft);
             let back = rcm.resolve(&tip_m).unwrap();
             prop_assert!((back.direction - shaft.direction).norm() < 1e-12);

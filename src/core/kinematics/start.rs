@@ -4,7 +4,7 @@ use super::gen3::{Joints, LIMIT_RAD};
 
 /// Reason why the inverse kinematics cannot start from the arm's current joint angles.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
-pub enum StartError {
+pub enum ArmStartError {
     #[error("the period of the inverse kinematics, {period_s} s, is out of range: use more than 0 and at most 0.02 s")]
     Period { period_s: f64 },
     #[error("the shaft of {shaft_m} m is too short for an insertion of {insertion_max_m} m: correct one of them")]
@@ -23,11 +23,11 @@ pub enum StartError {
         angle_deg: f64,
         limit_deg: f64,
     },
-    #[error("the shaft's axis misses the trocar by {miss_m:.4} m (limit {most_m} m): move the arm to the ready pose")]
+    #[error("the shaft's axis misses the trocar by {miss_m:.4} m (limit {max_m} m): move the arm to the ready pose")]
     BesideTrocar {
         /// Distance of the axis from the trocar, m.
         miss_m: f64,
-        most_m: f64,
+        max_m: f64,
     },
     #[error("the instrument is inserted {insertion_m:.4} m beyond the trocar: insert it into the body before starting")]
     NotInserted {
@@ -37,13 +37,13 @@ pub enum StartError {
 }
 
 /// Checks that every angle is finite and within its range.
-pub(super) fn check_joints(joint_rad: &Joints) -> Result<(), StartError> {
+pub(super) fn check_joints(joint_rad: &Joints) -> Result<(), ArmStartError> {
     for (i, (angle, limit)) in joint_rad.iter().zip(LIMIT_RAD).enumerate() {
         if !angle.is_finite() {
-            return Err(StartError::NotFinite { joint: i + 1 });
+            return Err(ArmStartError::NotFinite { joint: i + 1 });
         }
         if angle.abs() >= limit {
-            return Err(StartError::AtLimit {
+            return Err(ArmStartError::AtLimit {
                 joint: i + 1,
                 angle_deg: angle.to_degrees(),
                 limit_deg: limit.to_degrees(),

@@ -14,7 +14,7 @@ use nalgebra::{Matrix2, SMatrix, SymmetricEigen, Vector2, Vector3};
 
 use super::{
     gen3::{JOINTS, Joints},
-    instrument::Pose,
+    instrument::InstrumentPose,
 };
 
 type Rows2 = SMatrix<f64, 2, JOINTS>;
@@ -30,14 +30,14 @@ const DAMPING: f64 = 0.02;
 const TINY: f64 = 1e-12;
 
 #[derive(Clone, Copy)]
-pub(super) struct Task {
-    /// Velocity of the shaft at the trocar along `Pose::across`, m/s per rad/s.
+pub(super) struct VelocityTask {
+    /// Velocity of the shaft at the trocar along `InstrumentPose::across`, m/s per rad/s.
     at_trocar: Rows2,
-    /// Rotation of the shaft towards `Pose::across`, times [`LENGTH_M`], and sliding inwards, m/s per rad/s.
+    /// Rotation of the shaft towards `InstrumentPose::across`, times [`LENGTH_M`], and sliding inwards, m/s per rad/s.
     motion: Rows3,
 }
 
-pub(super) struct Parts {
+pub(super) struct StepParts {
     /// Brings the axis back to the trocar.
     pub correction: Joints,
     /// The complete motion to the target.
@@ -55,10 +55,10 @@ pub(super) struct Parts {
 }
 
 #[derive(Default)]
-pub(super) struct Wish {
-    /// Displacement of the axis at the trocar along `Pose::across`, m.
+pub(super) struct MotionRequest {
+    /// Displacement of the axis at the trocar along `InstrumentPose::across`, m.
     pub at_trocar_m: Vector2<f64>,
-    /// Rotation along `Pose::across` times [`LENGTH_M`], and sliding inwards, m.
+    /// Rotation along `InstrumentPose::across` times [`LENGTH_M`], and sliding inwards, m.
     pub motion_m: Vector3<f64>,
     /// The same for the target's own motion in this period.
     pub carried_m: Vector3<f64>,
@@ -67,8 +67,8 @@ pub(super) struct Wish {
     pub posture_rad: Joints,
 }
 
-impl Task {
-    pub(super) fn new(pose: &Pose, trocar_m: &Vector3<f64>) -> Self {
+impl VelocityTask {
+    pub(super) fn new(pose: &InstrumentPose, trocar_m: &Vector3<f64>) -> Self {
         let mut at_trocar = Rows2::zeros();
         let mut motion = Rows3::zeros();
         let on_axis_m = trocar_m + pose.axis_miss_m(trocar_m);
@@ -95,7 +95,7 @@ impl Task {
 
     /// Solves for the joint step; `weight` (above 0, at most 1) sets how freely each joint may be used. Returns `None`
     /// if the result cannot be computed.
-    pub(super) fn solve(&self, wish: &Wish, weight: &Joints) -> Option<Parts> {
+    pub(super) fn solve(&self, wish: &MotionRequest, weight: &Joints) -> Option<StepParts> {
         let root = weight.map(f64::sqrt);
         let mut trocar = self.at_trocar;
         let mut motion = self.motion;
@@ -118,7 +118,7 @@ impl Task {
         let mut posture = wish.posture_rad.component_div(&root);
         posture -= trocar.transpose() * (held * (trocar * posture));
         posture -= through(&|square| 1.0 / square.max(TINY), free * posture);
-        let parts = Parts {
+        let parts = StepParts {
             correction: correction.component_mul(&root),
             motion: moved.component_mul(&root),
             carried: carried.component_mul(&root),
@@ -136,8 +136,8 @@ impl Task {
 /// Returns `1 / (s^2 + l^2)` with the damping `l` growing from zero as the singular value `s` falls below
 /// [`DAMPED_BELOW`].
 fn damped_inverse(square: f64) -> f64 {
-    let share = (square.max(0.0) / (DAMPED_BELOW * DAMPED_BELOW)).min(1.0);
-    1.0 / (square.max(0.0) + DAMPING * DAMPING * (1.0 - share) + TINY)
+    let fraction = (square.max(0.0) / (DAMPED_BELOW * DAMPED_BELOW)).min(1.0);
+    1.0 / (square.max(0.0) + DAMPING * DAMPING * (1.0 - fraction) + TINY)
 }
 
 /// Returns the inverse of a symmetric positive 2 x 2 matrix, finite even if it is singular.
@@ -149,7 +149,7 @@ fn inverse2(matrix: &Matrix2<f64>) -> Matrix2<f64> {
 
 /// Returns the joint step (rad) towards a tip position and shaft direction by damped least squares, from any start; for
 /// the search of a pose, not for the loop.
-pub(super) fn towards(pose: &Pose, tip_m: &Vector3<f64>, direction: &Vector3<f64>) -> (Joints, f64) {
+pub(super) fn towards(pose: &InstrumentPose, tip_m: &Vector3<f64>, direction: &Vector3<f64>) -> (Joints, f64) {
     let mut rows = SMatrix::<f64, 5, JOINTS>::zeros();
     let mut miss_m = SMatrix::<f64, 5, 1>::zeros();
     let turn = turn_towards(pose, direction) * LENGTH_M;
@@ -169,8 +169,8 @@ pub(super) fn towards(pose: &Pose, tip_m: &Vector3<f64>, direction: &Vector3<f64
     (step, miss_m.norm())
 }
 
-/// Returns the rotation from the shaft's direction to another one, along `Pose::across`, rad.
-pub(super) fn turn_towards(pose: &Pose, direction: &Vector3<f64>) -> Vector2<f64> {
+/// Returns the rotation from the shaft's direction to another one, along `InstrumentPose::across`, rad.
+pub(super) fn turn_towards(pose: &InstrumentPose, direction: &Vector3<f64>) -> Vector2<f64> {
     let [x, y] = pose.across.map(|across| across.dot(direction));
     let sideways = libm::hypot(x, y);
     let angle_rad = libm::atan2(sideways, pose.direction.dot(direction));

@@ -7,7 +7,7 @@ pub const PITCH_MAX_RAD: f64 = 1.3;
 
 /// Angles of the instrument's wrist, rad.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Jaws {
+pub struct WristJaws {
     pub roll_rad: f64,
     /// Rotation across the shaft.
     pub pitch_rad: f64,
@@ -15,7 +15,7 @@ pub struct Jaws {
     pub yaw_rad: f64,
 }
 
-impl Jaws {
+impl WristJaws {
     pub fn s1_from_jaws(&self) -> UnitQuaternion<f64> {
         UnitQuaternion::from_axis_angle(&Vector3::z_axis(), self.roll_rad)
             * UnitQuaternion::from_axis_angle(&Vector3::x_axis(), self.pitch_rad)
@@ -51,8 +51,8 @@ mod tests {
     proptest! {
         #[test]
         fn angles_and_orientation_are_each_others_inverse(roll_rad in -9.0..9.0f64, pitch_rad in -1.29..1.29f64, yaw_rad in -3.0..3.0f64) {
-            let jaws = Jaws { roll_rad, pitch_rad, yaw_rad };
-            let back = Jaws::of(&jaws.s1_from_jaws(), &jaws);
+            let jaws = WristJaws { roll_rad, pitch_rad, yaw_rad };
+            let back = WristJaws::of(&jaws.s1_from_jaws(), &jaws);
             prop_assert!((back.roll_rad - roll_rad).abs() < 1e-9);
             prop_assert!((back.pitch_rad - pitch_rad).abs() < 1e-9);
             prop_assert!((back.yaw_rad - yaw_rad).abs() < 1e-9);

@@ -1,7 +1,7 @@
 //! The interlock: one explicit state machine per arm pair. Only this machine permits force and motion.
 //!
-//! In: the operator's requests ([`Wish`]), observations of the machine ([`Seen`]), faults. Out: the [`State`], its
-//! permissions ([`Permits`]) and every [`Change`] with its reason. Time (s) is an argument. The types encode the legal
+//! In: the operator's requests ([`InterlockRequest`]), observations of the machine ([`InterlockInput`]), faults. Out: the [`InterlockState`], its
+//! permissions ([`Permits`]) and every [`StateChange`] with its reason. Time (s) is an argument. The types encode the legal
 //! transitions: each state is a value with methods for its legal successors only, so that an illegal transition does
 //! not compile.
 //!
@@ -19,7 +19,7 @@ pub const READY_WITHIN_S: f64 = 2.0;
 
 /// State of an arm pair; `F` is the cause of a fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum State<F> {
+pub enum InterlockState<F> {
     /// A device of the force path is missing.
     Disconnected,
     /// All devices deliver data. Drives off.
@@ -42,7 +42,7 @@ pub struct Permits {
     pub coupled: bool,
 }
 
-impl<F: Copy> State<F> {
+impl<F: Copy> InterlockState<F> {
     pub const fn permits(self) -> Permits {
         Permits {
             drives: matches!(self, Self::Ready | Self::Engaged | Self::Clutched),
@@ -71,7 +71,7 @@ impl<F: Copy> State<F> {
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[expect(clippy::struct_excessive_bools, reason = "independent facts, each with its own reader")]
-pub struct Seen {
+pub struct InterlockInput {
     pub connected: bool,
     pub powered: bool,
     /// Hand and tip agree, and the force at the tip is known.
@@ -82,7 +82,7 @@ pub struct Seen {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Wish {
+pub enum InterlockRequest {
     Engage,
     /// End motion and force, without a latch.
     Rest,
@@ -93,7 +93,7 @@ pub enum Wish {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Why {
+pub enum TransitionCause {
     Asked,
     Connected,
     Disconnected,
@@ -107,10 +107,10 @@ pub enum Why {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Change<F> {
-    pub from: State<F>,
-    pub to: State<F>,
-    pub why: Why,
+pub struct StateChange<F> {
+    pub from: InterlockState<F>,
+    pub to: InterlockState<F>,
+    pub why: TransitionCause,
 }
 
 /// States as values with methods for their legal successors.
@@ -137,7 +137,7 @@ mod legal {
 }
 
 #[derive(Clone, Copy, Debug)]
-enum At<F> {
+enum InterlockPhase<F> {
     Disconnected(legal::Disconnected),
     Idle(legal::Idle),
     Ready(legal::Ready),
@@ -150,112 +150,122 @@ enum At<F> {
 /// The state machine of one arm pair.
 ///
 /// ```
-/// use nima_core::safety::{Interlock, Seen, State, Wish};
+/// use nima_core::safety::{Interlock, InterlockInput, InterlockState, InterlockRequest};
 ///
 /// let mut machine = Interlock::<&str>::default();
-/// let healthy = Seen { connected: true, powered: true, agreed: true, present: true, clutch: false };
-/// machine.ask(Wish::Engage, 0.0)?;
+/// let healthy = InterlockInput { connected: true, powered: true, agreed: true, present: true, clutch: false };
+/// machine.ask(InterlockRequest::Engage, 0.0)?;
 /// machine.step(&healthy, 0.001);
-/// assert_eq!(machine.state(), State::Engaged);
+/// assert_eq!(machine.state(), InterlockState::Engaged);
 ///
 /// machine.fail("the sensor is silent");
 /// machine.step(&healthy, 0.002);
-/// assert_eq!(machine.state(), State::Faulted("the sensor is silent"), "nothing resumes by itself");
-/// assert!(machine.ask(Wish::Engage, 0.003).is_err());
-/// machine.ask(Wish::Release, 0.004)?;
-/// assert_eq!(machine.state(), State::Idle);
-/// # Ok::<(), nima_core::safety::Refused>(())
+/// assert_eq!(machine.state(), InterlockState::Faulted("the sensor is silent"), "nothing resumes by itself");
+/// assert!(machine.ask(InterlockRequest::Engage, 0.003).is_err());
+/// machine.ask(InterlockRequest::Release, 0.004)?;
+/// assert_eq!(machine.state(), InterlockState::Idle);
+/// # Ok::<(), nima_core::safety::InvalidRequest>(())
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Interlock<F> {
-    at: At<F>,
+    at: InterlockPhase<F>,
     ready_until_s: f64,
 }
 
 impl<F: Copy> Default for Interlock<F> {
     fn default() -> Self {
-        Self { at: At::Idle(legal::BEGIN), ready_until_s: 0.0 }
+        Self { at: InterlockPhase::Idle(legal::BEGIN), ready_until_s: 0.0 }
     }
 }
 
 impl<F: Copy> Interlock<F> {
-    pub const fn state(&self) -> State<F> {
+    pub const fn state(&self) -> InterlockState<F> {
         match self.at {
-            At::Disconnected(_) => State::Disconnected,
-            At::Idle(_) => State::Idle,
-            At::Ready(_) => State::Ready,
-            At::Engaged(_) => State::Engaged,
-            At::Clutched(_) => State::Clutched,
-            At::Stopped(_) => State::Stopped,
-            At::Faulted(_, fault) => State::Faulted(fault),
+            InterlockPhase::Disconnected(_) => InterlockState::Disconnected,
+            InterlockPhase::Idle(_) => InterlockState::Idle,
+            InterlockPhase::Ready(_) => InterlockState::Ready,
+            InterlockPhase::Engaged(_) => InterlockState::Engaged,
+            InterlockPhase::Clutched(_) => InterlockState::Clutched,
+            InterlockPhase::Stopped(_) => InterlockState::Stopped,
+            InterlockPhase::Faulted(_, fault) => InterlockState::Faulted(fault),
         }
     }
 
-    const fn go(&mut self, at: At<F>, why: Why) -> Change<F> {
+    const fn go(&mut self, at: InterlockPhase<F>, why: TransitionCause) -> StateChange<F> {
         let from = self.state();
         self.at = at;
-        Change { from, to: self.state(), why }
+        StateChange { from, to: self.state(), why }
     }
 
     /// Carries out a request, if this state allows it.
     ///
     /// # Errors
-    /// [`Refused`] if the state does not allow the request.
-    pub fn ask(&mut self, wish: Wish, now_s: f64) -> Result<Option<Change<F>>, Refused> {
+    /// [`InvalidRequest`] if the state does not allow the request.
+    pub fn ask(&mut self, wish: InterlockRequest, now_s: f64) -> Result<Option<StateChange<F>>, InvalidRequest> {
         let next = match (wish, self.at) {
             // The safe state is reachable from everywhere; a fault stays visible under a stop's latch.
-            (Wish::Stop, At::Stopped(_) | At::Faulted(..)) => return Ok(None),
-            (Wish::Stop, At::Disconnected(at)) => At::Stopped(at.stop()),
-            (Wish::Stop, At::Idle(at)) => At::Stopped(at.stop()),
-            (Wish::Stop, At::Ready(at)) => At::Stopped(at.stop()),
-            (Wish::Stop, At::Engaged(at)) => At::Stopped(at.stop()),
-            (Wish::Stop, At::Clutched(at)) => At::Stopped(at.stop()),
-            (Wish::Engage, At::Idle(at)) => {
+            (InterlockRequest::Stop, InterlockPhase::Stopped(_) | InterlockPhase::Faulted(..)) => return Ok(None),
+            (InterlockRequest::Stop, InterlockPhase::Disconnected(at)) => InterlockPhase::Stopped(at.stop()),
+            (InterlockRequest::Stop, InterlockPhase::Idle(at)) => InterlockPhase::Stopped(at.stop()),
+            (InterlockRequest::Stop, InterlockPhase::Ready(at)) => InterlockPhase::Stopped(at.stop()),
+            (InterlockRequest::Stop, InterlockPhase::Engaged(at)) => InterlockPhase::Stopped(at.stop()),
+            (InterlockRequest::Stop, InterlockPhase::Clutched(at)) => InterlockPhase::Stopped(at.stop()),
+            (InterlockRequest::Engage, InterlockPhase::Idle(at)) => {
                 self.ready_until_s = now_s + READY_WITHIN_S;
-                At::Ready(at.power())
+                InterlockPhase::Ready(at.power())
             }
-            (Wish::Rest, At::Ready(at)) => At::Idle(at.rest()),
-            (Wish::Rest, At::Engaged(at)) => At::Idle(at.rest()),
-            (Wish::Rest, At::Clutched(at)) => At::Idle(at.rest()),
-            (Wish::Release, At::Stopped(at)) => At::Idle(at.release()),
-            (Wish::Release, At::Faulted(at, _)) => At::Idle(at.release()),
-            (Wish::Engage | Wish::Rest | Wish::Release, _) => return Err(Refused),
+            (InterlockRequest::Rest, InterlockPhase::Ready(at)) => InterlockPhase::Idle(at.rest()),
+            (InterlockRequest::Rest, InterlockPhase::Engaged(at)) => InterlockPhase::Idle(at.rest()),
+            (InterlockRequest::Rest, InterlockPhase::Clutched(at)) => InterlockPhase::Idle(at.rest()),
+            (InterlockRequest::Release, InterlockPhase::Stopped(at)) => InterlockPhase::Idle(at.release()),
+            (InterlockRequest::Release, InterlockPhase::Faulted(at, _)) => InterlockPhase::Idle(at.release()),
+            (InterlockRequest::Engage | InterlockRequest::Rest | InterlockRequest::Release, _) => {
+                return Err(InvalidRequest);
+            }
         };
-        Ok(Some(self.go(next, Why::Asked)))
+        Ok(Some(self.go(next, TransitionCause::Asked)))
     }
 
     /// Reports a fault. The first fault is kept; a stop remains a stop.
-    pub const fn fail(&mut self, fault: F) -> Option<Change<F>> {
+    pub const fn fail(&mut self, fault: F) -> Option<StateChange<F>> {
         let next = match self.at {
-            At::Idle(at) => at.fail(),
-            At::Ready(at) => at.fail(),
-            At::Engaged(at) => at.fail(),
-            At::Clutched(at) => at.fail(),
-            At::Disconnected(_) | At::Stopped(_) | At::Faulted(..) => return None,
+            InterlockPhase::Idle(at) => at.fail(),
+            InterlockPhase::Ready(at) => at.fail(),
+            InterlockPhase::Engaged(at) => at.fail(),
+            InterlockPhase::Clutched(at) => at.fail(),
+            InterlockPhase::Disconnected(_) | InterlockPhase::Stopped(_) | InterlockPhase::Faulted(..) => return None,
         };
-        Some(self.go(At::Faulted(next, fault), Why::Fault))
+        Some(self.go(InterlockPhase::Faulted(next, fault), TransitionCause::Fault))
     }
 
     /// Evaluates the observations of a tick.
     ///
     /// The loss of a device while engaged is a fault that the caller reports with its cause by [`Interlock::fail`]; so
     /// are drives that no longer respond.
-    pub fn step(&mut self, seen: &Seen, now_s: f64) -> Option<Change<F>> {
+    pub fn step(&mut self, seen: &InterlockInput, now_s: f64) -> Option<StateChange<F>> {
         let in_time = now_s <= self.ready_until_s;
         let (next, why) = match self.at {
-            At::Disconnected(at) if seen.connected => (At::Idle(at.connect()), Why::Connected),
-            At::Idle(at) if !seen.connected => (At::Disconnected(at.disconnect()), Why::Disconnected),
-            At::Ready(at) if !seen.connected => (At::Disconnected(at.disconnect()), Why::Disconnected),
-            At::Ready(at) if seen.powered && seen.agreed && seen.present && !seen.clutch => {
-                (At::Engaged(at.engage()), Why::Agreed)
+            InterlockPhase::Disconnected(at) if seen.connected => {
+                (InterlockPhase::Idle(at.connect()), TransitionCause::Connected)
+            }
+            InterlockPhase::Idle(at) if !seen.connected => {
+                (InterlockPhase::Disconnected(at.disconnect()), TransitionCause::Disconnected)
+            }
+            InterlockPhase::Ready(at) if !seen.connected => {
+                (InterlockPhase::Disconnected(at.disconnect()), TransitionCause::Disconnected)
+            }
+            InterlockPhase::Ready(at) if seen.powered && seen.agreed && seen.present && !seen.clutch => {
+                (InterlockPhase::Engaged(at.engage()), TransitionCause::Agreed)
             }
             // NaN is not in time.
-            At::Ready(at) if !in_time => (At::Idle(at.rest()), Why::Late),
-            At::Engaged(at) if !seen.present => (At::Idle(at.rest()), Why::Absent),
-            At::Engaged(at) if seen.clutch => (At::Clutched(at.clutch()), Why::Clutch),
-            At::Clutched(at) if !seen.present => (At::Idle(at.rest()), Why::Absent),
-            At::Clutched(at) if !seen.clutch && seen.agreed && seen.powered => {
-                (At::Engaged(at.unclutch()), Why::Clutch)
+            InterlockPhase::Ready(at) if !in_time => (InterlockPhase::Idle(at.rest()), TransitionCause::Late),
+            InterlockPhase::Engaged(at) if !seen.present => (InterlockPhase::Idle(at.rest()), TransitionCause::Absent),
+            InterlockPhase::Engaged(at) if seen.clutch => {
+                (InterlockPhase::Clutched(at.clutch()), TransitionCause::Clutch)
+            }
+            InterlockPhase::Clutched(at) if !seen.present => (InterlockPhase::Idle(at.rest()), TransitionCause::Absent),
+            InterlockPhase::Clutched(at) if !seen.clutch && seen.agreed && seen.powered => {
+                (InterlockPhase::Engaged(at.unclutch()), TransitionCause::Clutch)
             }
             _ => return None,
         };
@@ -264,7 +274,7 @@ impl<F: Copy> Interlock<F> {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Refused;
+pub struct InvalidRequest;
 
 #[cfg(test)]
 mod tests {
@@ -272,13 +282,14 @@ mod tests {
 
     use super::*;
 
-    const ALL_WELL: Seen = Seen { connected: true, powered: true, agreed: true, present: true, clutch: false };
+    const ALL_WELL: InterlockInput =
+        InterlockInput { connected: true, powered: true, agreed: true, present: true, clutch: false };
 
     fn engaged() -> Interlock<u8> {
         let mut interlock = Interlock::default();
-        interlock.ask(Wish::Engage, 0.0).unwrap();
+        interlock.ask(InterlockRequest::Engage, 0.0).unwrap();
         interlock.step(&ALL_WELL, 0.0);
-        assert_eq!(interlock.state(), State::Engaged);
+        assert_eq!(interlock.state(), InterlockState::Engaged);
         interlock
     }
 
@@ -289,54 +300,54 @@ mod tests {
             if fault {
                 interlock.fail(7);
                 assert_eq!(interlock.fail(8), None, "the first cause stays");
-                assert_eq!(interlock.ask(Wish::Stop, 0.0), Ok(None));
-                assert_eq!(interlock.state(), State::Faulted(7), "also under a stop");
+                assert_eq!(interlock.ask(InterlockRequest::Stop, 0.0), Ok(None));
+                assert_eq!(interlock.state(), InterlockState::Faulted(7), "also under a stop");
             } else {
-                interlock.ask(Wish::Stop, 0.0).unwrap();
+                interlock.ask(InterlockRequest::Stop, 0.0).unwrap();
                 assert_eq!(interlock.fail(7), None);
             }
-            assert_eq!(interlock.ask(Wish::Engage, 0.0), Err(Refused));
+            assert_eq!(interlock.ask(InterlockRequest::Engage, 0.0), Err(InvalidRequest));
             for _ in 0..5000 {
                 assert_eq!(interlock.step(&ALL_WELL, 1.0), None);
             }
-            interlock.ask(Wish::Release, 1.0).unwrap();
+            interlock.ask(InterlockRequest::Release, 1.0).unwrap();
             assert_eq!(interlock.step(&ALL_WELL, 1.0), None);
-            assert_eq!(interlock.state(), State::Idle);
+            assert_eq!(interlock.state(), InterlockState::Idle);
         }
     }
 
     #[test]
     fn what_went_away_comes_back_as_idle() {
         let mut interlock = Interlock::<u8>::default();
-        interlock.ask(Wish::Engage, 0.0).unwrap();
-        interlock.step(&Seen { connected: false, ..ALL_WELL }, 0.0);
-        assert_eq!(interlock.state(), State::Disconnected);
-        assert_eq!(interlock.ask(Wish::Engage, 0.0), Err(Refused));
+        interlock.ask(InterlockRequest::Engage, 0.0).unwrap();
+        interlock.step(&InterlockInput { connected: false, ..ALL_WELL }, 0.0);
+        assert_eq!(interlock.state(), InterlockState::Disconnected);
+        assert_eq!(interlock.ask(InterlockRequest::Engage, 0.0), Err(InvalidRequest));
         interlock.step(&ALL_WELL, 0.1);
         assert_eq!(interlock.step(&ALL_WELL, 0.2), None);
-        assert_eq!(interlock.state(), State::Idle);
+        assert_eq!(interlock.state(), InterlockState::Idle);
     }
 
     #[test]
     fn drives_that_do_not_obey_in_time_are_given_up() {
         let mut interlock = Interlock::<u8>::default();
-        interlock.ask(Wish::Engage, 1.0).unwrap();
-        let asleep = Seen { powered: false, ..ALL_WELL };
+        interlock.ask(InterlockRequest::Engage, 1.0).unwrap();
+        let asleep = InterlockInput { powered: false, ..ALL_WELL };
         assert_eq!(interlock.step(&asleep, 1.0 + READY_WITHIN_S), None);
         let change = interlock.step(&asleep, 1.001 + READY_WITHIN_S).unwrap();
-        assert_eq!((change.to, change.why), (State::Idle, Why::Late));
+        assert_eq!((change.to, change.why), (InterlockState::Idle, TransitionCause::Late));
     }
 
     #[test]
     fn the_clutch_uncouples_and_couples_and_an_absent_hand_ends_it() {
         let mut interlock = engaged();
-        let pressed = Seen { clutch: true, ..ALL_WELL };
+        let pressed = InterlockInput { clutch: true, ..ALL_WELL };
         interlock.step(&pressed, 0.0);
         assert_eq!(interlock.state().permits(), Permits { drives: true, coupled: false });
         interlock.step(&ALL_WELL, 0.0);
-        assert_eq!(interlock.state(), State::Engaged);
-        let change = interlock.step(&Seen { present: false, ..ALL_WELL }, 0.0).unwrap();
-        assert_eq!((change.to, change.why), (State::Idle, Why::Absent));
+        assert_eq!(interlock.state(), InterlockState::Engaged);
+        let change = interlock.step(&InterlockInput { present: false, ..ALL_WELL }, 0.0).unwrap();
+        assert_eq!((change.to, change.why), (InterlockState::Idle, TransitionCause::Absent));
     }
 
     proptest! {
@@ -348,18 +359,18 @@ mod tests {
             for (k, (what, seen)) in steps.into_iter().enumerate() {
                 let now_s = k as f64;
                 match what {
-                    0 => wanted |= interlock.ask(Wish::Engage, now_s).is_ok(),
-                    1 => { interlock.ask(Wish::Rest, now_s).ok(); }
-                    2 => { interlock.ask(Wish::Stop, now_s).ok(); }
-                    3 => { interlock.ask(Wish::Release, now_s).ok(); }
+                    0 => wanted |= interlock.ask(InterlockRequest::Engage, now_s).is_ok(),
+                    1 => { interlock.ask(InterlockRequest::Rest, now_s).ok(); }
+                    2 => { interlock.ask(InterlockRequest::Stop, now_s).ok(); }
+                    3 => { interlock.ask(InterlockRequest::Release, now_s).ok(); }
                     4 => { interlock.fail(1); }
                     _ => {
                         let [connected, powered, agreed, present, clutch] = seen;
-                        interlock.step(&Seen { connected, powered, agreed, present, clutch }, now_s);
+                        interlock.step(&InterlockInput { connected, powered, agreed, present, clutch }, now_s);
                     }
                 }
                 let state = interlock.state();
-                wanted &= matches!(state, State::Ready | State::Engaged | State::Clutched);
+                wanted &= matches!(state, InterlockState::Ready | InterlockState::Engaged | InterlockState::Clutched);
                 prop_assert!(!state.permits().drives || wanted, "{state:?} without being asked");
                 if what == 2 {
                     prop_assert!(state.is_latched());

@@ -2,7 +2,7 @@
 //!
 //! Takes the force (N) that a mode requests, its age (s), the hand's speed (m/s) and position (m); returns a force that
 //! is finite, recent, permitted, passive and bounded, and reports which gates acted, why, and how often. One file per
-//! gate; [`Chain`] defines their order. Bad input (NaN, infinite, too old) gives zero, never a panic. Uses no devices,
+//! gate; [`SafetyChain`] defines their order. Bad input (NaN, infinite, too old) gives zero, never a panic. Uses no devices,
 //! files or threads.
 
 mod chain;
@@ -13,14 +13,17 @@ mod report;
 mod settings;
 
 pub use chain::{
-    ALLOWANCE_J, Age, Ceiling, Chain, DeadBand, Energy, Gain, GripperChain, LEAK_S, MOST_J, PLAUSIBLE_N, Request, Slew,
-    TorqueChain, admitted,
+    ALLOWANCE_J, AgeGate, Ceiling, DeadBand, Energy, ForceRequest, Gain, GripperChain, LEAK_S, MAX_J, PLAUSIBLE_N,
+    SafetyChain, Slew, TorqueChain, admitted,
 };
-pub use governor::{Governed, Governor, Handle, Reading};
-pub use interlock::{Change, Interlock, Permits, READY_WITHIN_S, Refused, Seen, State, Why, Wish};
+pub use governor::{FreeHandle, Governor, GovernorOutput, GovernorReading};
+pub use interlock::{
+    Interlock, InterlockInput, InterlockRequest, InterlockState, InvalidRequest, Permits, READY_WITHIN_S, StateChange,
+    TransitionCause,
+};
 pub use plausibility::{
-    ARM_CHANNELS, Admitted, CHANNELS, Fall, HANDLE_CHANNELS, Implausible, Leap, Observed, Opposed, Plausibility, Raw,
-    RawReadings, Release,
+    ARM_CHANNELS, AdmittedReadings, CHANNELS, Fall, HANDLE_CHANNELS, Implausible, JumpDetector, Plausibility,
+    PlausibilityInput, RawReading, RawReadings, ReleaseMemory, TouchMemory,
 };
 pub use report::{GATES, Gate, GateCounts, GateReport, Reason};
 pub use settings::{ChainSettings, EnergyMode};

@@ -124,7 +124,7 @@ pub struct GateCounts {
 
 impl GateCounts {
     /// Returns the fraction of all requests on which `gate` acted, 0 to 1.
-    pub fn share(&self, gate: Gate) -> f64 {
+    pub fn fraction(&self, gate: Gate) -> f64 {
         if self.ticks == 0 { 0.0 } else { self.acted[gate.index()] as f64 / self.ticks as f64 }
     }
 
@@ -205,7 +205,7 @@ mod tests {
         let mut counts = GateCounts::default();
         counts.add(&report.reasons);
         counts.add(&[Reason::Open; GATES]);
-        assert!((counts.share(Gate::Ceiling) - 0.5).abs() < f64::EPSILON && counts.share(Gate::Slew) == 0.0);
+        assert!((counts.fraction(Gate::Ceiling) - 0.5).abs() < f64::EPSILON && counts.fraction(Gate::Slew) == 0.0);
         assert_eq!(counts.last[Gate::Age.index()], Reason::Ageing);
     }
 }

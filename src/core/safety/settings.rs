@@ -1,6 +1,6 @@
 //! Settings of a chain and their safe defaults.
 
-use super::Handle;
+use super::FreeHandle;
 use crate::limits::{DEAD_BAND_M_S, GAIN_ABOVE_ONE, OMEGA7_FORCE_N, OMEGA7_GRIPPER_N, USUAL_CEILING_N};
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -32,7 +32,7 @@ impl EnergyMode {
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct ChainSettings {
-    /// Feedback gain, 0 to 1 (a chain starts at most at 1; above 1 see [`Chain::set_gain_above_one`](super::Chain)).
+    /// Feedback gain, 0 to 1 (a chain starts at most at 1; above 1 see [`SafetyChain::set_gain_above_one`](super::SafetyChain)).
     pub gain: f64,
     /// Maximum rate of change of the gain, 1/s: a jump of the slider becomes a ramp.
     pub gain_rate_per_s: f64,
@@ -118,8 +118,8 @@ impl ChainSettings {
     }
 
     /// Returns the handle that the governor observes.
-    pub(super) const fn handle(&self) -> Handle {
-        Handle {
+    pub(super) const fn handle(&self) -> FreeHandle {
+        FreeHandle {
             mass_kg: self.handle_kg,
             damping_n_s_m: self.handle_n_s_m,
             brake_n_s_m: self.brake_n_s_m,
@@ -131,8 +131,8 @@ impl ChainSettings {
     #[must_use]
     pub(super) fn pulled_in(self) -> Self {
         let safe = Self::default();
-        let fit = |value: f64, least: f64, most: f64, safe: f64| {
-            if value.is_nan() { safe } else { value.clamp(least, most) }
+        let fit = |value: f64, min: f64, max: f64, safe: f64| {
+            if value.is_nan() { safe } else { value.clamp(min, max) }
         };
         let fade_after_s = fit(self.fade_after_s, 0.0, 1.0, safe.fade_after_s);
         Self {

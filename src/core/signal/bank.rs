@@ -19,7 +19,7 @@ pub const BANK: usize = 4;
 /// ```
 #[derive(Clone, Debug)]
 pub struct LowPassBank {
-    share: [f64; BANK],
+    fraction: [f64; BANK],
     low: [Lanes; BANK],
     started: bool,
 }
@@ -31,7 +31,7 @@ impl LowPassBank {
         let shortest_s = shortest_s.max(period_s);
         let step = libm::cbrt(longest_s.max(4.0 * shortest_s) / shortest_s);
         let tau_s = [1.0, step, step * step, step * step * step].map(|factor| factor * shortest_s);
-        Self { share: tau_s.map(|tau_s| -libm::expm1(-period_s / tau_s)), low: [Lanes::ZERO; BANK], started: false }
+        Self { fraction: tau_s.map(|tau_s| -libm::expm1(-period_s / tau_s)), low: [Lanes::ZERO; BANK], started: false }
     }
 
     /// Adds the newest value; returns its difference from each low-pass, the shortest time constant first. The first
@@ -42,8 +42,8 @@ impl LowPassBank {
             self.started = true;
         }
         let mut differences = [Lanes::ZERO; BANK];
-        for ((low, share), difference) in self.low.iter_mut().zip(self.share).zip(&mut differences) {
-            *low += (value - *low) * share;
+        for ((low, fraction), difference) in self.low.iter_mut().zip(self.fraction).zip(&mut differences) {
+            *low += (value - *low) * fraction;
             *difference = (value - *low).settled();
             *low = value - *difference;
         }

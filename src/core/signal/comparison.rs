@@ -16,7 +16,7 @@ fn jitter(k: usize) -> f64 {
     (k as f64 * 0.754_877_666_246_692_8).fract() - 0.5
 }
 
-struct Figures {
+struct ComparisonFigures {
     noise: [f64; 2],
     lag_ms: [f64; 2],
     error: [f64; 2],
@@ -69,8 +69,8 @@ fn hand(t: f64) -> [f64; 3] {
     std::array::from_fn(|i| reach[i] + tremor[i])
 }
 
-fn figures(kind: DifferentiatorKind) -> Figures {
-    Figures {
+fn figures(kind: DifferentiatorKind) -> ComparisonFigures {
+    ComparisonFigures {
         noise: deviation(kind, |_, k| [COUNT_M * (0.5 + jitter(k)), 0.0, 0.0]),
         lag_ms: lag_ms(kind, 5.0),
         error: deviation(kind, |t, _| hand(t)),
@@ -84,7 +84,7 @@ fn figures_of_every_differentiator() {
         ""
     );
     for kind in DifferentiatorKind::ALL {
-        let Figures { noise, lag_ms, error } = figures(kind);
+        let ComparisonFigures { noise, lag_ms, error } = figures(kind);
         eprintln!(
             "{:<16} {:>22.2} {:>8.3} {:>18.1} {:>5.1} {:>24.2} {:>8.3}",
             kind.name(),

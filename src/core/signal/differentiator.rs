@@ -1,6 +1,6 @@
 use serde::{Deserialize, Serialize};
 
-use super::{Lanes, Motion, foaw::Foaw, kalman::Kalman, savitzky_golay::SavitzkyGolay};
+use super::{Lanes, Motion, foaw::Foaw, kalman::SignalKalman, savitzky_golay::SavitzkyGolay};
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -55,12 +55,12 @@ const FOAW_BAND_M: f64 = 1e-5;
 /// }
 /// ```
 #[derive(Clone, Debug)]
-pub struct Differentiator(Inner);
+pub struct Differentiator(DifferentiatorInner);
 
 #[derive(Clone, Debug)]
-enum Inner {
+enum DifferentiatorInner {
     SavitzkyGolay(SavitzkyGolay),
-    Kalman(Kalman),
+    Kalman(SignalKalman),
     Foaw(Foaw),
 }
 
@@ -68,35 +68,39 @@ impl Differentiator {
     pub fn new(kind: DifferentiatorKind, rate_hz: f64) -> Self {
         let samples = ((SPAN_S * rate_hz).round() as usize).max(MIN_SAMPLES);
         Self(match kind {
-            DifferentiatorKind::SavitzkyGolay => Inner::SavitzkyGolay(SavitzkyGolay::new(samples, rate_hz)),
-            DifferentiatorKind::Kalman => Inner::Kalman(Kalman::new(KALMAN_BANDWIDTH_HZ, rate_hz)),
-            DifferentiatorKind::Foaw => Inner::Foaw(Foaw::new(samples.min(MAX_FOAW_SAMPLES), rate_hz, FOAW_BAND_M)),
+            DifferentiatorKind::SavitzkyGolay => {
+                DifferentiatorInner::SavitzkyGolay(SavitzkyGolay::new(samples, rate_hz))
+            }
+            DifferentiatorKind::Kalman => DifferentiatorInner::Kalman(SignalKalman::new(KALMAN_BANDWIDTH_HZ, rate_hz)),
+            DifferentiatorKind::Foaw => {
+                DifferentiatorInner::Foaw(Foaw::new(samples.min(MAX_FOAW_SAMPLES), rate_hz, FOAW_BAND_M))
+            }
         })
     }
 
     /// Adds the position of this tick (m, finite) and returns the motion of this tick.
     pub fn step(&mut self, position: Lanes) -> Motion {
         match &mut self.0 {
-            Inner::SavitzkyGolay(filter) => filter.step(position),
-            Inner::Kalman(filter) => filter.step(position),
-            Inner::Foaw(filter) => filter.step(position),
+            DifferentiatorInner::SavitzkyGolay(filter) => filter.step(position),
+            DifferentiatorInner::Kalman(filter) => filter.step(position),
+            DifferentiatorInner::Foaw(filter) => filter.step(position),
         }
     }
 
     /// Returns whether enough samples have been added for valid derivatives.
     pub fn settled(&self) -> bool {
         match &self.0 {
-            Inner::SavitzkyGolay(filter) => filter.settled(),
-            Inner::Kalman(filter) => filter.settled(),
-            Inner::Foaw(filter) => filter.settled(),
+            DifferentiatorInner::SavitzkyGolay(filter) => filter.settled(),
+            DifferentiatorInner::Kalman(filter) => filter.settled(),
+            DifferentiatorInner::Foaw(filter) => filter.settled(),
         }
     }
 
     pub fn reset(&mut self) {
         match &mut self.0 {
-            Inner::SavitzkyGolay(filter) => filter.reset(),
-            Inner::Kalman(filter) => filter.reset(),
-            Inner::Foaw(filter) => filter.reset(),
+            DifferentiatorInner::SavitzkyGolay(filter) => filter.reset(),
+            DifferentiatorInner::Kalman(filter) => filter.reset(),
+            DifferentiatorInner::Foaw(filter) => filter.reset(),
         }
     }
 }

@@ -13,7 +13,7 @@ use super::{Lanes, Motion};
 /// for spectral density `q` of the noise and `r` of the measurement the closed-loop poles are the poles of a
 /// fourth-order Butterworth filter with `w^8 = q / r`.
 #[derive(Clone, Debug)]
-pub(super) struct Kalman {
+pub(super) struct SignalKalman {
     gain: [f64; 4],
     period_s: f64,
     state: [Lanes; 4],
@@ -21,7 +21,7 @@ pub(super) struct Kalman {
     settling_ticks: usize,
 }
 
-impl Kalman {
+impl SignalKalman {
     /// Creates a filter with the given bandwidth (Hz), limited to a tenth of the rate.
     pub(super) fn new(bandwidth_hz: f64, rate_hz: f64) -> Self {
         let bandwidth_hz = bandwidth_hz.min(0.1 * rate_hz);

@@ -34,16 +34,16 @@ mod kalman;
 mod lanes;
 mod pid;
 mod savitzky_golay;
+mod simd_dispatch;
 mod speed;
-mod widest;
 
 pub use bank::{BANK, LowPassBank};
 pub use delay::DelayLine;
 pub use differentiator::{Differentiator, DifferentiatorKind};
 pub use lanes::{LANES, Lanes, NOTHING, settled};
 pub use pid::{Pid, PidGains};
+pub(crate) use simd_dispatch::{SimdLoop, SimdVector, widest};
 pub use speed::Speed;
-pub(crate) use widest::{Vector, Work, widest};
 
 /// Position, velocity and acceleration of one instant, one lane per axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

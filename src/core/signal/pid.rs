@@ -51,8 +51,8 @@ impl Pid {
         }
         let PidGains { proportional, integral_per_s, derivative_s, integral_max } = self.gains;
         let error = goal - measured;
-        let most = integral_max.abs();
-        self.integral = (self.integral + integral_per_s * error * dt_s).clamp(-most, most);
+        let max = integral_max.abs();
+        self.integral = (self.integral + integral_per_s * error * dt_s).clamp(-max, max);
         let change = self.last.map_or(0.0, |last| (measured - last) / dt_s);
         self.last = Some(measured);
         proportional * error + self.integral - derivative_s * change

@@ -14,8 +14,8 @@ use std::collections::VecDeque;
 use nalgebra::SVector;
 
 /// Permitted error, as a fraction and in m/s.
-const SHARE: f64 = 0.1;
-const LEAST_M_S: f64 = 0.1e-3;
+const FRACTION: f64 = 0.1;
+const MIN_M_S: f64 = 0.1e-3;
 /// Every one of this many newest readings is examined; of the older ones, one in this many.
 const NEAR: usize = 16;
 const STRIDE: usize = 4;
@@ -35,8 +35,8 @@ const ROUNDING: f64 = 1.01;
 /// // 0.2 mm/s, read in steps of 10 um: differences would read 10 mm/s every 50 ms.
 /// for tick in 0..1000 {
 ///     let t_s = f64::from(tick) * 1e-3;
-///     let at_m = Vector1::new((0.2e-3 * t_s / 1e-5).round() * 1e-5);
-///     let m_s = speed.step(t_s, at_m);
+///     let position_m = Vector1::new((0.2e-3 * t_s / 1e-5).round() * 1e-5);
+///     let m_s = speed.step(t_s, position_m);
 ///     assert!(tick < 200 || (m_s - 0.2e-3).abs() < 0.12e-3, "{m_s}");
 /// }
 /// ```
@@ -53,23 +53,23 @@ impl<const D: usize> Speed<D> {
     /// Creates an estimator for readings in steps of `step_m` (m) at `rate_hz`. All memory is allocated here.
     pub fn new(step_m: f64, rate_hz: f64) -> Self {
         let step_m = if step_m > 0.0 { step_m } else { f64::MIN_POSITIVE };
-        let longest_s = (step_m * (1.0 + SHARE) / LEAST_M_S).min(LONGEST_S);
+        let longest_s = (step_m * (1.0 + FRACTION) / MIN_M_S).min(LONGEST_S);
         let room = (longest_s * rate_hz).ceil() as usize + 2;
         Self { step_m, period_s: 1.0 / rate_hz, room, readings: VecDeque::with_capacity(room + 2) }
     }
 
     /// Adds a reading (m) at this time (s) and returns the speed, m/s. If the time does not increase, the estimator
     /// restarts at rest; non-finite input is ignored.
-    pub fn step(&mut self, t_s: f64, at_m: SVector<f64, D>) -> f64 {
-        if t_s.is_finite() && at_m.iter().all(|x| x.is_finite()) {
+    pub fn step(&mut self, t_s: f64, position_m: SVector<f64, D>) -> f64 {
+        if t_s.is_finite() && position_m.iter().all(|x| x.is_finite()) {
             if self.readings.front().is_some_and(|(last_s, _)| t_s <= *last_s) {
                 self.readings.clear();
             }
             if self.readings.is_empty() {
                 // Assume that the handle was at rest until now.
-                self.readings.extend((1..=self.room).map(|back| (t_s - back as f64 * self.period_s, at_m)));
+                self.readings.extend((1..=self.room).map(|back| (t_s - back as f64 * self.period_s, position_m)));
             }
-            self.readings.push_front((t_s, at_m));
+            self.readings.push_front((t_s, position_m));
             self.readings.truncate(self.room);
         }
         SVector::<f64, D>::from_fn(|axis, _| self.slope(axis)).norm()
@@ -79,23 +79,23 @@ impl<const D: usize> Speed<D> {
         let Some((now_s, now_m)) = self.readings.front() else { return 0.0 };
         let band_m = ROUNDING * self.step_m;
         let mut slope = 0.0;
-        let mut least = f64::NEG_INFINITY;
-        let mut most = f64::INFINITY;
+        let mut min = f64::NEG_INFINITY;
+        let mut max = f64::INFINITY;
         let mut back = 1;
         while let Some((then_s, then_m)) = self.readings.get(back) {
             let dt_s = now_s - then_s;
-            let way_m = now_m[axis] - then_m[axis];
-            let line = way_m / dt_s;
-            if !(least..=most).contains(&line) {
+            let travel_m = now_m[axis] - then_m[axis];
+            let line = travel_m / dt_s;
+            if !(min..=max).contains(&line) {
                 break;
             }
             slope = line;
             // The slope may be too large by as much as the permitted error.
-            if self.step_m * (1.0 + SHARE) <= dt_s * (SHARE * slope.abs() + LEAST_M_S) {
+            if self.step_m * (1.0 + FRACTION) <= dt_s * (FRACTION * slope.abs() + MIN_M_S) {
                 break;
             }
-            least = least.max((way_m - band_m) / dt_s);
-            most = most.min((way_m + band_m) / dt_s);
+            min = min.max((travel_m - band_m) / dt_s);
+            max = max.min((travel_m + band_m) / dt_s);
             back += if back < NEAR { 1 } else { STRIDE };
         }
         slope
@@ -116,8 +116,8 @@ mod tests {
     fn ramp(step_m: f64, m_s: f64, rate_hz: f64, offset: f64) -> Vec<f64> {
         let mut speed = Speed::new(step_m, rate_hz);
         let read = |t_s: f64| {
-            let at_m = offset * step_m + m_s * (t_s - 0.5).max(0.0);
-            Vector1::new((at_m / step_m).round() * step_m)
+            let position_m = offset * step_m + m_s * (t_s - 0.5).max(0.0);
+            Vector1::new((position_m / step_m).round() * step_m)
         };
         let ticks = (1.5 * rate_hz) as u32;
         let all: Vec<f64> = (0..ticks).map(|tick| f64::from(tick) / rate_hz).map(|t| speed.step(t, read(t))).collect();
@@ -135,11 +135,11 @@ mod tests {
                     let worst = settled.iter().map(error).fold(0.0, f64::max);
                     assert!(worst <= 0.1 * m_s + 0.1e-3 + 1e-9, "{step_m} m, {m_s} m/s: {worst}");
                     let half_s = read.iter().position(|read_m_s| *read_m_s >= 0.5 * m_s).unwrap() as f64 / rate_hz;
-                    let most_s = (2.2 * step_m / m_s).max(0.015);
-                    assert!(half_s <= most_s, "{step_m} m, {m_s} m/s: {half_s} s");
+                    let max_s = (2.2 * step_m / m_s).max(0.015);
+                    assert!(half_s <= max_s, "{step_m} m, {m_s} m/s: {half_s} s");
                     // A single step must not look like a jump either.
-                    let most_m_s = read.iter().copied().fold(0.0, f64::max);
-                    assert!(most_m_s <= 1.25 * m_s + 0.5 * step_m * rate_hz.min(500.0), "{step_m} {m_s}: {most_m_s}");
+                    let max_m_s = read.iter().copied().fold(0.0, f64::max);
+                    assert!(max_m_s <= 1.25 * m_s + 0.5 * step_m * rate_hz.min(500.0), "{step_m} {m_s}: {max_m_s}");
                 }
             }
         }
@@ -149,14 +149,14 @@ mod tests {
     fn a_trembling_hand_reads_as_slow_as_it_is() {
         for step_m in STEPS_M {
             let mut speed = Speed::new(step_m, 1000.0);
-            let mut most_m_s = 0.0_f64;
+            let mut max_m_s = 0.0_f64;
             for tick in 0..5000 {
                 let t_s = f64::from(tick) * 1e-3;
-                let at_m = 1e-5 * (std::f64::consts::TAU * 9.7 * t_s).sin();
-                most_m_s = most_m_s.max(speed.step(t_s, Vector1::new((at_m / step_m).round() * step_m)));
+                let position_m = 1e-5 * (std::f64::consts::TAU * 9.7 * t_s).sin();
+                max_m_s = max_m_s.max(speed.step(t_s, Vector1::new((position_m / step_m).round() * step_m)));
             }
             // The true speed is 0.61 mm/s at most.
-            assert!(most_m_s < 0.9e-3, "{step_m} m: {most_m_s} m/s");
+            assert!(max_m_s < 0.9e-3, "{step_m} m: {max_m_s} m/s");
         }
     }
 
@@ -175,10 +175,10 @@ mod tests {
             readings in prop::collection::vec((prop::num::f64::ANY, prop::array::uniform3(-1.0..1.0f64), any::<bool>()), 1..200),
         ) {
             let mut speed = Speed::new(1e-5, 1000.0);
-            for (tick, (odd, at_m, clean)) in readings.into_iter().enumerate() {
+            for (tick, (odd, position_m, clean)) in readings.into_iter().enumerate() {
                 let t_s = if clean { tick as f64 * 1e-3 } else { odd };
-                let at_m = if clean { Vector3::from(at_m) } else { Vector3::new(odd, at_m[1], at_m[2]) };
-                prop_assert!(speed.step(t_s, at_m) >= 0.0);
+                let position_m = if clean { Vector3::from(position_m) } else { Vector3::new(odd, position_m[1], position_m[2]) };
+                prop_assert!(speed.step(t_s, position_m) >= 0.0);
             }
         }
     }

@@ -7,7 +7,7 @@ use super::{Expansion, MAX_FEATURES, Normalisation, linear};
 /// Linear regression over columns: `y = constant + x W`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Regression {
+struct BaselineRegression {
     /// `inputs x outputs`, row by row.
     weights: Vec<f32>,
     constant: Vec<f32>,
@@ -20,9 +20,9 @@ pub struct Baselines {
     /// Per output: index of the input of the same name (`fx_n` for `tip_fx_n`), which the baseline "no model" returns
     /// unchanged.
     like: Vec<Option<usize>>,
-    linear: Regression,
+    linear: BaselineRegression,
     /// Linear in the inputs and in `v / sqrt(v^2 + v0^2)` of every speed: Coulomb and viscous friction, and a constant.
-    friction: Regression,
+    friction: BaselineRegression,
     soft: Vec<f32>,
 }
 
@@ -42,8 +42,8 @@ impl Baselines {
         let signs: Vec<f32> = x.chunks_exact(inputs.len().max(1)).flat_map(|row| with_signs(row, &soft)).collect();
         Self {
             like: outputs.iter().map(like).collect(),
-            linear: Regression::fit(x, y, outputs.len()),
-            friction: Regression::fit(&signs, y, outputs.len()),
+            linear: BaselineRegression::fit(x, y, outputs.len()),
+            friction: BaselineRegression::fit(&signs, y, outputs.len()),
             soft,
         }
     }
@@ -51,7 +51,7 @@ impl Baselines {
     /// Returns whether the baselines belong to a model with these numbers of inputs and outputs.
     pub fn fits(&self, inputs: usize, outputs: usize) -> bool {
         let signs = self.soft.iter().filter(|v0| **v0 > 0.0).count();
-        let one = |regression: &Regression, width: usize| {
+        let one = |regression: &BaselineRegression, width: usize| {
             regression.weights.len() == width * outputs && regression.constant.len() == outputs
         };
         let like = self.like.len() == outputs && self.like.iter().flatten().all(|column| *column < inputs);
@@ -76,7 +76,7 @@ fn with_signs(inputs: &[f32], soft: &[f32]) -> Vec<f32> {
     inputs.iter().copied().chain(inputs.iter().zip(soft).filter_map(sign)).collect()
 }
 
-impl Regression {
+impl BaselineRegression {
     fn fit(x: &[f32], y: &[f32], outputs: usize) -> Self {
         let rows = y.len() / outputs.max(1);
         let width = x.len() / rows.max(1);

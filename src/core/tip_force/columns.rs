@@ -7,7 +7,7 @@
 
 /// Default inputs, as far as a data set contains them: gravity-free wrench at the wrist (`shaft`; N, Nm), orientation
 /// (`world_from_shaft`), depth through the trocar (m), its speed (m/s), and the state of the seal: its stretch (m) and its
-/// past sliding speed (m/s); see [`super::Features`].
+/// past sliding speed (m/s); see [`super::TipForceFeatures`].
 pub const DEFAULT_INPUTS: [&str; 15] = [
     "fx_n",
     "fy_n",
@@ -52,7 +52,7 @@ pub struct Expansion {
 }
 
 /// `v0` as a fraction of the root mean square of the column. Chosen.
-const SOFT_SHARE: f32 = 0.1;
+const SOFT_FRACTION: f32 = 0.1;
 
 impl Expansion {
     /// Creates the conversion for these input columns; `soft[i]` is the `v0` of column `i` if that is a direction of
@@ -77,7 +77,7 @@ impl Expansion {
         for row in x.chunks_exact(inputs.len().max(1)) {
             square.iter_mut().zip(row).for_each(|(sum, value)| *sum += f64::from(*value) * f64::from(*value) / rows);
         }
-        let soft: Vec<f32> = square.into_iter().map(|s| (SOFT_SHARE * s.sqrt() as f32).max(1e-9)).collect();
+        let soft: Vec<f32> = square.into_iter().map(|s| (SOFT_FRACTION * s.sqrt() as f32).max(1e-9)).collect();
         Self::new(inputs, &soft).unwrap_or_else(|| Self {
             plain: (0..inputs.len()).collect(),
             quaternion: None,

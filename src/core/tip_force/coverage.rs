@@ -11,18 +11,18 @@ use super::LIVE_INPUTS;
 pub const MAP: usize = 16;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Map {
+pub struct CoverageMap {
     /// Number of rows in each cell, `[vertical][horizontal]`, lowest values first.
     pub counts: [[u32; MAP]; MAP],
 }
 
-impl Map {
+impl CoverageMap {
     const EMPTY: Self = Self { counts: [[0; MAP]; MAP] };
 
     fn add(&mut self, [horizontal, vertical]: [f32; 2], ranges: [[f32; 2]; 2]) {
         let place = |value: f32, [low, high]: [f32; 2]| {
-            let share = (value - low) / (high - low);
-            ((share * MAP as f32).max(0.0) as usize).min(MAP - 1)
+            let fraction = (value - low) / (high - low);
+            ((fraction * MAP as f32).max(0.0) as usize).min(MAP - 1)
         };
         self.counts[place(vertical, ranges[1])][place(horizontal, ranges[0])] += 1;
     }
@@ -34,12 +34,12 @@ impl Map {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Span {
+pub struct ValueSpan {
     pub low: f32,
     pub high: f32,
 }
 
-impl Span {
+impl ValueSpan {
     const NONE: Self = Self { low: f32::INFINITY, high: f32::NEG_INFINITY };
 
     const fn add(&mut self, value: f32) {
@@ -68,18 +68,18 @@ const TILT_SPAN: f32 = 0.25;
 const DEPTH_SPAN_M: f32 = 0.015;
 const ACROSS_SPAN_N: f32 = 0.6;
 const ALONG_SPAN_N: f32 = 1.5;
-const WAY_SHARE: f64 = 0.12;
+const TRAVEL_FRACTION: f64 = 0.12;
 /// Hands work faster during a task than during a careful recording: trained below 0.06 m/s, the network erred by 0.05 N
 /// at 0.10 m/s. This many rows, about three strokes, must be this fast, inwards and outwards.
 const BRISK_M_S: f32 = 0.10;
 const BRISK_ROWS: usize = 60;
-const CONTACT_SHARE: [f64; 2] = [0.15, 0.85];
+const CONTACT_FRACTION: [f64; 2] = [0.15, 0.85];
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Goal {
     pub what: GoalKind,
     /// Progress, 0 to 1.
-    pub share: f64,
+    pub fraction: f64,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -121,17 +121,17 @@ impl GoalKind {
 }
 
 #[derive(Clone, Debug, PartialEq)]
-pub struct Coverage {
+pub struct TipForceCoverage {
     /// Direction of the shaft (`world`), x horizontal, y vertical, each from -[`TILT`] to [`TILT`].
-    pub tilt: Map,
+    pub tilt: CoverageMap,
     /// Force at the tip: across the shaft horizontal (0 to [`FORCE_N`]), along it vertical (-[`FORCE_N`] to
     /// [`FORCE_N`]).
-    pub force: Map,
+    pub force: CoverageMap,
     /// Depth horizontal ([`DEPTH_M`]), speed vertical (-[`SPEED_M_S`] to [`SPEED_M_S`]).
-    pub travel: Map,
-    tilt_span: [Span; 2],
-    force_span: [Span; 3],
-    depth_span: Span,
+    pub travel: CoverageMap,
+    tilt_span: [ValueSpan; 2],
+    force_span: [ValueSpan; 3],
+    depth_span: ValueSpan,
     inwards: usize,
     outwards: usize,
     brisk: [usize; 2],
@@ -139,15 +139,15 @@ pub struct Coverage {
     rows: usize,
 }
 
-impl Default for Coverage {
+impl Default for TipForceCoverage {
     fn default() -> Self {
         Self {
-            tilt: Map::EMPTY,
-            force: Map::EMPTY,
-            travel: Map::EMPTY,
-            tilt_span: [Span::NONE; 2],
-            force_span: [Span::NONE; 3],
-            depth_span: Span::NONE,
+            tilt: CoverageMap::EMPTY,
+            force: CoverageMap::EMPTY,
+            travel: CoverageMap::EMPTY,
+            tilt_span: [ValueSpan::NONE; 2],
+            force_span: [ValueSpan::NONE; 3],
+            depth_span: ValueSpan::NONE,
             inwards: 0,
             outwards: 0,
             brisk: [0; 2],
@@ -157,7 +157,7 @@ impl Default for Coverage {
     }
 }
 
-impl Coverage {
+impl TipForceCoverage {
     pub fn add(&mut self, inputs: &[f32; LIVE_INPUTS], tip_n: &[f32; 3], contact: bool) {
         let [_, _, _, _, _, _, w, x, y, z, depth_m, speed_m_s, _, travel_m, _] = *inputs;
         let shaft = UnitQuaternion::from_quaternion(Quaternion::new(w, x, y, z)) * Vector3::z();
@@ -179,19 +179,19 @@ impl Coverage {
     pub fn goals(&self) -> [Goal; 7] {
         let rows = self.rows.max(1) as f64;
         let part = |have: f32, want: f32| f64::from(have / want).clamp(0.0, 1.0);
-        let goal = |what, share: f64| Goal { what, share };
+        let goal = |what, fraction: f64| Goal { what, fraction };
         let tilt = self.tilt_span.iter().map(|span| part(span.width(), TILT_SPAN)).fold(1.0, f64::min);
         let [x, y, z] = self.force_span.map(|span| span.width());
         let force = part(x.min(y), ACROSS_SPAN_N).min(part(z, ALONG_SPAN_N));
         let way = self.inwards.min(self.outwards) as f64 / rows;
         let brisk = self.brisk[0].min(self.brisk[1]) as f64 / BRISK_ROWS as f64;
         let contact = self.contact as f64 / rows;
-        let [least, most] = CONTACT_SHARE;
-        let mixed = (contact / least).min((1.0 - contact) / (1.0 - most));
+        let [min, max] = CONTACT_FRACTION;
+        let mixed = (contact / min).min((1.0 - contact) / (1.0 - max));
         [
             goal(GoalKind::Tilt, tilt),
             goal(GoalKind::Depth, part(self.depth_span.width(), DEPTH_SPAN_M)),
-            goal(GoalKind::InAndOut, (way / WAY_SHARE).min(1.0)),
+            goal(GoalKind::InAndOut, (way / TRAVEL_FRACTION).min(1.0)),
             goal(GoalKind::Speed, brisk.min(1.0)),
             goal(GoalKind::Force, force),
             goal(GoalKind::Contact, mixed.clamp(0.0, 1.0)),
@@ -201,7 +201,7 @@ impl Coverage {
 
     /// Returns the first requirement that is not met; `None` if the recording may be used for training.
     pub fn next(&self) -> Option<Goal> {
-        self.goals().into_iter().find(|goal| goal.share < 1.0)
+        self.goals().into_iter().find(|goal| goal.fraction < 1.0)
     }
 }
 
@@ -210,8 +210,8 @@ mod tests {
     use super::*;
 
     /// Returns the progress of the speed goal after these strokes, each of 100 rows with a sine's speeds.
-    fn speed_share(peaks_m_s: &[f32]) -> f64 {
-        let mut coverage = Coverage::default();
+    fn speed_fraction(peaks_m_s: &[f32]) -> f64 {
+        let mut coverage = TipForceCoverage::default();
         for peak_m_s in peaks_m_s {
             for row in 0..100_u8 {
                 let mut inputs = [0.0; LIVE_INPUTS];
@@ -219,14 +219,14 @@ mod tests {
                 coverage.add(&inputs, &[0.0; 3], false);
             }
         }
-        coverage.goals().into_iter().find(|goal| goal.what == GoalKind::Speed).unwrap().share
+        coverage.goals().into_iter().find(|goal| goal.what == GoalKind::Speed).unwrap().fraction
     }
 
     #[test]
     fn quick_strokes_are_wanted_in_both_directions() {
-        assert!(speed_share(&[0.09; 50]) < 1e-9, "none is as fast as 0.10 m/s");
-        assert!(speed_share(&[0.13; 50]) < 1e-9, "none goes outwards");
-        assert!(speed_share(&[0.13, -0.13]) > 0.5);
-        assert!(speed_share(&[0.13, -0.13, 0.13, -0.13]) >= 1.0);
+        assert!(speed_fraction(&[0.09; 50]) < 1e-9, "none is as fast as 0.10 m/s");
+        assert!(speed_fraction(&[0.13; 50]) < 1e-9, "none goes outwards");
+        assert!(speed_fraction(&[0.13, -0.13]) > 0.5);
+        assert!(speed_fraction(&[0.13, -0.13, 0.13, -0.13]) >= 1.0);
     }
 }

@@ -126,9 +126,9 @@ impl Doubt {
     }
 }
 
-/// Returns at most `most` of the rows, thinned evenly.
-fn thinned(rows: &[usize], most: usize) -> Vec<usize> {
-    rows.iter().copied().step_by(rows.len().div_ceil(most.max(1)).max(1)).collect()
+/// Returns at most `max` of the rows, thinned evenly.
+fn thinned(rows: &[usize], max: usize) -> Vec<usize> {
+    rows.iter().copied().step_by(rows.len().div_ceil(max.max(1)).max(1)).collect()
 }
 
 /// Returns the median over the folds: a fold that leaves out an end of the range is rightly flagged and should not set

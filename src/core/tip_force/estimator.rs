@@ -1,10 +1,10 @@
 //! Predicts the outputs for one row of inputs, and whether the prediction is reliable. Allocates nothing after
 //! construction; computes in f32.
 
-use super::{MAX_OUTPUTS, Model};
+use super::{ForceModel, MAX_OUTPUTS};
 
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Estimate {
+pub struct TipForceEstimate {
     /// The outputs in their own units, in the model's order; unused entries are zero.
     pub output: [f32; MAX_OUTPUTS],
     /// Largest deviation of a member from the mean, per output, in the output's unit.
@@ -16,27 +16,27 @@ pub struct Estimate {
 
 #[derive(Clone, Debug)]
 pub struct Estimator {
-    model: Model,
+    model: ForceModel,
     features: Vec<f32>,
     scratch: Vec<f32>,
 }
 
 impl Estimator {
     /// Prepares a model; allocates everything that it needs.
-    pub fn new(model: Model) -> Self {
+    pub fn new(model: ForceModel) -> Self {
         let features = vec![0.0; model.expansion.width()];
         let scratch = vec![0.0; model.doubt.width];
         Self { model, features, scratch }
     }
 
-    pub const fn model(&self) -> &Model {
+    pub const fn model(&self) -> &ForceModel {
         &self.model
     }
 
-    /// Predicts for one row of inputs, in the order of [`Model::inputs`]. A wrong number of inputs or a non-finite
+    /// Predicts for one row of inputs, in the order of [`ForceModel::inputs`]. A wrong number of inputs or a non-finite
     /// input gives zeros with `in_doubt`.
-    pub fn estimate(&mut self, inputs: &[f32]) -> Estimate {
-        let refused = Estimate { doubt: f32::INFINITY, in_doubt: true, ..Estimate::default() };
+    pub fn estimate(&mut self, inputs: &[f32]) -> TipForceEstimate {
+        let refused = TipForceEstimate { doubt: f32::INFINITY, in_doubt: true, ..TipForceEstimate::default() };
         let Self { model, features, scratch } = self;
         if inputs.len() != model.inputs.len() || !inputs.iter().all(|x| x.is_finite()) {
             return refused;
@@ -62,7 +62,7 @@ impl Estimator {
         for k in 0..outputs {
             spread[k] = answer.spread[k] / model.scale.inverse_sd[k];
         }
-        Estimate { output, spread, doubt: score, in_doubt: score > 1.0 }
+        TipForceEstimate { output, spread, doubt: score, in_doubt: score > 1.0 }
     }
 }
 

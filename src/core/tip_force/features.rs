@@ -39,7 +39,7 @@ impl Default for FeatureSettings {
 
 /// A stretch counts as known once it has reached this fraction of its maximum length, because from then on it hardly
 /// depends on its initial value.
-const KNOWN_SHARE: f64 = 0.8;
+const KNOWN_FRACTION: f64 = 0.8;
 
 /// A gap between two samples longer than this, s, resets the state. Chosen.
 const HOLE_S: f64 = 0.020;
@@ -53,7 +53,7 @@ pub enum NoRow {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Row {
+pub struct FeatureRow {
     /// In the order of [`DEFAULT_INPUTS`].
     pub inputs: [f32; LIVE_INPUTS],
     /// Rotation into the frame of the inputs and of the force at the tip that belongs to them.
@@ -62,13 +62,13 @@ pub struct Row {
 
 /// State of the computation; one per wrist sensor.
 #[derive(Clone, Debug)]
-pub struct Features {
+pub struct TipForceFeatures {
     settings: FeatureSettings,
-    last: Option<Last>,
+    last: Option<LastValues>,
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Last {
+struct LastValues {
     t_s: f64,
     wrench: Wrench,
     insertion_m: f64,
@@ -78,7 +78,7 @@ struct Last {
     known: bool,
 }
 
-impl Features {
+impl TipForceFeatures {
     pub const fn new(settings: FeatureSettings) -> Self {
         Self { settings, last: None }
     }
@@ -91,7 +91,7 @@ impl Features {
     ///
     /// # Errors
     /// [`NoRow`] if the sample is incomplete or the state is not known yet.
-    pub fn step(&mut self, t_s: f64, gravity_free: &Wrench, sample: &WristSample) -> Result<Row, NoRow> {
+    pub fn step(&mut self, t_s: f64, gravity_free: &Wrench, sample: &WristSample) -> Result<FeatureRow, NoRow> {
         // The state survives an incomplete sample: the next complete sample shows how far the instrument moved
         // meanwhile.
         let complete = sample.world_from_s1.zip(sample.insertion_m);
@@ -101,7 +101,7 @@ impl Features {
             Some(last) if t_s > last.t_s && t_s - last.t_s <= HOLE_S => {
                 self.advance(&last, t_s, gravity_free, insertion_m)
             }
-            _ => Last {
+            _ => LastValues {
                 t_s,
                 wrench: *gravity_free,
                 insertion_m,
@@ -135,31 +135,31 @@ impl Features {
             now.stretch_m[1],
             now.slip_m_s,
         ];
-        Ok(Row { inputs: inputs.map(|value| value as f32), shaft_from_s1 })
+        Ok(FeatureRow { inputs: inputs.map(|value| value as f32), shaft_from_s1 })
     }
 
-    fn advance(&self, last: &Last, t_s: f64, wrench: &Wrench, insertion_m: f64) -> Last {
+    fn advance(&self, last: &LastValues, t_s: f64, wrench: &Wrench, insertion_m: f64) -> LastValues {
         let FeatureSettings { smoothing_s, presliding_m, slip_m } = self.settings;
         let dt_s = t_s - last.t_s;
         // First-order low-pass, exact for an input that is constant over the step.
-        let share = 1.0 - libm::exp(-dt_s / smoothing_s);
-        let way_m = (insertion_m - last.insertion_m) * share;
-        let length_m = way_m.abs();
+        let fraction = 1.0 - libm::exp(-dt_s / smoothing_s);
+        let travel_m = (insertion_m - last.insertion_m) * fraction;
+        let length_m = travel_m.abs();
         // Semi-implicit, so that it is stable for steps of any length.
         let stretch_m: [f64; 2] =
-            std::array::from_fn(|k| (last.stretch_m[k] + way_m) / (1.0 + length_m / presliding_m[k]));
+            std::array::from_fn(|k| (last.stretch_m[k] + travel_m) / (1.0 + length_m / presliding_m[k]));
         let slip = length_m / (length_m + slip_m);
-        Last {
+        LastValues {
             t_s,
             wrench: Wrench {
-                force_n: last.wrench.force_n + (wrench.force_n - last.wrench.force_n) * share,
-                torque_nm: last.wrench.torque_nm + (wrench.torque_nm - last.wrench.torque_nm) * share,
+                force_n: last.wrench.force_n + (wrench.force_n - last.wrench.force_n) * fraction,
+                torque_nm: last.wrench.torque_nm + (wrench.torque_nm - last.wrench.torque_nm) * fraction,
             },
-            insertion_m: last.insertion_m + way_m,
-            speed_m_s: way_m / dt_s,
+            insertion_m: last.insertion_m + travel_m,
+            speed_m_s: travel_m / dt_s,
             stretch_m,
             slip_m_s: last.slip_m_s + (length_m / dt_s - last.slip_m_s) * slip,
-            known: last.known || stretch_m[1].abs() >= KNOWN_SHARE * presliding_m[1],
+            known: last.known || stretch_m[1].abs() >= KNOWN_FRACTION * presliding_m[1],
         }
     }
 }
@@ -184,7 +184,7 @@ mod tests {
 
     #[test]
     fn the_last_way_and_its_speed_are_remembered() {
-        let mut features = Features::new(FeatureSettings::default());
+        let mut features = TipForceFeatures::new(FeatureSettings::default());
         let wrench = Wrench { force_n: Vector3::new(1.0, 2.0, 3.0), torque_nm: Vector3::zeros() };
         let mut t_s = 0.0;
         let mut go = |from_m: f64, to_m: f64| {
@@ -217,7 +217,7 @@ mod tests {
         let world_from_s1 = UnitQuaternion::from_euler_angles(2.7, 0.3, -0.5);
         let row = |roll_rad: f64| {
             let roll = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), roll_rad);
-            let mut features = Features::new(FeatureSettings::default());
+            let mut features = TipForceFeatures::new(FeatureSettings::default());
             let rolled = wrench.turned(&roll.inverse());
             let rows = (0..100).map(|i| {
                 let sample =
@@ -242,8 +242,8 @@ mod tests {
     fn a_hole_empties_the_memory_and_an_incomplete_sample_does_not() {
         let wrench = Wrench::default();
         let mut t_s = 0.0;
-        let mut features = Features::new(FeatureSettings::default());
-        let mut moved = |features: &mut Features| {
+        let mut features = TipForceFeatures::new(FeatureSettings::default());
+        let mut moved = |features: &mut TipForceFeatures| {
             let mut row = Err(NoRow::Missing);
             for i in 0..60 {
                 t_s += 1e-3;

@@ -13,7 +13,7 @@
 //! a reversal. It follows a slow load; use the load itself as another input for fast changes.
 
 #[derive(Clone, Debug, PartialEq)]
-pub struct Derived {
+pub struct DerivedInput {
     /// The load column; `None` for `presliding`.
     load: Option<String>,
     position: String,
@@ -23,7 +23,7 @@ pub struct Derived {
 
 /// State of a derived input. Steps allocate nothing.
 #[derive(Clone, Debug)]
-pub struct Memory {
+pub struct DerivedMemory {
     width: f32,
     /// The last position, and the distance travelled since the last reversal, limited to the width.
     last: Option<f32>,
@@ -35,7 +35,7 @@ pub struct Memory {
     swing: f32,
 }
 
-impl Derived {
+impl DerivedInput {
     /// Parses a name. Returns `None` for a plain column (no colon), and an error that explains what is wrong with the
     /// name.
     pub fn parse(name: &str) -> Option<Result<Self, String>> {
@@ -80,13 +80,13 @@ impl Derived {
 
     /// Creates the state at the start of a trajectory. A known swing (in the unit of the load) takes precedence over
     /// the one in the name.
-    pub fn memory(&self, swing: Option<f32>) -> Memory {
+    pub fn memory(&self, swing: Option<f32>) -> DerivedMemory {
         let swing = swing.or(self.swing).unwrap_or(0.0);
-        Memory { width: self.width, last: None, travel: 0.0, side: 0.0, load: 0.0, swing }
+        DerivedMemory { width: self.width, last: None, travel: 0.0, side: 0.0, load: 0.0, swing }
     }
 
     /// Returns the value for the next row, and whether the swing has just been measured.
-    pub fn step(&self, memory: &mut Memory, [position, load]: [f32; 2]) -> (f32, bool) {
+    pub fn step(&self, memory: &mut DerivedMemory, [position, load]: [f32; 2]) -> (f32, bool) {
         let measured = memory.step(position, load);
         let value = if self.load.is_some() { memory.midline(load) } else { memory.travel / memory.width };
         (value, measured)
@@ -99,7 +99,7 @@ impl Derived {
     }
 }
 
-impl Memory {
+impl DerivedMemory {
     fn step(&mut self, position: f32, load: f32) -> bool {
         let moved = position - self.last.unwrap_or(position);
         self.last = Some(position);
@@ -135,7 +135,7 @@ mod tests {
 
     #[test]
     fn presliding_tells_sliding_from_turning_round() {
-        let derived = Derived::parse("presliding:x_m:0.5").unwrap().unwrap();
+        let derived = DerivedInput::parse("presliding:x_m:0.5").unwrap().unwrap();
         let mut memory = derived.memory(None);
         let values: Vec<f32> = [7.0, 7.25, 8.0, 7.75, 7.5, 6.0].map(|x| derived.step(&mut memory, [x, x]).0).to_vec();
         assert_eq!(values, [0.0, 0.5, 1.0, 0.5, 0.0, -1.0]);
@@ -143,10 +143,10 @@ mod tests {
 
     #[test]
     fn a_midline_measures_coulomb_friction_at_each_reversal_and_holds_the_load_while_it_turns() {
-        let derived = Derived::parse("midline:f_n:x_m:0.05:1.0").unwrap().unwrap();
+        let derived = DerivedInput::parse("midline:f_n:x_m:0.05:1.0").unwrap().unwrap();
         let mut memory = derived.memory(None);
         let mut friction = derived.memory(None);
-        let stop = Derived::parse("presliding:x_m:0.02").unwrap().unwrap();
+        let stop = DerivedInput::parse("presliding:x_m:0.02").unwrap().unwrap();
         let mut worst = 0.0_f32;
         for k in 0..4000_u16 {
             let x = (f32::from(k) * 0.01).sin();
@@ -163,7 +163,7 @@ mod tests {
 
     #[test]
     fn before_the_first_reversal_the_named_swing_stands() {
-        let derived = Derived::parse("midline:f_n:x_m:0.5:1.0").unwrap().unwrap();
+        let derived = DerivedInput::parse("midline:f_n:x_m:0.5:1.0").unwrap().unwrap();
         let mut memory = derived.memory(None);
         assert!(derived.step(&mut memory, [0.0, 3.0]) == (3.0, false));
         assert!(derived.step(&mut memory, [1.0, 3.0]) == (2.5, false));
@@ -172,13 +172,13 @@ mod tests {
 
     #[test]
     fn a_misspelt_name_is_refused_and_a_plain_one_is_not_touched() {
-        assert!(Derived::parse("fx_n").is_none());
+        assert!(DerivedInput::parse("fx_n").is_none());
         for name in
             ["presliding:x", "presliding:x:0", "presliding:x:nan", "midline:f:x:-1", "other:x:1", "midline:f:x:1:inf"]
         {
-            assert!(Derived::parse(name).unwrap().unwrap_err().contains(name));
+            assert!(DerivedInput::parse(name).unwrap().unwrap_err().contains(name));
         }
-        assert!(Derived::parse("midline:f:x:1").unwrap().unwrap().is_open());
-        assert!(!Derived::parse("midline:f:x:1:2").unwrap().unwrap().is_open());
+        assert!(DerivedInput::parse("midline:f:x:1").unwrap().unwrap().is_open());
+        assert!(!DerivedInput::parse("midline:f:x:1:2").unwrap().unwrap().is_open());
     }
 }

@@ -9,7 +9,7 @@
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-use super::{DEFAULT_INPUTS, DEFAULT_OUTPUTS, Estimator, FeatureSettings, Features, Model, NoRow};
+use super::{DEFAULT_INPUTS, DEFAULT_OUTPUTS, Estimator, FeatureSettings, ForceModel, NoRow, TipForceFeatures};
 use crate::frames::{Wrench, WristSample};
 
 /// A valid model with input columns that are not available in the loop.
@@ -46,7 +46,7 @@ pub struct TipForceReport {
     /// Force of the tissue on the tip, N (`s1`).
     pub force_s1_n: Vector3<f64>,
     /// Fraction of the network in the force, 0 to 1; the remainder is the fallback.
-    pub network_share: f64,
+    pub network_fraction: f64,
     /// Reason why the fallback is taking over; `None` while the network is used.
     pub unsure: Option<Unsure>,
     /// Outside the training data: only the network's linear path contributes.
@@ -72,31 +72,31 @@ const HANDOVER_S: f64 = 0.050;
 const HOLD_S: f64 = 0.300;
 
 #[derive(Clone, Debug)]
-pub struct TipForce {
+pub struct LiveTipForce {
     estimator: Estimator,
     /// Indices of the live columns that the model uses, and a buffer for them.
     columns: Vec<usize>,
     inputs: Vec<f32>,
-    features: Features,
+    features: TipForceFeatures,
     fallback: Fallback,
-    outside: Lasting,
-    far: Lasting,
+    outside: LastingCondition,
+    far: LastingCondition,
     unsure: Option<Unsure>,
-    share: f64,
+    fraction: f64,
     /// Fraction of the wrist force in the fallback; the remainder is the held force.
-    wrist_share: f64,
+    wrist_fraction: f64,
     /// The last reliable force (`None` before the first one), and the fraction of it that has not faded yet.
     held_n: Option<Vector3<f64>>,
-    held_share: f64,
+    held_fraction: f64,
     last_t_s: Option<f64>,
 }
 
-impl TipForce {
+impl LiveTipForce {
     /// Prepares a model for the loop.
     ///
     /// # Errors
     /// [`NotLive`] if the model needs a column that is not available in the loop.
-    pub fn new(model: Model, fallback: Fallback) -> Result<Self, NotLive> {
+    pub fn new(model: ForceModel, fallback: Fallback) -> Result<Self, NotLive> {
         let live = |name: &String| {
             let place = DEFAULT_INPUTS.iter().position(|column| column == name);
             place.ok_or_else(|| NotLive { found: name.clone() })
@@ -109,20 +109,20 @@ impl TipForce {
             inputs: vec![0.0; columns.len()],
             columns,
             estimator: Estimator::new(model),
-            features: Features::new(FeatureSettings::default()),
+            features: TipForceFeatures::new(FeatureSettings::default()),
             fallback,
-            outside: Lasting::default(),
-            far: Lasting { is: true, ..Lasting::default() },
+            outside: LastingCondition::default(),
+            far: LastingCondition { is: true, ..LastingCondition::default() },
             unsure: Some(Unsure::NotMoved),
-            share: 0.0,
-            wrist_share: 0.0,
+            fraction: 0.0,
+            wrist_fraction: 0.0,
             held_n: None,
-            held_share: 0.0,
+            held_fraction: 0.0,
             last_t_s: None,
         })
     }
 
-    pub const fn model(&self) -> &Model {
+    pub const fn model(&self) -> &ForceModel {
         self.estimator.model()
     }
 
@@ -163,17 +163,17 @@ impl TipForce {
             self.held_n = answer_n;
         }
         let target = if self.unsure.is_none() { 1.0 } else { 0.0 };
-        let most = dt_s / HANDOVER_S;
-        self.share += (target - self.share).clamp(-most, most);
+        let max = dt_s / HANDOVER_S;
+        self.fraction += (target - self.fraction).clamp(-max, max);
         if self.unsure.is_some() {
             let wrist = if self.fallback_now() == Fallback::WristForce { 1.0 } else { 0.0 };
-            self.wrist_share += (wrist - self.wrist_share).clamp(-most, most);
+            self.wrist_fraction += (wrist - self.wrist_fraction).clamp(-max, max);
         }
-        self.held_share += (target - self.held_share).clamp(-dt_s / HOLD_S, most);
+        self.held_fraction += (target - self.held_fraction).clamp(-dt_s / HOLD_S, max);
         // A single uncertain prediction is replaced by the last reliable one.
         let held_n = self.held_n.unwrap_or_else(Vector3::zeros);
-        let force_s1_n = held_n * self.share + self.fallback_n(gravity_free) * (1.0 - self.share);
-        TipForceReport { force_s1_n, network_share: self.share, unsure: self.unsure, extrapolates, doubt }
+        let force_s1_n = held_n * self.fraction + self.fallback_n(gravity_free) * (1.0 - self.fraction);
+        TipForceReport { force_s1_n, network_fraction: self.fraction, unsure: self.unsure, extrapolates, doubt }
     }
 
     fn judge(&mut self, reason: Option<Unsure>, no_row: bool, dt_s: f64) {
@@ -187,21 +187,21 @@ impl TipForce {
 
     fn fallback_n(&self, gravity_free: &Wrench) -> Vector3<f64> {
         let wrist_n = if gravity_free.is_finite() { gravity_free.force_n } else { Vector3::zeros() };
-        let held_n = self.held_n.unwrap_or_else(Vector3::zeros) * self.held_share;
-        wrist_n * self.wrist_share + held_n * (1.0 - self.wrist_share)
+        let held_n = self.held_n.unwrap_or_else(Vector3::zeros) * self.held_fraction;
+        wrist_n * self.wrist_fraction + held_n * (1.0 - self.wrist_fraction)
     }
 }
 
 /// A condition on samples that becomes true after several of them and false when none has met it for a while.
 #[derive(Clone, Copy, Debug, Default)]
-struct Lasting {
+struct LastingCondition {
     is: bool,
     /// Flags of the last five samples, newest in the lowest bit.
     recent: u32,
     since_s: f64,
 }
 
-impl Lasting {
+impl LastingCondition {
     fn step(&mut self, now: bool, dt_s: f64) -> bool {
         self.recent = (self.recent << 1 | u32::from(now)) & 0b1_1111;
         self.since_s = if now { 0.0 } else { self.since_s + dt_s };

@@ -1,16 +1,16 @@
-use super::{Baselines, Doubt, Expansion, Network, Normalisation, Origin};
+use super::{Baselines, Doubt, Expansion, ModelOrigin, Normalisation, TipForceNetwork};
 
 /// A trained network with all data that are needed to use it.
 #[derive(Clone, Debug)]
-pub struct Model {
+pub struct ForceModel {
     pub inputs: Vec<String>,
     pub outputs: Vec<String>,
     pub expansion: Expansion,
     pub features: Normalisation,
     pub scale: Normalisation,
-    pub network: Network,
+    pub network: TipForceNetwork,
     pub doubt: Doubt,
     /// Simpler methods fitted on the same data, for comparison.
     pub baselines: Baselines,
-    pub origin: Origin,
+    pub origin: ModelOrigin,
 }

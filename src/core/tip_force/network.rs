@@ -14,14 +14,14 @@ const LANE: usize = 8;
 /// A matrix with a bias: `outputs = inputs W + b`.
 ///
 /// ```
-/// use nima_core::tip_force::Layer;
+/// use nima_core::tip_force::TipForceLayer;
 ///
-/// let layer = Layer::new(2, 1, &[0.5, -1.0], &[0.1]).expect("sizes agree");
+/// let layer = TipForceLayer::new(2, 1, &[0.5, -1.0], &[0.1]).expect("sizes agree");
 /// assert_eq!((layer.shape(), layer.weights()), ((2, 1), vec![0.5, -1.0]));
-/// assert!(Layer::new(2, 1, &[0.5], &[0.1]).is_none(), "a weight is missing");
+/// assert!(TipForceLayer::new(2, 1, &[0.5], &[0.1]).is_none(), "a weight is missing");
 /// ```
 #[derive(Clone, Debug, PartialEq)]
-pub struct Layer {
+pub struct TipForceLayer {
     inputs: usize,
     outputs: usize,
     padded: usize,
@@ -30,7 +30,7 @@ pub struct Layer {
     bias: Vec<f32>,
 }
 
-impl Layer {
+impl TipForceLayer {
     /// Creates a layer with weights stored input by input (`inputs x outputs`) and a bias of length `outputs`; `None`
     /// if the sizes disagree.
     pub fn new(inputs: usize, outputs: usize, weights: &[f32], bias: &[f32]) -> Option<Self> {
@@ -73,13 +73,13 @@ impl Layer {
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Member {
-    layers: Vec<Layer>,
-    skip: Layer,
+    layers: Vec<TipForceLayer>,
+    skip: TipForceLayer,
 }
 
 impl Member {
     /// Creates a network with these layers and the linear path; `None` if the sizes do not match.
-    pub fn new(layers: Vec<Layer>, skip: Layer) -> Option<Self> {
+    pub fn new(layers: Vec<TipForceLayer>, skip: TipForceLayer) -> Option<Self> {
         let first = layers.first()?;
         let last = layers.last()?;
         let chained = layers.windows(2).all(|pair| pair[0].outputs == pair[1].inputs);
@@ -88,11 +88,11 @@ impl Member {
     }
 
     /// Returns the layers, from the inputs to the outputs.
-    pub fn layers(&self) -> &[Layer] {
+    pub fn layers(&self) -> &[TipForceLayer] {
         &self.layers
     }
 
-    pub const fn skip(&self) -> &Layer {
+    pub const fn skip(&self) -> &TipForceLayer {
         &self.skip
     }
 
@@ -126,19 +126,19 @@ impl Member {
 
 /// Output of an ensemble for one row of normalised inputs.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Answer {
+pub struct EnsembleOutput {
     pub mean: [f32; MAX_OUTPUTS],
     /// Largest distance of a member from that mean, per output.
     pub spread: [f32; MAX_OUTPUTS],
 }
 
 #[derive(Clone, Debug)]
-pub struct Network {
+pub struct TipForceNetwork {
     members: Vec<Member>,
     buffers: [Vec<f32>; 2],
 }
 
-impl Network {
+impl TipForceNetwork {
     /// Creates an ensemble of members of the same shape; `None` if there are no members or their shapes differ.
     pub fn new(members: Vec<Member>) -> Option<Self> {
         let shape = members.first()?.shape();
@@ -160,7 +160,7 @@ impl Network {
 
     /// Evaluates all members on normalised inputs. `trust` (0 to 1) scales the nonlinear part: beyond the training data
     /// that part is unreliable, and the linear path alone is the better estimate. Allocates nothing.
-    pub fn answer(&mut self, inputs: &[f32], trust: f32) -> Answer {
+    pub fn answer(&mut self, inputs: &[f32], trust: f32) -> EnsembleOutput {
         let count = self.members.len() as f32;
         let (mut mean, mut low, mut high) =
             ([0.0; MAX_OUTPUTS], [f32::INFINITY; MAX_OUTPUTS], [f32::NEG_INFINITY; MAX_OUTPUTS]);
@@ -172,7 +172,7 @@ impl Network {
                 high[k] = high[k].max(outputs[k]);
             }
         }
-        Answer { mean, spread: std::array::from_fn(|k| (high[k] - mean[k]).max(mean[k] - low[k])) }
+        EnsembleOutput { mean, spread: std::array::from_fn(|k| (high[k] - mean[k]).max(mean[k] - low[k])) }
     }
 }
 
@@ -185,16 +185,16 @@ mod tests {
             let mut draw = |n: usize| (0..n).map(|_| generator.f32() - 0.5).collect::<Vec<_>>();
             let weights = draw(inputs * outputs);
             let bias = draw(outputs);
-            Layer::new(inputs, outputs, &weights, &bias).unwrap()
+            TipForceLayer::new(inputs, outputs, &weights, &bias).unwrap()
         };
         let layers = widths.windows(2).map(|pair| layer(pair[0], pair[1])).collect();
-        let skip = Layer { bias: vec![0.0; LANE], ..layer(widths[0], widths[widths.len() - 1]) };
+        let skip = TipForceLayer { bias: vec![0.0; LANE], ..layer(widths[0], widths[widths.len() - 1]) };
         Member::new(layers, skip).unwrap()
     }
 
     /// The same function, written in the simplest way in f64.
     fn reference(member: &Member, inputs: &[f64]) -> Vec<f64> {
-        let times = |layer: &Layer, inputs: &[f64]| -> Vec<f64> {
+        let times = |layer: &TipForceLayer, inputs: &[f64]| -> Vec<f64> {
             let (n, m) = layer.shape();
             let weights = layer.weights();
             let dot = |o| (0..n).map(|i| inputs[i] * f64::from(weights[i * m + o])).sum::<f64>();
@@ -216,7 +216,7 @@ mod tests {
     fn f32_agrees_with_f64_of_the_same_weights() {
         let mut generator = fastrand::Rng::with_seed(5);
         let members: Vec<_> = (0..4).map(|_| random_member(&[18, 32, 32, 3], &mut generator)).collect();
-        let mut network = Network::new(members.clone()).unwrap();
+        let mut network = TipForceNetwork::new(members.clone()).unwrap();
         let mut worst = 0.0_f64;
         for _ in 0..1000 {
             let inputs: Vec<f32> = (0..18).map(|_| 6.0 * generator.f32() - 3.0).collect();
@@ -236,13 +236,13 @@ mod tests {
 
     #[test]
     fn sizes_that_do_not_fit_are_refused() {
-        assert!(Layer::new(2, 2, &[0.0; 3], &[0.0; 2]).is_none());
-        let layer = |n, m| Layer::new(n, m, &vec![0.0; n * m], &vec![0.0; m]).unwrap();
+        assert!(TipForceLayer::new(2, 2, &[0.0; 3], &[0.0; 2]).is_none());
+        let layer = |n, m| TipForceLayer::new(n, m, &vec![0.0; n * m], &vec![0.0; m]).unwrap();
         assert!(Member::new(vec![layer(3, 4), layer(5, 2)], layer(3, 2)).is_none());
         assert!(Member::new(vec![layer(3, 4), layer(4, 2)], layer(3, 1)).is_none());
         assert!(Member::new(Vec::new(), layer(3, 1)).is_none());
         let member = |n| Member::new(vec![layer(n, 4), layer(4, 2)], layer(n, 2)).unwrap();
-        assert!(Network::new(vec![member(3), member(4)]).is_none());
-        assert!(Network::new(Vec::new()).is_none());
+        assert!(TipForceNetwork::new(vec![member(3), member(4)]).is_none());
+        assert!(TipForceNetwork::new(Vec::new()).is_none());
     }
 }

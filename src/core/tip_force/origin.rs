@@ -61,7 +61,7 @@ pub struct MemberFigures {
 /// Result of a check, stored in the model's file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Check {
+pub struct OriginCheck {
     #[serde(flatten)]
     pub judgement: Judgement,
     /// Date of the check, UTC, ISO 8601.
@@ -75,12 +75,13 @@ pub struct Check {
     /// Standard deviation of the prediction without contact, N.
     pub free_sd_n: [f64; 3],
     /// Fraction of the samples flagged as uncertain.
-    pub doubt_share: f64,
+    #[serde(rename = "doubt_share")]
+    pub doubt_fraction: f64,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Origin {
+pub struct ModelOrigin {
     /// Serial number of the sensor, if the caller gave one.
     pub sensor: Option<String>,
     pub tool: Option<String>,
@@ -96,5 +97,5 @@ pub struct Origin {
     /// Features that were constant in the training data; a sample in which they differ is flagged as uncertain.
     pub constant: Vec<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub check: Option<Check>,
+    pub check: Option<OriginCheck>,
 }

@@ -2,7 +2,7 @@
 
 /// Follows the 32-bit microsecond clock of a sensor with a fixed period.
 #[derive(Clone, Debug)]
-pub struct Clock {
+pub struct BotaClock {
     period_us: f64,
     newest: Option<u32>,
     total_us: u64,
@@ -13,7 +13,7 @@ pub struct Clock {
 
 /// Order of a reading by its time stamp.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Step {
+pub enum BotaClockStep {
     /// Newer than all previous ones.
     Newer {
         /// Time since the clock's zero, unwrapped, s.
@@ -27,17 +27,17 @@ pub enum Step {
     Stale,
 }
 
-impl Clock {
+impl BotaClock {
     /// Creates a clock for a sensor with this period, us (must be positive).
     pub const fn new(period_us: f64) -> Self {
         Self { period_us, newest: None, total_us: 0, gap: None }
     }
 
-    pub fn step(&mut self, timestamp_us: u32) -> Step {
+    pub fn step(&mut self, timestamp_us: u32) -> BotaClockStep {
         let Some(newest) = self.newest else {
             self.newest = Some(timestamp_us);
             self.total_us = u64::from(timestamp_us);
-            return Step::Newer { device_s: self.total_us as f64 * 1e-6, missing: 0 };
+            return BotaClockStep::Newer { device_s: self.total_us as f64 * 1e-6, missing: 0 };
         };
         let ahead_us = timestamp_us.wrapping_sub(newest);
         // More than half the range ahead means behind.
@@ -49,17 +49,17 @@ impl Clock {
         self.gap = if missing > 0 { Some((newest, missing)) } else { self.gap };
         self.newest = Some(timestamp_us);
         self.total_us += u64::from(ahead_us);
-        Step::Newer { device_s: self.total_us as f64 * 1e-6, missing }
+        BotaClockStep::Newer { device_s: self.total_us as f64 * 1e-6, missing }
     }
 
-    fn behind(&mut self, timestamp_us: u32, newest: u32) -> Step {
-        let Some((before, missing)) = self.gap else { return Step::Stale };
+    fn behind(&mut self, timestamp_us: u32, newest: u32) -> BotaClockStep {
+        let Some((before, missing)) = self.gap else { return BotaClockStep::Stale };
         let since = timestamp_us.wrapping_sub(before);
         if since == 0 || since >= newest.wrapping_sub(before) {
-            return Step::Stale;
+            return BotaClockStep::Stale;
         }
         self.gap = (missing > 1).then_some((before, missing - 1));
-        Step::Late
+        BotaClockStep::Late
     }
 }
 
@@ -67,16 +67,16 @@ impl Clock {
 mod tests {
     use super::*;
 
-    fn device_s(step: Step) -> f64 {
+    fn device_s(step: BotaClockStep) -> f64 {
         match step {
-            Step::Newer { device_s, missing: 0 } => device_s,
+            BotaClockStep::Newer { device_s, missing: 0 } => device_s,
             other => panic!("{other:?}"),
         }
     }
 
     #[test]
     fn time_goes_on_where_the_counter_begins_again() {
-        let mut clock = Clock::new(1250.0);
+        let mut clock = BotaClock::new(1250.0);
         let begin = u32::MAX - 10_000;
         let zero_s = device_s(clock.step(begin));
         for k in 1..100_000_u32 {
@@ -87,7 +87,7 @@ mod tests {
 
     #[test]
     fn what_is_missing_is_counted_over_the_wrap_too_and_in_spite_of_jitter() {
-        let mut clock = Clock::new(1000.0);
+        let mut clock = BotaClock::new(1000.0);
         let mut lost = 0;
         let mut random = fastrand::Rng::with_seed(4);
         let mut left_out = 0;
@@ -98,7 +98,7 @@ mod tests {
             }
             let jitter = random.u32(0..400);
             match clock.step((u32::MAX - 5_000_000).wrapping_add(k * 1000 + jitter)) {
-                Step::Newer { missing, .. } => lost += missing,
+                BotaClockStep::Newer { missing, .. } => lost += missing,
                 other => panic!("{k}: {other:?}"),
             }
         }
@@ -107,13 +107,13 @@ mod tests {
 
     #[test]
     fn late_readings_are_told_from_repeated_ones() {
-        let mut clock = Clock::new(1000.0);
+        let mut clock = BotaClock::new(1000.0);
         clock.step(10_000);
-        assert_eq!(clock.step(13_000), Step::Newer { device_s: 0.013, missing: 2 });
-        assert_eq!(clock.step(11_000), Step::Late);
-        assert_eq!(clock.step(12_000), Step::Late);
-        assert_eq!(clock.step(12_000), Step::Stale, "no more were missing");
-        assert_eq!(clock.step(13_000), Step::Stale);
-        assert_eq!(clock.step(0), Step::Stale, "a restarted clock is not newer");
+        assert_eq!(clock.step(13_000), BotaClockStep::Newer { device_s: 0.013, missing: 2 });
+        assert_eq!(clock.step(11_000), BotaClockStep::Late);
+        assert_eq!(clock.step(12_000), BotaClockStep::Late);
+        assert_eq!(clock.step(12_000), BotaClockStep::Stale, "no more were missing");
+        assert_eq!(clock.step(13_000), BotaClockStep::Stale);
+        assert_eq!(clock.step(0), BotaClockStep::Stale, "a restarted clock is not newer");
     }
 }

@@ -8,7 +8,7 @@
 
 use crc::{CRC_16_IBM_SDLC, Crc};
 
-use crate::unread::Unread;
+use crate::stream_buffer::Unread;
 
 /// Header of a frame with force and torque only.
 pub const HEADER_WRENCH: u8 = 0xAA;
@@ -24,7 +24,7 @@ pub const STATUS_BITS: u16 = 0b1111;
 const CRC_BYTES: usize = 2;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Frame {
+pub struct BotaFrame {
     /// Status word: bit 0 throttled, 1 overrange, 2 invalid, 3 raw; the others are reserved.
     pub status: u16,
     pub force_n: [f32; 3],
@@ -62,7 +62,7 @@ pub enum NoFrame {
     Checksum,
 }
 
-impl Frame {
+impl BotaFrame {
     /// Encodes the frame with its checksum at the start of `buffer`; returns its length.
     pub fn encode(&self, buffer: &mut [u8; INERTIAL_BYTES]) -> usize {
         let length = if self.inertial.is_some() { INERTIAL_BYTES } else { WRENCH_BYTES };
@@ -87,15 +87,15 @@ impl Frame {
     /// [`NoFrame`] if the header, the length or the checksum is wrong.
     ///
     /// ```
-    /// use nima_devices::bota::codec::{Frame, INERTIAL_BYTES, NoFrame};
+    /// use nima_devices::bota::codec::{BotaFrame, INERTIAL_BYTES, NoFrame};
     ///
-    /// let frame = Frame { force_n: [1.0, -2.0, 0.5], timestamp_us: 1000, ..Frame::default() };
+    /// let frame = BotaFrame { force_n: [1.0, -2.0, 0.5], timestamp_us: 1000, ..BotaFrame::default() };
     /// let mut wire = [0; INERTIAL_BYTES];
     /// let length = frame.encode(&mut wire);
-    /// assert_eq!(Frame::decode(&wire[..length]), Ok(frame));
+    /// assert_eq!(BotaFrame::decode(&wire[..length]), Ok(frame));
     ///
     /// wire[5] ^= 1;
-    /// assert_eq!(Frame::decode(&wire[..length]), Err(NoFrame::Checksum));
+    /// assert_eq!(BotaFrame::decode(&wire[..length]), Err(NoFrame::Checksum));
     /// ```
     pub fn decode(bytes: &[u8]) -> Result<Self, NoFrame> {
         let header = *bytes.first().ok_or(NoFrame::Shape)?;
@@ -140,7 +140,7 @@ const ROOM: usize = 2048;
 /// Finds frames in a stream of bytes. Write into [`room`](Self::room), report the number with [`filled`](Self::filled),
 /// then call [`next`](Self::next) until it returns `None`.
 #[derive(Debug)]
-pub struct Decoder {
+pub struct BotaDecoder {
     unread: Unread,
     /// Bytes skipped since the last refused or accepted frame, so that the remainder of a refused frame is not counted
     /// again.
@@ -149,13 +149,13 @@ pub struct Decoder {
     skipped: u64,
 }
 
-impl Default for Decoder {
+impl Default for BotaDecoder {
     fn default() -> Self {
         Self { unread: Unread::with_room(ROOM), since_refused: WRENCH_BYTES, damaged: 0, skipped: 0 }
     }
 }
 
-impl Decoder {
+impl BotaDecoder {
     /// Returns the buffer for new bytes; not empty once [`next`](Self::next) has returned `None`.
     pub fn room(&mut self) -> &mut [u8] {
         self.unread.room()
@@ -169,14 +169,14 @@ impl Decoder {
     /// Returns the next complete frame; `None` when more bytes are needed. Each call advances in the stream, so the
     /// work is bounded by the bytes received.
     #[expect(clippy::should_implement_trait, reason = "an iterator would borrow the room")]
-    pub fn next(&mut self) -> Option<Frame> {
+    pub fn next(&mut self) -> Option<BotaFrame> {
         while let Some(first) = self.unread.bytes().first() {
             let Some(length) = length_of(*first) else {
                 self.skip();
                 continue;
             };
             let candidate = self.unread.bytes().get(..length)?;
-            if let Ok(frame) = Frame::decode(candidate) {
+            if let Ok(frame) = BotaFrame::decode(candidate) {
                 self.unread.pass(length);
                 self.since_refused = WRENCH_BYTES;
                 return Some(frame);

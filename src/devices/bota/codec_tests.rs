@@ -6,8 +6,8 @@ fn bytes_of(hex: &str) -> Vec<u8> {
 }
 
 /// Returns the examples of the reference, section 1.1.
-fn golden() -> [(Frame, Vec<u8>); 2] {
-    let wrench = Frame {
+fn golden() -> [(BotaFrame, Vec<u8>); 2] {
+    let wrench = BotaFrame {
         status: 0,
         force_n: [1.0, -2.0, 3.5],
         torque_nm: [0.125, -0.25, 0.5],
@@ -16,7 +16,7 @@ fn golden() -> [(Frame, Vec<u8>); 2] {
         inertial: None,
     };
     let inertial = Inertial { acceleration_m_s2: [0.25, -0.5, -9.75], angular_velocity_rad_s: [0.0625, -0.125, 0.5] };
-    let with = Frame { status: 2, timestamp_us: u32::MAX, inertial: Some(inertial), ..wrench };
+    let with = BotaFrame { status: 2, timestamp_us: u32::MAX, inertial: Some(inertial), ..wrench };
     [
         (wrench, bytes_of("aa 0000 0000803f 000000c0 00006040 0000003e 000080be 0000003f 40420f00 0000cc41 3447")),
         (
@@ -29,12 +29,12 @@ fn golden() -> [(Frame, Vec<u8>); 2] {
     ]
 }
 
-fn random_frame(random: &mut fastrand::Rng) -> Frame {
+fn random_frame(random: &mut fastrand::Rng) -> BotaFrame {
     let mut three = || [(); 3].map(|()| (random.f32() - 0.5) * 200.0);
     let force_n = three();
     let torque_nm = three();
     let inertial = Inertial { acceleration_m_s2: three(), angular_velocity_rad_s: three() };
-    Frame {
+    BotaFrame {
         status: random.u16(..) & STATUS_BITS,
         force_n,
         torque_nm,
@@ -44,14 +44,14 @@ fn random_frame(random: &mut fastrand::Rng) -> Frame {
     }
 }
 
-fn encoded(frame: &Frame) -> Vec<u8> {
+fn encoded(frame: &BotaFrame) -> Vec<u8> {
     let mut buffer = [0; INERTIAL_BYTES];
     let length = frame.encode(&mut buffer);
     buffer[..length].to_vec()
 }
 
 /// Decodes a stream that arrives in pieces of random length.
-fn decoded(decoder: &mut Decoder, mut stream: &[u8], random: &mut fastrand::Rng) -> Vec<Frame> {
+fn decoded(decoder: &mut BotaDecoder, mut stream: &[u8], random: &mut fastrand::Rng) -> Vec<BotaFrame> {
     let mut frames = Vec::new();
     while !stream.is_empty() {
         let room = decoder.room();
@@ -70,7 +70,7 @@ fn decoded(decoder: &mut Decoder, mut stream: &[u8], random: &mut fastrand::Rng)
 fn golden_frames_are_written_and_read() {
     for (frame, bytes) in golden() {
         assert_eq!(encoded(&frame), bytes);
-        assert_eq!(Frame::decode(&bytes), Ok(frame));
+        assert_eq!(BotaFrame::decode(&bytes), Ok(frame));
     }
 }
 
@@ -79,7 +79,7 @@ fn a_frame_comes_back_as_it_was_sent() {
     let mut random = fastrand::Rng::with_seed(1);
     for _ in 0..10_000 {
         let frame = random_frame(&mut random);
-        assert_eq!(Frame::decode(&encoded(&frame)), Ok(frame));
+        assert_eq!(BotaFrame::decode(&encoded(&frame)), Ok(frame));
     }
 }
 
@@ -89,19 +89,19 @@ fn every_single_damaged_bit_is_found() {
         for bit in 0..bytes.len() * 8 {
             let mut damaged = bytes.clone();
             damaged[bit / 8] ^= 1 << (bit % 8);
-            assert!(Frame::decode(&damaged).is_err(), "bit {bit}");
+            assert!(BotaFrame::decode(&damaged).is_err(), "bit {bit}");
         }
-        assert_eq!(Frame::decode(&bytes[..bytes.len() - 1]), Err(NoFrame::Shape));
-        assert_eq!(Frame::decode(&[bytes.as_slice(), &[0]].concat()), Err(NoFrame::Shape));
+        assert_eq!(BotaFrame::decode(&bytes[..bytes.len() - 1]), Err(NoFrame::Shape));
+        assert_eq!(BotaFrame::decode(&[bytes.as_slice(), &[0]].concat()), Err(NoFrame::Shape));
     }
 }
 
 #[test]
 fn a_clean_stream_is_read_whole_in_pieces_of_any_length() {
     let mut random = fastrand::Rng::with_seed(2);
-    let sent: Vec<Frame> = (0..5000).map(|_| random_frame(&mut random)).collect();
+    let sent: Vec<BotaFrame> = (0..5000).map(|_| random_frame(&mut random)).collect();
     let stream: Vec<u8> = sent.iter().flat_map(encoded).collect();
-    let mut decoder = Decoder::default();
+    let mut decoder = BotaDecoder::default();
     assert_eq!(decoded(&mut decoder, &stream, &mut random), sent);
     assert_eq!((decoder.damaged(), decoder.skipped()), (0, 0));
 }
@@ -113,7 +113,7 @@ fn damaged_frames_are_counted_one_by_one_and_the_others_kept() {
     let mut stream = Vec::new();
     let mut damaged = 0;
     for _ in 0..5000 {
-        let frame = Frame { inertial: None, ..random_frame(&mut random) };
+        let frame = BotaFrame { inertial: None, ..random_frame(&mut random) };
         let mut bytes = encoded(&frame);
         if random.u8(..) < 40 {
             *bytes.last_mut().unwrap() ^= 0x55;
@@ -124,9 +124,9 @@ fn damaged_frames_are_counted_one_by_one_and_the_others_kept() {
         stream.extend(bytes);
     }
     // A false header near the end makes the decoder wait for more bytes.
-    let last = Frame::default();
+    let last = BotaFrame::default();
     stream.extend([encoded(&last), encoded(&last), encoded(&last)].concat());
-    let mut decoder = Decoder::default();
+    let mut decoder = BotaDecoder::default();
     let found = decoded(&mut decoder, &stream, &mut random);
     assert_eq!(found[..kept.len()], kept[..]);
     assert_eq!(decoder.skipped(), damaged * WRENCH_BYTES as u64);
@@ -136,10 +136,11 @@ fn damaged_frames_are_counted_one_by_one_and_the_others_kept() {
 #[test]
 fn a_payload_full_of_headers_is_not_locked_onto() {
     let word = f32::from_le_bytes([HEADER_WRENCH; 4]);
-    let full = Frame { force_n: [word; 3], torque_nm: [word; 3], ..Frame::default() };
+    let full = BotaFrame { force_n: [word; 3], torque_nm: [word; 3], ..BotaFrame::default() };
     for skip in 1..WRENCH_BYTES {
-        let stream: Vec<u8> = (0..50).flat_map(|k| encoded(&Frame { timestamp_us: k, ..full })).skip(skip).collect();
-        let found = decoded(&mut Decoder::default(), &stream, &mut fastrand::Rng::with_seed(5));
+        let stream: Vec<u8> =
+            (0..50).flat_map(|k| encoded(&BotaFrame { timestamp_us: k, ..full })).skip(skip).collect();
+        let found = decoded(&mut BotaDecoder::default(), &stream, &mut fastrand::Rng::with_seed(5));
         assert_eq!(found.len(), 49, "joined {skip} bytes late");
         assert!(found.iter().zip(1..).all(|(frame, k)| frame.timestamp_us == k));
     }
@@ -148,7 +149,7 @@ fn a_payload_full_of_headers_is_not_locked_onto() {
 /// Random bytes, damaged frames, and good ones in between: no panic, bounded work, and no frame that was not sent.
 fn fuzz(rounds: u64, seed: u64) {
     let mut random = fastrand::Rng::with_seed(seed);
-    let mut decoder = Decoder::default();
+    let mut decoder = BotaDecoder::default();
     let mut sent = 0_u64;
     let mut found = 0_u64;
     let mut fed = 0_u64;
@@ -168,7 +169,7 @@ fn fuzz(rounds: u64, seed: u64) {
         if random.u8(..) < 30 {
             bytes.insert(0, [HEADER_WRENCH, HEADER_INERTIAL][usize::from(random.bool())]);
         }
-        Frame::decode(&bytes).ok();
+        BotaFrame::decode(&bytes).ok();
         fed += bytes.len() as u64;
         let room = decoder.room();
         assert!(room.len() >= bytes.len(), "what is held stays short");

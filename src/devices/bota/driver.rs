@@ -4,14 +4,16 @@ use nalgebra::Vector3;
 use nima_core::frames::Wrench;
 
 use super::{
-    Settings,
-    clock::{Clock, Step},
-    codec::{Frame, STATUS_BITS},
-    link::Link,
-    opening::{self, Opened},
-    session::Timeouts,
+    BotaSettings,
+    clock::{BotaClock, BotaClockStep},
+    codec::{BotaFrame, STATUS_BITS},
+    link::BotaLink,
+    opening::{self, OpenSensor},
+    session::BotaTimeouts,
 };
-use crate::{Device, ForceReading, ForceStatus, Health, Identity, Loss, Stamped, Standing, Trouble};
+use crate::{
+    ConnectionState, Device, DeviceError, DeviceIdentity, ForceReading, ForceStatus, Health, Loss, TimedReading,
+};
 
 /// The sensor is lost if nothing usable has arrived for this time, s, at rates that give at least five readings in it;
 /// 2 ms remain of the 20 ms after which the loop takes the force away, so that the sensor is named as the cause.
@@ -34,7 +36,7 @@ pub const fn status_of(status: u16) -> ForceStatus {
     }
 }
 
-pub fn reading_of(frame: &Frame) -> ForceReading {
+pub fn reading_of(frame: &BotaFrame) -> ForceReading {
     let vector = |values: [f32; 3]| Vector3::from(values.map(f64::from));
     ForceReading {
         wrench: Wrench { force_n: vector(frame.force_n), torque_nm: vector(frame.torque_nm) },
@@ -60,10 +62,10 @@ fn is_plausible(reading: &ForceReading) -> bool {
 /// Only usable readings are returned: a reading that is overrange, invalid or raw, or has impossible numbers, is
 /// refused and counted; a throttled reading is returned with its flag. If nothing usable arrives for 18 ms (or five
 /// periods, if that is longer) the sensor is lost; the last data received decide the cause.
-pub struct Driver {
-    link: Link,
+pub struct BotaDriver {
+    link: BotaLink,
     judge: Judge,
-    identity: Identity,
+    identity: DeviceIdentity,
     rate_hz: f64,
     low_latency: bool,
     silence_s: f64,
@@ -75,38 +77,38 @@ pub struct Driver {
     base: (u64, u64),
 }
 
-impl std::fmt::Debug for Driver {
+impl std::fmt::Debug for BotaDriver {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let health = &self.judge.health;
         f.debug_struct("Driver").field("identity", &self.identity).field("health", health).finish_non_exhaustive()
     }
 }
 
-impl Driver {
+impl BotaDriver {
     /// Opens, configures and starts the sensor (blocks: 4 s for the first generation, which restarts when its port is
     /// opened).
     ///
     /// # Errors
-    /// [`Trouble`] if a setting is invalid, the sensor cannot be reached or configured, or its readings are not usable.
-    pub fn open(settings: &Settings) -> Result<Self, Trouble> {
-        Self::open_within(settings, Timeouts::default())
+    /// [`DeviceError`] if a setting is invalid, the sensor cannot be reached or configured, or its readings are not usable.
+    pub fn open(settings: &BotaSettings) -> Result<Self, DeviceError> {
+        Self::open_within(settings, BotaTimeouts::default())
     }
 
     /// Opens for a diagnosis: a failure is reported within a second, unless the sensor restarts.
-    pub(crate) fn try_open(settings: &Settings) -> Result<Self, Trouble> {
-        Self::open_within(settings, Timeouts::SHORT)
+    pub(crate) fn try_open(settings: &BotaSettings) -> Result<Self, DeviceError> {
+        Self::open_within(settings, BotaTimeouts::SHORT)
     }
 
     /// Opens the sensor with these timeouts.
     ///
     /// # Errors
-    /// The errors of [`Driver::open`].
-    pub fn open_within(settings: &Settings, timeouts: Timeouts) -> Result<Self, Trouble> {
+    /// The errors of [`BotaDriver::open`].
+    pub fn open_within(settings: &BotaSettings, timeouts: BotaTimeouts) -> Result<Self, DeviceError> {
         opening::open(settings, timeouts).map(Self::of)
     }
 
-    pub(super) fn of(opened: Opened) -> Self {
-        let Opened { link, identity, rate_hz, low_latency, stop } = opened;
+    pub(super) fn of(opened: OpenSensor) -> Self {
+        let OpenSensor { link, identity, rate_hz, low_latency, stop } = opened;
         let judge = Judge::new(1e6 / rate_hz);
         let silence_s = SILENCE_S.max(SILENCE_READINGS / rate_hz);
         Self { link, judge, identity, rate_hz, low_latency, silence_s, stop, begun: false, base: (0, 0) }
@@ -135,7 +137,7 @@ impl Driver {
     pub fn close(self) {}
 
     /// Handles the data that have arrived; damage is counted from the first reading on.
-    fn take_in(&mut self, now_s: f64) -> Result<Option<Stamped<ForceReading>>, Loss> {
+    fn take_in(&mut self, now_s: f64) -> Result<Option<TimedReading<ForceReading>>, Loss> {
         let before = (self.link.damaged(), self.link.skipped());
         let mut newest = None;
         let judge = &mut self.judge;
@@ -158,11 +160,11 @@ impl Driver {
     }
 }
 
-impl Device for Driver {
+impl Device for BotaDriver {
     type Reading = ForceReading;
 
-    fn poll(&mut self, now_s: f64) -> Option<Stamped<ForceReading>> {
-        if matches!(self.judge.health.standing, Standing::Lost(_)) {
+    fn poll(&mut self, now_s: f64) -> Option<TimedReading<ForceReading>> {
+        if matches!(self.judge.health.standing, ConnectionState::Lost(_)) {
             return None;
         }
         if !self.begun {
@@ -187,12 +189,12 @@ impl Device for Driver {
         }
     }
 
-    fn about(&self) -> (&Health, &Identity) {
+    fn about(&self) -> (&Health, &DeviceIdentity) {
         (&self.judge.health, &self.identity)
     }
 }
 
-impl Drop for Driver {
+impl Drop for BotaDriver {
     fn drop(&mut self) {
         // Unread data when a connection is closed would make the system discard this last command.
         if self.link.discard().is_ok() {
@@ -203,7 +205,7 @@ impl Drop for Driver {
 
 #[derive(Debug)]
 struct Judge {
-    clock: Clock,
+    clock: BotaClock,
     clock_runs: bool,
     health: Health,
     status: u16,
@@ -217,7 +219,7 @@ impl Judge {
     fn new(period_us: f64) -> Self {
         let health = Health::opening();
         Self {
-            clock: Clock::new(period_us),
+            clock: BotaClock::new(period_us),
             clock_runs: false,
             health,
             status: 0,
@@ -226,19 +228,19 @@ impl Judge {
         }
     }
 
-    fn take(&mut self, frame: &Frame, now_s: f64) -> Option<Stamped<ForceReading>> {
+    fn take(&mut self, frame: &BotaFrame, now_s: f64) -> Option<TimedReading<ForceReading>> {
         self.clock_runs = true;
         self.status = frame.status;
         let device_s = match self.clock.step(frame.timestamp_us) {
-            Step::Newer { device_s, missing } => {
+            BotaClockStep::Newer { device_s, missing } => {
                 self.health.lost += missing;
                 device_s
             }
-            Step::Late => {
+            BotaClockStep::Late => {
                 self.health.lost = self.health.lost.saturating_sub(1);
                 return self.stale();
             }
-            Step::Stale => return self.stale(),
+            BotaClockStep::Stale => return self.stale(),
         };
         let reading = reading_of(frame);
         if !reading.status.is_usable() {
@@ -250,17 +252,17 @@ impl Judge {
         self.health.accept(now_s);
         self.usable_s = now_s;
         self.suspect = Loss::Silent;
-        Some(Stamped { device_s: Some(device_s), arrival_s: now_s, value: reading })
+        Some(TimedReading { device_s: Some(device_s), arrival_s: now_s, value: reading })
     }
 
     /// Handles a clock that stands still or goes back, which is impossible.
-    const fn stale(&mut self) -> Option<Stamped<ForceReading>> {
+    const fn stale(&mut self) -> Option<TimedReading<ForceReading>> {
         self.health.out_of_order += 1;
         self.suspect = Loss::Implausible;
         None
     }
 
-    const fn refuse(&mut self, loss: Loss) -> Option<Stamped<ForceReading>> {
+    const fn refuse(&mut self, loss: Loss) -> Option<TimedReading<ForceReading>> {
         self.health.refused += 1;
         self.suspect = loss;
         None

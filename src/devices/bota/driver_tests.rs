@@ -1,30 +1,34 @@
 use super::*;
 use crate::{
     bota::codec::{INERTIAL_BYTES, Inertial},
-    transport::{Bytes as _, Datagrams as _, MemoryBytes, MemoryDatagrams},
+    transport::{ByteStream as _, MemoryBytes, MemoryDatagrams, TransportDatagrams as _},
 };
 
 const RATE_HZ: f64 = 1000.0;
 
-fn over_memory(rate_hz: f64) -> (Driver, MemoryBytes) {
+fn over_memory(rate_hz: f64) -> (BotaDriver, MemoryBytes) {
     let [near, far] = MemoryBytes::pair();
-    let link = Link::new(Box::new(near), None);
-    let opened = Opened { link, identity: Identity::default(), rate_hz, low_latency: false, stop: b"C\n" };
-    (Driver::of(opened), far)
+    let link = BotaLink::new(Box::new(near), None);
+    let opened = OpenSensor { link, identity: DeviceIdentity::default(), rate_hz, low_latency: false, stop: b"C\n" };
+    (BotaDriver::of(opened), far)
 }
 
-fn frame(k: u32) -> Frame {
-    Frame { force_n: [k as f32, 2.0, 3.0], timestamp_us: (u32::MAX - 5_500).wrapping_add(k * 1000), ..Frame::default() }
+fn frame(k: u32) -> BotaFrame {
+    BotaFrame {
+        force_n: [k as f32, 2.0, 3.0],
+        timestamp_us: (u32::MAX - 5_500).wrapping_add(k * 1000),
+        ..BotaFrame::default()
+    }
 }
 
-fn bytes_of(frame: &Frame) -> Vec<u8> {
+fn bytes_of(frame: &BotaFrame) -> Vec<u8> {
     let mut buffer = [0; INERTIAL_BYTES];
     let length = frame.encode(&mut buffer);
     buffer[..length].to_vec()
 }
 
 /// Returns a driver after ten good readings, 1 ms apart.
-fn running() -> (Driver, MemoryBytes) {
+fn running() -> (BotaDriver, MemoryBytes) {
     let (mut driver, mut far) = over_memory(RATE_HZ);
     assert_eq!(driver.poll(0.0), None);
     for k in 1..=10 {
@@ -42,7 +46,7 @@ fn lost_after(mut bytes: impl FnMut(u32) -> Vec<u8>) -> (Loss, u32, Health) {
     for k in 11..100 {
         far.send(&bytes(k)).unwrap();
         assert_eq!(driver.poll(f64::from(k) * 1e-3), None);
-        if let Standing::Lost(loss) = driver.health().standing {
+        if let ConnectionState::Lost(loss) = driver.health().standing {
             assert_eq!(driver.poll(f64::from(k) * 1e-3 + 1.0), None, "and stays so");
             return (loss, k - 10, *driver.health());
         }
@@ -62,15 +66,15 @@ fn time_goes_on_and_missing_late_and_repeated_readings_are_counted() {
     let zero_s = f64::from(u32::MAX - 5_500) * 1e-6;
     assert!((reading.device_s.unwrap() - zero_s - 0.013).abs() < 1e-9, "the counter began again: {reading:?}");
     assert_eq!((driver.health().lost, driver.health().out_of_order), (1, 2));
-    far.send(&bytes_of(&Frame { status: 1, ..frame(14) })).unwrap();
+    far.send(&bytes_of(&BotaFrame { status: 1, ..frame(14) })).unwrap();
     let status = driver.poll(0.014).unwrap().value.status;
     assert!(status.throttled && status.is_usable());
-    assert_eq!(driver.health().standing, Standing::Connected);
+    assert_eq!(driver.health().standing, ConnectionState::Connected);
 }
 
 #[test]
 fn every_loss_is_told_within_twenty_milliseconds_by_its_cause() {
-    let spoilt = |k: u32, spoil: fn(&mut Frame)| {
+    let spoilt = |k: u32, spoil: fn(&mut BotaFrame)| {
         let mut frame = frame(k);
         spoil(&mut frame);
         bytes_of(&frame)
@@ -87,10 +91,10 @@ fn every_loss_is_told_within_twenty_milliseconds_by_its_cause() {
     let (loss, _, health) = lost_after(|k| vec![k as u8 & 0x7F; 40]);
     assert_eq!((loss, health.damaged), (Loss::Corrupt, 0), "no frame at all");
     for (bits, code) in [(2, 2), (4, 4), (8, 8), (0b1_0110, 0b0110)] {
-        let (loss, ms, health) = lost_after(|k| bytes_of(&Frame { status: bits, ..frame(k) }));
+        let (loss, ms, health) = lost_after(|k| bytes_of(&BotaFrame { status: bits, ..frame(k) }));
         assert_eq!((loss, ms, health.refused), (Loss::Device { code }, 18, 18));
     }
-    let impossible: [fn(&mut Frame); 4] = [
+    let impossible: [fn(&mut BotaFrame); 4] = [
         |frame| frame.force_n[2] = f32::NAN,
         |frame| frame.torque_nm[0] = f32::INFINITY,
         |frame| frame.force_n[0] = -2e5,
@@ -110,8 +114,8 @@ fn every_loss_is_told_within_twenty_milliseconds_by_its_cause() {
 #[test]
 fn a_short_disturbance_is_counted_and_loses_nothing_else() {
     let (mut driver, mut far) = running();
-    far.send(&bytes_of(&Frame { status: 4, ..frame(11) })).unwrap();
-    far.send(&bytes_of(&Frame { force_n: [f32::NAN; 3], ..frame(12) })).unwrap();
+    far.send(&bytes_of(&BotaFrame { status: 4, ..frame(11) })).unwrap();
+    far.send(&bytes_of(&BotaFrame { force_n: [f32::NAN; 3], ..frame(12) })).unwrap();
     far.send(&[0xAA; 5]).unwrap();
     assert_eq!(driver.poll(0.012), None);
     assert_eq!(driver.status(), ForceStatus::default(), "of the newest frame");
@@ -120,7 +124,7 @@ fn a_short_disturbance_is_counted_and_loses_nothing_else() {
         driver.poll(f64::from(k) * 1e-3);
     }
     let health = driver.health();
-    assert_eq!(health.standing, Standing::Connected);
+    assert_eq!(health.standing, ConnectionState::Connected);
     assert_eq!((health.refused, health.lost, health.damaged, health.skipped_bytes), (2, 0, 1, 5));
     assert_eq!(health.readings, 97);
 }
@@ -130,13 +134,13 @@ fn slow_sensors_get_the_time_of_five_readings_and_a_cut_line_none() {
     let (mut driver, _far) = over_memory(50.0);
     driver.poll(0.0);
     driver.poll(0.099);
-    assert_eq!(driver.health().standing, Standing::Opening);
+    assert_eq!(driver.health().standing, ConnectionState::Opening);
     driver.poll(0.101);
-    assert_eq!(driver.health().standing, Standing::Lost(Loss::Silent));
+    assert_eq!(driver.health().standing, ConnectionState::Lost(Loss::Silent));
     let (mut driver, far) = running();
     far.cut();
     driver.poll(0.011);
-    assert_eq!(driver.health().standing, Standing::Lost(Loss::Disconnected));
+    assert_eq!(driver.health().standing, ConnectionState::Lost(Loss::Disconnected));
 }
 
 #[test]
@@ -160,11 +164,16 @@ fn what_came_before_the_first_poll_is_old_and_the_sensor_is_stopped_in_the_end()
 fn datagrams_of_a_wrong_length_are_damaged_ones() {
     let [near, _far_control] = MemoryBytes::pair();
     let [stream, mut far] = MemoryDatagrams::pair();
-    let link = Link::new(Box::new(near), Some(Box::new(stream)));
-    let mut driver =
-        Driver::of(Opened { link, identity: Identity::default(), rate_hz: RATE_HZ, low_latency: true, stop: b"x" });
+    let link = BotaLink::new(Box::new(near), Some(Box::new(stream)));
+    let mut driver = BotaDriver::of(OpenSensor {
+        link,
+        identity: DeviceIdentity::default(),
+        rate_hz: RATE_HZ,
+        low_latency: true,
+        stop: b"x",
+    });
     driver.poll(0.0);
-    let good = bytes_of(&Frame { inertial: Some(Inertial::default()), ..frame(1) });
+    let good = bytes_of(&BotaFrame { inertial: Some(Inertial::default()), ..frame(1) });
     far.send(&good).unwrap();
     assert!(driver.poll(0.001).is_some());
     let longer = [good.as_slice(), &[0; 9]].concat();

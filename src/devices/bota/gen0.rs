@@ -119,8 +119,8 @@ mod tests {
 
     #[test]
     fn product_and_boot_text_are_read() {
-        let told = product(b"\xAA\x00p,0,853,1,2,BFT-SENS-SER-M8\r\nr,0,p,0\r\n").unwrap();
-        assert_eq!(told, ("853".to_owned(), "BFT-SENS-SER-M8".to_owned()));
+        let report = product(b"\xAA\x00p,0,853,1,2,BFT-SENS-SER-M8\r\nr,0,p,0\r\n").unwrap();
+        assert_eq!(report, ("853".to_owned(), "BFT-SENS-SER-M8".to_owned()));
         assert_eq!(product(b"p,0,853\r\n"), None);
         let boot = BootText::of(b"\xfe\x00App Init\r\nname: BFT-SENS-SER-M8\r\nS/N: 853\r\nFW version: 1.0.9\r\n\xAA");
         assert!(boot.started);

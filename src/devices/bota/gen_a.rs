@@ -57,14 +57,14 @@ pub fn read(parameter: Parameter) -> String {
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Answer {
+pub struct GenAAnswer {
     /// 0 is success; see [`words`].
     pub status: u32,
     /// The value in hexadecimal.
     pub value: String,
 }
 
-impl Answer {
+impl GenAAnswer {
     /// Returns the value as an integer; for a float parameter, the bits of its f32.
     pub fn number(&self) -> Option<u32> {
         u32::from_str_radix(&self.value, 16).ok()
@@ -83,19 +83,19 @@ impl Answer {
 }
 
 /// Returns the newest complete answer in `bytes` to a command that began with `letters` (`wh` or `rh`).
-pub fn answer(bytes: &[u8], letters: &[u8; 2]) -> Option<Answer> {
+pub fn answer(bytes: &[u8], letters: &[u8; 2]) -> Option<GenAAnswer> {
     let head = [letters[0], letters[1], b','];
     let mut begins = bytes.windows(head.len()).enumerate().rev().filter(|(_, window)| *window == head);
     begins.find_map(|(at, _)| whole(&bytes[at + head.len()..]))
 }
 
 /// Returns status and value up to the end of the line; `None` if there is anything else in between.
-fn whole(bytes: &[u8]) -> Option<Answer> {
+fn whole(bytes: &[u8]) -> Option<GenAAnswer> {
     let end = bytes.iter().position(|byte| *byte == b'\n')?;
     let line = std::str::from_utf8(&bytes[..end]).ok()?;
     let (status, value) = line.trim_end_matches('\r').split_once(',')?;
     let good = (1..=3).contains(&status.len()) && value.bytes().all(|byte| byte.is_ascii_hexdigit());
-    Some(Answer { status: status.parse().ok().filter(|_| good)?, value: value.to_owned() })
+    Some(GenAAnswer { status: status.parse().ok().filter(|_| good)?, value: value.to_owned() })
 }
 
 /// Returns the meaning of a status.
@@ -130,8 +130,8 @@ mod tests {
         assert_eq!(write(OFFSET, 1.5_f32.to_bits()), "wh,2,1,3fc00000\n");
         assert_eq!(read(SERIAL), "rh,24,1,\n");
         assert_eq!(hex_of("BFT-SENS-SER-M8"), "4246542d53454e532d5345522d4d38");
-        let told = answer(b"\xABrh,\x01rh,0,4246542d53454e532d5345522d4d38\n\xAB\x00", b"rh").unwrap();
-        assert_eq!((told.status, told.text().as_deref()), (0, Some("BFT-SENS-SER-M8")));
+        let report = answer(b"\xABrh,\x01rh,0,4246542d53454e532d5345522d4d38\n\xAB\x00", b"rh").unwrap();
+        assert_eq!((report.status, report.text().as_deref()), (0, Some("BFT-SENS-SER-M8")));
         assert_eq!(answer(b"rh,0,10e\n", b"rh").unwrap().number(), Some(270));
         assert_eq!(answer(b"wh,16,4\n", b"wh").unwrap().status, 16);
         assert_eq!(answer(b"wh,0,4", b"wh"), None, "not yet whole");
@@ -148,9 +148,9 @@ mod tests {
             bytes.extend((0..random.usize(..8)).map(|_| random.u8(b' '..b'g')));
             bytes.push(b'\n');
             for letters in [b"rh", b"wh"] {
-                if let Some(told) = answer(&bytes, letters) {
-                    told.number();
-                    told.text();
+                if let Some(report) = answer(&bytes, letters) {
+                    report.number();
+                    report.text();
                 }
             }
         }

@@ -1,16 +1,16 @@
 //! Carries the readings: within the bytes of the serial line, or as datagrams next to a connection for commands.
 
-use super::codec::{Decoder, Frame, INERTIAL_BYTES};
+use super::codec::{BotaDecoder, BotaFrame, INERTIAL_BYTES};
 use crate::{
     Loss,
-    transport::{Bytes, Datagrams},
+    transport::{ByteStream, TransportDatagrams},
 };
 
 /// The connections of an open sensor. Receiving neither waits nor allocates.
-pub(super) struct Link {
-    control: Box<dyn Bytes>,
-    stream: Option<Box<dyn Datagrams>>,
-    decoder: Decoder,
+pub(super) struct BotaLink {
+    control: Box<dyn ByteStream>,
+    stream: Option<Box<dyn TransportDatagrams>>,
+    decoder: BotaDecoder,
     /// Datagrams that were not valid frames.
     damaged: u64,
 }
@@ -22,17 +22,17 @@ const DATAGRAMS_MAX: usize = 256;
 /// One byte more than the longest frame, so that a datagram that is too long is recognised.
 const DATAGRAM_BYTES: usize = INERTIAL_BYTES + 1;
 
-impl Link {
-    pub(super) fn new(control: Box<dyn Bytes>, stream: Option<Box<dyn Datagrams>>) -> Self {
-        Self { control, stream, decoder: Decoder::default(), damaged: 0 }
+impl BotaLink {
+    pub(super) fn new(control: Box<dyn ByteStream>, stream: Option<Box<dyn TransportDatagrams>>) -> Self {
+        Self { control, stream, decoder: BotaDecoder::default(), damaged: 0 }
     }
 
     /// Passes every frame that has arrived to `give`.
-    pub(super) fn receive(&mut self, give: impl FnMut(Frame)) -> Result<(), Loss> {
+    pub(super) fn receive(&mut self, give: impl FnMut(BotaFrame)) -> Result<(), Loss> {
         if self.stream.is_some() { self.receive_datagrams(give) } else { self.receive_bytes(give) }
     }
 
-    fn receive_bytes(&mut self, mut give: impl FnMut(Frame)) -> Result<(), Loss> {
+    fn receive_bytes(&mut self, mut give: impl FnMut(BotaFrame)) -> Result<(), Loss> {
         for _ in 0..READS_MAX {
             let count = self.control.receive(self.decoder.room())?;
             if count == 0 {
@@ -46,14 +46,14 @@ impl Link {
         Ok(())
     }
 
-    fn receive_datagrams(&mut self, mut give: impl FnMut(Frame)) -> Result<(), Loss> {
+    fn receive_datagrams(&mut self, mut give: impl FnMut(BotaFrame)) -> Result<(), Loss> {
         // No command is sent while the sensor runs, but a closed connection means that the sensor is gone.
         self.control.receive(&mut [0; 64])?;
         let Some(stream) = &mut self.stream else { return Ok(()) };
         let mut buffer = [0; DATAGRAM_BYTES];
         for _ in 0..DATAGRAMS_MAX {
             let Some(count) = stream.receive(&mut buffer)? else { break };
-            match Frame::decode(&buffer[..count.min(DATAGRAM_BYTES)]) {
+            match BotaFrame::decode(&buffer[..count.min(DATAGRAM_BYTES)]) {
                 Ok(frame) => {
                     stream.keep_to_sender();
                     give(frame);
@@ -82,7 +82,7 @@ impl Link {
         self.control.send(command)
     }
 
-    pub(super) fn into_lines(self) -> (Box<dyn Bytes>, Option<Box<dyn Datagrams>>) {
+    pub(super) fn into_lines(self) -> (Box<dyn ByteStream>, Option<Box<dyn TransportDatagrams>>) {
         (self.control, self.stream)
     }
 }

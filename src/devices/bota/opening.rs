@@ -8,20 +8,20 @@ use std::{
 use nima_files::quoted;
 
 use super::{
-    Settings, Transport,
-    codec::{Frame, STATUS_BITS},
+    BotaSettings, Transport,
+    codec::{BotaFrame, STATUS_BITS},
     gen_a, gen0,
-    link::Link,
-    session::{Session, Timeouts},
+    link::BotaLink,
+    session::{BotaSession, BotaTimeouts},
 };
 use crate::{
-    Identity, Trouble,
-    transport::{Datagrams, Serial, SerialSettings, Tcp, Udp},
+    DeviceError, DeviceIdentity,
+    transport::{Serial, SerialSettings, Tcp, TransportDatagrams, Udp},
 };
 
-pub(super) struct Opened {
-    pub(super) link: Link,
-    pub(super) identity: Identity,
+pub(super) struct OpenSensor {
+    pub(super) link: BotaLink,
+    pub(super) identity: DeviceIdentity,
     pub(super) rate_hz: f64,
     /// Whether the port delivers bytes without delay (always true for the network).
     pub(super) low_latency: bool,
@@ -38,7 +38,7 @@ const STOP_GEN_A: &[u8] = b"wh,1,2,1\n";
 const FIRST_GENERATION: &str = "first-generation Bota sensor";
 const SECOND_GENERATION: &str = "second-generation Bota sensor";
 
-pub(super) fn open(settings: &Settings, timeouts: Timeouts) -> Result<Opened, Trouble> {
+pub(super) fn open(settings: &BotaSettings, timeouts: BotaTimeouts) -> Result<OpenSensor, DeviceError> {
     settings.check()?;
     match settings.transport {
         Transport::Gen0 => open_gen0(settings, timeouts),
@@ -47,17 +47,17 @@ pub(super) fn open(settings: &Settings, timeouts: Timeouts) -> Result<Opened, Tr
     }
 }
 
-fn serial(settings: &Settings, timeouts: Timeouts) -> Result<(Session, bool), Trouble> {
+fn serial(settings: &BotaSettings, timeouts: BotaTimeouts) -> Result<(BotaSession, bool), DeviceError> {
     let line = Serial::open(&SerialSettings { port: settings.port.clone(), baud: settings.baud })?;
     let low_latency = line.has_low_latency();
-    Ok((Session::new(Box::new(line), &settings.port, timeouts), low_latency))
+    Ok((BotaSession::new(Box::new(line), &settings.port, timeouts), low_latency))
 }
 
-fn open_gen0(settings: &Settings, timeouts: Timeouts) -> Result<Opened, Trouble> {
+fn open_gen0(settings: &BotaSettings, timeouts: BotaTimeouts) -> Result<OpenSensor, DeviceError> {
     let (mut session, low_latency) = serial(settings, timeouts)?;
     let mut boot = gen0::BootText::default();
-    session.listen(timeouts.boot, |heard| {
-        boot = gen0::BootText::of(heard);
+    session.listen(timeouts.boot, |received| {
+        boot = gen0::BootText::of(received);
         boot.firmware.is_some().then_some(())
     })?;
     enter_config_gen0(&mut session, settings)?;
@@ -67,29 +67,29 @@ fn open_gen0(settings: &Settings, timeouts: Timeouts) -> Result<Opened, Trouble>
     for _ in 0..=RESTARTS {
         configure_gen0(&mut session, settings)?;
         let place = session.place.clone();
-        let mut link = Link::new(session.into_line(), None);
+        let mut link = BotaLink::new(session.into_line(), None);
         match first_readings(&mut link, &place, rate_hz, settings, timeouts) {
-            Err(Trouble::DeviceFault { words, .. }) if words == RAW => {
-                session = Session::new(link.into_lines().0, &place, timeouts);
+            Err(DeviceError::DeviceFault { words, .. }) if words == RAW => {
+                session = BotaSession::new(link.into_lines().0, &place, timeouts);
                 restart_gen0(&mut session, settings)?;
             }
             Err(other) => return Err(other),
-            Ok(()) => return Ok(Opened { link, identity, rate_hz, low_latency, stop: gen0::CONFIG }),
+            Ok(()) => return Ok(OpenSensor { link, identity, rate_hz, low_latency, stop: gen0::CONFIG }),
         }
     }
     Err(fault_of(&settings.port, RAW_BIT))
 }
 
 /// Stops the stream. Any other answer shows what is wrong.
-fn enter_config_gen0(session: &mut Session, settings: &Settings) -> Result<(), Trouble> {
+fn enter_config_gen0(session: &mut BotaSession, settings: &BotaSettings) -> Result<(), DeviceError> {
     for _ in 0..session.timeouts.tries {
-        match session.ask(gen0::CONFIG, |heard| gen0::acknowledged(heard, b'C'))? {
+        match session.ask(gen0::CONFIG, |received| gen0::acknowledged(received, b'C'))? {
             Some(0) => return session.flush(),
             Some(code) => return Err(refused(session, "C", &format!("code {code}"))),
             None => {}
         }
     }
-    if session.ask(gen_a::read(gen_a::SERIAL).as_bytes(), |heard| gen_a::answer(heard, b"rh"))?.is_some() {
+    if session.ask(gen_a::read(gen_a::SERIAL).as_bytes(), |received| gen_a::answer(received, b"rh"))?.is_some() {
         return Err(wrong_generation(session, FIRST_GENERATION, SECOND_GENERATION));
     }
     Err(session.why_no_answer("C", Some(settings.baud)))
@@ -97,12 +97,12 @@ fn enter_config_gen0(session: &mut Session, settings: &Settings) -> Result<(), T
 
 /// Reads the identity with the command of the manufacturer's driver, or from the text that the sensor sends at start,
 /// because not every firmware supports the command.
-fn identity_gen0(session: &mut Session, boot: gen0::BootText) -> Result<Identity, Trouble> {
-    let asked = session.ask(gen0::PRODUCT, |heard| {
-        gen0::acknowledged(heard, b'p').map(|code| (code == 0).then(|| gen0::product(heard)).flatten())
+fn identity_gen0(session: &mut BotaSession, boot: gen0::BootText) -> Result<DeviceIdentity, DeviceError> {
+    let asked = session.ask(gen0::PRODUCT, |received| {
+        gen0::acknowledged(received, b'p').map(|code| (code == 0).then(|| gen0::product(received)).flatten())
     })?;
     let (serial, product) = asked.flatten().unzip();
-    Ok(Identity {
+    Ok(DeviceIdentity {
         product: product.or(boot.product).unwrap_or_default(),
         serial: serial.or(boot.serial).unwrap_or_default(),
         firmware: boot.firmware.unwrap_or_default(),
@@ -111,13 +111,13 @@ fn identity_gen0(session: &mut Session, boot: gen0::BootText) -> Result<Identity
 
 /// Configures communication, filter and offset, then starts the measurement. Nothing is saved in the sensor, whose
 /// memory wears out; it is configured every time.
-fn configure_gen0(session: &mut Session, settings: &Settings) -> Result<(), Trouble> {
+fn configure_gen0(session: &mut BotaSession, settings: &BotaSettings) -> Result<(), DeviceError> {
     let baud_index = gen0::BAUDS.iter().position(|baud| *baud == settings.baud).unwrap_or_default();
     let communication = gen0::communication(baud_index);
     let filter = gen0::filter(settings.sinc);
     for command in [communication.as_bytes(), filter.as_bytes(), gen0::NO_OFFSET, gen0::RUN] {
         let name = String::from_utf8_lossy(command);
-        match session.ask(command, |heard| gen0::acknowledged(heard, command[0]))? {
+        match session.ask(command, |received| gen0::acknowledged(received, command[0]))? {
             Some(0) => {}
             Some(code) => return Err(refused(session, name.trim(), &format!("code {code}"))),
             None => return Err(refused(session, name.trim(), "no answer")),
@@ -126,28 +126,28 @@ fn configure_gen0(session: &mut Session, settings: &Settings) -> Result<(), Trou
     Ok(())
 }
 
-fn restart_gen0(session: &mut Session, settings: &Settings) -> Result<(), Trouble> {
-    session.ask(gen0::INIT, |heard| gen0::acknowledged(heard, b'I'))?;
+fn restart_gen0(session: &mut BotaSession, settings: &BotaSettings) -> Result<(), DeviceError> {
+    session.ask(gen0::INIT, |received| gen0::acknowledged(received, b'I'))?;
     session.listen(session.timeouts.init, |_| None::<()>)?;
     enter_config_gen0(session, settings)
 }
 
-fn open_gen_a(settings: &Settings, timeouts: Timeouts) -> Result<Opened, Trouble> {
+fn open_gen_a(settings: &BotaSettings, timeouts: BotaTimeouts) -> Result<OpenSensor, DeviceError> {
     let (mut session, low_latency) = serial(settings, timeouts)?;
     enter_config_gen_a(&mut session, Some(settings.baud))?;
     let identity = identity_gen_a(&mut session)?;
     check_serial(settings, &identity)?;
     let rate_hz = configure_gen_a(&mut session, settings)?;
-    let mut link = Link::new(session.into_line(), None);
+    let mut link = BotaLink::new(session.into_line(), None);
     first_readings(&mut link, &settings.port, rate_hz, settings, timeouts)?;
-    Ok(Opened { link, identity, rate_hz, low_latency, stop: STOP_GEN_A })
+    Ok(OpenSensor { link, identity, rate_hz, low_latency, stop: STOP_GEN_A })
 }
 
-fn open_socket(settings: &Settings, timeouts: Timeouts) -> Result<Opened, Trouble> {
+fn open_socket(settings: &BotaSettings, timeouts: BotaTimeouts) -> Result<OpenSensor, DeviceError> {
     let address = address_of(&settings.port)?;
     let line = Tcp::open(&address.to_string(), timeouts.stream)?;
     let here = line.local_ip();
-    let mut session = Session::new(Box::new(line), &address.to_string(), timeouts);
+    let mut session = BotaSession::new(Box::new(line), &address.to_string(), timeouts);
     enter_config_gen_a(&mut session, None)?;
     let mut destination = [0; 4];
     for (part, byte) in (gen_a::DESTINATION.1..).zip(&mut destination) {
@@ -157,21 +157,21 @@ fn open_socket(settings: &Settings, timeouts: Timeouts) -> Result<Opened, Troubl
     let port = number(&mut session, gen_a::DESTINATION_PORT)?;
     let port = u16::try_from(port).map_err(|_| refused(&session, "rh,31,1", &format!("{port:x} is not a port")))?;
     let destination = SocketAddr::new(destination.into(), port);
-    let stream: Box<dyn Datagrams> = Box::new(readings(destination, here, address)?);
+    let stream: Box<dyn TransportDatagrams> = Box::new(readings(destination, here, address)?);
     let identity = identity_gen_a(&mut session)?;
     check_serial(settings, &identity)?;
     let rate_hz = configure_gen_a(&mut session, settings)?;
-    let mut link = Link::new(session.into_line(), Some(stream));
+    let mut link = BotaLink::new(session.into_line(), Some(stream));
     match first_readings(&mut link, &address.to_string(), rate_hz, settings, timeouts) {
-        Err(Trouble::Silent { place }) => Err(sends_elsewhere(place, address, destination)),
+        Err(DeviceError::Silent { place }) => Err(sends_elsewhere(place, address, destination)),
         Err(other) => Err(other),
-        Ok(()) => Ok(Opened { link, identity, rate_hz, low_latency: true, stop: STOP_GEN_A }),
+        Ok(()) => Ok(OpenSensor { link, identity, rate_hz, low_latency: true, stop: STOP_GEN_A }),
     }
 }
 
 /// Returns the sensor's address; it supports IPv4 only.
-fn address_of(port: &str) -> Result<SocketAddr, Trouble> {
-    let unreachable = || Trouble::Unreachable { place: port.to_owned() };
+fn address_of(port: &str) -> Result<SocketAddr, DeviceError> {
+    let unreachable = || DeviceError::Unreachable { place: port.to_owned() };
     let resolved = match port.parse::<IpAddr>() {
         Ok(ip) => Some(SocketAddr::new(ip, TCP_PORT)),
         Err(_) if port.contains(':') => port.to_socket_addrs().map_err(|_| unreachable())?.find(SocketAddr::is_ipv4),
@@ -183,52 +183,56 @@ fn address_of(port: &str) -> Result<SocketAddr, Trouble> {
 /// Opens the socket for readings: at the address to which the sensor sends, if it belongs to this computer, otherwise
 /// at the address through which the sensor is reached. Never at all addresses, so that another network cannot inject
 /// readings.
-fn readings(destination: SocketAddr, here: Option<IpAddr>, sensor: SocketAddr) -> Result<Udp, Trouble> {
+fn readings(destination: SocketAddr, here: Option<IpAddr>, sensor: SocketAddr) -> Result<Udp, DeviceError> {
     let at = Some(destination.ip()).filter(|ip| Udp::is_local(*ip)).or(here);
-    let at = at.ok_or_else(|| Trouble::Unreachable { place: sensor.to_string() })?;
+    let at = at.ok_or_else(|| DeviceError::Unreachable { place: sensor.to_string() })?;
     Udp::listen(SocketAddr::new(at, destination.port()), sensor.ip())
 }
 
 /// Returns the trouble for missing readings: checks whether the sensor sends them to another computer.
-fn sends_elsewhere(place: String, sensor: SocketAddr, to: SocketAddr) -> Trouble {
+fn sends_elsewhere(place: String, sensor: SocketAddr, to: SocketAddr) -> DeviceError {
     let route = UdpSocket::bind(("0.0.0.0", 0)).and_then(|socket| {
         socket.connect(sensor)?;
         socket.local_addr()
     });
     match route {
         Ok(here) if here.ip() != to.ip() => {
-            Trouble::SendsElsewhere { place, to: to.to_string(), here: here.ip().to_string() }
+            DeviceError::SendsElsewhere { place, to: to.to_string(), here: here.ip().to_string() }
         }
-        _ => Trouble::Silent { place },
+        _ => DeviceError::Silent { place },
     }
 }
 
-fn enter_config_gen_a(session: &mut Session, baud: Option<u32>) -> Result<(), Trouble> {
+fn enter_config_gen_a(session: &mut BotaSession, baud: Option<u32>) -> Result<(), DeviceError> {
     let command = gen_a::write(gen_a::STATE, gen_a::CONFIG);
     for _ in 0..session.timeouts.tries {
-        match session.ask(command.as_bytes(), |heard| gen_a::answer(heard, b"wh"))? {
+        match session.ask(command.as_bytes(), |received| gen_a::answer(received, b"wh"))? {
             Some(answer) if answer.status == 0 => return session.flush(),
             Some(answer) => return Err(refused(session, command.trim(), gen_a::words(answer.status))),
             None => {}
         }
     }
-    if baud.is_some() && session.ask(gen0::CONFIG, |heard| gen0::acknowledged(heard, b'C'))?.is_some() {
+    if baud.is_some() && session.ask(gen0::CONFIG, |received| gen0::acknowledged(received, b'C'))?.is_some() {
         return Err(wrong_generation(session, SECOND_GENERATION, FIRST_GENERATION));
     }
     Err(session.why_no_answer(command.trim(), baud))
 }
 
-fn identity_gen_a(session: &mut Session) -> Result<Identity, Trouble> {
+fn identity_gen_a(session: &mut BotaSession) -> Result<DeviceIdentity, DeviceError> {
     let mut text = |parameter| {
         let command = gen_a::read(parameter);
         let answer = good(session, &command)?;
         answer.text().ok_or_else(|| refused(session, command.trim(), &format!("{} is not text", answer.value)))
     };
-    Ok(Identity { product: text(gen_a::PRODUCT)?, serial: text(gen_a::SERIAL)?, firmware: text(gen_a::FIRMWARE)? })
+    Ok(DeviceIdentity {
+        product: text(gen_a::PRODUCT)?,
+        serial: text(gen_a::SERIAL)?,
+        firmware: text(gen_a::FIRMWARE)?,
+    })
 }
 
 /// Configures frames, rate and offset, then starts the measurement; returns the rate that the sensor reports, Hz.
-fn configure_gen_a(session: &mut Session, settings: &Settings) -> Result<f64, Trouble> {
+fn configure_gen_a(session: &mut BotaSession, settings: &BotaSettings) -> Result<f64, DeviceError> {
     let mut writes = vec![
         (gen_a::MODE, u32::from(settings.mode)),
         (gen_a::SUBMODE, settings.submode().unwrap_or_default()),
@@ -239,19 +243,19 @@ fn configure_gen_a(session: &mut Session, settings: &Settings) -> Result<f64, Tr
     for (parameter, value) in writes {
         good(session, &gen_a::write(parameter, value))?;
     }
-    let told_hz = number(session, gen_a::RATE)?;
-    if told_hz.abs_diff(settings.rate_hz) > 1 {
+    let reported_hz = number(session, gen_a::RATE)?;
+    if reported_hz.abs_diff(settings.rate_hz) > 1 {
         let command = format!("{} Hz", settings.rate_hz);
-        return Err(refused(session, &command, &format!("its rate is {told_hz} Hz")));
+        return Err(refused(session, &command, &format!("its rate is {reported_hz} Hz")));
     }
     good(session, &gen_a::write(gen_a::STATE, gen_a::RUN))?;
-    Ok(f64::from(told_hz))
+    Ok(f64::from(reported_hz))
 }
 
 /// Sends a command and requires a good answer.
-fn good(session: &mut Session, command: &str) -> Result<gen_a::Answer, Trouble> {
+fn good(session: &mut BotaSession, command: &str) -> Result<gen_a::GenAAnswer, DeviceError> {
     let letters = if command.starts_with("wh") { b"wh" } else { b"rh" };
-    match session.ask(command.as_bytes(), |heard| gen_a::answer(heard, letters))? {
+    match session.ask(command.as_bytes(), |received| gen_a::answer(received, letters))? {
         Some(answer) if answer.status == 0 => Ok(answer),
         Some(answer) => {
             let words = format!("{} ({})", gen_a::words(answer.status), answer.status);
@@ -261,27 +265,27 @@ fn good(session: &mut Session, command: &str) -> Result<gen_a::Answer, Trouble> 
     }
 }
 
-fn number(session: &mut Session, parameter: gen_a::Parameter) -> Result<u32, Trouble> {
+fn number(session: &mut BotaSession, parameter: gen_a::Parameter) -> Result<u32, DeviceError> {
     let command = gen_a::read(parameter);
     let answer = good(session, &command)?;
     answer.number().ok_or_else(|| refused(session, command.trim(), &format!("{} is not a number", answer.value)))
 }
 
-fn refused(session: &Session, command: &str, answer: &str) -> Trouble {
-    Trouble::Refused { place: session.place.clone(), command: format!("\"{command}\""), answer: quoted(answer) }
+fn refused(session: &BotaSession, command: &str, answer: &str) -> DeviceError {
+    DeviceError::Refused { place: session.place.clone(), command: format!("\"{command}\""), answer: quoted(answer) }
 }
 
-fn wrong_generation(session: &Session, expected: &str, found: &str) -> Trouble {
-    Trouble::WrongProduct { place: session.place.clone(), expected: expected.to_owned(), found: found.to_owned() }
+fn wrong_generation(session: &BotaSession, expected: &str, found: &str) -> DeviceError {
+    DeviceError::WrongProduct { place: session.place.clone(), expected: expected.to_owned(), found: found.to_owned() }
 }
 
-fn check_serial(settings: &Settings, identity: &Identity) -> Result<(), Trouble> {
+fn check_serial(settings: &BotaSettings, identity: &DeviceIdentity) -> Result<(), DeviceError> {
     if settings.accepts_serial(&identity.serial) {
         return Ok(());
     }
     let expected = settings.serial_number.clone().unwrap_or_default();
     let found = if identity.serial.is_empty() { "unknown" } else { &identity.serial };
-    Err(Trouble::OtherSerial { place: settings.port.clone(), expected, found: found.to_owned() })
+    Err(DeviceError::OtherSerial { place: settings.port.clone(), expected, found: found.to_owned() })
 }
 
 /// Number of readings examined before a sensor counts as open.
@@ -292,25 +296,25 @@ const RAW: &str = "its calibration is not loaded (raw)";
 
 /// Waits for readings that are usable and have the right rate and format.
 fn first_readings(
-    link: &mut Link,
+    link: &mut BotaLink,
     place: &str,
     rate_hz: f64,
-    settings: &Settings,
-    timeouts: Timeouts,
-) -> Result<(), Trouble> {
+    settings: &BotaSettings,
+    timeouts: BotaTimeouts,
+) -> Result<(), DeviceError> {
     let wait = timeouts.stream + Duration::from_secs_f64((FIRST_READINGS + 2) as f64 / rate_hz);
     let begin = Instant::now();
     let place = place.to_owned();
-    let mut frames: Vec<Frame> = Vec::new();
+    let mut frames: Vec<BotaFrame> = Vec::new();
     while frames.len() < FIRST_READINGS {
         link.receive(|frame| frames.push(frame))
-            .map_err(|_| Trouble::Other { place: place.clone(), reason: "the connection broke".to_owned() })?;
+            .map_err(|_| DeviceError::Other { place: place.clone(), reason: "the connection broke".to_owned() })?;
         if begin.elapsed() > wait {
             return Err(match settings.transport {
                 Transport::Gen0 | Transport::GenA if link.skipped() > 0 && frames.is_empty() => {
-                    Trouble::WrongBaud { place, baud: settings.baud }
+                    DeviceError::WrongBaud { place, baud: settings.baud }
                 }
-                _ => Trouble::Silent { place },
+                _ => DeviceError::Silent { place },
             });
         }
         std::thread::sleep(Duration::from_millis(1));
@@ -318,7 +322,7 @@ fn first_readings(
     let newest = frames[frames.len() - 1];
     if newest.inertial.is_some() != settings.is_inertial() {
         let command = format!("mode {}", settings.mode);
-        return Err(Trouble::Refused { place, command, answer: "frames in a different format".to_owned() });
+        return Err(DeviceError::Refused { place, command, answer: "frames in a different format".to_owned() });
     }
     if newest.status & STATUS_BITS & !THROTTLED_BIT != 0 {
         return Err(fault_of(&place, newest.status));
@@ -330,7 +334,7 @@ fn first_readings(
     if measured_hz > rate_hz * RATE_FACTOR || measured_hz < rate_hz / RATE_FACTOR {
         let command = format!("{rate_hz:.0} Hz");
         let answer = format!("it measures at {measured_hz:.0} Hz");
-        return Err(Trouble::Refused { place, command, answer });
+        return Err(DeviceError::Refused { place, command, answer });
     }
     Ok(())
 }
@@ -340,7 +344,7 @@ const INVALID_BIT: u16 = 1 << 2;
 const RAW_BIT: u16 = 1 << 3;
 
 /// Returns the fault that the status bits indicate.
-fn fault_of(place: &str, status: u16) -> Trouble {
+fn fault_of(place: &str, status: u16) -> DeviceError {
     let (words, cure) = if status & RAW_BIT != 0 {
         (RAW, "Switch the sensor off and on again.")
     } else if status & INVALID_BIT != 0 {
@@ -351,5 +355,5 @@ fn fault_of(place: &str, status: u16) -> Trouble {
     } else {
         ("load above its range (overrange)", "Remove the load from the sensor.")
     };
-    Trouble::DeviceFault { place: place.to_owned(), words: words.to_owned(), cure: cure.to_owned() }
+    DeviceError::DeviceFault { place: place.to_owned(), words: words.to_owned(), cure: cure.to_owned() }
 }

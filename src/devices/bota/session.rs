@@ -2,11 +2,11 @@
 
 use std::time::{Duration, Instant};
 
-use super::codec::Decoder;
-use crate::{Trouble, transport::Bytes};
+use super::codec::BotaDecoder;
+use crate::{DeviceError, transport::ByteStream};
 
 #[derive(Clone, Copy, Debug)]
-pub struct Timeouts {
+pub struct BotaTimeouts {
     /// First generation: time for the restart when the port is opened.
     pub boot: Duration,
     /// Time for one answer.
@@ -18,7 +18,7 @@ pub struct Timeouts {
     pub stream: Duration,
 }
 
-impl Default for Timeouts {
+impl Default for BotaTimeouts {
     /// The times of the manufacturer's driver: 3 s for the start, 1 s for an answer.
     fn default() -> Self {
         Self {
@@ -31,7 +31,7 @@ impl Default for Timeouts {
     }
 }
 
-impl Timeouts {
+impl BotaTimeouts {
     /// For a diagnosis: one second in total, and another second for the start of a first-generation sensor.
     pub(super) const SHORT: Self = Self {
         boot: Duration::from_secs(1),
@@ -43,29 +43,29 @@ impl Timeouts {
 }
 
 /// Size of the buffer of received bytes in which answers are searched.
-const HEARD_MAX: usize = 8192;
+const RECEIVED_MAX: usize = 8192;
 const NAP: Duration = Duration::from_millis(1);
 /// Flushing a line ends when it has been quiet for this time, or after [`FLUSH`].
 const QUIET: Duration = Duration::from_millis(15);
 const FLUSH: Duration = Duration::from_millis(200);
 
 /// A line for commands; received data are kept to explain failures.
-pub(super) struct Session {
-    line: Box<dyn Bytes>,
+pub(super) struct BotaSession {
+    line: Box<dyn ByteStream>,
     /// Port or address, for messages.
     pub(super) place: String,
-    pub(super) timeouts: Timeouts,
-    heard: Vec<u8>,
-    decoder: Decoder,
+    pub(super) timeouts: BotaTimeouts,
+    received: Vec<u8>,
+    decoder: BotaDecoder,
     bytes: u64,
     frames: u64,
 }
 
-impl Session {
-    pub(super) fn new(line: Box<dyn Bytes>, place: &str, timeouts: Timeouts) -> Self {
-        let heard = Vec::with_capacity(2 * HEARD_MAX);
-        let decoder = Decoder::default();
-        Self { line, place: place.to_owned(), timeouts, heard, decoder, bytes: 0, frames: 0 }
+impl BotaSession {
+    pub(super) fn new(line: Box<dyn ByteStream>, place: &str, timeouts: BotaTimeouts) -> Self {
+        let received = Vec::with_capacity(2 * RECEIVED_MAX);
+        let decoder = BotaDecoder::default();
+        Self { line, place: place.to_owned(), timeouts, received, decoder, bytes: 0, frames: 0 }
     }
 
     /// Listens until `found` finds an answer in the data received since the last command, or until `timeout`.
@@ -73,11 +73,11 @@ impl Session {
         &mut self,
         timeout: Duration,
         mut found: impl FnMut(&[u8]) -> Option<T>,
-    ) -> Result<Option<T>, Trouble> {
+    ) -> Result<Option<T>, DeviceError> {
         let begin = Instant::now();
         loop {
             if self.take_in()? > 0
-                && let Some(answer) = found(&self.heard)
+                && let Some(answer) = found(&self.received)
             {
                 return Ok(Some(answer));
             }
@@ -92,61 +92,61 @@ impl Session {
         &mut self,
         command: &[u8],
         found: impl FnMut(&[u8]) -> Option<T>,
-    ) -> Result<Option<T>, Trouble> {
+    ) -> Result<Option<T>, DeviceError> {
         self.take_in()?;
-        self.heard.clear();
+        self.received.clear();
         self.line.send(command).map_err(|_| self.broken())?;
         self.listen(self.timeouts.answer, found)
     }
 
     /// Discards data that are still arriving, for example from a stream that was just stopped.
-    pub(super) fn flush(&mut self) -> Result<(), Trouble> {
+    pub(super) fn flush(&mut self) -> Result<(), DeviceError> {
         let begin = Instant::now();
-        let mut heard = begin;
-        while heard.elapsed() < QUIET && begin.elapsed() < FLUSH {
+        let mut received = begin;
+        while received.elapsed() < QUIET && begin.elapsed() < FLUSH {
             if self.take_in()? > 0 {
-                heard = Instant::now();
+                received = Instant::now();
             }
             std::thread::sleep(NAP);
         }
-        self.heard.clear();
+        self.received.clear();
         Ok(())
     }
 
     /// Reads the data that have arrived and counts the frames in them.
-    fn take_in(&mut self) -> Result<usize, Trouble> {
+    fn take_in(&mut self) -> Result<usize, DeviceError> {
         let count = self.line.receive(self.decoder.room()).map_err(|_| self.broken())?;
         let room = self.decoder.room();
-        self.heard.extend_from_slice(&room[..count]);
+        self.received.extend_from_slice(&room[..count]);
         self.decoder.filled(count);
         while self.decoder.next().is_some() {
             self.frames += 1;
         }
         self.bytes += count as u64;
-        if self.heard.len() > HEARD_MAX {
-            self.heard.drain(..self.heard.len() - HEARD_MAX);
+        if self.received.len() > RECEIVED_MAX {
+            self.received.drain(..self.received.len() - RECEIVED_MAX);
         }
         Ok(count)
     }
 
     /// Returns the reason why a command is not answered, from all received data. `baud` if the line has a speed.
-    pub(super) fn why_no_answer(&self, command: &str, baud: Option<u32>) -> Trouble {
+    pub(super) fn why_no_answer(&self, command: &str, baud: Option<u32>) -> DeviceError {
         let place = self.place.clone();
         match baud {
-            _ if self.bytes == 0 => Trouble::Silent { place },
-            Some(baud) if self.frames == 0 => Trouble::WrongBaud { place, baud },
-            _ => Trouble::Refused { place, command: command.trim().to_owned(), answer: "no answer".to_owned() },
+            _ if self.bytes == 0 => DeviceError::Silent { place },
+            Some(baud) if self.frames == 0 => DeviceError::WrongBaud { place, baud },
+            _ => DeviceError::Refused { place, command: command.trim().to_owned(), answer: "no answer".to_owned() },
         }
     }
 
-    fn broken(&self) -> Trouble {
-        Trouble::Other {
+    fn broken(&self) -> DeviceError {
+        DeviceError::Other {
             place: self.place.clone(),
             reason: "the connection broke while the sensor was being opened".to_owned(),
         }
     }
 
-    pub(super) fn into_line(self) -> Box<dyn Bytes> {
+    pub(super) fn into_line(self) -> Box<dyn ByteStream> {
         self.line
     }
 }

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::{codec, gen_a, gen0};
-use crate::Trouble;
+use crate::DeviceError;
 
 /// Generation of the sensor and type of its connection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -20,7 +20,7 @@ pub enum Transport {
 
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Settings {
+pub struct BotaSettings {
     /// `"gen0"`, `"gen-a"` (serial) or `"socket"`.
     pub transport: Transport,
     /// Device file of the line (`/dev/ttyUSB0`, `COM3`); for a socket the sensor's address, with `:port` if that is not
@@ -64,7 +64,7 @@ const fn rate() -> u32 {
 /// Bits on the line per byte: start, eight data bits, stop.
 const BITS_PER_BYTE: f64 = 10.0;
 
-impl Settings {
+impl BotaSettings {
     /// Creates default settings except for these two.
     pub fn new(transport: Transport, port: impl Into<String>) -> Self {
         let port = port.into();
@@ -91,10 +91,10 @@ impl Settings {
     /// Refuses settings that no sensor supports.
     ///
     /// # Errors
-    /// [`Trouble::Setting`] for the first invalid setting.
-    pub fn check(&self) -> Result<(), Trouble> {
+    /// [`DeviceError::Setting`] for the first invalid setting.
+    pub fn check(&self) -> Result<(), DeviceError> {
         let refuse = |key: &str, value: String, allowed: &str| {
-            Err(Trouble::Setting { key: key.to_owned(), value, allowed: allowed.to_owned() })
+            Err(DeviceError::Setting { key: key.to_owned(), value, allowed: allowed.to_owned() })
         };
         if self.port.trim().is_empty() {
             return refuse("port", "\"\"".to_owned(), "the sensor's device file or address");
@@ -155,17 +155,17 @@ mod tests {
     #[test]
     fn the_rig_file_is_read_and_strange_keys_are_refused() {
         let text = "transport = \"gen-a\"\nport = \"/dev/ttyACM0\"\nrate_hz = 1000\nserial_number = \"SN000853\"\n";
-        let settings: Settings = toml::from_str(text).unwrap();
-        let expected = Settings {
+        let settings: BotaSettings = toml::from_str(text).unwrap();
+        let expected = BotaSettings {
             rate_hz: 1000,
             serial_number: Some("SN000853".to_owned()),
-            ..Settings::new(Transport::GenA, "/dev/ttyACM0")
+            ..BotaSettings::new(Transport::GenA, "/dev/ttyACM0")
         };
         assert_eq!(settings, expected);
         assert!(settings.accepts_serial("853") && !settings.accepts_serial("854") && !settings.accepts_serial(""));
-        assert!(toml::from_str::<Settings>(&format!("{text}colour = 1\n")).is_err());
+        assert!(toml::from_str::<BotaSettings>(&format!("{text}colour = 1\n")).is_err());
         let written = toml::to_string(&settings).unwrap();
-        assert_eq!(toml::from_str::<Settings>(&written).unwrap(), settings);
+        assert_eq!(toml::from_str::<BotaSettings>(&written).unwrap(), settings);
         for (transport, name) in [(Transport::Gen0, "gen0"), (Transport::GenA, "gen-a"), (Transport::Socket, "socket")]
         {
             assert_eq!(serde_json::to_string(&transport).unwrap(), format!("\"{name}\""));
@@ -174,26 +174,26 @@ mod tests {
 
     #[test]
     fn impossible_settings_are_told_by_their_key() {
-        let gen0 = Settings::new(Transport::Gen0, "/dev/ttyUSB0");
-        let gen_a = Settings::new(Transport::GenA, "/dev/ttyUSB0");
-        let usb = Settings::new(Transport::GenA, "/dev/ttyACM0");
-        let socket = Settings::new(Transport::Socket, "192.168.0.100");
-        for good in [&gen0, &gen_a, &usb, &socket, &Settings { rate_hz: 3840, ..usb.clone() }] {
+        let gen0 = BotaSettings::new(Transport::Gen0, "/dev/ttyUSB0");
+        let gen_a = BotaSettings::new(Transport::GenA, "/dev/ttyUSB0");
+        let usb = BotaSettings::new(Transport::GenA, "/dev/ttyACM0");
+        let socket = BotaSettings::new(Transport::Socket, "192.168.0.100");
+        for good in [&gen0, &gen_a, &usb, &socket, &BotaSettings { rate_hz: 3840, ..usb.clone() }] {
             assert_eq!(good.check(), Ok(()));
         }
         let bad = [
-            ("port", Settings { port: " ".to_owned(), ..gen0.clone() }),
-            ("sinc", Settings { sinc: 63, ..gen0.clone() }),
-            ("sinc", Settings { sinc: 2048, ..gen0.clone() }),
-            ("sinc", Settings { baud: 115_200, ..gen0.clone() }),
-            ("baud", Settings { baud: 1_000_000, ..gen0 }),
-            ("mode", Settings { mode: 4, ..gen_a.clone() }),
-            ("rate_hz", Settings { rate_hz: 300, ..socket }),
-            ("rate_hz", Settings { rate_hz: 800, ..gen_a }),
+            ("port", BotaSettings { port: " ".to_owned(), ..gen0.clone() }),
+            ("sinc", BotaSettings { sinc: 63, ..gen0.clone() }),
+            ("sinc", BotaSettings { sinc: 2048, ..gen0.clone() }),
+            ("sinc", BotaSettings { baud: 115_200, ..gen0.clone() }),
+            ("baud", BotaSettings { baud: 1_000_000, ..gen0 }),
+            ("mode", BotaSettings { mode: 4, ..gen_a.clone() }),
+            ("rate_hz", BotaSettings { rate_hz: 300, ..socket }),
+            ("rate_hz", BotaSettings { rate_hz: 800, ..gen_a }),
         ];
         for (key, settings) in bad {
             match settings.check() {
-                Err(Trouble::Setting { key: told, .. }) => assert_eq!(told, key, "{settings:?}"),
+                Err(DeviceError::Setting { key: report, .. }) => assert_eq!(report, key, "{settings:?}"),
                 other => panic!("{settings:?}: {other:?}"),
             }
         }

@@ -2,8 +2,8 @@
 
 use std::time::{Duration, Instant};
 
-use super::{Found, Probe};
-use crate::{Identity, Standing, Trouble, dynamixel};
+use super::{FoundDevice, Probe};
+use crate::{ConnectionState, DeviceError, DeviceIdentity, dynamixel};
 
 #[derive(Debug)]
 pub(super) struct BusProbe {
@@ -22,16 +22,16 @@ impl Probe for BusProbe {
         &self.port
     }
 
-    fn probe(&mut self, _: Duration) -> Result<Found, Trouble> {
+    fn probe(&mut self, _: Duration) -> Result<FoundDevice, DeviceError> {
         let begin = Instant::now();
         let servos = dynamixel::who_is_there(&self.port, self.baud)?;
         let list = |words: Vec<String>| words.join(" ");
-        let identity = Identity {
+        let identity = DeviceIdentity {
             product: list(servos.iter().map(|(_, model)| (*model).to_owned()).collect()),
             serial: format!("ids {}", list(servos.iter().map(|(id, _)| id.to_string()).collect())),
             firmware: String::new(),
         };
         let latency_s = Some(begin.elapsed().as_secs_f64());
-        Ok(Found { identity, standing: Standing::Connected, latency_s, ..Found::default() })
+        Ok(FoundDevice { identity, standing: ConnectionState::Connected, latency_s, ..FoundDevice::default() })
     }
 }

@@ -2,12 +2,12 @@
 
 use std::time::{Duration, Instant};
 
-use super::{Found, Probe};
-use crate::{Device, Health, Loss, Standing, Trouble};
+use super::{FoundDevice, Probe};
+use crate::{ConnectionState, Device, DeviceError, Health, Loss};
 
 /// Conditions under which a device sends data.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Speaks {
+pub enum DataTiming {
     /// Continuously, at its own rate: silence is a fault.
     Always,
     /// Only changes: silence is normal.
@@ -17,7 +17,7 @@ pub enum Speaks {
 pub struct DeviceProbe<F> {
     name: String,
     place: String,
-    speaks: Speaks,
+    speaks: DataTiming,
     extra: Duration,
     open: F,
 }
@@ -28,7 +28,7 @@ const NAP: Duration = Duration::from_micros(500);
 
 impl<F> DeviceProbe<F> {
     /// Creates a probe of the device that `open` opens at `place`.
-    pub fn new(name: impl Into<String>, place: impl Into<String>, speaks: Speaks, open: F) -> Self {
+    pub fn new(name: impl Into<String>, place: impl Into<String>, speaks: DataTiming, open: F) -> Self {
         Self { name: name.into(), place: place.into(), speaks, extra: Duration::ZERO, open }
     }
 
@@ -38,30 +38,30 @@ impl<F> DeviceProbe<F> {
         Self { extra, ..self }
     }
 
-    fn verdict(&self, health: &Health) -> Result<(), Trouble> {
+    fn verdict(&self, health: &Health) -> Result<(), DeviceError> {
         let place = self.place.clone();
-        let other = |reason: &str| Err(Trouble::Other { place: self.place.clone(), reason: reason.to_owned() });
+        let other = |reason: &str| Err(DeviceError::Other { place: self.place.clone(), reason: reason.to_owned() });
         match health.standing {
-            Standing::Lost(Loss::Disconnected) => Err(Trouble::Absent { place }),
-            Standing::Lost(Loss::Silent) => Err(Trouble::Silent { place }),
-            Standing::Lost(loss @ (Loss::Corrupt | Loss::Implausible)) => other(loss.cause()),
-            Standing::Lost(Loss::Device { code }) => Err(Trouble::DeviceFault {
+            ConnectionState::Lost(Loss::Disconnected) => Err(DeviceError::Absent { place }),
+            ConnectionState::Lost(Loss::Silent) => Err(DeviceError::Silent { place }),
+            ConnectionState::Lost(loss @ (Loss::Corrupt | Loss::Implausible)) => other(loss.cause()),
+            ConnectionState::Lost(Loss::Device { code }) => Err(DeviceError::DeviceFault {
                 place,
                 words: format!("code {code:#x}"),
                 cure: "Look up the code in the device's manual, remove the cause, then switch the device off and on."
                     .to_owned(),
             }),
-            _ if self.speaks == Speaks::OnChange || health.readings > 0 => Ok(()),
+            _ if self.speaks == DataTiming::OnChange || health.readings > 0 => Ok(()),
             _ if health.damaged > 0 => other(Loss::Corrupt.cause()),
             _ if health.refused > 0 => other(Loss::Implausible.cause()),
-            _ => Err(Trouble::Silent { place }),
+            _ => Err(DeviceError::Silent { place }),
         }
     }
 }
 
 impl<F, D> Probe for DeviceProbe<F>
 where
-    F: FnMut() -> Result<D, Trouble> + Send,
+    F: FnMut() -> Result<D, DeviceError> + Send,
     D: Device,
 {
     fn name(&self) -> &str {
@@ -72,13 +72,13 @@ where
         self.extra
     }
 
-    fn probe(&mut self, timeout: Duration) -> Result<Found, Trouble> {
+    fn probe(&mut self, timeout: Duration) -> Result<FoundDevice, DeviceError> {
         let begin = Instant::now();
         let mut device = (self.open)()?;
         let end = Instant::now() + LISTEN.min(timeout.saturating_sub(begin.elapsed()));
         let mut first = None;
         let mut last = None;
-        while Instant::now() < end && !matches!(device.health().standing, Standing::Lost(_)) {
+        while Instant::now() < end && !matches!(device.health().standing, ConnectionState::Lost(_)) {
             if device.poll(begin.elapsed().as_secs_f64()).is_some() {
                 last = Some(Instant::now());
                 first = first.or(last);
@@ -89,11 +89,11 @@ where
         self.verdict(&health)?;
         let span_s = first.zip(last).map(|(first, last)| (last - first).as_secs_f64()).filter(|span_s| *span_s > 0.0);
         let rate = |span_s: f64| (health.readings.saturating_sub(1)) as f64 / span_s;
-        Ok(Found {
+        Ok(FoundDevice {
             identity: device.identity().clone(),
             standing: health.standing,
             readings: health.readings,
-            rate_hz: span_s.map(rate).filter(|_| self.speaks == Speaks::Always),
+            rate_hz: span_s.map(rate).filter(|_| self.speaks == DataTiming::Always),
             lost: health.lost,
             damaged: health.damaged + health.refused,
             latency_s: first.map(|first| (first - begin).as_secs_f64()),

@@ -2,9 +2,9 @@
 
 use std::time::Duration;
 
-use super::{DeviceProbe, Found, Probe, SerialProbe, Speaks, TcpProbe};
+use super::{DataTiming, DeviceProbe, FoundDevice, Probe, SerialProbe, TcpProbe};
 use crate::{
-    Trouble,
+    DeviceError,
     bota::{self, Transport},
     external, force_dimension, haply,
     hid::{CapDriver, CapSettings, PedalDriver, PedalSettings},
@@ -17,7 +17,7 @@ pub struct ProbeKind {
     /// Format of the address.
     pub usage: &'static str,
     /// Creates a probe for an address; the text is empty if none was given.
-    pub make: fn(&str) -> Result<Box<dyn Probe>, Trouble>,
+    pub make: fn(&str) -> Result<Box<dyn Probe>, DeviceError>,
 }
 
 pub const KINDS: &[ProbeKind] = &[
@@ -43,12 +43,12 @@ pub const KINDS: &[ProbeKind] = &[
 ];
 
 /// Returns the trouble for an invalid address on the command line.
-fn wrong(kind: &str, place: &str, allowed: &str) -> Trouble {
-    Trouble::Setting { key: kind.to_owned(), value: place.to_owned(), allowed: allowed.to_owned() }
+fn wrong(kind: &str, place: &str, allowed: &str) -> DeviceError {
+    DeviceError::Setting { key: kind.to_owned(), value: place.to_owned(), allowed: allowed.to_owned() }
 }
 
 /// Returns port and line speed of `PORT[@BAUD]`; `usual` is the default speed.
-fn line<'a>(kind: &str, place: &'a str, usual: u32) -> Result<(&'a str, u32), Trouble> {
+fn line<'a>(kind: &str, place: &'a str, usual: u32) -> Result<(&'a str, u32), DeviceError> {
     let (port, baud) = place.rsplit_once('@').unwrap_or((place, ""));
     let baud = if baud.is_empty() { Some(usual) } else { baud.parse().ok() };
     match baud.filter(|baud| *baud > 0 && !port.is_empty()) {
@@ -58,62 +58,62 @@ fn line<'a>(kind: &str, place: &'a str, usual: u32) -> Result<(&'a str, u32), Tr
 }
 
 #[expect(clippy::unnecessary_wraps, reason = "every row of the table has one form")]
-fn cap(place: &str) -> Result<Box<dyn Probe>, Trouble> {
+fn cap(place: &str) -> Result<Box<dyn Probe>, DeviceError> {
     let mut settings = CapSettings::default();
     if !place.is_empty() {
         place.clone_into(&mut settings.source);
     }
     let place = settings.source.clone();
-    Ok(Box::new(DeviceProbe::new("spacemouse", place, Speaks::OnChange, move || CapDriver::open(&settings))))
+    Ok(Box::new(DeviceProbe::new("spacemouse", place, DataTiming::OnChange, move || CapDriver::open(&settings))))
 }
 
 #[expect(clippy::unnecessary_wraps, reason = "every row of the table has one form")]
-fn pedal(place: &str) -> Result<Box<dyn Probe>, Trouble> {
+fn pedal(place: &str) -> Result<Box<dyn Probe>, DeviceError> {
     let mut settings = PedalSettings::default();
     if !place.is_empty() {
         place.clone_into(&mut settings.source);
     }
     let place = settings.source.clone();
-    Ok(Box::new(DeviceProbe::new("pedal", place, Speaks::OnChange, move || PedalDriver::open(&settings))))
+    Ok(Box::new(DeviceProbe::new("pedal", place, DataTiming::OnChange, move || PedalDriver::open(&settings))))
 }
 
-fn serial(place: &str) -> Result<Box<dyn Probe>, Trouble> {
+fn serial(place: &str) -> Result<Box<dyn Probe>, DeviceError> {
     Ok(Box::new(place.parse::<SerialProbe>()?))
 }
 
-fn tcp(place: &str) -> Result<Box<dyn Probe>, Trouble> {
+fn tcp(place: &str) -> Result<Box<dyn Probe>, DeviceError> {
     Ok(Box::new(TcpProbe::new(place)?))
 }
 
-fn gen0(place: &str) -> Result<Box<dyn Probe>, Trouble> {
+fn gen0(place: &str) -> Result<Box<dyn Probe>, DeviceError> {
     bota("bota-gen0", Transport::Gen0, place)
 }
 
-fn gen_a(place: &str) -> Result<Box<dyn Probe>, Trouble> {
+fn gen_a(place: &str) -> Result<Box<dyn Probe>, DeviceError> {
     bota("bota-gen-a", Transport::GenA, place)
 }
 
-fn socket(place: &str) -> Result<Box<dyn Probe>, Trouble> {
+fn socket(place: &str) -> Result<Box<dyn Probe>, DeviceError> {
     bota("bota-socket", Transport::Socket, place)
 }
 
-fn bota(kind: &str, transport: Transport, place: &str) -> Result<Box<dyn Probe>, Trouble> {
-    let usual = bota::Settings::new(transport, place);
+fn bota(kind: &str, transport: Transport, place: &str) -> Result<Box<dyn Probe>, DeviceError> {
+    let usual = bota::BotaSettings::new(transport, place);
     let (port, baud) =
         if transport == Transport::Socket { (place, usual.baud) } else { line(kind, place, usual.baud)? };
-    let settings = bota::Settings { port: port.to_owned(), baud, ..usual };
+    let settings = bota::BotaSettings { port: port.to_owned(), baud, ..usual };
     settings.check()?;
     Ok(super::probes::sensor(kind, settings))
 }
 
 /// Creates a probe that lists the servos on the bus without configuring them, because their settings are unknown.
-fn dynamixel(place: &str) -> Result<Box<dyn Probe>, Trouble> {
+fn dynamixel(place: &str) -> Result<Box<dyn Probe>, DeviceError> {
     let (port, baud) = line("dynamixel", place, 1_000_000)?;
     Ok(Box::new(super::bus::BusProbe::new(port, baud)))
 }
 
-fn ndi(place: &str) -> Result<Box<dyn Probe>, Trouble> {
-    let mut settings = ndi::Settings { wired: true, ..ndi::Settings::default() };
+fn ndi(place: &str) -> Result<Box<dyn Probe>, DeviceError> {
+    let mut settings = ndi::NdiSettings { wired: true, ..ndi::NdiSettings::default() };
     if place.contains('/') || place.starts_with("COM") {
         let (port, baud) = line("ndi", place, settings.baud)?;
         settings.port = Some(port.to_owned());
@@ -127,17 +127,17 @@ fn ndi(place: &str) -> Result<Box<dyn Probe>, Trouble> {
     Ok(super::probes::tracker("ndi", settings))
 }
 
-fn kinova(place: &str) -> Result<Box<dyn Probe>, Trouble> {
-    let usual = kinova::Settings::default();
+fn kinova(place: &str) -> Result<Box<dyn Probe>, DeviceError> {
+    let usual = kinova::KinovaSettings::default();
     let place = if place.is_empty() { &usual.host } else { place };
-    let settings = kinova::Settings::at(place);
+    let settings = kinova::KinovaSettings::at(place);
     let settings = settings.ok_or_else(|| wrong("kinova", place, "HOST, or HOST tcp=PORT udp=PORT"))?;
     Ok(super::probes::arm("kinova", settings))
 }
 
-fn force_dimension(place: &str) -> Result<Box<dyn Probe>, Trouble> {
+fn force_dimension(place: &str) -> Result<Box<dyn Probe>, DeviceError> {
     let refused = || wrong("force-dimension", place, "a serial number, or emulated:ADDRESS:PORT");
-    let mut settings = force_dimension::Settings::default();
+    let mut settings = force_dimension::ForceDimensionSettings::default();
     match place.strip_prefix("emulated:") {
         Some(address) => settings.emulator = Some(address.parse().map_err(|_| refused())?),
         None if place.is_empty() => {}
@@ -146,31 +146,31 @@ fn force_dimension(place: &str) -> Result<Box<dyn Probe>, Trouble> {
     Ok(super::probes::handle("force-dimension", settings))
 }
 
-fn haply(place: &str) -> Result<Box<dyn Probe>, Trouble> {
+fn haply(place: &str) -> Result<Box<dyn Probe>, DeviceError> {
     if place.is_empty() {
         return Err(wrong("haply", place, "the handle's device file"));
     }
-    Ok(super::probes::haply("haply", haply::Settings::at(place)))
+    Ok(super::probes::haply("haply", haply::HaplySettings::at(place)))
 }
 
-fn external_handle(place: &str) -> Result<Box<dyn Probe>, Trouble> {
-    external("external-handle", external::Kind::Handle, place)
+fn external_handle(place: &str) -> Result<Box<dyn Probe>, DeviceError> {
+    external("external-handle", external::ExternalKind::Handle, place)
 }
 
-fn external_arm(place: &str) -> Result<Box<dyn Probe>, Trouble> {
-    external("external-arm", external::Kind::Arm, place)
+fn external_arm(place: &str) -> Result<Box<dyn Probe>, DeviceError> {
+    external("external-arm", external::ExternalKind::Arm, place)
 }
 
-fn external_sensor(place: &str) -> Result<Box<dyn Probe>, Trouble> {
-    external("external-sensor", external::Kind::Sensor, place)
+fn external_sensor(place: &str) -> Result<Box<dyn Probe>, DeviceError> {
+    external("external-sensor", external::ExternalKind::Sensor, place)
 }
 
-fn external(name: &str, kind: external::Kind, place: &str) -> Result<Box<dyn Probe>, Trouble> {
+fn external(name: &str, kind: external::ExternalKind, place: &str) -> Result<Box<dyn Probe>, DeviceError> {
     let refused = || wrong(name, place, "ADDRESS:PORT at which to listen, and of another computer its address: ,FROM");
     let (listen, from) = place.split_once(',').map_or((place, None), |(listen, from)| (listen, Some(from)));
-    let usual = external::Settings::at(listen.parse().map_err(|_| refused())?);
+    let usual = external::ExternalSettings::at(listen.parse().map_err(|_| refused())?);
     let from = from.map(str::parse).transpose().map_err(|_| refused())?;
-    let settings = external::Settings { from, ..usual };
+    let settings = external::ExternalSettings { from, ..usual };
     settings.check(kind)?;
     Ok(super::probes::external(name, kind, settings))
 }
@@ -178,27 +178,31 @@ fn external(name: &str, kind: external::Kind, place: &str) -> Result<Box<dyn Pro
 /// Returns the probe for `KIND` or `KIND=PLACE`, named after the whole text.
 ///
 /// # Errors
-/// [`Trouble::Setting`] if the kind is unknown or its address invalid.
-pub fn probe_named(text: &str) -> Result<Box<dyn Probe>, Trouble> {
+/// [`DeviceError::Setting`] if the kind is unknown or its address invalid.
+pub fn probe_named(text: &str) -> Result<Box<dyn Probe>, DeviceError> {
     let (name, place) = text.split_once('=').unwrap_or((text, ""));
     let Some(kind) = KINDS.iter().find(|kind| kind.name == name) else {
         let usages: Vec<_> = KINDS.iter().map(|kind| kind.usage).collect();
-        return Err(Trouble::Setting { key: "--probe".to_owned(), value: text.to_owned(), allowed: usages.join(", ") });
+        return Err(DeviceError::Setting {
+            key: "--probe".to_owned(),
+            value: text.to_owned(),
+            allowed: usages.join(", "),
+        });
     };
-    Ok(Box::new(Named { name: text.to_owned(), probe: (kind.make)(place)? }))
+    Ok(Box::new(NamedKind { name: text.to_owned(), probe: (kind.make)(place)? }))
 }
 
-struct Named {
+struct NamedKind {
     name: String,
     probe: Box<dyn Probe>,
 }
 
-impl Probe for Named {
+impl Probe for NamedKind {
     fn name(&self) -> &str {
         &self.name
     }
 
-    fn probe(&mut self, timeout: Duration) -> Result<Found, Trouble> {
+    fn probe(&mut self, timeout: Duration) -> Result<FoundDevice, DeviceError> {
         self.probe.probe(timeout)
     }
 }

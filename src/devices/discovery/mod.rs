@@ -1,7 +1,7 @@
 //! Finds out which devices are plugged in, and why a configured device does not work: each cause with its remedy.
 //!
-//! [`Plugged::list`] opens no device. [`diagnose`] tests devices in parallel, each on its own thread, within
-//! [`TIMEOUT`]. The real-time thread is not involved; a device in use by a running console gives [`Trouble::Busy`]. A
+//! [`PluggedDevices::list`] opens no device. [`diagnose`] tests devices in parallel, each on its own thread, within
+//! [`TIMEOUT`]. The real-time thread is not involved; a device in use by a running console gives [`DeviceError::Busy`]. A
 //! new driver needs one line in [`KINDS`]: its open function in a [`DeviceProbe`].
 
 mod bus;
@@ -21,22 +21,22 @@ use std::{
 
 use serde::Serialize;
 
-use super::{Identity, Standing, Trouble};
+use super::{ConnectionState, DeviceError, DeviceIdentity};
 
-pub use device_probe::{DeviceProbe, Speaks};
+pub use device_probe::{DataTiming, DeviceProbe};
 pub use kinds::{KINDS, ProbeKind, probe_named};
 pub use network::TcpProbe;
-pub use plugged::{HidNode, Plugged, SerialPort, UsbDevice, UsbIds};
+pub use plugged::{HidNode, PluggedDevices, SerialPort, UsbDevice, UsbIds};
 pub use serial::{SerialProbe, frames};
 
 /// Time limit of a diagnosis; all devices are tested at once.
 pub const TIMEOUT: Duration = Duration::from_millis(900);
 
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct Found {
-    pub identity: Identity,
+pub struct FoundDevice {
+    pub identity: DeviceIdentity,
     /// Connected, or lost again while listening.
-    pub standing: Standing,
+    pub standing: ConnectionState,
     pub readings: u64,
     /// Rate of the readings, Hz; `None` for a device that sends only changes or answers.
     pub rate_hz: Option<f64>,
@@ -58,24 +58,24 @@ pub trait Probe: Send {
     /// Runs the test, within `timeout` as far as possible.
     ///
     /// # Errors
-    /// [`Trouble`] if the device does not work.
-    fn probe(&mut self, timeout: Duration) -> Result<Found, Trouble>;
+    /// [`DeviceError`] if the device does not work.
+    fn probe(&mut self, timeout: Duration) -> Result<FoundDevice, DeviceError>;
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case", tag = "state")]
-pub enum Outcome {
-    Connected(Found),
+pub enum TestOutcome {
+    Connected(FoundDevice),
     Trouble {
         #[serde(flatten)]
-        trouble: Trouble,
+        trouble: DeviceError,
         cause: String,
         cure: String,
     },
 }
 
-impl From<Result<Found, Trouble>> for Outcome {
-    fn from(result: Result<Found, Trouble>) -> Self {
+impl From<Result<FoundDevice, DeviceError>> for TestOutcome {
+    fn from(result: Result<FoundDevice, DeviceError>) -> Self {
         match result {
             Ok(found) => Self::Connected(found),
             Err(trouble) => Self::Trouble { cause: trouble.to_string(), cure: trouble.cure(), trouble },
@@ -84,16 +84,16 @@ impl From<Result<Found, Trouble>> for Outcome {
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Diagnosis {
+pub struct DiscoveryDiagnosis {
     pub name: String,
     pub took_s: f64,
     #[serde(flatten)]
-    pub outcome: Outcome,
+    pub outcome: TestOutcome,
 }
 
 /// Runs all tests, each on its own thread; returns the results in the given order. A test that does not finish within
 /// `timeout` plus its additional time is reported as such, and its thread is left running.
-pub fn diagnose(probes: Vec<Box<dyn Probe>>, timeout: Duration) -> Vec<Diagnosis> {
+pub fn diagnose(probes: Vec<Box<dyn Probe>>, timeout: Duration) -> Vec<DiscoveryDiagnosis> {
     let begin = Instant::now();
     let started = |probe: Box<dyn Probe>| {
         let timeout = timeout + probe.extra();
@@ -109,16 +109,16 @@ pub fn diagnose(probes: Vec<Box<dyn Probe>>, timeout: Duration) -> Vec<Diagnosis
                     mpsc::RecvTimeoutError::Timeout => format!("no answer within {:.1} s", timeout.as_secs_f64()),
                     mpsc::RecvTimeoutError::Disconnected => "the test failed".to_owned(),
                 };
-                (Err(Trouble::Other { place: name.clone(), reason }), begin.elapsed())
+                (Err(DeviceError::Other { place: name.clone(), reason }), begin.elapsed())
             });
-            Diagnosis { name, took_s: took.as_secs_f64(), outcome: result.into() }
+            DiscoveryDiagnosis { name, took_s: took.as_secs_f64(), outcome: result.into() }
         })
         .collect()
 }
 
-type Answer = (Result<Found, Trouble>, Duration);
+type DiscoveryAnswer = (Result<FoundDevice, DeviceError>, Duration);
 
-fn start(mut probe: Box<dyn Probe>, timeout: Duration) -> (String, mpsc::Receiver<Answer>) {
+fn start(mut probe: Box<dyn Probe>, timeout: Duration) -> (String, mpsc::Receiver<DiscoveryAnswer>) {
     /// Subtracted from the time of each test, so that a test that uses all of its time can still report its result.
     const RESERVE: Duration = Duration::from_millis(100);
     let name = probe.name().to_owned();

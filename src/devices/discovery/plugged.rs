@@ -40,7 +40,7 @@ pub struct UsbDevice {
 }
 
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
-pub struct Plugged {
+pub struct PluggedDevices {
     pub serial: Vec<SerialPort>,
     pub hid: Vec<HidNode>,
     pub usb: Vec<UsbDevice>,
@@ -101,7 +101,7 @@ impl UsbIds {
     }
 }
 
-impl Plugged {
+impl PluggedDevices {
     pub fn list() -> Self {
         let library = crate::force_dimension::installed_library();
         Self { force_dimension_library: library, ..Self::under(Path::new("/sys")) }
@@ -163,6 +163,6 @@ fn hid_node(entry: &Path) -> Option<HidNode> {
         serial: value("HID_UNIQ").unwrap_or_default().to_owned(),
     };
     let identity = hid::HidIdentity { vendor: usb.vendor, product: usb.product, ..hid::HidIdentity::default() };
-    let usable_as = identity.kind().map(hid::Kind::words);
+    let usable_as = identity.kind().map(hid::HidKind::words);
     Some(HidNode { path: Path::new("/dev").join(entry.file_name()?), usb, usable_as })
 }

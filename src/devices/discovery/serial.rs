@@ -6,10 +6,10 @@ use std::{
     time::{Duration, Instant},
 };
 
-use super::{Found, Probe, plugged::UsbIds, rules};
+use super::{FoundDevice, Probe, plugged::UsbIds, rules};
 use crate::{
-    Identity, Standing, Trouble,
-    transport::{Bytes as _, Serial, SerialSettings},
+    ConnectionState, DeviceError, DeviceIdentity,
+    transport::{ByteStream as _, Serial, SerialSettings},
 };
 
 /// A probe of a port. Its text form is `PORT@BAUD[,HEADER][,quiet]`.
@@ -37,10 +37,10 @@ const REPEATS: usize = 6;
 const ENOUGH: usize = 64;
 
 impl FromStr for SerialProbe {
-    type Err = Trouble;
+    type Err = DeviceError;
 
-    fn from_str(text: &str) -> Result<Self, Trouble> {
-        let wrong = || Trouble::Setting {
+    fn from_str(text: &str) -> Result<Self, DeviceError> {
+        let wrong = || DeviceError::Setting {
             key: "serial".to_owned(),
             value: text.to_owned(),
             allowed: "PORT@BAUD[,HEADER as hexadecimal digits][,quiet]".to_owned(),
@@ -86,14 +86,14 @@ impl Probe for SerialProbe {
         &self.settings.port
     }
 
-    fn probe(&mut self, timeout: Duration) -> Result<Found, Trouble> {
+    fn probe(&mut self, timeout: Duration) -> Result<FoundDevice, DeviceError> {
         let SerialSettings { port, baud } = &self.settings;
         let ids = UsbIds::of_port(Path::new("/sys"), Path::new(port));
         let begin = Instant::now();
         let mut line = Serial::open(&self.settings).map_err(|trouble| exact(trouble, ids.as_ref()))?;
         let errors_before = line.line_errors();
         let end = Instant::now() + LISTEN.min(timeout.saturating_sub(begin.elapsed()));
-        let mut heard = Vec::new();
+        let mut received = Vec::new();
         let mut first_s = None;
         let mut buffer = [0; 4096];
         while Instant::now() < end {
@@ -101,44 +101,44 @@ impl Probe for SerialProbe {
                 Ok(0) => std::thread::sleep(NAP),
                 Ok(count) => {
                     first_s.get_or_insert(begin.elapsed().as_secs_f64());
-                    heard.extend_from_slice(&buffer[..count]);
+                    received.extend_from_slice(&buffer[..count]);
                 }
-                Err(_) => return Err(Trouble::Absent { place: port.clone() }),
+                Err(_) => return Err(DeviceError::Absent { place: port.clone() }),
             }
         }
         let place = port.clone();
-        let wrong_baud = Err(Trouble::WrongBaud { place: place.clone(), baud: *baud });
+        let wrong_baud = Err(DeviceError::WrongBaud { place: place.clone(), baud: *baud });
         // A break, or starting in the middle of a byte, causes one or two errors; a wrong speed causes errors
         // continuously.
         let errors = line.line_errors().zip(errors_before).map_or(0, |(now, before)| now.wrapping_sub(before));
-        if errors as usize > 2 + heard.len() / 50 {
+        if errors as usize > 2 + received.len() / 50 {
             return wrong_baud;
         }
-        if heard.is_empty() && !self.quiet {
-            return Err(Trouble::Silent { place });
+        if received.is_empty() && !self.quiet {
+            return Err(DeviceError::Silent { place });
         }
-        let framed = if self.header.is_empty() { None } else { frames(&heard, &self.header) };
-        if !self.header.is_empty() && framed.is_none() && heard.len() >= ENOUGH {
+        let framed = if self.header.is_empty() { None } else { frames(&received, &self.header) };
+        if !self.header.is_empty() && framed.is_none() && received.len() >= ENOUGH {
             return wrong_baud;
         }
         let listened_s = begin.elapsed().as_secs_f64() - first_s.unwrap_or(0.0);
         let product = ids.map_or_else(|| "serial port".to_owned(), |ids| ids.words());
-        Ok(Found {
-            identity: Identity { product, ..Identity::default() },
-            standing: Standing::Connected,
+        Ok(FoundDevice {
+            identity: DeviceIdentity { product, ..DeviceIdentity::default() },
+            standing: ConnectionState::Connected,
             readings: framed.unwrap_or(0) as u64,
             rate_hz: framed.map(|count| count as f64 / listened_s),
             damaged: u64::from(errors),
             latency_s: first_s,
-            ..Found::default()
+            ..FoundDevice::default()
         })
     }
 }
 
 /// Adds the udev rule for exactly this device, if its USB ids are known.
-fn exact(trouble: Trouble, ids: Option<&UsbIds>) -> Trouble {
+fn exact(trouble: DeviceError, ids: Option<&UsbIds>) -> DeviceError {
     match trouble {
-        Trouble::Permission { place, .. } => Trouble::Permission { place, udev: rules::of_serial(ids) },
+        DeviceError::Permission { place, .. } => DeviceError::Permission { place, udev: rules::of_serial(ids) },
         other => other,
     }
 }

@@ -7,7 +7,7 @@ const DRIFT: f64 = 0.02;
 
 /// Age of a reading by its time stamp.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Age {
+pub(super) enum ReadingAge {
     /// Newer than all previous ones.
     New,
     /// From the same millisecond as the previous one.
@@ -17,7 +17,7 @@ pub(super) enum Age {
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Last {
+struct LastReading {
     tick: i32,
     device_s: f64,
     arrival_s: f64,
@@ -28,7 +28,7 @@ struct Last {
 /// Unwraps the clock.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct DeviceClock {
-    last: Option<Last>,
+    last: Option<LastReading>,
     late_s: f64,
 }
 
@@ -40,12 +40,12 @@ impl DeviceClock {
     }
 
     /// Adds the tick of a reading that arrived at `arrival_s`; returns its time, s, and its age.
-    pub(super) fn take(&mut self, tick: u16, arrival_s: f64) -> (f64, Age) {
+    pub(super) fn take(&mut self, tick: u16, arrival_s: f64) -> (f64, ReadingAge) {
         let tick = i32::from(tick) % TICK_WRAP;
         let Some(last) = &mut self.last else {
             let device_s = f64::from(tick) * 1e-3;
-            self.last = Some(Last { tick, device_s, arrival_s, offset_s: arrival_s - device_s });
-            return (device_s, Age::New);
+            self.last = Some(LastReading { tick, device_s, arrival_s, offset_s: arrival_s - device_s });
+            return (device_s, ReadingAge::New);
         };
         let elapsed_s = (arrival_s - last.arrival_s).max(0.0);
         let wrap_s = f64::from(TICK_WRAP) * 1e-3;
@@ -55,10 +55,10 @@ impl DeviceClock {
         let offset_s = arrival_s - device_s;
         let quickest_s = offset_s.min(last.offset_s + DRIFT * elapsed_s);
         if step_s < -0.5e-3 || offset_s - quickest_s > self.late_s {
-            return (device_s, Age::Old);
+            return (device_s, ReadingAge::Old);
         }
-        let age = if step_s > 0.5e-3 { Age::New } else { Age::Same };
-        *last = Last { tick, device_s, arrival_s, offset_s: quickest_s };
+        let age = if step_s > 0.5e-3 { ReadingAge::New } else { ReadingAge::Same };
+        *last = LastReading { tick, device_s, arrival_s, offset_s: quickest_s };
         (device_s, age)
     }
 }
@@ -76,7 +76,7 @@ mod tests {
             let tick = ((now_s * 1e3).round() as u64 + 32_760) % 32_768;
             let (device_s, age) = clock.take(tick as u16, now_s);
             assert!((device_s - 32.760 - now_s).abs() < 1e-9, "step {k}: {device_s}");
-            assert_eq!(age, if step_ms == 0 { Age::Same } else { Age::New });
+            assert_eq!(age, if step_ms == 0 { ReadingAge::Same } else { ReadingAge::New });
         }
     }
 
@@ -85,10 +85,10 @@ mod tests {
         let mut clock = DeviceClock::new(0.015);
         for k in 0..20_000_u16 {
             // A servo's clock that is 1 % slow.
-            assert_ne!(clock.take((f64::from(k) * 0.99) as u16, f64::from(k) * 1e-3).1, Age::Old, "{k}");
+            assert_ne!(clock.take((f64::from(k) * 0.99) as u16, f64::from(k) * 1e-3).1, ReadingAge::Old, "{k}");
         }
-        assert_eq!(clock.take(19_801, 20.050).1, Age::Old, "50 ms late");
-        assert_eq!(clock.take(19_700, 20.001).1, Age::Old, "from before");
-        assert_eq!(clock.take(19_802, 20.002).1, Age::New);
+        assert_eq!(clock.take(19_801, 20.050).1, ReadingAge::Old, "50 ms late");
+        assert_eq!(clock.take(19_700, 20.001).1, ReadingAge::Old, "from before");
+        assert_eq!(clock.take(19_802, 20.002).1, ReadingAge::New);
     }
 }

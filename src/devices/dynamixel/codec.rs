@@ -8,7 +8,7 @@
 
 use crc::{CRC_16_UMTS, Crc};
 
-use crate::unread::Unread;
+use crate::stream_buffer::Unread;
 
 const HEADER: [u8; 4] = [0xFF, 0xFF, 0xFD, 0x00];
 const MARK: [u8; 3] = [0xFF, 0xFF, 0xFD];
@@ -27,12 +27,12 @@ const CRC: Crc<u16> = Crc::<u16>::new(&CRC_16_UMTS);
 
 /// Packets to be sent. The buffer is reused; it grows only beyond its initial capacity.
 #[derive(Debug)]
-pub struct Outgoing {
+pub struct OutgoingPackets {
     bytes: Vec<u8>,
     begin: usize,
 }
 
-impl Outgoing {
+impl OutgoingPackets {
     /// Creates a buffer with an initial capacity of `room` bytes.
     pub fn new(room: usize) -> Self {
         Self { bytes: Vec::with_capacity(room), begin: 0 }
@@ -118,7 +118,7 @@ pub struct Packet<'a> {
 
 /// Counters of refused data since construction.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Refused {
+pub struct RefusedCounts {
     /// Packets with a wrong checksum or an impossible length.
     pub damaged: u64,
     /// Bytes skipped to find a header again.
@@ -127,14 +127,14 @@ pub struct Refused {
 
 /// Finds packets in a stream.
 #[derive(Debug)]
-pub struct Incoming {
+pub struct IncomingPackets {
     unread: Unread,
     body: Vec<u8>,
     longest: usize,
-    refused: Refused,
+    refused: RefusedCounts,
 }
 
-impl Incoming {
+impl IncomingPackets {
     /// Accepts packets of at most `longest` bytes. Longer ones count as damaged, so that a wrong length cannot swallow
     /// the packets after it.
     pub fn new(longest: usize) -> Self {
@@ -143,11 +143,11 @@ impl Incoming {
             unread: Unread::with_room(2 * longest),
             body: Vec::with_capacity(longest),
             longest,
-            refused: Refused::default(),
+            refused: RefusedCounts::default(),
         }
     }
 
-    pub const fn refused(&self) -> Refused {
+    pub const fn refused(&self) -> RefusedCounts {
         self.refused
     }
 
@@ -242,7 +242,7 @@ fn unstuff(from: &[u8], to: &mut Vec<u8>) {
 
 /// One servo's block in the answer to a fast read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Block<'a> {
+pub struct DynamixelBlock<'a> {
     pub error: u8,
     pub id: u8,
     pub data: &'a [u8],
@@ -251,10 +251,14 @@ pub struct Block<'a> {
 /// Splits the body of the answer to a fast read into blocks of `data_bytes` each. The checksum of the packet, which is
 /// also that of the last block, has been removed already, and it covers the checksums in between. Returns `None` if the
 /// length does not fit.
-pub fn blocks(body: &[u8], data_bytes: usize) -> Option<impl Iterator<Item = Block<'_>>> {
+pub fn blocks(body: &[u8], data_bytes: usize) -> Option<impl Iterator<Item = DynamixelBlock<'_>>> {
     let each = data_bytes + 4;
     let fits = (body.len() + 2).is_multiple_of(each) && !body.is_empty();
     fits.then(|| {
-        body.chunks(each).map(move |block| Block { error: block[0], id: block[1], data: &block[2..2 + data_bytes] })
+        body.chunks(each).map(move |block| DynamixelBlock {
+            error: block[0],
+            id: block[1],
+            data: &block[2..2 + data_bytes],
+        })
     })
 }

@@ -1,20 +1,20 @@
 //! Instructions of Protocol 2.0 as types, both ways (e-manual, "Instruction Packet").
 
-use super::codec::{Outgoing, STATUS};
+use super::codec::{OutgoingPackets, STATUS};
 
 /// An instruction packet. Lists remain encoded; [`Instruction::decode`] has checked their lengths.
 ///
 /// ```
 /// use nima_devices::dynamixel::{
-///     codec::{Incoming, Outgoing},
+///     codec::{IncomingPackets, OutgoingPackets},
 ///     message::Instruction,
 /// };
 ///
-/// let mut out = Outgoing::new(32);
+/// let mut out = OutgoingPackets::new(32);
 /// Instruction::Ping.encode(1, &mut out);
 /// assert_eq!(out.bytes(), [0xFF, 0xFF, 0xFD, 0, 1, 3, 0, 1, 0x19, 0x4E], "the example of the e-manual");
 ///
-/// let mut incoming = Incoming::new(64);
+/// let mut incoming = IncomingPackets::new(64);
 /// incoming.feed(&[0x55, 0xFF]);
 /// incoming.feed(out.bytes());
 /// let packet = incoming.next().expect("a packet behind two bytes of noise");
@@ -91,7 +91,7 @@ pub enum Keep {
 /// Reason why a servo refuses an instruction (low seven bits of the error byte).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
-pub enum Refusal {
+pub enum ServoRefusal {
     Failed = 1,
     Instruction = 2,
     Checksum = 3,
@@ -104,7 +104,7 @@ pub enum Refusal {
     Access = 7,
 }
 
-impl Refusal {
+impl ServoRefusal {
     /// Decodes an error byte: `Ok(None)` without an error, `Err` with the byte if the error is unknown.
     ///
     /// # Errors
@@ -154,19 +154,19 @@ impl<'a> Instruction<'a> {
     /// Decodes the instruction and body of a packet.
     ///
     /// # Errors
-    /// [`Refusal`] with which a servo answers: unknown instruction, wrong length or wrong key.
-    pub fn decode(instruction: u8, body: &'a [u8]) -> Result<Self, Refusal> {
-        let bare = |it: Self| if body.is_empty() { Ok(it) } else { Err(Refusal::Length) };
+    /// [`ServoRefusal`] with which a servo answers: unknown instruction, wrong length or wrong key.
+    pub fn decode(instruction: u8, body: &'a [u8]) -> Result<Self, ServoRefusal> {
+        let bare = |it: Self| if body.is_empty() { Ok(it) } else { Err(ServoRefusal::Length) };
         match instruction {
             0x01 => bare(Self::Ping),
             0x05 => bare(Self::Action),
             0x08 => bare(Self::Reboot),
             0x02 => match pair(body) {
                 Some((address, count, [])) => Ok(Self::Read { address, count }),
-                _ => Err(Refusal::Length),
+                _ => Err(ServoRefusal::Length),
             },
             0x03 | 0x04 => {
-                let (address, data) = body.split_first_chunk().ok_or(Refusal::Length)?;
+                let (address, data) = body.split_first_chunk().ok_or(ServoRefusal::Length)?;
                 let address = u16::from_le_bytes(*address);
                 let write = Self::Write { address, data };
                 Ok(if instruction == 0x03 { write } else { Self::RegWrite { address, data } })
@@ -175,20 +175,20 @@ impl<'a> Instruction<'a> {
                 [0xFF] => Ok(Self::FactoryReset { keep: Keep::Nothing }),
                 [0x01] => Ok(Self::FactoryReset { keep: Keep::Id }),
                 [0x02] => Ok(Self::FactoryReset { keep: Keep::IdAndBaud }),
-                [_] => Err(Refusal::Range),
-                _ => Err(Refusal::Length),
+                [_] => Err(ServoRefusal::Range),
+                _ => Err(ServoRefusal::Length),
             },
             0x10 if body == CLEAR_KEY => Ok(Self::ClearTurns),
             0x20 | 0x21 if body == BACKUP_KEY => Ok(Self::Backup { restore: instruction == 0x21 }),
-            0x10 | 0x20 | 0x21 => Err(Refusal::Range),
+            0x10 | 0x20 | 0x21 => Err(ServoRefusal::Range),
             0x82 | 0x8A => {
-                let (address, count, ids) = pair(body).ok_or(Refusal::Length)?;
+                let (address, count, ids) = pair(body).ok_or(ServoRefusal::Length)?;
                 Ok(Self::SyncRead { address, count, ids, fast: instruction == 0x8A })
             }
             0x83 => {
-                let (address, count, items) = pair(body).ok_or(Refusal::Length)?;
+                let (address, count, items) = pair(body).ok_or(ServoRefusal::Length)?;
                 let fits = items.len().is_multiple_of(usize::from(count) + 1);
-                if fits { Ok(Self::SyncWrite { address, count, items }) } else { Err(Refusal::Length) }
+                if fits { Ok(Self::SyncWrite { address, count, items }) } else { Err(ServoRefusal::Length) }
             }
             0x92 | 0x9A if body.len().is_multiple_of(5) => {
                 Ok(Self::BulkRead { items: body, fast: instruction == 0x9A })
@@ -196,8 +196,8 @@ impl<'a> Instruction<'a> {
             0x93 if bulk_writes(body).map(|(_, _, data)| 5 + data.len()).sum::<usize>() == body.len() => {
                 Ok(Self::BulkWrite { items: body })
             }
-            0x92 | 0x93 | 0x9A => Err(Refusal::Length),
-            _ => Err(Refusal::Instruction),
+            0x92 | 0x93 | 0x9A => Err(ServoRefusal::Length),
+            _ => Err(ServoRefusal::Instruction),
         }
     }
 
@@ -220,7 +220,7 @@ impl<'a> Instruction<'a> {
     }
 
     /// Appends the instruction to `out` as a packet for `id`.
-    pub fn encode(&self, id: u8, out: &mut Outgoing) {
+    pub fn encode(&self, id: u8, out: &mut OutgoingPackets) {
         out.begin(id, self.code());
         match *self {
             Self::Ping | Self::Action | Self::Reboot => {}
@@ -275,6 +275,6 @@ pub fn bulk_writes(mut items: &[u8]) -> impl Iterator<Item = (u8, u16, &[u8])> {
     })
 }
 
-pub fn encode_status(id: u8, error: u8, parameters: &[u8], out: &mut Outgoing) {
+pub fn encode_status(id: u8, error: u8, parameters: &[u8], out: &mut OutgoingPackets) {
     out.begin(id, STATUS).put(&[error]).put(parameters).end();
 }

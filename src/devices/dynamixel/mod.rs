@@ -2,10 +2,10 @@
 //!
 //! Angles in rad, zero in the middle of the servo's range; speeds in rad/s; currents in A. [`open`] finds and
 //! configures the servos (return delay 0, operating mode, homing offset, sign, limits, gains, profiles) with the torque
-//! off. [`Driver::poll`](crate::Device::poll) never waits. Each call advances the one exchange under way, so the rate
-//! is limited by the caller or by the bus, and is measured in [`Health`](crate::Health). Only [`Driver::set_torque`]
+//! off. [`DynamixelDriver::poll`](crate::Device::poll) never waits. Each call advances the one exchange under way, so the rate
+//! is limited by the caller or by the bus, and is measured in [`Health`](crate::Health). Only [`DynamixelDriver::set_torque`]
 //! switches the torque on, at the current angles; while it is on, each servo's bus watchdog stops the servo when the
-//! bus becomes quiet. Dropping the driver switches it off. A servo that has shut itself down ([`Fault`] gives the
+//! bus becomes quiet. Dropping the driver switches it off. A servo that has shut itself down ([`ServoFault`] gives the
 //! reason) starts again only through [`Reboots`].
 //!
 //! The emulated bus with its servos is `nima_simulation::emulators::dynamixel`.
@@ -23,8 +23,8 @@ pub mod table;
 #[cfg(test)]
 mod tests;
 
-pub use driver::{Condition, Driver, Taken, open, open_with};
+pub use driver::{DynamixelDriver, GoalResult, ServoCondition, open, open_with};
 pub use driver::{open_over, try_open, who_is_there};
-pub use opening::{Pace, Reboots};
-pub use settings::{Gains, OperatingMode, ServoSettings, Settings};
-pub use table::{Fault, HardwareError};
+pub use opening::{Reboots, WaitClock};
+pub use settings::{DynamixelSettings, Gains, OperatingMode, ServoSettings};
+pub use table::{HardwareError, ServoFault};

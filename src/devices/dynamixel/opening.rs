@@ -13,22 +13,22 @@ use std::{
 };
 
 use super::{
-    codec::{self, BROADCAST, Incoming, Outgoing, Packet, STATUS},
+    codec::{self, BROADCAST, IncomingPackets, OutgoingPackets, Packet, STATUS},
     driver::MOTION_BYTES,
-    message::{Instruction, Refusal},
-    settings::{ServoSettings, Settings, Wanted, ids_in_words},
-    table::{self, Fault, HardwareError, Model, Register},
+    message::{Instruction, ServoRefusal},
+    settings::{DynamixelSettings, RegisterGoal, ServoSettings, ids_text},
+    table::{self, DynamixelRegister, HardwareError, ServoFault, ServoModel},
 };
-use crate::{Identity, SERVOS, Trouble, transport::Bytes};
+use crate::{DeviceError, DeviceIdentity, SERVOS, transport::ByteStream};
 
 /// Time limit for answers, and number of attempts.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Timeouts {
+pub(super) struct DynamixelTimeouts {
     answer_s: f64,
     tries: usize,
 }
 
-impl Timeouts {
+impl DynamixelTimeouts {
     /// Much longer than a servo takes, to allow for a busy computer.
     pub(super) const USUAL: Self = Self { answer_s: 0.1, tries: 3 };
     /// Enough for an adapter that holds bytes back for 16 ms, and short enough to try all line speeds within the second
@@ -65,16 +65,16 @@ impl Reboots {
 }
 
 /// Clock for waiting: the system's, or a simulated one in tests.
-pub trait Pace {
+pub trait WaitClock {
     /// Returns the current time, s; the origin is arbitrary.
     fn now_s(&self) -> f64;
     fn nap(&mut self);
 }
 
 #[derive(Debug)]
-pub(super) struct Wall(pub(super) Instant);
+pub(super) struct SystemClock(pub(super) Instant);
 
-impl Pace for Wall {
+impl WaitClock for SystemClock {
     fn now_s(&self) -> f64 {
         self.0.elapsed().as_secs_f64()
     }
@@ -85,40 +85,44 @@ impl Pace for Wall {
 }
 
 #[derive(Debug)]
-pub(super) struct Opened {
-    pub(super) models: [&'static Model; SERVOS],
-    pub(super) identity: Identity,
+pub(super) struct ServoProperties {
+    pub(super) models: [&'static ServoModel; SERVOS],
+    pub(super) identity: DeviceIdentity,
     pub(super) fast: bool,
 }
 
-pub(super) struct Session<'a, T, P> {
+pub(super) struct DynamixelSession<'a, T, P> {
     line: &'a mut T,
     pace: &'a mut P,
     place: &'a str,
-    incoming: Incoming,
-    outgoing: Outgoing,
-    heard: usize,
-    timeouts: Timeouts,
+    incoming: IncomingPackets,
+    outgoing: OutgoingPackets,
+    received: usize,
+    timeouts: DynamixelTimeouts,
 }
 
-struct Answer {
+struct DynamixelAnswer {
     error: u8,
     data: Vec<u8>,
 }
 
-impl<'a, T: Bytes, P: Pace> Session<'a, T, P> {
-    pub(super) fn new(line: &'a mut T, pace: &'a mut P, place: &'a str, timeouts: Timeouts) -> Self {
-        let incoming = Incoming::new(LONGEST);
-        let outgoing = Outgoing::new(LONGEST);
-        Self { line, pace, place, incoming, outgoing, heard: 0, timeouts }
+impl<'a, T: ByteStream, P: WaitClock> DynamixelSession<'a, T, P> {
+    pub(super) fn new(line: &'a mut T, pace: &'a mut P, place: &'a str, timeouts: DynamixelTimeouts) -> Self {
+        let incoming = IncomingPackets::new(LONGEST);
+        let outgoing = OutgoingPackets::new(LONGEST);
+        Self { line, pace, place, incoming, outgoing, received: 0, timeouts }
     }
 
-    pub(super) const fn heard_anything(&self) -> bool {
-        self.heard > 0
+    pub(super) const fn received_anything(&self) -> bool {
+        self.received > 0
     }
 
     /// Finds the servos and configures them according to `settings`.
-    pub(super) fn configure(&mut self, settings: &Settings, reboots: &Reboots) -> Result<Opened, Trouble> {
+    pub(super) fn configure(
+        &mut self,
+        settings: &DynamixelSettings,
+        reboots: &Reboots,
+    ) -> Result<ServoProperties, DeviceError> {
         let firmware = self.find(settings)?;
         let mut models = [&table::MODELS[0]; SERVOS];
         for (index, servo) in settings.servos.iter().enumerate() {
@@ -131,16 +135,16 @@ impl<'a, T: Bytes, P: Pace> Session<'a, T, P> {
         }
         let fast = settings.fast_sync_read && self.answers_fast(settings)?;
         let list = |words: Vec<String>| words.join(" ");
-        let identity = Identity {
+        let identity = DeviceIdentity {
             product: list(models.iter().map(|model| model.name.to_owned()).collect()),
-            serial: settings.ids_in_words(),
+            serial: settings.ids_text(),
             firmware: list(firmware.iter().map(u8::to_string).collect()),
         };
-        Ok(Opened { models, identity, fast })
+        Ok(ServoProperties { models, identity, fast })
     }
 
     /// Pings all servos; returns the firmware version of each.
-    fn find(&mut self, settings: &Settings) -> Result<[u8; SERVOS], Trouble> {
+    fn find(&mut self, settings: &DynamixelSettings) -> Result<[u8; SERVOS], DeviceError> {
         let mut firmware = [None; SERVOS];
         for (servo, version) in settings.servos.iter().zip(&mut firmware) {
             *version = self.ask(servo.id, &Instruction::Ping)?.and_then(|answer| answer.data.get(2).copied());
@@ -149,27 +153,27 @@ impl<'a, T: Bytes, P: Pace> Session<'a, T, P> {
             let place = self.place.to_owned();
             let others = self.everybody()?;
             if others.is_empty() {
-                return Err(Trouble::Silent { place });
+                return Err(DeviceError::Silent { place });
             }
             // Servos identify themselves only by their ids.
-            let found = ids_in_words(others.into_iter().map(|(id, _)| id));
-            return Err(Trouble::OtherSerial { place, expected: settings.ids_in_words(), found });
+            let found = ids_text(others.into_iter().map(|(id, _)| id));
+            return Err(DeviceError::OtherSerial { place, expected: settings.ids_text(), found });
         }
         let missing = firmware.iter().position(Option::is_none);
         if let Some(index) = missing {
-            return Err(Trouble::Absent { place: self.name(settings.servos[index].id) });
+            return Err(DeviceError::Absent { place: self.name(settings.servos[index].id) });
         }
         Ok(firmware.map(Option::unwrap_or_default))
     }
 
-    fn model_of(&mut self, servo: &ServoSettings) -> Result<&'static Model, Trouble> {
+    fn model_of(&mut self, servo: &ServoSettings) -> Result<&'static ServoModel, DeviceError> {
         let number = self.read(servo.id, table::MODEL)? as u16;
-        let wrong = |expected: &str, found: String| Trouble::WrongProduct {
+        let wrong = |expected: &str, found: String| DeviceError::WrongProduct {
             place: self.name(servo.id),
             expected: expected.to_owned(),
             found,
         };
-        let Some(model) = Model::numbered(number) else {
+        let Some(model) = ServoModel::numbered(number) else {
             return Err(wrong("servo that measures its current", format!("servo with model number {number}")));
         };
         match &servo.model {
@@ -177,7 +181,7 @@ impl<'a, T: Bytes, P: Pace> Session<'a, T, P> {
             _ => {}
         }
         if servo.current_limit_a > f64::from(model.current_max) * model.current_unit_a {
-            return Err(Trouble::Setting {
+            return Err(DeviceError::Setting {
                 key: "current_limit_a".to_owned(),
                 value: servo.current_limit_a.to_string(),
                 allowed: format!(
@@ -190,20 +194,20 @@ impl<'a, T: Bytes, P: Pace> Session<'a, T, P> {
         Ok(model)
     }
 
-    fn check_fault(&mut self, id: u8) -> Result<(), Trouble> {
+    fn check_fault(&mut self, id: u8) -> Result<(), DeviceError> {
         let error = HardwareError(self.read(id, table::HARDWARE_ERROR)? as u8);
         if !error.is_any() {
             return Ok(());
         }
-        Err(Trouble::DeviceFault {
+        Err(DeviceError::DeviceFault {
             place: self.place.to_owned(),
-            words: Fault { id, error }.to_string(),
+            words: ServoFault { id, error }.to_string(),
             cure: format!("Remove the cause, then restart servo {id} by command."),
         })
     }
 
     /// Switches torque and watchdog off, then writes all settings.
-    fn prepare(&mut self, servo: &ServoSettings, model: &Model) -> Result<(), Trouble> {
+    fn prepare(&mut self, servo: &ServoSettings, model: &ServoModel) -> Result<(), DeviceError> {
         let id = servo.id;
         // A servo whose status return level is below 2 does not answer this write either.
         let level = [2];
@@ -223,7 +227,7 @@ impl<'a, T: Bytes, P: Pace> Session<'a, T, P> {
     }
 
     /// Restarts the servo and waits until it answers again.
-    fn reboot(&mut self, id: u8) -> Result<(), Trouble> {
+    fn reboot(&mut self, id: u8) -> Result<(), DeviceError> {
         self.send(id, &Instruction::Reboot)?;
         let begin_s = self.pace.now_s();
         while self.pace.now_s() - begin_s < REBOOT_S {
@@ -232,11 +236,11 @@ impl<'a, T: Bytes, P: Pace> Session<'a, T, P> {
                 return Ok(());
             }
         }
-        Err(Trouble::Absent { place: self.name(id) })
+        Err(DeviceError::Absent { place: self.name(id) })
     }
 
     /// Returns whether the firmware of all servos supports the fast sync read.
-    fn answers_fast(&mut self, settings: &Settings) -> Result<bool, Trouble> {
+    fn answers_fast(&mut self, settings: &DynamixelSettings) -> Result<bool, DeviceError> {
         let ids = settings.servos.each_ref().map(|servo| servo.id);
         let address = table::TICK.address;
         let count = MOTION_BYTES as u16;
@@ -255,8 +259,8 @@ impl<'a, T: Bytes, P: Pace> Session<'a, T, P> {
         Ok(false)
     }
 
-    fn read(&mut self, id: u8, register: Register) -> Result<u32, Trouble> {
-        let Register { address, bytes } = register;
+    fn read(&mut self, id: u8, register: DynamixelRegister) -> Result<u32, DeviceError> {
+        let DynamixelRegister { address, bytes } = register;
         let command = || format!("reading register {address}");
         let answer = self.ask(id, &Instruction::Read { address, count: bytes })?;
         let answer = answer.ok_or_else(|| self.refused(id, command(), "no answer".to_owned()))?;
@@ -267,7 +271,7 @@ impl<'a, T: Bytes, P: Pace> Session<'a, T, P> {
         Ok(answer.data.iter().rev().fold(0, |value, byte| value << 8 | u32::from(*byte)))
     }
 
-    fn write(&mut self, id: u8, (register, value): Wanted) -> Result<(), Trouble> {
+    fn write(&mut self, id: u8, (register, value): RegisterGoal) -> Result<(), DeviceError> {
         let command = || format!("{value} in register {}", register.address);
         let bytes = value.to_le_bytes();
         let write = Instruction::Write { address: register.address, data: &bytes[..usize::from(register.bytes)] };
@@ -277,16 +281,16 @@ impl<'a, T: Bytes, P: Pace> Session<'a, T, P> {
         if kept == value { Ok(()) } else { Err(self.refused(id, command(), format!("it remains {kept}"))) }
     }
 
-    fn accept(&self, id: u8, answer: &Answer, command: impl Fn() -> String) -> Result<(), Trouble> {
-        match Refusal::of(answer.error) {
+    fn accept(&self, id: u8, answer: &DynamixelAnswer, command: impl Fn() -> String) -> Result<(), DeviceError> {
+        match ServoRefusal::of(answer.error) {
             Ok(None) => Ok(()),
             Ok(Some(refusal)) => Err(self.refused(id, command(), refusal.words().to_owned())),
             Err(code) => Err(self.refused(id, command(), format!("error {code:#04x}"))),
         }
     }
 
-    fn refused(&self, id: u8, command: String, answer: String) -> Trouble {
-        Trouble::Refused { place: self.name(id), command, answer }
+    fn refused(&self, id: u8, command: String, answer: String) -> DeviceError {
+        DeviceError::Refused { place: self.name(id), command, answer }
     }
 
     fn name(&self, id: u8) -> String {
@@ -294,7 +298,7 @@ impl<'a, T: Bytes, P: Pace> Session<'a, T, P> {
     }
 
     /// Sends the instruction several times until there is an answer.
-    fn ask(&mut self, id: u8, instruction: &Instruction<'_>) -> Result<Option<Answer>, Trouble> {
+    fn ask(&mut self, id: u8, instruction: &Instruction<'_>) -> Result<Option<DynamixelAnswer>, DeviceError> {
         for _ in 0..self.timeouts.tries {
             let answer = self.once(id, instruction)?;
             if answer.is_some() {
@@ -304,18 +308,18 @@ impl<'a, T: Bytes, P: Pace> Session<'a, T, P> {
         Ok(None)
     }
 
-    fn once(&mut self, id: u8, instruction: &Instruction<'_>) -> Result<Option<Answer>, Trouble> {
+    fn once(&mut self, id: u8, instruction: &Instruction<'_>) -> Result<Option<DynamixelAnswer>, DeviceError> {
         self.send(id, instruction)?;
         self.receive(|packet| packet.instruction == STATUS && (packet.id == id || id == BROADCAST))
     }
 
     /// Returns whether any servo answers a broadcast ping.
-    pub(super) fn anybody(&mut self) -> Result<bool, Trouble> {
+    pub(super) fn anybody(&mut self) -> Result<bool, DeviceError> {
         Ok(self.once(BROADCAST, &Instruction::Ping)?.is_some())
     }
 
     /// Returns id and model of all servos that answer a broadcast ping.
-    pub(super) fn everybody(&mut self) -> Result<Vec<(u8, &'static str)>, Trouble> {
+    pub(super) fn everybody(&mut self) -> Result<Vec<(u8, &'static str)>, DeviceError> {
         let mut servos: Vec<(u8, &'static str)> = Vec::new();
         self.send(BROADCAST, &Instruction::Ping)?;
         loop {
@@ -326,7 +330,7 @@ impl<'a, T: Bytes, P: Pace> Session<'a, T, P> {
             })?;
             let Some(answer) = answer else { return Ok(servos) };
             let number = answer.data.first_chunk().map_or(0, |bytes| u16::from_le_bytes(*bytes));
-            let model = Model::numbered(number).map_or("unknown servo", |model| model.name);
+            let model = ServoModel::numbered(number).map_or("unknown servo", |model| model.name);
             if servos.len() > usize::from(BROADCAST) {
                 return Ok(servos);
             }
@@ -334,7 +338,7 @@ impl<'a, T: Bytes, P: Pace> Session<'a, T, P> {
         }
     }
 
-    fn send(&mut self, id: u8, instruction: &Instruction<'_>) -> Result<(), Trouble> {
+    fn send(&mut self, id: u8, instruction: &Instruction<'_>) -> Result<(), DeviceError> {
         // Pending bytes belong to earlier instructions.
         let mut rest = [0; LONGEST];
         for _ in 0..REST_READS {
@@ -348,18 +352,18 @@ impl<'a, T: Bytes, P: Pace> Session<'a, T, P> {
         self.line.send(self.outgoing.bytes()).map_err(|_| self.gone())
     }
 
-    fn receive(&mut self, mut fits: impl FnMut(&Packet<'_>) -> bool) -> Result<Option<Answer>, Trouble> {
+    fn receive(&mut self, mut fits: impl FnMut(&Packet<'_>) -> bool) -> Result<Option<DynamixelAnswer>, DeviceError> {
         let begin_s = self.pace.now_s();
         let mut buffer = [0; LONGEST];
         loop {
             let count = self.line.receive(&mut buffer).map_err(|_| self.gone())?;
-            self.heard += count;
+            self.received += count;
             let mut taken = 0;
             while taken < count {
                 taken += self.incoming.feed(&buffer[taken..count]);
                 while let Some(packet) = self.incoming.next() {
                     if let Some((error, data)) = packet.body.split_first().filter(|_| fits(&packet)) {
-                        return Ok(Some(Answer { error: *error, data: data.to_vec() }));
+                        return Ok(Some(DynamixelAnswer { error: *error, data: data.to_vec() }));
                     }
                 }
             }
@@ -379,7 +383,7 @@ impl<'a, T: Bytes, P: Pace> Session<'a, T, P> {
         }
     }
 
-    fn gone(&self) -> Trouble {
-        Trouble::Other { place: self.place.to_owned(), reason: "the connection was lost".to_owned() }
+    fn gone(&self) -> DeviceError {
+        DeviceError::Other { place: self.place.to_owned(), reason: "the connection was lost".to_owned() }
     }
 }

@@ -5,10 +5,10 @@ use std::f64::consts::FRAC_PI_2;
 use serde::{Deserialize, Serialize};
 
 use super::table::{
-    self, ACCELERATION_UNIT_RAD_S2, BAUDS, Model, Register, TICKS_PER_TURN, VELOCITY_UNIT_RAD_S, WATCHDOG_UNIT_S,
-    ticks_from_rad,
+    self, ACCELERATION_UNIT_RAD_S2, BAUDS, DynamixelRegister, ServoModel, TICKS_PER_TURN, VELOCITY_UNIT_RAD_S,
+    WATCHDOG_UNIT_S, ticks_from_rad,
 };
-use crate::{SERVOS, Trouble};
+use crate::{DeviceError, SERVOS};
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -93,7 +93,7 @@ pub struct ServoSettings {
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Settings {
+pub struct DynamixelSettings {
     /// Device file of the adapter, or `COM3`.
     pub port: String,
     /// Line speed, bit/s, as supported by the servos.
@@ -131,14 +131,14 @@ const GAIN_MAX: u16 = 16_383;
 /// turn is kept, so that the homing offset fits too.
 const TURNS_MAX: f64 = 255.0;
 
-pub(super) type Wanted = (Register, u32);
+pub(super) type RegisterGoal = (DynamixelRegister, u32);
 
-impl Settings {
+impl DynamixelSettings {
     /// Checks every setting; the error names the key and the allowed values.
     ///
     /// # Errors
-    /// [`Trouble::Setting`] for the first invalid setting.
-    pub fn check(&self) -> Result<(), Trouble> {
+    /// [`DeviceError::Setting`] for the first invalid setting.
+    pub fn check(&self) -> Result<(), DeviceError> {
         let in_range = |key: &str, value: f64, low: f64, high: f64| {
             let allowed = format!("{low} to {high}");
             if (low..=high).contains(&value) { Ok(()) } else { Err(impossible(key, &value, allowed)) }
@@ -162,16 +162,16 @@ impl Settings {
     }
 
     /// Returns the ids in the form of the servos' identity: `ids 1 2 3 4`.
-    pub fn ids_in_words(&self) -> String {
-        ids_in_words(self.servos.iter().map(|servo| servo.id))
+    pub fn ids_text(&self) -> String {
+        ids_text(self.servos.iter().map(|servo| servo.id))
     }
 
     /// Checks that the servos of two instruments have different ids, because nothing else reveals a cable at the wrong
     /// adapter.
     ///
     /// # Errors
-    /// [`Trouble::Setting`] for the first common id.
-    pub fn check_beside(&self, other: &Self) -> Result<(), Trouble> {
+    /// [`DeviceError::Setting`] for the first common id.
+    pub fn check_beside(&self, other: &Self) -> Result<(), DeviceError> {
         let has = |id: u8| other.servos.iter().any(|servo| servo.id == id);
         match self.servos.iter().position(|servo| has(servo.id)) {
             None => Ok(()),
@@ -188,16 +188,16 @@ impl Settings {
     }
 }
 
-pub(super) fn ids_in_words(ids: impl Iterator<Item = u8>) -> String {
+pub(super) fn ids_text(ids: impl Iterator<Item = u8>) -> String {
     ids.fold("ids".to_owned(), |words, id| format!("{words} {id}"))
 }
 
-fn impossible(key: &str, value: &dyn std::fmt::Display, allowed: String) -> Trouble {
-    Trouble::Setting { key: key.to_owned(), value: value.to_string(), allowed }
+fn impossible(key: &str, value: &dyn std::fmt::Display, allowed: String) -> DeviceError {
+    DeviceError::Setting { key: key.to_owned(), value: value.to_string(), allowed }
 }
 
 impl ServoSettings {
-    fn check(&self, index: usize) -> Result<(), Trouble> {
+    fn check(&self, index: usize) -> Result<(), DeviceError> {
         let key = |name: &str| format!("servos[{index}].{name}");
         if self.id > ID_MAX {
             return Err(impossible(&key("id"), &self.id, format!("0 to {ID_MAX}")));
@@ -254,7 +254,7 @@ impl ServoSettings {
     }
 
     /// Returns the values for the EEPROM, which keeps them without power; `drive_mode` is the current value.
-    pub(super) fn eeprom(&self, model: &Model, drive_mode: u8) -> Vec<Wanted> {
+    pub(super) fn eeprom(&self, model: &ServoModel, drive_mode: u8) -> Vec<RegisterGoal> {
         // Profiles are based on velocity, and a goal must not switch the torque on: bits 2 and 3 off.
         let drive_mode = u32::from(drive_mode & !0b1101) | u32::from(self.reverse);
         let homing = (self.homing_offset_rad / std::f64::consts::TAU * TICKS_PER_TURN).round() as i32;
@@ -273,7 +273,7 @@ impl ServoSettings {
     }
 
     /// Returns the values for the RAM, which is lost at every restart.
-    pub(super) fn ram(&self, model: &Model) -> Vec<Wanted> {
+    pub(super) fn ram(&self, model: &ServoModel) -> Vec<RegisterGoal> {
         let gains = &self.gains;
         // Only 0 means "no limit", so a small value must not be rounded to 0.
         let profile = |value: f64, unit: f64| if value > 0.0 { (value / unit).round().max(1.0) as u32 } else { 0 };

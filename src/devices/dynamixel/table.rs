@@ -5,101 +5,101 @@ use std::f64::consts::TAU;
 
 /// A register: address and length in bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Register {
+pub struct DynamixelRegister {
     pub address: u16,
     pub bytes: u16,
 }
 
-const fn register(address: u16, bytes: u16) -> Register {
-    Register { address, bytes }
+const fn register(address: u16, bytes: u16) -> DynamixelRegister {
+    DynamixelRegister { address, bytes }
 }
 
 /// Model number (2 bytes; after it 4 bytes of model information and the firmware version).
-pub const MODEL: Register = register(0, 2);
-pub const FIRMWARE: Register = register(6, 1);
-pub const ID: Register = register(7, 1);
+pub const MODEL: DynamixelRegister = register(0, 2);
+pub const FIRMWARE: DynamixelRegister = register(6, 1);
+pub const ID: DynamixelRegister = register(7, 1);
 /// Code of the line speed, see [`BAUDS`].
-pub const BAUD: Register = register(8, 1);
+pub const BAUD: DynamixelRegister = register(8, 1);
 /// Delay before an answer, units of 2 us.
-pub const RETURN_DELAY: Register = register(9, 1);
+pub const RETURN_DELAY: DynamixelRegister = register(9, 1);
 /// Bit 0 reverses the direction, bit 2 selects time-based profiles, bit 3 switches the torque on with a goal.
-pub const DRIVE_MODE: Register = register(10, 1);
-pub const OPERATING_MODE: Register = register(11, 1);
+pub const DRIVE_MODE: DynamixelRegister = register(10, 1);
+pub const OPERATING_MODE: DynamixelRegister = register(11, 1);
 /// Secondary id; writes to it are carried out without an answer.
-pub const SHADOW_ID: Register = register(12, 1);
+pub const SHADOW_ID: DynamixelRegister = register(12, 1);
 /// Offset added to the encoder's position, ticks.
-pub const HOMING_OFFSET: Register = register(20, 4);
+pub const HOMING_OFFSET: DynamixelRegister = register(20, 4);
 /// Velocity above which the servo counts as moving.
-pub const MOVING_THRESHOLD: Register = register(24, 4);
-pub const TEMPERATURE_LIMIT: Register = register(31, 1);
+pub const MOVING_THRESHOLD: DynamixelRegister = register(24, 4);
+pub const TEMPERATURE_LIMIT: DynamixelRegister = register(31, 1);
 /// Maximum supply voltage, units of 0.1 V.
-pub const VOLTAGE_MAX: Register = register(32, 2);
+pub const VOLTAGE_MAX: DynamixelRegister = register(32, 2);
 /// Minimum supply voltage, units of 0.1 V.
-pub const VOLTAGE_MIN: Register = register(34, 2);
+pub const VOLTAGE_MIN: DynamixelRegister = register(34, 2);
 /// Maximum PWM; 885 is 100 %.
-pub const PWM_LIMIT: Register = register(36, 2);
-/// In the model's unit, see [`Model::current_unit_a`].
-pub const CURRENT_LIMIT: Register = register(38, 2);
+pub const PWM_LIMIT: DynamixelRegister = register(36, 2);
+/// In the model's unit, see [`ServoModel::current_unit_a`].
+pub const CURRENT_LIMIT: DynamixelRegister = register(38, 2);
 /// Units of 0.229 rpm.
-pub const VELOCITY_LIMIT: Register = register(44, 4);
+pub const VELOCITY_LIMIT: DynamixelRegister = register(44, 4);
 /// Ticks; in position mode only.
-pub const POSITION_MAX: Register = register(48, 4);
+pub const POSITION_MAX: DynamixelRegister = register(48, 4);
 /// Ticks; in position mode only.
-pub const POSITION_MIN: Register = register(52, 4);
+pub const POSITION_MIN: DynamixelRegister = register(52, 4);
 /// Hardware errors that switch the torque off.
-pub const SHUTDOWN: Register = register(63, 1);
+pub const SHUTDOWN: DynamixelRegister = register(63, 1);
 pub const EEPROM_BYTES: u16 = 64;
 /// 1: the motor is driven.
-pub const TORQUE_ENABLE: Register = register(64, 1);
+pub const TORQUE_ENABLE: DynamixelRegister = register(64, 1);
 /// 0: answers pings only; 1: also reads; 2: every instruction.
-pub const STATUS_RETURN_LEVEL: Register = register(68, 1);
+pub const STATUS_RETURN_LEVEL: DynamixelRegister = register(68, 1);
 /// Whether a write waits for the action instruction.
-pub const REGISTERED: Register = register(69, 1);
-pub const HARDWARE_ERROR: Register = register(70, 1);
+pub const REGISTERED: DynamixelRegister = register(69, 1);
+pub const HARDWARE_ERROR: DynamixelRegister = register(70, 1);
 /// Integral gain of the velocity controller.
-pub const VELOCITY_I: Register = register(76, 2);
+pub const VELOCITY_I: DynamixelRegister = register(76, 2);
 /// Proportional gain of the velocity controller.
-pub const VELOCITY_P: Register = register(78, 2);
+pub const VELOCITY_P: DynamixelRegister = register(78, 2);
 /// Differential gain of the position controller.
-pub const POSITION_D: Register = register(80, 2);
+pub const POSITION_D: DynamixelRegister = register(80, 2);
 /// Integral gain of the position controller.
-pub const POSITION_I: Register = register(82, 2);
+pub const POSITION_I: DynamixelRegister = register(82, 2);
 /// Proportional gain of the position controller.
-pub const POSITION_P: Register = register(84, 2);
-pub const FEEDFORWARD_2: Register = register(88, 2);
-pub const FEEDFORWARD_1: Register = register(90, 2);
+pub const POSITION_P: DynamixelRegister = register(84, 2);
+pub const FEEDFORWARD_2: DynamixelRegister = register(88, 2);
+pub const FEEDFORWARD_1: DynamixelRegister = register(90, 2);
 /// Units of 20 ms; 0 off, -1 expired.
-pub const BUS_WATCHDOG: Register = register(98, 1);
-pub const GOAL_PWM: Register = register(100, 2);
+pub const BUS_WATCHDOG: DynamixelRegister = register(98, 1);
+pub const GOAL_PWM: DynamixelRegister = register(100, 2);
 /// Goal in current mode, limit in current-based position mode.
-pub const GOAL_CURRENT: Register = register(102, 2);
-pub const GOAL_VELOCITY: Register = register(104, 4);
+pub const GOAL_CURRENT: DynamixelRegister = register(102, 2);
+pub const GOAL_VELOCITY: DynamixelRegister = register(104, 4);
 /// Units of 214.577 rev/min^2; 0 sets no limit.
-pub const PROFILE_ACCELERATION: Register = register(108, 4);
+pub const PROFILE_ACCELERATION: DynamixelRegister = register(108, 4);
 /// Units of 0.229 rpm; 0 sets no limit.
-pub const PROFILE_VELOCITY: Register = register(112, 4);
+pub const PROFILE_VELOCITY: DynamixelRegister = register(112, 4);
 /// Ticks.
-pub const GOAL_POSITION: Register = register(116, 4);
+pub const GOAL_POSITION: DynamixelRegister = register(116, 4);
 /// Milliseconds, 0 to 32767.
-pub const TICK: Register = register(120, 2);
-pub const MOVING: Register = register(122, 1);
+pub const TICK: DynamixelRegister = register(120, 2);
+pub const MOVING: DynamixelRegister = register(122, 1);
 /// Bit 0: in position; bit 1: a profile is running; bit 3: following error.
-pub const MOVING_STATUS: Register = register(123, 1);
-pub const PRESENT_PWM: Register = register(124, 2);
+pub const MOVING_STATUS: DynamixelRegister = register(123, 1);
+pub const PRESENT_PWM: DynamixelRegister = register(124, 2);
 /// In the model's unit.
-pub const PRESENT_CURRENT: Register = register(126, 2);
+pub const PRESENT_CURRENT: DynamixelRegister = register(126, 2);
 /// Units of 0.229 rpm.
-pub const PRESENT_VELOCITY: Register = register(128, 4);
+pub const PRESENT_VELOCITY: DynamixelRegister = register(128, 4);
 /// Ticks.
-pub const PRESENT_POSITION: Register = register(132, 4);
+pub const PRESENT_POSITION: DynamixelRegister = register(132, 4);
 /// Velocity of the profile, units of 0.229 rpm.
-pub const VELOCITY_TRAJECTORY: Register = register(136, 4);
+pub const VELOCITY_TRAJECTORY: DynamixelRegister = register(136, 4);
 /// Position of the profile, ticks.
-pub const POSITION_TRAJECTORY: Register = register(140, 4);
+pub const POSITION_TRAJECTORY: DynamixelRegister = register(140, 4);
 /// Supply voltage, units of 0.1 V.
-pub const VOLTAGE: Register = register(144, 2);
+pub const VOLTAGE: DynamixelRegister = register(144, 2);
 /// Degrees Celsius.
-pub const TEMPERATURE: Register = register(146, 1);
+pub const TEMPERATURE: DynamixelRegister = register(146, 1);
 
 /// Value at which [`TICK`] overflows, ms (ROBOTIS e-manual, X series).
 pub const TICK_WRAP: i32 = 32_768;
@@ -130,7 +130,7 @@ pub fn rad_from_ticks(ticks: f64) -> f64 {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Model {
+pub struct ServoModel {
     /// Model number in the answer to a ping.
     pub number: u16,
     pub name: &'static str,
@@ -140,11 +140,11 @@ pub struct Model {
     pub current_max: u16,
 }
 
-const fn model(number: u16, name: &'static str, current_unit_a: f64, current_max: u16) -> Model {
-    Model { number, name, current_unit_a, current_max }
+const fn model(number: u16, name: &'static str, current_unit_a: f64, current_max: u16) -> ServoModel {
+    ServoModel { number, name, current_unit_a, current_max }
 }
 
-pub const MODELS: [Model; 8] = [
+pub const MODELS: [ServoModel; 8] = [
     model(1000, "XH430-W350", 2.69e-3, 648),
     model(1010, "XH430-W210", 2.69e-3, 648),
     model(1020, "XM430-W350", 2.69e-3, 1193),
@@ -155,7 +155,7 @@ pub const MODELS: [Model; 8] = [
     model(1200, "XL330-M288", 1e-3, 1750),
 ];
 
-impl Model {
+impl ServoModel {
     pub fn numbered(number: u16) -> Option<&'static Self> {
         MODELS.iter().find(|model| model.number == number)
     }
@@ -207,12 +207,12 @@ impl std::fmt::Display for HardwareError {
 
 /// A servo's fault, encoded in [`Loss::Device`](crate::Loss::Device).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Fault {
+pub struct ServoFault {
     pub id: u8,
     pub error: HardwareError,
 }
 
-impl Fault {
+impl ServoFault {
     /// Returns the code: the id above the error bits.
     pub const fn code(self) -> u32 {
         (self.id as u32) << 8 | self.error.0 as u32
@@ -224,7 +224,7 @@ impl Fault {
     }
 }
 
-impl std::fmt::Display for Fault {
+impl std::fmt::Display for ServoFault {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "servo {}: {}", self.id, self.error)
     }

@@ -7,12 +7,13 @@ use std::sync::{
 
 use super::{
     codec::{Datagram, status},
-    line::Line,
+    line::ExternalLine,
     opening,
-    settings::{Kind, Settings},
+    settings::{ExternalKind, ExternalSettings},
 };
 use crate::{
-    ARM_JOINTS, ArmReading, Device, Follower, Health, Identity, Lever, Stamped, Trouble, kinova::limits::Guard,
+    ARM_JOINTS, ArmReading, Device, DeviceError, DeviceIdentity, Follower, Health, Lever, TimedReading,
+    kinova::limits::Guard,
 };
 
 /// Numbers of an arm beyond these limits are impossible: rad, rad/s, Nm.
@@ -21,7 +22,7 @@ const SPEED_MAX_RAD_S: f64 = 50.0;
 const TORQUE_MAX_NM: f64 = 1e4;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Mode {
+enum ArmMode {
     Resting,
     /// Servoing was requested; the arm has not reported it yet.
     Asked,
@@ -30,51 +31,54 @@ enum Mode {
     Braking,
 }
 
-pub struct Arm {
-    line: Line,
+pub struct ExternalArm {
+    line: ExternalLine,
     guard: Guard,
-    mode: Mode,
+    mode: ArmMode,
     joint_rad: Option<[f64; ARM_JOINTS]>,
     last_s: Option<f64>,
     pulled: Arc<AtomicBool>,
 }
 
-impl Arm {
+impl ExternalArm {
     /// Waits for the device's program, up to half a second.
     ///
     /// # Errors
-    /// [`Trouble`] if a setting is invalid, the port is in use, or no program of an arm sends and receives.
-    pub fn open(settings: &Settings) -> Result<Self, Trouble> {
-        Ok(Self::on(opening::open(Kind::Arm, settings)?, settings))
+    /// [`DeviceError`] if a setting is invalid, the port is in use, or no program of an arm sends and receives.
+    pub fn open(settings: &ExternalSettings) -> Result<Self, DeviceError> {
+        Ok(Self::on(opening::open(ExternalKind::Arm, settings)?, settings))
     }
 
     /// Opens the arm over an existing connection, with time stamps from 0 on.
     #[cfg(test)]
-    pub(super) fn over(datagrams: Box<dyn crate::transport::Datagrams>, settings: &Settings) -> Result<Self, Trouble> {
-        settings.check(Kind::Arm)?;
-        Ok(Self::on(opening::meet(datagrams, Kind::Arm, settings, 0)?, settings))
+    pub(super) fn over(
+        datagrams: Box<dyn crate::transport::TransportDatagrams>,
+        settings: &ExternalSettings,
+    ) -> Result<Self, DeviceError> {
+        settings.check(ExternalKind::Arm)?;
+        Ok(Self::on(opening::meet(datagrams, ExternalKind::Arm, settings, 0)?, settings))
     }
 
-    fn on(line: Line, settings: &Settings) -> Self {
+    fn on(line: ExternalLine, settings: &ExternalSettings) -> Self {
         let guard = Guard::new(settings.joint_limits());
-        Self { line, guard, mode: Mode::Resting, joint_rad: None, last_s: None, pulled: Arc::default() }
+        Self { line, guard, mode: ArmMode::Resting, joint_rad: None, last_s: None, pulled: Arc::default() }
     }
 
     /// Handles the arm's own report: an arm that has stopped following does not resume by itself.
     fn follow(&mut self, on: bool) {
         self.mode = match (self.mode, on) {
-            (Mode::Asked, true) => Mode::Servoing,
-            (Mode::Servoing | Mode::Braking, false) => Mode::Resting,
+            (ArmMode::Asked, true) => ArmMode::Servoing,
+            (ArmMode::Servoing | ArmMode::Braking, false) => ArmMode::Resting,
             (mode, _) => mode,
         };
     }
 
     fn advance(&mut self, elapsed_s: f64) {
-        if self.mode != Mode::Resting {
+        if self.mode != ArmMode::Resting {
             self.guard.step(elapsed_s);
         }
-        if self.mode == Mode::Braking && self.guard.is_still() {
-            self.mode = Mode::Resting;
+        if self.mode == ArmMode::Braking && self.guard.is_still() {
+            self.mode = ArmMode::Resting;
         }
     }
 }
@@ -95,10 +99,10 @@ fn reading(datagram: &Datagram) -> Option<ArmReading> {
     possible.then_some(value)
 }
 
-impl Device for Arm {
+impl Device for ExternalArm {
     type Reading = ArmReading;
 
-    fn poll(&mut self, now_s: f64) -> Option<Stamped<ArmReading>> {
+    fn poll(&mut self, now_s: f64) -> Option<TimedReading<ArmReading>> {
         if self.pulled.swap(false, Ordering::AcqRel) {
             self.leave_servoing();
         }
@@ -111,37 +115,37 @@ impl Device for Arm {
             let elapsed_s = self.last_s.replace(now_s).map_or(0.0, |last_s| now_s - last_s);
             self.advance(elapsed_s);
         }
-        let on = self.mode != Mode::Resting;
+        let on = self.mode != ArmMode::Resting;
         let held_rad = self.joint_rad.unwrap_or_default();
         let command_rad = if on { *self.guard.command_rad() } else { held_rad };
-        self.line.tell(on, &command_rad);
+        self.line.report(on, &command_rad);
         let (mut stamped, _) = newest?;
-        stamped.value.servoing = self.mode == Mode::Servoing;
+        stamped.value.servoing = self.mode == ArmMode::Servoing;
         Some(stamped)
     }
 
-    fn about(&self) -> (&Health, &Identity) {
+    fn about(&self) -> (&Health, &DeviceIdentity) {
         self.line.about()
     }
 }
 
-impl Follower for Arm {
+impl Follower for ExternalArm {
     fn enter_servoing(&mut self) {
         // An arm that has not reported its position cannot be held there.
-        if let (Mode::Resting, Some(joint_rad)) = (self.mode, &self.joint_rad) {
+        if let (ArmMode::Resting, Some(joint_rad)) = (self.mode, &self.joint_rad) {
             self.guard.seed(joint_rad);
-            self.mode = Mode::Asked;
+            self.mode = ArmMode::Asked;
         }
     }
 
     fn leave_servoing(&mut self) {
         match self.mode {
-            Mode::Asked => self.mode = Mode::Resting,
-            Mode::Servoing => {
+            ArmMode::Asked => self.mode = ArmMode::Resting,
+            ArmMode::Servoing => {
                 self.guard.brake();
-                self.mode = Mode::Braking;
+                self.mode = ArmMode::Braking;
             }
-            Mode::Resting | Mode::Braking => {}
+            ArmMode::Resting | ArmMode::Braking => {}
         }
     }
 
@@ -150,7 +154,7 @@ impl Follower for Arm {
     }
 
     fn aim(&mut self, target_rad: &[f64; ARM_JOINTS]) -> bool {
-        let Some(measured_rad) = self.joint_rad.filter(|_| self.mode == Mode::Servoing) else { return false };
+        let Some(measured_rad) = self.joint_rad.filter(|_| self.mode == ArmMode::Servoing) else { return false };
         if !target_rad.iter().all(|rad| rad.is_finite()) {
             return false;
         }
@@ -168,7 +172,7 @@ impl Follower for Arm {
     }
 }
 
-impl Drop for Arm {
+impl Drop for ExternalArm {
     fn drop(&mut self) {
         self.line.leave();
     }

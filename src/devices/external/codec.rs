@@ -2,7 +2,7 @@
 //!
 //! Little-endian; a header of 48 bytes, in readings 40 bytes of names, then numbers (`f64`), then the checksum.
 
-use super::settings::Kind;
+use super::settings::ExternalKind;
 
 /// First bytes of every datagram.
 pub const MAGIC: [u8; 4] = *b"NIMX";
@@ -46,14 +46,14 @@ pub mod status {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Message {
+pub enum ExternalMessage {
     /// From the device.
-    Reading(Kind),
+    Reading(ExternalKind),
     /// To the device.
-    Command(Kind),
+    Command(ExternalKind),
 }
 
-impl Message {
+impl ExternalMessage {
     const COMMAND: u8 = 0x80;
 
     const fn code(self) -> u8 {
@@ -64,23 +64,23 @@ impl Message {
     }
 
     fn of(code: u8) -> Option<Self> {
-        let kind = Kind::ALL.into_iter().find(|kind| kind.code() == code & !Self::COMMAND)?;
+        let kind = ExternalKind::ALL.into_iter().find(|kind| kind.code() == code & !Self::COMMAND)?;
         Some(if code & Self::COMMAND == 0 { Self::Reading(kind) } else { Self::Command(kind) })
     }
 
     pub const fn numbers(self) -> usize {
         match self {
             // Position, orientation (w, x, y, z), velocity, gripper.
-            Self::Reading(Kind::Handle) => 11,
+            Self::Reading(ExternalKind::Handle) => 11,
             // Angle, speed and torque of each joint.
-            Self::Reading(Kind::Arm) => 21,
+            Self::Reading(ExternalKind::Arm) => 21,
             // Force, torque, acceleration, angular velocity, temperature.
-            Self::Reading(Kind::Sensor) => 13,
+            Self::Reading(ExternalKind::Sensor) => 13,
             // Force on the hand, force on the gripper.
-            Self::Command(Kind::Handle) => 4,
+            Self::Command(ExternalKind::Handle) => 4,
             // Angle of each joint.
-            Self::Command(Kind::Arm) => 7,
-            Self::Command(Kind::Sensor) => 0,
+            Self::Command(ExternalKind::Arm) => 7,
+            Self::Command(ExternalKind::Sensor) => 0,
         }
     }
 
@@ -98,7 +98,7 @@ impl Message {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Datagram {
-    pub message: Message,
+    pub message: ExternalMessage,
     /// The device program's random number, which changes with every restart. Commands repeat it.
     pub session: u32,
     /// Counts the sender's datagrams, by one.
@@ -119,7 +119,7 @@ pub struct Datagram {
     pub product: [u8; PRODUCT_BYTES],
     /// Its serial number, padded with zeros; in readings only.
     pub serial: [u8; SERIAL_BYTES],
-    /// The values, see [`Message::numbers`]; the others are 0.
+    /// The values, see [`ExternalMessage::numbers`]; the others are 0.
     pub numbers: [f64; NUMBERS_MAX],
 }
 
@@ -132,7 +132,7 @@ pub enum NoDatagram {
 }
 
 impl Datagram {
-    pub const fn blank(message: Message) -> Self {
+    pub const fn blank(message: ExternalMessage) -> Self {
         Self {
             message,
             session: 0,
@@ -195,11 +195,11 @@ impl Datagram {
     ///
     /// ```
     /// use nima_devices::external::{
-    ///     Kind,
-    ///     codec::{BYTES_MAX, Datagram, Message, NoDatagram},
+    ///     ExternalKind,
+    ///     codec::{BYTES_MAX, Datagram, ExternalMessage, NoDatagram},
     /// };
     ///
-    /// let mut reading = Datagram { session: 7, time_us: 1, ..Datagram::blank(Message::Reading(Kind::Handle)) };
+    /// let mut reading = Datagram { session: 7, time_us: 1, ..Datagram::blank(ExternalMessage::Reading(ExternalKind::Handle)) };
     /// reading.numbers[2] = 0.05;
     /// let mut wire = [0; BYTES_MAX];
     /// let length = reading.encode(&mut wire);
@@ -215,10 +215,10 @@ impl Datagram {
         if bytes[4] != VERSION {
             return Err(NoDatagram::Version(bytes[4]));
         }
-        let message = Message::of(bytes[5]).ok_or(NoDatagram::Shape)?;
+        let message = ExternalMessage::of(bytes[5]).ok_or(NoDatagram::Shape)?;
         let (body, crc) = bytes.split_at(bytes.len() - CRC_BYTES);
-        let told = usize::from(u16::from_le_bytes([body[6], body[7]]));
-        if bytes.len() != message.bytes() || told != body.len() - HEADER_BYTES {
+        let report = usize::from(u16::from_le_bytes([body[6], body[7]]));
+        if bytes.len() != message.bytes() || report != body.len() - HEADER_BYTES {
             return Err(NoDatagram::Shape);
         }
         if crc32fast::hash(body).to_le_bytes() != *crc {
@@ -270,8 +270,8 @@ pub fn padded<const N: usize>(text: &str) -> [u8; N] {
 mod tests {
     use super::*;
 
-    fn every() -> impl Iterator<Item = Message> {
-        Kind::ALL.into_iter().flat_map(|kind| [Message::Reading(kind), Message::Command(kind)])
+    fn every() -> impl Iterator<Item = ExternalMessage> {
+        ExternalKind::ALL.into_iter().flat_map(|kind| [ExternalMessage::Reading(kind), ExternalMessage::Command(kind)])
     }
 
     #[test]
@@ -288,7 +288,7 @@ mod tests {
                 buttons: 5,
                 ..Datagram::blank(message)
             };
-            if matches!(message, Message::Reading(_)) {
+            if matches!(message, ExternalMessage::Reading(_)) {
                 datagram.product = padded("a handle");
                 datagram.serial = padded("SN-1");
             }

@@ -9,11 +9,11 @@ use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 use super::{
     codec::{Datagram, status},
-    line::Line,
+    line::ExternalLine,
     opening,
-    settings::{Kind, Settings},
+    settings::{ExternalKind, ExternalSettings},
 };
-use crate::{Device, HandleReading, Health, Identity, Leader, Lever, Stamped, Trouble};
+use crate::{Device, DeviceError, DeviceIdentity, HandleReading, Health, Leader, Lever, TimedReading};
 
 /// Numbers of a handle beyond these limits are impossible: m, m/s, rad.
 const POSITION_MAX_M: f64 = 2.0;
@@ -23,36 +23,39 @@ const GRIPPER_MAX_RAD: f64 = 3.2;
 /// is a mistake in the user's program.
 const UNIT_WITHIN: f64 = 0.01;
 
-pub struct Handle {
-    line: Line,
+pub struct ExternalHandle {
+    line: ExternalLine,
     /// Whether force is wanted; the lever clears it from another thread.
     wanted: Arc<AtomicBool>,
     /// Force state that the device has reported and the loop has not read yet.
     reported: Option<bool>,
     forces_max_n: (f64, f64),
     /// Whether a command was sent since the last poll.
-    told: bool,
+    report: bool,
 }
 
-impl Handle {
+impl ExternalHandle {
     /// Waits for the device's program, up to half a second.
     ///
     /// # Errors
-    /// [`Trouble`] if a setting is invalid, the port is in use, or no program of a handle sends and receives.
-    pub fn open(settings: &Settings) -> Result<Self, Trouble> {
-        Ok(Self::on(opening::open(Kind::Handle, settings)?, settings))
+    /// [`DeviceError`] if a setting is invalid, the port is in use, or no program of a handle sends and receives.
+    pub fn open(settings: &ExternalSettings) -> Result<Self, DeviceError> {
+        Ok(Self::on(opening::open(ExternalKind::Handle, settings)?, settings))
     }
 
     /// Opens the handle over an existing connection, with time stamps from 0 on.
     #[cfg(test)]
-    pub(super) fn over(datagrams: Box<dyn crate::transport::Datagrams>, settings: &Settings) -> Result<Self, Trouble> {
-        settings.check(Kind::Handle)?;
-        Ok(Self::on(opening::meet(datagrams, Kind::Handle, settings, 0)?, settings))
+    pub(super) fn over(
+        datagrams: Box<dyn crate::transport::TransportDatagrams>,
+        settings: &ExternalSettings,
+    ) -> Result<Self, DeviceError> {
+        settings.check(ExternalKind::Handle)?;
+        Ok(Self::on(opening::meet(datagrams, ExternalKind::Handle, settings, 0)?, settings))
     }
 
-    fn on(line: Line, settings: &Settings) -> Self {
+    fn on(line: ExternalLine, settings: &ExternalSettings) -> Self {
         let forces_max_n = settings.forces_max_n();
-        Self { line, wanted: Arc::default(), reported: None, forces_max_n, told: false }
+        Self { line, wanted: Arc::default(), reported: None, forces_max_n, report: false }
     }
 
     fn is_wanted(&self) -> bool {
@@ -91,26 +94,26 @@ fn reading(datagram: &Datagram) -> Option<HandleReading> {
     })
 }
 
-impl Device for Handle {
+impl Device for ExternalHandle {
     type Reading = HandleReading;
 
-    fn poll(&mut self, now_s: f64) -> Option<Stamped<HandleReading>> {
+    fn poll(&mut self, now_s: f64) -> Option<TimedReading<HandleReading>> {
         let newest = self.line.receive(now_s, reading);
         // If the loop sets no force, the program still gets an answer, with zero force.
-        if !std::mem::take(&mut self.told) {
-            self.line.tell(self.is_wanted(), &[]);
+        if !std::mem::take(&mut self.report) {
+            self.line.report(self.is_wanted(), &[]);
         }
         let (stamped, status) = newest?;
         self.reported = Some(status & status::ON != 0);
         Some(stamped)
     }
 
-    fn about(&self) -> (&Health, &Identity) {
+    fn about(&self) -> (&Health, &DeviceIdentity) {
         self.line.about()
     }
 }
 
-impl Leader for Handle {
+impl Leader for ExternalHandle {
     fn switch_force(&mut self, on: bool) {
         self.wanted.store(on, Ordering::Release);
     }
@@ -126,8 +129,8 @@ impl Leader for Handle {
         } else {
             (Vector3::zeros(), 0.0)
         };
-        self.line.tell(on, &[force_n.x, force_n.y, force_n.z, gripper_n]);
-        self.told = true;
+        self.line.report(on, &[force_n.x, force_n.y, force_n.z, gripper_n]);
+        self.report = true;
     }
 
     fn force_change(&mut self) -> Option<bool> {
@@ -140,7 +143,7 @@ impl Leader for Handle {
     }
 }
 
-impl Drop for Handle {
+impl Drop for ExternalHandle {
     fn drop(&mut self) {
         self.line.leave();
     }

@@ -4,11 +4,11 @@
 //! sender had received a command that is itself not older than the limit.
 
 use super::{
-    codec::{BYTES_MAX, Datagram, Message, status},
-    opening::Met,
-    settings::{Kind, Settings},
+    codec::{BYTES_MAX, Datagram, ExternalMessage, status},
+    opening::OpeningResult,
+    settings::{ExternalKind, ExternalSettings},
 };
-use crate::{Health, Identity, Loss, Stamped, Standing, transport::Datagrams};
+use crate::{ConnectionState, DeviceIdentity, Health, Loss, TimedReading, transport::TransportDatagrams};
 
 /// Maximum number of datagrams read in one tick: 64 ms of a device at 1 kHz, and about 0.1 ms of work.
 pub const READS_MAX: usize = 64;
@@ -23,12 +23,12 @@ const OPENING_US: u64 = 1_000_000;
 
 /// Times at which the newest commands were sent, on our clock, us.
 #[derive(Debug)]
-struct Sent {
+struct SentTimes {
     times_us: [u64; SENT],
     count: usize,
 }
 
-impl Sent {
+impl SentTimes {
     const fn add(&mut self, time_us: u64) {
         self.times_us[self.count % SENT] = time_us;
         self.count += 1;
@@ -42,15 +42,15 @@ impl Sent {
     }
 }
 
-pub(super) struct Line {
-    datagrams: Box<dyn Datagrams>,
-    kind: Kind,
+pub(super) struct ExternalLine {
+    datagrams: Box<dyn TransportDatagrams>,
+    kind: ExternalKind,
     session: u32,
     /// Sequence number and time of the newest accepted datagram.
-    heard: Option<(u32, u64)>,
+    received: Option<(u32, u64)>,
     /// Sequence number of our newest command.
     sequence: u32,
-    sent: Sent,
+    sent: SentTimes,
     silence_s: f64,
     age_max_us: u64,
     watchdog_us: u32,
@@ -61,10 +61,10 @@ pub(super) struct Line {
     bad_in_a_row: u32,
     buffer: [u8; BYTES_MAX + 1],
     health: Health,
-    identity: Identity,
+    identity: DeviceIdentity,
 }
 
-enum Taken<R> {
+enum ReceivedDatagram<R> {
     Reading(R),
     /// Late, repeated, out of order, or from another program.
     Stale,
@@ -73,22 +73,22 @@ enum Taken<R> {
     Fault(u16),
 }
 
-impl Line {
+impl ExternalLine {
     /// Creates the connection to the program found while opening.
     pub(super) fn new(
-        datagrams: Box<dyn Datagrams>,
-        kind: Kind,
-        settings: &Settings,
-        met: &Met,
-        identity: Identity,
+        datagrams: Box<dyn TransportDatagrams>,
+        kind: ExternalKind,
+        settings: &ExternalSettings,
+        met: &OpeningResult,
+        identity: DeviceIdentity,
     ) -> Self {
         Self {
             datagrams,
             kind,
             session: met.newest.session,
-            heard: Some((met.newest.sequence, met.newest.time_us)),
+            received: Some((met.newest.sequence, met.newest.time_us)),
             sequence: met.sequence,
-            sent: Sent { times_us: [0; SENT], count: 0 },
+            sent: SentTimes { times_us: [0; SENT], count: 0 },
             silence_s: settings.silence_ms * 1e-3,
             age_max_us: (settings.age_max_ms * 1e3) as u64,
             watchdog_us: (settings.watchdog_ms * 1e3) as u32,
@@ -102,12 +102,12 @@ impl Line {
         }
     }
 
-    pub(super) const fn about(&self) -> (&Health, &Identity) {
+    pub(super) const fn about(&self) -> (&Health, &DeviceIdentity) {
         (&self.health, &self.identity)
     }
 
     pub(super) const fn is_lost(&self) -> bool {
-        matches!(self.health.standing, Standing::Lost(_))
+        matches!(self.health.standing, ConnectionState::Lost(_))
     }
 
     /// Reads the data that have arrived and returns the newest fresh reading; `read` converts a datagram, or refuses
@@ -116,7 +116,7 @@ impl Line {
         &mut self,
         now_s: f64,
         read: impl Fn(&Datagram) -> Option<R>,
-    ) -> Option<(Stamped<R>, u16)> {
+    ) -> Option<(TimedReading<R>, u16)> {
         if self.is_lost() || !now_s.is_finite() {
             return None;
         }
@@ -139,7 +139,8 @@ impl Line {
                 }
             };
             let decoded = Datagram::decode(&self.buffer[..count]);
-            let taken = decoded.map_or(Taken::Damaged, |datagram| self.judge(&datagram, must_know_us, &read));
+            let taken =
+                decoded.map_or(ReceivedDatagram::Damaged, |datagram| self.judge(&datagram, must_know_us, &read));
             newest = self.count(taken, now_s).or(newest);
             if self.is_lost() {
                 return None;
@@ -155,7 +156,7 @@ impl Line {
         }
         newest.map(|(value, status, time_us)| {
             let device_s = Some(time_us as f64 * 1e-6);
-            (Stamped { device_s, arrival_s: now_s, value }, status)
+            (TimedReading { device_s, arrival_s: now_s, value }, status)
         })
     }
 
@@ -164,55 +165,57 @@ impl Line {
         datagram: &Datagram,
         must_know_us: u64,
         read: &impl Fn(&Datagram) -> Option<R>,
-    ) -> Taken<(R, u16, u64)> {
-        if datagram.message != Message::Reading(self.kind) {
-            return Taken::Damaged;
+    ) -> ReceivedDatagram<(R, u16, u64)> {
+        if datagram.message != ExternalMessage::Reading(self.kind) {
+            return ReceivedDatagram::Damaged;
         }
         if datagram.session != self.session {
-            return Taken::Stale;
+            return ReceivedDatagram::Stale;
         }
-        if let Some((sequence, time_us)) = self.heard {
+        if let Some((sequence, time_us)) = self.received {
             let ahead = datagram.sequence.wrapping_sub(sequence);
             // More than half of the range ahead means behind. A sender whose clock stands still repeats itself.
             if ahead == 0 || ahead > u32::MAX / 2 || datagram.time_us <= time_us {
-                return Taken::Stale;
+                return ReceivedDatagram::Stale;
             }
             self.health.lost += u64::from(ahead - 1);
         }
-        self.heard = Some((datagram.sequence, datagram.time_us));
+        self.received = Some((datagram.sequence, datagram.time_us));
         // A time in the future comes from an earlier opening.
         if !(must_know_us..=self.now_us).contains(&datagram.echo_us) {
-            return Taken::Stale;
+            return ReceivedDatagram::Stale;
         }
         if datagram.has(status::FAULT) {
-            return Taken::Fault(datagram.fault);
+            return ReceivedDatagram::Fault(datagram.fault);
         }
         if self.kind.is_driven() && !is_watched(datagram, self.watchdog_us) {
-            return Taken::Refused;
+            return ReceivedDatagram::Refused;
         }
-        read(datagram).map_or(Taken::Refused, |value| Taken::Reading((value, datagram.status, datagram.time_us)))
+        read(datagram).map_or(ReceivedDatagram::Refused, |value| {
+            ReceivedDatagram::Reading((value, datagram.status, datagram.time_us))
+        })
     }
 
-    fn count<R>(&mut self, taken: Taken<R>, now_s: f64) -> Option<R> {
+    fn count<R>(&mut self, taken: ReceivedDatagram<R>, now_s: f64) -> Option<R> {
         let loss = match taken {
-            Taken::Reading(reading) => {
+            ReceivedDatagram::Reading(reading) => {
                 self.bad_in_a_row = 0;
                 self.health.accept(now_s);
                 return Some(reading);
             }
-            Taken::Stale => {
+            ReceivedDatagram::Stale => {
                 self.health.out_of_order += 1;
                 return None;
             }
-            Taken::Fault(code) => {
+            ReceivedDatagram::Fault(code) => {
                 self.health.lose(Loss::Device { code: code.into() });
                 return None;
             }
-            Taken::Damaged => {
+            ReceivedDatagram::Damaged => {
                 self.health.damaged += 1;
                 Loss::Corrupt
             }
-            Taken::Refused => {
+            ReceivedDatagram::Refused => {
                 self.health.refused += 1;
                 Loss::Implausible
             }
@@ -225,7 +228,7 @@ impl Line {
     }
 
     /// Sends a command: whether the device may be on, and its values. A lost device gets no commands.
-    pub(super) fn tell(&mut self, on: bool, numbers: &[f64]) {
+    pub(super) fn report(&mut self, on: bool, numbers: &[f64]) {
         if self.is_lost() {
             return;
         }
@@ -235,7 +238,7 @@ impl Line {
             session: self.session,
             sequence: self.sequence,
             time_us: self.now_us,
-            echo_us: self.heard.map_or(0, |(_, time_us)| time_us),
+            echo_us: self.received.map_or(0, |(_, time_us)| time_us),
             watchdog_us: self.watchdog_us,
             ..command
         };
@@ -255,14 +258,14 @@ impl Line {
 
     /// Sends the last command before the connection is closed, in any state: off.
     pub(super) fn leave(&mut self) {
-        self.health.standing = Standing::Closed;
-        self.tell(false, &[]);
+        self.health.standing = ConnectionState::Closed;
+        self.report(false, &[]);
     }
 }
 
 /// Returns a command of this kind with these values; missing ones are 0.
-pub(super) fn command_of(kind: Kind, on: bool, numbers: &[f64]) -> Datagram {
-    let mut command = Datagram::blank(Message::Command(kind));
+pub(super) fn command_of(kind: ExternalKind, on: bool, numbers: &[f64]) -> Datagram {
+    let mut command = Datagram::blank(ExternalMessage::Command(kind));
     command.status = if on { status::ON } else { 0 };
     command.numbers.iter_mut().zip(numbers).for_each(|(to, number)| *to = *number);
     command
@@ -279,7 +282,7 @@ mod tests {
 
     #[test]
     fn the_newest_command_before_a_time_is_found_after_the_ring_has_gone_round() {
-        let mut sent = Sent { times_us: [0; SENT], count: 0 };
+        let mut sent = SentTimes { times_us: [0; SENT], count: 0 };
         assert_eq!(sent.newest_until(u64::MAX), None);
         for time_us in (1000..=1_000_000).step_by(1000) {
             sent.add(time_us);

@@ -25,8 +25,8 @@ mod settings;
 #[cfg(test)]
 mod tests;
 
-pub use arm::Arm;
-pub use handle::Handle;
+pub use arm::ExternalArm;
+pub use handle::ExternalHandle;
 pub use line::READS_MAX;
-pub use sensor::Sensor;
-pub use settings::{Kind, Settings};
+pub use sensor::ExternalSensor;
+pub use settings::{ExternalKind, ExternalSettings};

@@ -6,13 +6,13 @@ use std::{
 };
 
 use super::{
-    codec::{self, BYTES_MAX, Datagram, Message, NoDatagram, VERSION},
-    line::{Line, command_of, is_watched},
-    settings::{Kind, Settings},
+    codec::{self, BYTES_MAX, Datagram, ExternalMessage, NoDatagram, VERSION},
+    line::{ExternalLine, command_of, is_watched},
+    settings::{ExternalKind, ExternalSettings},
 };
 use crate::{
-    Identity, Trouble, same_serial,
-    transport::{Datagrams, Udp},
+    DeviceError, DeviceIdentity, same_serial,
+    transport::{TransportDatagrams, Udp},
 };
 
 /// Time limit for the first datagram, and then for one that shows that our answer was received.
@@ -21,7 +21,7 @@ const ANSWER_MAX: Duration = Duration::from_millis(200);
 const NAP: Duration = Duration::from_micros(500);
 
 /// Listens at the address of the rig file. May take half a second.
-pub(super) fn open(kind: Kind, settings: &Settings) -> Result<Line, Trouble> {
+pub(super) fn open(kind: ExternalKind, settings: &ExternalSettings) -> Result<ExternalLine, DeviceError> {
     settings.check(kind)?;
     let udp = Udp::listen(settings.listen, settings.peer())?;
     meet(Box::new(udp), kind, settings, begins_us())
@@ -35,15 +35,15 @@ fn begins_us() -> u64 {
 }
 
 pub(super) fn meet(
-    mut datagrams: Box<dyn Datagrams>,
-    kind: Kind,
-    settings: &Settings,
+    mut datagrams: Box<dyn TransportDatagrams>,
+    kind: ExternalKind,
+    settings: &ExternalSettings,
     begins_us: u64,
-) -> Result<Line, Trouble> {
+) -> Result<ExternalLine, DeviceError> {
     let place = settings.place();
     let first = first_of(&mut *datagrams, kind, settings)?;
     datagrams.keep_to_sender();
-    let identity = Identity {
+    let identity = DeviceIdentity {
         product: codec::name(&first.product),
         serial: codec::name(&first.serial),
         firmware: format!("protocol {VERSION}"),
@@ -52,11 +52,11 @@ pub(super) fn meet(
         && !same_serial(expected, &identity.serial)
     {
         let found = if identity.serial.is_empty() { "unknown".to_owned() } else { identity.serial };
-        return Err(Trouble::OtherSerial { place, expected: expected.clone(), found });
+        return Err(DeviceError::OtherSerial { place, expected: expected.clone(), found });
     }
     let watchdog_us = (settings.watchdog_ms * 1e3) as u32;
     if kind.is_driven() && !is_watched(&first, watchdog_us) {
-        return Err(Trouble::DeviceFault {
+        return Err(DeviceError::DeviceFault {
             place,
             words: format!("its watchdog time is {} ms", f64::from(first.watchdog_us) * 1e-3),
             cure: format!(
@@ -65,40 +65,46 @@ pub(super) fn meet(
             ),
         });
     }
-    let met = shake_hands(&mut *datagrams, &first, watchdog_us, begins_us).ok_or(Trouble::Unheard { place })?;
-    Ok(Line::new(datagrams, kind, settings, &met, identity))
+    let met = shake_hands(&mut *datagrams, &first, watchdog_us, begins_us).ok_or(DeviceError::Unheard { place })?;
+    Ok(ExternalLine::new(datagrams, kind, settings, &met, identity))
 }
 
-fn first_of(datagrams: &mut dyn Datagrams, kind: Kind, settings: &Settings) -> Result<Datagram, Trouble> {
+fn first_of(
+    datagrams: &mut dyn TransportDatagrams,
+    kind: ExternalKind,
+    settings: &ExternalSettings,
+) -> Result<Datagram, DeviceError> {
     let place = settings.place();
     let begin = Instant::now();
     let mut buffer = [0; BYTES_MAX + 1];
-    let mut trouble = Trouble::NobodySends { place: place.clone() };
-    let wrong = |found: String| Trouble::WrongProduct {
+    let mut trouble = DeviceError::NobodySends { place: place.clone() };
+    let wrong = |found: String| DeviceError::WrongProduct {
         place: place.clone(),
         expected: format!("program for {} (protocol {VERSION})", kind.word()),
         found,
     };
     while begin.elapsed() < FIRST_MAX {
-        let lost = |loss: crate::Loss| Trouble::Other { place: place.clone(), reason: loss.cause().to_owned() };
+        let lost = |loss: crate::Loss| DeviceError::Other { place: place.clone(), reason: loss.cause().to_owned() };
         let Some(count) = datagrams.receive(&mut buffer).map_err(lost)? else {
             sleep(NAP);
             continue;
         };
         trouble = match Datagram::decode(&buffer[..count]) {
-            Ok(datagram) if datagram.message == Message::Reading(kind) => return Ok(datagram),
-            Ok(Datagram { message: Message::Reading(found), .. }) => wrong(format!("program for {}", found.word())),
+            Ok(datagram) if datagram.message == ExternalMessage::Reading(kind) => return Ok(datagram),
+            Ok(Datagram { message: ExternalMessage::Reading(found), .. }) => {
+                wrong(format!("program for {}", found.word()))
+            }
             Ok(_) => wrong("program that sends commands".to_owned()),
             Err(NoDatagram::Version(version)) => wrong(format!("program of protocol {version}")),
             Err(NoDatagram::Shape | NoDatagram::Checksum) => {
-                Trouble::Other { place: place.clone(), reason: crate::Loss::Corrupt.cause().to_owned() }
+                DeviceError::Other { place: place.clone(), reason: crate::Loss::Corrupt.cause().to_owned() }
             }
         };
     }
     Err(trouble)
 }
 
-pub(super) struct Met {
+pub(super) struct OpeningResult {
     /// The newest datagram of the program.
     pub(super) newest: Datagram,
     /// Sequence number of our newest answer.
@@ -108,8 +114,13 @@ pub(super) struct Met {
 }
 
 /// Answers until a datagram shows that the program has received an answer.
-fn shake_hands(datagrams: &mut dyn Datagrams, first: &Datagram, watchdog_us: u32, begins_us: u64) -> Option<Met> {
-    let Message::Reading(kind) = first.message else { return None };
+fn shake_hands(
+    datagrams: &mut dyn TransportDatagrams,
+    first: &Datagram,
+    watchdog_us: u32,
+    begins_us: u64,
+) -> Option<OpeningResult> {
+    let ExternalMessage::Reading(kind) = first.message else { return None };
     let begin = Instant::now();
     let mut buffer = [0; BYTES_MAX + 1];
     let mut wire = [0; BYTES_MAX];
@@ -129,11 +140,11 @@ fn shake_hands(datagrams: &mut dyn Datagrams, first: &Datagram, watchdog_us: u32
         datagrams.send(&wire[..length]).ok()?;
         sleep(NAP);
         while let Some(count) = datagrams.receive(&mut buffer).ok()? {
-            let heard = Datagram::decode(&buffer[..count]).ok();
-            let own = |heard: &Datagram| heard.session == first.session && heard.message == first.message;
-            newest = heard.filter(own).unwrap_or(newest);
+            let received = Datagram::decode(&buffer[..count]).ok();
+            let own = |received: &Datagram| received.session == first.session && received.message == first.message;
+            newest = received.filter(own).unwrap_or(newest);
             if newest.echo_us > begins_us && newest.sequence != first.sequence {
-                return Some(Met { newest, sequence, begins_us });
+                return Some(OpeningResult { newest, sequence, begins_us });
             }
             if begin.elapsed() > ANSWER_MAX {
                 return None;

@@ -4,33 +4,36 @@ use nima_core::frames::Wrench;
 
 use super::{
     codec::{Datagram, status},
-    line::Line,
+    line::ExternalLine,
     opening,
-    settings::{Kind, Settings},
+    settings::{ExternalKind, ExternalSettings},
 };
-use crate::{Device, ForceReading, ForceStatus, Health, Identity, Stamped, Trouble};
+use crate::{Device, DeviceError, DeviceIdentity, ForceReading, ForceStatus, Health, TimedReading};
 
 /// Numbers of a sensor beyond this limit are impossible: N, Nm, m/s^2, rad/s, degrees Celsius.
 const NUMBER_MAX: f64 = 1e4;
 
-pub struct Sensor {
-    line: Line,
+pub struct ExternalSensor {
+    line: ExternalLine,
 }
 
-impl Sensor {
+impl ExternalSensor {
     /// Waits for the device's program, up to half a second.
     ///
     /// # Errors
-    /// [`Trouble`] if a setting is invalid, the port is in use, or no program of a sensor sends and receives.
-    pub fn open(settings: &Settings) -> Result<Self, Trouble> {
-        Ok(Self { line: opening::open(Kind::Sensor, settings)? })
+    /// [`DeviceError`] if a setting is invalid, the port is in use, or no program of a sensor sends and receives.
+    pub fn open(settings: &ExternalSettings) -> Result<Self, DeviceError> {
+        Ok(Self { line: opening::open(ExternalKind::Sensor, settings)? })
     }
 
     /// Opens the sensor over an existing connection, with time stamps from 0 on.
     #[cfg(test)]
-    pub(super) fn over(datagrams: Box<dyn crate::transport::Datagrams>, settings: &Settings) -> Result<Self, Trouble> {
-        settings.check(Kind::Sensor)?;
-        Ok(Self { line: opening::meet(datagrams, Kind::Sensor, settings, 0)? })
+    pub(super) fn over(
+        datagrams: Box<dyn crate::transport::TransportDatagrams>,
+        settings: &ExternalSettings,
+    ) -> Result<Self, DeviceError> {
+        settings.check(ExternalKind::Sensor)?;
+        Ok(Self { line: opening::meet(datagrams, ExternalKind::Sensor, settings, 0)? })
     }
 }
 
@@ -52,16 +55,16 @@ fn reading(datagram: &Datagram) -> Option<ForceReading> {
     })
 }
 
-impl Device for Sensor {
+impl Device for ExternalSensor {
     type Reading = ForceReading;
 
-    fn poll(&mut self, now_s: f64) -> Option<Stamped<ForceReading>> {
+    fn poll(&mut self, now_s: f64) -> Option<TimedReading<ForceReading>> {
         let newest = self.line.receive(now_s, reading);
-        self.line.tell(true, &[]);
+        self.line.report(true, &[]);
         newest.map(|(stamped, _)| stamped)
     }
 
-    fn about(&self) -> (&Health, &Identity) {
+    fn about(&self) -> (&Health, &DeviceIdentity) {
         self.line.about()
     }
 }

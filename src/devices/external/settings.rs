@@ -3,17 +3,17 @@ use std::net::{IpAddr, SocketAddr};
 use nima_core::kinematics::JointLimits;
 use serde::{Deserialize, Serialize};
 
-use crate::Trouble;
+use crate::DeviceError;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum ExternalKind {
     Handle,
     /// An arm with the joints of a Gen3.
     Arm,
     Sensor,
 }
 
-impl Kind {
+impl ExternalKind {
     pub const ALL: [Self; 3] = [Self::Handle, Self::Arm, Self::Sensor];
 
     pub(super) const fn code(self) -> u8 {
@@ -42,7 +42,7 @@ impl Kind {
 /// Settings of an external device. Settings that its kind does not have must be omitted.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, tag = "make", rename = "external")]
-pub struct Settings {
+pub struct ExternalSettings {
     /// Local address and port for the device: a different one for each part.
     pub listen: SocketAddr,
     /// Address of the computer that runs the device's program; required if it is not this computer.
@@ -52,16 +52,16 @@ pub struct Settings {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub serial_number: Option<String>,
     /// Expected rate of the readings, Hz: 20 to 10000.
-    #[serde(default = "Settings::usual_rate_hz")]
+    #[serde(default = "ExternalSettings::usual_rate_hz")]
     pub rate_hz: f64,
     /// Time without a fresh reading after which the device is lost, ms: 2 to 20.
-    #[serde(default = "Settings::usual_time_ms")]
+    #[serde(default = "ExternalSettings::usual_time_ms")]
     pub silence_ms: f64,
     /// Maximum age of a reading, by the age of the newest command that its sender had received, ms: 2 to 20.
-    #[serde(default = "Settings::usual_time_ms")]
+    #[serde(default = "ExternalSettings::usual_time_ms")]
     pub age_max_ms: f64,
     /// Handle and arm: maximum watchdog time of the device itself, ms: 2 to 100.
-    #[serde(default = "Settings::usual_watchdog_ms")]
+    #[serde(default = "ExternalSettings::usual_watchdog_ms")]
     pub watchdog_ms: f64,
     /// Handle: maximum force, N, above 0 to 40; 4 if omitted.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -80,7 +80,7 @@ pub struct Settings {
     pub inertial: Option<bool>,
 }
 
-impl Settings {
+impl ExternalSettings {
     const fn usual_rate_hz() -> f64 {
         1000.0
     }
@@ -136,10 +136,10 @@ impl Settings {
     /// Checks every value for a device of this kind.
     ///
     /// # Errors
-    /// [`Trouble::Setting`] for the first impossible value.
-    pub fn check(&self, kind: Kind) -> Result<(), Trouble> {
+    /// [`DeviceError::Setting`] for the first impossible value.
+    pub fn check(&self, kind: ExternalKind) -> Result<(), DeviceError> {
         let refuse = |key: &str, value: String, allowed: &str| {
-            Err(Trouble::Setting { key: key.to_owned(), value, allowed: allowed.to_owned() })
+            Err(DeviceError::Setting { key: key.to_owned(), value, allowed: allowed.to_owned() })
         };
         let ip = self.listen.ip();
         let port = self.listen.port();
@@ -154,16 +154,16 @@ impl Settings {
         if self.peer().is_ipv4() != ip.is_ipv4() || self.peer().is_loopback() != ip.is_loopback() {
             return refuse("from", self.peer().to_string(), "an address that can reach `listen`");
         }
-        let of = |own: Kind, value: Option<f64>| if kind == own { Ok(value) } else { Err(value.is_some()) };
+        let of = |own: ExternalKind, value: Option<f64>| if kind == own { Ok(value) } else { Err(value.is_some()) };
         let ranges = [
             ("rate_hz", Ok(Some(self.rate_hz)), 20.0, 10_000.0, "20 to 10000 Hz"),
             ("silence_ms", Ok(Some(self.silence_ms)), 2.0, 20.0, "2 to 20 ms"),
             ("age_max_ms", Ok(Some(self.age_max_ms)), 2.0, 20.0, "2 to 20 ms"),
             ("watchdog_ms", Ok(Some(self.watchdog_ms)), 2.0, 100.0, "2 to 100 ms"),
-            ("force_max_n", of(Kind::Handle, self.force_max_n), f64::MIN_POSITIVE, 40.0, "above 0 to 40 N"),
-            ("gripper_max_n", of(Kind::Handle, self.gripper_max_n), 0.0, 10.0, "0 to 10 N"),
-            ("speed_fraction", of(Kind::Arm, self.speed_fraction), f64::MIN_POSITIVE, 1.0, "above 0 to 1"),
-            ("lead_rad", of(Kind::Arm, self.lead_rad), f64::MIN_POSITIVE, 0.2, "above 0 to 0.2 rad"),
+            ("force_max_n", of(ExternalKind::Handle, self.force_max_n), f64::MIN_POSITIVE, 40.0, "above 0 to 40 N"),
+            ("gripper_max_n", of(ExternalKind::Handle, self.gripper_max_n), 0.0, 10.0, "0 to 10 N"),
+            ("speed_fraction", of(ExternalKind::Arm, self.speed_fraction), f64::MIN_POSITIVE, 1.0, "above 0 to 1"),
+            ("lead_rad", of(ExternalKind::Arm, self.lead_rad), f64::MIN_POSITIVE, 0.2, "above 0 to 0.2 rad"),
         ];
         for (key, value, low, high, allowed) in ranges {
             match value {
@@ -172,7 +172,7 @@ impl Settings {
                 _ => {}
             }
         }
-        if self.inertial.is_some() && kind != Kind::Sensor {
+        if self.inertial.is_some() && kind != ExternalKind::Sensor {
             return refuse("inertial", "given".to_owned(), &format!("left out: {} has none", kind.word()));
         }
         Ok(())
@@ -183,50 +183,50 @@ impl Settings {
 mod tests {
     use super::*;
 
-    fn here() -> Settings {
-        Settings::at(([127, 0, 0, 1], 47_200).into())
+    fn here() -> ExternalSettings {
+        ExternalSettings::at(([127, 0, 0, 1], 47_200).into())
     }
 
     #[test]
     fn a_rig_file_is_read_and_written_and_strange_keys_are_refused() {
-        let read: Settings = toml::from_str("listen = \"127.0.0.1:47200\"\nforce_max_n = 3.0\n").unwrap();
-        assert_eq!(read, Settings { force_max_n: Some(3.0), ..here() });
+        let read: ExternalSettings = toml::from_str("listen = \"127.0.0.1:47200\"\nforce_max_n = 3.0\n").unwrap();
+        assert_eq!(read, ExternalSettings { force_max_n: Some(3.0), ..here() });
         let written = toml::to_string(&read).unwrap();
         assert!(written.contains("make = \"external\""), "{written}");
-        assert!(toml::from_str::<Settings>("listen = \"127.0.0.1:47200\"\nforce = 3.0\n").is_err());
-        assert!(toml::from_str::<Settings>("listen = \"localhost\"\n").is_err());
+        assert!(toml::from_str::<ExternalSettings>("listen = \"127.0.0.1:47200\"\nforce = 3.0\n").is_err());
+        assert!(toml::from_str::<ExternalSettings>("listen = \"localhost\"\n").is_err());
     }
 
     #[test]
     fn what_is_impossible_is_told_by_its_key() {
         let address = |text: &str| text.parse::<SocketAddr>().unwrap();
         let elsewhere =
-            Settings { listen: address("192.168.1.2:47200"), from: Some([192, 168, 1, 3].into()), ..here() };
-        for kind in Kind::ALL {
+            ExternalSettings { listen: address("192.168.1.2:47200"), from: Some([192, 168, 1, 3].into()), ..here() };
+        for kind in ExternalKind::ALL {
             assert_eq!(here().check(kind), Ok(()));
             assert_eq!(elsewhere.check(kind), Ok(()));
         }
-        let handle = Kind::Handle;
+        let handle = ExternalKind::Handle;
         let bad = [
-            ("listen", handle, Settings { listen: address("127.0.0.1:0"), ..here() }),
-            ("listen", handle, Settings { listen: address("0.0.0.0:47200"), ..here() }),
-            ("from", handle, Settings { from: None, ..elsewhere.clone() }),
-            ("from", handle, Settings { from: Some([127, 0, 0, 1].into()), ..elsewhere.clone() }),
-            ("from", handle, Settings { from: Some([192, 168, 1, 3].into()), ..here() }),
-            ("rate_hz", handle, Settings { rate_hz: f64::NAN, ..here() }),
-            ("silence_ms", handle, Settings { silence_ms: 50.0, ..here() }),
-            ("age_max_ms", handle, Settings { age_max_ms: 0.0, ..here() }),
-            ("watchdog_ms", handle, Settings { watchdog_ms: 500.0, ..here() }),
-            ("force_max_n", handle, Settings { force_max_n: Some(0.0), ..here() }),
-            ("force_max_n", Kind::Arm, Settings { force_max_n: Some(1.0), ..here() }),
-            ("gripper_max_n", handle, Settings { gripper_max_n: Some(-1.0), ..here() }),
-            ("speed_fraction", Kind::Arm, Settings { speed_fraction: Some(1.5), ..here() }),
-            ("lead_rad", Kind::Sensor, Settings { lead_rad: Some(0.05), ..here() }),
-            ("inertial", handle, Settings { inertial: Some(true), ..here() }),
+            ("listen", handle, ExternalSettings { listen: address("127.0.0.1:0"), ..here() }),
+            ("listen", handle, ExternalSettings { listen: address("0.0.0.0:47200"), ..here() }),
+            ("from", handle, ExternalSettings { from: None, ..elsewhere.clone() }),
+            ("from", handle, ExternalSettings { from: Some([127, 0, 0, 1].into()), ..elsewhere.clone() }),
+            ("from", handle, ExternalSettings { from: Some([192, 168, 1, 3].into()), ..here() }),
+            ("rate_hz", handle, ExternalSettings { rate_hz: f64::NAN, ..here() }),
+            ("silence_ms", handle, ExternalSettings { silence_ms: 50.0, ..here() }),
+            ("age_max_ms", handle, ExternalSettings { age_max_ms: 0.0, ..here() }),
+            ("watchdog_ms", handle, ExternalSettings { watchdog_ms: 500.0, ..here() }),
+            ("force_max_n", handle, ExternalSettings { force_max_n: Some(0.0), ..here() }),
+            ("force_max_n", ExternalKind::Arm, ExternalSettings { force_max_n: Some(1.0), ..here() }),
+            ("gripper_max_n", handle, ExternalSettings { gripper_max_n: Some(-1.0), ..here() }),
+            ("speed_fraction", ExternalKind::Arm, ExternalSettings { speed_fraction: Some(1.5), ..here() }),
+            ("lead_rad", ExternalKind::Sensor, ExternalSettings { lead_rad: Some(0.05), ..here() }),
+            ("inertial", handle, ExternalSettings { inertial: Some(true), ..here() }),
         ];
         for (key, kind, settings) in bad {
             match settings.check(kind) {
-                Err(Trouble::Setting { key: told, .. }) => assert_eq!(told, key, "{settings:?}"),
+                Err(DeviceError::Setting { key: report, .. }) => assert_eq!(report, key, "{settings:?}"),
                 other => panic!("{key}: {other:?}"),
             }
         }

@@ -3,42 +3,42 @@
 use nalgebra::Vector3;
 
 use super::{
-    Arm, Handle, Kind, READS_MAX, Sensor, Settings,
-    codec::{BYTES_MAX, Datagram, Message, padded, status},
+    ExternalArm, ExternalHandle, ExternalKind, ExternalSensor, ExternalSettings, READS_MAX,
+    codec::{BYTES_MAX, Datagram, ExternalMessage, padded, status},
 };
 use crate::{
-    ARM_JOINTS, Device, Follower as _, Health, Leader as _, Lever, Loss, Standing, Trouble,
-    transport::{Datagrams as _, MemoryDatagrams},
+    ARM_JOINTS, ConnectionState, Device, DeviceError, Follower as _, Health, Leader as _, Lever, Loss,
+    transport::{MemoryDatagrams, TransportDatagrams as _},
 };
 
 const TICK_S: f64 = 1e-3;
 
-fn settings() -> Settings {
-    Settings::at(([127, 0, 0, 1], 47_200).into())
+fn settings() -> ExternalSettings {
+    ExternalSettings::at(([127, 0, 0, 1], 47_200).into())
 }
 
 /// A program of a device, and the loop's time.
-struct Bench {
+struct Fixture {
     wire: MemoryDatagrams,
     next: Datagram,
     /// The newest command that the program has received.
-    heard: Option<Datagram>,
+    received: Option<Datagram>,
     now_s: f64,
 }
 
-impl Bench {
+impl Fixture {
     /// Creates the program, and the other end for the driver. Two datagrams are pending there; the second shows that an
     /// answer was received.
-    fn new(kind: Kind) -> (Self, MemoryDatagrams) {
+    fn new(kind: ExternalKind) -> (Self, MemoryDatagrams) {
         let [wire, other] = MemoryDatagrams::pair();
         let next = Datagram {
             session: 77,
             watchdog_us: 20_000,
             product: padded("test device"),
             serial: padded("T-1"),
-            ..Datagram::blank(Message::Reading(kind))
+            ..Datagram::blank(ExternalMessage::Reading(kind))
         };
-        let mut this = Self { wire, next, heard: None, now_s: 5.0 };
+        let mut this = Self { wire, next, received: None, now_s: 5.0 };
         this.send();
         this.next.echo_us = 1;
         this.send();
@@ -58,18 +58,18 @@ impl Bench {
         self.send_as(&next);
     }
 
-    fn hear(&mut self) {
+    fn receive(&mut self) {
         let mut buffer = [0; BYTES_MAX];
         while let Ok(Some(count)) = self.wire.receive(&mut buffer) {
             let command = Datagram::decode(&buffer[..count]).unwrap();
             self.next.echo_us = command.time_us;
-            self.heard = Some(command);
+            self.received = Some(command);
         }
     }
 
     /// Runs one tick, in which the program first receives and sends.
     fn tick<D: Device>(&mut self, device: &mut D) -> Option<D::Reading> {
-        self.hear();
+        self.receive();
         self.send();
         self.poll(device)
     }
@@ -83,9 +83,9 @@ impl Bench {
     }
 }
 
-fn handle() -> (Bench, Handle) {
-    let (mut bench, wire) = Bench::new(Kind::Handle);
-    let mut handle = Handle::over(Box::new(wire), &settings()).unwrap();
+fn handle() -> (Fixture, ExternalHandle) {
+    let (mut bench, wire) = Fixture::new(ExternalKind::Handle);
+    let mut handle = ExternalHandle::over(Box::new(wire), &settings()).unwrap();
     for _ in 0..30 {
         assert!(bench.tick(&mut handle).is_some());
     }
@@ -94,7 +94,7 @@ fn handle() -> (Bench, Handle) {
 
 fn lost(health: &Health) -> Option<Loss> {
     match health.standing {
-        Standing::Lost(loss) => Some(loss),
+        ConnectionState::Lost(loss) => Some(loss),
         _ => None,
     }
 }
@@ -113,18 +113,18 @@ fn a_handle_tells_where_it_is_and_is_given_a_force_within_its_limits() {
     assert_eq!(handle.force_change(), Some(false));
     assert_eq!(handle.force_change(), None, "it has told nothing since");
 
-    let told = |bench: &mut Bench, handle: &mut Handle, force_n: Vector3<f64>| {
+    let report = |bench: &mut Fixture, handle: &mut ExternalHandle, force_n: Vector3<f64>| {
         handle.set_force(force_n, 1.0);
-        bench.hear();
-        let command = bench.heard.unwrap();
+        bench.receive();
+        let command = bench.received.unwrap();
         (command.has(status::ON), Vector3::from(command.three(0)), command.numbers[3])
     };
-    assert_eq!(told(&mut bench, &mut handle, Vector3::x()), (false, Vector3::zeros(), 0.0), "it is not switched on");
+    assert_eq!(report(&mut bench, &mut handle, Vector3::x()), (false, Vector3::zeros(), 0.0), "it is not switched on");
     handle.switch_force(true);
-    assert_eq!(told(&mut bench, &mut handle, Vector3::x()), (true, Vector3::x(), 0.0), "it has no gripper force");
-    let (_, large_n, _) = told(&mut bench, &mut handle, Vector3::new(1e300, -1e300, 0.0));
+    assert_eq!(report(&mut bench, &mut handle, Vector3::x()), (true, Vector3::x(), 0.0), "it has no gripper force");
+    let (_, large_n, _) = report(&mut bench, &mut handle, Vector3::new(1e300, -1e300, 0.0));
     assert!((large_n.norm() - 4.0).abs() < 1e-9, "{large_n}");
-    assert_eq!(told(&mut bench, &mut handle, Vector3::new(f64::NAN, 1.0, 0.0)), (true, Vector3::zeros(), 0.0));
+    assert_eq!(report(&mut bench, &mut handle, Vector3::new(f64::NAN, 1.0, 0.0)), (true, Vector3::zeros(), 0.0));
     bench.next.status = status::ON;
     bench.tick(&mut handle);
     assert_eq!(handle.force_change(), Some(true));
@@ -132,11 +132,11 @@ fn a_handle_tells_where_it_is_and_is_given_a_force_within_its_limits() {
     let lever = Lever::default();
     handle.attach(&lever);
     lever.pull();
-    assert_eq!(told(&mut bench, &mut handle, Vector3::x()), (false, Vector3::zeros(), 0.0));
+    assert_eq!(report(&mut bench, &mut handle, Vector3::x()), (false, Vector3::zeros(), 0.0));
     handle.switch_force(true);
     drop(handle);
-    bench.hear();
-    assert!(!bench.heard.unwrap().has(status::ON), "closing it switches it off");
+    bench.receive();
+    assert!(!bench.received.unwrap().has(status::ON), "closing it switches it off");
 }
 
 #[test]
@@ -160,7 +160,7 @@ fn late_repeated_and_exchanged_readings_are_counted_and_never_handed_on() {
     }
     // Sent in time by its own clock, but by a program that has not received a command for longer than the limit.
     for _ in 0..6 {
-        bench.hear();
+        bench.receive();
         bench.next.echo_us = echo_us;
         bench.send();
         bench.poll(&mut handle);
@@ -180,7 +180,7 @@ fn late_repeated_and_exchanged_readings_are_counted_and_never_handed_on() {
 fn a_standstill_of_the_loop_itself_is_no_fault_of_the_device() {
     let (mut bench, mut handle) = handle();
     for _ in 0..30 {
-        bench.hear();
+        bench.receive();
         bench.send();
         bench.now_s += TICK_S;
     }
@@ -209,7 +209,7 @@ fn a_silent_program_is_lost_in_time_and_a_closed_one_at_once() {
 #[test]
 fn a_queue_that_grows_faster_than_it_is_read_delivers_nothing() {
     let (mut bench, mut handle) = handle();
-    bench.hear();
+    bench.receive();
     (0..2 * READS_MAX + 5).for_each(|_| bench.send());
     assert_eq!(bench.poll(&mut handle), None);
     assert_eq!(bench.poll(&mut handle), None);
@@ -219,9 +219,9 @@ fn a_queue_that_grows_faster_than_it_is_read_delivers_nothing() {
 
 #[test]
 fn damaged_impossible_and_faulty_ones_are_told() {
-    let run = |bench: &mut Bench, handle: &mut Handle, send: fn(&mut Bench)| {
+    let run = |bench: &mut Fixture, handle: &mut ExternalHandle, send: fn(&mut Fixture)| {
         for _ in 0..10 {
-            bench.hear();
+            bench.receive();
             send(bench);
             assert_eq!(bench.poll(handle), None);
         }
@@ -232,15 +232,15 @@ fn damaged_impossible_and_faulty_ones_are_told() {
     assert_eq!(handle.health().damaged, 10);
     let (mut bench, mut handle) = self::handle();
     bench.next.numbers[1] = f64::NAN;
-    assert_eq!(run(&mut bench, &mut handle, Bench::send), Some(Loss::Implausible));
+    assert_eq!(run(&mut bench, &mut handle, Fixture::send), Some(Loss::Implausible));
     assert_eq!(handle.health().refused, 10);
     let (mut bench, mut handle) = self::handle();
     bench.next.watchdog_us = 0;
-    assert_eq!(run(&mut bench, &mut handle, Bench::send), Some(Loss::Implausible), "it would never be switched off");
+    assert_eq!(run(&mut bench, &mut handle, Fixture::send), Some(Loss::Implausible), "it would never be switched off");
     let (mut bench, mut handle) = self::handle();
     bench.next.status = status::FAULT;
     bench.next.fault = 0x1234;
-    assert_eq!(run(&mut bench, &mut handle, Bench::send), Some(Loss::Device { code: 0x1234 }));
+    assert_eq!(run(&mut bench, &mut handle, Fixture::send), Some(Loss::Device { code: 0x1234 }));
     let (mut bench, mut handle) = self::handle();
     bench.next.status = status::HAS_ORIENTATION;
     bench.next.numbers[3..7].fill(1.0);
@@ -249,9 +249,9 @@ fn damaged_impossible_and_faulty_ones_are_told() {
 
 #[test]
 fn a_sensor_tells_force_acceleration_and_why_it_must_not_be_used() {
-    let (mut bench, wire) = Bench::new(Kind::Sensor);
+    let (mut bench, wire) = Fixture::new(ExternalKind::Sensor);
     bench.next.watchdog_us = 0;
-    let mut sensor = Sensor::over(Box::new(wire), &settings()).unwrap();
+    let mut sensor = ExternalSensor::over(Box::new(wire), &settings()).unwrap();
     for place in 0..13 {
         bench.next.numbers[place] = place as f64;
     }
@@ -271,14 +271,14 @@ const START_RAD: [f64; ARM_JOINTS] = [2.38, -1.34, -1.37, 1.91, -1.28, 1.68, 0.9
 
 #[test]
 fn an_arm_follows_only_while_it_tells_so_and_only_within_its_limits() {
-    let (mut bench, wire) = Bench::new(Kind::Arm);
-    let mut arm = Arm::over(Box::new(wire), &settings()).unwrap();
+    let (mut bench, wire) = Fixture::new(ExternalKind::Arm);
+    let mut arm = ExternalArm::over(Box::new(wire), &settings()).unwrap();
     bench.next.numbers[..ARM_JOINTS].copy_from_slice(&START_RAD);
-    let tick = |bench: &mut Bench, arm: &mut Arm| {
-        bench.hear();
-        let asked = bench.heard.is_some_and(|command| command.has(status::ON));
+    let tick = |bench: &mut Fixture, arm: &mut ExternalArm| {
+        bench.receive();
+        let asked = bench.received.is_some_and(|command| command.has(status::ON));
         bench.next.status = if asked { status::ON } else { 0 };
-        if let Some(command) = bench.heard.filter(|_| asked) {
+        if let Some(command) = bench.received.filter(|_| asked) {
             bench.next.numbers[..ARM_JOINTS].copy_from_slice(&command.numbers[..ARM_JOINTS]);
         }
         bench.send();
@@ -304,7 +304,7 @@ fn an_arm_follows_only_while_it_tells_so_and_only_within_its_limits() {
     for _ in 0..300 {
         tick(&mut bench, &mut arm);
     }
-    assert!(!bench.heard.unwrap().has(status::ON), "then it is switched off");
+    assert!(!bench.received.unwrap().has(status::ON), "then it is switched off");
 
     // An arm that stops by itself does not resume.
     arm.enter_servoing();
@@ -312,17 +312,17 @@ fn an_arm_follows_only_while_it_tells_so_and_only_within_its_limits() {
         tick(&mut bench, &mut arm);
     }
     assert!(tick(&mut bench, &mut arm).servoing);
-    bench.hear();
+    bench.receive();
     bench.next.status = 0;
     bench.send();
     assert!(!bench.poll(&mut arm).unwrap().servoing);
-    bench.hear();
-    assert!(!bench.heard.unwrap().has(status::ON));
+    bench.receive();
+    assert!(!bench.received.unwrap().has(status::ON));
 }
 
 #[test]
 fn who_must_not_be_let_in_is_told_with_what_to_do() {
-    let told = |kind: Kind, change: fn(&mut Datagram), settings: &Settings| {
+    let report = |kind: ExternalKind, change: fn(&mut Datagram), settings: &ExternalSettings| {
         let [mut wire, other] = MemoryDatagrams::pair();
         let mut datagram = Datagram {
             session: 1,
@@ -331,27 +331,31 @@ fn who_must_not_be_let_in_is_told_with_what_to_do() {
             echo_us: 1,
             watchdog_us: 20_000,
             serial: padded("T-1"),
-            ..Datagram::blank(Message::Reading(kind))
+            ..Datagram::blank(ExternalMessage::Reading(kind))
         };
         change(&mut datagram);
         let mut bytes = [0; BYTES_MAX];
         let length = datagram.encode(&mut bytes);
         wire.send(&bytes[..length]).unwrap();
-        let trouble = Handle::over(Box::new(other), settings).err().unwrap();
+        let trouble = ExternalHandle::over(Box::new(other), settings).err().unwrap();
         assert!(!trouble.cure().is_empty());
         trouble
     };
     let usual = settings();
-    let arm = told(Kind::Arm, |_| {}, &usual);
+    let arm = report(ExternalKind::Arm, |_| {}, &usual);
     assert_eq!(arm.to_string(), "UDP 127.0.0.1:47200 is a program for an arm, not a program for a handle (protocol 1)");
-    let command = told(Kind::Handle, |datagram| datagram.message = Message::Command(Kind::Handle), &usual);
-    assert!(matches!(command, Trouble::WrongProduct { .. }), "{command}");
-    let unwatched = told(Kind::Handle, |datagram| datagram.watchdog_us = 500_000, &usual);
+    let command = report(
+        ExternalKind::Handle,
+        |datagram| datagram.message = ExternalMessage::Command(ExternalKind::Handle),
+        &usual,
+    );
+    assert!(matches!(command, DeviceError::WrongProduct { .. }), "{command}");
+    let unwatched = report(ExternalKind::Handle, |datagram| datagram.watchdog_us = 500_000, &usual);
     assert!(unwatched.to_string().contains("its watchdog time is 500 ms"), "{unwatched}");
-    let other = Settings { serial_number: Some("T-2".to_owned()), ..usual.clone() };
-    assert!(matches!(told(Kind::Handle, |_| {}, &other), Trouble::OtherSerial { .. }));
+    let other = ExternalSettings { serial_number: Some("T-2".to_owned()), ..usual.clone() };
+    assert!(matches!(report(ExternalKind::Handle, |_| {}, &other), DeviceError::OtherSerial { .. }));
     // It sends once and never receives.
-    assert!(matches!(told(Kind::Handle, |_| {}, &usual), Trouble::Unheard { .. }));
+    assert!(matches!(report(ExternalKind::Handle, |_| {}, &usual), DeviceError::Unheard { .. }));
     let [_silent, end] = MemoryDatagrams::pair();
-    assert!(matches!(Handle::over(Box::new(end), &usual), Err(Trouble::NobodySends { .. })));
+    assert!(matches!(ExternalHandle::over(Box::new(end), &usual), Err(DeviceError::NobodySends { .. })));
 }

@@ -14,11 +14,11 @@ use nalgebra::Vector3;
 use serde::Serialize;
 
 use super::{
-    settings::Settings,
-    status::{ForceOffCause, Kind, Status},
-    worker::{Ends, ForceCommand, Report, Shared, Worker},
+    settings::ForceDimensionSettings,
+    status::{ForceDimensionKind, ForceDimensionStatus, ForceOffCause},
+    worker::{ForceCommand, ForceDimensionWorker, QueueEnds, WorkerReport, WorkerShared},
 };
-use crate::{Device, HandleReading, Health, Identity, Loss, Stamped, Trouble};
+use crate::{Device, DeviceError, DeviceIdentity, HandleReading, Health, Loss, TimedReading};
 
 /// Time without a reading after which the device is lost, s: the limit of every device of the force path, so that no
 /// force is older.
@@ -76,26 +76,26 @@ pub enum ForceAnswer {
 }
 
 #[derive(Debug)]
-pub struct Driver {
-    identity: Identity,
+pub struct ForceDimensionDriver {
+    identity: DeviceIdentity,
     health: Health,
-    status: Status,
+    status: ForceDimensionStatus,
     counters: Counters,
     velocity_threshold: Option<u32>,
     limits_n: (f64, f64),
     cycle: Option<u64>,
     first_poll_s: Option<f64>,
     failing: Option<Loss>,
-    reports: Receiver<Report>,
+    reports: Receiver<WorkerReport>,
     events: Receiver<HandleEvent>,
     commands: Sender<ForceCommand>,
-    shared: Arc<Shared>,
+    shared: Arc<WorkerShared>,
     thread: Option<JoinHandle<()>>,
 }
 
 /// The thread's report once it has opened the device.
-struct Opened {
-    identity: Identity,
+struct OpeningReport {
+    identity: DeviceIdentity,
     velocity_threshold: Option<u32>,
 }
 
@@ -103,41 +103,41 @@ struct Opened {
 /// first reading. Afterwards the brakes are on (or the handle is free, depending on the settings), without force.
 ///
 /// # Errors
-/// [`Trouble`] if a setting is invalid, the library is missing or unusable, or the device is missing, in use or not
+/// [`DeviceError`] if a setting is invalid, the library is missing or unusable, or the device is missing, in use or not
 /// ready.
-pub fn open(settings: &Settings) -> Result<Driver, Trouble> {
+pub fn open(settings: &ForceDimensionSettings) -> Result<ForceDimensionDriver, DeviceError> {
     settings.check()?;
     let sdk = super::library::of(settings)?;
     let (give_reports, reports) = bounded(QUEUE);
     let (give_events, events) = bounded(EVENTS);
     let (commands, take_commands) = bounded(QUEUE);
     let (answer, answered) = bounded(1);
-    let shared = Arc::new(Shared::default());
+    let shared = Arc::new(WorkerShared::default());
     let ends =
-        Ends { reports: give_reports, events: give_events, commands: take_commands, shared: Arc::clone(&shared) };
+        QueueEnds { reports: give_reports, events: give_events, commands: take_commands, shared: Arc::clone(&shared) };
     let of_thread = settings.clone();
     let work = move || {
         super::sdk::prepare_thread();
         match super::opening::open(sdk, &of_thread) {
-            Ok(super::opening::Opened { device, identity, left_handed, velocity_threshold }) => {
+            Ok(super::opening::OpenHandle { device, identity, left_handed, velocity_threshold }) => {
                 let period = Duration::from_secs_f64(1.0 / of_thread.rate_hz);
-                answer.send(Ok(Opened { identity, velocity_threshold })).ok();
-                Worker::new(device, ends, left_handed, of_thread.idle, period).run();
+                answer.send(Ok(OpeningReport { identity, velocity_threshold })).ok();
+                ForceDimensionWorker::new(device, ends, left_handed, of_thread.idle, period).run();
             }
             Err(trouble) => drop(answer.send(Err(trouble))),
         }
     };
     let place = super::opening::place(settings);
-    let failed = |reason: String| Trouble::Other { place: place.clone(), reason };
+    let failed = |reason: String| DeviceError::Other { place: place.clone(), reason };
     let thread = Builder::new().name("handle".to_owned()).spawn(work).map_err(|error| failed(error.to_string()))?;
     let opened = match answered.recv() {
         Ok(opened) => opened?,
         Err(_) => return Err(failed("the SDK's thread ended while opening".to_owned())),
     };
-    let driver = Driver {
+    let driver = ForceDimensionDriver {
         identity: opened.identity,
         health: Health::opening(),
-        status: Status::default(),
+        status: ForceDimensionStatus::default(),
         counters: Counters::default(),
         velocity_threshold: opened.velocity_threshold,
         limits_n: (settings.force_max_n, settings.gripper_max_n),
@@ -154,18 +154,18 @@ pub fn open(settings: &Settings) -> Result<Driver, Trouble> {
     Ok(driver)
 }
 
-impl Driver {
-    fn wait_for_first_reading(&self, place: &str) -> Result<(), Trouble> {
+impl ForceDimensionDriver {
+    fn wait_for_first_reading(&self, place: &str) -> Result<(), DeviceError> {
         let begin = Instant::now();
         while begin.elapsed() < FIRST_READING_MAX {
             match self.reports.recv_timeout(FIRST_READING_MAX) {
-                Ok(Report { reading: Some(_), .. }) => return Ok(()),
-                Ok(Report { loss: Some(loss), .. }) => return Err(super::opening::lost_at_once(place, loss)),
+                Ok(WorkerReport { reading: Some(_), .. }) => return Ok(()),
+                Ok(WorkerReport { loss: Some(loss), .. }) => return Err(super::opening::lost_at_once(place, loss)),
                 Ok(_) => {}
                 Err(_) => break,
             }
         }
-        Err(Trouble::Silent { place: place.to_owned() })
+        Err(DeviceError::Silent { place: place.to_owned() })
     }
 
     /// Requests force; [`HandleEvent::ForceOn`] reports when it is on. The force is zero until it is set.
@@ -225,7 +225,7 @@ impl Driver {
         self.events.try_recv().ok()
     }
 
-    pub const fn status(&self) -> &Status {
+    pub const fn status(&self) -> &ForceDimensionStatus {
         &self.status
     }
 
@@ -239,7 +239,7 @@ impl Driver {
         self.velocity_threshold
     }
 
-    fn take(&mut self, report: &Report, now_s: f64) -> Option<HandleReading> {
+    fn take(&mut self, report: &WorkerReport, now_s: f64) -> Option<HandleReading> {
         let missing = self.cycle.map_or(0, |last| report.cycle.saturating_sub(last + 1));
         let timed_out = report.counters.timed_out_calls - self.counters.timed_out_calls;
         self.health.lost += missing + timed_out;
@@ -260,10 +260,10 @@ impl Driver {
     }
 }
 
-impl Device for Driver {
+impl Device for ForceDimensionDriver {
     type Reading = HandleReading;
 
-    fn poll(&mut self, now_s: f64) -> Option<Stamped<HandleReading>> {
+    fn poll(&mut self, now_s: f64) -> Option<TimedReading<HandleReading>> {
         let first_s = *self.first_poll_s.get_or_insert(now_s);
         let mut newest = None;
         for _ in 0..QUEUE {
@@ -279,18 +279,18 @@ impl Device for Driver {
         if now_s - self.health.newest_s.unwrap_or(first_s) > SILENCE_S {
             self.health.lose(self.failing.unwrap_or(Loss::Silent));
         }
-        if matches!(self.health.standing, crate::Standing::Lost(_)) {
+        if matches!(self.health.standing, crate::ConnectionState::Lost(_)) {
             return None;
         }
-        newest.map(|value| Stamped { device_s: None, arrival_s: now_s, value })
+        newest.map(|value| TimedReading { device_s: None, arrival_s: now_s, value })
     }
 
-    fn about(&self) -> (&Health, &Identity) {
+    fn about(&self) -> (&Health, &DeviceIdentity) {
         (&self.health, &self.identity)
     }
 }
 
-impl Drop for Driver {
+impl Drop for ForceDimensionDriver {
     fn drop(&mut self) {
         self.shared.stop.store(true, Ordering::Release);
         let Some(thread) = self.thread.take() else { return };
@@ -306,8 +306,13 @@ impl Drop for Driver {
     }
 }
 
-impl Identity {
-    pub(super) fn of_handle(kind: Kind, name: Option<String>, serial: Option<u16>, firmware: Option<f64>) -> Self {
+impl DeviceIdentity {
+    pub(super) fn of_handle(
+        kind: ForceDimensionKind,
+        name: Option<String>,
+        serial: Option<u16>,
+        firmware: Option<f64>,
+    ) -> Self {
         Self {
             product: name.unwrap_or_else(|| kind.name()),
             serial: serial.map(|serial| serial.to_string()).unwrap_or_default(),

@@ -2,10 +2,10 @@
 
 use nalgebra::Vector3;
 
-use super::{Driver, HandleEvent};
+use super::{ForceDimensionDriver, HandleEvent};
 use crate::{Leader, Lever};
 
-impl Leader for Driver {
+impl Leader for ForceDimensionDriver {
     fn switch_force(&mut self, on: bool) {
         if on { self.enable_force() } else { self.disable_force() }
     }

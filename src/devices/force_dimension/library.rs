@@ -12,13 +12,13 @@ use std::{
 };
 
 use super::{
-    Settings,
+    ForceDimensionSettings,
     sdk::{NAME, STAND_IN_SYMBOL, Sdk, is_stand_in, keep, open_library, unusable},
 };
-use crate::Trouble;
+use crate::DeviceError;
 
 #[derive(Clone, Debug, PartialEq, Eq)]
-enum Candidate {
+enum LibraryCandidate {
     File(PathBuf),
     /// A name for the system's search.
     Name(&'static str),
@@ -79,18 +79,18 @@ fn newest(folder: &Path, beginning: &str) -> Option<PathBuf> {
 }
 
 /// Returns the libraries to try, and a list of them for a message.
-fn candidates() -> (Vec<Candidate>, String) {
+fn candidates() -> (Vec<LibraryCandidate>, String) {
     search(|name| env::var_os(name).filter(|value| !value.is_empty()).map(PathBuf::from))
 }
 
-fn search(variable: impl Fn(&str) -> Option<PathBuf>) -> (Vec<Candidate>, String) {
+fn search(variable: impl Fn(&str) -> Option<PathBuf>) -> (Vec<LibraryCandidate>, String) {
     let (sdk, system) = folders(&variable);
-    let all_of = |folders: &[PathBuf]| -> Vec<Candidate> {
+    let all_of = |folders: &[PathBuf]| -> Vec<LibraryCandidate> {
         let found = FILES.iter().flat_map(|file| folders.iter().filter_map(|folder| newest(folder, file)));
-        found.map(Candidate::File).collect()
+        found.map(LibraryCandidate::File).collect()
     };
     let mut candidates = all_of(&sdk);
-    candidates.extend(NAMES.iter().copied().map(Candidate::Name));
+    candidates.extend(NAMES.iter().copied().map(LibraryCandidate::Name));
     candidates.extend(all_of(&system));
     let mut places: Vec<String> = sdk.iter().map(|folder| folder.display().to_string()).collect();
     if variable("FDSDK").is_none() {
@@ -104,12 +104,12 @@ fn search(variable: impl Fn(&str) -> Option<PathBuf>) -> (Vec<Candidate>, String
 /// The replacement library for emulated handles, once the program has provided it.
 static STAND_IN: OnceLock<&'static Sdk> = OnceLock::new();
 
-/// Makes this program use `sdk` for emulated handles ([`Settings::emulator`]); later calls have no effect.
+/// Makes this program use `sdk` for emulated handles ([`ForceDimensionSettings::emulator`]); later calls have no effect.
 pub fn provide_stand_in(sdk: &'static Sdk) {
     STAND_IN.get_or_init(|| sdk);
 }
 
-pub(super) fn of(settings: &Settings) -> Result<&'static Sdk, Trouble> {
+pub(super) fn of(settings: &ForceDimensionSettings) -> Result<&'static Sdk, DeviceError> {
     let sdk = match (&settings.library, settings.emulator) {
         (Some(path), _) if !path.is_file() => return Err(missing(path.display().to_string())),
         (Some(path), _) => load_file(path)?,
@@ -126,7 +126,7 @@ pub(super) fn of(settings: &Settings) -> Result<&'static Sdk, Trouble> {
     Ok(sdk)
 }
 
-fn no_stand_in() -> Trouble {
+fn no_stand_in() -> DeviceError {
     unusable(
         "(within this program)",
         "this program was built without the replacement library for emulated handles".to_owned(),
@@ -135,19 +135,20 @@ fn no_stand_in() -> Trouble {
 
 /// Returns the first usable library of the manufacturer. Replacement libraries found on the way (in a build folder that
 /// the system searches) are skipped.
-fn installed() -> Result<&'static Sdk, Trouble> {
+fn installed() -> Result<&'static Sdk, DeviceError> {
     let (candidates, searched) = candidates();
     for candidate in &candidates {
         let path = match candidate {
-            Candidate::File(path) => path.canonicalize().unwrap_or_else(|_| path.clone()),
-            Candidate::Name(name) => PathBuf::from(name),
+            LibraryCandidate::File(path) => path.canonicalize().unwrap_or_else(|_| path.clone()),
+            LibraryCandidate::Name(name) => PathBuf::from(name),
         };
         match (open_library(&path), candidate) {
             (Ok(library), _) if is_stand_in(&library) => {}
             (Ok(library), _) => return keep(&path, library),
             // A message that begins with this file's name means that it is missing; with another name, that a library
             // which it needs is missing.
-            (Err(error), Candidate::Name(name)) if error.starts_with(name) || cfg!(not(target_os = "linux")) => {}
+            (Err(error), LibraryCandidate::Name(name)) if error.starts_with(name) || cfg!(not(target_os = "linux")) => {
+            }
             (Err(error), _) => return Err(unusable(&path.display().to_string(), error)),
         }
     }
@@ -159,8 +160,8 @@ pub fn installed_library() -> Option<PathBuf> {
     let real = |path: &PathBuf| path.is_file() && !is_stand_in_file(path);
     let by_linker = |name: &str| linker_folders().into_iter().map(|folder| folder.join(name)).find(real);
     candidates().0.into_iter().find_map(|candidate| match candidate {
-        Candidate::File(path) => Some(path).filter(real),
-        Candidate::Name(name) => by_linker(name),
+        LibraryCandidate::File(path) => Some(path).filter(real),
+        LibraryCandidate::Name(name) => by_linker(name),
     })
 }
 
@@ -181,11 +182,11 @@ fn linker_folders() -> Vec<PathBuf> {
     folders
 }
 
-fn missing(searched: String) -> Trouble {
-    Trouble::SdkMissing { name: NAME.to_owned(), searched }
+fn missing(searched: String) -> DeviceError {
+    DeviceError::SdkMissing { name: NAME.to_owned(), searched }
 }
 
-fn load_file(path: &Path) -> Result<&'static Sdk, Trouble> {
+fn load_file(path: &Path) -> Result<&'static Sdk, DeviceError> {
     let path = path.canonicalize().unwrap_or_else(|_| path.to_owned());
     let library = open_library(&path).map_err(|error| unusable(&path.display().to_string(), error))?;
     keep(&path, library)
@@ -210,14 +211,14 @@ mod tests {
             _ => None,
         };
         let (candidates, places) = search(set);
-        assert_eq!(candidates[0], Candidate::File(folder.join("libdrd.so.3.17.5")));
-        assert_eq!(candidates[1], Candidate::File(folder.join("libdhd.so.3.17.5")));
-        assert_eq!(candidates[2], Candidate::Name("libdrd.so.3"));
+        assert_eq!(candidates[0], LibraryCandidate::File(folder.join("libdrd.so.3.17.5")));
+        assert_eq!(candidates[1], LibraryCandidate::File(folder.join("libdhd.so.3.17.5")));
+        assert_eq!(candidates[2], LibraryCandidate::Name("libdrd.so.3"));
         for place in [folder.display().to_string().as_str(), "libdhd.so", "/usr/local/lib", ".local/lib"] {
             assert!(places.contains(place), "{place} is not in {places}");
         }
         let (candidates, places) = search(|_| None);
-        assert_eq!(candidates[0], Candidate::Name("libdrd.so.3"));
+        assert_eq!(candidates[0], LibraryCandidate::Name("libdrd.so.3"));
         assert!(places.contains("FDSDK names (it is not set)"));
     }
 }

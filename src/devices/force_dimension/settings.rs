@@ -5,7 +5,7 @@ use std::{net::SocketAddr, path::PathBuf};
 use nima_core::{Side, limits};
 use serde::{Deserialize, Serialize};
 
-use crate::Trouble;
+use crate::DeviceError;
 
 /// Maximum force of an omega.7, N.
 pub const FORCE_MAX_N: f64 = limits::OMEGA7_FORCE_N;
@@ -25,7 +25,7 @@ pub enum IdleMode {
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
-pub struct Settings {
+pub struct ForceDimensionSettings {
     /// File of the library. If omitted, the manufacturer's library is searched for where the SDK installs it; an
     /// emulated handle uses the replacement library within this program.
     pub library: Option<PathBuf>,
@@ -52,7 +52,7 @@ pub struct Settings {
     pub emulator: Option<SocketAddr>,
 }
 
-impl Default for Settings {
+impl Default for ForceDimensionSettings {
     fn default() -> Self {
         Self {
             library: None,
@@ -70,24 +70,24 @@ impl Default for Settings {
     }
 }
 
-impl Settings {
+impl ForceDimensionSettings {
     /// Checks every setting.
     ///
     /// # Errors
-    /// [`Trouble::Setting`] for the first value outside its range.
-    pub fn check(&self) -> Result<(), Trouble> {
+    /// [`DeviceError::Setting`] for the first value outside its range.
+    pub fn check(&self) -> Result<(), DeviceError> {
         let ranges = [
             ("rate_hz", self.rate_hz, 100.0, 2000.0),
             ("watchdog_ms", self.watchdog_ms, 1.0, 31.0),
             ("force_max_n", self.force_max_n, 0.0, FORCE_MAX_N),
             ("gripper_max_n", self.gripper_max_n, 0.0, GRIPPER_MAX_N),
         ];
-        match ranges.into_iter().find(|(_, value, least, most)| !(*least..=*most).contains(value)) {
+        match ranges.into_iter().find(|(_, value, min, max)| !(*min..=*max).contains(value)) {
             None => Ok(()),
-            Some((key, value, least, most)) => Err(Trouble::Setting {
+            Some((key, value, min, max)) => Err(DeviceError::Setting {
                 key: key.to_owned(),
                 value: value.to_string(),
-                allowed: format!("{least} to {most}"),
+                allowed: format!("{min} to {max}"),
             }),
         }
     }

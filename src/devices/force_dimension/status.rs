@@ -97,14 +97,14 @@ impl Success {
 
 /// A type of device (`DHD_DEVICE_*`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum ForceDimensionKind {
     /// omega.7 for the right or the left hand.
     Omega7 { left_handed: bool },
     /// Any other device, which this driver does not support.
     Other(i32),
 }
 
-impl Kind {
+impl ForceDimensionKind {
     pub const fn of(number: i32) -> Self {
         match number {
             35 => Self::Omega7 { left_handed: false },
@@ -197,7 +197,7 @@ pub const STATUS_CODE: u32 = 100;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[expect(clippy::struct_excessive_bools, reason = "each is an entry of the device's own status")]
-pub struct Status {
+pub struct ForceDimensionStatus {
     pub power: bool,
     pub connected: bool,
     pub started: bool,
@@ -224,7 +224,7 @@ pub struct Status {
     pub axis_checked: bool,
 }
 
-impl Status {
+impl ForceDimensionStatus {
     /// Decodes the array filled by `dhdGetStatus`.
     pub const fn decode(of: &[i32; ENTRIES]) -> Self {
         Self {
@@ -266,7 +266,7 @@ impl Status {
 }
 
 /// Returns the meaning of a [`Loss::Device`] code of this driver.
-pub fn fault_words(code: u32) -> &'static str {
+pub fn fault_text(code: u32) -> &'static str {
     match code {
         STATUS_CODE => "the device has no power",
         103 => "the device waits for its calibration: put the handle into its rest position",
@@ -284,9 +284,9 @@ mod tests {
         let at = |index: usize| {
             let mut entries = [0; ENTRIES];
             entries[index] = 1;
-            Status::decode(&entries)
+            ForceDimensionStatus::decode(&entries)
         };
-        let flags: [fn(&Status) -> bool; ENTRIES] = [
+        let flags: [fn(&ForceDimensionStatus) -> bool; ENTRIES] = [
             |s| s.power,
             |s| s.connected,
             |s| s.started,
@@ -320,24 +320,25 @@ mod tests {
             assert_eq!(ForceOffCause::of(number), cause);
         }
         assert_eq!(ForceOffCause::of(-1), C::Unknown);
-        let good = Status { power: true, connected: true, started: true, ..Status::default() };
+        let good =
+            ForceDimensionStatus { power: true, connected: true, started: true, ..ForceDimensionStatus::default() };
         assert_eq!(good.loss(), None);
-        assert_eq!(Status { error: true, ..good }.loss(), Some(Loss::Device { code: 109 }));
-        assert_eq!(Status { error: true, force_off: C::Velocity, ..good }.loss(), None);
-        let on = Status { error: true, force: true, force_off: C::Velocity, ..good };
+        assert_eq!(ForceDimensionStatus { error: true, ..good }.loss(), Some(Loss::Device { code: 109 }));
+        assert_eq!(ForceDimensionStatus { error: true, force_off: C::Velocity, ..good }.loss(), None);
+        let on = ForceDimensionStatus { error: true, force: true, force_off: C::Velocity, ..good };
         assert_eq!(on.loss(), Some(Loss::Device { code: 109 }));
-        assert_eq!(Status { reset: true, ..good }.loss(), Some(Loss::Device { code: 103 }));
-        assert_eq!(Status { connected: false, ..good }.loss(), Some(Loss::Disconnected));
-        assert_eq!(Status { power: false, ..good }.loss(), Some(Loss::Device { code: 100 }));
+        assert_eq!(ForceDimensionStatus { reset: true, ..good }.loss(), Some(Loss::Device { code: 103 }));
+        assert_eq!(ForceDimensionStatus { connected: false, ..good }.loss(), Some(Loss::Disconnected));
+        assert_eq!(ForceDimensionStatus { power: false, ..good }.loss(), Some(Loss::Device { code: 100 }));
         assert_eq!(Success::of(-1), None);
         assert_eq!(
             [0, 1, 2].map(Success::of),
             [Some(Success::Plain), Some(Success::TimeGuard), Some(Success::Saturated)]
         );
         for number in -5..200 {
-            assert_eq!(Kind::of(number).number(), number);
+            assert_eq!(ForceDimensionKind::of(number).number(), number);
         }
         assert_eq!(SdkError(23).words(), "invalid error code");
-        assert_eq!(fault_words(18), "redundant encoder integrity test failed");
+        assert_eq!(fault_text(18), "redundant encoder integrity test failed");
     }
 }

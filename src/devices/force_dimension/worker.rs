@@ -21,7 +21,7 @@ use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
 use super::{
     Counters, HandleEvent, IdleMode,
     sdk::{OpenDevice, is_ending},
-    status::{ForceOffCause, SdkError, Status, Success},
+    status::{ForceDimensionStatus, ForceOffCause, SdkError, Success},
 };
 use crate::{HandleReading, Loss};
 
@@ -54,10 +54,10 @@ pub(super) struct ForceCommand {
 
 /// The thread's report to the loop, once per cycle.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Report {
+pub(super) struct WorkerReport {
     pub(super) cycle: u64,
     pub(super) reading: Option<HandleReading>,
-    pub(super) status: Status,
+    pub(super) status: ForceDimensionStatus,
     pub(super) counters: Counters,
     pub(super) loss: Option<Loss>,
     /// The loss to report if calls continue to fail.
@@ -65,37 +65,37 @@ pub(super) struct Report {
 }
 
 #[derive(Debug, Default)]
-pub(super) struct Shared {
+pub(super) struct WorkerShared {
     pub(super) force_wanted: AtomicBool,
     pub(super) stop: AtomicBool,
 }
 
-pub(super) struct Ends {
-    pub(super) reports: Sender<Report>,
+pub(super) struct QueueEnds {
+    pub(super) reports: Sender<WorkerReport>,
     pub(super) events: Sender<HandleEvent>,
     pub(super) commands: Receiver<ForceCommand>,
-    pub(super) shared: Arc<Shared>,
+    pub(super) shared: Arc<WorkerShared>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Drive {
+enum WorkerDrive {
     Off,
     /// Requested, but not yet reported by the status.
     Asked(Instant),
     On,
 }
 
-pub(super) struct Worker {
+pub(super) struct ForceDimensionWorker {
     device: OpenDevice,
-    ends: Ends,
+    ends: QueueEnds,
     left_handed: bool,
     idle: IdleMode,
     period: Duration,
     /// Whether the loop's force started this cycle.
     is_led: bool,
-    drive: Drive,
+    drive: WorkerDrive,
     command: Option<ForceCommand>,
-    status: Status,
+    status: ForceDimensionStatus,
     counters: Counters,
     cycle: u64,
     last: Option<HandleReading>,
@@ -105,8 +105,14 @@ pub(super) struct Worker {
     loss: Option<Loss>,
 }
 
-impl Worker {
-    pub(super) fn new(device: OpenDevice, ends: Ends, left_handed: bool, idle: IdleMode, period: Duration) -> Self {
+impl ForceDimensionWorker {
+    pub(super) fn new(
+        device: OpenDevice,
+        ends: QueueEnds,
+        left_handed: bool,
+        idle: IdleMode,
+        period: Duration,
+    ) -> Self {
         Self {
             device,
             ends,
@@ -114,9 +120,9 @@ impl Worker {
             idle,
             period,
             is_led: false,
-            drive: Drive::Off,
+            drive: WorkerDrive::Off,
             command: None,
-            status: Status::default(),
+            status: ForceDimensionStatus::default(),
             counters: Counters::default(),
             cycle: 0,
             last: None,
@@ -166,7 +172,7 @@ impl Worker {
             match (self.is_led, now) {
                 (true, now) if now >= earliest => return now,
                 (false, now) if now >= latest => return latest,
-                // Woken by `Driver::set_force`.
+                // Woken by `ForceDimensionDriver::set_force`.
                 (is_led, now) => park_timeout(if is_led { earliest } else { latest } - now),
             }
             now = Instant::now();
@@ -190,7 +196,7 @@ impl Worker {
         }
     }
 
-    const fn report(&self, reading: Option<HandleReading>) -> Report {
+    const fn report(&self, reading: Option<HandleReading>) -> WorkerReport {
         let cycle = self.cycle;
         let status = self.status;
         let counters = self.counters;
@@ -198,7 +204,7 @@ impl Worker {
             Some(error) => Some(error.loss()),
             None => None,
         };
-        Report { cycle, reading, status, counters, loss: self.loss, failing }
+        WorkerReport { cycle, reading, status, counters, loss: self.loss, failing }
     }
 
     fn fail(&mut self, error: SdkError) {
@@ -263,14 +269,14 @@ impl Worker {
             Err(error) => return self.fail(error),
         }
         match self.drive {
-            Drive::Asked(_) if self.status.force => {
-                self.drive = Drive::On;
-                self.tell(HandleEvent::ForceOn);
+            WorkerDrive::Asked(_) if self.status.force => {
+                self.drive = WorkerDrive::On;
+                self.send_event(HandleEvent::ForceOn);
             }
-            Drive::Asked(since) if since.elapsed() > ENABLE_MAX => {
+            WorkerDrive::Asked(since) if since.elapsed() > ENABLE_MAX => {
                 self.give_up(HandleEvent::ForceRefused { cause: self.status.force_off });
             }
-            Drive::On if !self.status.force => {
+            WorkerDrive::On if !self.status.force => {
                 self.give_up(HandleEvent::ForceOff { cause: self.status.force_off });
             }
             _ => {}
@@ -281,18 +287,18 @@ impl Worker {
     fn give_up(&mut self, event: HandleEvent) {
         self.ends.shared.force_wanted.store(false, Ordering::Release);
         self.counters.force_cut += 1;
-        self.tell(event);
+        self.send_event(event);
         self.rest();
     }
 
-    fn tell(&self, event: HandleEvent) {
+    fn send_event(&self, event: HandleEvent) {
         // If the events are not read, the status still shows it.
         self.ends.events.try_send(event).ok();
     }
 
     /// Removes the force: brakes on, or a free handle.
     fn rest(&mut self) {
-        self.drive = Drive::Off;
+        self.drive = WorkerDrive::Off;
         self.command = None;
         let rested = match self.idle {
             IdleMode::Brake => self.device.stop(),
@@ -309,18 +315,18 @@ impl Worker {
         let newest = self.ends.commands.try_iter().take(super::driver::QUEUE).last();
         let wanted = self.ends.shared.force_wanted.load(Ordering::Acquire);
         match (self.drive, wanted) {
-            (Drive::Off, false) => return,
-            (Drive::Off, true) => {
+            (WorkerDrive::Off, false) => return,
+            (WorkerDrive::Off, true) => {
                 if let Err(error) = self.device.enable_force(true) {
                     return self.fail(error);
                 }
                 // Only commands from now on count.
                 self.command = None;
-                self.drive = Drive::Asked(Instant::now());
+                self.drive = WorkerDrive::Asked(Instant::now());
             }
             (_, false) => {
                 self.rest();
-                return self.tell(HandleEvent::ForceOff { cause: ForceOffCause::Software });
+                return self.send_event(HandleEvent::ForceOff { cause: ForceOffCause::Software });
             }
             (_, true) => self.command = newest.or(self.command),
         }
@@ -338,7 +344,7 @@ impl Worker {
 }
 
 fn plausible(
-    (position_m, frame): super::sdk::Pose,
+    (position_m, frame): super::sdk::SdkPose,
     gripper_rad: f64,
     velocity_m_s: Option<[f64; 3]>,
     buttons: u32,

@@ -4,7 +4,7 @@
 //! Source of codes and layouts: the manufacturer's closed client (`HaplyHardwareAPI` 0.1.13), observed on a
 //! pseudo-terminal.
 
-use crate::unread::Unread;
+use crate::stream_buffer::Unread;
 
 /// Code of the request for the device's identity.
 pub const WAKE_UP: u8 = 0x0A;
@@ -55,14 +55,14 @@ impl DeviceInfo {
 
 /// Position and velocity of the grip, in the device's axes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct State {
+pub struct HaplyState {
     /// Position, m, from the device's origin.
     pub position_m: [f32; 3],
     /// Velocity, m/s.
     pub velocity_m_s: [f32; 3],
 }
 
-impl State {
+impl HaplyState {
     /// Encodes the state like the device.
     pub fn encode(&self) -> [u8; STATE_BYTES] {
         let mut bytes = [0; STATE_BYTES];
@@ -112,9 +112,9 @@ fn take(from: &[u8]) -> [f32; 3] {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Next {
+pub enum NextAnswer {
     /// A state with possible numbers.
-    State(State),
+    State(HaplyState),
     /// A complete answer with impossible numbers.
     Impossible,
 }
@@ -125,18 +125,18 @@ const ROOM: usize = 512;
 /// Finds states in a stream of bytes. Write into [`room`](Self::room), report the number with [`filled`](Self::filled),
 /// then call [`next`](Self::next) until it returns `None`.
 #[derive(Debug)]
-pub struct Decoder {
+pub struct HaplyDecoder {
     unread: Unread,
     skipped: u64,
 }
 
-impl Default for Decoder {
+impl Default for HaplyDecoder {
     fn default() -> Self {
         Self { unread: Unread::with_room(ROOM), skipped: 0 }
     }
 }
 
-impl Decoder {
+impl HaplyDecoder {
     /// Returns the buffer for new bytes; not empty once [`next`](Self::next) has returned `None`.
     pub fn room(&mut self) -> &mut [u8] {
         self.unread.room()
@@ -150,21 +150,21 @@ impl Decoder {
     /// Returns the next complete answer. Without a checksum, bytes with impossible numbers may not be an answer at all:
     /// they count as one only if the next answer begins behind them, or no bytes follow yet.
     #[expect(clippy::should_implement_trait, reason = "an iterator would borrow the room")]
-    pub fn next(&mut self) -> Option<Next> {
+    pub fn next(&mut self) -> Option<NextAnswer> {
         while let Some(first) = self.unread.bytes().first() {
             if *first != STATE {
                 self.skip();
                 continue;
             }
             let waiting = self.unread.bytes();
-            let state = State::decode(waiting.get(..STATE_BYTES)?)?;
+            let state = HaplyState::decode(waiting.get(..STATE_BYTES)?)?;
             if state.is_possible() {
                 self.unread.pass(STATE_BYTES);
-                return Some(Next::State(state));
+                return Some(NextAnswer::State(state));
             }
             if waiting.get(STATE_BYTES).is_none_or(|next| *next == STATE) {
                 self.unread.pass(STATE_BYTES);
-                return Some(Next::Impossible);
+                return Some(NextAnswer::Impossible);
             }
             self.skip();
         }
@@ -192,7 +192,7 @@ impl Decoder {
 mod tests {
     use super::*;
 
-    const STATE_OF: State = State { position_m: [0.0186, -0.153, 0.151], velocity_m_s: [0.0, -0.5, 1.5] };
+    const STATE_OF: HaplyState = HaplyState { position_m: [0.0186, -0.153, 0.151], velocity_m_s: [0.0, -0.5, 1.5] };
 
     #[test]
     fn what_the_reference_has_goes_both_ways() {
@@ -201,15 +201,15 @@ mod tests {
         assert_eq!(wire[..6], [0x0B, 0x9D, 0x04, 4, 2, 9]);
         assert_eq!(DeviceInfo::decode(&wire), Some(info));
         assert_eq!(DeviceInfo::decode(&wire[..21]), None);
-        assert_eq!(State::decode(&STATE_OF.encode()), Some(STATE_OF));
+        assert_eq!(HaplyState::decode(&STATE_OF.encode()), Some(STATE_OF));
         let request = force_request([1.0, -2.0, 0.5]);
         assert_eq!(request, [0x2A, 0, 0, 0x80, 0x3F, 0, 0, 0, 0xC0, 0, 0, 0, 0x3F]);
         assert_eq!(force_of(&request), Some([1.0, -2.0, 0.5]));
         assert_eq!(force_of(&request[1..]), None);
     }
 
-    fn decoded(stream: &[u8], random: &mut fastrand::Rng) -> (Vec<Next>, u64) {
-        let mut decoder = Decoder::default();
+    fn decoded(stream: &[u8], random: &mut fastrand::Rng) -> (Vec<NextAnswer>, u64) {
+        let mut decoder = HaplyDecoder::default();
         let mut found = Vec::new();
         let mut rest = stream;
         while !rest.is_empty() {
@@ -231,7 +231,7 @@ mod tests {
                 stream.extend(STATE_OF.encode());
             }
             let (found, skipped) = decoded(&stream, &mut random);
-            assert_eq!((found, skipped), (vec![Next::State(STATE_OF); 5], 3));
+            assert_eq!((found, skipped), (vec![NextAnswer::State(STATE_OF); 5], 3));
         }
     }
 
@@ -242,9 +242,9 @@ mod tests {
         bad.velocity_m_s[1] = f32::NAN;
         let stream = [STATE_OF.encode(), bad.encode(), STATE_OF.encode()].concat();
         let (found, _) = decoded(&stream, &mut random);
-        assert_eq!(found, [Next::State(STATE_OF), Next::Impossible, Next::State(STATE_OF)]);
+        assert_eq!(found, [NextAnswer::State(STATE_OF), NextAnswer::Impossible, NextAnswer::State(STATE_OF)]);
         for far in [[2.0, 0.0, 0.0], [0.0, f32::INFINITY, 0.0]] {
-            assert!(!State { position_m: far, ..STATE_OF }.is_possible());
+            assert!(!HaplyState { position_m: far, ..STATE_OF }.is_possible());
         }
     }
 

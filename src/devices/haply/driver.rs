@@ -11,13 +11,13 @@ use std::{
 use nalgebra::Vector3;
 
 use super::{
-    codec::{Decoder, Next, STATE_BYTES, State, force_request},
+    codec::{HaplyDecoder, HaplyState, NextAnswer, STATE_BYTES, force_request},
     opening,
-    settings::Settings,
+    settings::HaplySettings,
 };
 use crate::{
-    Device, HandleReading, Health, Identity, Leader, Lever, Loss, Stamped, Standing, Trouble,
-    transport::{Bytes, Serial, SerialSettings},
+    ConnectionState, Device, DeviceError, DeviceIdentity, HandleReading, Health, Leader, Lever, Loss, TimedReading,
+    transport::{ByteStream, Serial, SerialSettings},
 };
 
 /// Time without an answer after which the handle is lost, s: the limit of every device of the force path, so that no
@@ -39,14 +39,14 @@ const READS_MAX: usize = 8;
 /// A serial port on USB ignores the speed; the manufacturer's client sets none.
 const BAUD: u32 = 115_200;
 
-type Writer = Option<Box<dyn Write + Send>>;
+type HaplyWriter = Option<Box<dyn Write + Send>>;
 
-pub struct Driver {
-    line: Box<dyn Bytes>,
+pub struct HaplyDriver {
+    line: Box<dyn ByteStream>,
     /// The same connection for the lever, which must not keep it open when the driver is closed. The loop never locks
     /// it.
-    writer: Arc<Mutex<Writer>>,
-    decoder: Decoder,
+    writer: Arc<Mutex<HaplyWriter>>,
+    decoder: HaplyDecoder,
     centre_m: Vector3<f64>,
     force_max_n: f64,
     /// Whether force is wanted; the lever clears it from another thread.
@@ -58,7 +58,7 @@ pub struct Driver {
     pushes: bool,
     reported: Option<bool>,
     /// Whether a force was sent since the last poll.
-    told: bool,
+    report: bool,
     /// Number of unanswered requests, and time of the newest request, s.
     open: u32,
     asked_s: f64,
@@ -67,15 +67,15 @@ pub struct Driver {
     bad_in_a_row: u32,
     skipped_before: u64,
     health: Health,
-    identity: Identity,
+    identity: DeviceIdentity,
 }
 
-impl Driver {
+impl HaplyDriver {
     /// Opens the connection and identifies the device; may take half a second.
     ///
     /// # Errors
-    /// [`Trouble`] if a setting is invalid, or the port is missing, in use, not permitted, or no handle answers there.
-    pub fn open(settings: &Settings) -> Result<Self, Trouble> {
+    /// [`DeviceError`] if a setting is invalid, or the port is missing, in use, not permitted, or no handle answers there.
+    pub fn open(settings: &HaplySettings) -> Result<Self, DeviceError> {
         settings.check()?;
         let mut serial = Serial::open(&SerialSettings { port: settings.port.clone(), baud: BAUD })?;
         let identity = opening::meet(&mut serial, settings)?;
@@ -87,24 +87,24 @@ impl Driver {
     ///
     /// # Errors
     /// The errors of [`open`](Self::open).
-    pub fn over(mut line: Box<dyn Bytes>, settings: &Settings) -> Result<Self, Trouble> {
+    pub fn over(mut line: Box<dyn ByteStream>, settings: &HaplySettings) -> Result<Self, DeviceError> {
         settings.check()?;
         let identity = opening::meet(&mut *line, settings)?;
         Ok(Self::on(line, None, identity, settings))
     }
 
-    fn on(line: Box<dyn Bytes>, writer: Writer, identity: Identity, settings: &Settings) -> Self {
+    fn on(line: Box<dyn ByteStream>, writer: HaplyWriter, identity: DeviceIdentity, settings: &HaplySettings) -> Self {
         Self {
             line,
             writer: Arc::new(Mutex::new(writer)),
-            decoder: Decoder::default(),
+            decoder: HaplyDecoder::default(),
             centre_m: settings.centre_m.into(),
             force_max_n: settings.force_max_n,
             wanted: Arc::default(),
             asked_on: false,
             pushes: false,
             reported: None,
-            told: false,
+            report: false,
             open: 0,
             asked_s: 0.0,
             now_s: 0.0,
@@ -117,7 +117,7 @@ impl Driver {
     }
 
     fn is_lost(&self) -> bool {
-        matches!(self.health.standing, Standing::Lost(_))
+        matches!(self.health.standing, ConnectionState::Lost(_))
     }
 
     /// Applies a force to the hand, unless older requests are still unanswered: the device would have to catch up.
@@ -147,7 +147,7 @@ impl Driver {
         self.line.send(&force_request([0.0; 3])).ok();
     }
 
-    fn reading(&self, state: &State) -> HandleReading {
+    fn reading(&self, state: &HaplyState) -> HandleReading {
         let [position_m, velocity_m_s] =
             [state.position_m, state.velocity_m_s].map(|values| Vector3::from(values).map(f64::from));
         HandleReading {
@@ -160,7 +160,7 @@ impl Driver {
     }
 
     /// Reads the data that have arrived; returns the newest state.
-    fn take(&mut self) -> Option<State> {
+    fn take(&mut self) -> Option<HaplyState> {
         let mut newest = None;
         for _ in 0..READS_MAX {
             match self.line.receive(self.decoder.room()) {
@@ -174,13 +174,13 @@ impl Driver {
             while let Some(next) = self.decoder.next() {
                 self.open = self.open.saturating_sub(1);
                 match next {
-                    Next::State(state) => {
+                    NextAnswer::State(state) => {
                         newest = Some(state);
                         self.bad_in_a_row = 0;
                         self.skipped_before = self.decoder.skipped();
                         self.health.accept(self.now_s);
                     }
-                    Next::Impossible => {
+                    NextAnswer::Impossible => {
                         self.health.refused += 1;
                         self.bad_in_a_row += 1;
                     }
@@ -220,10 +220,10 @@ impl Driver {
     }
 }
 
-impl Device for Driver {
+impl Device for HaplyDriver {
     type Reading = HandleReading;
 
-    fn poll(&mut self, now_s: f64) -> Option<Stamped<HandleReading>> {
+    fn poll(&mut self, now_s: f64) -> Option<TimedReading<HandleReading>> {
         if self.is_lost() || !now_s.is_finite() {
             return None;
         }
@@ -234,7 +234,7 @@ impl Device for Driver {
         self.give_up();
         self.watch(first_s);
         // If the loop sets no force, the position is still requested, with zero force.
-        if !std::mem::take(&mut self.told) {
+        if !std::mem::take(&mut self.report) {
             self.ask(Vector3::zeros());
         }
         if self.is_lost() {
@@ -242,15 +242,15 @@ impl Device for Driver {
         }
         let state = newest?;
         self.reported = Some(answers_on);
-        Some(Stamped { device_s: None, arrival_s: now_s, value: self.reading(&state) })
+        Some(TimedReading { device_s: None, arrival_s: now_s, value: self.reading(&state) })
     }
 
-    fn about(&self) -> (&Health, &Identity) {
+    fn about(&self) -> (&Health, &DeviceIdentity) {
         (&self.health, &self.identity)
     }
 }
 
-impl Leader for Driver {
+impl Leader for HaplyDriver {
     fn switch_force(&mut self, on: bool) {
         self.wanted.store(on, Ordering::Release);
     }
@@ -260,7 +260,7 @@ impl Leader for Driver {
         // Axis by axis first, so that the squares of large numbers stay finite.
         let cut_n = force_n.map(|axis| if is_finite { axis.clamp(-self.force_max_n, self.force_max_n) } else { 0.0 });
         self.ask(cut_n.cap_magnitude(self.force_max_n));
-        self.told = true;
+        self.report = true;
     }
 
     fn force_change(&mut self) -> Option<bool> {
@@ -280,7 +280,7 @@ impl Leader for Driver {
     }
 }
 
-impl Drop for Driver {
+impl Drop for HaplyDriver {
     fn drop(&mut self) {
         // In any state: a handle that no longer answers may still listen.
         self.line.send(&force_request([0.0; 3])).ok();

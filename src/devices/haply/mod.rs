@@ -19,5 +19,5 @@ mod settings;
 #[cfg(test)]
 mod tests;
 
-pub use driver::{Driver, SILENCE_S};
-pub use settings::{CENTRE_M, FORCE_LIMIT_N, Settings};
+pub use driver::{HaplyDriver, SILENCE_S};
+pub use settings::{CENTRE_M, FORCE_LIMIT_N, HaplySettings};

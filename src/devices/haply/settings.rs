@@ -1,6 +1,6 @@
 use serde::{Deserialize, Serialize};
 
-use crate::Trouble;
+use crate::DeviceError;
 
 /// Maximum force that may be commanded to an Inverse3, N.
 pub const FORCE_LIMIT_N: f64 = 10.0;
@@ -12,21 +12,21 @@ const CENTRE_MAX_M: f64 = 0.5;
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, tag = "make", rename = "haply")]
-pub struct Settings {
+pub struct HaplySettings {
     /// Device file.
     pub port: String,
     /// Required device id, four hexadecimal digits as printed by `nima devices`; any device if omitted.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub serial_number: Option<String>,
     /// Maximum force, N, above 0 to 10.
-    #[serde(default = "Settings::usual_force_max_n")]
+    #[serde(default = "HaplySettings::usual_force_max_n")]
     pub force_max_n: f64,
     /// Origin of the positions, m in the device's axes.
-    #[serde(default = "Settings::usual_centre_m")]
+    #[serde(default = "HaplySettings::usual_centre_m")]
     pub centre_m: [f64; 3],
 }
 
-impl Settings {
+impl HaplySettings {
     const fn usual_force_max_n() -> f64 {
         4.0
     }
@@ -48,10 +48,10 @@ impl Settings {
     /// Checks every value.
     ///
     /// # Errors
-    /// [`Trouble::Setting`] for the first value outside its range.
-    pub fn check(&self) -> Result<(), Trouble> {
+    /// [`DeviceError::Setting`] for the first value outside its range.
+    pub fn check(&self) -> Result<(), DeviceError> {
         let refuse = |key: &str, value: String, allowed: &str| {
-            Err(Trouble::Setting { key: key.to_owned(), value, allowed: allowed.to_owned() })
+            Err(DeviceError::Setting { key: key.to_owned(), value, allowed: allowed.to_owned() })
         };
         if self.port.trim().is_empty() {
             return refuse("port", "\"\"".to_owned(), "the handle's device file");

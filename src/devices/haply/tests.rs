@@ -8,16 +8,18 @@ use std::{
 use nalgebra::Vector3;
 
 use super::{
-    CENTRE_M, Driver, Settings,
-    codec::{DeviceInfo, State, WAKE_UP, force_of, force_request},
+    CENTRE_M, HaplyDriver, HaplySettings,
+    codec::{DeviceInfo, HaplyState, WAKE_UP, force_of, force_request},
 };
-use crate::{Device as _, HandleReading, Leader as _, Lever, Loss, Standing, Trouble, transport::Bytes};
+use crate::{
+    ConnectionState, Device as _, DeviceError, HandleReading, Leader as _, Lever, Loss, transport::ByteStream,
+};
 
 const INFO: DeviceInfo = DeviceInfo { id: 0x049D, model: 4, hardware: 2, firmware: 9, uuid: [7; 16] };
 
 /// State of the device and the requests that it received.
 struct Inner {
-    state: State,
+    state: HaplyState,
     waiting: VecDeque<u8>,
     forces_n: Vec<[f32; 3]>,
     /// Whether it answers, and whether it is connected.
@@ -32,7 +34,7 @@ struct Fake(Arc<Mutex<Inner>>);
 
 impl Fake {
     fn new() -> Self {
-        let state = State { position_m: CENTRE_M.map(|axis| axis as f32), velocity_m_s: [0.0; 3] };
+        let state = HaplyState { position_m: CENTRE_M.map(|axis| axis as f32), velocity_m_s: [0.0; 3] };
         // The rest of an older answer.
         let waiting = VecDeque::from([0x2B, 1, 2]);
         let inner = Inner { state, waiting, forces_n: Vec::new(), answers: true, gone: false, instead: None };
@@ -48,7 +50,7 @@ impl Fake {
     }
 }
 
-impl Bytes for Fake {
+impl ByteStream for Fake {
     fn receive(&mut self, buffer: &mut [u8]) -> Result<usize, Loss> {
         let mut inner = self.0.lock().unwrap();
         if inner.gone {
@@ -76,14 +78,14 @@ impl Bytes for Fake {
     }
 }
 
-fn opened(settings: &Settings) -> (Fake, Driver) {
+fn opened(settings: &HaplySettings) -> (Fake, HaplyDriver) {
     let fake = Fake::new();
-    let driver = Driver::over(Box::new(fake.clone()), settings).unwrap();
+    let driver = HaplyDriver::over(Box::new(fake.clone()), settings).unwrap();
     (fake, driver)
 }
 
 /// Runs ticks of the loop with this force; returns the newest reading.
-fn ticks(driver: &mut Driver, now_s: &mut f64, count: u32, force_n: Vector3<f64>) -> Option<HandleReading> {
+fn ticks(driver: &mut HaplyDriver, now_s: &mut f64, count: u32, force_n: Vector3<f64>) -> Option<HandleReading> {
     let mut newest = None;
     for _ in 0..count {
         *now_s += 1e-3;
@@ -95,7 +97,7 @@ fn ticks(driver: &mut Driver, now_s: &mut f64, count: u32, force_n: Vector3<f64>
 
 #[test]
 fn it_tells_where_the_grip_is_from_the_centre_and_takes_a_force_within_its_limit() {
-    let (fake, mut driver) = opened(&Settings::at("/dev/ttyACM0"));
+    let (fake, mut driver) = opened(&HaplySettings::at("/dev/ttyACM0"));
     let mut now_s = 0.0;
     assert_eq!((driver.identity().serial.as_str(), driver.identity().firmware.as_str()), ("049D", "9"));
     fake.change(|inner| inner.state.velocity_m_s = [0.25, 0.0, -0.5]);
@@ -128,7 +130,7 @@ fn it_tells_where_the_grip_is_from_the_centre_and_takes_a_force_within_its_limit
 
 #[test]
 fn each_question_has_one_answer_and_without_one_the_next_is_asked_in_time() {
-    let (fake, mut driver) = opened(&Settings::at("/dev/ttyACM0"));
+    let (fake, mut driver) = opened(&HaplySettings::at("/dev/ttyACM0"));
     let mut now_s = 0.0;
     ticks(&mut driver, &mut now_s, 100, Vector3::zeros());
     let asked = fake.0.lock().unwrap().forces_n.len();
@@ -144,17 +146,17 @@ fn each_question_has_one_answer_and_without_one_the_next_is_asked_in_time() {
 #[test]
 fn what_is_wrong_is_told_in_time() {
     let run = |change: fn(&mut Inner)| {
-        let (fake, mut driver) = opened(&Settings::at("/dev/ttyACM0"));
+        let (fake, mut driver) = opened(&HaplySettings::at("/dev/ttyACM0"));
         let mut now_s = 0.0;
         ticks(&mut driver, &mut now_s, 10, Vector3::zeros());
         fake.change(change);
         let begin_s = now_s;
-        while !matches!(driver.health().standing, Standing::Lost(_)) {
+        while !matches!(driver.health().standing, ConnectionState::Lost(_)) {
             ticks(&mut driver, &mut now_s, 1, Vector3::x());
             assert!(now_s - begin_s < 0.05, "{:?}", driver.health());
         }
         assert!(now_s - begin_s < super::SILENCE_S + 0.003, "{} s", now_s - begin_s);
-        let Standing::Lost(loss) = driver.health().standing else { panic!() };
+        let ConnectionState::Lost(loss) = driver.health().standing else { panic!() };
         assert_eq!(ticks(&mut driver, &mut now_s, 5, Vector3::x()), None, "it stays lost");
         loss
     };
@@ -167,39 +169,39 @@ fn what_is_wrong_is_told_in_time() {
 
 #[test]
 fn who_is_not_the_handle_is_told_with_what_to_do() {
-    let told = |settings: &Settings, change: fn(&mut Inner)| {
+    let report = |settings: &HaplySettings, change: fn(&mut Inner)| {
         let fake = Fake::new();
         fake.change(change);
-        let trouble = Driver::over(Box::new(fake), settings).err().unwrap();
+        let trouble = HaplyDriver::over(Box::new(fake), settings).err().unwrap();
         assert!(!trouble.cure().is_empty());
         trouble
     };
-    let usual = Settings::at("/dev/ttyACM0");
+    let usual = HaplySettings::at("/dev/ttyACM0");
     assert!(matches!(
-        told(&usual, |inner| inner.answers = false),
-        Trouble::WrongProduct { .. } | Trouble::Silent { .. }
+        report(&usual, |inner| inner.answers = false),
+        DeviceError::WrongProduct { .. } | DeviceError::Silent { .. }
     ));
-    assert!(matches!(told(&usual, |inner| inner.gone = true), Trouble::Absent { .. }));
-    assert!(matches!(told(&usual, |inner| inner.instead = Some(vec![9; 30])), Trouble::WrongProduct { .. }));
-    assert!(matches!(told(&usual, |inner| inner.state.position_m[0] = 7.0), Trouble::NotReady { .. }));
-    let other = Settings { serial_number: Some("04a0".to_owned()), ..usual.clone() };
-    assert!(matches!(told(&other, |_| {}), Trouble::OtherSerial { .. }));
-    let own = Settings { serial_number: Some("049d".to_owned()), ..usual.clone() };
-    assert!(Driver::over(Box::new(Fake::new()), &own).is_ok());
+    assert!(matches!(report(&usual, |inner| inner.gone = true), DeviceError::Absent { .. }));
+    assert!(matches!(report(&usual, |inner| inner.instead = Some(vec![9; 30])), DeviceError::WrongProduct { .. }));
+    assert!(matches!(report(&usual, |inner| inner.state.position_m[0] = 7.0), DeviceError::NotReady { .. }));
+    let other = HaplySettings { serial_number: Some("04a0".to_owned()), ..usual.clone() };
+    assert!(matches!(report(&other, |_| {}), DeviceError::OtherSerial { .. }));
+    let own = HaplySettings { serial_number: Some("049d".to_owned()), ..usual.clone() };
+    assert!(HaplyDriver::over(Box::new(Fake::new()), &own).is_ok());
     for bad in [
-        Settings { port: " ".to_owned(), ..usual.clone() },
-        Settings { force_max_n: 12.0, ..usual.clone() },
-        Settings { force_max_n: f64::NAN, ..usual.clone() },
-        Settings { centre_m: [0.0, f64::NAN, 0.0], ..usual },
+        HaplySettings { port: " ".to_owned(), ..usual.clone() },
+        HaplySettings { force_max_n: 12.0, ..usual.clone() },
+        HaplySettings { force_max_n: f64::NAN, ..usual.clone() },
+        HaplySettings { centre_m: [0.0, f64::NAN, 0.0], ..usual },
     ] {
-        assert!(matches!(told(&bad, |_| {}), Trouble::Setting { .. }));
+        assert!(matches!(report(&bad, |_| {}), DeviceError::Setting { .. }));
     }
     assert_eq!(force_request([0.0; 3])[1..], [0; 12]);
 }
 
 #[test]
 fn a_force_is_taken_back_at_once_also_from_a_handle_that_does_not_answer() {
-    let (fake, mut driver) = opened(&Settings::at("/dev/ttyACM0"));
+    let (fake, mut driver) = opened(&HaplySettings::at("/dev/ttyACM0"));
     let mut now_s = 0.0;
     driver.switch_force(true);
     ticks(&mut driver, &mut now_s, 5, Vector3::x());
@@ -211,6 +213,6 @@ fn a_force_is_taken_back_at_once_also_from_a_handle_that_does_not_answer() {
     ticks(&mut driver, &mut now_s, 10, Vector3::x());
     assert_eq!(fake.newest_n(), Vector3::x(), "the request is repeated");
     ticks(&mut driver, &mut now_s, 20, Vector3::x());
-    assert!(matches!(driver.health().standing, Standing::Lost(Loss::Silent)));
+    assert!(matches!(driver.health().standing, ConnectionState::Lost(Loss::Silent)));
     assert_eq!(fake.newest_n(), Vector3::zeros(), "it may still listen");
 }

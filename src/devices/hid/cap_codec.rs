@@ -148,12 +148,12 @@ pub fn counts_of(reading: &CapReading) -> [i16; 6] {
 /// State of a cap: the newest translation and rotation, each released separately if it is not renewed.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct CapState {
-    halves: [Half; 2],
+    halves: [CapHalf; 2],
     buttons: u32,
 }
 
 #[derive(Clone, Copy, Debug, Default)]
-struct Half {
+struct CapHalf {
     axes: Vector3<f64>,
     at_s: f64,
 }
@@ -167,11 +167,11 @@ impl CapState {
     pub fn take(&mut self, report: &CapReport, now_s: f64) -> bool {
         let [translation, rotation] = &mut self.halves;
         match report {
-            CapReport::Translation(counts) => *translation = Half { axes: scaled(counts), at_s: now_s },
-            CapReport::Rotation(counts) => *rotation = Half { axes: scaled(counts), at_s: now_s },
+            CapReport::Translation(counts) => *translation = CapHalf { axes: scaled(counts), at_s: now_s },
+            CapReport::Rotation(counts) => *rotation = CapHalf { axes: scaled(counts), at_s: now_s },
             CapReport::Motion(counts) => {
-                *translation = Half { axes: scaled(&counts[..3]), at_s: now_s };
-                *rotation = Half { axes: scaled(&counts[3..]), at_s: now_s };
+                *translation = CapHalf { axes: scaled(&counts[..3]), at_s: now_s };
+                *rotation = CapHalf { axes: scaled(&counts[3..]), at_s: now_s };
             }
             CapReport::Buttons(bits) => self.buttons = *bits,
             CapReport::Battery { .. } | CapReport::Other => return false,
@@ -181,7 +181,7 @@ impl CapState {
 
     /// Sets axes that are already in the frame of the readings.
     pub fn set(&mut self, translation: Vector3<f64>, rotation: Vector3<f64>, now_s: f64) {
-        self.halves = [translation, rotation].map(|axes| Half { axes, at_s: now_s });
+        self.halves = [translation, rotation].map(|axes| CapHalf { axes, at_s: now_s });
     }
 
     /// Sets one button, counted from 0.

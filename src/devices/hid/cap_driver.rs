@@ -2,17 +2,17 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     cap_codec::{CapReport, CapState, light},
-    driver::Line,
-    models::Kind,
-    source::{HidIdentity, Source},
+    driver::HidLine,
+    models::HidKind,
+    source::{HidIdentity, HidSource},
     spacenavd,
 };
-use crate::{CapReading, Device, Health, Identity, Stamped, Trouble, transport::Datagrams};
+use crate::{CapReading, Device, DeviceError, DeviceIdentity, Health, TimedReading, transport::TransportDatagrams};
 
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct CapSettings {
-    /// Source of its reports; see [`Source`].
+    /// Source of its reports; see [`HidSource`].
     pub source: String,
     /// Axes to invert: x, y, z, rotations about x, y, z (some models differ in the signs of the rotations).
     pub invert: [bool; 6],
@@ -27,7 +27,7 @@ impl Default for CapSettings {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Wire {
+enum CapWire {
     Reports,
     #[cfg_attr(not(unix), expect(dead_code, reason = "the daemon needs a UNIX socket"))]
     Spacenavd,
@@ -37,8 +37,8 @@ enum Wire {
 /// is normal; a deflected cap that becomes silent counts as released after [`RELEASE_AFTER_S`](super::RELEASE_AFTER_S),
 /// and its missing reports as lost.
 pub struct CapDriver {
-    line: Line,
-    wire: Wire,
+    line: HidLine,
+    wire: CapWire,
     state: CapState,
     battery_percent: Option<u8>,
     invert: [bool; 6],
@@ -49,31 +49,36 @@ impl CapDriver {
     /// Opens the cap; may take about 100 ms.
     ///
     /// # Errors
-    /// [`Trouble`] if the source is invalid, or the device is missing, cannot be opened or is not a cap.
-    pub fn open(settings: &CapSettings) -> Result<Self, Trouble> {
-        let source: Source = settings.source.parse()?;
+    /// [`DeviceError`] if the source is invalid, or the device is missing, cannot be opened or is not a cap.
+    pub fn open(settings: &CapSettings) -> Result<Self, DeviceError> {
+        let source: HidSource = settings.source.parse()?;
         let (datagrams, identity, wire) = match &source {
             #[cfg(unix)]
-            Source::Spacenavd(path) => {
+            HidSource::Spacenavd(path) => {
                 let socket = spacenavd::Spacenavd::open(path)?;
-                let identity = Identity { product: "spacenavd".to_owned(), ..Identity::default() };
-                (Box::new(socket) as Box<dyn Datagrams>, identity, Wire::Spacenavd)
+                let identity = DeviceIdentity { product: "spacenavd".to_owned(), ..DeviceIdentity::default() };
+                (Box::new(socket) as Box<dyn TransportDatagrams>, identity, CapWire::Spacenavd)
             }
             _ => {
-                let (datagrams, identity) = source.open(&[Kind::Cap])?;
-                (datagrams, identity.identity(), Wire::Reports)
+                let (datagrams, identity) = source.open(&[HidKind::Cap])?;
+                (datagrams, identity.identity(), CapWire::Reports)
             }
         };
         Ok(Self::on(datagrams, identity, wire, settings))
     }
 
-    pub fn over(datagrams: Box<dyn Datagrams>, identity: &HidIdentity, settings: &CapSettings) -> Self {
-        Self::on(datagrams, identity.identity(), Wire::Reports, settings)
+    pub fn over(datagrams: Box<dyn TransportDatagrams>, identity: &HidIdentity, settings: &CapSettings) -> Self {
+        Self::on(datagrams, identity.identity(), CapWire::Reports, settings)
     }
 
-    fn on(datagrams: Box<dyn Datagrams>, identity: Identity, wire: Wire, settings: &CapSettings) -> Self {
+    fn on(
+        datagrams: Box<dyn TransportDatagrams>,
+        identity: DeviceIdentity,
+        wire: CapWire,
+        settings: &CapSettings,
+    ) -> Self {
         let mut driver = Self {
-            line: Line::of(datagrams, identity),
+            line: HidLine::of(datagrams, identity),
             wire,
             state: CapState::default(),
             battery_percent: None,
@@ -91,7 +96,7 @@ impl CapDriver {
 
     /// Switches the light, if the cap has one and the settings use it.
     fn show(&mut self, on: bool) {
-        if self.light && self.wire == Wire::Reports {
+        if self.light && self.wire == CapWire::Reports {
             // Models without a light refuse this; ignore it.
             self.line.source.send(&light(on)).ok();
         }
@@ -110,19 +115,19 @@ impl CapDriver {
 impl Device for CapDriver {
     type Reading = CapReading;
 
-    fn poll(&mut self, now_s: f64) -> Option<Stamped<CapReading>> {
+    fn poll(&mut self, now_s: f64) -> Option<TimedReading<CapReading>> {
         let Self { line, wire, state, battery_percent, .. } = self;
         let was_lost = line.is_lost();
         let news = line.receive(now_s, |bytes| match wire {
-            Wire::Reports => {
+            CapWire::Reports => {
                 let report = CapReport::decode(bytes)?;
                 if let CapReport::Battery { percent, .. } = report {
                     *battery_percent = Some(percent);
                 }
                 Ok(state.take(&report, now_s))
             }
-            Wire::Spacenavd => {
-                spacenavd::Event::decode(bytes)?.apply(state, now_s);
+            CapWire::Spacenavd => {
+                spacenavd::SpacenavdEvent::decode(bytes)?.apply(state, now_s);
                 Ok(true)
             }
         });
@@ -132,14 +137,14 @@ impl Device for CapDriver {
         }
         let released = state.release_stale(now_s);
         line.health.lost += released;
-        (news || newly_lost || released > 0).then(|| Stamped {
+        (news || newly_lost || released > 0).then(|| TimedReading {
             device_s: None,
             arrival_s: now_s,
             value: self.reading(),
         })
     }
 
-    fn about(&self) -> (&Health, &Identity) {
+    fn about(&self) -> (&Health, &DeviceIdentity) {
         (&self.line.health, &self.line.identity)
     }
 }

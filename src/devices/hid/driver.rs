@@ -1,7 +1,7 @@
 //! Shared by both drivers: reads reports with bounded work, and determines when too many are damaged.
 
 use super::cap_codec::BadReport;
-use crate::{Health, Identity, Loss, Stamped, Standing, transport::Datagrams};
+use crate::{ConnectionState, DeviceIdentity, Health, Loss, TimedReading, transport::TransportDatagrams};
 
 /// Maximum number of reports handled in one poll; further ones wait for the next poll.
 const REPORTS_MAX: usize = 64;
@@ -10,18 +10,18 @@ const BAD_MAX: u32 = 8;
 /// Maximum length of a full-speed device's report, with its id.
 const BUFFER: usize = 65;
 
-pub(super) struct Line {
-    pub(super) source: Box<dyn Datagrams>,
+pub(super) struct HidLine {
+    pub(super) source: Box<dyn TransportDatagrams>,
     pub(super) health: Health,
-    pub(super) identity: Identity,
+    pub(super) identity: DeviceIdentity,
     bad_in_a_row: u32,
 }
 
-impl Line {
+impl HidLine {
     /// Connected immediately, because a device at rest sends nothing.
-    pub(super) fn of(source: Box<dyn Datagrams>, identity: Identity) -> Self {
+    pub(super) fn of(source: Box<dyn TransportDatagrams>, identity: DeviceIdentity) -> Self {
         let mut health = Health::opening();
-        health.standing = Standing::Connected;
+        health.standing = ConnectionState::Connected;
         Self { source, health, identity, bad_in_a_row: 0 }
     }
 
@@ -71,24 +71,24 @@ impl Line {
     }
 
     pub(super) const fn is_lost(&self) -> bool {
-        matches!(self.health.standing, Standing::Lost(_))
+        matches!(self.health.standing, ConnectionState::Lost(_))
     }
 }
 
 /// The value of a device that reports only changes: kept between its reports, and at rest while the device is not
 /// connected and until it has reported again.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Held<T> {
+pub struct HeldValue<T> {
     value: T,
 }
 
-impl<T: Copy + Default> Held<T> {
+impl<T: Copy + Default> HeldValue<T> {
     /// Adds the result of this tick's poll; returns the value that applies now.
-    pub fn update(&mut self, reading: Option<Stamped<T>>, health: &Health) -> T {
+    pub fn update(&mut self, reading: Option<TimedReading<T>>, health: &Health) -> T {
         if let Some(reading) = reading {
             self.value = reading.value;
         }
-        if health.standing != Standing::Connected {
+        if health.standing != ConnectionState::Connected {
             self.value = T::default();
         }
         self.value

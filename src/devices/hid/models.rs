@@ -4,7 +4,7 @@
 //! `hid.md`.
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum HidKind {
     /// A six-axis cap; the length of the reports decides between split and combined.
     Cap,
     /// A pedal that reports as a keyboard (boot protocol).
@@ -13,7 +13,7 @@ pub enum Kind {
     SwitchPedal,
 }
 
-impl Kind {
+impl HidKind {
     /// Returns the text for a message.
     pub const fn words(self) -> &'static str {
         match self {
@@ -24,38 +24,38 @@ impl Kind {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Model {
+pub struct HidModel {
     pub vendor: u16,
     pub product: u16,
     pub name: &'static str,
-    pub kind: Kind,
+    pub kind: HidKind,
 }
 
-const fn model(vendor: u16, product: u16, name: &'static str, kind: Kind) -> Model {
-    Model { vendor, product, name, kind }
+const fn model(vendor: u16, product: u16, name: &'static str, kind: HidKind) -> HidModel {
+    HidModel { vendor, product, name, kind }
 }
 
-pub const MODELS: [Model; 18] = [
-    model(0x046d, 0xc625, "SpacePilot", Kind::Cap),
-    model(0x046d, 0xc626, "SpaceNavigator", Kind::Cap),
-    model(0x046d, 0xc627, "SpaceExplorer", Kind::Cap),
-    model(0x046d, 0xc628, "SpaceNavigator for Notebooks", Kind::Cap),
-    model(0x046d, 0xc629, "SpacePilot Pro", Kind::Cap),
-    model(0x046d, 0xc62b, "SpaceMouse Pro", Kind::Cap),
-    model(0x256f, 0xc62e, "SpaceMouse Wireless (cabled)", Kind::Cap),
-    model(0x256f, 0xc62f, "SpaceMouse Wireless", Kind::Cap),
-    model(0x256f, 0xc632, "SpaceMouse Pro Wireless", Kind::Cap),
-    model(0x256f, 0xc633, "SpaceMouse Enterprise", Kind::Cap),
-    model(0x256f, 0xc635, "SpaceMouse Compact", Kind::Cap),
-    model(0x256f, 0xc638, "SpaceMouse Wireless (Bluetooth)", Kind::Cap),
-    model(0x256f, 0xc63a, "SpaceMouse Wireless (new)", Kind::Cap),
-    model(0x256f, 0xc641, "SpaceMouse Compact (new)", Kind::Cap),
-    model(0x256f, 0xc652, "3Dconnexion Universal Receiver", Kind::Cap),
-    model(0x0c45, 0x7403, "PCsensor FootSwitch", Kind::KeyboardPedal),
-    model(0x3553, 0xb001, "PCsensor FootSwitch (new)", Kind::KeyboardPedal),
-    model(0x05f3, 0x00ff, "VEC Infinity IN-USB-2", Kind::SwitchPedal),
+pub const MODELS: [HidModel; 18] = [
+    model(0x046d, 0xc625, "SpacePilot", HidKind::Cap),
+    model(0x046d, 0xc626, "SpaceNavigator", HidKind::Cap),
+    model(0x046d, 0xc627, "SpaceExplorer", HidKind::Cap),
+    model(0x046d, 0xc628, "SpaceNavigator for Notebooks", HidKind::Cap),
+    model(0x046d, 0xc629, "SpacePilot Pro", HidKind::Cap),
+    model(0x046d, 0xc62b, "SpaceMouse Pro", HidKind::Cap),
+    model(0x256f, 0xc62e, "SpaceMouse Wireless (cabled)", HidKind::Cap),
+    model(0x256f, 0xc62f, "SpaceMouse Wireless", HidKind::Cap),
+    model(0x256f, 0xc632, "SpaceMouse Pro Wireless", HidKind::Cap),
+    model(0x256f, 0xc633, "SpaceMouse Enterprise", HidKind::Cap),
+    model(0x256f, 0xc635, "SpaceMouse Compact", HidKind::Cap),
+    model(0x256f, 0xc638, "SpaceMouse Wireless (Bluetooth)", HidKind::Cap),
+    model(0x256f, 0xc63a, "SpaceMouse Wireless (new)", HidKind::Cap),
+    model(0x256f, 0xc641, "SpaceMouse Compact (new)", HidKind::Cap),
+    model(0x256f, 0xc652, "3Dconnexion Universal Receiver", HidKind::Cap),
+    model(0x0c45, 0x7403, "PCsensor FootSwitch", HidKind::KeyboardPedal),
+    model(0x3553, 0xb001, "PCsensor FootSwitch (new)", HidKind::KeyboardPedal),
+    model(0x05f3, 0x00ff, "VEC Infinity IN-USB-2", HidKind::SwitchPedal),
 ];
 
-pub fn known(vendor: u16, product: u16) -> Option<&'static Model> {
+pub fn known(vendor: u16, product: u16) -> Option<&'static HidModel> {
     MODELS.iter().find(|model| (model.vendor, model.product) == (vendor, product))
 }

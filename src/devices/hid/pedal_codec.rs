@@ -12,7 +12,7 @@ pub const KEYS_MAX: usize = 8;
 pub const LENGTH_MAX: usize = 8;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Layout {
+pub enum PedalLayout {
     /// Boot keyboard; switch `i` is the key with code `keys[i]`, or 0 for none.
     Keyboard {
         /// HID key codes.
@@ -22,14 +22,14 @@ pub enum Layout {
     Switches,
 }
 
-/// Bits of the switches of a [`Layout::Switches`] pedal.
+/// Bits of the switches of a [`PedalLayout::Switches`] pedal.
 const SWITCHES: u8 = 0b111;
 const KEYBOARD_LENGTH: usize = 8;
 const SWITCHES_LENGTH: usize = 2;
 /// Codes 1 to 3 are error codes of a keyboard that cannot determine which keys are pressed.
 const FIRST_KEY: u8 = 4;
 
-impl Layout {
+impl PedalLayout {
     /// Returns the pressed switches in a report, one per bit, the first switch in the lowest bit.
     ///
     /// # Errors

@@ -3,17 +3,17 @@
 use serde::{Deserialize, Serialize};
 
 use super::{
-    driver::Line,
-    models::Kind,
-    pedal_codec::{KEYS_MAX, Layout},
-    source::{HidIdentity, Source},
+    driver::HidLine,
+    models::HidKind,
+    pedal_codec::{KEYS_MAX, PedalLayout},
+    source::{HidIdentity, HidSource},
 };
-use crate::{Device, Health, Identity, PedalReading, Stamped, Trouble, transport::Datagrams};
+use crate::{Device, DeviceError, DeviceIdentity, Health, PedalReading, TimedReading, transport::TransportDatagrams};
 
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct PedalSettings {
-    /// Source of its reports; see [`Source`].
+    /// Source of its reports; see [`HidSource`].
     pub source: String,
     /// For a pedal that is a keyboard: the key code (HID usage page 7) of every switch, first switch first. Factory
     /// settings are `b` (5) for single pedals and `a`, `b`, `c` (4, 5, 6) for triple ones, so by default switch 0 is
@@ -52,9 +52,9 @@ impl PedalSettings {
     /// Checks the indices and returns the functions of the switches.
     ///
     /// # Errors
-    /// [`Trouble::Setting`] for an index that the pedal does not have, or that is used twice.
-    pub fn roles(&self) -> Result<PedalRoles, Trouble> {
-        let setting = |key: &str, value: String, allowed: &str| Trouble::Setting {
+    /// [`DeviceError::Setting`] for an index that the pedal does not have, or that is used twice.
+    pub fn roles(&self) -> Result<PedalRoles, DeviceError> {
+        let setting = |key: &str, value: String, allowed: &str| DeviceError::Setting {
             key: key.to_owned(),
             value,
             allowed: allowed.to_owned(),
@@ -76,27 +76,27 @@ impl PedalSettings {
     /// Refuses invalid switches, keys and sources.
     ///
     /// # Errors
-    /// [`Trouble::Setting`] for the first invalid setting.
-    pub fn check(&self) -> Result<(), Trouble> {
+    /// [`DeviceError::Setting`] for the first invalid setting.
+    pub fn check(&self) -> Result<(), DeviceError> {
         self.roles()?;
-        self.source.parse::<Source>().map(drop)
+        self.source.parse::<HidSource>().map(drop)
     }
 
-    fn layout(&self, kind: Kind) -> Layout {
-        if kind == Kind::SwitchPedal {
-            return Layout::Switches;
+    fn layout(&self, kind: HidKind) -> PedalLayout {
+        if kind == HidKind::SwitchPedal {
+            return PedalLayout::Switches;
         }
         let mut keys = [0; KEYS_MAX];
         keys.iter_mut().zip(&self.keys).for_each(|(to, from)| *to = *from);
-        Layout::Keyboard { keys }
+        PedalLayout::Keyboard { keys }
     }
 }
 
 /// An open pedal. All switches count as released until it reports. Reports arrive on changes, and a report that cannot
 /// be decoded releases all switches. A silent pedal cannot be distinguished from one that is not moved.
 pub struct PedalDriver {
-    line: Line,
-    layout: Layout,
+    line: HidLine,
+    layout: PedalLayout,
     roles: PedalRoles,
     pressed: u32,
 }
@@ -105,25 +105,25 @@ impl PedalDriver {
     /// Opens the pedal; may take about 100 ms.
     ///
     /// # Errors
-    /// [`Trouble`] if a setting is invalid, or the device is missing, cannot be opened or is not a pedal.
-    pub fn open(settings: &PedalSettings) -> Result<Self, Trouble> {
+    /// [`DeviceError`] if a setting is invalid, or the device is missing, cannot be opened or is not a pedal.
+    pub fn open(settings: &PedalSettings) -> Result<Self, DeviceError> {
         settings.roles()?;
-        let source: Source = settings.source.parse()?;
-        let (datagrams, identity) = source.open(&[Kind::KeyboardPedal, Kind::SwitchPedal])?;
+        let source: HidSource = settings.source.parse()?;
+        let (datagrams, identity) = source.open(&[HidKind::KeyboardPedal, HidKind::SwitchPedal])?;
         Self::over(datagrams, &identity, settings)
     }
 
     /// Uses an open source of reports. A pedal with unknown ids is treated as a keyboard.
     ///
     /// # Errors
-    /// [`Trouble::Setting`] if a setting is invalid.
+    /// [`DeviceError::Setting`] if a setting is invalid.
     pub fn over(
-        datagrams: Box<dyn Datagrams>,
+        datagrams: Box<dyn TransportDatagrams>,
         identity: &HidIdentity,
         settings: &PedalSettings,
-    ) -> Result<Self, Trouble> {
-        let layout = settings.layout(identity.kind().unwrap_or(Kind::KeyboardPedal));
-        let line = Line::of(datagrams, identity.identity());
+    ) -> Result<Self, DeviceError> {
+        let layout = settings.layout(identity.kind().unwrap_or(HidKind::KeyboardPedal));
+        let line = HidLine::of(datagrams, identity.identity());
         Ok(Self { line, layout, roles: settings.roles()?, pressed: 0 })
     }
 
@@ -135,7 +135,7 @@ impl PedalDriver {
 impl Device for PedalDriver {
     type Reading = PedalReading;
 
-    fn poll(&mut self, now_s: f64) -> Option<Stamped<PedalReading>> {
+    fn poll(&mut self, now_s: f64) -> Option<TimedReading<PedalReading>> {
         let Self { line, layout, pressed, .. } = self;
         let before = (*pressed, line.is_lost());
         let mut news = line.receive(now_s, |bytes| {
@@ -147,10 +147,10 @@ impl Device for PedalDriver {
             *pressed = 0;
         }
         news |= before != (*pressed, line.is_lost());
-        news.then_some(Stamped { device_s: None, arrival_s: now_s, value: PedalReading { pressed: *pressed } })
+        news.then_some(TimedReading { device_s: None, arrival_s: now_s, value: PedalReading { pressed: *pressed } })
     }
 
-    fn about(&self) -> (&Health, &Identity) {
+    fn about(&self) -> (&Health, &DeviceIdentity) {
         (&self.line.health, &self.line.identity)
     }
 }

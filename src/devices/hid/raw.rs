@@ -5,23 +5,23 @@ use std::path::Path;
 use hidapi::{DeviceInfo, HidApi};
 
 use super::{
-    models::{Kind, known},
+    models::{HidKind, known},
     source::HidIdentity,
 };
-use crate::{Loss, Trouble, discovery::rules, transport::Datagrams};
+use crate::{DeviceError, Loss, discovery::rules, transport::TransportDatagrams};
 
 /// Returns usage page and usage of the interface that sends the reports; a device may have several interfaces.
-const fn usage(kind: Kind) -> Option<(u16, u16)> {
+const fn usage(kind: HidKind) -> Option<(u16, u16)> {
     match kind {
         // Generic desktop page: multi-axis controller, keyboard.
-        Kind::Cap => Some((1, 8)),
-        Kind::KeyboardPedal => Some((1, 6)),
-        Kind::SwitchPedal => None,
+        HidKind::Cap => Some((1, 8)),
+        HidKind::KeyboardPedal => Some((1, 6)),
+        HidKind::SwitchPedal => None,
     }
 }
 
-fn other(place: &str, error: &hidapi::HidError) -> Trouble {
-    Trouble::Other { place: place.to_owned(), reason: error.to_string() }
+fn other(place: &str, error: &hidapi::HidError) -> DeviceError {
+    DeviceError::Other { place: place.to_owned(), reason: error.to_string() }
 }
 
 fn identity(info: &DeviceInfo) -> HidIdentity {
@@ -37,7 +37,7 @@ fn identity(info: &DeviceInfo) -> HidIdentity {
 pub(super) fn open_first(
     what: &str,
     wanted: impl Fn(&HidIdentity) -> bool,
-) -> Result<(Box<dyn Datagrams>, HidIdentity), Trouble> {
+) -> Result<(Box<dyn TransportDatagrams>, HidIdentity), DeviceError> {
     let api = HidApi::new().map_err(|error| other(what, &error))?;
     let reports = |info: &DeviceInfo| {
         let kind = known(info.vendor_id(), info.product_id()).map(|model| model.kind);
@@ -45,11 +45,11 @@ pub(super) fn open_first(
     };
     let found = api.device_list().filter(|info| wanted(&identity(info)));
     let found = found.min_by_key(|info| (!reports(info), info.interface_number()));
-    let found = found.ok_or_else(|| Trouble::Absent { place: what.to_owned() })?;
+    let found = found.ok_or_else(|| DeviceError::Absent { place: what.to_owned() })?;
     open(&api, found)
 }
 
-pub(super) fn open_path(path: &Path) -> Result<(Box<dyn Datagrams>, HidIdentity), Trouble> {
+pub(super) fn open_path(path: &Path) -> Result<(Box<dyn TransportDatagrams>, HidIdentity), DeviceError> {
     let place = path.display().to_string();
     permitted(path, None)?;
     let api = HidApi::new().map_err(|error| other(&place, &error))?;
@@ -58,7 +58,7 @@ pub(super) fn open_path(path: &Path) -> Result<(Box<dyn Datagrams>, HidIdentity)
     let is_it = |info: &&DeviceInfo| info.path().to_str().is_ok_and(|known| Path::new(known) == real);
     match api.device_list().find(is_it) {
         Some(info) => open(&api, info),
-        None => Err(Trouble::WrongProduct {
+        None => Err(DeviceError::WrongProduct {
             place,
             expected: "human interface device (hidraw)".to_owned(),
             found: "file of a different type".to_owned(),
@@ -67,17 +67,17 @@ pub(super) fn open_path(path: &Path) -> Result<(Box<dyn Datagrams>, HidIdentity)
 }
 
 /// Opens and closes the node, to get the system's error code if this fails; `hidapi` gives only a text.
-fn permitted(path: &Path, ids: Option<(u16, u16)>) -> Result<(), Trouble> {
+fn permitted(path: &Path, ids: Option<(u16, u16)>) -> Result<(), DeviceError> {
     let mut options = std::fs::File::options();
     options.read(true).write(true);
     #[cfg(unix)]
     std::os::unix::fs::OpenOptionsExt::custom_flags(&mut options, libc::O_NONBLOCK | libc::O_NOCTTY);
     let rule = rules::of_hidraw(ids);
-    options.open(path).map(drop).map_err(|error| Trouble::of_port(path, &error, &rule))
+    options.open(path).map(drop).map_err(|error| DeviceError::of_port(path, &error, &rule))
 }
 
 #[cfg(target_os = "linux")]
-fn open(api: &HidApi, info: &DeviceInfo) -> Result<(Box<dyn Datagrams>, HidIdentity), Trouble> {
+fn open(api: &HidApi, info: &DeviceInfo) -> Result<(Box<dyn TransportDatagrams>, HidIdentity), DeviceError> {
     let place = info.path().to_string_lossy().into_owned();
     let path = Path::new(&place);
     permitted(path, Some((info.vendor_id(), info.product_id())))?;
@@ -86,19 +86,19 @@ fn open(api: &HidApi, info: &DeviceInfo) -> Result<(Box<dyn Datagrams>, HidIdent
     let mut options = std::fs::File::options();
     options.read(true).write(true);
     std::os::unix::fs::OpenOptionsExt::custom_flags(&mut options, libc::O_NONBLOCK);
-    let node = options.open(path).map_err(|error| Trouble::of_port(path, &error, &rules::of_hidraw(None)))?;
-    Ok((Box::new(Node { node }), identity(info)))
+    let node = options.open(path).map_err(|error| DeviceError::of_port(path, &error, &rules::of_hidraw(None)))?;
+    Ok((Box::new(RawNode { node }), identity(info)))
 }
 
 #[cfg(not(target_os = "linux"))]
-fn open(api: &HidApi, info: &DeviceInfo) -> Result<(Box<dyn Datagrams>, HidIdentity), Trouble> {
+fn open(api: &HidApi, info: &DeviceInfo) -> Result<(Box<dyn TransportDatagrams>, HidIdentity), DeviceError> {
     let place = info.path().to_string_lossy().into_owned();
     let node = api.open_path(info.path()).map_err(|error| other(&place, &error))?;
     node.set_blocking_mode(false).map_err(|error| other(&place, &error))?;
-    Ok((Box::new(Node { node }), identity(info)))
+    Ok((Box::new(RawNode { node }), identity(info)))
 }
 
-struct Node {
+struct RawNode {
     #[cfg(target_os = "linux")]
     node: std::fs::File,
     #[cfg(not(target_os = "linux"))]
@@ -106,7 +106,7 @@ struct Node {
 }
 
 #[cfg(target_os = "linux")]
-impl Datagrams for Node {
+impl TransportDatagrams for RawNode {
     fn receive(&mut self, buffer: &mut [u8]) -> Result<Option<usize>, Loss> {
         use std::io::{ErrorKind, Read as _};
         match self.node.read(buffer) {
@@ -124,7 +124,7 @@ impl Datagrams for Node {
 }
 
 #[cfg(not(target_os = "linux"))]
-impl Datagrams for Node {
+impl TransportDatagrams for RawNode {
     fn receive(&mut self, buffer: &mut [u8]) -> Result<Option<usize>, Loss> {
         match self.node.read(buffer) {
             Ok(0) => Ok(None),

@@ -18,7 +18,7 @@ use std::{
     path::Path,
 };
 
-use crate::{Loss, transport::Datagrams};
+use crate::{Loss, transport::TransportDatagrams};
 
 /// Maximum number of connections that wait to be accepted.
 const BACKLOG: libc::c_int = 8;
@@ -80,7 +80,7 @@ pub struct Packets {
     stream: UnixStream,
 }
 
-impl Datagrams for Packets {
+impl TransportDatagrams for Packets {
     fn receive(&mut self, buffer: &mut [u8]) -> Result<Option<usize>, Loss> {
         match self.stream.read(buffer) {
             Ok(0) => Err(Loss::Disconnected),

@@ -5,15 +5,15 @@ use std::{fmt, path::PathBuf, str::FromStr};
 use nima_files::quoted;
 
 use super::{
-    models::{Kind, known},
+    models::{HidKind, known},
     raw,
 };
-use crate::{Identity, Trouble, transport::Datagrams};
+use crate::{DeviceError, DeviceIdentity, transport::TransportDatagrams};
 
 /// Source of reports. In a rig file: `any`, `046d:c626`, `046d:c626:SERIAL`, a path such as `/dev/hidraw0`,
 /// `emulated:PATH` (the socket of `nima emulate`), `spacenavd` or `spacenavd:PATH` (caps only).
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Source {
+pub enum HidSource {
     /// The first known device of this kind.
     Any,
     /// A device with these USB ids.
@@ -66,10 +66,10 @@ impl HidIdentity {
     }
 
     /// Returns the format of the reports; `None` for an unknown device. Every newer device of 3Dconnexion is a cap.
-    pub fn kind(&self) -> Option<Kind> {
+    pub fn kind(&self) -> Option<HidKind> {
         match known(self.vendor, self.product) {
             Some(model) => Some(model.kind),
-            None if self.vendor == 0x256f => Some(Kind::Cap),
+            None if self.vendor == 0x256f => Some(HidKind::Cap),
             None => None,
         }
     }
@@ -81,16 +81,16 @@ impl HidIdentity {
         format!("{} ({vendor:04x}:{product:04x})", quoted(name))
     }
 
-    pub(super) fn identity(&self) -> Identity {
-        Identity { product: self.words(), serial: self.serial.clone(), firmware: String::new() }
+    pub(super) fn identity(&self) -> DeviceIdentity {
+        DeviceIdentity { product: self.words(), serial: self.serial.clone(), firmware: String::new() }
     }
 }
 
-impl FromStr for Source {
-    type Err = Trouble;
+impl FromStr for HidSource {
+    type Err = DeviceError;
 
-    fn from_str(text: &str) -> Result<Self, Trouble> {
-        let wrong = || Trouble::Setting {
+    fn from_str(text: &str) -> Result<Self, DeviceError> {
+        let wrong = || DeviceError::Setting {
             key: "source".to_owned(),
             value: format!("\"{text}\""),
             allowed: "any, VENDOR:PRODUCT[:SERIAL] in hexadecimal digits, a path, emulated:PATH or spacenavd[:PATH]"
@@ -114,7 +114,7 @@ impl FromStr for Source {
     }
 }
 
-impl fmt::Display for Source {
+impl fmt::Display for HidSource {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Any => f.write_str("any"),
@@ -127,9 +127,9 @@ impl fmt::Display for Source {
     }
 }
 
-impl Source {
+impl HidSource {
     /// Opens the source and checks that the device is one of `kinds`; ids given in the rig file are not checked.
-    pub(super) fn open(&self, kinds: &[Kind]) -> Result<(Box<dyn Datagrams>, HidIdentity), Trouble> {
+    pub(super) fn open(&self, kinds: &[HidKind]) -> Result<(Box<dyn TransportDatagrams>, HidIdentity), DeviceError> {
         let what = kinds.first().map_or("device", |kind| kind.words());
         let fits = |identity: &HidIdentity| identity.kind().is_some_and(|kind| kinds.contains(&kind));
         let opened = match self {
@@ -142,7 +142,7 @@ impl Source {
             }
             Self::Path(path) => raw::open_path(path),
             Self::Emulated(path) => emulated(path),
-            Self::Spacenavd(_) => Err(Trouble::Setting {
+            Self::Spacenavd(_) => Err(DeviceError::Setting {
                 key: "source".to_owned(),
                 value: self.to_string(),
                 allowed: "spacenavd supports caps only".to_owned(),
@@ -151,26 +151,26 @@ impl Source {
         if fits(&opened.1) {
             return Ok(opened);
         }
-        Err(Trouble::WrongProduct { place: self.to_string(), expected: what.to_owned(), found: opened.1.words() })
+        Err(DeviceError::WrongProduct { place: self.to_string(), expected: what.to_owned(), found: opened.1.words() })
     }
 }
 
 #[cfg(target_os = "linux")]
-fn emulated(path: &std::path::Path) -> Result<(Box<dyn Datagrams>, HidIdentity), Trouble> {
+fn emulated(path: &std::path::Path) -> Result<(Box<dyn TransportDatagrams>, HidIdentity), DeviceError> {
     use std::time::{Duration, Instant};
     /// Time limit for the emulator's first packet.
     const TIMEOUT: Duration = Duration::from_millis(300);
     let place = format!("emulated:{}", path.display());
     let mut packets = super::seqpacket::connect(path).map_err(|error| match error.kind() {
-        std::io::ErrorKind::ConnectionRefused => Trouble::NobodyListens { place: place.clone() },
-        _ => Trouble::of_port(path, &error, "the socket of an emulator belongs to the user who started it"),
+        std::io::ErrorKind::ConnectionRefused => DeviceError::NobodyListens { place: place.clone() },
+        _ => DeviceError::of_port(path, &error, "the socket of an emulator belongs to the user who started it"),
     })?;
     let begin = Instant::now();
     let mut buffer = [0; 256];
     while begin.elapsed() < TIMEOUT {
         match packets.receive(&mut buffer) {
             Ok(Some(count)) => {
-                let wrong = || Trouble::WrongProduct {
+                let wrong = || DeviceError::WrongProduct {
                     place: place.clone(),
                     expected: "emulated human interface device".to_owned(),
                     found: "socket of another program".to_owned(),
@@ -179,13 +179,13 @@ fn emulated(path: &std::path::Path) -> Result<(Box<dyn Datagrams>, HidIdentity),
                 return Ok((Box::new(packets), identity));
             }
             Ok(None) => std::thread::sleep(Duration::from_millis(1)),
-            Err(_) => return Err(Trouble::Absent { place }),
+            Err(_) => return Err(DeviceError::Absent { place }),
         }
     }
-    Err(Trouble::Silent { place })
+    Err(DeviceError::Silent { place })
 }
 
 #[cfg(not(target_os = "linux"))]
-fn emulated(path: &std::path::Path) -> Result<(Box<dyn Datagrams>, HidIdentity), Trouble> {
-    Err(Trouble::Other { place: path.display().to_string(), reason: "emulated devices need Linux".to_owned() })
+fn emulated(path: &std::path::Path) -> Result<(Box<dyn TransportDatagrams>, HidIdentity), DeviceError> {
+    Err(DeviceError::Other { place: path.display().to_string(), reason: "emulated devices need Linux".to_owned() })
 }

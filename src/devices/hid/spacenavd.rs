@@ -16,7 +16,7 @@ use nalgebra::Vector3;
 
 use super::cap_codec::{BadReport, CapState, FULL};
 #[cfg(unix)]
-use crate::{Loss, Trouble, transport::Datagrams};
+use crate::{DeviceError, Loss, transport::TransportDatagrams};
 
 /// The daemon's default socket.
 pub const SOCKET: &str = "/var/run/spnav.sock";
@@ -29,14 +29,14 @@ const RELEASE: i32 = 2;
 const POSSIBLE: u32 = 100_000;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Event {
+pub enum SpacenavdEvent {
     /// x, y, z, rx, ry, rz in the daemon's axes, counts.
     Motion([i32; 6]),
     /// A button, from 0.
     Button { number: u32, pressed: bool },
 }
 
-impl Event {
+impl SpacenavdEvent {
     /// Decodes one event.
     ///
     /// # Errors
@@ -101,22 +101,22 @@ impl Spacenavd {
     /// Connects to the daemon's socket.
     ///
     /// # Errors
-    /// [`Trouble`] if the socket cannot be connected to.
-    pub fn open(path: &Path) -> Result<Self, Trouble> {
+    /// [`DeviceError`] if the socket cannot be connected to.
+    pub fn open(path: &Path) -> Result<Self, DeviceError> {
         let stream = std::os::unix::net::UnixStream::connect(path).and_then(|stream| {
             stream.set_nonblocking(true)?;
             Ok(stream)
         });
         let stream = stream.map_err(|error| match error.kind() {
-            ErrorKind::ConnectionRefused => Trouble::NobodyListens { place: path.display().to_string() },
-            _ => Trouble::of_port(path, &error, "the socket of spacenavd needs no rule; set its mode to 0666"),
+            ErrorKind::ConnectionRefused => DeviceError::NobodyListens { place: path.display().to_string() },
+            _ => DeviceError::of_port(path, &error, "the socket of spacenavd needs no rule; set its mode to 0666"),
         })?;
         Ok(Self { stream, partial: [0; EVENT_LENGTH], filled: 0 })
     }
 }
 
 #[cfg(unix)]
-impl Datagrams for Spacenavd {
+impl TransportDatagrams for Spacenavd {
     fn receive(&mut self, buffer: &mut [u8]) -> Result<Option<usize>, Loss> {
         match self.stream.read(&mut self.partial[self.filled..]) {
             Ok(0) => return Err(Loss::Disconnected),

@@ -3,7 +3,7 @@
 use crate::Health;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-enum Fate {
+enum CycleResult {
     #[default]
     Done,
     Waiting,
@@ -16,13 +16,13 @@ const REMEMBERED: usize = 256;
 /// The latest cyclic requests. Calls share their numbering.
 #[derive(Clone, Debug)]
 pub(super) struct Cycle {
-    fates: [(u16, Fate); REMEMBERED],
+    fates: [(u16, CycleResult); REMEMBERED],
     newest: Option<u16>,
 }
 
 impl Default for Cycle {
     fn default() -> Self {
-        Self { fates: [(0, Fate::Done); REMEMBERED], newest: None }
+        Self { fates: [(0, CycleResult::Done); REMEMBERED], newest: None }
     }
 }
 
@@ -30,29 +30,29 @@ impl Cycle {
     /// Records that a request with this number was sent.
     pub(super) fn asked(&mut self, number: u16, health: &mut Health) {
         let place = &mut self.fates[usize::from(number) % REMEMBERED];
-        if place.1 == Fate::Waiting {
+        if place.1 == CycleResult::Waiting {
             health.lost += 1;
         }
-        *place = (number, Fate::Waiting);
+        *place = (number, CycleResult::Waiting);
     }
 
     /// Records an answer with this number. Returns true if it is the newest so far; otherwise it counts as out of
     /// order.
     pub(super) fn answered(&mut self, number: u16, health: &mut Health) -> bool {
         let place = &mut self.fates[usize::from(number) % REMEMBERED];
-        let fate = if place.0 == number { std::mem::take(&mut place.1) } else { Fate::Done };
+        let fate = if place.0 == number { std::mem::take(&mut place.1) } else { CycleResult::Done };
         match fate {
-            Fate::Done => {
+            CycleResult::Done => {
                 health.out_of_order += 1;
                 false
             }
-            Fate::Lost => {
+            CycleResult::Lost => {
                 // Late, so not lost after all.
                 health.lost -= 1;
                 health.out_of_order += 1;
                 false
             }
-            Fate::Waiting => {
+            CycleResult::Waiting => {
                 self.overtake(number, health);
                 true
             }
@@ -65,8 +65,8 @@ impl Cycle {
         for back in 1..usize::from(behind).min(REMEMBERED) {
             let passed = number.wrapping_sub(back as u16);
             let place = &mut self.fates[usize::from(passed) % REMEMBERED];
-            if *place == (passed, Fate::Waiting) {
-                place.1 = Fate::Lost;
+            if *place == (passed, CycleResult::Waiting) {
+                place.1 = CycleResult::Lost;
                 health.lost += 1;
             }
         }

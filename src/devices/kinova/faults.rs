@@ -8,7 +8,7 @@
 use std::fmt::{self, Display, Formatter};
 
 use super::{
-    feedback::{Banks, Feedback},
+    feedback::{Banks, KinovaFeedback},
     messages::ArmState,
 };
 use crate::ARM_JOINTS;
@@ -96,7 +96,7 @@ const ACTUATOR: [&str; 29] = [
 
 /// All faults of an arm at one time. `Display` returns text.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Faults {
+pub struct KinovaFaults {
     /// Whether the arm reports the state `IN_FAULT`.
     pub in_fault: bool,
     /// Fault banks A and B of the base.
@@ -105,8 +105,8 @@ pub struct Faults {
     pub actuators: [[u32; 2]; ARM_JOINTS],
 }
 
-impl Faults {
-    pub fn of(feedback: &Feedback) -> Self {
+impl KinovaFaults {
+    pub fn of(feedback: &KinovaFeedback) -> Self {
         let in_fault = feedback.state == ArmState::IN_FAULT;
         Self { in_fault, base: feedback.banks.fault, actuators: feedback.actuators.map(|a| a.banks.fault) }
     }
@@ -123,7 +123,7 @@ impl Faults {
     }
 }
 
-impl Display for Faults {
+impl Display for KinovaFaults {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let mut first = true;
         let mut say = |f: &mut Formatter<'_>, who: &dyn Display, banks: [u32; 2], names: &[&str]| {

@@ -1,13 +1,13 @@
 //! The arm's cyclic feedback, decoded in place into fixed memory.
 //!
-//! `BaseCyclic.Feedback { fixed32 frame_id = 1; BaseFeedback base = 2; repeated ActuatorFeedback actuators = 3 }`;
+//! `BaseCyclic.KinovaFeedback { fixed32 frame_id = 1; BaseFeedback base = 2; repeated ActuatorFeedback actuators = 3 }`;
 //! field numbers as in `BaseCyclic.proto`. Units of the protocol: degrees, metres, newtons.
 //!
 //! Source: `Kinovarobotics/ros_kortex`, `kortex_driver/protos`.
 
 use super::{
     messages::ArmState,
-    wire::{Damaged, Fields, Value},
+    wire::{DamagedMessage, Value, WireFields},
 };
 use crate::ARM_JOINTS;
 
@@ -24,7 +24,7 @@ impl Banks {
     }
 
     /// Stores field `k` of four consecutive ones: fault A, B, warning A, B.
-    fn take(&mut self, k: u32, value: Value<'_>) -> Result<(), Damaged> {
+    fn take(&mut self, k: u32, value: Value<'_>) -> Result<(), DamagedMessage> {
         let bank = if k < 2 { &mut self.fault } else { &mut self.warning };
         bank[(k & 1) as usize] = value.fixed32()?;
         Ok(())
@@ -47,7 +47,7 @@ pub struct Actuator {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Feedback {
+pub struct KinovaFeedback {
     /// Number of the cycle.
     pub frame_id: u32,
     pub state: ArmState,
@@ -64,7 +64,7 @@ pub struct Feedback {
     pub count: usize,
 }
 
-impl Default for Feedback {
+impl Default for KinovaFeedback {
     fn default() -> Self {
         Self {
             frame_id: 0,
@@ -79,14 +79,14 @@ impl Default for Feedback {
     }
 }
 
-impl Feedback {
+impl KinovaFeedback {
     /// Decodes the payload of an answer to `Refresh` or `RefreshFeedback`.
     ///
     /// # Errors
-    /// [`Damaged`] if the bytes are not a valid message.
-    pub fn decode(payload: &[u8]) -> Result<Self, Damaged> {
+    /// [`DamagedMessage`] if the bytes are not a valid message.
+    pub fn decode(payload: &[u8]) -> Result<Self, DamagedMessage> {
         let mut feedback = Self::default();
-        for field in Fields::of(payload) {
+        for field in WireFields::of(payload) {
             match field? {
                 (1, value) => feedback.frame_id = value.fixed32()?,
                 (2, value) => feedback.take_base(value.bytes()?)?,
@@ -103,8 +103,8 @@ impl Feedback {
         Ok(feedback)
     }
 
-    fn take_base(&mut self, bytes: &[u8]) -> Result<(), Damaged> {
-        for field in Fields::of(bytes) {
+    fn take_base(&mut self, bytes: &[u8]) -> Result<(), DamagedMessage> {
+        for field in WireFields::of(bytes) {
             let (number, value) = field?;
             match number {
                 2 => self.state = ArmState(value.uint32()?),
@@ -126,20 +126,20 @@ impl Feedback {
     }
 }
 
-fn actuator(bytes: &[u8]) -> Result<Actuator, Damaged> {
-    let mut told = Actuator::default();
-    for field in Fields::of(bytes) {
+fn actuator(bytes: &[u8]) -> Result<Actuator, DamagedMessage> {
+    let mut report = Actuator::default();
+    for field in WireFields::of(bytes) {
         let (number, value) = field?;
         match number {
-            1 => told.command_id = value.fixed32()?,
-            2 => told.status = value.fixed32()?,
-            4 => told.position_deg = value.float()?,
-            5 => told.velocity_deg_s = value.float()?,
-            6 => told.torque_nm = value.float()?,
-            7 => told.current_a = value.float()?,
-            11..15 => told.banks.take(number - 11, value)?,
+            1 => report.command_id = value.fixed32()?,
+            2 => report.status = value.fixed32()?,
+            4 => report.position_deg = value.float()?,
+            5 => report.velocity_deg_s = value.float()?,
+            6 => report.torque_nm = value.float()?,
+            7 => report.current_a = value.float()?,
+            11..15 => report.banks.take(number - 11, value)?,
             _ => {}
         }
     }
-    Ok(told)
+    Ok(report)
 }

@@ -1,9 +1,9 @@
 //! Implements [`Follower`] for the arm.
 
-use super::Driver;
+use super::KinovaDriver;
 use crate::{ARM_JOINTS, Follower, Lever};
 
-impl Follower for Driver {
+impl Follower for KinovaDriver {
     fn enter_servoing(&mut self) {
         // After a refusal the readings show that the arm is not servoing.
         self.enter_low_level().ok();

@@ -1,4 +1,4 @@
-//! Frames of the Kortex router: one protobuf `Frame` per datagram; on TCP preceded by a mark and a length.
+//! Frames of the Kortex router: one protobuf `KinovaFrame` per datagram; on TCP preceded by a mark and a length.
 //!
 //! ```text
 //! Frame { Header header = 1; bytes payload = 2 }, Header of four fixed32:
@@ -17,9 +17,9 @@ use prost::{
 
 use super::{
     messages::Rpc,
-    wire::{Damaged, Fields},
+    wire::{DamagedMessage, WireFields},
 };
-use crate::unread::Unread;
+use crate::stream_buffer::Unread;
 
 /// Start of every packet on TCP.
 pub const MARK: [u8; 8] = *b"\x07xEtRoK\x07";
@@ -34,7 +34,7 @@ pub const RESPONSE: u8 = 3;
 pub const NOTIFICATION: u8 = 5;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Header {
+pub struct KinovaHeader {
     /// [`REQUEST`], [`RESPONSE`], [`NOTIFICATION`].
     pub kind: u8,
     /// 0: the base; 1 to 7: an actuator.
@@ -63,7 +63,7 @@ struct RawHeader {
     payload: u32,
 }
 
-impl Header {
+impl KinovaHeader {
     pub const fn rpc(&self) -> Rpc {
         Rpc { service: self.service, function: self.function }
     }
@@ -84,10 +84,10 @@ impl Header {
         }
     }
 
-    fn of(raw: &RawHeader) -> Result<Self, Damaged> {
+    fn of(raw: &RawHeader) -> Result<Self, DamagedMessage> {
         let bits = |value: u32, width: u32, shift: u32| (value >> shift) & ((1 << width) - 1);
         if bits(raw.frame, 4, 28) != VERSION || bits(raw.service, 4, 28) != VERSION {
-            return Err(Damaged);
+            return Err(DamagedMessage);
         }
         Ok(Self {
             kind: bits(raw.frame, 4, 24) as u8,
@@ -103,38 +103,38 @@ impl Header {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Frame<'a> {
-    pub header: Header,
+pub struct KinovaFrame<'a> {
+    pub header: KinovaHeader,
     /// Its payload; the call determines the type of message.
     pub payload: &'a [u8],
 }
 
-impl<'a> Frame<'a> {
+impl<'a> KinovaFrame<'a> {
     /// Decodes the bytes of one datagram or packet.
     ///
     /// # Errors
-    /// [`Damaged`] if structure, version or length do not belong to a frame.
-    pub fn decode(bytes: &'a [u8]) -> Result<Self, Damaged> {
+    /// [`DamagedMessage`] if structure, version or length do not belong to a frame.
+    pub fn decode(bytes: &'a [u8]) -> Result<Self, DamagedMessage> {
         let mut raw = None;
         let mut payload = [].as_slice();
-        for field in Fields::of(bytes) {
+        for field in WireFields::of(bytes) {
             match field? {
                 (1, value) => raw = Some(raw_header(value.bytes()?)?),
                 (2, value) => payload = value.bytes()?,
                 _ => {}
             }
         }
-        let raw = raw.ok_or(Damaged)?;
+        let raw = raw.ok_or(DamagedMessage)?;
         if (raw.payload & 0xff_ffff) as usize != payload.len() {
-            return Err(Damaged);
+            return Err(DamagedMessage);
         }
-        Ok(Self { header: Header::of(&raw)?, payload })
+        Ok(Self { header: KinovaHeader::of(&raw)?, payload })
     }
 }
 
-fn raw_header(bytes: &[u8]) -> Result<RawHeader, Damaged> {
+fn raw_header(bytes: &[u8]) -> Result<RawHeader, DamagedMessage> {
     let mut raw = RawHeader::default();
-    for field in Fields::of(bytes) {
+    for field in WireFields::of(bytes) {
         match field? {
             (1, value) => raw.frame = value.fixed32()?,
             (2, value) => raw.message = value.fixed32()?,
@@ -147,7 +147,7 @@ fn raw_header(bytes: &[u8]) -> Result<RawHeader, Damaged> {
 }
 
 /// Appends a frame; allocates nothing while `out` has room.
-pub fn encode(header: &Header, payload: &impl Message, out: &mut Vec<u8>) {
+pub fn encode(header: &KinovaHeader, payload: &impl Message, out: &mut Vec<u8>) {
     let length = payload.encoded_len();
     message::encode(1, &header.raw(length), out);
     if length > 0 {
@@ -156,7 +156,7 @@ pub fn encode(header: &Header, payload: &impl Message, out: &mut Vec<u8>) {
 }
 
 /// Appends a frame with a payload that is already encoded.
-pub fn encode_written(header: &Header, payload: &[u8], out: &mut Vec<u8>) {
+pub fn encode_written(header: &KinovaHeader, payload: &[u8], out: &mut Vec<u8>) {
     message::encode(1, &header.raw(payload.len()), out);
     if !payload.is_empty() {
         encode_key(2, WireType::LengthDelimited, out);
@@ -166,7 +166,7 @@ pub fn encode_written(header: &Header, payload: &[u8], out: &mut Vec<u8>) {
 }
 
 /// Appends a packet for TCP; allocates nothing while `out` has room.
-pub fn encode_packet(header: &Header, payload: &impl Message, out: &mut Vec<u8>) {
+pub fn encode_packet(header: &KinovaHeader, payload: &impl Message, out: &mut Vec<u8>) {
     packed(out, |out| encode(header, payload, out));
 }
 
@@ -215,9 +215,9 @@ impl PacketReader {
     }
 
     /// Returns the next complete frame; `None` until more bytes arrive.
-    pub fn next_frame(&mut self) -> Option<Frame<'_>> {
+    pub fn next_frame(&mut self) -> Option<KinovaFrame<'_>> {
         let length = self.find()?;
-        Frame::decode(&self.unread.pass(PREFIX + length)[PREFIX..]).ok()
+        KinovaFrame::decode(&self.unread.pass(PREFIX + length)[PREFIX..]).ok()
     }
 
     /// Moves to the next complete packet, and returns the length of its frame, bytes.
@@ -229,7 +229,7 @@ impl PacketReader {
             let length = u32::from_be_bytes(length.try_into().ok()?) as usize;
             if length <= PACKET_MAX - PREFIX {
                 let frame = waiting.get(PREFIX..PREFIX + length)?;
-                if Frame::decode(frame).is_ok() {
+                if KinovaFrame::decode(frame).is_ok() {
                     return Some(length);
                 }
             }

@@ -4,11 +4,12 @@
 use prost::Message as _;
 
 use super::{
-    faults::Faults,
-    feedback::Feedback,
-    frame::{Frame, Header, MARK, PACKET_MAX, PacketReader, REQUEST, RESPONSE, encode, encode_packet},
+    faults::KinovaFaults,
+    feedback::KinovaFeedback,
+    frame::{KinovaFrame, KinovaHeader, MARK, PACKET_MAX, PacketReader, REQUEST, RESPONSE, encode, encode_packet},
     messages::{
-        ActuatorCommand, ArmState, Command, CreateSessionInfo, ErrorInfo, Number, Rpc, Twist, TwistCommand, sub,
+        ActuatorCommand, ArmState, CreateSessionInfo, ErrorInfo, KinovaCommand, KinovaNumber, KinovaTwist, Rpc,
+        TwistCommand, sub,
     },
 };
 
@@ -34,19 +35,19 @@ fn bytes(hex: &str) -> Vec<u8> {
     hex.as_bytes().chunks(2).map(|two| u8::from_str_radix(std::str::from_utf8(two).unwrap(), 16).unwrap()).collect()
 }
 
-fn request(session: u16, message: u16, rpc: Rpc) -> Header {
+fn request(session: u16, message: u16, rpc: Rpc) -> KinovaHeader {
     let Rpc { service, function } = rpc;
-    Header { kind: REQUEST, session, message, service, function, ..Header::default() }
+    KinovaHeader { kind: REQUEST, session, message, service, function, ..KinovaHeader::default() }
 }
 
 fn twist() -> TwistCommand {
-    let twist = Twist { linear_z: 0.05, angular_x: 10.0, ..Twist::default() };
+    let twist = KinovaTwist { linear_z: 0.05, angular_x: 10.0, ..KinovaTwist::default() };
     TwistCommand { reference_frame: 2, twist: Some(twist), duration: 0 }
 }
 
-fn refresh() -> Command {
+fn refresh() -> KinovaCommand {
     let actuator = ActuatorCommand { command_id: 5, flags: 1, position_deg: 10.5, ..ActuatorCommand::default() };
-    Command { frame_id: 5, actuators: vec![actuator] }
+    KinovaCommand { frame_id: 5, actuators: vec![actuator] }
 }
 
 fn login() -> CreateSessionInfo {
@@ -59,11 +60,11 @@ fn login() -> CreateSessionInfo {
 }
 
 /// Checks that encoding gives the bytes and decoding gives header and message.
-fn both_ways<M: prost::Message + Default + PartialEq + std::fmt::Debug>(hex: &str, header: Header, message: &M) {
+fn both_ways<M: prost::Message + Default + PartialEq + std::fmt::Debug>(hex: &str, header: KinovaHeader, message: &M) {
     let mut out = Vec::new();
     encode(&header, message, &mut out);
     assert_eq!(out, bytes(hex), "{hex}");
-    let frame = Frame::decode(&out).unwrap();
+    let frame = KinovaFrame::decode(&out).unwrap();
     assert_eq!(frame.header, header);
     assert_eq!(M::decode(frame.payload).unwrap(), *message);
 }
@@ -88,22 +89,22 @@ fn requests_are_the_bytes_of_the_manufacturers_client_both_ways() {
 #[test]
 fn an_answer_with_every_field_is_read() {
     let whole = bytes(FEEDBACK);
-    let frame = Frame::decode(&whole).unwrap();
-    assert_eq!(frame.header, Header { kind: RESPONSE, ..request(7, 4, Rpc::REFRESH) });
-    let told = Feedback::decode(frame.payload).unwrap();
-    assert_eq!((told.frame_id, told.state, told.count), (5, ArmState::SERVOING_LOW_LEVEL, 2));
+    let frame = KinovaFrame::decode(&whole).unwrap();
+    assert_eq!(frame.header, KinovaHeader { kind: RESPONSE, ..request(7, 4, Rpc::REFRESH) });
+    let report = KinovaFeedback::decode(frame.payload).unwrap();
+    assert_eq!((report.frame_id, report.state, report.count), (5, ArmState::SERVOING_LOW_LEVEL, 2));
     // Field n of the base has the value n + 0.5; doubled, the values are integers.
     let doubled = |numbers: [f32; 6]| numbers.map(|x| (2.0 * x) as i32);
-    assert_eq!(doubled(told.tool_pose), [27, 29, 31, 33, 35, 37]);
-    assert_eq!(doubled(told.tool_twist), [39, 41, 43, 45, 47, 49]);
-    assert_eq!(doubled(told.tool_wrench), [51, 53, 55, 57, 59, 61]);
-    assert_eq!((told.banks.fault, told.banks.warning), ([0x10, 0], [0x20, 0]));
-    let [first, second] = [told.actuators[0], told.actuators[1]];
+    assert_eq!(doubled(report.tool_pose), [27, 29, 31, 33, 35, 37]);
+    assert_eq!(doubled(report.tool_twist), [39, 41, 43, 45, 47, 49]);
+    assert_eq!(doubled(report.tool_wrench), [51, 53, 55, 57, 59, 61]);
+    assert_eq!((report.banks.fault, report.banks.warning), ([0x10, 0], [0x20, 0]));
+    let [first, second] = [report.actuators[0], report.actuators[1]];
     assert_eq!((first.command_id, first.status, first.position_deg), (5, 0x820, 359.5));
     assert_eq!((first.velocity_deg_s, first.torque_nm, first.current_a), (-1.25, 2.5, 0.5));
     assert!(!first.banks.is_faulty());
     assert_eq!((second.position_deg, second.banks.fault, second.banks.warning), (358.5, [0x0040_0001, 0], [0, 7]));
-    let faults = Faults::of(&told);
+    let faults = KinovaFaults::of(&report);
     assert_eq!(
         faults.to_string(),
         "base: fault of a joint (0x10), joint 2: following error (0x1), joint 2: cyclic command missed (0x400000)"
@@ -114,17 +115,17 @@ fn an_answer_with_every_field_is_read() {
 #[test]
 fn a_refusal_is_read() {
     let whole = bytes(REFUSED);
-    let frame = Frame::decode(&whole).unwrap();
+    let frame = KinovaFrame::decode(&whole).unwrap();
     assert_eq!((frame.header.error, frame.header.sub_error), (3, sub::WRONG_SERVOING_MODE));
-    let told = ErrorInfo::decode(frame.payload).unwrap();
-    assert_eq!((told.code, told.sub_code, told.text.as_str()), (3, 75, "Wrong servoing mode"));
+    let report = ErrorInfo::decode(frame.payload).unwrap();
+    assert_eq!((report.code, report.sub_code, report.text.as_str()), (3, 75, "Wrong servoing mode"));
 }
 
 #[test]
 fn headers_go_round_with_every_bit() {
     let mut random = fastrand::Rng::with_seed(1);
     for _ in 0..2000 {
-        let header = Header {
+        let header = KinovaHeader {
             kind: random.u8(..16),
             device: random.u8(..),
             error: random.u8(..16),
@@ -135,8 +136,8 @@ fn headers_go_round_with_every_bit() {
             function: random.u16(..),
         };
         let mut out = Vec::new();
-        encode(&header, &Number { value: random.u32(..) }, &mut out);
-        assert_eq!(Frame::decode(&out).unwrap().header, header);
+        encode(&header, &KinovaNumber { value: random.u32(..) }, &mut out);
+        assert_eq!(KinovaFrame::decode(&out).unwrap().header, header);
     }
 }
 
@@ -203,10 +204,10 @@ fn storm(frames: u32, seed: u64) {
                 _ => frame.insert(at.min(frame.len()), random.u8(..)),
             }
         }
-        if let Ok(told) = Frame::decode(&frame) {
+        if let Ok(report) = KinovaFrame::decode(&frame) {
             decoded += 1;
-            if let Ok(feedback) = Feedback::decode(told.payload) {
-                std::hint::black_box((feedback.is_finite(), Faults::of(&feedback).code()));
+            if let Ok(feedback) = KinovaFeedback::decode(report.payload) {
+                std::hint::black_box((feedback.is_finite(), KinovaFaults::of(&feedback).code()));
             }
         }
         let room = reader.room();

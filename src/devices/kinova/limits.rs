@@ -49,7 +49,7 @@ pub fn unwrapped(degrees: f32, near_rad: f64) -> f64 {
 const AHEAD_OF_TIME_S: f64 = 0.025;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum Beyond {
+pub enum ExceededLimit {
     #[error("outside of its range")]
     Range,
     /// Further from the last command than the speed limit allows.
@@ -91,7 +91,7 @@ impl Guard {
         &mut self,
         target_rad: &[f64; ARM_JOINTS],
         measured_rad: &[f64; ARM_JOINTS],
-    ) -> Result<(), (usize, Beyond)> {
+    ) -> Result<(), (usize, ExceededLimit)> {
         let last_rad = self.target_rad.unwrap_or(self.command_rad);
         // If the arm is blocked, the plan itself stops at `lead_rad`. It then needs a distance to brake; the same
         // distance is added for the arm's lag.
@@ -102,14 +102,14 @@ impl Guard {
             let speed_rad_s = self.limits.speed_rad_s[j];
             // An arm that was pushed out of its range may stay there or move back.
             if at < GEN3[j].low_rad.min(last_rad[j]) || at > GEN3[j].high_rad.max(last_rad[j]) {
-                return Err((j + 1, Beyond::Range));
+                return Err((j + 1, ExceededLimit::Range));
             }
             if (at - measured_rad[j]).abs() > speed_rad_s.mul_add(braking_s, self.limits.lead_rad) {
-                return Err((j + 1, Beyond::Lead));
+                return Err((j + 1, ExceededLimit::Lead));
             }
             let time_s = (at - last_rad[j]).abs() / speed_rad_s;
             if time_s > self.allowed_s {
-                return Err((j + 1, Beyond::Speed));
+                return Err((j + 1, ExceededLimit::Speed));
             }
             needed_s = needed_s.max(time_s);
         }
@@ -141,16 +141,16 @@ impl Guard {
         if let Some(target_rad) = self.target_rad {
             let speed = |j: usize| (target_rad[j] - self.command_rad[j]) / elapsed_s;
             // An early command looks faster than it is.
-            let share = (0..ARM_JOINTS).map(|j| self.limits.speed_rad_s[j] / speed(j).abs()).fold(1.0, f64::min);
-            self.speed_rad_s = std::array::from_fn(|j| speed(j) * share);
+            let fraction = (0..ARM_JOINTS).map(|j| self.limits.speed_rad_s[j] / speed(j).abs()).fold(1.0, f64::min);
+            self.speed_rad_s = std::array::from_fn(|j| speed(j) * fraction);
             self.command_rad = target_rad;
         } else {
             let step_s = elapsed_s.min(STEP_MAX_S);
             let acceleration = &self.limits.acceleration_rad_s2;
             let left_s = (0..ARM_JOINTS).map(|j| self.speed_rad_s[j].abs() / acceleration[j]).fold(0.0, f64::max);
-            let share = if left_s > step_s { 1.0 - step_s / left_s } else { 0.0 };
+            let fraction = if left_s > step_s { 1.0 - step_s / left_s } else { 0.0 };
             for j in 0..ARM_JOINTS {
-                self.speed_rad_s[j] *= share;
+                self.speed_rad_s[j] *= fraction;
                 let low_rad = GEN3[j].low_rad;
                 let high_rad = GEN3[j].high_rad;
                 let at = self.command_rad[j];
@@ -213,9 +213,13 @@ mod tests {
             let j = 2 * random.usize(..4);
             let mut jump = begin;
             jump[j] += GEN3[j].speed_rad_s * fraction * 1.01 * AHEAD_OF_TIME_S;
-            assert_eq!(guard.aim(&jump, &begin), Err((j + 1, Beyond::Speed)), "the first command after the seed");
+            assert_eq!(
+                guard.aim(&jump, &begin),
+                Err((j + 1, ExceededLimit::Speed)),
+                "the first command after the seed"
+            );
             jump[j] = -jump[j];
-            assert_eq!(guard.aim(&jump, &begin), Err((j + 1, Beyond::Speed)));
+            assert_eq!(guard.aim(&jump, &begin), Err((j + 1, ExceededLimit::Speed)));
             assert!(guard.step(TICK_S) == &begin);
             // 1 % too fast must be refused eventually.
             let mut target = begin;
@@ -225,16 +229,16 @@ mod tests {
                 guard.step(TICK_S);
                 refused
             });
-            assert_eq!(refused, Some((j + 1, Beyond::Speed)));
+            assert_eq!(refused, Some((j + 1, ExceededLimit::Speed)));
         }
         let mut guard = resting(1.0);
         guard.seed(&[2.08; ARM_JOINTS]);
-        assert_eq!(guard.aim(&[2.1; ARM_JOINTS], &[2.08; ARM_JOINTS]), Err((6, Beyond::Range)));
-        assert_eq!(guard.aim(&[2.085; ARM_JOINTS], &[1.5; ARM_JOINTS]), Err((1, Beyond::Lead)));
+        assert_eq!(guard.aim(&[2.1; ARM_JOINTS], &[2.08; ARM_JOINTS]), Err((6, ExceededLimit::Range)));
+        assert_eq!(guard.aim(&[2.085; ARM_JOINTS], &[1.5; ARM_JOINTS]), Err((1, ExceededLimit::Lead)));
         assert_eq!(guard.aim(&[2.085; ARM_JOINTS], &[2.08; ARM_JOINTS]), Ok(()));
         // Pushed out by hand: moving back is allowed, moving farther is not.
         guard.seed(&[2.3; ARM_JOINTS]);
-        assert_eq!(guard.aim(&[2.301; ARM_JOINTS], &[2.3; ARM_JOINTS]), Err((2, Beyond::Range)));
+        assert_eq!(guard.aim(&[2.301; ARM_JOINTS], &[2.3; ARM_JOINTS]), Err((2, ExceededLimit::Range)));
         assert_eq!(guard.aim(&[2.299; ARM_JOINTS], &[2.3; ARM_JOINTS]), Ok(()));
     }
 

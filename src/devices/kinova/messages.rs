@@ -121,20 +121,20 @@ pub struct CreateSessionInfo {
 /// A message with one number in field 1: `ServoingModeInformation`, `ArmStateInformation`, `ActuatorInformation`,
 /// `FirmwareVersion`.
 #[derive(Clone, Copy, PartialEq, Message)]
-pub struct Number {
+pub struct KinovaNumber {
     #[prost(uint32, tag = "1")]
     pub value: u32,
 }
 
 /// A message with one string in field 1: `SerialNumber`, `ModelNumber`.
 #[derive(Clone, PartialEq, Message)]
-pub struct Text {
+pub struct KinovaText {
     #[prost(string, tag = "1")]
     pub value: String,
 }
 
 #[derive(Clone, Copy, PartialEq, Message)]
-pub struct Twist {
+pub struct KinovaTwist {
     #[prost(float, tag = "1")]
     pub linear_x: f32,
     #[prost(float, tag = "2")]
@@ -154,7 +154,7 @@ pub struct TwistCommand {
     #[prost(uint32, tag = "1")]
     pub reference_frame: u32,
     #[prost(message, optional, tag = "2")]
-    pub twist: Option<Twist>,
+    pub twist: Option<KinovaTwist>,
     #[prost(uint32, tag = "3")]
     pub duration: u32,
 }
@@ -179,7 +179,7 @@ pub struct ActuatorCommand {
 pub(super) const SERVO_ENABLE: u32 = 1;
 
 #[derive(Clone, PartialEq, Message)]
-pub struct Command {
+pub struct KinovaCommand {
     #[prost(fixed32, tag = "1")]
     pub frame_id: u32,
     #[prost(message, repeated, tag = "2")]
@@ -201,7 +201,7 @@ pub struct JointAngles {
 }
 
 #[derive(Clone, Copy, PartialEq, Message)]
-pub struct Pose {
+pub struct KinovaPose {
     #[prost(float, tag = "1")]
     pub x: f32,
     #[prost(float, tag = "2")]
@@ -253,7 +253,7 @@ pub mod sub {
             PAYLOAD_DECODING => "message not understood",
             INVALID_PASSWORD => "wrong password",
             USER_NOT_FOUND => "unknown user",
-            17 => "unknown entity",
+            17 => "no such entity",
             18 => "a movement is in progress",
             19 => "the arm does not move",
             20 => "no more room",

@@ -1,11 +1,11 @@
 //! Kinova Gen3 with 7 joints over the Kortex API 2.x: TCP for calls, UDP for the cycle of 1 kHz.
 //!
-//! - [`Driver`] reads [`ArmReading`](crate::ArmReading)s: angles in rad, unwrapped; joint torques in Nm with the sign
+//! - [`KinovaDriver`] reads [`ArmReading`](crate::ArmReading)s: angles in rad, unwrapped; joint torques in Nm with the sign
 //!   of commands. The tool's pose and twist are in [`ToolReading`].
-//! - After opening, the arm is connected and in single-level servoing. It follows [`Driver::aim`] only after
-//!   [`Driver::enter_low_level`]; every command is checked by [`limits::Guard`], because the arm checks no limits in
+//! - After opening, the arm is connected and in single-level servoing. It follows [`KinovaDriver::aim`] only after
+//!   [`KinovaDriver::enter_low_level`]; every command is checked by [`limits::Guard`], because the arm checks no limits in
 //!   that mode.
-//! - Faults are reported as text ([`faults::Faults`]) and cleared only by command: [`FaultClearing`].
+//! - Faults are reported as text ([`faults::KinovaFaults`]) and cleared only by command: [`FaultClearing`].
 //! - Dropping the driver brakes, leaves low-level servoing, stops a twist and closes the sessions.
 //! - The emulated arm, which follows commands, is `nima_simulation::emulators::kinova`.
 //!
@@ -31,6 +31,6 @@ pub mod wire;
 #[cfg(test)]
 mod golden_tests;
 
-pub use driver::{Answer, Driver, Refusal, ToolReading, ToolTwist, TwistFrame};
+pub use driver::{CallAnswer, KinovaDriver, KinovaRefusal, ToolReading, ToolTwist, TwistFrame};
 pub use opening::{FaultClearing, open, open_clearing};
-pub use settings::Settings;
+pub use settings::KinovaSettings;

@@ -13,14 +13,14 @@ use std::{
 use prost::Message;
 
 use super::{
-    driver::Driver,
-    faults::Faults,
-    feedback::Feedback,
-    messages::{ArmState, Number, Rpc, ServoingMode, Text, sub},
-    session::{Failure, Lines},
-    settings::Settings,
+    driver::KinovaDriver,
+    faults::KinovaFaults,
+    feedback::KinovaFeedback,
+    messages::{ArmState, KinovaNumber, KinovaText, Rpc, ServoingMode, sub},
+    session::{KinovaFailure, KinovaLines},
+    settings::KinovaSettings,
 };
-use crate::{ARM_JOINTS, Identity, Trouble};
+use crate::{ARM_JOINTS, DeviceError, DeviceIdentity};
 
 /// A person's request to clear the faults of an arm. It is kept until the arm is next opened, because an arm in fault
 /// is never connected.
@@ -40,9 +40,9 @@ const CLEARED: Duration = Duration::from_millis(100);
 /// Opens the arm. Faults are reported, not cleared.
 ///
 /// # Errors
-/// [`Trouble`] if the arm cannot be reached, refuses the user, or is in a fault or another state in which it cannot be
+/// [`DeviceError`] if the arm cannot be reached, refuses the user, or is in a fault or another state in which it cannot be
 /// used.
-pub fn open(settings: &Settings) -> Result<Driver, Trouble> {
+pub fn open(settings: &KinovaSettings) -> Result<KinovaDriver, DeviceError> {
     open_clearing(settings, &FaultClearing::default())
 }
 
@@ -50,13 +50,13 @@ pub fn open(settings: &Settings) -> Result<Driver, Trouble> {
 ///
 /// # Errors
 /// The errors of [`open`].
-pub fn open_clearing(settings: &Settings, clearing: &FaultClearing) -> Result<Driver, Trouble> {
+pub fn open_clearing(settings: &KinovaSettings, clearing: &FaultClearing) -> Result<KinovaDriver, DeviceError> {
     settings.check()?;
-    let mut lines = Lines::connect(settings)?;
+    let mut lines = KinovaLines::connect(settings)?;
     lines.log_in(settings)?;
     let opened = prepare(&mut lines, settings, clearing);
     match opened {
-        Ok((identity, feedback)) => Ok(Driver::new(settings, lines, identity, &feedback)),
+        Ok((identity, feedback)) => Ok(KinovaDriver::new(settings, lines, identity, &feedback)),
         Err(trouble) => {
             // Close the sessions, because the arm would otherwise keep them until they time out.
             super::driver::close_sessions(&mut lines);
@@ -65,34 +65,38 @@ pub fn open_clearing(settings: &Settings, clearing: &FaultClearing) -> Result<Dr
     }
 }
 
-fn prepare(lines: &mut Lines, settings: &Settings, clearing: &FaultClearing) -> Result<(Identity, Feedback), Trouble> {
-    let joints: Number = ask(lines, Rpc::ACTUATOR_COUNT)?;
+fn prepare(
+    lines: &mut KinovaLines,
+    settings: &KinovaSettings,
+    clearing: &FaultClearing,
+) -> Result<(DeviceIdentity, KinovaFeedback), DeviceError> {
+    let joints: KinovaNumber = ask(lines, Rpc::ACTUATOR_COUNT)?;
     if joints.value as usize != ARM_JOINTS {
         let expected = format!("arm with {ARM_JOINTS} joints");
         let found = format!("arm with {} joints", joints.value);
-        return Err(Trouble::WrongProduct { place: lines.place.clone(), expected, found });
+        return Err(DeviceError::WrongProduct { place: lines.place.clone(), expected, found });
     }
     let identity = identity(lines)?;
     check_serial(settings, &identity, &lines.place)?;
-    let mode: Number = ask(lines, Rpc::GET_SERVOING_MODE)?;
+    let mode: KinovaNumber = ask(lines, Rpc::GET_SERVOING_MODE)?;
     if mode.value != ServoingMode::Single as u32 {
         // A client that broke off may have left the arm in low-level servoing.
-        call(lines, Rpc::SET_SERVOING_MODE, &Number { value: ServoingMode::Single as u32 })?;
+        call(lines, Rpc::SET_SERVOING_MODE, &KinovaNumber { value: ServoingMode::Single as u32 })?;
     }
     if clearing.0.swap(false, Ordering::AcqRel) {
         call(lines, Rpc::CLEAR_FAULTS, &())?;
         sleep(CLEARED);
     }
-    let state: Number = ask(lines, Rpc::ARM_STATE)?;
+    let state: KinovaNumber = ask(lines, Rpc::ARM_STATE)?;
     let state = ArmState(state.value);
     if state.is_unready() {
         let cure = "Wait until the arm has started, or end its current action in its web page.".to_owned();
-        return Err(Trouble::NotReady { place: lines.place.clone(), mode: state.words().to_owned(), cure });
+        return Err(DeviceError::NotReady { place: lines.place.clone(), mode: state.words().to_owned(), cure });
     }
     let feedback = first_feedback(lines)?;
-    let faults = Faults { in_fault: state == ArmState::IN_FAULT, ..Faults::of(&feedback) };
+    let faults = KinovaFaults { in_fault: state == ArmState::IN_FAULT, ..KinovaFaults::of(&feedback) };
     if faults.any() {
-        return Err(Trouble::DeviceFault {
+        return Err(DeviceError::DeviceFault {
             place: lines.place.clone(),
             words: faults.to_string(),
             cure: "Remove the cause, make sure that the arm can move safely, then clear its faults by command."
@@ -102,45 +106,46 @@ fn prepare(lines: &mut Lines, settings: &Settings, clearing: &FaultClearing) -> 
     Ok((identity, feedback))
 }
 
-fn check_serial(settings: &Settings, identity: &Identity, place: &str) -> Result<(), Trouble> {
+fn check_serial(settings: &KinovaSettings, identity: &DeviceIdentity, place: &str) -> Result<(), DeviceError> {
     let Some(wanted) = settings.serial_number.as_ref().filter(|wanted| wanted.trim() != identity.serial.trim()) else {
         return Ok(());
     };
     let found = if identity.serial.is_empty() { "unknown" } else { &identity.serial };
-    Err(Trouble::OtherSerial { place: place.to_owned(), expected: wanted.clone(), found: found.to_owned() })
+    Err(DeviceError::OtherSerial { place: place.to_owned(), expected: wanted.clone(), found: found.to_owned() })
 }
 
-fn first_feedback(lines: &mut Lines) -> Result<Feedback, Trouble> {
+fn first_feedback(lines: &mut KinovaLines) -> Result<KinovaFeedback, DeviceError> {
     let answer = lines.ask_cyclic(Rpc::REFRESH_FEEDBACK, &());
     let payload = answer.map_err(|failure| failure.trouble(&lines.place, Rpc::REFRESH_FEEDBACK))?;
-    let feedback = Feedback::decode(&payload).ok().filter(|told| told.is_finite() && told.count == ARM_JOINTS);
-    feedback.ok_or_else(|| Failure::Nonsense.trouble(&lines.place, Rpc::REFRESH_FEEDBACK))
+    let feedback =
+        KinovaFeedback::decode(&payload).ok().filter(|report| report.is_finite() && report.count == ARM_JOINTS);
+    feedback.ok_or_else(|| KinovaFailure::Nonsense.trouble(&lines.place, Rpc::REFRESH_FEEDBACK))
 }
 
 /// Returns the identity of the arm; fields that the firmware does not report are empty.
-fn identity(lines: &mut Lines) -> Result<Identity, Trouble> {
-    let known = |answer: Result<Vec<u8>, Failure>, place: &str, rpc| match answer {
+fn identity(lines: &mut KinovaLines) -> Result<DeviceIdentity, DeviceError> {
+    let known = |answer: Result<Vec<u8>, KinovaFailure>, place: &str, rpc| match answer {
         Ok(payload) => Ok(payload),
-        Err(Failure::Refused(_, sub::UNSUPPORTED_METHOD | sub::UNSUPPORTED_SERVICE | 2)) => Ok(Vec::new()),
+        Err(KinovaFailure::Refused(_, sub::UNSUPPORTED_METHOD | sub::UNSUPPORTED_SERVICE | 2)) => Ok(Vec::new()),
         Err(failure) => Err(failure.trouble(place, rpc)),
     };
-    let mut told = [Rpc::MODEL_NUMBER, Rpc::SERIAL_NUMBER].map(|rpc| (rpc, String::new()));
-    for (rpc, text) in &mut told {
+    let mut report = [Rpc::MODEL_NUMBER, Rpc::SERIAL_NUMBER].map(|rpc| (rpc, String::new()));
+    for (rpc, text) in &mut report {
         let payload = known(lines.ask(*rpc, &()), &lines.place, *rpc)?;
-        *text = Text::decode(payload.as_slice()).unwrap_or_default().value;
+        *text = KinovaText::decode(payload.as_slice()).unwrap_or_default().value;
     }
     let payload = known(lines.ask(Rpc::FIRMWARE_VERSION, &()), &lines.place, Rpc::FIRMWARE_VERSION)?;
-    let firmware = Number::decode(payload.as_slice()).unwrap_or_default().value;
-    let [(_, model), (_, serial)] = told;
+    let firmware = KinovaNumber::decode(payload.as_slice()).unwrap_or_default().value;
+    let [(_, model), (_, serial)] = report;
     let product = format!("Kinova Gen3 {model}").trim_end().to_owned();
-    Ok(Identity { product, serial, firmware: format!("{firmware:#010x}") })
+    Ok(DeviceIdentity { product, serial, firmware: format!("{firmware:#010x}") })
 }
 
-fn call(lines: &mut Lines, rpc: Rpc, question: &impl Message) -> Result<Vec<u8>, Trouble> {
+fn call(lines: &mut KinovaLines, rpc: Rpc, question: &impl Message) -> Result<Vec<u8>, DeviceError> {
     lines.ask(rpc, question).map_err(|failure| failure.trouble(&lines.place, rpc))
 }
 
-fn ask<T: Message + Default>(lines: &mut Lines, rpc: Rpc) -> Result<T, Trouble> {
+fn ask<T: Message + Default>(lines: &mut KinovaLines, rpc: Rpc) -> Result<T, DeviceError> {
     let payload = call(lines, rpc, &())?;
-    T::decode(payload.as_slice()).map_err(|_| Failure::Nonsense.trouble(&lines.place, rpc))
+    T::decode(payload.as_slice()).map_err(|_| KinovaFailure::Nonsense.trouble(&lines.place, rpc))
 }

@@ -10,13 +10,13 @@ use std::{
 use prost::Message;
 
 use super::{
-    frame::{self, Frame, Header, PacketReader, REQUEST, RESPONSE},
+    frame::{self, KinovaFrame, KinovaHeader, PacketReader, REQUEST, RESPONSE},
     messages::{CreateSessionInfo, Rpc},
-    settings::Settings,
+    settings::KinovaSettings,
 };
 use crate::{
-    Loss, Trouble,
-    transport::{Bytes as _, Datagrams as _, Tcp, Udp},
+    DeviceError, Loss,
+    transport::{ByteStream as _, Tcp, TransportDatagrams as _, Udp},
 };
 
 /// Maximum size of a datagram: of UDP over IPv4, 65 535 bytes less 8 and 20 bytes of headers (RFC 768, RFC 791).
@@ -50,13 +50,13 @@ impl Caller {
     pub(super) fn request(&mut self, rpc: Rpc, payload: &impl Message) -> (u16, &[u8]) {
         self.message = self.message.wrapping_add(1);
         let Rpc { service, function } = rpc;
-        let header = Header {
+        let header = KinovaHeader {
             kind: REQUEST,
             session: self.session,
             message: self.message,
             service,
             function,
-            ..Header::default()
+            ..KinovaHeader::default()
         };
         self.out.clear();
         if self.packets {
@@ -69,7 +69,7 @@ impl Caller {
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Failure {
+pub enum KinovaFailure {
     /// Refused with this error and sub error.
     Refused(u8, u16),
     Silent,
@@ -77,10 +77,10 @@ pub enum Failure {
     Lost,
 }
 
-pub(super) type Answered<T> = Result<T, Failure>;
+pub(super) type CallResult<T> = Result<T, KinovaFailure>;
 
 #[derive(Debug)]
-pub struct Lines {
+pub struct KinovaLines {
     pub(super) tcp: Tcp,
     pub(super) packets: PacketReader,
     pub(super) calls: Caller,
@@ -91,25 +91,25 @@ pub struct Lines {
     timeout: Duration,
 }
 
-impl Lines {
+impl KinovaLines {
     /// Connects, without opening sessions.
     ///
     /// # Errors
-    /// [`Trouble`] if the address cannot be reached.
-    pub fn connect(settings: &Settings) -> Result<Self, Trouble> {
+    /// [`DeviceError`] if the address cannot be reached.
+    pub fn connect(settings: &KinovaSettings) -> Result<Self, DeviceError> {
         let place = format!("{}:{}", settings.host, settings.tcp_port);
         let timeout = Duration::from_secs_f64(settings.timeout_s);
         let tcp = Tcp::open(&place, timeout)?;
         let to = (settings.host.as_str(), settings.udp_port).to_socket_addrs();
-        let to = to.map_err(|error| Trouble::of_address(&place, &error))?.next();
-        let udp = Udp::connect(to.ok_or_else(|| Trouble::Unreachable { place: place.clone() })?)?;
+        let to = to.map_err(|error| DeviceError::of_address(&place, &error))?.next();
+        let udp = Udp::connect(to.ok_or_else(|| DeviceError::Unreachable { place: place.clone() })?)?;
         let datagram = vec![0; DATAGRAM_MAX].into_boxed_slice();
         let packets = PacketReader::default();
         Ok(Self { tcp, packets, calls: Caller::new(true), udp, cyclic: Caller::new(false), datagram, place, timeout })
     }
 
     /// Returns a duplicate of the TCP connection and an encoded request, for emergencies.
-    pub(super) fn last_words(&self, rpc: Rpc, question: &impl Message) -> std::io::Result<(Tcp, Vec<u8>)> {
+    pub(super) fn last_text(&self, rpc: Rpc, question: &impl Message) -> std::io::Result<(Tcp, Vec<u8>)> {
         // A number far from those of ordinary calls, which count up from 1.
         let mut caller = Caller { session: self.calls.session, message: u16::MAX - 1, out: Vec::new(), packets: true };
         caller.request(rpc, question);
@@ -119,38 +119,39 @@ impl Lines {
     /// Opens a session on each connection.
     ///
     /// # Errors
-    /// [`Trouble`] if the arm refuses the user or does not answer.
-    pub fn log_in(&mut self, settings: &Settings) -> Result<(), Trouble> {
+    /// [`DeviceError`] if the arm refuses the user or does not answer.
+    pub fn log_in(&mut self, settings: &KinovaSettings) -> Result<(), DeviceError> {
         let login = CreateSessionInfo {
             username: settings.user.clone(),
             session_inactivity_ms: SESSION_INACTIVITY_MS,
             password: settings.password.clone(),
             connection_inactivity_ms: CONNECTION_INACTIVITY_MS,
         };
-        let trouble = |failure: Failure, place: &str| match failure {
-            Failure::Refused(_, super::messages::sub::INVALID_PASSWORD | super::messages::sub::USER_NOT_FOUND) => {
-                Trouble::RefusedLogin { place: place.to_owned(), user: settings.user.clone() }
-            }
+        let trouble = |failure: KinovaFailure, place: &str| match failure {
+            KinovaFailure::Refused(
+                _,
+                super::messages::sub::INVALID_PASSWORD | super::messages::sub::USER_NOT_FOUND,
+            ) => DeviceError::RefusedLogin { place: place.to_owned(), user: settings.user.clone() },
             other => other.trouble(place, Rpc::CREATE_SESSION),
         };
         self.ask(Rpc::CREATE_SESSION, &login).map_err(|failure| trouble(failure, &self.place))?;
         let place = format!("{} UDP port {}", settings.host, settings.udp_port);
         self.ask_cyclic(Rpc::CREATE_SESSION, &login).map_err(|failure| match failure {
-            Failure::Lost => Trouble::NobodyListens { place },
+            KinovaFailure::Lost => DeviceError::NobodyListens { place },
             other => trouble(other, &place),
         })?;
         Ok(())
     }
 
     /// Calls and waits for the payload of the answer (TCP).
-    pub fn ask(&mut self, rpc: Rpc, question: &impl Message) -> Answered<Vec<u8>> {
+    pub fn ask(&mut self, rpc: Rpc, question: &impl Message) -> CallResult<Vec<u8>> {
         self.ask_within(rpc, question, self.timeout)
     }
 
     /// Calls with another timeout.
-    pub(super) fn ask_within(&mut self, rpc: Rpc, question: &impl Message, timeout: Duration) -> Answered<Vec<u8>> {
+    pub(super) fn ask_within(&mut self, rpc: Rpc, question: &impl Message, timeout: Duration) -> CallResult<Vec<u8>> {
         let (number, bytes) = self.calls.request(rpc, question);
-        self.tcp.send(bytes).map_err(|_| Failure::Lost)?;
+        self.tcp.send(bytes).map_err(|_| KinovaFailure::Lost)?;
         let before = (self.packets.skipped, self.packets.damaged);
         let end = Instant::now() + timeout;
         while Instant::now() < end {
@@ -165,29 +166,29 @@ impl Lines {
             sleep(NAP);
         }
         let dirty = (self.packets.skipped, self.packets.damaged) != before;
-        Err(if dirty { Failure::Nonsense } else { Failure::Silent })
+        Err(if dirty { KinovaFailure::Nonsense } else { KinovaFailure::Silent })
     }
 
     /// Returns the failure for a peer with another protocol: it answers with unknown bytes and closes the connection.
-    const fn broken(&self, _: Loss, skipped: u64) -> Failure {
-        if self.packets.skipped > skipped { Failure::Nonsense } else { Failure::Lost }
+    const fn broken(&self, _: Loss, skipped: u64) -> KinovaFailure {
+        if self.packets.skipped > skipped { KinovaFailure::Nonsense } else { KinovaFailure::Lost }
     }
 
     /// Calls on the cyclic connection and waits for the payload of the answer; repeats the request until an answer
     /// arrives.
-    pub fn ask_cyclic(&mut self, rpc: Rpc, question: &impl Message) -> Answered<Vec<u8>> {
+    pub fn ask_cyclic(&mut self, rpc: Rpc, question: &impl Message) -> CallResult<Vec<u8>> {
         let end = Instant::now() + self.timeout;
         let mut dirty = false;
         while Instant::now() < end {
             let (number, bytes) = self.cyclic.request(rpc, question);
-            self.udp.send(bytes).map_err(|_| Failure::Lost)?;
+            self.udp.send(bytes).map_err(|_| KinovaFailure::Lost)?;
             let again = (Instant::now() + AGAIN).min(end);
             while Instant::now() < again {
-                let Some(count) = self.udp.receive(&mut self.datagram).map_err(|_| Failure::Lost)? else {
+                let Some(count) = self.udp.receive(&mut self.datagram).map_err(|_| KinovaFailure::Lost)? else {
                     sleep(NAP);
                     continue;
                 };
-                let Ok(frame) = Frame::decode(&self.datagram[..count]) else {
+                let Ok(frame) = KinovaFrame::decode(&self.datagram[..count]) else {
                     dirty = true;
                     continue;
                 };
@@ -197,33 +198,33 @@ impl Lines {
                 }
             }
         }
-        Err(if dirty { Failure::Nonsense } else { Failure::Silent })
+        Err(if dirty { KinovaFailure::Nonsense } else { KinovaFailure::Silent })
     }
 }
 
-fn payload(frame: &Frame<'_>) -> Answered<Vec<u8>> {
+fn payload(frame: &KinovaFrame<'_>) -> CallResult<Vec<u8>> {
     match frame.header.error {
         0 => Ok(frame.payload.to_vec()),
-        error => Err(Failure::Refused(error, frame.header.sub_error)),
+        error => Err(KinovaFailure::Refused(error, frame.header.sub_error)),
     }
 }
 
-impl Failure {
+impl KinovaFailure {
     /// Returns the failure as a message for the user.
-    pub(super) fn trouble(self, place: &str, rpc: Rpc) -> Trouble {
+    pub(super) fn trouble(self, place: &str, rpc: Rpc) -> DeviceError {
         let place = place.to_owned();
         match self {
             Self::Refused(error, code) => {
                 let answer = format!("{} (error {error}/{code})", super::messages::sub::words(code));
-                Trouble::Refused { place, command: rpc.name().to_owned(), answer }
+                DeviceError::Refused { place, command: rpc.name().to_owned(), answer }
             }
-            Self::Silent => Trouble::Silent { place },
-            Self::Nonsense => Trouble::WrongProduct {
+            Self::Silent => DeviceError::Silent { place },
+            Self::Nonsense => DeviceError::WrongProduct {
                 place,
                 expected: "Kinova Gen3 (Kortex API 2)".to_owned(),
                 found: "device with another protocol".to_owned(),
             },
-            Self::Lost => Trouble::Other { place, reason: "the connection was closed while opening".to_owned() },
+            Self::Lost => DeviceError::Other { place, reason: "the connection was closed while opening".to_owned() },
         }
     }
 }

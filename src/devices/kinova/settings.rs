@@ -2,11 +2,11 @@ use nima_core::kinematics::JointLimits;
 use serde::{Deserialize, Serialize};
 
 use super::limits::TWIST_MAX;
-use crate::Trouble;
+use crate::DeviceError;
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
-pub struct Settings {
+pub struct KinovaSettings {
     /// Network address or host name.
     pub host: String,
     /// TCP port for calls.
@@ -30,7 +30,7 @@ pub struct Settings {
     pub timeout_s: f64,
 }
 
-impl Default for Settings {
+impl Default for KinovaSettings {
     fn default() -> Self {
         Self {
             host: "192.168.1.10".to_owned(),
@@ -48,16 +48,16 @@ impl Default for Settings {
     }
 }
 
-impl Settings {
+impl KinovaSettings {
     /// Creates settings for an endpoint `HOST tcp=PORT udp=PORT`, the format in which an emulator prints it.
     ///
     /// ```
-    /// use nima_devices::kinova::Settings;
+    /// use nima_devices::kinova::KinovaSettings;
     ///
-    /// let settings = Settings::at("127.0.0.1 tcp=10000 udp=10001").expect("a complete endpoint");
+    /// let settings = KinovaSettings::at("127.0.0.1 tcp=10000 udp=10001").expect("a complete endpoint");
     /// assert_eq!((settings.host.as_str(), settings.tcp_port, settings.udp_port), ("127.0.0.1", 10_000, 10_001));
     /// assert!(settings.check().is_ok());
-    /// assert!(Settings::at("127.0.0.1 tcp=many").is_none(), "not a port");
+    /// assert!(KinovaSettings::at("127.0.0.1 tcp=many").is_none(), "not a port");
     /// ```
     pub fn at(endpoint: &str) -> Option<Self> {
         let mut words = endpoint.split_whitespace();
@@ -81,14 +81,14 @@ impl Settings {
     /// Checks every value.
     ///
     /// # Errors
-    /// [`Trouble::Setting`] for the first value outside its range.
-    pub fn check(&self) -> Result<(), Trouble> {
+    /// [`DeviceError::Setting`] for the first value outside its range.
+    pub fn check(&self) -> Result<(), DeviceError> {
         let within = |key: &str, value: f64, low: f64, high: f64| {
             if value > low && value <= high {
                 return Ok(());
             }
             let allowed = format!("above {low} and at most {high}");
-            Err(Trouble::Setting { key: key.to_owned(), value: value.to_string(), allowed })
+            Err(DeviceError::Setting { key: key.to_owned(), value: value.to_string(), allowed })
         };
         within("speed_fraction", self.speed_fraction, 0.0, 1.0)?;
         within("lead_rad", self.lead_rad, 0.0, 0.2)?;

@@ -14,13 +14,13 @@ fn bytes_of(hex: &str) -> Vec<u8> {
     hex.as_bytes().chunks(2).map(|pair| super::crc::read_hex(pair).unwrap() as u8).collect()
 }
 
-fn example() -> Frames {
+fn example() -> TrackingReply {
     let at = Transform { quaternion: [1.0, 0.0, 0.0, 0.0], translation_mm: [1.5, -2.5, -1000.0], error_mm: 0.25 };
-    let one = HandleFrame { handle: 0x0A, sight: Sight::Valid(at), status: PortStatus(0x31), frame: 7 };
-    Frames::new(&[one], SystemStatus(0))
+    let one = HandleFrame { handle: 0x0A, sight: ToolVisibility::Valid(at), status: PortStatus(0x31), frame: 7 };
+    TrackingReply::new(&[one], SystemStatus(0))
 }
 
-fn arrivals(bytes: &[u8], expected: Expected) -> Vec<Vec<u8>> {
+fn arrivals(bytes: &[u8], expected: ExpectedReply) -> Vec<Vec<u8>> {
     let mut inbox = Inbox::new();
     let mut whole = Vec::new();
     for piece in bytes.chunks(7) {
@@ -28,8 +28,8 @@ fn arrivals(bytes: &[u8], expected: Expected) -> Vec<Vec<u8>> {
         inbox.filled(piece.len());
         while let Some(arrival) = inbox.next(expected) {
             match arrival {
-                Arrival::Line(text) | Arrival::Block(text) => whole.push(text.to_vec()),
-                Arrival::Damaged => whole.push(b"damaged".to_vec()),
+                NdiArrival::Line(text) | NdiArrival::Block(text) => whole.push(text.to_vec()),
+                NdiArrival::Damaged => whole.push(b"damaged".to_vec()),
             }
         }
     }
@@ -39,15 +39,15 @@ fn arrivals(bytes: &[u8], expected: Expected) -> Vec<Vec<u8>> {
 #[test]
 fn the_published_tracking_replies_are_read_and_written_byte_by_byte() {
     let block = bytes_of(BLOCK);
-    let bodies = arrivals(&block, Expected::Block);
+    let bodies = arrivals(&block, ExpectedReply::Block);
     assert_eq!(bodies.len(), 1);
-    assert_eq!(Frames::of_block(&bodies[0], OPTIONS), Ok(example()));
+    assert_eq!(TrackingReply::of_block(&bodies[0], OPTIONS), Ok(example()));
     let mut body = Vec::new();
     example().write_block(OPTIONS, &mut body);
     assert_eq!(block_of(&body), block);
 
-    let texts = arrivals(TEXT, Expected::Line);
-    assert_eq!(Frames::of_text(&texts[0], OPTIONS), Ok(example()));
+    let texts = arrivals(TEXT, ExpectedReply::Line);
+    assert_eq!(TrackingReply::of_text(&texts[0], OPTIONS), Ok(example()));
     let mut text = Vec::new();
     example().write_text(OPTIONS, &mut text);
     finish_line(&mut text);
@@ -57,16 +57,23 @@ fn the_published_tracking_replies_are_read_and_written_byte_by_byte() {
 #[test]
 fn missing_disabled_and_unoccupied_handles_are_read() {
     let text = b"040AMISSING0000007100000007\n0BDISABLED\n0CUNOCCUPIED\n0DDISABLED0000000100000007\n0040";
-    let frames = Frames::of_text(text, OPTIONS).unwrap();
-    let told: Vec<_> = frames.handles().iter().map(|one| (one.handle, one.sight, one.status.0)).collect();
-    assert_eq!(told, [(0x0A, Sight::Missing, 0x71), (0x0B, Sight::Disabled, 0), (0x0D, Sight::Disabled, 0)]);
+    let frames = TrackingReply::of_text(text, OPTIONS).unwrap();
+    let report: Vec<_> = frames.handles().iter().map(|one| (one.handle, one.sight, one.status.0)).collect();
+    assert_eq!(
+        report,
+        [
+            (0x0A, ToolVisibility::Missing, 0x71),
+            (0x0B, ToolVisibility::Disabled, 0),
+            (0x0D, ToolVisibility::Disabled, 0)
+        ]
+    );
     assert_eq!(frames.system.0, SystemStatus::TOOL_CAME);
 
     let body = bytes_of("030a0271000000070000000b040c0231000000070000004000");
-    let frames = Frames::of_block(&body, OPTIONS).unwrap();
+    let frames = TrackingReply::of_block(&body, OPTIONS).unwrap();
     assert_eq!(frames.handles().len(), 3);
     assert!(frames.handles()[0].status.has(PortStatus::OUT_OF_VOLUME));
-    assert_eq!((frames.handles()[1].sight, frames.handles()[2].frame), (Sight::Disabled, 7));
+    assert_eq!((frames.handles()[1].sight, frames.handles()[2].frame), (ToolVisibility::Disabled, 7));
 }
 
 #[test]
@@ -75,25 +82,26 @@ fn strays_are_skipped() {
     body.push(9);
     body.extend_from_slice(&[0; 2 + 9 * 12]);
     body.extend_from_slice(&[8, 0]);
-    assert_eq!(Frames::of_block(&body, OPTIONS | STRAYS).unwrap().system.0, 8);
+    assert_eq!(TrackingReply::of_block(&body, OPTIONS | STRAYS).unwrap().system.0, 8);
     let text = [b"0005".as_slice(), b"00", &[b'0'; 5 * 21], b"0008"].concat();
-    assert_eq!(Frames::of_text(&text, OPTIONS | STRAYS).unwrap().system.0, 8);
+    assert_eq!(TrackingReply::of_text(&text, OPTIONS | STRAYS).unwrap().system.0, 8);
 }
 
-fn random_frames(random: &mut fastrand::Rng) -> Frames {
+fn random_frames(random: &mut fastrand::Rng) -> TrackingReply {
     let handles: Vec<_> = (0..random.usize(..=6))
         .map(|k| {
             let mut part = |scale: f64, limit: i32| f64::from(random.i32(-limit..=limit)) / scale;
             let quaternion = std::array::from_fn(|_| part(1e4, 10_000));
             let translation_mm = std::array::from_fn(|_| part(1e2, 999_999));
             let at = Transform { quaternion, translation_mm, error_mm: part(1e4, 99_999) };
-            let sight = [Sight::Valid(at), Sight::Missing, Sight::Disabled][random.usize(..3)];
-            let disabled = sight == Sight::Disabled;
+            let sight =
+                [ToolVisibility::Valid(at), ToolVisibility::Missing, ToolVisibility::Disabled][random.usize(..3)];
+            let disabled = sight == ToolVisibility::Disabled;
             let (status, frame) = if disabled { (0, 0) } else { (random.u32(..), random.u32(..)) };
             HandleFrame { handle: 10 + k as u8, sight, status: PortStatus(status), frame }
         })
         .collect();
-    Frames::new(&handles, SystemStatus(random.u16(..)))
+    TrackingReply::new(&handles, SystemStatus(random.u16(..)))
 }
 
 #[test]
@@ -104,10 +112,10 @@ fn every_tracking_reply_comes_back_as_it_was_sent() {
         let options = OPTIONS | if random.bool() { STRAYS } else { 0 };
         let mut text = Vec::new();
         frames.write_text(options, &mut text);
-        assert_eq!(Frames::of_text(&text, options), Ok(frames));
+        assert_eq!(TrackingReply::of_text(&text, options), Ok(frames));
         let mut body = Vec::new();
         frames.write_block(options, &mut body);
-        let back = Frames::of_block(&body, options).unwrap();
+        let back = TrackingReply::of_block(&body, options).unwrap();
         let mut again = Vec::new();
         back.write_block(options, &mut again);
         assert_eq!(body, again, "floats of 32 bits come back exactly");
@@ -115,39 +123,39 @@ fn every_tracking_reply_comes_back_as_it_was_sent() {
     }
 }
 
-fn every_command() -> Vec<Command<'static>> {
+fn every_command() -> Vec<NdiCommand<'static>> {
     let mut data = [0; CHUNK];
     data.iter_mut().enumerate().for_each(|(k, byte)| *byte = (k * 37) as u8);
     let mut commands = vec![
-        Command::Init,
-        Command::Reset,
-        Command::ApiRevision,
-        Command::Version(0),
-        Command::GetInfo("Features.Firmware.Version"),
-        Command::Get("Info.Timeout.PINIT"),
-        Command::Set("Param.X=1"),
-        Command::Echo("hello, unit"),
-        Command::Beep(9),
-        Command::Request(WIRELESS),
-        Command::Write { handle: 0xAB, address: 0x03C0, data },
-        Command::Initialise(10),
-        Command::Enable(10, Priority::Static),
-        Command::Enable(10, Priority::Dynamic),
-        Command::Enable(10, Priority::Buttons),
-        Command::Disable(10),
-        Command::Free(255),
-        Command::Information { handle: 1, options: 0x7F },
-        Command::Start { anew: false },
-        Command::Start { anew: true },
-        Command::Stop,
-        Command::Track(Form::Text, OPTIONS),
-        Command::Track(Form::Binary, OPTIONS | STRAYS),
+        NdiCommand::Init,
+        NdiCommand::Reset,
+        NdiCommand::ApiRevision,
+        NdiCommand::Version(0),
+        NdiCommand::GetInfo("Features.Firmware.Version"),
+        NdiCommand::Get("Info.Timeout.PINIT"),
+        NdiCommand::Set("Param.X=1"),
+        NdiCommand::Echo("hello, unit"),
+        NdiCommand::Beep(9),
+        NdiCommand::Request(WIRELESS),
+        NdiCommand::Write { handle: 0xAB, address: 0x03C0, data },
+        NdiCommand::Initialise(10),
+        NdiCommand::Enable(10, NdiPriority::Static),
+        NdiCommand::Enable(10, NdiPriority::Dynamic),
+        NdiCommand::Enable(10, NdiPriority::Buttons),
+        NdiCommand::Disable(10),
+        NdiCommand::Free(255),
+        NdiCommand::Information { handle: 1, options: 0x7F },
+        NdiCommand::Start { anew: false },
+        NdiCommand::Start { anew: true },
+        NdiCommand::Stop,
+        NdiCommand::Track(ReplyForm::Text, OPTIONS),
+        NdiCommand::Track(ReplyForm::Binary, OPTIONS | STRAYS),
     ];
     commands.extend(
-        [Filter::All, Filter::ToFree, Filter::ToInitialise, Filter::ToEnable, Filter::Enabled].map(Command::Handles),
+        [Filter::All, Filter::ToFree, Filter::ToInitialise, Filter::ToEnable, Filter::Enabled].map(NdiCommand::Handles),
     );
     let speeds = [9600, 14_400, 19_200, 38_400, 57_600, 115_200, 921_600, 1_228_739, 230_400];
-    commands.extend(speeds.map(|baud| Command::Comm { baud }));
+    commands.extend(speeds.map(|baud| NdiCommand::Comm { baud }));
     commands
 }
 
@@ -156,14 +164,14 @@ fn every_command_is_understood_in_both_forms() {
     for command in every_command() {
         for line in [command.encode(), command.encode_unchecked()] {
             let text = line.as_bytes().strip_suffix(b"\r").unwrap();
-            assert_eq!(Command::parse(text), Ok(command), "{}", String::from_utf8_lossy(text));
+            assert_eq!(NdiCommand::parse(text), Ok(command), "{}", String::from_utf8_lossy(text));
         }
     }
-    assert_eq!(Command::Init.encode().as_bytes(), b"INIT:E3A5\r");
-    assert_eq!(Command::Track(Form::Binary, 0x0801).encode().as_bytes(), b"BX:080100EC\r");
-    assert_eq!(Command::Comm { baud: 115_200 }.encode().as_bytes(), b"COMM:500000048\r");
-    assert_eq!(Command::Handles(Filter::ToFree).encode().as_bytes(), b"PHSR:01E03E\r");
-    assert_eq!(Command::parse(b"TX"), Ok(Command::Track(Form::Text, TRANSFORMS)));
+    assert_eq!(NdiCommand::Init.encode().as_bytes(), b"INIT:E3A5\r");
+    assert_eq!(NdiCommand::Track(ReplyForm::Binary, 0x0801).encode().as_bytes(), b"BX:080100EC\r");
+    assert_eq!(NdiCommand::Comm { baud: 115_200 }.encode().as_bytes(), b"COMM:500000048\r");
+    assert_eq!(NdiCommand::Handles(Filter::ToFree).encode().as_bytes(), b"PHSR:01E03E\r");
+    assert_eq!(NdiCommand::parse(b"TX"), Ok(NdiCommand::Track(ReplyForm::Text, TRANSFORMS)));
 }
 
 #[test]
@@ -182,7 +190,7 @@ fn what_is_no_command_is_refused_with_the_code_for_it() {
         (b"PVWR 0A0000", ErrorCode::PARAMETER_COUNT),
         (b"BEEP 0", ErrorCode::OUT_OF_RANGE),
     ] {
-        assert_eq!(Command::parse(line), Err(code), "{}", String::from_utf8_lossy(line));
+        assert_eq!(NdiCommand::parse(line), Err(code), "{}", String::from_utf8_lossy(line));
     }
 }
 
@@ -193,16 +201,16 @@ fn replies_are_found_again_in_dirt() {
     spoilt[20] ^= 1;
     let dirt = [&b"\xC4\xA5\xFF\xFF\x00\x00ER"[..], &block, b"\xC4", &spoilt, &block, b"ERROR0C4E42\r", b"RESETBE6F\r"]
         .concat();
-    let found = arrivals(&dirt, Expected::Block);
+    let found = arrivals(&dirt, ExpectedReply::Block);
     let kinds: Vec<_> = found.iter().map(|one| &one[..one.len().min(7)]).collect();
     let body = &block[6..13];
     assert_eq!(kinds, [body, b"damaged", body, b"ERROR0C", b"RESET"]);
-    assert_eq!(arrivals(b"xx\rOKAYA896\rOKAYA897\rOKAY", Expected::Line), [&b"damaged"[..], b"OKAY", b"damaged"]);
+    assert_eq!(arrivals(b"xx\rOKAYA896\rOKAYA897\rOKAY", ExpectedReply::Line), [&b"damaged"[..], b"OKAY", b"damaged"]);
 }
 
 #[test]
 fn a_flood_without_an_end_is_thrown_away() {
-    for expected in [Expected::Line, Expected::Block] {
+    for expected in [ExpectedReply::Line, ExpectedReply::Block] {
         let mut inbox = Inbox::new();
         for _ in 0..10 {
             let room = inbox.room();
@@ -250,9 +258,9 @@ fn fuzz(count: u32, seed: u64) -> u32 {
         mutated(&mut random, &mut bytes);
         // Reply bodies, as they are after a correct checksum, go directly to the parsers; lines and blocks also as a
         // stream.
-        let read = [Frames::of_block(&bytes, options), Frames::of_text(&bytes, options)];
+        let read = [TrackingReply::of_block(&bytes, options), TrackingReply::of_text(&bytes, options)];
         whole += read.iter().flatten().count() as u32;
-        Command::parse(&bytes).ok();
+        NdiCommand::parse(&bytes).ok();
         identity_of(&String::from_utf8_lossy(&bytes));
         let mut wire = if random.bool() { block_of(&bytes) } else { [&bytes[..], b"\r"].concat() };
         mutated(&mut random, &mut wire);
@@ -260,7 +268,7 @@ fn fuzz(count: u32, seed: u64) -> u32 {
         let taken = wire.len().min(room.len());
         room[..taken].copy_from_slice(&wire[..taken]);
         inbox.filled(taken);
-        let expected = if random.bool() { Expected::Line } else { Expected::Block };
+        let expected = if random.bool() { ExpectedReply::Line } else { ExpectedReply::Block };
         let mut turns = 0;
         while inbox.next(expected).is_some() {
             turns += 1;

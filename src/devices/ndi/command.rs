@@ -5,7 +5,7 @@
 
 use super::{
     crc::{crc16, read_hex, write_hex},
-    words::ErrorCode,
+    text::ErrorCode,
 };
 
 /// Bytes of a tool definition in one command: `PVWR` carries 128 hexadecimal digits (`ndicapi`).
@@ -16,7 +16,7 @@ pub const COMMAND_MAX: usize = 192;
 pub const WIRELESS: [u8; 14] = *b"*********1****";
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Form {
+pub enum ReplyForm {
     /// `TX`: ASCII, four decimals.
     Text,
     /// `BX`: binary, 32-bit floats.
@@ -46,7 +46,7 @@ impl Filter {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Priority {
+pub enum NdiPriority {
     /// Fixed in the scene.
     Static,
     /// Moving.
@@ -55,7 +55,7 @@ pub enum Priority {
     Buttons,
 }
 
-impl Priority {
+impl NdiPriority {
     const fn letter(self) -> u8 {
         match self {
             Self::Static => b'S',
@@ -79,7 +79,7 @@ const SPEEDS: [(u8, u32); 9] = [
 ];
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Command<'a> {
+pub enum NdiCommand<'a> {
     /// `INIT`: frees all handles and stops tracking.
     Init,
     /// `RESET`: returns to the state after power-on.
@@ -114,7 +114,7 @@ pub enum Command<'a> {
     /// `PINIT`: initialises a handle.
     Initialise(u8),
     /// `PENA`: enables tracking of a handle.
-    Enable(u8, Priority),
+    Enable(u8, NdiPriority),
     /// `PDIS`: disables tracking of a handle.
     Disable(u8),
     /// `PHF`: frees a handle.
@@ -126,7 +126,7 @@ pub enum Command<'a> {
     /// `TSTOP`: stops tracking.
     Stop,
     /// `TX` or `BX`: requests tracking data, with reply options.
-    Track(Form, u16),
+    Track(ReplyForm, u16),
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -154,7 +154,7 @@ impl CommandLine {
     }
 }
 
-impl<'a> Command<'a> {
+impl<'a> NdiCommand<'a> {
     /// Returns the name in the API.
     pub const fn name(&self) -> &'static str {
         match self {
@@ -178,8 +178,8 @@ impl<'a> Command<'a> {
             Self::Information { .. } => "PHINF",
             Self::Start { .. } => "TSTART",
             Self::Stop => "TSTOP",
-            Self::Track(Form::Text, _) => "TX",
-            Self::Track(Form::Binary, _) => "BX",
+            Self::Track(ReplyForm::Text, _) => "TX",
+            Self::Track(ReplyForm::Binary, _) => "BX",
         }
     }
 
@@ -245,13 +245,13 @@ impl<'a> Command<'a> {
     /// [`ErrorCode`] that the unit would answer.
     ///
     /// ```
-    /// use nima_devices::ndi::{Command, ErrorCode};
+    /// use nima_devices::ndi::{NdiCommand, ErrorCode};
     ///
-    /// let line = Command::Beep(2).encode();
+    /// let line = NdiCommand::Beep(2).encode();
     /// let (cr, text) = line.as_bytes().split_last().expect("a command is never empty");
     /// assert!(text.starts_with(b"BEEP:2") && *cr == b'\r');
-    /// assert_eq!(Command::parse(text), Ok(Command::Beep(2)));
-    /// assert_eq!(Command::parse(b"BEEP:20000"), Err(ErrorCode::BAD_CRC));
+    /// assert_eq!(NdiCommand::parse(text), Ok(NdiCommand::Beep(2)));
+    /// assert_eq!(NdiCommand::parse(b"BEEP:20000"), Err(ErrorCode::BAD_CRC));
     /// ```
     pub fn parse(line: &'a [u8]) -> Result<Self, ErrorCode> {
         let is_name = |byte: &u8| byte.is_ascii_uppercase() || byte.is_ascii_digit();
@@ -294,8 +294,8 @@ impl<'a> Command<'a> {
             b"GET" => Self::Get(text()?),
             b"SET" => Self::Set(text()?),
             b"ECHO" => Self::Echo(text()?),
-            b"TX" => Self::Track(Form::Text, options(arguments, 0)?),
-            b"BX" => Self::Track(Form::Binary, options(arguments, 0)?),
+            b"TX" => Self::Track(ReplyForm::Text, options(arguments, 0)?),
+            b"BX" => Self::Track(ReplyForm::Binary, options(arguments, 0)?),
             _ => return Self::of_port(name, arguments),
         })
     }
@@ -313,7 +313,7 @@ impl<'a> Command<'a> {
             b"PDIS" => Self::Disable(handle()?),
             b"PHF" => Self::Free(handle()?),
             b"PENA" => {
-                let priorities = [Priority::Static, Priority::Dynamic, Priority::Buttons];
+                let priorities = [NdiPriority::Static, NdiPriority::Dynamic, NdiPriority::Buttons];
                 let letter = *arguments.get(2).ok_or(ErrorCode::PARAMETER_COUNT)?;
                 let priority = priorities.into_iter().find(|one| one.letter() == letter);
                 Self::Enable(handle()?, priority.ok_or(ErrorCode::INVALID_PRIORITY)?)

@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use super::command::CHUNK;
-use crate::Trouble;
+use crate::DeviceError;
 
 /// Length of a definition as sent, padded with zeros, as `ndicapi` does.
 pub const DEFINITION: usize = 1024;
@@ -12,15 +12,16 @@ const BEGIN: &[u8] = b"NDI\0";
 
 /// A tool definition in the form in which it is sent.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Definition(Box<[u8; DEFINITION]>);
+pub struct NdiDefinition(Box<[u8; DEFINITION]>);
 
-impl Definition {
+impl NdiDefinition {
     /// Reads the file named under `key` in the rig file.
     ///
     /// # Errors
-    /// [`Trouble::File`] if the file cannot be read, is too long, or is not a tool definition.
-    pub fn load(key: &str, path: &Path) -> Result<Self, Trouble> {
-        let refuse = |reason: String| Trouble::File { key: key.to_owned(), path: path.display().to_string(), reason };
+    /// [`DeviceError::File`] if the file cannot be read, is too long, or is not a tool definition.
+    pub fn load(key: &str, path: &Path) -> Result<Self, DeviceError> {
+        let refuse =
+            |reason: String| DeviceError::File { key: key.to_owned(), path: path.display().to_string(), reason };
         let file = nima_files::read(path, DEFINITION as u64)
             .map_err(|error| refuse(format!("the file cannot be read ({error})")))?;
         if !file.starts_with(BEGIN) {
@@ -52,13 +53,13 @@ mod tests {
         fs::File::create(place("large.rom")).unwrap().set_len(1 << 40).unwrap();
         let cases = [
             (place("pipe.rom"), "it is a pipe"),
-            (place("large.rom"), "it is larger than 1024 bytes"),
+            (place("large.rom"), "it is larger than the limit of 1024 bytes"),
             ("/dev/zero".into(), "it is a device"),
             (folder.path().to_owned(), "it is a folder"),
         ];
         for (path, words) in cases {
             let (sender, receiver) = mpsc::channel();
-            thread::spawn(move || sender.send(Definition::load("tools[0]", &path)));
+            thread::spawn(move || sender.send(NdiDefinition::load("tools[0]", &path)));
             let trouble = receiver.recv_timeout(Duration::from_mins(1)).expect("it hangs").unwrap_err();
             assert!(trouble.to_string().contains(words) && trouble.cure().contains("correct its path"), "{trouble}");
         }

@@ -12,18 +12,18 @@ use std::time::Duration;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 use super::{
-    command::{Command, Form},
+    command::{NdiCommand, ReplyForm},
     crc::read_hex,
-    opening::{self, FIRST_BAUD, OPTIONS, Opened},
-    reply::{Arrival, Expected},
-    session::{Session, Wire},
-    settings::Settings,
-    tracking::{Frames, HandleFrame, Sight, Transform},
-    words::{PortStatus, SystemStatus},
+    opening::{self, FIRST_BAUD, OPTIONS, OpenTracker},
+    reply::{ExpectedReply, NdiArrival},
+    session::{NdiSession, NdiWire},
+    settings::NdiSettings,
+    text::{PortStatus, SystemStatus},
+    tracking::{HandleFrame, ToolVisibility, TrackingReply, Transform},
 };
 use crate::{
-    Device, Health, Identity, Loss, Stamped, Standing, TRACKED_TOOLS, Tracked, TrackerReading, Trouble,
-    transport::Bytes as _,
+    ConnectionState, Device, DeviceError, DeviceIdentity, Health, Loss, TRACKED_TOOLS, TimedReading, TrackedTool,
+    TrackerReading, transport::ByteStream as _,
 };
 
 /// Time limit for a new frame, and for the reply to a command, s: six frames at 60 Hz.
@@ -47,7 +47,7 @@ const FARTHEST_MM: f64 = 6_000.0;
 const NORM_WITHIN: f64 = 0.01;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Flight {
+enum PendingCommand {
     /// None; the next one may be sent at this time, s.
     Idle(f64),
     /// A command that was sent at this time, s.
@@ -55,17 +55,17 @@ enum Flight {
 }
 
 #[derive(Debug)]
-pub struct Driver {
-    session: Session,
-    identity: Identity,
+pub struct NdiDriver {
+    session: NdiSession,
+    identity: DeviceIdentity,
     health: Health,
-    form: Form,
+    form: ReplyForm,
     handles: [Option<u8>; TRACKED_TOOLS],
     frame_hz: f64,
     serial: bool,
-    flight: Flight,
+    flight: PendingCommand,
     /// Time of arrival of the current reply's last byte, s; `None` before the first byte.
-    heard_s: Option<f64>,
+    received_s: Option<f64>,
     damaged_in_a_row: u32,
     /// Whether the reply to the current command was damaged.
     spoilt: bool,
@@ -80,32 +80,32 @@ pub struct Driver {
 
 /// Meaning of one arrival, computed before the driver's state changes.
 #[expect(clippy::large_enum_variant, reason = "made and used within one poll, where a box would be an allocation")]
-enum Event {
-    Frames(Frames),
+enum ArrivalMeaning {
+    Frames(TrackingReply),
     Answered,
     Damaged,
     Fault(u32),
 }
 
-impl Driver {
+impl NdiDriver {
     /// Opens, configures and starts the unit; may take some seconds.
     ///
     /// # Errors
-    /// [`Trouble`] if a setting is invalid, the unit cannot be reached or reports a fault, or a tool definition is not
+    /// [`DeviceError`] if a setting is invalid, the unit cannot be reached or reports a fault, or a tool definition is not
     /// accepted.
-    pub fn open(settings: &Settings) -> Result<Self, Trouble> {
-        Self::open_within(settings, opening::Timeouts::USUAL)
+    pub fn open(settings: &NdiSettings) -> Result<Self, DeviceError> {
+        Self::open_within(settings, opening::NdiTimeouts::USUAL)
     }
 
     /// Opens for a diagnosis: a unit that does not answer is reported within a second.
-    pub(crate) fn try_open(settings: &Settings) -> Result<Self, Trouble> {
-        Self::open_within(settings, opening::Timeouts::SHORT)
+    pub(crate) fn try_open(settings: &NdiSettings) -> Result<Self, DeviceError> {
+        Self::open_within(settings, opening::NdiTimeouts::SHORT)
     }
 
-    fn open_within(settings: &Settings, timeouts: opening::Timeouts) -> Result<Self, Trouble> {
-        let Opened { session, identity, form, handles } = opening::open(settings, timeouts)?;
+    fn open_within(settings: &NdiSettings, timeouts: opening::NdiTimeouts) -> Result<Self, DeviceError> {
+        let OpenTracker { session, identity, form, handles } = opening::open(settings, timeouts)?;
         let mut health = Health::opening();
-        health.standing = Standing::Connected;
+        health.standing = ConnectionState::Connected;
         Ok(Self {
             session,
             identity,
@@ -114,8 +114,8 @@ impl Driver {
             handles,
             frame_hz: settings.frame_hz,
             serial: settings.port.is_some(),
-            flight: Flight::Idle(f64::NEG_INFINITY),
-            heard_s: None,
+            flight: PendingCommand::Idle(f64::NEG_INFINITY),
+            received_s: None,
             damaged_in_a_row: 0,
             spoilt: false,
             fresh_s: None,
@@ -128,7 +128,7 @@ impl Driver {
         })
     }
 
-    pub const fn form(&self) -> Form {
+    pub const fn form(&self) -> ReplyForm {
         self.form
     }
 
@@ -148,25 +148,27 @@ impl Driver {
         self.beeps = times.min(9);
     }
 
-    fn expected(&self) -> Expected {
+    fn expected(&self) -> ExpectedReply {
         match (self.flight, self.form) {
-            (Flight::Asked { beep: false, .. } | Flight::Idle(_), Form::Binary) => Expected::Block,
-            _ => Expected::Line,
+            (PendingCommand::Asked { beep: false, .. } | PendingCommand::Idle(_), ReplyForm::Binary) => {
+                ExpectedReply::Block
+            }
+            _ => ExpectedReply::Line,
         }
     }
 
-    fn event_of(arrival: Arrival<'_>, beep: bool) -> Event {
+    fn event_of(arrival: NdiArrival<'_>, beep: bool) -> ArrivalMeaning {
         let frames = match arrival {
-            Arrival::Damaged => return Event::Damaged,
-            Arrival::Line(line) if line == b"RESET" => return Event::Fault(RESTARTED),
-            Arrival::Line(line) if line.starts_with(b"ERROR") => {
-                return read_hex(&line[5..]).map_or(Event::Damaged, Event::Fault);
+            NdiArrival::Damaged => return ArrivalMeaning::Damaged,
+            NdiArrival::Line(line) if line == b"RESET" => return ArrivalMeaning::Fault(RESTARTED),
+            NdiArrival::Line(line) if line.starts_with(b"ERROR") => {
+                return read_hex(&line[5..]).map_or(ArrivalMeaning::Damaged, ArrivalMeaning::Fault);
             }
-            Arrival::Line(_) if beep => return Event::Answered,
-            Arrival::Line(line) => Frames::of_text(line, OPTIONS),
-            Arrival::Block(body) => Frames::of_block(body, OPTIONS),
+            NdiArrival::Line(_) if beep => return ArrivalMeaning::Answered,
+            NdiArrival::Line(line) => TrackingReply::of_text(line, OPTIONS),
+            NdiArrival::Block(body) => TrackingReply::of_block(body, OPTIONS),
         };
-        frames.map_or(Event::Damaged, Event::Frames)
+        frames.map_or(ArrivalMeaning::Damaged, ArrivalMeaning::Frames)
     }
 
     fn receive(&mut self, now_s: f64) -> Result<Option<TrackerReading>, Loss> {
@@ -177,21 +179,21 @@ impl Driver {
                 break;
             }
             self.session.inbox.filled(count);
-            self.heard_s = Some(now_s);
+            self.received_s = Some(now_s);
             while let Some(arrival) = self.session.inbox.next(self.expected()) {
-                let Flight::Asked { at_s, beep } = self.flight else {
+                let PendingCommand::Asked { at_s, beep } = self.flight else {
                     // A reply without a command.
                     self.health.out_of_order += 1;
                     continue;
                 };
                 match Self::event_of(arrival, beep) {
-                    Event::Frames(frames) => {
+                    ArrivalMeaning::Frames(frames) => {
                         self.answered(at_s);
                         newest = self.take(&frames, now_s)?.or(newest);
                     }
-                    Event::Answered => self.answered(at_s),
-                    Event::Damaged => self.damaged()?,
-                    Event::Fault(code) => return Err(Loss::Device { code }),
+                    ArrivalMeaning::Answered => self.answered(at_s),
+                    ArrivalMeaning::Damaged => self.damaged()?,
+                    ArrivalMeaning::Fault(code) => return Err(Loss::Device { code }),
                 }
             }
             self.health.skipped_bytes += self.session.inbox.take_skipped();
@@ -200,7 +202,7 @@ impl Driver {
     }
 
     fn answered(&mut self, asked_s: f64) {
-        self.flight = Flight::Idle(asked_s + PACE_S);
+        self.flight = PendingCommand::Idle(asked_s + PACE_S);
         self.damaged_in_a_row = 0;
         self.spoilt = false;
     }
@@ -213,7 +215,7 @@ impl Driver {
     }
 
     /// Handles a complete reply: status, faults, and a reading if its frame is new.
-    fn take(&mut self, frames: &Frames, now_s: f64) -> Result<Option<TrackerReading>, Loss> {
+    fn take(&mut self, frames: &TrackingReply, now_s: f64) -> Result<Option<TrackerReading>, Loss> {
         self.system = frames.system;
         let faults = frames.system.faults();
         if faults != 0 {
@@ -224,18 +226,18 @@ impl Driver {
         let mut newest: Option<u32> = None;
         for (k, handle) in self.handles.iter().enumerate() {
             let Some(handle) = handle else { continue };
-            let told = frames.handles().iter().find(|told| told.handle == *handle);
-            self.status[k] = told.map_or(PortStatus(0), |told| told.status);
-            reading.tools[k] = match told {
-                None => Tracked::Disabled,
-                Some(told) => tracked(told).ok_or_else(|| {
+            let report = frames.handles().iter().find(|report| report.handle == *handle);
+            self.status[k] = report.map_or(PortStatus(0), |report| report.status);
+            reading.tools[k] = match report {
+                None => TrackedTool::Disabled,
+                Some(report) => tracked(report).ok_or_else(|| {
                     self.health.refused += 1;
                     Loss::Implausible
                 })?,
             };
-            if let Some(told) = told.filter(|told| told.sight != Sight::Disabled) {
-                let later = newest.is_none_or(|frame| told.frame.wrapping_sub(frame).cast_signed() > 0);
-                newest = if later { Some(told.frame) } else { newest };
+            if let Some(report) = report.filter(|report| report.sight != ToolVisibility::Disabled) {
+                let later = newest.is_none_or(|frame| report.frame.wrapping_sub(frame).cast_signed() > 0);
+                newest = if later { Some(report.frame) } else { newest };
             }
         }
         let Some(frame) = newest.filter(|frame| self.is_new(*frame, now_s)) else { return Ok(None) };
@@ -260,43 +262,43 @@ impl Driver {
     }
 
     fn watch(&mut self, now_s: f64) -> Result<(), Loss> {
-        if let Flight::Asked { at_s, .. } = self.flight {
+        if let PendingCommand::Asked { at_s, .. } = self.flight {
             if now_s - at_s >= SILENT_S {
-                return Err(if self.heard_s.is_some() { Loss::Corrupt } else { Loss::Silent });
+                return Err(if self.received_s.is_some() { Loss::Corrupt } else { Loss::Silent });
             }
-            if self.spoilt && self.heard_s.is_none_or(|heard_s| now_s - heard_s >= QUIET_S) {
+            if self.spoilt && self.received_s.is_none_or(|received_s| now_s - received_s >= QUIET_S) {
                 self.session.inbox.clear();
                 self.spoilt = false;
-                self.flight = Flight::Idle(now_s);
+                self.flight = PendingCommand::Idle(now_s);
             }
         }
         if now_s - *self.fresh_s.get_or_insert(now_s) >= SILENT_S { Err(Loss::Silent) } else { Ok(()) }
     }
 
     fn ask(&mut self, now_s: f64) -> Result<(), Loss> {
-        let Flight::Idle(due_s) = self.flight else { return Ok(()) };
+        let PendingCommand::Idle(due_s) = self.flight else { return Ok(()) };
         if now_s < due_s {
             return Ok(());
         }
         let beep = self.beeps > 0 && !self.beeped;
         self.beeped = beep;
-        let command = if beep { Command::Beep(self.beeps) } else { Command::Track(self.form, OPTIONS) };
+        let command = if beep { NdiCommand::Beep(self.beeps) } else { NdiCommand::Track(self.form, OPTIONS) };
         if beep {
             self.beeps = 0;
         }
         self.session.inbox.clear();
-        self.heard_s = None;
+        self.received_s = None;
         self.session.wire.send(command.encode().as_bytes())?;
-        self.flight = Flight::Asked { at_s: now_s, beep };
+        self.flight = PendingCommand::Asked { at_s: now_s, beep };
         Ok(())
     }
 }
 
-impl Device for Driver {
+impl Device for NdiDriver {
     type Reading = TrackerReading;
 
-    fn poll(&mut self, now_s: f64) -> Option<Stamped<TrackerReading>> {
-        if matches!(self.health.standing, Standing::Lost(_)) {
+    fn poll(&mut self, now_s: f64) -> Option<TimedReading<TrackerReading>> {
+        if matches!(self.health.standing, ConnectionState::Lost(_)) {
             return None;
         }
         let taken = self.receive(now_s).and_then(|reading| {
@@ -305,7 +307,7 @@ impl Device for Driver {
             Ok(reading)
         });
         match taken {
-            Ok(reading) => reading.map(|value| Stamped {
+            Ok(reading) => reading.map(|value| TimedReading {
                 device_s: Some(self.frames_since_open as f64 / self.frame_hz),
                 arrival_s: now_s,
                 value,
@@ -319,28 +321,28 @@ impl Device for Driver {
         }
     }
 
-    fn about(&self) -> (&Health, &Identity) {
+    fn about(&self) -> (&Health, &DeviceIdentity) {
         (&self.health, &self.identity)
     }
 }
 
-impl Drop for Driver {
+impl Drop for NdiDriver {
     /// Waits for the current reply to pass, stops tracking, and resets the line to its initial speed for the next
     /// session.
     fn drop(&mut self) {
         const TIMEOUT: Duration = Duration::from_millis(100);
-        if self.health.standing == Standing::Lost(Loss::Disconnected) {
+        if self.health.standing == ConnectionState::Lost(Loss::Disconnected) {
             return;
         }
-        if matches!(self.flight, Flight::Asked { .. }) {
+        if matches!(self.flight, PendingCommand::Asked { .. }) {
             self.session.let_pass(TIMEOUT / 2);
         }
         // Sent even if the unit no longer answers.
-        self.session.ask(&Command::Stop, TIMEOUT).ok();
-        let first = Command::Comm { baud: FIRST_BAUD };
+        self.session.ask(&NdiCommand::Stop, TIMEOUT).ok();
+        let first = NdiCommand::Comm { baud: FIRST_BAUD };
         if self.serial
             && self.session.ask(&first, TIMEOUT).is_ok()
-            && let Wire::Serial(serial) = &mut self.session.wire
+            && let NdiWire::Serial(serial) = &mut self.session.wire
         {
             serial.set_baud(FIRST_BAUD).ok();
         }
@@ -348,26 +350,26 @@ impl Drop for Driver {
 }
 
 /// Converts a handle to SI units; returns `None` for impossible numbers.
-fn tracked(told: &HandleFrame) -> Option<Tracked> {
-    let out_of_volume = told.status.has(PortStatus::OUT_OF_VOLUME);
-    match told.sight {
-        Sight::Missing => Some(Tracked::Missing { out_of_volume }),
-        Sight::Disabled => Some(Tracked::Disabled),
-        Sight::Valid(at) => {
-            let seen = seen(&at, told.status.has(PortStatus::PARTLY_OUT))?;
+fn tracked(report: &HandleFrame) -> Option<TrackedTool> {
+    let out_of_volume = report.status.has(PortStatus::OUT_OF_VOLUME);
+    match report.sight {
+        ToolVisibility::Missing => Some(TrackedTool::Missing { out_of_volume }),
+        ToolVisibility::Disabled => Some(TrackedTool::Disabled),
+        ToolVisibility::Valid(at) => {
+            let seen = seen(&at, report.status.has(PortStatus::PARTLY_OUT))?;
             // Outside the volume the accuracy is not specified, so the numbers are not used.
-            Some(if out_of_volume { Tracked::Missing { out_of_volume } } else { seen })
+            Some(if out_of_volume { TrackedTool::Missing { out_of_volume } } else { seen })
         }
     }
 }
 
-fn seen(at: &Transform, at_the_edge: bool) -> Option<Tracked> {
+fn seen(at: &Transform, at_the_edge: bool) -> Option<TrackedTool> {
     let [w, i, j, k] = at.quaternion;
     let quaternion = Quaternion::new(w, i, j, k);
     let norm_off = (quaternion.norm() - 1.0).abs();
     let position_mm = Vector3::from(at.translation_mm);
     let plausible = norm_off <= NORM_WITHIN && position_mm.norm() <= FARTHEST_MM && at.error_mm.is_finite();
-    plausible.then(|| Tracked::Seen {
+    plausible.then(|| TrackedTool::Seen {
         c_from_tool: UnitQuaternion::new_normalize(quaternion),
         position_in_c_m: position_mm * 1e-3,
         error_m: at.error_mm * 1e-3,

@@ -4,17 +4,17 @@
 use std::time::Duration;
 
 use super::{
-    command::{Command, Filter, Form, OUTSIDE_TOO, Priority, TRANSFORMS, WIRELESS},
+    command::{Filter, NdiCommand, NdiPriority, OUTSIDE_TOO, ReplyForm, TRANSFORMS, WIRELESS},
     crc::read_hex,
-    definition::Definition,
-    session::{Failure, Session, Wire},
-    settings::{Replies, Settings},
-    tracking::Frames,
+    definition::NdiDefinition,
+    session::{NdiFailure, NdiSession, NdiWire},
+    settings::{NdiSettings, Replies},
+    text::PortStatus,
+    tracking::TrackingReply,
     version::{form_of, identity_of},
-    words::PortStatus,
 };
 use crate::{
-    Identity, TRACKED_TOOLS, Trouble,
+    DeviceError, DeviceIdentity, TRACKED_TOOLS,
     transport::{Serial, SerialSettings, Tcp},
 };
 
@@ -23,12 +23,12 @@ pub(super) const OPTIONS: u16 = TRANSFORMS | OUTSIDE_TOO;
 /// Line speed after power-on and after a reset.
 pub(super) const FIRST_BAUD: u32 = 9600;
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Timeouts {
+pub(super) struct NdiTimeouts {
     quick: Duration,
     slow: Duration,
 }
 
-impl Timeouts {
+impl NdiTimeouts {
     /// The values of the manufacturer's guide.
     pub(super) const USUAL: Self = Self { quick: Duration::from_millis(500), slow: Duration::from_secs(5) };
     /// For a diagnosis, which must finish within a second.
@@ -41,17 +41,17 @@ const CONNECT: Duration = Duration::from_secs(2);
 const BREAK: Duration = Duration::from_millis(250);
 
 #[derive(Debug)]
-pub(super) struct Opened {
-    pub(super) session: Session,
-    pub(super) identity: Identity,
-    pub(super) form: Form,
+pub(super) struct OpenTracker {
+    pub(super) session: NdiSession,
+    pub(super) identity: DeviceIdentity,
+    pub(super) form: ReplyForm,
     pub(super) handles: [Option<u8>; TRACKED_TOOLS],
 }
 
-pub(super) fn open(settings: &Settings, timeouts: Timeouts) -> Result<Opened, Trouble> {
+pub(super) fn open(settings: &NdiSettings, timeouts: NdiTimeouts) -> Result<OpenTracker, DeviceError> {
     settings.check()?;
     let key = |k: usize| format!("tools[{k}]");
-    let load = |(k, path): (usize, &std::path::PathBuf)| Definition::load(&key(k), path);
+    let load = |(k, path): (usize, &std::path::PathBuf)| NdiDefinition::load(&key(k), path);
     let definitions = settings.tools.iter().enumerate().map(load).collect::<Result<Vec<_>, _>>()?;
     let place = settings.place();
     let baud = settings.port.is_some().then_some(settings.baud);
@@ -59,34 +59,34 @@ pub(super) fn open(settings: &Settings, timeouts: Timeouts) -> Result<Opened, Tr
         None => over_network(&place, timeouts),
         Some(baud) => over_line(&place, baud, timeouts),
     }?;
-    Opening { session, place, baud, timeouts }.start(settings, &definitions)
+    NdiOpening { session, place, baud, timeouts }.start(settings, &definitions)
 }
 
-fn over_network(place: &str, timeouts: Timeouts) -> Result<Session, Trouble> {
-    let mut session = Session::new(Wire::Tcp(Tcp::open(place, timeouts.slow.min(CONNECT))?));
-    session.ask(&Command::Init, timeouts.slow).map_err(|failure| trouble(place, None, "INIT", failure))?;
+fn over_network(place: &str, timeouts: NdiTimeouts) -> Result<NdiSession, DeviceError> {
+    let mut session = NdiSession::new(NdiWire::Tcp(Tcp::open(place, timeouts.slow.min(CONNECT))?));
+    session.ask(&NdiCommand::Init, timeouts.slow).map_err(|failure| trouble(place, None, "INIT", failure))?;
     std::thread::sleep(SETTLE);
     Ok(session)
 }
 
 /// Finds the line speed: the speed of the last session, the speed after power-on, or the speed after a reset by a
 /// break.
-fn over_line(place: &str, baud: u32, timeouts: Timeouts) -> Result<Session, Trouble> {
+fn over_line(place: &str, baud: u32, timeouts: NdiTimeouts) -> Result<NdiSession, DeviceError> {
     let line = Serial::open(&SerialSettings { port: place.to_owned(), baud })?;
-    let mut session = Session::new(Wire::Serial(line));
-    let told = |command, failure| trouble(place, Some(baud), command, failure);
+    let mut session = NdiSession::new(NdiWire::Serial(line));
+    let report = |command, failure| trouble(place, Some(baud), command, failure);
     // The line may still contain half a command, or a reply, of the last session, so the first attempt may fail.
     let mut found = false;
     for speed in [baud, FIRST_BAUD] {
-        set_baud(&mut session, speed).map_err(|failure| told("INIT", failure))?;
-        let mut answered = session.ask_again(&Command::Init, timeouts.quick / 2);
+        set_baud(&mut session, speed).map_err(|failure| report("INIT", failure))?;
+        let mut answered = session.ask_again(&NdiCommand::Init, timeouts.quick / 2);
         if answered.as_deref() == Ok("RESET") {
             // Bytes at a low speed look like a break to a unit at a higher speed.
             std::thread::sleep(SETTLE);
-            answered = session.ask_again(&Command::Init, timeouts.slow);
+            answered = session.ask_again(&NdiCommand::Init, timeouts.slow);
         }
-        if answered == Err(Failure::Gone) {
-            return Err(told("INIT", Failure::Gone));
+        if answered == Err(NdiFailure::Gone) {
+            return Err(report("INIT", NdiFailure::Gone));
         }
         if answered.is_ok_and(|answer| answer == "OKAY") {
             found = true;
@@ -94,69 +94,69 @@ fn over_line(place: &str, baud: u32, timeouts: Timeouts) -> Result<Session, Trou
         }
     }
     if !found {
-        reset(&mut session, timeouts).map_err(|failure| told("a reset", failure))?;
-        session.ask_again(&Command::Init, timeouts.slow).map_err(|failure| told("INIT", failure))?;
+        reset(&mut session, timeouts).map_err(|failure| report("a reset", failure))?;
+        session.ask_again(&NdiCommand::Init, timeouts.slow).map_err(|failure| report("INIT", failure))?;
     }
     std::thread::sleep(SETTLE);
-    session.ask(&Command::Comm { baud }, timeouts.quick).map_err(|failure| told("COMM", failure))?;
+    session.ask(&NdiCommand::Comm { baud }, timeouts.quick).map_err(|failure| report("COMM", failure))?;
     std::thread::sleep(SETTLE);
-    set_baud(&mut session, baud).map_err(|failure| told("COMM", failure))?;
+    set_baud(&mut session, baud).map_err(|failure| report("COMM", failure))?;
     Ok(session)
 }
 
-fn set_baud(session: &mut Session, baud: u32) -> Result<(), Failure> {
+fn set_baud(session: &mut NdiSession, baud: u32) -> Result<(), NdiFailure> {
     match &mut session.wire {
-        Wire::Serial(serial) => serial.set_baud(baud).map_err(|_| Failure::Gone),
-        Wire::Tcp(_) => Ok(()),
+        NdiWire::Serial(serial) => serial.set_baud(baud).map_err(|_| NdiFailure::Gone),
+        NdiWire::Tcp(_) => Ok(()),
     }
 }
 
 /// Sends a break at the initial speed; the unit replies `RESET`.
-fn reset(session: &mut Session, timeouts: Timeouts) -> Result<(), Failure> {
+fn reset(session: &mut NdiSession, timeouts: NdiTimeouts) -> Result<(), NdiFailure> {
     set_baud(session, FIRST_BAUD)?;
     session.drain()?;
-    if let Wire::Serial(serial) = &mut session.wire {
-        serial.send_break(BREAK).map_err(|_| Failure::Gone)?;
+    if let NdiWire::Serial(serial) = &mut session.wire {
+        serial.send_break(BREAK).map_err(|_| NdiFailure::Gone)?;
     }
     session.wait(timeouts.slow)?;
     std::thread::sleep(SETTLE);
     Ok(())
 }
 
-fn trouble(place: &str, baud: Option<u32>, command: &str, failure: Failure) -> Trouble {
+fn trouble(place: &str, baud: Option<u32>, command: &str, failure: NdiFailure) -> DeviceError {
     let place = place.to_owned();
     match (failure, baud) {
-        (Failure::Silent, _) => Trouble::Silent { place },
-        (Failure::Garbled, Some(baud)) => Trouble::WrongBaud { place, baud },
-        (Failure::Garbled, None) => Trouble::WrongProduct {
+        (NdiFailure::Silent, _) => DeviceError::Silent { place },
+        (NdiFailure::Garbled, Some(baud)) => DeviceError::WrongBaud { place, baud },
+        (NdiFailure::Garbled, None) => DeviceError::WrongProduct {
             place,
             expected: "tracker with NDI's Combined API".to_owned(),
             found: "device with another protocol".to_owned(),
         },
-        (Failure::Gone, _) => Trouble::Other { place, reason: "it closed the connection".to_owned() },
-        (Failure::Refused(code), _) => {
-            Trouble::Refused { place, command: command.to_owned(), answer: code.to_string() }
+        (NdiFailure::Gone, _) => DeviceError::Other { place, reason: "it closed the connection".to_owned() },
+        (NdiFailure::Refused(code), _) => {
+            DeviceError::Refused { place, command: command.to_owned(), answer: code.to_string() }
         }
     }
 }
 
-struct Opening {
-    session: Session,
+struct NdiOpening {
+    session: NdiSession,
     place: String,
     baud: Option<u32>,
-    timeouts: Timeouts,
+    timeouts: NdiTimeouts,
 }
 
-impl Opening {
-    fn start(mut self, settings: &Settings, definitions: &[Definition]) -> Result<Opened, Trouble> {
-        let identity = identity_of(&self.quick(&Command::Version(0))?);
+impl NdiOpening {
+    fn start(mut self, settings: &NdiSettings, definitions: &[NdiDefinition]) -> Result<OpenTracker, DeviceError> {
+        let identity = identity_of(&self.quick(&NdiCommand::Version(0))?);
         let form = match settings.replies {
             Replies::Auto => form_of(&identity.firmware),
-            Replies::Text => Form::Text,
-            Replies::Binary => Form::Binary,
+            Replies::Text => ReplyForm::Text,
+            Replies::Binary => ReplyForm::Binary,
         };
         for (handle, _) in self.handles(Filter::ToFree)? {
-            self.quick(&Command::Free(handle))?;
+            self.quick(&NdiCommand::Free(handle))?;
         }
         let mut handles = [None; TRACKED_TOOLS];
         for (place, (definition, path)) in handles.iter_mut().zip(definitions.iter().zip(&settings.tools)) {
@@ -167,22 +167,23 @@ impl Opening {
             self.plugged(&mut handles)?;
         }
         for handle in handles.iter().flatten() {
-            self.slow(&Command::Enable(*handle, Priority::Dynamic), "PENA")?;
+            self.slow(&NdiCommand::Enable(*handle, NdiPriority::Dynamic), "PENA")?;
         }
-        self.slow(&Command::Start { anew: false }, "TSTART")?;
+        self.slow(&NdiCommand::Start { anew: false }, "TSTART")?;
         self.look()?;
-        Ok(Opened { session: self.session, identity, form, handles })
+        Ok(OpenTracker { session: self.session, identity, form, handles })
     }
 
     /// Reads the unit's status once, so that a fault is reported as such and not as a loss after every opening.
-    fn look(&mut self) -> Result<(), Trouble> {
-        let answer = self.quick(&Command::Track(Form::Text, OPTIONS))?;
-        let frames = Frames::of_text(answer.as_bytes(), OPTIONS).map_err(|_| self.trouble("TX", Failure::Garbled))?;
+    fn look(&mut self) -> Result<(), DeviceError> {
+        let answer = self.quick(&NdiCommand::Track(ReplyForm::Text, OPTIONS))?;
+        let frames =
+            TrackingReply::of_text(answer.as_bytes(), OPTIONS).map_err(|_| self.trouble("TX", NdiFailure::Garbled))?;
         if frames.system.faults() == 0 {
             return Ok(());
         }
-        self.session.ask(&Command::Stop, self.timeouts.quick).ok();
-        Err(Trouble::DeviceFault {
+        self.session.ask(&NdiCommand::Stop, self.timeouts.quick).ok();
+        Err(DeviceError::DeviceFault {
             place: self.place.clone(),
             words: format!("{} (system status {:04X})", frames.system.words(), frames.system.0),
             cure: "Let the camera reach its operating temperature and check its cables; if this persists, restart it."
@@ -191,22 +192,22 @@ impl Opening {
     }
 
     /// Requests a handle for one tool and loads its definition.
-    fn define(&mut self, definition: &Definition, name: &str) -> Result<u8, Trouble> {
-        let answer = self.slow(&Command::Request(WIRELESS), "PHRQ")?;
+    fn define(&mut self, definition: &NdiDefinition, name: &str) -> Result<u8, DeviceError> {
+        let answer = self.slow(&NdiCommand::Request(WIRELESS), "PHRQ")?;
         let handle = read_hex(answer.as_bytes()).filter(|_| answer.len() == 2);
-        let handle = handle.ok_or_else(|| self.trouble("PHRQ", Failure::Garbled))? as u8;
+        let handle = handle.ok_or_else(|| self.trouble("PHRQ", NdiFailure::Garbled))? as u8;
         for (address, data) in definition.chunks() {
-            self.quick(&Command::Write { handle, address, data })?;
+            self.quick(&NdiCommand::Write { handle, address, data })?;
         }
-        self.slow(&Command::Initialise(handle), &format!("PINIT for {name}"))?;
+        self.slow(&NdiCommand::Initialise(handle), &format!("PINIT for {name}"))?;
         Ok(handle)
     }
 
     /// Initialises tools that are plugged in. A tool can add further handles, so the unit is queried twice.
-    fn plugged(&mut self, handles: &mut [Option<u8>; TRACKED_TOOLS]) -> Result<(), Trouble> {
+    fn plugged(&mut self, handles: &mut [Option<u8>; TRACKED_TOOLS]) -> Result<(), DeviceError> {
         for _ in 0..2 {
             for (handle, _) in self.handles(Filter::ToInitialise)? {
-                self.slow(&Command::Initialise(handle), "PINIT")?;
+                self.slow(&NdiCommand::Initialise(handle), "PINIT")?;
                 if let Some(free) = handles.iter_mut().find(|place| place.is_none()) {
                     *free = Some(handle);
                 }
@@ -216,20 +217,20 @@ impl Opening {
     }
 
     /// Returns handles and their status.
-    fn handles(&mut self, filter: Filter) -> Result<Vec<(u8, PortStatus)>, Trouble> {
-        let answer = self.quick(&Command::Handles(filter))?;
-        handles_of(answer.as_bytes()).ok_or_else(|| self.trouble("PHSR", Failure::Garbled))
+    fn handles(&mut self, filter: Filter) -> Result<Vec<(u8, PortStatus)>, DeviceError> {
+        let answer = self.quick(&NdiCommand::Handles(filter))?;
+        handles_of(answer.as_bytes()).ok_or_else(|| self.trouble("PHSR", NdiFailure::Garbled))
     }
 
-    fn quick(&mut self, command: &Command<'_>) -> Result<String, Trouble> {
+    fn quick(&mut self, command: &NdiCommand<'_>) -> Result<String, DeviceError> {
         self.session.ask_again(command, self.timeouts.quick).map_err(|failure| self.trouble(command.name(), failure))
     }
 
-    fn slow(&mut self, command: &Command<'_>, name: &str) -> Result<String, Trouble> {
+    fn slow(&mut self, command: &NdiCommand<'_>, name: &str) -> Result<String, DeviceError> {
         self.session.ask(command, self.timeouts.slow).map_err(|failure| self.trouble(name, failure))
     }
 
-    fn trouble(&self, command: &str, failure: Failure) -> Trouble {
+    fn trouble(&self, command: &str, failure: NdiFailure) -> DeviceError {
         trouble(&self.place, self.baud, command, failure)
     }
 }

@@ -2,13 +2,13 @@
 //! 1.2).
 //!
 //! Bounded memory, no allocation after [`Inbox::new`]. A binary block is recognised by its start sequence and the
-//! checksum of its header; a line by its CR. A reply with a wrong checksum is reported as [`Arrival::Damaged`] and
+//! checksum of its header; a line by its CR. A reply with a wrong checksum is reported as [`NdiArrival::Damaged`] and
 //! discarded.
 //!
 //! Source: `ndicapi`, which `tests/peers` runs against the emulator.
 
 use super::crc::{crc16, read_hex};
-use crate::unread::Unread;
+use crate::stream_buffer::Unread;
 
 /// First bytes of a binary reply: 0xA5C4, little-endian.
 const BINARY_START: [u8; 2] = [0xC4, 0xA5];
@@ -17,14 +17,14 @@ pub const REPLY_MAX: usize = 4096;
 const HEADER: usize = 6;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Expected {
+pub enum ExpectedReply {
     Line,
     /// A binary block; or `ERRORnn`; or `RESET` if the unit was switched off and on.
     Block,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Arrival<'a> {
+pub enum NdiArrival<'a> {
     /// An ASCII reply with a correct checksum; checksum and CR are removed.
     Line(&'a [u8]),
     /// The body of a binary reply with correct checksums.
@@ -73,42 +73,42 @@ impl Inbox {
         std::mem::replace(&mut self.skipped, 0)
     }
 
-    pub fn next(&mut self, expected: Expected) -> Option<Arrival<'_>> {
+    pub fn next(&mut self, expected: ExpectedReply) -> Option<NdiArrival<'_>> {
         match expected {
-            Expected::Line => self.next_line(),
-            Expected::Block => self.next_block(),
+            ExpectedReply::Line => self.next_line(),
+            ExpectedReply::Block => self.next_block(),
         }
     }
 
-    fn next_line(&mut self) -> Option<Arrival<'_>> {
+    fn next_line(&mut self) -> Option<NdiArrival<'_>> {
         let length = self.unread.bytes().iter().position(|byte| *byte == b'\r')?;
         let line = self.unread.pass(length + 1);
         let Some(text) = checked(&line[..length]) else {
             self.skipped += length as u64 + 1;
-            return Some(Arrival::Damaged);
+            return Some(NdiArrival::Damaged);
         };
-        Some(Arrival::Line(text))
+        Some(NdiArrival::Line(text))
     }
 
-    fn next_block(&mut self) -> Option<Arrival<'_>> {
+    fn next_block(&mut self) -> Option<NdiArrival<'_>> {
         loop {
             match seek(self.unread.bytes()) {
-                Found::Nothing if self.unread.is_empty() => return None,
-                Found::Nothing => {
+                BufferStart::Nothing if self.unread.is_empty() => return None,
+                BufferStart::Nothing => {
                     self.unread.pass(1);
                     self.skipped += 1;
                 }
-                Found::Part => return None,
-                Found::Bad => {
+                BufferStart::Part => return None,
+                BufferStart::Bad => {
                     self.unread.pass(2);
                     self.skipped += 2;
-                    return Some(Arrival::Damaged);
+                    return Some(NdiArrival::Damaged);
                 }
-                Found::Block(body) => {
-                    return Some(Arrival::Block(&self.unread.pass(HEADER + body + 2)[HEADER..HEADER + body]));
+                BufferStart::Block(body) => {
+                    return Some(NdiArrival::Block(&self.unread.pass(HEADER + body + 2)[HEADER..HEADER + body]));
                 }
-                Found::Line(text) => {
-                    return Some(Arrival::Line(&self.unread.pass(text + 5)[..text]));
+                BufferStart::Line(text) => {
+                    return Some(NdiArrival::Line(&self.unread.pass(text + 5)[..text]));
                 }
             }
         }
@@ -122,7 +122,7 @@ fn checked(line: &[u8]) -> Option<&[u8]> {
 }
 
 /// Start of the buffer when a block is expected.
-enum Found {
+enum BufferStart {
     Nothing,
     Part,
     Bad,
@@ -132,31 +132,33 @@ enum Found {
     Line(usize),
 }
 
-fn seek(bytes: &[u8]) -> Found {
+fn seek(bytes: &[u8]) -> BufferStart {
     for (word, text) in [(b"ERROR", 7), (b"RESET", 5)] {
         let common = word.len().min(bytes.len());
         if common > 0 && bytes[..common] == word[..common] {
             return match bytes.get(..text + 5) {
-                None => Found::Part,
-                Some(line) if line[text + 4] == b'\r' && checked(&line[..text + 4]).is_some() => Found::Line(text),
-                Some(_) => Found::Bad,
+                None => BufferStart::Part,
+                Some(line) if line[text + 4] == b'\r' && checked(&line[..text + 4]).is_some() => {
+                    BufferStart::Line(text)
+                }
+                Some(_) => BufferStart::Bad,
             };
         }
     }
     let common = BINARY_START.len().min(bytes.len());
     if common == 0 || bytes[..common] != BINARY_START[..common] {
-        return Found::Nothing;
+        return BufferStart::Nothing;
     }
-    let Some(header) = bytes.get(..HEADER) else { return Found::Part };
+    let Some(header) = bytes.get(..HEADER) else { return BufferStart::Part };
     let body = usize::from(u16::from_le_bytes([header[2], header[3]]));
     if u16::from_le_bytes([header[4], header[5]]) != crc16(&header[..4]) || body > REPLY_MAX - HEADER - 2 {
-        return Found::Nothing;
+        return BufferStart::Nothing;
     }
-    let Some(tail) = bytes.get(HEADER + body..HEADER + body + 2) else { return Found::Part };
+    let Some(tail) = bytes.get(HEADER + body..HEADER + body + 2) else { return BufferStart::Part };
     if u16::from_le_bytes([tail[0], tail[1]]) == crc16(&bytes[HEADER..HEADER + body]) {
-        Found::Block(body)
+        BufferStart::Block(body)
     } else {
-        Found::Bad
+        BufferStart::Bad
     }
 }
 

@@ -3,23 +3,23 @@
 use std::time::{Duration, Instant};
 
 use super::{
-    command::{COMMAND_MAX, Command},
+    command::{COMMAND_MAX, NdiCommand},
     crc::read_hex,
-    reply::{Arrival, Expected, Inbox},
-    words::ErrorCode,
+    reply::{ExpectedReply, Inbox, NdiArrival},
+    text::ErrorCode,
 };
 use crate::{
     Loss,
-    transport::{Bytes, Serial, Tcp},
+    transport::{ByteStream, Serial, Tcp},
 };
 
 #[derive(Debug)]
-pub(super) enum Wire {
+pub(super) enum NdiWire {
     Tcp(Tcp),
     Serial(Serial),
 }
 
-impl Wire {
+impl NdiWire {
     /// Returns whether the serial port no longer exists. A closed network connection is detected when it is read.
     pub(super) fn is_gone(&mut self) -> bool {
         match self {
@@ -29,7 +29,7 @@ impl Wire {
     }
 }
 
-impl Bytes for Wire {
+impl ByteStream for NdiWire {
     fn receive(&mut self, buffer: &mut [u8]) -> Result<usize, Loss> {
         match self {
             Self::Tcp(tcp) => tcp.receive(buffer),
@@ -46,7 +46,7 @@ impl Bytes for Wire {
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) enum Failure {
+pub(super) enum NdiFailure {
     Silent,
     Garbled,
     Gone,
@@ -58,75 +58,75 @@ const QUIET: Duration = Duration::from_millis(50);
 const NAP: Duration = Duration::from_micros(500);
 
 #[derive(Debug)]
-pub(super) struct Session {
-    pub(super) wire: Wire,
+pub(super) struct NdiSession {
+    pub(super) wire: NdiWire,
     pub(super) inbox: Inbox,
 }
 
-impl Session {
-    pub(super) fn new(wire: Wire) -> Self {
+impl NdiSession {
+    pub(super) fn new(wire: NdiWire) -> Self {
         Self { wire, inbox: Inbox::new() }
     }
 
     /// Sends a command and waits for its reply; returns the text of the reply.
-    pub(super) fn ask(&mut self, command: &Command<'_>, timeout: Duration) -> Result<String, Failure> {
+    pub(super) fn ask(&mut self, command: &NdiCommand<'_>, timeout: Duration) -> Result<String, NdiFailure> {
         self.drain()?;
-        self.wire.send(command.encode().as_bytes()).map_err(|_| Failure::Gone)?;
+        self.wire.send(command.encode().as_bytes()).map_err(|_| NdiFailure::Gone)?;
         self.wait(timeout)
     }
 
     /// Sends a command that may safely be repeated, and repeats it if its reply is missing or damaged.
-    pub(super) fn ask_again(&mut self, command: &Command<'_>, timeout: Duration) -> Result<String, Failure> {
+    pub(super) fn ask_again(&mut self, command: &NdiCommand<'_>, timeout: Duration) -> Result<String, NdiFailure> {
         match self.ask(command, timeout) {
-            Err(Failure::Silent | Failure::Garbled) => self.ask(command, timeout),
+            Err(NdiFailure::Silent | NdiFailure::Garbled) => self.ask(command, timeout),
             answered => answered,
         }
     }
 
-    pub(super) fn wait(&mut self, timeout: Duration) -> Result<String, Failure> {
+    pub(super) fn wait(&mut self, timeout: Duration) -> Result<String, NdiFailure> {
         let begin = Instant::now();
-        let mut heard = begin;
+        let mut received = begin;
         let mut damaged = false;
         let mut any = false;
         while begin.elapsed() < timeout {
-            let count = self.wire.receive(self.inbox.room()).map_err(|_| Failure::Gone)?;
+            let count = self.wire.receive(self.inbox.room()).map_err(|_| NdiFailure::Gone)?;
             if count > 0 {
-                heard = Instant::now();
+                received = Instant::now();
                 any = true;
                 self.inbox.filled(count);
-                while let Some(arrival) = self.inbox.next(Expected::Line) {
+                while let Some(arrival) = self.inbox.next(ExpectedReply::Line) {
                     match arrival {
-                        Arrival::Line(line) => return answer(line),
-                        Arrival::Block(_) | Arrival::Damaged => damaged = true,
+                        NdiArrival::Line(line) => return answer(line),
+                        NdiArrival::Block(_) | NdiArrival::Damaged => damaged = true,
                     }
                 }
             } else {
                 std::thread::sleep(NAP);
             }
-            if damaged && heard.elapsed() > QUIET {
-                return Err(Failure::Garbled);
+            if damaged && received.elapsed() > QUIET {
+                return Err(NdiFailure::Garbled);
             }
         }
-        Err(if any { Failure::Garbled } else { Failure::Silent })
+        Err(if any { NdiFailure::Garbled } else { NdiFailure::Silent })
     }
 
     /// Waits until something has arrived and the line is quiet again, or until `timeout`.
     pub(super) fn let_pass(&mut self, timeout: Duration) {
         let begin = Instant::now();
-        let mut heard: Option<Instant> = None;
-        while begin.elapsed() < timeout && heard.is_none_or(|heard| heard.elapsed() < QUIET / 10) {
+        let mut received: Option<Instant> = None;
+        while begin.elapsed() < timeout && received.is_none_or(|received| received.elapsed() < QUIET / 10) {
             match self.wire.receive(self.inbox.room()) {
                 Ok(0) => std::thread::sleep(NAP),
-                Ok(_) => heard = Some(Instant::now()),
+                Ok(_) => received = Some(Instant::now()),
                 Err(_) => return,
             }
         }
     }
 
-    pub(super) fn drain(&mut self) -> Result<(), Failure> {
+    pub(super) fn drain(&mut self) -> Result<(), NdiFailure> {
         let mut old = [0; COMMAND_MAX];
         for _ in 0..64 {
-            if self.wire.receive(&mut old).map_err(|_| Failure::Gone)? == 0 {
+            if self.wire.receive(&mut old).map_err(|_| NdiFailure::Gone)? == 0 {
                 break;
             }
         }
@@ -135,9 +135,11 @@ impl Session {
     }
 }
 
-fn answer(line: &[u8]) -> Result<String, Failure> {
+fn answer(line: &[u8]) -> Result<String, NdiFailure> {
     match line.strip_prefix(b"ERROR") {
-        Some(code) => Err(read_hex(code).map_or(Failure::Garbled, |code| Failure::Refused(ErrorCode(code as u8)))),
+        Some(code) => {
+            Err(read_hex(code).map_or(NdiFailure::Garbled, |code| NdiFailure::Refused(ErrorCode(code as u8))))
+        }
         None => Ok(String::from_utf8_lossy(line).into_owned()),
     }
 }

@@ -2,7 +2,7 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
-use crate::{TRACKED_TOOLS, Trouble};
+use crate::{DeviceError, TRACKED_TOOLS};
 
 /// TCP port of units with a network connection (reference 1.1).
 pub const PORT: u16 = 8765;
@@ -21,7 +21,7 @@ pub enum Replies {
 /// Settings of the tracker in a rig file. Exactly one of `address` and `port` must be given.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
-pub struct Settings {
+pub struct NdiSettings {
     /// Network address: host, or `host:port`; the default port is 8765.
     pub address: Option<String>,
     /// Serial port: device file, or `COM3`.
@@ -37,7 +37,7 @@ pub struct Settings {
     pub frame_hz: f64,
 }
 
-impl Default for Settings {
+impl Default for NdiSettings {
     fn default() -> Self {
         Self {
             address: None,
@@ -51,16 +51,16 @@ impl Default for Settings {
     }
 }
 
-fn refuse(key: &str, value: impl Into<String>, allowed: &str) -> Trouble {
-    Trouble::Setting { key: key.to_owned(), value: value.into(), allowed: allowed.to_owned() }
+fn refuse(key: &str, value: impl Into<String>, allowed: &str) -> DeviceError {
+    DeviceError::Setting { key: key.to_owned(), value: value.into(), allowed: allowed.to_owned() }
 }
 
-impl Settings {
+impl NdiSettings {
     /// Checks every setting.
     ///
     /// # Errors
-    /// [`Trouble::Setting`] for the first invalid setting.
-    pub fn check(&self) -> Result<(), Trouble> {
+    /// [`DeviceError::Setting`] for the first invalid setting.
+    pub fn check(&self) -> Result<(), DeviceError> {
         if self.address.is_some() == self.port.is_some() {
             let value = self.address.as_deref().unwrap_or("nothing");
             return Err(refuse("address", value, "either address (network) or port (serial line)"));

@@ -8,7 +8,7 @@
 use super::{
     command::STRAYS,
     crc::{read_hex, write_hex},
-    words::{PortStatus, SystemStatus},
+    text::{PortStatus, SystemStatus},
 };
 
 /// Maximum number of handles in one reply.
@@ -26,7 +26,7 @@ pub struct Transform {
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum Sight {
+pub enum ToolVisibility {
     Valid(Transform),
     #[default]
     Missing,
@@ -36,7 +36,7 @@ pub enum Sight {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct HandleFrame {
     pub handle: u8,
-    pub sight: Sight,
+    pub sight: ToolVisibility,
     /// Its status; 0 if it is disabled.
     pub status: PortStatus,
     /// Frame number; 0 if it is disabled.
@@ -44,7 +44,7 @@ pub struct HandleFrame {
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Frames {
+pub struct TrackingReply {
     handles: [HandleFrame; HANDLES_MAX],
     count: usize,
     pub system: SystemStatus,
@@ -53,9 +53,9 @@ pub struct Frames {
 /// The reply has a correct checksum but not the expected structure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("malformed tracking reply")]
-pub struct Malformed;
+pub struct MalformedReply;
 
-impl Frames {
+impl TrackingReply {
     /// Creates a reply with these handles; those beyond [`HANDLES_MAX`] are dropped.
     pub fn new(handles: &[HandleFrame], system: SystemStatus) -> Self {
         let mut frames = Self { system, ..Self::default() };
@@ -69,8 +69,8 @@ impl Frames {
         &self.handles[..self.count]
     }
 
-    fn push(&mut self, one: HandleFrame) -> Result<(), Malformed> {
-        *self.handles.get_mut(self.count).ok_or(Malformed)? = one;
+    fn push(&mut self, one: HandleFrame) -> Result<(), MalformedReply> {
+        *self.handles.get_mut(self.count).ok_or(MalformedReply)? = one;
         self.count += 1;
         Ok(())
     }
@@ -78,21 +78,21 @@ impl Frames {
     /// Decodes the body of a `BX` reply to a request with `options`.
     ///
     /// # Errors
-    /// [`Malformed`] if the body does not have the structure that `options` require.
-    pub fn of_block(body: &[u8], options: u16) -> Result<Self, Malformed> {
-        let mut cursor = Cursor(body);
+    /// [`MalformedReply`] if the body does not have the structure that `options` require.
+    pub fn of_block(body: &[u8], options: u16) -> Result<Self, MalformedReply> {
+        let mut cursor = ReplyCursor(body);
         let mut frames = Self::default();
         for _ in 0..cursor.byte()? {
             let handle = cursor.byte()?;
             let sight = cursor.byte()?;
             let sight = match sight {
-                1 => Sight::Valid(cursor.transform()?),
-                2 => Sight::Missing,
-                4 => Sight::Disabled,
-                _ => return Err(Malformed),
+                1 => ToolVisibility::Valid(cursor.transform()?),
+                2 => ToolVisibility::Missing,
+                4 => ToolVisibility::Disabled,
+                _ => return Err(MalformedReply),
             };
             let (status, frame) = match sight {
-                Sight::Disabled => (0, 0),
+                ToolVisibility::Disabled => (0, 0),
                 _ => (cursor.word()?, cursor.word()?),
             };
             frames.push(HandleFrame { handle, sight, status: PortStatus(status), frame })?;
@@ -112,13 +112,13 @@ impl Frames {
         for HandleFrame { handle, sight, status, frame } in self.handles() {
             body.push(*handle);
             match sight {
-                Sight::Valid(at) => {
+                ToolVisibility::Valid(at) => {
                     body.push(1);
                     let numbers = at.quaternion.iter().chain(&at.translation_mm).chain([&at.error_mm]);
                     numbers.for_each(|number| body.extend_from_slice(&(*number as f32).to_le_bytes()));
                 }
-                Sight::Missing => body.push(2),
-                Sight::Disabled => {
+                ToolVisibility::Missing => body.push(2),
+                ToolVisibility::Disabled => {
                     body.push(4);
                     continue;
                 }
@@ -135,9 +135,9 @@ impl Frames {
     /// Decodes a `TX` reply to a request with `options`.
     ///
     /// # Errors
-    /// [`Malformed`] if the text does not have the structure that `options` require.
-    pub fn of_text(text: &[u8], options: u16) -> Result<Self, Malformed> {
-        let mut cursor = Cursor(text);
+    /// [`MalformedReply`] if the text does not have the structure that `options` require.
+    pub fn of_text(text: &[u8], options: u16) -> Result<Self, MalformedReply> {
+        let mut cursor = ReplyCursor(text);
         let mut frames = Self::default();
         for _ in 0..cursor.hex(2)? {
             let handle = cursor.hex(2)? as u8;
@@ -146,15 +146,15 @@ impl Frames {
                 continue;
             }
             let sight = if cursor.skip_word(b"MISSING") {
-                Sight::Missing
+                ToolVisibility::Missing
             } else if cursor.skip_word(b"DISABLED") {
-                Sight::Disabled
+                ToolVisibility::Disabled
             } else {
-                Sight::Valid(cursor.text_transform()?)
+                ToolVisibility::Valid(cursor.text_transform()?)
             };
             let mut status = 0;
             let mut frame = 0;
-            if sight != Sight::Disabled {
+            if sight != ToolVisibility::Disabled {
                 status = cursor.hex(8)?;
                 frame = cursor.hex(8)?;
             }
@@ -177,13 +177,13 @@ impl Frames {
         for HandleFrame { handle, sight, status, frame } in self.handles() {
             hex_to(text, 2, u32::from(*handle));
             match sight {
-                Sight::Valid(at) => {
+                ToolVisibility::Valid(at) => {
                     at.quaternion.iter().for_each(|part| decimal_to(text, 5, part * 1e4));
                     at.translation_mm.iter().for_each(|part| decimal_to(text, 6, part * 1e2));
                     decimal_to(text, 5, at.error_mm * 1e4);
                 }
-                Sight::Missing => text.extend_from_slice(b"MISSING"),
-                Sight::Disabled => text.extend_from_slice(b"DISABLED"),
+                ToolVisibility::Missing => text.extend_from_slice(b"MISSING"),
+                ToolVisibility::Disabled => text.extend_from_slice(b"DISABLED"),
             }
             hex_to(text, 8, status.0);
             hex_to(text, 8, *frame);
@@ -209,32 +209,32 @@ fn decimal_to(text: &mut Vec<u8>, digits: u32, number: f64) {
     text.extend_from_slice(format!("{whole:+0width$}", width = digits as usize + 1).as_bytes());
 }
 
-struct Cursor<'a>(&'a [u8]);
+struct ReplyCursor<'a>(&'a [u8]);
 
-impl<'a> Cursor<'a> {
-    fn take(&mut self, count: usize) -> Result<&'a [u8], Malformed> {
-        let (head, tail) = self.0.split_at_checked(count).ok_or(Malformed)?;
+impl<'a> ReplyCursor<'a> {
+    fn take(&mut self, count: usize) -> Result<&'a [u8], MalformedReply> {
+        let (head, tail) = self.0.split_at_checked(count).ok_or(MalformedReply)?;
         self.0 = tail;
         Ok(head)
     }
 
-    fn array<const N: usize>(&mut self) -> Result<[u8; N], Malformed> {
-        self.take(N)?.try_into().map_err(|_| Malformed)
+    fn array<const N: usize>(&mut self) -> Result<[u8; N], MalformedReply> {
+        self.take(N)?.try_into().map_err(|_| MalformedReply)
     }
 
-    fn byte(&mut self) -> Result<u8, Malformed> {
+    fn byte(&mut self) -> Result<u8, MalformedReply> {
         Ok(self.array::<1>()?[0])
     }
 
-    fn word(&mut self) -> Result<u32, Malformed> {
+    fn word(&mut self) -> Result<u32, MalformedReply> {
         Ok(u32::from_le_bytes(self.array()?))
     }
 
-    fn float(&mut self) -> Result<f64, Malformed> {
+    fn float(&mut self) -> Result<f64, MalformedReply> {
         Ok(f64::from(f32::from_le_bytes(self.array()?)))
     }
 
-    fn transform(&mut self) -> Result<Transform, Malformed> {
+    fn transform(&mut self) -> Result<Transform, MalformedReply> {
         Ok(Transform {
             quaternion: [self.float()?, self.float()?, self.float()?, self.float()?],
             translation_mm: [self.float()?, self.float()?, self.float()?],
@@ -242,25 +242,25 @@ impl<'a> Cursor<'a> {
         })
     }
 
-    fn hex(&mut self, digits: usize) -> Result<u32, Malformed> {
-        read_hex(self.take(digits)?).ok_or(Malformed)
+    fn hex(&mut self, digits: usize) -> Result<u32, MalformedReply> {
+        read_hex(self.take(digits)?).ok_or(MalformedReply)
     }
 
     /// Reads a sign and digits; returns the number times `scale`.
-    fn decimal(&mut self, digits: usize, scale: f64) -> Result<f64, Malformed> {
+    fn decimal(&mut self, digits: usize, scale: f64) -> Result<f64, MalformedReply> {
         let sign = self.byte()?;
         let digits = self.take(digits)?;
         let whole = digits.iter().try_fold(0.0, |whole, digit| {
-            if digit.is_ascii_digit() { Ok(whole * 10.0 + f64::from(digit - b'0')) } else { Err(Malformed) }
+            if digit.is_ascii_digit() { Ok(whole * 10.0 + f64::from(digit - b'0')) } else { Err(MalformedReply) }
         })?;
         match sign {
             b'+' => Ok(whole / scale),
             b'-' => Ok(-whole / scale),
-            _ => Err(Malformed),
+            _ => Err(MalformedReply),
         }
     }
 
-    fn text_transform(&mut self) -> Result<Transform, Malformed> {
+    fn text_transform(&mut self) -> Result<Transform, MalformedReply> {
         let mut part = |digits, scale| self.decimal(digits, scale);
         Ok(Transform {
             quaternion: [part(5, 1e4)?, part(5, 1e4)?, part(5, 1e4)?, part(5, 1e4)?],
@@ -276,12 +276,12 @@ impl<'a> Cursor<'a> {
     }
 
     /// Skips to the next line. Further information may follow here, after `DISABLED` also the status.
-    fn rest_of_line(&mut self) -> Result<(), Malformed> {
-        let end = self.0.iter().position(|byte| *byte == b'\n').ok_or(Malformed)?;
+    fn rest_of_line(&mut self) -> Result<(), MalformedReply> {
+        let end = self.0.iter().position(|byte| *byte == b'\n').ok_or(MalformedReply)?;
         self.take(end + 1).map(|_| ())
     }
 
-    const fn end(&self) -> Result<(), Malformed> {
-        if self.0.is_empty() { Ok(()) } else { Err(Malformed) }
+    const fn end(&self) -> Result<(), MalformedReply> {
+        if self.0.is_empty() { Ok(()) } else { Err(MalformedReply) }
     }
 }

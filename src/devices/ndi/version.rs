@@ -3,21 +3,21 @@
 
 use nima_files::quoted;
 
-use super::command::Form;
-use crate::Identity;
+use super::command::ReplyForm;
+use crate::DeviceIdentity;
 
 /// Firmware versions whose `BX` is unreliable and which therefore use `TX`.
 const TEXT_ONLY: [&str; 5] =
     ["AURORA Rev 007", "AURORA Rev 008", "Polaris Vega 008", "Polaris Spectra Rev 006", "Polaris Spectra Rev 007"];
 
 /// Parses the lines of `VER:0`. Missing fields stay empty.
-pub fn identity_of(text: &str) -> Identity {
+pub fn identity_of(text: &str) -> DeviceIdentity {
     let after = |keys: &[&str]| {
         let found = text.lines().find_map(|line| keys.iter().find_map(|key| line.trim().strip_prefix(key)));
         found.map(|value| quoted(value.trim_start_matches([' ', ':']).trim())).unwrap_or_default()
     };
     let product = text.lines().next().unwrap_or_default().trim();
-    Identity {
+    DeviceIdentity {
         product: quoted(product.strip_suffix("Control Firmware").unwrap_or(product).trim()),
         serial: after(&["NDI S/N", "NDI Serial Number"]),
         firmware: after(&["Freeze Tag"]),
@@ -25,8 +25,8 @@ pub fn identity_of(text: &str) -> Identity {
 }
 
 /// Returns the format of tracking replies for this firmware.
-pub fn form_of(firmware: &str) -> Form {
-    if TEXT_ONLY.contains(&firmware) { Form::Text } else { Form::Binary }
+pub fn form_of(firmware: &str) -> ReplyForm {
+    if TEXT_ONLY.contains(&firmware) { ReplyForm::Text } else { ReplyForm::Binary }
 }
 
 #[cfg(test)]
@@ -39,7 +39,7 @@ mod tests {
         let identity = identity_of(text);
         assert_eq!(identity.product, "Polaris Vega");
         assert_eq!((identity.serial.as_str(), identity.firmware.as_str()), ("P9-00042", "Polaris Vega 008"));
-        assert_eq!(form_of(&identity.firmware), Form::Text);
-        assert_eq!((identity_of(""), form_of("Polaris Vega 014")), (Identity::default(), Form::Binary));
+        assert_eq!(form_of(&identity.firmware), ReplyForm::Text);
+        assert_eq!((identity_of(""), form_of("Polaris Vega 014")), (DeviceIdentity::default(), ReplyForm::Binary));
     }
 }

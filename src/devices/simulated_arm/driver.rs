@@ -3,37 +3,38 @@ use std::sync::{
     atomic::{AtomicBool, Ordering},
 };
 
-use super::Settings;
+use super::SimulatedArmSettings;
 use crate::{
-    ARM_JOINTS, ArmReading, Device, Follower, Health, Identity, Lever, Stamped, Trouble, kinova::limits::Guard,
+    ARM_JOINTS, ArmReading, Device, DeviceError, DeviceIdentity, Follower, Health, Lever, TimedReading,
+    kinova::limits::Guard,
 };
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Mode {
+enum SimulatedArmMode {
     Resting,
     Servoing,
     Braking,
 }
 
 #[derive(Debug)]
-pub struct Driver {
+pub struct SimulatedArmDriver {
     omega_rad_s: f64,
     joint_rad: [f64; ARM_JOINTS],
     joint_rad_s: [f64; ARM_JOINTS],
     guard: Guard,
-    mode: Mode,
+    mode: SimulatedArmMode,
     last_s: Option<f64>,
     pulled: Arc<AtomicBool>,
     health: Health,
-    identity: Identity,
+    identity: DeviceIdentity,
 }
 
-impl Driver {
+impl SimulatedArmDriver {
     /// Opens an arm at rest.
     ///
     /// # Errors
-    /// [`Trouble::Setting`] for a value outside its range.
-    pub fn open(settings: &Settings) -> Result<Self, Trouble> {
+    /// [`DeviceError::Setting`] for a value outside its range.
+    pub fn open(settings: &SimulatedArmSettings) -> Result<Self, DeviceError> {
         settings.check()?;
         let mut guard = Guard::new(settings.joint_limits());
         guard.seed(&settings.start_rad);
@@ -42,11 +43,11 @@ impl Driver {
             joint_rad: settings.start_rad,
             joint_rad_s: [0.0; ARM_JOINTS],
             guard,
-            mode: Mode::Resting,
+            mode: SimulatedArmMode::Resting,
             last_s: None,
             pulled: Arc::default(),
             health: Health::opening(),
-            identity: Identity { product: "simulated arm".to_owned(), ..Identity::default() },
+            identity: DeviceIdentity { product: "simulated arm".to_owned(), ..DeviceIdentity::default() },
         })
     }
 
@@ -54,26 +55,26 @@ impl Driver {
         if elapsed_s <= 0.0 {
             return;
         }
-        if self.mode != Mode::Resting {
+        if self.mode != SimulatedArmMode::Resting {
             self.guard.step(elapsed_s);
         }
-        let share = 1.0 - (-self.omega_rad_s * elapsed_s).exp();
+        let fraction = 1.0 - (-self.omega_rad_s * elapsed_s).exp();
         for ((at, speed), command) in self.joint_rad.iter_mut().zip(&mut self.joint_rad_s).zip(self.guard.command_rad())
         {
-            let way = (command - *at) * share;
+            let way = (command - *at) * fraction;
             *at += way;
             *speed = way / elapsed_s;
         }
-        if self.mode == Mode::Braking && self.guard.is_still() {
-            self.mode = Mode::Resting;
+        if self.mode == SimulatedArmMode::Braking && self.guard.is_still() {
+            self.mode = SimulatedArmMode::Resting;
         }
     }
 }
 
-impl Device for Driver {
+impl Device for SimulatedArmDriver {
     type Reading = ArmReading;
 
-    fn poll(&mut self, now_s: f64) -> Option<Stamped<ArmReading>> {
+    fn poll(&mut self, now_s: f64) -> Option<TimedReading<ArmReading>> {
         if !now_s.is_finite() {
             return None;
         }
@@ -87,28 +88,28 @@ impl Device for Driver {
             joint_rad: self.joint_rad,
             joint_rad_s: self.joint_rad_s,
             joint_nm: [0.0; ARM_JOINTS],
-            servoing: self.mode == Mode::Servoing,
+            servoing: self.mode == SimulatedArmMode::Servoing,
         };
-        Some(Stamped { device_s: Some(now_s), arrival_s: now_s, value })
+        Some(TimedReading { device_s: Some(now_s), arrival_s: now_s, value })
     }
 
-    fn about(&self) -> (&Health, &Identity) {
+    fn about(&self) -> (&Health, &DeviceIdentity) {
         (&self.health, &self.identity)
     }
 }
 
-impl Follower for Driver {
+impl Follower for SimulatedArmDriver {
     fn enter_servoing(&mut self) {
-        if self.mode == Mode::Resting {
+        if self.mode == SimulatedArmMode::Resting {
             self.guard.seed(&self.joint_rad);
-            self.mode = Mode::Servoing;
+            self.mode = SimulatedArmMode::Servoing;
         }
     }
 
     fn leave_servoing(&mut self) {
-        if self.mode == Mode::Servoing {
+        if self.mode == SimulatedArmMode::Servoing {
             self.guard.brake();
-            self.mode = Mode::Braking;
+            self.mode = SimulatedArmMode::Braking;
         }
     }
 
@@ -117,7 +118,7 @@ impl Follower for Driver {
     }
 
     fn aim(&mut self, target_rad: &[f64; ARM_JOINTS]) -> bool {
-        let obeys = self.mode == Mode::Servoing && target_rad.iter().all(|rad| rad.is_finite());
+        let obeys = self.mode == SimulatedArmMode::Servoing && target_rad.iter().all(|rad| rad.is_finite());
         if !obeys {
             return false;
         }
@@ -141,7 +142,7 @@ mod tests {
 
     const START_RAD: [f64; ARM_JOINTS] = [2.38, -1.34, -1.37, 1.91, -1.28, 1.68, 0.92];
 
-    fn polled(arm: &mut Driver, now_s: &mut f64, ticks: u32) -> ArmReading {
+    fn polled(arm: &mut SimulatedArmDriver, now_s: &mut f64, ticks: u32) -> ArmReading {
         let mut newest = None;
         for _ in 0..ticks {
             *now_s += 1e-3;
@@ -152,7 +153,7 @@ mod tests {
 
     #[test]
     fn it_follows_what_it_is_asked_only_while_it_servoes() {
-        let mut arm = Driver::open(&Settings::at(START_RAD)).unwrap();
+        let mut arm = SimulatedArmDriver::open(&SimulatedArmSettings::at(START_RAD)).unwrap();
         let mut now_s = 0.0;
         let first = polled(&mut arm, &mut now_s, 1);
         assert_eq!((first.joint_rad, first.servoing), (START_RAD, false));
@@ -178,7 +179,7 @@ mod tests {
     #[test]
     fn what_is_beyond_its_limits_is_refused_and_ends_servoing() {
         for bad in [START_RAD.map(|rad| rad + 1.0), START_RAD.map(|_| f64::NAN), [9.0; ARM_JOINTS]] {
-            let mut arm = Driver::open(&Settings::at(START_RAD)).unwrap();
+            let mut arm = SimulatedArmDriver::open(&SimulatedArmSettings::at(START_RAD)).unwrap();
             let mut now_s = 0.0;
             arm.enter_servoing();
             polled(&mut arm, &mut now_s, 1);
@@ -190,7 +191,7 @@ mod tests {
 
     #[test]
     fn its_lever_ends_servoing_from_another_thread() {
-        let mut arm = Driver::open(&Settings::at(START_RAD)).unwrap();
+        let mut arm = SimulatedArmDriver::open(&SimulatedArmSettings::at(START_RAD)).unwrap();
         let mut now_s = 0.0;
         let lever = Lever::default();
         Follower::attach(&arm, &lever);
@@ -203,15 +204,15 @@ mod tests {
 
     #[test]
     fn impossible_settings_are_told() {
-        let told = |change: fn(&mut Settings)| {
-            let mut settings = Settings::at(START_RAD);
+        let report = |change: fn(&mut SimulatedArmSettings)| {
+            let mut settings = SimulatedArmSettings::at(START_RAD);
             change(&mut settings);
-            Driver::open(&settings).unwrap_err().to_string()
+            SimulatedArmDriver::open(&settings).unwrap_err().to_string()
         };
-        assert!(told(|settings| settings.start_rad[1] = 2.3).contains("start_rad"));
-        assert!(told(|settings| settings.start_rad[0] = f64::NAN).contains("start_rad"));
-        assert!(told(|settings| settings.bandwidth_hz = 0.0).contains("bandwidth_hz"));
-        assert!(told(|settings| settings.speed_fraction = f64::NAN).contains("speed_fraction"));
-        assert!(told(|settings| settings.lead_rad = 0.3).contains("lead_rad"));
+        assert!(report(|settings| settings.start_rad[1] = 2.3).contains("start_rad"));
+        assert!(report(|settings| settings.start_rad[0] = f64::NAN).contains("start_rad"));
+        assert!(report(|settings| settings.bandwidth_hz = 0.0).contains("bandwidth_hz"));
+        assert!(report(|settings| settings.speed_fraction = f64::NAN).contains("speed_fraction"));
+        assert!(report(|settings| settings.lead_rad = 0.3).contains("lead_rad"));
     }
 }

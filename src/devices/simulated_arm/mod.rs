@@ -8,5 +8,5 @@
 mod driver;
 mod settings;
 
-pub use driver::Driver;
-pub use settings::Settings;
+pub use driver::SimulatedArmDriver;
+pub use settings::SimulatedArmSettings;

@@ -3,25 +3,25 @@ use std::f64::consts::TAU;
 use nima_core::kinematics::{JointLimits, Joints, limit_margin_rad};
 use serde::{Deserialize, Serialize};
 
-use crate::{ARM_JOINTS, Trouble};
+use crate::{ARM_JOINTS, DeviceError};
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, tag = "make", rename = "simulated")]
-pub struct Settings {
+pub struct SimulatedArmSettings {
     /// Initial joint angles, rad; the instrument must be in its trocar there.
     pub start_rad: [f64; ARM_JOINTS],
     /// Bandwidth of the joints, Hz, above 0 to 100.
-    #[serde(default = "Settings::usual_bandwidth_hz")]
+    #[serde(default = "SimulatedArmSettings::usual_bandwidth_hz")]
     pub bandwidth_hz: f64,
     /// Fraction of the arm's joint speeds that commands may use, above 0 to 1.
-    #[serde(default = "Settings::usual_speed_fraction")]
+    #[serde(default = "SimulatedArmSettings::usual_speed_fraction")]
     pub speed_fraction: f64,
     /// Maximum lead of a commanded angle over the measured one, rad, above 0 to 0.2.
-    #[serde(default = "Settings::usual_lead_rad")]
+    #[serde(default = "SimulatedArmSettings::usual_lead_rad")]
     pub lead_rad: f64,
 }
 
-impl Settings {
+impl SimulatedArmSettings {
     const fn usual_bandwidth_hz() -> f64 {
         10.0
     }
@@ -57,10 +57,10 @@ impl Settings {
     /// Checks every value.
     ///
     /// # Errors
-    /// [`Trouble::Setting`] for the first value outside its range.
-    pub fn check(&self) -> Result<(), Trouble> {
+    /// [`DeviceError::Setting`] for the first value outside its range.
+    pub fn check(&self) -> Result<(), DeviceError> {
         let refuse =
-            |key: &str, value: String, allowed: String| Trouble::Setting { key: key.to_owned(), value, allowed };
+            |key: &str, value: String, allowed: String| DeviceError::Setting { key: key.to_owned(), value, allowed };
         let margin_rad = limit_margin_rad(&Joints::from(self.start_rad));
         if !self.start_rad.iter().all(|rad| rad.is_finite()) || margin_rad <= 0.0 {
             let allowed = "seven angles within the ranges of the arm's joints, rad".to_owned();

@@ -5,23 +5,23 @@ use std::{
     sync::{Arc, Mutex, PoisonError},
 };
 
-use super::{Bytes, Datagrams};
+use super::{ByteStream, TransportDatagrams};
 use crate::Loss;
 
 #[derive(Debug, Default)]
-struct Line<T> {
+struct MemoryLine<T> {
     queue: VecDeque<T>,
     cut: bool,
 }
 
-type Shared<T> = Arc<Mutex<Line<T>>>;
+type SharedBuffer<T> = Arc<Mutex<MemoryLine<T>>>;
 
 /// One end of a pair of byte streams.
 ///
 /// ```
 /// use nima_devices::{
 ///     Loss,
-///     transport::{Bytes, MemoryBytes},
+///     transport::{ByteStream, MemoryBytes},
 /// };
 ///
 /// let [mut here, mut there] = MemoryBytes::pair();
@@ -34,24 +34,24 @@ type Shared<T> = Arc<Mutex<Line<T>>>;
 /// ```
 #[derive(Clone, Debug)]
 pub struct MemoryBytes {
-    incoming: Shared<u8>,
-    outgoing: Shared<u8>,
+    incoming: SharedBuffer<u8>,
+    outgoing: SharedBuffer<u8>,
 }
 
 /// One end of a pair of datagram sockets.
 #[derive(Clone, Debug)]
 pub struct MemoryDatagrams {
-    incoming: Shared<Vec<u8>>,
-    outgoing: Shared<Vec<u8>>,
+    incoming: SharedBuffer<Vec<u8>>,
+    outgoing: SharedBuffer<Vec<u8>>,
 }
 
-fn with<T, R>(line: &Shared<T>, work: impl FnOnce(&mut Line<T>) -> R) -> R {
+fn with<T, R>(line: &SharedBuffer<T>, work: impl FnOnce(&mut MemoryLine<T>) -> R) -> R {
     work(&mut line.lock().unwrap_or_else(PoisonError::into_inner))
 }
 
 impl MemoryBytes {
     pub fn pair() -> [Self; 2] {
-        let [one, other]: [Shared<u8>; 2] = Default::default();
+        let [one, other]: [SharedBuffer<u8>; 2] = Default::default();
         [Self { incoming: Arc::clone(&one), outgoing: Arc::clone(&other) }, Self { incoming: other, outgoing: one }]
     }
 
@@ -63,7 +63,7 @@ impl MemoryBytes {
 
 impl MemoryDatagrams {
     pub fn pair() -> [Self; 2] {
-        let [one, other]: [Shared<Vec<u8>>; 2] = Default::default();
+        let [one, other]: [SharedBuffer<Vec<u8>>; 2] = Default::default();
         [Self { incoming: Arc::clone(&one), outgoing: Arc::clone(&other) }, Self { incoming: other, outgoing: one }]
     }
 
@@ -73,7 +73,7 @@ impl MemoryDatagrams {
     }
 }
 
-impl Bytes for MemoryBytes {
+impl ByteStream for MemoryBytes {
     fn receive(&mut self, buffer: &mut [u8]) -> Result<usize, Loss> {
         with(&self.incoming, |line| {
             let count = line.queue.len().min(buffer.len());
@@ -96,7 +96,7 @@ impl Bytes for MemoryBytes {
     }
 }
 
-impl Datagrams for MemoryDatagrams {
+impl TransportDatagrams for MemoryDatagrams {
     fn receive(&mut self, buffer: &mut [u8]) -> Result<Option<usize>, Loss> {
         with(&self.incoming, |line| match line.queue.pop_front() {
             Some(datagram) => {

@@ -11,10 +11,10 @@ use serde::{Deserialize, Serialize};
 #[cfg(unix)]
 use serialport::SerialPort as _;
 
-use super::Bytes;
+use super::ByteStream;
 #[cfg(unix)]
 use crate::os;
-use crate::{Loss, Trouble};
+use crate::{DeviceError, Loss};
 
 /// Settings of a line; always 8 bits, no parity, one stop bit, no handshake.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -27,7 +27,7 @@ pub struct SerialSettings {
 
 pub struct Serial {
     /// Used for the settings of the line.
-    port: Port,
+    port: SystemPort,
     /// Used for the bytes. The port's own `read` allocates an error whenever nothing has arrived.
     #[cfg(unix)]
     bytes: std::fs::File,
@@ -35,9 +35,9 @@ pub struct Serial {
 }
 
 #[cfg(unix)]
-type Port = serialport::TTYPort;
+type SystemPort = serialport::TTYPort;
 #[cfg(not(unix))]
-type Port = Box<dyn serialport::SerialPort>;
+type SystemPort = Box<dyn serialport::SerialPort>;
 
 impl std::fmt::Debug for Serial {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
@@ -52,14 +52,14 @@ impl Serial {
     /// Opens the line. Some sensors restart when their line is opened (DTR).
     ///
     /// # Errors
-    /// [`Trouble`] if the port is missing, in use, not permitted, or does not support the settings.
-    pub fn open(settings: &SerialSettings) -> Result<Self, Trouble> {
+    /// [`DeviceError`] if the port is missing, in use, not permitted, or does not support the settings.
+    pub fn open(settings: &SerialSettings) -> Result<Self, DeviceError> {
         let SerialSettings { port, baud } = settings;
         let builder = serialport::new(port, *baud).timeout(Duration::from_millis(1));
         #[cfg(unix)]
         {
             let native = builder.open_native().map_err(|error| Self::trouble(port, &error))?;
-            let other = |error: std::io::Error| Trouble::Other { place: port.clone(), reason: error.to_string() };
+            let other = |error: std::io::Error| DeviceError::Other { place: port.clone(), reason: error.to_string() };
             let bytes = os::bytes_of(&native).map_err(other)?;
             let low_latency = os::ask_low_latency(&native);
             Ok(Self { port: native, bytes, low_latency })
@@ -127,15 +127,15 @@ impl Serial {
         self.port.clear(serialport::ClearBuffer::Input).map_err(|_| Loss::Disconnected)
     }
 
-    fn trouble(port: &str, error: &serialport::Error) -> Trouble {
+    fn trouble(port: &str, error: &serialport::Error) -> DeviceError {
         let place = port.to_owned();
         match error.kind() {
-            serialport::ErrorKind::NoDevice if Path::new(port).exists() => Trouble::Busy { place },
-            serialport::ErrorKind::NoDevice => Trouble::Absent { place },
+            serialport::ErrorKind::NoDevice if Path::new(port).exists() => DeviceError::Busy { place },
+            serialport::ErrorKind::NoDevice => DeviceError::Absent { place },
             serialport::ErrorKind::Io(kind) => {
-                Trouble::of_port(Path::new(port), &std::io::Error::new(kind, error.description.clone()), UDEV)
+                DeviceError::of_port(Path::new(port), &std::io::Error::new(kind, error.description.clone()), UDEV)
             }
-            _ => Trouble::Other { place, reason: error.description.clone() },
+            _ => DeviceError::Other { place, reason: error.description.clone() },
         }
     }
 }
@@ -147,12 +147,12 @@ impl Serial {
     }
 
     #[cfg(not(unix))]
-    const fn stream(&mut self) -> &mut Port {
+    const fn stream(&mut self) -> &mut SystemPort {
         &mut self.port
     }
 }
 
-impl Bytes for Serial {
+impl ByteStream for Serial {
     fn receive(&mut self, buffer: &mut [u8]) -> Result<usize, Loss> {
         match self.stream().read(buffer) {
             // Without data, reading is an error (raw mode waits for at least one byte), so 0 bytes mean that the line

@@ -6,8 +6,8 @@ use std::{
     time::Duration,
 };
 
-use super::Bytes;
-use crate::{Loss, Trouble};
+use super::ByteStream;
+use crate::{DeviceError, Loss};
 
 #[derive(Debug)]
 pub struct Tcp {
@@ -18,11 +18,11 @@ impl Tcp {
     /// Connects to `host:port` within `timeout`.
     ///
     /// # Errors
-    /// [`Trouble`] if the address cannot be resolved or connected to in time.
-    pub fn open(address: &str, timeout: Duration) -> Result<Self, Trouble> {
-        let trouble = |error| Trouble::of_address(address, &error);
+    /// [`DeviceError`] if the address cannot be resolved or connected to in time.
+    pub fn open(address: &str, timeout: Duration) -> Result<Self, DeviceError> {
+        let trouble = |error| DeviceError::of_address(address, &error);
         let resolved = address.to_socket_addrs().map_err(trouble)?.next();
-        let resolved = resolved.ok_or_else(|| Trouble::Unreachable { place: address.to_owned() })?;
+        let resolved = resolved.ok_or_else(|| DeviceError::Unreachable { place: address.to_owned() })?;
         let stream = TcpStream::connect_timeout(&resolved, timeout).map_err(trouble)?;
         stream.set_nodelay(true).map_err(trouble)?;
         Self::of(stream).map_err(trouble)
@@ -51,7 +51,7 @@ impl Tcp {
     }
 }
 
-impl Bytes for Tcp {
+impl ByteStream for Tcp {
     fn receive(&mut self, buffer: &mut [u8]) -> Result<usize, Loss> {
         match self.stream.read(buffer) {
             Ok(0) if !buffer.is_empty() => Err(Loss::Disconnected),

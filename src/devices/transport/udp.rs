@@ -5,8 +5,8 @@ use std::{
     net::{IpAddr, SocketAddr, UdpSocket},
 };
 
-use super::Datagrams;
-use crate::{Loss, Trouble};
+use super::TransportDatagrams;
+use crate::{DeviceError, Loss};
 
 #[derive(Debug)]
 pub struct Udp {
@@ -22,9 +22,9 @@ impl Udp {
     /// Listens at one address of this computer (port 0: any free one) for datagrams of one peer.
     ///
     /// # Errors
-    /// [`Trouble`] if this computer cannot listen at the address.
-    pub fn listen(at: SocketAddr, from: IpAddr) -> Result<Self, Trouble> {
-        let trouble = |error| Trouble::of_address(&format!("UDP port {} of {}", at.port(), at.ip()), &error);
+    /// [`DeviceError`] if this computer cannot listen at the address.
+    pub fn listen(at: SocketAddr, from: IpAddr) -> Result<Self, DeviceError> {
+        let trouble = |error| DeviceError::of_address(&format!("UDP port {} of {}", at.port(), at.ip()), &error);
         let socket = UdpSocket::bind(at).map_err(trouble)?;
         Self::of(socket, from).map_err(trouble)
     }
@@ -37,9 +37,9 @@ impl Udp {
     /// Communicates with one address.
     ///
     /// # Errors
-    /// [`Trouble`] if the socket cannot be created or connected.
-    pub fn connect(to: SocketAddr) -> Result<Self, Trouble> {
-        let trouble = |error| Trouble::of_address(&to.to_string(), &error);
+    /// [`DeviceError`] if the socket cannot be created or connected.
+    pub fn connect(to: SocketAddr) -> Result<Self, DeviceError> {
+        let trouble = |error| DeviceError::of_address(&to.to_string(), &error);
         let socket = UdpSocket::bind(("0.0.0.0", 0)).map_err(trouble)?;
         socket.connect(to).map_err(trouble)?;
         Self::of(socket, to.ip()).map_err(trouble)
@@ -57,7 +57,7 @@ impl Udp {
 }
 
 impl Udp {
-    fn is_heard(&self, sender: SocketAddr) -> bool {
+    fn is_received(&self, sender: SocketAddr) -> bool {
         if self.kept { self.sender == Some(sender) } else { sender.ip() == self.from }
     }
 }
@@ -71,11 +71,11 @@ fn is_too_long(error: &std::io::Error) -> bool {
 /// Maximum number of datagrams skipped in one call because of another sender or their length.
 const STRANGERS_MAX: usize = 16;
 
-impl Datagrams for Udp {
+impl TransportDatagrams for Udp {
     fn receive(&mut self, buffer: &mut [u8]) -> Result<Option<usize>, Loss> {
         for _ in 0..STRANGERS_MAX {
             match self.socket.recv_from(buffer) {
-                Ok((count, sender)) if self.is_heard(sender) => {
+                Ok((count, sender)) if self.is_received(sender) => {
                     self.sender = Some(sender);
                     return Ok(Some(count));
                 }
@@ -140,7 +140,7 @@ mod tests {
         // If the socket listened at every address, this one could not be opened.
         #[cfg(target_os = "linux")]
         UdpSocket::bind(("127.0.0.2", port)).unwrap();
-        assert!(matches!(Udp::listen(SocketAddr::new(HOME, port), HOME), Err(Trouble::Busy { .. })));
+        assert!(matches!(Udp::listen(SocketAddr::new(HOME, port), HOME), Err(DeviceError::Busy { .. })));
         assert!(Udp::is_local(HOME));
         assert!(!Udp::is_local(Ipv4Addr::UNSPECIFIED.into()) && !Udp::is_local([192, 0, 2, 1].into()));
     }

@@ -5,12 +5,12 @@ use nima_testing::{fuzz, unjudged};
 use super::*;
 
 const EVERY: [Colours; 4] = [
-    Colours { matrix: Matrix::Bt601, range: Range::Full },
-    Colours { matrix: Matrix::Bt601, range: Range::Limited },
-    Colours { matrix: Matrix::Bt709, range: Range::Full },
-    Colours { matrix: Matrix::Bt709, range: Range::Limited },
+    Colours { matrix: ColourMatrix::Bt601, range: ValueRange::Full },
+    Colours { matrix: ColourMatrix::Bt601, range: ValueRange::Limited },
+    Colours { matrix: ColourMatrix::Bt709, range: ValueRange::Full },
+    Colours { matrix: ColourMatrix::Bt709, range: ValueRange::Limited },
 ];
-const LAYOUTS: [Layout; 3] = [Layout::Yuyv, Layout::Nv12, Layout::I420];
+const LAYOUTS: [PixelLayout; 3] = [PixelLayout::Yuyv, PixelLayout::Nv12, PixelLayout::I420];
 const SIZE_PX: [usize; 2] = [320, 48];
 
 /// Colour bars of 100 % and 75 %, a ramp of grey and one of each colour.
@@ -29,11 +29,11 @@ fn bars() -> Vec<u8> {
 }
 
 /// The same image in another layout, with padded rows.
-fn packed(i420: &[u8], layout: Layout, [width, height]: [usize; 2], gap: usize) -> (Vec<u8>, usize) {
+fn packed(i420: &[u8], layout: PixelLayout, [width, height]: [usize; 2], gap: usize) -> (Vec<u8>, usize) {
     let half = width.div_ceil(2);
     let (y, colours) = i420.split_at(width * height);
     let (u, v) = colours.split_at(half * height.div_ceil(2));
-    let stride = gap + if layout == Layout::Yuyv { 4 * half } else { width };
+    let stride = gap + if layout == PixelLayout::Yuyv { 4 * half } else { width };
     let mut bytes = Vec::new();
     let mut row = |values: Vec<u8>, stride: usize| {
         let end = bytes.len() + stride;
@@ -42,7 +42,7 @@ fn packed(i420: &[u8], layout: Layout, [width, height]: [usize; 2], gap: usize) 
     };
     for at in 0..height {
         let line = &y[width * at..][..width];
-        if layout == Layout::Yuyv {
+        if layout == PixelLayout::Yuyv {
             let [u, v] = [u, v].map(|plane| &plane[half * (at / 2)..]);
             let pair = |at: usize| [line[2 * at], u[at], line[(2 * at + 1).min(width - 1)], v[at]];
             row((0..half).flat_map(pair).collect(), stride);
@@ -51,13 +51,13 @@ fn packed(i420: &[u8], layout: Layout, [width, height]: [usize; 2], gap: usize) 
         }
     }
     match layout {
-        Layout::Yuyv => {}
-        Layout::Nv12 => {
+        PixelLayout::Yuyv => {}
+        PixelLayout::Nv12 => {
             for (u, v) in u.chunks(half).zip(v.chunks(half)) {
                 row(u.iter().zip(v).flat_map(|(u, v)| [*u, *v]).collect(), stride);
             }
         }
-        Layout::I420 => {
+        PixelLayout::I420 => {
             [u, v].iter().flat_map(|plane| plane.chunks(half)).for_each(|line| row(line.to_vec(), stride.div_ceil(2)));
         }
     }
@@ -68,12 +68,12 @@ fn packed(i420: &[u8], layout: Layout, [width, height]: [usize; 2], gap: usize) 
 fn reference([y, u, v]: [u8; 3], colours: Colours) -> [f64; 3] {
     let [y, u, v] = [y, u, v].map(f64::from);
     let (y, u, v) = match colours.range {
-        Range::Full => (y / 255.0, (u - 128.0) / 255.0, (v - 128.0) / 255.0),
-        Range::Limited => ((y - 16.0) / 219.0, (u - 128.0) / 224.0, (v - 128.0) / 224.0),
+        ValueRange::Full => (y / 255.0, (u - 128.0) / 255.0, (v - 128.0) / 255.0),
+        ValueRange::Limited => ((y - 16.0) / 219.0, (u - 128.0) / 224.0, (v - 128.0) / 224.0),
     };
     let rgb = match colours.matrix {
-        Matrix::Bt601 => [y + 1.402 * v, y - (0.202_008 * u + 0.419_198 * v) / 0.587, y + 1.772 * u],
-        Matrix::Bt709 => [y + 1.5748 * v, y - (0.133_974_32 * u + 0.334_802_48 * v) / 0.7152, y + 1.8556 * u],
+        ColourMatrix::Bt601 => [y + 1.402 * v, y - (0.202_008 * u + 0.419_198 * v) / 0.587, y + 1.772 * u],
+        ColourMatrix::Bt709 => [y + 1.5748 * v, y - (0.133_974_32 * u + 0.334_802_48 * v) / 0.7152, y + 1.8556 * u],
     };
     rgb.map(|value| 255.0 * value.clamp(0.0, 1.0))
 }
@@ -85,20 +85,20 @@ fn bars_have_the_colours_of_the_standards_in_each_layout_and_range() {
         let [width, height] = SIZE_PX;
         for layout in LAYOUTS {
             let (bytes, stride) = packed(&i420, layout, SIZE_PX, 12);
-            let picture = Raw { layout, colours, size_px: SIZE_PX, stride }.picture(&bytes).unwrap();
-            let mut most = 0.0_f64;
-            for (at, pixel) in picture.rgba.chunks_exact(4).enumerate() {
+            let image = RawLayout { layout, colours, size_px: SIZE_PX, stride }.image(&bytes).unwrap();
+            let mut max = 0.0_f64;
+            for (at, pixel) in image.rgba.chunks_exact(4).enumerate() {
                 let x = at % width;
                 let y = at / width;
                 let quarter = width * height + width / 2 * (y / 2) + x / 2;
                 let expected = reference([i420[at], i420[quarter], i420[quarter + width * height / 4]], colours);
                 for (value, expected) in pixel.iter().zip(expected) {
-                    most = most.max((f64::from(*value) - expected).abs());
+                    max = max.max((f64::from(*value) - expected).abs());
                 }
                 assert_eq!(pixel[3], 255);
             }
-            println!("{layout:?} {colours:?}: {most:.2} of 255 at most");
-            assert!(most <= 2.5, "{layout:?} {colours:?}: {most}");
+            println!("{layout:?} {colours:?}: {max:.2} of 255 at most");
+            assert!(max <= 2.5, "{layout:?} {colours:?}: {max}");
         }
     }
 }
@@ -108,11 +108,11 @@ fn bars_come_back_as_they_were() {
     let before = bars();
     for colours in EVERY {
         let i420 = to_i420(&before, SIZE_PX, colours);
-        let raw = Raw { layout: Layout::I420, colours, size_px: SIZE_PX, stride: SIZE_PX[0] };
-        let after = raw.picture(&i420).unwrap();
+        let raw = RawLayout { layout: PixelLayout::I420, colours, size_px: SIZE_PX, stride: SIZE_PX[0] };
+        let after = raw.image(&i420).unwrap();
         let pairs = before.chunks_exact(3).zip(after.rgba.chunks_exact(4));
-        let most = pairs.flat_map(|(is, was)| is.iter().zip(was).map(|(a, b)| a.abs_diff(*b))).max();
-        assert!(most <= Some(3), "{colours:?}: {most:?}");
+        let max = pairs.flat_map(|(is, was)| is.iter().zip(was).map(|(a, b)| a.abs_diff(*b))).max();
+        assert!(max <= Some(3), "{colours:?}: {max:?}");
     }
 }
 
@@ -123,16 +123,16 @@ fn odd_sides_are_whole_and_what_is_missing_is_told() {
             let colours = EVERY[1];
             let rgb: Vec<u8> = [200, 60, 30].repeat(size_px[0] * size_px[1]);
             let (bytes, stride) = packed(&to_i420(&rgb, size_px, colours), layout, size_px, 6);
-            let raw = Raw { layout, colours, size_px, stride };
-            let picture = raw.picture(&bytes).unwrap();
+            let raw = RawLayout { layout, colours, size_px, stride };
+            let image = raw.image(&bytes).unwrap();
             let is_right = |pixel: &[u8]| pixel.iter().zip([200, 60, 30]).all(|(is, was)| is.abs_diff(was) <= 3);
-            assert!(picture.rgba.chunks_exact(4).all(is_right), "{layout:?} {size_px:?}");
-            assert!(raw.picture(&bytes[..raw.bytes()]).is_ok());
-            assert_eq!(raw.picture(&bytes[..raw.bytes() - 1]), Err(Damage::Torn), "{layout:?} {size_px:?}");
-            assert_eq!(Raw { stride: 0, ..raw }.picture(&bytes), Err(Damage::Torn));
+            assert!(image.rgba.chunks_exact(4).all(is_right), "{layout:?} {size_px:?}");
+            assert!(raw.image(&bytes[..raw.bytes()]).is_ok());
+            assert_eq!(raw.image(&bytes[..raw.bytes() - 1]), Err(Damage::Torn), "{layout:?} {size_px:?}");
+            assert_eq!(RawLayout { stride: 0, ..raw }.image(&bytes), Err(Damage::Torn));
         }
-        let huge = Raw { layout, colours: EVERY[0], size_px: [60_000, 60_000], stride: 240_000 };
-        assert!(matches!(huge.picture(&[]), Err(Damage::TooLarge { .. })));
+        let huge = RawLayout { layout, colours: EVERY[0], size_px: [60_000, 60_000], stride: 240_000 };
+        assert!(matches!(huge.image(&[]), Err(Damage::TooLarge { .. })));
     }
 }
 
@@ -141,14 +141,14 @@ fn any(seed: u64, count: usize) {
     let mut random = fastrand::Rng::with_seed(seed);
     let bytes: Vec<u8> = (0..4096).map(|_| random.u8(..)).collect();
     for _ in 0..count {
-        let raw = Raw {
+        let raw = RawLayout {
             layout: LAYOUTS[random.usize(..3)],
             colours: EVERY[random.usize(..4)],
             size_px: [random.usize(..40), random.usize(..40)],
             stride: random.usize(..100),
         };
-        if let Ok(picture) = raw.picture(&bytes[..random.usize(..bytes.len())]) {
-            assert_eq!(picture.rgba.len(), 4 * raw.size_px[0] * raw.size_px[1]);
+        if let Ok(image) = raw.image(&bytes[..random.usize(..bytes.len())]) {
+            assert_eq!(image.rgba.len(), 4 * raw.size_px[0] * raw.size_px[1]);
         }
     }
 }
@@ -173,11 +173,11 @@ fn figures_of_colours() {
         let i420 = to_i420(&rgb, size_px, EVERY[3]);
         for layout in LAYOUTS {
             let (bytes, stride) = packed(&i420, layout, size_px, 0);
-            let raw = Raw { layout, colours: EVERY[3], size_px, stride };
+            let raw = RawLayout { layout, colours: EVERY[3], size_px, stride };
             let mut times_ms: Vec<f64> = (0..60)
                 .map(|_| {
                     let begin = Instant::now();
-                    std::hint::black_box(raw.picture(std::hint::black_box(&bytes)).unwrap());
+                    std::hint::black_box(raw.image(std::hint::black_box(&bytes)).unwrap());
                     begin.elapsed().as_secs_f64() * 1e3
                 })
                 .collect();
@@ -196,15 +196,15 @@ fn figures_of_colours_beside_ffmpeg() {
     };
     let size = format!("{}x{}", SIZE_PX[0], SIZE_PX[1]);
     for colours in EVERY {
-        let matrix = if colours.matrix == Matrix::Bt601 { "bt601" } else { "bt709" };
-        let range = if colours.range == Range::Full { "pc" } else { "tv" };
+        let matrix = if colours.matrix == ColourMatrix::Bt601 { "bt601" } else { "bt709" };
+        let range = if colours.range == ValueRange::Full { "pc" } else { "tv" };
         let scale = format!(
             "scale=in_color_matrix={matrix}:in_range={range}:out_range=pc:flags=neighbor+accurate_rnd+full_chroma_int"
         );
         let i420 = to_i420(&bars(), SIZE_PX, colours);
         for (layout, name) in LAYOUTS.into_iter().zip(["yuyv422", "nv12", "yuv420p"]) {
             let (bytes, stride) = packed(&i420, layout, SIZE_PX, 0);
-            let ours = Raw { layout, colours, size_px: SIZE_PX, stride }.picture(&bytes).unwrap();
+            let ours = RawLayout { layout, colours, size_px: SIZE_PX, stride }.image(&bytes).unwrap();
             let file = tempfile::NamedTempFile::new().unwrap();
             std::fs::write(file.path(), &bytes).unwrap();
             let ran = std::process::Command::new(&ffmpeg)
@@ -220,12 +220,12 @@ fn figures_of_colours_beside_ffmpeg() {
                 (6..34).contains(&(at % SIZE_PX[0] % 40)) && at / SIZE_PX[0] % 12 > 3 && at / SIZE_PX[0] < 33
             };
             let pairs = ours.rgba.chunks_exact(4).zip(ran.stdout.chunks_exact(3)).enumerate();
-            let most = pairs
+            let max = pairs
                 .filter(|(at, _)| inside(*at))
                 .flat_map(|(_, (ours, theirs))| theirs.iter().zip(ours).map(|(a, b)| a.abs_diff(*b)))
                 .max();
-            println!("{name} {matrix} {range}: {most:?} of 255 at most");
-            assert!(most <= Some(3), "{name} {matrix} {range}: {most:?}");
+            println!("{name} {matrix} {range}: {max:?} of 255 at most");
+            assert!(max <= Some(3), "{name} {matrix} {range}: {max:?}");
         }
     }
 }

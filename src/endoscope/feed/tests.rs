@@ -8,7 +8,7 @@ use std::{
 use nima_testing::real_time;
 
 use super::*;
-use crate::{Wrong, jpeg::encode};
+use crate::{FrameFault, jpeg::encode};
 
 fn frame(value: u8) -> Vec<u8> {
     let jpeg = encode(&vec![value; 3 * 32 * 32], [32, 32], 80);
@@ -23,7 +23,11 @@ fn greet(mut stream: &TcpStream) {
     stream.write_all(b"HTTP/1.1 200 OK\r\nContent-Type: multipart/x-mixed-replace;boundary=f\r\n\r\n").unwrap();
 }
 
-fn until(feed: &Feed, what: &str, wanted: impl Fn(&Look<Arc<Picture>>) -> bool) -> Look<Arc<Picture>> {
+fn until(
+    feed: &EndoscopeFeed,
+    what: &str,
+    wanted: impl Fn(&FeedSnapshot<Arc<DecodedImage>>) -> bool,
+) -> FeedSnapshot<Arc<DecodedImage>> {
     let begin = Instant::now();
     loop {
         let look = feed.look(Instant::now());
@@ -35,8 +39,8 @@ fn until(feed: &Feed, what: &str, wanted: impl Fn(&Look<Arc<Picture>>) -> bool) 
     }
 }
 
-fn value(look: &Look<Arc<Picture>>) -> Option<u8> {
-    look.picture.as_ref().map(|(_, picture)| picture.rgba[0])
+fn value(look: &FeedSnapshot<Arc<DecodedImage>>) -> Option<u8> {
+    look.image.as_ref().map(|(_, image)| image.rgba[0])
 }
 
 #[test]
@@ -45,13 +49,13 @@ fn the_newest_picture_is_there_and_what_stops_is_frozen_then_lost_then_there_aga
     let address = format!("http://{}/", listener.local_addr().unwrap()).parse().unwrap();
     let wakes = Arc::new(AtomicUsize::new(0));
     let counts = Arc::clone(&wakes);
-    let feed = Feed::start(address, None, move || {
+    let feed = EndoscopeFeed::start(address, None, move || {
         counts.fetch_add(1, Ordering::Relaxed);
     })
     .unwrap();
     let (mut first, _) = listener.accept().unwrap();
     greet(&first);
-    assert_eq!(feed.look(Instant::now()).standing, Standing::Opening);
+    assert_eq!(feed.look(Instant::now()).standing, FrameHealth::Opening);
     for number in 1..=20 {
         first.write_all(&frame(10 * number)).unwrap();
     }
@@ -59,15 +63,15 @@ fn the_newest_picture_is_there_and_what_stops_is_frozen_then_lost_then_there_aga
     let look = until(&feed, "the newest", |look| value(look) == Some(200));
     assert!(look.rate_hz >= 1.0 && look.age.is_some(), "{look:?}");
     assert!(wakes.load(Ordering::Relaxed) >= 1);
-    until(&feed, "frozen", |look| matches!(look.standing, Standing::Wrong(Wrong::Frozen(_))));
+    until(&feed, "frozen", |look| matches!(look.standing, FrameHealth::Wrong(FrameFault::Frozen(_))));
     drop(first);
-    let lost = until(&feed, "lost", |look| matches!(look.standing, Standing::Lost(Trouble::Closed { .. })));
+    let lost = until(&feed, "lost", |look| matches!(look.standing, FrameHealth::Lost(EndoscopeError::Closed { .. })));
     assert_eq!(value(&lost), Some(200), "the last image stays");
     let (mut second, _) = listener.accept().unwrap();
     greet(&second);
     second.write_all(&frame(90)).unwrap();
     let look = until(&feed, "there again", |look| value(look) == Some(90));
-    assert!(!matches!(look.standing, Standing::Lost(_)), "{look:?}");
+    assert!(!matches!(look.standing, FrameHealth::Lost(_)), "{look:?}");
 }
 
 #[test]
@@ -75,7 +79,7 @@ fn a_cut_is_mended_within_a_second() {
     real_time::judged(|| {
         let listener = TcpListener::bind("127.0.0.1:0").unwrap();
         let address = format!("http://{}/", listener.local_addr().unwrap()).parse().unwrap();
-        let feed = Feed::start(address, None, || {}).unwrap();
+        let feed = EndoscopeFeed::start(address, None, || {}).unwrap();
         let (mut first, _) = listener.accept().unwrap();
         greet(&first);
         for number in 0..20 {
@@ -96,7 +100,7 @@ fn a_cut_is_mended_within_a_second() {
 fn a_torn_picture_is_told_and_the_last_whole_one_stays() {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let address = format!("http://{}/", listener.local_addr().unwrap()).parse().unwrap();
-    let feed = Feed::start(address, Some([32, 32]), || {}).unwrap();
+    let feed = EndoscopeFeed::start(address, Some([32, 32]), || {}).unwrap();
     let (mut stream, _) = listener.accept().unwrap();
     greet(&stream);
     stream.write_all(&frame(50)).unwrap();
@@ -110,7 +114,7 @@ fn a_torn_picture_is_told_and_the_last_whole_one_stays() {
         stream.write_all(&torn).unwrap();
         let look = feed.look(Instant::now());
         assert_eq!(value(&look), Some(50));
-        if look.standing == Standing::Wrong(Wrong::Damaged(crate::Damage::Torn)) {
+        if look.standing == FrameHealth::Wrong(FrameFault::Damaged(crate::Damage::Torn)) {
             break;
         }
         assert!(begin.elapsed() < Duration::from_secs(20), "{:?}", look.standing);
@@ -124,7 +128,7 @@ fn a_feed_that_is_dropped_ends_its_threads() {
     let address = format!("http://{}/", listener.local_addr().unwrap()).parse().unwrap();
     let alive = Arc::new(());
     let held = Arc::clone(&alive);
-    let feed = Feed::start(address, None, move || drop(Arc::clone(&held))).unwrap();
+    let feed = EndoscopeFeed::start(address, None, move || drop(Arc::clone(&held))).unwrap();
     drop(feed);
     let begin = Instant::now();
     while Arc::strong_count(&alive) > 1 {
@@ -138,7 +142,7 @@ fn another_tone_is_seen_at_once_also_in_a_picture_that_stands_still() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.jpg");
     std::fs::write(&path, encode(&vec![100; 3 * 32 * 32], [32, 32], 95)).unwrap();
-    let feed = Feed::start(Address::File(path), None, || {}).unwrap();
+    let feed = EndoscopeFeed::start(Address::File(path), None, || {}).unwrap();
     until(&feed, "the picture", |look| value(look).is_some_and(|value| value.abs_diff(100) < 3));
     feed.set_tone(Tone { brightness: 0.2, ..Tone::default() });
     until(&feed, "brighter", |look| value(look).is_some_and(|value| value.abs_diff(151) < 3));

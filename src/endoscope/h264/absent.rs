@@ -2,28 +2,28 @@
 
 use std::io;
 
-use super::{ABSENT, Taken};
+use super::{ABSENT, H264Image};
 use crate::Damage;
 
 /// A decoder that always fails.
 #[derive(Debug, Default)]
-pub struct Decoder(());
+pub struct H264Decoder(());
 
-impl Decoder {
+impl H264Decoder {
     /// Always fails.
     ///
     /// # Errors
     /// Always: the feature was not built.
-    pub fn take(&mut self, _: &[u8], _: bool, _: bool) -> Result<Option<Taken>, Damage> {
+    pub fn take(&mut self, _: &[u8], _: bool, _: bool) -> Result<Option<H264Image>, Damage> {
         Err(Damage::Undecodable { reason: ABSENT.to_owned() })
     }
 }
 
 /// An encoder that always fails.
 #[derive(Debug)]
-pub struct Encoder(());
+pub struct H264Encoder(());
 
-impl Encoder {
+impl H264Encoder {
     /// Always fails.
     ///
     /// # Errors

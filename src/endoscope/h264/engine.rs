@@ -15,10 +15,10 @@ use openh264::{
     formats::{YUVSlices, YUVSource as _},
 };
 
-use super::{Taken, kind, nal_units};
+use super::{H264Image, kind, nal_units};
 use crate::{
     Colours, Damage,
-    colour::{Matrix, Plane, Range, of_planes, to_i420},
+    colour::{ColourMatrix, ColourPlane, ValueRange, of_planes, to_i420},
     jpeg::check_size,
 };
 
@@ -29,7 +29,7 @@ const ROW_OF: usize = 4;
 const KEY_EVERY: u32 = 30;
 
 /// Decodes the frames of a stream in order.
-pub struct Decoder {
+pub struct H264Decoder {
     /// Replaced after a damage, so that no corrupt state remains.
     inner: Option<decoder::Decoder>,
     colours: Option<Colours>,
@@ -37,25 +37,25 @@ pub struct Decoder {
     waits: bool,
 }
 
-impl std::fmt::Debug for Decoder {
+impl std::fmt::Debug for H264Decoder {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Decoder").field("waits", &self.waits).finish_non_exhaustive()
     }
 }
 
-impl Default for Decoder {
+impl Default for H264Decoder {
     fn default() -> Self {
         Self { inner: None, colours: None, waits: true }
     }
 }
 
-impl Decoder {
+impl H264Decoder {
     /// Decodes the next frame; `None` before the first key frame, or if the frame is not complete. Its pixels are
     /// computed only if `wanted`.
     ///
     /// # Errors
     /// The fault of the frame; decoding then continues at the next key frame.
-    pub fn take(&mut self, unit: &[u8], is_key: bool, wanted: bool) -> Result<Option<Taken>, Damage> {
+    pub fn take(&mut self, unit: &[u8], is_key: bool, wanted: bool) -> Result<Option<H264Image>, Damage> {
         if self.waits && !is_key {
             return Ok(None);
         }
@@ -67,7 +67,7 @@ impl Decoder {
         taken
     }
 
-    fn try_take(&mut self, unit: &[u8], wanted: bool) -> Result<Option<Taken>, Damage> {
+    fn try_take(&mut self, unit: &[u8], wanted: bool) -> Result<Option<H264Image>, Damage> {
         for nal in nal_units(unit).filter(|nal| kind(nal) == PARAMETERS) {
             self.colours = Some(parameters(nal)?);
         }
@@ -82,11 +82,11 @@ impl Decoder {
         check_size(size_px)?;
         let mut hasher = DefaultHasher::new();
         yuv.y().chunks(y_stride.max(1)).step_by(ROW_OF).for_each(|row| row[..width.min(row.len())].hash(&mut hasher));
-        let plane = |bytes, stride| Plane { bytes, stride };
+        let plane = |bytes, stride| ColourPlane { bytes, stride };
         let planes = [plane(yuv.y(), y_stride), plane(yuv.u(), u_stride), plane(yuv.v(), v_stride)];
         let colours = self.colours.unwrap_or_else(|| Colours::usual(size_px));
-        let picture = if wanted { Some(of_planes(planes, colours, size_px)?) } else { None };
-        Ok(Some(Taken { picture, hash: hasher.finish() }))
+        let image = if wanted { Some(of_planes(planes, colours, size_px)?) } else { None };
+        Ok(Some(H264Image { image, hash: hasher.finish() }))
     }
 }
 
@@ -112,11 +112,11 @@ fn parameters(nal: &[u8]) -> Result<Colours, Damage> {
     let mut colours = Colours::usual(size_px);
     if let Some(signal) = set.vui_parameters.and_then(|vui| vui.video_signal_type) {
         if signal.video_full_range_flag {
-            colours.range = Range::Full;
+            colours.range = ValueRange::Full;
         }
         match signal.colour_description.map(|description| description.matrix_coefficients) {
-            Some(1) => colours.matrix = Matrix::Bt709,
-            Some(5 | 6) => colours.matrix = Matrix::Bt601,
+            Some(1) => colours.matrix = ColourMatrix::Bt709,
+            Some(5 | 6) => colours.matrix = ColourMatrix::Bt601,
             _ => {}
         }
     }
@@ -125,21 +125,21 @@ fn parameters(nal: &[u8]) -> Result<Colours, Damage> {
 
 /// Encodes frames as a camera does: no frame refers to a later one, and every second has a key frame. For emulators and
 /// tests.
-pub struct Encoder {
+pub struct H264Encoder {
     inner: Option<encoder::Encoder>,
     rate_hz: f64,
     size_px: [usize; 2],
 }
 
-impl std::fmt::Debug for Encoder {
+impl std::fmt::Debug for H264Encoder {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Encoder").field("size_px", &self.size_px).finish_non_exhaustive()
     }
 }
 
-const COLOURS: Colours = Colours { matrix: Matrix::Bt709, range: Range::Limited };
+const COLOURS: Colours = Colours { matrix: ColourMatrix::Bt709, range: ValueRange::Limited };
 
-impl Encoder {
+impl H264Encoder {
     /// Makes an encoder for frames at this rate.
     ///
     /// # Errors
@@ -161,12 +161,12 @@ impl Encoder {
             let rows = rgb.chunks_exact(3 * size_px[0]).take(height);
             to_i420(&rows.flat_map(|row| &row[..3 * width]).copied().collect::<Vec<u8>>(), [width, height], COLOURS)
         };
-        let told = |error: openh264::Error| io::Error::other(error.to_string());
+        let report = |error: openh264::Error| io::Error::other(error.to_string());
         let is_new = self.size_px != size_px;
         let inner = match &mut self.inner {
             Some(inner) if !is_new => inner,
             inner => inner.insert(
-                encoder::Encoder::with_api_config(OpenH264API::from_source(), config(self.rate_hz)).map_err(told)?,
+                encoder::Encoder::with_api_config(OpenH264API::from_source(), config(self.rate_hz)).map_err(report)?,
             ),
         };
         self.size_px = size_px;
@@ -176,7 +176,7 @@ impl Encoder {
         let (y, colours) = i420.split_at(width * height);
         let (u, v) = colours.split_at(width * height / 4);
         let source = YUVSlices::new((y, u, v), (width, height), (width, width / 2, width / 2));
-        Ok(inner.encode(&source).map_err(told)?.to_vec())
+        Ok(inner.encode(&source).map_err(report)?.to_vec())
     }
 }
 

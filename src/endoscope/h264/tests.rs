@@ -1,17 +1,17 @@
 use nima_testing::fuzz;
 
 use super::*;
-use crate::{Compressed, Damage, Format, jpeg::tests::pattern};
+use crate::{CompressedFrame, Damage, Format, jpeg::tests::pattern};
 
 /// A few moving images.
 fn stream(size_px: [usize; 2], count: usize) -> Vec<Vec<u8>> {
-    let mut encoder = Encoder::new(30.0).unwrap();
-    let picture = |number: usize| {
+    let mut encoder = H264Encoder::new(30.0).unwrap();
+    let image = |number: usize| {
         let mut rgb = pattern(size_px);
         rgb.rotate_right(3 * 2 * number);
         rgb
     };
-    (0..count).map(|number| encoder.encode(&picture(number), size_px, false).unwrap()).collect()
+    (0..count).map(|number| encoder.encode(&image(number), size_px, false).unwrap()).collect()
 }
 
 #[test]
@@ -23,18 +23,18 @@ fn a_stream_comes_back_with_its_colours() {
     };
     // The encoder marks the colours as BT.709, which no decoder would assume for so small an image.
     for size_px in [[128, 96], [640, 360]] {
-        let mut encoder = Encoder::new(30.0).unwrap();
-        let mut decoder = Decoder::default();
+        let mut encoder = H264Encoder::new(30.0).unwrap();
+        let mut decoder = H264Decoder::default();
         let rgb = bars(size_px);
         for number in 0..3 {
             let unit = encoder.encode(&rgb, size_px, false).unwrap();
             assert_eq!(is_key(&unit), number == 0);
-            let picture = decoder.take(&unit, is_key(&unit), true).unwrap().unwrap().picture.unwrap();
-            assert_eq!(picture.size_px, size_px);
+            let image = decoder.take(&unit, is_key(&unit), true).unwrap().unwrap().image.unwrap();
+            assert_eq!(image.size_px, size_px);
             let middle = size_px[0] / 8 * size_px[1] / 2;
             for x in (size_px[0] / 16..size_px[0]).step_by(size_px[0] / 8) {
                 let at = size_px[0] * (middle / size_px[0]) + x;
-                let [is, was] = [&picture.rgba[4 * at..][..3], &rgb[3 * at..][..3]];
+                let [is, was] = [&image.rgba[4 * at..][..3], &rgb[3 * at..][..3]];
                 assert!(is.iter().zip(was).all(|(a, b)| a.abs_diff(*b) <= 6), "{x}: {is:?} {was:?}");
             }
         }
@@ -44,12 +44,12 @@ fn a_stream_comes_back_with_its_colours() {
 #[test]
 fn the_same_picture_is_told_and_another_one_too() {
     let size_px = [160, 96];
-    let mut encoder = Encoder::new(30.0).unwrap();
-    let mut decoder = Decoder::default();
+    let mut encoder = H264Encoder::new(30.0).unwrap();
+    let mut decoder = H264Decoder::default();
     let mut hash = |rgb: &[u8]| {
         let unit = encoder.encode(rgb, size_px, true).unwrap();
         let taken = decoder.take(&unit, is_key(&unit), false).unwrap().unwrap();
-        assert!(taken.picture.is_none());
+        assert!(taken.image.is_none());
         taken.hash
     };
     let rgb = pattern(size_px);
@@ -64,12 +64,12 @@ fn the_same_picture_is_told_and_another_one_too() {
 fn it_begins_with_a_key_picture_and_after_a_damage_with_the_next_one() {
     let size_px = [96, 64];
     let stream = stream(size_px, 35);
-    let mut decoder = Decoder::default();
+    let mut decoder = H264Decoder::default();
     assert!(decoder.take(&stream[1], false, true).unwrap().is_none());
     assert!(decoder.take(&stream[0], true, true).unwrap().is_some());
     let torn = &stream[1][..stream[1].len() / 2];
-    let told = decoder.take(torn, false, true);
-    assert!(matches!(told, Err(Damage::Undecodable { .. })), "{told:?}");
+    let report = decoder.take(torn, false, true);
+    assert!(matches!(report, Err(Damage::Undecodable { .. })), "{report:?}");
     assert!(decoder.take(&stream[2], false, true).unwrap().is_none());
     let next = stream.iter().skip(1).find(|unit| is_key(unit)).unwrap();
     assert!(decoder.take(next, true, true).unwrap().is_some());
@@ -77,20 +77,20 @@ fn it_begins_with_a_key_picture_and_after_a_damage_with_the_next_one() {
 
 #[test]
 fn parameters_of_a_huge_picture_are_refused_before_memory_is_taken() {
-    let huge = Encoder::new(30.0).unwrap().encode(&vec![90; 3 * 3840 * 2160], [3840, 2160], false).unwrap();
-    assert!(Decoder::default().take(&huge, true, true).unwrap().is_some());
+    let huge = H264Encoder::new(30.0).unwrap().encode(&vec![90; 3 * 3840 * 2160], [3840, 2160], false).unwrap();
+    assert!(H264Decoder::default().take(&huge, true, true).unwrap().is_some());
     // The maximum number of macroblocks that can be written, as a flipped bit may produce.
     let mut parameters = vec![0, 0, 0, 1, 0x67, 66, 0xc0, 52];
     parameters.extend_from_slice(&[0b1010_0000, 0x00, 0x7f, 0xff, 0x00, 0x01, 0xff, 0xf8, 0x80]);
-    let told = Decoder::default().take(&[&parameters[..], &huge].concat(), true, true);
-    assert!(matches!(told, Err(Damage::TooLarge { .. } | Damage::Undecodable { .. })), "{told:?}");
+    let report = H264Decoder::default().take(&[&parameters[..], &huge].concat(), true, true);
+    assert!(matches!(report, Err(Damage::TooLarge { .. } | Damage::Undecodable { .. })), "{report:?}");
 }
 
 /// Damages frames of a stream at random; returns how many were decoded.
 fn mutate(seed: u64, count: usize) -> usize {
     let mut random = fastrand::Rng::with_seed(seed);
     let stream = stream([64, 48], 6);
-    let mut decoder = Decoder::default();
+    let mut decoder = H264Decoder::default();
     let mut decoded = 0;
     for number in 0..count {
         let mut unit = stream[number % stream.len()].clone();
@@ -106,7 +106,7 @@ fn mutate(seed: u64, count: usize) -> usize {
                 unit.push(0);
             }
         }
-        let compressed = Compressed {
+        let compressed = CompressedFrame {
             format: Format::H264 { is_key: is_key(&unit) },
             bytes: unit,
             arrived: std::time::Instant::now(),
@@ -114,7 +114,7 @@ fn mutate(seed: u64, count: usize) -> usize {
             taken: None,
         };
         if let Ok(Some(taken)) = decoder.take(&compressed.bytes, is_key(&compressed.bytes), true) {
-            decoded += usize::from(taken.picture.is_some());
+            decoded += usize::from(taken.image.is_some());
         }
     }
     decoded
@@ -139,7 +139,7 @@ fn fuzz_damaged_streams() {
 fn figures_of_h264() {
     for size_px in [[1280, 720], [1920, 1080]] {
         let stream = stream(size_px, 40);
-        let mut decoder = Decoder::default();
+        let mut decoder = H264Decoder::default();
         let mut times_ms: Vec<f64> = stream
             .iter()
             .map(|unit| {

@@ -1,7 +1,7 @@
 //! NAL units and access units of a stream.
 
 /// Maximum size of a frame, bytes.
-const UNIT_MOST: usize = 8 << 20;
+const UNIT_MAX: usize = 8 << 20;
 
 /// NAL unit type of a key frame.
 const KEY: u8 = 5;
@@ -40,14 +40,14 @@ fn start(bytes: &[u8], from: usize) -> Option<usize> {
 
 /// Splits bytes, as they are read, into whole frames.
 #[derive(Debug, Default)]
-pub(crate) struct Splitter {
+pub(crate) struct H264Splitter {
     held: Vec<u8>,
     /// Bytes that have been searched.
     searched: usize,
-    has_picture: bool,
+    has_image: bool,
 }
 
-impl Splitter {
+impl H264Splitter {
     pub(crate) fn take(&mut self, bytes: &[u8]) {
         self.held.extend_from_slice(bytes);
     }
@@ -55,7 +55,7 @@ impl Splitter {
     /// Returns the next whole frame: a frame is complete when the next one begins.
     pub(crate) fn next(&mut self) -> Option<Vec<u8>> {
         loop {
-            if self.held.len() > UNIT_MOST && self.searched > UNIT_MOST {
+            if self.held.len() > UNIT_MAX && self.searched > UNIT_MAX {
                 *self = Self::default();
             }
             let Some(at) = start(&self.held, self.searched) else {
@@ -72,14 +72,14 @@ impl Splitter {
             let is_part = (1..=5).contains(&kind);
             // Parameters, or the first slice of a frame (whose first macroblock is number 0, coded as one bit).
             let begins = (6..=9).contains(&kind) || is_part && first & 0x80 != 0;
-            if self.has_picture && begins {
+            if self.has_image && begins {
                 let cut = if at > 0 && self.held[at - 1] == 0 { at - 1 } else { at };
                 let rest = self.held.split_off(cut);
                 self.searched = 0;
-                self.has_picture = false;
+                self.has_image = false;
                 return Some(std::mem::replace(&mut self.held, rest));
             }
-            self.has_picture |= is_part;
+            self.has_image |= is_part;
             self.searched = at + 3;
         }
     }
@@ -87,7 +87,7 @@ impl Splitter {
     /// Returns the remainder at the end of a stream: its last frame.
     pub(crate) fn rest(&mut self) -> Option<Vec<u8>> {
         let last = std::mem::take(self);
-        last.has_picture.then_some(last.held)
+        last.has_image.then_some(last.held)
     }
 }
 
@@ -98,8 +98,8 @@ mod tests {
     use super::*;
 
     /// Parameters and slices of some frames, with two slices each.
-    fn stream(pictures: usize) -> Vec<Vec<u8>> {
-        let picture = |number: usize| {
+    fn stream(images: usize) -> Vec<Vec<u8>> {
+        let image = |number: usize| {
             let mut unit = Vec::new();
             if number.is_multiple_of(3) {
                 unit.extend_from_slice(&[0, 0, 0, 1, 0x67, 0x42, 7, 0, 0, 0, 1, 0x68, 0xce]);
@@ -109,14 +109,14 @@ mod tests {
             unit.extend_from_slice(&[0, 0, 1, head, 0x42, number as u8 + 1, 0, 0, 3, 1]);
             unit
         };
-        (0..pictures).map(picture).collect()
+        (0..images).map(image).collect()
     }
 
     proptest! {
         #[test]
-        fn all_pictures_are_found_however_the_stream_is_read(pictures in 1_usize..8, chunk in 1_usize..40) {
-            let stream = stream(pictures);
-            let mut splitter = Splitter::default();
+        fn all_pictures_are_found_however_the_stream_is_read(images in 1_usize..8, chunk in 1_usize..40) {
+            let stream = stream(images);
+            let mut splitter = H264Splitter::default();
             let mut found = Vec::new();
             for chunk in stream.concat().chunks(chunk) {
                 splitter.take(chunk);
@@ -128,7 +128,7 @@ mod tests {
 
         #[test]
         fn any_bytes_are_borne(bytes in prop::collection::vec(0_u8..4, 0..300), chunk in 1_usize..50) {
-            let mut splitter = Splitter::default();
+            let mut splitter = H264Splitter::default();
             for chunk in bytes.chunks(chunk) {
                 splitter.take(chunk);
                 while splitter.next().is_some() {}

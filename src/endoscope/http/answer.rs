@@ -2,23 +2,23 @@
 
 use std::collections::VecDeque;
 
-use super::{chunked::Chunked, head::Head};
+use super::{chunked::ChunkedBody, head::HttpHead};
 
 /// Maximum size of an image, bytes.
-pub(super) const PICTURE_MOST: usize = 8 << 20;
+pub(super) const IMAGE_MAX: usize = 8 << 20;
 /// Number of images that are kept for a slow reader; older ones are dropped.
-const PARTS_MOST: usize = 8;
+const PARTS_MAX: usize = 8;
 
 /// One image with its headers, still encoded.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Part {
+pub(super) struct ImagePart {
     pub(super) body: Vec<u8>,
     pub(super) stamp_s: Option<f64>,
 }
 
 /// Why there will be no more images.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) enum Wrong {
+pub(super) enum HttpFault {
     Status(u16),
     /// A password is needed: what the camera asks for.
     Locked(Vec<String>),
@@ -29,9 +29,9 @@ pub(super) enum Wrong {
 
 /// The response received so far.
 #[derive(Debug, Default)]
-pub(super) struct Answer {
-    state: State,
-    chunked: Option<Chunked>,
+pub(super) struct HttpAnswer {
+    state: AnswerState,
+    chunked: Option<ChunkedBody>,
     boundary: Vec<u8>,
     held: Vec<u8>,
     /// Bytes of `held` that have been searched for the next boundary.
@@ -39,38 +39,38 @@ pub(super) struct Answer {
 }
 
 /// Result of a step.
-enum Step {
+enum AnswerStep {
     /// More bytes are needed.
     Wait,
     /// The next step is possible.
     On,
-    Give(Part),
+    Give(ImagePart),
 }
 
 #[derive(Debug, Default)]
-enum State {
+enum AnswerState {
     #[default]
     Head,
     /// Before a boundary.
     Between,
     PartHead,
-    Body(Head),
+    Body(HttpHead),
 }
 
-impl Answer {
+impl HttpAnswer {
     /// Adds received bytes to the response; appends the images that they complete to `parts`.
-    pub(super) fn take(&mut self, bytes: &[u8], parts: &mut VecDeque<Part>) -> Result<(), Wrong> {
+    pub(super) fn take(&mut self, bytes: &[u8], parts: &mut VecDeque<ImagePart>) -> Result<(), HttpFault> {
         match &mut self.chunked {
             Some(chunked) => chunked.take(bytes, &mut self.held)?,
             None => self.held.extend_from_slice(bytes),
         }
         loop {
             match self.step()? {
-                Step::Wait => return Ok(()),
-                Step::On => {}
-                Step::Give(part) => {
+                AnswerStep::Wait => return Ok(()),
+                AnswerStep::On => {}
+                AnswerStep::Give(part) => {
                     parts.push_back(part);
-                    if parts.len() > PARTS_MOST {
+                    if parts.len() > PARTS_MAX {
                         parts.pop_front();
                     }
                 }
@@ -85,91 +85,97 @@ impl Answer {
     }
 
     /// Performs one step.
-    fn step(&mut self) -> Result<Step, Wrong> {
+    fn step(&mut self) -> Result<AnswerStep, HttpFault> {
         match std::mem::take(&mut self.state) {
-            State::Head => self.head(),
-            State::Between => self.between(),
-            State::PartHead => self.part_head(),
-            State::Body(head) => match head.length {
+            AnswerState::Head => self.head(),
+            AnswerState::Between => self.between(),
+            AnswerState::PartHead => self.part_head(),
+            AnswerState::Body(head) => match head.length {
                 Some(length) => Ok(self.counted(head, length)),
                 None => self.searched_for(head),
             },
         }
     }
 
-    fn head(&mut self) -> Result<Step, Wrong> {
-        let Some((head, begins)) = Head::read(&self.held)? else { return Ok(Step::Wait) };
+    fn head(&mut self) -> Result<AnswerStep, HttpFault> {
+        let Some((head, begins)) = HttpHead::read(&self.held)? else { return Ok(AnswerStep::Wait) };
         match head.status {
             200 => {}
-            401 => return Err(Wrong::Locked(head.challenges)),
-            status => return Err(Wrong::Status(status)),
+            401 => return Err(HttpFault::Locked(head.challenges)),
+            status => return Err(HttpFault::Status(status)),
         }
         let kind = head.kind();
         self.boundary = match (kind.as_str(), head.boundary()) {
             (kind, Some(boundary)) if kind.starts_with("multipart/") => boundary,
-            ("", _) => return Err(Wrong::Format("something without a type".to_owned())),
-            (kind, _) if kind.starts_with("multipart/") => return Err(Wrong::Unreadable("parts without a boundary")),
-            ("image/jpeg", _) => return Err(Wrong::Format("a single picture".to_owned())),
-            (kind, _) => return Err(Wrong::Format(short(kind))),
+            ("", _) => return Err(HttpFault::Format("something without a type".to_owned())),
+            (kind, _) if kind.starts_with("multipart/") => {
+                return Err(HttpFault::Unreadable("parts without a boundary"));
+            }
+            ("image/jpeg", _) => return Err(HttpFault::Format("a single picture".to_owned())),
+            (kind, _) => return Err(HttpFault::Format(short(kind))),
         };
         let rest = self.held.split_off(begins);
         self.held.clear();
         if head.is_chunked {
-            self.chunked.insert(Chunked::default()).take(&rest, &mut self.held)?;
+            self.chunked.insert(ChunkedBody::default()).take(&rest, &mut self.held)?;
         } else {
             self.held = rest;
         }
-        Ok(self.to(State::Between, 0))
+        Ok(self.to(AnswerState::Between, 0))
     }
 
-    fn between(&mut self) -> Result<Step, Wrong> {
-        self.state = State::Between;
+    fn between(&mut self) -> Result<AnswerStep, HttpFault> {
+        self.state = AnswerState::Between;
         let Some(at) = self.find_boundary() else {
             let gone = self.searched;
             self.skip(gone);
-            return Ok(Step::Wait);
+            return Ok(AnswerStep::Wait);
         };
         let behind = at + 2 + self.boundary.len();
-        let Some(next) = self.held.get(behind..behind + 2) else { return Ok(Step::Wait) };
+        let Some(next) = self.held.get(behind..behind + 2) else { return Ok(AnswerStep::Wait) };
         if next == b"--" {
-            return Err(Wrong::Ended);
+            return Err(HttpFault::Ended);
         }
-        Ok(self.to(State::PartHead, behind))
+        Ok(self.to(AnswerState::PartHead, behind))
     }
 
-    fn part_head(&mut self) -> Result<Step, Wrong> {
-        let Some((head, begins)) = Head::read_part(&self.held)? else {
-            self.state = State::PartHead;
-            return Ok(Step::Wait);
+    fn part_head(&mut self) -> Result<AnswerStep, HttpFault> {
+        let Some((head, begins)) = HttpHead::read_part(&self.held)? else {
+            self.state = AnswerState::PartHead;
+            return Ok(AnswerStep::Wait);
         };
-        if head.length.is_some_and(|length| length > PICTURE_MOST) {
-            return Err(Wrong::Unreadable("a picture that is too long"));
+        if head.length.is_some_and(|length| length > IMAGE_MAX) {
+            return Err(HttpFault::Unreadable("a picture that is too long"));
         }
         match head.kind().as_str() {
-            "" | "image/jpeg" | "image/jpg" => Ok(self.to(State::Body(head), begins)),
-            kind => Err(Wrong::Format(short(kind))),
+            "" | "image/jpeg" | "image/jpg" => Ok(self.to(AnswerState::Body(head), begins)),
+            kind => Err(HttpFault::Format(short(kind))),
         }
     }
 
     /// Reads an image whose length is known.
-    fn counted(&mut self, head: Head, length: usize) -> Step {
+    fn counted(&mut self, head: HttpHead, length: usize) -> AnswerStep {
         if self.held.len() < length {
-            self.state = State::Body(head);
-            return Step::Wait;
+            self.state = AnswerState::Body(head);
+            return AnswerStep::Wait;
         }
         let rest = self.held.split_off(length);
         let body = std::mem::replace(&mut self.held, rest);
-        self.state = State::Between;
+        self.state = AnswerState::Between;
         self.searched = 0;
-        Step::Give(Part { body, stamp_s: head.stamp_s })
+        AnswerStep::Give(ImagePart { body, stamp_s: head.stamp_s })
     }
 
     /// Reads an image that ends at the next boundary.
-    fn searched_for(&mut self, head: Head) -> Result<Step, Wrong> {
+    fn searched_for(&mut self, head: HttpHead) -> Result<AnswerStep, HttpFault> {
         let Some(at) = self.find_boundary() else {
-            self.state = State::Body(head);
-            let too_long = self.held.len() > PICTURE_MOST;
-            return if too_long { Err(Wrong::Unreadable("a picture that is too long")) } else { Ok(Step::Wait) };
+            self.state = AnswerState::Body(head);
+            let too_long = self.held.len() > IMAGE_MAX;
+            return if too_long {
+                Err(HttpFault::Unreadable("a picture that is too long"))
+            } else {
+                Ok(AnswerStep::Wait)
+            };
         };
         let rest = self.held.split_off(at);
         let mut body = std::mem::replace(&mut self.held, rest);
@@ -177,9 +183,9 @@ impl Answer {
         while body.last().is_some_and(|byte| matches!(byte, b'\r' | b'\n' | b'-')) {
             body.pop();
         }
-        self.state = State::Between;
+        self.state = AnswerState::Between;
         self.searched = 0;
-        Ok(Step::Give(Part { body, stamp_s: head.stamp_s }))
+        Ok(AnswerStep::Give(ImagePart { body, stamp_s: head.stamp_s }))
     }
 
     /// Returns the begin of the next boundary, with its two dashes. Searches each byte only once.
@@ -198,10 +204,10 @@ impl Answer {
         self.searched = 0;
     }
 
-    fn to(&mut self, state: State, gone: usize) -> Step {
+    fn to(&mut self, state: AnswerState, gone: usize) -> AnswerStep {
         self.skip(gone);
         self.state = state;
-        Step::On
+        AnswerStep::On
     }
 }
 

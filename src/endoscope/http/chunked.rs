@@ -2,35 +2,35 @@
 
 use httparse::{Status, parse_chunk_size};
 
-use super::answer::Wrong;
+use super::answer::HttpFault;
 
 /// Maximum length of a line with a chunk length, bytes.
-const LINE_MOST: usize = 256;
+const LINE_MAX: usize = 256;
 /// A chunk is followed by the end of its line.
 const LINE_END: u64 = 2;
 
 #[derive(Debug, Default)]
-pub(super) struct Chunked {
+pub(super) struct ChunkedBody {
     line: Vec<u8>,
     /// Bytes of a chunk that are still to come, with the end of its line.
     left: u64,
 }
 
-impl Chunked {
+impl ChunkedBody {
     /// Appends the bytes in the chunks to `out`.
-    pub(super) fn take(&mut self, mut bytes: &[u8], out: &mut Vec<u8>) -> Result<(), Wrong> {
+    pub(super) fn take(&mut self, mut bytes: &[u8], out: &mut Vec<u8>) -> Result<(), HttpFault> {
         while let Some((&first, rest)) = bytes.split_first() {
             if self.left == 0 {
                 bytes = rest;
                 self.line.push(first);
                 match parse_chunk_size(&self.line) {
-                    Ok(Status::Complete((_, 0))) => return Err(Wrong::Ended),
+                    Ok(Status::Complete((_, 0))) => return Err(HttpFault::Ended),
                     Ok(Status::Complete((_, length))) => {
                         self.left = length.saturating_add(LINE_END);
                         self.line.clear();
                     }
-                    Ok(Status::Partial) if self.line.len() <= LINE_MOST => {}
-                    _ => return Err(Wrong::Unreadable("chunks without a length")),
+                    Ok(Status::Partial) if self.line.len() <= LINE_MAX => {}
+                    _ => return Err(HttpFault::Unreadable("chunks without a length")),
                 }
                 continue;
             }

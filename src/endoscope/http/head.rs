@@ -2,17 +2,17 @@
 
 use httparse::{EMPTY_HEADER, Error, Header, ParserConfig, Response, Status};
 
-use super::answer::Wrong;
+use super::answer::HttpFault;
 
 /// Longest head, in bytes and in lines.
-const HEAD_MOST: usize = 16 << 10;
+const HEAD_MAX: usize = 16 << 10;
 const LINES_MOST: usize = 64;
 /// A part has no status line of its own. It begins with the end of its boundary's line, which completes this one.
 const PART: &[u8] = b"HTTP/1.1 200 OK";
 
 /// Fields of a head; their names are case-insensitive.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Head {
+pub(super) struct HttpHead {
     pub(super) status: u16,
     pub(super) content_type: Option<String>,
     pub(super) length: Option<usize>,
@@ -22,9 +22,9 @@ pub(super) struct Head {
     pub(super) challenges: Vec<String>,
 }
 
-impl Head {
+impl HttpHead {
     /// The head of an answer and its length in bytes; `None` before all of it is there.
-    pub(super) fn read(bytes: &[u8]) -> Result<Option<(Self, usize)>, Wrong> {
+    pub(super) fn read(bytes: &[u8]) -> Result<Option<(Self, usize)>, HttpFault> {
         let mut lines = [EMPTY_HEADER; LINES_MOST];
         let mut response = Response::new(&mut lines);
         // As lenient as browsers are, with which cameras are tried.
@@ -37,20 +37,20 @@ impl Head {
                 let status = response.code.unwrap_or_default();
                 Ok(Some((Self::of(status, response.headers)?, length)))
             }
-            Ok(Status::Partial) if bytes.len() <= HEAD_MOST => Ok(None),
-            Ok(Status::Partial) | Err(Error::TooManyHeaders) => Err(Wrong::Unreadable("a head that does not end")),
-            Err(_) => Err(Wrong::Unreadable("an answer that is not HTTP")),
+            Ok(Status::Partial) if bytes.len() <= HEAD_MAX => Ok(None),
+            Ok(Status::Partial) | Err(Error::TooManyHeaders) => Err(HttpFault::Unreadable("a head that does not end")),
+            Err(_) => Err(HttpFault::Unreadable("an answer that is not HTTP")),
         }
     }
 
     /// The head of a part, from behind its boundary.
-    pub(super) fn read_part(bytes: &[u8]) -> Result<Option<(Self, usize)>, Wrong> {
-        let end = bytes.len().min(HEAD_MOST + 1);
+    pub(super) fn read_part(bytes: &[u8]) -> Result<Option<(Self, usize)>, HttpFault> {
+        let end = bytes.len().min(HEAD_MAX + 1);
         let found = Self::read(&[PART, &bytes[..end]].concat())?;
         Ok(found.map(|(head, length)| (head, length - PART.len())))
     }
 
-    fn of(status: u16, lines: &[Header]) -> Result<Self, Wrong> {
+    fn of(status: u16, lines: &[Header]) -> Result<Self, HttpFault> {
         let mut head = Self { status, ..Self::default() };
         for line in lines {
             let value = String::from_utf8_lossy(line.value);
@@ -58,13 +58,13 @@ impl Head {
             match line.name.to_ascii_lowercase().as_str() {
                 "content-type" => head.content_type = Some(value.to_owned()),
                 "content-length" => {
-                    let length = value.parse().map_err(|_| Wrong::Unreadable("a length that is not a number"))?;
+                    let length = value.parse().map_err(|_| HttpFault::Unreadable("a length that is not a number"))?;
                     head.length = Some(length);
                 }
                 "transfer-encoding" => match value.to_ascii_lowercase().as_str() {
                     "chunked" => head.is_chunked = true,
                     "identity" => {}
-                    _ => return Err(Wrong::Unreadable("a compression that was not asked for")),
+                    _ => return Err(HttpFault::Unreadable("a compression that was not asked for")),
                 },
                 // Seconds, as sent by mjpg-streamer and others.
                 "x-timestamp" => head.stamp_s = value.parse().ok().filter(|stamp_s: &f64| stamp_s.is_finite()),

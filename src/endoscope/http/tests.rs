@@ -7,7 +7,7 @@ use std::{
 use nima_testing::fuzz;
 use proptest::prelude::*;
 
-use super::{answer::PICTURE_MOST, *};
+use super::{answer::IMAGE_MAX, *};
 use crate::Login;
 
 const HEAD: &str = "HTTP/1.1 200 OK\r\nContent-Type: multipart/x-mixed-replace; boundary=frame\r\n\r\n";
@@ -41,8 +41,8 @@ fn in_chunks(bytes: &[u8], chunk: usize) -> Vec<u8> {
         .collect()
 }
 
-fn taken(bytes: &[u8], chunk: usize) -> Result<Vec<Part>, Wrong> {
-    let mut answer = Answer::default();
+fn taken(bytes: &[u8], chunk: usize) -> Result<Vec<ImagePart>, HttpFault> {
+    let mut answer = HttpAnswer::default();
     let mut parts = VecDeque::new();
     for chunk in bytes.chunks(chunk) {
         answer.take(chunk, &mut parts)?;
@@ -50,8 +50,8 @@ fn taken(bytes: &[u8], chunk: usize) -> Result<Vec<Part>, Wrong> {
     Ok(parts.into())
 }
 
-fn expected() -> Vec<Part> {
-    (0..3).map(|number| Part { body: body(number), stamp_s: Some(number as f64 + 0.5) }).collect()
+fn expected() -> Vec<ImagePart> {
+    (0..3).map(|number| ImagePart { body: body(number), stamp_s: Some(number as f64 + 0.5) }).collect()
 }
 
 proptest! {
@@ -89,32 +89,32 @@ fn habits_of_cameras_are_understood() {
 #[test]
 fn what_is_no_motion_jpeg_is_told() {
     let of = |head: &str| taken(format!("{head}\r\n\r\n").as_bytes(), 7).unwrap_err();
-    assert_eq!(of("HTTP/1.1 404 Not Found"), Wrong::Status(404));
-    assert_eq!(of("HTTP/1.1 200 OK\r\nContent-Type: text/html; a"), Wrong::Format("text/html".to_owned()));
-    assert_eq!(of("HTTP/1.1 200 OK\r\nContent-Type: image/jpeg"), Wrong::Format("a single picture".to_owned()));
-    assert_eq!(of("HTTP/1.1 200 OK"), Wrong::Format("something without a type".to_owned()));
-    assert!(matches!(of("SSH-2.0-OpenSSH_9.6"), Wrong::Unreadable(_)));
-    assert!(matches!(of("HTTP/1.1 200 OK\r\nContent-Type: multipart/x-mixed-replace"), Wrong::Unreadable(_)));
+    assert_eq!(of("HTTP/1.1 404 Not Found"), HttpFault::Status(404));
+    assert_eq!(of("HTTP/1.1 200 OK\r\nContent-Type: text/html; a"), HttpFault::Format("text/html".to_owned()));
+    assert_eq!(of("HTTP/1.1 200 OK\r\nContent-Type: image/jpeg"), HttpFault::Format("a single picture".to_owned()));
+    assert_eq!(of("HTTP/1.1 200 OK"), HttpFault::Format("something without a type".to_owned()));
+    assert!(matches!(of("SSH-2.0-OpenSSH_9.6"), HttpFault::Unreadable(_)));
+    assert!(matches!(of("HTTP/1.1 200 OK\r\nContent-Type: multipart/x-mixed-replace"), HttpFault::Unreadable(_)));
     let png = [HEAD, "--frame\r\nContent-Type: image/png\r\n\r\n"].concat();
-    assert_eq!(taken(png.as_bytes(), 9), Err(Wrong::Format("image/png".to_owned())));
+    assert_eq!(taken(png.as_bytes(), 9), Err(HttpFault::Format("image/png".to_owned())));
     let end = [HEAD, "--frame--"].concat();
-    assert_eq!(taken(end.as_bytes(), 9), Err(Wrong::Ended));
+    assert_eq!(taken(end.as_bytes(), 9), Err(HttpFault::Ended));
 }
 
 #[test]
 fn what_is_too_long_is_refused_and_memory_stays_small() {
-    let mut answer = Answer::default();
+    let mut answer = HttpAnswer::default();
     let mut parts = VecDeque::new();
     let endless = [HEAD, "--frame\r\n\r\n"].concat();
     answer.take(endless.as_bytes(), &mut parts).unwrap();
-    let mut told = Ok(());
-    for _ in 0..3 * PICTURE_MOST / READ_BYTES {
-        told = answer.take(&vec![7; READ_BYTES], &mut parts);
-        if told.is_err() {
+    let mut report = Ok(());
+    for _ in 0..3 * IMAGE_MAX / READ_BYTES {
+        report = answer.take(&vec![7; READ_BYTES], &mut parts);
+        if report.is_err() {
             break;
         }
     }
-    assert!(told.is_err() && answer.held() < 3 * PICTURE_MOST, "{} bytes", answer.held());
+    assert!(report.is_err() && answer.held() < 3 * IMAGE_MAX, "{} bytes", answer.held());
     let says = |length: &str| [HEAD, "--frame\r\nContent-Length: ", length, "\r\n\r\n"].concat();
     for length in ["99999999999", "-1", "99999999999999999999999"] {
         assert!(taken(says(length).as_bytes(), 50).is_err(), "{length}");
@@ -149,7 +149,7 @@ fn mutate(seed: u64, count: usize) {
             }
         }
         let chunk = random.usize(1..300);
-        let mut answer = Answer::default();
+        let mut answer = HttpAnswer::default();
         let mut parts = VecDeque::new();
         for chunk in bytes.chunks(chunk) {
             if answer.take(chunk, &mut parts).is_err() {
@@ -196,7 +196,10 @@ fn asked(listener: &TcpListener) -> (TcpStream, String) {
 }
 
 /// What a client with this login comes to at a camera that demands a password so, and what it sent the second time.
-fn logged_in(challenges: &'static str, login: Option<Login>) -> (Result<Compressed, Trouble>, Option<String>) {
+fn logged_in(
+    challenges: &'static str,
+    login: Option<Login>,
+) -> (Result<CompressedFrame, EndoscopeError>, Option<String>) {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let port = listener.local_addr().unwrap().port();
     let asks_twice = login.is_some() && challenges.contains("realm");
@@ -230,20 +233,22 @@ fn logged_in(challenges: &'static str, login: Option<Login>) -> (Result<Compress
 #[test]
 fn a_password_is_given_as_the_camera_asks_for_it() {
     let login = |user: &str| Some(Login { user: user.to_owned(), password: "secret".to_owned() });
-    let (picture, sent) = logged_in("WWW-Authenticate: Basic realm=\"x\"\r\n", login("eva"));
+    let (image, sent) = logged_in("WWW-Authenticate: Basic realm=\"x\"\r\n", login("eva"));
     // base64 of eva:secret
-    assert_eq!((picture.unwrap().bytes, sent.as_deref()), (body(0), Some("Basic ZXZhOnNlY3JldA==")));
+    assert_eq!((image.unwrap().bytes, sent.as_deref()), (body(0), Some("Basic ZXZhOnNlY3JldA==")));
     // The safer way is taken of two.
     let both = "WWW-Authenticate: Basic realm=\"x\"\r\nWWW-Authenticate: Digest realm=\"x\", nonce=\"1\"\r\n";
     for challenges in [both, "www-authenticate: Digest realm=\"x\", qop=\"auth\", nonce=\"1\", algorithm=MD5\r\n"] {
-        let (picture, sent) = logged_in(challenges, login("eva"));
-        assert_eq!(picture.unwrap().bytes, body(0));
+        let (image, sent) = logged_in(challenges, login("eva"));
+        assert_eq!(image.unwrap().bytes, body(0));
         let sent = sent.unwrap();
         assert!(sent.starts_with("Digest ") && sent.contains("uri=\"/a?b\"") && !sent.contains("secret"), "{sent}");
     }
     let refused = |challenges, login| {
         let trouble = logged_in(challenges, login).0.err().unwrap();
-        assert!(matches!(trouble, Trouble::Refused { status: 401, .. }) && trouble.cure().contains("USER:PASSWORD"));
+        assert!(
+            matches!(trouble, EndoscopeError::Refused { status: 401, .. }) && trouble.cure().contains("USER:PASSWORD")
+        );
     };
     refused("WWW-Authenticate: Digest realm=\"x\", nonce=\"1\"\r\n", login("wrong"));
     refused("WWW-Authenticate: Digest realm=\"x\", nonce=\"1\"\r\n", None);
@@ -259,14 +264,14 @@ fn pictures_come_over_a_connection_and_its_end_is_told() {
     });
     let mut source = Http::open(&endpoint(port)).unwrap();
     let mut seen = Vec::new();
-    let told = loop {
+    let report = loop {
         match source.next() {
-            Ok(Some(compressed)) => seen.push(Part { body: compressed.bytes, stamp_s: compressed.stamp_s }),
+            Ok(Some(compressed)) => seen.push(ImagePart { body: compressed.bytes, stamp_s: compressed.stamp_s }),
             Ok(None) => {}
             Err(trouble) => break trouble,
         }
     };
-    assert_eq!((seen, told), (expected(), Trouble::Closed { place: format!("127.0.0.1:{port}") }));
+    assert_eq!((seen, report), (expected(), EndoscopeError::Closed { place: format!("127.0.0.1:{port}") }));
 }
 
 #[test]
@@ -274,10 +279,10 @@ fn who_does_not_listen_or_does_not_speak_http_is_told_with_a_cure() {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let port = listener.local_addr().unwrap().port();
     drop(listener);
-    let told = Http::open(&endpoint(port)).err().unwrap();
-    assert!(matches!(told, Trouble::NobodyListens { .. }) && told.cure().contains("port"), "{told}");
+    let report = Http::open(&endpoint(port)).err().unwrap();
+    assert!(matches!(report, EndoscopeError::NobodyListens { .. }) && report.cure().contains("port"), "{report}");
     let port = camera(|mut stream| stream.write_all(b"220 mail ready\r\n").unwrap());
     let mut source = Http::open(&endpoint(port)).unwrap();
-    let told = std::iter::repeat_with(|| source.next()).find_map(Result::err).unwrap();
-    assert!(told.to_string().contains("not HTTP") && told.cure().contains("another program"), "{told}");
+    let report = std::iter::repeat_with(|| source.next()).find_map(Result::err).unwrap();
+    assert!(report.to_string().contains("not HTTP") && report.cure().contains("another program"), "{report}");
 }

@@ -39,7 +39,7 @@ const BLOCKS: usize = 6;
 /// Maximum number of bits of a coefficient's code and value; the number of bits is stored above them.
 const CODE_BITS: u32 = 27;
 
-type Block = [f32; 64];
+type EncodeBlock = [f32; 64];
 type Codes = [(u32, u32); 256];
 
 /// Encodes an image with three bytes per pixel, row by row, at a quality of 1 to 100.
@@ -47,33 +47,33 @@ type Codes = [(u32, u32); 256];
 /// # Panics
 /// If the bytes do not match this size, or a side is 0 or above 65535.
 pub fn encode(rgb: &[u8], size_px: [usize; 2], quality: u8) -> Vec<u8> {
-    Encoder::new(size_px, quality).encode(rgb)
+    JpegEncoder::new(size_px, quality).encode(rgb)
 }
 
 /// Encodes a sequence of images, each complete in itself. Unchanged areas cost little, which suits emulated cameras:
 /// they mostly show a still scene.
 #[derive(Debug)]
-pub struct Encoder {
+pub struct JpegEncoder {
     size_px: [usize; 2],
     head: Vec<u8>,
     /// Factors of the coefficients.
-    shares: Block,
+    fractions: EncodeBlock,
     dc: Codes,
     ac: Codes,
     /// The previous image; empty if there was none.
     before: Vec<u8>,
-    blocks: Vec<Coded>,
+    blocks: Vec<CodedBlock>,
 }
 
 /// An encoded block, without the code of its mean, which depends on the previous block.
 #[derive(Clone, Debug, Default)]
-struct Coded {
+struct CodedBlock {
     dc: i32,
     /// Bits, with their number above [`CODE_BITS`].
     ac: Vec<u32>,
 }
 
-impl Encoder {
+impl JpegEncoder {
     /// Makes an encoder for images of this size, at a quality of 1 to 100.
     ///
     /// # Panics
@@ -85,16 +85,16 @@ impl Encoder {
         let steps = QUANTISATION.map(|step| ((u32::from(step) * scale + 50) / 100).clamp(1, 255) as u8);
         let mut head = Vec::new();
         headers(&mut head, size_px, &steps);
-        let shares = std::array::from_fn(|at| 1.0 / (f32::from(steps[at]) * 8.0 * SCALES[at / 8] * SCALES[at % 8]));
+        let fractions = std::array::from_fn(|at| 1.0 / (f32::from(steps[at]) * 8.0 * SCALES[at / 8] * SCALES[at % 8]));
         let [columns, rows] = size_px.map(|side| side.div_ceil(SQUARE_PX));
         Self {
             size_px,
             head,
-            shares,
+            fractions,
             dc: codes(&DC_LENGTHS, &DC_VALUES),
             ac: codes(&AC_LENGTHS, &AC_VALUES),
             before: Vec::new(),
-            blocks: vec![Coded::default(); BLOCKS * columns * rows],
+            blocks: vec![CodedBlock::default(); BLOCKS * columns * rows],
         }
     }
 
@@ -108,7 +108,7 @@ impl Encoder {
         self.renew(rgb);
         let mut out = Vec::with_capacity(width * height / 8 + 1024);
         out.extend_from_slice(&self.head);
-        let mut bits = Bits { out, held: 0, count: 0 };
+        let mut bits = EncodeBits { out, held: 0, count: 0 };
         let mut before = [0; 3];
         for (number, block) in self.blocks.iter().enumerate() {
             let before = &mut before[(number % BLOCKS).saturating_sub(3)];
@@ -135,14 +135,14 @@ impl Encoder {
             let [y, cb, cr] = colours(rgb, self.size_px, left, top);
             for (block, corner) in blocks.iter_mut().zip([0, 8, 128, 136]) {
                 let mut values = std::array::from_fn(|at| y[corner + 16 * (at / 8) + at % 8]);
-                block.code(&mut values, &self.shares, &self.ac);
+                block.code(&mut values, &self.fractions, &self.ac);
             }
             for (block, plane) in blocks[4..].iter_mut().zip([cb, cr]) {
                 let mut values = std::array::from_fn(|at| {
                     let at = 32 * (at / 8) + 2 * (at % 8);
                     0.25 * (plane[at] + plane[at + 1] + plane[at + 16] + plane[at + 17])
                 });
-                block.code(&mut values, &self.shares, &self.ac);
+                block.code(&mut values, &self.fractions, &self.ac);
             }
         }
         self.before.clear();
@@ -150,10 +150,10 @@ impl Encoder {
     }
 }
 
-impl Coded {
-    fn code(&mut self, values: &mut Block, shares: &Block, codes: &Codes) {
+impl CodedBlock {
+    fn code(&mut self, values: &mut EncodeBlock, fractions: &EncodeBlock, codes: &Codes) {
         transform(values);
-        let level = |at: usize| (values[at] * shares[at]).round() as i32;
+        let level = |at: usize| (values[at] * fractions[at]).round() as i32;
         self.dc = level(0);
         self.ac.clear();
         let mut zeros = 0;
@@ -240,13 +240,13 @@ fn codes(lengths: &[u8; 16], values: &[u8]) -> Codes {
     codes
 }
 
-struct Bits {
+struct EncodeBits {
     out: Vec<u8>,
     held: u64,
     count: u32,
 }
 
-impl Bits {
+impl EncodeBits {
     fn put(&mut self, bits: u32, count: u32) {
         self.held = self.held << count | u64::from(bits);
         self.count += count;
@@ -278,7 +278,7 @@ impl Bits {
 }
 
 /// Cosine transform of rows and then of columns, each coefficient multiplied by its [`SCALES`] and by 8.
-fn transform(block: &mut Block) {
+fn transform(block: &mut EncodeBlock) {
     for row in 0..8 {
         line(block, 8 * row, 1);
     }
@@ -288,7 +288,7 @@ fn transform(block: &mut Block) {
 }
 
 /// Transforms one row or column (Arai, Agui and Nakajima).
-fn line(block: &mut Block, first: usize, step: usize) {
+fn line(block: &mut EncodeBlock, first: usize, step: usize) {
     let d: [f32; 8] = std::array::from_fn(|i| block[first + i * step]);
     let sums: [f32; 4] = std::array::from_fn(|i| d[i] + d[7 - i]);
     let [s0, s1, s2, s3] = sums;
@@ -325,9 +325,9 @@ mod tests {
             // No fine colours: they have half the resolution.
             let grey: Vec<u8> =
                 pattern(size_px).chunks_exact(3).flat_map(|pixel| [pixel[0] / 2 + pixel[1] / 4; 3]).collect();
-            let picture = decode(&encode(&grey, size_px, 92)).unwrap();
-            assert_eq!(picture.size_px, size_px);
-            let pairs = picture.rgba.chunks_exact(4).zip(grey.chunks_exact(3));
+            let image = decode(&encode(&grey, size_px, 92)).unwrap();
+            assert_eq!(image.size_px, size_px);
+            let pairs = image.rgba.chunks_exact(4).zip(grey.chunks_exact(3));
             let misses = pairs.flat_map(|(is, was)| (0..3).map(|i| f64::from(is[i].abs_diff(was[i]))));
             let (sum, count) = misses.fold((0.0, 0.0), |(sum, count), miss| (sum + miss * miss, count + 1.0));
             let rms = f64::sqrt(sum / count);
@@ -338,7 +338,7 @@ mod tests {
     #[test]
     fn a_picture_is_the_same_whatever_came_before() {
         let size_px = [330, 70];
-        let mut encoder = Encoder::new(size_px, 80);
+        let mut encoder = JpegEncoder::new(size_px, 80);
         let mut rgb = pattern(size_px);
         for at in [0, 5, 3 * 330 * 35 + 900, 3 * 330 * 70 - 1, 3 * 330 * 69 + 1] {
             assert!(encoder.encode(&rgb) == encode(&rgb, size_px, 80), "before {at} changed");
@@ -361,11 +361,11 @@ mod tests {
             [16; 3],
         ];
         let rgb: Vec<u8> = (0..64 * 512).flat_map(|at| bars[at % 512 / 64]).collect();
-        let picture = decode(&encode(&rgb, [512, 64], 95)).unwrap();
+        let image = decode(&encode(&rgb, [512, 64], 95)).unwrap();
         for (number, bar) in bars.iter().enumerate() {
             let at = 4 * (32 * 512 + 64 * number + 32);
-            for (is, was) in picture.rgba[at..at + 3].iter().zip(bar) {
-                assert!(is.abs_diff(*was) <= 2, "bar {number}: {:?} for {bar:?}", &picture.rgba[at..at + 3]);
+            for (is, was) in image.rgba[at..at + 3].iter().zip(bar) {
+                assert!(is.abs_diff(*was) <= 2, "bar {number}: {:?} for {bar:?}", &image.rgba[at..at + 3]);
             }
         }
     }

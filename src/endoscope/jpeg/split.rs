@@ -1,19 +1,19 @@
 //! Finds whole JPEGs in a file that contains a sequence of them.
 
 /// Maximum size of an image in a file, bytes.
-const JPEG_MOST: usize = 8 << 20;
+const JPEG_MAX: usize = 8 << 20;
 
 /// Splits bytes, as they are read, into whole images. Other data are skipped; an image that is too long is dropped.
 #[derive(Debug, Default)]
-pub(crate) struct Splitter {
+pub(crate) struct JpegSplitter {
     held: Vec<u8>,
     /// Parsed bytes of the image at the beginning of `held`.
     followed: usize,
-    state: State,
+    state: SplitState,
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-enum State {
+enum SplitState {
     /// Before the beginning of an image.
     #[default]
     Before,
@@ -23,7 +23,7 @@ enum State {
     Coded,
 }
 
-impl Splitter {
+impl JpegSplitter {
     pub(crate) fn take(&mut self, bytes: &[u8]) {
         self.held.extend_from_slice(bytes);
     }
@@ -32,33 +32,33 @@ impl Splitter {
     pub(crate) fn next(&mut self) -> Option<Vec<u8>> {
         loop {
             match self.state {
-                State::Before => {
+                SplitState::Before => {
                     let begin = self.held.windows(2).position(|two| two == [0xff, 0xd8]);
                     // The last byte may be the first half of a start marker.
                     let until = begin.unwrap_or(self.held.len().saturating_sub(1));
                     self.held.drain(..until);
                     begin?;
                     self.followed = 2;
-                    self.state = State::Segments;
+                    self.state = SplitState::Segments;
                 }
-                State::Segments => {
+                SplitState::Segments => {
                     let head = self.held.get(self.followed..self.followed + 4)?;
                     let length = usize::from(u16::from_be_bytes([head[2], head[3]]));
                     match head[1] {
-                        _ if head[0] != 0xff || self.followed > JPEG_MOST => self.give_up(),
+                        _ if head[0] != 0xff || self.followed > JPEG_MAX => self.give_up(),
                         0xff => self.followed += 1,
                         0xd9 => return Some(self.cut()),
                         0xd8 => self.give_up(),
                         marker => {
                             self.followed += 2 + length.max(2);
                             if marker == 0xda {
-                                self.state = State::Coded;
+                                self.state = SplitState::Coded;
                             }
                         }
                     }
                 }
-                State::Coded => {
-                    if self.followed > JPEG_MOST {
+                SplitState::Coded => {
+                    if self.followed > JPEG_MAX {
                         self.give_up();
                         continue;
                     }
@@ -72,7 +72,7 @@ impl Splitter {
                     if rest[at + 1] == 0xd9 {
                         return Some(self.cut());
                     }
-                    self.state = State::Segments;
+                    self.state = SplitState::Segments;
                 }
             }
         }
@@ -81,14 +81,14 @@ impl Splitter {
     /// Removes the image that ends with the marker after `followed`.
     fn cut(&mut self) -> Vec<u8> {
         let rest = self.held.split_off(self.followed + 2);
-        self.state = State::Before;
+        self.state = SplitState::Before;
         std::mem::replace(&mut self.held, rest)
     }
 
     /// Drops a false start and searches for the next one.
     fn give_up(&mut self) {
         self.held.drain(..2);
-        self.state = State::Before;
+        self.state = SplitState::Before;
     }
 }
 
@@ -100,7 +100,7 @@ mod tests {
     use crate::jpeg::{encode, tests::pattern};
 
     fn all(bytes: &[u8], chunk: usize) -> Vec<Vec<u8>> {
-        let mut splitter = Splitter::default();
+        let mut splitter = JpegSplitter::default();
         let mut found = Vec::new();
         for chunk in bytes.chunks(chunk) {
             splitter.take(chunk);
@@ -115,9 +115,9 @@ mod tests {
         fn all_pictures_are_found_however_the_file_is_read(
             between in prop::collection::vec(prop::collection::vec(0_u8..0xff, 0..50), 1..4), chunk in 1_usize..5000,
         ) {
-            let pictures: Vec<Vec<u8>> = (0..between.len()).map(|i| encode(&pattern([40 + 8 * i, 30]), [40 + 8 * i, 30], 80)).collect();
-            let file: Vec<u8> = between.iter().zip(&pictures).flat_map(|(junk, jpeg)| [&junk[..], jpeg].concat()).collect();
-            prop_assert_eq!(all(&file, chunk), pictures);
+            let images: Vec<Vec<u8>> = (0..between.len()).map(|i| encode(&pattern([40 + 8 * i, 30]), [40 + 8 * i, 30], 80)).collect();
+            let file: Vec<u8> = between.iter().zip(&images).flat_map(|(junk, jpeg)| [&junk[..], jpeg].concat()).collect();
+            prop_assert_eq!(all(&file, chunk), images);
         }
 
         #[test]

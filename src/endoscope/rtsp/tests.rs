@@ -8,7 +8,7 @@ use nima_testing::fuzz;
 
 use super::*;
 use crate::{
-    h264::{Encoder, nal_units},
+    h264::{H264Encoder, nal_units},
     jpeg::tests::pattern,
 };
 
@@ -34,7 +34,7 @@ fn answers(encoding: &str) -> [Vec<u8>; 3] {
         "RTSP/1.0 200 OK\r\nCSeq: N\r\nTransport: RTP/AVP/TCP;unicast;interleaved=0-1\r\nSession: 7;timeout=60\r\n\r\n";
     let plays = "RTSP/1.0 200 OK\r\nCSeq: N\r\nSession: 7\r\nRange: npt=0.000-\r\n\r\n";
     let mut bytes = plays.as_bytes().to_vec();
-    let mut encoder = Encoder::new(30.0).unwrap();
+    let mut encoder = H264Encoder::new(30.0).unwrap();
     let mut sequence = 7_u16;
     let mut packets = Vec::new();
     for number in 0..4 {
@@ -105,13 +105,13 @@ fn pictures_come_with_the_stamps_of_the_sender_and_their_end_is_told() {
     let mut source = open(&endpoint(port)).unwrap();
     let mut keys = Vec::new();
     let mut stamps_s = Vec::new();
-    let mut decoder = crate::h264::Decoder::default();
-    let told = loop {
+    let mut decoder = crate::h264::H264Decoder::default();
+    let report = loop {
         match source.next() {
             Ok(Some(compressed)) => {
                 let Format::H264 { is_key } = compressed.format else { panic!("{:?}", compressed.format) };
                 let taken = decoder.take(&compressed.bytes, is_key, true).unwrap().unwrap();
-                assert_eq!(taken.picture.unwrap().size_px, SIZE_PX);
+                assert_eq!(taken.image.unwrap().size_px, SIZE_PX);
                 keys.push(is_key);
                 stamps_s.push(compressed.stamp_s.unwrap());
             }
@@ -119,7 +119,10 @@ fn pictures_come_with_the_stamps_of_the_sender_and_their_end_is_told() {
             Err(trouble) => break trouble,
         }
     };
-    assert_eq!((keys, told), (vec![true, false, false, false], Trouble::Closed { place: format!("127.0.0.1:{port}") }));
+    assert_eq!(
+        (keys, report),
+        (vec![true, false, false, false], EndoscopeError::Closed { place: format!("127.0.0.1:{port}") })
+    );
     let period_s = 1.0 / 30.0;
     for (number, expected_s) in [(2, 2.5 + period_s), (3, 2.5 + 2.0 * period_s)] {
         assert!((stamps_s[number] - expected_s).abs() < 1e-6, "{stamps_s:?}");
@@ -132,23 +135,23 @@ fn each_cause_is_told_with_its_cure() {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let port = listener.local_addr().unwrap().port();
     drop(listener);
-    let told = |port| open(&endpoint(port)).err().unwrap();
-    assert!(matches!(told(port), Trouble::NobodyListens { .. }));
+    let report = |port| open(&endpoint(port)).err().unwrap();
+    assert!(matches!(report(port), EndoscopeError::NobodyListens { .. }));
     let status = |status: &str| camera(vec![format!("RTSP/1.0 {status}\r\nCSeq: N\r\n\r\n").into_bytes()]);
-    assert!(matches!(told(status("404 Not Found")), Trouble::Refused { status: 404, .. }));
-    assert!(matches!(told(status("501 Not Implemented")), Trouble::Refused { status: 501, .. }));
-    let other = told(camera(answers("H265").to_vec()));
-    assert!(matches!(&other, Trouble::OtherFormat { found, .. } if found == "h265"), "{other}");
+    assert!(matches!(report(status("404 Not Found")), EndoscopeError::Refused { status: 404, .. }));
+    assert!(matches!(report(status("501 Not Implemented")), EndoscopeError::Refused { status: 501, .. }));
+    let other = report(camera(answers("H265").to_vec()));
+    assert!(matches!(&other, EndoscopeError::OtherFormat { found, .. } if found == "h265"), "{other}");
     assert!(other.to_string().ends_with("sends h265, not H.264") && other.cure().contains("Set the camera to H.264"));
-    let mail = told(camera(vec![b"220 mail ready\r\n\r\n".to_vec()]));
-    assert!(matches!(mail, Trouble::Unreadable { .. } | Trouble::Closed { .. }), "{mail}");
+    let mail = report(camera(vec![b"220 mail ready\r\n\r\n".to_vec()]));
+    assert!(matches!(mail, EndoscopeError::Unreadable { .. } | EndoscopeError::Closed { .. }), "{mail}");
     assert!(!mail.to_string().contains('\n'), "{mail}");
 }
 
 #[test]
 fn a_client_that_panics_ends_what_was_asked_for_and_not_the_thread() {
-    let told = guarded::<()>("cam:554", || panic!("as the client does")).unwrap_err();
-    assert_eq!(told.to_string(), "cam:554 sends an unreadable response: a response that cannot be parsed");
+    let report = guarded::<()>("cam:554", || panic!("as the client does")).unwrap_err();
+    assert_eq!(report.to_string(), "cam:554 sends an unreadable response: a response that cannot be parsed");
 }
 
 #[test]
@@ -156,8 +159,8 @@ fn a_description_whose_lines_are_out_of_order_is_told() {
     let [described, set_up, plays] = answers("H264");
     let text = String::from_utf8(described).unwrap().replace("m=audio 0 RTP/AVP 0\r\n", "t=0 0\r\n");
     let trouble = open(&endpoint(camera(vec![text.into_bytes(), set_up, plays]))).err();
-    let told = trouble.map(|trouble| trouble.to_string()).unwrap_or_default();
-    assert!(told.contains("cannot be"), "{told}");
+    let report = trouble.map(|trouble| trouble.to_string()).unwrap_or_default();
+    assert!(report.contains("cannot be"), "{report}");
 }
 
 /// Runs this many conversations with a camera whose responses are damaged at random; returns how many images arrived.
@@ -188,15 +191,15 @@ fn mutate(seed: u64, count: usize) -> usize {
             serve(&mut listener.accept().unwrap().0, &answers);
         }
     });
-    let mut pictures = 0;
+    let mut images = 0;
     for _ in 0..count {
         let Ok(mut source) = open(&endpoint(port)) else { continue };
         while let Ok(next) = source.next() {
-            pictures += usize::from(next.is_some());
+            images += usize::from(next.is_some());
         }
     }
     server.join().unwrap();
-    pictures
+    images
 }
 
 #[test]

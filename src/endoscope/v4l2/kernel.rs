@@ -11,12 +11,12 @@ use std::{
     time::Duration,
 };
 
-use super::layout::Request;
+use super::layout::KernelRequest;
 
 /// The system calls on a camera.
 pub(super) trait Kernel: Send {
     /// Sends a request with its structure, whose length the request defines.
-    fn ioctl(&mut self, request: Request, structure: &mut [u8]) -> Result<()>;
+    fn ioctl(&mut self, request: KernelRequest, structure: &mut [u8]) -> Result<()>;
     /// Maps the next buffer, which the driver has at this offset.
     fn map(&mut self, offset: u32, length: usize) -> Result<()>;
     /// Returns the first bytes of a buffer that the driver has returned.
@@ -28,7 +28,7 @@ pub(super) trait Kernel: Send {
 }
 
 /// An open device.
-pub(super) struct Device {
+pub(super) struct KernelDevice {
     file: File,
     buffers: Vec<Buffer>,
 }
@@ -49,15 +49,15 @@ impl Drop for Buffer {
     }
 }
 
-impl Device {
+impl KernelDevice {
     pub(super) fn open(path: &Path) -> Result<Self> {
         let file = OpenOptions::new().read(true).write(true).custom_flags(libc::O_NONBLOCK).open(path)?;
         Ok(Self { file, buffers: Vec::new() })
     }
 }
 
-impl Kernel for Device {
-    fn ioctl(&mut self, request: Request, structure: &mut [u8]) -> Result<()> {
+impl Kernel for KernelDevice {
+    fn ioctl(&mut self, request: KernelRequest, structure: &mut [u8]) -> Result<()> {
         if structure.len() != request.length {
             return Err(Error::from(ErrorKind::InvalidInput));
         }
@@ -97,8 +97,8 @@ impl Kernel for Device {
     }
 
     fn copy(&self, buffer: usize, length: usize) -> Vec<u8> {
-        let Some(Buffer { begin, length: most }) = self.buffers.get(buffer) else { return Vec::new() };
-        let length = length.min(*most);
+        let Some(Buffer { begin, length: max }) = self.buffers.get(buffer) else { return Vec::new() };
+        let length = length.min(*max);
         let mut bytes = vec![0; length];
         // SAFETY: both ranges have at least `length` bytes and do not overlap. While the buffer is ours the driver does not write to it; if it
         // did, bytes of two images would be mixed; no reference to the range exists.

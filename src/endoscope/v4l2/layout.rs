@@ -29,33 +29,33 @@ pub(super) const SIZE_DISCRETE: u32 = 1;
 
 /// A request: its number, the direction of its structure, and its length.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Request {
+pub(super) struct KernelRequest {
     pub(super) number: u8,
     direction: u32,
     pub(super) length: usize,
 }
 
-const fn request(number: u8, direction: u32, length: usize) -> Request {
-    Request { number, direction, length }
+const fn request(number: u8, direction: u32, length: usize) -> KernelRequest {
+    KernelRequest { number, direction, length }
 }
 
 const READ: u32 = 2;
 const WRITE: u32 = 1;
 
-pub(super) const QUERYCAP: Request = request(0, READ, 104);
-pub(super) const ENUM_FMT: Request = request(2, READ | WRITE, 64);
-pub(super) const G_FMT: Request = request(4, READ | WRITE, 208);
-pub(super) const S_FMT: Request = request(5, READ | WRITE, 208);
-pub(super) const REQBUFS: Request = request(8, READ | WRITE, 20);
-pub(super) const QUERYBUF: Request = request(9, READ | WRITE, 88);
-pub(super) const QBUF: Request = request(15, READ | WRITE, 88);
-pub(super) const DQBUF: Request = request(17, READ | WRITE, 88);
-pub(super) const STREAMON: Request = request(18, WRITE, 4);
-pub(super) const STREAMOFF: Request = request(19, WRITE, 4);
-pub(super) const S_PARM: Request = request(22, READ | WRITE, 204);
-pub(super) const ENUM_FRAMESIZES: Request = request(74, READ | WRITE, 44);
+pub(super) const QUERYCAP: KernelRequest = request(0, READ, 104);
+pub(super) const ENUM_FMT: KernelRequest = request(2, READ | WRITE, 64);
+pub(super) const G_FMT: KernelRequest = request(4, READ | WRITE, 208);
+pub(super) const S_FMT: KernelRequest = request(5, READ | WRITE, 208);
+pub(super) const REQBUFS: KernelRequest = request(8, READ | WRITE, 20);
+pub(super) const QUERYBUF: KernelRequest = request(9, READ | WRITE, 88);
+pub(super) const QBUF: KernelRequest = request(15, READ | WRITE, 88);
+pub(super) const DQBUF: KernelRequest = request(17, READ | WRITE, 88);
+pub(super) const STREAMON: KernelRequest = request(18, WRITE, 4);
+pub(super) const STREAMOFF: KernelRequest = request(19, WRITE, 4);
+pub(super) const S_PARM: KernelRequest = request(22, READ | WRITE, 204);
+pub(super) const ENUM_FRAMESIZES: KernelRequest = request(74, READ | WRITE, 44);
 
-impl Request {
+impl KernelRequest {
     /// Returns the number for the system call.
     pub(super) const fn code(self) -> u32 {
         self.direction << 30 | (self.length as u32) << 16 | (b'V' as u32) << 8 | self.number as u32
@@ -93,16 +93,16 @@ pub(super) mod at {
     pub(in super::super) const SIZE_TYPE: usize = 8;
     pub(in super::super) const SIZE_WIDTH: usize = 12;
     pub(in super::super) const SIZE_HEIGHT: usize = 16;
-    pub(in super::super) const SIZE_MOST_WIDTH: usize = 16;
-    pub(in super::super) const SIZE_MOST_HEIGHT: usize = 28;
+    pub(in super::super) const SIZE_MAX_WIDTH: usize = 16;
+    pub(in super::super) const SIZE_MAX_HEIGHT: usize = 28;
 }
 
 /// A structure, initially all zero.
 #[derive(Clone, Debug)]
-pub(super) struct Block(pub(super) Vec<u8>);
+pub(super) struct LayoutBlock(pub(super) Vec<u8>);
 
-impl Block {
-    pub(super) fn of(request: Request) -> Self {
+impl LayoutBlock {
+    pub(super) fn of(request: KernelRequest) -> Self {
         Self(vec![0; request.length])
     }
 

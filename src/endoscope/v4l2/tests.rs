@@ -79,7 +79,7 @@ fn error(number: i32) -> io::Error {
 }
 
 impl Kernel for Driver {
-    fn ioctl(&mut self, request: Request, bytes: &mut [u8]) -> io::Result<()> {
+    fn ioctl(&mut self, request: KernelRequest, bytes: &mut [u8]) -> io::Result<()> {
         let mut table = self.0.lock().unwrap();
         if let Some((_, number)) = table.fails.iter().find(|(failing, _)| *failing == request.number) {
             return Err(error(*number));
@@ -174,7 +174,7 @@ impl Kernel for Driver {
     }
 }
 
-fn start(table: Table, wanted: &str) -> (Driver, Result<V4l2, Trouble>) {
+fn start(table: Table, wanted: &str) -> (Driver, Result<V4l2, EndoscopeError>) {
     let driver = Driver(Arc::new(Mutex::new(table)));
     let Ok(crate::Address::Camera { capture, .. }) = format!("/dev/video0?{wanted}").parse() else {
         panic!("{wanted}")
@@ -201,16 +201,16 @@ fn the_best_format_is_taken_and_the_newest_picture_wins() {
         // Padded, as by some drivers.
         comes(&driver, [frame(value), vec![0; 300]].concat(), 0x2000, Duration::from_millis(40));
     }
-    let picture = camera.next().unwrap().unwrap();
-    assert_eq!(picture.bytes, frame(200));
-    assert_eq!(picture.decode().unwrap().size_px, [8, 8]);
-    let late = picture.arrived.duration_since(picture.taken.unwrap());
+    let image = camera.next().unwrap().unwrap();
+    assert_eq!(image.bytes, frame(200));
+    assert_eq!(image.decode().unwrap().size_px, [8, 8]);
+    let late = image.arrived.duration_since(image.taken.unwrap());
     assert!(late.as_millis().abs_diff(40) <= 20, "{late:?}");
     // Every buffer returns to the driver, however often images arrive.
     for value in 0..40 {
         comes(&driver, frame(value), 0, Duration::ZERO);
-        let picture = camera.next().unwrap().unwrap();
-        assert_eq!((picture.bytes, picture.taken), (frame(value), None), "another clock is not ours");
+        let image = camera.next().unwrap().unwrap();
+        assert_eq!((image.bytes, image.taken), (frame(value), None), "another clock is not ours");
         assert_eq!(driver.0.lock().unwrap().queued.len(), 4);
     }
     drop(camera);
@@ -233,9 +233,9 @@ fn a_stamp_of_another_time_is_none() {
 
 #[test]
 fn pictures_that_are_not_compressed_have_the_colours_that_the_driver_says() {
-    let full = Colours { matrix: Matrix::Bt601, range: Range::Full };
-    let hd = Colours { matrix: Matrix::Bt709, range: Range::Limited };
-    let sd = Colours { matrix: Matrix::Bt601, range: Range::Limited };
+    let full = Colours { matrix: ColourMatrix::Bt601, range: ValueRange::Full };
+    let hd = Colours { matrix: ColourMatrix::Bt709, range: ValueRange::Limited };
+    let sd = Colours { matrix: ColourMatrix::Bt601, range: ValueRange::Limited };
     for (numbers, expected) in
         [([0, 0, 0], sd), ([8, 0, 0], sd), ([3, 0, 0], hd), ([7, 0, 0], full), ([8, 2, 0], hd), ([3, 1, 1], full)]
     {
@@ -244,13 +244,13 @@ fn pictures_that_are_not_compressed_have_the_colours_that_the_driver_says() {
             Table { colours: numbers, sizes, size_px: [4, 2], formats: vec![NV12], stride_more: 4, ..Table::default() };
         let (driver, started) = start(table, "");
         let mut camera = started.unwrap();
-        let raw = Raw { layout: Layout::Nv12, colours: expected, size_px: [4, 2], stride: 8 };
+        let raw = RawLayout { layout: PixelLayout::Nv12, colours: expected, size_px: [4, 2], stride: 8 };
         assert_eq!(camera.format, Format::Raw(raw), "{numbers:?}");
         // Two rows of brightness and one of colours, each of 8 bytes.
-        let white = if expected.range == Range::Full { 255 } else { 235 };
+        let white = if expected.range == ValueRange::Full { 255 } else { 235 };
         comes(&driver, [[white; 16].to_vec(), vec![128; 8]].concat(), 0x2000, Duration::ZERO);
-        let picture = camera.next().unwrap().unwrap();
-        assert!(picture.decode().unwrap().rgba.iter().all(|value| *value == 255));
+        let image = camera.next().unwrap().unwrap();
+        assert!(image.decode().unwrap().rgba.iter().all(|value| *value == 255));
         comes(&driver, vec![white; 10], 0, Duration::ZERO);
         assert_eq!(camera.next().unwrap().unwrap().decode(), Err(Damage::Torn));
     }
@@ -269,7 +269,7 @@ fn what_is_marked_as_damaged_is_passed_over() {
 #[test]
 fn each_cause_is_told_with_its_cure() {
     let failing = |number, error| Table { fails: vec![(number, error)], ..Table::default() };
-    for (table, wanted, told, cure) in [
+    for (table, wanted, report, cure) in [
         (failing(0, libc::ENOTTY), "", "is not a camera", "nima devices"),
         (failing(0, libc::EINVAL), "", "is not a camera", "nima devices"),
         (Table { capabilities: 0x0400_0002, ..Table::default() }, "", "is not a camera", "nima devices"),
@@ -285,12 +285,12 @@ fn each_cause_is_told_with_its_cure() {
         (
             Table { formats: vec![*b"RGB3", *b"H264"], ..Table::default() },
             "",
-            "no MJPG, NV12 or YUYV, but RGB3, H264",
+            "does not offer MJPG, NV12 or YUYV, only RGB3, H264",
             "format",
         ),
         (Table::default(), "format=nv12", "does not offer NV12, only YUYV, MJPG", "format"),
-        (Table { formats: Vec::new(), ..Table::default() }, "", "but nothing", "format"),
-        (Table::default(), "size=800x600", "no pictures of 800x600, but 640x480, 1280x720", "size"),
+        (Table { formats: Vec::new(), ..Table::default() }, "", "only nothing", "format"),
+        (Table::default(), "size=800x600", "does not offer images of 800x600, only 640x480, 1280x720", "size"),
         (Table { sizes: vec![[9000, 9000]], ..Table::default() }, "", "too many", "dmesg"),
         (Table { buffers: 1, ..Table::default() }, "", "gives 1 buffers", "dmesg"),
         (failing(18, libc::ENOSPC), "", "lacks bandwidth on its USB", "its own USB port"),
@@ -299,17 +299,17 @@ fn each_cause_is_told_with_its_cure() {
         let (_, started) = start(table, wanted);
         let trouble = started.err().unwrap();
         let words = trouble.to_string();
-        assert!(words.starts_with("/dev/video0") && words.contains(told) && !words.contains('\n'), "{words}");
+        assert!(words.starts_with("/dev/video0") && words.contains(report) && !words.contains('\n'), "{words}");
         assert!(trouble.cure().contains(cure), "{words}: {}", trouble.cure());
     }
-    for (number, told) in [
+    for (number, report) in [
         (libc::ENOENT, "/dev/video0 does not exist"),
         (libc::ENODEV, "/dev/video0 does not exist"),
         (libc::EACCES, "this user has no permission to use /dev/video0"),
         (libc::EBUSY, "in use"),
     ] {
-        let trouble = super::told("/dev/video0", &error(number), "opening it");
-        assert!(trouble.to_string().contains(told), "{trouble}");
+        let trouble = super::report("/dev/video0", &error(number), "opening it");
+        assert!(trouble.to_string().contains(report), "{trouble}");
     }
 }
 
@@ -317,7 +317,7 @@ fn each_cause_is_told_with_its_cure() {
 fn what_is_pulled_while_it_streams_and_what_stays_silent_is_told() {
     let (driver, started) = start(Table::default(), "");
     let mut camera = started.unwrap();
-    camera.heard -= SILENT;
+    camera.received -= SILENT;
     assert_eq!(camera.next().unwrap_err().to_string(), "/dev/video0 is open but sends no images");
     driver.0.lock().unwrap().fails.push((17, libc::ENODEV));
     assert_eq!(camera.next().unwrap_err().to_string(), "/dev/video0 was unplugged");
@@ -327,9 +327,9 @@ fn what_is_pulled_while_it_streams_and_what_stays_silent_is_told() {
 
 #[test]
 fn files_that_are_no_cameras_are_told_by_the_real_calls() {
-    let told = |path: &str| open(Path::new(path), Capture::default()).err().unwrap().to_string();
-    assert_eq!(told("/dev/video987654"), "/dev/video987654 does not exist");
-    assert_eq!(told("/dev/null"), "/dev/null is not a camera");
+    let report = |path: &str| open(Path::new(path), Capture::default()).err().unwrap().to_string();
+    assert_eq!(report("/dev/video987654"), "/dev/video987654 does not exist");
+    assert_eq!(report("/dev/null"), "/dev/null is not a camera");
 }
 
 /// Any responses of a driver with any bytes give an image, a damage or a trouble.

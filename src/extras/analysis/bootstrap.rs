@@ -2,12 +2,12 @@
 
 use crate::distribution::{normal_below, normal_quantile};
 use crate::error::{AnalysisError, Result};
-use crate::interval::Interval;
+use crate::interval::ConfidenceInterval;
 use crate::{check, summary};
 
 /// How the interval is computed from the bootstrap distribution.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Method {
+pub enum BootstrapMethod {
     /// Between its quantiles (Efron & Tibshirani, section 13.3). Too short with few values.
     Percentile,
     /// `BCa`: corrected for bias and acceleration (Efron, Better bootstrap confidence intervals, JASA 82, 1987; Efron &
@@ -34,46 +34,46 @@ pub struct Bootstrap {
     pub seed: u64,
     /// Confidence level of the interval, between 0 and 1.
     pub confidence: f64,
-    pub method: Method,
+    pub method: BootstrapMethod,
 }
 
 impl Default for Bootstrap {
     fn default() -> Self {
-        Self { resamples: 9999, seed: 1, confidence: 0.95, method: Method::default() }
+        Self { resamples: 9999, seed: 1, confidence: 0.95, method: BootstrapMethod::default() }
     }
 }
 
 impl Bootstrap {
     /// Returns the interval of the mean of at least two values.
-    pub fn mean(&self, sample: &[f64]) -> Result<Interval> {
+    pub fn mean(&self, sample: &[f64]) -> Result<ConfidenceInterval> {
         self.interval(sample, summary::raw_mean)
     }
 
     /// Returns the interval of the median of at least two values.
-    pub fn median(&self, sample: &[f64]) -> Result<Interval> {
+    pub fn median(&self, sample: &[f64]) -> Result<ConfidenceInterval> {
         self.interval(sample, median)
     }
 
     /// Returns the interval of the median of `first - second`, pair by pair; pairs are resampled as a whole.
-    pub fn paired_median(&self, first: &[f64], second: &[f64]) -> Result<Interval> {
+    pub fn paired_median(&self, first: &[f64], second: &[f64]) -> Result<ConfidenceInterval> {
         self.median(&check::differences(first, second)?)
     }
 
     /// Returns the interval of any statistic of at least two values. The statistic must be finite for every possible
     /// resample, including one value repeated n times.
-    pub fn interval(&self, sample: &[f64], statistic: impl Fn(&[f64]) -> f64) -> Result<Interval> {
+    pub fn interval(&self, sample: &[f64], statistic: impl Fn(&[f64]) -> f64) -> Result<ConfidenceInterval> {
         check::values("the sample", sample, 2)?;
-        check::share("the confidence", self.confidence)?;
+        check::fraction("the confidence", self.confidence)?;
         check::enough("samples to draw", self.resamples, 100)?;
         check::not_too_many("samples to draw", self.resamples, 1_000_000)?;
         let drawn = self.draw(sample, &statistic)?;
         let tail = (1.0 - self.confidence) / 2.0;
         let [lower, upper] = match self.method {
-            Method::Percentile => [tail, 1.0 - tail],
-            Method::BiasCorrected => corrected(tail, &drawn, sample, &statistic)?,
+            BootstrapMethod::Percentile => [tail, 1.0 - tail],
+            BootstrapMethod::BiasCorrected => corrected(tail, &drawn, sample, &statistic)?,
         };
-        let at = |share| summary::quantile_of_sorted(&drawn, share);
-        Ok(Interval { lower: at(lower), upper: at(upper), confidence: self.confidence })
+        let at = |fraction| summary::quantile_of_sorted(&drawn, fraction);
+        Ok(ConfidenceInterval { lower: at(lower), upper: at(upper), confidence: self.confidence })
     }
 
     /// Returns the statistic of each resample, ascending.
@@ -105,9 +105,9 @@ fn corrected(tail: f64, drawn: &[f64], sample: &[f64], statistic: impl Fn(&[f64]
     }
     let bias = normal_quantile((below + not_above) as f64 / (2 * drawn.len()) as f64);
     let acceleration = acceleration(sample, statistic)?;
-    let share = |z: f64| normal_below(bias + (bias + z) / (1.0 - acceleration * (bias + z)));
+    let fraction = |z: f64| normal_below(bias + (bias + z) / (1.0 - acceleration * (bias + z)));
     let z = normal_quantile(tail);
-    Ok([share(z), share(-z)])
+    Ok([fraction(z), fraction(-z)])
 }
 
 /// From the jackknife: skewness of the statistic with one value left out; zero if the statistic does not depend on the

@@ -22,8 +22,8 @@ pub(crate) fn enough(what: &'static str, found: usize, needed: usize) -> Result<
     if found < needed { Err(AnalysisError::TooFew { what, needed, found }) } else { Ok(()) }
 }
 
-pub(crate) fn not_too_many(what: &'static str, found: usize, most: usize) -> Result<()> {
-    if found > most { Err(AnalysisError::TooMany { what, most, found }) } else { Ok(()) }
+pub(crate) fn not_too_many(what: &'static str, found: usize, max: usize) -> Result<()> {
+    if found > max { Err(AnalysisError::TooMany { what, max, found }) } else { Ok(()) }
 }
 
 pub(crate) fn as_many(what: &str, found: usize, with: &'static str, expected: usize) -> Result<()> {
@@ -40,7 +40,7 @@ pub(crate) fn varies(values: &[f64]) -> bool {
 }
 
 /// Checks for a value strictly between 0 and 1, such as a confidence level.
-pub(crate) fn share(what: &'static str, value: f64) -> Result<()> {
+pub(crate) fn fraction(what: &'static str, value: f64) -> Result<()> {
     // Written so that NaN is refused too.
     if value > 0.0 && value < 1.0 {
         Ok(())

@@ -17,9 +17,9 @@ pub(crate) fn normal_two_sided(z: f64) -> f64 {
     erf::erfc(z.abs() / SQRT_2)
 }
 
-/// Returns the z with P(Z <= z) = `share`, a number between 0 and 1; outside that range, the nearest end (an infinity).
-pub(crate) fn normal_quantile(share: f64) -> f64 {
-    -SQRT_2 * erf::erfc_inv(2.0 * share.clamp(0.0, 1.0))
+/// Returns the z with P(Z <= z) = `fraction`, a number between 0 and 1; outside that range, the nearest end (an infinity).
+pub(crate) fn normal_quantile(fraction: f64) -> f64 {
+    -SQRT_2 * erf::erfc_inv(2.0 * fraction.clamp(0.0, 1.0))
 }
 
 /// Returns P(|T| >= |t|) of Student's t with `df` degrees of freedom (positive).
@@ -29,15 +29,15 @@ pub(crate) fn t_two_sided(t: f64, df: f64) -> f64 {
 
 /// Returns the t with P(|T| <= t) = `confidence` (between 0 and 1) with `df` degrees of freedom (positive).
 pub(crate) fn t_critical(confidence: f64, df: f64) -> f64 {
-    let share = f64::midpoint(1.0, confidence);
+    let fraction = f64::midpoint(1.0, confidence);
     if df > 1e4 {
         // Here the library's inverse loses digits, all but three at a million degrees; these terms leave an error of
         // 1e-10 (Abramowitz & Stegun, 26.7.5).
-        let z = normal_quantile(share);
+        let z = normal_quantile(fraction);
         return z + (z.powi(3) + z) / (4.0 * df) + (5.0 * z.powi(5) + 16.0 * z.powi(3) + 3.0 * z) / (96.0 * df * df);
     }
-    let Ok(distribution) = StudentsT::new(0.0, 1.0, df) else { return normal_quantile(share) };
-    distribution.inverse_cdf(share)
+    let Ok(distribution) = StudentsT::new(0.0, 1.0, df) else { return normal_quantile(fraction) };
+    distribution.inverse_cdf(fraction)
 }
 
 /// Returns P(F >= f) of Fisher's F with `df1` and `df2` degrees of freedom (positive).

@@ -9,7 +9,7 @@ use statrs::function::gamma::ln_gamma;
 
 /// A difference of means in standard deviations.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Standardised {
+pub struct StandardisedEffect {
     /// Cohen's d (Statistical Power Analysis, 1988).
     pub d: f64,
     /// The same without its bias in small samples: d times the exact factor of Hedges (Distribution theory for Glass's
@@ -33,7 +33,7 @@ pub fn rank_biserial(differences: &[f64]) -> Result<f64> {
 
 /// Cohen's d of paired values, `dz`: mean of the differences over their standard deviation; of at least three
 /// differences that are not all equal. `g` has n - 1 degrees of freedom.
-pub fn cohens_dz(differences: &[f64]) -> Result<Standardised> {
+pub fn cohens_dz(differences: &[f64]) -> Result<StandardisedEffect> {
     check::values("differences", differences, 3)?;
     let sd = if check::varies(differences) { summary::raw_sd(differences) } else { 0.0 };
     standardised(summary::raw_mean(differences), sd, differences.len() - 1, "the differences")
@@ -41,7 +41,7 @@ pub fn cohens_dz(differences: &[f64]) -> Result<Standardised> {
 
 /// Cohen's d of two groups, at least two values each: difference of the means, first minus second, over the pooled standard deviation. `g` has
 /// m + n - 2 degrees of freedom.
-pub fn cohens_d(first: &[f64], second: &[f64]) -> Result<Standardised> {
+pub fn cohens_d(first: &[f64], second: &[f64]) -> Result<StandardisedEffect> {
     check::values("values of the first group", first, 2)?;
     check::values("values of the second group", second, 2)?;
     let df = first.len() + second.len() - 2;
@@ -71,10 +71,10 @@ pub fn cliffs_delta(first: &[f64], second: &[f64]) -> Result<f64> {
     Ok(first.iter().map(dominance).sum::<f64>() / (first.len() as f64 * second.len() as f64))
 }
 
-fn standardised(mean: f64, sd: f64, df: usize, what: &'static str) -> Result<Standardised> {
+fn standardised(mean: f64, sd: f64, df: usize, what: &'static str) -> Result<StandardisedEffect> {
     let d = mean / sd;
     if d.is_finite() {
-        Ok(Standardised { d, g: d * hedges_factor(df as f64) })
+        Ok(StandardisedEffect { d, g: d * hedges_factor(df as f64) })
     } else {
         Err(AnalysisError::NoVariation { what })
     }

@@ -5,8 +5,8 @@
 pub enum AnalysisError {
     #[error("{what}: {found} are too few; give at least {needed}")]
     TooFew { what: &'static str, needed: usize, found: usize },
-    #[error("{what}: {found} are too many; give at most {most}")]
-    TooMany { what: &'static str, most: usize, found: usize },
+    #[error("{what}: {found} are too many; give at most {max}")]
+    TooMany { what: &'static str, max: usize, found: usize },
     #[error("value {position} of {what} is not a usable number (finite, and smaller than 1e150); correct it")]
     NotFinite { what: String, position: usize },
     #[error("{what} and {with} differ in number: {found} instead of {expected}; give the same number of both")]

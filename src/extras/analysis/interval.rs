@@ -5,7 +5,7 @@ use serde::Serialize;
 
 /// A confidence interval, in the unit of the estimate.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Interval {
+pub struct ConfidenceInterval {
     pub lower: f64,
     pub upper: f64,
     /// Its confidence level, 0 to 1. For an exact interval, the attained level: the ranks of a small sample allow only
@@ -14,7 +14,7 @@ pub struct Interval {
     pub confidence: f64,
 }
 
-impl Interval {
+impl ConfidenceInterval {
     /// Whether it contains `value`.
     pub fn contains(&self, value: f64) -> bool {
         self.lower <= value && value <= self.upper
@@ -33,7 +33,7 @@ impl Interval {
 /// `k` is the smallest value of the statistic that reaches half the allowed error, and at least 1, as in R's
 /// `wilcox.test`. With ties the confidence is at least the reported one (Lehmann, Nonparametrics, 1975, sections 2.7
 /// and 4.5).
-pub(crate) fn exact(sorted: &[f64], masses: &[f64], confidence: f64) -> Interval {
+pub(crate) fn exact(sorted: &[f64], masses: &[f64], confidence: f64) -> ConfidenceInterval {
     // Rounding in the sums must not push a tail that just reaches the limit above it.
     let missed = (1.0 - confidence) / 2.0 - 1e-14;
     let mut k = 0;
@@ -50,12 +50,12 @@ pub(crate) fn exact(sorted: &[f64], masses: &[f64], confidence: f64) -> Interval
 
 /// The same for large samples, with the statistic's mean and standard deviation (Hollander & Wolfe, Nonparametric Statistical Methods, 1999,
 /// equations 3.41 and 4.37).
-pub(crate) fn approximate(sorted: &[f64], mean: f64, sd: f64, confidence: f64) -> Interval {
+pub(crate) fn approximate(sorted: &[f64], mean: f64, sd: f64, confidence: f64) -> ConfidenceInterval {
     let k = mean - normal_quantile(f64::midpoint(1.0, confidence)) * sd;
     between(sorted, k.max(1.0) as usize, confidence)
 }
 
-fn between(sorted: &[f64], k: usize, confidence: f64) -> Interval {
+fn between(sorted: &[f64], k: usize, confidence: f64) -> ConfidenceInterval {
     let k = k.clamp(1, sorted.len().div_ceil(2).max(1));
-    Interval { lower: sorted[k - 1], upper: sorted[sorted.len() - k], confidence }
+    ConfidenceInterval { lower: sorted[k - 1], upper: sorted[sorted.len() - k], confidence }
 }

@@ -2,7 +2,7 @@
 //!
 //! | question | answer |
 //! |---|---|
-//! | What was measured? | [`Summary`], [`Bootstrap`] |
+//! | What was measured? | [`SampleSummary`], [`Bootstrap`] |
 //! | Do two conditions differ, within participants? | [`signed_rank`], [`t_test`], [`mixed`] |
 //! | Do two groups of participants differ? | [`mann_whitney`] |
 //! | Do several conditions differ? | [`friedman`], [`mixed`]; then pairs, with [`correction`] |
@@ -16,12 +16,12 @@
 //! and differences to the resolution of the instrument before a rank test.
 //!
 //! ```
-//! use nima_analysis::{signed_rank::{self, Options}, AnalysisError};
+//! use nima_analysis::{signed_rank::{self, SignedRankOptions}, AnalysisError};
 //!
 //! // Peak force without and with haptics, N, of eight participants.
 //! let without = [4.1, 5.0, 3.2, 6.3, 4.4, 5.1, 3.9, 4.8];
 //! let with = [3.2, 4.4, 3.3, 4.1, 3.9, 4.0, 3.5, 3.1];
-//! let test = signed_rank::paired(&without, &with, &Options::default())?;
+//! let test = signed_rank::paired(&without, &with, &SignedRankOptions::default())?;
 //! assert!((test.p - 2.0 * 2.0 / 256.0).abs() < 1e-12);
 //! # Ok::<(), AnalysisError>(())
 //! ```
@@ -46,5 +46,5 @@ mod tests;
 
 pub use bootstrap::Bootstrap;
 pub use error::AnalysisError;
-pub use interval::Interval;
-pub use summary::Summary;
+pub use interval::ConfidenceInterval;
+pub use summary::SampleSummary;

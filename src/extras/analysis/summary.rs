@@ -6,7 +6,7 @@ use serde::Serialize;
 
 /// Location and spread of one sample, all in its unit.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Summary {
+pub struct SampleSummary {
     pub n: usize,
     pub mean: f64,
     /// Standard deviation with n - 1; `None` for a single value.
@@ -18,12 +18,12 @@ pub struct Summary {
     pub extremes: [f64; 2],
 }
 
-impl Summary {
+impl SampleSummary {
     /// Summarises `sample`, at least one value.
     pub fn of(sample: &[f64]) -> Result<Self> {
         check::values("the sample", sample, 1)?;
         let sorted = sorted(sample);
-        let at = |share| quantile_of_sorted(&sorted, share);
+        let at = |fraction| quantile_of_sorted(&sorted, fraction);
         Ok(Self {
             n: sample.len(),
             mean: raw_mean(sample),
@@ -52,15 +52,19 @@ pub fn median(sample: &[f64]) -> Result<f64> {
     quantile(sample, 0.5)
 }
 
-/// Returns the quantile at `share` (0 to 1) of at least one value: type 7 of Hyndman & Fan (Sample quantiles in
+/// Returns the quantile at `fraction` (0 to 1) of at least one value: type 7 of Hyndman & Fan (Sample quantiles in
 /// statistical packages, The American Statistician 50, 1996), linear between the order statistics, the default of R's
 /// `quantile` and `NumPy`.
-pub fn quantile(sample: &[f64], share: f64) -> Result<f64> {
+pub fn quantile(sample: &[f64], fraction: f64) -> Result<f64> {
     check::values("the sample", sample, 1)?;
-    if !(0.0..=1.0).contains(&share) {
-        return Err(AnalysisError::OutOfRange { what: "the level of a quantile", range: "from 0 to 1", value: share });
+    if !(0.0..=1.0).contains(&fraction) {
+        return Err(AnalysisError::OutOfRange {
+            what: "the level of a quantile",
+            range: "from 0 to 1",
+            value: fraction,
+        });
     }
-    Ok(quantile_of_sorted(&sorted(sample), share))
+    Ok(quantile_of_sorted(&sorted(sample), fraction))
 }
 
 pub(crate) fn sorted(sample: &[f64]) -> Vec<f64> {
@@ -70,8 +74,8 @@ pub(crate) fn sorted(sample: &[f64]) -> Vec<f64> {
 }
 
 /// For at least one finite value, ascending.
-pub(crate) fn quantile_of_sorted(sorted: &[f64], share: f64) -> f64 {
-    let at = (sorted.len() - 1) as f64 * share;
+pub(crate) fn quantile_of_sorted(sorted: &[f64], fraction: f64) -> f64 {
+    let at = (sorted.len() - 1) as f64 * fraction;
     let below = at as usize;
     let above = (below + 1).min(sorted.len() - 1);
     sorted[below] + (at - below as f64) * (sorted[above] - sorted[below])

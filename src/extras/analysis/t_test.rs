@@ -2,7 +2,7 @@
 
 use crate::distribution::{t_critical, t_two_sided};
 use crate::error::{AnalysisError, Result};
-use crate::interval::Interval;
+use crate::interval::ConfidenceInterval;
 use crate::{check, summary};
 use serde::Serialize;
 
@@ -12,7 +12,7 @@ pub struct TTest {
     /// Mean difference, in the unit of the differences.
     pub mean: f64,
     /// Confidence interval of `mean`.
-    pub interval: Interval,
+    pub interval: ConfidenceInterval,
     /// Mean over its standard error.
     pub t: f64,
     /// n - 1.
@@ -28,7 +28,7 @@ pub fn paired(first: &[f64], second: &[f64], confidence: f64) -> Result<TTest> {
 /// Tests at least two differences that are not all equal against zero.
 pub fn of_differences(differences: &[f64], confidence: f64) -> Result<TTest> {
     check::values("differences", differences, 2)?;
-    check::share("the confidence", confidence)?;
+    check::fraction("the confidence", confidence)?;
     let n = differences.len() as f64;
     let mean = summary::raw_mean(differences);
     let sd = summary::raw_sd(differences);
@@ -38,6 +38,6 @@ pub fn of_differences(differences: &[f64], confidence: f64) -> Result<TTest> {
         return Err(AnalysisError::NoVariation { what: "the differences" });
     }
     let df = n - 1.0;
-    let interval = Interval::around(mean, t_critical(confidence, df) * error, confidence);
+    let interval = ConfidenceInterval::around(mean, t_critical(confidence, df) * error, confidence);
     Ok(TTest { mean, interval, t, df, p: t_two_sided(t, df) })
 }

@@ -1,18 +1,18 @@
 //! Computes a lens from views of a board.
 
 use nalgebra::{Matrix2, SymmetricEigen, Vector2, Vector3};
-use nima_endoscope::{Bend, Board, Lens};
+use nima_endoscope::{Bend, Checkerboard, Lens};
 
 use crate::{
-    Cause, Coverage, Deviations, LeftOut, Report, Sight, Terms,
+    BoardSight, CameraCause, CameraCoverage, Deviations, LeftOut, LensReport, Terms,
     detect::median,
-    fit::{Corners, Fit, Parameters},
+    fit::{CameraFit, FitCorners, FitParameters},
     held_out::{HeldOut, held_out},
     plane,
-    report::Found,
+    report::CalibratedLens,
 };
 
-pub type View = Sight;
+pub type BoardView = BoardSight;
 
 /// Minimum number of usable views.
 pub(crate) const VIEWS: usize = 8;
@@ -28,7 +28,7 @@ const COVERAGE: f64 = 0.6;
 /// Maximum error on held-out views, in widths of the image: 0.64 px of 1280.
 const HELD_OUT: f64 = 0.0005;
 /// Maximum standard deviation of the focal length, relative to it, and of the centre, in widths of the image.
-const FOCAL_SHARE: f64 = 0.002;
+const FOCAL_FRACTION: f64 = 0.002;
 const CENTRE: f64 = 0.002;
 /// A view whose error exceeds this multiple of the median is an outlier if it also exceeds this error, px.
 const OUTLIER: f64 = 3.0;
@@ -50,21 +50,21 @@ pub(crate) fn is_blurred(blur_px: f64, width_px: usize) -> bool {
 }
 
 /// Whether the board is at the same place in both views.
-pub(crate) fn is_same_place(one: &Sight, other: &Sight, width_px: usize) -> bool {
+pub(crate) fn is_same_place(one: &BoardSight, other: &BoardSight, width_px: usize) -> bool {
     one.mean_move_px(other) < SAME * width_px as f64
 }
 
 /// Returns the lens that fits these views of a board, and whether it may be used. Unsuitable sets of views are refused
 /// with their cause.
-pub fn calibrate(board: &Board, size_px: [usize; 2], views: &[View]) -> Report {
+pub fn calibrate(board: &Checkerboard, size_px: [usize; 2], views: &[BoardView]) -> LensReport {
     let (mut used, mut left_out) = sorted_out(board, size_px, views);
     let cause = too_few(&used, &left_out, views.len());
     let report = |lens, used: &[usize], left_out: &[_], cause| {
-        let mut coverage = Coverage::default();
+        let mut coverage = CameraCoverage::default();
         for at in used {
             coverage.add(&views[*at].coverage);
         }
-        Report { lens, used: used.to_vec(), left_out: left_out.to_vec(), coverage, cause }
+        LensReport { lens, used: used.to_vec(), left_out: left_out.to_vec(), coverage, cause }
     };
     if cause.is_some() {
         return report(None, &used, &left_out, cause);
@@ -72,7 +72,7 @@ pub fn calibrate(board: &Board, size_px: [usize; 2], views: &[View]) -> Report {
     let corners = |used: &[usize]| used.iter().map(|at| of_view(board, &views[*at])).collect::<Vec<_>>();
     let terms = Terms::default();
     let fit = first(size_px, &corners(&used)).and_then(|first| first.refined(&corners(&used), terms, STEPS));
-    let Some(mut fit) = fit else { return report(None, &used, &left_out, Some(Cause::NoFit)) };
+    let Some(mut fit) = fit else { return report(None, &used, &left_out, Some(CameraCause::NoFit)) };
     let outliers = outliers(&fit, &corners(&used));
     if !outliers.is_empty() && used.len() - outliers.len() >= VIEWS {
         for at in outliers.into_iter().rev() {
@@ -81,23 +81,27 @@ pub fn calibrate(board: &Board, size_px: [usize; 2], views: &[View]) -> Report {
         }
         left_out.sort_by_key(|(at, _)| *at);
         let again = fit.refined(&corners(&used), terms, STEPS);
-        let Some(again) = again else { return report(None, &used, &left_out, Some(Cause::NoFit)) };
+        let Some(again) = again else { return report(None, &used, &left_out, Some(CameraCause::NoFit)) };
         fit = again;
     }
     let Some(found) = chosen(&fit, &corners(&used)) else {
-        return report(None, &used, &left_out, Some(Cause::NoFit));
+        return report(None, &used, &left_out, Some(CameraCause::NoFit));
     };
     let mut report = report(Some(found.0), &used, &left_out, None);
-    report.cause = judged(&found.0, &found.1, report.coverage.share());
+    report.cause = judged(&found.0, &found.1, report.coverage.fraction());
     report
 }
 
-pub(crate) fn of_view(board: &Board, view: &View) -> Corners {
-    Corners { places_m: board.places_m(), seen_px: view.corners_px.clone() }
+pub(crate) fn of_view(board: &Checkerboard, view: &BoardView) -> FitCorners {
+    FitCorners { places_m: board.places_m(), seen_px: view.corners_px.clone() }
 }
 
 /// Separates the usable views from the others.
-fn sorted_out(board: &Board, [width, _]: [usize; 2], views: &[View]) -> (Vec<usize>, Vec<(usize, LeftOut)>) {
+fn sorted_out(
+    board: &Checkerboard,
+    [width, _]: [usize; 2],
+    views: &[BoardView],
+) -> (Vec<usize>, Vec<(usize, LeftOut)>) {
     let mut used = Vec::new();
     let mut left_out = Vec::new();
     for (at, view) in views.iter().enumerate() {
@@ -115,26 +119,26 @@ fn sorted_out(board: &Board, [width, _]: [usize; 2], views: &[View]) -> (Vec<usi
     (used, left_out)
 }
 
-fn too_few(used: &[usize], left_out: &[(usize, LeftOut)], of: usize) -> Option<Cause> {
+fn too_few(used: &[usize], left_out: &[(usize, LeftOut)], of: usize) -> Option<CameraCause> {
     let count = |wanted: LeftOut| left_out.iter().filter(|(_, why)| *why == wanted).count();
     let blurred = count(LeftOut::Blurred);
     let repeated = count(LeftOut::Repeated);
     let missing = VIEWS.saturating_sub(used.len());
     (missing > 0).then_some(if blurred >= missing && blurred >= repeated {
-        Cause::Blurred { blurred, of }
+        CameraCause::Blurred { blurred, of }
     } else if repeated >= missing {
-        Cause::Repeated { repeated, of }
+        CameraCause::Repeated { repeated, of }
     } else {
-        Cause::TooFew { used: used.len(), needed: VIEWS }
+        CameraCause::TooFew { used: used.len(), needed: VIEWS }
     })
 }
 
 /// Returns an initial lens: the focal length and distortion, out of several, that fit some views best after a few
 /// steps.
-fn first(size_px: [usize; 2], corners: &[Corners]) -> Option<Fit> {
+fn first(size_px: [usize; 2], corners: &[FitCorners]) -> Option<CameraFit> {
     let width = size_px[0] as f64;
     let step = corners.len().div_ceil(FIRST_VIEWS).max(1);
-    let some: Vec<Corners> = corners.iter().step_by(step).cloned().collect();
+    let some: Vec<FitCorners> = corners.iter().step_by(step).cloned().collect();
     let middle = Vector2::from(size_px.map(|side| 0.5 * side as f64));
     let homographies = some.iter().filter_map(|view| {
         let plane: Vec<_> = view.places_m.iter().map(Vector3::xy).collect();
@@ -158,13 +162,13 @@ fn is_possible(lens: &Lens) -> bool {
 }
 
 /// Adds the pose of each view.
-fn posed(lens: Lens, corners: &[Corners]) -> Option<Fit> {
+fn posed(lens: Lens, corners: &[FitCorners]) -> Option<CameraFit> {
     let poses = corners.iter().map(|view| plane::pose(&lens, &view.places_m, &view.seen_px));
-    Some(Fit { lens, poses: poses.collect::<Option<_>>()? })
+    Some(CameraFit { lens, poses: poses.collect::<Option<_>>()? })
 }
 
-fn outliers(fit: &Fit, corners: &[Corners]) -> Vec<usize> {
-    let mean = |(view, pose): (&Corners, _)| {
+fn outliers(fit: &CameraFit, corners: &[FitCorners]) -> Vec<usize> {
+    let mean = |(view, pose): (&FitCorners, _)| {
         view.square(&fit.lens, pose).map_or(f64::INFINITY, |square| (square / view.seen_px.len() as f64).sqrt())
     };
     let errors: Vec<f64> = corners.iter().zip(&fit.poses).map(mean).collect();
@@ -173,9 +177,9 @@ fn outliers(fit: &Fit, corners: &[Corners]) -> Vec<usize> {
 }
 
 /// Returns the lens with the terms that improve it, and the directions of the boards.
-fn chosen(base: &Fit, corners: &[Corners]) -> Option<(Found, Vec<Vector3<f64>>)> {
+fn chosen(base: &CameraFit, corners: &[FitCorners]) -> Option<(CalibratedLens, Vec<Vector3<f64>>)> {
     let mut terms = Terms::default();
-    let mut best: (HeldOut, Fit) = (held_out(base, corners, terms)?, base.clone());
+    let mut best: (HeldOut, CameraFit) = (held_out(base, corners, terms)?, base.clone());
     loop {
         let more = [Terms { aspect: true, ..terms }, Terms { k2: true, ..terms }, Terms { tangential: true, ..terms }];
         let tried = more.into_iter().filter(|more| *more != terms).filter_map(|more| {
@@ -190,19 +194,19 @@ fn chosen(base: &Fit, corners: &[Corners]) -> Option<(Found, Vec<Vector3<f64>>)>
     let (HeldOut { rms_px, max_px }, fit) = best;
     let deviations = spread_out(&fit.deviations(corners, terms)?);
     let normals: Vec<Vector3<f64>> = fit.poses.iter().map(|pose| pose.rotation * Vector3::z()).collect();
-    let found = Found {
+    let found = CalibratedLens {
         lens: fit.lens,
         terms,
         deviations,
         fitted_px: fit.rms_px(corners)?,
         held_out_px: rms_px,
         held_out_max_px: max_px,
-        tilt_deg: most_angle_deg(&normals),
+        tilt_deg: max_angle_deg(&normals),
     };
     Some((found, normals))
 }
 
-fn spread_out(sd: &Parameters) -> Deviations {
+fn spread_out(sd: &FitParameters) -> Deviations {
     Deviations {
         focal_px: Vector2::new(sd[0], sd[1]),
         centre_px: Vector2::new(sd[2], sd[3]),
@@ -210,14 +214,14 @@ fn spread_out(sd: &Parameters) -> Deviations {
     }
 }
 
-fn most_angle_deg(normals: &[Vector3<f64>]) -> f64 {
+fn max_angle_deg(normals: &[Vector3<f64>]) -> f64 {
     let pairs =
         normals.iter().enumerate().flat_map(|(at, one)| normals[..at].iter().map(move |other| one.angle(other)));
     pairs.fold(0.0, f64::max).to_degrees()
 }
 
 /// Standard deviation of the tilt in the direction in which it varies least, degrees.
-fn least_spread_deg(normals: &[Vector3<f64>]) -> f64 {
+fn min_spread_deg(normals: &[Vector3<f64>]) -> f64 {
     let tilts: Vec<Vector2<f64>> =
         normals.iter().map(|normal| Vector2::new(normal.x.atan2(normal.z), normal.y.atan2(normal.z))).collect();
     let count = tilts.len().max(1) as f64;
@@ -227,28 +231,28 @@ fn least_spread_deg(normals: &[Vector3<f64>]) -> f64 {
 }
 
 /// Returns the first deficiency of the calibration, if there is one.
-fn judged(found: &Found, normals: &[Vector3<f64>], share: f64) -> Option<Cause> {
+fn judged(found: &CalibratedLens, normals: &[Vector3<f64>], fraction: f64) -> Option<CameraCause> {
     let width = found.lens.size_px[0] as f64;
-    let spread_deg = least_spread_deg(normals);
+    let spread_deg = min_spread_deg(normals);
     let focal = found.deviations.focal_px.component_div(&found.lens.focal_px).max();
     let centre_px = found.deviations.centre_px.max();
     if found.tilt_deg < TILT_DEG {
-        return Some(Cause::Parallel { most_deg: found.tilt_deg });
+        return Some(CameraCause::Parallel { max_deg: found.tilt_deg });
     }
     if spread_deg < SPREAD_DEG {
-        return Some(Cause::OneWay { spread_deg });
+        return Some(CameraCause::OneWay { spread_deg });
     }
     if !is_possible(&found.lens) {
-        return Some(Cause::NoFit);
+        return Some(CameraCause::NoFit);
     }
-    if share < COVERAGE {
-        return Some(Cause::Coverage { share });
+    if fraction < COVERAGE {
+        return Some(CameraCause::Coverage { fraction });
     }
-    let most_px = HELD_OUT * width;
-    let is_predicted = found.held_out_px <= most_px;
+    let max_px = HELD_OUT * width;
+    let is_predicted = found.held_out_px <= max_px;
     if !is_predicted {
-        return Some(Cause::HeldOut { rms_px: found.held_out_px, most_px });
+        return Some(CameraCause::HeldOut { rms_px: found.held_out_px, max_px });
     }
-    let certain = focal <= FOCAL_SHARE && centre_px <= CENTRE * width;
-    (!certain).then_some(Cause::Uncertain { focal_percent: focal * 100.0, centre_px })
+    let certain = focal <= FOCAL_FRACTION && centre_px <= CENTRE * width;
+    (!certain).then_some(CameraCause::Uncertain { focal_percent: focal * 100.0, centre_px })
 }

@@ -15,7 +15,7 @@ const STEP: usize = 7;
 
 /// Cells of the image, row by row.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Coverage {
+pub struct CameraCoverage {
     /// Number of corners in each cell.
     pub corners: [u32; COUNT],
     /// Whether the cell is lit.
@@ -27,20 +27,20 @@ pub struct Coverage {
 pub struct Region(pub [usize; 2]);
 
 fn cell(place_px: &Vector2<f64>, size_px: [usize; 2]) -> Option<usize> {
-    let share = [place_px.x / size_px[0] as f64, place_px.y / size_px[1] as f64];
-    let inside = share.iter().all(|share| (0.0..1.0).contains(share));
-    let [column, row] = [0, 1].map(|axis| (share[axis] * CELLS[axis] as f64) as usize);
+    let fraction = [place_px.x / size_px[0] as f64, place_px.y / size_px[1] as f64];
+    let inside = fraction.iter().all(|fraction| (0.0..1.0).contains(fraction));
+    let [column, row] = [0, 1].map(|axis| (fraction[axis] * CELLS[axis] as f64) as usize);
     inside.then_some(row * CELLS[0] + column)
 }
 
-impl Coverage {
+impl CameraCoverage {
     /// Returns the coverage of one image.
-    pub fn of(picture: &Grey, corners_px: &[Vector2<f64>]) -> Self {
-        let size_px @ [_, height] = picture.size_px();
+    pub fn of(image: &Grey, corners_px: &[Vector2<f64>]) -> Self {
+        let size_px @ [_, height] = image.size_px();
         let mut lit = [0_u32; COUNT];
         let mut seen = [0_u32; COUNT];
         for y in (0..height).step_by(STEP) {
-            for (x, value) in picture.row(y).iter().enumerate().step_by(STEP) {
+            for (x, value) in image.row(y).iter().enumerate().step_by(STEP) {
                 if let Some(at) = cell(&Vector2::new(x as f64, y as f64), size_px) {
                     seen[at] += 1;
                     lit[at] += u32::from(*value >= LIT);
@@ -63,7 +63,7 @@ impl Coverage {
     }
 
     /// Fraction of the lit cells that have contained corners.
-    pub fn share(&self) -> f64 {
+    pub fn fraction(&self) -> f64 {
         let lit = (0..COUNT).filter(|at| self.is_wanted(*at)).count();
         let seen = self.corners.iter().filter(|count| **count > 0).count();
         if lit == 0 { 0.0 } else { seen as f64 / lit as f64 }

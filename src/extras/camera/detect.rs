@@ -1,10 +1,10 @@
 //! Finds a board in an image.
 
 use nalgebra::Vector2;
-use nima_endoscope::Board;
+use nima_endoscope::Checkerboard;
 
 use crate::{
-    Coverage, Grey,
+    CameraCoverage, Grey,
     grid::{Cells, grids, light_side, size},
     refine::{blur_px, corner},
     saddle::{Saddle, saddles},
@@ -20,16 +20,16 @@ const NEAR: f64 = 0.3;
 
 /// A completely visible board.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Sight {
+pub struct BoardSight {
     /// Its inner corners in the order of the board, px.
     pub corners_px: Vec<Vector2<f64>>,
     /// Standard deviation of the blur at its edges, px; includes motion blur.
     pub blur_px: f64,
     /// The image's cells that contain corners, and its lit cells.
-    pub coverage: Coverage,
+    pub coverage: CameraCoverage,
 }
 
-impl Sight {
+impl BoardSight {
     /// Mean distance of the corners from those of another sight, px.
     pub fn mean_move_px(&self, other: &Self) -> f64 {
         let moves = self.corners_px.iter().zip(&other.corners_px).map(|(a, b)| (a - b).norm());
@@ -39,7 +39,7 @@ impl Sight {
 
 /// Why no board was found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Unseen {
+pub enum DetectionFailure {
     /// The image contains nothing like a board.
     Nothing,
     /// Only a part of it is visible.
@@ -56,20 +56,20 @@ pub enum Unseen {
 /// Finds a completely visible board in an image.
 ///
 /// # Errors
-/// [`Unseen`] if no such board is found.
-pub fn find(picture: &Grey, board: &Board) -> Result<Sight, Unseen> {
-    let mut unseen = Unseen::Nothing;
-    let mut level = Some(picture.clone());
+/// [`DetectionFailure`] if no such board is found.
+pub fn find(image: &Grey, board: &Checkerboard) -> Result<BoardSight, DetectionFailure> {
+    let mut unseen = DetectionFailure::Nothing;
+    let mut level = Some(image.clone());
     for halvings in 0..SCALES {
         let Some(grey) = level else { break };
         let scale = f64::from(1_u32 << halvings);
         match coarse(&grey, board) {
             Ok(rough) => {
                 let rough: Vec<_> = rough.into_iter().map(|place| place * scale).collect();
-                if let Some(sight) = fine(picture, board, &rough) {
+                if let Some(sight) = fine(image, board, &rough) {
                     return Ok(sight);
                 }
-                unseen = Unseen::Part { seen: 0, of: board.count() };
+                unseen = DetectionFailure::Part { seen: 0, of: board.count() };
             }
             Err(other) if weight(&other) > weight(&unseen) => unseen = other,
             Err(_) => {}
@@ -79,45 +79,45 @@ pub fn find(picture: &Grey, board: &Board) -> Result<Sight, Unseen> {
     Err(unseen)
 }
 
-fn weight(unseen: &Unseen) -> usize {
+fn weight(unseen: &DetectionFailure) -> usize {
     match unseen {
-        Unseen::Nothing => 0,
-        Unseen::Part { seen, .. } => *seen,
-        Unseen::Other([across, down]) => across * down,
+        DetectionFailure::Nothing => 0,
+        DetectionFailure::Part { seen, .. } => *seen,
+        DetectionFailure::Other([across, down]) => across * down,
     }
 }
 
 /// Locates the corners of the board to within a pixel or two.
-fn coarse(grey: &Grey, board: &Board) -> Result<Vec<Vector2<f64>>, Unseen> {
+fn coarse(grey: &Grey, board: &Checkerboard) -> Result<Vec<Vector2<f64>>, DetectionFailure> {
     let smooth = grey.smooth(SADDLES_PX);
     let saddles = saddles(&smooth);
     let grids = grids(&smooth, &saddles);
     if let Some(places) = grids.iter().find_map(|cells| in_order(&smooth, &saddles, cells, board)) {
         return Ok(places);
     }
-    let Some(largest) = grids.first() else { return Err(Unseen::Nothing) };
+    let Some(largest) = grids.first() else { return Err(DetectionFailure::Nothing) };
     let [columns, rows] = size(largest);
     let is_whole = largest.len() == columns * rows && columns > 2 && rows > 2;
     let is_larger = columns.min(rows) > board.corners().into_iter().min().unwrap_or_default()
         || columns.max(rows) > board.corners().into_iter().max().unwrap_or_default();
     if is_whole && is_larger {
-        return Err(Unseen::Other([columns.max(rows), columns.min(rows)]));
+        return Err(DetectionFailure::Other([columns.max(rows), columns.min(rows)]));
     }
-    Err(Unseen::Part { seen: largest.len().min(board.count()), of: board.count() })
+    Err(DetectionFailure::Part { seen: largest.len().min(board.count()), of: board.count() })
 }
 
 /// Position of a corner of the board in a grid with this many columns and rows.
-type Turn = fn([usize; 2], [usize; 2]) -> [usize; 2];
+type GridTurn = fn([usize; 2], [usize; 2]) -> [usize; 2];
 
 /// Returns the saddles of a grid as the board's corners; `None` if it is not this board.
-fn in_order(smooth: &Grey, saddles: &[Saddle], cells: &Cells, board: &Board) -> Option<Vec<Vector2<f64>>> {
+fn in_order(smooth: &Grey, saddles: &[Saddle], cells: &Cells, board: &Checkerboard) -> Option<Vec<Vector2<f64>>> {
     let [columns, rows] = size(cells);
     if cells.len() != board.count() {
         return None;
     }
     let [across, down] = board.corners();
     // Quarter turns, each right-handed like the board.
-    let turns: [Turn; 4] = [
+    let turns: [GridTurn; 4] = [
         |[i, j], _| [i, j],
         |[i, j], [columns, _]| [(columns - 1).wrapping_sub(j), i],
         |[i, j], [columns, rows]| [(columns - 1).wrapping_sub(i), (rows - 1).wrapping_sub(j)],
@@ -143,8 +143,8 @@ fn in_order(smooth: &Grey, saddles: &[Saddle], cells: &Cells, board: &Board) -> 
 }
 
 /// Locates the corners exactly, and measures the sharpness of the image.
-fn fine(picture: &Grey, board: &Board, rough: &[Vector2<f64>]) -> Option<Sight> {
-    let smooth = picture.smooth(CORNERS_PX);
+fn fine(image: &Grey, board: &Checkerboard, rough: &[Vector2<f64>]) -> Option<BoardSight> {
+    let smooth = image.smooth(CORNERS_PX);
     let [across, down] = board.corners();
     let neighbours = |at: usize| {
         let i = at % across;
@@ -165,12 +165,12 @@ fn fine(picture: &Grey, board: &Board, rough: &[Vector2<f64>]) -> Option<Sight> 
         ((place_px - rough[at]).norm() < NEAR * spacing_px).then_some(place_px)
     });
     let corners_px = exact.collect::<Option<Vec<_>>>()?;
-    let pair = |at: usize, step: usize| blur_px(picture, [&corners_px[at], &corners_px[at + step]]);
+    let pair = |at: usize, step: usize| blur_px(image, [&corners_px[at], &corners_px[at + step]]);
     let in_rows = (0..rough.len()).filter(|at| at % across + 1 < across).filter_map(|at| pair(at, 1));
     let in_columns = (0..rough.len()).filter(|at| at / across + 1 < down).filter_map(|at| pair(at, across));
     let blur_px = f64::max(median(in_rows.collect())?, median(in_columns.collect())?);
-    let coverage = Coverage::of(picture, &corners_px);
-    Some(Sight { corners_px, blur_px, coverage })
+    let coverage = CameraCoverage::of(image, &corners_px);
+    Some(BoardSight { corners_px, blur_px, coverage })
 }
 
 pub(crate) fn median(mut values: Vec<f64>) -> Option<f64> {

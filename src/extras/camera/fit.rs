@@ -6,16 +6,16 @@ use nima_endoscope::{Bend, Lens};
 
 /// Focal lengths, centre, k1, k2, p1, p2.
 pub(crate) const PARAMETERS: usize = 8;
-type Inner = SMatrix<f64, PARAMETERS, PARAMETERS>;
-type Mixed = SMatrix<f64, PARAMETERS, 6>;
+type FitInner = SMatrix<f64, PARAMETERS, PARAMETERS>;
+type FitMixed = SMatrix<f64, PARAMETERS, 6>;
 type Outer = SMatrix<f64, 6, 6>;
-pub(crate) type Parameters = SVector<f64, PARAMETERS>;
-type Motion = SVector<f64, 6>;
+pub(crate) type FitParameters = SVector<f64, PARAMETERS>;
+type FitMotion = SVector<f64, 6>;
 
 /// The iteration ends when a step gains less than this fraction.
 const GAIN: f64 = 1e-9;
 const DAMPING: f64 = 1e-3;
-const DAMPING_MOST: f64 = 1e9;
+const DAMPING_MAX: f64 = 1e9;
 
 /// The terms of a lens that are fitted; the others stay constant.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -39,12 +39,12 @@ impl Terms {
 
 /// Corners of one view.
 #[derive(Clone, Debug)]
-pub(crate) struct Corners {
+pub(crate) struct FitCorners {
     pub(crate) places_m: Vec<Vector3<f64>>,
     pub(crate) seen_px: Vec<Vector2<f64>>,
 }
 
-impl Corners {
+impl FitCorners {
     /// Returns the squared distances between observed and predicted corners; `None` if the lens does not see them.
     pub(crate) fn squares(&self, lens: &Lens, pose: &Isometry3<f64>) -> Option<Vec<f64>> {
         let pairs = self.places_m.iter().zip(&self.seen_px);
@@ -62,15 +62,15 @@ impl Corners {
 
 /// A lens, and the pose of the board in each view.
 #[derive(Clone, Debug)]
-pub(crate) struct Fit {
+pub(crate) struct CameraFit {
     pub(crate) lens: Lens,
     pub(crate) poses: Vec<Isometry3<f64>>,
 }
 
 /// The equations of one step: those of the lens, of each pose, and between them.
 struct Equations {
-    lens: (Inner, Parameters),
-    poses: Vec<(Mixed, Outer, Motion)>,
+    lens: (FitInner, FitParameters),
+    poses: Vec<(FitMixed, Outer, FitMotion)>,
 }
 
 /// Derivative of a corner's position by the lens, and by the pose (rotation, then translation, in the camera's frame).
@@ -106,14 +106,15 @@ fn slopes(
     (of_lens, of_pose)
 }
 
-impl Fit {
-    fn equations(&self, views: &[Corners], terms: Terms) -> Option<Equations> {
+impl CameraFit {
+    fn equations(&self, views: &[FitCorners], terms: Terms) -> Option<Equations> {
         let found = terms.are_found();
-        let mut all = Equations { lens: (Inner::zeros(), Parameters::zeros()), poses: Vec::with_capacity(views.len()) };
+        let mut all =
+            Equations { lens: (FitInner::zeros(), FitParameters::zeros()), poses: Vec::with_capacity(views.len()) };
         for (view, pose) in views.iter().zip(&self.poses) {
-            let mut mixed = Mixed::zeros();
+            let mut mixed = FitMixed::zeros();
             let mut outer = Outer::zeros();
-            let mut motion = Motion::zeros();
+            let mut motion = FitMotion::zeros();
             for (place_m, seen) in view.places_m.iter().zip(&view.seen_px) {
                 let miss = seen - self.lens.project(&(pose * nalgebra::Point3::from(*place_m)).coords)?;
                 let (mut of_lens, of_pose) = slopes(&self.lens, pose, place_m);
@@ -138,24 +139,24 @@ impl Fit {
         Some(all)
     }
 
-    pub(crate) fn square(&self, views: &[Corners]) -> Option<f64> {
+    pub(crate) fn square(&self, views: &[FitCorners]) -> Option<f64> {
         views.iter().zip(&self.poses).map(|(view, pose)| view.square(&self.lens, pose)).sum()
     }
 
     /// Root mean square of the distances of all corners, px.
-    pub(crate) fn rms_px(&self, views: &[Corners]) -> Option<f64> {
+    pub(crate) fn rms_px(&self, views: &[FitCorners]) -> Option<f64> {
         let count: usize = views.iter().map(|view| view.seen_px.len()).sum();
         Some((self.square(views)? / count.max(1) as f64).sqrt())
     }
 
     /// Refines the fit in at most this many steps.
-    pub(crate) fn refined(mut self, views: &[Corners], terms: Terms, steps: usize) -> Option<Self> {
+    pub(crate) fn refined(mut self, views: &[FitCorners], terms: Terms, steps: usize) -> Option<Self> {
         let mut square = self.square(views)?;
         let mut damping = DAMPING;
         for _ in 0..steps {
             let equations = self.equations(views, terms)?;
             let before = square;
-            while damping < DAMPING_MOST {
+            while damping < DAMPING_MAX {
                 let next = equations.step(damping).map(|step| self.moved(&step, terms));
                 let reached = next.as_ref().and_then(|next| next.square(views));
                 if let (Some(next), Some(reached)) = (next, reached.filter(|reached| *reached < square)) {
@@ -173,7 +174,7 @@ impl Fit {
         Some(self)
     }
 
-    fn moved(&self, (of_lens, of_poses): &(Parameters, Vec<Motion>), terms: Terms) -> Self {
+    fn moved(&self, (of_lens, of_poses): &(FitParameters, Vec<FitMotion>), terms: Terms) -> Self {
         let mut lens = self.lens;
         lens.focal_px.x += of_lens[0];
         lens.focal_px.y += if terms.aspect { of_lens[1] } else { of_lens[0] };
@@ -189,18 +190,18 @@ impl Fit {
     }
 
     /// Standard deviations of the parameters; infinite if the views do not determine them.
-    pub(crate) fn deviations(&self, views: &[Corners], terms: Terms) -> Option<Parameters> {
+    pub(crate) fn deviations(&self, views: &[FitCorners], terms: Terms) -> Option<FitParameters> {
         let count: usize = views.iter().map(|view| 2 * view.seen_px.len()).sum();
         let free = count.saturating_sub(terms.count() + 6 * views.len());
         let variance = self.square(views)? / free.max(1) as f64;
         let (inner, _) = self.equations(views, terms)?.reduced(0.0)?;
         // Scaled first, because pixels and coefficients differ by a million.
         let scale = inner.diagonal().map(|part| part.max(0.0).sqrt().recip());
-        let scaled: Inner = SMatrix::from_fn(|row, column| inner[(row, column)] * scale[row] * scale[column]);
-        let inverse: Option<Inner> = scaled.try_inverse();
-        let Some(inverse) = inverse else { return Some(Parameters::repeat(f64::INFINITY)) };
+        let scaled: FitInner = SMatrix::from_fn(|row, column| inner[(row, column)] * scale[row] * scale[column]);
+        let inverse: Option<FitInner> = scaled.try_inverse();
+        let Some(inverse) = inverse else { return Some(FitParameters::repeat(f64::INFINITY)) };
         let found = terms.are_found();
-        let mut deviations = Parameters::zeros();
+        let mut deviations = FitParameters::zeros();
         for at in (0..PARAMETERS).filter(|at| found[*at]) {
             let own = inverse[(at, at)] * scale[at] * scale[at] * variance;
             deviations[at] = if own >= 0.0 { own.sqrt() } else { f64::INFINITY };
@@ -214,7 +215,7 @@ impl Fit {
 
 impl Equations {
     /// Returns the equations of the lens alone, with this damping.
-    fn reduced(&self, damping: f64) -> Option<(Inner, Parameters)> {
+    fn reduced(&self, damping: f64) -> Option<(FitInner, FitParameters)> {
         let (mut inner, mut right) = self.lens;
         damp(&mut inner, damping);
         for (mixed, outer, motion) in &self.poses {
@@ -227,7 +228,7 @@ impl Equations {
         Some((inner, right))
     }
 
-    fn step(&self, damping: f64) -> Option<(Parameters, Vec<Motion>)> {
+    fn step(&self, damping: f64) -> Option<(FitParameters, Vec<FitMotion>)> {
         let (inner, right) = self.reduced(damping)?;
         let of_lens = inner.cholesky()?.solve(&right);
         let of_poses = self.poses.iter().map(|(mixed, outer, motion)| {
@@ -246,13 +247,18 @@ fn damp<const N: usize>(matrix: &mut SMatrix<f64, N, N>, damping: f64) {
 }
 
 /// Returns the pose that fits a view best, starting from an initial one.
-pub(crate) fn refined_pose(lens: &Lens, view: &Corners, first: Isometry3<f64>, steps: usize) -> Option<Isometry3<f64>> {
+pub(crate) fn refined_pose(
+    lens: &Lens,
+    view: &FitCorners,
+    first: Isometry3<f64>,
+    steps: usize,
+) -> Option<Isometry3<f64>> {
     let mut pose = first;
     let mut damping = DAMPING;
     let mut square = view.square(lens, &pose)?;
     for _ in 0..steps {
         let mut outer = Outer::zeros();
-        let mut motion = Motion::zeros();
+        let mut motion = FitMotion::zeros();
         for (place_m, seen) in view.places_m.iter().zip(&view.seen_px) {
             let miss = seen - lens.project(&(pose * nalgebra::Point3::from(*place_m)).coords)?;
             let (_, of_pose) = slopes(lens, &pose, place_m);
@@ -260,7 +266,7 @@ pub(crate) fn refined_pose(lens: &Lens, view: &Corners, first: Isometry3<f64>, s
             motion += of_pose.transpose() * miss;
         }
         let before = square;
-        while damping < DAMPING_MOST {
+        while damping < DAMPING_MAX {
             let mut damped = outer;
             damp(&mut damped, damping);
             let by = damped.cholesky()?.solve(&motion);

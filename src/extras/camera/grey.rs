@@ -1,10 +1,10 @@
 //! A grey image.
 
 use nalgebra::Vector2;
-use nima_endoscope::Picture;
+use nima_endoscope::DecodedImage;
 
 /// Weights of red, green and blue in brightness (BT.601).
-const SHARES: [f32; 3] = [0.299, 0.587, 0.114];
+const FRACTIONS: [f32; 3] = [0.299, 0.587, 0.114];
 
 /// Brightness of each pixel, 0 to 255, row by row from the upper left corner. The centre of a pixel is half a pixel
 /// from its edges.
@@ -22,9 +22,10 @@ impl Grey {
     }
 
     /// Returns the brightness of an image.
-    pub fn of(picture: &Picture) -> Option<Self> {
-        let grey = |pixel: &[u8]| pixel.iter().zip(SHARES).map(|(value, share)| f32::from(*value) * share).sum();
-        Self::new(picture.size_px, picture.rgba.chunks_exact(4).map(|pixel| grey(&pixel[..3])).collect())
+    pub fn of(image: &DecodedImage) -> Option<Self> {
+        let grey =
+            |pixel: &[u8]| pixel.iter().zip(FRACTIONS).map(|(value, fraction)| f32::from(*value) * fraction).sum();
+        Self::new(image.size_px, image.rgba.chunks_exact(4).map(|pixel| grey(&pixel[..3])).collect())
     }
 
     /// Width and height, px.
@@ -78,9 +79,9 @@ impl Grey {
         for (y, out) in values.chunks_exact_mut(width).enumerate() {
             for step in 0..=2 * reach {
                 let from = (y + step).saturating_sub(reach).min(height - 1);
-                let share = kernel[step.abs_diff(reach)];
+                let fraction = kernel[step.abs_diff(reach)];
                 for (to, value) in out.iter_mut().zip(&across[from * width..][..width]) {
-                    *to += share * value;
+                    *to += fraction * value;
                 }
             }
         }

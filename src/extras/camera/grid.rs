@@ -34,18 +34,18 @@ struct Edge {
 /// Saddles by column and row, each from zero.
 pub(crate) type Cells = BTreeMap<[usize; 2], usize>;
 /// The same while they grow to all sides.
-type Growing = BTreeMap<[i32; 2], usize>;
+type GrowingGrid = BTreeMap<[i32; 2], usize>;
 
 /// Whether the right-hand side of the line between two points is the light one (px; y is down); `None` if this is not
 /// uniform along the line.
-pub(crate) fn light_side(picture: &Grey, [from, to]: [&Vector2<f64>; 2], contrast: f64) -> Option<bool> {
+pub(crate) fn light_side(image: &Grey, [from, to]: [&Vector2<f64>; 2], contrast: f64) -> Option<bool> {
     let way = to - from;
     let length = way.norm();
     let right = Vector2::new(-way.y, way.x) * ((BESIDE * length).max(BESIDE_PX) / length.max(1e-9));
     let mut light = None;
     for along in ALONG {
         let at = from + way * along;
-        let difference = picture.at(&(at + right)) - picture.at(&(at - right));
+        let difference = image.at(&(at + right)) - image.at(&(at - right));
         let is_light = difference > 0.0;
         if difference.abs() < DIFFERENCE * contrast || light.is_some_and(|before| before != is_light) {
             return None;
@@ -55,7 +55,7 @@ pub(crate) fn light_side(picture: &Grey, [from, to]: [&Vector2<f64>; 2], contras
     light
 }
 
-fn edges(picture: &Grey, saddles: &[Saddle]) -> Vec<Vec<Edge>> {
+fn edges(image: &Grey, saddles: &[Saddle]) -> Vec<Vec<Edge>> {
     let mut all = Vec::with_capacity(saddles.len());
     for (index, saddle) in saddles.iter().enumerate() {
         let away = |other: &Saddle| (other.place_px - saddle.place_px).norm_squared();
@@ -67,7 +67,7 @@ fn edges(picture: &Grey, saddles: &[Saddle]) -> Vec<Vec<Edge>> {
         let joined = others[..near].iter().filter_map(|(_, to)| {
             let other = &saddles[*to];
             let contrast = saddle.contrast.min(other.contrast);
-            let light_right = light_side(picture, [&saddle.place_px, &other.place_px], contrast)?;
+            let light_right = light_side(image, [&saddle.place_px, &other.place_px], contrast)?;
             Some(Edge { to: *to, light_right })
         });
         all.push(joined.collect());
@@ -76,8 +76,8 @@ fn edges(picture: &Grey, saddles: &[Saddle]) -> Vec<Vec<Edge>> {
 }
 
 /// Returns every grid of saddles in an image, the largest first, with its first column and row at zero.
-pub(crate) fn grids(picture: &Grey, saddles: &[Saddle]) -> Vec<Cells> {
-    let edges = edges(picture, saddles);
+pub(crate) fn grids(image: &Grey, saddles: &[Saddle]) -> Vec<Cells> {
+    let edges = edges(image, saddles);
     let mut used = vec![false; saddles.len()];
     let mut all = Vec::new();
     for seed in 0..saddles.len() {
@@ -105,7 +105,7 @@ struct Front {
 }
 
 /// Grows a grid from a saddle with four neighbours.
-fn grown(saddles: &[Saddle], edges: &[Vec<Edge>], seed: usize) -> Option<Growing> {
+fn grown(saddles: &[Saddle], edges: &[Vec<Edge>], seed: usize) -> Option<GrowingGrid> {
     let way = |from: usize, to: usize| saddles[to].place_px - saddles[from].place_px;
     // Along columns the right-hand side is light at the seed; the row's direction is to the right of it.
     let along =
@@ -121,7 +121,7 @@ fn grown(saddles: &[Saddle], edges: &[Vec<Edge>], seed: usize) -> Option<Growing
     }
     let column = columns[0];
     let row = rows.into_iter().find(|row| column.perp(row) > 0.0)?;
-    let mut cells = Growing::from([([0, 0], seed)]);
+    let mut cells = GrowingGrid::from([([0, 0], seed)]);
     let mut placed = BTreeMap::from([(seed, [0, 0])]);
     let mut fronts = VecDeque::from([Front { index: seed, cell: [0, 0], ways: [column, row] }]);
     while let Some(Front { index, cell, ways }) = fronts.pop_front() {
@@ -149,7 +149,7 @@ fn grown(saddles: &[Saddle], edges: &[Vec<Edge>], seed: usize) -> Option<Growing
 }
 
 /// Removes saddles with only one neighbour: a corner of a board has two.
-fn pruned(mut cells: Growing) -> Growing {
+fn pruned(mut cells: GrowingGrid) -> GrowingGrid {
     loop {
         let beside = [[1, 0], [-1, 0], [0, 1], [0, -1]];
         let neighbours = |cell: &[i32; 2]| {
@@ -167,17 +167,16 @@ fn pruned(mut cells: Growing) -> Growing {
 
 /// Removes incomplete rows and columns at the border, of which less than half exists: those of a board are complete,
 /// those of noise next to it are not.
-fn trimmed(mut cells: Growing) -> Growing {
+fn trimmed(mut cells: GrowingGrid) -> GrowingGrid {
     loop {
         let before = cells.len();
         for axis in 0..2 {
-            let ends = |cells: &Growing| {
+            let ends = |cells: &GrowingGrid| {
                 let along = || cells.keys().map(|cell| cell[axis]);
                 along().min().zip(along().max())
             };
             let across = cells.keys().map(|cell| cell[1 - axis]);
-            let length =
-                across.clone().max().zip(across.min()).map_or(0, |(most, least)| most.abs_diff(least) as usize + 1);
+            let length = across.clone().max().zip(across.min()).map_or(0, |(max, min)| max.abs_diff(min) as usize + 1);
             let Some((first, last)) = ends(&cells) else { return cells };
             for end in [first, last] {
                 if 2 * cells.keys().filter(|cell| cell[axis] == end).count() < length {
@@ -191,9 +190,9 @@ fn trimmed(mut cells: Growing) -> Growing {
     }
 }
 
-fn from_zero(cells: &Growing) -> Cells {
-    let least = |axis: usize| cells.keys().map(|cell| cell[axis]).min().unwrap_or_default();
-    let [column, row] = [least(0), least(1)];
+fn from_zero(cells: &GrowingGrid) -> Cells {
+    let min = |axis: usize| cells.keys().map(|cell| cell[axis]).min().unwrap_or_default();
+    let [column, row] = [min(0), min(1)];
     cells
         .iter()
         .map(|(cell, index)| ([cell[0].abs_diff(column) as usize, cell[1].abs_diff(row) as usize], *index))
@@ -202,6 +201,6 @@ fn from_zero(cells: &Growing) -> Cells {
 
 /// Columns and rows of a grid.
 pub(crate) fn size(cells: &Cells) -> [usize; 2] {
-    let most = |axis: usize| cells.keys().map(|cell| cell[axis] + 1).max().unwrap_or_default();
-    [most(0), most(1)]
+    let max = |axis: usize| cells.keys().map(|cell| cell[axis] + 1).max().unwrap_or_default();
+    [max(0), max(1)]
 }

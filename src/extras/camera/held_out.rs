@@ -3,7 +3,7 @@
 use nima_endoscope::Lens;
 
 use crate::{
-    fit::{Corners, Fit, Terms, refined_pose},
+    fit::{CameraFit, FitCorners, Terms, refined_pose},
     plane,
 };
 
@@ -20,13 +20,13 @@ pub(crate) struct HeldOut {
 
 /// Holds out views in turn. In a held-out view, every second corner determines the board's pose, and the others are
 /// compared.
-pub(crate) fn held_out(fit: &Fit, views: &[Corners], terms: Terms) -> Option<HeldOut> {
+pub(crate) fn held_out(fit: &CameraFit, views: &[FitCorners], terms: Terms) -> Option<HeldOut> {
     let mut squares = Vec::new();
     for fold in 0..FOLDS {
         let is_out = |at: usize| at % FOLDS == fold;
         let kept: Vec<usize> = (0..views.len()).filter(|at| !is_out(*at)).collect();
-        let of: Vec<Corners> = kept.iter().map(|at| views[*at].clone()).collect();
-        let begin = Fit { lens: fit.lens, poses: kept.iter().map(|at| fit.poses[*at]).collect() };
+        let of: Vec<FitCorners> = kept.iter().map(|at| views[*at].clone()).collect();
+        let begin = CameraFit { lens: fit.lens, poses: kept.iter().map(|at| fit.poses[*at]).collect() };
         let lens = begin.refined(&of, terms, STEPS)?.lens;
         for at in (0..views.len()).filter(|at| is_out(*at)) {
             squares.extend(predicted(&lens, &views[at])?);
@@ -36,15 +36,15 @@ pub(crate) fn held_out(fit: &Fit, views: &[Corners], terms: Terms) -> Option<Hel
         return None;
     }
     let mean = squares.iter().sum::<f64>() / squares.len() as f64;
-    let most = squares.iter().copied().fold(0.0, f64::max);
-    Some(HeldOut { rms_px: mean.sqrt(), max_px: most.sqrt() })
+    let max = squares.iter().copied().fold(0.0, f64::max);
+    Some(HeldOut { rms_px: mean.sqrt(), max_px: max.sqrt() })
 }
 
-fn predicted(lens: &Lens, view: &Corners) -> Option<Vec<f64>> {
+fn predicted(lens: &Lens, view: &FitCorners) -> Option<Vec<f64>> {
     let half = |odd: usize| {
         let pairs = view.places_m.iter().zip(&view.seen_px).enumerate().filter(|(at, _)| at % 2 == odd);
         let (places_m, seen_px) = pairs.map(|(_, (place, seen))| (*place, *seen)).unzip();
-        Corners { places_m, seen_px }
+        FitCorners { places_m, seen_px }
     };
     let used = half(0);
     let compared = half(1);

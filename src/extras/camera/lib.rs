@@ -1,7 +1,7 @@
 //! Calibration of the endoscope camera from images of a checkerboard.
 //!
-//! [`find`] finds a complete [`Board`](nima_endoscope::Board) in a grey image, with its corners accurate to some
-//! hundredths of a pixel, or returns the reason ([`Unseen`]). [`Session`] collects the views for a calibration and
+//! [`find`] finds a complete [`Board`](nima_endoscope::Checkerboard) in a grey image, with its corners accurate to some
+//! hundredths of a pixel, or returns the reason ([`DetectionFailure`]). [`CameraSession`] collects the views for a calibration and
 //! requests the next one. [`calibrate`] computes the lens (Zhang 2000, refined by Levenberg and Marquardt's method),
 //! with those terms that improve held-out views, and judges it. [`place`] computes the pose of the camera from corners
 //! of the board that were touched with the instrument's tip. Uses no file, thread, clock or window.
@@ -22,11 +22,11 @@ mod session;
 #[cfg(test)]
 mod tests;
 
-pub use calibrate::{View, calibrate};
-pub use coverage::{CELLS, Coverage, Region};
-pub use detect::{Sight, Unseen, find};
+pub use calibrate::{BoardView, calibrate};
+pub use coverage::{CELLS, CameraCoverage, Region};
+pub use detect::{BoardSight, DetectionFailure, find};
 pub use fit::Terms;
 pub use grey::Grey;
-pub use place::{Lack, PlaceError, Placed, Touch, board_pose, place};
-pub use report::{Cause, Deviations, LeftOut, Report};
-pub use session::{Ask, Offer, Session, Way};
+pub use place::{CameraPlacement, PlaceError, PlaceLack, TouchedCorner, board_pose, place};
+pub use report::{CameraCause, Deviations, LeftOut, LensReport};
+pub use session::{CameraSession, LensSide, ViewOutcome, ViewRequest};

@@ -3,11 +3,11 @@
 
 use nalgebra::{Isometry3, Matrix3, Translation3, Vector2, Vector3};
 use nima_core::calibration::Verdict;
-use nima_endoscope::{Board, Camera, Lens};
+use nima_endoscope::{Camera, Checkerboard, Lens};
 
 use crate::{
-    Sight,
-    fit::{Corners, refined_pose},
+    BoardSight,
+    fit::{FitCorners, refined_pose},
     plane,
 };
 
@@ -23,7 +23,7 @@ const STEPS: usize = 40;
 
 /// A touched corner.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Touch {
+pub struct TouchedCorner {
     /// Column and row of the corner, from zero.
     pub corner: [usize; 2],
     /// Position of the tip in the workspace, m.
@@ -48,7 +48,7 @@ pub enum PlaceError {
 
 /// Why a pose may not be used.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Lack {
+pub enum PlaceLack {
     /// The touched points do not fit a flat board with these squares: a corner was missed, or the board moved.
     NotRigid {
         /// The corner that is farthest away.
@@ -61,13 +61,13 @@ pub enum Lack {
         /// Root mean square, px.
         rms_px: f64,
         /// Limit, px.
-        most_px: f64,
+        max_px: f64,
     },
 }
 
 /// Pose of the camera.
 #[derive(Clone, Debug)]
-pub struct Placed {
+pub struct CameraPlacement {
     pub world_from_camera: Isometry3<f64>,
     /// Root mean square of the distances of the touched points from a rigid board, m.
     pub fitted_m: f64,
@@ -77,10 +77,10 @@ pub struct Placed {
     /// Maximum of these distances, px.
     pub held_out_max_px: f64,
     /// Why it may not be used; `None` if it may.
-    pub lack: Option<Lack>,
+    pub lack: Option<PlaceLack>,
 }
 
-impl Placed {
+impl CameraPlacement {
     /// Whether it may be used.
     pub const fn verdict(&self) -> Verdict {
         if self.lack.is_some() { Verdict::PoorData } else { Verdict::Accepted }
@@ -88,8 +88,8 @@ impl Placed {
 }
 
 /// Returns the pose of a board in front of a lens.
-pub fn board_pose(board: &Board, lens: &Lens, sight: &Sight) -> Option<Isometry3<f64>> {
-    let view = Corners { places_m: board.places_m(), seen_px: sight.corners_px.clone() };
+pub fn board_pose(board: &Checkerboard, lens: &Lens, sight: &BoardSight) -> Option<Isometry3<f64>> {
+    let view = FitCorners { places_m: board.places_m(), seen_px: sight.corners_px.clone() };
     let first = plane::pose(lens, &view.places_m, &view.seen_px)?;
     refined_pose(lens, &view, first, STEPS)
 }
@@ -98,11 +98,16 @@ pub fn board_pose(board: &Board, lens: &Lens, sight: &Sight) -> Option<Isometry3
 ///
 /// # Errors
 /// [`PlaceError`] if the pose cannot be computed.
-pub fn place(board: &Board, lens: &Lens, sight: &Sight, touches: &[Touch]) -> Result<Placed, PlaceError> {
+pub fn place(
+    board: &Checkerboard,
+    lens: &Lens,
+    sight: &BoardSight,
+    touches: &[TouchedCorner],
+) -> Result<CameraPlacement, PlaceError> {
     if touches.len() < TOUCHES {
         return Err(PlaceError::TooFew { touched: touches.len(), needed: TOUCHES });
     }
-    let on_board = |touch: &Touch| {
+    let on_board = |touch: &TouchedCorner| {
         let [across, down] = touch.corner.map(|at| at as f64 * board.square_m());
         Vector3::new(across, down, 0.0)
     };
@@ -111,22 +116,23 @@ pub fn place(board: &Board, lens: &Lens, sight: &Sight, touches: &[Touch]) -> Re
         return Err(PlaceError::OneLine);
     }
     let camera_from_board = board_pose(board, lens, sight).ok_or(PlaceError::NotSeen)?;
-    let world_from_board = |touches: &[Touch]| {
+    let world_from_board = |touches: &[TouchedCorner]| {
         rigid(
             &touches.iter().map(on_board).collect::<Vec<_>>(),
             &touches.iter().map(|touch| touch.tip_m).collect::<Vec<_>>(),
         )
     };
     let whole = world_from_board(touches).ok_or(PlaceError::OneLine)?;
-    let away =
-        |touch: &Touch| (whole * nalgebra::Point3::from(on_board(touch)) - nalgebra::Point3::from(touch.tip_m)).norm();
+    let away = |touch: &TouchedCorner| {
+        (whole * nalgebra::Point3::from(on_board(touch)) - nalgebra::Point3::from(touch.tip_m)).norm()
+    };
     let camera_at = |world_from_board: &Isometry3<f64>| Camera {
         lens: *lens,
         world_from_camera: world_from_board * camera_from_board.inverse(),
     };
     let mut errors_px = Vec::new();
     for (at, left_out) in touches.iter().enumerate() {
-        let others: Vec<Touch> =
+        let others: Vec<TouchedCorner> =
             touches.iter().enumerate().filter(|(other, _)| *other != at).map(|(_, touch)| *touch).collect();
         let seen: Option<&Vector2<f64>> = sight.corners_px.get(board.index(left_out.corner));
         let predicted = world_from_board(&others).and_then(|found| camera_at(&found).project(&left_out.tip_m));
@@ -135,15 +141,15 @@ pub fn place(board: &Board, lens: &Lens, sight: &Sight, touches: &[Touch]) -> Re
     let root = |sum: f64| (sum / touches.len() as f64).sqrt();
     let held_out_px = root(errors_px.iter().map(|error| error * error).sum());
     let farthest = touches.iter().max_by(|a, b| away(a).total_cmp(&away(b)));
-    let most_px = HELD_OUT * lens.size_px[0] as f64;
+    let max_px = HELD_OUT * lens.size_px[0] as f64;
     let is_rigid = touches.iter().all(|touch| away(touch) <= RIGID_M);
-    let is_predicted = held_out_px <= most_px;
+    let is_predicted = held_out_px <= max_px;
     let lack = match farthest {
-        Some(touch) if !is_rigid => Some(Lack::NotRigid { corner: touch.corner, by_m: away(touch) }),
-        _ if !is_predicted => Some(Lack::HeldOut { rms_px: held_out_px, most_px }),
+        Some(touch) if !is_rigid => Some(PlaceLack::NotRigid { corner: touch.corner, by_m: away(touch) }),
+        _ if !is_predicted => Some(PlaceLack::HeldOut { rms_px: held_out_px, max_px }),
         _ => None,
     };
-    Ok(Placed {
+    Ok(CameraPlacement {
         world_from_camera: camera_at(&whole).world_from_camera,
         fitted_m: root(touches.iter().map(|touch| away(touch).powi(2)).sum()),
         held_out_px,

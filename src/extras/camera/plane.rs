@@ -19,11 +19,11 @@ pub(crate) fn homography(from: &[Vector2<f64>], to: &[Vector2<f64>]) -> Option<M
     if from.len() < 4 || from.len() != to.len() {
         return None;
     }
-    let [on_plane, in_picture] = [normaliser(from), normaliser(to)];
+    let [on_plane, in_image] = [normaliser(from), normaliser(to)];
     let mut squares = SMatrix::<f64, 9, 9>::zeros();
     for (a, b) in from.iter().zip(to) {
         let p = on_plane * a.push(1.0);
-        let q = in_picture * b.push(1.0);
+        let q = in_image * b.push(1.0);
         for (axis, at) in [(0, q.x), (1, q.y)] {
             let mut row = SMatrix::<f64, 9, 1>::zeros();
             row.fixed_rows_mut::<3>(3 * axis).copy_from(&p);
@@ -34,7 +34,7 @@ pub(crate) fn homography(from: &[Vector2<f64>], to: &[Vector2<f64>]) -> Option<M
     let eigen = SymmetricEigen::new(squares);
     let h = eigen.eigenvectors.column(eigen.eigenvalues.imin());
     let normal = Matrix3::from_row_slice(h.as_slice());
-    let whole = in_picture.try_inverse()? * normal * on_plane;
+    let whole = in_image.try_inverse()? * normal * on_plane;
     whole.iter().all(|part| part.is_finite()).then_some(whole)
 }
 

@@ -66,14 +66,14 @@ fn towards(smooth: &Grey, place_px: &Vector2<f64>, reach_px: f64) -> Option<Vect
 
 /// Standard deviation of the blur across the edge between two corners, px: difference of light and dark over the
 /// steepest slope.
-pub(crate) fn blur_px(picture: &Grey, [from, to]: [&Vector2<f64>; 2]) -> Option<f64> {
+pub(crate) fn blur_px(image: &Grey, [from, to]: [&Vector2<f64>; 2]) -> Option<f64> {
     let way = to - from;
     let length = way.norm();
     let across = Vector2::new(-way.y, way.x) / length;
     let steps = (REACH * length / STEP_PX) as i32;
     let value = |step: i32| {
         let beside = across * (f64::from(step) * STEP_PX);
-        ALONG.iter().map(|along| picture.at(&(from + way * *along + beside))).sum::<f64>() / ALONG.len() as f64
+        ALONG.iter().map(|along| image.at(&(from + way * *along + beside))).sum::<f64>() / ALONG.len() as f64
     };
     let profile: Vec<f64> = (-steps..=steps).map(value).collect();
     let [first, last] = [*profile.first()?, *profile.last()?];

@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 use nima_core::calibration::Verdict;
 use nima_endoscope::{Bend, Lens};
 
-use crate::{Coverage, Terms};
+use crate::{CameraCoverage, Terms};
 
 /// Standard deviations of a lens's parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,7 +26,7 @@ pub enum LeftOut {
 
 /// A deficiency of a calibration.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Cause {
+pub enum CameraCause {
     /// Too few views can be used.
     TooFew {
         /// Usable views.
@@ -51,7 +51,7 @@ pub enum Cause {
     /// The board was parallel to itself in all views.
     Parallel {
         /// Maximum angle between two views, degrees.
-        most_deg: f64,
+        max_deg: f64,
     },
     /// It was tilted about one axis only.
     OneWay {
@@ -61,7 +61,7 @@ pub enum Cause {
     /// Corners were seen in too small a part of the image.
     Coverage {
         /// Fraction of the image.
-        share: f64,
+        fraction: f64,
     },
     /// No lens of this kind fits the corners.
     NoFit,
@@ -70,7 +70,7 @@ pub enum Cause {
         /// Root mean square, px.
         rms_px: f64,
         /// Limit, px.
-        most_px: f64,
+        max_px: f64,
     },
     /// The views do not determine the focal length or the centre.
     Uncertain {
@@ -81,7 +81,7 @@ pub enum Cause {
     },
 }
 
-impl Cause {
+impl CameraCause {
     pub const fn verdict(&self) -> Verdict {
         match self {
             Self::NoFit | Self::HeldOut { .. } | Self::Blurred { .. } => Verdict::PoorData,
@@ -91,22 +91,22 @@ impl Cause {
 }
 
 #[derive(Clone, Debug)]
-pub struct Report {
+pub struct LensReport {
     /// `None` if no lens was found.
-    pub lens: Option<Found>,
+    pub lens: Option<CalibratedLens>,
     /// Used views, by their indices in the list.
     pub used: Vec<usize>,
     /// Views that were not used.
     pub left_out: Vec<(usize, LeftOut)>,
     /// Positions of corners in the used views.
-    pub coverage: Coverage,
+    pub coverage: CameraCoverage,
     /// The deficiency; `None` if there is none.
-    pub cause: Option<Cause>,
+    pub cause: Option<CameraCause>,
 }
 
 /// A computed lens.
 #[derive(Clone, Copy, Debug)]
-pub struct Found {
+pub struct CalibratedLens {
     pub lens: Lens,
     /// Its terms; those that do not improve held-out views are left out.
     pub terms: Terms,
@@ -122,9 +122,9 @@ pub struct Found {
     pub tilt_deg: f64,
 }
 
-impl Report {
+impl LensReport {
     /// Whether the lens may be used.
     pub fn verdict(&self) -> Verdict {
-        self.cause.as_ref().map_or(Verdict::Accepted, Cause::verdict)
+        self.cause.as_ref().map_or(Verdict::Accepted, CameraCause::verdict)
     }
 }

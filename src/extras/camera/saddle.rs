@@ -36,12 +36,12 @@ pub(crate) fn saddles(smooth: &Grey) -> Vec<Saddle> {
         return Vec::new();
     }
     let strength = strengths(smooth);
-    let least = WEAKEST * strength.iter().copied().fold(0.0, f32::max);
+    let min = WEAKEST * strength.iter().copied().fold(0.0, f32::max);
     let mut peaks = Vec::new();
     for y in APART..height - APART {
         for x in APART..width - APART {
             let here = strength[y * width + x];
-            if here > least && here > 0.0 && is_peak(&strength, width, [x, y]) {
+            if here > min && here > 0.0 && is_peak(&strength, width, [x, y]) {
                 peaks.push((here, [x, y]));
             }
         }
@@ -88,9 +88,9 @@ fn crosswise(smooth: &Grey, place_px: &Vector2<f64>) -> Option<Saddle> {
         let (sin, cos) = (TAU * k as f64 / RING as f64).sin_cos();
         smooth.at(&(place_px + Vector2::new(cos, sin) * RADIUS_PX))
     });
-    let (least, most) = ring.iter().fold((f64::INFINITY, 0.0), |(least, most), v| (v.min(least), v.max(most)));
-    let contrast = most - least;
-    let middle = 0.5 * (most + least);
+    let (min, max) = ring.iter().fold((f64::INFINITY, 0.0), |(min, max), v| (v.min(min), v.max(max)));
+    let contrast = max - min;
+    let middle = 0.5 * (max + min);
     if contrast < CONTRAST {
         return None;
     }

@@ -1,10 +1,10 @@
 //! Collects views while the board is moved, and requests the next one.
 
 use nalgebra::Vector3;
-use nima_endoscope::{Board, Lens};
+use nima_endoscope::{Checkerboard, Lens};
 
 use crate::{
-    Coverage, Region, Sight,
+    BoardSight, CameraCoverage, Region,
     calibrate::{VIEWS, is_blurred, is_same_place},
     plane,
 };
@@ -13,7 +13,7 @@ use crate::{
 const STILL: f64 = 0.0008;
 /// Number of views requested, and fraction of the image with corners.
 const WANTED: usize = VIEWS + 4;
-const SHARE: f64 = 0.75;
+const FRACTION: f64 = 0.75;
 /// A tilt counts from the first angle on, degrees; below the second the board counts as flat.
 const TILTED_DEG: f64 = 15.0;
 const FLAT_DEG: f64 = 12.0;
@@ -22,7 +22,7 @@ const FOCAL: f64 = 0.8;
 
 /// The side of the board that is nearer to the lens.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Way {
+pub enum LensSide {
     Left,
     Right,
     Up,
@@ -31,11 +31,11 @@ pub enum Way {
 
 /// The view that is requested next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Ask {
+pub enum ViewRequest {
     /// Parallel to the lens.
     Flat,
     /// With this side nearer.
-    Tilted(Way),
+    Tilted(LensSide),
     /// In this part of the image.
     There(Region),
     /// In any other pose.
@@ -46,7 +46,7 @@ pub enum Ask {
 
 /// Result of an offered view.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Offer {
+pub enum ViewOutcome {
     /// Added.
     Taken,
     /// The board is moving.
@@ -59,20 +59,20 @@ pub enum Offer {
 
 /// Views of a board.
 #[derive(Clone, Debug)]
-pub struct Session {
-    board: Board,
+pub struct CameraSession {
+    board: Checkerboard,
     size_px: [usize; 2],
-    views: Vec<Sight>,
-    last: Option<Sight>,
+    views: Vec<BoardSight>,
+    last: Option<BoardSight>,
 }
 
-impl Session {
+impl CameraSession {
     /// Starts without views, for images of this size.
-    pub const fn new(board: Board, size_px: [usize; 2]) -> Self {
+    pub const fn new(board: Checkerboard, size_px: [usize; 2]) -> Self {
         Self { board, size_px, views: Vec::new(), last: None }
     }
 
-    pub const fn board(&self) -> &Board {
+    pub const fn board(&self) -> &Checkerboard {
         &self.board
     }
 
@@ -82,28 +82,28 @@ impl Session {
     }
 
     /// Views added so far.
-    pub fn views(&self) -> &[Sight] {
+    pub fn views(&self) -> &[BoardSight] {
         &self.views
     }
 
     /// Offers the board of another image; the view is added if the board is held still in a new place.
-    pub fn offer(&mut self, sight: Sight) -> Offer {
+    pub fn offer(&mut self, sight: BoardSight) -> ViewOutcome {
         let width = self.size_px[0];
         let before = self.last.replace(sight.clone());
         if sight.corners_px.len() != self.board.count() {
-            return Offer::Moving;
+            return ViewOutcome::Moving;
         }
         if !before.is_some_and(|before| before.mean_move_px(&sight) < STILL * width as f64) {
-            return Offer::Moving;
+            return ViewOutcome::Moving;
         }
         if is_blurred(sight.blur_px, width) {
-            return Offer::Blurred;
+            return ViewOutcome::Blurred;
         }
         if self.views.iter().any(|view| is_same_place(view, &sight, width)) {
-            return Offer::TakenHere;
+            return ViewOutcome::TakenHere;
         }
         self.views.push(sight);
-        Offer::Taken
+        ViewOutcome::Taken
     }
 
     /// Called if there is no board in the image.
@@ -116,8 +116,8 @@ impl Session {
     }
 
     /// Positions of corners so far.
-    pub fn coverage(&self) -> Coverage {
-        let mut all = Coverage::default();
+    pub fn coverage(&self) -> CameraCoverage {
+        let mut all = CameraCoverage::default();
         for view in &self.views {
             all.add(&view.coverage);
         }
@@ -125,36 +125,37 @@ impl Session {
     }
 
     /// Returns the view that is requested next.
-    pub fn asks(&self) -> Ask {
+    pub fn asks(&self) -> ViewRequest {
         let tilts = self.tilts_deg();
         if !tilts.iter().any(|[x, y]| x.hypot(*y) < FLAT_DEG) {
-            return Ask::Flat;
+            return ViewRequest::Flat;
         }
-        let tilted = |way: Way| match way {
-            Way::Left => tilts.iter().any(|[x, _]| *x < -TILTED_DEG),
-            Way::Right => tilts.iter().any(|[x, _]| *x > TILTED_DEG),
-            Way::Up => tilts.iter().any(|[_, y]| *y < -TILTED_DEG),
-            Way::Down => tilts.iter().any(|[_, y]| *y > TILTED_DEG),
+        let tilted = |way: LensSide| match way {
+            LensSide::Left => tilts.iter().any(|[x, _]| *x < -TILTED_DEG),
+            LensSide::Right => tilts.iter().any(|[x, _]| *x > TILTED_DEG),
+            LensSide::Up => tilts.iter().any(|[_, y]| *y < -TILTED_DEG),
+            LensSide::Down => tilts.iter().any(|[_, y]| *y > TILTED_DEG),
         };
-        let missing = [Way::Left, Way::Right, Way::Up, Way::Down].into_iter().find(|way| !tilted(*way));
+        let missing =
+            [LensSide::Left, LensSide::Right, LensSide::Up, LensSide::Down].into_iter().find(|way| !tilted(*way));
         if let Some(way) = missing {
-            return Ask::Tilted(way);
+            return ViewRequest::Tilted(way);
         }
         let coverage = self.coverage();
-        match coverage.emptiest().filter(|_| coverage.share() < SHARE) {
-            Some(region) => Ask::There(region),
-            None if self.views.len() < WANTED => Ask::Other,
-            None => Ask::Complete,
+        match coverage.emptiest().filter(|_| coverage.fraction() < FRACTION) {
+            Some(region) => ViewRequest::There(region),
+            None if self.views.len() < WANTED => ViewRequest::Other,
+            None => ViewRequest::Complete,
         }
     }
 
     /// Completed fraction, 0 to 1.
-    pub fn share(&self) -> f64 {
-        if self.asks() == Ask::Complete {
+    pub fn fraction(&self) -> f64 {
+        if self.asks() == ViewRequest::Complete {
             return 1.0;
         }
         let views = (self.views.len() as f64 / WANTED as f64).min(1.0);
-        let seen = (self.coverage().share() / SHARE).min(1.0);
+        let seen = (self.coverage().fraction() / FRACTION).min(1.0);
         (0.5 * (views + seen)).min(0.99)
     }
 
@@ -163,7 +164,7 @@ impl Session {
     fn tilts_deg(&self) -> Vec<[f64; 2]> {
         let lens = Lens::simple(self.size_px, FOCAL * self.size_px[0] as f64, 0.0);
         let places_m = self.board.places_m();
-        let tilt = |view: &Sight| {
+        let tilt = |view: &BoardSight| {
             let pose = plane::pose(&lens, &places_m, &view.corners_px)?;
             let normal = pose.rotation * Vector3::z();
             Some([normal.x.atan2(normal.z), normal.y.atan2(normal.z)].map(f64::to_degrees))

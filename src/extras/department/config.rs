@@ -4,7 +4,7 @@ use base64::{Engine as _, engine::general_purpose::STANDARD};
 use serde_json::{Value, json};
 use zenoh::Config;
 
-use crate::{DepartmentError, Identity, keys};
+use crate::{DepartmentError, MachineIdentity, keys};
 
 /// Maximum number of connected watchers.
 const WATCHERS_MAX: usize = 64;
@@ -13,7 +13,7 @@ const LEASE_MS: u64 = 5000;
 
 /// Returns the configuration of a rig. It accepts connections and only sends. Data of a watcher other than its
 /// requests are dropped on arrival.
-pub(crate) fn rig(own: &Identity, address: &str, scouting: Scouting) -> Result<Config, DepartmentError> {
+pub(crate) fn rig(own: &MachineIdentity, address: &str, scouting: ScoutingMode) -> Result<Config, DepartmentError> {
     let [authority, certificate, key] = [&own.authority, &own.certificate, &own.key].map(|pem| STANDARD.encode(pem));
     let tls = json!({
         "root_ca_certificate_base64": authority,
@@ -52,7 +52,7 @@ pub(crate) fn rig(own: &Identity, address: &str, scouting: Scouting) -> Result<C
 }
 
 /// A watcher connects to one rig and does not listen.
-pub(crate) fn watcher(own: &Identity, address: &str) -> Result<Config, DepartmentError> {
+pub(crate) fn watcher(own: &MachineIdentity, address: &str) -> Result<Config, DepartmentError> {
     let [authority, certificate, key] = [&own.authority, &own.certificate, &own.key].map(|pem| STANDARD.encode(pem));
     config(&json!({
         "mode": "client",
@@ -80,14 +80,14 @@ pub(crate) fn watcher(own: &Identity, address: &str) -> Result<Config, Departmen
 
 /// Whether rigs can be found without their address, by a multicast within the local network.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Scouting {
+pub(crate) enum ScoutingMode {
     /// They answer.
     Answers,
     /// Only their address reaches them.
     Silent,
 }
 
-impl Scouting {
+impl ScoutingMode {
     fn rig(self) -> Value {
         json!({
             "multicast": { "enabled": self == Self::Answers, "listen": true, "autoconnect": { "router": [] } },

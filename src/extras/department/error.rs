@@ -1,6 +1,6 @@
 use std::{io, path::PathBuf};
 
-use nima_session::{copied::CopyError, watched::WatchError};
+use nima_session::{monitor_stream::WatchError, remote_copy::CopyError};
 
 /// Errors of a department.
 #[derive(Debug, thiserror::Error)]

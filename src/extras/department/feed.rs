@@ -16,11 +16,11 @@ use nima_machine::{
 };
 use nima_recording::session::Encoding;
 use nima_session::{
-    copied::{Bundle, Head, Part},
-    objects::Objects,
-    outlet::Audience,
-    recorder::Attached,
-    watched::MomentWriter,
+    monitor_stream::MomentWriter,
+    objects::ObjectStates,
+    recorder::AttachedFile,
+    remote_copy::{Bundle, FilePart, SessionHead},
+    sinks::Audience,
 };
 
 /// Duration of a bundle of the session, ns; a remote file can lose at most this much.
@@ -34,9 +34,9 @@ const RECAP_S: f64 = 1.0;
 
 /// Input of the publishing thread.
 #[derive(Debug)]
-pub(crate) enum Told {
+pub(crate) enum FeedMessage {
     /// A session begins.
-    Begins(Head),
+    Begins(SessionHead),
     /// A file that describes the running session: its name and its text.
     File(String, String),
     /// A part of the session.
@@ -47,12 +47,12 @@ pub(crate) enum Told {
 
 /// The recorder's side. Data that the other side does not accept in time are dropped.
 #[derive(Debug)]
-pub(crate) struct Feed {
-    to: Sender<Told>,
+pub(crate) struct DepartmentFeed {
+    to: Sender<FeedMessage>,
     dropped: Arc<AtomicU64>,
     session: u64,
     number: u64,
-    parts: Vec<Part>,
+    parts: Vec<FilePart>,
     bytes: usize,
     /// Time of the first message in the bundle, ns.
     since_ns: Option<u64>,
@@ -60,8 +60,8 @@ pub(crate) struct Feed {
     recap: Recap,
 }
 
-impl Feed {
-    pub(crate) fn new(to: Sender<Told>, dropped: Arc<AtomicU64>) -> Self {
+impl DepartmentFeed {
+    pub(crate) fn new(to: Sender<FeedMessage>, dropped: Arc<AtomicU64>) -> Self {
         Self {
             to,
             dropped,
@@ -75,13 +75,13 @@ impl Feed {
         }
     }
 
-    fn tell(&self, told: Told) {
-        if let Err(TrySendError::Full(_)) = self.to.try_send(told) {
+    fn report(&self, report: FeedMessage) {
+        if let Err(TrySendError::Full(_)) = self.to.try_send(report) {
             self.dropped.fetch_add(1, Ordering::Relaxed);
         }
     }
 
-    fn part(&mut self, part: Part, bytes: usize) {
+    fn part(&mut self, part: FilePart, bytes: usize) {
         self.parts.push(part);
         self.bytes += bytes;
     }
@@ -90,36 +90,36 @@ impl Feed {
         let parts = take(&mut self.parts);
         self.bytes = 0;
         self.since_ns = None;
-        self.tell(Told::Bundle(Bundle::new(self.session, self.number, parts, closes)));
+        self.report(FeedMessage::Bundle(Bundle::new(self.session, self.number, parts, closes)));
         self.number += 1;
     }
 }
 
-impl Audience for Feed {
+impl Audience for DepartmentFeed {
     fn begins(&mut self, program: &str, started_ns: u64) {
         // No two sessions of a machine begin in the same nanosecond.
         self.session = started_ns;
-        self.tell(Told::Begins(Head::new(self.session, program, started_ns)));
+        self.report(FeedMessage::Begins(SessionHead::new(self.session, program, started_ns)));
     }
 
     fn metadata(&mut self, name: &str, entries: &BTreeMap<String, String>) {
-        self.part(Part::table(name, entries), 0);
+        self.part(FilePart::table(name, entries), 0);
     }
 
-    fn attachment(&mut self, time_ns: u64, attached: &Attached) {
+    fn attachment(&mut self, time_ns: u64, attached: &AttachedFile) {
         if let Ok(text) = String::from_utf8(attached.data.clone()) {
-            self.tell(Told::File(attached.name.clone(), text));
+            self.report(FeedMessage::File(attached.name.clone(), text));
         }
-        self.part(Part::file(time_ns, attached), attached.data.len());
+        self.part(FilePart::file(time_ns, attached), attached.data.len());
     }
 
     fn channel(&mut self, topic: &str, encoding: &Encoding) {
-        self.part(Part::channel(topic, encoding), encoding.schema_data.len());
+        self.part(FilePart::channel(topic, encoding), encoding.schema_data.len());
     }
 
     fn message(&mut self, channel: usize, log_time_ns: u64, data: &[u8]) {
         let since_ns = *self.since_ns.get_or_insert(log_time_ns);
-        self.part(Part::message(channel, log_time_ns, data), data.len());
+        self.part(FilePart::message(channel, log_time_ns, data), data.len());
         if log_time_ns.saturating_sub(since_ns) >= BUNDLE_NS || self.bytes >= BUNDLE_BYTES {
             self.close_bundle(false);
         }
@@ -139,16 +139,16 @@ impl Audience for Feed {
         }
         if self.moments.len() >= MOMENTS {
             let moments = self.moments.take();
-            self.tell(Told::Moments(self.session, moments));
+            self.report(FeedMessage::Moments(self.session, moments));
         }
     }
 
-    fn objects(&mut self, objects: &Objects) {
+    fn objects(&mut self, objects: &ObjectStates) {
         self.moments.objects(objects);
     }
 }
 
-impl Drop for Feed {
+impl Drop for DepartmentFeed {
     fn drop(&mut self) {
         self.close_bundle(true);
     }
@@ -157,7 +157,7 @@ impl Drop for Feed {
 /// The events that still apply: a late screen needs them.
 #[derive(Debug, Default)]
 struct Recap {
-    told_s: Option<f64>,
+    reported_s: Option<f64>,
     devices: BTreeMap<u8, Event>,
     scheduling: Option<Event>,
     /// The last change of each side's state, and the faults since.
@@ -185,10 +185,10 @@ impl Recap {
 
     /// Returns all of them, once per second.
     fn due(&mut self, t_s: f64) -> Option<Vec<Event>> {
-        if self.told_s.is_some_and(|told_s| (0.0..RECAP_S).contains(&(t_s - told_s))) {
+        if self.reported_s.is_some_and(|reported_s| (0.0..RECAP_S).contains(&(t_s - reported_s))) {
             return None;
         }
-        self.told_s = Some(t_s);
+        self.reported_s = Some(t_s);
         let all = self.devices.values().chain(&self.scheduling).chain(self.states.iter().flatten());
         Some(all.copied().collect())
     }
@@ -196,7 +196,7 @@ impl Recap {
 
 #[cfg(test)]
 mod tests {
-    use nima_core::safety::Why;
+    use nima_core::safety::TransitionCause;
     use nima_machine::{messages::Fault, rig::Side};
 
     use super::*;
@@ -205,7 +205,8 @@ mod tests {
     fn what_stands_is_told_every_second_and_a_fault_until_it_is_released() {
         let mut recap = Recap::default();
         let raised = Event::FaultRaised { t_s: 1.0, side: Side::Right, fault: Fault::SourceSilent };
-        let changed = |from, to| Event::StateChanged { t_s: 1.0, side: Side::Right, from, to, why: Why::Fault };
+        let changed =
+            |from, to| Event::StateChanged { t_s: 1.0, side: Side::Right, from, to, why: TransitionCause::Fault };
         let faulted = changed(LoopState::Engaged, LoopState::Faulted(Fault::SourceSilent));
         assert_eq!(recap.due(0.0), Some(vec![]));
         for event in [raised, faulted] {

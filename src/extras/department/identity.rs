@@ -22,14 +22,14 @@ const OWN: &str = "own.toml";
 /// Role of a machine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Role {
+pub enum MachineRole {
     /// Publishes its own state, and may watch others.
     Rig,
     /// May only watch.
     Watcher,
 }
 
-impl Role {
+impl MachineRole {
     pub const fn word(self) -> &'static str {
         match self {
             Self::Rig => "rig",
@@ -48,10 +48,10 @@ pub struct Authority {
 
 /// Identity of a machine in its department.
 #[derive(Clone, Serialize, Deserialize)]
-pub struct Identity {
+pub struct MachineIdentity {
     pub department: String,
     pub name: String,
-    pub role: Role,
+    pub role: MachineRole,
     pub(crate) authority: String,
     pub(crate) certificate: String,
     pub(crate) key: String,
@@ -100,7 +100,7 @@ impl Authority {
     ///
     /// # Errors
     /// [`DepartmentError`] if the name cannot be used, or the file cannot be written.
-    pub fn issue(&self, name: &str, role: Role, to: &Path) -> Result<Identity, DepartmentError> {
+    pub fn issue(&self, name: &str, role: MachineRole, to: &Path) -> Result<MachineIdentity, DepartmentError> {
         let name = checked_name(name)?;
         let params = params_of_authority(&self.department)?;
         let issuer = Issuer::new(params, KeyPair::from_pem(&self.key)?);
@@ -110,7 +110,7 @@ impl Authority {
         params.distinguished_name.push(DnType::CommonName, name.clone());
         params.key_usages = vec![KeyUsagePurpose::DigitalSignature];
         params.extended_key_usages = vec![ExtendedKeyUsagePurpose::ClientAuth];
-        if role == Role::Rig {
+        if role == MachineRole::Rig {
             // Required for its answer to be accepted as a rig's.
             params.extended_key_usages.push(ExtendedKeyUsagePurpose::ServerAuth);
         }
@@ -119,13 +119,13 @@ impl Authority {
         let key = key.serialize_pem();
         let department = self.department.clone();
         let authority = self.certificate.clone();
-        let identity = Identity { department, name, role, authority, certificate, key };
+        let identity = MachineIdentity { department, name, role, authority, certificate, key };
         write(to, &identity)?;
         Ok(identity)
     }
 }
 
-impl Identity {
+impl MachineIdentity {
     /// Installs the file that was issued for this machine into its folder.
     ///
     /// # Errors
@@ -152,8 +152,10 @@ impl Identity {
     /// [`DepartmentError::Role`] if it may only watch.
     pub fn as_rig(&self) -> Result<&Self, DepartmentError> {
         match self.role {
-            Role::Rig => Ok(self),
-            Role::Watcher => Err(DepartmentError::Role { is: self.role.word(), needed: Role::Rig.word() }),
+            MachineRole::Rig => Ok(self),
+            MachineRole::Watcher => {
+                Err(DepartmentError::Role { is: self.role.word(), needed: MachineRole::Rig.word() })
+            }
         }
     }
 }

@@ -5,7 +5,7 @@ use crate::DepartmentError;
 /// All keys.
 pub(crate) const ALL: &str = "nima/**";
 /// Maximum size of a message that is unpacked, bytes.
-const MOST_BYTES: usize = 64 << 20;
+const MAX_BYTES: usize = 64 << 20;
 
 /// Presence of the rig.
 pub(crate) fn presence(rig: &str) -> String {
@@ -69,7 +69,7 @@ pub(crate) fn pack(message: &[u8]) -> Vec<u8> {
 /// Decompresses a message of [`pack`]; `None` if it is damaged.
 pub(crate) fn unpack(packed: &[u8]) -> Option<Vec<u8>> {
     let size = u32::from_le_bytes(packed.get(..4)?.try_into().ok()?);
-    let fits = usize::try_from(size).is_ok_and(|size| size <= MOST_BYTES);
+    let fits = usize::try_from(size).is_ok_and(|size| size <= MAX_BYTES);
     if fits { lz4_flex::block::decompress_size_prepended(packed).ok() } else { None }
 }
 

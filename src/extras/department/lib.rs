@@ -11,8 +11,8 @@
 //! | `config` | zenoh's configuration and permissions at each end |
 //! | `keys` | the names under which a rig publishes |
 //! | `feed` | published data, from the rig's recorder |
-//! | `kept` | the last minutes of its session, for watchers that join late |
-//! | `share` | publishing side, on the rig |
+//! | `retention` | the last minutes of its session, for watchers that join late |
+//! | `shared_rig` | publishing side, on the rig |
 //! | `watch` | receiving side: discovery of rigs, their screens |
 //! | `record` | records a rig's session on another machine |
 #![cfg(feature = "engine")]
@@ -21,17 +21,17 @@ mod config;
 mod error;
 mod feed;
 pub mod identity;
-mod kept;
 mod keys;
 mod record;
-mod share;
+mod retention;
+mod shared_rig;
 mod watch;
 
 #[cfg(test)]
 mod tests;
 
 pub use error::DepartmentError;
-pub use identity::{Authority, Identity, Role};
-pub use record::{Recording, Step};
-pub use share::Share;
-pub use watch::{About, Found, Rig, Watching, find, find_at};
+pub use identity::{Authority, MachineIdentity, MachineRole};
+pub use record::{RecordStep, RigRecording};
+pub use shared_rig::SharedRig;
+pub use watch::{FoundRig, RemoteRig, RigInfo, RigWatcher, find, find_at};

@@ -7,12 +7,12 @@ use std::{
 
 use crossbeam_channel::{Receiver, RecvTimeoutError, unbounded};
 use nima_session::{
-    copied::{Bundle, Copy, Head},
-    shelf,
+    remote_copy::{Bundle, Copy, SessionHead},
+    session_store,
 };
 use zenoh::{Wait as _, pubsub::Subscriber};
 
-use crate::{DepartmentError, Rig, keys};
+use crate::{DepartmentError, RemoteRig, keys};
 
 /// How long to wait for a bundle before it is requested.
 const PATIENCE: Duration = Duration::from_secs(2);
@@ -21,7 +21,7 @@ const ANSWER: Duration = Duration::from_secs(5);
 
 /// Result of a step.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Step {
+pub enum RecordStep {
     /// Nothing new: the rig is not running a loop, or is silent.
     Waits,
     /// A session is being written.
@@ -39,33 +39,33 @@ pub enum Step {
 }
 
 /// Writes the sessions of a rig into a folder, one file for each.
-pub struct Recording<'a> {
-    rig: &'a Rig,
+pub struct RigRecording<'a> {
+    rig: &'a RemoteRig,
     folder: PathBuf,
     came: Receiver<Vec<u8>>,
-    file: Option<Open>,
+    file: Option<OpenRecording>,
     /// The session whose file has ended.
     over: Option<u64>,
     asked: Option<Instant>,
     _subscriber: Subscriber<()>,
 }
 
-struct Open {
+struct OpenRecording {
     copy: Copy,
     path: PathBuf,
     session: u64,
 }
 
-impl<'a> Recording<'a> {
+impl<'a> RigRecording<'a> {
     /// Begins with the running session, from its beginning if the rig still has it.
     ///
     /// # Errors
     /// [`DepartmentError`] if the rig cannot be queried or the folder does not exist.
-    pub fn start(rig: &'a Rig, folder: &Path) -> Result<Self, DepartmentError> {
+    pub fn start(rig: &'a RemoteRig, folder: &Path) -> Result<Self, DepartmentError> {
         std::fs::create_dir_all(folder).map_err(DepartmentError::of_file(folder))?;
         let (to, came) = unbounded();
-        let heard = move |sample: zenoh::sample::Sample| drop(to.send(sample.payload().to_bytes().into_owned()));
-        let subscriber = rig.session.declare_subscriber(keys::bundles(&rig.name)).callback(heard).wait();
+        let received = move |sample: zenoh::sample::Sample| drop(to.send(sample.payload().to_bytes().into_owned()));
+        let subscriber = rig.session.declare_subscriber(keys::bundles(&rig.name)).callback(received).wait();
         let subscriber = subscriber.map_err(|error| rig.silent(&error.to_string()))?;
         let folder = folder.to_owned();
         Ok(Self { rig, folder, came, file: None, over: None, asked: None, _subscriber: subscriber })
@@ -75,7 +75,7 @@ impl<'a> Recording<'a> {
     ///
     /// # Errors
     /// [`DepartmentError`] if the file cannot be written, or the rig runs another version.
-    pub fn step(&mut self, wait: Duration) -> Result<Step, DepartmentError> {
+    pub fn step(&mut self, wait: Duration) -> Result<RecordStep, DepartmentError> {
         if self.file.is_none() && self.asked.is_none_or(|at| at.elapsed() >= wait) {
             self.asked = Some(Instant::now());
             self.begin()?;
@@ -94,9 +94,9 @@ impl<'a> Recording<'a> {
             }
             (Some(bundle), None) if Some(bundle.session) != self.over => {
                 self.begin()?;
-                Ok(self.told())
+                Ok(self.report())
             }
-            (Some(_) | None, None) => Ok(Step::Waits),
+            (Some(_) | None, None) => Ok(RecordStep::Waits),
             (None, Some(_)) => self.catch_up(),
         }
     }
@@ -105,27 +105,27 @@ impl<'a> Recording<'a> {
     ///
     /// # Errors
     /// [`DepartmentError`] if it cannot be written.
-    pub fn finish(mut self) -> Result<Step, DepartmentError> {
+    pub fn finish(mut self) -> Result<RecordStep, DepartmentError> {
         self.end()
     }
 
-    fn told(&self) -> Step {
+    fn report(&self) -> RecordStep {
         self.file
             .as_ref()
-            .map_or(Step::Waits, |open| Step::Writes { file: open.path.clone(), bytes: open.copy.bytes() })
+            .map_or(RecordStep::Waits, |open| RecordStep::Writes { file: open.path.clone(), bytes: open.copy.bytes() })
     }
 
-    fn end(&mut self) -> Result<Step, DepartmentError> {
-        let Some(Open { copy, path, session }) = self.file.take() else { return Ok(Step::Waits) };
+    fn end(&mut self) -> Result<RecordStep, DepartmentError> {
+        let Some(OpenRecording { copy, path, session }) = self.file.take() else { return Ok(RecordStep::Waits) };
         self.over = Some(session);
         self.asked = None;
-        Ok(Step::Ended { file: path, messages: copy.finish()? })
+        Ok(RecordStep::Ended { file: path, messages: copy.finish()? })
     }
 
     /// Begins a file with the oldest bundle that the rig has, if it runs a session.
     fn begin(&mut self) -> Result<(), DepartmentError> {
         let Some(head) = self.rig.ask(&keys::head(&self.rig.name))? else { return Ok(()) };
-        let Some(head) = keys::unpack(&head.to_bytes()).map(|bytes| Head::read(&bytes)).transpose()? else {
+        let Some(head) = keys::unpack(&head.to_bytes()).map(|bytes| SessionHead::read(&bytes)).transpose()? else {
             return Ok(());
         };
         if self.over == Some(head.session) {
@@ -137,43 +137,43 @@ impl<'a> Recording<'a> {
         };
         let words = |key: &str| head.table(first, "session").and_then(|table| table.get(key)).cloned();
         let started = words("started").unwrap_or_else(|| "session".to_owned());
-        let path =
-            shelf::free_name(&self.folder, &started, &self.rig.name).map_err(DepartmentError::of_file(&self.folder))?;
+        let path = session_store::free_name(&self.folder, &started, &self.rig.name)
+            .map_err(DepartmentError::of_file(&self.folder))?;
         let copy = Copy::create(&path, &head, first)?;
-        self.file = Some(Open { copy, path, session: head.session });
+        self.file = Some(OpenRecording { copy, path, session: head.session });
         for bundle in rest {
             self.take(bundle)?;
         }
         Ok(())
     }
 
-    fn take(&mut self, bundle: &Bundle) -> Result<Step, DepartmentError> {
-        let Some(open) = &mut self.file else { return Ok(Step::Waits) };
+    fn take(&mut self, bundle: &Bundle) -> Result<RecordStep, DepartmentError> {
+        let Some(open) = &mut self.file else { return Ok(RecordStep::Waits) };
         // Requested bundles arrive a second time.
         if bundle.session != open.session || bundle.number < open.copy.due() {
-            return Ok(self.told());
+            return Ok(self.report());
         }
         if bundle.number > open.copy.due() {
             return self.catch_up();
         }
         open.copy.add(bundle)?;
-        if bundle.closes { self.end() } else { Ok(self.told()) }
+        if bundle.closes { self.end() } else { Ok(self.report()) }
     }
 
     /// Requests the missing bundles until there are no more. Bundles that the rig no longer has are lost: the file ends
     /// there, and another one begins.
-    fn catch_up(&mut self) -> Result<Step, DepartmentError> {
+    fn catch_up(&mut self) -> Result<RecordStep, DepartmentError> {
         loop {
-            let Some(open) = &self.file else { return Ok(Step::Waits) };
+            let Some(open) = &self.file else { return Ok(RecordStep::Waits) };
             let due = open.copy.due();
             let session = open.session;
             let bundles = self.ask_from(due)?;
             let next = bundles.iter().find(|bundle| bundle.number == due && bundle.session == session);
             if next.is_none() {
-                return if self.has_lost(due, session)? { self.lose() } else { Ok(self.told()) };
+                return if self.has_lost(due, session)? { self.lose() } else { Ok(self.report()) };
             }
             for bundle in &bundles {
-                let Some(open) = &mut self.file else { return Ok(Step::Waits) };
+                let Some(open) = &mut self.file else { return Ok(RecordStep::Waits) };
                 if bundle.session == session && bundle.number == open.copy.due() {
                     open.copy.add(bundle)?;
                     if bundle.closes {
@@ -187,11 +187,11 @@ impl<'a> Recording<'a> {
     /// Whether the rig no longer has this bundle.
     fn has_lost(&self, number: u64, session: u64) -> Result<bool, DepartmentError> {
         let Some(head) = self.rig.ask(&keys::head(&self.rig.name))? else { return Ok(false) };
-        let head = keys::unpack(&head.to_bytes()).map(|bytes| Head::read(&bytes)).transpose()?;
+        let head = keys::unpack(&head.to_bytes()).map(|bytes| SessionHead::read(&bytes)).transpose()?;
         Ok(head.is_some_and(|head| head.session != session || head.first > number))
     }
 
-    fn lose(&mut self) -> Result<Step, DepartmentError> {
+    fn lose(&mut self) -> Result<RecordStep, DepartmentError> {
         let ended = self.end()?;
         // The session may continue: the following data become an excerpt of it in a separate file.
         self.over = None;
@@ -216,7 +216,7 @@ impl<'a> Recording<'a> {
     }
 }
 
-impl std::fmt::Debug for Recording<'_> {
+impl std::fmt::Debug for RigRecording<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Recording").field("rig", &self.rig).field("folder", &self.folder).finish_non_exhaustive()
     }

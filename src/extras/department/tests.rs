@@ -16,15 +16,15 @@ use nima_machine::{
     config::RigConfig,
     messages::Tick,
     rig::Side,
-    runtime::{Assembly, Handle, Summary, start, tap},
+    runtime::{Assembly, LoopHandle, RuntimeSummary, start, tap},
 };
 use nima_session::{
-    file::Recorded,
-    outlet::Destination,
-    recorder::{About as AboutSession, Attached, Recorder},
+    file::RecordedFile,
+    recorder::{AttachedFile, RecordingInfo as AboutSession, SessionRecorder},
     replay::replay,
+    sinks::Destination,
 };
-use nima_simulation::{Plan, scene::Scene};
+use nima_simulation::{SimulationPlan, scene::Scene};
 use zenoh::Wait as _;
 
 use super::*;
@@ -35,8 +35,8 @@ const PATIENCE: Duration = Duration::from_mins(2);
 
 struct Department {
     folder: tempfile::TempDir,
-    rig: Identity,
-    watcher: Identity,
+    rig: MachineIdentity,
+    watcher: MachineIdentity,
 }
 
 impl Department {
@@ -44,27 +44,27 @@ impl Department {
         let folder = tempfile::tempdir().unwrap();
         let authority = Authority::create(folder.path(), name).unwrap();
         let issue = |name: &str, role| authority.issue(name, role, &folder.path().join(name)).unwrap();
-        let rig = issue("theatre-1", Role::Rig);
-        let watcher = issue("teacher", Role::Watcher);
+        let rig = issue("theatre-1", MachineRole::Rig);
+        let watcher = issue("teacher", MachineRole::Watcher);
         Self { folder, rig, watcher }
     }
 
-    fn share(&self) -> Share {
-        Share::start(&self.rig, "127.0.0.1:0".parse().unwrap(), false).unwrap()
+    fn share(&self) -> SharedRig {
+        SharedRig::start(&self.rig, "127.0.0.1:0".parse().unwrap(), false).unwrap()
     }
 }
 
 /// A running loop that is recorded into a file and for these audiences.
 struct Running {
-    handle: Option<Handle>,
-    recorder: Option<Recorder>,
+    handle: Option<LoopHandle>,
+    recorder: Option<SessionRecorder>,
 }
 
 impl Running {
-    fn start(path: &Path, share: &Share) -> Self {
+    fn start(path: &Path, share: &SharedRig) -> Self {
         let rig = RigConfig::load("simulated").unwrap();
         let scene = Scene::load("peg_transfer").unwrap();
-        let file = |name: &str, text: String| Attached {
+        let file = |name: &str, text: String| AttachedFile {
             name: name.to_owned(),
             media_type: "application/toml".to_owned(),
             data: text.into_bytes(),
@@ -72,7 +72,7 @@ impl Running {
         let rig_text = toml::to_string(&rig).unwrap();
         let scene_text = toml::to_string(&scene).unwrap();
         let files = vec![file("rig.toml", rig_text), file("scene.toml", scene_text)];
-        let plan = Plan { rig, scene, calibrations: Default::default(), engage: true };
+        let plan = SimulationPlan { rig, scene, calibrations: Default::default(), engage: true };
         let since = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).unwrap();
         let table = [("started".to_owned(), "2026-11-25T08:00:00Z".to_owned())].into();
         let about = AboutSession {
@@ -80,7 +80,7 @@ impl Running {
             started_ns: since.as_nanos() as u64,
             metadata: [("session".to_owned(), table)].into(),
             files,
-            words: nima_session::Words {
+            words: nima_session::SentenceChannel {
                 event: |_, _| String::new(),
                 operation: |_, _| String::new(),
                 happening: |_| String::new(),
@@ -88,12 +88,12 @@ impl Running {
         };
         let (entry, end) = tap();
         let to = Destination { file: Some(path), audiences: vec![share.audience()] };
-        let recorder = Recorder::start(to, about, plan.origin(), end).unwrap();
+        let recorder = SessionRecorder::start(to, about, plan.origin(), end).unwrap();
         let handle = start(Assembly { tap: Some(entry), ..plan.assembly().unwrap() }).unwrap();
         Self { handle: Some(handle), recorder: Some(recorder) }
     }
 
-    fn end(mut self) -> Summary {
+    fn end(mut self) -> RuntimeSummary {
         let summary = self.handle.take().unwrap().stop_and_join().unwrap();
         self.recorder.take().unwrap().finish().unwrap();
         summary
@@ -109,21 +109,21 @@ fn wait(what: &str, mut until: impl FnMut() -> bool) {
 }
 
 /// Writes a rig's session until it ends.
-fn write_session(rig: &Rig, folder: &Path, ends: &AtomicBool) -> PathBuf {
-    let mut recording = Recording::start(rig, folder).unwrap();
+fn write_session(rig: &RemoteRig, folder: &Path, ends: &AtomicBool) -> PathBuf {
+    let mut recording = RigRecording::start(rig, folder).unwrap();
     loop {
         match recording.step(Duration::from_millis(100)).unwrap() {
-            Step::Ended { file, .. } => return file,
-            Step::Writes { .. } | Step::Waits if !ends.load(Ordering::Relaxed) => {}
+            RecordStep::Ended { file, .. } => return file,
+            RecordStep::Writes { .. } | RecordStep::Waits if !ends.load(Ordering::Relaxed) => {}
             _ => match recording.finish().unwrap() {
-                Step::Ended { file, .. } => return file,
+                RecordStep::Ended { file, .. } => return file,
                 step => panic!("nothing was written: {step:?}"),
             },
         }
     }
 }
 
-fn address(share: &Share) -> String {
+fn address(share: &SharedRig) -> String {
     share.address().to_string()
 }
 
@@ -134,7 +134,7 @@ fn a_screen_elsewhere_sees_the_loop_and_a_file_elsewhere_replays_to_the_bit() {
     let original = department.folder.path().join("original.mcap");
     let running = Running::start(&original, &share);
 
-    let rig = Rig::open(&department.watcher, &address(&share)).unwrap();
+    let rig = RemoteRig::open(&department.watcher, &address(&share)).unwrap();
     assert_eq!(rig.name(), "theatre-1");
     wait("a session", || rig.about().unwrap().session != 0);
     let about = rig.about().unwrap();
@@ -171,8 +171,8 @@ fn a_screen_elsewhere_sees_the_loop_and_a_file_elsewhere_replays_to_the_bit() {
         .fold([f64::INFINITY, 0.0], |[low, high], x| [low.min(x), high.max(x)]);
     assert!(moved[1] - moved[0] > 1e-4, "{moved:?} m: the tip moves");
 
-    let original = replay(Recorded::open(&original).unwrap().journal().unwrap(), |_| ()).unwrap();
-    let copy = replay(Recorded::open(&copied).unwrap().journal().unwrap(), |_| ()).unwrap();
+    let original = replay(RecordedFile::open(&original).unwrap().journal().unwrap(), |_| ()).unwrap();
+    let copy = replay(RecordedFile::open(&copied).unwrap().journal().unwrap(), |_| ()).unwrap();
     assert!(copy.closed && copy.differs.is_none(), "{copy:?}");
     assert_eq!(copy.ticks, original.ticks, "nothing is missing");
     wait("no session", || rig.about().unwrap().session == 0);
@@ -185,28 +185,28 @@ fn strangers_and_those_without_a_certificate_are_refused() {
     let ours = Department::new("lab");
     let theirs = Department::new("lab");
     let share = ours.share();
-    assert!(Rig::open(&ours.watcher, &address(&share)).is_ok());
-    let refused = Rig::open(&theirs.watcher, &address(&share)).unwrap_err();
+    assert!(RemoteRig::open(&ours.watcher, &address(&share)).is_ok());
+    let refused = RemoteRig::open(&theirs.watcher, &address(&share)).unwrap_err();
     assert!(matches!(refused, DepartmentError::Connect { .. }), "{refused}");
     assert!(matches!(
-        Share::start(&ours.watcher, "127.0.0.1:0".parse().unwrap(), false),
+        SharedRig::start(&ours.watcher, "127.0.0.1:0".parse().unwrap(), false),
         Err(DepartmentError::Role { .. })
     ));
     // A watcher that claims to be a rig has a certificate that says otherwise.
-    let poser = Identity { role: Role::Rig, ..ours.watcher.clone() };
-    let posed = Share::start(&poser, "127.0.0.1:0".parse().unwrap(), false).unwrap();
-    assert!(Rig::open(&ours.watcher, &address(&posed)).is_err());
+    let poser = MachineIdentity { role: MachineRole::Rig, ..ours.watcher.clone() };
+    let posed = SharedRig::start(&poser, "127.0.0.1:0".parse().unwrap(), false).unwrap();
+    assert!(RemoteRig::open(&ours.watcher, &address(&posed)).is_err());
 }
 
 #[test]
 fn who_watches_can_neither_publish_nor_pose_as_a_rig() {
     let department = Department::new("lab");
     let share = department.share();
-    let [victim, hostile] = [0; 2].map(|_| Rig::open(&department.watcher, &address(&share)).unwrap());
-    let heard = Arc::new(AtomicBool::new(false));
+    let [victim, hostile] = [0; 2].map(|_| RemoteRig::open(&department.watcher, &address(&share)).unwrap());
+    let received = Arc::new(AtomicBool::new(false));
     let watching = {
-        let heard = Arc::clone(&heard);
-        victim.watch(move |_, _| heard.store(true, Ordering::Relaxed)).unwrap()
+        let received = Arc::clone(&received);
+        victim.watch(move |_, _| received.store(true, Ordering::Relaxed)).unwrap()
     };
     let false_rig = hostile.session.liveliness().declare_token(keys::presence("theatre-9")).wait().unwrap();
     let answers = hostile.session.declare_queryable(keys::about("theatre-1")).callback(|query| {
@@ -218,8 +218,8 @@ fn who_watches_can_neither_publish_nor_pose_as_a_rig() {
         hostile.session.put("nima/anything", vec![0; 100]).wait().unwrap();
     }
     thread::sleep(Duration::from_millis(300));
-    assert!(!heard.load(Ordering::Relaxed), "a watcher's message reached another watcher");
-    let third = Rig::open(&department.watcher, &address(&share)).unwrap();
+    assert!(!received.load(Ordering::Relaxed), "a watcher's message reached another watcher");
+    let third = RemoteRig::open(&department.watcher, &address(&share)).unwrap();
     assert_eq!((third.name(), third.about().unwrap().name.as_str()), ("theatre-1", "theatre-1"));
     drop((false_rig, answers, watching));
 }
@@ -258,9 +258,9 @@ fn a_screen_that_is_too_slow_makes_nobody_wait() {
     let running = Running::start(&department.folder.path().join("session.mcap"), &share);
     // Fast until it watches, so that it connects at all.
     let slow = slow_way(share.address(), 20_000);
-    let slow = Rig::open(&department.watcher, &slow.to_string()).unwrap();
+    let slow = RemoteRig::open(&department.watcher, &slow.to_string()).unwrap();
     let of_slow = slow.watch(|_, _| ()).unwrap();
-    let fast = Rig::open(&department.watcher, &address(&share)).unwrap();
+    let fast = RemoteRig::open(&department.watcher, &address(&share)).unwrap();
     let times: Arc<Mutex<Vec<Instant>>> = Arc::default();
     let watching = {
         let times = Arc::clone(&times);
@@ -294,8 +294,8 @@ fn figures_of_ten_watchers() {
             let slow = slow_way(share.address(), 1000).to_string();
             let of = |number: usize| if number == 0 { slow.clone() } else { address(&share) };
             // The slow one may not even complete the handshake.
-            let rigs: Vec<Rig> =
-                (0..count).filter_map(|number| Rig::open(&department.watcher, &of(number)).ok()).collect();
+            let rigs: Vec<RemoteRig> =
+                (0..count).filter_map(|number| RemoteRig::open(&department.watcher, &of(number)).ok()).collect();
             let watching: Vec<_> = rigs.iter().map(|rig| rig.watch(|_, _| ()).unwrap()).collect();
             thread::sleep(Duration::from_secs(12));
             let [watched, dropped] = [share.watchers() as u64, share.dropped()];
@@ -319,15 +319,15 @@ fn the_files_of_a_department_are_checked_and_private() {
     assert!(matches!(Authority::create(folder.path(), "a/b"), Err(DepartmentError::Name(_))));
     let authority = Authority::create(folder.path(), "lab").unwrap();
     assert!(matches!(Authority::create(folder.path(), "lab"), Err(DepartmentError::Exists(_))));
-    authority.issue("theatre-1", Role::Rig, &at("issued")).unwrap();
-    assert!(matches!(authority.issue("theatre-1", Role::Rig, &at("issued")), Err(DepartmentError::Exists(_))));
+    authority.issue("theatre-1", MachineRole::Rig, &at("issued")).unwrap();
+    assert!(matches!(authority.issue("theatre-1", MachineRole::Rig, &at("issued")), Err(DepartmentError::Exists(_))));
     std::fs::write(at("garbage"), "department = 3").unwrap();
-    assert!(matches!(Identity::join(folder.path(), &at("garbage")), Err(DepartmentError::NotOne { .. })));
+    assert!(matches!(MachineIdentity::join(folder.path(), &at("garbage")), Err(DepartmentError::NotOne { .. })));
     std::fs::write(at("bytes"), [0xff, 0xfe]).unwrap();
-    assert!(matches!(Identity::join(folder.path(), &at("bytes")), Err(DepartmentError::NotOne { .. })));
-    assert!(matches!(Identity::load(folder.path()), Err(DepartmentError::Missing { .. })));
-    Identity::join(folder.path(), &at("issued")).unwrap();
-    assert_eq!(Identity::load(folder.path()).unwrap().name, "theatre-1");
+    assert!(matches!(MachineIdentity::join(folder.path(), &at("bytes")), Err(DepartmentError::NotOne { .. })));
+    assert!(matches!(MachineIdentity::load(folder.path()), Err(DepartmentError::Missing { .. })));
+    MachineIdentity::join(folder.path(), &at("issued")).unwrap();
+    assert_eq!(MachineIdentity::load(folder.path()).unwrap().name, "theatre-1");
     #[cfg(unix)]
     for name in ["department.toml", "own.toml", "issued"] {
         use std::os::unix::fs::PermissionsExt as _;

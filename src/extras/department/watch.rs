@@ -10,19 +10,19 @@ use std::{
 };
 
 use nima_session::{
-    copied::Head,
-    watched::{Moment, WatchError, read},
+    monitor_stream::{MonitorMoment, WatchError, read},
+    remote_copy::SessionHead,
 };
 use zenoh::{Session, Wait as _, bytes::ZBytes, liveliness::LivelinessToken, pubsub::Subscriber, sample::SampleKind};
 
-use crate::{DepartmentError, Identity, config, keys};
+use crate::{DepartmentError, MachineIdentity, config, keys};
 
 /// Timeout for a rig's answer.
 const ANSWER: Duration = Duration::from_secs(3);
 
 /// Description of a rig and its running session.
 #[derive(Clone, PartialEq, prost::Message)]
-pub struct About {
+pub struct RigInfo {
     #[prost(string, tag = "1")]
     pub department: String,
     /// Its name there.
@@ -45,13 +45,13 @@ pub struct About {
     pub scene: String,
 }
 
-impl About {
-    pub(crate) fn of(own: &Identity) -> Self {
+impl RigInfo {
+    pub(crate) fn of(own: &MachineIdentity) -> Self {
         Self { department: own.department.clone(), name: own.name.clone(), ..Self::default() }
     }
 
-    pub(crate) fn begins(&mut self, head: &Head) {
-        let Head { session, program, started_ns, .. } = head;
+    pub(crate) fn begins(&mut self, head: &SessionHead) {
+        let SessionHead { session, program, started_ns, .. } = head;
         self.session = *session;
         self.program = program.clone();
         self.started_ns = *started_ns;
@@ -73,11 +73,11 @@ impl About {
 }
 
 #[derive(Clone, Debug, PartialEq)]
-pub struct Found {
+pub struct FoundRig {
     /// The first of its addresses that answered.
     pub address: String,
     /// Its description.
-    pub about: About,
+    pub about: RigInfo,
     /// Number of its watchers.
     pub watchers: usize,
 }
@@ -86,7 +86,7 @@ pub struct Found {
 ///
 /// # Errors
 /// [`DepartmentError`] if the network cannot be used.
-pub fn find(own: &Identity, wait: Duration) -> Result<Vec<Found>, DepartmentError> {
+pub fn find(own: &MachineIdentity, wait: Duration) -> Result<Vec<FoundRig>, DepartmentError> {
     let unsent =
         |why: zenoh::Error| DepartmentError::Connect { address: "any address".to_owned(), why: why.to_string() };
     let (to, came) = crossbeam_channel::unbounded();
@@ -103,7 +103,7 @@ pub fn find(own: &Identity, wait: Duration) -> Result<Vec<Found>, DepartmentErro
         // Others may answer too: rigs of another department, and programs that are not rigs.
         addresses.into_iter().find_map(|address| find_at(own, &address).ok())
     };
-    let mut found: Vec<Found> = hellos.iter().filter_map(at).collect();
+    let mut found: Vec<FoundRig> = hellos.iter().filter_map(at).collect();
     found.sort_by(|a, b| a.about.name.cmp(&b.about.name));
     Ok(found)
 }
@@ -112,12 +112,12 @@ pub fn find(own: &Identity, wait: Duration) -> Result<Vec<Found>, DepartmentErro
 ///
 /// # Errors
 /// [`DepartmentError`] if no rig of this department answers there.
-pub fn find_at(own: &Identity, address: &str) -> Result<Found, DepartmentError> {
-    let rig = Rig::connect(own, address)?;
-    Ok(Found { address: address.to_owned(), about: rig.about()?, watchers: rig.watchers() })
+pub fn find_at(own: &MachineIdentity, address: &str) -> Result<FoundRig, DepartmentError> {
+    let rig = RemoteRig::connect(own, address)?;
+    Ok(FoundRig { address: address.to_owned(), about: rig.about()?, watchers: rig.watchers() })
 }
 
-pub struct Rig {
+pub struct RemoteRig {
     pub(crate) session: Session,
     pub(crate) name: String,
     address: String,
@@ -125,19 +125,19 @@ pub struct Rig {
     token: Option<LivelinessToken>,
 }
 
-impl Rig {
+impl RemoteRig {
     /// Connects to the rig at this address (`HOST:PORT`), to watch it.
     ///
     /// # Errors
     /// [`DepartmentError`] if no rig of this department answers there.
-    pub fn open(own: &Identity, address: &str) -> Result<Self, DepartmentError> {
+    pub fn open(own: &MachineIdentity, address: &str) -> Result<Self, DepartmentError> {
         let mut rig = Self::connect(own, address)?;
         let key = keys::watcher(&rig.name, &format!("{}-{}", own.name, rig.session.zid()));
         rig.token = rig.session.liveliness().declare_token(key).wait().ok();
         Ok(rig)
     }
 
-    fn connect(own: &Identity, address: &str) -> Result<Self, DepartmentError> {
+    fn connect(own: &MachineIdentity, address: &str) -> Result<Self, DepartmentError> {
         let failed = |why: String| DepartmentError::Connect { address: address.to_owned(), why };
         let session = zenoh::open(config::watcher(own, address)?).wait().map_err(|error| failed(error.to_string()))?;
         let present = session.liveliness().get(keys::PRESENCES).timeout(ANSWER).wait();
@@ -162,7 +162,7 @@ impl Rig {
     ///
     /// # Errors
     /// [`DepartmentError`] if it does not answer.
-    pub fn about(&self) -> Result<About, DepartmentError> {
+    pub fn about(&self) -> Result<RigInfo, DepartmentError> {
         let answer = self.ask(&keys::about(&self.name))?;
         let answer = answer.ok_or_else(|| self.silent("no answer in time"))?;
         prost::Message::decode(answer.to_bytes().as_ref()).map_err(|error| self.silent(&error.to_string()))
@@ -183,15 +183,15 @@ impl Rig {
     }
 
     /// Calls `each` with the content of its screen, until the returned value is dropped; `each` must not block. The
-    /// number identifies the session, as in [`About`].
+    /// number identifies the session, as in [`RigInfo`].
     ///
     /// # Errors
     /// [`DepartmentError`] if the rig cannot be queried.
     pub fn watch(
         &self,
-        each: impl Fn(u64, Result<Vec<Moment>, WatchError>) + Send + Sync + 'static,
-    ) -> Result<Watching, DepartmentError> {
-        let heard = move |sample: zenoh::sample::Sample| {
+        each: impl Fn(u64, Result<Vec<MonitorMoment>, WatchError>) + Send + Sync + 'static,
+    ) -> Result<RigWatcher, DepartmentError> {
+        let received = move |sample: zenoh::sample::Sample| {
             if sample.kind() == SampleKind::Delete {
                 return;
             }
@@ -200,8 +200,8 @@ impl Rig {
             let moments = read(&keys::unpack(packed).unwrap_or_default());
             each(u64::from_le_bytes(*session), moments);
         };
-        let watching = self.session.declare_subscriber(keys::moments(&self.name)).callback(heard).wait();
-        Ok(Watching(watching.map_err(|error| self.silent(&error.to_string()))?))
+        let watching = self.session.declare_subscriber(keys::moments(&self.name)).callback(received).wait();
+        Ok(RigWatcher(watching.map_err(|error| self.silent(&error.to_string()))?))
     }
 
     /// Monitors whether it is reachable.
@@ -210,9 +210,9 @@ impl Rig {
     /// [`DepartmentError`] if this cannot be monitored.
     pub fn presence(&self) -> Result<Presence, DepartmentError> {
         let there = Arc::new(AtomicU64::new(1));
-        let told = Arc::clone(&there);
+        let report = Arc::clone(&there);
         let changed = move |sample: zenoh::sample::Sample| {
-            told.store(u64::from(sample.kind() == SampleKind::Put), Ordering::Relaxed);
+            report.store(u64::from(sample.kind() == SampleKind::Put), Ordering::Relaxed);
         };
         let key = keys::presence(&self.name);
         let subscriber = self.session.liveliness().declare_subscriber(key).history(true).callback(changed).wait();
@@ -220,13 +220,13 @@ impl Rig {
     }
 }
 
-impl Drop for Rig {
+impl Drop for RemoteRig {
     fn drop(&mut self) {
         self.session.close().wait().ok();
     }
 }
 
-impl fmt::Debug for Rig {
+impl fmt::Debug for RemoteRig {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Rig").field("name", &self.name).field("address", &self.address).finish_non_exhaustive()
     }
@@ -234,7 +234,7 @@ impl fmt::Debug for Rig {
 
 /// A rig is watched while this exists.
 #[derive(Debug)]
-pub struct Watching(#[expect(dead_code, reason = "its drop ends it")] Subscriber<()>);
+pub struct RigWatcher(#[expect(dead_code, reason = "its drop ends it")] Subscriber<()>);
 
 /// Whether a rig is reachable.
 #[derive(Debug)]

@@ -13,7 +13,7 @@ use std::{
 
 use foxglove::{ChannelBuilder, Context, FoxgloveError, PartialMetadata, RawChannel, Schema, WebSocketServerHandle};
 use nima_recording::session::Encoding;
-use nima_session::{outlet::Audience, recorder::JOURNAL_TOPIC};
+use nima_session::{recorder::JOURNAL_TOPIC, sinks::Audience};
 
 /// Maximum number of messages waiting for a viewer: more than two seconds of two arms, which send 6 100 per second.
 const BACKLOG: usize = 16_384;
@@ -29,20 +29,20 @@ pub enum LiveError {
 }
 
 /// A server that runs until it is dropped, for one session after the other.
-pub struct Server {
+pub struct LiveServer {
     context: Arc<Context>,
     handle: Option<WebSocketServerHandle>,
     address: SocketAddr,
 }
 
-impl Server {
+impl LiveServer {
     /// Listens at this address; port 0 selects a free one. `program` is the name that viewers show.
     ///
     /// # Errors
     /// [`LiveError`] if the address is not this computer's or the port is in use.
     ///
     /// ```
-    /// let server = nima_live::Server::start("127.0.0.1:0".parse()?, "an example")?;
+    /// let server = nima_live::LiveServer::start("127.0.0.1:0".parse()?, "an example")?;
     /// assert_ne!(server.address().port(), 0);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
@@ -85,7 +85,7 @@ fn reason(error: &FoxgloveError) -> String {
     }
 }
 
-impl Drop for Server {
+impl Drop for LiveServer {
     fn drop(&mut self) {
         if let Some(handle) = self.handle.take() {
             handle.stop().wait_blocking();
@@ -93,7 +93,7 @@ impl Drop for Server {
     }
 }
 
-impl fmt::Debug for Server {
+impl fmt::Debug for LiveServer {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Server").field("address", &self.address).finish_non_exhaustive()
     }

@@ -13,7 +13,7 @@ const READ_MAX: usize = 100;
 struct Viewer(WebSocket<MaybeTlsStream<TcpStream>>);
 
 impl Viewer {
-    fn of(server: &Server) -> Self {
+    fn of(server: &LiveServer) -> Self {
         let uri = format!("ws://{}", server.address()).parse().unwrap();
         let (socket, _) = connect(ClientRequestBuilder::new(uri).with_sub_protocol("foxglove.sdk.v1")).unwrap();
         if let MaybeTlsStream::Plain(stream) = socket.get_ref() {
@@ -23,7 +23,7 @@ impl Viewer {
     }
 
     /// Returns the next message of this kind.
-    fn told(&mut self, op: &str) -> Value {
+    fn report(&mut self, op: &str) -> Value {
         for _ in 0..READ_MAX {
             if let Message::Text(text) = self.0.read().unwrap() {
                 let value: Value = serde_json::from_str(&text).unwrap();
@@ -39,7 +39,7 @@ impl Viewer {
     fn channels(&mut self, topics: &[&str]) -> Vec<Value> {
         let mut channels = Vec::new();
         while !topics.iter().all(|topic| channels.iter().any(|channel: &Value| channel["topic"] == *topic)) {
-            channels.extend(self.told("advertise")["channels"].as_array().unwrap().clone());
+            channels.extend(self.report("advertise")["channels"].as_array().unwrap().clone());
         }
         channels
     }
@@ -72,8 +72,8 @@ fn json_channel() -> Encoding {
     }
 }
 
-fn at_any_port() -> Server {
-    Server::start("127.0.0.1:0".parse().unwrap(), "nima test").unwrap()
+fn at_any_port() -> LiveServer {
+    LiveServer::start("127.0.0.1:0".parse().unwrap(), "nima test").unwrap()
 }
 
 /// Sends the message repeatedly until the viewer has it: a subscription takes a moment.
@@ -93,7 +93,7 @@ fn a_viewer_gets_what_it_asks_for_with_the_time_of_the_sample() {
     let mut audience = server.audience();
     audience.channel("right/forces", &json_channel());
     let mut viewer = Viewer::of(&server);
-    assert_eq!(viewer.told("serverInfo")["name"], "nima test");
+    assert_eq!(viewer.report("serverInfo")["name"], "nima test");
     audience.channel("log", &json_channel());
     let channels = viewer.channels(&["right/forces", "log"]);
     let log = channels.iter().find(|channel| channel["topic"] == "log").unwrap();
@@ -114,7 +114,7 @@ fn the_next_session_has_channels_of_its_own() {
     first.channel("log", &json_channel());
     let before = viewer.channels(&["log"])[0]["id"].clone();
     drop(first);
-    assert_eq!(viewer.told("unadvertise")["channelIds"], json!([before]));
+    assert_eq!(viewer.report("unadvertise")["channelIds"], json!([before]));
     let mut second = server.audience();
     second.channel("log", &json_channel());
     let log = viewer.channels(&["log"]).pop().unwrap();
@@ -143,7 +143,7 @@ fn a_viewer_that_reads_nothing_holds_up_nobody() {
 #[test]
 fn an_address_in_use_is_told_in_one_line() {
     let server = at_any_port();
-    let error = Server::start(server.address(), "second").unwrap_err().to_string();
+    let error = LiveServer::start(server.address(), "second").unwrap_err().to_string();
     assert!(error.contains(&server.address().to_string()) && error.contains("in use"), "{error}");
     assert_eq!(error.lines().count(), 1);
     drop(server);

@@ -1,6 +1,6 @@
 //! Estimates the other machine's clock from four time stamps.
 //!
-//! An [`Exchange`] gives the apparent delay of one datagram in each direction. The offset lies between the two bounds
+//! An [`ClockExchange`] gives the apparent delay of one datagram in each direction. The offset lies between the two bounds
 //! that they set, whatever the delays are: the middle is the estimate, half the round trip its bound (Mills, RFC 5905).
 //! For every 0.2 s only the minimum apparent delay of each direction is kept; a straight line through the last 20 s of
 //! them, weighted by the stability of the round trip, gives offset and skew. A step of either clock moves the two
@@ -30,7 +30,7 @@ const ROUND_TRIP_SCALE_S: f64 = 1e-4;
 
 /// Four time stamps, s.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Exchange {
+pub struct ClockExchange {
     /// Sending of our datagram, by our clock.
     pub origin_s: f64,
     /// Its arrival, by their clock.
@@ -43,7 +43,7 @@ pub struct Exchange {
 
 /// Estimate of their clock.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Estimate {
+pub struct ClockEstimate {
     /// Their clock minus ours, s.
     pub offset_s: f64,
     /// Maximum error of the offset, s: half the minimum round trip.
@@ -56,7 +56,7 @@ pub struct Estimate {
 
 /// A step of either clock.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Step {
+pub struct ClockStep {
     /// Time of detection, by our clock, s.
     pub found_s: f64,
     /// Change of their clock minus ours, s.
@@ -64,7 +64,7 @@ pub struct Step {
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Window {
+struct ClockWindow {
     begin_s: f64,
     last_s: f64,
     samples: u32,
@@ -73,7 +73,7 @@ struct Window {
     back_s: f64,
 }
 
-impl Window {
+impl ClockWindow {
     const fn starting(at_s: f64) -> Self {
         Self { begin_s: at_s, last_s: at_s, samples: 0, there_s: f64::INFINITY, back_s: f64::INFINITY }
     }
@@ -98,13 +98,13 @@ impl Window {
 
 /// Offset at a moment, and its rate of change.
 #[derive(Clone, Copy, Debug)]
-struct Line {
+struct ClockLine {
     at_s: f64,
     offset_s: f64,
     skew: f64,
 }
 
-impl Line {
+impl ClockLine {
     fn at(&self, t_s: f64) -> f64 {
         self.offset_s + self.skew * (t_s - self.at_s)
     }
@@ -112,7 +112,7 @@ impl Line {
 
 /// Classification of a window.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Verdict {
+enum WindowVerdict {
     /// Like the previous windows.
     Usual,
     /// Unlike them; the next one shows why.
@@ -125,26 +125,26 @@ enum Verdict {
 
 /// Estimates the offset between two clocks.
 #[derive(Clone, Debug)]
-pub struct Clock {
-    windows: [Window; WINDOWS],
+pub struct NetworkClock {
+    windows: [ClockWindow; WINDOWS],
     /// Number of windows closed since the last step.
     closed: usize,
-    open: Option<Window>,
-    line: Option<Line>,
+    open: Option<ClockWindow>,
+    line: Option<ClockLine>,
     /// Minimum half round trip of the stored windows, s.
     half_s: f64,
     /// The windows from this one on are compared with the next.
     reference_from: usize,
     /// Deviation of the last window, offset and half round trip, s, if it looked like a step.
     suspect: Option<(f64, f64)>,
-    step: Option<Step>,
+    step: Option<ClockStep>,
     steps: u32,
 }
 
-impl Default for Clock {
+impl Default for NetworkClock {
     fn default() -> Self {
         Self {
-            windows: [Window::starting(0.0); WINDOWS],
+            windows: [ClockWindow::starting(0.0); WINDOWS],
             closed: 0,
             open: None,
             line: None,
@@ -157,16 +157,16 @@ impl Default for Clock {
     }
 }
 
-impl Clock {
+impl NetworkClock {
     /// Adds one exchange. Returns the step that it proved, if any; the estimate then applies to the new clock.
-    pub fn add(&mut self, exchange: &Exchange) -> Option<Step> {
+    pub fn add(&mut self, exchange: &ClockExchange) -> Option<ClockStep> {
         let there_s = exchange.received_s - exchange.origin_s;
         let back_s = exchange.arrived_s - exchange.sent_s;
         let at_s = exchange.arrived_s;
         if !(there_s + back_s + at_s).is_finite() {
             return None;
         }
-        let open = self.open.get_or_insert(Window::starting(at_s));
+        let open = self.open.get_or_insert(ClockWindow::starting(at_s));
         open.samples += 1;
         open.last_s = open.last_s.max(at_s);
         open.there_s = open.there_s.min(there_s);
@@ -180,11 +180,11 @@ impl Clock {
     }
 
     /// Returns the estimate; `None` before the first exchange.
-    pub fn estimate(&self, now_s: f64) -> Option<Estimate> {
+    pub fn estimate(&self, now_s: f64) -> Option<ClockEstimate> {
         let Some(line) = self.line else {
             let open = self.open.as_ref()?;
             let half_s = open.half_s().max(0.0);
-            return Some(Estimate {
+            return Some(ClockEstimate {
                 offset_s: open.offset_s(),
                 bound_s: half_s,
                 round_trip_s: 2.0 * half_s,
@@ -192,11 +192,11 @@ impl Clock {
             });
         };
         let half_s = self.half_s.max(0.0);
-        Some(Estimate { offset_s: line.at(now_s), bound_s: half_s, round_trip_s: 2.0 * half_s, skew: line.skew })
+        Some(ClockEstimate { offset_s: line.at(now_s), bound_s: half_s, round_trip_s: 2.0 * half_s, skew: line.skew })
     }
 
     /// Returns the last step, if there was one.
-    pub const fn step(&self) -> Option<Step> {
+    pub const fn step(&self) -> Option<ClockStep> {
         self.step
     }
 
@@ -205,21 +205,21 @@ impl Clock {
         self.steps
     }
 
-    fn kept(&self) -> &[Window] {
+    fn kept(&self) -> &[ClockWindow] {
         &self.windows[..self.closed.min(WINDOWS)]
     }
 
-    fn close(&mut self, window: Window) -> Option<Step> {
+    fn close(&mut self, window: ClockWindow) -> Option<ClockStep> {
         let step = match self.judge(&window) {
-            Verdict::Usual => None,
+            WindowVerdict::Usual => None,
             // Neither accept nor discard it: the next window decides.
-            Verdict::Suspect => return None,
-            Verdict::OtherWay => {
+            WindowVerdict::Suspect => return None,
+            WindowVerdict::OtherWay => {
                 self.reference_from = self.closed;
                 None
             }
-            Verdict::Step(by_s) => {
-                let step = Step { found_s: window.last_s, by_s };
+            WindowVerdict::Step(by_s) => {
+                let step = ClockStep { found_s: window.last_s, by_s };
                 *self = Self { steps: self.steps + 1, step: Some(step), ..Self::default() };
                 Some(step)
             }
@@ -231,7 +231,7 @@ impl Clock {
     }
 
     /// Returns the last accepted windows, newest first, at most this many.
-    fn last(&self, count: usize) -> impl Iterator<Item = &Window> {
+    fn last(&self, count: usize) -> impl Iterator<Item = &ClockWindow> {
         let count = count.min(self.closed).min(WINDOWS);
         (1..=count).map(|back| &self.windows[(self.closed - back) % WINDOWS])
     }
@@ -239,28 +239,28 @@ impl Clock {
     /// Compares a window with the previous ones. A longer or shorter route in one direction moves the middle by as much
     /// as half the round trip; a step leaves the round trip unchanged. A window that contains the change itself shows
     /// an intermediate value, so only two consecutive windows that agree are judged.
-    fn judge(&mut self, window: &Window) -> Verdict {
+    fn judge(&mut self, window: &ClockWindow) -> WindowVerdict {
         let count = REFERENCE.min(self.closed - self.reference_from);
         if self.closed < WINDOWS_MIN || count == 0 {
-            return Verdict::Usual;
+            return WindowVerdict::Usual;
         }
-        let mean = |of: fn(&Window) -> f64| self.last(count).map(of).sum::<f64>() / count as f64;
-        let by_s = window.offset_s() - mean(Window::offset_s);
-        let longer_s = window.half_s() - mean(Window::half_s);
+        let mean = |of: fn(&ClockWindow) -> f64| self.last(count).map(of).sum::<f64>() / count as f64;
+        let by_s = window.offset_s() - mean(ClockWindow::offset_s);
+        let longer_s = window.half_s() - mean(ClockWindow::half_s);
         // With few windows their deviation is uncertain.
         let deviations = STEP_DEVIATIONS * (1.0 + WINDOWS_MIN as f64 / self.closed.min(WINDOWS) as f64);
         let before = self.suspect.take();
         if by_s.abs() <= (STEP_MIN_S / 2.0).max(deviations * self.deviation_s()) {
-            return Verdict::Usual;
+            return WindowVerdict::Usual;
         }
         let agrees = |(before_s, before_longer_s): (f64, f64)| {
             (before_s - by_s).abs().max((before_longer_s - longer_s).abs()) < 0.3 * by_s.abs()
         };
         if !before.is_some_and(agrees) {
             self.suspect = Some((by_s, longer_s));
-            return Verdict::Suspect;
+            return WindowVerdict::Suspect;
         }
-        if longer_s.abs() < 0.4 * by_s.abs() { Verdict::Step(by_s) } else { Verdict::OtherWay }
+        if longer_s.abs() < 0.4 * by_s.abs() { WindowVerdict::Step(by_s) } else { WindowVerdict::OtherWay }
     }
 
     /// Usual deviation of a window, s, from the differences of consecutive windows.
@@ -273,9 +273,9 @@ impl Clock {
 
     /// Fits a straight line through the stored windows, with a skew that is shrunk towards zero.
     fn fit(&mut self, now_s: f64) {
-        let half_s = self.kept().iter().map(Window::half_s).fold(f64::INFINITY, f64::min);
+        let half_s = self.kept().iter().map(ClockWindow::half_s).fold(f64::INFINITY, f64::min);
         self.half_s = half_s;
-        let weight = |w: &Window| 1.0 / (1.0 + ((w.half_s() - half_s) / ROUND_TRIP_SCALE_S).powi(2)).max(1.0);
+        let weight = |w: &ClockWindow| 1.0 / (1.0 + ((w.half_s() - half_s) / ROUND_TRIP_SCALE_S).powi(2)).max(1.0);
         let mut all = 0.0;
         let mut t = 0.0;
         let mut offset = 0.0;
@@ -295,7 +295,7 @@ impl Clock {
             tt += weight * away_s * away_s;
             to += weight * away_s * (window.offset_s() - offset);
         }
-        self.line = Some(Line { at_s: now_s + t, offset_s: offset, skew: to / tt });
+        self.line = Some(ClockLine { at_s: now_s + t, offset_s: offset, skew: to / tt });
     }
 }
 

@@ -5,21 +5,21 @@ use super::*;
 /// Two clocks and the network between them, simulated.
 struct World {
     noise: Noise,
-    clock: Clock,
+    clock: NetworkClock,
     /// Delay and jitter in each direction, s.
     delay_s: [f64; 2],
     jitter_s: f64,
     offset_s: f64,
     skew: f64,
     t_s: f64,
-    told: Vec<Step>,
+    report: Vec<ClockStep>,
 }
 
 impl World {
     fn new(seed: u64, delay_s: [f64; 2], jitter_s: f64) -> Self {
         let noise = Noise::new(seed);
-        let clock = Clock::default();
-        Self { noise, clock, delay_s, jitter_s, offset_s: 1234.5, skew: 0.0, t_s: 10.0, told: Vec::new() }
+        let clock = NetworkClock::default();
+        Self { noise, clock, delay_s, jitter_s, offset_s: 1234.5, skew: 0.0, t_s: 10.0, report: Vec::new() }
     }
 
     fn theirs(&self, t_s: f64) -> f64 {
@@ -38,13 +38,13 @@ impl World {
             let back_s = way_s(self.delay_s[1]);
             let received_s = self.t_s + there_s;
             let sent_s = self.t_s + there_s + 0.7e-3;
-            let exchange = Exchange {
+            let exchange = ClockExchange {
                 origin_s: self.t_s,
                 received_s: self.theirs(received_s),
                 sent_s: self.theirs(sent_s),
                 arrived_s: sent_s + back_s,
             };
-            self.told.extend(self.clock.add(&exchange));
+            self.report.extend(self.clock.add(&exchange));
             if end_s - self.t_s < 1.0
                 && let Some(estimate) = self.clock.estimate(self.t_s)
             {
@@ -69,7 +69,7 @@ fn the_error_is_below_a_fifth_of_a_millisecond_with_jitter_and_skew() {
             let estimate = world.clock.estimate(world.t_s).unwrap();
             assert!((estimate.skew - skew).abs() < 2e-5, "{estimate:?}");
             assert!((estimate.bound_s - delay_s).abs() < 0.3e-3 && estimate.bound_s > error_s, "{estimate:?}");
-            assert!(world.told.is_empty());
+            assert!(world.report.is_empty());
         }
     }
     println!("worst error {:.3} ms", worst_s * 1e3);
@@ -84,15 +84,15 @@ fn a_step_is_named_within_a_second_and_nothing_else_is_one() {
             for (delay_s, jitter_s) in [(1e-3, 0.1e-3), (20e-3, 1e-3), (150e-3, 1e-3)] {
                 let mut world = World::new(seed, [delay_s; 2], jitter_s);
                 world.run(5.0 + 0.037 * f64::from(seed as u32));
-                assert_eq!(world.told, []);
+                assert_eq!(world.report, []);
                 let at_s = world.t_s;
                 world.offset_s += by_s;
                 world.run(1.0);
-                let [step] = world.told[..] else { panic!("{by_s} with {jitter_s}: {:?}", world.told) };
+                let [step] = world.report[..] else { panic!("{by_s} with {jitter_s}: {:?}", world.report) };
                 assert!((step.by_s - by_s).abs() < 0.3e-3 + 0.05 * by_s.abs(), "{step:?} of {by_s}");
                 latest_s = latest_s.max(step.found_s - at_s);
                 assert!(world.run(3.0) < 0.5e-3);
-                assert_eq!((world.told.len(), world.clock.steps()), (1, 1));
+                assert_eq!((world.report.len(), world.clock.steps()), (1, 1));
             }
         }
     }
@@ -107,7 +107,7 @@ fn a_large_step_is_named_also_with_much_jitter() {
         world.run(20.0);
         world.offset_s += 50e-3;
         world.run(1.2);
-        assert_eq!(world.told.len(), 1);
+        assert_eq!(world.report.len(), 1);
     }
 }
 
@@ -121,15 +121,15 @@ fn a_longer_way_and_heavy_jitter_are_no_step() {
                 world.delay_s = delay_s;
                 world.run(2.5);
             }
-            assert_eq!(world.told, [], "seed {seed}, jitter {jitter_s}");
+            assert_eq!(world.report, [], "seed {seed}, jitter {jitter_s}");
         }
     }
 }
 
 #[test]
 fn what_is_no_number_is_ignored() {
-    let mut clock = Clock::default();
-    let exchange = Exchange { origin_s: f64::NAN, received_s: 1.0, sent_s: 1.0, arrived_s: f64::INFINITY };
+    let mut clock = NetworkClock::default();
+    let exchange = ClockExchange { origin_s: f64::NAN, received_s: 1.0, sent_s: 1.0, arrived_s: f64::INFINITY };
     assert_eq!(clock.add(&exchange), None);
     assert_eq!(clock.estimate(1.0), None);
 }

@@ -7,7 +7,7 @@
 
 /// Status of a console for its follower.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Standing {
+pub enum ControlState {
     /// Not received yet.
     #[default]
     Unknown,
@@ -26,7 +26,7 @@ const GOODBYE: u8 = 0x80;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct FromFollower {
     /// Status of the console.
-    pub(crate) standing: Standing,
+    pub(crate) standing: ControlState,
     /// Another console requests control: the number of the request, 1 to 3.
     pub(crate) asked: u8,
     /// The controlling console has refused this console's request.
@@ -37,20 +37,20 @@ pub(crate) struct FromFollower {
 impl FromFollower {
     pub(crate) const fn byte(self) -> u8 {
         let standing = match self.standing {
-            Standing::Unknown => 0,
-            Standing::Holds => 1,
-            Standing::Waits => 2,
-            Standing::Free => 3,
+            ControlState::Unknown => 0,
+            ControlState::Holds => 1,
+            ControlState::Waits => 2,
+            ControlState::Free => 3,
         };
         standing | ((self.asked & 3) << 2) | ((self.is_denied as u8) << 4) | (self.goodbye as u8 * GOODBYE)
     }
 
     pub(crate) const fn from_byte(byte: u8) -> Self {
         let standing = match byte & 3 {
-            1 => Standing::Holds,
-            2 => Standing::Waits,
-            3 => Standing::Free,
-            _ => Standing::Unknown,
+            1 => ControlState::Holds,
+            2 => ControlState::Waits,
+            3 => ControlState::Free,
+            _ => ControlState::Unknown,
         };
         Self { standing, asked: (byte >> 2) & 3, is_denied: (byte >> 4) & 1 != 0, goodbye: byte & GOODBYE != 0 }
     }
@@ -80,7 +80,7 @@ impl FromConsole {
 
 /// Why a link carries no payloads, or carries them imperfectly.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Cause {
+pub enum LinkCause {
     /// The other side has ended the session: its program was closed.
     PeerClosed,
     /// No data for this long, s: the cable, the network, or a stalled machine.
@@ -98,12 +98,12 @@ pub enum Cause {
     /// No console has control of the follower: it was withdrawn from this one, or the controlling console is gone.
     NotAsked,
     /// The other side refuses a session.
-    Refused(Refusal),
+    Refused(SessionRefusal),
 }
 
 /// Why a session was refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Refusal {
+pub enum SessionRefusal {
     /// The other side uses this other version of the protocol. Install the same version on both machines.
     Version(u8),
     /// The other side does not have this key, or has changed its own: pair the two machines.
@@ -112,7 +112,7 @@ pub enum Refusal {
     Full,
 }
 
-impl Refusal {
+impl SessionRefusal {
     pub(crate) const fn bytes(self) -> [u8; 2] {
         match self {
             Self::Version(version) => [1, version],
@@ -131,7 +131,7 @@ impl Refusal {
     }
 }
 
-impl std::fmt::Display for Refusal {
+impl std::fmt::Display for SessionRefusal {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Version(version) => write!(
@@ -145,7 +145,7 @@ impl std::fmt::Display for Refusal {
     }
 }
 
-impl std::fmt::Display for Cause {
+impl std::fmt::Display for LinkCause {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::PeerClosed => f.write_str("the other side's program was closed"),
@@ -171,8 +171,8 @@ mod tests {
             assert_eq!(FromFollower::from_byte(byte).byte(), used);
             assert_eq!(FromConsole::from_byte(byte).byte(), byte & (GOODBYE | 0xf));
         }
-        for refusal in [Refusal::Version(7), Refusal::Key, Refusal::Full] {
-            assert_eq!(Refusal::from_bytes(refusal.bytes()), Some(refusal));
+        for refusal in [SessionRefusal::Version(7), SessionRefusal::Key, SessionRefusal::Full] {
+            assert_eq!(SessionRefusal::from_bytes(refusal.bytes()), Some(refusal));
         }
     }
 }

@@ -1,8 +1,8 @@
 //! Measurements of a link.
 
 use crate::{
-    clock::Estimate,
-    playout::{Counts, Delays},
+    clock::ClockEstimate,
+    playout::{Delays, PlayoutCounts},
 };
 
 /// Why there are fewer redundant copies than requested.
@@ -30,7 +30,7 @@ pub struct Copies {
 
 /// Counts datagrams and their bytes, and measures the rate.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Meter {
+pub struct FigureMeter {
     pub datagrams: u64,
     /// Includes the headers of IPv4 and UDP.
     pub bytes: u64,
@@ -40,7 +40,7 @@ pub struct Meter {
     begin_bytes: u64,
 }
 
-impl Meter {
+impl FigureMeter {
     pub(crate) fn add(&mut self, bytes: usize, now_s: f64) {
         self.datagrams += 1;
         self.bytes += bytes as u64;
@@ -55,15 +55,15 @@ impl Meter {
 
 impl Delays {
     pub(crate) fn shifted(self, by_s: f64) -> Self {
-        Self { least_s: self.least_s + by_s, mean_s: self.mean_s + by_s, p999_s: self.p999_s + by_s }
+        Self { min_s: self.min_s + by_s, mean_s: self.mean_s + by_s, p999_s: self.p999_s + by_s }
     }
 }
 
 /// Measurements of one session.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Figures {
+pub struct SessionMeasurements {
     /// Their clock, with its bound and the minimum round trip.
-    pub clock: Option<Estimate>,
+    pub clock: Option<ClockEstimate>,
     /// Number of detected clock steps.
     pub steps: u32,
     /// One-way delay of payloads to us in the last 5 s; the clock's bound limits its error.
@@ -83,24 +83,24 @@ pub struct Figures {
     /// Number of times that each payload is sent.
     pub copies: Copies,
     /// Counts of the payloads to us.
-    pub counts: Counts,
+    pub counts: PlayoutCounts,
     /// Payloads that had to wait for the next datagram because of the rate limit.
     pub held: u64,
-    pub sent: Meter,
+    pub sent: FigureMeter,
     /// Received and accepted.
-    pub received: Meter,
+    pub received: FigureMeter,
 }
 
-impl Figures {
+impl SessionMeasurements {
     /// 99.9th percentile minus the minimum of the one-way delays, s.
     pub fn jitter_s(&self) -> Option<f64> {
-        self.one_way.map(|delays| delays.p999_s - delays.least_s)
+        self.one_way.map(|delays| delays.p999_s - delays.min_s)
     }
 }
 
 /// Dropped datagrams, by cause.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Dropped {
+pub struct DroppedCounts {
     /// Not encrypted with the session's keys.
     pub forged: u64,
     /// Duplicates.
@@ -121,7 +121,7 @@ pub struct Dropped {
     pub unsent: u64,
 }
 
-impl Dropped {
+impl DroppedCounts {
     /// Sum of all causes.
     pub const fn total(&self) -> u64 {
         self.forged

@@ -1,6 +1,6 @@
 //! A reproducibly impaired line: delay, jitter, loss, reordering, duplicates, a limited rate, outages.
 //!
-//! [`Impairment`] computes when each datagram arrives, on any clock; [`Line`] also holds the datagrams. A study uses
+//! [`Impairment`] computes when each datagram arrives, on any clock; [`ImpairedLine`] also holds the datagrams. A study uses
 //! virtual time, a [`crate::relay`] real time. Each direction of a link has its own line, so that they can differ.
 
 use std::{cmp::Reverse, collections::BinaryHeap};
@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 /// Additional delay of a datagram.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
-pub enum Jitter {
+pub enum ImpairmentJitter {
     /// None.
     #[default]
     None,
@@ -28,19 +28,21 @@ pub enum Jitter {
 /// The datagrams that are lost.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
-pub enum Loss {
+pub enum LossModel {
     /// None.
     #[default]
     None,
     /// Each with this probability, independent of the others.
     Independent {
         /// Fraction lost.
-        share: f64,
+        #[serde(rename = "share")]
+        fraction: f64,
     },
     /// In bursts: while the line is bad all are lost, while it is good none (E. N. Gilbert, 1960; E. O. Elliott, 1963).
     Bursts {
         /// Fraction lost in the long run.
-        share: f64,
+        #[serde(rename = "share")]
+        fraction: f64,
         /// Mean length of a burst, s.
         burst_s: f64,
     },
@@ -62,15 +64,15 @@ pub const OUTAGES: Flap = Flap { down_s: 0.8, every_s: 4.0 };
 /// Impairments of one direction of a line. The default is a perfect line.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
-pub struct Settings {
+pub struct ImpairmentSettings {
     /// Minimum delay, s.
     pub delay_s: f64,
     /// Additional delay.
-    pub jitter: Jitter,
+    pub jitter: ImpairmentJitter,
     /// Whether jitter lets datagrams overtake each other; otherwise a late one delays those behind it, as in a queue.
     pub overtakes: bool,
     /// Lost datagrams.
-    pub loss: Loss,
+    pub loss: LossModel,
     /// This fraction is delayed by a further `reorder_s`, and overtaken meanwhile.
     pub reorder: f64,
     /// See `reorder`, s.
@@ -85,13 +87,13 @@ pub struct Settings {
     pub flap: Option<Flap>,
 }
 
-impl Settings {
+impl ImpairmentSettings {
     /// Checks the settings.
     ///
     /// # Errors
     /// A sentence with key, value and the allowed range.
     pub fn check(&self) -> Result<(), String> {
-        let share = |name: &str, value: f64| {
+        let fraction = |name: &str, value: f64| {
             if (0.0..=1.0).contains(&value) {
                 Ok(())
             } else {
@@ -105,12 +107,12 @@ impl Settings {
         time("delay_s", self.delay_s)?;
         time("reorder_s", self.reorder_s)?;
         time("queue_s", self.queue_s)?;
-        share("reorder", self.reorder)?;
-        share("duplicate", self.duplicate)?;
+        fraction("reorder", self.reorder)?;
+        fraction("duplicate", self.duplicate)?;
         match self.jitter {
-            Jitter::None => {}
-            Jitter::Normal { deviation_s } => time("deviation_s", deviation_s)?,
-            Jitter::Pareto { mean_s, shape } => {
+            ImpairmentJitter::None => {}
+            ImpairmentJitter::Normal { deviation_s } => time("deviation_s", deviation_s)?,
+            ImpairmentJitter::Pareto { mean_s, shape } => {
                 time("mean_s", mean_s)?;
                 if !(shape > 1.0 && shape <= 100.0) {
                     return Err(format!("shape = {shape}: it is above 1, and 100 at most"));
@@ -118,10 +120,10 @@ impl Settings {
             }
         }
         match self.loss {
-            Loss::None => {}
-            Loss::Independent { share: lost } => share("share", lost)?,
-            Loss::Bursts { share: lost, burst_s } => {
-                share("share", lost)?;
+            LossModel::None => {}
+            LossModel::Independent { fraction: lost } => fraction("share", lost)?,
+            LossModel::Bursts { fraction: lost, burst_s } => {
+                fraction("share", lost)?;
                 time("burst_s", burst_s)?;
             }
         }
@@ -140,12 +142,12 @@ impl Settings {
 }
 
 /// Arrival times of a datagram, s: none, one, or two.
-pub type Fate = [Option<f64>; 2];
+pub type DeliveryTimes = [Option<f64>; 2];
 
 /// Computes the arrival times of datagrams.
 #[derive(Clone, Debug)]
 pub struct Impairment {
-    settings: Settings,
+    settings: ImpairmentSettings,
     noise: Noise,
     /// Whether the line is bad, and the end of that state, s.
     is_bad: bool,
@@ -158,7 +160,7 @@ pub struct Impairment {
 
 impl Impairment {
     /// The same seed gives the same arrivals.
-    pub fn new(settings: Settings, seed: u64) -> Self {
+    pub fn new(settings: ImpairmentSettings, seed: u64) -> Self {
         let noise = Noise::new(seed);
         Self {
             settings,
@@ -172,8 +174,8 @@ impl Impairment {
 
     /// Returns the arrivals of a datagram of this length (bytes, with all headers) that is sent at `now_s`; times must
     /// not go back.
-    pub fn pass(&mut self, now_s: f64, len: usize) -> Fate {
-        let Settings { flap, duplicate, reorder, reorder_s, delay_s, overtakes, .. } = self.settings;
+    pub fn pass(&mut self, now_s: f64, len: usize) -> DeliveryTimes {
+        let ImpairmentSettings { flap, duplicate, reorder, reorder_s, delay_s, overtakes, .. } = self.settings;
         // Every datagram draws the same number of random values, whatever its result.
         let lost = self.noise.uniform();
         let twice = self.noise.uniform();
@@ -196,9 +198,9 @@ impl Impairment {
 
     fn jitter_s(&mut self) -> f64 {
         match self.settings.jitter {
-            Jitter::None => 0.0,
-            Jitter::Normal { deviation_s } => self.noise.gaussian().abs() * deviation_s,
-            Jitter::Pareto { mean_s, shape } => {
+            ImpairmentJitter::None => 0.0,
+            ImpairmentJitter::Normal { deviation_s } => self.noise.gaussian().abs() * deviation_s,
+            ImpairmentJitter::Pareto { mean_s, shape } => {
                 let tail = libm::pow(1.0 - self.noise.uniform(), -1.0 / shape) - 1.0;
                 tail * mean_s * (shape - 1.0)
             }
@@ -207,21 +209,21 @@ impl Impairment {
 
     fn is_lost(&mut self, now_s: f64, chance: f64) -> bool {
         match self.settings.loss {
-            Loss::None => false,
-            Loss::Independent { share } => chance < share,
-            Loss::Bursts { share, burst_s } => {
-                if share <= 0.0 || burst_s <= 0.0 {
+            LossModel::None => false,
+            LossModel::Independent { fraction } => chance < fraction,
+            LossModel::Bursts { fraction, burst_s } => {
+                if fraction <= 0.0 || burst_s <= 0.0 {
                     return false;
                 }
                 if self.until_s == f64::NEG_INFINITY {
-                    self.is_bad = chance < share;
+                    self.is_bad = chance < fraction;
                     self.until_s = now_s;
                 } else if self.until_s > now_s {
                     return self.is_bad;
                 } else {
                     self.is_bad = !self.is_bad;
                 }
-                let good_s = burst_s * (1.0 / share - 1.0);
+                let good_s = burst_s * (1.0 / fraction - 1.0);
                 // Few changes occur: each state lasts as long as the mean of its kind.
                 for _ in 0..1000 {
                     let mean_s = if self.is_bad { burst_s } else { good_s };
@@ -253,7 +255,7 @@ impl Impairment {
 
 /// A datagram in transit.
 #[derive(Debug, PartialEq, Eq, PartialOrd, Ord)]
-struct UnderWay {
+struct DatagramInFlight {
     /// ns, so that it can be ordered.
     due_ns: i64,
     /// Order of sending, for datagrams that are due at the same time.
@@ -263,9 +265,9 @@ struct UnderWay {
 
 /// One direction of an impaired line, with the datagrams in transit.
 #[derive(Debug)]
-pub struct Line {
+pub struct ImpairedLine {
     impairment: Impairment,
-    under_way: BinaryHeap<Reverse<UnderWay>>,
+    under_way: BinaryHeap<Reverse<DatagramInFlight>>,
     number: u64,
     /// Datagrams sent, and datagrams lost.
     sent: u64,
@@ -277,9 +279,9 @@ pub struct Line {
 /// Maximum number of datagrams in transit; further ones are lost.
 const UNDER_WAY_MAX: usize = 1 << 17;
 
-impl Line {
+impl ImpairedLine {
     /// The same seed gives the same line.
-    pub fn new(settings: Settings, seed: u64) -> Self {
+    pub fn new(settings: ImpairmentSettings, seed: u64) -> Self {
         let impairment = Impairment::new(settings, seed);
         Self { impairment, under_way: BinaryHeap::new(), number: 0, sent: 0, lost: 0, headers: crate::wire::UDP_LEN }
     }
@@ -292,7 +294,7 @@ impl Line {
         for due_s in fate.into_iter().flatten().filter(|_| has_room) {
             self.number += 1;
             let due_ns = (due_s * 1e9).round() as i64;
-            self.under_way.push(Reverse(UnderWay { due_ns, number: self.number, bytes: bytes.into() }));
+            self.under_way.push(Reverse(DatagramInFlight { due_ns, number: self.number, bytes: bytes.into() }));
         }
     }
 

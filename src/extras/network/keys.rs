@@ -104,18 +104,18 @@ fn bytes_of(text: &str) -> Option<[u8; 32]> {
 
 /// The key of this machine. Only its public half is printed.
 #[derive(Clone)]
-pub struct Keys {
+pub struct NetworkKeys {
     private: [u8; 32],
     public: PublicKey,
 }
 
-impl fmt::Debug for Keys {
+impl fmt::Debug for NetworkKeys {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Keys").field("public", &self.public).finish_non_exhaustive()
     }
 }
 
-impl Keys {
+impl NetworkKeys {
     /// Generates a key that is not stored.
     ///
     /// # Errors
@@ -134,11 +134,11 @@ impl Keys {
     /// [`KeyError`] with the file.
     ///
     /// ```
-    /// use nima_network::keys::Keys;
+    /// use nima_network::keys::NetworkKeys;
     ///
     /// let folder = tempfile::tempdir()?;
-    /// let made = Keys::open(folder.path())?;
-    /// assert_eq!(Keys::open(folder.path())?.public(), made.public(), "kept");
+    /// let made = NetworkKeys::open(folder.path())?;
+    /// assert_eq!(NetworkKeys::open(folder.path())?.public(), made.public(), "kept");
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn open(folder: &Path) -> Result<Self, KeyError> {
@@ -171,7 +171,7 @@ impl Keys {
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Peer {
+pub struct PairedMachine {
     /// The name given by its user.
     pub name: String,
     pub key: PublicKey,
@@ -180,7 +180,7 @@ pub struct Peer {
 /// The paired machines.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Peers {
-    list: Vec<Peer>,
+    list: Vec<PairedMachine>,
 }
 
 impl Peers {
@@ -229,7 +229,7 @@ impl Peers {
         if self.list.len() == PEERS_MAX {
             return Err(KeyError::Peers("32 machines are paired with this one; remove one"));
         }
-        self.list.push(Peer { name: name.into(), key });
+        self.list.push(PairedMachine { name: name.into(), key });
         Ok(())
     }
 
@@ -238,12 +238,12 @@ impl Peers {
         self.list.retain(|peer| peer.key != *key);
     }
 
-    pub fn list(&self) -> &[Peer] {
+    pub fn list(&self) -> &[PairedMachine] {
         &self.list
     }
 
     /// Returns the machine with this key.
-    pub fn with_key(&self, key: &PublicKey) -> Option<&Peer> {
+    pub fn with_key(&self, key: &PublicKey) -> Option<&PairedMachine> {
         self.list.iter().find(|peer| peer.key == *key)
     }
 }
@@ -287,11 +287,11 @@ mod tests {
     #[test]
     fn keys_and_peers_are_kept() {
         let folder = tempfile::tempdir().unwrap();
-        let keys = Keys::open(folder.path()).unwrap();
-        assert_eq!(Keys::open(folder.path()).unwrap().private(), keys.private());
+        let keys = NetworkKeys::open(folder.path()).unwrap();
+        assert_eq!(NetworkKeys::open(folder.path()).unwrap().private(), keys.private());
         assert!(!format!("{keys:?}").contains(&PublicKey(*keys.private()).to_string()), "never printed");
-        let other = Keys::random().unwrap().public();
-        let third = Keys::random().unwrap().public();
+        let other = NetworkKeys::random().unwrap().public();
+        let third = NetworkKeys::random().unwrap().public();
         let mut peers = Peers::open(folder.path()).unwrap();
         assert!(peers.list().is_empty());
         peers.add("theatre 2", other).unwrap();
@@ -312,17 +312,17 @@ mod tests {
         use std::os::unix::fs::PermissionsExt as _;
 
         let folder = tempfile::tempdir().unwrap();
-        Keys::open(folder.path()).unwrap();
+        NetworkKeys::open(folder.path()).unwrap();
         Peers::default().save(folder.path()).unwrap();
         for (name, mode) in [(KEY_FILE, 0o640), (KEY_FILE, 0o604), (PEERS_FILE, 0o660)] {
             let path = folder.path().join(name);
             assert_eq!(fs::metadata(&path).unwrap().permissions().mode() & 0o777, 0o600, "{name}");
             fs::set_permissions(&path, fs::Permissions::from_mode(mode)).unwrap();
-            let told = match name {
-                KEY_FILE => Keys::open(folder.path()).unwrap_err(),
+            let report = match name {
+                KEY_FILE => NetworkKeys::open(folder.path()).unwrap_err(),
                 _ => Peers::open(folder.path()).unwrap_err(),
             };
-            assert!(told.to_string().contains("chmod 600"), "{told}");
+            assert!(report.to_string().contains("chmod 600"), "{report}");
             fs::set_permissions(&path, fs::Permissions::from_mode(0o600)).unwrap();
         }
     }
@@ -331,8 +331,8 @@ mod tests {
     fn damaged_files_are_told_with_their_line() {
         let folder = tempfile::tempdir().unwrap();
         write_new(&folder.path().join(KEY_FILE), "abc\n").unwrap();
-        assert!(Keys::open(folder.path()).unwrap_err().to_string().contains("not a key"));
-        let key = Keys::random().unwrap().public();
+        assert!(NetworkKeys::open(folder.path()).unwrap_err().to_string().contains("not a key"));
+        let key = NetworkKeys::random().unwrap().public();
         write_new(&folder.path().join(PEERS_FILE), &format!("{key} one\n{key}\n")).unwrap();
         assert!(Peers::open(folder.path()).unwrap_err().to_string().contains("line 2"));
     }

@@ -1,7 +1,7 @@
 //! A stream of small messages between two machines, a console and a follower, over a real network: encrypted UDP datagrams in real time.
 //!
 //! The content is the caller's: a payload is bytes. [`endpoint::Endpoint`] is one end: it is driven by the thread of a
-//! control loop and never blocks it. [`stream::Stream`] is the same without socket and handshake, for a virtual clock.
+//! control loop and never blocks it. [`stream::NetworkStream`] is the same without socket and handshake, for a virtual clock.
 //! [`impairment`] simulates an impaired line, for a study or, as a [`relay`], between two real ends.
 //!
 //! Design: `docs/network.md`. Figures: `docs/results/stream.md`.

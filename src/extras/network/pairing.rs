@@ -22,9 +22,9 @@ use blake2::{Blake2s256, Digest as _};
 
 use crate::{
     endpoint::towards,
-    keys::{KeyError, Keys, PublicKey},
+    keys::{KeyError, NetworkKeys, PublicKey},
     socket::Socket,
-    wire::{self, HANDSHAKE_LEN, Kind},
+    wire::{self, DatagramKind, HANDSHAKE_LEN},
 };
 
 /// Number of wrong codes before a pause, and its length.
@@ -119,13 +119,13 @@ impl Attempts {
 
 /// A pairing that waits for the code of the other screen.
 #[derive(Debug)]
-pub struct Pending {
+pub struct PendingPairing {
     shown: Code,
     expected: Code,
     peer: PublicKey,
 }
 
-impl Pending {
+impl PendingPairing {
     /// The code to show here, which must be entered on the other machine.
     pub const fn code(&self) -> Code {
         self.shown
@@ -148,13 +148,13 @@ impl Pending {
 
 /// A machine's part: its key and its secret.
 #[derive(Clone, Copy)]
-struct Part {
+struct PairingPart {
     key: PublicKey,
     secret: [u8; 32],
 }
 
-impl Part {
-    fn new(keys: &Keys) -> Result<Self, KeyError> {
+impl PairingPart {
+    fn new(keys: &NetworkKeys) -> Result<Self, KeyError> {
         let mut secret = [0; 32];
         getrandom::fill(&mut secret).map_err(|_| KeyError::Random)?;
         Ok(Self { key: keys.public(), secret })
@@ -186,7 +186,7 @@ fn hash(parts: &[&[u8]]) -> [u8; 32] {
 }
 
 /// Returns the codes for the console's and the follower's screen.
-fn codes(console: &Part, follower: &Part) -> [Code; 2] {
+fn codes(console: &PairingPart, follower: &PairingPart) -> [Code; 2] {
     [&b"nima pairing 1 console"[..], b"nima pairing 1 follower"].map(|of| {
         let [a, b, c, d, e, f, g, h, ..] = hash(&[of, &console.bytes(), &follower.bytes()]);
         Code((u64::from_le_bytes([a, b, c, d, e, f, g, h]) % 10_u64.pow(DIGITS)) as u32)
@@ -195,7 +195,7 @@ fn codes(console: &Part, follower: &Part) -> [Code; 2] {
 
 fn datagram(token: u64, step: u8, content: &[u8]) -> [u8; LEN] {
     let mut bytes = [0; LEN];
-    bytes[..HANDSHAKE_LEN].copy_from_slice(&wire::handshake(Kind::Pairing, token));
+    bytes[..HANDSHAKE_LEN].copy_from_slice(&wire::handshake(DatagramKind::Pairing, token));
     bytes[HANDSHAKE_LEN] = step;
     for (byte, &value) in bytes[HANDSHAKE_LEN + 1..].iter_mut().zip(content) {
         *byte = value;
@@ -205,7 +205,7 @@ fn datagram(token: u64, step: u8, content: &[u8]) -> [u8; LEN] {
 
 /// Returns number, step and content of a datagram of a pairing.
 fn read(bytes: &[u8]) -> Option<(u64, u8, &[u8])> {
-    let is_pairing = bytes.len() == LEN && wire::kind(bytes) == Ok(Kind::Pairing);
+    let is_pairing = bytes.len() == LEN && wire::kind(bytes) == Ok(DatagramKind::Pairing);
     let (step, content) = bytes.get(HANDSHAKE_LEN..)?.split_first()?;
     Some((wire::token(bytes)?, *step, content)).filter(|_| is_pairing)
 }
@@ -219,7 +219,7 @@ fn next(socket: &Socket, buffer: &mut [u8; 2 * LEN]) -> Option<(usize, SocketAdd
 #[derive(Debug)]
 pub struct Pairing<'a> {
     /// Its keys.
-    pub keys: &'a Keys,
+    pub keys: &'a NetworkKeys,
     /// The wrong codes entered on it.
     pub attempts: &'a mut Attempts,
     /// How long to wait for the other side.
@@ -233,17 +233,17 @@ impl Pairing<'_> {
     ///
     /// # Errors
     /// [`PairingError`] if there is no answer, or too many wrong codes were entered before.
-    pub fn ask(self, follower: SocketAddr) -> Result<Pending, PairingError> {
+    pub fn ask(self, follower: SocketAddr) -> Result<PendingPairing, PairingError> {
         let begin = Instant::now();
         self.attempts.may_begin(begin)?;
         let address = |source| PairingError::Address { address: follower, source };
         let socket = Socket::open(towards(&follower), Some(follower)).map_err(address)?;
-        let own = Part::new(self.keys)?;
+        let own = PairingPart::new(self.keys)?;
         let mut token = [0; 8];
         getrandom::fill(&mut token).map_err(|_| KeyError::Random)?;
         let token = u64::from_le_bytes(token);
         let mut question = datagram(token, COMMIT, &own.commitment());
-        let mut theirs: Option<Part> = None;
+        let mut theirs: Option<PairingPart> = None;
         let mut asked = None;
         let mut buffer = [0; 2 * LEN];
         while self.goes_on(begin) {
@@ -257,7 +257,7 @@ impl Pairing<'_> {
             };
             match (read(&buffer[..len]).filter(|(number, ..)| *number == token), theirs) {
                 (Some((_, ANSWER, content)), None) => {
-                    theirs = Part::from_bytes(content);
+                    theirs = PairingPart::from_bytes(content);
                     question = datagram(token, REVEAL, &own.bytes());
                     asked = None;
                 }
@@ -267,7 +267,7 @@ impl Pairing<'_> {
                 }
                 (Some((_, DONE, _)), Some(theirs)) => {
                     let [shown, expected] = codes(&own, &theirs);
-                    return Ok(Pending { shown, expected, peer: theirs.key });
+                    return Ok(PendingPairing { shown, expected, peer: theirs.key });
                 }
                 _ => {}
             }
@@ -280,13 +280,13 @@ impl Pairing<'_> {
     ///
     /// # Errors
     /// [`PairingError`] if no console asks, or too many wrong codes were entered before.
-    pub fn offer(self, at: SocketAddr) -> Result<Pending, PairingError> {
+    pub fn offer(self, at: SocketAddr) -> Result<PendingPairing, PairingError> {
         let begin = Instant::now();
         self.attempts.may_begin(begin)?;
         let socket = Socket::open(at, None).map_err(|source| PairingError::Address { address: at, source })?;
         let mut buffer = [0; 2 * LEN];
         // For each console its address, its number, its commitment, and our part, which differs for each.
-        let mut asked: Vec<(SocketAddr, u64, [u8; 32], Part)> = Vec::new();
+        let mut asked: Vec<(SocketAddr, u64, [u8; 32], PairingPart)> = Vec::new();
         while self.goes_on(begin) {
             let Some((len, from)) = next(&socket, &mut buffer) else {
                 sleep(NAP);
@@ -299,19 +299,19 @@ impl Pairing<'_> {
                     socket.send(&datagram(token, ANSWER, &own.bytes()), from);
                 }
                 (COMMIT, None) if asked.len() < TRIES_MAX => {
-                    let own = Part::new(self.keys)?;
+                    let own = PairingPart::new(self.keys)?;
                     let Some(&promised) = content.first_chunk() else { continue };
                     asked.push((from, token, promised, own));
                     socket.send(&datagram(token, ANSWER, &own.bytes()), from);
                 }
                 (REVEAL, Some((.., promised, own))) => {
-                    let Some(console) = Part::from_bytes(content) else { continue };
+                    let Some(console) = PairingPart::from_bytes(content) else { continue };
                     if console.commitment() != *promised {
                         return Err(PairingError::Contradiction);
                     }
                     repeat(&socket, &datagram(token, DONE, &[]), token, from);
                     let [expected, shown] = codes(&console, own);
-                    return Ok(Pending { shown, expected, peer: console.key });
+                    return Ok(PendingPairing { shown, expected, peer: console.key });
                 }
                 _ => {}
             }

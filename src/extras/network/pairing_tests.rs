@@ -2,7 +2,7 @@ use std::{net::Ipv4Addr, net::UdpSocket, thread::scope};
 
 use super::*;
 use crate::{
-    impairment::{Loss, Settings},
+    impairment::{ImpairmentSettings, LossModel},
     relay::{Relay, RelaySettings},
 };
 
@@ -14,12 +14,17 @@ fn free_address() -> SocketAddr {
 }
 
 /// A pairing of a machine without earlier wrong codes.
-fn offered(keys: &Keys, at: SocketAddr, called_off: &AtomicBool) -> Result<Pending, PairingError> {
+fn offered(keys: &NetworkKeys, at: SocketAddr, called_off: &AtomicBool) -> Result<PendingPairing, PairingError> {
     Pairing { keys, attempts: &mut Attempts::default(), wait: WAIT, called_off }.offer(at)
 }
 
 /// Runs both sides; the console reaches the follower through `reached`.
-fn both(console: &Keys, follower: &Keys, at: SocketAddr, reached: SocketAddr) -> [Result<Pending, PairingError>; 2] {
+fn both(
+    console: &NetworkKeys,
+    follower: &NetworkKeys,
+    at: SocketAddr,
+    reached: SocketAddr,
+) -> [Result<PendingPairing, PairingError>; 2] {
     let stop = AtomicBool::new(false);
     scope(|scope| {
         let theirs = scope.spawn(|| offered(follower, at, &stop));
@@ -31,8 +36,8 @@ fn both(console: &Keys, follower: &Keys, at: SocketAddr, reached: SocketAddr) ->
 
 #[test]
 fn the_code_of_the_other_screen_gives_the_keys_and_that_of_ones_own_does_not() {
-    let console = Keys::random().unwrap();
-    let follower = Keys::random().unwrap();
+    let console = NetworkKeys::random().unwrap();
+    let follower = NetworkKeys::random().unwrap();
     let mut codes = Vec::new();
     for _ in 0..2 {
         let at = free_address();
@@ -42,7 +47,7 @@ fn the_code_of_the_other_screen_gives_the_keys_and_that_of_ones_own_does_not() {
         assert_ne!(here, there);
         assert_eq!(here.len(), 7);
         codes.push(here.clone());
-        let own = Pending { shown: ours.shown, expected: ours.expected, peer: ours.peer };
+        let own = PendingPairing { shown: ours.shown, expected: ours.expected, peer: ours.peer };
         assert!(own.confirm(&here, &mut attempts).is_err());
         assert_eq!(ours.confirm(&there, &mut attempts).unwrap(), follower.public());
         assert_eq!(theirs.confirm(&here.replace(' ', ""), &mut attempts).unwrap(), console.public());
@@ -52,10 +57,10 @@ fn the_code_of_the_other_screen_gives_the_keys_and_that_of_ones_own_does_not() {
 
 #[test]
 fn lost_datagrams_are_sent_again() {
-    let console = Keys::random().unwrap();
-    let follower = Keys::random().unwrap();
+    let console = NetworkKeys::random().unwrap();
+    let follower = NetworkKeys::random().unwrap();
     let at = free_address();
-    let bad = Settings { loss: Loss::Independent { share: 0.3 }, ..Settings::default() };
+    let bad = ImpairmentSettings { loss: LossModel::Independent { fraction: 0.3 }, ..ImpairmentSettings::default() };
     let home = (Ipv4Addr::LOCALHOST, 0).into();
     let relay = Relay::start(RelaySettings { at: home, to: at, there: bad, back: bad, seed: 4 }).unwrap();
     let [ours, theirs] = both(&console, &follower, at, relay.address()).map(Result::unwrap);
@@ -67,23 +72,24 @@ fn a_wrong_code_is_refused_and_the_third_makes_a_pause() {
     let mut attempts = Attempts::default();
     for wrong in ["123 457", "12345", "+23456"] {
         assert!(attempts.may_begin(Instant::now()).is_ok());
-        let pending = Pending { shown: Code(0), expected: Code(123_456), peer: Keys::random().unwrap().public() };
+        let pending =
+            PendingPairing { shown: Code(0), expected: Code(123_456), peer: NetworkKeys::random().unwrap().public() };
         assert!(matches!(pending.confirm(wrong, &mut attempts), Err(PairingError::WrongCode)), "{wrong}");
     }
-    let told = attempts.may_begin(Instant::now()).unwrap_err();
-    assert!(told.to_string().contains("wait 60 s"), "{told}");
+    let report = attempts.may_begin(Instant::now()).unwrap_err();
+    assert!(report.to_string().contains("wait 60 s"), "{report}");
     let stop = AtomicBool::new(false);
-    let keys = Keys::random().unwrap();
+    let keys = NetworkKeys::random().unwrap();
     let pairing = Pairing { keys: &keys, attempts: &mut attempts, wait: WAIT, called_off: &stop };
-    let told = pairing.offer(free_address()).unwrap_err();
-    assert!(matches!(told, PairingError::TooMany { .. }));
+    let report = pairing.offer(free_address()).unwrap_err();
+    assert!(matches!(report, PairingError::TooMany { .. }));
     assert!(attempts.may_begin(Instant::now() + PAUSE).is_ok());
 }
 
 #[test]
 fn who_stands_between_is_seen() {
     // An attacker pairs with both sides using other keys: the codes differ.
-    let [console, follower, between] = [0; 3].map(|_| Part::new(&Keys::random().unwrap()).unwrap());
+    let [console, follower, between] = [0; 3].map(|_| PairingPart::new(&NetworkKeys::random().unwrap()).unwrap());
     let [[at_console, _], [_, at_follower]] = [codes(&console, &between), codes(&between, &follower)];
     let [[_, expected_there], [expected_here, _]] = [codes(&console, &between), codes(&between, &follower)];
     assert_ne!(at_console, expected_here);
@@ -91,8 +97,8 @@ fn who_stands_between_is_seen() {
     // An attacker must commit before the follower's part is known; a part other than the committed one is detected.
     let at = free_address();
     let stop = AtomicBool::new(false);
-    let keys = Keys::random().unwrap();
-    let told = scope(|scope| {
+    let keys = NetworkKeys::random().unwrap();
+    let report = scope(|scope| {
         let theirs = scope.spawn(|| offered(&keys, at, &stop));
         let socket = UdpSocket::bind((Ipv4Addr::LOCALHOST, 0)).unwrap();
         socket.set_read_timeout(Some(Duration::from_millis(100))).unwrap();
@@ -102,12 +108,12 @@ fn who_stands_between_is_seen() {
         socket.send_to(&datagram(1, REVEAL, &between.bytes()), at).unwrap();
         theirs.join().unwrap()
     });
-    assert!(matches!(told, Err(PairingError::Contradiction)));
+    assert!(matches!(report, Err(PairingError::Contradiction)));
 }
 
 #[test]
 fn nobody_and_called_off_are_told() {
-    let keys = Keys::random().unwrap();
+    let keys = NetworkKeys::random().unwrap();
     let stop = AtomicBool::new(false);
     let wait = Duration::from_millis(50);
     let pairing = Pairing { keys: &keys, attempts: &mut Attempts::default(), wait, called_off: &stop };

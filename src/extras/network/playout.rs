@@ -17,7 +17,7 @@ const PARTS: usize = 10;
 /// Number of the largest delays stored for each part: enough for the percentile of 16 000 payloads.
 const TOP: usize = 16;
 /// Fraction of payloads that may arrive later than the target delay.
-const LATE_SHARE: f64 = 1e-3;
+const LATE_FRACTION: f64 = 1e-3;
 /// Measuring time before the first payload is delivered, s and payloads.
 const FIRST_S: f64 = 0.1;
 const FIRST_COUNT: u32 = 20;
@@ -46,7 +46,7 @@ impl Default for PlayoutSettings {
 
 /// A payload that is delivered.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Payload<'a> {
+pub struct DuePayload<'a> {
     /// From 0.
     pub number: u64,
     /// Time of sending, by their clock, s.
@@ -60,7 +60,7 @@ pub struct Payload<'a> {
 
 /// Counts of payloads.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Counts {
+pub struct PlayoutCounts {
     /// Delivered.
     pub delivered: u64,
     /// Delivered after their time.
@@ -75,21 +75,21 @@ pub struct Counts {
 
 /// Largest delays of one part of the statistics.
 #[derive(Clone, Copy, Debug)]
-struct Part {
+struct PlayoutPart {
     /// Descending.
     top_s: [f64; TOP],
-    least_s: f64,
+    min_s: f64,
     sum_s: f64,
     count: u32,
 }
 
-const EMPTY: Part = Part { top_s: [f64::NEG_INFINITY; TOP], least_s: f64::INFINITY, sum_s: 0.0, count: 0 };
+const EMPTY: PlayoutPart = PlayoutPart { top_s: [f64::NEG_INFINITY; TOP], min_s: f64::INFINITY, sum_s: 0.0, count: 0 };
 
-impl Part {
+impl PlayoutPart {
     fn add(&mut self, delay_s: f64) {
         self.count += 1;
         self.sum_s += delay_s;
-        self.least_s = self.least_s.min(delay_s);
+        self.min_s = self.min_s.min(delay_s);
         let place = self.top_s.iter().position(|&top_s| delay_s > top_s);
         if let Some(place) = place {
             self.top_s.copy_within(place..TOP - 1, place + 1);
@@ -102,14 +102,14 @@ impl Part {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Delays {
     /// Minimum.
-    pub least_s: f64,
+    pub min_s: f64,
     pub mean_s: f64,
     /// 99.9th percentile.
     pub p999_s: f64,
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Slot {
+struct PlayoutSlot {
     /// Number of the payload, plus one; 0 if there is none.
     mark: u64,
     sent_s: f64,
@@ -121,13 +121,13 @@ struct Slot {
 #[derive(Clone, Debug)]
 pub struct Playout {
     settings: PlayoutSettings,
-    slots: Vec<Slot>,
+    slots: Vec<PlayoutSlot>,
     bytes: Vec<u8>,
     payload_max: usize,
     /// Number of the next payload to deliver, and one more than the highest received.
     next: u64,
     end: u64,
-    parts: [Part; PARTS],
+    parts: [PlayoutPart; PARTS],
     part: usize,
     part_begin_s: Option<f64>,
     first_s: Option<f64>,
@@ -137,7 +137,7 @@ pub struct Playout {
     moved_s: f64,
     /// Payloads needed before the delay moves.
     awaited: u32,
-    counts: Counts,
+    counts: PlayoutCounts,
 }
 
 impl Playout {
@@ -146,7 +146,7 @@ impl Playout {
         let room = settings.room.clamp(16, 1 << 16);
         Self {
             settings,
-            slots: vec![Slot { mark: 0, sent_s: 0.0, arrived_s: 0.0, len: 0 }; room],
+            slots: vec![PlayoutSlot { mark: 0, sent_s: 0.0, arrived_s: 0.0, len: 0 }; room],
             bytes: vec![0; room * payload_max],
             payload_max,
             next: 0,
@@ -159,12 +159,12 @@ impl Playout {
             wanted_s: None,
             moved_s: 0.0,
             awaited: 0,
-            counts: Counts::default(),
+            counts: PlayoutCounts::default(),
         }
     }
 
     /// Counts of payloads.
-    pub const fn counts(&self) -> Counts {
+    pub const fn counts(&self) -> PlayoutCounts {
         self.counts
     }
 
@@ -187,9 +187,9 @@ impl Playout {
     pub fn delays(&self) -> Option<Delays> {
         let count: u32 = self.parts.iter().map(|part| part.count).sum();
         let sum_s: f64 = self.parts.iter().map(|part| part.sum_s).sum();
-        let least_s = self.parts.iter().map(|part| part.least_s).fold(f64::INFINITY, f64::min);
+        let min_s = self.parts.iter().map(|part| part.min_s).fold(f64::INFINITY, f64::min);
         let p999_s = self.percentile_s(count)?;
-        Some(Delays { least_s, mean_s: sum_s / f64::from(count), p999_s })
+        Some(Delays { min_s, mean_s: sum_s / f64::from(count), p999_s })
     }
 
     /// Called when their clock minus ours has changed by this, s: delays are apparent, so earlier measurements are no
@@ -238,7 +238,7 @@ impl Playout {
             self.counts.lost += next - self.next;
             self.next = next;
         }
-        self.slots[index] = Slot { mark: number + 1, sent_s, arrived_s, len: bytes.len() };
+        self.slots[index] = PlayoutSlot { mark: number + 1, sent_s, arrived_s, len: bytes.len() };
         let at = index * self.payload_max;
         self.bytes[at..at + bytes.len()].copy_from_slice(bytes);
         self.end = self.end.max(number + 1);
@@ -259,7 +259,7 @@ impl Playout {
 
     /// Percentile of this many payloads, s: the largest delays of all parts, merged.
     fn percentile_s(&self, count: u32) -> Option<f64> {
-        let rank = (f64::from(count) * LATE_SHARE).floor() as usize;
+        let rank = (f64::from(count) * LATE_FRACTION).floor() as usize;
         let mut taken = [0_usize; PARTS];
         let mut percentile_s = None;
         for _ in 0..=rank.min(PARTS * TOP - 1) {
@@ -285,8 +285,8 @@ impl Playout {
         let wanted_s = percentile_s + self.settings.margin_s;
         self.wanted_s = Some(wanted_s);
         if let Some(delay_s) = self.delay_s {
-            let most_s = self.settings.rate * passed_s;
-            self.delay_s = Some(delay_s + (wanted_s - delay_s).clamp(-most_s, most_s));
+            let max_s = self.settings.rate * passed_s;
+            self.delay_s = Some(delay_s + (wanted_s - delay_s).clamp(-max_s, max_s));
         } else if self.first_s.is_some_and(|first_s| now_s - first_s >= FIRST_S) {
             self.delay_s = Some(wanted_s);
             self.leave_out(now_s - wanted_s);
@@ -305,7 +305,7 @@ impl Playout {
     }
 
     /// Returns the next payload that is due; `offset_s` is their clock minus ours.
-    pub fn take(&mut self, now_s: f64, offset_s: f64) -> Option<Payload<'_>> {
+    pub fn take(&mut self, now_s: f64, offset_s: f64) -> Option<DuePayload<'_>> {
         let delay_s = if self.settings.waits { self.delay_s? } else { f64::NEG_INFINITY };
         let room = self.slots.len() as u64;
         // At most all slots, and only after as many were lost.
@@ -323,7 +323,7 @@ impl Playout {
         self.next = number + 1;
         let at = index * self.payload_max;
         let age_s = now_s - (slot.sent_s - offset_s);
-        Some(Payload { number, sent_s: slot.sent_s, age_s, is_late, bytes: &self.bytes[at..at + slot.len] })
+        Some(DuePayload { number, sent_s: slot.sent_s, age_s, is_late, bytes: &self.bytes[at..at + slot.len] })
     }
 }
 

@@ -39,8 +39,8 @@ fn payloads_come_in_order_once_and_with_an_even_age() {
     assert!(got.windows(2).all(|pair| pair[1].0 == pair[0].0 + 1), "in order, none left out");
     assert!(got.iter().all(|&(_, age_s, _)| age_s < 28e-3), "25 ms, margin, a tick");
     let steady = &got[2000..];
-    let (least, most) = steady.iter().fold((1.0_f64, 0.0_f64), |(a, b), &(_, age_s, _)| (a.min(age_s), b.max(age_s)));
-    assert!(most - least < 1.1e-3, "{least} to {most}");
+    let (min, max) = steady.iter().fold((1.0_f64, 0.0_f64), |(a, b), &(_, age_s, _)| (a.min(age_s), b.max(age_s)));
+    assert!(max - min < 1.1e-3, "{min} to {max}");
     assert_eq!(playout.counts().late + playout.counts().lost + playout.counts().stale, 0, "{:?}", playout.counts());
     let delay_s = playout.delay_s().unwrap();
     assert!((delay_s - 25.5e-3).abs() < 0.05e-3, "{delay_s}");
@@ -57,7 +57,7 @@ fn the_percentile_is_that_of_the_last_five_seconds() {
     run(&mut playout, 12_000, 6000, |i| Some(if i % 2500 == 7 { 40e-3 } else { 10e-3 }));
     assert!((playout.wanted_s().unwrap() - 10.5e-3).abs() < 1e-9, "{:?}", playout.wanted_s());
     let delays = playout.delays().unwrap();
-    assert!((delays.least_s - 10e-3).abs() < 1e-9 && delays.mean_s < 10.1e-3, "{delays:?}");
+    assert!((delays.min_s - 10e-3).abs() < 1e-9 && delays.mean_s < 10.1e-3, "{delays:?}");
 }
 
 #[test]

@@ -5,23 +5,23 @@ const SAVED_S: f64 = 0.01;
 
 /// Limits the amount spent per second.
 #[derive(Clone, Copy, Debug)]
-pub struct Bucket {
+pub struct RateBucket {
     per_s: f64,
     room: f64,
     level: f64,
     filled_s: Option<f64>,
 }
 
-impl Bucket {
+impl RateBucket {
     /// A full bucket that fills at this rate per second and has this capacity.
     pub const fn new(per_s: f64, room: f64) -> Self {
         Self { per_s, room, level: room, filled_s: None }
     }
 
-    /// For datagrams: bytes at this rate (bit/s), with a capacity of 10 ms plus one datagram of `least` bytes.
-    pub fn of_bits(bits_per_s: f64, least: usize) -> Self {
+    /// For datagrams: bytes at this rate (bit/s), with a capacity of 10 ms plus one datagram of `min` bytes.
+    pub fn of_bits(bits_per_s: f64, min: usize) -> Self {
         let per_s = bits_per_s / 8.0;
-        Self::new(per_s, (per_s * SAVED_S).max(least as f64))
+        Self::new(per_s, (per_s * SAVED_S).max(min as f64))
     }
 
     /// Returns the amount available now.
@@ -48,7 +48,7 @@ mod tests {
 
     #[test]
     fn no_more_is_spent_than_the_rate_allows() {
-        let mut bucket = Bucket::of_bits(1e6, 1200);
+        let mut bucket = RateBucket::of_bits(1e6, 1200);
         let spent = (0..10_000).filter(|&tick| bucket.spend(200.0, f64::from(tick) * 1e-3)).count();
         let allowed = 10.0 * 1e6 / 8.0 / 200.0;
         assert!((spent as f64 - allowed).abs() < 10.0, "{spent} of {allowed}");

@@ -4,7 +4,7 @@
 //! sender uses the smallest n at which a payload is lost with all its copies less often than [`LEFT_OVER`], as far as
 //! the datagram size and the rate limit permit.
 
-use crate::wire::{AGE_MAX_S, COPIES_MAX, Record};
+use crate::wire::{AGE_MAX_S, COPIES_MAX, PayloadRecord};
 
 /// Allowed fraction of payloads that are lost with all their copies.
 pub const LEFT_OVER: f64 = 1e-4;
@@ -44,7 +44,7 @@ pub fn copies_for(loss: f64, again: f64) -> usize {
 
 /// Payloads that a sender may need again.
 #[derive(Clone, Debug)]
-pub struct History {
+pub struct RedundancyHistory {
     /// Content, length and time of sending of each payload.
     bytes: Vec<u8>,
     sent: [(usize, f64); COPIES_MAX],
@@ -52,7 +52,7 @@ pub struct History {
     count: u64,
 }
 
-impl History {
+impl RedundancyHistory {
     /// Empty, for payloads of this length (bytes). All memory is allocated here.
     pub fn new(payload_max: usize) -> Self {
         Self { bytes: vec![0; payload_max * COPIES_MAX], sent: [(0, 0.0); COPIES_MAX], payload_max, count: 0 }
@@ -96,11 +96,18 @@ impl History {
     /// Writes the last payloads, newest first, at most this many and as far as there is room. The first `fresh` of them
     /// have not been sent yet; the others are copies, which use at most the first `for_copies` bytes. If not all copies
     /// fit, those much longer than the mean are left out, so that one of them does not displace many short ones.
-    pub fn write(&self, copies: usize, fresh: usize, now_s: f64, room: &mut [u8], for_copies: usize) -> Written {
-        let mut written = Written::default();
+    pub fn write(
+        &self,
+        copies: usize,
+        fresh: usize,
+        now_s: f64,
+        room: &mut [u8],
+        for_copies: usize,
+    ) -> DatagramContent {
+        let mut written = DatagramContent::default();
         let count = (copies.min(COPIES_MAX) as u64).min(self.count);
         let total: usize = (0..count).map(|back| self.len(back)).sum();
-        let all: usize = (0..count).map(|back| Record::length(self.len(back), now_s - self.sent_s(back))).sum();
+        let all: usize = (0..count).map(|back| PayloadRecord::length(self.len(back), now_s - self.sent_s(back))).sum();
         let all_fit = all <= for_copies;
         for back in 0..count {
             let index = self.index(back);
@@ -113,7 +120,7 @@ impl History {
             let is_long = 2 * len * count as usize > 3 * total;
             let is_carried = is_fresh || all_fit || !is_long;
             let at = index * self.payload_max;
-            let record = Record { age_s, bytes: is_carried.then(|| &self.bytes[at..at + len]) };
+            let record = PayloadRecord { age_s, bytes: is_carried.then(|| &self.bytes[at..at + len]) };
             let end = if is_fresh { room.len() } else { for_copies.min(room.len()) };
             let Some(bytes) = room.get_mut(written.bytes..end).and_then(|room| record.write(room)) else { break };
             written.bytes += bytes;
@@ -126,7 +133,7 @@ impl History {
 
 /// The payloads written into a datagram.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Written {
+pub struct DatagramContent {
     /// Length, bytes.
     pub bytes: usize,
     /// Number of payloads in it, including those left out.
@@ -136,7 +143,7 @@ pub struct Written {
 }
 
 #[derive(Clone, Copy, Debug, Default)]
-struct Part {
+struct RedundancyPart {
     all: u32,
     lost: u32,
     /// Lost after a lost one.
@@ -158,7 +165,7 @@ pub struct Losses {
     run: u32,
     /// How many of them the statistics contain.
     added: u32,
-    parts: [Part; PARTS],
+    parts: [RedundancyPart; PARTS],
     part: usize,
     part_begin_s: f64,
     all: u64,
@@ -173,7 +180,7 @@ impl Default for Losses {
             judged: 0,
             run: 0,
             added: 0,
-            parts: [Part::default(); PARTS],
+            parts: [RedundancyPart::default(); PARTS],
             part: 0,
             part_begin_s: 0.0,
             all: 0,
@@ -187,7 +194,7 @@ impl Losses {
     pub fn add(&mut self, number: u64, now_s: f64) {
         if now_s - self.part_begin_s >= PART_S {
             self.part = (self.part + 1) % PARTS;
-            self.parts[self.part] = Part::default();
+            self.parts[self.part] = RedundancyPart::default();
             self.part_begin_s = now_s;
         }
         self.parts[self.part].overtaken += u32::from(number + 1 < self.end);
@@ -253,13 +260,13 @@ impl Losses {
 
     /// Returns the recent fraction of datagrams lost, over the last 5 s or the last second, whichever is worse; and the
     /// fraction lost after a lost one.
-    pub fn shares(&self) -> (f64, f64) {
-        let share = |parts| {
+    pub fn fractions(&self) -> (f64, f64) {
+        let fraction = |parts| {
             let (all, lost, _) = self.sum(parts);
             // Too few for a fraction.
             if all < 100.0 { 0.0 } else { lost / all }
         };
-        let loss = f64::max(share(PARTS), share(RECENT));
+        let loss = f64::max(fraction(PARTS), fraction(RECENT));
         let (_, lost, again) = self.sum(PARTS);
         // Two isolated losses at this rate are added, so that a single chance run does not count as a burst.
         let again = if lost == 0.0 { loss } else { (again + 10.0 * loss) / (lost + 10.0) };

@@ -14,9 +14,9 @@ use std::{
 };
 
 use crate::{
-    impairment::{Line, Settings},
+    impairment::{ImpairedLine, ImpairmentSettings},
     socket::Socket,
-    worker::Worker,
+    worker::NetworkWorker,
 };
 
 /// Maximum number of consoles; a new one replaces the one that has been silent longest.
@@ -39,9 +39,9 @@ pub struct RelaySettings {
     /// The follower's address.
     pub to: SocketAddr,
     /// Towards the follower.
-    pub there: Settings,
+    pub there: ImpairmentSettings,
     /// From the follower.
-    pub back: Settings,
+    pub back: ImpairmentSettings,
     /// The same seed loses the same datagrams.
     pub seed: u64,
 }
@@ -64,7 +64,7 @@ pub struct Totals {
 pub struct Relay {
     address: SocketAddr,
     totals: Arc<[AtomicU64; 4]>,
-    _thread: Worker,
+    _thread: NetworkWorker,
 }
 
 impl Relay {
@@ -78,8 +78,8 @@ impl Relay {
         let address = socket.address()?;
         let totals = Arc::<[AtomicU64; 4]>::default();
         let mut work =
-            Work { socket, settings, totals: Arc::clone(&totals), clients: Vec::new(), made: 0, busy_s: 0.0 };
-        let thread = Worker::start("relay", move |now_s| work.turn(now_s))?;
+            RelayWork { socket, settings, totals: Arc::clone(&totals), clients: Vec::new(), made: 0, busy_s: 0.0 };
+        let thread = NetworkWorker::start("relay", move |now_s| work.turn(now_s))?;
         Ok(Self { address, totals, _thread: thread })
     }
 
@@ -93,26 +93,26 @@ impl Relay {
     }
 }
 
-struct Client {
+struct RelayClient {
     address: SocketAddr,
     socket: Socket,
-    there: Line,
-    back: Line,
-    heard_s: f64,
+    there: ImpairedLine,
+    back: ImpairedLine,
+    received_s: f64,
 }
 
-struct Work {
+struct RelayWork {
     socket: Socket,
     settings: RelaySettings,
     totals: Arc<[AtomicU64; 4]>,
-    clients: Vec<Client>,
+    clients: Vec<RelayClient>,
     /// Number of clients so far: each has its own seeds.
     made: u64,
     /// When the last datagram arrived.
     busy_s: f64,
 }
 
-impl Work {
+impl RelayWork {
     fn turn(&mut self, now_s: f64) -> Duration {
         if self.take(now_s) {
             self.busy_s = now_s;
@@ -139,7 +139,7 @@ impl Work {
             let Some(arrival) = self.socket.receive(&mut buffer) else { break };
             any = true;
             if let (Some(datagram), Some(client)) = (buffer.get(..arrival.len), self.client(arrival.from, now_s)) {
-                client.heard_s = now_s;
+                client.received_s = now_s;
                 client.there.send(now_s, datagram);
             }
         }
@@ -155,13 +155,13 @@ impl Work {
         any
     }
 
-    fn client(&mut self, address: SocketAddr, now_s: f64) -> Option<&mut Client> {
+    fn client(&mut self, address: SocketAddr, now_s: f64) -> Option<&mut RelayClient> {
         let known = self.clients.iter().position(|client| client.address == address);
         if let Some(at) = known {
             return self.clients.get_mut(at);
         }
         if self.clients.len() == CLIENTS_MAX {
-            let oldest = self.clients.iter().enumerate().min_by(|(_, a), (_, b)| a.heard_s.total_cmp(&b.heard_s));
+            let oldest = self.clients.iter().enumerate().min_by(|(_, a), (_, b)| a.received_s.total_cmp(&b.received_s));
             let at = oldest.map(|(at, _)| at)?;
             self.clients.swap_remove(at);
         }
@@ -169,9 +169,9 @@ impl Work {
         let socket = Socket::open(crate::endpoint::towards(&to), Some(to)).ok()?;
         let seed = seed.wrapping_add(self.made * 2);
         self.made += 1;
-        let there = Line::new(there, seed);
-        let back = Line::new(back, seed.wrapping_add(1));
-        self.clients.push(Client { address, socket, there, back, heard_s: now_s });
+        let there = ImpairedLine::new(there, seed);
+        let back = ImpairedLine::new(back, seed.wrapping_add(1));
+        self.clients.push(RelayClient { address, socket, there, back, received_s: now_s });
         self.clients.last_mut()
     }
 

@@ -7,7 +7,7 @@ const WORDS: usize = (WINDOW / 64) as usize + 1;
 
 /// Why a number is refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Refused {
+pub enum ReplayRefusal {
     /// It has been accepted before.
     Replayed,
     Old,
@@ -15,13 +15,13 @@ pub enum Refused {
 
 /// The numbers accepted recently.
 #[derive(Clone, Debug)]
-pub struct Window {
+pub struct ReplayWindow {
     /// One more than the highest accepted number.
     next: u64,
     seen: [u64; WORDS],
 }
 
-impl Default for Window {
+impl Default for ReplayWindow {
     fn default() -> Self {
         Self { next: 0, seen: [0; WORDS] }
     }
@@ -31,7 +31,7 @@ const fn place(number: u64) -> (usize, u64) {
     ((number / 64) as usize % WORDS, 1 << (number % 64))
 }
 
-impl Window {
+impl ReplayWindow {
     /// One more than the highest accepted number; 0 before the first.
     pub const fn next(&self) -> u64 {
         self.next
@@ -40,23 +40,23 @@ impl Window {
     /// Checks whether the number may be accepted.
     ///
     /// # Errors
-    /// [`Refused`] with the cause.
-    pub const fn check(&self, number: u64) -> Result<(), Refused> {
+    /// [`ReplayRefusal`] with the cause.
+    pub const fn check(&self, number: u64) -> Result<(), ReplayRefusal> {
         if number >= self.next {
             return Ok(());
         }
         if self.next - number > WINDOW {
-            return Err(Refused::Old);
+            return Err(ReplayRefusal::Old);
         }
         let (word, bit) = place(number);
-        if self.seen[word] & bit == 0 { Ok(()) } else { Err(Refused::Replayed) }
+        if self.seen[word] & bit == 0 { Ok(()) } else { Err(ReplayRefusal::Replayed) }
     }
 
     /// Accepts the number; call it only after its datagram has proven authentic.
     ///
     /// # Errors
-    /// As [`Window::check`].
-    pub fn accept(&mut self, number: u64) -> Result<(), Refused> {
+    /// As [`ReplayWindow::check`].
+    pub fn accept(&mut self, number: u64) -> Result<(), ReplayRefusal> {
         self.check(number)?;
         let (word, bit) = place(number);
         if number >= self.next {
@@ -83,16 +83,16 @@ mod tests {
     fn it_agrees_with_a_set_of_all_numbers() {
         let mut rng = fastrand::Rng::with_seed(1);
         for base in [0_u64, 1 << 32] {
-            let mut window = Window::default();
+            let mut window = ReplayWindow::default();
             let mut set = HashSet::new();
             let mut highest = 0;
             for i in 0..100_000_u64 {
                 let jump = if rng.u32(..1000) == 0 { rng.u64(..10_000) } else { 0 };
                 let number = (base + i + jump).saturating_sub(rng.u64(..3000));
                 let expected = if !set.is_empty() && highest >= WINDOW && number <= highest - WINDOW {
-                    Err(Refused::Old)
+                    Err(ReplayRefusal::Old)
                 } else if set.contains(&number) {
-                    Err(Refused::Replayed)
+                    Err(ReplayRefusal::Replayed)
                 } else {
                     Ok(())
                 };

@@ -15,7 +15,7 @@ const EXPEDITED: u32 = 0xb8;
 
 /// A received datagram.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Arrival {
+pub(crate) struct DatagramArrival {
     /// Its length, bytes; more than the buffer's if it was truncated (on Linux; Windows drops such a datagram).
     pub(crate) len: usize,
     pub(crate) from: SocketAddr,
@@ -23,7 +23,7 @@ pub(crate) struct Arrival {
     pub(crate) stamp: Option<Duration>,
 }
 
-impl Arrival {
+impl DatagramArrival {
     /// Returns its arrival, s, by the clock that showed `now_s` at `looked` (since 1970).
     pub(crate) fn came_s(&self, now_s: f64, looked: Duration) -> f64 {
         let Some(stamp) = self.stamp else { return now_s };
@@ -72,7 +72,7 @@ impl Socket {
     }
 
     /// Returns the next datagram, if there is one.
-    pub(crate) fn receive(&self, buffer: &mut [u8]) -> Option<Arrival> {
+    pub(crate) fn receive(&self, buffer: &mut [u8]) -> Option<DatagramArrival> {
         // An error may report that an earlier datagram of ours was not accepted; at most a few in a row.
         for _ in 0..4 {
             match stamps::receive(&self.socket, buffer) {
@@ -105,7 +105,7 @@ mod stamps {
         time::Duration,
     };
 
-    use super::Arrival;
+    use super::DatagramArrival;
 
     pub(super) fn switch_on(socket: &socket2::Socket) {
         let on: libc::c_int = 1;
@@ -116,7 +116,7 @@ mod stamps {
         }
     }
 
-    pub(super) fn receive(socket: &UdpSocket, buffer: &mut [u8]) -> io::Result<Arrival> {
+    pub(super) fn receive(socket: &UdpSocket, buffer: &mut [u8]) -> io::Result<DatagramArrival> {
         // SAFETY: all zeros is a valid value of both.
         let (mut name, mut message): (libc::sockaddr_storage, libc::msghdr) = unsafe { (zeroed(), zeroed()) };
         let mut control = [0_u64; 16];
@@ -132,7 +132,7 @@ mod stamps {
         let len = unsafe { libc::recvmsg(socket.as_raw_fd(), &raw mut message, libc::MSG_TRUNC) };
         let Ok(len) = usize::try_from(len) else { return Err(io::Error::last_os_error()) };
         let from = address(&name).ok_or(io::ErrorKind::InvalidData)?;
-        Ok(Arrival { len, from, stamp: stamp(&message) })
+        Ok(DatagramArrival { len, from, stamp: stamp(&message) })
     }
 
     /// Returns when the datagram arrived, since 1970.
@@ -170,13 +170,13 @@ mod stamps {
 mod stamps {
     use std::{io, net::UdpSocket};
 
-    use super::Arrival;
+    use super::DatagramArrival;
 
     pub(super) fn switch_on(_: &socket2::Socket) {}
 
-    pub(super) fn receive(socket: &UdpSocket, buffer: &mut [u8]) -> io::Result<Arrival> {
+    pub(super) fn receive(socket: &UdpSocket, buffer: &mut [u8]) -> io::Result<DatagramArrival> {
         let (len, from) = socket.recv_from(buffer)?;
-        Ok(Arrival { len, from, stamp: None })
+        Ok(DatagramArrival { len, from, stamp: None })
     }
 }
 

@@ -5,17 +5,17 @@
 use snow::StatelessTransportState;
 
 use crate::{
-    clock::{Clock, Exchange, Step},
-    figures::{Copies, Figures, Limit, Meter},
+    clock::{ClockExchange, ClockStep, NetworkClock},
+    figures::{Copies, FigureMeter, Limit, SessionMeasurements},
     keys::KeyError,
-    playout::{Payload, Playout, PlayoutSettings},
-    rate::Bucket,
-    redundancy::{History, Losses, Written, copies_for},
-    replay::{Refused, Window},
+    playout::{DuePayload, Playout, PlayoutSettings},
+    rate::RateBucket,
+    redundancy::{DatagramContent, Losses, RedundancyHistory, copies_for},
+    replay::{ReplayRefusal, ReplayWindow},
     secure,
     wire::{
-        self, DATAGRAM_MAX, HEAD_MAX, HEAD_MIN, Head, OUTER_LEN, PAYLOAD_MAX, RECORD_MAX, Record, Report, TAG_LEN,
-        UDP_LEN,
+        self, DATAGRAM_MAX, DatagramHead, HEAD_MAX, HEAD_MIN, OUTER_LEN, PAYLOAD_MAX, PayloadRecord, RECORD_MAX,
+        TAG_LEN, UDP_LEN, WireReport,
     },
 };
 
@@ -53,7 +53,7 @@ impl StreamSettings {
 
 /// Result of sending a payload.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Sent {
+pub enum SendResult {
     /// A datagram of this length, bytes.
     Datagram(usize),
     /// The rate limit leaves no room now: the payload goes with the next datagram.
@@ -64,7 +64,7 @@ pub enum Sent {
 
 /// Why a datagram of a session was dropped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Unaccepted {
+pub enum DropCause {
     /// It is not encrypted with this session's keys.
     Forged,
     /// A duplicate.
@@ -76,39 +76,39 @@ pub enum Unaccepted {
 
 /// The content of an accepted datagram, other than payloads.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Accepted {
+pub struct AcceptedDatagram {
     /// Whether it is newer than all earlier ones.
     pub is_newest: bool,
     /// Its control byte, if it has one.
     pub(crate) control: Option<u8>,
     /// A clock step that it proved.
-    pub step: Option<Step>,
+    pub step: Option<ClockStep>,
 }
 
 /// Both directions of one session.
 #[derive(Debug)]
-pub struct Stream {
+pub struct NetworkStream {
     keys: StatelessTransportState,
     /// Number of the session at the other side.
     session: u32,
     counter: u64,
-    window: Window,
-    clock: Clock,
+    window: ReplayWindow,
+    clock: NetworkClock,
     playout: Playout,
-    history: History,
+    history: RedundancyHistory,
     losses: Losses,
-    bucket: Bucket,
+    bucket: RateBucket,
     /// Loss of our datagrams, as reported by the other side: fraction, and fraction after a lost one.
-    told_loss: (f64, f64),
+    reported_loss: (f64, f64),
     /// Fraction of our datagrams that arrive after a later one, as reported by the other side.
-    told_overtaken: f64,
+    reported_overtaken: f64,
     /// The newest datagram received: when it was sent (µs, their clock) and when it arrived (s, ours).
     newest: Option<(u64, f64)>,
     /// Control byte in the last datagram that was sent.
-    told_control: u8,
+    reported_control: u8,
     copies: Copies,
-    sent: Meter,
-    received: Meter,
+    sent: FigureMeter,
+    received: FigureMeter,
     held: u64,
     /// Number of payloads that no datagram has carried yet.
     waiting: usize,
@@ -124,15 +124,15 @@ fn seconds(us: u64) -> f64 {
     us as f64 * 1e-6
 }
 
-fn share(byte: u8) -> f64 {
+fn fraction(byte: u8) -> f64 {
     f64::from(byte) / 255.0
 }
 
-fn byte(share: f64) -> u8 {
-    (share * 255.0).ceil().clamp(0.0, 255.0) as u8
+fn byte(fraction: f64) -> u8 {
+    (fraction * 255.0).ceil().clamp(0.0, 255.0) as u8
 }
 
-impl Stream {
+impl NetworkStream {
     /// Makes a stream with the keys of a handshake; `session` is its number at the other side. All memory is allocated
     /// here.
     pub(crate) fn new(keys: StatelessTransportState, session: u32, settings: &StreamSettings) -> Self {
@@ -141,19 +141,19 @@ impl Stream {
             keys,
             session,
             counter: 0,
-            window: Window::default(),
-            clock: Clock::default(),
+            window: ReplayWindow::default(),
+            clock: NetworkClock::default(),
             playout: Playout::new(settings.playout, payload_max),
-            history: History::new(payload_max),
+            history: RedundancyHistory::new(payload_max),
             losses: Losses::default(),
-            bucket: Bucket::of_bits(settings.rate_max_bit_s, DATAGRAM_MAX + UDP_LEN),
-            told_loss: (0.0, 0.0),
-            told_overtaken: 0.0,
+            bucket: RateBucket::of_bits(settings.rate_max_bit_s, DATAGRAM_MAX + UDP_LEN),
+            reported_loss: (0.0, 0.0),
+            reported_overtaken: 0.0,
             newest: None,
-            told_control: 0,
+            reported_control: 0,
             copies: Copies::default(),
-            sent: Meter::default(),
-            received: Meter::default(),
+            sent: FigureMeter::default(),
+            received: FigureMeter::default(),
             held: 0,
             waiting: 0,
             plain: [0; DATAGRAM_MAX],
@@ -166,14 +166,14 @@ impl Stream {
     /// [`KeyError::Random`] if the system provides no random numbers.
     ///
     /// ```
-    /// use nima_network::{stream::{Sent, Stream, StreamSettings}, wire::DATAGRAM_MAX};
+    /// use nima_network::{stream::{SendResult, NetworkStream, StreamSettings}, wire::DATAGRAM_MAX};
     ///
-    /// let (mut console, mut follower) = Stream::pair(&StreamSettings::default())?;
+    /// let (mut console, mut follower) = NetworkStream::pair(&StreamSettings::default())?;
     /// let mut datagram = [0; DATAGRAM_MAX];
     /// let mut got = 0;
     /// for tick in 0..1000 {
     ///     let now_s = f64::from(tick) * 1e-3;
-    ///     if let Sent::Datagram(len) = console.send(now_s, Some(b"hello"), 0, &mut datagram) {
+    ///     if let SendResult::Datagram(len) = console.send(now_s, Some(b"hello"), 0, &mut datagram) {
     ///         follower.receive(&datagram[..len], now_s).expect("authentic");
     ///     }
     ///     follower.advance(now_s);
@@ -193,10 +193,16 @@ impl Stream {
     /// Writes a datagram with this payload and the last ones before it; without a payload, one that keeps the session
     /// alive. `now_s` is the time of sending, s; `control` is the endpoints' byte about control of the follower, 0 for
     /// none.
-    pub fn send(&mut self, now_s: f64, payload: Option<&[u8]>, control: u8, out: &mut [u8; DATAGRAM_MAX]) -> Sent {
+    pub fn send(
+        &mut self,
+        now_s: f64,
+        payload: Option<&[u8]>,
+        control: u8,
+        out: &mut [u8; DATAGRAM_MAX],
+    ) -> SendResult {
         if let Some(payload) = payload {
             if !self.history.add(payload, now_s) {
-                return Sent::TooLong;
+                return SendResult::TooLong;
             }
             self.waiting += 1;
         }
@@ -206,14 +212,15 @@ impl Stream {
         let Some(room) = allowed.checked_sub(UDP_LEN + frame) else { return self.hold(payload) };
         let is_limited = room < DATAGRAM_MAX - frame;
         // Held payloads have not been sent at all.
-        let (loss, again) = self.told_loss;
-        let overtaken = self.told_overtaken;
+        let (loss, again) = self.reported_loss;
+        let overtaken = self.reported_overtaken;
         let wanted = copies_for(loss + overtaken, f64::max(again, loss + overtaken)).max(self.waiting);
         // Copies leave room for the next long payload: a held one follows newer ones and might never fit.
         let for_copies = room.saturating_sub(RECORD_MAX + self.history.longest());
         let end = head.length() + room.min(DATAGRAM_MAX - frame);
         let plain = &mut self.plain[head.length()..end];
-        let Written { bytes, records, carried } = self.history.write(wanted, self.waiting, now_s, plain, for_copies);
+        let DatagramContent { bytes, records, carried } =
+            self.history.write(wanted, self.waiting, now_s, plain, for_copies);
         if payload.is_some() && records == 0 {
             return self.hold(payload);
         }
@@ -232,80 +239,86 @@ impl Stream {
         out[..OUTER_LEN].copy_from_slice(&wire::outer(self.session, self.counter));
         let plain = &self.plain[..head.length() + bytes];
         // It fails only for datagrams that are too long, which these are not.
-        let Ok(sealed) = self.keys.write_message(self.counter, plain, &mut out[OUTER_LEN..]) else { return Sent::Held };
+        let Ok(sealed) = self.keys.write_message(self.counter, plain, &mut out[OUTER_LEN..]) else {
+            return SendResult::Held;
+        };
         self.counter += 1;
-        self.told_control = control;
+        self.reported_control = control;
         self.waiting = self.waiting.saturating_sub(records);
         self.bucket.spend((OUTER_LEN + sealed + UDP_LEN) as f64, now_s);
         self.sent.add(OUTER_LEN + sealed + UDP_LEN, now_s);
-        Sent::Datagram(OUTER_LEN + sealed)
+        SendResult::Datagram(OUTER_LEN + sealed)
     }
 
     /// Returns the head of the next datagram. A change of control is sent at once.
-    fn head(&self, now_s: f64, is_alone: bool, control: u8) -> Head {
+    fn head(&self, now_s: f64, is_alone: bool, control: u8) -> DatagramHead {
         let is_due = self.counter < REPORT_EVERY || self.counter.is_multiple_of(REPORT_EVERY);
-        let report = || Report {
+        let report = || WireReport {
             echo: self
                 .newest
                 .map(|(sent_us, came_s)| (sent_us as u32, micros((now_s - came_s).clamp(0.0, 4000.0)) as u32)),
-            loss: byte(self.losses.shares().0),
-            loss_again: byte(self.losses.shares().1),
+            loss: byte(self.losses.fractions().0),
+            loss_again: byte(self.losses.fractions().1),
             overtaken: byte(self.losses.overtaken()),
             control,
         };
-        Head {
+        DatagramHead {
             sent_us: micros(now_s),
-            report: (is_due || is_alone || control != self.told_control).then(report),
+            report: (is_due || is_alone || control != self.reported_control).then(report),
             newest: self.history.count().saturating_sub(1) as u32,
             count: 0,
         }
     }
 
-    const fn hold(&mut self, payload: Option<&[u8]>) -> Sent {
+    const fn hold(&mut self, payload: Option<&[u8]>) -> SendResult {
         self.held += payload.is_some() as u64;
-        Sent::Held
+        SendResult::Held
     }
 
     /// Processes a datagram of this session that arrived at `arrived_s` (s, our clock).
     ///
     /// # Errors
-    /// [`Unaccepted`] with the cause; its payloads are then not used.
-    pub fn receive(&mut self, datagram: &[u8], arrived_s: f64) -> Result<Accepted, Unaccepted> {
-        let Some((_, low, sealed)) = wire::open_outer(datagram) else { return Err(Unaccepted::Malformed) };
+    /// [`DropCause`] with the cause; its payloads are then not used.
+    pub fn receive(&mut self, datagram: &[u8], arrived_s: f64) -> Result<AcceptedDatagram, DropCause> {
+        let Some((_, low, sealed)) = wire::open_outer(datagram) else { return Err(DropCause::Malformed) };
         if sealed.len() < HEAD_MIN + TAG_LEN || datagram.len() > DATAGRAM_MAX {
-            return Err(Unaccepted::Malformed);
+            return Err(DropCause::Malformed);
         }
         let number = wire::whole(self.window.next(), low);
         let refused = |refused| match refused {
-            Refused::Replayed => Unaccepted::Replayed,
-            Refused::Old => Unaccepted::Old,
+            ReplayRefusal::Replayed => DropCause::Replayed,
+            ReplayRefusal::Old => DropCause::Old,
         };
         self.window.check(number).map_err(refused)?;
         let mut plain = [0; DATAGRAM_MAX];
-        let len = self.keys.read_message(number, sealed, &mut plain).map_err(|_| Unaccepted::Forged)?;
+        let len = self.keys.read_message(number, sealed, &mut plain).map_err(|_| DropCause::Forged)?;
         let is_newest = number >= self.window.next();
         self.window.accept(number).map_err(refused)?;
-        let Some((mut head, records)) = Head::from_bytes(&plain[..len]) else { return Err(Unaccepted::Malformed) };
+        let Some((mut head, records)) = DatagramHead::from_bytes(&plain[..len]) else {
+            return Err(DropCause::Malformed);
+        };
         self.received.add(datagram.len() + UDP_LEN, arrived_s);
         self.losses.add(number, arrived_s);
         let control = head.report.map(|report| report.control);
-        let Some(sent_us) = self.when(&head, arrived_s) else { return Ok(Accepted { is_newest, control, step: None }) };
+        let Some(sent_us) = self.when(&head, arrived_s) else {
+            return Ok(AcceptedDatagram { is_newest, control, step: None });
+        };
         head.sent_us = sent_us;
         let step = self.compare_clocks(&head, arrived_s);
         if is_newest {
             self.newest = Some((sent_us, arrived_s));
-            if let Some(Report { loss, loss_again, overtaken, .. }) = head.report {
-                self.told_loss = (share(loss), share(loss_again));
-                self.told_overtaken = share(overtaken);
+            if let Some(WireReport { loss, loss_again, overtaken, .. }) = head.report {
+                self.reported_loss = (fraction(loss), fraction(loss_again));
+                self.reported_overtaken = fraction(overtaken);
             }
         }
         self.take_payloads(&head, records, arrived_s);
-        Ok(Accepted { is_newest, control, step })
+        Ok(AcceptedDatagram { is_newest, control, step })
     }
 
     /// Returns when a datagram was sent, µs: without a report it contains only the lower half, and the first one with a
     /// report provides the rest.
-    fn when(&self, head: &Head, arrived_s: f64) -> Option<u64> {
+    fn when(&self, head: &DatagramHead, arrived_s: f64) -> Option<u64> {
         if head.report.is_some() {
             return Some(head.sent_us);
         }
@@ -314,7 +327,7 @@ impl Stream {
         Some(wire::whole(near, head.sent_us as u32))
     }
 
-    fn compare_clocks(&mut self, head: &Head, arrived_s: f64) -> Option<Step> {
+    fn compare_clocks(&mut self, head: &DatagramHead, arrived_s: f64) -> Option<ClockStep> {
         let (echo_us, held_us) = head.report?.echo?;
         let origin_s = seconds(wire::whole(micros(arrived_s), echo_us));
         let sent_s = seconds(head.sent_us);
@@ -322,12 +335,12 @@ impl Stream {
             return None;
         }
         let received_s = sent_s - seconds(u64::from(held_us));
-        let step = self.clock.add(&Exchange { origin_s, received_s, sent_s, arrived_s })?;
+        let step = self.clock.add(&ClockExchange { origin_s, received_s, sent_s, arrived_s })?;
         self.playout.clock_stepped(step.by_s);
         Some(step)
     }
 
-    fn take_payloads(&mut self, head: &Head, mut records: &[u8], arrived_s: f64) {
+    fn take_payloads(&mut self, head: &DatagramHead, mut records: &[u8], arrived_s: f64) {
         if head.count == 0 {
             return;
         }
@@ -355,18 +368,18 @@ impl Stream {
     }
 
     /// Returns the next payload that is due.
-    pub fn take(&mut self, now_s: f64) -> Option<Payload<'_>> {
+    pub fn take(&mut self, now_s: f64) -> Option<DuePayload<'_>> {
         let offset_s = self.clock.estimate(now_s).map_or(0.0, |estimate| estimate.offset_s);
         self.playout.take(now_s, offset_s)
     }
 
     /// Arrival of the newest datagram, s.
-    pub fn heard_s(&self) -> Option<f64> {
+    pub fn received_s(&self) -> Option<f64> {
         self.newest.map(|(_, came_s)| came_s)
     }
 
     /// The clock of the other side.
-    pub const fn clock(&self) -> &Clock {
+    pub const fn clock(&self) -> &NetworkClock {
         &self.clock
     }
 
@@ -375,18 +388,18 @@ impl Stream {
     }
 
     /// Returns the measurements.
-    pub fn figures(&self, now_s: f64) -> Figures {
+    pub fn figures(&self, now_s: f64) -> SessionMeasurements {
         let clock = self.clock.estimate(now_s);
         let offset_s = clock.map_or(0.0, |clock| clock.offset_s);
         let (datagrams, lost) = self.losses.totals();
-        Figures {
+        SessionMeasurements {
             clock,
             steps: self.clock.steps(),
             one_way: self.playout.delays().map(|delays| delays.shifted(offset_s)),
             playout_s: self.playout.delay_s().map(|delay_s| delay_s + offset_s),
             playout_wanted_s: self.playout.wanted_s().map(|wanted_s| wanted_s + offset_s),
-            loss: self.losses.shares().0,
-            loss_there: self.told_loss.0,
+            loss: self.losses.fractions().0,
+            loss_there: self.reported_loss.0,
             datagrams_expected: datagrams,
             datagrams_lost: lost,
             copies: self.copies,
@@ -414,8 +427,9 @@ pub fn payload_room(copies: usize, payloads_per_s: f64, rate_max_bit_s: f64) -> 
     // One head of several is a long one.
     let head = HEAD_MIN + (HEAD_MAX - HEAD_MIN).div_ceil(REPORT_EVERY as usize);
     let room = datagram.checked_sub(UDP_LEN + OUTER_LEN + head + TAG_LEN)?;
-    let all =
-        |len: usize| (0..copies.max(1)).map(|back| Record::length(len, back as f64 / payloads_per_s)).sum::<usize>();
+    let all = |len: usize| {
+        (0..copies.max(1)).map(|back| PayloadRecord::length(len, back as f64 / payloads_per_s)).sum::<usize>()
+    };
     (0..=PAYLOAD_MAX).rev().find(|&len| all(len) <= room)
 }
 

@@ -1,11 +1,11 @@
 use super::*;
-use crate::impairment::{Flap, Jitter, Line, Loss, Settings};
+use crate::impairment::{Flap, ImpairedLine, ImpairmentJitter, ImpairmentSettings, LossModel};
 
 /// Two streams with a line in each direction, on a virtual clock of 1 kHz.
 struct Link {
-    ends: [Box<Stream>; 2],
+    ends: [Box<NetworkStream>; 2],
     /// From each end to the other.
-    lines: [Line; 2],
+    lines: [ImpairedLine; 2],
     /// Payloads received by each end: number and age (s).
     got: [Vec<(u64, f64)>; 2],
     steps: [u32; 2],
@@ -18,9 +18,9 @@ struct Link {
 }
 
 impl Link {
-    fn new(settings: Settings, stream: StreamSettings, len: usize) -> Self {
-        let (one, other) = Stream::pair(&stream).unwrap();
-        let lines = [Line::new(settings, 1), Line::new(settings, 2)];
+    fn new(settings: ImpairmentSettings, stream: StreamSettings, len: usize) -> Self {
+        let (one, other) = NetworkStream::pair(&stream).unwrap();
+        let lines = [ImpairedLine::new(settings, 1), ImpairedLine::new(settings, 2)];
         Self {
             ends: [Box::new(one), Box::new(other)],
             lines,
@@ -49,7 +49,7 @@ impl Link {
                 let is_tenth = self.ends[i].payloads().is_multiple_of(10);
                 let mut payload = vec![i as u8; if is_tenth { self.tenth_len } else { self.len }];
                 payload[..8].copy_from_slice(&self.ends[i].payloads().to_le_bytes());
-                if let Sent::Datagram(len) = self.ends[i].send(local_s, Some(&payload), 0, &mut datagram) {
+                if let SendResult::Datagram(len) = self.ends[i].send(local_s, Some(&payload), 0, &mut datagram) {
                     self.lines[i].send(now_s, &datagram[..len]);
                 }
                 self.ends[i].advance(local_s);
@@ -62,7 +62,7 @@ impl Link {
         }
     }
 
-    fn figures(&self, i: usize) -> Figures {
+    fn figures(&self, i: usize) -> SessionMeasurements {
         self.ends[i].figures(f64::from(self.tick) * 1e-3 + if i == 1 { self.offset_s } else { 0.0 })
     }
 }
@@ -73,7 +73,11 @@ fn stream(rate_max_bit_s: f64) -> StreamSettings {
 
 #[test]
 fn a_good_line_loses_nothing_and_knows_its_delay() {
-    let settings = Settings { delay_s: 5e-3, jitter: Jitter::Normal { deviation_s: 0.3e-3 }, ..Settings::default() };
+    let settings = ImpairmentSettings {
+        delay_s: 5e-3,
+        jitter: ImpairmentJitter::Normal { deviation_s: 0.3e-3 },
+        ..ImpairmentSettings::default()
+    };
     let mut link = Link::new(settings, stream(1e6), 40);
     link.run(10.0);
     for i in 0..2 {
@@ -82,7 +86,7 @@ fn a_good_line_loses_nothing_and_knows_its_delay() {
         let figures = link.figures(i);
         assert_eq!((figures.counts.lost, figures.datagrams_lost, figures.steps), (0, 0, 0), "{figures:?}");
         let delays = figures.one_way.unwrap();
-        assert!((delays.least_s - 5e-3).abs() < 0.2e-3 && figures.jitter_s().unwrap() < 1.5e-3, "{delays:?}");
+        assert!((delays.min_s - 5e-3).abs() < 0.2e-3 && figures.jitter_s().unwrap() < 1.5e-3, "{delays:?}");
         let playout_s = figures.playout_s.unwrap();
         assert!((playout_s - delays.p999_s - 0.5e-3).abs() < 0.1e-3, "{figures:?}");
         let clock = figures.clock.unwrap();
@@ -97,8 +101,8 @@ fn a_good_line_loses_nothing_and_knows_its_delay() {
 
 #[test]
 fn a_third_of_the_datagrams_lost_costs_next_to_no_payload() {
-    let loss = Loss::Independent { share: 0.3 };
-    let settings = Settings { delay_s: 20e-3, loss, ..Settings::default() };
+    let loss = LossModel::Independent { fraction: 0.3 };
+    let settings = ImpairmentSettings { delay_s: 20e-3, loss, ..ImpairmentSettings::default() };
     let mut link = Link::new(settings, stream(4e6), 32);
     link.run(3.0);
     let before = link.figures(0).counts;
@@ -116,7 +120,8 @@ fn a_third_of_the_datagrams_lost_costs_next_to_no_payload() {
 
 #[test]
 fn the_limit_of_the_rate_is_kept_and_named() {
-    let settings = Settings { loss: Loss::Independent { share: 0.3 }, ..Settings::default() };
+    let settings =
+        ImpairmentSettings { loss: LossModel::Independent { fraction: 0.3 }, ..ImpairmentSettings::default() };
     for (len, rate_max_bit_s) in [(40, 1e6), (64, 1e6), (60, 0.4e6)] {
         let mut link = Link::new(settings, stream(rate_max_bit_s), len);
         link.run(10.0);
@@ -135,7 +140,11 @@ fn the_limit_of_the_rate_is_kept_and_named() {
 /// A follower's data: its force in every tick, parameters with every tenth.
 #[test]
 fn long_payloads_arrive_although_the_rate_has_no_room_for_their_copies() {
-    let settings = Settings { delay_s: 20e-3, loss: Loss::Independent { share: 0.3 }, ..Settings::default() };
+    let settings = ImpairmentSettings {
+        delay_s: 20e-3,
+        loss: LossModel::Independent { fraction: 0.3 },
+        ..ImpairmentSettings::default()
+    };
     let mut link = Link::new(settings, StreamSettings::of_arms(1), 40);
     link.tenth_len = 350;
     link.run(5.0);
@@ -153,14 +162,14 @@ fn long_payloads_arrive_although_the_rate_has_no_room_for_their_copies() {
 
 #[test]
 fn duplicates_reordering_and_jitter_change_nothing_but_the_delay() {
-    let settings = Settings {
+    let settings = ImpairmentSettings {
         delay_s: 10e-3,
-        jitter: Jitter::Pareto { mean_s: 1e-3, shape: 3.0 },
+        jitter: ImpairmentJitter::Pareto { mean_s: 1e-3, shape: 3.0 },
         overtakes: true,
         reorder: 0.05,
         reorder_s: 3e-3,
         duplicate: 0.2,
-        ..Settings::default()
+        ..ImpairmentSettings::default()
     };
     let mut link = Link::new(settings, stream(2e6), 40);
     link.run(20.0);
@@ -177,8 +186,11 @@ fn duplicates_reordering_and_jitter_change_nothing_but_the_delay() {
 #[test]
 fn a_step_of_a_clock_is_named_within_a_second_by_both() {
     for by_s in [50e-3, -50e-3, 5e-3] {
-        let settings =
-            Settings { delay_s: 15e-3, jitter: Jitter::Normal { deviation_s: 0.5e-3 }, ..Settings::default() };
+        let settings = ImpairmentSettings {
+            delay_s: 15e-3,
+            jitter: ImpairmentJitter::Normal { deviation_s: 0.5e-3 },
+            ..ImpairmentSettings::default()
+        };
         let mut link = Link::new(settings, stream(1e6), 40);
         link.run(5.0);
         assert_eq!(link.steps, [0; 2]);
@@ -198,7 +210,7 @@ fn a_step_of_a_clock_is_named_within_a_second_by_both() {
 #[test]
 fn after_an_outage_the_stream_goes_on_where_it_is() {
     let flap = Some(Flap { down_s: 0.8, every_s: 4.0 });
-    let settings = Settings { delay_s: 20e-3, flap, ..Settings::default() };
+    let settings = ImpairmentSettings { delay_s: 20e-3, flap, ..ImpairmentSettings::default() };
     let mut link = Link::new(settings, stream(1e6), 40);
     link.run(40.0);
     let figures = link.figures(0);
@@ -211,10 +223,16 @@ fn after_an_outage_the_stream_goes_on_where_it_is() {
 
 #[test]
 fn directions_can_differ() {
-    let mut link = Link::new(Settings::default(), stream(2e6), 40);
-    link.lines[0] = Line::new(Settings { delay_s: 30e-3, ..Settings::default() }, 1);
-    link.lines[1] =
-        Line::new(Settings { delay_s: 10e-3, loss: Loss::Independent { share: 0.1 }, ..Settings::default() }, 2);
+    let mut link = Link::new(ImpairmentSettings::default(), stream(2e6), 40);
+    link.lines[0] = ImpairedLine::new(ImpairmentSettings { delay_s: 30e-3, ..ImpairmentSettings::default() }, 1);
+    link.lines[1] = ImpairedLine::new(
+        ImpairmentSettings {
+            delay_s: 10e-3,
+            loss: LossModel::Independent { fraction: 0.1 },
+            ..ImpairmentSettings::default()
+        },
+        2,
+    );
     link.run(10.0);
     let [one, other] = [link.figures(0), link.figures(1)];
     assert!(one.loss > 0.08 && one.loss_there < 0.01 && other.loss < 0.01 && other.loss_there > 0.08);
@@ -226,7 +244,7 @@ fn directions_can_differ() {
 
 /// Sends forged, changed and repeated datagrams of a session; returns how many were accepted.
 fn attack(rounds: u32, seed: u64) -> u64 {
-    let (mut one, mut other) = Stream::pair(&stream(1e9)).unwrap();
+    let (mut one, mut other) = NetworkStream::pair(&stream(1e9)).unwrap();
     let mut rng = fastrand::Rng::with_seed(seed);
     let mut datagram = [0; DATAGRAM_MAX];
     let mut kept: Vec<Vec<u8>> = Vec::new();
@@ -235,7 +253,9 @@ fn attack(rounds: u32, seed: u64) -> u64 {
     for round in 0..rounds {
         let now_s = f64::from(round) * 1e-4;
         if round % 100 == 0 {
-            let Sent::Datagram(len) = one.send(now_s, Some(&[9; 40]), 0, &mut datagram) else { panic!("not sent") };
+            let SendResult::Datagram(len) = one.send(now_s, Some(&[9; 40]), 0, &mut datagram) else {
+                panic!("not sent")
+            };
             other.receive(&datagram[..len], now_s).expect("the true one");
             kept.push(datagram[..len].to_vec());
             if kept.len() > 4000 {
@@ -286,26 +306,26 @@ fn fuzz_datagrams() {
 #[test]
 #[ignore = "ten seconds: ./dev figures"]
 fn figures_of_lines() {
-    let bursts = |burst_s| Loss::Bursts { share: 0.05, burst_s };
-    let pareto = Jitter::Pareto { mean_s: 2e-3, shape: 3.0 };
-    let normal = |deviation_s| Jitter::Normal { deviation_s };
+    let bursts = |burst_s| LossModel::Bursts { fraction: 0.05, burst_s };
+    let pareto = ImpairmentJitter::Pareto { mean_s: 2e-3, shape: 3.0 };
+    let normal = |deviation_s| ImpairmentJitter::Normal { deviation_s };
     let lines = [
-        ("one room", 0.2e-3, normal(0.05e-3), Loss::None),
-        ("one building", 2e-3, normal(0.5e-3), Loss::Independent { share: 0.001 }),
-        ("10 ms", 10e-3, normal(1e-3), Loss::Independent { share: 0.01 }),
-        ("50 ms", 50e-3, normal(5e-3), Loss::Independent { share: 0.01 }),
-        ("150 ms", 150e-3, normal(5e-3), Loss::Independent { share: 0.05 }),
-        ("50 ms, long tail", 50e-3, pareto, Loss::Independent { share: 0.01 }),
-        ("50 ms, 10 % lost", 50e-3, normal(1e-3), Loss::Independent { share: 0.1 }),
-        ("50 ms, 30 % lost", 50e-3, normal(1e-3), Loss::Independent { share: 0.3 }),
-        ("50 ms, 30 % lost, jitter 20 ms", 50e-3, normal(20e-3), Loss::Independent { share: 0.3 }),
+        ("one room", 0.2e-3, normal(0.05e-3), LossModel::None),
+        ("one building", 2e-3, normal(0.5e-3), LossModel::Independent { fraction: 0.001 }),
+        ("10 ms", 10e-3, normal(1e-3), LossModel::Independent { fraction: 0.01 }),
+        ("50 ms", 50e-3, normal(5e-3), LossModel::Independent { fraction: 0.01 }),
+        ("150 ms", 150e-3, normal(5e-3), LossModel::Independent { fraction: 0.05 }),
+        ("50 ms, long tail", 50e-3, pareto, LossModel::Independent { fraction: 0.01 }),
+        ("50 ms, 10 % lost", 50e-3, normal(1e-3), LossModel::Independent { fraction: 0.1 }),
+        ("50 ms, 30 % lost", 50e-3, normal(1e-3), LossModel::Independent { fraction: 0.3 }),
+        ("50 ms, 30 % lost, jitter 20 ms", 50e-3, normal(20e-3), LossModel::Independent { fraction: 0.3 }),
         ("50 ms, 5 % lost in bursts of 10 ms", 50e-3, normal(1e-3), bursts(10e-3)),
         ("50 ms, 5 % lost in bursts of 50 ms", 50e-3, normal(1e-3), bursts(50e-3)),
     ];
     for overtakes in [false, true] {
         println!("datagrams may overtake each other: {overtakes}");
         for (name, delay_s, jitter, loss) in lines {
-            let settings = Settings { delay_s, jitter, overtakes, loss, ..Settings::default() };
+            let settings = ImpairmentSettings { delay_s, jitter, overtakes, loss, ..ImpairmentSettings::default() };
             let mut link = Link::new(settings, stream(4e6), 40);
             link.run(60.0);
             let before = link.figures(0).counts;

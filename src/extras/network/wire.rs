@@ -3,7 +3,7 @@
 //! Every datagram begins with the version of the protocol and its kind. Those of a handshake continue with [`MAGIC`]
 //! and a number chosen by their sender, so that an answer cannot be forged without seeing the request; these fourteen
 //! bytes and a refusal stay the same in every version. Those of a session continue with the number of the session at
-//! the receiver and the lower half of their own number; the rest is encrypted: a [`Head`] with the time stamps, then
+//! the receiver and the lower half of their own number; the rest is encrypted: a [`DatagramHead`] with the time stamps, then
 //! the payloads, newest first.
 //!
 //! Numbers are little-endian.
@@ -16,7 +16,7 @@ pub const DATAGRAM_MAX: usize = 1200;
 pub const OUTER_LEN: usize = 10;
 /// Length added by the encryption, bytes.
 pub const TAG_LEN: usize = 16;
-/// Length of the shortest [`Head`], bytes: without a report.
+/// Length of the shortest [`DatagramHead`], bytes: without a report.
 pub const HEAD_MIN: usize = 8;
 /// Length of the longest, with report and echo, bytes.
 pub const HEAD_MAX: usize = 22;
@@ -47,7 +47,7 @@ const AGE_UNIT_S: f64 = 2e-5;
 
 /// Kind of a datagram.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum DatagramKind {
     /// A console requests a cookie.
     Hello,
     /// The cookie.
@@ -64,7 +64,7 @@ pub enum Kind {
     Pairing,
 }
 
-impl Kind {
+impl DatagramKind {
     const ALL: [Self; 7] =
         [Self::Hello, Self::Cookie, Self::Initiation, Self::Response, Self::Refusal, Self::Data, Self::Pairing];
 
@@ -97,16 +97,16 @@ pub enum Unreadable {
 /// # Errors
 /// [`Unreadable`] if it is not of this version. Only a datagram with [`MAGIC`] counts as a handshake of another
 /// version: random bytes do not.
-pub fn kind(datagram: &[u8]) -> Result<Kind, Unreadable> {
+pub fn kind(datagram: &[u8]) -> Result<DatagramKind, Unreadable> {
     let [version, kind, ..] = *datagram else { return Err(Unreadable::Malformed) };
-    let kind = Kind::ALL.into_iter().find(|known| known.number() == kind);
+    let kind = DatagramKind::ALL.into_iter().find(|known| known.number() == kind);
     match kind {
-        Some(Kind::Data) if datagram.len() < OUTER_LEN + TAG_LEN + HEAD_MIN => Err(Unreadable::Malformed),
-        Some(Kind::Data) if version != VERSION => Err(Unreadable::ForeignData(version)),
-        Some(Kind::Data) => Ok(Kind::Data),
+        Some(DatagramKind::Data) if datagram.len() < OUTER_LEN + TAG_LEN + HEAD_MIN => Err(Unreadable::Malformed),
+        Some(DatagramKind::Data) if version != VERSION => Err(Unreadable::ForeignData(version)),
+        Some(DatagramKind::Data) => Ok(DatagramKind::Data),
         _ if datagram.get(2..TOKEN_AT) != Some(&MAGIC) || datagram.len() < HANDSHAKE_LEN => Err(Unreadable::Malformed),
         // A refusal can be read in every version.
-        Some(Kind::Refusal) => Ok(Kind::Refusal),
+        Some(DatagramKind::Refusal) => Ok(DatagramKind::Refusal),
         _ if version != VERSION => Err(Unreadable::ForeignVersion(version)),
         Some(kind) => Ok(kind),
         None => Err(Unreadable::Malformed),
@@ -119,7 +119,7 @@ pub fn token(datagram: &[u8]) -> Option<u64> {
 }
 
 /// Returns the header of a handshake's datagram.
-pub fn handshake(kind: Kind, token: u64) -> [u8; HANDSHAKE_LEN] {
+pub fn handshake(kind: DatagramKind, token: u64) -> [u8; HANDSHAKE_LEN] {
     let mut bytes = [0; HANDSHAKE_LEN];
     bytes[0] = VERSION;
     bytes[1] = kind.number();
@@ -132,7 +132,7 @@ pub fn handshake(kind: Kind, token: u64) -> [u8; HANDSHAKE_LEN] {
 pub fn outer(session: u32, counter: u64) -> [u8; OUTER_LEN] {
     let mut bytes = [0; OUTER_LEN];
     bytes[0] = VERSION;
-    bytes[1] = Kind::Data.number();
+    bytes[1] = DatagramKind::Data.number();
     bytes[2..6].copy_from_slice(&session.to_le_bytes());
     bytes[6..].copy_from_slice(&(counter as u32).to_le_bytes());
     bytes
@@ -160,11 +160,11 @@ pub const fn whole24(near: u64, low: u32) -> u64 {
 
 /// The encrypted header before the payloads.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Head {
+pub struct DatagramHead {
     /// When the datagram was sent, by its sender's clock, µs: 48 bits with a report, otherwise the lower 32.
     pub sent_us: u64,
     /// Present only in some datagrams.
-    pub report: Option<Report>,
+    pub report: Option<WireReport>,
     /// Number of the newest payload, lower 24 bits.
     pub newest: u32,
     pub count: u8,
@@ -172,7 +172,7 @@ pub struct Head {
 
 /// Data that only some datagrams contain: for comparing the clocks, and the losses.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Report {
+pub struct WireReport {
     /// Lower half of `sent_us` of the last datagram that the sender received, and the time between its arrival and
     /// `sent_us`, µs.
     pub echo: Option<(u32, u32)>,
@@ -190,10 +190,10 @@ pub struct Report {
 const REPORTS: u8 = 0x80;
 const ECHOES: u8 = 0x40;
 
-impl Head {
+impl DatagramHead {
     /// Bytes.
     pub fn length(&self) -> usize {
-        let echo = |report: &Report| if report.echo.is_some() { 8 } else { 0 };
+        let echo = |report: &WireReport| if report.echo.is_some() { 8 } else { 0 };
         HEAD_MIN + self.report.as_ref().map_or(0, |report| 6 + echo(report))
     }
 
@@ -208,7 +208,7 @@ impl Head {
         add(&self.sent_us.to_le_bytes()[..4]);
         add(&self.newest.to_le_bytes()[..3]);
         let mut first = self.count;
-        if let Some(Report { echo, loss, loss_again, overtaken, control }) = self.report {
+        if let Some(WireReport { echo, loss, loss_again, overtaken, control }) = self.report {
             first |= REPORTS;
             add(&self.sent_us.to_le_bytes()[4..6]);
             add(&[loss, loss_again, overtaken, control]);
@@ -238,8 +238,13 @@ impl Head {
                 echo = Some((u32::from_le_bytes(*echo_us), u32::from_le_bytes(*held_us)));
                 rest = more;
             }
-            report =
-                Some(Report { echo, loss: *loss, loss_again: *loss_again, overtaken: *overtaken, control: *control });
+            report = Some(WireReport {
+                echo,
+                loss: *loss,
+                loss_again: *loss_again,
+                overtaken: *overtaken,
+                control: *control,
+            });
         }
         let count = first & !(REPORTS | ECHOES);
         let newest = u32::from_le_bytes([newest[0], newest[1], newest[2], 0]);
@@ -274,14 +279,14 @@ fn number(bytes: &[u8]) -> Option<(u16, &[u8])> {
 
 /// One payload in a datagram.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Record<'a> {
+pub struct PayloadRecord<'a> {
     /// Time between its first sending and the datagram, s.
     pub age_s: f64,
     /// Its content; `None` if it is left out here, because it was sent before and there is no room for it.
     pub bytes: Option<&'a [u8]>,
 }
 
-impl Record<'_> {
+impl PayloadRecord<'_> {
     /// Length of a record with a payload of this length and age, bytes.
     pub fn length(payload: usize, age_s: f64) -> usize {
         let len = u16::try_from(payload).unwrap_or(LEFT_OUT);
@@ -310,15 +315,15 @@ fn age(age_s: f64) -> u16 {
 }
 
 /// Returns the first payload in these bytes, and the bytes after it.
-pub fn record(bytes: &[u8]) -> Option<(Record<'_>, &[u8])> {
+pub fn record(bytes: &[u8]) -> Option<(PayloadRecord<'_>, &[u8])> {
     let (len, rest) = number(bytes)?;
     let (age, rest) = number(rest)?;
     let age_s = f64::from(age) * AGE_UNIT_S;
     if len == LEFT_OUT {
-        return Some((Record { age_s, bytes: None }, rest));
+        return Some((PayloadRecord { age_s, bytes: None }, rest));
     }
     let (content, rest) = rest.split_at_checked(usize::from(len))?;
-    Some((Record { age_s, bytes: Some(content) }, rest))
+    Some((PayloadRecord { age_s, bytes: Some(content) }, rest))
 }
 
 #[cfg(test)]
@@ -327,13 +332,13 @@ mod tests {
 
     #[test]
     fn a_head_and_its_payloads_come_back_as_they_were() {
-        let report = Report { echo: Some((7, 9)), loss: 3, loss_again: 4, overtaken: 6, control: 5 };
+        let report = WireReport { echo: Some((7, 9)), loss: 3, loss_again: 4, overtaken: 6, control: 5 };
         for (sent_us, report, len) in [
             (0x1234_5678_9abc, Some(report), HEAD_MAX),
-            (0x1234_5678_9abc, Some(Report { echo: None, ..report }), 14),
+            (0x1234_5678_9abc, Some(WireReport { echo: None, ..report }), 14),
             (0x5678_9abc, None, HEAD_MIN),
         ] {
-            let head = Head { sent_us, report, newest: 0x12_3456, count: 2 };
+            let head = DatagramHead { sent_us, report, newest: 0x12_3456, count: 2 };
             let mut bytes = [0; 300];
             let mut end = head.length();
             assert_eq!(end, len);
@@ -341,11 +346,11 @@ mod tests {
             let long = [8; 150];
             let payloads = [(0.0, Some(&b"newest"[..])), (0.0, None), (0.00124, Some(b"")), (0.65, Some(&long))];
             for (age_s, content) in payloads {
-                let len = Record { age_s, bytes: content }.write(&mut bytes[end..]).unwrap();
-                assert!(content.is_none_or(|content| Record::length(content.len(), age_s) == len));
+                let len = PayloadRecord { age_s, bytes: content }.write(&mut bytes[end..]).unwrap();
+                assert!(content.is_none_or(|content| PayloadRecord::length(content.len(), age_s) == len));
                 end += len;
             }
-            let (read, mut rest) = Head::from_bytes(&bytes[..end]).unwrap();
+            let (read, mut rest) = DatagramHead::from_bytes(&bytes[..end]).unwrap();
             assert_eq!(read, head);
             for (age_s, content) in payloads {
                 let (got, more) = record(rest).unwrap();
@@ -354,7 +359,7 @@ mod tests {
             }
             assert!(rest.is_empty());
             assert!(record(&bytes[len..len + 5]).is_none(), "cut");
-            assert!((0..len).all(|cut| Head::from_bytes(&bytes[..cut]).is_none()), "cut");
+            assert!((0..len).all(|cut| DatagramHead::from_bytes(&bytes[..cut]).is_none()), "cut");
         }
     }
 
@@ -371,20 +376,20 @@ mod tests {
 
     #[test]
     fn versions_and_kinds_are_told_apart() {
-        let hello = handshake(Kind::Hello, 77);
-        assert_eq!((kind(&hello), token(&hello)), (Ok(Kind::Hello), Some(77)));
+        let hello = handshake(DatagramKind::Hello, 77);
+        assert_eq!((kind(&hello), token(&hello)), (Ok(DatagramKind::Hello), Some(77)));
         let mut foreign = hello;
         foreign[0] = VERSION + 1;
         assert_eq!(kind(&foreign), Err(Unreadable::ForeignVersion(VERSION + 1)));
-        let mut refusal = handshake(Kind::Refusal, 1);
+        let mut refusal = handshake(DatagramKind::Refusal, 1);
         refusal[0] = 99;
-        assert_eq!(kind(&refusal), Ok(Kind::Refusal));
+        assert_eq!(kind(&refusal), Ok(DatagramKind::Refusal));
         assert_eq!(kind(b"GET / HTTP/1.1\r\n\r\n"), Err(Unreadable::Malformed));
         assert_eq!(kind(&[]), Err(Unreadable::Malformed));
         assert_eq!(kind(&outer(1, 2)), Err(Unreadable::Malformed), "nothing behind it");
         let mut data = [0; 100];
         data[..OUTER_LEN].copy_from_slice(&outer(1, 2));
-        assert_eq!(kind(&data), Ok(Kind::Data));
+        assert_eq!(kind(&data), Ok(DatagramKind::Data));
         data[0] = VERSION + 1;
         assert_eq!(kind(&data), Err(Unreadable::ForeignData(VERSION + 1)));
     }
@@ -395,7 +400,7 @@ mod tests {
         for _ in 0..20_000 {
             let bytes: Vec<u8> = (0..rng.usize(..80)).map(|_| rng.u8(..)).collect();
             let _ = (kind(&bytes), token(&bytes), open_outer(&bytes));
-            if let Some((_, rest)) = Head::from_bytes(&bytes) {
+            if let Some((_, rest)) = DatagramHead::from_bytes(&bytes) {
                 let _ = record(rest);
             }
         }

@@ -12,12 +12,12 @@ use std::{
 
 /// A thread that takes turns until this is dropped; dropping waits for the current turn.
 #[derive(Debug)]
-pub(crate) struct Worker {
+pub(crate) struct NetworkWorker {
     ends: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
 }
 
-impl Worker {
+impl NetworkWorker {
     /// Starts the thread; `turn` gets the time since then, s, and returns how long to wait before the next turn.
     pub(crate) fn start(name: &str, mut turn: impl FnMut(f64) -> Duration + Send + 'static) -> io::Result<Self> {
         let ends = Arc::new(AtomicBool::new(false));
@@ -33,7 +33,7 @@ impl Worker {
     }
 }
 
-impl Drop for Worker {
+impl Drop for NetworkWorker {
     fn drop(&mut self) {
         self.ends.store(true, Relaxed);
         if let Some(thread) = self.thread.take() {

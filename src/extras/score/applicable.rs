@@ -1,6 +1,6 @@
 //! The measures that a kind of task can have, for selection in a form.
 
-use crate::Definition;
+use crate::CatalogueDefinition;
 use nima_core::task::TaskKind;
 
 const PEG_TRANSFER: [&str; 12] = [
@@ -24,7 +24,7 @@ const WITH_END: [&str; 3] = ["completion_time_s", "time_over_reference", "out_of
 /// Measures that compare both hands.
 const OF_BOTH: [&str; 4] = ["transfers", "force_share", "bimanual_dexterity", "both_move_share"];
 
-impl Definition {
+impl CatalogueDefinition {
     /// Whether a trial of this kind can have this measure, done with one hand or with two.
     pub fn is_of(&self, kind: TaskKind, two_hands: bool) -> bool {
         let of = |ids: &[&str]| ids.contains(&self.id);
@@ -42,11 +42,11 @@ impl Definition {
 mod tests {
     use nima_core::{
         Side,
-        task::{Event, Happening},
+        task::{TaskEvent, TimedTaskEvent},
     };
 
     use super::*;
-    use crate::{HandSample, MEASURES, Sample, Scorer, TaskFile};
+    use crate::{HandSample, MEASURES, ScoreSample, Scorer, TaskFile};
 
     /// Returns the measures of a trial with every kind of event.
     fn measured(kind: TaskKind) -> Vec<&'static str> {
@@ -54,13 +54,13 @@ mod tests {
         let mut scorer = Scorer::new(&TaskFile::from_toml(&task).unwrap());
         let [side, other] = Side::ALL;
         let events = [
-            Event::Begun,
-            Event::RingGrasped { ring: 0, side },
-            Event::RingLifted { ring: 0, side },
-            Event::RingTransferred { ring: 0, to: other },
-            Event::RingPlaced { ring: 0, side: other, peg: 6 },
-            Event::LumpMarked { side, lump: Some(0) },
-            Event::WireTouched { side },
+            TaskEvent::Begun,
+            TaskEvent::RingGrasped { ring: 0, side },
+            TaskEvent::RingLifted { ring: 0, side },
+            TaskEvent::RingTransferred { ring: 0, to: other },
+            TaskEvent::RingPlaced { ring: 0, side: other, peg: 6 },
+            TaskEvent::LumpMarked { side, lump: Some(0) },
+            TaskEvent::WireTouched { side },
         ];
         let mut happen = events.iter().enumerate();
         for tick in 0..6000_u32 {
@@ -77,13 +77,13 @@ mod tests {
             if tick % 700 == 0
                 && let Some((_, event)) = happen.next()
             {
-                scorer.happening(&Happening { t_s, event: *event });
+                scorer.happening(&TimedTaskEvent { t_s, event: *event });
             }
-            scorer.sample(&Sample { t_s, hands: [Some(hand), Some(hand)] });
+            scorer.sample(&ScoreSample { t_s, hands: [Some(hand), Some(hand)] });
         }
-        scorer.happening(&Happening { t_s: 6.0, event: Event::Ended });
+        scorer.happening(&TimedTaskEvent { t_s: 6.0, event: TaskEvent::Ended });
         let score = scorer.finish();
-        let has = |definition: &&Definition| {
+        let has = |definition: &&CatalogueDefinition| {
             let of_hand = |side| score.of(definition.id, side).is_some();
             if definition.per_hand { Side::ALL.into_iter().any(of_hand) } else { score.value(definition.id).is_some() }
         };

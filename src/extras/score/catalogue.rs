@@ -2,7 +2,7 @@
 
 /// Definition of a measure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Definition {
+pub struct CatalogueDefinition {
     /// Name in JSON, with the unit if it has one.
     pub id: &'static str,
     /// One short sentence for the screen.
@@ -23,8 +23,8 @@ const fn trial(
     words: &'static str,
     definition: &'static str,
     source: &'static str,
-) -> Definition {
-    Definition { id, words, unit, definition, source, per_hand: false }
+) -> CatalogueDefinition {
+    CatalogueDefinition { id, words, unit, definition, source, per_hand: false }
 }
 
 const fn hand(
@@ -33,12 +33,12 @@ const fn hand(
     words: &'static str,
     definition: &'static str,
     source: &'static str,
-) -> Definition {
-    Definition { per_hand: true, ..trial(id, unit, words, definition, source) }
+) -> CatalogueDefinition {
+    CatalogueDefinition { per_hand: true, ..trial(id, unit, words, definition, source) }
 }
 
 /// All measures, in the order in which they are shown.
-pub const MEASURES: [Definition; 59] = [
+pub const MEASURES: [CatalogueDefinition; 59] = [
     trial(
         "trial_time_s",
         "s",

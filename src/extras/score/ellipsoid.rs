@@ -10,13 +10,13 @@ pub(crate) const CHI_SQUARE_95: f64 = 7.814_727_903_251_18;
 
 /// Weighted mean and scatter, updated one by one (West 1979, Comm. ACM 22:532-535).
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Cloud {
+pub(crate) struct WeightedScatter {
     weight: f64,
     mean: Vector3<f64>,
     scatter: Matrix3<f64>,
 }
 
-impl Cloud {
+impl WeightedScatter {
     pub(crate) fn add(&mut self, vector: &Vector3<f64>, weight: f64) {
         if weight > 0.0 {
             self.weight += weight;

@@ -2,11 +2,11 @@
 
 use std::collections::BTreeSet;
 
-use nima_core::{SIDES, Side, task::Event};
+use nima_core::{SIDES, Side, task::TaskEvent};
 
 /// Maximum number of times stored for the paths between them, and of lumps distinguished; more indicate a fault of the
 /// input.
-const MOST: usize = 10_000;
+const MAX: usize = 10_000;
 
 /// Counts of one trial; times in s from its beginning.
 #[derive(Clone, Debug, Default)]
@@ -31,50 +31,50 @@ pub(crate) struct Events {
 
 impl Events {
     /// Counts an event at `t_s`; the scorer handles those that begin and end the trial.
-    pub(crate) fn take(&mut self, t_s: f64, event: Event) {
+    pub(crate) fn take(&mut self, t_s: f64, event: TaskEvent) {
         match event {
-            Event::Begun | Event::Ended | Event::Aborted => {}
-            Event::RingGrasped { side, .. } => {
+            TaskEvent::Begun | TaskEvent::Ended | TaskEvent::Aborted => {}
+            TaskEvent::RingGrasped { side, .. } => {
                 self.first_grasp_s = Some(self.first_grasp_s.map_or(t_s, |first_s| first_s.min(t_s)));
                 self.handle(t_s, side);
             }
-            Event::RingLifted { .. } => self.lifts = self.lifts.saturating_add(1),
-            Event::RingTransferred { .. } => {
+            TaskEvent::RingLifted { .. } => self.lifts = self.lifts.saturating_add(1),
+            TaskEvent::RingTransferred { .. } => {
                 self.transfers = self.transfers.saturating_add(1);
                 for side in Side::ALL {
                     self.handle(t_s, side);
                 }
             }
-            Event::RingPlaced { side, .. } => {
+            TaskEvent::RingPlaced { side, .. } => {
                 self.placed = self.placed.saturating_add(1);
                 self.handle(t_s, side);
             }
-            Event::RingDropped { side, in_view, .. } => {
+            TaskEvent::RingDropped { side, in_view, .. } => {
                 let drops = if in_view { &mut self.dropped_in_view } else { &mut self.dropped_out_of_view };
                 *drops = drops.saturating_add(1);
                 self.handle(t_s, side);
             }
-            Event::RingKnockedOff { .. } => self.knocked_off = self.knocked_off.saturating_add(1),
-            Event::LumpMarked { side, lump: Some(lump) } => self.mark(t_s, side, lump),
-            Event::LumpMarked { lump: None, .. } => self.false_marks = self.false_marks.saturating_add(1),
-            Event::WireTouched { side } => self.touch(t_s, side),
-            Event::WireLeft { side } => self.leave(t_s, side),
+            TaskEvent::RingKnockedOff { .. } => self.knocked_off = self.knocked_off.saturating_add(1),
+            TaskEvent::LumpMarked { side, lump: Some(lump) } => self.mark(t_s, side, lump),
+            TaskEvent::LumpMarked { lump: None, .. } => self.false_marks = self.false_marks.saturating_add(1),
+            TaskEvent::WireTouched { side } => self.touch(t_s, side),
+            TaskEvent::WireLeft { side } => self.leave(t_s, side),
         }
     }
 
     fn handle(&mut self, t_s: f64, side: Side) {
         let times_s = &mut self.handled_s[side.index()];
-        if times_s.len() < MOST {
+        if times_s.len() < MAX {
             times_s.push(t_s);
         }
     }
 
     fn mark(&mut self, t_s: f64, side: Side, lump: usize) {
-        if self.found.len() < MOST {
+        if self.found.len() < MAX {
             self.found.insert(lump);
         }
         let times_s = &mut self.marked_s[side.index()];
-        if times_s.len() < MOST {
+        if times_s.len() < MAX {
             times_s.push(t_s);
         }
     }

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::{ellipsoid::Cloud, signal::RATE_HZ, task::TaskFile};
+use crate::{ellipsoid::WeightedScatter, signal::RATE_HZ, task::TaskFile};
 
 /// An excursion over the threshold ends below this fraction of it, so that noise at the threshold counts once.
 const BACK: f64 = 0.9;
@@ -22,7 +22,7 @@ pub(crate) struct Forces {
     contact_s: f64,
     over_s: f64,
     in_contact: Magnitude,
-    cloud: Cloud,
+    cloud: WeightedScatter,
     /// Largest force within each 10 ms of the trial, N.
     peaks_n: Vec<f64>,
 }
@@ -61,7 +61,7 @@ impl Forces {
             contact_s: 0.0,
             over_s: 0.0,
             in_contact: Magnitude::default(),
-            cloud: Cloud::default(),
+            cloud: WeightedScatter::default(),
             peaks_n: Vec::with_capacity((task.limit_s() * RATE_HZ) as usize + 1),
         }
     }

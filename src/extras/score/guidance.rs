@@ -9,7 +9,7 @@ use std::collections::VecDeque;
 
 use serde::{Deserialize, Serialize};
 
-use crate::{Criterion, Score};
+use crate::{Score, TaskCriterion};
 
 /// Number of trials by which skill is judged.
 const JUDGED: u32 = 4;
@@ -20,7 +20,7 @@ const ALL: u32 = 2 * JUDGED;
 /// When the result of a trial is shown to the trainee. Independent of the force.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Feedback {
+pub enum FeedbackSchedule {
     /// After every trial.
     #[default]
     Always,
@@ -31,14 +31,14 @@ pub enum Feedback {
 
 /// Follows the trials of one person and decides after each whether its result is shown.
 ///
-/// With [`Feedback::Fades`] results are shown after the fraction `1 - m / 8` of the trials, where `m` is how many of
+/// With [`FeedbackSchedule::Fades`] results are shown after the fraction `1 - m / 8` of the trials, where `m` is how many of
 /// the last four (fewer at the beginning) met the criterion: all of them for a beginner, half of them for a trainee who
 /// always meets it. The choice depends only on the trials: the same trials give the same answer.
 ///
 /// ```
-/// use nima_score::{Criterion, Feedback, Guidance};
+/// use nima_score::{TaskCriterion, FeedbackSchedule, Guidance};
 ///
-/// let mut guidance = Guidance::new(Feedback::Fades, Criterion::default());
+/// let mut guidance = Guidance::new(FeedbackSchedule::Fades, TaskCriterion::default());
 /// let beginner: Vec<bool> = (0..4).map(|_| guidance.take_trial(Some(90.0), 0)).collect();
 /// assert_eq!(beginner, [true; 4]);
 /// let skilled: Vec<bool> = (0..12).map(|_| guidance.take_trial(Some(40.0), 0)).collect();
@@ -46,8 +46,8 @@ pub enum Feedback {
 /// ```
 #[derive(Clone, Debug)]
 pub struct Guidance {
-    feedback: Feedback,
-    criterion: Criterion,
+    feedback: FeedbackSchedule,
+    criterion: TaskCriterion,
     /// Whether each of the last trials met the criterion.
     met: VecDeque<bool>,
     /// The accumulated fraction of a result that is due, in parts of [`ALL`].
@@ -56,9 +56,9 @@ pub struct Guidance {
 }
 
 impl Guidance {
-    pub fn new(feedback: Feedback, criterion: Criterion) -> Self {
+    pub fn new(feedback: FeedbackSchedule, criterion: TaskCriterion) -> Self {
         let met = VecDeque::with_capacity(JUDGED as usize + 1);
-        Self { feedback, criterion, met, due: 0, shown: feedback != Feedback::Never }
+        Self { feedback, criterion, met, due: 0, shown: feedback != FeedbackSchedule::Never }
     }
 
     /// Adds the score of the next trial; returns whether its result is shown.
@@ -76,9 +76,9 @@ impl Guidance {
         }
         self.due += ALL - self.skill();
         self.shown = match self.feedback {
-            Feedback::Always => true,
-            Feedback::Never => false,
-            Feedback::Fades => self.due >= ALL,
+            FeedbackSchedule::Always => true,
+            FeedbackSchedule::Never => false,
+            FeedbackSchedule::Fades => self.due >= ALL,
         };
         if self.due >= ALL {
             self.due -= ALL;
@@ -94,9 +94,9 @@ impl Guidance {
     /// The fraction of the trials whose results are shown, at the current skill.
     pub fn frequency(&self) -> f64 {
         match self.feedback {
-            Feedback::Always => 1.0,
-            Feedback::Never => 0.0,
-            Feedback::Fades => f64::from(ALL - self.skill()) / f64::from(ALL),
+            FeedbackSchedule::Always => 1.0,
+            FeedbackSchedule::Never => 0.0,
+            FeedbackSchedule::Fades => f64::from(ALL - self.skill()) / f64::from(ALL),
         }
     }
 
@@ -113,8 +113,8 @@ mod tests {
     const GOOD: (Option<f64>, u32) = (Some(40.0), 0);
     const SLOW: (Option<f64>, u32) = (Some(60.0), 0);
 
-    fn shown(feedback: Feedback, trials: &[(Option<f64>, u32)]) -> Vec<bool> {
-        let mut guidance = Guidance::new(feedback, Criterion::default());
+    fn shown(feedback: FeedbackSchedule, trials: &[(Option<f64>, u32)]) -> Vec<bool> {
+        let mut guidance = Guidance::new(feedback, TaskCriterion::default());
         trials.iter().map(|(time_s, drops)| guidance.take_trial(*time_s, *drops)).collect()
     }
 
@@ -125,14 +125,17 @@ mod tests {
     #[test]
     fn always_is_after_every_trial_and_never_after_none() {
         for trials in [[GOOD; 12], [SLOW; 12]] {
-            assert_eq!((count(&shown(Feedback::Always, &trials)), count(&shown(Feedback::Never, &trials))), (12, 0));
+            assert_eq!(
+                (count(&shown(FeedbackSchedule::Always, &trials)), count(&shown(FeedbackSchedule::Never, &trials))),
+                (12, 0)
+            );
         }
     }
 
     #[test]
     fn it_fades_from_every_trial_to_every_second_one_as_the_criterion_is_met() {
         let trials = [[SLOW; 8], [GOOD; 8], [GOOD; 8]].concat();
-        let shown = shown(Feedback::Fades, &trials);
+        let shown = shown(FeedbackSchedule::Fades, &trials);
         assert_eq!([&shown[..8], &shown[8..16], &shown[16..]].map(count), [8, 4, 4], "{shown:?}");
         assert!(shown[16..].windows(2).all(|pair| pair[0] != pair[1]), "every second one: {shown:?}");
     }
@@ -140,15 +143,15 @@ mod tests {
     #[test]
     fn it_comes_back_when_skill_is_lost_and_drops_and_trials_not_completed_are_no_skill() {
         let lost = [[GOOD; 8], [SLOW; 8]].concat();
-        assert_eq!(count(&shown(Feedback::Fades, &lost)[12..]), 4);
+        assert_eq!(count(&shown(FeedbackSchedule::Fades, &lost)[12..]), 4);
         for without in [(Some(40.0), 1), (None, 0)] {
-            assert_eq!(count(&shown(Feedback::Fades, &[without; 12])), 12, "{without:?}");
+            assert_eq!(count(&shown(FeedbackSchedule::Fades, &[without; 12])), 12, "{without:?}");
         }
     }
 
     #[test]
     fn the_frequency_is_that_of_the_last_four_trials() {
-        let mut guidance = Guidance::new(Feedback::Fades, Criterion::default());
+        let mut guidance = Guidance::new(FeedbackSchedule::Fades, TaskCriterion::default());
         let frequencies: Vec<f64> = [SLOW, GOOD, GOOD, GOOD, GOOD, SLOW]
             .into_iter()
             .map(|(time_s, drops)| {
@@ -161,11 +164,15 @@ mod tests {
 
     #[test]
     fn the_switch_is_one_word_of_a_file() {
-        for (word, feedback) in [("always", Feedback::Always), ("fades", Feedback::Fades), ("never", Feedback::Never)] {
+        for (word, feedback) in [
+            ("always", FeedbackSchedule::Always),
+            ("fades", FeedbackSchedule::Fades),
+            ("never", FeedbackSchedule::Never),
+        ] {
             let text = format!("\"{word}\"");
-            assert_eq!(serde_json::from_str::<Feedback>(&text).unwrap(), feedback);
+            assert_eq!(serde_json::from_str::<FeedbackSchedule>(&text).unwrap(), feedback);
             assert_eq!(serde_json::to_string(&feedback).unwrap(), text);
         }
-        assert_eq!(Feedback::default(), Feedback::Always);
+        assert_eq!(FeedbackSchedule::default(), FeedbackSchedule::Always);
     }
 }

@@ -10,19 +10,19 @@ use crate::{
 
 /// One hand, fed sample by sample.
 #[derive(Clone, Debug)]
-pub(crate) struct Hand {
+pub(crate) struct ScoreHand {
     pub tip: Decimator,
     pub force: Decimator,
     pub forces: Forces,
-    pub rendered: Rendered,
+    pub rendered: RenderedForce,
     pub jaw: Jaw,
-    pub times: Times,
+    pub times: HandTimes,
 }
 
 /// Time in which the hand was known, s.
 #[derive(Clone, Copy, Debug, Default)]
 #[expect(clippy::struct_field_names, reason = "the unit")]
-pub(crate) struct Times {
+pub(crate) struct HandTimes {
     last_s: Option<f64>,
     known_s: f64,
     engaged_s: f64,
@@ -31,23 +31,23 @@ pub(crate) struct Times {
 
 /// The force that the hand feels.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Rendered {
+pub(crate) struct RenderedForce {
     last: Option<(f64, f64)>,
     peak_n: Option<f64>,
     known_s: f64,
     square_n2_s: f64,
 }
 
-impl Hand {
+impl ScoreHand {
     pub(crate) fn new(task: &TaskFile) -> Self {
         let room = || Decimator::with_room(task.limit_s());
         Self {
             tip: room(),
             force: room(),
             forces: Forces::new(task),
-            rendered: Rendered::default(),
+            rendered: RenderedForce::default(),
             jaw: Jaw::default(),
-            times: Times::default(),
+            times: HandTimes::default(),
         }
     }
 
@@ -72,7 +72,7 @@ impl Hand {
     }
 }
 
-impl Times {
+impl HandTimes {
     fn take(&mut self, t_s: f64, sample: &HandSample) {
         let step_s = self.last_s.map_or(0.0, |last_s| t_s - last_s);
         if step_s <= LONGEST_GAP_S {
@@ -87,16 +87,16 @@ impl Times {
         (self.known_s > 0.0).then_some(self.known_s)
     }
 
-    pub(crate) fn engaged_share(&self) -> Option<f64> {
+    pub(crate) fn engaged_fraction(&self) -> Option<f64> {
         self.known_s().map(|known_s| self.engaged_s / known_s)
     }
 
-    pub(crate) fn out_of_view_share(&self) -> Option<f64> {
+    pub(crate) fn out_of_view_fraction(&self) -> Option<f64> {
         self.known_s().map(|known_s| self.out_of_view_s / known_s)
     }
 }
 
-impl Rendered {
+impl RenderedForce {
     fn take(&mut self, t_s: f64, size_n: f64) {
         if let Some((last_s, last_n)) = self.last.filter(|(last_s, _)| t_s - last_s <= LONGEST_GAP_S) {
             self.known_s += t_s - last_s;

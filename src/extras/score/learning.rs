@@ -4,11 +4,11 @@ use serde::Serialize;
 
 /// Minimum number of trials with a time for a curve. A curve has four parameters including its scatter, and `AICc`
 /// divides by the trials minus five.
-pub const LEAST_TRIALS: usize = 6;
+pub const MIN_TRIALS: usize = 6;
 
 /// Maximum time, s, and maximum number of trials that are accepted.
 const LONGEST_S: f64 = 1e6;
-const MOST_TRIALS: usize = 10_000;
+const MAX_TRIALS: usize = 10_000;
 /// The plateau is reached within this fraction of it: 10 %, as in Feldman et al. 2009 (Surgery 146:381-386).
 const WITHIN: f64 = 0.10;
 /// A plateau that would be reached later does not count, trials.
@@ -19,7 +19,7 @@ const GRID: u32 = 120;
 /// Form of a learning curve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Shape {
+pub enum CurveShape {
     /// `asymptote + gain * exp(-(n - 1) / rate)`: Heathcote, Brown and Mewhort 2000 (Psychon. Bull. Rev. 7:185-207).
     Exponential,
     /// `asymptote + gain * n^(-rate)`: Newell and Rosenbloom 1981 (Cognitive Skills and Their Acquisition, 1-55).
@@ -32,18 +32,18 @@ pub enum Shape {
 /// 76:297-307).
 ///
 /// ```
-/// use nima_score::{LearningCurve, Shape};
+/// use nima_score::{LearningCurve, CurveShape};
 ///
 /// let times_s: Vec<f64> = (0..20).map(|n| 50.0 + 120.0 * (-f64::from(n) / 4.0).exp()).collect();
 /// let curve = LearningCurve::fit(&times_s).ok_or("too few trials")?;
-/// assert_eq!(curve.shape, Shape::Exponential);
+/// assert_eq!(curve.shape, CurveShape::Exponential);
 /// assert!((curve.asymptote_s - 50.0).abs() < 0.01 && (curve.rate - 4.0).abs() < 0.01);
 /// assert_eq!(curve.trials_to_plateau, Some(14), "the time is then below 55 s");
 /// # Ok::<(), &str>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct LearningCurve {
-    pub shape: Shape,
+    pub shape: CurveShape,
     /// The asymptotic time, s: the plateau.
     pub asymptote_s: f64,
     /// How much slower the first trial is, s.
@@ -67,18 +67,18 @@ type Points = [(f64, f64)];
 
 impl LearningCurve {
     /// Fits the completion times of all trials in order, s. NaN represents a trial without a time: it counts in the
-    /// numbering and is not fitted. `None` for fewer than [`LEAST_TRIALS`] times.
+    /// numbering and is not fitted. `None` for fewer than [`MIN_TRIALS`] times.
     pub fn fit(times_s: &[f64]) -> Option<Self> {
         let usable = |time_s: f64| (0.0..=LONGEST_S).contains(&time_s);
-        let numbered = times_s.iter().take(MOST_TRIALS).enumerate().map(|(k, time_s)| (k as f64 + 1.0, *time_s));
+        let numbered = times_s.iter().take(MAX_TRIALS).enumerate().map(|(k, time_s)| (k as f64 + 1.0, *time_s));
         let points: Vec<(f64, f64)> = numbered.filter(|(_, time_s)| usable(*time_s)).collect();
-        if points.len() < LEAST_TRIALS {
+        if points.len() < MIN_TRIALS {
             return None;
         }
         let last = points.last().map_or(0.0, |(n, _)| *n);
-        let exponential = best(Shape::Exponential, &points, [0.3, 3.0 * last]);
-        let power = best(Shape::Power, &points, [0.05, 5.0]);
-        let flat = Linear::fit(&points, &|_| 0.0).curve(Shape::Flat, 0.0, &points);
+        let exponential = best(CurveShape::Exponential, &points, [0.3, 3.0 * last]);
+        let power = best(CurveShape::Power, &points, [0.05, 5.0]);
+        let flat = LearningLinear::fit(&points, &|_| 0.0).curve(CurveShape::Flat, 0.0, &points);
         [flat, exponential, power].into_iter().reduce(|a, b| if b.aicc < a.aicc { b } else { a })
     }
 
@@ -89,20 +89,20 @@ impl LearningCurve {
 }
 
 /// The remaining fraction of the gain in trial `n`.
-fn decay(shape: Shape, rate: f64, n: f64) -> f64 {
+fn decay(shape: CurveShape, rate: f64, n: f64) -> f64 {
     match shape {
-        Shape::Exponential => libm::exp(-(n - 1.0) / rate),
-        Shape::Power => libm::pow(n, -rate),
-        Shape::Flat => 0.0,
+        CurveShape::Exponential => libm::exp(-(n - 1.0) / rate),
+        CurveShape::Power => libm::pow(n, -rate),
+        CurveShape::Flat => 0.0,
     }
 }
 
 /// For a given rate the curve is linear in the other two; the rate is searched in steps of equal ratio and then by
 /// golden section.
-fn best(shape: Shape, points: &Points, [least, most]: [f64; 2]) -> LearningCurve {
-    let ratio = libm::log(most / least) / f64::from(GRID);
-    let rate = |step: f64| least * libm::exp(ratio * step.clamp(0.0, f64::from(GRID)));
-    let linear = |step: f64| Linear::fit(points, &|n| decay(shape, rate(step), n));
+fn best(shape: CurveShape, points: &Points, [min, max]: [f64; 2]) -> LearningCurve {
+    let ratio = libm::log(max / min) / f64::from(GRID);
+    let rate = |step: f64| min * libm::exp(ratio * step.clamp(0.0, f64::from(GRID)));
+    let linear = |step: f64| LearningLinear::fit(points, &|n| decay(shape, rate(step), n));
     let steps = (0..=GRID).map(f64::from);
     let start = steps.reduce(|a, b| if linear(b).square < linear(a).square { b } else { a }).unwrap_or(0.0);
     let mut low = start - 1.0;
@@ -123,14 +123,14 @@ fn best(shape: Shape, points: &Points, [least, most]: [f64; 2]) -> LearningCurve
 /// Least squares for the asymptote and the gain, neither below zero: performance does not get worse, and no time is
 /// negative.
 #[derive(Clone, Copy)]
-struct Linear {
+struct LearningLinear {
     asymptote: f64,
     gain: f64,
     /// Sum of the squares of the residuals.
     square: f64,
 }
 
-impl Linear {
+impl LearningLinear {
     fn fit(points: &Points, left: &dyn Fn(f64) -> f64) -> Self {
         let count = points.len() as f64;
         let rows: Vec<(f64, f64)> = points.iter().map(|(n, time)| (left(*n), *time)).collect();
@@ -149,10 +149,10 @@ impl Linear {
         Self { asymptote, gain, square }
     }
 
-    fn curve(self, shape: Shape, rate: f64, points: &Points) -> LearningCurve {
+    fn curve(self, shape: CurveShape, rate: f64, points: &Points) -> LearningCurve {
         let count = points.len() as f64;
         // The scatter counts as a parameter (Burnham and Anderson 2002).
-        let parameters = if shape == Shape::Flat { 2.0 } else { 4.0 };
+        let parameters = if shape == CurveShape::Flat { 2.0 } else { 4.0 };
         // A perfect fit would have a logarithm of minus infinity; a microsecond is negligible scatter.
         let variance = (self.square / count).max(1e-12);
         let correction = 2.0 * parameters * (parameters + 1.0) / (count - parameters - 1.0);
@@ -172,13 +172,13 @@ impl Linear {
     }
 }
 
-fn to_plateau(shape: Shape, rate: f64, asymptote: f64, gain: f64) -> Option<u32> {
+fn to_plateau(shape: CurveShape, rate: f64, asymptote: f64, gain: f64) -> Option<u32> {
     let excess = gain / (WITHIN * asymptote);
     let trial = match shape {
         _ if excess <= 1.0 => 1.0,
-        Shape::Exponential => 1.0 + rate * libm::log(excess),
-        Shape::Power => libm::pow(excess, 1.0 / rate),
-        Shape::Flat => 1.0,
+        CurveShape::Exponential => 1.0 + rate * libm::log(excess),
+        CurveShape::Power => libm::pow(excess, 1.0 / rate),
+        CurveShape::Flat => 1.0,
     };
     (trial <= FARTHEST).then(|| trial.ceil() as u32)
 }
@@ -197,13 +197,13 @@ mod tests {
     fn a_known_exponential_and_a_known_power_law_are_recovered() {
         for rate in [1.0, 3.0, 10.0] {
             let curve = LearningCurve::fit(&times(30, |n| 45.0 + 150.0 * (-(n - 1.0) / rate).exp())).unwrap();
-            assert_eq!(curve.shape, Shape::Exponential);
+            assert_eq!(curve.shape, CurveShape::Exponential);
             assert!((curve.asymptote_s - 45.0).abs() < 1e-3 && (curve.gain_s - 150.0).abs() < 1e-3, "{curve:?}");
             assert!((curve.rate / rate - 1.0).abs() < 1e-4, "{curve:?}");
         }
         for exponent in [0.4, 1.0, 2.0] {
             let curve = LearningCurve::fit(&times(30, |n| 45.0 + 150.0 * n.powf(-exponent))).unwrap();
-            assert_eq!(curve.shape, Shape::Power);
+            assert_eq!(curve.shape, CurveShape::Power);
             assert!((curve.asymptote_s - 45.0).abs() < 0.01 && (curve.rate / exponent - 1.0).abs() < 1e-3, "{curve:?}");
             assert!((curve.time_s(5) - 45.0 - 150.0 * 5_f64.powf(-exponent)).abs() < 1e-3);
         }
@@ -222,10 +222,10 @@ mod tests {
     fn times_without_a_trend_are_flat() {
         let scatter = [60.0, 64.0, 58.0, 61.0, 66.0, 59.0, 62.0, 60.0, 65.0, 61.0];
         let curve = LearningCurve::fit(&scatter).unwrap();
-        assert_eq!((curve.shape, curve.trials_to_plateau), (Shape::Flat, Some(1)));
+        assert_eq!((curve.shape, curve.trials_to_plateau), (CurveShape::Flat, Some(1)));
         assert!((curve.asymptote_s - 61.6).abs() < 1e-9);
         let slower = LearningCurve::fit(&times(10, |n| 60.0 + 5.0 * n)).unwrap();
-        assert_eq!(slower.shape, Shape::Flat, "nobody unlearns");
+        assert_eq!(slower.shape, CurveShape::Flat, "nobody unlearns");
     }
 
     #[test]

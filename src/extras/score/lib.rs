@@ -1,27 +1,27 @@
 //! The score of a trial of a training task: peg transfer, palpation, wire loop.
 //!
-//! Takes [`Sample`]s of motion (m) and force (N) of both hands at about 1 kHz, and [`Happening`](nima_core::task::Happening)s (a ring placed, a wire touched); returns a
+//! Takes [`ScoreSample`]s of motion (m) and force (N) of both hands at about 1 kHz, and [`Happening`](nima_core::task::TimedTaskEvent)s (a ring placed, a wire touched); returns a
 //! [`Score`] of named measures, each with unit, definition and source. [`Proficiency`] and [`LearningCurve`] judge a sequence of
-//! trials, [`Guidance`] says after which of them the trainee is told the result. [`scored`] scores the ticks of a loop, or a recorded
+//! trials, [`Guidance`] says after which of them the trainee is told the result. [`trial_score`] scores the ticks of a loop, or a recorded
 //! session; everything else knows no loop, device, file, thread or clock. `docs/reference/measures.md` lists the measures.
 //!
 //! ```
 //! use nalgebra::Vector3;
 //! use nima_core::{
 //!     Side,
-//!     task::{Event, Happening},
+//!     task::{TaskEvent, TimedTaskEvent},
 //! };
-//! use nima_score::{HandSample, Sample, Scorer, TaskFile};
+//! use nima_score::{HandSample, ScoreSample, Scorer, TaskFile};
 //!
 //! let task = TaskFile::from_toml("name = 'Six rings'\nkind = 'peg_transfer'")?;
 //! let mut scorer = Scorer::new(&task);
-//! scorer.happening(&Happening { t_s: 0.0, event: Event::Begun });
+//! scorer.happening(&TimedTaskEvent { t_s: 0.0, event: TaskEvent::Begun });
 //! for tick in 0..=2000 {
 //!     let t_s = f64::from(tick) * 1e-3;
 //!     let right = HandSample { tip_m: Vector3::new(0.05 * t_s, 0.0, 0.0), engaged: true, ..HandSample::default() };
-//!     scorer.sample(&Sample { t_s, hands: Side::Right.alone(right) });
+//!     scorer.sample(&ScoreSample { t_s, hands: Side::Right.alone(right) });
 //! }
-//! scorer.happening(&Happening { t_s: 2.0, event: Event::Ended });
+//! scorer.happening(&TimedTaskEvent { t_s: 2.0, event: TaskEvent::Ended });
 //! let score = scorer.finish();
 //! assert!((score.of("path_length_m", Side::Right).unwrap_or(0.0) - 0.1).abs() < 1e-6);
 //! assert_eq!(score.value("completion_time_s"), Some(2.0));
@@ -40,24 +40,24 @@ mod guidance;
 mod hand;
 mod jaw;
 mod learning;
-mod motion;
 mod proficiency;
 mod sample;
 mod score;
-pub mod scored;
 mod scorer;
 mod signal;
 mod smoothness;
 mod task;
 #[cfg(test)]
 mod tests;
+mod tip_motion;
+pub mod trial_score;
 mod two_hands;
 
-pub use catalogue::{Definition, MEASURES};
-pub use guidance::{Feedback, Guidance};
-pub use learning::{LEAST_TRIALS, LearningCurve, Shape};
-pub use proficiency::{Proficiency, Standing};
-pub use sample::{HandSample, Sample};
-pub use score::{Measure, Outcome, Score};
+pub use catalogue::{CatalogueDefinition, MEASURES};
+pub use guidance::{FeedbackSchedule, Guidance};
+pub use learning::{CurveShape, LearningCurve, MIN_TRIALS};
+pub use proficiency::{Proficiency, TrainingState};
+pub use sample::{HandSample, ScoreSample};
+pub use score::{Measure, Score, TrialOutcome};
 pub use scorer::Scorer;
-pub use task::{Criterion, LONGEST_TRIAL_S, TaskError, TaskFile, provide_tasks};
+pub use task::{LONGEST_TRIAL_S, TaskCriterion, TaskError, TaskFile, provide_tasks};

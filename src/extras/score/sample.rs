@@ -10,7 +10,7 @@ const LARGEST_N: f64 = 1e5;
 
 /// Both hands at one moment. Steps may be uneven; a step back in time is skipped and counted.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Sample {
+pub struct ScoreSample {
     /// Time, s, on any clock that runs forward; the same as the events'.
     pub t_s: f64,
     /// Both, in the order of [`nima_core::Side::ALL`]; `None` while that side is unknown.

@@ -3,12 +3,12 @@
 use nima_core::{SIDES, Side};
 use serde::{Serialize, Serializer, ser::SerializeMap};
 
-use crate::{Definition, MEASURES};
+use crate::{CatalogueDefinition, MEASURES};
 
 /// Outcome of a trial.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Outcome {
+pub enum TrialOutcome {
     /// The task was completed within the time limit.
     Completed,
     OutOfTime,
@@ -22,7 +22,7 @@ pub enum Outcome {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measure {
     /// Id, text, unit, definition and source.
-    pub definition: &'static Definition,
+    pub definition: &'static CatalogueDefinition,
     /// The hand; `None` for a measure of the whole trial.
     pub side: Option<Side>,
     /// In the unit of the definition, always finite. `None` if there is nothing to measure: no such hand, another task,
@@ -43,17 +43,17 @@ impl Measure {
 /// All measures of a trial. Serialises to one flat object of keys and numbers, with `null` for missing values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Score {
-    outcome: Outcome,
+    outcome: TrialOutcome,
     /// For each of [`MEASURES`]: both sides, or the whole trial at the first index.
     values: Vec<[Option<f64>; SIDES]>,
 }
 
 impl Score {
-    pub(crate) fn new(outcome: Outcome) -> Self {
+    pub(crate) fn new(outcome: TrialOutcome) -> Self {
         Self { outcome, values: vec![[None; SIDES]; MEASURES.len()] }
     }
 
-    pub fn outcome(&self) -> Outcome {
+    pub fn outcome(&self) -> TrialOutcome {
         self.outcome
     }
 

@@ -2,16 +2,16 @@
 
 use nima_core::{
     SIDES, Side,
-    task::{Event, Happening, TaskKind},
+    task::{TaskEvent, TaskKind, TimedTaskEvent},
 };
 
 use crate::{
-    Outcome, Sample, Score, TaskFile,
+    Score, ScoreSample, TaskFile, TrialOutcome,
     economy::path_economy,
     events::Events,
-    hand::Hand,
-    motion::Motion,
-    signal::{Order, Track, magnitudes, mean, peak},
+    hand::ScoreHand,
+    signal::{DerivativeOrder, TipTrack, magnitudes, mean, peak},
+    tip_motion::TipMotion,
     two_hands::TwoHands,
 };
 
@@ -23,19 +23,19 @@ const BEFORE_MARK_S: f64 = 2.0;
 /// Processes the samples and events of one trial in the order of time and computes its [`Score`].
 ///
 /// Each sample costs the same. Memory is allocated at the beginning, for motion and force at 100 Hz up to the time
-/// limit (4 MB for 300 s); only a signal with very many gaps needs more. Without [`Event::Begun`] the trial begins with
+/// limit (4 MB for 300 s); only a signal with very many gaps needs more. Without [`TaskEvent::Begun`] the trial begins with
 /// the first sample or event.
 #[derive(Clone, Debug)]
 pub struct Scorer {
     task: TaskFile,
-    hands: [Hand; SIDES],
+    hands: [ScoreHand; SIDES],
     events: Events,
     begin_s: Option<f64>,
     /// Newest sample and newest event, s from the beginning.
     newest_s: Option<f64>,
     latest_s: f64,
     /// The end, s from the beginning, and its kind.
-    end: Option<(f64, Outcome)>,
+    end: Option<(f64, TrialOutcome)>,
     samples: u64,
     samples_skipped: u64,
     happenings_skipped: u64,
@@ -46,7 +46,7 @@ impl Scorer {
     pub fn new(task: &TaskFile) -> Self {
         Self {
             task: task.clone(),
-            hands: [Hand::new(task), Hand::new(task)],
+            hands: [ScoreHand::new(task), ScoreHand::new(task)],
             events: Events::default(),
             begin_s: None,
             newest_s: None,
@@ -60,7 +60,7 @@ impl Scorer {
 
     /// Adds the next sample. Samples before the beginning and after the end do not count; a sample that is not finite
     /// or goes back in time is skipped and counted.
-    pub fn sample(&mut self, sample: &Sample) {
+    pub fn sample(&mut self, sample: &ScoreSample) {
         if self.end.is_some() {
             return;
         }
@@ -86,8 +86,8 @@ impl Scorer {
     }
 
     /// Adds an event. It may follow the samples of its time by some samples.
-    pub fn happening(&mut self, happening: &Happening) {
-        if happening.event == Event::Begun && happening.t_s.abs() <= LATEST_S {
+    pub fn happening(&mut self, happening: &TimedTaskEvent) {
+        if happening.event == TaskEvent::Begun && happening.t_s.abs() <= LATEST_S {
             *self = Self { begin_s: Some(happening.t_s), ..Self::new(&self.task) };
             return;
         }
@@ -103,8 +103,8 @@ impl Scorer {
         }
         self.latest_s = self.latest_s.max(t_s);
         match happening.event {
-            Event::Ended => self.end = Some((t_s, Outcome::Completed)),
-            Event::Aborted => self.end = Some((t_s, Outcome::Aborted)),
+            TaskEvent::Ended => self.end = Some((t_s, TrialOutcome::Completed)),
+            TaskEvent::Aborted => self.end = Some((t_s, TrialOutcome::Aborted)),
             event => self.events.take(t_s, event),
         }
     }
@@ -112,7 +112,7 @@ impl Scorer {
     /// Ends the trial with the current data and returns its score. For a trial of 300 s this takes about 100 ms and 15
     /// MB, for the spectra, so do not call it within the loop.
     pub fn finish(self) -> Score {
-        let (end_s, outcome) = self.end.unwrap_or((self.latest_s, Outcome::Unfinished));
+        let (end_s, outcome) = self.end.unwrap_or((self.latest_s, TrialOutcome::Unfinished));
         let mut score = Score::new(outcome);
         self.score_time(&mut score, end_s, outcome);
         self.score_task(&mut score, end_s);
@@ -133,20 +133,20 @@ impl Scorer {
     fn out_of_time(&mut self, t_s: f64) -> bool {
         let limit_s = self.task.limit_s();
         if t_s >= limit_s {
-            self.end = Some((limit_s, Outcome::OutOfTime));
+            self.end = Some((limit_s, TrialOutcome::OutOfTime));
         }
         self.end.is_some()
     }
 
-    fn score_time(&self, score: &mut Score, end_s: f64, outcome: Outcome) {
-        let completed_s = (outcome == Outcome::Completed).then_some(end_s);
+    fn score_time(&self, score: &mut Score, end_s: f64, outcome: TrialOutcome) {
+        let completed_s = (outcome == TrialOutcome::Completed).then_some(end_s);
         score.set("trial_time_s", self.begin_s.map(|_| end_s));
         score.set("completion_time_s", completed_s);
-        score.set_hands("engaged_share", self.each(|hand| hand.times.engaged_share()));
+        score.set_hands("engaged_share", self.each(|hand| hand.times.engaged_fraction()));
         // Without a task there is neither a reference nor an image.
         if self.task.kind != TaskKind::Free {
             score.set("time_over_reference", completed_s.map(|time_s| time_s / self.task.reference_time_s));
-            score.set_hands("out_of_view_share", self.each(|hand| hand.times.out_of_view_share()));
+            score.set_hands("out_of_view_share", self.each(|hand| hand.times.out_of_view_fraction()));
         }
         let known_s = self.each(|hand| hand.times.known_s());
         score.set_hands("unknown_time_s", known_s.map(|known_s| known_s.map(|known_s| (end_s - known_s).max(0.0))));
@@ -155,9 +155,9 @@ impl Scorer {
         score.set("happenings_skipped", Some(self.happenings_skipped as f64));
         let rest_s = self.task.time_limit_s - end_s - self.task.penalty_s * f64::from(self.events.dropped_out_of_view);
         let points = match outcome {
-            Outcome::Completed => Some(rest_s.max(0.0)),
-            Outcome::OutOfTime | Outcome::Aborted => Some(0.0),
-            Outcome::Unfinished => None,
+            TrialOutcome::Completed => Some(rest_s.max(0.0)),
+            TrialOutcome::OutOfTime | TrialOutcome::Aborted => Some(0.0),
+            TrialOutcome::Unfinished => None,
         };
         score.set("fls_like_score", points.filter(|_| self.task.kind == TaskKind::PegTransfer));
     }
@@ -224,34 +224,34 @@ impl Scorer {
         score.set_hands("jaw_openings_per_min", Side::ALL.map(|side| per_min(side.index())));
     }
 
-    fn each(&self, of: impl Fn(&Hand) -> Option<f64>) -> [Option<f64>; SIDES] {
+    fn each(&self, of: impl Fn(&ScoreHand) -> Option<f64>) -> [Option<f64>; SIDES] {
         self.hands.each_ref().map(of)
     }
 }
 
-fn score_motion(score: &mut Score, tips: &[Track; SIDES], handled_s: &[Vec<f64>; SIDES], end_s: f64) {
-    let motions = tips.each_ref().map(Motion::of);
+fn score_motion(score: &mut Score, tips: &[TipTrack; SIDES], handled_s: &[Vec<f64>; SIDES], end_s: f64) {
+    let motions = tips.each_ref().map(TipMotion::of);
     let each = motions.each_ref();
-    let paths_m = each.map(Motion::path_m);
-    let depths_m = each.map(Motion::depth_m);
-    let depth_share =
+    let paths_m = each.map(TipMotion::path_m);
+    let depths_m = each.map(TipMotion::depth_m);
+    let depth_fraction =
         |side: usize| paths_m[side].filter(|path_m| *path_m > 0.0).and_then(|path_m| Some(depths_m[side]? / path_m));
     score.set_hands("path_length_m", paths_m);
     score.set_hands("depth_m", depths_m);
-    score.set_hands("depth_share", [depth_share(0), depth_share(1)]);
+    score.set_hands("depth_share", [depth_fraction(0), depth_fraction(1)]);
     score.set_hands("path_economy", [0, 1].map(|side| path_economy(&motions[side], &handled_s[side])));
-    score.set_hands("mean_speed_m_per_s", each.map(Motion::mean_speed));
-    score.set_hands("peak_speed_m_per_s", each.map(Motion::peak_speed));
-    score.set_hands("mean_acceleration_m_per_s2", each.map(Motion::mean_acceleration));
-    score.set_hands("peak_acceleration_m_per_s2", each.map(Motion::peak_acceleration));
-    score.set_hands("mean_jerk_m_per_s3", each.map(Motion::mean_jerk));
-    score.set_hands("hand_idle_time_s", each.map(Motion::idle_s));
-    score.set_hands("movements", each.map(Motion::movements));
-    score.set_hands("motion_volume_m3", each.map(Motion::volume_m3));
-    let whole = each.map(Motion::smoothness);
+    score.set_hands("mean_speed_m_per_s", each.map(TipMotion::mean_speed));
+    score.set_hands("peak_speed_m_per_s", each.map(TipMotion::peak_speed));
+    score.set_hands("mean_acceleration_m_per_s2", each.map(TipMotion::mean_acceleration));
+    score.set_hands("peak_acceleration_m_per_s2", each.map(TipMotion::peak_acceleration));
+    score.set_hands("mean_jerk_m_per_s3", each.map(TipMotion::mean_jerk));
+    score.set_hands("hand_idle_time_s", each.map(TipMotion::idle_s));
+    score.set_hands("movements", each.map(TipMotion::movements));
+    score.set_hands("motion_volume_m3", each.map(TipMotion::volume_m3));
+    let whole = each.map(TipMotion::smoothness);
     score.set_hands("log_dimensionless_jerk", whole.map(|[jerk, _]| jerk));
     score.set_hands("sparc", whole.map(|[_, arc]| arc));
-    let single = each.map(Motion::smoothness_of_movements);
+    let single = each.map(TipMotion::smoothness_of_movements);
     score.set_hands("log_dimensionless_jerk_per_movement", single.map(|[jerk, _]| jerk));
     score.set_hands("sparc_per_movement", single.map(|[_, arc]| arc));
     let hands = TwoHands::of(&motions);
@@ -261,9 +261,9 @@ fn score_motion(score: &mut Score, tips: &[Track; SIDES], handled_s: &[Vec<f64>;
     score.set("bimanual_dexterity", hands.correlation());
 }
 
-fn score_force_rate(score: &mut Score, forces: &[Track; SIDES]) {
+fn score_force_rate(score: &mut Score, forces: &[TipTrack; SIDES]) {
     let rates: [Vec<Vec<f64>>; SIDES] =
-        [0, 1].map(|side| forces[side].runs().map(|(_, points)| magnitudes(points, Order::First)).collect());
+        [0, 1].map(|side| forces[side].runs().map(|(_, points)| magnitudes(points, DerivativeOrder::First)).collect());
     score.set_hands("peak_force_rate_n_per_s", [0, 1].map(|side| peak(rates[side].iter().map(Vec::as_slice))));
     score.set_hands("mean_force_rate_n_per_s", [0, 1].map(|side| mean(rates[side].iter().map(Vec::as_slice))));
 }

@@ -11,11 +11,11 @@ const PADDING: usize = 16;
 /// A hand that was never faster, m/s, made no movement to judge: its spectrum would be that of noise.
 const MOVED_M_PER_S: f64 = 0.005;
 /// Minimum number of points of a judged segment: 0.2 s.
-const LEAST_POINTS: usize = 21;
+const MIN_POINTS: usize = 21;
 
 /// Whether there is a movement to judge.
 fn judged(speed: &[f64]) -> bool {
-    speed.len() >= LEAST_POINTS && peak(std::iter::once(speed)).is_some_and(|peak| peak >= MOVED_M_PER_S)
+    speed.len() >= MIN_POINTS && peak(std::iter::once(speed)).is_some_and(|peak| peak >= MOVED_M_PER_S)
 }
 
 /// `-ln(T^3 / v_peak^2 * integral of |jerk|^2)`: Hogan and Sternad 2009; Balasubramanian et al. 2015.

@@ -3,7 +3,7 @@
 use std::fmt::Display;
 
 use nima_core::task::TaskKind;
-use nima_simulation::scene::{Task, score_tasks_by};
+use nima_simulation::scene::{SceneTask, score_tasks_by};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 use toml::Table;
@@ -52,14 +52,14 @@ pub struct TaskFile {
     pub mark_tolerance_m: f64,
     /// When training is complete.
     #[serde(default)]
-    pub proficiency: Criterion,
+    pub proficiency: TaskCriterion,
 }
 
 /// When training is complete: by default the criterion for peg transfer in Ritter and Scott 2007 (Surg. Innov.
 /// 14:107-112) and its curriculum.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
-pub struct Criterion {
+pub struct TaskCriterion {
     /// A trial meets the criterion within this time, s.
     pub time_s: f64,
     /// Maximum drops out of view in such a trial.
@@ -80,13 +80,13 @@ pub enum TaskError {
     Setting { key: &'static str, value: f64, allowed: &'static str },
 }
 
-impl Default for Criterion {
+impl Default for TaskCriterion {
     fn default() -> Self {
         Self { time_s: 48.0, drops_out_of_view: 0, consecutive: 2, additional: 10, max_trials: 80 }
     }
 }
 
-impl Criterion {
+impl TaskCriterion {
     /// Whether a trial meets it: by its completion time (s; `None` if it was not completed) and its drops out of view.
     pub fn is_met(&self, completion_time_s: Option<f64>, drops_out_of_view: u32) -> bool {
         completion_time_s.is_some_and(|time_s| time_s <= self.time_s) && drops_out_of_view <= self.drops_out_of_view
@@ -112,7 +112,7 @@ impl TaskFile {
     ///
     /// # Errors
     /// As [`from_toml`](Self::from_toml).
-    pub fn of(task: &Task) -> Result<Self, TaskError> {
+    pub fn of(task: &SceneTask) -> Result<Self, TaskError> {
         let task: Self = Table::try_from(task).map_err(unreadable)?.try_into().map_err(unreadable)?;
         task.check()?;
         Ok(task)
@@ -122,7 +122,7 @@ impl TaskFile {
     ///
     /// # Errors
     /// [`TaskError::Toml`] if it cannot be written.
-    pub fn to_scene(&self) -> Result<Task, TaskError> {
+    pub fn to_scene(&self) -> Result<SceneTask, TaskError> {
         Table::try_from(self).map_err(unreadable)?.try_into().map_err(unreadable)
     }
 
@@ -141,11 +141,11 @@ impl TaskFile {
             let allowed = "from 0 s to 1200 s";
             return Err(TaskError::Setting { key: "penalty_s", value: self.penalty_s, allowed });
         }
-        if !Task::MARK_TOLERANCES_M.contains(&self.mark_tolerance_m) {
+        if !SceneTask::MARK_TOLERANCES_M.contains(&self.mark_tolerance_m) {
             let allowed = "from 0 m to 0.05 m";
             return Err(TaskError::Setting { key: "mark_tolerance_m", value: self.mark_tolerance_m, allowed });
         }
-        let Criterion { consecutive, max_trials, .. } = self.proficiency;
+        let TaskCriterion { consecutive, max_trials, .. } = self.proficiency;
         positive("proficiency.consecutive", f64::from(consecutive), 1e3, "from 1 to 1000")?;
         positive("proficiency.max_trials", f64::from(max_trials), 1e4, "from 1 to 10000")
     }
@@ -191,5 +191,5 @@ fn contact_n() -> f64 {
 }
 
 fn mark_tolerance_m() -> f64 {
-    Task::MARK_TOLERANCE_M
+    SceneTask::MARK_TOLERANCE_M
 }

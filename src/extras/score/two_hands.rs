@@ -3,14 +3,14 @@
 use nima_core::SIDES;
 
 use crate::{
-    motion::{IDLE_M_PER_S, Motion},
     signal::STEP_S,
+    tip_motion::{IDLE_M_PER_S, TipMotion},
 };
 
 /// Minimum number of points with both hands known for a result: 1 s.
-const LEAST_POINTS: usize = 100;
+const MIN_POINTS: usize = 100;
 /// A speed that varies less (standard deviation, m/s) has only the correlation of its noise.
-const LEAST_SD_M_PER_S: f64 = 1e-4;
+const MIN_SD_M_PER_S: f64 = 1e-4;
 
 /// Speeds of both hands on the grid of the trial.
 pub(crate) struct TwoHands {
@@ -18,7 +18,7 @@ pub(crate) struct TwoHands {
 }
 
 impl TwoHands {
-    pub(crate) fn of(motions: &[Motion<'_>; SIDES]) -> Self {
+    pub(crate) fn of(motions: &[TipMotion<'_>; SIDES]) -> Self {
         let ends =
             motions.iter().flat_map(|motion| &motion.stretches).map(|stretch| stretch.grid + stretch.speed.len());
         let mut speeds = vec![[None; SIDES]; ends.max().unwrap_or(0)];
@@ -43,13 +43,13 @@ impl TwoHands {
     pub(crate) fn both_move(&self) -> Option<f64> {
         let count = self.pairs().count();
         let both = self.pairs().filter(|pair| pair.iter().all(|speed| *speed >= IDLE_M_PER_S)).count();
-        (count >= LEAST_POINTS).then(|| both as f64 / count as f64)
+        (count >= MIN_POINTS).then(|| both as f64 / count as f64)
     }
 
     /// Pearson's correlation of the two speeds.
     pub(crate) fn correlation(&self) -> Option<f64> {
         let count = self.pairs().count();
-        if count < LEAST_POINTS {
+        if count < MIN_POINTS {
             return None;
         }
         let mean = |side: usize| self.pairs().map(|pair| pair[side]).sum::<f64>() / count as f64;
@@ -58,7 +58,7 @@ impl TwoHands {
             self.pairs().map(|pair| (pair[a] - means[a]) * (pair[b] - means[b])).sum::<f64>() / count as f64
         };
         let sds = [moment(0, 0).sqrt(), moment(1, 1).sqrt()];
-        let varies = sds.iter().all(|sd| *sd >= LEAST_SD_M_PER_S);
+        let varies = sds.iter().all(|sd| *sd >= MIN_SD_M_PER_S);
         varies.then(|| (moment(0, 1) / (sds[0] * sds[1])).clamp(-1.0, 1.0))
     }
 

@@ -13,7 +13,7 @@ const TEXT_MAX: usize = 4000;
 /// The answers to one questionnaire.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Answers {
+pub enum QuestionnaireAnswers {
     /// Six ratings, 0 to 100 in steps of 5.
     NasaTlx(Ratings),
     /// Six ratings, and the scale chosen from each of the [`PAIRS`].
@@ -58,31 +58,31 @@ impl Ratings {
 #[serde(deny_unknown_fields)]
 struct AnswerFile {
     nasa_tlx: Option<Ratings>,
-    nasa_tlx_weighted: Option<Weighted>,
+    nasa_tlx_weighted: Option<WeightedAnswers>,
     sus: Option<[u8; 10]>,
     realism: Option<u8>,
     free_text: Option<String>,
 }
 
 #[derive(Deserialize)]
-struct Weighted {
+struct WeightedAnswers {
     #[serde(flatten)]
     ratings: Ratings,
     chosen: [TlxScale; 15],
 }
 
-impl Answers {
+impl QuestionnaireAnswers {
     /// Parses the answers to this questionnaire from a text (TOML), `realism = 5`.
     ///
     /// # Errors
     /// Missing or wrong answers.
     ///
     /// ```
-    /// use nima_user_study::{Answers, Questionnaire};
+    /// use nima_user_study::{QuestionnaireAnswers, Questionnaire};
     ///
-    /// assert_eq!(Answers::from_toml("realism = 5", Questionnaire::Realism), Ok(Answers::Realism(5)));
-    /// assert!(Answers::from_toml("realism = 8", Questionnaire::Realism).is_err());
-    /// assert!(Answers::from_toml("realism = 5", Questionnaire::Sus).is_err());
+    /// assert_eq!(QuestionnaireAnswers::from_toml("realism = 5", Questionnaire::Realism), Ok(QuestionnaireAnswers::Realism(5)));
+    /// assert!(QuestionnaireAnswers::from_toml("realism = 8", Questionnaire::Realism).is_err());
+    /// assert!(QuestionnaireAnswers::from_toml("realism = 5", Questionnaire::Sus).is_err());
     /// ```
     pub fn from_toml(text: &str, asked: Questionnaire) -> Result<Self, String> {
         let file: AnswerFile = nima_files::from_toml(text)
@@ -91,7 +91,7 @@ impl Answers {
         let answers = match asked {
             Questionnaire::NasaTlx => nasa_tlx.map(Self::NasaTlx),
             Questionnaire::NasaTlxWeighted => {
-                nasa_tlx_weighted.map(|Weighted { ratings, chosen }| Self::NasaTlxWeighted { ratings, chosen })
+                nasa_tlx_weighted.map(|WeightedAnswers { ratings, chosen }| Self::NasaTlxWeighted { ratings, chosen })
             }
             Questionnaire::Sus => sus.map(Self::Sus),
             Questionnaire::Realism => realism.map(Self::Realism),

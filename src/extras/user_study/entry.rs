@@ -2,29 +2,29 @@
 
 use std::collections::BTreeMap;
 
-use nima_score::{Outcome, Score};
+use nima_score::{Score, TrialOutcome};
 use serde::{Deserialize, Serialize};
 
-use crate::{Answers, Label};
+use crate::{Label, QuestionnaireAnswers};
 
 /// The measures of a trial that have a value, by their keys.
-pub type Measures = BTreeMap<String, f64>;
+pub type TrialMeasures = BTreeMap<String, f64>;
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Entry {
+pub struct JournalEntry {
     /// From 1.
     pub n: u64,
     /// Time of writing, in the form given by the caller.
     pub at: String,
     /// The event.
     #[serde(flatten)]
-    pub event: Event,
+    pub event: StudyEvent,
 }
 
 /// Practice, or a trial that counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Phase {
+pub enum TrialPhase {
     Practice,
     Trial,
 }
@@ -32,7 +32,7 @@ pub enum Phase {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct TrialId {
     /// Practice, or one that counts.
-    pub phase: Phase,
+    pub phase: TrialPhase,
     /// Number among the trials of its phase, from 1.
     pub number: u32,
     /// From 1; more after interruptions.
@@ -42,18 +42,18 @@ pub struct TrialId {
 /// How a trial with a result ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Ending {
+pub enum TrialEnding {
     Completed,
     OutOfTime,
 }
 
-impl Ending {
+impl TrialEnding {
     /// For a trial with a result; `None` if it was given up or interrupted.
-    pub const fn of(outcome: Outcome) -> Option<Self> {
+    pub const fn of(outcome: TrialOutcome) -> Option<Self> {
         match outcome {
-            Outcome::Completed => Some(Self::Completed),
-            Outcome::OutOfTime => Some(Self::OutOfTime),
-            Outcome::Aborted | Outcome::Unfinished => None,
+            TrialOutcome::Completed => Some(Self::Completed),
+            TrialOutcome::OutOfTime => Some(Self::OutOfTime),
+            TrialOutcome::Aborted | TrialOutcome::Unfinished => None,
         }
     }
 }
@@ -61,7 +61,7 @@ impl Ending {
 /// An event of a study.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "event", rename_all = "snake_case")]
-pub enum Event {
+pub enum StudyEvent {
     /// The folder was created.
     StudyMade {
         commitment: String,
@@ -83,8 +83,8 @@ pub enum Event {
         participant: String,
         #[serde(flatten)]
         trial: TrialId,
-        ending: Ending,
-        measures: Measures,
+        ending: TrialEnding,
+        measures: TrialMeasures,
         /// Measures that reveal the condition, encrypted; only in a blind study.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         withheld: Option<String>,
@@ -115,7 +115,7 @@ pub enum Event {
         /// The condition to which they refer; `None` at the end.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         after: Option<Label>,
-        answers: Answers,
+        answers: QuestionnaireAnswers,
         simulated: bool,
     },
     /// A person excludes a trial, or a participant.
@@ -143,6 +143,6 @@ pub enum Event {
 }
 
 /// Returns the measures of a score that have a value.
-pub(crate) fn measures(score: &Score) -> Measures {
+pub(crate) fn measures(score: &Score) -> TrialMeasures {
     score.measures().filter_map(|measure| Some((measure.key(), measure.value?))).collect()
 }

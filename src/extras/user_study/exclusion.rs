@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::{Plan, Progress, State};
+use crate::{ParticipantProgress, StudyPlan, StudyState};
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -10,7 +10,7 @@ pub struct ExclusionRule {
     /// The measure to which it applies.
     pub measure: String,
     /// When it applies.
-    pub is: Comparison,
+    pub is: MeasureComparison,
     /// Limit of the measure, in its unit; not for `missing`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub limit: Option<f64>,
@@ -24,7 +24,7 @@ pub struct ExclusionRule {
 /// How a measure is compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Comparison {
+pub enum MeasureComparison {
     /// It is greater than the limit.
     Above,
     /// It is less than the limit.
@@ -67,8 +67,8 @@ impl ExclusionRule {
         let Self { is, limit, exclude, times, .. } = self;
         let mut wrong = Vec::new();
         match (is, limit) {
-            (Comparison::Missing, Some(_)) => wrong.push("with is = \"missing\" there is no limit".to_owned()),
-            (Comparison::Above | Comparison::Below, None) => wrong.push("limit is missing".to_owned()),
+            (MeasureComparison::Missing, Some(_)) => wrong.push("with is = \"missing\" there is no limit".to_owned()),
+            (MeasureComparison::Above | MeasureComparison::Below, None) => wrong.push("limit is missing".to_owned()),
             (_, Some(limit)) if !limit.is_finite() => wrong.push("limit has to be a number".to_owned()),
             _ => {}
         }
@@ -80,28 +80,28 @@ impl ExclusionRule {
 
     fn applies(&self, value: Option<f64>) -> bool {
         match (self.is, value, self.limit) {
-            (Comparison::Above, Some(value), Some(limit)) => value > limit,
-            (Comparison::Below, Some(value), Some(limit)) => value < limit,
-            (Comparison::Missing, value, _) => value.is_none(),
+            (MeasureComparison::Above, Some(value), Some(limit)) => value > limit,
+            (MeasureComparison::Below, Some(value), Some(limit)) => value < limit,
+            (MeasureComparison::Missing, value, _) => value.is_none(),
             _ => false,
         }
     }
 
     /// Returns the rule as text.
-    fn in_words(&self) -> String {
+    fn as_text(&self) -> String {
         let Self { measure, is, limit, times, .. } = self;
         let limit = limit.map_or_else(String::new, |limit| limit.to_string());
         let what = match is {
-            Comparison::Above => format!("{measure} above {limit}"),
-            Comparison::Below => format!("{measure} below {limit}"),
-            Comparison::Missing => format!("{measure} missing"),
+            MeasureComparison::Above => format!("{measure} above {limit}"),
+            MeasureComparison::Below => format!("{measure} below {limit}"),
+            MeasureComparison::Missing => format!("{measure} missing"),
         };
         if *times > 1 { format!("{what} in {times} trials or more") } else { what }
     }
 }
 
 /// Returns the exclusions by rules and by people, in the order of participants and trials.
-pub(crate) fn exclusions(plan: &Plan, state: &State) -> Vec<Exclusion> {
+pub(crate) fn exclusions(plan: &StudyPlan, state: &StudyState) -> Vec<Exclusion> {
     let mut all = Vec::new();
     for (participant, progress) in state.participants() {
         let of = |trial: Option<u32>, why: String| Exclusion { participant: participant.to_owned(), trial, why };
@@ -110,8 +110,8 @@ pub(crate) fn exclusions(plan: &Plan, state: &State) -> Vec<Exclusion> {
             let met: Vec<u32> =
                 made(progress).filter(|(_, values)| rule.applies(values(&rule.measure))).map(|m| m.0).collect();
             match rule.exclude {
-                Excludes::Trial => all.extend(met.iter().map(|trial| of(Some(*trial), rule.in_words()))),
-                Excludes::Participant if met.len() >= rule.times as usize => all.push(of(None, rule.in_words())),
+                Excludes::Trial => all.extend(met.iter().map(|trial| of(Some(*trial), rule.as_text()))),
+                Excludes::Participant if met.len() >= rule.times as usize => all.push(of(None, rule.as_text())),
                 Excludes::Participant => {}
             }
         }
@@ -121,7 +121,7 @@ pub(crate) fn exclusions(plan: &Plan, state: &State) -> Vec<Exclusion> {
 }
 
 /// Returns the trials with a result, and their measures.
-fn made(progress: &Progress) -> impl Iterator<Item = (u32, impl Fn(&str) -> Option<f64>)> {
+fn made(progress: &ParticipantProgress) -> impl Iterator<Item = (u32, impl Fn(&str) -> Option<f64>)> {
     progress.trials.iter().filter_map(|made| {
         let measures = made.measures.as_ref()?;
         Some((made.number, |key: &str| measures.get(key).copied()))

@@ -3,10 +3,10 @@
 use std::{collections::BTreeSet, fmt};
 
 use nima_core::Side;
-use nima_score::{Criterion, Definition, Feedback, LONGEST_TRIAL_S, MEASURES, TaskFile};
+use nima_score::{CatalogueDefinition, FeedbackSchedule, LONGEST_TRIAL_S, MEASURES, TaskCriterion, TaskFile};
 use serde::{Deserialize, Serialize};
 
-use crate::{Condition, ExclusionRule, Label, Questionnaire, telling};
+use crate::{Condition, ExclusionRule, Label, Questionnaire, unblinding_risk};
 
 pub const PARTICIPANTS_MAX: u32 = 200;
 pub const TRIALS_MAX: u32 = 100;
@@ -55,7 +55,7 @@ pub struct StudyFile {
     pub record: bool,
     /// What to do after an interrupted trial.
     #[serde(default)]
-    pub interrupted: Interrupted,
+    pub interrupted: InterruptionPolicy,
     /// Maximum attempts at a trial; after that it has no result.
     #[serde(default = "three")]
     pub attempts: u32,
@@ -69,7 +69,7 @@ pub struct StudyFile {
     pub practice: Option<Practice>,
     /// After which trials the participant is shown the result.
     #[serde(default)]
-    pub feedback: Feedback,
+    pub feedback: FeedbackSchedule,
     #[serde(default)]
     pub breaks: Option<Breaks>,
     #[serde(default)]
@@ -82,7 +82,7 @@ pub struct StudyFile {
 /// What to do after a trial that was interrupted or given up.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Interrupted {
+pub enum InterruptionPolicy {
     /// The trial is repeated from its beginning, under the same condition, up to the number of attempts.
     #[default]
     Repeat,
@@ -100,7 +100,7 @@ pub struct Practice {
     #[serde(default)]
     pub not_reached: NotReached,
     /// When practice is over.
-    pub criterion: Criterion,
+    pub criterion: TaskCriterion,
 }
 
 /// What to do with a participant who did not meet the criterion.
@@ -120,7 +120,8 @@ pub struct Breaks {
     /// Number of trials since the last break, including practice.
     pub after_trials: u32,
     /// Minimum duration, s.
-    pub least_s: f64,
+    #[serde(rename = "least_s")]
+    pub min_s: f64,
 }
 
 /// Which questionnaires are filled in, and when.
@@ -171,7 +172,7 @@ pub(crate) fn measure_keys() -> impl Iterator<Item = String> {
 }
 
 /// Returns the keys of a measure: one for each of these hands, if it is measured for each.
-pub fn keys_of(definition: &Definition, hands: &[Side]) -> Vec<String> {
+pub fn keys_of(definition: &CatalogueDefinition, hands: &[Side]) -> Vec<String> {
     let of = |side: &Side| format!("{}_{}", definition.id, side.word());
     if definition.per_hand { hands.iter().map(of).collect() } else { vec![definition.id.to_owned()] }
 }
@@ -205,7 +206,7 @@ impl StudyFile {
             wrong.extend(twice.map(|(_, one)| format!("questionnaires.{key}: {} occurs twice", one.name())));
         }
         if self.blind {
-            wrong.extend(self.told_by_name());
+            wrong.extend(self.reported_by_name());
         }
         if wrong.is_empty() { Ok(()) } else { Err(Mistakes(wrong)) }
     }
@@ -215,9 +216,9 @@ impl StudyFile {
         if name.trim().is_empty() || name.chars().count() > NAME_MAX || name.chars().any(char::is_control) {
             wrong.push(format!("name has to be one line of 1 to {NAME_MAX} letters"));
         }
-        let mut within = |key: &str, value: u32, most: u32| {
-            if !(1..=most).contains(&value) {
-                wrong.push(format!("{key} = {value}: it has to be from 1 to {most}"));
+        let mut within = |key: &str, value: u32, max: u32| {
+            if !(1..=max).contains(&value) {
+                wrong.push(format!("{key} = {value}: it has to be from 1 to {max}"));
             }
         };
         within("participants", *participants, PARTICIPANTS_MAX);
@@ -225,9 +226,9 @@ impl StudyFile {
         within("attempts", *attempts, ATTEMPTS_MAX);
         within("rings", rings.unwrap_or(1), 100);
         within("breaks.after_trials", breaks.map_or(1, |breaks| breaks.after_trials), BREAK_AFTER_MAX);
-        let least_s = breaks.map_or(0.0, |breaks| breaks.least_s);
-        if !(0.0..=BREAK_MAX_S).contains(&least_s) {
-            wrong.push(format!("breaks.least_s = {least_s}: it has to be from 0 to {BREAK_MAX_S:.0} s"));
+        let min_s = breaks.map_or(0.0, |breaks| breaks.min_s);
+        if !(0.0..=BREAK_MAX_S).contains(&min_s) {
+            wrong.push(format!("breaks.least_s = {min_s}: it has to be from 0 to {BREAK_MAX_S:.0} s"));
         }
         if let Some(Err(error)) = task.as_ref().map(TaskFile::check) {
             wrong.push(format!("task: {error}"));
@@ -236,8 +237,8 @@ impl StudyFile {
 
     fn check_conditions(&self, wrong: &mut Vec<String>) {
         let conditions = &self.conditions;
-        if !(2..=Label::MOST).contains(&conditions.len()) {
-            wrong.push(format!("there are {} conditions: it takes 2 to {}", conditions.len(), Label::MOST));
+        if !(2..=Label::MAX).contains(&conditions.len()) {
+            wrong.push(format!("there are {} conditions: it takes 2 to {}", conditions.len(), Label::MAX));
         }
         for (at, condition) in conditions.iter().enumerate() {
             let of = |mistake: String| format!("condition {} (\"{}\"): {mistake}", at + 1, shown(&condition.name));
@@ -277,7 +278,7 @@ impl StudyFile {
         for (at, rule) in self.exclusion.iter().enumerate() {
             let of = |mistake: String| format!("exclusion {}: {mistake}", at + 1);
             wrong.extend(rule.mistakes().into_iter().map(of));
-            if self.blind && telling::tells(&rule.measure) {
+            if self.blind && unblinding_risk::tells(&rule.measure) {
                 wrong.push(of(format!(
                     "{} reveals the condition, so a blind study cannot use it as its primary measure",
                     rule.measure
@@ -287,20 +288,20 @@ impl StudyFile {
     }
 
     /// The criterion by which skill is judged: that of practice, or that of the study's task.
-    pub(crate) fn skill(&self) -> Option<Criterion> {
+    pub(crate) fn skill(&self) -> Option<TaskCriterion> {
         let practised = self.practice.as_ref().map(|practice| practice.criterion);
         practised.or_else(|| self.task.as_ref().map(|task| task.proficiency))
     }
 
     fn check_practice(&self, wrong: &mut Vec<String>) {
-        if self.feedback == Feedback::Fades && self.skill().is_none() {
+        if self.feedback == FeedbackSchedule::Fades && self.skill().is_none() {
             wrong.push(
                 "feedback = \"fades\" goes by a criterion of skill: add [practice.criterion], or a [task] with proficiency"
                     .to_owned(),
             );
         }
         let Some(Practice { criterion, .. }) = &self.practice else { return };
-        let Criterion { time_s, consecutive, additional, max_trials, .. } = *criterion;
+        let TaskCriterion { time_s, consecutive, additional, max_trials, .. } = *criterion;
         if !(time_s > 0.0 && time_s <= LONGEST_TRIAL_S) {
             wrong.push(format!(
                 "practice.criterion.time_s = {time_s}: it has to be above 0 and at most {LONGEST_TRIAL_S} s"
@@ -319,14 +320,14 @@ impl StudyFile {
     }
 
     /// A name that all users read must not reveal a condition or a number.
-    fn told_by_name(&self) -> Option<String> {
+    fn reported_by_name(&self) -> Option<String> {
         let words = |text: &str| format!(" {} ", split(text).join(" "));
         let name = words(&self.name);
-        let told: Vec<String> = self.conditions.iter().flat_map(Condition::tells).collect();
-        let told = told.iter().find(|word| !word.trim().is_empty() && name.contains(&words(word)))?;
+        let report: Vec<String> = self.conditions.iter().flat_map(Condition::tells).collect();
+        let report = report.iter().find(|word| !word.trim().is_empty() && name.contains(&words(word)))?;
         Some(format!(
             "name: it contains \"{}\" of a condition, and all users read it: choose a neutral one",
-            shown(told)
+            shown(report)
         ))
     }
 }

@@ -1,6 +1,6 @@
 //! The journal of a study: one line of JSON for each event, append-only.
 //!
-//! A line is valid when it ends with a line break and is on the disk; [`Journal::append`] returns after that. Bytes
+//! A line is valid when it ends with a line break and is on the disk; [`StudyJournal::append`] returns after that. Bytes
 //! after the last line break, left by a power failure, were never confirmed: they are dropped and reported, and nothing
 //! before them is touched.
 
@@ -10,13 +10,13 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use crate::{Entry, Event, StudyError};
+use crate::{JournalEntry, StudyError, StudyEvent};
 
 /// Maximum journal that is read, bytes.
-const MOST: u64 = 256 << 20;
+const MAX: u64 = 256 << 20;
 
 #[derive(Debug)]
-pub(crate) struct Journal {
+pub(crate) struct StudyJournal {
     path: PathBuf,
     file: File,
     entries: u64,
@@ -26,25 +26,25 @@ pub(crate) struct Journal {
 
 /// Contents of a journal.
 #[derive(Debug)]
-pub(crate) struct Contents {
-    pub(crate) entries: Vec<Entry>,
+pub(crate) struct JournalContents {
+    pub(crate) entries: Vec<JournalEntry>,
     /// Bytes after the last line break.
     pub(crate) torn: u64,
     end: u64,
 }
 
 /// Reads a journal without changing it.
-pub(crate) fn read(path: &Path) -> Result<Contents, StudyError> {
-    let bytes = nima_files::read(path, MOST).map_err(StudyError::io(path))?;
+pub(crate) fn read(path: &Path) -> Result<JournalContents, StudyError> {
+    let bytes = nima_files::read(path, MAX).map_err(StudyError::io(path))?;
     parse(path, &bytes)
 }
 
-fn parse(path: &Path, bytes: &[u8]) -> Result<Contents, StudyError> {
+fn parse(path: &Path, bytes: &[u8]) -> Result<JournalContents, StudyError> {
     let end = bytes.iter().rposition(|byte| *byte == b'\n').map_or(0, |at| at + 1);
     let mut entries = Vec::new();
     for (line, text) in (1..).zip(bytes[..end].split_inclusive(|byte| *byte == b'\n')) {
         let damaged = |why: String| StudyError::Journal { path: path.to_owned(), line, why };
-        let entry: Entry = serde_json::from_slice(text).map_err(|error| {
+        let entry: JournalEntry = serde_json::from_slice(text).map_err(|error| {
             damaged(format!("it is not a line of a journal ({error}): restore the file from a copy"))
         })?;
         if entry.n != line {
@@ -52,10 +52,10 @@ fn parse(path: &Path, bytes: &[u8]) -> Result<Contents, StudyError> {
         }
         entries.push(entry);
     }
-    Ok(Contents { entries, torn: (bytes.len() - end) as u64, end: end as u64 })
+    Ok(JournalContents { entries, torn: (bytes.len() - end) as u64, end: end as u64 })
 }
 
-impl Journal {
+impl StudyJournal {
     /// Creates an empty journal.
     pub(crate) fn create(path: &Path) -> Result<Self, StudyError> {
         let file = alone(OpenOptions::new().create_new(true), path)?;
@@ -64,27 +64,27 @@ impl Journal {
 
     /// Opens it exclusively. An incomplete last line is cut off and reported by an entry, which the caller finds among
     /// the contents.
-    pub(crate) fn open(path: &Path, at: &str) -> Result<(Self, Vec<Entry>), StudyError> {
+    pub(crate) fn open(path: &Path, at: &str) -> Result<(Self, Vec<JournalEntry>), StudyError> {
         let mut file = alone(&mut OpenOptions::new(), path)?;
         let about = file.metadata().map_err(StudyError::io(path))?;
-        if !about.is_file() || about.len() > MOST {
+        if !about.is_file() || about.len() > MAX {
             let why = "it is not a journal: not a regular file, or too large".to_owned();
             return Err(StudyError::Damaged { path: path.to_owned(), why });
         }
         let mut bytes = Vec::new();
         file.read_to_end(&mut bytes).map_err(StudyError::io(path))?;
-        let Contents { mut entries, torn, end } = parse(path, &bytes)?;
+        let JournalContents { mut entries, torn, end } = parse(path, &bytes)?;
         let mut journal = Self { path: path.to_owned(), file, entries: entries.len() as u64, end };
         if torn > 0 {
             journal.file.set_len(end).map_err(StudyError::io(path))?;
-            entries.push(journal.append(at, Event::TornLineDropped { bytes: torn })?);
+            entries.push(journal.append(at, StudyEvent::TornLineDropped { bytes: torn })?);
         }
         Ok((journal, entries))
     }
 
     /// Appends a line; it is on the disk when this returns.
-    pub(crate) fn append(&mut self, at: &str, event: Event) -> Result<Entry, StudyError> {
-        let entry = Entry { n: self.entries + 1, at: at.to_owned(), event };
+    pub(crate) fn append(&mut self, at: &str, event: StudyEvent) -> Result<JournalEntry, StudyError> {
+        let entry = JournalEntry { n: self.entries + 1, at: at.to_owned(), event };
         let written = self.write(&entry);
         if written.is_err() {
             // Otherwise half a line would precede the next one.
@@ -95,7 +95,7 @@ impl Journal {
         Ok(entry)
     }
 
-    fn write(&mut self, entry: &Entry) -> io::Result<u64> {
+    fn write(&mut self, entry: &JournalEntry) -> io::Result<u64> {
         let mut line = serde_json::to_vec(entry)?;
         line.push(b'\n');
         self.file.seek(SeekFrom::Start(self.end))?;

@@ -11,11 +11,11 @@ pub struct Label(char);
 
 impl Label {
     /// Maximum number of labels, and thus of conditions, in a study.
-    pub const MOST: usize = 10;
+    pub const MAX: usize = 10;
 
-    /// Returns the first `count` labels, at most [`Label::MOST`].
+    /// Returns the first `count` labels, at most [`Label::MAX`].
     pub fn first(count: usize) -> Vec<Self> {
-        ('A'..='Z').take(count.min(Self::MOST)).map(Self).collect()
+        ('A'..='Z').take(count.min(Self::MAX)).map(Self).collect()
     }
 
     pub const fn letter(self) -> char {

@@ -1,10 +1,11 @@
 //! The public part of a study: `study.toml` in its folder.
 
-use nima_score::{Criterion, Feedback};
+use nima_score::{FeedbackSchedule, TaskCriterion};
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    Breaks, ExclusionRule, Interrupted, Label, NotReached, Practice, Questionnaires, StudyError, StudyFile, order, seal,
+    Breaks, ExclusionRule, InterruptionPolicy, Label, NotReached, Practice, Questionnaires, StudyError, StudyFile,
+    order, seal,
 };
 
 /// Version of the file's format: version 1 had no feedback.
@@ -14,7 +15,7 @@ const OLDEST: u32 = 1;
 /// A study without its conditions. The next step follows from it and the journal.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Plan {
+pub struct StudyPlan {
     version: u32,
     /// Name for screen and report.
     pub name: String,
@@ -31,17 +32,17 @@ pub struct Plan {
     /// Whether trials are recorded.
     pub record: bool,
     /// What to do after an interrupted trial.
-    pub interrupted: Interrupted,
+    pub interrupted: InterruptionPolicy,
     /// Maximum attempts at a trial.
     pub attempts: u32,
     pub labels: Vec<Label>,
     /// BLAKE2b-256 of the sealed assignment, in hexadecimal digits: proves later that it was not changed.
     pub commitment: String,
     /// When practice is over.
-    pub practice: Option<Practising>,
+    pub practice: Option<PracticePlan>,
     /// After which trials the participant is shown the result, and the criterion by which skill is judged.
     #[serde(default)]
-    pub feedback: Told,
+    pub feedback: ResultDisplay,
     pub breaks: Option<Breaks>,
     /// Which questionnaires are filled in, and when.
     pub questionnaires: Questionnaires,
@@ -51,18 +52,18 @@ pub struct Plan {
 
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Practising {
+pub struct PracticePlan {
     pub not_reached: NotReached,
-    pub criterion: Criterion,
+    pub criterion: TaskCriterion,
 }
 
 /// After which trials the participant is shown the result.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Told {
-    pub rule: Feedback,
+pub struct ResultDisplay {
+    pub rule: FeedbackSchedule,
     /// The criterion by which skill is judged.
-    pub criterion: Criterion,
+    pub criterion: TaskCriterion,
 }
 
 /// A participant, by a pseudonym.
@@ -75,7 +76,7 @@ pub struct Participant {
     pub order: Vec<Label>,
 }
 
-impl Plan {
+impl StudyPlan {
     /// Draws a plan for a checked file.
     pub(crate) fn draw(file: &StudyFile, commitment: String) -> std::io::Result<Self> {
         let labels = Label::first(file.conditions.len());
@@ -91,7 +92,7 @@ impl Plan {
         };
         let participants = orders.into_iter().enumerate().map(participant).collect();
         let practising =
-            |practice: &Practice| Practising { not_reached: practice.not_reached, criterion: practice.criterion };
+            |practice: &Practice| PracticePlan { not_reached: practice.not_reached, criterion: practice.criterion };
         Ok(Self {
             version: VERSION,
             name: file.name.clone(),
@@ -106,7 +107,7 @@ impl Plan {
             labels: labels.clone(),
             commitment,
             practice: file.practice.as_ref().map(practising),
-            feedback: Told { rule: file.feedback, criterion: file.skill().unwrap_or_default() },
+            feedback: ResultDisplay { rule: file.feedback, criterion: file.skill().unwrap_or_default() },
             breaks: file.breaks,
             questionnaires: file.questionnaires.clone(),
             exclusion: file.exclusion.clone(),

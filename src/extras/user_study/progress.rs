@@ -2,17 +2,17 @@
 
 use std::collections::BTreeMap;
 
-use nima_score::{Guidance, Proficiency, Standing};
+use nima_score::{Guidance, Proficiency, TrainingState};
 use serde::Serialize;
 
 use crate::{
-    Answers, Done, Ending, Interrupted, Label, Measures, NotReached, Participant, Phase, Plan, Questionnaire, Step,
-    TrialId,
+    EndReason, InterruptionPolicy, Label, NotReached, Participant, Questionnaire, QuestionnaireAnswers, StudyPlan,
+    StudyStep, TrialEnding, TrialId, TrialMeasures, TrialPhase,
 };
 
 /// A finished trial that counts.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Made {
+pub struct CountedTrial {
     /// From 1.
     pub number: u32,
     /// The label of its condition.
@@ -20,9 +20,9 @@ pub struct Made {
     /// The attempt that counts, or the last one.
     pub attempt: u32,
     /// How it ended; `None` without a result.
-    pub ending: Option<Ending>,
+    pub ending: Option<TrialEnding>,
     /// `None` without a result.
-    pub measures: Option<Measures>,
+    pub measures: Option<TrialMeasures>,
     /// Measures that reveal the condition, encrypted.
     #[serde(skip)]
     pub withheld: Option<String>,
@@ -34,7 +34,7 @@ pub struct Made {
 
 /// Progress of one participant.
 #[derive(Clone, Debug, Default)]
-pub struct Progress {
+pub struct ParticipantProgress {
     /// Whether the participant has begun.
     pub began: bool,
     /// Times of the practice trials, s; NaN for one that was not completed.
@@ -44,11 +44,11 @@ pub struct Progress {
     /// Which results are shown to the participant.
     guidance: Option<Guidance>,
     /// The finished trials, in order.
-    pub trials: Vec<Made>,
+    pub trials: Vec<CountedTrial>,
     /// Breaks taken, s.
     pub breaks_s: Vec<f64>,
     /// Answers, each with the condition to which they refer, and whether they were simulated.
-    pub answers: Vec<(Option<Label>, Answers, bool)>,
+    pub answers: Vec<(Option<Label>, QuestionnaireAnswers, bool)>,
     /// Why the participant is excluded.
     pub excluded: Option<String>,
     /// Trials excluded by a person, with the reasons.
@@ -61,8 +61,8 @@ pub struct Progress {
     since_break: u32,
 }
 
-impl Progress {
-    pub(crate) fn of(plan: &Plan) -> Self {
+impl ParticipantProgress {
+    pub(crate) fn of(plan: &StudyPlan) -> Self {
         let guidance = Guidance::new(plan.feedback.rule, plan.feedback.criterion);
         let practice = plan.practice.map(|practice| Proficiency::new(practice.criterion));
         Self { practice, guidance: Some(guidance), ..Self::default() }
@@ -89,12 +89,12 @@ impl Progress {
         self.since_break
     }
 
-    pub(crate) fn next(&self, plan: &Plan, participant: &Participant) -> Step {
+    pub(crate) fn next(&self, plan: &StudyPlan, participant: &Participant) -> StudyStep {
         if let Some((trial, _)) = self.open {
-            return Step::Running { trial };
+            return StudyStep::Running { trial };
         }
         if self.excluded.is_some() {
-            return Step::Done { why: Done::Excluded };
+            return StudyStep::Done { why: EndReason::Excluded };
         }
         let attempt = self.attempts + 1;
         let made = self.trials.len() as u32;
@@ -104,30 +104,30 @@ impl Progress {
         }
         let number = made + 1;
         let step = if practises {
-            Step::Practice { number: self.practice_s.len() as u32 + 1, attempt }
+            StudyStep::Practice { number: self.practice_s.len() as u32 + 1, attempt }
         } else {
             match plan.label(participant, number) {
-                Some(label) => Step::Trial { number, attempt, label },
-                None => return Step::Done { why: Done::Finished },
+                Some(label) => StudyStep::Trial { number, attempt, label },
+                None => return StudyStep::Done { why: EndReason::Finished },
             }
         };
         // A repeated trial follows at once; the break is due after it.
         match plan.breaks {
             Some(breaks) if attempt == 1 && self.since_break >= breaks.after_trials => {
-                Step::Break { least_s: breaks.least_s }
+                StudyStep::Break { min_s: breaks.min_s }
             }
             _ => step,
         }
     }
 
     /// Returns the questionnaire that is due after this many trials.
-    fn asked(&self, plan: &Plan, participant: &Participant, made: u32) -> Option<Step> {
+    fn asked(&self, plan: &StudyPlan, participant: &Participant, made: u32) -> Option<StudyStep> {
         let is_answered = |questionnaire: Questionnaire, after: Option<Label>| {
             self.answers.iter().any(|(of, answers, _)| answers.questionnaire() == questionnaire && *of == after)
         };
         let due = |all: &[Questionnaire], after: Option<Label>| {
             let next = all.iter().copied().find(|questionnaire| !is_answered(*questionnaire, after))?;
-            Some(Step::Questionnaire { questionnaire: next, after })
+            Some(StudyStep::Questionnaire { questionnaire: next, after })
         };
         let is_block_over = made > 0 && made.is_multiple_of(plan.trials);
         let after = plan.label(participant, made).filter(|_| is_block_over);
@@ -137,7 +137,7 @@ impl Progress {
 
     pub(crate) fn begin(
         &mut self,
-        plan: &Plan,
+        plan: &StudyPlan,
         participant: &Participant,
         trial: TrialId,
         label: Option<Label>,
@@ -146,7 +146,7 @@ impl Progress {
         let next = self.next(plan, participant);
         if next.trial() != Some((trial, label)) {
             let TrialId { phase, number, attempt } = trial;
-            let what = if phase == Phase::Practice { "practice trial" } else { "trial" };
+            let what = if phase == TrialPhase::Practice { "practice trial" } else { "trial" };
             return Err(format!("{} began {what} {number}, attempt {attempt}, but next is {next}", participant.name));
         }
         self.open = Some((trial, simulated));
@@ -162,10 +162,10 @@ impl Progress {
 
     pub(crate) fn end(
         &mut self,
-        plan: &Plan,
+        plan: &StudyPlan,
         participant: &Participant,
         trial: TrialId,
-        result: Option<(Ending, Measures, Option<String>)>,
+        result: Option<(TrialEnding, TrialMeasures, Option<String>)>,
         simulated: bool,
         unblinded: bool,
     ) {
@@ -175,23 +175,23 @@ impl Progress {
             let (time_s, drops) = judged(measures);
             guidance.take_trial(time_s, drops);
         }
-        if trial.phase == Phase::Practice {
+        if trial.phase == TrialPhase::Practice {
             return self.practised(plan, result);
         }
         let Some(label) = plan.label(participant, trial.number) else { return };
         let (ending, measures, withheld) =
             result.map_or((None, None, None), |(ending, measures, withheld)| (Some(ending), Some(measures), withheld));
         let TrialId { number, attempt, .. } = trial;
-        self.trials.push(Made { number, label, attempt, ending, measures, withheld, simulated, unblinded });
+        self.trials.push(CountedTrial { number, label, attempt, ending, measures, withheld, simulated, unblinded });
     }
 
-    fn practised(&mut self, plan: &Plan, result: Option<(Ending, Measures, Option<String>)>) {
+    fn practised(&mut self, plan: &StudyPlan, result: Option<(TrialEnding, TrialMeasures, Option<String>)>) {
         let measures = result.map(|(_, measures, _)| measures).unwrap_or_default();
         let (time_s, drops) = judged(&measures);
         self.practice_s.push(time_s.unwrap_or(f64::NAN));
         let standing = self.practice.as_mut().map(|practice| practice.take_trial(time_s, drops));
         let excludes = plan.practice.is_some_and(|practice| practice.not_reached == NotReached::Exclude);
-        if standing == Some(Standing::GivenUp) && excludes {
+        if standing == Some(TrainingState::GivenUp) && excludes {
             self.excluded.get_or_insert_with(|| "the criterion of practice was not reached".to_owned());
         }
     }
@@ -199,7 +199,7 @@ impl Progress {
     /// The trial is repeated until no attempts are left; by the other rule a trial that counts is over at once.
     pub(crate) fn interrupt(
         &mut self,
-        plan: &Plan,
+        plan: &StudyPlan,
         participant: &Participant,
         trial: TrialId,
         simulated: bool,
@@ -207,7 +207,7 @@ impl Progress {
     ) {
         self.interruptions += 1;
         self.attempts += 1;
-        let resumes = plan.interrupted == Interrupted::Resume && trial.phase == Phase::Trial;
+        let resumes = plan.interrupted == InterruptionPolicy::Resume && trial.phase == TrialPhase::Trial;
         if resumes || self.attempts >= plan.attempts {
             self.end(plan, participant, trial, None, simulated, unblinded);
         }
@@ -215,11 +215,11 @@ impl Progress {
 }
 
 /// Returns the values that a criterion judges: completion time, s, and drops out of view.
-fn judged(measures: &Measures) -> (Option<f64>, u32) {
+fn judged(measures: &TrialMeasures) -> (Option<f64>, u32) {
     let drops = measures.get("drops_out_of_view").copied().unwrap_or(0.0);
     (measures.get("completion_time_s").copied(), drops as u32)
 }
 
 fn practises(practice: &Proficiency) -> bool {
-    matches!(practice.standing(), Standing::Practising { .. } | Standing::Confirming { .. })
+    matches!(practice.standing(), TrainingState::Practising { .. } | TrainingState::Confirming { .. })
 }

@@ -9,7 +9,7 @@ use crate::{Condition, Label, StudyFile, order, seal};
 /// The assignment in the form that is sealed, committed to, and shown after the unblinding. Its `Debug` shows nothing
 /// of it.
 #[derive(Clone, PartialEq, Serialize, Deserialize)]
-pub struct Opened {
+pub struct Assignment {
     /// Random, so that the few possible assignments cannot be found by hashing them all.
     salt: String,
     /// The condition of each label, by name.
@@ -20,13 +20,13 @@ pub struct Opened {
     seed: Option<u64>,
 }
 
-impl std::fmt::Debug for Opened {
+impl std::fmt::Debug for Assignment {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str("Opened")
     }
 }
 
-impl Opened {
+impl Assignment {
     /// Draws an assignment for a checked file.
     pub(crate) fn draw(file: &StudyFile) -> std::io::Result<Self> {
         // Drawn separately from the seed of the orders, which is public.

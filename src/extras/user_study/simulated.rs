@@ -6,10 +6,10 @@
 
 use fastrand::Rng;
 
-use crate::{Answers, PAIRS, Questionnaire, Ratings};
+use crate::{PAIRS, Questionnaire, QuestionnaireAnswers, Ratings};
 
 #[derive(Clone, Debug)]
-pub struct Person {
+pub struct SimulatedParticipant {
     seed: u64,
     /// Factor on an expert's pace.
     skill: f64,
@@ -28,7 +28,7 @@ pub struct Person {
 
 /// A hand in one trial.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Hand {
+pub struct SimulatedHand {
     /// Speed of all movements, 1 as in the scene.
     pub pace: f64,
     /// Amplitude of the tremor, m.
@@ -48,7 +48,7 @@ fn between(rng: &mut Rng, from: f64, to: f64) -> f64 {
     from + (to - from) * rng.f64()
 }
 
-impl Person {
+impl SimulatedParticipant {
     /// The participant with this number, from 0.
     pub fn new(seed: u64, number: u64) -> Self {
         let seed = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15).wrapping_add(number);
@@ -68,10 +68,10 @@ impl Person {
 
     /// Returns the hand after this many trials, including practice, and this many since the last break; in this
     /// attempt, from 1.
-    pub fn hand(&self, made: u32, since_break: u32, attempt: u32) -> Hand {
+    pub fn hand(&self, made: u32, since_break: u32, attempt: u32) -> SimulatedHand {
         let learning = 1.0 + self.slower * (-f64::from(made) / self.learns_in).exp();
         let fatigue = 1.0 + self.tires * f64::from(since_break);
-        Hand {
+        SimulatedHand {
             pace: (self.skill / (learning * fatigue)).clamp(0.4, 1.3),
             tremor_m: self.tremor_m * fatigue,
             intended_n: Some(self.intended_n),
@@ -80,26 +80,26 @@ impl Person {
     }
 
     /// Returns answers after this many trials.
-    pub fn answers(&self, questionnaire: Questionnaire, made: u32) -> Answers {
+    pub fn answers(&self, questionnaire: Questionnaire, made: u32) -> QuestionnaireAnswers {
         let mut rng = Rng::with_seed(self.seed ^ (u64::from(made) << 32) ^ questionnaire as u64);
         let ratings = Ratings::of(self.load.map(|load| {
             let rating = (load + 10.0 * normal(&mut rng)).clamp(0.0, 100.0);
             5 * (rating / 5.0).round() as u8
         }));
         match questionnaire {
-            Questionnaire::NasaTlx => Answers::NasaTlx(ratings),
+            Questionnaire::NasaTlx => QuestionnaireAnswers::NasaTlx(ratings),
             Questionnaire::NasaTlxWeighted => {
                 let chosen = PAIRS.map(|(first, second)| if rng.bool() { first } else { second });
-                Answers::NasaTlxWeighted { ratings, chosen }
+                QuestionnaireAnswers::NasaTlxWeighted { ratings, chosen }
             }
-            Questionnaire::Sus => Answers::Sus(std::array::from_fn(|at| {
+            Questionnaire::Sus => QuestionnaireAnswers::Sus(std::array::from_fn(|at| {
                 let agrees = (3.5 + 0.8 * normal(&mut rng)).clamp(1.0, 5.0).round() as u8;
                 if at % 2 == 0 { agrees } else { 6 - agrees }
             })),
             Questionnaire::Realism => {
-                Answers::Realism((self.realism + 0.8 * normal(&mut rng)).clamp(1.0, 7.0).round() as u8)
+                QuestionnaireAnswers::Realism((self.realism + 0.8 * normal(&mut rng)).clamp(1.0, 7.0).round() as u8)
             }
-            Questionnaire::FreeText => Answers::FreeText("(simulated)".to_owned()),
+            Questionnaire::FreeText => QuestionnaireAnswers::FreeText("(simulated)".to_owned()),
         }
     }
 }

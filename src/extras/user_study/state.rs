@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use crate::{Done, Entry, Event, Participant, Plan, Progress, Step};
+use crate::{EndReason, JournalEntry, Participant, ParticipantProgress, StudyEvent, StudyPlan, StudyStep};
 
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Unblinding {
@@ -22,8 +22,8 @@ pub struct Unblinding {
 
 /// The state of a study.
 #[derive(Clone, Debug)]
-pub struct State {
-    participants: BTreeMap<String, Progress>,
+pub struct StudyState {
+    participants: BTreeMap<String, ParticipantProgress>,
     /// The first unblinding.
     pub unblinding: Option<Unblinding>,
     /// Notes: time, participant, text.
@@ -32,10 +32,13 @@ pub struct State {
     pub torn: Vec<u64>,
 }
 
-impl State {
-    pub fn new(plan: &Plan) -> Self {
-        let participants =
-            plan.participants.iter().map(|participant| (participant.name.clone(), Progress::of(plan))).collect();
+impl StudyState {
+    pub fn new(plan: &StudyPlan) -> Self {
+        let participants = plan
+            .participants
+            .iter()
+            .map(|participant| (participant.name.clone(), ParticipantProgress::of(plan)))
+            .collect();
         Self { participants, unblinding: None, notes: Vec::new(), torn: Vec::new() }
     }
 
@@ -43,7 +46,10 @@ impl State {
     ///
     /// # Errors
     /// The number of the first entry that cannot follow the earlier ones, and the reason.
-    pub fn of<'a>(plan: &Plan, entries: impl IntoIterator<Item = &'a Entry>) -> Result<Self, (u64, String)> {
+    pub fn of<'a>(
+        plan: &StudyPlan,
+        entries: impl IntoIterator<Item = &'a JournalEntry>,
+    ) -> Result<Self, (u64, String)> {
         let mut state = Self::new(plan);
         for entry in entries {
             state.take(plan, entry).map_err(|why| (entry.n, why))?;
@@ -52,17 +58,17 @@ impl State {
     }
 
     /// Returns the participants and their progress, in the order of their names.
-    pub fn participants(&self) -> impl Iterator<Item = (&str, &Progress)> {
+    pub fn participants(&self) -> impl Iterator<Item = (&str, &ParticipantProgress)> {
         self.participants.iter().map(|(name, progress)| (name.as_str(), progress))
     }
 
     /// Returns the progress of this participant.
-    pub fn progress(&self, participant: &str) -> Option<&Progress> {
+    pub fn progress(&self, participant: &str) -> Option<&ParticipantProgress> {
         self.participants.get(participant)
     }
 
     /// Whether conditions may be shown.
-    pub fn is_open(&self, plan: &Plan) -> bool {
+    pub fn is_open(&self, plan: &StudyPlan) -> bool {
         !plan.blind || self.unblinding.is_some()
     }
 
@@ -73,15 +79,16 @@ impl State {
 
     /// Whether parts of it were done by simulated people.
     pub fn is_simulated(&self) -> bool {
-        let simulated =
-            |one: &Progress| one.trials.iter().any(|made| made.simulated) || one.answers.iter().any(|given| given.2);
+        let simulated = |one: &ParticipantProgress| {
+            one.trials.iter().any(|made| made.simulated) || one.answers.iter().any(|given| given.2)
+        };
         self.participants.values().any(simulated)
     }
 
     /// Returns the next step of this participant.
-    pub fn next(&self, plan: &Plan, participant: &Participant) -> Step {
+    pub fn next(&self, plan: &StudyPlan, participant: &Participant) -> StudyStep {
         let Some(progress) = self.participants.get(&participant.name) else {
-            return Step::Done { why: Done::Excluded };
+            return StudyStep::Done { why: EndReason::Excluded };
         };
         progress.next(plan, participant)
     }
@@ -90,19 +97,23 @@ impl State {
     ///
     /// # Errors
     /// Why it cannot follow the earlier ones.
-    pub(crate) fn take(&mut self, plan: &Plan, entry: &Entry) -> Result<(), String> {
+    pub(crate) fn take(&mut self, plan: &StudyPlan, entry: &JournalEntry) -> Result<(), String> {
         let unblinded = plan.blind && self.unblinding.is_some();
         match &entry.event {
-            Event::StudyMade { commitment } | Event::Unblinded { commitment, .. } if *commitment != plan.commitment => {
+            StudyEvent::StudyMade { commitment } | StudyEvent::Unblinded { commitment, .. }
+                if *commitment != plan.commitment =>
+            {
                 return Err("the commitment is not that of study.toml: one of the two files was changed".to_owned());
             }
-            Event::StudyMade { .. } => {}
-            Event::ParticipantBegan { participant } => found(plan, &mut self.participants, participant)?.1.began = true,
-            Event::TrialBegan { participant, trial, label, simulated } => {
+            StudyEvent::StudyMade { .. } => {}
+            StudyEvent::ParticipantBegan { participant } => {
+                found(plan, &mut self.participants, participant)?.1.began = true;
+            }
+            StudyEvent::TrialBegan { participant, trial, label, simulated } => {
                 let (who, progress) = found(plan, &mut self.participants, participant)?;
                 progress.begin(plan, who, *trial, *label, *simulated)?;
             }
-            Event::TrialEnded { participant, trial, ending, measures, withheld, .. } => {
+            StudyEvent::TrialEnded { participant, trial, ending, measures, withheld, .. } => {
                 let (who, progress) = found(plan, &mut self.participants, participant)?;
                 let simulated = progress.close(*trial, participant)?;
                 progress.end(
@@ -114,17 +125,18 @@ impl State {
                     unblinded,
                 );
             }
-            Event::TrialAborted { participant, trial, .. } | Event::TrialInterrupted { participant, trial } => {
+            StudyEvent::TrialAborted { participant, trial, .. }
+            | StudyEvent::TrialInterrupted { participant, trial } => {
                 let (who, progress) = found(plan, &mut self.participants, participant)?;
                 let simulated = progress.close(*trial, participant)?;
                 progress.interrupt(plan, who, *trial, simulated, unblinded);
             }
-            Event::BreakTaken { participant, seconds, .. } => {
+            StudyEvent::BreakTaken { participant, seconds, .. } => {
                 found(plan, &mut self.participants, participant)?.1.rest(*seconds);
             }
-            Event::Answered { participant, after, answers, simulated } => {
+            StudyEvent::Answered { participant, after, answers, simulated } => {
                 let (who, progress) = found(plan, &mut self.participants, participant)?;
-                let asked = Step::Questionnaire { questionnaire: answers.questionnaire(), after: *after };
+                let asked = StudyStep::Questionnaire { questionnaire: answers.questionnaire(), after: *after };
                 let next = progress.next(plan, who);
                 if next != asked {
                     return Err(format!(
@@ -134,27 +146,27 @@ impl State {
                 }
                 progress.answers.push((*after, answers.clone(), *simulated));
             }
-            Event::Excluded { participant, number: None, why } => {
+            StudyEvent::Excluded { participant, number: None, why } => {
                 found(plan, &mut self.participants, participant)?.1.excluded.get_or_insert_with(|| why.clone());
             }
-            Event::Excluded { participant, number: Some(number), why } => {
+            StudyEvent::Excluded { participant, number: Some(number), why } => {
                 let progress = found(plan, &mut self.participants, participant)?.1;
                 if !progress.trials.iter().any(|made| made.number == *number) {
                     return Err(format!("{participant} has not made trial {number}"));
                 }
                 progress.excluded_trials.insert(*number, why.clone());
             }
-            Event::Noted { participant, text } => {
+            StudyEvent::Noted { participant, text } => {
                 self.notes.push((entry.at.clone(), participant.clone(), text.clone()));
             }
-            Event::TornLineDropped { bytes } => self.torn.push(*bytes),
-            Event::Unblinded { who, why, .. } => self.unblind(plan, entry, who, why),
+            StudyEvent::TornLineDropped { bytes } => self.torn.push(*bytes),
+            StudyEvent::Unblinded { who, why, .. } => self.unblind(plan, entry, who, why),
         }
         Ok(())
     }
 
-    fn unblind(&mut self, plan: &Plan, entry: &Entry, who: &str, why: &str) {
-        let is_done = |participant: &Participant| matches!(self.next(plan, participant), Step::Done { .. });
+    fn unblind(&mut self, plan: &StudyPlan, entry: &JournalEntry, who: &str, why: &str) {
+        let is_done = |participant: &Participant| matches!(self.next(plan, participant), StudyStep::Done { .. });
         let unblinding = Unblinding {
             who: who.to_owned(),
             why: why.to_owned(),
@@ -168,10 +180,10 @@ impl State {
 
 /// Returns a participant with its progress.
 fn found<'a>(
-    plan: &'a Plan,
-    participants: &'a mut BTreeMap<String, Progress>,
+    plan: &'a StudyPlan,
+    participants: &'a mut BTreeMap<String, ParticipantProgress>,
     name: &str,
-) -> Result<(&'a Participant, &'a mut Progress), String> {
+) -> Result<(&'a Participant, &'a mut ParticipantProgress), String> {
     let participant = plan.participant(name).map_err(|error| error.to_string())?;
     let progress = participants.get_mut(name).ok_or_else(|| format!("there is no {name}"))?;
     Ok((participant, progress))

@@ -2,12 +2,12 @@
 
 use serde::Serialize;
 
-use crate::{Label, Phase, Questionnaire, TrialId};
+use crate::{Label, Questionnaire, TrialId, TrialPhase};
 
 /// The next step of a participant.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(tag = "step", rename_all = "snake_case")]
-pub enum Step {
+pub enum StudyStep {
     /// A practice trial.
     Practice {
         /// From 1.
@@ -26,7 +26,8 @@ pub enum Step {
     },
     Break {
         /// Minimum duration, s.
-        least_s: f64,
+        #[serde(rename = "least_s")]
+        min_s: f64,
     },
     Questionnaire {
         questionnaire: Questionnaire,
@@ -38,34 +39,36 @@ pub enum Step {
     /// Nothing.
     Done {
         /// The reason.
-        why: Done,
+        why: EndReason,
     },
 }
 
 /// Why there is nothing left to do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Done {
+pub enum EndReason {
     /// All steps are finished.
     Finished,
     /// The participant is excluded.
     Excluded,
 }
 
-impl Step {
+impl StudyStep {
     /// Returns the trial of this step, with its label if it counts.
     pub(crate) fn trial(&self) -> Option<(TrialId, Option<Label>)> {
         match *self {
-            Self::Practice { number, attempt } => Some((TrialId { phase: Phase::Practice, number, attempt }, None)),
+            Self::Practice { number, attempt } => {
+                Some((TrialId { phase: TrialPhase::Practice, number, attempt }, None))
+            }
             Self::Trial { number, attempt, label } => {
-                Some((TrialId { phase: Phase::Trial, number, attempt }, Some(label)))
+                Some((TrialId { phase: TrialPhase::Trial, number, attempt }, Some(label)))
             }
             _ => None,
         }
     }
 }
 
-impl std::fmt::Display for Step {
+impl std::fmt::Display for StudyStep {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let again = |attempt: u32| if attempt > 1 { format!(", attempt {attempt}") } else { String::new() };
         match self {
@@ -73,7 +76,7 @@ impl std::fmt::Display for Step {
             Self::Trial { number, attempt, label } => {
                 write!(f, "trial {number} under condition {label}{}", again(*attempt))
             }
-            Self::Break { least_s } => write!(f, "a break of at least {least_s:.0} s"),
+            Self::Break { min_s } => write!(f, "a break of at least {min_s:.0} s"),
             Self::Questionnaire { questionnaire, after: Some(label) } => {
                 write!(f, "questionnaire {} about condition {label}", questionnaire.name())
             }
@@ -81,8 +84,8 @@ impl std::fmt::Display for Step {
                 write!(f, "questionnaire {} at the end", questionnaire.name())
             }
             Self::Running { trial } => write!(f, "the end of trial {}, which has begun", trial.number),
-            Self::Done { why: Done::Finished } => write!(f, "nothing: all is done"),
-            Self::Done { why: Done::Excluded } => write!(f, "nothing: the participant is excluded"),
+            Self::Done { why: EndReason::Finished } => write!(f, "nothing: all is done"),
+            Self::Done { why: EndReason::Excluded } => write!(f, "nothing: the participant is excluded"),
         }
     }
 }

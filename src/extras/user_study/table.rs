@@ -3,11 +3,13 @@
 
 use std::{collections::BTreeMap, fmt::Write as _};
 
-use crate::{Exclusion, Label, Measures, Opened, Plan, State, exclusion::exclusions, file::measure_keys};
+use crate::{
+    Assignment, Exclusion, Label, StudyPlan, StudyState, TrialMeasures, exclusion::exclusions, file::measure_keys,
+};
 
 /// A table, with its exclusions.
 #[derive(Clone, Debug)]
-pub struct Table {
+pub struct StudyTable {
     /// The text of the file.
     pub csv: String,
     /// Number of rows, without the header.
@@ -19,27 +21,27 @@ pub struct Table {
 }
 
 /// One row: participant, condition, number, whether it was simulated, and its values.
-struct Row<'a> {
+struct StudyTableRow<'a> {
     participant: &'a str,
     condition: String,
     number: Option<u32>,
     simulated: bool,
-    values: Measures,
+    values: TrialMeasures,
 }
 
 /// The name of a condition if it may be shown, otherwise its label. Names contain no commas and no quotes.
-fn shown(label: Label, opened: Option<&Opened>) -> String {
+fn shown(label: Label, opened: Option<&Assignment>) -> String {
     let named = opened.and_then(|opened| opened.condition(label));
     named.map_or_else(|| label.to_string(), |condition| condition.name.clone())
 }
 
 /// Returns the trials that count. `withheld` returns the measures that reveal the condition, if they may be shown.
 pub(crate) fn trials(
-    plan: &Plan,
-    state: &State,
-    opened: Option<&Opened>,
-    withheld: impl Fn(&str) -> Option<Measures>,
-) -> Table {
+    plan: &StudyPlan,
+    state: &StudyState,
+    opened: Option<&Assignment>,
+    withheld: impl Fn(&str) -> Option<TrialMeasures>,
+) -> StudyTable {
     let excluded = exclusions(plan, state);
     let mut rows = Vec::new();
     let mut missing = Vec::new();
@@ -59,33 +61,33 @@ pub(crate) fn trials(
                 .extend(made.withheld.as_deref().filter(|_| opened.is_some()).and_then(&withheld).unwrap_or_default());
             let condition = shown(made.label, opened);
             let number = Some(made.number);
-            rows.push(Row { participant, condition, number, simulated: made.simulated, values });
+            rows.push(StudyTableRow { participant, condition, number, simulated: made.simulated, values });
         }
     }
-    Table { csv: csv(&rows, &measure_keys().collect::<Vec<_>>()), rows: rows.len(), excluded, missing }
+    StudyTable { csv: csv(&rows, &measure_keys().collect::<Vec<_>>()), rows: rows.len(), excluded, missing }
 }
 
 /// Returns the scores of the questionnaires after each condition.
-pub(crate) fn questionnaires(plan: &Plan, state: &State, opened: Option<&Opened>) -> Table {
+pub(crate) fn questionnaires(plan: &StudyPlan, state: &StudyState, opened: Option<&Assignment>) -> StudyTable {
     let excluded: Vec<Exclusion> = exclusions(plan, state).into_iter().filter(|one| one.trial.is_none()).collect();
     let mut rows = Vec::new();
     for (participant, progress) in state.participants() {
         if excluded.iter().any(|one| one.participant == participant) {
             continue;
         }
-        let mut given: BTreeMap<Label, Row<'_>> = BTreeMap::new();
+        let mut given: BTreeMap<Label, StudyTableRow<'_>> = BTreeMap::new();
         for (after, answers, simulated) in &progress.answers {
             let Some(label) = after else { continue };
             let scores: Vec<_> = answers.scores();
             if scores.is_empty() {
                 continue;
             }
-            let empty = || Row {
+            let empty = || StudyTableRow {
                 participant,
                 condition: shown(*label, opened),
                 number: None,
                 simulated: false,
-                values: Measures::new(),
+                values: TrialMeasures::new(),
             };
             let row = given.entry(*label).or_insert_with(empty);
             row.simulated |= *simulated;
@@ -94,11 +96,11 @@ pub(crate) fn questionnaires(plan: &Plan, state: &State, opened: Option<&Opened>
         rows.extend(given.into_values());
     }
     let names = ["nasa_tlx_weighted", "nasa_tlx_raw", "sus", "realism"].map(str::to_owned);
-    Table { csv: csv(&rows, &names), rows: rows.len(), excluded, missing: Vec::new() }
+    StudyTable { csv: csv(&rows, &names), rows: rows.len(), excluded, missing: Vec::new() }
 }
 
 /// Columns in this order, then the others; only those with a value.
-fn csv(rows: &[Row<'_>], order: &[String]) -> String {
+fn csv(rows: &[StudyTableRow<'_>], order: &[String]) -> String {
     let place = |key: &str| order.iter().position(|known| known == key).unwrap_or(order.len());
     let mut columns: Vec<&String> = rows.iter().flat_map(|row| row.values.keys()).collect();
     columns.sort_by_key(|key| (place(key), (*key).clone()));

@@ -58,13 +58,13 @@ impl Sender for Autoregressive {
     const BASELINE: Baseline = Baseline::Autoregressive;
 
     fn new(rate_hz: f64, delay_ticks: usize) -> Self {
-        let most = (MAX_DELAY_S * rate_hz).ceil() as usize;
+        let max = (MAX_DELAY_S * rate_hz).ceil() as usize;
         let mut autoregressive = Self {
             delay_ticks,
             spacing: 1,
             every: ((rate_hz / SOLVE_HZ).round() as usize).max(1),
             tick: 0,
-            past: DelayLine::new(most + TAPS * spacing(most), Lanes::ZERO),
+            past: DelayLine::new(max + TAPS * spacing(max), Lanes::ZERO),
             rls: Rls::new(MEMORY_S, RIDGE_S, rate_hz),
             envelope: Envelope::new(rate_hz),
             coefficients: reflection(),

@@ -1,6 +1,6 @@
 //! Methods of others, to compare with: each from its published form, as one more mode behind the same gates.
 //!
-//! They are built into the loop through the trait that the program's own modes have, [`Method`], by whoever calls [`provide`] first. At most
+//! They are built into the loop through the trait that the program's own modes have, [`BaselineMethod`], by whoever calls [`provide`] first. At most
 //! one is computed, and only where it is asked for by name. Every axis is taken for a channel of its own, as in the publications, which
 //! have one degree of freedom. Sources, constants, figures, and what was left out: docs/modes.md.
 
@@ -17,8 +17,8 @@ use std::{fmt::Debug, marker::PhantomData};
 
 use nima_core::{
     impedance::{
-        Baseline, BaselineModel, Entry, Follower, Leader, Method, ModeSet, Moment, Parcel, Report, Scales, Seen,
-        Settings, add_baselines,
+        AnchoredMoment, Baseline, BaselineMethod, BaselineModel, Entry, FollowerEnd, IdentificationReport,
+        ImpedanceSettings, LeaderEnd, LinkPacket, MethodInput, ModeSet, Scales, add_baselines,
     },
     signal::{Lanes, Motion},
 };
@@ -62,15 +62,15 @@ trait Sender: Clone + Debug + Send + Sync + 'static {
 /// One of them as a mode.
 struct Other<S>(PhantomData<S>);
 
-impl<S: Sender> Method for Other<S> {
+impl<S: Sender> BaselineMethod for Other<S> {
     const NAME: &'static str = S::BASELINE.name();
     const ABOUT: &'static str = "a method of others";
 
-    fn follower(settings: &Settings, delay_ticks: usize) -> Option<Box<dyn Follower>> {
+    fn follower(settings: &ImpedanceSettings, delay_ticks: usize) -> Option<Box<dyn FollowerEnd>> {
         Some(Box::new(AtFollower { scales: settings.scales, sender: S::new(settings.rate_hz, delay_ticks) }))
     }
 
-    fn leader(settings: &Settings) -> Box<dyn Leader> {
+    fn leader(settings: &ImpedanceSettings) -> Box<dyn LeaderEnd> {
         Box::new(AtLeader {
             scales: settings.scales,
             period_s: settings.rate_hz.recip(),
@@ -86,7 +86,7 @@ struct AtFollower<S> {
     sender: S,
 }
 
-impl<S: Sender> Follower for AtFollower<S> {
+impl<S: Sender> FollowerEnd for AtFollower<S> {
     /// There is memory for one of all baselines.
     fn serves(&self, modes: ModeSet) -> bool {
         modes.baseline().is_some()
@@ -96,7 +96,7 @@ impl<S: Sender> Follower for AtFollower<S> {
         now.baseline() != before.baseline()
     }
 
-    fn take(&mut self, seen: &Seen<'_>, parcel: &mut Parcel, _report: &mut Report) {
+    fn take(&mut self, seen: &MethodInput<'_>, parcel: &mut LinkPacket, _report: &mut IdentificationReport) {
         let motion = seen.posture.motion(&self.scales);
         parcel.models.baseline = self.sender.step(&motion, seen.good.then_some(seen.force_n));
     }
@@ -118,8 +118,8 @@ struct AtLeader {
     controller: Controller,
 }
 
-impl Leader for AtLeader {
-    fn render(&mut self, moment: &Moment<'_>) -> Option<Lanes> {
+impl LeaderEnd for AtLeader {
+    fn render(&mut self, moment: &AnchoredMoment<'_>) -> Option<Lanes> {
         moment.parcel.modes.baseline()?;
         let own = moment.now.motion(&self.scales);
         let force = match &moment.parcel.models.baseline {

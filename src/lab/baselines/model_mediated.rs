@@ -12,7 +12,7 @@
 //! instrument are fitted too; and the force stays within the range of past forces, as in our own modes.
 
 use nima_core::{
-    impedance::{Baseline, BaselineModel, Contact, Envelope},
+    impedance::{Baseline, BaselineModel, Envelope, HuntCrossleyContact},
     signal::{Lanes, Motion},
 };
 
@@ -39,7 +39,7 @@ const ROOM: f64 = 0.05;
 const COLUMNS: usize = 7;
 const SIDES: usize = 4;
 
-const NONE: Contact = Contact {
+const NONE: HuntCrossleyContact = HuntCrossleyContact {
     surface_m: Lanes::ZERO,
     reach_m: Lanes::ZERO,
     exponent: Lanes::ZERO,
@@ -48,14 +48,14 @@ const NONE: Contact = Contact {
 };
 
 /// The force (N) of a contact for a motion.
-pub(crate) fn force(contact: &Contact, own: &Motion) -> Lanes {
+pub(crate) fn force(contact: &HuntCrossleyContact, own: &Motion) -> Lanes {
     let force_n = dot(&contact.parameters, &columns(contact, own));
     let [low, high] = contact.bounds_n;
     // A limit would turn what is not a number into one of its edges.
     if force_n.is_finite() { force_n.within(low, high) } else { force_n }
 }
 
-fn columns(contact: &Contact, motion: &Motion) -> [Lanes; COLUMNS] {
+fn columns(contact: &HuntCrossleyContact, motion: &Motion) -> [Lanes; COLUMNS] {
     // Signed, in reaches.
     let depth = (motion.x - contact.surface_m) * contact.reach_m.recip_or_zero();
     let power = |side: f64| (depth * side).zip(contact.exponent, |depth, n| power(depth.max(0.0), n));
@@ -65,7 +65,7 @@ fn columns(contact: &Contact, motion: &Motion) -> [Lanes; COLUMNS] {
 }
 
 /// Takes over another contact on one axis; the reach is the same.
-fn take(contact: &mut Contact, lane: usize, better: &Contact) {
+fn take(contact: &mut HuntCrossleyContact, lane: usize, better: &HuntCrossleyContact) {
     contact.surface_m[lane] = better.surface_m[lane];
     contact.exponent[lane] = better.exponent[lane];
     for (parameter, better) in contact.parameters.iter_mut().zip(&better.parameters) {
@@ -86,7 +86,7 @@ fn power(depth: f64, exponent: f64) -> f64 {
 /// A surface and an exponent, with the contact identified for them.
 #[derive(Clone, Debug)]
 struct Candidate {
-    contact: Contact,
+    contact: HuntCrossleyContact,
     rls: Rls<COLUMNS>,
     error_n: Lanes,
 }
@@ -99,7 +99,7 @@ pub(crate) struct ModelMediated {
     candidates: [Candidate; CANDIDATES],
     range_m: [Lanes; 2],
     envelope: Envelope,
-    contact: Contact,
+    contact: HuntCrossleyContact,
 }
 
 impl ModelMediated {
@@ -122,25 +122,25 @@ impl ModelMediated {
         self.range_m = [beyond(lower, low, -1.0), beyond(higher, high, 1.0)];
         let [low, high] = self.range_m;
         for (i, candidate) in self.candidates.iter_mut().enumerate() {
-            let share = (i % PLACES) as f64 / (PLACES - 1) as f64;
-            candidate.move_to(low + (high - low) * share, high - low);
+            let fraction = (i % PLACES) as f64 / (PLACES - 1) as f64;
+            candidate.move_to(low + (high - low) * fraction, high - low);
         }
     }
 
     /// Returns the contact that fits best on each axis.
-    fn best(&self) -> Contact {
+    fn best(&self) -> HuntCrossleyContact {
         let [first, others @ ..] = &self.candidates;
         let mut best = first.contact;
-        let mut least_n = first.error_n;
+        let mut min_n = first.error_n;
         for candidate in others {
             for lane in 0..3 {
-                if candidate.error_n[lane] < least_n[lane] {
-                    least_n[lane] = candidate.error_n[lane];
+                if candidate.error_n[lane] < min_n[lane] {
+                    min_n[lane] = candidate.error_n[lane];
                     take(&mut best, lane, &candidate.contact);
                 }
             }
         }
-        Contact { bounds_n: self.envelope.bounds_n(), ..best }
+        HuntCrossleyContact { bounds_n: self.envelope.bounds_n(), ..best }
     }
 }
 
@@ -181,7 +181,7 @@ impl Sender for ModelMediated {
     fn reset(&mut self) {
         for (i, candidate) in self.candidates.iter_mut().enumerate() {
             let exponent = Lanes::splat(EXPONENTS[i / PLACES]);
-            candidate.contact = Contact { exponent, ..NONE };
+            candidate.contact = HuntCrossleyContact { exponent, ..NONE };
             candidate.error_n = Lanes::ZERO;
             candidate.rls.reset();
         }

@@ -42,13 +42,13 @@ impl<const N: usize> Rls<N> {
     /// Takes in the columns `q` of one sample and its target.
     pub(crate) fn learn(&mut self, q: &[Lanes; N], target: Lanes) {
         self.seen = (self.seen + 1.0).min(self.squares_ticks);
-        let share = 1.0 / self.seen;
+        let fraction = 1.0 / self.seen;
         for (j, row) in self.gram.iter_mut().enumerate() {
             for (sum, column) in row.iter_mut().zip(q).take(j + 1) {
                 *sum = (*sum * self.kept + q[j] * *column).settled();
             }
             self.right[j] = (self.right[j] * self.kept + q[j] * target).settled();
-            self.squares[j] = (self.squares[j] + (q[j] * q[j] - self.squares[j]) * share).settled();
+            self.squares[j] = (self.squares[j] + (q[j] * q[j] - self.squares[j]) * fraction).settled();
         }
     }
 

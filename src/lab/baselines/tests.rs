@@ -1,5 +1,5 @@
 use nalgebra::Vector3;
-use nima_core::impedance::{Contact, Identifier, Mode, Renderer, Sample, Wave};
+use nima_core::impedance::{HuntCrossleyContact, Identifier, Mode, Renderer, Sample, Wave};
 use proptest::prelude::*;
 
 use super::{passivity::Controller, *};
@@ -19,7 +19,7 @@ fn forecast(model: &BaselineModel) -> f64 {
     force_n[0]
 }
 
-fn contact(model: &BaselineModel) -> Contact {
+fn contact(model: &BaselineModel) -> HuntCrossleyContact {
     let BaselineModel::Contact(contact) = *model else { panic!("{model:?}") };
     contact
 }
@@ -145,9 +145,9 @@ fn the_controller_only_ever_takes() {
     assert!(taken > 1000, "{taken}");
 }
 
-fn settings(mode: Mode) -> Settings {
+fn settings(mode: Mode) -> ImpedanceSettings {
     provide();
-    Settings { window_s: 0.1, delay_s: 0.03, modes: ModeSet::only(mode), ..Settings::default() }
+    ImpedanceSettings { window_s: 0.1, delay_s: 0.03, modes: ModeSet::only(mode), ..ImpedanceSettings::default() }
 }
 
 fn sample(k: usize) -> Sample {
@@ -158,7 +158,7 @@ fn sample(k: usize) -> Sample {
 
 #[test]
 fn only_the_baseline_that_is_asked_for_is_computed() {
-    let mut own = Identifier::new(&Settings { modes: ModeSet::ALL, ..settings(Mode::Dfr) }).unwrap();
+    let mut own = Identifier::new(&ImpedanceSettings { modes: ModeSet::ALL, ..settings(Mode::Dfr) }).unwrap();
     own.step(&sample(0));
     assert_eq!(own.parcel().models.baseline, BaselineModel::Nothing);
     assert_eq!(ModeSet::ALL.baseline(), None);
@@ -229,7 +229,7 @@ fn metres_and_millimetres_agree() {
         scales.velocity_m_s *= 1e3;
         scales.acceleration_m_s2 *= 1e3;
         let mut a = Identifier::new(&metres).unwrap();
-        let mut b = Identifier::new(&Settings { scales, ..metres }).unwrap();
+        let mut b = Identifier::new(&ImpedanceSettings { scales, ..metres }).unwrap();
         for k in 0..1500 {
             let s = sample(k);
             a.step(&s);
@@ -263,7 +263,7 @@ proptest! {
             let position_m = Vector3::from(position);
             follower.step(&Sample { t_s: k as f64 * 1e-3, position_m, force_n: Vector3::from(force) });
             // Received data are not trusted either.
-            let forged = Parcel { force_n: Vector3::from(force), ..*follower.parcel() };
+            let forged = LinkPacket { force_n: Vector3::from(force), ..*follower.parcel() };
             for parcel in [follower.parcel(), &forged] {
                 let rendered = leader.step(&position_m, Some(parcel));
                 prop_assert!(rendered.force_n.iter().flatten().all(|f| f.is_finite()), "{mode} {rendered:?}");

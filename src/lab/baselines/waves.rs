@@ -19,7 +19,7 @@ use crate::{Sender, kept};
 /// Wave impedance as a fraction of the force per speed in motion, `sum |(f - mean f) v| / sum v^2`: the publication
 /// leaves it to the task, and a number in N s/m would suit only one device and one unit (chosen on recordings, see
 /// docs/modes.md).
-const SHARE: f64 = 0.4;
+const FRACTION: f64 = 0.4;
 /// Memory of the sums, and of the mean force (s).
 const MEMORY_S: f64 = 20.0;
 
@@ -66,7 +66,7 @@ impl Sender for Waves {
         let [powers, squares] = self.sums;
         // Never zero, so that the wave carries the force; at zero motion it is small enough to add nothing to the
         // force.
-        let b = (powers * squares.recip_or_zero() * SHARE).map(|b| b.clamp(1e-12, 1e12));
+        let b = (powers * squares.recip_or_zero() * FRACTION).map(|b| b.clamp(1e-12, 1e12));
         let returning = (b * motion.v + self.last_n) / (b * 2.0).sqrt();
         BaselineModel::Wave(Wave { returning, impedance_n_s_m: b })
     }

@@ -9,20 +9,20 @@ use std::{
 };
 
 use nalgebra::Vector3;
-use nima_core::task::Event;
+use nima_core::task::TaskEvent;
 use nima_devices::{
-    CapReading, PedalReading, Standing,
+    CapReading, ConnectionState, PedalReading,
     hid::{CapSettings, PedalSettings},
 };
 use nima_machine::{
     config::RigConfig,
     rig::{DeskSettings, Inputs, Outputs, Rig as _, SIDES, Side},
 };
-use nima_simulation::{Desk, Watched, Worlds, scene::Scene};
+use nima_simulation::{InputDevices, ObjectFeed, Worlds, scene::Scene};
 use nima_testing::real_time::judged;
 
 use crate::emulators::{
-    Serving,
+    EmulatorThread,
     hid::{CapBody, CapModel, PedalBody, PedalModel, cap, pedal},
 };
 
@@ -32,12 +32,12 @@ fn source(endpoint: &str) -> String {
 
 /// The rig `desk` in a scene, with a cap whose buttons are pressed by a test.
 struct Pressed {
-    desk: Desk,
-    watched: Watched,
+    desk: InputDevices,
+    watched: ObjectFeed,
     buttons: Arc<AtomicU32>,
     inputs: [Option<Inputs>; SIDES],
     begin: Instant,
-    _cap: Serving,
+    _cap: EmulatorThread,
 }
 
 impl Pressed {
@@ -50,11 +50,11 @@ impl Pressed {
         settings.cap.as_mut().unwrap().source = source(&cap.endpoint);
         settings.pedal = None;
         let (worlds, watched) = Worlds::watched(&Scene::load(scene).unwrap(), 1000.0);
-        let (desk, _) = Desk::start(&settings, worlds).unwrap();
+        let (desk, _) = InputDevices::start(&settings, worlds).unwrap();
         let inputs = [None; SIDES];
         let begin = Instant::now();
         let mut this = Self { desk, watched: watched.unwrap(), buttons, inputs, begin, _cap: cap };
-        this.run(|this| this.desk.health().devices[0].standing == Standing::Connected);
+        this.run(|this| this.desk.health().devices[0].standing == ConnectionState::Connected);
         this.for_s(0.3);
         this
     }
@@ -102,7 +102,7 @@ fn the_second_button_of_a_cap_marks_where_lumps_are_looked_for() {
     judged(|| {
         let mut pressed = Pressed::begin("find_lumps");
         let marks = |pressed: &Pressed| {
-            pressed.watched.happenings().filter(|of| matches!(of.event, Event::LumpMarked { .. })).count()
+            pressed.watched.happenings().filter(|of| matches!(of.event, TaskEvent::LumpMarked { .. })).count()
         };
         assert_eq!(marks(&pressed), 0);
         for _ in 0..2 {
@@ -159,7 +159,7 @@ fn a_cap_leads_the_hand_and_a_pedal_is_the_clutch() {
             ..DeskSettings::default()
         };
         let worlds = Worlds::new(&Scene::load("free_motion").unwrap(), 1000.0);
-        let (mut desk, roster) = Desk::start(&settings, worlds).unwrap();
+        let (mut desk, roster) = InputDevices::start(&settings, worlds).unwrap();
         assert_eq!(roster.len(), 2);
         let begin = Instant::now();
         let mut first_m = None;
@@ -173,12 +173,15 @@ fn a_cap_leads_the_hand_and_a_pedal_is_the_clutch() {
             let inputs = desk.read(now_s);
             hand_m = inputs[0].map_or(hand_m, |inputs| inputs.hand.position_m);
             clutched |= inputs[0].is_some_and(|inputs| inputs.switches.clutch);
-            if let Some(at_m) = desk.led_to_m() {
-                let (from_s, from_m): (f64, Vector3<f64>) = *first_m.get_or_insert((now_s, at_m));
+            if let Some(position_m) = desk.led_to_m() {
+                let (from_s, from_m): (f64, Vector3<f64>) = *first_m.get_or_insert((now_s, position_m));
                 led_s = now_s - from_s;
                 // Half deflection: 30 mm/s to the right, no motion along the other axes.
-                let way_m = at_m - from_m;
-                assert!(way_m.y.abs() < 1e-9 && (way_m.x - 0.03 * led_s).abs() < 6e-3, "{way_m} after {led_s} s");
+                let travel_m = position_m - from_m;
+                assert!(
+                    travel_m.y.abs() < 1e-9 && (travel_m.x - 0.03 * led_s).abs() < 6e-3,
+                    "{travel_m} after {led_s} s"
+                );
             }
             std::thread::sleep(Duration::from_millis(1));
         }

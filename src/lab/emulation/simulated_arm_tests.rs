@@ -4,33 +4,33 @@ use std::time::{Duration, Instant};
 
 use nalgebra::Vector3;
 use nima_core::kinematics::{Arm, Rcm, find};
-use nima_devices::{ForceReading, Standing, bota, simulated_arm};
+use nima_devices::{ConnectionState, ForceReading, bota, simulated_arm};
 use nima_machine::{
     config::RigConfig,
-    rig::{DeviceRig, FollowerSettings, Inputs, Outputs, Rig as _, SIDES, SensorSettings, Settings},
+    rig::{DeviceRig, FollowerSettings, Inputs, Outputs, Rig as _, RigSettings, SIDES, SensorSettings},
 };
 use nima_testing::real_time::judged;
 
 use crate::{
     emulated::provide_handles,
     emulators::{
-        Serving,
-        bota::Emulated,
-        force_dimension::{Emulated as Handle, Held},
+        EmulatorThread,
+        bota::EmulatedBota,
+        force_dimension::{EmulatedForceDimension as Handle, EmulatedHand},
     },
 };
 
 /// Displacement of the commanded tip position, m, and its speed, m/s.
-const WAY_M: Vector3<f64> = Vector3::new(0.005, 0.003, 0.004);
+const TRAVEL_M: Vector3<f64> = Vector3::new(0.005, 0.003, 0.004);
 const SPEED_M_S: f64 = 0.02;
 
 /// Handle, sensor, and the rig file of the emulated rig with a simulated arm.
-fn devices(folder: &std::path::Path) -> (Settings, [Serving; 2]) {
+fn devices(folder: &std::path::Path) -> (RigSettings, [EmulatorThread; 2]) {
     provide_handles();
     let port = folder.join("sensor");
-    let sensor = Emulated { baud: None, boot_s: 0.0, link: Some(port.clone()), ..Emulated::default() };
+    let sensor = EmulatedBota { baud: None, boot_s: 0.0, link: Some(port.clone()), ..EmulatedBota::default() };
     let serving = [
-        Handle { serial: 5151, ..Handle::default() }.with(Held::default().body()).serve().unwrap(),
+        Handle { serial: 5151, ..Handle::default() }.with(EmulatedHand::default().body()).serve().unwrap(),
         sensor.with(Box::new(|_| ForceReading::default())).serve().unwrap(),
     ];
     let whole = RigConfig::load("emulated").unwrap().devices.unwrap();
@@ -39,13 +39,13 @@ fn devices(folder: &std::path::Path) -> (Settings, [Serving; 2]) {
     let rcm = Rcm::new(&right.rcm).unwrap();
     let tip_m = right.rcm.trocar_m + right.rcm.inward.normalize() * 0.12;
     let start_rad: [f64; 7] = find(&arm, &rcm, &tip_m).unwrap().joint_rad.into();
-    right.arm = FollowerSettings::Simulated(simulated_arm::Settings::at(start_rad));
+    right.arm = FollowerSettings::Simulated(simulated_arm::SimulatedArmSettings::at(start_rad));
     right.servos = None;
-    right.sensor = SensorSettings::Bota(bota::Settings::new(bota::Transport::GenA, port.display().to_string()));
+    right.sensor = SensorSettings::Bota(bota::BotaSettings::new(bota::Transport::GenA, port.display().to_string()));
     let handle = right.handle.force_dimension_mut().unwrap();
     handle.serial = Some(5151);
     handle.emulator = Some(serving[0].endpoint.parse().unwrap());
-    (Settings { right: Some(right), ..Settings::default() }, serving)
+    (RigSettings { right: Some(right), ..RigSettings::default() }, serving)
 }
 
 /// Runs ticks until `good`, for at most 20 s; returns whether it was reached.
@@ -92,13 +92,13 @@ fn a_rig_leads_an_arm_of_another_make_that_its_file_names() {
             assert_eq!(inputs.obstacle, None);
             // Drives on first; then small steps to the end of the path.
             if inputs.powered {
-                target_m += (home_m + WAY_M - target_m).cap_magnitude(SPEED_M_S * 1e-3);
+                target_m += (home_m + TRAVEL_M - target_m).cap_magnitude(SPEED_M_S * 1e-3);
             }
             Outputs { drives: true, tip_command_m: inputs.powered.then_some(target_m), ..Outputs::SAFE }
         };
         let tip_m = settings.right.as_ref().unwrap().rcm.trocar_m
             + settings.right.as_ref().unwrap().rcm.inward.normalize() * 0.12
-            + WAY_M;
+            + TRAVEL_M;
         assert!(
             until(&mut rig, begin, led, |inputs| inputs.powered && (inputs.tip_m - tip_m).norm() < 5e-4),
             "not led there"
@@ -110,6 +110,6 @@ fn a_rig_leads_an_arm_of_another_make_that_its_file_names() {
         // The supervisor has the arm's emergency release, and the arm's health is reported at its index.
         assert_eq!(rig.levers().len(), 2);
         let arm = rig.health().devices[1];
-        assert!(arm.standing == Standing::Connected && arm.refused == 0, "{arm:?}");
+        assert!(arm.standing == ConnectionState::Connected && arm.refused == 0, "{arm:?}");
     });
 }

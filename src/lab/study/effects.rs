@@ -9,7 +9,7 @@ use std::{fmt::Write as _, hint::black_box, time::Instant};
 use nalgebra::Vector3;
 use nima_machine::{
     config::ConfigError,
-    rig::{Inputs, Outputs, Rig as _, SIDES, Sensed, Side},
+    rig::{Inputs, Outputs, Rig as _, SIDES, SensedForce, Side},
 };
 use nima_simulation::{World, Worlds, scene::Scene};
 use serde::Serialize;
@@ -36,12 +36,12 @@ pub struct OfScene {
     /// Mean magnitude of the measured force, N.
     pub force_n: f64,
     /// The removable effects.
-    pub effects: Vec<Effect>,
+    pub effects: Vec<SceneEffect>,
 }
 
 /// One effect of a scene.
 #[derive(Clone, Debug, Serialize)]
-pub struct Effect {
+pub struct SceneEffect {
     /// Name of the removed effect.
     pub effect: &'static str,
     /// Its cost in a tick, us; near zero within the noise of the clock.
@@ -53,16 +53,16 @@ pub struct Effect {
 }
 
 #[derive(Clone, Debug, Serialize)]
-pub struct Report {
+pub struct EffectReport {
     /// Duration of the motion, s.
     pub seconds: f64,
     pub scenes: Vec<OfScene>,
 }
 
 /// An effect: its name, whether a scene has it, and the scene without it.
-type Part = (&'static str, fn(&Scene) -> bool, fn(&mut Scene));
+type EffectPart = (&'static str, fn(&Scene) -> bool, fn(&mut Scene));
 
-const PARTS: [Part; 15] = [
+const PARTS: [EffectPart; 15] = [
     ("tissue", |scene| scene.tissue.is_some(), without_tissue),
     (
         "friction of the tissue",
@@ -112,18 +112,18 @@ fn without_tissue(scene: &mut Scene) {
     scene.layers.clear();
 }
 
-fn force_n(sensed: &Sensed) -> Vector3<f64> {
+fn force_n(sensed: &SensedForce) -> Vector3<f64> {
     match sensed {
-        Sensed::AtTip(force_n) => *force_n,
+        SensedForce::AtTip(force_n) => *force_n,
         sensed => sensed.wrist().map_or_else(Vector3::zeros, |sample| sample.raw.force_n),
     }
 }
 
 /// The simulation of one hand: returns the measurements for the outputs at a time.
-type Simulated = Box<dyn FnMut(f64, &Outputs) -> Option<Inputs>>;
+type HandSimulation = Box<dyn FnMut(f64, &Outputs) -> Option<Inputs>>;
 
 /// Simulates this scene, with the objects that all instruments share, if there are any.
-fn simulated(scene: &Scene) -> Simulated {
+fn simulated(scene: &Scene) -> HandSimulation {
     if !scene.is_played() {
         let mut world = World::new(scene, RATE_HZ);
         return Box::new(move |now_s, outputs| world.exchange(now_s, outputs));
@@ -201,15 +201,15 @@ impl Effects {
         let effect = |((name, scene), cost_us): (&(&'static str, Scene), &f64)| {
             let mut at = 0;
             let mut squares = 0.0;
-            let mut most_n = 0.0_f64;
+            let mut max_n = 0.0_f64;
             forces(scene, &commands, |force_n| {
                 let change_n = (force_n - measured[at]).norm();
                 at += 1;
                 squares += change_n * change_n;
-                most_n = most_n.max(change_n);
+                max_n = max_n.max(change_n);
             });
             let change_n = (squares / at.max(1) as f64).sqrt();
-            Effect { effect: name, cost_us: costs[0] - cost_us, change_n, change_max_n: most_n }
+            SceneEffect { effect: name, cost_us: costs[0] - cost_us, change_n, change_max_n: max_n }
         };
         let effects = left_out.iter().zip(&costs[1..]).map(effect).collect();
         let force_n = measured.iter().map(Vector3::norm).sum::<f64>() / measured.len().max(1) as f64;
@@ -219,10 +219,10 @@ impl Effects {
 
 impl Experiment for Effects {
     const NAME: &'static str = "effects";
-    type Findings = Report;
+    type Findings = EffectReport;
     type Error = ConfigError;
 
-    fn run(&self, progress: &mut dyn FnMut(usize, usize, &str)) -> Result<Report, ConfigError> {
+    fn run(&self, progress: &mut dyn FnMut(usize, usize, &str)) -> Result<EffectReport, ConfigError> {
         let built_in = || Scene::names().map(str::to_owned).collect();
         let names: Vec<String> = if self.scenes.is_empty() { built_in() } else { self.scenes.clone() };
         let of = |(done, name): (usize, &String)| {
@@ -230,11 +230,11 @@ impl Experiment for Effects {
             self.of_scene(name)
         };
         let scenes = names.iter().enumerate().map(of).collect::<Result<_, _>>()?;
-        Ok(Report { seconds: self.seconds, scenes })
+        Ok(EffectReport { seconds: self.seconds, scenes })
     }
 }
 
-impl Findings for Report {
+impl Findings for EffectReport {
     fn text(&self) -> String {
         let mut text = format!(
             "What each effect of a scene costs in a tick of one arm, and how the measured force changes without it ({} s of the hand's motion)\n\n\
@@ -243,7 +243,7 @@ impl Findings for Report {
         );
         for OfScene { scene, cost_us, force_n, effects } in &self.scenes {
             writeln!(text, "| {scene} | nothing; mean force {force_n:.2} N | {cost_us:.2} | - | - |").ok();
-            for Effect { effect, cost_us, change_n, change_max_n } in effects {
+            for SceneEffect { effect, cost_us, change_n, change_max_n } in effects {
                 // Avoids a negative zero.
                 let cost_us = (cost_us * 100.0).round() / 100.0 + 0.0;
                 writeln!(text, "| | {effect} | {cost_us:.2} | {change_n:.3} | {change_max_n:.2} |").ok();

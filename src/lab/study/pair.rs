@@ -12,19 +12,19 @@ use std::f64::consts::TAU;
 
 use nalgebra::Vector3;
 use nima_core::{
-    impedance::{Identifier, Mode, ModeSet, OwnMotion, Recipe, Renderer, Sample, Settings, SettingsError},
+    impedance::{Identifier, ImpedanceSettings, Mode, ModeSet, OwnMotion, Recipe, Renderer, Sample, SettingsError},
     noise::Noise,
-    safety::{Chain, ChainSettings, GateReport, Request},
+    safety::{ChainSettings, ForceRequest, GateReport, SafetyChain},
     signal::Speed,
 };
 use nima_machine::{
     runtime::{TickTimes, VirtualClock},
     teleop::{
-        Link as _, ProgrammedLink, Timing, Tracking,
+        Link as _, ProgrammedLink, Timing, TrackingLag,
         even::{Between, deadlines, stacked},
     },
 };
-use nima_simulation::{Tissue, scene::Tissue as TissueConfig};
+use nima_simulation::{Tissue, scene::TissueModel as TissueConfig};
 
 /// Ticks per second.
 pub(super) const RATE_HZ: f64 = 1000.0;
@@ -43,7 +43,7 @@ const FOLLOWER_M_S: f64 = 0.3;
 
 /// The handle alone.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Handle {
+pub(super) struct LoneHandle {
     /// Apparent mass at the grip, kg.
     pub(super) kg: f64,
     /// Damping of its bearings and cables, N s/m, and their Coulomb friction, N.
@@ -51,20 +51,20 @@ pub(super) struct Handle {
     pub(super) coulomb_n: f64,
 }
 
-impl Handle {
+impl LoneHandle {
     /// Approximately an omega.7's.
     pub(super) const OMEGA: Self = Self { kg: 0.25, n_s_m: 0.5, coulomb_n: 0.0 };
 }
 
 /// The gripping hand with the handle.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Grip {
+pub(super) struct PairGrip {
     pub(super) kg: f64,
     pub(super) n_m: f64,
     pub(super) n_s_m: f64,
 }
 
-impl Grip {
+impl PairGrip {
     /// As in the scenes.
     pub(super) const FIRM: Self = Self { kg: 0.35, n_m: 900.0, n_s_m: 18.0 };
 
@@ -76,7 +76,7 @@ impl Grip {
 }
 
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Trial {
+pub(super) struct PairTrial {
     pub(super) mode: Mode,
     pub(super) own_motion: OwnMotion,
     /// Interpretation of the paper for the modes literal and linear.
@@ -89,16 +89,16 @@ pub(super) struct Trial {
     pub(super) tremor_m: f64,
     /// Noise of the force sensor, N.
     pub(super) noise_n: f64,
-    pub(super) handle: Handle,
-    pub(super) grip: Grip,
+    pub(super) handle: LoneHandle,
+    pub(super) grip: PairGrip,
     pub(super) seed: u64,
     /// Times of the loop's ticks.
     pub(super) clock: VirtualClock,
 }
 
 #[derive(Debug)]
-pub(super) struct Pair {
-    trial: Trial,
+pub(super) struct BenchPair {
+    trial: PairTrial,
     times: TickTimes,
     now_s: f64,
     handle_m: Vector3<f64>,
@@ -113,14 +113,14 @@ pub(super) struct Pair {
     noise: Noise,
     identifier: Identifier,
     link: ProgrammedLink,
-    tracking: Tracking,
+    tracking: TrackingLag,
     renderer: Renderer,
     /// Tip (m) and its force (N), command, handle and tip (m) of the last tick, for interpolation.
     measured: Between<6>,
     led: Between<9>,
     /// The rendered force at the newest deadline, N.
     asked_n: Option<Vector3<f64>>,
-    chain: Chain,
+    chain: SafetyChain,
     speed: Speed<3>,
     speed_m_s: f64,
     tip_n: Vector3<f64>,
@@ -128,20 +128,20 @@ pub(super) struct Pair {
     report: GateReport,
 }
 
-impl Pair {
+impl BenchPair {
     /// At rest at this position (m).
-    pub(super) fn new(trial: &Trial, at_m: Vector3<f64>) -> Result<Self, SettingsError> {
-        let settings = Settings {
+    pub(super) fn new(trial: &PairTrial, position_m: Vector3<f64>) -> Result<Self, SettingsError> {
+        let settings = ImpedanceSettings {
             rate_hz: RATE_HZ,
             delay_s: trial.delay_s,
             modes: ModeSet::only(trial.mode),
             literal: trial.literal,
             own_motion: trial.own_motion,
-            ..Settings::default()
+            ..ImpedanceSettings::default()
         };
         let mut noise = Noise::new(trial.seed);
         let tremor_phase = std::array::from_fn(|_| std::array::from_fn(|_| TAU * noise.uniform()));
-        let mut chain = Chain::new(trial.gates, 1.0 / RATE_HZ);
+        let mut chain = SafetyChain::new(trial.gates, 1.0 / RATE_HZ);
         chain.set_gain_above_one(trial.gain);
         let mut times = trial.clock.tick_times(RATE_HZ);
         let now_s = times.advance().now_s;
@@ -149,18 +149,18 @@ impl Pair {
             trial: *trial,
             times,
             now_s,
-            handle_m: at_m,
+            handle_m: position_m,
             handle_m_s: Vector3::zeros(),
             gripped: true,
             tremor_phase,
-            tip_m: at_m,
+            tip_m: position_m,
             tip_m_s: Vector3::zeros(),
-            command_m: at_m,
+            command_m: position_m,
             tissue: Tissue::new(trial.tissue),
             noise,
             identifier: Identifier::new(&settings)?,
             link: ProgrammedLink::new(RATE_HZ, trial.delay_s),
-            tracking: Tracking::new(RATE_HZ),
+            tracking: TrackingLag::new(RATE_HZ),
             renderer: Renderer::new(&settings)?,
             measured: Between::default(),
             led: Between::default(),
@@ -268,7 +268,7 @@ impl Pair {
 
     fn gated(&mut self, asked_n: Option<Vector3<f64>>, age_s: f64, hand_m: Vector3<f64>) -> Vector3<f64> {
         let speed_m_s = self.speed_m_s;
-        let (force_n, report) = self.chain.step(&Request {
+        let (force_n, report) = self.chain.step(&ForceRequest {
             t_s: self.now_s,
             force_n: asked_n,
             age_s,
@@ -306,9 +306,9 @@ impl Pair {
     }
 
     fn command(&mut self, read_m: &Vector3<f64>, passed_s: f64) {
-        let way_m = read_m - self.command_m;
-        let most_m = FOLLOWER_M_S * passed_s;
-        self.command_m += way_m * (most_m / way_m.norm().max(most_m));
+        let travel_m = read_m - self.command_m;
+        let max_m = FOLLOWER_M_S * passed_s;
+        self.command_m += travel_m * (max_m / travel_m.norm().max(max_m));
     }
 
     fn tremor(&self, now_s: f64) -> Vector3<f64> {

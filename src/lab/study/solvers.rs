@@ -1,12 +1,12 @@
 //! The solvers that studies compare: one axis, degrees 1 to 5, one window of rows.
 //!
-//! Takes [`Row`]s (motion in m, m/s, m/s²; force in N); returns a [`Fit`] that predicts a force (N) at any row. Nothing
+//! Takes [`SolverRow`]s (motion in m, m/s, m/s²; force in N); returns a [`SolverFit`] that predicts a force (N) at any row. Nothing
 //! is checked here: for a row that is not finite, or a window that does not determine the unknowns, a degree has no
 //! solution or a wrong one. Finding such cases is the purpose of the studies.
 
 use nalgebra::{DMatrix, DVector, RealField};
 use nima_core::{
-    impedance::{Factor, MAX_DEGREE, MOTION_COLUMNS, Scales, SlidingWindow, Solution, Summary},
+    impedance::{ImpedanceFactor, ImpedanceSolution, MAX_DEGREE, MOTION_COLUMNS, Scales, SlidingWindow, WindowSummary},
     signal::{Lanes, Motion},
 };
 use serde::Serialize;
@@ -17,7 +17,7 @@ pub const MAX_COLUMNS: usize = 1 + MOTION_COLUMNS;
 
 /// One sample of one axis, in SI units (or all lengths in another unit, with [`Scales`] in the same one).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Row {
+pub struct SolverRow {
     /// Position, velocity, acceleration in the workspace, relative to its fixed origin.
     pub position: [f64; 3],
     /// The paper's `u`: the change of each quantity over one window length.
@@ -27,7 +27,7 @@ pub struct Row {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Solver {
+pub enum LeastSquaresSolver {
     /// The paper's `M = F X^T (X X^T)^-1` with an explicit inverse, everything rounded to f32.
     #[serde(rename = "literal-f32")]
     LiteralF32,
@@ -48,7 +48,7 @@ pub enum Solver {
 /// unit, here for 300 rows.
 pub const CUT_OFF: f64 = 300.0 * f64::EPSILON;
 
-impl Solver {
+impl LeastSquaresSolver {
     /// Every solver, the paper's first.
     pub const ALL: [Self; 5] = [Self::LiteralF32, Self::LiteralF64, Self::PseudoInverse, Self::FreshQr, Self::Sliding];
 
@@ -73,7 +73,7 @@ impl Solver {
     }
 
     /// The columns of `row` for `degree`; the unused entries are zero.
-    pub fn columns(self, row: &Row, degree: usize, scales: &Scales) -> [f64; MAX_COLUMNS] {
+    pub fn columns(self, row: &SolverRow, degree: usize, scales: &Scales) -> [f64; MAX_COLUMNS] {
         const SI: Scales = Scales { position_m: 1.0, velocity_m_s: 1.0, acceleration_m_s2: 1.0, force_n: 1.0 };
         let [x, v, a] = if self.is_paper() { row.increment } else { row.position }.map(Lanes::splat);
         let motion = Motion { x, v, a };
@@ -89,37 +89,37 @@ impl Solver {
         columns
     }
 
-    /// Fits degrees `1..=max_degree` to `rows`. Only [`Solver::Sliding`] uses `ridge` (per row, see
-    /// [`nima_core::impedance::Settings`]).
+    /// Fits degrees `1..=max_degree` to `rows`. Only [`LeastSquaresSolver::Sliding`] uses `ridge` (per row, see
+    /// [`nima_core::impedance::ImpedanceSettings`]).
     ///
-    /// [`Solver::Sliding`] adds the rows to a new factor here; [`Sliding`] keeps its factor from tick to tick.
+    /// [`LeastSquaresSolver::Sliding`] adds the rows to a new factor here; [`SlidingSolver`] keeps its factor from tick to tick.
     ///
     /// ```
     /// use nima_core::impedance::Scales;
-    /// use nima_study::solvers::{Row, Solver};
+    /// use nima_study::solvers::{SolverRow, LeastSquaresSolver};
     ///
     /// // A spring of 200 N/m with an offset of 3 N.
     /// let row = |k: u32| {
     ///     let t = 0.01 * f64::from(k);
     ///     let position = [0.02 * (3.0 * t).sin(), 0.06 * (5.0 * t).cos(), 0.3 * (7.0 * t).sin()];
-    ///     Row { position, increment: position, force_n: 3.0 - 200.0 * position[0] }
+    ///     SolverRow { position, increment: position, force_n: 3.0 - 200.0 * position[0] }
     /// };
-    /// let rows: Vec<Row> = (0..300).map(row).collect();
-    /// let fit = Solver::FreshQr.fit(&rows, 1, &Scales::default(), 0.0);
+    /// let rows: Vec<SolverRow> = (0..300).map(row).collect();
+    /// let fit = LeastSquaresSolver::FreshQr.fit(&rows, 1, &Scales::default(), 0.0);
     /// let later = row(310);
     /// let predicted_n = fit.predict(&later)[0].expect("the rows determine degree 1");
     /// assert!((predicted_n - later.force_n).abs() < 1e-9);
     /// ```
-    pub fn fit(self, rows: &[Row], max_degree: usize, scales: &Scales, ridge: f64) -> Fit {
+    pub fn fit(self, rows: &[SolverRow], max_degree: usize, scales: &Scales, ridge: f64) -> SolverFit {
         let max_degree = max_degree.clamp(1, MAX_DEGREE);
-        let mut fit = Fit::none(self, *scales);
+        let mut fit = SolverFit::none(self, *scales);
         if self == Self::Sliding {
             let columns = self.unknowns(max_degree);
-            let mut factor = Factor::with_ridge(columns, ridge * rows.len() as f64);
+            let mut factor = ImpedanceFactor::with_ridge(columns, ridge * rows.len() as f64);
             for row in rows {
                 factor.add(&sliding_row(row, max_degree, scales));
             }
-            let mut solution = Solution::new(columns);
+            let mut solution = ImpedanceSolution::new(columns);
             solution.solve(&factor);
             fit.take(&solution, max_degree);
             return fit;
@@ -147,18 +147,18 @@ impl Solver {
 
 /// Coefficients of every degree fitted to one window.
 #[derive(Clone, Debug)]
-pub struct Fit {
-    solver: Solver,
+pub struct SolverFit {
+    solver: LeastSquaresSolver,
     scales: Scales,
     coefficients: [Option<Vec<f64>>; MAX_DEGREE],
 }
 
-impl Fit {
-    fn none(solver: Solver, scales: Scales) -> Self {
+impl SolverFit {
+    fn none(solver: LeastSquaresSolver, scales: Scales) -> Self {
         Self { solver, scales, coefficients: [const { None }; MAX_DEGREE] }
     }
 
-    fn take(&mut self, solution: &Solution, max_degree: usize) {
+    fn take(&mut self, solution: &ImpedanceSolution, max_degree: usize) {
         for degree in 1..=max_degree {
             let columns = self.solver.unknowns(degree);
             let found = solution.coefficients(columns)[..columns].iter().map(|m| m[0]).collect();
@@ -172,11 +172,11 @@ impl Fit {
     }
 
     /// Force (N) predicted at `at` by every degree: `None` without a solution or if the prediction is not finite.
-    pub fn predict(&self, at: &Row) -> [Option<f64>; MAX_DEGREE] {
+    pub fn predict(&self, at: &SolverRow) -> [Option<f64>; MAX_DEGREE] {
         let columns = self.solver.columns(at, MAX_DEGREE, &self.scales);
         std::array::from_fn(|i| {
             let m = self.coefficients[i].as_ref()?;
-            let force: f64 = if self.solver == Solver::LiteralF32 {
+            let force: f64 = if self.solver == LeastSquaresSolver::LiteralF32 {
                 f64::from(m.iter().zip(columns).map(|(m, column)| *m as f32 * column as f32).sum::<f32>())
             } else {
                 m.iter().zip(columns).map(|(m, column)| m * column).sum()
@@ -188,41 +188,41 @@ impl Fit {
 
 /// This project's solver as the loop runs it: one row per tick, at a cost independent of the window's length.
 #[derive(Clone, Debug)]
-pub struct Sliding {
-    window: SlidingWindow<Factor>,
-    solution: Solution,
+pub struct SlidingSolver {
+    window: SlidingWindow<ImpedanceFactor>,
+    solution: ImpedanceSolution,
     max_degree: usize,
     scales: Scales,
 }
 
-impl Sliding {
+impl SlidingSolver {
     /// A window of `2 * block` rows.
     pub fn new(block: usize, max_degree: usize, scales: Scales, ridge: f64) -> Self {
         let max_degree = max_degree.clamp(1, MAX_DEGREE);
-        let columns = Solver::Sliding.unknowns(max_degree);
-        let prior = Factor::with_ridge(columns, ridge * 2.0 * block as f64);
-        let window = SlidingWindow::new(block, Factor::new(columns), prior);
-        Self { window, solution: Solution::new(columns), max_degree, scales }
+        let columns = LeastSquaresSolver::Sliding.unknowns(max_degree);
+        let prior = ImpedanceFactor::with_ridge(columns, ridge * 2.0 * block as f64);
+        let window = SlidingWindow::new(block, ImpedanceFactor::new(columns), prior);
+        Self { window, solution: ImpedanceSolution::new(columns), max_degree, scales }
     }
 
     /// Adds the newest row and solves. `None` for a rejected sample, which occupies its time in the window without
     /// data.
-    pub fn push(&mut self, row: Option<&Row>) {
-        let row = row.map_or(Factor::BLANK_ROW, |row| sliding_row(row, self.max_degree, &self.scales));
+    pub fn push(&mut self, row: Option<&SolverRow>) {
+        let row = row.map_or(ImpedanceFactor::BLANK_ROW, |row| sliding_row(row, self.max_degree, &self.scales));
         self.window.push(&row);
         self.solution.solve(self.window.current());
     }
 
     /// Returns the newest solutions.
-    pub fn fit(&self) -> Fit {
-        let mut fit = Fit::none(Solver::Sliding, self.scales);
+    pub fn fit(&self) -> SolverFit {
+        let mut fit = SolverFit::none(LeastSquaresSolver::Sliding, self.scales);
         fit.take(&self.solution, self.max_degree);
         fit
     }
 
     /// Condition number (Frobenius) of the scaled columns of `degree` with their ridge.
     pub fn condition(&self, degree: usize) -> f64 {
-        self.solution.condition(Solver::Sliding.unknowns(degree))[0]
+        self.solution.condition(LeastSquaresSolver::Sliding.unknowns(degree))[0]
     }
 
     /// Numerical rank of `degree`: columns, including the constant, whose part orthogonal to the previous columns is
@@ -234,15 +234,15 @@ impl Sliding {
             let own = factor.column(*j)[*j][0].powi(2);
             if *j == 0 { own > 0.0 } else { own > 2.0 * ridge }
         };
-        (0..Solver::Sliding.unknowns(degree)).filter(outweighs).count()
+        (0..LeastSquaresSolver::Sliding.unknowns(degree)).filter(outweighs).count()
     }
 }
 
-fn sliding_row(row: &Row, degree: usize, scales: &Scales) -> <Factor as Summary>::Row {
-    let mut entries = Factor::BLANK_ROW;
-    let columns = Solver::Sliding.columns(row, degree, scales);
+fn sliding_row(row: &SolverRow, degree: usize, scales: &Scales) -> <ImpedanceFactor as WindowSummary>::Row {
+    let mut entries = ImpedanceFactor::BLANK_ROW;
+    let columns = LeastSquaresSolver::Sliding.columns(row, degree, scales);
     entries.iter_mut().zip(columns).for_each(|(entry, column)| entry[0] = column);
-    entries[Solver::Sliding.unknowns(degree)][0] = row.force_n;
+    entries[LeastSquaresSolver::Sliding.unknowns(degree)][0] = row.force_n;
     entries
 }
 
@@ -271,7 +271,7 @@ fn fresh_qr(x: DMatrix<f64>, f: &DVector<f64>, max_degree: usize) -> [Option<Vec
     qr.q_tr_mul(&mut right);
     let r = qr.unpack_r();
     std::array::from_fn(|i| {
-        let columns = Solver::FreshQr.unknowns(i + 1);
+        let columns = LeastSquaresSolver::FreshQr.unknowns(i + 1);
         if i >= max_degree || columns > rows || columns > unknowns {
             return None;
         }
@@ -286,13 +286,13 @@ mod tests {
     use super::*;
 
     /// A motion that excites every column.
-    fn rows(count: usize) -> Vec<Row> {
+    fn rows(count: usize) -> Vec<SolverRow> {
         (0..count)
             .map(|k| {
                 let t = k as f64 * 0.37;
                 let position = [0.1 * t.sin(), 0.2 * (1.7 * t).cos(), 4.0 * (2.9 * t + 1.0).sin()];
                 let force_n = 300.0 * position[0] + 5.0 * position[1] + 0.1 * position[2] * position[2];
-                Row { position, increment: position, force_n }
+                SolverRow { position, increment: position, force_n }
             })
             .collect()
     }
@@ -301,10 +301,10 @@ mod tests {
     fn all_agree_where_the_problem_is_well_conditioned() {
         let rows = rows(300);
         let scales = Scales::default();
-        let at = Row { force_n: 0.0, ..rows[123] };
-        for solver in Solver::ALL {
+        let at = SolverRow { force_n: 0.0, ..rows[123] };
+        for solver in LeastSquaresSolver::ALL {
             let predicted = solver.fit(&rows, 5, &scales, 0.0).predict(&at);
-            let tolerance = if solver == Solver::LiteralF32 { 1e-2 } else { 1e-9 };
+            let tolerance = if solver == LeastSquaresSolver::LiteralF32 { 1e-2 } else { 1e-9 };
             for degree in 2..=3 {
                 let found = predicted[degree - 1].unwrap();
                 assert!((found - rows[123].force_n).abs() < tolerance, "{} N={degree}: {found}", solver.name());
@@ -316,11 +316,11 @@ mod tests {
     fn slid_and_fresh_are_the_same() {
         let rows = rows(700);
         let scales = Scales::default();
-        let mut sliding = Sliding::new(150, 5, scales, 1e-6);
+        let mut sliding = SlidingSolver::new(150, 5, scales, 1e-6);
         for k in 0..rows.len() {
             sliding.push(Some(&rows[k]));
             if k >= 299 && k % 37 == 0 {
-                let fresh = Solver::Sliding.fit(&rows[k - 299..=k], 5, &scales, 1e-6).predict(&rows[k]);
+                let fresh = LeastSquaresSolver::Sliding.fit(&rows[k - 299..=k], 5, &scales, 1e-6).predict(&rows[k]);
                 for (slid, fresh) in sliding.fit().predict(&rows[k]).into_iter().zip(fresh) {
                     assert!((slid.unwrap() - fresh.unwrap()).abs() < 1e-10);
                 }
@@ -331,13 +331,13 @@ mod tests {
 
     #[test]
     fn what_cannot_be_solved_has_no_answer() {
-        let still = vec![Row { force_n: 1.0, ..Row::default() }; 50];
+        let still = vec![SolverRow { force_n: 1.0, ..SolverRow::default() }; 50];
         let scales = Scales::default();
-        assert_eq!(Solver::LiteralF64.fit(&still, 5, &scales, 0.0).predict(&still[0]), [None; 5]);
-        let ours = Solver::Sliding.fit(&still, 5, &scales, 1e-6).predict(&still[0]);
+        assert_eq!(LeastSquaresSolver::LiteralF64.fit(&still, 5, &scales, 0.0).predict(&still[0]), [None; 5]);
+        let ours = LeastSquaresSolver::Sliding.fit(&still, 5, &scales, 1e-6).predict(&still[0]);
         assert!(ours.iter().all(|force| (force.unwrap() - 1.0).abs() < 1e-12));
         let mut bad = rows(50);
         bad[7].increment[1] = f64::NAN;
-        assert_eq!(Solver::PseudoInverse.fit(&bad, 2, &scales, 0.0).predict(&bad[0])[..2], [None; 2]);
+        assert_eq!(LeastSquaresSolver::PseudoInverse.fit(&bad, 2, &scales, 0.0).predict(&bad[0])[..2], [None; 2]);
     }
 }

@@ -9,7 +9,7 @@ use super::{ConfigError, Ranges};
 /// Source of the image, and pose of the endoscope's camera.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Endoscope {
+pub struct EndoscopeConfig {
     /// Motion JPEG over HTTP (`http://HOST:PORT/PATH`), H.264 over RTSP (`rtsp://HOST/PATH`), a camera of this computer (`/dev/video0`), or the
     /// path of a `.mjpeg`, a folder of JPEGs or a JPEG.
     pub url: String,
@@ -45,7 +45,7 @@ pub enum StereoView {
     Both,
 }
 
-impl Default for Endoscope {
+impl Default for EndoscopeConfig {
     fn default() -> Self {
         Self {
             url: String::new(),
@@ -127,7 +127,7 @@ fn is_nothing(value: &f64) -> bool {
     *value == 0.0
 }
 
-impl Endoscope {
+impl EndoscopeConfig {
     pub(super) fn check(&self, ranges: &Ranges<'_>) -> Result<(), ConfigError> {
         let named = if self.url.trim().is_empty() { 0.0 } else { 1.0 };
         ranges.check(
@@ -144,10 +144,10 @@ impl Endoscope {
         // Without a size, use the size of the largest possible image.
         let [width, height] = size_px.unwrap_or([4096; 2]).map(|side| side as f64);
         let leaves = left + right <= 0.9 * width && top + bottom <= 0.9 * height;
-        let most = left.max(top).max(right).max(bottom);
+        let max = left.max(top).max(right).max(bottom);
         ranges.check(
             "endoscope.crop_px",
-            most,
+            max,
             leaves,
             "[left, top, right, bottom] that leave at least a tenth of the image",
         )?;
@@ -260,7 +260,7 @@ mod tests {
             ("position_m = [0.0, -0.1, 0.09]", "", "position_m and world_from_camera_deg"),
             ("position_m", "n_from_camera_m", "position_m and world_from_camera_deg"),
             ("k1 = -0.3", "n_from_camera_m = [0.0, 0.0, 0.1]", "n_from_camera_m and n_from_camera_deg"),
-            ("k1 = -0.3", "n_from_camera_m = [0.0, 0.0, 0.1]\nn_from_camera_deg = [0.0, 0.0, 0.0]", "places"),
+            ("k1 = -0.3", "n_from_camera_m = [0.0, 0.0, 0.1]\nn_from_camera_deg = [0.0, 0.0, 0.0]", "poses"),
             (
                 "position_m = [0.0, -0.1, 0.09]\nworld_from_camera_deg",
                 "n_from_camera_m = [0.0, 0.0, 0.1]\nn_from_camera_deg",
@@ -273,8 +273,8 @@ mod tests {
             ("record = false", "crop_px = [700, 0, 700, 0]", "leave a tenth"),
             ("record = false", "crop_px = [1, 2, 3]", "invalid length 3"),
         ] {
-            let told = rig(&WHOLE.replace(from, to)).unwrap_err();
-            assert!(told.contains(word) && !told.contains('\n'), "{to}: {told}");
+            let report = rig(&WHOLE.replace(from, to)).unwrap_err();
+            assert!(report.contains(word) && !report.contains('\n'), "{to}: {report}");
         }
     }
 }

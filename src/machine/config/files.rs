@@ -7,7 +7,7 @@ use std::{
 
 use nalgebra::Vector3;
 use nima_core::limits::Limits;
-use nima_devices::Trouble;
+use nima_devices::DeviceError;
 use nima_files::{Misfit, PASSAGE, from_table, shortened};
 use serde::de::DeserializeOwned;
 use toml::de::DeTable;
@@ -40,7 +40,7 @@ pub enum ConfigError {
         message: String,
     },
     #[error("rig \"{name}\"")]
-    Device { name: String, source: Trouble },
+    Device { name: String, source: DeviceError },
     #[error("{kind} \"{name}\": {key} is {value}, must be {range}")]
     Range {
         /// `rig` or `scene`.

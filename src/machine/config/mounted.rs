@@ -1,6 +1,6 @@
 //! Sensors and tools on the simulated arms. They belong to the rig file; a scene only describes their physics.
 
-use nima_devices::Trouble;
+use nima_devices::DeviceError;
 use nima_recording::store::{WristId, can_name_a_file};
 use serde::{Deserialize, Serialize};
 
@@ -32,9 +32,9 @@ impl RigConfig {
         self.simulated.as_ref().filter(|_| self.devices.is_none())?.of(side)
     }
 
-    pub(super) fn check_simulated_wrists(&self) -> Result<(), Trouble> {
+    pub(super) fn check_simulated_wrists(&self) -> Result<(), DeviceError> {
         let refuse = |key: &str, value: &str, allowed: &str| {
-            Err(Trouble::Setting { key: key.to_owned(), value: value.to_owned(), allowed: allowed.to_owned() })
+            Err(DeviceError::Setting { key: key.to_owned(), value: value.to_owned(), allowed: allowed.to_owned() })
         };
         let Some(wrists) = &self.simulated else { return Ok(()) };
         if self.devices.is_some() {
@@ -68,16 +68,16 @@ mod tests {
     #[test]
     fn names_that_no_calibration_could_have_are_refused_by_their_key() {
         let good = RigConfig::load("simulated").unwrap();
-        let told = |change: fn(&mut WristId)| {
+        let report = |change: fn(&mut WristId)| {
             let mut rig = good.clone();
             change(rig.simulated.as_mut().unwrap().left.as_mut().unwrap());
             rig.check_simulated_wrists().unwrap_err().to_string()
         };
-        let path = told(|left| left.serial_number = "../x".to_owned());
+        let path = report(|left| left.serial_number = "../x".to_owned());
         assert!(path.contains("simulated.left.serial_number") && path.contains("../x"), "{path}");
-        let same = told(|left| left.serial_number = "SIM-S1-0001".to_owned());
+        let same = report(|left| left.serial_number = "SIM-S1-0001".to_owned());
         assert!(same.contains("simulated.left.serial_number") && same.contains("its own sensor"), "{same}");
-        assert!(told(|left| left.tool = " ".to_owned()).contains("simulated.left.tool"));
+        assert!(report(|left| left.tool = " ".to_owned()).contains("simulated.left.tool"));
         let mut real = RigConfig::load("paper").unwrap();
         real.simulated.clone_from(&good.simulated);
         assert!(real.validate().is_err());

@@ -82,8 +82,8 @@ mod tests {
             before: None,
             after: Some("[nan, 0.0, 0.0]".to_owned()),
         };
-        let told = change_rig("emulated", folder.path(), &[far]).map(|(path, _)| path);
-        assert!(told.is_err(), "{told:?}");
+        let report = change_rig("emulated", folder.path(), &[far]).map(|(path, _)| path);
+        assert!(report.is_err(), "{report:?}");
         assert!(!folder.path().join("emulated-2.toml").exists());
     }
 }

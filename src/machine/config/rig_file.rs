@@ -8,7 +8,7 @@ use std::{
 use toml_edit::{DocumentMut, Item, Table, Value};
 
 use super::{ConfigError, RIGS, RigConfig, text};
-use crate::rig::{Offer, Part, PartKind, Side};
+use crate::rig::{DeviceOffer, PartKind, RigPart, Side};
 
 /// A rig file in memory.
 ///
@@ -32,11 +32,11 @@ pub struct RigFile {
 
 /// A device for a part of a rig.
 #[derive(Clone, Debug)]
-pub enum Chosen {
+pub enum ChosenDevice {
     /// The current device of another part.
-    Of(Part),
+    Of(RigPart),
     /// A device that was found and is not used yet.
-    Found(Offer),
+    Found(DeviceOffer),
 }
 
 /// Reason why a rig file cannot be changed or saved.
@@ -135,13 +135,13 @@ impl RigFile {
 
     /// Replaces the device of this part by `chosen`: the device of another part of the same kind, which then gets this
     /// part's device, or a device that was found.
-    pub fn choose(&mut self, part: Part, chosen: &Chosen) {
+    pub fn choose(&mut self, part: RigPart, chosen: &ChosenDevice) {
         match chosen {
-            Chosen::Of(other) => self.swap(part.key(), other.key()),
-            Chosen::Found(offer) => {
+            ChosenDevice::Of(other) => self.swap(part.key(), other.key()),
+            ChosenDevice::Found(offer) => {
                 // A tracker has either an address or a port: remove the other one.
                 for (key, other) in [("address", "port"), ("port", "address")] {
-                    if part == Part::Tracker && offer.changes.iter().any(|(changed, _)| *changed == key) {
+                    if part == RigPart::Tracker && offer.changes.iter().any(|(changed, _)| *changed == key) {
                         self.remove(&format!("{}.{other}", part.key()));
                     }
                 }
@@ -222,7 +222,7 @@ fn set_position(item: &mut Item, position: Option<isize>) {
 
 #[cfg(test)]
 mod tests {
-    use nima_devices::Identity;
+    use nima_devices::DeviceIdentity;
 
     use super::*;
 
@@ -308,7 +308,7 @@ mod tests {
     fn the_device_of_another_part_is_chosen_by_exchanging_the_two() {
         let mut file = RigFile::of("emulated").unwrap();
         let was = file.rig().unwrap().devices.unwrap();
-        file.choose(Part::Sensor(Side::Right), &Chosen::Of(Part::TissueSensor));
+        file.choose(RigPart::Sensor(Side::Right), &ChosenDevice::Of(RigPart::TissueSensor));
         let now = file.rig().unwrap().devices.unwrap();
         assert_eq!(now.right.as_ref().map(|set| &set.sensor), was.tissue_sensor.as_ref());
         assert_eq!(now.tissue_sensor.as_ref(), was.right.as_ref().map(|set| &set.sensor));
@@ -317,21 +317,21 @@ mod tests {
 
     #[test]
     fn a_device_that_was_found_is_chosen_by_its_place_and_serial_number() {
-        let offer = |changes| Offer { place: String::new(), identity: Identity::default(), changes };
+        let offer = |changes| DeviceOffer { place: String::new(), identity: DeviceIdentity::default(), changes };
         let mut file = RigFile::of("paper").unwrap();
         let sensor = offer(vec![
             ("transport", "gen-a".into()),
             ("port", "/dev/ttyACM7".into()),
             ("serial_number", "853".into()),
         ]);
-        file.choose(Part::Sensor(Side::Left), &Chosen::Found(sensor));
-        file.choose(Part::Handle(Side::Left), &Chosen::Found(offer(vec![("serial", 815.into())])));
+        file.choose(RigPart::Sensor(Side::Left), &ChosenDevice::Found(sensor));
+        file.choose(RigPart::Handle(Side::Left), &ChosenDevice::Found(offer(vec![("serial", 815.into())])));
         let other_place = |file: &RigFile| {
             let tracker = file.rig().unwrap().devices.unwrap().tracker.unwrap();
             if tracker.port.is_some() { "address" } else { "port" }
         };
         let tracker = other_place(&file);
-        file.choose(Part::Tracker, &Chosen::Found(offer(vec![(tracker, "/dev/ttyUSB9".into())])));
+        file.choose(RigPart::Tracker, &ChosenDevice::Found(offer(vec![(tracker, "/dev/ttyUSB9".into())])));
         assert_ne!(other_place(&file), tracker, "one of the two keys exists");
         let left = file.rig().unwrap().devices.unwrap().left.unwrap();
         let sensor = left.sensor.bota().unwrap();
@@ -344,9 +344,12 @@ mod tests {
         let mut file = RigFile::of("paper").unwrap();
         let right = file.rig().unwrap().devices.unwrap().right.unwrap().handle;
         let taken = i64::from(right.force_dimension().unwrap().serial.unwrap());
-        let offer =
-            Offer { place: String::new(), identity: Identity::default(), changes: vec![("serial", taken.into())] };
-        file.choose(Part::Handle(Side::Left), &Chosen::Found(offer));
+        let offer = DeviceOffer {
+            place: String::new(),
+            identity: DeviceIdentity::default(),
+            changes: vec![("serial", taken.into())],
+        };
+        file.choose(RigPart::Handle(Side::Left), &ChosenDevice::Found(offer));
         assert!(file.rig().is_err());
     }
 
@@ -359,8 +362,8 @@ mod tests {
         assert_eq!(file.save(&path).unwrap().name, "Mine");
         assert_eq!(RigConfig::load(path.to_str().unwrap()).unwrap().name, "Mine");
         file.set("delay_s", 1000.0);
-        let told = file.save(&path).unwrap_err().to_string();
-        assert!(told.contains("delay_s"), "{told}");
+        let report = file.save(&path).unwrap_err().to_string();
+        assert!(report.contains("delay_s"), "{report}");
         assert!(RigConfig::load(path.to_str().unwrap()).is_ok(), "the file of before stays");
         let nowhere = folder.path().join("rigs/mine.toml/below.toml");
         file.set("delay_s", 0.05);

@@ -1,7 +1,7 @@
 use nalgebra::{UnitQuaternion, Vector3};
 use nima_core::{
     frames::from_roll_pitch_yaw_deg,
-    kinematics::{Mapping, view_from_omega},
+    kinematics::{MotionMapping, view_from_omega},
 };
 use serde::{Deserialize, Serialize};
 
@@ -46,13 +46,13 @@ pub enum LeaderMount {
 
 impl Teleoperation {
     /// Returns the mapping; the default mapping if the numbers are not finite (which [`RigConfig::validate`] refuses).
-    pub fn mapping(&self) -> Mapping {
+    pub fn mapping(&self) -> MotionMapping {
         self.seen(&from_roll_pitch_yaw_deg(&self.world_from_view_deg), self.scale)
     }
 
     /// Returns the mapping for an endoscope with this orientation; the default mapping if the numbers are not finite.
-    pub fn seen(&self, world_from_view: &UnitQuaternion<f64>, scale: f64) -> Mapping {
-        Mapping::new(world_from_view, &self.view_from_leader(), scale).unwrap_or_default()
+    pub fn seen(&self, world_from_view: &UnitQuaternion<f64>, scale: f64) -> MotionMapping {
+        MotionMapping::new(world_from_view, &self.view_from_leader(), scale).unwrap_or_default()
     }
 
     /// Returns the orientation of the leader relative to the image: the measured one, otherwise the typical one for its

@@ -54,7 +54,7 @@ impl ForceSource {
 
     /// Returns the smallest force that indicates a touch, N: several times the noise of a sensor at the tip, and five
     /// times the error that calibrations leave at the wrist (0.08 N per axis).
-    pub const fn least_n(self) -> f64 {
+    pub const fn min_n(self) -> f64 {
         if matches!(self, Self::AtTip) { 0.1 } else { 0.4 }
     }
 

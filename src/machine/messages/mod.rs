@@ -1,7 +1,7 @@
 //! All communication between the loop and the screen: commands in, ticks and events out.
 
-mod bulletin;
 mod force;
+mod peer_status;
 mod refusal;
 mod scheduling;
 mod watchdog;
@@ -11,19 +11,19 @@ use nima_core::{
     calibration::frames::FrameSample,
     frames::WristSample,
     impedance::{Mode, SLOTS},
-    safety::{ChainSettings, GateReport, Implausible, State, Why},
+    safety::{ChainSettings, GateReport, Implausible, InterlockState, TransitionCause},
 };
 use nima_devices::Loss;
 
-pub use bulletin::{Bulletin, FarStop};
 pub use force::{ForceReport, ForceSource, UNKNOWN_N};
+pub use peer_status::{FarStop, PeerStatus};
 pub use refusal::Refusal;
-pub use scheduling::{Lack, Scheduling};
+pub use scheduling::{Scheduling, SchedulingLack};
 pub use watchdog::Watchdog;
 
-use crate::rig::{Act, DeviceEvent, Prompt, Side, View};
+use crate::rig::{DeviceEvent, Prompt, Side, TaskAction, ViewOrientation};
 
-pub type LoopState = State<Fault>;
+pub type LoopState = InterlockState<Fault>;
 
 /// Commands of a screen or a script to the loop. They are applied in order at the start of a tick, at most a few per
 /// tick.
@@ -53,7 +53,7 @@ pub enum Command {
     /// [`crate::rig::GRIP_MAX_RAD`]; `None`, a stop or a fault ends it. On a simulated rig only.
     Grip(Side, Option<f64>),
     /// Perform this act in the training task, with the tip of this side's instrument. On a simulated rig only.
-    Task(Side, Act),
+    Task(Side, TaskAction),
     /// The simulated hand releases its handle (true) or grips it again (false). On a simulated rig only.
     LetGo(bool),
     /// Switch the governor off (false) or on (true). On a simulated rig only, where no person holds the handle.
@@ -131,7 +131,7 @@ pub struct Tick {
     /// Input of the frame calibrations; empty without a new measurement.
     pub frames: FrameSample,
     /// Orientation of the endoscope, from the tracker's measurement of its marker.
-    pub view: View,
+    pub view: ViewOrientation,
     /// Instruction to the person at the arm.
     pub prompt: Prompt,
     /// Position to which the screen guides the handle, m.
@@ -147,7 +147,7 @@ pub struct Tick {
     /// Settings of the gates (`gain` is the operator's setting; the ramped gain is in `gates`).
     pub gate_settings: ChainSettings,
     /// Result of the identification in this tick.
-    pub identification: nima_core::impedance::Report,
+    pub identification: nima_core::impedance::IdentificationReport,
     /// Delay of the wake-up of this tick after its deadline, s (0 on the virtual clock).
     pub wake_s: f64,
     /// Duration of the work of the previous tick, s.
@@ -223,7 +223,7 @@ pub enum Event {
         side: Side,
         from: LoopState,
         to: LoopState,
-        why: Why,
+        why: TransitionCause,
     },
     FaultRaised {
         /// Time on the loop's clock, s.

@@ -3,7 +3,7 @@
 use nima_core::safety::Implausible;
 
 use super::{Fault, ForceSource, LoopState};
-use crate::rig::Obstacle;
+use crate::rig::EngageBlocker;
 
 /// Reason why a command was refused, or an engagement abandoned.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,7 +16,7 @@ pub enum Refusal {
     ForceUnknown(ForceSource),
     Implausible(Implausible),
     /// The arm cannot be engaged from its current position.
-    Obstacle(Obstacle),
+    Obstacle(EngageBlocker),
     /// The tracker does not detect the endoscope.
     EndoscopeUnseen,
     DrivesOff,

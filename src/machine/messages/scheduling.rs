@@ -12,14 +12,14 @@ pub struct Scheduling {
 
 impl Scheduling {
     /// Returns the missing privilege; `None` if all were granted.
-    pub const fn lack(&self) -> Option<Lack> {
+    pub const fn lack(&self) -> Option<SchedulingLack> {
         if cfg!(not(target_os = "linux")) {
-            return Some(Lack::NotLinux);
+            return Some(SchedulingLack::NotLinux);
         }
         match (self.fifo || self.deadline, self.memory_locked) {
             (true, true) => None,
-            (false, _) => Some(Lack::Priority),
-            (true, false) => Some(Lack::Memory),
+            (false, _) => Some(SchedulingLack::Priority),
+            (true, false) => Some(SchedulingLack::Memory),
         }
     }
 
@@ -32,14 +32,14 @@ impl Scheduling {
 
 /// A privilege that a loop lacks for real time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Lack {
+pub enum SchedulingLack {
     /// This program does not use real-time functions of this operating system.
     NotLinux,
     Priority,
     Memory,
 }
 
-impl Lack {
+impl SchedulingLack {
     pub const fn words(self) -> [&'static str; 2] {
         match self {
             Self::NotLinux => ["real-time scheduling is available on Linux only", "expect more missed ticks here"],

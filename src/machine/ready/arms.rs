@@ -1,6 +1,6 @@
 //! The newest tick of each arm of a check.
 
-use super::Subject;
+use super::CheckSubject;
 use crate::{
     messages::{LoopState, Tick},
     rig::{SIDES, Side},
@@ -13,7 +13,7 @@ pub(super) struct Arms {
 }
 
 impl Arms {
-    pub(super) fn of(subject: &Subject) -> Self {
+    pub(super) fn of(subject: &CheckSubject) -> Self {
         Self { sides: subject.sides().collect(), ticks: [None; SIDES] }
     }
 

@@ -1,11 +1,11 @@
 //! Checks that the wrist sensor's bias is unchanged since its calibration, by the force that remains at rest outside
 //! the trocar.
 
-use nima_core::calibration::gravity::{Drift, DriftCheck, NotChecked, StillSettings};
+use nima_core::calibration::gravity::{DriftCheck, GravityDrift, NotChecked, StillSettings};
 
 use super::{
-    Arm, Ask, Cause, Figure, Unit,
-    item::{Item, Progress},
+    FigureUnit, PersonRequest, ReadyArm, ReadyCause, ReadyFigure,
+    item::{Item, PointProgress},
 };
 use crate::{
     messages::{LoopState, Tick},
@@ -21,7 +21,7 @@ pub(super) struct Bias {
 }
 
 impl Bias {
-    pub(super) fn of(side: Side, arm: &Arm) -> Self {
+    pub(super) fn of(side: Side, arm: &ReadyArm) -> Self {
         let check = |(model, limit_n)| (DriftCheck::new(model, limit_n, StillSettings::default()), limit_n);
         Self { side, check: arm.gravity.map(check), is_in_trocar: None }
     }
@@ -39,24 +39,26 @@ impl Item for Bias {
         check.step(tick.wrist.as_ref(), true, tick.t_s);
     }
 
-    fn look(&mut self, _now_s: f64) -> Progress {
-        let Some((check, limit_n)) = &self.check else { return Progress::Failed(Cause::Uncalibrated) };
+    fn look(&mut self, _now_s: f64) -> PointProgress {
+        let Some((check, limit_n)) = &self.check else { return PointProgress::Failed(ReadyCause::Uncalibrated) };
         match check.drift() {
-            Drift::Fine { by_n } => Progress::Passed(Figure { value: by_n, limit: *limit_n, unit: Unit::Newton }),
-            Drift::Moved { by_n } => Progress::Failed(Cause::BiasMoved { by_n, limit_n: *limit_n }),
-            _ => Progress::Asking(match self.is_in_trocar {
-                None => Ask::Nothing,
-                Some(true) => Ask::TakeOut(self.side),
-                Some(false) => Ask::LeaveAlone(self.side),
+            GravityDrift::Fine { by_n } => {
+                PointProgress::Passed(ReadyFigure { value: by_n, limit: *limit_n, unit: FigureUnit::Newton })
+            }
+            GravityDrift::Moved { by_n } => PointProgress::Failed(ReadyCause::BiasMoved { by_n, limit_n: *limit_n }),
+            _ => PointProgress::Asking(match self.is_in_trocar {
+                None => PersonRequest::Nothing,
+                Some(true) => PersonRequest::TakeOut(self.side),
+                Some(false) => PersonRequest::LeaveAlone(self.side),
             }),
         }
     }
 
-    fn late(&self) -> Cause {
+    fn late(&self) -> ReadyCause {
         match self.check.as_ref().map(|(check, _)| check.drift()) {
-            _ if self.is_in_trocar == Some(true) => Cause::BiasUnseen(NotChecked::InTrocar),
-            Some(Drift::NotChecked(why)) => Cause::BiasUnseen(why),
-            _ => Cause::BiasUnseen(NotChecked::NoSample),
+            _ if self.is_in_trocar == Some(true) => ReadyCause::BiasUnseen(NotChecked::InTrocar),
+            Some(GravityDrift::NotChecked(why)) => ReadyCause::BiasUnseen(why),
+            _ => ReadyCause::BiasUnseen(NotChecked::NoSample),
         }
     }
 }

@@ -2,8 +2,8 @@
 //! possible.
 
 use super::{
-    Ask, Cause, Figure, Subject, Unit,
-    item::{Item, Progress},
+    CheckSubject, FigureUnit, PersonRequest, ReadyCause, ReadyFigure,
+    item::{Item, PointProgress},
 };
 use crate::messages::Tick;
 
@@ -16,20 +16,20 @@ const MISSED_MAX: f64 = 0.01;
 const APART_MAX_S: f64 = 0.25;
 
 #[derive(Debug)]
-pub(super) struct Clocks {
+pub(super) struct ReadyClocks {
     is_date_behind: bool,
     newest: Option<Tick>,
     /// The first tick, and when it was read.
     first: Option<(Tick, f64)>,
 }
 
-impl Clocks {
-    pub(super) const fn of(subject: &Subject) -> Self {
+impl ReadyClocks {
+    pub(super) const fn of(subject: &CheckSubject) -> Self {
         Self { is_date_behind: subject.is_date_behind, newest: None, first: None }
     }
 }
 
-impl Item for Clocks {
+impl Item for ReadyClocks {
     fn tick(&mut self, tick: &Tick) {
         // One arm is enough, because both have the same clock.
         if self.newest.is_none_or(|newest| newest.side == tick.side) {
@@ -37,32 +37,36 @@ impl Item for Clocks {
         }
     }
 
-    fn look(&mut self, now_s: f64) -> Progress {
+    fn look(&mut self, now_s: f64) -> PointProgress {
         if self.is_date_behind {
-            return Progress::Failed(Cause::DateBehind);
+            return PointProgress::Failed(ReadyCause::DateBehind);
         }
-        let Some(newest) = self.newest else { return Progress::Asking(Ask::Nothing) };
+        let Some(newest) = self.newest else { return PointProgress::Asking(PersonRequest::Nothing) };
         let (first, first_s) = self.first.get_or_insert((newest, now_s));
         let took_s = now_s - *first_s;
         let loop_s = newest.t_s - first.t_s;
         if took_s < TAKES_S {
-            return Progress::Asking(Ask::Nothing);
+            return PointProgress::Asking(PersonRequest::Nothing);
         }
         let by_s = (took_s - loop_s).abs();
         if by_s.is_nan() || by_s > APART_MAX_S {
-            return Progress::Failed(Cause::LoopClock { by_s });
+            return PointProgress::Failed(ReadyCause::LoopClock { by_s });
         }
         let missed = newest.missed.saturating_sub(first.missed);
         let made = newest.index.saturating_sub(first.index);
-        let share = missed as f64 / (missed + made).max(1) as f64;
-        if share > MISSED_MAX {
-            return Progress::Failed(Cause::Missed { share });
+        let fraction = missed as f64 / (missed + made).max(1) as f64;
+        if fraction > MISSED_MAX {
+            return PointProgress::Failed(ReadyCause::Missed { fraction });
         }
-        Progress::Passed(Figure { value: 100.0 * share, limit: 100.0 * MISSED_MAX, unit: Unit::Percent })
+        PointProgress::Passed(ReadyFigure {
+            value: 100.0 * fraction,
+            limit: 100.0 * MISSED_MAX,
+            unit: FigureUnit::Percent,
+        })
     }
 
-    fn late(&self) -> Cause {
-        Cause::NoTicks
+    fn late(&self) -> ReadyCause {
+        ReadyCause::NoTicks
     }
 
     fn patience_s(&self) -> f64 {

@@ -2,18 +2,18 @@
 
 use std::fmt::Debug;
 
-use super::{Ask, Cause, Figure};
+use super::{PersonRequest, ReadyCause, ReadyFigure};
 use crate::{
     messages::{Command, Refusal, Tick},
     rig::{Gauges, Healths},
 };
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Progress {
+pub(super) enum PointProgress {
     /// In progress, and needs this.
-    Asking(Ask),
-    Passed(Figure),
-    Failed(Cause),
+    Asking(PersonRequest),
+    Passed(ReadyFigure),
+    Failed(ReadyCause),
 }
 
 /// Time for a person to do what is requested, s.
@@ -27,9 +27,9 @@ pub(super) trait Item: Debug + Send {
     /// Handles the refusal of a command that the check sent.
     fn refused(&mut self, _why: Refusal) {}
     /// Returns the progress at this time.
-    fn look(&mut self, now_s: f64) -> Progress;
+    fn look(&mut self, now_s: f64) -> PointProgress;
     /// Returns the reason for failure when the time is over.
-    fn late(&self) -> Cause;
+    fn late(&self) -> ReadyCause;
     fn patience_s(&self) -> f64 {
         PATIENCE_S
     }

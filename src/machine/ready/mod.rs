@@ -1,9 +1,9 @@
 //! The ready check: a short list of checks before the first engagement of the day, mostly automatic.
 //!
-//! A [`Session`] is a state machine without input, output or a clock. It receives data published by the loop (ticks,
-//! healths, gauges, refusals) and the time (s, any origin), reports the action that it needs from a person ([`Ask`])
-//! and the command that must be sent, and ends with the [`State`] of every [`Check`]: a measured [`Figure`] with its
-//! limit, a [`Cause`], or the part that the rig [`Lacks`]. It never engages an arm and never requests a force. A
+//! A [`ReadySession`] is a state machine without input, output or a clock. It receives data published by the loop (ticks,
+//! healths, gauges, refusals) and the time (s, any origin), reports the action that it needs from a person ([`PersonRequest`])
+//! and the command that must be sent, and ends with the [`ReadyState`] of every [`ReadyPoint`]: a measured [`ReadyFigure`] with its
+//! limit, a [`ReadyCause`], or the part that the rig [`Lacks`]. It never engages an arm and never requests a force. A
 //! watchdog is tested by [`Command::TestWatchdog`](crate::messages::Command::TestWatchdog), which the loop accepts only
 //! in idle.
 
@@ -14,10 +14,10 @@ mod clocks;
 mod devices;
 mod handle;
 mod item;
-mod own;
 mod push;
 mod rates;
 mod session;
+mod side_check;
 mod stop;
 #[cfg(test)]
 mod tests;
@@ -27,22 +27,22 @@ mod watchdog;
 use nalgebra::{UnitVector3, Vector3};
 use nima_core::{
     calibration::{
-        frames::Move,
+        frames::ViewMove,
         gravity::{GravityModel, NotChecked},
     },
     safety::ChainSettings,
 };
 
-pub use session::{Entry, Session};
+pub use session::{ReadyEntry, ReadySession};
 
 use crate::{
     config::RigConfig,
     messages::{Fault, ForceSource, Refusal, Watchdog},
-    rig::{Exchange, Part, Prompt, SIDES, Side, checkup::Finding},
+    rig::{Prompt, RigPart, SIDES, Side, SideSwap, checkup::CheckupFinding},
 };
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Check {
+pub enum ReadyPoint {
     /// Every device of the rig file is connected and stays connected.
     Devices,
     /// Each device delivers at its rate, without losses.
@@ -65,7 +65,7 @@ pub enum Check {
     Watchdog(Watchdog),
 }
 
-impl Check {
+impl ReadyPoint {
     pub const fn side(self) -> Option<Side> {
         match self {
             Self::Own(side) | Self::Bias(side) | Self::Push(side) | Self::Handle(side) | Self::Trocar(side) => {
@@ -77,7 +77,7 @@ impl Check {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Ask {
+pub enum PersonRequest {
     Nothing,
     /// Move the instrument by 10 cm, outside its trocar.
     Move(Side),
@@ -89,7 +89,7 @@ pub enum Ask {
     Push(Side, UnitVector3<f64>),
     LetGo(Side),
     /// Move the handle in this direction of the image.
-    MoveHandle(Side, Move),
+    MoveHandle(Side, ViewMove),
     /// Put the instrument through its trocar, and leave it there.
     PutBack(Side),
     PressStop,
@@ -97,7 +97,7 @@ pub enum Ask {
     Release,
 }
 
-impl Ask {
+impl PersonRequest {
     /// Returns the instruction to the person at an arm.
     pub const fn prompt(&self) -> Prompt {
         match self {
@@ -128,7 +128,7 @@ impl Ask {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Unit {
+pub enum FigureUnit {
     Count,
     Newton,
     Millimetre,
@@ -139,10 +139,10 @@ pub enum Unit {
 
 /// A measured value and its limit.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Figure {
+pub struct ReadyFigure {
     pub value: f64,
     pub limit: f64,
-    pub unit: Unit,
+    pub unit: FigureUnit,
 }
 
 /// Part that a rig lacks, so that a check is skipped.
@@ -157,7 +157,7 @@ pub enum Lacks {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Cause {
+pub enum ReadyCause {
     /// This device of the roster is not connected, or does not stay connected.
     Missing {
         place: usize,
@@ -165,14 +165,14 @@ pub enum Cause {
     /// The test of this device has a finding.
     Found {
         place: usize,
-        finding: Finding,
+        finding: CheckupFinding,
     },
     /// The deliveries of the devices were not published.
     NoGauges,
     NoTicks,
     Missed {
         /// Fraction of missed periods, 0 to 1.
-        share: f64,
+        fraction: f64,
     },
     /// The loop's clock does not agree with this computer's.
     LoopClock {
@@ -191,7 +191,7 @@ pub enum Cause {
         limit_n: f64,
     },
     BiasUnseen(NotChecked),
-    Exchanged(Exchange),
+    Exchanged(SideSwap),
     ArmStuck {
         by_m: f64,
     },
@@ -200,7 +200,7 @@ pub enum Cause {
         by_m: f64,
     },
     NoPush {
-        most_n: f64,
+        max_n: f64,
     },
     /// The push was measured in another direction.
     PushAskew {
@@ -258,17 +258,17 @@ pub enum Cause {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum State {
+pub enum ReadyState {
     Waiting,
     /// In progress; the required action.
-    Asking(Ask),
-    Passed(Figure),
-    Failed(Cause),
+    Asking(PersonRequest),
+    Passed(ReadyFigure),
+    Failed(ReadyCause),
     LeftOut(Lacks),
 }
 
 #[derive(Clone, Debug)]
-pub struct Arm {
+pub struct ReadyArm {
     pub at_wrist: bool,
     /// Its gravity calibration, and the limit of the force that remains at rest, N.
     pub gravity: Option<(GravityModel, f64)>,
@@ -277,43 +277,46 @@ pub struct Arm {
 }
 
 #[derive(Clone, Debug)]
-pub struct Subject {
+pub struct CheckSubject {
     /// The rig as the loop runs it.
     pub rig: RigConfig,
-    pub arms: [Option<Arm>; SIDES],
+    pub arms: [Option<ReadyArm>; SIDES],
     /// The parts of the rig, in the order of the roster.
-    pub parts: Vec<Option<Part>>,
+    pub parts: Vec<Option<RigPart>>,
     /// The gates in the current rig file; `None` if it cannot be read.
     pub gates_in_file: Option<ChainSettings>,
     /// An active calibration is dated in the future.
     pub is_date_behind: bool,
 }
 
-impl Subject {
+impl CheckSubject {
     fn sides(&self) -> impl Iterator<Item = Side> + '_ {
         Side::ALL.into_iter().filter(|side| self.arms[side.index()].is_some())
     }
 
     /// Returns the whole list, without the checks that this rig skips.
-    fn list(&self) -> Vec<Entry> {
+    fn list(&self) -> Vec<ReadyEntry> {
         let has_devices = self.rig.devices.is_some();
-        let on_devices = if has_devices { State::Waiting } else { State::LeftOut(Lacks::Devices) };
-        let entry = |check, state| Entry { check, state };
-        let mut list: Vec<Entry> =
-            [Check::Devices, Check::Rates, Check::Clocks].map(|check| entry(check, on_devices)).into();
+        let on_devices = if has_devices { ReadyState::Waiting } else { ReadyState::LeftOut(Lacks::Devices) };
+        let entry = |check, state| ReadyEntry { check, state };
+        let mut list: Vec<ReadyEntry> =
+            [ReadyPoint::Devices, ReadyPoint::Rates, ReadyPoint::Clocks].map(|check| entry(check, on_devices)).into();
         for side in self.sides() {
             let Some(arm) = &self.arms[side.index()] else { continue };
-            let at_wrist = if arm.at_wrist { State::Waiting } else { State::LeftOut(Lacks::WristSensor) };
-            let by_person = if arm.has_person { State::Waiting } else { State::LeftOut(Lacks::Person) };
+            let at_wrist = if arm.at_wrist { ReadyState::Waiting } else { ReadyState::LeftOut(Lacks::WristSensor) };
+            let by_person = if arm.has_person { ReadyState::Waiting } else { ReadyState::LeftOut(Lacks::Person) };
             let beside = if self.arms.iter().flatten().count() < SIDES { Some(Lacks::OtherArm) } else { None };
-            list.push(entry(Check::Own(side), beside.filter(|_| has_devices).map_or(on_devices, State::LeftOut)));
-            list.push(entry(Check::Bias(side), at_wrist));
-            list.push(entry(Check::Push(side), by_person));
-            list.push(entry(Check::Handle(side), by_person));
-            list.push(entry(Check::Trocar(side), on_devices));
+            list.push(entry(
+                ReadyPoint::Own(side),
+                beside.filter(|_| has_devices).map_or(on_devices, ReadyState::LeftOut),
+            ));
+            list.push(entry(ReadyPoint::Bias(side), at_wrist));
+            list.push(entry(ReadyPoint::Push(side), by_person));
+            list.push(entry(ReadyPoint::Handle(side), by_person));
+            list.push(entry(ReadyPoint::Trocar(side), on_devices));
         }
-        list.extend([Check::Ceiling, Check::Stop].map(|check| entry(check, State::Waiting)));
-        list.extend(Watchdog::ALL.map(|watchdog| entry(Check::Watchdog(watchdog), State::Waiting)));
+        list.extend([ReadyPoint::Ceiling, ReadyPoint::Stop].map(|check| entry(check, ReadyState::Waiting)));
+        list.extend(Watchdog::ALL.map(|watchdog| entry(ReadyPoint::Watchdog(watchdog), ReadyState::Waiting)));
         list
     }
 }

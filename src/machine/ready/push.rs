@@ -3,12 +3,12 @@
 use nalgebra::Vector3;
 
 use super::{
-    Arm, Ask, Cause, Figure, Unit, angle_deg,
-    item::{Item, Progress},
+    FigureUnit, PersonRequest, ReadyArm, ReadyCause, ReadyFigure, angle_deg,
+    item::{Item, PointProgress},
 };
 use crate::{
     messages::{ForceSource, Tick},
-    rig::{Exchange, Side},
+    rig::{Side, SideSwap},
 };
 
 /// A push begins at this force, N, and is evaluated by its mean over this time, s: ten times the noise of a noisy
@@ -26,13 +26,13 @@ fn asked() -> nalgebra::UnitVector3<f64> {
 }
 
 #[derive(Debug)]
-pub(super) struct Push {
+pub(super) struct ReadyPush {
     side: Side,
     /// A calibration exists, or none is needed.
     is_calibrated: bool,
     /// Reason why the force is currently unknown, for example while the sensor is being opened.
     source: Option<ForceSource>,
-    most_n: f64,
+    max_n: f64,
     /// Time since which the push is measured, s on the loop's clock; sum of the forces, N.
     felt: Option<(f64, Vector3<f64>)>,
     by_deg: Option<f64>,
@@ -42,14 +42,14 @@ pub(super) struct Push {
     other_felt: bool,
 }
 
-impl Push {
-    pub(super) const fn of(side: Side, arm: &Arm) -> Self {
+impl ReadyPush {
+    pub(super) const fn of(side: Side, arm: &ReadyArm) -> Self {
         let is_calibrated = !arm.at_wrist || arm.gravity.is_some();
         Self {
             side,
             is_calibrated,
             source: Some(ForceSource::NoSample),
-            most_n: 0.0,
+            max_n: 0.0,
             felt: None,
             by_deg: None,
             other_n: None,
@@ -68,7 +68,7 @@ fn force_n(tick: &Tick) -> Option<Vector3<f64>> {
     }
 }
 
-impl Push {
+impl ReadyPush {
     /// Monitors the other sensor: its instrument is at rest, so a changed force is a force on that instrument.
     fn other(&mut self, tick: &Tick) {
         let Some(force_n) = tick.wrist.as_ref().map(|sample| sample.raw.force_n).or_else(|| tick.known_n()) else {
@@ -84,7 +84,7 @@ impl Push {
     }
 }
 
-impl Item for Push {
+impl Item for ReadyPush {
     fn tick(&mut self, tick: &Tick) {
         if self.by_deg.is_some() {
             return;
@@ -96,7 +96,7 @@ impl Item for Push {
         let force_n = force_n(tick);
         self.source = force_n.is_none().then_some(tick.force.source);
         let Some(force_n) = force_n.filter(|force_n| force_n.norm() >= FELT_N) else {
-            self.most_n = force_n.map_or(self.most_n, |force_n| self.most_n.max(force_n.norm()));
+            self.max_n = force_n.map_or(self.max_n, |force_n| self.max_n.max(force_n.norm()));
             self.felt = None;
             return;
         };
@@ -108,22 +108,22 @@ impl Item for Push {
         }
     }
 
-    fn look(&mut self, _now_s: f64) -> Progress {
+    fn look(&mut self, _now_s: f64) -> PointProgress {
         match self.by_deg {
             Some(value) if value <= ASKEW_MAX_DEG => {
-                Progress::Passed(Figure { value, limit: ASKEW_MAX_DEG, unit: Unit::Degree })
+                PointProgress::Passed(ReadyFigure { value, limit: ASKEW_MAX_DEG, unit: FigureUnit::Degree })
             }
-            Some(by_deg) => Progress::Failed(Cause::PushAskew { by_deg }),
-            None if self.other_felt => Progress::Failed(Cause::Exchanged(Exchange::Sensors)),
-            None if !self.is_calibrated => Progress::Failed(Cause::Uncalibrated),
-            None => Progress::Asking(Ask::Push(self.side, asked())),
+            Some(by_deg) => PointProgress::Failed(ReadyCause::PushAskew { by_deg }),
+            None if self.other_felt => PointProgress::Failed(ReadyCause::Exchanged(SideSwap::Sensors)),
+            None if !self.is_calibrated => PointProgress::Failed(ReadyCause::Uncalibrated),
+            None => PointProgress::Asking(PersonRequest::Push(self.side, asked())),
         }
     }
 
-    fn late(&self) -> Cause {
+    fn late(&self) -> ReadyCause {
         match self.source {
-            Some(source) => Cause::ForceUnknown(source),
-            None => Cause::NoPush { most_n: self.most_n },
+            Some(source) => ReadyCause::ForceUnknown(source),
+            None => ReadyCause::NoPush { max_n: self.max_n },
         }
     }
 }

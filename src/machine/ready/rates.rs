@@ -2,30 +2,30 @@
 //! test.
 
 use super::{
-    Ask, Cause, Figure, Subject, Unit,
-    item::{Item, Progress},
+    CheckSubject, FigureUnit, PersonRequest, ReadyCause, ReadyFigure,
+    item::{Item, PointProgress},
 };
 use crate::{
     config::RigConfig,
     rig::{
-        Gauges, Part, PartKind,
-        checkup::{self, BLOCKS, Checkup, Finding, RATE_OFF},
+        Gauges, PartKind, RigPart,
+        checkup::{self, BLOCKS, Checkup, CheckupFinding, RATE_OFF},
     },
 };
 
 #[derive(Debug)]
 pub(super) struct Rates {
     rig: RigConfig,
-    parts: Vec<Option<Part>>,
+    parts: Vec<Option<RigPart>>,
     blocks: Vec<Gauges>,
     /// A sensor did not rest: the measurement is repeated.
-    moved: Option<(usize, Finding)>,
+    moved: Option<(usize, CheckupFinding)>,
     /// Devices with a finding in the previous measurement: one finding may be chance, two are not.
     suspects: Vec<usize>,
 }
 
 impl Rates {
-    pub(super) fn of(subject: &Subject) -> Self {
+    pub(super) fn of(subject: &CheckSubject) -> Self {
         Self {
             rig: subject.rig.clone(),
             parts: subject.parts.clone(),
@@ -37,8 +37,8 @@ impl Rates {
 
     fn tested(&self) -> Vec<(usize, Checkup)> {
         let blocks: Vec<&Gauges> = self.blocks.iter().collect();
-        let test = |(place, part): (usize, &Option<Part>)| {
-            Some((place, Checkup::of(&checkup::Subject::of((*part)?, place, &self.rig, &blocks)?)?))
+        let test = |(place, part): (usize, &Option<RigPart>)| {
+            Some((place, Checkup::of(&checkup::TestSubject::of((*part)?, place, &self.rig, &blocks)?)?))
         };
         self.parts.iter().enumerate().filter_map(test).collect()
     }
@@ -56,32 +56,32 @@ impl Item for Rates {
         }
     }
 
-    fn look(&mut self, _now_s: f64) -> Progress {
+    fn look(&mut self, _now_s: f64) -> PointProgress {
         if self.blocks.len() < BLOCKS {
-            return Progress::Asking(Ask::Nothing);
+            return PointProgress::Asking(PersonRequest::Nothing);
         }
         let tested = self.tested();
         self.blocks.clear();
-        let moved = |found: &Finding| matches!(found, Finding::Moved { .. });
+        let moved = |found: &CheckupFinding| matches!(found, CheckupFinding::Moved { .. });
         // A person may hold the handle; its noise does not matter here.
         let is_handle = |place: usize| self.parts[place].is_some_and(|part| part.kind() == PartKind::Handle);
         let all = || tested.iter().flat_map(|(place, test)| test.findings.iter().map(|found| (*place, *found)));
         let findings = || all().filter(|(place, found)| !(moved(found) && is_handle(*place)));
         let found = || findings().filter(|(_, found)| !moved(found));
         if let Some((place, finding)) = found().find(|(place, _)| self.suspects.contains(place)) {
-            return Progress::Failed(Cause::Found { place, finding });
+            return PointProgress::Failed(ReadyCause::Found { place, finding });
         }
         self.suspects = found().map(|(place, _)| place).collect();
         self.moved = findings().find(|(_, found)| moved(found));
         if findings().next().is_some() {
-            return Progress::Asking(Ask::Nothing);
+            return PointProgress::Asking(PersonRequest::Nothing);
         }
         let worst = tested.iter().map(|(_, test)| off(test)).fold(0.0, f64::max);
-        Progress::Passed(Figure { value: 100.0 * worst, limit: 100.0 * RATE_OFF, unit: Unit::Percent })
+        PointProgress::Passed(ReadyFigure { value: 100.0 * worst, limit: 100.0 * RATE_OFF, unit: FigureUnit::Percent })
     }
 
-    fn late(&self) -> Cause {
-        self.moved.map_or(Cause::NoGauges, |(place, finding)| Cause::Found { place, finding })
+    fn late(&self) -> ReadyCause {
+        self.moved.map_or(ReadyCause::NoGauges, |(place, finding)| ReadyCause::Found { place, finding })
     }
 
     fn patience_s(&self) -> f64 {

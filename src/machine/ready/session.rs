@@ -1,20 +1,20 @@
 //! Runs the list of checks, one after the other.
 
 use super::{
-    Arm, Ask, Cause, Check, State, Subject,
+    CheckSubject, PersonRequest, ReadyArm, ReadyCause, ReadyPoint, ReadyState,
     arms::Arms,
     bias::Bias,
-    ceiling::Ceiling,
-    clocks::Clocks,
-    devices::Devices,
-    handle::Handle,
-    item::{Item, Progress},
-    own::Own,
-    push::Push,
+    ceiling::ReadyCeiling,
+    clocks::ReadyClocks,
+    devices::ReadyDevices,
+    handle::ReadyHandle,
+    item::{Item, PointProgress},
+    push::ReadyPush,
     rates::Rates,
+    side_check::Own,
     stop::Stop,
-    trocar::Trocar,
-    watchdog::Watchdog,
+    trocar::ReadyTrocar,
+    watchdog::ReadyWatchdog,
 };
 use crate::{
     messages::{Command, Event, LoopState, Refusal, Tick},
@@ -26,16 +26,16 @@ use crate::{
 const RELEASE_WITHIN_S: f64 = 60.0;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Entry {
-    pub check: Check,
-    pub state: State,
+pub struct ReadyEntry {
+    pub check: ReadyPoint,
+    pub state: ReadyState,
 }
 
 /// The list during its run. A failed check does not end the run: the others follow.
 #[derive(Debug)]
-pub struct Session {
-    subject: Subject,
-    list: Vec<Entry>,
+pub struct ReadySession {
+    subject: CheckSubject,
+    list: Vec<ReadyEntry>,
     arms: Arms,
     /// The running check, and its start, s.
     work: Option<(Box<dyn Item>, f64)>,
@@ -47,18 +47,18 @@ pub struct Session {
     took_s: f64,
 }
 
-impl Session {
-    pub fn new(subject: Subject) -> Self {
+impl ReadySession {
+    pub fn new(subject: CheckSubject) -> Self {
         let list = subject.list();
         let arms = Arms::of(&subject);
         Self { subject, list, arms, work: None, latched_s: None, not_released: None, began_s: None, took_s: 0.0 }
     }
 
-    pub const fn subject(&self) -> &Subject {
+    pub const fn subject(&self) -> &CheckSubject {
         &self.subject
     }
 
-    pub fn list(&self) -> &[Entry] {
+    pub fn list(&self) -> &[ReadyEntry] {
         &self.list
     }
 
@@ -68,7 +68,7 @@ impl Session {
     }
 
     fn place(&self) -> Option<usize> {
-        self.list.iter().position(|entry| matches!(entry.state, State::Waiting | State::Asking(_)))
+        self.list.iter().position(|entry| matches!(entry.state, ReadyState::Waiting | ReadyState::Asking(_)))
     }
 
     pub fn is_finished(&self) -> bool {
@@ -76,19 +76,19 @@ impl Session {
     }
 
     pub fn has_passed(&self) -> bool {
-        self.is_finished() && !self.list.iter().any(|entry| matches!(entry.state, State::Failed(_)))
+        self.is_finished() && !self.list.iter().any(|entry| matches!(entry.state, ReadyState::Failed(_)))
     }
 
-    pub fn ask(&self) -> Ask {
+    pub fn ask(&self) -> PersonRequest {
         match self.place().map(|place| self.list[place].state) {
-            Some(State::Asking(ask)) => ask,
-            _ => Ask::Nothing,
+            Some(ReadyState::Asking(ask)) => ask,
+            _ => PersonRequest::Nothing,
         }
     }
 
     pub fn again(&mut self) {
-        for entry in self.list.iter_mut().filter(|entry| matches!(entry.state, State::Failed(_))) {
-            entry.state = State::Waiting;
+        for entry in self.list.iter_mut().filter(|entry| matches!(entry.state, ReadyState::Failed(_))) {
+            entry.state = ReadyState::Waiting;
         }
         self.work = None;
         self.latched_s = None;
@@ -138,19 +138,19 @@ impl Session {
             since_s = now_s;
         }
         let mut state = in_the_way.unwrap_or_else(|| match work.look(now_s) {
-            Progress::Asking(ask) => State::Asking(ask),
-            Progress::Passed(figure) => State::Passed(figure),
-            Progress::Failed(cause) => State::Failed(cause),
+            PointProgress::Asking(ask) => ReadyState::Asking(ask),
+            PointProgress::Passed(figure) => ReadyState::Passed(figure),
+            PointProgress::Failed(cause) => ReadyState::Failed(cause),
         });
         let command = work.command();
-        if matches!(state, State::Asking(_)) && now_s - since_s > work.patience_s() {
-            state = State::Failed(work.late());
+        if matches!(state, ReadyState::Asking(_)) && now_s - since_s > work.patience_s() {
+            state = ReadyState::Failed(work.late());
         }
-        if matches!(state, State::Asking(_)) {
+        if matches!(state, ReadyState::Asking(_)) {
             self.work = Some((work, since_s));
         } else {
             let refusal = self.not_released.take();
-            if let State::Failed(Cause::NotReleased(why)) = &mut state {
+            if let ReadyState::Failed(ReadyCause::NotReleased(why)) = &mut state {
                 *why = refusal;
             }
             // The full time is available again, also after a pause before a repetition.
@@ -161,10 +161,10 @@ impl Session {
     }
 
     /// Returns the obstacle to the current check: an engaged arm, or a latched state that it does not expect.
-    fn in_the_way(&mut self, work: &dyn Item, now_s: f64) -> Option<State> {
+    fn in_the_way(&mut self, work: &dyn Item, now_s: f64) -> Option<ReadyState> {
         let engaged = |state: LoopState| state.permits().drives;
         if let Some(tick) = self.arms.find(engaged) {
-            return Some(State::Failed(Cause::Engaged(tick.side)));
+            return Some(ReadyState::Failed(ReadyCause::Engaged(tick.side)));
         }
         if work.expects_latch() || self.arms.find(LoopState::is_latched).is_none() {
             self.latched_s = None;
@@ -172,24 +172,28 @@ impl Session {
         }
         let since_s = *self.latched_s.get_or_insert(now_s);
         let late = now_s - since_s > RELEASE_WITHIN_S;
-        Some(if late { State::Failed(Cause::NotReleased(None)) } else { State::Asking(Ask::Release) })
+        Some(if late {
+            ReadyState::Failed(ReadyCause::NotReleased(None))
+        } else {
+            ReadyState::Asking(PersonRequest::Release)
+        })
     }
 }
 
-fn begun(check: Check, subject: &Subject) -> Box<dyn Item> {
-    let nobody = Arm { at_wrist: false, gravity: None, has_person: false };
+fn begun(check: ReadyPoint, subject: &CheckSubject) -> Box<dyn Item> {
+    let nobody = ReadyArm { at_wrist: false, gravity: None, has_person: false };
     let arm = |side: Side| subject.arms[side.index()].as_ref().unwrap_or(&nobody);
     match check {
-        Check::Devices => Box::new(Devices::of(subject)),
-        Check::Rates => Box::new(Rates::of(subject)),
-        Check::Clocks => Box::new(Clocks::of(subject)),
-        Check::Own(side) => Box::new(Own::of(side, subject)),
-        Check::Bias(side) => Box::new(Bias::of(side, arm(side))),
-        Check::Push(side) => Box::new(Push::of(side, arm(side))),
-        Check::Handle(side) => Box::new(Handle::of(side, subject)),
-        Check::Trocar(side) => Box::new(Trocar::of(side, subject)),
-        Check::Ceiling => Box::new(Ceiling::of(subject)),
-        Check::Stop => Box::new(Stop::of(subject)),
-        Check::Watchdog(which) => Box::new(Watchdog::of(which, subject)),
+        ReadyPoint::Devices => Box::new(ReadyDevices::of(subject)),
+        ReadyPoint::Rates => Box::new(Rates::of(subject)),
+        ReadyPoint::Clocks => Box::new(ReadyClocks::of(subject)),
+        ReadyPoint::Own(side) => Box::new(Own::of(side, subject)),
+        ReadyPoint::Bias(side) => Box::new(Bias::of(side, arm(side))),
+        ReadyPoint::Push(side) => Box::new(ReadyPush::of(side, arm(side))),
+        ReadyPoint::Handle(side) => Box::new(ReadyHandle::of(side, subject)),
+        ReadyPoint::Trocar(side) => Box::new(ReadyTrocar::of(side, subject)),
+        ReadyPoint::Ceiling => Box::new(ReadyCeiling::of(subject)),
+        ReadyPoint::Stop => Box::new(Stop::of(subject)),
+        ReadyPoint::Watchdog(which) => Box::new(ReadyWatchdog::of(which, subject)),
     }
 }

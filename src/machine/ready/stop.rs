@@ -1,9 +1,9 @@
 //! Checks the stop: it is pressed, every arm stops without force, and it is released as usual.
 
 use super::{
-    Ask, Cause, Figure, Subject, Unit,
+    CheckSubject, FigureUnit, PersonRequest, ReadyCause, ReadyFigure,
     arms::Arms,
-    item::{Item, Progress},
+    item::{Item, PointProgress},
 };
 use crate::messages::{LoopState, Tick};
 
@@ -20,7 +20,7 @@ pub(super) struct Stop {
 }
 
 impl Stop {
-    pub(super) fn of(subject: &Subject) -> Self {
+    pub(super) fn of(subject: &CheckSubject) -> Self {
         Self { arms: Arms::of(subject), first_s: None, last_s: None, force_n: 0.0 }
     }
 }
@@ -41,25 +41,27 @@ impl Item for Stop {
         }
     }
 
-    fn look(&mut self, _now_s: f64) -> Progress {
+    fn look(&mut self, _now_s: f64) -> PointProgress {
         if self.force_n > 0.0 {
-            return Progress::Failed(Cause::Force { force_n: self.force_n });
+            return PointProgress::Failed(ReadyCause::Force { force_n: self.force_n });
         }
         let Some((first_s, now_s)) = self.first_s.zip(self.arms.now_s()) else {
-            return Progress::Asking(Ask::PressStop);
+            return PointProgress::Asking(PersonRequest::PressStop);
         };
         let Some(last_s) = self.last_s else {
             let runs = self.arms.find(|state| !is_stopped(state)).filter(|_| now_s - first_s > TOGETHER_S);
-            return runs.map_or(Progress::Asking(Ask::PressStop), |tick| Progress::Failed(Cause::HalfStop(tick.side)));
+            return runs.map_or(PointProgress::Asking(PersonRequest::PressStop), |tick| {
+                PointProgress::Failed(ReadyCause::HalfStop(tick.side))
+            });
         };
         if !self.arms.all(|state| state == LoopState::Idle) {
-            return Progress::Asking(Ask::Release);
+            return PointProgress::Asking(PersonRequest::Release);
         }
-        Progress::Passed(Figure { value: last_s - first_s, limit: TOGETHER_S, unit: Unit::Second })
+        PointProgress::Passed(ReadyFigure { value: last_s - first_s, limit: TOGETHER_S, unit: FigureUnit::Second })
     }
 
-    fn late(&self) -> Cause {
-        if self.last_s.is_some() { Cause::NotReleased(None) } else { Cause::NoStop }
+    fn late(&self) -> ReadyCause {
+        if self.last_s.is_some() { ReadyCause::NotReleased(None) } else { ReadyCause::NoStop }
     }
 
     fn expects_latch(&self) -> bool {

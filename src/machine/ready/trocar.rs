@@ -8,12 +8,12 @@ use nima_core::{
 };
 
 use super::{
-    Ask, Cause, Figure, Subject, Unit,
-    item::{Item, Progress},
+    CheckSubject, FigureUnit, PersonRequest, ReadyCause, ReadyFigure,
+    item::{Item, PointProgress},
 };
 use crate::{
     messages::Tick,
-    rig::{Exchange, Healths, Obstacle, Side},
+    rig::{EngageBlocker, Healths, Side, SideSwap},
 };
 
 /// The instrument is in its trocar if the shaft passes within this distance, m: half of the limit for an engagement is
@@ -24,7 +24,7 @@ const RESTS_M: f64 = 0.3e-3;
 const RESTS_S: f64 = 1.2;
 
 #[derive(Debug)]
-pub(super) struct Trocar {
+pub(super) struct ReadyTrocar {
     side: Side,
     /// The shaft in the flange's frame, the base in the workspace, and the trocar there (m).
     arm: Option<(ShaftLine, Isometry3<f64>, Vector3<f64>)>,
@@ -34,11 +34,11 @@ pub(super) struct Trocar {
     has_rested: bool,
     miss_m: f64,
     /// From the rig's geometry.
-    exchange: Option<Exchange>,
+    exchange: Option<SideSwap>,
 }
 
-impl Trocar {
-    pub(super) fn of(side: Side, subject: &Subject) -> Self {
+impl ReadyTrocar {
+    pub(super) fn of(side: Side, subject: &CheckSubject) -> Self {
         let arm = subject.rig.devices.as_ref().and_then(|devices| {
             let set = devices.arm(side)?;
             let arm = kinematics::Arm::new(&set.mount).ok()?;
@@ -62,7 +62,7 @@ impl Trocar {
     }
 }
 
-impl Item for Trocar {
+impl Item for ReadyTrocar {
     fn tick(&mut self, tick: &Tick) {
         let Some((shaft, world_from_base, trocar_m)) = self.arm.filter(|_| tick.side == self.side) else { return };
         let Some(base_from_flange) = &tick.frames.base_from_flange else { return };
@@ -76,30 +76,32 @@ impl Item for Trocar {
 
     fn healths(&mut self, healths: &Healths) {
         self.exchange = match healths.obstacles[self.side.index()] {
-            Some(Obstacle::Exchanged(exchange)) => Some(exchange),
+            Some(EngageBlocker::Exchanged(exchange)) => Some(exchange),
             _ => None,
         };
     }
 
-    fn look(&mut self, _now_s: f64) -> Progress {
+    fn look(&mut self, _now_s: f64) -> PointProgress {
         if let Some(exchange) = self.exchange.filter(|_| self.has_rested) {
-            return Progress::Failed(Cause::Exchanged(exchange));
+            return PointProgress::Failed(ReadyCause::Exchanged(exchange));
         }
         let Some(watch) = self.watch.as_ref().filter(|_| self.has_rested && self.miss_m <= NEAR_M) else {
-            return Progress::Asking(Ask::PutBack(self.side));
+            return PointProgress::Asking(PersonRequest::PutBack(self.side));
         };
         match watch.state() {
-            TrocarState::Waiting => Progress::Asking(Ask::PutBack(self.side)),
-            TrocarState::Fine { by_m } => Progress::Passed(Figure {
+            TrocarState::Waiting => PointProgress::Asking(PersonRequest::PutBack(self.side)),
+            TrocarState::Fine { by_m } => PointProgress::Passed(ReadyFigure {
                 value: 1e3 * by_m,
                 limit: 1e3 * TrocarWatch::LIMIT_M,
-                unit: Unit::Millimetre,
+                unit: FigureUnit::Millimetre,
             }),
-            TrocarState::Moved { by_m } => Progress::Failed(Cause::TrocarMoved { by_m: Vector3::from(by_m).norm() }),
+            TrocarState::Moved { by_m } => {
+                PointProgress::Failed(ReadyCause::TrocarMoved { by_m: Vector3::from(by_m).norm() })
+            }
         }
     }
 
-    fn late(&self) -> Cause {
-        Cause::BesideTrocar { miss_m: self.miss_m }
+    fn late(&self) -> ReadyCause {
+        ReadyCause::BesideTrocar { miss_m: self.miss_m }
     }
 }

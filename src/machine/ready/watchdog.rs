@@ -1,9 +1,9 @@
 //! Tests a watchdog: its own fault is raised in time, without force, and a person releases it.
 
 use super::{
-    Ask, Cause, Figure, Subject, Unit,
+    CheckSubject, FigureUnit, PersonRequest, ReadyCause, ReadyFigure,
     arms::Arms,
-    item::{Item, Progress},
+    item::{Item, PointProgress},
 };
 use crate::messages::{Command, LoopState, Refusal, Tick, Watchdog as Which};
 
@@ -15,7 +15,7 @@ const BITES_WITHIN_S: f64 = 0.4;
 const GIVEN_UP_S: f64 = 2.5;
 
 #[derive(Debug)]
-pub(super) struct Watchdog {
+pub(super) struct ReadyWatchdog {
     which: Which,
     arms: Arms,
     within_s: f64,
@@ -25,30 +25,30 @@ pub(super) struct Watchdog {
     refused: Option<Refusal>,
     /// Time of the last arm's fault, s on the loop's clock.
     bitten_s: Option<f64>,
-    cause: Option<Cause>,
+    cause: Option<ReadyCause>,
 }
 
-impl Watchdog {
-    pub(super) fn of(which: Which, subject: &Subject) -> Self {
+impl ReadyWatchdog {
+    pub(super) fn of(which: Which, subject: &CheckSubject) -> Self {
         let within_s = BITES_WITHIN_S + subject.rig.delay_s;
         let arms = Arms::of(subject);
         Self { which, arms, within_s, sent: None, is_sent: false, refused: None, bitten_s: None, cause: None }
     }
 }
 
-impl Item for Watchdog {
+impl Item for ReadyWatchdog {
     fn tick(&mut self, tick: &Tick) {
         self.arms.tick(tick);
         if !self.is_sent {
             return;
         }
         if tick.rendered_n.norm() > 0.0 {
-            self.cause.get_or_insert(Cause::Force { force_n: tick.rendered_n.norm() });
+            self.cause.get_or_insert(ReadyCause::Force { force_n: tick.rendered_n.norm() });
         }
         if let LoopState::Faulted(fault) = tick.state
             && !self.which.raises(fault)
         {
-            self.cause.get_or_insert(Cause::OtherFault(fault));
+            self.cause.get_or_insert(ReadyCause::OtherFault(fault));
         }
         let own = |state| matches!(state, LoopState::Faulted(fault) if self.which.raises(fault));
         if self.arms.all(own) {
@@ -60,36 +60,40 @@ impl Item for Watchdog {
         self.refused = Some(why);
     }
 
-    fn look(&mut self, now_s: f64) -> Progress {
+    fn look(&mut self, now_s: f64) -> PointProgress {
         if let Some(why) = self.refused {
-            return Progress::Failed(Cause::Refused(why));
+            return PointProgress::Failed(ReadyCause::Refused(why));
         }
         if let Some(cause) = self.cause {
-            return Progress::Failed(cause);
+            return PointProgress::Failed(cause);
         }
         let idle = self.arms.all(|state| state == LoopState::Idle);
         let Some((sent_s, sent_loop_s)) = self.sent else {
             if idle {
                 self.sent = self.arms.now_s().map(|loop_s| (now_s, loop_s));
             }
-            return Progress::Asking(Ask::Nothing);
+            return PointProgress::Asking(PersonRequest::Nothing);
         };
         let Some(bitten_s) = self.bitten_s else {
             let late = now_s - sent_s > GIVEN_UP_S + self.within_s;
-            return if late { Progress::Failed(Cause::NoBite(self.which)) } else { Progress::Asking(Ask::Nothing) };
+            return if late {
+                PointProgress::Failed(ReadyCause::NoBite(self.which))
+            } else {
+                PointProgress::Asking(PersonRequest::Nothing)
+            };
         };
         let after_s = bitten_s - sent_loop_s;
         if after_s > self.within_s {
-            return Progress::Failed(Cause::LateBite { after_s });
+            return PointProgress::Failed(ReadyCause::LateBite { after_s });
         }
         if !idle {
-            return Progress::Asking(Ask::Release);
+            return PointProgress::Asking(PersonRequest::Release);
         }
-        Progress::Passed(Figure { value: after_s, limit: self.within_s, unit: Unit::Second })
+        PointProgress::Passed(ReadyFigure { value: after_s, limit: self.within_s, unit: FigureUnit::Second })
     }
 
-    fn late(&self) -> Cause {
-        if self.bitten_s.is_some() { Cause::NotReleased(None) } else { Cause::NoBite(self.which) }
+    fn late(&self) -> ReadyCause {
+        if self.bitten_s.is_some() { ReadyCause::NotReleased(None) } else { ReadyCause::NoBite(self.which) }
     }
 
     fn command(&mut self) -> Option<Command> {

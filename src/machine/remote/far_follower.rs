@@ -2,18 +2,21 @@
 
 use nima_core::{
     calibration::frames::FrameSample,
-    impedance::{Mode, Packed},
+    impedance::{Mode, ParameterPack},
     safety::RawReadings,
 };
 
 use super::{
-    GONE_AFTER_S, MESSAGE_MAX, Wire,
+    GONE_AFTER_S, MESSAGE_MAX, RemoteWire,
     follower_message::{FollowerMessage, FollowerSide},
     leader_message::{Intent, LeaderMessage, LeaderSide},
 };
 use crate::{
-    messages::{Bulletin, LoopState},
-    rig::{Identified, Inputs, Obstacle, Outputs, Rig, SIDES, Sensed, Side, View, devices_of},
+    messages::{LoopState, PeerStatus},
+    rig::{
+        EngageBlocker, Inputs, Outputs, RemoteIdentification, Rig, SIDES, SensedForce, Side, ViewOrientation,
+        devices_of,
+    },
 };
 
 /// Joins a rig's handles with arms at another machine. The rig's own measurements of arms and sensors are not used.
@@ -22,13 +25,13 @@ pub struct FarFollower<R, W> {
     local: R,
     wire: W,
     rate_hz: f64,
-    heard: Option<Heard>,
-    sides: [Told; SIDES],
+    received: Option<PeerState>,
+    sides: [SideStatus; SIDES],
     buffer: [u8; MESSAGE_MAX],
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Heard {
+struct PeerState {
     message: FollowerMessage,
     /// Time of its playout, s.
     at_s: f64,
@@ -37,7 +40,7 @@ struct Heard {
 
 /// State of one side that this machine sends.
 #[derive(Clone, Copy, Debug, Default)]
-struct Told {
+struct SideStatus {
     state: Option<LoopState>,
     engagements: u8,
     /// Opening of the gripper at its last reading, rad.
@@ -71,10 +74,10 @@ impl RoundTrip {
     }
 }
 
-impl<R: Rig, W: Wire> FarFollower<R, W> {
+impl<R: Rig, W: RemoteWire> FarFollower<R, W> {
     /// Joins the handles of `local` with the arms behind `wire`, for a loop of this rate (Hz).
     pub fn new(local: R, wire: W, rate_hz: f64) -> Self {
-        Self { local, wire, rate_hz, heard: None, sides: [Told::default(); SIDES], buffer: [0; MESSAGE_MAX] }
+        Self { local, wire, rate_hz, received: None, sides: [SideStatus::default(); SIDES], buffer: [0; MESSAGE_MAX] }
     }
 
     pub const fn local(&self) -> &R {
@@ -90,7 +93,7 @@ impl<R: Rig, W: Wire> FarFollower<R, W> {
     }
 
     fn receive(&mut self, now_s: f64) {
-        let heard = &mut self.heard;
+        let received = &mut self.received;
         let rate_hz = self.rate_hz;
         self.wire.receive(now_s, &mut |bytes| {
             let Some(mut message) = FollowerMessage::unpack(bytes) else { return };
@@ -98,8 +101,8 @@ impl<R: Rig, W: Wire> FarFollower<R, W> {
             if round_trip_s < 0.0 {
                 return;
             }
-            let Some(last) = heard else {
-                *heard = Some(Heard { message, at_s: now_s, delay: RoundTrip::first(round_trip_s, rate_hz) });
+            let Some(last) = received else {
+                *received = Some(PeerState { message, at_s: now_s, delay: RoundTrip::first(round_trip_s, rate_hz) });
                 return;
             };
             if message.t_s <= last.message.t_s {
@@ -113,23 +116,23 @@ impl<R: Rig, W: Wire> FarFollower<R, W> {
             last.at_s = now_s;
             last.delay.step(round_trip_s, rate_hz);
         });
-        if self.heard.is_some_and(|heard| now_s - heard.at_s > GONE_AFTER_S) {
-            self.heard = None;
+        if self.received.is_some_and(|received| now_s - received.at_s > GONE_AFTER_S) {
+            self.received = None;
         }
     }
 
     fn join(&self, side: Side, here: &Inputs, now_s: f64) -> Option<Inputs> {
-        let heard = self.heard.as_ref()?;
-        let far = heard.message.sides[side.index()]?;
-        let identified = Identified {
-            t_s: heard.message.t_s,
-            delay_s: f64::from(heard.delay.ticks) / self.rate_hz,
+        let received = self.received.as_ref()?;
+        let far = received.message.sides[side.index()]?;
+        let identified = RemoteIdentification {
+            t_s: received.message.t_s,
+            delay_s: f64::from(received.delay.ticks) / self.rate_hz,
             force_n: far.force_n,
             source: far.source,
             fresh: far.fresh,
             resting: far.resting,
             modes: far.modes,
-            packed: far.packed.unwrap_or(Packed::NONE),
+            packed: far.packed.unwrap_or(ParameterPack::NONE),
             errors_n: far.errors_n,
             stop: far.stop,
         };
@@ -139,14 +142,14 @@ impl<R: Rig, W: Wire> FarFollower<R, W> {
             grip_n: far.grip_n,
             tip_m: far.tip_m,
             world_from_jaws: far.world_from_jaws,
-            sensed: Sensed::FarEnd(identified),
-            view: View::Fixed,
+            sensed: SensedForce::FarEnd(identified),
+            view: ViewOrientation::Fixed,
             frames: FrameSample { leader_from_handle: here.frames.leader_from_handle, ..FrameSample::default() },
             switches: here.switches,
             powered: here.powered && far.powered,
-            obstacle: far.is_obstructed.then_some(Obstacle::FarEnd),
+            obstacle: far.is_obstructed.then_some(EngageBlocker::FarEnd),
             age_s: here.age_s,
-            silent_s: now_s - heard.at_s,
+            silent_s: now_s - received.at_s,
             // The other machine checks the plausibility of its own devices.
             raw: RawReadings { handle: here.raw.handle, ..RawReadings::NONE },
         })
@@ -162,7 +165,7 @@ fn keep_parameters(now: &mut [Option<FollowerSide>; SIDES], before: &[Option<Fol
     }
 }
 
-impl<R: Rig, W: Wire> Rig for FarFollower<R, W> {
+impl<R: Rig, W: RemoteWire> Rig for FarFollower<R, W> {
     fn read(&mut self, now_s: f64) -> [Option<Inputs>; SIDES] {
         let here = self.local.read(now_s);
         self.receive(now_s);
@@ -177,21 +180,21 @@ impl<R: Rig, W: Wire> Rig for FarFollower<R, W> {
 
     fn write(&mut self, now_s: f64, outputs: &[Outputs; SIDES]) {
         self.local.write(now_s, outputs);
-        for (told, outputs) in self.sides.iter_mut().zip(outputs) {
-            told.outputs = Some(*outputs);
+        for (report, outputs) in self.sides.iter_mut().zip(outputs) {
+            report.outputs = Some(*outputs);
         }
     }
 
-    fn hear(&mut self, now_s: f64, bulletins: &[Option<Bulletin<'_>>; SIDES]) {
+    fn receive_status(&mut self, now_s: f64, bulletins: &[Option<PeerStatus<'_>>; SIDES]) {
         let mut message =
             LeaderMessage { t_s: now_s, delay_ticks: 0, mode: Mode::Dfr, compares: false, sides: [None; SIDES] };
-        message.delay_ticks = self.heard.map_or(0, |heard| heard.delay.ticks);
+        message.delay_ticks = self.received.map_or(0, |received| received.delay.ticks);
         for bulletin in bulletins.iter().flatten() {
             let side = bulletin.side.index();
             message.mode = bulletin.mode;
             message.compares = bulletin.compares;
-            let far = self.heard.and_then(|heard| heard.message.sides[side]);
-            message.sides[side] = Some(self.sides[side].tell(bulletin, far.as_ref()));
+            let far = self.received.and_then(|received| received.message.sides[side]);
+            message.sides[side] = Some(self.sides[side].report(bulletin, far.as_ref()));
         }
         if let Some(bytes) = message.pack(&mut self.buffer) {
             self.wire.send(now_s, bytes);
@@ -201,8 +204,8 @@ impl<R: Rig, W: Wire> Rig for FarFollower<R, W> {
     devices_of!(self, self.local);
 }
 
-impl Told {
-    fn tell(&mut self, bulletin: &Bulletin<'_>, far: Option<&FollowerSide>) -> LeaderSide {
+impl SideStatus {
+    fn report(&mut self, bulletin: &PeerStatus<'_>, far: Option<&FollowerSide>) -> LeaderSide {
         let was_driven = self.state.is_some_and(|state| state.permits().drives);
         if bulletin.state.permits().drives && !was_driven {
             self.engagements = self.engagements.wrapping_add(1);

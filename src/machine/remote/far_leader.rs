@@ -2,21 +2,21 @@
 
 use nalgebra::Vector3;
 use nima_core::{
-    impedance::Packed,
-    kinematics::Hand,
+    impedance::ParameterPack,
+    kinematics::HandPose,
     safety::{ChainSettings, RawReadings},
 };
 
 use super::{
-    GONE_AFTER_S, MESSAGE_MAX, Wire,
-    far_hand::FarHand,
+    GONE_AFTER_S, MESSAGE_MAX, RemoteWire,
     follower_message::{FollowerMessage, FollowerSide},
     leader_message::{Intent, LeaderMessage, LeaderSide},
+    remote_hand::FarHand,
 };
 use crate::{
     config::{RigConfig, Teleoperation},
-    messages::{Bulletin, Command, FarStop, LoopState},
-    rig::{Inputs, Outputs, Rig, SIDES, Side, Switches, View, devices_of},
+    messages::{Command, FarStop, LoopState, PeerStatus},
+    rig::{Inputs, Outputs, Rig, SIDES, Side, Switches, ViewOrientation, devices_of},
 };
 
 /// The parameters of one rendering are sent once per this many ticks, in turn if several are computed. Fits are renewed
@@ -50,7 +50,7 @@ pub struct FarLeader<R, W> {
     local: R,
     wire: W,
     rate_hz: f64,
-    heard: Option<Heard>,
+    received: Option<OperatorState>,
     hands: [FarHand; SIDES],
     states: [Option<LoopState>; SIDES],
     inputs: [Option<Inputs>; SIDES],
@@ -63,13 +63,13 @@ pub struct FarLeader<R, W> {
 
 /// The last message of the operator's machine.
 #[derive(Clone, Copy, Debug)]
-struct Heard {
+struct OperatorState {
     message: LeaderMessage,
     /// Time of its playout, s.
     at_s: f64,
 }
 
-impl<R: Rig, W: Wire> FarLeader<R, W> {
+impl<R: Rig, W: RemoteWire> FarLeader<R, W> {
     /// Joins the arms of `local` with the hands behind `wire`, for a loop of this rate (Hz) created from
     /// [`at_follower`].
     pub fn new(local: R, wire: W, rate_hz: f64) -> Self {
@@ -77,7 +77,7 @@ impl<R: Rig, W: Wire> FarLeader<R, W> {
             local,
             wire,
             rate_hz,
-            heard: None,
+            received: None,
             hands: [FarHand::default(); SIDES],
             states: [None; SIDES],
             inputs: [None; SIDES],
@@ -110,27 +110,27 @@ impl<R: Rig, W: Wire> FarLeader<R, W> {
     }
 
     fn receive(&mut self, now_s: f64) {
-        let before = self.heard.filter(|heard| now_s - heard.at_s <= ANSWERS_FOR_S);
+        let before = self.received.filter(|received| now_s - received.at_s <= ANSWERS_FOR_S);
         let mut newest = before;
         self.wire.receive(now_s, &mut |bytes| {
             let Some(message) = LeaderMessage::unpack(bytes) else { return };
-            if newest.is_none_or(|heard| message.t_s > heard.message.t_s) {
-                newest = Some(Heard { message, at_s: now_s });
+            if newest.is_none_or(|received| message.t_s > received.message.t_s) {
+                newest = Some(OperatorState { message, at_s: now_s });
             }
         });
-        self.heard = newest;
+        self.received = newest;
         self.commands = [None; COMMANDS_MAX];
-        if let Some(heard) = newest.filter(|heard| heard.at_s >= now_s) {
+        if let Some(received) = newest.filter(|received| received.at_s >= now_s) {
             // A different or restarted console has a different clock and different counts: no command was given in
             // between.
-            let goes_on = |before: &Heard| {
-                let told_s = heard.message.t_s - before.message.t_s;
-                let passed_s = heard.at_s - before.at_s;
-                (told_s - passed_s).abs() < SAME_CLOCK_S
+            let goes_on = |before: &OperatorState| {
+                let reported_s = received.message.t_s - before.message.t_s;
+                let passed_s = received.at_s - before.at_s;
+                (reported_s - passed_s).abs() < SAME_CLOCK_S
             };
             let before = before.filter(goes_on).map(|before| before.message);
-            self.move_hands(&heard.message, before.as_ref());
-            self.follow(&heard.message, before.as_ref());
+            self.move_hands(&received.message, before.as_ref());
+            self.follow(&received.message, before.as_ref());
         }
     }
 
@@ -139,7 +139,7 @@ impl<R: Rig, W: Wire> FarLeader<R, W> {
         for (side, hand) in self.hands.iter_mut().enumerate() {
             match now.sides[side].zip(before.and_then(|before| before.sides[side])) {
                 Some((now, before)) if [now.intent, before.intent] == [Intent::Follow; 2] => {
-                    hand.told(&(now.tip_m - before.tip_m), over_s);
+                    hand.report(&(now.tip_m - before.tip_m), over_s);
                 }
                 _ => hand.rest(),
             }
@@ -159,9 +159,9 @@ impl<R: Rig, W: Wire> FarLeader<R, W> {
             self.learnt_ticks = Some(now.delay_ticks);
             self.push(Command::SetDelay(f64::from(now.delay_ticks) / self.rate_hz));
         }
-        let told = |side: Side| now.sides[side.index()].zip(before.and_then(|before| before.sides[side.index()]));
+        let report = |side: Side| now.sides[side.index()].zip(before.and_then(|before| before.sides[side.index()]));
         let moved_on = |count: fn(&LeaderSide) -> u8, side: Side| {
-            told(side).is_some_and(|(now, before)| count(&now) != count(&before))
+            report(side).is_some_and(|(now, before)| count(&now) != count(&before))
         };
         let intents = now.sides.map(|side| side.map_or(Intent::Rest, |side| side.intent));
         let is_driven = |side: &Side| self.states[side.index()].is_some_and(|state| state.permits().drives);
@@ -192,19 +192,19 @@ impl<R: Rig, W: Wire> FarLeader<R, W> {
     }
 }
 
-impl<R: Rig, W: Wire> Rig for FarLeader<R, W> {
+impl<R: Rig, W: RemoteWire> Rig for FarLeader<R, W> {
     fn read(&mut self, now_s: f64) -> [Option<Inputs>; SIDES] {
         self.inputs = self.local.read(now_s);
         self.receive(now_s);
-        let heard = self.heard.filter(|heard| now_s - heard.at_s <= GONE_AFTER_S);
+        let received = self.received.filter(|received| now_s - received.at_s <= GONE_AFTER_S);
         let mut inputs = [None; SIDES];
         for side in Side::ALL.map(Side::index) {
-            let told = heard.and_then(|heard| heard.message.sides[side]);
+            let report = received.and_then(|received| received.message.sides[side]);
             self.hands[side].advance(1.0 / self.rate_hz);
-            let hand_m = self.hands[side].at_m();
-            inputs[side] = self.inputs[side].zip(told).map(|(here, told)| join(&here, &told, hand_m));
-            if let (Some(inputs), Some(heard)) = (&mut inputs[side], heard) {
-                inputs.silent_s = now_s - heard.at_s;
+            let hand_m = self.hands[side].position_m();
+            inputs[side] = self.inputs[side].zip(report).map(|(here, report)| join(&here, &report, hand_m));
+            if let (Some(inputs), Some(received)) = (&mut inputs[side], received) {
+                inputs.silent_s = now_s - received.at_s;
             }
         }
         inputs
@@ -219,20 +219,20 @@ impl<R: Rig, W: Wire> Rig for FarLeader<R, W> {
         self.local.write(now_s, &outputs.each_ref().map(without_force));
     }
 
-    fn hear(&mut self, now_s: f64, bulletins: &[Option<Bulletin<'_>>; SIDES]) {
+    fn receive_status(&mut self, now_s: f64, bulletins: &[Option<PeerStatus<'_>>; SIDES]) {
         for (state, bulletin) in self.states.iter_mut().zip(bulletins) {
             *state = bulletin.as_ref().map(|bulletin| bulletin.state);
         }
         self.ticks += 1;
-        let Some(heard) = self.heard.filter(|heard| now_s - heard.at_s <= ANSWERS_FOR_S) else { return };
+        let Some(received) = self.received.filter(|received| now_s - received.at_s <= ANSWERS_FOR_S) else { return };
         let turn = (self.ticks.is_multiple_of(PARAMETERS_EVERY)).then_some(self.ticks / PARAMETERS_EVERY);
-        let tells_errors = self.ticks % ERRORS_EVERY == 1;
+        let sends_errors = self.ticks % ERRORS_EVERY == 1;
         // Add the time that has passed here since the command arrived.
-        let t_s = heard.message.t_s + (now_s - heard.at_s);
+        let t_s = received.message.t_s + (now_s - received.at_s);
         let mut message = FollowerMessage { t_s, sides: [None; SIDES] };
         for bulletin in bulletins.iter().flatten() {
             let side = bulletin.side.index();
-            message.sides[side] = self.inputs[side].map(|inputs| answer(&inputs, bulletin, turn, tells_errors));
+            message.sides[side] = self.inputs[side].map(|inputs| answer(&inputs, bulletin, turn, sends_errors));
         }
         if let Some(bytes) = message.pack(&mut self.buffer) {
             self.wire.send(now_s, bytes);
@@ -247,19 +247,19 @@ pub(super) fn is_same_delay(learnt_ticks: u16, now_ticks: u16) -> bool {
     (f64::from(now_ticks) - learnt).abs() <= SAME_DELAY_TICKS.max(SAME_DELAY * learnt)
 }
 
-fn join(here: &Inputs, told: &LeaderSide, position_m: Vector3<f64>) -> Inputs {
+fn join(here: &Inputs, report: &LeaderSide, position_m: Vector3<f64>) -> Inputs {
     Inputs {
-        hand: Hand { position_m, orientation: told.world_from_jaws },
-        gripper_rad: told.gripper_rad,
-        view: View::Fixed,
+        hand: HandPose { position_m, orientation: report.world_from_jaws },
+        gripper_rad: report.gripper_rad,
+        view: ViewOrientation::Fixed,
         // The follower moves only while the operator's pair is engaged; the presence of a hand is checked there.
-        switches: Switches { clutch: told.intent != Intent::Follow, presence: None },
+        switches: Switches { clutch: report.intent != Intent::Follow, presence: None },
         raw: RawReadings { handle: None, ..here.raw },
         ..*here
     }
 }
 
-fn answer(inputs: &Inputs, bulletin: &Bulletin<'_>, turn: Option<u64>, tells_errors: bool) -> FollowerSide {
+fn answer(inputs: &Inputs, bulletin: &PeerStatus<'_>, turn: Option<u64>, sends_errors: bool) -> FollowerSide {
     let parcel = bulletin.parcel;
     FollowerSide {
         tip_m: inputs.tip_m,
@@ -273,7 +273,7 @@ fn answer(inputs: &Inputs, bulletin: &Bulletin<'_>, turn: Option<u64>, tells_err
         fresh: parcel.fresh && bulletin.source.is_known(),
         resting: parcel.resting,
         modes: parcel.modes,
-        errors_n: tells_errors.then(|| bulletin.report.horizon_error_n.map(|error_n| error_n as f32)),
-        packed: turn.and_then(|turn| Packed::of(parcel, turn as usize)),
+        errors_n: sends_errors.then(|| bulletin.report.horizon_error_n.map(|error_n| error_n as f32)),
+        packed: turn.and_then(|turn| ParameterPack::of(parcel, turn as usize)),
     }
 }

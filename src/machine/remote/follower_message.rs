@@ -2,7 +2,7 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 use nima_core::{
-    impedance::{Mode, ModeSet, PACKED_MAX, Packed, SLOTS},
+    impedance::{Mode, ModeSet, PACKED_MAX, ParameterPack, SLOTS},
     tip_force::{Fallback, Unsure},
 };
 
@@ -30,7 +30,7 @@ pub(super) struct FollowerSide {
     pub(super) fresh: bool,
     pub(super) resting: bool,
     pub(super) modes: ModeSet,
-    pub(super) packed: Option<Packed>,
+    pub(super) packed: Option<ParameterPack>,
     pub(super) errors_n: Option<[f32; SLOTS]>,
 }
 
@@ -85,8 +85,8 @@ impl FollowerMessage {
         let mut to = Packer::new(buffer);
         to.time(self.t_s);
         for side in Side::ALL {
-            if let Some(told) = &self.sides[side.index()] {
-                told.pack(side, &mut to);
+            if let Some(report) = &self.sides[side.index()] {
+                report.pack(side, &mut to);
             }
         }
         to.done()
@@ -94,15 +94,15 @@ impl FollowerMessage {
 
     pub(super) fn unpack(message: &[u8]) -> Option<Self> {
         let mut from = Unpacker::new(message);
-        let mut told = Self { t_s: from.time()?, sides: [None; SIDES] };
+        let mut report = Self { t_s: from.time()?, sides: [None; SIDES] };
         while !from.is_empty() {
-            let place = &mut told.sides[side_of_number(from.byte()?)?.index()];
+            let place = &mut report.sides[side_of_number(from.byte()?)?.index()];
             if place.is_some() {
                 return None;
             }
             *place = Some(FollowerSide::unpack(&mut from)?);
         }
-        Some(told)
+        Some(report)
     }
 }
 
@@ -169,8 +169,8 @@ fn errors_of(from: &mut Unpacker<'_>) -> Option<[f32; SLOTS]> {
     Some(errors_n)
 }
 
-fn packed_of(from: &mut Unpacker<'_>) -> Option<Packed> {
-    let mut packed = Packed { slot: from.byte()?, len: from.byte()?, ..Packed::NONE };
+fn packed_of(from: &mut Unpacker<'_>) -> Option<ParameterPack> {
+    let mut packed = ParameterPack { slot: from.byte()?, len: from.byte()?, ..ParameterPack::NONE };
     if usize::from(packed.len) > PACKED_MAX {
         return None;
     }

@@ -61,16 +61,16 @@ impl LeaderMessage {
         to.short(self.delay_ticks);
         to.byte(number_of(self.mode) | u8::from(self.compares) << 7);
         for side in Side::ALL {
-            let Some(told) = &self.sides[side.index()] else { continue };
-            let intent = Intent::ALL.iter().position(|intent| *intent == told.intent).unwrap_or(0) as u8;
-            let turned = u8::from(told.world_from_jaws.is_some()) << 4;
-            let gripped = u8::from(told.gripper_rad.is_some()) << 5;
+            let Some(report) = &self.sides[side.index()] else { continue };
+            let intent = Intent::ALL.iter().position(|intent| *intent == report.intent).unwrap_or(0) as u8;
+            let turned = u8::from(report.world_from_jaws.is_some()) << 4;
+            let gripped = u8::from(report.gripper_rad.is_some()) << 5;
             to.byte(number_of_side(side) | intent << 2 | turned | gripped);
-            to.byte(told.engagements);
-            to.byte(told.releases);
-            to.vector(&told.tip_m, PER_M);
-            told.world_from_jaws.iter().for_each(|turn| to.turn(turn));
-            told.gripper_rad.iter().for_each(|rad| to.scaled(*rad, PER_RAD));
+            to.byte(report.engagements);
+            to.byte(report.releases);
+            to.vector(&report.tip_m, PER_M);
+            report.world_from_jaws.iter().for_each(|turn| to.turn(turn));
+            report.gripper_rad.iter().for_each(|rad| to.scaled(*rad, PER_RAD));
         }
         to.done()
     }
@@ -81,10 +81,10 @@ impl LeaderMessage {
         let delay_ticks = from.short()?;
         let first = from.byte()?;
         let mode = modes().nth(usize::from(first & 0x7f))?;
-        let mut told = Self { t_s, delay_ticks, mode, compares: first >> 7 == 1, sides: [None; SIDES] };
+        let mut report = Self { t_s, delay_ticks, mode, compares: first >> 7 == 1, sides: [None; SIDES] };
         while !from.is_empty() {
             let first = from.byte()?;
-            let place = &mut told.sides[side_of_number(first & 3)?.index()];
+            let place = &mut report.sides[side_of_number(first & 3)?.index()];
             if place.is_some() {
                 return None;
             }
@@ -97,6 +97,6 @@ impl LeaderMessage {
                 gripper_rad: if first >> 5 & 1 == 1 { Some(from.scaled(PER_RAD)?) } else { None },
             });
         }
-        Some(told)
+        Some(report)
     }
 }

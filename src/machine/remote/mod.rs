@@ -11,15 +11,15 @@
 //! active command, so that every age is a difference on one clock, and the rendering corrects over the whole round
 //! trip.
 //!
-//! A [`Wire`] carries the messages; the implementation in the crate `nima-network` encrypts them and compensates delay
+//! A [`RemoteWire`] carries the messages; the implementation in the crate `nima-network` encrypts them and compensates delay
 //! and loss.
 
 mod far_follower;
-mod far_hand;
 mod far_leader;
 mod follower_message;
 mod leader_message;
 mod packing;
+mod remote_hand;
 #[cfg(test)]
 mod tests;
 
@@ -27,19 +27,19 @@ pub use far_follower::FarFollower;
 pub use far_leader::{FarLeader, at_follower};
 
 use crate::{
-    rig::{Ends, Rig},
+    rig::{Rig, RigEnds},
     runtime::Assembly,
 };
 
 /// Returns the assembly of a loop with one half of its rig at another machine; `here` is the local half. Create the
 /// loop of a follower from [`at_follower`].
 #[must_use]
-pub fn joined(assembly: Assembly, wire: Box<dyn Wire>, here: Ends) -> Assembly {
+pub fn joined(assembly: Assembly, wire: Box<dyn RemoteWire>, here: RigEnds) -> Assembly {
     let Assembly { rig, rate_hz, .. } = assembly;
     let rig: Box<dyn Rig> = match here {
-        Ends::Both => rig,
-        Ends::Leader => Box::new(FarFollower::new(rig, wire, rate_hz)),
-        Ends::Follower => Box::new(FarLeader::new(rig, wire, rate_hz)),
+        RigEnds::Both => rig,
+        RigEnds::Leader => Box::new(FarFollower::new(rig, wire, rate_hz)),
+        RigEnds::Follower => Box::new(FarLeader::new(rig, wire, rate_hz)),
     };
     Assembly { rig, ..assembly }
 }
@@ -48,7 +48,7 @@ pub fn joined(assembly: Assembly, wire: Box<dyn Wire>, here: Ends) -> Assembly {
 pub const MESSAGE_MAX: usize = 1100;
 
 /// Carries messages between two machines. An implementation neither waits nor allocates.
-pub trait Wire: Send {
+pub trait RemoteWire: Send {
     /// Sends one message, created at `now_s` of this machine's loop.
     fn send(&mut self, now_s: f64, message: &[u8]);
 
@@ -56,7 +56,7 @@ pub trait Wire: Send {
     fn receive(&mut self, now_s: f64, take: &mut dyn FnMut(&[u8]));
 }
 
-impl<W: Wire + ?Sized> Wire for Box<W> {
+impl<W: RemoteWire + ?Sized> RemoteWire for Box<W> {
     fn send(&mut self, now_s: f64, message: &[u8]) {
         (**self).send(now_s, message);
     }

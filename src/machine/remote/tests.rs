@@ -1,5 +1,5 @@
 use nalgebra::{UnitQuaternion, Vector3};
-use nima_core::impedance::{Mode, ModeSet, Packed, SLOTS};
+use nima_core::impedance::{Mode, ModeSet, ParameterPack, SLOTS};
 
 use super::{
     MESSAGE_MAX,
@@ -13,7 +13,7 @@ use crate::{
 };
 
 fn follower_side() -> FollowerSide {
-    let mut packed = Packed { slot: Mode::Matched.index() as u8, len: 90, ..Packed::NONE };
+    let mut packed = ParameterPack { slot: Mode::Matched.index() as u8, len: 90, ..ParameterPack::NONE };
     packed.numbers.iter_mut().take(90).enumerate().for_each(|(i, number)| *number = i as f32 - 7.5);
     FollowerSide {
         tip_m: Vector3::new(0.0125, -0.25, 0.5),

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 use nima_core::frames::GRAVITY_M_S2;
 
-use super::{AGES, CHANNELS, Gauge, Gauges, Nominal, Part, PartKind, Spread};
+use super::{AGES, CHANNELS, Gauge, GaugeSpread, Gauges, Nominal, PartKind, RigPart};
 use crate::config::RigConfig;
 
 /// Number of 0.1 s blocks in a test; the counters of the first block are the starting values.
@@ -32,7 +32,7 @@ const ACCELERATION: std::ops::Range<usize> = 6..9;
 
 /// A finding of a test; the screen shows its cause and remedy.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Finding {
+pub enum CheckupFinding {
     Silent,
     Reopened,
     Rate {
@@ -51,7 +51,7 @@ pub enum Finding {
     /// Readings are late or arrive in bursts.
     Late {
         p99_s: f64,
-        most_s: f64,
+        max_s: f64,
     },
     /// A force sensor repeats the same numbers.
     Frozen,
@@ -63,7 +63,7 @@ pub enum Finding {
     Noisy {
         channel: usize,
         deviation: f64,
-        most: f64,
+        max: f64,
     },
     /// At rest, the accelerometer does not measure gravity.
     Gravity {
@@ -78,13 +78,13 @@ pub enum Finding {
     /// A marker is not visible, or not always.
     Hidden {
         tool: usize,
-        share: f64,
+        fraction: f64,
     },
 }
 
 /// One number of a device's readings during the test.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Measured {
+pub struct CheckupNumber {
     pub channel: usize,
     /// Standard deviation within tenths of a second: the noise, without slow motion.
     pub noise: f64,
@@ -94,7 +94,7 @@ pub struct Measured {
 }
 
 /// Returns the smallest intentional change of this number: m, rad, N, Nm, m/s^2.
-pub const fn least(kind: PartKind, channel: usize) -> f64 {
+pub const fn min(kind: PartKind, channel: usize) -> f64 {
     match (kind, channel) {
         (PartKind::Handle, 0..=2) => 3e-4,
         (PartKind::Handle, 3..=6) | (PartKind::Servos, _) => 0.01,
@@ -109,11 +109,11 @@ pub const fn least(kind: PartKind, channel: usize) -> f64 {
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Checkup {
-    pub part: Part,
+    pub part: RigPart,
     pub took_s: f64,
     pub rate_hz: f64,
     pub nominal_hz: Option<f64>,
-    pub measured: Vec<Measured>,
+    pub measured: Vec<CheckupNumber>,
     /// Age of the newest reading in a tick, s: median and 99th percentile; `None` without any reading.
     pub age_s: Option<[f64; 2]>,
     pub lost: u64,
@@ -122,13 +122,13 @@ pub struct Checkup {
     /// Mean acceleration, m/s^2; for a sensor at rest it points upwards.
     pub up_m_s2: Option<Vector3<f64>>,
     /// The findings; empty if the device is in order.
-    pub findings: Vec<Finding>,
+    pub findings: Vec<CheckupFinding>,
 }
 
 /// Properties of a device that its test needs.
 #[derive(Clone, Copy, Debug)]
-pub struct Subject<'a> {
-    pub part: Part,
+pub struct TestSubject<'a> {
+    pub part: RigPart,
     pub place: usize,
     pub nominal: Nominal,
     pub period_s: f64,
@@ -138,9 +138,9 @@ pub struct Subject<'a> {
     pub blocks: &'a [&'a Gauges],
 }
 
-impl<'a> Subject<'a> {
+impl<'a> TestSubject<'a> {
     /// Returns the properties of the part at this index of the roster; `None` if the rig has no devices.
-    pub fn of(part: Part, place: usize, rig: &RigConfig, blocks: &'a [&'a Gauges]) -> Option<Self> {
+    pub fn of(part: RigPart, place: usize, rig: &RigConfig, blocks: &'a [&'a Gauges]) -> Option<Self> {
         let devices = rig.devices.as_ref()?;
         let nominal = Nominal::of(part, devices, rig.rate_hz);
         let tools = devices.tracker.as_ref().map_or(0, |tracker| tracker.tools.len());
@@ -150,7 +150,7 @@ impl<'a> Subject<'a> {
 
 impl Checkup {
     /// Tests a device from these blocks, oldest first; returns `None` with fewer than two blocks.
-    pub fn of(subject: &Subject<'_>) -> Option<Self> {
+    pub fn of(subject: &TestSubject<'_>) -> Option<Self> {
         let (first, rest) = subject.blocks.split_first()?;
         let last = rest.last()?;
         let [before, after] = [first, last].map(|block| &block.devices[subject.place]);
@@ -176,9 +176,9 @@ impl Checkup {
             this.up_m_s2 = <[f64; 3]>::try_from(mean).ok().map(Vector3::from);
         }
         if after.readings < before.readings {
-            this.findings.push(Finding::Reopened);
+            this.findings.push(CheckupFinding::Reopened);
         } else if readings == 0 && Nominal::is_steady(subject.part) {
-            this.findings.push(Finding::Silent);
+            this.findings.push(CheckupFinding::Silent);
         } else {
             let ticks: u64 = gauges.iter().flat_map(|gauge| gauge.ages).map(u64::from).sum();
             this.judge_delivery(subject, readings, ticks);
@@ -187,69 +187,74 @@ impl Checkup {
         Some(this)
     }
 
-    fn judge_delivery(&mut self, subject: &Subject<'_>, readings: u64, ticks: u64) {
+    fn judge_delivery(&mut self, subject: &TestSubject<'_>, readings: u64, ticks: u64) {
         // An arm answers once per tick: ticks that the loop missed are not its fault.
-        let most_hz = if subject.part.kind() == PartKind::Arm { ticks as f64 / self.took_s } else { f64::INFINITY };
+        let max_hz = if subject.part.kind() == PartKind::Arm { ticks as f64 / self.took_s } else { f64::INFINITY };
         if let Some(nominal_hz) = self.nominal_hz
-            && (self.rate_hz / nominal_hz.min(most_hz) - 1.0).abs() > RATE_OFF
+            && (self.rate_hz / nominal_hz.min(max_hz) - 1.0).abs() > RATE_OFF
         {
-            self.findings.push(Finding::Rate { hz: self.rate_hz, nominal_hz });
+            self.findings.push(CheckupFinding::Rate { hz: self.rate_hz, nominal_hz });
         }
         if self.lost as f64 > LOST_MAX * readings as f64 {
-            self.findings.push(Finding::Lost { count: self.lost });
+            self.findings.push(CheckupFinding::Lost { count: self.lost });
         }
         if self.damaged as f64 > DAMAGED_MAX * readings as f64 {
-            self.findings.push(Finding::Damaged { count: self.damaged });
+            self.findings.push(CheckupFinding::Damaged { count: self.damaged });
         }
         if self.refused > 0 {
-            self.findings.push(Finding::Refused { count: self.refused });
+            self.findings.push(CheckupFinding::Refused { count: self.refused });
         }
-        let most_s = self.nominal_hz.map_or(AGE_MAX_S, |hz| AGE_PERIODS / hz + AGE_TICKS * subject.period_s);
+        let max_s = self.nominal_hz.map_or(AGE_MAX_S, |hz| AGE_PERIODS / hz + AGE_TICKS * subject.period_s);
         if let Some([_, p99_s]) = self.age_s.filter(|_| Nominal::is_steady(subject.part))
-            && p99_s > most_s + 0.5 * subject.period_s
+            && p99_s > max_s + 0.5 * subject.period_s
         {
-            self.findings.push(Finding::Late { p99_s, most_s });
+            self.findings.push(CheckupFinding::Late { p99_s, max_s });
         }
     }
 
-    fn judge_values(&mut self, subject: &Subject<'_>, gauges: &[&Gauge]) {
+    fn judge_values(&mut self, subject: &TestSubject<'_>, gauges: &[&Gauge]) {
         let kind = subject.part.kind();
         if kind == PartKind::Tracker {
             let frames = (self.rate_hz * self.took_s).max(1.0);
-            let share = |tool: usize| f64::from(whole(3 * tool, gauges).count) / frames;
-            let hidden = (0..subject.tools).map(|tool| Finding::Hidden { tool, share: share(tool) });
-            self.findings
-                .extend(hidden.filter(|one| matches!(one, Finding::Hidden { share, .. } if *share < SEEN_MIN)));
+            let fraction = |tool: usize| f64::from(whole(3 * tool, gauges).count) / frames;
+            let hidden = (0..subject.tools).map(|tool| CheckupFinding::Hidden { tool, fraction: fraction(tool) });
+            self.findings.extend(
+                hidden.filter(|one| matches!(one, CheckupFinding::Hidden { fraction, .. } if *fraction < SEEN_MIN)),
+            );
         }
         if matches!(kind, PartKind::Sensor)
             && !self.measured.is_empty()
             && self.measured.iter().all(|one| one.high <= one.low)
         {
-            self.findings.push(Finding::Frozen);
+            self.findings.push(CheckupFinding::Frozen);
         }
-        let at_the_end = self.measured.iter().filter_map(|&Measured { channel, low, high, range, .. }| {
+        let at_the_end = self.measured.iter().filter_map(|&CheckupNumber { channel, low, high, range, .. }| {
             let range = range?;
             let reach = NEAR_END * (range[1] - range[0]) / 2.0;
             let middle = f64::midpoint(range[0], range[1]);
             let value = if high - middle > middle - low { high } else { low };
             // A closed gripper is at the end of its range intentionally.
             let on_purpose = kind == PartKind::Handle && channel == 6;
-            ((value - middle).abs() > reach && !on_purpose).then_some(Finding::AtTheEnd { channel, value, range })
+            ((value - middle).abs() > reach && !on_purpose).then_some(CheckupFinding::AtTheEnd {
+                channel,
+                value,
+                range,
+            })
         });
         self.findings.extend(at_the_end);
         if let Some(channel) = moved(kind, gauges) {
-            self.findings.push(Finding::Moved { channel });
+            self.findings.push(CheckupFinding::Moved { channel });
             return;
         }
         let noisy = self.measured.iter().filter_map(|one| {
-            let most = noise_max(kind, one.channel)?;
-            (one.noise > most).then_some(Finding::Noisy { channel: one.channel, deviation: one.noise, most })
+            let max = noise_max(kind, one.channel)?;
+            (one.noise > max).then_some(CheckupFinding::Noisy { channel: one.channel, deviation: one.noise, max })
         });
         self.findings.extend(noisy);
         if let Some(up) = self.up_m_s2
             && (up.norm() - GRAVITY_M_S2).abs() > GRAVITY_OFF_M_S2
         {
-            self.findings.push(Finding::Gravity { size_m_s2: up.norm() });
+            self.findings.push(CheckupFinding::Gravity { size_m_s2: up.norm() });
         }
     }
 }
@@ -257,27 +262,27 @@ impl Checkup {
 /// Returns the number of a reading that moved most during the test, if one did.
 fn moved(kind: PartKind, gauges: &[&Gauge]) -> Option<usize> {
     let change = |channel: usize| {
-        let mut means = Spread::NONE;
+        let mut means = GaugeSpread::NONE;
         let blocks = gauges.iter().map(|gauge| &gauge.channels[channel]).filter(|block| block.count > 0);
         for block in blocks {
             means.add(block.mean);
         }
-        means.extent() / (2.0 * least(kind, channel))
+        means.extent() / (2.0 * min(kind, channel))
     };
-    let most = (0..CHANNELS).map(|channel| (channel, change(channel))).max_by(|a, b| a.1.total_cmp(&b.1))?;
-    (most.1 > 1.0).then_some(most.0)
+    let max = (0..CHANNELS).map(|channel| (channel, change(channel))).max_by(|a, b| a.1.total_cmp(&b.1))?;
+    (max.1 > 1.0).then_some(max.0)
 }
 
-fn whole(channel: usize, gauges: &[&Gauge]) -> Spread {
-    let mut whole = Spread::NONE;
+fn whole(channel: usize, gauges: &[&Gauge]) -> GaugeSpread {
+    let mut whole = GaugeSpread::NONE;
     for gauge in gauges {
         whole.join(&gauge.channels[channel]);
     }
     whole
 }
 
-fn measured(channel: usize, gauges: &[&Gauge], nominal: &Nominal) -> Option<Measured> {
-    let Spread { count, low, high, .. } = whole(channel, gauges);
+fn measured(channel: usize, gauges: &[&Gauge], nominal: &Nominal) -> Option<CheckupNumber> {
+    let GaugeSpread { count, low, high, .. } = whole(channel, gauges);
     if count == 0 {
         return None;
     }
@@ -285,15 +290,15 @@ fn measured(channel: usize, gauges: &[&Gauge], nominal: &Nominal) -> Option<Meas
     let free: u32 = blocks().map(|block| block.count - 1).sum();
     let squares: f64 = blocks().map(|block| block.squares).sum();
     let noise = if free == 0 { 0.0 } else { (squares / f64::from(free)).sqrt() };
-    Some(Measured { channel, noise, low, high, range: nominal.ranges[channel] })
+    Some(CheckupNumber { channel, noise, low, high, range: nominal.ranges[channel] })
 }
 
 /// Returns median and 99th percentile of the age, s; `None` without any reading.
 fn ages(gauges: &[&Gauge], period_s: f64) -> Option<[f64; 2]> {
     let counts: [u64; AGES] = std::array::from_fn(|age| gauges.iter().map(|gauge| u64::from(gauge.ages[age])).sum());
     let total: u64 = counts.iter().sum();
-    let at = |share: f64| {
-        let mut left = (share * total as f64).ceil() as u64;
+    let at = |fraction: f64| {
+        let mut left = (fraction * total as f64).ceil() as u64;
         let place = counts.iter().position(|count| {
             let reached = *count >= left;
             left = left.saturating_sub(*count);

@@ -1,6 +1,6 @@
 //! Every flaw produces its finding, and a device in order produces none.
 
-use super::{AGES, DEVICES_MAX, Gauge, Gauges, Part, Side, checkup::*};
+use super::{AGES, DEVICES_MAX, Gauge, Gauges, RigPart, Side, checkup::*};
 use crate::config::RigConfig;
 
 /// Returns a reading of a tilted sensor at rest; `even` is from -1 to 1.
@@ -13,8 +13,8 @@ fn at_rest(channel: usize, even: f64) -> f64 {
     }
 }
 
-struct Bench {
-    part: Part,
+struct Fixture {
+    part: RigPart,
     rate_hz: u32,
     /// A value of a channel at a time (s).
     value: fn(usize, f64, f64) -> f64,
@@ -23,15 +23,15 @@ struct Bench {
     change: fn(&mut Gauge),
 }
 
-const IN_ORDER: Bench = Bench {
-    part: Part::Sensor(Side::Right),
+const IN_ORDER: Fixture = Fixture {
+    part: RigPart::Sensor(Side::Right),
     rate_hz: 1000,
     value: |channel, even, _| at_rest(channel, even),
     age: 0,
     change: |_| (),
 };
 
-impl Bench {
+impl Fixture {
     fn tested(&self) -> Checkup {
         let rig = RigConfig::load("emulated").unwrap();
         let mut readings = 0_u64;
@@ -59,7 +59,7 @@ impl Bench {
             })
             .collect();
         let blocks: Vec<&Gauges> = blocks.iter().collect();
-        Checkup::of(&Subject::of(self.part, 2, &rig, &blocks).unwrap()).unwrap()
+        Checkup::of(&TestSubject::of(self.part, 2, &rig, &blocks).unwrap()).unwrap()
     }
 }
 
@@ -80,60 +80,72 @@ fn a_sensor_in_order_is_fine_and_its_figures_are_right() {
 
 #[test]
 fn what_is_wrong_with_the_delivery_is_found() {
-    let slow = Bench { rate_hz: 500, ..IN_ORDER }.tested();
-    assert!(matches!(slow.findings[..], [Finding::Rate { nominal_hz: 1000.0, .. }]), "{:?}", slow.findings);
-    let arm = Bench { part: Part::Arm(Side::Right), value: |_, _, _| 0.1, ..IN_ORDER };
-    assert_eq!(Bench { rate_hz: 960, ..arm }.tested().findings, [], "the loop missed some periods");
-    let missed = Bench { change: |gauge| gauge.ages[0] = 78, rate_hz: 800, value: |_, _, _| 0.1, ..IN_ORDER };
-    let missed = Bench { part: Part::Arm(Side::Right), ..missed };
+    let slow = Fixture { rate_hz: 500, ..IN_ORDER }.tested();
+    assert!(matches!(slow.findings[..], [CheckupFinding::Rate { nominal_hz: 1000.0, .. }]), "{:?}", slow.findings);
+    let arm = Fixture { part: RigPart::Arm(Side::Right), value: |_, _, _| 0.1, ..IN_ORDER };
+    assert_eq!(Fixture { rate_hz: 960, ..arm }.tested().findings, [], "the loop missed some periods");
+    let missed = Fixture { change: |gauge| gauge.ages[0] = 78, rate_hz: 800, value: |_, _, _| 0.1, ..IN_ORDER };
+    let missed = Fixture { part: RigPart::Arm(Side::Right), ..missed };
     assert_eq!(missed.tested().findings, [], "a loop that makes 800 ticks asks 800 times");
-    let counted = |change| Bench { change, ..IN_ORDER }.tested().findings;
-    assert_eq!(counted(|gauge| gauge.damaged = 3), [Finding::Damaged { count: 3 }]);
+    let counted = |change| Fixture { change, ..IN_ORDER }.tested().findings;
+    assert_eq!(counted(|gauge| gauge.damaged = 3), [CheckupFinding::Damaged { count: 3 }]);
     assert_eq!(counted(|gauge| gauge.damaged = 1), [], "one is no reason to look");
-    assert_eq!(counted(|gauge| gauge.refused = 1), [Finding::Refused { count: 1 }]);
-    assert_eq!(counted(|gauge| gauge.lost = 40), [Finding::Lost { count: 40 }]);
+    assert_eq!(counted(|gauge| gauge.refused = 1), [CheckupFinding::Refused { count: 1 }]);
+    assert_eq!(counted(|gauge| gauge.lost = 40), [CheckupFinding::Lost { count: 40 }]);
     assert_eq!(counted(|gauge| gauge.lost = 2), [], "one in a thousand is no reason to look");
-    assert_eq!(counted(|gauge| gauge.readings = 5), [Finding::Reopened]);
-    assert_eq!(counted(|gauge| gauge.readings = 100), [Finding::Silent]);
-    let late = Bench { age: 8, ..IN_ORDER }.tested();
-    assert!(matches!(late.findings[..], [Finding::Late { p99_s, .. }] if (p99_s - 9e-3).abs() < 1e-9), "{late:?}");
-    let never = Bench { age: AGES - 1, ..IN_ORDER }.tested();
+    assert_eq!(counted(|gauge| gauge.readings = 5), [CheckupFinding::Reopened]);
+    assert_eq!(counted(|gauge| gauge.readings = 100), [CheckupFinding::Silent]);
+    let late = Fixture { age: 8, ..IN_ORDER }.tested();
+    assert!(
+        matches!(late.findings[..], [CheckupFinding::Late { p99_s, .. }] if (p99_s - 9e-3).abs() < 1e-9),
+        "{late:?}"
+    );
+    let never = Fixture { age: AGES - 1, ..IN_ORDER }.tested();
     assert_eq!(never.age_s, None);
 }
 
 #[test]
 fn what_is_wrong_with_the_readings_is_found() {
-    let valued = |value| Bench { value, ..IN_ORDER }.tested().findings;
+    let valued = |value| Fixture { value, ..IN_ORDER }.tested().findings;
     let noisy = valued(|channel, even, _| if channel == 1 { 0.5 * even } else { at_rest(channel, even) });
-    assert!(matches!(noisy[..], [Finding::Noisy { channel: 1, .. }]), "{noisy:?}");
-    assert_eq!(valued(|channel, _, _| at_rest(channel, 0.0)), [Finding::Frozen]);
+    assert!(matches!(noisy[..], [CheckupFinding::Noisy { channel: 1, .. }]), "{noisy:?}");
+    assert_eq!(valued(|channel, _, _| at_rest(channel, 0.0)), [CheckupFinding::Frozen]);
     let halved = valued(|channel, even, _| at_rest(channel, even) * if channel > 5 { 0.5 } else { 1.0 });
-    assert!(matches!(halved[..], [Finding::Gravity { size_m_s2 }] if (size_m_s2 - 4.9).abs() < 0.1), "{halved:?}");
+    assert!(
+        matches!(halved[..], [CheckupFinding::Gravity { size_m_s2 }] if (size_m_s2 - 4.9).abs() < 0.1),
+        "{halved:?}"
+    );
     // While it is pushed, its noise is not evaluated.
     let pushed = valued(|channel, even, t_s| at_rest(channel, 9.0 * even) + if channel == 2 { 3.0 * t_s } else { 0.0 });
-    assert_eq!(pushed, [Finding::Moved { channel: 2 }]);
+    assert_eq!(pushed, [CheckupFinding::Moved { channel: 2 }]);
 }
 
 #[test]
 fn ends_of_ranges_and_hidden_markers_are_found() {
-    let arm =
-        Bench { part: Part::Arm(Side::Left), value: |channel, _, _| if channel == 3 { -2.5 } else { 0.1 }, ..IN_ORDER };
+    let arm = Fixture {
+        part: RigPart::Arm(Side::Left),
+        value: |channel, _, _| if channel == 3 { -2.5 } else { 0.1 },
+        ..IN_ORDER
+    };
     let findings = arm.tested().findings;
-    assert!(matches!(findings[..], [Finding::AtTheEnd { channel: 3, value: -2.5, .. }]), "{findings:?}");
-    let tracker = Bench {
-        part: Part::Tracker,
+    assert!(matches!(findings[..], [CheckupFinding::AtTheEnd { channel: 3, value: -2.5, .. }]), "{findings:?}");
+    let tracker = Fixture {
+        part: RigPart::Tracker,
         rate_hz: 60,
         value: |channel, _, t_s| if (3..6).contains(&channel) && t_s > 1.0 { f64::NAN } else { 0.5 },
         age: 8,
         ..IN_ORDER
     };
     let findings = tracker.tested().findings;
-    assert!(matches!(findings[..], [Finding::Hidden { tool: 1, share }] if share > 0.3 && share < 0.6), "{findings:?}");
+    assert!(
+        matches!(findings[..], [CheckupFinding::Hidden { tool: 1, fraction }] if fraction > 0.3 && fraction < 0.6),
+        "{findings:?}"
+    );
 }
 
 #[test]
 fn a_pedal_that_nobody_presses_is_fine() {
-    let pedal = Bench { part: Part::Pedal, value: |_, _, _| 0.0, age: AGES - 1, ..IN_ORDER };
-    let pedal = Bench { change: |gauge| gauge.readings = 10, rate_hz: 100, ..pedal };
+    let pedal = Fixture { part: RigPart::Pedal, value: |_, _, _| 0.0, age: AGES - 1, ..IN_ORDER };
+    let pedal = Fixture { change: |gauge| gauge.readings = 10, rate_hz: 100, ..pedal };
     assert_eq!(pedal.tested().findings, []);
 }

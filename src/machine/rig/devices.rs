@@ -2,7 +2,7 @@
 //! sides share.
 //!
 //! Input: the loop's outputs (m, N). Output: measurements in the workspace frame, with the age of the oldest part (s),
-//! because the devices sample at their own clocks. Every device has a [`Slot`]: it may disconnect and reconnect at any
+//! because the devices sample at their own clocks. Every device has a [`DeviceSlot`]: it may disconnect and reconnect at any
 //! time, and is then connected but not engaged. Reading and writing neither wait nor allocate. A value that is lost,
 //! refused or older than 20 ms is `None`; an old value is never repeated as a new one.
 
@@ -11,16 +11,16 @@ use std::io;
 use nalgebra::Isometry3;
 use nima_core::frames::from_roll_pitch_yaw_deg;
 use nima_devices::{
-    Device, ForceSensor, Health, Lever, PedalReading, Slot, Stamped, Standing, Switch, Tracked, Tracker,
-    TrackerReading, Trouble,
-    hid::{self, Held},
+    ConnectionState, Device, DeviceError, DeviceSlot, ForceSensor, Health, Lever, PedalReading, Switch, TimedReading,
+    TrackedTool, Tracker, TrackerReading,
+    hid::{self, HeldValue},
     ndi,
 };
 
 use super::{
-    ArmPair, Awaited, DEVICES_MAX, DeviceEvent, EndoscopeSettings, Gauge, Gauges, Healths, Inputs, Obstacle, Outputs,
-    Part, Rig, Roster, RosterEntry, SIDES, Settings, Side, Switches, View, Watch, arm_pair::Shared, known::Known,
-    makes::Opener,
+    ArmPair, AwaitedDevice, DEVICES_MAX, DeviceEvent, DeviceWatch, EndoscopeSettings, EngageBlocker, Gauge, Gauges,
+    Healths, Inputs, Outputs, Rig, RigPart, RigSettings, Roster, RosterEntry, SIDES, Side, Switches, ViewOrientation,
+    arm_pair::SharedReadings, device_identity::DeviceIdentities, makes::Opener,
 };
 
 /// A reading older than this counts as missing, s.
@@ -30,15 +30,15 @@ pub(super) const OLDEST_S: f64 = 0.020;
 #[derive(Debug)]
 pub struct DeviceRig {
     pairs: [Option<Box<ArmPair>>; SIDES],
-    tissue: Option<Slot<Box<dyn ForceSensor>>>,
-    tissue_n: Option<Stamped<nalgebra::Vector3<f64>>>,
-    tracker: Option<Slot<Box<dyn Tracker>>>,
+    tissue: Option<DeviceSlot<Box<dyn ForceSensor>>>,
+    tissue_n: Option<TimedReading<nalgebra::Vector3<f64>>>,
+    tracker: Option<DeviceSlot<Box<dyn Tracker>>>,
     endoscope: Option<EndoscopeSettings>,
-    tracked: Option<Stamped<TrackerReading>>,
+    tracked: Option<TimedReading<TrackerReading>>,
     /// The markers of both instruments have been compared with their expected poses.
     has_seen_markers: bool,
     pedal: Option<Pedal>,
-    watch: Watch,
+    watch: DeviceWatch,
     /// Deliveries of tissue sensor, tracker and pedal since the last [`Rig::gauges`], and the start of that time, s.
     gauges: [Gauge; 3],
     gauged_s: f64,
@@ -49,15 +49,15 @@ impl Drop for DeviceRig {
     /// Closes all devices together: while one arm brakes, the other one must be served too.
     fn drop(&mut self) {
         self.pairs.iter_mut().flatten().for_each(|pair| pair.retire());
-        self.tissue.iter_mut().for_each(Slot::retire);
-        self.tracker.iter_mut().for_each(Slot::retire);
+        self.tissue.iter_mut().for_each(DeviceSlot::retire);
+        self.tracker.iter_mut().for_each(DeviceSlot::retire);
         self.pedal.iter_mut().for_each(|pedal| pedal.slot.retire());
     }
 }
 
 struct Pedal {
-    slot: Slot<Box<dyn Switch>>,
-    held: Held<PedalReading>,
+    slot: DeviceSlot<Box<dyn Switch>>,
+    held: HeldValue<PedalReading>,
     roles: hid::PedalRoles,
 }
 
@@ -76,7 +76,7 @@ pub enum RigError {
     Setting {
         device: String,
         /// The fault of the setting.
-        trouble: Trouble,
+        trouble: DeviceError,
     },
     #[error("rig file, {side} mount")]
     Mount { side: &'static str, source: nima_core::kinematics::ArmError },
@@ -90,9 +90,9 @@ impl DeviceRig {
     ///
     /// # Errors
     /// [`RigError`] if a setting is invalid or a thread cannot be created.
-    pub fn start(settings: &Settings, period_s: f64, at_wrist: [bool; SIDES]) -> Result<(Self, Roster), RigError> {
+    pub fn start(settings: &RigSettings, period_s: f64, at_wrist: [bool; SIDES]) -> Result<(Self, Roster), RigError> {
         let mut roster = Roster::new();
-        let known = Known::of(settings);
+        let known = DeviceIdentities::of(settings);
         let mut pairs = [None, None];
         for side in Side::ALL {
             if let Some(set) = settings.arm(side) {
@@ -105,15 +105,16 @@ impl DeviceRig {
         let tissue = settings.tissue_sensor.as_ref().filter(|_| at_follower).map(|sensor| {
             let Opener { driver, mut open, .. } = sensor.opener();
             let known = known.clone();
-            let slot = Slot::start(Part::TissueSensor.name(), move || known.admit(Part::TissueSensor, open()))?;
-            enrol(&mut roster, Part::TissueSensor, driver, &slot);
+            let slot =
+                DeviceSlot::start(RigPart::TissueSensor.name(), move || known.admit(RigPart::TissueSensor, open()))?;
+            enrol(&mut roster, RigPart::TissueSensor, driver, &slot);
             Ok::<_, io::Error>(slot)
         });
         let tracker = settings.tracker.clone().filter(|_| at_follower).map(|tracker| {
             let place = tracker.place();
-            let open = move || ndi::Driver::open(&tracker).map(|driver| Box::new(driver) as Box<dyn Tracker>);
-            let slot = Slot::start(Part::Tracker.name(), open)?;
-            enrol(&mut roster, Part::Tracker, format!("NDI tracker, {place}"), &slot);
+            let open = move || ndi::NdiDriver::open(&tracker).map(|driver| Box::new(driver) as Box<dyn Tracker>);
+            let slot = DeviceSlot::start(RigPart::Tracker.name(), open)?;
+            enrol(&mut roster, RigPart::Tracker, format!("NDI tracker, {place}"), &slot);
             Ok::<_, io::Error>(slot)
         });
         let pedal = settings.pedal.clone().filter(|_| settings.ends.have_leader()).map(|pedal| {
@@ -121,9 +122,9 @@ impl DeviceRig {
             let roles = pedal.roles().map_err(setting)?;
             let place = pedal.source.clone();
             let open = move || hid::PedalDriver::open(&pedal).map(|driver| Box::new(driver) as Box<dyn Switch>);
-            let slot = Slot::start(Part::Pedal.name(), open)?;
-            enrol(&mut roster, Part::Pedal, format!("foot pedal, {place}"), &slot);
-            Ok::<_, RigError>(Pedal { slot, held: Held::default(), roles })
+            let slot = DeviceSlot::start(RigPart::Pedal.name(), open)?;
+            enrol(&mut roster, RigPart::Pedal, format!("foot pedal, {place}"), &slot);
+            Ok::<_, RigError>(Pedal { slot, held: HeldValue::default(), roles })
         });
         let rig = Self {
             pairs,
@@ -134,7 +135,7 @@ impl DeviceRig {
             tracked: None,
             has_seen_markers: false,
             pedal: pedal.transpose()?,
-            watch: Watch::default(),
+            watch: DeviceWatch::default(),
             gauges: [Gauge::NONE; 3],
             gauged_s: 0.0,
             period_s,
@@ -147,7 +148,7 @@ impl DeviceRig {
         if let Some(reading) = self.tissue.as_mut().and_then(|slot| slot.poll(now_s)) {
             of_tissue.sensor(&reading.value);
             let usable = reading.value.status.is_usable();
-            self.tissue_n = usable.then_some(Stamped {
+            self.tissue_n = usable.then_some(TimedReading {
                 device_s: reading.device_s,
                 arrival_s: reading.arrival_s,
                 value: reading.value.wrench.force_n,
@@ -157,7 +158,7 @@ impl DeviceRig {
             of_tracker.tracker(&reading.value);
             self.tracked = Some(reading);
         }
-        let ticked = [self.tissue.as_ref().map(Slot::health), self.tracker.as_ref().map(Slot::health)];
+        let ticked = [self.tissue.as_ref().map(DeviceSlot::health), self.tracker.as_ref().map(DeviceSlot::health)];
         for (gauge, health) in [of_tissue, of_tracker].into_iter().zip(ticked) {
             if let Some(health) = health {
                 gauge.tick(health, now_s, self.period_s);
@@ -174,41 +175,41 @@ impl DeviceRig {
     }
 
     /// Returns readings of the shared devices for this side.
-    fn shared(&self, side: Side, now_s: f64) -> Shared {
+    fn shared(&self, side: Side, now_s: f64) -> SharedReadings {
         /// The tracker sends 60 frames a second; allow six frames.
         const TRACKED_S: f64 = 0.1;
         let tissue_n =
             self.tissue_n.filter(|stamped| now_s - stamped.arrival_s <= OLDEST_S).map(|stamped| stamped.value);
         let tracked = self.tracked.filter(|stamped| now_s - stamped.arrival_s <= TRACKED_S);
         let c_from = |tool: usize| match tracked?.value.tools.get(tool)? {
-            Tracked::Seen { c_from_tool, position_in_c_m, .. } => {
+            TrackedTool::Seen { c_from_tool, position_in_c_m, .. } => {
                 Some(Isometry3::from_parts((*position_in_c_m).into(), *c_from_tool))
             }
             _ => None,
         };
         let c_from_n = self.endoscope.and_then(|endoscope| c_from(endoscope.tool));
-        let c_from_view = self.endoscope.map_or(View::Fixed, |endoscope| {
+        let c_from_view = self.endoscope.map_or(ViewOrientation::Fixed, |endoscope| {
             let n_from_view = from_roll_pitch_yaw_deg(&endoscope.n_from_view_deg);
-            c_from_n.map_or(View::Unseen, |c_from_n| View::Seen(c_from_n.rotation * n_from_view))
+            c_from_n.map_or(ViewOrientation::Unseen, |c_from_n| ViewOrientation::Seen(c_from_n.rotation * n_from_view))
         });
-        Shared { tissue_n, c_from_m: c_from(side.index()), c_from_view, c_from_n }
+        SharedReadings { tissue_n, c_from_m: c_from(side.index()), c_from_view, c_from_n }
     }
 
     /// Compares each arm, while its drives are off, with the other arm's settings to detect swapped devices.
-    fn look_for_exchanges(&mut self, shared: &[Shared; SIDES]) {
+    fn look_for_exchanges(&mut self, shared: &[SharedReadings; SIDES]) {
         let [Some(right), Some(left)] = &mut self.pairs else { return };
         let [of_right, of_left] = shared.each_ref().map(|shared| shared.c_from_m);
         let (Some(on_right), Some(on_left)) = (right.shown(of_right), left.shown(of_left)) else { return };
         self.has_seen_markers |= on_right.is_marked() && on_left.is_marked();
         if self.endoscope.is_some() && !self.has_seen_markers {
-            right.wait_for(Awaited::Markers);
-            left.wait_for(Awaited::Markers);
+            right.wait_for(AwaitedDevice::Markers);
+            left.wait_for(AwaitedDevice::Markers);
         }
         if let Some(exchange) = on_right.exchange(&on_left) {
-            right.object(Obstacle::Exchanged(exchange));
+            right.object(EngageBlocker::Exchanged(exchange));
         }
         if let Some(exchange) = on_left.exchange(&on_right) {
-            left.object(Obstacle::Exchanged(exchange));
+            left.object(EngageBlocker::Exchanged(exchange));
         }
     }
 
@@ -222,8 +223,8 @@ impl DeviceRig {
             }
         }
         let shared = [
-            self.tissue.as_ref().map(Slot::health),
-            self.tracker.as_ref().map(Slot::health),
+            self.tissue.as_ref().map(DeviceSlot::health),
+            self.tracker.as_ref().map(DeviceSlot::health),
             self.pedal.as_ref().map(|pedal| pedal.slot.health()),
         ];
         shared.into_iter().flatten().for_each(|health| each(health, [false; SIDES]));
@@ -312,11 +313,11 @@ fn join_sides(inputs: &mut [Option<Inputs>; SIDES]) {
 }
 
 /// Adds a device to the roster.
-pub(super) fn enrol<D: Device + 'static>(roster: &mut Roster, part: Part, driver: String, slot: &Slot<D>) {
+pub(super) fn enrol<D: Device + 'static>(roster: &mut Roster, part: RigPart, driver: String, slot: &DeviceSlot<D>) {
     debug_assert!(roster.len() < DEVICES_MAX, "more devices than places");
     roster.push(RosterEntry::of(part, driver, slot.view()));
 }
 
-pub(super) fn is_there<D: Device + 'static>(slot: &Slot<D>) -> bool {
-    slot.health().standing == Standing::Connected
+pub(super) fn is_there<D: Device + 'static>(slot: &DeviceSlot<D>) -> bool {
+    slot.health().standing == ConnectionState::Connected
 }

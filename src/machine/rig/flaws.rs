@@ -1,6 +1,6 @@
 //! Flaws of real devices that emulated devices show on request of a rig file.
 
-use nima_devices::Trouble;
+use nima_devices::DeviceError;
 use serde::{Deserialize, Serialize};
 
 /// The flaws of an emulated rig (`[devices.flaws]`); none by default. Only for `emulated = true`.
@@ -28,8 +28,8 @@ impl Flaws {
     /// Checks every value; on a rig of real devices all must be zero.
     ///
     /// # Errors
-    /// [`Trouble::Setting`] for the first value out of its range.
-    pub(super) fn check(&self, emulated: bool) -> Result<(), Trouble> {
+    /// [`DeviceError::Setting`] for the first value out of its range.
+    pub(super) fn check(&self, emulated: bool) -> Result<(), DeviceError> {
         let ranges = [
             ("drift_n_per_min", self.drift_n_per_min, 10.0),
             ("cable_n", self.cable_n, 10.0),
@@ -39,12 +39,12 @@ impl Flaws {
             ("backlash_deg", self.backlash_deg, 5.0),
             ("bend_m_per_n", self.bend_m_per_n, 0.002),
         ];
-        for (key, value, most) in ranges {
+        for (key, value, max) in ranges {
             // Written so that NaN is refused as well.
-            let within = value >= 0.0 && value <= most;
+            let within = value >= 0.0 && value <= max;
             if !within || (!emulated && value > 0.0) {
-                let allowed = if within { "0 on a rig of real devices".to_owned() } else { format!("0 to {most}") };
-                return Err(Trouble::Setting { key: format!("flaws.{key}"), value: value.to_string(), allowed });
+                let allowed = if within { "0 on a rig of real devices".to_owned() } else { format!("0 to {max}") };
+                return Err(DeviceError::Setting { key: format!("flaws.{key}"), value: value.to_string(), allowed });
             }
         }
         Ok(())
@@ -60,11 +60,11 @@ mod tests {
         assert_eq!(Flaws::default().check(false), Ok(()));
         let drift = Flaws { drift_n_per_min: 0.2, ..Flaws::default() };
         assert_eq!(drift.check(true), Ok(()));
-        let told = drift.check(false).unwrap_err().to_string();
-        assert!(told.contains("flaws.drift_n_per_min") && told.contains("real devices"), "{told}");
+        let report = drift.check(false).unwrap_err().to_string();
+        assert!(report.contains("flaws.drift_n_per_min") && report.contains("real devices"), "{report}");
         for bad in [f64::NAN, f64::INFINITY, -0.1] {
-            let told = Flaws { backlash_deg: bad, ..Flaws::default() }.check(true).unwrap_err().to_string();
-            assert!(told.contains("flaws.backlash_deg") && told.contains("0 to 5"), "{told}");
+            let report = Flaws { backlash_deg: bad, ..Flaws::default() }.check(true).unwrap_err().to_string();
+            assert!(report.contains("flaws.backlash_deg") && report.contains("0 to 5"), "{report}");
         }
     }
 }

@@ -5,7 +5,7 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 use nima_devices::{
-    ArmReading, ForceReading, HandleReading, Health, PedalReading, SERVOS, ServoReading, TRACKED_TOOLS, Tracked,
+    ArmReading, ForceReading, HandleReading, Health, PedalReading, SERVOS, ServoReading, TRACKED_TOOLS, TrackedTool,
     TrackerReading,
 };
 
@@ -18,7 +18,7 @@ pub const AGES: usize = 48;
 
 /// Count, mean, spread and range of one number.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Spread {
+pub struct GaugeSpread {
     pub count: u32,
     pub mean: f64,
     /// Sum of the squared distances from the mean.
@@ -27,7 +27,7 @@ pub struct Spread {
     pub high: f64,
 }
 
-impl Spread {
+impl GaugeSpread {
     pub const NONE: Self = Self { count: 0, mean: 0.0, squares: 0.0, low: f64::INFINITY, high: f64::NEG_INFINITY };
 
     /// Adds a value; a non-finite value is ignored.
@@ -42,10 +42,10 @@ impl Spread {
         if other.count == 0 {
             return;
         }
-        let share = f64::from(other.count) / f64::from(count);
+        let fraction = f64::from(other.count) / f64::from(count);
         let apart = other.mean - self.mean;
-        self.squares += other.squares + apart * apart * share * f64::from(self.count);
-        self.mean += apart * share;
+        self.squares += other.squares + apart * apart * fraction * f64::from(self.count);
+        self.mean += apart * fraction;
         self.low = self.low.min(other.low);
         self.high = self.high.max(other.high);
         self.count = count;
@@ -71,7 +71,7 @@ pub struct Gauge {
     /// - force sensor: force (N), torque (Nm), acceleration (m/s^2);
     /// - tracker: position of each tool in the camera's frame (m), whenever it is visible;
     /// - pedal: its switches as one number.
-    pub channels: [Spread; CHANNELS],
+    pub channels: [GaugeSpread; CHANNELS],
     /// Ticks by the age of the newest reading, in periods of the loop.
     pub ages: [u16; AGES],
     /// Number of accepted readings since the device was opened.
@@ -86,7 +86,7 @@ pub struct Gauge {
 
 impl Gauge {
     pub const NONE: Self =
-        Self { channels: [Spread::NONE; CHANNELS], ages: [0; AGES], readings: 0, lost: 0, damaged: 0, refused: 0 };
+        Self { channels: [GaugeSpread::NONE; CHANNELS], ages: [0; AGES], readings: 0, lost: 0, damaged: 0, refused: 0 };
 
     fn add(&mut self, values: impl IntoIterator<Item = f64>) {
         self.channels.iter_mut().zip(values).for_each(|(channel, value)| channel.add(value));
@@ -114,7 +114,7 @@ impl Gauge {
 
     pub fn tracker(&mut self, reading: &TrackerReading) {
         for (tool, channels) in reading.tools.iter().zip(self.channels.chunks_exact_mut(3)) {
-            if let Tracked::Seen { position_in_c_m, .. } = tool {
+            if let TrackedTool::Seen { position_in_c_m, .. } = tool {
                 channels.iter_mut().zip(position_in_c_m).for_each(|(channel, value)| channel.add(*value));
             }
         }
@@ -157,10 +157,10 @@ mod tests {
     #[test]
     fn joined_spreads_are_those_of_all_values() {
         let values: Vec<f64> = (0..500).map(|k| 100.0 + f64::from(k * k % 97) * 1e-3).collect();
-        let mut whole = Spread::NONE;
-        let mut joined = Spread::NONE;
+        let mut whole = GaugeSpread::NONE;
+        let mut joined = GaugeSpread::NONE;
         for block in values.chunks(37) {
-            let mut part = Spread::NONE;
+            let mut part = GaugeSpread::NONE;
             for value in block {
                 part.add(*value);
             }
@@ -177,9 +177,9 @@ mod tests {
             assert_eq!((spread.count, spread.low, spread.high), (500, 100.0, 100.096));
         }
         whole.add(f64::NAN);
-        whole.join(&Spread::NONE);
+        whole.join(&GaugeSpread::NONE);
         assert_eq!(whole.count, 500);
-        assert_eq!((Spread::NONE.deviation(), Spread::NONE.extent()), (0.0, 0.0));
+        assert_eq!((GaugeSpread::NONE.deviation(), GaugeSpread::NONE.extent()), (0.0, 0.0));
     }
 
     #[test]
@@ -189,14 +189,14 @@ mod tests {
         let counts = |gauge: &Gauge| gauge.channels.map(|channel| channel.count);
         assert_eq!(counts(&gauge), [1, 1, 1, 1, 1, 1, 0, 0, 0, 0, 0, 0]);
         let mut gauge = Gauge::NONE;
-        let seen = Tracked::Seen {
+        let seen = TrackedTool::Seen {
             c_from_tool: UnitQuaternion::identity(),
             position_in_c_m: Vector3::new(0.1, 0.2, 0.3),
             error_m: 0.0,
             at_the_edge: false,
         };
-        let missing = Tracked::Missing { out_of_volume: false };
-        gauge.tracker(&TrackerReading { frame: 1, tools: [missing, seen, Tracked::Absent, Tracked::Disabled] });
+        let missing = TrackedTool::Missing { out_of_volume: false };
+        gauge.tracker(&TrackerReading { frame: 1, tools: [missing, seen, TrackedTool::Absent, TrackedTool::Disabled] });
         assert_eq!(counts(&gauge), [0, 0, 0, 1, 1, 1, 0, 0, 0, 0, 0, 0]);
         assert!((gauge.channels[5].mean - 0.3).abs() < 1e-12);
     }

@@ -2,7 +2,7 @@
 
 use nalgebra::UnitQuaternion;
 use nima_core::{
-    kinematics::Jaws,
+    kinematics::WristJaws,
     signal::{Pid, PidGains},
 };
 use nima_devices::{SERVOS, ServoReading};
@@ -34,7 +34,7 @@ pub(super) struct JawsControl {
     settings: JawsSettings,
     pids: [Pid; SERVOS],
     /// Last commanded orientation, as angles; counts full turns.
-    asked: Option<Jaws>,
+    asked: Option<WristJaws>,
     period_s: f64,
     /// Time of the last set points, s.
     last_s: Option<f64>,
@@ -46,9 +46,9 @@ impl JawsControl {
     }
 
     /// Returns the orientation of the jaws from the measured servo angles.
-    pub(super) fn measured(&self, reading: &ServoReading) -> Jaws {
+    pub(super) fn measured(&self, reading: &ServoReading) -> WristJaws {
         let [roll_rad, pitch_rad, yaw_rad, _] = self.angles(reading);
-        Jaws { roll_rad, pitch_rad, yaw_rad }
+        WristJaws { roll_rad, pitch_rad, yaw_rad }
     }
 
     /// Returns the force that opens the jaws, N at the finger: the load on the closing servo.
@@ -75,7 +75,7 @@ impl JawsControl {
         let at_least_s = 0.5 * self.period_s;
         let dt_s = self.last_s.replace(now_s).map_or(self.period_s, |last_s| (now_s - last_s).max(at_least_s));
         let near = self.asked.unwrap_or_else(|| self.measured(reading));
-        let jaws = Jaws::of(s1_from_jaws, &near);
+        let jaws = WristJaws::of(s1_from_jaws, &near);
         self.asked = Some(jaws);
         let measured = self.angles(reading);
         let grip_rad = gripper_rad.map_or(measured[SERVOS - 1], |rad| rad * self.settings.grip_per_gripper);

@@ -29,18 +29,18 @@ impl Hand {
     }
 
     fn next(&mut self) -> Vector3<f64> {
-        let way_m = self.goal_m - self.target_m;
-        let most_m = 0.3 * PERIOD_S;
-        if way_m.norm() < most_m || self.random.u32(..400) == 0 {
+        let travel_m = self.goal_m - self.target_m;
+        let max_m = 0.3 * PERIOD_S;
+        if travel_m.norm() < max_m || self.random.u32(..400) == 0 {
             let random = &mut self.random;
             self.goal_m = TROCAR_M + Vector3::new(random.f64() - 0.5, random.f64() - 0.5, -random.f64()) * 0.3;
         } else if self.random.u32(..200) == 0 {
-            self.goal_m = self.target_m - way_m;
+            self.goal_m = self.target_m - travel_m;
         }
         if self.random.u32(..2000) == 0 {
             self.target_m = self.goal_m;
         }
-        self.target_m += way_m.cap_magnitude(most_m);
+        self.target_m += travel_m.cap_magnitude(max_m);
         self.target_m + Vector3::from_fn(|_, _| self.random.f64() - 0.5) * 2e-5
     }
 }
@@ -113,8 +113,8 @@ fn drive(fraction: f64, cone_deg: f64, seed: u64, shown: &mut Shown) {
     }
 }
 
-fn at(sorted: &[f64], share: f64) -> f64 {
-    sorted[((sorted.len() - 1) as f64 * share) as usize]
+fn at(sorted: &[f64], fraction: f64) -> f64 {
+    sorted[((sorted.len() - 1) as f64 * fraction) as usize]
 }
 
 #[test]

@@ -3,69 +3,69 @@
 //! Positions in m, forces in N, both in the workspace frame (z up). A rig that cannot deliver a sample returns `None`;
 //! it never repeats an old sample as a new one.
 
-mod acts;
 mod arm_pair;
 pub mod checkup;
 #[cfg(test)]
 mod checkup_tests;
+mod device_identity;
+mod device_search;
 mod devices;
+mod engage_blocker;
 mod flaws;
 mod gauge;
 mod identified;
 mod jaws;
 #[cfg(test)]
 mod joint_limits_tests;
-mod known;
 mod makes;
 mod nominal;
-mod obstacle;
 mod part;
 mod probes;
 mod prompt;
-mod seeking;
 mod settings;
 mod starting;
+mod task_actions;
 mod watch;
 
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 pub use nima_core::{SIDES, Side};
-use nima_core::{calibration::frames::FrameSample, frames::WristSample, kinematics::Hand, safety::RawReadings};
-use nima_devices::{ClearFaults, Health, Lever, SlotView, Standing};
+use nima_core::{calibration::frames::FrameSample, frames::WristSample, kinematics::HandPose, safety::RawReadings};
+use nima_devices::{ClearFaults, ConnectionState, Health, Lever, SlotView};
 
-use crate::messages::{Bulletin, Command};
+use crate::messages::{Command, PeerStatus};
 
-pub use acts::{Act, Acts};
-pub use arm_pair::{ArmPair, Delivering, Measured};
+pub use arm_pair::{ArmPair, DeliveringDevices, SideReadings};
+pub use device_identity::CheckedDevices;
+pub use device_search::{DeviceOffer, SearchResult, seek};
 pub use devices::{DeviceRig, RigError};
+pub use engage_blocker::{AwaitedDevice, EngageBlocker, SideSwap};
 pub use flaws::Flaws;
-pub use gauge::{AGES, CHANNELS, Gauge, Gauges, Spread};
-pub use identified::Identified;
+pub use gauge::{AGES, CHANNELS, Gauge, GaugeSpread, Gauges};
+pub use identified::RemoteIdentification;
 pub use jaws::JawsSettings;
-pub use known::Checked;
 pub use makes::{FollowerSettings, LeaderSettings, SensorSettings};
 pub(crate) use makes::{Misread, take_out_makes};
 pub use nominal::Nominal;
-pub use obstacle::{Awaited, Exchange, Obstacle};
-pub use part::{DeviceName, DeviceRole, Part, PartKind};
+pub use part::{DeviceName, DeviceRole, PartKind, RigPart};
 pub use probes::rig_probes;
 pub use prompt::Prompt;
-pub use seeking::{Offer, Sought, seek};
-pub use settings::{ArmSet, DeskSettings, EndoscopeSettings, Ends, SensorPlace, Settings};
-pub use watch::Watch;
+pub use settings::{ArmSet, DeskSettings, EndoscopeSettings, RigEnds, RigSettings, SensorPlace};
+pub use task_actions::{Acts, TaskAction};
+pub use watch::DeviceWatch;
 
 /// The force measurement, by the location of the sensor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[expect(clippy::large_enum_variant, reason = "made and used within one tick, where a box would be an allocation")]
-pub enum Sensed {
+pub enum SensedForce {
     /// At the tip: force of the tissue on the tip, N.
     AtTip(Vector3<f64>),
     /// At the wrist: includes weight, trocar friction and bias, which the calibrations remove.
     AtWrist(WristSample),
     /// At the machine at the other end of a network, which identifies the force there.
-    FarEnd(Identified),
+    FarEnd(RemoteIdentification),
 }
 
-impl Sensed {
+impl SensedForce {
     /// Returns the sample of a sensor at the wrist.
     pub const fn wrist(&self) -> Option<&WristSample> {
         match self {
@@ -86,7 +86,7 @@ pub struct Switches {
 
 /// Orientation of the endoscope; the hand's motion is mapped to the tip's motion in the frame of its image.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum View {
+pub enum ViewOrientation {
     /// Fixed, as given in the rig file.
     #[default]
     Fixed,
@@ -102,7 +102,7 @@ pub enum View {
     },
 }
 
-impl View {
+impl ViewOrientation {
     /// Returns the orientation of the image, if a tracker measures it.
     pub const fn world_from_view(&self) -> Option<&UnitQuaternion<f64>> {
         match self {
@@ -128,7 +128,7 @@ impl View {
 /// The measurements of an arm pair at one time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Inputs {
-    pub hand: Hand,
+    pub hand: HandPose,
     /// Opening of the gripper, rad, if the handle has one.
     pub gripper_rad: Option<f64>,
     /// Force that opens the jaws, N at the finger, if known.
@@ -136,8 +136,8 @@ pub struct Inputs {
     pub tip_m: Vector3<f64>,
     /// Orientation of the instrument's jaws, if known.
     pub world_from_jaws: Option<UnitQuaternion<f64>>,
-    pub sensed: Sensed,
-    pub view: View,
+    pub sensed: SensedForce,
+    pub view: ViewOrientation,
     /// Input of the frame calibrations. Not checked by [`Inputs::is_finite`], because no force depends on it.
     pub frames: FrameSample,
     /// Clutch and presence.
@@ -145,7 +145,7 @@ pub struct Inputs {
     /// The drives are on: the arm follows commands and the handle's motors are powered.
     pub powered: bool,
     /// Reason why the arm cannot be engaged from its current position.
-    pub obstacle: Option<Obstacle>,
+    pub obstacle: Option<EngageBlocker>,
     /// Age of the oldest part, s, because the devices sample on their own clocks. Zero in a simulation.
     pub age_s: f64,
     /// Time since the last message over the network that joins the two halves of the rig, s; zero for a rig in one
@@ -158,13 +158,13 @@ pub struct Inputs {
 impl Inputs {
     /// No measurement: everything is at rest at the origin, without a force, and switched off.
     pub const NOTHING: Self = Self {
-        hand: Hand::at(Vector3::new(0.0, 0.0, 0.0)),
+        hand: HandPose::at(Vector3::new(0.0, 0.0, 0.0)),
         gripper_rad: None,
         grip_n: None,
         tip_m: Vector3::new(0.0, 0.0, 0.0),
         world_from_jaws: None,
-        sensed: Sensed::AtTip(Vector3::new(0.0, 0.0, 0.0)),
-        view: View::Fixed,
+        sensed: SensedForce::AtTip(Vector3::new(0.0, 0.0, 0.0)),
+        view: ViewOrientation::Fixed,
         frames: FrameSample {
             base_from_flange: None,
             other_base_from_flange: None,
@@ -188,9 +188,9 @@ impl Inputs {
 
     pub fn is_finite(&self) -> bool {
         let sensed = match &self.sensed {
-            Sensed::AtTip(force_n) => force_n.iter().all(|x| x.is_finite()),
-            Sensed::AtWrist(sample) => sample.is_finite(),
-            Sensed::FarEnd(identified) => identified.is_finite(),
+            SensedForce::AtTip(force_n) => force_n.iter().all(|x| x.is_finite()),
+            SensedForce::AtWrist(sample) => sample.is_finite(),
+            SensedForce::FarEnd(identified) => identified.is_finite(),
         };
         sensed
             && self.hand.is_finite()
@@ -269,7 +269,7 @@ pub trait Rig: Send {
     /// [`Rig::write`]. A rig in one place ignores it.
     ///
     /// Must not block and must not allocate.
-    fn hear(&mut self, _now_s: f64, _bulletins: &[Option<Bulletin<'_>>; SIDES]) {}
+    fn receive_status(&mut self, _now_s: f64, _bulletins: &[Option<PeerStatus<'_>>; SIDES]) {}
 
     /// Returns the next command of the operator at the other end of a network; call until it returns `None`.
     fn command(&mut self) -> Option<Command> {
@@ -333,8 +333,8 @@ impl<R: Rig + ?Sized> Rig for Box<R> {
         (**self).write(now_s, outputs);
     }
 
-    fn hear(&mut self, now_s: f64, bulletins: &[Option<Bulletin<'_>>; SIDES]) {
-        (**self).hear(now_s, bulletins);
+    fn receive_status(&mut self, now_s: f64, bulletins: &[Option<PeerStatus<'_>>; SIDES]) {
+        (**self).receive_status(now_s, bulletins);
     }
 
     fn command(&mut self) -> Option<Command> {
@@ -351,7 +351,7 @@ pub struct Healths {
     /// In the order of the roster; entries beyond its end are `closed`.
     pub devices: [Health; DEVICES_MAX],
     /// Reason why an arm that delivers data cannot be engaged from its current position.
-    pub obstacles: [Option<Obstacle>; SIDES],
+    pub obstacles: [Option<EngageBlocker>; SIDES],
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -360,7 +360,7 @@ pub struct DeviceEvent {
     pub t_s: f64,
     /// Index into the roster.
     pub device: u8,
-    pub standing: Standing,
+    pub standing: ConnectionState,
     /// Sides whose force path needs the device.
     pub of_side: [bool; SIDES],
 }
@@ -374,7 +374,7 @@ pub struct RosterEntry {
     /// Connects and disconnects the device, and reports why it is not connected.
     pub view: SlotView,
     /// Part for which the device is used; `None` for a device that controls a simulated rig.
-    pub part: Option<Part>,
+    pub part: Option<RigPart>,
     /// Clears the faults of the device itself, if it has such a command; carried out when the device is next opened.
     pub clear_faults: Option<ClearFaults>,
 }
@@ -386,7 +386,7 @@ impl RosterEntry {
     }
 
     /// Creates an entry for a part of the rig.
-    pub fn of(part: Part, driver: impl Into<String>, view: SlotView) -> Self {
+    pub fn of(part: RigPart, driver: impl Into<String>, view: SlotView) -> Self {
         Self { part: Some(part), ..Self::new(DeviceRole::Part(part), driver, view) }
     }
 
@@ -399,7 +399,7 @@ impl RosterEntry {
     /// to it.
     pub const fn force_sensor_of(&self) -> Option<Side> {
         match self.part {
-            Some(Part::Sensor(side)) => Some(side),
+            Some(RigPart::Sensor(side)) => Some(side),
             _ => None,
         }
     }

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use nima_core::kinematics::LIMIT_RAD;
 use nima_devices::dynamixel;
 
-use super::{Part, PartKind, SensorSettings, Settings, gauge::CHANNELS};
+use super::{PartKind, RigPart, RigSettings, SensorSettings, gauge::CHANNELS};
 
 /// Minimum reach of an omega.7 from the centre, m (the manufacturer's workspace).
 const HANDLE_REACH_M: f64 = 0.075;
@@ -26,11 +26,11 @@ pub struct Nominal {
 
 impl Nominal {
     /// Returns the expected deliveries of a part of a rig with these devices and a loop of this rate (Hz).
-    pub fn of(part: Part, devices: &Settings, loop_hz: f64) -> Self {
+    pub fn of(part: RigPart, devices: &RigSettings, loop_hz: f64) -> Self {
         let mut nominal = Self { rate_hz: None, ranges: [None; CHANNELS], inertial: false };
         let set = part.side().and_then(|side| devices.arm(side));
         match part {
-            Part::Handle(_) => {
+            RigPart::Handle(_) => {
                 nominal.rate_hz = set.map(|set| set.handle.rate_hz().min(loop_hz));
                 // The reach of a user's handle is unknown.
                 if set.is_some_and(|set| set.handle.force_dimension().is_some()) {
@@ -38,14 +38,14 @@ impl Nominal {
                     nominal.ranges[GRIPPER] = Some([0.0, GRIPPER_RAD]);
                 }
             }
-            Part::Arm(_) => {
+            RigPart::Arm(_) => {
                 // The device is queried once per tick.
                 nominal.rate_hz = Some(loop_hz);
                 let turning = LIMIT_RAD.map(|limit| limit.is_finite().then_some([-limit, limit]));
                 nominal.ranges[..turning.len()].copy_from_slice(&turning);
             }
-            Part::Sensor(_) | Part::TissueSensor => {
-                let sensor = if part == Part::TissueSensor {
+            RigPart::Sensor(_) | RigPart::TissueSensor => {
+                let sensor = if part == RigPart::TissueSensor {
                     devices.tissue_sensor.as_ref()
                 } else {
                     set.map(|set| &set.sensor)
@@ -53,20 +53,20 @@ impl Nominal {
                 nominal.rate_hz = sensor.map(SensorSettings::expected_hz);
                 nominal.inertial = sensor.is_some_and(SensorSettings::is_inertial);
             }
-            Part::Servos(_) => nominal.ranges = ranges_of(set.and_then(|set| set.servos.as_ref())),
-            Part::Tracker => nominal.rate_hz = devices.tracker.as_ref().map(|tracker| tracker.frame_hz),
-            Part::Pedal => {}
+            RigPart::Servos(_) => nominal.ranges = ranges_of(set.and_then(|set| set.servos.as_ref())),
+            RigPart::Tracker => nominal.rate_hz = devices.tracker.as_ref().map(|tracker| tracker.frame_hz),
+            RigPart::Pedal => {}
         }
         nominal
     }
 
     /// Returns whether the device delivers continuously; silence is then a fault.
-    pub const fn is_steady(part: Part) -> bool {
+    pub const fn is_steady(part: RigPart) -> bool {
         !matches!(part.kind(), PartKind::Pedal)
     }
 }
 
-fn ranges_of(servos: Option<&dynamixel::Settings>) -> [Option<[f64; 2]>; CHANNELS] {
+fn ranges_of(servos: Option<&dynamixel::DynamixelSettings>) -> [Option<[f64; 2]>; CHANNELS] {
     let mut ranges = [None; CHANNELS];
     for (range, servo) in ranges.iter_mut().zip(servos.iter().flat_map(|settings| &settings.servos)) {
         *range = Some([servo.position_min_rad, servo.position_max_rad]);
@@ -83,18 +83,18 @@ mod tests {
     fn every_part_of_the_emulated_rig_has_its_yardstick() {
         let rig = RigConfig::load("emulated").unwrap();
         let devices = rig.devices.unwrap();
-        let rates: Vec<_> = Part::ALL.iter().map(|part| Nominal::of(*part, &devices, rig.rate_hz).rate_hz).collect();
+        let rates: Vec<_> = RigPart::ALL.iter().map(|part| Nominal::of(*part, &devices, rig.rate_hz).rate_hz).collect();
         let [thousand, none] = [Some(1000.0), None];
         let of_side = [thousand, thousand, thousand, none];
         assert_eq!(rates[..4], of_side);
         assert_eq!(rates[4..8], of_side);
         assert_eq!(rates[8..], [Some(800.0), Some(60.0), None]);
         let inertial: Vec<_> =
-            Part::ALL.into_iter().filter(|part| Nominal::of(*part, &devices, 1000.0).inertial).collect();
+            RigPart::ALL.into_iter().filter(|part| Nominal::of(*part, &devices, 1000.0).inertial).collect();
         assert_eq!(inertial.len(), 2, "a first-generation sensor has none: {inertial:?}");
-        let servos = Nominal::of(Part::ALL[3], &devices, 1000.0);
+        let servos = Nominal::of(RigPart::ALL[3], &devices, 1000.0);
         assert_eq!(servos.ranges[3..5], [Some([-1.6, 1.6]), None]);
-        let arm = Nominal::of(Part::ALL[1], &devices, 1000.0);
+        let arm = Nominal::of(RigPart::ALL[1], &devices, 1000.0);
         assert!(arm.ranges[0].is_none() && arm.ranges[1].is_some(), "joint 1 turns without end");
     }
 }

@@ -2,10 +2,10 @@
 
 use std::fmt;
 
-use super::{FollowerSettings, LeaderSettings, SensorSettings, Settings, Side};
+use super::{FollowerSettings, LeaderSettings, RigSettings, SensorSettings, Side};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Part {
+pub enum RigPart {
     Handle(Side),
     Arm(Side),
     /// The force sensor on the arm of this side: calibrations are bound to it.
@@ -20,7 +20,7 @@ pub enum Part {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DeviceRole {
     /// A part of the rig; on a simulated rig, a device that replaces this part.
-    Part(Part),
+    Part(RigPart),
     /// A cap that controls a simulated rig.
     Cap,
 }
@@ -39,7 +39,7 @@ impl DeviceRole {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DeviceName {
     pub role: DeviceRole,
-    /// One of [`Part::makes`]; `None` if the role has only one make.
+    /// One of [`RigPart::makes`]; `None` if the role has only one make.
     pub make: Option<&'static str>,
 }
 
@@ -66,18 +66,18 @@ impl PartKind {
     pub const OF_A_SIDE: [Self; 4] = [Self::Handle, Self::Arm, Self::Sensor, Self::Servos];
 
     /// Returns the part of this kind on a side; `None` for a kind that both sides share.
-    pub const fn of(self, side: Side) -> Option<Part> {
+    pub const fn of(self, side: Side) -> Option<RigPart> {
         match self {
-            Self::Handle => Some(Part::Handle(side)),
-            Self::Arm => Some(Part::Arm(side)),
-            Self::Sensor => Some(Part::Sensor(side)),
-            Self::Servos => Some(Part::Servos(side)),
+            Self::Handle => Some(RigPart::Handle(side)),
+            Self::Arm => Some(RigPart::Arm(side)),
+            Self::Sensor => Some(RigPart::Sensor(side)),
+            Self::Servos => Some(RigPart::Servos(side)),
             Self::Tracker | Self::Pedal => None,
         }
     }
 }
 
-impl Part {
+impl RigPart {
     /// Every part, in the order of the roster.
     pub const ALL: [Self; 11] = [
         Self::Handle(Side::Right),
@@ -141,12 +141,12 @@ impl Part {
     }
 
     /// Returns the device of this part in a rig with these devices.
-    pub(crate) fn device(self, devices: &Settings) -> DeviceName {
+    pub(crate) fn device(self, devices: &RigSettings) -> DeviceName {
         DeviceName { role: DeviceRole::Part(self), make: self.make(devices) }
     }
 
-    /// Returns the make in a rig with these devices, one of [`Part::makes`].
-    fn make(self, devices: &Settings) -> Option<&'static str> {
+    /// Returns the make in a rig with these devices, one of [`RigPart::makes`].
+    fn make(self, devices: &RigSettings) -> Option<&'static str> {
         let set = self.side().and_then(|side| devices.arm(side));
         let chosen = match self {
             Self::Handle(_) => set.map(|set| set.handle.maker()),
@@ -159,7 +159,7 @@ impl Part {
     }
 
     /// Returns whether the rig uses the default make here, which is searched for automatically.
-    pub(super) fn has_usual_make(self, devices: &Settings) -> bool {
+    pub(super) fn has_usual_make(self, devices: &RigSettings) -> bool {
         self.make(devices) == self.makes().first().copied()
     }
 
@@ -181,7 +181,7 @@ impl Part {
     }
 
     /// Returns whether a rig with these devices has the part at this machine.
-    pub const fn is_in(self, devices: &Settings) -> bool {
+    pub const fn is_in(self, devices: &RigSettings) -> bool {
         let is_here = match self {
             Self::Handle(_) | Self::Pedal => devices.ends.have_leader(),
             _ => devices.ends.have_follower(),
@@ -189,7 +189,7 @@ impl Part {
         is_here && self.is_listed(devices)
     }
 
-    const fn is_listed(self, devices: &Settings) -> bool {
+    const fn is_listed(self, devices: &RigSettings) -> bool {
         match self {
             Self::Handle(side) | Self::Arm(side) | Self::Sensor(side) => devices.arm(side).is_some(),
             Self::Servos(side) => match devices.arm(side) {

@@ -5,11 +5,11 @@ use nima_devices::discovery::{
     probes::{pedal, servos, tracker},
 };
 
-use super::{Settings, Side};
+use super::{RigSettings, Side};
 
 /// Returns a probe for every device, named as in the rig: `right handle`, `right arm`, `right sensor`, `right servos`,
 /// the same for the left side, `tissue sensor`, `tracker`, `pedal`.
-pub fn rig_probes(settings: &Settings) -> Vec<Box<dyn Probe>> {
+pub fn rig_probes(settings: &RigSettings) -> Vec<Box<dyn Probe>> {
     let mut probes = Vec::new();
     for side in Side::ALL {
         let Some(set) = settings.arm(side) else { continue };

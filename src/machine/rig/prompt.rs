@@ -1,7 +1,7 @@
 //! Instructions of the screen to the person at the arm during calibration.
 
 use nalgebra::{UnitQuaternion, UnitVector3};
-use nima_core::calibration::frames::Move;
+use nima_core::calibration::frames::ViewMove;
 
 /// One instruction. On a real rig a person reads it from the screen and no machine moves; on a simulated rig a
 /// simulated person follows it.
@@ -37,9 +37,9 @@ pub enum Prompt {
         point: u8,
     },
     /// Move the tip in this direction of the endoscope image, then hold still.
-    MoveTip(Move),
+    MoveTip(ViewMove),
     /// Move the handle in this direction of the endoscope image, then hold still.
-    MoveHandle(Move),
+    MoveHandle(ViewMove),
 }
 
 impl Prompt {

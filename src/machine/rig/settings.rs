@@ -7,16 +7,16 @@ use nima_core::{
     frames::from_roll_pitch_yaw_deg,
     kinematics::{ArmSettings, RcmSettings},
 };
-use nima_devices::{TRACKED_TOOLS, Trouble, dynamixel, hid, ndi};
+use nima_devices::{DeviceError, TRACKED_TOOLS, dynamixel, hid, ndi};
 use serde::{Deserialize, Serialize};
 
-use super::{Checked, Flaws, FollowerSettings, JawsSettings, LeaderSettings, Part, SensorSettings};
+use super::{CheckedDevices, Flaws, FollowerSettings, JawsSettings, LeaderSettings, RigPart, SensorSettings};
 use crate::rig::{SIDES, Side};
 
 /// The devices of a rig. Each is optional; the parts of an arm pair are not.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
-pub struct Settings {
+pub struct RigSettings {
     /// The devices are emulated on this computer, at the addresses given here, and the console starts the emulators.
     /// Relative paths are within the user's [`runtime_folder`](nima_devices::own_folder::runtime_folder).
     pub emulated: bool,
@@ -25,7 +25,7 @@ pub struct Settings {
     pub left: Option<ArmSet>,
     /// The sensor under the tissue, for calibration.
     pub tissue_sensor: Option<SensorSettings>,
-    pub tracker: Option<ndi::Settings>,
+    pub tracker: Option<ndi::NdiSettings>,
     /// The endoscope's marker for the tracker: the mapping from hand to tip then follows the endoscope's orientation.
     pub endoscope: Option<EndoscopeSettings>,
     /// The foot pedal: clutch and presence.
@@ -35,15 +35,15 @@ pub struct Settings {
     /// The devices of the last passed ready check, which distinguish right from left if the file contains no serial
     /// number. Not in the file.
     #[serde(skip)]
-    pub checked: Option<Checked>,
+    pub checked: Option<CheckedDevices>,
     /// The devices at this machine. Not in the file, which is the same at both ends of a network.
     #[serde(skip)]
-    pub ends: Ends,
+    pub ends: RigEnds,
 }
 
 /// The devices of a rig file that are at this machine.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Ends {
+pub enum RigEnds {
     /// All of them.
     #[default]
     Both,
@@ -53,7 +53,7 @@ pub enum Ends {
     Follower,
 }
 
-impl Ends {
+impl RigEnds {
     pub const fn have_leader(self) -> bool {
         matches!(self, Self::Both | Self::Leader)
     }
@@ -104,7 +104,7 @@ pub struct ArmSet {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub base_from_c_deg: Option<Vector3<f64>>,
     #[serde(default)]
-    pub servos: Option<dynamixel::Settings>,
+    pub servos: Option<dynamixel::DynamixelSettings>,
     /// Transmission from the servos to the instrument's wrist.
     #[serde(default)]
     pub jaws: JawsSettings,
@@ -114,8 +114,8 @@ impl ArmSet {
     /// Returns the marker in the frame of the wrist sensor, and the camera in the frame of the arm's base; `None`
     /// before the hand-eye calibration.
     pub(super) fn hand_eye(&self) -> Option<[Isometry3<f64>; 2]> {
-        let pose = |at_m: Option<Vector3<f64>>, deg: Option<Vector3<f64>>| {
-            Some(Isometry3::from_parts(at_m?.into(), from_roll_pitch_yaw_deg(&deg?)))
+        let pose = |position_m: Option<Vector3<f64>>, deg: Option<Vector3<f64>>| {
+            Some(Isometry3::from_parts(position_m?.into(), from_roll_pitch_yaw_deg(&deg?)))
         };
         Some([pose(self.s1_from_m_m, self.s1_from_m_deg)?, pose(self.base_from_c_m, self.base_from_c_deg)?])
     }
@@ -149,13 +149,13 @@ impl DeskSettings {
     /// Checks the handle.
     ///
     /// # Errors
-    /// [`Trouble::Setting`] for the first invalid value, with its full key.
-    pub fn check(&self) -> Result<(), Trouble> {
+    /// [`DeviceError::Setting`] for the first invalid value, with its full key.
+    pub fn check(&self) -> Result<(), DeviceError> {
         let Some(handle) = &self.handle else { return Ok(()) };
         // An emulated handle must not be mistaken for a real one, nor may both control the loop.
         handle.check().and_then(|()| handle.check_emulated(false)).map_err(|trouble| match trouble {
-            Trouble::Setting { key, value, allowed } => {
-                Trouble::Setting { key: format!("desk.handle.{key}"), value, allowed }
+            DeviceError::Setting { key, value, allowed } => {
+                DeviceError::Setting { key: format!("desk.handle.{key}"), value, allowed }
             }
             other => other,
         })
@@ -171,7 +171,7 @@ pub enum SensorPlace {
     Tip,
 }
 
-impl Settings {
+impl RigSettings {
     pub const fn arm(&self, side: Side) -> Option<&ArmSet> {
         match side {
             Side::Right => self.right.as_ref(),
@@ -212,8 +212,8 @@ impl Settings {
     /// Checks every setting; opens nothing.
     ///
     /// # Errors
-    /// [`Trouble::Setting`] for the first invalid setting, with its full key.
-    pub fn check(&self) -> Result<(), Trouble> {
+    /// [`DeviceError::Setting`] for the first invalid setting, with its full key.
+    pub fn check(&self) -> Result<(), DeviceError> {
         for side in Side::ALL {
             let Some(set) = self.arm(side) else { continue };
             let of = |part: &'static str| move |trouble| below(&format!("{}.{part}", side.word()), trouble);
@@ -223,7 +223,7 @@ impl Settings {
             set.arm.check_emulated(self.emulated).map_err(of("arm"))?;
             set.sensor.check().map_err(of("sensor"))?;
             set.sensor.check_emulated(self.emulated).map_err(of("sensor"))?;
-            set.servos.as_ref().map_or(Ok(()), dynamixel::Settings::check).map_err(of("servos"))?;
+            set.servos.as_ref().map_or(Ok(()), dynamixel::DynamixelSettings::check).map_err(of("servos"))?;
         }
         if let (Some(right), Some(left)) = (&self.right, &self.left) {
             right.handle.check_beside(&left.handle).map_err(|trouble| below("right.handle", trouble))?;
@@ -231,7 +231,7 @@ impl Settings {
                 of_left.check_beside(of_right).map_err(|trouble| below("left.servos", trouble))?;
             }
             if right.tool == left.tool {
-                return Err(Trouble::Setting {
+                return Err(DeviceError::Setting {
                     key: "devices.left.tool".to_owned(),
                     value: format!("\"{}\"", left.tool),
                     allowed: "a different name than the right tool's: calibrations belong to sensor and tool, and swapped sensors would keep theirs".to_owned(),
@@ -242,8 +242,8 @@ impl Settings {
         self.check_hand_eye()?;
         self.check_endoscope()?;
         self.flaws.check(self.emulated).map_err(|trouble| match trouble {
-            Trouble::Setting { key, value, allowed } => {
-                Trouble::Setting { key: format!("devices.{key}"), value, allowed }
+            DeviceError::Setting { key, value, allowed } => {
+                DeviceError::Setting { key: format!("devices.{key}"), value, allowed }
             }
             other => other,
         })?;
@@ -251,28 +251,28 @@ impl Settings {
         self.tissue_sensor.as_ref().map_or(Ok(()), SensorSettings::check).map_err(of("tissue_sensor"))?;
         let emulated = |sensor: &SensorSettings| sensor.check_emulated(self.emulated);
         self.tissue_sensor.as_ref().map_or(Ok(()), emulated).map_err(of("tissue_sensor"))?;
-        self.tracker.as_ref().map_or(Ok(()), ndi::Settings::check).map_err(of("tracker"))?;
+        self.tracker.as_ref().map_or(Ok(()), ndi::NdiSettings::check).map_err(of("tracker"))?;
         self.pedal.as_ref().map_or(Ok(()), hid::PedalSettings::check).map_err(of("pedal"))
     }
 }
 
-impl Settings {
+impl RigSettings {
     /// Checks that every external device has a separate address.
-    fn check_addresses(&self) -> Result<(), Trouble> {
-        let address = |part: Part| {
+    fn check_addresses(&self) -> Result<(), DeviceError> {
+        let address = |part: RigPart| {
             let set = part.side().and_then(|side| self.arm(side));
             match part {
-                Part::Handle(_) => set?.handle.listens_at(),
-                Part::Arm(_) => set?.arm.listens_at(),
-                Part::Sensor(_) => set?.sensor.listens_at(),
-                Part::TissueSensor => self.tissue_sensor.as_ref()?.listens_at(),
-                Part::Servos(_) | Part::Tracker | Part::Pedal => None,
+                RigPart::Handle(_) => set?.handle.listens_at(),
+                RigPart::Arm(_) => set?.arm.listens_at(),
+                RigPart::Sensor(_) => set?.sensor.listens_at(),
+                RigPart::TissueSensor => self.tissue_sensor.as_ref()?.listens_at(),
+                RigPart::Servos(_) | RigPart::Tracker | RigPart::Pedal => None,
             }
         };
-        for (place, part) in Part::ALL.into_iter().enumerate() {
+        for (place, part) in RigPart::ALL.into_iter().enumerate() {
             let Some(own) = address(part) else { continue };
-            if let Some(other) = Part::ALL[..place].iter().find(|other| address(**other) == Some(own)) {
-                return Err(Trouble::Setting {
+            if let Some(other) = RigPart::ALL[..place].iter().find(|other| address(**other) == Some(own)) {
+                return Err(DeviceError::Setting {
                     key: format!("{}.listen", part.key()),
                     value: own.to_string(),
                     allowed: format!("a different port than that of the {}", other.name()),
@@ -282,7 +282,7 @@ impl Settings {
         Ok(())
     }
 
-    fn check_hand_eye(&self) -> Result<(), Trouble> {
+    fn check_hand_eye(&self) -> Result<(), DeviceError> {
         for side in Side::ALL {
             let Some(set) = self.arm(side) else { continue };
             let given = [
@@ -293,7 +293,7 @@ impl Settings {
             ];
             let finite = |vector: &Vector3<f64>| vector.iter().all(|x| x.is_finite());
             if let Some((key, Some(vector))) = given.into_iter().find(|(_, given)| given.is_some_and(|v| !finite(&v))) {
-                return Err(Trouble::Setting {
+                return Err(DeviceError::Setting {
                     key: format!("devices.{}.{key}", side.word()),
                     value: format!("{:?}", vector.as_slice()),
                     allowed: "three finite numbers".to_owned(),
@@ -303,9 +303,9 @@ impl Settings {
         Ok(())
     }
 
-    fn check_endoscope(&self) -> Result<(), Trouble> {
+    fn check_endoscope(&self) -> Result<(), DeviceError> {
         let Some(endoscope) = &self.endoscope else { return Ok(()) };
-        let refuse = |key: &str, value: String, allowed: &str| Trouble::Setting {
+        let refuse = |key: &str, value: String, allowed: &str| DeviceError::Setting {
             key: format!("devices.{key}"),
             value,
             allowed: allowed.to_owned(),
@@ -333,10 +333,10 @@ impl Settings {
 }
 
 /// Prefixes the key of a trouble with its part of the rig file.
-fn below(part: &str, trouble: Trouble) -> Trouble {
+fn below(part: &str, trouble: DeviceError) -> DeviceError {
     match trouble {
-        Trouble::Setting { key, value, allowed } => {
-            Trouble::Setting { key: format!("devices.{part}.{key}"), value, allowed }
+        DeviceError::Setting { key, value, allowed } => {
+            DeviceError::Setting { key: format!("devices.{part}.{key}"), value, allowed }
         }
         other => other,
     }
@@ -368,7 +368,7 @@ mod tests {
         assert_eq!(real.clone().emulated_in("/elsewhere".as_ref()), real);
     }
 
-    fn handle_of(set: &mut Option<ArmSet>) -> &mut force_dimension::Settings {
+    fn handle_of(set: &mut Option<ArmSet>) -> &mut force_dimension::ForceDimensionSettings {
         set.as_mut().unwrap().handle.force_dimension_mut().unwrap()
     }
 
@@ -376,30 +376,30 @@ mod tests {
     fn an_impossible_setting_is_told_by_its_whole_key() {
         let good = RigConfig::load("paper").unwrap().devices.unwrap();
         assert_eq!(good.check(), Ok(()));
-        let told = |change: fn(&mut super::Settings)| {
+        let report = |change: fn(&mut super::RigSettings)| {
             let mut settings = good.clone();
             change(&mut settings);
             settings.check().unwrap_err().to_string()
         };
-        let same = told(|settings| handle_of(&mut settings.left).serial = Some(1));
-        assert!(same.contains("devices.right.handle.serial") && same.contains("serial numbers"), "{same}");
-        let emulator = told(|settings| handle_of(&mut settings.left).emulator = Some(([127, 0, 0, 1], 1).into()));
+        let same = report(|settings| handle_of(&mut settings.left).serial = Some(1));
+        assert!(same.contains("devices.right.handle.serial") && same.contains("different serial number"), "{same}");
+        let emulator = report(|settings| handle_of(&mut settings.left).emulator = Some(([127, 0, 0, 1], 1).into()));
         assert!(emulator.contains("devices.left.handle.emulator = 127.0.0.1:1"), "{emulator}");
-        let real = told(|settings| settings.emulated = true);
+        let real = report(|settings| settings.emulated = true);
         assert!(real.contains("devices.right.handle.emulator = not given"), "{real}");
         let speed =
-            told(|settings| settings.left.as_mut().unwrap().arm.kinova_mut().unwrap().speed_fraction = f64::NAN);
+            report(|settings| settings.left.as_mut().unwrap().arm.kinova_mut().unwrap().speed_fraction = f64::NAN);
         assert!(speed.contains("devices.left.arm.speed_fraction"), "{speed}");
-        let ids = told(|settings| {
+        let ids = report(|settings| {
             let servos = settings.right.as_ref().unwrap().servos.clone();
             settings.left.as_mut().unwrap().servos = servos;
         });
         assert!(ids.contains("devices.left.servos.servos[0].id = 1") && ids.contains("different ids"), "{ids}");
-        let tool = told(|settings| settings.left.as_mut().unwrap().tool = "Right grasper".to_owned());
+        let tool = report(|settings| settings.left.as_mut().unwrap().tool = "Right grasper".to_owned());
         assert!(tool.contains("devices.left.tool = \"Right grasper\""), "{tool}");
-        let baud = told(|settings| settings.right.as_mut().unwrap().servos.as_mut().unwrap().baud = 1);
+        let baud = report(|settings| settings.right.as_mut().unwrap().servos.as_mut().unwrap().baud = 1);
         assert!(baud.contains("devices.right.servos.baud"), "{baud}");
-        let pedal = told(|settings| settings.pedal.as_mut().unwrap().source = "nothing".to_owned());
+        let pedal = report(|settings| settings.pedal.as_mut().unwrap().source = "nothing".to_owned());
         assert!(pedal.contains("devices.pedal.source"), "{pedal}");
     }
 }

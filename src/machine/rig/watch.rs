@@ -1,6 +1,6 @@
 //! Detects that devices connect or are lost.
 
-use nima_devices::Standing;
+use nima_devices::ConnectionState;
 
 use crate::rig::{DEVICES_MAX, DeviceEvent, SIDES};
 
@@ -9,22 +9,22 @@ const WAITING: usize = 32;
 
 /// Last known state of every device, and the events not yet reported.
 #[derive(Debug)]
-pub struct Watch {
-    before: [Standing; DEVICES_MAX],
+pub struct DeviceWatch {
+    before: [ConnectionState; DEVICES_MAX],
     events: [Option<DeviceEvent>; WAITING],
     first: usize,
     count: usize,
 }
 
-impl Default for Watch {
+impl Default for DeviceWatch {
     fn default() -> Self {
-        Self { before: [Standing::Opening; DEVICES_MAX], events: [None; WAITING], first: 0, count: 0 }
+        Self { before: [ConnectionState::Opening; DEVICES_MAX], events: [None; WAITING], first: 0, count: 0 }
     }
 }
 
-impl Watch {
+impl DeviceWatch {
     /// Compares the state of a device with the last known one.
-    pub fn look(&mut self, t_s: f64, device: usize, standing: Standing, of_side: [bool; SIDES]) {
+    pub fn look(&mut self, t_s: f64, device: usize, standing: ConnectionState, of_side: [bool; SIDES]) {
         let Some(before) = self.before.get_mut(device) else { return };
         if *before == standing {
             return;
@@ -56,17 +56,17 @@ mod tests {
 
     #[test]
     fn each_change_is_told_once_and_in_order() {
-        let mut watch = Watch::default();
+        let mut watch = DeviceWatch::default();
         for round in 0..100 {
             let t_s = f64::from(round);
-            watch.look(t_s, 3, Standing::Connected, [true, false]);
-            watch.look(t_s, 3, Standing::Connected, [true, false]);
-            watch.look(t_s, 3, Standing::Lost(Loss::Silent), [true, false]);
-            assert_eq!(watch.take().map(|event| event.standing), Some(Standing::Connected));
-            assert_eq!(watch.take().map(|event| event.standing), Some(Standing::Lost(Loss::Silent)));
+            watch.look(t_s, 3, ConnectionState::Connected, [true, false]);
+            watch.look(t_s, 3, ConnectionState::Connected, [true, false]);
+            watch.look(t_s, 3, ConnectionState::Lost(Loss::Silent), [true, false]);
+            assert_eq!(watch.take().map(|event| event.standing), Some(ConnectionState::Connected));
+            assert_eq!(watch.take().map(|event| event.standing), Some(ConnectionState::Lost(Loss::Silent)));
             assert_eq!(watch.take(), None);
         }
-        watch.look(0.0, DEVICES_MAX, Standing::Connected, [true, true]);
+        watch.look(0.0, DEVICES_MAX, ConnectionState::Connected, [true, true]);
         assert_eq!(watch.take(), None, "there is no such device");
     }
 }

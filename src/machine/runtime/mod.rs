@@ -1,27 +1,27 @@
 //! Runs the loop in its own thread on the real clock or in paced simulated time, or in the caller's thread on the
 //! virtual clock.
 //!
-//! Takes an [`Assembly`]; returns a [`Handle`] (commands in; ticks and events out, over bounded queues) or a
-//! [`Summary`].
+//! Takes an [`Assembly`]; returns a [`LoopHandle`] (commands in; ticks and events out, over bounded queues) or a
+//! [`RuntimeSummary`].
 //! The real-time thread owns the rig and the loop. It never waits for a receiver: if a queue is full, the item is
 //! dropped and counted.
 
 mod clock_profile;
 mod jitter;
+mod loop_tap;
 mod os;
 mod phase;
 mod summary;
 mod supervisor;
-mod tap;
 mod thread;
 mod virtual_clock;
 mod wrists;
 
 pub use clock_profile::{ClockProfile, ParseClockProfileError, TickTime, TickTimes, VirtualClock};
-pub use summary::{ArmEnd, CauseAndCure, CpuShare, DeviceFigures, Histograms, ModeError, Summary};
+pub use loop_tap::{Operation, TICKS_TAPPED_MAX, Tap, TapEnd, TapEntry, TapItem, TapPayload, TickRecord, tap};
+pub use summary::{ArmEnd, CauseAndCure, CpuFraction, DeviceFigures, Histograms, ModeError, RuntimeSummary};
 pub use supervisor::STALL_MAX_S;
-pub use tap::{Entry, Next, Operation, Passed, Stepped, TICKS_TAPPED_MAX, Tap, TapEnd, tap};
-pub use thread::{Ender, Handle, StartError, TICKS_WAITING_MAX, start};
+pub use thread::{Ender, LoopHandle, LoopStartError, TICKS_WAITING_MAX, start};
 pub use virtual_clock::{VirtualSupervisor, run_virtual, run_virtual_on, tick};
 pub use wrists::WristChange;
 
@@ -32,7 +32,7 @@ use crate::{
 };
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Clock {
+pub enum RuntimeClock {
     /// The monotonic clock: every period has a deadline, late wake-ups are counted, and a stall switches the drives
     /// off.
     Real,
@@ -50,7 +50,7 @@ pub struct Assembly {
     pub roster: Roster,
     pub rate_hz: f64,
     /// Source of time, if the loop runs in its own thread.
-    pub clock: Clock,
+    pub clock: RuntimeClock,
     pub scheduling: SchedulingClass,
     /// Whether to engage as soon as every device delivers data.
     pub engage: bool,

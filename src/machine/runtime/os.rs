@@ -21,8 +21,8 @@ pub(super) fn cpu_s() -> [f64; 2] {
     [libc::CLOCK_THREAD_CPUTIME_ID, libc::CLOCK_PROCESS_CPUTIME_ID].map(|clock| {
         let mut time = libc::timespec { tv_sec: 0, tv_nsec: 0 };
         // SAFETY: a plain system call; `time` is valid for writing.
-        let told = unsafe { libc::clock_gettime(clock, &raw mut time) } == 0;
-        if told { time.tv_sec as f64 + time.tv_nsec as f64 * 1e-9 } else { 0.0 }
+        let report = unsafe { libc::clock_gettime(clock, &raw mut time) } == 0;
+        if report { time.tv_sec as f64 + time.tv_nsec as f64 * 1e-9 } else { 0.0 }
     })
 }
 

@@ -21,7 +21,7 @@ const REST: u64 = 60_000;
 
 /// Phase of the loop's wake-ups within the period.
 #[derive(Debug)]
-pub(super) struct Phase {
+pub(super) struct LoopPhase {
     period_ns: u64,
     /// Recent ticks in which a device had no new reading.
     late: f64,
@@ -33,7 +33,7 @@ pub(super) struct Phase {
     stood: u64,
 }
 
-impl Phase {
+impl LoopPhase {
     pub(super) const fn new(period_ns: u64) -> Self {
         Self { period_ns, late: 0.0, ahead_ns: 0, moves: 0, stood: 0 }
     }
@@ -71,7 +71,7 @@ mod tests {
     /// ns.
     fn late(begins_ns: &[u64], every_ns: u64, ticks: u64) -> (Vec<bool>, u64) {
         let mut random = fastrand::Rng::with_seed(1);
-        let mut phase = Phase::new(PERIOD_NS);
+        let mut phase = LoopPhase::new(PERIOD_NS);
         let mut now_ns = 0;
         let mut moved_ns = 0;
         let mut next_ns: Vec<u64> = begins_ns.to_vec();
@@ -100,8 +100,8 @@ mod tests {
         for first in 0..10 {
             for second in 0..10 {
                 let (late, moved_ns) = late(&[100_000 * first, 100_000 * second], PERIOD_NS, 20_000);
-                let share = late[10_000..].iter().filter(|late| **late).count() as f64 / 10_000.0;
-                assert!(share < 0.01 && moved_ns < PERIOD_NS, "{first}, {second}: {share}, {moved_ns}");
+                let fraction = late[10_000..].iter().filter(|late| **late).count() as f64 / 10_000.0;
+                assert!(fraction < 0.01 && moved_ns < PERIOD_NS, "{first}, {second}: {fraction}, {moved_ns}");
             }
         }
     }

@@ -4,7 +4,7 @@ use nima_core::{
     impedance::Mode,
     statistics::{Bar, Percentiles, Quantiles},
 };
-use nima_devices::{Health, Standing};
+use nima_devices::{ConnectionState, Health};
 use serde::Serialize;
 
 use super::VirtualClock;
@@ -28,7 +28,7 @@ pub struct ModeError {
 
 /// Processor time per wall time, as fractions of one core.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
-pub struct CpuShare {
+pub struct CpuFraction {
     pub realtime: f64,
     pub process: f64,
 }
@@ -59,7 +59,7 @@ pub struct ArmEnd {
     /// Its state in the last tick, before the outputs were made safe.
     #[serde(serialize_with = "by_key")]
     pub final_state: LoopState,
-    /// Its fault, if any; filled in by [`Summary::explain`].
+    /// Its fault, if any; filled in by [`RuntimeSummary::explain`].
     pub fault: Option<CauseAndCure>,
     /// The device concerned by the fault.
     #[serde(skip)]
@@ -95,7 +95,7 @@ pub struct Histograms {
 }
 
 #[derive(Clone, Debug, Serialize)]
-pub struct Summary {
+pub struct RuntimeSummary {
     /// `real` or `virtual`.
     pub clock: &'static str,
     /// Profile and seed of a virtual clock with late ticks.
@@ -121,7 +121,7 @@ pub struct Summary {
     /// The four durations above as histograms.
     pub histograms: Histograms,
     /// Processor time; zero on the virtual clock.
-    pub cpu: CpuShare,
+    pub cpu: CpuFraction,
     /// Real-time privileges that the operating system granted.
     pub scheduling: Scheduling,
     /// State at the end; with two arm pairs the state with the higher priority.
@@ -137,11 +137,11 @@ pub struct Summary {
     pub error: Vec<ModeError>,
 }
 
-impl Summary {
+impl RuntimeSummary {
     /// Adds data of the threads that open the devices: names for faults, and the reason why a device is not connected.
-    pub(super) fn tell_devices(&mut self, roster: &Roster) {
+    pub(super) fn report_devices(&mut self, roster: &Roster) {
         for (device, entry) in self.devices.iter_mut().zip(roster) {
-            if device.health.standing != Standing::Connected {
+            if device.health.standing != ConnectionState::Connected {
                 let trouble = entry.view.report().trouble;
                 device.trouble = trouble.map(|trouble| CauseAndCure {
                     device: None,
@@ -194,7 +194,7 @@ impl Meters {
         seconds: f64,
         wall_s: f64,
         scheduling: Scheduling,
-    ) -> Summary {
+    ) -> RuntimeSummary {
         let of_mode = |pair: &Pair, mode| {
             let stats = pair.accuracy().of(mode);
             ModeError {
@@ -214,7 +214,7 @@ impl Meters {
             let computed = modes(pair).filter(|mode| computed(pair, mode));
             computed.map(|mode| of_mode(pair, mode)).collect::<Vec<_>>()
         });
-        Summary {
+        RuntimeSummary {
             clock,
             lateness: None,
             ticks: self.ticks,
@@ -232,7 +232,7 @@ impl Meters {
                 rig: self.rig.histogram(),
                 sample_to_force: self.sample_to_force.histogram(),
             },
-            cpu: CpuShare::default(),
+            cpu: CpuFraction::default(),
             final_state: worst.map_or(LoopState::Idle, |arm| arm.final_state),
             fault: worst.and_then(|arm| arm.fault.clone()),
             arms,

@@ -8,17 +8,17 @@ use std::{
 
 use crossbeam_channel::{Receiver, Sender, TryRecvError, bounded};
 use nima_core::impedance::SettingsError;
-use nima_devices::Identity;
+use nima_devices::DeviceIdentity;
 
 use super::{
-    Assembly, Clock, Summary,
+    Assembly, RuntimeClock, RuntimeSummary,
     clock_profile::{TickTime, skip},
+    loop_tap::{Operation, Tap},
     os,
-    phase::Phase,
-    summary::{CpuShare, DeviceFigures, Meters},
+    phase::LoopPhase,
+    summary::{CpuFraction, DeviceFigures, Meters},
     supervisor::{Pulse, Supervisor},
-    tap::{Operation, Tap},
-    wrists::{self, WristChange, WristDoor, Wrists},
+    wrists::{self, WristChange, WristConnection, Wrists},
 };
 use crate::{
     config::SchedulingClass,
@@ -46,7 +46,7 @@ const DEVICE_EVENTS_PER_TICK_MAX: usize = 4;
 const COMMANDS_PER_TICK_MAX: usize = 2;
 
 #[derive(Debug, thiserror::Error)]
-pub enum StartError {
+pub enum LoopStartError {
     /// The rig's settings are invalid.
     #[error(transparent)]
     Settings(#[from] SettingsError),
@@ -59,15 +59,15 @@ pub enum StartError {
 
 /// A running loop. Dropping it ends the loop.
 #[derive(Debug)]
-pub struct Handle {
+pub struct LoopHandle {
     commands: Sender<Command>,
     ticks: Receiver<Tick>,
     events: Receiver<Event>,
     healths: Receiver<Healths>,
     gauges: Receiver<Gauges>,
     roster: Roster,
-    wrists: WristDoor,
-    thread: Option<JoinHandle<Summary>>,
+    wrists: WristConnection,
+    thread: Option<JoinHandle<RuntimeSummary>>,
     /// Declared after the thread: fields are dropped after [`Drop`] has joined the loop's thread, so the supervisor
     /// outlives the loop.
     _supervisor: Supervisor,
@@ -76,8 +76,8 @@ pub struct Handle {
 /// Starts the loop in its own thread.
 ///
 /// # Errors
-/// [`StartError::Thread`] if the operating system cannot create the thread.
-pub fn start(assembly: Assembly) -> Result<Handle, StartError> {
+/// [`LoopStartError::Thread`] if the operating system cannot create the thread.
+pub fn start(assembly: Assembly) -> Result<LoopHandle, LoopStartError> {
     let Assembly { control, rig, roster, rate_hz, clock, scheduling, engage, tap } = assembly;
     let pulse = Arc::new(Pulse::default());
     let levers = rig.levers();
@@ -109,7 +109,7 @@ pub fn start(assembly: Assembly) -> Result<Handle, StartError> {
     let supervisor = Supervisor::start(pulse, levers, scheduling != SchedulingClass::Ordinary)?;
     let thread = Builder::new().name("realtime".to_owned()).spawn(move || realtime.run())?;
     let wrists = wrist_door;
-    Ok(Handle {
+    Ok(LoopHandle {
         commands,
         ticks,
         events,
@@ -122,7 +122,7 @@ pub fn start(assembly: Assembly) -> Result<Handle, StartError> {
     })
 }
 
-impl Handle {
+impl LoopHandle {
     /// Sends a command; returns false if the queue is full or the loop has ended.
     pub fn send(&self, command: Command) -> bool {
         self.commands.try_send(command).is_ok()
@@ -146,21 +146,21 @@ impl Handle {
     }
 
     /// Returns the last connection or disconnection of this side's force sensor. Read it before
-    /// [`Handle::force_sensor`]: [`Handle::put_in_force`] then refuses calibrations if the sensor has been swapped in
+    /// [`LoopHandle::force_sensor`]: [`LoopHandle::activate`] then refuses calibrations if the sensor has been swapped in
     /// between.
     pub fn wrist_change(&self, side: Side) -> WristChange {
         self.wrists.change(side)
     }
 
     /// Returns the identity that the force sensor of this side reported; `None` until it has been opened.
-    pub fn force_sensor(&self, side: Side) -> Option<Identity> {
+    pub fn force_sensor(&self, side: Side) -> Option<DeviceIdentity> {
         self.roster.iter().find(|entry| entry.force_sensor_of() == Some(side))?.view.report().identity
     }
 
     /// Activates the calibrations of a force sensor, unless the sensor has connected or disconnected since `change`.
     /// Returns false if the loop cannot accept them now.
-    pub fn put_in_force(&self, change: WristChange, calibrations: &Calibrations) -> bool {
-        self.wrists.put_in_force(change, calibrations)
+    pub fn activate(&self, change: WristChange, calibrations: &Calibrations) -> bool {
+        self.wrists.activate(change, calibrations)
     }
 
     /// Returns the health of the devices; `None` if it has not changed since the last call.
@@ -184,22 +184,22 @@ impl Handle {
     }
 
     /// Ends the loop and returns its results; `None` if its thread has panicked.
-    pub fn stop_and_join(mut self) -> Option<Summary> {
+    pub fn stop_and_join(mut self) -> Option<RuntimeSummary> {
         self.end()
     }
 
-    fn end(&mut self) -> Option<Summary> {
+    fn end(&mut self) -> Option<RuntimeSummary> {
         let thread = self.thread.take()?;
         // Block until the queue has room: a full queue must not keep the loop alive.
         self.commands.send(Command::Shutdown).ok();
         let mut summary = thread.join().ok()?;
-        summary.tell_devices(&self.roster);
+        summary.report_devices(&self.roster);
         Some(summary)
     }
 }
 
 /// Ends a loop from any thread: zero force, drives off, arm at rest. The results of the run stay available in the
-/// [`Handle`].
+/// [`LoopHandle`].
 #[derive(Clone, Debug)]
 pub struct Ender(Sender<Command>);
 
@@ -210,7 +210,7 @@ impl Ender {
     }
 }
 
-impl Drop for Handle {
+impl Drop for LoopHandle {
     fn drop(&mut self) {
         self.end();
     }
@@ -227,7 +227,7 @@ struct Realtime {
     period_ns: u64,
     /// Whether a device had no new reading in the last tick.
     is_late: bool,
-    clock: Clock,
+    clock: RuntimeClock,
     commands: Receiver<Command>,
     ticks: Sender<Tick>,
     events: Sender<Event>,
@@ -239,17 +239,17 @@ struct Realtime {
 }
 
 impl Realtime {
-    fn run(mut self) -> Summary {
+    fn run(mut self) -> RuntimeSummary {
         let scheduling = os::prepare_thread(self.scheduling, self.period_ns);
-        if self.clock == Clock::Real {
+        if self.clock == RuntimeClock::Real {
             self.events.try_send(Event::Scheduling(scheduling)).ok();
         }
         let cpu_s = os::cpu_s();
         let start_ns = os::monotonic_ns();
         let mut timing = Timing::default();
         match self.clock {
-            Clock::Real => self.run_in_real_time(start_ns, &mut timing),
-            Clock::Simulated { speed } => self.run_in_simulated_time(start_ns, speed, &mut timing),
+            RuntimeClock::Real => self.run_in_real_time(start_ns, &mut timing),
+            RuntimeClock::Simulated { speed } => self.run_in_simulated_time(start_ns, speed, &mut timing),
         }
         // However the loop ended, leave the hand without force and the follower at rest.
         self.rig.write(timing.now_s, &[Outputs::SAFE; SIDES]);
@@ -261,8 +261,8 @@ impl Realtime {
         };
         let healths = self.rig.health();
         let devices = self.names.iter().zip(healths.devices);
-        Summary {
-            cpu: CpuShare { realtime, process },
+        RuntimeSummary {
+            cpu: CpuFraction { realtime, process },
             devices: devices
                 .map(|(name, health)| DeviceFigures { name: name.clone(), health, trouble: None })
                 .collect(),
@@ -272,7 +272,7 @@ impl Realtime {
 
     fn run_in_real_time(&mut self, start_ns: u64, timing: &mut Timing) {
         let mut deadline_ns = start_ns;
-        let mut phase = Phase::new(self.period_ns);
+        let mut phase = LoopPhase::new(self.period_ns);
         while self.obey_commands(timing.now_s) {
             deadline_ns += self.period_ns + phase.step(self.is_late);
             os::sleep_until_ns(deadline_ns);
@@ -315,7 +315,7 @@ impl Realtime {
     }
 
     fn obey(&mut self, command: Command, t_s: f64) {
-        tell(&mut self.tap, Operation::Command { command, t_s });
+        report(&mut self.tap, Operation::Command { command, t_s });
         self.control.obey(command, t_s);
     }
 
@@ -323,17 +323,17 @@ impl Realtime {
         let inputs = self.rig.read(timing.now_s);
         let read_ns = os::monotonic_ns();
         if let Some(silent_s) = self.pulse.take_pulled() {
-            tell(&mut self.tap, Operation::Stall { silent_s, t_s: timing.now_s });
+            report(&mut self.tap, Operation::Stall { silent_s, t_s: timing.now_s });
             self.control.notice_stall(silent_s, timing.now_s);
         }
         for _ in 0..DEVICE_EVENTS_PER_TICK_MAX {
             let Some(event) = self.rig.event() else { break };
-            tell(&mut self.tap, Operation::Device(event));
+            report(&mut self.tap, Operation::Device(event));
             self.control.notice(&event);
             self.wrists.notice(&event, &mut self.control, &mut self.tap);
             self.events.try_send(Event::Device(event)).ok();
         }
-        self.wrists.put_in_force(&mut self.control, &mut self.tap);
+        self.wrists.activate(&mut self.control, &mut self.tap);
         for _ in 0..COMMANDS_PER_TICK_MAX {
             let Some(command) = self.rig.command() else { break };
             self.obey(command, timing.now_s);
@@ -346,8 +346,8 @@ impl Realtime {
         let worked_ns = os::monotonic_ns();
         self.rig.write(timing.now_s, &outputs);
         let written_ns = os::monotonic_ns();
-        self.rig.hear(timing.now_s, &self.control.bulletins());
-        let stalls = self.clock == Clock::Real;
+        self.rig.receive_status(timing.now_s, &self.control.bulletins());
+        let stalls = self.clock == RuntimeClock::Real;
         if self.control.withholds_beat() {
             self.pulse.withhold();
         } else {
@@ -388,7 +388,7 @@ impl Realtime {
 }
 
 /// Adds an operation to a tap.
-pub(super) fn tell(tap: &mut Option<Tap>, operation: Operation) {
+pub(super) fn report(tap: &mut Option<Tap>, operation: Operation) {
     if let Some(tap) = tap {
         tap.operation(operation);
     }

@@ -3,12 +3,12 @@
 use std::time::Instant;
 
 use super::{
-    Assembly, Summary,
+    Assembly, RuntimeSummary,
     clock_profile::{ClockProfile, TickTime, VirtualClock},
+    loop_tap::{Operation, Tap},
     summary::Meters,
     supervisor::STALL_MAX_S,
-    tap::{Operation, Tap},
-    thread::tell,
+    thread::report,
 };
 use crate::{
     messages::{Command, Scheduling, Tick},
@@ -18,7 +18,7 @@ use crate::{
 
 /// Runs the loop for `seconds` of loop time. `each` is called with every tick of every side; it may return a command
 /// for the next tick, and ends the run by returning [`Command::Shutdown`].
-pub fn run_virtual(assembly: Assembly, seconds: f64, each: impl FnMut(&Tick) -> Option<Command>) -> Summary {
+pub fn run_virtual(assembly: Assembly, seconds: f64, each: impl FnMut(&Tick) -> Option<Command>) -> RuntimeSummary {
     run_virtual_on(VirtualClock::PERFECT, assembly, seconds, each)
 }
 
@@ -28,7 +28,7 @@ pub fn run_virtual_on(
     assembly: Assembly,
     seconds: f64,
     mut each: impl FnMut(&Tick) -> Option<Command>,
-) -> Summary {
+) -> RuntimeSummary {
     run(clock, assembly, seconds, &mut each)
 }
 
@@ -38,7 +38,7 @@ fn run(
     assembly: Assembly,
     seconds: f64,
     each: &mut dyn FnMut(&Tick) -> Option<Command>,
-) -> Summary {
+) -> RuntimeSummary {
     let Assembly { mut control, mut rig, rate_hz, engage, tap, .. } = assembly;
     let mut tap = tap.map(Tap::waiting);
     let mut times = clock.tick_times(rate_hz);
@@ -63,17 +63,17 @@ fn run(
         let read = Instant::now();
         control.clear_events();
         if let Some(silent_s) = supervisor.stalled_s(&time) {
-            tell(&mut tap, Operation::Stall { silent_s, t_s: now_s });
+            report(&mut tap, Operation::Stall { silent_s, t_s: now_s });
             control.notice_stall(silent_s, now_s);
         }
         for command in command.take().into_iter().chain(std::iter::from_fn(|| rig.command())) {
-            tell(&mut tap, Operation::Command { command, t_s: now_s });
+            report(&mut tap, Operation::Command { command, t_s: now_s });
             control.obey(command, now_s);
         }
         let (outputs, ticks) = control.step(inputs, &timing);
         let work_s = read.elapsed().as_secs_f64();
         rig.write(now_s, &outputs);
-        rig.hear(now_s, &control.bulletins());
+        rig.receive_status(now_s, &control.bulletins());
         supervisor.beat(now_s, &outputs);
         if let Some(tap) = &mut tap {
             tap.tick(control.events(), &timing, &inputs, &outputs, &ticks);
@@ -88,7 +88,7 @@ fn run(
         }
     }
     let loop_s = (meters.ticks + missed) as f64 / rate_hz;
-    Summary {
+    RuntimeSummary {
         lateness: Some(clock).filter(|clock| clock.profile != ClockProfile::Perfect),
         ..meters.summary("virtual", &control, loop_s, start.elapsed().as_secs_f64(), Scheduling::default())
     }
@@ -130,6 +130,6 @@ pub fn tick<L: Link>(
     }
     let (outputs, ticks) = control.step(inputs, &timing);
     rig.write(now_s, &outputs);
-    rig.hear(now_s, &control.bulletins());
+    rig.receive_status(now_s, &control.bulletins());
     ticks
 }

@@ -10,11 +10,11 @@ use std::sync::{
 };
 
 use crossbeam_channel::{Receiver, Sender, bounded};
-use nima_devices::Standing;
+use nima_devices::ConnectionState;
 
 use super::{
-    tap::{Filing, Operation, Tap},
-    thread::tell,
+    loop_tap::{CalibrationFiler, Operation, Tap},
+    thread::report,
 };
 use crate::{
     rig::{DEVICES_MAX, DeviceEvent, RosterEntry, SIDES, Side},
@@ -45,60 +45,64 @@ impl WristChange {
 }
 
 #[derive(Debug)]
-struct Prepared {
+struct PreparedWrist {
     change: WristChange,
     path: Box<ForcePath>,
     number: Option<u64>,
 }
 
-type Counts = Arc<[AtomicU64; SIDES]>;
+type WristsCounts = Arc<[AtomicU64; SIDES]>;
 
 /// The loop's part.
 #[derive(Debug)]
 pub(super) struct Wrists {
-    counts: Counts,
+    counts: WristsCounts,
     of_device: [Option<Side>; DEVICES_MAX],
-    prepared: Receiver<Prepared>,
-    spent: Sender<Prepared>,
+    prepared: Receiver<PreparedWrist>,
+    spent: Sender<PreparedWrist>,
 }
 
 /// The part of other threads.
 #[derive(Debug)]
-pub(super) struct WristDoor {
-    counts: Counts,
-    prepared: Sender<Prepared>,
-    spent: Receiver<Prepared>,
+pub(super) struct WristConnection {
+    counts: WristsCounts,
+    prepared: Sender<PreparedWrist>,
+    spent: Receiver<PreparedWrist>,
     period_s: f64,
-    filing: Option<Filing>,
+    filing: Option<CalibrationFiler>,
 }
 
 /// Creates both parts, for a loop of this period (s) on these devices.
-pub(super) fn ends(roster: &[RosterEntry], period_s: f64, filing: Option<Filing>) -> (Wrists, WristDoor) {
-    let counts = Counts::default();
+pub(super) fn ends(
+    roster: &[RosterEntry],
+    period_s: f64,
+    filing: Option<CalibrationFiler>,
+) -> (Wrists, WristConnection) {
+    let counts = WristsCounts::default();
     let (prepare, prepared) = bounded(WAITING_MAX);
     // The other part empties this queue before it sends, so there are never more than twice as many.
     let (spend, spent) = bounded(2 * WAITING_MAX);
     let of_device = std::array::from_fn(|device| roster.get(device).and_then(RosterEntry::force_sensor_of));
     let wrists = Wrists { counts: Arc::clone(&counts), of_device, prepared, spent: spend };
-    (wrists, WristDoor { counts, prepared: prepare, spent, period_s, filing })
+    (wrists, WristConnection { counts, prepared: prepare, spent, period_s, filing })
 }
 
 impl Wrists {
     pub(super) fn notice(&self, event: &DeviceEvent, control: &mut Loop, tap: &mut Option<Tap>) {
         if let Some(side) = self.of_device.get(usize::from(event.device)).copied().flatten() {
-            tell(tap, Operation::Suspend(side));
+            report(tap, Operation::Suspend(side));
             control.suspend_calibrations(side);
-            self.count_on(side, event.standing == Standing::Connected);
+            self.count_on(side, event.standing == ConnectionState::Connected);
         }
     }
 
     /// Activates the calibrations that were prepared for the connected sensor.
-    pub(super) fn put_in_force(&self, control: &mut Loop, tap: &mut Option<Tap>) {
+    pub(super) fn activate(&self, control: &mut Loop, tap: &mut Option<Tap>) {
         let Ok(mut prepared) = self.prepared.try_recv() else { return };
         let WristChange { side, count } = prepared.change;
         let now = self.counts[side.index()].load(Ordering::Acquire);
         if let (true, Some(number)) = (now == count, prepared.number) {
-            tell(tap, Operation::Calibrations { side, number });
+            report(tap, Operation::Calibrations { side, number });
         }
         if now == count && !control.exchange_force_path(side, &mut prepared.path) {
             // Drives are on, so the calibrations cannot change now. A new count shows the caller that they are not
@@ -116,16 +120,16 @@ impl Wrists {
     }
 }
 
-impl WristDoor {
+impl WristConnection {
     pub(super) fn change(&self, side: Side) -> WristChange {
         WristChange { side, count: self.counts[side.index()].load(Ordering::Acquire) }
     }
 
-    pub(super) fn put_in_force(&self, change: WristChange, calibrations: &Calibrations) -> bool {
+    pub(super) fn activate(&self, change: WristChange, calibrations: &Calibrations) -> bool {
         self.spent.try_iter().for_each(drop);
         let path = Box::new(ForcePath::new(calibrations, self.period_s));
         let number = self.filing.as_ref().map(|filing| filing.file(calibrations));
-        self.prepared.try_send(Prepared { change, path, number }).is_ok()
+        self.prepared.try_send(PreparedWrist { change, path, number }).is_ok()
     }
 }
 
@@ -133,7 +137,7 @@ impl WristDoor {
 mod tests {
     use nalgebra::{UnitQuaternion, Vector3};
     use nima_core::{
-        calibration::gravity::{GravityModel, Parameters, Source},
+        calibration::gravity::{GravityModel, GravityParameters, GravitySource},
         frames::{GRAVITY_M_S2, Wrench, WristSample},
     };
     use nima_devices::{Loss, SlotView};
@@ -142,22 +146,22 @@ mod tests {
     use crate::{
         config::RigConfig,
         messages::{Command, ForceSource, LoopState},
-        rig::{Awaited, Inputs, Obstacle, Part, Sensed},
+        rig::{AwaitedDevice, EngageBlocker, Inputs, RigPart, SensedForce},
         teleop::Timing,
     };
 
-    struct Bench {
+    struct Fixture {
         control: Loop,
         wrists: Wrists,
-        door: WristDoor,
+        door: WristConnection,
         t_s: f64,
         load_n: f64,
     }
 
-    impl Bench {
+    impl Fixture {
         fn new() -> Self {
             let rig = RigConfig::load("simulated").unwrap();
-            let entry = RosterEntry::of(Part::Sensor(Side::Right), "", SlotView::default());
+            let entry = RosterEntry::of(RigPart::Sensor(Side::Right), "", SlotView::default());
             let (wrists, door) = ends(&[entry], 1e-3, None);
             let mut control = Loop::new(&rig, &[Some(calibrated()), None]).unwrap();
             control.suspend_calibrations(Side::Right);
@@ -166,14 +170,14 @@ mod tests {
 
         fn tick(&mut self) -> ForceSource {
             self.t_s += 1e-3;
-            self.wrists.put_in_force(&mut self.control, &mut None);
+            self.wrists.activate(&mut self.control, &mut None);
             let (_, [tick, _]) = self
                 .control
                 .step([Some(at_wrist(self.load_n, self.t_s)), None], &Timing { now_s: self.t_s, ..Timing::default() });
             tick.unwrap().force.source
         }
 
-        fn sensor_is(&mut self, standing: Standing) {
+        fn sensor_is(&mut self, standing: ConnectionState) {
             let event = DeviceEvent { t_s: self.t_s, device: 0, standing, of_side: [true, false] };
             self.wrists.notice(&event, &mut self.control, &mut None);
         }
@@ -188,50 +192,51 @@ mod tests {
             world_from_s1: Some(UnitQuaternion::identity()),
             ..WristSample::of(Wrench { force_n, torque_nm: Vector3::zeros() })
         };
-        Inputs { sensed: Sensed::AtWrist(sample), powered: true, ..Inputs::NOTHING }
+        Inputs { sensed: SensedForce::AtWrist(sample), powered: true, ..Inputs::NOTHING }
     }
 
     fn calibrated() -> Calibrations {
         let s1_from_source_wxyz = [1.0, 0.0, 0.0, 0.0];
-        let parameters = Parameters::Physical { mass_kg: 0.4, s1_from_source_wxyz, bias_n: [0.0; 3], torque: None };
+        let parameters =
+            GravityParameters::Physical { mass_kg: 0.4, s1_from_source_wxyz, bias_n: [0.0; 3], torque: None };
         Calibrations {
-            gravity: Some(GravityModel { source: Source::Imu, imu_sign: 1, parameters }),
+            gravity: Some(GravityModel { source: GravitySource::Imu, imu_sign: 1, parameters }),
             ..Calibrations::default()
         }
     }
 
     #[test]
     fn a_sensor_that_comes_or_goes_takes_its_calibrations_with_it() {
-        let mut bench = Bench::new();
+        let mut bench = Fixture::new();
         assert_eq!(bench.tick(), ForceSource::Unidentified, "the connected sensor is unknown");
         assert!(!bench.door.change(Side::Right).is_there());
-        bench.sensor_is(Standing::Connected);
+        bench.sensor_is(ConnectionState::Connected);
         let met = bench.door.change(Side::Right);
         assert!(met.is_there());
-        assert!(bench.door.put_in_force(met, &calibrated()));
+        assert!(bench.door.activate(met, &calibrated()));
         assert_eq!(bench.tick(), ForceSource::Wrist);
-        for standing in [Standing::Lost(Loss::Disconnected), Standing::Connected] {
+        for standing in [ConnectionState::Lost(Loss::Disconnected), ConnectionState::Connected] {
             bench.sensor_is(standing);
             assert_eq!(bench.tick(), ForceSource::Unidentified, "it may be another sensor now");
-            assert_eq!(bench.door.change(Side::Right).is_there(), standing == Standing::Connected);
+            assert_eq!(bench.door.change(Side::Right).is_there(), standing == ConnectionState::Connected);
         }
         // Prepared for the previous sensor: refused.
-        assert!(bench.door.put_in_force(met, &calibrated()));
+        assert!(bench.door.activate(met, &calibrated()));
         assert_eq!(bench.tick(), ForceSource::Unidentified);
-        assert!(bench.door.put_in_force(bench.door.change(Side::Right), &calibrated()));
+        assert!(bench.door.activate(bench.door.change(Side::Right), &calibrated()));
         assert_eq!(bench.tick(), ForceSource::Wrist);
     }
 
     #[test]
     fn an_engagement_right_after_the_calibrations_sees_no_jump_of_the_force() {
         for after in 1..5 {
-            let mut bench = Bench::new();
+            let mut bench = Fixture::new();
             bench.load_n = 2.0;
-            bench.sensor_is(Standing::Connected);
+            bench.sensor_is(ConnectionState::Connected);
             for _ in 0..100 {
                 assert_eq!(bench.tick(), ForceSource::Unidentified);
             }
-            assert!(bench.door.put_in_force(bench.door.change(Side::Right), &calibrated()));
+            assert!(bench.door.activate(bench.door.change(Side::Right), &calibrated()));
             for _ in 0..after {
                 assert_eq!(bench.tick(), ForceSource::Wrist, "the trocar holds the instrument with 2 N");
             }
@@ -245,28 +250,28 @@ mod tests {
 
     #[test]
     fn an_arm_that_was_waited_for_is_engaged_a_tick_after_it_was_heard_of() {
-        let mut bench = Bench::new();
-        bench.sensor_is(Standing::Connected);
+        let mut bench = Fixture::new();
+        bench.sensor_is(ConnectionState::Connected);
         bench.tick();
-        assert!(bench.door.put_in_force(bench.door.change(Side::Right), &calibrated()));
+        assert!(bench.door.activate(bench.door.change(Side::Right), &calibrated()));
         for _ in 0..3 {
             bench.tick();
         }
-        let heard = at_wrist(0.0, bench.t_s);
-        let waiting = Inputs { obstacle: Some(Obstacle::Waiting(Awaited::Servos)), ..heard };
+        let received = at_wrist(0.0, bench.t_s);
+        let waiting = Inputs { obstacle: Some(EngageBlocker::Waiting(AwaitedDevice::Servos)), ..received };
         bench.control.step([Some(waiting), None], &Timing { now_s: bench.t_s, ..Timing::default() });
-        assert!(!bench.control.is_idle_with(&[Some(heard), None]), "it would be refused by what it knew a tick ago");
+        assert!(!bench.control.is_idle_with(&[Some(received), None]), "it would be refused by what it knew a tick ago");
         bench.tick();
-        assert!(bench.control.is_idle_with(&[Some(heard), None]));
+        assert!(bench.control.is_idle_with(&[Some(received), None]));
     }
 
     #[test]
     fn an_arm_is_not_engaged_by_itself_before_its_force_was_made_by_the_new_calibrations() {
-        let mut bench = Bench::new();
-        bench.sensor_is(Standing::Connected);
+        let mut bench = Fixture::new();
+        bench.sensor_is(ConnectionState::Connected);
         bench.tick();
-        assert!(bench.door.put_in_force(bench.door.change(Side::Right), &calibrated()));
-        bench.wrists.put_in_force(&mut bench.control, &mut None);
+        assert!(bench.door.activate(bench.door.change(Side::Right), &calibrated()));
+        bench.wrists.activate(&mut bench.control, &mut None);
         let inputs = [Some(at_wrist(0.0, bench.t_s)), None];
         assert!(!bench.control.is_idle_with(&inputs), "it would be refused now, and the other arm would not");
         bench.tick();
@@ -278,9 +283,9 @@ mod tests {
 
     #[test]
     fn a_loop_that_takes_nothing_is_never_waited_for() {
-        let bench = Bench::new();
+        let bench = Fixture::new();
         let met = bench.door.change(Side::Right);
-        let taken = (0..100).filter(|_| bench.door.put_in_force(met, &calibrated())).count();
+        let taken = (0..100).filter(|_| bench.door.activate(met, &calibrated())).count();
         assert_eq!(taken, WAITING_MAX);
     }
 }

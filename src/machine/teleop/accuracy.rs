@@ -1,7 +1,7 @@
 //! Running error of each mode's force relative to the true force; no samples are stored.
 
 use nalgebra::Vector3;
-use nima_core::impedance::{Mode, ModeSet, Rendered, SLOTS};
+use nima_core::impedance::{Mode, ModeSet, RenderedForces, SLOTS};
 
 /// Mean, standard deviation and maximum of a vector error.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -46,7 +46,7 @@ pub struct Accuracy {
 
 impl Accuracy {
     /// Adds one tick of the computed modes. A mode without a valid force renders zero, so its error is the whole force.
-    pub fn add(&mut self, rendered: &Rendered, computed: ModeSet, truth_n: &Vector3<f64>) {
+    pub fn add(&mut self, rendered: &RenderedForces, computed: ModeSet, truth_n: &Vector3<f64>) {
         for mode in computed.modes() {
             let force_n = rendered.force(mode);
             self.invalid[mode.index()] += u64::from(force_n.is_none());

@@ -33,8 +33,8 @@ impl<const N: usize> Between<N> {
         let (now_s, value) = now;
         match self.last {
             Some((last_s, last)) if t_s < now_s && last_s < now_s => {
-                let share = ((t_s - last_s) / (now_s - last_s)).clamp(0.0, 1.0);
-                last + (value - last) * share
+                let fraction = ((t_s - last_s) / (now_s - last_s)).clamp(0.0, 1.0);
+                last + (value - last) * fraction
             }
             _ => value,
         }

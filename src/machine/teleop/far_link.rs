@@ -1,11 +1,11 @@
 //! The link of a pair: within this process, or from the machine that runs the follower's half.
 
-use nima_core::impedance::{Packed, Parcel, Report, SLOTS, Settings};
+use nima_core::impedance::{IdentificationReport, ImpedanceSettings, LinkPacket, ParameterPack, SLOTS};
 
 use super::Link;
 use crate::{
     messages::{FarStop, ForceReport, ForceSource},
-    rig::Identified,
+    rig::RemoteIdentification,
 };
 
 /// If no new packet arrives from the link for longer than this beyond its delay, s, that is a fault. The age gate has
@@ -18,9 +18,9 @@ const PARAMETERS_OLD_S: f64 = 0.3;
 /// The receiving end of a link between two machines: assembles the newest packet from the received messages.
 #[derive(Clone, Debug)]
 pub(super) struct FarLink {
-    parcel: Parcel,
+    parcel: LinkPacket,
     /// Report of the identification there.
-    report: Report,
+    report: IdentificationReport,
     /// Ticks from a command to its answer.
     behind: usize,
     /// Time of the last parameters of each slot, s.
@@ -33,8 +33,8 @@ pub(super) struct FarLink {
 
 impl FarLink {
     const NEW: Self = Self {
-        parcel: Parcel::BLANK,
-        report: Report::BLANK,
+        parcel: LinkPacket::BLANK,
+        report: IdentificationReport::BLANK,
         behind: 0,
         renewed_s: [f64::NEG_INFINITY; SLOTS],
         stop: None,
@@ -43,7 +43,7 @@ impl FarLink {
     };
 
     /// Returns the report of the identification at the other machine.
-    pub(super) const fn report(&self) -> &Report {
+    pub(super) const fn report(&self) -> &IdentificationReport {
         &self.report
     }
 
@@ -59,7 +59,7 @@ impl FarLink {
         self.is_usable = false;
     }
 
-    fn take(&mut self, identified: &Identified) {
+    fn take(&mut self, identified: &RemoteIdentification) {
         self.stop = identified.stop;
         self.source = identified.source;
         let parcel = &mut self.parcel;
@@ -77,13 +77,13 @@ impl FarLink {
         // Parameters that are lost repeatedly are not used: the received force is then reflected.
         for (slot, renewed_s) in self.renewed_s.iter().enumerate() {
             if identified.t_s - renewed_s > PARAMETERS_OLD_S {
-                Packed::forget(slot as u8, parcel);
+                ParameterPack::forget(slot as u8, parcel);
             }
         }
         self.note(identified);
     }
 
-    fn note(&mut self, identified: &Identified) {
+    fn note(&mut self, identified: &RemoteIdentification) {
         self.report.note(&self.parcel);
         if let Some(errors_n) = identified.errors_n {
             self.report.horizon_error_n = errors_n.map(f64::from);
@@ -99,9 +99,9 @@ impl Link for FarLink {
     fn clear(&mut self) {}
 
     /// The follower's half sends at the other machine.
-    fn send(&mut self, _parcel: &Parcel) {}
+    fn send(&mut self, _parcel: &LinkPacket) {}
 
-    fn receive(&mut self, _now_s: f64) -> Option<&Parcel> {
+    fn receive(&mut self, _now_s: f64) -> Option<&LinkPacket> {
         self.is_usable.then_some(&self.parcel)
     }
 }
@@ -144,7 +144,7 @@ impl<L: Link> PairLink<L> {
     }
 
     /// Switches to the far link, whose delay was measured; returns the delay (s) if it has changed.
-    pub(super) fn turn_far(&mut self, identified: &Identified, settings: &Settings) -> Option<f64> {
+    pub(super) fn turn_far(&mut self, identified: &RemoteIdentification, settings: &ImpedanceSettings) -> Option<f64> {
         let behind = settings.delay_ticks(identified.delay_s);
         if self.is_far && behind == self.far.behind {
             return None;
@@ -156,7 +156,7 @@ impl<L: Link> PairLink<L> {
     }
 
     /// Stores data from the far link, unless they are suppressed; returns the force in them.
-    pub(super) fn hear(&mut self, identified: Option<&Identified>) -> ForceReport {
+    pub(super) fn receive_identified(&mut self, identified: Option<&RemoteIdentification>) -> ForceReport {
         let far = &mut *self.far;
         if let Some(identified) = identified {
             far.take(identified);
@@ -193,11 +193,11 @@ impl<L: Link> Link for PairLink<L> {
         self.own.clear();
     }
 
-    fn send(&mut self, parcel: &Parcel) {
+    fn send(&mut self, parcel: &LinkPacket) {
         self.own.send(parcel);
     }
 
-    fn receive(&mut self, now_s: f64) -> Option<&Parcel> {
+    fn receive(&mut self, now_s: f64) -> Option<&LinkPacket> {
         if self.is_far { self.far.receive(now_s) } else { self.own.receive(now_s) }
     }
 }

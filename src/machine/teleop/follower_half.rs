@@ -4,7 +4,7 @@
 //! [`FarLink`](super::far_link::FarLink).
 
 use nalgebra::Vector3;
-use nima_core::impedance::{Identifier, Parcel, Sample, Settings, SettingsError};
+use nima_core::impedance::{Identifier, ImpedanceSettings, LinkPacket, Sample, SettingsError};
 
 use super::{
     Calibrations, ForcePath, Link, Timing,
@@ -29,7 +29,7 @@ pub(super) struct FollowerHalf {
 }
 
 impl FollowerHalf {
-    pub(super) fn new(settings: &Settings, calibrations: &Calibrations) -> Result<Self, SettingsError> {
+    pub(super) fn new(settings: &ImpedanceSettings, calibrations: &Calibrations) -> Result<Self, SettingsError> {
         let period_s = 1.0 / settings.rate_hz;
         Ok(Self {
             force_path: ForcePath::new(calibrations, period_s),
@@ -51,7 +51,7 @@ impl FollowerHalf {
                 let parcel = self.identifier.parcel();
                 // A force that was not measured may be rendered, but must not be used to evaluate modes.
                 let fresh = parcel.fresh && self.force.source.is_known();
-                link.send(&Parcel { fresh, ..*parcel });
+                link.send(&LinkPacket { fresh, ..*parcel });
             }
         }
         self.measured.keep(now);

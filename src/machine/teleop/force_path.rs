@@ -11,12 +11,12 @@ use nima_core::{
     },
     frames::WristSample,
     safety::PLAUSIBLE_N,
-    tip_force::TipForce,
+    tip_force::LiveTipForce,
 };
 
 use crate::{
     messages::{ForceReport, ForceSource},
-    rig::Sensed,
+    rig::SensedForce,
 };
 
 #[derive(Clone, Debug, Default)]
@@ -24,7 +24,7 @@ pub struct Calibrations {
     /// Weight of the tool and bias of the wrist sensor.
     pub gravity: Option<GravityModel>,
     /// Network that removes the trocar's friction.
-    pub tip_force: Option<TipForce>,
+    pub tip_force: Option<LiveTipForce>,
     /// Quality of the gravity calibration, if known. Only for display: nothing in the loop depends on it.
     pub gravity_check: Option<GravityCheck>,
 }
@@ -61,7 +61,7 @@ pub struct ForcePath {
     period_s: f64,
     /// Time of the last sample of the wrist, s.
     last_s: Option<f64>,
-    tip_force: Option<TipForce>,
+    tip_force: Option<LiveTipForce>,
 }
 
 impl ForcePath {
@@ -83,16 +83,16 @@ impl ForcePath {
     }
 
     /// Returns whether a force at the tip can be computed from such a sample.
-    pub const fn knows(&self, sensed: &Sensed) -> bool {
+    pub const fn knows(&self, sensed: &SensedForce) -> bool {
         match sensed {
-            Sensed::AtTip(_) => true,
-            Sensed::AtWrist(_) => self.gravity.is_some() && !self.suspended,
-            Sensed::FarEnd(identified) => identified.source.is_usable(),
+            SensedForce::AtTip(_) => true,
+            SensedForce::AtWrist(_) => self.gravity.is_some() && !self.suspended,
+            SensedForce::FarEnd(identified) => identified.source.is_usable(),
         }
     }
 
     /// Returns the tip force of this sample, taken at `t_s` (s).
-    pub fn step(&mut self, t_s: f64, sensed: &Sensed) -> ForceReport {
+    pub fn step(&mut self, t_s: f64, sensed: &SensedForce) -> ForceReport {
         let report = self.report(t_s, sensed);
         // An impossible force from a plausible sample means a wrong calibration, so there is no fallback to the last
         // good force.
@@ -100,12 +100,12 @@ impl ForcePath {
         if possible || !report.source.is_usable() { report } else { ForceReport::none(ForceSource::Poisoned, None) }
     }
 
-    fn report(&mut self, t_s: f64, sensed: &Sensed) -> ForceReport {
+    fn report(&mut self, t_s: f64, sensed: &SensedForce) -> ForceReport {
         match sensed {
-            Sensed::AtTip(tip_n) => ForceReport { tip_n: *tip_n, ..ForceReport::none(ForceSource::AtTip, None) },
-            Sensed::AtWrist(sample) => self.at_wrist(t_s, sample),
+            SensedForce::AtTip(tip_n) => ForceReport { tip_n: *tip_n, ..ForceReport::none(ForceSource::AtTip, None) },
+            SensedForce::AtWrist(sample) => self.at_wrist(t_s, sample),
             // Already computed at the other machine.
-            Sensed::FarEnd(identified) => ForceReport::of_far_end(identified.source, identified.force_n),
+            SensedForce::FarEnd(identified) => ForceReport::of_far_end(identified.source, identified.force_n),
         }
     }
 

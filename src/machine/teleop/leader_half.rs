@@ -2,14 +2,14 @@
 
 use nalgebra::{UnitQuaternion, Vector1, Vector3};
 use nima_core::{
-    impedance::{Mode, ModeSet, OwnMotion, Rendered, Renderer, Settings, SettingsError},
-    kinematics::{HandEye, Target},
-    safety::{Chain, Gate, GateReport, GripperChain, Reason, Request},
+    impedance::{ImpedanceSettings, Mode, ModeSet, OwnMotion, RenderedForces, Renderer, SettingsError},
+    kinematics::{HandEyeCoupling, TipTarget},
+    safety::{ForceRequest, Gate, GateReport, GripperChain, Reason, SafetyChain},
     signal::Speed,
 };
 
 use super::{
-    Link, Timing, Tracking,
+    Link, Timing, TrackingLag,
     even::{Between, deadlines, stacked},
     far_link::PairLink,
 };
@@ -26,18 +26,18 @@ const RAMP_S: f64 = 0.2;
 #[derive(Clone, Debug)]
 pub(super) struct LeaderHalf {
     teleoperation: Teleoperation,
-    pub(super) hand_eye: HandEye,
+    pub(super) hand_eye: HandEyeCoupling,
     /// Maximum travel of the command in a tick, m.
     step_max_m: f64,
     command_m: Option<Vector3<f64>>,
     pub(super) modes: Modes,
     pub(super) renderer: Renderer,
     own_motion: OwnMotion,
-    pub(super) tracking: Tracking,
+    pub(super) tracking: TrackingLag,
     /// Command, handle mapped to the tip, and tip (m) in the last tick, for even spacing.
     led: Between<9>,
     /// Forces rendered at the newest deadline.
-    rendered: Rendered,
+    rendered: RenderedForces,
     pub(super) gates: HandGates,
     /// Force on the handle in the last tick, N, on the axes of its device.
     pub(super) hand_force_n: Vector3<f64>,
@@ -46,18 +46,18 @@ pub(super) struct LeaderHalf {
 
 /// Command that the hand gives to the instrument.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Lead {
-    pub(super) target: Target,
+pub(super) struct TipLead {
+    pub(super) target: TipTarget,
     /// Command to the follower, m; only while engaged.
     pub(super) tip_m: Option<Vector3<f64>>,
 }
 
 impl LeaderHalf {
-    pub(super) fn new(rig: &RigConfig, settings: &Settings) -> Result<Self, SettingsError> {
-        let at_rest = Target { tip_m: Vector3::zeros(), world_from_jaws: UnitQuaternion::identity() };
+    pub(super) fn new(rig: &RigConfig, settings: &ImpedanceSettings) -> Result<Self, SettingsError> {
+        let at_rest = TipTarget { tip_m: Vector3::zeros(), world_from_jaws: UnitQuaternion::identity() };
         Ok(Self {
             teleoperation: rig.teleoperation,
-            hand_eye: HandEye::new(rig.teleoperation.mapping(), at_rest),
+            hand_eye: HandEyeCoupling::new(rig.teleoperation.mapping(), at_rest),
             step_max_m: rig.follower_speed_max_m_s / rig.rate_hz,
             command_m: None,
             modes: Modes {
@@ -68,9 +68,9 @@ impl LeaderHalf {
             },
             renderer: Renderer::new(settings)?,
             own_motion: settings.own_motion,
-            tracking: Tracking::new(rig.rate_hz),
+            tracking: TrackingLag::new(rig.rate_hz),
             led: Between::default(),
-            rendered: Rendered::default(),
+            rendered: RenderedForces::default(),
             gates: HandGates::new(rig),
             hand_force_n: Vector3::zeros(),
             rate_hz: rig.rate_hz,
@@ -78,17 +78,17 @@ impl LeaderHalf {
     }
 
     /// Returns the command to the follower: the hand's position, limited to the follower's maximum speed.
-    pub(super) fn lead(&mut self, seen: &Inputs) -> Lead {
+    pub(super) fn lead(&mut self, seen: &Inputs) -> TipLead {
         let target = self.hand_eye.step(&seen.hand);
         if !self.hand_eye.is_engaged() {
-            return Lead { target, tip_m: None };
+            return TipLead { target, tip_m: None };
         }
         let from_m = self.command_m.unwrap_or(seen.tip_m);
         let path_m = target.tip_m - from_m;
         let length_m = path_m.norm();
         let fraction = if length_m > self.step_max_m { self.step_max_m / length_m } else { 1.0 };
         self.command_m = Some(from_m + path_m * fraction);
-        Lead { target, tip_m: self.command_m }
+        TipLead { target, tip_m: self.command_m }
     }
 
     /// Returns the command that was active when the tip was measured, m; `None` without a current measurement.
@@ -107,10 +107,10 @@ impl LeaderHalf {
     pub(super) fn render<L: Link>(
         &mut self,
         seen: &Inputs,
-        lead: &Lead,
+        lead: &TipLead,
         link: &mut PairLink<L>,
         timing: &Timing,
-    ) -> Rendered {
+    ) -> RenderedForces {
         let command_m = lead.tip_m.unwrap_or(seen.tip_m);
         let now = (timing.now_s, stacked([&command_m, &lead.target.tip_m, &seen.tip_m]));
         let behind = link.behind(seen.silent_s);
@@ -148,7 +148,7 @@ impl LeaderHalf {
             self.hand_eye.set_mapping(mapping);
         }
         let world_from_jaws = seen.world_from_jaws.unwrap_or_else(UnitQuaternion::identity);
-        self.hand_eye.engage(Target { tip_m: seen.tip_m, world_from_jaws });
+        self.hand_eye.engage(TipTarget { tip_m: seen.tip_m, world_from_jaws });
         self.gates.engaged_s = t_s;
     }
 
@@ -185,19 +185,19 @@ impl Modes {
 
     /// Returns the force of the selected mode; until it has one, the force of the previous mode, so that a change of
     /// mode does not interrupt the force.
-    pub(super) fn force_n(&self, rendered: &Rendered) -> Option<Vector3<f64>> {
+    pub(super) fn force_n(&self, rendered: &RenderedForces) -> Option<Vector3<f64>> {
         rendered.force(self.mode).or_else(|| self.before.and_then(|before| rendered.force(before)))
     }
 
     /// Drops the previous mode once the selected one has a force; returns whether it did.
-    pub(super) fn settle(&mut self, rendered: &Rendered) -> bool {
+    pub(super) fn settle(&mut self, rendered: &RenderedForces) -> bool {
         rendered.force(self.mode).and_then(|_| self.before.take()).is_some()
     }
 }
 
 #[derive(Clone, Debug)]
 pub(super) struct HandGates {
-    pub(super) chain: Chain,
+    pub(super) chain: SafetyChain,
     gripper_chain: GripperChain,
     speed: Speed<3>,
     pub(super) hand_speed_m_s: f64,
@@ -210,7 +210,7 @@ impl HandGates {
     fn new(rig: &RigConfig) -> Self {
         let period_s = 1.0 / rig.rate_hz;
         Self {
-            chain: Chain::new(rig.gates, period_s),
+            chain: SafetyChain::new(rig.gates, period_s),
             gripper_chain: GripperChain::new(rig.gates.without_governor(), period_s),
             speed: Speed::new(rig.gates.handle_step_m, rig.rate_hz),
             hand_speed_m_s: 0.0,
@@ -232,10 +232,10 @@ impl HandGates {
 
     /// Returns the force on the handle, N, on the axes of the request: the requested force is ramped up after each
     /// engagement.
-    pub(super) fn step(&mut self, request: Request) -> (Vector3<f64>, GateReport) {
+    pub(super) fn step(&mut self, request: ForceRequest) -> (Vector3<f64>, GateReport) {
         let ramp = ((request.t_s - self.engaged_s) / RAMP_S).clamp(0.0, 1.0);
         let force_n = request.force_n.map(|force_n| force_n * ramp);
-        let (rendered_n, report) = self.chain.step(&Request { force_n, ..request });
+        let (rendered_n, report) = self.chain.step(&ForceRequest { force_n, ..request });
         self.hand_is_gone |= report.reason(Gate::Governor) == Reason::HandGone;
         (rendered_n, report)
     }
@@ -244,7 +244,7 @@ impl HandGates {
     pub(super) fn grip(&mut self, inputs: Option<&Inputs>, now_s: f64, age_s: f64, permitted: bool) -> f64 {
         let opening_rad = inputs.and_then(|inputs| inputs.gripper_rad);
         let grip_n = inputs.and_then(|inputs| inputs.grip_n);
-        let (force_n, _) = self.gripper_chain.step(&Request {
+        let (force_n, _) = self.gripper_chain.step(&ForceRequest {
             t_s: now_s,
             force_n: grip_n.map(Vector1::new),
             age_s,

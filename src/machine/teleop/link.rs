@@ -4,7 +4,7 @@
 
 use std::fmt::Debug;
 
-use nima_core::impedance::{MAX_DELAY_S, Parcel};
+use nima_core::impedance::{LinkPacket, MAX_DELAY_S};
 
 /// Carries packets from follower to leader. An implementation neither waits nor allocates.
 pub trait Link: Debug + Send {
@@ -13,16 +13,16 @@ pub trait Link: Debug + Send {
 
     fn clear(&mut self);
 
-    fn send(&mut self, parcel: &Parcel);
+    fn send(&mut self, parcel: &LinkPacket);
 
     /// Returns the newest packet that has been under way for the delay at `now_s`; `None` until the first one arrives.
-    fn receive(&mut self, now_s: f64) -> Option<&Parcel>;
+    fn receive(&mut self, now_s: f64) -> Option<&LinkPacket>;
 }
 
 /// A ring buffer of packets under way, within one process.
 #[derive(Clone, Debug)]
 pub struct ProgrammedLink {
-    ring: Vec<Parcel>,
+    ring: Vec<LinkPacket>,
     /// Number of packets sent; the newest is at `sent - 1` modulo the length of the ring.
     sent: usize,
     delivered: usize,
@@ -34,7 +34,7 @@ impl ProgrammedLink {
     /// Creates an empty link for a loop of this rate (Hz), with room for [`MAX_DELAY_S`].
     pub fn new(rate_hz: f64, delay_s: f64) -> Self {
         let room = (MAX_DELAY_S * rate_hz).ceil() as usize + 2;
-        Self { ring: vec![Parcel::BLANK; room], sent: 0, delivered: 0, delay_s, half_period_s: 0.5 / rate_hz }
+        Self { ring: vec![LinkPacket::BLANK; room], sent: 0, delivered: 0, delay_s, half_period_s: 0.5 / rate_hz }
     }
 
     fn oldest_kept(&self) -> usize {
@@ -58,14 +58,14 @@ impl Link for ProgrammedLink {
         self.delivered = 0;
     }
 
-    fn send(&mut self, parcel: &Parcel) {
+    fn send(&mut self, parcel: &LinkPacket) {
         let slot = self.slot(self.sent);
         self.ring[slot] = *parcel;
         self.sent += 1;
         self.delivered = self.delivered.max(self.oldest_kept());
     }
 
-    fn receive(&mut self, now_s: f64) -> Option<&Parcel> {
+    fn receive(&mut self, now_s: f64) -> Option<&LinkPacket> {
         let due_s = now_s - self.delay_s + self.half_period_s;
         // At most the length of the ring; one step per tick except after a change of the delay.
         while self.delivered < self.sent && self.ring[self.slot(self.delivered)].t_s <= due_s {
@@ -80,8 +80,8 @@ impl Link for ProgrammedLink {
 mod tests {
     use super::*;
 
-    fn parcel(t_s: f64) -> Parcel {
-        Parcel { t_s, ..Parcel::BLANK }
+    fn parcel(t_s: f64) -> LinkPacket {
+        LinkPacket { t_s, ..LinkPacket::BLANK }
     }
 
     #[test]

@@ -23,16 +23,16 @@ use nima_core::impedance::SettingsError;
 
 pub use crate::{
     config::RigConfig,
-    messages::{Bulletin, Command, Event, Fault, LoopState, Refusal, Tick, Watchdog},
-    rig::{DeviceEvent, GUIDE_MAX_M, Inputs, Obstacle, Outputs, SIDES, Side},
+    messages::{Command, Event, Fault, LoopState, PeerStatus, Refusal, Tick, Watchdog},
+    rig::{DeviceEvent, EngageBlocker, GUIDE_MAX_M, Inputs, Outputs, SIDES, Side},
 };
 pub use accuracy::{Accuracy, ErrorStats};
 pub use force_path::{Calibrations, ForcePath, GravityCheck};
 pub use link::{Link, ProgrammedLink};
-pub use origin::Origin;
+pub use origin::LoopOrigin;
 pub use pair::{EVENTS_PER_TICK_MAX, Pair};
 pub use timing::Timing;
-pub use tracking::Tracking;
+pub use tracking::TrackingLag;
 
 #[derive(Clone, Debug)]
 pub struct Loop<L: Link = ProgrammedLink> {
@@ -88,7 +88,7 @@ impl<L: Link> Loop<L> {
     }
 
     /// Returns the state of each pair for the machine at the other end of a network.
-    pub fn bulletins(&self) -> [Option<Bulletin<'_>>; SIDES] {
+    pub fn bulletins(&self) -> [Option<PeerStatus<'_>>; SIDES] {
         self.pairs.each_ref().map(|pair| pair.as_ref().map(|pair| pair.bulletin()))
     }
 
@@ -145,7 +145,7 @@ impl<L: Link> Loop<L> {
         self.pairs().all(|pair| {
             let inputs = inputs[pair.side().index()].as_ref();
             let knows = |inputs: &Inputs| {
-                pair.force_path().knows(&inputs.sensed) && !matches!(inputs.obstacle, Some(Obstacle::Waiting(_)))
+                pair.force_path().knows(&inputs.sensed) && !matches!(inputs.obstacle, Some(EngageBlocker::Waiting(_)))
             };
             pair.state() == LoopState::Idle && pair.may_know_force() && !pair.is_waiting() && inputs.is_some_and(knows)
         })

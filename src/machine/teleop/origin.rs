@@ -11,7 +11,7 @@ use crate::{
 /// All initial data of a loop. Two loops with the same origin and the same input return identical results to the last
 /// bit.
 #[derive(Clone, Debug)]
-pub struct Origin {
+pub struct LoopOrigin {
     pub rig: RigConfig,
     /// Calibrations of each side that has an arm pair.
     pub calibrations: [Option<Calibrations>; SIDES],
@@ -19,7 +19,7 @@ pub struct Origin {
     pub suspended: bool,
 }
 
-impl Origin {
+impl LoopOrigin {
     /// Creates the loop.
     ///
     /// # Errors

@@ -22,7 +22,7 @@ pub struct Timing {
 
 /// Relation of a tick's time to the previous tick's time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Passed {
+pub(super) enum TickSpacing {
     /// Advanced by one period and the missed ones.
     Evenly,
     /// Advanced by another time.
@@ -51,11 +51,11 @@ impl Ticks {
     /// Compares the time with the previous tick. It must advance by one period plus the missed ones, and each tick may
     /// wake up to a period after its deadline. A clock that runs too slowly or too fast stays within this limit from
     /// tick to tick, but drifts.
-    pub(super) fn pass(&mut self, timing: &Timing) -> Passed {
+    pub(super) fn pass(&mut self, timing: &Timing) -> TickSpacing {
         self.missed += timing.missed_now;
-        let Some(last_s) = self.last_s.replace(timing.now_s) else { return Passed::Evenly };
+        let Some(last_s) = self.last_s.replace(timing.now_s) else { return TickSpacing::Evenly };
         if timing.now_s.is_nan() || timing.now_s <= last_s {
-            return Passed::Backwards;
+            return TickSpacing::Backwards;
         }
         let surplus = (timing.now_s - last_s) / self.period_s - (1 + timing.missed_now) as f64;
         self.late = (self.late + surplus - MOVES_PHASE).max(0.0);
@@ -66,7 +66,7 @@ impl Ticks {
             self.early = 0.0;
         }
         // A tenth more for a loop that shifts its phase.
-        if surplus.abs() <= 1.1 && !drifts { Passed::Evenly } else { Passed::Unevenly }
+        if surplus.abs() <= 1.1 && !drifts { TickSpacing::Evenly } else { TickSpacing::Unevenly }
     }
 }
 
@@ -80,7 +80,8 @@ mod tests {
     /// Returns the first tick at which the clock is no longer even, if there is one.
     fn uneven(ticks: u32, now_s: impl Fn(u32) -> f64) -> Option<u32> {
         let mut counted = Ticks::new(PERIOD_S);
-        (0..ticks).find(|tick| counted.pass(&Timing { now_s: now_s(*tick), ..Timing::default() }) != Passed::Evenly)
+        (0..ticks)
+            .find(|tick| counted.pass(&Timing { now_s: now_s(*tick), ..Timing::default() }) != TickSpacing::Evenly)
     }
 
     #[test]
@@ -102,7 +103,7 @@ mod tests {
             let mut counted = Ticks::new(PERIOD_S);
             for _ in 0..100_000 {
                 let timing = Timing::from(times.advance());
-                assert_eq!(counted.pass(&timing), Passed::Evenly, "{profile} at {} s", timing.now_s);
+                assert_eq!(counted.pass(&timing), TickSpacing::Evenly, "{profile} at {} s", timing.now_s);
             }
         }
     }

@@ -22,7 +22,7 @@ const MEMORY_S: f64 = 2.0;
 const MOVING_M_S: f64 = 0.005;
 
 #[derive(Clone, Debug)]
-pub struct Tracking {
+pub struct TrackingLag {
     ring: Vec<Vector3<f64>>,
     newest: usize,
     filled: usize,
@@ -35,7 +35,7 @@ pub struct Tracking {
     lag_samples: f64,
 }
 
-impl Tracking {
+impl TrackingLag {
     /// Starts without a known lag, for a loop of this rate (Hz).
     pub fn new(rate_hz: f64) -> Self {
         let stride = ((LAG_MAX_S * rate_hz / CANDIDATES as f64).round() as usize).max(1);
@@ -132,7 +132,7 @@ mod tests {
     fn a_pure_lag_is_found_and_the_tip_predicted() {
         for rate_hz in [100.0, 1000.0, 4000.0] {
             for lag_s in [0.0, 0.021, 0.0605] {
-                let mut tracking = Tracking::new(rate_hz);
+                let mut tracking = TrackingLag::new(rate_hz);
                 let mut error_m = 0.0;
                 for i in 0..(4.0 * rate_hz) as usize {
                     let t_s = i as f64 / rate_hz;
@@ -147,7 +147,7 @@ mod tests {
     #[test]
     fn over_a_network_the_lag_is_still_the_followers_alone() {
         for behind in [1, 40, 600] {
-            let mut tracking = Tracking::new(1000.0);
+            let mut tracking = TrackingLag::new(1000.0);
             let lag_s = 0.021;
             let mut error_m = 0.0;
             for i in 0..5000 {
@@ -162,7 +162,7 @@ mod tests {
 
     #[test]
     fn standstill_teaches_nothing_and_breaks_nothing() {
-        let mut tracking = Tracking::new(1000.0);
+        let mut tracking = TrackingLag::new(1000.0);
         for _ in 0..5000 {
             let at = tracking.step(&Vector3::repeat(0.01), &Vector3::repeat(0.02), 0);
             assert!(at == Vector3::repeat(0.01));

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum MappingError {
+pub enum ColumnMappingError {
     #[error("--map {text}: not of the form NAME=COLUMN or NAME=COLUMN*SCALE; write for example x=px_mm*0.001")]
     Form { text: String },
     #[error(
@@ -20,12 +20,12 @@ pub enum MappingError {
 
 /// A column and the factor that turns its numbers into SI units.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Source {
+pub struct ColumnSource {
     column: String,
     scale: f64,
 }
 
-impl Source {
+impl ColumnSource {
     pub fn column(&self) -> &str {
         &self.column
     }
@@ -39,8 +39,8 @@ impl Source {
 /// Maps quantities (`x_m`, `fx_n`, `lx_m`, `t_s`, ...) to columns. A quantity that is not mapped has the column of its
 /// own name.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Mapping {
-    sources: BTreeMap<&'static str, Source>,
+pub struct ColumnMapping {
+    sources: BTreeMap<&'static str, ColumnSource>,
 }
 
 /// Short and full name of every quantity; names with `l` are the leader's motion.
@@ -67,37 +67,37 @@ fn quantities(name: &str) -> Vec<&'static str> {
     one.or_else(three).unwrap_or_default()
 }
 
-impl Mapping {
+impl ColumnMapping {
     /// Parses any number of texts `NAME=COLUMN[*SCALE]`, or `xyz=A,B,C[*SCALE]` with one scale for all three.
     ///
     /// # Errors
-    /// [`MappingError`] for a text of another form, a quantity that does not exist or is mapped twice, a number of
+    /// [`ColumnMappingError`] for a text of another form, a quantity that does not exist or is mapped twice, a number of
     /// columns other than three where three are needed, or a scale that is zero or not finite.
     ///
     /// ```
-    /// use nima_recording::csv::Mapping;
+    /// use nima_recording::csv::ColumnMapping;
     ///
-    /// let mapping = Mapping::parse(&["x=angle", "fx=torque*-1"])?;
+    /// let mapping = ColumnMapping::parse(&["x=angle", "fx=torque*-1"])?;
     /// assert_eq!(mapping.source("x_m").column(), "angle");
     /// assert_eq!(mapping.source("t_s").column(), "t_s", "what is not mapped keeps its name");
-    /// assert!(Mapping::parse(&["height=z"]).is_err());
-    /// # Ok::<(), nima_recording::csv::MappingError>(())
+    /// assert!(ColumnMapping::parse(&["height=z"]).is_err());
+    /// # Ok::<(), nima_recording::csv::ColumnMappingError>(())
     /// ```
-    pub fn parse(texts: &[impl AsRef<str>]) -> Result<Self, MappingError> {
+    pub fn parse(texts: &[impl AsRef<str>]) -> Result<Self, ColumnMappingError> {
         let mut sources = BTreeMap::new();
         for text in texts.iter().map(AsRef::as_ref) {
             let owned = || text.to_owned();
-            let (name, source) = text.split_once('=').ok_or_else(|| MappingError::Form { text: owned() })?;
+            let (name, source) = text.split_once('=').ok_or_else(|| ColumnMappingError::Form { text: owned() })?;
             let name = name.trim();
             let source = source.trim();
             let names = quantities(name);
             if names.is_empty() {
-                return Err(MappingError::Name { text: owned(), name: name.to_owned() });
+                return Err(ColumnMappingError::Name { text: owned(), name: name.to_owned() });
             }
             let (columns, scale) = match source.rsplit_once('*') {
                 None => (source, 1.0),
                 Some((column, factor)) => {
-                    let wrong = || MappingError::Scale { text: owned(), scale: factor.to_owned() };
+                    let wrong = || ColumnMappingError::Scale { text: owned(), scale: factor.to_owned() };
                     let scale: f64 = factor.trim().parse().map_err(|_| wrong())?;
                     if !scale.is_finite() || scale == 0.0 {
                         return Err(wrong());
@@ -108,14 +108,14 @@ impl Mapping {
             let columns: Vec<&str> =
                 if names.len() == 1 { vec![columns] } else { columns.split(',').map(str::trim).collect() };
             if columns.len() != names.len() {
-                return Err(MappingError::Three { text: owned(), name: name.to_owned(), found: columns.len() });
+                return Err(ColumnMappingError::Three { text: owned(), name: name.to_owned(), found: columns.len() });
             }
             if columns.iter().any(|column| column.is_empty()) {
-                return Err(MappingError::Form { text: owned() });
+                return Err(ColumnMappingError::Form { text: owned() });
             }
             for (full, column) in names.into_iter().zip(columns) {
-                if sources.insert(full, Source { column: column.to_owned(), scale }).is_some() {
-                    return Err(MappingError::Twice { text: owned(), name: name.to_owned() });
+                if sources.insert(full, ColumnSource { column: column.to_owned(), scale }).is_some() {
+                    return Err(ColumnMappingError::Twice { text: owned(), name: name.to_owned() });
                 }
             }
         }
@@ -127,7 +127,7 @@ impl Mapping {
     }
 
     /// Returns the mapped quantities by their full names, with their columns.
-    pub fn sources(&self) -> impl Iterator<Item = (&'static str, &Source)> {
+    pub fn sources(&self) -> impl Iterator<Item = (&'static str, &ColumnSource)> {
         self.sources.iter().map(|(quantity, source)| (*quantity, source))
     }
 
@@ -135,8 +135,8 @@ impl Mapping {
         ["lx_m", "ly_m", "lz_m"].into_iter().any(|quantity| self.names(quantity))
     }
 
-    pub fn source(&self, quantity: &str) -> Source {
-        self.sources.get(quantity).cloned().unwrap_or_else(|| Source { column: quantity.to_owned(), scale: 1.0 })
+    pub fn source(&self, quantity: &str) -> ColumnSource {
+        self.sources.get(quantity).cloned().unwrap_or_else(|| ColumnSource { column: quantity.to_owned(), scale: 1.0 })
     }
 }
 
@@ -146,33 +146,33 @@ mod tests {
 
     #[test]
     fn forms() {
-        let mapping = Mapping::parse(&["x=pos_follower_rad", "fx_n = Fe * -2.5", "t=time"]).unwrap();
-        assert_eq!(mapping.source("x_m"), Source { column: "pos_follower_rad".into(), scale: 1.0 });
-        assert_eq!(mapping.source("fx_n"), Source { column: "Fe".into(), scale: -2.5 });
+        let mapping = ColumnMapping::parse(&["x=pos_follower_rad", "fx_n = Fe * -2.5", "t=time"]).unwrap();
+        assert_eq!(mapping.source("x_m"), ColumnSource { column: "pos_follower_rad".into(), scale: 1.0 });
+        assert_eq!(mapping.source("fx_n"), ColumnSource { column: "Fe".into(), scale: -2.5 });
         assert_eq!(mapping.source("z_m").column(), "z_m");
     }
 
     #[test]
     fn three_axes_at_once_share_their_scale() {
-        let mapping = Mapping::parse(&["xyz=px_mm, py_mm,pz_mm*0.001", "fxyz=a,b,c", "lx=handle"]).unwrap();
-        assert_eq!(mapping.source("y_m"), Source { column: "py_mm".into(), scale: 0.001 });
-        assert_eq!(mapping.source("fz_n"), Source { column: "c".into(), scale: 1.0 });
-        assert!(mapping.names_leader() && !Mapping::parse(&["x=a"]).unwrap().names_leader());
-        let error = |texts: &[&str]| Mapping::parse(texts).unwrap_err();
-        assert!(matches!(error(&["xyz=a,b"]), MappingError::Three { found: 2, .. }));
-        assert!(matches!(error(&["lxyz=a,b,c,d"]), MappingError::Three { found: 4, .. }));
-        assert!(matches!(error(&["xyz=a,,c"]), MappingError::Form { .. }));
-        assert!(matches!(error(&["xyz=a,b,c", "y=d"]), MappingError::Twice { .. }));
+        let mapping = ColumnMapping::parse(&["xyz=px_mm, py_mm,pz_mm*0.001", "fxyz=a,b,c", "lx=handle"]).unwrap();
+        assert_eq!(mapping.source("y_m"), ColumnSource { column: "py_mm".into(), scale: 0.001 });
+        assert_eq!(mapping.source("fz_n"), ColumnSource { column: "c".into(), scale: 1.0 });
+        assert!(mapping.names_leader() && !ColumnMapping::parse(&["x=a"]).unwrap().names_leader());
+        let error = |texts: &[&str]| ColumnMapping::parse(texts).unwrap_err();
+        assert!(matches!(error(&["xyz=a,b"]), ColumnMappingError::Three { found: 2, .. }));
+        assert!(matches!(error(&["lxyz=a,b,c,d"]), ColumnMappingError::Three { found: 4, .. }));
+        assert!(matches!(error(&["xyz=a,,c"]), ColumnMappingError::Form { .. }));
+        assert!(matches!(error(&["xyz=a,b,c", "y=d"]), ColumnMappingError::Twice { .. }));
     }
 
     #[test]
     fn nonsense_is_told_apart() {
-        let error = |text: &str| Mapping::parse(&[text]).unwrap_err();
-        assert!(matches!(error("x"), MappingError::Form { .. }));
-        assert!(matches!(error("x="), MappingError::Form { .. }));
-        assert!(matches!(error("w=a"), MappingError::Name { .. }));
-        assert!(matches!(error("x=a*zero"), MappingError::Scale { .. }));
-        assert!(matches!(error("x=a*0"), MappingError::Scale { .. }));
-        assert!(matches!(Mapping::parse(&["x=a", "x_m=b"]).unwrap_err(), MappingError::Twice { .. }));
+        let error = |text: &str| ColumnMapping::parse(&[text]).unwrap_err();
+        assert!(matches!(error("x"), ColumnMappingError::Form { .. }));
+        assert!(matches!(error("x="), ColumnMappingError::Form { .. }));
+        assert!(matches!(error("w=a"), ColumnMappingError::Name { .. }));
+        assert!(matches!(error("x=a*zero"), ColumnMappingError::Scale { .. }));
+        assert!(matches!(error("x=a*0"), ColumnMappingError::Scale { .. }));
+        assert!(matches!(ColumnMapping::parse(&["x=a", "x_m=b"]).unwrap_err(), ColumnMappingError::Twice { .. }));
     }
 }

@@ -15,9 +15,9 @@ use std::path::{Path, PathBuf};
 
 use nalgebra::Vector3;
 use nima_core::impedance::{AXES, Sample};
-use table::Table;
+use table::CsvTable;
 
-pub use mapping::{Mapping, MappingError, Source};
+pub use mapping::{ColumnMapping, ColumnMappingError, ColumnSource};
 pub use pairs::read_pairs;
 pub use poses::read_poses;
 
@@ -77,7 +77,7 @@ pub enum RecordingError {
 
 /// Motion and force over time at a nearly constant rate. Rows without a force are left out, because it is unknown.
 #[derive(Clone, Debug)]
-pub struct Recording {
+pub struct CsvRecording {
     /// As given by the user.
     pub path: PathBuf,
     /// Which axes it contains, as indices into [`AXIS_NAMES`]; lane `i` of a sample is axis `axes[i]`.
@@ -90,7 +90,7 @@ pub struct Recording {
     pub leader_m: Option<Vec<Vector3<f64>>>,
 }
 
-impl Recording {
+impl CsvRecording {
     /// Reads a CSV file with this mapping of columns.
     ///
     /// # Errors
@@ -98,20 +98,20 @@ impl Recording {
     /// number, a time that does not rise, or fewer than three samples.
     ///
     /// ```
-    /// use nima_recording::csv::{Mapping, Recording};
+    /// use nima_recording::csv::{ColumnMapping, CsvRecording};
     ///
     /// let folder = tempfile::tempdir()?;
     /// let path = folder.path().join("recording.csv");
     /// std::fs::write(&path, "time_ms,x_m,fx_n\n0,0.00,0.0\n1,0.01,0.5\n2,0.02,1.0\n")?;
     ///
-    /// assert!(Recording::read(&path, &Mapping::default()).is_err(), "there is no column t_s");
-    /// let recording = Recording::read(&path, &Mapping::parse(&["t=time_ms*0.001"])?)?;
+    /// assert!(CsvRecording::read(&path, &ColumnMapping::default()).is_err(), "there is no column t_s");
+    /// let recording = CsvRecording::read(&path, &ColumnMapping::parse(&["t=time_ms*0.001"])?)?;
     /// assert_eq!(recording.rate_hz, 1000.0);
     /// assert_eq!(recording.samples[2].force_n.x, 1.0);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn read(path: &Path, mapping: &Mapping) -> Result<Self, RecordingError> {
-        let mut table = Table::open(path)?;
+    pub fn read(path: &Path, mapping: &ColumnMapping) -> Result<Self, RecordingError> {
+        let mut table = CsvTable::open(path)?;
         let time = table.column(&mapping.source("t_s"), "time", &cure("t"))?;
         let axes = axes(&table, mapping);
         let has_leader = mapping.names_leader();
@@ -173,7 +173,7 @@ fn cure(key: &str) -> String {
 
 /// Returns the axes with a position, a force or a mapped leader's motion. If an axis has only a position or only a
 /// force, the other is reported as missing.
-fn axes(table: &Table, mapping: &Mapping) -> Vec<usize> {
+fn axes(table: &CsvTable, mapping: &ColumnMapping) -> Vec<usize> {
     let has = |name: &str| mapping.names(name) || table.has(mapping.source(name).column());
     let found: Vec<usize> = (0..AXES)
         .filter(|&axis| {
@@ -203,11 +203,11 @@ pub fn rate_hz(times_s: impl Iterator<Item = f64>) -> Option<f64> {
 mod tests {
     use super::*;
 
-    fn read(text: &str, maps: &[&str]) -> Result<Recording, RecordingError> {
+    fn read(text: &str, maps: &[&str]) -> Result<CsvRecording, RecordingError> {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("r.csv");
         std::fs::write(&path, text).unwrap();
-        Recording::read(&path, &Mapping::parse(maps).unwrap())
+        CsvRecording::read(&path, &ColumnMapping::parse(maps).unwrap())
     }
 
     #[test]

@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use nima_core::calibration::correspondence::Pair;
+use nima_core::calibration::correspondence::PushPair;
 
-use super::{RecordingError, table::Table};
+use super::{RecordingError, table::CsvTable};
 
 /// Remedy for a missing column.
 const CURE: &str = "name the column so";
@@ -29,15 +29,15 @@ const CURE: &str = "name the column so";
 /// assert!(read_pairs(&path).is_err());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn read_pairs(path: &Path) -> Result<Vec<Pair>, RecordingError> {
-    let mut table = Table::open(path)?;
+pub fn read_pairs(path: &Path) -> Result<Vec<PushPair>, RecordingError> {
+    let mut table = CsvTable::open(path)?;
     let f1 = table.columns(["f1x_n", "f1y_n", "f1z_n"], "force", CURE)?;
     let f2 = table.columns(["f2x_n", "f2y_n", "f2z_n"], "force", CURE)?;
     let parts = ["qw", "qx", "qy", "qz"];
     let turned = parts.iter().any(|name| table.has(name));
     let rotation = if turned { Some(table.columns(parts, "rotation s1_from_c", CURE)?) } else { None };
     table.rows(|row| {
-        let mut pair = Pair::plain(row.vector(&f1)?, row.vector(&f2)?);
+        let mut pair = PushPair::plain(row.vector(&f1)?, row.vector(&f2)?);
         if let Some(rotation) = &rotation {
             pair.s1_from_c = row.rotation(rotation)?;
         }
@@ -51,7 +51,7 @@ mod tests {
 
     use super::*;
 
-    fn read(text: &str) -> Result<Vec<Pair>, RecordingError> {
+    fn read(text: &str) -> Result<Vec<PushPair>, RecordingError> {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("pairs.csv");
         std::fs::write(&path, text).unwrap();
@@ -61,7 +61,7 @@ mod tests {
     #[test]
     fn columns_in_any_order_with_and_without_a_chain() {
         let pairs = read("f2x_n,f2y_n,f2z_n,note,f1x_n,f1y_n,f1z_n\n1,2,3,a,4,5,6\n").unwrap();
-        assert_eq!(pairs, [Pair::plain(Vector3::new(4.0, 5.0, 6.0), Vector3::new(1.0, 2.0, 3.0))]);
+        assert_eq!(pairs, [PushPair::plain(Vector3::new(4.0, 5.0, 6.0), Vector3::new(1.0, 2.0, 3.0))]);
         let pairs = read("f1x_n,f1y_n,f1z_n,f2x_n,f2y_n,f2z_n,qw,qx,qy,qz\n4,5,6,1,2,3,0.708,0,0,0.708\n").unwrap();
         let turned = pairs[0].s1_from_c * Vector3::x();
         assert!((turned - Vector3::y()).norm() < 1e-9, "{turned}");

@@ -8,13 +8,13 @@ use std::path::Path;
 
 use nalgebra::Vector3;
 use nima_core::{
-    calibration::gravity::{Orientation, Pose},
+    calibration::gravity::{GravityPose, Orientation},
     frames::Wrench,
 };
 
 use super::{
     RecordingError,
-    table::{Column, Table},
+    table::{CsvColumn, CsvTable},
 };
 
 /// Remedy for a missing column.
@@ -36,8 +36,8 @@ const CURE: &str = "give fx_n,fy_n,fz_n, optionally tx_nm,ty_nm,tz_nm, and ax,ay
 /// assert_eq!((poses.len(), poses[0].wrench.force_n.z, poses[0].has_torque), (1, -2.5, false));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn read_poses(path: &Path) -> Result<Vec<Pose>, RecordingError> {
-    let mut table = Table::open(path)?;
+pub fn read_poses(path: &Path) -> Result<Vec<GravityPose>, RecordingError> {
+    let mut table = CsvTable::open(path)?;
     let has = |names: &[&str]| names.iter().any(|name| table.has(name));
     let force = table.columns(["fx_n", "fy_n", "fz_n"], "force", CURE)?;
     let [torque, acceleration] = [["tx_nm", "ty_nm", "tz_nm"], ["ax", "ay", "az"]];
@@ -45,22 +45,22 @@ pub fn read_poses(path: &Path) -> Result<Vec<Pose>, RecordingError> {
     let torque = if has(&torque) { Some(table.columns(torque, "torque", CURE)?) } else { None };
     let by_arm = has(&quaternion) && !has(&acceleration);
     let columns = if by_arm {
-        Columns::Arm(table.columns(quaternion, "orientation", CURE)?)
+        OrientationColumns::Arm(table.columns(quaternion, "orientation", CURE)?)
     } else {
-        Columns::Imu(table.columns(acceleration, "orientation", CURE)?)
+        OrientationColumns::Imu(table.columns(acceleration, "orientation", CURE)?)
     };
     table.rows(|row| {
         let force_n = row.vector(&force)?;
         let torque_nm = torque.as_ref().map_or(Ok(Vector3::zeros()), |columns| row.vector(columns))?;
         let orientation = match &columns {
-            Columns::Arm(columns) => Orientation::Arm(row.rotation(columns)?),
-            Columns::Imu(columns) => Orientation::Imu(row.vector(columns)?),
+            OrientationColumns::Arm(columns) => Orientation::Arm(row.rotation(columns)?),
+            OrientationColumns::Imu(columns) => Orientation::Imu(row.vector(columns)?),
         };
-        Ok(Pose { wrench: Wrench { force_n, torque_nm }, has_torque: torque.is_some(), orientation })
+        Ok(GravityPose { wrench: Wrench { force_n, torque_nm }, has_torque: torque.is_some(), orientation })
     })
 }
 
-enum Columns {
-    Arm([Column; 4]),
-    Imu([Column; 3]),
+enum OrientationColumns {
+    Arm([CsvColumn; 4]),
+    Imu([CsvColumn; 3]),
 }

@@ -6,26 +6,26 @@ use csv::{Reader, ReaderBuilder, StringRecord, Trim};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use nima_files::{self, Input, PASSAGE, quoted, shortened};
 
-use super::{Mapping, RecordingError, mapping::Source};
+use super::{ColumnMapping, RecordingError, mapping::ColumnSource};
 
 /// Largest deviation of a quaternion from unit length that counts as rounding.
 const UNIT_TOLERANCE: f64 = 0.01;
 
 /// A file that is being read; columns are looked up before the rows are read.
-pub(super) struct Table {
+pub(super) struct CsvTable {
     path: PathBuf,
     header: StringRecord,
     reader: Reader<Input>,
     row: StringRecord,
 }
 
-pub(super) struct Column {
+pub(super) struct CsvColumn {
     index: usize,
     name: String,
     scale: f64,
 }
 
-impl Table {
+impl CsvTable {
     pub(super) fn open(path: &Path) -> Result<Self, RecordingError> {
         let refused = |reason: String| RecordingError::Open { path: path.to_owned(), reason };
         let input = nima_files::open_table(path).map_err(|error| refused(error.to_string()))?;
@@ -60,10 +60,15 @@ impl Table {
     }
 
     /// Finds the column that a mapping names; `cure` is the remedy if it is missing.
-    pub(super) fn column(&self, source: &Source, purpose: &'static str, cure: &str) -> Result<Column, RecordingError> {
+    pub(super) fn column(
+        &self,
+        source: &ColumnSource,
+        purpose: &'static str,
+        cure: &str,
+    ) -> Result<CsvColumn, RecordingError> {
         let name = source.column().to_owned();
         match self.header.iter().position(|found| found == name) {
-            Some(index) => Ok(Column { index, name, scale: source.scale() }),
+            Some(index) => Ok(CsvColumn { index, name, scale: source.scale() }),
             None => Err(RecordingError::NoColumn {
                 path: self.path.clone(),
                 column: quoted(&name),
@@ -80,21 +85,21 @@ impl Table {
         names: [&str; N],
         purpose: &'static str,
         cure: &str,
-    ) -> Result<[Column; N], RecordingError> {
-        let mapping = Mapping::default();
-        let found: Result<Vec<Column>, _> =
+    ) -> Result<[CsvColumn; N], RecordingError> {
+        let mapping = ColumnMapping::default();
+        let found: Result<Vec<CsvColumn>, _> =
             names.iter().map(|name| self.column(&mapping.source(name), purpose, cure)).collect();
         found?.try_into().map_err(|_| unreachable!("as many columns as names"))
     }
 
     /// Returns the vector in three columns.
-    pub(super) fn vector(&self, [x, y, z]: &[Column; 3]) -> Result<Vector3<f64>, RecordingError> {
+    pub(super) fn vector(&self, [x, y, z]: &[CsvColumn; 3]) -> Result<Vector3<f64>, RecordingError> {
         Ok(Vector3::new(self.number(x)?, self.number(y)?, self.number(z)?))
     }
 
     /// Returns the rotation in four columns `w, x, y, z`, normalised. A quaternion more than 1 % from unit length is
     /// refused.
-    pub(super) fn rotation(&self, [w, x, y, z]: &[Column; 4]) -> Result<UnitQuaternion<f64>, RecordingError> {
+    pub(super) fn rotation(&self, [w, x, y, z]: &[CsvColumn; 4]) -> Result<UnitQuaternion<f64>, RecordingError> {
         let number = |column| self.number(column);
         let quaternion = Quaternion::new(number(w)?, number(x)?, number(y)?, number(z)?);
         let length = quaternion.norm();
@@ -104,11 +109,11 @@ impl Table {
         Ok(UnitQuaternion::from_quaternion(quaternion))
     }
 
-    pub(super) fn is_empty(&self, column: &Column) -> bool {
+    pub(super) fn is_empty(&self, column: &CsvColumn) -> bool {
         self.row.get(column.index).is_none_or(str::is_empty)
     }
 
-    pub(super) fn number(&self, column: &Column) -> Result<f64, RecordingError> {
+    pub(super) fn number(&self, column: &CsvColumn) -> Result<f64, RecordingError> {
         let field = self.row.get(column.index).unwrap_or_default();
         match field.parse::<f64>() {
             Ok(value) if (value * column.scale).is_finite() => Ok(value * column.scale),

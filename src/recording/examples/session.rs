@@ -23,7 +23,7 @@ use nima_recording::{
             SceneUpdate, Vector3, timestamp,
         },
     },
-    session::{ChannelId, Encoding, Reader, Writer},
+    session::{ChannelId, Encoding, SessionReader, SessionWriter},
 };
 use prost::Message as _;
 
@@ -48,7 +48,7 @@ fn write_and_look() -> Result<(), Box<dyn Error>> {
     let path = arguments.next().ok_or("name the file to write: session FILE.mcap [SECONDS]")?;
     let seconds: u64 = arguments.next().map_or(Ok(5), |text| text.parse())?;
     let path = Path::new(&path);
-    let mut session = Session::create(path)?;
+    let mut session = ExampleSession::create(path)?;
     let mut spent = Duration::ZERO;
     for block in 0..seconds * 10 {
         let ticks: Vec<_> =
@@ -79,7 +79,7 @@ fn write_and_look() -> Result<(), Box<dyn Error>> {
 /// Opens the file and reads single ticks at random positions.
 fn look(path: &Path, seconds: u64) -> Result<(), Box<dyn Error>> {
     let begin = Instant::now();
-    let reader = Reader::open(path)?;
+    let reader = SessionReader::open(path)?;
     let opened = begin.elapsed();
     let mut random = fastrand::Rng::with_seed(1);
     let mut times = Vec::new();
@@ -115,19 +115,19 @@ fn signals(arm: u64, tick: u64) -> [f64; SIGNALS] {
     })
 }
 
-struct Session {
-    writer: Writer,
+struct ExampleSession {
+    writer: SessionWriter,
     arms: [(JointStateEncoder, ChannelId); 2],
     frames: ChannelId,
     arrows: ChannelId,
     log: ChannelId,
     own: ChannelId,
-    tables: Tables,
+    tables: RecordingTables,
 }
 
-impl Session {
+impl ExampleSession {
     fn create(path: &Path) -> Result<Self, Box<dyn Error>> {
-        let mut writer = Writer::create(path, concat!("nima ", env!("CARGO_PKG_VERSION")))?;
+        let mut writer = SessionWriter::create(path, concat!("nima ", env!("CARGO_PKG_VERSION")))?;
         let mut arm = |side: &str| -> Result<_, Box<dyn Error>> {
             let names: Vec<String> = (0..SIGNALS).map(|signal| format!("{side}.signal_{signal:03}.x_n")).collect();
             let names: Vec<&str> = names.iter().map(String::as_str).collect();
@@ -147,7 +147,7 @@ impl Session {
             log: writer.channel("/log", foxglove::encoding::<Log>())?,
             own: writer.channel("/inputs", own)?,
             writer,
-            tables: Tables::create(path)?,
+            tables: RecordingTables::create(path)?,
         })
     }
 
@@ -223,13 +223,13 @@ fn line(tick: u64, time_ns: u64) -> Log {
 }
 
 /// The expected contents, as text.
-struct Tables {
+struct RecordingTables {
     signals: BufWriter<File>,
     poses: BufWriter<File>,
     log: BufWriter<File>,
 }
 
-impl Tables {
+impl RecordingTables {
     fn create(path: &Path) -> Result<Self, Box<dyn Error>> {
         let table = |extension: &str| File::create(path.with_extension(extension)).map(BufWriter::new);
         Ok(Self { signals: table("csv")?, poses: table("poses.csv")?, log: table("log.csv")? })
@@ -255,6 +255,6 @@ impl Tables {
 
 /// Processor time of this thread so far.
 fn processor_time() -> Result<Duration, Box<dyn Error>> {
-    let told = fs::read_to_string("/proc/thread-self/schedstat")?;
-    Ok(Duration::from_nanos(told.split(' ').next().unwrap_or_default().parse()?))
+    let report = fs::read_to_string("/proc/thread-self/schedstat")?;
+    Ok(Duration::from_nanos(report.split(' ').next().unwrap_or_default().parse()?))
 }

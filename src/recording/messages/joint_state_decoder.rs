@@ -55,7 +55,7 @@ impl JointStateDecoder {
         if !is_known {
             self.read_names(message)?;
         }
-        let mut cursor = Cursor { message, at: FIXED + self.known.len() };
+        let mut cursor = JointStateCursor { message, at: FIXED + self.known.len() };
         for _ in ["position", "velocity", "effort"] {
             let count = cursor.count()?;
             if count == 0 {
@@ -76,7 +76,7 @@ impl JointStateDecoder {
     fn read_names(&mut self, message: &[u8]) -> Option<()> {
         self.known.clear();
         self.names.clear();
-        let mut cursor = Cursor { message, at: FIXED };
+        let mut cursor = JointStateCursor { message, at: FIXED };
         cursor.text()?;
         let count = cursor.count()?;
         for _ in 0..count {
@@ -87,12 +87,12 @@ impl JointStateDecoder {
     }
 }
 
-struct Cursor<'a> {
+struct JointStateCursor<'a> {
     message: &'a [u8],
     at: usize,
 }
 
-impl<'a> Cursor<'a> {
+impl<'a> JointStateCursor<'a> {
     fn align(&mut self, to: usize) {
         self.at = REPRESENTATION.len() + (self.at - REPRESENTATION.len()).next_multiple_of(to);
     }

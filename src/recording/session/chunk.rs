@@ -4,13 +4,13 @@ use std::io::{self, Write as _};
 
 use lz4_flex::frame::{BlockMode, BlockSize, FrameEncoder, FrameInfo};
 
-use super::format::{self, HEAD, Put as _, kind, record};
+use super::format::{self, HEAD, RecordPut as _, kind, record};
 
 /// The names of the compressions in the file: LZ4, and none.
 pub(super) const LZ4: &str = "lz4";
 const PLAIN: &str = "";
 
-pub(super) struct Chunk {
+pub(super) struct RecordingChunk {
     compression: &'static str,
     /// The records.
     raw: Vec<u8>,
@@ -21,7 +21,7 @@ pub(super) struct Chunk {
 }
 
 /// A chunk as stored in the file, followed by its message indexes.
-pub(super) struct Closed {
+pub(super) struct ClosedChunk {
     pub(super) bytes: Vec<u8>,
     compression: &'static str,
     chunk: usize,
@@ -33,7 +33,7 @@ pub(super) struct Closed {
     pub(super) messages: u64,
 }
 
-impl Chunk {
+impl RecordingChunk {
     pub(super) const fn compressed() -> Self {
         Self::of(LZ4)
     }
@@ -75,7 +75,7 @@ impl Chunk {
     }
 
     /// Returns the finished bytes; the chunk is then empty again and keeps its memory.
-    pub(super) fn close(&mut self) -> io::Result<Closed> {
+    pub(super) fn close(&mut self) -> io::Result<ClosedChunk> {
         let (first, last) = self.times_ns.unwrap_or_default();
         let mut bytes = Vec::with_capacity(self.raw.len() / 3 + 1024);
         bytes.extend_from_slice(&format::head(kind::CHUNK, 0));
@@ -110,7 +110,7 @@ impl Chunk {
         let times_ns = self.times_ns.take();
         let messages = std::mem::take(&mut self.messages);
         let compression = self.compression;
-        Ok(Closed { bytes, compression, chunk, indexes, compressed, uncompressed, times_ns, messages })
+        Ok(ClosedChunk { bytes, compression, chunk, indexes, compressed, uncompressed, times_ns, messages })
     }
 
     /// Uses the smallest, linked blocks, although they make the file 0.1 % larger than blocks of 1 MB: a reader
@@ -123,7 +123,7 @@ impl Chunk {
     }
 }
 
-impl Closed {
+impl ClosedChunk {
     /// Returns the entry for the summary if the chunk is at offset `at`.
     pub(super) fn index(&self, at: u64) -> Vec<u8> {
         let (first, last) = self.times_ns.unwrap_or_default();

@@ -16,8 +16,8 @@ pub enum WriteError {
     Deleted { path: PathBuf },
     #[error("session {path} has no channel {number}: the channel belongs to another file; use one of this file")]
     Channel { path: PathBuf, number: u16 },
-    #[error("session {path} cannot hold {what}: the limit is {most}; record to another file")]
-    TooMuch { path: PathBuf, what: &'static str, most: u64 },
+    #[error("session {path} cannot hold {what}: the limit is {max}; record to another file")]
+    TooMuch { path: PathBuf, what: &'static str, max: u64 },
 }
 
 impl WriteError {

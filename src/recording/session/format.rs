@@ -32,7 +32,7 @@ pub(super) mod kind {
     pub(in crate::session) const ROOM: u8 = 0x80;
 }
 
-pub(super) trait Put {
+pub(super) trait RecordPut {
     fn u16(&mut self, value: u16);
     fn u32(&mut self, value: u32);
     fn u64(&mut self, value: u64);
@@ -42,7 +42,7 @@ pub(super) trait Put {
     fn texts(&mut self, entries: &BTreeMap<String, String>);
 }
 
-impl Put for Vec<u8> {
+impl RecordPut for Vec<u8> {
     fn u16(&mut self, value: u16) {
         self.extend_from_slice(&value.to_le_bytes());
     }

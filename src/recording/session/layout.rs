@@ -24,9 +24,9 @@ use std::{
 
 use super::{
     at,
-    format::{self, DATA_END, END, HEAD, Put as _, head, kind, record},
-    reader::{Source, Walk},
-    summary::Summary,
+    format::{self, DATA_END, END, HEAD, RecordPut as _, head, kind, record},
+    reader::{ReaderSource, Walk},
+    summary::RecordingSummary,
 };
 
 /// The size of a memory page, or a fraction of it, on every machine that this runs on.
@@ -38,7 +38,7 @@ pub(super) const GROWTH: u64 = 16 << 20;
 /// And by at least this many summaries, because each growth writes two.
 const GROWTH_IN_SUMMARIES: u64 = 32;
 
-pub(super) struct Layout {
+pub(super) struct RecordingLayout {
     file: File,
     growth: u64,
     /// End of the data and begin of the free space.
@@ -68,9 +68,9 @@ struct Tail {
 /// Number of index bytes copied at a time.
 const COPIED: usize = 64 << 10;
 
-impl Layout {
+impl RecordingLayout {
     /// Lays out a new, empty file that other processes cannot see yet.
-    pub(super) fn new(file: File, library: &str, growth: u64, summary: &Summary) -> io::Result<Self> {
+    pub(super) fn new(file: File, library: &str, growth: u64, summary: &RecordingSummary) -> io::Result<Self> {
         let mut begin = format::MAGIC.to_vec();
         format::header(&mut begin, "", library);
         let data_end = keep_whole(&mut begin, 0);
@@ -109,7 +109,7 @@ impl Layout {
     }
 
     /// Makes room for this many bytes of data and of summary; returns the position of the data.
-    pub(super) fn reserve(&mut self, data: u64, in_summary: u64, summary: &mut Summary) -> io::Result<u64> {
+    pub(super) fn reserve(&mut self, data: u64, in_summary: u64, summary: &mut RecordingSummary) -> io::Result<u64> {
         // Twice the summary: when it is rewritten, room must remain for the next rewrite.
         let needed = data + 4 * HEAD as u64 + 2 * (summary.room() + in_summary) + SPARE;
         if self.failed {
@@ -121,7 +121,7 @@ impl Layout {
         Ok(self.data_end)
     }
 
-    /// Appends records to the data, at the position from [`Layout::reserve`].
+    /// Appends records to the data, at the position from [`RecordingLayout::reserve`].
     pub(super) fn append(&mut self, records: &[u8]) -> io::Result<()> {
         let end = self.data_end + records.len() as u64;
         let mut behind = Vec::new();
@@ -135,7 +135,7 @@ impl Layout {
     }
 
     /// Appends the new chunk indexes, followed by the statistics.
-    pub(super) fn append_indexes(&mut self, summary: &mut Summary) -> io::Result<()> {
+    pub(super) fn append_indexes(&mut self, summary: &mut RecordingSummary) -> io::Result<()> {
         let begin = self.tail.statistics_at;
         let mut bytes = summary.new_indexes().to_vec();
         let statistics = summary.statistics_record();
@@ -160,8 +160,8 @@ impl Layout {
         Ok(())
     }
 
-    /// Writes a summary that has changed in another way; [`Layout::reserve`] has made room for it.
-    pub(super) fn renew(&mut self, summary: &mut Summary) -> io::Result<()> {
+    /// Writes a summary that has changed in another way; [`RecordingLayout::reserve`] has made room for it.
+    pub(super) fn renew(&mut self, summary: &mut RecordingSummary) -> io::Result<()> {
         self.reserve(0, 0, summary)?;
         let at = self.before_room_end(summary.room())?;
         let tail = self.write_tail(summary, at, self.footer_at)?;
@@ -169,7 +169,7 @@ impl Layout {
     }
 
     /// Appends the end of a finished file, with the positions of all groups and a checksum, and cuts off the rest.
-    pub(super) fn finish(mut self, summary: &mut Summary) -> io::Result<()> {
+    pub(super) fn finish(mut self, summary: &mut RecordingSummary) -> io::Result<()> {
         self.reserve(0, 0, summary)?;
         let begin = self.data_end + DATA_END as u64;
         let mut at = begin;
@@ -209,7 +209,7 @@ impl Layout {
         self.file.sync_data()
     }
 
-    fn grow(&mut self, needed: u64, summary: &mut Summary) -> io::Result<()> {
+    fn grow(&mut self, needed: u64, summary: &mut RecordingSummary) -> io::Result<()> {
         let room = summary.room();
         let more = (needed + 2 * room + 2 * SPARE).max(self.growth).max(GROWTH_IN_SUMMARIES * room);
         let footer_at = pages(self.footer_at + more) - END as u64;
@@ -234,13 +234,13 @@ impl Layout {
     }
 
     /// Points the footer and the free space at another summary.
-    fn lead_to(&mut self, at: u64, tail: Tail, summary: &mut Summary) -> io::Result<()> {
+    fn lead_to(&mut self, at: u64, tail: Tail, summary: &mut RecordingSummary) -> io::Result<()> {
         let start = (at + DATA_END as u64).to_le_bytes();
         self.switch(&start, self.footer_at + HEAD as u64)?;
         self.leave_room_up_to(at, tail, summary)
     }
 
-    fn leave_room_up_to(&mut self, at: u64, tail: Tail, summary: &mut Summary) -> io::Result<()> {
+    fn leave_room_up_to(&mut self, at: u64, tail: Tail, summary: &mut RecordingSummary) -> io::Result<()> {
         self.switch(&head(kind::ROOM, at - self.data_end - HEAD as u64), self.data_end)?;
         self.room_end = at;
         self.tail = tail;
@@ -249,7 +249,7 @@ impl Layout {
     }
 
     /// Writes the end of the data, the summary and the head of the free space before the footer into free space.
-    fn write_tail(&mut self, summary: &Summary, at: u64, footer_at: u64) -> io::Result<Tail> {
+    fn write_tail(&mut self, summary: &RecordingSummary, at: u64, footer_at: u64) -> io::Result<Tail> {
         let mut bytes = Vec::new();
         record(&mut bytes, kind::DATA_END, |out| out.u32(0));
         summary.groups().iter().for_each(|(_, records)| bytes.extend_from_slice(records));
@@ -268,9 +268,9 @@ impl Layout {
 
     /// Writes the indexes of chunks again: those of the file's summary without the gaps between them, and the new ones.
     /// Returns the position after them.
-    fn write_indexes(&mut self, summary: &Summary, at: u64, mut copied: impl FnMut(&[u8])) -> io::Result<u64> {
+    fn write_indexes(&mut self, summary: &RecordingSummary, at: u64, mut copied: impl FnMut(&[u8])) -> io::Result<u64> {
         let Tail { indexes_at, statistics_at } = self.tail;
-        let source = Source::File(self.file.try_clone()?, statistics_at);
+        let source = ReaderSource::File(self.file.try_clone()?, statistics_at);
         let mut walk = Walk::new(&source, indexes_at, statistics_at);
         let end = at + summary.indexes();
         let mut at = at;

@@ -4,7 +4,7 @@
 use super::format::{self, Statistics, kind};
 
 #[derive(Default)]
-pub(super) struct Summary {
+pub(super) struct RecordingSummary {
     pub(super) schemas: Vec<u8>,
     pub(super) channels: Vec<u8>,
     pub(super) attachments: Vec<u8>,
@@ -16,7 +16,7 @@ pub(super) struct Summary {
     pub(super) statistics: Statistics,
 }
 
-impl Summary {
+impl RecordingSummary {
     /// The kinds kept here, in their order in the file; the indexes of chunks follow them.
     pub(super) fn groups(&self) -> [(u8, &[u8]); 4] {
         [

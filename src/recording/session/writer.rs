@@ -9,11 +9,11 @@ use std::{
 
 use super::{
     at,
-    chunk::{Chunk, Closed},
+    chunk::{ClosedChunk, RecordingChunk},
     error::WriteError,
-    format::{self, Put as _, Statistics, kind, record},
-    layout::{GROWTH, Layout},
-    summary::Summary,
+    format::{self, RecordPut as _, Statistics, kind, record},
+    layout::{GROWTH, RecordingLayout},
+    summary::RecordingSummary,
 };
 
 /// A chunk is closed before it spans more than this, ns; a killed process loses at most this much.
@@ -22,7 +22,7 @@ pub const CHUNK_NS: u64 = 500_000_000;
 pub const CHUNK_BYTES: usize = 8 << 20;
 /// Kinds of messages that have their own, uncompressed chunks: they are compressed already, and a reader of numbers can
 /// skip them.
-const PICTURES: [&str; 2] = ["foxglove.CompressedImage", "foxglove.CompressedVideo"];
+const IMAGES: [&str; 2] = ["foxglove.CompressedImage", "foxglove.CompressedVideo"];
 /// Maximum bytes of a message, an attachment or the records of a kind of metadata: lengths have 32 bit.
 const RECORD_MAX: u64 = 1 << 31;
 
@@ -47,17 +47,17 @@ pub struct Encoding {
 ///
 /// The file is valid at every moment: whatever stops the process, `kill -9` or a full disk, every MCAP reader opens the
 /// file without repair. At most the data that were not in a closed chunk are missing, so a thread that receives nothing
-/// for a while should call [`Writer::flush`]. To survive a loss of power, call `fdatasync` regularly
-/// ([`Writer::sync_handle`]).
+/// for a while should call [`SessionWriter::flush`]. To survive a loss of power, call `fdatasync` regularly
+/// ([`SessionWriter::sync_handle`]).
 ///
 /// If writing a message fails, the message is not in the file, and the next call tries again.
 ///
 /// ```
-/// use nima_recording::session::{Encoding, Writer};
+/// use nima_recording::session::{Encoding, SessionWriter};
 ///
 /// let folder = tempfile::tempdir()?;
 /// let path = folder.path().join("session.mcap");
-/// let mut writer = Writer::create(&path, "an example")?;
+/// let mut writer = SessionWriter::create(&path, "an example")?;
 /// let json = Encoding {
 ///     schema: "Force".into(),
 ///     schema_encoding: "jsonschema".into(),
@@ -67,38 +67,38 @@ pub struct Encoding {
 /// let forces = writer.channel("forces", json)?;
 /// writer.message(forces, 1_000_000, br#"{"force_n": 1.5}"#)?;
 /// assert_eq!(writer.finish()?.messages, 1);
-/// assert!(Writer::create(&path, "an example").is_err(), "a session is never overwritten");
+/// assert!(SessionWriter::create(&path, "an example").is_err(), "a session is never overwritten");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub struct Writer {
+pub struct SessionWriter {
     path: PathBuf,
-    layout: Layout,
+    layout: RecordingLayout,
     /// Kept while the file is written; see [`at::guard`].
     _guard: Option<File>,
-    summary: Summary,
+    summary: RecordingSummary,
     /// The file's summary lacks more than can be appended.
     summary_changed: bool,
-    numbers: Lane,
-    pictures: Lane,
+    numbers: WriterLane,
+    images: WriterLane,
     /// By number.
-    channels: Vec<OfChannel>,
+    channels: Vec<ChannelState>,
     schemas: Vec<Encoding>,
 }
 
-struct OfChannel {
+struct ChannelState {
     topic: String,
     encoding: Encoding,
     sequence: u32,
 }
 
-struct Lane {
-    chunk: Chunk,
+struct WriterLane {
+    chunk: RecordingChunk,
     /// A closed chunk that could not be written yet.
-    waiting: Option<Closed>,
+    waiting: Option<ClosedChunk>,
 }
 
-impl Lane {
-    const fn new(chunk: Chunk) -> Self {
+impl WriterLane {
+    const fn new(chunk: RecordingChunk) -> Self {
         Self { chunk, waiting: None }
     }
 
@@ -116,7 +116,7 @@ impl Lane {
     }
 }
 
-impl Writer {
+impl SessionWriter {
     /// Creates a file; `library` names the program and its version.
     ///
     /// # Errors
@@ -126,7 +126,7 @@ impl Writer {
     }
 
     pub(super) fn create_growing_by(path: &Path, library: &str, growth: u64) -> Result<Self, WriteError> {
-        let summary = Summary::default();
+        let summary = RecordingSummary::default();
         let layout = create(path, library, growth, &summary).map_err(|error| WriteError::create(path, &error))?;
         Ok(Self {
             path: path.to_owned(),
@@ -134,8 +134,8 @@ impl Writer {
             _guard: at::guard(path),
             summary,
             summary_changed: false,
-            numbers: Lane::new(Chunk::compressed()),
-            pictures: Lane::new(Chunk::plain()),
+            numbers: WriterLane::new(RecordingChunk::compressed()),
+            images: WriterLane::new(RecordingChunk::plain()),
             channels: Vec::new(),
             schemas: Vec::new(),
         })
@@ -171,14 +171,14 @@ impl Writer {
             self.summary.statistics.schemas += 1;
         }
         // Also stored in the chunk, for readers that start at the beginning.
-        let lane = if is_picture(&encoding) { &mut self.pictures } else { &mut self.numbers };
+        let lane = if is_image(&encoding) { &mut self.images } else { &mut self.numbers };
         for (record, in_summary) in [(schema, &mut self.summary.schemas), (channel, &mut self.summary.channels)] {
             lane.chunk.put_record(&record);
             in_summary.extend_from_slice(&record);
         }
         self.summary.statistics.channels += 1;
         self.summary_changed = true;
-        self.channels.push(OfChannel { topic: topic.to_owned(), encoding, sequence: 0 });
+        self.channels.push(ChannelState { topic: topic.to_owned(), encoding, sequence: 0 });
         Ok(ChannelId(id))
     }
 
@@ -192,13 +192,13 @@ impl Writer {
         if usize::from(channel.0) >= self.channels.len() {
             return Err(WriteError::Channel { path: self.path.clone(), number: channel.0 });
         }
-        let picture = is_picture(&self.channels[usize::from(channel.0)].encoding);
-        let lane = if picture { &self.pictures } else { &self.numbers };
+        let image = is_image(&self.channels[usize::from(channel.0)].encoding);
+        let lane = if image { &self.images } else { &self.numbers };
         // Write both, so that a killed process loses the same period of both.
         if lane.is_due(data.len(), log_time_ns) {
             self.flush()?;
         }
-        let lane = if picture { &mut self.pictures } else { &mut self.numbers };
+        let lane = if image { &mut self.images } else { &mut self.numbers };
         let of_channel = &mut self.channels[usize::from(channel.0)];
         lane.chunk.put_message(channel.0, of_channel.sequence, log_time_ns, data);
         of_channel.sequence = of_channel.sequence.wrapping_add(1);
@@ -261,11 +261,11 @@ impl Writer {
     /// I/O errors. The chunks are kept, and are written by the next call that succeeds.
     pub fn flush(&mut self) -> Result<(), WriteError> {
         self.write_chunk(|writer| &mut writer.numbers)?;
-        self.write_chunk(|writer| &mut writer.pictures)?;
+        self.write_chunk(|writer| &mut writer.images)?;
         if self.summary_changed { self.renew_summary() } else { Ok(()) }
     }
 
-    fn write_chunk(&mut self, lane: fn(&mut Self) -> &mut Lane) -> Result<(), WriteError> {
+    fn write_chunk(&mut self, lane: fn(&mut Self) -> &mut WriterLane) -> Result<(), WriteError> {
         lane(self).close().map_err(|error| WriteError::write(&self.path, &error))?;
         let Some(chunk) = lane(self).waiting.take() else { return Ok(()) };
         let at = match self.place(&chunk) {
@@ -312,7 +312,7 @@ impl Writer {
     }
 
     #[cfg(test)]
-    pub(super) fn layout(&self) -> &Layout {
+    pub(super) fn layout(&self) -> &RecordingLayout {
         &self.layout
     }
 
@@ -322,7 +322,7 @@ impl Writer {
         self.summary.new_indexes().len()
     }
 
-    fn place(&mut self, chunk: &Closed) -> Result<u64, WriteError> {
+    fn place(&mut self, chunk: &ClosedChunk) -> Result<u64, WriteError> {
         let of_index = 128 + 10 * chunk.indexes.len();
         let at = self.reserve(chunk.bytes.len() as u64, of_index as u64)?;
         self.layout.append(&chunk.bytes).map_err(|error| WriteError::write(&self.path, &error))?;
@@ -343,7 +343,7 @@ impl Writer {
         Ok(())
     }
 
-    fn count(&mut self, chunk: &Closed) {
+    fn count(&mut self, chunk: &ClosedChunk) {
         let statistics = &mut self.summary.statistics;
         statistics.chunks += 1;
         statistics.messages += chunk.messages;
@@ -357,8 +357,8 @@ impl Writer {
         }
     }
 
-    fn check(&self, what: &'static str, value: u64, most: u64) -> Result<(), WriteError> {
-        if value > most { Err(WriteError::TooMuch { path: self.path.clone(), what, most }) } else { Ok(()) }
+    fn check(&self, what: &'static str, value: u64, max: u64) -> Result<(), WriteError> {
+        if value > max { Err(WriteError::TooMuch { path: self.path.clone(), what, max }) } else { Ok(()) }
     }
 }
 
@@ -371,8 +371,8 @@ pub fn is_being_written(path: &Path) -> io::Result<bool> {
     at::is_locked(path)
 }
 
-fn is_picture(encoding: &Encoding) -> bool {
-    PICTURES.contains(&encoding.schema.as_str())
+fn is_image(encoding: &Encoding) -> bool {
+    IMAGES.contains(&encoding.schema.as_str())
 }
 
 fn same_schema(one: &Encoding, other: &Encoding) -> bool {
@@ -380,7 +380,7 @@ fn same_schema(one: &Encoding, other: &Encoding) -> bool {
 }
 
 /// Lays out the empty file under another name, so that it appears complete.
-fn create(path: &Path, library: &str, growth: u64, summary: &Summary) -> io::Result<Layout> {
+fn create(path: &Path, library: &str, growth: u64, summary: &RecordingSummary) -> io::Result<RecordingLayout> {
     if path.symlink_metadata().is_ok() {
         return Err(io::Error::new(ErrorKind::AlreadyExists, "the file exists already"));
     }
@@ -390,7 +390,7 @@ fn create(path: &Path, library: &str, growth: u64, summary: &Summary) -> io::Res
     #[cfg(unix)]
     new.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     let new = new.tempfile_in(folder).map_err(|error| io::Error::new(error.kind(), plain(&error)))?;
-    let layout = Layout::new(new.as_file().try_clone()?, library, growth, summary)?;
+    let layout = RecordingLayout::new(new.as_file().try_clone()?, library, growth, summary)?;
     at::lock(layout.file());
     new.persist_noclobber(path).map_err(|error| error.error)?;
     // Makes the name survive a loss of power as well, where the system can do that.

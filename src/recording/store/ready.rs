@@ -26,7 +26,7 @@ pub struct CheckedDevice {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Outcome {
+pub enum PointOutcome {
     Passed,
     Failed,
     /// The rig has no such part.
@@ -40,7 +40,7 @@ pub enum Outcome {
 pub struct CheckedItem {
     /// Name of the check.
     pub check: String,
-    pub outcome: Outcome,
+    pub outcome: PointOutcome,
     /// Measured value; its limit and unit follow.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub value: Option<f64>,
@@ -190,7 +190,7 @@ mod tests {
             passed,
             took_s: 41.5,
             devices: vec![device],
-            items: vec![item(Outcome::Passed), item(Outcome::LeftOut)],
+            items: vec![item(PointOutcome::Passed), item(PointOutcome::LeftOut)],
         }
     }
 

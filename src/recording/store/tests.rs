@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 use nima_core::{
     calibration::{
         Verdict,
-        correspondence::{CorrespondenceRecord, CorrespondenceReport, Options, Pair, fit},
+        correspondence::{CorrespondenceOptions, CorrespondenceRecord, CorrespondenceReport, PushPair, fit},
         gravity::GravityRecord,
     },
     frames::from_roll_pitch_yaw_deg,
@@ -20,10 +20,10 @@ fn report(pushes: usize) -> CorrespondenceReport {
     let s1_from_s2 = from_roll_pitch_yaw_deg(&Vector3::new(20.0, -40.0, 70.0));
     let mut one = || {
         let f2_n = Vector3::from_fn(|_, _| 2.0 * noise.gaussian());
-        Pair::plain(s1_from_s2 * f2_n + Vector3::from_fn(|_, _| 0.01 * noise.gaussian()), f2_n)
+        PushPair::plain(s1_from_s2 * f2_n + Vector3::from_fn(|_, _| 0.01 * noise.gaussian()), f2_n)
     };
     let pairs: Vec<_> = (0..pushes).map(|_| one()).collect();
-    fit(&pairs, &Options::default()).unwrap()
+    fit(&pairs, &CorrespondenceOptions::default()).unwrap()
 }
 
 fn record(sensor: &str) -> CorrespondenceRecord {
@@ -44,7 +44,7 @@ fn what_is_saved_is_loaded_digit_by_digit() {
     let saved = record("BFT-1");
     let path = store.save(&saved).unwrap();
     let loaded = store.load::<CorrespondenceRecord>("BFT-1", "grasper", now()).unwrap().unwrap();
-    assert_eq!((loaded.record, loaded.age, loaded.path), (saved, Age::Fresh, path));
+    assert_eq!((loaded.record, loaded.age, loaded.path), (saved, CalibrationAge::Fresh, path));
 }
 
 /// A file in the format used before records had a common head.
@@ -95,10 +95,10 @@ fn age_is_told_in_days() {
     store.save(&record("A1")).unwrap();
     let days = |days: u64| now() + Duration::from_secs(days * DAY_S + 60);
     let age = |store: &Store, now| store.load::<CorrespondenceRecord>("A1", "grasper", now).unwrap().unwrap().age;
-    assert_eq!(age(&store, days(30)), Age::Fresh);
-    assert_eq!(age(&store, days(31)), Age::Old { days: 31 });
-    assert_eq!(age(&store.clone().with_max_age_days(2), days(3)), Age::Old { days: 3 });
-    assert_eq!(age(&store, now() - Duration::from_secs(3 * DAY_S)), Age::Future);
+    assert_eq!(age(&store, days(30)), CalibrationAge::Fresh);
+    assert_eq!(age(&store, days(31)), CalibrationAge::Old { days: 31 });
+    assert_eq!(age(&store.clone().with_max_age_days(2), days(3)), CalibrationAge::Old { days: 3 });
+    assert_eq!(age(&store, now() - Duration::from_secs(3 * DAY_S)), CalibrationAge::Future);
 }
 
 #[test]
@@ -162,10 +162,10 @@ fn every_damage_names_the_file_and_the_place() {
 }
 
 /// Reads this text once with an additional key in each of its tables, and with each of its keys misspelled.
-fn no_key_passes_unknown<R: Record + std::fmt::Debug>(good: &str) {
+fn no_key_passes_unknown<R: CalibrationRecord + std::fmt::Debug>(good: &str) {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("edited.toml");
-    let told = |lines: &[String]| {
+    let report = |lines: &[String]| {
         std::fs::write(&path, lines.join("\n")).unwrap();
         let message = read::<R>(&path).map(|_| "read").unwrap_err().to_string();
         assert!(message.contains("edited.toml") && message.lines().count() == 1, "{message}");
@@ -176,14 +176,14 @@ fn no_key_passes_unknown<R: Record + std::fmt::Debug>(good: &str) {
     for at in tables.chain([0]) {
         let mut edited = lines.clone();
         edited.insert(at, "colour = 3".to_owned());
-        let message = told(&edited);
+        let message = report(&edited);
         assert!(message.contains("colour"), "below line {at}: {message}");
     }
     for at in 0..lines.len() {
         let Some((key, value)) = lines[at].split_once(" = ") else { continue };
         let mut edited = lines.clone();
         edited[at] = format!("{key}x = {value}");
-        let message = told(&edited);
+        let message = report(&edited);
         assert!(message.contains(key), "{key}: {message}");
     }
 }

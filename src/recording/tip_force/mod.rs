@@ -8,4 +8,4 @@ mod recorder;
 pub use data_set::{DataSet, Selection, Trajectory};
 pub use error::TipForceError;
 pub use model::{keep_model, kept_model, load_model, model_from_bytes, model_to_bytes, save_model};
-pub use recorder::{Lack, MOST_ROWS, ROW_EVERY_S, Recorder, RecorderPhase};
+pub use recorder::{MAX_ROWS, ROW_EVERY_S, RecorderLack, RecorderPhase, TipForceRecorder};

@@ -11,12 +11,15 @@ use nalgebra::Vector3;
 use nima_core::{
     calibration::correspondence::Correspondence,
     frames::{Wrench, WristSample},
-    tip_force::{Coverage, DEFAULT_INPUTS, DEFAULT_OUTPUTS, FeatureSettings, Features, LIVE_INPUTS, NoRow, Row},
+    tip_force::{
+        DEFAULT_INPUTS, DEFAULT_OUTPUTS, FeatureRow, FeatureSettings, LIVE_INPUTS, NoRow, TipForceCoverage,
+        TipForceFeatures,
+    },
 };
 use nima_files::write_atomically;
 
 /// Maximum number of rows: four of the paper's data sets.
-pub const MOST_ROWS: usize = 120_000;
+pub const MAX_ROWS: usize = 120_000;
 /// Interval between rows, s: the paper's 30000 rows take two and a half minutes.
 pub const ROW_EVERY_S: f64 = 0.005;
 /// Duration of a trajectory, s: the unit in which rows are held out for judging a network.
@@ -30,7 +33,7 @@ const CONTACT_S: f64 = 0.020;
 
 /// The part that a sample lacks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Lack {
+pub enum RecorderLack {
     /// Gravity is not calibrated, or the wrist sensor is silent.
     WristForce,
     /// The sensor under the tissue is silent.
@@ -44,11 +47,11 @@ pub enum Lack {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum RecorderPhase {
     /// A source is missing; no rows are recorded.
-    Lacks(Lack),
+    Lacks(RecorderLack),
     /// The sensor under the tissue is being zeroed; the tip must be free and still.
     Resting {
         /// Fraction of the required time, 0 to 1.
-        share: f64,
+        fraction: f64,
     },
     /// Waiting until the instrument has moved far enough for the direction of friction to be known.
     NotMoved,
@@ -57,23 +60,23 @@ pub enum RecorderPhase {
 }
 
 #[derive(Clone, Debug)]
-pub struct Recorder {
+pub struct TipForceRecorder {
     correspondence: Correspondence,
-    features: Features,
+    features: TipForceFeatures,
     phase: RecorderPhase,
-    rest: Rest,
+    rest: RestStatistics,
     tissue_zero_n: Option<Vector3<f64>>,
     smooth_tip_n: Vector3<f64>,
     last_t_s: Option<f64>,
     next_row_s: f64,
     trajectory: u32,
     trajectory_ends_s: f64,
-    rows: Vec<Kept>,
-    coverage: Coverage,
+    rows: Vec<RecordedSample>,
+    coverage: TipForceCoverage,
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Kept {
+struct RecordedSample {
     t_s: f64,
     trajectory: u32,
     contact: bool,
@@ -83,36 +86,36 @@ struct Kept {
 
 /// Mean and standard deviation of the sensor under the tissue at rest.
 #[derive(Clone, Copy, Debug, Default)]
-struct Rest {
+struct RestStatistics {
     since_s: f64,
     count: f64,
     sum: Vector3<f64>,
     squares: f64,
 }
 
-impl Recorder {
+impl TipForceRecorder {
     /// Makes an empty recording and allocates its memory.
     pub fn new(correspondence: Correspondence) -> Self {
         Self {
             correspondence,
-            features: Features::new(FeatureSettings::default()),
-            phase: RecorderPhase::Resting { share: 0.0 },
-            rest: Rest::default(),
+            features: TipForceFeatures::new(FeatureSettings::default()),
+            phase: RecorderPhase::Resting { fraction: 0.0 },
+            rest: RestStatistics::default(),
             tissue_zero_n: None,
             smooth_tip_n: Vector3::zeros(),
             last_t_s: None,
             next_row_s: f64::NEG_INFINITY,
             trajectory: 0,
             trajectory_ends_s: f64::NEG_INFINITY,
-            rows: Vec::with_capacity(MOST_ROWS),
-            coverage: Coverage::default(),
+            rows: Vec::with_capacity(MAX_ROWS),
+            coverage: TipForceCoverage::default(),
         }
     }
 
     /// Uses other feature settings than the live loop; for the study that selected them.
     #[must_use]
     pub const fn with_features(mut self, settings: FeatureSettings) -> Self {
-        self.features = Features::new(settings);
+        self.features = TipForceFeatures::new(settings);
         self
     }
 
@@ -132,14 +135,18 @@ impl Recorder {
 
     /// Returns the wrench at the wrist, and the force on the tip from the sensor under the tissue, N (`s1`), not yet
     /// zeroed.
-    fn tip_n(&self, gravity_free: Option<&Wrench>, sample: &WristSample) -> Result<(Wrench, Vector3<f64>), Lack> {
-        let wrench = gravity_free.filter(|wrench| wrench.is_finite()).ok_or(Lack::WristForce)?;
-        let tissue_n = sample.tissue_n.ok_or(Lack::TissueForce)?;
+    fn tip_n(
+        &self,
+        gravity_free: Option<&Wrench>,
+        sample: &WristSample,
+    ) -> Result<(Wrench, Vector3<f64>), RecorderLack> {
+        let wrench = gravity_free.filter(|wrench| wrench.is_finite()).ok_or(RecorderLack::WristForce)?;
+        let tissue_n = sample.tissue_n.ok_or(RecorderLack::TissueForce)?;
         if !sample.is_finite() {
-            return Err(Lack::Pose);
+            return Err(RecorderLack::Pose);
         }
         let zero_n = self.tissue_zero_n.unwrap_or_else(Vector3::zeros);
-        let tip_n = self.correspondence.tip_force_s1(sample, &(tissue_n - zero_n)).ok_or(Lack::Chain)?;
+        let tip_n = self.correspondence.tip_force_s1(sample, &(tissue_n - zero_n)).ok_or(RecorderLack::Chain)?;
         Ok((*wrench, tip_n))
     }
 
@@ -149,12 +156,12 @@ impl Recorder {
         }
         let dt_s = self.last_t_s.map_or(0.0, |last| (t_s - last).max(0.0));
         self.smooth_tip_n += (tip_n - self.smooth_tip_n) * (1.0 - (-dt_s / CONTACT_S).exp());
-        let Row { inputs, shaft_from_s1 } = match self.features.step(t_s, wrench, sample) {
+        let FeatureRow { inputs, shaft_from_s1 } = match self.features.step(t_s, wrench, sample) {
             Ok(row) => row,
-            Err(NoRow::Missing) => return RecorderPhase::Lacks(Lack::Pose),
+            Err(NoRow::Missing) => return RecorderPhase::Lacks(RecorderLack::Pose),
             Err(NoRow::NotMoved) => return RecorderPhase::NotMoved,
         };
-        if self.rows.len() == MOST_ROWS {
+        if self.rows.len() == MAX_ROWS {
             return RecorderPhase::Full;
         }
         if t_s >= self.next_row_s {
@@ -167,15 +174,15 @@ impl Recorder {
             let tip_n = shaft_from_s1 * tip_n;
             let tip_n: [f32; 3] = [tip_n.x as f32, tip_n.y as f32, tip_n.z as f32];
             self.coverage.add(&inputs, &tip_n, contact);
-            self.rows.push(Kept { t_s, trajectory: self.trajectory, contact, inputs, tip_n });
+            self.rows.push(RecordedSample { t_s, trajectory: self.trajectory, contact, inputs, tip_n });
         }
         RecorderPhase::Recording
     }
 
     fn zero(&mut self, t_s: f64, sample: &WristSample) -> RecorderPhase {
-        let Some(now_n) = sample.tissue_n else { return RecorderPhase::Lacks(Lack::TissueForce) };
+        let Some(now_n) = sample.tissue_n else { return RecorderPhase::Lacks(RecorderLack::TissueForce) };
         if self.rest.count == 0.0 {
-            self.rest = Rest { since_s: t_s, ..Rest::default() };
+            self.rest = RestStatistics { since_s: t_s, ..RestStatistics::default() };
         }
         let rest = &mut self.rest;
         rest.count += 1.0;
@@ -185,13 +192,13 @@ impl Recorder {
         let variance = (rest.squares / rest.count - mean.norm_squared()).max(0.0);
         if rest.count > 20.0 && variance > 3.0 * REST_SD_N * REST_SD_N {
             rest.count = 0.0;
-            return RecorderPhase::Resting { share: 0.0 };
+            return RecorderPhase::Resting { fraction: 0.0 };
         }
-        let share = ((t_s - rest.since_s) / REST_S).min(1.0);
-        if share >= 1.0 && rest.count > 20.0 {
+        let fraction = ((t_s - rest.since_s) / REST_S).min(1.0);
+        if fraction >= 1.0 && rest.count > 20.0 {
             self.tissue_zero_n = Some(mean);
         }
-        RecorderPhase::Resting { share }
+        RecorderPhase::Resting { fraction }
     }
 
     pub const fn phase(&self) -> RecorderPhase {
@@ -212,7 +219,7 @@ impl Recorder {
     }
 
     /// Returns how well the rows cover the conditions of use.
-    pub const fn coverage(&self) -> &Coverage {
+    pub const fn coverage(&self) -> &TipForceCoverage {
         &self.coverage
     }
 

@@ -6,18 +6,18 @@
 
 use std::collections::HashMap;
 
-use super::{Sink, Source, Wrong};
+use super::{CodecError, WordSink, WordSource};
 
 /// Maximum number of words of a column: no block has more ticks.
 const WORDS_MAX: u64 = 4096;
 
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Columns {
+pub(crate) struct BlockColumns {
     columns: Vec<Vec<u64>>,
     at: usize,
 }
 
-impl Columns {
+impl BlockColumns {
     pub(crate) fn next_row(&mut self) {
         self.at = 0;
     }
@@ -38,7 +38,7 @@ impl Columns {
     }
 }
 
-impl Sink for Columns {
+impl WordSink for BlockColumns {
     fn word(&mut self, word: u64) {
         if self.columns.len() <= self.at {
             self.columns.resize(self.at + 1, Vec::new());
@@ -127,14 +127,14 @@ const fn unfolded(word: u64) -> u64 {
 }
 
 #[derive(Clone, Debug)]
-pub(crate) struct Unpacked(Vec<Vec<u64>>);
+pub(crate) struct UnpackedColumns(Vec<Vec<u64>>);
 
-impl Unpacked {
-    /// Parses the bytes of [`Columns::pack`], of at most this many columns.
-    pub(crate) fn of(from: &mut &[u8], most: usize) -> Result<Self, Wrong> {
+impl UnpackedColumns {
+    /// Parses the bytes of [`BlockColumns::pack`], of at most this many columns.
+    pub(crate) fn of(from: &mut &[u8], max: usize) -> Result<Self, CodecError> {
         let count = take_number(from)?;
-        if count > most as u64 {
-            return Err(Wrong::Long);
+        if count > max as u64 {
+            return Err(CodecError::Long);
         }
         let mut columns: Vec<Vec<u64>> = Vec::new();
         for _ in 0..count {
@@ -149,9 +149,9 @@ impl Unpacked {
     }
 }
 
-fn unpack_one(from: &mut &[u8], before: &[Vec<u64>]) -> Result<Vec<u64>, Wrong> {
-    let way = *bytes(from, 1)?.first().ok_or(Wrong::Short)?;
-    let length = |from: &mut &[u8]| take_number(from).and_then(|length| fits(length).ok_or(Wrong::NoSuchValue));
+fn unpack_one(from: &mut &[u8], before: &[Vec<u64>]) -> Result<Vec<u64>, CodecError> {
+    let way = *bytes(from, 1)?.first().ok_or(CodecError::Short)?;
+    let length = |from: &mut &[u8]| take_number(from).and_then(|length| fits(length).ok_or(CodecError::NoSuchValue));
     match way {
         EMPTY => Ok(Vec::new()),
         CONSTANT => {
@@ -160,12 +160,12 @@ fn unpack_one(from: &mut &[u8], before: &[Vec<u64>]) -> Result<Vec<u64>, Wrong> 
             Ok(vec![word; length])
         }
         AS => {
-            let same = usize::try_from(take_number(from)?).map_err(|_| Wrong::NoSuchValue)?;
-            before.get(same).cloned().ok_or(Wrong::NoSuchValue)
+            let same = usize::try_from(take_number(from)?).map_err(|_| CodecError::NoSuchValue)?;
+            before.get(same).cloned().ok_or(CodecError::NoSuchValue)
         }
         XOR | STEP | STEP_OF_STEP => {
             let length = length(from)?;
-            let mask = *bytes(from, 1)?.first().ok_or(Wrong::Short)?;
+            let mask = *bytes(from, 1)?.first().ok_or(CodecError::Short)?;
             let mut words = vec![0_u64; length];
             for place in (0..8).filter(|place| mask >> place & 1 == 1) {
                 let plane = bytes(from, length)?;
@@ -173,7 +173,7 @@ fn unpack_one(from: &mut &[u8], before: &[Vec<u64>]) -> Result<Vec<u64>, Wrong> 
             }
             Ok(undone(words, way))
         }
-        _ => Err(Wrong::NoSuchValue),
+        _ => Err(CodecError::NoSuchValue),
     }
 }
 
@@ -195,17 +195,17 @@ impl ColumnsSource<'_> {
     }
 
     /// Checks that every word was read.
-    pub(crate) fn end(&self) -> Result<(), Wrong> {
+    pub(crate) fn end(&self) -> Result<(), CodecError> {
         let all = self.columns.iter().zip(&self.read).all(|(column, read)| column.len() == *read);
-        if all { Ok(()) } else { Err(Wrong::Long) }
+        if all { Ok(()) } else { Err(CodecError::Long) }
     }
 }
 
-impl Source for ColumnsSource<'_> {
-    fn word(&mut self) -> Result<u64, Wrong> {
-        let column = self.columns.get(self.at).ok_or(Wrong::Short)?;
-        let read = self.read.get_mut(self.at).ok_or(Wrong::Short)?;
-        let word = *column.get(*read).ok_or(Wrong::Short)?;
+impl WordSource for ColumnsSource<'_> {
+    fn word(&mut self) -> Result<u64, CodecError> {
+        let column = self.columns.get(self.at).ok_or(CodecError::Short)?;
+        let read = self.read.get_mut(self.at).ok_or(CodecError::Short)?;
+        let word = *column.get(*read).ok_or(CodecError::Short)?;
         *read += 1;
         self.at += 1;
         Ok(word)
@@ -226,20 +226,20 @@ pub(crate) fn number(to: &mut Vec<u8>, mut number: u64) {
 }
 
 /// Reads a number written by [`number`].
-pub(crate) fn take_number(from: &mut &[u8]) -> Result<u64, Wrong> {
+pub(crate) fn take_number(from: &mut &[u8]) -> Result<u64, CodecError> {
     let mut number = 0_u64;
     for shift in (0..64).step_by(7) {
-        let byte = *bytes(from, 1)?.first().ok_or(Wrong::Short)?;
+        let byte = *bytes(from, 1)?.first().ok_or(CodecError::Short)?;
         number |= u64::from(byte & 0x7f) << shift;
         if byte < 0x80 {
             return Ok(number);
         }
     }
-    Err(Wrong::NoSuchValue)
+    Err(CodecError::NoSuchValue)
 }
 
-pub(crate) fn bytes<'a>(from: &mut &'a [u8], count: usize) -> Result<&'a [u8], Wrong> {
-    let (taken, rest) = from.split_at_checked(count).ok_or(Wrong::Short)?;
+pub(crate) fn bytes<'a>(from: &mut &'a [u8], count: usize) -> Result<&'a [u8], CodecError> {
+    let (taken, rest) = from.split_at_checked(count).ok_or(CodecError::Short)?;
     *from = rest;
     Ok(taken)
 }

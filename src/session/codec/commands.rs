@@ -2,17 +2,17 @@
 
 use nalgebra::{UnitQuaternion, UnitVector3, Vector3};
 use nima_core::{
-    calibration::frames::Move,
+    calibration::frames::ViewMove,
     impedance::{Baseline, MODES, Mode},
 };
-use nima_devices::{Loss, Standing};
+use nima_devices::{ConnectionState, Loss};
 use nima_machine::{
     messages::{Command, Watchdog},
-    rig::{Act, DeviceEvent, Prompt, Side},
+    rig::{DeviceEvent, Prompt, Side, TaskAction},
     runtime::Operation,
 };
 
-use super::{Put, Sink, Source, Take, Wrong, choice, record};
+use super::{CodecError, FromWords, ToWords, WordSink, WordSource, choice, record};
 
 choice!(Operation {
     0 => Command { command: command: Command, t_s: t_s: f64 },
@@ -44,10 +44,10 @@ choice!(Command {
     18 => Checked { 0: passed: bool },
     19 => Shutdown {},
     20 => Grip { 0: side: Side, 1: grip_rad: Option<f64> },
-    21 => Task { 0: side: Side, 1: act: Act },
+    21 => Task { 0: side: Side, 1: act: TaskAction },
 });
 
-choice!(nima_core::task::Event {
+choice!(nima_core::task::TaskEvent {
     0 => Begun {},
     1 => Ended {},
     2 => Aborted {},
@@ -62,31 +62,31 @@ choice!(nima_core::task::Event {
     11 => WireLeft { side: side: Side },
 });
 
-choice!(Act { 0 => Begin {}, 1 => Mark {}, 2 => End {} });
+choice!(TaskAction { 0 => Begin {}, 1 => Mark {}, 2 => End {} });
 choice!(Side { 0 => Right {}, 1 => Left {} });
 choice!(Watchdog { 0 => Loop {}, 1 => Source {}, 2 => Link {} });
 
 /// By its place in the list, so that another list is another version of the journal.
-impl Put for Mode {
-    const COLUMNS: usize = 1 + <Baseline as Put>::COLUMNS;
+impl ToWords for Mode {
+    const COLUMNS: usize = 1 + <Baseline as ToWords>::COLUMNS;
 
-    fn put(&self, to: &mut impl Sink) {
+    fn put(&self, to: &mut impl WordSink) {
         self.index().put(to);
         match self {
             Self::Baseline(baseline) => baseline.put(to),
-            _ => to.skip(<Baseline as Put>::COLUMNS),
+            _ => to.skip(<Baseline as ToWords>::COLUMNS),
         }
     }
 }
 
-impl Take for Mode {
-    fn take(from: &mut impl Source) -> Result<Self, Wrong> {
+impl FromWords for Mode {
+    fn take(from: &mut impl WordSource) -> Result<Self, CodecError> {
         let place = usize::take(from)?;
         if place == MODES {
             return Baseline::take(from).map(Self::Baseline);
         }
-        from.skip(<Baseline as Put>::COLUMNS);
-        Self::ALL.get(place).copied().ok_or(Wrong::NoSuchValue)
+        from.skip(<Baseline as ToWords>::COLUMNS);
+        Self::ALL.get(place).copied().ok_or(CodecError::NoSuchValue)
     }
 }
 
@@ -109,15 +109,15 @@ choice!(Prompt {
     7 => Turn {},
     8 => PivotInTrocar {},
     9 => Touch { point: point: u8 },
-    10 => MoveTip { 0: to: Move },
-    11 => MoveHandle { 0: to: Move },
+    10 => MoveTip { 0: to: ViewMove },
+    11 => MoveHandle { 0: to: ViewMove },
 });
 
-choice!(Move { 0 => Right {}, 1 => Up {}, 2 => Deeper {}, 3 => Left {}, 4 => Down {}, 5 => Back {} });
+choice!(ViewMove { 0 => Right {}, 1 => Up {}, 2 => Deeper {}, 3 => Left {}, 4 => Down {}, 5 => Back {} });
 
-record!(DeviceEvent { t_s: f64, device: u8, standing: Standing, of_side: [bool; 2] });
+record!(DeviceEvent { t_s: f64, device: u8, standing: ConnectionState, of_side: [bool; 2] });
 
-choice!(Standing {
+choice!(ConnectionState {
     0 => Closed {},
     1 => Opening {},
     2 => Connected {},

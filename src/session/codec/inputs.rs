@@ -4,57 +4,59 @@ use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 use nima_core::{
     calibration::frames::FrameSample,
     frames::{Wrench, WristSample},
-    impedance::{ModeSet, PACKED_MAX, Packed, SLOTS},
-    kinematics::{Hand, StartError},
-    safety::{ARM_CHANNELS, CHANNELS, HANDLE_CHANNELS, Raw, RawReadings},
+    impedance::{ModeSet, PACKED_MAX, ParameterPack, SLOTS},
+    kinematics::{ArmStartError, HandPose},
+    safety::{ARM_CHANNELS, CHANNELS, HANDLE_CHANNELS, RawReading, RawReadings},
 };
 use nima_machine::{
     messages::{FarStop, ForceSource},
-    rig::{Awaited, Exchange, Identified, Inputs, Obstacle, Sensed, Switches, View},
+    rig::{
+        AwaitedDevice, EngageBlocker, Inputs, RemoteIdentification, SensedForce, SideSwap, Switches, ViewOrientation,
+    },
     teleop::Timing,
 };
 
-use super::{Put, Sink, Source, Take, Wrong, choice, record};
+use super::{CodecError, FromWords, ToWords, WordSink, WordSource, choice, record};
 
 record!(Timing { now_s: f64, wake_s: f64, work_s: f64, sample_to_force_s: Option<f64>, missed_now: u64 });
 
 record!(Inputs {
-    hand: Hand,
+    hand: HandPose,
     gripper_rad: Option<f64>,
     grip_n: Option<f64>,
     tip_m: Vector3<f64>,
     world_from_jaws: Option<UnitQuaternion<f64>>,
-    sensed: Sensed,
-    view: View,
+    sensed: SensedForce,
+    view: ViewOrientation,
     frames: FrameSample,
     switches: Switches,
     powered: bool,
-    obstacle: Option<Obstacle>,
+    obstacle: Option<EngageBlocker>,
     age_s: f64,
     silent_s: f64,
     raw: RawReadings,
 });
 
 record!(RawReadings {
-    handle: Option<Raw<HANDLE_CHANNELS>>,
-    arm: Option<Raw<ARM_CHANNELS>>,
-    sensor: Option<Raw<CHANNELS>>,
+    handle: Option<RawReading<HANDLE_CHANNELS>>,
+    arm: Option<RawReading<ARM_CHANNELS>>,
+    sensor: Option<RawReading<CHANNELS>>,
 });
-record!(Raw<HANDLE_CHANNELS> { channels: [f64; HANDLE_CHANNELS], device_s: Option<f64>, arrival_s: f64 });
-record!(Raw<ARM_CHANNELS> { channels: [f64; ARM_CHANNELS], device_s: Option<f64>, arrival_s: f64 });
-record!(Raw<CHANNELS> { channels: [f64; CHANNELS], device_s: Option<f64>, arrival_s: f64 });
+record!(RawReading<HANDLE_CHANNELS> { channels: [f64; HANDLE_CHANNELS], device_s: Option<f64>, arrival_s: f64 });
+record!(RawReading<ARM_CHANNELS> { channels: [f64; ARM_CHANNELS], device_s: Option<f64>, arrival_s: f64 });
+record!(RawReading<CHANNELS> { channels: [f64; CHANNELS], device_s: Option<f64>, arrival_s: f64 });
 
-record!(Hand { position_m: Vector3<f64>, orientation: Option<UnitQuaternion<f64>> });
+record!(HandPose { position_m: Vector3<f64>, orientation: Option<UnitQuaternion<f64>> });
 record!(Switches { clutch: bool, presence: Option<bool> });
 record!(Wrench { force_n: Vector3<f64>, torque_nm: Vector3<f64> });
 
-choice!(Sensed {
+choice!(SensedForce {
     0 => AtTip { 0: force_n: Vector3<f64> },
     1 => AtWrist { 0: sample: WristSample },
-    2 => FarEnd { 0: identified: Identified },
+    2 => FarEnd { 0: identified: RemoteIdentification },
 });
 
-record!(Identified {
+record!(RemoteIdentification {
     t_s: f64,
     delay_s: f64,
     force_n: Vector3<f64>,
@@ -62,12 +64,12 @@ record!(Identified {
     fresh: bool,
     resting: bool,
     modes: ModeSet,
-    packed: Packed,
+    packed: ParameterPack,
     errors_n: Option<[f32; SLOTS]>,
     stop: Option<FarStop>,
 });
 
-record!(Packed { slot: u8, len: u8, numbers: [f32; PACKED_MAX] });
+record!(ParameterPack { slot: u8, len: u8, numbers: [f32; PACKED_MAX] });
 
 choice!(FarStop {
     0 => Stopped {},
@@ -85,39 +87,39 @@ choice!(FarStop {
 
 /// Orientation of the endoscope, as the loop uses it. The position of its marker serves only the display, and is in the
 /// plotted frames.
-enum Turned {
+enum ViewTurn {
     Fixed,
     Unseen,
     Seen(UnitQuaternion<f64>),
 }
 
-choice!(Turned {
+choice!(ViewTurn {
     0 => Fixed {},
     1 => Unseen {},
     2 => Seen { 0: world_from_view: UnitQuaternion<f64> },
 });
 
-impl Put for View {
-    const COLUMNS: usize = Turned::COLUMNS;
+impl ToWords for ViewOrientation {
+    const COLUMNS: usize = ViewTurn::COLUMNS;
 
-    fn put(&self, to: &mut impl Sink) {
+    fn put(&self, to: &mut impl WordSink) {
         let turned = match self {
-            Self::Fixed => Turned::Fixed,
-            Self::Unseen => Turned::Unseen,
+            Self::Fixed => ViewTurn::Fixed,
+            Self::Unseen => ViewTurn::Unseen,
             Self::Seen(world_from_view) | Self::SeenAt { world_from_view, world_from_n: _ } => {
-                Turned::Seen(*world_from_view)
+                ViewTurn::Seen(*world_from_view)
             }
         };
         turned.put(to);
     }
 }
 
-impl Take for View {
-    fn take(from: &mut impl Source) -> Result<Self, Wrong> {
-        Ok(match Turned::take(from)? {
-            Turned::Fixed => Self::Fixed,
-            Turned::Unseen => Self::Unseen,
-            Turned::Seen(world_from_view) => Self::Seen(world_from_view),
+impl FromWords for ViewOrientation {
+    fn take(from: &mut impl WordSource) -> Result<Self, CodecError> {
+        Ok(match ViewTurn::take(from)? {
+            ViewTurn::Fixed => Self::Fixed,
+            ViewTurn::Unseen => Self::Unseen,
+            ViewTurn::Seen(world_from_view) => Self::Seen(world_from_view),
         })
     }
 }
@@ -141,16 +143,16 @@ record!(FrameSample {
     wrench: Option<Wrench>,
 });
 
-choice!(Obstacle {
-    0 => Start { 0: error: StartError },
-    1 => Waiting { 0: awaited: Awaited },
-    2 => Exchanged { 0: exchange: Exchange },
+choice!(EngageBlocker {
+    0 => Start { 0: error: ArmStartError },
+    1 => Waiting { 0: awaited: AwaitedDevice },
+    2 => Exchanged { 0: exchange: SideSwap },
     3 => FarEnd {},
 });
 
-choice!(Awaited { 0 => Servos {}, 1 => Markers {} });
+choice!(AwaitedDevice { 0 => Servos {}, 1 => Markers {} });
 
-choice!(Exchange {
+choice!(SideSwap {
     0 => Handles {},
     1 => Arms {},
     2 => Sensors {},
@@ -159,11 +161,11 @@ choice!(Exchange {
     5 => Trocars {},
 });
 
-choice!(StartError {
+choice!(ArmStartError {
     0 => Period { period_s: period_s: f64 },
     1 => ShortShaft { shaft_m: shaft_m: f64, insertion_max_m: insertion_max_m: f64 },
     2 => NotFinite { joint: joint: usize },
     3 => AtLimit { joint: joint: usize, angle_deg: angle_deg: f64, limit_deg: limit_deg: f64 },
-    4 => BesideTrocar { miss_m: miss_m: f64, most_m: most_m: f64 },
+    4 => BesideTrocar { miss_m: miss_m: f64, max_m: max_m: f64 },
     5 => NotInserted { insertion_m: insertion_m: f64 },
 });

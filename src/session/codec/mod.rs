@@ -9,12 +9,12 @@ mod commands;
 mod inputs;
 mod shown;
 
-pub(crate) use columns::{Columns, Unpacked, bytes, number, take_number};
+pub(crate) use columns::{BlockColumns, UnpackedColumns, bytes, number, take_number};
 
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion, UnitVector3, Vector3};
 
 /// A destination of words.
-pub(crate) trait Sink {
+pub(crate) trait WordSink {
     fn word(&mut self, word: u64);
 
     /// Leaves these columns out.
@@ -22,12 +22,12 @@ pub(crate) trait Sink {
 }
 
 /// A source of words.
-pub(crate) trait Source {
+pub(crate) trait WordSource {
     /// Returns the next word.
     ///
     /// # Errors
-    /// [`Wrong::Short`] if there is none.
-    fn word(&mut self) -> Result<u64, Wrong>;
+    /// [`CodecError::Short`] if there is none.
+    fn word(&mut self) -> Result<u64, CodecError>;
 
     /// Skips columns that were left out.
     fn skip(&mut self, columns: usize);
@@ -35,7 +35,7 @@ pub(crate) trait Source {
 
 /// Why words cannot be decoded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum Wrong {
+pub enum CodecError {
     /// Words are missing.
     #[error("it is shorter than it claims")]
     Short,
@@ -48,25 +48,25 @@ pub enum Wrong {
 }
 
 /// A value that can be split into words.
-pub(crate) trait Put {
+pub(crate) trait ToWords {
     /// Number of columns, used or not.
     const COLUMNS: usize;
 
     /// Writes its words.
-    fn put(&self, to: &mut impl Sink);
+    fn put(&self, to: &mut impl WordSink);
 }
 
 /// A value that can be rebuilt from words.
-pub(crate) trait Take: Put + Sized {
+pub(crate) trait FromWords: ToWords + Sized {
     /// Reads a value.
     ///
     /// # Errors
-    /// [`Wrong`] if the words are not a value of this type.
-    fn take(from: &mut impl Source) -> Result<Self, Wrong>;
+    /// [`CodecError`] if the words are not a value of this type.
+    fn take(from: &mut impl WordSource) -> Result<Self, CodecError>;
 }
 
 /// Rows of words, one after the other: for rare values.
-impl Sink for Vec<u64> {
+impl WordSink for Vec<u64> {
     fn word(&mut self, word: u64) {
         self.push(word);
     }
@@ -74,9 +74,9 @@ impl Sink for Vec<u64> {
     fn skip(&mut self, _: usize) {}
 }
 
-impl Source for std::vec::IntoIter<u64> {
-    fn word(&mut self) -> Result<u64, Wrong> {
-        self.next().ok_or(Wrong::Short)
+impl WordSource for std::vec::IntoIter<u64> {
+    fn word(&mut self) -> Result<u64, CodecError> {
+        self.next().ok_or(CodecError::Short)
     }
 
     fn skip(&mut self, _: usize) {}
@@ -85,22 +85,22 @@ impl Source for std::vec::IntoIter<u64> {
 /// Numbers that fit into a word.
 macro_rules! numbers {
     ($($number:ty),*) => { $(
-        impl Put for $number {
+        impl ToWords for $number {
             const COLUMNS: usize = 1;
 
-            fn put(&self, to: &mut impl Sink) {
+            fn put(&self, to: &mut impl WordSink) {
                 #[allow(clippy::cast_lossless, reason = "one of them is as wide as a word")]
                 to.word(*self as u64);
             }
         }
 
-        impl Take for $number {
-            fn take(from: &mut impl Source) -> Result<Self, Wrong> {
+        impl FromWords for $number {
+            fn take(from: &mut impl WordSource) -> Result<Self, CodecError> {
                 let word = from.word()?;
                 #[allow(clippy::cast_lossless, reason = "one of them is as wide as a word")]
                 let number = word as Self;
                 #[allow(clippy::cast_lossless, reason = "one of them is as wide as a word")]
-                if number as u64 == word { Ok(number) } else { Err(Wrong::NoSuchValue) }
+                if number as u64 == word { Ok(number) } else { Err(CodecError::NoSuchValue) }
             }
         }
     )* };
@@ -108,70 +108,70 @@ macro_rules! numbers {
 
 numbers!(u8, u16, u64, usize);
 
-impl Put for f64 {
+impl ToWords for f64 {
     const COLUMNS: usize = 1;
 
-    fn put(&self, to: &mut impl Sink) {
+    fn put(&self, to: &mut impl WordSink) {
         to.word(self.to_bits());
     }
 }
 
-impl Take for f64 {
-    fn take(from: &mut impl Source) -> Result<Self, Wrong> {
+impl FromWords for f64 {
+    fn take(from: &mut impl WordSource) -> Result<Self, CodecError> {
         from.word().map(Self::from_bits)
     }
 }
 
-impl Put for f32 {
+impl ToWords for f32 {
     const COLUMNS: usize = 1;
 
-    fn put(&self, to: &mut impl Sink) {
+    fn put(&self, to: &mut impl WordSink) {
         to.word(u64::from(self.to_bits()));
     }
 }
 
-impl Take for f32 {
-    fn take(from: &mut impl Source) -> Result<Self, Wrong> {
+impl FromWords for f32 {
+    fn take(from: &mut impl WordSource) -> Result<Self, CodecError> {
         u32::take(from).map(Self::from_bits)
     }
 }
 
-impl Put for u32 {
+impl ToWords for u32 {
     const COLUMNS: usize = 1;
 
-    fn put(&self, to: &mut impl Sink) {
+    fn put(&self, to: &mut impl WordSink) {
         to.word(u64::from(*self));
     }
 }
 
-impl Take for u32 {
-    fn take(from: &mut impl Source) -> Result<Self, Wrong> {
-        Self::try_from(from.word()?).map_err(|_| Wrong::NoSuchValue)
+impl FromWords for u32 {
+    fn take(from: &mut impl WordSource) -> Result<Self, CodecError> {
+        Self::try_from(from.word()?).map_err(|_| CodecError::NoSuchValue)
     }
 }
 
-impl Put for bool {
+impl ToWords for bool {
     const COLUMNS: usize = 1;
 
-    fn put(&self, to: &mut impl Sink) {
+    fn put(&self, to: &mut impl WordSink) {
         to.word(u64::from(*self));
     }
 }
 
-impl Take for bool {
-    fn take(from: &mut impl Source) -> Result<Self, Wrong> {
+impl FromWords for bool {
+    fn take(from: &mut impl WordSource) -> Result<Self, CodecError> {
         match from.word()? {
             0 => Ok(false),
             1 => Ok(true),
-            _ => Err(Wrong::NoSuchValue),
+            _ => Err(CodecError::NoSuchValue),
         }
     }
 }
 
-impl<T: Put> Put for Option<T> {
+impl<T: ToWords> ToWords for Option<T> {
     const COLUMNS: usize = 1 + T::COLUMNS;
 
-    fn put(&self, to: &mut impl Sink) {
+    fn put(&self, to: &mut impl WordSink) {
         self.is_some().put(to);
         match self {
             Some(value) => value.put(to),
@@ -180,8 +180,8 @@ impl<T: Put> Put for Option<T> {
     }
 }
 
-impl<T: Take> Take for Option<T> {
-    fn take(from: &mut impl Source) -> Result<Self, Wrong> {
+impl<T: FromWords> FromWords for Option<T> {
+    fn take(from: &mut impl WordSource) -> Result<Self, CodecError> {
         if bool::take(from)? {
             return T::take(from).map(Some);
         }
@@ -190,18 +190,18 @@ impl<T: Take> Take for Option<T> {
     }
 }
 
-impl<T: Put, const N: usize> Put for [T; N] {
+impl<T: ToWords, const N: usize> ToWords for [T; N] {
     const COLUMNS: usize = N * T::COLUMNS;
 
-    fn put(&self, to: &mut impl Sink) {
+    fn put(&self, to: &mut impl WordSink) {
         for value in self {
             value.put(to);
         }
     }
 }
 
-impl<T: Take + Copy + Default, const N: usize> Take for [T; N] {
-    fn take(from: &mut impl Source) -> Result<Self, Wrong> {
+impl<T: FromWords + Copy + Default, const N: usize> FromWords for [T; N] {
+    fn take(from: &mut impl WordSource) -> Result<Self, CodecError> {
         let mut values = [T::default(); N];
         for value in &mut values {
             *value = T::take(from)?;
@@ -210,63 +210,63 @@ impl<T: Take + Copy + Default, const N: usize> Take for [T; N] {
     }
 }
 
-impl Put for Vector3<f64> {
+impl ToWords for Vector3<f64> {
     const COLUMNS: usize = 3;
 
-    fn put(&self, to: &mut impl Sink) {
+    fn put(&self, to: &mut impl WordSink) {
         self.iter().for_each(|x| x.put(to));
     }
 }
 
-impl Take for Vector3<f64> {
-    fn take(from: &mut impl Source) -> Result<Self, Wrong> {
+impl FromWords for Vector3<f64> {
+    fn take(from: &mut impl WordSource) -> Result<Self, CodecError> {
         Ok(Self::new(f64::take(from)?, f64::take(from)?, f64::take(from)?))
     }
 }
 
-impl Put for UnitVector3<f64> {
+impl ToWords for UnitVector3<f64> {
     const COLUMNS: usize = 3;
 
-    fn put(&self, to: &mut impl Sink) {
+    fn put(&self, to: &mut impl WordSink) {
         self.as_ref().put(to);
     }
 }
 
-impl Take for UnitVector3<f64> {
-    fn take(from: &mut impl Source) -> Result<Self, Wrong> {
+impl FromWords for UnitVector3<f64> {
+    fn take(from: &mut impl WordSource) -> Result<Self, CodecError> {
         // Exact to the bit, so not normalised again.
         Vector3::take(from).map(Self::new_unchecked)
     }
 }
 
-impl Put for UnitQuaternion<f64> {
+impl ToWords for UnitQuaternion<f64> {
     const COLUMNS: usize = 4;
 
-    fn put(&self, to: &mut impl Sink) {
+    fn put(&self, to: &mut impl WordSink) {
         self.coords.iter().for_each(|x| x.put(to));
     }
 }
 
-impl Take for UnitQuaternion<f64> {
-    fn take(from: &mut impl Source) -> Result<Self, Wrong> {
+impl FromWords for UnitQuaternion<f64> {
+    fn take(from: &mut impl WordSource) -> Result<Self, CodecError> {
         let [i, j, k, w] = <[f64; 4]>::take(from)?;
         // Exact to the bit, so not normalised again.
         Ok(Self::new_unchecked(Quaternion::new(w, i, j, k)))
     }
 }
 
-impl Put for Isometry3<f64> {
+impl ToWords for Isometry3<f64> {
     const COLUMNS: usize = 7;
 
-    fn put(&self, to: &mut impl Sink) {
+    fn put(&self, to: &mut impl WordSink) {
         let Self { rotation, translation } = self;
         translation.vector.put(to);
         rotation.put(to);
     }
 }
 
-impl Take for Isometry3<f64> {
-    fn take(from: &mut impl Source) -> Result<Self, Wrong> {
+impl FromWords for Isometry3<f64> {
+    fn take(from: &mut impl WordSource) -> Result<Self, CodecError> {
         let translation = Translation3::from(Vector3::take(from)?);
         Ok(Self::from_parts(translation, UnitQuaternion::take(from)?))
     }
@@ -275,10 +275,10 @@ impl Take for Isometry3<f64> {
 /// A structure: all its fields, in this order.
 macro_rules! record {
     (put $type:ty { $($field:ident: $kind:ty),* $(,)? }) => {
-        impl Put for $type {
-            const COLUMNS: usize = 0 $(+ <$kind as Put>::COLUMNS)*;
+        impl ToWords for $type {
+            const COLUMNS: usize = 0 $(+ <$kind as ToWords>::COLUMNS)*;
 
-            fn put(&self, to: &mut impl Sink) {
+            fn put(&self, to: &mut impl WordSink) {
                 // Without `..`, so that a new field does not compile until it is handled here.
                 let Self { $($field),* } = self;
                 $($field.put(to);)*
@@ -288,9 +288,9 @@ macro_rules! record {
     ($type:ty { $($field:ident: $kind:ty),* $(,)? }) => {
         record!(put $type { $($field: $kind),* });
 
-        impl Take for $type {
-            fn take(from: &mut impl Source) -> Result<Self, Wrong> {
-                Ok(Self { $($field: <$kind as Take>::take(from)?),* })
+        impl FromWords for $type {
+            fn take(from: &mut impl WordSource) -> Result<Self, CodecError> {
+                Ok(Self { $($field: <$kind as FromWords>::take(from)?),* })
             }
         }
     };
@@ -300,11 +300,11 @@ macro_rules! record {
 /// used.
 macro_rules! choice {
     (put $type:ty { $($tag:literal => $variant:ident { $($field:tt: $name:ident: $kind:ty),* }),* $(,)? }) => {
-        impl Put for $type {
-            const COLUMNS: usize = 1 $($(+ <$kind as Put>::COLUMNS)*)*;
+        impl ToWords for $type {
+            const COLUMNS: usize = 1 $($(+ <$kind as ToWords>::COLUMNS)*)*;
 
             #[allow(unused_variables, reason = "variants without fields, and the number alone")]
-            fn put(&self, to: &mut impl Sink) {
+            fn put(&self, to: &mut impl WordSink) {
                 // Without `_` and `..`, so that a new variant or field does not compile until it is handled here.
                 let tag: u64 = match self { $(Self::$variant { $($field: $name),* } => $tag),* };
                 to.word(tag);
@@ -312,7 +312,7 @@ macro_rules! choice {
                     if let Self::$variant { $($field: $name),* } = self {
                         $($name.put(to);)*
                     } else {
-                        to.skip(0 $(+ <$kind as Put>::COLUMNS)*);
+                        to.skip(0 $(+ <$kind as ToWords>::COLUMNS)*);
                     }
                 )*
             }
@@ -321,18 +321,18 @@ macro_rules! choice {
     ($type:ty { $($tag:literal => $variant:ident { $($field:tt: $name:ident: $kind:ty),* }),* $(,)? }) => {
         choice!(put $type { $($tag => $variant { $($field: $name: $kind),* }),* });
 
-        impl Take for $type {
-            fn take(from: &mut impl Source) -> Result<Self, Wrong> {
+        impl FromWords for $type {
+            fn take(from: &mut impl WordSource) -> Result<Self, CodecError> {
                 let tag = from.word()?;
                 let mut made = None;
                 $(
                     if tag == $tag {
-                        made = Some(Self::$variant { $($field: <$kind as Take>::take(from)?),* });
+                        made = Some(Self::$variant { $($field: <$kind as FromWords>::take(from)?),* });
                     } else {
-                        from.skip(0 $(+ <$kind as Put>::COLUMNS)*);
+                        from.skip(0 $(+ <$kind as ToWords>::COLUMNS)*);
                     }
                 )*
-                made.ok_or(Wrong::NoSuchValue)
+                made.ok_or(CodecError::NoSuchValue)
             }
         }
     };

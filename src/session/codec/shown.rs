@@ -4,17 +4,19 @@ use nalgebra::{UnitQuaternion, Vector3};
 use nima_core::{
     calibration::frames::FrameSample,
     frames::{Wrench, WristSample},
-    impedance::{Excitation, MAX_DEGREE, Mode, ModeSet, Report, SLOTS},
-    safety::{ChainSettings, EnergyMode, GATES, GateCounts, GateReport, Implausible, Reason, State, Why},
+    impedance::{IdentificationReport, ImpedanceExcitation, MAX_DEGREE, Mode, ModeSet, SLOTS},
+    safety::{
+        ChainSettings, EnergyMode, GATES, GateCounts, GateReport, Implausible, InterlockState, Reason, TransitionCause,
+    },
     tip_force::{Fallback, TipForceReport, Unsure},
 };
 use nima_devices::Loss;
 use nima_machine::{
     messages::{Command, Event, FarStop, Fault, ForceReport, ForceSource, Refusal, Scheduling, Tick},
-    rig::{Acts, DeviceEvent, Obstacle, Outputs, Prompt, Side, View},
+    rig::{Acts, DeviceEvent, EngageBlocker, Outputs, Prompt, Side, ViewOrientation},
 };
 
-use super::{Put, Sink, Source, Take, Wrong, choice, record};
+use super::{CodecError, FromWords, ToWords, WordSink, WordSource, choice, record};
 
 record!(put Outputs {
     drives: bool,
@@ -35,7 +37,7 @@ record!(Tick {
     index: u64,
     side: Side,
     t_s: f64,
-    state: State<Fault>,
+    state: InterlockState<Fault>,
     mode: Mode,
     delay_s: f64,
     leader_m: Vector3<f64>,
@@ -44,7 +46,7 @@ record!(Tick {
     force: ForceReport,
     wrist: Option<WristSample>,
     frames: FrameSample,
-    view: View,
+    view: ViewOrientation,
     prompt: Prompt,
     guide_m: Option<Vector3<f64>>,
     delayed_n: Vector3<f64>,
@@ -52,7 +54,7 @@ record!(Tick {
     rendered_n: Vector3<f64>,
     gates: GateReport,
     gate_settings: ChainSettings,
-    identification: Report,
+    identification: IdentificationReport,
     wake_s: f64,
     work_s: f64,
     sample_to_force_s: Option<f64>,
@@ -85,13 +87,13 @@ choice!(Fallback { 0 => WristForce {}, 1 => HoldAndFade {} });
 
 record!(TipForceReport {
     force_s1_n: Vector3<f64>,
-    network_share: f64,
+    network_fraction: f64,
     unsure: Option<Unsure>,
     extrapolates: bool,
     doubt: f32,
 });
 
-record!(Report {
+record!(IdentificationReport {
     t_s: f64,
     modes: ModeSet,
     resting: bool,
@@ -107,26 +109,26 @@ record!(Report {
     gain: f64,
     condition: f64,
     rank: u8,
-    excitation: Excitation,
+    excitation: ImpedanceExcitation,
     rejected: u64,
     restarts: u64,
     literal_failures: u64,
     horizon_error_n: [f64; SLOTS],
 });
 
-record!(Excitation { position_m: Vector3<f64>, velocity_m_s: Vector3<f64>, acceleration_m_s2: Vector3<f64> });
+record!(ImpedanceExcitation { position_m: Vector3<f64>, velocity_m_s: Vector3<f64>, acceleration_m_s2: Vector3<f64> });
 
-impl Put for ModeSet {
+impl ToWords for ModeSet {
     const COLUMNS: usize = 1;
 
-    fn put(&self, to: &mut impl Sink) {
+    fn put(&self, to: &mut impl WordSink) {
         let bits = Mode::ALL.into_iter().chain(Mode::BASELINES).map(|mode| u64::from(self.contains(mode)));
         to.word(bits.fold(0, |word, bit| word << 1 | bit));
     }
 }
 
-impl Take for ModeSet {
-    fn take(from: &mut impl Source) -> Result<Self, Wrong> {
+impl FromWords for ModeSet {
+    fn take(from: &mut impl WordSource) -> Result<Self, CodecError> {
         let word = from.word()?;
         let modes = || Mode::ALL.into_iter().chain(Mode::BASELINES);
         let last = modes().count() - 1;
@@ -134,7 +136,7 @@ impl Take for ModeSet {
         let set = asked.fold(Self::only(Mode::Dfr), |set, (_, mode)| set.with(mode));
         let mut again = Vec::new();
         set.put(&mut again);
-        if again == [word] { Ok(set) } else { Err(Wrong::NoSuchValue) }
+        if again == [word] { Ok(set) } else { Err(CodecError::NoSuchValue) }
     }
 }
 
@@ -150,17 +152,17 @@ record!(GateReport {
 record!(GateCounts { ticks: u64, acted: [u64; GATES], last: [Reason; GATES] });
 
 /// By its place in the list, so that another list is another version of the journal.
-impl Put for Reason {
+impl ToWords for Reason {
     const COLUMNS: usize = 1;
 
-    fn put(&self, to: &mut impl Sink) {
+    fn put(&self, to: &mut impl WordSink) {
         to.word(*self as u64);
     }
 }
 
-impl Take for Reason {
-    fn take(from: &mut impl Source) -> Result<Self, Wrong> {
-        Self::ALL.get(usize::take(from)?).copied().ok_or(Wrong::NoSuchValue)
+impl FromWords for Reason {
+    fn take(from: &mut impl WordSource) -> Result<Self, CodecError> {
+        Self::ALL.get(usize::take(from)?).copied().ok_or(CodecError::NoSuchValue)
     }
 }
 
@@ -183,7 +185,7 @@ record!(ChainSettings {
 
 choice!(EnergyMode { 0 => Off {}, 1 => Observe {}, 2 => Control {} });
 
-choice!(State<Fault> {
+choice!(InterlockState<Fault> {
     0 => Disconnected {},
     1 => Idle {},
     2 => Ready {},
@@ -223,14 +225,14 @@ choice!(Implausible {
 });
 
 choice!(Event {
-    0 => StateChanged { t_s: t_s: f64, side: side: Side, from: from: State<Fault>, to: into: State<Fault>, why: why: Why },
+    0 => StateChanged { t_s: t_s: f64, side: side: Side, from: from: InterlockState<Fault>, to: into: InterlockState<Fault>, why: why: TransitionCause },
     1 => FaultRaised { t_s: t_s: f64, side: side: Side, fault: fault: Fault },
     2 => CommandRefused { t_s: t_s: f64, side: side: Side, command: command: Command, why: why: Refusal },
     3 => Device { 0: event: DeviceEvent },
     4 => Scheduling { 0: granted: Scheduling },
 });
 
-choice!(Why {
+choice!(TransitionCause {
     0 => Asked {},
     1 => Connected {},
     2 => Disconnected {},
@@ -244,11 +246,11 @@ choice!(Why {
 record!(Scheduling { fifo: bool, deadline: bool, memory_locked: bool });
 
 choice!(Refusal {
-    0 => State { 0: state: State<Fault> },
+    0 => State { 0: state: InterlockState<Fault> },
     1 => StillPresent { 0: fault: Fault },
     2 => ForceUnknown { 0: source: ForceSource },
     3 => Implausible { 0: what: Implausible },
-    4 => Obstacle { 0: obstacle: Obstacle },
+    4 => Obstacle { 0: obstacle: EngageBlocker },
     5 => EndoscopeUnseen {},
     6 => DrivesOff {},
     7 => Moving {},

@@ -3,23 +3,26 @@
 use nima_machine::{
     messages::Event,
     rig::{Inputs, SIDES},
-    runtime::{Operation, Stepped},
+    runtime::{Operation, TickRecord},
     teleop::Timing,
 };
 
 use crate::{
-    codec::{Columns, Put, Sink, Source, Take, Unpacked, Wrong, choice, number, record, take_number},
-    digest::Check,
+    codec::{
+        BlockColumns, CodecError, FromWords, ToWords, UnpackedColumns, WordSink, WordSource, choice, number, record,
+        take_number,
+    },
+    digest::DigestCheck,
 };
 
 /// Ticks of a full block: 0.2 s at 1 kHz.
 pub const BLOCK_TICKS: usize = 200;
 /// Maximum number of ticks, and of operations, of a block that is read.
-const MOST: u64 = 4096;
+const MAX: u64 = 4096;
 
 /// An entry before a tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Noted {
+pub enum TickNote {
     /// An operation on the loop.
     Operation(Operation),
     /// Entries were dropped here: everything after this cannot be replayed.
@@ -29,39 +32,39 @@ pub enum Noted {
     },
 }
 
-choice!(Noted {
+choice!(TickNote {
     0 => Operation { 0: operation: Operation },
     1 => Hole { lost: lost: u64 },
 });
 
 /// One tick: the inputs of the loop, and the digest of its outputs.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Row {
+pub struct TickRow {
     /// The times that were passed in.
     pub timing: Timing,
     pub inputs: [Option<Inputs>; SIDES],
-    pub check: Check,
+    pub check: DigestCheck,
 }
 
-record!(Row { timing: Timing, inputs: [Option<Inputs>; SIDES], check: Check });
+record!(TickRow { timing: Timing, inputs: [Option<Inputs>; SIDES], check: DigestCheck });
 
 #[derive(Clone, Debug, PartialEq)]
-pub struct Block {
+pub struct JournalBlock {
     /// Number of its first tick among all ticks in the journal.
     pub first_tick: u64,
     /// The entries before each row, in order; an index beyond the last row means after it.
-    pub noted: Vec<(usize, Noted)>,
-    pub rows: Vec<Row>,
+    pub noted: Vec<(usize, TickNote)>,
+    pub rows: Vec<TickRow>,
 }
 
-impl Block {
-    pub(super) fn take(from: &mut &[u8]) -> Result<Self, Wrong> {
+impl JournalBlock {
+    pub(super) fn take(from: &mut &[u8]) -> Result<Self, CodecError> {
         let (first_tick, rows, noted) = take_head(from)?;
-        let columns = Unpacked::of(from, Row::COLUMNS)?;
+        let columns = UnpackedColumns::of(from, TickRow::COLUMNS)?;
         let mut source = columns.rows();
         let mut row = || {
             source.next_row();
-            Row::take(&mut source)
+            TickRow::take(&mut source)
         };
         let rows = (0..rows).map(|_| row()).collect::<Result<_, _>>()?;
         source.end()?;
@@ -70,63 +73,63 @@ impl Block {
 }
 
 /// Entries, each with the index of the row that it precedes.
-type Before = Vec<(usize, Noted)>;
+type EarlierEvents = Vec<(usize, TickNote)>;
 
 /// Reads the number of the first tick, the number of rows, and the entries between them.
-fn take_head(from: &mut &[u8]) -> Result<(u64, u64, Before), Wrong> {
+fn take_head(from: &mut &[u8]) -> Result<(u64, u64, EarlierEvents), CodecError> {
     let first_tick = take_number(from)?;
     let rows = take_number(from)?;
     let noted = take_number(from)?;
-    if rows.max(noted) > MOST {
-        return Err(Wrong::Long);
+    if rows.max(noted) > MAX {
+        return Err(CodecError::Long);
     }
     let noted = (0..noted).map(|_| take_noted(from)).collect::<Result<_, _>>()?;
     Ok((first_tick, rows, noted))
 }
 
 /// Returns the number of dropped entries for each gap in the block with this body.
-pub(super) fn holes(mut body: &[u8]) -> Result<Vec<u64>, Wrong> {
+pub(super) fn holes(mut body: &[u8]) -> Result<Vec<u64>, CodecError> {
     let (.., noted) = take_head(&mut body)?;
-    let lost = |(_, noted): (usize, Noted)| if let Noted::Hole { lost } = noted { Some(lost) } else { None };
+    let lost = |(_, noted): (usize, TickNote)| if let TickNote::Hole { lost } = noted { Some(lost) } else { None };
     Ok(noted.into_iter().filter_map(lost).collect())
 }
 
-fn take_noted(from: &mut &[u8]) -> Result<(usize, Noted), Wrong> {
-    let before = usize::try_from(take_number(from)?).map_err(|_| Wrong::NoSuchValue)?;
+fn take_noted(from: &mut &[u8]) -> Result<(usize, TickNote), CodecError> {
+    let before = usize::try_from(take_number(from)?).map_err(|_| CodecError::NoSuchValue)?;
     let count = take_number(from)?;
-    if count > Noted::COLUMNS as u64 {
-        return Err(Wrong::Long);
+    if count > TickNote::COLUMNS as u64 {
+        return Err(CodecError::Long);
     }
     let words = (0..count).map(|_| take_number(from)).collect::<Result<Vec<_>, _>>()?;
     let mut words = words.into_iter();
-    let noted = Noted::take(&mut words)?;
-    if words.len() == 0 { Ok((before, noted)) } else { Err(Wrong::Long) }
+    let noted = TickNote::take(&mut words)?;
+    if words.len() == 0 { Ok((before, noted)) } else { Err(CodecError::Long) }
 }
 
 #[derive(Clone, Debug, Default)]
 pub struct BlockWriter {
     first_tick: u64,
-    noted: Vec<(usize, Noted)>,
-    columns: Columns,
+    noted: Vec<(usize, TickNote)>,
+    columns: BlockColumns,
     rows: usize,
 }
 
 impl BlockWriter {
     /// Adds an entry before the next tick.
-    pub fn note(&mut self, noted: Noted) {
+    pub fn note(&mut self, noted: TickNote) {
         self.noted.push((self.rows, noted));
     }
 
-    pub fn tick(&mut self, row: &Row) {
+    pub fn tick(&mut self, row: &TickRow) {
         self.columns.next_row();
         row.put(&mut self.columns);
         self.rows += 1;
     }
 
     /// Makes the row of a tick, in which these events were reported.
-    pub fn row<'a>(stepped: &Stepped, events: impl Iterator<Item = &'a Event>) -> Row {
-        let check = Check::of(events, &stepped.outputs, &stepped.ticks);
-        Row { timing: stepped.timing, inputs: stepped.inputs, check }
+    pub fn row<'a>(stepped: &TickRecord, events: impl Iterator<Item = &'a Event>) -> TickRow {
+        let check = DigestCheck::of(events, &stepped.outputs, &stepped.ticks);
+        TickRow { timing: stepped.timing, inputs: stepped.inputs, check }
     }
 
     /// Whether the block must be written.

@@ -1,8 +1,8 @@
 //! The journal of a session: the messages from which the loop is replayed.
 //!
 //! Each message carries the journal's version, its number in the journal and its own CRC-32, so that a lost or changed
-//! message is always detected and located. A [`Start`] comes first, an [`End`] last if the recording was closed;
-//! between them are [`Block`]s of ticks, and calibrations before the block that activates them.
+//! message is always detected and located. A [`JournalStart`] comes first, an [`JournalEnd`] last if the recording was closed;
+//! between them are [`JournalBlock`]s of ticks, and calibrations before the block that activates them.
 
 mod block;
 mod parts;
@@ -15,11 +15,11 @@ use nima_core::{
 };
 use nima_machine::teleop::Calibrations;
 
-pub use block::{BLOCK_TICKS, Block, BlockWriter, Noted, Row};
-pub use parts::{End, Start};
+pub use block::{BLOCK_TICKS, BlockWriter, JournalBlock, TickNote, TickRow};
+pub use parts::{JournalEnd, JournalStart};
 
-use crate::codec::Wrong;
-use parts::Bytes;
+use crate::codec::CodecError;
+use parts::ByteWriter;
 
 /// Version of the journal that this program writes, and the only version that it reads.
 ///
@@ -49,24 +49,24 @@ pub enum JournalError {
     #[error("its content does not match its checksum: the file was changed or damaged")]
     Damaged,
     #[error("its content is wrong: {0}")]
-    Wrong(#[from] Wrong),
+    Wrong(#[from] CodecError),
     #[error("its {what} cannot be used: {why}")]
     Part { what: &'static str, why: String },
 }
 
 #[derive(Clone, Debug)]
 #[expect(clippy::large_enum_variant, reason = "one at a time")]
-pub enum Message {
+pub enum JournalMessage {
     /// Origin of the loop.
-    Start(Start),
+    Start(JournalStart),
     /// Calibrations that become active later, by their number.
     Calibrations {
         number: u64,
         calibrations: Calibrations,
     },
-    Block(Block),
+    Block(JournalBlock),
     /// The recording was closed.
-    End(End),
+    End(JournalEnd),
 }
 
 const START: u8 = 0;
@@ -76,25 +76,25 @@ const END: u8 = 3;
 
 /// Encodes messages and numbers them.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Encoder {
+pub struct JournalEncoder {
     next: u64,
 }
 
-impl Encoder {
+impl JournalEncoder {
     /// Encodes the origin of the loop.
     ///
     /// # Errors
     /// [`JournalError::Part`] if a rig or calibration cannot be written and read back unchanged.
-    pub fn start(&mut self, start: &Start) -> Result<Vec<u8>, JournalError> {
-        let mut body = Bytes::default();
+    pub fn start(&mut self, start: &JournalStart) -> Result<Vec<u8>, JournalError> {
+        let mut body = ByteWriter::default();
         start.put(&mut body)?;
         Ok(self.message(START, &body.0))
     }
 
     /// # Errors
-    /// As [`Encoder::start`].
+    /// As [`JournalEncoder::start`].
     pub fn calibrations(&mut self, number: u64, calibrations: &Calibrations) -> Result<Vec<u8>, JournalError> {
-        let mut body = Bytes::default();
+        let mut body = ByteWriter::default();
         body.number(number);
         parts::put_calibrations(calibrations, &mut body)?;
         Ok(self.message(CALIBRATIONS, &body.0))
@@ -105,8 +105,8 @@ impl Encoder {
         self.message(BLOCK, &block.take())
     }
 
-    pub fn end(&mut self, end: &End) -> Vec<u8> {
-        let mut body = Bytes::default();
+    pub fn end(&mut self, end: &JournalEnd) -> Vec<u8> {
+        let mut body = ByteWriter::default();
         end.put(&mut body);
         self.message(END, &body.0)
     }
@@ -126,7 +126,7 @@ impl Encoder {
 
 /// A message without its ticks and calibrations.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Outline {
+pub enum MessageOutline {
     /// Origin of the loop.
     Start,
     /// Calibrations that become active later.
@@ -136,21 +136,21 @@ pub enum Outline {
         lost: Vec<u64>,
     },
     /// The recording was closed.
-    End(End),
+    End(JournalEnd),
 }
 
 /// Returns the outline of a message, for readers that do not replay it.
 ///
 /// # Errors
 /// The errors of [`decode`], except for ticks and calibrations, which are not read.
-pub fn outline(bytes: &[u8]) -> Result<Outline, JournalError> {
+pub fn outline(bytes: &[u8]) -> Result<MessageOutline, JournalError> {
     let (_, kind, body) = opened(bytes)?;
     Ok(match kind {
-        START => Outline::Start,
-        CALIBRATIONS => Outline::Calibrations,
-        BLOCK => Outline::Block { lost: block::holes(body)? },
-        END => Outline::End(End::take(&mut &*body)?),
-        _ => return Err(Wrong::NoSuchValue.into()),
+        START => MessageOutline::Start,
+        CALIBRATIONS => MessageOutline::Calibrations,
+        BLOCK => MessageOutline::Block { lost: block::holes(body)? },
+        END => MessageOutline::End(JournalEnd::take(&mut &*body)?),
+        _ => return Err(CodecError::NoSuchValue.into()),
     })
 }
 
@@ -164,20 +164,20 @@ pub fn number(bytes: &[u8]) -> Result<u64, JournalError> {
 
 /// # Errors
 /// [`JournalError`] if the bytes are not a message, or are damaged.
-pub fn decode(bytes: &[u8]) -> Result<(u64, Message), JournalError> {
+pub fn decode(bytes: &[u8]) -> Result<(u64, JournalMessage), JournalError> {
     let (number, kind, mut body) = opened(bytes)?;
     let body = &mut body;
     let message = match kind {
-        START => Message::Start(Start::take(body)?),
+        START => JournalMessage::Start(JournalStart::take(body)?),
         CALIBRATIONS => {
             let number = crate::codec::take_number(body)?;
-            Message::Calibrations { number, calibrations: parts::take_calibrations(body)? }
+            JournalMessage::Calibrations { number, calibrations: parts::take_calibrations(body)? }
         }
-        BLOCK => Message::Block(Block::take(body)?),
-        END => Message::End(End::take(body)?),
-        _ => return Err(Wrong::NoSuchValue.into()),
+        BLOCK => JournalMessage::Block(JournalBlock::take(body)?),
+        END => JournalMessage::End(JournalEnd::take(body)?),
+        _ => return Err(CodecError::NoSuchValue.into()),
     };
-    if body.is_empty() { Ok((number, message)) } else { Err(Wrong::Long.into()) }
+    if body.is_empty() { Ok((number, message)) } else { Err(CodecError::Long.into()) }
 }
 
 /// Returns number, kind and body of a message.
@@ -193,7 +193,7 @@ fn opened(bytes: &[u8]) -> Result<(u64, u8, &[u8]), JournalError> {
     if crc32fast::hash(content).to_le_bytes() != head[6..] {
         return Err(JournalError::Damaged);
     }
-    let (number, rest) = content.split_first_chunk::<8>().ok_or(Wrong::Short)?;
-    let (kind, body) = rest.split_first().ok_or(Wrong::Short)?;
+    let (number, rest) = content.split_first_chunk::<8>().ok_or(CodecError::Short)?;
+    let (kind, body) = rest.split_first().ok_or(CodecError::Short)?;
     Ok((u64::from_le_bytes(*number), *kind, body))
 }

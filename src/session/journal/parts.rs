@@ -2,23 +2,23 @@
 
 use nima_core::{
     calibration::gravity::GravityModel,
-    tip_force::{Fallback, TipForce},
+    tip_force::{Fallback, LiveTipForce},
 };
 use nima_machine::{
     config::RigConfig,
     rig::SIDES,
-    teleop::{Calibrations, Origin},
+    teleop::{Calibrations, LoopOrigin},
 };
 use nima_recording::tip_force::{model_from_bytes, model_to_bytes};
 
 use super::JournalError;
-use crate::codec::{Wrong, bytes, number, take_number};
+use crate::codec::{CodecError, bytes, number, take_number};
 
 /// Bytes that are being written.
 #[derive(Debug, Default)]
-pub(super) struct Bytes(pub(super) Vec<u8>);
+pub(super) struct ByteWriter(pub(super) Vec<u8>);
 
-impl Bytes {
+impl ByteWriter {
     pub(super) fn number(&mut self, value: u64) {
         number(&mut self.0, value);
     }
@@ -30,17 +30,17 @@ impl Bytes {
 }
 
 #[derive(Clone, Debug)]
-pub struct Start {
+pub struct JournalStart {
     /// Version of the program that recorded it.
     pub program: String,
     /// Origin of the loop.
-    pub origin: Origin,
+    pub origin: LoopOrigin,
 }
 
-impl Start {
-    pub(super) fn put(&self, to: &mut Bytes) -> Result<(), JournalError> {
+impl JournalStart {
+    pub(super) fn put(&self, to: &mut ByteWriter) -> Result<(), JournalError> {
         let Self { program, origin } = self;
-        let Origin { rig, calibrations, suspended } = origin;
+        let LoopOrigin { rig, calibrations, suspended } = origin;
         to.part(program.as_bytes());
         to.part(rig_text(rig)?.as_bytes());
         to.number(u64::from(*suspended));
@@ -61,7 +61,7 @@ impl Start {
         for of_side in &mut calibrations {
             *of_side = if flag(from)? { Some(take_calibrations(from)?) } else { None };
         }
-        Ok(Self { program, origin: Origin { rig, calibrations, suspended } })
+        Ok(Self { program, origin: LoopOrigin { rig, calibrations, suspended } })
     }
 }
 
@@ -92,7 +92,7 @@ fn read_rig(text: &str) -> Result<RigConfig, JournalError> {
 /// Replaces the name of a person.
 const WITHHELD: &str = "(withheld)";
 
-pub(super) fn put_calibrations(calibrations: &Calibrations, to: &mut Bytes) -> Result<(), JournalError> {
+pub(super) fn put_calibrations(calibrations: &Calibrations, to: &mut ByteWriter) -> Result<(), JournalError> {
     // The reported quality of a calibration does not affect the loop.
     let Calibrations { gravity, tip_force, gravity_check: _ } = calibrations;
     let part = |what: &'static str| move |why: String| JournalError::Part { what, why };
@@ -139,24 +139,24 @@ pub(super) fn take_calibrations(from: &mut &[u8]) -> Result<Calibrations, Journa
         let fallback = match take_number(from)? {
             0 => Fallback::WristForce,
             1 => Fallback::HoldAndFade,
-            _ => return Err(Wrong::NoSuchValue.into()),
+            _ => return Err(CodecError::NoSuchValue.into()),
         };
-        Some(TipForce::new(model, fallback).map_err(|error| part("network")(error.to_string()))?)
+        Some(LiveTipForce::new(model, fallback).map_err(|error| part("network")(error.to_string()))?)
     };
     Ok(Calibrations { gravity, tip_force, gravity_check: None })
 }
 
 /// The end of a journal that was closed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct End {
+pub struct JournalEnd {
     /// Number of ticks in it.
     pub ticks: u64,
     /// Number of dropped entries.
     pub lost: u64,
 }
 
-impl End {
-    pub(super) fn put(&self, to: &mut Bytes) {
+impl JournalEnd {
+    pub(super) fn put(&self, to: &mut ByteWriter) {
         let Self { ticks, lost } = *self;
         to.number(ticks);
         to.number(lost);
@@ -167,19 +167,19 @@ impl End {
     }
 }
 
-fn take_part<'a>(from: &mut &'a [u8]) -> Result<&'a [u8], Wrong> {
-    let length = usize::try_from(take_number(from)?).map_err(|_| Wrong::NoSuchValue)?;
+fn take_part<'a>(from: &mut &'a [u8]) -> Result<&'a [u8], CodecError> {
+    let length = usize::try_from(take_number(from)?).map_err(|_| CodecError::NoSuchValue)?;
     bytes(from, length)
 }
 
-fn text(from: &mut &[u8]) -> Result<String, Wrong> {
-    take_part(from).and_then(|part| String::from_utf8(part.to_vec()).map_err(|_| Wrong::NoSuchValue))
+fn text(from: &mut &[u8]) -> Result<String, CodecError> {
+    take_part(from).and_then(|part| String::from_utf8(part.to_vec()).map_err(|_| CodecError::NoSuchValue))
 }
 
-fn flag(from: &mut &[u8]) -> Result<bool, Wrong> {
+fn flag(from: &mut &[u8]) -> Result<bool, CodecError> {
     match take_number(from)? {
         0 => Ok(false),
         1 => Ok(true),
-        _ => Err(Wrong::NoSuchValue),
+        _ => Err(CodecError::NoSuchValue),
     }
 }

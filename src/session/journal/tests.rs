@@ -2,25 +2,31 @@
 
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion, UnitVector3, Vector3};
 use nima_core::{
-    calibration::frames::{FrameSample, Move},
+    calibration::frames::{FrameSample, ViewMove},
     frames::{Wrench, WristSample},
-    impedance::{Mode, ModeSet, PACKED_MAX, Packed, SLOTS},
-    kinematics::{Hand, StartError},
-    safety::{Raw, RawReadings},
+    impedance::{Mode, ModeSet, PACKED_MAX, ParameterPack, SLOTS},
+    kinematics::{ArmStartError, HandPose},
+    safety::{RawReading, RawReadings},
     tip_force::{Fallback, Unsure},
 };
-use nima_devices::{Loss, Standing};
+use nima_devices::{ConnectionState, Loss};
 use nima_machine::{
     config::RigConfig,
     messages::{Command, FarStop, ForceSource, Watchdog},
-    rig::{Act, Awaited, DeviceEvent, Exchange, Identified, Inputs, Obstacle, Prompt, Sensed, Side, Switches, View},
+    rig::{
+        AwaitedDevice, DeviceEvent, EngageBlocker, Inputs, Prompt, RemoteIdentification, SensedForce, Side, SideSwap,
+        Switches, TaskAction, ViewOrientation,
+    },
     runtime::Operation,
-    teleop::{Calibrations, Origin, Timing},
+    teleop::{Calibrations, LoopOrigin, Timing},
 };
 use proptest::prelude::*;
 
-use super::{BlockWriter, Encoder, End, JournalError, Message, Noted, Row, Start, VERSION, decode};
-use crate::digest::{Check, STAGES};
+use super::{
+    BlockWriter, JournalEncoder, JournalEnd, JournalError, JournalMessage, JournalStart, TickNote, TickRow, VERSION,
+    decode,
+};
+use crate::digest::{DigestCheck, STAGES};
 
 /// Numbers that a working or faulty device may return. Compared by their bits.
 fn number() -> impl Strategy<Value = f64> {
@@ -37,7 +43,8 @@ fn rotation() -> impl Strategy<Value = UnitQuaternion<f64>> {
 }
 
 fn pose() -> impl Strategy<Value = Isometry3<f64>> {
-    (vector(), rotation()).prop_map(|(at_m, turned)| Isometry3::from_parts(Translation3::from(at_m), turned))
+    (vector(), rotation())
+        .prop_map(|(position_m, turned)| Isometry3::from_parts(Translation3::from(position_m), turned))
 }
 
 fn maybe<T: std::fmt::Debug>(value: impl Strategy<Value = T>) -> impl Strategy<Value = Option<T>> {
@@ -48,16 +55,16 @@ fn wrench() -> impl Strategy<Value = Wrench> {
     (vector(), vector()).prop_map(|(force_n, torque_nm)| Wrench { force_n, torque_nm })
 }
 
-fn sensed() -> BoxedStrategy<Sensed> {
+fn sensed() -> BoxedStrategy<SensedForce> {
     let turned = (maybe(rotation()), maybe(rotation()), maybe(rotation()));
     let sample = (wrench(), maybe(vector()), turned, maybe(number()), maybe(vector()));
     let at_wrist = sample.prop_map(|(raw, acceleration_m_s2, turned, insertion_m, tissue_n)| {
         let (world_from_s1, world_from_m, m_from_c) = turned;
         let sample =
             WristSample { raw, acceleration_m_s2, world_from_s1, world_from_m, m_from_c, insertion_m, tissue_n };
-        Sensed::AtWrist(sample)
+        SensedForce::AtWrist(sample)
     });
-    prop_oneof![vector().prop_map(Sensed::AtTip), at_wrist, identified().prop_map(Sensed::FarEnd)].boxed()
+    prop_oneof![vector().prop_map(SensedForce::AtTip), at_wrist, identified().prop_map(SensedForce::FarEnd)].boxed()
 }
 
 fn frames() -> BoxedStrategy<FrameSample> {
@@ -77,31 +84,32 @@ fn frames() -> BoxedStrategy<FrameSample> {
         .boxed()
 }
 
-fn obstacle() -> BoxedStrategy<Obstacle> {
+fn obstacle() -> BoxedStrategy<EngageBlocker> {
     let start = prop_oneof![
-        number().prop_map(|period_s| StartError::Period { period_s }),
-        (number(), number()).prop_map(|(shaft_m, insertion_max_m)| StartError::ShortShaft { shaft_m, insertion_max_m }),
-        any::<usize>().prop_map(|joint| StartError::NotFinite { joint }),
-        (any::<usize>(), number(), number()).prop_map(|(joint, angle_deg, limit_deg)| StartError::AtLimit {
+        number().prop_map(|period_s| ArmStartError::Period { period_s }),
+        (number(), number())
+            .prop_map(|(shaft_m, insertion_max_m)| ArmStartError::ShortShaft { shaft_m, insertion_max_m }),
+        any::<usize>().prop_map(|joint| ArmStartError::NotFinite { joint }),
+        (any::<usize>(), number(), number()).prop_map(|(joint, angle_deg, limit_deg)| ArmStartError::AtLimit {
             joint,
             angle_deg,
             limit_deg
         }),
-        (number(), number()).prop_map(|(miss_m, most_m)| StartError::BesideTrocar { miss_m, most_m }),
-        number().prop_map(|insertion_m| StartError::NotInserted { insertion_m }),
+        (number(), number()).prop_map(|(miss_m, max_m)| ArmStartError::BesideTrocar { miss_m, max_m }),
+        number().prop_map(|insertion_m| ArmStartError::NotInserted { insertion_m }),
     ];
     let exchanged =
-        [Exchange::Handles, Exchange::Arms, Exchange::Sensors, Exchange::Servos, Exchange::Markers, Exchange::Trocars];
+        [SideSwap::Handles, SideSwap::Arms, SideSwap::Sensors, SideSwap::Servos, SideSwap::Markers, SideSwap::Trocars];
     prop_oneof![
-        start.prop_map(Obstacle::Start),
-        prop_oneof![Just(Awaited::Servos), Just(Awaited::Markers)].prop_map(Obstacle::Waiting),
-        proptest::sample::select(exchanged.to_vec()).prop_map(Obstacle::Exchanged),
-        Just(Obstacle::FarEnd),
+        start.prop_map(EngageBlocker::Start),
+        prop_oneof![Just(AwaitedDevice::Servos), Just(AwaitedDevice::Markers)].prop_map(EngageBlocker::Waiting),
+        proptest::sample::select(exchanged.to_vec()).prop_map(EngageBlocker::Exchanged),
+        Just(EngageBlocker::FarEnd),
     ]
     .boxed()
 }
 
-fn identified() -> BoxedStrategy<Identified> {
+fn identified() -> BoxedStrategy<RemoteIdentification> {
     let sources = [
         ForceSource::AtTip,
         ForceSource::InDoubt { unsure: Unsure::Missing, fallback: Fallback::HoldAndFade },
@@ -112,32 +120,42 @@ fn identified() -> BoxedStrategy<Identified> {
     let modes = proptest::sample::select(Mode::ALL.into_iter().chain(Mode::BASELINES).collect::<Vec<_>>());
     let numbers = proptest::collection::vec(any::<f32>(), PACKED_MAX);
     (times, proptest::sample::select(sources.to_vec()), flags, modes, any::<[u8; 2]>(), numbers)
-        .prop_map(|((t_s, delay_s, force_n), source, (fresh, resting, stop), mode, [slot, len], numbers)| Identified {
-            t_s,
-            delay_s,
-            force_n,
-            source,
-            fresh,
-            resting,
-            modes: ModeSet::only(mode),
-            errors_n: fresh.then(|| [numbers[0]; SLOTS]),
-            packed: Packed { slot, len, numbers: numbers.try_into().unwrap() },
-            stop,
+        .prop_map(|((t_s, delay_s, force_n), source, (fresh, resting, stop), mode, [slot, len], numbers)| {
+            RemoteIdentification {
+                t_s,
+                delay_s,
+                force_n,
+                source,
+                fresh,
+                resting,
+                modes: ModeSet::only(mode),
+                errors_n: fresh.then(|| [numbers[0]; SLOTS]),
+                packed: ParameterPack { slot, len, numbers: numbers.try_into().unwrap() },
+                stop,
+            }
         })
         .boxed()
 }
 
-fn reading<const N: usize>() -> BoxedStrategy<Raw<N>> {
+fn reading<const N: usize>() -> BoxedStrategy<RawReading<N>> {
     let channels = proptest::collection::vec(number(), N);
     (channels, maybe(number()), number())
-        .prop_map(|(channels, device_s, arrival_s)| Raw { channels: channels.try_into().unwrap(), device_s, arrival_s })
+        .prop_map(|(channels, device_s, arrival_s)| RawReading {
+            channels: channels.try_into().unwrap(),
+            device_s,
+            arrival_s,
+        })
         .boxed()
 }
 
 fn inputs() -> BoxedStrategy<Inputs> {
     let hand = (vector(), maybe(rotation()), maybe(number()), maybe(number()));
     let tip = (vector(), maybe(rotation()), sensed());
-    let view = prop_oneof![Just(View::Fixed), Just(View::Unseen), rotation().prop_map(View::Seen)];
+    let view = prop_oneof![
+        Just(ViewOrientation::Fixed),
+        Just(ViewOrientation::Unseen),
+        rotation().prop_map(ViewOrientation::Seen)
+    ];
     let age = (number(), number());
     let rest = (view, frames(), any::<bool>(), maybe(any::<bool>()), any::<bool>(), maybe(obstacle()), age);
     let raw = (maybe(reading()), maybe(reading()), maybe(reading()));
@@ -148,7 +166,7 @@ fn inputs() -> BoxedStrategy<Inputs> {
             let (tip_m, world_from_jaws, sensed) = tip;
             let (view, frames, clutch, presence, powered, obstacle, (age_s, silent_s)) = rest;
             Inputs {
-                hand: Hand { position_m, orientation },
+                hand: HandPose { position_m, orientation },
                 gripper_rad,
                 grip_n,
                 tip_m,
@@ -167,14 +185,14 @@ fn inputs() -> BoxedStrategy<Inputs> {
         .boxed()
 }
 
-fn row() -> BoxedStrategy<Row> {
+fn row() -> BoxedStrategy<TickRow> {
     let timing = (number(), number(), number(), maybe(number()), any::<u64>());
     let check = (any::<u64>(), any::<[[u16; STAGES]; 2]>());
     (timing, maybe(inputs()), maybe(inputs()), check)
         .prop_map(|(timing, right, left, (all, stages))| {
             let (now_s, wake_s, work_s, sample_to_force_s, missed_now) = timing;
             let timing = Timing { now_s, wake_s, work_s, sample_to_force_s, missed_now };
-            Row { timing, inputs: [right, left], check: Check { all, stages } }
+            TickRow { timing, inputs: [right, left], check: DigestCheck { all, stages } }
         })
         .boxed()
 }
@@ -198,8 +216,8 @@ fn prompt() -> BoxedStrategy<Prompt> {
         rotation().prop_map(|world_from_s1| Prompt::Hold { world_from_s1 }),
         vector().prop_map(|direction| Prompt::Push { direction: UnitVector3::new_unchecked(direction) }),
         any::<u8>().prop_map(|point| Prompt::Touch { point }),
-        proptest::sample::select(Move::ALL.to_vec()).prop_map(Prompt::MoveTip),
-        proptest::sample::select(Move::ALL.to_vec()).prop_map(Prompt::MoveHandle),
+        proptest::sample::select(ViewMove::ALL.to_vec()).prop_map(Prompt::MoveTip),
+        proptest::sample::select(ViewMove::ALL.to_vec()).prop_map(Prompt::MoveHandle),
     ]
     .boxed()
 }
@@ -229,14 +247,14 @@ fn command() -> BoxedStrategy<Command> {
         (side(), prompt()).prop_map(|(side, prompt)| Command::Prompt(side, prompt)),
         (side(), maybe(vector())).prop_map(|(side, guide_m)| Command::Guide(side, guide_m)),
         (side(), maybe(number())).prop_map(|(side, grip_rad)| Command::Grip(side, grip_rad)),
-        (side(), proptest::sample::select(Act::ALL.to_vec())).prop_map(|(side, act)| Command::Task(side, act)),
+        (side(), proptest::sample::select(TaskAction::ALL.to_vec())).prop_map(|(side, act)| Command::Task(side, act)),
         side().prop_map(Command::EngageOne),
         proptest::sample::select(Watchdog::ALL.to_vec()).prop_map(Command::TestWatchdog),
     ]
     .boxed()
 }
 
-fn noted() -> BoxedStrategy<Noted> {
+fn noted() -> BoxedStrategy<TickNote> {
     let loss = prop_oneof![
         Just(Loss::Disconnected),
         Just(Loss::Silent),
@@ -245,10 +263,10 @@ fn noted() -> BoxedStrategy<Noted> {
         any::<u32>().prop_map(|code| Loss::Device { code }),
     ];
     let standing = prop_oneof![
-        Just(Standing::Closed),
-        Just(Standing::Opening),
-        Just(Standing::Connected),
-        loss.prop_map(Standing::Lost),
+        Just(ConnectionState::Closed),
+        Just(ConnectionState::Opening),
+        Just(ConnectionState::Connected),
+        loss.prop_map(ConnectionState::Lost),
     ];
     let event = (number(), any::<u8>(), standing, any::<[bool; 2]>())
         .prop_map(|(t_s, device, standing, of_side)| DeviceEvent { t_s, device, standing, of_side });
@@ -259,15 +277,15 @@ fn noted() -> BoxedStrategy<Noted> {
         (side(), any::<u64>()).prop_map(|(side, number)| Operation::Calibrations { side, number }),
         (number(), number()).prop_map(|(silent_s, t_s)| Operation::Stall { silent_s, t_s }),
     ];
-    prop_oneof![operation.prop_map(Noted::Operation), any::<u64>().prop_map(|lost| Noted::Hole { lost })].boxed()
+    prop_oneof![operation.prop_map(TickNote::Operation), any::<u64>().prop_map(|lost| TickNote::Hole { lost })].boxed()
 }
 
 /// The steps of a block: the entries before each row, and the row.
-fn steps() -> impl Strategy<Value = Vec<(Vec<Noted>, Row)>> {
+fn steps() -> impl Strategy<Value = Vec<(Vec<TickNote>, TickRow)>> {
     proptest::collection::vec((proptest::collection::vec(noted(), 0..3), row()), 0..12)
 }
 
-fn encoded(steps: &[(Vec<Noted>, Row)]) -> Vec<u8> {
+fn encoded(steps: &[(Vec<TickNote>, TickRow)]) -> Vec<u8> {
     let mut writer = BlockWriter::default();
     for (noted, row) in steps {
         for noted in noted {
@@ -275,14 +293,14 @@ fn encoded(steps: &[(Vec<Noted>, Row)]) -> Vec<u8> {
         }
         writer.tick(row);
     }
-    Encoder::default().block(&mut writer)
+    JournalEncoder::default().block(&mut writer)
 }
 
-fn start() -> Start {
+fn start() -> JournalStart {
     let rig = RigConfig::load("simulated").unwrap();
-    Start {
+    JournalStart {
         program: "test".into(),
-        origin: Origin { rig, calibrations: [Some(Calibrations::default()), None], suspended: true },
+        origin: LoopOrigin { rig, calibrations: [Some(Calibrations::default()), None], suspended: true },
     }
 }
 
@@ -292,7 +310,7 @@ proptest! {
     #[test]
     fn a_block_comes_back_to_the_bit(steps in steps()) {
         let (number, message) = decode(&encoded(&steps)).unwrap();
-        let Message::Block(block) = message else { panic!("{message:?}") };
+        let JournalMessage::Block(block) = message else { panic!("{message:?}") };
         prop_assert_eq!((number, block.first_tick, block.rows.len()), (0, 0, steps.len()));
         // NaN differs from itself, so compare the words, which are the bits.
         let mut again = BlockWriter::default();
@@ -303,13 +321,13 @@ proptest! {
             }
             again.tick(row);
         }
-        prop_assert_eq!(Encoder::default().block(&mut again), encoded(&steps));
+        prop_assert_eq!(JournalEncoder::default().block(&mut again), encoded(&steps));
         for (row, (_, given)) in block.rows.iter().zip(&steps) {
             prop_assert_eq!(format!("{row:?}"), format!("{given:?}"));
         }
-        let told: Vec<_> = block.noted.iter().map(|(_, noted)| format!("{noted:?}")).collect();
+        let report: Vec<_> = block.noted.iter().map(|(_, noted)| format!("{noted:?}")).collect();
         let given: Vec<_> = steps.iter().flat_map(|(noted, _)| noted).map(|noted| format!("{noted:?}")).collect();
-        prop_assert_eq!(told, given);
+        prop_assert_eq!(report, given);
     }
 
     #[test]
@@ -337,23 +355,23 @@ proptest! {
 fn of_an_endoscopes_marker_the_journal_keeps_how_the_picture_is_turned() {
     let world_from_view = UnitQuaternion::from_euler_angles(0.3, -0.2, 2.0);
     let world_from_n = Isometry3::translation(0.1, 0.2, 0.3);
-    let row = |view: View| Row {
+    let row = |view: ViewOrientation| TickRow {
         timing: Timing { now_s: 1.0, wake_s: 0.0, work_s: 0.0, sample_to_force_s: None, missed_now: 0 },
         inputs: [Some(Inputs { view, ..Inputs::NOTHING }), None],
-        check: Check { all: 0, stages: [[0; STAGES]; 2] },
+        check: DigestCheck { all: 0, stages: [[0; STAGES]; 2] },
     };
-    let seen_at = View::SeenAt { world_from_view, world_from_n };
-    let seen = View::Seen(world_from_view);
+    let seen_at = ViewOrientation::SeenAt { world_from_view, world_from_n };
+    let seen = ViewOrientation::Seen(world_from_view);
     let bytes = encoded(&[(Vec::new(), row(seen_at))]);
     assert_eq!(bytes, encoded(&[(Vec::new(), row(seen))]));
-    let Ok((_, Message::Block(block))) = decode(&bytes) else { panic!("no block") };
+    let Ok((_, JournalMessage::Block(block))) = decode(&bytes) else { panic!("no block") };
     assert_eq!(block.rows[0].inputs[0].unwrap().view, seen);
 }
 
 #[test]
 fn what_is_no_journal_of_this_version_is_named() {
-    let mut bytes = Encoder::default().start(&start()).unwrap();
-    assert!(matches!(decode(&bytes), Ok((0, Message::Start(_)))));
+    let mut bytes = JournalEncoder::default().start(&start()).unwrap();
+    assert!(matches!(decode(&bytes), Ok((0, JournalMessage::Start(_)))));
     bytes[20] ^= 4;
     assert_eq!(decode(&bytes).unwrap_err(), JournalError::Damaged);
     bytes[4] = VERSION as u8 + 1;
@@ -366,10 +384,13 @@ fn what_is_no_journal_of_this_version_is_named() {
 fn every_rig_comes_back_as_it_was() {
     for name in RigConfig::names() {
         let rig = RigConfig::load(name).unwrap();
-        let origin = Origin { rig: rig.clone(), ..start().origin };
-        let bytes =
-            Encoder::default().start(&Start { origin, ..start() }).unwrap_or_else(|error| panic!("{name}: {error}"));
-        let (_, Message::Start(Start { origin, program })) = decode(&bytes).unwrap() else { panic!("{name}") };
+        let origin = LoopOrigin { rig: rig.clone(), ..start().origin };
+        let bytes = JournalEncoder::default()
+            .start(&JournalStart { origin, ..start() })
+            .unwrap_or_else(|error| panic!("{name}: {error}"));
+        let (_, JournalMessage::Start(JournalStart { origin, program })) = decode(&bytes).unwrap() else {
+            panic!("{name}")
+        };
         assert_eq!((origin.rig, program.as_str()), (rig, "test"), "{name}");
         assert!(origin.suspended && origin.calibrations[0].is_some() && origin.calibrations[1].is_none(), "{name}");
     }
@@ -377,8 +398,8 @@ fn every_rig_comes_back_as_it_was() {
 
 #[test]
 fn the_end_comes_back() {
-    let mut encoder = Encoder::default();
+    let mut encoder = JournalEncoder::default();
     encoder.start(&start()).unwrap();
-    let end = End { ticks: 1 << 40, lost: 7 };
-    assert!(matches!(decode(&encoder.end(&end)), Ok((1, Message::End(told))) if told == end));
+    let end = JournalEnd { ticks: 1 << 40, lost: 7 };
+    assert!(matches!(decode(&encoder.end(&end)), Ok((1, JournalMessage::End(report))) if report == end));
 }

@@ -5,27 +5,27 @@ use std::collections::BTreeMap;
 use nima_machine::{
     messages::Event,
     rig::{DeviceName, SIDES, Side},
-    runtime::{Operation, Stepped},
+    runtime::{Operation, TickRecord},
     teleop::Calibrations,
 };
 use nima_recording::session::Encoding;
 
-use super::{About, JOURNAL_ENCODING, JOURNAL_TOPIC, RecordError};
+use super::{JOURNAL_ENCODING, JOURNAL_TOPIC, RecordError, RecordingInfo};
 use crate::{
-    kept::described,
+    calibration_metadata::described,
+    journal_writer::{Pages, TimedMessage},
     layouts::layouts,
-    outlet::{Channel, Destination, Outlet},
-    scribe::{Pages, Written},
-    topics::Topics,
+    sinks::{Destination, SessionSinks, SinkChannel},
+    topics::SessionTopics,
 };
 
 /// The chunk is closed after this many blocks of the journal: 0.4 s at 1 kHz, the most that a killed process can lose.
 const BLOCKS_PER_CHUNK: u32 = 2;
 
 pub(super) struct SessionFile {
-    pub(super) out: Outlet,
-    journal: Channel,
-    pub(super) topics: Topics,
+    pub(super) out: SessionSinks,
+    journal: SinkChannel,
+    pub(super) topics: SessionTopics,
     pub(super) started_ns: u64,
     blocks: u32,
 }
@@ -33,13 +33,13 @@ pub(super) struct SessionFile {
 impl SessionFile {
     pub(super) fn create(
         to: Destination<'_>,
-        about: About,
+        about: RecordingInfo,
         known: &[(Side, BTreeMap<String, String>)],
         sides: [bool; SIDES],
         devices: Vec<DeviceName>,
     ) -> Result<Self, RecordError> {
-        let About { program, started_ns, metadata, files, words } = about;
-        let mut out = Outlet::create(to, &program, started_ns)?;
+        let RecordingInfo { program, started_ns, metadata, files, words } = about;
+        let mut out = SessionSinks::create(to, &program, started_ns)?;
         for (name, entries) in &metadata {
             out.metadata(name, entries)?;
         }
@@ -51,7 +51,7 @@ impl SessionFile {
         }
         let encoding = Encoding { message_encoding: JOURNAL_ENCODING.to_owned(), ..Encoding::default() };
         let journal = out.channel(JOURNAL_TOPIC, encoding)?;
-        let topics = Topics::new(&mut out, sides, words, devices)?;
+        let topics = SessionTopics::new(&mut out, sides, words, devices)?;
         Ok(Self { out, journal, topics, started_ns, blocks: 0 })
     }
 
@@ -68,7 +68,7 @@ pub(super) fn log_time_ns(started_ns: u64, t_s: f64) -> u64 {
 impl Pages for SessionFile {
     type Error = RecordError;
 
-    fn write(&mut self, Written { t_s, bytes }: &Written) -> Result<(), RecordError> {
+    fn write(&mut self, TimedMessage { t_s, bytes }: &TimedMessage) -> Result<(), RecordError> {
         let time_ns = self.log_time_ns(*t_s);
         self.out.message(self.journal, time_ns, bytes)?;
         self.blocks += 1;
@@ -78,7 +78,7 @@ impl Pages for SessionFile {
         Ok(())
     }
 
-    fn tick(&mut self, stepped: &Stepped, events: &[Event]) -> Result<(), RecordError> {
+    fn tick(&mut self, stepped: &TickRecord, events: &[Event]) -> Result<(), RecordError> {
         let t_s = stepped.timing.now_s;
         let time_ns = self.log_time_ns(t_s);
         let started_ns = self.started_ns;

@@ -12,7 +12,7 @@ use super::RecordError;
 
 /// Statistics of a recording so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Progress {
+pub struct RecordingProgress {
     /// Recorded ticks.
     pub ticks: u64,
     /// Entries that the loop dropped because this thread was too slow.
@@ -20,28 +20,28 @@ pub struct Progress {
     /// Bytes in the file.
     pub bytes: u64,
     /// Endoscope images that were written, ...
-    pub pictures: u64,
+    pub images: u64,
     /// ... and those that were dropped because this thread was too slow.
-    pub pictures_dropped: u64,
+    pub images_dropped: u64,
     /// How long the disk has not responded; after two seconds the loop drops entries.
     pub waits: Duration,
 }
 
 #[derive(Debug)]
-pub(super) struct Shared {
+pub(super) struct RecorderShared {
     began: Instant,
     /// When the thread last checked for entries, ms since it began.
     looked_ms: AtomicU64,
     pub(super) ticks: AtomicU64,
     pub(super) lost: AtomicU64,
     pub(super) bytes: AtomicU64,
-    pub(super) pictures: AtomicU64,
-    pub(super) pictures_dropped: AtomicU64,
+    pub(super) images: AtomicU64,
+    pub(super) images_dropped: AtomicU64,
     pub(super) ends: AtomicBool,
     pub(super) trouble: OnceLock<RecordError>,
 }
 
-impl Shared {
+impl RecorderShared {
     pub(super) fn new() -> Self {
         Self {
             began: Instant::now(),
@@ -49,8 +49,8 @@ impl Shared {
             ticks: AtomicU64::default(),
             lost: AtomicU64::default(),
             bytes: AtomicU64::default(),
-            pictures: AtomicU64::default(),
-            pictures_dropped: AtomicU64::default(),
+            images: AtomicU64::default(),
+            images_dropped: AtomicU64::default(),
             ends: AtomicBool::default(),
             trouble: OnceLock::new(),
         }
@@ -61,12 +61,12 @@ impl Shared {
         self.looked_ms.store(self.ms(), Ordering::Relaxed);
     }
 
-    pub(super) fn progress(&self) -> Progress {
-        let Self { ticks, lost, bytes, pictures, pictures_dropped, looked_ms, .. } = self;
-        let [ticks, lost, bytes, pictures, pictures_dropped, looked_ms] =
-            [ticks, lost, bytes, pictures, pictures_dropped, looked_ms].map(|count| count.load(Ordering::Relaxed));
+    pub(super) fn progress(&self) -> RecordingProgress {
+        let Self { ticks, lost, bytes, images, images_dropped, looked_ms, .. } = self;
+        let [ticks, lost, bytes, images, images_dropped, looked_ms] =
+            [ticks, lost, bytes, images, images_dropped, looked_ms].map(|count| count.load(Ordering::Relaxed));
         let waits = Duration::from_millis(self.ms().saturating_sub(looked_ms));
-        Progress { ticks, lost, bytes, pictures, pictures_dropped, waits }
+        RecordingProgress { ticks, lost, bytes, images, images_dropped, waits }
     }
 
     fn ms(&self) -> u64 {

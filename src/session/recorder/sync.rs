@@ -25,10 +25,10 @@ pub(crate) struct Sync {
 impl Sync {
     pub(crate) fn start(file: File) -> Result<Self, RecordError> {
         let (ends, asked) = bounded(1);
-        let (tell, failure) = bounded(1);
+        let (report, failure) = bounded(1);
         let run = move || {
             if let Err(error) = sync(&file, &asked) {
-                tell.send(error).ok();
+                report.send(error).ok();
             }
         };
         let thread = Builder::new().name("recorder-sync".to_owned()).spawn(run);

@@ -6,21 +6,21 @@ use nima_machine::{
     runtime::Operation,
 };
 
-use super::{Differs, Hole, Journal, Machine, Numbered, ReplayError, Step, steps::go_on};
+use super::{Differs, Journal, JournalGap, NumberedMessage, ReplayError, ReplayMachine, ReplayStep, steps::go_on};
 use crate::{
-    digest::Check,
-    journal::{Row, Start},
+    digest::DigestCheck,
+    journal::{JournalStart, TickRow},
 };
 
 /// A loop that advances through a journal.
 #[derive(Debug)]
-pub struct Cursor<I> {
+pub struct ReplayCursor<I> {
     journal: Journal<I>,
-    machine: Machine,
+    machine: ReplayMachine,
     /// Calibrations that became active since the last tick.
-    in_force: Vec<(Side, u64)>,
+    active: Vec<(Side, u64)>,
     /// Boxed, because the last tick has kilobytes, and moving it would take as long as a stage of the loop.
-    came: Box<Came>,
+    came: Box<TickOutput>,
     ticks: u64,
     t_s: f64,
 }
@@ -28,7 +28,7 @@ pub struct Cursor<I> {
 /// State of a loop between two blocks of its journal. A cursor can continue from it.
 #[derive(Clone, Debug)]
 pub struct Keyframe {
-    machine: Machine,
+    machine: ReplayMachine,
     /// Number of journal messages that were read.
     read: u64,
     ticks: u64,
@@ -40,17 +40,17 @@ impl Keyframe {
     ///
     /// # Errors
     /// [`ReplayError::Settings`] if the settings of the identification are invalid.
-    pub fn first(start: &Start) -> Result<Self, ReplayError> {
-        Ok(Self { machine: Machine::new(&start.origin)?, read: 1, ticks: 0, t_s: 0.0 })
+    pub fn first(start: &JournalStart) -> Result<Self, ReplayError> {
+        Ok(Self { machine: ReplayMachine::new(&start.origin)?, read: 1, ticks: 0, t_s: 0.0 })
     }
 
     /// Makes a cursor here, in a journal with this beginning; `messages` are those after the first [`Self::read`] ones.
-    pub fn cursor<I>(self, start: Start, messages: I) -> Cursor<I> {
+    pub fn cursor<I>(self, start: JournalStart, messages: I) -> ReplayCursor<I> {
         let Self { machine, read, ticks, t_s } = self;
-        Cursor {
+        ReplayCursor {
             journal: go_on(messages, start, read),
             machine,
-            in_force: Vec::new(),
+            active: Vec::new(),
             came: Box::default(),
             ticks,
             t_s,
@@ -70,38 +70,38 @@ impl Keyframe {
 
 /// One step of a cursor.
 #[derive(Debug)]
-pub enum Passed<'a> {
-    Tick(Moment<'a>),
+pub enum CursorEvent<'a> {
+    Tick(SessionMoment<'a>),
     /// Entries are missing: everything after them cannot be replayed.
-    Hole(Hole),
+    Hole(JournalGap),
     /// The recording was closed.
     Closed,
 }
 
 /// Outputs of a tick.
 #[derive(Debug)]
-struct Came {
-    in_force: Vec<(Side, u64)>,
+struct TickOutput {
+    active: Vec<(Side, u64)>,
     events: Vec<Event>,
     outputs: [Outputs; SIDES],
     ticks: [Option<Tick>; SIDES],
 }
 
-impl Default for Came {
+impl Default for TickOutput {
     fn default() -> Self {
-        Self { in_force: Vec::new(), events: Vec::new(), outputs: [Outputs::SAFE; SIDES], ticks: [None; SIDES] }
+        Self { active: Vec::new(), events: Vec::new(), outputs: [Outputs::SAFE; SIDES], ticks: [None; SIDES] }
     }
 }
 
 /// One tick of a session.
 #[derive(Clone, Copy, Debug)]
-pub struct Moment<'a> {
+pub struct SessionMoment<'a> {
     /// Its number in the journal, from 0.
     pub number: u64,
     /// The inputs of the loop.
-    pub row: &'a Row,
+    pub row: &'a TickRow,
     /// Calibrations that became active before it: the side, and their number in the journal.
-    pub in_force: &'a [(Side, u64)],
+    pub active: &'a [(Side, u64)],
     /// The events reported in it.
     pub events: &'a [Event],
     /// The commands of the loop.
@@ -110,23 +110,23 @@ pub struct Moment<'a> {
     pub ticks: &'a [Option<Tick>; SIDES],
 }
 
-impl Moment<'_> {
+impl SessionMoment<'_> {
     /// Returns where it differs from the recording, if it does.
     pub fn differs(&self) -> Option<Differs> {
-        let Self { number, row, events, outputs, ticks, in_force: _ } = self;
-        let check = Check::of(events.iter(), outputs, ticks);
+        let Self { number, row, events, outputs, ticks, active: _ } = self;
+        let check = DigestCheck::of(events.iter(), outputs, ticks);
         (check != row.check).then(|| Differs { tick: *number, t_s: row.timing.now_s, place: check.differs(&row.check) })
     }
 }
 
-impl<I: Iterator<Item = Result<Numbered, ReplayError>>> Cursor<I> {
+impl<I: Iterator<Item = Result<NumberedMessage, ReplayError>>> ReplayCursor<I> {
     /// Starts at the beginning of a journal.
     ///
     /// # Errors
     /// [`ReplayError::Settings`] if the settings of the identification are invalid.
     pub fn new(journal: Journal<I>) -> Result<Self, ReplayError> {
-        let machine = Machine::new(&journal.start().origin)?;
-        Ok(Self { journal, machine, in_force: Vec::new(), came: Box::default(), ticks: 0, t_s: 0.0 })
+        let machine = ReplayMachine::new(&journal.start().origin)?;
+        Ok(Self { journal, machine, active: Vec::new(), came: Box::default(), ticks: 0, t_s: 0.0 })
     }
 
     /// Whether a block of the journal has just been completed.
@@ -144,33 +144,33 @@ impl<I: Iterator<Item = Result<Numbered, ReplayError>>> Cursor<I> {
     ///
     /// # Errors
     /// [`ReplayError`] if the journal cannot be read.
-    pub fn step(&mut self) -> Result<Option<Passed<'_>>, ReplayError> {
-        let Self { journal, machine, in_force, came, ticks, t_s } = self;
+    pub fn step(&mut self) -> Result<Option<CursorEvent<'_>>, ReplayError> {
+        let Self { journal, machine, active, came, ticks, t_s } = self;
         for step in journal.by_ref() {
             match step? {
-                Step::Operation(operation) => {
+                ReplayStep::Operation(operation) => {
                     if let Operation::Calibrations { side, number } = operation {
-                        in_force.push((side, number));
+                        active.push((side, number));
                     }
                     machine.apply(operation, *ticks)?;
                 }
-                Step::Calibrations { number, calibrations } => machine.know(number, *calibrations),
-                Step::Hole { lost } => return Ok(Some(Passed::Hole(Hole { tick: *ticks, lost }))),
-                Step::End(_) => return Ok(Some(Passed::Closed)),
-                Step::Tick => break,
+                ReplayStep::Calibrations { number, calibrations } => machine.know(number, *calibrations),
+                ReplayStep::Hole { lost } => return Ok(Some(CursorEvent::Hole(JournalGap { tick: *ticks, lost }))),
+                ReplayStep::End(_) => return Ok(Some(CursorEvent::Closed)),
+                ReplayStep::Tick => break,
             }
         }
         let Some(row) = journal.row() else { return Ok(None) };
-        let Came { in_force: came_in_force, events, outputs, ticks: shown } = &mut **came;
+        let TickOutput { active: became_active, events, outputs, ticks: shown } = &mut **came;
         (*outputs, *shown) = machine.step(row);
         machine.take_events(events);
-        came_in_force.clear();
-        came_in_force.append(in_force);
+        became_active.clear();
+        became_active.append(active);
         let number = *ticks;
         *ticks += 1;
         *t_s = row.timing.now_s;
-        let in_force = &*came_in_force;
+        let active = &*became_active;
         let ticks = &*shown;
-        Ok(Some(Passed::Tick(Moment { number, row, in_force, events, outputs, ticks })))
+        Ok(Some(CursorEvent::Tick(SessionMoment { number, row, active, events, outputs, ticks })))
     }
 }

@@ -7,26 +7,26 @@ use nima_machine::{
     messages::{Event, Tick},
     rig::{Outputs, SIDES},
     runtime::Operation,
-    teleop::{Calibrations, ForcePath, Loop, Origin},
+    teleop::{Calibrations, ForcePath, Loop, LoopOrigin},
 };
 
-use super::{ReplayError, side_by_side::Ran};
-use crate::journal::Row;
+use super::{ReplayError, side_by_side::RunOutput};
+use crate::journal::TickRow;
 
 /// A loop that is fed from a journal.
 #[derive(Clone, Debug)]
-pub struct Machine {
+pub struct ReplayMachine {
     control: Loop,
     calibrations: BTreeMap<u64, Calibrations>,
     period_s: f64,
 }
 
-impl Machine {
+impl ReplayMachine {
     /// Builds a loop.
     ///
     /// # Errors
     /// [`SettingsError`] if the settings of the identification are invalid.
-    pub fn new(origin: &Origin) -> Result<Self, SettingsError> {
+    pub fn new(origin: &LoopOrigin) -> Result<Self, SettingsError> {
         let period_s = 1.0 / origin.rig.rate_hz;
         Ok(Self { control: origin.control()?, calibrations: BTreeMap::new(), period_s })
     }
@@ -55,13 +55,13 @@ impl Machine {
         Ok(())
     }
 
-    pub fn step(&mut self, row: &Row) -> ([Outputs; SIDES], [Option<Tick>; SIDES]) {
+    pub fn step(&mut self, row: &TickRow) -> ([Outputs; SIDES], [Option<Tick>; SIDES]) {
         self.control.step(row.inputs, &row.timing)
     }
 
     /// Steps over these ticks, between which there is no operation; those before `from_s` (s) are not compared.
-    pub(super) fn run(&mut self, rows: &[Vec<Row>], from_s: f64) -> Result<Ran, ReplayError> {
-        Ran::of(&mut self.control, rows, from_s)
+    pub(super) fn run(&mut self, rows: &[Vec<TickRow>], from_s: f64) -> Result<RunOutput, ReplayError> {
+        RunOutput::of(&mut self.control, rows, from_s)
     }
 
     /// Returns the events of this tick; call it after every tick.

@@ -12,15 +12,15 @@ use std::io;
 use nima_core::impedance::SettingsError;
 use nima_machine::rig::Side;
 
-pub use cursor::{Cursor, Keyframe, Moment, Passed};
-pub use machine::Machine;
-pub use steps::{Journal, Messages, Numbered, Part, Step, decoded};
+pub use cursor::{CursorEvent, Keyframe, ReplayCursor, SessionMoment};
+pub use machine::ReplayMachine;
+pub use steps::{Journal, JournalPart, NumberedMessage, ReplayStep, StepsMessages, decoded};
 pub use verify::verify;
-pub use what_if::{Change, Compared, Difference, compare};
+pub use what_if::{ComparedSide, Difference, WhatIfChange, compare};
 
 use nima_recording::session::ReadError;
 
-use crate::{digest::Stage, journal::JournalError};
+use crate::{digest::TickStage, journal::JournalError};
 
 #[derive(Debug, thiserror::Error)]
 pub enum ReplayError {
@@ -53,12 +53,12 @@ pub struct Differs {
     /// Its time on the loop's clock, s.
     pub t_s: f64,
     /// The first stage of the tick that differs; `None` if an event differs.
-    pub place: Option<(Side, Stage)>,
+    pub place: Option<(Side, TickStage)>,
 }
 
 /// A gap in the journal: from there on nothing can be replayed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Hole {
+pub struct JournalGap {
     /// Number of ticks before it.
     pub tick: u64,
     /// Number of dropped entries.
@@ -67,7 +67,7 @@ pub struct Hole {
 
 /// Result of a replay.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Outcome {
+pub struct ReplayOutcome {
     /// Ticks that were replayed and compared.
     pub ticks: u64,
     /// Earlier ticks that were only replayed.
@@ -77,7 +77,7 @@ pub struct Outcome {
     /// The first tick that differs; the replay ends there.
     pub differs: Option<Differs>,
     /// The gap at which the replay ended.
-    pub hole: Option<Hole>,
+    pub hole: Option<JournalGap>,
     /// Whether the recording was closed; if not, the program was killed, or the file was cut.
     pub closed: bool,
 }
@@ -92,20 +92,20 @@ fn is_from(now_s: f64, moment_s: f64) -> bool {
 ///
 /// # Errors
 /// [`ReplayError`] if the journal cannot be read.
-pub fn replay<I: Iterator<Item = Result<Numbered, ReplayError>>>(
+pub fn replay<I: Iterator<Item = Result<NumberedMessage, ReplayError>>>(
     journal: Journal<I>,
-    mut each: impl FnMut(&Moment<'_>),
-) -> Result<Outcome, ReplayError> {
-    let mut cursor = Cursor::new(journal)?;
-    let mut outcome = Outcome::default();
+    mut each: impl FnMut(&SessionMoment<'_>),
+) -> Result<ReplayOutcome, ReplayError> {
+    let mut cursor = ReplayCursor::new(journal)?;
+    let mut outcome = ReplayOutcome::default();
     while let Some(passed) = cursor.step()? {
         match passed {
-            Passed::Closed => outcome.closed = true,
-            Passed::Hole(hole) => {
+            CursorEvent::Closed => outcome.closed = true,
+            CursorEvent::Hole(hole) => {
                 outcome.hole = Some(hole);
                 break;
             }
-            Passed::Tick(moment) => {
+            CursorEvent::Tick(moment) => {
                 each(&moment);
                 outcome.seconds = moment.row.timing.now_s;
                 outcome.differs = moment.differs();

@@ -18,34 +18,34 @@ use nima_machine::{
 
 use super::{ReplayError, is_from};
 use crate::{
-    digest::{Check, STAGES, of_side},
-    journal::Row,
+    digest::{DigestCheck, STAGES, of_side},
+    journal::TickRow,
 };
 
 /// With fewer ticks the copies, each of 13 MB, cost more than they save.
-const LEAST_TICKS: usize = 2000;
+const MIN_TICKS: usize = 2000;
 
 /// Outputs of a run of ticks.
 #[derive(Debug)]
-pub(super) struct Ran {
+pub(super) struct RunOutput {
     /// Commands that were refused before its first tick.
     refused: Vec<Event>,
-    sides: [Lane; SIDES],
+    sides: [SideBySideLane; SIDES],
 }
 
 /// Outputs of one side.
 #[derive(Debug, Default)]
-struct Lane {
+struct SideBySideLane {
     /// One per compared tick.
     digests: Vec<[u64; STAGES]>,
     /// With the index of their tick in the run.
     events: Vec<(usize, Event)>,
 }
 
-impl Ran {
+impl RunOutput {
     /// Steps the loop with these rows. Rows before `from_s` (loop time, s) are not compared, so their digests are not
     /// computed.
-    pub(super) fn of(control: &mut Loop, rows: &[Vec<Row>], from_s: f64) -> Result<Self, ReplayError> {
+    pub(super) fn of(control: &mut Loop, rows: &[Vec<TickRow>], from_s: f64) -> Result<Self, ReplayError> {
         let refused = control.refusals().copied().collect();
         let sides = match control.pairs_mut() {
             [Some(right), Some(left)] => both([right, left], rows, from_s)?,
@@ -61,21 +61,21 @@ impl Ran {
     /// Returns, for each row that is compared, its index, the row, and its newly computed check.
     pub(super) fn checks<'a>(
         &'a self,
-        rows: &'a [Vec<Row>],
+        rows: &'a [Vec<TickRow>],
         from_s: f64,
-    ) -> impl Iterator<Item = (usize, &'a Row, Check)> {
+    ) -> impl Iterator<Item = (usize, &'a TickRow, DigestCheck)> {
         let Self { refused, sides: [right, left] } = self;
         let rows = rows.iter().flatten().enumerate().filter(move |(_, row)| is_compared(row, from_s));
         rows.zip(right.digests.iter().zip(&left.digests)).map(move |((number, row), (right_now, left_now))| {
             let refused = refused.iter().filter(move |_| number == 0);
             let events = refused.chain(right.events_of(number)).chain(left.events_of(number));
-            (number, row, Check::of_sides(events, [*right_now, *left_now]))
+            (number, row, DigestCheck::of_sides(events, [*right_now, *left_now]))
         })
     }
 }
 
-impl Lane {
-    fn step(&mut self, pair: &mut Pair, other_has_failed: bool, number: usize, row: &Row, from_s: f64) {
+impl SideBySideLane {
+    fn step(&mut self, pair: &mut Pair, other_has_failed: bool, number: usize, row: &TickRow, from_s: f64) {
         let (outputs, tick) = pair.step(other_has_failed, row.inputs[pair.side().index()], &row.timing);
         self.events.extend(pair.events().map(|event| (number, *event)));
         pair.clear_events();
@@ -90,27 +90,31 @@ impl Lane {
     }
 }
 
-pub(super) fn is_compared(row: &Row, from_s: f64) -> bool {
+pub(super) fn is_compared(row: &TickRow, from_s: f64) -> bool {
     is_from(row.timing.now_s, from_s)
 }
 
 /// A side without a pair.
-fn absent(rows: &[Vec<Row>], from_s: f64) -> Lane {
+fn absent(rows: &[Vec<TickRow>], from_s: f64) -> SideBySideLane {
     let compared = rows.iter().flatten().filter(|row| is_compared(row, from_s)).count();
-    Lane { digests: vec![of_side(&Outputs::SAFE, None); compared], events: Vec::new() }
+    SideBySideLane { digests: vec![of_side(&Outputs::SAFE, None); compared], events: Vec::new() }
 }
 
 /// The only pair.
-fn of_one(pair: &mut Pair, rows: &[Vec<Row>], from_s: f64) -> Lane {
-    let mut lane = Lane::default();
+fn of_one(pair: &mut Pair, rows: &[Vec<TickRow>], from_s: f64) -> SideBySideLane {
+    let mut lane = SideBySideLane::default();
     rows.iter().flatten().enumerate().for_each(|(number, row)| lane.step(pair, false, number, row, from_s));
     lane
 }
 
 /// Steps each pair on its own thread if that is faster and correct; otherwise one after the other.
-fn both(pairs: [&mut Box<Pair>; SIDES], rows: &[Vec<Row>], from_s: f64) -> Result<[Lane; SIDES], ReplayError> {
+fn both(
+    pairs: [&mut Box<Pair>; SIDES],
+    rows: &[Vec<TickRow>],
+    from_s: f64,
+) -> Result<[SideBySideLane; SIDES], ReplayError> {
     let [right, left] = pairs;
-    if rows.iter().map(Vec::len).sum::<usize>() >= LEAST_TICKS {
+    if rows.iter().map(Vec::len).sum::<usize>() >= MIN_TICKS {
         let had_failed = [right.has_failed(), left.has_failed()];
         let [of_right, of_left] = thread::scope(|scope| {
             let there = || alone(left, rows, from_s, had_failed[0]);
@@ -121,13 +125,13 @@ fn both(pairs: [&mut Box<Pair>; SIDES], rows: &[Vec<Row>], from_s: f64) -> Resul
         })
         .map_err(ReplayError::Thread)?;
         match (of_right, of_left) {
-            (Alone { lane: here, changes: false, .. }, Alone { lane: there, changes: false, .. }) => {
+            (LonePair { lane: here, changes: false, .. }, LonePair { lane: there, changes: false, .. }) => {
                 return Ok([here, there]);
             }
             (here, there) => (*right, *left) = (here.before, there.before),
         }
     }
-    let mut lanes: [Lane; SIDES] = Default::default();
+    let mut lanes: [SideBySideLane; SIDES] = Default::default();
     for (number, row) in rows.iter().flatten().enumerate() {
         let have_failed = [right.has_failed(), left.has_failed()];
         lanes[0].step(right, have_failed[1], number, row, from_s);
@@ -137,22 +141,22 @@ fn both(pairs: [&mut Box<Pair>; SIDES], rows: &[Vec<Row>], from_s: f64) -> Resul
 }
 
 /// A pair that was stepped without the other one.
-struct Alone {
-    lane: Lane,
+struct LonePair {
+    lane: SideBySideLane,
     /// Copy from before the run.
     before: Box<Pair>,
     /// It failed or recovered before the last tick, so the other pair must be stepped again.
     changes: bool,
 }
 
-fn alone(pair: &mut Box<Pair>, rows: &[Vec<Row>], from_s: f64, other_has_failed: bool) -> Alone {
+fn alone(pair: &mut Box<Pair>, rows: &[Vec<TickRow>], from_s: f64, other_has_failed: bool) -> LonePair {
     let before = pair.clone();
     let had_failed = pair.has_failed();
-    let mut lane = Lane::default();
+    let mut lane = SideBySideLane::default();
     let mut changes = false;
     for (number, row) in rows.iter().flatten().enumerate() {
         changes |= pair.has_failed() != had_failed;
         lane.step(pair, other_has_failed, number, row, from_s);
     }
-    Alone { lane, before, changes }
+    LonePair { lane, before, changes }
 }

@@ -5,11 +5,11 @@ use std::{iter::Peekable, mem::take, vec};
 use nima_machine::{runtime::Operation, teleop::Calibrations};
 
 use super::ReplayError;
-use crate::journal::{Block, End, Message, Noted, Row, Start, decode, number};
+use crate::journal::{JournalBlock, JournalEnd, JournalMessage, JournalStart, TickNote, TickRow, decode, number};
 
 /// One step of a journal.
 #[derive(Debug)]
-pub enum Step {
+pub enum ReplayStep {
     /// An operation on the loop.
     Operation(Operation),
     /// Calibrations that become active later.
@@ -26,16 +26,16 @@ pub enum Step {
         lost: u64,
     },
     /// The recording was closed.
-    End(End),
+    End(JournalEnd),
 }
 
 /// A part of a journal.
 #[derive(Debug)]
-pub enum Part {
+pub enum JournalPart {
     /// Ticks without an operation between them.
-    Ticks(Vec<Row>),
+    Ticks(Vec<TickRow>),
     /// A step between ticks.
-    Between(Step),
+    Between(ReplayStep),
 }
 
 /// The steps of a journal whose beginning has been read.
@@ -43,26 +43,26 @@ pub enum Part {
 pub struct Journal<I> {
     messages: I,
     read: u64,
-    start: Start,
-    open: Option<Open>,
+    start: JournalStart,
+    open: Option<OpenBlock>,
 }
 
 /// A block that is being read.
 #[derive(Debug)]
-struct Open {
-    rows: Vec<Row>,
-    noted: Peekable<vec::IntoIter<(usize, Noted)>>,
+struct OpenBlock {
+    rows: Vec<TickRow>,
+    noted: Peekable<vec::IntoIter<(usize, TickNote)>>,
     /// Rows that were read.
     passed: usize,
 }
 
 /// A message of a journal, and its number.
-pub type Numbered = (u64, Message);
+pub type NumberedMessage = (u64, JournalMessage);
 
 /// Messages of a journal from any source.
-pub type Messages = Box<dyn Iterator<Item = Result<Numbered, ReplayError>> + Send>;
+pub type StepsMessages = Box<dyn Iterator<Item = Result<NumberedMessage, ReplayError>> + Send>;
 
-impl<I: Iterator<Item = Result<Numbered, ReplayError>>> Journal<I> {
+impl<I: Iterator<Item = Result<NumberedMessage, ReplayError>>> Journal<I> {
     /// Reads the beginning.
     ///
     /// # Errors
@@ -70,22 +70,22 @@ impl<I: Iterator<Item = Result<Numbered, ReplayError>>> Journal<I> {
     pub fn open(mut messages: I) -> Result<Self, ReplayError> {
         let mut read = 0;
         match next_message(&mut messages, &mut read)? {
-            Some(Message::Start(start)) => Ok(Self { messages, read, start, open: None }),
+            Some(JournalMessage::Start(start)) => Ok(Self { messages, read, start, open: None }),
             Some(_) => Err(ReplayError::NoStart),
             None => Err(ReplayError::NoJournal),
         }
     }
 
     /// Returns the next step, or all ticks before it at once.
-    pub fn next_part(&mut self) -> Option<Result<Part, ReplayError>> {
+    pub fn next_part(&mut self) -> Option<Result<JournalPart, ReplayError>> {
         Some(match self.next()? {
-            Ok(Step::Tick) => Ok(Part::Ticks(self.open.as_mut().map(Open::run).unwrap_or_default())),
-            step => step.map(Part::Between),
+            Ok(ReplayStep::Tick) => Ok(JournalPart::Ticks(self.open.as_mut().map(OpenBlock::run).unwrap_or_default())),
+            step => step.map(JournalPart::Between),
         })
     }
 
     /// Origin of the loop.
-    pub const fn start(&self) -> &Start {
+    pub const fn start(&self) -> &JournalStart {
         &self.start
     }
 
@@ -98,7 +98,7 @@ impl<I: Iterator<Item = Result<Numbered, ReplayError>>> Journal<I> {
     }
 
     /// Returns the inputs of the loop if the last step was a tick. A reference, because it has a kilobyte.
-    pub fn row(&self) -> Option<&Row> {
+    pub fn row(&self) -> Option<&TickRow> {
         let open = self.open.as_ref()?;
         open.rows.get(open.passed.checked_sub(1)?)
     }
@@ -109,7 +109,7 @@ impl<I: Iterator<Item = Result<Numbered, ReplayError>>> Journal<I> {
 pub fn decoded(
     bytes: impl Iterator<Item = Result<Vec<u8>, ReplayError>>,
     read: u64,
-) -> impl Iterator<Item = Result<Numbered, ReplayError>> {
+) -> impl Iterator<Item = Result<NumberedMessage, ReplayError>> {
     let mut next = read;
     bytes.filter_map(move |bytes| {
         let decoded = bytes.and_then(|bytes| match number(&bytes) {
@@ -125,28 +125,28 @@ pub fn decoded(
 
 /// Returns the steps of a journal with this beginning after its first `read` messages; `messages` are the ones that
 /// follow.
-pub(super) const fn go_on<I>(messages: I, start: Start, read: u64) -> Journal<I> {
+pub(super) const fn go_on<I>(messages: I, start: JournalStart, read: u64) -> Journal<I> {
     Journal { messages, read, start, open: None }
 }
 
-impl<I: Iterator<Item = Result<Numbered, ReplayError>>> Iterator for Journal<I> {
-    type Item = Result<Step, ReplayError>;
+impl<I: Iterator<Item = Result<NumberedMessage, ReplayError>>> Iterator for Journal<I> {
+    type Item = Result<ReplayStep, ReplayError>;
 
     fn next(&mut self) -> Option<Self::Item> {
         loop {
-            if let Some(step) = self.open.as_mut().and_then(Open::next) {
+            if let Some(step) = self.open.as_mut().and_then(OpenBlock::next) {
                 return Some(Ok(step));
             }
             self.open = None;
             return Some(Ok(match next_message(&mut self.messages, &mut self.read).transpose()? {
                 Err(error) => return Some(Err(error)),
-                Ok(Message::Start(_)) => return Some(Err(ReplayError::NoStart)),
-                Ok(Message::Calibrations { number, calibrations }) => {
-                    Step::Calibrations { number, calibrations: Box::new(calibrations) }
+                Ok(JournalMessage::Start(_)) => return Some(Err(ReplayError::NoStart)),
+                Ok(JournalMessage::Calibrations { number, calibrations }) => {
+                    ReplayStep::Calibrations { number, calibrations: Box::new(calibrations) }
                 }
-                Ok(Message::End(end)) => Step::End(end),
-                Ok(Message::Block(block)) => {
-                    self.open = Some(Open::of(block));
+                Ok(JournalMessage::End(end)) => ReplayStep::End(end),
+                Ok(JournalMessage::Block(block)) => {
+                    self.open = Some(OpenBlock::of(block));
                     continue;
                 }
             }));
@@ -154,9 +154,9 @@ impl<I: Iterator<Item = Result<Numbered, ReplayError>>> Iterator for Journal<I> 
     }
 }
 
-impl Open {
-    fn of(block: Block) -> Self {
-        let Block { rows, noted, .. } = block;
+impl OpenBlock {
+    fn of(block: JournalBlock) -> Self {
+        let JournalBlock { rows, noted, .. } = block;
         Self { rows, noted: noted.into_iter().peekable(), passed: 0 }
     }
 
@@ -164,7 +164,7 @@ impl Open {
         self.passed == self.rows.len() && self.noted.len() == 0
     }
 
-    fn next(&mut self) -> Option<Step> {
+    fn next(&mut self) -> Option<ReplayStep> {
         let passed = self.passed;
         let last = self.passed == self.rows.len();
         if let Some((_, noted)) = self.noted.next_if(|(before, _)| last || *before <= passed) {
@@ -174,11 +174,11 @@ impl Open {
             return None;
         }
         self.passed += 1;
-        Some(Step::Tick)
+        Some(ReplayStep::Tick)
     }
 
-    /// Returns the tick that [`Open::next`] reached and those up to the next operation.
-    fn run(&mut self) -> Vec<Row> {
+    /// Returns the tick that [`OpenBlock::next`] reached and those up to the next operation.
+    fn run(&mut self) -> Vec<TickRow> {
         let first = self.passed.saturating_sub(1);
         let last = self.rows.len();
         let end = self.noted.peek().map_or(last, |(before, _)| (*before).clamp(self.passed, last));
@@ -191,17 +191,17 @@ impl Open {
     }
 }
 
-const fn step_of(noted: Noted) -> Step {
+const fn step_of(noted: TickNote) -> ReplayStep {
     match noted {
-        Noted::Operation(operation) => Step::Operation(operation),
-        Noted::Hole { lost } => Step::Hole { lost },
+        TickNote::Operation(operation) => ReplayStep::Operation(operation),
+        TickNote::Hole { lost } => ReplayStep::Hole { lost },
     }
 }
 
 fn next_message(
-    messages: &mut impl Iterator<Item = Result<Numbered, ReplayError>>,
+    messages: &mut impl Iterator<Item = Result<NumberedMessage, ReplayError>>,
     read: &mut u64,
-) -> Result<Option<Message>, ReplayError> {
+) -> Result<Option<JournalMessage>, ReplayError> {
     let Some((number, message)) = messages.next().transpose()? else { return Ok(None) };
     if number != *read {
         return Err(ReplayError::Missing { place: *read + 1 });

@@ -3,9 +3,10 @@
 use std::{mem::take, ops::Range};
 
 use super::{
-    Differs, Hole, Journal, Machine, Numbered, Outcome, Part, ReplayError, Step, is_from, side_by_side::is_compared,
+    Differs, Journal, JournalGap, JournalPart, NumberedMessage, ReplayError, ReplayMachine, ReplayOutcome, ReplayStep,
+    is_from, side_by_side::is_compared,
 };
-use crate::journal::Row;
+use crate::journal::TickRow;
 
 /// Ticks that are stepped at once, about 25 MB of measurements: enough that copies of the loop do not matter.
 const RUN_TICKS: usize = 16_000;
@@ -16,18 +17,18 @@ const RUN_TICKS: usize = 16_000;
 ///
 /// # Errors
 /// [`ReplayError`] if the journal cannot be read.
-pub fn verify<I: Iterator<Item = Result<Numbered, ReplayError>>>(
+pub fn verify<I: Iterator<Item = Result<NumberedMessage, ReplayError>>>(
     mut journal: Journal<I>,
     stretch_s: &Range<f64>,
     passed: impl FnMut(u64),
-) -> Result<Outcome, ReplayError> {
-    let machine = Machine::new(&journal.start().origin)?;
+) -> Result<ReplayOutcome, ReplayError> {
+    let machine = ReplayMachine::new(&journal.start().origin)?;
     let rows = Vec::new();
-    let outcome = Outcome::default();
+    let outcome = ReplayOutcome::default();
     let mut verifier = Verifier { machine, stretch_s, passed, rows, outcome, is_over: false };
     while let Some(part) = journal.next_part() {
         match part {
-            Ok(Part::Ticks(rows)) => verifier.add(rows)?,
+            Ok(JournalPart::Ticks(rows)) => verifier.add(rows)?,
             other => {
                 // In order: a difference before an unreadable message comes first.
                 verifier.run()?;
@@ -45,17 +46,17 @@ pub fn verify<I: Iterator<Item = Result<Numbered, ReplayError>>>(
 }
 
 struct Verifier<'a, F> {
-    machine: Machine,
+    machine: ReplayMachine,
     stretch_s: &'a Range<f64>,
     passed: F,
     /// Ticks without an operation between them.
-    rows: Vec<Vec<Row>>,
-    outcome: Outcome,
+    rows: Vec<Vec<TickRow>>,
+    outcome: ReplayOutcome,
     is_over: bool,
 }
 
 impl<F: FnMut(u64)> Verifier<'_, F> {
-    fn add(&mut self, mut rows: Vec<Row>) -> Result<(), ReplayError> {
+    fn add(&mut self, mut rows: Vec<TickRow>) -> Result<(), ReplayError> {
         if let Some(end) = rows.iter().position(|row| is_from(row.timing.now_s, self.stretch_s.end)) {
             rows.truncate(end);
             self.is_over = true;
@@ -69,7 +70,7 @@ impl<F: FnMut(u64)> Verifier<'_, F> {
         let from_s = self.stretch_s.start;
         let Some(last) = rows.iter().flatten().last() else { return Ok(()) };
         let ran = self.machine.run(&rows, from_s)?;
-        let Outcome { ticks, before, seconds, differs, .. } = &mut self.outcome;
+        let ReplayOutcome { ticks, before, seconds, differs, .. } = &mut self.outcome;
         let begin = *before + *ticks;
         *before += rows.iter().flatten().filter(|row| !is_compared(row, from_s)).count() as u64;
         *seconds = last.timing.now_s;
@@ -88,15 +89,17 @@ impl<F: FnMut(u64)> Verifier<'_, F> {
         Ok(())
     }
 
-    fn step(&mut self, part: Part) -> Result<(), ReplayError> {
+    fn step(&mut self, part: JournalPart) -> Result<(), ReplayError> {
         let tick = self.outcome.before + self.outcome.ticks;
         match part {
-            Part::Ticks(_) | Part::Between(Step::Tick) => {}
-            Part::Between(Step::Operation(operation)) => self.machine.apply(operation, tick)?,
-            Part::Between(Step::Calibrations { number, calibrations }) => self.machine.know(number, *calibrations),
-            Part::Between(Step::End(_)) => self.outcome.closed = true,
-            Part::Between(Step::Hole { lost }) => {
-                self.outcome.hole = Some(Hole { tick, lost });
+            JournalPart::Ticks(_) | JournalPart::Between(ReplayStep::Tick) => {}
+            JournalPart::Between(ReplayStep::Operation(operation)) => self.machine.apply(operation, tick)?,
+            JournalPart::Between(ReplayStep::Calibrations { number, calibrations }) => {
+                self.machine.know(number, *calibrations);
+            }
+            JournalPart::Between(ReplayStep::End(_)) => self.outcome.closed = true,
+            JournalPart::Between(ReplayStep::Hole { lost }) => {
+                self.outcome.hole = Some(JournalGap { tick, lost });
                 self.is_over = true;
             }
         }

@@ -12,15 +12,15 @@ use nima_machine::{
     messages::{Command, LoopState, Tick},
     rig::{SIDES, Side},
     runtime::Operation,
-    teleop::Origin,
+    teleop::LoopOrigin,
 };
 
-use super::{Hole, Journal, Machine, Numbered, ReplayError, Step, is_from};
+use super::{Journal, JournalGap, NumberedMessage, ReplayError, ReplayMachine, ReplayStep, is_from};
 
 /// The changed settings; `None` leaves a setting as recorded. A changed setting stays so: commands that would set it
 /// are ignored.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Change {
+pub struct WhatIfChange {
     pub mode: Option<Mode>,
     /// Delay of the link, s.
     pub delay_s: Option<f64>,
@@ -28,14 +28,14 @@ pub struct Change {
     pub gain: Option<f64>,
 }
 
-impl Change {
+impl WhatIfChange {
     /// Whether any setting is changed.
     pub fn is_any(&self) -> bool {
         *self != Self::default()
     }
 
     /// Returns the origin of the changed loop.
-    fn origin(&self, origin: &Origin) -> Origin {
+    fn origin(&self, origin: &LoopOrigin) -> LoopOrigin {
         let mut origin = origin.clone();
         let rig = &mut origin.rig;
         rig.mode = self.mode.unwrap_or(rig.mode);
@@ -87,7 +87,7 @@ impl Difference {
 
 /// Comparison of one side; forces over the ticks in which both loops were engaged.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Compared {
+pub struct ComparedSide {
     /// Ticks in which both were engaged.
     pub engaged: u64,
     /// Ticks in which only one was engaged.
@@ -107,15 +107,15 @@ pub struct Compared {
 /// # Errors
 /// [`ReplayError`] if the journal cannot be read or the changed settings are not usable.
 #[expect(clippy::type_complexity, reason = "three answers")]
-pub fn compare<I: Iterator<Item = Result<Numbered, ReplayError>>>(
+pub fn compare<I: Iterator<Item = Result<NumberedMessage, ReplayError>>>(
     journal: &mut Journal<I>,
-    change: &Change,
+    change: &WhatIfChange,
     stretch_s: &Range<f64>,
     mut each: impl FnMut(&Tick, &Tick),
-) -> Result<([Option<Compared>; SIDES], u64, Option<Hole>), ReplayError> {
+) -> Result<([Option<ComparedSide>; SIDES], u64, Option<JournalGap>), ReplayError> {
     let origin = &journal.start().origin;
-    let mut recorded = Machine::new(origin)?;
-    let mut changed = Machine::new(&change.origin(origin))?;
+    let mut recorded = ReplayMachine::new(origin)?;
+    let mut changed = ReplayMachine::new(&change.origin(origin))?;
     let mut sides = [None; SIDES];
     let mut ticks = 0;
     let mut before = 0;
@@ -123,22 +123,22 @@ pub fn compare<I: Iterator<Item = Result<Numbered, ReplayError>>>(
     let mut events = Vec::new();
     while let Some(step) = journal.next() {
         match step? {
-            Step::Operation(operation) => {
+            ReplayStep::Operation(operation) => {
                 recorded.apply(operation, before + ticks)?;
                 if !matches!(operation, Operation::Command { command, .. } if !change.lets(command)) {
                     changed.apply(operation, before + ticks)?;
                 }
             }
-            Step::Calibrations { number, calibrations } => {
+            ReplayStep::Calibrations { number, calibrations } => {
                 recorded.know(number, (*calibrations).clone());
                 changed.know(number, *calibrations);
             }
-            Step::Hole { lost } => {
-                hole = Some(Hole { tick: before + ticks, lost });
+            ReplayStep::Hole { lost } => {
+                hole = Some(JournalGap { tick: before + ticks, lost });
                 break;
             }
-            Step::End(_) => {}
-            Step::Tick => {
+            ReplayStep::End(_) => {}
+            ReplayStep::Tick => {
                 let Some(row) = journal.row() else { continue };
                 let now_s = row.timing.now_s;
                 if is_from(now_s, stretch_s.end) {
@@ -165,7 +165,7 @@ pub fn compare<I: Iterator<Item = Result<Numbered, ReplayError>>>(
     Ok((sides, ticks, hole))
 }
 
-fn add(compared: &mut Compared, was: &Tick, would: &Tick) {
+fn add(compared: &mut ComparedSide, was: &Tick, would: &Tick) {
     let engaged = [was, would].map(|tick| tick.state == LoopState::Engaged);
     match engaged {
         [true, true] => {

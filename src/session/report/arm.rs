@@ -8,8 +8,8 @@ use nima_core::{
 use serde::Serialize;
 
 use super::{
-    force::{ForceFigures, Measured},
-    trace::Trace,
+    force::{ForceFigures, ForceStatistics},
+    trace::SignalTrace,
 };
 
 /// Numbers of the states, as stored in the file, that affect the statistics.
@@ -23,7 +23,7 @@ pub const DEGREE_COLUMNS: [&str; 4] = ["anchored", "matched", "nima", "paper"];
 
 /// A period in one state.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Span {
+pub struct StateSpan {
     /// 0 disconnected, 1 idle, 2 ready, 3 engaged, 4 clutched, 5 stopped, 6 faulted.
     pub state: u8,
     /// Begin, s since the session's begin.
@@ -34,21 +34,24 @@ pub struct Span {
 
 /// Activity of one gate.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct GateShare {
+pub struct GateFraction {
     pub gate: Gate,
     /// Fraction of the engaged time in which it acted, 0 to 1; for the first gate, fraction of all time.
-    pub share: f64,
+    #[serde(rename = "share")]
+    pub fraction: f64,
 }
 
 /// Statistics of the identification and the network while engaged.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct Identified {
+pub struct IdentificationFigures {
     /// Mean prediction error at the horizon of each computed mode, N; the last one is the baseline.
     pub error_n: [Option<f64>; SLOTS],
     /// Fractions of the degrees 0 to 5 for each of [`DEGREE_COLUMNS`], where they were computed.
-    pub degree_shares: [Option<[f64; MAX_DEGREE + 1]>; DEGREE_COLUMNS.len()],
+    #[serde(rename = "degree_shares")]
+    pub degree_fractions: [Option<[f64; MAX_DEGREE + 1]>; DEGREE_COLUMNS.len()],
     /// Fraction of the time without motion to learn from, 0 to 1.
-    pub resting_share: f64,
+    #[serde(rename = "resting_share")]
+    pub resting_fraction: f64,
     /// `None` without a network.
     pub network: Option<NetworkFigures>,
 }
@@ -57,9 +60,11 @@ pub struct Identified {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct NetworkFigures {
     /// Its mean weight in the force, 0 to 1.
-    pub share: f64,
+    #[serde(rename = "share")]
+    pub fraction: f64,
     /// Fraction of the time outside its training data, 0 to 1.
-    pub outside_share: f64,
+    #[serde(rename = "outside_share")]
+    pub outside_fraction: f64,
     /// Maximum distance from its training data, 1 at its limit.
     pub doubt_max: f64,
 }
@@ -68,31 +73,32 @@ pub struct NetworkFigures {
 pub struct ArmFigures {
     /// `right` or `left`.
     pub side: &'static str,
-    pub states: Vec<Span>,
+    pub states: Vec<StateSpan>,
     /// s.
     pub seconds: [f64; STATES],
     /// Measured, delayed and rendered force while engaged.
     pub forces: [Option<ForceFigures>; 3],
     /// Lengths of these forces over time, N.
-    pub traces: [Trace; 3],
-    pub gates: Vec<GateShare>,
+    pub traces: [SignalTrace; 3],
+    pub gates: Vec<GateFraction>,
     /// Minimum energy that the hand might still get back, J.
-    pub stored_least_j: f64,
+    #[serde(rename = "stored_least_j")]
+    pub stored_min_j: f64,
     /// Mean force that the dead band withheld while engaged, N.
     pub withheld_mean_n: f64,
     /// Maximum of that force, N.
     pub withheld_max_n: f64,
     /// `None` if the file does not have it.
-    pub identified: Option<Identified>,
+    pub identified: Option<IdentificationFigures>,
 }
 
 /// Names of the forces in [`ArmFigures::forces`].
 pub const FORCES: [&str; 3] = ["measured", "delayed", "rendered"];
 
-pub(super) struct Arm {
+pub(super) struct ArmCollector {
     figures: ArmFigures,
     period_s: f64,
-    forces: [Measured; 3],
+    forces: [ForceStatistics; 3],
     newest: Option<(f64, [Vector3<f64>; 3])>,
     last_s: Option<f64>,
     last_engaged: bool,
@@ -100,19 +106,19 @@ pub(super) struct Arm {
     engaged: u64,
     acted: [u64; GATES],
     withheld_sum_n: f64,
-    identified: Sampled,
+    identified: IdentificationSamples,
 }
 
-impl Arm {
+impl ArmCollector {
     pub(super) fn new(side: &'static str, length_s: f64, period_s: f64) -> Self {
         let figures = ArmFigures {
             side,
             states: Vec::new(),
             seconds: [0.0; STATES],
             forces: [None; 3],
-            traces: [0; 3].map(|_| Trace::over(length_s)),
+            traces: [0; 3].map(|_| SignalTrace::over(length_s)),
             gates: Vec::new(),
-            stored_least_j: f64::INFINITY,
+            stored_min_j: f64::INFINITY,
             withheld_mean_n: 0.0,
             withheld_max_n: 0.0,
             identified: None,
@@ -128,7 +134,7 @@ impl Arm {
             engaged: 0,
             acted: [0; GATES],
             withheld_sum_n: 0.0,
-            identified: Sampled::default(),
+            identified: IdentificationSamples::default(),
         }
     }
 
@@ -163,7 +169,7 @@ impl Arm {
         for (count, acted) in self.acted.iter_mut().zip(acted).skip(1) {
             *count += u64::from(*acted > 0.5);
         }
-        self.figures.stored_least_j = self.figures.stored_least_j.min(stored_j);
+        self.figures.stored_min_j = self.figures.stored_min_j.min(stored_j);
         self.figures.withheld_max_n = self.figures.withheld_max_n.max(withheld_n);
         self.withheld_sum_n += withheld_n;
         if let Some((_, forces)) = self.newest.filter(|&(of_s, _)| of_s.total_cmp(&t_s).is_eq()) {
@@ -181,7 +187,7 @@ impl Arm {
                 if let (Some(span), true) = (last, follows) {
                     span.to_s = t_s;
                 }
-                self.figures.states.push(Span { state, from_s: t_s, to_s: t_s });
+                self.figures.states.push(StateSpan { state, from_s: t_s, to_s: t_s });
             }
         }
     }
@@ -196,13 +202,13 @@ impl Arm {
 
     pub(super) fn figures(self) -> ArmFigures {
         let mut figures = self.figures;
-        figures.forces = self.forces.each_ref().map(Measured::figures);
+        figures.forces = self.forces.each_ref().map(ForceStatistics::figures);
         let of_all = |gate: Gate| if gate == Gate::Permission { self.ticks } else { self.engaged };
-        let share = |gate: Gate| self.acted[gate.index()] as f64 / of_all(gate).max(1) as f64;
-        figures.gates = Gate::ALL.iter().map(|&gate| GateShare { gate, share: share(gate) }).collect();
+        let fraction = |gate: Gate| self.acted[gate.index()] as f64 / of_all(gate).max(1) as f64;
+        figures.gates = Gate::ALL.iter().map(|&gate| GateFraction { gate, fraction: fraction(gate) }).collect();
         figures.withheld_mean_n = self.withheld_sum_n / self.engaged.max(1) as f64;
-        if !figures.stored_least_j.is_finite() {
-            figures.stored_least_j = 0.0;
+        if !figures.stored_min_j.is_finite() {
+            figures.stored_min_j = 0.0;
         }
         figures.identified = self.identified.figures();
         figures
@@ -211,12 +217,12 @@ impl Arm {
 
 /// Mean of the values that are present.
 #[derive(Clone, Copy, Debug, Default)]
-struct Mean {
+struct ArmMean {
     sum: f64,
     count: u64,
 }
 
-impl Mean {
+impl ArmMean {
     fn add(&mut self, value: f64) {
         if value.is_finite() {
             self.sum += value;
@@ -231,18 +237,19 @@ impl Mean {
 
 /// Samples of the identification.
 #[derive(Clone, Debug, Default)]
-struct Sampled {
+struct IdentificationSamples {
     is_there: bool,
-    errors_n: [Mean; SLOTS],
+    errors_n: [ArmMean; SLOTS],
     degrees: [[u64; MAX_DEGREE + 1]; DEGREE_COLUMNS.len()],
-    resting: Mean,
-    network: [Mean; 2],
+    resting: ArmMean,
+    network: [ArmMean; 2],
     doubt_max: f64,
 }
 
-impl Sampled {
+impl IdentificationSamples {
     fn add(&mut self, values: &[f64]) {
-        let Some((errors_n, &[a, m, n, p, resting, share, outside, doubt])) = values.split_at_checked(MODES + 1) else {
+        let Some((errors_n, &[a, m, n, p, resting, fraction, outside, doubt])) = values.split_at_checked(MODES + 1)
+        else {
             return;
         };
         for (mean, error_n) in self.errors_n.iter_mut().zip(errors_n) {
@@ -254,25 +261,25 @@ impl Sampled {
             }
         }
         self.resting.add(resting);
-        self.network[0].add(share);
+        self.network[0].add(fraction);
         self.network[1].add(outside);
         self.doubt_max = self.doubt_max.max(doubt);
     }
 
-    fn figures(&self) -> Option<Identified> {
-        let shares = |counts: &[u64; MAX_DEGREE + 1]| {
+    fn figures(&self) -> Option<IdentificationFigures> {
+        let fractions = |counts: &[u64; MAX_DEGREE + 1]| {
             let total: u64 = counts.iter().sum();
             (total > 0).then(|| counts.map(|count| count as f64 / total as f64))
         };
-        let network = self.network[0].mean().map(|share| NetworkFigures {
-            share,
-            outside_share: self.network[1].mean().unwrap_or_default(),
+        let network = self.network[0].mean().map(|fraction| NetworkFigures {
+            fraction,
+            outside_fraction: self.network[1].mean().unwrap_or_default(),
             doubt_max: self.doubt_max,
         });
-        self.is_there.then(|| Identified {
-            error_n: self.errors_n.map(Mean::mean),
-            degree_shares: self.degrees.each_ref().map(shares),
-            resting_share: self.resting.mean().unwrap_or_default(),
+        self.is_there.then(|| IdentificationFigures {
+            error_n: self.errors_n.map(ArmMean::mean),
+            degree_fractions: self.degrees.each_ref().map(fractions),
+            resting_fraction: self.resting.mean().unwrap_or_default(),
             network,
         })
     }

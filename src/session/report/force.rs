@@ -27,7 +27,7 @@ pub struct ForceFigures {
 
 /// Collects the samples of one force.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Measured {
+pub(super) struct ForceStatistics {
     figures: ForceFigures,
     sum_length_n: f64,
     mean_n: Vector3<f64>,
@@ -38,7 +38,7 @@ pub(super) struct Measured {
     before: Option<Vector3<f64>>,
 }
 
-impl Measured {
+impl ForceStatistics {
     /// Adds a sample that holds for `dt_s`; it follows the previous one unless `begins`. A sample that is not finite is
     /// left out.
     pub(super) fn add(&mut self, t_s: f64, dt_s: f64, force_n: Vector3<f64>, begins: bool) {
@@ -102,7 +102,7 @@ mod tests {
     fn a_sine_along_each_axis_has_the_figures_of_the_books() {
         // Whole periods of 1, 2 and 3 Hz with 2, 1 and 0.5 N: standard deviations are the amplitudes over the root of
         // two.
-        let mut measured = Measured::default();
+        let mut measured = ForceStatistics::default();
         let mut lengths_n = 0.0;
         let mut peak_n = 0.0_f64;
         for i in 0..4000 {
@@ -130,7 +130,7 @@ mod tests {
     #[test]
     fn what_is_turned_has_the_same_volume_and_a_line_has_none() {
         let turn = nalgebra::Rotation3::from_euler_angles(0.4, -0.9, 1.3);
-        let [mut straight, mut turned, mut line] = [0; 3].map(|_| Measured::default());
+        let [mut straight, mut turned, mut line] = [0; 3].map(|_| ForceStatistics::default());
         for i in 0..1000 {
             let angle = f64::from(i) * TAU * 1e-3;
             let force_n = Vector3::new(3.0 * angle.sin(), angle.cos(), (2.0 * angle).sin());
@@ -138,20 +138,20 @@ mod tests {
             turned.add(0.0, 1e-3, turn * force_n, i == 0);
             line.add(0.0, 1e-3, turn * Vector3::x() * angle.sin(), i == 0);
         }
-        let volume_n3 = |of: &Measured| of.figures().unwrap().volume_n3;
+        let volume_n3 = |of: &ForceStatistics| of.figures().unwrap().volume_n3;
         near(volume_n3(&straight), volume_n3(&turned), 1e-9);
         assert!(volume_n3(&straight) > 1.0 && volume_n3(&line) < 1e-6);
     }
 
     #[test]
     fn holes_and_odd_numbers_make_no_rate() {
-        let mut measured = Measured::default();
+        let mut measured = ForceStatistics::default();
         measured.add(0.0, 1e-3, Vector3::zeros(), true);
         measured.add(5.0, 1e-3, Vector3::x() * 7.0, true);
         measured.add(5.001, 1e-3, Vector3::x() * f64::NAN, false);
         measured.add(5.002, 1e-3, Vector3::zeros(), false);
         let figures = measured.figures().unwrap();
         assert_eq!((figures.samples, figures.peak_n, figures.peak_at_s, figures.rate_peak_n_s), (3, 7.0, 5.0, 0.0));
-        assert_eq!(Measured::default().figures(), None);
+        assert_eq!(ForceStatistics::default().figures(), None);
     }
 }

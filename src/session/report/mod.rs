@@ -2,7 +2,7 @@
 
 mod arm;
 mod force;
-mod pictures;
+mod images;
 #[cfg(test)]
 mod tests;
 mod trace;
@@ -12,28 +12,30 @@ use std::{collections::BTreeMap, path::Path};
 use nima_machine::rig::Side;
 use nima_recording::{
     messages::foxglove::{Level, Log},
-    session::{Message, ReadError, Reader},
+    session::{ReadError, SessionMessage, SessionReader},
 };
 use prost::Message as _;
 use serde::Serialize;
 
-pub use arm::{ArmFigures, DEGREE_COLUMNS, FORCES, GateShare, Identified, NetworkFigures, STATES, Span};
+pub use arm::{
+    ArmFigures, DEGREE_COLUMNS, FORCES, GateFraction, IdentificationFigures, NetworkFigures, STATES, StateSpan,
+};
 pub use force::ForceFigures;
-pub use pictures::PicturesFigures;
-pub use trace::{BUCKETS, Trace};
+pub use images::ImageReport;
+pub use trace::{BUCKETS, SignalTrace};
 
 use crate::{
-    cut,
-    journal::{Outline, outline},
+    images::{IMAGE_FIGURES_TOPIC, IMAGE_TOPIC, VIDEO_TOPIC},
+    journal::{MessageOutline, outline},
     objects::{self, kind},
-    pictures::{PICTURE_FIGURES_TOPIC, PICTURE_TOPIC, VIDEO_TOPIC},
     recorder::JOURNAL_TOPIC,
     topics::{
         HAPPENING_LINE, HAPPENINGS_TOPIC, LOG_TOPIC, MARK_LINE, MARKS_TOPIC, RINGS_TOPIC, TASK_TOPIC, TIMES,
-        TIMING_TOPIC, columns::Columns,
+        TIMING_TOPIC, columns::TopicColumns,
     },
+    trim,
 };
-use arm::Arm;
+use arm::ArmCollector;
 
 /// Maximum number of notes on damage that are kept; the rest are only counted.
 const NOTES: usize = 20;
@@ -49,7 +51,7 @@ pub enum ReportError {
 }
 
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct Figures {
+pub struct SessionFigures {
     pub file: String,
     /// Faults of the file and missing parts, one line each.
     pub notes: Vec<String>,
@@ -63,21 +65,22 @@ pub struct Figures {
     /// Whether it is an excerpt of a session.
     pub stretch: bool,
     /// Gaps in the journal.
-    pub holes: Vec<Missing>,
+    pub holes: Vec<MissingTicks>,
     pub arms: Vec<ArmFigures>,
     /// Events in order.
-    pub marks: Vec<Mark>,
+    pub marks: Vec<EventMark>,
     /// Number of events of each kind, as named by [`kind`]. `None` if there was no source of events.
     pub happenings: Option<BTreeMap<String, u64>>,
     /// Statistics of the endoscope images. `None` if there are none.
-    pub pictures: Option<PicturesFigures>,
+    #[serde(rename = "pictures")]
+    pub images: Option<ImageReport>,
     /// The timing of the loop, if the file has it.
-    pub timing: Option<Times>,
+    pub timing: Option<LoopTimes>,
 }
 
 /// A gap in the journal.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Missing {
+pub struct MissingTicks {
     /// End of the block with the gap, s since the session's begin.
     pub until_s: f64,
     /// Number of missing entries.
@@ -86,7 +89,7 @@ pub struct Missing {
 
 /// A single event.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Mark {
+pub struct EventMark {
     /// s since the session's begin.
     pub t_s: f64,
     /// Severity or kind.
@@ -125,7 +128,7 @@ impl MarkLevel {
 }
 
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct Times {
+pub struct LoopTimes {
     /// Number of missed periods.
     pub missed: u64,
     /// The seconds in which periods were missed: their ends, s, and the number of missed periods.
@@ -135,17 +138,17 @@ pub struct Times {
     pub times_us: [Option<[f64; 4]>; TIMES.len()],
 }
 
-impl Figures {
+impl SessionFigures {
     /// Reads a session.
     ///
     /// # Errors
     /// [`ReportError`] if it is not a session of this program.
     pub fn read(path: &Path) -> Result<Self, ReportError> {
-        let reader = Reader::open(path)?;
+        let reader = SessionReader::open(path)?;
         Self::of(&path.display().to_string(), &reader)
     }
 
-    fn of(file: &str, reader: &Reader) -> Result<Self, ReportError> {
+    fn of(file: &str, reader: &SessionReader) -> Result<Self, ReportError> {
         let has = |topic: &str| reader.channels().iter().any(|channel| channel.topic == topic);
         let sides: Vec<Side> =
             Side::ALL.into_iter().filter(|side| has(&topic(*side, "forces")) && has(&topic(*side, "gates"))).collect();
@@ -162,7 +165,7 @@ impl Figures {
             figures.notes.push("it has no plots: forces, states and gates are not known".to_owned());
         }
         let rate_hz = figures.about.get("rate_hz").and_then(|rate| rate.parse().ok()).filter(|rate: &f64| *rate > 0.0);
-        let mut reading = Reading::new(reader, first_ns, &sides, figures.length_s, 1.0 / rate_hz.unwrap_or(1000.0));
+        let mut reading = FilePass::new(reader, first_ns, &sides, figures.length_s, 1.0 / rate_hz.unwrap_or(1000.0));
         reading.all(&mut figures);
         figures.arms = reading.arms.into_iter().map(|(_, arm)| arm.figures()).collect();
         if sides.iter().any(|side| !has(&topic(*side, "identification"))) || !has(TIMING_TOPIC) {
@@ -173,7 +176,7 @@ impl Figures {
         Ok(figures)
     }
 
-    fn tables(&mut self, reader: &Reader) {
+    fn tables(&mut self, reader: &SessionReader) {
         match reader.metadata() {
             Err(error) => self.notes.push(error.to_string()),
             Ok(tables) => {
@@ -182,7 +185,7 @@ impl Figures {
                         self.calibrations.insert(of.to_owned(), table);
                     } else if name == "session" {
                         self.about = table;
-                    } else if name == cut::TABLE {
+                    } else if name == trim::TABLE {
                         self.stretch = true;
                     }
                 }
@@ -197,7 +200,7 @@ fn topic(side: Side, what: &str) -> String {
 
 /// The role of a message for an arm, or for the whole session.
 #[derive(Clone, Copy)]
-enum Kind {
+enum MessageKind {
     Forces(usize),
     Gates(usize),
     Identification(usize),
@@ -208,48 +211,48 @@ enum Kind {
     Picture,
 }
 
-struct Channel {
+struct ReportChannel {
     id: nima_recording::session::ChannelId,
-    kind: Kind,
+    kind: MessageKind,
     /// Only for a topic of numbers.
-    columns: Option<Columns>,
+    columns: Option<TopicColumns>,
 }
 
 /// One pass over the file.
-struct Reading<'a> {
-    reader: &'a Reader,
+struct FilePass<'a> {
+    reader: &'a SessionReader,
     first_ns: u64,
-    channels: Vec<Channel>,
-    arms: Vec<(Side, Arm)>,
+    channels: Vec<ReportChannel>,
+    arms: Vec<(Side, ArmCollector)>,
     damaged: usize,
 }
 
-impl<'a> Reading<'a> {
-    fn new(reader: &'a Reader, first_ns: u64, sides: &[Side], length_s: f64, period_s: f64) -> Self {
+impl<'a> FilePass<'a> {
+    fn new(reader: &'a SessionReader, first_ns: u64, sides: &[Side], length_s: f64, period_s: f64) -> Self {
         let mut kinds = vec![
-            (TIMING_TOPIC.to_owned(), Kind::Timing),
-            (LOG_TOPIC.to_owned(), Kind::Log),
-            (JOURNAL_TOPIC.to_owned(), Kind::Journal),
-            (HAPPENINGS_TOPIC.to_owned(), Kind::Happening),
-            (PICTURE_FIGURES_TOPIC.to_owned(), Kind::Picture),
+            (TIMING_TOPIC.to_owned(), MessageKind::Timing),
+            (LOG_TOPIC.to_owned(), MessageKind::Log),
+            (JOURNAL_TOPIC.to_owned(), MessageKind::Journal),
+            (HAPPENINGS_TOPIC.to_owned(), MessageKind::Happening),
+            (IMAGE_FIGURES_TOPIC.to_owned(), MessageKind::Picture),
         ];
         for (arm, &side) in sides.iter().enumerate() {
-            kinds.push((topic(side, "forces"), Kind::Forces(arm)));
-            kinds.push((topic(side, "gates"), Kind::Gates(arm)));
-            kinds.push((topic(side, "identification"), Kind::Identification(arm)));
+            kinds.push((topic(side, "forces"), MessageKind::Forces(arm)));
+            kinds.push((topic(side, "gates"), MessageKind::Gates(arm)));
+            kinds.push((topic(side, "identification"), MessageKind::Identification(arm)));
         }
-        let of = |channel: &nima_recording::session::Channel| {
+        let of = |channel: &nima_recording::session::ReaderChannel| {
             let &(_, kind) = kinds.iter().find(|(topic, _)| *topic == channel.topic)?;
-            Some(Channel { id: channel.id, kind, columns: Columns::of(&channel.topic) })
+            Some(ReportChannel { id: channel.id, kind, columns: TopicColumns::of(&channel.topic) })
         };
         let channels = reader.channels().iter().filter_map(of).collect();
-        let arms = sides.iter().map(|&side| (side, Arm::new(side.word(), length_s, period_s))).collect();
+        let arms = sides.iter().map(|&side| (side, ArmCollector::new(side.word(), length_s, period_s))).collect();
         Self { reader, first_ns, channels, arms, damaged: 0 }
     }
 
-    fn all(&mut self, figures: &mut Figures) {
+    fn all(&mut self, figures: &mut SessionFigures) {
         let topics: Vec<&str> = self.reader.channels().iter().map(|channel| channel.topic.as_str()).collect();
-        let drawn = ["frames", "arrows", RINGS_TOPIC, MARKS_TOPIC, PICTURE_TOPIC, VIDEO_TOPIC];
+        let drawn = ["frames", "arrows", RINGS_TOPIC, MARKS_TOPIC, IMAGE_TOPIC, VIDEO_TOPIC];
         let skipped = drawn.into_iter().chain(["right/poses", "left/poses", "right/jaws", "left/jaws", TASK_TOPIC]);
         let skipped: Vec<&str> = skipped.collect();
         let topics: Vec<&str> = topics.into_iter().filter(|topic| !skipped.contains(topic)).collect();
@@ -269,41 +272,41 @@ impl<'a> Reading<'a> {
         }
     }
 
-    fn message(&mut self, message: &Message, figures: &mut Figures) {
+    fn message(&mut self, message: &SessionMessage, figures: &mut SessionFigures) {
         let Some(channel) = self.channels.iter_mut().find(|channel| channel.id == message.channel()) else { return };
         let t_s = message.log_time_ns().saturating_sub(self.first_ns) as f64 * 1e-9;
         let data = message.data();
         match channel.kind {
-            Kind::Journal => return journal(t_s, data, figures),
-            Kind::Log => return figures.marks.extend(mark(t_s, data)),
-            Kind::Happening => {
+            MessageKind::Journal => return journal(t_s, data, figures),
+            MessageKind::Log => return figures.marks.extend(mark(t_s, data)),
+            MessageKind::Happening => {
                 let event = objects::decode(data).map(|happening| kind(&happening.event));
                 if let (Some(event), Some(happenings)) = (event, &mut figures.happenings) {
                     *happenings.entry(event).or_default() += 1;
                 }
                 return;
             }
-            Kind::Picture => return figures.pictures.get_or_insert_default().take(t_s, data),
+            MessageKind::Picture => return figures.images.get_or_insert_default().take(t_s, data),
             _ => {}
         }
         let Some(values) = channel.columns.as_mut().and_then(|columns| columns.read(data)) else { return };
         match channel.kind {
-            Kind::Timing => timing(t_s, values, figures),
-            Kind::Forces(arm) => self.arms[arm].1.forces(t_s, values),
-            Kind::Gates(arm) => self.arms[arm].1.gates(t_s, values),
-            Kind::Identification(arm) => self.arms[arm].1.identified(values),
-            Kind::Journal | Kind::Log | Kind::Happening | Kind::Picture => {}
+            MessageKind::Timing => timing(t_s, values, figures),
+            MessageKind::Forces(arm) => self.arms[arm].1.forces(t_s, values),
+            MessageKind::Gates(arm) => self.arms[arm].1.gates(t_s, values),
+            MessageKind::Identification(arm) => self.arms[arm].1.identified(values),
+            MessageKind::Journal | MessageKind::Log | MessageKind::Happening | MessageKind::Picture => {}
         }
     }
 }
 
-fn journal(t_s: f64, data: &[u8], figures: &mut Figures) {
+fn journal(t_s: f64, data: &[u8], figures: &mut SessionFigures) {
     match outline(data) {
-        Ok(Outline::Start | Outline::Calibrations) => {}
-        Ok(Outline::Block { lost }) => {
-            figures.holes.extend(lost.into_iter().map(|lost| Missing { until_s: t_s, lost }));
+        Ok(MessageOutline::Start | MessageOutline::Calibrations) => {}
+        Ok(MessageOutline::Block { lost }) => {
+            figures.holes.extend(lost.into_iter().map(|lost| MissingTicks { until_s: t_s, lost }));
         }
-        Ok(Outline::End(_)) => figures.closed = Some(true),
+        Ok(MessageOutline::End(_)) => figures.closed = Some(true),
         Err(error) => {
             let note = format!("its journal: {error}");
             // One line for all messages of another version.
@@ -314,7 +317,7 @@ fn journal(t_s: f64, data: &[u8], figures: &mut Figures) {
     }
 }
 
-fn mark(t_s: f64, data: &[u8]) -> Option<Mark> {
+fn mark(t_s: f64, data: &[u8]) -> Option<EventMark> {
     let log = Log::decode(data).ok()?;
     let level = match log.level {
         _ if log.name == MARK_LINE => MarkLevel::Mark,
@@ -323,10 +326,10 @@ fn mark(t_s: f64, data: &[u8]) -> Option<Mark> {
         level if level == Level::Warning as i32 => MarkLevel::Warning,
         _ => MarkLevel::Info,
     };
-    Some(Mark { t_s, level, words: log.message })
+    Some(EventMark { t_s, level, words: log.message })
 }
 
-fn timing(t_s: f64, values: &[f64], figures: &mut Figures) {
+fn timing(t_s: f64, values: &[f64], figures: &mut SessionFigures) {
     let Some((&missed, times_us)) = values.split_first() else { return };
     let times = figures.timing.get_or_insert_default();
     let missed = missed as u64;

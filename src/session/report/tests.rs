@@ -5,7 +5,7 @@ use std::{collections::BTreeMap, f64::consts::TAU, path::Path};
 use nima_core::safety::Gate;
 use nima_recording::{
     messages::{JointStateEncoder, foxglove},
-    session::Writer,
+    session::SessionWriter,
 };
 
 use super::*;
@@ -16,7 +16,7 @@ const START_NS: u64 = 1_700_000_000_000_000_000;
 /// Ten seconds of one arm: idle for 2 s, engaged for 6 s with a force of `2 |sin(2 pi t)|` N along x, half of it
 /// rendered while the force limit acts for 1.5 s; faulted for 2 s.
 fn made(path: &Path) {
-    let mut writer = Writer::create(path, "test").unwrap();
+    let mut writer = SessionWriter::create(path, "test").unwrap();
     let table = BTreeMap::from([("rig".to_owned(), "<script>".to_owned()), ("rate_hz".to_owned(), "1000".to_owned())]);
     writer.metadata("session", &table).unwrap();
     let forces = writer.channel("right/forces", JointStateEncoder::encoding()).unwrap();
@@ -49,9 +49,9 @@ fn made(path: &Path) {
         values[13] = state;
         writer.message(gates, time_ns, gate.encode(time_ns, &values, &[], &[]).unwrap()).unwrap();
         if i == 8000 {
-            let told =
+            let report =
                 Log { level: Level::Error as i32, message: "right arm: fault: a <b>".to_owned(), ..Log::default() };
-            writer.message(log, time_ns, &told.encode_to_vec()).unwrap();
+            writer.message(log, time_ns, &report.encode_to_vec()).unwrap();
         }
     }
     writer.finish().unwrap();
@@ -66,7 +66,7 @@ fn the_figures_of_a_made_session_are_those_of_the_books() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("made.mcap");
     made(&path);
-    let figures = Figures::read(&path).unwrap();
+    let figures = SessionFigures::read(&path).unwrap();
     near(figures.length_s, 9.999, 1e-9);
     assert_eq!((figures.closed, figures.arms.len(), figures.about["rig"].as_str()), (None, 1, "<script>"));
     let arm = &figures.arms[0];
@@ -88,10 +88,10 @@ fn the_figures_of_a_made_session_are_those_of_the_books() {
     assert!(measured.volume_n3 < 1e-9 && measured.samples == 6000, "a line has no volume: {measured:?}");
     near(rendered.mean_n, 2.0 / std::f64::consts::PI, 1e-4);
     near(delayed.peak_n, 0.0, 0.0);
-    let share = |gate: Gate| arm.gates[gate.index()].share;
-    near(share(Gate::Ceiling), 0.25, 1e-9);
-    near(share(Gate::Permission), 0.4, 1e-9);
-    near(arm.stored_least_j, 0.1 - 1e-5 * 7999.0, 1e-9);
+    let fraction = |gate: Gate| arm.gates[gate.index()].fraction;
+    near(fraction(Gate::Ceiling), 0.25, 1e-9);
+    near(fraction(Gate::Permission), 0.4, 1e-9);
+    near(arm.stored_min_j, 0.1 - 1e-5 * 7999.0, 1e-9);
     near(arm.withheld_mean_n, 0.25, 1e-9);
     let mark = &figures.marks[0];
     assert_eq!((mark.level, mark.words.as_str()), (MarkLevel::Error, "right arm: fault: a <b>"));
@@ -103,7 +103,7 @@ fn the_figures_of_a_made_session_are_those_of_the_books() {
 fn files_without_anything_of_ours_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("other.mcap");
-    Writer::create(&path, "another program").unwrap().finish().unwrap();
-    let error = Figures::read(&path).unwrap_err().to_string();
+    SessionWriter::create(&path, "another program").unwrap().finish().unwrap();
+    let error = SessionFigures::read(&path).unwrap_err().to_string();
     assert!(error.contains("other.mcap") && error.contains("neither") && !error.contains('\n'), "{error}");
 }

@@ -6,14 +6,14 @@ pub const BUCKETS: usize = 600;
 
 /// The minimum and the maximum of each bucket; `None` where there is no value.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Trace {
+pub struct SignalTrace {
     /// Length of a bucket, s; the first begins with the session.
     pub step_s: f64,
     /// Minimum and maximum.
     pub buckets: Vec<Option<[f64; 2]>>,
 }
 
-impl Trace {
+impl SignalTrace {
     /// Makes an empty trace for a session of this length.
     pub(super) fn over(length_s: f64) -> Self {
         Self { step_s: length_s.max(1e-3) / BUCKETS as f64, buckets: vec![None; BUCKETS] }
@@ -39,7 +39,7 @@ mod tests {
 
     #[test]
     fn no_peak_is_lost() {
-        let mut trace = Trace::over(60.0);
+        let mut trace = SignalTrace::over(60.0);
         for i in 0..60_000 {
             trace.add(f64::from(i) * 1e-3, if i == 12_345 { 9.0 } else { 1.0 });
         }

@@ -10,7 +10,7 @@ const BEFORE: &str = ".gain";
 const NOW: &str = ".gain_value";
 
 #[derive(Debug)]
-pub(crate) struct Columns {
+pub(crate) struct TopicColumns {
     /// Names in the order of this program.
     known: Vec<String>,
     decoder: JointStateDecoder,
@@ -20,7 +20,7 @@ pub(crate) struct Columns {
     values: Vec<f64>,
 }
 
-impl Columns {
+impl TopicColumns {
     /// Returns the columns of the topic with this name; `None` if it is not a topic of named numbers.
     pub(crate) fn of(topic: &str) -> Option<Self> {
         let (_, known, _) = plots().into_iter().find(|(name, ..)| name == topic)?;
@@ -72,7 +72,7 @@ mod tests {
         let message = |names: &[&str], values: &[f64]| {
             JointStateEncoder::new("world", names).encode(1, values, &[], &[]).unwrap().to_vec()
         };
-        let read = |message: &[u8]| Columns::of("left/gates").unwrap().read(message).map(<[f64]>::to_vec);
+        let read = |message: &[u8]| TopicColumns::of("left/gates").unwrap().read(message).map(<[f64]>::to_vec);
         let forward: Vec<&str> = names.iter().map(String::as_str).collect();
         assert_eq!(read(&message(&forward, &expected)).unwrap(), expected);
         let backward: Vec<&str> = forward.iter().rev().copied().chain(["left.other"]).collect();
@@ -83,6 +83,6 @@ mod tests {
         assert_eq!(read(&message(&before, &expected)).unwrap(), expected, "as a version before wrote it");
         assert_eq!(read(&message(&forward[1..], &expected[1..])), None, "one is missing");
         assert_eq!(read(b"something else"), None);
-        assert!(Columns::of("log").is_none());
+        assert!(TopicColumns::of("log").is_none());
     }
 }

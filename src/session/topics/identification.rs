@@ -8,7 +8,7 @@ use nima_machine::{messages::Tick, rig::Side};
 use nima_recording::session::WriteError;
 
 use super::plot::Plot;
-use crate::outlet::Outlet;
+use crate::sinks::SessionSinks;
 
 /// Interval, s: an error is a mean over half a second.
 const EVERY_S: f64 = 0.1;
@@ -32,31 +32,31 @@ pub(super) fn names() -> Vec<String> {
 }
 
 #[derive(Debug)]
-pub(super) struct Identified {
+pub(super) struct IdentificationChannel {
     plot: Plot,
     due_s: f64,
-    network: Network,
+    network: NetworkChannel,
 }
 
 /// Statistics of the network since the last message.
 #[derive(Debug, Default)]
-struct Network {
+struct NetworkChannel {
     ticks: u32,
-    share: f64,
+    fraction: f64,
     outside: u32,
     doubt_max: f32,
 }
 
-impl Identified {
-    pub(super) fn new(out: &mut Outlet, side: Side) -> Result<Self, WriteError> {
+impl IdentificationChannel {
+    pub(super) fn new(out: &mut SessionSinks, side: Side) -> Result<Self, WriteError> {
         let names = names();
         let names: Vec<&str> = names.iter().map(String::as_str).collect();
         let plot = Plot::of_side(out, side, "identification", &names)?;
-        Ok(Self { plot, due_s: f64::NEG_INFINITY, network: Network::default() })
+        Ok(Self { plot, due_s: f64::NEG_INFINITY, network: NetworkChannel::default() })
     }
 
     /// Adds a tick, and writes a message if one is due.
-    pub(super) fn tick(&mut self, out: &mut Outlet, time_ns: u64, tick: &Tick) -> Result<(), WriteError> {
+    pub(super) fn tick(&mut self, out: &mut SessionSinks, time_ns: u64, tick: &Tick) -> Result<(), WriteError> {
         if let Some(report) = &tick.force.tip_force {
             self.network.add(report);
         }
@@ -87,10 +87,10 @@ impl Identified {
     }
 }
 
-impl Network {
+impl NetworkChannel {
     fn add(&mut self, report: &TipForceReport) {
         self.ticks += 1;
-        self.share += report.network_share;
+        self.fraction += report.network_fraction;
         self.outside += u32::from(report.extrapolates);
         self.doubt_max = self.doubt_max.max(report.doubt);
     }
@@ -102,6 +102,6 @@ impl Network {
             return [f64::NAN; 3];
         }
         let ticks = f64::from(self.ticks);
-        [self.share / ticks, f64::from(self.outside) / ticks, f64::from(self.doubt_max)]
+        [self.fraction / ticks, f64::from(self.outside) / ticks, f64::from(self.doubt_max)]
     }
 }

@@ -4,7 +4,7 @@
 use std::collections::VecDeque;
 
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion, Vector3};
-use nima_core::task::Happening;
+use nima_core::task::TimedTaskEvent;
 use nima_machine::rig::{SIDES, Side};
 use nima_recording::{
     messages::{
@@ -20,8 +20,8 @@ use super::{
     scene::{WORLD, quaternion, vector},
 };
 use crate::{
-    objects::{Jaws, Mark, ObjectSource, Objects, SCHEMA, SCHEMA_NAME, Standing, WireLoop, encode},
-    outlet::{Channel, Outlet},
+    objects::{JawState, LumpMark, ObjectSource, ObjectStates, SCHEMA, SCHEMA_NAME, TaskProgress, WireLoop, encode},
+    sinks::{SessionSinks, SinkChannel},
 };
 
 pub(crate) const RINGS_TOPIC: &str = "rings";
@@ -77,20 +77,20 @@ const RINGS_MAX: usize = 64;
 #[derive(Debug)]
 pub(crate) struct OfObjects {
     source: Box<dyn ObjectSource>,
-    moments: VecDeque<Objects>,
-    happenings: VecDeque<Happening>,
-    rings: Option<Channel>,
+    moments: VecDeque<ObjectStates>,
+    happenings: VecDeque<TimedTaskEvent>,
+    rings: Option<SinkChannel>,
     jaws: [Option<Plot>; SIDES],
-    marks: Option<Channel>,
+    marks: Option<SinkChannel>,
     task: Option<Plot>,
     /// The state of the task as last written, and when, s.
-    standing: Option<(f64, Standing)>,
-    told: Channel,
+    standing: Option<(f64, TaskProgress)>,
+    report: SinkChannel,
 }
 
 impl OfObjects {
-    pub(crate) fn new(out: &mut Outlet, source: Box<dyn ObjectSource>) -> Result<Self, WriteError> {
-        let told = happenings_channel(out)?;
+    pub(crate) fn new(out: &mut SessionSinks, source: Box<dyn ObjectSource>) -> Result<Self, WriteError> {
+        let report = happenings_channel(out)?;
         Ok(Self {
             source,
             moments: VecDeque::new(),
@@ -100,7 +100,7 @@ impl OfObjects {
             marks: None,
             task: None,
             standing: None,
-            told,
+            report,
         })
     }
 
@@ -108,10 +108,10 @@ impl OfObjects {
     /// of a message.
     pub(crate) fn until(
         &mut self,
-        out: &mut Outlet,
+        out: &mut SessionSinks,
         t_s: f64,
         time_ns: impl Fn(f64) -> u64,
-    ) -> Result<Vec<Happening>, WriteError> {
+    ) -> Result<Vec<TimedTaskEvent>, WriteError> {
         while let Some(moment) = self.source.moment() {
             self.moments.push_back(moment);
         }
@@ -124,13 +124,13 @@ impl OfObjects {
         }
         let mut happened = Vec::new();
         while let Some(happening) = self.happenings.pop_front_if(|happening| happening.t_s <= t_s) {
-            out.message(self.told, time_ns(happening.t_s), &encode(&happening))?;
+            out.message(self.report, time_ns(happening.t_s), &encode(&happening))?;
             happened.push(happening);
         }
         Ok(happened)
     }
 
-    fn write(&mut self, out: &mut Outlet, time_ns: u64, objects: &Objects) -> Result<(), WriteError> {
+    fn write(&mut self, out: &mut SessionSinks, time_ns: u64, objects: &ObjectStates) -> Result<(), WriteError> {
         if self.rings.is_some() || objects.rings.iter().any(Option::is_some) {
             let channel = match self.rings {
                 Some(channel) => channel,
@@ -151,8 +151,14 @@ impl OfObjects {
     }
 
     /// Writes the state of the task when it has changed, and at intervals.
-    fn stands(&mut self, out: &mut Outlet, time_ns: u64, t_s: f64, standing: &Standing) -> Result<(), WriteError> {
-        let is_due = |(at_s, written): &(f64, Standing)| written != standing || t_s - at_s >= AGAIN_S - 1e-6;
+    fn stands(
+        &mut self,
+        out: &mut SessionSinks,
+        time_ns: u64,
+        t_s: f64,
+        standing: &TaskProgress,
+    ) -> Result<(), WriteError> {
+        let is_due = |(at_s, written): &(f64, TaskProgress)| written != standing || t_s - at_s >= AGAIN_S - 1e-6;
         if !self.standing.as_ref().is_none_or(is_due) {
             return Ok(());
         }
@@ -175,15 +181,15 @@ impl OfObjects {
     }
 }
 
-pub(crate) fn happenings_channel(out: &mut Outlet) -> Result<Channel, WriteError> {
+pub(crate) fn happenings_channel(out: &mut SessionSinks) -> Result<SinkChannel, WriteError> {
     out.channel(HAPPENINGS_TOPIC, json_encoding(SCHEMA_NAME, SCHEMA))
 }
 
-pub(crate) fn marks_channel(out: &mut Outlet) -> Result<Channel, WriteError> {
+pub(crate) fn marks_channel(out: &mut SessionSinks) -> Result<SinkChannel, WriteError> {
     out.channel(MARKS_TOPIC, foxglove::encoding::<FrameTransforms>())
 }
 
-pub(crate) fn rings_channel(out: &mut Outlet) -> Result<Channel, WriteError> {
+pub(crate) fn rings_channel(out: &mut SessionSinks) -> Result<SinkChannel, WriteError> {
     out.channel(RINGS_TOPIC, foxglove::encoding::<FrameTransforms>())
 }
 
@@ -204,20 +210,20 @@ pub(crate) fn rings(time_ns: u64, rings: &[Option<Isometry3<f64>>]) -> FrameTran
 }
 
 /// Returns the frames of these marks.
-pub(crate) fn marks(time_ns: u64, marks: &[Mark]) -> FrameTransforms {
+pub(crate) fn marks(time_ns: u64, marks: &[LumpMark]) -> FrameTransforms {
     let timestamp = Some(timestamp(time_ns));
-    let frame = |(number, mark): (usize, &Mark)| FrameTransform {
+    let frame = |(number, mark): (usize, &LumpMark)| FrameTransform {
         timestamp,
         parent_frame_id: WORLD.to_owned(),
         child_frame_id: format!("{}{number}", if mark.is_true { MARK } else { FALSE_MARK }),
-        translation: Some(vector(&mark.at_m)),
+        translation: Some(vector(&mark.position_m)),
         rotation: Some(quaternion(&UnitQuaternion::identity())),
     };
     FrameTransforms { transforms: marks.iter().enumerate().map(frame).collect() }
 }
 
 /// Returns the marks of a message; other frames are left out.
-pub(crate) fn marks_of(message: &[u8]) -> Vec<Mark> {
+pub(crate) fn marks_of(message: &[u8]) -> Vec<LumpMark> {
     let frames = FrameTransforms::decode(message).unwrap_or_default().transforms;
     let mark = |FrameTransform { child_frame_id, translation, .. }: FrameTransform| {
         let (number, is_true) = match child_frame_id.strip_prefix(FALSE_MARK) {
@@ -226,7 +232,7 @@ pub(crate) fn marks_of(message: &[u8]) -> Vec<Mark> {
         };
         number.parse::<usize>().ok().filter(|number| *number < MARKS_MAX)?;
         let at = translation?;
-        Some(Mark { at_m: Vector3::new(at.x, at.y, at.z), is_true })
+        Some(LumpMark { position_m: Vector3::new(at.x, at.y, at.z), is_true })
     };
     frames.into_iter().filter_map(mark).take(MARKS_MAX).collect()
 }
@@ -251,8 +257,8 @@ pub(crate) fn rings_of(message: &[u8]) -> Vec<Option<Isometry3<f64>>> {
     rings
 }
 
-fn numbers(jaws: &Jaws) -> [f64; JAWS.len()] {
-    let Jaws { opening_rad, opens_n, force_n, torque_nm, touched } = jaws;
+fn numbers(jaws: &JawState) -> [f64; JAWS.len()] {
+    let JawState { opening_rad, opens_n, force_n, torque_nm, touched } = jaws;
     let mut numbers = [0.0; JAWS.len()];
     [numbers[0], numbers[1]] = [*opening_rad, *opens_n];
     numbers[2..5].copy_from_slice(force_n.as_slice());
@@ -262,10 +268,10 @@ fn numbers(jaws: &Jaws) -> [f64; JAWS.len()] {
 }
 
 /// Returns the jaws of their numbers, in the order of [`JAWS`].
-pub(crate) fn jaws_of(numbers: &[f64]) -> Option<Jaws> {
+pub(crate) fn jaws_of(numbers: &[f64]) -> Option<JawState> {
     let numbers: &[f64; JAWS.len()] = numbers.try_into().ok()?;
     let touched = [numbers[8], numbers[9], numbers[10], numbers[11]];
-    Some(Jaws {
+    Some(JawState {
         opening_rad: numbers[0],
         opens_n: numbers[1],
         force_n: Vector3::from_column_slice(&numbers[2..5]),
@@ -274,19 +280,19 @@ pub(crate) fn jaws_of(numbers: &[f64]) -> Option<Jaws> {
     })
 }
 
-fn standing_numbers(standing: &Standing) -> [f64; TASK.len()] {
-    let Standing { ended, share, marked, found, touches, passed, placed, dropped, loops, marks: _ } = standing;
+fn standing_numbers(standing: &TaskProgress) -> [f64; TASK.len()] {
+    let TaskProgress { ended, fraction, marked, found, touches, passed, placed, dropped, loops, marks: _ } = standing;
     let is = |is: bool| f64::from(u8::from(is));
     let [marked, found, touches] = [marked, found, touches].map(|count| f64::from(*count));
     let [passed, placed, dropped] = [passed, placed, dropped].map(|count| f64::from(*count));
     let [right, left] = Side::ALL.map(|side| loops[side.index()]).map(|one| [is(one.touches), is(one.on_wire)]);
-    [is(*ended), *share, marked, found, touches, passed, placed, dropped, right[0], right[1], left[0], left[1]]
+    [is(*ended), *fraction, marked, found, touches, passed, placed, dropped, right[0], right[1], left[0], left[1]]
 }
 
 /// Returns the state of a task from its numbers, in the order of [`TASK`]; its marks are in another topic.
-pub(crate) fn standing_of(numbers: &[f64]) -> Option<Standing> {
+pub(crate) fn standing_of(numbers: &[f64]) -> Option<TaskProgress> {
     let numbers: &[f64; TASK.len()] = numbers.try_into().ok()?;
-    let [ended, share, counts @ .., right, right_on, left, left_on] = *numbers;
+    let [ended, fraction, counts @ .., right, right_on, left, left_on] = *numbers;
     let [marked, found, touches, passed, placed, dropped] = counts.map(|count| count as u32);
     let mut loops = [WireLoop::default(); SIDES];
     for (side, [touches, on_wire]) in Side::ALL.into_iter().zip([[right, right_on], [left, left_on]]) {
@@ -294,7 +300,7 @@ pub(crate) fn standing_of(numbers: &[f64]) -> Option<Standing> {
     }
     let ended = ended > 0.5;
     let marks = Vec::new();
-    Some(Standing { ended, share, marked, found, touches, passed, placed, dropped, loops, marks })
+    Some(TaskProgress { ended, fraction, marked, found, touches, passed, placed, dropped, loops, marks })
 }
 
 #[cfg(test)]
@@ -303,14 +309,14 @@ mod tests {
 
     #[test]
     fn marks_and_the_state_of_the_task_come_back_to_the_bit() {
-        let mark = |x: f64, is_true| Mark { at_m: Vector3::new(x, -0.25, 0.003), is_true };
+        let mark = |x: f64, is_true| LumpMark { position_m: Vector3::new(x, -0.25, 0.003), is_true };
         let all = [mark(0.1, true), mark(0.2, false), mark(0.3, true)];
         assert_eq!(marks_of(&marks(5, &all).encode_to_vec()), all);
         let mut loops = [WireLoop::default(); SIDES];
         loops[Side::Left.index()] = WireLoop { touches: true, on_wire: true };
-        let standing = Standing {
+        let standing = TaskProgress {
             ended: true,
-            share: 0.37,
+            fraction: 0.37,
             marked: 4,
             found: 2,
             touches: 7,
@@ -337,7 +343,7 @@ mod tests {
         let all = [Some(ring), None, Some(Isometry3::identity()), None];
         let read = rings_of(&rings(5, &all).encode_to_vec());
         assert_eq!(read, all[..3], "the last present ring ends the list");
-        let jaws = Jaws {
+        let jaws = JawState {
             opening_rad: 0.6,
             opens_n: -1.5,
             force_n: Vector3::new(1.0, 2.0, 3.0),

@@ -10,7 +10,7 @@ use nima_recording::{
     session::WriteError,
 };
 
-use crate::outlet::{Channel, Outlet};
+use crate::sinks::{SessionSinks, SinkChannel};
 use prost::Message as _;
 
 /// Interval between two views, s: a screen shows no more.
@@ -42,14 +42,14 @@ pub(super) fn name_of_arrows(side: Side) -> String {
 }
 
 #[derive(Debug)]
-pub(super) struct Scene {
-    frames: Channel,
-    arrows: Channel,
+pub(super) struct SceneChannels {
+    frames: SinkChannel,
+    arrows: SinkChannel,
     due_s: f64,
 }
 
-impl Scene {
-    pub(super) fn new(out: &mut Outlet) -> Result<Self, WriteError> {
+impl SceneChannels {
+    pub(super) fn new(out: &mut SessionSinks) -> Result<Self, WriteError> {
         let frames = out.channel(FRAMES_TOPIC, foxglove::encoding::<FrameTransforms>())?;
         let arrows = out.channel(ARROWS_TOPIC, foxglove::encoding::<SceneUpdate>())?;
         Ok(Self { frames, arrows, due_s: f64::NEG_INFINITY })
@@ -58,7 +58,7 @@ impl Scene {
     /// Writes a view of these simultaneous ticks, if it is due.
     pub(super) fn show<'a>(
         &mut self,
-        out: &mut Outlet,
+        out: &mut SessionSinks,
         time_ns: u64,
         t_s: f64,
         ticks: impl Iterator<Item = &'a Tick>,
@@ -81,12 +81,12 @@ impl Scene {
                     rotation: Some(quaternion(&world_from_n.rotation)),
                 });
             }
-            for (name, at_m) in DRAWN.into_iter().zip([tick.tip_m, tick.leader_m]) {
+            for (name, position_m) in DRAWN.into_iter().zip([tick.tip_m, tick.leader_m]) {
                 frames.transforms.push(FrameTransform {
                     timestamp,
                     parent_frame_id: WORLD.to_owned(),
                     child_frame_id: name_of_frame(tick.side, name),
-                    translation: Some(vector(&at_m)),
+                    translation: Some(vector(&position_m)),
                     rotation: Some(quaternion(&UnitQuaternion::identity())),
                 });
             }
@@ -120,13 +120,13 @@ pub(crate) fn endoscope_of(data: &[u8]) -> Option<Isometry3<f64>> {
 }
 
 /// A force (N) at a position (m); no arrow if the force is zero or unknown.
-fn arrow(at_m: &Vector3<f64>, force_n: &Vector3<f64>, color: Color) -> Option<ArrowPrimitive> {
+fn arrow(position_m: &Vector3<f64>, force_n: &Vector3<f64>, color: Color) -> Option<ArrowPrimitive> {
     // An arrow points along its own x axis; for the opposite direction any half turn is correct.
     let turned = UnitQuaternion::rotation_between(&Vector3::x(), force_n)
         .unwrap_or_else(|| UnitQuaternion::from_axis_angle(&Vector3::z_axis(), std::f64::consts::PI));
     let length_m = force_n.norm() * LENGTH_M_N;
     (length_m > 1e-6).then(|| ArrowPrimitive {
-        pose: Some(Pose { position: Some(vector(at_m)), orientation: Some(quaternion(&turned)) }),
+        pose: Some(Pose { position: Some(vector(position_m)), orientation: Some(quaternion(&turned)) }),
         shaft_length: length_m,
         shaft_diameter: SHAFT_M,
         head_length: HEAD_M,
@@ -157,19 +157,19 @@ mod tests {
     #[test]
     fn the_endoscopes_marker_is_read_as_it_was_written_and_no_other_frame_or_number_is() {
         let world_from_n = Isometry3::new(Vector3::new(0.1, -0.2, 0.3), Vector3::new(0.4, 1.0, -2.0));
-        let frame = |name: &str, at_m: Vector3<f64>| FrameTransform {
+        let frame = |name: &str, position_m: Vector3<f64>| FrameTransform {
             timestamp: None,
             parent_frame_id: WORLD.to_owned(),
             child_frame_id: name.to_owned(),
-            translation: Some(vector(&at_m)),
+            translation: Some(vector(&position_m)),
             rotation: Some(quaternion(&world_from_n.rotation)),
         };
         let read = |frames: Vec<FrameTransform>| endoscope_of(&FrameTransforms { transforms: frames }.encode_to_vec());
-        let at_m = world_from_n.translation.vector;
-        let again = read(vec![frame("right.tip", Vector3::zeros()), frame(ENDOSCOPE, at_m)]).unwrap();
+        let position_m = world_from_n.translation.vector;
+        let again = read(vec![frame("right.tip", Vector3::zeros()), frame(ENDOSCOPE, position_m)]).unwrap();
         let off = again.inverse() * world_from_n;
         assert!(off.translation.vector.norm() < 1e-12 && off.rotation.angle() < 1e-7, "{off}");
-        assert_eq!(read(vec![frame("right.tip", at_m)]), None);
+        assert_eq!(read(vec![frame("right.tip", position_m)]), None);
         assert_eq!(read(vec![frame(ENDOSCOPE, Vector3::new(f64::NAN, 0.0, 0.0))]), None);
         assert_eq!(endoscope_of(b"no frames"), None);
     }

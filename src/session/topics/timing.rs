@@ -5,7 +5,7 @@ use nima_machine::teleop::Timing;
 use nima_recording::session::WriteError;
 
 use super::plot::Plot;
-use crate::outlet::Outlet;
+use crate::sinks::SessionSinks;
 
 /// Interval, s.
 const EVERY_S: f64 = 1.0;
@@ -19,15 +19,15 @@ pub(super) fn names() -> Vec<String> {
 }
 
 #[derive(Debug)]
-pub(super) struct Times {
+pub(super) struct TimingChannel {
     plot: Plot,
     due_s: f64,
     missed: u64,
     durations: [Percentiles; TIMES.len()],
 }
 
-impl Times {
-    pub(super) fn new(out: &mut Outlet) -> Result<Self, WriteError> {
+impl TimingChannel {
+    pub(super) fn new(out: &mut SessionSinks) -> Result<Self, WriteError> {
         let names = names();
         let names: Vec<&str> = names.iter().map(String::as_str).collect();
         let plot = Plot::new(out, TIMING_TOPIC, &names)?;
@@ -35,7 +35,7 @@ impl Times {
     }
 
     /// Adds a tick, and writes a message if one is due.
-    pub(super) fn tick(&mut self, out: &mut Outlet, time_ns: u64, timing: &Timing) -> Result<(), WriteError> {
+    pub(super) fn tick(&mut self, out: &mut SessionSinks, time_ns: u64, timing: &Timing) -> Result<(), WriteError> {
         let Timing { now_s, wake_s, work_s, sample_to_force_s, missed_now } = *timing;
         self.missed += missed_now;
         for (percentiles, time_s) in self.durations.iter_mut().zip([Some(wake_s), Some(work_s), sample_to_force_s]) {

@@ -4,7 +4,7 @@
 use nalgebra::Vector3;
 
 /// Maximum force of one contact, N: an arm that was driven into or through a peg gets no more.
-const FORCE_MOST_N: f64 = 30.0;
+const FORCE_MAX_N: f64 = 30.0;
 /// Stiffness of the friction spring relative to the normal one: 2/3 for rubber (Mindlin, J. Appl. Mech. 16, 1949).
 const TANGENTIAL: f64 = 2.0 / 3.0;
 /// Damping of the torsion, s times its stiffness: a ring between two fingers rotates at about 40 Hz, and this damps it
@@ -23,7 +23,7 @@ pub(crate) struct Law {
 
 /// State of a contact while it lasts.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Memory {
+pub(crate) struct ContactMemory {
     /// Elongation of the friction spring, m.
     stretched_m: Vector3<f64>,
     twisted_rad: f64,
@@ -31,7 +31,7 @@ pub(crate) struct Memory {
 
 /// Geometry of a contact. The normal points from the other body to this one.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Touch {
+pub(crate) struct ContactTouch {
     pub depth_m: f64,
     pub normal: Vector3<f64>,
     /// Velocity of this body relative to the other, m/s.
@@ -42,7 +42,7 @@ pub(crate) struct Touch {
 
 /// Force and torque of the other body on this one.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Push {
+pub(crate) struct ContactPush {
     pub force_n: Vector3<f64>,
     /// About the normal, as a vector, N m.
     pub torque_nm: Vector3<f64>,
@@ -52,10 +52,9 @@ pub(crate) struct Push {
 
 impl Law {
     /// Returns the forces at the end of a step of `step_s`.
-    pub(crate) fn push(&self, memory: &mut Memory, touch: &Touch, step_s: f64) -> Push {
+    pub(crate) fn push(&self, memory: &mut ContactMemory, touch: &ContactTouch, step_s: f64) -> ContactPush {
         let approach_m_s = touch.normal.dot(&touch.velocity_m_s);
-        let normal_n =
-            (self.stiffness_n_m * touch.depth_m - self.damping_n_s_m * approach_m_s).clamp(0.0, FORCE_MOST_N);
+        let normal_n = (self.stiffness_n_m * touch.depth_m - self.damping_n_s_m * approach_m_s).clamp(0.0, FORCE_MAX_N);
         let tangent = |vector: &Vector3<f64>| vector - touch.normal * touch.normal.dot(vector);
         let slide_m_s = tangent(&touch.velocity_m_s);
         let stiffness_n_m = self.stiffness_n_m * TANGENTIAL;
@@ -72,10 +71,10 @@ impl Law {
             asked_n
         };
         let torque_nm = self.torsion_nm(memory, touch.spin_rad_s, limit_n, step_s);
-        Push { force_n: touch.normal * normal_n + friction_n, torque_nm: touch.normal * torque_nm, normal_n }
+        ContactPush { force_n: touch.normal * normal_n + friction_n, torque_nm: touch.normal * torque_nm, normal_n }
     }
 
-    fn torsion_nm(&self, memory: &mut Memory, spin_rad_s: f64, limit_n: f64, step_s: f64) -> f64 {
+    fn torsion_nm(&self, memory: &mut ContactMemory, spin_rad_s: f64, limit_n: f64, step_s: f64) -> f64 {
         if self.patch_radius_m <= 0.0 {
             return 0.0;
         }
@@ -94,34 +93,34 @@ impl Law {
 
 /// Up to two contacts of a ring with one capsule, distinguished by their positions on the ring.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Pair {
-    places: [Option<(Vector3<f64>, Memory)>; 2],
+pub(crate) struct ContactPair {
+    places: [Option<(Vector3<f64>, ContactMemory)>; 2],
 }
 
 /// A contact farther than this on the ring is a different one, m.
 const MOVED_M: f64 = 3e-3;
 
-impl Pair {
+impl ContactPair {
     /// Returns the states of the contacts at these positions (in the frame of the ring), in order; all others are
     /// discarded.
-    pub(crate) fn of(&mut self, at_m: [Option<Vector3<f64>>; 2]) -> [Memory; 2] {
+    pub(crate) fn of(&mut self, position_m: [Option<Vector3<f64>>; 2]) -> [ContactMemory; 2] {
         let mut left = self.places;
-        at_m.map(|at_m| {
-            let Some(at_m) = at_m else { return Memory::default() };
-            let distance_m = |place: &Option<(Vector3<f64>, Memory)>| {
-                place.map_or(f64::INFINITY, |(before_m, _)| (before_m - at_m).norm())
+        position_m.map(|position_m| {
+            let Some(position_m) = position_m else { return ContactMemory::default() };
+            let distance_m = |place: &Option<(Vector3<f64>, ContactMemory)>| {
+                place.map_or(f64::INFINITY, |(before_m, _)| (before_m - position_m).norm())
             };
             let nearer = usize::from(distance_m(&left[1]) < distance_m(&left[0]));
             if distance_m(&left[nearer]) < MOVED_M {
-                left[nearer].take().map_or_else(Memory::default, |(_, memory)| memory)
+                left[nearer].take().map_or_else(ContactMemory::default, |(_, memory)| memory)
             } else {
-                Memory::default()
+                ContactMemory::default()
             }
         })
     }
 
-    pub(crate) const fn keep(&mut self, place: usize, at_m: Vector3<f64>, memory: Memory) {
-        self.places[place] = Some((at_m, memory));
+    pub(crate) const fn keep(&mut self, place: usize, position_m: Vector3<f64>, memory: ContactMemory) {
+        self.places[place] = Some((position_m, memory));
     }
 
     pub(crate) const fn forget(&mut self) {
@@ -129,7 +128,7 @@ impl Pair {
     }
 }
 
-impl Push {
+impl ContactPush {
     /// Returns the reaction on the other body.
     pub(crate) fn reverse(&self) -> Self {
         Self { force_n: -self.force_n, torque_nm: -self.torque_nm, normal_n: self.normal_n }

@@ -9,7 +9,7 @@ pub(crate) const PLACES: usize = 16;
 /// Steps that refine a closest point; the distance is then accurate to 0.03 mm (tested).
 const REFINEMENTS: usize = 3;
 /// Upper limit of the extrapolation factor: steps extrapolate by at most 19 times the last step.
-const FACTOR_MOST: f64 = 0.95;
+const FACTOR_MAX: f64 = 0.95;
 /// Two closest points that are nearer to each other than this are the same, m.
 const SAME_M: f64 = 5e-4;
 
@@ -27,19 +27,19 @@ pub(crate) struct Segment {
 
 impl Segment {
     /// Returns the fraction of its length at which it is closest to a point.
-    fn share(&self, point_m: &Vector3<f64>) -> f64 {
+    fn fraction(&self, point_m: &Vector3<f64>) -> f64 {
         let along = self.to_m - self.from_m;
         let square = along.norm_squared();
         if square <= TINY_M * TINY_M { 0.0 } else { ((point_m - self.from_m).dot(&along) / square).clamp(0.0, 1.0) }
     }
 
-    fn at(&self, share: f64) -> Vector3<f64> {
-        self.from_m + (self.to_m - self.from_m) * share
+    fn at(&self, fraction: f64) -> Vector3<f64> {
+        self.from_m + (self.to_m - self.from_m) * fraction
     }
 
     /// Returns its closest point to this one.
     pub(crate) fn closest(&self, point_m: &Vector3<f64>) -> Vector3<f64> {
-        self.at(self.share(point_m))
+        self.at(self.fraction(point_m))
     }
 
     /// The closest points of this and of another (Ericson, Real-Time Collision Detection, 2005, 5.1.9).
@@ -53,8 +53,9 @@ impl Segment {
         let c = d1.dot(&between);
         let f = d2.dot(&between);
         let parallel = a * e - b * b;
-        let share = if parallel > 1e-9 * a * e && a > 0.0 { ((b * f - c * e) / parallel).clamp(0.0, 1.0) } else { 0.5 };
-        let theirs = other.closest(&self.at(share));
+        let fraction =
+            if parallel > 1e-9 * a * e && a > 0.0 { ((b * f - c * e) / parallel).clamp(0.0, 1.0) } else { 0.5 };
+        let theirs = other.closest(&self.at(fraction));
         let ours = self.closest(&theirs);
         [ours, other.closest(&ours)]
     }
@@ -84,7 +85,7 @@ impl Circle {
         let twice_m = self.closest(&segment.closest(&once_m));
         let first_m = (once_m - ours_m).norm();
         let second = twice_m - once_m;
-        let factor = if first_m > TINY_M { (second.norm() / first_m).min(FACTOR_MOST) } else { 0.0 };
+        let factor = if first_m > TINY_M { (second.norm() / first_m).min(FACTOR_MAX) } else { 0.0 };
         self.closest(&(twice_m + second * (factor / (1.0 - factor))))
     }
 
@@ -143,9 +144,9 @@ fn between(places_m: &[Vector3<f64>; PLACES], squares: &[f64; PLACES], i: usize)
     let before = (i + PLACES - 1) % PLACES;
     let after = (i + 1) % PLACES;
     let bend = squares[before] - 2.0 * squares[i] + squares[after];
-    let share = if bend > 0.0 { 0.5 * (squares[before] - squares[after]) / bend } else { 0.0 };
-    let towards = if share < 0.0 { before } else { after };
-    places_m[i] + (places_m[towards] - places_m[i]) * share.abs()
+    let fraction = if bend > 0.0 { 0.5 * (squares[before] - squares[after]) / bend } else { 0.0 };
+    let towards = if fraction < 0.0 { before } else { after };
+    places_m[i] + (places_m[towards] - places_m[i]) * fraction.abs()
 }
 
 /// Cosines and sines of the points on a circle.
@@ -205,7 +206,7 @@ mod tests {
             let [ours_m, theirs_m] = one.closest_pair(&other);
             let fine_m = (0..=500)
                 .map(|i| one.at(f64::from(i) / 500.0))
-                .map(|at_m| (other.closest(&at_m) - at_m).norm())
+                .map(|position_m| (other.closest(&position_m) - position_m).norm())
                 .fold(f64::INFINITY, f64::min);
             prop_assert!((ours_m - theirs_m).norm() < fine_m + 1e-12);
         }

@@ -3,7 +3,7 @@
 use nalgebra::{UnitQuaternion, Vector3};
 
 /// Maximum opening of the jaws, rad; graspers open to about 70 degrees.
-pub const OPENING_MOST_RAD: f64 = 1.4;
+pub const OPENING_MAX_RAD: f64 = 1.4;
 /// Farther from the origin an instrument counts as absent, m.
 const FARTHEST_M: f64 = 10.0;
 
@@ -23,7 +23,7 @@ pub struct Instrument {
 impl Instrument {
     /// Whether all values are finite and the instrument is within range.
     pub(crate) fn is_sane(&self) -> bool {
-        let near = |at_m: &Vector3<f64>| at_m.iter().all(|x| x.abs() <= FARTHEST_M);
+        let near = |position_m: &Vector3<f64>| position_m.iter().all(|x| x.abs() <= FARTHEST_M);
         let turned = (self.world_from_jaws.norm_squared() - 1.0).abs() < 1e-3;
         near(&self.tip_m) && near(&self.trocar_m) && turned && self.opening_rad.is_finite()
     }
@@ -31,20 +31,20 @@ impl Instrument {
 
 /// Mean load on an instrument over the last step. Workspace frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Loads {
+pub struct InstrumentLoads {
     /// Force of all contacts, N.
     pub tip_n: Vector3<f64>,
     /// Torque of all contacts about the tip, N m.
     pub torque_nm: Vector3<f64>,
     /// Force that opens the jaws, N at the end of a finger; negative if it closes them.
     pub opening_n: f64,
-    pub touching: Touching,
+    pub touching: InstrumentContacts,
 }
 
 /// Kinds of objects that an instrument touches.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a thing that can be touched, in any combination")]
-pub struct Touching {
+pub struct InstrumentContacts {
     pub ring: bool,
     pub peg: bool,
     pub board: bool,

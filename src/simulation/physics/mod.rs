@@ -1,8 +1,8 @@
 //! The objects of training scenes: rings on pegs, rigid bodies that the jaws of two instruments hold by friction; and a
 //! bent wire, along which a loop is led.
 //!
-//! [`Objects`] and [`Wire`] take where two [`Instrument`]s are and return what acts on them ([`Loads`], N and N m), once for each tick of the
-//! control loop. [`Watch`] tells from the rings what happens, in the words of `nima_score`; [`PegTransfer`] whether the task is done;
+//! [`Objects`] and [`Wire`] take where two [`Instrument`]s are and return what acts on them ([`InstrumentLoads`], N and N m), once for each tick of the
+//! control loop. [`RingWatch`] tells from the rings what happens, in the words of `nima_score`; [`PegTransfer`] whether the task is done;
 //! [`WireTask`] both of a wire. This crate knows no loop, device, file, thread or clock. `docs/scenes.md` has the scenes, `docs/simulated.md` the laws.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
@@ -19,9 +19,12 @@ mod tool;
 mod watch;
 mod wire;
 
-pub use instrument::{Instrument, Loads, OPENING_MOST_RAD, Touching};
-pub use objects::{Doing, Objects, RingState};
+pub use instrument::{Instrument, InstrumentContacts, InstrumentLoads, OPENING_MAX_RAD};
+pub use objects::{Objects, RingActivity, RingState};
 pub use peg_transfer::PegTransfer;
-pub use setting::{Board, Contact, Friction, Jaws, Pegs, RINGS_MAX, Setting, SettingError, Shape, Start, View};
-pub use watch::Watch;
-pub use wire::{Curve, Hoop, Wire, WireContact, WireSetting, WireState, WireTask};
+pub use setting::{
+    BoardSettings, ContactSettings, Friction, JawSettings, ObjectSettings, Pegs, RINGS_MAX, RingShape, RingStart,
+    SettingError, ViewBox,
+};
+pub use watch::RingWatch;
+pub use wire::{LoopGeometry, SmoothCurve, Wire, WireContact, WireSetting, WireState, WireTask};

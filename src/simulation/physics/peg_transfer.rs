@@ -1,12 +1,12 @@
 //! Detects the end of peg transfer: every ring was on a peg of the other side and has returned.
 
-use nima_core::{Side, task::Event};
+use nima_core::{Side, task::TaskEvent};
 
-use crate::physics::setting::{Setting, Start};
+use crate::physics::setting::{ObjectSettings, RingStart};
 
 /// Progress of a ring.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Stage {
+enum RingStage {
     /// On the way to the other side.
     Outward,
     /// It was there and has to return.
@@ -20,20 +20,20 @@ enum Stage {
 ///
 /// ```
 /// use nima_core::Side;
-/// use nima_simulation::physics::{PegTransfer, Setting, Start};
-/// use nima_core::task::Event;
+/// use nima_simulation::physics::{PegTransfer, ObjectSettings, RingStart};
+/// use nima_core::task::TaskEvent;
 ///
-/// let mut task = PegTransfer::new(&Setting { rings: vec![Start::Peg(0)], ..Setting::default() });
+/// let mut task = PegTransfer::new(&ObjectSettings { rings: vec![RingStart::Peg(0)], ..ObjectSettings::default() });
 /// assert_eq!(task.goal(0), Some(Side::Right), "peg 0 is on the left");
-/// task.take(Event::RingPlaced { ring: 0, side: Side::Right, peg: 7 });
+/// task.take(TaskEvent::RingPlaced { ring: 0, side: Side::Right, peg: 7 });
 /// assert_eq!((task.goal(0), task.is_done()), (Some(Side::Left), false));
-/// task.take(Event::RingPlaced { ring: 0, side: Side::Left, peg: 1 });
+/// task.take(TaskEvent::RingPlaced { ring: 0, side: Side::Left, peg: 1 });
 /// assert_eq!((task.goal(0), task.is_done()), (None, true));
 /// ```
 #[derive(Clone, Debug)]
 pub struct PegTransfer {
     pegs: Vec<Side>,
-    rings: Vec<(Side, Stage)>,
+    rings: Vec<(Side, RingStage)>,
 }
 
 fn side_of(x_m: f64) -> Side {
@@ -42,35 +42,35 @@ fn side_of(x_m: f64) -> Side {
 
 impl PegTransfer {
     /// The beginning: every ring is on its own side.
-    pub fn new(setting: &Setting) -> Self {
-        let pegs: Vec<Side> = setting.pegs.at_m.iter().map(|[x_m, _]| side_of(*x_m)).collect();
-        let home = |start: &Start| match start {
-            Start::Peg(peg) => pegs.get(*peg).copied().unwrap_or(Side::Left),
-            Start::At([x_m, ..]) => side_of(*x_m),
+    pub fn new(setting: &ObjectSettings) -> Self {
+        let pegs: Vec<Side> = setting.pegs.position_m.iter().map(|[x_m, _]| side_of(*x_m)).collect();
+        let home = |start: &RingStart| match start {
+            RingStart::Peg(peg) => pegs.get(*peg).copied().unwrap_or(Side::Left),
+            RingStart::At([x_m, ..]) => side_of(*x_m),
         };
-        let rings = setting.rings.iter().map(|start| (home(start), Stage::Outward)).collect();
+        let rings = setting.rings.iter().map(|start| (home(start), RingStage::Outward)).collect();
         Self { pegs, rings }
     }
 
     /// Processes an event.
-    pub fn take(&mut self, event: Event) {
+    pub fn take(&mut self, event: TaskEvent) {
         match event {
-            Event::RingPlaced { ring, peg, .. } => {
+            TaskEvent::RingPlaced { ring, peg, .. } => {
                 let Some(((home, stage), on)) = self.rings.get_mut(ring).zip(self.pegs.get(peg)) else { return };
                 *stage = match *stage {
-                    Stage::Outward if on != home => Stage::Homeward,
-                    Stage::Homeward if on == home => Stage::Home,
+                    RingStage::Outward if on != home => RingStage::Homeward,
+                    RingStage::Homeward if on == home => RingStage::Home,
                     stage => stage,
                 };
             }
-            Event::RingLifted { ring, .. } | Event::RingKnockedOff { ring, .. } => {
-                if let Some((_, stage @ Stage::Home)) = self.rings.get_mut(ring) {
-                    *stage = Stage::Homeward;
+            TaskEvent::RingLifted { ring, .. } | TaskEvent::RingKnockedOff { ring, .. } => {
+                if let Some((_, stage @ RingStage::Home)) = self.rings.get_mut(ring) {
+                    *stage = RingStage::Homeward;
                 }
             }
-            Event::RingDropped { ring, in_view: false, .. } => {
+            TaskEvent::RingDropped { ring, in_view: false, .. } => {
                 if let Some((_, stage)) = self.rings.get_mut(ring) {
-                    *stage = Stage::Lost;
+                    *stage = RingStage::Lost;
                 }
             }
             _ => {}
@@ -80,9 +80,9 @@ impl PegTransfer {
     /// Returns the side to whose pegs a ring has to go; `None` if it has returned, is lost, or does not exist.
     pub fn goal(&self, ring: usize) -> Option<Side> {
         match self.rings.get(ring)? {
-            (home, Stage::Outward) => Some(home.other()),
-            (home, Stage::Homeward) => Some(*home),
-            (_, Stage::Home | Stage::Lost) => None,
+            (home, RingStage::Outward) => Some(home.other()),
+            (home, RingStage::Homeward) => Some(*home),
+            (_, RingStage::Home | RingStage::Lost) => None,
         }
     }
 

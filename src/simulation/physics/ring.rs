@@ -3,16 +3,16 @@
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
 use crate::physics::{
-    contact::Push,
+    contact::ContactPush,
     geometry::{Circle, PLACES},
-    setting::Shape,
+    setting::RingShape,
 };
 
 /// Standard acceleration of free fall, m/s^2.
 pub(crate) const GRAVITY_M_S2: f64 = 9.806_65;
 /// Maximum speed, m/s, and rotation, rad/s, whatever the speed of an arm that hits a ring.
-const SPEED_MOST_M_S: f64 = 10.0;
-const TURNING_MOST_RAD_S: f64 = 1000.0;
+const SPEED_MAX_M_S: f64 = 10.0;
+const TURNING_MAX_RAD_S: f64 = 1000.0;
 /// A ring that is slower than this (at its middle, and at its rim by rotation), m/s, for this long, s, is at rest.
 const REST_M_S: f64 = 2e-3;
 const REST_AFTER_S: f64 = 0.2;
@@ -43,8 +43,8 @@ pub(crate) struct Ring {
 }
 
 impl Ring {
-    pub(crate) fn new(shape: &Shape, centre_m: Vector3<f64>, directions: &[[f64; 2]; PLACES]) -> Self {
-        let Shape { major_radius_m: major, tube_radius_m: tube, mass_kg } = *shape;
+    pub(crate) fn new(shape: &RingShape, centre_m: Vector3<f64>, directions: &[[f64; 2]; PLACES]) -> Self {
+        let RingShape { major_radius_m: major, tube_radius_m: tube, mass_kg } = *shape;
         let circle = Circle { centre_m, across: [Vector3::x(), Vector3::y()], axis: Vector3::z(), radius_m: major };
         Self {
             centre_m,
@@ -81,9 +81,9 @@ impl Ring {
         self.velocity_m_s + self.turning_rad_s.cross(&(point_m - self.centre_m))
     }
 
-    pub(crate) fn push(&mut self, at_m: &Vector3<f64>, push: &Push) {
+    pub(crate) fn push(&mut self, position_m: &Vector3<f64>, push: &ContactPush) {
         self.force_n += push.force_n;
-        self.torque_nm += (at_m - self.centre_m).cross(&push.force_n) + push.torque_nm;
+        self.torque_nm += (position_m - self.centre_m).cross(&push.force_n) + push.torque_nm;
     }
 
     /// Advances by `step_s` under gravity and the forces of this step, and clears the forces (semi-implicit Euler).
@@ -92,8 +92,8 @@ impl Ring {
         self.velocity_m_s += (self.force_n + weight_n) * (step_s / self.mass_kg);
         self.momentum += self.torque_nm * step_s;
         self.clear_forces();
-        self.velocity_m_s = at_most(self.velocity_m_s, SPEED_MOST_M_S);
-        self.momentum = at_most(self.momentum, TURNING_MOST_RAD_S * self.across_kg_m2);
+        self.velocity_m_s = at_most(self.velocity_m_s, SPEED_MAX_M_S);
+        self.momentum = at_most(self.momentum, TURNING_MAX_RAD_S * self.across_kg_m2);
         self.turn();
         self.centre_m += self.velocity_m_s * step_s;
         let half = self.turning_rad_s * (0.5 * step_s);
@@ -183,7 +183,7 @@ impl Ring {
     }
 }
 
-fn at_most(vector: Vector3<f64>, most: f64) -> Vector3<f64> {
+fn at_most(vector: Vector3<f64>, max: f64) -> Vector3<f64> {
     let size = vector.norm();
-    if size > most { vector * (most / size) } else { vector }
+    if size > max { vector * (max / size) } else { vector }
 }

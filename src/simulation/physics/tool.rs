@@ -3,10 +3,10 @@
 use nalgebra::{UnitQuaternion, Vector3};
 
 use crate::physics::{
-    contact::Push,
+    contact::ContactPush,
     geometry::Segment,
-    instrument::{Instrument, Loads, OPENING_MOST_RAD, Touching},
-    setting::Jaws,
+    instrument::{Instrument, InstrumentContacts, InstrumentLoads, OPENING_MAX_RAD},
+    setting::JawSettings,
 };
 
 /// Two fingers, then the shaft.
@@ -15,14 +15,14 @@ pub(crate) const SHAFT: usize = 2;
 /// Time constant with which the jaws follow their command and yield to opening forces, s.
 const FOLLOW_S: f64 = 0.01;
 /// The same against an object between them, s: long enough for the longest sub-step.
-const LEAST_S: f64 = 1.25e-3;
+const MIN_S: f64 = 1.25e-3;
 /// Beyond this distance between two steps an instrument is placed again without sweeping through space, m and rad.
 const JUMP_M: f64 = 0.03;
 const JUMP_RAD: f64 = 0.5;
 
 #[derive(Clone, Debug)]
-pub(crate) struct Tool {
-    jaws: Jaws,
+pub(crate) struct PhysicsTool {
+    jaws: JawSettings,
     /// Damping of the jaws, N s/m at the end of a finger.
     damping_n_s_m: f64,
     from: Instrument,
@@ -45,7 +45,7 @@ pub(crate) struct Tool {
     opening_n: f64,
     /// For the current sub-step alone.
     now_opening_n: f64,
-    pub touching: Touching,
+    pub touching: InstrumentContacts,
 }
 
 /// `+1` for the finger on the side of x.
@@ -53,12 +53,12 @@ const fn side_of(finger: usize) -> f64 {
     if finger == 0 { 1.0 } else { -1.0 }
 }
 
-impl Tool {
-    pub(crate) fn new(jaws: &Jaws, ring_stiffness_n_m: f64, at: &Instrument, period_s: f64) -> Self {
-        let opening_rad = at.opening_rad.clamp(0.0, OPENING_MOST_RAD);
+impl PhysicsTool {
+    pub(crate) fn new(jaws: &JawSettings, ring_stiffness_n_m: f64, at: &Instrument, period_s: f64) -> Self {
+        let opening_rad = at.opening_rad.clamp(0.0, OPENING_MAX_RAD);
         let mut tool = Self {
             jaws: *jaws,
-            damping_n_s_m: (jaws.stiffness_n_m * FOLLOW_S).max(ring_stiffness_n_m * LEAST_S),
+            damping_n_s_m: (jaws.stiffness_n_m * FOLLOW_S).max(ring_stiffness_n_m * MIN_S),
             from: *at,
             to: *at,
             period_s,
@@ -75,7 +75,7 @@ impl Tool {
             torque_nm: Vector3::zeros(),
             opening_n: 0.0,
             now_opening_n: 0.0,
-            touching: Touching::default(),
+            touching: InstrumentContacts::default(),
         };
         tool.place(1.0);
         tool
@@ -100,16 +100,16 @@ impl Tool {
         self.force_n = Vector3::zeros();
         self.torque_nm = Vector3::zeros();
         self.opening_n = 0.0;
-        self.touching = Touching::default();
+        self.touching = InstrumentContacts::default();
     }
 
     /// Places the capsules at this fraction of the step.
-    pub(crate) fn place(&mut self, share: f64) {
+    pub(crate) fn place(&mut self, fraction: f64) {
         let from = self.from.world_from_jaws.into_inner();
         let to = self.to.world_from_jaws.into_inner();
         let to = if from.dot(&to) < 0.0 { -to } else { to };
-        let world_from_jaws = UnitQuaternion::new_normalize(from * (1.0 - share) + to * share);
-        let between = |from: &Vector3<f64>, to: &Vector3<f64>| from * (1.0 - share) + to * share;
+        let world_from_jaws = UnitQuaternion::new_normalize(from * (1.0 - fraction) + to * fraction);
+        let between = |from: &Vector3<f64>, to: &Vector3<f64>| from * (1.0 - fraction) + to * fraction;
         self.tip_m = between(&self.from.tip_m, &self.to.tip_m);
         let x = world_from_jaws * Vector3::x();
         let z = world_from_jaws * Vector3::z();
@@ -155,33 +155,33 @@ impl Tool {
     }
 
     /// Applies a push to a part at a point.
-    pub(crate) fn push(&mut self, part: usize, at_m: &Vector3<f64>, push: &Push) {
+    pub(crate) fn push(&mut self, part: usize, position_m: &Vector3<f64>, push: &ContactPush) {
         self.force_n += push.force_n;
-        self.torque_nm += (at_m - self.tip_m).cross(&push.force_n) + push.torque_nm;
+        self.torque_nm += (position_m - self.tip_m).cross(&push.force_n) + push.torque_nm;
         if part != SHAFT {
             // Each finger moves by half the opening, so half of its work counts.
-            self.now_opening_n += 0.5 * push.force_n.dot(&self.opens(part, at_m)) / self.jaws.finger_length_m;
+            self.now_opening_n += 0.5 * push.force_n.dot(&self.opens(part, position_m)) / self.jaws.finger_length_m;
         }
     }
 
     /// Advances the jaws by `step_s`: a spring towards the command, limited in force, and the opening forces, against a
     /// damper.
     pub(crate) fn drive(&mut self, step_s: f64) {
-        let Jaws { finger_length_m, stiffness_n_m, force_max_n, .. } = self.jaws;
-        let commanded_rad = self.to.opening_rad.clamp(0.0, OPENING_MOST_RAD);
+        let JawSettings { finger_length_m, stiffness_n_m, force_max_n, .. } = self.jaws;
+        let commanded_rad = self.to.opening_rad.clamp(0.0, OPENING_MAX_RAD);
         let wide_m = finger_length_m * (self.opening_rad - commanded_rad);
         let closing_n = (stiffness_n_m * wide_m).clamp(-force_max_n, force_max_n);
         let before_rad = self.opening_rad;
         let rate_rad_s = (self.now_opening_n - closing_n) / (self.damping_n_s_m * finger_length_m);
-        self.opening_rad = (before_rad + rate_rad_s * step_s).clamp(0.0, OPENING_MOST_RAD);
+        self.opening_rad = (before_rad + rate_rad_s * step_s).clamp(0.0, OPENING_MAX_RAD);
         self.opening_rad_s = (self.opening_rad - before_rad) / step_s;
         self.opening_n += self.now_opening_n;
         self.now_opening_n = 0.0;
     }
 
     /// Means over the step.
-    pub(crate) fn loads(&self, substeps: f64) -> Loads {
-        Loads {
+    pub(crate) fn loads(&self, substeps: f64) -> InstrumentLoads {
+        InstrumentLoads {
             tip_n: self.force_n / substeps,
             torque_nm: self.torque_nm / substeps,
             opening_n: self.opening_n / substeps,

@@ -9,7 +9,7 @@ use super::Scene;
 /// tangentially.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Tissue {
+pub struct TissueModel {
     /// Height of the surface at rest, m.
     pub surface_z_m: f64,
     /// Extent of the pad in x and y, m, centred on the origin.
@@ -30,7 +30,7 @@ pub struct Tissue {
 /// series.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Layer {
+pub struct GroundLayer {
     /// `k`, N/m^n.
     pub stiffness: f64,
     /// `n`, 1 to 3.
@@ -46,7 +46,7 @@ pub struct Lumps {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub list: Vec<Lump>,
     /// Additional lumps at positions determined by the scene's seed.
-    pub drawn: Option<Drawn>,
+    pub drawn: Option<RandomLumps>,
 }
 
 /// A lump: a sphere in the tissue.
@@ -54,7 +54,8 @@ pub struct Lumps {
 #[serde(deny_unknown_fields)]
 pub struct Lump {
     /// Position of its middle, x and y, m.
-    pub at_m: [f64; 2],
+    #[serde(rename = "at_m")]
+    pub position_m: [f64; 2],
     /// Its radius, m; its diameter is less than the tissue's thickness.
     pub radius_m: f64,
     /// Stiffness as a multiple of the tissue's.
@@ -64,7 +65,7 @@ pub struct Lump {
 /// Lumps at random positions, so that they cannot be learnt: another seed of the scene gives other positions.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Drawn {
+pub struct RandomLumps {
     pub count: u32,
     /// Minimum and maximum radius, m.
     pub radius_m: [f64; 2],
@@ -76,12 +77,13 @@ pub struct Drawn {
     pub margin_m: f64,
 }
 
-/// A force that is held fades: `f(t) = f(0) (1 - share (1 - exp(-t / time)))`.
+/// A force that is held fades: `f(t) = f(0) (1 - fraction (1 - exp(-t / time)))`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Relaxation {
     /// Fraction of the force that fades, below 1.
-    pub share: f64,
+    #[serde(rename = "share")]
+    pub fraction: f64,
     /// Its time constant, s.
     pub time_s: f64,
 }
@@ -89,7 +91,7 @@ pub struct Relaxation {
 /// A membrane over the tissue with the law `f = a d + b d^2` until it tears.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Membrane {
+pub struct GroundMembrane {
     /// Height at rest, m.
     pub height_m: f64,
     /// `a`, N/m.
@@ -107,7 +109,8 @@ pub struct Membrane {
 #[serde(deny_unknown_fields)]
 pub struct Wall {
     /// A point on it, m.
-    pub at_m: [f64; 3],
+    #[serde(rename = "at_m")]
+    pub position_m: [f64; 3],
     /// The direction in which it pushes; of any length.
     pub normal: [f64; 3],
     pub stiffness_n_m: f64,
@@ -115,7 +118,7 @@ pub struct Wall {
 }
 
 /// Maximum number of random lumps.
-const DRAWN_MOST: u32 = 32;
+const DRAWN_MAX: u32 = 32;
 
 impl Scene {
     pub(super) fn validate_ground(&self, ranges: &Ranges<'_>) -> Result<(), ConfigError> {
@@ -133,15 +136,15 @@ impl Scene {
                 ranges.check("lumps.drawn.count", f64::from(drawn.count), placed == drawn.count as usize, allowed)?;
             }
         }
-        if let Some(Relaxation { share, time_s }) = self.relaxation {
-            ranges.check("relaxation.share", share, (0.0..1.0).contains(&share), "0 to below 1")?;
+        if let Some(Relaxation { fraction, time_s }) = self.relaxation {
+            ranges.check("relaxation.share", fraction, (0.0..1.0).contains(&fraction), "0 to below 1")?;
             ranges.positive("relaxation.time_s", time_s)?;
         }
         if let Some(membrane) = &self.membrane {
             membrane.validate(ranges)?;
         }
         for wall in &self.walls {
-            for entry in wall.at_m {
+            for entry in wall.position_m {
                 ranges.check("walls.at_m", entry, entry.abs() <= 1.0, "within 1 m of the origin")?;
             }
             let length = wall.normal.iter().map(|x| x * x).sum::<f64>().sqrt();
@@ -157,7 +160,7 @@ impl Scene {
     }
 }
 
-impl Tissue {
+impl TissueModel {
     fn validate(&self, ranges: &Ranges<'_>) -> Result<(), ConfigError> {
         ranges.check("tissue.surface_z_m", self.surface_z_m, self.surface_z_m.abs() <= 1.0, "within 1 m")?;
         ranges.positive("tissue.size_m", self.size_m[0])?;
@@ -173,8 +176,8 @@ impl Tissue {
 impl Lumps {
     fn validate(&self, ranges: &Ranges<'_>) -> Result<(), ConfigError> {
         ranges.positive("lumps.thickness_m", self.thickness_m)?;
-        for Lump { at_m, radius_m, times_stiffer } in &self.list {
-            for entry in at_m {
+        for Lump { position_m, radius_m, times_stiffer } in &self.list {
+            for entry in position_m {
                 ranges.check("lumps.list.at_m", *entry, entry.abs() <= 1.0, "within 1 m of the origin")?;
             }
             let fits = *radius_m > 0.0 && 2.0 * radius_m < self.thickness_m;
@@ -190,15 +193,15 @@ impl Lumps {
     }
 }
 
-impl Drawn {
+impl RandomLumps {
     fn validate(&self, ranges: &Ranges<'_>, thickness_m: f64, size_m: [f64; 2]) -> Result<(), ConfigError> {
-        let Self { count, radius_m: [least_m, most_m], times_stiffer, apart_m, margin_m } = *self;
-        ranges.check("lumps.drawn.count", f64::from(count), (1..=DRAWN_MOST).contains(&count), "1 to 32")?;
-        ranges.positive("lumps.drawn.radius_m", least_m)?;
-        let fits = most_m >= least_m && 2.0 * most_m < thickness_m;
+        let Self { count, radius_m: [min_m, max_m], times_stiffer, apart_m, margin_m } = *self;
+        ranges.check("lumps.drawn.count", f64::from(count), (1..=DRAWN_MAX).contains(&count), "1 to 32")?;
+        ranges.positive("lumps.drawn.radius_m", min_m)?;
+        let fits = max_m >= min_m && 2.0 * max_m < thickness_m;
         ranges.check(
             "lumps.drawn.radius_m (greatest)",
-            most_m,
+            max_m,
             fits,
             "at least the least one, and less than half the thickness",
         )?;
@@ -210,7 +213,7 @@ impl Drawn {
     }
 }
 
-impl Membrane {
+impl GroundMembrane {
     fn validate(&self, ranges: &Ranges<'_>) -> Result<(), ConfigError> {
         ranges.check("membrane.height_m", self.height_m, self.height_m.abs() <= 1.0, "within 1 m")?;
         ranges.positive("membrane.stiffness_n_m", self.stiffness_n_m)?;

@@ -2,7 +2,7 @@
 
 use nima_machine::{
     config::{ConfigError, Ranges, RigConfig},
-    rig::{ArmSet, SensorPlace, Settings, Side},
+    rig::{ArmSet, RigSettings, SensorPlace, Side},
 };
 
 use super::Scene;
@@ -57,7 +57,7 @@ impl Scene {
     }
 }
 
-fn has_both_arms(devices: &Settings) -> bool {
+fn has_both_arms(devices: &RigSettings) -> bool {
     Side::ALL.into_iter().all(|side| devices.arm(side).is_some())
 }
 
@@ -107,8 +107,8 @@ mod tests {
         for key in ["serial", "tool"] {
             std::fs::write(&path, text.replace("[wrist]\n", &format!("[wrist]\n{key} = \"SIM-S1-0001\"\n"))).unwrap();
             let message = Scene::load(path.to_str().unwrap()).unwrap_err().to_string();
-            let told = message.contains("line 36") && message.contains("[simulated.right]");
-            assert!(told && message.contains(&format!("wrist.{key}")) && message.lines().count() == 1, "{message}");
+            let report = message.contains("line 36") && message.contains("[simulated.right]");
+            assert!(report && message.contains(&format!("wrist.{key}")) && message.lines().count() == 1, "{message}");
         }
         std::fs::write(&path, text.replace("[hand]\n", "[hand]\ntool = \"SIM\"\n")).unwrap();
         let message = Scene::load(path.to_str().unwrap()).unwrap_err().to_string();

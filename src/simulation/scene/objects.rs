@@ -2,7 +2,7 @@
 
 use nima_machine::config::{ConfigError, Ranges};
 
-use super::{Scene, Task};
+use super::{Scene, SceneTask};
 use crate::{RINGS_MAX, physics::SettingError};
 
 impl Scene {
@@ -26,8 +26,8 @@ impl Scene {
                 ranges.check(key, value, false, allowed)?;
             }
         }
-        if let Some(Task { mark_tolerance_m, .. }) = self.task {
-            let is_good = Task::MARK_TOLERANCES_M.contains(&mark_tolerance_m);
+        if let Some(SceneTask { mark_tolerance_m, .. }) = self.task {
+            let is_good = SceneTask::MARK_TOLERANCES_M.contains(&mark_tolerance_m);
             ranges.check("task.mark_tolerance_m", mark_tolerance_m, is_good, "from 0 m to 0.05 m")?;
         }
         self.validate_lumps_of_the_task(ranges)
@@ -39,8 +39,8 @@ impl Scene {
         };
         let there = lumps.list.len() + lumps.drawn.map_or(0, |drawn| drawn.count as usize);
         ranges.check("lumps.list (count)", there as f64, (1..=LUMPS_MAX).contains(&there), "1 to 64 in a palpation")?;
-        let told = task.lumps.map_or(there, |told| told as usize);
-        ranges.check("task.lumps", told as f64, told == there, "the number of lumps in the scene, or left out")
+        let report = task.lumps.map_or(there, |report| report as usize);
+        ranges.check("task.lumps", report as f64, report == there, "the number of lumps in the scene, or left out")
     }
 
     /// Sets the number of lumps in the task.
@@ -75,9 +75,10 @@ mod tests {
         assert!(scene.is_searched() && scene.is_played() && scene.is_drawn_by_lot());
         assert_eq!(scene.task.as_ref().unwrap().lumps, Some(scene.placed_lumps().unwrap().list.len() as u32));
         assert!(!Scene::load("lumps").unwrap().is_played(), "no task to find them");
-        let told = |more: &str| changed("find_lumps", "kind = \"palpation\"", &format!("kind = \"palpation\"\n{more}"));
-        assert!(told("lumps = 5").is_ok());
-        assert!(told("lumps = 4").unwrap_err().to_string().contains("task.lumps"));
+        let report =
+            |more: &str| changed("find_lumps", "kind = \"palpation\"", &format!("kind = \"palpation\"\n{more}"));
+        assert!(report("lumps = 5").is_ok());
+        assert!(report("lumps = 4").unwrap_err().to_string().contains("task.lumps"));
     }
 
     #[test]

@@ -8,7 +8,7 @@ use toml::{Table, Value};
 
 /// The table `[task]` of a scene.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Task {
+pub struct SceneTask {
     /// Name for the screen.
     pub name: String,
     /// Kind of task.
@@ -25,10 +25,10 @@ pub struct Task {
 }
 
 const fn mark_tolerance_m() -> f64 {
-    Task::MARK_TOLERANCE_M
+    SceneTask::MARK_TOLERANCE_M
 }
 
-impl Task {
+impl SceneTask {
     /// Default tolerance of a mark, m.
     pub const MARK_TOLERANCE_M: f64 = 0.003;
     /// Range of that tolerance, m.
@@ -51,8 +51,8 @@ fn keep_numbers(table: &mut Table) {
     table.iter_mut().filter_map(|(_, value)| value.as_table_mut()).for_each(keep_numbers);
 }
 
-/// Reads [`Task::scored`], completes it with its defaults, and returns a one-line message if it is invalid.
-pub type ReadTask = fn(&mut Task) -> Result<(), String>;
+/// Reads [`SceneTask::scored`], completes it with its defaults, and returns a one-line message if it is invalid.
+pub type ReadTask = fn(&mut SceneTask) -> Result<(), String>;
 
 static SCORING: OnceLock<ReadTask> = OnceLock::new();
 
@@ -70,10 +70,10 @@ mod tests {
     fn keys_that_the_simulation_does_not_know_are_kept_and_texts_among_them_are_not_anonymous() {
         let text =
             "name = 'Ward 3'\nkind = 'palpation'\ntime_limit_s = 60.0\n[proficiency]\ntime_s = 48.0\nby = 'Dr. N.'\n";
-        let mut task: Task = toml::from_str(text).unwrap();
+        let mut task: SceneTask = toml::from_str(text).unwrap();
         assert_eq!((task.kind, task.mark_tolerance_m), (TaskKind::Palpation, 0.003));
         assert_eq!(task.scored["time_limit_s"].as_float(), Some(60.0));
-        assert_eq!(toml::from_str::<Task>(&toml::to_string(&task).unwrap()).unwrap(), task);
+        assert_eq!(toml::from_str::<SceneTask>(&toml::to_string(&task).unwrap()).unwrap(), task);
         task.anonymous("unnamed");
         let written = toml::to_string(&task).unwrap();
         assert!(

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 /// the rig file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Wrist {
+pub struct WristModel {
     /// Mass of the tool on the sensor, kg.
     pub tool_mass_kg: f64,
     /// Its centre of mass, m (`s1`).
@@ -52,7 +52,7 @@ pub struct Imu {
 /// straightens a tilted shaft, with friction.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Trocar {
+pub struct TrocarModel {
     /// Sliding friction along the shaft, N.
     pub coulomb_n: f64,
     /// Breakaway friction, N; not below `coulomb_n`.
@@ -94,7 +94,7 @@ pub struct TissueSensor {
 /// A person who guides the arm by hand and follows the instructions on the screen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
-pub struct Person {
+pub struct PersonModel {
     /// A mistake that the person makes, to test that the resulting data are refused.
     pub flaw: Option<Flaw>,
 }
@@ -119,7 +119,7 @@ pub enum Flaw {
     LeansOnTheStand,
 }
 
-impl Wrist {
+impl WristModel {
     pub(super) fn validate(&self, ranges: &Ranges<'_>) -> Result<(), ConfigError> {
         ranges.positive("wrist.tool_mass_kg", self.tool_mass_kg)?;
         ranges.positive("wrist.shaft_m", self.shaft_m)?;
@@ -139,7 +139,7 @@ impl Wrist {
     }
 }
 
-impl Trocar {
+impl TrocarModel {
     pub(super) fn validate(&self, ranges: &Ranges<'_>) -> Result<(), ConfigError> {
         ranges.not_negative("trocar.coulomb_n", self.coulomb_n)?;
         ranges.check("trocar.static_n", self.static_n, self.static_n >= self.coulomb_n, "not below coulomb_n")?;

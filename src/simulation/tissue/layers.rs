@@ -1,6 +1,6 @@
 //! Stacked layers of tissue as springs in series.
 
-use crate::scene::Layer;
+use crate::scene::GroundLayer;
 
 /// Maximum number of halvings and Newton steps: 52 bits.
 const STEPS_MAX: u32 = 60;
@@ -10,9 +10,9 @@ const STEPS_MAX: u32 = 60;
 /// section 4.3, for an elastic foundation).
 ///
 /// Newton's method, kept inside the interval of the solution: the sum rises with the force.
-pub(super) fn force_n(layers: &[Layer], depth_m: f64) -> f64 {
+pub(super) fn force_n(layers: &[GroundLayer], depth_m: f64) -> f64 {
     // Each layer alone is stiffer than all together, so the softest layer bounds the force.
-    let alone_n = |layer: &Layer| layer.stiffness * depth_m.powf(layer.exponent);
+    let alone_n = |layer: &GroundLayer| layer.stiffness * depth_m.powf(layer.exponent);
     let mut low_n = 0.0;
     let mut high_n = layers.iter().map(alone_n).fold(f64::INFINITY, f64::min);
     if !(high_n > 0.0 && high_n.is_finite()) {
@@ -46,8 +46,8 @@ pub(super) fn force_n(layers: &[Layer], depth_m: f64) -> f64 {
 mod tests {
     use super::*;
 
-    const fn layer(stiffness: f64, exponent: f64) -> Layer {
-        Layer { stiffness, exponent }
+    const fn layer(stiffness: f64, exponent: f64) -> GroundLayer {
+        GroundLayer { stiffness, exponent }
     }
 
     #[test]

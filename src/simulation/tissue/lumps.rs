@@ -3,10 +3,10 @@
 use nalgebra::Vector3;
 use nima_core::noise::Noise;
 
-use crate::scene::{Drawn, Lump, Lumps};
+use crate::scene::{Lump, Lumps, RandomLumps};
 
 /// Number of draws for one lump before it is given up for lack of room.
-const DRAWS_MOST: u32 = 2000;
+const DRAWS_MAX: u32 = 2000;
 /// Makes the positions of lumps independent of the random sequences of tremor and noise.
 const LOT: u64 = 0x1_0b05;
 
@@ -15,20 +15,22 @@ impl Lumps {
     #[must_use]
     pub(crate) fn placed(&self, seed: u64, size_m: [f64; 2]) -> Self {
         let mut placed = Self { drawn: None, ..self.clone() };
-        let Some(Drawn { count, radius_m: [least_m, most_m], times_stiffer, apart_m, margin_m }) = self.drawn else {
+        let Some(RandomLumps { count, radius_m: [min_m, max_m], times_stiffer, apart_m, margin_m }) = self.drawn else {
             return placed;
         };
         let mut lot = Noise::new(seed ^ LOT);
         let half_m = size_m.map(|size_m| (0.5 * size_m - margin_m).max(0.0));
         for _ in 0..count {
-            let radius_m = least_m + (most_m - least_m) * lot.uniform();
-            let place = (0..DRAWS_MOST).find_map(|_| {
-                let at_m = half_m.map(|half_m| half_m * (2.0 * lot.uniform() - 1.0));
-                let clear = |lump: &Lump| (lump.at_m[0] - at_m[0]).hypot(lump.at_m[1] - at_m[1]) >= apart_m;
-                placed.list.iter().all(clear).then_some(at_m)
+            let radius_m = min_m + (max_m - min_m) * lot.uniform();
+            let place = (0..DRAWS_MAX).find_map(|_| {
+                let position_m = half_m.map(|half_m| half_m * (2.0 * lot.uniform() - 1.0));
+                let clear = |lump: &Lump| {
+                    (lump.position_m[0] - position_m[0]).hypot(lump.position_m[1] - position_m[1]) >= apart_m
+                };
+                placed.list.iter().all(clear).then_some(position_m)
             });
-            let Some(at_m) = place else { break };
-            placed.list.push(Lump { at_m, radius_m, times_stiffer });
+            let Some(position_m) = place else { break };
+            placed.list.push(Lump { position_m, radius_m, times_stiffer });
         }
         placed
     }
@@ -48,7 +50,7 @@ pub(super) fn factor(lumps: &Lumps, tip_m: &Vector3<f64>) -> f64 {
 impl Lump {
     /// Height by which the lump shortens the column at this position, m.
     fn times_softer(&self, tip_m: &Vector3<f64>) -> f64 {
-        let [x_m, y_m] = self.at_m;
+        let [x_m, y_m] = self.position_m;
         let aside = (tip_m.x - x_m).hypot(tip_m.y - y_m);
         let chord_m = 2.0 * (self.radius_m * self.radius_m - aside * aside).max(0.0).sqrt();
         chord_m * (1.0 - 1.0 / self.times_stiffer)
@@ -60,12 +62,13 @@ mod tests {
     use super::*;
 
     fn lumps() -> Lumps {
-        let lump = Lump { at_m: [0.01, -0.02], radius_m: 0.006, times_stiffer: 10.0 };
+        let lump = Lump { position_m: [0.01, -0.02], radius_m: 0.006, times_stiffer: 10.0 };
         Lumps { thickness_m: 0.03, list: vec![lump], drawn: None }
     }
 
     fn drawn() -> Lumps {
-        let drawn = Drawn { count: 5, radius_m: [0.004, 0.006], times_stiffer: 10.0, apart_m: 0.018, margin_m: 0.012 };
+        let drawn =
+            RandomLumps { count: 5, radius_m: [0.004, 0.006], times_stiffer: 10.0, apart_m: 0.018, margin_m: 0.012 };
         Lumps { list: Vec::new(), drawn: Some(drawn), ..lumps() }
     }
 
@@ -77,12 +80,12 @@ mod tests {
             assert_eq!(placed, drawn().placed(seed, [0.12, 0.09]), "one seed, one place");
             assert_eq!((placed.list.len(), placed.drawn), (5, None));
             for (i, lump) in placed.list.iter().enumerate() {
-                let [x_m, y_m] = lump.at_m;
+                let [x_m, y_m] = lump.position_m;
                 assert!(x_m.abs() <= 0.048 && y_m.abs() <= 0.033 && (0.004..=0.006).contains(&lump.radius_m));
-                let apart = |other: &Lump| (other.at_m[0] - x_m).hypot(other.at_m[1] - y_m) >= 0.018;
+                let apart = |other: &Lump| (other.position_m[0] - x_m).hypot(other.position_m[1] - y_m) >= 0.018;
                 assert!(placed.list[..i].iter().all(apart), "seed {seed}");
             }
-            seen.push(placed.list[0].at_m);
+            seen.push(placed.list[0].position_m);
         }
         // The draws reach every corner of the tissue.
         for (x, y) in [(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)] {

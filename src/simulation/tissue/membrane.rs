@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::scene::Membrane as Config;
+use crate::scene::GroundMembrane as Config;
 
 /// Number of holes that are stored; the oldest closes when there are more.
 const HOLES: usize = 32;
@@ -10,13 +10,13 @@ const HOLES: usize = 32;
 /// A membrane with the law `a d + b d^2` until it tears at a force (the capsule of an organ before a needle breaks
 /// through: Okamura, Simone and O'Leary, IEEE Trans. Biomed. Eng. 51(10), 2004). A hole stays.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Membrane {
+pub(super) struct TissueMembrane {
     config: Config,
     holes_m: [Option<[f64; 2]>; HOLES],
     torn: usize,
 }
 
-impl Membrane {
+impl TissueMembrane {
     pub(super) const fn new(config: Config) -> Self {
         Self { config, holes_m: [None; HOLES], torn: 0 }
     }
@@ -48,8 +48,8 @@ impl Membrane {
 mod tests {
     use super::*;
 
-    fn membrane() -> Membrane {
-        Membrane::new(Config {
+    fn membrane() -> TissueMembrane {
+        TissueMembrane::new(Config {
             height_m: 0.004,
             stiffness_n_m: 100.0,
             stiffening_n_m2: 20_000.0,
@@ -61,18 +61,18 @@ mod tests {
     #[test]
     fn it_gives_way_by_its_law_until_it_tears_and_the_hole_stays() {
         let mut membrane = membrane();
-        let mut most_n: f64 = 0.0;
+        let mut max_n: f64 = 0.0;
         for i in 0..200 {
             let depth_m = f64::from(i) * 5e-5;
             let force_n = membrane.force_n(&Vector3::new(0.0, 0.0, 0.004 - depth_m));
             if membrane.tears() == 0 {
                 assert!((force_n - (100.0 * depth_m + 20_000.0 * depth_m * depth_m)).abs() < 1e-12);
-                most_n = most_n.max(force_n);
+                max_n = max_n.max(force_n);
             } else {
                 assert!(force_n.abs() < 1e-15);
             }
         }
-        assert!((1.48..1.5).contains(&most_n) && membrane.tears() == 1, "{most_n} N");
+        assert!((1.48..1.5).contains(&max_n) && membrane.tears() == 1, "{max_n} N");
         assert!(membrane.force_n(&Vector3::new(0.002, 0.0, 0.0)).abs() < 1e-15, "in the hole");
         let beside_n = membrane.force_n(&Vector3::new(0.004, 0.0, 0.0));
         assert!(beside_n > 0.5, "next to the hole: {beside_n} N");

@@ -8,8 +8,8 @@ mod wall;
 
 use nalgebra::Vector3;
 
-use self::{membrane::Membrane, relaxation::Relaxing};
-use crate::scene::{Layer, Lumps, Scene, Tissue as TissueConfig};
+use self::{membrane::TissueMembrane, relaxation::RelaxationState};
+use crate::scene::{GroundLayer, Lumps, Scene, TissueModel as TissueConfig};
 
 /// Soft tissue. Without effects its only state is the lateral displacement of its surface by the tip.
 #[derive(Clone, Debug)]
@@ -18,10 +18,10 @@ pub struct Tissue {
     /// Rest position of the surface point under the tip, m (horizontal).
     anchor_m: Option<Vector3<f64>>,
     /// Effects of the scene; each costs time only where it is listed.
-    layers: Vec<Layer>,
+    layers: Vec<GroundLayer>,
     lumps: Option<Lumps>,
-    relaxing: Option<Relaxing>,
-    membrane: Option<Membrane>,
+    relaxing: Option<RelaxationState>,
+    membrane: Option<TissueMembrane>,
 }
 
 impl Tissue {
@@ -34,15 +34,15 @@ impl Tissue {
         let Scene { layers, lumps, relaxation, membrane, .. } = scene;
         let config = scene.tissue?;
         // The tissue itself is the lowest layer.
-        let own = Layer { stiffness: config.stiffness, exponent: config.exponent };
+        let own = GroundLayer { stiffness: config.stiffness, exponent: config.exponent };
         let layers = if layers.is_empty() { Vec::new() } else { layers.iter().copied().chain([own]).collect() };
         Some(Self {
             config,
             anchor_m: None,
             layers,
             lumps: lumps.as_ref().map(|lumps| lumps.placed(scene.seed, config.size_m)),
-            relaxing: relaxation.map(|relaxation| Relaxing::new(relaxation, step_s)),
-            membrane: membrane.map(Membrane::new),
+            relaxing: relaxation.map(|relaxation| RelaxationState::new(relaxation, step_s)),
+            membrane: membrane.map(TissueMembrane::new),
         })
     }
 
@@ -56,7 +56,7 @@ impl Tissue {
 
     /// Number of tears in the membrane.
     pub fn tears(&self) -> usize {
-        self.membrane.as_ref().map_or(0, Membrane::tears)
+        self.membrane.as_ref().map_or(0, TissueMembrane::tears)
     }
 
     /// Returns the force on the tip (N) at this position (m) and velocity (m/s); call it once per step.
@@ -166,7 +166,7 @@ mod tests {
         let relaxation = scene.relaxation.unwrap();
         for lump in &lumps.list {
             let mut tissue = Tissue::of(&scene, 1e-3).unwrap();
-            let [x_m, y_m] = lump.at_m;
+            let [x_m, y_m] = lump.position_m;
             let at = |depth_m: f64| Vector3::new(x_m, y_m, config.surface_z_m - depth_m);
             let soft_n = config.stiffness * 0.008_f64.powf(config.exponent);
             let left_m = lumps.thickness_m - 2.0 * lump.radius_m * (1.0 - 1.0 / lump.times_stiffer);
@@ -174,7 +174,7 @@ mod tests {
             let first_n = tissue.contact_n(&at(0.008), &Vector3::zeros()).z;
             assert!((first_n / law_n - 1.0).abs() < 0.02, "{first_n} N, law {law_n} N");
             let held: Vec<f64> = (0..8000).map(|_| tissue.contact_n(&at(0.008), &Vector3::zeros()).z).collect();
-            assert!((held[7999] / (law_n * (1.0 - relaxation.share)) - 1.0).abs() < 1e-3, "{} N", held[7999]);
+            assert!((held[7999] / (law_n * (1.0 - relaxation.fraction)) - 1.0).abs() < 1e-3, "{} N", held[7999]);
         }
     }
 

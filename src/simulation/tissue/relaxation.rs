@@ -8,7 +8,7 @@ const ROUNDING_S: f64 = 1e-9;
 /// The state of tissue that relaxes: quasi-linear viscoelasticity (Fung, Biomechanics, 1993, section 7.6) with one exponential, which is the
 /// standard linear solid where the elastic force is linear in the depth.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Relaxing {
+pub(super) struct RelaxationState {
     config: Relaxation,
     /// Length of a step, s.
     step_s: f64,
@@ -20,7 +20,7 @@ pub(super) struct Relaxing {
     relaxed_n: f64,
 }
 
-impl Relaxing {
+impl RelaxationState {
     /// At rest, for steps of this length.
     pub(super) fn new(config: Relaxation, step_s: f64) -> Self {
         let mut relaxing = Self { config, step_s: 0.0, decay: 1.0, ramp: 0.0, elastic_n: 0.0, relaxed_n: 0.0 };
@@ -44,7 +44,7 @@ impl Relaxing {
     pub(super) fn step(&mut self, elastic_n: f64) -> f64 {
         let before_n = std::mem::replace(&mut self.elastic_n, elastic_n);
         self.relaxed_n = before_n + (self.relaxed_n - before_n) * self.decay + (elastic_n - before_n) * self.ramp;
-        (elastic_n - self.config.share * self.relaxed_n).max(0.0)
+        (elastic_n - self.config.fraction * self.relaxed_n).max(0.0)
     }
 }
 
@@ -52,12 +52,12 @@ impl Relaxing {
 mod tests {
     use super::*;
 
-    const CONFIG: Relaxation = Relaxation { share: 0.4, time_s: 0.8 };
+    const CONFIG: Relaxation = Relaxation { fraction: 0.4, time_s: 0.8 };
     const STEP_S: f64 = 1e-3;
 
     #[test]
     fn a_force_that_is_held_fades_to_its_share_with_its_time() {
-        let mut tissue = Relaxing::new(CONFIG, STEP_S);
+        let mut tissue = RelaxationState::new(CONFIG, STEP_S);
         // A step within one millisecond.
         let first_n = tissue.step(2.0);
         assert!((first_n - 2.0).abs() < 1e-3, "{first_n}");
@@ -73,7 +73,7 @@ mod tests {
     #[test]
     fn a_steady_ramp_is_followed_exactly_at_every_step_length() {
         for step_s in [1e-4, 1e-3, 1e-2, 0.1] {
-            let mut tissue = Relaxing::new(CONFIG, step_s);
+            let mut tissue = RelaxationState::new(CONFIG, step_s);
             let mut t_s = 0.0;
             while t_s < 1.0 {
                 t_s += step_s;
@@ -86,8 +86,8 @@ mod tests {
 
     #[test]
     fn steps_of_unequal_length_relax_as_equal_ones() {
-        let mut even = Relaxing::new(CONFIG, STEP_S);
-        let mut uneven = Relaxing::new(CONFIG, STEP_S);
+        let mut even = RelaxationState::new(CONFIG, STEP_S);
+        let mut uneven = RelaxationState::new(CONFIG, STEP_S);
         let mut t_s = 0.0;
         let mut forces_n = [0.0; 2];
         for i in 0..1000_u32 {
@@ -106,7 +106,7 @@ mod tests {
 
     #[test]
     fn it_takes_energy_in_every_cycle_and_never_pulls() {
-        let mut tissue = Relaxing::new(CONFIG, STEP_S);
+        let mut tissue = RelaxationState::new(CONFIG, STEP_S);
         let mut work_j = 0.0;
         let mut before_m = 0.0;
         for i in 0..20_000 {

@@ -9,7 +9,7 @@ impl Wall {
     /// wall of Colgate and Brown, IEEE ICRA 1994).
     pub(crate) fn contact_n(&self, tip_m: &Vector3<f64>, velocity_m_s: &Vector3<f64>) -> Vector3<f64> {
         let normal = Vector3::from(self.normal).normalize();
-        let depth_m = normal.dot(&(Vector3::from(self.at_m) - tip_m));
+        let depth_m = normal.dot(&(Vector3::from(self.position_m) - tip_m));
         if depth_m <= 0.0 {
             return Vector3::zeros();
         }
@@ -24,7 +24,7 @@ mod tests {
     #[test]
     fn it_pushes_along_its_normal_and_never_pulls() {
         let wall =
-            Wall { at_m: [0.03, 0.0, 0.0], normal: [-2.0, 0.0, 0.0], stiffness_n_m: 4000.0, damping_n_s_m: 20.0 };
+            Wall { position_m: [0.03, 0.0, 0.0], normal: [-2.0, 0.0, 0.0], stiffness_n_m: 4000.0, damping_n_s_m: 20.0 };
         let at = |x_m: f64, vx: f64| wall.contact_n(&Vector3::new(x_m, 0.01, 0.0), &Vector3::new(vx, 0.0, 0.0));
         assert_eq!(at(0.029, 0.1), Vector3::zeros());
         assert!((at(0.0305, 0.0) - Vector3::new(-2.0, 0.0, 0.0)).norm() < 1e-9);

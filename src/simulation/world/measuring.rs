@@ -4,21 +4,21 @@ use nalgebra::{UnitQuaternion, Vector3};
 use nima_core::{
     calibration::frames::FrameSample,
     kinematics,
-    safety::{Raw, RawReadings},
+    safety::{RawReading, RawReadings},
 };
-use nima_machine::rig::{Identified, Inputs, Sensed};
+use nima_machine::rig::{Inputs, RemoteIdentification, SensedForce};
 
-use super::{Touch, World};
+use super::{HandForces, World};
 use crate::{
-    person::Person,
-    scene::{Leader, Wall},
+    scene::{LeaderModel, Wall},
+    simulated_person::Person,
     trocar,
-    wrist::{Loads, along_shaft},
+    wrist::{WristLoads, along_shaft},
 };
 
 impl World {
     /// Returns the touch of the person at the arm, inside this world or outside.
-    fn hands(&self) -> Touch {
+    fn hands(&self) -> HandForces {
         self.person.as_ref().map_or(self.touch, Person::touch)
     }
 
@@ -45,42 +45,42 @@ impl World {
         }
     }
 
-    fn sense(&mut self) -> Sensed {
+    fn sense(&mut self) -> SensedForce {
         let tip_n = self.contact_n();
         self.true_tip_n = tip_n;
         let world_from_s1 = self.world_from_s1();
-        let Touch { tool, stand, .. } = self.hands();
+        let HandForces { tool, stand, .. } = self.hands();
         if let Some(wrist) = &mut self.wrist {
             let trocar = self.trocar.as_ref().filter(|_| !self.aside);
             let twist_nm = self.loads.torque_nm;
             let wall = trocar.map(|trocar| (trocar.force_n(), trocar.shaft(&self.tip_m).1));
-            return Sensed::AtWrist(
-                wrist.measure(&world_from_s1, &Loads { tip_n, twist_nm, wall, touch_n: tool, stand_n: stand }),
+            return SensedForce::AtWrist(
+                wrist.measure(&world_from_s1, &WristLoads { tip_n, twist_nm, wall, touch_n: tool, stand_n: stand }),
             );
         }
         let noise_n = match &mut self.sensor_noise_n {
             Some((sigma_n, noise)) => Vector3::from_fn(|_, _| *sigma_n * noise.gaussian()),
             None => Vector3::zeros(),
         };
-        Sensed::AtTip(tip_n + noise_n)
+        SensedForce::AtTip(tip_n + noise_n)
     }
 
     /// Returns the devices' raw readings. This world's arm has no joints.
-    fn raw(&self, leader_m: &Vector3<f64>, sensed: &Sensed) -> RawReadings {
+    fn raw(&self, leader_m: &Vector3<f64>, sensed: &SensedForce) -> RawReadings {
         let parts = match sensed {
-            Sensed::AtTip(force_n) | Sensed::FarEnd(Identified { force_n, .. }) => {
+            SensedForce::AtTip(force_n) | SensedForce::FarEnd(RemoteIdentification { force_n, .. }) => {
                 [Some((*force_n).into()), None, None]
             }
-            Sensed::AtWrist(sample) => [
+            SensedForce::AtWrist(sample) => [
                 Some(sample.raw.force_n.into()),
                 Some(sample.raw.torque_nm.into()),
                 sample.acceleration_m_s2.map(Into::into),
             ],
         };
         RawReadings {
-            handle: Some(Raw { channels: (*leader_m).into(), device_s: None, arrival_s: self.time_s }),
+            handle: Some(RawReading { channels: (*leader_m).into(), device_s: None, arrival_s: self.time_s }),
             arm: None,
-            sensor: Some(Raw::of_sensor(parts, None, self.time_s)),
+            sensor: Some(RawReading::of_sensor(parts, None, self.time_s)),
         }
     }
 
@@ -90,12 +90,12 @@ impl World {
         // This world has no jointed arm, and its tracker reports no positions.
         let wrench = sensed.wrist().map(|sample| sample.raw);
         let hand_m = self.hand.position_m();
-        let leader_m = self
-            .leader
-            .map_or(hand_m, |Leader { resolution_m, .. }| hand_m.map(|x| (x / resolution_m).round() * resolution_m));
+        let leader_m = self.leader.map_or(hand_m, |LeaderModel { resolution_m, .. }| {
+            hand_m.map(|x| (x / resolution_m).round() * resolution_m)
+        });
         Inputs {
             raw: self.raw(&leader_m, &sensed),
-            hand: kinematics::Hand::at(leader_m),
+            hand: kinematics::HandPose::at(leader_m),
             gripper_rad: self.jaws.then(|| self.hand.grip_rad()),
             grip_n: self.jaws.then_some(self.loads.opening_n),
             tip_m: self.tip_m,

@@ -1,14 +1,14 @@
 //! The world by itself, in free running.
 
 use nalgebra::Vector3;
-use nima_machine::rig::{Inputs, Outputs, Sensed};
+use nima_machine::rig::{Inputs, Outputs, SensedForce};
 
 use super::World;
 use crate::scene::Scene;
 
 fn force_n(inputs: &Inputs) -> Vector3<f64> {
     match inputs.sensed {
-        Sensed::AtTip(force_n) => force_n,
+        SensedForce::AtTip(force_n) => force_n,
         sensed => panic!("not at the tip: {sensed:?}"),
     }
 }

@@ -3,12 +3,12 @@
 
 use libfuzzer_sys::fuzz_target;
 use nima_devices::dynamixel::{
-    codec::{Incoming, blocks},
+    codec::{IncomingPackets, blocks},
     message::Instruction,
 };
 
 fuzz_target!(|bytes: &[u8]| {
-    let mut incoming = Incoming::new(200);
+    let mut incoming = IncomingPackets::new(200);
     let mut rest = bytes;
     while !rest.is_empty() {
         let count = incoming.feed(rest);

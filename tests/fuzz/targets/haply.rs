@@ -2,11 +2,11 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use nima_devices::haply::codec::{Decoder, DeviceInfo, State, force_of};
+use nima_devices::haply::codec::{DeviceInfo, HaplyDecoder, HaplyState, force_of};
 
 fuzz_target!(|bytes: &[u8]| {
-    let _ = (DeviceInfo::decode(bytes), State::decode(bytes), force_of(bytes));
-    let mut decoder = Decoder::default();
+    let _ = (DeviceInfo::decode(bytes), HaplyState::decode(bytes), force_of(bytes));
+    let mut decoder = HaplyDecoder::default();
     for piece in bytes.chunks(40) {
         decoder.room()[..piece.len()].copy_from_slice(piece);
         decoder.filled(piece.len());

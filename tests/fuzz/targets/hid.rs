@@ -4,8 +4,8 @@
 use libfuzzer_sys::fuzz_target;
 use nima_devices::hid::{
     cap_codec::{CapReport, CapState},
-    pedal_codec::Layout,
-    spacenavd::Event,
+    pedal_codec::PedalLayout,
+    spacenavd::SpacenavdEvent,
 };
 
 fuzz_target!(|bytes: &[u8]| {
@@ -13,12 +13,12 @@ fuzz_target!(|bytes: &[u8]| {
     if let Ok(report) = CapReport::decode(bytes) {
         state.take(&report, 0.0);
     }
-    if let Ok(event) = Event::decode(bytes) {
+    if let Ok(event) = SpacenavdEvent::decode(bytes) {
         event.apply(&mut state, 1e-3);
     }
     let reading = state.reading();
     assert!(reading.translation.iter().chain(reading.rotation.iter()).all(|axis| (-1.0..=1.0).contains(axis)));
-    for layout in [Layout::Keyboard { keys: [5, 4, 6, 0, 0, 0, 0, 0] }, Layout::Switches] {
+    for layout in [PedalLayout::Keyboard { keys: [5, 4, 6, 0, 0, 0, 0, 0] }, PedalLayout::Switches] {
         assert!(layout.decode(bytes).is_ok_and(|pressed| pressed < 8) || layout.decode(bytes).is_err());
     }
 });

@@ -3,16 +3,16 @@
 
 use libfuzzer_sys::fuzz_target;
 use nima_devices::kinova::{
-    faults::Faults,
-    feedback::Feedback,
-    frame::{Frame, PacketReader},
+    faults::KinovaFaults,
+    feedback::KinovaFeedback,
+    frame::{KinovaFrame, PacketReader},
 };
 
 fuzz_target!(|bytes: &[u8]| {
-    if let Ok(frame) = Frame::decode(bytes)
-        && let Ok(feedback) = Feedback::decode(frame.payload)
+    if let Ok(frame) = KinovaFrame::decode(bytes)
+        && let Ok(feedback) = KinovaFeedback::decode(frame.payload)
     {
-        std::hint::black_box((feedback.is_finite(), Faults::of(&feedback).code()));
+        std::hint::black_box((feedback.is_finite(), KinovaFaults::of(&feedback).code()));
     }
     let mut reader = PacketReader::default();
     for piece in bytes.chunks(64) {

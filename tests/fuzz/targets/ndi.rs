@@ -2,15 +2,17 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use nima_devices::ndi::{Command, Expected, Frames, Inbox, OUTSIDE_TOO, STRAYS, TRANSFORMS, identity_of};
+use nima_devices::ndi::{
+    ExpectedReply, Inbox, NdiCommand, OUTSIDE_TOO, STRAYS, TRANSFORMS, TrackingReply, identity_of,
+};
 
 fuzz_target!(|bytes: &[u8]| {
     for options in [TRANSFORMS | OUTSIDE_TOO, TRANSFORMS | OUTSIDE_TOO | STRAYS] {
-        let _ = (Frames::of_block(bytes, options), Frames::of_text(bytes, options));
+        let _ = (TrackingReply::of_block(bytes, options), TrackingReply::of_text(bytes, options));
     }
-    Command::parse(bytes).ok();
+    NdiCommand::parse(bytes).ok();
     identity_of(&String::from_utf8_lossy(bytes));
-    for expected in [Expected::Line, Expected::Block] {
+    for expected in [ExpectedReply::Line, ExpectedReply::Block] {
         let mut inbox = Inbox::new();
         for piece in bytes.chunks(64) {
             let room = inbox.room();

@@ -2,10 +2,10 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use nima_recording::session::Reader;
+use nima_recording::session::SessionReader;
 
 fuzz_target!(|bytes: &[u8]| {
-    let Ok(reader) = Reader::of_bytes("fuzzed", bytes.to_vec()) else { return };
+    let Ok(reader) = SessionReader::of_bytes("fuzzed", bytes.to_vec()) else { return };
     for attachment in reader.attachments() {
         assert!(reader.attachment(attachment).map_or(0, |data| data.len()) <= bytes.len());
     }

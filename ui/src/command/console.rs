@@ -8,29 +8,29 @@ use std::{
 use anyhow::Context as _;
 use clap::Args;
 use nima_machine::config::SchedulingClass;
-use nima_simulation::Plan;
+use nima_simulation::SimulationPlan;
 
-use super::{far::ToFollower, output, setup::Setup};
+use super::{output, remote_follower::ToFollower, rig_args::Setup};
 use crate::language::Language;
 use crate::{
     by_itself::{self, Starter},
     console::{
-        self, Begun, Options, app::start_recorded, in_force::InForce, pictures::Album, roles::Role, sessions::Sessions,
-        wizards::Which,
+        self, ConsoleOptions, InitialRun, active_calibrations::ActiveCalibrations, app::start_recorded, roles::Role,
+        screenshots::ScreenshotFolder, sessions::ConsoleSessions, wizards::WizardKind,
     },
     emulators::Emulators,
     extras::{self, Extra},
     link::Reopen,
-    telling::tell,
-    watching::Watching,
+    stderr::print_line,
+    watching::WatchArguments,
 };
 
 #[derive(Debug, Default, Args)]
-pub(super) struct Arguments {
+pub(super) struct ConsoleArguments {
     #[command(flatten)]
     setup: Setup,
     #[command(flatten)]
-    watching: Watching,
+    watching: WatchArguments,
     #[command(flatten)]
     network: ToFollower,
     /// Start in this view (default: the last one used)
@@ -41,7 +41,7 @@ pub(super) struct Arguments {
     language: Option<Language>,
     /// Open this calibration wizard at the start
     #[arg(long, value_name = "WIZARD")]
-    calibrate: Option<Which>,
+    calibrate: Option<WizardKind>,
     /// Show this recorded session at the start; the rig starts idle
     #[arg(long, value_name = "FILE", conflicts_with_all = ["calibrate", "pictures"])]
     session: Option<PathBuf>,
@@ -55,8 +55,8 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "CLASS")]
     scheduling: Option<SchedulingClass>,
     /// Save a screenshot of every view (PNG) in this folder, then close
-    #[arg(long, value_name = "DIR", conflicts_with_all = ["exit_after", "calibrate", "role", "live", "share", "igtl", "lsl"])]
-    pictures: Option<PathBuf>,
+    #[arg(long = "pictures", id = "pictures", value_name = "DIR", conflicts_with_all = ["exit_after", "calibrate", "role", "live", "share", "igtl", "lsl"])]
+    images: Option<PathBuf>,
     /// Write the loop's timing and errors (JSON) to this file when the window closes
     #[arg(long, value_name = "FILE")]
     summary: Option<PathBuf>,
@@ -74,8 +74,8 @@ pub(super) struct Arguments {
     stall: Option<f64>,
 }
 
-pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    if arguments.calibrate == Some(Which::Camera) && extras::part(Extra::camera_wizard).is_none() {
+pub(super) fn run(arguments: &ConsoleArguments) -> anyhow::Result<()> {
+    if arguments.calibrate == Some(WizardKind::Camera) && extras::part(Extra::camera_wizard).is_none() {
         return Err(extras::not_built("calibration of the camera", "camera"));
     }
     let outputs = [&arguments.screenshot, &arguments.summary, &arguments.frames];
@@ -90,27 +90,27 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     // The follower runs the emulators of the whole rig.
     let emulated = rig.devices.as_ref().filter(|_| line.is_none());
     let emulators = Emulators::start(&choice.rig, &choice.scene, emulated)?;
-    let mut in_force = InForce::load(None, &rig, &scene);
-    let (rig, calibrations) = (in_force.with_checked(rig.clone()), in_force.calibrations(&rig));
-    let mut plan = Plan { rig: rig.clone(), scene: scene.clone(), calibrations, engage: false };
+    let mut active = ActiveCalibrations::load(None, &rig, &scene);
+    let (rig, calibrations) = (active.with_checked(rig.clone()), active.calibrations(&rig));
+    let mut plan = SimulationPlan { rig: rig.clone(), scene: scene.clone(), calibrations, engage: false };
     let at_rest = arguments.at_rest || arguments.calibrate.is_some() || arguments.session.is_some();
     let by_itself = by_itself::engages(Starter::Window, arguments.setup.rig(), &rig, arguments.network.arm());
     plan.engage = by_itself && !at_rest && plan.may_engage();
     // Screenshots are taken of a session that is not needed afterwards.
-    let folder = in_force.store().and_then(|store| store.folder().parent()).filter(|_| arguments.pictures.is_none());
+    let folder = active.store().and_then(|store| store.folder().parent()).filter(|_| arguments.images.is_none());
     let servers = arguments.watching.start()?;
     anyhow::ensure!(
         servers.is_empty() || folder.is_some(),
         "viewers see recorded data, but no folder for sessions was found: set NIMA_DATA_DIR"
     );
-    let mut sessions = Sessions::of_user(folder, servers);
+    let mut sessions = ConsoleSessions::of_user(folder, servers);
     let network = arguments.network.clone();
     let far = line.as_ref().map(|line| (line.door(), Reopen::new(move |rig, scene| network.open(rig, scene))));
     let started = start_recorded(&plan, &mut sessions, line)?;
-    let options = Options {
+    let options = ConsoleOptions {
         exit_after: arguments.exit_after.map(Duration::from_secs_f64),
         screenshot: arguments.screenshot.clone(),
-        pictures: arguments.pictures.as_deref().map(Album::new),
+        images: arguments.images.as_deref().map(ScreenshotFolder::new),
         role: arguments.role,
         language: arguments.language,
         session: arguments.session.clone(),
@@ -121,13 +121,13 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         stall: arguments.stall.map(Duration::from_secs_f64),
         leave: leave.clone(),
     };
-    let album = options.pictures.clone();
-    if let Some(folder) = &arguments.pictures {
+    let album = options.images.clone();
+    if let Some(folder) = &arguments.images {
         std::fs::create_dir_all(folder).with_context(|| format!("cannot create the folder {}", folder.display()))?;
     }
-    console::run(Begun { choice, emulators, started, rig, scene, sessions, far }, options)?;
+    console::run(InitialRun { choice, emulators, started, rig, scene, sessions, far }, options)?;
     if leave.is_asked() {
-        tell("nima: ended on request: force and drives are off");
+        print_line("nima: ended on request: force and drives are off");
     }
     anyhow::ensure!(
         album.is_none_or(|album| album.is_complete()),

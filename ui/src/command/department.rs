@@ -58,7 +58,7 @@ fn watching_role(word: &str) -> Result<Role, String> {
 }
 
 #[derive(Debug, Args)]
-pub(crate) struct Which {
+pub(crate) struct RigSelection {
     /// Name of the rig, if several are shared on the local network
     pub(crate) rig: Option<String>,
     /// Address of the rig (default: search the local network)
@@ -69,7 +69,7 @@ pub(crate) struct Which {
 #[derive(Debug, Args)]
 pub(crate) struct MonitorArguments {
     #[command(flatten)]
-    pub(crate) which: Which,
+    pub(crate) which: RigSelection,
     /// Start in this view: surgeon or technician
     #[arg(long, value_name = "ROLE", default_value = "surgeon", value_parser = watching_role)]
     pub(crate) role: Role,
@@ -87,7 +87,7 @@ pub(crate) struct MonitorArguments {
 #[derive(Debug, Args)]
 pub(crate) struct RecordArguments {
     #[command(flatten)]
-    pub(crate) which: Which,
+    pub(crate) which: RigSelection,
     /// Folder for the session files
     #[arg(long, value_name = "DIR")]
     pub(crate) into: PathBuf,

@@ -5,8 +5,10 @@ use std::fmt::Write as _;
 use anyhow::{Context as _, bail};
 use clap::Args;
 use nima_devices::{
-    Standing,
-    discovery::{Diagnosis, Found, KINDS, Outcome, Plugged, TIMEOUT, diagnose, probe_named, rules},
+    ConnectionState,
+    discovery::{
+        DiscoveryDiagnosis, FoundDevice, KINDS, PluggedDevices, TIMEOUT, TestOutcome, diagnose, probe_named, rules,
+    },
 };
 use nima_machine::config::RigConfig;
 use serde::Serialize;
@@ -14,7 +16,7 @@ use serde::Serialize;
 use super::output;
 
 #[derive(Debug, Args)]
-pub(super) struct Arguments {
+pub(super) struct DevicesArguments {
     /// Test this device; may be repeated: `spacemouse`, `pedal`, `force-dimension`, `haply`, `kinova`, `ndi`, `dynamixel`,
     /// `bota-gen0`, `bota-gen-a`, `bota-socket`, `external-handle`, `external-arm`, `external-sensor`, each with `=PLACE`;
     /// `serial=PORT@BAUD[,HEADER][,quiet]`, `tcp=HOST:PORT`
@@ -35,26 +37,26 @@ pub(super) struct Arguments {
 }
 
 #[derive(Serialize)]
-struct Report {
-    plugged: Plugged,
-    cameras: Vec<Camera>,
-    devices: Vec<Diagnosis>,
+struct DevicesReport {
+    plugged: PluggedDevices,
+    cameras: Vec<CameraReport>,
+    devices: Vec<DiscoveryDiagnosis>,
 }
 
 #[derive(Serialize)]
-struct Camera {
+struct CameraReport {
     path: std::path::PathBuf,
     name: String,
 }
 
-fn cameras() -> Vec<Camera> {
+fn cameras() -> Vec<CameraReport> {
     nima_endoscope::plugged_cameras()
         .into_iter()
-        .map(|camera| Camera { path: camera.path, name: camera.name })
+        .map(|camera| CameraReport { path: camera.path, name: camera.name })
         .collect()
 }
 
-pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+pub(super) fn run(arguments: &DevicesArguments) -> anyhow::Result<()> {
     if arguments.udev_rules {
         return output::line(rules::RULES.trim_end());
     }
@@ -75,12 +77,13 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         probes.extend(rig.probes());
         emulated = rig.devices.is_some_and(|devices| devices.emulated).then_some(name);
     }
-    let report = Report { plugged: Plugged::list(), cameras: cameras(), devices: diagnose(probes, TIMEOUT) };
+    let report =
+        DevicesReport { plugged: PluggedDevices::list(), cameras: cameras(), devices: diagnose(probes, TIMEOUT) };
     if arguments.json {
         output::json(&report)?;
         return end(&report);
     }
-    let mut text = in_words(&report);
+    let mut text = as_text(&report);
     if let Some(rig) = emulated.filter(|_| report.devices.iter().all(is_trouble)) {
         // The devices' own remedies apply to real devices.
         writeln!(
@@ -94,7 +97,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
 }
 
 /// Returns an error if a device has a problem, so that scripts detect it.
-fn end(report: &Report) -> anyhow::Result<()> {
+fn end(report: &DevicesReport) -> anyhow::Result<()> {
     let troubled = report.devices.iter().filter(|device| is_trouble(device)).count();
     let all = report.devices.len();
     if troubled > 0 {
@@ -103,8 +106,8 @@ fn end(report: &Report) -> anyhow::Result<()> {
     Ok(())
 }
 
-const fn is_trouble(device: &Diagnosis) -> bool {
-    matches!(device.outcome, Outcome::Trouble { .. })
+const fn is_trouble(device: &DiscoveryDiagnosis) -> bool {
+    matches!(device.outcome, TestOutcome::Trouble { .. })
 }
 
 /// Formats rows in columns as wide as their widest entry.
@@ -117,8 +120,8 @@ fn table(text: &mut String, rows: &[[String; 3]]) {
     }
 }
 
-fn in_words(report: &Report) -> String {
-    let Report { plugged, cameras, devices } = report;
+fn as_text(report: &DevicesReport) -> String {
+    let DevicesReport { plugged, cameras, devices } = report;
     let mut text = String::from("Plugged in\n");
     let mut rows = plugged.lines();
     rows.extend(
@@ -139,10 +142,10 @@ fn in_words(report: &Report) -> String {
         .ok();
     }
     let width = devices.iter().map(|device| device.name.chars().count()).max().unwrap_or(0);
-    for Diagnosis { name, outcome, .. } in devices {
+    for DiscoveryDiagnosis { name, outcome, .. } in devices {
         match outcome {
-            Outcome::Connected(found) => writeln!(text, "  {name:width$}  {}", told(found)).ok(),
-            Outcome::Trouble { cause, cure, .. } => {
+            TestOutcome::Connected(found) => writeln!(text, "  {name:width$}  {}", device_text(found)).ok(),
+            TestOutcome::Trouble { cause, cure, .. } => {
                 writeln!(text, "  {name:width$}  problem: {cause}\n  {:width$}  {cure}", "").ok()
             }
         };
@@ -150,9 +153,9 @@ fn in_words(report: &Report) -> String {
     text
 }
 
-fn told(found: &Found) -> String {
+fn device_text(found: &FoundDevice) -> String {
     let standing = match found.standing {
-        Standing::Lost(loss) => format!("lost: {}", loss.cause()),
+        ConnectionState::Lost(loss) => format!("lost: {}", loss.cause()),
         _ => "connected".to_owned(),
     };
     let mut words = vec![standing];

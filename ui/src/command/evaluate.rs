@@ -6,21 +6,21 @@ use std::{
 };
 
 use clap::{Args, Subcommand};
-use nima_charts::{Axis, Chart, Series, Style, svg};
+use nima_charts::{Axis, Chart, Series, SeriesStyle, svg};
 use nima_core::tip_force::Estimator;
 use nima_recording::tip_force::{DataSet, Selection, load_model};
-use nima_training::{Evaluation, Part, evaluate};
+use nima_training::{Evaluation, EvaluationPart, evaluate};
 
 use super::output;
 
 #[derive(Debug, Subcommand)]
 pub(super) enum EvaluateCommand {
     /// Compare a tip-force model with simpler methods fitted on its training data
-    TipForce(TipForce),
+    TipForce(EvaluateTipForce),
 }
 
 #[derive(Debug, Args)]
-pub(super) struct TipForce {
+pub(super) struct EvaluateTipForce {
     /// Model file written by `nima train tip-force`
     model: PathBuf,
     /// CSV files with the model's columns; not the files used for training
@@ -59,7 +59,7 @@ pub(super) fn run(command: &EvaluateCommand) -> anyhow::Result<()> {
             output::write(out, NO_CONTACT, &histogram(&figures, contact))?;
         }
     }
-    if arguments.json { output::json(&figures) } else { output::line(in_words(&figures).trim_end()) }
+    if arguments.json { output::json(&figures) } else { output::line(as_text(&figures).trim_end()) }
 }
 
 /// Writing to a String cannot fail, here and below.
@@ -99,11 +99,11 @@ fn regression(figures: &Evaluation, data: &DataSet) -> String {
             x: Axis::linear("measured", low, high),
             y: Axis::linear("predicted", low, high),
             series: vec![
-                Series { name: "held-out rows".into(), colour: 4, style: Style::Points, points },
+                Series { name: "held-out rows".into(), colour: 4, style: SeriesStyle::Points, points },
                 Series {
                     name: "exact".into(),
                     colour: 6,
-                    style: Style::Dashed,
+                    style: SeriesStyle::Dashed,
                     points: vec![[low, low], [high, high]],
                 },
             ],
@@ -119,34 +119,34 @@ fn histogram(figures: &Evaluation, contact: &[bool]) -> String {
             .filter(|row| !contact[*row])
             .map(|row| f64::from(figures.predictions[row * outputs + k]))
             .collect();
-        let reach = values.iter().fold(1e-9_f64, |most, value| most.max(value.abs())) * 1.05;
+        let reach = values.iter().fold(1e-9_f64, |max, value| max.max(value.abs())) * 1.05;
         let mut bars = vec![0.0_f64; BARS];
         for value in &values {
             let bar = ((value / reach + 1.0) * 0.5 * BARS as f64) as usize;
             bars[bar.min(BARS - 1)] += 1.0 / values.len() as f64;
         }
         let edge = |bar: usize| (2.0 * bar as f64 / BARS as f64 - 1.0) * reach;
-        let steps = |(bar, share): (usize, &f64)| [[edge(bar), *share], [edge(bar + 1), *share]];
+        let steps = |(bar, fraction): (usize, &f64)| [[edge(bar), *fraction], [edge(bar + 1), *fraction]];
         let points: Vec<[f64; 2]> = bars.iter().enumerate().flat_map(steps).collect();
         let top = bars.iter().copied().fold(1e-3, f64::max) * 1.1;
         Chart {
             title: format!("{} without contact", figures.outputs[k]),
             x: Axis::linear("predicted", -reach, reach),
             y: Axis::linear("fraction of rows", 0.0, top),
-            series: vec![Series { name: String::new(), colour: 4, style: Style::Line, points }],
+            series: vec![Series { name: String::new(), colour: 4, style: SeriesStyle::Line, points }],
         }
     };
     svg(&(0..outputs).map(chart).collect::<Vec<_>>())
 }
 
-fn in_words(figures: &Evaluation) -> String {
+fn as_text(figures: &Evaluation) -> String {
     let mut text = String::new();
     if !figures.trained_on.is_empty() {
         let files = figures.trained_on.join(", ");
         writeln!(text, "THE MODEL WAS TRAINED ON {files}: these results do not apply to new data").ok();
     }
     for part in figures.files.iter().chain([&figures.overall]) {
-        part_in_words(part, &figures.outputs, &mut text);
+        part_text(part, &figures.outputs, &mut text);
     }
     let time = &figures.inference_us;
     writeln!(text, "one prediction: p50 {:.1} us, p99 {:.1} us, max {:.1} us", time.p50, time.p99, time.max).ok();
@@ -154,8 +154,8 @@ fn in_words(figures: &Evaluation) -> String {
     text
 }
 
-fn part_in_words(part: &Part, outputs: &[String], text: &mut String) {
-    writeln!(text, "{}: {:.1} % in doubt", part.name, 100.0 * part.doubt_share).ok();
+fn part_text(part: &EvaluationPart, outputs: &[String], text: &mut String) {
+    writeln!(text, "{}: {:.1} % in doubt", part.name, 100.0 * part.doubt_fraction).ok();
     for method in &part.methods {
         for (name, stats) in outputs.iter().zip(&method.outputs) {
             let Some(s) = stats else { continue };

@@ -14,21 +14,21 @@ use nima_machine::{
     config::RigConfig,
     rig::{DeviceName, Side},
 };
-use nima_recording::session::Reader;
+use nima_recording::session::SessionReader;
 use nima_session::{
-    anonymous::{self, Known},
-    cut::{self, Cut, CutError, Kept},
+    anonymous::{self, SessionFacts},
     layouts,
-    plotted::{self, PlottedError, PlottedTick},
-    recorder::Attached,
+    plot_channels::{self, PlottedError, PlottedTick},
+    recorder::AttachedFile,
+    trim::{self, Cut, CutError, JournalOutcome},
 };
 use nima_simulation::scene::Scene;
 
-use super::{output, setup::side, stretch::Stretch};
+use super::{output, rig_args::side, time_range::TimeRange};
 use crate::{
-    leaving::Leave,
     recording::{PROGRAM, RIG, SCENE, WORDS, toml_file},
-    telling::tell,
+    shutdown::Leave,
+    stderr::print_line,
 };
 
 const HEADER: &str = "t_s,time_ns,x_m,y_m,z_m,fx_n,fy_n,fz_n,leader_x_m,leader_y_m,leader_z_m,\
@@ -38,7 +38,7 @@ delayed_x_n,delayed_y_n,delayed_z_n,asked_x_n,asked_y_n,asked_z_n,rendered_x_n,r
 const LAYOUTS: [(&str, &str); 2] = [("json", layouts::FOXGLOVE), ("xml", layouts::PLOTJUGGLER)];
 
 #[derive(Debug, Args)]
-pub(super) struct Arguments {
+pub(super) struct ExportArguments {
     /// Session file
     session: PathBuf,
     /// New file: a table that `nima identify` reads (.csv), a session (.mcap), or a layout for Foxglove (.json)
@@ -46,7 +46,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
     #[command(flatten)]
-    stretch: Stretch,
+    stretch: TimeRange,
     /// Arm to write into the table, right or left (required if the session has both)
     #[arg(long, value_name = "ARM", value_parser = side)]
     arm: Option<Side>,
@@ -55,8 +55,8 @@ pub(super) struct Arguments {
     anonymous: bool,
 }
 
-pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    let Arguments { session, out, arm, anonymous, .. } = arguments;
+pub(super) fn run(arguments: &ExportArguments) -> anyhow::Result<()> {
+    let ExportArguments { session, out, arm, anonymous, .. } = arguments;
     let is = |extension: &str| out.extension().is_some_and(|one| one.eq_ignore_ascii_case(extension));
     let layout = LAYOUTS.iter().find(|(extension, _)| is(extension)).map(|(_, name)| *name);
     if !is("csv") && !is("mcap") && layout.is_none() {
@@ -77,9 +77,9 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         bail!("cannot write {}: it already exists; choose another name", out.display());
     }
     output::check(out, &[session])?;
-    let reader = Reader::open(session)?;
+    let reader = SessionReader::open(session)?;
     for note in reader.notes() {
-        tell(format_args!("nima: {note}"));
+        print_line(format_args!("nima: {note}"));
     }
     if let Some(name) = layout {
         return laid_out(&reader, session, name, out);
@@ -99,7 +99,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
 }
 
 /// Writes an attached layout into a separate file for viewers to import.
-fn laid_out(reader: &Reader, session: &Path, name: &str, out: &Path) -> anyhow::Result<()> {
+fn laid_out(reader: &SessionReader, session: &Path, name: &str, out: &Path) -> anyhow::Result<()> {
     let attachment = reader.attachments().iter().find(|attachment| attachment.name == name);
     let attachment = attachment.with_context(|| {
         format!(
@@ -113,43 +113,51 @@ fn laid_out(reader: &Reader, session: &Path, name: &str, out: &Path) -> anyhow::
 }
 
 /// The requested times, ns.
-fn times_ns(reader: &Reader, Arguments { session, stretch, .. }: &Arguments) -> anyhow::Result<Range<u64>> {
+fn times_ns(
+    reader: &SessionReader,
+    ExportArguments { session, stretch, .. }: &ExportArguments,
+) -> anyhow::Result<Range<u64>> {
     let Range { start, end } = stretch.of(session, reader)?;
-    let begin_ns = plotted::beginning_ns(reader)?;
+    let begin_ns = plot_channels::beginning_ns(reader)?;
     let time_ns = |seconds: f64| begin_ns.saturating_add((seconds * 1e9).round() as u64);
     // Entries before the first tick belong to it.
     Ok(if start > 0.0 { time_ns(start) } else { 0 }..time_ns(end))
 }
 
-enum Failed {
+enum ExportFailure {
     Session(PlottedError),
     File(io::Error),
 }
 
-impl From<PlottedError> for Failed {
+impl From<PlottedError> for ExportFailure {
     fn from(error: PlottedError) -> Self {
         Self::Session(error)
     }
 }
 
-fn table(reader: &Reader, times_ns: Range<u64>, arguments: &Arguments, leave: &Leave) -> anyhow::Result<()> {
-    let Arguments { session, out, arm, .. } = arguments;
-    let arm = plotted::arm(reader, session, *arm)?;
+fn table(
+    reader: &SessionReader,
+    times_ns: Range<u64>,
+    arguments: &ExportArguments,
+    leave: &Leave,
+) -> anyhow::Result<()> {
+    let ExportArguments { session, out, arm, .. } = arguments;
+    let arm = plot_channels::arm(reader, session, *arm)?;
     let mut rows = 0_u64;
     let mut trouble = None;
     let written = write_atomically(out, |file| {
         writeln!(file, "{HEADER}")?;
-        let filled = plotted::each_tick(reader, session, arm, times_ns, |tick| {
+        let filled = plot_channels::each_tick(reader, session, arm, times_ns, |tick| {
             rows += 1;
             if leave.is_asked() {
-                return Err(Failed::File(io::Error::other(CutError::Asked)));
+                return Err(ExportFailure::File(io::Error::other(CutError::Asked)));
             }
-            file.write_all(row(&tick).as_bytes()).map_err(Failed::File)
+            file.write_all(row(&tick).as_bytes()).map_err(ExportFailure::File)
         });
         match filled {
-            Err(Failed::File(error)) => Err(error),
+            Err(ExportFailure::File(error)) => Err(error),
             // An incomplete table is an error.
-            Err(Failed::Session(error)) => Err(io::Error::other(trouble.insert(error).to_string())),
+            Err(ExportFailure::Session(error)) => Err(io::Error::other(trouble.insert(error).to_string())),
             Ok(()) if rows == 0 => {
                 Err(io::Error::other("the session has no tick in this excerpt; change --from or --to"))
             }
@@ -175,39 +183,50 @@ fn row(tick: &PlottedTick) -> String {
 }
 
 /// Written content, and a remark about it.
-type Told = (String, &'static str);
+type ExportReport = (String, &'static str);
 
 /// Writes to a temporary folder next to the file first, so that no half-written file has its name.
-fn whole(out: &Path, write: impl FnOnce(&Path) -> anyhow::Result<Told>) -> anyhow::Result<Told> {
+fn whole(out: &Path, write: impl FnOnce(&Path) -> anyhow::Result<ExportReport>) -> anyhow::Result<ExportReport> {
     let failed = || format!("cannot write {}", out.display());
     let folder = out.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or_else(|| Path::new("."));
     let beside = tempfile::Builder::new().prefix(".nima-export-").tempdir_in(folder).with_context(failed)?;
     let new = beside.path().join("session.mcap");
-    let told = write(&new)?;
+    let report = write(&new)?;
     std::fs::rename(&new, out).with_context(failed)?;
-    Ok(told)
+    Ok(report)
 }
 
-fn cut_out(reader: &Reader, times_ns: &Range<u64>, session: &Path, new: &Path, leave: &Leave) -> anyhow::Result<Told> {
+fn cut_out(
+    reader: &SessionReader,
+    times_ns: &Range<u64>,
+    session: &Path,
+    new: &Path,
+    leave: &Leave,
+) -> anyhow::Result<ExportReport> {
     let name = session.file_name().unwrap_or_default().to_string_lossy();
-    let Cut { messages, journal } = cut::write(reader, &name, times_ns, new, leave.flag())?;
+    let Cut { messages, journal } = trim::write(reader, &name, times_ns, new, leave.flag())?;
     let journal = match journal {
-        Kept::Yes => "with the journal up to the cut: `nima replay` can replay it",
-        Kept::LeftOut => "without the journal, which can be replayed only from its start",
-        Kept::None => "the session has no journal",
+        JournalOutcome::Yes => "with the journal up to the cut: `nima replay` can replay it",
+        JournalOutcome::LeftOut => "without the journal, which can be replayed only from its start",
+        JournalOutcome::None => "the session has no journal",
     };
     Ok((format!("{messages} messages"), journal))
 }
 
-fn anonymously(reader: &Reader, times_ns: &Range<u64>, new: &Path, leave: &Leave) -> anyhow::Result<Told> {
+fn anonymously(
+    reader: &SessionReader,
+    times_ns: &Range<u64>,
+    new: &Path,
+    leave: &Leave,
+) -> anyhow::Result<ExportReport> {
     let (files, devices) = files(reader)?;
-    let known = Known { program: PROGRAM, files: &files, words: WORDS, devices: &devices };
+    let known = SessionFacts { program: PROGRAM, files: &files, words: WORDS, devices: &devices };
     let messages = anonymous::write(reader, &known, times_ns, new, leave.flag())?;
     Ok((format!("{messages} messages"), "anonymous, without the journal: docs/sessions.md lists the remaining data"))
 }
 
 /// Rig and scene of the session without their names, and the rig's devices. A file that this program cannot read is left out.
-fn files(reader: &Reader) -> anyhow::Result<(Vec<Attached>, Vec<DeviceName>)> {
+fn files(reader: &SessionReader) -> anyhow::Result<(Vec<AttachedFile>, Vec<DeviceName>)> {
     let mut files = Vec::new();
     let mut devices = Vec::new();
     for attachment in reader.attachments() {

@@ -3,21 +3,21 @@
 
 mod calibrate;
 mod check;
+mod completions;
 mod console;
 pub(crate) mod department;
 mod devices;
-mod ending;
 mod evaluate;
 mod export;
-mod far;
 pub(crate) mod output;
+mod remote_follower;
 mod replay;
 mod report;
+pub(crate) mod rig_args;
 pub(crate) mod run;
+mod run_outcome;
 mod sessions;
-pub(crate) mod setup;
-mod shells;
-pub(crate) mod stretch;
+pub(crate) mod time_range;
 mod train;
 
 use std::process::ExitCode;
@@ -33,7 +33,7 @@ use tracing::level_filters::LevelFilter;
 use crate::{
     extras,
     logging::{self, LEVELS},
-    telling::tell,
+    stderr::print_line,
 };
 
 /// Exit code if no window can be opened (`EX_UNAVAILABLE`): the start script then runs `nima run`.
@@ -47,28 +47,28 @@ struct Cli {
     #[arg(long, global = true, value_name = "LEVEL", value_parser = PossibleValuesParser::new(LEVELS).try_map(|level| level.parse::<LevelFilter>()))]
     log: Option<LevelFilter>,
     #[command(subcommand)]
-    command: Option<Command>,
+    command: Option<CliCommand>,
 }
 
 #[derive(Debug, Subcommand)]
-enum Command {
+enum CliCommand {
     /// Open the console (also the default without a command)
-    Console(console::Arguments),
+    Console(console::ConsoleArguments),
     /// Run the control loop without a window, then print its timing and errors
-    Run(run::Arguments),
+    Run(run::RunArguments),
     /// Replay a recorded session through the same loop and compare every tick, or change one setting
-    Replay(replay::Arguments),
+    Replay(replay::ReplayArguments),
     /// Write a recorded session as a table, or an excerpt as a separate session
-    Export(export::Arguments),
+    Export(export::ExportArguments),
     /// List, keep or delete recorded sessions
-    Sessions(sessions::Arguments),
+    Sessions(sessions::SessionsArguments),
     /// Write a report page about recorded sessions: events, times and problems
-    Report(report::Arguments),
+    Report(report::ReportArguments),
     /// Manage the rigs of a department: certificates, shared rigs, remote viewing and recording
     #[command(subcommand, arg_required_else_help = false)]
     Department(department::DepartmentCommand),
     /// List connected devices and test them; print cause and remedy of each problem
-    Devices(devices::Arguments),
+    Devices(devices::DevicesArguments),
     /// Calibrate from a file, or calibrate a whole emulated rig; print held-out errors and a verdict
     #[command(subcommand, arg_required_else_help = false)]
     Calibrate(calibrate::CalibrateCommand),
@@ -82,9 +82,9 @@ enum Command {
     #[command(subcommand, arg_required_else_help = false)]
     Evaluate(evaluate::EvaluateCommand),
     /// Print the shell script that completes the commands and options of `nima`
-    Completions(shells::CompletionsArguments),
+    Completions(completions::CompletionsArguments),
     /// Write the manual pages of all commands into a folder
-    Man(shells::ManArguments),
+    Man(completions::ManArguments),
 }
 
 /// The command line, with the commands of this build's extras.
@@ -97,21 +97,21 @@ fn usage(error: &clap::Error) -> ExitCode {
     if let Some(ContextValue::String(name)) = error.get(ContextKind::InvalidSubcommand)
         && let Some(words) = extras::absent_command(&command_line(), name)
     {
-        tell(format_args!("nima: {words}"));
+        print_line(format_args!("nima: {words}"));
         return ExitCode::FAILURE;
     }
     let text = error.to_string();
     let complaint = text.lines().take_while(|line| !line.starts_with("Usage:")).collect::<Vec<_>>().join(" ");
     let complaint = one_line(&complaint);
     let complaint = complaint.trim_start_matches("error: ").trim_end_matches(" For more information, try '--help'.");
-    tell(format_args!("nima: {complaint}; see --help"));
+    print_line(format_args!("nima: {complaint}; see --help"));
     ExitCode::from(2)
 }
 
 /// Folds text from files and devices into one line of limited length.
 fn one_line(text: &str) -> String {
-    const MOST: usize = 2000;
-    shortened(&text.split_whitespace().collect::<Vec<_>>().join(" "), MOST)
+    const MAX: usize = 2000;
+    shortened(&text.split_whitespace().collect::<Vec<_>>().join(" "), MAX)
 }
 
 /// Runs the command line of this process.
@@ -131,13 +131,13 @@ pub fn main() -> ExitCode {
             // One line: the chain of causes is joined, line breaks in foreign messages are folded.
             let line = one_line(&format!("{error:#}"));
             if error.is::<crate::console::NoWindow>() {
-                tell(format_args!(
+                print_line(format_args!(
                     "nima: cannot open a window ({line}); start nima on a desktop, or use `nima run` in this \
                      terminal"
                 ));
                 return ExitCode::from(NO_WINDOW);
             }
-            tell(format_args!("nima: {line}"));
+            print_line(format_args!("nima: {line}"));
             ExitCode::FAILURE
         }
     }
@@ -146,20 +146,20 @@ pub fn main() -> ExitCode {
 /// Runs a command that every build has.
 fn run_own(given: &ArgMatches) -> anyhow::Result<()> {
     let command = extras::given(given).transpose()?;
-    match command.unwrap_or_else(|| Command::Console(console::Arguments::default())) {
-        Command::Console(arguments) => console::run(&arguments),
-        Command::Run(arguments) => run::run(&arguments),
-        Command::Replay(arguments) => replay::run(&arguments),
-        Command::Export(arguments) => export::run(&arguments),
-        Command::Sessions(arguments) => sessions::run(&arguments),
-        Command::Report(arguments) => report::run(&arguments),
-        Command::Department(command) => department::run(&command),
-        Command::Devices(arguments) => devices::run(&arguments),
-        Command::Calibrate(calibrate) => calibrate::run(&calibrate),
-        Command::Check(check) => check::run(&check),
-        Command::Train(train) => train::run(&train),
-        Command::Evaluate(evaluate) => evaluate::run(&evaluate),
-        Command::Completions(arguments) => shells::completions(&arguments),
-        Command::Man(arguments) => shells::man(&arguments),
+    match command.unwrap_or_else(|| CliCommand::Console(console::ConsoleArguments::default())) {
+        CliCommand::Console(arguments) => console::run(&arguments),
+        CliCommand::Run(arguments) => run::run(&arguments),
+        CliCommand::Replay(arguments) => replay::run(&arguments),
+        CliCommand::Export(arguments) => export::run(&arguments),
+        CliCommand::Sessions(arguments) => sessions::run(&arguments),
+        CliCommand::Report(arguments) => report::run(&arguments),
+        CliCommand::Department(command) => department::run(&command),
+        CliCommand::Devices(arguments) => devices::run(&arguments),
+        CliCommand::Calibrate(calibrate) => calibrate::run(&calibrate),
+        CliCommand::Check(check) => check::run(&check),
+        CliCommand::Train(train) => train::run(&train),
+        CliCommand::Evaluate(evaluate) => evaluate::run(&evaluate),
+        CliCommand::Completions(arguments) => completions::completions(&arguments),
+        CliCommand::Man(arguments) => completions::man(&arguments),
     }
 }

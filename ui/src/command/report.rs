@@ -5,10 +5,10 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::output;
-use crate::{report, telling::tell};
+use crate::{report, stderr::print_line};
 
 #[derive(Debug, Args)]
-pub(super) struct Arguments {
+pub(super) struct ReportArguments {
     /// Session files written by `nima run --record` or the console; several are compared
     #[arg(required = true, value_name = "SESSION.mcap")]
     sessions: Vec<PathBuf>,
@@ -21,8 +21,8 @@ pub(super) struct Arguments {
     json: bool,
 }
 
-pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    let Arguments { sessions, out, json } = arguments;
+pub(super) fn run(arguments: &ReportArguments) -> anyhow::Result<()> {
+    let ReportArguments { sessions, out, json } = arguments;
     if let (Some(out), false) = (out, json) {
         let page = report::write(sessions, out)?;
         return output::line(&format!("written: {}", page.display()));
@@ -30,7 +30,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let figures = report::read(sessions)?;
     if let Some(out) = out {
         let page = report::write_figures(&figures, sessions, out)?;
-        tell(format_args!("nima: written: {}", page.display()));
+        print_line(format_args!("nima: written: {}", page.display()));
     }
     output::json(&serde_json::json!({ "sessions": figures }))
 }

@@ -7,16 +7,16 @@ use clap::Args;
 use nima_files::quoted;
 use nima_recording::{session::ReadError, store::Store};
 use nima_session::{
-    file::{self, Recorded},
-    plotted,
-    shelf::{MOST_BYTES, Shelf, Shelved, keep},
+    file::{self, RecordedFile},
+    plot_channels,
+    session_store::{MAX_BYTES, SessionStore, StoredSession, keep},
 };
 use serde::Serialize;
 
 use super::output;
 
 #[derive(Debug, Args)]
-pub(super) struct Arguments {
+pub(super) struct SessionsArguments {
     /// Delete this session
     #[arg(long, value_name = "NAME", group = "one")]
     delete: Option<String>,
@@ -31,11 +31,11 @@ pub(super) struct Arguments {
     json: bool,
 }
 
-pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+pub(super) fn run(arguments: &SessionsArguments) -> anyhow::Result<()> {
     let store = Store::of_user()?;
     let folder = store.folder().parent().context("no folder for your files was found; set NIMA_DATA_DIR")?;
-    let shelf = Shelf::new(folder.join("sessions"), MOST_BYTES);
-    let Arguments { delete, keep: kept, unkeep, json } = arguments;
+    let shelf = SessionStore::new(folder.join("sessions"), MAX_BYTES);
+    let SessionsArguments { delete, keep: kept, unkeep, json } = arguments;
     if let Some(name) = delete {
         return delete_one(&shelf, name);
     }
@@ -45,13 +45,13 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         let words = if kept { "is kept" } else { "is no longer kept: it can be deleted to make room for new sessions" };
         return output::line(&format!("{} {words}", session.path.display()));
     }
-    let listed = Listed::of(&shelf)?;
-    if *json { output::json(&listed) } else { output::line(&listed.in_words()) }
+    let listed = ListedSession::of(&shelf)?;
+    if *json { output::json(&listed) } else { output::line(&listed.as_text()) }
 }
 
 /// Finds a session by its file name, with or without the extension.
-fn find(shelf: &Shelf, name: &str) -> anyhow::Result<Shelved> {
-    let is_it = |session: &Shelved| {
+fn find(shelf: &SessionStore, name: &str) -> anyhow::Result<StoredSession> {
+    let is_it = |session: &StoredSession| {
         let path = &session.path;
         [path.file_name(), path.file_stem()].into_iter().flatten().any(|known| known == name)
     };
@@ -65,12 +65,12 @@ fn find(shelf: &Shelf, name: &str) -> anyhow::Result<Shelved> {
     })
 }
 
-fn sessions(shelf: &Shelf) -> anyhow::Result<Vec<Shelved>> {
+fn sessions(shelf: &SessionStore) -> anyhow::Result<Vec<StoredSession>> {
     shelf.sessions().with_context(|| format!("cannot read the folder {}", shelf.folder().display()))
 }
 
-fn delete_one(shelf: &Shelf, name: &str) -> anyhow::Result<()> {
-    let Shelved { path, kept, writing, .. } = find(shelf, name)?;
+fn delete_one(shelf: &SessionStore, name: &str) -> anyhow::Result<()> {
+    let StoredSession { path, kept, writing, .. } = find(shelf, name)?;
     if writing {
         bail!("session {} is being recorded: end the program that records it first", path.display());
     }
@@ -82,30 +82,31 @@ fn delete_one(shelf: &Shelf, name: &str) -> anyhow::Result<()> {
 }
 
 #[derive(Serialize)]
-struct Listed {
+struct ListedSession {
     folder: PathBuf,
-    sessions: Vec<One>,
+    sessions: Vec<SessionReport>,
     bytes: u64,
     /// Size of all sessions that are not kept.
     loose_bytes: u64,
-    most_loose_bytes: u64,
+    #[serde(rename = "most_loose_bytes")]
+    max_loose_bytes: u64,
 }
 
 #[derive(Serialize)]
-struct One {
+struct SessionReport {
     name: String,
     bytes: u64,
     kept: bool,
     /// `recording`, `closed`, `stretch`, `not closed` or `damaged`.
     state: &'static str,
     #[serde(flatten)]
-    about: Option<About>,
+    about: Option<SessionListing>,
     #[serde(skip_serializing_if = "Option::is_none")]
     trouble: Option<String>,
 }
 
 #[derive(Serialize)]
-struct About {
+struct SessionListing {
     started: Option<String>,
     rig: Option<String>,
     seconds: f64,
@@ -122,24 +123,24 @@ struct LastFault {
     words: String,
 }
 
-impl Listed {
-    fn of(shelf: &Shelf) -> anyhow::Result<Self> {
+impl ListedSession {
+    fn of(shelf: &SessionStore) -> anyhow::Result<Self> {
         let all = sessions(shelf)?;
-        let sum = |sessions: &mut dyn Iterator<Item = &Shelved>| sessions.map(|session| session.bytes).sum();
+        let sum = |sessions: &mut dyn Iterator<Item = &StoredSession>| sessions.map(|session| session.bytes).sum();
         Ok(Self {
             folder: shelf.folder().to_owned(),
             bytes: sum(&mut all.iter()),
             loose_bytes: sum(&mut all.iter().filter(|session| !session.kept)),
-            most_loose_bytes: MOST_BYTES,
-            sessions: all.iter().map(One::of).collect(),
+            max_loose_bytes: MAX_BYTES,
+            sessions: all.iter().map(SessionReport::of).collect(),
         })
     }
 
-    fn in_words(&self) -> String {
-        let Self { folder, sessions, bytes, loose_bytes, most_loose_bytes } = self;
+    fn as_text(&self) -> String {
+        let Self { folder, sessions, bytes, loose_bytes, max_loose_bytes } = self;
         let mut text = String::new();
         for session in sessions {
-            text += &session.in_words();
+            text += &session.as_text();
         }
         let megabytes = |bytes: u64| bytes as f64 * 1e-6;
         write!(
@@ -150,17 +151,17 @@ impl Listed {
             folder.display(),
             megabytes(*bytes),
             megabytes(*loose_bytes),
-            megabytes(*most_loose_bytes),
+            megabytes(*max_loose_bytes),
         )
         .ok();
         text
     }
 }
 
-impl One {
-    fn of(session: &Shelved) -> Self {
-        let Shelved { path, bytes, kept, writing, .. } = session;
-        let read = About::of(session);
+impl SessionReport {
+    fn of(session: &StoredSession) -> Self {
+        let StoredSession { path, bytes, kept, writing, .. } = session;
+        let read = SessionListing::of(session);
         let state = match &read {
             _ if *writing => "recording",
             Ok(about) if about.closed => "closed",
@@ -173,15 +174,15 @@ impl One {
         Self { name, bytes: *bytes, kept: *kept, state, about: read.ok(), trouble }
     }
 
-    fn in_words(&self) -> String {
+    fn as_text(&self) -> String {
         let Self { name, bytes, kept, state, about, trouble } = self;
         let mut text = format!("{name}: {state}, {:.1} MB", *bytes as f64 * 1e-6);
         if *kept {
             text += ", kept";
         }
-        if let Some(About { started, rig, seconds, last_fault, .. }) = about {
+        if let Some(SessionListing { started, rig, seconds, last_fault, .. }) = about {
             let [started, rig] =
-                [started, rig].map(|told| told.as_deref().map_or_else(|| "unknown".to_owned(), quoted));
+                [started, rig].map(|report| report.as_deref().map_or_else(|| "unknown".to_owned(), quoted));
             write!(text, ", {seconds:.1} s, started {started}, rig \"{rig}\"").ok();
             if let Some(LastFault { t_s, words }) = last_fault {
                 write!(text, ", last fault at {t_s:.1} s: {}", quoted(words)).ok();
@@ -194,15 +195,15 @@ impl One {
     }
 }
 
-impl About {
-    fn of(session: &Shelved) -> Result<Self, ReadError> {
-        let file = Recorded::open(&session.path)?;
+impl SessionListing {
+    fn of(session: &StoredSession) -> Result<Self, ReadError> {
+        let file = RecordedFile::open(&session.path)?;
         let reader = file.reader();
-        let begin_ns = plotted::beginning_ns(reader)?;
+        let begin_ns = plot_channels::beginning_ns(reader)?;
         let since = |time_ns: u64| time_ns.saturating_sub(begin_ns) as f64 / 1e9;
         let about = file.about()?;
         let seconds = about.length_s();
-        let file::About { started, rig, stretch_from_s, .. } = about;
+        let file::SessionInfo { started, rig, stretch_from_s, .. } = about;
         let fault = file.last_fault()?.map(|(time_ns, words)| LastFault { t_s: since(time_ns), words });
         Ok(Self { started, rig, seconds, stretch_from_s, last_fault: fault, closed: file.is_closed()? })
     }

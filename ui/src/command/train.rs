@@ -9,22 +9,22 @@ use std::{
 use anyhow::anyhow;
 use clap::{Args, Subcommand};
 use indicatif::{ProgressBar, ProgressStyle};
-use nima_core::tip_force::{Model, TrainingSettings};
+use nima_core::tip_force::{ForceModel, TrainingSettings};
 use nima_recording::tip_force::{DataSet, Selection, TipForceError, save_model};
-use nima_training::{Progress, train_model};
+use nima_training::{TrainingProgress, train_model};
 use serde::Serialize;
 
 use super::output;
-use crate::leaving::Leave;
+use crate::shutdown::Leave;
 
 #[derive(Debug, Subcommand)]
 pub(super) enum TrainCommand {
     /// Train the network that removes the trocar's friction from the wrist force
-    TipForce(TipForce),
+    TipForce(TrainTipForce),
 }
 
 #[derive(Debug, Args)]
-pub(super) struct TipForce {
+pub(super) struct TrainTipForce {
     /// CSV files with named columns (see --inputs); rows with the same `trajectory` number form a trajectory; without this
     /// column, each file is one
     #[arg(required = true, value_name = "DATA.csv")]
@@ -66,12 +66,12 @@ pub(super) struct TipForce {
 }
 
 #[derive(Serialize)]
-struct Report<'a> {
+struct TrainReport<'a> {
     model: String,
     inputs: &'a [String],
     outputs: &'a [String],
     seconds: f64,
-    origin: &'a nima_core::tip_force::Origin,
+    origin: &'a nima_core::tip_force::ModelOrigin,
 }
 
 pub(super) fn run(command: &TrainCommand) -> anyhow::Result<()> {
@@ -99,10 +99,16 @@ pub(super) fn run(command: &TrainCommand) -> anyhow::Result<()> {
     save_model(&model, &arguments.out)?;
     let seconds = start.elapsed().as_secs_f64();
     if arguments.json {
-        let Model { inputs, outputs, origin, .. } = &model;
-        return output::json(&Report { model: arguments.out.display().to_string(), inputs, outputs, seconds, origin });
+        let ForceModel { inputs, outputs, origin, .. } = &model;
+        return output::json(&TrainReport {
+            model: arguments.out.display().to_string(),
+            inputs,
+            outputs,
+            seconds,
+            origin,
+        });
     }
-    output::line(&in_words(&model, arguments, seconds))
+    output::line(&as_text(&model, arguments, seconds))
 }
 
 fn bar(hidden: bool) -> ProgressBar {
@@ -114,14 +120,14 @@ fn bar(hidden: bool) -> ProgressBar {
 }
 
 /// If a member stops early, its part of the bar is complete.
-fn show(bar: &ProgressBar, progress: &Progress) {
+fn show(bar: &ProgressBar, progress: &TrainingProgress) {
     bar.set_length((progress.epochs_max * progress.members) as u64);
     bar.inc(if progress.finished { (progress.epochs_max - progress.epoch + 1) as u64 } else { 1 });
     bar.set_message(format!("network {}: held-out loss {:.4}", progress.member + 1, progress.best));
 }
 
 /// Writing to a String cannot fail.
-fn in_words(model: &Model, arguments: &TipForce, seconds: f64) -> String {
+fn as_text(model: &ForceModel, arguments: &TrainTipForce, seconds: f64) -> String {
     let origin = &model.origin;
     let losses: Vec<String> = origin.figures.iter().map(|f| format!("{:.4}", f.validation_loss)).collect();
     let mut text = format!(

@@ -3,7 +3,9 @@
 //! The noise of every value in a device's readings is learned while the device is at rest. A device is active while one of
 //! its values changes by clearly more than its noise, and by more than accidental motion.
 
-use nima_machine::rig::{CHANNELS, DEVICES_MAX, Gauge, Gauges, Part, PartKind, RosterEntry, Spread, checkup::least};
+use nima_machine::rig::{
+    CHANNELS, DEVICES_MAX, Gauge, GaugeSpread, Gauges, PartKind, RigPart, RosterEntry, checkup::min,
+};
 
 /// Blocks of 0.1 s from which the noise is learned before a change counts.
 const LEARNING: u32 = 4;
@@ -19,7 +21,7 @@ const LIT_S: f64 = 0.5;
 
 /// One value of a device's readings.
 #[derive(Clone, Copy, Debug, Default)]
-struct Usual {
+struct UsualNumber {
     blocks: u32,
     /// Rest position.
     mean: f64,
@@ -27,9 +29,9 @@ struct Usual {
     noise: f64,
 }
 
-impl Usual {
+impl UsualNumber {
     /// Ratio of this block's change to the threshold; above 1 the change counts.
-    fn follow(&mut self, block: &Spread, least: f64) -> f64 {
+    fn follow(&mut self, block: &GaugeSpread, min: f64) -> f64 {
         if block.count == 0 {
             return 0.0;
         }
@@ -41,8 +43,8 @@ impl Usual {
             self.noise = if self.blocks == 1 { noise } else { self.noise.min(noise) };
             return 0.0;
         }
-        let apart = (mean - self.mean).abs() / (least + APART * self.noise);
-        let wide = block.extent() / (least + WIDE * self.noise);
+        let apart = (mean - self.mean).abs() / (min + APART * self.noise);
+        let wide = block.extent() / (min + WIDE * self.noise);
         let change = apart.max(wide);
         if change > 1.0 {
             // The new value can be the next rest position.
@@ -57,24 +59,24 @@ impl Usual {
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Device {
+struct DeviceActivity {
     kind: Option<PartKind>,
-    channels: [Usual; CHANNELS],
+    channels: [UsualNumber; CHANNELS],
     /// Time of the last activity, s on the loop's clock, and the index of the value that changed.
     active: Option<(f64, usize)>,
 }
 
-impl Device {
+impl DeviceActivity {
     fn follow(&mut self, gauge: &Gauge, at_s: f64) {
         let Some(kind) = self.kind else { return };
-        let mut most = (1.0, None);
+        let mut max = (1.0, None);
         for (channel, (usual, block)) in self.channels.iter_mut().zip(&gauge.channels).enumerate() {
-            let change = usual.follow(block, least(kind, channel));
-            if change > most.0 {
-                most = (change, Some(channel));
+            let change = usual.follow(block, min(kind, channel));
+            if change > max.0 {
+                max = (change, Some(channel));
             }
         }
-        if let (_, Some(channel)) = most {
+        if let (_, Some(channel)) = max {
             self.active = Some((at_s, channel));
         }
     }
@@ -82,17 +84,18 @@ impl Device {
 
 #[derive(Debug)]
 pub(crate) struct Activity {
-    devices: Box<[Device; DEVICES_MAX]>,
+    devices: Box<[DeviceActivity; DEVICES_MAX]>,
     now_s: f64,
 }
 
 impl Activity {
     pub(crate) fn of(roster: &[RosterEntry]) -> Self {
-        Self::of_kinds(|place| roster.get(place).and_then(|entry| entry.part).map(Part::kind))
+        Self::of_kinds(|place| roster.get(place).and_then(|entry| entry.part).map(RigPart::kind))
     }
 
     fn of_kinds(kind: impl Fn(usize) -> Option<PartKind>) -> Self {
-        let device = |place| Device { kind: kind(place), channels: [Usual::default(); CHANNELS], active: None };
+        let device =
+            |place| DeviceActivity { kind: kind(place), channels: [UsualNumber::default(); CHANNELS], active: None };
         Self { devices: Box::new(std::array::from_fn(device)), now_s: 0.0 }
     }
 
@@ -125,13 +128,13 @@ mod tests {
     const KINDS: [PartKind; 5] =
         [PartKind::Handle, PartKind::Handle, PartKind::Sensor, PartKind::Sensor, PartKind::Pedal];
 
-    struct Bench {
+    struct Fixture {
         activity: Activity,
         samples: u64,
         block: u32,
     }
 
-    impl Bench {
+    impl Fixture {
         fn new() -> Self {
             let activity = Activity::of_kinds(|place| KINDS.get(place).copied());
             let mut this = Self { activity, samples: 0, block: 0 };
@@ -154,7 +157,7 @@ mod tests {
                         self.samples += 1;
                         // Uniform, without a pattern within a block.
                         let even = (self.samples * self.samples % 9973) as f64 / 9973.0 - 0.5;
-                        let noise = if kind == PartKind::Pedal { 0.0 } else { 0.6 * least(kind, channel) * even };
+                        let noise = if kind == PartKind::Pedal { 0.0 } else { 0.6 * min(kind, channel) * even };
                         gauges.devices[place].channels[channel].add(1.0 + noise + moved(place, channel, t_s));
                     }
                 }
@@ -167,7 +170,7 @@ mod tests {
     #[test]
     fn the_handle_that_is_moved_lights_up_and_no_other() {
         for hand in [0, 1] {
-            let mut bench = Bench::new();
+            let mut bench = Fixture::new();
             let since_s = 2.0;
             // 1 cm back and forth, twice per second.
             let to_and_fro = |place, channel, t_s: f64| {
@@ -183,12 +186,12 @@ mod tests {
 
     #[test]
     fn a_push_that_stays_is_seen_once_and_a_slow_one_too() {
-        let mut bench = Bench::new();
+        let mut bench = Fixture::new();
         let pushed = |place, channel, _| if (place, channel) == (3, 2) { 2.0 } else { 0.0 };
         assert_eq!(bench.block(pushed), [(3, 2)]);
         let still: Vec<_> = (0..20).map(|_| bench.block(pushed).len()).collect();
         assert_eq!(still[19], 0, "a load that rests is no change: {still:?}");
-        let mut bench = Bench::new();
+        let mut bench = Fixture::new();
         // 3 N per second.
         let rising = |place, channel, t_s: f64| if (place, channel) == (2, 0) { 3.0 * (t_s - 2.0) } else { 0.0 };
         let seen: Vec<_> = (0..10).map(|_| bench.block(rising)).collect();
@@ -197,7 +200,7 @@ mod tests {
 
     #[test]
     fn a_pedal_lights_up_when_it_is_pressed_and_when_it_is_released() {
-        let mut bench = Bench::new();
+        let mut bench = Fixture::new();
         let pressed = |place, _, _| if place == 4 { 1.0 } else { 0.0 };
         assert_eq!(bench.block(pressed)[0].0, 4);
         (0..10).for_each(|_| drop(bench.block(pressed)));
@@ -207,7 +210,7 @@ mod tests {
 
     #[test]
     fn a_device_that_shakes_all_the_time_becomes_quiet() {
-        let mut bench = Bench::new();
+        let mut bench = Fixture::new();
         let shaking = |place, channel, t_s: f64| {
             if (place, channel) == (2, 0) { (300.0 * t_s).sin() } else { 0.0 }
         };

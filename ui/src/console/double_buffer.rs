@@ -1,7 +1,7 @@
 //! A moving image on the screen.
 
 use egui::{ColorImage, Context, TextureHandle, TextureId, TextureOptions};
-use nima_endoscope::Picture;
+use nima_endoscope::DecodedImage;
 
 /// Two textures: one is shown while the other is written. With a software renderer, its threads may still read the previous
 /// frame, and would show parts of both images.
@@ -13,8 +13,8 @@ pub(crate) struct DoubleBuffer {
 
 impl DoubleBuffer {
     /// Uploads an image, which is shown from now on.
-    pub(crate) fn upload(&mut self, ctx: &Context, name: &str, picture: &Picture) {
-        let image = ColorImage::from_rgba_premultiplied(picture.size_px, &picture.rgba);
+    pub(crate) fn upload(&mut self, ctx: &Context, name: &str, decoded: &DecodedImage) {
+        let image = ColorImage::from_rgba_premultiplied(decoded.size_px, &decoded.rgba);
         self.front = 1 - self.front;
         let back = &mut self.textures[self.front];
         match back {
@@ -37,10 +37,10 @@ mod tests {
     fn what_was_shown_before_is_not_written() {
         let ctx = Context::default();
         let mut buffer = DoubleBuffer::default();
-        let picture = Picture { size_px: [1, 1], rgba: vec![255; 4] };
+        let decoded = DecodedImage { size_px: [1, 1], rgba: vec![255; 4] };
         assert_eq!(buffer.id(), None);
         let ids = [(); 4].map(|()| {
-            buffer.upload(&ctx, "test", &picture);
+            buffer.upload(&ctx, "test", &decoded);
             buffer.id().unwrap()
         });
         assert!(ids[0] != ids[1] && ids[..2] == ids[2..], "{ids:?}");

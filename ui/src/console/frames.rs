@@ -23,20 +23,20 @@ const TICKS_PER_S: f64 = 100.0;
 
 /// Percentiles of durations, ms.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Spread {
+pub struct FrameSpread {
     pub p50: f64,
     pub p90: f64,
     pub p99: f64,
     pub max: f64,
 }
 
-impl Spread {
+impl FrameSpread {
     /// Percentiles of these durations (ms); zeros if there are none.
     pub fn of(durations_ms: &[f64]) -> Self {
         let mut sorted = durations_ms.to_vec();
         sorted.sort_by(f64::total_cmp);
-        let at = |share: f64| {
-            let place = (share * sorted.len() as f64).ceil() as usize;
+        let at = |fraction: f64| {
+            let place = (fraction * sorted.len() as f64).ceil() as usize;
             sorted.get(place.saturating_sub(1)).copied().unwrap_or(0.0)
         };
         Self { p50: at(0.5), p90: at(0.9), p99: at(0.99), max: at(1.0) }
@@ -57,23 +57,26 @@ pub struct Processor {
 
 /// Results of a run.
 #[derive(Clone, Debug, Serialize)]
-pub struct Figures {
+pub struct FrameFigures {
     /// Name of the OpenGL renderer.
     pub renderer: String,
     /// Time from the start of the process to the first frame that shows a tick, s.
-    pub first_live_picture_s: Option<f64>,
+    #[serde(rename = "first_live_picture_s")]
+    pub first_live_image_s: Option<f64>,
     /// Duration of the measurement, s.
     pub seconds: f64,
     /// Number of frames in that time.
-    pub pictures: usize,
+    #[serde(rename = "pictures")]
+    pub images: usize,
     /// Time between two frames, while a side was engaged, ms.
-    pub period_ms: Spread,
+    pub period_ms: FrameSpread,
     /// Work of a frame on the window's thread, without displaying it: layout, triangles, driver calls, ms.
-    pub work_ms: Spread,
+    pub work_ms: FrameSpread,
     /// The program's own part of it: panels and plots, without triangles and driver, ms.
-    pub layout_ms: Spread,
+    pub layout_ms: FrameSpread,
     /// Fraction of the window that was redrawn, 0 to 1, mean over the frames.
-    pub drawn_share: f64,
+    #[serde(rename = "drawn_share")]
+    pub drawn_fraction: f64,
     /// Processor time over the same period.
     pub processor: Processor,
     /// Load average of the computer (last minute) at the end.
@@ -83,7 +86,7 @@ pub struct Figures {
 }
 
 #[derive(Debug)]
-pub struct Meter {
+pub struct FrameMeter {
     opened: Instant,
     /// Time after the window opened at which measuring starts.
     from: Duration,
@@ -98,17 +101,17 @@ pub struct Meter {
 }
 
 #[derive(Clone, Copy, Debug)]
-pub struct Picture {
+pub struct FrameMeasurement {
     /// Time since the previous frame, if that one requested this one; `None` while nothing moves.
     pub period: Option<Duration>,
     /// Work of the previous frame, s.
     pub work_s: Option<f64>,
     /// Fraction of the window that the previous frame redrew, 0 to 1.
-    pub drawn_share: f64,
+    pub drawn_fraction: f64,
     pub live: bool,
 }
 
-impl Meter {
+impl FrameMeter {
     /// Starts to measure a window that opens now and closes after `exit_after`, if that is known.
     pub fn new(exit_after: Option<Duration>) -> Self {
         let from = exit_after.map_or(WARM_UP, |exit| exit.saturating_sub(LAST)).max(WARM_UP);
@@ -128,10 +131,10 @@ impl Meter {
 
     /// Records the start of a frame. Returns true if another frame is needed at once: only its start shows when this one
     /// reached the screen.
-    pub fn begin(&mut self, picture: &Picture) -> bool {
+    pub fn begin(&mut self, image: &FrameMeasurement) -> bool {
         if std::mem::take(&mut self.live_pending) {
             self.first_live_s = age_s().or_else(|| Some(self.opened.elapsed().as_secs_f64()));
-        } else if picture.live && self.first_live_s.is_none() {
+        } else if image.live && self.first_live_s.is_none() {
             self.live_pending = true;
         }
         let open = self.opened.elapsed();
@@ -142,9 +145,9 @@ impl Meter {
             if self.began.is_none() {
                 self.began = Some((Instant::now(), threads_s()));
             }
-            self.periods_ms.extend(picture.period.map(|period| period.as_secs_f64() * 1e3));
-            self.work_ms.extend(picture.work_s.map(|work_s| work_s * 1e3));
-            self.drawn.push(picture.drawn_share);
+            self.periods_ms.extend(image.period.map(|period| period.as_secs_f64() * 1e3));
+            self.work_ms.extend(image.work_s.map(|work_s| work_s * 1e3));
+            self.drawn.push(image.drawn_fraction);
         }
         self.live_pending
     }
@@ -157,18 +160,18 @@ impl Meter {
     }
 
     /// `renderer`: name of the OpenGL renderer.
-    pub fn figures(&self, renderer: &str) -> Figures {
+    pub fn figures(&self, renderer: &str) -> FrameFigures {
         let seconds = self.began.as_ref().map_or(0.0, |(began, _)| began.elapsed().as_secs_f64());
         let before = self.began.as_ref().map(|(_, threads_s)| threads_s.clone()).unwrap_or_default();
-        Figures {
+        FrameFigures {
             renderer: renderer.to_owned(),
-            first_live_picture_s: self.first_live_s,
+            first_live_image_s: self.first_live_s,
             seconds,
-            pictures: self.drawn.len(),
-            period_ms: Spread::of(&self.periods_ms),
-            work_ms: Spread::of(&self.work_ms),
-            layout_ms: Spread::of(&self.layout_ms),
-            drawn_share: self.drawn.iter().sum::<f64>() / self.drawn.len().max(1) as f64,
+            images: self.drawn.len(),
+            period_ms: FrameSpread::of(&self.periods_ms),
+            work_ms: FrameSpread::of(&self.work_ms),
+            layout_ms: FrameSpread::of(&self.layout_ms),
+            drawn_fraction: self.drawn.iter().sum::<f64>() / self.drawn.len().max(1) as f64,
             processor: Processor::between(&before, &threads_s(), seconds),
             load: first_number("/proc/loadavg").unwrap_or(0.0),
             resident_mb: self.resident_mb.iter().copied().chain([resident_mb()]).collect(),
@@ -180,11 +183,11 @@ impl Processor {
     /// Fractions of one core, from two readings of the threads' times (s), `seconds` apart. A thread that started in between
     /// counts from zero; one that has ended is not included.
     fn between(before: &BTreeMap<String, f64>, now: &BTreeMap<String, f64>, seconds: f64) -> Self {
-        let share = |(name, time_s): (&String, &f64)| {
+        let fraction = |(name, time_s): (&String, &f64)| {
             let used_s = (time_s - before.get(name).copied().unwrap_or(0.0)).max(0.0);
             (name.clone(), if seconds > 0.0 { used_s / seconds } else { 0.0 })
         };
-        let threads: BTreeMap<String, f64> = now.iter().map(share).collect();
+        let threads: BTreeMap<String, f64> = now.iter().map(fraction).collect();
         let process: f64 = threads.values().sum();
         let machine: f64 = MACHINE.iter().filter_map(|name| threads.get(*name)).sum();
         Self { process, window: process - machine, machine, threads }
@@ -239,8 +242,8 @@ mod tests {
     #[test]
     fn percentiles_are_members_of_what_was_measured() {
         let durations: Vec<f64> = (1..=200).rev().map(f64::from).collect();
-        assert_eq!(Spread::of(&durations), Spread { p50: 100.0, p90: 180.0, p99: 198.0, max: 200.0 });
-        assert_eq!(Spread::of(&[]), Spread::default());
+        assert_eq!(FrameSpread::of(&durations), FrameSpread { p50: 100.0, p90: 180.0, p99: 198.0, max: 200.0 });
+        assert_eq!(FrameSpread::of(&[]), FrameSpread::default());
     }
 
     #[test]
@@ -267,12 +270,12 @@ mod tests {
 
     #[test]
     fn the_first_live_picture_is_told_when_it_stands() {
-        let mut meter = Meter::new(None);
-        let picture = |live| Picture { period: None, work_s: None, drawn_share: 1.0, live };
-        assert!(!meter.begin(&picture(false)));
-        assert!(meter.begin(&picture(true)), "its end is seen by the beginning of the next");
-        assert!(meter.figures("").first_live_picture_s.is_none());
-        assert!(!meter.begin(&picture(true)));
-        assert!(meter.figures("").first_live_picture_s.is_some());
+        let mut meter = FrameMeter::new(None);
+        let image = |live| FrameMeasurement { period: None, work_s: None, drawn_fraction: 1.0, live };
+        assert!(!meter.begin(&image(false)));
+        assert!(meter.begin(&image(true)), "its end is seen by the beginning of the next");
+        assert!(meter.figures("").first_live_image_s.is_none());
+        assert!(!meter.begin(&image(true)));
+        assert!(meter.figures("").first_live_image_s.is_some());
     }
 }

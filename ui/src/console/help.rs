@@ -63,7 +63,7 @@ impl Help {
             ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
                 ui.label(RichText::new(KEYS_HEADING.get()).font(theme::strong(16.0)));
                 for entry in table().iter().filter(|entry| !entry.keys.is_empty()) {
-                    key_ui(ui, &entry.keys_told(), &key_meaning(&entry.title, entry.does));
+                    key_ui(ui, &entry.keys_text(), &key_meaning(&entry.title, entry.does));
                 }
                 for (key, meaning) in BY_HAND {
                     key_ui(ui, key.get(), meaning.get());

@@ -21,13 +21,13 @@ const GAP_S: f64 = 0.05;
 
 /// A signal to be drawn: points with rising x, in runs separated by gaps.
 #[derive(Clone, Debug, Default)]
-pub struct Trace {
+pub struct PlotTrace {
     points: Vec<PlotPoint>,
     /// Index of the first point of each run except the first.
     breaks: Vec<usize>,
 }
 
-impl Trace {
+impl PlotTrace {
     /// The runs, oldest first, each without a gap.
     pub fn runs(&self) -> impl Iterator<Item = &[PlotPoint]> {
         let begins = std::iter::once(0).chain(self.breaks.iter().copied());
@@ -37,14 +37,14 @@ impl Trace {
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Bucket {
+struct HistoryBucket {
     low: [f32; CHANNELS],
     high: [f32; CHANNELS],
     /// One bit per channel: the minimum came before the maximum.
     low_first: u8,
 }
 
-impl Bucket {
+impl HistoryBucket {
     const EMPTY: Self = Self { low: [f32::INFINITY; CHANNELS], high: [f32::NEG_INFINITY; CHANNELS], low_first: 0 };
 
     fn add(&mut self, values: &[f32; CHANNELS]) {
@@ -67,14 +67,14 @@ impl Bucket {
 }
 
 #[derive(Debug)]
-struct Level {
+struct HistoryLevel {
     span_s: f64,
     /// Number of the first stored bucket, counted from time zero.
     first: u64,
-    buckets: VecDeque<Bucket>,
+    buckets: VecDeque<HistoryBucket>,
 }
 
-impl Level {
+impl HistoryLevel {
     fn new(span_s: f64) -> Self {
         Self { span_s, first: 0, buckets: VecDeque::with_capacity(CAPACITY) }
     }
@@ -96,7 +96,7 @@ impl Level {
                 self.buckets.pop_front();
                 self.first += 1;
             }
-            self.buckets.push_back(Bucket::EMPTY);
+            self.buckets.push_back(HistoryBucket::EMPTY);
         }
         let place = number.checked_sub(self.first).and_then(|place| self.buckets.get_mut(place as usize));
         if let Some(bucket) = place {
@@ -109,7 +109,7 @@ impl Level {
     }
 
     /// Stored buckets that overlap `from_s..=to_s`, with the start time of each.
-    fn between(&self, from_s: f64, to_s: f64) -> impl Iterator<Item = (f64, &Bucket)> {
+    fn between(&self, from_s: f64, to_s: f64) -> impl Iterator<Item = (f64, &HistoryBucket)> {
         let from = self.number(from_s).saturating_sub(self.first).min(self.buckets.len() as u64) as usize;
         let to = (self.number(to_s) + 1).saturating_sub(self.first).min(self.buckets.len() as u64) as usize;
         let range = from..to.max(from);
@@ -124,19 +124,19 @@ impl Level {
 
 /// Minima and maxima of [`CHANNELS`] signals over the last minutes.
 #[derive(Debug)]
-pub struct History {
-    levels: [Level; SPANS_S.len()],
+pub struct SignalHistory {
+    levels: [HistoryLevel; SPANS_S.len()],
     began_s: Option<f64>,
     latest_s: f64,
 }
 
-impl Default for History {
+impl Default for SignalHistory {
     fn default() -> Self {
-        Self { levels: SPANS_S.map(Level::new), began_s: None, latest_s: 0.0 }
+        Self { levels: SPANS_S.map(HistoryLevel::new), began_s: None, latest_s: 0.0 }
     }
 }
 
-impl History {
+impl SignalHistory {
     /// Adds a sample at `t_s` (s; not earlier than the previous one by more than the stored time).
     pub fn push(&mut self, t_s: f64, values: &[f32; CHANNELS]) {
         if !t_s.is_finite() || t_s < 0.0 {
@@ -160,19 +160,20 @@ impl History {
         self.began_s.unwrap_or(0.0).max(coarsest.first as f64 * coarsest.span_s)
     }
 
-    /// The finest level that reaches back to `from_s` and has at most about `most` buckets up to `to_s`.
-    fn level(&self, from_s: f64, to_s: f64, most: usize) -> &Level {
+    /// The finest level that reaches back to `from_s` and has at most about `max` buckets up to `to_s`.
+    fn level(&self, from_s: f64, to_s: f64, max: usize) -> &HistoryLevel {
         let from_s = from_s.max(self.oldest_s());
-        let fits = |level: &&Level| (to_s - from_s) / level.span_s <= most as f64 && level.reaches_back_to(from_s);
+        let fits =
+            |level: &&HistoryLevel| (to_s - from_s) / level.span_s <= max as f64 && level.reaches_back_to(from_s);
         self.levels.iter().find(fits).unwrap_or(&self.levels[SPANS_S.len() - 1])
     }
 
     /// Replaces `trace` by the signal between two times, two points per bucket, x relative to `origin_s`. The newest
     /// bucket is included when it is full.
-    pub fn trace(&self, channel: usize, (from_s, to_s): (f64, f64), origin_s: f64, most: usize, trace: &mut Trace) {
+    pub fn trace(&self, channel: usize, (from_s, to_s): (f64, f64), origin_s: f64, max: usize, trace: &mut PlotTrace) {
         trace.points.clear();
         trace.breaks.clear();
-        let level = self.level(from_s, to_s, most);
+        let level = self.level(from_s, to_s, max);
         let mut last_s = f64::INFINITY;
         for (begin_s, bucket) in level.between(from_s, to_s) {
             // A bucket that is still being filled would change from frame to frame.
@@ -214,8 +215,8 @@ impl History {
 mod tests {
     use super::*;
 
-    fn filled(seconds: f64, rate_hz: f64, value: impl Fn(f64) -> f32) -> History {
-        let mut history = History::default();
+    fn filled(seconds: f64, rate_hz: f64, value: impl Fn(f64) -> f32) -> SignalHistory {
+        let mut history = SignalHistory::default();
         for i in 0..(seconds * rate_hz) as u64 {
             let t_s = i as f64 / rate_hz;
             history.push(t_s, &[value(t_s); CHANNELS]);
@@ -223,20 +224,20 @@ mod tests {
         history
     }
 
-    fn one_run(trace: &Trace) -> &[PlotPoint] {
+    fn one_run(trace: &PlotTrace) -> &[PlotPoint] {
         assert_eq!(trace.breaks, [0; 0]);
         &trace.points
     }
 
     #[test]
     fn a_stall_is_drawn_as_a_gap_and_a_missed_tick_is_not() {
-        let mut history = History::default();
+        let mut history = SignalHistory::default();
         for i in (0..1000).filter(|i| !(300..600).contains(i) && i % 10 != 0) {
             history.push(f64::from(i) * 1e-3, &[1.0; CHANNELS]);
         }
-        let mut trace = Trace::default();
-        for most in [10_000, 20] {
-            history.trace(0, (0.0, 1.0), 0.0, most, &mut trace);
+        let mut trace = PlotTrace::default();
+        for max in [10_000, 20] {
+            history.trace(0, (0.0, 1.0), 0.0, max, &mut trace);
             assert_eq!(trace.runs().count(), 2);
             assert!(trace.runs().all(|run| run.is_sorted_by(|a, b| a.x <= b.x)));
         }
@@ -245,9 +246,9 @@ mod tests {
     #[test]
     fn a_spike_of_one_sample_survives_at_every_resolution() {
         let history = filled(120.0, 1000.0, |t_s| if (t_s - 100.0).abs() < 5e-4 { 3.0 } else { 0.0 });
-        let mut line = Trace::default();
-        for (from_s, most) in [(99.9, 10_000), (90.0, 2000), (0.0, 2000), (0.0, 10)] {
-            history.trace(0, (from_s, 120.0), 120.0, most, &mut line);
+        let mut line = PlotTrace::default();
+        for (from_s, max) in [(99.9, 10_000), (90.0, 2000), (0.0, 2000), (0.0, 10)] {
+            history.trace(0, (from_s, 120.0), 120.0, max, &mut line);
             let points = one_run(&line);
             assert!(points.iter().any(|p| (p.y - 3.0).abs() < 1e-9), "lost from {from_s}");
             assert!(points.is_sorted_by(|a, b| a.x <= b.x), "x must rise, or plotting falls off its fast path");
@@ -257,7 +258,7 @@ mod tests {
     #[test]
     fn drawing_never_costs_more_than_the_kept_buckets() {
         let history = filled(700.0, 1000.0, |t_s| t_s as f32);
-        let mut line = Trace::default();
+        let mut line = PlotTrace::default();
         history.trace(0, (0.0, 700.0), 700.0, 1000, &mut line);
         assert!(one_run(&line).len() <= 2 * CAPACITY);
         history.trace(0, (690.0, 700.0), 700.0, 1000, &mut line);
@@ -267,11 +268,11 @@ mod tests {
 
     #[test]
     fn order_inside_a_bucket_is_kept() {
-        let mut history = History::default();
+        let mut history = SignalHistory::default();
         history.push(0.000, &[1.0; CHANNELS]);
         history.push(0.001, &[-1.0; CHANNELS]);
         history.push(0.004, &[-9.0; CHANNELS]);
-        let mut line = Trace::default();
+        let mut line = PlotTrace::default();
         history.trace(2, (0.0, 0.003), 0.0, 100, &mut line);
         let ys: Vec<f64> = one_run(&line).iter().map(|p| p.y).collect();
         assert_eq!(ys, [1.0, -1.0]);
@@ -279,7 +280,7 @@ mod tests {
 
     #[test]
     fn a_gap_stays_a_gap_and_bad_input_is_left_out() {
-        let mut history = History::default();
+        let mut history = SignalHistory::default();
         history.push(0.0, &[1.0; CHANNELS]);
         history.push(f64::NAN, &[9.0; CHANNELS]);
         history.push(0.5, &[f32::NAN; CHANNELS]);
@@ -293,8 +294,8 @@ mod tests {
 
     #[test]
     fn nothing_is_drawn_from_nothing() {
-        let history = History::default();
-        let mut line = Trace { points: vec![PlotPoint::new(0.0, 0.0)], breaks: vec![1] };
+        let history = SignalHistory::default();
+        let mut line = PlotTrace { points: vec![PlotPoint::new(0.0, 0.0)], breaks: vec![1] };
         history.trace(0, (-10.0, 0.0), 0.0, 100, &mut line);
         assert_eq!(line.runs().count(), 0);
         assert_eq!(history.extent(&[0], (-10.0, 0.0)), None);

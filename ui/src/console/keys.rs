@@ -3,7 +3,7 @@
 use egui::{Context, Event, Key};
 
 use super::{
-    commands::{Action, Entry, table},
+    commands::{Action, CommandEntry, table},
     roles::Role,
 };
 
@@ -40,7 +40,7 @@ pub(super) fn pressed(ctx: &Context, may: impl Fn(Action) -> bool) -> Vec<Action
     let came = events.len();
     events.retain(|event| {
         let Event::Key { key, pressed: true, repeat, modifiers, .. } = event else { return true };
-        let strokes = |entry: &'static Entry| entry.keys.iter().map(move |stroke| (entry.action, *stroke));
+        let strokes = |entry: &'static CommandEntry| entry.keys.iter().map(move |stroke| (entry.action, *stroke));
         let mut strokes = table().iter().filter(|entry| !entry.action.is_of_part()).flat_map(strokes);
         let Some((action, stroke)) = strokes.find(|(_, stroke)| stroke.key == *key && stroke.with.holds(*modifiers))
         else {

@@ -5,10 +5,10 @@ use egui::{Button, Context, DragValue, Slider, Ui, vec2};
 
 use super::{
     alarms::strip::Alarms,
-    commands::{Action, Entry, SIZES_PERCENT},
-    desk::{Layout, Panel},
+    commands::{Action, CommandEntry, SIZES_PERCENT},
     roles::Role,
-    settings::{CROP_MOST_PERCENT, PictureSettings, Settings},
+    settings::{CROP_MAX_PERCENT, ConsoleSettings, ImageSettings},
+    tiles::{Panel, PanelLayout},
 };
 use crate::language::{Language, Text};
 
@@ -21,7 +21,7 @@ const CHOICE: egui::Vec2 = vec2(84.0, 24.0);
 /// The menu in the top bar; returns the chosen command. `can_undo`: whether undo and redo are possible.
 pub(super) fn menu_ui(
     ui: &mut Ui,
-    settings: &mut Settings,
+    settings: &mut ConsoleSettings,
     alarms: &mut Alarms,
     can_undo: [bool; 2],
 ) -> Option<Action> {
@@ -58,7 +58,7 @@ pub(super) fn menu_ui(
         }
         wanted = wanted.or(sound_ui(ui, settings.sound, alarms));
         ui.add_space(6.0);
-        wanted = wanted.or(picture_ui(ui, settings));
+        wanted = wanted.or(image_ui(ui, settings));
         ui.add_space(6.0);
         ui.horizontal(|ui| {
             for action in [Action::Alarms, Action::Glossary, Action::Tour] {
@@ -79,7 +79,7 @@ pub(super) fn menu_ui(
 
 /// A command with its keys, on a button of at least this width; returns the command when pressed.
 fn entry_ui(ui: &mut Ui, action: Action, width: f32) -> Option<Action> {
-    let entry = Entry::of(action)?;
+    let entry = CommandEntry::of(action)?;
     let button = ui.add(Button::new(entry.with_keys()).min_size(vec2(width, 30.0)));
     button.on_hover_text(entry.does).clicked().then_some(action)
 }
@@ -101,7 +101,7 @@ fn languages_ui(ui: &mut Ui, now: Language) -> Option<Action> {
 
 /// A switch in its current state; returns its command when pressed.
 fn switch_ui(ui: &mut Ui, mut on: bool, action: Action) -> Option<Action> {
-    let entry = Entry::of(action)?;
+    let entry = CommandEntry::of(action)?;
     ui.checkbox(&mut on, entry.title.as_str()).on_hover_text(entry.does).changed().then_some(action)
 }
 
@@ -115,36 +115,36 @@ fn sound_ui(ui: &mut Ui, on: bool, alarms: &mut Alarms) -> Option<Action> {
 }
 
 /// Display settings of the endoscope image, and whether it is recorded.
-fn picture_ui(ui: &mut Ui, settings: &mut Settings) -> Option<Action> {
-    ui.label(text::menu::PICTURE.get());
-    let picture = &mut settings.picture;
-    ui.add(Slider::new(&mut picture.brightness_percent, -50..=50).text(text::menu::BRIGHTNESS.get()).suffix(" %"));
+fn image_ui(ui: &mut Ui, settings: &mut ConsoleSettings) -> Option<Action> {
+    ui.label(text::menu::IMAGE.get());
+    let image = &mut settings.image;
+    ui.add(Slider::new(&mut image.brightness_percent, -50..=50).text(text::menu::BRIGHTNESS.get()).suffix(" %"));
     ui.add(
-        Slider::new(&mut picture.contrast_percent, 25..=400)
+        Slider::new(&mut image.contrast_percent, 25..=400)
             .logarithmic(true)
             .text(text::menu::CONTRAST.get())
             .suffix(" %"),
     );
     ui.add(
-        Slider::new(&mut picture.gamma_percent, 25..=400).logarithmic(true).text(text::menu::GAMMA.get()).suffix(" %"),
+        Slider::new(&mut image.gamma_percent, 25..=400).logarithmic(true).text(text::menu::GAMMA.get()).suffix(" %"),
     );
     ui.horizontal(|ui| {
         ui.label(text::menu::CROP.get()).on_hover_text(text::menu::CROP_HOVER.get());
-        for (percent, edge) in picture.crop_percent.iter_mut().zip(text::menu::EDGES.map(Text::get)) {
-            let value = DragValue::new(percent).range(0..=CROP_MOST_PERCENT).suffix(" %");
+        for (percent, edge) in image.crop_percent.iter_mut().zip(text::menu::EDGES.map(Text::get)) {
+            let value = DragValue::new(percent).range(0..=CROP_MAX_PERCENT).suffix(" %");
             let response = ui.add(value).on_hover_text(edge);
             response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::SpinButton, true, edge));
         }
     });
-    let forces = switch_ui(ui, picture.forces_of_now, Action::ForcesOfNow);
-    let plain = PictureSettings { forces_of_now: picture.forces_of_now, ..PictureSettings::default() };
-    let is_plain = *picture == plain;
+    let forces = switch_ui(ui, image.forces_of_now, Action::ForcesOfNow);
+    let plain = ImageSettings { forces_of_now: image.forces_of_now, ..ImageSettings::default() };
+    let is_plain = *image == plain;
     let plain = ui.add_enabled_ui(!is_plain, |ui| entry_ui(ui, Action::PlainPicture, 300.0)).inner;
-    forces.or(plain).or(switch_ui(ui, settings.records_picture, Action::RecordsPicture))
+    forces.or(plain).or(switch_ui(ui, settings.records_image, Action::RecordsPicture))
 }
 
 /// Switches for the panels.
-fn panels_ui(ui: &mut Ui, layout: &Layout) -> Option<Action> {
+fn panels_ui(ui: &mut Ui, layout: &PanelLayout) -> Option<Action> {
     let mut wanted = None;
     ui.label(text::menu::PANELS.get()).on_hover_text(text::menu::PANELS_HOVER.get());
     for pair in Panel::built().collect::<Vec<_>>().chunks(2) {
@@ -165,7 +165,7 @@ fn panels_ui(ui: &mut Ui, layout: &Layout) -> Option<Action> {
 }
 
 /// Applies the settings; call at the start of a frame.
-pub(super) fn apply(ctx: &Context, settings: &Settings) {
+pub(super) fn apply(ctx: &Context, settings: &ConsoleSettings) {
     super::theme::choose(ctx, settings.light);
     ctx.options_mut(|options| options.zoom_with_keyboard = false);
     let window = ctx.content_rect().size() * ctx.zoom_factor();

@@ -1,27 +1,25 @@
 //! The operator's window for one running loop.
 //!
-//! Receives ticks and events through a [`Handle`](nima_machine::runtime::Handle) and sends commands through it. Panels never
+//! Receives ticks and events through a [`Handle`](nima_machine::runtime::LoopHandle) and sends commands through it. Panels never
 //! change the loop directly; they show the content of the ticks and put the operator's commands into an outbox. All panels
-//! are plain functions of [`live::Live`], so they can be tested without a screen. Only `scene3d/gl.rs` uses the GPU.
+//! are plain functions of [`live::LiveState`], so they can be tested without a screen. Only `scene3d/gl.rs` uses the GPU.
 
+pub mod active_calibrations;
 mod activity;
 pub mod alarms;
 pub mod app;
 pub mod canvas;
-pub mod cloud;
 pub mod commands;
 pub mod deadlines;
-pub mod desk;
-pub mod diary;
-pub mod door;
 pub(crate) mod double_buffer;
-pub mod eyes;
+pub mod endoscope_view;
+pub mod force_cloud;
 pub mod frames;
 pub mod help;
 pub mod history;
-pub mod in_force;
 mod keys;
 pub mod live;
+pub mod loop_connection;
 mod menu;
 pub mod monitor;
 pub(crate) mod opener;
@@ -30,53 +28,55 @@ pub(crate) mod overview;
 pub mod page;
 mod palette;
 pub mod panels;
-pub(crate) mod past;
 pub(crate) mod picking;
-pub mod pictures;
+pub(crate) mod playback;
 pub mod reader;
 pub mod readings;
 pub(crate) mod ready;
 pub mod roles;
 pub mod rolling;
+pub mod run_log;
 pub mod scene3d;
 pub mod screenshot;
+pub mod screenshots;
 pub(crate) mod sessions;
 pub mod settings;
 pub mod start;
 pub mod stiffness;
 pub mod text;
 pub mod theme;
+pub mod tiles;
 mod undo;
 pub mod widgets;
 pub mod wizards;
 
 use std::{path::PathBuf, time::Duration};
 
-use app::Started;
+use app::StartedLoop;
 use nima_machine::config::RigConfig;
 use nima_simulation::scene::Scene;
-use sessions::Sessions;
-use settings::Kept;
-use start::Choice;
+use sessions::ConsoleSessions;
+use settings::SettingsStore;
+use start::RigChoice;
 
 pub use app::ConsoleApp;
 
 use crate::language::{self, Language};
-use crate::link::{LineDoor, Reopen};
-use crate::{emulators::Emulators, leaving::Leave};
+use crate::link::{LineConnection, Reopen};
+use crate::{emulators::Emulators, shutdown::Leave};
 
 /// Options of the window, for screenshots and tests. By default it stays open until it is closed.
 #[derive(Clone, Debug, Default)]
-pub struct Options {
+pub struct ConsoleOptions {
     pub exit_after: Option<Duration>,
     /// Save a screenshot (PNG) just before the window closes automatically (or after three seconds if it does not).
     pub screenshot: Option<PathBuf>,
     /// Take screenshots of every view, then close.
-    pub pictures: Option<pictures::Album>,
+    pub images: Option<screenshots::ScreenshotFolder>,
     pub role: Option<roles::Role>,
     pub language: Option<Language>,
     pub session: Option<PathBuf>,
-    pub wizard: Option<wizards::Which>,
+    pub wizard: Option<wizards::WizardKind>,
     pub summary: Option<PathBuf>,
     pub frames: Option<PathBuf>,
     /// Initial length of the traces, s.
@@ -88,19 +88,19 @@ pub struct Options {
 
 /// The state in which the console opens.
 #[derive(Debug)]
-pub(crate) struct Begun {
-    pub(crate) choice: Choice,
+pub(crate) struct InitialRun {
+    pub(crate) choice: RigChoice,
     pub(crate) emulators: Option<Emulators>,
-    pub(crate) started: Started,
+    pub(crate) started: StartedLoop,
     pub(crate) rig: RigConfig,
     pub(crate) scene: Scene,
-    pub(crate) sessions: Sessions,
+    pub(crate) sessions: ConsoleSessions,
     /// The link to the machine with the arm, if it is another machine, and the means to reopen it.
-    pub(crate) far: Option<(Box<dyn LineDoor>, Reopen)>,
+    pub(crate) far: Option<(Box<dyn LineConnection>, Reopen)>,
 }
 
 /// Opens the console for a running loop; returns when the window is closed and the loop has ended.
-pub(crate) fn run(begun: Begun, options: Options) -> anyhow::Result<()> {
+pub(crate) fn run(begun: InitialRun, options: ConsoleOptions) -> anyhow::Result<()> {
     let create: eframe::AppCreator<'_> = Box::new(move |cc| Ok(Box::new(console(cc, begun, options))));
     let ended = open_window(text::top_bar::NIMA_CONSOLE.get(), create);
     // Messages from here on go to the terminal.
@@ -128,9 +128,9 @@ pub(crate) fn open_window(title: &str, create: eframe::AppCreator<'_>) -> anyhow
 }
 
 /// The console with the user's settings; screenshots use the defaults and do not change the settings.
-fn console(cc: &eframe::CreationContext<'_>, begun: Begun, options: Options) -> ConsoleApp {
-    let Begun { choice, emulators, started: (handle, objects), rig, scene, sessions, far } = begun;
-    let settings = if options.pictures.is_some() { Kept::default() } else { Kept::of_user() };
+fn console(cc: &eframe::CreationContext<'_>, begun: InitialRun, options: ConsoleOptions) -> ConsoleApp {
+    let InitialRun { choice, emulators, started: (handle, objects), rig, scene, sessions, far } = begun;
+    let settings = if options.images.is_some() { SettingsStore::default() } else { SettingsStore::of_user() };
     let app = ConsoleApp::new(cc, handle, rig, scene).with_objects(objects);
     let app = app.with_choice(choice, emulators).with_sessions(sessions).with_line(far);
     app.with_settings(settings).with_options(options)

@@ -11,25 +11,25 @@ use crossbeam_channel::{Receiver, Sender, unbounded};
 use eframe::glow;
 use egui::{Align, CentralPanel, Frame, Label, Layout, Margin, Panel, RichText, Stroke, StrokeKind, Ui};
 use nima_machine::config::RigConfig;
-use nima_session::watched::Moment;
+use nima_session::monitor_stream::MonitorMoment;
 use nima_simulation::scene::Scene;
 
 use super::{
+    active_calibrations::ActiveCalibrations,
     alarms::judge,
-    in_force::InForce,
     keys,
-    live::Live,
+    live::LiveState,
     outbox::Outbox,
     panels::state_ui,
     roles::{Panels, Role, role_ui, switch_ui},
     scene3d::SceneView,
     screenshot,
-    settings::Settings,
+    settings::ConsoleSettings,
     text, theme,
     widgets::weak,
 };
 use crate::language::{self, Language};
-use crate::telling::tell;
+use crate::stderr::print_line;
 
 const HEAD: f32 = 72.0;
 /// A demonstration drives its rig, which a monitor cannot.
@@ -45,34 +45,34 @@ const SCREENSHOT_BEFORE_EXIT: Duration = Duration::from_millis(700);
 
 /// Data from the rig.
 #[derive(Debug)]
-pub enum Heard {
+pub enum MonitorMessage {
     /// A loop of this rig is running there.
     Runs(Box<RigConfig>, Box<Scene>),
     /// No loop is running there.
     Rests,
-    Shows(Vec<Moment>),
+    Shows(Vec<MonitorMoment>),
     /// Reason for missing data.
     Trouble(String),
 }
 
 /// Sends data from the rig to the window; each call wakes the window.
 #[derive(Clone, Debug)]
-pub struct Teller {
-    to: Sender<Heard>,
+pub struct MonitorSender {
+    to: Sender<MonitorMessage>,
     ctx: egui::Context,
 }
 
-impl Teller {
+impl MonitorSender {
     /// Returns false after the window was closed.
-    pub fn tell(&self, heard: Heard) -> bool {
-        let told = self.to.send(heard).is_ok();
+    pub fn notify(&self, received: MonitorMessage) -> bool {
+        let report = self.to.send(received).is_ok();
         self.ctx.request_repaint();
-        told
+        report
     }
 }
 
 #[derive(Clone, Debug, Default)]
-pub struct Options {
+pub struct MonitorOptions {
     pub role: Role,
     pub language: Language,
     pub exit_after: Option<Duration>,
@@ -82,24 +82,24 @@ pub struct Options {
 #[derive(Debug)]
 pub struct Monitor {
     rig: String,
-    came: Receiver<Heard>,
-    live: Option<Box<Live>>,
+    came: Receiver<MonitorMessage>,
+    live: Option<Box<LiveState>>,
     trouble: Option<String>,
     /// Time of the last new data.
-    heard: Instant,
+    received: Instant,
     panels: Panels,
-    in_force: InForce,
+    active: ActiveCalibrations,
     /// Receives the commands of the views; they are never sent.
     outbox: Outbox,
-    settings: Settings,
-    options: Options,
+    settings: ConsoleSettings,
+    options: MonitorOptions,
     opened: Instant,
-    pictured: bool,
+    shown: bool,
 }
 
 impl Monitor {
     /// Creates a window for the rig of this name, and the sender of its data.
-    pub fn new(cc: &eframe::CreationContext<'_>, rig: &str, options: Options) -> (Self, Teller) {
+    pub fn new(cc: &eframe::CreationContext<'_>, rig: &str, options: MonitorOptions) -> (Self, MonitorSender) {
         theme::apply(&cc.egui_ctx);
         let (to, came) = unbounded();
         let now = Instant::now();
@@ -108,41 +108,43 @@ impl Monitor {
             came,
             live: None,
             trouble: None,
-            heard: now,
+            received: now,
             panels: Panels { scene: SceneView::new(cc.gl.as_deref()), ..Panels::default() },
-            in_force: InForce::of_past(Vec::new()),
+            active: ActiveCalibrations::of_past(Vec::new()),
             outbox: Outbox::default(),
-            settings: Settings { role: options.role, ..Settings::default() },
+            settings: ConsoleSettings { role: options.role, ..ConsoleSettings::default() },
             options,
             opened: now,
-            pictured: false,
+            shown: false,
         };
-        (monitor, Teller { to, ctx: cc.egui_ctx.clone() })
+        (monitor, MonitorSender { to, ctx: cc.egui_ctx.clone() })
     }
 
-    pub fn live(&self) -> Option<&Live> {
+    pub fn live(&self) -> Option<&LiveState> {
         self.live.as_deref()
     }
 
     fn take_in(&mut self) {
         let before_s = self.shown_s();
-        for heard in self.came.try_iter() {
-            match heard {
-                Heard::Runs(rig, scene) => {
-                    self.live = Some(Box::new(Live::of_elsewhere(*rig, *scene)));
+        for received in self.came.try_iter() {
+            match received {
+                MonitorMessage::Runs(rig, scene) => {
+                    self.live = Some(Box::new(LiveState::of_elsewhere(*rig, *scene)));
                     self.trouble = None;
-                    self.heard = Instant::now();
+                    self.received = Instant::now();
                 }
-                Heard::Rests => (self.live, self.trouble) = (None, Some(text::monitor::RESTS.get().to_owned())),
-                Heard::Trouble(why) => self.trouble = Some(why),
-                Heard::Shows(moments) => {
+                MonitorMessage::Rests => {
+                    (self.live, self.trouble) = (None, Some(text::monitor::RESTS.get().to_owned()));
+                }
+                MonitorMessage::Trouble(why) => self.trouble = Some(why),
+                MonitorMessage::Shows(moments) => {
                     let Some(live) = &mut self.live else { continue };
-                    for Moment { events, ticks, objects } in moments {
+                    for MonitorMoment { events, ticks, objects } in moments {
                         live.replay(events.iter(), &ticks);
                         live.show_newer_objects(objects);
                     }
                     self.trouble = None;
-                    self.heard = Instant::now();
+                    self.received = Instant::now();
                 }
             }
         }
@@ -158,7 +160,7 @@ impl Monitor {
 
     /// Reason why the display is out of date.
     fn stale(&self) -> Option<String> {
-        let seconds = self.heard.elapsed().as_secs_f64();
+        let seconds = self.received.elapsed().as_secs_f64();
         let silent = self.live.is_some() && seconds > SILENT_S;
         self.trouble.clone().or_else(|| silent.then(|| text::monitor::silent(seconds)))
     }
@@ -204,7 +206,7 @@ impl Monitor {
 
     fn view_ui(&mut self, ui: &mut Ui) {
         let stale = self.stale();
-        let Self { live, settings, panels, in_force, outbox, .. } = self;
+        let Self { live, settings, panels, active, outbox, .. } = self;
         let Some(live) = live else {
             let words = stale.unwrap_or_else(|| text::monitor::CONNECTING.get().to_owned());
             ui.centered_and_justified(|ui| ui.label(weak(words)));
@@ -213,20 +215,19 @@ impl Monitor {
         if stale.is_some() {
             ui.set_opacity(0.45);
         }
-        role_ui(ui, settings, live, panels, in_force, outbox);
+        role_ui(ui, settings, live, panels, active, outbox);
         outbox.forget();
     }
 
     fn obey_options(&mut self, ctx: &egui::Context) {
         let open = self.opened.elapsed();
-        let Options { exit_after, screenshot, .. } = &self.options;
+        let MonitorOptions { exit_after, screenshot, .. } = &self.options;
         let Some(exit_after) = *exit_after else { return };
-        if let Some(path) = screenshot.clone().filter(|_| !self.pictured && open + SCREENSHOT_BEFORE_EXIT >= exit_after)
-        {
-            self.pictured = true;
-            ctx.request_screenshot(move |picture| {
-                if let Err(error) = screenshot::save(&path, &picture) {
-                    tell(format_args!("{error:#}"));
+        if let Some(path) = screenshot.clone().filter(|_| !self.shown && open + SCREENSHOT_BEFORE_EXIT >= exit_after) {
+            self.shown = true;
+            ctx.request_screenshot(move |image| {
+                if let Err(error) = screenshot::save(&path, &image) {
+                    print_line(format_args!("{error:#}"));
                 }
             });
         }
@@ -270,11 +271,11 @@ impl eframe::App for Monitor {
 /// Opens the window; `begin` starts the source of its data. Returns when the window is closed.
 ///
 /// # Errors Returns an error if no window can be opened.
-pub fn open(rig: &str, options: Options, begin: impl FnOnce(Teller)) -> anyhow::Result<()> {
+pub fn open(rig: &str, options: MonitorOptions, begin: impl FnOnce(MonitorSender)) -> anyhow::Result<()> {
     let title = language::with(options.language, || text::monitor::title(rig));
     let create: eframe::AppCreator<'_> = Box::new(|cc| {
-        let (monitor, teller) = Monitor::new(cc, rig, options);
-        begin(teller);
+        let (monitor, publisher) = Monitor::new(cc, rig, options);
+        begin(publisher);
         Ok(Box::new(monitor))
     });
     let ended = super::open_window(&title, create);

@@ -1,6 +1,6 @@
 //! Commands of the operator that the loop has not received yet.
 
-use nima_machine::{messages::Command, runtime::Handle};
+use nima_machine::{messages::Command, runtime::LoopHandle};
 
 /// Queue of commands; a stop overtakes all others.
 #[derive(Debug, Default)]
@@ -25,7 +25,7 @@ impl Outbox {
     }
 
     /// Sends commands while the loop's queue has room; the others wait for the next frame. Without a loop nothing is sent.
-    pub fn flush(&mut self, handle: Option<&Handle>) {
+    pub fn flush(&mut self, handle: Option<&LoopHandle>) {
         self.flush_into(|command| handle.is_some_and(|handle| handle.send(command)));
     }
 
@@ -87,7 +87,7 @@ fn is_outdated(old: &Command, newer: Command) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use nima_machine::rig::{Act, Side};
+    use nima_machine::rig::{Side, TaskAction};
 
     use super::*;
 
@@ -99,10 +99,10 @@ mod tests {
                 outbox.push(Command::Guide(side, None));
                 outbox.push(Command::Grip(side, Some(rad)));
             }
-            outbox.push(Command::Task(Side::Right, Act::Mark));
+            outbox.push(Command::Task(Side::Right, TaskAction::Mark));
         }
         let [right, left] = Side::ALL;
-        let mark = Command::Task(right, Act::Mark);
+        let mark = Command::Task(right, TaskAction::Mark);
         let of = |side| [Command::Guide(side, None), Command::Grip(side, Some(0.0))];
         let wanted: Vec<Command> = [mark].into_iter().chain(of(right)).chain(of(left)).chain([mark]).collect();
         assert_eq!(outbox.waiting, wanted);

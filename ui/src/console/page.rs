@@ -6,12 +6,12 @@ use std::{
 };
 
 use egui::Ui;
-use nima_endoscope::Reel;
+use nima_endoscope::FrameQueue;
 use nima_machine::{config::RigConfig, messages::Tick};
-use nima_session::outlet::Audience;
-use nima_simulation::{Plan, scene::Scene};
+use nima_session::sinks::Audience;
+use nima_simulation::{SimulationPlan, scene::Scene};
 
-use super::{app::Started, live::Live, outbox::Outbox, scene3d::SceneView, start::Choice};
+use super::{app::StartedLoop, live::LiveState, outbox::Outbox, scene3d::SceneView, start::RigChoice};
 
 pub trait Page: Debug {
     /// Name and purpose on the button that opens it.
@@ -27,28 +27,28 @@ pub trait Page: Debug {
     /// Whether it reserves the machine: then the rest of the screen is closed.
     fn holds_machine(&self) -> bool;
 
-    fn ui(&mut self, ui: &mut Ui, room: Room<'_>) -> Option<Closed>;
+    fn ui(&mut self, ui: &mut Ui, room: Room<'_>) -> Option<ClosedRun>;
 
     /// Continues its work; returns its request to the window.
-    fn go_on(&mut self, now: &Now<'_>) -> Option<Wish>;
+    fn go_on(&mut self, now: &PageContext<'_>) -> Option<PageRequest>;
 
     /// Reports that its request was not fulfilled, and the reason if known.
-    fn tell(&mut self, why: Option<String>);
+    fn notify(&mut self, why: Option<String>);
 
     /// Prepares the requested run.
-    fn prepare(&mut self) -> Result<Prepared, String>;
+    fn prepare(&mut self) -> Result<PreparedRun, String>;
 
     /// The current run: then the window shows nothing else.
-    fn run(&self) -> Option<&dyn Run>;
+    fn run(&self) -> Option<&dyn PageRun>;
 
-    fn run_mut(&mut self) -> Option<&mut (dyn Run + 'static)>;
+    fn run_mut(&mut self) -> Option<&mut (dyn PageRun + 'static)>;
 
     /// Records the result of the run. Its loop must have ended.
     fn finish_run(&mut self);
 }
 
 /// A run of a page, with its own loop.
-pub trait Run {
+pub trait PageRun {
     /// The person who moves the instruments.
     fn participant(&self) -> &str;
 
@@ -58,23 +58,23 @@ pub trait Run {
     /// Starts the loop, for these audiences; in simulated time if `speed` is given.
     fn start(
         &mut self,
-        plan: &Plan,
+        plan: &SimulationPlan,
         speed: Option<f64>,
-        audience: (&Reel, Vec<Box<dyn Audience>>),
-    ) -> Result<Started, String>;
+        audience: (&FrameQueue, Vec<Box<dyn Audience>>),
+    ) -> Result<StartedLoop, String>;
 
     fn tick(&mut self, tick: &Tick);
 
     /// Aborts the run, if it is not over yet.
-    fn break_off(&mut self, why: Broken);
+    fn break_off(&mut self, why: RunBreak);
 
     /// Draws the participant's screen.
-    fn ui(&mut self, ui: &mut Ui, live: &Live, view: &mut SceneView, outbox: &mut Outbox);
+    fn ui(&mut self, ui: &mut Ui, live: &LiveState, view: &mut SceneView, outbox: &mut Outbox);
 }
 
 /// Reason why a run was aborted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Broken {
+pub enum RunBreak {
     Closed,
     LoopEnded,
     NotStarted,
@@ -95,23 +95,23 @@ pub struct Room<'a> {
 
 /// Result of releasing the machine: the rig and scene that ran before.
 #[derive(Debug)]
-pub struct Closed(pub Option<Choice>);
+pub struct ClosedRun(pub Option<RigChoice>);
 
 /// State of the window.
-pub struct Now<'a> {
+pub struct PageContext<'a> {
     /// The running rig and scene.
-    pub running: &'a Choice,
+    pub running: &'a RigChoice,
     /// The loop has ended, on its own or because the end of the process was requested.
-    pub ended: Option<Broken>,
+    pub ended: Option<RunBreak>,
     pub is_latched: bool,
     pub is_starting: bool,
 }
 
 /// A page's request to the window.
 #[derive(Debug)]
-pub enum Wish {
+pub enum PageRequest {
     /// Start this rig and scene instead of the running ones.
-    Start(Choice),
+    Start(RigChoice),
     /// Start the run that [`Page::prepare`] prepares.
     Run,
     /// End the run; `again`: then the rig runs idle.
@@ -119,7 +119,7 @@ pub enum Wish {
 }
 
 /// A run that is about to start.
-pub struct Prepared {
+pub struct PreparedRun {
     /// Its rig; `None` if the rig does not permit the run. The reason stays secret, because it could reveal the condition.
     pub rig: Option<RigConfig>,
     pub scene: Scene,

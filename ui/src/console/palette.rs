@@ -8,7 +8,7 @@ use egui::{
 };
 
 use super::{
-    commands::{Action, Entry, Reach},
+    commands::{Action, Availability, CommandEntry},
     text::commands::{FOOT, NONE_FOUND, ONCE_MORE, PALETTE, SEARCH, hover},
     theme,
     widgets::{small, weak},
@@ -18,10 +18,10 @@ const WIDTH: f32 = 560.0;
 const ROW: f32 = 28.0;
 
 /// A command, and its availability.
-pub(super) type Row = (&'static Entry, Reach);
+pub(super) type PaletteRow = (&'static CommandEntry, Availability);
 
 #[derive(Debug, Default)]
-pub(super) struct Palette {
+pub(super) struct CommandPalette {
     open: Option<Search>,
     chosen: Option<Action>,
 }
@@ -35,7 +35,7 @@ struct Search {
     asked: Option<Action>,
 }
 
-impl Palette {
+impl CommandPalette {
     pub(super) const fn is_open(&self) -> bool {
         self.open.is_some()
     }
@@ -54,10 +54,10 @@ impl Palette {
     }
 
     /// Draws the palette into `room` with these rows.
-    pub(super) fn ui(&mut self, ctx: &Context, room: Rect, rows: &[Row]) {
+    pub(super) fn ui(&mut self, ctx: &Context, room: Rect, rows: &[PaletteRow]) {
         let Some(search) = &mut self.open else { return };
         let field = Id::unique("palette_field");
-        let keys = Keys::take(ctx);
+        let keys = PaletteKeys::take(ctx);
         let window = Window::new(PALETTE.0.get()).title_bar(false).resizable(false).movable(false).constrain_to(room);
         let window = window.order(Order::Foreground).fixed_size(vec2(WIDTH.min(room.width() - 24.0), 0.0));
         let window = window.anchor(Align2::CENTER_TOP, vec2(0.0, 8.0));
@@ -98,12 +98,12 @@ impl Palette {
 
 /// Keys of the list, which its text field does not get.
 #[derive(Debug)]
-struct Keys {
+struct PaletteKeys {
     by: isize,
     enter: bool,
 }
 
-impl Keys {
+impl PaletteKeys {
     fn take(ctx: &Context) -> Self {
         ctx.input_mut(|input| {
             let mut pressed = |key| input.consume_key(egui::Modifiers::NONE, key);
@@ -116,8 +116,8 @@ impl Keys {
 
 impl Search {
     /// Moves to the next available row.
-    fn step(&mut self, keys: &Keys, found: &[Row]) {
-        let possible: Vec<usize> = (0..found.len()).filter(|&i| found[i].1 == Reach::Can).collect();
+    fn step(&mut self, keys: &PaletteKeys, found: &[PaletteRow]) {
+        let possible: Vec<usize> = (0..found.len()).filter(|&i| found[i].1 == Availability::Can).collect();
         let at = self.at.and_then(|at| possible.iter().position(|&i| i == at)).unwrap_or(0);
         let last = possible.len().saturating_sub(1);
         let next = at.saturating_add_signed(keys.by).min(last);
@@ -128,7 +128,7 @@ impl Search {
     }
 
     /// Draws the rows; returns the command to run.
-    fn list_ui(&self, ui: &mut Ui, found: &[Row], keys: &Keys, height: f32) -> Option<Action> {
+    fn list_ui(&self, ui: &mut Ui, found: &[PaletteRow], keys: &PaletteKeys, height: f32) -> Option<Action> {
         let mut wanted = None;
         let height = height.clamp(120.0, 480.0);
         // The window is as high as its content, so nothing else gives the list its height.
@@ -156,15 +156,15 @@ impl Search {
     }
 }
 
-fn row_ui(ui: &mut Ui, entry: &Entry, reach: Reach, is_at: bool) -> egui::Response {
+fn row_ui(ui: &mut Ui, entry: &CommandEntry, reach: Availability, is_at: bool) -> egui::Response {
     // Weak text is unreadable on the selection colour.
     let ink = if is_at { theme::now().text } else { theme::now().text_weak };
-    let keys = RichText::new(entry.keys_told()).color(ink);
+    let keys = RichText::new(entry.keys_text()).color(ink);
     let button = Button::selectable(is_at, entry.title.as_str()).right_text(keys).truncate();
-    let can = reach == Reach::Can;
+    let can = reach == Availability::Can;
     let response = ui.add_enabled(can, button.min_size(vec2(ui.available_width(), ROW)));
     response.widget_info(|| egui::WidgetInfo::selected(egui::Role::MenuItem, can, is_at, &entry.title));
-    if let Reach::Cannot(why) = reach {
+    if let Availability::Cannot(why) = reach {
         ui.indent(entry.title.as_str(), |ui| ui.add(Label::new(small(why)).wrap()));
     }
     response.on_hover_text(hover(entry.does, entry.place.name()))
@@ -172,17 +172,17 @@ fn row_ui(ui: &mut Ui, entry: &Entry, reach: Reach, is_at: bool) -> egui::Respon
 
 /// Rows whose names contain all these words, best match first; equal matches with available rows first, in the order of the
 /// table.
-fn found(words: &str, rows: &[Row]) -> Vec<Row> {
+fn found(words: &str, rows: &[PaletteRow]) -> Vec<PaletteRow> {
     let words: Vec<String> = words.split_whitespace().map(str::to_lowercase).collect();
-    let rank = |(entry, _): &Row| words.iter().try_fold(0, |sum, word| Some(sum + rank(word, entry)?));
-    let mut found: Vec<(usize, Row)> = rows.iter().filter_map(|row| Some((rank(row)?, *row))).collect();
-    found.sort_by_key(|(rank, (_, reach))| (*rank, !words.is_empty() && *reach != Reach::Can));
+    let rank = |(entry, _): &PaletteRow| words.iter().try_fold(0, |sum, word| Some(sum + rank(word, entry)?));
+    let mut found: Vec<(usize, PaletteRow)> = rows.iter().filter_map(|row| Some((rank(row)?, *row))).collect();
+    found.sort_by_key(|(rank, (_, reach))| (*rank, !words.is_empty() && *reach != Availability::Can));
     found.into_iter().map(|(_, row)| row).collect()
 }
 
 /// Quality of a match; 0 is best. A word can match a key, the start of a word in the name, a part of the name, or the start
 /// of a word in the meaning.
-fn rank(word: &str, entry: &Entry) -> Option<usize> {
+fn rank(word: &str, entry: &CommandEntry) -> Option<usize> {
     let begins = |text: &str| {
         let text = text.to_lowercase();
         text.split(|letter: char| !letter.is_alphanumeric()).position(|other| other.starts_with(word))
@@ -201,8 +201,8 @@ mod tests {
         language::{self, Language},
     };
 
-    fn all() -> Vec<Row> {
-        table().iter().map(|entry| (entry, Reach::Can)).collect()
+    fn all() -> Vec<PaletteRow> {
+        table().iter().map(|entry| (entry, Availability::Can)).collect()
     }
 
     fn first(words: &str) -> Option<Action> {
@@ -232,8 +232,8 @@ mod tests {
     #[test]
     fn what_cannot_be_done_comes_after_what_fits_as_well() {
         let can = Action::View(Role::ALL[2]);
-        let reach = |action| if action == can { Reach::Can } else { Reach::Cannot("") };
-        let rows: Vec<Row> = table().iter().map(|entry| (entry, reach(entry.action))).collect();
+        let reach = |action| if action == can { Availability::Can } else { Availability::Cannot("") };
+        let rows: Vec<PaletteRow> = table().iter().map(|entry| (entry, reach(entry.action))).collect();
         assert_eq!(found("view", &rows)[0].0.action, can);
         assert_ne!(found("", &rows)[0].0.action, can, "without words the table's order stays");
     }

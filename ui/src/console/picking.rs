@@ -43,11 +43,11 @@ impl Picking {
 
     /// The chosen file, once. Closes `picking` when the user has chosen or cancelled.
     pub(crate) fn take(picking: &mut Option<Self>) -> Option<PathBuf> {
-        let told = picking.as_ref()?.0.try_recv();
-        if told != Err(TryRecvError::Empty) {
+        let report = picking.as_ref()?.0.try_recv();
+        if report != Err(TryRecvError::Empty) {
             *picking = None;
         }
-        told.ok()
+        report.ok()
     }
 }
 

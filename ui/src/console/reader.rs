@@ -2,15 +2,15 @@
 
 use std::sync::Arc;
 
-use nima_simulation::screen::{Screen, Task};
+use nima_simulation::screen::{PersonTask, Screen};
 
-use super::wizards::{Kind, Which};
+use super::wizards::{FrameKind, WizardKind};
 
 /// Receives the content of the screen. Clones are the same reader.
 #[derive(Clone)]
-pub struct Reader(Arc<dyn Fn(&Screen) + Send + Sync>);
+pub struct ScreenReader(Arc<dyn Fn(&Screen) + Send + Sync>);
 
-impl Reader {
+impl ScreenReader {
     /// `reads` is called with every change of the screen.
     pub fn new(reads: impl Fn(&Screen) + Send + Sync + 'static) -> Self {
         Self(Arc::new(reads))
@@ -25,25 +25,25 @@ impl Reader {
     }
 }
 
-impl std::fmt::Debug for Reader {
+impl std::fmt::Debug for ScreenReader {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(std::any::type_name::<Self>())
     }
 }
 
 /// Task of an open wizard for the person at the arm.
-pub const fn task_of(open: Option<Which>) -> Task {
+pub const fn task_of(open: Option<WizardKind>) -> PersonTask {
     match open {
         // The emulators' technician has no board.
-        None | Some(Which::Camera) => Task::Surgery,
+        None | Some(WizardKind::Camera) => PersonTask::Surgery,
         // Both record poses in all directions of gravity.
-        Some(Which::Gravity | Which::Frame(Kind::Mount)) => Task::Gravity,
-        Some(Which::Correspondence) => Task::Correspondence,
-        Some(Which::TipForce) => Task::TipForce,
-        Some(Which::Frame(Kind::Tip)) => Task::Tip,
-        Some(Which::Frame(Kind::HandEye)) => Task::HandEye,
-        Some(Which::Frame(Kind::Table)) => Task::Table,
-        Some(Which::Frame(Kind::View)) => Task::View,
-        Some(Which::Frame(Kind::Trocar)) => Task::Trocar,
+        Some(WizardKind::Gravity | WizardKind::Frame(FrameKind::Mount)) => PersonTask::Gravity,
+        Some(WizardKind::Correspondence) => PersonTask::Correspondence,
+        Some(WizardKind::TipForce) => PersonTask::TipForce,
+        Some(WizardKind::Frame(FrameKind::Tip)) => PersonTask::Tip,
+        Some(WizardKind::Frame(FrameKind::HandEye)) => PersonTask::HandEye,
+        Some(WizardKind::Frame(FrameKind::Table)) => PersonTask::Table,
+        Some(WizardKind::Frame(FrameKind::View)) => PersonTask::View,
+        Some(WizardKind::Frame(FrameKind::Trocar)) => PersonTask::Trocar,
     }
 }

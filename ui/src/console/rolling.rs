@@ -7,13 +7,13 @@ pub const DEGREES: usize = nima_core::impedance::MAX_DEGREE + 1;
 
 /// Number of times each degree was chosen in the last `capacity` ticks.
 #[derive(Clone, Debug)]
-pub struct DegreeShares {
+pub struct DegreeFractions {
     chosen: VecDeque<u8>,
     counts: [u32; DEGREES],
     capacity: usize,
 }
 
-impl DegreeShares {
+impl DegreeFractions {
     pub fn new(capacity: usize) -> Self {
         Self { chosen: VecDeque::with_capacity(capacity), counts: [0; DEGREES], capacity: capacity.max(1) }
     }
@@ -31,30 +31,30 @@ impl DegreeShares {
     }
 
     /// Fraction of each degree, 0 to 1; zeros before the first.
-    pub fn shares(&self) -> [f64; DEGREES] {
+    pub fn fractions(&self) -> [f64; DEGREES] {
         let total = self.chosen.len().max(1) as f64;
         self.counts.map(|count| f64::from(count) / total)
     }
 
     /// Fraction of degrees 2 and above, 0 to 1.
     pub fn nonlinear(&self) -> f64 {
-        self.shares().iter().skip(2).sum()
+        self.fractions().iter().skip(2).sum()
     }
 }
 
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Fading {
+pub struct FadingMean {
     value: Option<f64>,
 }
 
-impl Fading {
+impl FadingMean {
     /// Adds a value that was valid for `dt_s`; a non-finite value is ignored.
     pub fn push(&mut self, value: f64, dt_s: f64, constant_s: f64) {
         if !value.is_finite() {
             return;
         }
-        let share = if dt_s > 0.0 { 1.0 - (-dt_s / constant_s).exp() } else { 0.0 };
-        self.value = Some(self.value.map_or(value, |old| old + share * (value - old)));
+        let fraction = if dt_s > 0.0 { 1.0 - (-dt_s / constant_s).exp() } else { 0.0 };
+        self.value = Some(self.value.map_or(value, |old| old + fraction * (value - old)));
     }
 
     /// The current mean; `None` before the first value.
@@ -74,19 +74,19 @@ mod tests {
 
     #[test]
     fn shares_forget_what_is_old() {
-        let mut shares = DegreeShares::new(4);
+        let mut fractions = DegreeFractions::new(4);
         for degree in [5, 5, 5, 5, 1, 0, 2, 3, 99] {
-            shares.push(degree);
+            fractions.push(degree);
         }
-        let percent = shares.shares().map(|share| (100.0 * share).round() as u32);
+        let percent = fractions.fractions().map(|fraction| (100.0 * fraction).round() as u32);
         assert_eq!(percent, [25, 25, 25, 25, 0, 0]);
-        assert!((shares.nonlinear() - 0.5).abs() < 1e-12);
-        assert!(DegreeShares::new(10).nonlinear().abs() < 1e-12);
+        assert!((fractions.nonlinear() - 0.5).abs() < 1e-12);
+        assert!(DegreeFractions::new(10).nonlinear().abs() < 1e-12);
     }
 
     #[test]
     fn a_fading_mean_follows_and_ignores_nan() {
-        let mut mean = Fading::default();
+        let mut mean = FadingMean::default();
         mean.push(1.0, 0.001, 0.1);
         mean.push(f64::NAN, 0.001, 0.1);
         assert!((mean.get() - 1.0).abs() < 1e-12);

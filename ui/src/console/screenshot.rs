@@ -8,9 +8,9 @@ use image::{ExtendedColorType, ImageEncoder as _, codecs::png::PngEncoder};
 use nima_files::write_atomically;
 
 /// Writes the image, opaque, as 8-bit RGBA.
-pub fn save(path: &Path, picture: &ColorImage) -> anyhow::Result<()> {
-    let [width, height] = picture.size;
-    let pixels: Vec<u8> = picture.pixels.iter().flat_map(|pixel| [pixel.r(), pixel.g(), pixel.b(), 255]).collect();
+pub fn save(path: &Path, image: &ColorImage) -> anyhow::Result<()> {
+    let [width, height] = image.size;
+    let pixels: Vec<u8> = image.pixels.iter().flat_map(|pixel| [pixel.r(), pixel.g(), pixel.b(), 255]).collect();
     write_atomically(path, |file| {
         PngEncoder::new(file)
             .write_image(&pixels, width as u32, height as u32, ExtendedColorType::Rgba8)

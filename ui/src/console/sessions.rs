@@ -9,44 +9,43 @@ use std::{
     time::{Duration, Instant},
 };
 
-use nima_endoscope::Reel;
+use nima_endoscope::FrameQueue;
 use nima_machine::runtime::Tap;
 use nima_recording::store::utc_now;
 use nima_session::{
+    disk_forecast::{DiskForecast, WARN_BEFORE},
     objects::ObjectSource,
-    outlet::{Audience, Destination},
-    outlook::{Outlook, WARN_BEFORE},
-    recorder::{Note, NoteKind, Recorder},
-    shelf::{MOST_BYTES, Shelf, keep},
+    recorder::{LogNote, NoteKind, SessionRecorder},
+    session_store::{MAX_BYTES, SessionStore, keep},
+    sinks::{Audience, Destination},
 };
-use nima_simulation::Plan;
+use nima_simulation::SimulationPlan;
 
 use super::{
-    alarms::{Alarm, Kind, Priority, log::AlarmLog},
+    alarms::{Alarm, AlarmKind, AlarmPriority, log::AlarmLog},
     chain, text,
 };
 use crate::language::{self, Language};
 use crate::{
-    pictures, recording,
+    image_recorder, recording, report_text,
     watching::{self, Servers},
-    words,
 };
 
 /// A loop with fewer ticks than this is not a session, for example if no window could be opened or the rig was changed at
 /// once.
-const LEAST_TICKS: u64 = 1000;
+const MIN_TICKS: u64 = 1000;
 /// Interval at which room is made while a session grows.
 const ROOM_EVERY: Duration = Duration::from_secs(30);
 /// A disk that does not respond for this long is reported: after 2 s entries are lost.
 const SLOW: Duration = Duration::from_secs(1);
 
 #[derive(Debug, Default)]
-pub(crate) struct Sessions {
+pub(crate) struct ConsoleSessions {
     /// `None`: nothing is recorded.
-    shelf: Option<Shelf>,
+    shelf: Option<SessionStore>,
     /// Servers for live viewers.
     servers: Servers,
-    now: Option<Now>,
+    now: Option<CurrentRecording>,
     /// Reason why the last recording could not start, or ended on its own.
     trouble: Option<String>,
     looked: Option<Instant>,
@@ -55,22 +54,22 @@ pub(crate) struct Sessions {
     /// Loops that start now are not recorded.
     rests: bool,
     /// Source of the endoscope images.
-    reel: Reel,
+    reel: FrameQueue,
 }
 
 #[derive(Debug)]
-struct Now {
-    recorder: Recorder,
+struct CurrentRecording {
+    recorder: SessionRecorder,
     path: PathBuf,
     began: Instant,
-    outlook: Outlook,
+    outlook: DiskForecast,
     kept: bool,
-    told: Told,
+    report: LoggedState,
 }
 
 /// Screen events that are already in the session.
 #[derive(Debug, Default)]
-struct Told {
+struct LoggedState {
     /// Number of marks, and the time of the last one, s on the loop's clock.
     marks: usize,
     last_mark_s: Option<f64>,
@@ -79,7 +78,7 @@ struct Told {
 }
 
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Shown {
+pub(crate) struct DisplayState {
     /// Duration of the recording.
     pub(crate) seconds: u64,
     pub(crate) kept: bool,
@@ -88,26 +87,26 @@ pub(crate) struct Shown {
     /// Entries lost because the disk was slower than the loop.
     pub(crate) lost: u64,
     /// Number of endoscope images.
-    pub(crate) pictures: u64,
+    pub(crate) images: u64,
     /// Number of marks.
     pub(crate) marks: usize,
     /// Addresses and numbers of live viewers.
-    pub(crate) watched: Vec<watching::Shown>,
+    pub(crate) watched: Vec<watching::WatchStatus>,
 }
 
-impl Sessions {
+impl ConsoleSessions {
     /// Records into the folder `sessions` of the user's data folder, with these servers for live viewers.
     pub(crate) fn of_user(data_folder: Option<&Path>, servers: Servers) -> Self {
-        let shelf = data_folder.map(|folder| Shelf::new(folder.join("sessions"), MOST_BYTES));
+        let shelf = data_folder.map(|folder| SessionStore::new(folder.join("sessions"), MAX_BYTES));
         let now = None;
         let trouble = None;
         let looked = None;
         let full_in = None;
-        Self { shelf, servers, now, trouble, looked, full_in, rests: false, reel: Reel::default() }
+        Self { shelf, servers, now, trouble, looked, full_in, rests: false, reel: FrameQueue::default() }
     }
 
     /// Starts to record a loop of this plan; the tap is for the loop. `None` if nothing is recorded.
-    pub(crate) fn begin(&mut self, plan: &Plan) -> Option<Tap> {
+    pub(crate) fn begin(&mut self, plan: &SimulationPlan) -> Option<Tap> {
         self.end();
         let shelf = self.shelf.as_ref().filter(|_| !self.rests)?;
         self.trouble = None;
@@ -117,10 +116,10 @@ impl Sessions {
             let audiences = self.servers.audiences(plan, &self.reel);
             let to = Destination { file: Some(&path), audiences };
             let (tap, recorder) = recording::begin(to, plan, None).map_err(|error| chain(&error))?;
-            pictures::film(&recorder, &plan.rig, &self.reel);
+            image_recorder::film(&recorder, &plan.rig, &self.reel);
             let began = Instant::now();
-            let outlook = Outlook::new(&path, recorder.progress().bytes, began);
-            Ok((tap, Now { recorder, path, began, outlook, kept: false, told: Told::default() }))
+            let outlook = DiskForecast::new(&path, recorder.progress().bytes, began);
+            Ok((tap, CurrentRecording { recorder, path, began, outlook, kept: false, report: LoggedState::default() }))
         };
         let place = place.map_err(|error| text::sessions::no_folder(shelf.folder(), &error));
         match place.and_then(begin) {
@@ -136,12 +135,12 @@ impl Sessions {
     }
 
     /// Audiences that may see a trial of a blind study with this name.
-    pub(crate) fn blind_audiences(&self, plan: &Plan, trial: &str) -> Vec<Box<dyn Audience>> {
+    pub(crate) fn blind_audiences(&self, plan: &SimulationPlan, trial: &str) -> Vec<Box<dyn Audience>> {
         self.servers.blind_audiences(plan, trial)
     }
 
     /// Target of the endoscope images for the recording.
-    pub(crate) const fn reel(&self) -> &Reel {
+    pub(crate) const fn reel(&self) -> &FrameQueue {
         &self.reel
     }
 
@@ -152,17 +151,17 @@ impl Sessions {
 
     /// Also records the objects of the scene that this source reports. Call it before the loop starts.
     pub(crate) fn watch(&self, source: Box<dyn ObjectSource>) {
-        if let Some(Now { recorder, .. }) = &self.now {
+        if let Some(CurrentRecording { recorder, .. }) = &self.now {
             recorder.watch(source);
         }
     }
 
     /// Ends the recording; the loop must have ended.
     pub(crate) fn end(&mut self) {
-        let Some(Now { recorder, path, kept, .. }) = self.now.take() else { return };
+        let Some(CurrentRecording { recorder, path, kept, .. }) = self.now.take() else { return };
         match recorder.finish() {
             // A failed deletion does not matter.
-            Ok(progress) if progress.ticks < LEAST_TICKS && !kept => drop(std::fs::remove_file(path)),
+            Ok(progress) if progress.ticks < MIN_TICKS && !kept => drop(std::fs::remove_file(path)),
             Ok(_) => {}
             Err(error) => self.trouble = Some(chain(&error)),
         }
@@ -179,20 +178,20 @@ impl Sessions {
     /// Adds new marks (s on the loop's clock) and alarms of the screen to the session: each alarm when its cause appears, and
     /// when it ends. `written` are those alarms in English, for the file. `now_s` is the time of the last tick; faults are in
     /// the session anyway.
-    pub(crate) fn tell(&mut self, marks_s: &VecDeque<f64>, alarms: &AlarmLog, written: &[Alarm], now_s: Option<f64>) {
-        let (Some(Now { recorder, told, .. }), Some(now_s)) = (&mut self.now, now_s) else { return };
-        let before_s = told.last_mark_s;
+    pub(crate) fn notify(&mut self, marks_s: &VecDeque<f64>, alarms: &AlarmLog, written: &[Alarm], now_s: Option<f64>) {
+        let (Some(CurrentRecording { recorder, report, .. }), Some(now_s)) = (&mut self.now, now_s) else { return };
+        let before_s = report.last_mark_s;
         for &t_s in marks_s.iter().filter(|t_s| before_s.is_none_or(|last_s| **t_s > last_s)) {
-            told.marks += 1;
-            told.last_mark_s = Some(t_s);
-            let words = language::with(Language::English, || text::sessions::mark(told.marks));
-            recorder.note(t_s, Note { kind: NoteKind::Mark, warns: false, words, names: false });
+            report.marks += 1;
+            report.last_mark_s = Some(t_s);
+            let words = language::with(Language::English, || text::sessions::mark(report.marks));
+            recorder.note(t_s, LogNote { kind: NoteKind::Mark, warns: false, words, names: false });
         }
         let live: Vec<&Alarm> = alarms.live().into_iter().map(|entry| &entry.alarm).collect();
-        let alarm = |kind: Kind, warns, words| {
-            recorder.note(now_s, Note { kind: NoteKind::Alarm, warns, words, names: kind.has_names() });
+        let alarm = |kind: AlarmKind, warns, words| {
+            recorder.note(now_s, LogNote { kind: NoteKind::Alarm, warns, words, names: kind.has_names() });
         };
-        told.alarms.retain(|before| {
+        report.alarms.retain(|before| {
             let stays = live.iter().any(|alarm| alarm.kind == before.kind);
             if !stays {
                 alarm(
@@ -204,12 +203,12 @@ impl Sessions {
             stays
         });
         for new in live {
-            let known = told.alarms.iter().any(|alarm| alarm.kind == new.kind);
-            if !known && !matches!(new.kind, Kind::Fault(_)) {
+            let known = report.alarms.iter().any(|alarm| alarm.kind == new.kind);
+            if !known && !matches!(new.kind, AlarmKind::Fault(_)) {
                 let new = written.iter().find(|alarm| alarm.kind == new.kind).unwrap_or(new);
                 let words = language::with(Language::English, || text::sessions::alarm(&new.cause));
-                alarm(new.kind, new.priority < Priority::Low, words);
-                told.alarms.push(new.clone());
+                alarm(new.kind, new.priority < AlarmPriority::Low, words);
+                report.alarms.push(new.clone());
             }
         }
     }
@@ -217,28 +216,27 @@ impl Sessions {
     /// Reason why nothing is recorded although it should be, or a problem expected within a day.
     pub(crate) fn trouble(&self) -> Option<String> {
         let recorder = self.now.as_ref().map(|now| &now.recorder);
-        let ended = recorder.and_then(Recorder::trouble).map(|error| chain(error));
-        let progress = recorder.map(Recorder::progress).unwrap_or_default();
+        let ended = recorder.and_then(SessionRecorder::trouble).map(|error| chain(error));
+        let progress = recorder.map(SessionRecorder::progress).unwrap_or_default();
         let slow = || (progress.waits > SLOW).then(|| text::sessions::slow(progress.waits));
         let lost = || (progress.lost > 0).then(|| text::sessions::lost(progress.lost));
-        let pictures =
-            || (progress.pictures_dropped > 0).then(|| text::sessions::pictures_lost(progress.pictures_dropped));
-        let full = || self.full_in.filter(|time| *time < WARN_BEFORE).map(words::disk_full_in);
-        ended.or_else(slow).or_else(lost).or_else(pictures).or_else(|| self.trouble.clone()).or_else(full)
+        let images = || (progress.images_dropped > 0).then(|| text::sessions::images_lost(progress.images_dropped));
+        let full = || self.full_in.filter(|time| *time < WARN_BEFORE).map(report_text::disk_full_in);
+        ended.or_else(slow).or_else(lost).or_else(images).or_else(|| self.trouble.clone()).or_else(full)
     }
 
     /// The current recording; `None` if there is none.
-    pub(crate) fn shown(&self) -> Option<Shown> {
+    pub(crate) fn shown(&self) -> Option<DisplayState> {
         let now = self.now.as_ref().filter(|now| now.recorder.trouble().is_none())?;
         let progress = now.recorder.progress();
-        Some(Shown {
+        Some(DisplayState {
             seconds: now.began.elapsed().as_secs(),
             kept: now.kept,
             path: now.path.clone(),
             bytes: progress.bytes,
             lost: progress.lost,
-            pictures: progress.pictures,
-            marks: now.told.marks,
+            images: progress.images,
+            marks: now.report.marks,
             watched: self.servers.shown(),
         })
     }
@@ -261,7 +259,7 @@ impl Sessions {
     }
 }
 
-impl Drop for Sessions {
+impl Drop for ConsoleSessions {
     fn drop(&mut self) {
         self.end();
     }
@@ -274,26 +272,26 @@ mod tests {
         runtime::{Assembly, start},
     };
     use nima_session::{
-        file::Recorded,
+        file::RecordedFile,
         replay::replay,
-        report::{Figures, MarkLevel},
+        report::{MarkLevel, SessionFigures},
     };
     use nima_simulation::scene::Scene;
 
-    use crate::console::alarms::{Signs, judge, log::Moment};
+    use crate::console::alarms::{Signs, judge, log::AlarmMoment};
 
     use super::*;
 
-    fn plan() -> Plan {
+    fn plan() -> SimulationPlan {
         let rig = RigConfig::load("simulated").unwrap();
         let scene = Scene::load("peg_transfer").unwrap();
-        Plan { rig, scene, calibrations: Default::default(), engage: true }
+        SimulationPlan { rig, scene, calibrations: Default::default(), engage: true }
     }
 
     #[test]
     fn every_loop_is_recorded_and_its_session_replays() {
         let folder = tempfile::tempdir().unwrap();
-        let mut sessions = Sessions::of_user(Some(folder.path()), Servers::default());
+        let mut sessions = ConsoleSessions::of_user(Some(folder.path()), Servers::default());
         let mut paths = Vec::new();
         for kept in [true, false] {
             let plan = plan();
@@ -314,7 +312,7 @@ mod tests {
             assert_eq!((sessions.shown(), sessions.trouble()), (None, None));
         }
         for path in &paths {
-            let file = Recorded::open(path).unwrap();
+            let file = RecordedFile::open(path).unwrap();
             let outcome = replay(file.journal().unwrap(), |_| ()).unwrap();
             assert!(outcome.differs.is_none() && outcome.closed && outcome.ticks > 0, "{outcome:?}");
         }
@@ -323,7 +321,7 @@ mod tests {
     #[test]
     fn while_it_rests_nothing_is_recorded() {
         let folder = tempfile::tempdir().unwrap();
-        let mut sessions = Sessions::of_user(Some(folder.path()), Servers::default());
+        let mut sessions = ConsoleSessions::of_user(Some(folder.path()), Servers::default());
         sessions.rest(true);
         assert!(sessions.begin(&plan()).is_none());
         assert_eq!((sessions.shown(), sessions.trouble()), (None, None));
@@ -335,7 +333,7 @@ mod tests {
     #[test]
     fn marks_and_alarms_of_the_screen_are_in_the_session_at_their_moments_and_it_replays() {
         let folder = tempfile::tempdir().unwrap();
-        let mut sessions = Sessions::of_user(Some(folder.path()), Servers::default());
+        let mut sessions = ConsoleSessions::of_user(Some(folder.path()), Servers::default());
         let plan = plan();
         let tap = sessions.begin(&plan);
         let handle = start(Assembly { tap, ..plan.assembly().unwrap() }).unwrap();
@@ -355,23 +353,23 @@ mod tests {
             marks_s.push_back(now_s);
             let present = if marks_s.len() == 2 { Some(0.41) } else { None };
             let signs = Signs { running: true, bias_moved_n: present, ..Signs::default() };
-            log.update(&judge(&signs), &Moment::now(Some(now_s), now_s));
+            log.update(&judge(&signs), &AlarmMoment::now(Some(now_s), now_s));
             // Reported once, however often the window is drawn.
             for _ in 0..2 {
-                sessions.tell(&marks_s, &log, &judge(&signs), Some(now_s));
+                sessions.notify(&marks_s, &log, &judge(&signs), Some(now_s));
             }
         }
         let path = sessions.shown().unwrap().path;
         handle.stop_and_join().unwrap();
         sessions.end();
-        let figures = Figures::read(&path).unwrap();
+        let figures = SessionFigures::read(&path).unwrap();
         let of = |start: &str| {
             let those = figures.marks.iter().filter(|mark| mark.words.starts_with(start));
             those.map(|mark| (mark.t_s, mark.level, mark.words.clone())).collect::<Vec<_>>()
         };
-        let told = of("mark ");
-        assert_eq!(told.len(), 3, "{told:?}");
-        for (number, ((t_s, level, words), expected_s)) in told.iter().zip(&marks_s).enumerate() {
+        let report = of("mark ");
+        assert_eq!(report.len(), 3, "{report:?}");
+        for (number, ((t_s, level, words), expected_s)) in report.iter().zip(&marks_s).enumerate() {
             assert!((t_s - expected_s).abs() < 1e-6, "{t_s} s, it was {expected_s} s");
             assert_eq!((*level, words.as_str()), (MarkLevel::Mark, &*format!("mark {}", number + 1)));
         }
@@ -380,9 +378,9 @@ mod tests {
             (raised_s - marks_s[1]).abs() < 1e-6 && *level == MarkLevel::Warning && words.contains("0.41 N"),
             "{words}"
         );
-        let [(over_s, ..)] = &of("alarm over: ")[..] else { panic!("{:?}", figures.marks) };
+        let [(over_s, ..)] = &of("alarm ended: ")[..] else { panic!("{:?}", figures.marks) };
         assert!((over_s - marks_s[2]).abs() < 1e-6);
-        let file = Recorded::open(&path).unwrap();
+        let file = RecordedFile::open(&path).unwrap();
         assert!(file.is_closed().unwrap());
         let outcome = replay(file.journal().unwrap(), |_| ()).unwrap();
         assert!(outcome.differs.is_none() && outcome.closed && outcome.ticks > 0, "{outcome:?}");
@@ -391,7 +389,7 @@ mod tests {
     #[test]
     fn a_loop_that_ends_at_once_leaves_no_session() {
         let folder = tempfile::tempdir().unwrap();
-        let mut sessions = Sessions::of_user(Some(folder.path()), Servers::default());
+        let mut sessions = ConsoleSessions::of_user(Some(folder.path()), Servers::default());
         let plan = plan();
         let tap = sessions.begin(&plan);
         drop(start(Assembly { tap, ..plan.assembly().unwrap() }).unwrap());
@@ -404,7 +402,7 @@ mod tests {
     fn a_folder_that_cannot_be_made_is_told_and_the_loop_runs_without_a_recording() {
         let folder = tempfile::tempdir().unwrap();
         std::fs::write(folder.path().join("sessions"), "a file").unwrap();
-        let mut sessions = Sessions::of_user(Some(folder.path()), Servers::default());
+        let mut sessions = ConsoleSessions::of_user(Some(folder.path()), Servers::default());
         assert!(sessions.begin(&plan()).is_none());
         let trouble = sessions.trouble().unwrap();
         assert!(trouble.contains("sessions"), "{trouble}");

@@ -13,7 +13,7 @@ use nima_files::{PASSAGE, shortened, write_atomically};
 use nima_recording::store::Store;
 use serde::{Deserialize, Serialize};
 
-use super::{desk::Layout, roles::Role, start::Choice};
+use super::{roles::Role, start::RigChoice, tiles::PanelLayout};
 use crate::console::text;
 use crate::language::Language;
 
@@ -23,20 +23,22 @@ const SET_ASIDE: &str = "console.corrupted.json";
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 #[expect(clippy::struct_excessive_bools, reason = "switches of a menu")]
-pub struct Settings {
+pub struct ConsoleSettings {
     pub role: Role,
-    pub layout: Layout,
+    pub layout: PanelLayout,
     pub sound: bool,
     pub light: bool,
     /// Whether sessions include the endoscope image.
-    pub records_picture: bool,
-    pub picture: PictureSettings,
+    #[serde(rename = "records_picture")]
+    pub records_image: bool,
+    #[serde(rename = "picture")]
+    pub image: ImageSettings,
     pub language: Language,
     pub toured: bool,
     /// Scale of the user interface, percent; [`SCALES`].
     pub scale_percent: u16,
     /// Rigs and scenes in order of last use, newest first.
-    pub recent: Vec<Choice>,
+    pub recent: Vec<RigChoice>,
     /// Folders of user studies outside the user's data.
     pub studies: Vec<PathBuf>,
 }
@@ -44,7 +46,7 @@ pub struct Settings {
 /// Display settings of the endoscope image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
-pub struct PictureSettings {
+pub struct ImageSettings {
     /// Added to every value, percent of white.
     pub brightness_percent: i16,
     /// Scales the distance of every value from middle grey.
@@ -57,7 +59,7 @@ pub struct PictureSettings {
     pub forces_of_now: bool,
 }
 
-impl Default for PictureSettings {
+impl Default for ImageSettings {
     fn default() -> Self {
         let contrast_percent = 100;
         let gamma_percent = 100;
@@ -65,43 +67,43 @@ impl Default for PictureSettings {
     }
 }
 
-impl PictureSettings {
+impl ImageSettings {
     pub(super) fn tone(&self) -> Tone {
-        let share = |percent: u16| f64::from(percent) / 100.0;
+        let fraction = |percent: u16| f64::from(percent) / 100.0;
         let brightness = f64::from(self.brightness_percent) / 100.0;
-        Tone { brightness, contrast: share(self.contrast_percent), gamma: share(self.gamma_percent) }.limited()
+        Tone { brightness, contrast: fraction(self.contrast_percent), gamma: fraction(self.gamma_percent) }.limited()
     }
 
     /// Parts cut off at the left, top, right and bottom, as fractions.
     pub(super) fn crop(&self) -> [f32; 4] {
-        self.crop_percent.map(|percent| f32::from(percent.min(CROP_MOST_PERCENT)) / 100.0)
+        self.crop_percent.map(|percent| f32::from(percent.min(CROP_MAX_PERCENT)) / 100.0)
     }
 }
 
 /// Maximum cut-off at an edge, percent.
-pub const CROP_MOST_PERCENT: u8 = 40;
+pub const CROP_MAX_PERCENT: u8 = 40;
 
 /// Smallest and largest scale, percent.
 pub const SCALES: std::ops::RangeInclusive<u16> = 100..=200;
 /// A step of the keys.
 const STEP_PERCENT: i16 = 25;
 
-impl Settings {
+impl ConsoleSettings {
     pub(super) fn scale_by(&mut self, steps: i16) {
         let wanted = self.scale_percent.saturating_add_signed(STEP_PERCENT * steps);
         self.scale_percent = wanted.clamp(*SCALES.start(), *SCALES.end());
     }
 }
 
-impl Default for Settings {
+impl Default for ConsoleSettings {
     fn default() -> Self {
         Self {
             role: Role::default(),
-            layout: Layout::default(),
+            layout: PanelLayout::default(),
             sound: false,
             light: false,
-            records_picture: true,
-            picture: PictureSettings::default(),
+            records_image: true,
+            image: ImageSettings::default(),
             language: Language::default(),
             toured: false,
             scale_percent: 100,
@@ -113,14 +115,14 @@ impl Default for Settings {
 
 /// Settings and the folder in which they are saved.
 #[derive(Debug, Default)]
-pub struct Kept {
+pub struct SettingsStore {
     folder: Option<PathBuf>,
-    pub now: Settings,
-    saved: Settings,
-    told: Option<String>,
+    pub now: ConsoleSettings,
+    saved: ConsoleSettings,
+    report: Option<String>,
 }
 
-impl Kept {
+impl SettingsStore {
     /// The user's settings, saved next to the calibrations.
     pub fn of_user() -> Self {
         let folder = Store::of_user().ok().and_then(|store| store.folder().parent().map(Path::to_path_buf));
@@ -129,12 +131,14 @@ impl Kept {
 
     /// The settings in this folder; the defaults if there are none or they cannot be read.
     pub fn open(folder: &Path) -> Self {
-        let (now, told) = match nima_files::read_text(&folder.join(FILE), nima_files::CONFIG_MAX) {
-            Err(error) if error.kind() == io::ErrorKind::NotFound => (Settings::default(), None),
-            Err(error) => (Settings::default(), Some(text::settings::not_read(&error))),
-            Ok(text) => read(&text).unwrap_or_else(|error| (Settings::default(), Some(set_aside(folder, &error)))),
+        let (now, report) = match nima_files::read_text(&folder.join(FILE), nima_files::CONFIG_MAX) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => (ConsoleSettings::default(), None),
+            Err(error) => (ConsoleSettings::default(), Some(text::settings::not_read(&error))),
+            Ok(text) => {
+                read(&text).unwrap_or_else(|error| (ConsoleSettings::default(), Some(set_aside(folder, &error))))
+            }
         };
-        Self { folder: Some(folder.to_path_buf()), saved: now.clone(), now, told }
+        Self { folder: Some(folder.to_path_buf()), saved: now.clone(), now, report }
     }
 
     /// The folder of the user's data; `None` if there is none.
@@ -151,7 +155,7 @@ impl Kept {
             .and(text)
             .and_then(|text| write_atomically(&folder.join(FILE), |file| file.write_all(&text)));
         if let Err(error) = written {
-            self.told = Some(text::settings::not_kept(&error));
+            self.report = Some(text::settings::not_kept(&error));
         }
     }
 
@@ -160,17 +164,17 @@ impl Kept {
     }
 
     /// Error of the settings file, if there is one.
-    pub fn told(&self) -> Option<&str> {
-        self.told.as_deref()
+    pub fn report(&self) -> Option<&str> {
+        self.report.as_deref()
     }
 }
 
 /// Parses settings; returns them with a message about problems. If only the layout cannot be read, the other settings are
 /// still used. Unknown fields, written by a newer version, are ignored.
-fn read(text: &str) -> Result<(Settings, Option<String>), serde_json::Error> {
+fn read(text: &str) -> Result<(ConsoleSettings, Option<String>), serde_json::Error> {
     let mut value: serde_json::Value = serde_json::from_str(text)?;
     let layout = value.as_object_mut().and_then(|fields| fields.remove("layout"));
-    let mut settings: Settings = serde_json::from_value(value)?;
+    let mut settings: ConsoleSettings = serde_json::from_value(value)?;
     let Some(layout) = layout else { return Ok((settings, None)) };
     match serde_json::from_value(layout) {
         Ok(layout) => {
@@ -197,12 +201,12 @@ mod tests {
     fn what_was_chosen_is_there_the_next_day() {
         let folder = tempfile::tempdir().unwrap();
         let folder = folder.path().join("new");
-        let mut kept = Kept::open(&folder);
-        assert_eq!((kept.now.clone(), kept.told()), (Settings::default(), None));
+        let mut kept = SettingsStore::open(&folder);
+        assert_eq!((kept.now.clone(), kept.report()), (ConsoleSettings::default(), None));
         kept.now.role = Role::Surgeon;
         kept.save();
-        let again = Kept::open(&folder);
-        assert_eq!((again.now.role, again.told()), (Role::Surgeon, None));
+        let again = SettingsStore::open(&folder);
+        assert_eq!((again.now.role, again.report()), (Role::Surgeon, None));
     }
 
     #[test]
@@ -210,13 +214,13 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         for damage in ["{\"role\":", "", "{\"role\":\"king\"}", "{\"light\":1}", "[]x"] {
             std::fs::write(folder.path().join(FILE), damage).unwrap();
-            let mut kept = Kept::open(folder.path());
-            assert_eq!(kept.now, Settings::default());
-            assert!(kept.told().unwrap().contains(SET_ASIDE));
+            let mut kept = SettingsStore::open(folder.path());
+            assert_eq!(kept.now, ConsoleSettings::default());
+            assert!(kept.report().unwrap().contains(SET_ASIDE));
             assert_eq!(std::fs::read_to_string(folder.path().join(SET_ASIDE)).unwrap(), damage);
             kept.now.role = Role::Demo;
             kept.save();
-            assert_eq!(Kept::open(folder.path()).now.role, Role::Demo);
+            assert_eq!(SettingsStore::open(folder.path()).now.role, Role::Demo);
         }
     }
 
@@ -226,9 +230,9 @@ mod tests {
         for layout in ["1", "{\"places\":{\"spiral\":[]}}", "{\"closed\":[\"tea_kitchen\"]}"] {
             let text = format!("{{\"role\":\"surgeon\",\"from_the_future\":1,\"layout\":{layout}}}");
             std::fs::write(folder.path().join(FILE), text).unwrap();
-            let kept = Kept::open(folder.path());
-            assert_eq!((kept.now.role, &kept.now.layout), (Role::Surgeon, &Layout::default()));
-            assert!(kept.told().unwrap().starts_with(text::settings::LAYOUT_LOST.get()));
+            let kept = SettingsStore::open(folder.path());
+            assert_eq!((kept.now.role, &kept.now.layout), (Role::Surgeon, &PanelLayout::default()));
+            assert!(kept.report().unwrap().starts_with(text::settings::LAYOUT_LOST.get()));
             assert!(folder.path().join(FILE).exists());
         }
     }
@@ -238,9 +242,9 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let in_the_way = folder.path().join("file");
         std::fs::write(&in_the_way, "").unwrap();
-        let mut kept = Kept::open(&in_the_way.join("folder"));
+        let mut kept = SettingsStore::open(&in_the_way.join("folder"));
         kept.now.role = Role::Demo;
         kept.save();
-        assert!(kept.told().is_some());
+        assert!(kept.report().is_some());
     }
 }

@@ -13,14 +13,14 @@ const MEMORY_S: f64 = 0.5;
 /// After a pause of this length a contact counts as new, s.
 const PAUSE_S: f64 = 0.2;
 /// Contact time, s, and variation of the displacement, m, needed for an estimate.
-const LEAST_S: f64 = 0.15;
-const LEAST_WAY_M: f64 = 2e-4;
+const MIN_S: f64 = 0.15;
+const MIN_TRAVEL_M: f64 = 2e-4;
 
 /// Exponentially weighted moments of displacement and force.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ContactStiffness {
     weight_s: f64,
-    way_m: Vector3<f64>,
+    travel_m: Vector3<f64>,
     force_n: Vector3<f64>,
     way_way: Matrix3<f64>,
     force_way: Matrix3<f64>,
@@ -45,25 +45,25 @@ impl ContactStiffness {
         if self.weight_s <= 0.0 {
             return;
         }
-        let share = dt_s / self.weight_s;
-        let way = tip_m - self.way_m;
+        let fraction = dt_s / self.weight_s;
+        let way = tip_m - self.travel_m;
         let force = force_n - self.force_n;
-        self.way_m += share * way;
-        self.force_n += share * force;
-        let keep = 1.0 - share;
-        self.way_way = keep * (self.way_way + share * way * way.transpose());
-        self.force_way = keep * (self.force_way + share * force * way.transpose());
-        self.tell();
+        self.travel_m += fraction * way;
+        self.force_n += fraction * force;
+        let keep = 1.0 - fraction;
+        self.way_way = keep * (self.way_way + fraction * way * way.transpose());
+        self.force_way = keep * (self.force_way + fraction * force * way.transpose());
+        self.notify();
     }
 
-    fn tell(&mut self) {
+    fn notify(&mut self) {
         let Some(along) = self.force_n.try_normalize(1e-9) else { return };
-        let way_m2 = (along.transpose() * self.way_way * along)[0];
-        if self.weight_s < LEAST_S || way_m2 < LEAST_WAY_M * LEAST_WAY_M {
+        let travel_m2 = (along.transpose() * self.way_way * along)[0];
+        if self.weight_s < MIN_S || travel_m2 < MIN_TRAVEL_M * MIN_TRAVEL_M {
             return;
         }
         // Negative, because the force of the tissue opposes the displacement.
-        let n_m = -(along.transpose() * self.force_way * along)[0] / way_m2;
+        let n_m = -(along.transpose() * self.force_way * along)[0] / travel_m2;
         if (1.0..1e6).contains(&n_m) {
             self.n_m = Some(n_m);
         }

@@ -11,7 +11,7 @@ use egui::{
 };
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Palette {
+pub struct ColourPalette {
     /// Background of the window.
     pub background: Color32,
     /// Bars and side panels.
@@ -67,7 +67,7 @@ const fn rgb(hex: u32) -> Color32 {
 }
 
 /// For a dark room; also for the 3-D view and for alarms, which are dark in both palettes.
-pub const DARK: Palette = Palette {
+pub const DARK: ColourPalette = ColourPalette {
     background: rgb(0x10_1317),
     panel: rgb(0x15_191f),
     card: rgb(0x1c_2129),
@@ -95,7 +95,7 @@ pub const DARK: Palette = Palette {
 };
 
 /// For a bright room and for printing.
-pub const LIGHT: Palette = Palette {
+pub const LIGHT: ColourPalette = ColourPalette {
     background: rgb(0xf4_f6f8),
     panel: rgb(0xe4_e9ee),
     card: rgb(0xfc_fdfe),
@@ -124,10 +124,10 @@ pub const LIGHT: Palette = Palette {
 
 thread_local! {
     // Thread-local: a window uses one thread, and tests have many windows on many threads.
-    static NOW: Cell<&'static Palette> = const { Cell::new(&DARK) };
+    static NOW: Cell<&'static ColourPalette> = const { Cell::new(&DARK) };
 }
 
-pub fn now() -> &'static Palette {
+pub fn now() -> &'static ColourPalette {
     NOW.get()
 }
 
@@ -191,7 +191,7 @@ fn fonts() -> FontDefinitions {
     fonts
 }
 
-fn set_style(style: &mut Style, base: Visuals, palette: &Palette) {
+fn set_style(style: &mut Style, base: Visuals, palette: &ColourPalette) {
     style.text_styles = [
         (TextStyle::Heading, strong(15.0)),
         (TextStyle::Body, regular(14.0)),
@@ -213,7 +213,7 @@ fn set_style(style: &mut Style, base: Visuals, palette: &Palette) {
     style.visuals = visuals(base, palette);
 }
 
-fn visuals(mut visuals: Visuals, palette: &Palette) -> Visuals {
+fn visuals(mut visuals: Visuals, palette: &ColourPalette) -> Visuals {
     visuals.panel_fill = palette.panel;
     visuals.window_fill = palette.popup;
     visuals.window_stroke = Stroke::new(1.0, palette.line);
@@ -257,7 +257,7 @@ pub fn card() -> egui::Frame {
 mod tests {
     use std::path::Path;
 
-    use nima_testing::contrast::LEAST;
+    use nima_testing::contrast::MIN;
 
     use super::*;
 
@@ -296,7 +296,7 @@ mod tests {
     }
 
     /// The colours of a palette in which words and numbers are written.
-    fn inks(palette: &Palette) -> Vec<(&'static str, Color32)> {
+    fn inks(palette: &ColourPalette) -> Vec<(&'static str, Color32)> {
         let mut inks = vec![
             ("text", palette.text),
             ("text_weak", palette.text_weak),
@@ -321,9 +321,9 @@ mod tests {
         for (name, palette) in [("dark", &DARK), ("light", &LIGHT)] {
             let grounds = [palette.background, palette.panel, palette.card, palette.popup, palette.groove];
             for (ink, colour) in inks(palette) {
-                let least = grounds.map(|ground| contrast(colour, ground)).into_iter().fold(f64::INFINITY, f64::min);
-                if least < LEAST {
-                    wrong.push(format!("{name} {ink}: {least:.2}"));
+                let min = grounds.map(|ground| contrast(colour, ground)).into_iter().fold(f64::INFINITY, f64::min);
+                if min < MIN {
+                    wrong.push(format!("{name} {ink}: {min:.2}"));
                 }
             }
         }
@@ -334,18 +334,18 @@ mod tests {
     fn words_on_controls_and_signs_are_read_too() {
         for palette in [&DARK, &LIGHT] {
             for control in [palette.control, palette.control_hover] {
-                assert!(contrast(palette.text, control) > 7.0 && contrast(palette.text_weak, control) > LEAST);
+                assert!(contrast(palette.text, control) > 7.0 && contrast(palette.text_weak, control) > MIN);
             }
-            assert!(contrast(palette.text, palette.selected) > LEAST);
-            assert!(contrast(DARK.text, palette.primary) > LEAST, "the next button");
+            assert!(contrast(palette.text, palette.selected) > MIN);
+            assert!(contrast(DARK.text, palette.primary) > MIN, "the next button");
             for sign in [palette.engaged, palette.alarm_high, palette.stop, palette.at_rest, palette.past] {
-                assert!(contrast(palette.background, sign) > LEAST, "{sign:?}");
+                assert!(contrast(palette.background, sign) > MIN, "{sign:?}");
             }
             assert!(contrast(palette.stop, palette.panel) > 10.0, "the stop must be found without looking");
             assert!(contrast(palette.measured, palette.rendered) > 1.4, "the forces differ in lightness too");
         }
         // The alarm strip is dark in both.
-        assert!(contrast(DARK.text_weak, DARK.card) > LEAST);
+        assert!(contrast(DARK.text_weak, DARK.card) > MIN);
     }
 
     #[test]
@@ -353,7 +353,7 @@ mod tests {
         for below in [Color32::WHITE, FIELD_FAR, FIELD_NEAR] {
             let ground = below.blend(VEIL);
             for (ink, colour) in inks(&DARK) {
-                assert!(contrast(colour, ground) >= LEAST, "{ink} on {below:?}: {:.2}", contrast(colour, ground));
+                assert!(contrast(colour, ground) >= MIN, "{ink} on {below:?}: {:.2}", contrast(colour, ground));
             }
         }
     }

@@ -1,10 +1,10 @@
 //! Undo and redo of the layout and display settings.
 //!
-//! A [`Look`] lists everything that can be undone; nothing else is. Settings of the machine (mode, gain, delay, thresholds,
+//! A [`ScreenLook`] lists everything that can be undone; nothing else is. Settings of the machine (mode, gain, delay, thresholds,
 //! engaging, stopping) are excluded, as are the role, whose demonstration sets modes, the alarm sound, and recording. The
 //! history ends with the window.
 
-use super::{desk::Layout, panels::ForcesView, scene3d::extras::Extras, settings::PictureSettings};
+use super::{panels::ForcesView, scene3d::extras::Extras, settings::ImageSettings, tiles::PanelLayout};
 use crate::language::Language;
 
 /// Maximum number of undo steps.
@@ -14,18 +14,18 @@ const SAME_STEP_S: f64 = 0.6;
 
 /// Layout and display settings.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Look {
-    pub(super) layout: Layout,
+pub(super) struct ScreenLook {
+    pub(super) layout: PanelLayout,
     pub(super) light: bool,
     pub(super) language: Language,
     pub(super) scale_percent: u16,
-    pub(super) picture: PictureSettings,
+    pub(super) image: ImageSettings,
     pub(super) extras: Extras,
     pub(super) traces: ForcesView,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Change {
+enum LookChange {
     /// Only slider settings of the endoscope image.
     Picture,
     /// Only the interval of the traces, set by wheel and drag.
@@ -34,10 +34,10 @@ enum Change {
     AtOnce,
 }
 
-impl Look {
+impl ScreenLook {
     /// The difference between two looks. The front tab does not count: undoing it would hide the changes that matter.
-    fn change(&self, other: &Self) -> Option<Change> {
-        let Self { layout, light, language, scale_percent, picture, extras, traces } = self;
+    fn change(&self, other: &Self) -> Option<LookChange> {
+        let Self { layout, light, language, scale_percent, image, extras, traces } = self;
         let at_once = layout.places != other.layout.places
             || layout.closed != other.layout.closed
             || *light != other.light
@@ -45,28 +45,28 @@ impl Look {
             || *scale_percent != other.scale_percent
             || *extras != other.extras
             || traces.side != other.traces.side;
-        match (at_once, *picture != other.picture, *traces != other.traces) {
+        match (at_once, *image != other.image, *traces != other.traces) {
             (false, false, false) => None,
-            (false, true, false) => Some(Change::Picture),
-            (false, false, true) => Some(Change::Traces),
-            _ => Some(Change::AtOnce),
+            (false, true, false) => Some(LookChange::Picture),
+            (false, false, true) => Some(LookChange::Traces),
+            _ => Some(LookChange::AtOnce),
         }
     }
 }
 
 /// Looks before the current one, and undone looks.
 #[derive(Debug, Default)]
-pub(super) struct History {
-    before: Vec<Look>,
-    after: Vec<Look>,
-    now: Option<Look>,
-    last: Option<(Change, f64)>,
+pub(super) struct LookHistory {
+    before: Vec<ScreenLook>,
+    after: Vec<ScreenLook>,
+    now: Option<ScreenLook>,
+    last: Option<(LookChange, f64)>,
 }
 
-impl History {
+impl LookHistory {
     /// Records the look at the end of a frame, at this time of the window; a change becomes a step once the pointer is not
     /// `held` down.
-    pub(super) fn watch(&mut self, look: Look, time_s: f64, held: bool) {
+    pub(super) fn watch(&mut self, look: ScreenLook, time_s: f64, held: bool) {
         let Some(now) = &mut self.now else {
             self.now = Some(look);
             return;
@@ -78,7 +78,7 @@ impl History {
             now.layout.front = look.layout.front;
             return;
         };
-        let goes_on = change != Change::AtOnce
+        let goes_on = change != LookChange::AtOnce
             && self.last.is_some_and(|(last, at_s)| last == change && time_s - at_s < SAME_STEP_S);
         let before = std::mem::replace(now, look);
         self.last = Some((change, time_s));
@@ -104,14 +104,14 @@ impl History {
         !self.after.is_empty()
     }
 
-    pub(super) fn undo(&mut self) -> Option<Look> {
+    pub(super) fn undo(&mut self) -> Option<ScreenLook> {
         let look = self.before.pop()?;
         self.after.extend(self.now.replace(look.clone()));
         self.last = None;
         Some(look)
     }
 
-    pub(super) fn redo(&mut self) -> Option<Look> {
+    pub(super) fn redo(&mut self) -> Option<ScreenLook> {
         let look = self.after.pop()?;
         self.before.extend(self.now.replace(look.clone()));
         self.last = None;
@@ -122,24 +122,25 @@ impl History {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::console::{desk::Panel, panels::ForcesState};
+    use crate::console::{panels::TracesState, tiles::Panel};
 
-    fn plain() -> Look {
-        Look {
-            layout: Layout::default(),
+    fn plain() -> ScreenLook {
+        ScreenLook {
+            layout: PanelLayout::default(),
             light: false,
             language: Language::English,
             scale_percent: 100,
-            picture: PictureSettings::default(),
+            image: ImageSettings::default(),
             extras: Extras::default(),
-            traces: ForcesState::default().view(),
+            traces: TracesState::default().view(),
         }
     }
 
     #[test]
     fn steps_are_taken_back_and_made_again_and_a_new_one_ends_that() {
-        let mut history = History::default();
-        let looks: Vec<Look> = [100, 125, 150].map(|scale_percent| Look { scale_percent, ..plain() }).to_vec();
+        let mut history = LookHistory::default();
+        let looks: Vec<ScreenLook> =
+            [100, 125, 150].map(|scale_percent| ScreenLook { scale_percent, ..plain() }).to_vec();
         for (time_s, look) in looks.iter().enumerate() {
             history.watch(look.clone(), time_s as f64, false);
         }
@@ -150,16 +151,16 @@ mod tests {
         assert_eq!(history.redo(), Some(looks[1].clone()));
         history.watch(looks[1].clone(), 9.0, false);
         assert!(history.can_undo() && history.can_redo(), "what was made again is no new step");
-        history.watch(Look { light: true, ..looks[1].clone() }, 10.0, false);
+        history.watch(ScreenLook { light: true, ..looks[1].clone() }, 10.0, false);
         assert!(!history.can_redo());
         assert_eq!(history.undo(), Some(looks[1].clone()));
     }
 
     #[test]
     fn a_drag_is_one_step_and_a_slider_that_goes_on_too() {
-        let mut history = History::default();
-        let bright = |brightness_percent| Look {
-            picture: PictureSettings { brightness_percent, ..PictureSettings::default() },
+        let mut history = LookHistory::default();
+        let bright = |brightness_percent| ScreenLook {
+            image: ImageSettings { brightness_percent, ..ImageSettings::default() },
             ..plain()
         };
         history.watch(plain(), 0.0, false);
@@ -173,26 +174,27 @@ mod tests {
 
     #[test]
     fn a_tab_in_front_is_no_step_and_goes_along() {
-        let mut history = History::default();
+        let mut history = LookHistory::default();
         history.watch(plain(), 0.0, false);
-        let front = Look { layout: Layout { front: vec![Panel::Link], ..Layout::default() }, ..plain() };
+        let front =
+            ScreenLook { layout: PanelLayout { front: vec![Panel::Link], ..PanelLayout::default() }, ..plain() };
         history.watch(front.clone(), 1.0, false);
         assert!(!history.can_undo());
-        history.watch(Look { light: true, ..front.clone() }, 2.0, false);
+        history.watch(ScreenLook { light: true, ..front.clone() }, 2.0, false);
         assert_eq!(history.undo(), Some(front));
     }
 
     #[test]
     fn the_history_is_bounded_and_what_nobody_did_is_no_step() {
-        let mut history = History::default();
+        let mut history = LookHistory::default();
         for step in 0..3 * STEPS {
-            history.watch(Look { light: step % 2 == 0, ..plain() }, step as f64, false);
+            history.watch(ScreenLook { light: step % 2 == 0, ..plain() }, step as f64, false);
         }
         assert_eq!(std::iter::from_fn(|| history.undo()).count(), STEPS);
-        let mut history = History::default();
+        let mut history = LookHistory::default();
         history.watch(plain(), 0.0, false);
         history.adopt();
-        history.watch(Look { light: true, ..plain() }, 1.0, false);
+        history.watch(ScreenLook { light: true, ..plain() }, 1.0, false);
         assert!(!history.can_undo());
     }
 }

@@ -58,7 +58,7 @@ pub fn describe(ui: &Ui, plot: &Response, name: &str, summary: impl FnOnce() -> 
 }
 
 /// Minimum factor by which a font is reduced to fit its text.
-const LEAST_SIZE: f32 = 0.6;
+const MIN_SIZE: f32 = 0.6;
 
 /// Width of this text in one line.
 pub fn width_of(painter: &Painter, words: &str, font: FontId) -> f32 {
@@ -67,9 +67,9 @@ pub fn width_of(painter: &Painter, words: &str, font: FontId) -> f32 {
 
 /// This font, smaller if the text is wider than `width`: languages differ in length where the space is fixed.
 pub fn fitting(painter: &Painter, words: &str, font: FontId, width: f32) -> FontId {
-    let share = width / width_of(painter, words, font.clone()).max(1.0);
+    let fraction = width / width_of(painter, words, font.clone()).max(1.0);
     // Glyphs are placed on whole pixels, so a smaller line is slightly longer than its proportion.
-    let size = if share < 1.0 { font.size * (0.97 * share).max(LEAST_SIZE) } else { font.size };
+    let size = if fraction < 1.0 { font.size * (0.97 * fraction).max(MIN_SIZE) } else { font.size };
     FontId { size, ..font }
 }
 
@@ -157,7 +157,7 @@ pub fn sign_ui(ui: &mut Ui, what: Sign, radius: f32, colour: Color32) -> Respons
 }
 
 /// The symbol of a force next to its name: a line with a cone, or a beaded line with a double cone.
-pub fn force_sign(painter: &Painter, palette: &theme::Palette, rect: Rect, rendered: bool) {
+pub fn force_sign(painter: &Painter, palette: &theme::ColourPalette, rect: Rect, rendered: bool) {
     let colour = if rendered { palette.rendered } else { palette.measured };
     let y = rect.center().y;
     let left = rect.left();
@@ -180,11 +180,11 @@ pub fn force_sign(painter: &Painter, palette: &theme::Palette, rect: Rect, rende
 }
 
 /// A horizontal bar that fills this fraction of `rect` from the left.
-pub fn bar(painter: &Painter, rect: Rect, share: f64, colour: Color32) {
+pub fn bar(painter: &Painter, rect: Rect, fraction: f64, colour: Color32) {
     painter.rect_filled(rect, 2.0, theme::now().groove);
-    let share = if share.is_finite() { share.clamp(0.0, 1.0) as f32 } else { 1.0 };
-    if share > 0.0 {
-        let filled = Rect::from_min_size(rect.min, vec2((rect.width() * share).max(2.0), rect.height()));
+    let fraction = if fraction.is_finite() { fraction.clamp(0.0, 1.0) as f32 } else { 1.0 };
+    if fraction > 0.0 {
+        let filled = Rect::from_min_size(rect.min, vec2((rect.width() * fraction).max(2.0), rect.height()));
         painter.rect_filled(filled, 2.0, colour);
     }
 }

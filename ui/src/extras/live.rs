@@ -2,37 +2,37 @@
 
 use std::net::SocketAddr;
 
-use nima_endoscope::Reel;
-use nima_session::outlet::Audience;
-use nima_simulation::Plan;
+use nima_endoscope::FrameQueue;
+use nima_session::sinks::Audience;
+use nima_simulation::SimulationPlan;
 
 use super::Extra;
 use crate::{
     recording::PROGRAM,
-    telling::tell,
-    watching::{Server, Show, Shown},
+    stderr::print_line,
+    watching::{Show, WatchServer, WatchStatus},
 };
 
-pub(super) struct Live;
+pub(super) struct LiveExtra;
 
-impl Extra for Live {
-    fn server(&self, show: Show, at: SocketAddr) -> Option<anyhow::Result<Box<dyn Server>>> {
+impl Extra for LiveExtra {
+    fn server(&self, show: Show, at: SocketAddr) -> Option<anyhow::Result<Box<dyn WatchServer>>> {
         (show == Show::Live).then(|| live_at(at))
     }
 }
 
-impl Server for nima_live::Server {
-    fn audience(&self, _: &Plan, _: &Reel) -> Box<dyn Audience> {
+impl WatchServer for nima_live::LiveServer {
+    fn audience(&self, _: &SimulationPlan, _: &FrameQueue) -> Box<dyn Audience> {
         self.audience()
     }
 
-    fn shown(&self) -> Shown {
-        Shown { at: format!("ws://{}", self.address()), watchers: self.viewers() }
+    fn shown(&self) -> WatchStatus {
+        WatchStatus { at: format!("ws://{}", self.address()), watchers: self.viewers() }
     }
 }
 
-fn live_at(address: SocketAddr) -> anyhow::Result<Box<dyn Server>> {
-    let server = nima_live::Server::start(address, PROGRAM)?;
-    tell(format_args!("nima: live at ws://{}: open a Foxglove WebSocket connection to it", server.address()));
+fn live_at(address: SocketAddr) -> anyhow::Result<Box<dyn WatchServer>> {
+    let server = nima_live::LiveServer::start(address, PROGRAM)?;
+    print_line(format_args!("nima: live at ws://{}: open a Foxglove WebSocket connection to it", server.address()));
     Ok(Box::new(server))
 }

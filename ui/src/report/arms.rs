@@ -2,15 +2,15 @@
 
 use maud::{Markup, html};
 use nima_core::{impedance::Mode, safety::Gate};
-use nima_session::report::{ArmFigures, DEGREE_COLUMNS, FORCES, Figures, ForceFigures, Identified};
+use nima_session::report::{ArmFigures, DEGREE_COLUMNS, FORCES, ForceFigures, IdentificationFigures, SessionFigures};
 
 use super::{
     html::{digits, percent, table, table_or, time},
     plots,
 };
-use crate::words::{gate_words, mode_name};
+use crate::report_text::{gate_text, mode_name};
 
-pub(super) fn arm(session: &Figures, arm: &ArmFigures) -> Markup {
+pub(super) fn arm(session: &SessionFigures, arm: &ArmFigures) -> Markup {
     html! {
         section {
             h2 { "The " (arm.side) " arm" }
@@ -35,7 +35,7 @@ pub(super) fn arm(session: &Figures, arm: &ArmFigures) -> Markup {
     }
 }
 
-fn seconds(session: &Figures, arm: &ArmFigures) -> Markup {
+fn seconds(session: &SessionFigures, arm: &ArmFigures) -> Markup {
     let total_s: f64 = arm.seconds.iter().sum();
     let of = |(seconds, (name, colour, hatched)): (&f64, &(&str, &str, bool))| {
         let key = html! { span.key.hatched[*hatched] style=(format_args!("background-color:{colour}")) {} (name) };
@@ -83,22 +83,22 @@ fn force(name: &str, of: &ForceFigures) -> Vec<String> {
 }
 
 fn gates(arm: &ArmFigures) -> Markup {
-    let row = |gate: Gate, share: f64| {
-        let [name, meaning] = gate_words(gate);
+    let row = |gate: Gate, fraction: f64| {
+        let [name, meaning] = gate_text(gate);
         let of = if gate == Gate::Permission { "all time" } else { "engaged time" };
-        vec![name.to_owned(), format!("{} of {of}", percent(share)), meaning.to_owned()]
+        vec![name.to_owned(), format!("{} of {of}", percent(fraction)), meaning.to_owned()]
     };
-    let rows: Vec<_> = arm.gates.iter().map(|of| row(of.gate, of.share)).collect();
+    let rows: Vec<_> = arm.gates.iter().map(|of| row(of.gate, of.fraction)).collect();
     html! {
         (table(&["gate", "reduced the force", "meaning"], &rows))
         p {
             "Dead band: withheld " (digits(arm.withheld_mean_n)) " N on average while engaged, maximum " (digits(arm.withheld_max_n))
-            " N. Energy: minimum " (digits(1e3 * arm.stored_least_j)) " mJ left for the hand."
+            " N. Energy: minimum " (digits(1e3 * arm.stored_min_j)) " mJ left for the hand."
         }
     }
 }
 
-fn identification(of: &Identified) -> Markup {
+fn identification(of: &IdentificationFigures) -> Markup {
     let direct_n = of.error_n[Mode::Dfr.index()];
     let row = |name: &str, error_n: &Option<f64>| {
         let error_n = (*error_n)?;
@@ -112,18 +112,18 @@ fn identification(of: &Identified) -> Markup {
     if errors.is_empty() {
         return html! { p { "No mode predicted a force." } };
     }
-    let shares = |(name, shares): (&&str, &Option<[f64; 6]>)| {
-        let shares = (*shares)?;
-        Some(std::iter::once((*name).to_owned()).chain(shares.map(percent)).collect())
+    let fractions = |(name, fractions): (&&str, &Option<[f64; 6]>)| {
+        let fractions = (*fractions)?;
+        Some(std::iter::once((*name).to_owned()).chain(fractions.map(percent)).collect())
     };
-    let degrees: Vec<Vec<String>> = DEGREE_COLUMNS.iter().zip(&of.degree_shares).filter_map(shares).collect();
+    let degrees: Vec<Vec<String>> = DEGREE_COLUMNS.iter().zip(&of.degree_fractions).filter_map(fractions).collect();
     html! {
         (table(&["mode, where computed", "mean prediction error (N)", "over direct (DFR)"], &errors))
         @if !degrees.is_empty() { (table(&["degree chosen by", "none", "1", "2", "3", "4", "5"], &degrees)) }
-        p { "Without contact, and therefore without learning: " (percent(of.resting_share)) " of engaged time." }
+        p { "Without contact, and therefore without learning: " (percent(of.resting_fraction)) " of engaged time." }
         @if let Some(network) = of.network {
             p {
-                "Network: " (percent(network.share)) " of the tip force came from a network; " (percent(network.outside_share))
+                "Network: " (percent(network.fraction)) " of the tip force came from a network; " (percent(network.outside_fraction))
                 " of the time was outside its training data; largest uncertainty " (digits(network.doubt_max)) " (1: limit of its training)."
             }
         } @else {

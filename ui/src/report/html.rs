@@ -83,11 +83,11 @@ pub(crate) fn digits(value: f64) -> String {
     }
 }
 
-pub(super) fn percent(share: f64) -> String {
-    match share {
+pub(super) fn percent(fraction: f64) -> String {
+    match fraction {
         0.0 => "0 %".to_owned(),
         ..0.001 => "< 0.1 %".to_owned(),
-        _ => format!("{:.1} %", 100.0 * share),
+        _ => format!("{:.1} %", 100.0 * fraction),
     }
 }
 

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Context as _;
 use maud::{Markup, html};
-use nima_session::report::Figures;
+use nima_session::report::SessionFigures;
 
 use crate::command::output;
 use html::{section, table};
@@ -21,18 +21,22 @@ pub(crate) fn write(sessions: &[PathBuf], folder: &Path) -> anyhow::Result<PathB
     write_figures(&read(sessions)?, sessions, folder)
 }
 
-pub(crate) fn read(sessions: &[PathBuf]) -> anyhow::Result<Vec<Figures>> {
-    sessions.iter().map(|path| Ok(Figures::read(path)?)).collect()
+pub(crate) fn read(sessions: &[PathBuf]) -> anyhow::Result<Vec<SessionFigures>> {
+    sessions.iter().map(|path| Ok(SessionFigures::read(path)?)).collect()
 }
 
-pub(crate) fn write_figures(figures: &[Figures], sessions: &[PathBuf], folder: &Path) -> anyhow::Result<PathBuf> {
+pub(crate) fn write_figures(
+    figures: &[SessionFigures],
+    sessions: &[PathBuf],
+    folder: &Path,
+) -> anyhow::Result<PathBuf> {
     let inputs: Vec<&Path> = sessions.iter().map(PathBuf::as_path).collect();
     output::folder(folder, &[PAGE], &inputs)?;
     output::write(folder, PAGE, &page(figures)).context("the report")?;
     Ok(folder.join(PAGE))
 }
 
-fn page(sessions: &[Figures]) -> String {
+fn page(sessions: &[SessionFigures]) -> String {
     let title = match sessions {
         [one] => format!("Session {}", name(one)),
         _ => format!("{} sessions", sessions.len()),
@@ -58,7 +62,7 @@ fn page(sessions: &[Figures]) -> String {
     html::page(&title, &body)
 }
 
-fn name(session: &Figures) -> String {
+fn name(session: &SessionFigures) -> String {
     Path::new(&session.file)
         .file_name()
         .map_or_else(|| session.file.clone(), |name| name.to_string_lossy().into_owned())
@@ -91,12 +95,12 @@ fn definitions() -> Markup {
 mod tests {
     use std::collections::BTreeMap;
 
-    use nima_session::report::{Mark, MarkLevel};
+    use nima_session::report::{EventMark, MarkLevel};
 
     use super::*;
 
-    fn session(rig: &str) -> Figures {
-        Figures {
+    fn session(rig: &str) -> SessionFigures {
+        SessionFigures {
             file: format!("/tmp/{rig}.mcap"),
             about: BTreeMap::from([("rig".to_owned(), rig.to_owned()), ("<k>".to_owned(), rig.to_owned())]),
             calibrations: BTreeMap::from([(
@@ -104,20 +108,20 @@ mod tests {
                 BTreeMap::from([("network_tool".to_owned(), rig.to_owned())]),
             )]),
             notes: vec![rig.to_owned()],
-            marks: vec![Mark { t_s: 1.0, level: MarkLevel::Error, words: rig.to_owned() }],
-            ..Figures::default()
+            marks: vec![EventMark { t_s: 1.0, level: MarkLevel::Error, words: rig.to_owned() }],
+            ..SessionFigures::default()
         }
     }
 
     #[test]
     fn a_mark_is_told_with_its_time_and_is_no_fault() {
-        let mark = |t_s, level, words: &str| Mark { t_s, level, words: words.to_owned() };
+        let mark = |t_s, level, words: &str| EventMark { t_s, level, words: words.to_owned() };
         let marks = vec![
             mark(1.5, MarkLevel::Mark, "mark 1"),
             mark(2.0, MarkLevel::Warning, "alarm: late"),
             mark(3.25, MarkLevel::Mark, "mark 2"),
         ];
-        let page = page(&[Figures { marks, ..session("rig") }]);
+        let page = page(&[SessionFigures { marks, ..session("rig") }]);
         assert!(page.contains("<td>operator marks</td><td>1.500 s, 3.250 s</td>"), "{page}");
         assert!(page.contains("<td>faults</td><td>0</td>") && page.contains("alarm: late"), "{page}");
     }

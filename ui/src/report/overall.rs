@@ -3,7 +3,7 @@
 use maud::{Markup, html};
 use nima_session::{
     anonymous::ANONYMOUS,
-    report::{ArmFigures, Figures, Mark, MarkLevel, PicturesFigures},
+    report::{ArmFigures, EventMark, ImageReport, MarkLevel, SessionFigures},
 };
 
 use super::{
@@ -41,7 +41,7 @@ const CALIBRATIONS: [(&str, &str); 7] = [
 ];
 
 /// Properties of the session, and warnings.
-pub(super) fn summary(session: &Figures) -> Markup {
+pub(super) fn summary(session: &SessionFigures) -> Markup {
     let mut rows = vec![["file".to_owned(), name(session)], ["length".to_owned(), time(session.length_s)]];
     for (key, words) in ABOUT {
         if let Some(value) = session.about.get(key) {
@@ -50,8 +50,8 @@ pub(super) fn summary(session: &Figures) -> Markup {
     }
     rows.push(["end".to_owned(), end(session).to_owned()]);
     rows.push(["gaps in the journal".to_owned(), holes(session)]);
-    if let Some(pictures) = &session.pictures {
-        rows.push(["endoscope images".to_owned(), of_pictures(pictures)]);
+    if let Some(images) = &session.images {
+        rows.push(["endoscope images".to_owned(), of_images(images)]);
     }
     let faults = of_level(session, MarkLevel::Error).count();
     rows.push(["faults".to_owned(), faults.to_string()]);
@@ -71,7 +71,7 @@ pub(super) fn summary(session: &Figures) -> Markup {
     section("Session", &body)
 }
 
-fn end(session: &Figures) -> &'static str {
+fn end(session: &SessionFigures) -> &'static str {
     match session.closed {
         Some(true) => "closed properly",
         _ if session.stretch => "an excerpt of a session",
@@ -80,36 +80,36 @@ fn end(session: &Figures) -> &'static str {
     }
 }
 
-fn holes(session: &Figures) -> String {
+fn holes(session: &SessionFigures) -> String {
     if session.closed.is_none() {
         return "not known".to_owned();
     }
-    let told = session.holes.iter().map(|hole| format!("{} entries before {}", hole.lost, time(hole.until_s)));
-    let told: Vec<_> = told.collect();
-    if told.is_empty() { "none".to_owned() } else { told.join("; ") }
+    let report = session.holes.iter().map(|hole| format!("{} entries before {}", hole.lost, time(hole.until_s)));
+    let report: Vec<_> = report.collect();
+    if report.is_empty() { "none".to_owned() } else { report.join("; ") }
 }
 
-fn of_pictures(pictures: &PicturesFigures) -> String {
-    let PicturesFigures { count, bytes, dropped, longest_gap_s, .. } = pictures;
-    let rate = pictures.rate_hz().map_or_else(String::new, |rate_hz| format!(", {rate_hz:.1} per second"));
+fn of_images(images: &ImageReport) -> String {
+    let ImageReport { count, bytes, dropped, longest_gap_s, .. } = images;
+    let rate = images.rate_hz().map_or_else(String::new, |rate_hz| format!(", {rate_hz:.1} per second"));
     let missing = if *dropped == 0 { "none missing".to_owned() } else { format!("{dropped} missing") };
     let megabytes = *bytes as f64 * 1e-6;
     format!("{count}{rate}, {megabytes:.1} MB; {missing}; longest gap {longest_gap_s:.2} s")
 }
 
-fn of_level(session: &Figures, level: MarkLevel) -> impl Iterator<Item = &Mark> {
+fn of_level(session: &SessionFigures, level: MarkLevel) -> impl Iterator<Item = &EventMark> {
     session.marks.iter().filter(move |mark| mark.level == level)
 }
 
 /// Number of events of each kind, for the objects of the scene; empty without events.
-pub(super) fn happenings(session: &Figures) -> Markup {
+pub(super) fn happenings(session: &SessionFigures) -> Markup {
     let Some(happenings) = &session.happenings else { return html! {} };
     let rows: Vec<_> = happenings.iter().map(|(kind, count)| vec![kind.replace('_', " "), count.to_string()]).collect();
     section("Events of the objects", &table_or(&["what", "how often"], &rows, "Nothing."))
 }
 
-pub(super) fn marks(session: &Figures) -> Markup {
-    let row = |mark: &Mark| vec![time(mark.t_s), mark.level.word().to_owned(), mark.words.clone()];
+pub(super) fn marks(session: &SessionFigures) -> Markup {
+    let row = |mark: &EventMark| vec![time(mark.t_s), mark.level.word().to_owned(), mark.words.clone()];
     let rows: Vec<_> = session.marks.iter().take(MARKS).map(row).collect();
     let more = session.marks.len().saturating_sub(MARKS);
     let body = html! {
@@ -119,7 +119,7 @@ pub(super) fn marks(session: &Figures) -> Markup {
     section("Events", &body)
 }
 
-pub(super) fn calibrations(session: &Figures) -> Markup {
+pub(super) fn calibrations(session: &SessionFigures) -> Markup {
     let mut rows: Vec<Vec<Markup>> = Vec::new();
     for (of, table) in &session.calibrations {
         let whose = match of.as_str() {
@@ -146,7 +146,7 @@ pub(super) fn calibrations(session: &Figures) -> Markup {
 }
 
 /// Missed periods, and percentiles.
-pub(super) fn timing(session: &Figures) -> Markup {
+pub(super) fn timing(session: &SessionFigures) -> Markup {
     let Some(timing) = &session.timing else { return html! {} };
     let names = ["wake-up delay (us)", "work per tick (us)", "sample to force (us)"];
     let row = |(name, times): (&&str, &Option<[f64; 4]>)| {
@@ -171,10 +171,11 @@ pub(super) fn timing(session: &Figures) -> Markup {
 }
 
 /// One column per session.
-pub(super) fn comparison(sessions: &[Figures]) -> Markup {
+pub(super) fn comparison(sessions: &[SessionFigures]) -> Markup {
     let heads: Vec<String> = std::iter::once(String::new()).chain(sessions.iter().map(name)).collect();
-    let about =
-        |key: &'static str| move |session: &Figures| session.about.get(key).cloned().unwrap_or_else(|| "-".to_owned());
+    let about = |key: &'static str| {
+        move |session: &SessionFigures| session.about.get(key).cloned().unwrap_or_else(|| "-".to_owned())
+    };
     let mut rows = vec![
         row("started (UTC)", sessions, about("started")),
         row("length", sessions, |session| time(session.length_s)),
@@ -194,9 +195,9 @@ pub(super) fn comparison(sessions: &[Figures]) -> Markup {
     table(&heads, &rows)
 }
 
-type OfArm = (&'static str, fn(&ArmFigures) -> Option<String>);
+type ArmNumber = (&'static str, fn(&ArmFigures) -> Option<String>);
 
-const OF_ARM: [OfArm; 8] = [
+const OF_ARM: [ArmNumber; 8] = [
     ("engaged (s)", |arm| Some(format!("{:.1}", arm.seconds[3]))),
     ("measured peak (N)", |arm| arm.forces[0].map(|force| digits(force.peak_n))),
     ("measured mean (N)", |arm| arm.forces[0].map(|force| digits(force.mean_n))),
@@ -205,16 +206,16 @@ const OF_ARM: [OfArm; 8] = [
     ("rendered mean (N)", |arm| arm.forces[2].map(|force| digits(force.mean_n))),
     ("rendered rate RMS (N/s)", |arm| arm.forces[2].map(|force| digits(force.rate_rms_n_s))),
     ("ceiling acted", |arm| {
-        Some(percent(arm.gates.iter().find(|of| of.gate == nima_core::safety::Gate::Ceiling)?.share))
+        Some(percent(arm.gates.iter().find(|of| of.gate == nima_core::safety::Gate::Ceiling)?.fraction))
     }),
 ];
 
-fn of_arm(side: &'static str, sessions: &[Figures]) -> Vec<Vec<String>> {
-    let arm = |session: &Figures| session.arms.iter().find(|arm| arm.side == side).cloned();
+fn of_arm(side: &'static str, sessions: &[SessionFigures]) -> Vec<Vec<String>> {
+    let arm = |session: &SessionFigures| session.arms.iter().find(|arm| arm.side == side).cloned();
     if !sessions.iter().any(|session| arm(session).is_some()) {
         return Vec::new();
     }
-    let figure = |(words, figure): &OfArm| {
+    let figure = |(words, figure): &ArmNumber| {
         row(&format!("{side}: {words}"), sessions, |session| {
             arm(session).and_then(|arm| figure(&arm)).unwrap_or_else(|| "-".to_owned())
         })
@@ -222,6 +223,6 @@ fn of_arm(side: &'static str, sessions: &[Figures]) -> Vec<Vec<String>> {
     OF_ARM.iter().map(figure).collect()
 }
 
-fn row(words: &str, sessions: &[Figures], figure: impl Fn(&Figures) -> String) -> Vec<String> {
+fn row(words: &str, sessions: &[SessionFigures], figure: impl Fn(&SessionFigures) -> String) -> Vec<String> {
     std::iter::once(words.to_owned()).chain(sessions.iter().map(figure)).collect()
 }

@@ -2,7 +2,7 @@
 
 use maud::{Markup, html};
 use nima_charts::COLOURS;
-use nima_session::report::{ArmFigures, Figures, Mark, MarkLevel, STATES, Span, Trace};
+use nima_session::report::{ArmFigures, EventMark, MarkLevel, STATES, SessionFigures, SignalTrace, StateSpan};
 
 use super::html::drawing;
 
@@ -58,11 +58,11 @@ fn time_axis(length_s: f64, top: f64, bottom: f64) -> Markup {
 
 /// Draws the states of an arm as a band, with a triangle at each warning and error, and a numbered line at each operator
 /// mark.
-pub(super) fn states(session: &Figures, arm: &ArmFigures) -> Markup {
+pub(super) fn states(session: &SessionFigures, arm: &ArmFigures) -> Markup {
     let top = NUMBERS + 16.0;
     let bottom = top + BAND;
     let place = |t_s| across(t_s, session.length_s);
-    let (marks, alarms): (Vec<&Mark>, Vec<&Mark>) = session
+    let (marks, alarms): (Vec<&EventMark>, Vec<&EventMark>) = session
         .marks
         .iter()
         .filter(|mark| mark.level != MarkLevel::Info)
@@ -106,7 +106,7 @@ fn width(from: f64, to: f64) -> String {
 }
 
 /// Beginning and end of each time in which nothing was recorded, so that nobody takes it for a state, s.
-fn gaps(length_s: f64, states: &[Span]) -> Vec<[f64; 2]> {
+fn gaps(length_s: f64, states: &[StateSpan]) -> Vec<[f64; 2]> {
     let mut before_s = 0.0_f64;
     let mut gaps = Vec::new();
     let ends = states.iter().map(|span| (span.from_s, span.to_s));
@@ -137,8 +137,8 @@ fn labels(places: &[f64]) -> Vec<(f64, String)> {
 }
 
 /// Draws the magnitudes of the three forces, one above the other on the same scale.
-pub(super) fn forces(session: &Figures, arm: &ArmFigures) -> Markup {
-    let largest_n = arm.traces.iter().map(Trace::largest).fold(0.1, f64::max);
+pub(super) fn forces(session: &SessionFigures, arm: &ArmFigures) -> Markup {
+    let largest_n = arm.traces.iter().map(SignalTrace::largest).fold(0.1, f64::max);
     let names = [("measured", COLOURS[4]), ("delayed", COLOURS[3]), ("rendered", COLOURS[0])];
     let step_n = step(largest_n, 4.0);
     let decimals = (-step_n.log10().floor()).max(0.0) as usize;
@@ -162,11 +162,11 @@ pub(super) fn forces(session: &Figures, arm: &ArmFigures) -> Markup {
 }
 
 /// A vertical line for each bucket of a trace, from its least to its largest force.
-fn path(trace: &Trace, length_s: f64, up: impl Fn(f64) -> f64) -> String {
+fn path(trace: &SignalTrace, length_s: f64, up: impl Fn(f64) -> f64) -> String {
     let line = |(bucket, range): (usize, &Option<[f64; 2]>)| {
-        let [least_n, most_n] = (*range)?;
+        let [min_n, max_n] = (*range)?;
         let x = across((bucket as f64 + 0.5) * trace.step_s, length_s);
-        Some(format!("M{x:.1} {:.1}V{:.1}", up(most_n) - 0.6, up(least_n) + 0.6))
+        Some(format!("M{x:.1} {:.1}V{:.1}", up(max_n) - 0.6, up(min_n) + 0.6))
     };
     trace.buckets.iter().enumerate().filter_map(line).collect()
 }
@@ -177,15 +177,15 @@ mod tests {
 
     #[test]
     fn numbers_of_marks_that_are_close_together_do_not_cover_each_other() {
-        let told = labels(&[100.0, 104.0, 108.0, 300.0, 940.0, 944.0]);
-        let texts: Vec<&str> = told.iter().map(|(_, text)| text.as_str()).collect();
+        let report = labels(&[100.0, 104.0, 108.0, 300.0, 940.0, 944.0]);
+        let texts: Vec<&str> = report.iter().map(|(_, text)| text.as_str()).collect();
         assert_eq!(texts, ["1-3", "4", "5-6"]);
-        assert!(told.windows(2).all(|pair| pair[1].0 - pair[0].0 >= APART), "{told:?}");
+        assert!(report.windows(2).all(|pair| pair[1].0 - pair[0].0 >= APART), "{report:?}");
     }
 
     #[test]
     fn what_was_not_recorded_is_no_state() {
-        let span = |from_s, to_s, state| Span { from_s, to_s, state };
+        let span = |from_s, to_s, state| StateSpan { from_s, to_s, state };
         assert_eq!(gaps(10.0, &[span(0.0, 4.0, 3), span(4.7, 10.0, 6)]), [[4.0, 4.7]]);
         assert!(gaps(10.0, &[span(0.0, 4.0, 3), span(4.001, 10.0, 6)]).is_empty(), "the next tick");
         assert_eq!(gaps(10.0, &[span(2.0, 4.0, 3)]), [[0.0, 2.0], [4.0, 10.0]], "before and after");

@@ -6,7 +6,7 @@ use nima_recording::{
         JointStateEncoder,
         foxglove::{self, FrameTransform, FrameTransforms, Level, Log, SceneEntity, SceneUpdate},
     },
-    session::{Reader, Writer},
+    session::{SessionReader, SessionWriter},
 };
 use prost::Message as _;
 
@@ -87,9 +87,9 @@ fn elsewhere(arguments: &[&str]) -> Command {
 
 /// The same session with names in every possible place of the file.
 fn planted(session: &str, to: &Path) {
-    let reader = Reader::open(Path::new(session)).unwrap();
+    let reader = SessionReader::open(Path::new(session)).unwrap();
     let all = PLANTED.join(" ");
-    let mut writer = Writer::create(to, &all).unwrap();
+    let mut writer = SessionWriter::create(to, &all).unwrap();
     let mut tables = reader.metadata().unwrap();
     let entries = BTreeMap::from(PLANTED.map(|name| (name.to_owned(), name.to_owned())));
     for (_, table) in &mut tables {
@@ -164,7 +164,7 @@ fn planted(session: &str, to: &Path) {
 
 /// All bytes of a session: the raw file, and its decompressed content.
 fn all_bytes(path: &Path) -> Vec<u8> {
-    let reader = Reader::open(path).unwrap();
+    let reader = SessionReader::open(path).unwrap();
     let mut bytes = std::fs::read(path).unwrap();
     for channel in reader.channels() {
         let encoding = &channel.encoding;
@@ -219,8 +219,8 @@ fn no_name_and_no_date_is_left_and_every_force_is() {
     for path in [&out, &part] {
         let bytes = all_bytes(path);
         assert_eq!(found(&bytes), [""; 0], "{}", path.display());
-        let begin_ns = Reader::open(&full).unwrap().statistics().times_ns.0;
-        let tables = Reader::open(Path::new(&session)).unwrap().metadata().unwrap();
+        let begin_ns = SessionReader::open(&full).unwrap().statistics().times_ns.0;
+        let tables = SessionReader::open(Path::new(&session)).unwrap().metadata().unwrap();
         let day = tables.iter().find_map(|(_, table)| Some(table.get("started")?[..10].to_owned())).unwrap();
         assert!(!contains(&bytes, day.as_bytes()), "{day}");
         // As a time in a message: seconds in 32 bits.
@@ -228,11 +228,11 @@ fn no_name_and_no_date_is_left_and_every_force_is() {
         assert!(!contains(&bytes, &second), "{}", path.display());
         assert_eq!(path.metadata().unwrap().modified().unwrap(), UNIX_EPOCH);
     }
-    let [whole, anonymous, stretch] = [&full, &out, &part].map(|path| Reader::open(path).unwrap());
+    let [whole, anonymous, stretch] = [&full, &out, &part].map(|path| SessionReader::open(path).unwrap());
     let begin_ns = whole.statistics().times_ns.0;
     assert_eq!(anonymous.statistics().times_ns.0, 0);
     for topic in ["right/forces", "left/forces", "right/poses", "left/poses", "right/gates"] {
-        let bits = |reader: &Reader, since_ns: u64| -> BTreeMap<u64, Vec<(String, u64)>> {
+        let bits = |reader: &SessionReader, since_ns: u64| -> BTreeMap<u64, Vec<(String, u64)>> {
             let row = |(time_ns, row): (u64, BTreeMap<String, f64>)| {
                 (time_ns - since_ns, row.into_iter().map(|(name, value)| (name, value.to_bits())).collect())
             };
@@ -244,21 +244,21 @@ fn no_name_and_no_date_is_left_and_every_force_is() {
             expected.range(1_000_000_000..2_000_000_000).map(|(k, v)| (*k, v.clone())).collect();
         assert!(inside.len() == 1000 && inside == bits(&stretch, 0), "{topic} in the stretch");
     }
-    let of = |reader: &Reader, topic: &str| reader.messages(&[topic], 0..u64::MAX).count();
+    let of = |reader: &SessionReader, topic: &str| reader.messages(&[topic], 0..u64::MAX).count();
     assert_eq!(of(&anonymous, "timing") + 1, of(&whole, "timing"), "all but the planted one");
     for topic in ["frames", "arrows", "right/identification", "log"] {
         assert!(of(&anonymous, topic) > 5 && of(&anonymous, topic) + 2 >= of(&whole, topic), "{topic}");
     }
     let tables = anonymous.metadata().unwrap();
     let left = &tables.iter().rev().find(|(name, _)| name == "calibrations left").unwrap().1;
-    let told: Vec<_> = left.iter().map(|(key, value)| (key.as_str(), value.as_str())).collect();
-    assert_eq!(told, [("gravity_error_n", "0.25"), ("gravity_verdict", "accepted")]);
+    let report: Vec<_> = left.iter().map(|(key, value)| (key.as_str(), value.as_str())).collect();
+    assert_eq!(report, [("gravity_error_n", "0.25"), ("gravity_verdict", "accepted")]);
     let lines: Vec<Log> = anonymous
         .messages(&["log"], 0..u64::MAX)
         .map(|message| Log::decode(message.unwrap().data()).unwrap())
         .collect();
-    let told = |words: &str| lines.iter().filter(|line| line.message == words).count();
-    assert_eq!((told("command: gain 0.25"), told("(withheld)"), told(ENGAGED)), (0, 4, 2));
+    let report = |words: &str| lines.iter().filter(|line| line.message == words).count();
+    assert_eq!((report("command: gain 0.25"), report("(withheld)"), report(ENGAGED)), (0, 4, 2));
     assert!(lines.iter().all(|line| line.name == "nima" && line.file.is_empty()) && lines.len() > 6, "{lines:?}");
 }
 

@@ -6,7 +6,7 @@ use std::{
     time::Duration,
 };
 
-use nima_bridges::igtl::{Content, Header, Message};
+use nima_bridges::igtl::{Content, IgtlHeader, IgtlMessage};
 
 use crate::{
     every_command::{json, nima},
@@ -34,16 +34,16 @@ fn a_run_tells_its_poses_and_forces_over_openigtlink() {
     stream.set_read_timeout(Some(Duration::from_secs(30))).unwrap();
     let mut devices = Vec::new();
     loop {
-        let mut head = [0; Header::BYTES];
+        let mut head = [0; IgtlHeader::BYTES];
         stream.read_exact(&mut head).unwrap();
-        let header = Header::read(&head).unwrap();
+        let header = IgtlHeader::read(&head).unwrap();
         let mut body = vec![0; header.body_bytes as usize];
         stream.read_exact(&mut body).unwrap();
-        let Message { device, content, .. } = Message::read(&header, &body).unwrap();
+        let IgtlMessage { device, content, .. } = IgtlMessage::read(&header, &body).unwrap();
         devices.push(format!("{} {device}", content.kind()));
         let Content::Text(text) = content else { continue };
-        let told: serde_json::Value = serde_json::from_slice(&text.bytes).unwrap();
-        if told["right"]["state"] == "Engaged" {
+        let report: serde_json::Value = serde_json::from_slice(&text.bytes).unwrap();
+        if report["right"]["state"] == "Engaged" {
             break;
         }
     }
@@ -68,9 +68,9 @@ fn a_bridge_needs_the_real_clock_and_an_address() {
         (["run", "--igtl", "--virtual", "--seconds"], "cannot be used with"),
         (["run", "--lsl", "--virtual", "--seconds"], "cannot be used with"),
     ] {
-        let told = nima(&[&arguments[..], &["1"]].concat());
-        let text = String::from_utf8(told.stderr).unwrap();
-        assert!(!told.status.success() && text.contains(words), "{text}");
+        let report = nima(&[&arguments[..], &["1"]].concat());
+        let text = String::from_utf8(report.stderr).unwrap();
+        assert!(!report.status.success() && text.contains(words), "{text}");
     }
 }
 

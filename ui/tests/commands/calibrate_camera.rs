@@ -6,7 +6,7 @@ use std::{
 };
 
 use nima_emulation::emulators::endoscope::held;
-use nima_endoscope::{Board, Lens, board::Portrait, jpeg};
+use nima_endoscope::{Checkerboard, Lens, board::Portrait, jpeg};
 use nima_machine::config::{RigConfig, RigFile};
 use serde_json::Value;
 
@@ -24,8 +24,8 @@ fn lens() -> Lens {
 }
 
 /// A folder with images of a board at these poses of the emulator.
-fn pictures(folder: &Path, poses: impl Iterator<Item = u32>) {
-    let board = Board::new([9, 6], 0.01).unwrap();
+fn images(folder: &Path, poses: impl Iterator<Item = u32>) {
+    let board = Checkerboard::new([9, 6], 0.01).unwrap();
     let portrait = Portrait::new(&lens());
     let mut hands = held(board, &lens());
     for number in poses {
@@ -38,7 +38,7 @@ fn pictures(folder: &Path, poses: impl Iterator<Item = u32>) {
 #[test]
 fn a_folder_of_pictures_gives_the_lens_and_changes_the_rig_file() {
     let folder = tempfile::tempdir().unwrap();
-    pictures(folder.path(), 0..18);
+    images(folder.path(), 0..18);
     // Not a board: it is reported and left out.
     std::fs::write(folder.path().join("99.jpg"), jpeg::encode(&vec![120; 3 * 640 * 360], [640, 360], 90)).unwrap();
     let rig = folder.path().join("rig.toml");
@@ -48,8 +48,8 @@ fn a_folder_of_pictures_gives_the_lens_and_changes_the_rig_file() {
     let from = folder.path().to_str().unwrap();
     let to = rig.to_str().unwrap();
     let output = nima(&["calibrate", "camera", from, "--square-mm", "10", "--out", to, "--json"]);
-    let told = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(output.status.success() && told.contains("99.jpg: no board detected"), "{told}");
+    let errors = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(output.status.success() && errors.contains("99.jpg: no board detected"), "{errors}");
     let report: Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(report["verdict"], "accepted", "{report}");
     assert!(report["lens"]["held_out_px"].as_f64().unwrap() < 0.3, "{report}");
@@ -67,7 +67,7 @@ fn a_folder_of_pictures_gives_the_lens_and_changes_the_rig_file() {
 #[test]
 fn what_cannot_be_used_is_told_in_one_line() {
     let folder = tempfile::tempdir().unwrap();
-    pictures(folder.path(), 0..4);
+    images(folder.path(), 0..4);
     let from = folder.path().to_str().unwrap();
     let rig = folder.path().join("rig.toml");
     RigFile::of("simulated").unwrap().save(&rig).unwrap();
@@ -84,8 +84,8 @@ fn what_cannot_be_used_is_told_in_one_line() {
         (vec!["ftp://127.0.0.1/"], "not an address"),
     ] {
         let output = nima(&[&["calibrate", "camera"], &arguments[..]].concat());
-        let told = one_line(&output);
-        assert!(told.contains(word), "{arguments:?}: {told}");
+        let errors = one_line(&output);
+        assert!(errors.contains(word), "{arguments:?}: {errors}");
     }
     assert!(RigConfig::load(rig).unwrap().endoscope.is_none());
     std::fs::write(folder.path().join("05.jpg"), b"no picture").unwrap();

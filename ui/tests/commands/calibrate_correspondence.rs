@@ -69,7 +69,7 @@ fn a_good_file_gives_the_rotation_and_a_calibration_that_loads() {
     std::fs::rename(&out, folder.path().join("correspondence-BFT-7.toml")).unwrap();
     let store = store::Store::open(folder.path());
     let loaded = store.load::<CorrespondenceRecord>("BFT-7", "grasper", SystemTime::now()).unwrap().unwrap();
-    assert_eq!(loaded.age, store::Age::Fresh);
+    assert_eq!(loaded.age, store::CalibrationAge::Fresh);
 }
 
 #[test]

@@ -63,7 +63,7 @@ fn a_wrong_sign_is_named_and_written_only_under_a_name() {
 #[test]
 fn bad_files_are_refused_with_their_place() {
     let folder = tempfile::tempdir().unwrap();
-    refused(&[&poses(folder.path(), 4, 1.0)], "Insufficient motion: 4 usable poses");
+    refused(&[&poses(folder.path(), 4, 1.0)], "Insufficient motion: only 4 poses are usable");
     let path = folder.path().join("bad.csv");
     let with = |text: &str, words: &str| {
         std::fs::write(&path, text).unwrap();

@@ -73,18 +73,18 @@ fn without_calibrations_the_devices_run_and_one_line_says_what_is_missing() {
     let _alone = alone();
     let home = Home::new(&rig());
     judged(|| {
-        let (figures, told) = home.run("5");
-        let lines: Vec<_> = told.lines().filter(|line| line.contains("not calibrated")).collect();
+        let (figures, report) = home.run("5");
+        let lines: Vec<_> = report.lines().filter(|line| line.contains("not calibrated")).collect();
         if lines.is_empty() || figures["ticks"].as_u64().unwrap_or(0) < 1000 {
             too_busy();
         }
-        println!("{told}");
+        println!("{report}");
         // A sensor that was opened late adds its own line.
         let all = lines.last().unwrap();
         for words in ["SN000901", "SN000902", "gravity", "nima calibrate rig --rig rig.toml", "the arms stay idle"] {
-            assert!(all.contains(words), "{words}: {told}");
+            assert!(all.contains(words), "{words}: {report}");
         }
-        assert_eq!(figures["final_state"], "idle", "{told}");
+        assert_eq!(figures["final_state"], "idle", "{report}");
     });
 }
 
@@ -104,14 +104,14 @@ fn a_sensor_or_a_tool_in_anothers_place_is_told_at_the_start() {
     for (rig, words) in &cases {
         home.write(rig);
         judged(|| {
-            let (figures, told) = home.run("5");
-            println!("{told}");
-            let Some(line) = told.lines().rfind(|line| line.contains("not calibrated")) else { too_busy() };
+            let (figures, report) = home.run("5");
+            println!("{report}");
+            let Some(line) = report.lines().rfind(|line| line.contains("not calibrated")) else { too_busy() };
             if !line.contains("SN000901") || !line.contains("SN000902") {
                 too_busy();
             }
             for words in words {
-                assert!(line.contains(words), "{words}: {told}");
+                assert!(line.contains(words), "{words}: {report}");
             }
             assert_eq!(figures["final_state"], "idle");
         });
@@ -148,9 +148,9 @@ fn from_boxes_to_first_touch() {
     let _alone = alone();
     let home = Home::new(&rig());
     let commissioned = home.nima(&["calibrate", "rig", "--rig", "rig.toml"]);
-    let told = String::from_utf8_lossy(&commissioned.stderr).into_owned();
-    println!("{told}");
-    assert!(commissioned.status.success(), "{told}");
+    let report = String::from_utf8_lossy(&commissioned.stderr).into_owned();
+    println!("{report}");
+    assert!(commissioned.status.success(), "{report}");
     for sensor in ["SN000901", "SN000902"] {
         for kind in ["gravity", "correspondence"] {
             assert!(is_there(home.0.path(), &format!("{kind}-{sensor}.toml")), "{kind} of {sensor}");
@@ -159,10 +159,10 @@ fn from_boxes_to_first_touch() {
     }
     is_ready(&home);
     judged(|| {
-        let (figures, told) = home.run("30");
-        assert!(!told.contains("not calibrated"), "{told}");
+        let (figures, report) = home.run("30");
+        assert!(!report.contains("not calibrated"), "{report}");
         if figures["final_state"] != "engaged" {
-            println!("{told}");
+            println!("{report}");
             too_busy();
         }
         judge(&figures);
@@ -173,15 +173,17 @@ fn from_boxes_to_first_touch() {
 fn is_ready(home: &Home) {
     judged(|| {
         let checked = home.nima(&["check", "rig", "--rig", "rig.toml"]);
-        let told = String::from_utf8_lossy(&checked.stdout).into_owned();
-        println!("{told}");
+        let report = String::from_utf8_lossy(&checked.stdout).into_owned();
+        println!("{report}");
         // A delay on a busy machine looks like a bad device.
-        if told.lines().any(|line| line.contains("FAILED") && (line.starts_with("Rates") || line.starts_with("Clocks")))
+        if report
+            .lines()
+            .any(|line| line.contains("FAILED") && (line.starts_with("Rates") || line.starts_with("Clocks")))
         {
             too_busy();
         }
-        assert!(checked.status.success(), "{told}");
-        assert!(!told.contains("skipped"), "the rig has every part: {told}");
+        assert!(checked.status.success(), "{report}");
+        assert!(!report.contains("skipped"), "the rig has every part: {report}");
     });
 }
 

@@ -5,7 +5,7 @@ use std::{
     process::{Command, Output},
 };
 
-use nima_recording::store::{Outcome, ReadyRecord, Store};
+use nima_recording::store::{PointOutcome, ReadyRecord, Store};
 use nima_testing::real_time::{alone, judged, too_busy};
 use nima_tests::gravity::gravity;
 
@@ -42,19 +42,21 @@ fn a_simulated_rig_in_order_passes_and_its_record_says_what_was_measured() {
     let folder = tempfile::tempdir().unwrap();
     judged(|| {
         let (output, record) = checked(folder.path(), 0.0);
-        let told = String::from_utf8_lossy(&output.stdout).into_owned();
-        println!("{told}{}", String::from_utf8_lossy(&output.stderr));
-        if of(&record, "Watchdog of the loop").outcome == Outcome::Failed {
+        let report = String::from_utf8_lossy(&output.stdout).into_owned();
+        println!("{report}{}", String::from_utf8_lossy(&output.stderr));
+        if of(&record, "Watchdog of the loop").outcome == PointOutcome::Failed {
             too_busy();
         }
         assert!(output.status.success() && record.passed);
-        assert!(told.contains("Right arm: direction of the force: passed") && told.contains("skipped"));
+        assert!(report.contains("Right arm: direction of the force: passed") && report.contains("skipped"));
         assert_eq!((record.by.as_str(), record.rig_file.as_str()), ("Ada Lovelace", "simulated"));
         assert!(record.took_s < 60.0);
         let drift = of(&record, "Right arm: drift of the bias");
-        assert!(drift.outcome == Outcome::Passed && drift.value < drift.limit && drift.unit.as_deref() == Some("N"));
         assert!(
-            record.items.iter().all(|item| matches!(item.outcome, Outcome::Passed | Outcome::LeftOut)),
+            drift.outcome == PointOutcome::Passed && drift.value < drift.limit && drift.unit.as_deref() == Some("N")
+        );
+        assert!(
+            record.items.iter().all(|item| matches!(item.outcome, PointOutcome::Passed | PointOutcome::LeftOut)),
             "{record:?}"
         );
         assert!(record.items.iter().filter(|item| item.check.starts_with("Watchdog")).count() == 3);
@@ -66,18 +68,18 @@ fn a_rig_that_is_not_ready_fails_in_one_line_and_its_record_says_why_and_what_to
     let _alone = alone();
     let folder = tempfile::tempdir().unwrap();
     let (output, record) = checked(folder.path(), 0.6);
-    let told = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(!output.status.success() && !record.passed, "{told}");
-    let last = told.lines().last().unwrap();
+    let report = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(!output.status.success() && !record.passed, "{report}");
+    let last = report.lines().last().unwrap();
     assert!(
         last.starts_with("nima: the rig is not ready: Right arm: drift of the bias") && last.contains("ready_check-")
     );
     let drift = of(&record, "Right arm: drift of the bias");
-    assert_eq!(drift.outcome, Outcome::Failed);
+    assert_eq!(drift.outcome, PointOutcome::Failed);
     assert!(
         drift.cause.as_ref().unwrap().starts_with("0.6") && drift.cure.as_ref().unwrap().contains("calibrate gravity")
     );
-    assert_eq!(of(&record, "Stop").outcome, Outcome::Passed, "the rest is looked at too");
+    assert_eq!(of(&record, "Stop").outcome, PointOutcome::Passed, "the rest is looked at too");
 }
 
 #[test]
@@ -85,10 +87,10 @@ fn a_rig_of_real_devices_is_sent_to_the_console_and_leaves_nothing() {
     let folder = tempfile::tempdir().unwrap();
     for rig in ["paper", "haply-desk"] {
         let output = nima(folder.path(), &["--rig", rig]);
-        let told = String::from_utf8(output.stderr).unwrap();
+        let report = String::from_utf8(output.stderr).unwrap();
         assert!(
-            !output.status.success() && told.lines().count() == 1 && told.contains("check it in `nima console`"),
-            "{told}"
+            !output.status.success() && report.lines().count() == 1 && report.contains("check it in `nima console`"),
+            "{report}"
         );
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
     }

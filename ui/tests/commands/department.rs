@@ -12,9 +12,9 @@ fn without_its_feature_a_department_says_how_to_build_it() {
         &["department", "monitor", "--at", "127.0.0.1"],
     ] {
         let output = nima(arguments);
-        let told = String::from_utf8(output.stderr).unwrap();
-        assert!(!output.status.success() && told.contains("--features department"), "{told}");
-        assert_eq!(told.lines().count(), 1, "{told}");
+        let report = String::from_utf8(output.stderr).unwrap();
+        assert!(!output.status.success() && report.contains("--features department"), "{report}");
+        assert_eq!(report.lines().count(), 1, "{report}");
     }
 }
 
@@ -45,10 +45,10 @@ mod engine {
 
     fn refused(folder: &Path, arguments: &[&str]) -> String {
         let Output { status, stderr, .. } = at(folder, arguments).output().unwrap();
-        let told = String::from_utf8(stderr).unwrap();
+        let report = String::from_utf8(stderr).unwrap();
         assert!(!status.success(), "{arguments:?} succeeded");
-        assert_eq!(told.lines().count(), 1, "{told}");
-        told
+        assert_eq!(report.lines().count(), 1, "{report}");
+        report
     }
 
     #[test]
@@ -59,8 +59,8 @@ mod engine {
         let file = |name: &str| folder(name).display().to_string();
         let address = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().to_string();
 
-        let told = refused(&teacher, &["department", "rigs"]);
-        assert!(told.contains("nima department join"), "{told}");
+        let report = refused(&teacher, &["department", "rigs"]);
+        assert!(report.contains("nima department join"), "{report}");
         ran(&office, &["department", "create", "lab"]);
         ran(&office, &["department", "issue", "theatre-1", "--out", &file("rig.cert")]);
         ran(&office, &["department", "issue", "teacher", "--watcher", "--out", &file("teacher.cert")]);
@@ -68,10 +68,10 @@ mod engine {
         assert!(
             ran(&teacher, &["department", "join", &file("teacher.cert")]).contains("watcher teacher of department lab")
         );
-        let told = refused(&teacher, &["run", "--share", &address, "--seconds", "1"]);
-        assert!(told.contains("joined as a watcher"), "{told}");
-        let told = refused(&teacher, &["department", "rigs", "--at", &address]);
-        assert!(told.contains("no rig answers"), "{told}");
+        let report = refused(&teacher, &["run", "--share", &address, "--seconds", "1"]);
+        assert!(report.contains("joined as a watcher"), "{report}");
+        let report = refused(&teacher, &["department", "rigs", "--at", &address]);
+        assert!(report.contains("no rig answers"), "{report}");
 
         let original = file("original.mcap");
         let run = ["run", "--share", &address, "--seconds", "10", "--record", &original, "--json"];
@@ -89,10 +89,10 @@ mod engine {
         };
         assert_eq!((&listed[0]["name"], &listed[0]["watchers"]), (&Value::from("theatre-1"), &Value::from(0)));
         let copies = file("copies");
-        let told = ran(&teacher, &["department", "record", "--at", &address, "--into", &copies, "--seconds", "14"]);
+        let report = ran(&teacher, &["department", "record", "--at", &address, "--into", &copies, "--seconds", "14"]);
         let output = shared.wait_with_output().unwrap();
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-        assert!(told.contains("recorded") && told.contains(".mcap"), "{told}");
+        assert!(report.contains("recorded") && report.contains(".mcap"), "{report}");
         let files: Vec<_> = std::fs::read_dir(&copies).unwrap().map(|file| file.unwrap().path()).collect();
         assert_eq!(files.len(), 1, "{files:?}");
         let replay =

@@ -18,9 +18,9 @@ fn a_port_that_is_not_there_and_a_port_where_nobody_listens_are_told_with_their_
     let output = nima(&["--probe", "serial=/dev/no-such-port@460800", "--probe", "tcp=127.0.0.1:1"]);
     let refused = String::from_utf8(output.stderr).unwrap();
     assert!(!output.status.success() && refused.contains("2 of 2 devices cannot be used"), "{refused}");
-    let told = String::from_utf8(output.stdout).unwrap();
+    let report = String::from_utf8(output.stdout).unwrap();
     for words in ["Plugged in", "/dev/no-such-port was not found", "Plug it in", "no response from 127.0.0.1:1"] {
-        assert!(told.contains(words), "\"{words}\" is not in:\n{told}");
+        assert!(report.contains(words), "\"{words}\" is not in:\n{report}");
     }
     let output = nima(&["--json", "--probe", "serial=/dev/no-such-port@460800"]);
     let json: Value = serde_json::from_slice(&output.stdout).unwrap();
@@ -38,9 +38,9 @@ fn the_handle_that_leads_a_simulated_rig_is_tested_and_keeps_the_real_clock() {
     let path = folder.path().join("my-handle.toml");
     std::fs::write(&path, rig.replace("/dev/ttyACM0", "/dev/no-such-port")).unwrap();
     let output = nima(&["--rig", path.to_str().unwrap()]);
-    let told = String::from_utf8(output.stdout).unwrap();
-    assert!(!output.status.success() && told.contains("right handle"), "{told}");
-    assert!(told.contains("/dev/no-such-port was not found"), "{told}");
+    let report = String::from_utf8(output.stdout).unwrap();
+    assert!(!output.status.success() && report.contains("right handle"), "{report}");
+    assert!(report.contains("/dev/no-such-port was not found"), "{report}");
     let mut run = Command::new(env!("CARGO_BIN_EXE_nima"));
     run.args(["run", "--virtual", "--seconds", "1", "--rig"]).arg(&path);
     let refused = run.env("NIMA_DATA_DIR", folder.path()).output().unwrap();
@@ -59,8 +59,8 @@ fn the_rules_and_the_command_that_installs_them_are_printed() {
 #[test]
 fn an_unknown_kind_names_the_known_ones_in_one_line() {
     let output = nima(&["--probe", "thing"]);
-    let told = String::from_utf8(output.stderr).unwrap();
-    assert!(!output.status.success() && told.lines().count() == 1 && told.contains("serial=PORT@BAUD"), "{told}");
+    let report = String::from_utf8(output.stderr).unwrap();
+    assert!(!output.status.success() && report.lines().count() == 1 && report.contains("serial=PORT@BAUD"), "{report}");
 }
 
 /// The test of an emulated rig without running emulators must not suggest checking plugs.
@@ -69,7 +69,7 @@ fn an_unknown_kind_names_the_known_ones_in_one_line() {
 fn an_emulated_rig_that_nobody_serves_names_the_command_that_does() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("rig.toml"), crate::installed::rig()).unwrap();
-    let told = |rig: &str| {
+    let report = |rig: &str| {
         let output = Command::new(env!("CARGO_BIN_EXE_nima"))
             .args(["devices", "--rig", rig])
             .current_dir(folder.path())
@@ -78,11 +78,11 @@ fn an_emulated_rig_that_nobody_serves_names_the_command_that_does() {
             .unwrap();
         String::from_utf8(output.stdout).unwrap()
     };
-    let emulated = told("rig.toml");
+    let emulated = report("rig.toml");
     assert!(emulated.contains("right arm") && emulated.contains("`nima emulate rig --rig rig.toml`"), "{emulated}");
     let rig = crate::installed::rig().replace("emulated = true", "emulated = false");
     let real: Vec<_> = rig.lines().filter(|line| !line.starts_with("emulator = ")).collect();
     std::fs::write(folder.path().join("real.toml"), real.join("\n")).unwrap();
-    let real = told("real.toml");
+    let real = report("real.toml");
     assert!(real.contains("right arm") && !real.contains("nima emulate rig"), "{real}");
 }

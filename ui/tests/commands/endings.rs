@@ -9,16 +9,16 @@ use std::{
     time::{Duration, Instant},
 };
 
-use nima_console::leaving::Leave;
+use nima_console::shutdown::Leave;
 use nima_emulation::{
     emulated::{Truth, provide_handles},
-    emulators::force_dimension::Mode as Motors,
+    emulators::force_dimension::FirmwareMode as Motors,
 };
 use nima_machine::{
     config::RigConfig,
-    rig::{Settings, Side},
+    rig::{RigSettings, Side},
 };
-use nima_simulation::{Plan, start};
+use nima_simulation::{SimulationPlan, start};
 use nima_testing::real_time::{alone, judged, too_busy};
 use nima_tests::{emulated, plan};
 use serde_json::Value;
@@ -115,14 +115,14 @@ fn a_run_whose_devices_never_came_fails_and_says_why_all_the_time() {
     let run = |more: &[&str]| {
         let output = nima(&["run", "--seconds", "4", "--rig", rig.to_str().unwrap()]).args(more).output().unwrap();
         assert_eq!(output.status.code(), Some(1));
-        let told = String::from_utf8(output.stderr).unwrap();
-        let last = told.lines().last().unwrap().to_owned();
-        assert!(last.starts_with("nima: the right arm ended without a device: right handle: "), "{told}");
-        (String::from_utf8(output.stdout).unwrap(), told)
+        let report = String::from_utf8(output.stderr).unwrap();
+        let last = report.lines().last().unwrap().to_owned();
+        assert!(last.starts_with("nima: the right arm ended without a device: right handle: "), "{report}");
+        (String::from_utf8(output.stdout).unwrap(), report)
     };
-    let (figures, told) = run(&[]);
-    let status: Vec<_> = told.lines().filter(|line| line.contains("No device")).collect();
-    assert!(status.len() >= 2 && status[1..].iter().all(|line| line.contains("No device: right ")), "{told}");
+    let (figures, report) = run(&[]);
+    let status: Vec<_> = report.lines().filter(|line| line.contains("No device")).collect();
+    assert!(status.len() >= 2 && status[1..].iter().all(|line| line.contains("No device: right ")), "{report}");
     assert!(figures.contains("right arm ended: No device") && figures.contains("never connected"), "{figures}");
     let (json, _) = run(&["--json"]);
     let summary: Value = serde_json::from_str(&json).unwrap();
@@ -155,11 +155,11 @@ fn a_closed_stderr_is_no_reason_to_panic() {
 /// Ends a run by this signal once its arm is engaged; `None`: it was delayed.
 fn ended_by(signal: &str) -> Option<Output> {
     let mut run = Running(nima(&["run", "--scene", "free_motion"]).spawn().unwrap());
-    let mut told = BufReader::new(run.0.stderr.take().unwrap());
+    let mut report = BufReader::new(run.0.stderr.take().unwrap());
     let mut line = String::new();
     while !line.contains("Engaged") {
         line.clear();
-        assert!(told.read_line(&mut line).unwrap() > 0, "it ended before it was engaged");
+        assert!(report.read_line(&mut line).unwrap() > 0, "it ended before it was engaged");
         if line.contains("Fault") {
             return None;
         }
@@ -169,7 +169,7 @@ fn ended_by(signal: &str) -> Option<Output> {
     let mut stdout = Vec::new();
     let mut stderr = Vec::new();
     run.0.stdout.take().unwrap().read_to_end(&mut stdout).unwrap();
-    told.read_to_end(&mut stderr).unwrap();
+    report.read_to_end(&mut stderr).unwrap();
     Some(Output { status, stdout, stderr })
         .filter(|output| !String::from_utf8_lossy(&output.stdout).contains("held up"))
 }
@@ -180,10 +180,10 @@ fn whatever_signal_ends_a_run_its_figures_are_printed() {
         for signal in ["-TERM", "-HUP", "-INT"] {
             let Some(output) = ended_by(signal) else { too_busy() };
             let figures = String::from_utf8_lossy(&output.stdout);
-            let told = String::from_utf8_lossy(&output.stderr);
-            assert!(output.status.success(), "{signal}: {} {told}", output.status);
+            let report = String::from_utf8_lossy(&output.stderr);
+            assert!(output.status.success(), "{signal}: {} {report}", output.status);
             assert!(figures.contains("right arm ended: Engaged") && figures.contains("work us"), "{signal}: {figures}");
-            assert!(told.contains("nima: ended on request: force and drives are off"), "{signal}: {told}");
+            assert!(report.contains("nima: ended on request: force and drives are off"), "{signal}: {report}");
         }
     });
 }
@@ -210,9 +210,9 @@ fn emulators_say_that_their_input_has_ended_and_serve_on_without_one() {
     served(&mut piped);
     drop(piped.0.stdin.take());
     assert!(piped.ended().success());
-    let mut told = String::new();
-    piped.0.stderr.take().unwrap().read_to_string(&mut told).unwrap();
-    assert!(told.contains("standard input has ended"), "{told}");
+    let mut report = String::new();
+    piped.0.stderr.take().unwrap().read_to_string(&mut report).unwrap();
+    assert!(report.contains("standard input has ended"), "{report}");
     let mut alone = Running(nima(&["emulate", "ndi"]).spawn().unwrap());
     served(&mut alone);
     sleep(Duration::from_millis(500));
@@ -223,8 +223,8 @@ fn emulators_say_that_their_input_has_ended_and_serve_on_without_one() {
 
 /// Processes that this one started.
 fn children(pid: u32) -> Vec<u32> {
-    let told = fs::read_to_string(format!("/proc/{pid}/task/{pid}/children")).unwrap_or_default();
-    told.split_whitespace().filter_map(|pid| pid.parse().ok()).collect()
+    let report = fs::read_to_string(format!("/proc/{pid}/task/{pid}/children")).unwrap_or_default();
+    report.split_whitespace().filter_map(|pid| pid.parse().ok()).collect()
 }
 
 fn is_alive(pid: u32) -> bool {
@@ -249,9 +249,12 @@ fn an_export_that_is_ended_leaves_nothing_behind() {
         until("a file that is being written", || there().len() > 1);
         export.signal("-TERM");
         let status = export.ended();
-        let mut told = String::new();
-        export.0.stderr.take().unwrap().read_to_string(&mut told).unwrap();
-        assert!(!status.success() && told.lines().count() == 1 && told.contains("ended on request"), "{out}: {told}");
+        let mut report = String::new();
+        export.0.stderr.take().unwrap().read_to_string(&mut report).unwrap();
+        assert!(
+            !status.success() && report.lines().count() == 1 && report.contains("ended on request"),
+            "{out}: {report}"
+        );
         assert_eq!(there(), ["session.mcap"]);
     }
 }
@@ -319,7 +322,7 @@ fn the_loop_of_another_process() {
     let Ok(rig) = std::env::var(RIG) else { return };
     provide_handles();
     let leave = Leave::on_signals().unwrap();
-    let plan = Plan { rig: RigConfig::load(&rig).unwrap(), ..plan("peg_transfer") };
+    let plan = SimulationPlan { rig: RigConfig::load(&rig).unwrap(), ..plan("peg_transfer") };
     let handle = start(&plan).unwrap();
     let ender = handle.ender();
     leave.at_once(move || ender.end());
@@ -333,7 +336,7 @@ fn the_loop_of_another_process() {
 }
 
 /// The right arm of the emulated rig as a file at `path`: it presses on tissue, and the hand feels a steady force.
-fn pressing_rig(path: &Path) -> Settings {
+fn pressing_rig(path: &Path) -> RigSettings {
     let mut file = emulated::rig_file(&emulated::elsewhere(path.parent().unwrap()));
     for part in ["left", "tissue_sensor", "tracker", "endoscope", "pedal"] {
         file.remove(&format!("devices.{part}"));

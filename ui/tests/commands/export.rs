@@ -3,7 +3,7 @@ use std::{collections::BTreeMap, path::Path};
 
 use nima_recording::{
     messages::JointStateDecoder,
-    session::{Encoding, Reader, Writer},
+    session::{Encoding, SessionReader, SessionWriter},
 };
 use serde_json::Value;
 
@@ -29,8 +29,8 @@ pub(crate) fn record(path: &str, scene: &str, seconds: &str) {
 }
 
 /// Content of an arm's topic at each time: values by their names.
-pub(crate) fn values(reader: &Reader, topic: &str) -> BTreeMap<u64, BTreeMap<String, f64>> {
-    let message = |message: nima_recording::session::Message| {
+pub(crate) fn values(reader: &SessionReader, topic: &str) -> BTreeMap<u64, BTreeMap<String, f64>> {
+    let message = |message: nima_recording::session::SessionMessage| {
         let mut read = JointStateDecoder::default();
         assert!(read.decode(message.data()), "{topic}");
         (message.log_time_ns(), read.names().iter().cloned().zip(read.values().iter().copied()).collect())
@@ -40,7 +40,7 @@ pub(crate) fn values(reader: &Reader, topic: &str) -> BTreeMap<u64, BTreeMap<Str
 
 /// Checks that every row of a table matches the messages of its time bit by bit.
 fn agrees(session: &str, table: &str, arm: &str) -> usize {
-    let reader = Reader::open(Path::new(session)).unwrap();
+    let reader = SessionReader::open(Path::new(session)).unwrap();
     let topics = ["forces", "poses"].map(|what| values(&reader, &format!("{arm}/{what}")));
     let text = std::fs::read_to_string(table).unwrap();
     let mut lines = text.lines().map(|line| line.split(',').collect::<Vec<_>>());
@@ -85,8 +85,8 @@ fn a_table_has_the_values_of_the_messages_and_identify_makes_the_same_of_both() 
     let left = at("left.csv");
     let part = at("part.csv");
     record(&session, "bimanual", "4");
-    let told = done(&["export", &session, "--out", &right, "--arm", "right"]);
-    assert!(told.contains("4000 ticks of the right arm"), "{told}");
+    let report = done(&["export", &session, "--out", &right, "--arm", "right"]);
+    assert!(report.contains("4000 ticks of the right arm"), "{report}");
     done(&["export", &session, "--out", &left, "--arm", "left"]);
     assert_eq!((agrees(&session, &right, "right"), agrees(&session, &left, "left")), (4000, 4000));
     done(&["export", &session, "--out", &part, "--arm", "left", "--from", "1", "--to", "2.5"]);
@@ -170,20 +170,20 @@ fn a_stretch_is_a_session_with_all_that_was_in_it() {
     let middle = at("middle.mcap");
     let inner = at("inner.mcap");
     record(&session, "peg_transfer", "4");
-    let told = done(&["export", &session, "--out", &begin, "--to", "2"]);
-    assert!(told.contains("with the journal up to the cut"), "{told}");
+    let report = done(&["export", &session, "--out", &begin, "--to", "2"]);
+    assert!(report.contains("with the journal up to the cut"), "{report}");
     let replayed = json(&["replay", &begin, "--json"]);
     assert_eq!((&replayed["identical"], &replayed["ticks"]), (&Value::from(true), &Value::from(2000)), "{replayed}");
-    let told = done(&["export", &session, "--out", &middle, "--from", "1", "--to", "3"]);
-    assert!(told.contains("without the journal"), "{told}");
+    let report = done(&["export", &session, "--out", &middle, "--from", "1", "--to", "3"]);
+    assert!(report.contains("without the journal"), "{report}");
     refused(&["replay", &middle], "no journal");
     done(&["export", &middle, "--out", &inner, "--from", "1.5", "--to", "2"]);
 
-    let open = |path: &str| Reader::open(Path::new(path)).unwrap();
+    let open = |path: &str| SessionReader::open(Path::new(path)).unwrap();
     let all = |path: &str| {
         let reader = open(path);
         let topic = |id| reader.channels().iter().find(|channel| channel.id == id).unwrap().topic.clone();
-        let one = |message: nima_recording::session::Message| {
+        let one = |message: nima_recording::session::SessionMessage| {
             (message.log_time_ns(), topic(message.channel()), message.data().to_vec())
         };
         reader.messages(&[], 0..u64::MAX).map(|read| one(read.unwrap())).collect::<Vec<_>>()
@@ -207,19 +207,22 @@ fn a_stretch_is_a_session_with_all_that_was_in_it() {
         let cut = open(path);
         let from = open(&session);
         assert!(cut.notes().is_empty());
-        let files = |reader: &Reader| {
+        let files = |reader: &SessionReader| {
             let file = |one| (reader.attachment(one).unwrap(), one.name.clone(), one.media_type.clone());
             reader.attachments().iter().map(file).collect::<Vec<_>>()
         };
         assert!(files(&cut) == files(&from) && files(&cut).len() >= 2);
         let mut tables = cut.metadata().unwrap();
-        let (name, told) = tables.pop().unwrap();
+        let (name, report) = tables.pop().unwrap();
         assert_eq!(tables, from.metadata().unwrap());
-        let told = |key: &str| told[key].as_str();
-        assert_eq!((name.as_str(), told("from_s"), told("to_s")), ("cut", &*from_s.to_string(), &*to_s.to_string()));
-        assert_eq!(told("journal").starts_with("kept"), journal);
-        assert_eq!(told("session_begins_ns"), begin_ns.to_string());
-        assert_eq!(told("session"), "s.mcap");
+        let report = |key: &str| report[key].as_str();
+        assert_eq!(
+            (name.as_str(), report("from_s"), report("to_s")),
+            ("cut", &*from_s.to_string(), &*to_s.to_string())
+        );
+        assert_eq!(report("journal").starts_with("kept"), journal);
+        assert_eq!(report("session_begins_ns"), begin_ns.to_string());
+        assert_eq!(report("session"), "s.mcap");
     }
     // Times in an excerpt are those of the session.
     let a = at("a.csv");
@@ -237,7 +240,7 @@ fn what_is_no_session_is_told_in_one_line() {
     std::fs::write(at("foreign.mcap"), "t_s,x_m,fx_n\n0,1,2\n").unwrap();
     std::fs::write(at("cut.mcap"), b"\x89MCAP0").unwrap();
     std::fs::write(at("newer.mcap"), b"\x89MCAP1\r\n and what comes after it").unwrap();
-    let mut other = Writer::create(Path::new(&at("other.mcap")), "another program").unwrap();
+    let mut other = SessionWriter::create(Path::new(&at("other.mcap")), "another program").unwrap();
     let channel = other.channel("words", Encoding { message_encoding: "text".into(), ..Encoding::default() }).unwrap();
     other.message(channel, 1, b"one").unwrap();
     other.finish().unwrap();

@@ -15,14 +15,14 @@ use crate::{
 /// A hand that presses a spring of this stiffness (N/m) on three axes, in mm and N with another program's column names; `h`
 /// is the leader, 20 ms ahead.
 fn recording(folder: &Path, name: &str, stiffness_n_m: f64) -> PathBuf {
-    let at_m = |i: usize| [7.0, 4.4, 12.0].map(|rad_s: f64| 0.01 * (rad_s * i as f64 * 1e-3).sin());
+    let sine_m = |i: usize| [7.0, 4.4, 12.0].map(|rad_s: f64| 0.01 * (rad_s * i as f64 * 1e-3).sin());
     let mut text = String::from("t_s,px,py,pz,a,b,c,hx,hy,hz\n");
     for i in 0..1500 {
-        let position_m = at_m(i);
+        let position_m = sine_m(i);
         let columns = [
             position_m.map(|x| x * 1e3),
             position_m.map(|x| stiffness_n_m * x.max(0.0)),
-            at_m(i + 20).map(|x| x * 1e3),
+            sine_m(i + 20).map(|x| x * 1e3),
         ];
         let columns: Vec<String> = columns.as_flattened().iter().map(f64::to_string).collect();
         writeln!(text, "{},{}", i as f64 * 1e-3, columns.join(",")).unwrap();

@@ -47,14 +47,14 @@ fn run(folder: &Path) -> (Vec<u64>, String) {
         .env("XDG_RUNTIME_DIR", folder.join("run"))
         .output()
         .unwrap();
-    let told = String::from_utf8_lossy(&output.stderr).into_owned();
+    let report = String::from_utf8_lossy(&output.stderr).into_owned();
     let json: Value = serde_json::from_slice(&output.stdout).unwrap_or_default();
     let readings = |name: &str| {
         let mut devices = json["devices"].as_array().into_iter().flatten();
         let device = devices.rfind(|device| device["name"] == name);
         device.and_then(|device| device["readings"].as_u64()).unwrap_or(0)
     };
-    (["right handle", "left handle", "right arm", "left arm"].map(readings).to_vec(), told)
+    (["right handle", "left handle", "right arm", "left arm"].map(readings).to_vec(), report)
 }
 
 #[test]
@@ -64,11 +64,11 @@ fn the_emulated_rig_runs_with_nothing_beside_the_program() {
     fs::copy(env!("CARGO_BIN_EXE_nima"), folder.path().join("nima")).unwrap();
     fs::DirBuilder::new().mode(0o700).create(folder.path().join("run")).unwrap();
     judged(|| {
-        let (readings, told) = run(folder.path());
-        println!("readings of both handles and both arms: {readings:?}\n{told}");
+        let (readings, report) = run(folder.path());
+        println!("readings of both handles and both arms: {readings:?}\n{report}");
         // Load cannot cause these; another program may have taken a port in between.
         for words in ["not installed", "cannot be used", "cannot emulate"] {
-            assert!(!told.contains(words) || told.contains("in use by another program"), "{told}");
+            assert!(!report.contains(words) || report.contains("in use by another program"), "{report}");
         }
         if readings.iter().any(|readings| *readings <= 100) {
             too_busy();

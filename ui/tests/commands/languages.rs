@@ -3,7 +3,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::words::{has_words, literals, of_extras, sources};
+use crate::report_text::{has_text, literals, of_extras, sources};
 
 /// Texts that are the same in both languages: names, abbreviations, terms that German engineers use as they are.
 const SAME: [&str; 27] = [
@@ -37,7 +37,7 @@ const SAME: [&str; 27] = [
 ];
 
 /// Start of a pair of literals.
-const BEGINNINGS: [&str; 3] = ["Text::of(", "word(", "told!("];
+const BEGINNINGS: [&str; 3] = ["Text::of(", "word(", "text_format!("];
 
 /// The pairs in a source, with continued literals joined.
 pub(crate) fn pairs(source: &str) -> Vec<[String; 2]> {
@@ -109,7 +109,7 @@ fn values(text: &str) -> Vec<String> {
 fn no_text_is_left_in_english() {
     let wrong: Vec<_> = all_pairs()
         .into_iter()
-        .filter(|[english, german]| english == german && has_words(english) && !SAME.contains(&english.as_str()))
+        .filter(|[english, german]| english == german && has_text(english) && !SAME.contains(&english.as_str()))
         .collect();
     assert!(wrong.is_empty(), "translate these, or list them if they are the same on purpose: {wrong:#?}");
 }
@@ -138,7 +138,7 @@ fn every_text_with_words_is_a_pair() {
         for text in literals(&source) {
             let text = plain(&text);
             let is_known = known.iter().any(|known| known.contains(text.trim()));
-            if has_words(&text) && !is_known {
+            if has_text(&text) && !is_known {
                 wrong.push((path.display().to_string(), text));
             }
         }
@@ -148,7 +148,7 @@ fn every_text_with_words_is_a_pair() {
 
 #[test]
 fn a_pair_is_read_with_its_continued_lines() {
-    let source = "let a = Text::of(\n    \"one \\\n     line\",\n    \"eine \\\"Zeile\\\"\",\n); fn told!(x: u8) {} sword(\"no\");";
+    let source = "let a = Text::of(\n    \"one \\\n     line\",\n    \"eine \\\"Zeile\\\"\",\n); fn text_format!(x: u8) {} sword(\"no\");";
     assert_eq!(pairs(source), [["one line".to_owned(), "eine \\\"Zeile\\\"".to_owned()]]);
     assert_eq!(values("{a:.1} of {} {{x}}"), ["", "a:.1"]);
 }

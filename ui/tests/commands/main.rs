@@ -22,6 +22,7 @@ mod packages;
 mod paper_rig;
 mod replay;
 mod report;
+mod report_text;
 mod results;
 mod rings;
 mod score;
@@ -29,7 +30,6 @@ mod sessions;
 mod study;
 mod two_machines;
 mod user_study;
-mod words;
 
 /// The one line of a failed command.
 fn one_line(output: &std::process::Output) -> String {

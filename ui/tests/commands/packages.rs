@@ -70,8 +70,8 @@ fn every_shell_gets_every_command() {
         }
     }
     let refused = nima(&["completions", "sh"]);
-    let told = crate::one_line(&refused);
-    assert!(told.contains("zsh") && told.contains("fish"), "{told}");
+    let report = crate::one_line(&refused);
+    assert!(report.contains("zsh") && report.contains("fish"), "{report}");
 }
 
 #[test]
@@ -92,8 +92,8 @@ fn every_command_has_a_manual_page() {
     printed(&["man", folder.to_str().unwrap()]);
     assert_eq!(page("nima-run"), before, "the same program writes the same page");
     // An obstacle is reported.
-    let told = crate::one_line(&nima(&["man", folder.join("nima.1").to_str().unwrap()]));
-    assert!(told.contains("nima.1"), "{told}");
+    let report = crate::one_line(&nima(&["man", folder.join("nima.1").to_str().unwrap()]));
+    assert!(report.contains("nima.1"), "{report}");
 }
 
 /// Files of a crate: names and texts.
@@ -155,13 +155,13 @@ fn a_crate_without_a_licence_text_fails_the_packages() {
     for (licence, files, good) in cases {
         let folder = tempfile::tempdir().unwrap();
         let output = inventory(folder.path(), &[("a", licence, files)]);
-        let told = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert_eq!(output.status.success(), good, "{licence}, {files:?}: {told}");
+        let report = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.success(), good, "{licence}, {files:?}: {report}");
         if good {
             let texts = fs::read_to_string(folder.path().join("out/third-party.txt")).unwrap();
             assert!(texts.contains("a 1.0.0: ") && files.iter().all(|(_, text)| texts.contains(text)), "{texts}");
         } else {
-            assert!(told.contains("no licence text for: a 1.0.0"), "{told}");
+            assert!(report.contains("no licence text for: a 1.0.0"), "{report}");
             assert!(!folder.path().join("out/third-party.txt").exists());
         }
     }

@@ -37,33 +37,33 @@ fn alone(arguments: &[&str]) -> Option<Output> {
 #[test]
 fn every_device_that_is_not_there_has_its_cause_and_its_cure() {
     let Some(tested) = alone(&["devices", "--rig", "paper"]) else { return };
-    let told = String::from_utf8(tested.stdout).unwrap();
+    let report = String::from_utf8(tested.stdout).unwrap();
     let refused = String::from_utf8(tested.stderr).unwrap();
     assert!(!tested.status.success() && refused.contains("10 of 10 devices cannot be used"), "{refused}");
-    let lines: Vec<_> = told.lines().collect();
+    let lines: Vec<_> = report.lines().collect();
     for device in devices() {
         let at = lines.iter().position(|line| line.trim_start().starts_with(device));
-        let at = at.unwrap_or_else(|| panic!("{device} is not in:\n{told}"));
+        let at = at.unwrap_or_else(|| panic!("{device} is not in:\n{report}"));
         assert!(lines[at].contains("problem: "), "{}", lines[at]);
         assert!(
             lines[at + 1].starts_with("      ") && lines[at + 1].trim().len() > 20,
-            "{device} has no cure:\n{told}"
+            "{device} has no cure:\n{report}"
         );
     }
     let cause = |device: &str| lines.iter().find(|line| line.trim_start().starts_with(device)).unwrap();
-    assert!(cause("right arm").contains("192.168.1.10:10000 cannot be reached"), "{told}");
-    assert!(cause("tracker").contains("tools[0] = right-instrument.rom: the file cannot be read"), "{told}");
+    assert!(cause("right arm").contains("192.168.1.10:10000 cannot be reached"), "{report}");
+    assert!(cause("tracker").contains("tools[0] = right-instrument.rom: the file cannot be read"), "{report}");
 }
 
 #[test]
 fn a_run_names_the_first_device_and_ends_with_its_cause() {
     let Some(run) = alone(&["run", "--rig", "paper", "--seconds", "1"]) else { return };
-    let told = String::from_utf8(run.stdout).unwrap();
+    let report = String::from_utf8(run.stdout).unwrap();
     let refused = String::from_utf8(run.stderr).unwrap();
-    assert!(!run.status.success(), "{told}");
+    assert!(!run.status.success(), "{report}");
     let last = refused.lines().last().unwrap();
     assert!(last.contains("right handle: the Force Dimension SDK") && last.contains("is not installed"), "{refused}");
-    assert!(told.contains("right arm ended: No device") && !told.contains("error of each mode"), "{told}");
+    assert!(report.contains("right arm ended: No device") && !report.contains("error of each mode"), "{report}");
     for device in devices() {
         assert!(refused.contains(&format!("{device}: ")), "{device} is not in:\n{refused}");
     }
@@ -100,8 +100,8 @@ fn the_one_device_that_is_missing_is_the_one_that_is_named() {
     let tested = || {
         let mut command = Command::new(env!("CARGO_BIN_EXE_nima"));
         let output = command.args(["devices", "--rig"]).arg(&rig).env("NIMA_DATA_DIR", folder.path()).output().unwrap();
-        let [told, refused] = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).unwrap());
-        (output.status.success(), told, refused)
+        let [report, refused] = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).unwrap());
+        (output.status.success(), report, refused)
     };
     judged(|| {
         std::fs::write(&rig, rig_file(&devices).text()).unwrap();
@@ -112,15 +112,15 @@ fn the_one_device_that_is_missing_is_the_one_that_is_named() {
             let mut file = rig_file(&devices);
             take_away(&mut file, device, folder.path()).unwrap();
             std::fs::write(&rig, file.text()).unwrap();
-            let (all_there, told, refused) = tested();
-            assert!(!all_there && !told.is_empty(), "{device}:\n{told}{refused}");
-            let lines: Vec<_> = told.lines().collect();
+            let (all_there, report, refused) = tested();
+            assert!(!all_there && !report.is_empty(), "{device}:\n{report}{refused}");
+            let lines: Vec<_> = report.lines().collect();
             let troubled: Vec<_> = (0..lines.len()).filter(|at| lines[*at].contains("problem: ")).collect();
             let [at] = troubled[..] else {
-                assert!(troubled.iter().any(|at| lines[*at].trim_start().starts_with(device)), "{device}:\n{told}");
+                assert!(troubled.iter().any(|at| lines[*at].trim_start().starts_with(device)), "{device}:\n{report}");
                 too_busy()
             };
-            assert!(lines[at].trim_start().starts_with(device), "{device} is missing:\n{told}");
+            assert!(lines[at].trim_start().starts_with(device), "{device} is missing:\n{report}");
             assert!(refused.contains("1 of 11 devices cannot be used"), "{refused}");
             println!("{}\n{}", lines[at].trim(), lines[at + 1].trim());
         }

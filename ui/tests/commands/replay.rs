@@ -35,12 +35,12 @@ fn a_recorded_run_replays_and_can_be_asked_what_if() {
     ];
     let ran = json(&run);
     assert_eq!((&ran["recorded"]["ticks"], &ran["recorded"]["lost"]), (&Value::from(8000), &Value::from(0)), "{ran}");
-    let told = json(&["replay", &session, "--json"]);
+    let report = json(&["replay", &session, "--json"]);
     assert_eq!(
-        (&told["ticks"], &told["identical"], &told["closed"]),
+        (&report["ticks"], &report["identical"], &report["closed"]),
         (&Value::from(8000), &Value::from(true), &Value::from(true))
     );
-    assert!(told["recorded_by"].as_str().unwrap().starts_with("nima ") && told["differs"].is_null(), "{told}");
+    assert!(report["recorded_by"].as_str().unwrap().starts_with("nima ") && report["differs"].is_null(), "{report}");
     let words = nima(&["replay", &session]);
     let words = String::from_utf8(words.stdout).unwrap();
     assert!(words.contains("8000 ticks") && words.contains("bit by bit"), "{words}");
@@ -51,7 +51,7 @@ fn a_recorded_run_replays_and_can_be_asked_what_if() {
         "{part}"
     );
     let words = String::from_utf8(nima(&["replay", &session, "--from", "2.5", "--to", "4"]).stdout).unwrap();
-    assert!(words.contains("the 2500 ticks before were replayed") && words.contains("not compared"), "{words}");
+    assert!(words.contains("the 2500 ticks before it were replayed") && words.contains("not compared"), "{words}");
     assert!(!words.contains("not closed"), "{words}");
     for (given, words) in [(["3", "2"], "is not before"), (["9", "10"], "after the end"), (["0", "x"], "seconds")] {
         assert!(refused(&["replay", &session, "--from", given[0], "--to", given[1]]).contains(words));
@@ -81,9 +81,9 @@ fn live_viewing_needs_an_address_and_the_real_clock() {
         (["run", "--live", "here", "--seconds"], "invalid socket address"),
         (["run", "--live", "--virtual", "--seconds"], "cannot be used with"),
     ] {
-        let told = nima(&[&arguments[..], &["1"]].concat());
-        let text = String::from_utf8(told.stderr).unwrap();
-        assert!(!told.status.success() && text.contains(words), "{text}");
+        let report = nima(&[&arguments[..], &["1"]].concat());
+        let text = String::from_utf8(report.stderr).unwrap();
+        assert!(!report.status.success() && text.contains(words), "{text}");
     }
 }
 
@@ -142,7 +142,7 @@ fn a_disk_that_is_full_or_read_only_is_told_in_one_line_with_what_to_do() {
         ),
     ] {
         let Some(output) = on_a_small_disk(folder.path(), script) else { return };
-        let told = String::from_utf8(output.stderr).unwrap();
-        assert!(!output.status.success() && told.contains(words) && told.contains("a.mcap"), "{told}");
+        let report = String::from_utf8(output.stderr).unwrap();
+        assert!(!output.status.success() && report.contains(words) && report.contains("a.mcap"), "{report}");
     }
 }

@@ -23,9 +23,9 @@ fn peak_and_mean(table: &str, columns: [&str; 3]) -> [f64; 2] {
     [lengths.iter().copied().fold(0.0, f64::max), lengths.iter().sum::<f64>() / lengths.len() as f64]
 }
 
-fn close(told: &Value, expected: f64) {
-    let told = told.as_f64().unwrap();
-    assert!((told - expected).abs() < 1e-9 * expected.max(1.0), "{told}, the table has {expected}");
+fn close(report: &Value, expected: f64) {
+    let report = report.as_f64().unwrap();
+    assert!((report - expected).abs() < 1e-9 * expected.max(1.0), "{report}, the table has {expected}");
 }
 
 #[test]
@@ -36,8 +36,8 @@ fn the_figures_are_those_of_the_tables_and_the_page_compares_both_sessions() {
     done(&["run", "--virtual", "--seconds", "3", "--record", &first]);
     done(&["run", "--virtual", "--seconds", "2", "--mode", "dfr", "--record", &second]);
     done(&["export", &first, "--out", &table]);
-    let told = json(&["report", &first, &second, "--out", &out, "--json"]);
-    let arm = &told["sessions"][0]["arms"][0];
+    let report = json(&["report", &first, &second, "--out", &out, "--json"]);
+    let arm = &report["sessions"][0]["arms"][0];
     for (number, columns) in [(0, ["fx", "fy", "fz"]), (2, ["rendered_x", "rendered_y", "rendered_z"])] {
         let columns = columns.map(|column| format!("{column}_n"));
         let [peak_n, mean_n] = peak_and_mean(&table, columns.each_ref().map(String::as_str));

@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use nima_recording::session::Reader;
+use nima_recording::session::SessionReader;
 use nima_session::{
-    file::{LineKind, Recorded},
+    file::{LineKind, RecordedFile},
     objects,
 };
 use serde_json::Value;
@@ -60,9 +60,9 @@ fn the_score_of_a_session_is_that_of_its_run() {
     assert_eq!(json(&["replay", &whole, "--json"])["differs"], Value::Null);
     done(&["export", &whole, "--out", &shared, "--anonymous"]);
     same(&run, &json(&["score", &shared, "--json"]));
-    let lines = Recorded::open(Path::new(&shared)).unwrap().log(0..u64::MAX).unwrap();
-    let told: Vec<_> = lines.iter().filter(|line| line.kind == LineKind::Happening).collect();
-    assert!(told.len() == 9 && told.iter().all(|line| line.words != "(withheld)"), "{told:?}");
+    let lines = RecordedFile::open(Path::new(&shared)).unwrap().log(0..u64::MAX).unwrap();
+    let report: Vec<_> = lines.iter().filter(|line| line.kind == LineKind::Happening).collect();
+    assert!(report.len() == 9 && report.iter().all(|line| line.words != "(withheld)"), "{report:?}");
     done(&["export", &whole, "--out", &part, "--from", "4", "--to", "12"]);
     let [of_part, of_whole] =
         [json(&["score", &part, "--json"]), json(&["score", &whole, "--from", "4", "--to", "12", "--json"])];
@@ -71,8 +71,8 @@ fn the_score_of_a_session_is_that_of_its_run() {
 
     // A trial that was not finished.
     same(&record("rings", "8", &early), &json(&["score", &early, "--json"]));
-    let told = String::from_utf8(nima(&["score", &early]).stdout).unwrap();
-    assert!(told.contains("task: Rings on pegs") && told.contains("lifts"), "{told}");
+    let report = String::from_utf8(nima(&["score", &early]).stdout).unwrap();
+    assert!(report.contains("task: Rings on pegs") && report.contains("lifts"), "{report}");
 
     let figures = json(&["report", &whole, "--out", &at("pages"), "--json"]);
     assert_eq!(figures["sessions"][0]["happenings"]["ring_transferred"], 2, "{figures}");
@@ -80,7 +80,7 @@ fn the_score_of_a_session_is_that_of_its_run() {
     for words in ["Events of the objects", "ring transferred", "ring 1 passed to the right instrument"] {
         assert!(page.contains(words), "{words}");
     }
-    let reader = Reader::open(Path::new(&whole)).unwrap();
+    let reader = SessionReader::open(Path::new(&whole)).unwrap();
     assert!(objects::are_shown(&reader) && reader.notes().is_empty());
 }
 
@@ -103,7 +103,7 @@ fn the_scores_of_lumps_and_of_the_wire_are_those_of_their_runs() {
         done(&["export", &whole, "--out", &shared, "--anonymous"]);
         same(&run, &json(&["score", &shared, "--json"]));
         let [of_whole, of_shared] = [&whole, &shared].map(|path| {
-            let reader = Reader::open(Path::new(path)).unwrap();
+            let reader = SessionReader::open(Path::new(path)).unwrap();
             let (begin_ns, end_ns) = reader.statistics().times_ns;
             objects::at(&reader, begin_ns, end_ns).unwrap().unwrap().task.unwrap()
         });

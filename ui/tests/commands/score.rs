@@ -34,8 +34,8 @@ fn sessions_are_scored_and_become_a_table_of_trials() {
     assert!((part["completion_time_s"].as_f64().unwrap() - 3.0).abs() < 0.01, "{part}");
 
     let out = at("trials.csv");
-    let told = nima(&["score", &sessions[0], &sessions[1], "--participant", "p1", "--out", &out]);
-    assert!(told.status.success(), "{}", String::from_utf8_lossy(&told.stderr));
+    let report = nima(&["score", &sessions[0], &sessions[1], "--participant", "p1", "--out", &out]);
+    assert!(report.status.success(), "{}", String::from_utf8_lossy(&report.stderr));
     let table = std::fs::read_to_string(&out).unwrap();
     let lines: Vec<&str> = table.lines().collect();
     assert!(lines[0].starts_with("participant,condition,trial,session,") && lines.len() == 3, "{table}");
@@ -67,8 +67,8 @@ fn a_table_of_trials_gives_the_answer_with_its_files() {
         }
     }
     std::fs::write(at("trials.csv"), table).unwrap();
-    let told = json(&["study", "trials", &at("trials.csv"), "--reference", "dfr", "--json", "--out", &at("out")]);
-    let pair = &told["measures"][0]["pairs"][0];
+    let report = json(&["study", "trials", &at("trials.csv"), "--reference", "dfr", "--json", "--out", &at("out")]);
+    let pair = &report["measures"][0]["pairs"][0];
     assert_eq!((&pair["first"], &pair["second"]), (&Value::from("matched"), &Value::from("dfr")));
     assert!((pair["difference"]["estimate"].as_f64().unwrap() + 9.0).abs() < 1e-6, "{pair}");
     // All eight differ in the same direction: 2 of the 256 ways.
@@ -87,7 +87,7 @@ fn a_run_of_a_training_scene_is_scored_and_its_seed_can_be_given() {
         let run = ["run", "--virtual", "--scene", scene, "--seconds", seconds, "--json"];
         json(&[&run[..], more].concat())
     };
-    let number = |told: &Value, key: &str| told["score"][key].as_f64().unwrap_or_else(|| panic!("{key}: {told}"));
+    let number = |report: &Value, key: &str| report["score"][key].as_f64().unwrap_or_else(|| panic!("{key}: {report}"));
     let lumps = run("find_lumps", "115", &["--seed", "5"]);
     let [found, missed] = ["lumps_found", "lumps_missed"].map(|key| number(&lumps, key));
     assert!(found >= 4.0 && (found + missed - 5.0).abs() < 1e-9 && number(&lumps, "lumps_false") <= 1.0, "{lumps}");

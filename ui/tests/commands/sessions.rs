@@ -1,7 +1,7 @@
 //! `nima sessions`: the list, and that only sessions that are not being recorded are ever deleted.
 use std::{path::Path, process::Command, process::Output};
 
-use nima_recording::session::Writer;
+use nima_recording::session::SessionWriter;
 use serde_json::Value;
 
 fn nima(data: &Path, arguments: &[&str]) -> Output {
@@ -38,7 +38,7 @@ fn sessions_are_listed_kept_and_deleted_and_nothing_else_is() {
     done(data, &["export", &whole, "--out", &part, "--from", "0.5", "--to", "1.5"]);
     std::fs::write(at("empty.mcap"), []).unwrap();
     // As left by a process that is killed while recording: not finished.
-    let mut killed = Writer::create(&at("killed.mcap"), "a program").unwrap();
+    let mut killed = SessionWriter::create(&at("killed.mcap"), "a program").unwrap();
     killed.flush().unwrap();
     let outside = data.join("mine.mcap");
     std::fs::copy(at("a.mcap"), &outside).unwrap();

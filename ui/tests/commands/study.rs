@@ -56,8 +56,8 @@ fn the_papers_figures_are_told_under_a_name_of_their_own() {
     let entries = report["entries"].as_array().unwrap();
     assert!(entries.iter().any(|entry| entry["name"].as_str().unwrap().contains("judged-too")), "{report:.2000}");
     for entry in entries {
-        let share = |key: &str| entry["in_window"][key].as_f64().unwrap();
-        assert!(share("window_share") > share("next_share"), "{entry}");
+        let fraction = |key: &str| entry["in_window"][key].as_f64().unwrap();
+        assert!(fraction("window_share") > fraction("next_share"), "{entry}");
         assert_eq!(entry["at_horizon"].as_array().unwrap().len(), 20, "{}", entry["name"]);
     }
     let read = |name: &str| std::fs::read_to_string(folder.path().join(name)).unwrap();

@@ -31,7 +31,7 @@ fn at(folder: &Path, arguments: &[&str]) -> Child {
         .unwrap()
 }
 
-fn told(output: &Output) -> String {
+fn report(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
@@ -62,13 +62,13 @@ fn a_machine_that_is_not_paired_or_paired_with_a_wrong_code_is_refused() {
     let console = tempfile::tempdir().unwrap();
     let address = free();
     let [there, here] = pair(follower.path(), console.path(), &address, |_| "000000".to_owned());
-    assert!(there.status.success(), "{}", told(&there));
+    assert!(there.status.success(), "{}", report(&there));
     assert!(!here.status.success(), "a wrong code was taken");
     assert!(!console.path().join("network/network.peers").exists());
     let stranger = at(console.path(), &["run", "--follower", "no-such-host.invalid", "--seconds", "1"]);
     let stranger = stranger.wait_with_output().unwrap();
     assert!(!stranger.status.success());
-    assert!(told(&stranger).contains("no-such-host.invalid"), "{}", told(&stranger));
+    assert!(report(&stranger).contains("no-such-host.invalid"), "{}", report(&stranger));
 }
 
 #[test]
@@ -78,7 +78,7 @@ fn the_handle_is_at_one_machine_and_the_arm_at_the_other() {
     let console = tempfile::tempdir().unwrap();
     let address = free();
     for output in pair(follower.path(), console.path(), &address, str::to_owned) {
-        assert!(output.status.success(), "{}", told(&output));
+        assert!(output.status.success(), "{}", report(&output));
     }
     judged(|| {
         let there = at(follower.path(), &["follower", "--listen", &address, "--seconds", "12", "--json"]);
@@ -87,7 +87,7 @@ fn the_handle_is_at_one_machine_and_the_arm_at_the_other() {
         let here = here.wait_with_output().unwrap();
         let there = there.wait_with_output().unwrap();
         let json: Value = serde_json::from_slice(&here.stdout).unwrap_or_default();
-        println!("{json:#}\n{}\n{}", told(&here), told(&there));
+        println!("{json:#}\n{}\n{}", report(&here), report(&there));
         // A machine that stood still for 0.1 s stops both.
         if json["final_state"] != "engaged" || json["link"]["open"] != true {
             too_busy();
@@ -100,6 +100,6 @@ fn the_handle_is_at_one_machine_and_the_arm_at_the_other() {
         assert_eq!(json["link"]["dropped"], 0);
         // The other machine lost this one: it stopped, and reports the cause.
         assert!(!there.status.success());
-        assert!(told(&there).contains("the other machine was closed") || told(&there).contains("over the link"));
+        assert!(report(&there).contains("the other machine was closed") || report(&there).contains("over the link"));
     });
 }

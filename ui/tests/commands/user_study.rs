@@ -24,7 +24,7 @@ fn file(folder: &Path, head: &str, seconds: f64, conditions: &str) -> String {
 }
 
 /// Runs a command that must succeed; returns its output.
-fn told(arguments: &[&str]) -> String {
+fn report(arguments: &[&str]) -> String {
     let output = nima(arguments);
     let text = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).unwrap()).concat();
     assert!(output.status.success(), "{arguments:?}: {text}");
@@ -52,9 +52,9 @@ fn a_blind_study_tells_its_conditions_nowhere_until_it_is_opened() {
     let place = folder.path().join("study");
     let study = place.to_str().unwrap();
     let csv = folder.path().join("trials.csv").display().to_string();
-    let mut all = told(&["user-study", "new", &file, "--out", study]);
+    let mut all = report(&["user-study", "new", &file, "--out", study]);
     let next = ["user-study", "next", study, "--participant", "P01"];
-    let run = |more: &[&str]| told(&[&next[..], more].concat());
+    let run = |more: &[&str]| report(&[&next[..], more].concat());
     all += &run(&["--virtual"]);
     all += &refused(&[&next[..], &["--virtual", "--answers", "realism = 8"]].concat());
     let tlx = "nasa_tlx = { mental = 50, physical = 5, temporal = 90, performance = 0, effort = 50, frustration = 45 }";
@@ -62,18 +62,18 @@ fn a_blind_study_tells_its_conditions_nowhere_until_it_is_opened() {
     all += &run(&["--answers", "realism = 6", "--json"]);
     all += &run(&["--virtual"]);
     all += &run(&["--virtual", "--json"]);
-    all += &told(&["user-study", "note", study, "--text", "the light flickered", "--participant", "P01"]);
-    all += &told(&["user-study", "status", study]);
-    all += &told(&["user-study", "status", study, "--json"]);
-    all += &told(&["user-study", "table", study, "--out", &csv]);
-    all += &told(&["user-study", "table", study, "--out", &csv, "--questionnaires"]);
-    all += &told(&["study-report", study, "--all"]);
+    all += &report(&["user-study", "note", study, "--text", "the light flickered", "--participant", "P01"]);
+    all += &report(&["user-study", "status", study]);
+    all += &report(&["user-study", "status", study, "--json"]);
+    all += &report(&["user-study", "table", study, "--out", &csv]);
+    all += &report(&["user-study", "table", study, "--out", &csv, "--questionnaires"]);
+    all += &report(&["study-report", study, "--all"]);
     all += &everything(&place);
     all += &fs::read_to_string(&csv).unwrap();
     assert_eq!(secrets_in(&all), [""; 0], "of {} bytes", all.len());
-    let report = fs::read_to_string(place.join("report/report.html")).unwrap();
-    assert!(report.contains("Blind: the conditions are shown by their labels"), "{report}");
-    assert!(report.contains("the light flickered") && report.contains("A (n = 1)"), "{report}");
+    let page = fs::read_to_string(place.join("report/report.html")).unwrap();
+    assert!(page.contains("Blind: the conditions are shown by their labels"), "{page}");
+    assert!(page.contains("the light flickered") && page.contains("A (n = 1)"), "{page}");
     let sessions = |end: &str| {
         let names =
             fs::read_dir(place.join("sessions")).unwrap().map(|entry| entry.unwrap().path().display().to_string());
@@ -81,13 +81,13 @@ fn a_blind_study_tells_its_conditions_nowhere_until_it_is_opened() {
     };
     assert_eq!((sessions(".mcap"), sessions(".mcap.sealed")), (0, 2));
 
-    let opened = told(&["user-study", "unblind", study, "--name", "A. Person", "--reason", "end"]);
+    let opened = report(&["user-study", "unblind", study, "--name", "A. Person", "--reason", "end"]);
     assert_eq!(secrets_in(&opened), ["zebra", "wildebeest"]);
     assert!(opened.contains("not all participants have finished"), "{opened}");
-    told(&["study-report", study]);
+    report(&["study-report", study]);
     assert_eq!(secrets_in(&everything(&place)), SECRET, "the control: now they are there");
     assert_eq!((sessions(".mcap"), sessions(".mcap.sealed")), (2, 0));
-    told(&["user-study", "table", study, "--out", &csv]);
+    report(&["user-study", "table", study, "--out", &csv]);
     let table = fs::read_to_string(&csv).unwrap();
     assert!(table.contains("P01,Zebra,") && table.contains("P01,Wildebeest,"), "{table}");
     let session = place.join("sessions/P01-trial-01-1.mcap").display().to_string();
@@ -133,7 +133,7 @@ fn twelve_trials_with_a_killed_program_and_a_stop_lose_nothing_but_these_attempt
     let file = file(folder.path(), "participants = 2\ntrials = 6\nsecondary = ['path_length_m_right']", 15.0, BLIND);
     let place = folder.path().join("study");
     let study = place.to_str().unwrap();
-    told(&["user-study", "new", &file, "--out", study]);
+    report(&["user-study", "new", &file, "--out", study]);
     let status = || json(&["user-study", "status", study, "--json"])["participants"][0].clone();
     let mut killed = 0;
     let mut stopped = 0;
@@ -165,7 +165,7 @@ fn twelve_trials_with_a_killed_program_and_a_stop_lose_nothing_but_these_attempt
         (Some(12), Some(0), Some(2))
     );
     let csv = folder.path().join("trials.csv").display().to_string();
-    assert!(told(&["user-study", "table", study, "--out", &csv]).starts_with("12 rows"));
+    assert!(report(&["user-study", "table", study, "--out", &csv]).starts_with("12 rows"));
     let numbers: Vec<String> = fs::read_to_string(&csv)
         .unwrap()
         .lines()
@@ -184,12 +184,12 @@ fn simulated(conditions: &str) -> (f64, String) {
     let file = file(folder.path(), head, 4.0, &format!("{conditions}{rest}"));
     let place = folder.path().join("study");
     let study = place.to_str().unwrap();
-    told(&["user-study", "new", &file, "--out", study]);
-    told(&["user-study", "simulate", study, "--seed", "2", "--steps", "5"]);
-    let text = told(&["user-study", "simulate", study, "--seed", "2"]);
+    report(&["user-study", "new", &file, "--out", study]);
+    report(&["user-study", "simulate", study, "--seed", "2", "--steps", "5"]);
+    let text = report(&["user-study", "simulate", study, "--seed", "2"]);
     assert_eq!(text.matches("all is done").count(), 10, "{text}");
-    told(&["user-study", "unblind", study, "--name", "A", "--reason", "end"]);
-    told(&["study-report", study]);
+    report(&["user-study", "unblind", study, "--name", "A", "--reason", "end"]);
+    report(&["study-report", study]);
     let read = |name: &str| fs::read_to_string(place.join("report").join(name)).unwrap();
     let analysis: Value = serde_json::from_str(&read("trials-analysis.json")).unwrap();
     let measure = &analysis["measures"][0];
@@ -219,20 +219,20 @@ fn a_simulated_study_finds_a_difference_that_is_there_and_none_that_is_not() {
 
 #[test]
 fn the_result_of_a_trial_is_told_as_the_study_has_it() {
-    let told_under = |feedback: &str| {
+    let report_under = |feedback: &str| {
         let folder = tempfile::tempdir().unwrap();
         let head = format!("participants = 2\ntrials = 1\nfeedback = '{feedback}'");
         let file = file(folder.path(), &head, 3.0, BLIND);
         let place = folder.path().join("study");
         let study = place.to_str().unwrap();
-        told(&["user-study", "new", &file, "--out", study]);
-        told(&["user-study", "next", study, "--participant", "P01", "--virtual"])
+        report(&["user-study", "new", &file, "--out", study]);
+        report(&["user-study", "next", study, "--participant", "P01", "--virtual"])
     };
     // A trial that ends by its time limit meets no criterion, so nothing fades.
     for shows in ["always", "fades"] {
-        assert!(told_under(shows).contains("the time limit is reached"), "{shows}");
+        assert!(report_under(shows).contains("the time limit is reached"), "{shows}");
     }
-    let without = told_under("never");
+    let without = report_under("never");
     assert!(without.contains("result hidden") && !without.contains("time limit is reached"), "{without}");
 }
 
@@ -249,7 +249,7 @@ fn bad_studies_and_steps_are_one_line() {
     assert!(new(&with("participants = 2\ntrials = 1\nrings = 2", BLIND)).contains("has none"));
     assert!(new(&with("participants = 2\ntrials = 1\nrig = 'desktop'", BLIND)).contains("desktop"));
     assert!(!place.exists(), "nothing is made of a file with mistakes");
-    told(&["user-study", "new", &with("participants = 2\ntrials = 1", BLIND), "--out", study]);
+    report(&["user-study", "new", &with("participants = 2\ntrials = 1", BLIND), "--out", study]);
     assert!(new("short").contains("exists already"));
     let next = |more: &[&str]| refused(&[&["user-study", "next", study, "--participant"], more].concat());
     assert!(next(&["P07", "--virtual"]).contains("P01, P02") || next(&["P07", "--virtual"]).contains("P01 to P02"));
@@ -257,7 +257,7 @@ fn bad_studies_and_steps_are_one_line() {
     assert!(next(&["P01", "--answers", "realism = 3"]).contains("takes no answers"));
     assert!(refused(&["user-study", "status", folder.path().to_str().unwrap()]).contains("study.toml"));
     assert!(refused(&["user-study", "unblind", study, "--name", " ", "--reason", "x"]).contains("needs a name"));
-    let empty = told(&["study-report", study]);
+    let empty = report(&["study-report", study]);
     assert!(
         fs::read_to_string(place.join("report/report.html")).unwrap().contains("Nothing to compare yet"),
         "{empty}"

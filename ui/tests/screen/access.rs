@@ -4,16 +4,16 @@
 use egui::{Key, Modifiers, Rect, accesskit::Role as Kind};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use nima_console::console::{
-    Options,
-    desk::{Layout, Panel},
+    ConsoleOptions,
     roles::Role,
-    wizards::Which,
+    tiles::{Panel, PanelLayout},
+    wizards::WizardKind,
 };
 use nima_machine::messages::LoopState;
 
 use crate::{
     bench::{Console, console_of, pick, press, toured, until, wait},
-    past, studies,
+    playback, studies,
     walk::VIEWS,
 };
 
@@ -59,7 +59,7 @@ fn look(console: &mut Console, place: &str, all: &mut Vec<String>) {
     all.extend(nameless(console).into_iter().map(|node| format!("{place}: {node}")));
 }
 
-fn told(all: &[String]) {
+fn report(all: &[String]) {
     assert!(all.is_empty(), "{} without a name:\n{}", all.len(), all.join("\n"));
 }
 
@@ -72,18 +72,18 @@ fn everything_in_every_view_has_a_name() {
         for (role, front) in VIEWS {
             let settings = console.state_mut().settings_mut();
             settings.role = role;
-            settings.layout = Layout { front: front.to_vec(), ..Layout::default() };
+            settings.layout = PanelLayout { front: front.to_vec(), ..PanelLayout::default() };
             look(&mut console, &format!("{role:?} {front:?}"), &mut all);
         }
     }
-    told(&all);
+    report(&all);
 }
 
 #[test]
 fn everything_on_every_page_and_in_every_list_has_a_name() {
     let folder = tempfile::tempdir().unwrap();
     studies::make(folder.path(), "trials = 1", 6.0, "");
-    let mut console = studies::console(folder.path(), Options::default());
+    let mut console = studies::console(folder.path(), ConsoleOptions::default());
     until(&mut console, "any tick", |_| true);
     let mut all = Vec::new();
     for role in Role::ALL {
@@ -115,16 +115,16 @@ fn everything_on_every_page_and_in_every_list_has_a_name() {
     studies::begin(&mut console, "Start the trial");
     look(&mut console, "trial", &mut all);
     wait(&mut console, "its end", |console| !console.state().in_trial());
-    told(&all);
+    report(&all);
 }
 
 #[test]
 fn everything_in_every_wizard_and_in_the_past_has_a_name() {
     let folder = tempfile::tempdir().unwrap();
     let mut all = Vec::new();
-    for which in Which::ALL {
+    for which in WizardKind::ALL {
         let path = folder.path().to_path_buf();
-        let options = Options { wizard: Some(which), ..Options::default() };
+        let options = ConsoleOptions { wizard: Some(which), ..ConsoleOptions::default() };
         let mut console = console_of(which.scene().unwrap_or("peg_transfer"), SIZE, move |app| {
             app.with_store(&path).with_options(options)
         });
@@ -138,11 +138,11 @@ fn everything_in_every_wizard_and_in_the_past_has_a_name() {
         pick(&mut console, "Back to the monitor");
     }
     let path = folder.path().join("session.mcap");
-    past::record(&path, "bimanual", "3");
+    playback::record(&path, "bimanual", "3");
     let mut console = console_of("peg_transfer", SIZE, move |app| app.with_session(&path));
-    past::until_whole(&mut console);
+    playback::until_whole(&mut console);
     look(&mut console, "past", &mut all);
-    told(&all);
+    report(&all);
 }
 
 /// Names and positions of the controls in the order of the Tab key from the first one.
@@ -202,7 +202,7 @@ fn the_keyboard_goes_through_the_top_bar_and_every_panel_as_they_are_read() {
     for panel in Panel::ALL {
         // Alone, so that everything below the bar belongs to this panel.
         let closed = Panel::ALL.into_iter().filter(|other| *other != panel).collect();
-        console.state_mut().settings_mut().layout = Layout { closed, ..Layout::default() };
+        console.state_mut().settings_mut().layout = PanelLayout { closed, ..PanelLayout::default() };
         console.run_steps(4);
         let stops = stops(&mut console);
         assert!(stops.iter().any(|(name, _)| *name == format!("Close {}", panel.title())), "{panel:?}: {stops:?}");
@@ -240,11 +240,11 @@ fn the_traces_tell_the_forces_in_words() {
             .split(' ')
             .filter_map(|word| word.trim_start_matches('+').replace('\u{2212}', "-").parse().ok())
             .collect();
-        let [now_n, most_n, seconds, rendered_n, rendered_most_n, _] = numbers[..] else { panic!("{plot}") };
-        assert!(now_n.abs() <= most_n + 0.06 && rendered_n.abs() <= rendered_most_n + 0.06, "{plot}");
+        let [now_n, max_n, seconds, rendered_n, rendered_max_n, _] = numbers[..] else { panic!("{plot}") };
+        assert!(now_n.abs() <= max_n + 0.06 && rendered_n.abs() <= rendered_max_n + 0.06, "{plot}");
         assert!((seconds - 10.0).abs() < 1e-9, "{plot}");
         if axis == "z" {
-            assert!(most_n > 0.4, "it was in contact: {plot}");
+            assert!(max_n > 0.4, "it was in contact: {plot}");
         }
     }
 }

@@ -6,9 +6,9 @@ use egui_kittest::{
     Harness,
     kittest::{NodeT as _, Queryable as _},
 };
-use nima_console::console::{ConsoleApp, Options, settings::Kept, wizards::Which};
+use nima_console::console::{ConsoleApp, ConsoleOptions, settings::SettingsStore, wizards::WizardKind};
 use nima_machine::{config::RigConfig, messages::LoopState};
-use nima_simulation::{Plan, scene::Scene, start};
+use nima_simulation::{SimulationPlan, scene::Scene, start};
 
 use crate::bench::{console_of, press, read, until};
 
@@ -119,7 +119,7 @@ fn the_stop_is_hit_by_a_click_and_by_both_keys_whatever_is_open() {
             let folder = tempfile::tempdir().unwrap();
             let path = folder.path().to_path_buf();
             let mut harness = console_of("free_motion", SIZE, move |app| {
-                let mut kept = Kept::open(&path);
+                let mut kept = SettingsStore::open(&path);
                 kept.now.toured = overlay != "tour";
                 app.with_settings(kept)
             });
@@ -132,11 +132,11 @@ fn the_stop_is_hit_by_a_click_and_by_both_keys_whatever_is_open() {
 
 #[test]
 fn the_stop_is_hit_in_every_wizard() {
-    for which in Which::ALL {
+    for which in WizardKind::ALL {
         for key in [None, Some(Key::Space), Some(Key::Escape)] {
             let folder = tempfile::tempdir().unwrap();
             let path = folder.path().to_path_buf();
-            let options = Options { wizard: Some(which), ..Options::default() };
+            let options = ConsoleOptions { wizard: Some(which), ..ConsoleOptions::default() };
             let mut harness = console_of(which.scene().unwrap_or("peg_transfer"), SIZE, move |app| {
                 app.with_store(&path).with_options(options)
             });
@@ -186,9 +186,13 @@ fn a_device_that_is_missing_is_pinned_with_its_cause_and_its_cure() {
     std::fs::write(&file, text).unwrap();
     let rig = RigConfig::load(file.to_str().unwrap()).unwrap();
     let scene = Scene::load("peg_transfer").unwrap();
-    let handle =
-        start(&Plan { rig: rig.clone(), scene: scene.clone(), calibrations: Default::default(), engage: false })
-            .unwrap();
+    let handle = start(&SimulationPlan {
+        rig: rig.clone(),
+        scene: scene.clone(),
+        calibrations: Default::default(),
+        engage: false,
+    })
+    .unwrap();
     let mut harness = Harness::builder()
         .with_size(SIZE)
         .with_step_dt(1.0 / 30.0)

@@ -10,9 +10,9 @@ use egui_kittest::{
     Harness, Node,
     kittest::{NodeT as _, Queryable as _},
 };
-use nima_console::console::{ConsoleApp, settings::Kept};
+use nima_console::console::{ConsoleApp, settings::SettingsStore};
 use nima_machine::messages::Tick;
-use nima_simulation::{Plan, start_watched};
+use nima_simulation::{SimulationPlan, start_watched};
 use nima_tests::plan;
 
 /// Far longer than any step takes, even on a busy machine.
@@ -24,8 +24,8 @@ pub(crate) const WIZARD_SPEED: f64 = 4.0;
 pub(crate) type Console = Harness<'static, ConsoleApp>;
 
 /// The settings in this folder, for a user who has seen the tour.
-pub(crate) fn toured(folder: &Path) -> Kept {
-    let mut kept = Kept::open(folder);
+pub(crate) fn toured(folder: &Path) -> SettingsStore {
+    let mut kept = SettingsStore::open(folder);
     kept.now.toured = true;
     kept
 }
@@ -40,14 +40,18 @@ pub(crate) fn console_of(
 }
 
 /// The console on a loop of this plan, prepared by `prepare`. In simulated time, so that a busy machine causes no fault.
-pub(crate) fn shown(plan: &Plan, size: [f32; 2], prepare: impl FnOnce(ConsoleApp) -> ConsoleApp + 'static) -> Console {
+pub(crate) fn shown(
+    plan: &SimulationPlan,
+    size: [f32; 2],
+    prepare: impl FnOnce(ConsoleApp) -> ConsoleApp + 'static,
+) -> Console {
     shown_at(1.0, plan, size, prepare)
 }
 
 /// Like [`shown`], with a loop of this speed, for tests of several minutes.
 pub(crate) fn shown_at(
     speed: f64,
-    plan: &Plan,
+    plan: &SimulationPlan,
     size: [f32; 2],
     prepare: impl FnOnce(ConsoleApp) -> ConsoleApp + 'static,
 ) -> Console {

@@ -8,7 +8,7 @@ use std::{
 
 use egui::{Key, Shape, accesskit::Role};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use nima_console::console::Options;
+use nima_console::console::ConsoleOptions;
 use nima_machine::messages::LoopState;
 use nima_tests::studies::{everything, found_in};
 
@@ -137,7 +137,7 @@ fn a_blind_study_tells_its_conditions_on_no_page_and_in_no_file_until_it_is_open
     let rest = "[questionnaires]\nafter_condition = ['realism']\nat_end = ['free_text']\n[breaks]\nafter_trials = 2\nleast_s = 0.5\n\
                 [practice]\n[practice.criterion]\ntime_s = 100.0\nconsecutive = 1\nadditional = 0\nmax_trials = 1";
     let place = make(folder.path(), "trials = 1\nrecord = true\nreference = 'Wildebeest'", 6.0, rest);
-    let mut window = console(folder.path(), Options::default());
+    let mut window = console(folder.path(), ConsoleOptions::default());
     until(&mut window, "any tick", |_| true);
     // The previous loop has its own mode and gain on the screen.
     window.key_press(Key::F8);
@@ -169,8 +169,8 @@ fn a_blind_study_tells_its_conditions_on_no_page_and_in_no_file_until_it_is_open
     reader.point_around();
     let seen: Vec<String> = reader.seen.iter().cloned().collect();
     let files = everything(folder.path());
-    for told in ["Trial 1 of 2, condition ", "Practice trial 1", "Touch", "Loop state: Engaged", "Abort this trial"] {
-        assert!(seen.iter().any(|words| words.contains(told)), "{told} was not even seen: {seen:?}");
+    for report in ["Trial 1 of 2, condition ", "Practice trial 1", "Touch", "Loop state: Engaged", "Abort this trial"] {
+        assert!(seen.iter().any(|words| words.contains(report)), "{report} was not even seen: {seen:?}");
     }
     let found: Vec<&String> = seen.iter().filter(|words| !secrets_in(words).is_empty()).collect();
     assert!(found.is_empty(), "on the screen, of {} texts: {found:#?}", seen.len());

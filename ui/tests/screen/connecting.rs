@@ -10,12 +10,12 @@ use egui_kittest::{
 };
 use nima_console::console::{
     ConsoleApp,
-    desk::{Layout, Panel},
+    tiles::{Panel, PanelLayout},
 };
 use nima_machine::{
     config::{RigConfig, RigFile},
     messages::LoopState,
-    rig::{Settings, Side},
+    rig::{RigSettings, Side},
 };
 use nima_simulation::start_simulated;
 use nima_testing::real_time::{alone, judged, too_busy};
@@ -39,7 +39,7 @@ fn console(folder: &Path) -> Harness<'static, ConsoleApp> {
     // The loop of an emulated rig runs in real time, like its devices.
     let mut harness = Harness::builder().with_size(SIZE).with_step_dt(1.0 / 30.0).build_eframe(move |cc| {
         let mut kept = toured(&folder);
-        kept.now.layout = Layout { front: vec![Panel::Devices], ..Layout::default() };
+        kept.now.layout = PanelLayout { front: vec![Panel::Devices], ..PanelLayout::default() };
         let app = ConsoleApp::new(cc, handle, plan.rig, plan.scene);
         app.with_settings(kept).with_store(&folder).with_program(Path::new(NIMA))
     });
@@ -67,14 +67,14 @@ fn on_emulated_rig(folder: &Path) -> (Harness<'static, ConsoleApp>, RigFile) {
 }
 
 /// Texts of the device rows.
-fn told(harness: &Harness<'_, ConsoleApp>) -> Vec<String> {
+fn report(harness: &Harness<'_, ConsoleApp>) -> Vec<String> {
     let rows = harness.query_all_by_label_contains("per second").chain(harness.query_all_by_label_contains("connect"));
     rows.filter_map(|row| row.accesskit_node().value()).collect()
 }
 
 fn wait(harness: &mut Harness<'_, ConsoleApp>, what: &str, good: impl Fn(&Harness<'_, ConsoleApp>) -> bool) {
     if !comes(harness, WITHIN, good) {
-        eprintln!("never: {what}; {:?}", told(harness));
+        eprintln!("never: {what}; {:?}", report(harness));
         too_busy();
     }
 }
@@ -88,7 +88,7 @@ fn serials(rig: &RigConfig) -> [Option<u16>; 2] {
     Side::ALL.map(|side| devices.arm(side).unwrap().handle.force_dimension().unwrap().serial)
 }
 
-fn saved(path: &Path) -> Settings {
+fn saved(path: &Path) -> RigSettings {
     RigConfig::load(path.to_str().unwrap()).unwrap().devices.unwrap()
 }
 
@@ -115,7 +115,7 @@ fn another_handle_is_chosen_by_its_serial_number_and_sensors_are_exchanged_by_on
         press(&mut harness, "Swap sensors");
         let path = folder.path().join("rigs/bench.toml");
         wait(&mut harness, "exchanged sensors", |harness| {
-            let of = |devices: &Settings, side| devices.arm(side).map(|set| set.sensor.clone());
+            let of = |devices: &RigSettings, side| devices.arm(side).map(|set| set.sensor.clone());
             let now = harness.state().rig().devices.clone().unwrap();
             of(&now, Side::Right) == of(&was, Side::Left) && of(&now, Side::Left) == of(&was, Side::Right)
         });

@@ -18,13 +18,13 @@ use nima_machine::{
     messages::{LoopState, Tick},
     rig::Side,
 };
-use nima_simulation::Plan;
+use nima_simulation::SimulationPlan;
 use nima_tests::plan;
 
 use crate::bench::{press, shown, until, wait};
 
 fn console_of(scene: &str, size: [f32; 2], engage: bool) -> Harness<'static, ConsoleApp> {
-    shown(&Plan { engage, ..plan(scene) }, size, |app| app)
+    shown(&SimulationPlan { engage, ..plan(scene) }, size, |app| app)
 }
 
 fn console() -> Harness<'static, ConsoleApp> {
@@ -249,7 +249,7 @@ fn the_instrument_is_led_by_mouse_and_keys_and_a_stop_lets_it_go() {
     press(&mut harness, "Stop driving (M)");
     until(&mut harness, "let go", |tick| tick.guide_m.is_none());
     harness.key_press(Key::M);
-    until(&mut harness, "led again", |tick| tick.guide_m.is_some_and(|at_m| at_m != aim_m));
+    until(&mut harness, "led again", |tick| tick.guide_m.is_some_and(|position_m| position_m != aim_m));
     press(&mut harness, "Stop");
     until(&mut harness, "stopped and let go", |tick| tick.state == LoopState::Stopped && tick.guide_m.is_none());
 }

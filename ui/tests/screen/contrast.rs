@@ -2,12 +2,12 @@
 
 use egui::{Color32, Key, Modifiers, Pos2, Rect, Shape, accesskit::Role as Kind};
 use egui_kittest::kittest::Queryable as _;
-use nima_console::console::{Options, desk::Layout, theme, wizards::Which};
-use nima_testing::contrast::LEAST;
+use nima_console::console::{ConsoleOptions, theme, tiles::PanelLayout, wizards::WizardKind};
+use nima_testing::contrast::MIN;
 
 use crate::{
     bench::{self, Console, console_of, toured, until},
-    past,
+    playback,
     walk::VIEWS,
 };
 
@@ -75,9 +75,9 @@ fn faults(console: &mut Console) -> Vec<String> {
         if greyed.iter().any(|rect| rect.contains(at)) {
             continue;
         }
-        let least = inks.iter().map(|ink| contrast(*ink, ground)).fold(f64::INFINITY, f64::min);
-        if least < LEAST {
-            wrong.push(format!("{least:.2}: \"{words}\" {inks:?} on {ground:?} at {at:?}"));
+        let min = inks.iter().map(|ink| contrast(*ink, ground)).fold(f64::INFINITY, f64::min);
+        if min < MIN {
+            wrong.push(format!("{min:.2}: \"{words}\" {inks:?} on {ground:?} at {at:?}"));
         }
     }
     wrong
@@ -92,7 +92,7 @@ fn both_palettes(console: &mut Console, what: &str, all: &mut Vec<String>) {
     console.state_mut().settings_mut().light = false;
 }
 
-fn told(all: &[String]) {
+fn report(all: &[String]) {
     assert!(all.is_empty(), "{} cannot be read:\n{}", all.len(), all.join("\n"));
 }
 
@@ -104,10 +104,10 @@ fn every_text_of_the_views_is_read() {
     for (role, front) in VIEWS {
         let settings = console.state_mut().settings_mut();
         settings.role = role;
-        settings.layout = Layout { front: front.to_vec(), ..Layout::default() };
+        settings.layout = PanelLayout { front: front.to_vec(), ..PanelLayout::default() };
         both_palettes(&mut console, &format!("{role:?} {front:?}"), &mut all);
     }
-    told(&all);
+    report(&all);
 }
 
 #[test]
@@ -134,38 +134,38 @@ fn every_text_of_lists_menus_and_alarms_is_read() {
     eframe::App::on_exit(console.state_mut(), None);
     bench::read(&mut console, "has stopped sending data");
     both_palettes(&mut console, "an alarm", &mut all);
-    told(&all);
+    report(&all);
 }
 
 #[test]
 fn every_text_of_the_wizards_is_read() {
     let mut all = Vec::new();
-    for which in Which::ALL {
+    for which in WizardKind::ALL {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().to_path_buf();
-        let options = Options { wizard: Some(which), ..Options::default() };
+        let options = ConsoleOptions { wizard: Some(which), ..ConsoleOptions::default() };
         let mut console = console_of(which.scene().unwrap_or("peg_transfer"), SIZE, move |app| {
             app.with_store(&path).with_options(options)
         });
         until(&mut console, "any tick", |_| true);
         both_palettes(&mut console, &format!("{which:?}"), &mut all);
     }
-    told(&all);
+    report(&all);
 }
 
 #[test]
 fn every_text_of_the_past_is_read() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("session.mcap");
-    past::record(&path, "bimanual", "4");
+    playback::record(&path, "bimanual", "4");
     let mut console = console_of("peg_transfer", SIZE, move |app| app.with_session(&path));
-    past::until_whole(&mut console);
+    playback::until_whole(&mut console);
     let mut all = Vec::new();
     for (role, front) in VIEWS {
         let settings = console.state_mut().settings_mut();
         settings.role = role;
-        settings.layout = Layout { front: front.to_vec(), ..Layout::default() };
+        settings.layout = PanelLayout { front: front.to_vec(), ..PanelLayout::default() };
         both_palettes(&mut console, &format!("past {role:?} {front:?}"), &mut all);
     }
-    told(&all);
+    report(&all);
 }

@@ -17,7 +17,7 @@ use nima_machine::{
     config::SchedulingClass,
     messages::{LoopState, Tick},
     rig::{Inputs, Outputs, Rig, SIDES},
-    runtime::{self, Assembly, Clock},
+    runtime::{self, Assembly, RuntimeClock},
 };
 use nima_tests::plan;
 
@@ -117,7 +117,7 @@ fn of_silent(speed: f64) -> (Console, Arc<AtomicBool>) {
     let is_silent = Arc::<AtomicBool>::default();
     let Assembly { rig, .. } = plan.simulated().unwrap();
     let rig = Box::new(Silent { rig, is_silent: Arc::clone(&is_silent) });
-    let clock = Clock::Simulated { speed };
+    let clock = RuntimeClock::Simulated { speed };
     let scheduling = SchedulingClass::Ordinary;
     let handle = runtime::start(Assembly { rig, clock, scheduling, ..plan.simulated().unwrap() }).unwrap();
     let console = Harness::builder()

@@ -4,7 +4,7 @@ use std::{path::Path, process::Command};
 
 use nima_machine::{config::RigConfig, teleop::Calibrations};
 use nima_recording::store::Store;
-use nima_simulation::{Plan, scene::Scene};
+use nima_simulation::{SimulationPlan, scene::Scene};
 use nima_tests::gravity::gravity;
 
 use crate::bench::{Console, can_press, read, shown, shows};
@@ -25,7 +25,9 @@ fn console(store: &Path, step_n: f64) -> Console {
     let calibrations = Calibrations { gravity: Some(record.model), ..Calibrations::default() };
     let calibrations = [calibrations, Calibrations::default()];
     let store = store.to_owned();
-    shown(&Plan { rig, scene, calibrations, engage: false }, [1600.0, 1000.0], move |app| app.with_store(&store))
+    shown(&SimulationPlan { rig, scene, calibrations, engage: false }, [1600.0, 1000.0], move |app| {
+        app.with_store(&store)
+    })
 }
 
 #[test]
@@ -43,7 +45,7 @@ fn a_bias_that_did_not_move_is_fine_with_the_time_of_the_check() {
     let folder = tempfile::tempdir().unwrap();
     let mut console = console(folder.path(), 0.0);
     read(&mut console, "N without contact, passed");
-    let lines = console.state().in_force().lines();
+    let lines = console.state().active().lines();
     assert!(lines.iter().any(|line| line.starts_with("Bias, checked at ") && line.contains(" UTC: 0.0")), "{lines:?}");
     assert!(!shows(&console, "its bias has drifted"));
     assert!(can_press(&console, "Engage"));

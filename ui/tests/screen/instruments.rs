@@ -28,8 +28,8 @@ fn the_interlock_of_each_hand_shows_its_state_and_the_reason() {
     harness.step();
     for side in ["left", "right"] {
         let begins = format!("Interlock, {side} hand: stopped, since");
-        let told = harness.get_by_label_contains(&begins);
-        assert!(told.accesskit_node().value().unwrap().ends_with("requested by the operator"));
+        let report = harness.get_by_label_contains(&begins);
+        assert!(report.accesskit_node().value().unwrap().ends_with("requested by the operator"));
         harness.get_by_label_contains(&format!("Gate Engaged, {side} hand: closed"));
     }
 }
@@ -49,10 +49,10 @@ fn the_gain_tells_where_it_is_stable_once_there_was_a_contact() {
     until(&mut harness, "a contact that lasts", |tick| tick.t_s > 3.5);
     harness.step();
     assert!(slider(&harness) == before, "what stands below would slip from the hand at the first contact");
-    let told = harness.get_by_label_contains("stable up to").accesskit_node().value().unwrap();
+    let report = harness.get_by_label_contains("stable up to").accesskit_node().value().unwrap();
     // The scene's phantom has 300 to 500 N/m at the pressed place.
-    let n_m: f64 = told.split("at ").last().unwrap().trim_end_matches(" N/m").parse().unwrap();
-    assert!((150.0..800.0).contains(&n_m), "{told}");
+    let n_m: f64 = report.split("at ").last().unwrap().trim_end_matches(" N/m").parse().unwrap();
+    assert!((150.0..800.0).contains(&n_m), "{report}");
 }
 
 #[test]

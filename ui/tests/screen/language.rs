@@ -7,7 +7,7 @@ use std::{fs, path::Path};
 use egui::{Key, Modifiers, Rect, vec2};
 use egui_kittest::Harness;
 use nima_console::{
-    console::{Options, desk::Layout, roles::Role, settings::Kept, theme, wizards::Which},
+    console::{ConsoleOptions, roles::Role, settings::SettingsStore, theme, tiles::PanelLayout, wizards::WizardKind},
     language::{self, Language, pseudo},
 };
 use nima_machine::messages::LoopState;
@@ -15,7 +15,7 @@ use nima_machine::messages::LoopState;
 use crate::{
     bench::{self, Console, console_of, pick, press, read, shows, toured, until},
     faults::{Page, faults, faults_of_controls, faults_of_texts, none, texts, too_wide},
-    past, studies,
+    playback, studies,
     walk::VIEWS,
 };
 
@@ -76,7 +76,7 @@ fn views(console: &mut Console, what: &str) -> Vec<String> {
     for (role, front) in VIEWS {
         let settings = console.state_mut().settings_mut();
         settings.role = role;
-        settings.layout = Layout { front: front.to_vec(), ..Layout::default() };
+        settings.layout = PanelLayout { front: front.to_vec(), ..PanelLayout::default() };
         let kind = match role {
             Role::Technician if what == "past" => Page::Form,
             role => Page::of_view(role),
@@ -148,7 +148,7 @@ fn every_page_list_and_menu_fits() {
 fn welcome_and_tour_fit() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().to_path_buf();
-    let mut console = console_of("peg_transfer", SIZES[0], move |app| app.with_settings(Kept::open(&path)));
+    let mut console = console_of("peg_transfer", SIZES[0], move |app| app.with_settings(SettingsStore::open(&path)));
     until(&mut console, "any tick", |_| true);
     let mut all = look_at(&mut console, "welcome", Page::Over);
     press(&mut console, "Continue with the simulated rig");
@@ -162,10 +162,10 @@ fn welcome_and_tour_fit() {
 #[test]
 fn the_first_page_of_every_wizard_fits() {
     let mut all = Vec::new();
-    for which in Which::ALL {
+    for which in WizardKind::ALL {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().to_path_buf();
-        let options = Options { wizard: Some(which), ..Options::default() };
+        let options = ConsoleOptions { wizard: Some(which), ..ConsoleOptions::default() };
         let mut console = console_of(which.scene().unwrap_or("peg_transfer"), SIZES[0], move |app| {
             app.with_store(&path).with_options(options)
         });
@@ -180,7 +180,7 @@ fn the_pages_of_a_study_and_a_trial_fit() {
     let folder = tempfile::tempdir().unwrap();
     let rest = "[questionnaires]\nafter_condition = ['nasa_tlx_weighted', 'sus']\nat_end = ['free_text']";
     studies::make(folder.path(), "trials = 1", 2.0, rest);
-    let mut console = studies::console(folder.path(), Options::default());
+    let mut console = studies::console(folder.path(), ConsoleOptions::default());
     until(&mut console, "any tick", |_| true);
     console.key_press(Key::F8);
     console.run_steps(2);
@@ -209,13 +209,13 @@ fn the_past_and_the_list_of_sessions_fit() {
     let folder = tempfile::tempdir().unwrap();
     let sessions = folder.path().join("sessions");
     fs::create_dir_all(&sessions).unwrap();
-    past::record(&sessions.join("20261123T131415Z-Simulated-rig.mcap"), "bimanual", "3");
+    playback::record(&sessions.join("20261123T131415Z-Simulated-rig.mcap"), "bimanual", "3");
     let mut console = begin("peg_transfer", folder.path());
     press(&mut console, "Sessions");
-    past::until_listed(&mut console, "20261123T131415Z-Simulated-rig.mcap");
+    playback::until_listed(&mut console, "20261123T131415Z-Simulated-rig.mcap");
     let mut all = look_at(&mut console, "list of sessions", Page::Scrolls);
     press(&mut console, "Open 20261123T131415Z-Simulated-rig.mcap");
-    past::until_whole(&mut console);
+    playback::until_whole(&mut console);
     all.extend(views(&mut console, "past"));
     none(&all);
 }
@@ -316,7 +316,7 @@ fn the_language_is_chosen_in_the_menu_at_once_taken_back_and_kept() {
 
 #[test]
 fn the_option_chooses_the_language_and_english_is_the_first() {
-    let options = Options { language: Some(Language::Pseudo), ..Options::default() };
+    let options = ConsoleOptions { language: Some(Language::Pseudo), ..ConsoleOptions::default() };
     let mut console = console_of("peg_transfer", SIZES[0], move |app| app.with_options(options));
     console.run_steps(3);
     assert!(bench::can_press(&console, &pseudo("Stop")), "{:?}", bench::texts(&console));

@@ -4,14 +4,16 @@
 use std::{path::Path, time::Duration};
 
 use egui::{Key, Modifiers};
-use nima_console::console::{Options, desk::Layout, roles::Role, settings::Kept, wizards::Which};
-use nima_simulation::Plan;
+use nima_console::console::{
+    ConsoleOptions, roles::Role, settings::SettingsStore, tiles::PanelLayout, wizards::WizardKind,
+};
+use nima_simulation::SimulationPlan;
 use nima_tests::plan;
 
 use crate::{
     bench::{Console, comes, console_of, pick, press, read, shown, shows, toured, until, wait},
     faults::none,
-    past, picture,
+    image, playback,
     walk::VIEWS,
 };
 
@@ -24,16 +26,16 @@ const SHOWN_S: f64 = 12.5;
 fn every_role_and_panel_looks_as_stored() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("session.mcap");
-    past::record(&path, "bimanual", "13");
+    playback::record(&path, "bimanual", "13");
     let mut console = console_of("bimanual", SIZE, move |app| app.with_session(&path));
-    past::until_whole(&mut console);
+    playback::until_whole(&mut console);
     wait(&mut console, "the session is read", |console| !shows(console, "% read"));
     console.state_mut().show_past(SHOWN_S);
     console.step();
     wait(&mut console, "the moment", |console| {
         console.state().past().is_some_and(|(_, t_s)| (t_s - SHOWN_S).abs() < 1e-9)
     });
-    past::until_whole(&mut console);
+    playback::until_whole(&mut console);
     // Parts that were first drawn from recorded plots are drawn from the replay.
     comes(&mut console, Duration::from_secs(1), |_| false);
     let mut all = Vec::new();
@@ -42,13 +44,13 @@ fn every_role_and_panel_looks_as_stored() {
             let settings = console.state_mut().settings_mut();
             settings.role = role;
             settings.light = light;
-            settings.layout = Layout { front: front.to_vec(), ..Layout::default() };
+            settings.layout = PanelLayout { front: front.to_vec(), ..PanelLayout::default() };
             console.run_steps(4);
             let panels: Vec<_> = front.iter().map(|panel| format!("-{panel:?}")).collect();
             let name = format!("{role:?}{}{}", panels.concat(), if light { "-light" } else { "" });
             // One light picture is enough for a role.
             if !light || front.is_empty() {
-                all.extend(picture::differs(&console, &name.to_lowercase()));
+                all.extend(image::differs(&console, &name.to_lowercase()));
             }
         }
     }
@@ -58,25 +60,25 @@ fn every_role_and_panel_looks_as_stored() {
 #[test]
 fn the_first_page_of_every_wizard_looks_as_stored() {
     let mut all = Vec::new();
-    for which in Which::ALL {
+    for which in WizardKind::ALL {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().to_path_buf();
-        let options = Options { wizard: Some(which), ..Options::default() };
-        let plan = Plan { engage: false, ..plan(which.scene().unwrap_or("peg_transfer")) };
+        let options = ConsoleOptions { wizard: Some(which), ..ConsoleOptions::default() };
+        let plan = SimulationPlan { engage: false, ..plan(which.scene().unwrap_or("peg_transfer")) };
         let mut console = shown(&plan, SIZE, move |app| app.with_store(&path).with_options(options));
         until(&mut console, "a second", |tick| tick.t_s > 1.0);
         console.run_steps(4);
         let name = format!("wizard-{which:?}").replace(['(', ')'], "-").to_lowercase();
-        all.extend(picture::differs(&console, name.trim_end_matches('-')));
+        all.extend(image::differs(&console, name.trim_end_matches('-')));
     }
     none(&all);
 }
 
 fn idle(folder: &Path) -> Console {
     let folder = folder.to_path_buf();
-    let plan = Plan { engage: false, ..plan("peg_transfer") };
+    let plan = SimulationPlan { engage: false, ..plan("peg_transfer") };
     // The Surgeon view is the calmest background for windows that open over it.
-    let options = Options { role: Some(Role::Surgeon), ..Options::default() };
+    let options = ConsoleOptions { role: Some(Role::Surgeon), ..ConsoleOptions::default() };
     let mut console = shown(&plan, SIZE, move |app| app.with_settings(toured(&folder)).with_options(options));
     until(&mut console, "a second", |tick| tick.t_s > 1.0);
     console
@@ -98,7 +100,7 @@ fn every_page_and_list_looks_as_stored() {
         if name == "sessions" {
             read(&mut console, "No session has been recorded yet");
         }
-        all.extend(picture::differs(&console, name));
+        all.extend(image::differs(&console, name));
         console.key_press_modifiers(modifiers, key);
         console.run_steps(2);
     }
@@ -110,12 +112,12 @@ fn every_page_and_list_looks_as_stored() {
             read(&mut console, "the wrist sensor is not calibrated");
         }
         console.run_steps(4);
-        all.extend(picture::differs(&console, name));
+        all.extend(image::differs(&console, name));
         pick(&mut console, "Back to the monitor");
     }
     press(&mut console, "Rig");
     console.run_steps(4);
-    all.extend(picture::differs(&console, "start"));
+    all.extend(image::differs(&console, "start"));
     none(&all);
 }
 
@@ -123,9 +125,10 @@ fn every_page_and_list_looks_as_stored() {
 fn the_first_page_looks_as_stored() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().to_path_buf();
-    let plan = Plan { engage: false, ..plan("peg_transfer") };
-    let options = Options { role: Some(Role::Surgeon), ..Options::default() };
-    let mut console = shown(&plan, SIZE, move |app| app.with_settings(Kept::open(&path)).with_options(options));
+    let plan = SimulationPlan { engage: false, ..plan("peg_transfer") };
+    let options = ConsoleOptions { role: Some(Role::Surgeon), ..ConsoleOptions::default() };
+    let mut console =
+        shown(&plan, SIZE, move |app| app.with_settings(SettingsStore::open(&path)).with_options(options));
     until(&mut console, "a second", |tick| tick.t_s > 1.0);
-    picture::same(&console, "welcome");
+    image::same(&console, "welcome");
 }

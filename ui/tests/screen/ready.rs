@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use nima_machine::{config::RigConfig, messages::LoopState, teleop::Calibrations};
-use nima_recording::store::{Outcome, Store};
-use nima_simulation::{Plan, scene::Scene};
+use nima_recording::store::{PointOutcome, Store};
+use nima_simulation::{SimulationPlan, scene::Scene};
 use nima_tests::gravity::gravity;
 
 use crate::bench::{Console, WIZARD_SPEED, can_press, pick, press, read, shown_at, shows, until};
@@ -17,7 +17,7 @@ fn console(store: &Path) -> Console {
     let rig = RigConfig::load("simulated").unwrap();
     let scene = Scene::load("correspondence").unwrap();
     let store = store.to_owned();
-    let plan = Plan { rig, scene, calibrations, engage: false };
+    let plan = SimulationPlan { rig, scene, calibrations, engage: false };
     shown_at(WIZARD_SPEED, &plan, [1600.0, 1000.0], move |app| app.with_store(&store))
 }
 
@@ -46,7 +46,7 @@ fn the_list_is_gone_through_by_the_person_at_the_screen_and_the_one_at_the_arm()
     read(&mut console, "Ready: all points passed");
     read(&mut console, "Saved in ");
     let record = Store::open(folder.path().join("calibrations")).last_check("Simulated rig").unwrap();
-    assert!(record.passed && record.items.iter().all(|item| item.outcome != Outcome::Failed), "{record:?}");
+    assert!(record.passed && record.items.iter().all(|item| item.outcome != PointOutcome::Failed), "{record:?}");
     press(&mut console, "Back to the monitor");
     assert!(!shows(&console, "Checked by"));
 }

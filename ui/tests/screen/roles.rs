@@ -2,7 +2,7 @@
 
 use egui::{Key, accesskit};
 use egui_kittest::kittest::Queryable as _;
-use nima_console::console::{roles::Role, settings::Kept};
+use nima_console::console::{roles::Role, settings::SettingsStore};
 use nima_machine::messages::LoopState;
 
 use crate::bench::{console_of, press, until};
@@ -53,8 +53,9 @@ fn the_surgeon_sees_both_hands_and_sets_the_gain_and_nothing_can_raise_it_above_
 fn the_role_is_remembered() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().to_path_buf();
-    let begin =
-        |path: std::path::PathBuf| console_of("free_motion", SIZE, move |app| app.with_settings(Kept::open(&path)));
+    let begin = |path: std::path::PathBuf| {
+        console_of("free_motion", SIZE, move |app| app.with_settings(SettingsStore::open(&path)))
+    };
     let mut harness = begin(path.clone());
     press(&mut harness, "Surgeon");
     drop(harness);

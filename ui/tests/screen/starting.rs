@@ -4,12 +4,12 @@ use std::path::Path;
 
 use egui::{Key, accesskit::Role};
 use egui_kittest::{Harness, kittest::Queryable as _};
-use nima_console::console::{ConsoleApp, settings::Kept, start::Choice};
+use nima_console::console::{ConsoleApp, settings::SettingsStore, start::RigChoice};
 use nima_machine::messages::LoopState;
 
 use crate::{
     bench::{console_of, pick, press, read, toured, until, wait, write_into},
-    eyes::camera,
+    endoscope_view::camera,
 };
 
 const SIZE: [f32; 2] = [1600.0, 1000.0];
@@ -22,7 +22,7 @@ fn console(folder: &Path) -> Harness<'static, ConsoleApp> {
 }
 
 fn until_runs(harness: &mut Harness<'_, ConsoleApp>, rig: &str, scene: &str) {
-    let wanted = Choice { rig: rig.to_owned(), scene: scene.to_owned() };
+    let wanted = RigChoice { rig: rig.to_owned(), scene: scene.to_owned() };
     wait(harness, &format!("{wanted:?} runs"), |harness| *harness.state().running() == wanted);
 }
 
@@ -51,7 +51,7 @@ fn another_scene_and_another_rig_start_idle_and_are_offered_again() {
     pick(&mut harness, "Start");
     until_runs(&mut harness, "simulated", "bimanual");
 
-    let recent = Kept::open(folder.path()).now.recent;
+    let recent = SettingsStore::open(folder.path()).now.recent;
     let recent: Vec<_> = recent.iter().map(|choice| (choice.rig.as_str(), choice.scene.as_str())).collect();
     assert_eq!(recent, [("simulated", "bimanual"), ("desk", "free_motion"), ("simulated", "peg_transfer")]);
 }
@@ -106,7 +106,7 @@ fn what_cannot_start_is_told_and_what_ran_before_runs_again() {
     std::fs::remove_file(&path).unwrap();
     pick(&mut harness, "Start");
     harness.get_by_label_contains("Not started: there is no rig");
-    assert_eq!(harness.state().running(), &Choice::default());
+    assert_eq!(harness.state().running(), &RigChoice::default());
     pick(&mut harness, "Back");
     until(&mut harness, "it was never ended", |tick| tick.state == LoopState::Engaged);
 }
@@ -171,7 +171,7 @@ fn an_endoscope_is_tried_while_its_address_is_typed_and_written_without_editing_
 /// The console at its first start.
 fn newcomer(folder: &Path, size: [f32; 2]) -> Harness<'static, ConsoleApp> {
     let folder = folder.to_path_buf();
-    let mut harness = console_of("peg_transfer", size, move |app| app.with_settings(Kept::open(&folder)));
+    let mut harness = console_of("peg_transfer", size, move |app| app.with_settings(SettingsStore::open(&folder)));
     until(&mut harness, "engaged", |tick| tick.state == LoopState::Engaged);
     harness
 }

@@ -9,19 +9,19 @@ use std::{
 use eframe::App as _;
 use egui::{Key, Pos2, Shape, accesskit::Role};
 use egui_kittest::kittest::Queryable as _;
-use nima_console::console::Options;
+use nima_console::console::ConsoleOptions;
 use nima_core::{
     Side,
-    task::{Event, Happening},
+    task::{TaskEvent, TimedTaskEvent},
 };
 use nima_machine::messages::LoopState;
-use nima_score::{HandSample, Sample, Scorer, TaskFile};
+use nima_score::{HandSample, ScoreSample, Scorer, TaskFile};
 use nima_simulation::scene::Scene;
 use nima_tests::{
     plan,
     studies::{BLIND, study_file},
 };
-use nima_user_study::{Comparison, Ending, Excludes, Study, StudyFile};
+use nima_user_study::{Excludes, MeasureComparison, StudyFile, TrialEnding, UserStudy};
 
 use crate::bench::{
     Console, can_press, pick, press, read, shown_at, shows, texts, toured, until, wait, write_into, write_over,
@@ -38,12 +38,12 @@ pub(crate) fn make(data: &Path, head: &str, seconds: f64, rest: &str) -> PathBuf
     let scene =
         Scene { task: file.task.as_ref().map(|task| task.to_scene().unwrap()), ..Scene::load("peg_transfer").unwrap() };
     let place = data.join("studies/touching");
-    Study::create(&place, &file, &toml::to_string(&scene).unwrap(), AT).unwrap();
+    UserStudy::create(&place, &file, &toml::to_string(&scene).unwrap(), AT).unwrap();
     place
 }
 
 /// The console with this folder of the user's data.
-pub(crate) fn console(data: &Path, options: Options) -> Console {
+pub(crate) fn console(data: &Path, options: ConsoleOptions) -> Console {
     let data = data.to_path_buf();
     shown_at(SPEED, &plan("peg_transfer"), SIZE, move |app| app.with_settings(toured(&data)).with_options(options))
 }
@@ -90,7 +90,7 @@ fn set(window: &mut Console, name: &str, value: f64) {
 #[test]
 fn from_a_ready_study_to_the_end_of_its_first_trial_by_clicks() {
     let folder = tempfile::tempdir().unwrap();
-    let mut window = console(folder.path(), Options::default());
+    let mut window = console(folder.path(), ConsoleOptions::default());
     until(&mut window, "any tick", |_| true);
     press(&mut window, "Rig");
     pick(&mut window, "User studies");
@@ -107,7 +107,7 @@ fn from_a_ready_study_to_the_end_of_its_first_trial_by_clicks() {
     set(&mut window, "Trials per condition", 2.0);
     pick(&mut window, "Create study");
     let place = folder.path().join("studies/short-trial-of-a-study");
-    let commitment = Study::read(&place).unwrap().plan().commitment.clone();
+    let commitment = UserStudy::read(&place).unwrap().plan().commitment.clone();
     read(&mut window, &commitment);
 
     begin(&mut window, "Start the trial");
@@ -118,14 +118,14 @@ fn from_a_ready_study_to_the_end_of_its_first_trial_by_clicks() {
         window.key_press(Key::ArrowRight);
         window.step();
     }
-    until(&mut window, "led", |tick| tick.guide_m.is_some_and(|at_m| (at_m - before_m).norm() > 0.005));
+    until(&mut window, "led", |tick| tick.guide_m.is_some_and(|position_m| (position_m - before_m).norm() > 0.005));
     window.key_press(Key::M);
     window.run_steps(5);
     assert!(window.state().tick().unwrap().guide_m.is_some(), "it cannot be let go");
     wait(&mut window, "the end", |window| !window.state().in_trial());
     // A task without an end has no completion time.
     read(&mut window, "Trial 1: the time limit is reached");
-    let study = Study::read(&place).unwrap();
+    let study = UserStudy::read(&place).unwrap();
     let made = &study.state().progress("P01").unwrap().trials;
     assert!(made.len() == 1 && !made[0].simulated, "{made:?}");
     assert!(made[0].measures.as_ref().unwrap()["path_length_m_right"] > 0.004, "{made:?}");
@@ -168,7 +168,7 @@ fn circles(window: &Console) -> Vec<Pos2> {
 }
 
 /// Whether a circle is in the undimmed part of the round image.
-fn is_in_picture(window: &Console, at: Pos2) -> bool {
+fn is_in_image(window: &Console, at: Pos2) -> bool {
     let rect = window.get_by_role_and_label(Role::Canvas, "Operating field").rect();
     let clear = 0.57 * rect.height().min(rect.width());
     rect.shrink(11.0).contains(at) && (at - rect.center()).length() + 11.0 < clear
@@ -177,7 +177,7 @@ fn is_in_picture(window: &Console, at: Pos2) -> bool {
 #[test]
 fn scene_task_measures_and_rules_are_made_in_the_form_and_both_tips_are_seen_from_the_first_picture() {
     let folder = tempfile::tempdir().unwrap();
-    let mut window = console(folder.path(), Options::default());
+    let mut window = console(folder.path(), ConsoleOptions::default());
     until(&mut window, "any tick", |_| true);
     window.key_press(Key::F8);
     window.run_steps(2);
@@ -220,14 +220,14 @@ fn scene_task_measures_and_rules_are_made_in_the_form_and_both_tips_are_seen_fro
     pick(&mut window, "Create study");
 
     let place = folder.path().join("studies/two-rings");
-    let study = Study::read(&place).unwrap();
+    let study = UserStudy::read(&place).unwrap();
     let plan = study.plan();
     assert_eq!(plan.primary, "idle_time_s");
     assert_eq!(plan.secondary.iter().filter(|key| *key == "drops").count(), 1, "{:?}", plan.secondary);
     assert!(plan.practice.is_none() && !plan.record, "{plan:?}");
     let [rule] = plan.exclusion.as_slice() else { panic!("{:?}", plan.exclusion) };
     assert_eq!((rule.measure.as_str(), rule.limit, rule.times), ("trial_time_s", Some(5.0), 2));
-    assert_eq!((rule.is, rule.exclude), (Comparison::Below, Excludes::Participant));
+    assert_eq!((rule.is, rule.exclude), (MeasureComparison::Below, Excludes::Participant));
     let scene = Scene::parse(&place, study.scene()).unwrap();
     assert_eq!(scene.objects.unwrap().rings.len(), 2);
     assert!((TaskFile::of(&scene.task.unwrap()).unwrap().time_limit_s - 30.0).abs() < 1e-9);
@@ -237,20 +237,20 @@ fn scene_task_measures_and_rules_are_made_in_the_form_and_both_tips_are_seen_fro
     for _ in 0..3 {
         let found = circles(&window);
         assert_eq!(found.len(), 2, "one around each tip, in the first picture and in those after it");
-        assert!(found.iter().all(|at| is_in_picture(&window, *at)), "{found:?}");
+        assert!(found.iter().all(|at| is_in_image(&window, *at)), "{found:?}");
         until(&mut window, "idle", |tick| tick.state == LoopState::Idle);
     }
     press(&mut window, "Engage");
     until(&mut window, "engaged", |tick| tick.state == LoopState::Engaged);
     assert!(shows(&window, "Trial 1 of 3, condition "), "{:?}", texts(&window));
-    assert!(circles(&window).iter().all(|at| is_in_picture(&window, *at)));
+    assert!(circles(&window).iter().all(|at| is_in_image(&window, *at)));
 }
 
 #[test]
 fn twelve_trials_with_one_given_up_one_stopped_and_a_power_cut_lose_nothing_else() {
     let folder = tempfile::tempdir().unwrap();
     let place = make(folder.path(), "trials = 6", 2.0, "");
-    let mut window = console(folder.path(), Options::default());
+    let mut window = console(folder.path(), ConsoleOptions::default());
     open(&mut window);
     pick(&mut window, "a simulated hand");
     for number in 1..=12 {
@@ -277,7 +277,7 @@ fn twelve_trials_with_one_given_up_one_stopped_and_a_power_cut_lose_nothing_else
                 begin(&mut window, "Start the trial");
                 drop(window);
                 assert!(journal(&place).lines().last().unwrap().contains("trial_began"));
-                window = console(folder.path(), Options::default());
+                window = console(folder.path(), ConsoleOptions::default());
                 open(&mut window);
                 pick(&mut window, "a simulated hand");
             }
@@ -289,7 +289,7 @@ fn twelve_trials_with_one_given_up_one_stopped_and_a_power_cut_lose_nothing_else
         trial(&mut window, "Start the trial");
     }
     read(&mut window, "Finished");
-    let study = Study::read(&place).unwrap();
+    let study = UserStudy::read(&place).unwrap();
     let progress = study.state().progress("P01").unwrap();
     let attempts: Vec<u32> = progress.trials.iter().map(|made| made.attempt).collect();
     assert_eq!(attempts, [1, 1, 2, 1, 1, 2, 1, 1, 2, 1, 1, 1]);
@@ -304,7 +304,7 @@ fn questionnaires_break_notes_exclusion_unblinding_and_report_are_done_on_the_sc
     let rest = "[questionnaires]\nafter_condition = ['nasa_tlx_weighted', 'realism']\nat_end = ['sus', 'free_text']\n\
                 [breaks]\nafter_trials = 1\nleast_s = 1.0";
     let place = make(folder.path(), "trials = 1", 2.0, rest);
-    let mut window = console(folder.path(), Options::default());
+    let mut window = console(folder.path(), ConsoleOptions::default());
     open(&mut window);
     pick(&mut window, "a simulated hand");
     for number in 1..=2 {
@@ -365,7 +365,7 @@ fn questionnaires_break_notes_exclusion_unblinding_and_report_are_done_on_the_sc
     read(&mut window, "Unblinded by A. Person at ");
     assert!(shows(&window, ": Zebra") && shows(&window, ": Wildebeest"));
 
-    let study = Study::read(&place).unwrap();
+    let study = UserStudy::read(&place).unwrap();
     let scores: Vec<(&str, f64)> =
         study.state().progress("P01").unwrap().answers.iter().flat_map(|(_, answers, _)| answers.scores()).collect();
     for wanted in [("nasa_tlx_weighted", 42.0), ("realism", 6.0), ("sus", 55.0)] {
@@ -383,7 +383,8 @@ fn a_closed_window_ends_its_trial_and_writes_no_figures_of_it() {
     let folder = tempfile::tempdir().unwrap();
     let place = make(folder.path(), "trials = 1", 20.0, "");
     let summary = folder.path().join("summary.json");
-    let mut window = console(folder.path(), Options { summary: Some(summary.clone()), ..Options::default() });
+    let mut window =
+        console(folder.path(), ConsoleOptions { summary: Some(summary.clone()), ..ConsoleOptions::default() });
     open(&mut window);
     begin(&mut window, "Start the trial");
     window.state_mut().on_exit(None);
@@ -392,16 +393,16 @@ fn a_closed_window_ends_its_trial_and_writes_no_figures_of_it() {
 }
 
 /// Completes the next trial of this participant in this time.
-fn complete(study: &mut Study, participant: &str, seconds: u32) {
+fn complete(study: &mut UserStudy, participant: &str, seconds: u32) {
     let mut scorer = Scorer::new(&TaskFile::from_toml("name = 'x'\nkind = 'peg_transfer'").unwrap());
-    scorer.happening(&Happening { t_s: 0.0, event: Event::Begun });
+    scorer.happening(&TimedTaskEvent { t_s: 0.0, event: TaskEvent::Begun });
     for tick in 0..=seconds * 10 {
         let right = HandSample { engaged: true, ..HandSample::default() };
-        scorer.sample(&Sample { t_s: f64::from(tick) * 0.1, hands: Side::Right.alone(right) });
+        scorer.sample(&ScoreSample { t_s: f64::from(tick) * 0.1, hands: Side::Right.alone(right) });
     }
-    scorer.happening(&Happening { t_s: f64::from(seconds), event: Event::Ended });
+    scorer.happening(&TimedTaskEvent { t_s: f64::from(seconds), event: TaskEvent::Ended });
     let running = study.begin_trial(participant, false, AT).unwrap();
-    study.end_trial(running, Ending::Completed, &scorer.finish(), AT).unwrap();
+    study.end_trial(running, TrialEnding::Completed, &scorer.finish(), AT).unwrap();
 }
 
 #[test]
@@ -409,12 +410,12 @@ fn the_learning_of_the_chosen_participant_is_drawn_by_practice_and_trials() {
     let folder = tempfile::tempdir().unwrap();
     let practice = "[practice.criterion]\ntime_s = 100.0\nconsecutive = 2\nadditional = 0\nmax_trials = 4";
     let place = make(folder.path(), "trials = 3", 2.0, practice);
-    let mut study = Study::open(&place, AT).unwrap();
+    let mut study = UserStudy::open(&place, AT).unwrap();
     for seconds in [60, 50, 45, 40, 38] {
         complete(&mut study, "P01", seconds);
     }
     drop(study);
-    let mut window = console(folder.path(), Options::default());
+    let mut window = console(folder.path(), ConsoleOptions::default());
     open(&mut window);
     read(&mut window, "Learning of P01: 2 practice trials, 3 trials completed");
     pick(&mut window, "P02");

@@ -78,7 +78,7 @@ fn one_person_leads_both_instruments_one_at_a_time() {
     read(&mut harness, "Left instrument");
     wait(&mut harness, "the left jaws alone are open", |harness| open(harness) == [false, true]);
     until(&mut harness, "the right one is two steps lower", |tick| {
-        tick.guide_m.is_some_and(|at_m| (at_m.z - before_m.z + 0.002).abs() < 1e-6)
+        tick.guide_m.is_some_and(|position_m| (position_m.z - before_m.z + 0.002).abs() < 1e-6)
     });
     let held_m = right_m(&harness);
     harness.run_steps(5);
@@ -92,8 +92,8 @@ fn one_person_leads_both_instruments_one_at_a_time() {
 /// The displayed torque about the shaft at the jaws, mNm.
 fn torque_mnm(window: &Window<'_>) -> Option<f64> {
     let begins = "Torque about the shaft: ";
-    let told = texts(window).into_iter().find(|told| told.starts_with(begins))?;
-    told[begins.len()..].split(' ').next()?.parse().ok()
+    let report = texts(window).into_iter().find(|report| report.starts_with(begins))?;
+    report[begins.len()..].split(' ').next()?.parse().ok()
 }
 
 #[test]

@@ -26,9 +26,9 @@ fn the_cursor_of_one_plot_is_read_in_all() {
     let mut harness = console_of("peg_transfer", SIZE, |app| app);
     until(&mut harness, "some data", |tick| tick.t_s > 1.0);
     point_at(&mut harness, pos2(900.0, 790.0));
-    let told = |axis: &str| harness.query_by_label_contains(&format!("At the cursor, {axis}: measured")).is_some();
-    let told = ["x", "y", "z"].map(told);
-    assert_eq!(told.iter().filter(|told| **told).count(), 2, "all but the one under the pointer: {told:?}");
+    let report = |axis: &str| harness.query_by_label_contains(&format!("At the cursor, {axis}: measured")).is_some();
+    let report = ["x", "y", "z"].map(report);
+    assert_eq!(report.iter().filter(|report| **report).count(), 2, "all but the one under the pointer: {report:?}");
 }
 
 #[test]
@@ -36,9 +36,9 @@ fn the_object_under_the_pointer_is_described() {
     let mut harness = console_of("bimanual", SIZE, |app| app);
     until(&mut harness, "some data", |tick| tick.t_s > 0.2);
     point_at(&mut harness, pos2(760.0, 395.0));
-    let told = harness.query_by_label_contains("mm (world)").is_some()
+    let report = harness.query_by_label_contains("mm (world)").is_some()
         || harness.query_by_label_contains("N (world)").is_some();
-    assert!(told);
+    assert!(report);
     point_at(&mut harness, pos2(400.0, 450.0));
     assert!(harness.query_by_label_contains("(world)").is_none(), "there is nothing");
 }

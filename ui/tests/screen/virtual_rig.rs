@@ -11,16 +11,16 @@ use std::{
 use nima_core::calibration::{
     Verdict,
     correspondence::{self, CorrespondenceRecord, CorrespondenceSession},
-    gravity::{Compensator, DEFAULT_TIME_CONSTANT_S, GravityRecord, GravitySession, SessionSettings},
+    gravity::{Compensator, DEFAULT_TIME_CONSTANT_S, GravityRecord, GravitySession, GravitySessionSettings},
 };
 use nima_machine::{
     config::RigConfig,
     messages::{Command, Tick},
-    rig::{Outputs, Prompt, Sensed, Side},
+    rig::{Outputs, Prompt, SensedForce, Side},
     teleop::Calibrations,
 };
 use nima_recording::store::utc_now;
-use nima_simulation::{Plan, World, run_virtual, scene::Scene};
+use nima_simulation::{SimulationPlan, World, run_virtual, scene::Scene};
 
 /// Samples of a calibration scene, each under the next prompt of `session`; ends with `None`.
 fn calibrate(scene: &Scene, mut session: impl FnMut(&nima_core::frames::WristSample, f64) -> Option<Prompt>) {
@@ -28,7 +28,8 @@ fn calibrate(scene: &Scene, mut session: impl FnMut(&nima_core::frames::WristSam
     let mut prompt = Prompt::Rest;
     for tick in 1..200_000 {
         let t_s = f64::from(tick) * 1e-3;
-        let Sensed::AtWrist(sample) = world.exchange(t_s, &Outputs { prompt, ..Outputs::SAFE }).unwrap().sensed else {
+        let SensedForce::AtWrist(sample) = world.exchange(t_s, &Outputs { prompt, ..Outputs::SAFE }).unwrap().sensed
+        else {
             panic!("a calibration scene without a wrist");
         };
         let Some(next) = session(&sample, t_s) else { return };
@@ -42,7 +43,7 @@ pub(crate) fn records() -> &'static (GravityRecord, CorrespondenceRecord) {
     static RECORDS: OnceLock<(GravityRecord, CorrespondenceRecord)> = OnceLock::new();
     RECORDS.get_or_init(|| {
         let scene = Scene::load("gravity").unwrap();
-        let mut session = GravitySession::new(SessionSettings::default());
+        let mut session = GravitySession::new(GravitySessionSettings::default());
         calibrate(&scene, |sample, t_s| {
             session.step(sample, t_s);
             session.target().map(|target| Prompt::Hold { world_from_s1: target.world_from_s1() })
@@ -50,7 +51,7 @@ pub(crate) fn records() -> &'static (GravityRecord, CorrespondenceRecord) {
         let wrist = RigConfig::load("simulated").unwrap().simulated_wrist(Side::Right).cloned().unwrap();
         let gravity = session.report().unwrap().record(&wrist.serial_number, &wrist.tool, &utc_now()).unwrap();
         let scene = Scene::load("correspondence").unwrap();
-        let mut session = CorrespondenceSession::new(correspondence::SessionSettings::default());
+        let mut session = CorrespondenceSession::new(correspondence::CorrespondenceSessionSettings::default());
         let mut compensator = Compensator::new(gravity.model, DEFAULT_TIME_CONSTANT_S, 1e-3);
         calibrate(&scene, |sample, t_s| {
             let force_n = compensator.step(sample).map(|wrench| wrench.force_n);
@@ -79,7 +80,7 @@ impl VirtualRig {
     pub(crate) fn start(scene: Scene, calibrations: Calibrations) -> Self {
         let (orders, ordered) = channel();
         let (give, ticks) = channel();
-        let plan = Plan {
+        let plan = SimulationPlan {
             rig: RigConfig::load("simulated").unwrap(),
             scene,
             calibrations: [calibrations, Calibrations::default()],

@@ -10,18 +10,18 @@ use egui_kittest::{
     kittest::{NodeT as _, Queryable as _},
 };
 use nima_console::console::{
-    ConsoleApp, Options,
-    desk::{Layout, Panel},
+    ConsoleApp, ConsoleOptions,
     roles::Role,
-    settings::Kept,
-    wizards::Which,
+    settings::SettingsStore,
+    tiles::{Panel, PanelLayout},
+    wizards::WizardKind,
 };
 use nima_machine::messages::LoopState;
 
 use crate::{
     bench::{self, console_of, toured, until},
     faults::{Page, faults, none},
-    past, studies,
+    playback, studies,
 };
 
 /// Points: the smallest window, the sizes of common screens, and with them those screens at a scale of 150 or 200 %.
@@ -49,7 +49,7 @@ fn in_each_view(
                 let settings = harness.state_mut().settings_mut();
                 settings.role = role;
                 settings.light = light;
-                settings.layout = Layout { front: front.to_vec(), ..Layout::default() };
+                settings.layout = PanelLayout { front: front.to_vec(), ..PanelLayout::default() };
                 let found = find(harness, role, size);
                 all.extend(
                     found.into_iter().map(|fault| format!("{role:?} {front:?} {size:?} light {light}: {fault}")),
@@ -80,10 +80,10 @@ fn nothing_is_cut_or_overlaps_with_two_hands() {
 #[test]
 fn nothing_is_cut_or_overlaps_in_the_wizards() {
     let mut all = Vec::new();
-    for which in Which::ALL {
+    for which in WizardKind::ALL {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().to_path_buf();
-        let options = Options { wizard: Some(which), ..Options::default() };
+        let options = ConsoleOptions { wizard: Some(which), ..ConsoleOptions::default() };
         let mut harness = console_of(which.scene().unwrap_or("peg_transfer"), SIZES[0], move |app| {
             app.with_store(&path).with_options(options)
         });
@@ -114,7 +114,7 @@ fn nothing_is_cut_or_overlaps_on_the_pages_of_a_study_and_in_a_trial() {
     let folder = tempfile::tempdir().unwrap();
     let rest = "[questionnaires]\nafter_condition = ['nasa_tlx_weighted', 'sus']\nat_end = ['free_text']";
     studies::make(folder.path(), "trials = 1", 2.0, rest);
-    let mut harness = studies::console(folder.path(), Options::default());
+    let mut harness = studies::console(folder.path(), ConsoleOptions::default());
     until(&mut harness, "any tick", |_| true);
     let mut all = Vec::new();
     let look = |harness: &mut Harness<'_, ConsoleApp>, page: &str, all: &mut Vec<String>| {
@@ -158,18 +158,18 @@ fn nothing_is_cut_or_overlaps_in_the_past_and_in_the_list_of_sessions() {
     let sessions = data.join("sessions");
     fs::create_dir_all(&sessions).unwrap();
     let path = sessions.join("20261123T131415Z-Simulated-rig.mcap");
-    past::record(&path, "bimanual", "3");
+    playback::record(&path, "bimanual", "3");
     let mut harness = console_of("peg_transfer", SIZES[0], move |app| app.with_settings(toured(&data)));
     until(&mut harness, "any tick", |_| true);
     let mut all = Vec::new();
     bench::press(&mut harness, "Sessions");
-    past::until_listed(&mut harness, "20261123T131415Z-Simulated-rig.mcap");
+    playback::until_listed(&mut harness, "20261123T131415Z-Simulated-rig.mcap");
     for size in SIZES {
         let faults = faults(&mut harness, size, Page::Scrolls);
         all.extend(faults.into_iter().map(|fault| format!("list {size:?}: {fault}")));
     }
     bench::press(&mut harness, "Open 20261123T131415Z-Simulated-rig.mcap");
-    past::until_whole(&mut harness);
+    playback::until_whole(&mut harness);
     all.extend(in_each_view(&mut harness, |harness, role, size| {
         // On a small screen the technician's panels scroll more: content scrolled out of view has no position.
         let is_form = role == Role::Technician && size[1] < 1000.0;
@@ -195,7 +195,7 @@ fn the_alarm_and_the_stopped_state_fit_too() {
             for size in &SIZES[..2] {
                 let settings = harness.state_mut().settings_mut();
                 settings.role = role;
-                settings.layout = Layout { front: front.to_vec(), ..Layout::default() };
+                settings.layout = PanelLayout { front: front.to_vec(), ..PanelLayout::default() };
                 let faults = faults(&mut harness, *size, Page::of_view(role));
                 all.extend(faults.into_iter().map(|fault| format!("{role:?} {front:?} dead {dead}: {fault}")));
             }
@@ -238,7 +238,7 @@ fn tour_and_glossary_fit_and_leave_the_stop_alone() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().to_path_buf();
     let begin = |path: std::path::PathBuf| {
-        console_of("peg_transfer", SIZES[0], move |app| app.with_settings(Kept::open(&path)))
+        console_of("peg_transfer", SIZES[0], move |app| app.with_settings(SettingsStore::open(&path)))
     };
     let mut harness = begin(path.clone());
     until(&mut harness, "any tick", |_| true);
@@ -294,7 +294,7 @@ fn every_view_offers_what_was_agreed() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/screen/stored");
     for (role, name) in [(Role::Surgeon, "surgeon"), (Role::Technician, "technician"), (Role::Demo, "demo")] {
         let mut harness = console_of("bimanual", [1600.0, 1000.0], move |app| {
-            app.with_options(Options { role: Some(role), ..Options::default() })
+            app.with_options(ConsoleOptions { role: Some(role), ..ConsoleOptions::default() })
         });
         until(&mut harness, "engaged", |tick| tick.state == LoopState::Engaged);
         harness.run_steps(5);

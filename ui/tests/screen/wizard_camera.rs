@@ -6,15 +6,15 @@ use std::{
 };
 
 use nalgebra::Isometry3;
-use nima_console::console::{Options, wizards::Which};
+use nima_console::console::{ConsoleOptions, wizards::WizardKind};
 use nima_emulation::emulators::{
-    Serving,
-    endoscope::{Emulated, Hands, held},
+    EmulatorThread,
+    endoscope::{BoardHands, EmulatedEndoscope, held},
 };
-use nima_endoscope::Board;
+use nima_endoscope::Checkerboard;
 use nima_machine::config::{RigConfig, RigFile};
 use nima_simulation::{
-    Plan,
+    SimulationPlan,
     camera::{camera_of, usual},
     scene::Scene,
 };
@@ -22,24 +22,24 @@ use nima_tests::plan;
 
 use crate::{
     bench::{Console, can_press, pick, read, shown, shows, toured, until, wait},
-    language, picture,
+    image, language,
 };
 
 /// A small image, so that a busy machine keeps up.
 const SIZE_PX: [usize; 2] = [640, 360];
 
 /// An emulated endoscope, the board in front of it, and the poses in which a person holds it.
-struct Bench {
-    _serving: Serving,
+struct Fixture {
+    _serving: EmulatorThread,
     pose: Arc<Mutex<Isometry3<f64>>>,
-    poses: Hands,
+    poses: BoardHands,
     url: String,
 }
 
 const FOCAL_PX: f64 = 380.0;
 const CENTRE_PX: [f64; 2] = [327.0, 174.0];
 
-impl Bench {
+impl Fixture {
     fn new() -> Self {
         let scene = Scene::load("peg_transfer").unwrap();
         let mut settings = usual(&scene);
@@ -48,11 +48,11 @@ impl Bench {
         settings.k1 = -0.25;
         settings.centre_px = Some(CENTRE_PX);
         let camera = camera_of(&settings);
-        let board = Board::new([9, 6], 0.01).unwrap();
+        let board = Checkerboard::new([9, 6], 0.01).unwrap();
         let mut poses = held(board, &camera.lens);
         let pose = Arc::new(Mutex::new(poses(0.0)));
         let shown = Arc::clone(&pose);
-        let emulated = Emulated { camera, quality: 90, ..Emulated::of(&scene, 0) };
+        let emulated = EmulatedEndoscope { camera, quality: 90, ..EmulatedEndoscope::of(&scene, 0) };
         let serving = emulated.with_board(board, Box::new(move |_| *shown.lock().unwrap())).serve().unwrap();
         Self { url: serving.endpoint.clone(), _serving: serving, pose, poses }
     }
@@ -69,11 +69,11 @@ impl Bench {
         let rig = file.save(&path).unwrap();
         let name = path.display().to_string();
         // Idle: an instrument that does its task would be at a corner only by chance.
-        let plan = Plan { rig, engage: false, ..plan("peg_transfer") };
+        let plan = SimulationPlan { rig, engage: false, ..plan("peg_transfer") };
         let kept = folder.to_path_buf();
         let running = name.clone();
         let console = shown(&plan, size, move |app| {
-            let options = Options { wizard: Some(Which::Camera), ..Options::default() };
+            let options = ConsoleOptions { wizard: Some(WizardKind::Camera), ..ConsoleOptions::default() };
             app.with_settings(toured(&kept)).with_rig_name(running).with_options(options)
         });
         (console, name)
@@ -83,7 +83,7 @@ impl Bench {
 #[test]
 fn a_technician_finds_the_lens_from_live_views_saves_it_and_undoes_it() {
     let folder = tempfile::tempdir().unwrap();
-    let mut bench = Bench::new();
+    let mut bench = Fixture::new();
     let (mut console, rig) = bench.console(folder.path(), [1280.0, 720.0]);
     until(&mut console, "any tick", |_| true);
     read(&mut console, "Picture: fine");
@@ -101,7 +101,7 @@ fn a_technician_finds_the_lens_from_live_views_saves_it_and_undoes_it() {
     pick(&mut console, "Next");
     read(&mut console, "Accepted: it predicts held-out views");
     language::fits(&mut console, "lens");
-    picture::same(&console, "wizard-camera-lens");
+    image::same(&console, "wizard-camera-lens");
     pick(&mut console, "Next");
     // The board is at rest, but the tip does not move between corners: no pose results.
     for touched in 0..4 {
@@ -117,7 +117,7 @@ fn a_technician_finds_the_lens_from_live_views_saves_it_and_undoes_it() {
     pick(&mut console, "Next");
     read(&mut console, "position unknown");
     language::fits(&mut console, "save");
-    picture::same(&console, "wizard-camera-save");
+    image::same(&console, "wizard-camera-save");
     assert!(
         RigConfig::load(&rig).unwrap().endoscope.unwrap().camera.is_none(),
         "nothing is changed before it is saved"
@@ -138,7 +138,7 @@ fn a_technician_finds_the_lens_from_live_views_saves_it_and_undoes_it() {
 #[test]
 fn without_a_picture_the_wizard_says_what_it_needs() {
     let folder = tempfile::tempdir().unwrap();
-    let bench = Bench { url: "http://127.0.0.1:1/".to_owned(), ..Bench::new() };
+    let bench = Fixture { url: "http://127.0.0.1:1/".to_owned(), ..Fixture::new() };
     let (mut console, _) = bench.console(folder.path(), [1280.0, 720.0]);
     until(&mut console, "any tick", |_| true);
     read(&mut console, "no image received");

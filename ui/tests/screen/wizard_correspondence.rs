@@ -17,19 +17,19 @@ use nima_machine::{
 };
 use nima_recording::store::Store;
 use nima_simulation::{
-    Plan,
+    SimulationPlan,
     scene::{Flaw, Scene},
 };
 use nima_tests::gravity::gravity;
 
 use crate::{
     bench::{Console, WIZARD_SPEED, can_press, pick, read, shown_at, write_into},
-    language, picture,
+    image, language,
 };
 
 fn console(scene: Scene, store: &Path, calibrations: Calibrations) -> Console {
     let rig = RigConfig::load("simulated").unwrap();
-    let plan = Plan { rig, scene, calibrations: [calibrations, Calibrations::default()], engage: false };
+    let plan = SimulationPlan { rig, scene, calibrations: [calibrations, Calibrations::default()], engage: false };
     let store = store.to_owned();
     shown_at(WIZARD_SPEED, &plan, [1600.0, 1500.0], move |app| app.with_store(&store))
 }
@@ -60,7 +60,7 @@ fn nine_pushes_as_asked_end_in_a_saved_correspondence_and_more_may_follow() {
     read(&mut harness, "held out: MAE");
     harness.check_accessibility();
     language::fits(&mut harness, "result");
-    picture::same(&harness, "wizard-correspondence-result");
+    image::same(&harness, "wizard-correspondence-result");
     pick(&mut harness, "Next");
     language::fits(&mut harness, "save");
     assert!(saved(&store).is_none(), "nothing is kept without being asked");
@@ -73,7 +73,7 @@ fn nine_pushes_as_asked_end_in_a_saved_correspondence_and_more_may_follow() {
         * from_roll_pitch_yaw_deg(&sensor.world_from_s2_deg);
     let off_deg = record.rotation().angle_to(&c_from_s2).to_degrees();
     assert!(off_deg < 0.5, "{off_deg} degrees off");
-    let lines = harness.state().in_force().lines();
+    let lines = harness.state().active().lines();
     assert!(lines.iter().any(|line| line.starts_with("Correspondence: 2") && line.contains("pushes")), "{lines:?}");
     // Saving restarted the loop and its clock: the pushes continue.
     pick(&mut harness, "Back");
@@ -122,7 +122,7 @@ fn pushes_along_one_line_are_kept_only_under_a_name() {
     let record = saved(&store).unwrap();
     assert_eq!(record.judgement.verdict, Verdict::InsufficientMotion);
     assert_eq!(record.judgement.override_by.as_deref(), Some("A. Technician"));
-    let lines = harness.state().in_force().lines();
+    let lines = harness.state().active().lines();
     assert!(lines.iter().any(|line| line.contains("NOT PROVEN, accepted by A. Technician")), "{lines:?}");
 }
 

@@ -4,13 +4,13 @@
 use std::path::Path;
 
 use egui_kittest::Harness;
-use nima_console::console::{ConsoleApp, reader::Reader};
+use nima_console::console::{ConsoleApp, reader::ScreenReader};
 use nima_emulation::emulated::EmulatedRig;
 use nima_machine::{
     config::{RigConfig, RigFile},
-    rig::{Settings, Side},
+    rig::{RigSettings, Side},
 };
-use nima_simulation::{Plan, scene::Scene, start};
+use nima_simulation::{SimulationPlan, scene::Scene, start};
 use nima_testing::real_time::{alone, judged, too_busy};
 use nima_tests::emulated::{elsewhere, started};
 
@@ -22,7 +22,7 @@ use crate::{
 const SIZE: [f32; 2] = [1600.0, 1000.0];
 
 /// The built-in emulated rig as a file with the addresses of these devices, and with another shaft.
-fn rig_file(folder: &Path, devices: &Settings) -> String {
+fn rig_file(folder: &Path, devices: &RigSettings) -> String {
     let mut file = RigFile::of("emulated").unwrap();
     let mut put = |key: &str, value: &dyn std::fmt::Display| file.set(&format!("devices.{key}"), value.to_string());
     for side in Side::ALL {
@@ -60,7 +60,8 @@ pub(crate) fn console(folder: &Path) -> (Console, EmulatedRig, String) {
     let name = rig_file(folder, &devices);
     let rig = RigConfig::load(&name).unwrap();
     let scene = Scene::load("peg_transfer").unwrap();
-    let plan = Plan { rig: rig.clone(), scene: scene.clone(), calibrations: Default::default(), engage: false };
+    let plan =
+        SimulationPlan { rig: rig.clone(), scene: scene.clone(), calibrations: Default::default(), engage: false };
     let handle = start(&plan).unwrap();
     let technician = emulators.technician();
     let store = folder.join("calibrations");
@@ -71,7 +72,7 @@ pub(crate) fn console(folder: &Path) -> (Console, EmulatedRig, String) {
             .with_store(&store)
             .with_settings(toured(&kept))
             .with_rig_name(running)
-            .with_reader(Reader::new(move |screen| technician.reads(screen)))
+            .with_reader(ScreenReader::new(move |screen| technician.reads(screen)))
     });
     (console, emulators, name)
 }
@@ -134,11 +135,11 @@ fn a_technician_finds_the_tip_sees_the_change_saves_it_and_undoes_it() {
 #[test]
 fn a_rig_without_an_arm_of_joints_says_what_to_do() {
     use nima_console::console::{
-        Options,
-        wizards::{Kind, Which},
+        ConsoleOptions,
+        wizards::{FrameKind, WizardKind},
     };
-    for which in Kind::ALL.map(Which::Frame) {
-        let options = Options { wizard: Some(which), ..Options::default() };
+    for which in FrameKind::ALL.map(WizardKind::Frame) {
+        let options = ConsoleOptions { wizard: Some(which), ..ConsoleOptions::default() };
         let mut console = console_of("peg_transfer", SIZE, move |app| app.with_options(options));
         console.run_steps(4);
         assert!(shows(&console, "choose a rig with devices on the start page"), "{which:?}: {:?}", texts(&console));

@@ -9,19 +9,19 @@ use egui::accesskit::Role;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use nima_machine::{config::RigConfig, messages::ForceSource, rig::Prompt};
 use nima_simulation::{
-    Plan,
+    SimulationPlan,
     scene::{Flaw, Scene},
 };
 
 use crate::{
     bench::{Console, TIMEOUT, WIZARD_SPEED, can_press, pick, shown_at, shows, texts, wait, write_into},
-    language, picture,
+    image, language,
 };
 
 fn console(scene: Scene, store: &Path) -> Console {
     let rig = RigConfig::load("simulated").unwrap();
     let store = store.to_owned();
-    let plan = Plan { rig, scene, calibrations: Default::default(), engage: false };
+    let plan = SimulationPlan { rig, scene, calibrations: Default::default(), engage: false };
     shown_at(WIZARD_SPEED, &plan, [1600.0, 1000.0], move |app| app.with_store(&store))
 }
 
@@ -75,13 +75,13 @@ fn a_technician_walks_from_an_uncalibrated_wrist_to_a_force_that_is_known() {
     wait(&mut console, "a verdict", |c| shows(c, "Accepted"));
     assert!(shows(&console, "Paper") && shows(&console, "Physical"), "the models side by side");
     language::fits(&mut console, "result");
-    picture::same(&console, "wizard-gravity-result");
+    image::same(&console, "wizard-gravity-result");
     pick(&mut console, "Next");
     wait(&mut console, "the proof", |c| shows(c, "Passed: free motion reads near zero"));
     language::fits(&mut console, "free motion");
     pick(&mut console, "Next");
     language::fits(&mut console, "save");
-    picture::same(&console, "wizard-gravity-save");
+    image::same(&console, "wizard-gravity-save");
     pick(&mut console, "Save and use");
     wait(&mut console, "saved", |c| shows(c, "Saved and in use"));
     assert_eq!(files(folder.path()), 1);
@@ -99,14 +99,14 @@ fn a_hand_on_the_tool_is_told_and_cannot_be_saved_without_a_name() {
     pick(&mut console, "Calibrate gravity…");
     leave_the_checks(&mut console);
     // While it is touched, or afterwards.
-    let told = ["something touches it", "something touches the tool", "Something touched the tool"];
-    wait(&mut console, "the touch", |c| told.iter().any(|words| shows(c, words)));
+    let report = ["something touches it", "something touches the tool", "Something touched the tool"];
+    wait(&mut console, "the touch", |c| report.iter().any(|words| shows(c, words)));
     assert_eq!(files(folder.path()), 0);
-    wait(&mut console, "the touch as it stays", |c| shows(c, told[2]));
+    wait(&mut console, "the touch as it stays", |c| shows(c, report[2]));
     pick(&mut console, "Back");
     leave_the_checks(&mut console);
     console.step();
-    assert!(shows(&console, told[2]), "forgotten by a step back");
+    assert!(shows(&console, report[2]), "forgotten by a step back");
 }
 
 #[test]

@@ -13,9 +13,9 @@ use egui_kittest::{
 };
 use nima_console::console::{
     ConsoleApp,
-    in_force::InForce,
+    active_calibrations::ActiveCalibrations,
     theme,
-    wizards::{Asked, Binding, Saving, Which, Wizards},
+    wizards::{Binding, SaveRequest, WizardKind, WizardPageRequest, Wizards},
 };
 use nima_core::calibration::Verdict;
 use nima_machine::{
@@ -29,13 +29,13 @@ use nima_recording::{
     tip_force::{DataSet, Selection, kept_model},
 };
 use nima_simulation::{
-    Plan, run_virtual,
+    SimulationPlan, run_virtual,
     scene::{Flaw, Scene},
 };
 
 use crate::{
     bench::{TIMEOUT, can_press, pick, read, shown, shows, texts, wait, write_into},
-    language, picture,
+    image, language,
     virtual_rig::{VirtualRig, records},
 };
 
@@ -43,17 +43,17 @@ use crate::{
 const TICKS: usize = 250;
 
 /// A window with only the wizard.
-struct Bench {
+struct Fixture {
     wizards: Wizards,
     binding: Binding,
-    saving: Option<Saving>,
+    saving: Option<SaveRequest>,
 }
 
-impl eframe::App for Bench {
+impl eframe::App for Fixture {
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
         ScrollArea::vertical().show(ui, |ui| {
             ui.set_max_width(760.0);
-            if let Some(Asked::Save(saving)) = self.wizards.ui(ui, &self.binding) {
+            if let Some(WizardPageRequest::Save(saving)) = self.wizards.ui(ui, &self.binding) {
                 self.saving.get_or_insert(saving);
             }
         });
@@ -62,7 +62,7 @@ impl eframe::App for Bench {
 
 struct Console {
     rig: VirtualRig,
-    window: Harness<'static, Bench>,
+    window: Harness<'static, Fixture>,
 }
 
 impl Console {
@@ -71,8 +71,8 @@ impl Console {
         let mut scene = Scene::load("isolation").unwrap();
         scene.person.as_mut().unwrap().flaw = flaw;
         let calibrations = Calibrations { gravity: Some(gravity.model), ..Calibrations::default() };
-        let bench = Bench {
-            wizards: Wizards::at(Which::TipForce),
+        let bench = Fixture {
+            wizards: Wizards::at(WizardKind::TipForce),
             binding: Binding {
                 sensor: gravity.head.sensor.clone(),
                 tool: gravity.head.tool.clone(),
@@ -169,8 +169,8 @@ fn model_path(folder: &Path) -> PathBuf {
 fn real_console(wizards: Wizards, folder: &Path) -> Harness<'static, ConsoleApp> {
     let rig = RigConfig::load("simulated").unwrap();
     let scene = Scene::load("isolation").unwrap();
-    let calibrations = InForce::load(Some(folder), &rig, &scene).calibrations(&rig);
-    let plan = Plan { rig, scene, calibrations, engage: false };
+    let calibrations = ActiveCalibrations::load(Some(folder), &rig, &scene).calibrations(&rig);
+    let plan = SimulationPlan { rig, scene, calibrations, engage: false };
     let folder = folder.to_owned();
     shown(&plan, [1600.0, 1500.0], move |app| app.with_store(&folder).with_wizards(wizards))
 }
@@ -187,7 +187,7 @@ fn from_an_empty_recording_to_a_network_that_answers_in_the_loop() {
     console.record(12_000);
     console.read("All goals are met");
     language::fits_alone(&mut console.window, "record");
-    picture::same(&console.window, "wizard-tipforce-record");
+    image::same(&console.window, "wizard-tipforce-record");
     console.press("Next");
     console.press("Small (16)");
     console.press("Start training");
@@ -198,7 +198,7 @@ fn from_an_empty_recording_to_a_network_that_answers_in_the_loop() {
     console.read("networks on");
     assert!(rows_of(folder.path(), "tip-force-data").unwrap() >= 6000, "the data set is on disk for the command line");
     language::fits_alone(&mut console.window, "train");
-    picture::same(&console.window, "wizard-tipforce-train");
+    image::same(&console.window, "wizard-tipforce-train");
     console.press("Next");
     console.press("Start the check");
     console.read("without touching the tissue");
@@ -209,13 +209,13 @@ fn from_an_empty_recording_to_a_network_that_answers_in_the_loop() {
     language::fits_alone(&mut console.window, "check");
     console.press("Next");
     language::fits_alone(&mut console.window, "save");
-    picture::same(&console.window, "wizard-tipforce-save");
+    image::same(&console.window, "wizard-tipforce-save");
     assert!(!model_path(folder.path()).exists(), "nothing is kept without being asked");
     let wizards = std::mem::take(&mut console.window.state_mut().wizards);
     let mut real = real_console(wizards, folder.path());
     pick(&mut real, "Save and use");
     read(&mut real, "Saved and in use");
-    let lines = real.state().in_force().lines();
+    let lines = real.state().active().lines();
     assert!(
         lines.iter().any(|line| line.starts_with("Tip force: 2") && line.contains("error on new data")),
         "{lines:?}"
@@ -232,8 +232,8 @@ fn answers_in_the_loop(folder: &Path) {
     let rig = RigConfig::load("simulated").unwrap();
     let mut scene = Scene::load("isolation").unwrap();
     scene.seed += 1;
-    let calibrations = InForce::load(Some(folder), &rig, &scene).calibrations(&rig);
-    let plan = Plan { rig, scene, calibrations, engage: false };
+    let calibrations = ActiveCalibrations::load(Some(folder), &rig, &scene).calibrations(&rig);
+    let plan = SimulationPlan { rig, scene, calibrations, engage: false };
     let [mut by_network, mut by_wrist, mut answered] = [0.0; 3];
     let correspondence = records().1.correspondence();
     run_virtual(&plan, 15.0, |tick| {
@@ -329,9 +329,9 @@ fn sensors_that_do_not_agree_are_refused_and_an_override_is_written_into_the_fil
     let saving = console.window.state_mut().saving.take().unwrap();
     let rig = RigConfig::load("simulated").unwrap();
     let scene = Scene::load("isolation").unwrap();
-    let mut in_force = InForce::load(Some(folder.path()), &rig, &scene);
-    in_force.save(saving).unwrap();
-    let lines = in_force.lines();
+    let mut active = ActiveCalibrations::load(Some(folder.path()), &rig, &scene);
+    active.save(saving).unwrap();
+    let lines = active.lines();
     assert!(lines.iter().any(|line| line.contains("NOT PROVEN, accepted by A. Technician")), "{lines:?}");
     let wrist = rig.simulated_wrist(Side::Right).unwrap();
     let store = Store::open(folder.path());

@@ -17,12 +17,12 @@ use crate::{console::Console, server::Xvfb};
 
 /// Side of the squares in the camera image, px, and its size.
 const SQUARE_PX: usize = 16;
-const PICTURE_PX: [f64; 2] = [1280.0, 720.0];
+const IMAGE_PX: [f64; 2] = [1280.0, 720.0];
 /// Height above and below the image in the Surgeon view, points.
 const ABOVE: f64 = 72.0;
 const BELOW: f64 = 176.0;
 /// Maximum shift of the image by the strip of an alarm above it, points.
-const LOWER_MOST: usize = 90;
+const LOWER_MAX: usize = 90;
 /// Distance of the button Engage from the right edge, points.
 const ENGAGE_FROM_RIGHT: i32 = 220;
 const LOOK_EVERY: Duration = Duration::from_millis(1);
@@ -61,9 +61,9 @@ impl Screen {
         let [width, height] = self.size_px.map(|side| side as f64);
         let top = ABOVE + lower as f64;
         let room = [width, height - BELOW - top];
-        let scale = (room[0] / PICTURE_PX[0]).min(room[1] / PICTURE_PX[1]);
-        let left = 0.5 * (room[0] - scale * PICTURE_PX[0]);
-        let top = top + 0.5 * (room[1] - scale * PICTURE_PX[1]);
+        let scale = (room[0] / IMAGE_PX[0]).min(room[1] / IMAGE_PX[1]);
+        let left = 0.5 * (room[0] - scale * IMAGE_PX[0]);
+        let top = top + 0.5 * (room[1] - scale * IMAGE_PX[1]);
         let first = top as usize;
         let rows = self.rows(first, (scale * time_code::size_px(SQUARE_PX)[1] as f64) as usize + 2);
         time_code::read(SQUARE_PX, |x, y| {
@@ -90,8 +90,8 @@ impl Camera {
             .unwrap();
         let mut line = String::new();
         BufReader::new(process.stdout.take().unwrap()).read_line(&mut line).unwrap();
-        let told: serde_json::Value = serde_json::from_str(&line).unwrap();
-        Self { process, url: told["endpoint"].as_str().unwrap().to_owned() }
+        let report: serde_json::Value = serde_json::from_str(&line).unwrap();
+        Self { process, url: report["endpoint"].as_str().unwrap().to_owned() }
     }
 }
 
@@ -108,14 +108,14 @@ fn now_us() -> u64 {
 
 /// Observed images.
 #[derive(Debug, Default)]
-struct Seen {
+struct ImageObservations {
     /// Age of each image when it was first seen, ms.
     ages_ms: Vec<f64>,
     stalls: usize,
     longest: Duration,
 }
 
-impl Seen {
+impl ImageObservations {
     fn watch(screen: &Screen, time: Duration) -> Self {
         let mut seen = Self::default();
         let mut last_us = 0;
@@ -125,7 +125,7 @@ impl Seen {
         while begin.elapsed() < time {
             thread::sleep(LOOK_EVERY);
             let found = |lower: &usize| screen.code_us(*lower).is_some();
-            let place = lower.filter(found).or_else(|| (0..LOWER_MOST).find(found));
+            let place = lower.filter(found).or_else(|| (0..LOWER_MAX).find(found));
             let Some(code_us) = place.and_then(|place| screen.code_us(place)) else { continue };
             lower = place;
             if code_us == last_us {
@@ -144,12 +144,12 @@ impl Seen {
         seen
     }
 
-    fn told(&mut self) -> String {
+    fn report(&mut self) -> String {
         self.ages_ms.sort_by(f64::total_cmp);
-        let at = |share: f64| self.ages_ms.get(((self.ages_ms.len() as f64 - 1.0) * share) as usize).copied();
-        let [p50, p90, p99, most] = [0.5, 0.9, 0.99, 1.0].map(|share| at(share).unwrap_or(f64::NAN));
+        let at = |fraction: f64| self.ages_ms.get(((self.ages_ms.len() as f64 - 1.0) * fraction) as usize).copied();
+        let [p50, p90, p99, max] = [0.5, 0.9, 0.99, 1.0].map(|fraction| at(fraction).unwrap_or(f64::NAN));
         format!(
-            "{} pictures; code to pixel p50 {p50:.1} ms, p90 {p90:.1}, p99 {p99:.1}, max {most:.1}; {} stalls above {} ms, longest {:.0} ms",
+            "{} pictures; code to pixel p50 {p50:.1} ms, p90 {p90:.1}, p99 {p99:.1}, max {max:.1}; {} stalls above {} ms, longest {:.0} ms",
             self.ages_ms.len(),
             self.stalls,
             STALL.as_millis(),
@@ -159,7 +159,7 @@ impl Seen {
 }
 
 /// Runs the simulated rig in the Surgeon view, with `endoscope` in its rig file.
-fn run(size: &str, endoscope: &str, time: Duration) -> (Seen, serde_json::Value) {
+fn run(size: &str, endoscope: &str, time: Duration) -> (ImageObservations, serde_json::Value) {
     let folder = tempfile::tempdir().unwrap();
     let memory = tempfile::tempdir().unwrap();
     let Some(x) = Xvfb::of(size, Some(memory.path())) else { return Default::default() };
@@ -178,22 +178,22 @@ fn run(size: &str, endoscope: &str, time: Duration) -> (Seen, serde_json::Value)
     // A rig file does not engage automatically.
     console.click((width.parse::<i32>().unwrap() - ENGAGE_FROM_RIGHT, 36));
     thread::sleep(Duration::from_secs(3));
-    let seen = Seen::watch(&Screen::open(memory.path()), time);
+    let seen = ImageObservations::watch(&Screen::open(memory.path()), time);
     if let Some(path) = std::env::var_os("NIMA_PICTURE") {
         assert!(x.command("import").args(["-window", "root"]).arg(path).status().unwrap().success());
     }
     (seen, console.end())
 }
 
-fn told(figures: &serde_json::Value) -> String {
+fn report(figures: &serde_json::Value) -> String {
     let [ticks, missed] = ["ticks", "missed"].map(|key| figures[key].clone());
     format!("loop: {ticks} ticks, {missed} missed, wake-up us {}", figures["wake_us"])
 }
 
 /// Seconds of each run: `NIMA_SECONDS`, or 20.
 fn seconds() -> Duration {
-    let told = std::env::var("NIMA_SECONDS").ok().and_then(|text| text.parse().ok());
-    Duration::from_secs(told.unwrap_or(20))
+    let report = std::env::var("NIMA_SECONDS").ok().and_then(|text| text.parse().ok());
+    Duration::from_secs(report.unwrap_or(20))
 }
 
 /// Prints the age of the image on the screen.
@@ -206,7 +206,7 @@ fn figures_of_code_to_pixel() {
         let camera = Camera::start();
         let endoscope = format!("\n[endoscope]\nurl = \"{}\"\n", camera.url);
         let (mut seen, figures) = run(size, &endoscope, seconds());
-        println!("{size}: {}\n{}", seen.told(), told(&figures));
+        println!("{size}: {}\n{}", seen.report(), report(&figures));
         assert!(seen.ages_ms.len() > 20, "{seen:?}");
     }
 }
@@ -225,9 +225,9 @@ fn figures_of_the_loop_beside_the_picture() {
                 .zip(record)
                 .map(|(camera, record)| format!("\n[endoscope]\nurl = \"{}\"\nrecord = {record}\n", camera.url));
             let (mut seen, figures) = run("1280x720", &endoscope.collect::<String>(), seconds());
-            println!("{what}: {}", told(&figures));
+            println!("{what}: {}", report(&figures));
             if camera.is_some() {
-                println!("  {}", seen.told());
+                println!("  {}", seen.report());
             }
         }
     }

@@ -44,8 +44,8 @@ impl<'a> Day<'a> {
     /// The middle of the button that stands out.
     fn next(&self) -> Option<(i32, i32)> {
         let mut import = self.console.x.command("import");
-        let picture = import.args(["-window", "root", "-depth", "8", "rgb:-"]).output().unwrap().stdout;
-        let places = picture.chunks_exact(3).enumerate().filter(|(_, pixel)| *pixel == NEXT);
+        let image = import.args(["-window", "root", "-depth", "8", "rgb:-"]).output().unwrap().stdout;
+        let places = image.chunks_exact(3).enumerate().filter(|(_, pixel)| *pixel == NEXT);
         let places: Vec<_> = places.map(|(place, _)| (place % WIDTH, place / WIDTH)).collect();
         if places.len() < PIXELS_MIN {
             return None;
@@ -109,9 +109,9 @@ impl<'a> Day<'a> {
 /// The recorded session of the day, with wizards and the ready check, is replayed bit by bit.
 fn replays(session: &Path) {
     let replayed = Command::new(env!("CARGO_BIN_EXE_nima")).arg("replay").arg(session).output().unwrap();
-    let [told, errors] = [&replayed.stdout, &replayed.stderr].map(|bytes| String::from_utf8_lossy(bytes));
-    println!("{told}");
-    assert!(replayed.status.success(), "{}: {told}{errors}", session.display());
+    let [report, errors] = [&replayed.stdout, &replayed.stderr].map(|bytes| String::from_utf8_lossy(bytes));
+    println!("{report}");
+    assert!(replayed.status.success(), "{}: {report}{errors}", session.display());
 }
 
 #[test]

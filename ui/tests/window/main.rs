@@ -4,9 +4,9 @@
 mod code_to_pixel;
 mod console;
 mod first_day;
-mod past;
+mod peg_transfer;
+mod playback;
 mod player;
-mod playing;
 mod real_window;
 mod server;
 mod sessions;

@@ -14,7 +14,7 @@ use eframe::App as _;
 use egui::{Pos2, Rect, Vec2, pos2, vec2};
 use egui_kittest::{Harness, kittest::Queryable as _};
 use nalgebra::Vector3;
-use nima_console::console::{ConsoleApp, scene3d::Camera};
+use nima_console::console::{ConsoleApp, scene3d::SceneCamera};
 use nima_machine::rig::{SIDES, Side};
 use nima_simulation::{scene::Scene, start_watched};
 
@@ -49,13 +49,13 @@ const AROUND_M: f32 = 0.0135;
 pub(crate) struct Player<'a> {
     console: Console<'a>,
     scene: Scene,
-    camera: Camera,
+    camera: SceneCamera,
     views: Views,
     /// The one that is on the screen.
     view: Rect,
     led: Side,
     /// Target positions of the tips, m, and the last drag positions.
-    at_m: [Vector3<f32>; SIDES],
+    position_m: [Vector3<f32>; SIDES],
     goal: [Option<[f32; 2]>; SIDES],
     /// Pending commands for `xdotool`.
     steps: Vec<String>,
@@ -101,13 +101,13 @@ impl<'a> Player<'a> {
         let options = ["--rig", &rig, "--scene", "rings", "--role", "technician", "--at-rest"];
         let console = Console::begin(x, folder, &options);
         let scene = Scene::load("rings").unwrap();
-        let camera = Camera::of(&scene);
+        let camera = SceneCamera::of(&scene);
         let view = views.calm;
-        let at_m = [Vector3::zeros(); SIDES];
+        let position_m = [Vector3::zeros(); SIDES];
         let goal = [None; SIDES];
         let led = Side::Right;
         let steps = Vec::new();
-        let mut player = Self { console, scene, camera, views, view, led, at_m, goal, steps };
+        let mut player = Self { console, scene, camera, views, view, led, position_m, goal, steps };
         player.keys("m", 1);
         player.perform();
         thread::sleep(Duration::from_millis(300));
@@ -120,7 +120,7 @@ impl<'a> Player<'a> {
         player
     }
 
-    fn picture(&self, part: Rect) -> Picture {
+    fn image(&self, part: Rect) -> Picture {
         let part = part.intersect(Rect::from_min_size(Pos2::ZERO, WINDOW.into()));
         let corner = part.min.round();
         let size = part.size().round();
@@ -133,8 +133,8 @@ impl<'a> Player<'a> {
         Picture { corner, width: size.x as usize, rgb }
     }
 
-    fn place(&self, at_m: &Vector3<f32>) -> Pos2 {
-        self.camera.project(at_m, self.view).unwrap()
+    fn place(&self, position_m: &Vector3<f32>) -> Pos2 {
+        self.camera.project(position_m, self.view).unwrap()
     }
 
     fn level(&self, place: Pos2, height_m: f32) -> Vector3<f32> {
@@ -142,18 +142,18 @@ impl<'a> Player<'a> {
     }
 
     fn at(&self) -> Vector3<f32> {
-        self.at_m[self.led.index()]
+        self.position_m[self.led.index()]
     }
 
     /// Finds the tip, which is on its own side: the line below it ends on the board.
     fn find_tip(&mut self) {
         let began = Instant::now();
-        self.at_m[self.led.index()] = loop {
-            let picture = self.picture(self.view);
-            let green = picture.places(is_green);
+        self.position_m[self.led.index()] = loop {
+            let image = self.image(self.view);
+            let green = image.places(is_green);
             let lowest = green.iter().copied().max_by(|one, other| one.y.total_cmp(&other.y));
             let is_right = self.led == Side::Right;
-            let mark = picture.mark().filter(|(tip, _)| (tip.x > self.view.center().x) == is_right);
+            let mark = image.mark().filter(|(tip, _)| (tip.x > self.view.center().x) == is_right);
             if let Some(((tip, _), lowest)) = mark.zip(lowest) {
                 // Half of the mark below.
                 let foot_m = self.level(lowest - vec2(0.0, 2.0), 0.0);
@@ -200,15 +200,15 @@ impl<'a> Player<'a> {
     fn height(&mut self, to_m: f32) {
         let steps = ((to_m - self.at().z) * 1e3).round();
         self.keys(if steps > 0.0 { "Page_Up" } else { "Page_Down" }, steps.abs() as usize);
-        self.at_m[self.led.index()].z += steps * 1e-3;
+        self.position_m[self.led.index()].z += steps * 1e-3;
     }
 
     /// Drags the tip to this position, at its height.
     pub(crate) fn drag(&mut self, [x, y]: [f32; 2]) {
-        let at_m = self.at();
+        let position_m = self.at();
         self.goal[self.led.index()] = Some([x, y]);
-        let from = self.place(&at_m);
-        let way = (self.place(&Vector3::new(x, y, at_m.z)) - from).round();
+        let from = self.place(&position_m);
+        let way = (self.place(&Vector3::new(x, y, position_m.z)) - from).round();
         if way == Vec2::ZERO {
             return;
         }
@@ -224,7 +224,7 @@ impl<'a> Player<'a> {
                 self.tool(&[then, "1"]);
             }
         }
-        self.at_m[self.led.index()] = self.level(from + way, at_m.z);
+        self.position_m[self.led.index()] = self.level(from + way, position_m.z);
     }
 
     /// Performs the queued commands and waits until the tip has arrived, and holds a ring or not as expected.
@@ -234,7 +234,7 @@ impl<'a> Player<'a> {
         let mut looked = Instant::now();
         loop {
             let wanted = self.place(&self.at());
-            let seen = self.picture(Rect::from_center_size(wanted, Vec2::splat(80.0))).mark();
+            let seen = self.image(Rect::from_center_size(wanted, Vec2::splat(80.0))).mark();
             if seen.is_some_and(|(tip, held)| held == holds && tip.distance(wanted) < NEAR) {
                 return;
             }
@@ -243,8 +243,8 @@ impl<'a> Player<'a> {
                 looked = Instant::now();
             }
             if began.elapsed() > PATIENCE {
-                let anywhere = self.picture(self.view).mark();
-                self.keep_picture();
+                let anywhere = self.image(self.view).mark();
+                self.keep_image();
                 panic!(
                     "{what}, {} side: wanted at {wanted:?}, holding {holds}; seen there {seen:?}, anywhere {anywhere:?}",
                     self.led.word()
@@ -256,7 +256,7 @@ impl<'a> Player<'a> {
     /// A loop that this machine delays raises an alarm, whose strip moves the field.
     fn sees_alarm(&self) -> bool {
         let strip = Rect::from_min_size(pos2(0.0, 60.0), vec2(WINDOW[0], 70.0));
-        self.picture(strip).places(|pixel| ALARMS.contains(&pixel)).len() > ALARM_PIXELS
+        self.image(strip).places(|pixel| ALARMS.contains(&pixel)).len() > ALARM_PIXELS
     }
 
     /// Finds the field again.
@@ -272,17 +272,17 @@ impl<'a> Player<'a> {
     /// If a tip is not at its drag position, the field has moved meanwhile: the tip is dragged once more.
     fn look_again(&mut self) {
         self.find_field();
-        let mark = self.picture(self.view).mark();
+        let mark = self.image(self.view).mark();
         let goal = self.goal[self.led.index()];
         if let Some(((tip, _), goal)) = mark.zip(goal) {
-            self.at_m[self.led.index()] = self.level(tip, self.at().z);
+            self.position_m[self.led.index()] = self.level(tip, self.at().z);
             self.drag(goal);
             self.perform();
         }
     }
 
     /// For debugging: saves to the folder in `NIMA_PICTURES`.
-    pub(crate) fn keep_picture(&self) {
+    pub(crate) fn keep_image(&self) {
         if let Some(folder) = std::env::var_os("NIMA_PICTURES") {
             let path = Path::new(&folder).join("playing.png");
             self.console.x.command("import").args(["-window", "root"]).arg(path).status().unwrap();
@@ -295,7 +295,7 @@ impl<'a> Player<'a> {
     }
 
     fn peg(&self, number: usize) -> [f32; 2] {
-        self.scene.objects.as_ref().unwrap().pegs.at_m[number].map(|m| m as f32)
+        self.scene.objects.as_ref().unwrap().pegs.position_m[number].map(|m| m as f32)
     }
 
     /// The centre of the ring around this peg.
@@ -306,7 +306,7 @@ impl<'a> Player<'a> {
             }
             self.find_field();
         }
-        self.keep_picture();
+        self.keep_image();
         panic!("no ring lies around the peg at {peg:?} m");
     }
 
@@ -314,7 +314,7 @@ impl<'a> Player<'a> {
         let foot_m = Vector3::new(x, y, LIES_M);
         let corners = [[-1.0, -1.0], [-1.0, 1.0], [1.0, -1.0], [1.0, 1.0]];
         let corners = corners.map(|[right, away]| self.place(&(foot_m + Vector3::new(right, away, 0.0) * AROUND_M)));
-        let orange = self.picture(Rect::from_points(&corners)).places(is_of_ring);
+        let orange = self.image(Rect::from_points(&corners)).places(is_of_ring);
         let on_board = orange.iter().map(|place| self.level(*place, LIES_M) - foot_m);
         let near: Vec<Pos2> =
             on_board.filter(|from_foot_m| from_foot_m.norm() < AROUND_M).map(|from| pos2(from.x, from.y)).collect();

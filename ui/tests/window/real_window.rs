@@ -24,14 +24,10 @@ fn the_window_opens_shows_changing_frames_and_closes() {
     let root = folder.path().join("root.png");
     assert!(x.command("import").args(["-window", "root"]).arg(&root).status().unwrap().success());
     assert!(nima.wait().unwrap().success(), "the console closes by itself with success");
-    for picture in [root, own] {
-        let (colours, commonest) = colours(&picture);
-        println!(
-            "{}: {colours} colours, the commonest on {:.0} % of the picture",
-            picture.display(),
-            commonest * 100.0
-        );
-        assert!(colours > 500 && commonest < 0.8, "{}: blank or nearly so", picture.display());
+    for image in [root, own] {
+        let (colours, commonest) = colours(&image);
+        println!("{}: {colours} colours, the commonest on {:.0} % of the picture", image.display(), commonest * 100.0);
+        assert!(colours > 500 && commonest < 0.8, "{}: blank or nearly so", image.display());
     }
 }
 
@@ -63,11 +59,11 @@ fn a_window_that_is_asked_to_end_writes_its_figures_and_closes() {
 
 /// Number of colours of an image, and fraction of the most common one.
 fn colours(path: &std::path::Path) -> (usize, f64) {
-    let picture = image::open(path).unwrap().to_rgb8();
+    let image = image::open(path).unwrap().to_rgb8();
     let mut counts: HashMap<[u8; 3], u32> = HashMap::new();
-    for pixel in picture.pixels() {
+    for pixel in image.pixels() {
         *counts.entry(pixel.0).or_default() += 1;
     }
     let commonest = counts.values().copied().max().unwrap_or(0);
-    (counts.len(), f64::from(commonest) / f64::from(picture.width() * picture.height()))
+    (counts.len(), f64::from(commonest) / f64::from(image.width() * image.height()))
 }

@@ -3,7 +3,7 @@
 #![cfg(target_os = "linux")]
 use std::{path::Path, thread, time::Duration};
 
-use nima_recording::{messages::foxglove::Log, session::Reader};
+use nima_recording::{messages::foxglove::Log, session::SessionReader};
 use nima_tests::emulated;
 use prost::Message as _;
 
@@ -45,7 +45,7 @@ fn marks(folder: &Path) -> serde_json::Value {
     let mut words = Vec::new();
     for entry in std::fs::read_dir(folder.join("sessions")).unwrap() {
         let path = entry.unwrap().path();
-        let reader = Reader::open(&path).unwrap();
+        let reader = SessionReader::open(&path).unwrap();
         let lines = reader.messages(&["log"], 0..u64::MAX).map(|line| Log::decode(line.unwrap().data()).unwrap());
         words.extend(lines.filter(|line| line.name == "mark").map(|line| line.message));
     }

@@ -3,7 +3,7 @@
 use nalgebra::{Rotation3, SMatrix, SVector, UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize};
 
-use super::solver::Row;
+use super::solver::PushRow;
 
 /// The sensor in whose axes the offset is constant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -19,7 +19,7 @@ pub enum OffsetFrame {
 /// squares together with the rotation, so that the rotation cannot absorb them.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Diagnosis {
+pub struct SensorDiagnosis {
     /// Force of the wrist sensor divided by the force of the tissue sensor.
     pub gain: f64,
     pub gain_se: f64,
@@ -29,7 +29,7 @@ pub struct Diagnosis {
     pub offset_frame: OffsetFrame,
 }
 
-impl Diagnosis {
+impl SensorDiagnosis {
     pub fn offset_norm_n(&self) -> f64 {
         Vector3::from(self.offset_n).norm()
     }
@@ -47,7 +47,7 @@ impl Diagnosis {
     }
 
     /// Estimates gain and offset around this rotation; `None` if the rows do not determine them.
-    pub(super) fn of(rows: &[Row], c_from_s2: &Rotation3<f64>) -> Option<Self> {
+    pub(super) fn of(rows: &[PushRow], c_from_s2: &Rotation3<f64>) -> Option<Self> {
         let wrist = joint_fit(rows, c_from_s2, |row, _| row.s1_from_c.inverse())?;
         let tissue = joint_fit(rows, c_from_s2, |_, c_from_s2| UnitQuaternion::from(*c_from_s2));
         let (fit, offset_frame) = match tissue {
@@ -79,9 +79,9 @@ struct JointFit {
 /// Gauss-Newton on `c = gain R s2 + T offset` with `T = c_from_offset` of each row; nearly linear, so a few steps are
 /// enough.
 fn joint_fit(
-    rows: &[Row],
+    rows: &[PushRow],
     start: &Rotation3<f64>,
-    c_from_offset: impl Fn(&Row, &Rotation3<f64>) -> UnitQuaternion<f64>,
+    c_from_offset: impl Fn(&PushRow, &Rotation3<f64>) -> UnitQuaternion<f64>,
 ) -> Option<JointFit> {
     let freedom = (3 * rows.len()).checked_sub(UNKNOWNS).filter(|&freedom| freedom > 0)?;
     let mut rotation = *start;

@@ -6,7 +6,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use nalgebra::{Rotation3, Vector3};
 
-use super::solver::Row;
+use super::solver::PushRow;
 
 /// Starting points (roll, pitch, yaw, rad): one of them is within 90 degrees of any rotation.
 const STARTS: [[f64; 3]; 6] = [
@@ -17,14 +17,14 @@ const STARTS: [[f64; 3]; 6] = [
     [FRAC_PI_2, 0.6, -FRAC_PI_2],
     [-FRAC_PI_2, -0.6, FRAC_PI_2],
 ];
-const MOST_STEPS: usize = 400;
+const MAX_STEPS: usize = 400;
 /// Size of a converged simplex, rad.
 const FINE: f64 = 1e-9;
 
-type Vertex = (Vector3<f64>, f64);
+type EulerVertex = (Vector3<f64>, f64);
 
 /// Returns the rotation with the smallest squared residual that the search finds.
-pub(super) fn search(rows: &[Row]) -> Rotation3<f64> {
+pub(super) fn search(rows: &[PushRow]) -> Rotation3<f64> {
     let cost = |angles: &Vector3<f64>| {
         let rotation = rotation(angles);
         rows.iter().map(|row| row.residual_n(&rotation).norm_squared()).sum::<f64>()
@@ -44,11 +44,11 @@ fn rotation(angles: &Vector3<f64>) -> Rotation3<f64> {
     Rotation3::from_euler_angles(angles.x, angles.y, angles.z)
 }
 
-fn simplex(start: Vector3<f64>, cost: &impl Fn(&Vector3<f64>) -> f64) -> Vertex {
+fn simplex(start: Vector3<f64>, cost: &impl Fn(&Vector3<f64>) -> f64) -> EulerVertex {
     let at = |point: Vector3<f64>| (point, cost(&point));
     let mut vertices =
         [at(start), at(start + Vector3::x() * 0.5), at(start + Vector3::y() * 0.5), at(start + Vector3::z() * 0.5)];
-    for _ in 0..MOST_STEPS {
+    for _ in 0..MAX_STEPS {
         vertices.sort_by(|a, b| a.1.total_cmp(&b.1));
         let [best, _, second_worst, worst] = vertices;
         if (worst.0 - best.0).norm() < FINE {

@@ -3,13 +3,13 @@
 use nalgebra::{Matrix3, Vector3};
 use serde::Serialize;
 
-use super::solver::Row;
+use super::solver::PushRow;
 
 /// Distribution of the pushes over directions. Ratios are root mean squares along the principal axes of the push
 /// directions (unit vectors, so that strength does not matter); each is the smallest over both sensors and over all
 /// subsets without one fold of the pushes, so that no direction depends on a single push.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Excitation {
+pub struct CorrespondenceExcitation {
     /// Second axis relative to the first: near zero if all pushes lie along one line.
     pub second: f64,
     /// Third axis relative to the first: near zero if all pushes lie in one plane.
@@ -20,14 +20,14 @@ pub struct Excitation {
     pub rank: usize,
 }
 
-impl Excitation {
+impl CorrespondenceExcitation {
     /// Computes the excitation of these rows; `folds` are the ranges of rows to leave out in turn.
-    pub(super) fn of(rows: &[Row], folds: &[std::ops::Range<usize>], least_spread: f64) -> Self {
+    pub(super) fn of(rows: &[PushRow], folds: &[std::ops::Range<usize>], min_spread: f64) -> Self {
         if rows.is_empty() {
             return Self::default();
         }
         let mut found = Self { second: 1.0, third: 1.0, weakest_n: f64::INFINITY, rank: 0 };
-        for force in [|row: &Row| row.c_n, |row: &Row| row.s2_n] {
+        for force in [|row: &PushRow| row.c_n, |row: &PushRow| row.s2_n] {
             let directions = Scatter::of(rows, |row| force(row).try_normalize(1e-9).unwrap_or_default());
             let forces = Scatter::of(rows, force);
             found.note(&directions.without(&[]));
@@ -36,7 +36,7 @@ impl Excitation {
                 found.note(&directions.without(&directions.vectors[fold.clone()]));
             }
         }
-        found.rank = 1 + usize::from(found.second >= least_spread) + usize::from(found.third >= least_spread);
+        found.rank = 1 + usize::from(found.second >= min_spread) + usize::from(found.third >= min_spread);
         found
     }
 
@@ -58,7 +58,7 @@ struct Scatter {
 }
 
 impl Scatter {
-    fn of(rows: &[Row], vector: impl Fn(&Row) -> Vector3<f64>) -> Self {
+    fn of(rows: &[PushRow], vector: impl Fn(&PushRow) -> Vector3<f64>) -> Self {
         let vectors: Vec<_> = rows.iter().map(vector).collect();
         let sum = vectors.iter().map(|v| v * v.transpose()).sum();
         Self { vectors, sum }

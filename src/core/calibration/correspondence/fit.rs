@@ -5,10 +5,10 @@ use std::ops::Range;
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
 use super::{
-    Agreement, CorrespondenceError, CorrespondenceReport, Diagnosis, Excitation, Limits, OffsetFrame, Options, Pair,
-    Solution, Target, euler,
+    CorrespondenceError, CorrespondenceExcitation, CorrespondenceLimits, CorrespondenceOptions, CorrespondenceReport,
+    CorrespondenceSolution, FitTarget, OffsetFrame, PushAgreement, PushPair, SensorDiagnosis, euler,
     report::parts,
-    solver::{Row, consensus, wahba},
+    solver::{PushRow, consensus, wahba},
 };
 use crate::calibration::Verdict;
 
@@ -17,7 +17,7 @@ const PLAUSIBLE_N: f64 = 1e4;
 /// Up to this number of pairs each is held out alone; above it, a tenth at a time.
 const ALONE: usize = 20;
 /// With fewer rows the residual of a rotation is meaningless.
-const LEAST_SOLVABLE: usize = 3;
+const MIN_SOLVABLE: usize = 3;
 
 /// Fits the rotation between both sensors and evaluates it. Pairs in the order recorded; a few hundred rows take about
 /// a millisecond. Returns `Err` only for numbers that cannot be forces or rotations; all other data get a verdict.
@@ -27,36 +27,36 @@ const LEAST_SOLVABLE: usize = 3;
 ///
 /// ```
 /// use nalgebra::{UnitQuaternion, Vector3};
-/// use nima_core::calibration::correspondence::{Options, Pair, fit};
+/// use nima_core::calibration::correspondence::{CorrespondenceOptions, PushPair, fit};
 ///
 /// let s1_from_s2 = UnitQuaternion::from_euler_angles(0.1, -0.4, 1.2);
 /// let push = |i: u32| {
 ///     let (a, b) = (f64::from(i) * 0.9, f64::from(i) * 0.5);
 ///     let f2_n = Vector3::new(a.cos() * b.cos(), a.sin() * b.cos(), b.sin()) * 5.0;
-///     Pair::plain(s1_from_s2 * f2_n, f2_n)
+///     PushPair::plain(s1_from_s2 * f2_n, f2_n)
 /// };
-/// let pairs: Vec<Pair> = (0..30).map(push).collect();
-/// let found = fit(&pairs, &Options::default())?.solution.expect("pushes in all directions").rotation();
+/// let pairs: Vec<PushPair> = (0..30).map(push).collect();
+/// let found = fit(&pairs, &CorrespondenceOptions::default())?.solution.expect("pushes in all directions").rotation();
 /// assert!(found.angle_to(&s1_from_s2).to_degrees() < 0.01);
 /// # Ok::<(), nima_core::calibration::correspondence::CorrespondenceError>(())
 /// ```
-pub fn fit(pairs: &[Pair], options: &Options) -> Result<CorrespondenceReport, CorrespondenceError> {
+pub fn fit(pairs: &[PushPair], options: &CorrespondenceOptions) -> Result<CorrespondenceReport, CorrespondenceError> {
     check(pairs)?;
     let limits = &options.limits;
-    let strong = |pair: &Pair| pair.f1_n.norm().min(pair.f2_n.norm()) >= limits.least_force_n;
+    let strong = |pair: &PushPair| pair.f1_n.norm().min(pair.f2_n.norm()) >= limits.min_force_n;
     let (used, weak): (Vec<usize>, Vec<usize>) = (0..pairs.len()).partition(|&index| strong(&pairs[index]));
-    let rows: Vec<Row> = used.iter().map(|&index| Row::of(&pairs[index], options.flip_s2)).collect();
+    let rows: Vec<PushRow> = used.iter().map(|&index| PushRow::of(&pairs[index], options.flip_s2)).collect();
     let found = consensus(&rows);
     let outliers: Vec<usize> = used.iter().zip(&found.inlier).filter(|&(_, &good)| !good).map(|(&i, _)| i).collect();
-    let good: Vec<Row> = rows.iter().zip(&found.inlier).filter(|&(_, &good)| good).map(|(row, _)| *row).collect();
+    let good: Vec<PushRow> = rows.iter().zip(&found.inlier).filter(|&(_, &good)| good).map(|(row, _)| *row).collect();
     let folds = folds(good.len());
-    let excitation = Excitation::of(&good, &folds, limits.least_spread);
+    let excitation = CorrespondenceExcitation::of(&good, &folds, limits.min_spread);
     let target = if pairs.iter().all(|pair| pair.s1_from_c == UnitQuaternion::identity()) {
-        Target::S1FromS2
+        FitTarget::S1FromS2
     } else {
-        Target::CFromS2
+        FitTarget::CFromS2
     };
-    let solution = (good.len() >= LEAST_SOLVABLE).then(|| solve(&good, &folds, target));
+    let solution = (good.len() >= MIN_SOLVABLE).then(|| solve(&good, &folds, target));
     let mut report = CorrespondenceReport {
         verdict: Verdict::InsufficientMotion,
         reason: String::new(),
@@ -71,7 +71,7 @@ pub fn fit(pairs: &[Pair], options: &Options) -> Result<CorrespondenceReport, Co
     Ok(report)
 }
 
-fn check(pairs: &[Pair]) -> Result<(), CorrespondenceError> {
+fn check(pairs: &[PushPair]) -> Result<(), CorrespondenceError> {
     for (index, pair) in pairs.iter().enumerate() {
         let forces = [pair.f1_n, pair.f2_n];
         let numbers = forces.iter().flatten().chain(pair.s1_from_c.coords.iter());
@@ -93,7 +93,7 @@ fn folds(rows: usize) -> Vec<Range<usize>> {
     (0..count).map(|fold| fold * rows / count..(fold + 1) * rows / count).collect()
 }
 
-fn solve(good: &[Row], folds: &[Range<usize>], target: Target) -> Solution {
+fn solve(good: &[PushRow], folds: &[Range<usize>], target: FitTarget) -> CorrespondenceSolution {
     let rotation = wahba(good);
     let f1_n: Vec<_> = good.iter().map(|row| row.s1_from_c * row.c_n).collect();
     let fitted_n: Vec<_> = good.iter().map(|row| row.residual_in_s1_n(&rotation)).collect();
@@ -105,21 +105,21 @@ fn solve(good: &[Row], folds: &[Range<usize>], target: Target) -> Solution {
     let freedom = (3 * good.len() - 3) as f64;
     let noise_n = (fitted_n.iter().map(Vector3::norm_squared).sum::<f64>() / freedom).sqrt();
     let (rotation_wxyz, roll_pitch_yaw_deg) = parts(&rotation.into());
-    Solution {
+    CorrespondenceSolution {
         target,
         rotation_wxyz,
         roll_pitch_yaw_deg,
-        agreement: Agreement::of(&f1_n, &fitted_n, &held_out_n),
+        agreement: PushAgreement::of(&f1_n, &fitted_n, &held_out_n),
         noise_n,
         uncertainty_deg: uncertainty_deg(good, noise_n),
         cross_check_deg: UnitQuaternion::from(rotation).angle_to(&euler::search(good).into()).to_degrees(),
-        diagnosis: Diagnosis::of(good, &rotation),
+        diagnosis: SensorDiagnosis::of(good, &rotation),
     }
 }
 
 /// Returns the root mean square angular error from the information of the pushes, `sum [f]x^T [f]x / noise^2`; at most
 /// 180.
-fn uncertainty_deg(good: &[Row], noise_n: f64) -> f64 {
+fn uncertainty_deg(good: &[PushRow], noise_n: f64) -> f64 {
     let information: Matrix3<f64> =
         good.iter().map(|row| row.s2_n.cross_matrix().transpose() * row.s2_n.cross_matrix()).sum();
     let variance = information.try_inverse().map_or(f64::INFINITY, |inverse| noise_n * noise_n * inverse.trace());
@@ -130,24 +130,24 @@ fn uncertainty_deg(good: &[Row], noise_n: f64) -> f64 {
 /// Returns a wrong sign or an inverted rotation that explains the pushes at least twice as well as the input does.
 /// Valid only if the pushes span all three dimensions: in a plane, a change of sign equals half a turn.
 fn mistaken_input(
-    pairs: &[Pair],
+    pairs: &[PushPair],
     used: &[usize],
-    rows: &[Row],
+    rows: &[PushRow],
     median_n: f64,
-    options: &Options,
+    options: &CorrespondenceOptions,
 ) -> Option<&'static str> {
-    let spread = Excitation::of(rows, &[], options.limits.least_spread);
-    if rows.len() < options.limits.least_pairs || spread.rank < 3 {
+    let spread = CorrespondenceExcitation::of(rows, &[], options.limits.min_spread);
+    if rows.len() < options.limits.min_pairs || spread.rank < 3 {
         return None;
     }
-    let better = |edit: fn(&Pair) -> Pair| {
-        let rows: Vec<Row> = used.iter().map(|&index| Row::of(&edit(&pairs[index]), options.flip_s2)).collect();
+    let better = |edit: fn(&PushPair) -> PushPair| {
+        let rows: Vec<PushRow> = used.iter().map(|&index| PushRow::of(&edit(&pairs[index]), options.flip_s2)).collect();
         consensus(&rows).median_n < 0.5 * median_n
     };
-    if better(|pair| Pair { f2_n: -pair.f2_n, ..*pair }) {
+    if better(|pair| PushPair { f2_n: -pair.f2_n, ..*pair }) {
         return Some("the sensors report opposite forces (action and reaction); change the sign of sensor 2");
     }
-    if better(|pair| Pair { s1_from_c: pair.s1_from_c.inverse(), ..*pair }) {
+    if better(|pair| PushPair { s1_from_c: pair.s1_from_c.inverse(), ..*pair }) {
         return Some("the given rotations are inverse (c_from_s1); use s1_from_c");
     }
     None
@@ -157,7 +157,7 @@ fn judge(
     report: &CorrespondenceReport,
     used: usize,
     mistaken: Option<&'static str>,
-    limits: &Limits,
+    limits: &CorrespondenceLimits,
 ) -> (Verdict, String) {
     if let Some(reason) = mistaken {
         return (Verdict::PoorData, reason.to_owned());
@@ -187,25 +187,23 @@ fn judge(
     (Verdict::Accepted, reason)
 }
 
-fn lack_of_motion(report: &CorrespondenceReport, used: usize, limits: &Limits) -> Option<String> {
-    let Excitation { second, third, weakest_n, rank } = report.excitation;
-    if used < limits.least_pairs {
-        let needed = limits.least_pairs;
-        let least_n = limits.least_force_n;
-        return Some(format!(
-            "only {used} pushes reach {least_n} N, {needed} are required; push more often and harder"
-        ));
+fn lack_of_motion(report: &CorrespondenceReport, used: usize, limits: &CorrespondenceLimits) -> Option<String> {
+    let CorrespondenceExcitation { second, third, weakest_n, rank } = report.excitation;
+    if used < limits.min_pairs {
+        let needed = limits.min_pairs;
+        let min_n = limits.min_force_n;
+        return Some(format!("only {used} pushes reach {min_n} N, {needed} are required; push more often and harder"));
     }
     let agree = used - report.outliers.len();
-    if agree < limits.least_pairs && share(report.outliers.len(), used) <= limits.outlier_share {
-        return Some(format!("only {agree} pushes agree, {} are required; push more often", limits.least_pairs));
+    if agree < limits.min_pairs && fraction(report.outliers.len(), used) <= limits.outlier_fraction {
+        return Some(format!("only {agree} pushes agree, {} are required; push more often", limits.min_pairs));
     }
     match rank {
         0 | 1 => Some(format!("the pushes lie along one line (spread {second:.2}); push in all directions")),
         2 => Some(format!("the pushes lie in one plane (spread {third:.2}); push in other directions too")),
         _ => {
             let noise_n = report.solution.as_ref()?.noise_n;
-            (weakest_n < limits.least_signal * noise_n).then(|| {
+            (weakest_n < limits.min_signal * noise_n).then(|| {
                 format!(
                     "along their weakest axis the pushes ({weakest_n:.2} N) are not clearly above the noise ({noise_n:.2} N); \
                      push harder there"
@@ -215,31 +213,34 @@ fn lack_of_motion(report: &CorrespondenceReport, used: usize, limits: &Limits) -
     }
 }
 
-fn disagreement(report: &CorrespondenceReport, solution: &Solution, used: usize, limits: &Limits) -> Option<String> {
+fn disagreement(
+    report: &CorrespondenceReport,
+    solution: &CorrespondenceSolution,
+    used: usize,
+    limits: &CorrespondenceLimits,
+) -> Option<String> {
     let outliers = report.outliers.len();
-    if share(outliers, used) > limits.outlier_share {
+    if fraction(outliers, used) > limits.outlier_fraction {
         return Some(format!("{outliers} of {used} pushes contradict the others; repeat them"));
     }
     if let Some(diagnosis) = &solution.diagnosis {
         if diagnosis.gain_is_off(limits.gain_error) {
-            return Some(gain_in_words(diagnosis.gain));
+            return Some(gain_text(diagnosis.gain));
         }
         if diagnosis.offset_is_off(limits.offset_n) {
-            return Some(offset_in_words(diagnosis));
+            return Some(offset_text(diagnosis));
         }
     }
     let agreement = &solution.agreement;
     let mae_n = worst(&agreement.residuals.held_out.mae);
     if mae_n > limits.held_out_mae_n {
-        let most_n = limits.held_out_mae_n;
-        return Some(format!("the error on held-out pushes is {mae_n:.2} N on the worst axis (limit {most_n} N)"));
+        let max_n = limits.held_out_mae_n;
+        return Some(format!("the error on held-out pushes is {mae_n:.2} N on the worst axis (limit {max_n} N)"));
     }
-    if agreement.r2_held_out_overall < limits.least_r2 {
+    if agreement.r2_held_out_overall < limits.min_r2 {
         let r2 = agreement.r2_held_out_overall;
-        let least = limits.least_r2;
-        return Some(format!(
-            "the rotation explains only {r2:.2} of the variance of held-out forces (minimum {least})"
-        ));
+        let min = limits.min_r2;
+        return Some(format!("the rotation explains only {r2:.2} of the variance of held-out forces (minimum {min})"));
     }
     let angle_deg = solution.cross_check_deg;
     // Written so that NaN is refused as well.
@@ -248,7 +249,7 @@ fn disagreement(report: &CorrespondenceReport, solution: &Solution, used: usize,
         .then(|| format!("the two solvers differ by {angle_deg:.2} degrees; the pushes do not determine the rotation"))
 }
 
-fn gain_in_words(gain: f64) -> String {
+fn gain_text(gain: f64) -> String {
     if gain < 1.0 {
         format!(
             "sensor 2 reads {:.0} % more than sensor 1; check units and calibration of both",
@@ -259,7 +260,7 @@ fn gain_in_words(gain: f64) -> String {
     }
 }
 
-fn offset_in_words(diagnosis: &Diagnosis) -> String {
+fn offset_text(diagnosis: &SensorDiagnosis) -> String {
     let by_n = diagnosis.offset_norm_n();
     let which = match diagnosis.offset_frame {
         OffsetFrame::S1 => "sensor 1 was not zeroed, or its gravity is not compensated",
@@ -269,7 +270,7 @@ fn offset_in_words(diagnosis: &Diagnosis) -> String {
     format!("{which}: a constant {by_n:.2} N remains; set both sensors to zero without contact and repeat")
 }
 
-fn share(part: usize, of: usize) -> f64 {
+fn fraction(part: usize, of: usize) -> f64 {
     part as f64 / of.max(1) as f64
 }
 

@@ -3,7 +3,7 @@
 //! Takes pairs of gravity-free forces (N) that both sensors measured at the same time, and the known part of the chain
 //! `s1_from_c` of each; finds the `R = c_from_s2` that minimises `sum |s1_from_c_i R f2_i - f1_i|^2`. Without a chain
 //! (`s1_from_c` all identity) the result is `s1_from_s2`. Both sensors must measure the force on the instrument; for a
-//! sensor that measures the force on the tissue set [`Options::flip_s2`].
+//! sensor that measures the force on the tissue set [`CorrespondenceOptions::flip_s2`].
 //!
 //! The solver is Wahba's problem by singular values (Markley 1988) with a seeded consensus over pairs of pushes, so
 //! that a quarter of gross outliers does no harm; the paper's search over Euler angles serves as a cross-check. The
@@ -15,11 +15,11 @@ mod diagnosis;
 mod euler;
 mod excitation;
 mod fit;
+mod interval;
 mod record;
 mod report;
 mod session;
 mod solver;
-mod stretch;
 #[cfg(test)]
 mod tests;
 
@@ -28,15 +28,18 @@ use serde::{Deserialize, Serialize};
 
 use crate::frames::WristSample;
 
-pub use diagnosis::{Diagnosis, OffsetFrame};
-pub use excitation::Excitation;
+pub use diagnosis::{OffsetFrame, SensorDiagnosis};
+pub use excitation::CorrespondenceExcitation;
 pub use fit::fit;
 pub use record::{CorrespondenceKind, CorrespondenceRecord};
-pub use report::{Agreement, CorrespondenceReport, Solution, Target};
-pub use session::{CorrespondenceSession, Missing, Phase, PushTarget, Refusal, SessionSettings, TARGETS};
+pub use report::{CorrespondenceReport, CorrespondenceSolution, FitTarget, PushAgreement};
+pub use session::{
+    CorrespondencePhase, CorrespondenceSession, CorrespondenceSessionSettings, MissingInput, PushRefusal, PushTarget,
+    TARGETS,
+};
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pair {
+pub struct PushPair {
     /// Gravity-free force at the wrist, N (`s1`).
     pub f1_n: Vector3<f64>,
     /// Force at the sensor under the tissue, N (`s2`).
@@ -45,7 +48,7 @@ pub struct Pair {
     pub s1_from_c: UnitQuaternion<f64>,
 }
 
-impl Pair {
+impl PushPair {
     /// Creates a pair without a chain: the result is then `s1_from_s2`.
     pub fn plain(f1_n: Vector3<f64>, f2_n: Vector3<f64>) -> Self {
         Self { f1_n, f2_n, s1_from_c: UnitQuaternion::identity() }
@@ -55,7 +58,7 @@ impl Pair {
 /// A known correspondence: transforms readings of the sensor under the tissue to the frame of the wrist sensor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Correspondence {
-    pub target: Target,
+    pub target: FitTarget,
     /// Rotation from `s2` to the frame that `target` names.
     pub rotation: UnitQuaternion<f64>,
     /// The sensor under the tissue measures the force on the tissue, not on the instrument.
@@ -67,8 +70,8 @@ impl Correspondence {
     /// `None` if the sample lacks a rotation of the chain.
     pub fn tip_force_s1(&self, sample: &WristSample, tissue_n: &Vector3<f64>) -> Option<Vector3<f64>> {
         let s1_from_s2 = match self.target {
-            Target::CFromS2 => sample.s1_from_c()? * self.rotation,
-            Target::S1FromS2 => self.rotation,
+            FitTarget::CFromS2 => sample.s1_from_c()? * self.rotation,
+            FitTarget::S1FromS2 => self.rotation,
         };
         let on_tip_n = if self.flip_s2 { -tissue_n } else { *tissue_n };
         Some(s1_from_s2 * on_tip_n)
@@ -76,30 +79,36 @@ impl Correspondence {
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Options {
+pub struct CorrespondenceOptions {
     /// Invert the forces of `s2`: the sensor measures the force on the tissue, not on the instrument.
     pub flip_s2: bool,
-    pub limits: Limits,
+    pub limits: CorrespondenceLimits,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
-pub struct Limits {
-    pub least_pairs: usize,
+pub struct CorrespondenceLimits {
+    #[serde(rename = "least_pairs")]
+    pub min_pairs: usize,
     /// Pushes weaker than this on either sensor are left out, N.
-    pub least_force_n: f64,
+    #[serde(rename = "least_force_n")]
+    pub min_force_n: f64,
     /// Minimum spread of the push directions along their weakest axis relative to their strongest, with any tenth of
     /// the pushes left out. 1 is uniform over all directions, 0 a plane; a cone of half angle 25 degrees has 0.22.
-    pub least_spread: f64,
+    #[serde(rename = "least_spread")]
+    pub min_spread: f64,
     /// Minimum force along the weakest axis, as a multiple of the residuals' noise, so that noise does not count as a
     /// direction.
-    pub least_signal: f64,
+    #[serde(rename = "least_signal")]
+    pub min_signal: f64,
     pub uncertainty_deg: f64,
-    pub outlier_share: f64,
+    #[serde(rename = "outlier_share")]
+    pub outlier_fraction: f64,
     /// Maximum held-out mean absolute error of any axis, N (the paper's worst axis has 0.13).
     pub held_out_mae_n: f64,
     /// Minimum held-out coefficient of determination over all axes (the paper has 0.95).
-    pub least_r2: f64,
+    #[serde(rename = "least_r2")]
+    pub min_r2: f64,
     /// Maximum deviation of the ratio of both sensors' forces from one.
     pub gain_error: f64,
     pub offset_n: f64,
@@ -107,17 +116,17 @@ pub struct Limits {
     pub cross_check_deg: f64,
 }
 
-impl Default for Limits {
+impl Default for CorrespondenceLimits {
     fn default() -> Self {
         Self {
-            least_pairs: 6,
-            least_force_n: 0.5,
-            least_spread: 0.2,
-            least_signal: 3.0,
+            min_pairs: 6,
+            min_force_n: 0.5,
+            min_spread: 0.2,
+            min_signal: 3.0,
             uncertainty_deg: 1.5,
-            outlier_share: 0.25,
+            outlier_fraction: 0.25,
             held_out_mae_n: 0.15,
-            least_r2: 0.9,
+            min_r2: 0.9,
             gain_error: 0.1,
             offset_n: 0.15,
             cross_check_deg: 0.1,

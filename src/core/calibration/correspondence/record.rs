@@ -2,10 +2,10 @@ use nalgebra::UnitQuaternion;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    Agreement, Correspondence, CorrespondenceReport, Diagnosis, Target,
+    Correspondence, CorrespondenceReport, FitTarget, PushAgreement, SensorDiagnosis,
     report::{from_wxyz, parts},
 };
-use crate::calibration::{Judgement, Record, RecordHead};
+use crate::calibration::{CalibrationRecord, Judgement, RecordHead};
 
 /// Type of the record; a file of another kind is refused on reading.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -24,7 +24,7 @@ pub struct CorrespondenceRecord {
     pub head: RecordHead,
     #[serde(flatten)]
     pub judgement: Judgement,
-    pub target: Target,
+    pub target: FitTarget,
     /// The sensor under the tissue measured the force on the tissue: its sign was inverted before the fit.
     pub flip_s2: bool,
     pub pairs: usize,
@@ -33,9 +33,9 @@ pub struct CorrespondenceRecord {
     /// The rotation as roll, pitch, yaw, degrees; for readers of the file, ignored on loading.
     pub roll_pitch_yaw_deg: [f64; 3],
     pub uncertainty_deg: f64,
-    pub agreement: Agreement,
+    pub agreement: PushAgreement,
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub diagnosis: Option<Diagnosis>,
+    pub diagnosis: Option<SensorDiagnosis>,
 }
 
 impl CorrespondenceRecord {
@@ -66,7 +66,7 @@ impl CorrespondenceRecord {
     }
 }
 
-impl Record for CorrespondenceRecord {
+impl CalibrationRecord for CorrespondenceRecord {
     const KIND: &'static str = "correspondence";
 
     fn head(&self) -> &RecordHead {

@@ -1,7 +1,7 @@
 use nalgebra::{UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize};
 
-use super::{Diagnosis, Excitation};
+use super::{CorrespondenceExcitation, SensorDiagnosis};
 use crate::{
     calibration::{AxisStats, Residuals, Verdict},
     frames,
@@ -9,14 +9,14 @@ use crate::{
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Target {
+pub enum FitTarget {
     /// `c_from_s2`: the remaining chain was given with each push.
     CFromS2,
     /// `s1_from_s2`: no chain was given.
     S1FromS2,
 }
 
-impl Target {
+impl FitTarget {
     /// Returns the name in files.
     pub const fn name(self) -> &'static str {
         match self {
@@ -30,7 +30,7 @@ impl Target {
 /// Held out: each push (each tenth of them, in order, beyond 20) is compared with a rotation fitted to the others.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Agreement {
+pub struct PushAgreement {
     pub residuals: Residuals,
     /// Coefficient of determination per axis of the fit, `1 - sum e^2 / sum (f - mean)^2`.
     pub r2_fitted: [f64; 3],
@@ -42,7 +42,7 @@ pub struct Agreement {
     pub r2_held_out_overall: f64,
 }
 
-impl Agreement {
+impl PushAgreement {
     /// Computes the agreement from the forces of `s1` and the errors (N), pair by pair.
     pub(super) fn of(f1_n: &[Vector3<f64>], fitted_n: &[Vector3<f64>], held_out_n: &[Vector3<f64>]) -> Self {
         let (r2_fitted, r2_fitted_overall) = determination(f1_n, fitted_n);
@@ -61,18 +61,18 @@ fn determination(force_n: &[Vector3<f64>], error_n: &[Vector3<f64>]) -> ([f64; 3
     };
     let varied = squares(&mut force_n.iter().map(|force_n| force_n - mean_n));
     let unexplained = squares(&mut error_n.iter().copied());
-    let share = |unexplained: f64, varied: f64| if varied > 0.0 { 1.0 - unexplained / varied } else { 0.0 };
-    (unexplained.zip_map(&varied, share).into(), share(unexplained.sum(), varied.sum()))
+    let fraction = |unexplained: f64, varied: f64| if varied > 0.0 { 1.0 - unexplained / varied } else { 0.0 };
+    (unexplained.zip_map(&varied, fraction).into(), fraction(unexplained.sum(), varied.sum()))
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Solution {
-    pub target: Target,
+pub struct CorrespondenceSolution {
+    pub target: FitTarget,
     /// The rotation as a quaternion (w, x, y, z).
     pub rotation_wxyz: [f64; 4],
     /// The rotation as roll, pitch, yaw, degrees (`Rz Ry Rx`).
     pub roll_pitch_yaw_deg: [f64; 3],
-    pub agreement: Agreement,
+    pub agreement: PushAgreement,
     /// Noise of both sensors together per axis, N: standard deviation of the residuals.
     pub noise_n: f64,
     /// Expected angular error (root mean square), degrees, for noise that is independent from row to row.
@@ -80,10 +80,10 @@ pub struct Solution {
     /// Angle to the result of the paper's search over Euler angles on the same pushes, degrees.
     pub cross_check_deg: f64,
     /// Gain and offset between the sensors; `None` if the pushes do not determine them.
-    pub diagnosis: Option<Diagnosis>,
+    pub diagnosis: Option<SensorDiagnosis>,
 }
 
-impl Solution {
+impl CorrespondenceSolution {
     pub fn rotation(&self) -> UnitQuaternion<f64> {
         from_wxyz(&self.rotation_wxyz)
     }
@@ -111,7 +111,7 @@ pub struct CorrespondenceReport {
     pub weak: Vec<usize>,
     /// Indices of pairs that contradict the others, from 0; not used.
     pub outliers: Vec<usize>,
-    pub excitation: Excitation,
+    pub excitation: CorrespondenceExcitation,
     /// The rotation; `None` with fewer than three usable pushes. Only to be used with [`Verdict::Accepted`].
-    pub solution: Option<Solution>,
+    pub solution: Option<CorrespondenceSolution>,
 }

@@ -9,13 +9,13 @@
 use nalgebra::{UnitQuaternion, Vector3};
 
 use super::{
-    CorrespondenceError, CorrespondenceReport, Options, Pair, fit,
-    stretch::{Reading, Stretch},
+    CorrespondenceError, CorrespondenceOptions, CorrespondenceReport, PushPair, fit,
+    interval::{IntervalReading, SlidingInterval},
 };
 use crate::frames::WristSample;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SessionSettings {
+pub struct CorrespondenceSessionSettings {
     /// A push begins above this force at the wrist, N.
     pub begin_n: f64,
     /// A push ends below this force, N; also the largest reading of a sensor without contact.
@@ -29,10 +29,10 @@ pub struct SessionSettings {
     /// Whether the chain comes from the tracker; without it the result is `s1_from_s2`, valid for one orientation of
     /// the wrist only.
     pub chain: bool,
-    pub options: Options,
+    pub options: CorrespondenceOptions,
 }
 
-impl Default for SessionSettings {
+impl Default for CorrespondenceSessionSettings {
     fn default() -> Self {
         Self {
             begin_n: 0.8,
@@ -41,13 +41,13 @@ impl Default for SessionSettings {
             still_n: 0.3,
             rest_s: 0.5,
             chain: true,
-            options: Options::default(),
+            options: CorrespondenceOptions::default(),
         }
     }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Missing {
+pub enum MissingInput {
     /// The gravity-free force at the wrist: the sensor is silent or gravity is not calibrated.
     WristForce,
     TissueForce,
@@ -59,7 +59,7 @@ pub enum Missing {
 
 /// Reason why a push was not stored.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Refusal {
+pub enum PushRefusal {
     TooShort,
     /// The force was not steady.
     Moved {
@@ -71,11 +71,11 @@ pub enum Refusal {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Phase {
-    Missing(Missing),
+pub enum CorrespondencePhase {
+    Missing(MissingInput),
     /// Waiting for both sensors to be at rest without contact, before the first push.
     Resting {
-        share: f64,
+        fraction: f64,
         /// Reading of the wrist sensor, N; it must be zeroed if this stays above the limit.
         f1_n: f64,
         /// Reading of the sensor under the tissue, N.
@@ -89,7 +89,7 @@ pub enum Phase {
     },
     /// The push that just ended was stored with this index.
     Recorded(usize),
-    Refused(Refusal),
+    Refused(PushRefusal),
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -120,11 +120,11 @@ pub const TARGETS: [PushTarget; 9] = [
 
 /// Cosine of the angle within which a push counts for a target: 30 degrees.
 const NEAR_TARGET: f64 = 0.866;
-const MOST_PUSHES: usize = 64;
+const MAX_PUSHES: usize = 64;
 
 #[derive(Clone, Copy, Debug)]
-struct Push {
-    pair: Pair,
+struct CorrespondencePush {
+    pair: PushPair,
     /// Its direction (unit, `world`); `None` without the arm's kinematics.
     towards_in_world: Option<Vector3<f64>>,
 }
@@ -132,49 +132,51 @@ struct Push {
 /// A guided session. [`step`](Self::step) allocates nothing.
 #[derive(Clone, Debug)]
 pub struct CorrespondenceSession {
-    settings: SessionSettings,
-    pushes: Vec<Push>,
-    stretch: Stretch,
-    phase: Phase,
+    settings: CorrespondenceSessionSettings,
+    pushes: Vec<CorrespondencePush>,
+    stretch: SlidingInterval,
+    phase: CorrespondencePhase,
     last_t_s: f64,
     rested_s: f64,
     world_from_s1: Option<UnitQuaternion<f64>>,
 }
 
 impl CorrespondenceSession {
-    pub fn new(settings: SessionSettings) -> Self {
+    pub fn new(settings: CorrespondenceSessionSettings) -> Self {
         Self {
             settings,
-            pushes: Vec::with_capacity(MOST_PUSHES),
-            stretch: Stretch::new(settings.stretch_s),
-            phase: Phase::Resting { share: 0.0, f1_n: 0.0, f2_n: 0.0 },
+            pushes: Vec::with_capacity(MAX_PUSHES),
+            stretch: SlidingInterval::new(settings.stretch_s),
+            phase: CorrespondencePhase::Resting { fraction: 0.0, f1_n: 0.0, f2_n: 0.0 },
             last_t_s: f64::NEG_INFINITY,
             rested_s: 0.0,
             world_from_s1: None,
         }
     }
 
-    /// Adds one sample; returns the state of the session. `Recorded` and `Refused` last until the next push begins.
-    pub fn step(&mut self, f1_n: Option<Vector3<f64>>, sample: &WristSample, t_s: f64) -> Phase {
+    /// Adds one sample; returns the state of the session. `Recorded` and `InvalidRequest` last until the next push begins.
+    pub fn step(&mut self, f1_n: Option<Vector3<f64>>, sample: &WristSample, t_s: f64) -> CorrespondencePhase {
         let reading = match self.reading(f1_n, sample, t_s) {
             Ok(reading) => reading,
             Err(missing) => {
                 // The current push is discarded, because a push with a gap is invalid.
                 self.stretch.clear();
-                self.phase = Phase::Missing(missing);
+                self.phase = CorrespondencePhase::Missing(missing);
                 return self.phase;
             }
         };
         let gap_s = t_s - self.last_t_s;
         self.last_t_s = t_s;
         self.phase = match self.phase {
-            Phase::Pushing { .. } => self.push_on(&reading, sample),
+            CorrespondencePhase::Pushing { .. } => self.push_on(&reading, sample),
             _ if self.rested_s < self.settings.rest_s => self.rest(&reading, gap_s),
-            Phase::Missing(_) | Phase::Resting { .. } if reading.f1_n.norm() > self.settings.end_n => {
+            CorrespondencePhase::Missing(_) | CorrespondencePhase::Resting { .. }
+                if reading.f1_n.norm() > self.settings.end_n =>
+            {
                 // A push is not used if its beginning was missed.
-                Phase::Resting { share: 1.0, f1_n: reading.f1_n.norm(), f2_n: reading.f2_n.norm() }
+                CorrespondencePhase::Resting { fraction: 1.0, f1_n: reading.f1_n.norm(), f2_n: reading.f2_n.norm() }
             }
-            Phase::Missing(_) | Phase::Resting { .. } => Phase::Ready,
+            CorrespondencePhase::Missing(_) | CorrespondencePhase::Resting { .. } => CorrespondencePhase::Ready,
             _ if reading.f1_n.norm() >= self.settings.begin_n => {
                 self.stretch.clear();
                 self.push_on(&reading, sample)
@@ -184,30 +186,38 @@ impl CorrespondenceSession {
         self.phase
     }
 
-    fn reading(&self, f1_n: Option<Vector3<f64>>, sample: &WristSample, t_s: f64) -> Result<Reading, Missing> {
-        let f1_n = f1_n.ok_or(Missing::WristForce)?;
-        let f2_n = sample.tissue_n.ok_or(Missing::TissueForce)?;
-        let s1_from_c =
-            if self.settings.chain { sample.s1_from_c().ok_or(Missing::Chain)? } else { UnitQuaternion::identity() };
+    fn reading(
+        &self,
+        f1_n: Option<Vector3<f64>>,
+        sample: &WristSample,
+        t_s: f64,
+    ) -> Result<IntervalReading, MissingInput> {
+        let f1_n = f1_n.ok_or(MissingInput::WristForce)?;
+        let f2_n = sample.tissue_n.ok_or(MissingInput::TissueForce)?;
+        let s1_from_c = if self.settings.chain {
+            sample.s1_from_c().ok_or(MissingInput::Chain)?
+        } else {
+            UnitQuaternion::identity()
+        };
         let sense = sample.is_finite() && f1_n.iter().all(|x| x.is_finite()) && t_s.is_finite() && t_s > self.last_t_s;
-        if sense { Ok(Reading { t_s, f1_n, f2_n, s1_from_c }) } else { Err(Missing::Sense) }
+        if sense { Ok(IntervalReading { t_s, f1_n, f2_n, s1_from_c }) } else { Err(MissingInput::Sense) }
     }
 
     /// Requires both sensors to read almost zero for a while, so that a sensor that was not zeroed is found before the
     /// first push.
-    fn rest(&mut self, reading: &Reading, gap_s: f64) -> Phase {
+    fn rest(&mut self, reading: &IntervalReading, gap_s: f64) -> CorrespondencePhase {
         let f1_n = reading.f1_n.norm();
         let f2_n = reading.f2_n.norm();
         let resting = f1_n.max(f2_n) <= self.settings.end_n;
         // A gap in the samples (or the first sample) does not count as rest.
         self.rested_s = if resting { self.rested_s + if gap_s < 0.1 { gap_s } else { 0.0 } } else { 0.0 };
         if self.rested_s >= self.settings.rest_s {
-            return Phase::Ready;
+            return CorrespondencePhase::Ready;
         }
-        Phase::Resting { share: self.rested_s / self.settings.rest_s, f1_n, f2_n }
+        CorrespondencePhase::Resting { fraction: self.rested_s / self.settings.rest_s, f1_n, f2_n }
     }
 
-    fn push_on(&mut self, reading: &Reading, sample: &WristSample) -> Phase {
+    fn push_on(&mut self, reading: &IntervalReading, sample: &WristSample) -> CorrespondencePhase {
         let force_n = reading.f1_n.norm();
         if force_n < self.settings.end_n {
             return self.finish();
@@ -216,27 +226,27 @@ impl CorrespondenceSession {
             self.world_from_s1 = sample.world_from_s1;
         }
         let enough = self.stretch.best().is_some_and(|best| best.deviation_n <= self.settings.still_n);
-        Phase::Pushing { force_n, enough }
+        CorrespondencePhase::Pushing { force_n, enough }
     }
 
-    fn finish(&mut self) -> Phase {
-        let Some(best) = self.stretch.best() else { return Phase::Refused(Refusal::TooShort) };
+    fn finish(&mut self) -> CorrespondencePhase {
+        let Some(best) = self.stretch.best() else { return CorrespondencePhase::Refused(PushRefusal::TooShort) };
         if best.deviation_n > self.settings.still_n {
-            return Phase::Refused(Refusal::Moved { by_n: best.deviation_n });
+            return CorrespondencePhase::Refused(PushRefusal::Moved { by_n: best.deviation_n });
         }
-        if best.pair.f2_n.norm() < self.settings.options.limits.least_force_n {
-            return Phase::Refused(Refusal::MissedTissue);
+        if best.pair.f2_n.norm() < self.settings.options.limits.min_force_n {
+            return CorrespondencePhase::Refused(PushRefusal::MissedTissue);
         }
-        if self.pushes.len() == MOST_PUSHES {
-            return Phase::Refused(Refusal::Full);
+        if self.pushes.len() == MAX_PUSHES {
+            return CorrespondencePhase::Refused(PushRefusal::Full);
         }
         // The wrist measures the reaction; the tool pushes in the opposite direction.
         let towards_in_world = self.world_from_s1.and_then(|turn| (turn * -best.pair.f1_n).try_normalize(1e-9));
-        self.pushes.push(Push { pair: best.pair, towards_in_world });
-        Phase::Recorded(self.pushes.len() - 1)
+        self.pushes.push(CorrespondencePush { pair: best.pair, towards_in_world });
+        CorrespondencePhase::Recorded(self.pushes.len() - 1)
     }
 
-    pub const fn phase(&self) -> Phase {
+    pub const fn phase(&self) -> CorrespondencePhase {
         self.phase
     }
 
@@ -263,7 +273,7 @@ impl CorrespondenceSession {
         self.pushes.iter().filter_map(|push| push.towards_in_world).collect()
     }
 
-    pub const fn settings(&self) -> &SessionSettings {
+    pub const fn settings(&self) -> &CorrespondenceSessionSettings {
         &self.settings
     }
 
@@ -276,7 +286,7 @@ impl CorrespondenceSession {
         self.pushes.len()
     }
 
-    pub fn pairs(&self) -> Vec<Pair> {
+    pub fn pairs(&self) -> Vec<PushPair> {
         self.pushes.iter().map(|push| push.pair).collect()
     }
 

@@ -10,7 +10,7 @@ use crate::{
 /// Noise of one reading per axis, N.
 const READING_N: f64 = 0.05;
 
-struct Bench {
+struct Fixture {
     session: CorrespondenceSession,
     noise: Noise,
     t_s: f64,
@@ -20,7 +20,7 @@ struct Bench {
     c_from_s2: UnitQuaternion<f64>,
 }
 
-impl Bench {
+impl Fixture {
     fn new(seed: u64) -> Self {
         let mut noise = Noise::new(seed);
         let mut turn = || from_roll_pitch_yaw_deg(&Vector3::from_fn(|_, _| 360.0 * noise.uniform()));
@@ -28,7 +28,7 @@ impl Bench {
         let world_from_m = turn();
         let world_from_c = turn();
         let c_from_s2 = turn();
-        let session = CorrespondenceSession::new(SessionSettings::default());
+        let session = CorrespondenceSession::new(CorrespondenceSessionSettings::default());
         Self { session, noise, t_s: 0.0, world_from_s1, world_from_m, world_from_c, c_from_s2 }
     }
 
@@ -37,7 +37,7 @@ impl Bench {
     }
 
     /// Adds one sample with this force on the instrument (`world`), N.
-    fn feel(&mut self, force_in_world_n: Vector3<f64>) -> Phase {
+    fn feel(&mut self, force_in_world_n: Vector3<f64>) -> CorrespondencePhase {
         self.t_s += 1e-3;
         let f1_n = self.world_from_s1.inverse() * force_in_world_n + self.noise_n();
         let world_from_s2 = self.world_from_c * self.c_from_s2;
@@ -51,13 +51,13 @@ impl Bench {
         self.session.step(Some(f1_n), &sample, self.t_s)
     }
 
-    fn rest(&mut self, ticks: usize) -> Phase {
+    fn rest(&mut self, ticks: usize) -> CorrespondencePhase {
         (0..ticks).map(|_| self.feel(Vector3::zeros())).last().unwrap()
     }
 
     /// Pushes in this direction (`world`), rising and falling within 0.1 s, held for `held_s` with a slow variation;
     /// returns the last phase.
-    fn push(&mut self, towards: Vector3<f64>, peak_n: f64, held_s: f64) -> Phase {
+    fn push(&mut self, towards: Vector3<f64>, peak_n: f64, held_s: f64) -> CorrespondencePhase {
         let ticks = ((0.2 + held_s) * 1e3) as usize;
         for tick in 0..ticks {
             let t_s = tick as f64 * 1e-3;
@@ -72,8 +72,8 @@ impl Bench {
 #[test]
 fn pushes_in_the_directions_asked_for_give_an_accepted_rotation_within_a_fifth_of_a_degree() {
     for seed in 0..10 {
-        let mut bench = Bench::new(seed);
-        assert_eq!(bench.rest(700), Phase::Ready, "{seed}");
+        let mut bench = Fixture::new(seed);
+        assert_eq!(bench.rest(700), CorrespondencePhase::Ready, "{seed}");
         let mut asked = Vec::new();
         while bench.session.pairs().len() < 20 {
             // The wrist turns a little between pushes, like a real arm.
@@ -85,7 +85,7 @@ fn pushes_in_the_directions_asked_for_give_an_accepted_rotation_within_a_fifth_o
             let index = bench.session.pairs().len();
             let peak_n = 1.5 + 2.5 * bench.noise.uniform();
             let phase = bench.push(towards.normalize(), peak_n, 0.4);
-            assert_eq!(phase, Phase::Recorded(index), "{seed}");
+            assert_eq!(phase, CorrespondencePhase::Recorded(index), "{seed}");
         }
         // A push that deviates may count for a neighbouring target.
         assert!(asked.len() + 1 >= bench.session.targets() && bench.session.target().is_none(), "{asked:?}");
@@ -98,7 +98,7 @@ fn pushes_in_the_directions_asked_for_give_an_accepted_rotation_within_a_fifth_o
 
 #[test]
 fn what_is_kept_is_the_force_near_the_peak() {
-    let mut bench = Bench::new(20);
+    let mut bench = Fixture::new(20);
     bench.rest(700);
     bench.push(-Vector3::z(), 3.0, 0.3);
     let pair = bench.session.pairs()[0];
@@ -109,16 +109,16 @@ fn what_is_kept_is_the_force_near_the_peak() {
 
 #[test]
 fn short_moved_and_one_sided_pushes_are_refused_with_their_reason() {
-    let mut bench = Bench::new(21);
+    let mut bench = Fixture::new(21);
     bench.rest(700);
-    assert_eq!(bench.push(Vector3::x(), 3.0, -0.13), Phase::Refused(Refusal::TooShort));
+    assert_eq!(bench.push(Vector3::x(), 3.0, -0.13), CorrespondencePhase::Refused(PushRefusal::TooShort));
     for tick in 0..600 {
         let force_n = 2.5 + 1.6 * (f64::from(tick) * 0.1).sin();
         bench.feel(Vector3::x() * force_n);
     }
-    assert!(matches!(bench.rest(50), Phase::Refused(Refusal::Moved { by_n }) if by_n > 0.3));
+    assert!(matches!(bench.rest(50), CorrespondencePhase::Refused(PushRefusal::Moved { by_n }) if by_n > 0.3));
     // The shaft leans on something other than the tissue.
-    let lean = |bench: &mut Bench, force_n: f64| {
+    let lean = |bench: &mut Fixture, force_n: f64| {
         bench.t_s += 1e-3;
         let turn = Some(UnitQuaternion::identity());
         let sample = WristSample {
@@ -130,41 +130,50 @@ fn short_moved_and_one_sided_pushes_are_refused_with_their_reason() {
         };
         bench.session.step(Some(Vector3::y() * force_n), &sample, bench.t_s)
     };
-    (0..300).for_each(|_| assert!(matches!(lean(&mut bench, 2.0), Phase::Pushing { .. })));
-    assert_eq!(lean(&mut bench, 0.0), Phase::Refused(Refusal::MissedTissue));
+    (0..300).for_each(|_| assert!(matches!(lean(&mut bench, 2.0), CorrespondencePhase::Pushing { .. })));
+    assert_eq!(lean(&mut bench, 0.0), CorrespondencePhase::Refused(PushRefusal::MissedTissue));
     assert!(bench.session.pairs().is_empty());
 }
 
 #[test]
 fn a_sensor_that_was_not_zeroed_keeps_the_session_waiting() {
-    let mut bench = Bench::new(22);
+    let mut bench = Fixture::new(22);
     for _ in 0..2000 {
         let phase = bench.feel(Vector3::x() * 0.9);
-        assert!(matches!(phase, Phase::Resting { f1_n, .. } if f1_n > 0.5), "{phase:?}");
+        assert!(matches!(phase, CorrespondencePhase::Resting { f1_n, .. } if f1_n > 0.5), "{phase:?}");
     }
-    assert_eq!(bench.rest(700), Phase::Ready);
+    assert_eq!(bench.rest(700), CorrespondencePhase::Ready);
 }
 
 #[test]
 fn a_source_that_goes_missing_drops_the_push_that_was_on() {
-    let mut bench = Bench::new(23);
+    let mut bench = Fixture::new(23);
     bench.rest(700);
     (0..300).for_each(|_| _ = bench.feel(Vector3::z() * 2.0));
     let bare = WristSample::of(Wrench::default());
     let phase = bench.session.step(Some(Vector3::zeros()), &bare, bench.t_s + 1e-3);
-    assert_eq!(phase, Phase::Missing(Missing::TissueForce));
-    assert_eq!(bench.session.step(None, &bare, bench.t_s + 2e-3), Phase::Missing(Missing::WristForce));
+    assert_eq!(phase, CorrespondencePhase::Missing(MissingInput::TissueForce));
+    assert_eq!(
+        bench.session.step(None, &bare, bench.t_s + 2e-3),
+        CorrespondencePhase::Missing(MissingInput::WristForce)
+    );
     let no_chain = WristSample { tissue_n: Some(Vector3::zeros()), ..bare };
-    assert_eq!(bench.session.step(Some(Vector3::zeros()), &no_chain, 1e9), Phase::Missing(Missing::Chain));
-    assert!(matches!(bench.feel(Vector3::z() * 2.0), Phase::Resting { .. }), "its beginning was not seen");
-    assert_eq!(bench.rest(10), Phase::Ready);
+    assert_eq!(
+        bench.session.step(Some(Vector3::zeros()), &no_chain, 1e9),
+        CorrespondencePhase::Missing(MissingInput::Chain)
+    );
+    assert!(
+        matches!(bench.feel(Vector3::z() * 2.0), CorrespondencePhase::Resting { .. }),
+        "its beginning was not seen"
+    );
+    assert_eq!(bench.rest(10), CorrespondencePhase::Ready);
     assert!(bench.session.pairs().is_empty());
-    assert_eq!(bench.feel(Vector3::new(f64::NAN, 0.0, 0.0)), Phase::Missing(Missing::Sense));
+    assert_eq!(bench.feel(Vector3::new(f64::NAN, 0.0, 0.0)), CorrespondencePhase::Missing(MissingInput::Sense));
 }
 
 #[test]
 fn undo_and_remove_take_pushes_back_and_ask_for_them_again() {
-    let mut bench = Bench::new(24);
+    let mut bench = Fixture::new(24);
     bench.rest(700);
     for _ in 0..3 {
         let target = bench.session.target().unwrap();

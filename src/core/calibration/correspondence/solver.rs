@@ -2,11 +2,11 @@
 
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
 
-use super::Pair;
+use super::PushPair;
 
 /// One push: the same force in `c` (from the wrist sensor and the chain) and in `s2`.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Row {
+pub(super) struct PushRow {
     /// From the wrist sensor, N (`c`).
     pub(super) c_n: Vector3<f64>,
     /// From the sensor under the tissue, N (`s2`).
@@ -15,8 +15,8 @@ pub(super) struct Row {
     pub(super) s1_from_c: UnitQuaternion<f64>,
 }
 
-impl Row {
-    pub(super) fn of(pair: &Pair, flip_s2: bool) -> Self {
+impl PushRow {
+    pub(super) fn of(pair: &PushPair, flip_s2: bool) -> Self {
         let sign = if flip_s2 { -1.0 } else { 1.0 };
         Self { c_n: pair.s1_from_c.inverse() * pair.f1_n, s2_n: pair.f2_n * sign, s1_from_c: pair.s1_from_c }
     }
@@ -34,7 +34,7 @@ impl Row {
 
 /// Returns the proper rotation of least squares: `U diag(1, 1, det U det V) V^T` of `sum c s2^T` (Markley, J.
 /// Astronaut. Sci. 1988). The noise in N is equal for all forces, so a stronger push has more weight, as it should.
-pub(super) fn wahba<'a>(rows: impl IntoIterator<Item = &'a Row>) -> Rotation3<f64> {
+pub(super) fn wahba<'a>(rows: impl IntoIterator<Item = &'a PushRow>) -> Rotation3<f64> {
     let moment = rows.into_iter().fold(Matrix3::zeros(), |sum, row| sum + row.c_n * row.s2_n.transpose());
     let decomposed = moment.svd(true, true);
     let (Some(u), Some(v_t)) = (decomposed.u, decomposed.v_t) else { return Rotation3::identity() };
@@ -65,11 +65,11 @@ const CUT: f64 = 4.0;
 const FINEST_N: f64 = 0.01;
 /// Two pushes closer to one line than this (sine of the angle) do not define a rotation: 14 degrees, because the
 /// rotation about their common line would be determined by noise.
-const LEAST_SINE: f64 = 0.25;
+const MIN_SINE: f64 = 0.25;
 
 /// Finds the rows that agree with the rotation of smallest median residual, over hypotheses from two pushes each, and
 /// refines them iteratively.
-pub(super) fn consensus(rows: &[Row]) -> Consensus {
+pub(super) fn consensus(rows: &[PushRow]) -> Consensus {
     let mut lengths = Vec::with_capacity(rows.len());
     let mut c_from_s2 = first_guess(rows, &mut lengths);
     let mut inlier = Vec::new();
@@ -87,13 +87,13 @@ pub(super) fn consensus(rows: &[Row]) -> Consensus {
     Consensus { inlier, median_n }
 }
 
-fn first_guess(rows: &[Row], lengths: &mut Vec<f64>) -> Rotation3<f64> {
+fn first_guess(rows: &[PushRow], lengths: &mut Vec<f64>) -> Rotation3<f64> {
     let stride = rows.len().div_ceil(JUDGES).max(1);
     let mut best = (f64::INFINITY, wahba(rows));
     let mut judge = |i: usize, j: usize| {
         let a = &rows[i];
         let b = &rows[j];
-        if a.s2_n.cross(&b.s2_n).norm() < LEAST_SINE * a.s2_n.norm() * b.s2_n.norm() {
+        if a.s2_n.cross(&b.s2_n).norm() < MIN_SINE * a.s2_n.norm() * b.s2_n.norm() {
             return;
         }
         let guess = wahba([a, b]);
@@ -111,7 +111,7 @@ fn first_guess(rows: &[Row], lengths: &mut Vec<f64>) -> Rotation3<f64> {
     best.1
 }
 
-fn median_residual_n(rows: &[Row], stride: usize, c_from_s2: &Rotation3<f64>, lengths: &mut Vec<f64>) -> f64 {
+fn median_residual_n(rows: &[PushRow], stride: usize, c_from_s2: &Rotation3<f64>, lengths: &mut Vec<f64>) -> f64 {
     lengths.clear();
     lengths.extend(rows.iter().step_by(stride).map(|row| row.residual_n(c_from_s2).norm()));
     if lengths.is_empty() {

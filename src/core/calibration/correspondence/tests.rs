@@ -32,13 +32,13 @@ impl Rig {
         1.0 + 3.0 * self.noise.uniform()
     }
 
-    fn push(&mut self, f2_n: Vector3<f64>) -> Pair {
+    fn push(&mut self, f2_n: Vector3<f64>) -> PushPair {
         let s1_from_c = if self.chain { rotation(&mut self.noise) } else { UnitQuaternion::identity() };
         let f1_n = s1_from_c * (self.c_from_s2 * f2_n) + vector(&mut self.noise) * self.deviation_n;
-        Pair { f1_n, f2_n: f2_n + vector(&mut self.noise) * self.deviation_n, s1_from_c }
+        PushPair { f1_n, f2_n: f2_n + vector(&mut self.noise) * self.deviation_n, s1_from_c }
     }
 
-    fn pushes(&mut self, count: usize) -> Vec<Pair> {
+    fn pushes(&mut self, count: usize) -> Vec<PushPair> {
         let mut one = || {
             let f2_n = self.direction() * self.strength_n();
             self.push(f2_n)
@@ -59,8 +59,8 @@ fn rotation(noise: &mut Noise) -> UnitQuaternion<f64> {
     from_roll_pitch_yaw_deg(&Vector3::from_fn(|_, _| 360.0 * noise.uniform()))
 }
 
-fn judged(pairs: &[Pair]) -> CorrespondenceReport {
-    fit(pairs, &Options::default()).unwrap()
+fn judged(pairs: &[PushPair]) -> CorrespondenceReport {
+    fit(pairs, &CorrespondenceOptions::default()).unwrap()
 }
 
 #[test]
@@ -72,7 +72,7 @@ fn twenty_pushes_of_a_hundred_readings_are_found_to_a_fifth_of_a_degree() {
         let solution = report.solution.as_ref().unwrap();
         assert!(rig.error_deg(&report) <= 0.2, "{seed}: {}", rig.error_deg(&report));
         assert!(solution.cross_check_deg < 1e-3, "{seed}: {}", solution.cross_check_deg);
-        assert_eq!(solution.target, if seed % 2 == 0 { Target::CFromS2 } else { Target::S1FromS2 });
+        assert_eq!(solution.target, if seed % 2 == 0 { FitTarget::CFromS2 } else { FitTarget::S1FromS2 });
     }
 }
 
@@ -151,7 +151,7 @@ fn a_sensor_that_tells_the_reaction_is_named_and_the_flip_cures_it() {
         let report = judged(&pairs);
         assert_eq!(report.verdict, Verdict::PoorData);
         assert!(report.reason.contains("opposite forces"), "{seed}: {}", report.reason);
-        let cured = fit(&pairs, &Options { flip_s2: true, ..Options::default() }).unwrap();
+        let cured = fit(&pairs, &CorrespondenceOptions { flip_s2: true, ..CorrespondenceOptions::default() }).unwrap();
         assert_eq!(cured.verdict, Verdict::Accepted, "{seed}: {}", cured.reason);
         assert!(rig.error_deg(&cured) < 1.0);
     }
@@ -173,7 +173,7 @@ fn inverse_rotations_of_the_chain_are_named() {
 
 #[test]
 fn a_sensor_that_reads_more_and_one_that_was_not_zeroed_are_named() {
-    let edited = |seed, edit: &dyn Fn(&mut Pair)| {
+    let edited = |seed, edit: &dyn Fn(&mut PushPair)| {
         let mut rig = Rig::new(seed, 0.01, true);
         let mut pairs = rig.pushes(20);
         pairs.iter_mut().for_each(edit);
@@ -225,9 +225,12 @@ fn few_weak_or_no_pushes_ask_for_more_and_bad_numbers_are_errors() {
     assert_eq!((report.verdict, report.weak.len()), (Verdict::InsufficientMotion, 20));
     let mut pairs = rig.pushes(8);
     pairs[3].f2_n.y = f64::NAN;
-    assert_eq!(fit(&pairs, &Options::default()), Err(CorrespondenceError::NotFinite { index: 3 }));
+    assert_eq!(fit(&pairs, &CorrespondenceOptions::default()), Err(CorrespondenceError::NotFinite { index: 3 }));
     pairs[3].f2_n.y = 1e200;
-    assert!(matches!(fit(&pairs, &Options::default()), Err(CorrespondenceError::NotPlausible { index: 3, .. })));
+    assert!(matches!(
+        fit(&pairs, &CorrespondenceOptions::default()),
+        Err(CorrespondenceError::NotPlausible { index: 3, .. })
+    ));
 }
 
 #[test]
@@ -249,7 +252,7 @@ fn held_out_errors_are_those_of_pushes_that_were_not_fitted() {
 }
 
 /// Corrupts one pair; the vector is random noise for it.
-type Edit<'a> = &'a dyn Fn(&mut Pair, Vector3<f64>);
+type Edit<'a> = &'a dyn Fn(&mut PushPair, Vector3<f64>);
 
 #[test]
 fn a_sensor_that_feels_nothing_or_hangs_is_refused() {
@@ -270,7 +273,7 @@ fn a_sensor_that_feels_nothing_or_hangs_is_refused() {
             for pair in &mut pairs {
                 edit(pair, vector(&mut rig.noise));
             }
-            let report = fit(&pairs, &Options::default()).unwrap();
+            let report = fit(&pairs, &CorrespondenceOptions::default()).unwrap();
             assert_ne!(report.verdict, Verdict::Accepted, "{name}, seed {seed}: {}", report.reason);
         }
     }

@@ -8,74 +8,85 @@ use crate::calibration::Verdict;
 
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "name", rename_all = "snake_case", deny_unknown_fields)]
-pub enum Cause {
+pub enum FrameCause {
     /// Accurate on held-out data.
     Proven,
     TooFew {
         have: usize,
-        least: usize,
+        #[serde(rename = "least")]
+        min: usize,
     },
     /// The carrier hardly turned: root mean square of the turns from their mean. A pure translation has no turns.
     SmallTurns {
         turn_deg: f64,
-        least_deg: f64,
+        #[serde(rename = "least_deg")]
+        min_deg: f64,
     },
     /// The carrier turned about one axis only: root mean square of the turns about the second axis.
     OneAxis {
         second_deg: f64,
-        least_deg: f64,
+        #[serde(rename = "least_deg")]
+        min_deg: f64,
     },
     /// The lines are nearly parallel: root mean square of their tilts from the mean, about the weaker axis.
     NearlyParallel {
         tilt_deg: f64,
-        least_deg: f64,
+        #[serde(rename = "least_deg")]
+        min_deg: f64,
     },
     /// The points or directions lie on one line: their spread along the second axis (m, or a fraction of one for
     /// directions).
     Collinear {
         spread: f64,
-        least: f64,
+        #[serde(rename = "least")]
+        min: f64,
     },
     /// The directions lie in one plane: their spread along the third axis, as a fraction of one.
     OnePlane {
         spread: f64,
-        least: f64,
+        #[serde(rename = "least")]
+        min: f64,
     },
     Weightless {
         weight_n: f64,
-        least_n: f64,
+        #[serde(rename = "least_n")]
+        min_n: f64,
     },
     /// The data determine the position too weakly: half the length of its 95 % interval.
     UncertainPlace {
         by_m: f64,
-        most_m: f64,
+        #[serde(rename = "most_m")]
+        max_m: f64,
     },
     /// The data determine the angle too weakly: half the length of its 95 % interval.
     UncertainAngle {
         by_deg: f64,
-        most_deg: f64,
+        #[serde(rename = "most_deg")]
+        max_deg: f64,
     },
     /// The root mean square error of the position on held-out data is too large.
     PoorPlace {
         by_m: f64,
-        most_m: f64,
+        #[serde(rename = "most_m")]
+        max_m: f64,
     },
     /// The root mean square error of the angle on held-out data is too large.
     PoorAngle {
         by_deg: f64,
-        most_deg: f64,
+        #[serde(rename = "most_deg")]
+        max_deg: f64,
     },
     Outliers {
-        share: f64,
-        most: f64,
+        #[serde(rename = "share")]
+        fraction: f64,
+        #[serde(rename = "most")]
+        max: f64,
     },
     /// The input contains a mistake. Correcting it explains the data.
-    Mistake {
-        mistake: Mistake,
-    },
+    Mistake { mistake: Mistake },
 }
 
-impl Cause {
+impl FrameCause {
     pub const fn verdict(&self) -> Verdict {
         match self {
             Self::Proven => Verdict::Accepted,

@@ -3,12 +3,12 @@
 
 /// Distance of a row from a model; `None` for an error that the calibration does not have.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Miss {
+pub(super) struct RowMiss {
     pub(super) place_m: Option<f64>,
     pub(super) angle_rad: Option<f64>,
 }
 
-impl Miss {
+impl RowMiss {
     pub(super) const fn of_place(place_m: f64) -> Self {
         Self { place_m: Some(place_m), angle_rad: None }
     }
@@ -23,7 +23,7 @@ pub(super) trait Problem {
     type Model;
     const HYPOTHESIS: usize;
     /// Errors up to this belong to good rows: at least four standard deviations of the expected noise.
-    const FLOOR: Miss;
+    const FLOOR: RowMiss;
 
     /// Returns the model of least squares; `None` if the rows do not determine a model.
     fn solve(&self, rows: &[Self::Row]) -> Option<Self::Model>;
@@ -33,7 +33,7 @@ pub(super) trait Problem {
         self.solve(rows)
     }
 
-    fn miss(&self, model: &Self::Model, row: &Self::Row) -> Miss;
+    fn miss(&self, model: &Self::Model, row: &Self::Row) -> RowMiss;
 
     /// Returns the size of an error relative to the floor.
     fn size(&self, model: &Self::Model, row: &Self::Row) -> f64 {
@@ -45,17 +45,17 @@ pub(super) trait Problem {
 }
 
 #[derive(Debug)]
-pub(super) struct Examined<M> {
+pub(super) struct ExaminedModel<M> {
     pub(super) model: M,
     /// Indices of the rows that agree, in increasing order, and of the others.
     pub(super) kept: Vec<usize>,
     pub(super) outliers: Vec<usize>,
-    pub(super) fitted: Vec<Miss>,
+    pub(super) fitted: Vec<RowMiss>,
     /// Empty if a fold does not determine a model.
-    pub(super) held_out: Vec<Miss>,
+    pub(super) held_out: Vec<RowMiss>,
 }
 
-impl<M> Examined<M> {
+impl<M> ExaminedModel<M> {
     /// Returns the sum of the squared position errors of the fit, m^2.
     pub(super) fn squares_m2(&self) -> f64 {
         self.fitted.iter().filter_map(|miss| miss.place_m).map(|miss| miss * miss).sum()
@@ -82,19 +82,19 @@ const HOPELESS: f64 = 10.0;
 const LEAVE_ONE_OUT: usize = 20;
 
 /// Fits the rows that agree with each other; returns `None` if no model can be determined.
-pub(super) fn examined<P: Problem>(problem: &P, rows: &[P::Row]) -> Option<Examined<P::Model>> {
+pub(super) fn examined<P: Problem>(problem: &P, rows: &[P::Row]) -> Option<ExaminedModel<P::Model>> {
     let kept = agreeing(problem, rows)?;
     let outliers = (0..rows.len()).filter(|i| kept.binary_search(i).is_err()).collect();
     let good: Vec<P::Row> = kept.iter().map(|&i| rows[i]).collect();
     let model = problem.solve(&good)?;
-    let fitted: Vec<Miss> = good.iter().map(|row| problem.miss(&model, row)).collect();
+    let fitted: Vec<RowMiss> = good.iter().map(|row| problem.miss(&model, row)).collect();
     // Rows that do not fit any model are not fitted repeatedly: their held-out errors would be as large.
     let hopeless = median(problem, &model, &good) > HOPELESS;
     let held_out = if hopeless { fitted.clone() } else { held_out(problem, &good).unwrap_or_default() };
-    Some(Examined { model, kept, outliers, fitted, held_out })
+    Some(ExaminedModel { model, kept, outliers, fitted, held_out })
 }
 
-fn held_out<P: Problem>(problem: &P, rows: &[P::Row]) -> Option<Vec<Miss>> {
+fn held_out<P: Problem>(problem: &P, rows: &[P::Row]) -> Option<Vec<RowMiss>> {
     let folds = if rows.len() <= LEAVE_ONE_OUT { rows.len() } else { 10 };
     let mut misses = Vec::with_capacity(rows.len());
     for fold in 0..folds {

@@ -18,7 +18,7 @@ const GAP_S: f64 = 0.2;
 const POSES: usize = 5;
 
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Held {
+pub(super) enum HoldState {
     /// The pose moved by this much since the hold began.
     Moved { by_m: f64, by_rad: f64 },
     /// Not long enough yet: the fraction of the required time.
@@ -28,14 +28,14 @@ pub(super) enum Held {
 }
 
 #[derive(Clone, Copy, Debug, Default)]
-struct Sums {
+struct HoldSums {
     count: f64,
     poses: [Option<(Vector3<f64>, RotationMean)>; POSES],
     wrench: Option<Wrench>,
     first: FrameSample,
 }
 
-impl Sums {
+impl HoldSums {
     fn of(sample: &FrameSample) -> Self {
         let poses = sample.poses().map(|pose| pose.map(|_| (Vector3::zeros(), RotationMean::default())));
         let mut sums = Self { count: 0.0, poses, wrench: sample.wrench.map(|_| Wrench::default()), first: *sample };
@@ -74,26 +74,27 @@ impl Sums {
     }
 
     fn mean(&self) -> FrameSample {
-        let share = 1.0 / self.count.max(1.0);
+        let fraction = 1.0 / self.count.max(1.0);
         let poses = self.poses.map(|sums| {
             let (place_m, turn) = sums?;
-            Some(Isometry3::from_parts((place_m * share).into(), turn.mean()?))
+            Some(Isometry3::from_parts((place_m * fraction).into(), turn.mean()?))
         });
-        let wrench = self.wrench.map(|sum| Wrench { force_n: sum.force_n * share, torque_nm: sum.torque_nm * share });
+        let wrench =
+            self.wrench.map(|sum| Wrench { force_n: sum.force_n * fraction, torque_nm: sum.torque_nm * fraction });
         FrameSample { wrench, ..self.first.with_poses(&poses) }
     }
 }
 
 #[derive(Clone, Debug)]
-pub(super) struct Hold {
+pub(super) struct PoseHold {
     time_s: f64,
     /// `None` before the first sample; the second half begins after half of the time.
-    halves: Option<(Sums, Option<Sums>)>,
+    halves: Option<(HoldSums, Option<HoldSums>)>,
     since_s: f64,
     last_s: f64,
 }
 
-impl Hold {
+impl PoseHold {
     pub(super) const fn new(time_s: f64) -> Self {
         Self { time_s, halves: None, since_s: 0.0, last_s: 0.0 }
     }
@@ -104,41 +105,41 @@ impl Hold {
 
     /// Adds a finite sample at time `t_s` (s, increasing). Only poses that this calibration needs (`watched`) must be
     /// still.
-    pub(super) fn step(&mut self, sample: &FrameSample, watched: [bool; POSES], t_s: f64) -> Held {
+    pub(super) fn step(&mut self, sample: &FrameSample, watched: [bool; POSES], t_s: f64) -> HoldState {
         if self.time_s <= 0.0 {
-            return Held::Long(Box::new(*sample));
+            return HoldState::Long(Box::new(*sample));
         }
         let follows = t_s > self.last_s && t_s - self.last_s <= GAP_S;
         self.last_s = t_s;
         let Some((first, second)) = self.halves.as_mut().filter(|_| follows) else {
-            self.halves = Some((Sums::of(sample), None));
+            self.halves = Some((HoldSums::of(sample), None));
             self.since_s = t_s;
-            return Held::Share(0.0);
+            return HoldState::Share(0.0);
         };
         let mean = first.mean();
         let (by_m, by_rad) = apart(&mean, sample, watched);
         if by_m > SAMPLE_M || by_rad > SAMPLE_RAD {
             self.halves = None;
-            return Held::Moved { by_m, by_rad };
+            return HoldState::Moved { by_m, by_rad };
         }
-        let share = (t_s - self.since_s) / self.time_s;
+        let fraction = (t_s - self.since_s) / self.time_s;
         match second {
             Some(second) => second.add(sample),
-            None if share < 0.5 => first.add(sample),
-            None => *second = Some(Sums::of(sample)),
+            None if fraction < 0.5 => first.add(sample),
+            None => *second = Some(HoldSums::of(sample)),
         }
-        if share < 1.0 {
-            return Held::Share(share);
+        if fraction < 1.0 {
+            return HoldState::Share(fraction);
         }
         let first = *first;
         let second = *second;
         self.halves = None;
-        let Some(second) = second else { return Held::Share(0.0) };
+        let Some(second) = second else { return HoldState::Share(0.0) };
         let (by_m, by_rad) = apart(&mean, &second.mean(), watched);
         if by_m > HALVES_M || by_rad > HALVES_RAD {
-            return Held::Moved { by_m, by_rad };
+            return HoldState::Moved { by_m, by_rad };
         }
-        Held::Long(Box::new(first.merge(&second).mean()))
+        HoldState::Long(Box::new(first.merge(&second).mean()))
     }
 }
 
@@ -146,7 +147,7 @@ impl Hold {
 fn apart(a: &FrameSample, b: &FrameSample, watched: [bool; POSES]) -> (f64, f64) {
     let pairs = a.poses().into_iter().zip(b.poses()).zip(watched).filter(|(_, watched)| *watched);
     pairs.filter_map(|((a, b), _)| a.zip(b)).fold((0.0, 0.0), |(by_m, by_rad): (f64, f64), (a, b)| {
-        let way_m = (a.translation.vector - b.translation.vector).norm();
-        (by_m.max(way_m), by_rad.max(a.rotation.angle_to(&b.rotation)))
+        let travel_m = (a.translation.vector - b.translation.vector).norm();
+        (by_m.max(travel_m), by_rad.max(a.rotation.angle_to(&b.rotation)))
     })
 }

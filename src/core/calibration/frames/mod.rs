@@ -3,18 +3,18 @@
 //!
 //!  settings | find | from |
 //! ---|---|---|
-//!  [`Tip`] | the tip in the frame of marker or flange | poses of it while the tip stays in a dimple |
-//!  [`HandEye`] | `flange_from_m` and `base_from_c` | flange and marker in many orientations |
-//!  [`Trocar`] | the remote centre of motion | lines of the shaft while the instrument pivots |
-//!  [`Table`] | `base_from_table` | points touched with the tip |
-//!  [`View`] | `base_from_view`, `leader_from_view` | moves to the right, up and into the image |
+//!  [`TipSettings`] | the tip in the frame of marker or flange | poses of it while the tip stays in a dimple |
+//!  [`HandEyeSettings`] | `flange_from_m` and `base_from_c` | flange and marker in many orientations |
+//!  [`TrocarSettings`] | the remote centre of motion | lines of the shaft while the instrument pivots |
+//!  [`TableSettings`] | `base_from_table` | points touched with the tip |
+//!  [`ViewSettings`] | `base_from_view`, `leader_from_view` | moves to the right, up and into the image |
 //!  [`SensorMount`] | `flange_from_s1` | still poses with the weight of the tool on the wrist sensor |
 //!
 //! ```
 //! use nalgebra::{Isometry3, Vector3};
 //! use nima_core::calibration::{
 //!     Verdict,
-//!     frames::{Calibration, FrameSample, Tip},
+//!     frames::{Calibration, FrameSample, TipSettings},
 //! };
 //!
 //! let (tip_in_m_m, dimple_in_c_m) = (Vector3::new(0.01, -0.02, 0.4), Vector3::new(0.1, 0.2, 1.5));
@@ -25,16 +25,16 @@
 //!     let c_from_m = place * turn * Isometry3::translation(-tip_in_m_m.x, -tip_in_m_m.y, -tip_in_m_m.z);
 //!     FrameSample { c_from_m: Some(c_from_m), ..FrameSample::default() }
 //! };
-//! let report = Tip::by_tracker().fit(&(0..20).map(sample).collect::<Vec<_>>())?;
+//! let report = TipSettings::by_tracker().fit(&(0..20).map(sample).collect::<Vec<_>>())?;
 //! assert_eq!(report.verdict, Verdict::Accepted);
 //! let found_m = Vector3::from(report.found.expect("a tip").tip_in_carrier_m);
 //! assert!((found_m - tip_in_m_m).norm() < 1e-9);
-//! assert!(Tip::by_tracker().fit(&[FrameSample::default()]).is_err(), "there is no marker");
+//! assert!(TipSettings::by_tracker().fit(&[FrameSample::default()]).is_err(), "there is no marker");
 //! # Ok::<(), nima_core::calibration::frames::FrameError>(())
 //! ```
 //!
 //! Each is a [`Calibration`]; a [`FrameSession`] records for it, [`Calibration::fit`] gives a [`FrameReport`] with the
-//! errors on held-out poses, the 95 % uncertainty and a [`Cause`], and [`FrameReport::record`] the file content.
+//! errors on held-out poses, the 95 % uncertainty and a [`FrameCause`], and [`FrameReport::record`] the file content.
 //! [`TrocarWatch`] detects afterwards whether the trocar has moved. Lengths in m, forces in N, rotations
 //! `target_from_source`; invalid samples are a [`FrameError`], poor or insufficient ones a verdict.
 
@@ -55,23 +55,23 @@ mod tip;
 mod trocar;
 mod view;
 
-pub use cause::{Cause, Mistake, SignedAxes, SignedAxis};
-pub use hand_eye::{HandEye, HandEyeFound, Solver};
-pub use record::{Found, FrameRecord, RigChange, Serials, StoredPose};
-pub use report::{Calibration, FrameReport, Limits, Sizes};
-pub use sample::{Carrier, FrameSample, Source};
-pub use sensor_mount::{SensorMount, SensorMountFound};
-pub use session::{Coverage, FrameSession, MOST_POSES, Missing, Phase};
-pub use table::{Table, TableFound};
-pub use tip::{Tip, TipFound};
-pub use trocar::{ShaftLine, Trocar, TrocarFound, TrocarState, TrocarWatch};
-pub use view::{Move, View, ViewFound};
+pub use cause::{FrameCause, Mistake, SignedAxes, SignedAxis};
+pub use hand_eye::{HandEyeResult, HandEyeSettings, HandEyeSolver};
+pub use record::{CalibrationResult, FrameRecord, RigChange, Serials, StoredPose};
+pub use report::{Calibration, FrameLimits, FrameReport, Sizes};
+pub use sample::{CalibrationSource, Carrier, FrameSample};
+pub use sensor_mount::{SensorMount, SensorMountResult};
+pub use session::{FrameCoverage, FramePhase, FrameSession, MAX_POSES, MissingMotion};
+pub use table::{TableResult, TableSettings};
+pub use tip::{TipResult, TipSettings};
+pub use trocar::{ShaftLine, TrocarResult, TrocarSettings, TrocarState, TrocarWatch};
+pub use view::{ViewMove, ViewResult, ViewSettings};
 
 /// Reason why samples could not be fitted. Messages count poses from 1.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum FrameError {
     #[error("pose {} lacks a source ({from:?}); remove it", index + 1)]
-    Missing { index: usize, from: Source },
+    Missing { index: usize, from: CalibrationSource },
     #[error("pose {} contains a non-finite number or an invalid rotation; remove or repeat it", index + 1)]
     NotFinite { index: usize },
     #[error("pose {} is {place_m:.0} m away; check the units (m)", index + 1)]

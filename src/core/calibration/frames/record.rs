@@ -3,8 +3,8 @@
 use nalgebra::{Isometry3, Quaternion, UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 
-use super::{Cause, FrameReport, Sizes};
-use crate::calibration::{Judgement, Record, RecordHead};
+use super::{FrameCause, FrameReport, Sizes};
+use crate::calibration::{CalibrationRecord, Judgement, RecordHead};
 
 /// Serial numbers of the devices that measured, apart from the wrist sensor in the head; absent if not used.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -20,7 +20,7 @@ pub struct Serials {
 }
 
 /// Result of a calibration, as stored in a file.
-pub trait Found: Clone + Serialize + DeserializeOwned {
+pub trait CalibrationResult: Clone + Serialize + DeserializeOwned {
     /// Kind of the record, also the first part of the file's name.
     const KIND: &'static str;
     /// Returns the fault that makes the numbers unusable; `None` if they are usable.
@@ -28,9 +28,9 @@ pub trait Found: Clone + Serialize + DeserializeOwned {
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, bound = "F: Found")]
+#[serde(deny_unknown_fields, bound = "F: CalibrationResult")]
 pub struct FrameRecord<F> {
-    /// [`Found::KIND`]; a file of another kind is refused on reading.
+    /// [`CalibrationResult::KIND`]; a file of another kind is refused on reading.
     pub kind: String,
     /// Wrist sensor, tool, date and program version.
     #[serde(flatten)]
@@ -42,7 +42,7 @@ pub struct FrameRecord<F> {
     pub outliers: Vec<usize>,
     /// Other devices that measured.
     pub serials: Serials,
-    pub cause: Cause,
+    pub cause: FrameCause,
     /// Root mean square error of the poses in the fit.
     pub fitted: Sizes,
     pub held_out: Sizes,
@@ -77,7 +77,7 @@ impl RigChange {
     }
 }
 
-impl<F: Found> FrameRecord<F> {
+impl<F: CalibrationResult> FrameRecord<F> {
     pub(super) fn of(report: &FrameReport<F>, head: RecordHead, serials: Serials, reason: &str) -> Option<Self> {
         Some(Self {
             kind: F::KIND.to_owned(),
@@ -97,7 +97,7 @@ impl<F: Found> FrameRecord<F> {
     }
 }
 
-impl<F: Found> Record for FrameRecord<F> {
+impl<F: CalibrationResult> CalibrationRecord for FrameRecord<F> {
     const KIND: &'static str = F::KIND;
 
     fn head(&self) -> &RecordHead {

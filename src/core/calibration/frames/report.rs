@@ -4,9 +4,9 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    Carrier, Cause, Coverage, FrameError, FrameRecord, FrameSample, Mistake, Serials, Source,
-    examine::{Examined, Miss},
-    record::Found,
+    CalibrationSource, Carrier, FrameCause, FrameCoverage, FrameError, FrameRecord, FrameSample, Mistake, Serials,
+    examine::{ExaminedModel, RowMiss},
+    record::CalibrationResult,
     sample::check,
 };
 use crate::calibration::{RecordHead, Verdict};
@@ -36,9 +36,9 @@ impl Sizes {
     }
 
     /// Returns the root mean square and the maximum of these misses, in the sizes that all of them have.
-    pub(super) fn of(misses: &[Miss]) -> [Self; 2] {
+    pub(super) fn of(misses: &[RowMiss]) -> [Self; 2] {
         let sizes = |of: fn(f64, f64) -> f64, finish: &dyn Fn(f64) -> f64| {
-            let fold = |part: fn(&Miss) -> Option<f64>| {
+            let fold = |part: fn(&RowMiss) -> Option<f64>| {
                 let values: Option<Vec<f64>> = misses.iter().map(part).collect();
                 let values = values.filter(|values| !values.is_empty())?;
                 Some(finish(values.into_iter().fold(0.0, of)))
@@ -53,8 +53,8 @@ impl Sizes {
 
 /// Limits for a verdict; `None` for a size that the calibration does not have.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Limits {
-    pub least: usize,
+pub struct FrameLimits {
+    pub min: usize,
     pub held_out: Sizes,
     /// Maximum half length of the 95 % interval.
     pub uncertainty: Sizes,
@@ -64,7 +64,7 @@ pub struct Limits {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FrameReport<F> {
     pub verdict: Verdict,
-    pub cause: Cause,
+    pub cause: FrameCause,
     pub poses: usize,
     /// Indices of poses that contradict the others, from 0; not used.
     pub outliers: Vec<usize>,
@@ -82,7 +82,7 @@ pub struct FrameReport<F> {
 }
 
 impl<F> FrameReport<F> {
-    pub fn nothing(poses: usize, cause: Cause) -> Self {
+    pub fn nothing(poses: usize, cause: FrameCause) -> Self {
         let none = Sizes::default();
         Self {
             verdict: cause.verdict(),
@@ -98,11 +98,11 @@ impl<F> FrameReport<F> {
     }
 
     /// Creates a report with a result but no verdict yet.
-    pub(super) fn of<M>(poses: usize, examined: Examined<M>, uncertainty: Sizes, found: F) -> Self {
+    pub(super) fn of<M>(poses: usize, examined: ExaminedModel<M>, uncertainty: Sizes, found: F) -> Self {
         let [fitted, _] = Sizes::of(&examined.fitted);
         let [held_out, held_out_max] = Sizes::of(&examined.held_out);
         let outliers = examined.outliers;
-        let cause = Cause::Proven;
+        let cause = FrameCause::Proven;
         Self {
             verdict: cause.verdict(),
             cause,
@@ -117,48 +117,48 @@ impl<F> FrameReport<F> {
     }
 
     /// Changes the cause and the verdict that follows from it.
-    pub(super) const fn because(mut self, cause: Cause) -> Self {
+    pub(super) const fn because(mut self, cause: FrameCause) -> Self {
         self.verdict = cause.verdict();
         self.cause = cause;
         self
     }
 
     /// Sets the cause that follows from errors and uncertainty.
-    pub(super) fn judged(self, limits: &Limits) -> Self {
+    pub(super) fn judged(self, limits: &FrameLimits) -> Self {
         let cause = self.cause_within(limits);
         self.because(cause)
     }
 
-    fn cause_within(&self, limits: &Limits) -> Cause {
+    fn cause_within(&self, limits: &FrameLimits) -> FrameCause {
         let kept = self.poses - self.outliers.len();
-        if kept < limits.least {
-            return Cause::TooFew { have: kept, least: limits.least };
+        if kept < limits.min {
+            return FrameCause::TooFew { have: kept, min: limits.min };
         }
-        let share = self.outliers.len() as f64 / self.poses.max(1) as f64;
-        if share > limits.outliers {
-            return Cause::Outliers { share, most: limits.outliers };
+        let fraction = self.outliers.len() as f64 / self.poses.max(1) as f64;
+        if fraction > limits.outliers {
+            return FrameCause::Outliers { fraction, max: limits.outliers };
         }
         let error = &self.held_out;
-        let most = &limits.held_out;
-        if let Some((by_m, most_m)) = above(error.place_m, most.place_m) {
-            return Cause::PoorPlace { by_m, most_m };
+        let max = &limits.held_out;
+        if let Some((by_m, max_m)) = above(error.place_m, max.place_m) {
+            return FrameCause::PoorPlace { by_m, max_m };
         }
-        if let Some((by_deg, most_deg)) = above(error.angle_deg, most.angle_deg) {
-            return Cause::PoorAngle { by_deg, most_deg };
+        if let Some((by_deg, max_deg)) = above(error.angle_deg, max.angle_deg) {
+            return FrameCause::PoorAngle { by_deg, max_deg };
         }
         let doubt = &self.uncertainty;
-        let most = &limits.uncertainty;
-        if let Some((by_m, most_m)) = above(doubt.place_m, most.place_m) {
-            return Cause::UncertainPlace { by_m, most_m };
+        let max = &limits.uncertainty;
+        if let Some((by_m, max_m)) = above(doubt.place_m, max.place_m) {
+            return FrameCause::UncertainPlace { by_m, max_m };
         }
-        if let Some((by_deg, most_deg)) = above(doubt.angle_deg, most.angle_deg) {
-            return Cause::UncertainAngle { by_deg, most_deg };
+        if let Some((by_deg, max_deg)) = above(doubt.angle_deg, max.angle_deg) {
+            return FrameCause::UncertainAngle { by_deg, max_deg };
         }
-        Cause::Proven
+        FrameCause::Proven
     }
 }
 
-impl<F: Found> FrameReport<F> {
+impl<F: CalibrationResult> FrameReport<F> {
     /// Returns the record of the result; `None` without a result. `reason` is the sentence for [`Self::cause`].
     pub fn record(&self, head: RecordHead, serials: Serials, reason: &str) -> Option<FrameRecord<F>> {
         FrameRecord::of(self, head, serials, reason)
@@ -166,15 +166,15 @@ impl<F: Found> FrameReport<F> {
 }
 
 /// Returns value and limit if the value exceeds the limit, is NaN or could not be determined.
-fn above(value: Option<f64>, most: Option<f64>) -> Option<(f64, f64)> {
-    most.map(|most| (value.unwrap_or(f64::INFINITY), most)).filter(|(value, most)| value.is_nan() || value > most)
+fn above(value: Option<f64>, max: Option<f64>) -> Option<(f64, f64)> {
+    max.map(|max| (value.unwrap_or(f64::INFINITY), max)).filter(|(value, max)| value.is_nan() || value > max)
 }
 
 /// A frame calibration: its settings, and how it is fitted. [`FrameSession`](super::FrameSession) records for it.
 pub trait Calibration {
-    type Found: Found;
+    type Solution: CalibrationResult;
 
-    fn needs(&self) -> Vec<Source>;
+    fn needs(&self) -> Vec<CalibrationSource>;
 
     /// Returns the carrier that moves while the calibration is recorded.
     fn carrier(&self) -> Carrier;
@@ -188,10 +188,10 @@ pub trait Calibration {
     fn differs(&self, sample: &FrameSample, taken: &[FrameSample]) -> bool;
 
     /// Returns the completed fraction of the motion and the missing part.
-    fn coverage(&self, taken: &[FrameSample]) -> Coverage;
+    fn coverage(&self, taken: &[FrameSample]) -> FrameCoverage;
 
     /// Fits the data as given; the samples have been checked.
-    fn attempt(&self, samples: &[FrameSample]) -> FrameReport<Self::Found>;
+    fn attempt(&self, samples: &[FrameSample]) -> FrameReport<Self::Solution>;
 
     /// Returns the mistakes to look for, the likeliest first, and the carrier whose poses they concern.
     fn mistakes(&self) -> Vec<(Mistake, Carrier)>;
@@ -207,14 +207,14 @@ pub trait Calibration {
     /// # Errors
     /// [`FrameError`] for a sample that lacks a source, has a non-finite number or is beyond 10 m, and for non-finite
     /// settings.
-    fn fit(&self, samples: &[FrameSample]) -> Result<FrameReport<Self::Found>, FrameError> {
+    fn fit(&self, samples: &[FrameSample]) -> Result<FrameReport<Self::Solution>, FrameError> {
         if let Some(setting) = self.fault() {
             return Err(FrameError::Setting { setting });
         }
         check(samples, &self.needs())?;
         let given = self.attempt(samples);
         // Data that fit in an impossible way have already revealed their mistake.
-        let fits = given.found.is_some() && matches!(given.cause, Cause::Mistake { .. });
+        let fits = given.found.is_some() && matches!(given.cause, FrameCause::Mistake { .. });
         if given.verdict == Verdict::Accepted || fits {
             return Ok(given);
         }
@@ -223,13 +223,13 @@ pub trait Calibration {
             let undone: Option<Vec<_>> = samples.iter().map(|sample| mistake.undone(sample, carrier)).collect();
             let Some(report) = undone.map(|samples| self.attempt(&samples)) else { continue };
             let size = report.held_out.place_m.or(report.held_out.angle_deg).unwrap_or(f64::INFINITY);
-            let better = best.is_none_or(|(least, _)| size < CLEARLY * least);
+            let better = best.is_none_or(|(min, _)| size < CLEARLY * min);
             if report.verdict == Verdict::Accepted && better {
                 best = Some((size, mistake));
             }
         }
         Ok(match best {
-            Some((_, mistake)) => given.because(Cause::Mistake { mistake }),
+            Some((_, mistake)) => given.because(FrameCause::Mistake { mistake }),
             None => given,
         })
     }

@@ -14,7 +14,7 @@ const FARTHEST_M: f64 = 10.0;
 /// The poses of the other side are not used for a fit. They reveal whether two markers or two arms were confused.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FrameSample {
-    /// The arm's flange in the frame of the arm's base, m, from the joints ([`crate::kinematics::Chain`]).
+    /// The arm's flange in the frame of the arm's base, m, from the joints ([`crate::kinematics::JointChain`]).
     pub base_from_flange: Option<Isometry3<f64>>,
     /// Pose of the other arm's flange, in that arm's own base frame.
     pub other_base_from_flange: Option<Isometry3<f64>>,
@@ -41,7 +41,7 @@ pub enum Carrier {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Source {
+pub enum CalibrationSource {
     Flange,
     /// The tracker, with the marker in view.
     Marker,
@@ -50,11 +50,11 @@ pub enum Source {
 }
 
 impl Carrier {
-    pub const fn source(self) -> Source {
+    pub const fn source(self) -> CalibrationSource {
         match self {
-            Self::Marker => Source::Marker,
-            Self::Flange => Source::Flange,
-            Self::Handle => Source::Handle,
+            Self::Marker => CalibrationSource::Marker,
+            Self::Flange => CalibrationSource::Flange,
+            Self::Handle => CalibrationSource::Handle,
         }
     }
 }
@@ -64,7 +64,7 @@ impl FrameSample {
     /// then and the mounting of the base; returns `None` for a pose by the accelerometer. Only its orientation and
     /// force may be used.
     pub fn of_gravity_pose(
-        pose: &gravity::Pose,
+        pose: &gravity::GravityPose,
         flange_from_s1: &nalgebra::UnitQuaternion<f64>,
         world_from_base: &nalgebra::UnitQuaternion<f64>,
     ) -> Option<Self> {
@@ -99,12 +99,12 @@ impl FrameSample {
         }
     }
 
-    pub(super) const fn has(&self, source: Source) -> bool {
+    pub(super) const fn has(&self, source: CalibrationSource) -> bool {
         match source {
-            Source::Marker => self.c_from_m.is_some(),
-            Source::Flange => self.base_from_flange.is_some(),
-            Source::Handle => self.leader_from_handle.is_some(),
-            Source::Wrench => self.wrench.is_some(),
+            CalibrationSource::Marker => self.c_from_m.is_some(),
+            CalibrationSource::Flange => self.base_from_flange.is_some(),
+            CalibrationSource::Handle => self.leader_from_handle.is_some(),
+            CalibrationSource::Wrench => self.wrench.is_some(),
         }
     }
 
@@ -139,7 +139,7 @@ impl FrameSample {
 }
 
 /// Refuses samples that lack a source or are not valid measurements.
-pub(super) fn check(samples: &[FrameSample], needs: &[Source]) -> Result<(), FrameError> {
+pub(super) fn check(samples: &[FrameSample], needs: &[CalibrationSource]) -> Result<(), FrameError> {
     for (index, sample) in samples.iter().enumerate() {
         if let Some(&from) = needs.iter().find(|&&source| !sample.has(source)) {
             return Err(FrameError::Missing { index, from });

@@ -9,10 +9,10 @@ use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize};
 
 use super::{
-    Calibration, Carrier, Cause, Coverage, FrameReport, FrameSample, Limits, Missing, Mistake, SignedAxes, Sizes,
-    Source,
-    examine::{Miss, Problem, examined},
-    record::{Found, rotation, rotation_fault, wxyz},
+    Calibration, CalibrationSource, Carrier, FrameCause, FrameCoverage, FrameLimits, FrameReport, FrameSample,
+    MissingMotion, Mistake, SignedAxes, Sizes,
+    examine::{Problem, RowMiss, examined},
+    record::{CalibrationResult, rotation, rotation_fault, wxyz},
     report::finite,
     spread::{below, nearest_orthogonal, principal, radius_95},
 };
@@ -23,30 +23,31 @@ use crate::frames::GRAVITY_M_S2;
 const APART_RAD: f64 = 0.17;
 /// Minimum root mean square of the directions of gravity from their mean along the third axis, 0 to 1; 0.58 for all
 /// directions.
-const LEAST_SPREAD: f64 = 0.1;
+const MIN_SPREAD: f64 = 0.1;
 const PLENTY_SPREAD: f64 = 0.35;
 const PLENTY: usize = 12;
 /// Minimum weight, N, and as a multiple of the noise.
-const LEAST_WEIGHT_N: f64 = 0.3;
-const LEAST_SIGNAL: f64 = 5.0;
+const MIN_WEIGHT_N: f64 = 0.3;
+const MIN_SIGNAL: f64 = 5.0;
 /// A mirror explains the forces if its error is below this fraction of the rotation's.
-const MIRROR_SHARE: f64 = 0.5;
+const MIRROR_FRACTION: f64 = 0.5;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SensorMount {
     /// The active mount, `flange_from_s1`.
-    pub in_force: UnitQuaternion<f64>,
+    pub active: UnitQuaternion<f64>,
     /// Direction upwards in the frame of the arm's base.
     pub up_in_base: Vector3<f64>,
-    pub limits: Limits,
+    pub limits: FrameLimits,
 }
 
 impl SensorMount {
     /// Creates the settings for a comparison with this mount (`flange_from_s1`), on an arm with this upward direction
     /// in its base's frame.
-    pub const fn new(in_force: UnitQuaternion<f64>, up_in_base: Vector3<f64>) -> Self {
-        let limits = Limits { least: 6, held_out: Sizes::angle(5.0), uncertainty: Sizes::angle(3.0), outliers: 0.25 };
-        Self { in_force, up_in_base, limits }
+    pub const fn new(active: UnitQuaternion<f64>, up_in_base: Vector3<f64>) -> Self {
+        let limits =
+            FrameLimits { min: 6, held_out: Sizes::angle(5.0), uncertainty: Sizes::angle(3.0), outliers: 0.25 };
+        Self { active, up_in_base, limits }
     }
 
     /// Returns the direction of gravity in the flange's frame, unit length.
@@ -54,19 +55,21 @@ impl SensorMount {
         Some(-(sample.base_from_flange?.rotation.inverse() * self.up_in_base.try_normalize(0.0)?))
     }
 
-    fn rows(&self, samples: &[FrameSample]) -> Vec<Row> {
-        let row =
-            |sample: &FrameSample| Some(Row { down: self.down_in_flange(sample)?, force_n: sample.wrench?.force_n });
+    fn rows(&self, samples: &[FrameSample]) -> Vec<SensorMountRow> {
+        let row = |sample: &FrameSample| {
+            Some(SensorMountRow { down: self.down_in_flange(sample)?, force_n: sample.wrench?.force_n })
+        };
         samples.iter().filter_map(row).collect()
     }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct SensorMountFound {
+pub struct SensorMountResult {
     pub flange_from_s1_wxyz: [f64; 4],
     /// Angle between this mount and the active one, degrees.
-    pub from_in_force_deg: f64,
+    #[serde(rename = "from_in_force_deg")]
+    pub from_active_deg: f64,
     /// Axes of the active mount that the measured x, y and z are, if the two mounts differ by names and signs of axes;
     /// all equal if they agree. `None` if they differ in another way.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -76,7 +79,7 @@ pub struct SensorMountFound {
     pub bias_n: [f64; 3],
 }
 
-impl SensorMountFound {
+impl SensorMountResult {
     /// A mount that differs from the active one by less than this agrees with it, degrees.
     pub const AGREES_DEG: f64 = 3.0;
 
@@ -85,15 +88,15 @@ impl SensorMountFound {
     }
 
     pub fn agrees(&self) -> bool {
-        self.from_in_force_deg <= Self::AGREES_DEG
+        self.from_active_deg <= Self::AGREES_DEG
     }
 }
 
-impl Found for SensorMountFound {
+impl CalibrationResult for SensorMountResult {
     const KIND: &'static str = "sensor_mount";
 
     fn fault(&self) -> Option<&'static str> {
-        let sound = (0.0..=180.0).contains(&self.from_in_force_deg)
+        let sound = (0.0..=180.0).contains(&self.from_active_deg)
             && self.mass_kg > 0.0
             && self.mass_kg.is_finite()
             && self.bias_n.iter().all(|x| x.is_finite());
@@ -104,29 +107,29 @@ impl Found for SensorMountFound {
 
 /// One pose: direction of gravity in the flange's frame (unit length), and the measured force (N, `s1`).
 #[derive(Clone, Copy, Debug)]
-struct Row {
+struct SensorMountRow {
     down: Vector3<f64>,
     force_n: Vector3<f64>,
 }
 
 /// `f = weight turn down + bias`.
 #[derive(Clone, Copy, Debug)]
-struct Weighed {
+struct WeightModel {
     turn: Matrix3<f64>,
     weight_n: f64,
     bias_n: Vector3<f64>,
 }
 
-impl Weighed {
-    fn error_n(&self, row: &Row) -> Vector3<f64> {
+impl WeightModel {
+    fn error_n(&self, row: &SensorMountRow) -> Vector3<f64> {
         row.force_n - self.turn * row.down * self.weight_n - self.bias_n
     }
 
     /// Returns the least-squares solution with this sign of the determinant: 1 for a rotation, -1 for a reflection.
-    fn of(rows: &[Row], sign: f64) -> Option<Self> {
-        let share = 1.0 / rows.len().max(1) as f64;
-        let down = rows.iter().map(|row| row.down).sum::<Vector3<f64>>() * share;
-        let force_n = rows.iter().map(|row| row.force_n).sum::<Vector3<f64>>() * share;
+    fn of(rows: &[SensorMountRow], sign: f64) -> Option<Self> {
+        let fraction = 1.0 / rows.len().max(1) as f64;
+        let down = rows.iter().map(|row| row.down).sum::<Vector3<f64>>() * fraction;
+        let force_n = rows.iter().map(|row| row.force_n).sum::<Vector3<f64>>() * fraction;
         let moment: Matrix3<f64> = rows.iter().map(|row| (row.force_n - force_n) * (row.down - down).transpose()).sum();
         let squares: f64 = rows.iter().map(|row| (row.down - down).norm_squared()).sum();
         let turn = nearest_orthogonal(&moment, sign)?;
@@ -136,38 +139,38 @@ impl Weighed {
     }
 }
 
-struct Weighing {
+struct WeightFit {
     sign: f64,
 }
 
-impl Problem for Weighing {
-    type Row = Row;
-    type Model = Weighed;
+impl Problem for WeightFit {
+    type Row = SensorMountRow;
+    type Model = WeightModel;
     const HYPOTHESIS: usize = 4;
-    const FLOOR: Miss = Miss::of_angle(0.1);
+    const FLOOR: RowMiss = RowMiss::of_angle(0.1);
 
-    fn solve(&self, rows: &[Row]) -> Option<Weighed> {
-        Weighed::of(rows, self.sign)
+    fn solve(&self, rows: &[SensorMountRow]) -> Option<WeightModel> {
+        WeightModel::of(rows, self.sign)
     }
 
     /// Returns the error of the force as an angle of the weight.
-    fn miss(&self, weighed: &Weighed, row: &Row) -> Miss {
-        Miss::of_angle(libm::atan(weighed.error_n(row).norm() / weighed.weight_n))
+    fn miss(&self, weighed: &WeightModel, row: &SensorMountRow) -> RowMiss {
+        RowMiss::of_angle(libm::atan(weighed.error_n(row).norm() / weighed.weight_n))
     }
 }
 
 /// Returns the spread of the directions of gravity about their mean along the third axis.
-fn spread(rows: &[Row]) -> f64 {
+fn spread(rows: &[SensorMountRow]) -> f64 {
     let mean = rows.iter().map(|row| row.down).sum::<Vector3<f64>>() / rows.len().max(1) as f64;
     let from_mean: Vec<Vector3<f64>> = rows.iter().map(|row| row.down - mean).collect();
     principal(&from_mean)[2]
 }
 
 impl Calibration for SensorMount {
-    type Found = SensorMountFound;
+    type Solution = SensorMountResult;
 
-    fn needs(&self) -> Vec<Source> {
-        vec![Source::Flange, Source::Wrench]
+    fn needs(&self) -> Vec<CalibrationSource> {
+        vec![CalibrationSource::Flange, CalibrationSource::Wrench]
     }
 
     fn carrier(&self) -> Carrier {
@@ -179,44 +182,43 @@ impl Calibration for SensorMount {
         taken.iter().filter_map(|sample| self.down_in_flange(sample)).all(|other| other.angle(&down) >= APART_RAD)
     }
 
-    fn coverage(&self, taken: &[FrameSample]) -> Coverage {
-        Coverage::least([
-            (taken.len() as f64 / PLENTY as f64, Missing::Poses),
-            (spread(&self.rows(taken)) / PLENTY_SPREAD, Missing::Directions),
+    fn coverage(&self, taken: &[FrameSample]) -> FrameCoverage {
+        FrameCoverage::min([
+            (taken.len() as f64 / PLENTY as f64, MissingMotion::Poses),
+            (spread(&self.rows(taken)) / PLENTY_SPREAD, MissingMotion::Directions),
         ])
     }
 
     fn fault(&self) -> Option<&'static str> {
-        let sound = finite(&self.up_in_base)
-            && self.up_in_base.norm() > 0.0
-            && (self.in_force.coords.norm() - 1.0).abs() < 1e-6;
+        let sound =
+            finite(&self.up_in_base) && self.up_in_base.norm() > 0.0 && (self.active.coords.norm() - 1.0).abs() < 1e-6;
         (!sound).then_some("the active mount or the upward direction is not finite")
     }
 
-    fn attempt(&self, samples: &[FrameSample]) -> FrameReport<SensorMountFound> {
+    fn attempt(&self, samples: &[FrameSample]) -> FrameReport<SensorMountResult> {
         let rows = self.rows(samples);
         let have = rows.len();
-        let least = self.limits.least;
-        if have < least {
-            return FrameReport::nothing(have, Cause::TooFew { have, least });
+        let min = self.limits.min;
+        if have < min {
+            return FrameReport::nothing(have, FrameCause::TooFew { have, min });
         }
         let spread = spread(&rows);
-        if below(spread, LEAST_SPREAD) {
-            return FrameReport::nothing(have, Cause::OnePlane { spread, least: LEAST_SPREAD });
+        if below(spread, MIN_SPREAD) {
+            return FrameReport::nothing(have, FrameCause::OnePlane { spread, min: MIN_SPREAD });
         }
         if let Some(mistake) = self.mirrored(&rows) {
-            return FrameReport::nothing(have, Cause::Mistake { mistake });
+            return FrameReport::nothing(have, FrameCause::Mistake { mistake });
         }
-        let weightless = |weight_n, least_n| FrameReport::nothing(have, Cause::Weightless { weight_n, least_n });
-        let Some(found) = examined(&Weighing { sign: 1.0 }, &rows) else { return weightless(0.0, LEAST_WEIGHT_N) };
-        let kept: Vec<Row> = found.kept.iter().map(|&i| rows[i]).collect();
+        let weightless = |weight_n, min_n| FrameReport::nothing(have, FrameCause::Weightless { weight_n, min_n });
+        let Some(found) = examined(&WeightFit { sign: 1.0 }, &rows) else { return weightless(0.0, MIN_WEIGHT_N) };
+        let kept: Vec<SensorMountRow> = found.kept.iter().map(|&i| rows[i]).collect();
         let weighed = found.model;
         let freedom = (3 * kept.len()).saturating_sub(7).max(1);
         let squares_n2: f64 = kept.iter().map(|row| weighed.error_n(row).norm_squared()).sum();
         let variance_n2 = squares_n2 / freedom as f64;
-        let least_n = LEAST_WEIGHT_N.max(LEAST_SIGNAL * variance_n2.sqrt());
-        if below(weighed.weight_n, least_n) {
-            return weightless(weighed.weight_n, least_n);
+        let min_n = MIN_WEIGHT_N.max(MIN_SIGNAL * variance_n2.sqrt());
+        if below(weighed.weight_n, min_n) {
+            return weightless(weighed.weight_n, min_n);
         }
         let region = turn_covariance(&kept, &weighed, variance_n2);
         let angle_deg = region.map(|region| radius_95(&region, freedom).to_degrees());
@@ -230,13 +232,13 @@ impl Calibration for SensorMount {
 }
 
 impl SensorMount {
-    fn found(&self, weighed: &Weighed) -> SensorMountFound {
+    fn found(&self, weighed: &WeightModel) -> SensorMountResult {
         let turn = Rotation3::from_matrix_unchecked(weighed.turn.transpose());
         let flange_from_s1 = UnitQuaternion::from_rotation_matrix(&turn);
-        let measured_from_expected = weighed.turn * self.in_force.to_rotation_matrix().into_inner();
-        SensorMountFound {
+        let measured_from_expected = weighed.turn * self.active.to_rotation_matrix().into_inner();
+        SensorMountResult {
             flange_from_s1_wxyz: wxyz(&flange_from_s1),
-            from_in_force_deg: flange_from_s1.angle_to(&self.in_force).to_degrees(),
+            from_active_deg: flange_from_s1.angle_to(&self.active).to_degrees(),
             axes: SignedAxes::nearest(&measured_from_expected),
             mass_kg: weighed.weight_n / GRAVITY_M_S2,
             bias_n: weighed.bias_n.into(),
@@ -245,9 +247,9 @@ impl SensorMount {
 
     /// Detects forces that fit only in a mirror: an axis has the wrong sign, or two axes are swapped, which no mount
     /// can cause.
-    fn mirrored(&self, rows: &[Row]) -> Option<Mistake> {
+    fn mirrored(&self, rows: &[SensorMountRow]) -> Option<Mistake> {
         let error = |sign| {
-            let found = Weighed::of(rows, sign)?;
+            let found = WeightModel::of(rows, sign)?;
             let mut squares: Vec<f64> = rows.iter().map(|row| found.error_n(row).norm_squared()).collect();
             // The median, so that a single touched pose has no influence.
             let middle = squares.len() / 2;
@@ -256,16 +258,16 @@ impl SensorMount {
         let (mirror, found) = error(-1.0)?;
         // Without a rotation that finds any weight, only the mirror remains.
         let turn = error(1.0).map_or(f64::INFINITY, |(turn, _)| turn);
-        if mirror >= MIRROR_SHARE * MIRROR_SHARE * turn {
+        if mirror >= MIRROR_FRACTION * MIRROR_FRACTION * turn {
             return None;
         }
-        let measured_from_expected = found.turn * self.in_force.to_rotation_matrix().into_inner();
+        let measured_from_expected = found.turn * self.active.to_rotation_matrix().into_inner();
         Some(SignedAxes::nearest(&measured_from_expected).map_or(Mistake::Mirrored, Mistake::WrongAxes))
     }
 }
 
 /// Returns the covariance of the turn (rotation vector in `s1`, rad), estimated together with the bias.
-fn turn_covariance(rows: &[Row], weighed: &Weighed, variance_n2: f64) -> Option<Matrix3<f64>> {
+fn turn_covariance(rows: &[SensorMountRow], weighed: &WeightModel, variance_n2: f64) -> Option<Matrix3<f64>> {
     let slopes: Vec<Matrix3<f64>> =
         rows.iter().map(|row| -(weighed.turn * row.down * weighed.weight_n).cross_matrix()).collect();
     let mean = slopes.iter().sum::<Matrix3<f64>>() / rows.len() as f64;

@@ -6,16 +6,16 @@
 //! loop.
 
 use super::{
-    Calibration, Carrier, FrameError, FrameReport, FrameSample, Source,
-    hold::{Held, Hold},
+    Calibration, CalibrationSource, Carrier, FrameError, FrameReport, FrameSample,
+    hold::{HoldState, PoseHold},
 };
 
-pub const MOST_POSES: usize = 400;
+pub const MAX_POSES: usize = 400;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Phase {
+pub enum FramePhase {
     /// A source is silent, or a number in the sample or the time is not finite.
-    Missing(Option<Source>),
+    Missing(Option<CalibrationSource>),
     /// The carrier moves, by this much since the hold began.
     Moving {
         by_m: f64,
@@ -25,7 +25,7 @@ pub enum Phase {
     /// Still, but not different enough from the poses that were recorded.
     TakenHere,
     Recording {
-        share: f64,
+        fraction: f64,
     },
     Recorded {
         index: usize,
@@ -34,7 +34,7 @@ pub enum Phase {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Missing {
+pub enum MissingMotion {
     Poses,
     Turns,
     SecondAxis,
@@ -44,37 +44,37 @@ pub enum Missing {
     /// A point off the line through the others.
     Beside,
     Directions,
-    Move(super::view::Move),
+    Move(super::view::ViewMove),
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Coverage {
+pub struct FrameCoverage {
     /// 0 to 1; at 1 the data suffice, unless they are poor.
-    pub share: f64,
+    pub fraction: f64,
     /// The part that is missing most; `None` at 1.
-    pub missing: Option<Missing>,
+    pub missing: Option<MissingMotion>,
 }
 
-impl Coverage {
-    pub(super) fn least<const N: usize>(shares: [(f64, Missing); N]) -> Self {
-        let least = shares.into_iter().min_by(|a, b| a.0.total_cmp(&b.0));
+impl FrameCoverage {
+    pub(super) fn min<const N: usize>(fractions: [(f64, MissingMotion); N]) -> Self {
+        let min = fractions.into_iter().min_by(|a, b| a.0.total_cmp(&b.0));
         // Written so that NaN counts as zero.
-        let share = least.map_or(1.0, |(share, _)| if share > 0.0 { share.min(1.0) } else { 0.0 });
-        Self { share, missing: least.filter(|_| share < 1.0).map(|(_, missing)| missing) }
+        let fraction = min.map_or(1.0, |(fraction, _)| if fraction > 0.0 { fraction.min(1.0) } else { 0.0 });
+        Self { fraction, missing: min.filter(|_| fraction < 1.0).map(|(_, missing)| missing) }
     }
 }
 
 #[derive(Clone, Debug)]
 pub struct FrameSession<C> {
     calibration: C,
-    hold: Hold,
+    hold: PoseHold,
     taken: Vec<FrameSample>,
     last_s: f64,
 }
 
 impl<C: Calibration> FrameSession<C> {
     pub fn new(calibration: C) -> Self {
-        let hold = Hold::new(calibration.hold_s());
+        let hold = PoseHold::new(calibration.hold_s());
         Self { calibration, hold, taken: Vec::new(), last_s: f64::NEG_INFINITY }
     }
 
@@ -83,27 +83,27 @@ impl<C: Calibration> FrameSession<C> {
     }
 
     /// Adds one sample at time `t_s` (s, increasing); returns the state of the session.
-    pub fn step(&mut self, sample: &FrameSample, t_s: f64) -> Phase {
+    pub fn step(&mut self, sample: &FrameSample, t_s: f64) -> FramePhase {
         let needs = self.calibration.needs();
         let silent = needs.iter().copied().find(|&source| !sample.has(source));
         if silent.is_some() || !sample.is_finite() || !t_s.is_finite() || t_s <= self.last_s {
             self.hold.reset();
-            return Phase::Missing(silent);
+            return FramePhase::Missing(silent);
         }
         self.last_s = t_s;
-        if self.taken.len() == MOST_POSES {
-            return Phase::Full;
+        if self.taken.len() == MAX_POSES {
+            return FramePhase::Full;
         }
         if !self.differs(sample) {
             self.hold.reset();
-            return Phase::TakenHere;
+            return FramePhase::TakenHere;
         }
         match self.hold.step(sample, watched(&needs), t_s) {
-            Held::Moved { by_m, by_rad } => Phase::Moving { by_m, by_rad },
-            Held::Share(share) => Phase::Recording { share },
-            Held::Long(mean) => {
+            HoldState::Moved { by_m, by_rad } => FramePhase::Moving { by_m, by_rad },
+            HoldState::Share(fraction) => FramePhase::Recording { fraction },
+            HoldState::Long(mean) => {
                 self.taken.push(*mean);
-                Phase::Recorded { index: self.taken.len() - 1 }
+                FramePhase::Recorded { index: self.taken.len() - 1 }
             }
         }
     }
@@ -123,7 +123,7 @@ impl<C: Calibration> FrameSession<C> {
     }
 
     /// Returns the completed fraction of the motion and the missing part.
-    pub fn coverage(&self) -> Coverage {
+    pub fn coverage(&self) -> FrameCoverage {
         self.calibration.coverage(&self.taken)
     }
 
@@ -132,7 +132,7 @@ impl<C: Calibration> FrameSession<C> {
     }
 
     pub fn add(&mut self, sample: FrameSample) {
-        if self.taken.len() < MOST_POSES {
+        if self.taken.len() < MAX_POSES {
             self.taken.push(sample);
         }
     }
@@ -150,13 +150,13 @@ impl<C: Calibration> FrameSession<C> {
     ///
     /// # Errors
     /// The errors of [`Calibration::fit`].
-    pub fn report(&self) -> Result<FrameReport<C::Found>, FrameError> {
+    pub fn report(&self) -> Result<FrameReport<C::Solution>, FrameError> {
         self.calibration.fit(&self.taken)
     }
 }
 
 /// Returns which poses must be still, in the order of [`FrameSample::poses`]: the required ones.
-fn watched(needs: &[Source]) -> [bool; 5] {
+fn watched(needs: &[CalibrationSource]) -> [bool; 5] {
     let needed = |carrier: Carrier| needs.contains(&carrier.source());
     [needed(Carrier::Flange), false, needed(Carrier::Marker), false, needed(Carrier::Handle)]
 }

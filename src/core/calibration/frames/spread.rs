@@ -2,17 +2,17 @@
 
 use nalgebra::{Isometry3, Matrix3, SymmetricEigen, Vector3};
 
-use super::Cause;
+use super::FrameCause;
 
 /// Minimum turns, degrees (root mean square about the mean orientation).
-const LEAST_TURN_DEG: f64 = 8.0;
-const LEAST_SECOND_DEG: f64 = 5.0;
+const MIN_TURN_DEG: f64 = 8.0;
+const MIN_SECOND_DEG: f64 = 5.0;
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Turns {
     /// Turns about the best and the worst determined direction of a lever, degrees.
-    pub(super) most_deg: f64,
-    pub(super) least_deg: f64,
+    pub(super) max_deg: f64,
+    pub(super) min_deg: f64,
 }
 
 impl Turns {
@@ -21,23 +21,22 @@ impl Turns {
     pub(super) fn of<'a>(poses: impl Iterator<Item = &'a Isometry3<f64>>) -> Self {
         let values = lever_matrix(poses).map_or(Vector3::zeros(), |matrix| matrix.symmetric_eigenvalues());
         let degrees = |square: f64| square.max(0.0).sqrt().to_degrees();
-        Self { most_deg: degrees(values.max()), least_deg: degrees(values.min()) }
+        Self { max_deg: degrees(values.max()), min_deg: degrees(values.min()) }
     }
 
     /// Returns the reason why the turns do not suffice, if so.
-    pub(super) fn lacking(self) -> Option<Cause> {
-        let Self { most_deg, least_deg } = self;
-        if below(most_deg, LEAST_TURN_DEG) {
-            return Some(Cause::SmallTurns { turn_deg: most_deg, least_deg: LEAST_TURN_DEG });
+    pub(super) fn lacking(self) -> Option<FrameCause> {
+        let Self { max_deg, min_deg } = self;
+        if below(max_deg, MIN_TURN_DEG) {
+            return Some(FrameCause::SmallTurns { turn_deg: max_deg, min_deg: MIN_TURN_DEG });
         }
-        below(least_deg, LEAST_SECOND_DEG)
-            .then_some(Cause::OneAxis { second_deg: least_deg, least_deg: LEAST_SECOND_DEG })
+        below(min_deg, MIN_SECOND_DEG).then_some(FrameCause::OneAxis { second_deg: min_deg, min_deg: MIN_SECOND_DEG })
     }
 }
 
 /// Returns whether a value is below its minimum, or NaN.
-pub(super) const fn below(value: f64, least: f64) -> bool {
-    value.is_nan() || value < least
+pub(super) const fn below(value: f64, min: f64) -> bool {
+    value.is_nan() || value < min
 }
 
 /// Returns `I - R^T R` with the mean `R` of the rotation matrices: the normal matrix of a lever `t` in

@@ -7,10 +7,10 @@ use nalgebra::{Isometry3, Matrix3, Point3, Rotation3, SymmetricEigen, UnitQuater
 use serde::{Deserialize, Serialize};
 
 use super::{
-    Calibration, Carrier, Cause, Coverage, FrameReport, FrameSample, Limits, Missing, Mistake, Sizes, Source,
-    StoredPose,
-    examine::{Miss, Problem, examined},
-    record::Found,
+    Calibration, CalibrationSource, Carrier, FrameCause, FrameCoverage, FrameLimits, FrameReport, FrameSample,
+    MissingMotion, Mistake, Sizes, StoredPose,
+    examine::{Problem, RowMiss, examined},
+    record::CalibrationResult,
     report::finite,
     spread::{principal, radius_95},
 };
@@ -20,7 +20,7 @@ use crate::calibration::Verdict;
 /// Chosen.
 const APART_M: f64 = 0.02;
 /// Minimum root mean square spread of the points along the second axis of their plane, m; and of a complete session.
-const LEAST_SPREAD_M: f64 = 0.015;
+const MIN_SPREAD_M: f64 = 0.015;
 const PLENTY_SPREAD_M: f64 = 0.03;
 const PLENTY: usize = 6;
 /// Noise of a touch per axis, m, and the degrees of freedom that this prior is worth, because few points do not
@@ -29,7 +29,7 @@ const NOISE_M: f64 = 0.35e-3;
 const NOISE_FREEDOM: usize = 8;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Table {
+pub struct TableSettings {
     /// Source of the tip's pose: marker or flange.
     pub carrier: Carrier,
     /// The tip in the frame of the marker or of the flange, m.
@@ -37,10 +37,10 @@ pub struct Table {
     /// Upward direction in the frame of the camera or of the base, if known. A table whose z axis points down is then
     /// refused, because its x and y axes were swapped.
     pub up: Option<Vector3<f64>>,
-    pub limits: Limits,
+    pub limits: FrameLimits,
 }
 
-impl Table {
+impl TableSettings {
     /// Creates the settings for the arm's joints, with the tip at this position in the flange's frame (m) and this
     /// upward direction in the base's frame.
     pub const fn by_arm(tip_in_flange_m: Vector3<f64>, up_in_base: Vector3<f64>) -> Self {
@@ -55,7 +55,7 @@ impl Table {
     const fn of(carrier: Carrier, tip_in_carrier_m: Vector3<f64>, up: Option<Vector3<f64>>) -> Self {
         let held_out = Sizes::place(2.0e-3);
         let uncertainty = Sizes::both(3.0e-3, 2.0);
-        Self { carrier, tip_in_carrier_m, up, limits: Limits { least: 4, held_out, uncertainty, outliers: 0.25 } }
+        Self { carrier, tip_in_carrier_m, up, limits: FrameLimits { min: 4, held_out, uncertainty, outliers: 0.25 } }
     }
 
     fn tip_m(&self, sample: &FrameSample) -> Option<Vector3<f64>> {
@@ -70,14 +70,14 @@ impl Table {
 /// A calibrated table, in the frame of the camera or of the arm's base.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct TableFound {
+pub struct TableResult {
     /// Source of the points: marker (frame of the camera) or flange (frame of the base).
     pub carrier: Carrier,
     /// `c_from_table` or `base_from_table`: origin, x along the first two points, z up from the plane.
     pub from_table: StoredPose,
 }
 
-impl Found for TableFound {
+impl CalibrationResult for TableResult {
     const KIND: &'static str = "table";
 
     fn fault(&self) -> Option<&'static str> {
@@ -86,7 +86,7 @@ impl Found for TableFound {
 }
 
 /// A plane through `middle_m`.
-struct Plane {
+struct FittedPlane {
     middle_m: Vector3<f64>,
     normal: Vector3<f64>,
 }
@@ -95,29 +95,32 @@ struct Touches;
 
 impl Problem for Touches {
     type Row = Vector3<f64>;
-    type Model = Plane;
+    type Model = FittedPlane;
     const HYPOTHESIS: usize = 3;
-    const FLOOR: Miss = Miss::of_place(2.0e-3);
+    const FLOOR: RowMiss = RowMiss::of_place(2.0e-3);
 
-    fn solve(&self, rows: &[Vector3<f64>]) -> Option<Plane> {
+    fn solve(&self, rows: &[Vector3<f64>]) -> Option<FittedPlane> {
         if rows.len() < 3 {
             return None;
         }
         let (middle_m, scatter) = scatter(rows);
         let eigen = SymmetricEigen::try_new(scatter, f64::EPSILON, 100)?;
-        Some(Plane { middle_m, normal: eigen.eigenvectors.column(eigen.eigenvalues.imin()).into_owned() })
+        Some(FittedPlane { middle_m, normal: eigen.eigenvectors.column(eigen.eigenvalues.imin()).into_owned() })
     }
 
-    fn miss(&self, plane: &Plane, row: &Vector3<f64>) -> Miss {
-        Miss::of_place((row - plane.middle_m).dot(&plane.normal).abs())
+    fn miss(&self, plane: &FittedPlane, row: &Vector3<f64>) -> RowMiss {
+        RowMiss::of_place((row - plane.middle_m).dot(&plane.normal).abs())
     }
 }
 
 /// Returns the mean of the points, and the mean of the outer products of their distances from it.
 fn scatter(points: &[Vector3<f64>]) -> (Vector3<f64>, Matrix3<f64>) {
-    let share = 1.0 / points.len().max(1) as f64;
-    let middle = points.iter().sum::<Vector3<f64>>() * share;
-    (middle, points.iter().map(|point| (point - middle) * (point - middle).transpose()).sum::<Matrix3<f64>>() * share)
+    let fraction = 1.0 / points.len().max(1) as f64;
+    let middle = points.iter().sum::<Vector3<f64>>() * fraction;
+    (
+        middle,
+        points.iter().map(|point| (point - middle) * (point - middle).transpose()).sum::<Matrix3<f64>>() * fraction,
+    )
 }
 
 /// Returns the spread of the points along the second axis of their plane, m.
@@ -128,7 +131,7 @@ fn second_spread_m(points: &[Vector3<f64>]) -> f64 {
 }
 
 /// Returns the axes of the table from its plane and the three points that define them; `None` if these lie on one line.
-fn axes(plane: &Plane, [origin, along, beside]: [Vector3<f64>; 3]) -> Option<Isometry3<f64>> {
+fn axes(plane: &FittedPlane, [origin, along, beside]: [Vector3<f64>; 3]) -> Option<Isometry3<f64>> {
     let onto = |v: Vector3<f64>| v - plane.normal * v.dot(&plane.normal);
     let x = onto(along - origin).try_normalize(APART_M / 2.0)?;
     let way = onto(beside - origin);
@@ -138,10 +141,10 @@ fn axes(plane: &Plane, [origin, along, beside]: [Vector3<f64>; 3]) -> Option<Iso
     Some(Isometry3::from_parts(place.into(), UnitQuaternion::from_rotation_matrix(&turn)))
 }
 
-impl Calibration for Table {
-    type Found = TableFound;
+impl Calibration for TableSettings {
+    type Solution = TableResult;
 
-    fn needs(&self) -> Vec<Source> {
+    fn needs(&self) -> Vec<CalibrationSource> {
         vec![self.carrier.source()]
     }
 
@@ -153,15 +156,15 @@ impl Calibration for Table {
         self.tip_m(sample).is_some_and(|tip_m| self.points(taken).iter().all(|point| (point - tip_m).norm() >= APART_M))
     }
 
-    fn coverage(&self, taken: &[FrameSample]) -> Coverage {
+    fn coverage(&self, taken: &[FrameSample]) -> FrameCoverage {
         let points = self.points(taken);
         let (middle, _) = scatter(&points);
         let from_middle: Vec<Vector3<f64>> = points.iter().map(|point| point - middle).collect();
         let [first, second, _] = principal(&from_middle);
-        Coverage::least([
-            (points.len() as f64 / PLENTY as f64, Missing::Poses),
-            (first / PLENTY_SPREAD_M, Missing::Distance),
-            (second / PLENTY_SPREAD_M, Missing::Beside),
+        FrameCoverage::min([
+            (points.len() as f64 / PLENTY as f64, MissingMotion::Poses),
+            (first / PLENTY_SPREAD_M, MissingMotion::Distance),
+            (second / PLENTY_SPREAD_M, MissingMotion::Beside),
         ])
     }
 
@@ -170,14 +173,14 @@ impl Calibration for Table {
         (!sound).then_some("the tip or the upward direction is not finite")
     }
 
-    fn attempt(&self, samples: &[FrameSample]) -> FrameReport<TableFound> {
+    fn attempt(&self, samples: &[FrameSample]) -> FrameReport<TableResult> {
         let points = self.points(samples);
         let have = points.len();
-        let collinear = |spread| FrameReport::nothing(have, Cause::Collinear { spread, least: LEAST_SPREAD_M });
+        let collinear = |spread| FrameReport::nothing(have, FrameCause::Collinear { spread, min: MIN_SPREAD_M });
         let &[origin, along, beside, ..] = points.as_slice() else {
-            return FrameReport::nothing(have, Cause::TooFew { have, least: self.limits.least });
+            return FrameReport::nothing(have, FrameCause::TooFew { have, min: self.limits.min });
         };
-        let wide = |points: &[Vector3<f64>]| second_spread_m(points) >= LEAST_SPREAD_M;
+        let wide = |points: &[Vector3<f64>]| second_spread_m(points) >= MIN_SPREAD_M;
         if !wide(&points) {
             return collinear(second_spread_m(&points));
         }
@@ -187,23 +190,23 @@ impl Calibration for Table {
         // point off it.
         let alone = (0..kept.len()).any(|i| {
             let others: Vec<Vector3<f64>> = kept.iter().enumerate().filter(|(j, _)| *j != i).map(|(_, p)| *p).collect();
-            kept.len() > 3 && second_spread_m(&others) < 0.5 * LEAST_SPREAD_M
+            kept.len() > 3 && second_spread_m(&others) < 0.5 * MIN_SPREAD_M
         });
         if alone || !wide(&kept) {
             return collinear(second_spread_m(&kept));
         }
         let Some(from_table) = axes(&found.model, [origin, along, beside]) else { return collinear(0.0) };
-        let value = TableFound { carrier: self.carrier, from_table: StoredPose::of(&from_table) };
+        let value = TableResult { carrier: self.carrier, from_table: StoredPose::of(&from_table) };
         let uncertainty = uncertainty(&kept, found.squares_m2(), (along - origin).norm());
         let lost = found.outliers.iter().find(|&&i| i < 3).copied();
         let report = FrameReport::of(have, found, uncertainty, value).judged(&self.limits);
         if lost.is_some() {
-            return report.because(Cause::Outliers { share: 1.0 / 3.0, most: 0.0 });
+            return report.because(FrameCause::Outliers { fraction: 1.0 / 3.0, max: 0.0 });
         }
         let z = from_table.rotation * Vector3::z();
         let down = self.up.is_some_and(|up| up.dot(&z) < 0.0);
         if down && report.verdict == Verdict::Accepted {
-            return report.because(Cause::Mistake { mistake: Mistake::Mirrored });
+            return report.because(FrameCause::Mistake { mistake: Mistake::Mirrored });
         }
         report
     }

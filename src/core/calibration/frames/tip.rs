@@ -9,9 +9,10 @@ use nalgebra::{Isometry3, Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
 
 use super::{
-    Calibration, Carrier, Cause, Coverage, FrameReport, FrameSample, Limits, Missing, Mistake, Sizes, Source,
-    examine::{Miss, Problem, examined},
-    record::{Found, place_fault},
+    Calibration, CalibrationSource, Carrier, FrameCause, FrameCoverage, FrameLimits, FrameReport, FrameSample,
+    MissingMotion, Mistake, Sizes,
+    examine::{Problem, RowMiss, examined},
+    record::{CalibrationResult, place_fault},
     spread::{Turns, lever_matrix, radius_95},
 };
 use crate::calibration::Verdict;
@@ -26,17 +27,17 @@ const PLENTY_DEG: f64 = 15.0;
 const PLENTY_SECOND_DEG: f64 = 10.0;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Tip {
+pub struct TipSettings {
     /// The carrier that moves about the tip: marker or flange.
     pub carrier: Carrier,
-    pub limits: Limits,
+    pub limits: FrameLimits,
 }
 
-impl Tip {
+impl TipSettings {
     /// Creates the settings for the tip in the marker's frame, with the tracker.
     pub const fn by_tracker() -> Self {
         let limits =
-            Limits { least: 12, held_out: Sizes::place(1.5e-3), uncertainty: Sizes::place(1.0e-3), outliers: 0.25 };
+            FrameLimits { min: 12, held_out: Sizes::place(1.5e-3), uncertainty: Sizes::place(1.0e-3), outliers: 0.25 };
         Self { carrier: Carrier::Marker, limits }
     }
 
@@ -45,13 +46,13 @@ impl Tip {
     pub const fn by_arm() -> Self {
         let tracker = Self::by_tracker();
         let held_out = Sizes::place(2.5e-3);
-        Self { carrier: Carrier::Flange, limits: Limits { held_out, ..tracker.limits } }
+        Self { carrier: Carrier::Flange, limits: FrameLimits { held_out, ..tracker.limits } }
     }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct TipFound {
+pub struct TipResult {
     pub carrier: Carrier,
     /// The tip in the frame of the marker or of the flange, m.
     pub tip_in_carrier_m: [f64; 3],
@@ -59,7 +60,7 @@ pub struct TipFound {
     pub pivot_m: [f64; 3],
 }
 
-impl Found for TipFound {
+impl CalibrationResult for TipResult {
     const KIND: &'static str = "tip";
 
     fn fault(&self) -> Option<&'static str> {
@@ -75,39 +76,39 @@ struct Pivot {
     covariance: Matrix3<f64>,
 }
 
-struct Pivoting;
+struct PivotFit;
 
-impl Problem for Pivoting {
+impl Problem for PivotFit {
     type Row = Isometry3<f64>;
     type Model = Pivot;
     const HYPOTHESIS: usize = 4;
-    const FLOOR: Miss = Miss::of_place(1.5e-3);
+    const FLOOR: RowMiss = RowMiss::of_place(1.5e-3);
 
     fn solve(&self, rows: &[Isometry3<f64>]) -> Option<Pivot> {
-        let share = 1.0 / rows.len() as f64;
+        let fraction = 1.0 / rows.len() as f64;
         let mut turn = Matrix3::zeros();
         let mut place_m = Vector3::zeros();
         let mut seen_m = Vector3::zeros();
         for row in rows {
-            turn += row.rotation.to_rotation_matrix().into_inner() * share;
-            place_m += row.translation.vector * share;
-            seen_m += row.rotation.inverse() * row.translation.vector * share;
+            turn += row.rotation.to_rotation_matrix().into_inner() * fraction;
+            place_m += row.translation.vector * fraction;
+            seen_m += row.rotation.inverse() * row.translation.vector * fraction;
         }
         let inverse = lever_matrix(rows.iter())?.cholesky()?.inverse();
         let tip_m = inverse * (turn.transpose() * place_m - seen_m);
         let dimple_m = turn * tip_m + place_m;
-        Some(Pivot { tip_m, dimple_m, covariance: inverse * share })
+        Some(Pivot { tip_m, dimple_m, covariance: inverse * fraction })
     }
 
-    fn miss(&self, pivot: &Pivot, row: &Isometry3<f64>) -> Miss {
-        Miss::of_place((row.rotation * pivot.tip_m + row.translation.vector - pivot.dimple_m).norm())
+    fn miss(&self, pivot: &Pivot, row: &Isometry3<f64>) -> RowMiss {
+        RowMiss::of_place((row.rotation * pivot.tip_m + row.translation.vector - pivot.dimple_m).norm())
     }
 }
 
-impl Calibration for Tip {
-    type Found = TipFound;
+impl Calibration for TipSettings {
+    type Solution = TipResult;
 
-    fn needs(&self) -> Vec<Source> {
+    fn needs(&self) -> Vec<CalibrationSource> {
         vec![self.carrier.source()]
     }
 
@@ -119,23 +120,23 @@ impl Calibration for Tip {
         turned(sample, taken, self.carrier)
     }
 
-    fn coverage(&self, taken: &[FrameSample]) -> Coverage {
+    fn coverage(&self, taken: &[FrameSample]) -> FrameCoverage {
         of_turns(taken, self.carrier)
     }
 
-    fn attempt(&self, samples: &[FrameSample]) -> FrameReport<TipFound> {
+    fn attempt(&self, samples: &[FrameSample]) -> FrameReport<TipResult> {
         let rows: Vec<Isometry3<f64>> =
             samples.iter().filter_map(|sample| sample.pose(self.carrier)).copied().collect();
         let have = rows.len();
-        let least = self.limits.least;
-        if have < least {
-            return FrameReport::nothing(have, Cause::TooFew { have, least });
+        let min = self.limits.min;
+        if have < min {
+            return FrameReport::nothing(have, FrameCause::TooFew { have, min });
         }
         if let Some(cause) = Turns::of(rows.iter()).lacking() {
             return FrameReport::nothing(have, cause);
         }
-        let Some(found) = examined(&Pivoting, &rows) else {
-            return FrameReport::nothing(have, Cause::OneAxis { second_deg: 0.0, least_deg: 0.0 });
+        let Some(found) = examined(&PivotFit, &rows) else {
+            return FrameReport::nothing(have, FrameCause::OneAxis { second_deg: 0.0, min_deg: 0.0 });
         };
         if let Some(cause) = Turns::of(found.kept.iter().map(|&i| &rows[i])).lacking() {
             return FrameReport::nothing(have, cause);
@@ -143,14 +144,14 @@ impl Calibration for Tip {
         let freedom = (3 * found.kept.len()).saturating_sub(6).max(1);
         let radius_m = radius_95(&(found.model.covariance * (found.squares_m2() / freedom as f64)), freedom);
         let Pivot { tip_m, dimple_m, .. } = found.model;
-        let value = TipFound { carrier: self.carrier, tip_in_carrier_m: tip_m.into(), pivot_m: dimple_m.into() };
+        let value = TipResult { carrier: self.carrier, tip_in_carrier_m: tip_m.into(), pivot_m: dimple_m.into() };
         let uncertainty = Sizes::place(radius_m);
         let report = FrameReport::of(have, found, uncertainty, value).judged(&self.limits);
         // Inverse poses fit as well, with tip and dimple swapped; but a camera is farther away than an instrument is
         // long.
         let exchanged = self.carrier == Carrier::Marker && tip_m.norm() > dimple_m.norm();
         if exchanged && report.verdict == Verdict::Accepted {
-            return report.because(Cause::Mistake { mistake: Mistake::InversePose });
+            return report.because(FrameCause::Mistake { mistake: Mistake::InversePose });
         }
         report
     }
@@ -169,11 +170,11 @@ pub(super) fn turned(sample: &FrameSample, taken: &[FrameSample], carrier: Carri
 }
 
 /// Returns the coverage by poses and their turns.
-pub(super) fn of_turns(taken: &[FrameSample], carrier: Carrier) -> Coverage {
+pub(super) fn of_turns(taken: &[FrameSample], carrier: Carrier) -> FrameCoverage {
     let turns = Turns::of(taken.iter().filter_map(|sample| sample.pose(carrier)));
-    Coverage::least([
-        (taken.len() as f64 / PLENTY as f64, Missing::Poses),
-        (turns.most_deg / PLENTY_DEG, Missing::Turns),
-        (turns.least_deg / PLENTY_SECOND_DEG, Missing::SecondAxis),
+    FrameCoverage::min([
+        (taken.len() as f64 / PLENTY as f64, MissingMotion::Poses),
+        (turns.max_deg / PLENTY_DEG, MissingMotion::Turns),
+        (turns.min_deg / PLENTY_SECOND_DEG, MissingMotion::SecondAxis),
     ])
 }

@@ -4,31 +4,32 @@
 //! The operator moves the tip (or the handle) to the right in the image, up, into it, and back the same way. Each
 //! displacement in the frame of base, camera or leader corresponds to a known direction in the frame `view` (x right, y
 //! down, z into the image); the rotation between the two sets is Wahba's problem (Markley 1988). The product of both
-//! rotations is the argument of [`crate::kinematics::Mapping::new`]: "right" on the handle is then right in the image.
+//! rotations is the argument of [`crate::kinematics::MotionMapping::new`]: "right" on the handle is then right in the image.
 
 use nalgebra::{Isometry3, Matrix3, Point3, Rotation3, UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize};
 
 use super::{
-    Calibration, Carrier, Cause, Coverage, FrameReport, FrameSample, Limits, Missing, Mistake, Sizes, Source,
-    examine::{Miss, Problem, examined},
-    record::{Found, rotation, rotation_fault, wxyz},
+    Calibration, CalibrationSource, Carrier, FrameCause, FrameCoverage, FrameLimits, FrameReport, FrameSample,
+    MissingMotion, Mistake, Sizes,
+    examine::{Problem, RowMiss, examined},
+    record::{CalibrationResult, rotation, rotation_fault, wxyz},
     report::finite,
     spread::{below, nearest_orthogonal, principal, radius_95},
 };
 
 /// Minimum length of a move, m: sixty times the noise of a tracker (0.25 mm), so that the direction is known within 2
 /// degrees.
-const LEAST_M: f64 = 0.015;
+const MIN_M: f64 = 0.015;
 /// Minimum root mean square of the moves' directions along the second and third axis of all; 0.58 for orthogonal moves.
-const LEAST_SECOND: f64 = 0.3;
-const LEAST_THIRD: f64 = 0.2;
+const MIN_SECOND: f64 = 0.3;
+const MIN_THIRD: f64 = 0.2;
 /// A mirror explains the moves if its error is below this fraction of the rotation's.
-const MIRROR_SHARE: f64 = 0.5;
+const MIRROR_FRACTION: f64 = 0.5;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Move {
+pub enum ViewMove {
     Right,
     Up,
     Deeper,
@@ -37,7 +38,7 @@ pub enum Move {
     Back,
 }
 
-impl Move {
+impl ViewMove {
     /// The moves in the order in which they are requested. They end where they began.
     pub const ALL: [Self; 6] = [Self::Right, Self::Up, Self::Deeper, Self::Left, Self::Down, Self::Back];
 
@@ -55,18 +56,18 @@ impl Move {
 }
 
 /// Settings of the view's calibration. The samples are a starting point and then the ends of the moves of
-/// [`Move::ALL`], repeated.
+/// [`ViewMove::ALL`], repeated.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct View {
+pub struct ViewSettings {
     /// The carrier that moves: the tip (by flange or marker) or the handle.
     pub carrier: Carrier,
     /// The point that moves, in the carrier's frame, m: the tip, or zero for the handle.
     pub point_in_carrier_m: Vector3<f64>,
     /// Limits for the verdict, suited to a person's hand.
-    pub limits: Limits,
+    pub limits: FrameLimits,
 }
 
-impl View {
+impl ViewSettings {
     /// Creates the settings for the tip and the arm: finds `base_from_view`.
     pub const fn by_arm(tip_in_flange_m: Vector3<f64>) -> Self {
         Self::of(Carrier::Flange, tip_in_flange_m)
@@ -82,7 +83,8 @@ impl View {
     }
 
     const fn of(carrier: Carrier, point_in_carrier_m: Vector3<f64>) -> Self {
-        let limits = Limits { least: 6, held_out: Sizes::angle(15.0), uncertainty: Sizes::angle(15.0), outliers: 0.25 };
+        let limits =
+            FrameLimits { min: 6, held_out: Sizes::angle(15.0), uncertainty: Sizes::angle(15.0), outliers: 0.25 };
         Self { carrier, point_in_carrier_m, limits }
     }
 
@@ -92,21 +94,21 @@ impl View {
     }
 
     /// Returns the move to request after these samples; `None` before the starting point.
-    pub fn asked(&self, taken: usize) -> Option<Move> {
-        Some(Move::ALL[taken.checked_sub(1)? % Move::ALL.len()])
+    pub fn asked(&self, taken: usize) -> Option<ViewMove> {
+        Some(ViewMove::ALL[taken.checked_sub(1)? % ViewMove::ALL.len()])
     }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct ViewFound {
+pub struct ViewResult {
     /// The carrier that moved: flange (`base_from_view`), marker (`c_from_view`) or handle (`leader_from_view`).
     pub carrier: Carrier,
     /// Rotation from `view` to the carrier's frame.
     pub from_view_wxyz: [f64; 4],
 }
 
-impl ViewFound {
+impl ViewResult {
     /// Returns the rotation from `view` to the frame of base, camera or leader.
     pub fn from_view(&self) -> UnitQuaternion<f64> {
         rotation(&self.from_view_wxyz)
@@ -124,7 +126,7 @@ impl ViewFound {
     }
 }
 
-impl Found for ViewFound {
+impl CalibrationResult for ViewResult {
     const KIND: &'static str = "view";
 
     fn fault(&self) -> Option<&'static str> {
@@ -134,36 +136,36 @@ impl Found for ViewFound {
 
 /// Directions of one move, unit length.
 #[derive(Clone, Copy, Debug)]
-struct Row {
+struct ViewRow {
     in_view: Vector3<f64>,
     measured: Vector3<f64>,
 }
 
-struct Moves;
+struct ViewMoves;
 
-fn moment(rows: &[Row]) -> Matrix3<f64> {
+fn moment(rows: &[ViewRow]) -> Matrix3<f64> {
     rows.iter().map(|row| row.measured * row.in_view.transpose()).sum()
 }
 
-impl Problem for Moves {
-    type Row = Row;
+impl Problem for ViewMoves {
+    type Row = ViewRow;
     type Model = Matrix3<f64>;
     const HYPOTHESIS: usize = 3;
-    const FLOOR: Miss = Miss::of_angle(0.7);
+    const FLOOR: RowMiss = RowMiss::of_angle(0.7);
 
-    fn solve(&self, rows: &[Row]) -> Option<Matrix3<f64>> {
+    fn solve(&self, rows: &[ViewRow]) -> Option<Matrix3<f64>> {
         nearest_orthogonal(&moment(rows), 1.0)
     }
 
-    fn miss(&self, turn: &Matrix3<f64>, row: &Row) -> Miss {
-        Miss::of_angle((turn * row.in_view).angle(&row.measured))
+    fn miss(&self, turn: &Matrix3<f64>, row: &ViewRow) -> RowMiss {
+        RowMiss::of_angle((turn * row.in_view).angle(&row.measured))
     }
 }
 
-impl Calibration for View {
-    type Found = ViewFound;
+impl Calibration for ViewSettings {
+    type Solution = ViewResult;
 
-    fn needs(&self) -> Vec<Source> {
+    fn needs(&self) -> Vec<CalibrationSource> {
         vec![self.carrier.source()]
     }
 
@@ -175,49 +177,49 @@ impl Calibration for View {
     fn differs(&self, sample: &FrameSample, taken: &[FrameSample]) -> bool {
         let last = taken.last().map(|last| self.points(&[*last]));
         let here = self.points(&[*sample]);
-        last.is_none_or(|last| last.iter().zip(&here).all(|(last, here)| (last - here).norm() >= LEAST_M))
+        last.is_none_or(|last| last.iter().zip(&here).all(|(last, here)| (last - here).norm() >= MIN_M))
     }
 
-    fn coverage(&self, taken: &[FrameSample]) -> Coverage {
-        let next = self.asked(taken.len()).map_or(Missing::Poses, Missing::Move);
-        Coverage::least([(taken.len() as f64 / (Move::ALL.len() + 1) as f64, next)])
+    fn coverage(&self, taken: &[FrameSample]) -> FrameCoverage {
+        let next = self.asked(taken.len()).map_or(MissingMotion::Poses, MissingMotion::Move);
+        FrameCoverage::min([(taken.len() as f64 / (ViewMove::ALL.len() + 1) as f64, next)])
     }
 
     fn fault(&self) -> Option<&'static str> {
         (!finite(&self.point_in_carrier_m)).then_some("the moving point is not finite")
     }
 
-    fn attempt(&self, samples: &[FrameSample]) -> FrameReport<ViewFound> {
+    fn attempt(&self, samples: &[FrameSample]) -> FrameReport<ViewResult> {
         let points = self.points(samples);
-        let ways = points.windows(2).zip(Move::ALL.iter().cycle());
+        let ways = points.windows(2).zip(ViewMove::ALL.iter().cycle());
         // A displacement that is too short has no direction; the others keep their names.
-        let row = |(ends, asked): (&[Vector3<f64>], &Move)| {
-            let measured = (ends[1] - ends[0]).try_normalize(LEAST_M)?;
-            Some(Row { in_view: asked.in_view(), measured })
+        let row = |(ends, asked): (&[Vector3<f64>], &ViewMove)| {
+            let measured = (ends[1] - ends[0]).try_normalize(MIN_M)?;
+            Some(ViewRow { in_view: asked.in_view(), measured })
         };
-        let rows: Vec<Row> = ways.filter_map(row).collect();
+        let rows: Vec<ViewRow> = ways.filter_map(row).collect();
         let have = rows.len();
-        let least = self.limits.least;
-        if have < least {
-            return FrameReport::nothing(have, Cause::TooFew { have, least });
+        let min = self.limits.min;
+        if have < min {
+            return FrameReport::nothing(have, FrameCause::TooFew { have, min });
         }
         let directions: Vec<Vector3<f64>> = rows.iter().map(|row| row.measured).collect();
         let [_, second, third] = principal(&directions);
-        if below(second, LEAST_SECOND) {
-            return FrameReport::nothing(have, Cause::Collinear { spread: second, least: LEAST_SECOND });
+        if below(second, MIN_SECOND) {
+            return FrameReport::nothing(have, FrameCause::Collinear { spread: second, min: MIN_SECOND });
         }
-        if below(third, LEAST_THIRD) {
-            return FrameReport::nothing(have, Cause::OnePlane { spread: third, least: LEAST_THIRD });
+        if below(third, MIN_THIRD) {
+            return FrameReport::nothing(have, FrameCause::OnePlane { spread: third, min: MIN_THIRD });
         }
         if is_mirrored(&rows) {
-            return FrameReport::nothing(have, Cause::Mistake { mistake: Mistake::Mirrored });
+            return FrameReport::nothing(have, FrameCause::Mistake { mistake: Mistake::Mirrored });
         }
-        let Some(found) = examined(&Moves, &rows) else {
-            return FrameReport::nothing(have, Cause::Collinear { spread: 0.0, least: LEAST_SECOND });
+        let Some(found) = examined(&ViewMoves, &rows) else {
+            return FrameReport::nothing(have, FrameCause::Collinear { spread: 0.0, min: MIN_SECOND });
         };
         let turn = Rotation3::from_matrix_unchecked(found.model);
         let from_view_wxyz = wxyz(&UnitQuaternion::from_rotation_matrix(&turn));
-        let value = ViewFound { carrier: self.carrier, from_view_wxyz };
+        let value = ViewResult { carrier: self.carrier, from_view_wxyz };
         // Each direction determines two turns; n directions spread over all axes provide 2 n / 3 of each.
         let kept = found.kept.len();
         let freedom = (2 * kept).saturating_sub(3).max(1);
@@ -235,12 +237,12 @@ impl Calibration for View {
 }
 
 /// Returns whether a reflection explains the moves far better than any rotation.
-fn is_mirrored(rows: &[Row]) -> bool {
+fn is_mirrored(rows: &[ViewRow]) -> bool {
     let squares = |sign| {
         let best = nearest_orthogonal(&moment(rows), sign)?;
         Some(rows.iter().map(|row| (row.measured - best * row.in_view).norm_squared()).sum::<f64>())
     };
-    squares(-1.0).zip(squares(1.0)).is_some_and(|(mirror, turn)| mirror < MIRROR_SHARE * turn)
+    squares(-1.0).zip(squares(1.0)).is_some_and(|(mirror, turn)| mirror < MIRROR_FRACTION * turn)
 }
 
 /// A pose with only a position, for a device without a wrist.

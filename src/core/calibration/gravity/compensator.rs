@@ -13,7 +13,7 @@
 
 use nalgebra::Vector3;
 
-use super::{GravityModel, Source};
+use super::{GravityModel, GravitySource};
 use crate::frames::{Wrench, WristSample};
 
 /// Default time constant, within 2 % of the best one measured, s.
@@ -34,7 +34,7 @@ impl Compensator {
     /// finite means no filter.
     pub fn new(model: GravityModel, time_constant_s: f64, period_s: f64) -> Self {
         // The arm's orientation has almost no noise; a filter would only add delay.
-        let usable = model.source == Source::Imu && time_constant_s > 0.0 && time_constant_s.is_finite();
+        let usable = model.source == GravitySource::Imu && time_constant_s > 0.0 && time_constant_s.is_finite();
         Self { model, time_constant_s: usable.then_some(time_constant_s), period_s, field_m_s2: None }
     }
 
@@ -55,9 +55,9 @@ impl Compensator {
     /// Returns `None`, and resets the filter, if the wrench is not finite or the source of orientation is missing, not
     /// finite or defective.
     pub fn step_after(&mut self, dt_s: f64, sample: &WristSample) -> Option<Wrench> {
-        let share = self.time_constant_s.map_or(1.0, |time_constant_s| -libm::expm1(-dt_s / time_constant_s));
+        let fraction = self.time_constant_s.map_or(1.0, |time_constant_s| -libm::expm1(-dt_s / time_constant_s));
         let read = self.model.field_m_s2(sample).filter(|_| sample.raw.is_finite());
-        self.field_m_s2 = read.map(|read| self.field_m_s2.map_or(read, |old| old + (read - old) * share));
+        self.field_m_s2 = read.map(|read| self.field_m_s2.map_or(read, |old| old + (read - old) * fraction));
         let gravity = self.model.predict(&self.field_m_s2?);
         Some(Wrench {
             force_n: sample.raw.force_n - gravity.force_n,
@@ -74,7 +74,7 @@ mod tests {
     use crate::{
         calibration::{
             AxisStats,
-            gravity::{ModelKind, Settings, fit, tests::Tool},
+            gravity::{GravitySettings, ModelKind, fit, tests::Tool},
         },
         frames::GRAVITY_M_S2,
     };
@@ -114,7 +114,7 @@ mod tests {
         let mut tool = Tool::new(23, 0.4);
         tool.com_m = Vector3::new(0.005, -0.004, 0.06);
         let poses: Vec<_> = (0..12).map(|_| tool.imu_pose(0.005, 1e-3)).collect();
-        let report = fit(&poses, &Settings::default()).unwrap();
+        let report = fit(&poses, &GravitySettings::default()).unwrap();
         let mut compensator =
             Compensator::new(report.fit_of(ModelKind::Physical).unwrap().model, time_constant_s, STEP_S);
         let errors = (0..10_000).map(|i| compensator.step(&moving_sample(&mut tool, f64::from(i) * STEP_S)).unwrap());
@@ -134,7 +134,7 @@ mod tests {
     fn a_gap_starts_the_filter_anew() {
         let mut tool = Tool::new(22, 0.4);
         let poses: Vec<_> = (0..12).map(|_| tool.imu_pose(0.0, 0.0)).collect();
-        let model = fit(&poses, &Settings::default()).unwrap().chosen_fit().unwrap().model;
+        let model = fit(&poses, &GravitySettings::default()).unwrap().chosen_fit().unwrap().model;
         let mut compensator = Compensator::new(model, 1.0, STEP_S);
         let upright = tool.sample(UnitQuaternion::identity(), 0.0, 0.0);
         let tilted = tool.sample(UnitQuaternion::from_euler_angles(1.0, 0.0, 0.0), 0.0, 0.0);

@@ -4,17 +4,17 @@
 //! cannot affect. Then poses beyond a multiple of the agreeing poses' deviation are left out, until the set no longer
 //! changes.
 
-use super::{pose::Row, solve::scaled_rotation};
+use super::{pose::GravityRow, solve::scaled_rotation};
 use nalgebra::Vector3;
 
 /// Fraction of the poses that must agree.
-const AGREEING_SHARE: f64 = 0.7;
+const AGREEING_FRACTION: f64 = 0.7;
 /// Poses in one random set: fifteen equations for seven unknowns.
 const SET: usize = 5;
 /// Number of random sets: with 30 % bad poses, all of them contain a bad pose once in 1700 cases.
 const SETS: usize = 40;
 /// With fewer poses it cannot be determined which of them is wrong: a random set of five must leave some to judge by.
-const LEAST_POSES: usize = 8;
+const MIN_POSES: usize = 8;
 /// Number of standard deviations beyond which a pose is an outlier: 1 in 900 by chance for three axes.
 const DEVIATIONS: f64 = 4.0;
 /// Median length of a vector of three standard normal numbers: the root of the median 2.366 of chi-squared with three
@@ -25,20 +25,20 @@ const SEED: u64 = 0x6772_6176;
 
 /// Returns the indices of the rows that agree, in increasing order. `floor_n`: a residual below it is never an outlier,
 /// N.
-pub(super) fn agreeing(rows: &[Row], floor_n: f64) -> Vec<usize> {
+pub(super) fn agreeing(rows: &[GravityRow], floor_n: f64) -> Vec<usize> {
     let all: Vec<usize> = (0..rows.len()).collect();
-    if rows.len() < LEAST_POSES {
+    if rows.len() < MIN_POSES {
         return all;
     }
-    let least = (AGREEING_SHARE * rows.len() as f64).ceil() as usize;
-    let Some(mut chosen) = start(rows, least) else { return all };
+    let min = (AGREEING_FRACTION * rows.len() as f64).ceil() as usize;
+    let Some(mut chosen) = start(rows, min) else { return all };
     for _ in 0..20 {
         let Some(residuals) = residuals(rows, &chosen) else { return all };
         let (order, sorted) = ranked(&residuals);
         // The correction for small samples is from Rousseeuw and Leroy (1987).
         let spread = sorted[rows.len() / 2] / MEDIAN_LENGTH * (1.0 + 5.0 / (rows.len() as f64 - 2.0));
         let limit = (DEVIATIONS * spread).max(floor_n);
-        let count = sorted.partition_point(|&r| r <= limit).max(least);
+        let count = sorted.partition_point(|&r| r <= limit).max(min);
         let mut next = order[..count].to_vec();
         next.sort_unstable();
         if next == chosen {
@@ -49,16 +49,16 @@ pub(super) fn agreeing(rows: &[Row], floor_n: f64) -> Vec<usize> {
     chosen
 }
 
-/// Returns the best `least` rows under the random set whose `least`-th residual is the smallest.
-fn start(rows: &[Row], least: usize) -> Option<Vec<usize>> {
+/// Returns the best `min` rows under the random set whose `min`-th residual is the smallest.
+fn start(rows: &[GravityRow], min: usize) -> Option<Vec<usize>> {
     let mut rng = fastrand::Rng::with_seed(SEED);
     let mut best: Option<(f64, Vec<usize>)> = None;
     for _ in 0..SETS {
         let set = rng.choose_multiple(0..rows.len(), SET);
         let Some(residuals) = residuals(rows, &set) else { continue };
         let (order, sorted) = ranked(&residuals);
-        if best.as_ref().is_none_or(|(score, _)| sorted[least - 1] < *score) {
-            best = Some((sorted[least - 1], order[..least].to_vec()));
+        if best.as_ref().is_none_or(|(score, _)| sorted[min - 1] < *score) {
+            best = Some((sorted[min - 1], order[..min].to_vec()));
         }
     }
     let mut chosen = best?.1;
@@ -67,12 +67,12 @@ fn start(rows: &[Row], least: usize) -> Option<Vec<usize>> {
 }
 
 /// Returns the length of every row's force residual (N) under the physical model of the chosen rows.
-fn residuals(rows: &[Row], chosen: &[usize]) -> Option<Vec<f64>> {
-    let subset: Vec<Row> = chosen.iter().map(|&i| rows[i]).collect();
+fn residuals(rows: &[GravityRow], chosen: &[usize]) -> Option<Vec<f64>> {
+    let subset: Vec<GravityRow> = chosen.iter().map(|&i| rows[i]).collect();
     let (mass_kg, s1_from_source) = scaled_rotation(&subset)?;
     let gain = s1_from_source.matrix() * mass_kg;
-    let share = 1.0 / subset.len() as f64;
-    let bias: Vector3<f64> = subset.iter().map(|row| (row.wrench.force_n - gain * row.field_m_s2) * share).sum();
+    let fraction = 1.0 / subset.len() as f64;
+    let bias: Vector3<f64> = subset.iter().map(|row| (row.wrench.force_n - gain * row.field_m_s2) * fraction).sum();
     Some(rows.iter().map(|row| (row.wrench.force_n - gain * row.field_m_s2 - bias).norm()).collect())
 }
 

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::{pose::Row, solve::design};
+use super::{pose::GravityRow, solve::design};
 
 /// Cosine of the angle up to which a pose covers a direction: 45 degrees.
 const REACH_COS: f64 = std::f64::consts::FRAC_1_SQRT_2;
@@ -13,7 +13,7 @@ const POINTS: usize = 200;
 /// Returns the fraction (0 to 1) of all directions of gravity in the sensor's frame that are within 45 degrees of a
 /// pose. The twelve targets of a session give 1; twelve random directions about 0.85; a shaft tilted by up to 30
 /// degrees in all directions 0.37.
-pub(super) fn coverage(rows: &[Row]) -> f64 {
+pub(super) fn coverage(rows: &[GravityRow]) -> f64 {
     let directions: Vec<Vector3<f64>> = rows.iter().filter_map(|row| row.field_m_s2.try_normalize(0.0)).collect();
     let reached = (0..POINTS).map(point).filter(|point| directions.iter().any(|d| d.dot(point) >= REACH_COS)).count();
     reached as f64 / POINTS as f64
@@ -29,7 +29,7 @@ fn point(i: usize) -> Vector3<f64> {
 
 /// Returns the condition number of the rows `(u / g, 1)`: 1.7 for directions all over the sphere; larger if they lie in
 /// a cone or plane; infinite if they do not determine the model.
-pub(super) fn condition(rows: &[Row]) -> f64 {
+pub(super) fn condition(rows: &[GravityRow]) -> f64 {
     if rows.len() < 4 {
         return f64::INFINITY;
     }

@@ -1,7 +1,7 @@
 //! Checks after every start whether a saved calibration is still valid, by the force that remains at rest. A state
 //! machine without a clock.
 //!
-//! Takes every sample of the wrist sensor with the time (s) and whether the loop is idle; returns a [`Drift`]. It waits
+//! Takes every sample of the wrist sensor with the time (s) and whether the loop is idle; returns a [`GravityDrift`]. It waits
 //! for two seconds; then the first still interval decides. While nothing touches the tool, the force without gravity
 //! and bias is zero. A bias does not change within seconds, but the force of a hand does, so a bad verdict needs three
 //! times as long an interval as a good one. An object that rests motionless on the tool cannot be distinguished from a
@@ -10,7 +10,7 @@
 
 use super::{
     GravityModel,
-    still::{Still, StillSettings},
+    still::{StillInterval, StillSettings},
 };
 use crate::frames::WristSample;
 
@@ -36,7 +36,7 @@ pub enum NotChecked {
 
 /// Result of the check since the start.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Drift {
+pub enum GravityDrift {
     Waiting,
     NotChecked(NotChecked),
     Fine {
@@ -53,27 +53,37 @@ pub enum Drift {
 pub struct DriftCheck {
     model: GravityModel,
     limit_n: f64,
-    still: Still,
+    still: StillInterval,
     began_s: Option<f64>,
     newest: Option<WristSample>,
     fresh_s: f64,
-    drift: Drift,
+    drift: GravityDrift,
 }
 
 impl DriftCheck {
     /// Starts a check of this model with a limit (N).
     pub fn new(model: GravityModel, limit_n: f64, still: StillSettings) -> Self {
-        let still = Still::new(still);
-        Self { model, limit_n, still, began_s: None, newest: None, fresh_s: f64::NEG_INFINITY, drift: Drift::Waiting }
+        let still = StillInterval::new(still);
+        Self {
+            model,
+            limit_n,
+            still,
+            began_s: None,
+            newest: None,
+            fresh_s: f64::NEG_INFINITY,
+            drift: GravityDrift::Waiting,
+        }
     }
 
-    pub const fn drift(&self) -> Drift {
+    pub const fn drift(&self) -> GravityDrift {
         self.drift
     }
 
     /// Adds a sample (`None` while the sensor is silent) at time `t_s` (s, increasing); returns the current result.
-    pub fn step(&mut self, sample: Option<&WristSample>, idle: bool, t_s: f64) -> Drift {
-        if matches!(self.drift, Drift::Fine { .. } | Drift::NotChecked(NotChecked::Engaged)) || !t_s.is_finite() {
+    pub fn step(&mut self, sample: Option<&WristSample>, idle: bool, t_s: f64) -> GravityDrift {
+        if matches!(self.drift, GravityDrift::Fine { .. } | GravityDrift::NotChecked(NotChecked::Engaged))
+            || !t_s.is_finite()
+        {
             return self.drift;
         }
         let since_s = t_s - *self.began_s.get_or_insert(t_s);
@@ -100,7 +110,7 @@ impl DriftCheck {
                 self.give_up(NotChecked::InTrocar);
             }
             (Some(sample), Some(field)) if since_s >= SETTLE_S => match self.still.step(sample, &field, t_s) {
-                Some(share) if share >= 1.0 => self.judge(share),
+                Some(fraction) if fraction >= 1.0 => self.judge(fraction),
                 None if late && self.still.only_force_moved() => self.give_up(NotChecked::Touched),
                 None if late => self.give_up(NotChecked::Moving),
                 _ => {}
@@ -117,21 +127,21 @@ impl DriftCheck {
     }
 
     /// Evaluates an interval of this multiple of the still time.
-    fn judge(&mut self, share: f64) {
+    fn judge(&mut self, fraction: f64) {
         let Some((wrench, field)) = self.still.mean() else { return };
         let by_n = (wrench.force_n - self.model.predict(&field).force_n).norm();
         if by_n <= self.limit_n {
-            self.drift = Drift::Fine { by_n };
-        } else if share >= STRETCHES_FOR_BAD {
-            self.drift = Drift::Moved { by_n };
+            self.drift = GravityDrift::Fine { by_n };
+        } else if fraction >= STRETCHES_FOR_BAD {
+            self.drift = GravityDrift::Moved { by_n };
             // The next verdict needs a new interval.
             self.still.reset();
         }
     }
 
     fn give_up(&mut self, why: NotChecked) {
-        if matches!(self.drift, Drift::Waiting | Drift::NotChecked(_)) {
-            self.drift = Drift::NotChecked(why);
+        if matches!(self.drift, GravityDrift::Waiting | GravityDrift::NotChecked(_)) {
+            self.drift = GravityDrift::NotChecked(why);
         }
     }
 }

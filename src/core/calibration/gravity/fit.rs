@@ -3,10 +3,11 @@
 use nalgebra::Vector3;
 
 use super::{
-    GravityError, GravityModel, GravityReport, Limits, ModelFit, ModelKind, Parameters, Settings, Source,
+    GravityError, GravityLimits, GravityModel, GravityParameters, GravityReport, GravitySettings, GravitySource,
+    ModelFit, ModelKind,
     consensus::agreeing,
     coverage::{condition, coverage},
-    pose::{Pose, Reading, Row, checked, rows},
+    pose::{GravityPose, GravityRow, OrientationReading, checked, rows},
     solve::solve,
     trend::drift_n,
 };
@@ -21,48 +22,48 @@ const LEAVE_ONE_OUT: usize = 20;
 /// force, and the physical model seven.
 const GAIN_POSES: usize = 12;
 /// The gain model is chosen automatically only if its held-out error is below this fraction of the physical model's.
-const GAIN_SHARE: f64 = 0.75;
+const GAIN_FRACTION: f64 = 0.75;
 /// Errors below this are rounding and give no information, N.
 const ROUNDING_N: f64 = 1e-9;
 /// A mistake in the orientation is reported if correcting it leaves less than this fraction of the error; noise alone
 /// would leave about as much as before.
-const MISTAKE_SHARE: f64 = 0.5;
+const MISTAKE_FRACTION: f64 = 0.5;
 
-struct Frame {
-    source: Source,
+struct FitFrame {
+    source: GravitySource,
     imu_sign: i8,
     has_torque: bool,
     floor_n: f64,
     drifts: bool,
 }
 
-impl Frame {
-    fn fit(&self, kind: ModelKind, rows: &[Row]) -> Option<GravityModel> {
+impl FitFrame {
+    fn fit(&self, kind: ModelKind, rows: &[GravityRow]) -> Option<GravityModel> {
         let parameters = solve(kind, rows, self.has_torque)?;
         Some(GravityModel { source: self.source, imu_sign: self.imu_sign, parameters })
     }
 
     /// Returns the indices of rows that agree with each other, in increasing order.
-    fn agreeing(&self, rows: &[Row]) -> Vec<usize> {
+    fn agreeing(&self, rows: &[GravityRow]) -> Vec<usize> {
         if self.drifts { (0..rows.len()).collect() } else { agreeing(rows, self.floor_n) }
     }
 }
 
 /// The rows, which of them agree, and the training rows of each fold.
-struct Data {
-    all: Vec<Row>,
+struct FitData {
+    all: Vec<GravityRow>,
     inliers: Vec<usize>,
-    kept: Vec<Row>,
-    trainings: Vec<Vec<Row>>,
+    kept: Vec<GravityRow>,
+    trainings: Vec<Vec<GravityRow>>,
     /// Change of the bias from the first pose to the last (N), if they disagree by a drift.
     drift_n: Option<f64>,
 }
 
-impl Data {
-    fn new(frame: &Frame, all: Vec<Row>) -> Self {
+impl FitData {
+    fn new(frame: &FitFrame, all: Vec<GravityRow>) -> Self {
         // Poses that drift apart are not outliers: each is as good as the others, and least squares uses all of them.
         let drift_n = drift_n(&all, frame.floor_n);
-        let frame = &Frame { drifts: drift_n.is_some(), ..*frame };
+        let frame = &FitFrame { drifts: drift_n.is_some(), ..*frame };
         let inliers = frame.agreeing(&all);
         let kept = inliers.iter().map(|&i| all[i]).collect();
         let folds = if all.len() <= LEAVE_ONE_OUT { all.len() } else { 10 };
@@ -83,7 +84,7 @@ impl Data {
 /// ```
 /// use nalgebra::{UnitQuaternion, Vector3};
 /// use nima_core::{
-///     calibration::gravity::{Orientation, Parameters, Pose, Settings, fit},
+///     calibration::gravity::{Orientation, GravityParameters, GravityPose, GravitySettings, fit},
 ///     frames::Wrench,
 /// };
 ///
@@ -92,25 +93,25 @@ impl Data {
 ///     let world_from_s1 = UnitQuaternion::from_euler_angles(f64::from(i), 0.7 * f64::from(i), 1.3 * f64::from(i));
 ///     let weight_n = world_from_s1.inverse() * Vector3::new(0.0, 0.0, -0.25 * 9.81);
 ///     let wrench = Wrench { force_n: weight_n + bias_n, torque_nm: Vector3::zeros() };
-///     Pose { wrench, has_torque: false, orientation: Orientation::Arm(world_from_s1) }
+///     GravityPose { wrench, has_torque: false, orientation: Orientation::Arm(world_from_s1) }
 /// };
-/// let poses: Vec<Pose> = (0..12).map(pose).collect();
-/// let report = fit(&poses, &Settings::default())?;
+/// let poses: Vec<GravityPose> = (0..12).map(pose).collect();
+/// let report = fit(&poses, &GravitySettings::default())?;
 /// let model = report.fits.iter().find(|fit| Some(fit.kind) == report.chosen).expect("a chosen model").model;
-/// let Parameters::Physical { mass_kg, .. } = model.parameters else { panic!("{:?}", model.kind()) };
+/// let GravityParameters::Physical { mass_kg, .. } = model.parameters else { panic!("{:?}", model.kind()) };
 /// assert!((mass_kg - 0.25).abs() < 1e-3, "{mass_kg} kg");
-/// assert!(fit(&[], &Settings::default()).is_err());
+/// assert!(fit(&[], &GravitySettings::default()).is_err());
 /// # Ok::<(), nima_core::calibration::gravity::GravityError>(())
 /// ```
-pub fn fit(poses: &[Pose], settings: &Settings) -> Result<GravityReport, GravityError> {
+pub fn fit(poses: &[GravityPose], settings: &GravitySettings) -> Result<GravityReport, GravityError> {
     if !matches!(settings.imu_sign, -1 | 1) {
         return Err(GravityError::BadSign { sign: settings.imu_sign });
     }
     let source = checked(poses)?;
-    let Settings { imu_sign, limits, .. } = *settings;
+    let GravitySettings { imu_sign, limits, .. } = *settings;
     let has_torque = poses.iter().all(|pose| pose.has_torque);
-    let frame = Frame { source, imu_sign, has_torque, floor_n: limits.outlier_floor_n, drifts: false };
-    let data = Data::new(&frame, rows(poses, imu_sign, Reading::AsGiven));
+    let frame = FitFrame { source, imu_sign, has_torque, floor_n: limits.outlier_floor_n, drifts: false };
+    let data = FitData::new(&frame, rows(poses, imu_sign, OrientationReading::AsGiven));
     let outliers: Vec<usize> = (0..poses.len()).filter(|i| data.inliers.binary_search(i).is_err()).collect();
     let fits: Vec<ModelFit> = ModelKind::ALL.into_iter().filter_map(|kind| one_fit(kind, &frame, &data)).collect();
     let (mass_kg, com_m) = weight(&fits);
@@ -135,7 +136,7 @@ pub fn fit(poses: &[Pose], settings: &Settings) -> Result<GravityReport, Gravity
 }
 
 /// Fits one model to the agreeing rows; computes its errors on these and on held-out rows.
-fn one_fit(kind: ModelKind, frame: &Frame, data: &Data) -> Option<ModelFit> {
+fn one_fit(kind: ModelKind, frame: &FitFrame, data: &FitData) -> Option<ModelFit> {
     let model = frame.fit(kind, &data.kept)?;
     let fitted: Vec<_> = data.kept.iter().map(|row| errors(&model, row)).collect();
     let held_out = held_out(kind, frame, data)?;
@@ -151,21 +152,21 @@ fn one_fit(kind: ModelKind, frame: &Frame, data: &Data) -> Option<ModelFit> {
     })
 }
 
-fn errors(model: &GravityModel, row: &Row) -> Wrench {
+fn errors(model: &GravityModel, row: &GravityRow) -> Wrench {
     let predicted = model.predict(&row.field_m_s2);
     Wrench { force_n: row.wrench.force_n - predicted.force_n, torque_nm: row.wrench.torque_nm - predicted.torque_nm }
 }
 
 /// Returns the training rows of each fold. Agreement is determined again for each fold, so that a held-out row has no
 /// influence.
-fn trainings(frame: &Frame, all: &[Row], folds: usize) -> Vec<Vec<Row>> {
-    let training = |fold| -> Vec<Row> { (0..all.len()).filter(|i| i % folds != fold).map(|i| all[i]).collect() };
-    let agreeing = |rows: Vec<Row>| frame.agreeing(&rows).into_iter().map(|i| rows[i]).collect();
+fn trainings(frame: &FitFrame, all: &[GravityRow], folds: usize) -> Vec<Vec<GravityRow>> {
+    let training = |fold| -> Vec<GravityRow> { (0..all.len()).filter(|i| i % folds != fold).map(|i| all[i]).collect() };
+    let agreeing = |rows: Vec<GravityRow>| frame.agreeing(&rows).into_iter().map(|i| rows[i]).collect();
     (0..folds).map(|fold| agreeing(training(fold))).collect()
 }
 
 /// Returns the errors on held-out rows, without the outliers of the whole set.
-fn held_out(kind: ModelKind, frame: &Frame, data: &Data) -> Option<Vec<Wrench>> {
+fn held_out(kind: ModelKind, frame: &FitFrame, data: &FitData) -> Option<Vec<Wrench>> {
     let mut result = Vec::with_capacity(data.inliers.len());
     let folds = data.trainings.len();
     for (fold, training) in data.trainings.iter().enumerate() {
@@ -178,29 +179,31 @@ fn held_out(kind: ModelKind, frame: &Frame, data: &Data) -> Option<Vec<Wrench>> 
 fn weight(fits: &[ModelFit]) -> (Option<f64>, Option<[f64; 3]>) {
     fits.iter()
         .find_map(|fit| match fit.model.parameters {
-            Parameters::Physical { mass_kg, torque, .. } => Some((Some(mass_kg), torque.map(|torque| torque.com_m))),
+            GravityParameters::Physical { mass_kg, torque, .. } => {
+                Some((Some(mass_kg), torque.map(|torque| torque.com_m)))
+            }
             _ => None,
         })
         .unwrap_or_default()
 }
 
 /// Returns the requested model; by default the physical one, unless the gain model is clearly better on held-out poses.
-fn chosen(report: &GravityReport, settings: &Settings) -> Option<ModelKind> {
+fn chosen(report: &GravityReport, settings: &GravitySettings) -> Option<ModelKind> {
     if let Some(kind) = settings.model {
         return report.fit_of(kind).map(|fit| fit.kind);
     }
     let error = |kind| report.fit_of(kind).map(|fit| fit.force_n.held_out.mean_mae());
     let physical = error(ModelKind::Physical)?;
     let enough = report.poses - report.outliers.len() >= GAIN_POSES;
-    let better = error(ModelKind::Gain).is_some_and(|gain| gain < GAIN_SHARE * physical);
+    let better = error(ModelKind::Gain).is_some_and(|gain| gain < GAIN_FRACTION * physical);
     Some(if enough && better { ModelKind::Gain } else { ModelKind::Physical })
 }
 
 fn judge(
     report: &GravityReport,
-    poses: &[Pose],
-    settings: &Settings,
-    frame: &Frame,
+    poses: &[GravityPose],
+    settings: &GravitySettings,
+    frame: &FitFrame,
     drift_n: Option<f64>,
 ) -> (Verdict, String) {
     let limits = &settings.limits;
@@ -225,62 +228,62 @@ fn drifted(drift_n: f64) -> String {
     )
 }
 
-fn insufficient(report: &GravityReport, limits: &Limits) -> Option<String> {
+fn insufficient(report: &GravityReport, limits: &GravityLimits) -> Option<String> {
     let kept = report.poses - report.outliers.len();
-    if kept < limits.least_poses {
+    if kept < limits.min_poses {
         return Some(format!(
             "only {kept} poses are usable, at least {} are required; record more poses",
-            limits.least_poses
+            limits.min_poses
         ));
     }
-    if report.coverage < limits.least_coverage {
+    if report.coverage < limits.min_coverage {
         return Some(format!(
             "the poses cover {:.2} of all directions of gravity (minimum {:.2}); tilt the tool further",
-            report.coverage, limits.least_coverage
+            report.coverage, limits.min_coverage
         ));
     }
     match report.condition {
-        Some(condition) if condition <= limits.most_condition => None,
+        Some(condition) if condition <= limits.max_condition => None,
         condition => Some(format!(
             "the poses lie in a narrow cone or in one plane (condition {}, limit {:.0}); tilt the tool to other sides",
             condition.map_or_else(|| "infinite".to_owned(), |c| format!("{c:.0}")),
-            limits.most_condition
+            limits.max_condition
         )),
     }
 }
 
 /// Checks that the force follows gravity by more than its noise: a sensor that repeats one reading fits every model
 /// with a mass of zero.
-fn weightless(report: &GravityReport, limits: &Limits) -> Option<String> {
+fn weightless(report: &GravityReport, limits: &GravityLimits) -> Option<String> {
     let fit = report.fit_of(ModelKind::Physical)?;
     let weight_n = report.mass_kg? * GRAVITY_M_S2;
     let noise_n = fit.force_n.fitted.sd.into_iter().fold(0.0, f64::max);
-    let least_n = limits.least_weight_n.max(limits.least_signal * noise_n);
+    let min_n = limits.min_weight_n.max(limits.min_signal * noise_n);
     // Written so that NaN is refused as well.
-    let seen = weight_n >= least_n;
+    let seen = weight_n >= min_n;
     (!seen).then(|| {
         format!(
-            "no weight was measured: the force follows gravity by {weight_n:.3} N, at least {least_n:.3} N is required above its noise; \
+            "no weight was measured: the force follows gravity by {weight_n:.3} N, at least {min_n:.3} N is required above its noise; \
              check that the sensor sends new readings in N and that the tool hangs on it"
         )
     })
 }
 
-fn poor(report: &GravityReport, fit: &ModelFit, limits: &Limits) -> Option<String> {
+fn poor(report: &GravityReport, fit: &ModelFit, limits: &GravityLimits) -> Option<String> {
     let weight_n = report.mass_kg.unwrap_or(0.0) * GRAVITY_M_S2;
     let held_out = &fit.force_n.held_out;
     let mae_n = held_out.mean_mae();
     let max_n = held_out.largest();
-    let mae_limit = limits.mae_n.max(limits.mae_share * weight_n);
-    let max_limit = limits.max_n.max(limits.max_share * weight_n);
-    let share = report.outliers.len() as f64 / report.poses as f64;
+    let mae_limit = limits.mae_n.max(limits.mae_fraction * weight_n);
+    let max_limit = limits.max_n.max(limits.max_fraction * weight_n);
+    let fraction = report.outliers.len() as f64 / report.poses as f64;
     if mae_n > mae_limit {
         return Some(format!("the mean error on held-out poses is {mae_n:.3} N, the limit {mae_limit:.3} N"));
     }
     if max_n > max_limit {
         return Some(format!("the largest error on a held-out pose is {max_n:.3} N, the limit {max_limit:.3} N"));
     }
-    if share > limits.most_outliers {
+    if fraction > limits.max_outliers {
         return Some(format!(
             "{} of {} poses do not agree with the others; repeat them without touching the tool",
             report.outliers.len(),
@@ -306,32 +309,40 @@ fn accepted(report: &GravityReport, fit: &ModelFit) -> String {
 
 /// Returns a common mistake in the orientation if correcting it explains well-distributed poses far better. With a
 /// wrong sign the best fit is a reflection, which is not a possible mounting.
-fn mistake(report: &GravityReport, poses: &[Pose], settings: &Settings, frame: &Frame) -> Option<&'static str> {
+fn mistake(
+    report: &GravityReport,
+    poses: &[GravityPose],
+    settings: &GravitySettings,
+    frame: &FitFrame,
+) -> Option<&'static str> {
     let limits = &settings.limits;
     let given = report.fit_of(ModelKind::Physical)?.force_n.held_out.mean_mae();
     if given < ROUNDING_N {
         return None;
     }
-    let candidates: &[(Reading, &str)] = match frame.source {
-        Source::Imu => &[(
-            Reading::Opposite,
+    let candidates: &[(OrientationReading, &str)] = match frame.source {
+        GravitySource::Imu => &[(
+            OrientationReading::Opposite,
             "the accelerometer reads opposite to the chosen sign (or one of its axes is mirrored); flip the sign",
         )],
-        Source::Arm => &[
+        GravitySource::Arm => &[
             (
-                Reading::InverseRotation,
+                OrientationReading::InverseRotation,
                 "the inverse orientations fit: the file contains sensor from base; use base from sensor",
             ),
-            (Reading::Opposite, "the forces point opposite to gravity; check the signs of the force columns"),
+            (
+                OrientationReading::Opposite,
+                "the forces point opposite to gravity; check the signs of the force columns",
+            ),
         ],
     };
     candidates.iter().find_map(|&(reading, words)| {
-        let other = Data::new(frame, rows(poses, settings.imu_sign, reading));
-        let sound = other.kept.len() >= limits.least_poses
-            && coverage(&other.kept) >= limits.least_coverage
-            && condition(&other.kept) <= limits.most_condition;
+        let other = FitData::new(frame, rows(poses, settings.imu_sign, reading));
+        let sound = other.kept.len() >= limits.min_poses
+            && coverage(&other.kept) >= limits.min_coverage
+            && condition(&other.kept) <= limits.max_condition;
         let errors = held_out(ModelKind::Physical, frame, &other)?;
         let error = AxisStats::of(errors.into_iter().map(|e| e.force_n)).mean_mae();
-        (sound && error < MISTAKE_SHARE * given).then_some(words)
+        (sound && error < MISTAKE_FRACTION * given).then_some(words)
     })
 }

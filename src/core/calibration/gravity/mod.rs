@@ -29,15 +29,15 @@ mod tests;
 mod trend;
 
 pub use compensator::{Compensator, DEFAULT_TIME_CONSTANT_S};
-pub use drift::{Drift, DriftCheck, NotChecked};
+pub use drift::{DriftCheck, GravityDrift, NotChecked};
 pub use fit::fit;
-pub use model::{GravityModel, ModelKind, Parameters, Source, TorqueParameters};
+pub use model::{GravityModel, GravityParameters, GravitySource, ModelKind, TorqueParameters};
 pub use pass::{CheckPass, PassResult};
-pub use pose::{Orientation, Pose};
-pub use precheck::{Check, CheckState, Precheck};
+pub use pose::{GravityPose, Orientation};
+pub use precheck::{CheckState, Precheck, PrecheckResult};
 pub use record::{GravityKind, GravityRecord};
-pub use report::{GravityReport, Limits, ModelFit, Settings};
-pub use session::{GravitySession, Phase, SessionSettings};
+pub use report::{GravityLimits, GravityReport, GravitySettings, ModelFit};
+pub use session::{GravityPhase, GravitySession, GravitySessionSettings};
 pub use still::StillSettings;
 pub use targets::{PoseTarget, TARGETS};
 

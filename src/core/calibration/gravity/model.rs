@@ -7,11 +7,11 @@ use crate::frames::{GRAVITY_M_S2, Wrench, WristSample};
 
 /// Below this value, m/s^2, the accelerometer is defective or the arm is in free fall, and the orientation cannot be
 /// computed.
-pub(super) const LEAST_FIELD_M_S2: f64 = 1.0;
+pub(super) const MIN_FIELD_M_S2: f64 = 1.0;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Source {
+pub enum GravitySource {
     Imu,
     Arm,
 }
@@ -53,7 +53,7 @@ pub struct TorqueParameters {
 /// Parameters of a model. Torque is `None` if the poses had no torque; torque is then not compensated.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
-pub enum Parameters {
+pub enum GravityParameters {
     /// `f = m R u + f0`.
     Physical {
         mass_kg: f64,
@@ -79,19 +79,19 @@ pub enum Parameters {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct GravityModel {
-    pub source: Source,
+    pub source: GravitySource,
     /// +1 if the accelerometer points away from the ground at rest (as most do), -1 if it points towards it.
     pub imu_sign: i8,
     /// Fitted parameters; they depend on the type of the model.
-    pub parameters: Parameters,
+    pub parameters: GravityParameters,
 }
 
 impl GravityModel {
     pub const fn kind(&self) -> ModelKind {
         match self.parameters {
-            Parameters::Physical { .. } => ModelKind::Physical,
-            Parameters::Gain { .. } => ModelKind::Gain,
-            Parameters::Paper { .. } => ModelKind::Paper,
+            GravityParameters::Physical { .. } => ModelKind::Physical,
+            GravityParameters::Gain { .. } => ModelKind::Gain,
+            GravityParameters::Paper { .. } => ModelKind::Paper,
         }
     }
 
@@ -102,14 +102,14 @@ impl GravityModel {
             torque.is_none_or(|torque| finite(&torque.com_m) && finite(&torque.bias_nm))
         };
         let (all_finite, plausible) = match &self.parameters {
-            Parameters::Physical { mass_kg, s1_from_source_wxyz, bias_n, torque } => (
+            GravityParameters::Physical { mass_kg, s1_from_source_wxyz, bias_n, torque } => (
                 finite(&[*mass_kg]) && finite(s1_from_source_wxyz) && finite(bias_n) && torque_fits(torque),
                 *mass_kg >= 0.0 && (SVector::from(*s1_from_source_wxyz).norm() - 1.0).abs() < 1e-6,
             ),
-            Parameters::Gain { gain_kg, bias_n, torque } => {
+            GravityParameters::Gain { gain_kg, bias_n, torque } => {
                 (finite(gain_kg.as_flattened()) && finite(bias_n) && torque_fits(torque), true)
             }
-            Parameters::Paper { force_n, torque_nm } => {
+            GravityParameters::Paper { force_n, torque_nm } => {
                 (finite(force_n.as_flattened()) && torque_nm.is_none_or(|torque| finite(torque.as_flattened())), true)
             }
         };
@@ -125,25 +125,25 @@ impl GravityModel {
     /// finite or defective.
     pub fn field_m_s2(&self, sample: &WristSample) -> Option<Vector3<f64>> {
         let field = match self.source {
-            Source::Imu => sample.acceleration_m_s2? * -f64::from(self.imu_sign),
-            Source::Arm => arm_field_m_s2(&sample.world_from_s1?),
+            GravitySource::Imu => sample.acceleration_m_s2? * -f64::from(self.imu_sign),
+            GravitySource::Arm => arm_field_m_s2(&sample.world_from_s1?),
         };
-        (field.iter().all(|x| x.is_finite()) && field.norm() >= LEAST_FIELD_M_S2).then_some(field)
+        (field.iter().all(|x| x.is_finite()) && field.norm() >= MIN_FIELD_M_S2).then_some(field)
     }
 
     /// Returns the wrench of gravity and bias on the sensor for this gravity vector (m/s^2, source's frame): force N
     /// and torque Nm in `s1`.
     pub fn predict(&self, field_m_s2: &Vector3<f64>) -> Wrench {
         match &self.parameters {
-            Parameters::Physical { mass_kg, s1_from_source_wxyz: [w, x, y, z], bias_n, torque } => {
+            GravityParameters::Physical { mass_kg, s1_from_source_wxyz: [w, x, y, z], bias_n, torque } => {
                 // Not checked here: `fault` refuses a quaternion that does not have unit length.
                 let s1_from_source = UnitQuaternion::new_unchecked(Quaternion::new(*w, *x, *y, *z));
                 loaded(s1_from_source * field_m_s2 * *mass_kg, bias_n, torque.as_ref())
             }
-            Parameters::Gain { gain_kg, bias_n, torque } => {
+            GravityParameters::Gain { gain_kg, bias_n, torque } => {
                 loaded(matrix(gain_kg) * field_m_s2, bias_n, torque.as_ref())
             }
-            Parameters::Paper { force_n, torque_nm } => {
+            GravityParameters::Paper { force_n, torque_nm } => {
                 let row = paper_row(field_m_s2);
                 let apply = |rows: &[[f64; 5]; 3]| Vector3::from(rows.map(|c| SVector::from(c).dot(&row)));
                 Wrench { force_n: apply(force_n), torque_nm: torque_nm.as_ref().map_or_else(Vector3::zeros, apply) }

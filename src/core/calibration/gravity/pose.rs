@@ -2,7 +2,7 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 
-use super::{GravityError, Source, model::arm_field_m_s2};
+use super::{GravityError, GravitySource, model::arm_field_m_s2};
 use crate::frames::Wrench;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,7 +15,7 @@ pub enum Orientation {
 
 /// A still pose: means over the time in which the tool was still.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pose {
+pub struct GravityPose {
     /// Mean wrench as read (`s1`), N and Nm.
     pub wrench: Wrench,
     /// Whether the torque was measured; otherwise it is ignored.
@@ -23,44 +23,46 @@ pub struct Pose {
     pub orientation: Orientation,
 }
 
-impl Pose {
-    pub const fn source(&self) -> Source {
+impl GravityPose {
+    pub const fn source(&self) -> GravitySource {
         match self.orientation {
-            Orientation::Imu(_) => Source::Imu,
-            Orientation::Arm(_) => Source::Arm,
+            Orientation::Imu(_) => GravitySource::Imu,
+            Orientation::Arm(_) => GravitySource::Arm,
         }
     }
 }
 
 /// One equation: the gravity vector in the source's frame (m/s^2) and the wrench that was read (`s1`).
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Row {
+pub(super) struct GravityRow {
     pub(super) field_m_s2: Vector3<f64>,
     pub(super) wrench: Wrench,
 }
 
 /// Interpretations of an orientation; all but `AsGiven` are common mistakes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Reading {
+pub(super) enum OrientationReading {
     AsGiven,
     Opposite,
     InverseRotation,
 }
 
 /// Returns the rows of these poses under this interpretation.
-pub(super) fn rows(poses: &[Pose], imu_sign: i8, reading: Reading) -> Vec<Row> {
-    let field = |pose: &Pose| match (pose.orientation, reading) {
-        (Orientation::Imu(acceleration), Reading::Opposite) => acceleration * f64::from(imu_sign),
+pub(super) fn rows(poses: &[GravityPose], imu_sign: i8, reading: OrientationReading) -> Vec<GravityRow> {
+    let field = |pose: &GravityPose| match (pose.orientation, reading) {
+        (Orientation::Imu(acceleration), OrientationReading::Opposite) => acceleration * f64::from(imu_sign),
         (Orientation::Imu(acceleration), _) => acceleration * -f64::from(imu_sign),
-        (Orientation::Arm(world_from_s1), Reading::AsGiven) => arm_field_m_s2(&world_from_s1),
-        (Orientation::Arm(world_from_s1), Reading::Opposite) => -arm_field_m_s2(&world_from_s1),
-        (Orientation::Arm(world_from_s1), Reading::InverseRotation) => arm_field_m_s2(&world_from_s1.inverse()),
+        (Orientation::Arm(world_from_s1), OrientationReading::AsGiven) => arm_field_m_s2(&world_from_s1),
+        (Orientation::Arm(world_from_s1), OrientationReading::Opposite) => -arm_field_m_s2(&world_from_s1),
+        (Orientation::Arm(world_from_s1), OrientationReading::InverseRotation) => {
+            arm_field_m_s2(&world_from_s1.inverse())
+        }
     };
-    poses.iter().map(|pose| Row { field_m_s2: field(pose), wrench: pose.wrench }).collect()
+    poses.iter().map(|pose| GravityRow { field_m_s2: field(pose), wrench: pose.wrench }).collect()
 }
 
 /// Refuses invalid poses; returns their common source.
-pub(super) fn checked(poses: &[Pose]) -> Result<Source, GravityError> {
+pub(super) fn checked(poses: &[GravityPose]) -> Result<GravitySource, GravityError> {
     let source = poses.first().ok_or(GravityError::NoPoses)?.source();
     for (index, pose) in poses.iter().enumerate() {
         if pose.source() != source {
@@ -75,7 +77,7 @@ pub(super) fn checked(poses: &[Pose]) -> Result<Source, GravityError> {
             return Err(GravityError::NotFinite { index });
         }
         if let Orientation::Imu(acceleration) = pose.orientation
-            && acceleration.norm() < super::model::LEAST_FIELD_M_S2
+            && acceleration.norm() < super::model::MIN_FIELD_M_S2
         {
             return Err(GravityError::DeadAccelerometer { index, norm_m_s2: acceleration.norm() });
         }

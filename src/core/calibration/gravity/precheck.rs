@@ -8,7 +8,7 @@
 
 use nalgebra::Vector3;
 
-use super::{SessionSettings, session::field_of, still::Still};
+use super::{GravitySessionSettings, session::field_of, still::StillInterval};
 use crate::frames::{GRAVITY_M_S2, WristSample};
 
 /// Length of a measuring interval, s.
@@ -17,7 +17,7 @@ const BLOCK_S: f64 = 0.5;
 /// sensor, s.
 const HOLE_S: f64 = 0.020;
 /// Minimum rate of samples as a fraction of the loop's rate: a lower rate would be felt as steps and lag.
-const RATE_SHARE: f64 = 0.9;
+const RATE_FRACTION: f64 = 0.9;
 /// Maximum noise per sample and axis at which a still tool is recognised as still: the mean over 20 ms at 1 kHz must
 /// stay within [`super::StillSettings::force_n`] (0.08 N) at 3.5 standard deviations. A good sensor has 0.01 to 0.05 N.
 const FORCE_NOISE_N: f64 = 0.10;
@@ -26,7 +26,7 @@ const FORCE_NOISE_N: f64 = 0.10;
 const ACCELERATION_NOISE_M_S2: f64 = 0.12;
 /// Maximum relative deviation of the accelerometer's reading at rest from gravity: a larger deviation cannot be the
 /// local gravity, which varies by 0.5 % over the earth, and means a wrong unit or a damaged device.
-const GRAVITY_SHARE: f64 = 0.05;
+const GRAVITY_FRACTION: f64 = 0.05;
 /// Stillness is evaluated in steps of 20 ms, and its first sample is a tick late: a rest may be measured too short by
 /// this, s.
 const REST_ROUNDING_S: f64 = 0.045;
@@ -50,14 +50,14 @@ pub enum CheckState {
 }
 
 #[derive(Clone, Debug, PartialEq)]
-pub struct Check {
+pub struct PrecheckResult {
     pub name: &'static str,
     /// Measured value, for the screen; empty without a value.
     pub measured: String,
     pub state: CheckState,
 }
 
-impl Check {
+impl PrecheckResult {
     fn of(name: &'static str, measured: String, state: CheckState) -> Self {
         Self { name, measured, state }
     }
@@ -68,11 +68,11 @@ fn bad(cause: impl Into<String>, cure: &'static str) -> CheckState {
 }
 
 /// Measured value as text, and state of the check.
-type Finding = (String, CheckState);
+type PrecheckFinding = (String, CheckState);
 
 /// Deviation of vectors from their mean, and between consecutive ones.
 #[derive(Clone, Copy, Debug, Default)]
-struct Spread {
+struct PrecheckSpread {
     first: Vector3<f64>,
     last: Vector3<f64>,
     count: f64,
@@ -81,7 +81,7 @@ struct Spread {
     steps: Vector3<f64>,
 }
 
-impl Spread {
+impl PrecheckSpread {
     fn add(&mut self, value: &Vector3<f64>) {
         if self.count == 0.0 {
             self.first = *value;
@@ -114,19 +114,19 @@ impl Spread {
 }
 
 #[derive(Clone, Copy, Debug, Default)]
-struct Block {
+struct PrecheckBlock {
     span_s: f64,
     fresh: u32,
     repeated: u32,
     poisoned: u32,
     oriented: u32,
     still: bool,
-    force_n: Spread,
-    acceleration_m_s2: Spread,
+    force_n: PrecheckSpread,
+    acceleration_m_s2: PrecheckSpread,
 }
 
-impl Block {
-    fn orientation(&self, use_arm: bool) -> Finding {
+impl PrecheckBlock {
+    fn orientation(&self, use_arm: bool) -> PrecheckFinding {
         let state = if self.oriented == self.fresh {
             CheckState::Good
         } else if use_arm {
@@ -140,14 +140,14 @@ impl Block {
         (String::new(), state)
     }
 
-    fn gravity(&self) -> Finding {
+    fn gravity(&self) -> PrecheckFinding {
         if self.acceleration_m_s2.count < SAMPLES_MIN {
             return (String::new(), CheckState::Waiting);
         }
         let norm_m_s2 = self.acceleration_m_s2.mean().norm();
         let measured = format!("{norm_m_s2:.2} m/s^2");
         let off = (norm_m_s2 / GRAVITY_M_S2 - 1.0).abs();
-        let state = if off < GRAVITY_SHARE {
+        let state = if off < GRAVITY_FRACTION {
             CheckState::Good
         } else {
             bad(format!("{measured} instead of 9.81 m/s^2"), "hold it still; check its range and units")
@@ -155,7 +155,7 @@ impl Block {
         (measured, state)
     }
 
-    fn force_noise(&self) -> Finding {
+    fn force_noise(&self) -> PrecheckFinding {
         let spread = &self.force_n;
         if spread.count >= SAMPLES_MIN && spread.steps.min() == 0.0 {
             let state = bad(
@@ -168,7 +168,7 @@ impl Block {
         noise(spread, self.still, FORCE_NOISE_N, "N", cure)
     }
 
-    fn acceleration_noise(&self) -> Finding {
+    fn acceleration_noise(&self) -> PrecheckFinding {
         let cure = "look for motors and fans that shake the arm; check the accelerometer's range and filter";
         noise(&self.acceleration_m_s2, self.still, ACCELERATION_NOISE_M_S2, "m/s^2", cure)
     }
@@ -177,21 +177,21 @@ impl Block {
 /// The check: takes samples, returns lines for the screen.
 #[derive(Clone, Debug)]
 pub struct Precheck {
-    settings: SessionSettings,
-    still: Still,
+    settings: GravitySessionSettings,
+    still: StillInterval,
     /// Time for which the tool has been still, s; `None` while it moves or before this is known.
     rested_s: Option<f64>,
     newest: Option<WristSample>,
     last_s: f64,
-    block: Block,
-    measured: Option<Block>,
+    block: PrecheckBlock,
+    measured: Option<PrecheckBlock>,
 }
 
 impl Precheck {
     /// Creates a check for a session with these settings.
-    pub fn new(settings: SessionSettings) -> Self {
-        let block = Block::default();
-        let still = Still::new(settings.still);
+    pub fn new(settings: GravitySessionSettings) -> Self {
+        let block = PrecheckBlock::default();
+        let still = StillInterval::new(settings.still);
         Self { settings, still, rested_s: None, newest: None, last_s: f64::NAN, block, measured: None }
     }
 
@@ -235,46 +235,47 @@ impl Precheck {
         }
         if let Some(field) = field_of(&self.settings, sample) {
             self.block.oriented += 1;
-            let share = self.still.step(sample, &field, t_s);
-            self.rested_s = share.map(|share| share * self.settings.still.time_s);
+            let fraction = self.still.step(sample, &field, t_s);
+            self.rested_s = fraction.map(|fraction| fraction * self.settings.still.time_s);
         }
     }
 
     /// Returns the state of all checks, for a loop of this rate (Hz). Allocates, so call it on the screen's thread.
-    pub fn checks(&self, rate_hz: f64) -> Vec<Check> {
+    pub fn checks(&self, rate_hz: f64) -> Vec<PrecheckResult> {
         let block = self.measured.unwrap_or_default();
-        let told = |finding: Finding| if block.fresh == 0 { (String::new(), CheckState::Waiting) } else { finding };
+        let report =
+            |finding: PrecheckFinding| if block.fresh == 0 { (String::new(), CheckState::Waiting) } else { finding };
         let mut lines = vec![("sensor", self.delivery()), ("rate", self.rate(rate_hz))];
-        lines.push(("orientation", told(block.orientation(self.settings.use_arm))));
+        lines.push(("orientation", report(block.orientation(self.settings.use_arm))));
         if !self.settings.use_arm {
-            lines.push(("gravity", told(block.gravity())));
+            lines.push(("gravity", report(block.gravity())));
         }
-        lines.push(("force noise", told(block.force_noise())));
+        lines.push(("force noise", report(block.force_noise())));
         if !self.settings.use_arm {
-            lines.push(("accelerometer noise", told(block.acceleration_noise())));
+            lines.push(("accelerometer noise", report(block.acceleration_noise())));
         }
-        lines.push(("stillness", told(self.stillness())));
-        lines.into_iter().map(|(name, (measured, state))| Check::of(name, measured, state)).collect()
+        lines.push(("stillness", report(self.stillness())));
+        lines.into_iter().map(|(name, (measured, state))| PrecheckResult::of(name, measured, state)).collect()
     }
 
     pub fn passed(&self, rate_hz: f64) -> bool {
         self.checks(rate_hz).iter().all(|check| check.state == CheckState::Good)
     }
 
-    fn delivery(&self) -> Finding {
+    fn delivery(&self) -> PrecheckFinding {
         let state = match self.measured {
             None => CheckState::Waiting,
-            Some(Block { poisoned, fresh, repeated, .. }) if poisoned > 0 => {
+            Some(PrecheckBlock { poisoned, fresh, repeated, .. }) if poisoned > 0 => {
                 let all = poisoned + fresh + repeated;
                 bad(
                     format!("{poisoned} of {all} samples contain a non-finite number"),
                     "check the cable and the sensor's own status, then restart its driver",
                 )
             }
-            Some(Block { fresh: 0, repeated: 0, .. }) => {
+            Some(PrecheckBlock { fresh: 0, repeated: 0, .. }) => {
                 bad("no samples arrive", "check its power, its cable and its address")
             }
-            Some(Block { fresh: 0, .. }) => {
+            Some(PrecheckBlock { fresh: 0, .. }) => {
                 bad("the sensor repeats the same reading", "switch it off and on, then restart its driver")
             }
             Some(_) => CheckState::Good,
@@ -282,11 +283,11 @@ impl Precheck {
         (String::new(), state)
     }
 
-    fn rate(&self, rate_hz: f64) -> Finding {
+    fn rate(&self, rate_hz: f64) -> PrecheckFinding {
         let Some(block) = self.measured else { return (String::new(), CheckState::Waiting) };
         let measured_hz = f64::from(block.fresh) / block.span_s;
         let measured = format!("{measured_hz:.0} Hz of the loop's {rate_hz:.0} Hz");
-        let state = if measured_hz >= RATE_SHARE * rate_hz {
+        let state = if measured_hz >= RATE_FRACTION * rate_hz {
             CheckState::Good
         } else {
             bad(
@@ -297,7 +298,7 @@ impl Precheck {
         (measured, state)
     }
 
-    fn stillness(&self) -> Finding {
+    fn stillness(&self) -> PrecheckFinding {
         let state = match (self.rested_s, self.still.is_still()) {
             (Some(rested_s), _) if rested_s >= REST_S => CheckState::Good,
             (Some(_), _) | (None, None) => CheckState::Waiting,
@@ -309,7 +310,7 @@ impl Precheck {
 
 /// Evaluates the noise of the worst axis. While the tool moves, only the part that motion cannot explain is evaluated,
 /// and reported only if it is too large by itself: motion must not hide noise that looks like motion.
-fn noise(spread: &Spread, still: bool, limit: f64, unit: &str, cure: &'static str) -> Finding {
+fn noise(spread: &PrecheckSpread, still: bool, limit: f64, unit: &str, cure: &'static str) -> PrecheckFinding {
     let deviation = spread.deviation().max();
     let roughness = spread.roughness().max();
     let worst = if still { deviation } else { roughness };

@@ -3,13 +3,13 @@
 use nalgebra::UnitQuaternion;
 
 use super::*;
-use crate::calibration::gravity::{SessionSettings, tests::Tool};
+use crate::calibration::gravity::{GravitySessionSettings, tests::Tool};
 
 const RATE_HZ: f64 = 1000.0;
 
 /// Returns one and a half seconds of a still sensor, modified by `edit` (whose argument is the tick's number).
 fn seen(
-    settings: SessionSettings,
+    settings: GravitySessionSettings,
     mut edit: impl FnMut(u32, &mut Tool, WristSample) -> Option<WristSample>,
 ) -> Precheck {
     let mut precheck = Precheck::new(settings);
@@ -23,7 +23,7 @@ fn seen(
     precheck
 }
 
-fn line(precheck: &Precheck, name: &str) -> Check {
+fn line(precheck: &Precheck, name: &str) -> PrecheckResult {
     precheck.checks(RATE_HZ).into_iter().find(|check| check.name == name).unwrap()
 }
 
@@ -38,19 +38,19 @@ fn assert_bad(precheck: &Precheck, name: &str, in_cause: &str, in_cure: &str) {
 
 #[test]
 fn a_good_sensor_passes_with_its_figures() {
-    let precheck = seen(SessionSettings::default(), |_, _, sample| Some(sample));
+    let precheck = seen(GravitySessionSettings::default(), |_, _, sample| Some(sample));
     assert!(precheck.passed(RATE_HZ), "{:?}", precheck.checks(RATE_HZ));
     assert!(line(&precheck, "rate").measured.starts_with("1000 Hz"), "{:?}", line(&precheck, "rate"));
     let figure = |name| line(&precheck, name).measured.split(' ').next().unwrap().parse::<f64>().unwrap();
     assert!((figure("force noise") - 0.03).abs() < 0.004, "{}", figure("force noise"));
     assert!((figure("accelerometer noise") - 0.03).abs() < 0.004, "{}", figure("accelerometer noise"));
-    let fresh = Precheck::new(SessionSettings::default());
+    let fresh = Precheck::new(GravitySessionSettings::default());
     assert!(fresh.checks(RATE_HZ).iter().all(|check| check.state == CheckState::Waiting));
 }
 
 #[test]
 fn a_sensor_that_is_silent_hangs_or_is_slow_is_told_apart() {
-    let settings = SessionSettings::default();
+    let settings = GravitySessionSettings::default();
     assert_bad(&seen(settings, |_, _, _| None), "sensor", "no sample", "power");
     let mut first = None;
     let hung = seen(settings, move |_, _, sample| Some(*first.get_or_insert(sample)));
@@ -70,7 +70,7 @@ fn a_sensor_that_is_silent_hangs_or_is_slow_is_told_apart() {
 
 #[test]
 fn numbers_that_are_not_finite_are_counted() {
-    let poisoned = seen(SessionSettings::default(), |tick, _, mut sample| {
+    let poisoned = seen(GravitySessionSettings::default(), |tick, _, mut sample| {
         if tick % 100 == 0 {
             sample.raw.force_n.y = f64::NAN;
         }
@@ -81,7 +81,7 @@ fn numbers_that_are_not_finite_are_counted() {
 
 #[test]
 fn noise_is_named_where_it_is_and_does_not_pass_as_motion() {
-    let settings = SessionSettings::default();
+    let settings = GravitySessionSettings::default();
     let noisy = |size_n: f64| {
         seen(settings, move |_, tool, mut sample| {
             sample.raw.force_n += tool.vector(size_n);
@@ -101,7 +101,7 @@ fn noise_is_named_where_it_is_and_does_not_pass_as_motion() {
 
 #[test]
 fn a_dead_axis_a_wrong_unit_and_a_missing_source_are_named() {
-    let settings = SessionSettings::default();
+    let settings = GravitySessionSettings::default();
     let dead = seen(settings, |_, _, mut sample| {
         sample.raw.force_n.z = 17.0;
         Some(sample)
@@ -122,9 +122,9 @@ fn a_dead_axis_a_wrong_unit_and_a_missing_source_are_named() {
         "accelerometer",
         "the arm's orientation",
     );
-    let by_arm = seen(SessionSettings { use_arm: true, ..settings }, |_, _, sample| without(sample));
+    let by_arm = seen(GravitySessionSettings { use_arm: true, ..settings }, |_, _, sample| without(sample));
     assert!(by_arm.passed(RATE_HZ), "{:?}", by_arm.checks(RATE_HZ));
-    let lost = seen(SessionSettings { use_arm: true, ..settings }, |_, _, mut sample| {
+    let lost = seen(GravitySessionSettings { use_arm: true, ..settings }, |_, _, mut sample| {
         sample.world_from_s1 = None;
         Some(sample)
     });
@@ -133,7 +133,7 @@ fn a_dead_axis_a_wrong_unit_and_a_missing_source_are_named() {
 
 #[test]
 fn a_hand_on_the_tool_is_no_noise() {
-    let swayed = seen(SessionSettings::default(), |tick, _, mut sample| {
+    let swayed = seen(GravitySessionSettings::default(), |tick, _, mut sample| {
         sample.raw.force_n.x += 0.8 * (f64::from(tick) * 0.03).sin();
         Some(sample)
     });
@@ -144,7 +144,7 @@ fn a_hand_on_the_tool_is_no_noise() {
 
 #[test]
 fn ticks_that_did_not_reach_the_screen_are_no_slow_sensor() {
-    let mut precheck = Precheck::new(SessionSettings::default());
+    let mut precheck = Precheck::new(GravitySessionSettings::default());
     let mut tool = Tool::new(6, 0.4);
     for tick in 0..3000 {
         let sample = tool.sample(UnitQuaternion::identity(), 0.03, 1e-3);

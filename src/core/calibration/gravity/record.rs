@@ -3,7 +3,7 @@
 use serde::{Deserialize, Deserializer, Serialize, de::Error as _};
 
 use super::GravityModel;
-use crate::calibration::{Judgement, Record, RecordHead, Residuals};
+use crate::calibration::{CalibrationRecord, Judgement, RecordHead, Residuals};
 
 /// Type of the record; a file of another kind is refused on reading.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -41,18 +41,18 @@ pub struct GravityRecord {
 /// A smaller change of bias cannot be distinguished from the temperature drift of a recently started sensor, N.
 const DRIFT_FLOOR_N: f64 = 0.10;
 /// Upper limit for any calibration, N, because a model that errs by more would otherwise excuse any bias.
-const DRIFT_MOST_N: f64 = 0.50;
+const DRIFT_MAX_N: f64 = 0.50;
 
 impl GravityRecord {
     /// Returns the limit of the force remaining at rest above which the bias has changed, N: the model's error on
     /// held-out poses plus a margin.
     pub fn drift_limit_n(&self) -> f64 {
         // Written so that NaN from a file gives the strict limit.
-        (DRIFT_FLOOR_N + self.residuals.held_out.largest().max(0.0)).min(DRIFT_MOST_N)
+        (DRIFT_FLOOR_N + self.residuals.held_out.largest().max(0.0)).min(DRIFT_MAX_N)
     }
 }
 
-impl Record for GravityRecord {
+impl CalibrationRecord for GravityRecord {
     const KIND: &'static str = "gravity";
 
     fn head(&self) -> &RecordHead {

@@ -2,65 +2,73 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{GravityModel, GravityRecord, ModelKind, Source};
+use super::{GravityModel, GravityRecord, GravitySource, ModelKind};
 use crate::calibration::{Judgement, RecordHead, Residuals, Verdict};
 
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
-pub struct Limits {
-    pub least_poses: usize,
-    pub least_coverage: f64,
+pub struct GravityLimits {
+    #[serde(rename = "least_poses")]
+    pub min_poses: usize,
+    #[serde(rename = "least_coverage")]
+    pub min_coverage: f64,
     /// Maximum condition number of the design. 30 corresponds to a shaft tilted by about 30 degrees in all directions.
-    pub most_condition: f64,
-    pub most_outliers: f64,
-    /// Maximum mean absolute error of the force on held-out poses, N; `mae_share` may allow more.
+    #[serde(rename = "most_condition")]
+    pub max_condition: f64,
+    #[serde(rename = "most_outliers")]
+    pub max_outliers: f64,
+    /// Maximum mean absolute error of the force on held-out poses, N; `mae_fraction` may allow more.
     pub mae_n: f64,
     /// Maximum of the same error as a fraction of the tool's weight, if that is larger: heavy tools bend their mounts.
-    pub mae_share: f64,
-    /// Maximum absolute error of the force on a held-out pose, N; `max_share` may allow more.
+    #[serde(rename = "mae_share")]
+    pub mae_fraction: f64,
+    /// Maximum absolute error of the force on a held-out pose, N; `max_fraction` may allow more.
     pub max_n: f64,
     /// Maximum of the same error as a fraction of the tool's weight, if that is larger.
-    pub max_share: f64,
+    #[serde(rename = "max_share")]
+    pub max_fraction: f64,
     /// Maximum mean absolute error of the torque on held-out poses, Nm.
     pub torque_mae_nm: f64,
-    pub least_weight_n: f64,
+    #[serde(rename = "least_weight_n")]
+    pub min_weight_n: f64,
     /// Minimum weight as a multiple of the poses' disagreement: a sensor that delivers no readings shows no weight.
-    pub least_signal: f64,
+    #[serde(rename = "least_signal")]
+    pub min_signal: f64,
     /// A pose whose force is within this of the model is never an outlier, N.
     pub outlier_floor_n: f64,
 }
 
-impl Default for Limits {
+impl Default for GravityLimits {
     fn default() -> Self {
         Self {
-            least_poses: 6,
-            least_coverage: 0.30,
-            most_condition: 30.0,
-            most_outliers: 0.25,
+            min_poses: 6,
+            min_coverage: 0.30,
+            max_condition: 30.0,
+            max_outliers: 0.25,
             mae_n: 0.05,
-            mae_share: 0.02,
+            mae_fraction: 0.02,
             max_n: 0.20,
-            max_share: 0.08,
+            max_fraction: 0.08,
             torque_mae_nm: 0.02,
-            least_weight_n: 0.05,
-            least_signal: 3.0,
+            min_weight_n: 0.05,
+            min_signal: 3.0,
             outlier_floor_n: 0.10,
         }
     }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Settings {
+pub struct GravitySettings {
     /// The model to use; `None` selects the physical one, or the gain model if the poses clearly support it.
     pub model: Option<ModelKind>,
     /// +1 if the accelerometer points away from the ground at rest, -1 if it points towards it.
     pub imu_sign: i8,
-    pub limits: Limits,
+    pub limits: GravityLimits,
 }
 
-impl Default for Settings {
+impl Default for GravitySettings {
     fn default() -> Self {
-        Self { model: None, imu_sign: 1, limits: Limits::default() }
+        Self { model: None, imu_sign: 1, limits: GravityLimits::default() }
     }
 }
 
@@ -82,7 +90,7 @@ pub struct GravityReport {
     /// The chosen model; `None` if there are too few poses.
     pub chosen: Option<ModelKind>,
     pub poses: usize,
-    pub source: Source,
+    pub source: GravitySource,
     /// Indices of poses that do not agree with the others, from 0; not used in the fit.
     pub outliers: Vec<usize>,
     /// Fraction of all directions of gravity within 45 degrees of a pose, 0 to 1.

@@ -8,9 +8,9 @@
 use nalgebra::Vector3;
 
 use super::{
-    GravityError, GravityModel, GravityReport, Orientation, Pose, Settings, fit,
+    GravityError, GravityModel, GravityPose, GravityReport, GravitySettings, Orientation, fit,
     model::arm_field_m_s2,
-    still::{Still, StillSettings},
+    still::{StillInterval, StillSettings},
     targets::{PoseTarget, TARGETS},
 };
 use crate::frames::WristSample;
@@ -25,8 +25,8 @@ const REACH_RAD: f64 = 25.0 * std::f64::consts::PI / 180.0;
 const STEP_MAX_S: f64 = 0.1;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SessionSettings {
-    pub fit: Settings,
+pub struct GravitySessionSettings {
+    pub fit: GravitySettings,
     pub still: StillSettings,
     /// Use the orientation from the arm even if there is an accelerometer.
     pub use_arm: bool,
@@ -36,10 +36,10 @@ pub struct SessionSettings {
     pub turn_rad: f64,
 }
 
-impl Default for SessionSettings {
+impl Default for GravitySessionSettings {
     fn default() -> Self {
         Self {
-            fit: Settings::default(),
+            fit: GravitySettings::default(),
             still: StillSettings::default(),
             use_arm: false,
             touched_n: 0.3,
@@ -49,13 +49,13 @@ impl Default for SessionSettings {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Phase {
+pub enum GravityPhase {
     /// The sample is incomplete or contains a non-finite number.
     NoSample,
     /// The tool is moving, or still where the last pose was recorded.
     Moving,
     Recording {
-        share: f64,
+        fraction: f64,
     },
     Recorded {
         /// Its index, from 0.
@@ -73,7 +73,7 @@ pub enum Phase {
 
 /// Orientation in which a pose was recorded; only for guiding the operator, because the fit uses the measurements.
 #[derive(Clone, Copy, Debug)]
-struct Place {
+struct PosePlace {
     /// Index of the target for which the pose counts.
     target: Option<usize>,
     /// Direction of gravity in `s1` from the arm, if available.
@@ -82,21 +82,21 @@ struct Place {
 
 /// Returns the gravity vector (m/s^2, source's frame) from the source in the settings; `None` if it is missing or
 /// defective.
-pub(super) fn field_of(settings: &SessionSettings, sample: &WristSample) -> Option<Vector3<f64>> {
+pub(super) fn field_of(settings: &GravitySessionSettings, sample: &WristSample) -> Option<Vector3<f64>> {
     let field = if settings.use_arm {
         arm_field_m_s2(&sample.world_from_s1?)
     } else {
         sample.acceleration_m_s2? * -f64::from(settings.fit.imu_sign)
     };
-    (field.norm() >= super::model::LEAST_FIELD_M_S2).then_some(field)
+    (field.norm() >= super::model::MIN_FIELD_M_S2).then_some(field)
 }
 
 #[derive(Clone, Debug)]
 pub struct GravitySession {
-    settings: SessionSettings,
-    still: Still,
-    poses: Vec<Pose>,
-    places: Vec<Place>,
+    settings: GravitySessionSettings,
+    still: StillInterval,
+    poses: Vec<GravityPose>,
+    places: Vec<PosePlace>,
     running: Option<GravityModel>,
     last: Option<WristSample>,
     refused: Option<f64>,
@@ -105,8 +105,8 @@ pub struct GravitySession {
 }
 
 impl GravitySession {
-    pub fn new(settings: SessionSettings) -> Self {
-        let still = Still::new(settings.still);
+    pub fn new(settings: GravitySessionSettings) -> Self {
+        let still = StillInterval::new(settings.still);
         let poses = Vec::with_capacity(64);
         let places = Vec::with_capacity(64);
         Self {
@@ -122,7 +122,7 @@ impl GravitySession {
         }
     }
 
-    pub const fn settings(&self) -> &SessionSettings {
+    pub const fn settings(&self) -> &GravitySessionSettings {
         &self.settings
     }
 
@@ -134,10 +134,10 @@ impl GravitySession {
     }
 
     /// Adds one sample at time `t_s` (s, increasing); returns the state of the session.
-    pub fn step(&mut self, sample: &WristSample, t_s: f64) -> Phase {
+    pub fn step(&mut self, sample: &WristSample, t_s: f64) -> GravityPhase {
         let phase = self.phase(sample, t_s);
         let step_s = self.stepped_s.replace(t_s).map_or(0.0, |before_s| t_s - before_s);
-        if matches!(phase, Phase::Disturbed | Phase::Touched { .. }) && step_s > 0.0 {
+        if matches!(phase, GravityPhase::Disturbed | GravityPhase::Touched { .. }) && step_s > 0.0 {
             self.touched_s += step_s.min(STEP_MAX_S);
         }
         phase
@@ -148,19 +148,19 @@ impl GravitySession {
         self.touched_s
     }
 
-    fn phase(&mut self, sample: &WristSample, t_s: f64) -> Phase {
+    fn phase(&mut self, sample: &WristSample, t_s: f64) -> GravityPhase {
         let Some(field) = field_of(&self.settings, sample).filter(|_| sample.is_finite() && t_s.is_finite()) else {
             self.still.reset();
             self.last = None;
-            return Phase::NoSample;
+            return GravityPhase::NoSample;
         };
         self.last = Some(*sample);
         let Some(progress) = self.still.step(sample, &field, t_s) else {
             self.refused = None;
-            return if self.still.only_force_moved() { Phase::Disturbed } else { Phase::Moving };
+            return if self.still.only_force_moved() { GravityPhase::Disturbed } else { GravityPhase::Moving };
         };
         if self.taken_here(&field) {
-            return Phase::TakenHere;
+            return GravityPhase::TakenHere;
         }
         if let Some(by_n) = self.refused {
             // The pose stays refused while the tool is held like this; a new attempt starts after the tool has moved or
@@ -169,37 +169,37 @@ impl GravitySession {
                 self.still.reset();
                 self.refused = None;
             }
-            return Phase::Touched { by_n };
+            return GravityPhase::Touched { by_n };
         }
         if progress < 1.0 {
-            return Phase::Recording { share: progress };
+            return GravityPhase::Recording { fraction: progress };
         }
         self.record()
     }
 
     /// Stores the still interval as a pose, unless the other poses show that it was touched.
-    fn record(&mut self) -> Phase {
-        let Some((mean, field)) = self.still.mean() else { return Phase::Moving };
+    fn record(&mut self) -> GravityPhase {
+        let Some((mean, field)) = self.still.mean() else { return GravityPhase::Moving };
         let world_from_s1 = self.still.mean_world_from_s1();
         self.still.reset();
         let by_n = self.running.map_or(0.0, |model| (mean.force_n - model.predict(&field).force_n).norm());
         if by_n > self.settings.touched_n {
             self.refused = Some(by_n);
-            return Phase::Touched { by_n };
+            return GravityPhase::Touched { by_n };
         }
         let orientation = match (self.settings.use_arm, world_from_s1) {
             (true, Some(world_from_s1)) => Orientation::Arm(world_from_s1),
-            (true, None) => return Phase::NoSample,
+            (true, None) => return GravityPhase::NoSample,
             (false, _) => Orientation::Imu(field * -f64::from(self.settings.fit.imu_sign)),
         };
         let place = self.place();
-        self.poses.push(Pose { wrench: mean, has_torque: true, orientation });
+        self.poses.push(GravityPose { wrench: mean, has_torque: true, orientation });
         self.places.push(place);
         self.refit();
-        Phase::Recorded { index: self.poses.len() - 1 }
+        GravityPhase::Recorded { index: self.poses.len() - 1 }
     }
 
-    fn pose_field(&self, pose: &Pose) -> Vector3<f64> {
+    fn pose_field(&self, pose: &GravityPose) -> Vector3<f64> {
         match pose.orientation {
             Orientation::Imu(acceleration) => acceleration * -f64::from(self.settings.fit.imu_sign),
             Orientation::Arm(world_from_s1) => arm_field_m_s2(&world_from_s1),
@@ -238,11 +238,11 @@ impl GravitySession {
     /// Returns the target for which a pose recorded now counts: the nearest one within reach, by the arm's orientation.
     /// Without an arm the sensor's mounting is not known yet, so the requested target is assumed; the coverage of the
     /// fit decides in the end.
-    fn place(&self) -> Place {
-        let Some(down_s1) = self.down_s1() else { return Place { target: self.next(), down_s1: None } };
+    fn place(&self) -> PosePlace {
+        let Some(down_s1) = self.down_s1() else { return PosePlace { target: self.next(), down_s1: None } };
         let angle = |index: &usize| Vector3::from(TARGETS[*index].down_s1).angle(&down_s1);
         let nearest = (0..TARGETS.len()).min_by(|a, b| angle(a).total_cmp(&angle(b)));
-        Place { target: nearest.filter(|index| angle(index) < REACH_RAD), down_s1: Some(down_s1) }
+        PosePlace { target: nearest.filter(|index| angle(index) < REACH_RAD), down_s1: Some(down_s1) }
     }
 
     /// Returns the current direction of gravity in `s1`, from the arm.
@@ -253,16 +253,16 @@ impl GravitySession {
     /// Returns the directions of gravity in `s1` of the recorded poses, for drawing: from the arm, else the requested
     /// ones.
     pub fn taken_down_s1(&self) -> Vec<Vector3<f64>> {
-        let known = |place: &Place| place.down_s1.or_else(|| Some(Vector3::from(TARGETS[place.target?].down_s1)));
+        let known = |place: &PosePlace| place.down_s1.or_else(|| Some(Vector3::from(TARGETS[place.target?].down_s1)));
         self.places.iter().filter_map(known).collect()
     }
 
-    pub fn poses(&self) -> &[Pose] {
+    pub fn poses(&self) -> &[GravityPose] {
         &self.poses
     }
 
     /// Removes a pose; returns `None` if it does not exist.
-    pub fn remove(&mut self, index: usize) -> Option<Pose> {
+    pub fn remove(&mut self, index: usize) -> Option<GravityPose> {
         let removed = (index < self.poses.len()).then(|| {
             self.places.remove(index);
             self.poses.remove(index)
@@ -271,7 +271,7 @@ impl GravitySession {
         removed
     }
 
-    pub fn undo(&mut self) -> Option<Pose> {
+    pub fn undo(&mut self) -> Option<GravityPose> {
         self.remove(self.poses.len().checked_sub(1)?)
     }
 
@@ -301,7 +301,7 @@ mod tests {
         target: &PoseTarget,
         push_n: f64,
         t_s: &mut f64,
-    ) -> Vec<Phase> {
+    ) -> Vec<GravityPhase> {
         let still = |tool: &mut Tool| {
             let mut sample = tool.sample(target.world_from_s1(), 0.02, 1e-3);
             sample.raw.force_n.x += push_n;
@@ -321,16 +321,16 @@ mod tests {
     fn a_guided_session_ends_accepted_and_refuses_a_touched_pose() {
         let mut tool = Tool::new(31, 0.4);
         tool.s1_from_imu = UnitQuaternion::identity();
-        let mut session = GravitySession::new(SessionSettings::default());
+        let mut session = GravitySession::new(GravitySessionSettings::default());
         let mut t_s = 0.0;
         for count in 0..9 {
             let target = session.target().unwrap();
             let phases = hold(&mut session, &mut tool, &target, 0.0, &mut t_s);
-            assert!(phases.contains(&Phase::Recorded { index: count }), "{}", target.name);
+            assert!(phases.contains(&GravityPhase::Recorded { index: count }), "{}", target.name);
         }
         let target = session.target().unwrap();
         let touched = hold(&mut session, &mut tool, &target, 1.0, &mut t_s);
-        assert!(touched.iter().any(|phase| matches!(phase, Phase::Touched { .. })));
+        assert!(touched.iter().any(|phase| matches!(phase, GravityPhase::Touched { .. })));
         assert_eq!(session.poses().len(), 9);
         let touched_s = session.touched_s();
         assert!((0.5..1.6).contains(&touched_s), "{touched_s} s");
@@ -355,14 +355,14 @@ mod tests {
     #[test]
     fn a_moving_tool_and_a_poisoned_sample_record_nothing() {
         let mut tool = Tool::new(32, 0.4);
-        let mut session = GravitySession::new(SessionSettings::default());
+        let mut session = GravitySession::new(GravitySessionSettings::default());
         for i in 0..5000 {
             let turning = UnitQuaternion::from_euler_angles(f64::from(i) * 1e-3, 0.0, 0.0);
             session.step(&tool.sample(turning, 0.02, 1e-3), f64::from(i) * 1e-3);
         }
         let mut bad = tool.sample(UnitQuaternion::identity(), 0.0, 0.0);
         bad.raw.force_n.x = f64::NAN;
-        assert_eq!(session.step(&bad, 6.0), Phase::NoSample);
+        assert_eq!(session.step(&bad, 6.0), GravityPhase::NoSample);
         assert!(session.poses().is_empty());
     }
 
@@ -370,13 +370,14 @@ mod tests {
     fn a_pose_by_the_arm_is_the_mean_over_the_stretch_and_not_its_last_sample() {
         let mut tool = Tool::new(33, 0.4);
         let held = TARGETS[5].world_from_s1();
-        let mut session = GravitySession::new(SessionSettings { use_arm: true, ..SessionSettings::default() });
+        let mut session =
+            GravitySession::new(GravitySessionSettings { use_arm: true, ..GravitySessionSettings::default() });
         for tick in 0..1600 {
             let mut sample = tool.sample(held, 0.02, 1e-3);
             // Noise of the joint sensors of half a degree per axis.
             let tremble = UnitQuaternion::from_scaled_axis(tool.vector(0.009));
             sample.world_from_s1 = Some(held * tremble);
-            if matches!(session.step(&sample, f64::from(tick) * 1e-3), Phase::Recorded { .. }) {
+            if matches!(session.step(&sample, f64::from(tick) * 1e-3), GravityPhase::Recorded { .. }) {
                 break;
             }
         }

@@ -3,17 +3,17 @@
 use nalgebra::{DMatrix, Matrix3, Rotation3, UnitQuaternion, Vector3};
 
 use super::{
-    model::{ModelKind, Parameters, TorqueParameters, matrix, paper_row},
-    pose::Row,
+    model::{GravityParameters, ModelKind, TorqueParameters, matrix, paper_row},
+    pose::GravityRow,
 };
 use crate::frames::GRAVITY_M_S2;
 
 /// Singular values below this fraction of the largest are dropped as noise: far above the rounding of 64-bit numbers
 /// (1e-16), and far below what poses of any use have.
-const RANK_SHARE: f64 = 1e-10;
+const RANK_FRACTION: f64 = 1e-10;
 
 /// Fits one model to these rows; returns `None` if there are too few rows or the solution is not finite.
-pub(super) fn solve(kind: ModelKind, rows: &[Row], has_torque: bool) -> Option<Parameters> {
+pub(super) fn solve(kind: ModelKind, rows: &[GravityRow], has_torque: bool) -> Option<GravityParameters> {
     match kind {
         ModelKind::Physical => physical(rows, has_torque),
         ModelKind::Gain => gain(rows, has_torque),
@@ -25,18 +25,18 @@ pub(super) fn solve(kind: ModelKind, rows: &[Row], has_torque: bool) -> Option<P
 /// pseudo-inverse.
 fn least_squares(a: DMatrix<f64>, b: &DMatrix<f64>) -> Option<DMatrix<f64>> {
     let svd = a.try_svd(true, true, f64::EPSILON, 200)?;
-    let cut = svd.singular_values.max() * RANK_SHARE;
+    let cut = svd.singular_values.max() * RANK_FRACTION;
     let solution = svd.solve(b, cut).ok()?;
     solution.iter().all(|x| x.is_finite()).then_some(solution)
 }
 
-fn forces(rows: &[Row]) -> DMatrix<f64> {
+fn forces(rows: &[GravityRow]) -> DMatrix<f64> {
     DMatrix::from_fn(rows.len(), 3, |i, j| rows[i].wrench.force_n[j])
 }
 
 /// Solves for mass, rotation and bias: Wahba's problem with a scale (Umeyama 1991), on rows with their means
 /// subtracted.
-fn physical(rows: &[Row], has_torque: bool) -> Option<Parameters> {
+fn physical(rows: &[GravityRow], has_torque: bool) -> Option<GravityParameters> {
     let (mass_kg, s1_from_source) = scaled_rotation(rows)?;
     let (mean_force, mean_field) = means(rows);
     let bias_n = mean_force - s1_from_source * mean_field * mass_kg;
@@ -44,18 +44,18 @@ fn physical(rows: &[Row], has_torque: bool) -> Option<Parameters> {
     let torque = if has_torque { Some(torque(rows, &gain_kg)?) } else { None };
     let rotation = UnitQuaternion::from_rotation_matrix(&s1_from_source);
     let s1_from_source_wxyz = [rotation.w, rotation.i, rotation.j, rotation.k];
-    Some(Parameters::Physical { mass_kg, s1_from_source_wxyz, bias_n: bias_n.into(), torque })
+    Some(GravityParameters::Physical { mass_kg, s1_from_source_wxyz, bias_n: bias_n.into(), torque })
 }
 
-fn means(rows: &[Row]) -> (Vector3<f64>, Vector3<f64>) {
-    let share = 1.0 / rows.len() as f64;
+fn means(rows: &[GravityRow]) -> (Vector3<f64>, Vector3<f64>) {
+    let fraction = 1.0 / rows.len() as f64;
     rows.iter().fold((Vector3::zeros(), Vector3::zeros()), |(force, field), row| {
-        (force + row.wrench.force_n * share, field + row.field_m_s2 * share)
+        (force + row.wrench.force_n * fraction, field + row.field_m_s2 * fraction)
     })
 }
 
 /// Returns the scale (kg) and the proper rotation that map the centred gravity vectors to the centred forces.
-pub(super) fn scaled_rotation(rows: &[Row]) -> Option<(f64, Rotation3<f64>)> {
+pub(super) fn scaled_rotation(rows: &[GravityRow]) -> Option<(f64, Rotation3<f64>)> {
     if rows.len() < 3 {
         return None;
     }
@@ -82,7 +82,7 @@ pub(super) fn scaled_rotation(rows: &[Row]) -> Option<(f64, Rotation3<f64>)> {
 }
 
 /// Solves for a free 3x3 gain and bias; columns are divided by g to have the magnitude of the constant.
-fn gain(rows: &[Row], has_torque: bool) -> Option<Parameters> {
+fn gain(rows: &[GravityRow], has_torque: bool) -> Option<GravityParameters> {
     if rows.len() < 4 {
         return None;
     }
@@ -90,15 +90,15 @@ fn gain(rows: &[Row], has_torque: bool) -> Option<Parameters> {
     let gain_kg: [[f64; 3]; 3] = std::array::from_fn(|i| std::array::from_fn(|j| solution[(j, i)] / GRAVITY_M_S2));
     let bias_n = std::array::from_fn(|i| solution[(3, i)]);
     let torque = if has_torque { Some(torque(rows, &matrix(&gain_kg))?) } else { None };
-    Some(Parameters::Gain { gain_kg, bias_n, torque })
+    Some(GravityParameters::Gain { gain_kg, bias_n, torque })
 }
 
-pub(super) fn design(rows: &[Row]) -> DMatrix<f64> {
+pub(super) fn design(rows: &[GravityRow]) -> DMatrix<f64> {
     DMatrix::from_fn(rows.len(), 4, |i, j| if j < 3 { rows[i].field_m_s2[j] / GRAVITY_M_S2 } else { 1.0 })
 }
 
 /// Solves for the paper's five columns.
-fn paper(rows: &[Row], has_torque: bool) -> Option<Parameters> {
+fn paper(rows: &[GravityRow], has_torque: bool) -> Option<GravityParameters> {
     if rows.len() < 5 {
         return None;
     }
@@ -115,11 +115,11 @@ fn paper(rows: &[Row], has_torque: bool) -> Option<Parameters> {
     } else {
         None
     };
-    Some(Parameters::Paper { force_n: by_axis(least_squares(a, &forces(rows))?), torque_nm })
+    Some(GravityParameters::Paper { force_n: by_axis(least_squares(a, &forces(rows))?), torque_nm })
 }
 
 /// Solves for centre of mass and torque bias from `tau = com x w + tau0` with the weight `w = G u`: linear in both.
-fn torque(rows: &[Row], gain_kg: &Matrix3<f64>) -> Option<TorqueParameters> {
+fn torque(rows: &[GravityRow], gain_kg: &Matrix3<f64>) -> Option<TorqueParameters> {
     let mut a = DMatrix::zeros(3 * rows.len(), 6);
     let mut b = DMatrix::zeros(3 * rows.len(), 1);
     // The columns of the centre of mass have the magnitude of the weight; the columns of the bias are scaled to match.

@@ -29,7 +29,7 @@ impl Default for StillSettings {
 const SHORT_S: f64 = 0.020;
 
 #[derive(Clone, Copy, Debug, Default)]
-struct Sums {
+struct StillSums {
     count: f64,
     wrench: Wrench,
     field: Vector3<f64>,
@@ -38,7 +38,7 @@ struct Sums {
     world_from_s1: RotationMean,
 }
 
-impl Sums {
+impl StillSums {
     fn add(&mut self, sample: &WristSample, field: &Vector3<f64>) {
         self.count += 1.0;
         self.wrench.force_n += sample.raw.force_n;
@@ -60,27 +60,27 @@ impl Sums {
     }
 
     fn mean(&self) -> (Wrench, Vector3<f64>) {
-        let share = 1.0 / self.count.max(1.0);
-        let wrench = Wrench { force_n: self.wrench.force_n * share, torque_nm: self.wrench.torque_nm * share };
-        (wrench, self.field * share)
+        let fraction = 1.0 / self.count.max(1.0);
+        let wrench = Wrench { force_n: self.wrench.force_n * fraction, torque_nm: self.wrench.torque_nm * fraction };
+        (wrench, self.field * fraction)
     }
 }
 
 #[derive(Clone, Debug)]
-pub(super) struct Still {
+pub(super) struct StillInterval {
     settings: StillSettings,
-    short: Sums,
+    short: StillSums,
     short_since_s: f64,
-    whole: Sums,
+    whole: StillSums,
     since_s: f64,
     last_s: Option<f64>,
     moved: Option<bool>,
     field_moved_s: f64,
 }
 
-impl Still {
+impl StillInterval {
     pub(super) fn new(settings: StillSettings) -> Self {
-        let nothing = Sums::default();
+        let nothing = StillSums::default();
         Self {
             settings,
             short: nothing,
@@ -94,8 +94,8 @@ impl Still {
     }
 
     pub(super) fn reset(&mut self) {
-        self.short = Sums::default();
-        self.whole = Sums::default();
+        self.short = StillSums::default();
+        self.whole = StillSums::default();
         self.last_s = None;
     }
 
@@ -147,12 +147,12 @@ impl Still {
             turned || (wrench.force_n - mean.force_n).norm() > self.settings.force_n
         };
         if far {
-            self.whole = Sums::default();
+            self.whole = StillSums::default();
             self.since_s = t_s;
         }
         self.moved = Some(far);
         self.whole.merge(&self.short);
-        self.short = Sums::default();
+        self.short = StillSums::default();
         self.short_since_s = t_s;
     }
 }

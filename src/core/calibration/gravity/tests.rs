@@ -56,32 +56,32 @@ impl Tool {
         }
     }
 
-    pub(super) fn imu_pose(&mut self, noise_n: f64, noise_nm: f64) -> Pose {
+    pub(super) fn imu_pose(&mut self, noise_n: f64, noise_nm: f64) -> GravityPose {
         let world_from_s1 = self.any_orientation();
         imu_pose_of(&self.sample(world_from_s1, noise_n, noise_nm))
     }
 
-    fn imu_poses(&mut self, count: usize) -> Vec<Pose> {
+    fn imu_poses(&mut self, count: usize) -> Vec<GravityPose> {
         (0..count).map(|_| self.imu_pose(0.02, 1e-3)).collect()
     }
 
-    fn arm_poses(&mut self, count: usize) -> Vec<Pose> {
+    fn arm_poses(&mut self, count: usize) -> Vec<GravityPose> {
         let pose = |tool: &mut Self| {
             let world_from_s1 = tool.any_orientation();
             let wrench = tool.sample(world_from_s1, 0.02, 1e-3).raw;
-            Pose { wrench, has_torque: true, orientation: Orientation::Arm(world_from_s1) }
+            GravityPose { wrench, has_torque: true, orientation: Orientation::Arm(world_from_s1) }
         };
         (0..count).map(|_| pose(self)).collect()
     }
 }
 
-fn imu_pose_of(sample: &WristSample) -> Pose {
+fn imu_pose_of(sample: &WristSample) -> GravityPose {
     let orientation = Orientation::Imu(sample.acceleration_m_s2.unwrap());
-    Pose { wrench: sample.raw, has_torque: true, orientation }
+    GravityPose { wrench: sample.raw, has_torque: true, orientation }
 }
 
-fn report(poses: &[Pose]) -> GravityReport {
-    fit(poses, &Settings::default()).unwrap()
+fn report(poses: &[GravityPose]) -> GravityReport {
+    fit(poses, &GravitySettings::default()).unwrap()
 }
 
 /// Returns the wrench of one sample without gravity and bias.
@@ -127,9 +127,9 @@ fn twelve_poses_at_any_tilt_reach_the_noise_and_the_papers_model_does_not() {
 #[test]
 fn mass_mounting_and_bias_are_found_exactly_without_noise() {
     let mut tool = Tool::new(7, 0.4);
-    let poses: Vec<Pose> = (0..12).map(|_| tool.imu_pose(0.0, 0.0)).collect();
+    let poses: Vec<GravityPose> = (0..12).map(|_| tool.imu_pose(0.0, 0.0)).collect();
     let report = report(&poses);
-    let Parameters::Physical { mass_kg, s1_from_source_wxyz: [w, x, y, z], bias_n, torque } =
+    let GravityParameters::Physical { mass_kg, s1_from_source_wxyz: [w, x, y, z], bias_n, torque } =
         report.fit_of(ModelKind::Physical).unwrap().model.parameters
     else {
         panic!("no physical model");
@@ -161,7 +161,7 @@ fn a_constant_bias_of_the_accelerometer_disappears_in_the_forces_bias() {
 fn a_wrong_sign_of_the_accelerometer_is_always_named() {
     for seed in 0..200 {
         let poses = Tool::new(1000 + seed, 0.4).imu_poses(12);
-        let wrong = fit(&poses, &Settings { imu_sign: -1, ..Settings::default() }).unwrap();
+        let wrong = fit(&poses, &GravitySettings { imu_sign: -1, ..GravitySettings::default() }).unwrap();
         assert_eq!(wrong.verdict, Verdict::PoorData, "seed {seed}: {}", wrong.reason);
         assert!(wrong.reason.contains("opposite to the chosen sign"), "seed {seed}: {}", wrong.reason);
         assert!(!report(&poses).reason.contains("opposite"), "seed {seed}");
@@ -223,7 +223,7 @@ fn poses_that_determine_nothing_are_refused() {
             imu_pose_of(&sample)
         };
         for in_plane in [true, false] {
-            let poses: Vec<Pose> = (0..20).map(|_| narrow(in_plane)).collect();
+            let poses: Vec<GravityPose> = (0..20).map(|_| narrow(in_plane)).collect();
             let report = report(&poses);
             assert_eq!(report.verdict, Verdict::InsufficientMotion, "seed {seed} {in_plane}: {}", report.reason);
         }
@@ -261,7 +261,7 @@ fn a_sensor_that_does_not_feel_the_tool_is_refused_with_its_cause() {
             }
             for model in [None, Some(ModelKind::Physical), Some(ModelKind::Gain), Some(ModelKind::Paper)] {
                 for poses in &sets {
-                    let report = fit(poses, &Settings { model, ..Settings::default() }).unwrap();
+                    let report = fit(poses, &GravitySettings { model, ..GravitySettings::default() }).unwrap();
                     assert_eq!(report.verdict, Verdict::PoorData, "{name}, seed {seed}: {}", report.reason);
                     assert!(report.reason.contains("no weight was measured"), "{name}, seed {seed}: {}", report.reason);
                 }
@@ -296,16 +296,16 @@ fn a_free_gain_is_chosen_where_the_sensor_is_skewed_and_not_otherwise() {
 fn bad_numbers_are_refused_with_their_pose() {
     let mut tool = Tool::new(10, 0.4);
     let good = tool.imu_poses(8);
-    let refusal = |edit: fn(&mut Pose)| {
+    let refusal = |edit: fn(&mut GravityPose)| {
         let mut poses = good.clone();
         edit(&mut poses[4]);
-        fit(&poses, &Settings::default()).unwrap_err().to_string()
+        fit(&poses, &GravitySettings::default()).unwrap_err().to_string()
     };
     assert!(refusal(|pose| pose.wrench.force_n.y = f64::NAN).contains("pose 5"));
     assert!(refusal(|pose| pose.orientation = Orientation::Imu(Vector3::zeros())).contains("pose 5"));
     assert!(refusal(|pose| pose.orientation = Orientation::Arm(UnitQuaternion::identity())).contains("pose 5"));
-    assert!(fit(&[], &Settings::default()).is_err());
-    assert!(fit(&good, &Settings { imu_sign: 0, ..Settings::default() }).is_err());
+    assert!(fit(&[], &GravitySettings::default()).is_err());
+    assert!(fit(&good, &GravitySettings { imu_sign: 0, ..GravitySettings::default() }).is_err());
 }
 
 #[test]

@@ -2,21 +2,21 @@
 
 use nalgebra::{DMatrix, Matrix5x3};
 
-use super::pose::Row;
+use super::pose::GravityRow;
 use crate::frames::GRAVITY_M_S2;
 
 /// With fewer poses a drift cannot be distinguished from chance.
-const LEAST_POSES: usize = 12;
+const MIN_POSES: usize = 12;
 /// A drift is reported if it leaves less than this fraction of the poses' disagreement; noise alone would leave almost
 /// all.
-const LEFT_SHARE: f64 = 0.5;
+const LEFT_FRACTION: f64 = 0.5;
 
 /// Returns the change of the bias over all poses, in the order of recording (N), if a steady drift explains the
 /// disagreement of the poses. A change below `floor_n` does not count.
 ///
 /// Least squares of the force on gravity (a free 3x3 gain), a constant, and the position in the order.
-pub(super) fn drift_n(rows: &[Row], floor_n: f64) -> Option<f64> {
-    if rows.len() < LEAST_POSES {
+pub(super) fn drift_n(rows: &[GravityRow], floor_n: f64) -> Option<f64> {
+    if rows.len() < MIN_POSES {
         return None;
     }
     let place = |i: usize| i as f64 / (rows.len() - 1) as f64 - 0.5;
@@ -35,18 +35,18 @@ pub(super) fn drift_n(rows: &[Row], floor_n: f64) -> Option<f64> {
     let (without_n, _) = left_n(&steady)?;
     let (with_n, found) = left_n(&design)?;
     let drift_n = Matrix5x3::from_iterator(found.iter().copied()).row(4).norm();
-    (drift_n > floor_n && with_n < LEFT_SHARE * without_n).then_some(drift_n)
+    (drift_n > floor_n && with_n < LEFT_FRACTION * without_n).then_some(drift_n)
 }
 
 #[cfg(test)]
 mod tests {
     use nalgebra::Vector3;
 
-    use super::super::{Pose, Settings, fit, tests::Tool};
+    use super::super::{GravityPose, GravitySettings, fit, tests::Tool};
     use crate::calibration::{AxisStats, Verdict};
 
     /// Returns poses of a sensor whose bias changes by this much while it warms up, mostly at first.
-    fn warming(seed: u64, count: usize, drift_n: f64) -> (Tool, Vec<Pose>) {
+    fn warming(seed: u64, count: usize, drift_n: f64) -> (Tool, Vec<GravityPose>) {
         let mut tool = Tool::new(seed, 0.3);
         let way = tool.vector(1.0).normalize() * drift_n;
         let pose = |i: usize| {
@@ -62,7 +62,7 @@ mod tests {
     fn a_sensor_that_warms_up_is_named_and_no_pose_is_blamed() {
         for (seed, count) in (0..40).map(|seed| (seed, if seed % 2 == 0 { 100 } else { 16 })) {
             let (_, poses) = warming(seed, count, 1.5);
-            let report = fit(&poses, &Settings::default()).unwrap();
+            let report = fit(&poses, &GravitySettings::default()).unwrap();
             assert_eq!(report.verdict, Verdict::PoorData, "{}", report.reason);
             assert!(report.reason.contains("the bias drifted by 1."), "seed {seed}, {count} poses: {}", report.reason);
             assert!(report.outliers.is_empty());
@@ -74,7 +74,7 @@ mod tests {
         let mut errors = Vec::new();
         for seed in 0..40 {
             let (tool, poses) = warming(seed, 40, 0.15);
-            let report = fit(&poses, &Settings::default()).unwrap();
+            let report = fit(&poses, &GravitySettings::default()).unwrap();
             let model = report.chosen_fit().unwrap().model;
             // In the middle of the drift the bias is half of it away from either end.
             errors.push(model.predict(&Vector3::zeros()).force_n - tool.bias.force_n);
@@ -91,7 +91,7 @@ mod tests {
                     poses[touched].wrench.force_n += tool.vector(2.0);
                 }
             }
-            let report = fit(&poses, &Settings::default()).unwrap();
+            let report = fit(&poses, &GravitySettings::default()).unwrap();
             assert!(!report.reason.contains("drift"), "seed {seed}: {}", report.reason);
             assert_eq!(report.verdict, Verdict::Accepted, "seed {seed}: {}", report.reason);
         }

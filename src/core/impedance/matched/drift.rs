@@ -3,7 +3,7 @@
 use crate::signal::{DelayLine, Lanes};
 
 /// Memory of the learned fraction and of the mean and maximum force (s). Chosen as in `matched/mod.rs`.
-const SHARE_S: f64 = 1.0;
+const FRACTION_S: f64 = 1.0;
 const FORCE_S: f64 = 2.0;
 /// Ridge of the fraction, and the part of the mean force that is added to an error before its weight is computed.
 /// Chosen as in `matched/mod.rs`.
@@ -14,25 +14,25 @@ const BOUND: f64 = 0.1;
 
 /// Learns, per axis, the fraction of the residual of one delay ago that still remains (0 to 1, least absolute error).
 #[derive(Clone, Debug)]
-pub(super) struct Drift {
+pub(super) struct ResidualDrift {
     rate_hz: f64,
     residuals_n: DelayLine<Lanes>,
     products: Lanes,
     right: Lanes,
-    share: Lanes,
+    fraction: Lanes,
     mean_n: Lanes,
     largest_n: Lanes,
     seen: f64,
 }
 
-impl Drift {
+impl ResidualDrift {
     pub(super) fn new(rate_hz: f64, max_delay: usize) -> Self {
         Self {
             rate_hz,
             residuals_n: DelayLine::new(max_delay, Lanes::ZERO),
             products: Lanes::ZERO,
             right: Lanes::ZERO,
-            share: Lanes::ZERO,
+            fraction: Lanes::ZERO,
             mean_n: Lanes::ZERO,
             largest_n: Lanes::ZERO,
             seen: 0.0,
@@ -46,11 +46,11 @@ impl Drift {
         let Some(then_n) = self.residuals_n.get(delay - 1).copied() else { return };
         let size = (unexplained_n - sent_n).map(f64::abs) + self.mean_n * FLATTEN;
         let weighted = then_n * size.recip_or_zero();
-        let fade = libm::exp(-1.0 / (SHARE_S * self.rate_hz));
+        let fade = libm::exp(-1.0 / (FRACTION_S * self.rate_hz));
         self.products = (self.products * fade + weighted * then_n).settled();
         self.right = (self.right * fade + weighted * unexplained_n).settled();
-        let share = self.right * (self.products * (1.0 + RIDGE)).recip_or_zero();
-        self.share = share.within(Lanes::ZERO, Lanes::splat(1.0));
+        let fraction = self.right * (self.products * (1.0 + RIDGE)).recip_or_zero();
+        self.fraction = fraction.within(Lanes::ZERO, Lanes::splat(1.0));
     }
 
     /// Takes this tick's residual and force (N); returns the offset to send (N).
@@ -62,7 +62,7 @@ impl Drift {
         self.mean_n = (self.mean_n + (size_n - self.mean_n) * self.seen.min(memory).recip()).settled();
         self.largest_n = (self.largest_n * (1.0 - memory.recip())).settled().zip(size_n, f64::max);
         let bound_n = self.largest_n * BOUND;
-        (self.share * residual_n).within(-bound_n, bound_n)
+        (self.fraction * residual_n).within(-bound_n, bound_n)
     }
 
     /// Advances a tick without a measurement.
@@ -76,7 +76,7 @@ impl Drift {
         let rest = Lanes::ZERO;
         self.products = rest;
         self.right = rest;
-        self.share = rest;
+        self.fraction = rest;
         self.mean_n = rest;
         self.largest_n = rest;
         self.seen = 0.0;

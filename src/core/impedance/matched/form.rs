@@ -4,17 +4,17 @@ use super::{
     super::{
         messages::Posture,
         normal::dot,
-        regressors::{Stance, saturated},
-        settings::Settings,
+        regressors::{MotionState, saturated},
+        settings::ImpedanceSettings,
     },
-    slip::{Held, SLIPS},
+    slip::{SLIPS, SlipLanes},
 };
 use crate::signal::Lanes;
 
 pub(in super::super) const COLUMNS: usize = 25;
 
 /// The columns of one tick, or their parameters, one lane per axis.
-pub(super) type Row = [Lanes; COLUMNS];
+pub(super) type FormRow = [Lanes; COLUMNS];
 
 /// Leading columns of each nested model.
 const TISSUE: &[usize] = &[8, 11];
@@ -24,22 +24,22 @@ const PAPER: &[usize] = &[4, 7, 10, 13, 16];
 
 /// Set of columns of a model; the first is a constant, positions count from a fixed origin `d = x - x0`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Form {
+pub enum ModelForm {
     /// `1, d, u1..u4` (position above its low-passes at 5, 20, 80, 320 ms: four Maxwell branches), acceleration, dry friction;
     /// then `d^2, d^3, d u2`.
     Tissue,
     /// The columns of `Tissue`, and friction that grows with the force along the other axes: springs that slip
     /// (`slip.rs`).
     Sliding,
-    /// The columns of `Sliding`, and `d, u1..u4` and acceleration of the two other axes: the full `M`.
+    /// The columns of `SlidingSolver`, and `d, u1..u4` and acceleration of the two other axes: the full `M`.
     Coupled,
     /// The paper's columns: `1, d, v, a, d^2, v^2, a^2, ...` up to this degree.
     Paper(u8),
 }
 
-impl Form {
+impl ModelForm {
     /// Returns the form for matched rendering: columns of other axes are useful only if there are other axes.
-    pub(in super::super) const fn of(settings: &Settings) -> Self {
+    pub(in super::super) const fn of(settings: &ImpedanceSettings) -> Self {
         match settings.axes {
             1 => Self::Tissue,
             _ if settings.cross_talk => Self::Coupled,
@@ -89,7 +89,7 @@ impl Form {
 
     /// Returns the columns of a posture. `one`: 1 in the lanes in use; `origin`: origin of the positions; `held`:
     /// values of the slip columns.
-    pub(super) fn row(self, posture: &Posture, one: Lanes, origin: Lanes, held: &Held) -> Row {
+    pub(super) fn row(self, posture: &Posture, one: Lanes, origin: Lanes, held: &SlipLanes) -> FormRow {
         let mut row = [Lanes::ZERO; COLUMNS];
         let d = self.position(posture) - origin;
         row[0] = one;
@@ -104,7 +104,7 @@ impl Form {
             }
             return row;
         }
-        let Stance { u, surge, knee, .. } = posture.stance;
+        let MotionState { u, surge, knee, .. } = posture.stance;
         let own = [d, u[0], u[1], u[2], u[3], surge];
         row[1..7].copy_from_slice(&own);
         row[7] = saturated(u[1], knee);
@@ -126,6 +126,6 @@ impl Form {
 
 /// Returns `sum_j parameters_j row_j` over the leading columns.
 #[inline]
-pub(super) fn product(parameters: &Row, row: &Row, columns: usize) -> Lanes {
+pub(super) fn product(parameters: &FormRow, row: &FormRow, columns: usize) -> Lanes {
     dot(&parameters[..columns], row)
 }

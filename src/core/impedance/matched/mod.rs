@@ -11,7 +11,7 @@
 //! Positions count from a fixed origin, there is a constant, and the ridge is in proportion to each column's mean
 //! square. With the paper's recipe (increments, raw columns, no constant, no ridge, degree by the error inside the
 //! window) the force at the prediction horizon reaches 1e6 N; the paper's own columns under these rules
-//! ([`Form::Paper`]) are better than reflection.
+//! ([`ModelForm::Paper`]) are better than reflection.
 //!
 //! The constants were chosen on eight recordings of the first rig and on simulated palpation.
 
@@ -24,23 +24,23 @@ mod sums;
 mod tests;
 
 pub(super) use form::COLUMNS;
-pub use form::Form;
+pub use form::ModelForm;
 pub use model::MatchedModel;
 
 use self::{
-    drift::Drift,
-    form::{Row, product},
-    slip::{Held, SLIPS, Slip, Stretch, Usual},
-    sums::Sums,
+    drift::ResidualDrift,
+    form::{FormRow, product},
+    slip::{SLIPS, Slip, SlipLanes, SlipSprings, UsualSizes},
+    sums::MatchedSums,
 };
 use super::{
     Mode, Models,
     best::eighth_power,
     envelope::Envelope,
-    messages::{Parcel, Posture, Report},
-    method::{Follower, Leader, Method, Moment, Place, Seen},
-    pace::newest_share,
-    settings::{MAX_DELAY_S, ModeSet, Settings},
+    messages::{IdentificationReport, LinkPacket, Posture},
+    method::{AnchoredMoment, BaselineMethod, FollowerEnd, LeaderEnd, MethodInput, Place},
+    motion_clock::newest_fraction,
+    settings::{ImpedanceSettings, MAX_DELAY_S, ModeSet},
 };
 use crate::signal::{DelayLine, Lanes};
 
@@ -63,35 +63,35 @@ const EQUAL_N: f64 = 1e-12;
 
 /// Matched rendering. At the leader: the springs of its slip columns.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Matched {
+pub(super) struct MatchedMethod {
     slip: Slip,
 }
 
-impl Method for Matched {
+impl BaselineMethod for MatchedMethod {
     const NAME: &'static str = "matched";
     const ABOUT: &'static str = "parameters alone, the force from the hand's own motion";
     const IS_DAMPED: bool = true;
     const PARAMETERS: Option<Place> = Some(|models| &mut models.matched);
 
-    fn follower(settings: &Settings, delay_ticks: usize) -> Option<Box<dyn Follower>> {
-        Some(Box::new(Learner::new(Form::of(settings), settings, delay_ticks)))
+    fn follower(settings: &ImpedanceSettings, delay_ticks: usize) -> Option<Box<dyn FollowerEnd>> {
+        Some(Box::new(Learner::new(ModelForm::of(settings), settings, delay_ticks)))
     }
 
-    fn leader(_settings: &Settings) -> Box<dyn Leader> {
+    fn leader(_settings: &ImpedanceSettings) -> Box<dyn LeaderEnd> {
         Box::new(Self::default())
     }
 
-    fn degree(report: &Report) -> u8 {
+    fn degree(report: &IdentificationReport) -> u8 {
         report.matched_degree
     }
 
-    fn note(models: &Models, report: &mut Report) {
+    fn note(models: &Models, report: &mut IdentificationReport) {
         report.matched_degree = models.matched.degree;
     }
 }
 
-impl Leader for Matched {
-    fn render(&mut self, moment: &Moment<'_>) -> Option<Lanes> {
+impl LeaderEnd for MatchedMethod {
+    fn render(&mut self, moment: &AnchoredMoment<'_>) -> Option<Lanes> {
         moment.parcel.models.matched.force(moment.now, &mut self.slip)
     }
 
@@ -104,7 +104,7 @@ impl Leader for Matched {
 #[derive(Clone, Debug)]
 pub(super) struct Nima;
 
-impl Method for Nima {
+impl BaselineMethod for Nima {
     const NAME: &'static str = "nima";
     const ABOUT: &'static str = "the paper's columns with a constant, a kept origin and a ridge";
     const HAS_WINDOW: bool = true;
@@ -112,25 +112,25 @@ impl Method for Nima {
     const IS_DAMPED: bool = true;
     const PARAMETERS: Option<Place> = Some(|models| &mut models.nima);
 
-    fn follower(settings: &Settings, delay_ticks: usize) -> Option<Box<dyn Follower>> {
-        Some(Box::new(Learner::new(Form::Paper(settings.max_degree as u8), settings, delay_ticks)))
+    fn follower(settings: &ImpedanceSettings, delay_ticks: usize) -> Option<Box<dyn FollowerEnd>> {
+        Some(Box::new(Learner::new(ModelForm::Paper(settings.max_degree as u8), settings, delay_ticks)))
     }
 
-    fn leader(_settings: &Settings) -> Box<dyn Leader> {
+    fn leader(_settings: &ImpedanceSettings) -> Box<dyn LeaderEnd> {
         Box::new(Self)
     }
 
-    fn degree(report: &Report) -> u8 {
+    fn degree(report: &IdentificationReport) -> u8 {
         report.nima_degree
     }
 
-    fn note(models: &Models, report: &mut Report) {
+    fn note(models: &Models, report: &mut IdentificationReport) {
         report.nima_degree = models.nima.degree;
     }
 }
 
-impl Leader for Nima {
-    fn render(&mut self, moment: &Moment<'_>) -> Option<Lanes> {
+impl LeaderEnd for Nima {
+    fn render(&mut self, moment: &AnchoredMoment<'_>) -> Option<Lanes> {
         moment.parcel.models.nima.force(moment.now, &mut Slip::default())
     }
 }
@@ -138,23 +138,23 @@ impl Leader for Nima {
 /// The follower's part of both.
 #[derive(Clone, Debug)]
 struct Learner {
-    form: Form,
+    form: ModelForm,
     rate_hz: f64,
     delay_ticks: usize,
     every: usize,
     tick: usize,
     one: Lanes,
-    sums: Vec<Sums>,
+    sums: Vec<MatchedSums>,
     ridges: &'static [Ridge],
     experts: Vec<Expert>,
     envelope: Envelope,
-    drift: Drift,
+    drift: ResidualDrift,
     origin: Lanes,
     started: bool,
     /// The newest columns, with springs loaded by the measured force.
-    row: Row,
-    stretch: Stretch,
-    usual: Usual,
+    row: FormRow,
+    stretch: SlipSprings,
+    usual: UsualSizes,
     gives: [f64; SLIPS],
     /// The leader's springs, one delay ahead of their current state at the leader.
     twin: Slip,
@@ -173,28 +173,28 @@ struct Ridge {
 struct Expert {
     ridge: usize,
     columns: usize,
-    parameters: Row,
-    past: DelayLine<Row>,
+    parameters: FormRow,
+    past: DelayLine<FormRow>,
     error_n: Lanes,
     weight: Lanes,
 }
 
 impl Learner {
-    fn new(form: Form, settings: &Settings, delay_ticks: usize) -> Self {
+    fn new(form: ModelForm, settings: &ImpedanceSettings, delay_ticks: usize) -> Self {
         let rate_hz = settings.rate_hz;
-        let solve_hz = SOLVE_HZ[usize::from(matches!(form, Form::Paper(_)))];
+        let solve_hz = SOLVE_HZ[usize::from(matches!(form, ModelForm::Paper(_)))];
         let every = ((rate_hz / solve_hz).round() as usize).max(1);
         let max_delay = (MAX_DELAY_S * rate_hz).ceil() as usize;
         let ridges = if form.slips() { &RIDGES[..] } else { &RIDGES[..2] };
         let memories_s = match form {
-            Form::Paper(_) => &[settings.window_s][..],
-            Form::Sliding | Form::Coupled => &MEMORIES_S,
-            Form::Tissue => &MEMORIES_S[..1],
+            ModelForm::Paper(_) => &[settings.window_s][..],
+            ModelForm::Sliding | ModelForm::Coupled => &MEMORIES_S,
+            ModelForm::Tissue => &MEMORIES_S[..1],
         };
         let sums = memories_s
             .iter()
             .zip([1, every])
-            .map(|(memory_s, step)| Sums::new(form.columns(), *memory_s, rate_hz / step as f64))
+            .map(|(memory_s, step)| MatchedSums::new(form.columns(), *memory_s, rate_hz / step as f64))
             .collect();
         let expert = |ridge, columns| Expert {
             ridge,
@@ -207,8 +207,8 @@ impl Learner {
         let experts = ridges.iter().enumerate().flat_map(|(ridge, Ridge { memory, .. })| {
             // Knowledge of earlier touches helps only if the columns distinguish contact from free motion, which
             // requires all of them.
-            let least = if *memory == 0 { 0 } else { form.columns() };
-            form.nested().iter().filter(move |columns| **columns >= least).map(move |&columns| expert(ridge, columns))
+            let min = if *memory == 0 { 0 } else { form.columns() };
+            form.nested().iter().filter(move |columns| **columns >= min).map(move |&columns| expert(ridge, columns))
         });
         let mut matched = Self {
             form,
@@ -221,12 +221,12 @@ impl Learner {
             ridges,
             experts: experts.collect(),
             envelope: Envelope::new(rate_hz),
-            drift: Drift::new(rate_hz, max_delay),
+            drift: ResidualDrift::new(rate_hz, max_delay),
             origin: Lanes::ZERO,
             started: false,
             row: [Lanes::ZERO; COLUMNS],
-            stretch: Stretch::default(),
-            usual: Usual::default(),
+            stretch: SlipSprings::default(),
+            usual: UsualSizes::default(),
             gives: [0.0; SLIPS],
             twin: Slip::default(),
             judged: 0.0,
@@ -238,7 +238,7 @@ impl Learner {
 
     /// Returns whether this is the mode nima, with the paper's columns.
     fn is_paper(&self) -> bool {
-        matches!(self.form, Form::Paper(_))
+        matches!(self.form, ModelForm::Paper(_))
     }
 
     /// Ticks back to the parcel that the leader has now; without a delay the last one stands for it.
@@ -272,7 +272,7 @@ impl Learner {
         &mut self,
         posture: &Posture,
         sent: Option<&'a MatchedModel>,
-    ) -> Option<(&'a MatchedModel, (Row, Lanes))> {
+    ) -> Option<(&'a MatchedModel, (FormRow, Lanes))> {
         let sent = sent.filter(|sent| sent.degree > 0)?;
         Some((sent, self.twin.step(sent, posture)))
     }
@@ -303,7 +303,7 @@ impl Learner {
             self.gives = self.usual.step(posture.stance.u[1], force_n, pace, self.rate_hz);
             *self.stretch.step(posture.stance.x, force_n, &self.gives)
         } else {
-            Held::default()
+            SlipLanes::default()
         };
         let row = self.form.row(posture, self.one, self.origin, &held);
         // A long memory loses nothing if it adds only one sample per renewal.
@@ -351,11 +351,11 @@ impl Learner {
         (self.tick + ahead) / self.every - (self.tick.saturating_sub(ticks) + ahead) / self.every
     }
 
-    fn judge(&mut self, posture: &Posture, force_n: Lanes, sent: &MatchedModel, (row, said_n): &(Row, Lanes)) {
+    fn judge(&mut self, posture: &Posture, force_n: Lanes, sent: &MatchedModel, (row, said_n): &(FormRow, Lanes)) {
         let pace = posture.stance.pace;
         self.judged += pace;
-        let share = newest_share(pace, self.judged, ERROR_S * self.rate_hz);
-        let mut least_n = Lanes::splat(f64::INFINITY);
+        let fraction = newest_fraction(pace, self.judged, ERROR_S * self.rate_hz);
+        let mut min_n = Lanes::splat(f64::INFINITY);
         let horizon = self.horizon();
         let mut ages = [0; RIDGES.len()];
         for (ridge, age) in ages.iter_mut().enumerate().take(self.ridges.len()) {
@@ -365,12 +365,13 @@ impl Learner {
             let age = ages[expert.ridge];
             let Some(parameters) = expert.past.get(age) else { continue };
             let said_n = sent.clipped(product(parameters, row, expert.columns));
-            expert.error_n = (expert.error_n + ((force_n - said_n).map(f64::abs) - expert.error_n) * share).settled();
-            least_n = least_n.zip(expert.error_n, f64::min);
+            expert.error_n =
+                (expert.error_n + ((force_n - said_n).map(f64::abs) - expert.error_n) * fraction).settled();
+            min_n = min_n.zip(expert.error_n, f64::min);
         }
         let mut sum = Lanes::ZERO;
         for expert in &mut self.experts {
-            expert.weight = eighth_power((least_n + Lanes::splat(EQUAL_N)) / (expert.error_n + Lanes::splat(EQUAL_N)));
+            expert.weight = eighth_power((min_n + Lanes::splat(EQUAL_N)) / (expert.error_n + Lanes::splat(EQUAL_N)));
             sum += expert.weight;
         }
         let scale = sum.recip_or_zero();
@@ -406,12 +407,12 @@ impl Learner {
     }
 }
 
-impl Follower for Learner {
+impl FollowerEnd for Learner {
     fn serves(&self, modes: ModeSet) -> bool {
         modes.contains(if self.is_paper() { Mode::Nima } else { Mode::Matched })
     }
 
-    fn take(&mut self, seen: &Seen<'_>, parcel: &mut Parcel, report: &mut Report) {
+    fn take(&mut self, seen: &MethodInput<'_>, parcel: &mut LinkPacket, report: &mut IdentificationReport) {
         let is_paper = self.is_paper();
         let sent = seen.sent.map(|sent| if is_paper { &sent.models.nima } else { &sent.models.matched });
         if !seen.learn {
@@ -434,7 +435,7 @@ impl Follower for Learner {
 
     fn reset(&mut self) {
         self.tick = 0;
-        self.sums.iter_mut().for_each(Sums::reset);
+        self.sums.iter_mut().for_each(MatchedSums::reset);
         let weight = self.one * (1.0 / self.experts.len() as f64);
         for expert in &mut self.experts {
             expert.parameters = [Lanes::ZERO; COLUMNS];
@@ -447,8 +448,8 @@ impl Follower for Learner {
         self.started = false;
         self.origin = Lanes::ZERO;
         self.judged = 0.0;
-        self.stretch = Stretch::default();
-        self.usual = Usual::default();
+        self.stretch = SlipSprings::default();
+        self.usual = UsualSizes::default();
         self.twin = Slip::default();
         self.gives = [0.0; SLIPS];
         self.model = MatchedModel::NONE;

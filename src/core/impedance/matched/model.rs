@@ -4,9 +4,9 @@ use super::{
     super::{
         MAX_DEGREE,
         messages::Posture,
-        packed::{Numbers, Reader, Writer},
+        packed::{PackedNumbers, PackedReader, PackedWriter},
     },
-    form::{COLUMNS, Form},
+    form::{COLUMNS, ModelForm},
     slip::{SLIPS, Slip},
 };
 use crate::signal::Lanes;
@@ -15,7 +15,7 @@ use crate::signal::Lanes;
 /// through the range and the offset (at most a tenth of the maximum force).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MatchedModel {
-    pub form: Form,
+    pub form: ModelForm,
     /// Degree with the largest weight; 0 before anything is known.
     pub degree: u8,
     /// 1 on the axes in use.
@@ -34,7 +34,7 @@ pub struct MatchedModel {
 
 impl MatchedModel {
     pub const NONE: Self = Self {
-        form: Form::Tissue,
+        form: ModelForm::Tissue,
         degree: 0,
         one: Lanes::ZERO,
         parameters: [Lanes::ZERO; COLUMNS],
@@ -59,15 +59,15 @@ impl MatchedModel {
     }
 }
 
-impl Numbers for MatchedModel {
+impl PackedNumbers for MatchedModel {
     const NONE: Self = Self::NONE;
 
-    fn write(&self, row: &mut Writer<'_>) {
+    fn write(&self, row: &mut PackedWriter<'_>) {
         let (form, degree) = match self.form {
-            Form::Tissue => (0, 0),
-            Form::Sliding => (1, 0),
-            Form::Coupled => (2, 0),
-            Form::Paper(degree) => (3, degree),
+            ModelForm::Tissue => (0, 0),
+            ModelForm::Sliding => (1, 0),
+            ModelForm::Coupled => (2, 0),
+            ModelForm::Paper(degree) => (3, degree),
         };
         row.put(f64::from(form));
         row.put(f64::from(degree));
@@ -79,10 +79,10 @@ impl Numbers for MatchedModel {
         row.row(&self.parameters);
     }
 
-    fn read(row: &mut Reader<'_>) -> Option<Self> {
+    fn read(row: &mut PackedReader<'_>) -> Option<Self> {
         let form = row.count(3)?;
         let paper = row.count(MAX_DEGREE)? as u8;
-        let form = [Form::Tissue, Form::Sliding, Form::Coupled, Form::Paper(paper)][form];
+        let form = [ModelForm::Tissue, ModelForm::Sliding, ModelForm::Coupled, ModelForm::Paper(paper)][form];
         let degree = row.count(MAX_DEGREE)? as u8;
         let one = row.lanes()?;
         let origin = row.lanes()?;

@@ -1,8 +1,8 @@
 //! Friction across a contact: the tip drags along the surface under a load that only the other axes measure.
 
 use super::{
-    super::{messages::Posture, pace::share},
-    form::{Row, product},
+    super::{messages::Posture, motion_clock::fraction},
+    form::{FormRow, product},
     model::MatchedModel,
 };
 use crate::signal::{Lanes, settled};
@@ -16,19 +16,19 @@ const GIVES_IN_USUAL_MOTIONS: [f64; SLIPS] = [0.5, 2.0];
 const USUAL_S: f64 = 20.0;
 
 /// Values of the slip columns, one lane per axis.
-pub(super) type Held = [Lanes; SLIPS];
+pub(super) type SlipLanes = [Lanes; SLIPS];
 
 /// Springs (m) that follow the tip and slip at a length in proportion to the force along the other axes: Maxwell slip
 /// under a changing load. Without a load they hold nothing, so they reset when contact ends.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Stretch {
-    held: Held,
+pub(super) struct SlipSprings {
+    held: SlipLanes,
     last: Option<Lanes>,
 }
 
-impl Stretch {
+impl SlipSprings {
     /// Adds a position, the force (N) on all axes, and the lengths per force (m/N) at which the springs slip.
-    pub(super) fn step(&mut self, x: Lanes, force_n: Lanes, gives: &[f64; SLIPS]) -> &Held {
+    pub(super) fn step(&mut self, x: Lanes, force_n: Lanes, gives: &[f64; SLIPS]) -> &SlipLanes {
         let way = self.last.replace(x).map_or(Lanes::ZERO, |last| x - last);
         let load_n = load(force_n);
         for (held, give) in self.held.iter_mut().zip(gives) {
@@ -42,7 +42,7 @@ impl Stretch {
 /// The springs at the leader, and the follower's copy of them: their load is the force computed from the parameters.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Slip {
-    stretch: Stretch,
+    stretch: SlipSprings,
     /// The force of the previous tick (N): the newest force depends on the springs.
     said_n: Lanes,
 }
@@ -50,7 +50,7 @@ pub(super) struct Slip {
 impl Slip {
     /// Advances with the newest received model. Returns the columns of this motion and the force computed with them
     /// (N).
-    pub(super) fn step(&mut self, model: &MatchedModel, now: &Posture) -> (Row, Lanes) {
+    pub(super) fn step(&mut self, model: &MatchedModel, now: &Posture) -> (FormRow, Lanes) {
         let held = self.stretch.step(now.stance.x, self.said_n, &model.gives);
         let row = model.form.row(now, model.one, model.origin, held);
         let said_n = product(&model.parameters, &row, model.form.columns());
@@ -61,20 +61,20 @@ impl Slip {
 
 /// Usual magnitudes of motion (m) and force (N), over all axes, which make the springs independent of units.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Usual {
+pub(super) struct UsualSizes {
     motion2: f64,
     force2: f64,
     passed: f64,
 }
 
-impl Usual {
+impl UsualSizes {
     /// Adds the position above its 20 ms low-pass and the force (N); returns the lengths per force (m/N) at which the
     /// springs slip.
     pub(super) fn step(&mut self, motion: Lanes, force_n: Lanes, pace: f64, rate_hz: f64) -> [f64; SLIPS] {
         self.passed += pace;
-        let share = share(pace, self.passed, USUAL_S * rate_hz);
+        let fraction = fraction(pace, self.passed, USUAL_S * rate_hz);
         for (mean, size) in [(&mut self.motion2, motion.norm()), (&mut self.force2, force_n.norm())] {
-            *mean = settled(*mean + (size * size - *mean) * share);
+            *mean = settled(*mean + (size * size - *mean) * fraction);
         }
         let give = if self.force2 > 0.0 { (self.motion2 / self.force2).sqrt() } else { 0.0 };
         GIVES_IN_USUAL_MOTIONS.map(|times| give * times)
@@ -101,7 +101,7 @@ mod tests {
 
     #[test]
     fn a_spring_holds_slips_under_its_load_turns_round_and_forgets_without_a_load() {
-        let mut stretch = Stretch::default();
+        let mut stretch = SlipSprings::default();
         // Force along x itself does not load x.
         let pressed_n = Lanes([50.0, 0.0, 2.0, 0.0]);
         let mut held_m = |x: f64, force_n: Lanes| stretch.step(at(x), force_n, &GIVES).map(|held| held[0]);
@@ -122,7 +122,7 @@ mod tests {
     #[test]
     fn gives_are_those_of_usual_motion_and_force_whatever_the_units() {
         let gives = |per_m: f64, per_n: f64| {
-            let mut usual = Usual::default();
+            let mut usual = UsualSizes::default();
             let step = |_| usual.step(at(0.002 * per_m), Lanes([0.0, 0.0, 4.0 * per_n, 0.0]), 1.0, 1000.0);
             (0..100).map(step).last().unwrap()
         };

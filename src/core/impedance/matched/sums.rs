@@ -3,10 +3,10 @@
 use super::{
     super::{
         factor::column_start,
-        normal::{Factor, MOST, accumulate},
-        pace::share,
+        motion_clock::fraction,
+        normal::{MAX, NormalFactor, accumulate},
     },
-    form::{COLUMNS, Row},
+    form::{COLUMNS, FormRow},
 };
 use crate::signal::Lanes;
 
@@ -23,19 +23,19 @@ const ELEMENTS: usize = COLUMNS * (COLUMNS + 1) / 2;
 /// Sums of products weighted for the least absolute error. The ridge is in proportion to each column's own mean square, which
 /// bounds the scaled condition to about 1e5: safe in f64, and the same in every unit.
 #[derive(Clone, Debug)]
-pub(super) struct Sums {
+pub(super) struct MatchedSums {
     columns: usize,
     rate_hz: f64,
     memory_s: f64,
     gram: [Lanes; ELEMENTS],
-    right: Row,
-    mean_squares: Row,
+    right: FormRow,
+    mean_squares: FormRow,
     mean_error_n: Lanes,
     seen: f64,
-    factor: Factor,
+    factor: NormalFactor,
 }
 
-impl Sums {
+impl MatchedSums {
     pub(super) fn new(columns: usize, memory_s: f64, rate_hz: f64) -> Self {
         Self {
             columns,
@@ -46,15 +46,15 @@ impl Sums {
             mean_squares: [Lanes::ZERO; COLUMNS],
             mean_error_n: Lanes::ZERO,
             seen: 0.0,
-            factor: Factor::new(),
+            factor: NormalFactor::new(),
         }
     }
 
     /// Adds a force (N) with its columns; `error_n`: its residual with the newest full model; `pace`: of the clock.
-    pub(super) fn learn(&mut self, row: &Row, force_n: Lanes, error_n: Lanes, pace: f64) {
+    pub(super) fn learn(&mut self, row: &FormRow, force_n: Lanes, error_n: Lanes, pace: f64) {
         self.seen += pace;
         let [of_squares, of_errors] =
-            [SQUARES_S, ERROR_S].map(|memory_s| share(pace, self.seen, memory_s * self.rate_hz));
+            [SQUARES_S, ERROR_S].map(|memory_s| fraction(pace, self.seen, memory_s * self.rate_hz));
         for (square, q) in self.mean_squares.iter_mut().zip(row).take(self.columns) {
             *square = (*square + (*q * *q - *square) * of_squares).settled();
         }
@@ -78,7 +78,7 @@ impl Sums {
 
     /// Returns the parameters of the leading columns by the newest factorisation, zero beyond; `None` if one is not
     /// finite.
-    pub(super) fn parameters(&self, columns: usize) -> Option<Row> {
+    pub(super) fn parameters(&self, columns: usize) -> Option<FormRow> {
         let mut found = [Lanes::ZERO; COLUMNS];
         self.factor.solve(&mut found[..columns]);
         found.iter().all(|p| p.is_finite()).then_some(found)
@@ -89,4 +89,4 @@ impl Sums {
     }
 }
 
-const _: () = assert!(COLUMNS <= MOST);
+const _: () = assert!(COLUMNS <= MAX);

@@ -5,28 +5,28 @@ use std::f64::consts::TAU;
 
 use nalgebra::Vector3;
 
-use super::{super::track::Track, *};
+use super::{super::track::MotionTrack, *};
 
-const FORMS: [Form; 4] = [Form::Tissue, Form::Sliding, Form::Coupled, Form::Paper(5)];
-const MATCHED: [Form; 3] = [Form::Tissue, Form::Sliding, Form::Coupled];
+const FORMS: [ModelForm; 4] = [ModelForm::Tissue, ModelForm::Sliding, ModelForm::Coupled, ModelForm::Paper(5)];
+const MATCHED: [ModelForm; 3] = [ModelForm::Tissue, ModelForm::Sliding, ModelForm::Coupled];
 
 /// Both ends, and a link of `delay` ticks between them; the leader's own motion is an argument.
 struct Pair {
-    follower_track: Track,
+    follower_track: MotionTrack,
     follower: Learner,
-    leader_track: Track,
+    leader_track: MotionTrack,
     leader_slip: Slip,
     link: Vec<MatchedModel>,
     delay: usize,
 }
 
 impl Pair {
-    fn new(form: Form, settings: &Settings) -> Self {
+    fn new(form: ModelForm, settings: &ImpedanceSettings) -> Self {
         let delay = settings.delay_ticks(settings.delay_s);
         Self {
-            follower_track: Track::new(settings),
+            follower_track: MotionTrack::new(settings),
             follower: Learner::new(form, settings, delay),
-            leader_track: Track::new(settings),
+            leader_track: MotionTrack::new(settings),
             leader_slip: Slip::default(),
             link: Vec::new(),
             delay,
@@ -58,14 +58,14 @@ impl Pair {
     }
 
     /// Runs both ends at one place.
-    fn step(&mut self, at_m: Vector3<f64>, force_n: Vector3<f64>) -> Option<Vector3<f64>> {
-        self.follower(at_m, Some(force_n));
-        self.leader(at_m)
+    fn step(&mut self, position_m: Vector3<f64>, force_n: Vector3<f64>) -> Option<Vector3<f64>> {
+        self.follower(position_m, Some(force_n));
+        self.leader(position_m)
     }
 }
 
-fn settings(delay_s: f64) -> Settings {
-    Settings { delay_s, ..Settings::default() }
+fn settings(delay_s: f64) -> ImpedanceSettings {
+    ImpedanceSettings { delay_s, ..ImpedanceSettings::default() }
 }
 
 /// Position (m) of a hand that presses, slides and lifts.
@@ -78,9 +78,9 @@ fn hand_m(t_s: f64) -> Vector3<f64> {
 }
 
 /// Contact below the surface z = 0 and a little drag, N.
-fn contact_n(at_m: Vector3<f64>) -> Vector3<f64> {
-    let depth_m = (-at_m.z).max(0.0);
-    Vector3::new(-20.0 * at_m.x, -15.0 * at_m.y, 500.0 * depth_m + 2e4 * depth_m * depth_m)
+fn contact_n(position_m: Vector3<f64>) -> Vector3<f64> {
+    let depth_m = (-position_m.z).max(0.0);
+    Vector3::new(-20.0 * position_m.x, -15.0 * position_m.y, 500.0 * depth_m + 2e4 * depth_m * depth_m)
 }
 
 #[test]
@@ -90,19 +90,22 @@ fn the_force_is_made_of_what_was_known_one_delay_ago_and_of_the_own_motion() {
         let changed = 1500_u32;
         let horizon = 100;
         for k in 0..changed + horizon {
-            let at_m = hand_m(f64::from(k) * 1e-3);
+            let position_m = hand_m(f64::from(k) * 1e-3);
             let noise = Vector3::new(7.0, -3.0, 11.0) * f64::from((k * 7919) % 101);
-            clean.follower(at_m, Some(contact_n(at_m)));
+            clean.follower(position_m, Some(contact_n(position_m)));
             // From here on the follower measures and does something else entirely; the leader's hand does not.
-            let (tip_m, force_n) =
-                if k < changed { (at_m, contact_n(at_m)) } else { (at_m + 0.01 * noise, contact_n(at_m) + noise) };
+            let (tip_m, force_n) = if k < changed {
+                (position_m, contact_n(position_m))
+            } else {
+                (position_m + 0.01 * noise, contact_n(position_m) + noise)
+            };
             corrupt.follower(tip_m, Some(force_n));
-            assert_eq!(clean.leader(at_m), corrupt.leader(at_m), "{form:?}, tick {k}");
+            assert_eq!(clean.leader(position_m), corrupt.leader(position_m), "{form:?}, tick {k}");
         }
-        let at_m = hand_m(f64::from(changed + horizon) * 1e-3);
+        let position_m = hand_m(f64::from(changed + horizon) * 1e-3);
         let [clean, corrupt] = [&mut clean, &mut corrupt].map(|pair| {
-            pair.follower(at_m, Some(contact_n(at_m)));
-            pair.leader(at_m)
+            pair.follower(position_m, Some(contact_n(position_m)));
+            pair.leader(position_m)
         });
         assert_ne!(clean, corrupt, "{form:?}: the corrupt samples arrive in the end");
     }
@@ -115,22 +118,22 @@ fn a_hand_that_leaves_when_the_link_fails_leaves_the_force_behind() {
             let mut pair = Pair::new(form, &settings(delay_s));
             // Palpation of a spring, at its deepest when the last packet is sent.
             let pressed = |k: i32| Vector3::new(0.0, 0.0, -0.0025 * (1.0 - (TAU * 1e-3 * f64::from(k)).cos()));
-            let spring_n = |at_m: Vector3<f64>| Vector3::new(0.0, 0.0, (-600.0 * at_m.z).max(0.0));
+            let spring_n = |position_m: Vector3<f64>| Vector3::new(0.0, 0.0, (-600.0 * position_m.z).max(0.0));
             for k in 0..5500 {
                 pair.step(pressed(k), spring_n(pressed(k)));
             }
             let last = pair.link[pair.link.len() - 1 - pair.delay];
-            let mut at_m = pressed(5500);
-            let before_n = pair.leader_with(&last, at_m).unwrap().norm();
+            let mut position_m = pressed(5500);
+            let before_n = pair.leader_with(&last, position_m).unwrap().norm();
             for _ in 0..pair.delay {
-                at_m.z += speed_m_s * 1e-3;
-                assert!(pair.leader_with(&last, at_m).is_some());
-                if at_m.z > 0.03 {
+                position_m.z += speed_m_s * 1e-3;
+                assert!(pair.leader_with(&last, position_m).is_some());
+                if position_m.z > 0.03 {
                     break;
                 }
             }
-            let left_n = pair.leader_with(&last, at_m).unwrap().norm();
-            let gone = -at_m.z <= 0.0;
+            let left_n = pair.leader_with(&last, position_m).unwrap().norm();
+            let gone = -position_m.z <= 0.0;
             assert!(before_n > 2.0, "{before_n} N");
             assert!(
                 !gone || left_n <= 0.15 * before_n,
@@ -145,25 +148,25 @@ fn nothing_is_forgotten_while_the_hand_stands_still() {
     const STIFFNESS_N_M: f64 = 600.0;
     for form in MATCHED {
         let mut pair = Pair::new(form, &settings(0.05));
-        let spring_n = |at_m: Vector3<f64>| at_m * -STIFFNESS_N_M;
-        let mut at_m = Vector3::zeros();
+        let spring_n = |position_m: Vector3<f64>| position_m * -STIFFNESS_N_M;
+        let mut position_m = Vector3::zeros();
         for k in 0..4000 {
-            at_m = hand_m(f64::from(k) * 1e-3);
-            pair.step(at_m, spring_n(at_m));
+            position_m = hand_m(f64::from(k) * 1e-3);
+            pair.step(position_m, spring_n(position_m));
         }
         for _ in 0..60_000 {
-            pair.step(at_m, spring_n(at_m));
+            pair.step(position_m, spring_n(position_m));
             pair.link.drain(..pair.link.len().saturating_sub(200));
         }
         // Only the leader moves on: it feels the stiffness that was learned a minute ago.
         let model = *pair.link.last().unwrap();
-        let mut force_n = |at_m: Vector3<f64>| pair.leader_with(&model, at_m).unwrap();
-        let rest_n = force_n(at_m);
+        let mut force_n = |position_m: Vector3<f64>| pair.leader_with(&model, position_m).unwrap();
+        let rest_n = force_n(position_m);
         for _ in 0..2000 {
-            force_n(at_m - at_m * 0.2);
+            force_n(position_m - position_m * 0.2);
         }
-        let change_n = force_n(at_m - at_m * 0.2) - rest_n;
-        let expected_n = at_m * (0.2 * STIFFNESS_N_M);
+        let change_n = force_n(position_m - position_m * 0.2) - rest_n;
+        let expected_n = position_m * (0.2 * STIFFNESS_N_M);
         assert!((change_n - expected_n).norm() < 0.1 * expected_n.norm(), "{form:?}: {change_n} for {expected_n}");
     }
 }
@@ -183,9 +186,11 @@ fn metres_and_newtons_give_the_same_force_as_millimetres_and_millinewtons() {
         let mut a = Pair::new(form, &metres);
         let mut b = Pair::new(form, &millimetres);
         for k in 0..4000 {
-            let at_m = hand_m(f64::from(k) * 1e-3);
-            let force_n = contact_n(at_m);
-            if let (Some(a), Some(b)) = (a.step(at_m, force_n), b.step(at_m * 1e3, force_n * 1e3).map(|f| f * 1e-3)) {
+            let position_m = hand_m(f64::from(k) * 1e-3);
+            let force_n = contact_n(position_m);
+            if let (Some(a), Some(b)) =
+                (a.step(position_m, force_n), b.step(position_m * 1e3, force_n * 1e3).map(|f| f * 1e-3))
+            {
                 assert!((a - b).norm() <= 1e-9 * (1.0 + a.norm()), "{form:?}, tick {k}: {a} {b}");
             }
         }
@@ -199,10 +204,10 @@ fn whatever_comes_in_the_force_is_finite_and_within_the_range_seen() {
         let mut pair = Pair::new(form, &settings(0.05));
         for k in 0..40_000_u32 {
             let mut any = |exponent: f64| (random.f64() - 0.5) * 10.0_f64.powf(exponent * (random.f64() - 0.5));
-            let (at_m, force_n) = match (k / 1000) % 8 {
+            let (position_m, force_n) = match (k / 1000) % 8 {
                 0 | 4 => {
-                    let at_m = hand_m(f64::from(k) * 1e-3);
-                    (at_m, Some(contact_n(at_m)))
+                    let position_m = hand_m(f64::from(k) * 1e-3);
+                    (position_m, Some(contact_n(position_m)))
                 }
                 1 => (Vector3::zeros(), Some(Vector3::zeros())),
                 2 => (Vector3::new(0.01, 0.0, -0.02), Some(Vector3::new(1.0, 0.0, 3.0))),
@@ -211,9 +216,9 @@ fn whatever_comes_in_the_force_is_finite_and_within_the_range_seen() {
                 6 => (Vector3::from_fn(|_, _| any(40.0) * 1e-30), Some(Vector3::from_fn(|_, _| any(40.0) * 1e-30))),
                 _ => (Vector3::from_fn(|_, _| any(1.0) * 1e3), Some(Vector3::from_fn(|_, _| any(1.0) * 4e4))),
             };
-            let model = pair.follower(at_m, force_n);
+            let model = pair.follower(position_m, force_n);
             assert!(model.parameters.iter().all(|p| p.is_finite()), "{form:?}, tick {k}");
-            if let Some(force_n) = pair.leader(at_m) {
+            if let Some(force_n) = pair.leader(position_m) {
                 assert!(force_n.iter().all(|f| f.abs() <= 1e5), "{form:?}, tick {k}: {force_n}");
             } else {
                 assert!(k < 50, "{form:?}, tick {k}: no force");
@@ -227,13 +232,13 @@ fn whatever_comes_in_the_force_is_finite_and_within_the_range_seen() {
 fn a_long_run_leaves_it_as_it_was() {
     // A whole number of periods of the motion, and of renewals of the fit.
     const PERIOD: u32 = 70_000;
-    let mut pair = Pair::new(Form::Tissue, &settings(0.02));
+    let mut pair = Pair::new(ModelForm::Tissue, &settings(0.02));
     let mut error_n = [0.0, 0.0];
     for k in 0..6 * PERIOD {
-        let at_m = hand_m(f64::from(k % PERIOD) * 1e-3);
-        let rendered_n = pair.step(at_m, contact_n(at_m));
+        let position_m = hand_m(f64::from(k % PERIOD) * 1e-3);
+        let rendered_n = pair.step(position_m, contact_n(position_m));
         pair.link.drain(..pair.link.len().saturating_sub(30));
-        let error = |sum: &mut f64| *sum += rendered_n.map_or(0.0, |f| (f - contact_n(at_m)).norm());
+        let error = |sum: &mut f64| *sum += rendered_n.map_or(0.0, |f| (f - contact_n(position_m)).norm());
         match k / PERIOD {
             1 => error(&mut error_n[0]),
             5 => error(&mut error_n[1]),
@@ -250,10 +255,10 @@ struct Rubbing {
 }
 
 impl Rubbing {
-    fn step(&mut self, at_m: Vector3<f64>) -> Vector3<f64> {
-        let load_n = 800.0 * (-at_m.z).max(0.0);
-        let way_m = std::mem::replace(&mut self.last_m, at_m);
-        let stretched_m = self.held_m + Vector3::new(at_m.x - way_m.x, at_m.y - way_m.y, 0.0);
+    fn step(&mut self, position_m: Vector3<f64>) -> Vector3<f64> {
+        let load_n = 800.0 * (-position_m.z).max(0.0);
+        let travel_m = std::mem::replace(&mut self.last_m, position_m);
+        let stretched_m = self.held_m + Vector3::new(position_m.x - travel_m.x, position_m.y - travel_m.y, 0.0);
         self.held_m = stretched_m.cap_magnitude(0.3 * load_n / 400.0);
         Vector3::new(0.0, 0.0, load_n) - self.held_m * 400.0
     }
@@ -261,18 +266,18 @@ impl Rubbing {
 
 #[test]
 fn friction_is_known_from_the_force_along_the_other_axes() {
-    let error_n = |form: Form| {
+    let error_n = |form: ModelForm| {
         let mut pair = Pair::new(form, &settings(0.1));
         let mut rubbing = Rubbing { held_m: Vector3::zeros(), last_m: Vector3::zeros() };
         let mut sum_n = 0.0;
         for k in 0..12_000 {
-            let at_m = hand_m(f64::from(k) * 1e-3);
-            let force_n = rubbing.step(at_m);
-            let rendered_n = pair.step(at_m, force_n).unwrap_or_default();
+            let position_m = hand_m(f64::from(k) * 1e-3);
+            let force_n = rubbing.step(position_m);
+            let rendered_n = pair.step(position_m, force_n).unwrap_or_default();
             sum_n += if k < 4000 { 0.0 } else { (rendered_n - force_n).xy().norm() };
         }
         sum_n / 8000.0
     };
-    let [blind_n, sliding_n] = [Form::Tissue, Form::Sliding].map(error_n);
+    let [blind_n, sliding_n] = [ModelForm::Tissue, ModelForm::Sliding].map(error_n);
     assert!(sliding_n < 0.4 * blind_n, "{sliding_n} N with slip columns, {blind_n} N without");
 }

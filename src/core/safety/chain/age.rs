@@ -4,12 +4,12 @@ use super::Reason;
 
 /// Fades a force between two ages of its data, beyond the link's own delay.
 #[derive(Clone, Copy, Debug)]
-pub struct Age {
+pub struct AgeGate {
     fade_after_s: f64,
     zero_after_s: f64,
 }
 
-impl Age {
+impl AgeGate {
     /// Full force until `fade_after_s`, none from `zero_after_s` on (s, the second above the first).
     pub const fn new(fade_after_s: f64, zero_after_s: f64) -> Self {
         Self { fade_after_s, zero_after_s }
@@ -17,7 +17,7 @@ impl Age {
 
     /// Returns the fraction of the force that passes at this age (s), 0 to 1, and why it is reduced. A non-finite age
     /// passes nothing.
-    pub fn share(&self, age_s: f64) -> (f64, Reason) {
+    pub fn fraction(&self, age_s: f64) -> (f64, Reason) {
         if !age_s.is_finite() || age_s >= self.zero_after_s {
             return (0.0, Reason::TooOld);
         }
@@ -37,19 +37,19 @@ mod tests {
     proptest! {
         #[test]
         fn older_never_passes_more(age_s in prop::num::f64::ANY, more_s in 0.0..1.0f64) {
-            let age = Age::new(0.005, 0.020);
-            let (share, reason) = age.share(age_s);
-            let (later, _) = age.share(age_s + more_s);
-            prop_assert!((0.0..=1.0).contains(&share) && later <= share);
-            prop_assert_eq!(reason == Reason::Open, share >= 1.0);
-            prop_assert!(age_s < 0.020 || share == 0.0);
+            let age = AgeGate::new(0.005, 0.020);
+            let (fraction, reason) = age.fraction(age_s);
+            let (later, _) = age.fraction(age_s + more_s);
+            prop_assert!((0.0..=1.0).contains(&fraction) && later <= fraction);
+            prop_assert_eq!(reason == Reason::Open, fraction >= 1.0);
+            prop_assert!(age_s < 0.020 || fraction == 0.0);
         }
     }
 
     #[test]
     fn an_age_that_is_no_number_passes_nothing() {
         for age_s in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
-            assert_eq!(Age::new(0.005, 0.020).share(age_s), (0.0, Reason::TooOld));
+            assert_eq!(AgeGate::new(0.005, 0.020).fraction(age_s), (0.0, Reason::TooOld));
         }
     }
 }

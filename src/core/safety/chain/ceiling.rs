@@ -26,19 +26,19 @@ impl Ceiling {
         Self { ceiling_n, device_limit_n }
     }
 
-    pub const fn most_n(&self) -> f64 {
+    pub const fn max_n(&self) -> f64 {
         self.ceiling_n.min(self.device_limit_n)
     }
 
     /// Returns `force_n` (N), shortened to the limit along its own direction, and why.
     pub fn under<const D: usize>(&self, force_n: SVector<f64, D>) -> (SVector<f64, D>, Reason) {
         let norm = force_n.norm();
-        let most_n = self.most_n();
-        if norm <= most_n {
+        let max_n = self.max_n();
+        if norm <= max_n {
             return (force_n, Reason::Open);
         }
         let reason = if self.device_limit_n < self.ceiling_n { Reason::AboveDeviceLimit } else { Reason::AboveCeiling };
-        (force_n * (most_n / norm), reason)
+        (force_n * (max_n / norm), reason)
     }
 }
 

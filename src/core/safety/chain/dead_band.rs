@@ -65,8 +65,8 @@ mod tests {
         ) {
             let mut gate = DeadBand::new(1e-3);
             for speed_m_s in before {
-                let share = gate.step(speed_m_s, 1e-3);
-                prop_assert!((0.0..=1.0).contains(&share) && (speed_m_s.is_finite() || share == 0.0));
+                let fraction = gate.step(speed_m_s, 1e-3);
+                prop_assert!((0.0..=1.0).contains(&fraction) && (speed_m_s.is_finite() || fraction == 0.0));
             }
             prop_assert!(settled(&mut gate, slow) == 0.0);
             prop_assert!(gate.step(fast, 1e-3) >= 1.0, "it opens at once");
@@ -99,9 +99,9 @@ mod tests {
         let mut last = 0.0;
         for i in 0..20_000 {
             // Up and down through both edges, in steps of at most 0.3 um/s.
-            let share = gate.step(1.5e-3 * (1.0 - (f64::from(i) * 2e-4).cos()), 1e-3);
-            assert!((share - last).abs() < 1e-3, "from {last} to {share}");
-            last = share;
+            let fraction = gate.step(1.5e-3 * (1.0 - (f64::from(i) * 2e-4).cos()), 1e-3);
+            assert!((fraction - last).abs() < 1e-3, "from {last} to {fraction}");
+            last = fraction;
         }
     }
 

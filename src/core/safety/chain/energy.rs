@@ -8,7 +8,7 @@
 //! because a gate only removes force; the error of a predicted motion stays in the store as a debt.
 //!
 //! Two deliberate leaks, both towards the allowance: energy put in long ago cannot return as a kick, and a sensor's
-//! noise cannot close the gate for ever. The hand therefore gets at most [`MOST_J`] at once, and
+//! noise cannot close the gate for ever. The hand therefore gets at most [`MAX_J`] at once, and
 //! [`ALLOWANCE_J`]/[`LEAK_S`] (W) continuously. The travel must be the handle's own, unscaled, without the clutch's
 //! jumps; a travel faster than any hand counts as zero.
 
@@ -21,7 +21,7 @@ use super::{EnergyMode, Reason};
 /// (`docs/results/release.md`).
 pub const ALLOWANCE_J: f64 = 0.030;
 /// Maximum energy stored for the hand to get back, J.
-pub const MOST_J: f64 = 0.200;
+pub const MAX_J: f64 = 0.200;
 /// Time constant with which store and debt return to the allowance, s: without it, errors of integration would add up
 /// over a session.
 pub const LEAK_S: f64 = 2.0;
@@ -49,32 +49,32 @@ impl<const D: usize> Energy<D> {
     /// Accounts for the last `dt_s` (s): the hand is now at `hand_m` (m), and `held_n` (N) was held since the last
     /// call.
     pub fn observe(&mut self, hand_m: Option<SVector<f64, D>>, held_n: &SVector<f64, D>, dt_s: f64) {
-        let hand_m = hand_m.filter(|at_m| at_m.iter().all(|x| x.is_finite()));
-        let way_m = match (hand_m, self.hand_m) {
+        let hand_m = hand_m.filter(|position_m| position_m.iter().all(|x| x.is_finite()));
+        let travel_m = match (hand_m, self.hand_m) {
             (Some(now_m), Some(then_m)) => now_m - then_m,
             _ => SVector::zeros(),
         };
         self.hand_m = hand_m;
         // The comparison is also false for the infinite difference of two finite positions.
-        let way_m = if way_m.norm() <= JUMP_M_S * dt_s { way_m } else { SVector::zeros() };
+        let travel_m = if travel_m.norm() <= JUMP_M_S * dt_s { travel_m } else { SVector::zeros() };
         // The quotient of travel and time, low-passed, in an order that needs no division by a time of zero.
-        self.hand_m_s += (way_m - self.hand_m_s * dt_s) / (SMOOTHING_S + dt_s);
+        self.hand_m_s += (travel_m - self.hand_m_s * dt_s) / (SMOOTHING_S + dt_s);
         let leak = (dt_s / LEAK_S).min(1.0);
-        self.stored_j += (ALLOWANCE_J - self.stored_j) * leak - held_n.dot(&way_m);
-        self.stored_j = self.stored_j.clamp(-MOST_J, MOST_J);
+        self.stored_j += (ALLOWANCE_J - self.stored_j) * leak - held_n.dot(&travel_m);
+        self.stored_j = self.stored_j.clamp(-MAX_J, MAX_J);
     }
 
     /// Returns the part of `force_n` (N) that may pass now, and why it is reduced.
     pub fn controlled(&self, force_n: SVector<f64, D>) -> (SVector<f64, D>, Reason) {
-        let share = (self.stored_j / SOFT_J).clamp(0.0, 1.0);
+        let fraction = (self.stored_j / SOFT_J).clamp(0.0, 1.0);
         let speed_m_s = self.hand_m_s.norm();
         let giving_w = force_n.dot(&self.hand_m_s);
-        if self.mode != EnergyMode::Control || share >= 1.0 || giving_w <= 0.0 || speed_m_s < 1e-6 {
+        if self.mode != EnergyMode::Control || fraction >= 1.0 || giving_w <= 0.0 || speed_m_s < 1e-6 {
             return (force_n, Reason::Open);
         }
         // (f . v) v / |v|^2, in an order that cannot divide by the square of a tiny number.
         let direction = self.hand_m_s / speed_m_s;
-        (force_n - direction * ((1.0 - share) * force_n.dot(&direction)), Reason::EnergySpent)
+        (force_n - direction * ((1.0 - fraction) * force_n.dot(&direction)), Reason::EnergySpent)
     }
 
     /// Returns the energy that the hand may still get, J; negative if it got too much. 0 while the gate is off.
@@ -159,17 +159,17 @@ mod tests {
             ),
         ) {
             let mut gate = Energy::<3>::new(EnergyMode::Control);
-            let mut at_m = Vector3::zeros();
+            let mut position_m = Vector3::zeros();
             let mut held_n = Vector3::zeros();
             for (force, way, late_s) in ticks {
                 let force = Vector3::from(force);
-                let now_m = at_m + Vector3::from(way);
+                let now_m = position_m + Vector3::from(way);
                 gate.observe(Some(now_m), &held_n, 1e-3 + late_s);
-                at_m = if now_m.iter().all(|x| x.abs() < 1.0) { now_m } else { Vector3::zeros() };
+                position_m = if now_m.iter().all(|x| x.abs() < 1.0) { now_m } else { Vector3::zeros() };
                 let (passed, reason) = gate.controlled(force);
                 prop_assert!(passed.iter().all(|f| f.is_finite()) && passed.norm() <= force.norm() * (1.0 + 1e-12));
                 prop_assert!(passed.dot(&force) >= -1e-9);
-                prop_assert!(gate.stored_j().abs() <= MOST_J);
+                prop_assert!(gate.stored_j().abs() <= MAX_J);
                 prop_assert_eq!(reason == Reason::Open, passed == force);
                 held_n = passed;
             }

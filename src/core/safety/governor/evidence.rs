@@ -8,7 +8,7 @@ use nalgebra::SVector;
 
 use super::{
     fit::Parabola,
-    observer::{Past, Range},
+    observer::{ForceRange, ObserverHistory},
 };
 
 /// Largest acceleration of a hand, m/s^2: a minimum-jerk motion of 35 mm in 0.2 s has 5.05 (5.77 d / T^2, Flash and Hogan 1985),
@@ -56,7 +56,7 @@ const REST_M_S: f64 = 0.02;
 
 /// Answer to the question.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Alone {
+pub(super) enum EvidenceAnswer {
     /// A hand explains the motion.
     #[default]
     No,
@@ -71,12 +71,12 @@ pub(super) enum Alone {
 /// Memory of the travel.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Evidence<const D: usize> {
-    run: Option<Run<D>>,
+    run: Option<ForceRun<D>>,
 }
 
 /// A motion that the force alone explains.
 #[derive(Clone, Copy, Debug)]
-struct Run<const D: usize> {
+struct ForceRun<const D: usize> {
     /// Where it began, m.
     from_m: SVector<f64, D>,
     /// It began at rest, as a hand's motion never does: that needs a hand to begin.
@@ -85,7 +85,7 @@ struct Run<const D: usize> {
 
 /// Along and beside the applied force.
 #[expect(clippy::struct_field_names, reason = "the unit")]
-struct Parts {
+struct MotionParts {
     /// Size of the applied force, N.
     size_n: f64,
     /// Part of it that the hand carries, N.
@@ -94,7 +94,7 @@ struct Parts {
     aside_n: f64,
 }
 
-impl Parts {
+impl MotionParts {
     fn of<const D: usize>(hand_n: &SVector<f64, D>, applied_n: &SVector<f64, D>) -> Self {
         let size_n = applied_n.norm();
         let along = applied_n / size_n;
@@ -115,35 +115,35 @@ impl Parts {
 }
 
 impl<const D: usize> Evidence<D> {
-    pub(super) fn look(&mut self, past: &Past<D>) -> Alone {
+    pub(super) fn look(&mut self, past: &ObserverHistory<D>) -> EvidenceAnswer {
         let pushed = self.pushes(past);
-        if pushed == Alone::Certain { pushed } else { pushed.max(steps(past)) }
+        if pushed == EvidenceAnswer::Certain { pushed } else { pushed.max(steps(past)) }
     }
 
-    fn pushes(&mut self, past: &Past<D>) -> Alone {
+    fn pushes(&mut self, past: &ObserverHistory<D>) -> EvidenceAnswer {
         for now in PUSHES_S.iter().map_while(|span_s| past.parabola(*span_s)) {
             let size_n = now.applied_n.norm();
             if !moves_along(&now) || now.scatter_n > SCATTER * size_n {
                 continue;
             }
             let range = past.range(now.span_s + ANSWER_S, &(now.applied_n / size_n));
-            let parts = Parts::of(&now.hand_n, &now.applied_n);
+            let parts = MotionParts::of(&now.hand_n, &now.applied_n);
             let lost = parts.carried_n < LOST * size_n + now.error_n
                 && parts.aside_n < MASS_OFF * size_n + COULOMB_N + now.error_n;
             let pushed_n = parts.pushed_n(now.error_n) - range.change_n();
             if lost && range.min_along_n > 0.0 && pushed_n > past.handle.mass_kg * HAND_M_S2 {
-                return Alone::Certain;
+                return EvidenceAnswer::Certain;
             }
         }
         self.travels(past)
     }
 
-    fn travels(&mut self, past: &Past<D>) -> Alone {
+    fn travels(&mut self, past: &ObserverHistory<D>) -> EvidenceAnswer {
         let known = |now: &Parabola<D>| now.scatter_n <= SCATTER * now.applied_n.norm();
         let fit = TRAVELS_S.iter().map_while(|span_s| past.parabola(*span_s)).find(known);
         if let Some(now) = fit.filter(moves_along) {
             let size_n = now.applied_n.norm();
-            let parts = Parts::of(&now.hand_n, &now.applied_n);
+            let parts = MotionParts::of(&now.hand_n, &now.applied_n);
             let steady_n = past.range(now.span_s, &(now.applied_n / size_n)).min_along_n;
             if parts.is_free(now.error_n) && steady_n > 0.5 * size_n {
                 let rare = parts.pushed_n(now.error_n) > past.handle.mass_kg * RARE_M_S2;
@@ -151,21 +151,21 @@ impl<const D: usize> Evidence<D> {
             }
         }
         self.run = None;
-        Alone::No
+        EvidenceAnswer::No
     }
 
-    fn travel(&mut self, past: &Past<D>, size_n: f64, speed_m_s: f64, rare: bool) -> Alone {
-        let begins = Run { from_m: past.at_m, from_rest: speed_m_s < REST_M_S };
+    fn travel(&mut self, past: &ObserverHistory<D>, size_n: f64, speed_m_s: f64, rare: bool) -> EvidenceAnswer {
+        let begins = ForceRun { from_m: past.position_m, from_rest: speed_m_s < REST_M_S };
         let run = self.run.get_or_insert(begins);
-        let travel_m = (past.at_m - run.from_m).norm();
+        let travel_m = (past.position_m - run.from_m).norm();
         let driven = run.from_rest && travel_m > FROM_REST_M && size_n > FROM_REST_N;
         let far = travel_m > TRAVEL_M && size_n > TRAVEL_N;
         if far {
-            Alone::Certain
+            EvidenceAnswer::Certain
         } else if driven || (rare && travel_m > PUSHED_M) {
-            Alone::Pushed
+            EvidenceAnswer::Pushed
         } else {
-            Alone::No
+            EvidenceAnswer::No
         }
     }
 }
@@ -177,8 +177,8 @@ fn moves_along<const D: usize>(now: &Parabola<D>) -> bool {
 }
 
 /// Whether the hand's force has vanished in a step.
-fn steps<const D: usize>(past: &Past<D>) -> Alone {
-    let mut alone = Alone::No;
+fn steps<const D: usize>(past: &ObserverHistory<D>) -> EvidenceAnswer {
+    let mut alone = EvidenceAnswer::No;
     for [before_s, after_s] in STEPS_S {
         let Some(kink) = past.kink(before_s, after_s) else { break };
         let size_n = kink.applied_after_n.norm();
@@ -188,8 +188,8 @@ fn steps<const D: usize>(past: &Past<D>) -> Alone {
             continue;
         }
         let along = kink.applied_after_n / size_n;
-        let range: Range = past.range(kink.span_s, &along);
-        let parts = Parts::of(&kink.after_n, &kink.applied_after_n);
+        let range: ForceRange = past.range(kink.span_s, &along);
+        let parts = MotionParts::of(&kink.after_n, &kink.applied_after_n);
         let was_carried = -kink.before_n.dot(&along) > CARRIED * kink.applied_before_n.dot(&along);
         let known = kink.scatter_n <= SCATTER * size_n;
         if !known || range.min_along_n < 0.5 * size_n || !parts.is_free(kink.after_error_n) || !was_carried {
@@ -199,10 +199,10 @@ fn steps<const D: usize>(past: &Past<D>) -> Alone {
         let step_n = (kink.after_n - kink.before_n).dot(&along) - kink.step_error_n - MASS_OFF * range.change_n();
         let ramp_n = past.handle.mass_kg * HAND_M_S3 * 0.5 * kink.span_s;
         if step_n > ramp_n {
-            return Alone::Certain;
+            return EvidenceAnswer::Certain;
         }
         if step_n > RARE_STEP * ramp_n {
-            alone = Alone::Dropped;
+            alone = EvidenceAnswer::Dropped;
         }
     }
     alone

@@ -1,4 +1,4 @@
-//! The hand's force as the second derivative of [`Past::y`]: one parabola, or a parabola whose curvature steps once.
+//! The hand's force as the second derivative of [`ObserverHistory::y`]: one parabola, or a parabola whose curvature steps once.
 //!
 //! Each force comes with a bound on its error: the largest that readings in steps can cause (half a step each, all of the worst
 //! sign), three deviations of the residuals, or what the inexact times of the readings cause at the present speed, whichever is
@@ -7,7 +7,7 @@
 
 use nalgebra::{Matrix4, SMatrix, SVector, Vector4};
 
-use super::observer::Past;
+use super::observer::ObserverHistory;
 
 /// Fewest samples on each side of a fit's parameters.
 const MIN_SAMPLES: usize = 5;
@@ -71,7 +71,7 @@ impl Error {
     }
 }
 
-impl<const D: usize> Past<D> {
+impl<const D: usize> ObserverHistory<D> {
     /// The sample that ends a window of `span_s` (s) and of at least [`MIN_SAMPLES`] that begins at `from`.
     fn window(&self, from: usize, span_s: f64) -> Option<usize> {
         let at_least = from + MIN_SAMPLES - 1;

@@ -1,7 +1,7 @@
 //! Last gate: a handle that nobody holds is braked instead of pushed.
 //!
 //! In: the time of the tick (s), the handle's reading (m) and its time, and the force that all other gates let pass (`F_d`, N). Out:
-//! the force for the hand (N), the fraction withheld and why. The governor knows the handle alone: [`Handle`].
+//! the force for the hand (N), the fraction withheld and why. The governor knows the handle alone: [`FreeHandle`].
 //!
 //! The force of the hand on the handle follows from the readings and the applied force at true times ([`observer`], [`fit`]).
 //! [`evidence`] compares it with what a hand can do. Four states follow from that:
@@ -29,12 +29,12 @@ mod observer;
 
 use nalgebra::SVector;
 
-pub use observer::Handle;
+pub use observer::FreeHandle;
 
 use self::{
-    evidence::{Alone, COULOMB_N, Evidence, MASS_OFF, OUT_M_S},
+    evidence::{COULOMB_N, Evidence, EvidenceAnswer, MASS_OFF, OUT_M_S},
     fit::Parabola,
-    observer::{Observer, Past},
+    observer::{Observer, ObserverHistory},
 };
 use super::{PLAUSIBLE_N, Reason};
 
@@ -66,16 +66,16 @@ const FAR_M: f64 = 1e3;
 
 /// Reading of the handle.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Reading<const D: usize> {
+pub struct GovernorReading<const D: usize> {
     /// When it was taken, s, on the clock of the ticks.
     pub t_s: f64,
     /// Position, m.
-    pub at_m: SVector<f64, D>,
+    pub position_m: SVector<f64, D>,
 }
 
 /// What left the governor.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Governed<const D: usize> {
+pub struct GovernorOutput<const D: usize> {
     /// Force for the hand, N.
     pub force_n: SVector<f64, D>,
     /// Fraction of the asked force that was withheld, 0 to 1.
@@ -85,7 +85,7 @@ pub struct Governed<const D: usize> {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Grip<const D: usize> {
+enum GripState<const D: usize> {
     Held,
     Doubtful {
         since: Since,
@@ -114,28 +114,28 @@ struct Since {
 ///
 /// ```
 /// use nalgebra::Vector1;
-/// use nima_core::safety::{Governor, Handle, Reading, Reason};
+/// use nima_core::safety::{Governor, FreeHandle, GovernorReading, Reason};
 ///
-/// let handle = Handle { mass_kg: 0.25, damping_n_s_m: 0.5, brake_n_s_m: 30.0, step_m: 1e-5 };
+/// let handle = FreeHandle { mass_kg: 0.25, damping_n_s_m: 0.5, brake_n_s_m: 30.0, step_m: 1e-5 };
 /// let mut governor = Governor::<1>::new(handle, 500.0, 1e-3);
 /// let asked_n = Vector1::new(3.0);
-/// let (mut at_m, mut speed_m_s, mut held_n) = (0.0, 0.0, 0.0);
+/// let (mut position_m, mut speed_m_s, mut held_n) = (0.0, 0.0, 0.0);
 /// for tick in 0..300 {
 ///     let t_s = f64::from(tick) * 1e-3;
 ///     // A hand of 900 N/m carries the force; after 200 ms it lets go.
-///     let hand_n = if tick < 200 { -3.0 - 900.0 * at_m - 20.0 * speed_m_s } else { 0.0 };
+///     let hand_n = if tick < 200 { -3.0 - 900.0 * position_m - 20.0 * speed_m_s } else { 0.0 };
 ///     speed_m_s += (held_n + hand_n - 0.5 * speed_m_s) / 0.25 * 1e-3;
-///     at_m += speed_m_s * 1e-3;
-///     let reading = Reading { t_s, at_m: Vector1::new(at_m) };
+///     position_m += speed_m_s * 1e-3;
+///     let reading = GovernorReading { t_s, position_m: Vector1::new(position_m) };
 ///     let governed = governor.step(t_s, Some(reading), asked_n);
 ///     held_n = governed.force_n.x;
 ///     assert!(tick >= 200 || governed.reason == Reason::Open, "a hand that carries it gets all of it");
 /// }
-/// assert!(held_n.abs() < 0.1 && at_m < 2e-3, "the handle was caught after {at_m} m");
+/// assert!(held_n.abs() < 0.1 && position_m < 2e-3, "the handle was caught after {position_m} m");
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Governor<const D: usize> {
-    handle: Handle,
+    handle: FreeHandle,
     brake_n_s_m: f64,
     slew_n_per_s: f64,
     period_s: f64,
@@ -143,7 +143,7 @@ pub struct Governor<const D: usize> {
     last_s: Option<f64>,
     observer: Observer<D>,
     evidence: Evidence<D>,
-    grip: Grip<D>,
+    grip: GripState<D>,
     rest_m: SVector<f64, D>,
     withheld: f64,
     applied_n: SVector<f64, D>,
@@ -152,7 +152,7 @@ pub struct Governor<const D: usize> {
 impl<const D: usize> Governor<D> {
     /// For this handle (of unknown mass: everything passes), a force that changes by at most `slew_n_per_s` (N/s), and a loop of
     /// this nominal period (s).
-    pub fn new(handle: Handle, slew_n_per_s: f64, period_s: f64) -> Self {
+    pub fn new(handle: FreeHandle, slew_n_per_s: f64, period_s: f64) -> Self {
         Self {
             handle,
             brake_n_s_m: handle.brake_n_s_m.min(BRAKE_OF_MASS * handle.mass_kg / period_s),
@@ -162,7 +162,7 @@ impl<const D: usize> Governor<D> {
             last_s: None,
             observer: Observer::new(handle),
             evidence: Evidence::default(),
-            grip: Grip::Held,
+            grip: GripState::Held,
             rest_m: SVector::zeros(),
             withheld: 0.0,
             applied_n: SVector::zeros(),
@@ -170,21 +170,21 @@ impl<const D: usize> Governor<D> {
     }
 
     /// The handle that it watches.
-    pub const fn handle(&self) -> &Handle {
+    pub const fn handle(&self) -> &FreeHandle {
         &self.handle
     }
 
     /// Watches the handle, or lets every force pass. What is withheld returns as to a hand.
     pub fn watch(&mut self, on: bool) {
         self.watching = on && self.handle.mass_kg > 0.0;
-        self.grip = Grip::Held;
+        self.grip = GripState::Held;
     }
 
     /// Starts again without force: the hand is taken to be there.
     pub fn reset(&mut self) {
         self.observer.forget();
         self.evidence = Evidence::default();
-        self.grip = Grip::Held;
+        self.grip = GripState::Held;
         self.last_s = None;
         self.withheld = 0.0;
         self.applied_n = SVector::zeros();
@@ -192,79 +192,86 @@ impl<const D: usize> Governor<D> {
 
     /// The tick is at `t_s` (s), the handle was read there (`None`: unknown, then the grip stays as it is), and all gates before
     /// let `asked_n` (N) pass. Anything that is not finite gives no force.
-    pub fn step(&mut self, t_s: f64, reading: Option<Reading<D>>, asked_n: SVector<f64, D>) -> Governed<D> {
+    pub fn step(
+        &mut self,
+        t_s: f64,
+        reading: Option<GovernorReading<D>>,
+        asked_n: SVector<f64, D>,
+    ) -> GovernorOutput<D> {
         // The first tick, and one after the clock was set back, count as no time.
         let before_s = if t_s.is_finite() { self.last_s.replace(t_s) } else { self.last_s };
         let dt_s = before_s.map_or(0.0, |before_s| (t_s - before_s).max(0.0));
         let far = |vector: &SVector<f64, D>, limit: f64| !vector.iter().all(|x| x.abs() <= limit);
-        let reading_is_far = reading.is_some_and(|reading| far(&reading.at_m, FAR_M) || !reading.t_s.is_finite());
+        let reading_is_far = reading.is_some_and(|reading| far(&reading.position_m, FAR_M) || !reading.t_s.is_finite());
         if far(&asked_n, PLAUSIBLE_N) || reading_is_far || !t_s.is_finite() {
             self.observer.forget();
             // What was withheld at once returns as to a hand.
             self.applied_n = SVector::zeros();
             self.withheld = 1.0;
-            return Governed { force_n: SVector::zeros(), withheld: 1.0, reason: Reason::NotFinite };
+            return GovernorOutput { force_n: SVector::zeros(), withheld: 1.0, reason: Reason::NotFinite };
         }
         let brake_n = if self.watching { self.judge(dt_s, reading) } else { SVector::zeros() };
         // After a late tick too: the hand feels the change at once, however long the tick before was held.
         let step_n = self.slew_n_per_s * dt_s.min(self.period_s);
         self.applied_n = self.force(asked_n, brake_n, step_n, dt_s);
-        Governed { force_n: self.applied_n, withheld: self.withheld, reason: self.reason() }
+        GovernorOutput { force_n: self.applied_n, withheld: self.withheld, reason: self.reason() }
     }
 
     const fn reason(&self) -> Reason {
         match self.grip {
-            Grip::Gone => Reason::HandGone,
-            Grip::LetGo(_) => Reason::LetGo,
-            Grip::Doubtful { .. } => Reason::RunsAway,
-            Grip::Held if self.withheld > 0.0 => Reason::RunsAway,
-            Grip::Held => Reason::Open,
+            GripState::Gone => Reason::HandGone,
+            GripState::LetGo(_) => Reason::LetGo,
+            GripState::Doubtful { .. } => Reason::RunsAway,
+            GripState::Held if self.withheld > 0.0 => Reason::RunsAway,
+            GripState::Held => Reason::Open,
         }
     }
 
     /// Decides on the grip; returns the brake's force, N.
-    fn judge(&mut self, dt_s: f64, reading: Option<Reading<D>>) -> SVector<f64, D> {
+    fn judge(&mut self, dt_s: f64, reading: Option<GovernorReading<D>>) -> SVector<f64, D> {
         self.observer.held(&self.applied_n, dt_s);
         let Some(reading) = reading else { return SVector::zeros() };
-        self.observer.read(reading.t_s, reading.at_m);
-        if self.grip == Grip::Gone || (self.grip == Grip::Held && self.applied_n.norm() < COULOMB_N) {
+        self.observer.read(reading.t_s, reading.position_m);
+        if self.grip == GripState::Gone || (self.grip == GripState::Held && self.applied_n.norm() < COULOMB_N) {
             self.evidence = Evidence::default();
             return SVector::zeros();
         }
         let past = self.observer.past();
         let alone = self.evidence.look(&past);
         self.grip = match (self.grip, alone) {
-            (Grip::Held | Grip::Doubtful { .. }, Alone::Certain) => Grip::LetGo(Since::default()),
-            (Grip::Held, Alone::Pushed | Alone::Dropped) => Grip::Doubtful {
+            (GripState::Held | GripState::Doubtful { .. }, EvidenceAnswer::Certain) => {
+                GripState::LetGo(Since::default())
+            }
+            (GripState::Held, EvidenceAnswer::Pushed | EvidenceAnswer::Dropped) => GripState::Doubtful {
                 since: Since::default(),
                 force_n: self.applied_n,
-                ripe_s: if alone == Alone::Pushed { ANSWER_S } else { JUDGED_S },
+                ripe_s: if alone == EvidenceAnswer::Pushed { ANSWER_S } else { JUDGED_S },
             },
             (grip, _) => grip,
         };
         let Some(now) = past.parabola(JUDGED_S) else { return SVector::zeros() };
         match self.grip {
-            Grip::Held | Grip::Gone => SVector::zeros(),
-            Grip::Doubtful { mut since, force_n, ripe_s } => {
+            GripState::Held | GripState::Gone => SVector::zeros(),
+            GripState::Doubtful { mut since, force_n, ripe_s } => {
                 let ripe = since.faded_s > ripe_s;
                 // On its way along the force that is gone, strong enough to be told from a slow motion.
                 let coasting = now.velocity_m_s.dot(&force_n) > OUT_M_S * force_n.norm() && force_n.norm() > COASTING_N;
                 self.notice(&mut since, &past, &now, dt_s, ripe);
                 since.coasts_s = if coasting { since.coasts_s } else { 0.0 };
-                self.grip = since.verdict().unwrap_or(Grip::Doubtful { since, force_n, ripe_s });
+                self.grip = since.verdict().unwrap_or(GripState::Doubtful { since, force_n, ripe_s });
                 SVector::zeros()
             }
-            Grip::LetGo(mut since) => {
+            GripState::LetGo(mut since) => {
                 let ripe = since.lasted_s > STOPPED_S;
                 self.notice(&mut since, &past, &now, dt_s, ripe);
-                self.grip = since.verdict().unwrap_or(Grip::LetGo(since));
+                self.grip = since.verdict().unwrap_or(GripState::LetGo(since));
                 self.brake(&now)
             }
         }
     }
 
     /// What the handle does while the force is withheld; a pull counts only once it can be told (`ripe`).
-    fn notice(&mut self, since: &mut Since, past: &Past<D>, now: &Parabola<D>, dt_s: f64, ripe: bool) {
+    fn notice(&mut self, since: &mut Since, past: &ObserverHistory<D>, now: &Parabola<D>, dt_s: f64, ripe: bool) {
         // A long tick is one look, not many.
         let looked_s = dt_s.min(self.period_s);
         let speed_m_s = now.velocity_m_s.norm();
@@ -281,12 +288,12 @@ impl<const D: usize> Governor<D> {
             if pulls && ripe { since.pulls_s + looked_s } else { (since.pulls_s - 2.0 * looked_s).max(0.0) };
         since.coasts_s = if !pulls && ripe { since.coasts_s + looked_s } else { 0.0 };
         let quiet = self.withheld >= 1.0 && self.applied_n.norm() < 0.3 * COULOMB_N;
-        let moved_m = (past.at_m - self.rest_m).norm();
+        let moved_m = (past.position_m - self.rest_m).norm();
         if !quiet || moved_m > STIR_M + 2.0 * self.handle.step_m {
             if quiet && since.rests_s > RESTED_S {
                 since.pulls_s = PULLS_S;
             }
-            self.rest_m = past.at_m;
+            self.rest_m = past.position_m;
             since.rests_s = 0.0;
         } else if moved_m > 1.5 * self.handle.step_m {
             since.rests_s = since.rests_s.min(RESTED_S + looked_s);
@@ -303,28 +310,28 @@ impl<const D: usize> Governor<D> {
 
     fn force(&mut self, asked_n: SVector<f64, D>, brake_n: SVector<f64, D>, step_n: f64, dt_s: f64) -> SVector<f64, D> {
         match self.grip {
-            Grip::Gone => {
+            GripState::Gone => {
                 self.withheld = 1.0;
                 SVector::zeros()
             }
-            Grip::LetGo(since) => {
+            GripState::LetGo(since) => {
                 self.withheld = 1.0;
                 // The first look takes the force off; what follows is the brake's own.
                 if since.lasted_s <= dt_s {
                     return SVector::zeros();
                 }
                 // What the shorter request takes comes first, so that both together keep the slew limit.
-                let most_n = asked_n.norm();
-                let kept_n = within(self.applied_n, most_n);
+                let max_n = asked_n.norm();
+                let kept_n = within(self.applied_n, max_n);
                 let room_n = (step_n - (kept_n - self.applied_n).norm()).max(0.0);
-                kept_n + within(within(brake_n, most_n) - kept_n, room_n)
+                kept_n + within(within(brake_n, max_n) - kept_n, room_n)
             }
-            Grip::Doubtful { .. } | Grip::Held => {
+            GripState::Doubtful { .. } | GripState::Held => {
                 // What the asked force changes by comes first, so that both together keep the slew limit.
                 let kept_n = asked_n * (1.0 - self.withheld);
                 let room_n = (step_n - (kept_n - self.applied_n).norm()).max(0.0);
                 let change = (room_n / asked_n.norm().max(1e-9)).min(1.0);
-                let fades = self.grip != Grip::Held;
+                let fades = self.grip != GripState::Held;
                 let back = change.min(dt_s / RETURN_S);
                 self.withheld = if fades { (self.withheld + change).min(1.0) } else { (self.withheld - back).max(0.0) };
                 asked_n * (1.0 - self.withheld)
@@ -335,13 +342,13 @@ impl<const D: usize> Governor<D> {
 
 impl Since {
     /// The grip that this shows, if any.
-    fn verdict<const D: usize>(&self) -> Option<Grip<D>> {
+    fn verdict<const D: usize>(&self) -> Option<GripState<D>> {
         if self.pulls_s >= PULLS_S {
-            Some(Grip::Held)
+            Some(GripState::Held)
         } else if self.rests_s > GONE_AFTER_S {
-            Some(Grip::Gone)
+            Some(GripState::Gone)
         } else if self.coasts_s > COASTS_S {
-            Some(Grip::LetGo(*self))
+            Some(GripState::LetGo(*self))
         } else {
             None
         }
@@ -349,9 +356,9 @@ impl Since {
 }
 
 /// The vector, shortened to this length.
-fn within<const D: usize>(vector: SVector<f64, D>, most: f64) -> SVector<f64, D> {
+fn within<const D: usize>(vector: SVector<f64, D>, max: f64) -> SVector<f64, D> {
     let norm = vector.norm();
-    if norm > most { vector * (most / norm) } else { vector }
+    if norm > max { vector * (max / norm) } else { vector }
 }
 
 #[cfg(test)]

@@ -1,14 +1,14 @@
 //! The handle's last readings with the force that was applied between them, at true times.
 //!
 //! A late tick changes only the spacing of the samples. From the model `m x'' + c x' = F + f_hand` follows that
-//! `y = m x + c ∫x - ∬F` has the hand's force as its second derivative, whatever `F` did in between. A [`Past`] is this `y`, and
+//! `y = m x + c ∫x - ∬F` has the hand's force as its second derivative, whatever `F` did in between. A [`ObserverHistory`] is this `y`, and
 //! [`fit`](super::fit) takes the derivative.
 
 use nalgebra::SVector;
 
 /// A haptic handle without a hand.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Handle {
+pub struct FreeHandle {
     /// Apparent mass at the grip, kg; 0: unknown.
     pub mass_kg: f64,
     /// Viscous friction of bearings and cables, N s/m.
@@ -41,9 +41,9 @@ const REMEMBERED_S: f64 = 60.0;
 const MIN_KG: f64 = 0.01;
 
 #[derive(Clone, Copy, Debug)]
-struct Sample<const D: usize> {
+struct ObserverSample<const D: usize> {
     t_s: f64,
-    at_m: SVector<f64, D>,
+    position_m: SVector<f64, D>,
     /// Mean force applied from this sample to the next one, N.
     applied_n: SVector<f64, D>,
 }
@@ -51,8 +51,8 @@ struct Sample<const D: usize> {
 /// Ring of samples.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Observer<const D: usize> {
-    handle: Handle,
-    ring: [Sample<D>; ROOM],
+    handle: FreeHandle,
+    ring: [ObserverSample<D>; ROOM],
     newest: usize,
     count: usize,
     /// Impulse of the force since the newest sample, N s, and the time in it, s.
@@ -65,9 +65,9 @@ pub(super) struct Observer<const D: usize> {
 }
 
 impl<const D: usize> Observer<D> {
-    pub(super) fn new(handle: Handle) -> Self {
-        let blank = Sample { t_s: 0.0, at_m: SVector::zeros(), applied_n: SVector::zeros() };
-        let handle = Handle { mass_kg: handle.mass_kg.max(MIN_KG), ..handle };
+    pub(super) fn new(handle: FreeHandle) -> Self {
+        let blank = ObserverSample { t_s: 0.0, position_m: SVector::zeros(), applied_n: SVector::zeros() };
+        let handle = FreeHandle { mass_kg: handle.mass_kg.max(MIN_KG), ..handle };
         Self {
             handle,
             ring: [blank; ROOM],
@@ -95,21 +95,21 @@ impl<const D: usize> Observer<D> {
     }
 
     /// Adds a reading (m) taken at `t_s` (s). One that is not newer than the last sample is ignored.
-    pub(super) fn read(&mut self, t_s: f64, at_m: SVector<f64, D>) {
+    pub(super) fn read(&mut self, t_s: f64, position_m: SVector<f64, D>) {
         if self.count > 0 {
             let since_s = t_s - self.ring[self.newest].t_s;
             if !(-GAP_S..=GAP_S).contains(&since_s) {
                 self.forget();
-            } else if since_s < SPACING_S || self.is_old(since_s, &at_m) {
+            } else if since_s < SPACING_S || self.is_old(since_s, &position_m) {
                 return;
             } else if self.over_s > 0.0 {
                 self.ring[self.newest].applied_n = self.impulse_n_s / self.over_s;
             }
-            self.moved_m = (at_m - self.ring[self.newest].at_m).norm();
+            self.moved_m = (position_m - self.ring[self.newest].position_m).norm();
             self.inexact_s *= 1.0 - since_s.max(0.0) / REMEMBERED_S;
         }
         self.newest = (self.newest + 1) % ROOM;
-        self.ring[self.newest] = Sample { t_s, at_m, applied_n: SVector::zeros() };
+        self.ring[self.newest] = ObserverSample { t_s, position_m, applied_n: SVector::zeros() };
         self.count = (self.count + 1).min(ROOM);
         self.impulse_n_s = SVector::zeros();
         self.over_s = 0.0;
@@ -117,9 +117,9 @@ impl<const D: usize> Observer<D> {
     }
 
     /// The handle moves, and the reading repeats the one before: the device has not read it again.
-    fn is_old(&self, since_s: f64, at_m: &SVector<f64, D>) -> bool {
+    fn is_old(&self, since_s: f64, position_m: &SVector<f64, D>) -> bool {
         let must_move = self.moved_m >= MOVES_STEPS * self.handle.step_m && (SHOWS_S..OLD_S).contains(&since_s);
-        must_move && *at_m == self.ring[self.newest].at_m
+        must_move && *position_m == self.ring[self.newest].position_m
     }
 
     /// How far the last three readings are from lying on one path at their times.
@@ -130,37 +130,37 @@ impl<const D: usize> Observer<D> {
         let at = |back: usize| &self.ring[(self.newest + ROOM - back) % ROOM];
         let [new, mid, old] = [at(0), at(1), at(2)];
         let [after_s, before_s] = [new.t_s - mid.t_s, mid.t_s - old.t_s];
-        let speed_m_s = (new.at_m - old.at_m).norm() / (after_s + before_s);
+        let speed_m_s = (new.position_m - old.position_m).norm() / (after_s + before_s);
         if after_s > CLOSE_S || before_s > CLOSE_S || speed_m_s < MOVES_M_S {
             return;
         }
-        let between_m = (new.at_m * before_s + old.at_m * after_s) / (after_s + before_s);
+        let between_m = (new.position_m * before_s + old.position_m * after_s) / (after_s + before_s);
         let bend_m = 0.5 * BENDS_M_S2 * after_s * before_s + self.handle.step_m;
-        let off_m = ((mid.at_m - between_m).norm() - bend_m).max(0.0);
+        let off_m = ((mid.position_m - between_m).norm() - bend_m).max(0.0);
         self.inexact_s = self.inexact_s.max(2.0 * off_m / speed_m_s);
     }
 
     /// The samples relative to the newest one.
-    pub(super) fn past(&self) -> Past<D> {
-        let mut past = Past::blank(self.handle, self.count, self.inexact_s);
+    pub(super) fn past(&self) -> ObserverHistory<D> {
+        let mut past = ObserverHistory::blank(self.handle, self.count, self.inexact_s);
         let now = self.ring[self.newest];
         let mut impulse_n_s = SVector::<f64, D>::zeros();
         let mut twice_n_s2 = SVector::<f64, D>::zeros();
-        let mut way_m_s = SVector::<f64, D>::zeros();
-        past.at_m = now.at_m;
+        let mut travel_m_s = SVector::<f64, D>::zeros();
+        past.position_m = now.position_m;
         for back in 1..self.count {
             let sample = self.ring[(self.newest + ROOM - back) % ROOM];
             let next = self.ring[(self.newest + ROOM - back + 1) % ROOM];
             let dt_s = next.t_s - sample.t_s;
             twice_n_s2 += impulse_n_s * dt_s + sample.applied_n * (0.5 * dt_s * dt_s);
             impulse_n_s += sample.applied_n * dt_s;
-            way_m_s += (sample.at_m + next.at_m - now.at_m * 2.0) * (0.5 * dt_s);
-            let from_now_m = sample.at_m - now.at_m;
+            travel_m_s += (sample.position_m + next.position_m - now.position_m * 2.0) * (0.5 * dt_s);
+            let from_now_m = sample.position_m - now.position_m;
             past.t_s[back] = sample.t_s - now.t_s;
             past.from_now_m[back] = from_now_m;
             past.impulse_n_s[back] = impulse_n_s;
             past.applied_n[back] = sample.applied_n;
-            past.y[back] = from_now_m * self.handle.mass_kg - way_m_s * self.handle.damping_n_s_m - twice_n_s2;
+            past.y[back] = from_now_m * self.handle.mass_kg - travel_m_s * self.handle.damping_n_s_m - twice_n_s2;
         }
         past
     }
@@ -168,13 +168,13 @@ impl<const D: usize> Observer<D> {
 
 /// Samples relative to the newest one, which has index 0.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Past<const D: usize> {
-    pub(super) handle: Handle,
+pub(super) struct ObserverHistory<const D: usize> {
+    pub(super) handle: FreeHandle,
     pub(super) count: usize,
     /// Error of the times, s.
     pub(super) inexact_s: f64,
     /// The newest reading, m.
-    pub(super) at_m: SVector<f64, D>,
+    pub(super) position_m: SVector<f64, D>,
     /// Time after the newest sample, s: none is above 0.
     pub(super) t_s: [f64; ROOM],
     /// Position from the newest one, m.
@@ -187,14 +187,14 @@ pub(super) struct Past<const D: usize> {
     pub(super) y: [SVector<f64, D>; ROOM],
 }
 
-impl<const D: usize> Past<D> {
-    fn blank(handle: Handle, count: usize, inexact_s: f64) -> Self {
+impl<const D: usize> ObserverHistory<D> {
+    fn blank(handle: FreeHandle, count: usize, inexact_s: f64) -> Self {
         let zeros = [SVector::zeros(); ROOM];
         Self {
             handle,
             count,
             inexact_s,
-            at_m: SVector::zeros(),
+            position_m: SVector::zeros(),
             t_s: [0.0; ROOM],
             from_now_m: zeros,
             impulse_n_s: zeros,
@@ -204,8 +204,8 @@ impl<const D: usize> Past<D> {
     }
 
     /// Largest force applied in the last `span_s` (s), N, and the smallest part of it along a unit vector, N.
-    pub(super) fn range(&self, span_s: f64, along: &SVector<f64, D>) -> Range {
-        let mut range = Range { max_n: 0.0, min_along_n: f64::INFINITY };
+    pub(super) fn range(&self, span_s: f64, along: &SVector<f64, D>) -> ForceRange {
+        let mut range = ForceRange { max_n: 0.0, min_along_n: f64::INFINITY };
         for k in 1..self.count {
             if self.t_s[k - 1] < -span_s {
                 break;
@@ -219,12 +219,12 @@ impl<const D: usize> Past<D> {
 
 /// Extremes of the applied force, N.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Range {
+pub(super) struct ForceRange {
     pub(super) max_n: f64,
     pub(super) min_along_n: f64,
 }
 
-impl Range {
+impl ForceRange {
     /// How much the force has changed, N.
     pub(super) fn change_n(&self) -> f64 {
         (self.max_n - self.min_along_n).max(0.0)

@@ -29,7 +29,7 @@ const FORGOTTEN_S: f64 = 60.0;
 const NOISY_TURNS: f64 = 60.0;
 /// A number of a slow device has noise if it turns at this fraction of the readings. White noise turns at two of three.
 /// Chosen; no false alarm in 136 healthy minutes (`docs/faults.md`).
-const NOISY_SHARE: f64 = 0.35;
+const NOISY_FRACTION: f64 = 0.35;
 /// Longest rest of a number without noise that is fine enough to be judged, s. A coarser one cannot be distinguished
 /// from a frozen one within the 20 ms. Chosen.
 const FINE_S: f64 = 0.003;
@@ -54,7 +54,7 @@ const COARSE: u32 = 3;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Around {
     /// Travel of the tip so far, m.
-    pub(super) way_m: f64,
+    pub(super) travel_m: f64,
     /// The number is a force or a torque: it changes with the travel of the tip even without noise.
     pub(super) is_load: bool,
     /// Shortest rest that is a fault, s.
@@ -63,20 +63,20 @@ pub(super) struct Around {
 
 /// Fault of a number or a reading; the first cause comes first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Wrong {
+pub(super) enum ReadingFault {
     Frozen,
     Repeats,
     Saturated,
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Extreme {
+struct ChannelExtreme {
     at: f64,
     hits: u32,
     ago: u32,
 }
 
-impl Extreme {
+impl ChannelExtreme {
     const NONE: Self = Self { at: f64::NAN, hits: 0, ago: 0 };
 
     const fn is_at(&self, value: f64) -> bool {
@@ -102,10 +102,10 @@ impl Extreme {
 }
 
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Channel {
+pub(super) struct PlausibilityChannel {
     last: f64,
     last_step: f64,
-    least_step: f64,
+    min_step: f64,
     /// Time and travel of the tip when the number took its current value.
     since_s: f64,
     since_m: f64,
@@ -120,16 +120,16 @@ pub(super) struct Channel {
     /// Turns and changes within about the last second.
     turns: f64,
     changes: f64,
-    extremes: [Extreme; 2],
+    extremes: [ChannelExtreme; 2],
     coarse_s: f64,
     t_s: f64,
 }
 
-impl Channel {
+impl PlausibilityChannel {
     pub(super) const NONE: Self = Self {
         last: f64::NAN,
         last_step: 0.0,
-        least_step: f64::INFINITY,
+        min_step: f64::INFINITY,
         since_s: 0.0,
         since_m: 0.0,
         repeats: 0,
@@ -139,16 +139,16 @@ impl Channel {
         learns_s: 0.0,
         turns: 0.0,
         changes: 0.0,
-        extremes: [Extreme::NONE; 2],
+        extremes: [ChannelExtreme::NONE; 2],
         coarse_s: 0.0,
         t_s: 0.0,
     };
 
     /// Adds the number of a new reading at `t_s`; NaN stands for a missing number.
-    pub(super) fn look(&mut self, now: f64, t_s: f64, around: &Around) -> Option<Wrong> {
+    pub(super) fn look(&mut self, now: f64, t_s: f64, around: &Around) -> Option<ReadingFault> {
         if now.is_nan() || self.last.is_nan() {
             let since_s = t_s;
-            let since_m = around.way_m;
+            let since_m = around.travel_m;
             *self = Self {
                 last: now,
                 since_s,
@@ -171,7 +171,7 @@ impl Channel {
         };
         self.t_s = t_s;
         let is_saturated = self.is_saturated(now, t_s);
-        if is_frozen { Some(Wrong::Frozen) } else { is_saturated.then_some(Wrong::Saturated) }
+        if is_frozen { Some(ReadingFault::Frozen) } else { is_saturated.then_some(ReadingFault::Saturated) }
     }
 
     fn learn(&mut self, t_s: f64) {
@@ -190,7 +190,7 @@ impl Channel {
     fn begin(&mut self, t_s: f64) {
         self.lively_since_s = t_s;
         self.longest_s = 0.0;
-        self.least_step = f64::INFINITY;
+        self.min_step = f64::INFINITY;
         self.seen = [(0.0, false); 2];
     }
 
@@ -199,7 +199,7 @@ impl Channel {
     }
 
     fn is_noisy(&self) -> bool {
-        self.turns >= NOISY_TURNS.min(NOISY_SHARE * self.changes)
+        self.turns >= NOISY_TURNS.min(NOISY_FRACTION * self.changes)
     }
 
     fn rest(&mut self, t_s: f64, around: &Around) -> bool {
@@ -216,9 +216,9 @@ impl Channel {
     }
 
     fn stopped_from_speed(&self, around: &Around) -> bool {
-        let way_m = around.way_m - self.since_m;
-        let is_judged = around.is_load && self.last != 0.0 && self.longest_s <= FINE_S && way_m > STIRRED_M;
-        is_judged && (self.last_step.abs() >= FROM_SPEED * self.least_step || way_m > FAR_M)
+        let travel_m = around.travel_m - self.since_m;
+        let is_judged = around.is_load && self.last != 0.0 && self.longest_s <= FINE_S && travel_m > STIRRED_M;
+        is_judged && (self.last_step.abs() >= FROM_SPEED * self.min_step || travel_m > FAR_M)
     }
 
     fn change(&mut self, now: f64, t_s: f64, around: &Around) {
@@ -233,11 +233,11 @@ impl Channel {
         let kept = (1.0 - dt_s).max(0.0);
         self.turns = self.turns * kept + f64::from(u8::from(step * self.last_step < 0.0));
         self.changes = self.changes * kept + 1.0;
-        self.least_step = self.least_step.min(step.abs());
+        self.min_step = self.min_step.min(step.abs());
         self.last = now;
         self.last_step = step;
         self.since_s = t_s;
-        self.since_m = around.way_m;
+        self.since_m = around.travel_m;
         self.repeats = 0;
     }
 

@@ -1,8 +1,8 @@
 //! Plausibility: detects numbers that are finite and in time but cannot be true.
 //!
-//! In: the measurements of one exchange ([`Observed`]: m, N, workspace frame; time in s) and the readings from which
+//! In: the measurements of one exchange ([`PlausibilityInput`]: m, N, workspace frame; time in s) and the readings from which
 //! they were computed ([`RawReadings`]: the devices' own frames, units and times). Out: the same measurements without
-//! single jumps ([`Admitted`]), and the quantity that cannot be true ([`Implausible`]). A reading that arrives twice is
+//! single jumps ([`AdmittedReadings`]), and the quantity that cannot be true ([`Implausible`]). A reading that arrives twice is
 //! not a new reading: a device may be slower than the loop. Each check takes constant time and allocates nothing. The
 //! basis of each limit is given with it; all limits were tried against the ordinary scenes (`nima study faults`). The
 //! caller must remove non-finite numbers first.
@@ -12,7 +12,7 @@
 
 mod channel;
 mod device;
-mod leap;
+mod jump_detector;
 mod opposed;
 mod raw;
 mod release;
@@ -22,15 +22,15 @@ mod stuck;
 use nalgebra::{SVector, UnitQuaternion, Vector3};
 
 use self::{
-    channel::{Around, FROZEN_S, Wrong},
-    device::Device,
+    channel::{Around, FROZEN_S, ReadingFault},
+    device::DeviceMemory,
     stuck::{HandleStuck, Stuck},
 };
 
-pub use leap::Leap;
-pub use opposed::Opposed;
-pub use raw::{ARM_CHANNELS, CHANNELS, HANDLE_CHANNELS, Raw, RawReadings};
-pub use release::{Fall, Release};
+pub use jump_detector::JumpDetector;
+pub use opposed::TouchMemory;
+pub use raw::{ARM_CHANNELS, CHANNELS, HANDLE_CHANNELS, RawReading, RawReadings};
+pub use release::{Fall, ReleaseMemory};
 
 /// Maximum speed of a handle, m/s: the fastest human arm movements reach 2 to 3 m/s in throwing, not in operating.
 const HAND_MAX_M_S: f64 = 3.0;
@@ -103,7 +103,7 @@ pub enum Implausible {
 }
 
 #[derive(Clone, Copy, Debug)]
-pub struct Observed {
+pub struct PlausibilityInput {
     pub t_s: f64,
     /// The devices' readings from which the other fields were computed.
     pub raw: RawReadings,
@@ -111,7 +111,7 @@ pub struct Observed {
     pub force_n: Vector3<f64>,
     /// A force below this counts as zero, N: a force computed from a wrist sensor has a larger error than a force
     /// measured at the tip.
-    pub least_n: f64,
+    pub min_n: f64,
     /// Orientation of the wrist from the arm, if known.
     pub world_from_s1: Option<UnitQuaternion<f64>>,
     pub tip_m: Vector3<f64>,
@@ -131,7 +131,7 @@ pub struct Observed {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Admitted {
+pub struct AdmittedReadings {
     pub force_n: Vector3<f64>,
     pub tip_m: Vector3<f64>,
     /// The handle, m.
@@ -140,14 +140,14 @@ pub struct Admitted {
 
 #[derive(Clone, Debug)]
 pub struct Plausibility {
-    sensor: Device<CHANNELS>,
-    handle: Device<HANDLE_CHANNELS>,
-    arm: Device<ARM_CHANNELS>,
-    link: Device<3>,
-    moves: Moves,
+    sensor: DeviceMemory<CHANNELS>,
+    handle: DeviceMemory<HANDLE_CHANNELS>,
+    arm: DeviceMemory<ARM_CHANNELS>,
+    link: DeviceMemory<3>,
+    moves: PlausibilityMoves,
     handle_stuck: HandleStuck,
     /// Travel of the tip so far, m.
-    way_m: f64,
+    travel_m: f64,
     /// Time of the force sensor's last new reading, s, and how late it was recently.
     felt_s: f64,
     late_s: f64,
@@ -156,17 +156,17 @@ pub struct Plausibility {
 }
 
 #[derive(Clone, Debug, Default)]
-struct Moves {
-    force: Leap,
-    release: Release,
-    load: Leap<6>,
-    tip: Leap,
-    hand: Leap,
-    joints: Leap<ARM_CHANNELS>,
-    turn: Leap<6>,
-    opposed: Opposed,
+struct PlausibilityMoves {
+    force: JumpDetector,
+    release: ReleaseMemory,
+    load: JumpDetector<6>,
+    tip: JumpDetector,
+    hand: JumpDetector,
+    joints: JumpDetector<ARM_CHANNELS>,
+    turn: JumpDetector<6>,
+    opposed: TouchMemory,
     tip_stuck: Stuck,
-    ways_m: [f64; WAY_READINGS],
+    travels_m: [f64; WAY_READINGS],
     /// Travel of the tip since the newest reading of the force sensor, m.
     unfelt_m: f64,
     /// Ages of the data of tip and handle at the last check, s.
@@ -178,13 +178,13 @@ struct Moves {
 impl Default for Plausibility {
     fn default() -> Self {
         Self {
-            sensor: Device::new(SENSOR_BLOCK),
-            handle: Device::new(ENCODER_BLOCK),
-            arm: Device::new(ENCODER_BLOCK),
-            link: Device::new(SENSOR_BLOCK),
-            moves: Moves::default(),
+            sensor: DeviceMemory::new(SENSOR_BLOCK),
+            handle: DeviceMemory::new(ENCODER_BLOCK),
+            arm: DeviceMemory::new(ENCODER_BLOCK),
+            link: DeviceMemory::new(SENSOR_BLOCK),
+            moves: PlausibilityMoves::default(),
             handle_stuck: HandleStuck::default(),
-            way_m: 0.0,
+            travel_m: 0.0,
             felt_s: 0.0,
             late_s: LATE_MAX_S,
             last_t_s: f64::NEG_INFINITY,
@@ -201,7 +201,7 @@ impl Plausibility {
 
     /// Starts a new engagement: earlier commands and forces no longer count.
     pub fn engage(&mut self) {
-        self.moves.opposed = Opposed::default();
+        self.moves.opposed = TouchMemory::default();
         self.moves.tip_stuck = Stuck::default();
         self.handle_stuck.engage();
     }
@@ -210,25 +210,25 @@ impl Plausibility {
     /// not a jump.
     pub fn force_is_new(&mut self) {
         let moves = &mut self.moves;
-        moves.force = Leap::default();
-        moves.release = Release::default();
-        moves.load = Leap::default();
+        moves.force = JumpDetector::default();
+        moves.release = ReleaseMemory::default();
+        moves.load = JumpDetector::default();
         moves.began_s = None;
     }
 
     /// Checks the measurements of one exchange and returns those that may be used.
-    pub fn step(&mut self, seen: &Observed) -> Admitted {
+    pub fn step(&mut self, seen: &PlausibilityInput) -> AdmittedReadings {
         let dt_s = self.pass(seen.t_s);
         let (tip_m, tip_jumped) = self.admit_tip(seen, dt_s);
         let (hand_m, hand_jumped) = self.admit_hand(seen, dt_s);
         let (force_n, force_jumped) = self.admit_force(seen, dt_s);
         self.moves.silent_s = [seen.tip_silent_s, seen.hand_silent_s];
         let went_m = *self.moves.tip.moved();
-        let along = self.moves.opposed.look(dt_s, &force_n, seen.least_n, &went_m, seen.command_m.is_some());
-        let of_sensor = |wrong: Wrong| match wrong {
-            Wrong::Frozen => Implausible::ForceFrozen,
-            Wrong::Saturated => Implausible::ForceSaturated,
-            Wrong::Repeats => Implausible::ForceRepeats,
+        let along = self.moves.opposed.look(dt_s, &force_n, seen.min_n, &went_m, seen.command_m.is_some());
+        let of_sensor = |wrong: ReadingFault| match wrong {
+            ReadingFault::Frozen => Implausible::ForceFrozen,
+            ReadingFault::Saturated => Implausible::ForceSaturated,
+            ReadingFault::Repeats => Implausible::ForceRepeats,
         };
         let doubts = [
             force_jumped.then_some(Implausible::ForceJumped),
@@ -242,7 +242,7 @@ impl Plausibility {
             self.arm_is_astray(seen).then_some(Implausible::ArmAstray),
         ];
         self.doubt = doubts.into_iter().flatten().next();
-        Admitted { force_n, tip_m, hand_m }
+        AdmittedReadings { force_n, tip_m, hand_m }
     }
 
     /// Advances to the time of this check; returns the time since the last one, s.
@@ -254,51 +254,51 @@ impl Plausibility {
         }
         // After a gap or a change of the clock, the possible travel is unknown. The properties of a device's numbers
         // remain known.
-        self.moves = Moves::default();
+        self.moves = PlausibilityMoves::default();
         self.handle_stuck = HandleStuck::default();
         0.0
     }
 
-    fn admit_tip(&mut self, seen: &Observed, dt_s: f64) -> (Vector3<f64>, bool) {
+    fn admit_tip(&mut self, seen: &PlausibilityInput, dt_s: f64) -> (Vector3<f64>, bool) {
         let moves = &mut self.moves;
         let moved_s = news(&mut self.arm, seen.raw.arm.as_ref(), dt_s + moves.silent_s[0]);
-        let most_m = POSITION_SLACK_M + TIP_MAX_M_S * moved_s.unwrap_or(dt_s);
-        let (tip_m, jumped) = moves.tip.admit(&seen.tip_m, most_m, moved_s.is_some());
-        let way_m = moves.tip.moved().norm();
-        self.way_m += way_m;
-        moves.unfelt_m += way_m;
+        let max_m = POSITION_SLACK_M + TIP_MAX_M_S * moved_s.unwrap_or(dt_s);
+        let (tip_m, jumped) = moves.tip.admit(&seen.tip_m, max_m, moved_s.is_some());
+        let travel_m = moves.tip.moved().norm();
+        self.travel_m += travel_m;
+        moves.unfelt_m += travel_m;
         let Some(moved_s) = moved_s else { return (tip_m, jumped) };
-        moves.ways_m.rotate_right(1);
-        moves.ways_m[0] = way_m;
+        moves.travels_m.rotate_right(1);
+        moves.travels_m[0] = travel_m;
         if moved_s > 0.0 {
             let t_s = seen.raw.arm.map_or(seen.t_s, |arm| arm.arrival_s);
             moves.tip_stuck.look(&seen.tip_m, &seen.command_m.unwrap_or(seen.tip_m), STUCK_COMMAND_M, t_s);
         }
-        let most_rad = TURN_SLACK_RAD + TURN_MAX_RAD_S * moved_s;
-        let turned = seen.world_from_s1.is_some_and(|turn| moves.turn.admit(&axes(&turn), most_rad, true).1);
+        let max_rad = TURN_SLACK_RAD + TURN_MAX_RAD_S * moved_s;
+        let turned = seen.world_from_s1.is_some_and(|turn| moves.turn.admit(&axes(&turn), max_rad, true).1);
         let joints = seen.raw.arm.map(|arm| SVector::from(arm.channels));
-        let leapt = joints.is_some_and(|joints| moves.joints.admit(&joints, most_rad, true).1);
+        let leapt = joints.is_some_and(|joints| moves.joints.admit(&joints, max_rad, true).1);
         (tip_m, jumped || turned || leapt)
     }
 
-    fn admit_hand(&mut self, seen: &Observed, dt_s: f64) -> (Vector3<f64>, bool) {
+    fn admit_hand(&mut self, seen: &PlausibilityInput, dt_s: f64) -> (Vector3<f64>, bool) {
         let moved_s = news(&mut self.handle, seen.raw.handle.as_ref(), dt_s + self.moves.silent_s[1]);
         if moved_s.is_some() {
             let t_s = seen.raw.handle.map_or(seen.t_s, |handle| handle.arrival_s);
             self.handle_stuck.look(&seen.hand_m, &seen.hand_force_n, seen.guided, t_s);
         }
-        let most_m = POSITION_SLACK_M + HAND_MAX_M_S * moved_s.unwrap_or(dt_s);
-        self.moves.hand.admit(&seen.hand_m, most_m, moved_s.is_some())
+        let max_m = POSITION_SLACK_M + HAND_MAX_M_S * moved_s.unwrap_or(dt_s);
+        self.moves.hand.admit(&seen.hand_m, max_m, moved_s.is_some())
     }
 
     /// Checks the force at the tip and the readings of the sensor, which at a wrist contain more than that force.
-    fn admit_force(&mut self, seen: &Observed, dt_s: f64) -> (Vector3<f64>, bool) {
+    fn admit_force(&mut self, seen: &PlausibilityInput, dt_s: f64) -> (Vector3<f64>, bool) {
         let moves = &mut self.moves;
         let settles = seen.t_s - *moves.began_s.get_or_insert(seen.t_s) < SETTLE_S;
-        let widest_m = moves.ways_m.iter().copied().fold(moves.unfelt_m, f64::max);
-        let most_n = if settles { f64::INFINITY } else { FORCE_SLACK_N + STIFFEST_N_M * widest_m };
-        let way_m = self.way_m;
-        let around = |place: usize| Around { way_m, is_load: place < LOADS, shortest_s: FROZEN_S };
+        let widest_m = moves.travels_m.iter().copied().fold(moves.unfelt_m, f64::max);
+        let max_n = if settles { f64::INFINITY } else { FORCE_SLACK_N + STIFFEST_N_M * widest_m };
+        let travel_m = self.travel_m;
+        let around = |place: usize| Around { travel_m, is_load: place < LOADS, shortest_s: FROZEN_S };
         let raw = seen.raw.sensor.as_ref();
         let step = raw.and_then(|raw| self.sensor.is_new(raw).map(|step| (raw, step)));
         if let Some((raw, step)) = &step {
@@ -311,7 +311,7 @@ impl Plausibility {
         self.late_s = (self.late_s - dt_s * FORGETS_LATE).max(late_s);
         let release = &mut moves.release;
         let mut fall = Fall::No;
-        let (force_n, jumped) = moves.force.admit_unless(&seen.force_n, most_n, is_new, |believed_n, now_n, far| {
+        let (force_n, jumped) = moves.force.admit_unless(&seen.force_n, max_n, is_new, |believed_n, now_n, far| {
             fall = release.look(believed_n, now_n, far);
             fall
         });
@@ -319,11 +319,11 @@ impl Plausibility {
             moves.unfelt_m = 0.0;
         }
         let load = step.map(|(raw, _)| load_of(&raw.channels));
-        let leapt = load.is_some_and(|load| moves.load.admit_unless(&load, most_n, true, |_, _, _| fall).1);
+        let leapt = load.is_some_and(|load| moves.load.admit_unless(&load, max_n, true, |_, _, _| fall).1);
         (force_n, jumped || leapt)
     }
 
-    fn arm_is_astray(&mut self, seen: &Observed) -> bool {
+    fn arm_is_astray(&mut self, seen: &PlausibilityInput) -> bool {
         let Some(command_m) = seen.command_m else {
             self.moves.tip_stuck = Stuck::default();
             return false;
@@ -336,10 +336,10 @@ impl Plausibility {
     /// A force of exactly zero is not a repeated number: before an instrument has moved, the network returns zero for
     /// as long as that takes.
     pub fn delivered(&mut self, force_n: &Vector3<f64>, stamp_s: f64) {
-        let told_n = if *force_n == Vector3::zeros() { Vector3::repeat(f64::NAN) } else { *force_n };
-        let raw = Raw { channels: told_n.into(), device_s: None, arrival_s: stamp_s };
+        let reported_n = if *force_n == Vector3::zeros() { Vector3::repeat(f64::NAN) } else { *force_n };
+        let raw = RawReading { channels: reported_n.into(), device_s: None, arrival_s: stamp_s };
         if let Some(step) = self.link.is_new(&raw) {
-            let around = Around { way_m: self.way_m, is_load: true, shortest_s: LINK_S + self.late_s };
+            let around = Around { travel_m: self.travel_m, is_load: true, shortest_s: LINK_S + self.late_s };
             self.link.look_at_all(&raw, &step, |_| around);
         }
     }
@@ -350,7 +350,7 @@ const LOADS: usize = 6;
 
 /// Returns how long a device may have moved since its last reading, s; `None` if its reading is not new. For a device
 /// without raw readings each check counts as a reading, `since_s` after the previous one.
-fn news<const N: usize>(device: &mut Device<N>, raw: Option<&Raw<N>>, since_s: f64) -> Option<f64> {
+fn news<const N: usize>(device: &mut DeviceMemory<N>, raw: Option<&RawReading<N>>, since_s: f64) -> Option<f64> {
     let Some(raw) = raw else { return Some(since_s) };
     let step = device.is_new(raw)?;
     device.look_for_blocks(raw, &step);

@@ -14,7 +14,7 @@ use nalgebra::Vector3;
 const FREE_S: f64 = 0.05;
 /// Work that suffices for a judgement, as the travel under the smallest force, m. Chosen; no false alarm in 136 healthy
 /// minutes (`docs/faults.md`).
-const ENOUGH_AT_LEAST_M: f64 = 1e-3;
+const ENOUGH_AT_MIN_M: f64 = 1e-3;
 /// Travel that suffices for a judgement, m.
 const ENOUGH_M: f64 = 0.3e-3;
 /// Fraction of the full work above which the force points along the motion. Chosen; no false alarm in 136 healthy
@@ -31,47 +31,47 @@ const MADE_M: f64 = 0.5e-3;
 const BEFORE_S: f64 = 0.1;
 
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Opposed {
+pub struct TouchMemory {
     /// Recent displacement of the tip, m.
     went_m: Vector3<f64>,
     force_n: Vector3<f64>,
     free_s: f64,
-    touch: Option<Touch>,
+    touch: Option<OpposedTouch>,
 }
 
 #[derive(Clone, Copy, Debug, Default)]
-struct Touch {
+struct OpposedTouch {
     seconds: f64,
-    way_m: f64,
+    travel_m: f64,
     work_j: f64,
-    most_j: f64,
+    max_j: f64,
 }
 
-impl Opposed {
-    /// Adds the force (N) and the displacement of the tip (m) since the last check `dt_s` ago; a force below `least_n`
+impl TouchMemory {
+    /// Adds the force (N) and the displacement of the tip (m) since the last check `dt_s` ago; a force below `min_n`
     /// counts as zero; `led` says that the tip is commanded. Returns whether the force drives the tip into the object.
-    pub fn look(&mut self, dt_s: f64, force_n: &Vector3<f64>, least_n: f64, way_m: &Vector3<f64>, led: bool) -> bool {
+    pub fn look(&mut self, dt_s: f64, force_n: &Vector3<f64>, min_n: f64, travel_m: &Vector3<f64>, led: bool) -> bool {
         self.force_n += (force_n - self.force_n) * -libm::expm1(-dt_s / SMOOTHING_S);
-        self.went_m = self.went_m * libm::exp(-dt_s / BEFORE_S) + way_m;
+        self.went_m = self.went_m * libm::exp(-dt_s / BEFORE_S) + travel_m;
         let felt_n = self.force_n.norm();
-        if felt_n < least_n || !led {
+        if felt_n < min_n || !led {
             self.free_s = if led { self.free_s + dt_s } else { 0.0 };
             self.touch = None;
             return false;
         }
         if self.free_s >= FREE_S && self.went_m.norm() >= MADE_M {
-            self.touch = Some(Touch::default());
+            self.touch = Some(OpposedTouch::default());
         }
         self.free_s = 0.0;
         let Some(touch) = &mut self.touch else { return false };
         touch.seconds += dt_s;
-        touch.way_m += way_m.norm();
-        touch.work_j += self.force_n.dot(way_m);
-        touch.most_j += felt_n * way_m.norm();
-        let Touch { seconds, way_m, work_j, most_j } = *touch;
-        if most_j > least_n * ENOUGH_AT_LEAST_M && way_m > ENOUGH_M {
+        touch.travel_m += travel_m.norm();
+        touch.work_j += self.force_n.dot(travel_m);
+        touch.max_j += felt_n * travel_m.norm();
+        let OpposedTouch { seconds, travel_m, work_j, max_j } = *touch;
+        if max_j > min_n * ENOUGH_AT_MIN_M && travel_m > ENOUGH_M {
             self.touch = None;
-            return work_j > ALONG * most_j;
+            return work_j > ALONG * max_j;
         }
         if seconds > WITHIN_S {
             self.touch = None;

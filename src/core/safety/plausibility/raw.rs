@@ -11,7 +11,7 @@ pub const ARM_CHANNELS: usize = 7;
 pub const CHANNELS: usize = 9;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Raw<const N: usize> {
+pub struct RawReading<const N: usize> {
     /// The numbers of the reading; NaN for a number that the device lacks.
     pub channels: [f64; N],
     /// Time on the device's own clock, s; `None` if it sends no time.
@@ -23,9 +23,9 @@ pub struct Raw<const N: usize> {
 /// The newest readings of one side; `None` for a device at another machine or a missing device.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RawReadings {
-    pub handle: Option<Raw<HANDLE_CHANNELS>>,
-    pub arm: Option<Raw<ARM_CHANNELS>>,
-    pub sensor: Option<Raw<CHANNELS>>,
+    pub handle: Option<RawReading<HANDLE_CHANNELS>>,
+    pub arm: Option<RawReading<ARM_CHANNELS>>,
+    pub sensor: Option<RawReading<CHANNELS>>,
 }
 
 impl RawReadings {
@@ -39,13 +39,13 @@ impl RawReadings {
     }
 }
 
-impl<const N: usize> Raw<N> {
+impl<const N: usize> RawReading<N> {
     fn is_finite(&self) -> bool {
         self.arrival_s.is_finite() && self.channels.iter().all(|number| number.is_finite())
     }
 }
 
-impl Raw<CHANNELS> {
+impl RawReading<CHANNELS> {
     /// Creates a force sensor's reading from its parts: force (N), torque (Nm), acceleration (m/s^2).
     pub fn of_sensor(parts: [Option<[f64; 3]>; 3], device_s: Option<f64>, arrival_s: f64) -> Self {
         let mut channels = [f64::NAN; CHANNELS];
@@ -67,7 +67,7 @@ const HELD_BACK_S: f64 = 0.02;
 const SWAPPED_S: f64 = 1.0;
 
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Step {
+pub(super) struct RawStep {
     /// Sum of the intervals so far, s; each counts for at most [`LONGEST_INTERVALS`] usual intervals.
     pub(super) t_s: f64,
     /// Time for which the device may have moved since the previous reading, s.
@@ -76,7 +76,7 @@ pub(super) struct Step {
 
 /// Distinguishes new readings from old ones.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Pace {
+pub(super) struct RawPace {
     last: Option<(f64, Option<f64>)>,
     interval_s: f64,
     t_s: f64,
@@ -84,42 +84,42 @@ pub(super) struct Pace {
 
 /// Result of checking a device for a new reading.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum News {
+pub(super) enum RawOutcome {
     /// The same reading as before, or a reading without a time.
     Old,
     /// The first reading, or the first after the clock was set back.
     First,
-    New(Step),
+    New(RawStep),
 }
 
-impl Pace {
+impl RawPace {
     pub(super) const NEW: Self = Self { last: None, interval_s: 0.0, t_s: 0.0 };
 
-    pub(super) fn look<const N: usize>(&mut self, raw: &Raw<N>) -> News {
+    pub(super) fn look<const N: usize>(&mut self, raw: &RawReading<N>) -> RawOutcome {
         let now = (raw.arrival_s, raw.device_s);
         let Some((arrival_s, device_s)) = self.last else {
             self.last = Some(now).filter(|_| raw.arrival_s.is_finite());
-            return self.last.map_or(News::Old, |_| News::First);
+            return self.last.map_or(RawOutcome::Old, |_| RawOutcome::First);
         };
         let arrived_s = raw.arrival_s - arrival_s;
         if arrived_s.is_nan() || arrived_s == 0.0 {
-            return News::Old;
+            return RawOutcome::Old;
         }
         if arrived_s < 0.0 && arrived_s > -SWAPPED_S {
-            return News::Old;
+            return RawOutcome::Old;
         }
         self.last = Some(now);
         if arrived_s < 0.0 {
             self.interval_s = 0.0;
             self.t_s = 0.0;
-            return News::First;
+            return RawOutcome::First;
         }
-        let told_s = raw.device_s.zip(device_s).map_or(0.0, |(now_s, before_s)| now_s - before_s);
-        let moved_s = arrived_s.max(told_s.min(arrived_s + HELD_BACK_S));
+        let reported_s = raw.device_s.zip(device_s).map_or(0.0, |(now_s, before_s)| now_s - before_s);
+        let moved_s = arrived_s.max(reported_s.min(arrived_s + HELD_BACK_S));
         let usual_s = if self.interval_s > 0.0 { self.interval_s } else { arrived_s };
         let counted_s = arrived_s.min(LONGEST_INTERVALS * usual_s);
         self.interval_s = usual_s + (counted_s - usual_s) / AVERAGED;
         self.t_s += counted_s;
-        News::New(Step { t_s: self.t_s, moved_s })
+        RawOutcome::New(RawStep { t_s: self.t_s, moved_s })
     }
 }

@@ -43,17 +43,17 @@ const RIG: Rig =
 struct Sampled<const N: usize> {
     every_s: f64,
     next_s: f64,
-    newest: Raw<N>,
+    newest: RawReading<N>,
     past: Vec<[f64; N]>,
 }
 
 impl<const N: usize> Sampled<N> {
     fn new(every_s: f64) -> Self {
-        let newest = Raw { channels: [f64::NAN; N], device_s: None, arrival_s: f64::NAN };
+        let newest = RawReading { channels: [f64::NAN; N], device_s: None, arrival_s: f64::NAN };
         Self { every_s, next_s: 0.3e-3, newest, past: Vec::new() }
     }
 
-    fn at(&mut self, now_s: f64, fault: Fault, mut measure: impl FnMut(f64) -> [f64; N]) -> Raw<N> {
+    fn at(&mut self, now_s: f64, fault: Fault, mut measure: impl FnMut(f64) -> [f64; N]) -> RawReading<N> {
         while self.next_s <= now_s {
             let mut channels = measure(self.next_s);
             match fault {
@@ -79,7 +79,7 @@ impl<const N: usize> Sampled<N> {
                 Fault::Jump => channels[2] += 1.5,
                 Fault::None => self.past.push(channels),
             }
-            self.newest = Raw { channels, device_s: Some(5.0 + self.next_s), arrival_s: now_s };
+            self.newest = RawReading { channels, device_s: Some(5.0 + self.next_s), arrival_s: now_s };
             self.next_s += self.every_s;
         }
         self.newest
@@ -120,7 +120,7 @@ fn load(rig: &Rig, noise: &mut Noise, t_s: f64) -> [f64; CHANNELS] {
 
 /// Returns the first doubt after the faults of sensor, handle and arm begin, and the time since then, ms; an earlier
 /// doubt is a false alarm.
-fn told(rig: &Rig, faults: [Fault; 3], seconds: f64) -> Option<(f64, Implausible)> {
+fn report(rig: &Rig, faults: [Fault; 3], seconds: f64) -> Option<(f64, Implausible)> {
     let mut looks = Plausibility::default();
     let mut noise = Noise::new(rig.seed);
     let mut sensor = Sampled::<CHANNELS>::new(rig.sensor_s);
@@ -137,11 +137,11 @@ fn told(rig: &Rig, faults: [Fault; 3], seconds: f64) -> Option<(f64, Implausible
         let turn = world_from_s1(t_s);
         let felt_n = turn * Vector3::from_row_slice(&sensed.channels[..3]);
         let tip_m = hand_m(arm.next_s - rig.arm_s);
-        looks.step(&Observed {
+        looks.step(&PlausibilityInput {
             t_s,
             raw: RawReadings { handle: Some(held), arm: Some(angles), sensor: Some(sensed) },
             force_n: if rig.at_wrist { felt_n + Vector3::new(0.0, 0.0, 4.0) } else { felt_n },
-            least_n: 0.1,
+            min_n: 0.1,
             world_from_s1: rig.at_wrist.then_some(turn),
             tip_m,
             hand_m: held.channels.into(),
@@ -159,7 +159,7 @@ fn told(rig: &Rig, faults: [Fault; 3], seconds: f64) -> Option<(f64, Implausible
 }
 
 fn of_sensor(rig: &Rig, fault: Fault) -> Option<(f64, Implausible)> {
-    told(rig, [fault, Fault::None, Fault::None], 0.5)
+    report(rig, [fault, Fault::None, Fault::None], 0.5)
 }
 
 #[test]
@@ -179,15 +179,16 @@ fn a_sensor_on_an_arm_is_judged_by_its_own_numbers() {
             for (fault, wanted, within_ms) in faults {
                 for seed in 1..4 {
                     let rig = Rig { at_wrist, late, seed, ..RIG };
-                    let told = of_sensor(&rig, fault);
+                    let report = of_sensor(&rig, fault);
                     let late_ms = if late > 0.0 { 5.0 } else { 0.0 };
                     // Of two alternating values, some of which a late loop misses, every second one is at an extreme.
                     let is_wanted = |what| {
                         what == wanted
                             || (fault == Fault::Block(2) && late > 0.0 && what == Implausible::ForceSaturated)
                     };
-                    let good = told.is_some_and(|(ms, what)| is_wanted(what) && ms > 0.0 && ms <= within_ms + late_ms);
-                    assert!(good, "{rig:?}, {fault:?}: {told:?}");
+                    let good =
+                        report.is_some_and(|(ms, what)| is_wanted(what) && ms > 0.0 && ms <= within_ms + late_ms);
+                    assert!(good, "{rig:?}, {fault:?}: {report:?}");
                 }
             }
         }
@@ -197,8 +198,8 @@ fn a_sensor_on_an_arm_is_judged_by_its_own_numbers() {
 #[test]
 fn a_sensor_without_noise_that_stops_from_speed_is_frozen_while_the_arm_goes_on() {
     for at_wrist in [false, true] {
-        let told = of_sensor(&Rig { noise_n: 0.0, at_wrist, ..RIG }, Fault::Frozen);
-        assert!(matches!(told, Some((ms, Implausible::ForceFrozen)) if (9.0..13.0).contains(&ms)), "{told:?}");
+        let report = of_sensor(&Rig { noise_n: 0.0, at_wrist, ..RIG }, Fault::Frozen);
+        assert!(matches!(report, Some((ms, Implausible::ForceFrozen)) if (9.0..13.0).contains(&ms)), "{report:?}");
     }
 }
 
@@ -207,20 +208,24 @@ fn a_sensor_without_noise_that_stops_from_speed_is_frozen_while_the_arm_goes_on(
 #[test]
 fn a_smooth_swing_that_freezes_is_told_at_every_phase() {
     for phase in 0..200 {
-        let mut device = Device::<CHANNELS>::new(SENSOR_BLOCK);
+        let mut device = DeviceMemory::<CHANNELS>::new(SENSOR_BLOCK);
         let from = 6000 + phase * 10;
-        let told = (1..from + 200).find(|k| {
+        let report = (1..from + 200).find(|k| {
             let t_s = f64::from((*k).min(from)) * TICK_S;
             let mut channels = [0.0; CHANNELS];
             channels[2] = 1.0 + 0.5 * (3.0 * t_s).sin();
-            let raw = Raw { channels, device_s: None, arrival_s: f64::from(*k) * TICK_S };
-            let way_m = 19e-6 * f64::from(*k);
+            let raw = RawReading { channels, device_s: None, arrival_s: f64::from(*k) * TICK_S };
+            let travel_m = 19e-6 * f64::from(*k);
             if let Some(step) = device.is_new(&raw) {
-                device.look_at_all(&raw, &step, |place| Around { way_m, is_load: place < LOADS, shortest_s: FROZEN_S });
+                device.look_at_all(&raw, &step, |place| Around {
+                    travel_m,
+                    is_load: place < LOADS,
+                    shortest_s: FROZEN_S,
+                });
             }
             device.wrong().is_some()
         });
-        assert!(told.is_some_and(|k| (from + 9..from + 13).contains(&k)), "{told:?} of {from}");
+        assert!(report.is_some_and(|k| (from + 9..from + 13).contains(&k)), "{report:?} of {from}");
     }
 }
 
@@ -233,7 +238,7 @@ fn healthy_devices_raise_no_alarm_at_any_rate_and_on_any_clock() {
             {
                 for late in [0.0, 0.05] {
                     let rig = Rig { sensor_s, handle_s, arm_s, noise_n, at_wrist, late, seed: 7 };
-                    assert_eq!(told(&rig, [Fault::None; 3], 10.0), None, "{rig:?}");
+                    assert_eq!(report(&rig, [Fault::None; 3], 10.0), None, "{rig:?}");
                 }
             }
         }
@@ -254,7 +259,7 @@ fn a_handle_and_an_arm_that_repeat_a_block_or_jump_are_told() {
     let of = |place: usize, fault: Fault| {
         let mut faults = [Fault::None; 3];
         faults[place] = fault;
-        told(&RIG, faults, 0.5)
+        report(&RIG, faults, 0.5)
     };
     let handle = of(1, Fault::Block(120));
     assert!(matches!(handle, Some((_, Implausible::HandleRepeats | Implausible::HandleJumped))), "{handle:?}");
@@ -276,15 +281,15 @@ fn a_handle_on_the_table_and_an_arm_at_rest_are_no_fault() {
         held.x += if lies && noise.uniform() < 0.5 { 1e-5 } else { 0.0 };
         let mut angles = joints_rad(t_s.min(20.0)).map(|rad| (rad * 1e5).round() * 1e-5);
         angles[3] += if lies && noise.uniform() < 0.3 { 1e-5 } else { 0.0 };
-        let handle = Raw { channels: held.into(), device_s: None, arrival_s: t_s };
-        let arm = Raw { channels: angles, device_s: None, arrival_s: t_s };
-        let sensor = Raw { channels: load(&RIG, &mut noise, t_s.min(20.0)), device_s: None, arrival_s: t_s };
+        let handle = RawReading { channels: held.into(), device_s: None, arrival_s: t_s };
+        let arm = RawReading { channels: angles, device_s: None, arrival_s: t_s };
+        let sensor = RawReading { channels: load(&RIG, &mut noise, t_s.min(20.0)), device_s: None, arrival_s: t_s };
         let tip_m = hand_m(t_s.min(20.0));
-        looks.step(&Observed {
+        looks.step(&PlausibilityInput {
             t_s,
             raw: RawReadings { handle: Some(handle), arm: Some(arm), sensor: Some(sensor) },
             force_n: Vector3::from_row_slice(&sensor.channels[..3]),
-            least_n: 0.1,
+            min_n: 0.1,
             world_from_s1: None,
             tip_m,
             hand_m: held,
@@ -302,13 +307,13 @@ fn a_handle_on_the_table_and_an_arm_at_rest_are_no_fault() {
 #[test]
 fn coarse_numbers_are_no_fault() {
     for counts in [0.3, 1.0, 3.0, 10.0, 50.0] {
-        let mut device = Device::<CHANNELS>::new(SENSOR_BLOCK);
+        let mut device = DeviceMemory::<CHANNELS>::new(SENSOR_BLOCK);
         let mut noise = Noise::new(11);
         for k in 1..100_000 {
             let channels = std::array::from_fn(|_| (counts * noise.gaussian()).round());
-            let raw = Raw { channels, device_s: None, arrival_s: f64::from(k) * TICK_S };
+            let raw = RawReading { channels, device_s: None, arrival_s: f64::from(k) * TICK_S };
             if let Some(step) = device.is_new(&raw) {
-                device.look_at_all(&raw, &step, |_| Around { way_m: 1.0, is_load: true, shortest_s: FROZEN_S });
+                device.look_at_all(&raw, &step, |_| Around { travel_m: 1.0, is_load: true, shortest_s: FROZEN_S });
             }
             assert_eq!(device.wrong(), None, "noise of {counts} counts, reading {k}");
         }
@@ -318,26 +323,26 @@ fn coarse_numbers_are_no_fault() {
 /// A sensor that is late by 18 ms leaves the same force in the link for as long, 50 ms later.
 #[test]
 fn a_late_sensor_is_not_a_link_that_repeats_itself_and_a_link_that_does_is_told() {
-    let told = |link_stops: bool| {
+    let report = |link_stops: bool| {
         let mut looks = Plausibility::default();
         let mut noise = Noise::new(2);
         let mut felt = Vec::new();
-        let mut sensor = Raw::of_sensor([Some([0.0; 3]), None, None], None, 0.0);
+        let mut sensor = RawReading::of_sensor([Some([0.0; 3]), None, None], None, 0.0);
         (1..8000).find(|k| {
             let t_s = f64::from(*k) * TICK_S;
             let is_late = k % 500 > 480 && k % 500 < 499;
             if !is_late {
                 let force_n = std::array::from_fn(|_| 1.0 + 0.02 * noise.gaussian());
-                sensor = Raw::of_sensor([Some(force_n), None, None], None, t_s);
+                sensor = RawReading::of_sensor([Some(force_n), None, None], None, t_s);
             }
             let force_n = Vector3::from_row_slice(&sensor.channels[..3]);
             felt.push(if link_stops && *k > 7000 { felt[6999] } else { force_n });
             let [tip_m, hand_m] = [Vector3::x() * 1e-3 * (19.0 * t_s).sin(); 2];
-            looks.step(&Observed {
+            looks.step(&PlausibilityInput {
                 t_s,
                 raw: RawReadings { sensor: Some(sensor), ..RawReadings::NONE },
                 force_n,
-                least_n: 0.1,
+                min_n: 0.1,
                 world_from_s1: None,
                 tip_m,
                 hand_m,
@@ -353,27 +358,27 @@ fn a_late_sensor_is_not_a_link_that_repeats_itself_and_a_link_that_does_is_told(
             looks.doubt().is_some()
         })
     };
-    assert_eq!(told(false), None);
-    assert!(told(true).is_some_and(|k| (7050..7100).contains(&k)), "{:?}", told(true));
+    assert_eq!(report(false), None);
+    assert!(report(true).is_some_and(|k| (7050..7100).contains(&k)), "{:?}", report(true));
 }
 
 #[test]
 fn a_sensor_that_froze_before_is_told_as_soon_again() {
-    let mut device = Device::<CHANNELS>::new(SENSOR_BLOCK);
+    let mut device = DeviceMemory::<CHANNELS>::new(SENSOR_BLOCK);
     let mut noise = Noise::new(4);
     let mut kept = [0.0; CHANNELS];
-    let mut told = Vec::new();
+    let mut report = Vec::new();
     for k in 1..12_000 {
         let stands = (5000..5060).contains(&k) || k >= 11_000;
         if !stands {
             kept = std::array::from_fn(|_| noise.gaussian());
         }
-        let raw = Raw { channels: kept, device_s: None, arrival_s: f64::from(k) * TICK_S };
+        let raw = RawReading { channels: kept, device_s: None, arrival_s: f64::from(k) * TICK_S };
         let was_wrong = device.wrong().is_some();
         if let Some(step) = device.is_new(&raw) {
-            device.look_at_all(&raw, &step, |_| Around { way_m: 0.0, is_load: true, shortest_s: FROZEN_S });
+            device.look_at_all(&raw, &step, |_| Around { travel_m: 0.0, is_load: true, shortest_s: FROZEN_S });
         }
-        told.extend((device.wrong().is_some() && !was_wrong).then_some(k));
+        report.extend((device.wrong().is_some() && !was_wrong).then_some(k));
     }
-    assert!(matches!(told[..], [5009..=5012, 11_009..=11_012]), "{told:?}");
+    assert!(matches!(report[..], [5009..=5012, 11_009..=11_012]), "{report:?}");
 }

@@ -31,14 +31,14 @@ pub enum Fall {
 }
 
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Release {
-    fall: Option<Falling>,
+pub struct ReleaseMemory {
+    fall: Option<FallState>,
     /// The last samples that were not too far away, the newest first.
     before_n: [Vector3<f64>; BEFORE],
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Falling {
+struct FallState {
     believed_n: Vector3<f64>,
     /// The largest of the samples before the fall.
     from_n: Vector3<f64>,
@@ -48,7 +48,7 @@ struct Falling {
     falls: bool,
 }
 
-impl Release {
+impl ReleaseMemory {
     /// Adds a sample (N); `far` says that it is too far from the last accepted one.
     pub fn look(&mut self, believed_n: &Vector3<f64>, now_n: &Vector3<f64>, far: bool) -> Fall {
         if !far {
@@ -66,17 +66,17 @@ impl Release {
     }
 }
 
-impl Release {
-    fn begin(&self, believed_n: &Vector3<f64>) -> Falling {
+impl ReleaseMemory {
+    fn begin(&self, believed_n: &Vector3<f64>) -> FallState {
         let larger = |a: Vector3<f64>, b: &Vector3<f64>| if b.norm() > a.norm() { *b } else { a };
         let from_n = self.before_n.iter().fold(*believed_n, larger);
         let steps_n = self.before_n.windows(2).map(|pair| pair[1].norm() - pair[0].norm());
         let sharpest_n = steps_n.fold(0.0, f64::max);
-        Falling { believed_n: *believed_n, from_n, size_n: believed_n.norm(), sharpest_n, samples: 0, falls: true }
+        FallState { believed_n: *believed_n, from_n, size_n: believed_n.norm(), sharpest_n, samples: 0, falls: true }
     }
 }
 
-impl Falling {
+impl FallState {
     fn look(&mut self, now_n: &Vector3<f64>) -> Fall {
         let from_n = self.from_n.norm();
         let size_n = now_n.norm();

@@ -26,21 +26,21 @@ pub(super) struct Repeats {
     /// Number of changes from reading to reading in that run.
     changes: u32,
     /// Number of changes that makes the run a fault.
-    most: u32,
+    max: u32,
     clean_since_s: f64,
-    told: bool,
+    report: bool,
 }
 
 impl Repeats {
-    /// Treats a run with `most` changes that all occurred before as a fault.
-    pub(super) const fn new(most: u32) -> Self {
+    /// Treats a run with `max` changes that all occurred before as a fault.
+    pub(super) const fn new(max: u32) -> Self {
         let words = [0; KEPT];
-        Self { words, count: 0, lag: 0, run: 0, missed: 0, changes: 0, most, clean_since_s: f64::NAN, told: false }
+        Self { words, count: 0, lag: 0, run: 0, missed: 0, changes: 0, max, clean_since_s: f64::NAN, report: false }
     }
 
     /// Returns the limit of [`Repeats::new`].
-    pub(super) const fn most(&self) -> u32 {
-        self.most
+    pub(super) const fn max(&self) -> u32 {
+        self.max
     }
 
     /// Adds a reading at `t_s`; returns whether it belongs to a repeated block.
@@ -60,7 +60,7 @@ impl Repeats {
         } else if self.is_fine() && self.lag > 0 && self.missed < MISSED_MAX {
             self.missed += 1;
         } else {
-            if self.changes >= BY_CHANCE.max(self.most / 4) && !self.told {
+            if self.changes >= BY_CHANCE.max(self.max / 4) && !self.report {
                 self.clean_since_s = t_s;
             }
             self.lag = if changes { self.find(word) } else { 0 };
@@ -70,13 +70,13 @@ impl Repeats {
         }
         self.words[self.count % KEPT] = word;
         self.count += 1;
-        self.told = self.run >= RUN && self.changes >= self.most && t_s - self.clean_since_s >= CLEAN_S;
-        self.told
+        self.report = self.run >= RUN && self.changes >= self.max && t_s - self.clean_since_s >= CLEAN_S;
+        self.report
     }
 
     /// Returns whether readings hardly ever occur twice; positions of a slow hand do.
     const fn is_fine(&self) -> bool {
-        self.most < RUN
+        self.max < RUN
     }
 
     /// Continues the run at another place, because a late loop does not receive every reading of a block.

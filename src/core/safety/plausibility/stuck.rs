@@ -23,13 +23,13 @@ const REPEATED: u32 = 2;
 /// Detects that one quantity stays identical to the last bit while another moves.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Stuck {
-    at: Option<Standing>,
+    at: Option<StuckState>,
     is_stuck: bool,
 }
 
 /// Value of both quantities when the first one stopped, and the time of that.
 #[derive(Clone, Copy, Debug)]
-struct Standing {
+struct StuckState {
     still: Vector3<f64>,
     moving: Vector3<f64>,
     since_s: f64,
@@ -38,17 +38,17 @@ struct Standing {
 
 impl Stuck {
     /// Adds a new reading: `still` is stuck when it has not changed for [`STUCK_S`] while `moving` changed by more than
-    /// `most`.
-    pub(super) fn look(&mut self, still: &Vector3<f64>, moving: &Vector3<f64>, most: f64, t_s: f64) {
+    /// `max`.
+    pub(super) fn look(&mut self, still: &Vector3<f64>, moving: &Vector3<f64>, max: f64, t_s: f64) {
         let Some(at) = self.at.as_mut().filter(|at| at.still == *still) else {
-            let at = Standing { still: *still, moving: *moving, since_s: t_s, repeats: 0 };
+            let at = StuckState { still: *still, moving: *moving, since_s: t_s, repeats: 0 };
             self.at = Some(at);
             self.is_stuck = false;
             return;
         };
         at.repeats += 1;
         let is_long = t_s - at.since_s > STUCK_S && at.repeats >= REPEATED;
-        self.is_stuck = is_long && (moving - at.moving).norm() > most;
+        self.is_stuck = is_long && (moving - at.moving).norm() > max;
     }
 
     pub(super) const fn is_stuck(&self) -> bool {

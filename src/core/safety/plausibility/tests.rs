@@ -1,32 +1,32 @@
 use super::*;
 
 /// Checks at 1 kHz; noise of 0.02 N so that nothing is frozen.
-struct Bench {
+struct Fixture {
     plausibility: Plausibility,
     noise: crate::noise::Noise,
     tick: u32,
 }
 
-impl Bench {
+impl Fixture {
     fn new() -> Self {
         Self { plausibility: Plausibility::default(), noise: crate::noise::Noise::new(5), tick: 0 }
     }
 
-    fn seen(&mut self) -> Observed {
+    fn seen(&mut self) -> PlausibilityInput {
         self.tick += 1;
         let t_s = f64::from(self.tick) * 1e-3;
         let force_n = Vector3::from_fn(|_, _| 0.02 * self.noise.gaussian());
-        let sensor = Some(Raw::of_sensor([Some(force_n.into()), None, None], None, t_s));
-        let at_m = Vector3::new((3.0 * t_s).sin(), (2.0 * t_s).cos(), (5.0 * t_s).sin()) * 0.02;
-        Observed {
+        let sensor = Some(RawReading::of_sensor([Some(force_n.into()), None, None], None, t_s));
+        let position_m = Vector3::new((3.0 * t_s).sin(), (2.0 * t_s).cos(), (5.0 * t_s).sin()) * 0.02;
+        PlausibilityInput {
             t_s,
             raw: RawReadings { sensor, ..RawReadings::NONE },
             force_n,
-            least_n: 0.1,
+            min_n: 0.1,
             world_from_s1: None,
-            tip_m: at_m,
-            hand_m: at_m,
-            command_m: Some(at_m),
+            tip_m: position_m,
+            hand_m: position_m,
+            command_m: Some(position_m),
             hand_force_n: Vector3::zeros(),
             guided: false,
             tip_silent_s: 0.0,
@@ -34,7 +34,7 @@ impl Bench {
         }
     }
 
-    fn run(&mut self, ticks: u32, mut edit: impl FnMut(u32, &mut Observed)) -> Option<(u32, Implausible)> {
+    fn run(&mut self, ticks: u32, mut edit: impl FnMut(u32, &mut PlausibilityInput)) -> Option<(u32, Implausible)> {
         (1..=ticks).find_map(|k| {
             let mut seen = self.seen();
             edit(k, &mut seen);
@@ -44,37 +44,37 @@ impl Bench {
     }
 }
 
-fn after(edit: impl FnMut(u32, &mut Observed)) -> Option<(u32, Implausible)> {
-    let mut bench = Bench::new();
+fn after(edit: impl FnMut(u32, &mut PlausibilityInput)) -> Option<(u32, Implausible)> {
+    let mut bench = Fixture::new();
     assert_eq!(bench.run(11_000, |_, _| {}), None);
     bench.run(500, edit)
 }
 
-fn sensed(seen: &mut Observed) -> &mut [f64; CHANNELS] {
+fn sensed(seen: &mut PlausibilityInput) -> &mut [f64; CHANNELS] {
     &mut seen.raw.sensor.as_mut().unwrap().channels
 }
 
 #[test]
 fn a_sensor_that_sends_nothing_is_late_and_not_frozen() {
     let mut kept = None;
-    let told = after(|k, seen| {
+    let report = after(|k, seen| {
         if k <= 19 {
             seen.raw.sensor = *kept.get_or_insert(seen.raw.sensor);
         }
     });
-    assert_eq!(told, None);
+    assert_eq!(report, None);
 }
 
 #[test]
 fn a_frozen_sensor_is_told_within_12_ms_and_one_without_noise_never() {
     let mut kept = None;
-    let told = after(|_, seen| *sensed(seen) = *kept.get_or_insert(*sensed(seen)));
-    assert!(matches!(told, Some((10..=12, Implausible::ForceFrozen))), "{told:?}");
+    let report = after(|_, seen| *sensed(seen) = *kept.get_or_insert(*sensed(seen)));
+    assert!(matches!(report, Some((10..=12, Implausible::ForceFrozen))), "{report:?}");
     let mut one = None;
-    let told = after(|_, seen| sensed(seen)[1] = *one.get_or_insert(sensed(seen)[1]));
-    assert!(matches!(told, Some((10..=12, Implausible::ForceFrozen))), "one axis: {told:?}");
-    let mut bench = Bench::new();
-    let ideal = |k: u32, seen: &mut Observed| {
+    let report = after(|_, seen| sensed(seen)[1] = *one.get_or_insert(sensed(seen)[1]));
+    assert!(matches!(report, Some((10..=12, Implausible::ForceFrozen))), "one axis: {report:?}");
+    let mut bench = Fixture::new();
+    let ideal = |k: u32, seen: &mut PlausibilityInput| {
         let z = if k % 2000 < 900 { f64::from(k) * 1e-4 } else { 0.0 };
         *sensed(seen) = [0.0, 0.0, z, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
     };
@@ -83,9 +83,9 @@ fn a_frozen_sensor_is_told_within_12_ms_and_one_without_noise_never() {
 
 #[test]
 fn a_sensor_of_a_fifth_of_the_loops_rate_is_not_frozen() {
-    let mut bench = Bench::new();
+    let mut bench = Fixture::new();
     let mut kept = None;
-    let slow = |k: u32, seen: &mut Observed| {
+    let slow = |k: u32, seen: &mut PlausibilityInput| {
         if k.is_multiple_of(5) || kept.is_none() {
             kept = Some(*sensed(seen));
         }
@@ -97,13 +97,13 @@ fn a_sensor_of_a_fifth_of_the_loops_rate_is_not_frozen() {
 #[test]
 fn a_step_is_told_in_three_ticks_and_a_spike_is_taken_out() {
     let mut kept = None;
-    let told = after(|k, seen| {
+    let report = after(|k, seen| {
         seen.tip_m = *kept.get_or_insert(seen.tip_m);
         seen.command_m = None;
         seen.force_n.x += if k > 10 { 1.0 } else { 0.0 };
     });
-    assert_eq!(told, Some((13, Implausible::ForceJumped)));
-    let mut bench = Bench::new();
+    assert_eq!(report, Some((13, Implausible::ForceJumped)));
+    let mut bench = Fixture::new();
     bench.run(100, |_, _| {});
     let mut seen = bench.seen();
     seen.force_n.z = 50.0;
@@ -115,13 +115,13 @@ fn a_step_is_told_in_three_ticks_and_a_spike_is_taken_out() {
 #[test]
 fn a_stiff_contact_is_no_jump() {
     // 5000 N/m at 60 mm/s: 0.3 N per tick.
-    let mut bench = Bench::new();
-    let press = |k: u32, seen: &mut Observed| {
+    let mut bench = Fixture::new();
+    let press = |k: u32, seen: &mut PlausibilityInput| {
         let depth_m = f64::from(k.saturating_sub(200)) * 6e-5;
-        let at_m = Vector3::new(0.0, 0.0, 0.012 - 6e-5 * f64::from(k.min(200)) - depth_m);
-        seen.tip_m = at_m;
-        seen.command_m = Some(at_m);
-        seen.hand_m = at_m;
+        let position_m = Vector3::new(0.0, 0.0, 0.012 - 6e-5 * f64::from(k.min(200)) - depth_m);
+        seen.tip_m = position_m;
+        seen.command_m = Some(position_m);
+        seen.hand_m = position_m;
         seen.force_n += Vector3::z() * 5000.0 * depth_m;
     };
     assert_eq!(bench.run(500, press), None);
@@ -129,7 +129,7 @@ fn a_stiff_contact_is_no_jump() {
 
 /// Returns the fault reported for a force with these values (N, one per sample) after a contact of 2.6 N, while the tip
 /// stands still; with `again` the values recur this many samples apart.
-fn told_of(sizes_n: &[f64], again: Option<u32>) -> Option<(u32, Implausible)> {
+fn reported_change(sizes_n: &[f64], again: Option<u32>) -> Option<(u32, Implausible)> {
     let mut kept = None;
     after(|k, seen| {
         seen.tip_m = *kept.get_or_insert(seen.tip_m);
@@ -151,16 +151,16 @@ fn a_contact_that_ends_within_some_milliseconds_is_no_jump() {
     let rings_n = [&[2.55, 2.5, 2.3, 1.85, 0.55, 0.3, 0.2, 0.1, 0.0][..], &[2.55, 2.3, 1.9, 1.0, 0.1, 0.0]];
     let others_n = [&[1.9, 0.8, 0.0][..], &[2.3, 1.2, 0.3, 0.0], &[2.0, 1.5, 1.0, 0.6, 0.2, 0.0], &[1.2, 0.0]];
     for falls_n in rings_n.into_iter().chain(others_n) {
-        assert_eq!(told_of(falls_n, None), None, "{falls_n:?}");
+        assert_eq!(reported_change(falls_n, None), None, "{falls_n:?}");
     }
-    assert_eq!(told_of(&[1.9, 0.8, 0.0, 0.0], Some(40)), None, "again and again");
+    assert_eq!(reported_change(&[1.9, 0.8, 0.0, 0.0], Some(40)), None, "again and again");
 }
 
 #[test]
 fn a_force_that_steps_to_nothing_or_falls_to_something_or_grows_or_turns_has_jumped() {
     let jumped = |sizes_n: &[f64], by: u32| {
-        let told = told_of(sizes_n, None);
-        assert!(matches!(told, Some((k, Implausible::ForceJumped)) if k <= 49 + by), "{sizes_n:?}: {told:?}");
+        let report = reported_change(sizes_n, None);
+        assert!(matches!(report, Some((k, Implausible::ForceJumped)) if k <= 49 + by), "{sizes_n:?}: {report:?}");
     };
     jumped(&[0.0], 3);
     jumped(&[2.4, 2.2, 2.0, 0.3], 6);
@@ -175,18 +175,18 @@ fn a_force_that_steps_to_nothing_or_falls_to_something_or_grows_or_turns_has_jum
 #[test]
 fn a_force_along_the_way_into_a_contact_is_told_and_a_puncture_is_not() {
     let touch = |sign: f64, gives_way_n: f64| {
-        let mut bench = Bench::new();
+        let mut bench = Fixture::new();
         bench.run(600, move |k, seen| {
-            let at_m = Vector3::new(0.0, 0.0, 0.010 - 5e-5 * f64::from(k));
-            seen.tip_m = at_m;
-            seen.command_m = Some(at_m);
-            seen.hand_m = at_m;
-            let force = 400.0 * (-at_m.z).max(0.0);
+            let position_m = Vector3::new(0.0, 0.0, 0.010 - 5e-5 * f64::from(k));
+            seen.tip_m = position_m;
+            seen.command_m = Some(position_m);
+            seen.hand_m = position_m;
+            let force = 400.0 * (-position_m.z).max(0.0);
             seen.force_n += Vector3::z() * sign * if force > gives_way_n { 0.2 * gives_way_n } else { force };
         })
     };
-    let told = touch(-1.0, 9.0);
-    assert!(matches!(told, Some((201..=225, Implausible::ForceAlong))), "{told:?}");
+    let report = touch(-1.0, 9.0);
+    assert!(matches!(report, Some((201..=225, Implausible::ForceAlong))), "{report:?}");
     assert_eq!(touch(1.0, 9.0), None);
     assert_eq!(touch(1.0, 0.4), None);
 }
@@ -195,13 +195,13 @@ fn a_force_along_the_way_into_a_contact_is_told_and_a_puncture_is_not() {
 fn the_sign_is_judged_of_a_touch_that_the_tip_makes_and_not_of_one_that_comes_to_it() {
     // The tip holds still, trembles, and from some moment on is pulled by 1.3 N: another hand takes the held object.
     let pulled = |from: u32, goes_m_s: f64| {
-        Bench::new().run(900, move |k, seen| {
+        Fixture::new().run(900, move |k, seen| {
             let t_s = f64::from(k) * 1e-3;
             let tremor_m = 0.00012 * (std::f64::consts::TAU * 8.5 * t_s).sin();
-            let at_m = Vector3::new(tremor_m + goes_m_s * t_s, 0.0, 0.05);
-            seen.tip_m = at_m;
-            seen.command_m = Some(at_m);
-            seen.hand_m = at_m;
+            let position_m = Vector3::new(tremor_m + goes_m_s * t_s, 0.0, 0.05);
+            seen.tip_m = position_m;
+            seen.command_m = Some(position_m);
+            seen.hand_m = position_m;
             seen.force_n.x += 1.3 * (f64::from(k.saturating_sub(from)) / 15.0).min(1.0);
         })
     };
@@ -213,74 +213,74 @@ fn the_sign_is_judged_of_a_touch_that_the_tip_makes_and_not_of_one_that_comes_to
         );
     }
     // A wrong sign at a slow touch.
-    let told = Bench::new().run(900, |k, seen| {
-        let at_m = Vector3::new(0.0, 0.0, 0.004 - 1e-5 * f64::from(k));
-        seen.tip_m = at_m;
-        seen.command_m = Some(at_m);
-        seen.hand_m = at_m;
-        seen.force_n.z -= 400.0 * (-at_m.z).max(0.0);
+    let report = Fixture::new().run(900, |k, seen| {
+        let position_m = Vector3::new(0.0, 0.0, 0.004 - 1e-5 * f64::from(k));
+        seen.tip_m = position_m;
+        seen.command_m = Some(position_m);
+        seen.hand_m = position_m;
+        seen.force_n.z -= 400.0 * (-position_m.z).max(0.0);
     });
-    assert!(matches!(told, Some((401..=520, Implausible::ForceAlong))), "{told:?}");
+    assert!(matches!(report, Some((401..=520, Implausible::ForceAlong))), "{report:?}");
 }
 
 #[test]
 fn an_error_of_the_force_below_the_least_one_is_no_touch() {
     // Overcompensated friction pushes along the motion.
-    let told = |least_n: f64| {
-        Bench::new().run(600, move |k, seen| {
-            let at_m = Vector3::new(0.0, 0.0, 0.010 - 5e-5 * f64::from(k));
-            seen.tip_m = at_m;
-            seen.command_m = Some(at_m);
-            seen.hand_m = at_m;
+    let report = |min_n: f64| {
+        Fixture::new().run(600, move |k, seen| {
+            let position_m = Vector3::new(0.0, 0.0, 0.010 - 5e-5 * f64::from(k));
+            seen.tip_m = position_m;
+            seen.command_m = Some(position_m);
+            seen.hand_m = position_m;
             seen.force_n.z -= if k > 200 { 0.2 } else { 0.0 };
-            seen.least_n = least_n;
+            seen.min_n = min_n;
         })
     };
-    assert!(matches!(told(0.1), Some((_, Implausible::ForceAlong))), "{:?}", told(0.1));
-    assert_eq!(told(0.4), None);
+    assert!(matches!(report(0.1), Some((_, Implausible::ForceAlong))), "{:?}", report(0.1));
+    assert_eq!(report(0.4), None);
 }
 
 #[test]
 fn what_stands_while_its_cause_moves_is_stuck() {
-    let told = after(|k, seen| {
+    let report = after(|k, seen| {
         seen.hand_m = Vector3::repeat(0.5);
         seen.hand_force_n = Vector3::x() * 0.05 * f64::from(k);
     });
-    assert!(matches!(told, Some((3, Implausible::HandleJumped))), "{told:?}");
+    assert!(matches!(report, Some((3, Implausible::HandleJumped))), "{report:?}");
     let mut kept = None;
-    let told = after(|k, seen| {
+    let report = after(|k, seen| {
         seen.hand_m = *kept.get_or_insert(seen.hand_m);
         seen.hand_force_n = Vector3::x() * 0.05 * f64::from(k);
     });
-    assert!(matches!(told, Some((15..=20, Implausible::HandleFrozen))), "{told:?}");
+    assert!(matches!(report, Some((15..=20, Implausible::HandleFrozen))), "{report:?}");
     let mut kept = None;
-    let told = after(|_, seen| {
+    let report = after(|_, seen| {
         seen.hand_m = *kept.get_or_insert(seen.hand_m);
         seen.hand_force_n = Vector3::x() * 0.6;
     });
-    assert!(matches!(told, Some((100..=103, Implausible::HandleFrozen))), "{told:?}");
+    assert!(matches!(report, Some((100..=103, Implausible::HandleFrozen))), "{report:?}");
     // A machine guides the handle for five seconds and then lets it stand still under its force.
-    let mut bench = Bench::new();
+    let mut bench = Fixture::new();
     let mut kept = Vector3::zeros();
-    let led = |k: u32, seen: &mut Observed| {
+    let led = |k: u32, seen: &mut PlausibilityInput| {
         kept = if k < 5000 { seen.hand_m } else { kept };
         seen.hand_m = kept;
         seen.hand_force_n = Vector3::x();
     };
     assert_eq!(bench.run(6000, led), None);
     let mut kept = None;
-    let told = after(|k, seen| {
+    let report = after(|k, seen| {
         seen.hand_m = *kept.get_or_insert(seen.hand_m);
         seen.hand_force_n = Vector3::x() * 0.05 * f64::from(k);
         seen.guided = true;
     });
-    assert_eq!(told, None, "led from the screen");
+    assert_eq!(report, None, "led from the screen");
     let mut kept = None;
     // The command is slow at that moment: its half millimetre takes longer than the 15 ms.
-    let told = after(|_, seen| seen.tip_m = *kept.get_or_insert(seen.tip_m));
-    assert!(matches!(told, Some((15..=60, Implausible::ArmAstray))), "{told:?}");
-    let told = after(|_, seen| seen.command_m = Some(seen.tip_m + Vector3::x() * 0.05));
-    assert!(matches!(told, Some((1, Implausible::ArmAstray))), "{told:?}");
+    let report = after(|_, seen| seen.tip_m = *kept.get_or_insert(seen.tip_m));
+    assert!(matches!(report, Some((15..=60, Implausible::ArmAstray))), "{report:?}");
+    let report = after(|_, seen| seen.command_m = Some(seen.tip_m + Vector3::x() * 0.05));
+    assert!(matches!(report, Some((1, Implausible::ArmAstray))), "{report:?}");
 }
 
 /// Returns whether the link is in doubt after four seconds of noise and then half a second of this force, N.
@@ -303,25 +303,25 @@ fn a_link_that_repeats_a_force_is_frozen_and_one_without_any_force_is_not() {
 /// A tip that moves at 0.2 m/s and is silent for 40 ms is 8 mm farther.
 #[test]
 fn what_went_on_while_the_line_was_silent_has_not_jumped() {
-    let told = |is_known: bool, is_tip: bool| {
+    let report = |is_known: bool, is_tip: bool| {
         let mut from_m = None;
         let mut kept = None;
         after(|k, seen| {
             seen.command_m = None;
-            let at_m = *from_m.get_or_insert(seen.tip_m) + Vector3::x() * 0.2e-3 * f64::from(k);
+            let position_m = *from_m.get_or_insert(seen.tip_m) + Vector3::x() * 0.2e-3 * f64::from(k);
             let silent = if (101..140).contains(&k) { k - 100 } else { 0 };
-            let at_m = if silent > 0 { *kept.get_or_insert(at_m) } else { at_m };
+            let position_m = if silent > 0 { *kept.get_or_insert(position_m) } else { position_m };
             let silent_s = if is_known { f64::from(silent) * 1e-3 } else { 0.0 };
             if is_tip {
-                seen.tip_m = at_m;
+                seen.tip_m = position_m;
                 seen.tip_silent_s = silent_s;
             } else {
-                seen.hand_m = at_m;
+                seen.hand_m = position_m;
                 seen.hand_silent_s = silent_s;
             }
         })
     };
-    assert_eq!([told(true, true), told(true, false)], [None; 2]);
-    assert!(matches!(told(false, true), Some((140..=143, Implausible::TipJumped))), "{:?}", told(false, true));
-    assert!(matches!(told(false, false), Some((140..=143, Implausible::HandleJumped))), "{:?}", told(false, false));
+    assert_eq!([report(true, true), report(true, false)], [None; 2]);
+    assert!(matches!(report(false, true), Some((140..=143, Implausible::TipJumped))), "{:?}", report(false, true));
+    assert!(matches!(report(false, false), Some((140..=143, Implausible::HandleJumped))), "{:?}", report(false, false));
 }

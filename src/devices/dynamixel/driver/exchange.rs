@@ -2,18 +2,18 @@
 
 use super::{
     super::{
-        clock::Age,
+        clock::ReadingAge,
         codec::{self, BROADCAST, OVERHEAD, STATUS},
-        message::{ALERT, Instruction, Refusal},
-        table::{self, Fault, HardwareError, TEMPERATURE, VELOCITY_UNIT_RAD_S, rad_from_ticks},
+        message::{ALERT, Instruction, ServoRefusal},
+        table::{self, HardwareError, ServoFault, TEMPERATURE, VELOCITY_UNIT_RAD_S, rad_from_ticks},
     },
-    CONDITION_BYTES, CONDITION_EVERY_S, CONDITION_FROM, CURRENT_MAX, Condition, Driver, Exchange, LONGEST,
-    MOTION_BYTES, Motion, POSITION_MAX, Question, Quiet, SLACK, Torque, VELOCITY_MAX,
+    CONDITION_BYTES, CONDITION_EVERY_S, CONDITION_FROM, CURRENT_MAX, DynamixelDriver, LONGEST, MOTION_BYTES,
+    POSITION_MAX, Quiet, SLACK, ServoCondition, ServoExchange, ServoMotion, ServoQuestion, Torque, VELOCITY_MAX,
 };
-use crate::{Health, Loss, SERVOS, ServoReading, Stamped, Standing, transport::Bytes};
+use crate::{ConnectionState, Health, Loss, SERVOS, ServoReading, TimedReading, transport::ByteStream};
 
-impl<T: Bytes> Driver<T> {
-    pub(super) fn turn(&mut self, now_s: f64) -> Result<Option<Stamped<ServoReading>>, Loss> {
+impl<T: ByteStream> DynamixelDriver<T> {
+    pub(super) fn turn(&mut self, now_s: f64) -> Result<Option<TimedReading<ServoReading>>, Loss> {
         self.quiet.pass(now_s, self.silence_s);
         let reading = self.listen(now_s)?;
         self.expire(now_s);
@@ -24,7 +24,7 @@ impl<T: Bytes> Driver<T> {
         Ok(reading)
     }
 
-    fn listen(&mut self, now_s: f64) -> Result<Option<Stamped<ServoReading>>, Loss> {
+    fn listen(&mut self, now_s: f64) -> Result<Option<TimedReading<ServoReading>>, Loss> {
         let mut newest = None;
         let mut buffer = [0; 256];
         for _ in 0..4 {
@@ -56,7 +56,7 @@ impl<T: Bytes> Driver<T> {
     }
 
     /// Handles a status packet: as part of the expected answer, or counts the reason why it is not.
-    fn take(&mut self, id: u8, body: &[u8], now_s: f64) -> Result<Option<Stamped<ServoReading>>, Loss> {
+    fn take(&mut self, id: u8, body: &[u8], now_s: f64) -> Result<Option<TimedReading<ServoReading>>, Loss> {
         let plain = body.len() == MOTION_BYTES + 1;
         let condition = body.len() == CONDITION_BYTES + 1;
         let fast = id == BROADCAST && body.len() + 2 == SERVOS * (MOTION_BYTES + 4);
@@ -65,24 +65,24 @@ impl<T: Bytes> Driver<T> {
             return Ok(None);
         }
         match self.exchange.map(|exchange| exchange.question) {
-            Some(Question::Motion { .. }) if self.fast && fast => {
+            Some(ServoQuestion::Motion { .. }) if self.fast && fast => {
                 let mut good = true;
                 for (index, block) in codec::blocks(body, MOTION_BYTES).into_iter().flatten().enumerate() {
                     good &= block.id == self.servos[index].id && self.take_motion(index, block.error, block.data);
                 }
                 self.finish(good, now_s)
             }
-            Some(Question::Motion { next }) if !self.fast && plain && id == self.servos[next].id => {
+            Some(ServoQuestion::Motion { next }) if !self.fast && plain && id == self.servos[next].id => {
                 let good = self.take_motion(next, body[0], &body[1..]);
                 if good && next + 1 < SERVOS {
                     if let Some(exchange) = &mut self.exchange {
-                        exchange.question = Question::Motion { next: next + 1 };
+                        exchange.question = ServoQuestion::Motion { next: next + 1 };
                     }
                     return Ok(None);
                 }
                 self.finish(good, now_s)
             }
-            Some(Question::Condition { index }) if condition && id == self.servos[index].id => {
+            Some(ServoQuestion::Condition { index }) if condition && id == self.servos[index].id => {
                 self.exchange = None;
                 self.take_condition(index, &body[1..])?;
                 Ok(None)
@@ -101,23 +101,23 @@ impl<T: Bytes> Driver<T> {
         }
         let two = |at: usize| [data[at], data[at + 1]];
         let four = |at: usize| i32::from_le_bytes([data[at], data[at + 1], data[at + 2], data[at + 3]]);
-        self.motions[index] = Motion {
+        self.motions[index] = ServoMotion {
             tick: u16::from_le_bytes(two(0)),
             current: i16::from_le_bytes(two(6)),
             velocity: four(8),
             position: four(12),
         };
-        Refusal::of(error) == Ok(None)
+        ServoRefusal::of(error) == Ok(None)
     }
 
     /// Completes a reading whose parts have all arrived.
-    fn finish(&mut self, good: bool, now_s: f64) -> Result<Option<Stamped<ServoReading>>, Loss> {
+    fn finish(&mut self, good: bool, now_s: f64) -> Result<Option<TimedReading<ServoReading>>, Loss> {
         if !good {
             self.exchange = None;
             self.health.refused += 1;
             return Ok(None);
         }
-        let possible = |motion: &Motion| {
+        let possible = |motion: &ServoMotion| {
             motion.velocity.unsigned_abs() <= VELOCITY_MAX.unsigned_abs()
                 && motion.position.unsigned_abs() <= POSITION_MAX.unsigned_abs()
                 && motion.current.unsigned_abs() <= CURRENT_MAX.unsigned_abs()
@@ -128,16 +128,16 @@ impl<T: Bytes> Driver<T> {
             return Err(Loss::Implausible);
         }
         let (device_s, age) = self.clock.take(self.motions[0].tick, now_s);
-        if age == Age::Old {
+        if age == ReadingAge::Old {
             // An answer to an earlier exchange; the expected one may still come.
             self.health.out_of_order += 1;
             if let Some(exchange) = &mut self.exchange {
-                exchange.question = Question::Motion { next: 0 };
+                exchange.question = ServoQuestion::Motion { next: 0 };
             }
             return Ok(None);
         }
         self.exchange = None;
-        if age == Age::New {
+        if age == ReadingAge::New {
             self.quiet.end(&self.health);
         }
         self.health.accept(now_s);
@@ -147,11 +147,11 @@ impl<T: Bytes> Driver<T> {
             velocity_rad_s: each(&|index| f64::from(self.motions[index].velocity) * VELOCITY_UNIT_RAD_S),
             current_a: each(&|index| f64::from(self.motions[index].current) * self.servos[index].current_unit_a),
         };
-        Ok(Some(Stamped { device_s: Some(device_s), arrival_s: now_s, value }))
+        Ok(Some(TimedReading { device_s: Some(device_s), arrival_s: now_s, value }))
     }
 
     fn take_condition(&mut self, index: usize, data: &[u8]) -> Result<(), Loss> {
-        let at = |register: table::Register| usize::from(register.address - CONDITION_FROM);
+        let at = |register: table::DynamixelRegister| usize::from(register.address - CONDITION_FROM);
         let byte = |register| data[at(register)];
         let expired = if byte(table::BUS_WATCHDOG) == table::WATCHDOG_EXPIRED { HardwareError::WATCHDOG } else { 0 };
         let torque_on = byte(table::TORQUE_ENABLE) != 0;
@@ -161,7 +161,7 @@ impl<T: Bytes> Driver<T> {
             error.0 |= HardwareError::TORQUE_GONE;
         }
         let voltage = u16::from_le_bytes([byte(table::VOLTAGE), data[at(table::VOLTAGE) + 1]]);
-        servo.condition = Some(Condition {
+        servo.condition = Some(ServoCondition {
             torque_on,
             error,
             voltage_v: f64::from(voltage) * 0.1,
@@ -169,7 +169,7 @@ impl<T: Bytes> Driver<T> {
         });
         servo.driven = torque_on;
         if error.is_any() {
-            return Err(Loss::Device { code: Fault { id: servo.id, error }.code() });
+            return Err(Loss::Device { code: ServoFault { id: servo.id, error }.code() });
         }
         // Repeat a torque command that may have been lost on the line, because a sync write has no answer.
         match self.torque {
@@ -185,7 +185,7 @@ impl<T: Bytes> Driver<T> {
         let Some(exchange) = self.exchange.filter(|exchange| now_s >= exchange.until_s) else { return };
         self.exchange = None;
         self.incoming.reset();
-        if matches!(exchange.question, Question::Motion { .. }) {
+        if matches!(exchange.question, ServoQuestion::Motion { .. }) {
             self.health.lost += 1;
         }
     }
@@ -206,23 +206,23 @@ impl<T: Bytes> Driver<T> {
             self.condition_next = (index + 1) % SERVOS;
             let read = Instruction::Read { address: CONDITION_FROM, count: CONDITION_BYTES as u16 };
             read.encode(ids[index], &mut self.outgoing);
-            (Question::Condition { index }, CONDITION_BYTES + OVERHEAD + 1)
+            (ServoQuestion::Condition { index }, CONDITION_BYTES + OVERHEAD + 1)
         } else {
             let address = table::TICK.address;
             let count = MOTION_BYTES as u16;
             Instruction::SyncRead { address, count, ids: &ids, fast: self.fast }.encode(BROADCAST, &mut self.outgoing);
-            (Question::Motion { next: 0 }, SERVOS * (MOTION_BYTES + OVERHEAD + 1))
+            (ServoQuestion::Motion { next: 0 }, SERVOS * (MOTION_BYTES + OVERHEAD + 1))
         };
         self.line.send(self.outgoing.bytes())?;
         let wire_s = (self.outgoing.bytes().len() + answer_bytes) as f64 * self.byte_s;
-        self.exchange = Some(Exchange { question, until_s: now_s + wire_s + SLACK * self.silence_s });
+        self.exchange = Some(ServoExchange { question, until_s: now_s + wire_s + SLACK * self.silence_s });
         Ok(())
     }
 
     /// Appends the sync writes that precede the read; they have no answers.
     fn put_commands(&mut self) {
         match self.torque {
-            Torque::Wanted if self.health.standing == Standing::Connected => {
+            Torque::Wanted if self.health.standing == ConnectionState::Connected => {
                 let here = std::array::from_fn(|index| {
                     let (low, high) = self.servos[index].limits_ticks;
                     f64::from(self.motions[index].position).clamp(low, high) as i32

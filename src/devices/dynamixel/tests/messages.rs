@@ -2,19 +2,19 @@
 
 use super::{
     super::{
-        codec::{BROADCAST, Incoming, Outgoing},
-        message::{self, Instruction, Keep, Refusal},
+        codec::{BROADCAST, IncomingPackets, OutgoingPackets},
+        message::{self, Instruction, Keep, ServoRefusal},
     },
     packets::hex,
 };
 
 fn both_ways(id: u8, instruction: &Instruction<'_>, wire: Option<&str>) {
-    let mut out = Outgoing::new(256);
+    let mut out = OutgoingPackets::new(256);
     instruction.encode(id, &mut out);
     if let Some(wire) = wire {
         assert_eq!(out.bytes(), hex(wire), "{instruction:?}");
     }
-    let mut incoming = Incoming::new(256);
+    let mut incoming = IncomingPackets::new(256);
     incoming.feed(out.bytes());
     let packet = incoming.next().unwrap();
     assert_eq!(packet.id, id);
@@ -90,10 +90,10 @@ fn status_packets_are_those_of_the_reference() {
         ("A6 00 00 00", "FF FF FD 00 01 08 00 55 00 A6 00 00 00 8C C0"),
         ("", "FF FF FD 00 01 04 00 55 00 A1 0C"),
     ] {
-        let mut out = Outgoing::new(64);
+        let mut out = OutgoingPackets::new(64);
         message::encode_status(1, 0, &hex(parameters), &mut out);
         assert_eq!(out.bytes(), hex(wire));
-        let mut incoming = Incoming::new(64);
+        let mut incoming = IncomingPackets::new(64);
         incoming.feed(out.bytes());
         assert_eq!(incoming.next().unwrap().body, [vec![0], hex(parameters)].concat());
     }
@@ -102,20 +102,20 @@ fn status_packets_are_those_of_the_reference() {
 #[test]
 fn wrong_lengths_and_keys_are_refused_by_name() {
     for (instruction, body, refusal) in [
-        (0x01, "00", Refusal::Length),
-        (0x02, "84 00 04", Refusal::Length),
-        (0x03, "84", Refusal::Length),
-        (0x06, "07", Refusal::Range),
-        (0x10, "01 44 58 4C 23", Refusal::Range),
-        (0x83, "74 00 04 00 01 96 00 00", Refusal::Length),
-        (0x92, "01 90 00 02", Refusal::Length),
-        (0x93, "01 20 00 02 00 A0", Refusal::Length),
-        (0x77, "", Refusal::Instruction),
+        (0x01, "00", ServoRefusal::Length),
+        (0x02, "84 00 04", ServoRefusal::Length),
+        (0x03, "84", ServoRefusal::Length),
+        (0x06, "07", ServoRefusal::Range),
+        (0x10, "01 44 58 4C 23", ServoRefusal::Range),
+        (0x83, "74 00 04 00 01 96 00 00", ServoRefusal::Length),
+        (0x92, "01 90 00 02", ServoRefusal::Length),
+        (0x93, "01 20 00 02 00 A0", ServoRefusal::Length),
+        (0x77, "", ServoRefusal::Instruction),
     ] {
         assert_eq!(Instruction::decode(instruction, &hex(body)), Err(refusal), "{instruction:#x} {body}");
     }
     for code in 0..=255 {
-        match Refusal::of(code) {
+        match ServoRefusal::of(code) {
             Ok(None) => assert_eq!(code & 0x7F, 0),
             Ok(Some(refusal)) => assert_eq!(refusal as u8, code & 0x7F),
             Err(unknown) => assert!(unknown > 7 && unknown == code & 0x7F),

@@ -1,8 +1,8 @@
 //! Checksums, stuffing, resynchronisation, and robustness against arbitrary bytes.
 
 use super::super::{
-    codec::{self, BROADCAST, Incoming, Outgoing, STATUS},
-    message::{Instruction, Refusal},
+    codec::{self, BROADCAST, IncomingPackets, OutgoingPackets, STATUS},
+    message::{Instruction, ServoRefusal},
 };
 
 pub(super) fn hex(text: &str) -> Vec<u8> {
@@ -10,7 +10,7 @@ pub(super) fn hex(text: &str) -> Vec<u8> {
 }
 
 /// Returns id, instruction and body of every packet in `bytes`, and the counters of refused data.
-fn packets(incoming: &mut Incoming, bytes: &[u8]) -> Vec<(u8, u8, Vec<u8>)> {
+fn packets(incoming: &mut IncomingPackets, bytes: &[u8]) -> Vec<(u8, u8, Vec<u8>)> {
     let mut found = Vec::new();
     let mut taken = 0;
     while taken < bytes.len() {
@@ -28,21 +28,21 @@ fn stuffing_goes_in_and_comes_out() {
         ("FF FF FD 00 01 0A 00 03 E0 00 FF FF FD FD 01 67 7A", "E0 00 FF FF FD 01"),
         ("FF FF FD 00 01 0D 00 03 E0 00 FF FF FD FD FF FF FD FD ED B2", "E0 00 FF FF FD FF FF FD"),
     ] {
-        let mut out = Outgoing::new(64);
+        let mut out = OutgoingPackets::new(64);
         out.begin(1, 3).put(&hex(data)).end();
         assert_eq!(out.bytes(), hex(wire));
-        assert_eq!(packets(&mut Incoming::new(64), &hex(wire)), [(1, 3, hex(data))]);
+        assert_eq!(packets(&mut IncomingPackets::new(64), &hex(wire)), [(1, 3, hex(data))]);
     }
     // Sent without any stuffing, as by a known client.
     let bare = "FF FF FD 00 01 09 00 03 E2 00 FF FF FD 05 4B 97";
-    assert_eq!(packets(&mut Incoming::new(64), &hex(bare)), [(1, 3, hex("E2 00 FF FF FD 05"))]);
+    assert_eq!(packets(&mut IncomingPackets::new(64), &hex(bare)), [(1, 3, hex("E2 00 FF FF FD 05"))]);
 }
 
 #[test]
 fn any_parameters_survive_the_wire() {
     let mut random = fastrand::Rng::with_seed(1);
-    let mut out = Outgoing::new(256);
-    let mut incoming = Incoming::new(256);
+    let mut out = OutgoingPackets::new(256);
+    let mut incoming = IncomingPackets::new(256);
     for _ in 0..100_000 {
         // Few byte values, so that marks are frequent, also across two calls of `put`.
         let data: Vec<u8> = (0..random.usize(0..40)).map(|_| *random.choice(&[0xFF, 0xFD, 0x00]).unwrap()).collect();
@@ -51,7 +51,7 @@ fn any_parameters_survive_the_wire() {
         out.begin(7, 3).put(head).put(tail).end();
         assert_eq!(packets(&mut incoming, out.bytes()), [(7, 3, data)]);
     }
-    assert_eq!(incoming.refused(), codec::Refused::default());
+    assert_eq!(incoming.refused(), codec::RefusedCounts::default());
 }
 
 #[test]
@@ -59,7 +59,7 @@ fn a_packet_is_found_behind_noise_and_behind_a_damaged_one() {
     let good = hex("FF FF FD 00 01 03 00 01 19 4E");
     let mut bad = good.clone();
     bad[9] ^= 1;
-    let mut incoming = Incoming::new(64);
+    let mut incoming = IncomingPackets::new(64);
     // A length that would swallow everything, an incomplete header, a damaged packet.
     let stream = [hex("00 FF FF FD 00 01 FF 7F 55 FF FF FF"), bad, good.clone(), vec![0xFF; 5], good].concat();
     for byte in &stream[..stream.len() - 10] {
@@ -72,10 +72,10 @@ fn a_packet_is_found_behind_noise_and_behind_a_damaged_one() {
 #[test]
 fn a_fast_answer_carries_a_running_checksum_in_every_block() {
     let wire = hex("FF FF FD 00 FE 11 00 55 00 01 D0 07 00 00 0C 83 00 02 09 00 00 00 11 40");
-    let mut out = Outgoing::new(64);
+    let mut out = OutgoingPackets::new(64);
     out.begin_fast(16).put_block(0, 1, &hex("D0 07 00 00")).put_block(0, 2, &hex("09 00 00 00"));
     assert_eq!(out.bytes(), wire);
-    let found = packets(&mut Incoming::new(64), &wire);
+    let found = packets(&mut IncomingPackets::new(64), &wire);
     assert_eq!((found[0].0, found[0].1), (BROADCAST, STATUS));
     let blocks: Vec<_> =
         codec::blocks(&found[0].2, 4).unwrap().map(|block| (block.error, block.id, block.data.to_vec())).collect();
@@ -86,8 +86,8 @@ fn a_fast_answer_carries_a_running_checksum_in_every_block() {
 /// Random bytes, mutated packets, and packets cut and joined anywhere.
 fn fuzz(rounds: u64, seed: u64) {
     let mut random = fastrand::Rng::with_seed(seed);
-    let mut incoming = Incoming::new(200);
-    let mut out = Outgoing::new(512);
+    let mut incoming = IncomingPackets::new(200);
+    let mut out = OutgoingPackets::new(512);
     let mut given = 0_u64;
     let mut found = 0_u64;
     let mut whole = 0_u64;
@@ -116,7 +116,7 @@ fn fuzz(rounds: u64, seed: u64) {
                 found += 1;
                 assert!(packet.wire_bytes <= 200);
                 if let Err(refusal) = Instruction::decode(packet.instruction, packet.body) {
-                    assert_ne!(refusal, Refusal::Checksum);
+                    assert_ne!(refusal, ServoRefusal::Checksum);
                 }
                 let _any: usize = codec::blocks(packet.body, 16).into_iter().flatten().map(|b| b.data.len()).sum();
             }

@@ -3,14 +3,14 @@ use proptest::prelude::*;
 use crate::{
     CapReading,
     hid::{
-        HidIdentity, Source,
+        HidIdentity, HidSource,
         cap_codec::{self, BadReport, CapReport, CapState, POSSIBLE, RELEASE_AFTER_S, counts_of, light},
-        pedal_codec::{self, Layout},
-        spacenavd::{EVENT_LENGTH, Event},
+        pedal_codec::{self, PedalLayout},
+        spacenavd::{EVENT_LENGTH, SpacenavdEvent},
     },
 };
 
-const KEYBOARD: Layout = Layout::Keyboard { keys: [5, 4, 6, 0, 0, 0, 0, 0] };
+const KEYBOARD: PedalLayout = PedalLayout::Keyboard { keys: [5, 4, 6, 0, 0, 0, 0, 0] };
 
 fn near(got: f64, expected: f64) -> bool {
     (got - expected).abs() < 1e-3
@@ -93,34 +93,36 @@ fn pedals_give_their_switches_by_the_reference() {
     assert_eq!(KEYBOARD.decode(&[0, 0, 5]), Err(BadReport::Shape));
     assert_eq!(KEYBOARD.decode(&[0, 1, 5, 0, 0, 0, 0, 0]), Err(BadReport::Shape));
     for bits in 0..8 {
-        assert_eq!(Layout::Switches.decode(&[bits, 0]), Ok(u32::from(bits)));
+        assert_eq!(PedalLayout::Switches.decode(&[bits, 0]), Ok(u32::from(bits)));
     }
-    assert_eq!(Layout::Switches.decode(&[8, 0]), Err(BadReport::Content));
-    assert_eq!(Layout::Switches.decode(&[1]), Err(BadReport::Shape));
+    assert_eq!(PedalLayout::Switches.decode(&[8, 0]), Err(BadReport::Content));
+    assert_eq!(PedalLayout::Switches.decode(&[1]), Err(BadReport::Shape));
 }
 
 #[test]
 fn the_daemons_axes_are_turned_into_ours() {
     let mut state = CapState::default();
-    Event::decode(&Event::Motion([35, 70, 105, 140, 175, 210]).encode(8)).unwrap().apply(&mut state, 0.0);
-    Event::Button { number: 1, pressed: true }.apply(&mut state, 0.0);
-    Event::Button { number: 99, pressed: true }.apply(&mut state, 0.0);
+    SpacenavdEvent::decode(&SpacenavdEvent::Motion([35, 70, 105, 140, 175, 210]).encode(8))
+        .unwrap()
+        .apply(&mut state, 0.0);
+    SpacenavdEvent::Button { number: 1, pressed: true }.apply(&mut state, 0.0);
+    SpacenavdEvent::Button { number: 99, pressed: true }.apply(&mut state, 0.0);
     let CapReading { translation, rotation, buttons } = state.reading();
     assert!(near(translation.x, 0.1) && near(translation.y, 0.3) && near(translation.z, 0.2));
     assert!(near(rotation.x, 0.4) && near(rotation.y, 0.6) && near(rotation.z, 0.5));
     assert_eq!(buttons, 2);
-    assert_eq!(Event::decode(&[0; 31]), Err(BadReport::Shape));
-    assert_eq!(Event::decode(&[7; EVENT_LENGTH]), Err(BadReport::Shape));
+    assert_eq!(SpacenavdEvent::decode(&[0; 31]), Err(BadReport::Shape));
+    assert_eq!(SpacenavdEvent::decode(&[7; EVENT_LENGTH]), Err(BadReport::Shape));
 }
 
 #[test]
 fn sources_read_back_as_they_are_written() {
     for text in ["any", "046d:c626", "256f:c635:SN:1", "/dev/hidraw0", "emulated:/tmp/a.sock", "spacenavd:/run/s"] {
-        assert_eq!(text.parse::<Source>().unwrap().to_string(), text);
+        assert_eq!(text.parse::<HidSource>().unwrap().to_string(), text);
     }
-    assert!(matches!("spacenavd".parse(), Ok(Source::Spacenavd(_))));
+    assert!(matches!("spacenavd".parse(), Ok(HidSource::Spacenavd(_))));
     for text in ["", "emulated:", "046d", "46d:c626", "046d:c62g", "hidraw0"] {
-        let trouble = text.parse::<Source>().unwrap_err();
+        let trouble = text.parse::<HidSource>().unwrap_err();
         assert!(trouble.to_string().contains("source") && trouble.cure().contains("VENDOR:PRODUCT"), "{trouble}");
     }
 }
@@ -158,15 +160,15 @@ proptest! {
             let length = report.encode(&mut buffer);
             prop_assert_eq!(CapReport::decode(&buffer[..length]), Ok(report));
         }
-        let event = Event::Motion(counts.map(i32::from));
-        prop_assert_eq!(Event::decode(&event.encode(3)), Ok(event));
-        let event = Event::Button { number: bits >> 1, pressed: charging };
-        prop_assert_eq!(Event::decode(&event.encode(0)), Ok(event));
+        let event = SpacenavdEvent::Motion(counts.map(i32::from));
+        prop_assert_eq!(SpacenavdEvent::decode(&event.encode(3)), Ok(event));
+        let event = SpacenavdEvent::Button { number: bits >> 1, pressed: charging };
+        prop_assert_eq!(SpacenavdEvent::decode(&event.encode(0)), Ok(event));
     }
 
     #[test]
     fn every_pedal_report_comes_back(pressed in 0_u32..8) {
-        for layout in [KEYBOARD, Layout::Switches] {
+        for layout in [KEYBOARD, PedalLayout::Switches] {
             let mut buffer = [0; pedal_codec::LENGTH_MAX];
             let length = layout.encode(pressed, &mut buffer);
             prop_assert_eq!(layout.decode(&buffer[..length]), Ok(pressed));
@@ -208,11 +210,11 @@ fn fuzz(rounds: u64, seed: u64) {
         if let Ok(report) = CapReport::decode(bytes) {
             taken += u64::from(state.take(&report, now_s));
         }
-        if let Ok(event) = Event::decode(bytes) {
+        if let Ok(event) = SpacenavdEvent::decode(bytes) {
             event.apply(&mut state, now_s);
             taken += 1;
         }
-        for layout in [KEYBOARD, Layout::Switches] {
+        for layout in [KEYBOARD, PedalLayout::Switches] {
             if let Ok(pressed) = layout.decode(bytes) {
                 assert!(pressed < 8);
                 taken += 1;

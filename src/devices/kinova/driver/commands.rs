@@ -2,20 +2,20 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 
-use super::{Answer, Driver, Mode, ToolReading, twist_message, vector};
+use super::{CallAnswer, KinovaDriver, KinovaMode, ToolReading, twist_message, vector};
 use crate::{
     ARM_JOINTS,
     kinova::{
-        faults::Faults,
-        feedback::Feedback,
-        limits::Beyond,
-        messages::{Number, Rpc, ServoingMode},
+        faults::KinovaFaults,
+        feedback::KinovaFeedback,
+        limits::ExceededLimit,
+        messages::{KinovaNumber, Rpc, ServoingMode},
     },
-    transport::Bytes as _,
+    transport::ByteStream as _,
 };
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum Refusal {
+pub enum KinovaRefusal {
     #[error("the connection to the arm is lost: reconnect it")]
     Lost,
     #[error("the arm does not accept joint targets now: enter low-level servoing first")]
@@ -30,7 +30,7 @@ pub enum Refusal {
     Beyond {
         /// The joint, counted from 1.
         joint: usize,
-        beyond: Beyond,
+        beyond: ExceededLimit,
     },
 }
 
@@ -62,7 +62,7 @@ impl ToolTwist {
     }
 
     fn limited(&self, linear_m_s: f64, angular_rad_s: f64) -> Self {
-        let cut = |vector: &Vector3<f64>, most: f64| vector.map(|x| x.clamp(-1e3, 1e3)).cap_magnitude(most);
+        let cut = |vector: &Vector3<f64>, max: f64| vector.map(|x| x.clamp(-1e3, 1e3)).cap_magnitude(max);
         Self {
             frame: self.frame,
             linear_m_s: cut(&self.linear_m_s, linear_m_s),
@@ -86,62 +86,62 @@ const TWIST_DEAD_MAN_S: f64 = 0.1;
 /// Interval between two twists, s: the base accepts about 40 per second.
 const TWIST_PERIOD_S: f64 = 0.025;
 
-impl Driver {
+impl KinovaDriver {
     /// Requests low-level servoing, starting at rest at the current position. It is active when
     /// [`ArmReading::servoing`](crate::ArmReading::servoing) becomes true, after some ticks; a refusal of the arm is in
-    /// [`Driver::answer`].
+    /// [`KinovaDriver::answer`].
     ///
     /// # Errors
-    /// [`Refusal`] while a twist moves the arm.
-    pub fn enter_low_level(&mut self) -> Result<(), Refusal> {
+    /// [`KinovaRefusal`] while a twist moves the arm.
+    pub fn enter_low_level(&mut self) -> Result<(), KinovaRefusal> {
         self.still_there()?;
         if self.twist.active {
-            return Err(Refusal::Moving);
+            return Err(KinovaRefusal::Moving);
         }
-        if self.mode == Mode::Single {
+        if self.mode == KinovaMode::Single {
             self.answer = None;
-            let number = self.call(Rpc::SET_SERVOING_MODE, &Number { value: ServoingMode::Low as u32 });
-            self.mode = Mode::Entering { number, since_s: self.now_s };
+            let number = self.call(Rpc::SET_SERVOING_MODE, &KinovaNumber { value: ServoingMode::Low as u32 });
+            self.mode = KinovaMode::Entering { number, since_s: self.now_s };
         }
         Ok(())
     }
 
     pub fn leave_low_level(&mut self) {
         match self.mode {
-            Mode::Single | Mode::Braking | Mode::Leaving { .. } => {}
-            Mode::Entering { .. } => self.ask_single_level(self.now_s),
-            Mode::Low => {
+            KinovaMode::Single | KinovaMode::Braking | KinovaMode::Leaving { .. } => {}
+            KinovaMode::Entering { .. } => self.ask_single_level(self.now_s),
+            KinovaMode::Low => {
                 self.guard.brake();
-                self.mode = Mode::Braking;
+                self.mode = KinovaMode::Braking;
             }
         }
     }
 
     /// Commands joint angles, rad, in the turns of the readings: the next point of a path within the
-    /// [limits](crate::kinova::Settings::joint_limits), starting at [`Driver::command_rad`]. A command beyond the
+    /// [limits](crate::kinova::KinovaSettings::joint_limits), starting at [`KinovaDriver::command_rad`]. A command beyond the
     /// limits is refused and counted, and ends servoing, because its plan is wrong.
     ///
     /// # Errors
-    /// [`Refusal`] if the arm is not servoing, a number is not finite, or a limit is exceeded.
-    pub fn aim(&mut self, target_rad: &[f64; ARM_JOINTS]) -> Result<(), Refusal> {
+    /// [`KinovaRefusal`] if the arm is not servoing, a number is not finite, or a limit is exceeded.
+    pub fn aim(&mut self, target_rad: &[f64; ARM_JOINTS]) -> Result<(), KinovaRefusal> {
         self.still_there()?;
         if !target_rad.iter().all(|angle| angle.is_finite()) {
-            return Err(Refusal::NotFinite);
+            return Err(KinovaRefusal::NotFinite);
         }
-        if self.mode != Mode::Low {
-            return Err(Refusal::NotServoing);
+        if self.mode != KinovaMode::Low {
+            return Err(KinovaRefusal::NotServoing);
         }
         self.guard.aim(target_rad, &self.joint_rad).map_err(|(joint, beyond)| {
             self.health.refused += 1;
             self.leave_low_level();
-            Refusal::Beyond { joint, beyond }
+            KinovaRefusal::Beyond { joint, beyond }
         })
     }
 
     /// Ends every motion: in low-level servoing brakes and holds; in single-level sends a zero twist and `Stop`.
     pub fn stop(&mut self) {
         self.guard.brake();
-        if !self.is_lost() && !matches!(self.mode, Mode::Low | Mode::Braking | Mode::Leaving { .. }) {
+        if !self.is_lost() && !matches!(self.mode, KinovaMode::Low | KinovaMode::Braking | KinovaMode::Leaving { .. }) {
             self.release_twist();
         }
     }
@@ -150,14 +150,14 @@ impl Driver {
     /// renewed within 0.1 s; a zero twist ends it at once.
     ///
     /// # Errors
-    /// [`Refusal`] in low-level servoing, or if a number is not finite.
-    pub fn twist(&mut self, twist: &ToolTwist) -> Result<(), Refusal> {
+    /// [`KinovaRefusal`] in low-level servoing, or if a number is not finite.
+    pub fn twist(&mut self, twist: &ToolTwist) -> Result<(), KinovaRefusal> {
         self.still_there()?;
         if !twist.is_finite() {
-            return Err(Refusal::NotFinite);
+            return Err(KinovaRefusal::NotFinite);
         }
-        if self.mode != Mode::Single {
-            return Err(Refusal::NotSingleLevel);
+        if self.mode != KinovaMode::Single {
+            return Err(KinovaRefusal::NotSingleLevel);
         }
         if twist.is_zero() {
             if self.twist.active {
@@ -177,8 +177,8 @@ impl Driver {
     /// # Errors
     /// If the operating system cannot duplicate the connection.
     pub fn lever(&self) -> std::io::Result<impl FnMut() + Send + 'static> {
-        let single = Number { value: ServoingMode::Single as u32 };
-        let (mut tcp, words) = self.lines.last_words(Rpc::SET_SERVOING_MODE, &single)?;
+        let single = KinovaNumber { value: ServoingMode::Single as u32 };
+        let (mut tcp, words) = self.lines.last_text(Rpc::SET_SERVOING_MODE, &single)?;
         // If the connection is broken, the arm's own watchdog has already acted.
         Ok(move || {
             tcp.send(&words).ok();
@@ -189,24 +189,24 @@ impl Driver {
     /// opened ([`FaultClearing`](crate::kinova::FaultClearing)).
     ///
     /// # Errors
-    /// [`Refusal`] if the arm cannot accept the call now.
-    pub fn clear_faults(&mut self) -> Result<(), Refusal> {
+    /// [`KinovaRefusal`] if the arm cannot accept the call now.
+    pub fn clear_faults(&mut self) -> Result<(), KinovaRefusal> {
         self.still_there()?;
         self.call(Rpc::CLEAR_FAULTS, &());
         Ok(())
     }
 
-    pub fn faults(&self) -> Faults {
-        Faults::of(&self.feedback)
+    pub fn faults(&self) -> KinovaFaults {
+        KinovaFaults::of(&self.feedback)
     }
 
     /// Returns the latest valid answer, in the units of the protocol.
-    pub const fn feedback(&self) -> &Feedback {
+    pub const fn feedback(&self) -> &KinovaFeedback {
         &self.feedback
     }
 
     /// Returns the last call that was refused since low-level servoing was entered.
-    pub const fn answer(&self) -> Option<Answer> {
+    pub const fn answer(&self) -> Option<CallAnswer> {
         self.answer
     }
 
@@ -222,7 +222,7 @@ impl Driver {
 
     /// Returns the state of the tool according to the arm.
     pub fn tool(&self) -> ToolReading {
-        let Feedback { tool_pose, tool_twist, tool_wrench, .. } = &self.feedback;
+        let KinovaFeedback { tool_pose, tool_twist, tool_wrench, .. } = &self.feedback;
         let theta_rad = vector(&tool_pose[3..], 1_f64.to_radians());
         ToolReading {
             position_m: vector(&tool_pose[..3], 1.0),
@@ -234,8 +234,8 @@ impl Driver {
         }
     }
 
-    const fn still_there(&self) -> Result<(), Refusal> {
-        if self.is_lost() { Err(Refusal::Lost) } else { Ok(()) }
+    const fn still_there(&self) -> Result<(), KinovaRefusal> {
+        if self.is_lost() { Err(KinovaRefusal::Lost) } else { Ok(()) }
     }
 
     /// Resends the active twist when it is due; ends a twist that was not renewed.

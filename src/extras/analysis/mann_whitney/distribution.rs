@@ -4,15 +4,15 @@ use crate::ranks::Ranks;
 
 /// `[s]` is the probability that `chosen` of `ranks`, drawn without replacement, have the sum `s` (Streitberg & Röhmel, 1986).
 fn sums(ranks: &[usize], chosen: usize) -> Vec<f64> {
-    let most: usize = largest(ranks, chosen);
+    let max: usize = largest(ranks, chosen);
     // `ways[j][s]`: number of sets of j ranks with the sum s. At most 1e29 here: no overflow, and rounding stays
     // relative.
-    let mut ways = vec![vec![0.0; most + 1]; chosen + 1];
+    let mut ways = vec![vec![0.0; max + 1]; chosen + 1];
     ways[0][0] = 1.0;
     for (seen, &rank) in ranks.iter().enumerate() {
         for size in (1..=chosen.min(seen + 1)).rev() {
             let (smaller, same) = ways.split_at_mut(size);
-            for sum in rank..=most {
+            for sum in rank..=max {
                 same[0][sum] += smaller[size - 1][sum - rank];
             }
         }

@@ -9,12 +9,12 @@ use crate::distribution::normal_two_sided;
 use crate::error::{AnalysisError, Result};
 use crate::interval;
 use crate::ranks::Ranks;
-use crate::signed_rank::{Distribution, Location, MOST_EXACT};
+use crate::signed_rank::{Distribution, Location, MAX_EXACT};
 use crate::summary;
 use serde::Serialize;
 
 /// More differences between the groups are refused: they would fill the memory.
-const MOST_DIFFERENCES: usize = 4_000_000;
+const MAX_DIFFERENCES: usize = 4_000_000;
 
 /// Result of the Mann-Whitney test.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -35,7 +35,7 @@ pub struct MannWhitney {
 /// Tests two groups with at least one value each, not all of which are equal (Mann & Whitney, On a test of whether one
 /// of two random variables is stochastically larger than the other, Annals of Mathematical Statistics 18, 1947).
 ///
-/// By default exact if both groups have at most [`MOST_EXACT`] values. With ties the distribution is not symmetric, and
+/// By default exact if both groups have at most [`MAX_EXACT`] values. With ties the distribution is not symmetric, and
 /// the p-value counts everything at least as far from the mean, on either side (like R's `coin` and `SciPy`'s
 /// permutation for a centred statistic).
 pub fn test(first: &[f64], second: &[f64], distribution: Distribution) -> Result<MannWhitney> {
@@ -62,18 +62,18 @@ pub fn test(first: &[f64], second: &[f64], distribution: Distribution) -> Result
 /// group's (Hodges & Lehmann, 1963).
 ///
 /// The interval inverts the test (Moses; Hollander & Wolfe, section 4.3): exact if both groups have at most
-/// [`MOST_EXACT`] values. With ties its confidence is at least the reported one, whereas R's `wilcox.test` switches to
+/// [`MAX_EXACT`] values. With ties its confidence is at least the reported one, whereas R's `wilcox.test` switches to
 /// the normal approximation.
 pub fn shift(first: &[f64], second: &[f64], confidence: f64) -> Result<Location> {
     check::values("values of the first group", first, 1)?;
     check::values("values of the second group", second, 1)?;
-    check::share("the confidence", confidence)?;
-    check::not_too_many("differences between the groups", first.len().saturating_mul(second.len()), MOST_DIFFERENCES)?;
+    check::fraction("the confidence", confidence)?;
+    check::not_too_many("differences between the groups", first.len().saturating_mul(second.len()), MAX_DIFFERENCES)?;
     let differences = first.iter().flat_map(|a| second.iter().map(move |b| a - b));
     let differences = summary::sorted(&differences.collect::<Vec<_>>());
     let m = first.len();
     let n = second.len();
-    let interval = if m.max(n) <= MOST_EXACT {
+    let interval = if m.max(n) <= MAX_EXACT {
         interval::exact(&differences, &distribution::masses(m, n), confidence)
     } else {
         let m = m as f64;

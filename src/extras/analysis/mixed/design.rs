@@ -1,6 +1,6 @@
 //! Columns of the fixed effects, and the participant of each row.
 
-use super::Model;
+use super::MixedModel;
 use crate::error::{AnalysisError, Result};
 use crate::{check, summary};
 use nalgebra::{DMatrix, DVector};
@@ -13,7 +13,7 @@ const DEPENDENT: f64 = 1e-7;
 
 /// The model as matrices. Its columns are made orthonormal (`X = Q R`), so that the size or mean of a covariate costs
 /// no digits; `y` is the residual of the response against `Q`.
-pub(super) struct Design {
+pub(super) struct MixedDesign {
     /// Name of each column of X: the intercept, the conditions in alphabetical order without the reference, the
     /// covariates.
     pub(super) names: Vec<String>,
@@ -34,8 +34,8 @@ pub(super) struct Design {
     pub(super) y: DVector<f64>,
 }
 
-impl Design {
-    pub(super) fn of(model: &Model) -> Result<Self> {
+impl MixedDesign {
+    pub(super) fn of(model: &MixedModel) -> Result<Self> {
         let names: BTreeSet<&str> = model.participant.iter().map(String::as_str).collect();
         check::enough("participants", names.len(), 2)?;
         let index: BTreeMap<&str, usize> = names.iter().enumerate().map(|(at, name)| (*name, at)).collect();
@@ -47,7 +47,7 @@ impl Design {
         let (column_names, columns, conditions) = columns(model);
         let x = DMatrix::from_fn(model.response.len(), columns.len(), |row, column| columns[column][row]);
         let (q, r) = orthonormal(&x, &column_names)?;
-        let degrees = Degrees::of(&x, &r, &of_row, &sizes);
+        let degrees = DesignDegrees::of(&x, &r, &of_row, &sizes);
         degrees.check()?;
         let response = DVector::from_column_slice(&model.response);
         let projected = q.tr_mul(&response);
@@ -76,7 +76,7 @@ impl Design {
 }
 
 /// Names and columns of X, and which columns are conditions.
-fn columns(model: &Model) -> (Vec<String>, Vec<Vec<f64>>, Range<usize>) {
+fn columns(model: &MixedModel) -> (Vec<String>, Vec<Vec<f64>>, Range<usize>) {
     let levels: BTreeSet<&String> = model.condition.iter().filter(|name| **name != model.reference).collect();
     let mut names = vec!["(intercept)".to_owned()];
     let mut columns = vec![vec![1.0; model.response.len()]];
@@ -105,12 +105,12 @@ fn orthonormal(x: &DMatrix<f64>, names: &[String]) -> Result<(DMatrix<f64>, DMat
 }
 
 /// Degrees of freedom for estimating the variances.
-struct Degrees {
+struct DesignDegrees {
     within: usize,
     between: usize,
 }
 
-impl Degrees {
+impl DesignDegrees {
     /// `within`: trials minus the participants and the effects within them. `between`: participants minus the effects
     /// that only differ between them, including the intercept.
     fn of(x: &DMatrix<f64>, r: &DMatrix<f64>, of_row: &[usize], sizes: &[f64]) -> Self {

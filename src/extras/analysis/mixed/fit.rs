@@ -1,22 +1,22 @@
 //! The results of a fitted model.
 
-use super::Criterion;
-use super::design::Design;
-use super::likelihood::Profile;
+use super::MixedCriterion;
+use super::design::MixedDesign;
+use super::likelihood::LikelihoodProfile;
 use super::satterthwaite::Precision;
 use crate::distribution::{f_above, t_critical, t_two_sided};
 use crate::error::{AnalysisError, Result};
-use crate::interval::Interval;
+use crate::interval::ConfidenceInterval;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 use serde::Serialize;
 
 /// A fitted mixed model.
 #[derive(Clone, Debug, Serialize)]
-pub struct Fit {
+pub struct MixedFit {
     /// The maximised criterion.
-    pub criterion: Criterion,
+    pub criterion: MixedCriterion,
     /// Intercept (the reference, where covariates are zero), conditions in alphabetical order, covariates.
-    pub effects: Vec<Effect>,
+    pub effects: Vec<FixedEffect>,
     /// Whether the conditions differ at all; `None` if there is only one.
     pub conditions: Option<JointTest>,
     /// Variance of the participants' intercepts, unit of the response squared. Zero is the boundary: then the trials of
@@ -33,12 +33,12 @@ pub struct Fit {
     /// Residual of each response, in the order of the trials: without fixed effects and the participant's intercept.
     pub residuals: Vec<f64>,
     #[serde(skip)]
-    solution: Solution,
+    solution: FitSolution,
 }
 
 /// One fixed effect, or a combination of some.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Effect {
+pub struct FixedEffect {
     /// The condition, the covariate, or `(intercept)`.
     pub name: String,
     /// In the unit of the response; for a covariate, per its unit.
@@ -50,7 +50,7 @@ pub struct Effect {
     pub df: f64,
     pub p: f64,
     /// Confidence interval of the estimate.
-    pub interval: Interval,
+    pub interval: ConfidenceInterval,
 }
 
 /// F test of several effects at once (Fai & Cornelius, Approximate F-tests, Journal of Statistical Computation and Simulation 54, 1996, as in lmerTest).
@@ -66,7 +66,7 @@ pub struct JointTest {
 }
 
 #[derive(Clone, Debug)]
-struct Solution {
+struct FitSolution {
     beta: DVector<f64>,
     precision: Precision,
     confidence: f64,
@@ -74,15 +74,16 @@ struct Solution {
     condition_names: Vec<String>,
 }
 
-impl Fit {
-    pub(super) fn at(design: &Design, ratio: f64, criterion: Criterion, confidence: f64) -> Result<Self> {
+impl MixedFit {
+    pub(super) fn at(design: &MixedDesign, ratio: f64, criterion: MixedCriterion, confidence: f64) -> Result<Self> {
         let flat = AnalysisError::NotEstimable { why: "the effects cannot be separated at the best variances" };
-        let profile = Profile::of(design, criterion);
+        let profile = LikelihoodProfile::of(design, criterion);
         let point = profile.at(ratio).ok_or(flat.clone())?;
         let precision = Precision::of(design, &profile, &point)?;
         let beta = design.r.solve_upper_triangular(&(&design.projected + &point.gamma)).ok_or(flat)?;
         let condition_names = design.names[design.conditions.clone()].to_vec();
-        let solution = Solution { beta, precision, confidence, reference: design.reference.clone(), condition_names };
+        let solution =
+            FitSolution { beta, precision, confidence, reference: design.reference.clone(), condition_names };
         let effects =
             (0..design.names.len()).map(|at| solution.effect(design.names[at].clone(), &solution.unit(at))).collect();
         let intercepts = &point.z * ratio;
@@ -104,13 +105,13 @@ impl Fit {
     }
 
     /// The fixed effect of that name.
-    pub fn effect(&self, name: &str) -> Option<&Effect> {
+    pub fn effect(&self, name: &str) -> Option<&FixedEffect> {
         self.effects.iter().find(|effect| effect.name == name)
     }
 
     /// Returns the difference between two conditions, `first` minus `second`; the reference may be one of them. Correct
     /// several p-values with [`crate::correction::holm`].
-    pub fn between(&self, first: &str, second: &str) -> Result<Effect> {
+    pub fn between(&self, first: &str, second: &str) -> Result<FixedEffect> {
         let weights = self.solution.of_condition(first)? - self.solution.of_condition(second)?;
         if first == second {
             return Err(AnalysisError::NoVariation { what: "two names of conditions" });
@@ -119,7 +120,7 @@ impl Fit {
     }
 }
 
-impl Solution {
+impl FitSolution {
     fn unit(&self, at: usize) -> DVector<f64> {
         DVector::from_fn(self.beta.len(), |row, _| f64::from(u8::from(row == at)))
     }
@@ -133,13 +134,14 @@ impl Solution {
         at.map(|at| self.unit(at + 1)).ok_or_else(|| AnalysisError::UnknownCondition { name: name.to_owned() })
     }
 
-    fn effect(&self, name: String, weights: &DVector<f64>) -> Effect {
+    fn effect(&self, name: String, weights: &DVector<f64>) -> FixedEffect {
         let estimate = weights.dot(&self.beta);
         let standard_error = self.precision.variance(weights).sqrt();
         let t = estimate / standard_error;
         let df = self.precision.df(weights);
-        let interval = Interval::around(estimate, t_critical(self.confidence, df) * standard_error, self.confidence);
-        Effect { name, estimate, standard_error, t, df, p: t_two_sided(t, df), interval }
+        let interval =
+            ConfidenceInterval::around(estimate, t_critical(self.confidence, df) * standard_error, self.confidence);
+        FixedEffect { name, estimate, standard_error, t, df, p: t_two_sided(t, df), interval }
     }
 
     /// The effects are rotated until they are uncorrelated; each then has its t and its degrees of freedom.

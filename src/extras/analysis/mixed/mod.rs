@@ -18,14 +18,14 @@ mod satterthwaite;
 
 use crate::check;
 use crate::error::{AnalysisError, Result};
-use design::Design;
+use design::MixedDesign;
 use serde::Serialize;
 
-pub use fit::{Effect, Fit, JointTest};
+pub use fit::{FixedEffect, JointTest, MixedFit};
 
 /// The criterion to be maximised.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-pub enum Criterion {
+pub enum MixedCriterion {
     /// Restricted likelihood: variances without the bias caused by the fixed effects. For everything except comparing
     /// models with different fixed effects.
     #[default]
@@ -36,19 +36,19 @@ pub enum Criterion {
 /// Measurements, one entry per trial, with their explanatory variables.
 ///
 /// ```
-/// use nima_analysis::{mixed::{Criterion, Model}, AnalysisError};
+/// use nima_analysis::{mixed::{MixedCriterion, MixedModel}, AnalysisError};
 ///
 /// // Peak force of four participants, N, twice under each condition.
 /// let participant = ["a", "a", "a", "a", "b", "b", "b", "b", "c", "c", "c", "c", "d", "d", "d", "d"];
 /// let condition = ["none", "none", "matched", "matched"].repeat(4);
 /// let force = [5.1, 4.8, 4.0, 4.3, 6.2, 6.0, 5.3, 5.0, 4.1, 4.4, 3.9, 3.2, 5.5, 5.9, 4.6, 4.8];
-/// let fit = Model::new(&participant, &condition, "none", &force)?.fit(Criterion::Reml, 0.95)?;
+/// let fit = MixedModel::new(&participant, &condition, "none", &force)?.fit(MixedCriterion::Reml, 0.95)?;
 /// let matched = fit.effect("matched").unwrap();
 /// assert!((matched.estimate + 0.8625).abs() < 1e-9 && (matched.df - 11.0).abs() < 1e-6 && matched.p < 0.001);
 /// # Ok::<(), AnalysisError>(())
 /// ```
 #[derive(Clone, Debug)]
-pub struct Model {
+pub struct MixedModel {
     participant: Vec<String>,
     condition: Vec<String>,
     reference: String,
@@ -56,7 +56,7 @@ pub struct Model {
     covariates: Vec<(String, Vec<f64>)>,
 }
 
-impl Model {
+impl MixedModel {
     /// `participant`, `condition` and `response` of each trial, all of one length; the conditions are compared with
     /// `reference`, which must occur among them. With a single condition there is only the intercept.
     pub fn new<P: AsRef<str>, C: AsRef<str>>(
@@ -93,10 +93,10 @@ impl Model {
     ///
     /// Refuses a column that depends on others, fewer trials or participants than the effects and variances need, and
     /// responses that the effects explain without residual.
-    pub fn fit(&self, criterion: Criterion, confidence: f64) -> Result<Fit> {
-        check::share("the confidence", confidence)?;
-        let design = Design::of(self)?;
+    pub fn fit(&self, criterion: MixedCriterion, confidence: f64) -> Result<MixedFit> {
+        check::fraction("the confidence", confidence)?;
+        let design = MixedDesign::of(self)?;
         let ratio = optimum::ratio(&design, criterion)?;
-        Fit::at(&design, ratio, criterion, confidence)
+        MixedFit::at(&design, ratio, criterion, confidence)
     }
 }

@@ -1,8 +1,8 @@
 //! The ratio of the participants' variance to the residual variance that maximises the likelihood.
 
-use super::Criterion;
-use super::design::Design;
-use super::likelihood::{Point, Profile};
+use super::MixedCriterion;
+use super::design::MixedDesign;
+use super::likelihood::{LikelihoodPoint, LikelihoodProfile};
 use crate::error::{AnalysisError, Result};
 
 /// Correlations within a participant for the first scan of the likelihood: evenly spaced, then ever closer to 1.
@@ -11,9 +11,10 @@ fn correlations() -> impl Iterator<Item = f64> {
 }
 
 /// Found as the zero of the slope, which is sharper than the flat top of the likelihood.
-pub(super) fn ratio(design: &Design, criterion: Criterion) -> Result<f64> {
-    let profile = Profile::of(design, criterion);
-    let points: Vec<Point> = correlations().filter_map(|share| profile.at(share / (1.0 - share))).collect();
+pub(super) fn ratio(design: &MixedDesign, criterion: MixedCriterion) -> Result<f64> {
+    let profile = LikelihoodProfile::of(design, criterion);
+    let points: Vec<LikelihoodPoint> =
+        correlations().filter_map(|fraction| profile.at(fraction / (1.0 - fraction))).collect();
     let deviances: Vec<f64> = points.iter().map(|point| profile.deviance(point)).collect();
     let best = (0..points.len()).min_by(|&a, &b| deviances[a].total_cmp(&deviances[b])).ok_or(FLAT)?;
     if best + 1 == points.len() {

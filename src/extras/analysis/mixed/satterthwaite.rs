@@ -1,7 +1,7 @@
 //! Degrees of freedom of combinations of the fixed effects, after Satterthwaite.
 
-use super::design::Design;
-use super::likelihood::{Point, Profile};
+use super::design::MixedDesign;
+use super::likelihood::{LikelihoodPoint, LikelihoodProfile};
 use crate::error::{AnalysisError, Result};
 use nalgebra::{DMatrix, DVector};
 
@@ -18,7 +18,7 @@ pub(super) struct Precision {
 }
 
 impl Precision {
-    pub(super) fn of(design: &Design, profile: &Profile, point: &Point) -> Result<Self> {
+    pub(super) fn of(design: &MixedDesign, profile: &LikelihoodProfile, point: &LikelihoodPoint) -> Result<Self> {
         let lost = AnalysisError::NotEstimable { why: "the likelihood is too flat about its maximum" };
         let back = design.r.clone().try_inverse().ok_or(lost.clone())?;
         let residual_variance = profile.residual_variance(point);

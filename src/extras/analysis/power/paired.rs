@@ -1,8 +1,8 @@
 //! Two conditions, one difference per participant.
 
-use super::{Power, Simulation, normal};
+use super::{Power, PowerSimulation, normal};
 use crate::error::Result;
-use crate::signed_rank::{self, Options};
+use crate::signed_rank::{self, SignedRankOptions};
 use crate::{check, t_test};
 
 /// The distribution of future participants' differences, without the effect.
@@ -55,7 +55,7 @@ impl Population {
     }
 }
 
-impl Simulation {
+impl PowerSimulation {
     /// Returns the power of a study with `n` participants (2 to 10 000) if the differences have the distribution
     /// `population` about `effect`.
     pub fn paired(&self, population: &Population, effect: f64, n: usize, test: PairedTest) -> Result<Power> {
@@ -73,7 +73,9 @@ impl Simulation {
 
 fn p_value(differences: &[f64], test: PairedTest) -> Option<f64> {
     match test {
-        PairedTest::Wilcoxon => signed_rank::of_differences(differences, &Options::default()).ok().map(|test| test.p),
+        PairedTest::Wilcoxon => {
+            signed_rank::of_differences(differences, &SignedRankOptions::default()).ok().map(|test| test.p)
+        }
         PairedTest::T => t_test::of_differences(differences, 0.95).ok().map(|test| test.p),
     }
 }

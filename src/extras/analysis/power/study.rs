@@ -1,9 +1,9 @@
 //! Several conditions and trials, analysed with the mixed model.
 
-use super::{Power, Simulation, normal};
+use super::{Power, PowerSimulation, normal};
 use crate::check;
 use crate::error::{AnalysisError, Result};
-use crate::mixed::{Criterion, Fit, Model};
+use crate::mixed::{MixedCriterion, MixedFit, MixedModel};
 
 /// A study with repeated measures: every participant has the same number of trials under every condition.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,7 +21,7 @@ pub struct MixedStudy {
 impl MixedStudy {
     /// Uses the variances of a pilot and the given effects, preferably the smallest relevant ones rather than those
     /// observed in the pilot.
-    pub fn from_pilot(pilot: &Fit, effects: &[f64], trials: usize) -> Self {
+    pub fn from_pilot(pilot: &MixedFit, effects: &[f64], trials: usize) -> Self {
         let participant_variance = pilot.participant_variance;
         let residual_variance = pilot.residual_variance;
         Self { effects: effects.to_vec(), trials, participant_variance, residual_variance }
@@ -40,7 +40,7 @@ impl MixedStudy {
     }
 }
 
-impl Simulation {
+impl PowerSimulation {
     /// Returns the power of the joint F test of the conditions with `participants`, at least 2 and at most 100 000
     /// trials in total.
     pub fn mixed(&self, study: &MixedStudy, participants: usize) -> Result<Power> {
@@ -66,8 +66,8 @@ impl Simulation {
                 }
                 *value = means[row] + intercept + within * normal(rng);
             }
-            let fit =
-                Model::new(&participant, &condition, "0", &response).and_then(|model| model.fit(Criterion::Reml, 0.95));
+            let fit = MixedModel::new(&participant, &condition, "0", &response)
+                .and_then(|model| model.fit(MixedCriterion::Reml, 0.95));
             fit.ok().and_then(|fit| fit.conditions).map(|test| test.p)
         })
     }

@@ -15,7 +15,7 @@ use serde::Serialize;
 pub use location::{Location, location, paired_location};
 
 /// By default the distribution is exact up to this many differences (as in `SciPy`'s `wilcoxon`).
-pub const MOST_EXACT: usize = 50;
+pub const MAX_EXACT: usize = 50;
 
 /// Treatment of differences that are zero.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
@@ -31,10 +31,10 @@ pub enum Zeros {
 /// How a p-value is computed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub enum Distribution {
-    /// Exact up to [`MOST_EXACT`] values, by the normal distribution above.
+    /// Exact up to [`MAX_EXACT`] values, by the normal distribution above.
     #[default]
     Automatic,
-    /// Exact; more values than [`MOST_EXACT`] are refused.
+    /// Exact; more values than [`MAX_EXACT`] are refused.
     Exact,
     /// By the normal distribution, corrected for ties and for continuity.
     Normal,
@@ -44,15 +44,15 @@ impl Distribution {
     /// Whether `n` values are to be computed exactly.
     pub(crate) fn is_exact(self, what: &'static str, n: usize) -> Result<bool> {
         match self {
-            Self::Automatic => Ok(n <= MOST_EXACT),
+            Self::Automatic => Ok(n <= MAX_EXACT),
             Self::Normal => Ok(false),
-            Self::Exact => check::not_too_many(what, n, MOST_EXACT).map(|()| true),
+            Self::Exact => check::not_too_many(what, n, MAX_EXACT).map(|()| true),
         }
     }
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Options {
+pub struct SignedRankOptions {
     pub zeros: Zeros,
     pub distribution: Distribution,
 }
@@ -78,7 +78,7 @@ pub struct SignedRank {
 }
 
 /// Tests `first - second`, pair by pair.
-pub fn paired(first: &[f64], second: &[f64], options: &Options) -> Result<SignedRank> {
+pub fn paired(first: &[f64], second: &[f64], options: &SignedRankOptions) -> Result<SignedRank> {
     of_differences(&check::differences(first, second)?, options)
 }
 
@@ -87,7 +87,7 @@ pub fn paired(first: &[f64], second: &[f64], options: &Options) -> Result<Signed
 /// The normal approximation is the one of Hollander & Wolfe (Nonparametric Statistical Methods, 1999, section 3.1); for
 /// the kept ranks r, the sum has mean sum(r) / 2 and variance sum(r^2) / 4, which holds with ties and under either rule
 /// for zeros.
-pub fn of_differences(differences: &[f64], options: &Options) -> Result<SignedRank> {
+pub fn of_differences(differences: &[f64], options: &SignedRankOptions) -> Result<SignedRank> {
     check::values("differences", differences, 1)?;
     let (ranks, positive) = signed_ranks(differences, options.zeros);
     if ranks.is_empty() {

@@ -1,20 +1,20 @@
 //! Results that can be computed by hand.
 
 use super::{near, wilcoxon};
-use crate::mixed::{Criterion, Fit, Model};
-use crate::signed_rank::{self, Distribution, Options, Zeros};
-use crate::{Bootstrap, Summary, correction, effect, friedman, mann_whitney, t_test};
+use crate::mixed::{MixedCriterion, MixedFit, MixedModel};
+use crate::signed_rank::{self, Distribution, SignedRankOptions, Zeros};
+use crate::{Bootstrap, SampleSummary, correction, effect, friedman, mann_whitney, t_test};
 
 /// Responses of six participants under three conditions, once each.
 const TABLE: [[f64; 3]; 6] =
     [[8.1, 6.9, 5.2], [9.4, 8.8, 7.7], [6.2, 6.6, 4.1], [7.7, 5.9, 5.5], [10.3, 9.1, 7.2], [8.8, 8.2, 8.0]];
 
-fn balanced(conditions: usize, criterion: Criterion) -> Fit {
+fn balanced(conditions: usize, criterion: MixedCriterion) -> MixedFit {
     let cells = (0..6).flat_map(|participant| (0..conditions).map(move |condition| (participant, condition)));
     let participant: Vec<String> = cells.clone().map(|(participant, _)| participant.to_string()).collect();
     let condition: Vec<String> = cells.clone().map(|(_, condition)| condition.to_string()).collect();
     let response: Vec<f64> = cells.map(|(participant, condition)| TABLE[participant][condition]).collect();
-    Model::new(&participant, &condition, "0", &response).unwrap().fit(criterion, 0.95).unwrap()
+    MixedModel::new(&participant, &condition, "0", &response).unwrap().fit(criterion, 0.95).unwrap()
 }
 
 fn mean(values: impl Iterator<Item = f64> + Clone) -> f64 {
@@ -23,7 +23,7 @@ fn mean(values: impl Iterator<Item = f64> + Clone) -> f64 {
 
 #[test]
 fn a_balanced_mixed_model_is_the_analysis_of_variance() {
-    let fit = balanced(3, Criterion::Reml);
+    let fit = balanced(3, MixedCriterion::Reml);
     let column = |condition: usize| mean(TABLE.iter().map(move |row| row[condition]));
     let grand = mean((0..3).map(column));
     let of_conditions = 6.0 * (0..3).map(|condition| (column(condition) - grand).powi(2)).sum::<f64>() / 2.0;
@@ -52,7 +52,7 @@ fn a_balanced_mixed_model_is_the_analysis_of_variance() {
 
 #[test]
 fn a_mixed_model_of_two_conditions_is_the_paired_t_test() {
-    let fit = balanced(2, Criterion::Reml);
+    let fit = balanced(2, MixedCriterion::Reml);
     let differences = TABLE.map(|row| row[1] - row[0]);
     let t = t_test::of_differences(&differences, 0.95).unwrap();
     let effect = fit.effect("1").unwrap();
@@ -65,10 +65,10 @@ fn a_mixed_model_of_two_conditions_is_the_paired_t_test() {
 #[test]
 fn likelihood_takes_balanced_variances_by_the_share_of_participants() {
     // For a balanced design, ML divides both sums of squares by one participant more.
-    let reml = balanced(3, Criterion::Reml);
-    let ml = balanced(3, Criterion::Ml);
+    let reml = balanced(3, MixedCriterion::Reml);
+    let ml = balanced(3, MixedCriterion::Ml);
     near(ml.residual_variance, reml.residual_variance * 5.0 / 6.0, 1e-11);
-    let whole = |fit: &Fit| 3.0 * fit.participant_variance + fit.residual_variance;
+    let whole = |fit: &MixedFit| 3.0 * fit.participant_variance + fit.residual_variance;
     near(whole(&ml), whole(&reml) * 5.0 / 6.0, 1e-11);
 }
 
@@ -77,9 +77,9 @@ fn participants_that_are_no_more_alike_than_others_have_no_variance() {
     // Both participants have the same mean, so the variance between them would be negative: ordinary least squares.
     let participant = ["a", "a", "a", "a", "b", "b", "b", "b"];
     let condition = ["x", "y", "x", "y", "x", "y", "x", "y"];
-    let fit = Model::new(&participant, &condition, "x", &[1.0, 4.0, 3.0, 2.0, 2.0, 3.0, 2.0, 3.0])
+    let fit = MixedModel::new(&participant, &condition, "x", &[1.0, 4.0, 3.0, 2.0, 2.0, 3.0, 2.0, 3.0])
         .unwrap()
-        .fit(Criterion::Reml, 0.95)
+        .fit(MixedCriterion::Reml, 0.95)
         .unwrap();
     assert!(fit.participant_variance.abs() < 1e-300 && fit.icc.abs() < 1e-300);
     near(fit.effects[1].df, 6.0, 1e-12);
@@ -97,11 +97,11 @@ fn a_covariate_with_a_large_mean_costs_no_digits() {
         let trial: Vec<f64> = cells()
             .map(|(participant, condition)| offset + f64::from((participant * 5 + condition * 7) % 11))
             .collect();
-        Model::new(&participant, &condition, "0", &response)
+        MixedModel::new(&participant, &condition, "0", &response)
             .unwrap()
             .covariate("trial", &trial)
             .unwrap()
-            .fit(Criterion::Reml, 0.95)
+            .fit(MixedCriterion::Reml, 0.95)
             .unwrap()
     };
     let near_zero = fit(0.0);
@@ -120,7 +120,7 @@ fn five_differences_of_one_sign_have_a_p_of_one_sixteenth() {
 
 #[test]
 fn pratts_rule_lets_zeros_take_the_low_ranks() {
-    let pratt = Options { zeros: Zeros::Pratt, distribution: Distribution::Automatic };
+    let pratt = SignedRankOptions { zeros: Zeros::Pratt, distribution: Distribution::Automatic };
     let test = signed_rank::of_differences(&[0.0, -0.0, -1.0, 2.0, 3.0], &pratt).unwrap();
     // Ranks 3, 4, 5: of eight combinations, sums of 3 or less, and 9 or more: 0, 3, 9, 12.
     assert_eq!(
@@ -173,11 +173,11 @@ fn holm_keeps_the_order_of_the_p_values() {
 
 #[test]
 fn a_summary_has_what_it_says() {
-    let summary = Summary::of(&[4.0, 1.0, 3.0, 2.0]).unwrap();
+    let summary = SampleSummary::of(&[4.0, 1.0, 3.0, 2.0]).unwrap();
     assert_eq!((summary.n, summary.quartiles, summary.extremes), (4, [1.75, 3.25], [1.0, 4.0]));
     near(summary.median, 2.5, 1e-15);
     near(summary.sd.unwrap(), (5.0_f64 / 3.0).sqrt(), 1e-15);
-    assert_eq!(Summary::of(&[4.0]).unwrap().sd, None);
+    assert_eq!(SampleSummary::of(&[4.0]).unwrap().sd, None);
 }
 
 #[test]

@@ -14,5 +14,5 @@ fn near(found: f64, expected: f64, error: f64) {
 
 /// Wilcoxon's test with its defaults.
 fn wilcoxon(differences: &[f64]) -> Result<crate::signed_rank::SignedRank> {
-    crate::signed_rank::of_differences(differences, &crate::signed_rank::Options::default())
+    crate::signed_rank::of_differences(differences, &crate::signed_rank::SignedRankOptions::default())
 }

@@ -1,8 +1,8 @@
 //! The numbers of R and `SciPy` (`peers.json`, computed by tests/peers/analysis.py, with their versions). `--nocapture`
 //! prints the worst differences.
 
-use crate::mixed::{Criterion, Fit, Model};
-use crate::signed_rank::{self, Distribution, Options, Zeros};
+use crate::mixed::{MixedCriterion, MixedFit, MixedModel};
+use crate::signed_rank::{self, Distribution, SignedRankOptions, Zeros};
 use crate::{Bootstrap, bootstrap, correction, distribution, effect, friedman, mann_whitney, power, summary, t_test};
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -32,7 +32,7 @@ impl Worst {
         found.into_iter().zip(expected).for_each(|(found, expected)| self.compare(what, found, expected));
     }
 
-    fn tell(&self) {
+    fn report(&self) {
         for (what, (error, count)) in &self.0 {
             println!("{what}: {count} numbers, worst difference {error:.1e}");
         }
@@ -63,7 +63,8 @@ fn the_signed_rank_test_gives_the_numbers_of_r_and_scipy() {
         let r = &set["r"];
         let python = &set["python"];
         let d = numbers(&set["differences"]);
-        let test = |zeros, distribution| signed_rank::of_differences(&d, &Options { zeros, distribution }).unwrap();
+        let test =
+            |zeros, distribution| signed_rank::of_differences(&d, &SignedRankOptions { zeros, distribution }).unwrap();
         worst.compare("W+, R", test(Zeros::Wilcoxon, Distribution::Normal).w_plus, &r["v"]);
         worst.compare("normal p, R", test(Zeros::Wilcoxon, Distribution::Normal).p, &r["normal"]);
         worst.compare("normal p, SciPy", test(Zeros::Wilcoxon, Distribution::Normal).p, &python["normal_wilcox"]);
@@ -72,7 +73,7 @@ fn the_signed_rank_test_gives_the_numbers_of_r_and_scipy() {
             test(Zeros::Pratt, Distribution::Normal).p,
             &python["normal_pratt"],
         );
-        if d.len() <= signed_rank::MOST_EXACT {
+        if d.len() <= signed_rank::MAX_EXACT {
             worst.compare("exact p, coin", test(Zeros::Wilcoxon, Distribution::Exact).p, &r["exact"]);
             worst.compare("exact p with Pratt's rule, coin", test(Zeros::Pratt, Distribution::Exact).p, &r["pratt"]);
         }
@@ -101,7 +102,7 @@ fn the_signed_rank_test_gives_the_numbers_of_r_and_scipy() {
         let t = t_test::of_differences(&d, 0.95).unwrap();
         worst.compare_all("t-test, R", [t.t, t.p, t.interval.lower, t.interval.upper], &r["t"]);
     }
-    worst.tell();
+    worst.report();
 }
 
 #[test]
@@ -130,7 +131,7 @@ fn the_mann_whitney_test_gives_the_numbers_of_r_and_scipy() {
             worst.compare_all("shift, R", found, &r["shift"]);
         }
     }
-    worst.tell();
+    worst.report();
 }
 
 #[test]
@@ -148,14 +149,14 @@ fn friedmans_test_gives_the_numbers_of_r_and_scipy() {
         worst.compare("p of F, SciPy", test.f_p, &python["f_p"]);
         worst.compare("W, SciPy", test.w, &python["w"]);
     }
-    worst.tell();
+    worst.report();
 }
 
-fn fit(set: &Value, criterion: Criterion) -> Fit {
+fn fit(set: &Value, criterion: MixedCriterion) -> MixedFit {
     let participant = words(&set["participant"]);
     let condition = words(&set["condition"]);
     let response = numbers(&set["response"]);
-    let mut model = Model::new(&participant, &condition, set["reference"].as_str().unwrap(), &response).unwrap();
+    let mut model = MixedModel::new(&participant, &condition, set["reference"].as_str().unwrap(), &response).unwrap();
     // The script's order; a JSON map is read in alphabetical order.
     for name in ["trial", "place"] {
         if let Some(values) = set["covariates"].get(name) {
@@ -170,11 +171,11 @@ fn the_mixed_model_gives_the_numbers_of_lmertest() {
     let peers = peers();
     let mut worst = Worst::default();
     for (set, criterion, name) in
-        sets(&peers, "mixed").flat_map(|set| [(set, Criterion::Reml, "reml"), (set, Criterion::Ml, "ml")])
+        sets(&peers, "mixed").flat_map(|set| [(set, MixedCriterion::Reml, "reml"), (set, MixedCriterion::Ml, "ml")])
     {
         let fit = fit(set, criterion);
         let r = &set["r"][name];
-        let each = |of: fn(&crate::mixed::Effect) -> f64| fit.effects.iter().map(of).collect::<Vec<_>>();
+        let each = |of: fn(&crate::mixed::FixedEffect) -> f64| fit.effects.iter().map(of).collect::<Vec<_>>();
         worst.compare_all("estimates", each(|effect| effect.estimate), &r["estimate"]);
         worst.compare_all("standard errors", each(|effect| effect.standard_error), &r["error"]);
         worst.compare_all("t", each(|effect| effect.t), &r["t"]);
@@ -188,7 +189,7 @@ fn the_mixed_model_gives_the_numbers_of_lmertest() {
         worst.compare_all("joint test", [joint.f, joint.df, joint.denominator_df, joint.p], &r["joint"]);
         worst.compare_all("intercepts", fit.intercepts.iter().map(|(_, value)| *value), &r["intercepts"]);
     }
-    worst.tell();
+    worst.report();
 }
 
 /// Not the standard errors, which it takes from another information matrix: the same for balanced trials only.
@@ -197,7 +198,7 @@ fn the_mixed_model_gives_the_estimates_of_statsmodels() {
     let peers = peers();
     let mut worst = Worst::default();
     for set in sets(&peers, "mixed") {
-        let fit = fit(set, Criterion::Reml);
+        let fit = fit(set, MixedCriterion::Reml);
         let python = &set["python"];
         worst.compare_all(
             "estimates, statsmodels",
@@ -211,7 +212,7 @@ fn the_mixed_model_gives_the_estimates_of_statsmodels() {
         );
         worst.compare("log-likelihood, statsmodels", fit.log_likelihood, &python["log_likelihood"]);
     }
-    worst.tell();
+    worst.report();
 }
 
 #[test]
@@ -220,7 +221,8 @@ fn the_bootstrap_gives_the_intervals_of_scipy_for_the_same_draws() {
     let mut worst = Worst::default();
     for set in sets(&peers, "bootstrap") {
         let sample = numbers(&set["sample"]);
-        for (method, name) in [(bootstrap::Method::Percentile, "percentile"), (bootstrap::Method::BiasCorrected, "BCa")]
+        for (method, name) in
+            [(bootstrap::BootstrapMethod::Percentile, "percentile"), (bootstrap::BootstrapMethod::BiasCorrected, "BCa")]
         {
             let resamples = set["resamples"].as_u64().unwrap() as usize;
             let bootstrap = Bootstrap { resamples, seed: set["seed"].as_u64().unwrap(), confidence: 0.95, method };
@@ -234,7 +236,7 @@ fn the_bootstrap_gives_the_intervals_of_scipy_for_the_same_draws() {
             }
         }
     }
-    worst.tell();
+    worst.report();
 }
 
 #[test]
@@ -253,7 +255,7 @@ fn effect_sizes_are_those_of_their_definitions() {
         worst.compare("Cliff's delta, NumPy", effect::cliffs_delta(&first, &second).unwrap(), &python["cliff"]);
         worst.compare("A, from the U of SciPy", effect::vargha_delaney(&first, &second).unwrap(), &python["a"]);
     }
-    worst.tell();
+    worst.report();
 }
 
 #[test]
@@ -288,7 +290,7 @@ fn tails_and_quantiles_are_those_of_scipy() {
     for row in rows("t_critical") {
         worst.compare("t quantile", distribution::t_critical(at(&row, 0), at(&row, 1)), &row[2]);
     }
-    worst.tell();
+    worst.report();
 }
 
 #[test]
@@ -312,5 +314,5 @@ fn corrections_quantiles_and_wilsons_interval_are_those_of_scipy_and_statsmodels
         worst.compare("Wilson, SciPy", interval.lower, &row[2]);
         worst.compare("Wilson, SciPy", interval.upper, &row[3]);
     }
-    worst.tell();
+    worst.report();
 }

@@ -1,10 +1,10 @@
 //! Bad input gets one sentence, never a panic or NaN.
 
 use super::wilcoxon;
-use crate::mixed::{Criterion, Fit, Model};
-use crate::power::{Least, MixedStudy, PairedTest, Population, Simulation};
-use crate::signed_rank::{self, Distribution, Options};
-use crate::{AnalysisError, Bootstrap, Summary, correction, effect, friedman, mann_whitney, summary, t_test};
+use crate::mixed::{MixedCriterion, MixedFit, MixedModel};
+use crate::power::{MinimumSample, MixedStudy, PairedTest, Population, PowerSimulation};
+use crate::signed_rank::{self, Distribution, SignedRankOptions};
+use crate::{AnalysisError, Bootstrap, SampleSummary, correction, effect, friedman, mann_whitney, summary, t_test};
 
 #[track_caller]
 fn says<T: std::fmt::Debug>(result: Result<T, AnalysisError>, expected: &str) {
@@ -18,11 +18,11 @@ fn values_that_are_no_numbers_are_named() {
     let bad = [1.0, 2.5, f64::NAN, 4.0];
     let sentence =
         |what: &str| format!("value 3 of {what} is not a usable number (finite, and smaller than 1e150); correct it");
-    says(Summary::of(&bad), &sentence("the sample"));
+    says(SampleSummary::of(&bad), &sentence("the sample"));
     says(Bootstrap::default().mean(&bad), &sentence("the sample"));
     says(wilcoxon(&bad), &sentence("differences"));
     says(signed_rank::location(&bad, 0.95), &sentence("differences"));
-    says(signed_rank::paired(&[1.0; 4], &bad, &Options::default()), &sentence("the second values"));
+    says(signed_rank::paired(&[1.0; 4], &bad, &SignedRankOptions::default()), &sentence("the second values"));
     says(mann_whitney::test(&bad, &bad, Distribution::Automatic), &sentence("values of the first group"));
     says(friedman::test(&[[1.0, 2.0, 3.0], [1.0, 2.0, f64::INFINITY]]), &sentence("the row of participant 2"));
     says(effect::cohens_dz(&bad), &sentence("differences"));
@@ -33,14 +33,14 @@ fn values_that_are_no_numbers_are_named() {
 
 #[test]
 fn too_few_values_are_counted() {
-    says(Summary::of(&NONE), "the sample: 0 are too few; give at least 1");
+    says(SampleSummary::of(&NONE), "the sample: 0 are too few; give at least 1");
     says(Bootstrap::default().median(&[1.0]), "the sample: 1 are too few; give at least 2");
     says(wilcoxon(&NONE), "differences: 0 are too few; give at least 1");
     says(friedman::test(&[[1.0, 2.0]]), "participants: 1 are too few; give at least 2");
     says(effect::cohens_d(&[1.0], &[1.0, 2.0]), "values of the first group: 1 are too few; give at least 2");
     says(correction::holm(&NONE), "p-values: 0 are too few; give at least 1");
     let many = vec![1.0; 51];
-    let exact = Options { distribution: Distribution::Exact, ..Options::default() };
+    let exact = SignedRankOptions { distribution: Distribution::Exact, ..SignedRankOptions::default() };
     says(signed_rank::of_differences(&many, &exact), "differences for an exact test: 51 are too many; give at most 50");
     says(signed_rank::location(&[1.0; 2001], 0.9), "differences: 2001 are too many; give at most 2000");
 }
@@ -78,7 +78,7 @@ fn shares_outside_of_their_range_are_told() {
     says(signed_rank::location(&[1.0], 95.0), "the confidence must be between 0 and 1, not 95");
     says(correction::holm(&[0.2, 1.2]), "a p-value must be from 0 to 1, not 1.2");
     says(
-        Simulation { level: 0.0, ..Simulation::default() }.paired(
+        PowerSimulation { level: 0.0, ..PowerSimulation::default() }.paired(
             &Population::Normal { sd: 1.0 },
             1.0,
             9,
@@ -87,33 +87,38 @@ fn shares_outside_of_their_range_are_told() {
         "the level of significance must be between 0 and 1, not 0",
     );
     says(
-        Simulation::default().paired(&Population::Normal { sd: -1.0 }, 1.0, 9, PairedTest::T),
+        PowerSimulation::default().paired(&Population::Normal { sd: -1.0 }, 1.0, 9, PairedTest::T),
         "the standard deviation must be a positive number, not -1",
     );
     let study = MixedStudy { effects: vec![1.0], trials: 1, participant_variance: -1.0, residual_variance: 1.0 };
     says(
-        Simulation::default().mixed(&study, 5),
+        PowerSimulation::default().mixed(&study, 5),
         "the variance of the participants must be zero or a positive number, not -1",
     );
 }
 
 #[test]
 fn a_power_that_is_not_reached_is_told() {
-    let simulation = Simulation { runs: 200, ..Simulation::default() };
+    let simulation = PowerSimulation { runs: 200, ..PowerSimulation::default() };
     let power = |n| simulation.paired(&Population::Normal { sd: 1.0 }, 0.0, n, PairedTest::T);
-    let error = Least::of(0.9, 5, 20, power).unwrap_err();
+    let error = MinimumSample::of(0.9, 5, 20, power).unwrap_err();
     assert!(matches!(error, AnalysisError::NotReached { largest: 20, .. }), "{error}");
-    says(Least::of(0.9, 5, 4, power), "the maximum number of participants: 4 are too few; give at least 5");
+    says(MinimumSample::of(0.9, 5, 4, power), "the maximum number of participants: 4 are too few; give at least 5");
 }
 
-fn fit(participant: &str, condition: &str, response: &[f64], covariate: Option<&[f64]>) -> Result<Fit, AnalysisError> {
+fn fit(
+    participant: &str,
+    condition: &str,
+    response: &[f64],
+    covariate: Option<&[f64]>,
+) -> Result<MixedFit, AnalysisError> {
     let letters = |text: &str| text.chars().map(String::from).collect::<Vec<_>>();
-    let model = Model::new(&letters(participant), &letters(condition), "x", response)?;
+    let model = MixedModel::new(&letters(participant), &letters(condition), "x", response)?;
     match covariate {
         Some(values) => model.covariate("order", values)?,
         None => model,
     }
-    .fit(Criterion::Reml, 0.95)
+    .fit(MixedCriterion::Reml, 0.95)
 }
 
 #[test]

@@ -1,13 +1,13 @@
 //! The content of a message.
 
 use super::{
-    Image, Matrix, Tool, Turned, Unit, Wrong,
-    wire::{Cursor, put_f32s, put_name},
+    IgtlFormatError, IgtlUnit, Image, PoseMatrix, QuaternionTool, TrackingTool,
+    wire::{IgtlCursor, put_f32s, put_name},
 };
 
 /// Kinds of data, with their names in messages and in requests for them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Kind {
+pub enum ContentKind {
     /// One pose.
     Transform,
     /// A position and an orientation.
@@ -26,7 +26,7 @@ pub enum Kind {
     Capability,
 }
 
-impl Kind {
+impl ContentKind {
     pub const ALL: [Self; 9] = [
         Self::Transform,
         Self::Position,
@@ -91,7 +91,7 @@ const ANSWER: &str = "RTS_";
 
 /// Requested interval and frame of a bundle.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Stream {
+pub struct ContentStream {
     /// Interval, ms; 0 lets the server choose.
     pub interval_ms: u32,
     /// Frame; empty lets the server choose.
@@ -108,11 +108,11 @@ pub struct Position {
 
 /// Values of a sensor.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Sensor {
+pub struct SensorContent {
     /// The sensor's own status code.
     pub status: u8,
     /// Unit of all values.
-    pub unit: Unit,
+    pub unit: IgtlUnit,
     /// At most 255.
     pub values: Vec<f64>,
 }
@@ -145,7 +145,7 @@ impl StatusCode {
 
 /// Status of a device.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Status {
+pub struct ContentStatus {
     /// General code.
     pub code: StatusCode,
     /// Specific code.
@@ -157,14 +157,14 @@ pub struct Status {
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Text {
+pub struct TextContent {
     /// The number of its character set in the list of IANA: 3 ASCII, 106 UTF-8.
     pub encoding: u16,
     /// At most 65 535.
     pub bytes: Vec<u8>,
 }
 
-impl Text {
+impl TextContent {
     const ASCII: u16 = 3;
     const UTF_8: u16 = 106;
 
@@ -183,20 +183,20 @@ impl Text {
 /// The content of a message.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Content {
-    Transform(Matrix),
+    Transform(PoseMatrix),
     Position(Position),
-    Tracking(Vec<Tool>),
-    Turned(Vec<Turned>),
-    Sensor(Sensor),
-    Status(Status),
-    Text(Text),
+    Tracking(Vec<TrackingTool>),
+    Turned(Vec<QuaternionTool>),
+    Sensor(SensorContent),
+    Status(ContentStatus),
+    Text(TextContent),
     Image(Image),
     /// Message types that a program supports.
     Capability(Vec<String>),
     /// A request, with its interval for kinds that have one.
-    Request(Verb, Kind, Option<Stream>),
+    Request(Verb, ContentKind, Option<ContentStream>),
     /// Result of a request for data of this kind: 0 if it was accepted.
-    Answer(Kind, u8),
+    Answer(ContentKind, u8),
     /// A message type that is not parsed here.
     Other(String),
 }
@@ -209,15 +209,15 @@ impl Content {
     /// Its type, as in the header.
     pub fn kind(&self) -> String {
         let known = match self {
-            Self::Transform(_) => Kind::Transform,
-            Self::Position(_) => Kind::Position,
-            Self::Tracking(_) => Kind::Tracking,
-            Self::Turned(_) => Kind::Turned,
-            Self::Sensor(_) => Kind::Sensor,
-            Self::Status(_) => Kind::Status,
-            Self::Text(_) => Kind::Text,
-            Self::Image(_) => Kind::Image,
-            Self::Capability(_) => Kind::Capability,
+            Self::Transform(_) => ContentKind::Transform,
+            Self::Position(_) => ContentKind::Position,
+            Self::Tracking(_) => ContentKind::Tracking,
+            Self::Turned(_) => ContentKind::Turned,
+            Self::Sensor(_) => ContentKind::Sensor,
+            Self::Status(_) => ContentKind::Status,
+            Self::Text(_) => ContentKind::Text,
+            Self::Image(_) => ContentKind::Image,
+            Self::Capability(_) => ContentKind::Capability,
             Self::Request(verb, kind, _) => return verb.name().to_owned() + kind.short(),
             Self::Answer(kind, _) => return ANSWER.to_owned() + kind.short(),
             Self::Other(kind) => return kind.clone(),
@@ -235,7 +235,7 @@ impl Content {
             }
             Self::Tracking(tools) => tools.iter().for_each(|tool| tool.put(bytes)),
             Self::Turned(tools) => tools.iter().for_each(|tool| tool.put(bytes)),
-            Self::Sensor(Sensor { status, unit, values }) => {
+            Self::Sensor(SensorContent { status, unit, values }) => {
                 let values = &values[..values.len().min(usize::from(u8::MAX))];
                 bytes.extend([values.len() as u8, *status]);
                 bytes.extend(unit.0.to_be_bytes());
@@ -243,14 +243,14 @@ impl Content {
                     bytes.extend(value.to_be_bytes());
                 }
             }
-            Self::Status(Status { code, subcode, name, text }) => {
+            Self::Status(ContentStatus { code, subcode, name, text }) => {
                 bytes.extend(code.0.to_be_bytes());
                 bytes.extend(subcode.to_be_bytes());
                 put_name(bytes, name, NAME);
                 bytes.extend(text.bytes().filter(|byte| *byte != 0));
                 bytes.push(0);
             }
-            Self::Text(Text { encoding, bytes: text }) => {
+            Self::Text(TextContent { encoding, bytes: text }) => {
                 let text = &text[..text.len().min(usize::from(u16::MAX))];
                 bytes.extend(encoding.to_be_bytes());
                 bytes.extend((text.len() as u16).to_be_bytes());
@@ -259,7 +259,7 @@ impl Content {
             Self::Image(image) => image.put(bytes),
             Self::Capability(types) => types.iter().for_each(|name| put_name(bytes, name, TYPE)),
             Self::Request(_, _, None) | Self::Other(_) => {}
-            Self::Request(_, _, Some(Stream { interval_ms, frame })) => {
+            Self::Request(_, _, Some(ContentStream { interval_ms, frame })) => {
                 bytes.extend(interval_ms.to_be_bytes());
                 put_name(bytes, frame, FRAME);
             }
@@ -268,13 +268,13 @@ impl Content {
     }
 
     /// Parses the content of a message of this type.
-    pub(super) fn take(name: &str, content: &[u8]) -> Result<Self, Wrong> {
-        if let Some(kind) = Kind::ALL.into_iter().find(|kind| kind.name() == name) {
+    pub(super) fn take(name: &str, content: &[u8]) -> Result<Self, IgtlFormatError> {
+        if let Some(kind) = ContentKind::ALL.into_iter().find(|kind| kind.name() == name) {
             return Self::data(kind, content);
         }
         let of = |beginning: &str| {
             let rest = name.strip_prefix(beginning)?;
-            Kind::ALL.into_iter().find(|kind| kind.short() == rest)
+            ContentKind::ALL.into_iter().find(|kind| kind.short() == rest)
         };
         for verb in Verb::ALL {
             if let Some(kind) = of(verb.name()) {
@@ -283,33 +283,33 @@ impl Content {
         }
         match (of(ANSWER), content.first()) {
             (Some(kind), Some(status)) => Ok(Self::Answer(kind, *status)),
-            (Some(_), None) => Err(Wrong::Short),
+            (Some(_), None) => Err(IgtlFormatError::Short),
             (None, _) => Ok(Self::Other(name.to_owned())),
         }
     }
 
-    fn request(verb: Verb, kind: Kind, content: &[u8]) -> Result<Self, Wrong> {
-        let has_rate = verb == Verb::Start && matches!(kind, Kind::Tracking | Kind::Turned);
+    fn request(verb: Verb, kind: ContentKind, content: &[u8]) -> Result<Self, IgtlFormatError> {
+        let has_rate = verb == Verb::Start && matches!(kind, ContentKind::Tracking | ContentKind::Turned);
         if !has_rate || content.is_empty() {
             return Ok(Self::Request(verb, kind, None));
         }
-        let mut from = Cursor(content);
-        let stream = Stream { interval_ms: from.u32()?, frame: from.name(FRAME)? };
+        let mut from = IgtlCursor(content);
+        let stream = ContentStream { interval_ms: from.u32()?, frame: from.name(FRAME)? };
         Ok(Self::Request(verb, kind, Some(stream)))
     }
 
-    fn data(kind: Kind, content: &[u8]) -> Result<Self, Wrong> {
+    fn data(kind: ContentKind, content: &[u8]) -> Result<Self, IgtlFormatError> {
         let bytes = content.len();
         let fits = |fits: bool| {
-            if fits { Ok(()) } else { Err(Wrong::Length { kind: kind.name().to_owned(), bytes }) }
+            if fits { Ok(()) } else { Err(IgtlFormatError::Length { kind: kind.name().to_owned(), bytes }) }
         };
-        let mut from = Cursor(content);
+        let mut from = IgtlCursor(content);
         Ok(match kind {
-            Kind::Transform => {
-                fits(bytes == Matrix::BYTES)?;
-                Self::Transform(Matrix::take(&mut from)?)
+            ContentKind::Transform => {
+                fits(bytes == PoseMatrix::BYTES)?;
+                Self::Transform(PoseMatrix::take(&mut from)?)
             }
-            Kind::Position => {
+            ContentKind::Position => {
                 fits([12, 24, 28].contains(&bytes))?;
                 let place_mm = from.f32s()?;
                 let turn = match bytes {
@@ -320,38 +320,38 @@ impl Content {
                 };
                 Self::Position(Position { place_mm, turn })
             }
-            Kind::Tracking => {
-                fits(bytes.is_multiple_of(Tool::BYTES))?;
-                let count = bytes / Tool::BYTES;
-                Self::Tracking((0..count).map(|_| Tool::take(&mut from)).collect::<Result<_, _>>()?)
+            ContentKind::Tracking => {
+                fits(bytes.is_multiple_of(TrackingTool::BYTES))?;
+                let count = bytes / TrackingTool::BYTES;
+                Self::Tracking((0..count).map(|_| TrackingTool::take(&mut from)).collect::<Result<_, _>>()?)
             }
-            Kind::Turned => {
-                fits(bytes.is_multiple_of(Turned::BYTES))?;
-                let count = bytes / Turned::BYTES;
-                Self::Turned((0..count).map(|_| Turned::take(&mut from)).collect::<Result<_, _>>()?)
+            ContentKind::Turned => {
+                fits(bytes.is_multiple_of(QuaternionTool::BYTES))?;
+                let count = bytes / QuaternionTool::BYTES;
+                Self::Turned((0..count).map(|_| QuaternionTool::take(&mut from)).collect::<Result<_, _>>()?)
             }
-            Kind::Sensor => {
+            ContentKind::Sensor => {
                 let [count, status] = from.array()?;
                 fits(bytes == 10 + 8 * usize::from(count))?;
-                let unit = Unit(from.u64()?);
+                let unit = IgtlUnit(from.u64()?);
                 let values = (0..count).map(|_| from.f64()).collect::<Result<_, _>>()?;
-                Self::Sensor(Sensor { status, unit, values })
+                Self::Sensor(SensorContent { status, unit, values })
             }
-            Kind::Status => {
+            ContentKind::Status => {
                 let code = StatusCode(from.u16()?);
                 let subcode = from.u64()?.cast_signed();
                 let name = from.name(NAME)?;
                 let rest = from.0.len();
-                Self::Status(Status { code, subcode, name, text: from.name(rest)? })
+                Self::Status(ContentStatus { code, subcode, name, text: from.name(rest)? })
             }
-            Kind::Text => {
+            ContentKind::Text => {
                 let encoding = from.u16()?;
                 let length = from.u16()?;
                 fits(bytes == 4 + usize::from(length))?;
-                Self::Text(Text { encoding, bytes: from.0.to_vec() })
+                Self::Text(TextContent { encoding, bytes: from.0.to_vec() })
             }
-            Kind::Image => Self::Image(Image::take(content)?),
-            Kind::Capability => {
+            ContentKind::Image => Self::Image(Image::take(content)?),
+            ContentKind::Capability => {
                 fits(bytes.is_multiple_of(TYPE))?;
                 Self::Capability((0..bytes / TYPE).map(|_| from.name(TYPE)).collect::<Result<_, _>>()?)
             }

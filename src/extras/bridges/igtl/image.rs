@@ -1,8 +1,8 @@
 //! An image: one slice of coloured pixels.
 
 use super::{
-    Wrong,
-    wire::{Cursor, put_f32s},
+    IgtlFormatError,
+    wire::{IgtlCursor, put_f32s},
 };
 
 /// An image with 8 bits per colour, the first pixel at the upper left.
@@ -38,9 +38,9 @@ impl Image {
         bytes.extend(&self.pixels);
     }
 
-    pub(super) fn take(content: &[u8]) -> Result<Self, Wrong> {
-        let wrong = |what| Wrong::Value { kind: "IMAGE".to_owned(), what };
-        let mut from = Cursor(content);
+    pub(super) fn take(content: &[u8]) -> Result<Self, IgtlFormatError> {
+        let wrong = |what| IgtlFormatError::Value { kind: "IMAGE".to_owned(), what };
+        let mut from = IgtlCursor(content);
         if from.u16()? != VERSION {
             return Err(wrong("the version of the image"));
         }
@@ -57,7 +57,7 @@ impl Image {
         }
         let count = usize::from(size[0]) * usize::from(size[1]) * usize::from(colours);
         if content.len() != HEAD + count {
-            return Err(Wrong::Length { kind: "IMAGE".to_owned(), bytes: content.len() });
+            return Err(IgtlFormatError::Length { kind: "IMAGE".to_owned(), bytes: content.len() });
         }
         Ok(Self { size_px: [size[0], size[1]], colours, pixels: content[HEAD..].to_vec() })
     }

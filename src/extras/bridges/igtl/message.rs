@@ -3,13 +3,13 @@
 use crc::{CRC_64_ECMA_182, Crc};
 
 use super::{
-    Content, Wrong,
-    wire::{Cursor, put_name},
+    Content, IgtlFormatError,
+    wire::{IgtlCursor, put_name},
 };
 
 /// The header of every message.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Header {
+pub struct IgtlHeader {
     /// 1 in versions 1 and 2 of the protocol, 2 in version 3.
     pub version: u16,
     /// The type of the message.
@@ -31,19 +31,19 @@ const DEVICE: usize = 20;
 /// Size of the extended header, which version 3 puts before the content.
 const EXTENDED: usize = 12;
 
-impl Header {
+impl IgtlHeader {
     /// Size of a header.
     pub const BYTES: usize = 58;
 
     /// Parses a header.
     ///
     /// # Errors
-    /// [`Wrong`] if the bytes are not a header.
-    pub fn read(bytes: &[u8]) -> Result<Self, Wrong> {
-        let mut from = Cursor(bytes);
+    /// [`IgtlFormatError`] if the bytes are not a header.
+    pub fn read(bytes: &[u8]) -> Result<Self, IgtlFormatError> {
+        let mut from = IgtlCursor(bytes);
         let version = from.u16()?;
         if !(1..=2).contains(&version) {
-            return Err(Wrong::Version(version));
+            return Err(IgtlFormatError::Version(version));
         }
         let kind = from.bytes(TYPE)?.iter().take_while(|byte| **byte != 0);
         let kind = kind.map(|byte| if byte.is_ascii_graphic() { char::from(*byte) } else { '?' }).collect();
@@ -56,7 +56,7 @@ impl Header {
 }
 
 #[derive(Clone, Debug, PartialEq)]
-pub struct Message {
+pub struct IgtlMessage {
     /// The name of the device, at most 20 bytes.
     pub device: String,
     /// ns since 1970 (UTC).
@@ -65,7 +65,7 @@ pub struct Message {
     pub content: Content,
 }
 
-impl Message {
+impl IgtlMessage {
     /// A message of this device and time (ns since 1970, UTC).
     pub fn new(device: &str, time_ns: u64, content: Content) -> Self {
         Self { device: device.to_owned(), time_ns, content }
@@ -86,7 +86,7 @@ impl Message {
         put_name(bytes, &self.device, DEVICE);
         bytes.extend(stamp(self.time_ns).to_be_bytes());
         bytes.extend([0; 16]);
-        let body = begin + Header::BYTES;
+        let body = begin + IgtlHeader::BYTES;
         self.content.put(bytes);
         let length = (bytes.len() - body) as u64;
         let crc = CRC.checksum(&bytes[body..]);
@@ -97,13 +97,13 @@ impl Message {
     /// Parses the body that belongs to a header. Metadata are left out.
     ///
     /// # Errors
-    /// [`Wrong`] if it is damaged or not a message of its type.
-    pub fn read(header: &Header, body: &[u8]) -> Result<Self, Wrong> {
+    /// [`IgtlFormatError`] if it is damaged or not a message of its type.
+    pub fn read(header: &IgtlHeader, body: &[u8]) -> Result<Self, IgtlFormatError> {
         if body.len() as u64 != header.body_bytes {
-            return Err(Wrong::Short);
+            return Err(IgtlFormatError::Short);
         }
         if CRC.checksum(body) != header.crc {
-            return Err(Wrong::Checksum);
+            return Err(IgtlFormatError::Checksum);
         }
         let content = if header.version == 1 { body } else { within(body)? };
         let content = Content::take(&header.kind, content)?;
@@ -112,35 +112,35 @@ impl Message {
 }
 
 /// Returns the content in a body of version 3: after the extended header, before the metadata.
-fn within(body: &[u8]) -> Result<&[u8], Wrong> {
-    let mut from = Cursor(body);
+fn within(body: &[u8]) -> Result<&[u8], IgtlFormatError> {
+    let mut from = IgtlCursor(body);
     let extended = usize::from(from.u16()?);
     let index = usize::from(from.u16()?);
     let values = from.u32()? as usize;
-    let end = body.len().checked_sub(index).and_then(|rest| rest.checked_sub(values)).ok_or(Wrong::Short)?;
+    let end = body.len().checked_sub(index).and_then(|rest| rest.checked_sub(values)).ok_or(IgtlFormatError::Short)?;
     if extended < EXTENDED {
-        return Err(Wrong::Value { kind: "header".to_owned(), what: "the length of the extended header" });
+        return Err(IgtlFormatError::Value { kind: "header".to_owned(), what: "the length of the extended header" });
     }
-    let content = body.get(extended..end).ok_or(Wrong::Short)?;
+    let content = body.get(extended..end).ok_or(IgtlFormatError::Short)?;
     metadata(&body[end..], index, values)?;
     Ok(content)
 }
 
 /// Checks that metadata match their own counts: a list of lengths, then keys and values.
-fn metadata(region: &[u8], index: usize, values: usize) -> Result<(), Wrong> {
+fn metadata(region: &[u8], index: usize, values: usize) -> Result<(), IgtlFormatError> {
     if index == 0 && values == 0 {
         return Ok(());
     }
-    let mut from = Cursor(region);
+    let mut from = IgtlCursor(region);
     let count = usize::from(from.u16()?);
-    let mut told = 0_u64;
+    let mut report = 0_u64;
     for _ in 0..count {
         let key = from.u16()?;
         let _ = from.u16()?;
         let value = from.u32()?;
-        told += u64::from(key) + u64::from(value);
+        report += u64::from(key) + u64::from(value);
     }
-    if index == 2 + 8 * count && told == values as u64 { Ok(()) } else { Err(Wrong::Short) }
+    if index == 2 + 8 * count && report == values as u64 { Ok(()) } else { Err(IgtlFormatError::Short) }
 }
 
 /// Seconds in the upper half, their fraction in the lower.

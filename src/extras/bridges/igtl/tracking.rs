@@ -1,15 +1,15 @@
 //! Poses, and bundles of them.
 
 use super::{
-    Wrong,
-    wire::{Cursor, put_f32s, put_name},
+    IgtlFormatError,
+    wire::{IgtlCursor, put_f32s, put_name},
 };
 
 /// A pose in the form of `OpenIGTLink`: three columns of a rotation, then the position (mm).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Matrix(pub [[f32; 3]; 4]);
+pub struct PoseMatrix(pub [[f32; 3]; 4]);
 
-impl Matrix {
+impl PoseMatrix {
     /// Size in bytes.
     pub(super) const BYTES: usize = 48;
 
@@ -22,7 +22,7 @@ impl Matrix {
         put_f32s(bytes, self.0.into_iter().flatten());
     }
 
-    pub(super) fn take(from: &mut Cursor<'_>) -> Result<Self, Wrong> {
+    pub(super) fn take(from: &mut IgtlCursor<'_>) -> Result<Self, IgtlFormatError> {
         Ok(Self([from.f32s()?, from.f32s()?, from.f32s()?, from.f32s()?]))
     }
 }
@@ -47,25 +47,25 @@ impl ToolKind {
         self as u8 + 1
     }
 
-    fn of(number: u8, kind: &str) -> Result<Self, Wrong> {
+    fn of(number: u8, kind: &str) -> Result<Self, IgtlFormatError> {
         let found = Self::ALL.into_iter().find(|known| known.number() == number);
-        found.ok_or_else(|| Wrong::Value { kind: kind.to_owned(), what: "the kind of a tool" })
+        found.ok_or_else(|| IgtlFormatError::Value { kind: kind.to_owned(), what: "the kind of a tool" })
     }
 }
 
 /// A tool in a bundle `TDATA`.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Tool {
+pub struct TrackingTool {
     /// At most 20 bytes.
     pub name: String,
     /// The known part of its pose.
     pub kind: ToolKind,
-    pub pose: Matrix,
+    pub pose: PoseMatrix,
 }
 
 /// A tool in a bundle `QTDATA`.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Turned {
+pub struct QuaternionTool {
     /// At most 20 bytes.
     pub name: String,
     /// The known part of its pose.
@@ -77,9 +77,9 @@ pub struct Turned {
 
 const NAME: usize = 20;
 
-impl Tool {
+impl TrackingTool {
     /// Size in bytes.
-    pub(super) const BYTES: usize = NAME + 2 + Matrix::BYTES;
+    pub(super) const BYTES: usize = NAME + 2 + PoseMatrix::BYTES;
 
     pub(super) fn put(&self, bytes: &mut Vec<u8>) {
         put_name(bytes, &self.name, NAME);
@@ -87,14 +87,14 @@ impl Tool {
         self.pose.put(bytes);
     }
 
-    pub(super) fn take(from: &mut Cursor<'_>) -> Result<Self, Wrong> {
+    pub(super) fn take(from: &mut IgtlCursor<'_>) -> Result<Self, IgtlFormatError> {
         let name = from.name(NAME)?;
         let [kind, _] = from.array()?;
-        Ok(Self { name, kind: ToolKind::of(kind, "TDATA")?, pose: Matrix::take(from)? })
+        Ok(Self { name, kind: ToolKind::of(kind, "TDATA")?, pose: PoseMatrix::take(from)? })
     }
 }
 
-impl Turned {
+impl QuaternionTool {
     /// Size in bytes.
     pub(super) const BYTES: usize = NAME + 2 + 28;
 
@@ -105,7 +105,7 @@ impl Turned {
         put_f32s(bytes, self.turn);
     }
 
-    pub(super) fn take(from: &mut Cursor<'_>) -> Result<Self, Wrong> {
+    pub(super) fn take(from: &mut IgtlCursor<'_>) -> Result<Self, IgtlFormatError> {
         let name = from.name(NAME)?;
         let [kind, _] = from.array()?;
         Ok(Self { name, kind: ToolKind::of(kind, "QTDATA")?, place_mm: from.f32s()?, turn: from.f32s()? })

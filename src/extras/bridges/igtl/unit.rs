@@ -2,9 +2,9 @@
 
 /// A unit. The prefix has 4 bits; then come six times 6 bits of a unit and 4 of its power, the first in the highest bits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Unit(pub u64);
+pub struct IgtlUnit(pub u64);
 
-impl Unit {
+impl IgtlUnit {
     pub const NEWTON: Self = Self::of(0, &[(0xB, 1)]);
 
     /// Makes a unit from the number of a prefix, and numbers of units with their powers (-8 to 7); more than six are

@@ -7,13 +7,13 @@ use nima_machine::{
     rig::SIDES,
 };
 use nima_recording::{messages::foxglove::Log, session::Encoding};
-use nima_session::outlet::Audience;
+use nima_session::sinks::Audience;
 use prost::Message as _;
 
 use super::{
-    About, Shared,
-    clock::LoopClock,
-    marks::{Follower, happening},
+    LslShared, MarkContext,
+    clock::LslLoopClock,
+    marks::{MarkFollower, happening},
 };
 
 /// Topics of a session, and the name of the operator's lines in its log.
@@ -23,23 +23,23 @@ const OPERATORS: &str = "mark";
 
 /// The topics of a session that are used, in addition to its ticks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Topic {
+enum AudienceTopic {
     Happenings,
     Log,
     Other,
 }
 
 /// Maximum number of markers that wait until the clock is known.
-const MOST_EARLY: usize = 1024;
+const MAX_EARLY: usize = 1024;
 
 /// Makes the markers of one session.
 #[derive(Debug)]
-pub(super) struct Marking {
-    shared: Arc<Shared>,
+pub(super) struct SessionMarks {
+    shared: Arc<LslShared>,
     trial: Option<String>,
-    follower: Follower,
-    clock: LoopClock,
-    channels: Vec<Topic>,
+    follower: MarkFollower,
+    clock: LslLoopClock,
+    channels: Vec<AudienceTopic>,
     started_ns: u64,
     /// Time of the last tick, s.
     last_s: Option<f64>,
@@ -47,13 +47,13 @@ pub(super) struct Marking {
     early: Vec<(f64, String)>,
 }
 
-impl Marking {
-    pub(super) fn new(shared: Arc<Shared>, about: About) -> Self {
-        let About { contact_n, trial, words } = about;
-        let clock = LoopClock::default();
+impl SessionMarks {
+    pub(super) fn new(shared: Arc<LslShared>, about: MarkContext) -> Self {
+        let MarkContext { contact_n, trial, words } = about;
+        let clock = LslLoopClock::default();
         let channels = Vec::new();
         let early = Vec::new();
-        let follower = Follower::new(contact_n, words);
+        let follower = MarkFollower::new(contact_n, words);
         Self { shared, trial, follower, clock, channels, started_ns: 0, last_s: None, early }
     }
 
@@ -61,7 +61,7 @@ impl Marking {
     fn mark(&mut self, t_s: f64, what: String) {
         match self.clock.settled(t_s) {
             Some(at_s) => self.shared.mark(at_s, what),
-            None if self.early.len() < MOST_EARLY => self.early.push((t_s, what)),
+            None if self.early.len() < MAX_EARLY => self.early.push((t_s, what)),
             None => {}
         }
     }
@@ -76,24 +76,26 @@ impl Marking {
     }
 }
 
-impl Audience for Marking {
+impl Audience for SessionMarks {
     fn begins(&mut self, _program: &str, started_ns: u64) {
         self.started_ns = started_ns;
     }
 
     fn channel(&mut self, topic: &str, _encoding: &Encoding) {
         self.channels.push(match topic {
-            HAPPENINGS => Topic::Happenings,
-            LOG => Topic::Log,
-            _ => Topic::Other,
+            HAPPENINGS => AudienceTopic::Happenings,
+            LOG => AudienceTopic::Log,
+            _ => AudienceTopic::Other,
         });
     }
 
     fn message(&mut self, channel: usize, log_time_ns: u64, data: &[u8]) {
         let what = match self.channels.get(channel) {
-            Some(Topic::Happenings) => happening(data),
+            Some(AudienceTopic::Happenings) => happening(data),
             // Only the operator's marks; all other lines are covered by ticks.
-            Some(Topic::Log) => Log::decode(data).ok().filter(|log| log.name == OPERATORS).map(|log| log.message),
+            Some(AudienceTopic::Log) => {
+                Log::decode(data).ok().filter(|log| log.name == OPERATORS).map(|log| log.message)
+            }
             _ => None,
         };
         if let Some(what) = what {
@@ -119,7 +121,7 @@ impl Audience for Marking {
     }
 }
 
-impl Drop for Marking {
+impl Drop for SessionMarks {
     fn drop(&mut self) {
         self.catch_up();
         if let Some((trial, at_s)) = self.trial.take().zip(self.last_s.and_then(|t_s| self.clock.at(t_s))) {

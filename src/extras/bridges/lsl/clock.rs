@@ -8,19 +8,19 @@ const SETTLES_S: f64 = 0.2;
 
 /// Estimated from the arrival of ticks; the smallest delay counts.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct LoopClock {
+pub(super) struct LslLoopClock {
     /// LSL time minus the loop's time, s, and when it was last observed, s.
     offset_s: Option<(f64, f64)>,
     /// When it was first observed, s.
     since_s: Option<f64>,
 }
 
-impl LoopClock {
+impl LslLoopClock {
     /// Notes the arrival of a tick of this time (s) at this LSL time, s.
     pub(super) fn note(&mut self, t_s: f64, now_s: f64) {
         let offset_s = now_s - t_s;
-        let least_s = self.offset_s.map_or(offset_s, |(least_s, at_s)| offset_s.min(least_s + DRIFT * (now_s - at_s)));
-        self.offset_s = Some((least_s, now_s));
+        let min_s = self.offset_s.map_or(offset_s, |(min_s, at_s)| offset_s.min(min_s + DRIFT * (now_s - at_s)));
+        self.offset_s = Some((min_s, now_s));
         self.since_s.get_or_insert(now_s);
     }
 
@@ -43,7 +43,7 @@ mod tests {
 
     #[test]
     fn a_stamp_is_right_to_a_fraction_of_a_millisecond_however_late_ticks_are_known() {
-        let mut clock = LoopClock::default();
+        let mut clock = LslLoopClock::default();
         assert_eq!((clock.at(1.0), clock.settled(1.0)), (None, None));
         for tick in 0..20_000_u32 {
             let t_s = f64::from(tick) * 1e-3;

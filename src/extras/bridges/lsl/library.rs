@@ -122,7 +122,7 @@ impl Lsl {
     }
 
     /// Creates a stream of texts.
-    pub(super) fn stream(&self, info: &Info<'_>) -> Result<Stream, LslError> {
+    pub(super) fn stream(&self, info: &Info<'_>) -> Result<LslStream, LslError> {
         let [name, kind, source] = [info.name, info.kind, info.source].map(text);
         // SAFETY: C strings that live through the call, which copies them.
         let described =
@@ -141,7 +141,7 @@ impl Lsl {
             (self.destroy_streaminfo)(described);
             outlet
         };
-        NonNull::new(outlet).map(|outlet| Stream { lsl: *self, outlet }).ok_or_else(|| self.refused())
+        NonNull::new(outlet).map(|outlet| LslStream { lsl: *self, outlet }).ok_or_else(|| self.refused())
     }
 
     fn refused(&self) -> LslError {
@@ -166,15 +166,15 @@ fn text(of: &str) -> CString {
 
 /// A stream. Dropping it ends it.
 #[derive(Debug)]
-pub(super) struct Stream {
+pub(super) struct LslStream {
     lsl: Lsl,
     outlet: NonNull<c_void>,
 }
 
 // SAFETY: an outlet may be used from any thread; this one is used by one thread at a time.
-unsafe impl Send for Stream {}
+unsafe impl Send for LslStream {}
 
-impl Stream {
+impl LslStream {
     /// Sends this text with this time stamp, s.
     pub(super) fn push(&self, what: &str, at_s: f64) {
         let what = text(what);
@@ -185,13 +185,13 @@ impl Stream {
     }
 
     /// Whether a listener is connected.
-    pub(super) fn is_heard(&self) -> bool {
+    pub(super) fn is_received(&self) -> bool {
         // SAFETY: the outlet is valid.
         unsafe { (self.lsl.have_consumers)(self.outlet.as_ptr()) != 0 }
     }
 }
 
-impl Drop for Stream {
+impl Drop for LslStream {
     fn drop(&mut self) {
         // SAFETY: the outlet is valid, and nothing uses it after this.
         unsafe { (self.lsl.destroy_outlet)(self.outlet.as_ptr()) };

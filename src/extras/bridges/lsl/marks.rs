@@ -3,7 +3,7 @@
 //! A marker is a few words that a program can split at spaces: event, side, and numbers. It contains nothing about the
 //! rendering of forces.
 
-use nima_core::safety::State;
+use nima_core::safety::InterlockState;
 use nima_machine::{
     messages::{Fault, LoopState, Tick},
     rig::{SIDES, Side},
@@ -18,14 +18,14 @@ const TIME: &str = "t_s";
 
 /// Follows the arms from tick to tick.
 #[derive(Debug)]
-pub(super) struct Follower {
+pub(super) struct MarkFollower {
     contact_n: f64,
     words: fn(Fault) -> &'static str,
     states: [Option<LoopState>; SIDES],
     contacts: [bool; SIDES],
 }
 
-impl Follower {
+impl MarkFollower {
     pub(super) const fn new(contact_n: f64, words: fn(Fault) -> &'static str) -> Self {
         Self { contact_n, words, states: [None; SIDES], contacts: [false; SIDES] }
     }
@@ -41,9 +41,9 @@ impl Follower {
             }
             let force_n = tick.measured_n.norm();
             let was = self.contacts[place];
-            let least_n = if was { CONTACT_ENDS * self.contact_n } else { self.contact_n };
+            let min_n = if was { CONTACT_ENDS * self.contact_n } else { self.contact_n };
             // An unknown force does not count as contact.
-            let is = tick.state != State::Disconnected && force_n >= least_n;
+            let is = tick.state != InterlockState::Disconnected && force_n >= min_n;
             self.contacts[place] = is;
             if is != was {
                 mark(format!("contact {} {}", if is { "on" } else { "off" }, side.word()));
@@ -53,17 +53,17 @@ impl Follower {
 
     fn change(&self, side: Side, before: Option<LoopState>, to: LoopState, mark: &mut impl FnMut(String)) {
         let side = side.word();
-        let coupled = |state: &LoopState| matches!(state, State::Engaged | State::Clutched);
+        let coupled = |state: &LoopState| matches!(state, InterlockState::Engaged | InterlockState::Clutched);
         match (before.as_ref().is_some_and(coupled), coupled(&to)) {
             (false, true) => mark(format!("engage {side}")),
             (true, false) => mark(format!("disengage {side}")),
             _ => {}
         }
         match (before, to) {
-            (_, State::Faulted(fault)) => mark(format!("fault {side}: {}", (self.words)(fault))),
-            (_, State::Stopped) => mark(format!("stop {side}")),
-            (_, State::Clutched) => mark(format!("clutch on {side}")),
-            (Some(State::Clutched), _) => mark(format!("clutch off {side}")),
+            (_, InterlockState::Faulted(fault)) => mark(format!("fault {side}: {}", (self.words)(fault))),
+            (_, InterlockState::Stopped) => mark(format!("stop {side}")),
+            (_, InterlockState::Clutched) => mark(format!("clutch on {side}")),
+            (Some(InterlockState::Clutched), _) => mark(format!("clutch off {side}")),
             _ => {}
         }
     }
@@ -73,8 +73,8 @@ impl Follower {
 pub(super) fn happening(message: &[u8]) -> Option<String> {
     let fields: Map<String, Value> = serde_json::from_slice(message).ok()?;
     let event = fields.get(EVENT)?.as_str()?;
-    let told = fields.iter().filter(|(name, value)| ![EVENT, TIME].contains(&name.as_str()) && !value.is_null());
-    Some(told.fold(format!("task {event}"), |mark, (name, value)| {
+    let report = fields.iter().filter(|(name, value)| ![EVENT, TIME].contains(&name.as_str()) && !value.is_null());
+    Some(report.fold(format!("task {event}"), |mark, (name, value)| {
         mark + &format!(" {name}={}", value.as_str().map_or_else(|| value.to_string(), str::to_owned))
     }))
 }

@@ -3,16 +3,16 @@
 use std::path::Path;
 
 use nalgebra::Vector3;
-use nima_core::safety::State;
+use nima_core::safety::InterlockState;
 use nima_machine::{
     config::RigConfig,
     messages::{Fault, Tick},
-    rig::{Inputs, SIDES, Sensed},
+    rig::{Inputs, SIDES, SensedForce},
     teleop::{Calibrations, Loop, Timing},
 };
 
 use super::{
-    marks::{Follower, happening},
+    marks::{MarkFollower, happening},
     *,
 };
 
@@ -22,7 +22,7 @@ const WORDS: fn(Fault) -> &'static str = |_| "something is wrong";
 fn ticks() -> Vec<[Option<Tick>; SIDES]> {
     let rig = RigConfig::load("simulated").unwrap();
     let mut control = Loop::new(&rig, &[Some(Calibrations::default()), None]).unwrap();
-    let inputs = Inputs { sensed: Sensed::AtTip(Vector3::zeros()), powered: true, ..Inputs::NOTHING };
+    let inputs = Inputs { sensed: SensedForce::AtTip(Vector3::zeros()), powered: true, ..Inputs::NOTHING };
     let (_, [tick, _]) = control.step([Some(inputs), None], &Timing::default());
     let tick = tick.unwrap();
     (0..1800).map(|number| [Some(at(number, &tick)), None]).collect()
@@ -34,9 +34,9 @@ fn at(number: u32, like: &Tick) -> Tick {
     tick.index = u64::from(number);
     tick.t_s = f64::from(number) * 1e-3;
     tick.state = match number {
-        5..1500 => State::Engaged,
-        1500..1600 => State::Stopped,
-        _ => State::Idle,
+        5..1500 => InterlockState::Engaged,
+        1500..1600 => InterlockState::Stopped,
+        _ => InterlockState::Idle,
     };
     // The force trembles around the threshold: a marker at every crossing would be too many.
     let tremble_n = if number.is_multiple_of(2) { 0.03 } else { -0.03 };
@@ -48,7 +48,7 @@ fn at(number: u32, like: &Tick) -> Tick {
 
 #[test]
 fn a_session_gives_each_mark_once_at_its_tick() {
-    let mut follower = Follower::new(CONTACT_N, WORDS);
+    let mut follower = MarkFollower::new(CONTACT_N, WORDS);
     let mut marks = Vec::new();
     for (tick, shown) in ticks().iter().enumerate() {
         follower.tick(shown, |what| marks.push((tick, what)));
@@ -62,8 +62,8 @@ fn a_session_gives_each_mark_once_at_its_tick() {
 #[test]
 fn marks_tell_no_condition() {
     // The same session with every number of the rendering changed gives the same markers.
-    let told = |change: &dyn Fn(&mut Tick)| {
-        let mut follower = Follower::new(CONTACT_N, WORDS);
+    let report = |change: &dyn Fn(&mut Tick)| {
+        let mut follower = MarkFollower::new(CONTACT_N, WORDS);
         let mut marks = Vec::new();
         for (tick, shown) in ticks().iter_mut().enumerate() {
             shown.iter_mut().flatten().for_each(change);
@@ -71,8 +71,8 @@ fn marks_tell_no_condition() {
         }
         marks
     };
-    let plain = told(&|_| {});
-    let other = told(&|tick| {
+    let plain = report(&|_| {});
+    let other = report(&|tick| {
         tick.mode = nima_core::impedance::Mode::Literal;
         tick.delay_s = 0.3;
         tick.rendered_n = Vector3::repeat(9.0);
@@ -85,14 +85,14 @@ fn marks_tell_no_condition() {
 
 #[test]
 fn a_force_that_is_not_known_is_no_contact() {
-    let mut follower = Follower::new(CONTACT_N, WORDS);
+    let mut follower = MarkFollower::new(CONTACT_N, WORDS);
     let mut shown = ticks().swap_remove(1300);
     shown[0].as_mut().unwrap().measured_n = Vector3::repeat(f64::NAN);
     let mut marks = Vec::new();
     follower.tick(&shown, |what| marks.push(what));
     assert_eq!(marks, ["engage right"]);
     let mut tick = shown[0].unwrap();
-    tick.state = State::Faulted(Fault::LinkSilent);
+    tick.state = InterlockState::Faulted(Fault::LinkSilent);
     follower.tick(&[Some(tick), None], |what| marks.push(what));
     assert_eq!(marks[1..], ["disengage right", "fault right: something is wrong"]);
 }
@@ -115,7 +115,7 @@ fn a_library_that_is_missing_or_none_is_told_with_its_cure_in_one_line() {
     let text = folder.join("liblsl.so");
     std::fs::write(&text, "no library").unwrap();
     for (path, words) in [(folder.join("absent.so"), "not found"), (text, "cannot be used")] {
-        let error = Marker::start(Some(&path), "test", "here").unwrap_err().to_string();
+        let error = MarkStream::start(Some(&path), "test", "here").unwrap_err().to_string();
         assert!(error.contains(words) && error.contains("--lsl FILE") && error.contains(".so"), "{error}");
         assert_eq!(error.lines().count(), 1);
     }
@@ -126,12 +126,12 @@ fn a_library_that_is_missing_or_none_is_told_with_its_cure_in_one_line() {
 #[test]
 fn the_installed_library_takes_the_marks_of_a_trial() {
     let Some(path) = std::env::var_os("NIMA_LIBLSL") else { return };
-    let marker = Marker::start(Some(Path::new(&path)), "test", "here").unwrap();
-    let about = About { contact_n: CONTACT_N, trial: Some("P03 4".to_owned()), words: WORDS };
+    let marker = MarkStream::start(Some(Path::new(&path)), "test", "here").unwrap();
+    let about = MarkContext { contact_n: CONTACT_N, trial: Some("P03 4".to_owned()), words: WORDS };
     let mut audience = marker.audience(about);
     for (tick, shown) in ticks().iter().enumerate() {
         audience.tick(tick as f64 * 1e-3, shown, &[]);
     }
     drop(audience);
-    assert_eq!((marker.dropped(), marker.is_heard()), (0, false));
+    assert_eq!((marker.dropped(), marker.is_received()), (0, false));
 }

@@ -12,7 +12,7 @@ fn a_lens_is_found_from_rendered_boards_within_half_a_percent() {
         let views = rendered(&mut rng, &real, &poses, Sensor::USUAL);
         let report = calibrate(&board(), SIZE_PX, &views);
         let found = report.lens.unwrap();
-        println!("{found:?}\n{:?}", report.coverage.share());
+        println!("{found:?}\n{:?}", report.coverage.fraction());
         assert_eq!((report.verdict(), report.used.len()), (Verdict::Accepted, 12), "{:?}", report.cause);
         assert!(error(&found.lens, &real) < 0.005, "{:?}", found.lens);
         assert!(found.held_out_px < 0.3 && bend_px(&found.lens, &real) < 2.0, "{found:?}");
@@ -82,7 +82,7 @@ fn figures_of_calibrations_from_rendered_boards() {
             Sensor { blur_px: 0.5 + 1.5 * rng.f32(), noise: 1.0 + 5.0 * rng.f64(), edge: 0.3 + 0.6 * rng.f64() };
         let portrait = Portrait::new(&real);
         // A view in which the board is not found is skipped, like in the wizard.
-        let find_in = |pose| find(&sensor.picture(&mut rng, &portrait, &board(), pose), &board()).ok();
+        let find_in = |pose| find(&sensor.image(&mut rng, &portrait, &board(), pose), &board()).ok();
         let views: Vec<_> = usual(&mut Rng::with_seed(set), &real, &board(), 16).iter().filter_map(find_in).collect();
         seen += views.len();
         let report = calibrate(&board(), SIZE_PX, &views);

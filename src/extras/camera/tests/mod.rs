@@ -3,18 +3,18 @@
 mod degenerate;
 mod detection;
 mod lenses;
-mod places;
+mod touched_places;
 
 use fastrand::Rng;
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector2, Vector3};
-use nima_endoscope::{Bend, Board, Lens, board::Portrait};
+use nima_endoscope::{Bend, Checkerboard, Lens, board::Portrait};
 
-use crate::{Coverage, Grey, Sight, find};
+use crate::{BoardSight, CameraCoverage, Grey, find};
 
 const SIZE_PX: [usize; 2] = [1280, 720];
 
-fn board() -> Board {
-    Board::new([9, 6], 0.006).unwrap()
+fn board() -> Checkerboard {
+    Checkerboard::new([9, 6], 0.006).unwrap()
 }
 
 fn lens(k1: f64) -> Lens {
@@ -28,7 +28,13 @@ fn normal(rng: &mut Rng) -> f64 {
 
 /// A board whose middle is seen at this position in the image (-1 to 1 each), tilted about x and y and rotated about z,
 /// degrees.
-fn pose(lens: &Lens, board: &Board, [x, y]: [f64; 2], far_m: f64, [tilt_x, tilt_y, turn]: [f64; 3]) -> Isometry3<f64> {
+fn pose(
+    lens: &Lens,
+    board: &Checkerboard,
+    [x, y]: [f64; 2],
+    far_m: f64,
+    [tilt_x, tilt_y, turn]: [f64; 3],
+) -> Isometry3<f64> {
     let [width, height] = lens.size_px.map(|side| side as f64);
     let at_px = Vector2::new(0.5 * width * (1.0 + x), 0.5 * height * (1.0 + y));
     let middle_m = lens.direction(&at_px).unwrap() * far_m;
@@ -39,10 +45,10 @@ fn pose(lens: &Lens, board: &Board, [x, y]: [f64; 2], far_m: f64, [tilt_x, tilt_
 
 /// Typical poses of a person: over the whole image, some of them tilted in each direction. Every corner is within the
 /// image.
-fn usual(rng: &mut Rng, lens: &Lens, board: &Board, count: usize) -> Vec<Isometry3<f64>> {
+fn usual(rng: &mut Rng, lens: &Lens, board: &Checkerboard, count: usize) -> Vec<Isometry3<f64>> {
     let mut poses = Vec::new();
     let mut spread = |k: usize| {
-        let shares = [
+        let fractions = [
             [-0.6, -0.5],
             [0.6, -0.5],
             [0.6, 0.5],
@@ -54,12 +60,12 @@ fn usual(rng: &mut Rng, lens: &Lens, board: &Board, count: usize) -> Vec<Isometr
             [-0.6, 0.0],
         ];
         let tilts = [[0.0, 0.0], [28.0, 0.0], [-28.0, 0.0], [0.0, 28.0], [0.0, -28.0], [20.0, 20.0]];
-        let share = shares[k % shares.len()];
+        let fraction = fractions[k % fractions.len()];
         let tilt = tilts[k % tilts.len()];
         let mut vary = |by: f64| by * (2.0 * rng.f64() - 1.0);
-        let share = share.map(|share| share + vary(0.12));
+        let fraction = fraction.map(|fraction| fraction + vary(0.12));
         let far_m = 0.085 + vary(0.02);
-        pose(lens, board, share, far_m, [tilt[0] + vary(8.0), tilt[1] + vary(8.0), vary(25.0)])
+        pose(lens, board, fraction, far_m, [tilt[0] + vary(8.0), tilt[1] + vary(8.0), vary(25.0)])
     };
     for k in 0..400 {
         if poses.len() == count {
@@ -74,19 +80,19 @@ fn usual(rng: &mut Rng, lens: &Lens, board: &Board, count: usize) -> Vec<Isometr
     poses
 }
 
-fn corners_px(lens: &Lens, board: &Board, pose: &Isometry3<f64>) -> Option<Vec<Vector2<f64>>> {
+fn corners_px(lens: &Lens, board: &Checkerboard, pose: &Isometry3<f64>) -> Option<Vec<Vector2<f64>>> {
     board.places_m().iter().map(|place_m| lens.project(&(pose.rotation * place_m + pose.translation.vector))).collect()
 }
 
 /// Whether all corners are in the image, with some margin for a window around them.
-fn is_whole(lens: &Lens, board: &Board, pose: &Isometry3<f64>) -> bool {
+fn is_whole(lens: &Lens, board: &Checkerboard, pose: &Isometry3<f64>) -> bool {
     let [width, height] = lens.size_px.map(|side| side as f64);
     let inside = |at: &Vector2<f64>| (14.0..width - 14.0).contains(&at.x) && (14.0..height - 14.0).contains(&at.y);
     // Where barrel distortion folds back, squares are compressed to nothing; real lenses have further terms there.
-    let most = 0.8 * lens.bend.tangent_most();
+    let max = 0.8 * lens.bend.tangent_max();
     let places_m = board.places_m();
     let mut before = places_m.iter().map(|place_m| pose.rotation * place_m + pose.translation.vector);
-    let is_seen = before.all(|at_m| at_m.z > 0.0 && (at_m.xy() / at_m.z).norm() < most);
+    let is_seen = before.all(|position_m| position_m.z > 0.0 && (position_m.xy() / position_m.z).norm() < max);
     is_seen && corners_px(lens, board, pose).is_some_and(|all| all.iter().all(inside))
 }
 
@@ -102,7 +108,7 @@ struct Sensor {
 impl Sensor {
     const USUAL: Self = Self { blur_px: 1.0, noise: 3.0, edge: 0.5 };
 
-    fn picture(self, rng: &mut Rng, portrait: &Portrait, board: &Board, pose: &Isometry3<f64>) -> Grey {
+    fn image(self, rng: &mut Rng, portrait: &Portrait, board: &Checkerboard, pose: &Isometry3<f64>) -> Grey {
         let sharp = Grey::new(SIZE_PX, portrait.draw(board, pose)).unwrap();
         let smooth = if self.blur_px > 0.0 { sharp.smooth(self.blur_px) } else { sharp };
         let [width, height] = SIZE_PX.map(|side| side as f64);
@@ -117,23 +123,23 @@ impl Sensor {
 }
 
 /// Views found in rendered images.
-fn rendered(rng: &mut Rng, lens: &Lens, poses: &[Isometry3<f64>], sensor: Sensor) -> Vec<Sight> {
+fn rendered(rng: &mut Rng, lens: &Lens, poses: &[Isometry3<f64>], sensor: Sensor) -> Vec<BoardSight> {
     let board = board();
     let portrait = Portrait::new(lens);
-    let views = poses.iter().map(|pose| find(&sensor.picture(rng, &portrait, &board, pose), &board));
+    let views = poses.iter().map(|pose| find(&sensor.image(rng, &portrait, &board, pose), &board));
     views.enumerate().map(|(at, view)| view.unwrap_or_else(|why| panic!("view {at}: {why:?}"))).collect()
 }
 
 /// The same without images: true corners with noise.
-fn noisy(rng: &mut Rng, lens: &Lens, poses: &[Isometry3<f64>], noise_px: f64) -> Vec<Sight> {
+fn noisy(rng: &mut Rng, lens: &Lens, poses: &[Isometry3<f64>], noise_px: f64) -> Vec<BoardSight> {
     let light = Grey::new(SIZE_PX, vec![200.0; SIZE_PX[0] * SIZE_PX[1]]).unwrap();
     let view = |pose| {
         let mut corners_px = corners_px(lens, &board(), pose).unwrap();
         for corner in &mut corners_px {
             *corner += Vector2::new(normal(rng), normal(rng)) * noise_px;
         }
-        let coverage = Coverage::of(&light, &corners_px);
-        Sight { corners_px, blur_px: 1.0, coverage }
+        let coverage = CameraCoverage::of(&light, &corners_px);
+        BoardSight { corners_px, blur_px: 1.0, coverage }
     };
     poses.iter().map(view).collect()
 }

@@ -3,14 +3,14 @@
 use std::{io, net::SocketAddr};
 
 use crate::{
-    control::Cause,
-    keys::{KeyError, Keys, Peers, PublicKey},
+    control::LinkCause,
+    keys::{KeyError, NetworkKeys, Peers, PublicKey},
     stream::StreamSettings,
 };
 
 /// The end of the link.
 #[derive(Clone, Debug)]
-pub enum Role {
+pub enum EndpointRole {
     /// The end with the arm.
     Follower {
         /// Its address; by default [`PORT`](super::PORT) of loopback, which other machines cannot reach.
@@ -28,9 +28,9 @@ pub enum Role {
 
 /// Settings of an endpoint.
 #[derive(Clone, Debug)]
-pub struct Config {
-    pub role: Role,
-    pub keys: Keys,
+pub struct EndpointConfig {
+    pub role: EndpointRole,
+    pub keys: NetworkKeys,
     pub stream: StreamSettings,
     /// Time without a datagram after which the link is silent, s.
     pub silent_after_s: f64,
@@ -38,9 +38,9 @@ pub struct Config {
     pub forget_after_s: f64,
 }
 
-impl Config {
+impl EndpointConfig {
     /// Makes the default settings.
-    pub fn new(role: Role, keys: Keys) -> Self {
+    pub fn new(role: EndpointRole, keys: NetworkKeys) -> Self {
         Self { role, keys, stream: StreamSettings::default(), silent_after_s: 0.1, forget_after_s: 5.0 }
     }
 }
@@ -65,12 +65,12 @@ pub enum LinkState {
     /// Payloads pass.
     Open,
     /// Payloads do not pass, or only imperfectly.
-    Down(Cause),
+    Down(LinkCause),
 }
 
 /// Result of sending a payload.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Outcome {
+pub enum SendOutcome {
     /// It has been sent.
     Sent,
     /// It goes with the next datagram: the rate limit leaves no room.
@@ -83,7 +83,7 @@ pub enum Outcome {
 
 /// A console's share in the control of the follower.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Control {
+pub enum ControlRole {
     /// Not connected.
     None,
     /// It has control of the follower.
@@ -100,7 +100,7 @@ pub enum Control {
 
 /// A console's request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Wish {
+pub(super) enum ControlRequest {
     /// None.
     None,
     /// Control of the follower.

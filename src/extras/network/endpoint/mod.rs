@@ -7,12 +7,12 @@
 //! A follower listens on loopback unless an address is given, and admits its paired machines. One console has control;
 //! others may be connected and request it.
 
-mod clerk;
 mod config;
-mod hearing;
-mod holding;
-mod keeping;
+mod control_owner;
+mod handshake_thread;
+mod receive;
 mod session;
+mod session_upkeep;
 
 use std::{
     io,
@@ -21,21 +21,21 @@ use std::{
     time::Duration,
 };
 
-pub use self::config::{Config, Control, LinkState, OpenError, Outcome, Role};
+pub use self::config::{ControlRole, EndpointConfig, EndpointRole, LinkState, OpenError, SendOutcome};
 use self::{
-    clerk::{Clerk, Handshake},
-    config::Wish,
-    holding::Holding,
-    session::Session,
+    config::ControlRequest,
+    control_owner::OpenQuestion,
+    handshake_thread::{Handshake, HandshakeThread},
+    session::NetworkSession,
 };
 use crate::{
-    control::{Cause, Refusal, Standing},
-    figures::{Dropped, Figures},
+    control::{ControlState, LinkCause, SessionRefusal},
+    figures::{DroppedCounts, SessionMeasurements},
     keys::PublicKey,
-    playout::Payload,
+    playout::DuePayload,
     secure::{Approach, Reception},
     socket::{Socket, system_time},
-    stream::Sent,
+    stream::SendResult,
     wire::DATAGRAM_MAX,
 };
 
@@ -56,8 +56,8 @@ const CONFIRM_S: f64 = 3.0;
 /// A console that has received nothing for this long starts a new session in addition to the old one, s.
 const SEEK_AFTER_S: f64 = 0.5;
 /// A clock jump and a refusal are reported for this long, s.
-const TOLD_S: f64 = 1.0;
-const REFUSED_TOLD_S: f64 = 5.0;
+const REPORTED_S: f64 = 1.0;
+const REFUSED_REPORTED_S: f64 = 5.0;
 /// Number of goodbyes sent, because datagrams may be lost.
 const GOODBYES: usize = 3;
 
@@ -67,24 +67,24 @@ pub struct Endpoint {
     silent_after_s: f64,
     forget_after_s: f64,
     socket: Socket,
-    clerk: Clerk,
-    sessions: [Option<Box<Session>>; SESSIONS],
+    clerk: HandshakeThread,
+    sessions: [Option<Box<NetworkSession>>; SESSIONS],
     /// The session whose payloads count: at a follower, the controlling console's; at a console, the follower's.
     active: Option<usize>,
     /// For a follower.
-    holding: Holding,
+    holding: OpenQuestion,
     /// For a console: its request for control, and its answer to the request with a number.
-    wish: Wish,
+    wish: ControlRequest,
     answer: Option<(u8, bool)>,
-    dropped: Dropped,
+    dropped: DroppedCounts,
     /// The caller's time of the last poll, s, and the system's at that moment.
     now_s: f64,
     looked: Duration,
     /// Last reception in the active session, s; kept after it has ended.
-    heard_s: Option<f64>,
+    received_s: Option<f64>,
     is_closed: bool,
     jumped: Option<(f64, f64)>,
-    refused: Option<(f64, Refusal)>,
+    refused: Option<(f64, SessionRefusal)>,
     buffer: [u8; 2 * DATAGRAM_MAX],
     out: [u8; DATAGRAM_MAX],
 }
@@ -94,35 +94,39 @@ impl Endpoint {
     ///
     /// # Errors
     /// [`OpenError`] if the address cannot be used.
-    pub fn open(config: Config) -> Result<Self, OpenError> {
-        let Config { role, keys, stream, silent_after_s, forget_after_s } = config;
+    pub fn open(config: EndpointConfig) -> Result<Self, OpenError> {
+        let EndpointConfig { role, keys, stream, silent_after_s, forget_after_s } = config;
         let (at, to) = match &role {
-            Role::Follower { at, .. } => (at.unwrap_or((Ipv4Addr::LOCALHOST, PORT).into()), None),
-            Role::Console { follower, .. } => (towards(follower), Some(*follower)),
+            EndpointRole::Follower { at, .. } => (at.unwrap_or((Ipv4Addr::LOCALHOST, PORT).into()), None),
+            EndpointRole::Console { follower, .. } => (towards(follower), Some(*follower)),
         };
         let address = |source| OpenError::Address { address: to.unwrap_or(at), source };
         let socket = Socket::open(at, to).map_err(address)?;
         let theirs = socket.try_clone().map_err(address)?;
         let is_follower = to.is_none();
         let handshake = match role {
-            Role::Follower { consoles, .. } => Handshake::Follower(Box::new(Reception::new(keys, consoles, 0.0)?)),
-            Role::Console { follower, key } => Handshake::Console(Box::new(Approach::new(keys, key)?), follower),
+            EndpointRole::Follower { consoles, .. } => {
+                Handshake::Follower(Box::new(Reception::new(keys, consoles, 0.0)?))
+            }
+            EndpointRole::Console { follower, key } => {
+                Handshake::Console(Box::new(Approach::new(keys, key)?), follower)
+            }
         };
         Ok(Self {
             is_follower,
             silent_after_s,
             forget_after_s,
             socket,
-            clerk: Clerk::start(handshake, theirs, stream).map_err(OpenError::Thread)?,
+            clerk: HandshakeThread::start(handshake, theirs, stream).map_err(OpenError::Thread)?,
             sessions: [const { None }; SESSIONS],
             active: None,
-            holding: Holding::default(),
-            wish: Wish::None,
+            holding: OpenQuestion::default(),
+            wish: ControlRequest::None,
             answer: None,
-            dropped: Dropped::default(),
+            dropped: DroppedCounts::default(),
             now_s: 0.0,
             looked: Duration::ZERO,
-            heard_s: None,
+            received_s: None,
             is_closed: false,
             jumped: None,
             refused: None,
@@ -141,14 +145,14 @@ impl Endpoint {
 
     /// Processes received datagrams and keeps the session alive; call it once per tick. Returns the payloads that are
     /// due at `now_s`.
-    pub fn poll(&mut self, now_s: f64) -> Received<'_> {
+    pub fn poll(&mut self, now_s: f64) -> ReceivedPayloads<'_> {
         self.now_s = now_s;
         self.looked = system_time();
         self.take_news();
-        self.hear();
+        self.receive();
         self.look_after_sessions();
         self.keep_alive();
-        let seeks = !self.is_follower && self.session().is_none_or(|session| now_s - session.heard_s > SEEK_AFTER_S);
+        let seeks = !self.is_follower && self.session().is_none_or(|session| now_s - session.received_s > SEEK_AFTER_S);
         self.clerk.shared.is_wanted.store(seeks, Relaxed);
         let carries = self.carries();
         let session = self.active.and_then(|at| self.sessions[at].as_mut());
@@ -156,63 +160,67 @@ impl Endpoint {
             && carries
         {
             session.stream.advance(now_s);
-            return Received { session: Some(session), now_s };
+            return ReceivedPayloads { session: Some(session), now_s };
         }
-        Received { session: None, now_s }
+        ReceivedPayloads { session: None, now_s }
     }
 
     /// Sends a payload to the other side. `now_s` is the time of sending, s: otherwise the time of the caller's work
     /// since [`Endpoint::poll`] would count as network delay.
-    pub fn send(&mut self, now_s: f64, payload: &[u8]) -> Outcome {
+    pub fn send(&mut self, now_s: f64, payload: &[u8]) -> SendOutcome {
         match self.active {
             Some(at) if self.carries() => match self.send_to(at, now_s, Some(payload)) {
-                Sent::Datagram(_) => Outcome::Sent,
-                Sent::Held => Outcome::Held,
-                Sent::TooLong => Outcome::TooLong,
+                SendResult::Datagram(_) => SendOutcome::Sent,
+                SendResult::Held => SendOutcome::Held,
+                SendResult::TooLong => SendOutcome::TooLong,
             },
-            _ => Outcome::NotOpen,
+            _ => SendOutcome::NotOpen,
         }
     }
 
     /// Returns the status of the link at the last poll.
     pub fn state(&self) -> LinkState {
-        let silent_s = self.heard_s.map(|heard_s| self.now_s - heard_s);
-        let recent = |at_s: f64, told_s: f64| self.now_s - at_s <= told_s;
+        let silent_s = self.received_s.map(|received_s| self.now_s - received_s);
+        let recent = |at_s: f64, reported_s: f64| self.now_s - at_s <= reported_s;
         let Some(session) = self.session() else {
             return match (self.refused, silent_s) {
-                (Some((at_s, refusal)), _) if recent(at_s, REFUSED_TOLD_S) => LinkState::Down(Cause::Refused(refusal)),
-                _ if self.is_closed => LinkState::Down(Cause::PeerClosed),
-                (_, Some(for_s)) => LinkState::Down(Cause::Silent { for_s }),
+                (Some((at_s, refusal)), _) if recent(at_s, REFUSED_REPORTED_S) => {
+                    LinkState::Down(LinkCause::Refused(refusal))
+                }
+                _ if self.is_closed => LinkState::Down(LinkCause::PeerClosed),
+                (_, Some(for_s)) => LinkState::Down(LinkCause::Silent { for_s }),
                 _ => LinkState::Waiting,
             };
         };
-        let for_s = self.now_s - session.heard_s;
+        let for_s = self.now_s - session.received_s;
         if session.is_confirmed && for_s > self.silent_after_s {
             // A follower that was restarted with other keys refuses while the old session is silent.
             return match self.refused {
-                Some((at_s, refusal)) if recent(at_s, REFUSED_TOLD_S) => LinkState::Down(Cause::Refused(refusal)),
-                _ => LinkState::Down(Cause::Silent { for_s }),
+                Some((at_s, refusal)) if recent(at_s, REFUSED_REPORTED_S) => {
+                    LinkState::Down(LinkCause::Refused(refusal))
+                }
+                _ => LinkState::Down(LinkCause::Silent { for_s }),
             };
         }
         match (self.jumped, self.standing()) {
-            (Some((at_s, by_s)), _) if recent(at_s, TOLD_S) => LinkState::Down(Cause::ClockJumped { by_s }),
-            (_, Standing::Holds) => LinkState::Open,
-            (_, Standing::Waits) => LinkState::Down(Cause::HeldByAnother),
-            (_, Standing::Free) => LinkState::Down(Cause::NotAsked),
-            (_, Standing::Unknown) => LinkState::Waiting,
+            (Some((at_s, by_s)), _) if recent(at_s, REPORTED_S) => LinkState::Down(LinkCause::ClockJumped { by_s }),
+            (_, ControlState::Holds) => LinkState::Open,
+            (_, ControlState::Waits) => LinkState::Down(LinkCause::HeldByAnother),
+            (_, ControlState::Free) => LinkState::Down(LinkCause::NotAsked),
+            (_, ControlState::Unknown) => LinkState::Waiting,
         }
     }
 
     /// Returns the measurements of the session whose payloads count; all zero without one.
-    pub fn figures(&self) -> Figures {
-        self.session().map_or_else(Figures::default, |session| session.stream.figures(self.now_s))
+    pub fn figures(&self) -> SessionMeasurements {
+        self.session().map_or_else(SessionMeasurements::default, |session| session.stream.figures(self.now_s))
     }
 
     /// Datagrams that were dropped since the endpoint was opened.
-    pub fn dropped(&self) -> Dropped {
+    pub fn dropped(&self) -> DroppedCounts {
         let shared = &self.clerk.shared;
         let own = self.dropped;
-        Dropped {
+        DroppedCounts {
             malformed: own.malformed + shared.malformed.load(Relaxed),
             foreign_version: own.foreign_version + shared.foreign_version.load(Relaxed),
             flooded: own.flooded + shared.flooded.load(Relaxed),
@@ -235,15 +243,15 @@ impl Endpoint {
     /// control.
     pub fn ask_for_control(&mut self) {
         let is_stale = self.session().is_some_and(|session| session.from_follower.is_denied);
-        self.wish = if is_stale { Wish::AsksAgain } else { Wish::Asks };
+        self.wish = if is_stale { ControlRequest::AsksAgain } else { ControlRequest::Asks };
     }
 
     /// Withdraws the request.
     pub const fn withdraw(&mut self) {
-        self.wish = Wish::None;
+        self.wish = ControlRequest::None;
     }
 
-    /// Answers the console that requests control ([`Control::HoldsAsked`]); `true` transfers control to it.
+    /// Answers the console that requests control ([`ControlRole::HoldsAsked`]); `true` transfers control to it.
     pub fn answer(&mut self, consents: bool) {
         let asked = self.session().map_or(0, |session| session.from_follower.asked);
         if asked != 0 {
@@ -251,17 +259,17 @@ impl Endpoint {
         }
     }
 
-    /// Returns a console's status of control; [`Control::None`] for a follower.
-    pub fn control(&self) -> Control {
-        let Some(session) = self.session().filter(|_| !self.is_follower) else { return Control::None };
+    /// Returns a console's status of control; [`ControlRole::None`] for a follower.
+    pub fn control(&self) -> ControlRole {
+        let Some(session) = self.session().filter(|_| !self.is_follower) else { return ControlRole::None };
         match session.from_follower.standing {
-            Standing::Unknown => Control::None,
-            Standing::Holds if session.from_follower.asked != 0 && self.answer.is_none() => Control::HoldsAsked,
-            Standing::Holds => Control::Holds,
+            ControlState::Unknown => ControlRole::None,
+            ControlState::Holds if session.from_follower.asked != 0 && self.answer.is_none() => ControlRole::HoldsAsked,
+            ControlState::Holds => ControlRole::Holds,
             _ => match self.wish {
-                Wish::Asks | Wish::AsksAgain => Control::Asks,
-                Wish::Denied => Control::Denied,
-                Wish::None => Control::Waits,
+                ControlRequest::Asks | ControlRequest::AsksAgain => ControlRole::Asks,
+                ControlRequest::Denied => ControlRole::Denied,
+                ControlRequest::None => ControlRole::Waits,
             },
         }
     }
@@ -279,21 +287,21 @@ impl Endpoint {
         self.sessions = [const { None }; SESSIONS];
     }
 
-    fn session(&self) -> Option<&Session> {
+    fn session(&self) -> Option<&NetworkSession> {
         self.sessions[self.active?].as_deref()
     }
 
     /// Returns this end's status in the active session.
-    fn standing(&self) -> Standing {
+    fn standing(&self) -> ControlState {
         match self.session() {
-            Some(_) if self.is_follower => Standing::Holds,
+            Some(_) if self.is_follower => ControlState::Holds,
             Some(session) => session.from_follower.standing,
-            None => Standing::Unknown,
+            None => ControlState::Unknown,
         }
     }
 
     fn carries(&self) -> bool {
-        self.standing() == Standing::Holds
+        self.standing() == ControlState::Holds
     }
 }
 
@@ -316,14 +324,14 @@ pub(crate) fn towards(to: &SocketAddr) -> SocketAddr {
 
 /// Payloads that are due, one after the other.
 #[derive(Debug)]
-pub struct Received<'a> {
-    session: Option<&'a mut Box<Session>>,
+pub struct ReceivedPayloads<'a> {
+    session: Option<&'a mut Box<NetworkSession>>,
     now_s: f64,
 }
 
-impl Received<'_> {
+impl ReceivedPayloads<'_> {
     /// Returns the next in order; `None` when all due payloads have been taken.
-    pub fn next_due(&mut self) -> Option<Payload<'_>> {
+    pub fn next_due(&mut self) -> Option<DuePayload<'_>> {
         self.session.as_mut()?.stream.take(self.now_s)
     }
 }

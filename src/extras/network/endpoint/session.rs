@@ -5,13 +5,13 @@ use std::net::SocketAddr;
 use crate::{
     control::{FromConsole, FromFollower},
     keys::PublicKey,
-    secure::Agreed,
-    stream::{Stream, StreamSettings},
+    secure::AgreedKeys,
+    stream::{NetworkStream, StreamSettings},
 };
 
 #[derive(Debug)]
-pub(super) struct Session {
-    pub(super) stream: Stream,
+pub(super) struct NetworkSession {
+    pub(super) stream: NetworkStream,
     pub(super) peer: PublicKey,
     /// Destination of its datagrams: the origin of the newest authentic one.
     pub(super) at: SocketAddr,
@@ -20,7 +20,7 @@ pub(super) struct Session {
     /// When the loop adopted it, s.
     pub(super) opened_s: f64,
     /// Arrival of the newest authentic datagram, s.
-    pub(super) heard_s: f64,
+    pub(super) received_s: f64,
     /// When the last datagram was sent, s.
     pub(super) sent_s: f64,
     /// Whether an authentic datagram has arrived: the other side has the keys too.
@@ -32,15 +32,15 @@ pub(super) struct Session {
     pub(super) is_denied: bool,
 }
 
-impl Session {
-    pub(super) fn new(agreed: Agreed, at: SocketAddr, settings: &StreamSettings) -> Self {
+impl NetworkSession {
+    pub(super) fn new(agreed: AgreedKeys, at: SocketAddr, settings: &StreamSettings) -> Self {
         Self {
-            stream: Stream::new(agreed.keys, agreed.theirs, settings),
+            stream: NetworkStream::new(agreed.keys, agreed.theirs, settings),
             peer: agreed.peer,
             at,
             ours: agreed.ours,
             opened_s: 0.0,
-            heard_s: 0.0,
+            received_s: 0.0,
             sent_s: f64::MIN,
             is_confirmed: false,
             from_console: FromConsole::default(),

@@ -9,26 +9,26 @@ use nima_testing::real_time::{alone, judged};
 
 use super::*;
 use crate::{
-    impairment::{Loss, Settings},
-    keys::{Keys, Peers},
+    impairment::{ImpairmentSettings, LossModel},
+    keys::{NetworkKeys, Peers},
     relay::{Relay, RelaySettings},
-    wire::{self, HELLO_LEN, Kind, VERSION},
+    wire::{self, DatagramKind, HELLO_LEN, VERSION},
 };
 
 const HOME: (Ipv4Addr, u16) = (Ipv4Addr::LOCALHOST, 0);
 const TICK: Duration = Duration::from_millis(1);
 
 /// A follower that admits consoles with these keys.
-fn follower(keys: &Keys, consoles: &[&Keys], at: SocketAddr) -> Endpoint {
+fn follower(keys: &NetworkKeys, consoles: &[&NetworkKeys], at: SocketAddr) -> Endpoint {
     let mut peers = Peers::default();
     for (i, console) in consoles.iter().enumerate() {
         peers.add(&format!("console {i}"), console.public()).unwrap();
     }
-    Endpoint::open(Config::new(Role::Follower { at: Some(at), consoles: peers }, keys.clone())).unwrap()
+    Endpoint::open(EndpointConfig::new(EndpointRole::Follower { at: Some(at), consoles: peers }, keys.clone())).unwrap()
 }
 
-fn console(keys: &Keys, key: PublicKey, follower: SocketAddr) -> Endpoint {
-    Endpoint::open(Config::new(Role::Console { follower, key }, keys.clone())).unwrap()
+fn console(keys: &NetworkKeys, key: PublicKey, follower: SocketAddr) -> Endpoint {
+    Endpoint::open(EndpointConfig::new(EndpointRole::Console { follower, key }, keys.clone())).unwrap()
 }
 
 /// An endpoint and its received payloads.
@@ -53,7 +53,7 @@ impl End {
             self.got.push(u64::from_le_bytes(payload.bytes.try_into().unwrap()));
             self.ages_s.push(payload.age_s);
         }
-        if self.endpoint.send(now_s, &self.sent.to_le_bytes()) != Outcome::NotOpen {
+        if self.endpoint.send(now_s, &self.sent.to_le_bytes()) != SendOutcome::NotOpen {
             self.sent += 1;
         }
     }
@@ -98,12 +98,12 @@ fn are_open(ends: &[&mut End]) -> bool {
     ends.iter().all(|end| end.endpoint.state() == LinkState::Open)
 }
 
-fn keys() -> Keys {
-    Keys::random().unwrap()
+fn keys() -> NetworkKeys {
+    NetworkKeys::random().unwrap()
 }
 
 /// A follower and its console, connected.
-fn pair() -> (Time, End, End, Keys, Keys) {
+fn pair() -> (Time, End, End, NetworkKeys, NetworkKeys) {
     let theirs = keys();
     let ours = keys();
     let mut far = End::new(follower(&theirs, &[&ours], HOME.into()));
@@ -155,7 +155,7 @@ fn who_closes_says_so() {
     judged(|| {
         let (time, mut far, near, theirs, ours) = pair();
         drop(near);
-        let closed = |ends: &[&mut End]| ends[0].endpoint.state() == LinkState::Down(Cause::PeerClosed);
+        let closed = |ends: &[&mut End]| ends[0].endpoint.state() == LinkState::Down(LinkCause::PeerClosed);
         assert!(time.until(&mut [&mut far], closed).expect("it is reported") < 0.1);
         let address = far.endpoint.address().unwrap();
         let mut near = End::new(console(&ours, theirs.public(), address));
@@ -173,7 +173,7 @@ fn silence_is_told_with_its_length_and_ends_without_a_new_session() {
         let (time, mut far, mut near, ..) = pair();
         let before = near.endpoint.handshake_datagrams();
         time.run(&mut [&mut near], 0.3);
-        let LinkState::Down(Cause::Silent { for_s }) = near.endpoint.state() else {
+        let LinkState::Down(LinkCause::Silent { for_s }) = near.endpoint.state() else {
             panic!("{:?}", near.endpoint.state())
         };
         assert!((0.25..0.4).contains(&for_s), "{for_s}");
@@ -219,24 +219,25 @@ fn one_console_holds_and_another_gets_control_only_by_consent() {
         let time = Time::start();
         time.until(&mut [&mut far, &mut holder], are_open).expect("the first holds it");
         let mut other = End::new(console(&second, theirs.public(), address));
-        let all = |control: [Control; 2]| {
+        let all = |control: [ControlRole; 2]| {
             move |ends: &[&mut End]| [ends[1].endpoint.control(), ends[2].endpoint.control()] == control
         };
         let mut ends = [&mut far, &mut holder, &mut other];
-        time.until(&mut ends, all([Control::Holds, Control::Waits])).expect("the second is informed");
-        assert_eq!(ends[2].endpoint.state(), LinkState::Down(Cause::HeldByAnother));
-        assert_eq!(ends[2].endpoint.send(time.now_s(), b"?"), Outcome::NotOpen);
+        time.until(&mut ends, all([ControlRole::Holds, ControlRole::Waits])).expect("the second is informed");
+        assert_eq!(ends[2].endpoint.state(), LinkState::Down(LinkCause::HeldByAnother));
+        assert_eq!(ends[2].endpoint.send(time.now_s(), b"?"), SendOutcome::NotOpen);
         for _ in 0..2 {
             ends[2].endpoint.ask_for_control();
-            time.until(&mut ends, all([Control::HoldsAsked, Control::Asks])).expect("the first is asked for control");
+            time.until(&mut ends, all([ControlRole::HoldsAsked, ControlRole::Asks]))
+                .expect("the first is asked for control");
             ends[1].endpoint.answer(false);
-            time.until(&mut ends, all([Control::Holds, Control::Denied])).expect("it refuses");
+            time.until(&mut ends, all([ControlRole::Holds, ControlRole::Denied])).expect("it refuses");
         }
         assert_eq!(ends[0].endpoint.peer(), Some(first.public()));
         ends[2].endpoint.ask_for_control();
-        time.until(&mut ends, all([Control::HoldsAsked, Control::Asks])).expect("asked again");
+        time.until(&mut ends, all([ControlRole::HoldsAsked, ControlRole::Asks])).expect("asked again");
         ends[1].endpoint.answer(true);
-        time.until(&mut ends, all([Control::Waits, Control::Holds])).expect("it consents");
+        time.until(&mut ends, all([ControlRole::Waits, ControlRole::Holds])).expect("it consents");
         assert_eq!(ends[0].endpoint.peer(), Some(second.public()));
         let before = ends[2].got.len();
         time.run(&mut ends, 0.4);
@@ -246,7 +247,7 @@ fn one_console_holds_and_another_gets_control_only_by_consent() {
         ends[2].endpoint.close();
         drop(other);
         let mut ends = [&mut far, &mut holder];
-        let free = |ends: &[&mut End]| ends[1].endpoint.state() == LinkState::Down(Cause::NotAsked);
+        let free = |ends: &[&mut End]| ends[1].endpoint.state() == LinkState::Down(LinkCause::NotAsked);
         time.until(&mut ends, free).expect("told that it is free");
         ends[1].endpoint.ask_for_control();
         time.until(&mut ends, are_open).expect("no consent is needed");
@@ -261,13 +262,14 @@ fn a_stranger_and_another_version_are_refused() {
         let (time, mut far, mut near, theirs, _) = pair();
         let address = far.endpoint.address().unwrap();
         let mut stranger = End::new(console(&keys(), theirs.public(), address));
-        let refused = |ends: &[&mut End]| ends[2].endpoint.state() == LinkState::Down(Cause::Refused(Refusal::Key));
+        let refused =
+            |ends: &[&mut End]| ends[2].endpoint.state() == LinkState::Down(LinkCause::Refused(SessionRefusal::Key));
         time.until(&mut [&mut far, &mut near, &mut stranger], refused).expect("told why");
         // A datagram of another version gets an answer that says so.
         let socket = UdpSocket::bind(HOME).unwrap();
         socket.set_read_timeout(Some(Duration::from_secs(2))).unwrap();
         let mut hello = [0; HELLO_LEN];
-        hello[..wire::HANDSHAKE_LEN].copy_from_slice(&wire::handshake(Kind::Hello, 5));
+        hello[..wire::HANDSHAKE_LEN].copy_from_slice(&wire::handshake(DatagramKind::Hello, 5));
         hello[0] = VERSION + 1;
         socket.send_to(&hello, address).unwrap();
         time.run(&mut [&mut far, &mut near], 0.1);
@@ -275,7 +277,7 @@ fn a_stranger_and_another_version_are_refused() {
         let len = socket.recv(&mut answer).unwrap();
         assert_eq!(
             (wire::kind(&answer[..len]), &answer[wire::HANDSHAKE_LEN..len]),
-            (Ok(Kind::Refusal), &[1, VERSION][..])
+            (Ok(DatagramKind::Refusal), &[1, VERSION][..])
         );
         let dropped = far.endpoint.dropped();
         assert!(dropped.foreign_version == 1 && dropped.refused > 0, "{dropped:?}");
@@ -292,11 +294,11 @@ fn a_clock_that_jumps_is_named() {
         time.run(&mut [&mut far, &mut near], 2.0);
         near.ahead_s += 0.05;
         let named = |ends: &[&mut End]| {
-            ends.iter().all(|end| matches!(end.endpoint.state(), LinkState::Down(Cause::ClockJumped { .. })))
+            ends.iter().all(|end| matches!(end.endpoint.state(), LinkState::Down(LinkCause::ClockJumped { .. })))
         };
         let after_s = time.until(&mut [&mut far, &mut near], named).expect("named by both");
         assert!(after_s < 1.0, "{after_s}");
-        let LinkState::Down(Cause::ClockJumped { by_s }) = near.endpoint.state() else { panic!() };
+        let LinkState::Down(LinkCause::ClockJumped { by_s }) = near.endpoint.state() else { panic!() };
         assert!((by_s + 0.05).abs() < 2e-3, "their clock minus ours: {by_s}");
         time.until(&mut [&mut far, &mut near], are_open).expect("and then all is well");
     });
@@ -320,7 +322,7 @@ fn a_flood_of_handshakes_and_noise_does_not_stop_the_stream() {
                     // 20 000 per second.
                     for _ in 0..20 {
                         let mut datagram = [0; HELLO_LEN];
-                        let kind = if rng.bool() { Kind::Hello } else { Kind::Initiation };
+                        let kind = if rng.bool() { DatagramKind::Hello } else { DatagramKind::Initiation };
                         datagram[..wire::HANDSHAKE_LEN].copy_from_slice(&wire::handshake(kind, rng.u64(..)));
                         // Some look like datagrams of a session, and some of these like the open one.
                         if rng.u32(..4) == 0 {
@@ -360,9 +362,13 @@ fn a_relay_makes_the_line_bad_and_repeated_datagrams_are_dropped() {
         let ours = keys();
         let mut far = End::new(follower(&theirs, &[&ours], HOME.into()));
         let to = far.endpoint.address().unwrap();
-        let line =
-            Settings { delay_s: 0.02, loss: Loss::Independent { share: 0.05 }, duplicate: 0.2, ..Settings::default() };
-        let there = Settings { delay_s: 0.03, ..line };
+        let line = ImpairmentSettings {
+            delay_s: 0.02,
+            loss: LossModel::Independent { fraction: 0.05 },
+            duplicate: 0.2,
+            ..ImpairmentSettings::default()
+        };
+        let there = ImpairmentSettings { delay_s: 0.03, ..line };
         let relay = Relay::start(RelaySettings { at: HOME.into(), to, there, back: line, seed: 3 }).unwrap();
         let mut near = End::new(console(&ours, theirs.public(), relay.address()));
         let time = Time::start();
@@ -387,10 +393,10 @@ fn a_relay_makes_the_line_bad_and_repeated_datagrams_are_dropped() {
 #[test]
 fn a_follower_listens_on_loopback_unless_told_otherwise() {
     let _alone = alone();
-    let role = Role::Follower { at: None, consoles: Peers::default() };
-    let Ok(endpoint) = Endpoint::open(Config::new(role.clone(), keys())) else { return };
+    let role = EndpointRole::Follower { at: None, consoles: Peers::default() };
+    let Ok(endpoint) = Endpoint::open(EndpointConfig::new(role.clone(), keys())) else { return };
     assert_eq!(endpoint.address().unwrap(), (Ipv4Addr::LOCALHOST, PORT).into());
-    let taken = Endpoint::open(Config::new(role, keys())).unwrap_err();
+    let taken = Endpoint::open(EndpointConfig::new(role, keys())).unwrap_err();
     assert!(taken.to_string().contains("127.0.0.1:47150"), "{taken}");
     assert_eq!(endpoint.state(), LinkState::Waiting);
 }

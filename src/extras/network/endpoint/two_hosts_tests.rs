@@ -14,7 +14,7 @@ use nima_testing::{
 };
 
 use super::*;
-use crate::keys::{Keys, Peers};
+use crate::keys::{NetworkKeys, Peers};
 
 const TICK: Duration = Duration::from_millis(1);
 /// Running time of a host, s; the cable is unplugged for a part of it.
@@ -76,17 +76,17 @@ impl Drop for Hosts {
 #[ignore = "a part of the test with two hosts"]
 fn one_host() {
     let Some(folder) = std::env::var_os(FOLDER).map(PathBuf::from) else { return };
-    let keys = Keys::open(&folder).unwrap();
+    let keys = NetworkKeys::open(&folder).unwrap();
     let peers = Peers::open(&folder).unwrap();
     let follower: SocketAddr = (Ipv4Addr::new(10, 77, 0, 1), PORT).into();
     let role = match peers.list() {
-        [peer] if peer.name == "follower" => Role::Console { follower, key: peer.key },
-        _ => Role::Follower { at: Some(follower), consoles: peers },
+        [peer] if peer.name == "follower" => EndpointRole::Console { follower, key: peer.key },
+        _ => EndpointRole::Follower { at: Some(follower), consoles: peers },
     };
-    let mut end = Endpoint::open(Config::new(role, keys)).unwrap();
+    let mut end = Endpoint::open(EndpointConfig::new(role, keys)).unwrap();
     let begin = Instant::now();
     let mut wake = Instant::now();
-    let mut told = String::new();
+    let mut report = String::new();
     let mut ages_s = Vec::new();
     while begin.elapsed().as_secs_f64() < LENGTH_S {
         let now_s = begin.elapsed().as_secs_f64();
@@ -98,12 +98,12 @@ fn one_host() {
         let word = match end.state() {
             LinkState::Open => " open",
             LinkState::Waiting => " waiting",
-            LinkState::Down(Cause::Silent { .. }) => " silent",
-            LinkState::Down(Cause::ClockJumped { .. }) => " jumped",
+            LinkState::Down(LinkCause::Silent { .. }) => " silent",
+            LinkState::Down(LinkCause::ClockJumped { .. }) => " jumped",
             LinkState::Down(_) => " down",
         };
-        if !told.ends_with(word) {
-            told.push_str(word);
+        if !report.ends_with(word) {
+            report.push_str(word);
         }
         wake = (wake + TICK).max(Instant::now());
         sleep(wake.saturating_duration_since(Instant::now()));
@@ -111,16 +111,17 @@ fn one_host() {
     let figures = end.figures();
     let dropped = end.dropped();
     ages_s.sort_by(f64::total_cmp);
-    let share = |share: f64| ages_s.get((ages_s.len() as f64 * share) as usize).map_or(f64::NAN, |age_s| age_s * 1e3);
+    let fraction =
+        |fraction: f64| ages_s.get((ages_s.len() as f64 * fraction) as usize).map_or(f64::NAN, |age_s| age_s * 1e3);
     let playout_ms = figures.playout_s.unwrap_or_default() * 1e3;
     println!(
-        "HOST {} {} {} {:.3} {:.3} {:.3}{told}",
+        "HOST {} {} {} {:.3} {:.3} {:.3}{report}",
         ages_s.len(),
         figures.counts.lost,
         dropped.total() - dropped.unsent,
         playout_ms,
-        share(0.5),
-        share(0.99)
+        fraction(0.5),
+        fraction(0.99)
     );
     // Both stay until both are done.
     sleep(Duration::from_millis(300));
@@ -128,7 +129,7 @@ fn one_host() {
 
 /// Payloads received and lost, datagrams dropped; playout delay, median and 99th percentile of the age (ms); the
 /// states.
-fn told(child: Child) -> (Vec<f64>, String) {
+fn report(child: Child) -> (Vec<f64>, String) {
     let output = child.wait_with_output().unwrap();
     let text = String::from_utf8(output.stdout).unwrap();
     let line = text.lines().find_map(|line| line.split("HOST ").nth(1)).unwrap_or_else(|| panic!("{text}"));
@@ -147,7 +148,7 @@ fn two_hosts_exchange_payloads_and_see_when_the_cable_is_out() {
             return;
         };
         let folders = [tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap()];
-        let public = folders.each_ref().map(|folder| Keys::open(folder.path()).unwrap().public());
+        let public = folders.each_ref().map(|folder| NetworkKeys::open(folder.path()).unwrap().public());
         for (folder, (name, key)) in folders.iter().zip([("console", public[1]), ("follower", public[0])]) {
             let mut peers = Peers::default();
             peers.add(name, key).unwrap();
@@ -159,7 +160,7 @@ fn two_hosts_exchange_payloads_and_see_when_the_cable_is_out() {
         sleep(CUT_FOR);
         hosts.cable("up");
         for (host, child) in children.into_iter().enumerate() {
-            let (figures, states) = told(child);
+            let (figures, states) = report(child);
             let [got, lost, dropped, playout_ms, median_ms, p99_ms] = figures[..] else { panic!("{figures:?}") };
             println!(
                 "host {host}: {got} payloads, play-out {playout_ms} ms, age {median_ms} ms, p99 {p99_ms} ms; {states}"

@@ -6,10 +6,10 @@ use snow::{Builder, HandshakeState, StatelessTransportState};
 
 use super::cookie::{COOKIE_LEN, Cookies};
 use crate::{
-    control::Refusal,
-    keys::{KeyError, Keys, Peers, PublicKey},
-    rate::Bucket,
-    wire::{self, HANDSHAKE_LEN, HANDSHAKE_MAX, HELLO_LEN, Kind, Unreadable},
+    control::SessionRefusal,
+    keys::{KeyError, NetworkKeys, Peers, PublicKey},
+    rate::RateBucket,
+    wire::{self, DatagramKind, HANDSHAKE_LEN, HANDSHAKE_MAX, HELLO_LEN, Unreadable},
 };
 
 /// The protocol's name in the Noise framework.
@@ -31,7 +31,7 @@ const AGAIN_MAX_S: f64 = 1.0;
 
 /// Result of a handshake.
 #[derive(Debug)]
-pub(crate) struct Agreed {
+pub(crate) struct AgreedKeys {
     pub(crate) keys: StatelessTransportState,
     pub(crate) peer: PublicKey,
     /// Its number of the session, and ours.
@@ -41,17 +41,17 @@ pub(crate) struct Agreed {
 
 /// Result of processing a handshake's datagram. `answer` is the number of bytes written to `out`.
 #[derive(Debug)]
-pub struct Heard {
+pub struct HandshakeResult {
     /// Length of the answer, bytes; 0 for none.
     pub answer: usize,
     /// Why it was rejected.
-    pub trouble: Option<Trouble>,
-    pub(crate) agreed: Option<Box<Agreed>>,
+    pub trouble: Option<HandshakeError>,
+    pub(crate) agreed: Option<Box<AgreedKeys>>,
 }
 
 /// Why a datagram of a handshake was rejected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Trouble {
+pub enum HandshakeError {
     /// Truncated, or unexpected.
     Malformed,
     /// Of another version; the sender has been informed.
@@ -61,11 +61,11 @@ pub enum Trouble {
     /// A cookie that is not ours, an unknown key, or a message that cannot be decrypted.
     Refused,
     /// The other side refuses a session.
-    TheyRefuse(Refusal),
+    TheyRefuse(SessionRefusal),
 }
 
-impl Heard {
-    const fn trouble(trouble: Trouble) -> Self {
+impl HandshakeResult {
+    const fn trouble(trouble: HandshakeError) -> Self {
         Self { answer: 0, trouble: Some(trouble), agreed: None }
     }
 
@@ -81,12 +81,12 @@ fn number() -> Result<[u8; NUMBER_LEN], KeyError> {
     Ok(bytes)
 }
 
-fn builder(keys: &Keys) -> Result<Builder<'_>, snow::Error> {
+fn builder(keys: &NetworkKeys) -> Result<Builder<'_>, snow::Error> {
     Builder::new(NOISE.parse()?).local_private_key(keys.private())?.prologue(PROLOGUE)
 }
 
 /// Writes a datagram of a handshake; returns its length.
-fn write(out: &mut [u8; HANDSHAKE_MAX], kind: Kind, token: u64, content: &[u8]) -> usize {
+fn write(out: &mut [u8; HANDSHAKE_MAX], kind: DatagramKind, token: u64, content: &[u8]) -> usize {
     let end = HANDSHAKE_LEN + content.len();
     out[..HANDSHAKE_LEN].copy_from_slice(&wire::handshake(kind, token));
     match out.get_mut(HANDSHAKE_LEN..end) {
@@ -99,12 +99,12 @@ fn write(out: &mut [u8; HANDSHAKE_MAX], kind: Kind, token: u64, content: &[u8]) 
 /// The follower's side.
 #[derive(Debug)]
 pub struct Reception {
-    keys: Keys,
+    keys: NetworkKeys,
     peers: Peers,
     cookies: Cookies,
-    all: Bucket,
-    answers: Bucket,
-    addresses: Vec<(IpAddr, Bucket)>,
+    all: RateBucket,
+    answers: RateBucket,
+    addresses: Vec<(IpAddr, RateBucket)>,
     /// Whether no more consoles are admitted now.
     pub is_full: bool,
 }
@@ -114,13 +114,13 @@ impl Reception {
     ///
     /// # Errors
     /// [`KeyError::Random`] if the system provides no random numbers.
-    pub fn new(keys: Keys, peers: Peers, now_s: f64) -> Result<Self, KeyError> {
+    pub fn new(keys: NetworkKeys, peers: Peers, now_s: f64) -> Result<Self, KeyError> {
         Ok(Self {
             keys,
             peers,
             cookies: Cookies::new(now_s)?,
-            all: Bucket::new(PER_S, PER_S),
-            answers: Bucket::new(ANSWERS_PER_S, ANSWERS_PER_S / 10.0),
+            all: RateBucket::new(PER_S, PER_S),
+            answers: RateBucket::new(ANSWERS_PER_S, ANSWERS_PER_S / 10.0),
             addresses: Vec::with_capacity(ADDRESSES),
             is_full: false,
         })
@@ -132,29 +132,39 @@ impl Reception {
     }
 
     /// Processes a datagram of a handshake from this address; writes the answer to `out`.
-    pub fn hear(&mut self, datagram: &[u8], from: SocketAddr, now_s: f64, out: &mut [u8; HANDSHAKE_MAX]) -> Heard {
-        let Some(token) = wire::token(datagram) else { return Heard::trouble(Trouble::Malformed) };
+    pub fn receive(
+        &mut self,
+        datagram: &[u8],
+        from: SocketAddr,
+        now_s: f64,
+        out: &mut [u8; HANDSHAKE_MAX],
+    ) -> HandshakeResult {
+        let Some(token) = wire::token(datagram) else { return HandshakeResult::trouble(HandshakeError::Malformed) };
         let kind = wire::kind(datagram);
-        if matches!(kind, Ok(Kind::Hello) | Err(Unreadable::ForeignVersion(_))) {
+        if matches!(kind, Ok(DatagramKind::Hello) | Err(Unreadable::ForeignVersion(_))) {
             // The answer is shorter than the request, so that it cannot be used to amplify an attack.
             if datagram.len() < HELLO_LEN {
-                return Heard::trouble(Trouble::Malformed);
+                return HandshakeResult::trouble(HandshakeError::Malformed);
             }
             if !self.answers.spend(1.0, now_s) {
-                return Heard::trouble(Trouble::Flooded);
+                return HandshakeResult::trouble(HandshakeError::Flooded);
             }
         }
         match kind {
-            Ok(Kind::Hello) => {
+            Ok(DatagramKind::Hello) => {
                 let cookie = self.cookies.make(from, token, now_s);
-                Heard { answer: write(out, Kind::Cookie, token, &cookie), trouble: None, agreed: None }
+                HandshakeResult {
+                    answer: write(out, DatagramKind::Cookie, token, &cookie),
+                    trouble: None,
+                    agreed: None,
+                }
             }
-            Ok(Kind::Initiation) => self.initiate(&datagram[HANDSHAKE_LEN..], token, from, now_s, out),
+            Ok(DatagramKind::Initiation) => self.initiate(&datagram[HANDSHAKE_LEN..], token, from, now_s, out),
             Err(Unreadable::ForeignVersion(_)) => {
-                let answer = write(out, Kind::Refusal, token, &Refusal::Version(wire::VERSION).bytes());
-                Heard { answer, ..Heard::trouble(Trouble::ForeignVersion) }
+                let answer = write(out, DatagramKind::Refusal, token, &SessionRefusal::Version(wire::VERSION).bytes());
+                HandshakeResult { answer, ..HandshakeResult::trouble(HandshakeError::ForeignVersion) }
             }
-            _ => Heard::trouble(Trouble::Malformed),
+            _ => HandshakeResult::trouble(HandshakeError::Malformed),
         }
     }
 
@@ -165,30 +175,30 @@ impl Reception {
         from: SocketAddr,
         now_s: f64,
         out: &mut [u8; HANDSHAKE_MAX],
-    ) -> Heard {
+    ) -> HandshakeResult {
         let Some((cookie, message)) = content.split_at_checked(COOKIE_LEN) else {
-            return Heard::trouble(Trouble::Malformed);
+            return HandshakeResult::trouble(HandshakeError::Malformed);
         };
         if !self.cookies.is_ours(from, token, cookie) {
-            return Heard::trouble(Trouble::Refused);
+            return HandshakeResult::trouble(HandshakeError::Refused);
         }
         if !self.may_compute(from.ip(), now_s) {
-            return Heard::trouble(Trouble::Flooded);
+            return HandshakeResult::trouble(HandshakeError::Flooded);
         }
         if self.is_full {
-            let answer = write(out, Kind::Refusal, token, &Refusal::Full.bytes());
-            return Heard { answer, ..Heard::trouble(Trouble::Refused) };
+            let answer = write(out, DatagramKind::Refusal, token, &SessionRefusal::Full.bytes());
+            return HandshakeResult { answer, ..HandshakeResult::trouble(HandshakeError::Refused) };
         }
         if let Some((agreed, response, len)) = self.agree(message) {
-            let answer = write(out, Kind::Response, token, &response[..len]);
-            Heard { answer, trouble: None, agreed: Some(Box::new(agreed)) }
+            let answer = write(out, DatagramKind::Response, token, &response[..len]);
+            HandshakeResult { answer, trouble: None, agreed: Some(Box::new(agreed)) }
         } else {
-            let answer = write(out, Kind::Refusal, token, &Refusal::Key.bytes());
-            Heard { answer, ..Heard::trouble(Trouble::Refused) }
+            let answer = write(out, DatagramKind::Refusal, token, &SessionRefusal::Key.bytes());
+            HandshakeResult { answer, ..HandshakeResult::trouble(HandshakeError::Refused) }
         }
     }
 
-    fn agree(&self, message: &[u8]) -> Option<(Agreed, [u8; HANDSHAKE_MAX], usize)> {
+    fn agree(&self, message: &[u8]) -> Option<(AgreedKeys, [u8; HANDSHAKE_MAX], usize)> {
         let mut noise = builder(&self.keys).ok()?.build_responder().ok()?;
         let mut theirs = [0; HANDSHAKE_MAX];
         let len = noise.read_message(message, &mut theirs).ok()?;
@@ -199,7 +209,7 @@ impl Reception {
         let mut response = [0; HANDSHAKE_MAX];
         let len = noise.write_message(&ours, &mut response).ok()?;
         let keys = noise.into_stateless_transport_mode().ok()?;
-        let agreed = Agreed { keys, peer, theirs: u32::from_le_bytes(theirs), ours: u32::from_le_bytes(ours) };
+        let agreed = AgreedKeys { keys, peer, theirs: u32::from_le_bytes(theirs), ours: u32::from_le_bytes(ours) };
         Some((agreed, response, len))
     }
 
@@ -210,7 +220,7 @@ impl Reception {
             if self.addresses.len() == ADDRESSES {
                 self.addresses.remove(0);
             }
-            self.addresses.push((ip, Bucket::new(PER_S_ADDRESS, 2.0 * PER_S_ADDRESS)));
+            self.addresses.push((ip, RateBucket::new(PER_S_ADDRESS, 2.0 * PER_S_ADDRESS)));
             self.addresses.len() - 1
         });
         let own = self.addresses.get_mut(index).is_some_and(|(_, bucket)| bucket.spend(1.0, now_s));
@@ -228,7 +238,7 @@ enum Waits {
 /// The console's side: repeats attempts until a session is made.
 #[derive(Debug)]
 pub struct Approach {
-    keys: Keys,
+    keys: NetworkKeys,
     follower: PublicKey,
     token: u64,
     waits: Waits,
@@ -241,7 +251,7 @@ impl Approach {
     ///
     /// # Errors
     /// [`KeyError::Random`] if the system provides no random numbers.
-    pub fn new(keys: Keys, follower: PublicKey) -> Result<Self, KeyError> {
+    pub fn new(keys: NetworkKeys, follower: PublicKey) -> Result<Self, KeyError> {
         let mut this = Self { keys, follower, token: 0, waits: Waits::Cookie, next_s: f64::MIN, pause_s: AGAIN_S };
         this.begin_again()?;
         Ok(this)
@@ -269,7 +279,7 @@ impl Approach {
             return 0;
         }
         match &self.waits {
-            Waits::Cookie => write(out, Kind::Hello, self.token, &[0; HELLO_LEN - HANDSHAKE_LEN]),
+            Waits::Cookie => write(out, DatagramKind::Hello, self.token, &[0; HELLO_LEN - HANDSHAKE_LEN]),
             Waits::Response { sent, len, .. } => {
                 out.copy_from_slice(&sent[..]);
                 *len
@@ -278,36 +288,36 @@ impl Approach {
     }
 
     /// Processes a datagram of a handshake; writes the answer to `out`.
-    pub fn hear(&mut self, datagram: &[u8], now_s: f64, out: &mut [u8; HANDSHAKE_MAX]) -> Heard {
+    pub fn receive(&mut self, datagram: &[u8], now_s: f64, out: &mut [u8; HANDSHAKE_MAX]) -> HandshakeResult {
         if wire::token(datagram) != Some(self.token) {
-            return Heard::trouble(Trouble::Malformed);
+            return HandshakeResult::trouble(HandshakeError::Malformed);
         }
         let content = &datagram[HANDSHAKE_LEN..];
         match (wire::kind(datagram), &mut self.waits) {
-            (Ok(Kind::Cookie), Waits::Cookie) => match self.initiate(content, out) {
+            (Ok(DatagramKind::Cookie), Waits::Cookie) => match self.initiate(content, out) {
                 Some(answer) => {
                     self.next_s = now_s + AGAIN_S;
                     self.pause_s = AGAIN_S;
-                    Heard { answer, trouble: None, agreed: None }
+                    HandshakeResult { answer, trouble: None, agreed: None }
                 }
-                None => Heard::trouble(Trouble::Malformed),
+                None => HandshakeResult::trouble(HandshakeError::Malformed),
             },
-            (Ok(Kind::Response), Waits::Response { .. }) => match self.finish(content) {
+            (Ok(DatagramKind::Response), Waits::Response { .. }) => match self.finish(content) {
                 Some(agreed) => {
                     // Gives the loop time to adopt the session before another one is requested.
                     self.next_s = now_s + AGAIN_MAX_S;
                     self.pause_s = AGAIN_S;
-                    Heard { answer: 0, trouble: None, agreed: Some(Box::new(agreed)) }
+                    HandshakeResult { answer: 0, trouble: None, agreed: Some(Box::new(agreed)) }
                 }
-                None => Heard::trouble(Trouble::Refused),
+                None => HandshakeResult::trouble(HandshakeError::Refused),
             },
-            (Ok(Kind::Refusal), _) => {
-                let refusal = content.first_chunk().and_then(|&bytes| Refusal::from_bytes(bytes));
+            (Ok(DatagramKind::Refusal), _) => {
+                let refusal = content.first_chunk().and_then(|&bytes| SessionRefusal::from_bytes(bytes));
                 self.next_s = now_s + AGAIN_MAX_S;
                 self.pause_s = AGAIN_MAX_S;
-                Heard::trouble(refusal.map_or(Trouble::Malformed, Trouble::TheyRefuse))
+                HandshakeResult::trouble(refusal.map_or(HandshakeError::Malformed, HandshakeError::TheyRefuse))
             }
-            _ => Heard::trouble(Trouble::Malformed),
+            _ => HandshakeResult::trouble(HandshakeError::Malformed),
         }
     }
 
@@ -322,13 +332,13 @@ impl Approach {
         let mut content = [0; HANDSHAKE_MAX];
         content[..COOKIE_LEN].copy_from_slice(cookie);
         let len = COOKIE_LEN + noise.write_message(&ours, &mut content[COOKIE_LEN..]).ok()?;
-        let answer = write(out, Kind::Initiation, self.token, &content[..len]);
+        let answer = write(out, DatagramKind::Initiation, self.token, &content[..len]);
         let ours = u32::from_le_bytes(ours);
         self.waits = Waits::Response { noise: Box::new(noise), ours, sent: Box::new(*out), len: answer };
         Some(answer)
     }
 
-    fn finish(&mut self, message: &[u8]) -> Option<Agreed> {
+    fn finish(&mut self, message: &[u8]) -> Option<AgreedKeys> {
         let Waits::Response { noise, ours, .. } = &mut self.waits else { return None };
         let mut theirs = [0; HANDSHAKE_MAX];
         let ours = *ours;
@@ -338,6 +348,6 @@ impl Approach {
         let Waits::Response { noise, .. } = std::mem::replace(&mut self.waits, Waits::Cookie) else { return None };
         let keys = noise.into_stateless_transport_mode().ok()?;
         self.begin_again().ok()?;
-        Some(Agreed { keys, peer: self.follower, theirs: u32::from_le_bytes(theirs), ours })
+        Some(AgreedKeys { keys, peer: self.follower, theirs: u32::from_le_bytes(theirs), ours })
     }
 }

@@ -14,18 +14,18 @@ mod handshake;
 use std::net::Ipv4Addr;
 
 pub use cookie::Cookies;
-pub(crate) use handshake::Agreed;
-pub use handshake::{Approach, Heard, NOISE, Reception, Trouble};
+pub(crate) use handshake::AgreedKeys;
+pub use handshake::{Approach, HandshakeError, HandshakeResult, NOISE, Reception};
 
 use crate::{
-    keys::{KeyError, Keys, Peers},
+    keys::{KeyError, NetworkKeys, Peers},
     wire::HANDSHAKE_MAX,
 };
 
 /// Makes both ends of a session between two fictitious machines, without a network.
-pub(crate) fn both_ends() -> Result<[Agreed; 2], KeyError> {
-    let console = Keys::random()?;
-    let follower = Keys::random()?;
+pub(crate) fn both_ends() -> Result<[AgreedKeys; 2], KeyError> {
+    let console = NetworkKeys::random()?;
+    let follower = NetworkKeys::random()?;
     let mut consoles = Peers::default();
     consoles.add("console", console.public())?;
     let from = (Ipv4Addr::LOCALHOST, 1).into();
@@ -36,10 +36,10 @@ pub(crate) fn both_ends() -> Result<[Agreed; 2], KeyError> {
     let mut len = approach.due(0.0, &mut there);
     // Two round trips.
     for _ in 0..2 {
-        let answer = reception.hear(&there[..len], from, 0.0, &mut back);
-        let heard = approach.hear(&back[..answer.answer], 0.0, &mut there);
-        len = heard.answer;
-        if let (Some(ours), Some(theirs)) = (heard.agreed, answer.agreed) {
+        let answer = reception.receive(&there[..len], from, 0.0, &mut back);
+        let received = approach.receive(&back[..answer.answer], 0.0, &mut there);
+        len = received.answer;
+        if let (Some(ours), Some(theirs)) = (received.agreed, answer.agreed) {
             return Ok([*ours, *theirs]);
         }
     }

@@ -2,18 +2,18 @@ use std::net::{Ipv4Addr, SocketAddr};
 
 use super::*;
 use crate::{
-    control::Refusal,
-    keys::{Keys, Peers},
-    wire::{self, HANDSHAKE_LEN, HANDSHAKE_MAX, HELLO_LEN, Kind, VERSION},
+    control::SessionRefusal,
+    keys::{NetworkKeys, Peers},
+    wire::{self, DatagramKind, HANDSHAKE_LEN, HANDSHAKE_MAX, HELLO_LEN, VERSION},
 };
 
 type Datagram = [u8; HANDSHAKE_MAX];
 
 /// A follower with one paired console, that console, and one that is not paired.
 fn machines() -> (Reception, Approach, Approach) {
-    let follower = Keys::random().unwrap();
-    let console = Keys::random().unwrap();
-    let stranger = Keys::random().unwrap();
+    let follower = NetworkKeys::random().unwrap();
+    let console = NetworkKeys::random().unwrap();
+    let stranger = NetworkKeys::random().unwrap();
     let mut peers = Peers::default();
     peers.add("console", console.public()).unwrap();
     let key = follower.public();
@@ -31,30 +31,30 @@ fn talk(
     console: &mut Approach,
     from: SocketAddr,
     now_s: f64,
-) -> (usize, bool, Option<Trouble>) {
+) -> (usize, bool, Option<HandshakeError>) {
     let mut there: Datagram = [0; HANDSHAKE_MAX];
     let mut back: Datagram = [0; HANDSHAKE_MAX];
     let mut len = console.due(now_s, &mut there);
     let mut sent = 0;
     while len > 0 {
         sent += 1;
-        let heard = reception.hear(&there[..len], from, now_s, &mut back);
-        assert!(heard.answer <= len, "no sender gets more than it sent");
-        if heard.answer == 0 {
-            return (sent, false, heard.trouble);
+        let received = reception.receive(&there[..len], from, now_s, &mut back);
+        assert!(received.answer <= len, "no sender gets more than it sent");
+        if received.answer == 0 {
+            return (sent, false, received.trouble);
         }
         sent += 1;
-        let told = console.hear(&back[..heard.answer], now_s, &mut there);
-        if heard.is_agreed() && told.is_agreed() {
-            let ours = heard.agreed.unwrap();
-            let theirs = told.agreed.unwrap();
+        let report = console.receive(&back[..received.answer], now_s, &mut there);
+        if received.is_agreed() && report.is_agreed() {
+            let ours = received.agreed.unwrap();
+            let theirs = report.agreed.unwrap();
             assert_eq!((ours.ours, ours.theirs), (theirs.theirs, theirs.ours));
             return (sent, true, None);
         }
-        if told.trouble.is_some() {
-            return (sent, false, told.trouble);
+        if report.trouble.is_some() {
+            return (sent, false, report.trouble);
         }
-        len = told.answer;
+        len = report.answer;
     }
     (sent, false, None)
 }
@@ -70,10 +70,13 @@ fn a_session_takes_two_round_trips() {
 #[test]
 fn a_stranger_is_told_so_and_leaves_nothing() {
     let (mut reception, _, mut stranger) = machines();
-    assert_eq!(talk(&mut reception, &mut stranger, from(1), 0.0), (4, false, Some(Trouble::TheyRefuse(Refusal::Key))));
+    assert_eq!(
+        talk(&mut reception, &mut stranger, from(1), 0.0),
+        (4, false, Some(HandshakeError::TheyRefuse(SessionRefusal::Key)))
+    );
     let (_, mut console, _) = machines();
-    let told = talk(&mut reception, &mut console, from(2), 0.0);
-    assert_eq!(told, (4, false, Some(Trouble::TheyRefuse(Refusal::Key))), "another follower's key");
+    let report = talk(&mut reception, &mut console, from(2), 0.0);
+    assert_eq!(report, (4, false, Some(HandshakeError::TheyRefuse(SessionRefusal::Key))), "another follower's key");
 }
 
 #[test]
@@ -83,18 +86,18 @@ fn another_version_is_told_so() {
     let mut back = [0; HANDSHAKE_MAX];
     let len = console.due(0.0, &mut there);
     there[0] = VERSION + 1;
-    let heard = reception.hear(&there[..len], from(1), 0.0, &mut back);
-    assert_eq!(heard.trouble, Some(Trouble::ForeignVersion));
-    let told = console.hear(&back[..heard.answer], 0.0, &mut there);
-    assert_eq!(told.trouble, Some(Trouble::TheyRefuse(Refusal::Version(VERSION))));
+    let received = reception.receive(&there[..len], from(1), 0.0, &mut back);
+    assert_eq!(received.trouble, Some(HandshakeError::ForeignVersion));
+    let report = console.receive(&back[..received.answer], 0.0, &mut there);
+    assert_eq!(report.trouble, Some(HandshakeError::TheyRefuse(SessionRefusal::Version(VERSION))));
 }
 
 #[test]
 fn who_is_full_says_so() {
     let (mut reception, mut console, _) = machines();
     reception.is_full = true;
-    let told = talk(&mut reception, &mut console, from(1), 0.0);
-    assert_eq!(told.2, Some(Trouble::TheyRefuse(Refusal::Full)));
+    let report = talk(&mut reception, &mut console, from(1), 0.0);
+    assert_eq!(report.2, Some(HandshakeError::TheyRefuse(SessionRefusal::Full)));
 }
 
 #[test]
@@ -108,15 +111,15 @@ fn lost_datagrams_are_asked_for_again() {
         now_s += 0.1;
         let mut len = console.due(now_s, &mut there);
         while len > 0 && rng.bool() {
-            let answer = reception.hear(&there[..len], from(1), now_s, &mut back).answer;
+            let answer = reception.receive(&there[..len], from(1), now_s, &mut back).answer;
             if answer == 0 || rng.bool() {
                 break;
             }
-            let told = console.hear(&back[..answer], now_s, &mut there);
-            if told.is_agreed() {
+            let report = console.receive(&back[..answer], now_s, &mut there);
+            if report.is_agreed() {
                 return true;
             }
-            len = told.answer;
+            len = report.answer;
         }
         false
     });
@@ -131,24 +134,24 @@ fn a_flood_of_half_open_handshakes_costs_no_memory_and_few_key_agreements() {
     let mut flooded = 0;
     for i in 0..50_000_u32 {
         let mut hello = [0; HELLO_LEN];
-        hello[..HANDSHAKE_LEN].copy_from_slice(&wire::handshake(Kind::Hello, u64::from(i)));
-        let heard = reception.hear(&hello, from(i), f64::from(i) * 1e-5, &mut out);
-        assert!(!heard.is_agreed());
-        answers += u32::from(heard.answer > 0);
-        flooded += u32::from(heard.trouble == Some(Trouble::Flooded));
+        hello[..HANDSHAKE_LEN].copy_from_slice(&wire::handshake(DatagramKind::Hello, u64::from(i)));
+        let received = reception.receive(&hello, from(i), f64::from(i) * 1e-5, &mut out);
+        assert!(!received.is_agreed());
+        answers += u32::from(received.answer > 0);
+        flooded += u32::from(received.trouble == Some(HandshakeError::Flooded));
         // Also initiations with invented cookies.
         let mut initiation = [7; 200];
-        initiation[..HANDSHAKE_LEN].copy_from_slice(&wire::handshake(Kind::Initiation, u64::from(i)));
-        let heard = reception.hear(&initiation, from(i), f64::from(i) * 1e-5, &mut out);
-        assert_eq!((heard.answer, heard.trouble), (0, Some(Trouble::Refused)));
+        initiation[..HANDSHAKE_LEN].copy_from_slice(&wire::handshake(DatagramKind::Initiation, u64::from(i)));
+        let received = reception.receive(&initiation, from(i), f64::from(i) * 1e-5, &mut out);
+        assert_eq!((received.answer, received.trouble), (0, Some(HandshakeError::Refused)));
     }
     assert_eq!(answers + flooded, 50_000);
     assert!(answers < 1500, "half a second at 2000 per second, and what was saved up: {answers}");
     assert_eq!(reception.remembered(), 0, "no state");
     // A sender that can receive is limited by its address: eight at once, then four per second.
     let computed = (0..1000).filter(|&i| {
-        let told = talk(&mut reception, &mut stranger, from(7), 10.0 + f64::from(i) * 1.001);
-        told.2 == Some(Trouble::TheyRefuse(Refusal::Key))
+        let report = talk(&mut reception, &mut stranger, from(7), 10.0 + f64::from(i) * 1.001);
+        report.2 == Some(HandshakeError::TheyRefuse(SessionRefusal::Key))
     });
     assert!(computed.count() > 100);
     assert_eq!(reception.remembered(), 1);
@@ -163,19 +166,19 @@ fn random_and_mutated_datagrams_lead_to_nothing() {
     let mut back = [0; HANDSHAKE_MAX];
     let mut waste = [0; HANDSHAKE_MAX];
     let hello = console.due(0.0, &mut there);
-    let cookie = reception.hear(&there[..hello], from(1), 0.0, &mut back).answer;
-    let initiation = console.hear(&back[..cookie], 0.0, &mut there).answer;
+    let cookie = reception.receive(&there[..hello], from(1), 0.0, &mut back).answer;
+    let initiation = console.receive(&back[..cookie], 0.0, &mut there).answer;
     for i in 0..2000_u32 {
         let mut mutated = there;
         let at = rng.usize(..initiation);
         mutated[at] ^= 1 << rng.u32(..8);
-        let heard = reception.hear(&mutated[..initiation], from(1), f64::from(i), &mut waste);
-        assert!(!heard.is_agreed(), "byte {at}");
+        let received = reception.receive(&mutated[..initiation], from(1), f64::from(i), &mut waste);
+        assert!(!received.is_agreed(), "byte {at}");
         let cut = rng.usize(..initiation);
-        assert!(!reception.hear(&there[..cut], from(1), f64::from(i), &mut waste).is_agreed());
-        assert!(!console.hear(&mutated[..cut], f64::from(i), &mut waste).is_agreed());
+        assert!(!reception.receive(&there[..cut], from(1), f64::from(i), &mut waste).is_agreed());
+        assert!(!console.receive(&mutated[..cut], f64::from(i), &mut waste).is_agreed());
         assert!(
-            !reception.hear(&there[..initiation], from(2), f64::from(i), &mut waste).is_agreed(),
+            !reception.receive(&there[..initiation], from(2), f64::from(i), &mut waste).is_agreed(),
             "another address"
         );
     }

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use nalgebra::Vector3;
 
-use super::Track;
+use super::TipTrack;
 
 /// A longer step, s, is a gap: nothing is said about the motion in it.
 pub(crate) const LONGEST_GAP_S: f64 = 0.1;
@@ -38,7 +38,7 @@ pub(crate) struct Decimator {
     stretch: Option<[u64; 2]>,
     /// Number of the even sample at the next point of the track.
     next_point: u64,
-    track: Track,
+    track: TipTrack,
 }
 
 impl Decimator {
@@ -46,7 +46,7 @@ impl Decimator {
     pub(crate) fn with_room(seconds: f64) -> Self {
         let taps = low_pass();
         let window = vec![Vector3::zeros(); TAPS];
-        Self { taps, window, last: None, next: 0, stretch: None, next_point: 0, track: Track::with_room(seconds) }
+        Self { taps, window, last: None, next: 0, stretch: None, next_point: 0, track: TipTrack::with_room(seconds) }
     }
 
     /// Adds one sample, `t_s` after the beginning of the trial, later than the previous one.
@@ -58,14 +58,14 @@ impl Decimator {
             (t_s, value)
         });
         while self.next as f64 * TICK_S <= t_s + TOLERANCE_S {
-            let share = if t_s > before_s { (self.next as f64 * TICK_S - before_s) / (t_s - before_s) } else { 1.0 };
-            self.even(before + (value - before) * share.clamp(0.0, 1.0));
+            let fraction = if t_s > before_s { (self.next as f64 * TICK_S - before_s) / (t_s - before_s) } else { 1.0 };
+            self.even(before + (value - before) * fraction.clamp(0.0, 1.0));
         }
         self.last = Some((t_s, value));
     }
 
     /// Ends the last segment and returns the track.
-    pub(crate) fn finish(mut self) -> Track {
+    pub(crate) fn finish(mut self) -> TipTrack {
         self.close();
         self.track
     }

@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use super::STEP_S;
 
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Order {
+pub(crate) enum DerivativeOrder {
     First,
     Second,
     Third,
@@ -14,11 +14,11 @@ pub(crate) enum Order {
 /// Magnitude of the derivative at each point. Central differences over five points (errors of the fourth order in the
 /// step; the third derivative: second order). Beyond the ends the segment is continued by point reflection, as in the
 /// filter.
-pub(crate) fn magnitudes(points: &[Vector3<f64>], order: Order) -> Vec<f64> {
+pub(crate) fn magnitudes(points: &[Vector3<f64>], order: DerivativeOrder) -> Vec<f64> {
     let (weights, per_step): ([f64; 5], f64) = match order {
-        Order::First => ([1.0, -8.0, 0.0, 8.0, -1.0], 12.0 * STEP_S),
-        Order::Second => ([-1.0, 16.0, -30.0, 16.0, -1.0], 12.0 * STEP_S * STEP_S),
-        Order::Third => ([-1.0, 2.0, 0.0, -2.0, 1.0], 2.0 * STEP_S * STEP_S * STEP_S),
+        DerivativeOrder::First => ([1.0, -8.0, 0.0, 8.0, -1.0], 12.0 * STEP_S),
+        DerivativeOrder::Second => ([-1.0, 16.0, -30.0, 16.0, -1.0], 12.0 * STEP_S * STEP_S),
+        DerivativeOrder::Third => ([-1.0, 2.0, 0.0, -2.0, 1.0], 2.0 * STEP_S * STEP_S * STEP_S),
     };
     let at = |place: isize| continued(points, place).unwrap_or_default();
     let one = |middle: usize| {

@@ -6,6 +6,6 @@ mod spectrum;
 mod track;
 
 pub(crate) use decimator::{Decimator, LONGEST_GAP_S};
-pub(crate) use derivatives::{Order, magnitudes, mean, peak};
+pub(crate) use derivatives::{DerivativeOrder, magnitudes, mean, peak};
 pub(crate) use spectrum::magnitude_spectrum;
-pub(crate) use track::{RATE_HZ, STEP_S, Track};
+pub(crate) use track::{RATE_HZ, STEP_S, TipTrack};

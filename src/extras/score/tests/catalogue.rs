@@ -1,10 +1,10 @@
 use std::{collections::BTreeSet, f64::consts::PI, fmt::Write, path::Path};
 
 use nalgebra::Vector3;
-use nima_core::{Side, task::Event};
+use nima_core::{Side, task::TaskEvent};
 
 use super::{task, trial};
-use crate::{Definition, HandSample, MEASURES, Score, TaskFile};
+use crate::{CatalogueDefinition, HandSample, MEASURES, Score, TaskFile};
 
 #[test]
 fn there_are_at_least_thirty_measures_with_names_of_their_own() {
@@ -34,7 +34,7 @@ fn page() -> String {
          `NIMA_WRITE_DOCS=1 cargo test -p nima-score the_page`.\n\n\
          | id | per hand | unit | definition | source |\n|---|---|---|---|---|\n",
     );
-    for Definition { id, words, unit, definition, source, per_hand } in MEASURES {
+    for CatalogueDefinition { id, words, unit, definition, source, per_hand } in MEASURES {
         let per_hand = if per_hand { "yes" } else { "-" };
         writeln!(page, "| `{id}` | {per_hand} | {unit} | {words} {definition} | {source} |").unwrap();
     }
@@ -75,9 +75,9 @@ fn full(more: &str) -> Score {
         })
     };
     let events = Side::ALL.map(|side| {
-        let lump = Event::LumpMarked { side, lump: Some(side.index()) };
-        let grasp = Event::RingGrasped { ring: 0, side };
-        [(1.0_f64, grasp), (2.0, lump), (4.0, Event::RingPlaced { ring: 0, side, peg: 1 })]
+        let lump = TaskEvent::LumpMarked { side, lump: Some(side.index()) };
+        let grasp = TaskEvent::RingGrasped { ring: 0, side };
+        [(1.0_f64, grasp), (2.0, lump), (4.0, TaskEvent::RingPlaced { ring: 0, side, peg: 1 })]
     });
     let mut events = events.concat();
     events.sort_by(|a, b| a.0.total_cmp(&b.0));

@@ -1,11 +1,11 @@
 use nalgebra::Vector3;
 use nima_core::{
     Side,
-    task::{Event, Happening},
+    task::{TaskEvent, TimedTaskEvent},
 };
 
 use super::{near, of, right, task, trial, value};
-use crate::{Criterion, HandSample, Outcome, Proficiency, Sample, Scorer, Standing};
+use crate::{HandSample, Proficiency, ScoreSample, Scorer, TaskCriterion, TrainingState, TrialOutcome};
 
 const LEFT: Side = Side::Left;
 const RIGHT: Side = Side::Right;
@@ -17,15 +17,15 @@ fn still(_: f64) -> super::Hands {
 #[test]
 fn events_of_a_peg_transfer_are_counted() {
     let events = [
-        (2.5, Event::RingGrasped { ring: 0, side: LEFT }),
-        (2.7, Event::RingLifted { ring: 0, side: LEFT }),
-        (4.0, Event::RingTransferred { ring: 0, to: RIGHT }),
-        (6.0, Event::RingPlaced { ring: 0, side: RIGHT, peg: 7 }),
-        (7.0, Event::RingKnockedOff { ring: 3, side: None }),
-        (8.0, Event::RingGrasped { ring: 1, side: LEFT }),
-        (9.0, Event::RingDropped { ring: 1, side: LEFT, in_view: true }),
-        (10.0, Event::RingGrasped { ring: 1, side: LEFT }),
-        (11.0, Event::RingDropped { ring: 1, side: LEFT, in_view: false }),
+        (2.5, TaskEvent::RingGrasped { ring: 0, side: LEFT }),
+        (2.7, TaskEvent::RingLifted { ring: 0, side: LEFT }),
+        (4.0, TaskEvent::RingTransferred { ring: 0, to: RIGHT }),
+        (6.0, TaskEvent::RingPlaced { ring: 0, side: RIGHT, peg: 7 }),
+        (7.0, TaskEvent::RingKnockedOff { ring: 3, side: None }),
+        (8.0, TaskEvent::RingGrasped { ring: 1, side: LEFT }),
+        (9.0, TaskEvent::RingDropped { ring: 1, side: LEFT, in_view: true }),
+        (10.0, TaskEvent::RingGrasped { ring: 1, side: LEFT }),
+        (11.0, TaskEvent::RingDropped { ring: 1, side: LEFT, in_view: false }),
     ];
     let score = trial(&task("penalty_s = 17.0\nreference_time_s = 40.0"), 60.0, still, &events);
     let counted = [
@@ -48,19 +48,19 @@ fn events_of_a_peg_transfer_are_counted() {
     for (id, known) in counted {
         near(id, value(&score, id), known, 1e-9);
     }
-    assert_eq!(score.outcome(), Outcome::Completed);
+    assert_eq!(score.outcome(), TrialOutcome::Completed);
     assert_eq!([score.value("lumps_found"), score.value("wire_touches")], [None; 2], "of other tasks");
 }
 
 #[test]
 fn the_score_is_zero_at_the_limit_and_when_aborted_and_never_below() {
     let slow = trial(&task("time_limit_s = 5.0"), 8.0, still, &[]);
-    assert_eq!((slow.outcome(), slow.value("fls_like_score")), (Outcome::OutOfTime, Some(0.0)));
+    assert_eq!((slow.outcome(), slow.value("fls_like_score")), (TrialOutcome::OutOfTime, Some(0.0)));
     assert_eq!((slow.value("completion_time_s"), slow.value("trial_time_s")), (None, Some(5.0)));
-    let aborted = trial(&task(""), 8.0, still, &[(3.0, Event::Aborted)]);
-    assert_eq!((aborted.outcome(), aborted.value("fls_like_score")), (Outcome::Aborted, Some(0.0)));
+    let aborted = trial(&task(""), 8.0, still, &[(3.0, TaskEvent::Aborted)]);
+    assert_eq!((aborted.outcome(), aborted.value("fls_like_score")), (TrialOutcome::Aborted, Some(0.0)));
     assert_eq!((aborted.value("completion_time_s"), aborted.value("trial_time_s")), (None, Some(3.0)));
-    let drop = Event::RingDropped { ring: 0, side: LEFT, in_view: false };
+    let drop = TaskEvent::RingDropped { ring: 0, side: LEFT, in_view: false };
     let dropped = trial(&task("time_limit_s = 10.0\npenalty_s = 5.0"), 8.0, still, &[(1.0, drop)]);
     assert_eq!(dropped.value("fls_like_score"), Some(0.0), "10 - 8 - 5 is below zero");
 }
@@ -68,14 +68,14 @@ fn the_score_is_zero_at_the_limit_and_when_aborted_and_never_below() {
 #[test]
 fn what_was_before_the_beginning_and_after_the_end_is_forgotten() {
     let mut scorer = Scorer::new(&task(""));
-    let drop = Event::RingDropped { ring: 0, side: LEFT, in_view: false };
-    let sample = |t_s: f64| Sample { t_s, hands: right(Vector3::x() * 0.1 * t_s) };
+    let drop = TaskEvent::RingDropped { ring: 0, side: LEFT, in_view: false };
+    let sample = |t_s: f64| ScoreSample { t_s, hands: right(Vector3::x() * 0.1 * t_s) };
     (0..1000).for_each(|tick| scorer.sample(&sample(f64::from(tick) * 1e-3)));
-    scorer.happening(&Happening { t_s: 0.5, event: drop });
-    scorer.happening(&Happening { t_s: 1.0, event: Event::Begun });
+    scorer.happening(&TimedTaskEvent { t_s: 0.5, event: drop });
+    scorer.happening(&TimedTaskEvent { t_s: 1.0, event: TaskEvent::Begun });
     (1000..=3000).for_each(|tick| scorer.sample(&sample(f64::from(tick) * 1e-3)));
-    scorer.happening(&Happening { t_s: 3.0, event: Event::Ended });
-    scorer.happening(&Happening { t_s: 3.5, event: drop });
+    scorer.happening(&TimedTaskEvent { t_s: 3.0, event: TaskEvent::Ended });
+    scorer.happening(&TimedTaskEvent { t_s: 3.5, event: drop });
     (3001..=4000).for_each(|tick| scorer.sample(&sample(f64::from(tick) * 1e-3)));
     let score = scorer.finish();
     assert_eq!((score.value("drops"), score.value("completion_time_s")), (Some(0.0), Some(2.0)));
@@ -86,10 +86,10 @@ fn what_was_before_the_beginning_and_after_the_end_is_forgotten() {
 fn a_trial_without_an_end_is_unfinished() {
     let mut scorer = Scorer::new(&task(""));
     assert_eq!(scorer.clone().finish().value("trial_time_s"), None, "nothing came");
-    scorer.sample(&Sample { t_s: 7.0, hands: [None; 2] });
-    scorer.sample(&Sample { t_s: 9.0, hands: [None; 2] });
+    scorer.sample(&ScoreSample { t_s: 7.0, hands: [None; 2] });
+    scorer.sample(&ScoreSample { t_s: 9.0, hands: [None; 2] });
     let score = scorer.finish();
-    assert_eq!((score.outcome(), score.value("trial_time_s")), (Outcome::Unfinished, Some(2.0)));
+    assert_eq!((score.outcome(), score.value("trial_time_s")), (TrialOutcome::Unfinished, Some(2.0)));
     assert_eq!((score.value("completion_time_s"), score.value("fls_like_score")), (None, None));
 }
 
@@ -101,7 +101,7 @@ fn lumps_are_found_missed_and_falsely_marked_with_their_force() {
         let size_n = if t_s < 1.0 { 9.0 } else { size_n };
         Side::Right.alone(HandSample { force_n: Vector3::z() * size_n, ..HandSample::default() })
     };
-    let mark = |lump| Event::LumpMarked { side: RIGHT, lump };
+    let mark = |lump| TaskEvent::LumpMarked { side: RIGHT, lump };
     let events = [(5.0, mark(Some(2))), (6.0, mark(None)), (7.0, mark(Some(2))), (8.0, mark(Some(4)))];
     let score = trial(&task("kind = 'palpation'\nlumps = 5"), 10.0, hands, &events);
     for (id, known) in [("lumps_found", 2.0), ("lumps_false", 1.0), ("lumps_missed", 3.0)] {
@@ -114,13 +114,13 @@ fn lumps_are_found_missed_and_falsely_marked_with_their_force() {
 #[test]
 fn touches_of_the_wire_are_counted_and_timed_until_the_end() {
     let events = [
-        (1.0, Event::WireTouched { side: RIGHT }),
-        (1.2, Event::WireTouched { side: RIGHT }),
-        (1.5, Event::WireLeft { side: RIGHT }),
-        (2.0, Event::WireLeft { side: RIGHT }),
-        (3.0, Event::WireTouched { side: RIGHT }),
-        (3.25, Event::WireLeft { side: RIGHT }),
-        (9.0, Event::WireTouched { side: RIGHT }),
+        (1.0, TaskEvent::WireTouched { side: RIGHT }),
+        (1.2, TaskEvent::WireTouched { side: RIGHT }),
+        (1.5, TaskEvent::WireLeft { side: RIGHT }),
+        (2.0, TaskEvent::WireLeft { side: RIGHT }),
+        (3.0, TaskEvent::WireTouched { side: RIGHT }),
+        (3.25, TaskEvent::WireLeft { side: RIGHT }),
+        (9.0, TaskEvent::WireTouched { side: RIGHT }),
     ];
     let score = trial(&task("kind = 'wire_loop'"), 10.0, still, &events);
     near("wire_touches", value(&score, "wire_touches"), 3.0, 0.0);
@@ -130,18 +130,21 @@ fn touches_of_the_wire_are_counted_and_timed_until_the_end() {
 #[test]
 fn scores_decide_on_proficiency() {
     let task = task("proficiency = { time_s = 2.0, consecutive = 2, additional = 1, max_trials = 9 }");
-    assert_eq!(task.proficiency, Criterion { time_s: 2.0, additional: 1, max_trials: 9, ..Criterion::default() });
-    let drop = (0.5, Event::RingDropped { ring: 0, side: LEFT, in_view: false });
+    assert_eq!(
+        task.proficiency,
+        TaskCriterion { time_s: 2.0, additional: 1, max_trials: 9, ..TaskCriterion::default() }
+    );
+    let drop = (0.5, TaskEvent::RingDropped { ring: 0, side: LEFT, in_view: false });
     let [good, slow, dropped] =
         [(1.5, vec![]), (2.5, vec![]), (1.5, vec![drop])].map(|(end_s, events)| trial(&task, end_s, still, &events));
     let mut proficiency = Proficiency::new(task.proficiency);
     for (score, standing) in [
-        (&good, Standing::Practising { in_a_row: 1 }),
-        (&dropped, Standing::Practising { in_a_row: 0 }),
-        (&good, Standing::Practising { in_a_row: 1 }),
-        (&good, Standing::Confirming { additional: 0 }),
-        (&slow, Standing::Confirming { additional: 0 }),
-        (&good, Standing::Reached { trial: 6 }),
+        (&good, TrainingState::Practising { in_a_row: 1 }),
+        (&dropped, TrainingState::Practising { in_a_row: 0 }),
+        (&good, TrainingState::Practising { in_a_row: 1 }),
+        (&good, TrainingState::Confirming { additional: 0 }),
+        (&slow, TrainingState::Confirming { additional: 0 }),
+        (&good, TrainingState::Reached { trial: 6 }),
     ] {
         assert_eq!(proficiency.take(score), standing);
     }

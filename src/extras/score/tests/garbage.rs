@@ -1,12 +1,12 @@
 use nalgebra::Vector3;
 use nima_core::{
     Side,
-    task::{Event, Happening},
+    task::{TaskEvent, TimedTaskEvent},
 };
 use proptest::prelude::*;
 
 use super::task;
-use crate::{HandSample, Sample, Score, Scorer};
+use crate::{HandSample, Score, ScoreSample, Scorer};
 
 /// Any number, often a problematic one.
 fn number() -> impl Strategy<Value = f64> {
@@ -41,21 +41,21 @@ fn hand() -> impl Strategy<Value = Option<HandSample>> {
     )
 }
 
-fn event() -> impl Strategy<Value = Event> {
+fn event() -> impl Strategy<Value = TaskEvent> {
     let side = prop_oneof![Just(Side::Left), Just(Side::Right)];
     (0..13, side, any::<usize>(), any::<bool>()).prop_map(|(kind, side, index, flag)| match kind {
-        0 => Event::Begun,
-        1 => Event::Ended,
-        2 => Event::Aborted,
-        3 | 4 => Event::RingGrasped { ring: index, side },
-        5 => Event::RingLifted { ring: index, side },
-        6 => Event::RingTransferred { ring: index, to: side },
-        7 => Event::RingPlaced { ring: index, side, peg: index },
-        8 => Event::RingDropped { ring: index, side, in_view: flag },
-        9 => Event::RingKnockedOff { ring: index, side: flag.then_some(side) },
-        10 => Event::LumpMarked { side, lump: flag.then_some(index) },
-        11 => Event::WireTouched { side },
-        _ => Event::WireLeft { side },
+        0 => TaskEvent::Begun,
+        1 => TaskEvent::Ended,
+        2 => TaskEvent::Aborted,
+        3 | 4 => TaskEvent::RingGrasped { ring: index, side },
+        5 => TaskEvent::RingLifted { ring: index, side },
+        6 => TaskEvent::RingTransferred { ring: index, to: side },
+        7 => TaskEvent::RingPlaced { ring: index, side, peg: index },
+        8 => TaskEvent::RingDropped { ring: index, side, in_view: flag },
+        9 => TaskEvent::RingKnockedOff { ring: index, side: flag.then_some(side) },
+        10 => TaskEvent::LumpMarked { side, lump: flag.then_some(index) },
+        11 => TaskEvent::WireTouched { side },
+        _ => TaskEvent::WireLeft { side },
     })
 }
 
@@ -86,8 +86,8 @@ proptest! {
             let t_s = now_s + step_s;
             now_s = if t_s.is_finite() && (0.0..1.0).contains(&step_s) { t_s } else { now_s };
             match event {
-                Some(event) => scorer.happening(&Happening { t_s, event }),
-                None => scorer.sample(&Sample { t_s, hands: [right, left] }),
+                Some(event) => scorer.happening(&TimedTaskEvent { t_s, event }),
+                None => scorer.sample(&ScoreSample { t_s, hands: [right, left] }),
             }
         }
         judged(&scorer.finish())?;
@@ -115,10 +115,10 @@ fn numbers_that_are_none_are_skipped_and_counted() {
         (0.002, 1e300),
         (0.003, 0.0),
     ] {
-        scorer.sample(&Sample { t_s, hands: hands(x_m) });
+        scorer.sample(&ScoreSample { t_s, hands: hands(x_m) });
     }
-    scorer.happening(&Happening { t_s: f64::NAN, event: Event::Ended });
-    scorer.happening(&Happening { t_s: -1.0, event: Event::Ended });
+    scorer.happening(&TimedTaskEvent { t_s: f64::NAN, event: TaskEvent::Ended });
+    scorer.happening(&TimedTaskEvent { t_s: -1.0, event: TaskEvent::Ended });
     let score = scorer.finish();
     assert_eq!(score.value("samples"), Some(4.0));
     assert_eq!(score.value("samples_skipped"), Some(5.0));

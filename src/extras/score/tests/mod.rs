@@ -4,17 +4,17 @@ mod catalogue;
 mod events;
 mod force;
 mod garbage;
-mod motion;
 mod scene;
+mod tip_motion;
 mod two_hands;
 
 use nalgebra::Vector3;
 use nima_core::{
     SIDES, Side,
-    task::{Event, Happening},
+    task::{TaskEvent, TimedTaskEvent},
 };
 
-use crate::{HandSample, Sample, Score, Scorer, TaskFile};
+use crate::{HandSample, Score, ScoreSample, Scorer, TaskFile};
 
 type Hands = [Option<HandSample>; SIDES];
 
@@ -24,7 +24,7 @@ fn task(more: &str) -> TaskFile {
 }
 
 /// A trial at 1 kHz from 0 s to `end_s`, with these events in addition to its beginning and end.
-fn trial(task: &TaskFile, end_s: f64, hands: impl Fn(f64) -> Hands, events: &[(f64, Event)]) -> Score {
+fn trial(task: &TaskFile, end_s: f64, hands: impl Fn(f64) -> Hands, events: &[(f64, TaskEvent)]) -> Score {
     let times_s = (0..=(end_s * 1000.0).round() as u32).map(|tick| f64::from(tick) * 1e-3);
     trial_at(task, times_s, end_s, hands, events)
 }
@@ -35,23 +35,23 @@ fn trial_at(
     times_s: impl Iterator<Item = f64>,
     end_s: f64,
     hands: impl Fn(f64) -> Hands,
-    events: &[(f64, Event)],
+    events: &[(f64, TaskEvent)],
 ) -> Score {
     // An offset, so that a clock time cannot be mistaken for a time since the beginning.
     let zero_s = 5000.0;
     let mut scorer = Scorer::new(task);
-    scorer.happening(&Happening { t_s: zero_s, event: Event::Begun });
+    scorer.happening(&TimedTaskEvent { t_s: zero_s, event: TaskEvent::Begun });
     let mut waiting = events.iter().peekable();
     for t_s in times_s {
         while let Some((event_s, event)) = waiting.next_if(|(event_s, _)| *event_s < t_s) {
-            scorer.happening(&Happening { t_s: zero_s + event_s, event: *event });
+            scorer.happening(&TimedTaskEvent { t_s: zero_s + event_s, event: *event });
         }
-        scorer.sample(&Sample { t_s: zero_s + t_s, hands: hands(t_s) });
+        scorer.sample(&ScoreSample { t_s: zero_s + t_s, hands: hands(t_s) });
     }
     for (event_s, event) in waiting {
-        scorer.happening(&Happening { t_s: zero_s + event_s, event: *event });
+        scorer.happening(&TimedTaskEvent { t_s: zero_s + event_s, event: *event });
     }
-    scorer.happening(&Happening { t_s: zero_s + end_s, event: Event::Ended });
+    scorer.happening(&TimedTaskEvent { t_s: zero_s + end_s, event: TaskEvent::Ended });
     scorer.finish()
 }
 

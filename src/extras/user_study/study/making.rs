@@ -6,14 +6,14 @@ use std::{
     path::Path,
 };
 
-use super::{CONDITIONS, JOURNAL, KEY, PLAN, SCENE, SEALED, Study};
+use super::{CONDITIONS, JOURNAL, KEY, PLAN, SCENE, SEALED, UserStudy};
 use crate::{
-    Event, Opened, Plan, StudyError, StudyFile,
-    journal::Journal,
+    Assignment, StudyError, StudyEvent, StudyFile, StudyPlan,
+    journal::StudyJournal,
     seal::{self, Key},
 };
 
-impl Study {
+impl UserStudy {
     /// Creates the folder of a study: whole, or not at all. `scene` is the text of the scene file, which is stored in
     /// the folder.
     ///
@@ -30,8 +30,8 @@ impl Study {
         let made = tempfile::Builder::new().prefix(".study-").tempdir_in(parent).map_err(StudyError::io(parent))?;
         let failed = StudyError::io(folder);
         let commitment = fill(made.path(), file, scene).map_err(failed)?;
-        let mut journal = Journal::create(&made.path().join(JOURNAL))?;
-        journal.append(at, Event::StudyMade { commitment })?;
+        let mut journal = StudyJournal::create(&made.path().join(JOURNAL))?;
+        journal.append(at, StudyEvent::StudyMade { commitment })?;
         drop(journal);
         synced(made.path()).map_err(StudyError::io(folder))?;
         // Other systems replace an empty folder.
@@ -47,9 +47,9 @@ impl Study {
 /// Writes the files of a new study; returns the commitment.
 fn fill(folder: &Path, file: &StudyFile, scene: &str) -> io::Result<String> {
     let key = Key::new()?;
-    let secret = serde_json::to_string_pretty(&Opened::draw(file)?)? + "\n";
+    let secret = serde_json::to_string_pretty(&Assignment::draw(file)?)? + "\n";
     let commitment = seal::hash(secret.as_bytes());
-    let plan = Plan::draw(file, commitment.clone())?;
+    let plan = StudyPlan::draw(file, commitment.clone())?;
     let plan = toml::to_string(&plan).map_err(io::Error::other)?;
     for (name, text) in
         [(PLAN, &plan), (SCENE, &scene.to_owned()), (SEALED, &(key.seal(CONDITIONS, secret.as_bytes())? + "\n"))]

@@ -6,8 +6,8 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use super::{OPENED, Study};
-use crate::{Phase, StudyError, TrialId};
+use super::{OPENED, UserStudy};
+use crate::{StudyError, TrialId, TrialPhase};
 
 const SESSIONS: &str = "sessions";
 /// The ending of an encrypted session.
@@ -15,12 +15,12 @@ const SEALED_END: &str = "sealed";
 /// Purpose of the encryption.
 const SESSION: &str = "session";
 
-impl Study {
+impl UserStudy {
     /// Returns the path of a recording.
     pub(super) fn session_of(&self, participant: &str, trial: TrialId) -> Result<PathBuf, StudyError> {
         let folder = self.folder.join(SESSIONS);
         fs::create_dir_all(&folder).map_err(StudyError::io(&folder))?;
-        let phase = if trial.phase == Phase::Practice { "practice" } else { "trial" };
+        let phase = if trial.phase == TrialPhase::Practice { "practice" } else { "trial" };
         Ok(folder.join(format!("{participant}-{phase}-{:02}-{}.mcap", trial.number, trial.attempt)))
     }
 

@@ -48,9 +48,9 @@ fn every_mistake_is_one_line_that_names_the_key() {
         (ending("[breaks]\nafter_trials = 0\nleast_s = 5.0"), "breaks.after_trials"),
         (ending("[breaks]\nafter_trials = 1\nleast_s = inf"), "breaks.least_s"),
     ] {
-        let told = mistakes(&text);
-        assert_eq!(told.len(), 1, "{words}: {told:?}");
-        assert!(told[0].contains(words) && told[0].lines().count() == 1, "{words}: {told:?}");
+        let report = mistakes(&text);
+        assert_eq!(report.len(), 1, "{words}: {report:?}");
+        assert!(report[0].contains(words) && report[0].lines().count() == 1, "{words}: {report:?}");
     }
 }
 

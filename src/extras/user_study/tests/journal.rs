@@ -1,7 +1,7 @@
 use std::fs;
 
 use super::{AT, TWO, again, due, made, next, trial};
-use crate::{Answers, State, Step, Study, StudyError};
+use crate::{QuestionnaireAnswers, StudyError, StudyState, StudyStep, UserStudy};
 
 fn journal(folder: &tempfile::TempDir) -> std::path::PathBuf {
     folder.path().join("study/journal.jsonl")
@@ -25,8 +25,8 @@ fn a_torn_last_line_is_dropped_and_told_and_nothing_else_is_lost() {
     for torn in cuts.map(|cut| whole[..cut].to_vec()).chain([zeros]) {
         fs::write(journal(&folder), &torn).unwrap();
         let bytes = (torn.len() - last) as u64;
-        let looked = Study::read(&folder.path().join("study")).unwrap();
-        assert!(matches!(looked.next("P01").unwrap(), Step::Running { .. }));
+        let looked = UserStudy::read(&folder.path().join("study")).unwrap();
+        assert!(matches!(looked.next("P01").unwrap(), StudyStep::Running { .. }));
         assert_eq!(fs::read(journal(&folder)).unwrap(), torn, "looking changes nothing");
         let study = again(folder.path());
         assert_eq!(study.state().torn, if bytes > 0 { vec![bytes] } else { vec![] });
@@ -53,9 +53,9 @@ fn what_comes_next_is_a_function_of_plan_and_journal_alone() {
     for participant in ["P02", "P01", "P02"] {
         trial(&mut study, participant, 30);
     }
-    let entries: Vec<crate::Entry> =
+    let entries: Vec<crate::JournalEntry> =
         fs::read_to_string(journal(&folder)).unwrap().lines().map(|line| serde_json::from_str(line).unwrap()).collect();
-    let of = |count: usize| State::of(study.plan(), &entries[..count]).unwrap();
+    let of = |count: usize| StudyState::of(study.plan(), &entries[..count]).unwrap();
     for count in 1..=entries.len() {
         for participant in &study.plan().participants {
             assert_eq!(of(count).next(study.plan(), participant), of(count).next(study.plan(), participant));
@@ -63,8 +63,8 @@ fn what_comes_next_is_a_function_of_plan_and_journal_alone() {
     }
     let who = study.plan().participant("P02").unwrap();
     assert_eq!(of(entries.len()).next(study.plan(), who), study.next("P02").unwrap());
-    let twice: Vec<&crate::Entry> = entries.iter().chain(entries.last()).collect();
-    let (line, why) = State::of(study.plan(), twice).unwrap_err();
+    let twice: Vec<&crate::JournalEntry> = entries.iter().chain(entries.last()).collect();
+    let (line, why) = StudyState::of(study.plan(), twice).unwrap_err();
     assert!(line == entries.len() as u64 && why.contains("had not begun"), "{why}");
 }
 
@@ -94,8 +94,8 @@ fn a_journal_that_was_changed_is_refused_with_its_line() {
         ("\n".to_owned(), "line 1"),
     ] {
         fs::write(journal(&folder), text).unwrap();
-        let told = Study::open(&folder.path().join("study"), AT).unwrap_err().to_string();
-        assert!(told.contains(words) && told.lines().count() == 1, "{words}: {told}");
+        let report = UserStudy::open(&folder.path().join("study"), AT).unwrap_err().to_string();
+        assert!(report.contains(words) && report.lines().count() == 1, "{words}: {report}");
     }
 }
 
@@ -103,10 +103,10 @@ fn a_journal_that_was_changed_is_refused_with_its_line() {
 fn one_program_at_a_time_writes_and_others_may_look() {
     let folder = tempfile::tempdir().unwrap();
     let mut study = made(folder.path(), TWO);
-    let told = Study::open(&folder.path().join("study"), AT).unwrap_err();
-    assert!(matches!(told, StudyError::InUse { .. }), "{told}");
+    let report = UserStudy::open(&folder.path().join("study"), AT).unwrap_err();
+    assert!(matches!(report, StudyError::InUse { .. }), "{report}");
     let running = study.begin_trial("P01", true, AT).unwrap();
-    let mut looking = Study::read(&folder.path().join("study")).unwrap();
+    let mut looking = UserStudy::read(&folder.path().join("study")).unwrap();
     assert!(next(&looking, "P01").contains("has begun"));
     assert!(matches!(looking.note(None, "x", AT), Err(StudyError::ReadOnly)));
     study.abort_trial(running, "a visitor came in", AT).unwrap();
@@ -119,19 +119,19 @@ fn what_is_not_next_is_refused_and_does_not_stand_in_the_journal() {
     let mut study = made(folder.path(), &format!("{TWO}\n[questionnaires]\nafter_condition = ['realism']"));
     let before = fs::read(journal(&folder)).unwrap();
     let refused = |result: Result<(), StudyError>, words: &str| {
-        let told = result.unwrap_err().to_string();
-        assert!(told.contains(words), "{words}: {told}");
+        let report = result.unwrap_err().to_string();
+        assert!(report.contains(words), "{words}: {report}");
     };
-    refused(study.answer("P01", Answers::Realism(3), true, AT), "not the next step; do trial 1");
-    refused(study.answer("P77", Answers::Realism(3), true, AT), "choose one of P01 to P04");
+    refused(study.answer("P01", QuestionnaireAnswers::Realism(3), true, AT), "not the next step; do trial 1");
+    refused(study.answer("P77", QuestionnaireAnswers::Realism(3), true, AT), "choose one of P01 to P04");
     refused(study.exclude("P01", Some(1), "fell asleep", AT), "has not made trial 1");
     refused(study.exclude("P01", None, " ", AT), "needs a reason");
     refused(study.unblind("", "x", AT), "needs a name");
     assert_eq!(fs::read(journal(&folder)).unwrap(), before);
     (0..3).for_each(|_| trial(&mut study, "P01", 20));
     refused(study.begin_trial("P01", true, AT).map(drop), "questionnaire realism");
-    refused(study.answer("P01", Answers::Sus([3; 10]), true, AT), "sus is not the next step");
-    refused(study.answer("P01", Answers::Realism(9), true, AT), "from 1 to 7");
-    study.answer("P01", Answers::Realism(6), true, AT).unwrap();
+    refused(study.answer("P01", QuestionnaireAnswers::Sus([3; 10]), true, AT), "sus is not the next step");
+    refused(study.answer("P01", QuestionnaireAnswers::Realism(9), true, AT), "from 1 to 7");
+    study.answer("P01", QuestionnaireAnswers::Realism(6), true, AT).unwrap();
     assert_eq!(due(&study, "P01"), (4, 1));
 }

@@ -11,11 +11,11 @@ use std::path::Path;
 
 use nima_core::{
     Side,
-    task::{Event, Happening},
+    task::{TaskEvent, TimedTaskEvent},
 };
-use nima_score::{HandSample, Sample, Score, Scorer, TaskFile};
+use nima_score::{HandSample, Score, ScoreSample, Scorer, TaskFile};
 
-use crate::{Ending, Step, Study, StudyFile};
+use crate::{StudyFile, StudyStep, TrialEnding, UserStudy};
 
 pub(super) const AT: &str = "2026-01-01T09:00:00Z";
 
@@ -41,18 +41,18 @@ pub(super) fn file(text: &str) -> StudyFile {
     StudyFile::from_toml(text).unwrap()
 }
 
-pub(super) fn made(folder: &Path, text: &str) -> Study {
-    Study::create(&folder.join("study"), &file(text), "name = 'scene'", AT).unwrap()
+pub(super) fn made(folder: &Path, text: &str) -> UserStudy {
+    UserStudy::create(&folder.join("study"), &file(text), "name = 'scene'", AT).unwrap()
 }
 
-pub(super) fn again(folder: &Path) -> Study {
-    Study::open(&folder.join("study"), AT).unwrap()
+pub(super) fn again(folder: &Path) -> UserStudy {
+    UserStudy::open(&folder.join("study"), AT).unwrap()
 }
 
 /// A score of a trial with this duration and a force in the hand.
 pub(super) fn score(seconds: u32) -> Score {
     let mut scorer = Scorer::new(&TaskFile::from_toml("name = 'x'\nkind = 'peg_transfer'").unwrap());
-    scorer.happening(&Happening { t_s: 0.0, event: Event::Begun });
+    scorer.happening(&TimedTaskEvent { t_s: 0.0, event: TaskEvent::Begun });
     for tick in 0..=seconds * 10 {
         let t_s = f64::from(tick) * 0.1;
         let right = HandSample {
@@ -61,9 +61,9 @@ pub(super) fn score(seconds: u32) -> Score {
             engaged: true,
             ..HandSample::default()
         };
-        scorer.sample(&Sample { t_s, hands: Side::Right.alone(right) });
+        scorer.sample(&ScoreSample { t_s, hands: Side::Right.alone(right) });
     }
-    scorer.happening(&Happening { t_s: f64::from(seconds), event: Event::Ended });
+    scorer.happening(&TimedTaskEvent { t_s: f64::from(seconds), event: TaskEvent::Ended });
     scorer.finish()
 }
 
@@ -72,19 +72,19 @@ fn vector<V: From<[f64; 3]>>(values: [f64; 3]) -> V {
 }
 
 /// Does the next trial in this many seconds.
-pub(super) fn trial(study: &mut Study, participant: &str, seconds: u32) {
+pub(super) fn trial(study: &mut UserStudy, participant: &str, seconds: u32) {
     let running = study.begin_trial(participant, true, AT).unwrap();
-    study.end_trial(running, Ending::Completed, &score(seconds), AT).unwrap();
+    study.end_trial(running, TrialEnding::Completed, &score(seconds), AT).unwrap();
 }
 
-pub(super) fn next(study: &Study, participant: &str) -> String {
+pub(super) fn next(study: &UserStudy, participant: &str) -> String {
     study.next(participant).unwrap().to_string()
 }
 
 /// Number and attempt of the next trial.
-pub(super) fn due(study: &Study, participant: &str) -> (u32, u32) {
+pub(super) fn due(study: &UserStudy, participant: &str) -> (u32, u32) {
     match study.next(participant).unwrap() {
-        Step::Trial { number, attempt, .. } | Step::Practice { number, attempt } => (number, attempt),
+        StudyStep::Trial { number, attempt, .. } | StudyStep::Practice { number, attempt } => (number, attempt),
         other => panic!("{other}"),
     }
 }

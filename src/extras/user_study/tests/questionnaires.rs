@@ -1,4 +1,7 @@
-use crate::{Answers, PAIRS, Questionnaire, Ratings, TlxScale, of_sus, raw_tlx, simulated::Person, weighted_tlx};
+use crate::{
+    PAIRS, Questionnaire, QuestionnaireAnswers, Ratings, TlxScale, of_sus, raw_tlx, simulated::SimulatedParticipant,
+    weighted_tlx,
+};
 
 /// Computed by hand: ratings 30, 15, 60, 40, 40, 30; the scales are chosen 3, 0, 5, 1, 3, 3 times: 90 + 0 + 300 + 40 +
 /// 120 + 90 = 640.
@@ -39,12 +42,12 @@ fn the_sus_is_that_of_its_authors_example_and_of_its_ends() {
 fn answers_are_read_from_text_and_what_the_form_does_not_allow_is_refused() {
     let tlx =
         "nasa_tlx = { mental = 50, physical = 5, temporal = 100, performance = 0, effort = 50, frustration = 50 }";
-    let read = |text: &str, asked| Answers::from_toml(text, asked);
+    let read = |text: &str, asked| QuestionnaireAnswers::from_toml(text, asked);
     let answers = read(tlx, Questionnaire::NasaTlx).unwrap();
     assert_eq!(answers.scores()[0], ("nasa_tlx_raw", 42.5));
     let (first, _) = PAIRS[0];
     let ratings = Ratings::of([50; 6]);
-    let wrong = Answers::NasaTlxWeighted { ratings, chosen: [first; 15] };
+    let wrong = QuestionnaireAnswers::NasaTlxWeighted { ratings, chosen: [first; 15] };
     assert!(wrong.check().unwrap_err().contains("number 6"), "{:?}", wrong.check());
     for (text, asked, words) in [
         ("realism = 0", Questionnaire::Realism, "from 1 to 7"),
@@ -57,19 +60,23 @@ fn answers_are_read_from_text_and_what_the_form_does_not_allow_is_refused() {
         (&tlx.replace("mental = 50, ", ""), Questionnaire::NasaTlx, "mental"),
         ("realizm = 4", Questionnaire::Realism, "realizm"),
     ] {
-        let told = read(text, asked).unwrap_err();
-        assert!(told.contains(words) && told.lines().count() == 1, "{text}: {told}");
+        let report = read(text, asked).unwrap_err();
+        assert!(report.contains(words) && report.lines().count() == 1, "{text}: {report}");
     }
 }
 
 #[test]
 fn simulated_people_give_answers_that_the_forms_allow_and_learn_and_tire() {
     for number in 0..20 {
-        let person = Person::new(3, number);
+        let person = SimulatedParticipant::new(3, number);
         for (made, asked) in (0..10).zip(Questionnaire::ALL.into_iter().cycle()) {
             let answers = person.answers(asked, made);
             assert_eq!((answers.check(), answers.questionnaire()), (Ok(()), asked));
-            assert_eq!(answers, Person::new(3, number).answers(asked, made), "the same seed, the same answers");
+            assert_eq!(
+                answers,
+                SimulatedParticipant::new(3, number).answers(asked, made),
+                "the same seed, the same answers"
+            );
         }
         let hand = |made, since| person.hand(made, since, 1).pace;
         assert!(hand(20, 0) > hand(0, 0), "learning");
@@ -79,10 +86,10 @@ fn simulated_people_give_answers_that_the_forms_allow_and_learn_and_tire() {
         );
         assert!((0.4..=1.3).contains(&hand(0, 0)));
     }
-    assert_ne!(Person::new(3, 0).hand(0, 0, 1), Person::new(3, 1).hand(0, 0, 1));
+    assert_ne!(SimulatedParticipant::new(3, 0).hand(0, 0, 1), SimulatedParticipant::new(3, 1).hand(0, 0, 1));
     assert_ne!(
-        Person::new(3, 0).hand(0, 0, 1).seed,
-        Person::new(3, 0).hand(0, 0, 2).seed,
+        SimulatedParticipant::new(3, 0).hand(0, 0, 1).seed,
+        SimulatedParticipant::new(3, 0).hand(0, 0, 2).seed,
         "a repetition is not the same"
     );
 }

@@ -1,13 +1,13 @@
 use super::{AT, TWO, again, due, made, next, trial};
-use crate::{Answers, Done, Label, Step, Study};
+use crate::{EndReason, Label, QuestionnaireAnswers, StudyStep, UserStudy};
 
-fn abort(study: &mut Study, participant: &str) {
+fn abort(study: &mut UserStudy, participant: &str) {
     let running = study.begin_trial(participant, true, AT).unwrap();
     study.abort_trial(running, "the sensor came off", AT).unwrap();
 }
 
 /// Begins a trial and ends the program, as in a power failure.
-fn cut(folder: &std::path::Path, mut study: Study, participant: &str) -> Study {
+fn cut(folder: &std::path::Path, mut study: UserStudy, participant: &str) -> UserStudy {
     drop(study.begin_trial(participant, true, AT).unwrap());
     drop(study);
     again(folder)
@@ -39,7 +39,7 @@ fn twelve_trials_with_a_stop_and_a_power_cut_and_nothing_is_lost() {
         let time_s = made.measures.as_ref().unwrap()["completion_time_s"];
         assert!((time_s - f64::from(20 + number)).abs() < 1e-9, "{time_s}");
     }
-    assert_eq!(study.next("P01").unwrap(), Step::Done { why: Done::Finished });
+    assert_eq!(study.next("P01").unwrap(), StudyStep::Done { why: EndReason::Finished });
     assert_eq!(study.trials().rows, 12);
 }
 
@@ -64,7 +64,7 @@ fn by_the_other_rule_the_session_resumes_with_the_next_trial() {
     abort(&mut study, "P01");
     assert_eq!(due(&study, "P01"), (3, 1));
     trial(&mut study, "P01", 20);
-    let with = |study: &Study| {
+    let with = |study: &UserStudy| {
         study.state().progress("P01").unwrap().trials.iter().filter(|made| made.ending.is_some()).count()
     };
     assert_eq!(with(&study), 1);
@@ -97,7 +97,7 @@ fn practice_goes_on_to_the_criterion_and_who_does_not_reach_it_is_excluded() {
         trial(&mut study, "P02", seconds);
     }
     (0..3).for_each(|_| abort(&mut study, "P02"));
-    assert_eq!(study.next("P02").unwrap(), Step::Done { why: Done::Excluded });
+    assert_eq!(study.next("P02").unwrap(), StudyStep::Done { why: EndReason::Excluded });
     let excluded = study.exclusions();
     assert!(excluded.len() == 1 && excluded[0].why.contains("practice"), "{excluded:?}");
     let learning = study.learning();
@@ -118,7 +118,7 @@ fn practice_takes_each_condition_in_turn_or_one_that_is_named() {
         let running = study.begin_trial("P01", true, AT).unwrap();
         assert_eq!(running.label(), None, "practice shows no label");
         seen.push(running.condition().name.clone());
-        study.end_trial(running, crate::Ending::Completed, &super::score(50), AT).unwrap();
+        study.end_trial(running, crate::TrialEnding::Completed, &super::score(50), AT).unwrap();
     }
     assert!(seen[0] != seen[1] && seen[0] == seen[2] && seen[1] == seen[3], "{seen:?}");
     let other = tempfile::tempdir().unwrap();
@@ -127,7 +127,7 @@ fn practice_takes_each_condition_in_turn_or_one_that_is_named() {
     for _ in 0..2 {
         let running = study.begin_trial("P01", true, AT).unwrap();
         assert_eq!(running.condition().name, "Yak");
-        study.end_trial(running, crate::Ending::Completed, &super::score(50), AT).unwrap();
+        study.end_trial(running, crate::TrialEnding::Completed, &super::score(50), AT).unwrap();
     }
 }
 
@@ -143,20 +143,20 @@ fn breaks_and_questionnaires_come_where_the_file_puts_them() {
         let step = study.next("P01").unwrap();
         steps.push(step.to_string().split(" under").next().unwrap().to_owned());
         match step {
-            Step::Trial { .. } => trial(&mut study, "P01", 20),
-            Step::Break { least_s } => {
+            StudyStep::Trial { .. } => trial(&mut study, "P01", 20),
+            StudyStep::Break { min_s } => {
                 assert!(study.take_break("P01", 59.0, false, AT).unwrap_err().to_string().contains("60 s"));
-                study.take_break("P01", least_s, false, AT).unwrap();
+                study.take_break("P01", min_s, false, AT).unwrap();
             }
-            Step::Questionnaire { questionnaire, after } => {
+            StudyStep::Questionnaire { questionnaire, after } => {
                 let answers = match questionnaire.name() {
-                    "realism" => Answers::Realism(if after == Some(Label::first(1)[0]) { 2 } else { 6 }),
-                    "sus" => Answers::Sus([3; 10]),
-                    _ => Answers::FreeText("good, \"very\" good".to_owned()),
+                    "realism" => QuestionnaireAnswers::Realism(if after == Some(Label::first(1)[0]) { 2 } else { 6 }),
+                    "sus" => QuestionnaireAnswers::Sus([3; 10]),
+                    _ => QuestionnaireAnswers::FreeText("good, \"very\" good".to_owned()),
                 };
                 study.answer("P01", answers, false, AT).unwrap();
             }
-            Step::Done { .. } => break,
+            StudyStep::Done { .. } => break,
             other => panic!("{other}"),
         }
     }
@@ -208,14 +208,14 @@ times = 2
         }
     }
     study.exclude("P03", Some(6), "the phone rang", AT).unwrap();
-    let told: Vec<String> =
+    let report: Vec<String> =
         study.exclusions().iter().map(|one| format!("{} {:?} {}", one.participant, one.trial, one.why)).collect();
     let expected = [
         "P01 Some(2) completion_time_s above 30",
         "P02 None completion_time_s below 10 in 2 trials or more",
         "P03 Some(6) the phone rang",
     ];
-    assert_eq!(told, expected);
+    assert_eq!(report, expected);
     let table = study.trials();
     assert_eq!((table.rows, table.excluded.len()), (5 + 5, 3));
     assert!(
@@ -225,7 +225,7 @@ times = 2
             && !table.csv.contains("P01,B,2,")
     );
     study.exclude("P03", None, "asked to be taken out", AT).unwrap();
-    assert_eq!((study.trials().rows, study.next("P03").unwrap()), (5, Step::Done { why: Done::Excluded }));
+    assert_eq!((study.trials().rows, study.next("P03").unwrap()), (5, StudyStep::Done { why: EndReason::Excluded }));
     drop(study);
     assert_eq!(again(folder.path()).trials().rows, 5, "it is in the journal");
 }
@@ -255,7 +255,7 @@ fn shown(feedback: &str, seconds: &[u32]) -> Vec<bool> {
         }
         trial(&mut study, "P01", *seconds);
         all.push(study.state().progress("P01").unwrap().shows_result());
-        let read = Study::read(&folder.path().join("study")).unwrap();
+        let read = UserStudy::read(&folder.path().join("study")).unwrap();
         assert_eq!(read.state().progress("P01").unwrap().shows_result(), all[number]);
     }
     all

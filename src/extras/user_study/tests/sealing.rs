@@ -1,7 +1,7 @@
 use std::{fs, path::Path};
 
 use super::{AT, TWO, again, file, made, score, trial};
-use crate::{Ending, Study, StudyError, order, seal};
+use crate::{StudyError, TrialEnding, UserStudy, order, seal};
 
 /// All names and bytes under a folder.
 fn everything(folder: &Path) -> Vec<u8> {
@@ -28,7 +28,7 @@ fn nothing_in_the_folder_tells_the_conditions_before_the_unblinding_and_everythi
     let running = study.begin_trial("P01", true, AT).unwrap();
     fs::write(running.session().unwrap(), "mode = anchored, delay 137.5").unwrap();
     assert!(!format!("{running:?} {study:?}").to_lowercase().contains("anchored"));
-    study.end_trial(running, Ending::Completed, &score(21), AT).unwrap();
+    study.end_trial(running, TrialEnding::Completed, &score(21), AT).unwrap();
     let table = study.trials();
     assert!(table.csv.contains("P01,A,") || table.csv.contains("P01,B,"), "{}", table.csv);
     assert!(!table.csv.contains("rendered"), "{}", table.csv);
@@ -46,7 +46,7 @@ fn nothing_in_the_folder_tells_the_conditions_before_the_unblinding_and_everythi
     assert_eq!((unblinding.trials_before, unblinding.complete, unblinding.who.as_str()), (2, false, "A. Person"));
     assert!(study.unblind("B. Person", "again", AT).unwrap_err().to_string().contains("A. Person"));
     trial(&mut study, "P02", 20);
-    let after = |study: &Study| study.state().progress("P02").unwrap().trials[0].unblinded;
+    let after = |study: &UserStudy| study.state().progress("P02").unwrap().trials[0].unblinded;
     assert!(after(&study), "what is made after it is marked");
     drop(study);
     assert!(after(&again(folder.path())));
@@ -74,11 +74,11 @@ fn an_assignment_or_a_plan_that_was_changed_is_refused() {
     let other = tempfile::tempdir().unwrap();
     drop(made(other.path(), TWO));
     let refused = |words: &str| {
-        for told in [
-            Study::read(&folder.path().join("study")).unwrap_err(),
-            Study::open(&folder.path().join("study"), AT).unwrap_err(),
+        for report in [
+            UserStudy::read(&folder.path().join("study")).unwrap_err(),
+            UserStudy::open(&folder.path().join("study"), AT).unwrap_err(),
         ] {
-            assert!(told.to_string().contains(words) && told.to_string().lines().count() == 1, "{told}");
+            assert!(report.to_string().contains(words) && report.to_string().lines().count() == 1, "{report}");
         }
     };
     let whole = fs::read_to_string(place("conditions.sealed")).unwrap();
@@ -160,14 +160,14 @@ fn long_texts_are_sealed_in_pieces_that_cannot_be_changed_exchanged_or_cut_off()
 fn a_folder_with_something_in_it_is_left_alone() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("thesis.txt"), "years").unwrap();
-    let told = Study::create(folder.path(), &file(TWO), "", AT).unwrap_err();
-    assert!(matches!(told, StudyError::Exists { .. }), "{told}");
+    let report = UserStudy::create(folder.path(), &file(TWO), "", AT).unwrap_err();
+    assert!(matches!(report, StudyError::Exists { .. }), "{report}");
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
-    assert!(Study::read(folder.path()).unwrap_err().to_string().contains("study.toml"));
+    assert!(UserStudy::read(folder.path()).unwrap_err().to_string().contains("study.toml"));
     let empty = folder.path().join("empty");
     fs::create_dir(&empty).unwrap();
-    Study::create(&empty, &file(TWO), "", AT).unwrap();
-    Study::read(&empty).unwrap();
+    UserStudy::create(&empty, &file(TWO), "", AT).unwrap();
+    UserStudy::read(&empty).unwrap();
 }
 
 #[test]

@@ -17,14 +17,14 @@ const METHODS: [&str; 3] = [IN_USE, "gravity only", "wrist only"];
 
 /// Mean and deviation, per axis (x, y, z of `world`), N.
 #[derive(Clone, Copy, Debug, Default)]
-struct Sums {
+struct ErrorSums {
     count: f64,
     magnitude: Vector3<f64>,
     mean: Vector3<f64>,
     squares: Vector3<f64>,
 }
 
-impl Sums {
+impl ErrorSums {
     fn add(&mut self, error_n: &Vector3<f64>) {
         self.count += 1.0;
         self.magnitude += error_n.abs();
@@ -69,12 +69,12 @@ pub struct TipError {
     /// Fraction of the samples in which the loop did not use the network.
     pub without_network: f64,
     /// Fractions of the samples in which the network was uncertain, by reason.
-    pub doubt: DoubtShares,
+    pub doubt: DoubtFractions,
 }
 
 /// Samples with an uncertain network, as fractions of all samples, 0 to 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct DoubtShares {
+pub struct DoubtFractions {
     /// Outside the training data, where the network still returns its linear path.
     pub extrapolated: f64,
     /// Far outside the training data.
@@ -85,7 +85,7 @@ pub struct DoubtShares {
     pub missing: f64,
 }
 
-impl DoubtShares {
+impl DoubtFractions {
     fn over(self, samples: f64) -> Self {
         Self {
             extrapolated: self.extrapolated / samples,
@@ -98,10 +98,10 @@ impl DoubtShares {
 
 #[derive(Clone, Debug, Default)]
 pub struct TipErrors {
-    sides: [[(Sums, Sums); METHODS.len()]; SIDES],
+    sides: [[(ErrorSums, ErrorSums); METHODS.len()]; SIDES],
     without_network: [u64; SIDES],
     /// Number of uncertain samples.
-    doubt: [DoubtShares; SIDES],
+    doubt: [DoubtFractions; SIDES],
 }
 
 impl TipErrors {
@@ -110,9 +110,9 @@ impl TipErrors {
         let Some(sample) = tick.wrist.as_ref().filter(|_| tick.state.permits().coupled) else { return };
         let (Some(world_from_s1), Some(gravity_free)) = (sample.world_from_s1, tick.force.gravity_free) else { return };
         let side = tick.side.index();
-        let told_n = [tick.force.tip_n, world_from_s1 * gravity_free.force_n, world_from_s1 * sample.raw.force_n];
-        for ((all, free), told_n) in self.sides[side].iter_mut().zip(told_n) {
-            let error_n = told_n - true_n;
+        let reported_n = [tick.force.tip_n, world_from_s1 * gravity_free.force_n, world_from_s1 * sample.raw.force_n];
+        for ((all, free), reported_n) in self.sides[side].iter_mut().zip(reported_n) {
+            let error_n = reported_n - true_n;
             all.add(&error_n);
             if true_n.norm() < f64::EPSILON {
                 free.add(&error_n);

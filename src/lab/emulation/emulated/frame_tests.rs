@@ -5,25 +5,28 @@ use nalgebra::{Isometry3, Point3, UnitQuaternion, Vector3};
 use nima_core::{
     calibration::{
         Verdict,
-        frames::{Calibration, FrameReport, FrameSample, FrameSession, HandEye, SensorMount, Table, Tip, Trocar, View},
+        frames::{
+            Calibration, FrameReport, FrameSample, FrameSession, HandEyeSettings, SensorMount, TableSettings,
+            TipSettings, TrocarSettings, ViewSettings,
+        },
         gravity::{PoseTarget, TARGETS},
     },
     kinematics::{Arm, view_from_omega},
 };
-use nima_devices::Tracked;
+use nima_devices::TrackedTool;
 use nima_machine::{
     config::RigConfig,
     rig::{ArmSet, Flaws, Prompt, Side},
 };
 use nima_simulation::{
-    scene::{Flaw, Person, Scene},
-    screen::Task,
+    scene::{Flaw, PersonModel, Scene},
+    screen::PersonTask,
 };
 
 use super::{HandFrame, SideWorld, of_side};
-use crate::emulators::{force_dimension::Applied, kinova::Asked};
+use crate::emulators::{force_dimension::MotorOutput, kinova::BodyCommand};
 
-struct Bench {
+struct Fixture {
     world: SideWorld,
     arm: Arm,
     set: ArmSet,
@@ -33,27 +36,27 @@ struct Bench {
     c_from_m: Option<Isometry3<f64>>,
 }
 
-impl Bench {
+impl Fixture {
     fn new(side: Side, flaw: Option<Flaw>) -> Self {
         let rig = RigConfig::load("emulated").unwrap();
         let set = rig.devices.unwrap().arm(side).unwrap().clone();
         let mut scene = Scene::load("peg_transfer").unwrap();
-        scene.person = flaw.map(|flaw| Person { flaw: Some(flaw) });
+        scene.person = flaw.map(|flaw| PersonModel { flaw: Some(flaw) });
         let hand = HandFrame::of(&rig.teleoperation.mapping());
         let world = of_side(side, &set, &scene, hand, Flaws::default()).unwrap();
         let arm = Arm::new(&set.mount).unwrap();
         Self { world, arm, set, hand, t_s: 0.0, frame_s: 0.0, c_from_m: None }
     }
 
-    fn sample(&mut self, task: Task, prompt: Prompt) -> FrameSample {
+    fn sample(&mut self, task: PersonTask, prompt: Prompt) -> FrameSample {
         self.t_s += 1e-3;
         self.world.reads(self.t_s, task, prompt);
-        let pose = self.arm.pose(&self.world.ask(self.t_s, &Asked::Rest).joint_rad.into());
+        let pose = self.arm.pose(&self.world.ask(self.t_s, &BodyCommand::Rest).joint_rad.into());
         let flange = self.arm.world_from_base().inverse() * pose.chain.world_from_flange;
         if self.t_s >= self.frame_s {
             self.frame_s += 1.0 / 60.0;
             self.c_from_m = match self.world.marker(self.t_s) {
-                Tracked::Seen { c_from_tool, position_in_c_m, .. } => {
+                TrackedTool::Seen { c_from_tool, position_in_c_m, .. } => {
                     Some(Isometry3::from_parts(position_in_c_m.into(), c_from_tool))
                 }
                 _ => None,
@@ -63,7 +66,7 @@ impl Bench {
             base_from_flange: Some(Isometry3::from_parts(flange.translation, flange.rotation.into())),
             c_from_m: self.c_from_m,
             wrench: Some(self.world.feel(self.t_s).wrench),
-            ..FrameSample::from(self.world.hold(self.t_s, &Applied::default()).position_m)
+            ..FrameSample::from(self.world.hold(self.t_s, &MotorOutput::default()).position_m)
         }
     }
 
@@ -71,17 +74,17 @@ impl Bench {
     fn run<C: Calibration>(
         &mut self,
         calibration: C,
-        task: Task,
+        task: PersonTask,
         seconds: f64,
         prompt: impl Fn(&FrameSession<C>) -> Prompt,
-    ) -> FrameReport<C::Found> {
+    ) -> FrameReport<C::Solution> {
         let mut session = FrameSession::new(calibration);
         let begin_s = self.t_s;
         // The arm is carried to the start of the calibration.
         for _ in 0..6000 {
             self.sample(task, Prompt::Rest);
         }
-        while session.coverage().share < 1.0 && self.t_s < begin_s + seconds {
+        while session.coverage().fraction < 1.0 && self.t_s < begin_s + seconds {
             let sample = self.sample(task, prompt(&session));
             session.step(&sample, self.t_s);
         }
@@ -107,15 +110,15 @@ impl Bench {
 
 /// Calibrates tip, hand-eye and trocar at this arm and compares them with the truth.
 fn instrument(side: Side) {
-    let mut bench = Bench::new(side, None);
-    let tip = bench.run(Tip::by_arm(), Task::Tip, 150.0, |_| Prompt::PivotInDimple);
+    let mut bench = Fixture::new(side, None);
+    let tip = bench.run(TipSettings::by_arm(), PersonTask::Tip, 150.0, |_| Prompt::PivotInDimple);
     assert_eq!(tip.verdict, Verdict::Accepted, "{tip:?}");
     let tip_m = Vector3::from(tip.found.unwrap().tip_in_carrier_m);
     let miss_mm = (tip_m - bench.tip_in_flange_m()).norm() * 1e3;
     println!("{side:?}: tip {miss_mm:.3} mm off");
     assert!(miss_mm <= 0.5, "{side:?}: {miss_mm} mm");
 
-    let hand_eye = bench.run(HandEye::new(tip_m), Task::HandEye, 150.0, |_| Prompt::Turn);
+    let hand_eye = bench.run(HandEyeSettings::new(tip_m), PersonTask::HandEye, 150.0, |_| Prompt::Turn);
     assert_eq!(hand_eye.verdict, Verdict::Accepted, "{hand_eye:?}");
     let found = hand_eye.found.unwrap();
     let [miss_mm, miss_deg] = bench.hand_eye_misses(&found.flange_from_m.pose(), &found.base_from_c.pose());
@@ -123,9 +126,10 @@ fn instrument(side: Side) {
     assert!(miss_mm <= 0.5 && miss_deg <= 0.1, "{side:?}: {miss_mm} mm, {miss_deg} degrees");
 
     for _ in 0..8000 {
-        bench.sample(Task::Surgery, Prompt::Rest);
+        bench.sample(PersonTask::Surgery, Prompt::Rest);
     }
-    let trocar = bench.run(Trocar::by_arm(&bench.arm.clone()), Task::Trocar, 120.0, |_| Prompt::PivotInTrocar);
+    let trocar =
+        bench.run(TrocarSettings::by_arm(&bench.arm.clone()), PersonTask::Trocar, 120.0, |_| Prompt::PivotInTrocar);
     assert_eq!(trocar.verdict, Verdict::Accepted, "{trocar:?}");
     let truth_m = bench.base_from(bench.set.rcm.trocar_m);
     let miss_mm = (Vector3::from(trocar.found.unwrap().trocar_m) - truth_m).norm() * 1e3;
@@ -133,7 +137,7 @@ fn instrument(side: Side) {
     assert!(miss_mm <= 0.5, "{side:?}: {miss_mm} mm");
 }
 
-impl Bench {
+impl Fixture {
     /// Distance between the tracker's and the true position of the tip, in the current pose of the arm.
     fn hand_eye_misses(&mut self, flange_from_m: &Isometry3<f64>, base_from_c: &Isometry3<f64>) -> [f64; 2] {
         let truth = self.world.truth(self.t_s);
@@ -171,20 +175,20 @@ fn untaken(session: &FrameSession<SensorMount>, flange_from_s1: &UnitQuaternion<
 
 #[test]
 fn mount_table_and_view_are_found() {
-    let mut bench = Bench::new(Side::Right, None);
+    let mut bench = Fixture::new(Side::Right, None);
     let mount = bench.arm.flange_from_s1().rotation;
     let up = bench.arm.world_from_base().rotation.inverse() * Vector3::z();
-    let in_force = UnitQuaternion::from_rotation_matrix(&mount);
-    let report = bench.run(SensorMount::new(in_force, up), Task::Gravity, 150.0, |session| Prompt::Hold {
-        world_from_s1: untaken(session, &in_force, &up).world_from_s1(),
+    let active = UnitQuaternion::from_rotation_matrix(&mount);
+    let report = bench.run(SensorMount::new(active, up), PersonTask::Gravity, 150.0, |session| Prompt::Hold {
+        world_from_s1: untaken(session, &active, &up).world_from_s1(),
     });
     assert_eq!(report.verdict, Verdict::Accepted, "{report:?}");
     let found = report.found.unwrap();
-    println!("mount {:.3} degrees off", found.from_in_force_deg);
+    println!("mount {:.3} degrees off", found.from_active_deg);
     assert!(found.agrees(), "{found:?}");
 
     let tip_m = bench.tip_in_flange_m();
-    let report = bench.run(Table::by_arm(tip_m, up), Task::Table, 90.0, |session| Prompt::Touch {
+    let report = bench.run(TableSettings::by_arm(tip_m, up), PersonTask::Table, 90.0, |session| Prompt::Touch {
         point: session.samples().len() as u8,
     });
     assert_eq!(report.verdict, Verdict::Accepted, "{report:?}");
@@ -196,8 +200,8 @@ fn mount_table_and_view_are_found() {
     assert!(off_mm < 1.0 && off_deg < 0.6, "{off_mm} mm, {off_deg} degrees");
 
     let truth = (view_from_omega() * bench.hand.leader_from_world).inverse();
-    let view = View::by_arm(tip_m);
-    let report = bench.run(view, Task::View, 90.0, |session| {
+    let view = ViewSettings::by_arm(tip_m);
+    let report = bench.run(view, PersonTask::View, 90.0, |session| {
         view.asked(session.samples().len()).map_or(Prompt::Rest, Prompt::MoveTip)
     });
     assert_eq!(report.verdict, Verdict::Accepted, "{report:?}");
@@ -206,8 +210,8 @@ fn mount_table_and_view_are_found() {
     println!("view {off_deg:.2} degrees off");
     assert!(off_deg < 5.0, "{off_deg} degrees");
 
-    let view = View::by_handle();
-    let report = bench.run(view, Task::View, 90.0, |session| {
+    let view = ViewSettings::by_handle();
+    let report = bench.run(view, PersonTask::View, 90.0, |session| {
         view.asked(session.samples().len()).map_or(Prompt::Rest, Prompt::MoveHandle)
     });
     assert_eq!(report.verdict, Verdict::Accepted, "{report:?}");
@@ -219,10 +223,10 @@ fn mount_table_and_view_are_found() {
 
 #[test]
 fn a_technician_who_errs_gets_no_tip() {
-    let mut bench = Bench::new(Side::Right, Some(Flaw::Trembles));
-    let report = bench.run(Tip::by_arm(), Task::Tip, 30.0, |_| Prompt::PivotInDimple);
+    let mut bench = Fixture::new(Side::Right, Some(Flaw::Trembles));
+    let report = bench.run(TipSettings::by_arm(), PersonTask::Tip, 30.0, |_| Prompt::PivotInDimple);
     assert_eq!((report.verdict, report.poses), (Verdict::InsufficientMotion, 0), "{report:?}");
-    let mut bench = Bench::new(Side::Right, Some(Flaw::KeepsOneOrientation));
-    let report = bench.run(Tip::by_arm(), Task::Tip, 30.0, |_| Prompt::PivotInDimple);
+    let mut bench = Fixture::new(Side::Right, Some(Flaw::KeepsOneOrientation));
+    let report = bench.run(TipSettings::by_arm(), PersonTask::Tip, 30.0, |_| Prompt::PivotInDimple);
     assert!(report.found.is_none() && report.poses < 3, "{report:?}");
 }

@@ -8,7 +8,7 @@ use std::f64::consts::{PI, TAU};
 
 use nalgebra::{SMatrix, SVector, UnitQuaternion, Vector3};
 use nima_core::{
-    kinematics::{Arm, JOINTS, Joints, LIMIT_RAD, Pose, SPEED_RAD_S, limit_margin_rad},
+    kinematics::{Arm, InstrumentPose, JOINTS, Joints, LIMIT_RAD, SPEED_RAD_S, limit_margin_rad},
     noise::Noise,
 };
 
@@ -27,7 +27,7 @@ const CLOSE_M: f64 = 1e-5;
 
 /// The way in which a person holds the tool.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Hold {
+pub(super) enum ToolHold {
     /// Gravity acts in this direction of the sensor (unit, `s1`); the position of the tool does not matter.
     Tilt(Vector3<f64>),
     /// The tip is here, and the shaft points in this direction (unit); rotation about the shaft does not matter.
@@ -45,8 +45,8 @@ pub(super) struct Guide {
 
 /// Maximum number of conditions of a hold; unused rows are zero.
 const CONDITIONS: usize = 6;
-type Rows = SMatrix<f64, CONDITIONS, JOINTS>;
-type Miss = SVector<f64, CONDITIONS>;
+type GuidingRows = SMatrix<f64, CONDITIONS, JOINTS>;
+type GuidingMiss = SVector<f64, CONDITIONS>;
 
 impl Guide {
     /// `comfort_rad` are the joint angles that a person prefers.
@@ -55,15 +55,16 @@ impl Guide {
     }
 
     /// Guides the joints towards this hold for `dt_s`, limited by their speed; returns the remaining error, m.
-    pub(super) fn step(&self, joint_rad: &mut Joints, hold: &Hold, dt_s: f64) -> f64 {
+    pub(super) fn step(&self, joint_rad: &mut Joints, hold: &ToolHold, dt_s: f64) -> f64 {
         let (step_rad, miss_m) = self.towards(joint_rad, hold, COMFORT_PER_S * dt_s);
-        let share = step_rad.iter().zip(SPEED_RAD_S).map(|(step, most)| step.abs() / (most * dt_s)).fold(1.0, f64::max);
-        *joint_rad += step_rad / share;
+        let fraction =
+            step_rad.iter().zip(SPEED_RAD_S).map(|(step, max)| step.abs() / (max * dt_s)).fold(1.0, f64::max);
+        *joint_rad += step_rad / fraction;
         miss_m
     }
 
     /// Returns the joint angles for this hold that are closest to `from_rad`; `None` if the arm cannot take it.
-    pub(super) fn find(&self, from_rad: &Joints, hold: &Hold) -> Option<Joints> {
+    pub(super) fn find(&self, from_rad: &Joints, hold: &ToolHold) -> Option<Joints> {
         let mut noise = Noise::new(0x6a_1d);
         let mut random = || Joints::from_fn(|joint, _| (2.0 * noise.uniform() - 1.0) * LIMIT_RAD[joint].min(PI));
         let starts = [*from_rad, self.comfort_rad].into_iter().chain((0..STARTS).map(|_| random()));
@@ -72,11 +73,11 @@ impl Guide {
     }
 
     /// Whether the arm can move to this hold from here without taking another pose first.
-    pub(super) fn reaches(&self, from_rad: &Joints, hold: &Hold) -> bool {
+    pub(super) fn reaches(&self, from_rad: &Joints, hold: &ToolHold) -> bool {
         self.converged(*from_rad, hold).is_some()
     }
 
-    fn converged(&self, start_rad: Joints, hold: &Hold) -> Option<Joints> {
+    fn converged(&self, start_rad: Joints, hold: &ToolHold) -> Option<Joints> {
         let mut joint_rad = start_rad;
         for _ in 0..STEPS {
             let (step_rad, miss_m) = self.towards(&joint_rad, hold, 0.0);
@@ -90,7 +91,7 @@ impl Guide {
 
     /// Returns the step to this hold, with a fraction of the distance to the comfortable pose in the remaining freedom,
     /// and the error.
-    fn towards(&self, joint_rad: &Joints, hold: &Hold, comfort: f64) -> (Joints, f64) {
+    fn towards(&self, joint_rad: &Joints, hold: &ToolHold, comfort: f64) -> (Joints, f64) {
         let (rows, miss) = missing(&self.arm.pose(joint_rad), hold);
         let relaxed = nearest_turn(joint_rad, &self.comfort_rad) - joint_rad;
         let mut free = [true; JOINTS];
@@ -115,14 +116,14 @@ impl Guide {
 }
 
 /// Returns the effect of each joint's step, and the remaining error: rotations times [`LENGTH_M`], m.
-fn missing(pose: &Pose, hold: &Hold) -> (Rows, Miss) {
+fn missing(pose: &InstrumentPose, hold: &ToolHold) -> (GuidingRows, GuidingMiss) {
     let jacobian = pose.chain.jacobian(&pose.tip_m);
     let place = jacobian.fixed_rows::<3>(0);
     let turn = jacobian.fixed_rows::<3>(3) * LENGTH_M;
-    let mut rows = Rows::zeros();
-    let mut miss = Miss::zeros();
+    let mut rows = GuidingRows::zeros();
+    let mut miss = GuidingMiss::zeros();
     match hold {
-        Hold::Tilt(down_s1) => {
+        ToolHold::Tilt(down_s1) => {
             // A rotation about the vertical changes no tilt.
             let e = rotation(&(pose.world_from_s1.rotation * down_s1), &-Vector3::z()) * LENGTH_M;
             for axis in 0..2 {
@@ -130,7 +131,7 @@ fn missing(pose: &Pose, hold: &Hold) -> (Rows, Miss) {
                 miss[axis] = e[axis];
             }
         }
-        Hold::Tip { tip_m, along } => {
+        ToolHold::Tip { tip_m, along } => {
             rows.fixed_rows_mut::<3>(0).copy_from(&place);
             miss.fixed_rows_mut::<3>(0).copy_from(&(tip_m - pose.tip_m));
             let e = rotation(&pose.direction, along) * LENGTH_M;
@@ -139,7 +140,7 @@ fn missing(pose: &Pose, hold: &Hold) -> (Rows, Miss) {
                 miss[3 + row] = across.dot(&e);
             }
         }
-        Hold::Pose { tip_m, world_from_s1 } => {
+        ToolHold::Pose { tip_m, world_from_s1 } => {
             rows.fixed_rows_mut::<3>(0).copy_from(&place);
             miss.fixed_rows_mut::<3>(0).copy_from(&(tip_m - pose.tip_m));
             let e = (world_from_s1 * pose.orientation().inverse()).scaled_axis() * LENGTH_M;
@@ -151,7 +152,7 @@ fn missing(pose: &Pose, hold: &Hold) -> (Rows, Miss) {
 }
 
 /// Least squares with the free joints; the remaining freedom follows `relaxed`.
-fn solve(rows: &Rows, miss: &Miss, relaxed: &Joints, free: [bool; JOINTS]) -> Joints {
+fn solve(rows: &GuidingRows, miss: &GuidingMiss, relaxed: &Joints, free: [bool; JOINTS]) -> Joints {
     let mut rows = *rows;
     let mut relaxed = *relaxed;
     for (joint, _) in free.iter().enumerate().filter(|(_, free)| !**free) {

@@ -9,24 +9,24 @@
 //! reports in its own frame. Needs Unix; the pedal needs Linux. A device that cannot be emulated here (for example at
 //! another computer's address) is refused in one line.
 
+mod addresses;
 mod clocked;
 mod errors;
-mod flawed;
 #[cfg(test)]
 mod frame_tests;
 mod guiding;
+mod image;
 #[cfg(test)]
 mod network_tests;
-mod picture;
-mod places;
+mod noise_model;
 mod scene;
-mod seen;
 mod serving;
 mod side;
 mod stand_in;
 mod technician;
 #[cfg(test)]
 mod tests;
+mod tracker_view;
 
 use std::{
     sync::{
@@ -37,24 +37,24 @@ use std::{
 };
 
 use nalgebra::UnitQuaternion;
-use nima_core::kinematics::{Arm, ArmError, Mapping, Rcm, RcmError, ReadyError, find};
-use nima_devices::Trouble;
+use nima_core::kinematics::{Arm, ArmError, MotionMapping, Rcm, RcmError, ReadyError, find};
+use nima_devices::DeviceError;
 use nima_machine::{
     config::ConfigError,
-    rig::{ArmSet, Flaws, Prompt, SIDES, Settings, Side},
+    rig::{ArmSet, Flaws, Prompt, RigSettings, SIDES, Side},
 };
 use side::SideWorld;
 
-pub use clocked::{ArmReadings, Clocked, Wiring};
-pub use errors::{DoubtShares, FreeError, IN_USE, TipError, TipErrors};
+pub use clocked::{ArmReadings, ClockedSide, Wiring};
+pub use errors::{DoubtFractions, FreeError, IN_USE, TipError, TipErrors};
 pub use side::Truth;
 pub use stand_in::provide_handles;
 
-use crate::emulators::{EmulatedFault, FaultSwitch, Serving};
+use crate::emulators::{EmulatedFault, EmulatorThread, FaultSwitch};
 use nima_simulation::{
     Hand,
     scene::Scene,
-    screen::{Screen, Task},
+    screen::{PersonTask, Screen},
 };
 
 /// Relation of a side's handle to the workspace: the inverse of the rig's mapping from hand to tip.
@@ -67,7 +67,7 @@ pub struct HandFrame {
 }
 
 impl HandFrame {
-    pub fn of(mapping: &Mapping) -> Self {
+    pub fn of(mapping: &MotionMapping) -> Self {
         Self { leader_from_world: mapping.world_from_leader().inverse(), scale: mapping.scale() }
     }
 }
@@ -97,7 +97,7 @@ pub enum EmulatedRigError {
     #[error("cannot load the paper's rig")]
     Paper(#[from] ConfigError),
     #[error("cannot emulate the rig")]
-    Settings(#[from] Trouble),
+    Settings(#[from] DeviceError),
     /// The arm's mount is impossible.
     #[error("the mount of the {device} is impossible; correct it in the rig file")]
     Mount { device: String, source: ArmError },
@@ -118,17 +118,17 @@ pub struct EmulatedDevice {
     /// Its name in the rig, such as `right sensor`.
     pub name: String,
     /// Its endpoint and its faults.
-    pub serving: Serving,
+    pub serving: EmulatorThread,
 }
 
 /// The world of a side, shared by its emulators, and the clock shared by all sides.
 #[derive(Clone)]
-struct Shared {
+struct SharedWorld {
     begin: Instant,
     side: Arc<Mutex<SideWorld>>,
 }
 
-impl Shared {
+impl SharedWorld {
     fn with<T>(&self, work: impl FnOnce(&mut SideWorld, f64) -> T) -> T {
         let now_s = self.begin.elapsed().as_secs_f64();
         work(&mut self.side.lock().unwrap_or_else(PoisonError::into_inner), now_s)
@@ -138,7 +138,7 @@ impl Shared {
 /// All devices of a rig, emulated. Dropping it stops them all.
 pub struct EmulatedRig {
     devices: Vec<EmulatedDevice>,
-    sides: [Option<Shared>; SIDES],
+    sides: [Option<SharedWorld>; SIDES],
     pedal: Arc<AtomicU32>,
     markers_exchanged: Arc<AtomicBool>,
     /// The fault of the endoscope, which carries the tracker's marker, once its image is served.
@@ -153,11 +153,11 @@ impl std::fmt::Debug for EmulatedRig {
 
 /// Reads the simulation's true state, from any thread.
 #[derive(Clone)]
-pub struct Witness {
-    sides: [Option<Shared>; SIDES],
+pub struct GroundTruth {
+    sides: [Option<SharedWorld>; SIDES],
 }
 
-impl Witness {
+impl GroundTruth {
     /// Returns the current true state of a side; `None` if the rig does not have it.
     pub fn truth(&self, side: Side) -> Option<Truth> {
         self.sides[side.index()].as_ref().map(|shared| shared.with(SideWorld::truth))
@@ -168,7 +168,7 @@ impl Witness {
 /// being calibrated, and leaves the other one.
 #[derive(Clone)]
 pub struct Technician {
-    sides: [Option<Shared>; SIDES],
+    sides: [Option<SharedWorld>; SIDES],
 }
 
 impl std::fmt::Debug for Technician {
@@ -182,7 +182,7 @@ impl Technician {
     pub fn reads(&self, screen: &Screen) {
         for (side, shared) in Side::ALL.into_iter().zip(&self.sides) {
             let here = side == screen.side;
-            let (task, prompt) = if here { (screen.task, screen.prompt) } else { (Task::Surgery, Prompt::Rest) };
+            let (task, prompt) = if here { (screen.task, screen.prompt) } else { (PersonTask::Surgery, Prompt::Rest) };
             if let Some(shared) = shared {
                 shared.with(|side, now_s| side.reads(now_s, task, prompt));
             }
@@ -196,10 +196,10 @@ impl EmulatedRig {
     ///
     /// # Errors
     /// If an address is in use or not on this computer, or arm, trocar and scene do not fit together.
-    pub fn start(devices: &Settings, scene: &Scene, hands: &[HandFrame; SIDES]) -> Result<Self, EmulatedRigError> {
+    pub fn start(devices: &RigSettings, scene: &Scene, hands: &[HandFrame; SIDES]) -> Result<Self, EmulatedRigError> {
         let begin = Instant::now();
         let sides = sides(devices, scene, hands)?;
-        let sides = sides.map(|side| side.map(|side| Shared { begin, side: Arc::new(Mutex::new(side)) }));
+        let sides = sides.map(|side| side.map(|side| SharedWorld { begin, side: Arc::new(Mutex::new(side)) }));
         let pedal = Arc::new(AtomicU32::new(0));
         let markers_exchanged = Arc::new(AtomicBool::new(false));
         let endoscope = Arc::default();
@@ -240,15 +240,15 @@ impl EmulatedRig {
     }
 
     /// Returns access to the true state from any thread.
-    pub fn witness(&self) -> Witness {
-        Witness { sides: self.sides.clone() }
+    pub fn witness(&self) -> GroundTruth {
+        GroundTruth { sides: self.sides.clone() }
     }
 }
 
-type Sides = [Option<SideWorld>; SIDES];
+type EmulationSides = [Option<SideWorld>; SIDES];
 
 /// Makes the worlds and searches for both arms' poses in parallel: each takes some hundred milliseconds.
-fn sides(devices: &Settings, scene: &Scene, hands: &[HandFrame; SIDES]) -> Result<Sides, EmulatedRigError> {
+fn sides(devices: &RigSettings, scene: &Scene, hands: &[HandFrame; SIDES]) -> Result<EmulationSides, EmulatedRigError> {
     if Side::ALL.iter().all(|side| devices.arm(*side).is_none()) {
         return Err(EmulatedRigError::NoArm);
     }

@@ -4,14 +4,14 @@ use std::{path::PathBuf, sync::atomic::AtomicBool};
 
 use nima_core::{
     calibration::{Verdict, correspondence::Correspondence},
-    tip_force::{Check, Estimator, TrainingSettings},
+    tip_force::{Estimator, OriginCheck, TrainingSettings},
 };
 use nima_machine::rig::{Flaws, Prompt};
-use nima_recording::tip_force::{DataSet, Recorder, RecorderPhase, Selection};
+use nima_recording::tip_force::{DataSet, RecorderPhase, Selection, TipForceRecorder};
 
-use nima_simulation::screen::Task;
+use nima_simulation::screen::PersonTask;
 
-use super::tests::{Bench, FLAWS, Fitted, fitted, live};
+use super::tests::{FLAWS, Fitted, Fixture, fitted, live};
 
 /// Rows required by the wizard, and rows of its check: in contact, then without.
 const ROWS: usize = 16_000;
@@ -22,17 +22,17 @@ const TICKS_MAX: usize = 300_000;
 
 /// Records until there are this many rows; `is_free` returns whether the technician is asked to avoid contact in a row.
 fn recorded(
-    bench: &mut Bench,
+    bench: &mut Fixture,
     fitted: &Fitted,
     known: &Correspondence,
     rows: usize,
     is_free: impl Fn(usize) -> bool,
 ) -> DataSet {
-    let mut recorder = Recorder::new(*known);
+    let mut recorder = TipForceRecorder::new(*known);
     let mut gravity = live(fitted.gravity);
     let mut prompt = Prompt::Rest;
     for _ in 0..TICKS_MAX {
-        let (sample, wrench) = bench.felt(&mut gravity, Task::TipForce, prompt);
+        let (sample, wrench) = bench.felt(&mut gravity, PersonTask::TipForce, prompt);
         prompt = match recorder.step(bench.now_s(), Some(&wrench), &sample) {
             RecorderPhase::Resting { .. } => Prompt::Rest,
             _ if is_free(recorder.rows()) => Prompt::WorkFree,
@@ -48,7 +48,7 @@ fn recorded(
 }
 
 /// Records, trains and checks like the wizard; `None` if gravity or correspondence were refused.
-fn checked(flaws: Flaws) -> Option<Check> {
+fn checked(flaws: Flaws) -> Option<OriginCheck> {
     let (mut bench, fitted) = fitted(flaws)?;
     let known = fitted.correspondence?;
     let data = recorded(&mut bench, &fitted, &known, ROWS, |row| row % (SPELL[0] + SPELL[1]) >= SPELL[0]);
@@ -68,15 +68,15 @@ fn figures_of_flaws_and_the_network() {
             println!("{name}: refused before");
             continue;
         };
-        let most = |of: [f64; 3]| of.into_iter().fold(0.0, |most: f64, one| most.max(one.abs()));
+        let max = |of: [f64; 3]| of.into_iter().fold(0.0, |max: f64, one| max.max(one.abs()));
         println!(
             "{name}: {:?} ({}); error {:.3} N, without contact {:.3} N mean, {:.3} N sd, in doubt {:.1} %",
             check.judgement.verdict,
             check.judgement.reason,
-            most(check.mae_n),
-            most(check.free_mean_n),
-            most(check.free_sd_n),
-            100.0 * check.doubt_share
+            max(check.mae_n),
+            max(check.free_mean_n),
+            max(check.free_sd_n),
+            100.0 * check.doubt_fraction
         );
         assert!(name != "none" || check.judgement.verdict == Verdict::Accepted, "{check:?}");
     }

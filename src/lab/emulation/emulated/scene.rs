@@ -6,7 +6,7 @@
 
 use nalgebra::Vector3;
 use nima_machine::rig::{ArmSet, SensorPlace, Side};
-use nima_simulation::scene::{Imu, Scene, Wrist};
+use nima_simulation::scene::{Imu, Scene, WristModel};
 
 use super::EmulatedRigError;
 
@@ -49,7 +49,7 @@ fn at_wrist(scene: &mut Scene, side: Side, set: &ArmSet) -> Result<(), EmulatedR
     Ok(())
 }
 
-fn another_sensor(wrist: &mut Wrist) {
+fn another_sensor(wrist: &mut WristModel) {
     wrist.force_bias_n = Vector3::new(-2.4, 1.1, 3.7);
     wrist.torque_bias_nm = Vector3::new(-0.04, 0.06, -0.03);
     wrist.gain = Vector3::new(0.996, 1.003, 0.998);

@@ -13,14 +13,14 @@ use nalgebra::Vector3;
 use nima_core::frames::Wrench;
 #[cfg(target_os = "linux")]
 use nima_devices::PedalReading;
-use nima_devices::{ForceReading, Tracked, bota, dynamixel, force_dimension, hid, kinova, ndi};
-use nima_machine::rig::{ArmSet, EndoscopeSettings, SIDES, SensorSettings, Settings, Side};
+use nima_devices::{ForceReading, TrackedTool, bota, dynamixel, force_dimension, hid, kinova, ndi};
+use nima_machine::rig::{ArmSet, EndoscopeSettings, RigSettings, SIDES, SensorSettings, Side};
 
-use super::{EmulatedDevice, EmulatedRigError, Shared, SideWorld, places};
+use super::{EmulatedDevice, EmulatedRigError, SharedWorld, SideWorld, addresses};
 use crate::emulators::{self, EmulatedFault, Emulator, FaultSwitch};
 
-type Sides = [Option<Shared>; SIDES];
-type Served = Result<EmulatedDevice, EmulatedRigError>;
+type ServingSides = [Option<SharedWorld>; SIDES];
+type ServedDevices = Result<EmulatedDevice, EmulatedRigError>;
 
 /// Stiffness of the instrument's cables at a servo, Nm/rad, and their rest angle, rad: guesses of a realistic
 /// magnitude.
@@ -31,7 +31,7 @@ const BOOT_S: f64 = 0.2;
 /// The sensor under the tissue is at room temperature, degrees Celsius.
 const ROOM_C: f64 = 24.0;
 
-fn served(device: String, emulator: Box<dyn Emulator>) -> Served {
+fn served(device: String, emulator: Box<dyn Emulator>) -> ServedDevices {
     match emulator.serve() {
         Ok(serving) => Ok(EmulatedDevice { name: device, serving }),
         Err(source) => Err(EmulatedRigError::Serve { device, source }),
@@ -40,8 +40,8 @@ fn served(device: String, emulator: Box<dyn Emulator>) -> Served {
 
 /// Starts every device of the rig.
 pub(super) fn all(
-    settings: &Settings,
-    sides: &Sides,
+    settings: &RigSettings,
+    sides: &ServingSides,
     pedal_switches: &Arc<AtomicU32>,
     markers_exchanged: &Arc<AtomicBool>,
     endoscope: &Arc<OnceLock<FaultSwitch>>,
@@ -72,20 +72,20 @@ pub(super) fn all(
     Ok(devices)
 }
 
-fn handle(side: Side, set: &ArmSet, shared: &Shared) -> Served {
+fn handle(side: Side, set: &ArmSet, shared: &SharedWorld) -> ServedDevices {
     let name = format!("{} handle", side.word());
     let chosen = set.handle.force_dimension();
     let Some((chosen, address)) = chosen.and_then(|chosen| Some((chosen, chosen.emulator?))) else {
         let wanted = "give the handle of an emulated rig emulator = \"127.0.0.1:PORT\"";
         return Err(EmulatedRigError::Place { device: name, place: "no address".to_owned(), wanted });
     };
-    places::local(&name, &address.ip().to_string())?;
+    addresses::local(&name, &address.ip().to_string())?;
     let left_handed = chosen.hand.unwrap_or(side) == Side::Left;
-    let usual = emulators::force_dimension::Emulated::default();
-    let emulated = emulators::force_dimension::Emulated {
+    let usual = emulators::force_dimension::EmulatedForceDimension::default();
+    let emulated = emulators::force_dimension::EmulatedForceDimension {
         serial: chosen.serial.unwrap_or(usual.serial + side.index() as u16),
         // Taken from the rig file, which may deliberately have the left-handed device on the right side.
-        kind: force_dimension::Kind::Omega7 { left_handed },
+        kind: force_dimension::ForceDimensionKind::Omega7 { left_handed },
         port: address.port(),
         ..usual
     };
@@ -93,26 +93,31 @@ fn handle(side: Side, set: &ArmSet, shared: &Shared) -> Served {
     served(name, emulated.with(move |_: f64, applied: &_| world.with(|side, now_s| side.hold(now_s, applied))))
 }
 
-fn arm(side: Side, set: &ArmSet, shared: &Shared) -> Served {
+fn arm(side: Side, set: &ArmSet, shared: &SharedWorld) -> ServedDevices {
     let name = format!("{} arm", side.word());
     let Some(chosen) = set.arm.kinova() else {
         return Err(EmulatedRigError::Make { device: name });
     };
-    let kinova::Settings { host, tcp_port, udp_port, serial_number, user, password, .. } = chosen.clone();
-    places::local(&name, &host)?;
-    let usual = emulators::kinova::Emulated::default();
+    let kinova::KinovaSettings { host, tcp_port, udp_port, serial_number, user, password, .. } = chosen.clone();
+    addresses::local(&name, &host)?;
+    let usual = emulators::kinova::EmulatedKinova::default();
     let serial = serial_number.unwrap_or_else(|| format!("EMULATED-{}", 1 + side.index()));
-    let emulated = emulators::kinova::Emulated { user, password, serial, tcp_port, udp_port, ..usual };
+    let emulated = emulators::kinova::EmulatedKinova { user, password, serial, tcp_port, udp_port, ..usual };
     let world = shared.clone();
     let body = move |_: f64, asked: &_| world.with(|side, now_s| side.ask(now_s, asked));
     served(name, emulated.with(body))
 }
 
-fn sensor(name: String, chosen: &SensorSettings, usual_serial: usize, body: emulators::bota::Body) -> Served {
+fn sensor(
+    name: String,
+    chosen: &SensorSettings,
+    usual_serial: usize,
+    body: emulators::bota::BotaBody,
+) -> ServedDevices {
     let Some(chosen) = chosen.bota() else { return Err(EmulatedRigError::Make { device: name }) };
-    let usual = emulators::bota::Emulated::default();
+    let usual = emulators::bota::EmulatedBota::default();
     let digits = |serial: &String| serial.trim().trim_start_matches("SN").to_owned();
-    let mut emulated = emulators::bota::Emulated {
+    let mut emulated = emulators::bota::EmulatedBota {
         transport: chosen.transport,
         serial: chosen.serial_number.as_ref().map_or_else(|| usual_serial.to_string(), digits),
         baud: Some(chosen.baud).filter(|_| !chosen.is_usb()),
@@ -121,7 +126,7 @@ fn sensor(name: String, chosen: &SensorSettings, usual_serial: usize, body: emul
         ..usual
     };
     if chosen.transport == bota::Transport::Socket {
-        emulated.tcp_port = places::port(&name, &chosen.port, bota::TCP_PORT)?;
+        emulated.tcp_port = addresses::port(&name, &chosen.port, bota::TCP_PORT)?;
         // Readings go to the datagram port of the same number: two sensors never share one.
         emulated.destination = SocketAddrV4::new(Ipv4Addr::LOCALHOST, emulated.tcp_port);
     }
@@ -129,8 +134,8 @@ fn sensor(name: String, chosen: &SensorSettings, usual_serial: usize, body: emul
 }
 
 /// Both tips press on the same tissue.
-fn under_the_tissue(sides: &Sides) -> emulators::bota::Body {
-    let worlds: Vec<Shared> = sides.iter().flatten().cloned().collect();
+fn under_the_tissue(sides: &ServingSides) -> emulators::bota::BotaBody {
+    let worlds: Vec<SharedWorld> = sides.iter().flatten().cloned().collect();
     Box::new(move |_| {
         let force_n = worlds.iter().map(|world| world.with(SideWorld::press)).sum();
         ForceReading {
@@ -141,23 +146,23 @@ fn under_the_tissue(sides: &Sides) -> emulators::bota::Body {
     })
 }
 
-fn servos(side: Side, chosen: &dynamixel::Settings) -> Served {
+fn servos(side: Side, chosen: &dynamixel::DynamixelSettings) -> ServedDevices {
     let name = format!("{} servos", side.word());
-    let usual = emulators::dynamixel::Emulated::default();
+    let usual = emulators::dynamixel::EmulatedDynamixel::default();
     let model = chosen.servos[0].model.as_ref();
     let known = model.and_then(|model| dynamixel::table::MODELS.iter().find(|known| known.name == model));
-    let emulated = emulators::dynamixel::Emulated {
+    let emulated = emulators::dynamixel::EmulatedDynamixel {
         ids: chosen.servos.iter().map(|servo| servo.id).collect(),
         model: known.map_or(usual.model, |model| model.number),
         baud: chosen.baud,
         fast: usual.fast,
         link: Some(PathBuf::from(&chosen.port)),
     };
-    let supply_v = if known.is_some_and(dynamixel::table::Model::is_small) { 5.0 } else { 12.0 };
+    let supply_v = if known.is_some_and(dynamixel::table::ServoModel::is_small) { 5.0 } else { 12.0 };
     // Tissue does not load the jaws in this world; the cables that move them do.
-    let body = move |_: f64, _: usize, shaft: &emulators::dynamixel::Shaft| {
+    let body = move |_: f64, _: usize, shaft: &emulators::dynamixel::ServoShaft| {
         let load_nm = CABLES_NM_PER_RAD * (CABLES_REST_RAD - shaft.angle_rad).clamp(-1.0, 1.0);
-        emulators::dynamixel::Surroundings { load_nm, supply_v, temperature_c: 31.0 }
+        emulators::dynamixel::ServoSurroundings { load_nm, supply_v, temperature_c: 31.0 }
     };
     match emulated.with(Some(Box::new(body))) {
         Ok(emulator) => served(name, emulator),
@@ -166,18 +171,18 @@ fn servos(side: Side, chosen: &dynamixel::Settings) -> Served {
 }
 
 fn tracker(
-    chosen: &ndi::Settings,
+    chosen: &ndi::NdiSettings,
     endoscope: Option<(EndoscopeSettings, Arc<OnceLock<FaultSwitch>>)>,
-    sides: &Sides,
+    sides: &ServingSides,
     exchanged: Arc<AtomicBool>,
-) -> Served {
+) -> ServedDevices {
     let name = "tracker".to_owned();
     for tool in &chosen.tools {
         if let Err(source) = define(tool) {
             return Err(EmulatedRigError::Serve { device: name, source });
         }
     }
-    let worlds: Vec<Shared> = sides.iter().flatten().cloned().collect();
+    let worlds: Vec<SharedWorld> = sides.iter().flatten().cloned().collect();
     let on = move |number: usize| match number {
         0 | 1 if exchanged.load(Ordering::Acquire) => 1 - number,
         _ => number,
@@ -188,11 +193,11 @@ fn tracker(
             let is_moved = fault.get().is_some_and(|fault| fault.get() == EmulatedFault::Moved);
             world.with(|side, _| side.endoscope(endoscope, is_moved))
         }
-        _ => Tracked::Missing { out_of_volume: false },
+        _ => TrackedTool::Missing { out_of_volume: false },
     };
-    let profile = emulators::ndi::Profile::default();
+    let profile = emulators::ndi::NdiProfile::default();
     let emulator = match chosen.address {
-        Some(_) => profile.on_network(places::port(&name, &chosen.place(), ndi::PORT)?, body),
+        Some(_) => profile.on_network(addresses::port(&name, &chosen.place(), ndi::PORT)?, body),
         None => profile.on_line(chosen.port.as_ref().map(PathBuf::from), body),
     };
     served(name, emulator)
@@ -212,9 +217,9 @@ fn define(path: &Path) -> std::io::Result<()> {
 }
 
 #[cfg(target_os = "linux")]
-fn pedal(chosen: &hid::PedalSettings, switches: &Arc<AtomicU32>) -> Served {
+fn pedal(chosen: &hid::PedalSettings, switches: &Arc<AtomicU32>) -> ServedDevices {
     let name = "pedal".to_owned();
-    let path = PathBuf::from(places::pedal(&name, &chosen.source)?);
+    let path = PathBuf::from(addresses::pedal(&name, &chosen.source)?);
     let switches = Arc::clone(switches);
     let body =
         emulators::hid::PedalBody::pressed_by(move |_| PedalReading { pressed: switches.load(Ordering::Acquire) });
@@ -222,7 +227,7 @@ fn pedal(chosen: &hid::PedalSettings, switches: &Arc<AtomicU32>) -> Served {
 }
 
 #[cfg(not(target_os = "linux"))]
-fn pedal(chosen: &hid::PedalSettings, _: &Arc<AtomicU32>) -> Served {
+fn pedal(chosen: &hid::PedalSettings, _: &Arc<AtomicU32>) -> ServedDevices {
     let device = "pedal".to_owned();
     Err(EmulatedRigError::Place { device, place: chosen.source.clone(), wanted: "emulated pedals need Linux" })
 }

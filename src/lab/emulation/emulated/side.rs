@@ -9,15 +9,15 @@ use nima_core::{
     frames::{GRAVITY_M_S2, Wrench, from_roll_pitch_yaw_deg},
     kinematics::{Arm, Joints, view_from_omega},
 };
-use nima_devices::{ARM_JOINTS, ForceReading, ForceStatus, Tracked};
-use nima_machine::rig::{ArmSet, EndoscopeSettings, Flaws, Identified, Outputs, Prompt, Sensed};
+use nima_devices::{ARM_JOINTS, ForceReading, ForceStatus, TrackedTool};
+use nima_machine::rig::{ArmSet, EndoscopeSettings, Flaws, Outputs, Prompt, RemoteIdentification, SensedForce};
 
-use nima_simulation::{Touch, World, scene::Scene, screen::Task};
+use nima_simulation::{HandForces, World, scene::Scene, screen::PersonTask};
 
-use super::{HandFrame, flawed::Flawed, seen::Camera, technician::Technician};
+use super::{HandFrame, noise_model::FlawedSide, technician::SideTechnician, tracker_view::CameraMount};
 use crate::emulators::{
-    force_dimension::{Applied, HandState},
-    kinova::{Asked, Body as _, BodyState, StandIn},
+    force_dimension::{HandState, MotorOutput},
+    kinova::{BodyCommand, BodyState, KinovaBody as _, StandIn},
 };
 
 /// One step of the world, s.
@@ -44,7 +44,7 @@ pub struct Truth {
     /// Orientation of the wrist sensor.
     pub world_from_s1: UnitQuaternion<f64>,
     /// Commands of the handle's motors.
-    pub applied: Applied,
+    pub applied: MotorOutput,
     /// Whether the arm follows commands; otherwise it holds.
     pub servoing: bool,
     /// The marker in the wrist sensor's frame.
@@ -65,20 +65,20 @@ pub(super) struct SideWorld {
     /// Natural angular frequency of the joints; `None` if they are always at their command.
     omega: Option<f64>,
     body: BodyState,
-    asked: Asked,
-    applied: Applied,
+    asked: BodyCommand,
+    applied: MotorOutput,
     hand: HandFrame,
     start_m: Vector3<f64>,
     imu_from_s1: UnitQuaternion<f64>,
-    technician: Technician,
-    camera: Camera,
-    flawed: Flawed,
+    technician: SideTechnician,
+    camera: CameraMount,
+    flawed: FlawedSide,
     world_from_s1: UnitQuaternion<f64>,
     turn_rad_s: Vector3<f64>,
     tip_m: Vector3<f64>,
     /// Position of the hand, as measured by its handle.
     hand_m: Vector3<f64>,
-    sensed: Sensed,
+    sensed: SensedForce,
     /// Number of due steps, by the common clock, that were made or skipped.
     reached: u64,
     /// Steps made.
@@ -105,19 +105,19 @@ impl SideWorld {
             arm,
             omega: scene.follower.map(|follower| std::f64::consts::TAU * follower.bandwidth_hz),
             body: BodyState { joint_rad: (*start_rad).into(), ..BodyState::default() },
-            asked: Asked::Rest,
-            applied: Applied::default(),
+            asked: BodyCommand::Rest,
+            applied: MotorOutput::default(),
             hand,
             start_m,
             imu_from_s1: imu_deg.map_or_else(UnitQuaternion::identity, |deg| from_roll_pitch_yaw_deg(&deg).inverse()),
-            technician: Technician::new(arm, *start_rad, scene, world_from_view(&hand)),
-            camera: Camera::new(scene, set),
-            flawed: Flawed::new(flaws, (*start_rad).into()),
+            technician: SideTechnician::new(arm, *start_rad, scene, world_from_view(&hand)),
+            camera: CameraMount::new(scene, set),
+            flawed: FlawedSide::new(flaws, (*start_rad).into()),
             world_from_s1: pose.orientation(),
             turn_rad_s: Vector3::zeros(),
             tip_m: pose.tip_m,
             hand_m: start_m,
-            sensed: Sensed::AtTip(Vector3::zeros()),
+            sensed: SensedForce::AtTip(Vector3::zeros()),
             reached: 0,
             made: 0,
         };
@@ -136,25 +136,25 @@ impl SideWorld {
     }
 
     /// Sets the command of the arm's base from now on; returns the state of the arm.
-    pub(super) fn ask(&mut self, now_s: f64, asked: &Asked) -> BodyState {
+    pub(super) fn ask(&mut self, now_s: f64, asked: &BodyCommand) -> BodyState {
         self.advance(now_s);
         self.asked = *asked;
         BodyState { joint_rad: self.flawed.encoders(&self.body.joint_rad), ..self.body }
     }
 
     /// Sets the output of the handle's motors from now on; returns the handle's pose in its own frame.
-    pub(super) fn hold(&mut self, now_s: f64, applied: &Applied) -> HandState {
+    pub(super) fn hold(&mut self, now_s: f64, applied: &MotorOutput) -> HandState {
         self.advance(now_s);
         self.applied = *applied;
         let HandFrame { leader_from_world, scale } = self.hand;
-        let (most_rad, rad_s) = HANDLE_WAVE;
+        let (max_rad, rad_s) = HANDLE_WAVE;
         let phase = rad_s * now_s;
         HandState {
             position_m: leader_from_world * (self.hand_m - self.start_m) / scale,
             orientation: UnitQuaternion::from_euler_angles(
-                most_rad * phase.sin(),
-                0.7 * most_rad * (1.3 * phase).cos(),
-                0.5 * most_rad * (0.6 * phase).sin(),
+                max_rad * phase.sin(),
+                0.7 * max_rad * (1.3 * phase).cos(),
+                0.5 * max_rad * (0.6 * phase).sin(),
             ),
             gripper_rad: GRIPPER_RAD,
             ..HandState::default()
@@ -167,8 +167,8 @@ impl SideWorld {
         let s1_from_world = self.world_from_s1.inverse();
         let support = self.imu_from_s1 * (s1_from_world * Vector3::new(0.0, 0.0, GRAVITY_M_S2));
         let (wrench, measured) = match &self.sensed {
-            Sensed::AtWrist(sample) => (sample.raw, sample.acceleration_m_s2),
-            Sensed::AtTip(tip_n) | Sensed::FarEnd(Identified { force_n: tip_n, .. }) => {
+            SensedForce::AtWrist(sample) => (sample.raw, sample.acceleration_m_s2),
+            SensedForce::AtTip(tip_n) | SensedForce::FarEnd(RemoteIdentification { force_n: tip_n, .. }) => {
                 (Wrench { force_n: s1_from_world * tip_n, torque_nm: Vector3::zeros() }, None)
             }
         };
@@ -189,7 +189,7 @@ impl SideWorld {
     }
 
     /// Returns the tracker's reading of the marker on the instrument.
-    pub(super) fn marker(&mut self, now_s: f64) -> Tracked {
+    pub(super) fn marker(&mut self, now_s: f64) -> TrackedTool {
         self.advance(now_s);
         let noisy = self.sensed.wrist().and_then(|sample| sample.m_from_c).map(|m_from_c| m_from_c.inverse());
         let sensor_m = self.tip_m - self.world_from_s1 * Vector3::new(0.0, 0.0, self.arm.shaft_m());
@@ -199,7 +199,7 @@ impl SideWorld {
 
     /// Returns the tracker's reading of the endoscope's marker, which does not move unless the endoscope was pushed. An
     /// Omega is aligned with the endoscope image, and the hand moves in the image's directions.
-    pub(super) fn endoscope(&mut self, endoscope: &EndoscopeSettings, is_moved: bool) -> Tracked {
+    pub(super) fn endoscope(&mut self, endoscope: &EndoscopeSettings, is_moved: bool) -> TrackedTool {
         self.camera.endoscope(&world_from_view(&self.hand), endoscope, is_moved)
     }
 
@@ -214,14 +214,14 @@ impl SideWorld {
             joint_rad: self.body.joint_rad,
             world_from_s1: self.world_from_s1,
             applied: self.applied,
-            servoing: self.asked != Asked::Rest,
+            servoing: self.asked != BodyCommand::Rest,
             s1_from_m,
             world_from_c,
         }
     }
 
     /// Passes the content of the screen to the technician.
-    pub(super) fn reads(&mut self, now_s: f64, task: Task, prompt: Prompt) {
+    pub(super) fn reads(&mut self, now_s: f64, task: PersonTask, prompt: Prompt) {
         self.advance(now_s);
         self.technician.reads(task, prompt);
     }
@@ -237,16 +237,16 @@ impl SideWorld {
         self.tip_m = pose.tip_m + bent_m;
         self.world.carry(orientation);
         // The technician releases an arm whose drives are on.
-        let hands_on = asked == Asked::Rest && !self.technician.is_away();
+        let hands_on = asked == BodyCommand::Rest && !self.technician.is_away();
         let touch = self.technician.touch();
         let aside = self.technician.sets_aside();
-        let (touch, aside) = if hands_on { (touch, aside) } else { (Touch::default(), false) };
+        let (touch, aside) = if hands_on { (touch, aside) } else { (HandForces::default(), false) };
         self.world.touched(&touch, aside);
         if hands_on {
             self.world.wait_at(self.start_m + self.technician.handle_m());
         } else {
             // A hand does not begin its task before the arm follows it.
-            self.world.wait(!matches!(asked, Asked::Joints(_)));
+            self.world.wait(!matches!(asked, BodyCommand::Joints(_)));
         }
         let force_n = self.hand.leader_from_world.inverse() * self.applied.force_n;
         let outputs = Outputs { tip_command_m: Some(self.tip_m), hand_force_n: force_n, ..Outputs::SAFE };
@@ -257,21 +257,21 @@ impl SideWorld {
         self.load_joints(&pose.chain.jacobian(&pose.tip_m));
     }
 
-    fn move_joints(&mut self, asked: &Asked) {
+    fn move_joints(&mut self, asked: &BodyCommand) {
         match asked {
-            Asked::Rest if self.technician.is_away() => self.body.joint_rad_s = [0.0; ARM_JOINTS],
-            Asked::Rest => {
+            BodyCommand::Rest if self.technician.is_away() => self.body.joint_rad_s = [0.0; ARM_JOINTS],
+            BodyCommand::Rest => {
                 let before = Joints::from(self.body.joint_rad);
                 let guided = self.technician.advance(&before, STEP_S);
                 self.body.joint_rad = guided.into();
                 self.body.joint_rad_s = ((guided - before) / STEP_S).into();
             }
-            Asked::Joints(goal_rad) => {
+            BodyCommand::Joints(goal_rad) => {
                 for (joint, goal_rad) in goal_rad.iter().enumerate() {
                     self.follow(joint, *goal_rad);
                 }
             }
-            Asked::Twist { .. } => {
+            BodyCommand::Twist { .. } => {
                 let moved = StandIn::at(self.body.joint_rad).step(STEP_S, asked);
                 self.body.joint_rad = moved.joint_rad;
                 self.body.joint_rad_s = moved.joint_rad_s;

@@ -2,7 +2,7 @@
 //! separate file.
 //!
 //! The driver calls it through the same table of C functions that it fills from the manufacturer's library. Only
-//! handles with [`emulator`](force_dimension::Settings::emulator) use it, which only rigs with `emulated = true` may
+//! handles with [`emulator`](force_dimension::ForceDimensionSettings::emulator) use it, which only rigs with `emulated = true` may
 //! have.
 
 use drd::{devices, errors, motors, reading};
@@ -49,22 +49,29 @@ mod tests {
     use std::time::{Duration, Instant};
 
     use nalgebra::Vector3;
-    use nima_devices::{Device as _, force_dimension::Settings};
+    use nima_devices::{Device as _, force_dimension::ForceDimensionSettings};
 
     use nima_testing::real_time::judged;
 
     use super::*;
-    use crate::emulators::force_dimension::{Emulated, Held};
+    use crate::emulators::force_dimension::{EmulatedForceDimension, EmulatedHand};
 
     #[test]
     fn an_emulated_handle_is_reached_without_a_library_file() {
         judged(|| {
             provide_handles();
-            let held = Held { radius_m: 0.0, rest_m: Vector3::new(0.03, 0.0, 0.0), ..Held::default() };
-            let serving = Emulated { serial: 4321, ..Emulated::default() }.with(held.body()).serve().unwrap();
+            let held = EmulatedHand { radius_m: 0.0, rest_m: Vector3::new(0.03, 0.0, 0.0), ..EmulatedHand::default() };
+            let serving = EmulatedForceDimension { serial: 4321, ..EmulatedForceDimension::default() }
+                .with(held.body())
+                .serve()
+                .unwrap();
             let emulator = Some(serving.endpoint.parse().unwrap());
-            let mut driver =
-                force_dimension::open(&Settings { serial: Some(4321), emulator, ..Settings::default() }).unwrap();
+            let mut driver = force_dimension::open(&ForceDimensionSettings {
+                serial: Some(4321),
+                emulator,
+                ..ForceDimensionSettings::default()
+            })
+            .unwrap();
             assert_eq!((driver.identity().product.as_str(), driver.identity().serial.as_str()), ("omega.7", "4321"));
             driver.enable_force();
             // The hand yields to the force like a spring of 500 N/m.

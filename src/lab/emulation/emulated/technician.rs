@@ -10,12 +10,12 @@ use nima_core::kinematics::{Arm, Joints};
 use nima_machine::rig::Prompt;
 
 use nima_simulation::{
-    Person, Touch,
-    scene::{Person as PersonConfig, Scene},
-    screen::Task,
+    HandForces, Person,
+    scene::{PersonModel as PersonConfig, Scene},
+    screen::PersonTask,
 };
 
-use super::guiding::{Guide, Hold, nearest_turn};
+use super::guiding::{Guide, ToolHold, nearest_turn};
 
 /// The shaft is in the trocar if its axis passes the trocar within this distance, m.
 const IN_TROCAR_M: f64 = 1e-3;
@@ -33,7 +33,7 @@ const ABOVE_M: f64 = 0.05;
 
 /// The technician as seen by this side.
 #[derive(Clone, Debug)]
-pub(super) struct Technician {
+pub(super) struct SideTechnician {
     arm: Arm,
     guide: Guide,
     ready_rad: Joints,
@@ -41,16 +41,16 @@ pub(super) struct Technician {
     scene: Scene,
     /// Orientation of the endoscope image.
     world_from_view: UnitQuaternion<f64>,
-    task: Task,
+    task: PersonTask,
     prompt: Prompt,
-    doing: Doing,
+    doing: TechnicianActivity,
     stuck_s: f64,
     /// Number of visits, so that no two sessions are alike.
     visits: u64,
 }
 
 #[derive(Clone, Debug)]
-enum Doing {
+enum TechnicianActivity {
     /// Not at this arm, which is where it was left.
     Away,
     /// Called, about to take hold of the arm.
@@ -81,12 +81,12 @@ impl Carry {
     fn step(&mut self, dt_s: f64) -> (Joints, bool) {
         self.in_s += dt_s;
         let s = (self.in_s / self.seconds).min(1.0);
-        let share = s * s * s * (10.0 + s * (-15.0 + 6.0 * s));
-        (self.from_rad + (self.to_rad - self.from_rad) * share, s >= 1.0)
+        let fraction = s * s * s * (10.0 + s * (-15.0 + 6.0 * s));
+        (self.from_rad + (self.to_rad - self.from_rad) * fraction, s >= 1.0)
     }
 }
 
-impl Technician {
+impl SideTechnician {
     /// A technician away from the arm of a scene adapted to its side. `ready_rad` are the joint angles with the
     /// instrument in the trocar.
     pub(super) fn new(arm: Arm, ready_rad: Joints, scene: &Scene, world_from_view: UnitQuaternion<f64>) -> Self {
@@ -97,59 +97,61 @@ impl Technician {
             config: scene.person.unwrap_or_default(),
             scene: scene.clone(),
             world_from_view,
-            task: Task::Surgery,
+            task: PersonTask::Surgery,
             prompt: Prompt::Rest,
-            doing: Doing::Away,
+            doing: TechnicianActivity::Away,
             stuck_s: 0.0,
             visits: 0,
         }
     }
 
-    pub(super) fn reads(&mut self, task: Task, prompt: Prompt) {
+    pub(super) fn reads(&mut self, task: PersonTask, prompt: Prompt) {
         self.prompt = if prompt.is_finite() { prompt } else { Prompt::Rest };
         if task != self.task {
             self.task = task;
-            self.doing = Doing::Called;
+            self.doing = TechnicianActivity::Called;
         }
     }
 
     /// Whether no one is at the arm.
     pub(super) const fn is_away(&self) -> bool {
-        matches!(self.doing, Doing::Away)
+        matches!(self.doing, TechnicianActivity::Away)
     }
 
     /// Advances by `dt_s` with the arm at these angles (rad) and its drives off; returns the angles to which the arm is
     /// guided.
     pub(super) fn advance(&mut self, joint_rad: &Joints, dt_s: f64) -> Joints {
         let mut joints = *joint_rad;
-        self.doing = match std::mem::replace(&mut self.doing, Doing::Away) {
-            Doing::Away => Doing::Away,
+        self.doing = match std::mem::replace(&mut self.doing, TechnicianActivity::Away) {
+            TechnicianActivity::Away => TechnicianActivity::Away,
             // Do not remove an instrument that is needed in the trocar.
-            Doing::Called if self.stays_in_trocar() && self.is_in_trocar(joint_rad) => {
-                Doing::AtWork(Box::new(self.person(joint_rad)))
+            TechnicianActivity::Called if self.stays_in_trocar() && self.is_in_trocar(joint_rad) => {
+                TechnicianActivity::AtWork(Box::new(self.person(joint_rad)))
             }
-            Doing::Called => Doing::Carrying(Carry::new(joint_rad, &self.beginning(joint_rad))),
-            Doing::Carrying(mut carry) => {
+            TechnicianActivity::Called => {
+                TechnicianActivity::Carrying(Carry::new(joint_rad, &self.beginning(joint_rad)))
+            }
+            TechnicianActivity::Carrying(mut carry) => {
                 let (next, done) = carry.step(dt_s);
                 joints = next;
                 match self.task {
-                    _ if !done => Doing::Carrying(carry),
-                    Task::Surgery => Doing::Away,
-                    _ => Doing::AtWork(Box::new(self.person(&joints))),
+                    _ if !done => TechnicianActivity::Carrying(carry),
+                    PersonTask::Surgery => TechnicianActivity::Away,
+                    _ => TechnicianActivity::AtWork(Box::new(self.person(&joints))),
                 }
             }
-            Doing::AtWork(person) => self.obey(person, &mut joints, dt_s),
-            Doing::Reseating(mut person, mut carry) => {
+            TechnicianActivity::AtWork(person) => self.obey(person, &mut joints, dt_s),
+            TechnicianActivity::Reseating(mut person, mut carry) => {
                 person.advance(&self.prompt, dt_s);
                 let (next, done) = carry.step(dt_s);
                 joints = next;
-                if done { Doing::AtWork(person) } else { Doing::Reseating(person, carry) }
+                if done { TechnicianActivity::AtWork(person) } else { TechnicianActivity::Reseating(person, carry) }
             }
         };
         joints
     }
 
-    fn obey(&mut self, mut person: Box<Person>, joints: &mut Joints, dt_s: f64) -> Doing {
+    fn obey(&mut self, mut person: Box<Person>, joints: &mut Joints, dt_s: f64) -> TechnicianActivity {
         person.advance(&self.prompt, dt_s);
         self.let_choose(&mut person, joints);
         let hold = self.hold(&person);
@@ -158,17 +160,17 @@ impl Technician {
         if self.stuck_s > STUCK_S {
             self.stuck_s = 0.0;
             if let Some(other) = self.guide.find(joints, &hold) {
-                return Doing::Reseating(person, Carry::new(joints, &other));
+                return TechnicianActivity::Reseating(person, Carry::new(joints, &other));
             }
         }
-        Doing::AtWork(person)
+        TechnicianActivity::AtWork(person)
     }
 
     /// Rejects a pose that the arm cannot reach from its current one.
     fn let_choose(&self, person: &mut Person, joint_rad: &Joints) {
         for _ in 0..CHOICES {
             let Some((tip_m, world_from_s1)) = person.chosen() else { return };
-            if !self.holds_poses() || self.guide.reaches(joint_rad, &Hold::Pose { tip_m, world_from_s1 }) {
+            if !self.holds_poses() || self.guide.reaches(joint_rad, &ToolHold::Pose { tip_m, world_from_s1 }) {
                 return;
             }
             person.choose_again();
@@ -176,11 +178,11 @@ impl Technician {
     }
 
     const fn holds_poses(&self) -> bool {
-        matches!(self.task, Task::Tip | Task::HandEye)
+        matches!(self.task, PersonTask::Tip | PersonTask::HandEye)
     }
 
     const fn stays_in_trocar(&self) -> bool {
-        matches!(self.task, Task::TipForce | Task::Trocar)
+        matches!(self.task, PersonTask::TipForce | PersonTask::Trocar)
     }
 
     fn is_in_trocar(&self, joint_rad: &Joints) -> bool {
@@ -202,7 +204,7 @@ impl Technician {
         scene.trocar = None;
         let person = Person::new(self.config, &scene);
         match self.task {
-            Task::Tip | Task::HandEye | Task::Table | Task::View => {
+            PersonTask::Tip | PersonTask::HandEye | PersonTask::Table | PersonTask::View => {
                 person.begins_at(pose.tip_m).turned(pose.orientation(), self.world_from_view)
             }
             _ => person,
@@ -214,23 +216,25 @@ impl Technician {
         let ready_rad = nearest_turn(from_rad, &self.ready_rad);
         let down = Vector3::new(0.0, 0.0, 1.0);
         let hold = match self.task {
-            Task::Surgery | Task::TipForce | Task::Trocar => return ready_rad,
-            Task::Gravity => Hold::Tilt(down),
-            Task::Correspondence => {
+            PersonTask::Surgery | PersonTask::TipForce | PersonTask::Trocar => return ready_rad,
+            PersonTask::Gravity => ToolHold::Tilt(down),
+            PersonTask::Correspondence => {
                 let person = Person::new(self.config, &Scene { trocar: None, ..self.scene.clone() });
-                Hold::Tip { tip_m: person.tip().0, along: -down }
+                ToolHold::Tip { tip_m: person.tip().0, along: -down }
             }
-            Task::Tip | Task::HandEye | Task::Table | Task::View => Hold::Tip { tip_m: down * ABOVE_M, along: -down },
+            PersonTask::Tip | PersonTask::HandEye | PersonTask::Table | PersonTask::View => {
+                ToolHold::Tip { tip_m: down * ABOVE_M, along: -down }
+            }
         };
         self.guide.find(from_rad, &hold).unwrap_or(ready_rad)
     }
 
-    fn hold(&self, person: &Person) -> Hold {
+    fn hold(&self, person: &Person) -> ToolHold {
         let world_from_s1 = person.world_from_s1();
         match self.task {
-            Task::Gravity => Hold::Tilt(world_from_s1.inverse() * -Vector3::z()),
-            Task::Tip | Task::HandEye => Hold::Pose { tip_m: person.tip().0, world_from_s1 },
-            _ => Hold::Tip { tip_m: person.tip().0, along: world_from_s1 * Vector3::z() },
+            PersonTask::Gravity => ToolHold::Tilt(world_from_s1.inverse() * -Vector3::z()),
+            PersonTask::Tip | PersonTask::HandEye => ToolHold::Pose { tip_m: person.tip().0, world_from_s1 },
+            _ => ToolHold::Tip { tip_m: person.tip().0, along: world_from_s1 * Vector3::z() },
         }
     }
 
@@ -238,25 +242,25 @@ impl Technician {
     /// Pushes then replace the tissue on its sensor.
     pub(super) const fn sets_aside(&self) -> bool {
         match self.doing {
-            Doing::Away => false,
-            Doing::Called | Doing::Carrying(_) | Doing::Reseating(..) => true,
-            Doing::AtWork(_) => !self.stays_in_trocar(),
+            TechnicianActivity::Away => false,
+            TechnicianActivity::Called | TechnicianActivity::Carrying(_) | TechnicianActivity::Reseating(..) => true,
+            TechnicianActivity::AtWork(_) => !self.stays_in_trocar(),
         }
     }
 
     /// Returns the offset of the handle from its rest position, m (`world`).
     pub(super) fn handle_m(&self) -> Vector3<f64> {
         match &self.doing {
-            Doing::AtWork(person) | Doing::Reseating(person, _) => person.handle_m(),
+            TechnicianActivity::AtWork(person) | TechnicianActivity::Reseating(person, _) => person.handle_m(),
             _ => Vector3::zeros(),
         }
     }
 
     /// Returns the forces of the technician's hands.
-    pub(super) fn touch(&self) -> Touch {
+    pub(super) fn touch(&self) -> HandForces {
         match &self.doing {
-            Doing::AtWork(person) | Doing::Reseating(person, _) => person.touch(),
-            _ => Touch::default(),
+            TechnicianActivity::AtWork(person) | TechnicianActivity::Reseating(person, _) => person.touch(),
+            _ => HandForces::default(),
         }
     }
 }

@@ -6,38 +6,38 @@ use nima_core::{
         Verdict,
         correspondence::{self, Correspondence, CorrespondenceSession},
         gravity::{
-            CheckPass, Compensator, DEFAULT_TIME_CONSTANT_S, GravityModel, GravitySession, Phase, SessionSettings,
-            TARGETS,
+            CheckPass, Compensator, DEFAULT_TIME_CONSTANT_S, GravityModel, GravityPhase, GravitySession,
+            GravitySessionSettings, TARGETS,
         },
     },
     frames::{Wrench, WristSample, from_roll_pitch_yaw_deg},
     kinematics::{Arm, Joints},
 };
-use nima_devices::Tracked;
+use nima_devices::TrackedTool;
 use nima_machine::{
     config::RigConfig,
     rig::{ArmSet, Flaws, Prompt, SensorPlace, Side},
 };
-use nima_recording::tip_force::{Recorder, RecorderPhase};
+use nima_recording::tip_force::{RecorderPhase, TipForceRecorder};
 use nima_simulation::{
-    scene::{Flaw, Person, Scene},
-    screen::Task,
+    scene::{Flaw, PersonModel, Scene},
+    screen::PersonTask,
 };
 
 use super::{HandFrame, SideWorld, of_side};
-use crate::emulators::kinova::Asked;
+use crate::emulators::kinova::BodyCommand;
 
-pub(super) struct Bench {
+pub(super) struct Fixture {
     world: SideWorld,
     arm: Arm,
     set: ArmSet,
-    asked: Asked,
+    asked: BodyCommand,
     t_s: f64,
     frame_s: f64,
     m_from_c: Option<UnitQuaternion<f64>>,
 }
 
-impl Bench {
+impl Fixture {
     fn new(side: Side, scene: &Scene) -> Self {
         let set = RigConfig::load("emulated").unwrap().devices.unwrap().arm(side).unwrap().clone();
         Self::of(side, scene, set)
@@ -50,17 +50,17 @@ impl Bench {
     fn with_flaws(side: Side, scene: &Scene, set: ArmSet, flaws: Flaws) -> Self {
         let world = of_side(side, &set, scene, HandFrame::default(), flaws).unwrap();
         let arm = Arm::new(&set.mount).unwrap();
-        Self { world, arm, set, asked: Asked::Rest, t_s: 0.0, frame_s: 0.0, m_from_c: None }
+        Self { world, arm, set, asked: BodyCommand::Rest, t_s: 0.0, frame_s: 0.0, m_from_c: None }
     }
 
     fn flawed(side: Side, flaw: Flaw) -> Self {
         let mut scene = Scene::load("peg_transfer").unwrap();
-        scene.person = Some(Person { flaw: Some(flaw) });
+        scene.person = Some(PersonModel { flaw: Some(flaw) });
         Self::new(side, &scene)
     }
 
     /// Returns a sample in the form in which a rig's drivers assemble it.
-    fn sample(&mut self, task: Task, prompt: Prompt) -> WristSample {
+    fn sample(&mut self, task: PersonTask, prompt: Prompt) -> WristSample {
         self.t_s += 1e-3;
         self.world.reads(self.t_s, task, prompt);
         let reading = self.world.feel(self.t_s);
@@ -72,7 +72,7 @@ impl Bench {
         if self.t_s >= self.frame_s {
             self.frame_s += 1.0 / 60.0;
             self.m_from_c = match self.world.marker(self.t_s) {
-                Tracked::Seen { c_from_tool, .. } => Some(c_from_tool.inverse()),
+                TrackedTool::Seen { c_from_tool, .. } => Some(c_from_tool.inverse()),
                 _ => None,
             };
         }
@@ -87,12 +87,12 @@ impl Bench {
         }
     }
 
-    fn gravity(&mut self, seconds: f64) -> (GravitySession, Vec<Phase>) {
-        let mut session = GravitySession::new(SessionSettings::default());
+    fn gravity(&mut self, seconds: f64) -> (GravitySession, Vec<GravityPhase>) {
+        let mut session = GravitySession::new(GravitySessionSettings::default());
         let mut seen = Vec::new();
         for _ in 0..(seconds * 1e3) as u32 {
             let Some(target) = session.target() else { break };
-            let sample = self.sample(Task::Gravity, Prompt::Hold { world_from_s1: target.world_from_s1() });
+            let sample = self.sample(PersonTask::Gravity, Prompt::Hold { world_from_s1: target.world_from_s1() });
             let phase = session.step(&sample, self.t_s);
             if !seen.iter().any(|old| std::mem::discriminant(old) == std::mem::discriminant(&phase)) {
                 seen.push(phase);
@@ -105,19 +105,27 @@ impl Bench {
         self.t_s
     }
 
-    pub(super) fn felt(&mut self, gravity: &mut Compensator, task: Task, prompt: Prompt) -> (WristSample, Wrench) {
+    pub(super) fn felt(
+        &mut self,
+        gravity: &mut Compensator,
+        task: PersonTask,
+        prompt: Prompt,
+    ) -> (WristSample, Wrench) {
         let sample = self.sample(task, prompt);
         (sample, gravity.step(&sample).unwrap())
     }
 
     fn correspondence(&mut self, gravity: &mut Compensator, seconds: f64) -> CorrespondenceSession {
-        let mut session = CorrespondenceSession::new(correspondence::SessionSettings::default());
+        let mut session = CorrespondenceSession::new(correspondence::CorrespondenceSessionSettings::default());
         let mut prompt = Prompt::Rest;
         for _ in 0..(seconds * 1e3) as u32 {
-            let (sample, wrench) = self.felt(gravity, Task::Correspondence, prompt);
+            let (sample, wrench) = self.felt(gravity, PersonTask::Correspondence, prompt);
             let phase = session.step(Some(wrench.force_n), &sample, self.t_s);
             let Some(target) = session.target() else { break };
-            if !matches!(phase, correspondence::Phase::Resting { .. } | correspondence::Phase::Missing(_)) {
+            if !matches!(
+                phase,
+                correspondence::CorrespondencePhase::Resting { .. } | correspondence::CorrespondencePhase::Missing(_)
+            ) {
                 prompt = Prompt::Push { direction: UnitVector3::new_normalize(target.push_in_world) };
             }
         }
@@ -131,7 +139,7 @@ pub(super) fn live(model: GravityModel) -> Compensator {
 
 /// Performs all calibrations in order at this arm.
 fn all_calibrations(side: Side) {
-    let mut bench = Bench::new(side, &Scene::load("peg_transfer").unwrap());
+    let mut bench = Fixture::new(side, &Scene::load("peg_transfer").unwrap());
     let ready: Joints = bench.world.truth(0.0).joint_rad.into();
     let (session, _) = bench.gravity(120.0);
     println!("{side:?}: gravity after {:.0} s", bench.t_s);
@@ -142,7 +150,7 @@ fn all_calibrations(side: Side) {
     let model = report.chosen_fit().unwrap().model;
     let mut pass = CheckPass::new(live(model), 0.25);
     for _ in 0..8000 {
-        pass.step(&bench.sample(Task::Gravity, Prompt::Wave));
+        pass.step(&bench.sample(PersonTask::Gravity, Prompt::Wave));
     }
     assert!(pass.result().passed, "{side:?}: {:?}", pass.result());
 
@@ -159,11 +167,11 @@ fn all_calibrations(side: Side) {
     assert!(off_deg < 0.5, "{side:?}: {off_deg} degrees off");
 
     let known = Correspondence { target: solution.target, rotation: solution.rotation(), flip_s2: false };
-    let mut recorder = Recorder::new(known);
+    let mut recorder = TipForceRecorder::new(known);
     let mut prompt = Prompt::Rest;
     let mut beside_m = 0.0_f64;
     for _ in 0..60_000 {
-        let (sample, wrench) = bench.felt(&mut gravity, Task::TipForce, prompt);
+        let (sample, wrench) = bench.felt(&mut gravity, PersonTask::TipForce, prompt);
         recorder.step(bench.t_s, Some(&wrench), &sample);
         // The first second covers the last millimetres into the trocar.
         if recorder.rows() > 200 {
@@ -180,14 +188,14 @@ fn all_calibrations(side: Side) {
     assert_eq!(recorder.coverage().next(), None, "{side:?}: a goal of the recording is not met");
 
     for _ in 0..8000 {
-        bench.sample(Task::Surgery, Prompt::Rest);
+        bench.sample(PersonTask::Surgery, Prompt::Rest);
     }
     let left: Joints = bench.world.truth(bench.t_s).joint_rad.into();
     let apart = (left - ready).map(|rad| rad.sin().hypot(rad.cos() - 1.0)).amax();
     assert!(apart < 1e-6, "{side:?}: the arm is {apart} rad from where it can be engaged");
 }
 
-impl Bench {
+impl Fixture {
     fn beside_trocar_m(&mut self) -> f64 {
         let pose = self.arm.pose(&self.world.truth(self.t_s).joint_rad.into());
         pose.axis_miss_m(&self.set.rcm.trocar_m).norm()
@@ -208,8 +216,8 @@ fn the_technician_does_every_calibration_at_the_left_arm() {
 fn the_sensors_of_the_two_sides_are_not_alike() {
     let scene = Scene::load("peg_transfer").unwrap();
     let mean = |side| {
-        let mut bench = Bench::new(side, &scene);
-        let wrenches: Vec<_> = (0..200).map(|_| bench.sample(Task::Surgery, Prompt::Rest).raw.force_n).collect();
+        let mut bench = Fixture::new(side, &scene);
+        let wrenches: Vec<_> = (0..200).map(|_| bench.sample(PersonTask::Surgery, Prompt::Rest).raw.force_n).collect();
         wrenches.iter().sum::<Vector3<f64>>() / 200.0
     };
     let apart_n = (mean(Side::Right) - mean(Side::Left)).norm();
@@ -218,30 +226,30 @@ fn the_sensors_of_the_two_sides_are_not_alike() {
 
 #[test]
 fn a_technician_who_errs_is_noticed() {
-    let (session, seen) = Bench::flawed(Side::Right, Flaw::Touches).gravity(60.0);
-    let told = seen.iter().any(|phase| matches!(phase, Phase::Disturbed | Phase::Touched { .. }));
+    let (session, seen) = Fixture::flawed(Side::Right, Flaw::Touches).gravity(60.0);
+    let reported = seen.iter().any(|phase| matches!(phase, GravityPhase::Disturbed | GravityPhase::Touched { .. }));
     let refused = session.report().map_or(true, |report| report.verdict != Verdict::Accepted);
-    assert!(told && refused, "{seen:?} {:?}", session.report());
-    let (session, _) = Bench::flawed(Side::Right, Flaw::Trembles).gravity(20.0);
+    assert!(reported && refused, "{seen:?} {:?}", session.report());
+    let (session, _) = Fixture::flawed(Side::Right, Flaw::Trembles).gravity(20.0);
     assert_eq!(session.poses().len(), 0);
-    let (session, seen) = Bench::flawed(Side::Right, Flaw::KeepsOneOrientation).gravity(20.0);
+    let (session, seen) = Fixture::flawed(Side::Right, Flaw::KeepsOneOrientation).gravity(20.0);
     assert_eq!(session.poses().len(), 1);
-    assert!(seen.contains(&Phase::TakenHere), "{seen:?}");
+    assert!(seen.contains(&GravityPhase::TakenHere), "{seen:?}");
 }
 
 #[test]
 fn he_never_guides_an_arm_whose_drives_are_on() {
-    let mut bench = Bench::new(Side::Right, &Scene::load("peg_transfer").unwrap());
+    let mut bench = Fixture::new(Side::Right, &Scene::load("peg_transfer").unwrap());
     let joint_rad = bench.world.truth(0.0).joint_rad;
-    bench.asked = Asked::Joints(joint_rad);
+    bench.asked = BodyCommand::Joints(joint_rad);
     for _ in 0..5000 {
-        bench.sample(Task::Gravity, Prompt::Wave);
+        bench.sample(PersonTask::Gravity, Prompt::Wave);
     }
     let held: Joints = bench.world.truth(bench.t_s).joint_rad.into();
     assert!((held - Joints::from(joint_rad)).amax() < 1e-6, "{held}");
-    bench.asked = Asked::Rest;
+    bench.asked = BodyCommand::Rest;
     for _ in 0..5000 {
-        bench.sample(Task::Gravity, Prompt::Wave);
+        bench.sample(PersonTask::Gravity, Prompt::Wave);
     }
     let guided: Joints = bench.world.truth(bench.t_s).joint_rad.into();
     assert!((guided - Joints::from(joint_rad)).amax() > 0.2, "with the drives off he does");
@@ -254,8 +262,8 @@ fn the_rig_decides_where_its_sensor_sits_and_not_the_scene() {
     let reads_n = |place, scene: &Scene| {
         let mut set = RigConfig::load("emulated").unwrap().devices.unwrap().right.unwrap();
         set.sensor_at = place;
-        let mut bench = Bench::of(Side::Right, scene, set);
-        (0..100).map(|_| bench.sample(Task::Surgery, Prompt::Rest).raw.force_n.norm()).sum::<f64>() / 100.0
+        let mut bench = Fixture::of(Side::Right, scene, set);
+        (0..100).map(|_| bench.sample(PersonTask::Surgery, Prompt::Rest).raw.force_n.norm()).sum::<f64>() / 100.0
     };
     for scene in [&bare, &wrist] {
         let tip_n = reads_n(SensorPlace::Tip, scene);
@@ -266,7 +274,7 @@ fn the_rig_decides_where_its_sensor_sits_and_not_the_scene() {
 
 /// Results of the calibrations of a rig with these flaws.
 #[derive(Debug)]
-struct Told {
+struct CalibrationReport {
     gravity: Verdict,
     #[expect(dead_code, reason = "read by its Debug form")]
     reason: String,
@@ -308,13 +316,13 @@ pub(super) struct Fitted {
     pub(super) gravity: GravityModel,
     /// `None` unless it was accepted.
     pub(super) correspondence: Option<Correspondence>,
-    told: Told,
+    reported: CalibrationReport,
 }
 
 /// Calibrates gravity and correspondence; `None` if the fit fails.
-pub(super) fn fitted(flaws: Flaws) -> Option<(Bench, Fitted)> {
+pub(super) fn fitted(flaws: Flaws) -> Option<(Fixture, Fitted)> {
     let set = RigConfig::load("emulated").unwrap().devices.unwrap().right.unwrap();
-    let mut bench = Bench::with_flaws(Side::Right, &Scene::load("peg_transfer").unwrap(), set, flaws);
+    let mut bench = Fixture::with_flaws(Side::Right, &Scene::load("peg_transfer").unwrap(), set, flaws);
     let (session, _) = bench.gravity(120.0);
     let report = session.report().unwrap();
     let gravity = report.verdict;
@@ -322,7 +330,7 @@ pub(super) fn fitted(flaws: Flaws) -> Option<(Bench, Fitted)> {
     let model = report.chosen_fit()?.model;
     let mut pass = CheckPass::new(live(model), 0.25);
     for _ in 0..8000 {
-        pass.step(&bench.sample(Task::Gravity, Prompt::Wave));
+        pass.step(&bench.sample(PersonTask::Gravity, Prompt::Wave));
     }
     let session = bench.correspondence(&mut live(model), 60.0);
     let report = session.report().ok();
@@ -336,8 +344,15 @@ pub(super) fn fitted(flaws: Flaws) -> Option<(Bench, Fitted)> {
         accepted.map(|found| Correspondence { target: found.target, rotation: found.rotation(), flip_s2: false });
     let left_n = pass.result().p95_n;
     let passes = pass.result().passed;
-    let told = Told { gravity, reason, left_n, passes, correspondence: report.map(|report| report.verdict), off_deg };
-    Some((bench, Fitted { gravity: model, correspondence, told }))
+    let reported = CalibrationReport {
+        gravity,
+        reason,
+        left_n,
+        passes,
+        correspondence: report.map(|report| report.verdict),
+        off_deg,
+    };
+    Some((bench, Fitted { gravity: model, correspondence, reported }))
 }
 
 /// Prints the table of docs/results/devices.md.
@@ -360,15 +375,23 @@ fn flaws_of_real_devices_break_the_verdicts_that_the_pages_say() {
         [good, good],
     ];
     let found: Vec<_> = std::thread::scope(|scope| {
-        let running = FLAWS.map(|(name, flaws)| (name, scope.spawn(move || fitted(flaws).unwrap().1.told)));
-        running.into_iter().zip(wanted).map(|((name, told), wanted)| (name, wanted, told.join().unwrap())).collect()
+        let running = FLAWS.map(|(name, flaws)| (name, scope.spawn(move || fitted(flaws).unwrap().1.reported)));
+        running
+            .into_iter()
+            .zip(wanted)
+            .map(|((name, reported), wanted)| (name, wanted, reported.join().unwrap()))
+            .collect()
     });
-    for (name, _, told) in &found {
-        println!("{name}: {told:?}");
+    for (name, _, reported) in &found {
+        println!("{name}: {reported:?}");
     }
-    for (name, [gravity, correspondence], told) in &found {
-        assert_eq!((told.gravity, told.passes), (*gravity, *gravity == Verdict::Accepted), "{name}: {told:?}");
-        assert_eq!(told.correspondence, Some(*correspondence), "{name}: {told:?}");
-        assert!(*correspondence != Verdict::Accepted || told.off_deg < 2.0, "{name}: {told:?}");
+    for (name, [gravity, correspondence], reported) in &found {
+        assert_eq!(
+            (reported.gravity, reported.passes),
+            (*gravity, *gravity == Verdict::Accepted),
+            "{name}: {reported:?}"
+        );
+        assert_eq!(reported.correspondence, Some(*correspondence), "{name}: {reported:?}");
+        assert!(*correspondence != Verdict::Accepted || reported.off_deg < 2.0, "{name}: {reported:?}");
     }
 }

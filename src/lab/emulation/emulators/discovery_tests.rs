@@ -15,10 +15,10 @@ use std::{
 };
 
 use nima_devices::{
-    Device, Health, Identity, Loss, Stamped, Standing, Trouble,
+    ConnectionState, Device, DeviceError, DeviceIdentity, Health, Loss, TimedReading,
     discovery::{
-        DeviceProbe, Diagnosis, Found, Outcome, Probe, SerialProbe, Speaks, TIMEOUT, TcpProbe, diagnose, frames,
-        probe_named, rules,
+        DataTiming, DeviceProbe, DiscoveryDiagnosis, FoundDevice, Probe, SerialProbe, TIMEOUT, TcpProbe, TestOutcome,
+        diagnose, frames, probe_named, rules,
     },
     force_dimension,
 };
@@ -27,7 +27,7 @@ use nima_testing::real_time::judged;
 /// A device whose behaviour a test sets.
 struct Fake {
     health: Health,
-    identity: Identity,
+    identity: DeviceIdentity,
     then: Option<Loss>,
     period_s: f64,
     next_s: Option<f64>,
@@ -35,7 +35,7 @@ struct Fake {
 
 impl Fake {
     fn new(rate_hz: f64, then: Option<Loss>) -> Self {
-        let identity = Identity { product: "Fake".to_owned(), serial: "7".to_owned(), firmware: String::new() };
+        let identity = DeviceIdentity { product: "Fake".to_owned(), serial: "7".to_owned(), firmware: String::new() };
         Self { health: Health::opening(), identity, then, period_s: 1.0 / rate_hz, next_s: None }
     }
 }
@@ -43,7 +43,7 @@ impl Fake {
 impl Device for Fake {
     type Reading = ();
 
-    fn poll(&mut self, now_s: f64) -> Option<Stamped<()>> {
+    fn poll(&mut self, now_s: f64) -> Option<TimedReading<()>> {
         if let Some(loss) = self.then {
             self.health.lose(loss);
             return None;
@@ -53,25 +53,27 @@ impl Device for Fake {
         while *next_s <= now_s {
             *next_s += self.period_s;
             self.health.accept(now_s);
-            news = Some(Stamped { device_s: None, arrival_s: now_s, value: () });
+            news = Some(TimedReading { device_s: None, arrival_s: now_s, value: () });
         }
         news
     }
 
-    fn about(&self) -> (&Health, &Identity) {
+    fn about(&self) -> (&Health, &DeviceIdentity) {
         (&self.health, &self.identity)
     }
 }
 
-fn of_fake(open: impl FnMut() -> Result<Fake, Trouble> + Send + 'static) -> Box<dyn Probe> {
-    Box::new(DeviceProbe::new("fake", "/dev/fake", Speaks::Always, open))
+fn of_fake(open: impl FnMut() -> Result<Fake, DeviceError> + Send + 'static) -> Box<dyn Probe> {
+    Box::new(DeviceProbe::new("fake", "/dev/fake", DataTiming::Always, open))
 }
 
-fn one(probe: Box<dyn Probe>) -> Result<Found, Trouble> {
-    let Some(Diagnosis { outcome, .. }) = diagnose(vec![probe], TIMEOUT).pop() else { panic!("nothing was diagnosed") };
+fn one(probe: Box<dyn Probe>) -> Result<FoundDevice, DeviceError> {
+    let Some(DiscoveryDiagnosis { outcome, .. }) = diagnose(vec![probe], TIMEOUT).pop() else {
+        panic!("nothing was diagnosed")
+    };
     match outcome {
-        Outcome::Connected(found) => Ok(found),
-        Outcome::Trouble { trouble, .. } => Err(trouble),
+        TestOutcome::Connected(found) => Ok(found),
+        TestOutcome::Trouble { trouble, .. } => Err(trouble),
     }
 }
 
@@ -110,7 +112,7 @@ impl Drop for Stop {
 fn a_device_that_works_tells_who_it_is_and_how_fast() {
     judged(|| {
         let found = one(of_fake(|| Ok(Fake::new(100.0, None)))).unwrap();
-        assert_eq!((found.identity.serial.as_str(), found.standing, found.lost), ("7", Standing::Connected, 0));
+        assert_eq!((found.identity.serial.as_str(), found.standing, found.lost), ("7", ConnectionState::Connected, 0));
         let rate_hz = found.rate_hz.unwrap();
         assert!((80.0..120.0).contains(&rate_hz), "{rate_hz}");
         assert!(found.latency_s.unwrap() < 0.5);
@@ -120,25 +122,29 @@ fn a_device_that_works_tells_who_it_is_and_how_fast() {
 #[test]
 fn twelve_causes_come_out_each_with_a_cure_of_its_own() {
     judged(|| {
-        let fail = |trouble: Trouble| of_fake(move || Err(trouble.clone()));
+        let fail = |trouble: DeviceError| of_fake(move || Err(trouble.clone()));
         let place = || "/dev/fake".to_owned();
         let denied = std::io::Error::from(std::io::ErrorKind::PermissionDenied);
         let timed_out = std::io::Error::from(std::io::ErrorKind::TimedOut);
         let probes: Vec<Box<dyn Probe>> = vec![
             probe_named("serial=/dev/no-such-port@460800").unwrap(),
-            fail(Trouble::of_port(std::path::Path::new("/dev/fake"), &denied, &rules::of_serial(None))),
-            fail(Trouble::Busy { place: place() }),
-            fail(Trouble::WrongProduct { place: place(), expected: "one".to_owned(), found: "other".to_owned() }),
-            fail(Trouble::WrongBaud { place: place(), baud: 9600 }),
+            fail(DeviceError::of_port(std::path::Path::new("/dev/fake"), &denied, &rules::of_serial(None))),
+            fail(DeviceError::Busy { place: place() }),
+            fail(DeviceError::WrongProduct { place: place(), expected: "one".to_owned(), found: "other".to_owned() }),
+            fail(DeviceError::WrongBaud { place: place(), baud: 9600 }),
             of_fake(|| Ok(Fake::new(1.0, Some(Loss::Silent)))),
-            fail(Trouble::of_address("192.168.1.10:10000", &timed_out)),
+            fail(DeviceError::of_address("192.168.1.10:10000", &timed_out)),
             probe_named(&format!("tcp={}", free_address())).unwrap(),
-            fail(Trouble::RefusedLogin { place: place(), user: "admin".to_owned() }),
+            fail(DeviceError::RefusedLogin { place: place(), user: "admin".to_owned() }),
             nima_devices::discovery::probes::handle(
                 "handle",
-                force_dimension::Settings { library: Some("/no/such/file".into()), ..Default::default() },
+                force_dimension::ForceDimensionSettings { library: Some("/no/such/file".into()), ..Default::default() },
             ),
-            fail(Trouble::NotReady { place: place(), mode: "calibration".to_owned(), cure: "Press reset.".to_owned() }),
+            fail(DeviceError::NotReady {
+                place: place(),
+                mode: "calibration".to_owned(),
+                cure: "Press reset.".to_owned(),
+            }),
             of_fake(|| Ok(Fake::new(1.0, Some(Loss::Device { code: 0x20 })))),
         ];
         let count = probes.len();
@@ -177,9 +183,9 @@ fn a_listener_is_found_and_a_wrong_port_and_a_wrong_name_are_told_apart() {
         let found = one(Box::new(TcpProbe::new(&address).unwrap())).unwrap();
         assert!(found.latency_s.unwrap() < 0.5);
         drop(listener);
-        assert!(matches!(one(Box::new(TcpProbe::new(&address).unwrap())), Err(Trouble::NobodyListens { .. })));
+        assert!(matches!(one(Box::new(TcpProbe::new(&address).unwrap())), Err(DeviceError::NobodyListens { .. })));
         for wrong in ["localhost", "localhost:x", ":80", "localhost:99999"] {
-            assert!(matches!(TcpProbe::new(wrong), Err(Trouble::Setting { .. })), "{wrong}");
+            assert!(matches!(TcpProbe::new(wrong), Err(DeviceError::Setting { .. })), "{wrong}");
         }
     });
 }
@@ -192,7 +198,7 @@ fn an_address_without_a_way_is_unreachable() {
         std::io::ErrorKind::NetworkDown,
         std::io::ErrorKind::TimedOut,
     ] {
-        assert!(matches!(Trouble::of_address("a:1", &kind.into()), Trouble::Unreachable { .. }), "{kind:?}");
+        assert!(matches!(DeviceError::of_address("a:1", &kind.into()), DeviceError::Unreachable { .. }), "{kind:?}");
     }
 }
 
@@ -204,9 +210,9 @@ fn one_that_hangs_and_one_that_fails_are_told_so_and_hold_up_nobody() {
             fn name(&self) -> &'static str {
                 "hangs"
             }
-            fn probe(&mut self, _: Duration) -> Result<Found, Trouble> {
+            fn probe(&mut self, _: Duration) -> Result<FoundDevice, DeviceError> {
                 std::thread::sleep(Duration::from_secs(3));
-                Ok(Found::default())
+                Ok(FoundDevice::default())
             }
         }
         let short = Duration::from_millis(600);
@@ -214,8 +220,10 @@ fn one_that_hangs_and_one_that_fails_are_told_so_and_hold_up_nobody() {
         let found = diagnose(vec![Box::new(Hangs), of_fake(|| Ok(Fake::new(100.0, None)))], short);
         assert!(begin.elapsed() < Duration::from_secs(2));
         let [hanging, working] = &found[..] else { panic!("{found:?}") };
-        assert!(matches!(&hanging.outcome, Outcome::Trouble { cause, .. } if cause.contains("no answer within 0.6 s")));
-        assert!(matches!(working.outcome, Outcome::Connected(_)), "{working:?}");
+        assert!(
+            matches!(&hanging.outcome, TestOutcome::Trouble { cause, .. } if cause.contains("no answer within 0.6 s"))
+        );
+        assert!(matches!(working.outcome, TestOutcome::Connected(_)), "{working:?}");
     });
 }
 
@@ -230,7 +238,7 @@ fn a_port_that_another_program_holds_is_busy() {
         port.set_exclusive(true).unwrap();
         let held = serialport::new(port.name().unwrap(), 460_800).open_native();
         let trouble = one(probe_named(&text).unwrap());
-        assert!(matches!(trouble, Err(Trouble::Busy { .. })), "{trouble:?} {}", held.is_ok());
+        assert!(matches!(trouble, Err(DeviceError::Busy { .. })), "{trouble:?} {}", held.is_ok());
     });
 }
 
@@ -239,7 +247,7 @@ fn a_port_that_another_program_holds_is_busy() {
 fn a_silent_port_is_trouble_unless_its_device_speaks_only_when_asked() {
     judged(|| {
         let (port, _stop) = talking(Vec::new);
-        assert!(matches!(one(probe_named(&format!("serial={port}@460800")).unwrap()), Err(Trouble::Silent { .. })));
+        assert!(matches!(one(probe_named(&format!("serial={port}@460800")).unwrap()), Err(DeviceError::Silent { .. })));
         assert!(one(probe_named(&format!("serial={port}@460800,quiet")).unwrap()).is_ok());
     });
 }
@@ -260,7 +268,7 @@ fn frames_are_recognised_and_noise_is_a_wrong_line_speed() {
         let mut random = fastrand::Rng::with_seed(5);
         let (port, _stop) = talking(move || (0..37).map(|_| random.u8(..)).collect());
         let trouble = one(probe_named(&format!("serial={port}@9600,aa")).unwrap()).unwrap_err();
-        assert_eq!(trouble, Trouble::WrongBaud { place: port, baud: 9600 });
+        assert_eq!(trouble, DeviceError::WrongBaud { place: port, baud: 9600 });
         assert!(trouble.cure().contains("baud"));
     });
 }
@@ -284,7 +292,7 @@ fn headers_at_a_constant_distance_are_frames_and_accidents_are_not() {
 #[test]
 fn settings_of_a_serial_probe_are_checked() {
     for wrong in ["/dev/ttyUSB0", "/dev/ttyUSB0@", "p@0", "p@9600,a", "p@9600,zz", "p@9600,"] {
-        assert!(matches!(wrong.parse::<SerialProbe>(), Err(Trouble::Setting { .. })), "{wrong}");
+        assert!(matches!(wrong.parse::<SerialProbe>(), Err(DeviceError::Setting { .. })), "{wrong}");
     }
     assert!("p@9600,aa55,quiet".parse::<SerialProbe>().is_ok());
     let Err(trouble) = probe_named("nonsense=1") else { panic!("it was made") };
@@ -313,7 +321,7 @@ fn a_file_without_rights_asks_for_the_rule_of_just_that_device() {
     std::fs::set_permissions(&path, std::fs::Permissions::from_mode(0o000)).unwrap();
     let tried = || one(probe_named(&format!("spacemouse={}", path.display())).unwrap());
     let trouble = std::thread::scope(|scope| scope.spawn(|| without_roots_rights(tried)).join().unwrap());
-    assert!(matches!(&trouble, Err(Trouble::Permission { udev, .. }) if udev.contains("hidraw")), "{trouble:?}");
+    assert!(matches!(&trouble, Err(DeviceError::Permission { udev, .. }) if udev.contains("hidraw")), "{trouble:?}");
 }
 
 #[test]
@@ -340,7 +348,7 @@ fn rules_name_every_device_of_the_project_and_the_kernels_keys() {
 fn what_is_plugged_in_is_read_from_the_kernels_files() {
     use std::os::unix::fs::symlink;
 
-    use nima_devices::discovery::{Plugged, SerialPort};
+    use nima_devices::discovery::{PluggedDevices, SerialPort};
 
     let folder = tempfile::tempdir().unwrap();
     let sys = folder.path();
@@ -377,7 +385,7 @@ fn what_is_plugged_in_is_read_from_the_kernels_files() {
     put("bus/usb/devices/1-3/idVendor", "1451");
     put("bus/usb/devices/1-3/idProduct", "0402");
     put("bus/usb/devices/1-2/idVendor", "0403");
-    let plugged = Plugged::under(sys);
+    let plugged = PluggedDevices::under(sys);
     let paths: Vec<_> = plugged.serial.iter().map(|port| port.path.display().to_string()).collect();
     assert_eq!(paths, ["/dev/ttyS0", "/dev/ttyUSB0"]);
     let Some(SerialPort { usb: Some(ids), .. }) = plugged.serial.last() else { panic!("{plugged:?}") };
@@ -390,7 +398,7 @@ fn what_is_plugged_in_is_read_from_the_kernels_files() {
     assert_eq!(used, [("3Dconnexion Cap", Some("SpaceMouse")), ("Mouse", None)]);
     assert_eq!(plugged.usb.len(), 1);
     assert_eq!(plugged.usb[0].usb.product, 0x0402);
-    assert_eq!(Plugged::under(&sys.join("nothing")), Plugged::default());
+    assert_eq!(PluggedDevices::under(&sys.join("nothing")), PluggedDevices::default());
 }
 
 #[cfg(target_os = "linux")]
@@ -404,6 +412,6 @@ fn an_emulated_cap_and_pedal_are_diagnosed_over_their_sockets() {
         let found = one(named("spacemouse", &cap.endpoint)).unwrap();
         assert!(found.identity.product.contains("046d:c626") && found.damaged == 0, "{found:?}");
         assert!(one(named("pedal", &pedal.endpoint)).is_ok());
-        assert!(matches!(one(named("pedal", &cap.endpoint)), Err(Trouble::WrongProduct { .. })));
+        assert!(matches!(one(named("pedal", &cap.endpoint)), Err(DeviceError::WrongProduct { .. })));
     });
 }

@@ -9,7 +9,7 @@ use std::{
     },
 };
 
-use super::wires::Peer;
+use super::wires::WirePeer;
 
 /// A fault of an emulated device.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -77,7 +77,7 @@ impl EmulatedFault {
         Self::NotANumber,
     ];
     /// Faults that apply only to cameras.
-    pub const OF_PICTURES: [Self; 6] =
+    pub const OF_IMAGES: [Self; 6] =
         [Self::Black, Self::Torn, Self::Late, Self::WrongSize, Self::OtherFormat, Self::Moved];
 
     /// Faults of a force sensor whose connection and clock are intact.
@@ -113,7 +113,7 @@ impl EmulatedFault {
 
     /// Every fault of every device, without `None`.
     pub fn every() -> impl Iterator<Item = Self> {
-        Self::ALL.into_iter().chain(Self::OF_PICTURES).chain(Self::OF_SENSORS)
+        Self::ALL.into_iter().chain(Self::OF_IMAGES).chain(Self::OF_SENSORS)
     }
 
     /// Returns the fault with this name.
@@ -145,8 +145,8 @@ const DELAY_S: f64 = 0.050;
 /// Outgoing frames of an emulator, subject to the active fault.
 #[derive(Debug)]
 pub(super) struct FaultyLine {
-    late: VecDeque<(f64, Peer, Vec<u8>)>,
-    held: Option<(Peer, Vec<u8>)>,
+    late: VecDeque<(f64, WirePeer, Vec<u8>)>,
+    held: Option<(WirePeer, Vec<u8>)>,
     random: fastrand::Rng,
 }
 
@@ -161,10 +161,10 @@ impl FaultyLine {
     pub(super) fn pass(
         &mut self,
         now_s: f64,
-        to: Peer,
+        to: WirePeer,
         frame: &[u8],
         fault: EmulatedFault,
-        send: &mut dyn FnMut(Peer, &[u8]),
+        send: &mut dyn FnMut(WirePeer, &[u8]),
     ) {
         self.let_late_ones_go(now_s, send);
         match fault {
@@ -195,7 +195,7 @@ impl FaultyLine {
     }
 
     /// Sends the frames whose delay has passed.
-    pub(super) fn let_late_ones_go(&mut self, now_s: f64, send: &mut dyn FnMut(Peer, &[u8])) {
+    pub(super) fn let_late_ones_go(&mut self, now_s: f64, send: &mut dyn FnMut(WirePeer, &[u8])) {
         while let Some((_, to, frame)) = self.late.pop_front_if(|(due_s, ..)| *due_s <= now_s) {
             send(to, &frame);
         }

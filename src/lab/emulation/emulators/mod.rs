@@ -2,11 +2,11 @@
 //!
 //! An [`Emulator`] is the behaviour of a device without I/O: it receives the time, the clients' data and the active
 //! fault, and returns the data to send. A simulated world or a test provides the values to be measured. `serve` is
-//! common to all of them: a thread with the connections, which ends when its [`Serving`] is dropped. Faults can be set
+//! common to all of them: a thread with the connections, which ends when its [`EmulatorThread`] is dropped. Faults can be set
 //! at any time; transmission faults are applied by `serve`, and faults of the content (checksum, status bits, numbers)
 //! by the emulator itself.
 
-mod alone;
+mod addresses;
 pub mod bota;
 pub mod dynamixel;
 pub mod endoscope;
@@ -17,8 +17,8 @@ pub mod haply;
 pub mod hid;
 pub mod kinova;
 pub mod ndi;
-mod places;
 mod serving;
+mod standalone;
 mod wires;
 
 #[cfg(test)]
@@ -26,10 +26,10 @@ mod discovery_tests;
 
 use std::io;
 
-pub use alone::{ALONE, Settings};
 pub use faults::{EmulatedFault, FaultSwitch};
-pub use serving::{Serving, Turn};
-pub use wires::{End, Peer};
+pub use serving::{EmulatorThread, EmulatorTurn};
+pub use standalone::{ALONE, EmulatorSettings};
+pub use wires::{WireEnd, WirePeer};
 
 /// An emulated device. All calls come from one thread.
 pub trait Emulator: Send {
@@ -37,7 +37,7 @@ pub trait Emulator: Send {
     ///
     /// # Errors
     /// If an endpoint is in use, or is not an emulator's.
-    fn wires(&self) -> io::Result<Vec<Box<dyn End>>>;
+    fn wires(&self) -> io::Result<Vec<Box<dyn WireEnd>>>;
 
     /// Returns the endpoint shown to clients, built from the endpoints of its wires.
     fn endpoint(&self, places: &[String]) -> String {
@@ -53,20 +53,20 @@ pub trait Emulator: Send {
     }
 
     /// Called when a client connected, or opened the serial port.
-    fn meet(&mut self, _: Peer, _: &mut Turn<'_>) {}
+    fn meet(&mut self, _: WirePeer, _: &mut EmulatorTurn<'_>) {}
 
     /// Called with data of a client; empty at first if it has only connected.
-    fn hear(&mut self, from: Peer, bytes: &[u8], turn: &mut Turn<'_>);
+    fn receive(&mut self, from: WirePeer, bytes: &[u8], turn: &mut EmulatorTurn<'_>);
 
     /// Called when time has passed, at most 5 ms and not beyond [`due_s`](Self::due_s); also while the connection is
     /// cut.
-    fn pass(&mut self, turn: &mut Turn<'_>);
+    fn pass(&mut self, turn: &mut EmulatorTurn<'_>);
 
     /// Returns when it next has something to send or to do, s; `None` if it can wait for two milliseconds.
     fn due_s(&self) -> Option<f64> {
         None
     }
 
-    /// Called when a client is gone; [`Peer::Everyone`] when the connection was cut.
-    fn lose(&mut self, _: Peer) {}
+    /// Called when a client is gone; [`WirePeer::Everyone`] when the connection was cut.
+    fn lose(&mut self, _: WirePeer) {}
 }

@@ -14,7 +14,7 @@ use std::{
 use super::{
     EmulatedFault, Emulator, FaultSwitch,
     faults::FaultyLine,
-    wires::{ARRIVALS, Arrival, End, Peer, wait},
+    wires::{ARRIVALS, WireArrival, WireEnd, WirePeer, wait},
 };
 
 /// Maximum interval between calls of an emulator that does not report when it is due, ...
@@ -28,7 +28,7 @@ const BUFFER_BYTES: usize = 65_507;
 
 /// A thread that serves an emulated device. Dropping it stops the thread.
 #[derive(Debug)]
-pub struct Serving {
+pub struct EmulatorThread {
     /// Where clients find it: a port, an address, a path.
     pub endpoint: String,
     pub faults: FaultSwitch,
@@ -36,14 +36,14 @@ pub struct Serving {
     thread: Option<JoinHandle<()>>,
 }
 
-impl Serving {
+impl EmulatorThread {
     /// Whether it is still serving.
     pub fn is_serving(&self) -> bool {
         self.thread.as_ref().is_some_and(|thread| !thread.is_finished())
     }
 }
 
-impl Drop for Serving {
+impl Drop for EmulatorThread {
     fn drop(&mut self) {
         self.stop.store(true, Ordering::Release);
         if let Some(thread) = self.thread.take() {
@@ -57,7 +57,7 @@ impl dyn Emulator {
     ///
     /// # Errors
     /// If an endpoint is in use, is not an emulator's, or cannot be opened.
-    pub fn serve(self: Box<Self>) -> io::Result<Serving> {
+    pub fn serve(self: Box<Self>) -> io::Result<EmulatorThread> {
         let mut ends = self.wires()?;
         ends.iter_mut().try_for_each(|end| end.open())?;
         let endpoint = self.endpoint(&ends.iter().map(|end| end.endpoint()).collect::<Vec<_>>());
@@ -67,12 +67,12 @@ impl dyn Emulator {
         let flag = Arc::clone(&stop);
         let thread =
             Builder::new().name("emulator".to_owned()).spawn(move || Host::new(self, ends, switch).run(&flag))?;
-        Ok(Serving { endpoint, faults, stop, thread: Some(thread) })
+        Ok(EmulatorThread { endpoint, faults, stop, thread: Some(thread) })
     }
 }
 
 /// The arguments of an emulator's call, and its output.
-pub struct Turn<'a> {
+pub struct EmulatorTurn<'a> {
     /// s since it began to serve.
     pub now_s: f64,
     /// The active fault.
@@ -80,18 +80,18 @@ pub struct Turn<'a> {
     /// The baud rate that the client of a serial port has set, bit/s.
     pub baud: Option<u32>,
     line: &'a mut FaultyLine,
-    ends: &'a mut [Box<dyn End>],
+    ends: &'a mut [Box<dyn WireEnd>],
 }
 
-impl Turn<'_> {
+impl EmulatorTurn<'_> {
     /// Sends a frame, subject to the active fault.
-    pub fn send(&mut self, to: Peer, frame: &[u8]) {
+    pub fn send(&mut self, to: WirePeer, frame: &[u8]) {
         let ends = &mut *self.ends;
         self.line.pass(self.now_s, to, frame, self.fault, &mut |to, bytes| send(ends, to, bytes));
     }
 
     /// Sends data that are exempt from transmission faults.
-    pub fn send_unspoilt(&mut self, to: Peer, bytes: &[u8]) {
+    pub fn send_unspoilt(&mut self, to: WirePeer, bytes: &[u8]) {
         send(self.ends, to, bytes);
     }
 
@@ -101,7 +101,7 @@ impl Turn<'_> {
     }
 }
 
-fn send(ends: &mut [Box<dyn End>], to: Peer, bytes: &[u8]) {
+fn send(ends: &mut [Box<dyn WireEnd>], to: WirePeer, bytes: &[u8]) {
     for end in ends {
         end.send(to, bytes);
     }
@@ -109,7 +109,7 @@ fn send(ends: &mut [Box<dyn End>], to: Peer, bytes: &[u8]) {
 
 struct Host {
     emulator: Box<dyn Emulator>,
-    ends: Vec<Box<dyn End>>,
+    ends: Vec<Box<dyn WireEnd>>,
     line: FaultyLine,
     faults: FaultSwitch,
     begin: Instant,
@@ -117,7 +117,7 @@ struct Host {
 }
 
 impl Host {
-    fn new(emulator: Box<dyn Emulator>, ends: Vec<Box<dyn End>>, faults: FaultSwitch) -> Self {
+    fn new(emulator: Box<dyn Emulator>, ends: Vec<Box<dyn WireEnd>>, faults: FaultSwitch) -> Self {
         Self {
             emulator,
             ends,
@@ -136,10 +136,10 @@ impl Host {
                 self.ends.iter_mut().for_each(|end| drop(end.open()));
             } else if self.cut() {
                 self.line.cut();
-                self.emulator.lose(Peer::Everyone);
+                self.emulator.lose(WirePeer::Everyone);
             }
             for number in 0..self.ends.len() {
-                self.hear(number);
+                self.receive(number);
             }
             self.turn(|emulator, turn, _| {
                 turn.line.let_late_ones_go(turn.now_s, &mut |to, bytes| send(turn.ends, to, bytes));
@@ -168,23 +168,23 @@ impl Host {
     }
 
     /// Forwards the data that have arrived at an end.
-    fn hear(&mut self, number: usize) {
+    fn receive(&mut self, number: usize) {
         for _ in 0..ARRIVALS {
             let admits = self.emulator.admits();
             let Some(arrival) = self.ends[number].next(&mut self.buffer, admits) else { return };
             self.turn(|emulator, turn, buffer| match arrival {
-                Arrival::Came(peer, count) => {
+                WireArrival::Came(peer, count) => {
                     emulator.meet(peer, turn);
-                    emulator.hear(peer, &buffer[..count], turn);
+                    emulator.receive(peer, &buffer[..count], turn);
                 }
-                Arrival::Heard(peer, count) => emulator.hear(peer, &buffer[..count], turn),
-                Arrival::Gone(peer) => emulator.lose(peer),
+                WireArrival::Heard(peer, count) => emulator.receive(peer, &buffer[..count], turn),
+                WireArrival::Gone(peer) => emulator.lose(peer),
             });
         }
     }
 
-    fn turn(&mut self, work: impl FnOnce(&mut dyn Emulator, &mut Turn<'_>, &[u8])) {
-        let mut turn = Turn {
+    fn turn(&mut self, work: impl FnOnce(&mut dyn Emulator, &mut EmulatorTurn<'_>, &[u8])) {
+        let mut turn = EmulatorTurn {
             now_s: self.begin.elapsed().as_secs_f64(),
             fault: self.faults.get(),
             baud: self.ends.iter().find_map(|end| end.baud()),

@@ -8,14 +8,14 @@ use std::{
 
 use crate::{
     errors::{INVALID_PARAMETER, NULL_ARGUMENT, OUTSIDE_RANGE, noted},
-    handle::{Handle, attached, choose, chosen, close, is_taken, open, tell, with},
-    places::{put, put_all},
+    handle::{StandInHandle, attached, choose, chosen, close, is_taken, open, report, with},
+    outputs::{put, put_all},
 };
 
 const RIGHT: u32 = 35;
 const LEFT: u32 = 37;
 
-pub(crate) fn is_left(handle: &Handle) -> bool {
+pub(crate) fn is_left(handle: &StandInHandle) -> bool {
     handle.reply.kind == LEFT
 }
 
@@ -28,7 +28,7 @@ pub unsafe extern "C" fn nimaEmulateHandle(address: *const c_char) -> c_int {
     }
     // SAFETY: not null; the caller guarantees a C string.
     let address = unsafe { CStr::from_ptr(address) }.to_str().unwrap_or_default();
-    noted(if tell(address) { Ok(0) } else { Err(INVALID_PARAMETER) })
+    noted(if report(address) { Ok(0) } else { Err(INVALID_PARAMETER) })
 }
 
 #[unsafe(no_mangle)]
@@ -37,9 +37,9 @@ pub extern "C" fn dhdEnableSimulator(_on: c_uchar) {}
 /// 3.17.5.0, or the value of `NIMA_EMULATED_SDK_VERSION` ("3.10.0.0").
 fn version() -> [c_int; 4] {
     let mut version = [3, 17, 5, 0];
-    let told = std::env::var("NIMA_EMULATED_SDK_VERSION").unwrap_or_default();
-    for (number, told) in version.iter_mut().zip(told.split('.')) {
-        *number = told.parse().unwrap_or(*number);
+    let report = std::env::var("NIMA_EMULATED_SDK_VERSION").unwrap_or_default();
+    for (number, report) in version.iter_mut().zip(report.split('.')) {
+        *number = report.parse().unwrap_or(*number);
     }
     version
 }
@@ -144,7 +144,7 @@ macro_rules! properties {
     ($($name:ident: $value:expr;)*) => {$(
         #[unsafe(no_mangle)]
         pub extern "C" fn $name(id: c_char) -> bool {
-            let value: fn(&Handle) -> bool = $value;
+            let value: fn(&StandInHandle) -> bool = $value;
             noted(with(id, |handle| Ok(c_int::from(value(handle))))) == 1
         }
     )*};

@@ -9,8 +9,8 @@ use std::{
 
 use crate::{
     errors::{COMMUNICATION, IN_USE, NO_DEVICE, OUTSIDE_RANGE, TIMED_OUT},
-    motion::History,
-    wire::{ADDRESS_VARIABLE, FRESH, Order, Reply, Request, SATURATED, TAKEN},
+    reading_history::ReadingHistory,
+    wire::{ADDRESS_VARIABLE, ClientOrder, DeviceReply, DeviceRequest, FRESH, SATURATED, TAKEN},
 };
 
 /// Maximum number of open devices.
@@ -26,14 +26,14 @@ pub(crate) const TIMEGUARD: c_int = 1;
 /// `DHD_MOTOR_SATURATED`: the force was scaled down.
 pub(crate) const MOTOR_SATURATED: c_int = 2;
 
-pub(crate) struct Handle {
+pub(crate) struct StandInHandle {
     socket: UdpSocket,
     client: u64,
     sequence: u32,
     exchanged: Instant,
     pub(crate) time_guard: Duration,
-    pub(crate) reply: Reply,
-    pub(crate) history: History,
+    pub(crate) reply: DeviceReply,
+    pub(crate) history: ReadingHistory,
     /// Last command: force, gripper force, N.
     pub(crate) asked_n: [f64; 4],
     pub(crate) force_max_n: Option<f64>,
@@ -44,11 +44,11 @@ pub(crate) struct Handle {
     rate: (Instant, u32, f64),
 }
 
-static OPEN: [Mutex<Option<Handle>>; HANDLES] = [const { Mutex::new(None) }; HANDLES];
-static REGISTRY: Mutex<Registry> = Mutex::new(Registry { told: Vec::new(), default: None, clients: 0 });
+static OPEN: [Mutex<Option<StandInHandle>>; HANDLES] = [const { Mutex::new(None) }; HANDLES];
+static REGISTRY: Mutex<Registry> = Mutex::new(Registry { report: Vec::new(), default: None, clients: 0 });
 
 struct Registry {
-    told: Vec<SocketAddr>,
+    report: Vec<SocketAddr>,
     default: Option<usize>,
     clients: u64,
 }
@@ -58,24 +58,24 @@ fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 }
 
 /// Adds a device at an address given by the program; false if it is not an address.
-pub(crate) fn tell(address: &str) -> bool {
+pub(crate) fn report(address: &str) -> bool {
     let Ok(address) = address.trim().parse() else { return false };
     let mut registry = locked(&REGISTRY);
-    if !registry.told.contains(&address) {
-        registry.told.push(address);
+    if !registry.report.contains(&address) {
+        registry.report.push(address);
     }
     true
 }
 
 /// Returns all addresses from the environment and from the program.
 fn addresses() -> Vec<SocketAddr> {
-    let told = std::env::var(ADDRESS_VARIABLE).unwrap_or_default();
-    let mut all: Vec<SocketAddr> = told.split(',').filter_map(|one| one.trim().parse().ok()).collect();
-    all.extend(locked(&REGISTRY).told.iter().filter(|one| !told.contains(&one.to_string())));
+    let report = std::env::var(ADDRESS_VARIABLE).unwrap_or_default();
+    let mut all: Vec<SocketAddr> = report.split(',').filter_map(|one| one.trim().parse().ok()).collect();
+    all.extend(locked(&REGISTRY).report.iter().filter(|one| !report.contains(&one.to_string())));
     all
 }
 
-impl Handle {
+impl StandInHandle {
     fn reach(address: SocketAddr) -> Option<Self> {
         let socket = UdpSocket::bind(("127.0.0.1", 0)).ok()?;
         socket.connect(address).ok()?;
@@ -84,7 +84,7 @@ impl Handle {
         registry.clients += 1;
         let client = u64::from(std::process::id()) << 32 | registry.clients;
         drop(registry);
-        let reply = Reply::default();
+        let reply = DeviceReply::default();
         let now = Instant::now();
         let mut handle = Self {
             socket,
@@ -93,7 +93,7 @@ impl Handle {
             exchanged: now,
             time_guard: Duration::from_micros(250),
             reply,
-            history: History::default(),
+            history: ReadingHistory::default(),
             asked_n: [0.0; 4],
             force_max_n: None,
             gripper_max_n: None,
@@ -101,14 +101,20 @@ impl Handle {
             effector_kg: 0.0,
             rate: (now, 0, 0.0),
         };
-        handle.exchange(Order::Hello, 0, [0.0; 4], GREETING).ok()?;
+        handle.exchange(ClientOrder::Hello, 0, [0.0; 4], GREETING).ok()?;
         Some(handle)
     }
 
     /// Sends one request and returns its reply. Replies to older requests and damaged ones are skipped.
-    fn exchange(&mut self, order: Order, argument: u32, values: [f64; 4], timeout: Duration) -> Result<(), c_int> {
+    fn exchange(
+        &mut self,
+        order: ClientOrder,
+        argument: u32,
+        values: [f64; 4],
+        timeout: Duration,
+    ) -> Result<(), c_int> {
         self.sequence = self.sequence.wrapping_add(1);
-        let request = Request { client: self.client, sequence: self.sequence, order, argument, values };
+        let request = DeviceRequest { client: self.client, sequence: self.sequence, order, argument, values };
         let gone = |error: std::io::Error| match error.kind() {
             std::io::ErrorKind::ConnectionRefused => NO_DEVICE,
             _ => COMMUNICATION,
@@ -130,7 +136,7 @@ impl Handle {
                 }
                 Err(error) => return Err(gone(error)),
             };
-            match Reply::decode(&buffer[..count]) {
+            match DeviceReply::decode(&buffer[..count]) {
                 Some(reply) if (reply.client, reply.sequence) == (self.client, self.sequence) => {
                     self.reply = reply;
                     self.exchanged = begin;
@@ -143,7 +149,7 @@ impl Handle {
     }
 
     /// Changes a setting of the device.
-    pub(crate) fn order(&mut self, order: Order, argument: u32) -> Result<c_int, c_int> {
+    pub(crate) fn order(&mut self, order: ClientOrder, argument: u32) -> Result<c_int, c_int> {
         self.exchange(order, argument, [0.0; 4], EXCHANGE).map(|()| 0)
     }
 
@@ -152,7 +158,7 @@ impl Handle {
         if self.exchanged.elapsed() < self.time_guard {
             return Ok(TIMEGUARD);
         }
-        self.exchange(Order::Read, 0, [0.0; 4], EXCHANGE)?;
+        self.exchange(ClientOrder::Read, 0, [0.0; 4], EXCHANGE)?;
         if self.reply.flags & FRESH == 0 {
             return Ok(TIMEGUARD);
         }
@@ -172,7 +178,7 @@ impl Handle {
         if let Some(max_n) = self.gripper_max_n {
             asked_n[3] = asked_n[3].clamp(-max_n, max_n);
         }
-        self.exchange(Order::Force, 0, asked_n, EXCHANGE)?;
+        self.exchange(ClientOrder::Force, 0, asked_n, EXCHANGE)?;
         self.asked_n = asked_n;
         self.rate.1 += 1;
         let elapsed_s = self.rate.0.elapsed().as_secs_f64();
@@ -196,30 +202,30 @@ fn index(id: c_char) -> Option<usize> {
 pub(crate) const DEFAULT: c_char = c_char::from_ne_bytes([0xff]);
 
 /// Calls `work` with an open device; error 5 if there is none.
-pub(crate) fn with<T>(id: c_char, work: impl FnOnce(&mut Handle) -> Result<T, c_int>) -> Result<T, c_int> {
+pub(crate) fn with<T>(id: c_char, work: impl FnOnce(&mut StandInHandle) -> Result<T, c_int>) -> Result<T, c_int> {
     let place = index(id).and_then(|index| OPEN.get(index)).ok_or(NO_DEVICE)?;
     work(locked(place).as_mut().ok_or(NO_DEVICE)?)
 }
 
 /// Returns the devices that answer.
-pub(crate) fn attached() -> Vec<(SocketAddr, Reply)> {
-    addresses().into_iter().filter_map(|address| Some((address, Handle::reach(address)?.reply))).collect()
+pub(crate) fn attached() -> Vec<(SocketAddr, DeviceReply)> {
+    addresses().into_iter().filter_map(|address| Some((address, StandInHandle::reach(address)?.reply))).collect()
 }
 
 /// Whether a program has it open.
-pub(crate) const fn is_taken(reply: &Reply) -> bool {
+pub(crate) const fn is_taken(reply: &DeviceReply) -> bool {
     reply.flags & TAKEN != 0
 }
 
 /// Opens the first free device that fits; returns its number.
-pub(crate) fn open(fits: impl Fn(usize, &Reply) -> bool) -> Result<c_int, c_int> {
+pub(crate) fn open(fits: impl Fn(usize, &DeviceReply) -> bool) -> Result<c_int, c_int> {
     let mut error = NO_DEVICE;
     for (number, address) in addresses().into_iter().enumerate() {
-        let Some(mut handle) = Handle::reach(address) else { continue };
+        let Some(mut handle) = StandInHandle::reach(address) else { continue };
         if !fits(number, &handle.reply) {
             continue;
         }
-        if let Err(refused) = handle.exchange(Order::Open, 0, [0.0; 4], GREETING) {
+        if let Err(refused) = handle.exchange(ClientOrder::Open, 0, [0.0; 4], GREETING) {
             error = refused;
             continue;
         }
@@ -232,7 +238,7 @@ pub(crate) fn open(fits: impl Fn(usize, &Reply) -> bool) -> Result<c_int, c_int>
                 return c_int::try_from(id).map_err(|_| OUTSIDE_RANGE);
             }
         }
-        handle.order(Order::Close, 0)?;
+        handle.order(ClientOrder::Close, 0)?;
         return Err(IN_USE);
     }
     Err(error)
@@ -242,7 +248,7 @@ pub(crate) fn open(fits: impl Fn(usize, &Reply) -> bool) -> Result<c_int, c_int>
 pub(crate) fn close(id: c_char) -> Result<c_int, c_int> {
     let place = index(id).and_then(|index| OPEN.get(index)).ok_or(NO_DEVICE)?;
     let mut handle = locked(place).take().ok_or(NO_DEVICE)?;
-    handle.order(Order::Close, 0).or(Ok(0))
+    handle.order(ClientOrder::Close, 0).or(Ok(0))
 }
 
 /// Makes an open device the default one.

@@ -9,15 +9,15 @@ use std::{
 use crate::{
     errors::{EXPERT_MODE_DISABLED, INVALID_PARAMETER, OUTSIDE_RANGE, noted},
     handle::with,
-    places::{put, put_three},
-    wire::Order,
+    outputs::{put, put_three},
+    wire::ClientOrder,
 };
 
 static EXPERT: AtomicBool = AtomicBool::new(false);
 
 #[unsafe(no_mangle)]
 pub extern "C" fn dhdEnableForce(on: c_uchar, id: c_char) -> c_int {
-    noted(with(id, |handle| handle.order(Order::EnableForce, u32::from(on != 0))))
+    noted(with(id, |handle| handle.order(ClientOrder::EnableForce, u32::from(on != 0))))
 }
 
 #[unsafe(no_mangle)]
@@ -28,12 +28,12 @@ pub extern "C" fn dhdEnableGripperForce(_on: c_uchar, id: c_char) -> c_int {
 
 #[unsafe(no_mangle)]
 pub extern "C" fn dhdStop(id: c_char) -> c_int {
-    noted(with(id, |handle| handle.order(Order::Brakes, 1)))
+    noted(with(id, |handle| handle.order(ClientOrder::Brakes, 1)))
 }
 
 #[unsafe(no_mangle)]
 pub extern "C" fn dhdSetBrakes(on: c_int, id: c_char) -> c_int {
-    noted(with(id, |handle| handle.order(Order::Brakes, u32::from(on != 0))))
+    noted(with(id, |handle| handle.order(ClientOrder::Brakes, u32::from(on != 0))))
 }
 
 #[unsafe(no_mangle)]
@@ -70,7 +70,7 @@ pub extern "C" fn dhdSetForceAndTorqueAndGripperForce(
 ///
 /// # Safety
 /// The pointers are null or valid for writes.
-unsafe fn told(force: [*mut f64; 3], torque: Option<[*mut f64; 3]>, gripper: Option<*mut f64>, id: c_char) -> c_int {
+unsafe fn report(force: [*mut f64; 3], torque: Option<[*mut f64; 3]>, gripper: Option<*mut f64>, id: c_char) -> c_int {
     noted(with(id, |handle| {
         let [x, y, z, gripper_n] = handle.asked_n;
         // SAFETY: guaranteed by the caller.
@@ -83,19 +83,19 @@ unsafe fn told(force: [*mut f64; 3], torque: Option<[*mut f64; 3]>, gripper: Opt
     }))
 }
 
-macro_rules! told {
+macro_rules! force_getters {
     ($($name:ident($([$x:ident $y:ident $z:ident])* $($gripper:ident)?): $force:expr, $torque:expr, $to_gripper:expr;)*) => {$(
         #[unsafe(no_mangle)]
         pub unsafe extern "C" fn $name(
             $($x: *mut f64, $y: *mut f64, $z: *mut f64,)* $($gripper: *mut f64,)? id: c_char,
         ) -> c_int {
             // SAFETY: guaranteed by the caller (SDK).
-            unsafe { told($force, $torque, $to_gripper, id) }
+            unsafe { report($force, $torque, $to_gripper, id) }
         }
     )*};
 }
 
-told! {
+force_getters! {
     dhdGetForce([fx fy fz]): [fx, fy, fz], None, None;
     dhdGetForceAndTorque([fx fy fz] [tx ty tz]): [fx, fy, fz], Some([tx, ty, tz]), None;
     dhdGetForceAndTorqueAndGripperForce([fx fy fz] [tx ty tz] fg): [fx, fy, fz], Some([tx, ty, tz]), Some(fg);
@@ -156,7 +156,7 @@ pub unsafe extern "C" fn dhdGetEffectorMass(mass_kg: *mut f64, id: c_char) -> c_
 
 #[unsafe(no_mangle)]
 pub extern "C" fn dhdEmulateButton(on: c_uchar, id: c_char) -> c_int {
-    noted(with(id, |handle| handle.order(Order::Button, u32::from(on != 0))))
+    noted(with(id, |handle| handle.order(ClientOrder::Button, u32::from(on != 0))))
 }
 
 #[unsafe(no_mangle)]
@@ -180,7 +180,7 @@ fn expert_for(weaker: bool) -> Result<(), c_int> {
 pub extern "C" fn dhdSetVelocityThreshold(threshold: c_uint, id: c_char) -> c_int {
     noted(with(id, |handle| {
         expert_for(threshold == 0 || threshold > handle.reply.velocity_threshold)?;
-        handle.order(Order::VelocityThreshold, threshold)
+        handle.order(ClientOrder::VelocityThreshold, threshold)
     }))
 }
 
@@ -192,7 +192,7 @@ pub unsafe extern "C" fn dhdGetVelocityThreshold(threshold: *mut c_uint, id: c_c
 
 #[unsafe(no_mangle)]
 pub extern "C" fn dhdSetWatchdog(steps: c_uchar, id: c_char) -> c_int {
-    noted(with(id, |handle| handle.order(Order::Watchdog, u32::from(steps))))
+    noted(with(id, |handle| handle.order(ClientOrder::Watchdog, u32::from(steps))))
 }
 
 #[unsafe(no_mangle)]

@@ -5,9 +5,9 @@ use std::ffi::{c_char, c_int, c_uint};
 use crate::{
     devices::is_left,
     errors::{INVALID_PARAMETER, OUTSIDE_RANGE, TIMED_OUT, noted},
-    handle::{Handle, with},
-    motion::wrist_rad,
-    places::{put, put_all, put_three},
+    handle::{StandInHandle, with},
+    outputs::{put, put_all, put_three},
+    reading_history::wrist_rad,
 };
 
 const DEG: f64 = 180.0 / std::f64::consts::PI;
@@ -16,7 +16,7 @@ const GRIPPER_OPEN_RAD: f64 = std::f64::consts::FRAC_PI_6;
 const GRIPPER_OPEN_M: f64 = 0.025;
 
 /// Reads again, and calls `write` with the result.
-fn read(id: c_char, write: impl FnOnce(&mut Handle) -> Result<(), c_int>) -> c_int {
+fn read(id: c_char, write: impl FnOnce(&mut StandInHandle) -> Result<(), c_int>) -> c_int {
     noted(with(id, |handle| {
         let code = handle.refresh()?;
         write(handle).map(|()| code)
@@ -95,7 +95,7 @@ macro_rules! gripper {
     ($($name:ident: $value:expr;)*) => {$(
         #[unsafe(no_mangle)]
         pub unsafe extern "C" fn $name(out: *mut f64, id: c_char) -> c_int {
-            let value: fn(&mut Handle) -> Result<f64, c_int> = $value;
+            let value: fn(&mut StandInHandle) -> Result<f64, c_int> = $value;
             read(id, |handle| {
                 let value = value(handle)?;
                 // SAFETY: the pointer is null or valid for one value (SDK).
@@ -105,7 +105,7 @@ macro_rules! gripper {
     )*};
 }
 
-fn gripper_speed(handle: &mut Handle) -> Result<f64, c_int> {
+fn gripper_speed(handle: &mut StandInHandle) -> Result<f64, c_int> {
     handle.history.velocity().map(|(_, speed)| speed).ok_or(TIMED_OUT)
 }
 

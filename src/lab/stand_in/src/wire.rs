@@ -21,7 +21,7 @@ const REPLY_KIND: u32 = 0x524d_494e; // "NIMR"
 /// A client's command to the device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
-pub enum Order {
+pub enum ClientOrder {
     /// Identifies the device. Changes nothing; allowed for every client.
     Hello = 0,
     /// Take possession.
@@ -43,7 +43,7 @@ pub enum Order {
     Close,
 }
 
-impl Order {
+impl ClientOrder {
     const ALL: [Self; 10] = [
         Self::Hello,
         Self::Open,
@@ -59,20 +59,20 @@ impl Order {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Request {
+pub struct DeviceRequest {
     /// Any number that differs between clients.
     pub client: u64,
     /// Number of the exchange.
     pub sequence: u32,
     /// The command.
-    pub order: Order,
+    pub order: ClientOrder,
     /// Argument of the order.
     pub argument: u32,
-    /// Values of [`Order::Force`], N.
+    /// Values of [`ClientOrder::Force`], N.
     pub values: [f64; 4],
 }
 
-impl Request {
+impl DeviceRequest {
     pub fn encode(&self) -> [u8; REQUEST_BYTES] {
         let mut out = Out([0; REQUEST_BYTES], 0);
         out.put(&REQUEST_KIND.to_le_bytes());
@@ -85,17 +85,17 @@ impl Request {
     }
 
     pub fn decode(bytes: &[u8]) -> Option<Self> {
-        let mut of = In::opened(bytes, REQUEST_BYTES, REQUEST_KIND)?;
+        let mut of = DatagramReader::opened(bytes, REQUEST_BYTES, REQUEST_KIND)?;
         let client = u64::from_le_bytes(of.take()?);
         let sequence = of.word()?;
         let order = of.word()?;
-        let order = Order::ALL.into_iter().find(|known| *known as u32 == order)?;
+        let order = ClientOrder::ALL.into_iter().find(|known| *known as u32 == order)?;
         Some(Self { client, sequence, order, argument: of.word()?, values: of.numbers()? })
     }
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Reply {
+pub struct DeviceReply {
     /// From the request.
     pub client: u64,
     /// From the request.
@@ -122,14 +122,14 @@ pub struct Reply {
     pub gripper_rad: f64,
 }
 
-/// [`Reply::flags`]: the state is newer than the previous one.
+/// [`DeviceReply::flags`]: the state is newer than the previous one.
 pub const FRESH: u32 = 1;
-/// [`Reply::flags`]: the motors were saturated.
+/// [`DeviceReply::flags`]: the motors were saturated.
 pub const SATURATED: u32 = 2;
-/// [`Reply::flags`]: another program has it open.
+/// [`DeviceReply::flags`]: another program has it open.
 pub const TAKEN: u32 = 4;
 
-impl Reply {
+impl DeviceReply {
     pub fn encode(&self) -> [u8; REPLY_BYTES] {
         let mut out = Out([0; REPLY_BYTES], 0);
         out.put(&REPLY_KIND.to_le_bytes());
@@ -146,7 +146,7 @@ impl Reply {
     }
 
     pub fn decode(bytes: &[u8]) -> Option<Self> {
-        let mut of = In::opened(bytes, REPLY_BYTES, REPLY_KIND)?;
+        let mut of = DatagramReader::opened(bytes, REPLY_BYTES, REPLY_KIND)?;
         let client = u64::from_le_bytes(of.take()?);
         let sequence = of.word()?;
         let error = of.word()?;
@@ -212,9 +212,9 @@ impl<const N: usize> Out<N> {
     }
 }
 
-struct In<'a>(&'a [u8]);
+struct DatagramReader<'a>(&'a [u8]);
 
-impl<'a> In<'a> {
+impl<'a> DatagramReader<'a> {
     fn opened(bytes: &'a [u8], length: usize, kind: u32) -> Option<Self> {
         let (body, sum) = bytes.split_last_chunk().filter(|_| bytes.len() == length)?;
         let mut of = Self(body);

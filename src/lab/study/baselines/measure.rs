@@ -1,18 +1,18 @@
 //! One source at one delay: the errors of every mode.
 
 use nalgebra::Vector3;
-use nima_core::impedance::{Identifier, Mode, ModeSet, Settings};
+use nima_core::impedance::{Identifier, ImpedanceSettings, Mode, ModeSet};
 
-use super::{BaselinesError, OWN, Row, Split, modes};
-use crate::tradeoff::Source;
+use super::{BaselineRow, BaselinesError, OWN, Split, modes};
+use crate::tradeoff::TradeoffSource;
 
 /// Measures every mode on this source at this delay.
 pub(super) fn measure(
-    source: &Source,
+    source: &TradeoffSource,
     split: Split,
     delay_s: f64,
     cross_talk: bool,
-) -> Result<Vec<Row>, BaselinesError> {
+) -> Result<Vec<BaselineRow>, BaselinesError> {
     let rate_hz = source.recording.rate_hz;
     let samples = &source.recording.samples;
     let delay = (delay_s * rate_hz).round() as usize;
@@ -35,15 +35,15 @@ pub(super) fn measure(
     for set in sets {
         let wanted: Vec<Mode> =
             set.modes().filter(|mode| errors.iter().all(|(measured, _)| measured != mode)).collect();
-        let settings = Settings {
+        let settings = ImpedanceSettings {
             rate_hz,
             delay_s: delay as f64 / rate_hz,
             // At least ten samples, for slow recordings.
-            window_s: Settings::default().window_s.max(10.0 / rate_hz),
+            window_s: ImpedanceSettings::default().window_s.max(10.0 / rate_hz),
             axes: source.recording.axes.len(),
             cross_talk,
             modes: set,
-            ..Settings::default()
+            ..ImpedanceSettings::default()
         };
         let mut identifier =
             Identifier::new(&settings).map_err(|error| BaselinesError::Settings { name: name(), source: error })?;
@@ -60,7 +60,15 @@ pub(super) fn measure(
     }
     let row = |mode: Mode| {
         let error = errors.iter().find(|(measured, _)| *measured == mode).map_or(f64::NAN, |(_, error)| *error);
-        Row { source: name(), split, delay_ms: tidy(delay_ms), mode, error, held_error, ratio: error / held_error }
+        BaselineRow {
+            source: name(),
+            split,
+            delay_ms: tidy(delay_ms),
+            mode,
+            error,
+            held_error,
+            ratio: error / held_error,
+        }
     };
     Ok(modes().map(row).collect())
 }

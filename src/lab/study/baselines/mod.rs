@@ -1,6 +1,6 @@
 //! Baselines from the literature compared with the program's own modes, on recordings and scenes.
 //!
-//! Takes [`Source`]s of motion and force. For every source, delay and mode it returns the mean prediction error at the
+//! Takes [`TradeoffSource`]s of motion and force. For every source, delay and mode it returns the mean prediction error at the
 //! horizon (the force rendered for time t from data up to t - D and the motion at t, compared with the force measured
 //! at t) as a ratio to the error of delayed reflection, start-up included: every sample counts from the first one that
 //! has a delayed force, for all modes alike, and a mode without a valid force renders none. Then the mean over the
@@ -18,9 +18,9 @@ use std::path::PathBuf;
 use nima_core::impedance::{Mode, SettingsError};
 use serde::Serialize;
 
-pub use statistics::Interval;
+pub use statistics::MeanInterval;
 
-use crate::{Experiment, tradeoff::Source};
+use crate::{Experiment, tradeoff::TradeoffSource};
 
 /// Prefixes of the recordings on which constants were chosen, both of the program's own modes and of the baselines.
 pub const CHOSEN_ON: [&str; 2] = ["m1_question1a_", "m1_question1b_"];
@@ -66,9 +66,9 @@ pub enum BaselinesError {
 
 /// The sources and settings of the study.
 #[derive(Clone, Debug)]
-pub struct Options {
+pub struct BaselineOptions {
     /// Recordings and scenes, each with its part.
-    pub sources: Vec<(Source, Split)>,
+    pub sources: Vec<(TradeoffSource, Split)>,
     pub delays_s: Vec<f64>,
     /// Whether the program's own modes learn the full matrix `M`.
     pub cross_talk: bool,
@@ -77,7 +77,7 @@ pub struct Options {
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Row {
+pub struct BaselineRow {
     pub source: String,
     pub split: Split,
     pub delay_ms: f64,
@@ -92,37 +92,37 @@ pub struct Row {
 
 /// One mode at one delay over all sources of one part.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Mean {
+pub struct BaselineMean {
     pub split: Split,
     pub delay_ms: f64,
     pub mode: Mode,
     pub sources: usize,
     /// Mean of the ratios, and its 95 % confidence interval over the sources.
     #[serde(flatten)]
-    pub ratio: Interval,
+    pub ratio: MeanInterval,
 }
 
 #[derive(Clone, Debug, Serialize)]
-pub struct Report {
+pub struct BaselineReport {
     /// Description of the interval.
     pub interval: &'static str,
     /// Prefixes of the recordings on which constants were chosen.
     pub chosen_on: [&'static str; CHOSEN_ON.len()],
-    pub means: Vec<Mean>,
-    pub rows: Vec<Row>,
+    pub means: Vec<BaselineMean>,
+    pub rows: Vec<BaselineRow>,
 }
 
-impl Experiment for Options {
+impl Experiment for BaselineOptions {
     const NAME: &'static str = "baselines";
     const FILES: &'static [&'static str] = &[".md", ".csv"];
-    type Findings = Report;
+    type Findings = BaselineReport;
     type Error = BaselinesError;
 
     fn inputs(&self) -> Vec<PathBuf> {
         self.inputs.clone()
     }
 
-    fn run(&self, progress: &mut dyn FnMut(usize, usize, &str)) -> Result<Report, BaselinesError> {
+    fn run(&self, progress: &mut dyn FnMut(usize, usize, &str)) -> Result<BaselineReport, BaselinesError> {
         let mut rows = Vec::new();
         let of = self.sources.len() * self.delays_s.len();
         let mut done = 0;
@@ -134,7 +134,7 @@ impl Experiment for Options {
             }
         }
         progress(of, of, "done");
-        Ok(Report { interval: statistics::WORDS, chosen_on: CHOSEN_ON, means: means(&rows), rows })
+        Ok(BaselineReport { interval: statistics::WORDS, chosen_on: CHOSEN_ON, means: means(&rows), rows })
     }
 }
 
@@ -143,28 +143,29 @@ fn modes() -> impl Iterator<Item = Mode> {
     OWN.into_iter().chain(Mode::BASELINES)
 }
 
-fn means(rows: &[Row]) -> Vec<Mean> {
-    let mut means: Vec<Mean> = Vec::new();
+fn means(rows: &[BaselineRow]) -> Vec<BaselineMean> {
+    let mut means: Vec<BaselineMean> = Vec::new();
     for row in rows {
-        let same =
-            |of: &Mean| of.split == row.split && of.mode == row.mode && of.delay_ms.total_cmp(&row.delay_ms).is_eq();
+        let same = |of: &BaselineMean| {
+            of.split == row.split && of.mode == row.mode && of.delay_ms.total_cmp(&row.delay_ms).is_eq()
+        };
         if means.iter().any(same) {
             continue;
         }
-        let of = Row::is_of(row.split, row.mode, row.delay_ms);
+        let of = BaselineRow::is_of(row.split, row.mode, row.delay_ms);
         let ratios: Vec<f64> = rows.iter().filter(|row| of(row)).map(|row| row.ratio).collect();
-        means.push(Mean {
+        means.push(BaselineMean {
             split: row.split,
             delay_ms: row.delay_ms,
             mode: row.mode,
             sources: ratios.len(),
-            ratio: Interval::of_mean(&ratios),
+            ratio: MeanInterval::of_mean(&ratios),
         });
     }
     means
 }
 
-impl Row {
+impl BaselineRow {
     fn is_of(split: Split, mode: Mode, delay_ms: f64) -> impl Fn(&Self) -> bool {
         move |row| row.split == split && row.mode == mode && row.delay_ms.total_cmp(&delay_ms).is_eq()
     }

@@ -2,10 +2,10 @@
 
 use std::fmt::Write as _;
 
-use super::{CHOSEN_ON, Interval, Mean, Report, Row, Split, modes};
+use super::{BaselineMean, BaselineReport, BaselineRow, CHOSEN_ON, MeanInterval, Split, modes};
 use crate::Findings;
 
-impl Findings for Report {
+impl Findings for BaselineReport {
     /// Returns one table for each part of the material.
     fn text(&self) -> String {
         // Writing into a String cannot fail.
@@ -27,9 +27,9 @@ impl Findings for Report {
     }
 }
 
-impl Report {
+impl BaselineReport {
     fn table(&self, split: Split, text: &mut String) {
-        let of_split: Vec<&Mean> = self.means.iter().filter(|mean| mean.split == split).collect();
+        let of_split: Vec<&BaselineMean> = self.means.iter().filter(|mean| mean.split == split).collect();
         let mut delays_ms: Vec<f64> = of_split.iter().map(|mean| mean.delay_ms).collect();
         delays_ms.sort_by(f64::total_cmp);
         delays_ms.dedup();
@@ -41,7 +41,7 @@ impl Report {
         writeln!(text, "| mode |{head}\n|---|{}", "---|".repeat(delays_ms.len())).ok();
         for mode in modes() {
             let cells = delays_ms.iter().map(|delay_ms| {
-                let is_here = |mean: &&&Mean| mean.mode == mode && mean.delay_ms.total_cmp(delay_ms).is_eq();
+                let is_here = |mean: &&&BaselineMean| mean.mode == mode && mean.delay_ms.total_cmp(delay_ms).is_eq();
                 of_split.iter().find(is_here).map_or_else(String::new, |mean| format!(" {} |", words(&mean.ratio)))
             });
             writeln!(text, "| {mode} |{}", cells.collect::<Vec<_>>().concat()).ok();
@@ -61,7 +61,7 @@ impl Report {
     /// Returns every source alone.
     fn csv(&self) -> String {
         let mut text = "source,split,delay_ms,mode,error,held_error,ratio\n".to_owned();
-        for Row { source, split, delay_ms, mode, error, held_error, ratio } in &self.rows {
+        for BaselineRow { source, split, delay_ms, mode, error, held_error, ratio } in &self.rows {
             let source = source.replace(['"', ',', '\n'], " ");
             writeln!(text, "{source},{},{delay_ms},{mode},{error:.6},{held_error:.6},{ratio:.4}", key(*split)).ok();
         }
@@ -69,7 +69,7 @@ impl Report {
     }
 }
 
-fn words(interval: &Interval) -> String {
+fn words(interval: &MeanInterval) -> String {
     match (interval.low, interval.high) {
         (Some(low), Some(high)) => format!("{:.3} [{low:.2}, {high:.2}]", interval.mean),
         _ => format!("{:.3}", interval.mean),

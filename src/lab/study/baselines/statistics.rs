@@ -7,7 +7,7 @@ pub(super) const WORDS: &str =
     "95 % confidence interval of the mean over the sources, by Student's t with n - 1 degrees of freedom";
 
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Interval {
+pub struct MeanInterval {
     pub mean: f64,
     /// Lower and upper end; `None` for a single number.
     pub low: Option<f64>,
@@ -15,7 +15,7 @@ pub struct Interval {
     pub high: Option<f64>,
 }
 
-impl Interval {
+impl MeanInterval {
     /// Computes the interval for the mean of independent numbers.
     pub fn of_mean(values: &[f64]) -> Self {
         let n = values.len() as f64;
@@ -57,10 +57,10 @@ mod tests {
 
     #[test]
     fn an_interval_by_hand() {
-        let Interval { mean, low, high } = Interval::of_mean(&[1.0, 2.0, 3.0]);
+        let MeanInterval { mean, low, high } = MeanInterval::of_mean(&[1.0, 2.0, 3.0]);
         let half = 4.303 / 3.0_f64.sqrt();
         assert!((mean - 2.0).abs() < 1e-12);
         assert!((low.unwrap() - (2.0 - half)).abs() < 1e-9 && (high.unwrap() - (2.0 + half)).abs() < 1e-9);
-        assert_eq!(Interval::of_mean(&[0.4]).low, None, "a single number has no spread");
+        assert_eq!(MeanInterval::of_mean(&[0.4]).low, None, "a single number has no spread");
     }
 }

@@ -1,21 +1,22 @@
 use nima_core::impedance::{Baseline, Mode};
-use nima_recording::csv::{Mapping, Recording};
+use nima_recording::csv::{ColumnMapping, CsvRecording};
 use nima_simulation::scene::Scene;
 use nima_testing::unjudged;
 
-use super::{CHOSEN_ON, Options, Report, Split};
-use crate::{Experiment as _, Findings as _, tradeoff::Source};
+use super::{BaselineOptions, BaselineReport, CHOSEN_ON, Split};
+use crate::{Experiment as _, Findings as _, tradeoff::TradeoffSource};
 
-fn ratio(report: &Report, split: Split, mode: Mode, delay_ms: f64) -> f64 {
-    let is_it =
-        |mean: &&super::Mean| mean.split == split && mean.mode == mode && (mean.delay_ms - delay_ms).abs() < 1e-9;
+fn ratio(report: &BaselineReport, split: Split, mode: Mode, delay_ms: f64) -> f64 {
+    let is_it = |mean: &&super::BaselineMean| {
+        mean.split == split && mean.mode == mode && (mean.delay_ms - delay_ms).abs() < 1e-9
+    };
     report.means.iter().find(is_it).unwrap().ratio.mean
 }
 
-fn scenes(names: &[&str], seconds: f64, delays_s: &[f64]) -> Options {
-    let source = |name: &&str| (Source::from_scene(&Scene::load(name).unwrap(), 1000.0, seconds), Split::Scene);
+fn scenes(names: &[&str], seconds: f64, delays_s: &[f64]) -> BaselineOptions {
+    let source = |name: &&str| (TradeoffSource::from_scene(&Scene::load(name).unwrap(), 1000.0, seconds), Split::Scene);
     let sources = names.iter().map(source).collect();
-    Options { sources, delays_s: delays_s.to_vec(), cross_talk: false, inputs: Vec::new() }
+    BaselineOptions { sources, delays_s: delays_s.to_vec(), cross_talk: false, inputs: Vec::new() }
 }
 
 #[test]
@@ -52,15 +53,16 @@ fn recordings_are_split_by_name() {
 
 #[test]
 fn on_real_recordings_the_peers_are_as_good_as_their_literature() {
-    let mapping = Mapping::parse(&["x=pos_follower_rad".to_owned(), "fx=Fe_Nm".to_owned()]).unwrap();
+    let mapping = ColumnMapping::parse(&["x=pos_follower_rad".to_owned(), "fx=Fe_Nm".to_owned()]).unwrap();
     let source = |name: &str| {
         let path = unjudged::recording(&format!("tue_1dof/{name}.csv"))?;
-        Some((Source::from_recording(Recording::read(&path, &mapping).unwrap(), "Nm"), Split::HeldOut))
+        Some((TradeoffSource::from_recording(CsvRecording::read(&path, &mapping).unwrap(), "Nm"), Split::HeldOut))
     };
     let names = ["m1_question1c_foam", "m1_question1c_spring", "m2_question1a_spring"];
     let Some(sources) = names.into_iter().map(source).collect::<Option<Vec<_>>>() else { return };
     let delays_s = vec![0.01, 0.3];
-    let report = Options { sources, delays_s, cross_talk: false, inputs: Vec::new() }.run(&mut |_, _, _| {}).unwrap();
+    let report =
+        BaselineOptions { sources, delays_s, cross_talk: false, inputs: Vec::new() }.run(&mut |_, _, _| {}).unwrap();
     let of = |baseline, delay_ms| ratio(&report, Split::HeldOut, Mode::Baseline(baseline), delay_ms);
     assert!(of(Baseline::Kalman, 10.0) < 0.9, "a short extrapolation is better than holding");
     assert!(of(Baseline::Autoregressive, 10.0) < 0.9);

@@ -5,7 +5,7 @@ use std::{fs, path::Path, sync::atomic::AtomicBool, time::SystemTime};
 
 use nalgebra::Vector3;
 use nima_core::{
-    calibration::gravity::{GravityModel, GravityRecord, Parameters},
+    calibration::gravity::{GravityModel, GravityParameters, GravityRecord},
     impedance::Mode,
     tip_force::{FeatureSettings, TrainingSettings},
 };
@@ -23,19 +23,19 @@ use nima_recording::{
 use nima_simulation::{Worlds, scene::Scene};
 use nima_training::train_model;
 
-use super::{FaultsError, LiveError, MODES, SensorAt, Special, Verdict};
+use super::{FaultVerdict, FaultsError, LiveFaultError, MODES, SensorAt, Special};
 use crate::{
-    release::{self, Situation, Way},
+    release::{self, ReleaseSituation, ReleaseStyle},
     validation::{
         ValidationError,
-        experiment::{self, Experiment},
+        experiment::{self, SimulatedExperiment},
         isolation,
     },
 };
 
 /// Every fault of a file or of loaded data.
 pub(super) fn all() -> Result<Vec<Special>, FaultsError> {
-    let folder = tempfile::tempdir().map_err(LiveError::Scratch)?;
+    let folder = tempfile::tempdir().map_err(LiveFaultError::Scratch)?;
     let gravity = experiment::gravity(1)?;
     let mut specials = vec![
         in_memory("gravity calibration with NaN in memory", &poisoned(&gravity, f64::NAN))?,
@@ -51,9 +51,9 @@ pub(super) fn all() -> Result<Vec<Special>, FaultsError> {
 fn poisoned(model: &GravityModel, by: f64) -> GravityModel {
     let mut poisoned = *model;
     match &mut poisoned.parameters {
-        Parameters::Physical { mass_kg, .. } => *mass_kg = by,
-        Parameters::Gain { gain_kg, .. } => gain_kg[2][2] = by,
-        Parameters::Paper { force_n, .. } => force_n[2][4] = by,
+        GravityParameters::Physical { mass_kg, .. } => *mass_kg = by,
+        GravityParameters::Gain { gain_kg, .. } => gain_kg[2][2] = by,
+        GravityParameters::Paper { force_n, .. } => force_n[2][4] = by,
     }
     poisoned
 }
@@ -80,8 +80,8 @@ fn in_memory(what: &str, gravity: &GravityModel) -> Result<Special, FaultsError>
     let idle = control.pair(Side::Right).map(nima_machine::teleop::Pair::state) == Some(LoopState::Idle);
     Ok(Special {
         what: what.to_owned(),
-        verdict: if idle && !force { Verdict::Detected } else { Verdict::Silent },
-        told: "the force is unknown; engaging is refused".to_owned(),
+        verdict: if idle && !force { FaultVerdict::Detected } else { FaultVerdict::Silent },
+        report: "the force is unknown; engaging is refused".to_owned(),
         detection_ms: Some(1.0),
         zero_ms: None,
     })
@@ -92,15 +92,15 @@ fn let_go() -> Result<Special, FaultsError> {
     let tissue = Scene::load("peg_transfer")?.tissue;
     let wrong = |reason: String| FaultsError::Calibration(ValidationError::Calibration(reason));
     let tissue = tissue.ok_or_else(|| wrong("peg_transfer has no tissue".to_owned()))?;
-    let situation = Situation::Held;
+    let situation = ReleaseSituation::Held;
     let governor = true;
     let mode = MODES[0];
-    let way = Way { clock: VirtualClock::PERFECT, situation, governor, mode, delay_ms: 50.0, contact_n: 5.0 };
+    let way = ReleaseStyle { clock: VirtualClock::PERFECT, situation, governor, mode, delay_ms: 50.0, contact_n: 5.0 };
     let row = release::let_go(&way, tissue).map_err(|error| wrong(error.to_string()))?;
     Ok(Special {
         what: "the hand opens, no presence detection".to_owned(),
-        verdict: Verdict::Bounded,
-        told: format!(
+        verdict: FaultVerdict::Bounded,
+        report: format!(
             "governor: {:.1} mJ, {:.1} mm (no presence switch; docs/safety.md)",
             row.energy_mj, row.travel_mm
         ),
@@ -111,14 +111,14 @@ fn let_go() -> Result<Special, FaultsError> {
 
 /// A network's file with one number made NaN, a truncated one, and one of another format.
 fn networks(folder: &Path) -> Result<Vec<Special>, FaultsError> {
-    let known = isolation::Known::calibrate(1)?;
-    let scene = Experiment::scene("isolation", 1)?;
+    let known = isolation::PriorCalibrations::calibrate(1)?;
+    let scene = SimulatedExperiment::scene("isolation", 1)?;
     let data = isolation::record(&scene, &known, FeatureSettings::default(), 2000, 7.0)?.data(None)?;
     let settings = TrainingSettings { members: 1, epochs: Some(1), ..TrainingSettings::default() };
     let model = train_model(&data, &settings, [None, None], &AtomicBool::new(false), &|_| {})?;
     let path = folder.join("network.safetensors");
     save_model(&model, &path)?;
-    let sound = fs::read(&path).map_err(LiveError::Scratch)?;
+    let sound = fs::read(&path).map_err(LiveFaultError::Scratch)?;
     let mut specials = Vec::new();
     // The weights are the last tensors of the file, f32 in little-endian order.
     let mut nan = sound.clone();
@@ -132,18 +132,18 @@ fn networks(folder: &Path) -> Result<Vec<Special>, FaultsError> {
         ("network file with a damaged header", header),
     ];
     for (what, bytes) in cases {
-        fs::write(&path, &bytes).map_err(LiveError::Scratch)?;
+        fs::write(&path, &bytes).map_err(LiveFaultError::Scratch)?;
         specials.push(refused(what, load_model(&path).err().map(|error| error.to_string()), &path));
     }
     Ok(specials)
 }
 
-fn refused(what: &str, told: Option<String>, path: &Path) -> Special {
-    let verdict = if told.is_some() { Verdict::Detected } else { Verdict::Silent };
+fn refused(what: &str, report: Option<String>, path: &Path) -> Special {
+    let verdict = if report.is_some() { FaultVerdict::Detected } else { FaultVerdict::Silent };
     let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-    let told =
-        told.map_or_else(String::new, |told| format!("refused: {}", told.replace(&*path.to_string_lossy(), &name)));
-    Special { what: what.to_owned(), verdict, told, detection_ms: None, zero_ms: None }
+    let report = report
+        .map_or_else(String::new, |report| format!("refused: {}", report.replace(&*path.to_string_lossy(), &name)));
+    Special { what: what.to_owned(), verdict, report, detection_ms: None, zero_ms: None }
 }
 
 /// A calibration file with one number made NaN, a truncated one, and a valid one of another sensor and tool.
@@ -153,21 +153,21 @@ fn gravity_files(folder: &Path) -> Result<Vec<Special>, FaultsError> {
     let record = record.ok_or_else(|| wrong("the simulated calibration gives no record".to_owned()))?;
     let store = Store::open(folder);
     let path = store.save(&record).map_err(|error| wrong(error.to_string()))?;
-    let sound = fs::read_to_string(&path).map_err(LiveError::Scratch)?;
+    let sound = fs::read_to_string(&path).map_err(LiveFaultError::Scratch)?;
     let load = |sensor: &str, tool: &str| {
         let loaded = store.load::<GravityRecord>(sensor, tool, SystemTime::now());
         loaded.err().map(|error| error.to_string())
     };
     let mut specials = vec![refused("gravity file of another tool", load("S1", "scissors"), &path)];
     let other = store.path::<GravityRecord>("S2").map_err(|error| wrong(error.to_string()))?;
-    fs::copy(&path, &other).map_err(LiveError::Scratch)?;
+    fs::copy(&path, &other).map_err(LiveFaultError::Scratch)?;
     specials.push(refused("gravity file of another sensor", load("S2", "grasper"), &other));
     for (what, text) in [
         ("gravity file with NaN", numbers_replaced(&sound, "nan")),
         ("gravity file with infinite numbers", numbers_replaced(&sound, "inf")),
         ("gravity file cut short", sound[..sound.len() / 2].to_owned()),
     ] {
-        fs::write(&path, text).map_err(LiveError::Scratch)?;
+        fs::write(&path, text).map_err(LiveFaultError::Scratch)?;
         specials.push(refused(what, load("S1", "grasper"), &path));
     }
     Ok(specials)

@@ -6,16 +6,16 @@ use nima_core::impedance::Mode;
 use nima_machine::{
     config::RigConfig,
     messages::{Command, Event, Fault, LoopState, Tick},
-    rig::{Inputs, Outputs, SIDES, Sensed, Side},
+    rig::{Inputs, Outputs, SIDES, SensedForce, Side},
     teleop::{Calibrations, Loop, Timing},
 };
 use nima_simulation::scene::Scene;
 
 use super::{
-    FaultsError, HARMLESS_N, Kind, Part, Place, SensorAt,
-    impaired_link::{ImpairedLink, Impairment},
+    FaultKind, FaultPart, FaultPlace, FaultsError, HARMLESS_N, SensorAt,
+    impaired_link::{ImpairedLink, PacketImpairment},
     inject::{FAULTY, Faulty, force_of},
-    subject::Subject,
+    subject::FaultSubject,
 };
 use crate::validation::experiment;
 
@@ -34,13 +34,13 @@ const HINT_N: f64 = 0.05;
 const NEAR_M: f64 = 5e-4;
 
 #[derive(Clone, Debug)]
-pub(super) struct Bench {
+pub(super) struct FaultBench {
     pub(super) rig: Faulty,
     pub(super) machine: Loop<ImpairedLink>,
     pub(super) twin: Loop<ImpairedLink>,
     outputs: [Outputs; SIDES],
     tick: u32,
-    fault: Option<(Kind, u32)>,
+    fault: Option<(FaultKind, u32)>,
     twin_n: Vector3<f64>,
     tip_n: Vector3<f64>,
 }
@@ -48,7 +48,7 @@ pub(super) struct Bench {
 /// Result of one tick of machine and twin.
 #[derive(Clone, Copy, Debug)]
 #[expect(clippy::struct_excessive_bools, reason = "independent observations of one tick")]
-pub(super) struct Step {
+pub(super) struct BenchStep {
     pub(super) machine: Tick,
     pub(super) twin: Tick,
     /// Force that the twin commanded for this tick, N.
@@ -68,7 +68,7 @@ pub(super) struct Step {
     pub(super) device_lost: bool,
 }
 
-impl Bench {
+impl FaultBench {
     /// An idle rig with its force sensor at this place, in this mode.
     pub(super) fn new(sensor: SensorAt, mode: Mode, seed: u64) -> Result<Self, FaultsError> {
         let mut config = RigConfig::load("simulated")?;
@@ -79,7 +79,7 @@ impl Bench {
         let gravity = if sensor.is_at_wrist() { Some(experiment::gravity(1)?) } else { None };
         let known = Calibrations { gravity, ..Calibrations::default() };
         let machine = Loop::over(&config, &[Some(known), None], ImpairedLink::new)?;
-        let rig = Faulty::new(Subject::new(sensor, &config, &scene)?);
+        let rig = Faulty::new(FaultSubject::new(sensor, &config, &scene)?);
         let outputs = [Outputs::SAFE; SIDES];
         Ok(Self {
             rig,
@@ -93,19 +93,19 @@ impl Bench {
         })
     }
 
-    pub(super) fn begin(&mut self, fault: Kind) {
+    pub(super) fn begin(&mut self, fault: FaultKind) {
         self.rig.begin(fault);
         self.fault = Some((fault, self.tick));
         let impairment = match fault {
-            Kind::LinkSilent => Impairment::LosesAll,
-            Kind::LinkHalf => Impairment::LosesHalf,
-            Kind::LinkLate => Impairment::Late(0.1),
-            Kind::LinkJitter => Impairment::Late(0.003),
-            Kind::LinkSwaps => Impairment::Swaps,
-            Kind::LinkDoubles => Impairment::Doubles,
-            Kind::LinkPoisoned => Impairment::Poisons,
-            Kind::LinkRepeats => Impairment::Repeats,
-            _ => Impairment::None,
+            FaultKind::LinkSilent => PacketImpairment::LosesAll,
+            FaultKind::LinkHalf => PacketImpairment::LosesHalf,
+            FaultKind::LinkLate => PacketImpairment::Late(0.1),
+            FaultKind::LinkJitter => PacketImpairment::Late(0.003),
+            FaultKind::LinkSwaps => PacketImpairment::Swaps,
+            FaultKind::LinkDoubles => PacketImpairment::Doubles,
+            FaultKind::LinkPoisoned => PacketImpairment::Poisons,
+            FaultKind::LinkRepeats => PacketImpairment::Repeats,
+            _ => PacketImpairment::None,
         };
         if let Some(link) = self.machine.link_mut(Side::Right) {
             link.impair(impairment);
@@ -124,18 +124,18 @@ impl Bench {
         let Some((fault, since)) = self.fault else { return honest };
         let since_s = f64::from(since) * PERIOD_S;
         let now_s = match fault {
-            Kind::ClockForward => now_s + 1.0,
-            Kind::ClockBackward => now_s - 1.0,
-            Kind::ClockStops => since_s - PERIOD_S,
-            Kind::ClockSlow => since_s - PERIOD_S + 0.5 * (now_s - since_s + PERIOD_S),
-            Kind::ClockNan => f64::NAN,
-            Kind::PeriodsMissed => now_s + 0.1,
-            Kind::FewPeriodsMissed => now_s + 0.01,
+            FaultKind::ClockForward => now_s + 1.0,
+            FaultKind::ClockBackward => now_s - 1.0,
+            FaultKind::ClockStops => since_s - PERIOD_S,
+            FaultKind::ClockSlow => since_s - PERIOD_S + 0.5 * (now_s - since_s + PERIOD_S),
+            FaultKind::ClockNan => f64::NAN,
+            FaultKind::PeriodsMissed => now_s + 0.1,
+            FaultKind::FewPeriodsMissed => now_s + 0.01,
             _ => now_s,
         };
         let missed_now = match fault {
-            Kind::PeriodsMissed if self.tick == since => 100,
-            Kind::FewPeriodsMissed if self.tick == since => 10,
+            FaultKind::PeriodsMissed if self.tick == since => 100,
+            FaultKind::FewPeriodsMissed if self.tick == since => 10,
             _ => 0,
         };
         Timing { now_s, missed_now, ..honest }
@@ -144,18 +144,18 @@ impl Bench {
     /// Sends the commands of a faulty screen in this tick.
     fn mischief(&mut self, now_s: f64) {
         match self.fault {
-            Some((Kind::CommandsPoisoned, since)) if self.tick - since < 4 => {
+            Some((FaultKind::CommandsPoisoned, since)) if self.tick - since < 4 => {
                 let bad = [Command::SetGain(f64::NAN), Command::SetDelay(-1.0), Command::SetScale(f64::INFINITY)];
                 self.machine.obey(bad[(self.tick % 3) as usize], now_s);
                 self.machine.obey(Command::SetGainAboveOne(1e9), now_s);
             }
-            Some((Kind::CommandsDoubled, since)) if self.tick - since < 4 => {
+            Some((FaultKind::CommandsDoubled, since)) if self.tick - since < 4 => {
                 for _ in 0..2 {
                     self.machine.obey(Command::SetStaticHold(true), now_s);
                     self.machine.obey(Command::SetGain(1.0), now_s);
                 }
             }
-            Some((Kind::SliderShakes, _)) => {
+            Some((FaultKind::SliderShakes, _)) => {
                 self.machine.obey(Command::SetGain(f64::from(self.tick % 2)), now_s);
             }
             _ => {}
@@ -163,7 +163,7 @@ impl Bench {
     }
 
     /// One tick of world, machine and twin; `None` only if the rig has no right arm pair.
-    pub(super) fn step(&mut self) -> Option<Step> {
+    pub(super) fn step(&mut self) -> Option<BenchStep> {
         let now_s = f64::from(self.tick) * PERIOD_S;
         let timing = self.timing(now_s);
         let wanted = self.outputs[FAULTY];
@@ -192,7 +192,7 @@ impl Bench {
         });
         let given = inputs[FAULTY];
         let truth = truth[FAULTY];
-        Some(Step {
+        Some(BenchStep {
             machine: ticks[FAULTY]?,
             twin: twins[FAULTY]?,
             twin_before_n,
@@ -212,21 +212,23 @@ impl Bench {
     fn is_elsewhere(&self) -> bool {
         let Some((fault, since)) = self.fault else { return false };
         match fault.part() {
-            Part::Clock | Part::Commands => true,
-            Part::Link => matches!(fault, Kind::LinkLate | Kind::LinkJitter) || self.tick > since + LINK_TICKS,
+            FaultPart::Clock | FaultPart::Commands => true,
+            FaultPart::Link => {
+                matches!(fault, FaultKind::LinkLate | FaultKind::LinkJitter) || self.tick > since + LINK_TICKS
+            }
             _ => false,
         }
     }
 
     /// Brings the bench into a situation; `moment` distinguishes cases in the same situation.
-    pub(super) fn prepare(&mut self, place: Place, moment: u32) -> Result<(), FaultsError> {
-        let engaged = !matches!(place, Place::Disconnected | Place::Idle | Place::Ready);
+    pub(super) fn prepare(&mut self, place: FaultPlace, moment: u32) -> Result<(), FaultsError> {
+        let engaged = !matches!(place, FaultPlace::Disconnected | FaultPlace::Idle | FaultPlace::Ready);
         if engaged {
             self.obey(Command::Engage);
         }
         self.run(WARM_UP + moment * APART);
         if engaged {
-            let free = place == Place::Free;
+            let free = place == FaultPlace::Free;
             let mut patience = TIMEOUT;
             while !self.is_at(free) && patience > 0 {
                 self.run(1);
@@ -234,26 +236,26 @@ impl Bench {
             }
         }
         match place {
-            Place::Disconnected => self.without(30),
-            Place::Ready => {
+            FaultPlace::Disconnected => self.without(30),
+            FaultPlace::Ready => {
                 self.rig.situation.powered = false;
                 self.obey(Command::Engage);
                 self.run(20);
             }
-            Place::Clutched => {
+            FaultPlace::Clutched => {
                 self.rig.situation.clutch = true;
                 self.run(20);
             }
-            Place::Stopped => {
+            FaultPlace::Stopped => {
                 self.obey(Command::Stop);
                 self.run(5);
             }
-            Place::Faulted => {
+            FaultPlace::Faulted => {
                 self.without(30);
                 self.rig.situation.connected = true;
                 self.run(5);
             }
-            Place::Idle | Place::Free | Place::Contact => {}
+            FaultPlace::Idle | FaultPlace::Free | FaultPlace::Contact => {}
         }
         let reached = self.state();
         if place.is(reached) {
@@ -303,7 +305,7 @@ fn differs(given: Option<&Inputs>, truth: Option<&Inputs>) -> bool {
     let hand_m = (given.hand.position_m - truth.hand.position_m).norm();
     let tip_m = (given.tip_m - truth.tip_m).norm();
     let turned = match (&given.sensed, &truth.sensed) {
-        (Sensed::AtWrist(given), Sensed::AtWrist(truth)) => {
+        (SensedForce::AtWrist(given), SensedForce::AtWrist(truth)) => {
             given.world_from_s1 != truth.world_from_s1
                 || match (given.acceleration_m_s2, truth.acceleration_m_s2) {
                     (Some(given), Some(truth)) => (given - truth).norm() > 0.2 || given.sum().is_nan(),

@@ -6,10 +6,10 @@ use nima_machine::{
     messages::{Command, LoopState},
     teleop::Calibrations,
 };
-use nima_simulation::{Plan, run_virtual, scene::Scene};
+use nima_simulation::{SimulationPlan, run_virtual, scene::Scene};
 use serde::Serialize;
 
-use super::{FaultsError, MODES, SensorAt, bench::Bench};
+use super::{FaultsError, MODES, SensorAt, bench::FaultBench};
 use crate::validation::experiment;
 
 const SCENES: [&str; 4] = ["peg_transfer", "palpation", "free_motion", "bimanual"];
@@ -17,7 +17,7 @@ const DELAYS_S: [f64; 4] = [0.0, 0.01, 0.05, 0.3];
 
 /// Fault-free runs and their false alarms.
 #[derive(Clone, Debug, Default, Serialize)]
-pub struct Calm {
+pub struct FaultFreeRuns {
     pub runs: usize,
     /// Their total duration, s of loop time.
     pub seconds: f64,
@@ -25,16 +25,20 @@ pub struct Calm {
     pub false_alarms: Vec<String>,
 }
 
-impl Calm {
+impl FaultFreeRuns {
     pub(super) fn line(&self) -> String {
-        let told = if self.false_alarms.is_empty() { "none".to_owned() } else { self.false_alarms.join("; ") };
-        format!("- false alarms in {} fault-free runs, {:.0} minutes in total: {told}", self.runs, self.seconds / 60.0)
+        let report = if self.false_alarms.is_empty() { "none".to_owned() } else { self.false_alarms.join("; ") };
+        format!(
+            "- false alarms in {} fault-free runs, {:.0} minutes in total: {report}",
+            self.runs,
+            self.seconds / 60.0
+        )
     }
 }
 
 /// Runs every scene in both modes at every delay, each for `seconds`.
-pub(super) fn runs(seconds: f64) -> Result<Calm, FaultsError> {
-    let mut calm = Calm::default();
+pub(super) fn runs(seconds: f64) -> Result<FaultFreeRuns, FaultsError> {
+    let mut calm = FaultFreeRuns::default();
     let gravity = experiment::gravity(1)?;
     for scene in SCENES {
         for mode in MODES {
@@ -48,16 +52,16 @@ pub(super) fn runs(seconds: f64) -> Result<Calm, FaultsError> {
                 // Every run has another seed: other tremor, noise and start.
                 let scene = Scene { seed: scene.seed + 1000 * calm.runs as u64, ..scene };
                 let calibrations = [known, Calibrations::default()];
-                let plan = Plan { rig, scene, calibrations, engage: true };
-                let mut told = None;
+                let plan = SimulationPlan { rig, scene, calibrations, engage: true };
+                let mut report = None;
                 let summary = run_virtual(&plan, seconds, |tick| match tick.state {
                     LoopState::Faulted(fault) => {
-                        told = Some((tick.t_s, fault));
+                        report = Some((tick.t_s, fault));
                         Some(Command::Shutdown)
                     }
                     _ => None,
                 })?;
-                if let Some((t_s, fault)) = told {
+                if let Some((t_s, fault)) = report {
                     let name = &plan.scene.name;
                     calm.false_alarms.push(format!("{name}, {mode}, {:.0} ms: {fault:?} at {t_s:.3} s", 1e3 * delay_s));
                 }
@@ -75,8 +79,8 @@ pub(super) fn runs(seconds: f64) -> Result<Calm, FaultsError> {
 }
 
 /// A rig with an arm, whose readings are processed like those of a rig with devices.
-fn on_arm(calm: &mut Calm, sensor: SensorAt, mode: Mode, seconds: f64) -> Result<(), FaultsError> {
-    let mut bench = Bench::new(sensor, mode, calm.runs as u64)?;
+fn on_arm(calm: &mut FaultFreeRuns, sensor: SensorAt, mode: Mode, seconds: f64) -> Result<(), FaultsError> {
+    let mut bench = FaultBench::new(sensor, mode, calm.runs as u64)?;
     bench.obey(Command::Engage);
     let ticks = (seconds * 1e3) as u32;
     for tick in 0..ticks {

@@ -11,8 +11,8 @@ use nima_core::{
 use nima_machine::messages::Fault;
 
 use super::{
-    HARMLESS_N, Kind, Outcome, Place, SensorAt, Verdict,
-    bench::{Bench, Step},
+    CaseOutcome, FaultKind, FaultPlace, FaultVerdict, HARMLESS_N, SensorAt,
+    bench::{BenchStep, FaultBench},
 };
 
 /// Ticks until the second event of a situation: drives switch on, the clutch is released.
@@ -35,29 +35,29 @@ const MEAN_N: f64 = 0.02;
 
 /// Errors relative to the current force at the tip, N.
 #[derive(Clone, Copy, Debug, Default)]
-struct Errors {
+struct CaseErrors {
     sum_n: f64,
-    most_n: f64,
+    max_n: f64,
 }
 
-impl Errors {
+impl CaseErrors {
     /// Adds an error; ignored while the force at the tip is unknown.
     fn add(&mut self, error_n: f64) {
         if error_n.is_finite() {
             self.sum_n += error_n;
-            self.most_n = self.most_n.max(error_n);
+            self.max_n = self.max_n.max(error_n);
         }
     }
 }
 
 /// A period in which a difference was visible, with interruptions shorter than [`PAUSE`].
 #[derive(Clone, Copy, Debug, Default)]
-struct Stretch {
+struct DifferencePeriod {
     began: Option<u32>,
     last: u32,
 }
 
-impl Stretch {
+impl DifferencePeriod {
     fn look(&mut self, seen: bool, tick: u32) {
         if !seen {
             return;
@@ -71,21 +71,21 @@ impl Stretch {
 
 /// Observations so far.
 #[derive(Debug)]
-struct Watch {
-    shows: Stretch,
-    hints: Stretch,
+struct CaseWatch {
+    shows: DifferencePeriod,
+    hints: DifferencePeriod,
     /// The latest pairs of force in the hand and force of the twin, N, newest last.
     forces_n: VecDeque<[Vector3<f64>; 2]>,
-    told: Option<(String, u32)>,
+    report: Option<(String, u32)>,
     zero: Option<u32>,
     felt: bool,
     moved: bool,
     peak_error_n: f64,
     error_n: f64,
-    of_machine: Errors,
-    of_twin: Errors,
+    of_machine: CaseErrors,
+    of_twin: CaseErrors,
     ticks: u32,
-    most_n: f64,
+    max_n: f64,
     step_n: f64,
     last_n: Vector3<f64>,
     /// Ticks for which machine and twin have been in different states.
@@ -93,21 +93,28 @@ struct Watch {
 }
 
 /// Applies the fault on a bench that has been prepared for it.
-pub(super) fn tried(mut bench: Bench, kind: Kind, sensor: SensorAt, mode: Mode, place: Place, moment: u32) -> Outcome {
-    let mut watch = Watch {
-        shows: Stretch::default(),
-        hints: Stretch::default(),
+pub(super) fn tried(
+    mut bench: FaultBench,
+    kind: FaultKind,
+    sensor: SensorAt,
+    mode: Mode,
+    place: FaultPlace,
+    moment: u32,
+) -> CaseOutcome {
+    let mut watch = CaseWatch {
+        shows: DifferencePeriod::default(),
+        hints: DifferencePeriod::default(),
         forces_n: VecDeque::new(),
-        told: None,
+        report: None,
         zero: None,
         felt: false,
         moved: false,
         peak_error_n: 0.0,
         error_n: 0.0,
-        of_machine: Errors::default(),
-        of_twin: Errors::default(),
+        of_machine: CaseErrors::default(),
+        of_twin: CaseErrors::default(),
         ticks: 0,
-        most_n: 0.0,
+        max_n: 0.0,
         step_n: 0.0,
         last_n: bench.wanted_n(),
         apart: 0,
@@ -134,19 +141,19 @@ pub(super) fn tried(mut bench: Bench, kind: Kind, sensor: SensorAt, mode: Mode, 
     watch.outcome(kind, sensor, mode, place, moment)
 }
 
-impl Watch {
-    fn look(&mut self, tick: u32, step: &Step) {
-        if self.told.is_none() {
+impl CaseWatch {
+    fn look(&mut self, tick: u32, step: &BenchStep) {
+        if self.report.is_none() {
             self.shows.look(step.shows, tick);
             self.hints.look(step.hints, tick);
         }
         self.apart = if step.machine.state == step.twin.state { 0 } else { self.apart + 1 };
-        if self.told.is_none() {
+        if self.report.is_none() {
             let state = || format!("state {}", step.machine.state.word().to_lowercase());
-            self.told = told(step).map(|what| (what, tick));
+            self.report = report(step).map(|what| (what, tick));
             // A state that differs for only a tick or two does not count.
-            if self.told.is_none() && self.apart == APART {
-                self.told = Some((state(), tick));
+            if self.report.is_none() && self.apart == APART {
+                self.report = Some((state(), tick));
             }
         }
         let applied_n = step.applied.hand_force_n;
@@ -154,7 +161,7 @@ impl Watch {
         self.felt |= applied_n.norm() > 0.0;
         self.moved |= step.wanted.tip_command_m.is_some();
         let gone = applied_n.norm() == 0.0;
-        if self.told.is_some() && self.felt && gone && self.zero.is_none() {
+        if self.report.is_some() && self.felt && gone && self.zero.is_none() {
             self.zero = Some(tick);
         }
         // The rig receives in each tick the outputs of the previous one; so does the twin's rig.
@@ -165,7 +172,7 @@ impl Watch {
             self.of_twin.add((step.twin_before_n - step.tip_before_n).norm());
             self.ticks += 1;
         }
-        self.most_n = self.most_n.max(wanted_n.norm());
+        self.max_n = self.max_n.max(wanted_n.norm());
         if wanted_n.norm() > 0.0 {
             self.step_n = self.step_n.max((wanted_n - self.last_n).norm());
         }
@@ -185,34 +192,36 @@ impl Watch {
     }
 
     fn is_no_worse(&self) -> bool {
-        let mean_n = |errors: &Errors| errors.sum_n / f64::from(self.ticks.max(1));
-        self.of_machine.most_n <= self.of_twin.most_n + HARMLESS_N
+        let mean_n = |errors: &CaseErrors| errors.sum_n / f64::from(self.ticks.max(1));
+        self.of_machine.max_n <= self.of_twin.max_n + HARMLESS_N
             && mean_n(&self.of_machine) <= mean_n(&self.of_twin) + MEAN_N
     }
 
-    fn outcome(self, kind: Kind, sensor: SensorAt, mode: Mode, place: Place, moment: u32) -> Outcome {
-        let told_at = self.told.as_ref().map(|(_, tick)| *tick);
+    fn outcome(self, kind: FaultKind, sensor: SensorAt, mode: Mode, place: FaultPlace, moment: u32) -> CaseOutcome {
+        let reported_at = self.report.as_ref().map(|(_, tick)| *tick);
         // A report that came while no difference was visible is timed from the first small difference of the force, or
         // from the start of the fault.
-        let on = |stretch: &Stretch| stretch.began.filter(|_| told_at.is_none_or(|told| told <= stretch.last + PAUSE));
+        let on = |stretch: &DifferencePeriod| {
+            stretch.began.filter(|_| reported_at.is_none_or(|report| report <= stretch.last + PAUSE))
+        };
         let origin = on(&self.shows).or(on(&self.hints)).unwrap_or(0);
         let since_ms = |tick: u32| f64::from(tick - origin.min(tick)) + 1.0;
-        let verdict = if told_at.is_some() {
-            Verdict::Detected
+        let verdict = if reported_at.is_some() {
+            FaultVerdict::Detected
         } else if !self.felt && !self.moved {
-            Verdict::NoForce
+            FaultVerdict::NoForce
         } else if self.error_n <= HARMLESS_N {
-            Verdict::Harmless
+            FaultVerdict::Harmless
         } else if kind.untellable().is_some() {
-            Verdict::Bounded
+            FaultVerdict::Bounded
         } else if self.is_no_worse() {
-            Verdict::Harmless
+            FaultVerdict::Harmless
         } else if kind.passes_as_fresh().is_some() {
-            Verdict::Bounded
+            FaultVerdict::Bounded
         } else {
-            Verdict::Silent
+            FaultVerdict::Silent
         };
-        Outcome {
+        CaseOutcome {
             kind,
             part: kind.part(),
             sensor,
@@ -220,19 +229,19 @@ impl Watch {
             place,
             moment,
             verdict,
-            told: self.told.map(|(what, _)| what),
-            detection_ms: told_at.map(since_ms),
+            report: self.report.map(|(what, _)| what),
+            detection_ms: reported_at.map(since_ms),
             zero_ms: self.zero.map(since_ms),
             peak_error_n: self.peak_error_n,
             error_n: self.error_n,
-            most_n: self.most_n,
+            max_n: self.max_n,
             step_n: self.step_n,
         }
     }
 }
 
 /// Returns what the machine reports in this tick and its twin does not.
-fn told(step: &Step) -> Option<String> {
+fn report(step: &BenchStep) -> Option<String> {
     let machine = &step.machine;
     let twin = &step.twin;
     if let Some(fault) = step.raised {

@@ -5,7 +5,7 @@ use serde::Serialize;
 /// Location of a fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Part {
+pub enum FaultPart {
     Force,
     /// Orientation of the wrist, from accelerometer or arm.
     Orientation,
@@ -21,7 +21,7 @@ pub enum Part {
     Commands,
 }
 
-impl Part {
+impl FaultPart {
     /// Whether the force to the hand is computed from data of this part.
     pub const fn is_on_force_path(self) -> bool {
         matches!(self, Self::Force | Self::Orientation | Self::Clock | Self::Link)
@@ -30,7 +30,7 @@ impl Part {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Kind {
+pub enum FaultKind {
     ForceSilent,
     ForceGaps,
     ForceFrozen,
@@ -110,9 +110,9 @@ pub enum Kind {
     SliderShakes,
 }
 
-use Kind as K;
+use FaultKind as K;
 
-impl Kind {
+impl FaultKind {
     /// All of them, part by part.
     #[rustfmt::skip]
     pub const ALL: [Self; 77] = [
@@ -131,7 +131,7 @@ impl Kind {
         K::CommandsPoisoned, K::CommandsDoubled, K::SliderShakes,
     ];
 
-    pub const fn part(self) -> Part {
+    pub const fn part(self) -> FaultPart {
         match self {
             K::ImuStops
             | K::ImuFrozen
@@ -139,7 +139,7 @@ impl Kind {
             | K::ImuNan
             | K::ImuDead
             | K::OrientationMissing
-            | K::OrientationJump => Part::Orientation,
+            | K::OrientationJump => FaultPart::Orientation,
             K::HandFrozen
             | K::HandBlock
             | K::HandJump
@@ -152,7 +152,7 @@ impl Kind {
             | K::HandDrift
             | K::HandleWithoutForce
             | K::HandleInverted
-            | K::HandleKeepsForce => Part::Handle,
+            | K::HandleKeepsForce => FaultPart::Handle,
             K::TipFrozen
             | K::TipBlock
             | K::TipJump
@@ -161,15 +161,15 @@ impl Kind {
             | K::TipNan
             | K::ArmIgnores
             | K::ArmAxes
-            | K::DrivesOff => Part::Arm,
-            K::PedalDown | K::PedalUp | K::PedalBounces | K::HandAbsent => Part::Switches,
+            | K::DrivesOff => FaultPart::Arm,
+            K::PedalDown | K::PedalUp | K::PedalBounces | K::HandAbsent => FaultPart::Switches,
             K::ClockForward
             | K::ClockBackward
             | K::ClockStops
             | K::ClockSlow
             | K::ClockNan
             | K::PeriodsMissed
-            | K::FewPeriodsMissed => Part::Clock,
+            | K::FewPeriodsMissed => FaultPart::Clock,
             K::LinkSilent
             | K::LinkHalf
             | K::LinkLate
@@ -177,9 +177,9 @@ impl Kind {
             | K::LinkSwaps
             | K::LinkDoubles
             | K::LinkPoisoned
-            | K::LinkRepeats => Part::Link,
-            K::CommandsPoisoned | K::CommandsDoubled | K::SliderShakes => Part::Commands,
-            _ => Part::Force,
+            | K::LinkRepeats => FaultPart::Link,
+            K::CommandsPoisoned | K::CommandsDoubled | K::SliderShakes => FaultPart::Commands,
+            _ => FaultPart::Force,
         }
     }
 
@@ -190,17 +190,17 @@ impl Kind {
     /// do not depend on the rig.
     pub const fn is_of_devices(self) -> bool {
         match self.part() {
-            Part::Force => !matches!(self, K::ForceLateTold | K::ForceLost),
-            Part::Orientation => !matches!(self, K::OrientationMissing | K::OrientationJump),
-            Part::Handle => true,
-            Part::Arm => !matches!(self, K::TipSign | K::DrivesOff),
-            Part::Switches | Part::Clock | Part::Link | Part::Commands => false,
+            FaultPart::Force => !matches!(self, K::ForceLateTold | K::ForceLost),
+            FaultPart::Orientation => !matches!(self, K::OrientationMissing | K::OrientationJump),
+            FaultPart::Handle => true,
+            FaultPart::Arm => !matches!(self, K::TipSign | K::DrivesOff),
+            FaultPart::Switches | FaultPart::Clock | FaultPart::Link | FaultPart::Commands => false,
         }
     }
 
     /// Whether it needs a sensor at the wrist.
     pub const fn needs_wrist(self) -> bool {
-        matches!(self.part(), Part::Orientation)
+        matches!(self.part(), FaultPart::Orientation)
     }
 
     #[rustfmt::skip]

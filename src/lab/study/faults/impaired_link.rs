@@ -1,11 +1,11 @@
 //! A link that loses, delays, reorders, duplicates, corrupts or repeats packets; it wraps the loop's own link.
 
-use nima_core::impedance::Parcel;
+use nima_core::impedance::LinkPacket;
 use nima_machine::teleop::{Link, ProgrammedLink};
 
 /// An impairment of the packets.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) enum Impairment {
+pub(super) enum PacketImpairment {
     #[default]
     None,
     /// Loses every packet.
@@ -27,20 +27,20 @@ pub(super) enum Impairment {
 #[derive(Clone, Debug)]
 pub(super) struct ImpairedLink {
     line: ProgrammedLink,
-    impairment: Impairment,
+    impairment: PacketImpairment,
     /// Packets offered since the impairment changed, and one that is held back.
     offered: usize,
-    kept: Parcel,
+    kept: LinkPacket,
 }
 
 impl ImpairedLink {
     pub(super) fn new(rate_hz: f64, delay_s: f64) -> Self {
         let line = ProgrammedLink::new(rate_hz, delay_s);
-        Self { line, impairment: Impairment::None, offered: 0, kept: Parcel::BLANK }
+        Self { line, impairment: PacketImpairment::None, offered: 0, kept: LinkPacket::BLANK }
     }
 
     /// Impairs the link from now on.
-    pub(super) const fn impair(&mut self, impairment: Impairment) {
+    pub(super) const fn impair(&mut self, impairment: PacketImpairment) {
         self.impairment = impairment;
         self.offered = 0;
     }
@@ -55,43 +55,43 @@ impl Link for ImpairedLink {
         self.line.clear();
     }
 
-    fn send(&mut self, parcel: &Parcel) {
+    fn send(&mut self, parcel: &LinkPacket) {
         let first_of_two = self.offered.is_multiple_of(2);
         let first = self.offered == 0;
         self.offered += 1;
         match self.impairment {
-            Impairment::None | Impairment::Late(_) => self.line.send(parcel),
-            Impairment::LosesAll => {}
-            Impairment::LosesHalf => {
+            PacketImpairment::None | PacketImpairment::Late(_) => self.line.send(parcel),
+            PacketImpairment::LosesAll => {}
+            PacketImpairment::LosesHalf => {
                 if first_of_two {
                     self.line.send(parcel);
                 }
             }
-            Impairment::Swaps if first_of_two => self.kept = *parcel,
-            Impairment::Swaps => {
+            PacketImpairment::Swaps if first_of_two => self.kept = *parcel,
+            PacketImpairment::Swaps => {
                 self.line.send(parcel);
                 self.line.send(&self.kept);
             }
-            Impairment::Doubles => {
+            PacketImpairment::Doubles => {
                 self.line.send(parcel);
                 self.line.send(parcel);
             }
-            Impairment::Poisons => {
+            PacketImpairment::Poisons => {
                 let mut poisoned = *parcel;
                 poisoned.force_n.fill(f64::NAN);
                 self.line.send(&poisoned);
             }
-            Impairment::Repeats => {
+            PacketImpairment::Repeats => {
                 if first {
                     self.kept = *parcel;
                 }
-                self.line.send(&Parcel { t_s: parcel.t_s, ..self.kept });
+                self.line.send(&LinkPacket { t_s: parcel.t_s, ..self.kept });
             }
         }
     }
 
-    fn receive(&mut self, now_s: f64) -> Option<&Parcel> {
-        let late_s = if let Impairment::Late(by_s) = self.impairment { by_s } else { 0.0 };
+    fn receive(&mut self, now_s: f64) -> Option<&LinkPacket> {
+        let late_s = if let PacketImpairment::Late(by_s) = self.impairment { by_s } else { 0.0 };
         self.line.receive(now_s - late_s)
     }
 }

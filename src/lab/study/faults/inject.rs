@@ -5,10 +5,10 @@ use std::collections::VecDeque;
 
 use nalgebra::{UnitQuaternion, Vector3};
 use nima_core::noise::Noise;
-use nima_devices::{Loss, Standing};
-use nima_machine::rig::{DeviceEvent, Identified, Inputs, Outputs, SIDES, Sensed};
+use nima_devices::{ConnectionState, Loss};
+use nima_machine::rig::{DeviceEvent, Inputs, Outputs, RemoteIdentification, SIDES, SensedForce};
 
-use super::{Kind, subject::Subject};
+use super::{FaultKind, subject::FaultSubject};
 
 /// Side whose devices fail.
 pub(super) const FAULTY: usize = 0;
@@ -17,13 +17,13 @@ const LATE: usize = 50;
 
 /// State of the devices that belongs to the situation and is not a fault.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Situation {
+pub(super) struct InjectSituation {
     pub(super) connected: bool,
     pub(super) powered: bool,
     pub(super) clutch: bool,
 }
 
-impl Situation {
+impl InjectSituation {
     /// Returns these inputs in the situation; `None` if nothing is connected.
     fn of(self, inputs: &Inputs) -> Option<Inputs> {
         let mut inputs = *inputs;
@@ -39,9 +39,9 @@ const FALLS_IN: f64 = 3.0;
 /// A rig with a fault between it and the loop.
 #[derive(Clone, Debug)]
 pub(super) struct Faulty {
-    rig: Subject,
-    pub(super) situation: Situation,
-    fault: Option<Kind>,
+    rig: FaultSubject,
+    pub(super) situation: InjectSituation,
+    fault: Option<FaultKind>,
     /// Ticks since the fault began.
     age: u32,
     noise: Noise,
@@ -59,10 +59,10 @@ pub(super) struct Faulty {
 }
 
 impl Faulty {
-    pub(super) fn new(rig: Subject) -> Self {
+    pub(super) fn new(rig: FaultSubject) -> Self {
         Self {
             rig,
-            situation: Situation { connected: true, powered: true, clutch: false },
+            situation: InjectSituation { connected: true, powered: true, clutch: false },
             fault: None,
             age: 0,
             noise: Noise::new(99),
@@ -78,7 +78,7 @@ impl Faulty {
     }
 
     /// Applies this fault from the next tick on, also to the outputs already written.
-    pub(super) fn begin(&mut self, fault: Kind) {
+    pub(super) fn begin(&mut self, fault: FaultKind) {
         self.fault = Some(fault);
         self.age = 0;
         self.first = None;
@@ -90,17 +90,17 @@ impl Faulty {
 
     fn for_rig(&self, mut outputs: Outputs) -> Outputs {
         match self.fault {
-            Some(Kind::HandleWithoutForce) => outputs.hand_force_n = Vector3::zeros(),
-            Some(Kind::HandleInverted) => outputs.hand_force_n = -outputs.hand_force_n,
+            Some(FaultKind::HandleWithoutForce) => outputs.hand_force_n = Vector3::zeros(),
+            Some(FaultKind::HandleInverted) => outputs.hand_force_n = -outputs.hand_force_n,
             // Even then the motors follow the switch.
-            Some(Kind::HandleKeepsForce) if outputs.drives => {
+            Some(FaultKind::HandleKeepsForce) if outputs.drives => {
                 outputs.hand_force_n = self.first.map_or(outputs, |(_, first)| first).hand_force_n;
             }
-            Some(Kind::ArmIgnores) => {
+            Some(FaultKind::ArmIgnores) => {
                 let stays_m = self.first.map(|(first, _)| first.tip_m);
                 outputs.tip_command_m = outputs.tip_command_m.map(|command_m| stays_m.unwrap_or(command_m));
             }
-            Some(Kind::ArmAxes) => outputs.tip_command_m = outputs.tip_command_m.map(exchanged),
+            Some(FaultKind::ArmAxes) => outputs.tip_command_m = outputs.tip_command_m.map(exchanged),
             _ => {}
         }
         outputs
@@ -115,23 +115,23 @@ impl Faulty {
         let late = if self.late.len() > LATE { self.late.pop_front() } else { self.late.front().copied() };
         let before = self.before.replace(inputs).unwrap_or(inputs);
         match fault {
-            Kind::ForceSilent => None,
-            Kind::ForceGaps => (self.age.is_multiple_of(2)).then_some(inputs),
-            Kind::ForceFrozen => Some(Inputs { sensed: first.sensed, ..inputs }),
-            Kind::ForceLate => Some(Inputs { sensed: late.unwrap_or(inputs).sensed, ..inputs }),
-            Kind::ForceLateTold => Some(Inputs { age_s: 0.015, ..inputs }),
-            Kind::ForceDoubled => {
+            FaultKind::ForceSilent => None,
+            FaultKind::ForceGaps => (self.age.is_multiple_of(2)).then_some(inputs),
+            FaultKind::ForceFrozen => Some(Inputs { sensed: first.sensed, ..inputs }),
+            FaultKind::ForceLate => Some(Inputs { sensed: late.unwrap_or(inputs).sensed, ..inputs }),
+            FaultKind::ForceLateTold => Some(Inputs { age_s: 0.015, ..inputs }),
+            FaultKind::ForceDoubled => {
                 let sensed = if self.age.is_multiple_of(2) { before.sensed } else { inputs.sensed };
                 Some(Inputs { sensed, ..inputs })
             }
-            Kind::ForceReordered => Some(Inputs { sensed: self.reordered(&inputs, &before), ..inputs }),
-            Kind::HandLate => Some(Inputs { hand: late.unwrap_or(inputs).hand, ..inputs }),
-            Kind::HandFrozen => Some(Inputs { hand: first.hand, ..inputs }),
-            Kind::TipFrozen => Some(Inputs { tip_m: first.tip_m, ..inputs }),
-            Kind::ForceBlock => Some(Inputs { sensed: self.again(&inputs).sensed, ..inputs }),
-            Kind::HandBlock => Some(Inputs { hand: self.again(&inputs).hand, ..inputs }),
-            Kind::TipBlock => Some(Inputs { tip_m: self.again(&inputs).tip_m, ..inputs }),
-            Kind::DrivesOff => Some(Inputs { powered: false, ..inputs }),
+            FaultKind::ForceReordered => Some(Inputs { sensed: self.reordered(&inputs, &before), ..inputs }),
+            FaultKind::HandLate => Some(Inputs { hand: late.unwrap_or(inputs).hand, ..inputs }),
+            FaultKind::HandFrozen => Some(Inputs { hand: first.hand, ..inputs }),
+            FaultKind::TipFrozen => Some(Inputs { tip_m: first.tip_m, ..inputs }),
+            FaultKind::ForceBlock => Some(Inputs { sensed: self.again(&inputs).sensed, ..inputs }),
+            FaultKind::HandBlock => Some(Inputs { hand: self.again(&inputs).hand, ..inputs }),
+            FaultKind::TipBlock => Some(Inputs { tip_m: self.again(&inputs).tip_m, ..inputs }),
+            FaultKind::DrivesOff => Some(Inputs { powered: false, ..inputs }),
             _ => Some(self.edited(fault, inputs, &first)),
         }
     }
@@ -139,14 +139,14 @@ impl Faulty {
     /// Repeats the block that was recorded first.
     fn again(&mut self, inputs: &Inputs) -> Inputs {
         let place = self.age as usize - 1;
-        if place < Kind::BLOCK {
+        if place < FaultKind::BLOCK {
             self.block.push(*inputs);
         }
-        self.block.get(place % Kind::BLOCK).copied().unwrap_or(*inputs)
+        self.block.get(place % FaultKind::BLOCK).copied().unwrap_or(*inputs)
     }
 
     /// Neighbouring samples swapped: alternately the current sample and the one before the previous.
-    fn reordered(&self, inputs: &Inputs, before: &Inputs) -> Sensed {
+    fn reordered(&self, inputs: &Inputs, before: &Inputs) -> SensedForce {
         let two_ago = self.late.iter().rev().nth(2).unwrap_or(before);
         match self.age % 2 {
             0 => inputs.sensed,
@@ -154,29 +154,33 @@ impl Faulty {
         }
     }
 
-    fn edited(&mut self, fault: Kind, mut inputs: Inputs, first: &Inputs) -> Inputs {
+    fn edited(&mut self, fault: FaultKind, mut inputs: Inputs, first: &Inputs) -> Inputs {
         let since_s = f64::from(self.age) * 1e-3;
         let white = |noise: &mut Noise, sigma: f64| Vector3::from_fn(|_, _| sigma * noise.gaussian());
         match fault {
-            Kind::HandJump => inputs.hand.position_m.x += 0.02,
-            Kind::HandSpike if self.age == 1 => inputs.hand.position_m.x += 0.02,
-            Kind::HandSign => inputs.hand.position_m = -inputs.hand.position_m,
-            Kind::HandAxes => inputs.hand.position_m = exchanged(inputs.hand.position_m),
-            Kind::HandNan => inputs.hand.position_m.y = f64::NAN,
-            Kind::HandNoise => inputs.hand.position_m += white(&mut self.noise, 3e-4),
-            Kind::HandDrift => inputs.hand.position_m.x += 0.005 * since_s,
-            Kind::TipJump => inputs.tip_m.z += 0.01,
-            Kind::TipDrift => inputs.tip_m.x += 0.005 * since_s,
-            Kind::TipSign => inputs.tip_m = -inputs.tip_m,
-            Kind::TipNan => inputs.tip_m.z = f64::NAN,
-            Kind::PedalDown => inputs.switches.clutch = true,
-            Kind::PedalUp => inputs.switches.clutch = false,
-            Kind::PedalBounces => inputs.switches.clutch = (self.age / 20).is_multiple_of(2),
-            Kind::HandAbsent => inputs.switches.presence = Some(false),
-            Kind::ImuStops | Kind::ImuFrozen | Kind::ImuSign | Kind::ImuNan | Kind::ImuDead => {
+            FaultKind::HandJump => inputs.hand.position_m.x += 0.02,
+            FaultKind::HandSpike if self.age == 1 => inputs.hand.position_m.x += 0.02,
+            FaultKind::HandSign => inputs.hand.position_m = -inputs.hand.position_m,
+            FaultKind::HandAxes => inputs.hand.position_m = exchanged(inputs.hand.position_m),
+            FaultKind::HandNan => inputs.hand.position_m.y = f64::NAN,
+            FaultKind::HandNoise => inputs.hand.position_m += white(&mut self.noise, 3e-4),
+            FaultKind::HandDrift => inputs.hand.position_m.x += 0.005 * since_s,
+            FaultKind::TipJump => inputs.tip_m.z += 0.01,
+            FaultKind::TipDrift => inputs.tip_m.x += 0.005 * since_s,
+            FaultKind::TipSign => inputs.tip_m = -inputs.tip_m,
+            FaultKind::TipNan => inputs.tip_m.z = f64::NAN,
+            FaultKind::PedalDown => inputs.switches.clutch = true,
+            FaultKind::PedalUp => inputs.switches.clutch = false,
+            FaultKind::PedalBounces => inputs.switches.clutch = (self.age / 20).is_multiple_of(2),
+            FaultKind::HandAbsent => inputs.switches.presence = Some(false),
+            FaultKind::ImuStops
+            | FaultKind::ImuFrozen
+            | FaultKind::ImuSign
+            | FaultKind::ImuNan
+            | FaultKind::ImuDead => {
                 turn_imu(fault, &mut inputs.sensed, first);
             }
-            Kind::OrientationMissing | Kind::OrientationJump => turn_arm(fault, &mut inputs.sensed),
+            FaultKind::OrientationMissing | FaultKind::OrientationJump => turn_arm(fault, &mut inputs.sensed),
             _ => {
                 let now = force_of(&inputs.sensed);
                 let then = force_of(&first.sensed);
@@ -187,29 +191,29 @@ impl Faulty {
         inputs
     }
 
-    fn bad_force(&mut self, fault: Kind, now: Vector3<f64>, then: &Vector3<f64>, since_s: f64) -> Vector3<f64> {
+    fn bad_force(&mut self, fault: FaultKind, now: Vector3<f64>, then: &Vector3<f64>, since_s: f64) -> Vector3<f64> {
         let down = -Vector3::z();
         match fault {
-            Kind::ForceAxisFrozen => Vector3::new(now.x, now.y, then.z),
-            Kind::ForceDead => Vector3::zeros(),
-            Kind::ForceFalls => {
+            FaultKind::ForceAxisFrozen => Vector3::new(now.x, now.y, then.z),
+            FaultKind::ForceDead => Vector3::zeros(),
+            FaultKind::ForceFalls => {
                 let left = (1.0 - f64::from(self.age) / FALLS_IN).max(0.0);
                 then * left + Vector3::from_fn(|_, _| 0.02 * self.noise.gaussian())
             }
-            Kind::ForceStep => now + down * 1.5,
-            Kind::ForceSmallStep => now + down * 0.3,
-            Kind::ForceDrift => now + down * (0.5 * since_s),
-            Kind::ForceSlowDrift => now + down * (0.05 * since_s),
-            Kind::ForceSign => -now,
-            Kind::ForceAxes => exchanged(now),
-            Kind::ForceSpike if self.age == 1 => now + down * 10.0,
-            Kind::ForceSpikes if self.age % 50 == 1 => now + down * 10.0,
-            Kind::ForceSaturated => now.zip_map(then, |now, then| now.clamp(then - 1.0, then + 1.0)),
-            Kind::ForceNoise => now + Vector3::from_fn(|_, _| 0.4 * self.noise.gaussian()),
-            Kind::ForceNan => Vector3::new(now.x, f64::NAN, now.z),
-            Kind::ForceInfinite => Vector3::new(now.x, now.y, f64::INFINITY),
-            Kind::ForceAbsurd => now + down * 1e18,
-            Kind::ForceGain => now * 2.0,
+            FaultKind::ForceStep => now + down * 1.5,
+            FaultKind::ForceSmallStep => now + down * 0.3,
+            FaultKind::ForceDrift => now + down * (0.5 * since_s),
+            FaultKind::ForceSlowDrift => now + down * (0.05 * since_s),
+            FaultKind::ForceSign => -now,
+            FaultKind::ForceAxes => exchanged(now),
+            FaultKind::ForceSpike if self.age == 1 => now + down * 10.0,
+            FaultKind::ForceSpikes if self.age % 50 == 1 => now + down * 10.0,
+            FaultKind::ForceSaturated => now.zip_map(then, |now, then| now.clamp(then - 1.0, then + 1.0)),
+            FaultKind::ForceNoise => now + Vector3::from_fn(|_, _| 0.4 * self.noise.gaussian()),
+            FaultKind::ForceNan => Vector3::new(now.x, f64::NAN, now.z),
+            FaultKind::ForceInfinite => Vector3::new(now.x, now.y, f64::INFINITY),
+            FaultKind::ForceAbsurd => now + down * 1e18,
+            FaultKind::ForceGain => now * 2.0,
             _ => now,
         }
     }
@@ -232,9 +236,9 @@ impl Faulty {
             given.powered &= situation.powered;
             given.switches.clutch |= situation.clutch;
         }
-        if self.fault == Some(Kind::ForceLost) {
+        if self.fault == Some(FaultKind::ForceLost) {
             if self.age == 1 {
-                let standing = Standing::Lost(Loss::Disconnected);
+                let standing = ConnectionState::Lost(Loss::Disconnected);
                 self.event = Some(DeviceEvent { t_s: now_s, device: 2, standing, of_side: [true, false] });
             }
             inputs[FAULTY] = None;
@@ -257,33 +261,34 @@ fn exchanged(v: Vector3<f64>) -> Vector3<f64> {
 }
 
 /// Force read by the force sensor, N.
-pub(super) fn force_of(sensed: &Sensed) -> Vector3<f64> {
+pub(super) fn force_of(sensed: &SensedForce) -> Vector3<f64> {
     match sensed {
-        Sensed::AtTip(force_n) | Sensed::FarEnd(Identified { force_n, .. }) => *force_n,
-        Sensed::AtWrist(sample) => sample.raw.force_n,
+        SensedForce::AtTip(force_n) | SensedForce::FarEnd(RemoteIdentification { force_n, .. }) => *force_n,
+        SensedForce::AtWrist(sample) => sample.raw.force_n,
     }
 }
 
-fn set_force(sensed: &mut Sensed, force_n: Vector3<f64>) {
+fn set_force(sensed: &mut SensedForce, force_n: Vector3<f64>) {
     match sensed {
-        Sensed::AtTip(at) | Sensed::FarEnd(Identified { force_n: at, .. }) => *at = force_n,
-        Sensed::AtWrist(sample) => sample.raw.force_n = force_n,
+        SensedForce::AtTip(at) | SensedForce::FarEnd(RemoteIdentification { force_n: at, .. }) => *at = force_n,
+        SensedForce::AtWrist(sample) => sample.raw.force_n = force_n,
     }
 }
 
-fn turn_imu(fault: Kind, sensed: &mut Sensed, first: &Inputs) {
-    let (Sensed::AtWrist(sample), Sensed::AtWrist(then)) = (sensed, &first.sensed) else { return };
+fn turn_imu(fault: FaultKind, sensed: &mut SensedForce, first: &Inputs) {
+    let (SensedForce::AtWrist(sample), SensedForce::AtWrist(then)) = (sensed, &first.sensed) else { return };
     sample.acceleration_m_s2 = match fault {
-        Kind::ImuStops => None,
-        Kind::ImuFrozen => then.acceleration_m_s2,
-        Kind::ImuSign => sample.acceleration_m_s2.map(|a| -a),
-        Kind::ImuNan => Some(Vector3::repeat(f64::NAN)),
+        FaultKind::ImuStops => None,
+        FaultKind::ImuFrozen => then.acceleration_m_s2,
+        FaultKind::ImuSign => sample.acceleration_m_s2.map(|a| -a),
+        FaultKind::ImuNan => Some(Vector3::repeat(f64::NAN)),
         _ => Some(Vector3::zeros()),
     };
 }
 
-fn turn_arm(fault: Kind, sensed: &mut Sensed) {
-    let Sensed::AtWrist(sample) = sensed else { return };
+fn turn_arm(fault: FaultKind, sensed: &mut SensedForce) {
+    let SensedForce::AtWrist(sample) = sensed else { return };
     let quarter = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), std::f64::consts::FRAC_PI_2);
-    sample.world_from_s1 = sample.world_from_s1.filter(|_| fault == Kind::OrientationJump).map(|turn| turn * quarter);
+    sample.world_from_s1 =
+        sample.world_from_s1.filter(|_| fault == FaultKind::OrientationJump).map(|turn| turn * quarter);
 }

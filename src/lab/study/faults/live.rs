@@ -19,21 +19,22 @@ use nima_machine::{
     config::{ConfigError, RigConfig},
     messages::{Event, Fault, LoopState, Tick},
     rig::{Inputs, Outputs, Rig, Roster, SIDES},
-    runtime::{Handle, StartError, Summary},
+    runtime::{LoopHandle, LoopStartError, RuntimeSummary},
 };
-use nima_simulation::{Plan, Worlds, scene::Scene, start, start_on};
+use nima_simulation::{SimulationPlan, Worlds, scene::Scene, start, start_on};
 use serde::Serialize;
 
-use super::Verdict;
+use super::FaultVerdict;
 
 /// A fault that is not tested on the virtual clock.
 #[derive(Clone, Debug, Serialize)]
 pub struct Special {
     /// Description of the fault.
     pub what: String,
-    pub verdict: Verdict,
+    pub verdict: FaultVerdict,
     /// The report, or why the fault is harmless.
-    pub told: String,
+    #[serde(rename = "told")]
+    pub report: String,
     /// Time to detection, ms, if it was measured.
     pub detection_ms: Option<f64>,
     /// Time until the force was removed, ms, if there was one.
@@ -42,11 +43,11 @@ pub struct Special {
 
 /// Why a fault could not be tested on the real clock.
 #[derive(Debug, thiserror::Error)]
-pub enum LiveError {
+pub enum LiveFaultError {
     #[error(transparent)]
     Config(#[from] ConfigError),
     #[error(transparent)]
-    Start(#[from] StartError),
+    Start(#[from] LoopStartError),
     /// The loop was not engaged within 5 s.
     #[error(
         "the loop on the real clock did not engage within 5 s: other programs use too much processor time; close them"
@@ -60,7 +61,7 @@ pub enum LiveError {
 }
 
 /// A rig that hangs once and records when its emergency release was called.
-struct Hanging {
+struct HangingRig {
     rig: Worlds,
     /// Loop time at which it hangs, s, and duration.
     at_s: f64,
@@ -70,7 +71,7 @@ struct Hanging {
     clock: Instant,
 }
 
-impl Rig for Hanging {
+impl Rig for HangingRig {
     fn read(&mut self, now_s: f64) -> [Option<Inputs>; SIDES] {
         if now_s >= self.at_s && self.began.load(Ordering::Relaxed) == 0 {
             self.began.store(nanoseconds(self.clock), Ordering::Relaxed);
@@ -97,15 +98,15 @@ fn nanoseconds(clock: Instant) -> u64 {
     clock.elapsed().as_nanos() as u64 + 1
 }
 
-fn plan(rate_hz: f64) -> Result<Plan, LiveError> {
+fn plan(rate_hz: f64) -> Result<SimulationPlan, LiveFaultError> {
     let mut rig = RigConfig::load("simulated")?;
     rig.mode = Mode::Dfr;
     rig.rate_hz = rate_hz;
     rig.gates.static_hold = true;
-    Ok(Plan { rig, scene: Scene::load("peg_transfer")?, calibrations: Default::default(), engage: true })
+    Ok(SimulationPlan { rig, scene: Scene::load("peg_transfer")?, calibrations: Default::default(), engage: true })
 }
 
-fn until(handle: &Handle, good: impl Fn(&Tick) -> bool) -> Result<(), LiveError> {
+fn until(handle: &LoopHandle, good: impl Fn(&Tick) -> bool) -> Result<(), LiveFaultError> {
     let begin = Instant::now();
     while begin.elapsed() < Duration::from_secs(5) {
         let mut found = false;
@@ -115,11 +116,11 @@ fn until(handle: &Handle, good: impl Fn(&Tick) -> bool) -> Result<(), LiveError>
         }
         thread::sleep(Duration::from_millis(2));
     }
-    Err(LiveError::NotEngaged)
+    Err(LiveFaultError::NotEngaged)
 }
 
-pub(super) fn all() -> Result<Vec<Special>, LiveError> {
-    let folder = tempfile::tempdir().map_err(LiveError::Scratch)?;
+pub(super) fn all() -> Result<Vec<Special>, LiveFaultError> {
+    let folder = tempfile::tempdir().map_err(LiveFaultError::Scratch)?;
     Ok(vec![
         hang("an exchange with the devices takes 60 ms", Duration::from_millis(60))?,
         hang("an exchange with the devices takes 500 ms", Duration::from_millis(500))?,
@@ -143,11 +144,11 @@ pub(super) fn all() -> Result<Vec<Special>, LiveError> {
     ])
 }
 
-fn hang(what: &str, length: Duration) -> Result<Special, LiveError> {
+fn hang(what: &str, length: Duration) -> Result<Special, LiveFaultError> {
     let plan = plan(1000.0)?;
     let began = Arc::new(AtomicU64::new(0));
     let pulled = Arc::new(AtomicU64::new(0));
-    let rig = Hanging {
+    let rig = HangingRig {
         rig: Worlds::new(&plan.scene, plan.rig.rate_hz),
         at_s: 1.3,
         length,
@@ -161,36 +162,37 @@ fn hang(what: &str, length: Duration) -> Result<Special, LiveError> {
     handle.drain_events(|event| {
         stalled |= matches!(event, Event::FaultRaised { fault: Fault::LoopStalled { .. }, .. });
     });
-    handle.stop_and_join().ok_or(LiveError::Died)?;
+    handle.stop_and_join().ok_or(LiveFaultError::Died)?;
     let [began, pulled] = [began, pulled].map(|at| at.load(Ordering::Relaxed));
     let after_ms = (pulled > began).then(|| (pulled - began) as f64 * 1e-6);
-    let verdict = if faulted.is_ok() && stalled && after_ms.is_some() { Verdict::Detected } else { Verdict::Silent };
-    let told = "supervisor pulls the levers; then LoopStalled".to_owned();
-    Ok(Special { what: what.to_owned(), verdict, told, detection_ms: after_ms, zero_ms: after_ms })
+    let verdict =
+        if faulted.is_ok() && stalled && after_ms.is_some() { FaultVerdict::Detected } else { FaultVerdict::Silent };
+    let report = "supervisor pulls the levers; then LoopStalled".to_owned();
+    Ok(Special { what: what.to_owned(), verdict, report, detection_ms: after_ms, zero_ms: after_ms })
 }
 
 /// No screen reads the ticks: at 4 kHz the queue of 8192 is full after two seconds.
-fn screen_hangs() -> Result<Special, LiveError> {
+fn screen_hangs() -> Result<Special, LiveFaultError> {
     let handle = start(&plan(4000.0)?)?;
     thread::sleep(Duration::from_millis(2500));
     let running = handle.is_running();
-    let summary = handle.stop_and_join().ok_or(LiveError::Died)?;
+    let summary = handle.stop_and_join().ok_or(LiveFaultError::Died)?;
     let counted = summary.dropped > 0 && running;
     Ok(Special {
         what: "the screen hangs and reads no ticks".to_owned(),
-        verdict: if counted { Verdict::Detected } else { Verdict::Silent },
-        told: format!("{} ticks counted as dropped; the loop continued, {}", summary.dropped, timing(&summary)),
+        verdict: if counted { FaultVerdict::Detected } else { FaultVerdict::Silent },
+        report: format!("{} ticks counted as dropped; the loop continued, {}", summary.dropped, timing(&summary)),
         detection_ms: None,
         zero_ms: None,
     })
 }
 
-fn timing(summary: &Summary) -> String {
+fn timing(summary: &RuntimeSummary) -> String {
     format!("{} of {} periods missed, all counted", summary.missed, summary.missed + summary.ticks)
 }
 
 /// Runs the loop for one second under this load.
-fn beside(what: &str, load: impl Fn(&AtomicBool) + Send + Sync) -> Result<Special, LiveError> {
+fn beside(what: &str, load: impl Fn(&AtomicBool) + Send + Sync) -> Result<Special, LiveFaultError> {
     let handle = start(&plan(1000.0)?)?;
     until(&handle, |tick| tick.state == LoopState::Engaged)?;
     let stop = AtomicBool::new(false);
@@ -201,19 +203,19 @@ fn beside(what: &str, load: impl Fn(&AtomicBool) + Send + Sync) -> Result<Specia
     });
     let mut stalled = false;
     handle.drain_events(|event| stalled |= matches!(event, Event::FaultRaised { .. }));
-    let summary = handle.stop_and_join().ok_or(LiveError::Died)?;
+    let summary = handle.stop_and_join().ok_or(LiveFaultError::Died)?;
     let periods = summary.seconds * 1000.0;
     let all_counted = (periods - (summary.ticks + summary.missed) as f64).abs() < 2.0;
     let verdict = match (stalled || summary.missed > 0, all_counted) {
-        (_, false) => Verdict::Silent,
-        (true, true) => Verdict::Detected,
-        (false, true) => Verdict::Harmless,
+        (_, false) => FaultVerdict::Silent,
+        (true, true) => FaultVerdict::Detected,
+        (false, true) => FaultVerdict::Harmless,
     };
     let fault = if stalled { "; LoopStalled" } else { "" };
     Ok(Special {
         what: what.to_owned(),
         verdict,
-        told: format!("{}{fault}", timing(&summary)),
+        report: format!("{}{fault}", timing(&summary)),
         detection_ms: None,
         zero_ms: None,
     })
@@ -235,16 +237,16 @@ fn slow_disk(stop: &AtomicBool, folder: &Path) {
 }
 
 /// Writes a result to a full disk: the write fails half-way with the error of `/dev/full`.
-fn full_disk(folder: &Path) -> Result<Special, LiveError> {
+fn full_disk(folder: &Path) -> Result<Special, LiveFaultError> {
     let path = folder.join("kept.json");
-    write_atomically(&path, |file| file.write_all(b"the result before")).map_err(LiveError::Scratch)?;
-    let told = write_atomically(&path, |file| {
+    write_atomically(&path, |file| file.write_all(b"the result before")).map_err(LiveFaultError::Scratch)?;
+    let report = write_atomically(&path, |file| {
         file.write_all(b"half of a")?;
         let mut full = fs::OpenOptions::new().write(true).open("/dev/full")?;
         io::Write::write_all(&mut full, b"result")
     });
     let kept = fs::read(&path).is_ok_and(|bytes| bytes == b"the result before");
-    let verdict = if told.is_err() && kept { Verdict::Detected } else { Verdict::Silent };
-    let told = told.err().map_or_else(String::new, |error| format!("{error}; the previous file is kept"));
-    Ok(Special { what: "the disk is full".to_owned(), verdict, told, detection_ms: None, zero_ms: None })
+    let verdict = if report.is_err() && kept { FaultVerdict::Detected } else { FaultVerdict::Silent };
+    let report = report.err().map_or_else(String::new, |error| format!("{error}; the previous file is kept"));
+    Ok(Special { what: "the disk is full".to_owned(), verdict, report, detection_ms: None, zero_ms: None })
 }

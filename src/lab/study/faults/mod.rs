@@ -2,7 +2,7 @@
 //! force is removed, and the maximum error until then.
 //!
 //! Each case compares a machine whose rig, clock, link or screen fails with a fault-free twin in the same world. Takes
-//! [`Options`]; returns a [`Report`] (ms, N). A case is *detected* (the machine reports a fault, a change of state, a
+//! [`FaultOptions`]; returns a [`FaultReport`] (ms, N). A case is *detected* (the machine reports a fault, a change of state, a
 //! refusal, a closed gate or an unusable force), *harmless* (there is no force and no motion; or the force in the hand
 //! differs from the twin's within 5 ms by at most [`HARMLESS_N`], or is at most as far from the force at the tip as the
 //! twin's), *bounded* (it cannot be detected in principle; its maximum error is given), or *silent*. Faults of threads
@@ -25,12 +25,12 @@ use nima_machine::{config::ConfigError, messages::LoopState};
 use nima_recording::tip_force::TipForceError;
 use serde::Serialize;
 
-pub use calm::Calm;
-pub use catalogue::{Kind, Part};
-pub use live::{LiveError, Special};
+pub use calm::FaultFreeRuns;
+pub use catalogue::{FaultKind, FaultPart};
+pub use live::{LiveFaultError, Special};
 pub use sensor_at::SensorAt;
 
-use self::bench::Bench;
+use self::bench::FaultBench;
 use crate::validation::ValidationError;
 
 /// A force in the hand that differs from the twin's by no more than this is harmless, N: the standard deviation of the
@@ -57,13 +57,13 @@ pub enum FaultsError {
     NotReached { place: &'static str, state: String },
     /// A fault on the real clock could not be tested.
     #[error(transparent)]
-    Live(#[from] LiveError),
+    Live(#[from] LiveFaultError),
 }
 
 /// State of the machine when the fault begins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Place {
+pub enum FaultPlace {
     Disconnected,
     /// All devices deliver data, drives off.
     Idle,
@@ -81,7 +81,7 @@ pub enum Place {
     Faulted,
 }
 
-impl Place {
+impl FaultPlace {
     pub const ALL: [Self; 8] = [
         Self::Disconnected,
         Self::Idle,
@@ -137,7 +137,7 @@ impl Place {
 /// Outcome of a case, better first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Verdict {
+pub enum FaultVerdict {
     /// Neither force nor motion at any time.
     NoForce,
     /// The force differs from the twin's within 5 ms by at most [`HARMLESS_N`], or is no further from the force at the
@@ -153,18 +153,19 @@ pub enum Verdict {
 
 /// Result of one case.
 #[derive(Clone, Debug, Serialize)]
-pub struct Outcome {
-    pub kind: Kind,
-    pub part: Part,
+pub struct CaseOutcome {
+    pub kind: FaultKind,
+    pub part: FaultPart,
     /// Location of the force sensor.
     pub sensor: SensorAt,
     pub mode: Mode,
-    pub place: Place,
+    pub place: FaultPlace,
     /// Number of the moment within that state.
     pub moment: u32,
-    pub verdict: Verdict,
+    pub verdict: FaultVerdict,
     /// The first report, if any.
-    pub told: Option<String>,
+    #[serde(rename = "told")]
+    pub report: Option<String>,
     /// Time to that report since the loop's inputs first differed from the truth (since the fault began, if it was
     /// reported before), ms.
     pub detection_ms: Option<f64>,
@@ -176,14 +177,15 @@ pub struct Outcome {
     /// data that are 5 ms late.
     pub error_n: f64,
     /// Maximum commanded force, N.
-    pub most_n: f64,
+    #[serde(rename = "most_n")]
+    pub max_n: f64,
     /// Largest change of that force in one tick, except a change to zero, N.
     pub step_n: f64,
 }
 
 /// Extent of the study.
 #[derive(Clone, Copy, Debug)]
-pub struct Options {
+pub struct FaultOptions {
     /// Number of moments tested in each state with force; one in the other states.
     pub moments: u32,
     /// Whether faults of threads, disks and files are tested too (some seconds on the real clock).
@@ -194,19 +196,19 @@ pub struct Options {
 
 /// Result of this study.
 #[derive(Clone, Debug, Serialize)]
-pub struct Report {
+pub struct FaultReport {
     /// Every case on the virtual clock.
-    pub outcomes: Vec<Outcome>,
+    pub outcomes: Vec<CaseOutcome>,
     /// Faults on the real clock, and of files.
     pub specials: Vec<Special>,
-    pub calm: Calm,
+    pub calm: FaultFreeRuns,
     /// Number of cases with each outcome.
-    pub sums: Sums,
+    pub sums: FaultSums,
 }
 
 /// Counts and percentiles of a report.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
-pub struct Sums {
+pub struct FaultSums {
     pub kinds: usize,
     /// Cases on the virtual clock.
     pub cases: usize,
@@ -227,46 +229,47 @@ pub struct Sums {
     /// Maximum error of a bounded case, N.
     pub bounded_error_n: f64,
     /// Maximum force commanded in any case, N.
-    pub most_n: f64,
+    #[serde(rename = "most_n")]
+    pub max_n: f64,
     /// Maximum change of the commanded force in one tick, N.
     pub step_n: f64,
 }
 
-impl Sums {
-    fn of(outcomes: &[Outcome], specials: &[Special]) -> Self {
+impl FaultSums {
+    fn of(outcomes: &[CaseOutcome], specials: &[Special]) -> Self {
         let count = |verdict| outcomes.iter().filter(|outcome| outcome.verdict == verdict).count();
-        let most = |of: fn(&Outcome) -> f64| outcomes.iter().map(of).fold(0.0, f64::max);
-        let on_path = |outcome: &&Outcome| outcome.part.is_on_force_path() && outcome.place.is_engaged();
-        let told = outcomes.iter().filter(on_path).filter(|outcome| outcome.verdict == Verdict::Detected);
-        let mut times_ms: Vec<f64> = told.filter_map(|outcome| outcome.detection_ms).collect();
+        let max = |of: fn(&CaseOutcome) -> f64| outcomes.iter().map(of).fold(0.0, f64::max);
+        let on_path = |outcome: &&CaseOutcome| outcome.part.is_on_force_path() && outcome.place.is_engaged();
+        let report = outcomes.iter().filter(on_path).filter(|outcome| outcome.verdict == FaultVerdict::Detected);
+        let mut times_ms: Vec<f64> = report.filter_map(|outcome| outcome.detection_ms).collect();
         times_ms.sort_by(f64::total_cmp);
-        let at = |share: f64| {
-            let place = (share * times_ms.len() as f64).ceil() as usize;
+        let at = |fraction: f64| {
+            let place = (fraction * times_ms.len() as f64).ceil() as usize;
             times_ms.get(place.saturating_sub(1)).copied().unwrap_or_default()
         };
-        let mut kinds: Vec<Kind> = Vec::new();
+        let mut kinds: Vec<FaultKind> = Vec::new();
         for outcome in outcomes {
             if !kinds.contains(&outcome.kind) {
                 kinds.push(outcome.kind);
             }
         }
-        let bounded = outcomes.iter().filter(|outcome| outcome.verdict == Verdict::Bounded);
+        let bounded = outcomes.iter().filter(|outcome| outcome.verdict == FaultVerdict::Bounded);
         Self {
             kinds: kinds.len() + specials.len(),
             cases: outcomes.len(),
-            no_force: count(Verdict::NoForce),
-            harmless: count(Verdict::Harmless),
-            detected: count(Verdict::Detected),
-            bounded: count(Verdict::Bounded),
-            silent: count(Verdict::Silent)
-                + specials.iter().filter(|special| special.verdict == Verdict::Silent).count(),
+            no_force: count(FaultVerdict::NoForce),
+            harmless: count(FaultVerdict::Harmless),
+            detected: count(FaultVerdict::Detected),
+            bounded: count(FaultVerdict::Bounded),
+            silent: count(FaultVerdict::Silent)
+                + specials.iter().filter(|special| special.verdict == FaultVerdict::Silent).count(),
             on_force_path: times_ms.len(),
             detection_p50_ms: at(0.5),
             detection_p99_ms: at(0.99),
             detection_max_ms: at(1.0),
             bounded_error_n: bounded.map(|outcome| outcome.peak_error_n).fold(0.0, f64::max),
-            most_n: most(|outcome| outcome.most_n),
-            step_n: most(|outcome| outcome.step_n),
+            max_n: max(|outcome| outcome.max_n),
+            step_n: max(|outcome| outcome.step_n),
         }
     }
 }
@@ -275,13 +278,13 @@ impl Sums {
 ///
 /// # Errors
 /// [`FaultsError`] if a scene or rig is invalid or a situation cannot be reached.
-pub fn study(options: &Options, mut progress: impl FnMut(usize, usize, &str)) -> Result<Report, FaultsError> {
+pub fn study(options: &FaultOptions, mut progress: impl FnMut(usize, usize, &str)) -> Result<FaultReport, FaultsError> {
     let mut outcomes = Vec::new();
     let all = SensorAt::ALL.map(|sensor| sensor.places().len()).iter().sum::<usize>() * MODES.len() + 1;
     let mut done = 0;
     for sensor in SensorAt::ALL {
         for mode in MODES {
-            let idle = Bench::new(sensor, mode, 0)?;
+            let idle = FaultBench::new(sensor, mode, 0)?;
             for &place in sensor.places() {
                 progress(done, all, place.word());
                 done += 1;
@@ -298,17 +301,23 @@ pub fn study(options: &Options, mut progress: impl FnMut(usize, usize, &str)) ->
     progress(all - 1, all, "fault-free runs");
     let calm = calm::runs(options.calm_s)?;
     progress(all, all, "done");
-    let sums = Sums::of(&outcomes, &specials);
-    Ok(Report { outcomes, specials, calm, sums })
+    let sums = FaultSums::of(&outcomes, &specials);
+    Ok(FaultReport { outcomes, specials, calm, sums })
 }
 
 /// Tests every kind of fault in one state.
-fn at(idle: &Bench, sensor: SensorAt, mode: Mode, place: Place, moments: u32) -> Result<Vec<Outcome>, FaultsError> {
+fn at(
+    idle: &FaultBench,
+    sensor: SensorAt,
+    mode: Mode,
+    place: FaultPlace,
+    moments: u32,
+) -> Result<Vec<CaseOutcome>, FaultsError> {
     let mut outcomes = Vec::new();
     for moment in 0..if place.is_engaged() { moments } else { 1 } {
         let mut ready = idle.clone();
         ready.prepare(place, moment)?;
-        for kind in Kind::ALL {
+        for kind in FaultKind::ALL {
             if sensor.has(kind) {
                 outcomes.push(case::tried(ready.clone(), kind, sensor, mode, place, moment));
             }

@@ -3,35 +3,44 @@
 
 use std::fmt::Write as _;
 
-use super::{FaultsError, HARMLESS_N, Kind, Options, Outcome, Place, Report, SensorAt, Special, Sums, Verdict, study};
+use super::{
+    CaseOutcome, FaultKind, FaultOptions, FaultPlace, FaultReport, FaultSums, FaultVerdict, FaultsError, HARMLESS_N,
+    SensorAt, Special, study,
+};
 use crate::{Experiment, Findings};
 
-impl Findings for Report {
+impl Findings for FaultReport {
     fn text(&self) -> String {
         let mut text = self.sums_text();
         // Writing into a String cannot fail, here and below.
-        writeln!(text, "\n| fault | sensor at |{}", Place::ALL.map(|place| format!(" {} |", place.word())).concat())
-            .ok();
-        writeln!(text, "|---|---|{}", "---|".repeat(Place::ALL.len())).ok();
-        for kind in Kind::ALL {
+        writeln!(
+            text,
+            "\n| fault | sensor at |{}",
+            FaultPlace::ALL.map(|place| format!(" {} |", place.word())).concat()
+        )
+        .ok();
+        writeln!(text, "|---|---|{}", "---|".repeat(FaultPlace::ALL.len())).ok();
+        for kind in FaultKind::ALL {
             for sensor in SensorAt::SIMULATED {
                 self.row(&mut text, kind, sensor);
             }
         }
         self.on_arms(&mut text);
         text.push_str("\nFaults on the real clock and of files:\n\n| fault | verdict | detection (ms) | force gone (ms) | report |\n|---|---|---|---|---|\n");
-        for Special { what, verdict, told, detection_ms, zero_ms } in &self.specials {
+        for Special { what, verdict, report, detection_ms, zero_ms } in &self.specials {
             let number = |ms: &Option<f64>| ms.map_or_else(|| "-".to_owned(), |ms| format!("{ms:.1}"));
             let [detection, zero] = [detection_ms, zero_ms].map(number);
-            writeln!(text, "| {what} | {} | {detection} | {zero} | {told} |", word(*verdict)).ok();
+            writeln!(text, "| {what} | {} | {detection} | {zero} | {report} |", word(*verdict)).ok();
         }
         text.push_str("\nBounded, not detected:\n\n| fault | sensor at | largest error (N) | why it cannot be detected |\n|---|---|---|---|\n");
-        for kind in Kind::ALL {
+        for kind in FaultKind::ALL {
             for sensor in SensorAt::ALL {
-                let of =
-                    self.outcomes.iter().filter(|o| (o.kind, o.sensor, o.verdict) == (kind, sensor, Verdict::Bounded));
+                let of = self
+                    .outcomes
+                    .iter()
+                    .filter(|o| (o.kind, o.sensor, o.verdict) == (kind, sensor, FaultVerdict::Bounded));
                 let largest_n =
-                    of.map(|outcome| outcome.peak_error_n).fold(None, |most, n| Some(n.max(most.unwrap_or(0.0))));
+                    of.map(|outcome| outcome.peak_error_n).fold(None, |max, n| Some(n.max(max.unwrap_or(0.0))));
                 if let (Some(n), Some(why)) = (largest_n, kind.untellable().or(kind.passes_as_fresh())) {
                     writeln!(text, "| {} | {} | {n:.2} | {why} |", kind.words(), sensor.word()).ok();
                 }
@@ -53,11 +62,11 @@ impl Findings for Report {
     }
 }
 
-impl Report {
+impl FaultReport {
     fn sums_text(&self) -> String {
-        let Sums { kinds, cases, no_force, harmless, detected, bounded, silent, on_force_path, .. } = self.sums;
-        let Sums { detection_p50_ms, detection_p99_ms, detection_max_ms, bounded_error_n, .. } = self.sums;
-        let Sums { most_n, step_n, .. } = self.sums;
+        let FaultSums { kinds, cases, no_force, harmless, detected, bounded, silent, on_force_path, .. } = self.sums;
+        let FaultSums { detection_p50_ms, detection_p99_ms, detection_max_ms, bounded_error_n, .. } = self.sums;
+        let FaultSums { max_n, step_n, .. } = self.sums;
         let lines = [
             format!("{kinds} kinds of fault; {cases} cases on the virtual clock, {} others.", self.specials.len()),
             format!("- no force and no motion: {no_force}"),
@@ -73,7 +82,7 @@ impl Report {
             ),
             self.calm.line(),
             format!(
-                "- largest force commanded {most_n:.2} N, largest change in a tick {step_n:.2} N, a fall to zero apart"
+                "- largest force commanded {max_n:.2} N, largest change in a tick {step_n:.2} N, a fall to zero apart"
             ),
         ];
         lines.join("\n") + "\n"
@@ -84,7 +93,7 @@ impl Report {
         let heads = SensorAt::ON_ARMS.map(|sensor| format!(" {} |", sensor.word())).concat();
         let rule = "---|".repeat(SensorAt::ON_ARMS.len());
         writeln!(text, "\nOn rigs with an arm, engaged, free and in contact:\n\n| fault |{heads}\n|---|{rule}").ok();
-        for kind in Kind::ALL.into_iter().filter(|kind| kind.is_of_devices()) {
+        for kind in FaultKind::ALL.into_iter().filter(|kind| kind.is_of_devices()) {
             let of = |sensor: SensorAt| {
                 cell(&self.outcomes.iter().filter(|o| (o.kind, o.sensor) == (kind, sensor)).collect::<Vec<_>>())
             };
@@ -93,16 +102,16 @@ impl Report {
         }
     }
 
-    fn row(&self, text: &mut String, kind: Kind, sensor: SensorAt) {
-        let of = |place: Place| {
-            let at = move |o: &&Outcome| o.kind == kind && o.sensor == sensor && o.place == place;
+    fn row(&self, text: &mut String, kind: FaultKind, sensor: SensorAt) {
+        let of = |place: FaultPlace| {
+            let at = move |o: &&CaseOutcome| o.kind == kind && o.sensor == sensor && o.place == place;
             self.outcomes.iter().filter(at).collect::<Vec<_>>()
         };
-        if of(Place::Contact).is_empty() {
+        if of(FaultPlace::Contact).is_empty() {
             return;
         }
         write!(text, "| {} | {} |", kind.words(), sensor.word()).ok();
-        for place in Place::ALL {
+        for place in FaultPlace::ALL {
             write!(text, " {} |", cell(&of(place))).ok();
         }
         text.push('\n');
@@ -110,41 +119,41 @@ impl Report {
 }
 
 /// Returns the worst of some cases: outcome, slowest detection / removal of the force (ms), maximum error (N).
-fn cell(cases: &[&Outcome]) -> String {
+fn cell(cases: &[&CaseOutcome]) -> String {
     let Some(worst) = cases.iter().map(|outcome| outcome.verdict).max() else { return "-".to_owned() };
-    let most = |of: fn(&Outcome) -> Option<f64>| cases.iter().filter_map(|outcome| of(outcome)).reduce(f64::max);
+    let max = |of: fn(&CaseOutcome) -> Option<f64>| cases.iter().filter_map(|outcome| of(outcome)).reduce(f64::max);
     let number = |ms: Option<f64>| ms.map_or_else(|| "-".to_owned(), |ms| format!("{ms:.0}"));
-    let peak_n = most(|outcome| Some(outcome.peak_error_n)).unwrap_or(0.0);
-    let error_n = most(|outcome| Some(outcome.error_n)).unwrap_or(0.0);
+    let peak_n = max(|outcome| Some(outcome.peak_error_n)).unwrap_or(0.0);
+    let error_n = max(|outcome| Some(outcome.error_n)).unwrap_or(0.0);
     match worst {
-        Verdict::NoForce => "0".to_owned(),
-        Verdict::Harmless => format!("h {error_n:.2}"),
-        Verdict::Bounded => format!("**b** {peak_n:.2}"),
-        Verdict::Silent => format!("**SILENT** {peak_n:.2}"),
-        Verdict::Detected => {
-            let told = most(|outcome| outcome.detection_ms);
-            let zero = most(|outcome| outcome.zero_ms);
-            format!("d {} / {} / {peak_n:.2}", number(told), number(zero))
+        FaultVerdict::NoForce => "0".to_owned(),
+        FaultVerdict::Harmless => format!("h {error_n:.2}"),
+        FaultVerdict::Bounded => format!("**b** {peak_n:.2}"),
+        FaultVerdict::Silent => format!("**SILENT** {peak_n:.2}"),
+        FaultVerdict::Detected => {
+            let report = max(|outcome| outcome.detection_ms);
+            let zero = max(|outcome| outcome.zero_ms);
+            format!("d {} / {} / {peak_n:.2}", number(report), number(zero))
         }
     }
 }
 
-const fn word(verdict: Verdict) -> &'static str {
+const fn word(verdict: FaultVerdict) -> &'static str {
     match verdict {
-        Verdict::NoForce => "no force",
-        Verdict::Harmless => "harmless",
-        Verdict::Detected => "detected",
-        Verdict::Bounded => "bounded",
-        Verdict::Silent => "SILENT",
+        FaultVerdict::NoForce => "no force",
+        FaultVerdict::Harmless => "harmless",
+        FaultVerdict::Detected => "detected",
+        FaultVerdict::Bounded => "bounded",
+        FaultVerdict::Silent => "SILENT",
     }
 }
 
-impl Experiment for Options {
+impl Experiment for FaultOptions {
     const NAME: &'static str = "faults";
-    type Findings = Report;
+    type Findings = FaultReport;
     type Error = FaultsError;
 
-    fn run(&self, progress: &mut dyn FnMut(usize, usize, &str)) -> Result<Report, FaultsError> {
+    fn run(&self, progress: &mut dyn FnMut(usize, usize, &str)) -> Result<FaultReport, FaultsError> {
         study(self, progress)
     }
 }

@@ -3,7 +3,7 @@
 use nima_emulation::emulated::Wiring;
 use serde::Serialize;
 
-use super::{Kind, Place};
+use super::{FaultKind, FaultPlace};
 
 /// Location of the force sensor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -60,12 +60,12 @@ impl SensorAt {
     }
 
     /// The states in which faults are tested: without an engagement the arm changes nothing.
-    pub(super) const fn places(self) -> &'static [Place] {
-        if self.wiring().is_some() { &[Place::Free, Place::Contact] } else { &Place::ALL }
+    pub(super) const fn places(self) -> &'static [FaultPlace] {
+        if self.wiring().is_some() { &[FaultPlace::Free, FaultPlace::Contact] } else { &FaultPlace::ALL }
     }
 
     /// Whether this kind of fault is tested here.
-    pub(super) const fn has(self, kind: Kind) -> bool {
+    pub(super) const fn has(self, kind: FaultKind) -> bool {
         let has_imu = matches!(self, Self::Wrist | Self::ArmWrist);
         (has_imu || !kind.needs_wrist()) && (self.wiring().is_none() || kind.is_of_devices())
     }

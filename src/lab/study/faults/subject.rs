@@ -7,17 +7,17 @@
 use nalgebra::Vector3;
 use nima_core::{
     frames::WristSample,
-    safety::{Raw, RawReadings},
+    safety::{RawReading, RawReadings},
 };
-use nima_devices::Stamped;
-use nima_emulation::emulated::{ArmReadings, Clocked, HandFrame};
+use nima_devices::TimedReading;
+use nima_emulation::emulated::{ArmReadings, ClockedSide, HandFrame};
 use nima_machine::{
     config::RigConfig,
-    rig::{Delivering, Inputs, Measured, Outputs, Rig as _, SIDES, Sensed, SensorPlace, Side},
+    rig::{DeliveringDevices, Inputs, Outputs, Rig as _, SIDES, SensedForce, SensorPlace, Side, SideReadings},
 };
 use nima_simulation::{Worlds, scene::Scene};
 
-use super::{FaultsError, Kind, SensorAt, inject::FAULTY};
+use super::{FaultKind, FaultsError, SensorAt, inject::FAULTY};
 use crate::validation::ValidationError;
 
 /// The drivers refuse numbers beyond this, N.
@@ -30,9 +30,9 @@ const PERIOD_S: f64 = 1e-3;
 /// The devices of an arm pair, the measurements computed from their readings, and the measurements without the fault.
 #[derive(Clone, Debug)]
 pub(super) struct ArmRig {
-    devices: Clocked,
-    given: Measured,
-    truth: Measured,
+    devices: ClockedSide,
+    given: SideReadings,
+    truth: SideReadings,
     newest: ArmReadings,
     /// The last readings, kept for ticks without new ones.
     known: ArmReadings,
@@ -42,12 +42,12 @@ pub(super) struct ArmRig {
 
 /// A simulated rig or an arm pair.
 #[derive(Clone, Debug)]
-pub(super) enum Subject {
+pub(super) enum FaultSubject {
     Simulated(Box<Worlds>),
     Arm(Box<ArmRig>),
 }
 
-impl Subject {
+impl FaultSubject {
     pub(super) fn new(sensor: SensorAt, config: &RigConfig, scene: &Scene) -> Result<Self, FaultsError> {
         let Some(wiring) = sensor.wiring() else {
             return Ok(Self::Simulated(Box::new(Worlds::new(scene, config.rate_hz))));
@@ -57,10 +57,10 @@ impl Subject {
         let mut devices = RigConfig::load("emulated")?.devices.ok_or_else(none)?;
         let set = devices.right.as_mut().ok_or_else(none)?;
         set.sensor_at = if sensor.is_at_wrist() { SensorPlace::Wrist } else { SensorPlace::Tip };
-        let measured = Measured::new(Side::Right, set, PERIOD_S, sensor.is_at_wrist());
+        let measured = SideReadings::new(Side::Right, set, PERIOD_S, sensor.is_at_wrist());
         let measured = measured.map_err(|error| wrong(error.to_string()))?;
         let hand = HandFrame::of(&config.teleoperation.mapping());
-        let clocked = Clocked::new(Side::Right, &devices, scene, hand, wiring);
+        let clocked = ClockedSide::new(Side::Right, &devices, scene, hand, wiring);
         Ok(Self::Arm(Box::new(ArmRig {
             devices: clocked.map_err(|error| wrong(error.to_string()))?,
             given: measured.clone(),
@@ -107,7 +107,7 @@ impl Subject {
         &mut self,
         now_s: f64,
         altered: Option<&Inputs>,
-        fault: Option<Kind>,
+        fault: Option<FaultKind>,
         age: u32,
     ) -> Option<Inputs> {
         match self {
@@ -117,23 +117,23 @@ impl Subject {
     }
 }
 
-const DELIVERING: Delivering = Delivering { handle: Some(true), follower: Some(true) };
+const DELIVERING: DeliveringDevices = DeliveringDevices { handle: Some(true), follower: Some(true) };
 
 /// Returns the readings of a simulated rig that correspond to these inputs, at the times of the true ones.
 fn raw_of(inputs: &Inputs) -> RawReadings {
     let RawReadings { handle, sensor, .. } = inputs.raw;
     let parts = match &inputs.sensed {
-        Sensed::AtTip(force_n) => [Some((*force_n).into()), None, None],
-        Sensed::AtWrist(sample) => {
+        SensedForce::AtTip(force_n) => [Some((*force_n).into()), None, None],
+        SensedForce::AtWrist(sample) => {
             let acceleration = sample.acceleration_m_s2.map(Into::into);
             [Some(sample.raw.force_n.into()), Some(sample.raw.torque_nm.into()), acceleration]
         }
-        Sensed::FarEnd(_) => [None; 3],
+        SensedForce::FarEnd(_) => [None; 3],
     };
     RawReadings {
-        handle: handle.map(|raw| Raw { channels: inputs.hand.position_m.into(), ..raw }),
+        handle: handle.map(|raw| RawReading { channels: inputs.hand.position_m.into(), ..raw }),
         arm: None,
-        sensor: sensor.map(|raw| Raw::of_sensor(parts, raw.device_s, raw.arrival_s)),
+        sensor: sensor.map(|raw| RawReading::of_sensor(parts, raw.device_s, raw.arrival_s)),
     }
 }
 
@@ -153,46 +153,46 @@ impl ArmRig {
         let sample =
             WristSample { acceleration_m_s2: force.value.acceleration_m_s2, ..WristSample::of(force.value.wrench) };
         Some(Inputs {
-            hand: nima_core::kinematics::Hand::at(handle.value.position_m),
-            sensed: Sensed::AtWrist(sample),
+            hand: nima_core::kinematics::HandPose::at(handle.value.position_m),
+            sensed: SensedForce::AtWrist(sample),
             ..Inputs::NOTHING
         })
     }
 
-    fn give(&mut self, now_s: f64, altered: Option<&Inputs>, fault: Option<Kind>, age: u32) -> Option<Inputs> {
-        let mut told = self.newest;
-        told.sensor = told.sensor.zip(altered).and_then(|(sensor, altered)| {
-            let Sensed::AtWrist(sample) = &altered.sensed else { return None };
+    fn give(&mut self, now_s: f64, altered: Option<&Inputs>, fault: Option<FaultKind>, age: u32) -> Option<Inputs> {
+        let mut report = self.newest;
+        report.sensor = report.sensor.zip(altered).and_then(|(sensor, altered)| {
+            let SensedForce::AtWrist(sample) = &altered.sensed else { return None };
             let mut value = sensor.value;
             value.wrench = sample.raw;
             value.acceleration_m_s2 = sample.acceleration_m_s2;
-            is_possible(&sample.raw.force_n).then_some(Stamped { value, ..sensor })
+            is_possible(&sample.raw.force_n).then_some(TimedReading { value, ..sensor })
         });
-        if let (Some(handle), Some(altered)) = (&mut told.handle, altered) {
+        if let (Some(handle), Some(altered)) = (&mut report.handle, altered) {
             handle.value.position_m = altered.hand.position_m;
         }
-        told.handle = told.handle.filter(|handle| is_possible(&handle.value.position_m));
-        if let Some(arm) = &mut told.arm {
+        report.handle = report.handle.filter(|handle| is_possible(&handle.value.position_m));
+        if let Some(arm) = &mut report.arm {
             let joint_rad = arm.value.joint_rad;
             arm.value.joint_rad = self.joints(fault, age, joint_rad);
         }
-        told.arm = told.arm.filter(|_| fault != Some(Kind::TipNan));
-        take(&mut self.given, &told, self.truth.force_is_on);
+        report.arm = report.arm.filter(|_| fault != Some(FaultKind::TipNan));
+        take(&mut self.given, &report, self.truth.force_is_on);
         self.given.inputs(now_s, DELIVERING)
     }
 
-    fn joints(&mut self, fault: Option<Kind>, age: u32, mut joint_rad: [f64; 7]) -> [f64; 7] {
+    fn joints(&mut self, fault: Option<FaultKind>, age: u32, mut joint_rad: [f64; 7]) -> [f64; 7] {
         let first = *self.joints_first.get_or_insert(joint_rad);
         match fault {
-            Some(Kind::TipFrozen) => joint_rad = first,
-            Some(Kind::TipJump) => joint_rad[3] += JOINT_JUMP_RAD,
-            Some(Kind::TipDrift) => joint_rad[3] += JOINT_DRIFT_RAD_S * f64::from(age) * PERIOD_S,
-            Some(Kind::TipBlock) => {
+            Some(FaultKind::TipFrozen) => joint_rad = first,
+            Some(FaultKind::TipJump) => joint_rad[3] += JOINT_JUMP_RAD,
+            Some(FaultKind::TipDrift) => joint_rad[3] += JOINT_DRIFT_RAD_S * f64::from(age) * PERIOD_S,
+            Some(FaultKind::TipBlock) => {
                 let place = age.saturating_sub(1) as usize;
-                if place < Kind::BLOCK {
+                if place < FaultKind::BLOCK {
                     self.block.push(joint_rad);
                 } else {
-                    joint_rad = self.block[place % Kind::BLOCK];
+                    joint_rad = self.block[place % FaultKind::BLOCK];
                 }
             }
             _ => {}
@@ -201,7 +201,7 @@ impl ArmRig {
     }
 }
 
-fn take(measured: &mut Measured, readings: &ArmReadings, drives: bool) {
+fn take(measured: &mut SideReadings, readings: &ArmReadings, drives: bool) {
     readings.handle.into_iter().for_each(|reading| measured.take_handle(reading));
     readings.arm.into_iter().for_each(|reading| measured.take_arm(reading));
     readings.sensor.into_iter().for_each(|reading| measured.take_force(reading));

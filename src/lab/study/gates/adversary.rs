@@ -2,7 +2,7 @@
 
 use fastrand::Rng;
 use nalgebra::SVector;
-use nima_core::safety::{ChainSettings, EnergyMode, Request};
+use nima_core::safety::{ChainSettings, EnergyMode, ForceRequest};
 
 /// Course of the requested force for a while.
 #[derive(Clone, Copy, Debug)]
@@ -34,7 +34,7 @@ const PATTERNS: [Pattern; 10] = [
 
 /// A change to a chain by an operator or a faulty screen.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Meddling {
+pub(super) enum ChainChange {
     Nothing,
     OrdinaryGain(f64),
     GainAboveOne(f64),
@@ -76,14 +76,14 @@ pub(super) fn settings(rng: &mut Rng) -> ChainSettings {
     }
 }
 
-/// Usually a number from 0 to `most`; sometimes one outside that range, or NaN.
-fn odd(rng: &mut Rng, most: f64) -> f64 {
+/// Usually a number from 0 to `max`; sometimes one outside that range, or NaN.
+fn odd(rng: &mut Rng, max: f64) -> f64 {
     match rng.u32(..16) {
         0 => f64::NAN,
         1 => f64::INFINITY,
-        2 => -most,
+        2 => -max,
         3 => 1e18,
-        _ => most * rng.f64(),
+        _ => max * rng.f64(),
     }
 }
 
@@ -145,8 +145,8 @@ impl<'a, const D: usize> Adversary<'a, D> {
     fn hand(&mut self) -> Option<SVector<f64, D>> {
         // A hand that moves with the force takes energy from the device all the time.
         let along = if self.running { self.force_n / self.force_n.norm().max(1e-9) } else { SVector::zeros() };
-        let way_m = self.vector(1e-4) + along * 2e-4;
-        self.hand_m += way_m;
+        let travel_m = self.vector(1e-4) + along * 2e-4;
+        self.hand_m += travel_m;
         match self.rng.u32(..64) {
             0 => None,
             1 => Some(self.poisoned(f64::NAN)),
@@ -156,7 +156,7 @@ impl<'a, const D: usize> Adversary<'a, D> {
         }
     }
 
-    pub(super) fn request(&mut self) -> Request<D> {
+    pub(super) fn request(&mut self) -> ForceRequest<D> {
         if self.rng.u32(..if self.permitted { 200 } else { 20 }) == 0 {
             self.permitted = !self.permitted;
         }
@@ -171,7 +171,7 @@ impl<'a, const D: usize> Adversary<'a, D> {
         if !self.t_s.is_finite() {
             self.t_s = 0.0;
         }
-        Request {
+        ForceRequest {
             t_s: self.t_s,
             force_n: self.force(),
             age_s: if self.rng.u32(..4) == 0 { odd(self.rng, 0.05) } else { 0.0 },
@@ -183,14 +183,14 @@ impl<'a, const D: usize> Adversary<'a, D> {
     }
 
     /// Returns a change to the chain before the next request.
-    pub(super) fn meddling(&mut self) -> Meddling {
+    pub(super) fn meddling(&mut self) -> ChainChange {
         match self.rng.u32(..100) {
-            0 => Meddling::OrdinaryGain(odd(self.rng, 3.0)),
-            1 => Meddling::GainAboveOne(odd(self.rng, 3.0)),
-            2 => Meddling::DeadBand(odd(self.rng, 0.1)),
-            3 => Meddling::StaticHold(self.rng.bool()),
-            4 => Meddling::Reset,
-            _ => Meddling::Nothing,
+            0 => ChainChange::OrdinaryGain(odd(self.rng, 3.0)),
+            1 => ChainChange::GainAboveOne(odd(self.rng, 3.0)),
+            2 => ChainChange::DeadBand(odd(self.rng, 0.1)),
+            3 => ChainChange::StaticHold(self.rng.bool()),
+            4 => ChainChange::Reset,
+            _ => ChainChange::Nothing,
         }
     }
 }

@@ -3,7 +3,7 @@
 use nalgebra::SVector;
 use nima_core::{
     limits::{GAIN, GAIN_ABOVE_ONE},
-    safety::{ChainSettings, Gate, GateReport, MOST_J, Reason},
+    safety::{ChainSettings, Gate, GateReport, MAX_J, Reason},
 };
 use serde::Serialize;
 
@@ -39,8 +39,8 @@ impl Breaches {
 
 /// The limits of one chain, and its last output.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Watch<const D: usize> {
-    pub(super) most_n: f64,
+pub(crate) struct GateWatch<const D: usize> {
+    pub(super) max_n: f64,
     pub(super) slew_n_per_s: f64,
     pub(super) gain_per_s: f64,
     pub(super) period_s: f64,
@@ -53,11 +53,11 @@ pub(crate) struct Watch<const D: usize> {
     pub(super) above_one: bool,
 }
 
-impl<const D: usize> Watch<D> {
+impl<const D: usize> GateWatch<D> {
     /// The limits of a chain with these settings and this period (s), before its first force.
     pub(crate) fn of(settings: &ChainSettings, period_s: f64) -> Self {
         Self {
-            most_n: settings.ceiling_n.min(settings.device_limit_n),
+            max_n: settings.ceiling_n.min(settings.device_limit_n),
             slew_n_per_s: settings.slew_n_per_s,
             gain_per_s: settings.gain_rate_per_s,
             period_s,
@@ -92,13 +92,13 @@ impl<const D: usize> Watch<D> {
         let gain_change = (report.gain - self.gain).abs() - 4.0 * f64::EPSILON;
         let chosen_well = (if self.above_one { GAIN_ABOVE_ONE } else { GAIN }).contains(chosen);
         breaches.not_finite += u64::from(!finite);
-        breaches.ceiling += u64::from(!within(now_n.norm(), self.most_n));
+        breaches.ceiling += u64::from(!within(now_n.norm(), self.max_n));
         // The tolerance is the rounding of the two forces, which is larger than that of their small difference.
-        breaches.slew += u64::from(!falls && !within(change_n - 1e-14 * self.most_n, step_n));
+        breaches.slew += u64::from(!falls && !within(change_n - 1e-14 * self.max_n, step_n));
         breaches.gain_rate += u64::from(!within(gain_change, self.gain_per_s * dt_s));
         breaches.gain_range += u64::from(!chosen_well || !GAIN_ABOVE_ONE.contains(report.gain));
         breaches.uncalled += u64::from(let_go && now_n.norm() != 0.0);
-        breaches.energy += u64::from(!within(report.stored_j.abs(), MOST_J));
+        breaches.energy += u64::from(!within(report.stored_j.abs(), MAX_J));
         self.last_n = *now_n;
         self.gain = report.gain;
         self.let_go = lets_go;
@@ -111,8 +111,8 @@ mod tests {
     use nalgebra::Vector3;
 
     fn seen(now_n: Vector3<f64>, report: GateReport, chosen: f64) -> Breaches {
-        let mut watch = Watch {
-            most_n: 4.0,
+        let mut watch = GateWatch {
+            max_n: 4.0,
             slew_n_per_s: 500.0,
             gain_per_s: 2.0,
             period_s: 1e-3,
@@ -145,7 +145,7 @@ mod tests {
             Breaches::default(),
             "a release does not violate the slew limit"
         );
-        let pump = GateReport { stored_j: 2.0 * MOST_J, ..good };
+        let pump = GateReport { stored_j: 2.0 * MAX_J, ..good };
         assert_eq!(seen(near, pump, 1.0), Breaches { energy: 1, ..Breaches::default() });
     }
 }

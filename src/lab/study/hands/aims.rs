@@ -4,7 +4,7 @@ use std::fmt;
 
 use nima_machine::runtime::ClockProfile;
 
-use super::{Report, held::Tally, released::Releases};
+use super::{HandReport, present_hands::HeldTally, released::Releases};
 
 /// Hands that are there: alarms in a minute, withheld part (%), and reversed ticks and steps beyond the slew limit: none.
 pub(super) const ALARMS_PER_MIN: f64 = 0.02;
@@ -40,8 +40,8 @@ impl Aims {
         }
     }
 
-    fn held(&mut self, tally: &Tally, of: &str) {
-        let Tally { reversed_ticks, reversed_n, beyond_slew_n, .. } = *tally;
+    fn held(&mut self, tally: &HeldTally, of: &str) {
+        let HeldTally { reversed_ticks, reversed_n, beyond_slew_n, .. } = *tally;
         let alarms = tally.alarms_per_min();
         let withheld = tally.withheld_percent();
         self.judge(
@@ -76,7 +76,7 @@ fn travel_aims_mm(clock: ClockProfile, opening_ms: f64) -> Option<[f64; 2]> {
     Some(if opening_ms > 0.0 { OPENING_MM } else { at_once })
 }
 
-impl Report {
+impl HandReport {
     /// Every aim, judged: of hands that are there for all kinds on a clock together, of modes and releases for every row.
     pub fn aims(&self) -> Aims {
         let mut aims = Aims::default();

@@ -3,7 +3,7 @@
 use nalgebra::SVector;
 use nima_core::noise::Noise;
 
-use super::person::{GRIPPER_N_M, Motion, Person};
+use super::person_parameters::{GRIPPER_N_M, PersonMotion, PersonParameters};
 
 /// Step of the integration, s.
 pub(super) const STEP_S: f64 = 2e-5;
@@ -19,18 +19,18 @@ const PAST: usize = 20_480;
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Intention<const D: usize> {
     /// Motions to random targets.
-    Reaches(Motion<D>),
+    Reaches(PersonMotion<D>),
     /// A steady motion from the start on, m/s.
     Drifts(SVector<f64, D>),
 }
 
 /// A hand with its handle.
 #[derive(Clone, Debug)]
-pub(super) struct Hand<const D: usize> {
-    pub(super) person: Person<D>,
+pub(super) struct StudyHand<const D: usize> {
+    pub(super) person: PersonParameters<D>,
     intention: Intention<D>,
-    gripper: Option<Motion<D>>,
-    pub(super) at_m: SVector<f64, D>,
+    gripper: Option<PersonMotion<D>>,
+    pub(super) position_m: SVector<f64, D>,
     pub(super) velocity_m_s: SVector<f64, D>,
     /// Force that is applied to the handle, N.
     pub(super) force_n: SVector<f64, D>,
@@ -45,23 +45,23 @@ pub(super) struct Hand<const D: usize> {
     steps: usize,
 }
 
-impl<const D: usize> Hand<D> {
+impl<const D: usize> StudyHand<D> {
     /// At rest at the start of its person.
-    pub(super) fn new(person: Person<D>, intention: Intention<D>, gripper: bool) -> Self {
-        let at_m = person.start_m();
+    pub(super) fn new(person: PersonParameters<D>, intention: Intention<D>, gripper: bool) -> Self {
+        let position_m = person.start_m();
         let pair = |(sin, cos): (f64, f64)| [sin, cos];
         Self {
             person,
             intention,
-            gripper: gripper.then(Person::grips),
-            at_m,
+            gripper: gripper.then(PersonParameters::grips),
+            position_m,
             velocity_m_s: SVector::zeros(),
             force_n: SVector::zeros(),
             carried_n: SVector::zeros(),
             holds: 1.0,
             tremor: pair(person.tremor_phase.sin_cos()),
             turn: pair((TREMOR_PER_S * STEP_S).sin_cos()),
-            past_m: vec![at_m; PAST],
+            past_m: vec![position_m; PAST],
             steps: 0,
         }
     }
@@ -93,8 +93,8 @@ impl<const D: usize> Hand<D> {
             aim_m_s += moved_m_s;
             hand_n -= moved_m * GRIPPER_N_M;
         }
-        let Person { handle_kg, hand_kg, damping_n_s_m, coulomb_n, grip_n_m, grip_n_s_m, .. } = self.person;
-        hand_n += (aim_m - self.at_m) * grip_n_m + (aim_m_s - self.velocity_m_s) * grip_n_s_m;
+        let PersonParameters { handle_kg, hand_kg, damping_n_s_m, coulomb_n, grip_n_m, grip_n_s_m, .. } = self.person;
+        hand_n += (aim_m - self.position_m) * grip_n_m + (aim_m_s - self.velocity_m_s) * grip_n_s_m;
         let drive_n = self.force_n + hand_n * self.holds - self.velocity_m_s * damping_n_s_m;
         let speed_m_s = self.velocity_m_s.norm();
         let rubbed_n = if speed_m_s > STICKS_M_S {
@@ -103,8 +103,8 @@ impl<const D: usize> Hand<D> {
             within(drive_n, coulomb_n)
         };
         self.velocity_m_s += (drive_n - rubbed_n) * (STEP_S / (handle_kg + self.holds * hand_kg));
-        self.at_m += self.velocity_m_s * STEP_S;
-        self.past_m[self.steps % PAST] = self.at_m;
+        self.position_m += self.velocity_m_s * STEP_S;
+        self.past_m[self.steps % PAST] = self.position_m;
     }
 
     fn aim(&mut self, noise: &mut Noise) -> (SVector<f64, D>, SVector<f64, D>) {

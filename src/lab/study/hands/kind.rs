@@ -13,7 +13,7 @@ pub enum Targets {
 
 /// What sets one kind apart. Every kind has grips of 400 to 2000 N/m and of 8 to 40 N s/m.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Kind {
+pub struct HandKind {
     /// Name in the tables.
     pub name: &'static str,
     /// Motion in space; otherwise on one axis.
@@ -40,7 +40,7 @@ pub struct Kind {
     pub damping_n_s_m: f64,
 }
 
-impl Kind {
+impl HandKind {
     /// One hand on one axis, readings in steps of 10 um without delay.
     pub const USUAL: Self = Self {
         name: "usual",

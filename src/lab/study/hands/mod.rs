@@ -1,16 +1,16 @@
 //! Hands that are there, and hands that let go, in front of the last gate: [`Governor`](nima_core::safety::Governor).
 //!
-//! Takes the clocks of the loop, the number of hands and releases, and a seed; gives a [`Report`]: one [`Held`] for every clock and
-//! [`Kind`] of hand that stays, with the tissue's late force; one [`InMode`] for every clock and mode of the whole loop; and one
+//! Takes the clocks of the loop, the number of hands and releases, and a seed; gives a [`HandReport`]: one [`HeldHands`] for every clock and
+//! [`HandKind`] of hand that stays, with the tissue's late force; one [`InMode`] for every clock and mode of the whole loop; and one
 //! [`Releases`] for every clock, force and time in which the fingers open. Deterministic for a seed.
 
 mod aims;
 mod hand;
-mod held;
 mod kind;
 mod modes;
-mod person;
+mod person_parameters;
 mod present;
+mod present_hands;
 mod released;
 
 use nima_core::impedance::{Mode, SettingsError};
@@ -18,14 +18,14 @@ use nima_machine::runtime::{ClockProfile, VirtualClock};
 use serde::Serialize;
 
 pub use aims::Aims;
-pub use held::Tally;
-pub use kind::Kind;
+pub use kind::HandKind;
 pub use modes::InMode;
+pub use present_hands::HeldTally;
 pub use released::{FORCES_N, OPENINGS_MS, Releases};
 
 use self::{
-    held::{governor, held},
     modes::in_mode,
+    present_hands::{governor, held},
     released::{OPENINGS_OF_OTHERS_MS, releases},
 };
 use crate::{
@@ -49,19 +49,19 @@ pub enum HandsError {
 
 /// Hands of one kind that stayed, on one clock.
 #[derive(Clone, Copy, Debug, Serialize)]
-pub struct Held {
+pub struct HeldHands {
     /// Clock of the loop.
     pub clock: ClockProfile,
     /// Name of the kind.
     pub kind: &'static str,
     /// What happened.
     #[serde(flatten)]
-    pub tally: Tally,
+    pub tally: HeldTally,
 }
 
 /// What to do.
 #[derive(Clone, Debug)]
-pub struct Options {
+pub struct HandOptions {
     /// Clocks of the loop, in the order of the tables.
     pub clocks: Vec<VirtualClock>,
     /// Hands of each kind on each clock, and how long each is there, s.
@@ -76,31 +76,31 @@ pub struct Options {
 
 /// The study's result.
 #[derive(Clone, Debug, Default, Serialize)]
-pub struct Report {
+pub struct HandReport {
     /// Hands that stayed, in front of the governor alone.
-    pub held: Vec<Held>,
+    pub held: Vec<HeldHands>,
     /// Hands that stayed, in the whole loop.
     pub modes: Vec<InMode>,
     /// Hands that let go.
     pub releases: Vec<Releases>,
 }
 
-impl Experiment for Options {
+impl Experiment for HandOptions {
     const NAME: &'static str = "hands";
-    type Findings = Report;
+    type Findings = HandReport;
     type Error = HandsError;
 
-    fn run(&self, progress: &mut dyn FnMut(usize, usize, &str)) -> Result<Report, HandsError> {
+    fn run(&self, progress: &mut dyn FnMut(usize, usize, &str)) -> Result<HandReport, HandsError> {
         let tissue = pressed_tissue()?;
-        let mut report = Report::default();
-        let steps = self.clocks.len() * (Kind::ALL.len() + Mode::ALL.len() + 1);
+        let mut report = HandReport::default();
+        let steps = self.clocks.len() * (HandKind::ALL.len() + Mode::ALL.len() + 1);
         let mut done = 0;
         let mut step = |what: &str| {
             progress(done, steps, what);
             done += 1;
         };
         for (number, clock) in self.clocks.iter().enumerate() {
-            for kind in &Kind::ALL {
+            for kind in &HandKind::ALL {
                 step(&format!("{}, {}", clock.profile, kind.name));
                 report.held.push(self.held(*clock, kind));
             }
@@ -109,8 +109,8 @@ impl Experiment for Options {
                 report.modes.push(in_mode(mode, *clock, self.seed, self.seconds, tissue)?);
             }
             step(&format!("{}, releases", clock.profile));
-            report.releases.extend(self.let_go(*clock, &Kind::USUAL, &OPENINGS_MS, self.releases));
-            for kind in Kind::ALL.iter().filter(|kind| number == 0 && kind.lets_go_otherwise()) {
+            report.releases.extend(self.let_go(*clock, &HandKind::USUAL, &OPENINGS_MS, self.releases));
+            for kind in HandKind::ALL.iter().filter(|kind| number == 0 && kind.lets_go_otherwise()) {
                 let count = self.releases.div_ceil(OTHERS);
                 report.releases.extend(self.let_go(*clock, kind, &OPENINGS_OF_OTHERS_MS, count));
             }
@@ -120,9 +120,9 @@ impl Experiment for Options {
     }
 }
 
-impl Options {
-    fn held(&self, clock: VirtualClock, kind: &Kind) -> Held {
-        let mut tally = Tally::default();
+impl HandOptions {
+    fn held(&self, clock: VirtualClock, kind: &HandKind) -> HeldHands {
+        let mut tally = HeldTally::default();
         for number in 0..self.hands {
             let clock = clocks::of_trial(clock, number);
             let seed = self.seed.wrapping_add(number);
@@ -132,14 +132,14 @@ impl Options {
                 held::<1, _>(kind, clock, seed, self.seconds, || governor(kind))
             });
         }
-        Held { clock: clock.profile, kind: kind.name, tally }
+        HeldHands { clock: clock.profile, kind: kind.name, tally }
     }
 
     /// Releases of every force within each of these times, ms.
     fn let_go(
         &self,
         clock: VirtualClock,
-        kind: &Kind,
+        kind: &HandKind,
         openings_ms: &[f64],
         count: u64,
     ) -> impl Iterator<Item = Releases> {
@@ -148,7 +148,7 @@ impl Options {
     }
 }
 
-impl Report {
+impl HandReport {
     /// The clocks, in the order in which they were tried.
     fn clocks(&self) -> Vec<ClockProfile> {
         let mut clocks: Vec<_> = self.held.iter().map(|row| row.clock).collect();
@@ -157,8 +157,8 @@ impl Report {
     }
 
     /// The sum over all kinds on this clock.
-    fn all_kinds(&self, clock: ClockProfile) -> Tally {
-        let mut all = Tally::default();
+    fn all_kinds(&self, clock: ClockProfile) -> HeldTally {
+        let mut all = HeldTally::default();
         self.held.iter().filter(|row| row.clock == clock).for_each(|row| all.add(&row.tally));
         all
     }

@@ -4,20 +4,20 @@ use nalgebra::Vector3;
 use nima_core::{
     impedance::{Mode, OwnMotion, Recipe},
     noise::Noise,
-    safety::{ChainSettings, Gate, Governed, Reason},
+    safety::{ChainSettings, Gate, GovernorOutput, Reason},
 };
 use nima_machine::runtime::{ClockProfile, VirtualClock};
-use nima_simulation::scene::Tissue;
+use nima_simulation::scene::TissueModel;
 use serde::Serialize;
 
 use super::{
     HandsError,
-    held::{Tally, Watch},
-    person::{Motion, between},
+    person_parameters::{PersonMotion, between},
+    present_hands::{HeldTally, HeldWatch},
 };
 use crate::{
     clocks,
-    pair::{Grip, Handle, NOISE_N, Pair, RATE_HZ, Trial},
+    pair::{BenchPair, LoneHandle, NOISE_N, PairGrip, PairTrial, RATE_HZ},
     release::TREMOR_M,
 };
 
@@ -41,7 +41,7 @@ pub struct InMode {
     pub mode: Mode,
     /// What happened; reversed is a force of the brake.
     #[serde(flatten)]
-    pub tally: Tally,
+    pub tally: HeldTally,
 }
 
 /// Hands of random grips that touch the tissue in this mode, one for each delay.
@@ -50,9 +50,9 @@ pub(super) fn in_mode(
     clock: VirtualClock,
     seed: u64,
     seconds: f64,
-    tissue: Tissue,
+    tissue: TissueModel,
 ) -> Result<InMode, HandsError> {
-    let mut tally = Tally::default();
+    let mut tally = HeldTally::default();
     for (number, delay_ms) in (0..).zip(DELAYS_MS) {
         let trial = trial(mode, 1e-3 * delay_ms, clocks::of_trial(clock, number), seed.wrapping_add(number), tissue);
         tally.add(&touched(&trial, seconds)?);
@@ -60,9 +60,9 @@ pub(super) fn in_mode(
     Ok(InMode { clock: clock.profile, mode, tally })
 }
 
-fn trial(mode: Mode, delay_s: f64, clock: VirtualClock, seed: u64, tissue: Tissue) -> Trial {
+fn trial(mode: Mode, delay_s: f64, clock: VirtualClock, seed: u64, tissue: TissueModel) -> PairTrial {
     let mut noise = Noise::new(seed);
-    Trial {
+    PairTrial {
         mode,
         own_motion: OwnMotion::Follower,
         literal: Recipe::default(),
@@ -72,19 +72,19 @@ fn trial(mode: Mode, delay_s: f64, clock: VirtualClock, seed: u64, tissue: Tissu
         tissue,
         tremor_m: TREMOR_M,
         noise_n: NOISE_N,
-        handle: Handle::OMEGA,
-        grip: Grip::of_stiffness(between(&mut noise, GRIPS_N_M)),
+        handle: LoneHandle::OMEGA,
+        grip: PairGrip::of_stiffness(between(&mut noise, GRIPS_N_M)),
         seed,
         clock,
     }
 }
 
-fn touched(trial: &Trial, seconds: f64) -> Result<Tally, HandsError> {
+fn touched(trial: &PairTrial, seconds: f64) -> Result<HeldTally, HandsError> {
     let start_m = Vector3::new(0.0, 0.0, START_M);
-    let mut motion = Motion::new(start_m, Vector3::new(0.0, 0.0, MIDDLE_M), RADIUS_M, REACHES_S);
+    let mut motion = PersonMotion::new(start_m, Vector3::new(0.0, 0.0, MIDDLE_M), RADIUS_M, REACHES_S);
     let mut noise = Noise::new(trial.seed);
-    let mut pair = Pair::new(trial, start_m)?;
-    let mut watch = Watch::default();
+    let mut pair = BenchPair::new(trial, start_m)?;
+    let mut watch = HeldWatch::default();
     let mut asked_n = Vector3::zeros();
     while pair.now_s() < seconds - 0.5 / RATE_HZ {
         let last_n = pair.force_n();
@@ -92,7 +92,7 @@ fn touched(trial: &Trial, seconds: f64) -> Result<Tally, HandsError> {
         pair.step(|t_s, _| motion.at(t_s, &mut noise).0);
         let withheld = pair.report().governed;
         let reason = pair.report().reason(Gate::Governor);
-        let governed = Governed { force_n: pair.force_n(), withheld, reason };
+        let governed = GovernorOutput { force_n: pair.force_n(), withheld, reason };
         asked_n = before_the_governor(&governed, &asked_n);
         // A request that is no force is a stop, which has no slew limit and is not the governor's.
         let before_n = if pair.report().acted(Gate::Validity) { governed.force_n } else { last_n };
@@ -103,8 +103,8 @@ fn touched(trial: &Trial, seconds: f64) -> Result<Tally, HandsError> {
 
 /// The force that the governor was asked for (N), from what it withheld. While it withholds all of it, the one before stays; a brake
 /// counts as against it.
-fn before_the_governor(governed: &Governed<3>, last_n: &Vector3<f64>) -> Vector3<f64> {
-    let Governed { force_n, withheld, reason } = *governed;
+fn before_the_governor(governed: &GovernorOutput<3>, last_n: &Vector3<f64>) -> Vector3<f64> {
+    let GovernorOutput { force_n, withheld, reason } = *governed;
     if reason == Reason::LetGo && force_n.norm() > 0.0 {
         return force_n * (-last_n.norm() / force_n.norm());
     }

@@ -5,17 +5,17 @@ use std::fmt::Write as _;
 use nima_machine::runtime::ClockProfile;
 
 use super::{
-    FORCES_N, Report,
+    FORCES_N, HandReport,
     aims::{ALARMS_PER_MIN, AT_ONCE_LATE_MM, AT_ONCE_MM, Aims, ENERGY_MJ, FROM_N, OPENING_MM, WITHHELD_PERCENT},
-    held::Tally,
-    kind::Kind,
+    kind::HandKind,
+    present_hands::HeldTally,
     released::{OPENINGS_MS, Releases},
 };
 use crate::{Findings, clocks};
 
 const HELD: &str = "alarms (1/min) | reversed (ticks) | reversed (N) | beyond slew (N) | withheld (%) | hands with an alarm (%) | declared gone |\n|---|---|---|---|---|---|---|---|\n";
 
-impl Findings for Report {
+impl Findings for HandReport {
     /// The aims and what misses them, all clocks in one table, and for each clock its tables.
     fn text(&self) -> String {
         let mut text = self.aims_text();
@@ -30,12 +30,12 @@ impl Findings for Report {
     }
 
     fn judge(&self) -> Result<(), String> {
-        let mut all = Tally::default();
+        let mut all = HeldTally::default();
         self.clocks().into_iter().for_each(|clock| all.add(&self.all_kinds(clock)));
         if all.reversed_ticks == 0 && all.beyond_slew_n <= 1e-9 {
             return Ok(());
         }
-        let Tally { reversed_ticks, reversed_n, beyond_slew_n, .. } = all;
+        let HeldTally { reversed_ticks, reversed_n, beyond_slew_n, .. } = all;
         Err(format!(
             "the governor opposed hands that were there: {reversed_ticks} ticks reversed, by up to {reversed_n:.2} N; \
              steps up to {beyond_slew_n:.2} N beyond the slew limit"
@@ -43,7 +43,7 @@ impl Findings for Report {
     }
 }
 
-impl Report {
+impl HandReport {
     fn aims_text(&self) -> String {
         let Aims { judged, missed } = self.aims();
         let [p95_mm, max_mm] = AT_ONCE_MM;
@@ -79,12 +79,12 @@ impl Report {
             line(text, row.mode.name(), &row.tally);
         }
         text.push('\n');
-        for kind in &Kind::ALL {
+        for kind in &HandKind::ALL {
             self.releases_of(clock, kind, text);
         }
     }
 
-    fn releases_of(&self, clock: ClockProfile, kind: &Kind, text: &mut String) {
+    fn releases_of(&self, clock: ClockProfile, kind: &HandKind, text: &mut String) {
         let of_kind = |row: &&Releases| row.clock == clock && row.kind == kind.name;
         let rows: Vec<&Releases> = self.releases.iter().filter(of_kind).collect();
         if rows.is_empty() {
@@ -114,8 +114,8 @@ impl Report {
 }
 
 /// A row of hands that stay; writing into a String cannot fail, here and above.
-fn line(text: &mut String, of: &str, tally: &Tally) {
-    let Tally { hands, reversed_ticks, reversed_n, beyond_slew_n, hands_alarmed, hands_gone, .. } = *tally;
+fn line(text: &mut String, of: &str, tally: &HeldTally) {
+    let HeldTally { hands, reversed_ticks, reversed_n, beyond_slew_n, hands_alarmed, hands_gone, .. } = *tally;
     let alarms = tally.alarms_per_min();
     let withheld = tally.withheld_percent();
     let alarmed = 100.0 * hands_alarmed as f64 / hands.max(1) as f64;

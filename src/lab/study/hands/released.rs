@@ -6,10 +6,10 @@ use nima_machine::runtime::{ClockProfile, VirtualClock};
 use serde::Serialize;
 
 use super::{
-    hand::{Hand, Intention},
-    held::{Gate, Reader, governor},
-    kind::Kind,
-    person::{Person, between, direction},
+    hand::{Intention, StudyHand},
+    kind::HandKind,
+    person_parameters::{PersonParameters, between, direction},
+    present_hands::{LastGate, Reader, governor},
 };
 use crate::{clocks, pair::RATE_HZ};
 
@@ -55,7 +55,7 @@ pub struct Releases {
 
 /// One release.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Released {
+pub(super) struct ReleaseResult {
     pub(super) travel_m: f64,
     pub(super) energy_j: f64,
     pub(super) detected_s: Option<f64>,
@@ -64,7 +64,7 @@ pub(super) struct Released {
 
 /// Releases of hands of this kind: so many, of this force (N) within this time (ms).
 pub(super) fn releases(
-    kind: &Kind,
+    kind: &HandKind,
     clock: VirtualClock,
     seed: u64,
     count: u64,
@@ -79,7 +79,7 @@ pub(super) fn releases(
             released::<1, _>(kind, clock, seed, (opening_ms, force_n), governor(kind))
         }
     };
-    let all: Vec<Released> = (0..count).map(one).collect();
+    let all: Vec<ReleaseResult> = (0..count).map(one).collect();
     let mut travels_mm: Vec<f64> = all.iter().map(|release| 1e3 * release.travel_m).collect();
     travels_mm.sort_by(f64::total_cmp);
     let mut detected_ms: Vec<f64> =
@@ -101,34 +101,34 @@ pub(super) fn releases(
 }
 
 /// A hand carries a steady force, and opens.
-pub(super) fn released<const D: usize, G: Gate<D>>(
-    kind: &Kind,
+pub(super) fn released<const D: usize, G: LastGate<D>>(
+    kind: &HandKind,
     clock: VirtualClock,
     seed: u64,
     (opening_ms, force_n): (f64, f64),
     mut gate: G,
-) -> Released {
+) -> ReleaseResult {
     let mut noise = Noise::new(seed);
-    let person = Person::<D>::drawn(kind, &mut noise);
+    let person = PersonParameters::<D>::drawn(kind, &mut noise);
     let along = direction(&mut noise);
     let drift_m_s = DRIFT_M_S * between(&mut noise, [-1.0, 1.0]).max(0.0);
     let drift = Intention::Drifts(direction::<D>(&mut noise) * drift_m_s);
-    let mut hand = Hand::new(person, drift, false);
+    let mut hand = StudyHand::new(person, drift, false);
     let mut reader = Reader::new();
     let release_s = between(&mut noise, RELEASE_S);
     let swing_s = person.handle_kg / person.damping_n_s_m;
     let mut times = clock.tick_times(RATE_HZ);
     let mut next_s = times.advance().now_s;
-    let mut found = Released::default();
+    let mut found = ReleaseResult::default();
     let mut from = None;
     while hand.now_s() < release_s + WATCHED_S {
         let since_s = hand.now_s() - release_s;
         if since_s >= 0.0 {
-            let (from_m, from_m_s) = *from.get_or_insert((hand.at_m, hand.velocity_m_s));
+            let (from_m, from_m_s) = *from.get_or_insert((hand.position_m, hand.velocity_m_s));
             hand.holds = if opening_ms > 0.0 { (1.0 - 1e3 * since_s / opening_ms).max(0.0) } else { 0.0 };
-            let way_m: SVector<f64, D> = hand.at_m - from_m;
+            let travel_m: SVector<f64, D> = hand.position_m - from_m;
             let swing_m = from_m_s * (swing_s * (1.0 - (-since_s / swing_s).exp()));
-            found.travel_m = found.travel_m.max(way_m.norm().min((way_m - swing_m).norm()));
+            found.travel_m = found.travel_m.max(travel_m.norm().min((travel_m - swing_m).norm()));
             found.energy_j = found.energy_j.max(0.5 * person.handle_kg * hand.velocity_m_s.norm_squared());
         }
         hand.step(&mut noise);

@@ -5,7 +5,7 @@ use nima_machine::runtime::ClockProfile;
 use serde::Serialize;
 
 use super::{
-    Row,
+    NetworkRow,
     plan::{CLOCK_JITTER, judged_line},
 };
 
@@ -20,7 +20,7 @@ const NAMED_MS: f64 = 1000.0;
 
 /// One target and its result.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Aim {
+pub struct StudyAim {
     /// Clock of both loops.
     pub clock: ClockProfile,
     /// Measured quantity, with its unit.
@@ -37,13 +37,13 @@ pub struct Aim {
     pub missed: usize,
 }
 
-impl Aim {
+impl StudyAim {
     /// Computes the result over the cells for which `of` returns a number; `None` if there is none.
     fn over<'a>(
         what: &str,
         limit: f64,
-        rows: impl Iterator<Item = &'a &'a Row>,
-        of: impl Fn(&Row) -> Option<f64>,
+        rows: impl Iterator<Item = &'a &'a NetworkRow>,
+        of: impl Fn(&NetworkRow) -> Option<f64>,
     ) -> Option<Self> {
         let measured: Vec<_> = rows.filter_map(|row| Some((of(row)?, row))).collect();
         let (worst, row) = measured.iter().max_by(|(one, _), (other, _)| one.total_cmp(other))?;
@@ -62,32 +62,33 @@ impl Aim {
 
 /// Returns all targets on one clock. Limits of the gates and the behaviour after a stop apply to every mode, the
 /// quality of the force only to the judged one.
-pub(super) fn aims(rows: &[&Row], judged: Mode) -> Vec<Aim> {
+pub(super) fn aims(rows: &[&NetworkRow], judged: Mode) -> Vec<StudyAim> {
     let all = || rows.iter();
     let ours = || rows.iter().filter(move |row| row.mode == judged);
-    let cost = |row: &Row| {
+    let cost = |row: &NetworkRow| {
         let is_it = row.condition == judged_line(row.condition.delay_ms);
         row.over_clean.filter(|_| is_it).map(|ratio| 100.0 * (ratio - 1.0))
     };
-    let cost_of_loss = |row: &Row| row.over_same_playout.map(|ratio| 100.0 * (ratio - 1.0));
-    let injected = |row: &Row| (row.stops == 0).then_some((row.injected_mj - row.tissue_injected_mj).max(0.0));
-    let clock = |row: &Row| {
+    let cost_of_loss = |row: &NetworkRow| row.over_same_playout.map(|ratio| 100.0 * (ratio - 1.0));
+    let injected = |row: &NetworkRow| (row.stops == 0).then_some((row.injected_mj - row.tissue_injected_mj).max(0.0));
+    let clock = |row: &NetworkRow| {
         let is_it = row.condition.jitter == CLOCK_JITTER && !row.condition.happening.sets_clock();
         is_it.then_some(row.clock_error_ms)
     };
-    let named =
-        |row: &Row| row.condition.happening.sets_clock().then_some(row.clock_step_named_ms.unwrap_or(f64::INFINITY));
+    let named = |row: &NetworkRow| {
+        row.condition.happening.sets_clock().then_some(row.clock_step_named_ms.unwrap_or(f64::INFINITY))
+    };
     [
-        Aim::over("forces above the ceiling", 0.0, all(), |row| Some(row.ceiling_breaches as f64)),
-        Aim::over("changes above the slew limit", 0.0, all(), |row| Some(row.slew_breaches as f64)),
-        Aim::over("more error by 30 % loss and 20 ms jitter, %", COST_PERCENT, ours(), cost),
-        Aim::over("the same, over a perfect line as long as the play-out, %", COST_PERCENT, ours(), cost_of_loss),
-        Aim::over("energy beyond the tissue's own without a latched stop, mJ", INJECTED_MJ, ours(), injected),
-        Aim::over("force after the last data, ms", FORCE_AFTER_MS, all(), |row| Some(row.force_after_data_ms)),
-        Aim::over("step of the tip on return, mm", RETURN_MM, all(), |row| row.return_step_mm),
-        Aim::over("machines that resumed without a command", 0.0, all(), |row| Some(f64::from(row.resumed))),
-        Aim::over("error of the clock with 1 ms jitter, ms", CLOCK_MS, all(), clock),
-        Aim::over("until a step of 50 ms of the clock is named, ms", NAMED_MS, all(), named),
+        StudyAim::over("forces above the ceiling", 0.0, all(), |row| Some(row.ceiling_breaches as f64)),
+        StudyAim::over("changes above the slew limit", 0.0, all(), |row| Some(row.slew_breaches as f64)),
+        StudyAim::over("more error by 30 % loss and 20 ms jitter, %", COST_PERCENT, ours(), cost),
+        StudyAim::over("the same, over a perfect line as long as the play-out, %", COST_PERCENT, ours(), cost_of_loss),
+        StudyAim::over("energy beyond the tissue's own without a latched stop, mJ", INJECTED_MJ, ours(), injected),
+        StudyAim::over("force after the last data, ms", FORCE_AFTER_MS, all(), |row| Some(row.force_after_data_ms)),
+        StudyAim::over("step of the tip on return, mm", RETURN_MM, all(), |row| row.return_step_mm),
+        StudyAim::over("machines that resumed without a command", 0.0, all(), |row| Some(f64::from(row.resumed))),
+        StudyAim::over("error of the clock with 1 ms jitter, ms", CLOCK_MS, all(), clock),
+        StudyAim::over("until a step of 50 ms of the clock is named, ms", NAMED_MS, all(), named),
     ]
     .into_iter()
     .flatten()

@@ -8,18 +8,18 @@ use nima_core::impedance::{Mode, OwnMotion};
 use nima_machine::{
     config::RigConfig,
     messages::{Command, Event, LoopState, Tick},
-    remote::{FarFollower, FarLeader, Wire as _, at_follower},
+    remote::{FarFollower, FarLeader, RemoteWire as _, at_follower},
     rig::{Inputs, Outputs, Rig, SIDES, Side},
     runtime::{TickTime, TickTimes, VirtualClock, VirtualSupervisor},
     teleop::{Calibrations, Loop, Timing},
 };
 use nima_network::{
-    impairment::Line,
-    stream::{Stream, StreamSettings},
+    impairment::ImpairedLine,
+    stream::{NetworkStream, StreamSettings},
 };
 use nima_simulation::{World, scene::Scene};
 
-use super::{Condition, NetworkError, end::End};
+use super::{NetworkCondition, NetworkError, end::NetworkEnd};
 use crate::clocks;
 
 /// Ticks per second.
@@ -31,19 +31,19 @@ const ROUNDING_S: f64 = 1e-9;
 
 /// A simulated workplace. It runs in true time, whatever its machine's clock shows.
 #[derive(Debug)]
-pub(super) struct Place {
+pub(super) struct Workplace {
     pub(super) world: World,
     outputs: Outputs,
     ahead_s: f64,
 }
 
-impl Place {
+impl Workplace {
     fn new(scene: &Scene) -> Self {
         Self { world: World::new(scene, RATE_HZ), outputs: Outputs::SAFE, ahead_s: 0.0 }
     }
 }
 
-impl Rig for Place {
+impl Rig for Workplace {
     fn read(&mut self, now_s: f64) -> [Option<Inputs>; SIDES] {
         let mut inputs = [None; SIDES];
         inputs[Side::Right.index()] = self.world.exchange(now_s - self.ahead_s, &self.outputs);
@@ -56,14 +56,14 @@ impl Rig for Place {
 }
 
 /// Tick times of one machine.
-struct Pace {
+struct BenchPace {
     times: TickTimes,
     /// Period in which the next tick wakes up, and its time since the loop was started.
     due: u64,
     time: TickTime,
 }
 
-impl Pace {
+impl BenchPace {
     fn new(clock: VirtualClock) -> Self {
         // The first tick is at its deadline, so that both machines begin together.
         Self { times: clock.tick_times(RATE_HZ), due: 0, time: TickTime::default() }
@@ -82,20 +82,20 @@ impl Pace {
 }
 
 /// One machine: a loop and its rig.
-struct Machine<R> {
+struct BenchMachine<R> {
     control: Loop,
     rig: R,
-    pace: Pace,
+    pace: BenchPace,
     supervisor: VirtualSupervisor,
     tick: Option<Tick>,
     /// Raised faults, and their numbers.
     faults: BTreeMap<String, u32>,
 }
 
-impl<R: Rig> Machine<R> {
+impl<R: Rig> BenchMachine<R> {
     fn new(rig: &RigConfig, place: R, clock: VirtualClock) -> Result<Self, NetworkError> {
         let control = Loop::new(rig, &[Some(Calibrations::default()), None])?;
-        let pace = Pace::new(clock);
+        let pace = BenchPace::new(clock);
         let supervisor = VirtualSupervisor::default();
         Ok(Self { control, rig: place, pace, supervisor, tick: None, faults: BTreeMap::new() })
     }
@@ -114,7 +114,7 @@ impl<R: Rig> Machine<R> {
         let (outputs, ticks) = self.control.step(inputs, &timing);
         self.rig.write(now_s, &outputs);
         self.supervisor.beat(now_s, &outputs);
-        self.rig.hear(now_s, &self.control.bulletins());
+        self.rig.receive_status(now_s, &self.control.bulletins());
         self.tick = ticks[Side::Right.index()];
         for event in self.control.events() {
             if let Event::FaultRaised { fault, .. } = event {
@@ -129,12 +129,12 @@ impl<R: Rig> Machine<R> {
 }
 
 /// Both machines and the line.
-pub(super) struct Bench {
-    console: Machine<FarFollower<Place, End>>,
-    follower: Machine<FarLeader<Place, End>>,
+pub(super) struct NetworkBench {
+    console: BenchMachine<FarFollower<Workplace, NetworkEnd>>,
+    follower: BenchMachine<FarLeader<Workplace, NetworkEnd>>,
     /// From the console to the follower, and back.
-    lines: [Line; 2],
-    condition: Condition,
+    lines: [ImpairedLine; 2],
+    condition: NetworkCondition,
     pub(super) rig: RigConfig,
     /// Periods since the line was opened, and until the loops were started.
     pub(super) tick: u32,
@@ -147,7 +147,7 @@ pub(super) struct Bench {
 
 /// Observations of one tick.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Seen {
+pub(super) struct TickObservation {
     /// The console's tick, and whether it belongs to this period.
     pub(super) console: Tick,
     pub(super) is_new: bool,
@@ -162,11 +162,11 @@ pub(super) struct Seen {
     pub(super) under_way: [(u32, u32); 2],
 }
 
-impl Bench {
+impl NetworkBench {
     /// The line has been open for `known_s` when the loops start.
     pub(super) fn new(
         clock: VirtualClock,
-        condition: Condition,
+        condition: NetworkCondition,
         mode: Mode,
         own_motion: OwnMotion,
         known_s: f64,
@@ -176,20 +176,20 @@ impl Bench {
         rig.delay_s = 0.0;
         rig.identification.own_motion = own_motion;
         let scene = Scene::load("peg_transfer")?;
-        let (one, other) = Stream::pair(&StreamSettings::of_arms(1))?;
+        let (one, other) = NetworkStream::pair(&StreamSettings::of_arms(1))?;
         let [there, back] = condition.lines();
-        let mut ends = [End::new(one), End::new(other)];
-        let mut lines = [Line::new(there, SEEDS[0]), Line::new(back, SEEDS[1])];
+        let mut ends = [NetworkEnd::new(one), NetworkEnd::new(other)];
+        let mut lines = [ImpairedLine::new(there, SEEDS[0]), ImpairedLine::new(back, SEEDS[1])];
         let begun = (known_s * RATE_HZ) as u32;
         for tick in 0..begun {
             measure(&mut ends, &mut lines, tick, condition.ahead_s(0.0));
         }
         let [one, other] = ends;
-        let console = FarFollower::new(Place::new(&scene), one, RATE_HZ);
-        let follower = FarLeader::new(Place::new(&scene), other, RATE_HZ);
+        let console = FarFollower::new(Workplace::new(&scene), one, RATE_HZ);
+        let follower = FarLeader::new(Workplace::new(&scene), other, RATE_HZ);
         Ok(Self {
-            console: Machine::new(&rig, console, clock)?,
-            follower: Machine::new(&at_follower(&rig), follower, clocks::of_trial(clock, 1))?,
+            console: BenchMachine::new(&rig, console, clock)?,
+            follower: BenchMachine::new(&at_follower(&rig), follower, clocks::of_trial(clock, 1))?,
             lines,
             condition,
             rig,
@@ -216,7 +216,7 @@ impl Bench {
     }
 
     /// The ends of the stream: the console's and the follower's.
-    pub(super) const fn ends(&self) -> [&End; 2] {
+    pub(super) const fn ends(&self) -> [&NetworkEnd; 2] {
         [self.console.rig.wire(), self.follower.rig.wire()]
     }
 
@@ -226,7 +226,7 @@ impl Bench {
     }
 
     /// Runs one period of both machines; `None` before both loops have had a tick.
-    pub(super) fn step(&mut self, command: Option<Command>) -> Option<Seen> {
+    pub(super) fn step(&mut self, command: Option<Command>) -> Option<TickObservation> {
         let period = self.ticks();
         self.command = command.or(self.command.take());
         let console = self.console.pace.tick_in(period);
@@ -253,7 +253,7 @@ impl Bench {
             if ticked[1] { under_way(follower, console) } else { (0, 0) },
         ];
         self.tick += 1;
-        Some(Seen {
+        Some(TickObservation {
             console: self.console.tick?,
             is_new: ticked[1],
             states: [self.console.state(), self.follower.state()],
@@ -296,9 +296,9 @@ impl Bench {
 
 /// Runs one tick of the line alone, so that playout delay and redundancy adapt as on a line that has been open for a
 /// while.
-fn measure([console, follower]: &mut [End; 2], [there, back]: &mut [Line; 2], tick: u32, ahead_s: f64) {
+fn measure([console, follower]: &mut [NetworkEnd; 2], [there, back]: &mut [ImpairedLine; 2], tick: u32, ahead_s: f64) {
     let now_s = f64::from(tick) / RATE_HZ;
-    let pass = |end: &mut End, from: &mut Line, to: &mut Line, ahead_s: f64| {
+    let pass = |end: &mut NetworkEnd, from: &mut ImpairedLine, to: &mut ImpairedLine, ahead_s: f64| {
         end.tick = tick;
         while let Some((came_s, bytes)) = from.receive(now_s + ROUNDING_S) {
             end.arrive(&bytes, came_s + ahead_s);
@@ -313,7 +313,7 @@ fn measure([console, follower]: &mut [End; 2], [there, back]: &mut [Line; 2], ti
 }
 
 /// Returns the transmission times of the payloads just delivered by `to`, ticks: sum and number.
-fn under_way(from: &End, to: &End) -> (u32, u32) {
+fn under_way(from: &NetworkEnd, to: &NetworkEnd) -> (u32, u32) {
     let sent = to.taken.iter().filter_map(|number| from.sent.get(*number as usize));
     sent.fold((0, 0), |(sum, count), sent| (sum + to.tick - sent, count + 1))
 }

@@ -3,15 +3,15 @@
 use nalgebra::Vector3;
 use nima_core::impedance::{Mode, OwnMotion};
 use nima_machine::{messages::LoopState, runtime::VirtualClock};
-use nima_network::playout::Counts;
+use nima_network::playout::PlayoutCounts;
 
 use super::{
-    Condition, Jitter, NetworkError, Row,
-    bench::{Bench, RATE_HZ, Seen},
+    ConditionJitter, NetworkCondition, NetworkError, NetworkRow,
+    bench::{NetworkBench, RATE_HZ, TickObservation},
     operator::Operator,
-    trace::{Sample, Trace},
+    trace::{RunTrace, TraceSample},
 };
-use crate::gates::{Breaches, Watch};
+use crate::gates::{Breaches, GateWatch};
 
 /// Parts of every cell's run, s, and the motion from which the console computes the force.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,8 +34,8 @@ const WATCHED_S: f64 = 0.1;
 const CLOCK_EVERY: u32 = 50;
 
 /// Counters of a running cell.
-struct Counting {
-    watch: Watch<3>,
+struct CellCounts {
+    watch: GateWatch<3>,
     breaches: Breaches,
     /// Ticks since the last payload was delivered to the console, and the maximum at which there was still force.
     silent: u32,
@@ -51,8 +51,8 @@ struct Counting {
     clock_bound_s: f64,
 }
 
-impl Counting {
-    fn look(&mut self, seen: &Seen, is_judged: bool) {
+impl CellCounts {
+    fn look(&mut self, seen: &TickObservation, is_judged: bool) {
         let tick = &seen.console;
         if seen.is_new {
             self.watch.look(tick.t_s, &tick.rendered_n, &tick.gates, 1.0, &mut self.breaches);
@@ -70,7 +70,7 @@ impl Counting {
     }
 
     /// Measures the largest step of a tip that was held, until it has followed again for a moment.
-    fn look_at_tip(&mut self, seen: &Seen) {
+    fn look_at_tip(&mut self, seen: &TickObservation) {
         let [_, follower] = seen.states;
         self.stopped = if follower.is_latched() { self.stopped + 1 } else { 0 };
         self.has_returned |= f64::from(self.stopped) > HOLDS_AFTER_S * RATE_HZ;
@@ -81,7 +81,7 @@ impl Counting {
         }
     }
 
-    fn look_at_clock(&mut self, bench: &Bench) {
+    fn look_at_clock(&mut self, bench: &NetworkBench) {
         let estimate = bench.ends()[0].stream.clock().estimate(bench.now_s());
         if let Some(estimate) = estimate {
             self.clock_error_s = self.clock_error_s.max((estimate.offset_s - bench.ahead_s()).abs());
@@ -90,14 +90,19 @@ impl Counting {
     }
 }
 
-pub(super) fn measured(clock: VirtualClock, condition: Condition, mode: Mode, runs: Runs) -> Result<Row, NetworkError> {
+pub(super) fn measured(
+    clock: VirtualClock,
+    condition: NetworkCondition,
+    mode: Mode,
+    runs: Runs,
+) -> Result<NetworkRow, NetworkError> {
     let Runs { known_s, settle_s, learn_s, task_s, own_motion } = runs;
-    let known_s = known_s[usize::from(condition.jitter == Jitter::None)];
-    let mut bench = Bench::new(clock, condition, mode, own_motion, known_s)?;
+    let known_s = known_s[usize::from(condition.jitter == ConditionJitter::None)];
+    let mut bench = NetworkBench::new(clock, condition, mode, own_motion, known_s)?;
     let mut operator = Operator::new(bench.now_s() + settle_s);
     let ticks = ((settle_s + learn_s + task_s) * RATE_HZ) as u32;
-    let mut counting = Counting {
-        watch: Watch::of(&bench.rig.gates, 1.0 / RATE_HZ),
+    let mut counting = CellCounts {
+        watch: GateWatch::of(&bench.rig.gates, 1.0 / RATE_HZ),
         breaches: Breaches::default(),
         silent: 0,
         force_after: 0,
@@ -111,8 +116,8 @@ pub(super) fn measured(clock: VirtualClock, condition: Condition, mode: Mode, ru
         clock_bound_s: 0.0,
     };
     let judged_from = ((settle_s + learn_s) * RATE_HZ) as u32;
-    let mut trace = Trace::new(judged_from as usize);
-    let mut before = [Counts::default(); 2];
+    let mut trace = RunTrace::new(judged_from as usize);
+    let mut before = [PlayoutCounts::default(); 2];
     let mut clock_set = None;
     let mut round_trip_s = 0.0;
     while bench.ticks() < ticks {
@@ -132,7 +137,7 @@ pub(super) fn measured(clock: VirtualClock, condition: Condition, mode: Mode, ru
             counting.look_at_clock(&bench);
         }
         round_trip_s = seen.console.delay_s;
-        trace.push(Sample {
+        trace.push(TraceSample {
             hand_m: seen.hand_m,
             tip_n: seen.tip_n,
             rendered_n: seen.console.rendered_n,
@@ -145,10 +150,10 @@ pub(super) fn measured(clock: VirtualClock, condition: Condition, mode: Mode, ru
         let found = bench.ends().map(|end| end.stepped.map(|tick| f64::from(tick.saturating_sub(set)) * 1e3 / RATE_HZ));
         found[0].zip(found[1]).map(|(one, other)| one.max(other))
     };
-    let shares = shares(&before, &counts(&bench));
+    let fractions = fractions(&before, &counts(&bench));
     let felt = trace.felt();
     let [console, follower] = bench.faults();
-    Ok(Row {
+    Ok(NetworkRow {
         clock: clock.profile,
         condition,
         mode,
@@ -174,9 +179,9 @@ pub(super) fn measured(clock: VirtualClock, condition: Condition, mode: Mode, ru
         return_step_mm: counting.step_m.map(|step_m| 1e3 * step_m),
         under_way_ms: counting.under_way.map(|(ticks, count)| ticks as f64 / count.max(1) as f64 * 1e3 / RATE_HZ),
         round_trip_ms: 1e3 * round_trip_s,
-        late_percent: shares.map(|shares| shares[0]),
-        lost_percent: shares.map(|shares| shares[1]),
-        recovered_percent: shares.map(|shares| shares[2]),
+        late_percent: fractions.map(|fractions| fractions[0]),
+        lost_percent: fractions.map(|fractions| fractions[1]),
+        recovered_percent: fractions.map(|fractions| fractions[2]),
         copies: copies(&bench),
         clock_error_ms: 1e3 * counting.clock_error_s,
         clock_bound_ms: 1e3 * counting.clock_bound_s,
@@ -185,18 +190,18 @@ pub(super) fn measured(clock: VirtualClock, condition: Condition, mode: Mode, ru
 }
 
 /// Returns the counts of the payloads to the follower and to the console.
-fn counts(bench: &Bench) -> [Counts; 2] {
+fn counts(bench: &NetworkBench) -> [PlayoutCounts; 2] {
     let [console, follower] = bench.ends();
     [follower, console].map(|end| end.stream.figures(bench.now_s()).counts)
 }
 
 /// Returns the requested and used number of redundant copies at the end, to the follower and to the console.
-fn copies(bench: &Bench) -> [[usize; 2]; 2] {
+fn copies(bench: &NetworkBench) -> [[usize; 2]; 2] {
     bench.ends().map(|end| end.stream.figures(bench.now_s()).copies).map(|copies| [copies.wanted, copies.used])
 }
 
 /// Returns the fractions of payloads that were late, lost and recovered, %.
-fn shares(before: &[Counts; 2], after: &[Counts; 2]) -> [[f64; 3]; 2] {
+fn fractions(before: &[PlayoutCounts; 2], after: &[PlayoutCounts; 2]) -> [[f64; 3]; 2] {
     std::array::from_fn(|way| {
         let before = &before[way];
         let after = &after[way];

@@ -1,12 +1,17 @@
 //! Impairments of the datagrams and the clocks: the factors of the study.
 
-use nima_network::impairment::{Flap, Jitter as LineJitter, Loss, OUTAGES, Settings};
+use nima_network::impairment::{Flap, ImpairmentJitter as LineJitter, ImpairmentSettings, LossModel, OUTAGES};
 use serde::{Serialize, Serializer};
 
 /// In each direction, ms.
 pub const DELAYS_MS: [f64; 11] = [0.0, 5.0, 15.0, 36.0, 72.0, 100.0, 150.0, 300.0, 450.0, 600.0, 900.0];
-pub const JITTERS: [Jitter; 5] =
-    [Jitter::None, Jitter::Normal(5.0), Jitter::Normal(20.0), Jitter::Normal(50.0), Jitter::Pareto];
+pub const JITTERS: [ConditionJitter; 5] = [
+    ConditionJitter::None,
+    ConditionJitter::Normal(5.0),
+    ConditionJitter::Normal(20.0),
+    ConditionJitter::Normal(50.0),
+    ConditionJitter::Pareto,
+];
 /// Fractions of datagrams lost, %.
 pub const LOSSES_PERCENT: [f64; 6] = [0.0, 1.0, 5.0, 10.0, 20.0, 30.0];
 /// Mean lengths of bursts of loss, ms.
@@ -26,7 +31,7 @@ const LONG_WAY_MS: f64 = 100.0;
 
 /// Additional delay of a datagram. A late one delays those behind it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Jitter {
+pub enum ConditionJitter {
     /// None.
     None,
     /// The absolute value of a normal number with this deviation, ms.
@@ -35,7 +40,7 @@ pub enum Jitter {
     Pareto,
 }
 
-impl Jitter {
+impl ConditionJitter {
     /// For tables.
     pub fn word(self) -> String {
         match self {
@@ -46,7 +51,7 @@ impl Jitter {
     }
 }
 
-impl Serialize for Jitter {
+impl Serialize for ConditionJitter {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.serialize_str(&self.word())
     }
@@ -55,7 +60,7 @@ impl Serialize for Jitter {
 /// An impairment other than delay, jitter and loss.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Happening {
+pub enum LinkEvent {
     /// None.
     Nothing,
     /// No connection for 0.8 s of every 4 s, the published profile.
@@ -76,7 +81,7 @@ pub enum Happening {
     Asymmetric,
 }
 
-impl Happening {
+impl LinkEvent {
     pub const ALL: [Self; 9] = [
         Self::Nothing,
         Self::Outages,
@@ -112,23 +117,29 @@ impl Happening {
 
 /// One combination of the factors.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Condition {
+pub struct NetworkCondition {
     /// In each direction, ms.
     pub delay_ms: f64,
     /// In addition to the delay.
-    pub jitter: Jitter,
+    pub jitter: ConditionJitter,
     /// Fraction of datagrams lost, %.
     pub loss_percent: f64,
     /// Mean length of the bursts in which they are lost, ms; `None` for independent losses.
     pub burst_ms: Option<f64>,
     /// Other impairment.
-    pub happening: Happening,
+    pub happening: LinkEvent,
 }
 
-impl Condition {
+impl NetworkCondition {
     /// A line with only this delay, ms.
     pub const fn clean(delay_ms: f64) -> Self {
-        Self { delay_ms, jitter: Jitter::None, loss_percent: 0.0, burst_ms: None, happening: Happening::Nothing }
+        Self {
+            delay_ms,
+            jitter: ConditionJitter::None,
+            loss_percent: 0.0,
+            burst_ms: None,
+            happening: LinkEvent::Nothing,
+        }
     }
 
     /// Whether there is nothing but a delay.
@@ -137,31 +148,31 @@ impl Condition {
     }
 
     /// Returns the line from console to follower, and the one back.
-    pub(super) fn lines(&self) -> [Settings; 2] {
-        let share = self.loss_percent / 100.0;
-        let there = Settings {
+    pub(super) fn lines(&self) -> [ImpairmentSettings; 2] {
+        let fraction = self.loss_percent / 100.0;
+        let there = ImpairmentSettings {
             delay_s: self.delay_ms * 1e-3,
             jitter: match self.jitter {
-                Jitter::None => LineJitter::None,
-                Jitter::Normal(deviation_ms) => LineJitter::Normal { deviation_s: deviation_ms * 1e-3 },
-                Jitter::Pareto => PARETO,
+                ConditionJitter::None => LineJitter::None,
+                ConditionJitter::Normal(deviation_ms) => LineJitter::Normal { deviation_s: deviation_ms * 1e-3 },
+                ConditionJitter::Pareto => PARETO,
             },
             loss: match self.burst_ms {
-                _ if share <= 0.0 => Loss::None,
-                Some(burst_ms) => Loss::Bursts { share, burst_s: burst_ms * 1e-3 },
-                None => Loss::Independent { share },
+                _ if fraction <= 0.0 => LossModel::None,
+                Some(burst_ms) => LossModel::Bursts { fraction, burst_s: burst_ms * 1e-3 },
+                None => LossModel::Independent { fraction },
             },
-            ..Settings::default()
+            ..ImpairmentSettings::default()
         };
         let both = match self.happening {
-            Happening::Outages => Settings { flap: Some(OUTAGES), ..there },
-            Happening::Flap => Settings { flap: Some(FLAP), ..there },
-            Happening::Reorder => Settings { reorder: 0.05, reorder_s: 0.01, ..there },
-            Happening::Duplicates => Settings { duplicate: 0.2, ..there },
+            LinkEvent::Outages => ImpairmentSettings { flap: Some(OUTAGES), ..there },
+            LinkEvent::Flap => ImpairmentSettings { flap: Some(FLAP), ..there },
+            LinkEvent::Reorder => ImpairmentSettings { reorder: 0.05, reorder_s: 0.01, ..there },
+            LinkEvent::Duplicates => ImpairmentSettings { duplicate: 0.2, ..there },
             _ => there,
         };
-        let back_ms = if self.happening == Happening::Asymmetric { LONG_WAY_MS } else { self.delay_ms };
-        [both, Settings { delay_s: back_ms * 1e-3, ..both }]
+        let back_ms = if self.happening == LinkEvent::Asymmetric { LONG_WAY_MS } else { self.delay_ms };
+        [both, ImpairmentSettings { delay_s: back_ms * 1e-3, ..both }]
     }
 
     /// The follower's clock minus the console's at this time of the run, s.
@@ -169,9 +180,9 @@ impl Condition {
         let is_set = t_s >= CLOCK_SET_AT_S;
         AHEAD_S
             + match self.happening {
-                Happening::ClockForward if is_set => CLOCK_STEP_S,
-                Happening::ClockBack if is_set => -CLOCK_STEP_S,
-                Happening::ClockDrift => CLOCK_DRIFT * t_s,
+                LinkEvent::ClockForward if is_set => CLOCK_STEP_S,
+                LinkEvent::ClockBack if is_set => -CLOCK_STEP_S,
+                LinkEvent::ClockDrift => CLOCK_DRIFT * t_s,
                 _ => 0.0,
             }
     }

@@ -1,16 +1,16 @@
 //! One end of the stream on the virtual clock: the endpoint's work without a socket.
 
-use nima_machine::remote::Wire;
+use nima_machine::remote::RemoteWire;
 use nima_network::{
     endpoint::ALIVE_S,
-    stream::{Sent, Stream},
+    stream::{NetworkStream, SendResult},
     wire::DATAGRAM_MAX,
 };
 
 /// A stream as the loop's link. Its datagrams wait in `out` until the bench takes them.
 #[derive(Debug)]
-pub(super) struct End {
-    pub(super) stream: Box<Stream>,
+pub(super) struct NetworkEnd {
+    pub(super) stream: Box<NetworkStream>,
     pub(super) out: Vec<Vec<u8>>,
     /// Tick of the run.
     pub(super) tick: u32,
@@ -24,8 +24,8 @@ pub(super) struct End {
     datagram: [u8; DATAGRAM_MAX],
 }
 
-impl End {
-    pub(super) fn new(stream: Stream) -> Self {
+impl NetworkEnd {
+    pub(super) fn new(stream: NetworkStream) -> Self {
         Self {
             stream: Box::new(stream),
             out: Vec::new(),
@@ -48,14 +48,14 @@ impl End {
     }
 
     fn put(&mut self, now_s: f64, payload: Option<&[u8]>) {
-        if let Sent::Datagram(len) = self.stream.send(now_s, payload, 0, &mut self.datagram) {
+        if let SendResult::Datagram(len) = self.stream.send(now_s, payload, 0, &mut self.datagram) {
             self.sent_s = now_s;
             self.out.push(self.datagram[..len].to_vec());
         }
     }
 }
 
-impl Wire for End {
+impl RemoteWire for NetworkEnd {
     fn send(&mut self, now_s: f64, message: &[u8]) {
         self.put(now_s, Some(message));
         self.sent.resize(self.stream.payloads() as usize, self.tick);

@@ -1,7 +1,7 @@
 //! Two machines over an impaired line: the force in the hand, in every mode, over delay, jitter, loss, outages and
 //! clock faults.
 //!
-//! Takes [`Options`]; returns a [`Report`]: one [`Row`] per cell, and the [`Aim`]s with their results. A cell is a run
+//! Takes [`NetworkOptions`]; returns a [`NetworkReport`]: one [`NetworkRow`] per cell, and the [`StudyAim`]s with their results. A cell is a run
 //! of two whole loops on the virtual clock, the console's with the hand and the follower's with arm and tissue: those
 //! of `nima console --follower` and `nima follower`, connected by the stream of `nima-network` through its impaired
 //! line, each with its own late ticks. Deterministic.
@@ -29,9 +29,9 @@ use nima_network::keys::KeyError;
 use serde::Serialize;
 
 pub use self::{
-    aims::Aim,
-    condition::{BURSTS_MS, Condition, DELAYS_MS, Happening, JITTERS, Jitter, LOSSES_PERCENT},
-    plan::{BASE_MS, Extent, Options},
+    aims::StudyAim,
+    condition::{BURSTS_MS, ConditionJitter, DELAYS_MS, JITTERS, LOSSES_PERCENT, LinkEvent, NetworkCondition},
+    plan::{BASE_MS, NetworkOptions, PlanExtent},
 };
 use self::{
     cell::{Runs, measured},
@@ -52,12 +52,12 @@ pub enum NetworkError {
 
 /// One cell. Pairs are: to the follower, to the console.
 #[derive(Clone, Debug, Serialize)]
-pub struct Row {
+pub struct NetworkRow {
     /// Clock of both loops.
     pub clock: ClockProfile,
     /// The line and the clocks.
     #[serde(flatten)]
-    pub condition: Condition,
+    pub condition: NetworkCondition,
     /// Rendering mode.
     pub mode: Mode,
     /// Mean error of the force in the hand, compared with the true force of the tissue at the time when the follower
@@ -122,9 +122,9 @@ pub struct Row {
 }
 
 #[derive(Clone, Debug, Serialize)]
-pub struct Report {
+pub struct NetworkReport {
     /// Extent of the run.
-    pub extent: Extent,
+    pub extent: PlanExtent,
     /// Mode that is judged.
     pub judged: Mode,
     /// Motion from which the console computes the force.
@@ -135,16 +135,19 @@ pub struct Report {
     pub run_s: f64,
     pub judged_s: f64,
     /// Targets.
-    pub aims: Vec<Aim>,
+    pub aims: Vec<StudyAim>,
     /// Every cell.
-    pub rows: Vec<Row>,
+    pub rows: Vec<NetworkRow>,
 }
 
 /// Runs the study; before each part `progress` is called with the number of cells done, their total, and the name of the next.
 ///
 /// # Errors
 /// [`NetworkError`] if rig or scene cannot be used.
-pub fn study(options: &Options, mut progress: impl FnMut(usize, usize, &str)) -> Result<Report, NetworkError> {
+pub fn study(
+    options: &NetworkOptions,
+    mut progress: impl FnMut(usize, usize, &str),
+) -> Result<NetworkReport, NetworkError> {
     let plan = plan(options);
     let runs = runs(options);
     let mut rows = Vec::with_capacity(plan.len());
@@ -160,7 +163,7 @@ pub fn study(options: &Options, mut progress: impl FnMut(usize, usize, &str)) ->
         }
         let playout_ms = row.under_way_ms.iter().sum::<f64>() / 2.0;
         // The playout delay adds a margin and the remainder of a tick.
-        let as_long = measured(cell.clock, Condition::clean(playout_ms.round() - 1.0), judged, runs)?;
+        let as_long = measured(cell.clock, NetworkCondition::clean(playout_ms.round() - 1.0), judged, runs)?;
         row.over_same_playout = Some(row.error_n / as_long.error_n);
     }
     let aims = options.clocks.iter().flat_map(|clock| {
@@ -168,7 +171,7 @@ pub fn study(options: &Options, mut progress: impl FnMut(usize, usize, &str)) ->
         aims::aims(&rows, judged)
     });
     progress(plan.len(), plan.len(), "done");
-    Ok(Report {
+    Ok(NetworkReport {
         extent: options.extent,
         judged,
         own_motion: options.own_motion,
@@ -181,7 +184,7 @@ pub fn study(options: &Options, mut progress: impl FnMut(usize, usize, &str)) ->
 }
 
 /// Runs these cells in parallel.
-fn side_by_side(cells: &[Cell], runs: Runs) -> Result<Vec<Row>, NetworkError> {
+fn side_by_side(cells: &[Cell], runs: Runs) -> Result<Vec<NetworkRow>, NetworkError> {
     scope(|scope| {
         let running: Vec<_> = cells
             .iter()
@@ -192,16 +195,17 @@ fn side_by_side(cells: &[Cell], runs: Runs) -> Result<Vec<Row>, NetworkError> {
 }
 
 /// Computes the ratios between cells.
-fn compare(rows: &mut [Row]) {
-    let key = |clock: ClockProfile, condition: &Condition, mode: Mode| format!("{clock} {condition:?} {mode}");
+fn compare(rows: &mut [NetworkRow]) {
+    let key = |clock: ClockProfile, condition: &NetworkCondition, mode: Mode| format!("{clock} {condition:?} {mode}");
     let errors: HashMap<String, f64> =
         rows.iter().map(|row| (key(row.clock, &row.condition, row.mode), row.error_n)).collect();
     for row in rows {
-        let over = |condition: &Condition, mode| {
+        let over = |condition: &NetworkCondition, mode| {
             let error_n = errors.get(&key(row.clock, condition, mode))?;
             Some(row.error_n / error_n).filter(|ratio| ratio.is_finite())
         };
-        let ratios = (over(&Condition::clean(row.condition.delay_ms), row.mode), over(&row.condition, Mode::Dfr));
+        let ratios =
+            (over(&NetworkCondition::clean(row.condition.delay_ms), row.mode), over(&row.condition, Mode::Dfr));
         (row.over_clean, row.over_reflection) = ratios;
     }
 }

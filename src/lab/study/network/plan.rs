@@ -4,22 +4,22 @@ use nima_core::impedance::{Mode, OwnMotion};
 use nima_machine::runtime::VirtualClock;
 use serde::Serialize;
 
-use super::{BURSTS_MS, Condition, DELAYS_MS, Happening, JITTERS, Jitter, LOSSES_PERCENT, cell::Runs};
+use super::{BURSTS_MS, ConditionJitter, DELAYS_MS, JITTERS, LOSSES_PERCENT, LinkEvent, NetworkCondition, cell::Runs};
 
 /// Delay of the point around which each factor is varied alone, ms.
 pub const BASE_MS: f64 = 36.0;
 /// On this line at most 10 % of additional error is allowed.
-pub(super) const JUDGED_JITTER: Jitter = Jitter::Normal(20.0);
+pub(super) const JUDGED_JITTER: ConditionJitter = ConditionJitter::Normal(20.0);
 pub(super) const JUDGED_LOSS_PERCENT: f64 = 30.0;
 /// Jitter at which the clock is judged.
-pub(super) const CLOCK_JITTER: Jitter = Jitter::Normal(1.0);
+pub(super) const CLOCK_JITTER: ConditionJitter = ConditionJitter::Normal(1.0);
 /// %.
 const BURST_LOSSES_PERCENT: [f64; 2] = [5.0, 20.0];
 
 /// Extent of the study.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Extent {
+pub enum PlanExtent {
     /// A few short cells.
     Quick,
     /// Every mode over every delay; every other factor alone and loss with jitter at [`BASE_MS`], in three modes.
@@ -30,8 +30,8 @@ pub enum Extent {
 
 /// Options of the study.
 #[derive(Clone, Debug)]
-pub struct Options {
-    pub extent: Extent,
+pub struct NetworkOptions {
+    pub extent: PlanExtent,
     /// Clocks of both loops, in the order of the tables.
     pub clocks: Vec<VirtualClock>,
     /// The modes, the first of which is judged. If empty, all modes are run and the default one is judged. Delayed
@@ -41,7 +41,7 @@ pub struct Options {
     pub own_motion: OwnMotion,
 }
 
-impl Options {
+impl NetworkOptions {
     pub fn judged(&self) -> Mode {
         self.modes.first().copied().unwrap_or(Mode::Best)
     }
@@ -58,10 +58,10 @@ impl Options {
     }
 }
 
-pub(super) const fn runs(options: &Options) -> Runs {
+pub(super) const fn runs(options: &NetworkOptions) -> Runs {
     let own_motion = options.own_motion;
     match options.extent {
-        Extent::Quick => Runs { known_s: [20.0, 5.0], settle_s: 1.0, learn_s: 4.0, task_s: 10.0, own_motion },
+        PlanExtent::Quick => Runs { known_s: [20.0, 5.0], settle_s: 1.0, learn_s: 4.0, task_s: 10.0, own_motion },
         _ => Runs { known_s: [60.0, 5.0], settle_s: 5.0, learn_s: 5.0, task_s: 20.0, own_motion },
     }
 }
@@ -70,12 +70,12 @@ pub(super) const fn runs(options: &Options) -> Runs {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cell {
     pub(super) clock: VirtualClock,
-    pub(super) condition: Condition,
+    pub(super) condition: NetworkCondition,
     pub(super) mode: Mode,
 }
 
 /// Returns the cells, in the order in which they are run.
-pub(super) fn plan(options: &Options) -> Vec<Cell> {
+pub(super) fn plan(options: &NetworkOptions) -> Vec<Cell> {
     nima_baselines::provide();
     let cells = of_one_clock(options);
     let on = |clock: &VirtualClock| {
@@ -85,16 +85,16 @@ pub(super) fn plan(options: &Options) -> Vec<Cell> {
     options.clocks.iter().flat_map(on).collect()
 }
 
-fn of_one_clock(options: &Options) -> Vec<(Condition, Mode)> {
+fn of_one_clock(options: &NetworkOptions) -> Vec<(NetworkCondition, Mode)> {
     let all = || Mode::ALL.into_iter().chain(Mode::BASELINES);
-    let cells = |conditions: Vec<Condition>, modes: Vec<Mode>| {
+    let cells = |conditions: Vec<NetworkCondition>, modes: Vec<Mode>| {
         modes.into_iter().flat_map(move |mode| conditions.clone().into_iter().map(move |condition| (condition, mode)))
     };
     match options.extent {
-        Extent::Quick => cells(quick(), options.modes_or([Mode::Best])).collect(),
-        Extent::Full => cells(full(), options.modes_or(all())).collect(),
-        Extent::Usual => {
-            let delays = DELAYS_MS.map(Condition::clean).to_vec();
+        PlanExtent::Quick => cells(quick(), options.modes_or([Mode::Best])).collect(),
+        PlanExtent::Full => cells(full(), options.modes_or(all())).collect(),
+        PlanExtent::Usual => {
+            let delays = DELAYS_MS.map(NetworkCondition::clean).to_vec();
             let over_delays = cells(delays.clone(), options.modes_or(all()));
             let others = around().into_iter().filter(|condition| !delays.contains(condition)).collect();
             over_delays.chain(cells(others, options.modes_or([Mode::Best, Mode::Matched]))).collect()
@@ -103,37 +103,37 @@ fn of_one_clock(options: &Options) -> Vec<(Condition, Mode)> {
 }
 
 /// The line that is judged, at this delay, ms.
-pub(super) const fn judged_line(delay_ms: f64) -> Condition {
-    Condition { jitter: JUDGED_JITTER, loss_percent: JUDGED_LOSS_PERCENT, ..Condition::clean(delay_ms) }
+pub(super) const fn judged_line(delay_ms: f64) -> NetworkCondition {
+    NetworkCondition { jitter: JUDGED_JITTER, loss_percent: JUDGED_LOSS_PERCENT, ..NetworkCondition::clean(delay_ms) }
 }
 
-fn quick() -> Vec<Condition> {
-    let base = Condition::clean(BASE_MS);
-    vec![base, judged_line(BASE_MS), Condition { happening: Happening::Outages, ..base }]
+fn quick() -> Vec<NetworkCondition> {
+    let base = NetworkCondition::clean(BASE_MS);
+    vec![base, judged_line(BASE_MS), NetworkCondition { happening: LinkEvent::Outages, ..base }]
 }
 
 /// Loss with jitter, and every other factor alone.
-fn around() -> Vec<Condition> {
-    let base = Condition::clean(BASE_MS);
+fn around() -> Vec<NetworkCondition> {
+    let base = NetworkCondition::clean(BASE_MS);
     let crossed = JITTERS
         .into_iter()
-        .flat_map(|jitter| LOSSES_PERCENT.map(|loss_percent| Condition { jitter, loss_percent, ..base }));
+        .flat_map(|jitter| LOSSES_PERCENT.map(|loss_percent| NetworkCondition { jitter, loss_percent, ..base }));
     let bursts = BURST_LOSSES_PERCENT.into_iter().flat_map(|loss_percent| {
-        BURSTS_MS.map(|burst_ms| Condition { loss_percent, burst_ms: Some(burst_ms), ..base })
+        BURSTS_MS.map(|burst_ms| NetworkCondition { loss_percent, burst_ms: Some(burst_ms), ..base })
     });
-    let happenings = Happening::ALL.into_iter().skip(1).map(|happening| Condition { happening, ..base });
-    crossed.chain([Condition { jitter: CLOCK_JITTER, ..base }]).chain(bursts).chain(happenings).collect()
+    let happenings = LinkEvent::ALL.into_iter().skip(1).map(|happening| NetworkCondition { happening, ..base });
+    crossed.chain([NetworkCondition { jitter: CLOCK_JITTER, ..base }]).chain(bursts).chain(happenings).collect()
 }
 
-fn full() -> Vec<Condition> {
+fn full() -> Vec<NetworkCondition> {
     let mut all = Vec::new();
     for delay_ms in DELAYS_MS {
         for jitter in JITTERS {
             for loss_percent in LOSSES_PERCENT {
                 let bursts = if loss_percent > 0.0 { &BURSTS_MS[..] } else { &[] };
                 for burst_ms in [None].into_iter().chain(bursts.iter().copied().map(Some)) {
-                    for happening in Happening::ALL {
-                        all.push(Condition { delay_ms, jitter, loss_percent, burst_ms, happening });
+                    for happening in LinkEvent::ALL {
+                        all.push(NetworkCondition { delay_ms, jitter, loss_percent, burst_ms, happening });
                     }
                 }
             }
@@ -146,21 +146,24 @@ fn full() -> Vec<Condition> {
 mod tests {
     use super::*;
 
-    fn planned(extent: Extent, modes: &[Mode]) -> Vec<(Condition, Mode)> {
+    fn planned(extent: PlanExtent, modes: &[Mode]) -> Vec<(NetworkCondition, Mode)> {
         let own_motion = OwnMotion::default();
         let clocks = vec![VirtualClock::PERFECT];
-        let cells = plan(&Options { extent, clocks, modes: modes.to_vec(), own_motion });
+        let cells = plan(&NetworkOptions { extent, clocks, modes: modes.to_vec(), own_motion });
         cells.into_iter().map(|Cell { condition, mode, .. }| (condition, mode)).collect()
     }
 
     #[test]
     fn no_cell_is_run_twice_and_each_has_what_it_is_compared_with() {
-        for extent in [Extent::Quick, Extent::Usual] {
+        for extent in [PlanExtent::Quick, PlanExtent::Usual] {
             for modes in [&[][..], &[Mode::Matched, Mode::Dfr, Mode::Matched]] {
                 let cells = planned(extent, modes);
                 for (at, (condition, mode)) in cells.iter().enumerate() {
                     assert!(!cells[..at].contains(&(*condition, *mode)), "{condition:?} {mode}");
-                    assert!(cells.contains(&(Condition::clean(condition.delay_ms), *mode)), "{condition:?} {mode}");
+                    assert!(
+                        cells.contains(&(NetworkCondition::clean(condition.delay_ms), *mode)),
+                        "{condition:?} {mode}"
+                    );
                     assert!(cells.contains(&(*condition, Mode::Dfr)), "{condition:?}");
                 }
             }
@@ -172,6 +175,6 @@ mod tests {
         let delays = DELAYS_MS.len();
         let jitters = JITTERS.len();
         let losses = 1 + 5 * (1 + BURSTS_MS.len());
-        assert_eq!(planned(Extent::Full, &[]).len(), delays * jitters * losses * Happening::ALL.len() * 12);
+        assert_eq!(planned(PlanExtent::Full, &[]).len(), delays * jitters * losses * LinkEvent::ALL.len() * 12);
     }
 }

@@ -2,13 +2,13 @@
 
 use std::{collections::BTreeMap, fmt::Write as _};
 
-use nima_charts::{Axis, Chart, Series, Style, svg};
+use nima_charts::{Axis, Chart, Series, SeriesStyle, svg};
 use nima_core::impedance::{Mode, OwnMotion};
 use nima_machine::runtime::ClockProfile;
 
 use super::{
-    Aim, BASE_MS, Condition, DELAYS_MS, Extent, Happening, JITTERS, Jitter, LOSSES_PERCENT, NetworkError, Options,
-    Report, Row, plan::judged_line, study,
+    BASE_MS, ConditionJitter, DELAYS_MS, JITTERS, LOSSES_PERCENT, LinkEvent, NetworkCondition, NetworkError,
+    NetworkOptions, NetworkReport, NetworkRow, PlanExtent, StudyAim, plan::judged_line, study,
 };
 use crate::{Experiment, Findings, clocks};
 
@@ -20,7 +20,7 @@ const CSV_HEADER: &str = "clock,mode,delay_ms,jitter_ms,loss_percent,burst_ms,ha
 
 const CELLS_HEADER: &str = "| mode | delay (ms) | jitter (ms) | loss (%) | other | error (N) | of clean | of dfr | energy (mJ) | tissue's (mJ) | 2-50 Hz (N) | tissue's (N) | no force (ms) | after data (ms) | stops | step (mm) | there, back (ms) | late (%) | lost (%) | recovered (%) |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
 
-impl Condition {
+impl NetworkCondition {
     /// Loss for tables.
     fn loss_word(&self) -> String {
         let burst = self.burst_ms.map(|burst_ms| format!(" in {burst_ms} ms"));
@@ -29,9 +29,9 @@ impl Condition {
 
     /// Number of factors, other than the delay, that differ from their default.
     fn factors(&self) -> usize {
-        let jitters = self.jitter != Jitter::None;
+        let jitters = self.jitter != ConditionJitter::None;
         let loses = self.loss_percent > 0.0;
-        usize::from(jitters) + usize::from(loses) + usize::from(self.happening != Happening::Nothing)
+        usize::from(jitters) + usize::from(loses) + usize::from(self.happening != LinkEvent::Nothing)
     }
 
     fn is_at(&self, delay_ms: f64) -> bool {
@@ -39,19 +39,19 @@ impl Condition {
     }
 }
 
-impl Row {
+impl NetworkRow {
     /// The cell in a few words.
     pub(super) fn place(&self) -> String {
-        let Condition { delay_ms, jitter, loss_percent, happening, .. } = self.condition;
+        let NetworkCondition { delay_ms, jitter, loss_percent, happening, .. } = self.condition;
         let mut text = format!("{}, {delay_ms} ms", self.mode);
         // Writing into a String cannot fail, here and below.
-        if jitter != Jitter::None {
+        if jitter != ConditionJitter::None {
             write!(text, ", jitter {}", jitter.word()).ok();
         }
         if loss_percent > 0.0 {
             write!(text, ", loss {} %", self.condition.loss_word()).ok();
         }
-        if happening != Happening::Nothing {
+        if happening != LinkEvent::Nothing {
             write!(text, ", {}", happening.word()).ok();
         }
         text
@@ -70,7 +70,7 @@ impl Row {
         let ratio = |ratio: Option<f64>| ratio.map_or_else(|| "-".to_owned(), |ratio| format!("{ratio:.2}"));
         let two = |pair: [f64; 2], digits: usize| format!("{:.digits$}, {:.digits$}", pair[0], pair[1]);
         let step = self.return_step_mm.map_or_else(|| "-".to_owned(), |mm| format!("{mm:.3}"));
-        let Condition { delay_ms, jitter, happening, .. } = self.condition;
+        let NetworkCondition { delay_ms, jitter, happening, .. } = self.condition;
         writeln!(
             text,
             "| {} | {delay_ms} | {} | {} | {} | {} | {} | {} | {:.1} | {:.1} | {} | {} | {:.0} | {:.0} | {} | {step} | {} | {} | {} | {} |",
@@ -97,14 +97,14 @@ impl Row {
     }
 
     fn csv(&self, text: &mut String) {
-        let Condition { delay_ms, jitter, loss_percent, burst_ms, happening } = self.condition;
+        let NetworkCondition { delay_ms, jitter, loss_percent, burst_ms, happening } = self.condition;
         let maybe = |value: Option<f64>| value.map(|value| value.to_string()).unwrap_or_default();
         let all = |numbers: &[f64]| numbers.iter().map(f64::to_string).collect::<Vec<_>>().join(",");
         let faults = |faults: &BTreeMap<String, u32>| {
             let each: Vec<_> = faults.iter().map(|(fault, count)| format!("{fault} {count}")).collect();
             each.join("; ").replace([',', '"'], "")
         };
-        let shares = [self.late_percent, self.lost_percent, self.recovered_percent].concat();
+        let fractions = [self.late_percent, self.lost_percent, self.recovered_percent].concat();
         let cells = [
             self.clock.to_string(),
             self.mode.to_string(),
@@ -128,7 +128,7 @@ impl Row {
             maybe(self.return_step_mm),
             all(&self.under_way_ms),
             self.round_trip_ms.to_string(),
-            all(&shares),
+            all(&fractions),
             all(&[self.clock_error_ms, self.clock_bound_ms]),
             maybe(self.clock_step_named_ms),
         ];
@@ -141,7 +141,7 @@ fn newtons(value_n: f64) -> String {
     if value_n.is_finite() { format!("{value_n:.3}") } else { "never engaged".to_owned() }
 }
 
-impl Report {
+impl NetworkReport {
     /// Returns the modes in the order in which they were run.
     fn modes(&self) -> Vec<Mode> {
         let mut modes = Vec::new();
@@ -153,7 +153,7 @@ impl Report {
         modes
     }
 
-    fn row(&self, condition: &Condition, mode: Mode) -> Option<&Row> {
+    fn row(&self, condition: &NetworkCondition, mode: Mode) -> Option<&NetworkRow> {
         self.rows.iter().find(|row| row.mode == mode && row.condition == *condition)
     }
 
@@ -188,7 +188,7 @@ impl Report {
         }
         text.push_str("Every factor alone, and the line that is judged:\n\n");
         text.push_str(CELLS_HEADER);
-        let is_shown = |row: &&Row| {
+        let is_shown = |row: &&NetworkRow| {
             let condition = &row.condition;
             (condition.is_at(BASE_MS) && condition.factors() <= 1) || *condition == judged_line(condition.delay_ms)
         };
@@ -199,9 +199,9 @@ impl Report {
 
     fn head(&self) -> String {
         let extent = match self.extent {
-            Extent::Quick => "a few cells (--quick)",
-            Extent::Usual => "every mode over every delay; loss with jitter and every other factor alone at 36 ms",
-            Extent::Full => "every combination (--full)",
+            PlanExtent::Quick => "a few cells (--quick)",
+            PlanExtent::Usual => "every mode over every delay; loss with jitter and every other factor alone at 36 ms",
+            PlanExtent::Full => "every combination (--full)",
         };
         format!(
             "{} cells: {extent}. Runs of {} s on the virtual clock, of which the last {} s are judged; before each run the line has been open for {} s ({} s with jitter). Scene peg_transfer, delay in each direction, one seed. ETVO (Kroep and others, 2021) is not computed.\n\n",
@@ -235,8 +235,10 @@ impl Report {
 
     /// Writes the error over the delay of a line without other impairments.
     fn over_delay(&self, text: &mut String) {
-        let delays: Vec<f64> =
-            DELAYS_MS.into_iter().filter(|delay| self.row(&Condition::clean(*delay), self.judged).is_some()).collect();
+        let delays: Vec<f64> = DELAYS_MS
+            .into_iter()
+            .filter(|delay| self.row(&NetworkCondition::clean(*delay), self.judged).is_some())
+            .collect();
         text.push_str("Mean error (N) over the delay (ms) alone; with the engaged fraction of the time if it was below 100 %:\n\n| mode |");
         for delay_ms in &delays {
             write!(text, " {delay_ms} |").ok();
@@ -245,7 +247,7 @@ impl Report {
         for mode in self.modes() {
             write!(text, "| {mode} |").ok();
             for delay_ms in &delays {
-                let cell = self.row(&Condition::clean(*delay_ms), mode).map_or_else(|| "-".to_owned(), short);
+                let cell = self.row(&NetworkCondition::clean(*delay_ms), mode).map_or_else(|| "-".to_owned(), short);
                 write!(text, " {cell} |").ok();
             }
             text.push('\n');
@@ -255,9 +257,10 @@ impl Report {
 
     /// Writes the error over loss and jitter.
     fn over_loss(&self, text: &mut String, mode: Mode) {
-        let at =
-            |jitter, loss_percent| self.row(&Condition { jitter, loss_percent, ..Condition::clean(BASE_MS) }, mode);
-        let (Some(_), Some(_)) = (at(JITTERS[1], 0.0), at(Jitter::None, LOSSES_PERCENT[1])) else { return };
+        let at = |jitter, loss_percent| {
+            self.row(&NetworkCondition { jitter, loss_percent, ..NetworkCondition::clean(BASE_MS) }, mode)
+        };
+        let (Some(_), Some(_)) = (at(JITTERS[1], 0.0), at(ConditionJitter::None, LOSSES_PERCENT[1])) else { return };
         writeln!(
             text,
             "{mode} at {BASE_MS} ms, each datagram lost for itself: mean error (N), and over the same delay alone:\n"
@@ -293,11 +296,11 @@ impl Report {
         let delays = colours(self.modes()).map(|(colour, mode)| Series {
             name: mode.name().to_owned(),
             colour,
-            style: if colour < 7 { Style::Line } else { Style::Dashed },
-            points: self.points(mode, Condition::is_clean, |condition| condition.delay_ms),
+            style: if colour < 7 { SeriesStyle::Line } else { SeriesStyle::Dashed },
+            points: self.points(mode, NetworkCondition::is_clean, |condition| condition.delay_ms),
         });
         let pairs = JITTERS.into_iter().enumerate().flat_map(|(colour, jitter)| {
-            [(self.judged, Style::Line), (Mode::Dfr, Style::Dashed)].map(|(mode, style)| Series {
+            [(self.judged, SeriesStyle::Line), (Mode::Dfr, SeriesStyle::Dashed)].map(|(mode, style)| Series {
                 name: format!("{mode}, jitter {}", jitter.word()),
                 colour,
                 style,
@@ -305,7 +308,11 @@ impl Report {
                     mode,
                     |condition| {
                         *condition
-                            == Condition { jitter, loss_percent: condition.loss_percent, ..Condition::clean(BASE_MS) }
+                            == NetworkCondition {
+                                jitter,
+                                loss_percent: condition.loss_percent,
+                                ..NetworkCondition::clean(BASE_MS)
+                            }
                     },
                     |condition| condition.loss_percent,
                 ),
@@ -317,9 +324,9 @@ impl Report {
             y: Axis::log("mean error (N)", 0.02, 5.0),
             series,
         };
-        let most_ms = DELAYS_MS[DELAYS_MS.len() - 1];
+        let max_ms = DELAYS_MS[DELAYS_MS.len() - 1];
         svg(&[
-            chart("Delay alone", Axis::linear("delay in each direction (ms)", 0.0, most_ms), delays.collect()),
+            chart("Delay alone", Axis::linear("delay in each direction (ms)", 0.0, max_ms), delays.collect()),
             chart(
                 &format!("Loss and jitter (ms) at {BASE_MS} ms"),
                 Axis::linear("datagrams lost (%)", 0.0, 30.0),
@@ -331,8 +338,8 @@ impl Report {
     fn points(
         &self,
         mode: Mode,
-        is_shown: impl Fn(&Condition) -> bool,
-        x: impl Fn(&Condition) -> f64,
+        is_shown: impl Fn(&NetworkCondition) -> bool,
+        x: impl Fn(&NetworkCondition) -> f64,
     ) -> Vec<[f64; 2]> {
         let rows = self.rows.iter().filter(|row| row.mode == mode && is_shown(&row.condition));
         rows.map(|row| [x(&row.condition), row.error_n]).collect()
@@ -340,7 +347,7 @@ impl Report {
 }
 
 /// Returns the error of a row, with the engaged fraction of the time if it was below 100 %.
-fn short(row: &Row) -> String {
+fn short(row: &NetworkRow) -> String {
     let all = row.engaged > 0.999;
     if all || row.error_n.is_nan() {
         newtons(row.error_n)
@@ -349,18 +356,18 @@ fn short(row: &Row) -> String {
     }
 }
 
-impl Experiment for Options {
+impl Experiment for NetworkOptions {
     const NAME: &'static str = "network";
     const FILES: &'static [&'static str] = &[".md", ".csv", ".svg"];
-    type Findings = Report;
+    type Findings = NetworkReport;
     type Error = NetworkError;
 
-    fn run(&self, progress: &mut dyn FnMut(usize, usize, &str)) -> Result<Report, NetworkError> {
+    fn run(&self, progress: &mut dyn FnMut(usize, usize, &str)) -> Result<NetworkReport, NetworkError> {
         study(self, progress)
     }
 }
 
-impl Findings for Report {
+impl Findings for NetworkReport {
     fn text(&self) -> String {
         self.markdown()
     }
@@ -376,15 +383,15 @@ impl Findings for Report {
         if missed.is_empty() {
             return Ok(());
         }
-        let told = missed.iter().map(|aim| {
-            let Aim { clock, what, worst, limit, place, .. } = aim;
+        let report = missed.iter().map(|aim| {
+            let StudyAim { clock, what, worst, limit, place, .. } = aim;
             format!("{what}: {worst:.3}, at most {limit} ({place}, {clock} clock)")
         });
         Err(format!(
             "{} of {} aims were missed. {}",
             missed.len(),
             self.aims.len(),
-            told.collect::<Vec<_>>().join("; ")
+            report.collect::<Vec<_>>().join("; ")
         ))
     }
 }

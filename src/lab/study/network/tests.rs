@@ -3,23 +3,24 @@ use nima_machine::runtime::VirtualClock;
 use super::*;
 use crate::Findings as _;
 
-fn quick(condition: Condition, mode: Mode) -> Row {
+fn quick(condition: NetworkCondition, mode: Mode) -> NetworkRow {
     quick_from(OwnMotion::Follower, condition, mode)
 }
 
-fn quick_from(own_motion: OwnMotion, condition: Condition, mode: Mode) -> Row {
+fn quick_from(own_motion: OwnMotion, condition: NetworkCondition, mode: Mode) -> NetworkRow {
     on(VirtualClock::PERFECT, own_motion, condition, mode)
 }
 
-fn on(clock: VirtualClock, own_motion: OwnMotion, condition: Condition, mode: Mode) -> Row {
-    let options = Options { extent: Extent::Quick, clocks: vec![clock], modes: vec![], own_motion };
+fn on(clock: VirtualClock, own_motion: OwnMotion, condition: NetworkCondition, mode: Mode) -> NetworkRow {
+    let options = NetworkOptions { extent: PlanExtent::Quick, clocks: vec![clock], modes: vec![], own_motion };
     measured(clock, condition, mode, runs(&options)).unwrap()
 }
 
 #[test]
 fn late_ticks_of_both_machines_cost_little_and_stop_nothing() {
-    let [perfect, late] = [ClockProfile::Perfect, ClockProfile::Late { percent: 1.0 }]
-        .map(|profile| on(VirtualClock { profile, seed: 1 }, OwnMotion::Follower, Condition::clean(36.0), Mode::Dfr));
+    let [perfect, late] = [ClockProfile::Perfect, ClockProfile::Late { percent: 1.0 }].map(|profile| {
+        on(VirtualClock { profile, seed: 1 }, OwnMotion::Follower, NetworkCondition::clean(36.0), Mode::Dfr)
+    });
     assert_eq!((late.stops, late.resumed, late.ceiling_breaches), (0, 0, 0), "{late:?}");
     // For the mode's requested force: the effect of late ticks on the gates is judged in their own studies.
     assert!((late.asked_error_n / perfect.asked_error_n - 1.0).abs() < 0.1, "{perfect:?} {late:?}");
@@ -29,7 +30,7 @@ fn late_ticks_of_both_machines_cost_little_and_stop_nothing() {
 #[test]
 fn a_pause_of_100_ms_of_a_machine_is_a_latched_stop() {
     let clock = VirtualClock { profile: ClockProfile::Stall { ms: 100 }, seed: 1 };
-    let row = on(clock, OwnMotion::Follower, Condition::clean(36.0), Mode::Dfr);
+    let row = on(clock, OwnMotion::Follower, NetworkCondition::clean(36.0), Mode::Dfr);
     assert!(
         row.stops >= 3 && row.console_faults.keys().any(|fault| fault.starts_with("LoopStalled")) && row.resumed == 0,
         "{row:?}"
@@ -48,7 +49,7 @@ fn a_cell_is_the_same_every_time() {
 
 #[test]
 fn over_a_perfect_line_the_default_mode_is_far_better_than_reflection() {
-    let [best, dfr] = [Mode::Best, Mode::Dfr].map(|mode| quick(Condition::clean(36.0), mode));
+    let [best, dfr] = [Mode::Best, Mode::Dfr].map(|mode| quick(NetworkCondition::clean(36.0), mode));
     assert!(best.error_n < 0.4 * dfr.error_n && best.tissue_n > 0.2, "{best:?} {dfr:?}");
     for row in [best, dfr] {
         assert_eq!((row.stops, row.resumed, row.ceiling_breaches, row.slew_breaches), (0, 0, 0, 0), "{row:?}");
@@ -61,8 +62,8 @@ fn over_a_perfect_line_the_default_mode_is_far_better_than_reflection() {
 
 #[test]
 fn matched_on_the_motion_of_the_handle_gives_the_hand_no_energy() {
-    let base = Condition::clean(36.0);
-    for condition in [base, Condition { happening: Happening::Flap, ..base }] {
+    let base = NetworkCondition::clean(36.0);
+    for condition in [base, NetworkCondition { happening: LinkEvent::Flap, ..base }] {
         let row = quick_from(OwnMotion::Handle, condition, Mode::Matched);
         assert!(row.injected_mj < row.tissue_injected_mj + 1.0 && row.engaged > 0.9, "{row:?}");
     }
@@ -70,7 +71,7 @@ fn matched_on_the_motion_of_the_handle_gives_the_hand_no_energy() {
 
 #[test]
 fn an_outage_is_a_latched_stop_with_its_cause_and_what_comes_back_moves_nothing() {
-    let row = quick(Condition { happening: Happening::Outages, ..Condition::clean(36.0) }, Mode::Best);
+    let row = quick(NetworkCondition { happening: LinkEvent::Outages, ..NetworkCondition::clean(36.0) }, Mode::Best);
     assert!(row.stops >= 3 && row.resumed == 0, "{row:?}");
     assert_eq!(row.console_faults.keys().collect::<Vec<_>>(), ["LinkSilent"], "{row:?}");
     assert!(row.return_step_mm.is_some_and(|mm| mm < 0.2), "{row:?}");
@@ -80,24 +81,25 @@ fn an_outage_is_a_latched_stop_with_its_cause_and_what_comes_back_moves_nothing(
 /// Too short for a fault of the link; the tip keeps moving meanwhile, which is not a jump.
 #[test]
 fn a_break_of_50_ms_stops_nothing() {
-    let row = quick(Condition { happening: Happening::Flap, ..Condition::clean(36.0) }, Mode::Dfr);
+    let row = quick(NetworkCondition { happening: LinkEvent::Flap, ..NetworkCondition::clean(36.0) }, Mode::Dfr);
     assert_eq!((row.stops, row.force_after_data_ms <= 20.0), (0, true), "{row:?}");
     assert!(row.lost_percent.iter().all(|lost| (3.0..7.0).contains(lost)), "{row:?}");
 }
 
 #[test]
 fn a_step_of_the_followers_clock_is_named_and_stops() {
-    let row = quick(Condition { happening: Happening::ClockForward, ..Condition::clean(36.0) }, Mode::Best);
+    let row =
+        quick(NetworkCondition { happening: LinkEvent::ClockForward, ..NetworkCondition::clean(36.0) }, Mode::Best);
     assert!(row.clock_step_named_ms.is_some_and(|ms| ms < 1000.0), "{row:?}");
     assert!(row.follower_faults.contains_key("ClockJumped") && row.resumed == 0, "{row:?}");
 }
 
 #[test]
 fn every_file_is_whole() {
-    let rows = vec![quick(Condition::clean(36.0), Mode::Dfr)];
+    let rows = vec![quick(NetworkCondition::clean(36.0), Mode::Dfr)];
     let aims = aims::aims(&rows.iter().collect::<Vec<_>>(), Mode::Dfr);
-    let mut report = Report {
-        extent: Extent::Quick,
+    let mut report = NetworkReport {
+        extent: PlanExtent::Quick,
         judged: Mode::Dfr,
         own_motion: OwnMotion::Follower,
         known_s: [0.0; 2],

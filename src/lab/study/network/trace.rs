@@ -18,7 +18,7 @@ const BAND_HZ: [f64; 2] = [2.0, 50.0];
 
 /// One tick of both machines.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Sample {
+pub(super) struct TraceSample {
     /// True position of the hand at the beginning of the tick, m.
     pub(super) hand_m: Vector3<f64>,
     /// True force of the tissue, N.
@@ -32,14 +32,14 @@ pub(super) struct Sample {
 }
 
 #[derive(Debug)]
-pub(super) struct Trace {
-    samples: Vec<Sample>,
+pub(super) struct RunTrace {
+    samples: Vec<TraceSample>,
     judged_from: usize,
 }
 
 /// Measures of the force in the hand.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Felt {
+pub(super) struct TraceForce {
     /// Mean error of the force, and of the mode's requested force before the gates, N; NaN if the hand was never
     /// engaged.
     pub(super) error_n: f64,
@@ -59,13 +59,13 @@ pub(super) struct Felt {
     pub(super) engaged: f64,
 }
 
-impl Trace {
+impl RunTrace {
     /// Judged from this tick on.
     pub(super) const fn new(judged_from: usize) -> Self {
         Self { samples: Vec::new(), judged_from }
     }
 
-    pub(super) fn push(&mut self, sample: Sample) {
+    pub(super) fn push(&mut self, sample: TraceSample) {
         self.samples.push(sample);
     }
 
@@ -94,9 +94,9 @@ impl Trace {
     }
 
     /// Returns the measures of the force in the hand.
-    pub(super) fn felt(&self) -> Felt {
+    pub(super) fn felt(&self) -> TraceForce {
         let due_n = self.due_n();
-        let mut felt = Felt::default();
+        let mut felt = TraceForce::default();
         let mut band = Band::default();
         let mut tissue_band = Band::default();
         let mut energy_j = 0.0;
@@ -116,9 +116,9 @@ impl Trace {
                 0
             };
             felt.without_force_ms = felt.without_force_ms.max(f64::from(without) * 1e3 / RATE_HZ);
-            let way_m = next.hand_m - sample.hand_m;
-            energy_j += sample.rendered_n.dot(&way_m);
-            tissue_j += due_n.dot(&way_m);
+            let travel_m = next.hand_m - sample.hand_m;
+            energy_j += sample.rendered_n.dot(&travel_m);
+            tissue_j += due_n.dot(&travel_m);
             if !sample.is_engaged {
                 energy_j = 0.0;
                 tissue_j = 0.0;
@@ -171,15 +171,15 @@ mod tests {
     use super::*;
 
     /// A hand on a sine of 1 cm at this frequency over a spring of 300 N/m, felt this many ticks late.
-    fn pressed(hz: f64, late: usize, travel: usize) -> Felt {
-        let at_m = |tick: usize| Vector3::z() * 0.01 * (TAU * hz * tick as f64 / RATE_HZ).sin();
-        let mut trace = Trace::new(1000);
+    fn pressed(hz: f64, late: usize, travel: usize) -> TraceForce {
+        let position_m = |tick: usize| Vector3::z() * 0.01 * (TAU * hz * tick as f64 / RATE_HZ).sin();
+        let mut trace = RunTrace::new(1000);
         for tick in 0..20_000_usize {
-            let rendered_n = at_m(tick.saturating_sub(late)) * -300.0;
-            trace.push(Sample {
-                hand_m: at_m(tick),
+            let rendered_n = position_m(tick.saturating_sub(late)) * -300.0;
+            trace.push(TraceSample {
+                hand_m: position_m(tick),
                 // The follower is where the hand was when the newest command was given.
-                tip_n: at_m(tick.saturating_sub(travel)) * -300.0,
+                tip_n: position_m(tick.saturating_sub(travel)) * -300.0,
                 rendered_n,
                 asked_n: rendered_n,
                 is_engaged: tick >= 500,

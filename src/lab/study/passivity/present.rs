@@ -4,10 +4,10 @@ use std::fmt::Write as _;
 
 use nima_machine::runtime::ClockProfile;
 
-use super::{DELAYS_MS, LOOSE_N_M, OwnMotion, Report, STILL_M_S, Task, WAYS, study};
+use super::{DELAYS_MS, LOOSE_N_M, OwnMotion, PassivityReport, PassivityTask, STILL_M_S, WAYS, study};
 use crate::{Experiment, Findings, clocks, release::ReleaseError};
 
-impl Findings for Report {
+impl Findings for PassivityReport {
     /// Returns power and error of each task, and the speed of loose grips, by delay, for each clock.
     fn text(&self) -> String {
         let mut clocks: Vec<_> = self.rows.iter().map(|row| row.clock).collect();
@@ -16,11 +16,11 @@ impl Findings for Report {
     }
 }
 
-impl Report {
+impl PassivityReport {
     fn tables(&self, clock: ClockProfile) -> String {
         let mut text = clocks::heading(clock);
         let delays = DELAYS_MS.map(|delay_ms| format!(" {delay_ms:.0} ms |")).concat();
-        for task in Task::ALL {
+        for task in PassivityTask::ALL {
             let head = format!("| mode | own motion |{delays}\n|---|---|{}\n", "---|".repeat(DELAYS_MS.len()));
             // Writing into a String cannot fail, here and below.
             write!(text, "{}: mean power into the hand (mW) / mean error (N):\n\n{head}", title(task)).ok();
@@ -54,12 +54,12 @@ impl Report {
     }
 }
 
-const fn title(task: Task) -> &'static str {
+const fn title(task: PassivityTask) -> &'static str {
     match task {
-        Task::PalpationSlow => "Palpation at 1 Hz",
-        Task::PalpationFast => "Palpation at 3 Hz",
-        Task::PegTransfer => "Peg transfer",
-        Task::Withdrawal => "Withdrawal at 200 mm/s",
+        PassivityTask::PalpationSlow => "Palpation at 1 Hz",
+        PassivityTask::PalpationFast => "Palpation at 3 Hz",
+        PassivityTask::PegTransfer => "Peg transfer",
+        PassivityTask::Withdrawal => "Withdrawal at 200 mm/s",
     }
 }
 
@@ -70,12 +70,12 @@ const fn word(own_motion: OwnMotion) -> &'static str {
     }
 }
 
-impl Experiment for super::Options {
+impl Experiment for super::PassivityOptions {
     const NAME: &'static str = "passivity";
-    type Findings = Report;
+    type Findings = PassivityReport;
     type Error = ReleaseError;
 
-    fn run(&self, progress: &mut dyn FnMut(usize, usize, &str)) -> Result<Report, ReleaseError> {
+    fn run(&self, progress: &mut dyn FnMut(usize, usize, &str)) -> Result<PassivityReport, ReleaseError> {
         study(self, progress)
     }
 }

@@ -2,15 +2,15 @@
 
 use super::*;
 
-fn tissue() -> Tissue {
+fn tissue() -> TissueModel {
     pressed_tissue().unwrap()
 }
 
 #[test]
 fn matched_on_the_handles_motion_does_not_drive_the_hand_and_late_reflection_does() {
     for times in [0.4, 1.0, 2.5] {
-        let tissue = Tissue { stiffness: tissue().stiffness * times, ..tissue() };
-        for task in Task::ALL {
+        let tissue = TissueModel { stiffness: tissue().stiffness * times, ..tissue() };
+        for task in PassivityTask::ALL {
             for delay_ms in DELAYS_MS {
                 let row =
                     tasked(VirtualClock::PERFECT, (Mode::Matched, OwnMotion::Handle), task, delay_ms, tissue).unwrap();
@@ -18,7 +18,7 @@ fn matched_on_the_handles_motion_does_not_drive_the_hand_and_late_reflection_doe
             }
         }
     }
-    for task in Task::ALL {
+    for task in PassivityTask::ALL {
         let reflected = tasked(VirtualClock::PERFECT, (Mode::Dfr, OwnMotion::Follower), task, 100.0, tissue()).unwrap();
         assert!(reflected.power_mw > 12.0, "{reflected:?}");
     }
@@ -39,20 +39,20 @@ fn the_best_of_two_is_never_much_worse_than_anchored_in_the_whole_grid() {
 const DELAYS_MS: [f64; 4] = [10.0, 50.0, 100.0, 300.0];
 
 /// The scene's tissue, softer, stiffer, and without friction.
-fn tissues() -> [Tissue; 4] {
+fn tissues() -> [TissueModel; 4] {
     let plain = tissue();
     [
         plain,
-        Tissue { stiffness: plain.stiffness / 3.0, ..plain },
-        Tissue { stiffness: plain.stiffness * 3.0, ..plain },
-        Tissue { friction: 0.0, shear_stiffness_n_m: 0.0, ..plain },
+        TissueModel { stiffness: plain.stiffness / 3.0, ..plain },
+        TissueModel { stiffness: plain.stiffness * 3.0, ..plain },
+        TissueModel { friction: 0.0, shear_stiffness_n_m: 0.0, ..plain },
     ]
 }
 
 fn never_much_worse(delays_ms: &[f64]) {
     let mut worst = (0.0, String::new());
     for tissue in tissues() {
-        for task in Task::ALL {
+        for task in PassivityTask::ALL {
             for &delay_ms in delays_ms {
                 let error_n = |mode| {
                     tasked(VirtualClock::PERFECT, (mode, OwnMotion::Follower), task, delay_ms, tissue).unwrap().error_n
@@ -70,17 +70,17 @@ fn never_much_worse(delays_ms: &[f64]) {
 
 /// Stiffness 0.5 to 2 times the usual, surface 2 mm up or down, changing at every touch; one sequence for every
 /// `begin`.
-fn changing(plain: Tissue, begin: f64) -> impl Fn(u32) -> Tissue {
+fn changing(plain: TissueModel, begin: f64) -> impl Fn(u32) -> TissueModel {
     move |touch| {
-        let share = |step: f64| (f64::from(touch) * step + begin).fract() * 2.0 - 1.0;
-        let surface_z_m = plain.surface_z_m + 0.002 * share(0.618_034);
-        Tissue { surface_z_m, stiffness: plain.stiffness * share(0.754_878).exp2(), ..plain }
+        let fraction = |step: f64| (f64::from(touch) * step + begin).fract() * 2.0 - 1.0;
+        let surface_z_m = plain.surface_z_m + 0.002 * fraction(0.618_034);
+        TissueModel { surface_z_m, stiffness: plain.stiffness * fraction(0.754_878).exp2(), ..plain }
     }
 }
 
 #[test]
 fn over_tissue_that_changes_at_every_touch_the_best_of_two_is_better_than_reflection() {
-    for (task, limit) in [(Task::PegTransfer, 0.5), (Task::Withdrawal, 0.45)] {
+    for (task, limit) in [(PassivityTask::PegTransfer, 0.5), (PassivityTask::Withdrawal, 0.45)] {
         let other = changing(tissue(), 0.3);
         let error_n = |mode| {
             tasked_over(VirtualClock::PERFECT, (mode, OwnMotion::Follower), task, 300.0, &other).unwrap().error_n
@@ -105,13 +105,13 @@ fn over_tissue_that_changes_the_best_of_two_is_hardly_worse_than_anchored_in_the
 }
 
 /// Losses above 1.02 occur at the first change of a run, before it is known that the tissue changes.
-fn hardly_worse(tissues: &[Tissue], begins: &[f64]) {
+fn hardly_worse(tissues: &[TissueModel], begins: &[f64]) {
     let mut worse = Vec::new();
     for delay_ms in DELAYS_MS {
         let mut logs = 0.0;
         let mut cases = 0.0;
         for &begin in begins {
-            for (plain, task) in tissues.iter().flat_map(|plain| Task::ALL.map(|task| (plain, task))) {
+            for (plain, task) in tissues.iter().flat_map(|plain| PassivityTask::ALL.map(|task| (plain, task))) {
                 let other = changing(*plain, begin);
                 let error_n = |mode| {
                     tasked_over(VirtualClock::PERFECT, (mode, OwnMotion::Follower), task, delay_ms, &other)
@@ -132,7 +132,7 @@ fn hardly_worse(tissues: &[Tissue], begins: &[f64]) {
         assert!(logs <= 0.002 * cases, "worse on the whole at {delay_ms} ms");
     }
     println!("{worse:?}");
-    let cases = begins.len() * tissues.len() * Task::ALL.len() * DELAYS_MS.len();
+    let cases = begins.len() * tissues.len() * PassivityTask::ALL.len() * DELAYS_MS.len();
     assert!(worse.len() * 30 <= cases, "{} of {cases}: {worse:?}", worse.len());
 }
 
@@ -151,9 +151,11 @@ fn a_loose_grip_holds_still_with_it() {
 fn on_every_clock_matched_on_the_handles_motion_does_not_drive_the_hand() {
     for profile in [ClockProfile::Quiet, ClockProfile::Busy, ClockProfile::Late { percent: 5.0 }] {
         let clock = VirtualClock { profile, seed: 1 };
-        let row = tasked(clock, (Mode::Matched, OwnMotion::Handle), Task::PegTransfer, 100.0, tissue()).unwrap();
+        let row =
+            tasked(clock, (Mode::Matched, OwnMotion::Handle), PassivityTask::PegTransfer, 100.0, tissue()).unwrap();
         assert!(row.power_mw <= 0.0 && row.error_n.is_finite(), "{row:?}");
-        let reflected = tasked(clock, (Mode::Dfr, OwnMotion::Follower), Task::PegTransfer, 100.0, tissue()).unwrap();
+        let reflected =
+            tasked(clock, (Mode::Dfr, OwnMotion::Follower), PassivityTask::PegTransfer, 100.0, tissue()).unwrap();
         assert!(reflected.power_mw > 12.0, "{reflected:?}");
     }
 }

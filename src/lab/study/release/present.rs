@@ -2,16 +2,17 @@
 
 use std::fmt::Write as _;
 
-use nima_charts::{Axis, Chart, Series, Style, svg};
+use nima_charts::{Axis, Chart, Series, SeriesStyle, svg};
 use nima_core::impedance::Mode;
 use nima_machine::runtime::ClockProfile;
 
 use super::{
-    AIM_M_S, AIM_MJ, AIM_MM, AIM_N, CONTACTS_N, DELAYS_MS, Report, Row, Situation, WEAK_AIM_MM, Worst, methods,
+    AIM_M_S, AIM_MJ, AIM_MM, AIM_N, CONTACTS_N, DELAYS_MS, ReleaseReport, ReleaseRow, ReleaseSituation, WEAK_AIM_MM,
+    Worst, methods,
 };
 use crate::{Findings, clocks};
 
-impl Findings for Report {
+impl Findings for ReleaseReport {
     /// Returns for each clock a summary, other handles, and every release of 5 N.
     fn text(&self) -> String {
         let on = |clock| clocks::heading(clock) + &self.on(clock).tables();
@@ -25,7 +26,7 @@ impl Findings for Report {
     }
 }
 
-impl Report {
+impl ReleaseReport {
     /// Returns the clocks, in the order in which they were tested.
     fn clocks(&self) -> Vec<ClockProfile> {
         let mut clocks: Vec<_> = self.rows.iter().map(|row| row.clock).collect();
@@ -43,7 +44,9 @@ impl Report {
         let mut text = String::new();
         self.summary(&mut text);
         self.handles(&mut text);
-        for (situation, title) in [(Situation::Held, "Held for two seconds"), (Situation::Pressing, "While pressing")] {
+        for (situation, title) in
+            [(ReleaseSituation::Held, "Held for two seconds"), (ReleaseSituation::Pressing, "While pressing")]
+        {
             // Writing into a String cannot fail, here and below.
             writeln!(text, "{title}, {} N:\n", CONTACTS_N[0]).ok();
             text.push_str(
@@ -79,7 +82,7 @@ impl Report {
                                 && row.counts()
                         })
                     };
-                    let worst = |of: fn(&Row) -> f64| all().map(of).fold(0.0, f64::max);
+                    let worst = |of: fn(&ReleaseRow) -> f64| all().map(of).fold(0.0, f64::max);
                     let met = all().filter(|row| row.meets_the_aims()).count();
                     let of = all().count();
                     let on = on_or_off(governor);
@@ -115,11 +118,11 @@ impl Report {
     /// Returns a plot of travel and energy over the delay, for the hand that held 5 N, for each of the program's own
     /// modes with and without the governor.
     fn svg(&self) -> String {
-        let chart = |title: &str, unit: &str, low: f64, high: f64, of: fn(&Row) -> f64| Chart {
+        let chart = |title: &str, unit: &str, low: f64, high: f64, of: fn(&ReleaseRow) -> f64| Chart {
             title: title.into(),
             x: Axis::linear("delay of the link (ms)", 0.0, DELAYS_MS[DELAYS_MS.len() - 1]),
             y: Axis::log(unit, low, high),
-            series: [(false, Style::Dashed, "without"), (true, Style::Line, "governor")]
+            series: [(false, SeriesStyle::Dashed, "without"), (true, SeriesStyle::Line, "governor")]
                 .into_iter()
                 .flat_map(|(governor, style, word)| {
                     Mode::ALL.into_iter().enumerate().map(move |(colour, mode)| (governor, style, word, colour, mode))
@@ -138,9 +141,9 @@ impl Report {
         ])
     }
 
-    fn points(&self, governor: bool, mode: Mode, of: fn(&Row) -> f64) -> Vec<[f64; 2]> {
-        let wanted = |row: &&Row| {
-            row.situation == Situation::Held
+    fn points(&self, governor: bool, mode: Mode, of: fn(&ReleaseRow) -> f64) -> Vec<[f64; 2]> {
+        let wanted = |row: &&ReleaseRow| {
+            row.situation == ReleaseSituation::Held
                 && row.governor == governor
                 && row.mode == mode
                 && row.contact_n >= CONTACTS_N[0]
@@ -153,9 +156,9 @@ const fn on_or_off(governor: bool) -> &'static str {
     if governor { "on" } else { "off" }
 }
 
-fn line(text: &mut String, row: &Row) {
-    let Row { mode, delay_ms, governor, before_n, closed_before, .. } = *row;
-    let Row { travel_mm, peak_m_s, energy_mj, force_after_100_ms_n, .. } = *row;
+fn line(text: &mut String, row: &ReleaseRow) {
+    let ReleaseRow { mode, delay_ms, governor, before_n, closed_before, .. } = *row;
+    let ReleaseRow { travel_mm, peak_m_s, energy_mj, force_after_100_ms_n, .. } = *row;
     let on = on_or_off(governor);
     let mark = if closed_before { ", withholding" } else { "" };
     writeln!(

@@ -36,7 +36,7 @@ pub struct Reconstructions {
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Spread {
+pub struct FigureSpread {
     pub p50: f64,
     pub p95: f64,
     pub max: f64,
@@ -44,7 +44,7 @@ pub struct Spread {
 
 /// Time of one tick of identification, us.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct TickTime {
+pub struct IdentificationTime {
     pub p50: f64,
     pub p99: f64,
     pub max: f64,
@@ -52,7 +52,7 @@ pub struct TickTime {
 
 /// All results of a replay; the JSON of `nima identify`.
 #[derive(Clone, Debug, Serialize)]
-pub struct Figures {
+pub struct ReplayFigures {
     pub samples: usize,
     pub rate_hz: f64,
     pub axes: Vec<&'static str>,
@@ -71,11 +71,13 @@ pub struct Figures {
     /// In-window errors of the paper's method.
     pub reconstruction: Reconstructions,
     /// Fraction of compared samples with degree 1 to 5; the remaining ones were rendered without a correction.
-    pub degree_share: [f64; MAX_DEGREE],
+    #[serde(rename = "degree_share")]
+    pub degree_fraction: [f64; MAX_DEGREE],
     /// Fraction of compared samples with a degree above 1.
-    pub nonlinear_share: f64,
+    #[serde(rename = "nonlinear_share")]
+    pub nonlinear_fraction: f64,
     /// Condition number of the scaled regression; 0 while there is no regression.
-    pub condition: Spread,
+    pub condition: FigureSpread,
     /// Compared samples for which the mode had no valid force and rendered zero.
     pub rejected: u64,
     /// Number of gaps in the recording; after each, window and delay start again.
@@ -83,5 +85,5 @@ pub struct Figures {
     /// The longest gap, s.
     pub longest_hole_s: f64,
     /// Computing time of one tick of identification.
-    pub tick_us: TickTime,
+    pub tick_us: IdentificationTime,
 }

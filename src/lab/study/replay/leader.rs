@@ -2,25 +2,25 @@
 
 use nalgebra::Vector3;
 use nima_core::{
-    impedance::{Parcel, Rendered, Renderer, Settings, SettingsError},
+    impedance::{ImpedanceSettings, LinkPacket, RenderedForces, Renderer, SettingsError},
     signal::DelayLine,
 };
 
 /// Renders the data received over the link from the leader's motion.
-pub(super) struct Leader {
+pub(super) struct ReplayLeader {
     renderer: Renderer,
-    link: DelayLine<Parcel>,
+    link: DelayLine<LinkPacket>,
     delay: usize,
 }
 
-impl Leader {
+impl ReplayLeader {
     /// After a link of `delay` samples.
-    pub(super) fn new(settings: &Settings, delay: usize) -> Result<Self, SettingsError> {
-        Ok(Self { renderer: Renderer::new(settings)?, link: DelayLine::new(delay, Parcel::BLANK), delay })
+    pub(super) fn new(settings: &ImpedanceSettings, delay: usize) -> Result<Self, SettingsError> {
+        Ok(Self { renderer: Renderer::new(settings)?, link: DelayLine::new(delay, LinkPacket::BLANK), delay })
     }
 
     /// Runs one tick with the data sent by the follower now and the leader's position, m.
-    pub(super) fn step(&mut self, leader_m: &Vector3<f64>, sent: &Parcel) -> Rendered {
+    pub(super) fn step(&mut self, leader_m: &Vector3<f64>, sent: &LinkPacket) -> RenderedForces {
         self.link.push(*sent);
         self.renderer.step(leader_m, self.link.get(self.delay))
     }

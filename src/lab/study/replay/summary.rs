@@ -2,19 +2,20 @@
 
 use serde::Serialize;
 
-use super::Figures;
+use super::ReplayFigures;
 
 /// Spread over the recordings of the ratio of both errors.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct RatioFigures {
-    pub least: f64,
+    #[serde(rename = "least")]
+    pub min: f64,
     pub median: f64,
     pub greatest: f64,
 }
 
 /// Several recordings replayed with the same options.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Summary {
+pub struct ReplaySummary {
     pub recordings: usize,
     /// Samples in all of them, and compared samples.
     pub samples: usize,
@@ -38,18 +39,18 @@ pub struct Summary {
     pub holes: u64,
 }
 
-impl Summary {
+impl ReplaySummary {
     /// Summarises recordings with these names.
     ///
     /// ```
-    /// use nima_study::replay::Summary;
+    /// use nima_study::replay::ReplaySummary;
     ///
-    /// let none = Summary::of(&[]);
+    /// let none = ReplaySummary::of(&[]);
     /// assert_eq!((none.recordings, none.ratio), (0, None));
     /// ```
-    pub fn of(all: &[(String, Figures)]) -> Self {
-        let sum = |of: fn(&Figures) -> f64| all.iter().map(|(_, figures)| of(figures)).sum::<f64>();
-        let count = |of: fn(&Figures) -> usize| all.iter().map(|(_, figures)| of(figures)).sum::<usize>();
+    pub fn of(all: &[(String, ReplayFigures)]) -> Self {
+        let sum = |of: fn(&ReplayFigures) -> f64| all.iter().map(|(_, figures)| of(figures)).sum::<f64>();
+        let count = |of: fn(&ReplayFigures) -> usize| all.iter().map(|(_, figures)| of(figures)).sum::<usize>();
         let compared = count(|figures| figures.compared);
         let weight = compared.max(1) as f64;
         let error_mae = sum(|figures| figures.error.mae * figures.compared as f64) / weight;
@@ -59,8 +60,8 @@ impl Summary {
             .filter_map(|(name, figures)| Some((ratio(figures.error.mae, figures.hold.mae)?, name)))
             .collect();
         ratios.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let spread = ratios.first().zip(ratios.last()).map(|(least, greatest)| RatioFigures {
-            least: least.0,
+        let spread = ratios.first().zip(ratios.last()).map(|(min, greatest)| RatioFigures {
+            min: min.0,
             median: ratios[(ratios.len() - 1) / 2].0,
             greatest: greatest.0,
         });

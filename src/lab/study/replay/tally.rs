@@ -2,21 +2,21 @@
 
 use nalgebra::Vector3;
 use nima_core::{
-    impedance::{MAX_DEGREE, Mode, Report, Settings},
+    impedance::{IdentificationReport, ImpedanceSettings, MAX_DEGREE, Mode},
     statistics::Percentiles,
 };
 
 use super::{
-    Motion, Row,
-    figures::{ErrorFigures, Figures, Reconstruction, Reconstructions, Spread, TickTime},
+    ReplayMotion, ReplayRow,
+    figures::{ErrorFigures, FigureSpread, IdentificationTime, Reconstruction, Reconstructions, ReplayFigures},
 };
 
 #[derive(Default)]
-pub(super) struct Tally {
-    error: Errors,
-    hold: Errors,
-    reconstruction: [Errors; MAX_DEGREE],
-    selected: Errors,
+pub(super) struct ReplayTally {
+    error: TallyErrors,
+    hold: TallyErrors,
+    reconstruction: [TallyErrors; MAX_DEGREE],
+    selected: TallyErrors,
     degrees: [u64; MAX_DEGREE + 1],
     conditions: Vec<f64>,
     rejected: u64,
@@ -25,13 +25,13 @@ pub(super) struct Tally {
     pub(super) tick: Percentiles,
 }
 
-impl Tally {
+impl ReplayTally {
     pub(super) fn hole(&mut self, seconds: f64) {
         self.holes += 1;
         self.longest_hole_s = self.longest_hole_s.max(seconds);
     }
 
-    pub(super) fn add(&mut self, row: &Row, report: &Report) {
+    pub(super) fn add(&mut self, row: &ReplayRow, report: &IdentificationReport) {
         if let Some(chosen) = usize::from(report.paper_degree).checked_sub(1) {
             for (errors, residual) in self.reconstruction.iter_mut().zip(&report.reconstruction_n) {
                 errors.add(residual);
@@ -49,14 +49,19 @@ impl Tally {
         self.rejected += u64::from(row.rendered.is_none());
     }
 
-    pub(super) fn figures(mut self, motion: &Motion<'_>, mode: Mode, settings: &Settings) -> Figures {
+    pub(super) fn figures(
+        mut self,
+        motion: &ReplayMotion<'_>,
+        mode: Mode,
+        settings: &ImpedanceSettings,
+    ) -> ReplayFigures {
         let compared = self.error.norms.len();
-        let share = |count: u64| count as f64 / compared.max(1) as f64;
+        let fraction = |count: u64| count as f64 / compared.max(1) as f64;
         let [degree_1, degree_2, degree_3, degree_4, degree_5] =
             self.reconstruction.map(|errors| errors.reconstruction());
         let tick = self.tick.quantiles();
         self.conditions.sort_unstable_by(f64::total_cmp);
-        Figures {
+        ReplayFigures {
             samples: motion.samples,
             rate_hz: motion.rate_hz,
             own_motion: settings.own_motion,
@@ -75,9 +80,9 @@ impl Tally {
                 degree_5,
                 selected: self.selected.reconstruction(),
             },
-            degree_share: std::array::from_fn(|i| share(self.degrees[i + 1])),
-            nonlinear_share: share(self.degrees[2..].iter().sum()),
-            condition: Spread {
+            degree_fraction: std::array::from_fn(|i| fraction(self.degrees[i + 1])),
+            nonlinear_fraction: fraction(self.degrees[2..].iter().sum()),
+            condition: FigureSpread {
                 p50: quantile(&self.conditions, 0.5),
                 p95: quantile(&self.conditions, 0.95),
                 max: quantile(&self.conditions, 1.0),
@@ -85,7 +90,7 @@ impl Tally {
             rejected: self.rejected,
             holes: self.holes,
             longest_hole_s: tidy_ms(self.longest_hole_s) * 1e-3,
-            tick_us: TickTime { p50: tick.p50, p99: tick.p99, max: tick.max },
+            tick_us: IdentificationTime { p50: tick.p50, p99: tick.p99, max: tick.max },
         }
     }
 }
@@ -97,13 +102,13 @@ fn tidy_ms(seconds: f64) -> f64 {
 
 /// Errors stored to compute percentiles.
 #[derive(Default)]
-struct Errors {
+struct TallyErrors {
     norms: Vec<f64>,
     sum: Vector3<f64>,
     squares: f64,
 }
 
-impl Errors {
+impl TallyErrors {
     fn add(&mut self, error: &Vector3<f64>) {
         self.norms.push(error.norm());
         self.sum += error;

@@ -10,24 +10,28 @@ fn sample(i: usize, hole: Option<usize>) -> Sample {
     Sample { t_s, position_m, force_n }
 }
 
-const OPTIONS: Options = Options {
+const OPTIONS: ReplayOptions = ReplayOptions {
     mode: Mode::Anchored,
     window_s: 0.3,
     delay_s: 0.04,
     max_degree: 3,
     cross_talk: false,
     literal: Recipe {
-        reading: nima_core::impedance::Reading::Increments,
-        choice: nima_core::impedance::Choice::Window,
+        reading: nima_core::impedance::IncrementReading::Increments,
+        choice: nima_core::impedance::DegreeChoice::Window,
         constant: false,
         ridge: 0.0,
     },
 };
 
 /// The rows of 1500 samples, with the leader's motion if `leader` is given.
-fn rows(mode: Mode, hole: Option<usize>, leader: Option<&dyn Fn(usize) -> Vector3<f64>>) -> (Vec<Row>, Figures) {
+fn rows(
+    mode: Mode,
+    hole: Option<usize>,
+    leader: Option<&dyn Fn(usize) -> Vector3<f64>>,
+) -> (Vec<ReplayRow>, ReplayFigures) {
     let sample = |i: usize| sample(i, hole);
-    let motion = Motion {
+    let motion = ReplayMotion {
         name: "test".into(),
         axes: &[0, 1, 2],
         rate_hz: 1000.0,
@@ -36,7 +40,7 @@ fn rows(mode: Mode, hole: Option<usize>, leader: Option<&dyn Fn(usize) -> Vector
         leader_m: leader,
     };
     let mut all = Vec::new();
-    let figures = replay_motion(&motion, &Options { mode, ..OPTIONS }, |row, parcel| {
+    let figures = replay_motion(&motion, &ReplayOptions { mode, ..OPTIONS }, |row, parcel| {
         assert!((parcel.t_s - row.t_s).abs() < 1e-12, "the packet of the same tick");
         all.push(*row);
     });
@@ -74,10 +78,10 @@ fn several_recordings_are_one_in_proportion_to_their_samples() {
     let named = |name: &str, mode| (name.to_owned(), rows(mode, None, None).1);
     let anchored = named("a.csv", Mode::Anchored);
     let dfr = named("b.csv", Mode::Dfr);
-    let both = Summary::of(&[anchored.clone(), dfr.clone()]);
+    let both = ReplaySummary::of(&[anchored.clone(), dfr.clone()]);
     assert_eq!((both.recordings, both.samples, both.compared), (2, 3000, 2 * anchored.1.compared));
     assert!((both.error_mae - 0.5 * (anchored.1.error.mae + dfr.1.error.mae)).abs() < 1e-12);
     let ratios = both.ratios.unwrap();
-    assert!((ratios.greatest - 1.0).abs() < 1e-12 && ratios.least < 0.7 && ratios.median <= ratios.greatest);
+    assert!((ratios.greatest - 1.0).abs() < 1e-12 && ratios.min < 0.7 && ratios.median <= ratios.greatest);
     assert_eq!(both.worst.as_deref(), Some("b.csv"));
 }

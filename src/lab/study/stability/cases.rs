@@ -4,20 +4,20 @@ use std::f64::consts::TAU;
 
 /// One sample of one axis as a device delivers it, valid or not.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Raw {
+pub(super) struct RawSample {
     pub(super) t_s: f64,
     pub(super) position_m: f64,
     pub(super) force_n: f64,
 }
 
 #[derive(Clone, Debug)]
-pub(super) struct Case {
+pub(super) struct StabilityCase {
     pub(super) group: &'static str,
     pub(super) name: String,
     pub(super) rate_hz: f64,
     /// Samples in a window (even).
     pub(super) window: usize,
-    pub(super) samples: Vec<Raw>,
+    pub(super) samples: Vec<RawSample>,
 }
 
 /// Ticks until the differentiator has settled and both the paper's `u` and the window are filled.
@@ -45,8 +45,8 @@ fn tissue(x: f64, v: f64, a: f64, noise: &mut fastrand::Rng) -> f64 {
 fn hand(amplitude: f64, t: f64) -> [f64; 3] {
     // The frequencies have no common period: over a common one the paper's `u` would be zero.
     let waves = [(0.75, 0.713, 0.3), (0.2, 2.331, 1.1), (0.05, 6.127, 2.0)];
-    waves.iter().fold([0.0; 3], |[x, v, a], (share, hz, phase)| {
-        let size = amplitude * share;
+    waves.iter().fold([0.0; 3], |[x, v, a], (fraction, hz, phase)| {
+        let size = amplitude * fraction;
         let w = TAU * hz;
         let (sin, cos) = (w * t + phase).sin_cos();
         [x + size * sin, v + size * w * cos, a - size * w * w * sin]
@@ -59,25 +59,25 @@ fn case(
     rate_hz: f64,
     window: usize,
     motion: impl Fn(f64) -> [f64; 3],
-) -> Case {
+) -> StabilityCase {
     let mut noise = fastrand::Rng::with_seed(7);
     let count = warm(rate_hz, window) + window + horizon(rate_hz, window) + 1;
     let samples = (0..count)
         .map(|k| {
             let t_s = k as f64 / rate_hz;
             let [x, v, a] = motion(t_s);
-            Raw { t_s, position_m: x, force_n: tissue(x, v, a, &mut noise) }
+            RawSample { t_s, position_m: x, force_n: tissue(x, v, a, &mut noise) }
         })
         .collect();
-    Case { group, name: name.into(), rate_hz, window, samples }
+    StabilityCase { group, name: name.into(), rate_hz, window, samples }
 }
 
-fn moving(group: &'static str, name: impl Into<String>, amplitude: f64, rate_hz: f64, window: usize) -> Case {
+fn moving(group: &'static str, name: impl Into<String>, amplitude: f64, rate_hz: f64, window: usize) -> StabilityCase {
     case(group, name, rate_hz, window, |t| hand(amplitude, t))
 }
 
 /// The ordinary motion with every sample modified (arguments: tick, previous sample, sample).
-fn edited(name: &str, edit: impl Fn(usize, Option<Raw>, &mut Raw)) -> Case {
+fn edited(name: &str, edit: impl Fn(usize, Option<RawSample>, &mut RawSample)) -> StabilityCase {
     let mut case = moving("input", name, AMPLITUDE_M, RATE_HZ, WINDOW);
     for k in 0..case.samples.len() {
         let before = k.checked_sub(1).map(|before| case.samples[before]);
@@ -86,7 +86,7 @@ fn edited(name: &str, edit: impl Fn(usize, Option<Raw>, &mut Raw)) -> Case {
     case
 }
 
-fn motions() -> Vec<Case> {
+fn motions() -> Vec<StabilityCase> {
     let mut across = case("motion", "standstill while another axis moves", RATE_HZ, WINDOW, |t| hand(AMPLITUDE_M, t));
     across.samples.iter_mut().for_each(|raw| raw.position_m = 0.013);
     vec![
@@ -97,7 +97,7 @@ fn motions() -> Vec<Case> {
     ]
 }
 
-fn inputs() -> Vec<Case> {
+fn inputs() -> Vec<StabilityCase> {
     let every = |k: usize, period: usize| k % period == period / 2;
     vec![
         edited("position spikes of 50 mm", |k, _, raw| {
@@ -148,7 +148,7 @@ fn inputs() -> Vec<Case> {
 }
 
 /// Returns all cases; `quick` leaves out those that are slow in arbitrary precision (windows and rates above 1000).
-pub(super) fn all(quick: bool) -> Vec<Case> {
+pub(super) fn all(quick: bool) -> Vec<StabilityCase> {
     let mut cases = motions();
     for (name, amplitude) in [
         ("1 um", 1e-6),

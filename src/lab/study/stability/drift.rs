@@ -1,12 +1,12 @@
 //! Long run: whether samples that have left the window leave a numerical error.
 
 use nalgebra::{DMatrix, DVector};
-use nima_core::impedance::{MAX_DEGREE, Scales, Settings};
+use nima_core::impedance::{ImpedanceSettings, MAX_DEGREE, Scales};
 use serde::Serialize;
 
 use super::super::{
     reference::Reference,
-    solvers::{MAX_COLUMNS, Row, Sliding, Solver},
+    solvers::{LeastSquaresSolver, MAX_COLUMNS, SlidingSolver, SolverRow},
 };
 
 /// Rows of the motion, which repeats; a multiple of the block length, so that windows recur exactly.
@@ -20,7 +20,7 @@ const SPIKE: usize = 1500;
 
 /// Worst relative error of the predicted force at degree 5, early and late in the long run.
 #[derive(Clone, Debug, Serialize)]
-pub struct Drift {
+pub struct StabilityDrift {
     /// Ticks run; the last multiple of the motion's period plus 1000.
     pub ticks: u64,
     /// This project's solver after 1000 ticks.
@@ -34,7 +34,7 @@ pub struct Drift {
     pub running_sums_late: Option<f64>,
 }
 
-fn table() -> Vec<Row> {
+fn table() -> Vec<SolverRow> {
     let mut noise = fastrand::Rng::with_seed(11);
     (0..TABLE)
         .map(|k| {
@@ -46,7 +46,7 @@ fn table() -> Vec<Row> {
                 *size *= if k == SPIKE { 20.0 } else { 1.0 };
             }
             let force_n = 300.0 * position[0] + 8.0 * position[1] + 0.2 * position[2] + 0.01 * noise.f64();
-            Row { position, increment: position, force_n }
+            SolverRow { position, increment: position, force_n }
         })
         .collect()
 }
@@ -76,22 +76,27 @@ impl RunningSums {
     }
 }
 
-pub(super) fn run(ticks: u64) -> Drift {
+pub(super) fn run(ticks: u64) -> StabilityDrift {
     let ticks = ticks - (ticks - EARLY) % TABLE as u64;
     let scales = Scales::default();
-    let ridge = Settings::default().ridge;
+    let ridge = ImpedanceSettings::default().ridge;
     let rows = table();
     let columns: Vec<[f64; MAX_COLUMNS + 1]> = rows
         .iter()
         .map(|row| {
-            let columns = Solver::Sliding.columns(row, MAX_DEGREE, &scales);
+            let columns = LeastSquaresSolver::Sliding.columns(row, MAX_DEGREE, &scales);
             std::array::from_fn(|j| columns.get(j).copied().unwrap_or(row.force_n))
         })
         .collect();
-    let mut sliding = Sliding::new(BLOCK, MAX_DEGREE, scales, ridge);
+    let mut sliding = SlidingSolver::new(BLOCK, MAX_DEGREE, scales, ridge);
     let mut running = RunningSums { sums: [[0.0; MAX_COLUMNS + 1]; MAX_COLUMNS + 1] };
-    let mut drift =
-        Drift { ticks, ours_early: 0.0, ours_late: 0.0, running_sums_early: 0.0, running_sums_late: Some(0.0) };
+    let mut drift = StabilityDrift {
+        ticks,
+        ours_early: 0.0,
+        ours_late: 0.0,
+        running_sums_early: 0.0,
+        running_sums_late: Some(0.0),
+    };
     let window = 2 * BLOCK;
     for tick in 0..ticks + LOOKS {
         let k = (tick % TABLE as u64) as usize;

@@ -2,14 +2,15 @@
 
 use std::fmt::Write as _;
 
-use nima_charts::{Axis, Chart, Series, Style, svg};
+use nima_charts::{Axis, Chart, Series, SeriesStyle, svg};
 
 use super::{
-    Entry, Extreme, ORDINARY_CONDITION, Options, RenderingVerdict, Report, Solver, StabilityError, TARGET, study,
+    LeastSquaresSolver, ORDINARY_CONDITION, RenderingVerdict, StabilityEntry, StabilityError, StabilityExtreme,
+    StabilityOptions, StabilityReport, TARGET, study,
 };
 use crate::{Experiment, Findings};
 
-impl Report {
+impl StabilityReport {
     /// Returns CSV with one row per case, solver and degree; a missing value is empty.
     pub fn csv(&self) -> String {
         let mut out = String::from(
@@ -17,9 +18,9 @@ impl Report {
         );
         let figure = |value: Option<f64>| value.map(|value| format!("{value:e}")).unwrap_or_default();
         for extreme in &self.extremes {
-            let Extreme { group, name, rate_hz, window, .. } = extreme;
+            let StabilityExtreme { group, name, rate_hz, window, .. } = extreme;
             for entry in &extreme.entries {
-                let Entry { degree, asked, finite, unknowns, rank, deficient, .. } = entry;
+                let StabilityEntry { degree, asked, finite, unknowns, rank, deficient, .. } = entry;
                 // Writing into a String cannot fail.
                 writeln!(
                     out,
@@ -35,7 +36,7 @@ impl Report {
         out
     }
 
-    fn in_words(&self) -> String {
+    fn as_text(&self) -> String {
         let verdict = &self.verdict;
         let drift = &self.drift;
         let mut out = String::from(
@@ -57,7 +58,7 @@ impl Report {
         writeln!(
             out,
             "ours            finite {:.1} %, error {:.1e} (target {TARGET:.0e} below condition {ORDINARY_CONDITION:.0e}; anywhere {:.1e}, largest condition {:.1e})",
-            verdict.ours_finite_share * 100.0,
+            verdict.ours_finite_fraction * 100.0,
             verdict.ours_worst_error,
             verdict.ours_worst_error_anywhere,
             verdict.ours_worst_condition,
@@ -76,7 +77,7 @@ impl Report {
             drift.ticks, drift.ours_early, drift.ours_late, drift.running_sums_early
         )
         .ok();
-        for RenderingVerdict { mode, finite_share, unit_difference, worst_case, long_run_difference, .. } in
+        for RenderingVerdict { mode, finite_fraction, unit_difference, worst_case, long_run_difference, .. } in
             &verdict.renderings
         {
             let long = long_run_difference.map_or_else(|| "too few to judge".into(), |late| format!("{late:.1e}"));
@@ -84,7 +85,7 @@ impl Report {
                 out,
                 "{:<15} finite {:.1} %, m against mm {unit_difference:.1e} ({worst_case}), {} ticks against the last 500000 alone {long}",
                 mode.name(),
-                finite_share * 100.0,
+                finite_fraction * 100.0,
                 drift.ticks,
             )
             .ok();
@@ -99,7 +100,7 @@ impl Report {
     }
 
     fn by_condition(&self) -> Chart {
-        let mut series: Vec<Series> = Solver::ALL
+        let mut series: Vec<Series> = LeastSquaresSolver::ALL
             .iter()
             .enumerate()
             .map(|(colour, solver)| {
@@ -109,14 +110,14 @@ impl Report {
                     .filter(|entry| entry.error.is_some() || entry.finite < entry.asked)
                     .map(|entry| [entry.condition.unwrap_or(f64::MAX), height(entry)])
                     .collect();
-                Series { name: solver.name().into(), colour, style: Style::Points, points }
+                Series { name: solver.name().into(), colour, style: SeriesStyle::Points, points }
             })
             .collect();
         let target = vec![[1.0, TARGET], [ORDINARY_CONDITION, TARGET], [ORDINARY_CONDITION, 1e-17]];
         series.push(Series {
             name: "target: below the line, or to the right of it".into(),
             colour: 6,
-            style: Style::Dashed,
+            style: SeriesStyle::Dashed,
             points: target,
         });
         Chart {
@@ -130,12 +131,12 @@ impl Report {
     fn by_amplitude(&self) -> Chart {
         let sizes = [1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.1, 0.2];
         let amplitudes = || self.extremes.iter().filter(|extreme| extreme.group == "amplitude");
-        let series = Solver::ALL.iter().enumerate().map(|(colour, solver)| {
-            let five = |extreme: &Extreme| {
+        let series = LeastSquaresSolver::ALL.iter().enumerate().map(|(colour, solver)| {
+            let five = |extreme: &StabilityExtreme| {
                 extreme.entries.iter().find(|entry| entry.solver == *solver && entry.degree == 5).map(height)
             };
             let points = sizes.iter().zip(amplitudes()).filter_map(|(size, extreme)| Some([*size, five(extreme)?]));
-            Series { name: solver.name().into(), colour, style: Style::Line, points: points.collect() }
+            Series { name: solver.name().into(), colour, style: SeriesStyle::Line, points: points.collect() }
         });
         Chart {
             title: "Degree 5, 300 samples at 1 kHz".into(),
@@ -147,11 +148,11 @@ impl Report {
 }
 
 /// Vertical position of an error; the upper edge if there is no answer.
-fn height(entry: &Entry) -> f64 {
+fn height(entry: &StabilityEntry) -> f64 {
     if entry.finite < entry.asked { f64::MAX } else { entry.error.unwrap_or(f64::MAX) }
 }
 
-fn worst(extreme: &Extreme, solver: Solver) -> String {
+fn worst(extreme: &StabilityExtreme, solver: LeastSquaresSolver) -> String {
     let of = || extreme.entries.iter().filter(|entry| entry.solver == solver);
     let (asked, finite) = of().fold((0, 0), |(a, f), entry| (a + entry.asked, f + entry.finite));
     let mark = if of().any(|entry| entry.deficient) { "*" } else { "" };
@@ -162,40 +163,40 @@ fn worst(extreme: &Extreme, solver: Solver) -> String {
     error.map_or_else(|| "-".into(), |error| format!("{error:.1e}{mark}"))
 }
 
-fn condition(extreme: &Extreme) -> String {
-    let ours = extreme.entries.iter().filter(|entry| entry.solver == Solver::Sliding);
+fn condition(extreme: &StabilityExtreme) -> String {
+    let ours = extreme.entries.iter().filter(|entry| entry.solver == LeastSquaresSolver::Sliding);
     let condition = ours.filter_map(|entry| entry.condition).reduce(f64::max);
     condition.map_or_else(|| "-".into(), |condition| format!("{condition:.1e}"))
 }
 
-impl Experiment for Options {
+impl Experiment for StabilityOptions {
     const NAME: &'static str = "stability";
     const FILES: &'static [&'static str] = &[".csv", ".svg"];
-    type Findings = Report;
+    type Findings = StabilityReport;
     type Error = StabilityError;
 
-    fn run(&self, progress: &mut dyn FnMut(usize, usize, &str)) -> Result<Report, StabilityError> {
+    fn run(&self, progress: &mut dyn FnMut(usize, usize, &str)) -> Result<StabilityReport, StabilityError> {
         study(self, progress)
     }
 }
 
-impl Findings for Report {
+impl Findings for StabilityReport {
     /// Table of every solver's worst relative error over degrees 1 to 5 in every case, then the comparison with the
     /// targets.
     fn text(&self) -> String {
         let mut out = format!("{:<10} {:<37}", "extreme", "");
-        for solver in Solver::ALL {
+        for solver in LeastSquaresSolver::ALL {
             write!(out, " {:>14}", solver.name()).ok();
         }
         out.push_str("  condition\n");
         for extreme in &self.extremes {
             write!(out, "{:<10} {:<37}", extreme.group, extreme.name).ok();
-            for solver in Solver::ALL {
+            for solver in LeastSquaresSolver::ALL {
                 write!(out, " {:>14}", worst(extreme, solver)).ok();
             }
             writeln!(out, "  {:>9}", condition(extreme)).ok();
         }
-        out.push_str(&self.in_words());
+        out.push_str(&self.as_text());
         out
     }
 

@@ -2,10 +2,10 @@
 //! a long time.
 
 use nalgebra::Vector3;
-use nima_core::impedance::{Identifier, Mode, ModeSet, Sample, Settings, SettingsError};
+use nima_core::impedance::{Identifier, ImpedanceSettings, Mode, ModeSet, Sample, SettingsError};
 use serde::Serialize;
 
-use super::{Case, scales, worse};
+use super::{StabilityCase, scales, worse};
 
 const MODES: [Mode; 2] = [Mode::Matched, Mode::Nima];
 /// Delay of the link (s).
@@ -13,7 +13,7 @@ const DELAY_S: f64 = 0.05;
 
 /// One of these modes in one extreme case.
 #[derive(Clone, Debug, Serialize)]
-pub struct Rendering {
+pub struct StabilityRendering {
     pub mode: Mode,
     /// Ticks since its first force.
     pub asked: usize,
@@ -49,8 +49,14 @@ impl Endurance {
     const PERIOD: u64 = 10_000;
 }
 
-fn settings(unit: f64, mode: Mode) -> Settings {
-    Settings { delay_s: DELAY_S, axes: 1, scales: scales(unit), modes: ModeSet::only(mode), ..Settings::default() }
+fn settings(unit: f64, mode: Mode) -> ImpedanceSettings {
+    ImpedanceSettings {
+        delay_s: DELAY_S,
+        axes: 1,
+        scales: scales(unit),
+        modes: ModeSet::only(mode),
+        ..ImpedanceSettings::default()
+    }
 }
 
 pub(super) fn sample(t_s: f64, position_m: f64, force_n: f64) -> Sample {
@@ -59,20 +65,20 @@ pub(super) fn sample(t_s: f64, position_m: f64, force_n: f64) -> Sample {
 }
 
 /// Returns the result of every mode at the horizon over the samples of a case.
-pub(super) fn extreme(case: &Case) -> Result<Vec<Rendering>, SettingsError> {
+pub(super) fn extreme(case: &StabilityCase) -> Result<Vec<StabilityRendering>, SettingsError> {
     MODES.into_iter().map(|mode| rendering(case, mode)).collect()
 }
 
-fn rendering(case: &Case, mode: Mode) -> Result<Rendering, SettingsError> {
+fn rendering(case: &StabilityCase, mode: Mode) -> Result<StabilityRendering, SettingsError> {
     let identifier = |unit| {
         let window_s = case.window as f64 / case.rate_hz;
-        Identifier::new(&Settings { rate_hz: case.rate_hz, window_s, ..settings(unit, mode) })
+        Identifier::new(&ImpedanceSettings { rate_hz: case.rate_hz, window_s, ..settings(unit, mode) })
     };
     let units = [1.0, 1e3];
     let mut identifiers = [identifier(units[0])?, identifier(units[1])?];
     let usable: Vec<f64> = case.samples.iter().map(|raw| raw.force_n).filter(|force| force.abs() < 1e3).collect();
     let rms_n = (usable.iter().map(|force| force * force).sum::<f64>() / usable.len().max(1) as f64).sqrt();
-    let mut rendering = Rendering { mode, asked: 0, finite: 0, unit_difference: None };
+    let mut rendering = StabilityRendering { mode, asked: 0, finite: 0, unit_difference: None };
     for raw in &case.samples {
         let mut said = [None; 2];
         for ((identifier, unit), said) in identifiers.iter_mut().zip(units).zip(&mut said) {

@@ -2,7 +2,7 @@ use super::*;
 
 #[test]
 fn ours_holds_at_the_extremes() {
-    let report = study(&Options { ticks: 10_000, quick: true }, |_, _, _| {}).unwrap();
+    let report = study(&StabilityOptions { ticks: 10_000, quick: true }, |_, _, _| {}).unwrap();
     for extreme in &report.extremes {
         assert!(extreme.identifier_finite, "{}", extreme.name);
         for rendering in &extreme.renderings {
@@ -11,7 +11,7 @@ fn ours_holds_at_the_extremes() {
             assert!(rendering.asked > 0 || too_short, "{}: {rendering:?}", extreme.name);
             assert_eq!(rendering.finite, rendering.asked, "{}: {rendering:?}", extreme.name);
         }
-        for entry in extreme.entries.iter().filter(|entry| entry.solver == Solver::Sliding) {
+        for entry in extreme.entries.iter().filter(|entry| entry.solver == LeastSquaresSolver::Sliding) {
             let name = format!("{} N={}: {entry:?}", extreme.name, entry.degree);
             assert_eq!(entry.finite, entry.asked, "{name}");
             if entry.condition.unwrap() < ORDINARY_CONDITION {
@@ -34,6 +34,6 @@ fn a_long_run_answers_as_one_that_began_later() {
 
 #[test]
 fn too_few_ticks_are_refused() {
-    let error = study(&Options { ticks: 9, quick: true }, |_, _, _| {}).unwrap_err();
+    let error = study(&StabilityOptions { ticks: 9, quick: true }, |_, _, _| {}).unwrap_err();
     assert_eq!(error.to_string(), "9 ticks are out of range; give 10000 to 1000000000");
 }

@@ -3,15 +3,18 @@
 use nima_core::impedance::Mode;
 use serde::Serialize;
 
-use super::{Drift, Endurance, Entry, Extreme, ORDINARY_CONDITION, Solver, TARGET};
+use super::{
+    Endurance, LeastSquaresSolver, ORDINARY_CONDITION, StabilityDrift, StabilityEntry, StabilityExtreme, TARGET,
+};
 
 /// The targets, and the failures of each solver.
 #[derive(Clone, Debug, Serialize)]
-pub struct Verdict {
+pub struct StabilityVerdict {
     /// Whether this project's solver and the mode *matched* reach all targets.
     pub reached: bool,
     /// Fraction of its predictions that are finite.
-    pub ours_finite_share: f64,
+    #[serde(rename = "ours_finite_share")]
+    pub ours_finite_fraction: f64,
     /// Whether the whole identifier stayed finite in every case.
     pub identifier_finite: bool,
     /// Its worst relative error where the scaled condition number is below 1e6.
@@ -37,7 +40,8 @@ pub struct RenderingVerdict {
     /// Whether it reaches the targets.
     pub reached: bool,
     /// Fraction of its forces that are finite, in every case and in the long run.
-    pub finite_share: f64,
+    #[serde(rename = "finite_share")]
+    pub finite_fraction: f64,
     /// Its worst difference between metres and millimetres, and the case in which it occurs.
     pub unit_difference: f64,
     /// See `unit_difference`.
@@ -47,7 +51,7 @@ pub struct RenderingVerdict {
 }
 
 impl RenderingVerdict {
-    fn of(extremes: &[Extreme], run: &Endurance) -> Self {
+    fn of(extremes: &[StabilityExtreme], run: &Endurance) -> Self {
         let mut asked = run.ticks;
         let mut finite = run.ticks - run.not_finite;
         let mut unit_difference = 0.0;
@@ -65,14 +69,21 @@ impl RenderingVerdict {
         let reached = finite == asked
             && unit_difference <= TARGET
             && run.difference.is_none_or(|difference| difference <= TARGET);
-        let finite_share = finite as f64 / asked.max(1) as f64;
-        Self { mode: run.mode, reached, finite_share, unit_difference, worst_case, long_run_difference: run.difference }
+        let finite_fraction = finite as f64 / asked.max(1) as f64;
+        Self {
+            mode: run.mode,
+            reached,
+            finite_fraction,
+            unit_difference,
+            worst_case,
+            long_run_difference: run.difference,
+        }
     }
 }
 
 #[derive(Clone, Debug, Serialize)]
 pub struct Failures {
-    pub solver: Solver,
+    pub solver: LeastSquaresSolver,
     /// Number of cases and degrees tested.
     pub tried: usize,
     /// Among these, cases with a prediction that is not finite.
@@ -81,16 +92,17 @@ pub struct Failures {
     pub wrong: usize,
 }
 
-impl Verdict {
-    pub(super) fn of(extremes: &[Extreme], drift: &Drift, endurance: &[Endurance]) -> Self {
+impl StabilityVerdict {
+    pub(super) fn of(extremes: &[StabilityExtreme], drift: &StabilityDrift, endurance: &[Endurance]) -> Self {
         let all = || extremes.iter().flat_map(|extreme| &extreme.entries);
-        let ours = || all().filter(|entry| entry.solver == Solver::Sliding);
+        let ours = || all().filter(|entry| entry.solver == LeastSquaresSolver::Sliding);
         let ordinary = || ours().filter(|entry| entry.condition.is_some_and(|c| c < ORDINARY_CONDITION));
-        let most = |values: &mut dyn Iterator<Item = Option<f64>>| values.flatten().fold(0.0, f64::max);
+        let max = |values: &mut dyn Iterator<Item = Option<f64>>| values.flatten().fold(0.0, f64::max);
         let (asked, finite) = ours().fold((0, 0), |(a, f), entry| (a + entry.asked, f + entry.finite));
-        let failures = Solver::ALL.map(|solver| {
+        let failures = LeastSquaresSolver::ALL.map(|solver| {
             let of = || all().filter(|entry| entry.solver == solver);
-            let wrong = |entry: &&Entry| entry.finite == entry.asked && entry.error.is_none_or(|error| error > 0.01);
+            let wrong =
+                |entry: &&StabilityEntry| entry.finite == entry.asked && entry.error.is_none_or(|error| error > 0.01);
             Failures {
                 solver,
                 tried: of().count(),
@@ -100,15 +112,15 @@ impl Verdict {
         });
         let mut verdict = Self {
             reached: false,
-            ours_finite_share: finite as f64 / asked.max(1) as f64,
+            ours_finite_fraction: finite as f64 / asked.max(1) as f64,
             identifier_finite: extremes.iter().all(|extreme| extreme.identifier_finite),
-            ours_worst_error: most(&mut ordinary().map(|entry| entry.error)),
-            ours_worst_error_anywhere: most(&mut ours().map(|entry| entry.error)),
-            ours_worst_condition: most(&mut ours().map(|entry| entry.condition)),
-            ours_unit_difference: most(&mut ordinary().map(|entry| entry.unit_difference)),
-            pseudo_inverse_unit_difference: most(
-                &mut all().filter(|e| e.solver == Solver::PseudoInverse).map(|e| e.unit_difference),
-            ),
+            ours_worst_error: max(&mut ordinary().map(|entry| entry.error)),
+            ours_worst_error_anywhere: max(&mut ours().map(|entry| entry.error)),
+            ours_worst_condition: max(&mut ours().map(|entry| entry.condition)),
+            ours_unit_difference: max(&mut ordinary().map(|entry| entry.unit_difference)),
+            pseudo_inverse_unit_difference: max(&mut all()
+                .filter(|e| e.solver == LeastSquaresSolver::PseudoInverse)
+                .map(|e| e.unit_difference)),
             renderings: endurance.iter().map(|run| RenderingVerdict::of(extremes, run)).collect(),
             failures: failures.to_vec(),
         };

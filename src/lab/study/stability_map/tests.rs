@@ -33,8 +33,8 @@ fn the_committed_map_is_what_the_simulation_says_now() {
 #[test]
 fn soft_contact_is_stable_and_late_reflection_of_a_wall_is_not() {
     let map = StabilityMap::committed().unwrap();
-    assert_eq!(map.at(Mode::Dfr, 1.0, 0.0, 12.0), Verdict::Stable);
-    assert_eq!(map.at(Mode::Dfr, 1.0, 0.3, 6000.0), Verdict::Unstable);
+    assert_eq!(map.at(Mode::Dfr, 1.0, 0.0, 12.0), StabilityMapVerdict::Stable);
+    assert_eq!(map.at(Mode::Dfr, 1.0, 0.3, 6000.0), StabilityMapVerdict::Unstable);
     assert!(map.greatest_stable_gain(Mode::Dfr, 0.3, 12.0) > map.greatest_stable_gain(Mode::Dfr, 0.3, 6000.0));
 }
 
@@ -45,7 +45,7 @@ fn late_reflection_is_stable_where_theory_says() {
     let map = StabilityMap::committed().unwrap();
     for n_m in STIFFNESSES_N_M {
         for gain in GAINS.into_iter().filter(|gain| (gain * n_m / 787.0 - 1.0).abs() > 0.01) {
-            let stable = map.at(Mode::Dfr, gain, 0.3, n_m) == Verdict::Stable;
+            let stable = map.at(Mode::Dfr, gain, 0.3, n_m) == StabilityMapVerdict::Stable;
             assert_eq!(stable, gain * n_m < 787.0, "gain {gain}, {n_m} N/m");
         }
     }
@@ -53,17 +53,17 @@ fn late_reflection_is_stable_where_theory_says() {
 
 #[test]
 fn between_points_the_worst_neighbour_answers_and_beyond_the_ends_the_last() {
-    let mut map = StabilityMap { verdicts: vec![Verdict::Stable; POINTS] };
-    map.verdicts[index(Mode::Dfr.index(), 4, 2, 5)] = Verdict::Unstable;
-    assert_eq!(map.at(Mode::Dfr, 2.0, 0.1, 100.0), Verdict::Unstable);
-    assert_eq!(map.at(Mode::Dfr, 1.9, 0.08, 90.0), Verdict::Unstable);
-    assert_eq!(map.at(Mode::Dfr, 1.5, 0.1, 100.0), Verdict::Stable);
+    let mut map = StabilityMap { verdicts: vec![StabilityMapVerdict::Stable; POINTS] };
+    map.verdicts[index(Mode::Dfr.index(), 4, 2, 5)] = StabilityMapVerdict::Unstable;
+    assert_eq!(map.at(Mode::Dfr, 2.0, 0.1, 100.0), StabilityMapVerdict::Unstable);
+    assert_eq!(map.at(Mode::Dfr, 1.9, 0.08, 90.0), StabilityMapVerdict::Unstable);
+    assert_eq!(map.at(Mode::Dfr, 1.5, 0.1, 100.0), StabilityMapVerdict::Stable);
     assert!((map.greatest_stable_gain(Mode::Dfr, 0.1, 100.0) - 1.5).abs() < f64::EPSILON);
     assert!((map.greatest_stable_gain(Mode::Dfr, 0.2, 100.0) - 3.0).abs() < f64::EPSILON);
     let last = index(Mode::Dfr.index(), 7, 7, 7);
-    map.verdicts[last] = Verdict::Marginal;
+    map.verdicts[last] = StabilityMapVerdict::Marginal;
     for point in [[9.0, 9.0, 1e9], [f64::NAN; 3]] {
-        assert_eq!(map.at(Mode::Dfr, point[0], point[1], point[2]), Verdict::Marginal, "{point:?}");
+        assert_eq!(map.at(Mode::Dfr, point[0], point[1], point[2]), StabilityMapVerdict::Marginal, "{point:?}");
     }
-    assert_eq!(map.at(Mode::Dfr, 0.0, 9.0, 1e9), Verdict::Stable);
+    assert_eq!(map.at(Mode::Dfr, 0.0, 9.0, 1e9), StabilityMapVerdict::Stable);
 }

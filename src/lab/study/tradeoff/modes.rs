@@ -7,12 +7,12 @@ use std::{
 };
 
 use nima_core::{
-    impedance::{Identifier, Mode, ModeSet, Sample, Settings, SettingsError},
+    impedance::{Identifier, ImpedanceSettings, Mode, ModeSet, Sample, SettingsError},
     statistics::Percentiles,
 };
 
 use super::{
-    plan::Choice,
+    plan::ParameterChoice,
     sweep::{CostUs, SweepError},
 };
 
@@ -21,7 +21,7 @@ const LOOK_EVERY: usize = 512;
 
 /// Results at one point.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Measured {
+pub(super) struct ModeResult {
     pub(super) cost_us: CostUs,
     pub(super) error: f64,
     pub(super) error_p50: f64,
@@ -33,27 +33,27 @@ pub(super) struct Measured {
 
 /// Sums of a mode's error and of delayed DFR's on the same samples.
 #[derive(Debug, Default)]
-pub(super) struct Errors {
+pub(super) struct ModeErrors {
     norms: Vec<f64>,
     dfr: f64,
     not_rendered: usize,
 }
 
-impl Errors {
+impl ModeErrors {
     pub(super) fn add(&mut self, error: f64, dfr_error: f64, rendered: bool) {
         self.norms.push(error);
         self.dfr += dfr_error;
         self.not_rendered += usize::from(!rendered);
     }
 
-    pub(super) fn measured(mut self, cost_us: CostUs) -> Measured {
+    pub(super) fn measured(mut self, cost_us: CostUs) -> ModeResult {
         let judged = self.norms.len();
         let count = judged.max(1) as f64;
         let error = self.norms.iter().sum::<f64>() / count;
         self.norms.sort_unstable_by(f64::total_cmp);
         let rank = |q: f64| ((q * count).ceil() as usize).clamp(1, judged.max(1)) - 1;
         let quantile = |q: f64| self.norms.get(rank(q)).copied().unwrap_or(0.0);
-        Measured {
+        ModeResult {
             cost_us,
             error,
             error_p50: quantile(0.5),
@@ -72,8 +72,8 @@ pub(super) fn look(cancel: &AtomicBool) -> Result<(), SweepError> {
 
 /// An identifier that computes only `mode`, as the loop does: its settings include every mode, so that any can be
 /// chosen while it runs.
-pub(super) fn identifier(settings: &Settings, mode: Mode) -> Result<Identifier, SettingsError> {
-    let mut identifier = Identifier::new(&Settings { modes: settings.modes.with(mode), ..settings.clone() })?;
+pub(super) fn identifier(settings: &ImpedanceSettings, mode: Mode) -> Result<Identifier, SettingsError> {
+    let mut identifier = Identifier::new(&ImpedanceSettings { modes: settings.modes.with(mode), ..settings.clone() })?;
     identifier.compute(ModeSet::only(mode));
     Ok(identifier)
 }
@@ -81,13 +81,13 @@ pub(super) fn identifier(settings: &Settings, mode: Mode) -> Result<Identifier, 
 /// Runs `mode` over `samples` `passes` times; only samples from `from_s` on are judged and timed.
 pub(super) fn measure(
     samples: &[Sample],
-    settings: &Settings,
-    (mode, choice): (Mode, &Choice),
+    settings: &ImpedanceSettings,
+    (mode, choice): (Mode, &ParameterChoice),
     from_s: f64,
     passes: usize,
     cancel: &AtomicBool,
-) -> Result<Measured, SweepError> {
-    let mut errors = Errors::default();
+) -> Result<ModeResult, SweepError> {
+    let mut errors = ModeErrors::default();
     let mut cost_us = CostUs::WORST;
     for pass in 0..passes.max(1) {
         let mut identifier =
@@ -113,7 +113,7 @@ pub(super) fn measure(
     Ok(errors.measured(cost_us))
 }
 
-fn judge(identifier: &Identifier, mode: Mode, sample: &Sample, errors: &mut Errors) {
+fn judge(identifier: &Identifier, mode: Mode, sample: &Sample, errors: &mut ModeErrors) {
     let report = identifier.report();
     let rendered = report.prediction(mode);
     let held = report.prediction(Mode::Dfr);

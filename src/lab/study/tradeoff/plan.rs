@@ -1,25 +1,25 @@
 //! The parameters of the identification, and their tested values.
 
 use nima_core::{
-    impedance::{Identifier, MAX_DEGREE, Mode, Settings, SettingsError},
+    impedance::{Identifier, ImpedanceSettings, MAX_DEGREE, Mode, SettingsError},
     signal::DifferentiatorKind,
 };
 use serde::Serialize;
 
-use super::{modes, source::Source};
-use crate::solvers::Solver;
+use super::{modes, source::TradeoffSource};
+use crate::solvers::LeastSquaresSolver;
 
 /// A method that computes a force from samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(untagged)]
-pub enum Method {
+pub enum PlanMethod {
     /// A mode, as run by the loop.
     Mode(Mode),
     /// The plain model of a window, computed by this solver (in its precision).
-    Solver(Solver),
+    Solver(LeastSquaresSolver),
 }
 
-impl Method {
+impl PlanMethod {
     pub const fn name(self) -> &'static str {
         match self {
             Self::Mode(mode) => mode.name(),
@@ -37,8 +37,8 @@ impl Method {
 
 /// One value for every parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Choice {
-    pub method: Method,
+pub struct ParameterChoice {
+    pub method: PlanMethod,
     pub degree: usize,
     pub window_ms: f64,
     pub rate_hz: f64,
@@ -83,20 +83,20 @@ impl Knob {
 
 /// Points along one parameter.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Curve {
+pub struct PlanCurve {
     /// The parameter that varies along the curve.
     pub knob: Knob,
     /// Method of the whole curve (for [`Knob::Mode`]: of its base point).
-    pub method: Method,
+    pub method: PlanMethod,
     /// Indices into the source's points.
     pub points: Vec<usize>,
 }
 
 /// The values to test.
 #[derive(Clone, Debug)]
-pub struct Plan {
+pub struct TradeoffPlan {
     /// The base point, and settings that are not varied (scales, ridge). Rate and axes come from the source.
-    pub base: Settings,
+    pub base: ImpedanceSettings,
     /// Modes measured along every parameter that they have; the grid has all modes.
     pub modes: Vec<Mode>,
     pub degrees: Vec<usize>,
@@ -106,16 +106,16 @@ pub struct Plan {
     pub delays_s: Vec<f64>,
     pub differentiators: Vec<DifferentiatorKind>,
     /// Solvers of the plain model of a window, measured along degree and window.
-    pub solvers: Vec<Solver>,
+    pub solvers: Vec<LeastSquaresSolver>,
     /// Number of instants at which each solver is evaluated.
     pub instants: usize,
     /// Passes over the source for each point of a mode; the minimum time counts as its cost.
     pub passes: usize,
 }
 
-impl Plan {
+impl TradeoffPlan {
     /// All points of the full study.
-    pub fn full(base: Settings) -> Self {
+    pub fn full(base: ImpedanceSettings) -> Self {
         Self {
             base,
             modes: vec![Mode::Best, Mode::Nima, Mode::Literal],
@@ -124,14 +124,14 @@ impl Plan {
             rates_hz: vec![500.0, 200.0, 66.0],
             delays_s: vec![0.01, 0.05, 0.1, 0.3],
             differentiators: DifferentiatorKind::ALL.to_vec(),
-            solvers: Solver::ALL.to_vec(),
+            solvers: LeastSquaresSolver::ALL.to_vec(),
             instants: 200,
             passes: 3,
         }
     }
 
     /// A reduced plan that takes about a minute: three degrees, three windows, the delay of the base point.
-    pub fn quick(base: Settings) -> Self {
+    pub fn quick(base: ImpedanceSettings) -> Self {
         Self {
             degrees: vec![1, 2, MAX_DEGREE],
             windows_s: vec![0.1, 0.3, 1.0],
@@ -144,9 +144,9 @@ impl Plan {
     }
 
     /// Returns the base point for `source` with this mode.
-    pub fn base_choice(&self, source: &Source, mode: Mode) -> Choice {
-        Choice {
-            method: Method::Mode(mode),
+    pub fn base_choice(&self, source: &TradeoffSource, mode: Mode) -> ParameterChoice {
+        ParameterChoice {
+            method: PlanMethod::Mode(mode),
             degree: self.base.max_degree,
             window_ms: ms(self.base.window_s),
             rate_hz: source.recording.rate_hz,
@@ -157,11 +157,11 @@ impl Plan {
     }
 
     /// Points and curves for `source`; each point once, even if several curves pass through it.
-    pub(super) fn lay_out(&self, source: &Source) -> (Vec<Choice>, Vec<Curve>) {
-        let mut layout = Layout::default();
+    pub(super) fn lay_out(&self, source: &TradeoffSource) -> (Vec<ParameterChoice>, Vec<PlanCurve>) {
+        let mut layout = PlanLayout::default();
         for &mode in &self.modes {
             let base = self.base_choice(source, mode);
-            let delays = self.delays_s.iter().map(|&s| Choice { delay_ms: ms(s), ..base });
+            let delays = self.delays_s.iter().map(|&s| ParameterChoice { delay_ms: ms(s), ..base });
             layout.curve(Knob::Rate, base.method, self.rates(&base));
             layout.curve(Knob::Delay, base.method, delays.collect());
             if mode.has_degrees() {
@@ -171,13 +171,13 @@ impl Plan {
                 layout.curve(Knob::Window, base.method, self.of_windows(base).collect());
                 // Only these modes have velocity and acceleration as columns.
                 let differentiators = self.differentiators.iter();
-                let choices = differentiators.map(|&differentiator| Choice { differentiator, ..base });
+                let choices = differentiators.map(|&differentiator| ParameterChoice { differentiator, ..base });
                 layout.curve(Knob::Differentiator, base.method, choices.collect());
             }
         }
         if let Some(&mode) = self.modes.first() {
             let base = self.base_choice(source, mode);
-            let choices = Mode::ALL.map(|mode| Choice { method: Method::Mode(mode), ..base }).to_vec();
+            let choices = Mode::ALL.map(|mode| ParameterChoice { method: PlanMethod::Mode(mode), ..base }).to_vec();
             layout.curve(Knob::Mode, base.method, choices);
         }
         self.lay_out_solvers(source, &mut layout);
@@ -187,19 +187,20 @@ impl Plan {
         (layout.choices, layout.curves)
     }
 
-    fn of_degrees(&self, base: Choice) -> impl Iterator<Item = Choice> {
-        self.degrees.iter().map(move |&degree| Choice { degree, ..base })
+    fn of_degrees(&self, base: ParameterChoice) -> impl Iterator<Item = ParameterChoice> {
+        self.degrees.iter().map(move |&degree| ParameterChoice { degree, ..base })
     }
 
-    fn of_windows(&self, base: Choice) -> impl Iterator<Item = Choice> {
-        self.windows_s.iter().map(move |&s| Choice { window_ms: ms(s), ..base })
+    fn of_windows(&self, base: ParameterChoice) -> impl Iterator<Item = ParameterChoice> {
+        self.windows_s.iter().map(move |&s| ParameterChoice { window_ms: ms(s), ..base })
     }
 
     /// Every mode with all of its degrees and windows.
-    fn lay_out_grid(&self, source: &Source, delay_ms: f64, layout: &mut Layout) {
+    fn lay_out_grid(&self, source: &TradeoffSource, delay_ms: f64, layout: &mut PlanLayout) {
         for mode in Mode::ALL {
-            let base = Choice { delay_ms, ..self.base_choice(source, mode) };
-            let windows: Vec<Choice> = if mode.has_window() { self.of_windows(base).collect() } else { vec![base] };
+            let base = ParameterChoice { delay_ms, ..self.base_choice(source, mode) };
+            let windows: Vec<ParameterChoice> =
+                if mode.has_window() { self.of_windows(base).collect() } else { vec![base] };
             let choices = if mode.has_degrees() {
                 windows.into_iter().flat_map(|choice| self.of_degrees(choice)).collect()
             } else {
@@ -210,21 +211,21 @@ impl Plan {
     }
 
     /// Every solver for all degrees at the base's window, and for all windows at the base's degree.
-    fn lay_out_solvers(&self, source: &Source, layout: &mut Layout) {
+    fn lay_out_solvers(&self, source: &TradeoffSource, layout: &mut PlanLayout) {
         for &solver in &self.solvers {
-            let method = Method::Solver(solver);
-            let base = Choice { method, ..self.base_choice(source, Mode::Dfr) };
+            let method = PlanMethod::Solver(solver);
+            let base = ParameterChoice { method, ..self.base_choice(source, Mode::Dfr) };
             layout.curve(Knob::Degree, method, self.of_degrees(base).collect());
             layout.curve(Knob::Window, method, self.of_windows(base).collect());
         }
     }
 
-    fn rates(&self, base: &Choice) -> Vec<Choice> {
+    fn rates(&self, base: &ParameterChoice) -> Vec<ParameterChoice> {
         let mut choices = vec![*base];
         for rate_hz in &self.rates_hz {
             let every = (base.rate_hz / rate_hz).round() as usize;
             if every > 1 {
-                choices.push(Choice { every, rate_hz: base.rate_hz / every as f64, ..*base });
+                choices.push(ParameterChoice { every, rate_hz: base.rate_hz / every as f64, ..*base });
             }
         }
         choices
@@ -235,13 +236,13 @@ impl Plan {
     ///
     /// # Errors
     /// [`SettingsError`] if the choice is out of range.
-    pub fn identifier(&self, choice: &Choice, axes: usize) -> Result<Option<Identifier>, SettingsError> {
+    pub fn identifier(&self, choice: &ParameterChoice, axes: usize) -> Result<Option<Identifier>, SettingsError> {
         choice.method.mode().map(|mode| modes::identifier(&self.settings(choice, axes), mode)).transpose()
     }
 
     /// Settings of an identifier for `choice`, for a source with this number of axes.
-    pub(super) fn settings(&self, choice: &Choice, axes: usize) -> Settings {
-        Settings {
+    pub(super) fn settings(&self, choice: &ParameterChoice, axes: usize) -> ImpedanceSettings {
+        ImpedanceSettings {
             rate_hz: choice.rate_hz,
             window_s: choice.window_ms * 1e-3,
             delay_s: choice.delay_ms * 1e-3,
@@ -254,18 +255,18 @@ impl Plan {
 }
 
 #[derive(Default)]
-struct Layout {
-    choices: Vec<Choice>,
-    curves: Vec<Curve>,
+struct PlanLayout {
+    choices: Vec<ParameterChoice>,
+    curves: Vec<PlanCurve>,
 }
 
-impl Layout {
-    fn curve(&mut self, knob: Knob, method: Method, choices: Vec<Choice>) {
+impl PlanLayout {
+    fn curve(&mut self, knob: Knob, method: PlanMethod, choices: Vec<ParameterChoice>) {
         let points = choices.into_iter().map(|choice| self.index(choice)).collect();
-        self.curves.push(Curve { knob, method, points });
+        self.curves.push(PlanCurve { knob, method, points });
     }
 
-    fn index(&mut self, choice: Choice) -> usize {
+    fn index(&mut self, choice: ParameterChoice) -> usize {
         self.choices.iter().position(|known| *known == choice).unwrap_or_else(|| {
             self.choices.push(choice);
             self.choices.len() - 1

@@ -2,21 +2,21 @@
 
 use nima_core::impedance::{AXES, Sample};
 use nima_machine::{
-    rig::{Outputs, Sensed},
+    rig::{Outputs, SensedForce},
     runtime::{ClockProfile, VirtualClock},
 };
-use nima_recording::csv::Recording;
+use nima_recording::csv::CsvRecording;
 use nima_simulation::{World, scene::Scene};
 
 /// Motion and force over time, with a name.
 #[derive(Clone, Debug)]
-pub struct Source {
+pub struct TradeoffSource {
     pub name: String,
     pub unit: String,
-    pub recording: Recording,
+    pub recording: CsvRecording,
 }
 
-impl Source {
+impl TradeoffSource {
     /// Records `scene` open-loop on the perfect virtual clock: the follower follows the hand, the hand feels nothing,
     /// so that every choice of parameters gets identical motion and force. The scene must have been validated.
     pub fn from_scene(scene: &Scene, rate_hz: f64, seconds: f64) -> Self {
@@ -37,15 +37,20 @@ impl Source {
                 // This study compares identification, not the force path, so a scene with a wrist sensor gives the true
                 // tip force.
                 let force_n = match inputs.sensed {
-                    Sensed::AtTip(force_n) => force_n,
-                    Sensed::AtWrist(_) | Sensed::FarEnd(_) => world.true_tip_n(),
+                    SensedForce::AtTip(force_n) => force_n,
+                    SensedForce::AtWrist(_) | SensedForce::FarEnd(_) => world.true_tip_n(),
                 };
                 samples.push(Sample { t_s, position_m: inputs.tip_m, force_n });
             }
             t_s = times.advance().now_s;
         }
-        let recording =
-            Recording { path: scene.name.clone().into(), axes: (0..AXES).collect(), rate_hz, samples, leader_m: None };
+        let recording = CsvRecording {
+            path: scene.name.clone().into(),
+            axes: (0..AXES).collect(),
+            rate_hz,
+            samples,
+            leader_m: None,
+        };
         let name = match clock.profile {
             ClockProfile::Perfect => scene.name.clone(),
             profile => format!("{} ({profile} clock)", scene.name),
@@ -54,7 +59,7 @@ impl Source {
     }
 
     /// A recording, named after its file.
-    pub fn from_recording(recording: Recording, unit: &str) -> Self {
+    pub fn from_recording(recording: CsvRecording, unit: &str) -> Self {
         let name = recording.path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
         Self { name, unit: unit.to_owned(), recording }
     }
@@ -68,9 +73,9 @@ impl Source {
     }
 
     /// Every `every`-th sample, as a slower device would have read them (without a filter).
-    pub(super) fn slower(&self, every: usize) -> Recording {
+    pub(super) fn slower(&self, every: usize) -> CsvRecording {
         let every = every.max(1);
-        Recording {
+        CsvRecording {
             path: self.recording.path.clone(),
             axes: self.recording.axes.clone(),
             rate_hz: self.recording.rate_hz / every as f64,

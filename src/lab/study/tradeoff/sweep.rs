@@ -3,20 +3,20 @@
 use std::sync::atomic::AtomicBool;
 
 use nima_core::{
-    impedance::{Mode, Settings, SettingsError},
+    impedance::{ImpedanceSettings, Mode, SettingsError},
     statistics::Quantiles,
 };
 use serde::Serialize;
 
 use super::{
-    modes::{self, Measured, look},
-    plan::{Choice, Curve, Knob, Method, Plan},
-    source::Source,
+    modes::{self, ModeResult, look},
+    plan::{Knob, ParameterChoice, PlanCurve, PlanMethod, TradeoffPlan},
+    source::TradeoffSource,
     windows,
 };
 
 /// Maximum window or delay as a fraction of the source; longer ones leave too few samples to judge.
-const LONGEST_SHARE: f64 = 0.25;
+const LONGEST_FRACTION: f64 = 0.25;
 
 /// Why a sweep failed.
 #[derive(Debug, thiserror::Error)]
@@ -31,7 +31,7 @@ pub enum SweepError {
     },
     /// An invalid choice that the plan's checks did not find.
     #[error("{choice:?}: {source}")]
-    Settings { choice: Box<Choice>, source: SettingsError },
+    Settings { choice: Box<ParameterChoice>, source: SettingsError },
 }
 
 /// Time of one tick, us.
@@ -52,9 +52,9 @@ impl CostUs {
 
 /// A choice, its cost and its error.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Point {
+pub struct SweepPoint {
     #[serde(flatten)]
-    pub choice: Choice,
+    pub choice: ParameterChoice,
     /// Time of one tick, us; the minimum of the passes.
     pub cost_us: CostUs,
     /// Fraction of one processor used by the median tick at this rate.
@@ -78,9 +78,9 @@ pub struct Point {
 
 /// A choice that was left out, and the reason.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Skipped {
+pub struct SkippedChoice {
     #[serde(flatten)]
-    pub choice: Choice,
+    pub choice: ParameterChoice,
     pub reason: String,
 }
 
@@ -93,13 +93,13 @@ pub struct SourceFigures {
     pub axes: usize,
     /// Only samples later than this and the delay are judged, s, so that the longest window is full.
     pub judged_from_s: f64,
-    pub points: Vec<Point>,
-    pub curves: Vec<Curve>,
-    pub skipped: Vec<Skipped>,
+    pub points: Vec<SweepPoint>,
+    pub curves: Vec<PlanCurve>,
+    pub skipped: Vec<SkippedChoice>,
 }
 
 #[derive(Clone, Debug, Serialize)]
-pub struct Study {
+pub struct SweepStudy {
     pub sources: Vec<SourceFigures>,
 }
 
@@ -109,11 +109,11 @@ pub struct Study {
 /// # Errors
 /// [`SweepError`] if the sweep is cancelled or no point can be measured on a source.
 pub fn sweep(
-    sources: &[Source],
-    plan: &Plan,
+    sources: &[TradeoffSource],
+    plan: &TradeoffPlan,
     cancel: &AtomicBool,
     mut progress: impl FnMut(usize, usize),
-) -> Result<Study, SweepError> {
+) -> Result<SweepStudy, SweepError> {
     let layouts: Vec<_> = sources.iter().map(|source| plan.lay_out(source)).collect();
     let total = layouts.iter().map(|(choices, _)| choices.len()).sum();
     let mut done = 0;
@@ -126,20 +126,20 @@ pub fn sweep(
         };
         figures.push(measure_source(source, plan, &choices, curves, cancel, one_done)?);
     }
-    Ok(Study { sources: figures })
+    Ok(SweepStudy { sources: figures })
 }
 
 fn measure_source(
-    source: &Source,
-    plan: &Plan,
-    choices: &[Choice],
-    mut curves: Vec<Curve>,
+    source: &TradeoffSource,
+    plan: &TradeoffPlan,
+    choices: &[ParameterChoice],
+    mut curves: Vec<PlanCurve>,
     cancel: &AtomicBool,
     mut one_done: impl FnMut(),
 ) -> Result<SourceFigures, SweepError> {
     let recording = &source.recording;
     let axes = recording.axes.len();
-    let longest_s = LONGEST_SHARE * source.seconds();
+    let longest_s = LONGEST_FRACTION * source.seconds();
     let settle_s = longest_usable(choices, longest_s);
     let mut points = Vec::new();
     let mut skipped = Vec::new();
@@ -148,7 +148,7 @@ fn measure_source(
         look(cancel)?;
         let settings = plan.settings(choice, axes);
         if let Some(reason) = unfit(choice, &settings, longest_s) {
-            skipped.push(Skipped { choice: *choice, reason });
+            skipped.push(SkippedChoice { choice: *choice, reason });
         } else {
             *place = Some(points.len());
             points.push(measure_point(source, plan, choice, &settings, settle_s, cancel)?);
@@ -180,44 +180,44 @@ fn measure_source(
 
 /// Returns the longest window that is measured. Judging starts only when it is full, so that all points are judged on
 /// the same samples.
-fn longest_usable(choices: &[Choice], longest_s: f64) -> f64 {
+fn longest_usable(choices: &[ParameterChoice], longest_s: f64) -> f64 {
     choices.iter().map(|choice| choice.window_ms * 1e-3).filter(|&s| s <= longest_s).fold(0.0, f64::max)
 }
 
-fn unfit(choice: &Choice, settings: &Settings, longest_s: f64) -> Option<String> {
+fn unfit(choice: &ParameterChoice, settings: &ImpedanceSettings, longest_s: f64) -> Option<String> {
     if settings.window_s > longest_s || settings.delay_s > longest_s {
         return Some(format!(
             "a window of {} ms and a delay of {} ms must each be at most a quarter of the {:.1} s recorded",
             choice.window_ms,
             choice.delay_ms,
-            longest_s / LONGEST_SHARE
+            longest_s / LONGEST_FRACTION
         ));
     }
     settings.validate().err().map(|error| error.to_string())
 }
 
 fn measure_point(
-    source: &Source,
-    plan: &Plan,
-    choice: &Choice,
-    settings: &Settings,
+    source: &TradeoffSource,
+    plan: &TradeoffPlan,
+    choice: &ParameterChoice,
+    settings: &ImpedanceSettings,
     settle_s: f64,
     cancel: &AtomicBool,
-) -> Result<Point, SweepError> {
+) -> Result<SweepPoint, SweepError> {
     let recording = source.slower(choice.every);
     let first_s = recording.samples.first().map_or(0.0, |first| first.t_s);
     let from_s = first_s + settle_s + settings.delay_s;
     let samples = &recording.samples;
     let measured = match choice.method {
-        Method::Mode(mode) => modes::measure(samples, settings, (mode, choice), from_s, plan.passes, cancel)?,
-        Method::Solver(solver) => windows::measure(samples, settings, solver, from_s, plan.instants, cancel)?,
+        PlanMethod::Mode(mode) => modes::measure(samples, settings, (mode, choice), from_s, plan.passes, cancel)?,
+        PlanMethod::Solver(solver) => windows::measure(samples, settings, solver, from_s, plan.instants, cancel)?,
     };
     Ok(point(choice, &measured))
 }
 
-fn point(choice: &Choice, measured: &Measured) -> Point {
-    let Measured { cost_us, error, error_p50, error_p95, dfr_error, not_rendered, judged } = *measured;
-    Point {
+fn point(choice: &ParameterChoice, measured: &ModeResult) -> SweepPoint {
+    let ModeResult { cost_us, error, error_p50, error_p95, dfr_error, not_rendered, judged } = *measured;
+    SweepPoint {
         choice: *choice,
         cost_us,
         load: cost_us.p50 * 1e-6 * choice.rate_hz,
@@ -233,8 +233,8 @@ fn point(choice: &Choice, measured: &Measured) -> Point {
 }
 
 /// Marks the grid points that are not beaten in both cost (median) and error by another grid point at the same delay.
-pub(super) fn mark_front(points: &mut [Point], on_grid: &[usize]) {
-    let grid: Vec<Point> = on_grid.iter().map(|&index| points[index]).collect();
+pub(super) fn mark_front(points: &mut [SweepPoint], on_grid: &[usize]) {
+    let grid: Vec<SweepPoint> = on_grid.iter().map(|&index| points[index]).collect();
     for &index in on_grid {
         let point = &mut points[index];
         let mut rivals =
@@ -244,7 +244,7 @@ pub(super) fn mark_front(points: &mut [Point], on_grid: &[usize]) {
 }
 
 /// Whether `a` is at least as good in both and better in one.
-fn beats(a: &Point, b: &Point) -> bool {
+fn beats(a: &SweepPoint, b: &SweepPoint) -> bool {
     let cost = a.cost_us.p50;
     let error = a.error;
     cost <= b.cost_us.p50 && error <= b.error && (cost < b.cost_us.p50 || error < b.error)
@@ -252,8 +252,8 @@ fn beats(a: &Point, b: &Point) -> bool {
 
 impl SourceFigures {
     /// The point of delayed DFR at this delay (ms) and at the source's own rate, if it was measured.
-    pub fn dfr(&self, delay_ms: f64) -> Option<&Point> {
-        let wanted = Method::Mode(Mode::Dfr);
+    pub fn dfr(&self, delay_ms: f64) -> Option<&SweepPoint> {
+        let wanted = PlanMethod::Mode(Mode::Dfr);
         self.points.iter().find(|point| {
             point.choice.method == wanted
                 && point.choice.every == 1

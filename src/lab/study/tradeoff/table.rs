@@ -4,12 +4,12 @@ use std::fmt::Write as _;
 
 use nima_files::csv_cell;
 
-use super::{SourceFigures, Study};
+use super::{SourceFigures, SweepStudy};
 
 const HEADER: &str = "source,unit,method,degree,window_ms,rate_hz,delay_ms,differentiator,cost_p50_us,cost_p99_us,load,\
                       error,error_p50,error_p95,dfr_error,ratio,not_rendered,judged,pareto,knobs\n";
 
-impl Study {
+impl SweepStudy {
     /// All points of all sources as CSV. The column `knobs` names the curves that pass through the point.
     pub fn csv(&self) -> String {
         let mut text = HEADER.to_owned();

@@ -9,25 +9,25 @@
 use std::{hint::black_box, sync::atomic::AtomicBool, time::Instant};
 
 use nima_core::{
-    impedance::{MAX_DEGREE, Sample, Settings},
+    impedance::{ImpedanceSettings, MAX_DEGREE, Sample},
     signal::{DelayLine, Differentiator, Lanes, Motion},
     statistics::Percentiles,
 };
 
 use super::{
-    modes::{Errors, Measured, look},
+    modes::{ModeErrors, ModeResult, look},
     sweep::{CostUs, SweepError},
 };
-use crate::solvers::{Fit, Row, Sliding, Solver};
+use crate::solvers::{LeastSquaresSolver, SlidingSolver, SolverFit, SolverRow};
 
 /// Rows of a source for one window length, one list per axis.
-struct Rows {
-    axes: Vec<Vec<Row>>,
+struct WindowsRows {
+    axes: Vec<Vec<SolverRow>>,
     window: usize,
 }
 
-impl Rows {
-    fn new(samples: &[Sample], settings: &Settings) -> Self {
+impl WindowsRows {
+    fn new(samples: &[Sample], settings: &ImpedanceSettings) -> Self {
         let block = ((settings.window_s * settings.rate_hz / 2.0).round() as usize).max(5);
         let window = 2 * block;
         let mut differentiator = Differentiator::new(settings.differentiator, settings.rate_hz);
@@ -40,7 +40,7 @@ impl Rows {
             for (axis, rows) in axes.iter_mut().enumerate() {
                 let [x, v, a] = [now.x, now.v, now.a].map(|lanes| lanes[axis]);
                 let increment = [x - then.x[axis], v - then.v[axis], a - then.a[axis]];
-                rows.push(Row { position: [x, v, a], increment, force_n: sample.force_n[axis] });
+                rows.push(SolverRow { position: [x, v, a], increment, force_n: sample.force_n[axis] });
             }
         }
         Self { axes, window }
@@ -50,20 +50,20 @@ impl Rows {
 /// Measures `solver` at about `instants` instants from `from_s` on.
 pub(super) fn measure(
     samples: &[Sample],
-    settings: &Settings,
-    solver: Solver,
+    settings: &ImpedanceSettings,
+    solver: LeastSquaresSolver,
     from_s: f64,
     instants: usize,
     cancel: &AtomicBool,
-) -> Result<Measured, SweepError> {
-    let rows = Rows::new(samples, settings);
+) -> Result<ModeResult, SweepError> {
+    let rows = WindowsRows::new(samples, settings);
     let delay = (settings.delay_s * settings.rate_hz).round() as usize;
     let first = samples.partition_point(|sample| sample.t_s < from_s).max(rows.window + delay);
     let every = (samples.len().saturating_sub(first) / instants.max(1)).max(1);
-    let mut sliding: Vec<Sliding> = (0..settings.axes)
-        .map(|_| Sliding::new(rows.window / 2, settings.max_degree, settings.scales, settings.ridge))
+    let mut sliding: Vec<SlidingSolver> = (0..settings.axes)
+        .map(|_| SlidingSolver::new(rows.window / 2, settings.max_degree, settings.scales, settings.ridge))
         .collect();
-    let mut errors = Errors::default();
+    let mut errors = ModeErrors::default();
     let mut times = Percentiles::new();
     let end = samples.len().saturating_sub(delay);
     for known in 0..end {
@@ -72,15 +72,15 @@ pub(super) fn measure(
         if known % 256 == 0 || asked {
             look(cancel)?;
         }
-        if solver == Solver::Sliding {
+        if solver == LeastSquaresSolver::Sliding {
             let spent_s = slide(&mut sliding, &rows, known);
             if now >= first {
                 times.record(spent_s);
             }
         }
         if asked {
-            let fits = if solver == Solver::Sliding {
-                sliding.iter().map(Sliding::fit).collect()
+            let fits = if solver == LeastSquaresSolver::Sliding {
+                sliding.iter().map(SlidingSolver::fit).collect()
             } else {
                 let start = Instant::now();
                 let fits = black_box(fit_afresh(solver, &rows, known, settings));
@@ -94,7 +94,7 @@ pub(super) fn measure(
 }
 
 /// Adds row `known` of every axis; returns the time for the first axis, s.
-fn slide(sliding: &mut [Sliding], rows: &Rows, known: usize) -> f64 {
+fn slide(sliding: &mut [SlidingSolver], rows: &WindowsRows, known: usize) -> f64 {
     let mut spent_s = 0.0;
     for (axis, (sliding, rows)) in sliding.iter_mut().zip(&rows.axes).enumerate() {
         let start = Instant::now();
@@ -106,13 +106,19 @@ fn slide(sliding: &mut [Sliding], rows: &Rows, known: usize) -> f64 {
     spent_s
 }
 
-fn fit_afresh(solver: Solver, rows: &Rows, known: usize, settings: &Settings) -> Vec<Fit> {
+fn fit_afresh(
+    solver: LeastSquaresSolver,
+    rows: &WindowsRows,
+    known: usize,
+    settings: &ImpedanceSettings,
+) -> Vec<SolverFit> {
     let from = (known + 1).saturating_sub(rows.window);
-    let fit = |rows: &Vec<Row>| solver.fit(&rows[from..=known], settings.max_degree, &settings.scales, settings.ridge);
+    let fit =
+        |rows: &Vec<SolverRow>| solver.fit(&rows[from..=known], settings.max_degree, &settings.scales, settings.ridge);
     rows.axes.iter().map(fit).collect()
 }
 
-fn judge(fits: &[Fit], rows: &Rows, (known, now): (usize, usize), degree: usize, errors: &mut Errors) {
+fn judge(fits: &[SolverFit], rows: &WindowsRows, (known, now): (usize, usize), degree: usize, errors: &mut ModeErrors) {
     let mut squares = 0.0;
     let mut dfr_squares = 0.0;
     let mut rendered = true;

@@ -3,14 +3,14 @@
 use std::collections::BTreeMap;
 
 use nima_analysis::{
-    AnalysisError, Bootstrap, Summary, correction, effect, friedman,
+    AnalysisError, Bootstrap, SampleSummary, correction, effect, friedman,
     mann_whitney::{self},
-    mixed::{Criterion, Model},
-    power::{Least, PairedTest, Population, Simulation},
-    signed_rank::{self, Distribution, Options},
+    mixed::{MixedCriterion, MixedModel},
+    power::{MinimumSample, PairedTest, Population, PowerSimulation},
+    signed_rank::{self, Distribution, SignedRankOptions},
 };
 
-use super::{Design, Mixed, OfCondition, OfMeasure, Pair, table::Table};
+use super::{ConditionPair, OfCondition, OfMeasure, TrialDesign, TrialMixed, table::TrialTable};
 
 /// Maximum number of participants considered when searching for a power.
 const NEEDED_MAX: usize = 500;
@@ -18,7 +18,7 @@ const NEEDED_MAX: usize = 500;
 type Means<'a> = BTreeMap<(&'a str, &'a str), (f64, usize)>;
 
 pub(super) fn measure(
-    table: &Table,
+    table: &TrialTable,
     name: &str,
     reference: &str,
     confidence: f64,
@@ -32,7 +32,7 @@ pub(super) fn measure(
     let mut notes = Vec::new();
     let design = design(&means, &conditions);
     let rows = complete(&means, &conditions);
-    let friedman = (design == Design::Within && conditions.len() > 2).then(|| friedman::test(&rows));
+    let friedman = (design == TrialDesign::Within && conditions.len() > 2).then(|| friedman::test(&rows));
     let friedman = friedman.and_then(|test| or_note(test, "Friedman's test", &mut notes));
     let pairs = pairs(&means, &conditions, reference, design, confidence, power, &mut notes)?;
     let of = |condition: &&str| of_condition(&means, condition, confidence);
@@ -54,15 +54,15 @@ fn or_note<T>(value: Result<T, AnalysisError>, what: &str, notes: &mut Vec<Strin
     value.map_err(|error| notes.push(format!("{what}: {error}"))).ok()
 }
 
-fn design(means: &Means<'_>, conditions: &[&str]) -> Design {
+fn design(means: &Means<'_>, conditions: &[&str]) -> TrialDesign {
     let mut participants: Vec<&str> = means.keys().map(|(participant, _)| *participant).collect();
     let all = participants.len();
     // The keys are sorted, so the entries of a participant are adjacent.
     participants.dedup();
     match conditions.len() {
-        0 | 1 => Design::Single,
-        _ if participants.len() < all => Design::Within,
-        _ => Design::Between,
+        0 | 1 => TrialDesign::Single,
+        _ if participants.len() < all => TrialDesign::Within,
+        _ => TrialDesign::Between,
     }
 }
 
@@ -81,7 +81,7 @@ fn values(means: &Means<'_>, condition: &str) -> Vec<f64> {
 
 fn of_condition(means: &Means<'_>, condition: &str, confidence: f64) -> Result<OfCondition, AnalysisError> {
     let values = values(means, condition);
-    let Summary { n, mean, sd, median, .. } = Summary::of(&values)?;
+    let SampleSummary { n, mean, sd, median, .. } = SampleSummary::of(&values)?;
     let trials = means.iter().filter(|((_, of), _)| *of == condition).map(|(_, (_, count))| count).sum();
     let bootstrap = Bootstrap { confidence, ..Bootstrap::default() };
     // Too few values, or all equal ones, have no interval.
@@ -94,25 +94,25 @@ fn pairs(
     means: &Means<'_>,
     conditions: &[&str],
     reference: &str,
-    design: Design,
+    design: TrialDesign,
     confidence: f64,
     power: Option<f64>,
     notes: &mut Vec<String>,
-) -> Result<Vec<Pair>, AnalysisError> {
+) -> Result<Vec<ConditionPair>, AnalysisError> {
     let mut order: Vec<&str> = conditions.to_vec();
     order.sort_by_key(|condition| *condition != reference);
     let mut pairs = Vec::new();
     for (at, second) in order.iter().enumerate() {
         for first in &order[at + 1..] {
             let pair = match design {
-                Design::Within => within(means, first, second, confidence, power),
-                Design::Between => between(means, first, second, confidence),
-                Design::Single => continue,
+                TrialDesign::Within => within(means, first, second, confidence, power),
+                TrialDesign::Between => between(means, first, second, confidence),
+                TrialDesign::Single => continue,
             };
             pairs.extend(or_note(pair, &format!("{first} - {second}"), notes));
         }
     }
-    let p: Vec<f64> = pairs.iter().map(|pair: &Pair| pair.p).collect();
+    let p: Vec<f64> = pairs.iter().map(|pair: &ConditionPair| pair.p).collect();
     if !p.is_empty() {
         for (pair, p_holm) in pairs.iter_mut().zip(correction::holm(&p)?) {
             pair.p_holm = p_holm;
@@ -123,7 +123,7 @@ fn pairs(
 
 /// Differences that are equal except for rounding are ties.
 fn rounded(differences: Vec<f64>) -> Vec<f64> {
-    let largest = differences.iter().fold(0.0, |most: f64, difference| most.max(difference.abs()));
+    let largest = differences.iter().fold(0.0, |max: f64, difference| max.max(difference.abs()));
     if largest <= 0.0 {
         return differences;
     }
@@ -137,20 +137,20 @@ fn within(
     second: &str,
     confidence: f64,
     power: Option<f64>,
-) -> Result<Pair, AnalysisError> {
+) -> Result<ConditionPair, AnalysisError> {
     let both = means.iter().filter(|((_, condition), _)| *condition == first);
     let differences =
         both.filter_map(|((participant, _), (mean, _))| Some(mean - means.get(&(*participant, second))?.0));
     let differences = rounded(differences.collect());
-    let test = signed_rank::of_differences(&differences, &Options::default())?;
+    let test = signed_rank::of_differences(&differences, &SignedRankOptions::default())?;
     let difference = signed_rank::location(&differences, confidence)?;
     let needed = power.and_then(|power| {
         let population = Population::from_pilot(&differences).ok()?;
-        let simulation = Simulation::default();
+        let simulation = PowerSimulation::default();
         let of = |n| simulation.paired(&population, difference.estimate, n, PairedTest::Wilcoxon);
-        Least::of(power, 5, NEEDED_MAX, of).ok().map(|least| least.participants)
+        MinimumSample::of(power, 5, NEEDED_MAX, of).ok().map(|min| min.participants)
     });
-    Ok(Pair {
+    Ok(ConditionPair {
         first: first.to_owned(),
         second: second.to_owned(),
         participants: [differences.len(); 2],
@@ -164,11 +164,11 @@ fn within(
     })
 }
 
-fn between(means: &Means<'_>, first: &str, second: &str, confidence: f64) -> Result<Pair, AnalysisError> {
+fn between(means: &Means<'_>, first: &str, second: &str, confidence: f64) -> Result<ConditionPair, AnalysisError> {
     let one = values(means, first);
     let other = values(means, second);
     let test = mann_whitney::test(&one, &other, Distribution::Automatic)?;
-    Ok(Pair {
+    Ok(ConditionPair {
         first: first.to_owned(),
         second: second.to_owned(),
         participants: [one.len(), other.len()],
@@ -184,13 +184,13 @@ fn between(means: &Means<'_>, first: &str, second: &str, confidence: f64) -> Res
 
 /// Analyses all trials, if participants have several or were under several conditions.
 fn mixed(
-    table: &Table,
+    table: &TrialTable,
     place: usize,
     conditions: &[&str],
     reference: &str,
     confidence: f64,
     notes: &mut Vec<String>,
-) -> Option<Mixed> {
+) -> Option<TrialMixed> {
     let trials: Vec<_> = table.measured(place).collect();
     let mut participants: Vec<&str> = trials.iter().map(|(trial, _)| trial.participant.as_str()).collect();
     participants.sort_unstable();
@@ -198,18 +198,19 @@ fn mixed(
     if conditions.len() < 2 || participants.len() == trials.len() {
         return None;
     }
-    let column = |of: fn(&super::table::Trial) -> &str| trials.iter().map(|(trial, _)| of(trial)).collect::<Vec<_>>();
+    let column =
+        |of: fn(&super::table::TableTrial) -> &str| trials.iter().map(|(trial, _)| of(trial)).collect::<Vec<_>>();
     let response: Vec<f64> = trials.iter().map(|(_, value)| *value).collect();
     let model =
-        Model::new(&column(|trial| &trial.participant), &column(|trial| &trial.condition), reference, &response);
+        MixedModel::new(&column(|trial| &trial.participant), &column(|trial| &trial.condition), reference, &response);
     let numbers: Option<Vec<f64>> = trials.iter().map(|(trial, _)| trial.number).collect();
     let varies = |numbers: &Vec<f64>| numbers.windows(2).any(|two| two[0].total_cmp(&two[1]).is_ne());
     let model = model.and_then(|model| match numbers.filter(varies) {
         Some(numbers) => model.covariate("trial", &numbers),
         None => Ok(model),
     });
-    let fit = model.and_then(|model| model.fit(Criterion::Reml, confidence));
+    let fit = model.and_then(|model| model.fit(MixedCriterion::Reml, confidence));
     let fit = or_note(fit, "mixed model", notes)?;
     let effects = fit.effects.iter().filter(|effect| effect.name != "(intercept)").cloned().collect();
-    Some(Mixed { effects, conditions: fit.conditions, icc: fit.icc })
+    Some(TrialMixed { effects, conditions: fit.conditions, icc: fit.icc })
 }

@@ -14,10 +14,10 @@ mod tests;
 
 use std::path::PathBuf;
 
-use nima_analysis::{AnalysisError, Interval, friedman::Friedman, mixed, signed_rank::Location};
+use nima_analysis::{AnalysisError, ConfidenceInterval, friedman::Friedman, mixed, signed_rank::Location};
 use serde::Serialize;
 
-pub use table::{Table, TableError, Trial};
+pub use table::{TableError, TableTrial, TrialTable};
 
 use crate::Experiment;
 
@@ -54,7 +54,7 @@ pub enum TrialsError {
 /// Assignment of conditions to participants.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Design {
+pub enum TrialDesign {
     /// Some participants were under several conditions.
     Within,
     /// Each participant was under one condition.
@@ -63,7 +63,7 @@ pub enum Design {
 }
 
 #[derive(Clone, Debug, Serialize)]
-pub struct Report {
+pub struct TrialReport {
     pub table: String,
     pub trials: usize,
     pub participants: usize,
@@ -82,7 +82,7 @@ pub struct OfMeasure {
     /// Trials without a value.
     pub missing: usize,
     /// Assignment of conditions to participants.
-    pub design: Design,
+    pub design: TrialDesign,
     /// Measurements under each condition.
     pub conditions: Vec<OfCondition>,
     /// All conditions at once, for the participants who were under all of them; if there are three or more.
@@ -90,9 +90,9 @@ pub struct OfMeasure {
     /// Number of these participants.
     pub complete: usize,
     /// Every pair of conditions.
-    pub pairs: Vec<Pair>,
+    pub pairs: Vec<ConditionPair>,
     /// All trials: differences from the reference.
-    pub mixed: Option<Mixed>,
+    pub mixed: Option<TrialMixed>,
     /// Values that could not be computed, with the reason.
     pub notes: Vec<String>,
 }
@@ -105,14 +105,14 @@ pub struct OfCondition {
     pub trials: usize,
     pub median: f64,
     /// Interval of the median, by bootstrap (`BCa`).
-    pub interval: Option<Interval>,
+    pub interval: Option<ConfidenceInterval>,
     pub mean: f64,
     pub sd: Option<f64>,
 }
 
 /// Two conditions, the first minus the second.
 #[derive(Clone, Debug, Serialize)]
-pub struct Pair {
+pub struct ConditionPair {
     pub first: String,
     /// The reference, if it is one of the two.
     pub second: String,
@@ -136,9 +136,9 @@ pub struct Pair {
 
 /// The mixed model: response ~ condition + trial + (1 | participant), REML.
 #[derive(Clone, Debug, Serialize)]
-pub struct Mixed {
+pub struct TrialMixed {
     /// Differences from the reference, and the effect of the trial's number if the table has it.
-    pub effects: Vec<mixed::Effect>,
+    pub effects: Vec<mixed::FixedEffect>,
     /// Whether the conditions differ at all.
     pub conditions: Option<mixed::JointTest>,
     /// Fraction of the variance between participants.
@@ -148,15 +148,15 @@ pub struct Mixed {
 impl Experiment for Trials {
     const NAME: &'static str = "analysis";
     const FILES: &'static [&'static str] = &[".md", ".csv", ".R"];
-    type Findings = Report;
+    type Findings = TrialReport;
     type Error = TrialsError;
 
     fn inputs(&self) -> Vec<PathBuf> {
         vec![self.path.clone()]
     }
 
-    fn run(&self, progress: &mut dyn FnMut(usize, usize, &str)) -> Result<Report, TrialsError> {
-        let table = Table::read(&self.path, &self.measures)?;
+    fn run(&self, progress: &mut dyn FnMut(usize, usize, &str)) -> Result<TrialReport, TrialsError> {
+        let table = TrialTable::read(&self.path, &self.measures)?;
         let conditions = table.conditions();
         let first = conditions.first().cloned().unwrap_or_default();
         let reference = self.reference.clone().unwrap_or(first);
@@ -171,7 +171,7 @@ impl Experiment for Trials {
             compare::measure(&table, measure, &reference, self.confidence, self.power)
         };
         let measures = table.measures.iter().enumerate().map(of).collect::<Result<_, _>>();
-        Ok(Report {
+        Ok(TrialReport {
             table: self.path.display().to_string(),
             trials: table.trials.len(),
             participants: table.participants(),

@@ -2,13 +2,13 @@
 
 use std::fmt::Write as _;
 
-use nima_analysis::Interval;
+use nima_analysis::ConfidenceInterval;
 use nima_files::csv_cell;
 
-use super::{Design, Mixed, OfCondition, OfMeasure, Pair, Report};
+use super::{ConditionPair, OfCondition, OfMeasure, TrialDesign, TrialMixed, TrialReport};
 use crate::Findings;
 
-impl Findings for Report {
+impl Findings for TrialReport {
     fn text(&self) -> String {
         let Self { table, trials, participants, conditions, reference, confidence, measures } = self;
         let mut text = format!(
@@ -28,7 +28,7 @@ impl Findings for Report {
 }
 
 /// A p-value in the usual notation of papers.
-fn p_words(p: f64) -> String {
+fn p_text(p: f64) -> String {
     if p < 0.001 { "< 0.001".to_owned() } else { format!("{p:.3}") }
 }
 
@@ -41,7 +41,7 @@ fn digits(value: f64) -> String {
     format!("{value:.*}", places as usize)
 }
 
-fn interval_words(interval: &Interval) -> String {
+fn interval_text(interval: &ConfidenceInterval) -> String {
     format!("{} to {}", digits(interval.lower), digits(interval.upper))
 }
 
@@ -58,7 +58,7 @@ impl OfMeasure {
         )
         .ok();
         for OfCondition { condition, participants, trials, median, interval, mean, sd } in conditions {
-            let interval = interval.as_ref().map_or_else(|| "-".to_owned(), interval_words);
+            let interval = interval.as_ref().map_or_else(|| "-".to_owned(), interval_text);
             let sd = sd.map_or_else(|| "-".to_owned(), digits);
             let median = digits(*median);
             let mean = digits(*mean);
@@ -68,13 +68,13 @@ impl OfMeasure {
             let chi_square = digits(test.chi_square);
             let df = test.df;
             let w = digits(test.w);
-            let p = p_words(test.p);
-            let f_p = p_words(test.f_p);
+            let p = p_text(test.p);
+            let f_p = p_text(test.f_p);
             writeln!(text, "\nFriedman, {complete} participants under all conditions: chi-square({df}) = {chi_square}, p {p} (Iman-Davenport p {f_p}), Kendall's W {w}").ok();
         }
         if !pairs.is_empty() {
             let (name, rank) = match design {
-                Design::Between => ("Mann-Whitney", "Cliff's delta"),
+                TrialDesign::Between => ("Mann-Whitney", "Cliff's delta"),
                 _ => ("Wilcoxon", "rank-biserial r"),
             };
             let needed = pairs.iter().any(|pair| pair.needed.is_some());
@@ -88,14 +88,14 @@ impl OfMeasure {
                 pair.write(text, needed);
             }
         }
-        if let Some(Mixed { effects, conditions, icc }) = mixed {
+        if let Some(TrialMixed { effects, conditions, icc }) = mixed {
             let all = conditions.map_or_else(String::new, |test| {
                 format!(
                     "; conditions: F({}, {:.1}) = {}, p {}",
                     test.df,
                     test.denominator_df,
                     digits(test.f),
-                    p_words(test.p)
+                    p_text(test.p)
                 )
             });
             writeln!(
@@ -111,10 +111,10 @@ impl OfMeasure {
                     "| {} | {} | {} | {} | {:.1} | {} |",
                     effect.name,
                     digits(effect.estimate),
-                    interval_words(&effect.interval),
+                    interval_text(&effect.interval),
                     digits(effect.standard_error),
                     effect.df,
-                    p_words(effect.p)
+                    p_text(effect.p)
                 )
                 .ok();
             }
@@ -125,7 +125,7 @@ impl OfMeasure {
     }
 }
 
-impl Pair {
+impl ConditionPair {
     fn write(&self, text: &mut String, needed: bool) {
         let Self {
             first,
@@ -137,35 +137,35 @@ impl Pair {
             p_holm,
             rank_effect,
             g,
-            needed: least,
+            needed: min,
         } = self;
         let participants = if one == other { one.to_string() } else { format!("{one}, {other}") };
         let exact = if *exact { "" } else { " (normal)" };
         let g = g.map_or_else(|| "-".to_owned(), digits);
         let estimate = digits(difference.estimate);
-        let interval = interval_words(&difference.interval);
-        let p = p_words(*p);
-        let p_holm = p_words(*p_holm);
+        let interval = interval_text(&difference.interval);
+        let p = p_text(*p);
+        let p_holm = p_text(*p_holm);
         write!(
             text,
             "| {first} - {second} | {participants} | {estimate} | {interval} | {p}{exact} | {p_holm} | {rank_effect:.2} | {g} |"
         )
         .ok();
         if needed {
-            let least = least.map_or_else(|| "> 500".to_owned(), |least| least.to_string());
-            write!(text, " {least} |").ok();
+            let min = min.map_or_else(|| "> 500".to_owned(), |min| min.to_string());
+            write!(text, " {min} |").ok();
         }
         text.push('\n');
     }
 }
 
-impl Report {
+impl TrialReport {
     /// One row per measure and pair.
     fn csv(&self) -> String {
         let mut text = "measure,first,second,participants_first,participants_second,difference,lower,upper,p,exact,p_holm,rank_effect,hedges_g\n".to_owned();
         for measure in &self.measures {
             for pair in &measure.pairs {
-                let Pair {
+                let ConditionPair {
                     first,
                     second,
                     participants: [one, other],

@@ -25,7 +25,7 @@ pub struct TableError {
 }
 
 #[derive(Clone, Debug, PartialEq)]
-pub struct Trial {
+pub struct TableTrial {
     pub participant: String,
     pub condition: String,
     /// Its number, if the table has it.
@@ -35,13 +35,13 @@ pub struct Trial {
 }
 
 #[derive(Clone, Debug, PartialEq)]
-pub struct Table {
+pub struct TrialTable {
     pub measures: Vec<String>,
     /// In the order of the file.
-    pub trials: Vec<Trial>,
+    pub trials: Vec<TableTrial>,
 }
 
-impl Table {
+impl TrialTable {
     /// Reads a CSV file with the columns `participant`, `condition`, optionally `trial` (a number), and a column per
     /// measure: the wanted ones, or every other numeric column. Empty cells and `NA` are missing values.
     ///
@@ -96,7 +96,7 @@ impl Table {
             word => Ok(word.to_owned()),
         };
         let trials = rows.iter().map(|(line, row)| {
-            Ok(Trial {
+            Ok(TableTrial {
                 participant: word(*line, row, participant)?,
                 condition: word(*line, row, condition)?,
                 number: trial.map(|at| cell(*line, row, at)).transpose()?.flatten(),
@@ -121,7 +121,7 @@ impl Table {
     }
 
     /// Returns the trials that have a value of this measure, with the value.
-    pub(super) fn measured(&self, measure: usize) -> impl Iterator<Item = (&Trial, f64)> {
+    pub(super) fn measured(&self, measure: usize) -> impl Iterator<Item = (&TableTrial, f64)> {
         self.trials.iter().filter_map(move |trial| Some((trial, trial.values.get(measure).copied()??)))
     }
 
@@ -166,9 +166,9 @@ fn plain(error: &csv::Error) -> String {
 mod tests {
     use super::*;
 
-    fn of(text: &str, wanted: &[&str]) -> Result<Table, String> {
+    fn of(text: &str, wanted: &[&str]) -> Result<TrialTable, String> {
         let wanted: Vec<String> = wanted.iter().map(|name| (*name).to_owned()).collect();
-        Table::of(text.as_bytes(), &wanted)
+        TrialTable::of(text.as_bytes(), &wanted)
     }
 
     #[test]
@@ -196,8 +196,8 @@ mod tests {
             ("participant,condition,t\n", &[], "no trials"),
             ("participant,condition,t\na,x,1\n", &["u"], "no column \"u\""),
         ] {
-            let told = of(text, wanted).unwrap_err();
-            assert!(told.contains(words), "{told}");
+            let report = of(text, wanted).unwrap_err();
+            assert!(report.contains(words), "{report}");
         }
     }
 }

@@ -8,7 +8,7 @@ fn written(path: &Path, text: &str) -> Trials {
     Trials { path: path.to_owned(), measures: Vec::new(), reference: None, confidence: 0.95, power: None }
 }
 
-fn run(trials: &Trials) -> Report {
+fn run(trials: &Trials) -> TrialReport {
     trials.run(&mut |_, _, _| ()).unwrap()
 }
 
@@ -41,7 +41,7 @@ fn a_difference_that_is_there_is_found_and_one_that_is_not_there_is_not() {
     let report = run(&trials);
     assert_eq!((report.trials, report.participants, report.conditions.len()), (108, 12, 3));
     let [time, force] = report.measures.as_slice() else { panic!("{report:?}") };
-    assert_eq!((time.design, time.complete, time.pairs.len()), (Design::Within, 12, 3));
+    assert_eq!((time.design, time.complete, time.pairs.len()), (TrialDesign::Within, 12, 3));
     let pair = |of: &OfMeasure, first: &str| of.pairs.iter().find(|pair| pair.first == first).unwrap().clone();
     let matched = pair(time, "matched");
     assert_eq!((matched.second.as_str(), matched.participants), ("none", [12, 12]));
@@ -65,7 +65,10 @@ fn groups_of_different_people_are_compared_as_groups() {
     let text = "participant,condition,drops\na,new,1\nb,new,2\nc,new,0\nd,new,1\ne,old,4\nf,old,6\ng,old,5\nh,old,3\n";
     let report = run(&written(&folder.path().join("trials.csv"), text));
     let measure = &report.measures[0];
-    assert_eq!((measure.design, measure.friedman.is_none(), measure.mixed.is_none()), (Design::Between, true, true));
+    assert_eq!(
+        (measure.design, measure.friedman.is_none(), measure.mixed.is_none()),
+        (TrialDesign::Between, true, true)
+    );
     let pair = &measure.pairs[0];
     // 8 of 8 apart: 2 of the 70 permutations.
     assert!((pair.p - 2.0 / 70.0).abs() < 1e-9 && (pair.rank_effect - 1.0).abs() < 1e-12, "{pair:?}");
@@ -82,13 +85,13 @@ fn what_cannot_be_compared_is_said_and_the_rest_is_there() {
     assert_eq!((time.missing, time.pairs[0].participants), (1, [3, 3]));
     assert!(report.text().contains("Not computed:"), "{}", report.text());
     let one = run(&written(&folder.path().join("one.csv"), "participant,condition,t\na,x,1\nb,x,2\n"));
-    assert_eq!((one.measures[0].design, one.measures[0].pairs.len()), (Design::Single, 0));
+    assert_eq!((one.measures[0].design, one.measures[0].pairs.len()), (TrialDesign::Single, 0));
 }
 
 #[test]
 fn an_unknown_reference_names_the_known_ones() {
     let folder = tempfile::tempdir().unwrap();
     let trials = Trials { reference: Some("z".to_owned()), ..written(&folder.path().join("trials.csv"), &study()) };
-    let told = trials.run(&mut |_, _, _| ()).unwrap_err().to_string();
-    assert!(told.contains("\"z\"") && told.contains("dfr, matched, none"), "{told}");
+    let report = trials.run(&mut |_, _, _| ()).unwrap_err().to_string();
+    assert!(report.contains("\"z\"") && report.contains("dfr, matched, none"), "{report}");
 }

@@ -5,7 +5,9 @@ use nalgebra::{UnitVector3, Vector3};
 use nima_core::{
     calibration::{
         correspondence::{self, Correspondence, CorrespondenceReport, CorrespondenceSession},
-        gravity::{Compensator, DEFAULT_TIME_CONSTANT_S, GravityModel, GravityReport, GravitySession, SessionSettings},
+        gravity::{
+            Compensator, DEFAULT_TIME_CONSTANT_S, GravityModel, GravityReport, GravitySession, GravitySessionSettings,
+        },
     },
     frames::{Wrench, WristSample},
 };
@@ -19,7 +21,7 @@ pub const RATE_HZ: f64 = 1000.0;
 const PATIENCE_S: f64 = 120.0;
 
 #[derive(Clone, Debug)]
-pub struct Experiment {
+pub struct SimulatedExperiment {
     world: World,
     ticks: u64,
 }
@@ -29,7 +31,7 @@ pub fn compensator(gravity: &GravityModel) -> Compensator {
     Compensator::new(*gravity, DEFAULT_TIME_CONSTANT_S, 1.0 / RATE_HZ)
 }
 
-impl Experiment {
+impl SimulatedExperiment {
     /// Makes the rig for a scene with a person and a wrist sensor; other scenes give no samples.
     pub fn new(scene: &Scene) -> Self {
         Self { world: World::new(scene, RATE_HZ), ticks: 0 }
@@ -75,8 +77,8 @@ pub fn gravity(seed: u64) -> Result<GravityModel, ValidationError> {
 /// # Errors
 /// As [`gravity`].
 pub fn gravity_report(seed: u64) -> Result<GravityReport, ValidationError> {
-    let mut experiment = Experiment::new(&Experiment::scene("gravity", seed)?);
-    let mut session = GravitySession::new(SessionSettings::default());
+    let mut experiment = SimulatedExperiment::new(&SimulatedExperiment::scene("gravity", seed)?);
+    let mut session = GravitySession::new(GravitySessionSettings::default());
     while let Some(target) = session.target() {
         let sample = experiment.sample(Prompt::Hold { world_from_s1: target.world_from_s1() });
         if let Some(sample) = sample {
@@ -104,14 +106,17 @@ pub struct Pushes {
 /// # Errors
 /// [`ValidationError`] if the scene is invalid or the calibration fails.
 pub fn correspondence(gravity: &GravityModel, seed: u64, seconds: f64) -> Result<Pushes, ValidationError> {
-    let mut experiment = Experiment::new(&Experiment::scene("correspondence", seed)?);
+    let mut experiment = SimulatedExperiment::new(&SimulatedExperiment::scene("correspondence", seed)?);
     let mut gravity = compensator(gravity);
-    let mut session = CorrespondenceSession::new(correspondence::SessionSettings::default());
+    let mut session = CorrespondenceSession::new(correspondence::CorrespondenceSessionSettings::default());
     let mut prompt = Prompt::Rest;
     while session.pushes() < 2 * correspondence::TARGETS.len() && experiment.t_s() < PATIENCE_S {
         let Some((sample, wrench)) = felt(&mut experiment, &mut gravity, prompt) else { continue };
         let phase = session.step(Some(wrench.force_n), &sample, experiment.t_s());
-        if !matches!(phase, correspondence::Phase::Resting { .. } | correspondence::Phase::Missing(_)) {
+        if !matches!(
+            phase,
+            correspondence::CorrespondencePhase::Resting { .. } | correspondence::CorrespondencePhase::Missing(_)
+        ) {
             prompt = push(session.target(), session.pushes());
         }
     }
@@ -145,7 +150,11 @@ fn push(asked: Option<correspondence::PushTarget>, pushes: usize) -> Prompt {
 }
 
 /// Returns the next sample and its wrench without weight and bias.
-pub fn felt(experiment: &mut Experiment, gravity: &mut Compensator, prompt: Prompt) -> Option<(WristSample, Wrench)> {
+pub fn felt(
+    experiment: &mut SimulatedExperiment,
+    gravity: &mut Compensator,
+    prompt: Prompt,
+) -> Option<(WristSample, Wrench)> {
     let sample = experiment.sample(prompt)?;
     Some((sample, gravity.step(&sample)?))
 }

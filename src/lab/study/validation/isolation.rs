@@ -9,17 +9,17 @@ use nima_core::{
     tip_force::{Estimator, FeatureSettings, TrainingSettings},
 };
 use nima_machine::rig::Prompt;
-use nima_recording::tip_force::{DataSet, Recorder, Selection};
+use nima_recording::tip_force::{DataSet, Selection, TipForceRecorder};
 use nima_simulation::scene::Scene;
-use nima_training::{NoContact, Part, Progress, evaluate, train_model};
+use nima_training::{EvaluationPart, NoContact, TrainingProgress, evaluate, train_model};
 use serde::Serialize;
 
 use super::{ValidationError, experiment};
-use crate::validation::experiment::{Experiment, felt};
+use crate::validation::experiment::{SimulatedExperiment, felt};
 
 /// A recorded session: the data set as a technician records it, and the true force of every row.
 #[derive(Clone, Debug)]
-pub struct Session {
+pub struct RecordedSession {
     /// CSV.
     pub text: Vec<u8>,
     /// True force at the tip, row by row, N (`s1`).
@@ -27,14 +27,14 @@ pub struct Session {
 }
 
 #[derive(Clone, Copy, Debug)]
-pub struct Known {
+pub struct PriorCalibrations {
     /// Weight of the tool and bias of the sensor.
     pub gravity: GravityModel,
     /// Orientation of the sensor under the tissue.
     pub correspondence: Correspondence,
 }
 
-impl Known {
+impl PriorCalibrations {
     /// Calibrates both, each in its own scene.
     ///
     /// # Errors
@@ -53,14 +53,14 @@ impl Known {
 /// [`ValidationError`] if the recording cannot be written.
 pub fn record(
     scene: &Scene,
-    known: &Known,
+    known: &PriorCalibrations,
     features: FeatureSettings,
     rows: usize,
     contact_s: f64,
-) -> Result<Session, ValidationError> {
-    let mut experiment = Experiment::new(scene);
+) -> Result<RecordedSession, ValidationError> {
+    let mut experiment = SimulatedExperiment::new(scene);
     let mut gravity = experiment::compensator(&known.gravity);
-    let mut recorder = Recorder::new(known.correspondence).with_features(features);
+    let mut recorder = TipForceRecorder::new(known.correspondence).with_features(features);
     let mut truth_n = Vec::with_capacity(rows);
     while recorder.rows() < rows {
         let t_s = experiment.t_s();
@@ -83,10 +83,10 @@ pub fn record(
     }
     let mut text = Vec::new();
     recorder.write(&mut text).map_err(ValidationError::Scratch)?;
-    Ok(Session { text, truth_n })
+    Ok(RecordedSession { text, truth_n })
 }
 
-impl Session {
+impl RecordedSession {
     /// Returns the data set with these inputs; `None` for the default inputs.
     ///
     /// # Errors
@@ -120,11 +120,11 @@ const CONTACT_S: f64 = 7.0;
 
 /// Errors of a network on sessions that it was not trained on.
 #[derive(Clone, Debug, Serialize)]
-pub struct Reached {
+pub struct NetworkErrors {
     /// Compared with the sensor under the tissue, as in the paper.
-    pub measured: Part,
+    pub measured: EvaluationPart,
     /// Compared with the true force, which is known only in a simulation.
-    pub truth: Part,
+    pub truth: EvaluationPart,
     /// Mean and spread of the predictions without contact.
     pub no_contact: Vec<NoContact>,
     /// Fraction of samples of these sessions that the network flags as uncertain.
@@ -150,31 +150,31 @@ pub struct Foreign {
 #[derive(Clone, Debug, Serialize)]
 pub struct Isolation {
     /// With the inputs used in the paper.
-    pub paper_inputs: Reached,
+    pub paper_inputs: NetworkErrors,
     /// With the default inputs of this project.
-    pub our_inputs: Reached,
+    pub our_inputs: NetworkErrors,
     /// Flagged fractions of samples outside the training data.
     pub foreign: Vec<Foreign>,
 }
 
 #[derive(Clone, Debug)]
-pub struct Sessions {
-    known: Known,
+pub struct IsolationSessions {
+    known: PriorCalibrations,
     seed: u64,
-    training: Session,
-    unseen: Session,
-    free: Session,
+    training: RecordedSession,
+    unseen: RecordedSession,
+    free: RecordedSession,
 }
 
-impl Sessions {
+impl IsolationSessions {
     /// Records the sessions; `rows` for training.
     ///
     /// # Errors
     /// [`ValidationError`] if a scene is invalid or a calibration fails.
     pub fn record(seed: u64, rows: usize, features: FeatureSettings) -> Result<Self, ValidationError> {
-        let known = Known::calibrate(seed)?;
+        let known = PriorCalibrations::calibrate(seed)?;
         let session = |scene: &str, seed: u64, rows: usize, contact_s: f64| {
-            record(&Experiment::scene(scene, seed)?, &known, features, rows, contact_s)
+            record(&SimulatedExperiment::scene(scene, seed)?, &known, features, rows, contact_s)
         };
         Ok(Self {
             known,
@@ -193,22 +193,22 @@ impl Sessions {
         &self,
         inputs: Option<&[&str]>,
         settings: &TrainingSettings,
-    ) -> Result<(Estimator, Reached), ValidationError> {
+    ) -> Result<(Estimator, NetworkErrors), ValidationError> {
         let start = Instant::now();
         let model = train_model(
             &self.training.data(inputs)?,
             settings,
             [None, None],
             &AtomicBool::new(false),
-            &|_: &Progress| {},
+            &|_: &TrainingProgress| {},
         )?;
         let training_s = start.elapsed().as_secs_f64();
         let mut estimator = Estimator::new(model);
         let measured = evaluate(&mut estimator, &self.unseen.data(inputs)?)?;
         let truth = evaluate(&mut estimator, &self.unseen.true_data(inputs)?)?;
         let free = evaluate(&mut estimator, &self.free.true_data(inputs)?)?;
-        let reached = Reached {
-            false_alarms: measured.overall.doubt_share,
+        let reached = NetworkErrors {
+            false_alarms: measured.overall.doubt_fraction,
             inference_us: measured.inference_us,
             measured: measured.overall,
             truth: truth.overall,
@@ -227,7 +227,7 @@ impl Sessions {
         let directions = directions(&self.training.data(None)?);
         let mut all = Vec::new();
         let mut one = |what, change: &dyn Fn(&mut Scene), keep: &dyn Fn(&DataSet, usize, &Vector3<f64>) -> bool| {
-            let mut scene = Experiment::scene("isolation", self.seed + 3)?;
+            let mut scene = SimulatedExperiment::scene("isolation", self.seed + 3)?;
             change(&mut scene);
             let session = record(&scene, &self.known, FeatureSettings::default(), JUDGED_ROWS, CONTACT_S)?;
             let data = session.data(None)?;
@@ -284,7 +284,7 @@ fn directions(data: &DataSet) -> Vec<Vector3<f64>> {
 /// # Errors
 /// [`ValidationError`] if a scene is invalid, a calibration fails, or the network cannot be trained.
 pub fn study(seed: u64, rows: usize) -> Result<Isolation, ValidationError> {
-    let sessions = Sessions::record(seed, rows, FeatureSettings::default())?;
+    let sessions = IsolationSessions::record(seed, rows, FeatureSettings::default())?;
     let (_, paper_inputs) = sessions.train(Some(&PAPER_INPUTS), &TrainingSettings::default())?;
     let (mut estimator, our_inputs) = sessions.train(None, &TrainingSettings::default())?;
     let foreign = sessions.foreign(&mut estimator)?;

@@ -7,7 +7,7 @@ use nima_machine::{
     runtime::{ClockProfile, VirtualClock},
     teleop::ErrorStats,
 };
-use nima_simulation::{Plan, run_virtual_on, scene::Scene};
+use nima_simulation::{SimulationPlan, run_virtual_on, scene::Scene};
 use serde::Serialize;
 
 use super::ValidationError;
@@ -20,7 +20,7 @@ const FILL_S: f64 = 1.0;
 
 /// Mean absolute error and standard deviation per axis, averaged over the three axes, N.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
-pub struct Figures {
+pub struct RenderingFigures {
     pub mae_n: f64,
     /// Standard deviation of the error, N.
     pub sd_n: f64,
@@ -29,18 +29,19 @@ pub struct Figures {
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct ModeFigures {
     pub mode: Mode,
-    pub error: Figures,
+    pub error: RenderingFigures,
 }
 
 #[derive(Clone, Debug, Serialize)]
-pub struct Rendering {
+pub struct ValidationRendering {
     pub clock: ClockProfile,
     /// The paper's method, judged on the newest sample of the window that it was fitted to.
-    pub in_window_nonlinear: Figures,
+    pub in_window_nonlinear: RenderingFigures,
     /// The same with degree N = 1.
-    pub in_window_linear: Figures,
+    pub in_window_linear: RenderingFigures,
     /// Fraction of windows for which a degree above 1 was chosen.
-    pub nonlinear_share: f64,
+    #[serde(rename = "nonlinear_share")]
+    pub nonlinear_fraction: f64,
     /// Delay of the link, s.
     pub delay_s: f64,
     /// Prediction errors at the horizon, per mode.
@@ -49,18 +50,18 @@ pub struct Rendering {
 
 /// Errors per axis.
 #[derive(Clone, Debug, Default)]
-struct Axes([ErrorStats; 3]);
+struct RenderingAxes([ErrorStats; 3]);
 
-impl Axes {
+impl RenderingAxes {
     fn add(&mut self, error_n: &Vector3<f64>) {
         for (axis, stats) in self.0.iter_mut().enumerate() {
             stats.add(&Vector3::new(error_n[axis], 0.0, 0.0));
         }
     }
 
-    fn figures(&self) -> Figures {
+    fn figures(&self) -> RenderingFigures {
         let mean = |of: &dyn Fn(&ErrorStats) -> f64| self.0.iter().map(of).sum::<f64>() / 3.0;
-        Figures { mae_n: mean(&|stats| stats.mae_n), sd_n: mean(&ErrorStats::sd_n) }
+        RenderingFigures { mae_n: mean(&|stats| stats.mae_n), sd_n: mean(&ErrorStats::sd_n) }
     }
 }
 
@@ -68,14 +69,14 @@ impl Axes {
 ///
 /// # Errors
 /// [`ValidationError`] if the scene or a setting is invalid.
-pub fn study(clock: VirtualClock, seed: u64, delay_s: f64) -> Result<Rendering, ValidationError> {
+pub fn study(clock: VirtualClock, seed: u64, delay_s: f64) -> Result<ValidationRendering, ValidationError> {
     let scene = Scene { seed, ..Scene::load(SCENE)? };
     let mut rig = RigConfig { delay_s, ..RigConfig::load("simulated")? };
     rig.identification.compare = true;
-    let plan = Plan { rig, scene, calibrations: Default::default(), engage: true };
-    let mut nonlinear = Axes::default();
-    let mut linear = Axes::default();
-    let mut at_horizon: [Axes; MODES] = std::array::from_fn(|_| Axes::default());
+    let plan = SimulationPlan { rig, scene, calibrations: Default::default(), engage: true };
+    let mut nonlinear = RenderingAxes::default();
+    let mut linear = RenderingAxes::default();
+    let mut at_horizon: [RenderingAxes; MODES] = std::array::from_fn(|_| RenderingAxes::default());
     let mut windows = 0_u32;
     let mut above_one = 0_u32;
     run_virtual_on(&plan, clock, SECONDS, |tick| {
@@ -94,11 +95,11 @@ pub fn study(clock: VirtualClock, seed: u64, delay_s: f64) -> Result<Rendering, 
         }
         None
     })?;
-    Ok(Rendering {
+    Ok(ValidationRendering {
         clock: clock.profile,
         in_window_nonlinear: nonlinear.figures(),
         in_window_linear: linear.figures(),
-        nonlinear_share: f64::from(above_one) / f64::from(windows.max(1)),
+        nonlinear_fraction: f64::from(above_one) / f64::from(windows.max(1)),
         delay_s,
         at_horizon: Mode::ALL.map(|mode| ModeFigures { mode, error: at_horizon[mode.index()].figures() }).to_vec(),
     })

@@ -3,15 +3,17 @@
 use std::fmt::Write as _;
 
 use nima_machine::runtime::ClockProfile;
-use nima_training::Part;
+use nima_training::EvaluationPart;
 use serde::Serialize;
 
-use super::{Agreement, Isolation, Options, Rendering, Report, ValidationError, study};
+use super::{
+    Isolation, ValidationAgreement, ValidationError, ValidationOptions, ValidationRendering, ValidationReport, study,
+};
 use crate::{Experiment, Findings};
 
 /// One result: the paper's value, this project's, and why they differ.
 #[derive(Clone, Debug, Serialize)]
-pub struct Row {
+pub struct ValidationRow {
     /// `I`, `II` or `III`.
     pub validation: &'static str,
     /// The compared quantity, with its unit.
@@ -30,11 +32,11 @@ fn row(
     paper: &[f64],
     ours: impl Into<Vec<f64>>,
     why: &'static str,
-) -> Row {
-    Row { validation, what: what.into(), paper: paper.to_vec(), ours: ours.into(), why }
+) -> ValidationRow {
+    ValidationRow { validation, what: what.into(), paper: paper.to_vec(), ours: ours.into(), why }
 }
 
-pub(super) fn rows(one: &Agreement, two: &Isolation, three: &[Rendering]) -> Vec<Row> {
+pub(super) fn rows(one: &ValidationAgreement, two: &Isolation, three: &[ValidationRendering]) -> Vec<ValidationRow> {
     let mut all = vec![
         row(
             "I",
@@ -51,16 +53,16 @@ pub(super) fn rows(one: &Agreement, two: &Isolation, three: &[Rendering]) -> Vec
     all
 }
 
-fn axes(part: &Part, method: usize, of: impl Fn(&nima_training::Stats) -> f64) -> Vec<f64> {
+fn axes(part: &EvaluationPart, method: usize, of: impl Fn(&nima_training::Stats) -> f64) -> Vec<f64> {
     part.methods[method].outputs.iter().flatten().map(of).collect()
 }
 
-fn isolation(two: &Isolation) -> Vec<Row> {
+fn isolation(two: &Isolation) -> Vec<ValidationRow> {
     const CANNOT: &str = "force and orientation do not show the direction of friction; the paper's sessions may have favoured one direction";
     const MEMORY: &str = "the inputs include the state of the seal";
     let theirs = &two.paper_inputs;
     let ours = &two.our_inputs;
-    let free = |reached: &super::isolation::Reached, of: &dyn Fn(&nima_training::NoContact) -> f64| {
+    let free = |reached: &super::isolation::NetworkErrors, of: &dyn Fn(&nima_training::NoContact) -> f64| {
         reached.no_contact.iter().map(of).collect::<Vec<_>>()
     };
     let [mae, sd, mean_free, sd_free]: [&[f64]; 4] = [&[0.19, 0.16, 0.16], &[0.2; 3], &[0.02; 3], &[0.03; 3]];
@@ -104,9 +106,9 @@ fn isolation(two: &Isolation) -> Vec<Row> {
     all
 }
 
-fn rendering(three: &Rendering) -> Vec<Row> {
+fn rendering(three: &ValidationRendering) -> Vec<ValidationRow> {
     const IN_WINDOW: &str = "the hand rests for 350 ms, longer than the window: X vanishes and the force does not; with holds of 100 ms: --paper";
-    let pair = |figures: super::rendering::Figures| [figures.mae_n, figures.sd_n];
+    let pair = |figures: super::rendering::RenderingFigures| [figures.mae_n, figures.sd_n];
     let clock = three.clock;
     let mut all = vec![
         row(
@@ -127,7 +129,7 @@ fn rendering(three: &Rendering) -> Vec<Row> {
             "III",
             format!("{clock} clock: windows that chose a nonlinear degree (share)"),
             &[0.64],
-            [three.nonlinear_share],
+            [three.nonlinear_fraction],
             "inside the window the larger of two nested models always errs less; judged by the next 10 ms: --paper",
         ),
     ];
@@ -139,11 +141,11 @@ fn rendering(three: &Rendering) -> Vec<Row> {
     all
 }
 
-impl Findings for Report {
+impl Findings for ValidationReport {
     fn text(&self) -> String {
         let mut out = format!("{:<4} {:<78} {:>17}  {:>23}\n", "", "", "paper", "ours");
         for row in &self.table {
-            let Row { validation, what, paper, ours, .. } = row;
+            let ValidationRow { validation, what, paper, ours, .. } = row;
             // Writing into a String cannot fail.
             writeln!(out, "{validation:<4} {what:<78} {:>17}  {:>23}", words(paper), words(ours)).ok();
         }
@@ -153,7 +155,7 @@ impl Findings for Report {
     /// Returns the tables for the documentation, with the reasons.
     fn files(&self) -> Vec<(String, String)> {
         let mut out = String::from("| | | paper | ours | why they differ |\n|---|---|---|---|---|\n");
-        for Row { validation, what, paper, ours, why } in &self.table {
+        for ValidationRow { validation, what, paper, ours, why } in &self.table {
             writeln!(out, "| {validation} | {what} | {} | {} | {why} |", words(paper), words(ours)).ok();
         }
         out.push('\n');
@@ -163,7 +165,7 @@ impl Findings for Report {
 }
 
 /// Returns the errors at the horizon, a column for each clock, as ratios to the perfect clock if it is included.
-fn by_clock(all: &[Rendering]) -> String {
+fn by_clock(all: &[ValidationRendering]) -> String {
     let Some(first) = all.first() else { return String::new() };
     let perfect = all.iter().find(|rendering| rendering.clock == ClockProfile::Perfect);
     let heads: Vec<_> = all.iter().map(|rendering| format!(" {} |", rendering.clock)).collect();
@@ -174,7 +176,7 @@ fn by_clock(all: &[Rendering]) -> String {
         "---|".repeat(all.len())
     );
     for (at, figures) in first.at_horizon.iter().enumerate() {
-        let cell = |rendering: &Rendering| {
+        let cell = |rendering: &ValidationRendering| {
             let mae_n = rendering.at_horizon[at].error.mae_n;
             let ratio = perfect.map(|perfect| mae_n / perfect.at_horizon[at].error.mae_n);
             format!(" {} / {} |", words(&[mae_n]), ratio.map_or_else(|| "-".to_owned(), |ratio| format!("{ratio:.3}")))
@@ -190,12 +192,12 @@ fn words(values: &[f64]) -> String {
     if values.is_empty() { "-".to_owned() } else { values.iter().map(one).collect::<Vec<_>>().join(" ") }
 }
 
-impl Experiment for Options {
+impl Experiment for ValidationOptions {
     const NAME: &'static str = "validation";
-    type Findings = Report;
+    type Findings = ValidationReport;
     type Error = ValidationError;
 
-    fn run(&self, progress: &mut dyn FnMut(usize, usize, &str)) -> Result<Report, ValidationError> {
+    fn run(&self, progress: &mut dyn FnMut(usize, usize, &str)) -> Result<ValidationReport, ValidationError> {
         study(self, progress)
     }
 }

@@ -3,11 +3,11 @@
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 use nima_core::{
     calibration::{
-        frames::{FrameSample, Move},
-        gravity::{GravityModel, Parameters, Source},
+        frames::{FrameSample, ViewMove},
+        gravity::{GravityModel, GravityParameters, GravitySource},
     },
     frames::{GRAVITY_M_S2, Wrench, WristSample},
-    kinematics::{self, Hand},
+    kinematics::{self, HandPose},
     noise::Noise,
 };
 use nima_devices::Health;
@@ -15,8 +15,8 @@ use nima_devices::Health;
 use crate::{
     config::RigConfig,
     messages::{Command, LoopState, Tick},
-    ready::{Arm, Ask, Check, Session, State, Subject},
-    rig::{DEVICES_MAX, Gauge, Gauges, Healths, Inputs, Part, Sensed, Side},
+    ready::{CheckSubject, PersonRequest, ReadyArm, ReadyPoint, ReadySession, ReadyState},
+    rig::{DEVICES_MAX, Gauge, Gauges, Healths, Inputs, RigPart, SensedForce, Side},
     runtime::STALL_MAX_S,
     teleop::{Calibrations, Loop, Timing},
 };
@@ -42,7 +42,7 @@ pub(super) struct Flaws {
     pub(super) damaged: fn(f64) -> u64,
     /// One period in this many is missed.
     pub(super) missed_every: u64,
-    pub(super) obeys: fn(&Ask) -> bool,
+    pub(super) obeys: fn(&PersonRequest) -> bool,
     pub(super) supervised: bool,
     /// Nothing is measured while the arm is stopped.
     pub(super) silent_when_stopped: bool,
@@ -53,7 +53,7 @@ impl Default for Flaws {
         Self {
             bias_n: Vector3::zeros(),
             pushed: |force_n| force_n,
-            moved: |way_m| way_m,
+            moved: |travel_m| travel_m,
             pulls_m_s: 0.0,
             trocar_m: Vector3::zeros(),
             sensor_hz: 1000,
@@ -68,22 +68,23 @@ impl Default for Flaws {
 
 fn gravity() -> GravityModel {
     let s1_from_source_wxyz = [1.0, 0.0, 0.0, 0.0];
-    let parameters = Parameters::Physical { mass_kg: TOOL_KG, s1_from_source_wxyz, bias_n: [0.0; 3], torque: None };
-    GravityModel { source: Source::Imu, imu_sign: 1, parameters }
+    let parameters =
+        GravityParameters::Physical { mass_kg: TOOL_KG, s1_from_source_wxyz, bias_n: [0.0; 3], torque: None };
+    GravityModel { source: GravitySource::Imu, imu_sign: 1, parameters }
 }
 
 /// The right arm of the emulated rig with a calibrated sensor.
-pub(super) fn subject() -> Subject {
+pub(super) fn subject() -> CheckSubject {
     let mut rig = RigConfig::load("emulated").unwrap();
     rig.devices.as_mut().unwrap().left = None;
     let gates = rig.gates;
-    let arm = Arm { at_wrist: true, gravity: Some((gravity(), 0.2)), has_person: true };
-    let parts = vec![Some(Part::Sensor(SIDE))];
-    Subject { rig, arms: [Some(arm), None], parts, gates_in_file: Some(gates), is_date_behind: false }
+    let arm = ReadyArm { at_wrist: true, gravity: Some((gravity(), 0.2)), has_person: true };
+    let parts = vec![Some(RigPart::Sensor(SIDE))];
+    CheckSubject { rig, arms: [Some(arm), None], parts, gates_in_file: Some(gates), is_date_behind: false }
 }
 
-pub(super) struct Bench {
-    pub(super) session: Session,
+pub(super) struct Fixture {
+    pub(super) session: ReadySession,
     pub(super) control: Loop,
     pub(super) flaws: Flaws,
     noise: Noise,
@@ -96,14 +97,14 @@ pub(super) struct Bench {
     pub(super) standing: Health,
 }
 
-impl Bench {
-    pub(super) fn new(subject: Subject, flaws: Flaws) -> Self {
+impl Fixture {
+    pub(super) fn new(subject: CheckSubject, flaws: Flaws) -> Self {
         let calibrations = Calibrations { gravity: Some(gravity()), ..Calibrations::default() };
         let mut standing = Health::default();
         standing.accept(0.0);
         Self {
             control: Loop::new(&subject.rig, &[Some(calibrations), None]).unwrap(),
-            session: Session::new(subject),
+            session: ReadySession::new(subject),
             flaws,
             noise: Noise::new(7),
             ms: 0,
@@ -117,7 +118,7 @@ impl Bench {
     }
 
     /// Runs the check on a rig with these flaws.
-    pub(super) fn judged(flaws: Flaws) -> Session {
+    pub(super) fn judged(flaws: Flaws) -> ReadySession {
         let mut bench = Self::new(subject(), flaws);
         bench.run();
         bench.session
@@ -183,19 +184,19 @@ impl Bench {
             return;
         }
         match ask {
-            Ask::Move(_) | Ask::TakeOut(_) => self.is_out = true,
-            Ask::PutBack(_) => self.is_out = false,
-            Ask::Push(_, direction) => self.push_n = (self.flaws.pushed)(-2.0 * direction.into_inner()),
-            Ask::MoveHandle(_, way) => self.move_handle(way),
-            Ask::PressStop => self.control.obey(Command::Stop, now_s),
-            Ask::Release => self.control.obey(Command::ReleaseStop, now_s),
-            Ask::Nothing | Ask::LeaveAlone(_) | Ask::LetGo(_) => {}
+            PersonRequest::Move(_) | PersonRequest::TakeOut(_) => self.is_out = true,
+            PersonRequest::PutBack(_) => self.is_out = false,
+            PersonRequest::Push(_, direction) => self.push_n = (self.flaws.pushed)(-2.0 * direction.into_inner()),
+            PersonRequest::MoveHandle(_, way) => self.move_handle(way),
+            PersonRequest::PressStop => self.control.obey(Command::Stop, now_s),
+            PersonRequest::Release => self.control.obey(Command::ReleaseStop, now_s),
+            PersonRequest::Nothing | PersonRequest::LeaveAlone(_) | PersonRequest::LetGo(_) => {}
         }
         self.control.events().for_each(|event| self.session.event(event));
     }
 
     /// Moves by 1 mm in 10 ms.
-    fn move_handle(&mut self, way: Move) {
+    fn move_handle(&mut self, way: ViewMove) {
         let leader_from_view = self.session.subject().rig.teleoperation.view_from_leader().inverse();
         self.handle_m += leader_from_view * (self.flaws.moved)(way.in_view() * 1e-3);
     }
@@ -249,9 +250,9 @@ impl Bench {
             ..WristSample::of(wrench)
         };
         Inputs {
-            hand: Hand::at(handle_m),
+            hand: HandPose::at(handle_m),
             tip_m: trocar_m + down * 0.1,
-            sensed: Sensed::AtWrist(sample),
+            sensed: SensedForce::AtWrist(sample),
             frames,
             powered: true,
             ..Inputs::NOTHING
@@ -259,6 +260,6 @@ impl Bench {
     }
 }
 
-pub(super) fn state_of(session: &Session, check: Check) -> State {
+pub(super) fn state_of(session: &ReadySession, check: ReadyPoint) -> ReadyState {
     session.list().iter().find(|entry| entry.check == check).unwrap().state
 }

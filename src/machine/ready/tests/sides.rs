@@ -3,29 +3,29 @@
 
 use nalgebra::{Isometry3, Vector3};
 
-use super::bench::{Bench, Flaws, SIDE, subject};
+use super::bench::{Fixture, Flaws, SIDE, subject};
 use crate::{
     config::RigConfig,
     messages::Tick,
     ready::{
-        Arm, Cause, Subject,
-        handle::Handle,
-        item::{Item, Progress},
-        own::Own,
-        push::Push,
+        CheckSubject, ReadyArm, ReadyCause,
+        handle::ReadyHandle,
+        item::{Item, PointProgress},
+        push::ReadyPush,
+        side_check::Own,
     },
-    rig::{Exchange, Side},
+    rig::{Side, SideSwap},
 };
 
-fn both() -> Subject {
+fn both() -> CheckSubject {
     let one = subject();
     let arm = one.arms[0].clone();
-    Subject { rig: RigConfig::load("emulated").unwrap(), arms: [arm.clone(), arm], ..one }
+    CheckSubject { rig: RigConfig::load("emulated").unwrap(), arms: [arm.clone(), arm], ..one }
 }
 
 /// Measurements of both sides: displacement of arm, marker and handle, m, and the push on the instrument, N.
 #[derive(Clone, Copy, Debug, Default)]
-struct Shows {
+struct SideMotion {
     arm_m: f64,
     marker_m: f64,
     handle_m: f64,
@@ -33,23 +33,23 @@ struct Shows {
 }
 
 /// One second of rest, then these measurements for a second.
-fn ends(item: &mut impl Item, [right, left]: [Shows; 2]) -> Progress {
-    let template = Bench::new(subject(), Flaws::default()).some_tick();
+fn ends(item: &mut impl Item, [right, left]: [SideMotion; 2]) -> PointProgress {
+    let template = Fixture::new(subject(), Flaws::default()).some_tick();
     let mut end = item.look(0.0);
     for ms in 0..2000_u32 {
         for (side, shows) in Side::ALL.into_iter().zip([right, left]) {
-            let shows = if ms < 1000 { Shows::default() } else { shows };
+            let shows = if ms < 1000 { SideMotion::default() } else { shows };
             item.tick(&tick(&template, side, f64::from(ms) * 1e-3, &shows));
         }
         end = item.look(f64::from(ms) * 1e-3);
-        if !matches!(end, Progress::Asking(_)) {
+        if !matches!(end, PointProgress::Asking(_)) {
             break;
         }
     }
     end
 }
 
-fn tick(template: &Tick, side: Side, t_s: f64, shows: &Shows) -> Tick {
+fn tick(template: &Tick, side: Side, t_s: f64, shows: &SideMotion) -> Tick {
     let at = |x_m: f64| Some(Isometry3::translation(x_m, 0.0, 0.0));
     let mut tick = Tick { side, t_s, ..*template };
     tick.frames.base_from_flange = at(shows.arm_m);
@@ -63,11 +63,11 @@ fn tick(template: &Tick, side: Side, t_s: f64, shows: &Shows) -> Tick {
     tick
 }
 
-const REST: Shows = Shows { arm_m: 0.0, marker_m: 0.0, handle_m: 0.0, push_n: 0.0 };
+const REST: SideMotion = SideMotion { arm_m: 0.0, marker_m: 0.0, handle_m: 0.0, push_n: 0.0 };
 
-fn exchanged(end: Progress) -> Option<Exchange> {
+fn exchanged(end: PointProgress) -> Option<SideSwap> {
     match end {
-        Progress::Failed(Cause::Exchanged(exchange)) => Some(exchange),
+        PointProgress::Failed(ReadyCause::Exchanged(exchange)) => Some(exchange),
         _ => None,
     }
 }
@@ -75,36 +75,36 @@ fn exchanged(end: Progress) -> Option<Exchange> {
 #[test]
 fn an_arm_or_a_marker_that_moves_in_place_of_its_own_is_named() {
     let own = |shows| ends(&mut Own::of(SIDE, &both()), shows);
-    let moved = Shows { arm_m: 0.1, marker_m: 0.09, ..REST };
-    assert!(matches!(own([moved, REST]), Progress::Passed(_)));
-    assert_eq!(exchanged(own([REST, moved])), Some(Exchange::Arms));
-    let arm = Shows { marker_m: 0.0, ..moved };
-    let marker = Shows { arm_m: 0.0, ..moved };
-    assert_eq!(exchanged(own([arm, marker])), Some(Exchange::Markers));
+    let moved = SideMotion { arm_m: 0.1, marker_m: 0.09, ..REST };
+    assert!(matches!(own([moved, REST]), PointProgress::Passed(_)));
+    assert_eq!(exchanged(own([REST, moved])), Some(SideSwap::Arms));
+    let arm = SideMotion { marker_m: 0.0, ..moved };
+    let marker = SideMotion { arm_m: 0.0, ..moved };
+    assert_eq!(exchanged(own([arm, marker])), Some(SideSwap::Markers));
     for undecided in [[moved, moved], [arm, REST], [moved, marker], [REST, REST]] {
-        assert!(matches!(own(undecided), Progress::Asking(_)), "{undecided:?}");
+        assert!(matches!(own(undecided), PointProgress::Asking(_)), "{undecided:?}");
     }
     let mut without_tracker = both();
     without_tracker.rig.devices.as_mut().unwrap().tracker = None;
-    assert!(matches!(ends(&mut Own::of(SIDE, &without_tracker), [arm, REST]), Progress::Passed(_)));
+    assert!(matches!(ends(&mut Own::of(SIDE, &without_tracker), [arm, REST]), PointProgress::Passed(_)));
 }
 
 #[test]
 fn a_handle_that_moves_in_place_of_the_one_asked_for_is_named() {
-    let handle = |shows| ends(&mut Handle::of(SIDE, &both()), shows);
-    let moved = Shows { handle_m: 0.02, ..REST };
-    assert_eq!(exchanged(handle([REST, moved])), Some(Exchange::Handles));
+    let handle = |shows| ends(&mut ReadyHandle::of(SIDE, &both()), shows);
+    let moved = SideMotion { handle_m: 0.02, ..REST };
+    assert_eq!(exchanged(handle([REST, moved])), Some(SideSwap::Handles));
     assert_eq!(exchanged(handle([moved, REST])), None);
-    assert!(matches!(handle([REST, REST]), Progress::Asking(_)));
+    assert!(matches!(handle([REST, REST]), PointProgress::Asking(_)));
 }
 
 #[test]
 fn a_push_that_the_other_sensor_feels_is_named() {
-    let arm = Arm { at_wrist: true, ..both().arms[0].clone().unwrap() };
-    let push = |shows| ends(&mut Push::of(SIDE, &arm), shows);
-    let pushed = Shows { push_n: 2.0, ..REST };
-    assert!(matches!(push([pushed, REST]), Progress::Passed(_)));
-    assert_eq!(exchanged(push([REST, pushed])), Some(Exchange::Sensors));
-    assert!(matches!(push([REST, REST]), Progress::Asking(_)));
+    let arm = ReadyArm { at_wrist: true, ..both().arms[0].clone().unwrap() };
+    let push = |shows| ends(&mut ReadyPush::of(SIDE, &arm), shows);
+    let pushed = SideMotion { push_n: 2.0, ..REST };
+    assert!(matches!(push([pushed, REST]), PointProgress::Passed(_)));
+    assert_eq!(exchanged(push([REST, pushed])), Some(SideSwap::Sensors));
+    assert!(matches!(push([REST, REST]), PointProgress::Asking(_)));
     assert_eq!(exchanged(push([pushed, pushed])), None, "its own one felt it too");
 }

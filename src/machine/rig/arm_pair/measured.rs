@@ -8,47 +8,48 @@ use nima_core::{
     calibration::frames::FrameSample,
     frames::{WristSample, from_roll_pitch_yaw_deg},
     kinematics::{
-        Arm, Hand, Inverse, JointLimits, Joints, Pose, Rcm, START_MISS_M, StartError, world_from_tracked_view,
+        Arm, ArmStartError, HandPose, InstrumentPose, Inverse, JointLimits, Joints, Rcm, START_MISS_M,
+        world_from_tracked_view,
     },
-    safety::{Raw, RawReadings},
+    safety::{RawReading, RawReadings},
 };
-use nima_devices::{ARM_JOINTS, ArmReading, ForceReading, HandleReading, ServoReading, Stamped};
+use nima_devices::{ARM_JOINTS, ArmReading, ForceReading, HandleReading, ServoReading, TimedReading};
 
-use super::{Shared, rigid};
+use super::{SharedReadings, rigid};
 use crate::rig::{
-    ArmSet, Inputs, RigError, Sensed, Side, View, devices::OLDEST_S, jaws::JawsControl, obstacle::HandEye,
-    obstacle::Obstacle,
+    ArmSet, Inputs, RigError, SensedForce, Side, ViewOrientation, devices::OLDEST_S, engage_blocker::EngageBlocker,
+    engage_blocker::ExpectedMarker, jaws::JawsControl,
 };
 
 /// Whether the devices of the force path deliver data now; `None` for those at another machine.
 #[derive(Clone, Copy, Debug)]
-pub struct Delivering {
+pub struct DeliveringDevices {
     pub handle: Option<bool>,
     /// Both arm and sensor.
     pub follower: Option<bool>,
 }
 
 #[derive(Clone, Debug)]
-pub struct Measured {
+pub struct SideReadings {
     pub(super) mount: Arm,
     pub(super) rcm: Rcm,
-    pub(super) hand_eye: Option<HandEye>,
+    pub(super) hand_eye: Option<ExpectedMarker>,
     limits: JointLimits,
     period_s: f64,
     s1_from_m: Option<UnitQuaternion<f64>>,
     at_wrist: bool,
-    pub(super) hand: Option<Stamped<HandleReading>>,
-    pub(super) joints: Option<Stamped<ArmReading>>,
-    force: Option<Stamped<ForceReading>>,
-    pub(super) turned: Option<Stamped<ServoReading>>,
+    pub(super) hand: Option<TimedReading<HandleReading>>,
+    pub(super) joints: Option<TimedReading<ArmReading>>,
+    force: Option<TimedReading<ForceReading>>,
+    pub(super) turned: Option<TimedReading<ServoReading>>,
     /// Pose of the instrument from the measured joint angles.
-    pub(super) pose: Option<Pose>,
+    pub(super) pose: Option<InstrumentPose>,
     /// Reason why the arm cannot be engaged from its current position.
-    pub obstacle: Option<Obstacle>,
+    pub obstacle: Option<EngageBlocker>,
     pub force_is_on: bool,
 }
 
-impl Measured {
+impl SideReadings {
     /// Starts without readings; `at_wrist` gives the place of the force sensor, `period_s` is the period of the
     /// commands to the arm.
     ///
@@ -59,7 +60,7 @@ impl Measured {
         Ok(Self {
             mount: Arm::new(&set.mount).map_err(|source| RigError::Mount { side: word, source })?,
             rcm: Rcm::new(&set.rcm).map_err(|source| RigError::Rcm { side: word, source })?,
-            hand_eye: set.hand_eye().map(|[s1_from_m, base_from_c]| HandEye { s1_from_m, base_from_c }),
+            hand_eye: set.hand_eye().map(|[s1_from_m, base_from_c]| ExpectedMarker { s1_from_m, base_from_c }),
             limits: set.arm.joint_limits(),
             period_s,
             s1_from_m: set.s1_from_m_deg.as_ref().map(from_roll_pitch_yaw_deg),
@@ -74,17 +75,17 @@ impl Measured {
         })
     }
 
-    pub const fn take_handle(&mut self, reading: Stamped<HandleReading>) {
+    pub const fn take_handle(&mut self, reading: TimedReading<HandleReading>) {
         self.hand = Some(reading);
     }
 
-    pub fn take_arm(&mut self, reading: Stamped<ArmReading>) {
+    pub fn take_arm(&mut self, reading: TimedReading<ArmReading>) {
         self.pose = Some(self.mount.pose(&Joints::from(reading.value.joint_rad)));
         self.joints = Some(reading);
     }
 
     /// Stores a new reading of the force sensor; an unusable one invalidates the previous reading.
-    pub fn take_force(&mut self, reading: Stamped<ForceReading>) {
+    pub fn take_force(&mut self, reading: TimedReading<ForceReading>) {
         self.force = Some(reading).filter(|reading| reading.value.status.is_usable());
     }
 
@@ -96,14 +97,14 @@ impl Measured {
     /// Starts the inverse kinematics at these joint angles (rad).
     ///
     /// # Errors
-    /// [`StartError`] if the arm cannot start there.
-    pub fn begin(&self, joint_rad: &Joints) -> Result<Inverse, StartError> {
+    /// [`ArmStartError`] if the arm cannot start there.
+    pub fn begin(&self, joint_rad: &Joints) -> Result<Inverse, ArmStartError> {
         Inverse::new(self.mount, self.rcm, self.period_s, joint_rad).map(|inverse| inverse.within(self.limits))
     }
 
-    /// Returns the measurements of a side without servos and shared devices; see [`Measured::with`].
-    pub fn inputs(&self, now_s: f64, delivering: Delivering) -> Option<Inputs> {
-        self.with(now_s, delivering, None, &Shared::default())
+    /// Returns the measurements of a side without servos and shared devices; see [`SideReadings::with`].
+    pub fn inputs(&self, now_s: f64, delivering: DeliveringDevices) -> Option<Inputs> {
+        self.with(now_s, delivering, None, &SharedReadings::default())
     }
 
     /// Returns the measurements; `None` unless every device of the force path delivers data and no reading is too old.
@@ -111,9 +112,9 @@ impl Measured {
     pub(super) fn with(
         &self,
         now_s: f64,
-        delivering: Delivering,
+        delivering: DeliveringDevices,
         jaws: Option<(&JawsControl, bool)>,
-        shared: &Shared,
+        shared: &SharedReadings,
     ) -> Option<Inputs> {
         let led = match delivering.handle {
             Some(is_there) => Some(self.hand.filter(|hand| is_there && now_s - hand.arrival_s <= OLDEST_S)?),
@@ -128,7 +129,7 @@ impl Measured {
         let turn = orientation.unwrap_or_else(UnitQuaternion::identity);
         let leader_from_handle = Some(Isometry3::from_parts(position_m.into(), turn));
         Some(Inputs {
-            hand: Hand { position_m, orientation },
+            hand: HandPose { position_m, orientation },
             gripper_rad,
             frames: FrameSample { leader_from_handle, ..inputs.frames },
             powered: inputs.powered && self.force_is_on,
@@ -138,7 +139,12 @@ impl Measured {
         })
     }
 
-    fn follower_inputs(&self, now_s: f64, jaws: Option<(&JawsControl, bool)>, shared: &Shared) -> Option<Inputs> {
+    fn follower_inputs(
+        &self,
+        now_s: f64,
+        jaws: Option<(&JawsControl, bool)>,
+        shared: &SharedReadings,
+    ) -> Option<Inputs> {
         let joints = self.joints?;
         let force = self.force?;
         let pose = self.pose.as_ref()?;
@@ -169,13 +175,15 @@ impl Measured {
         })
     }
 
-    fn view(&self, world_from_s1: &UnitQuaternion<f64>, shared: &Shared) -> View {
-        let View::Seen(c_from_view) = shared.c_from_view else { return shared.c_from_view };
-        let Some((s1_from_m, m_from_c)) = self.s1_from_m.zip(shared.m_from_c()) else { return View::Unseen };
+    fn view(&self, world_from_s1: &UnitQuaternion<f64>, shared: &SharedReadings) -> ViewOrientation {
+        let ViewOrientation::Seen(c_from_view) = shared.c_from_view else { return shared.c_from_view };
+        let Some((s1_from_m, m_from_c)) = self.s1_from_m.zip(shared.m_from_c()) else { return ViewOrientation::Unseen };
         let world_from_view = world_from_tracked_view(&(world_from_s1 * s1_from_m), &m_from_c, &c_from_view);
         match self.world_from_c().zip(shared.c_from_n) {
-            Some((world_from_c, c_from_n)) => View::SeenAt { world_from_view, world_from_n: world_from_c * c_from_n },
-            None => View::Seen(world_from_view),
+            Some((world_from_c, c_from_n)) => {
+                ViewOrientation::SeenAt { world_from_view, world_from_n: world_from_c * c_from_n }
+            }
+            None => ViewOrientation::Seen(world_from_view),
         }
     }
 
@@ -186,7 +194,7 @@ impl Measured {
     }
 
     /// Returns the input of the frame calibrations; the rig adds the other side's poses.
-    fn frames(&self, pose: &Pose, force: &ForceReading, shared: &Shared) -> FrameSample {
+    fn frames(&self, pose: &InstrumentPose, force: &ForceReading, shared: &SharedReadings) -> FrameSample {
         let base_from_flange = self.mount.world_from_base().inverse() * pose.chain.world_from_flange;
         FrameSample {
             base_from_flange: Some(rigid(&base_from_flange)),
@@ -199,16 +207,16 @@ impl Measured {
     fn sensed(
         &self,
         force: &ForceReading,
-        pose: &Pose,
+        pose: &InstrumentPose,
         world_from_s1: &UnitQuaternion<f64>,
-        shared: &Shared,
-    ) -> Sensed {
+        shared: &SharedReadings,
+    ) -> SensedForce {
         if !self.at_wrist {
-            return Sensed::AtTip(world_from_s1 * force.wrench.force_n);
+            return SensedForce::AtTip(world_from_s1 * force.wrench.force_n);
         }
         let trocar_m = &self.rcm.settings().trocar_m;
         let in_trocar = pose.axis_miss_m(trocar_m).norm() <= START_MISS_M;
-        Sensed::AtWrist(WristSample {
+        SensedForce::AtWrist(WristSample {
             raw: force.wrench,
             acceleration_m_s2: force.acceleration_m_s2,
             world_from_s1: Some(*world_from_s1),
@@ -221,13 +229,13 @@ impl Measured {
     }
 }
 
-const fn raw<T, const N: usize>(reading: &Stamped<T>, channels: [f64; N]) -> Raw<N> {
-    Raw { channels, device_s: reading.device_s, arrival_s: reading.arrival_s }
+const fn raw<T, const N: usize>(reading: &TimedReading<T>, channels: [f64; N]) -> RawReading<N> {
+    RawReading { channels, device_s: reading.device_s, arrival_s: reading.arrival_s }
 }
 
-fn raw_force(reading: &Stamped<ForceReading>) -> Raw<{ nima_core::safety::CHANNELS }> {
+fn raw_force(reading: &TimedReading<ForceReading>) -> RawReading<{ nima_core::safety::CHANNELS }> {
     let ForceReading { wrench, acceleration_m_s2, .. } = reading.value;
     let array = |vector: Vector3<f64>| <[f64; 3]>::from(vector);
     let parts = [Some(array(wrench.force_n)), Some(array(wrench.torque_nm)), acceleration_m_s2.map(array)];
-    Raw::of_sensor(parts, reading.device_s, reading.arrival_s)
+    RawReading::of_sensor(parts, reading.device_s, reading.arrival_s)
 }

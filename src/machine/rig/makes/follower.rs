@@ -2,8 +2,8 @@ use std::net::SocketAddr;
 
 use nima_core::kinematics::JointLimits;
 use nima_devices::{
-    ClearFaults, Follower, Trouble,
-    discovery::{DeviceProbe, Probe, Speaks, probes},
+    ClearFaults, DeviceError, Follower,
+    discovery::{DataTiming, DeviceProbe, Probe, probes},
     external, kinova, simulated_arm,
 };
 use serde::{Deserialize, Serialize, Serializer};
@@ -15,11 +15,11 @@ use super::Opener;
 #[serde(rename_all = "snake_case")]
 pub enum FollowerSettings {
     /// `make = "kinova"`, the default: Gen3 with seven joints.
-    Kinova(kinova::Settings),
+    Kinova(kinova::KinovaSettings),
     /// `make = "simulated"`: no hardware.
-    Simulated(simulated_arm::Settings),
+    Simulated(simulated_arm::SimulatedArmSettings),
     /// `make = "external"`: a user's program over UDP.
-    External(external::Settings),
+    External(external::ExternalSettings),
 }
 
 impl Serialize for FollowerSettings {
@@ -40,7 +40,7 @@ impl FollowerSettings {
     pub(crate) const MAKERS: &[&str] = &["Kinova", "simulated", "external"];
 
     /// Returns the settings if the arm is made by Kinova.
-    pub const fn kinova(&self) -> Option<&kinova::Settings> {
+    pub const fn kinova(&self) -> Option<&kinova::KinovaSettings> {
         match self {
             Self::Kinova(settings) => Some(settings),
             Self::Simulated(_) | Self::External(_) => None,
@@ -48,7 +48,7 @@ impl FollowerSettings {
     }
 
     /// Returns the settings if the arm is made by Kinova.
-    pub const fn kinova_mut(&mut self) -> Option<&mut kinova::Settings> {
+    pub const fn kinova_mut(&mut self) -> Option<&mut kinova::KinovaSettings> {
         match self {
             Self::Kinova(settings) => Some(settings),
             Self::Simulated(_) | Self::External(_) => None,
@@ -64,7 +64,7 @@ impl FollowerSettings {
         }
     }
 
-    /// Returns the make for the screen, one of [`Part::makes`](crate::rig::Part::makes).
+    /// Returns the make for the screen, one of [`RigPart::makes`](crate::rig::RigPart::makes).
     pub(in crate::rig) const fn maker(&self) -> &'static str {
         match self {
             Self::Kinova(_) => "Kinova",
@@ -89,18 +89,18 @@ impl FollowerSettings {
     /// Checks every setting.
     ///
     /// # Errors
-    /// [`Trouble::Setting`] for the first invalid one.
-    pub fn check(&self) -> Result<(), Trouble> {
+    /// [`DeviceError::Setting`] for the first invalid one.
+    pub fn check(&self) -> Result<(), DeviceError> {
         match self {
             Self::Kinova(settings) => settings.check(),
             Self::Simulated(settings) => settings.check(),
-            Self::External(settings) => settings.check(external::Kind::Arm),
+            Self::External(settings) => settings.check(external::ExternalKind::Arm),
         }
     }
 
     /// Checks that an emulated rig has an emulated arm: the arm moves the emulated world to which handle and sensor
     /// belong, and a simulated arm has no such world.
-    pub(in crate::rig) fn check_emulated(&self, rig_is_emulated: bool) -> Result<(), Trouble> {
+    pub(in crate::rig) fn check_emulated(&self, rig_is_emulated: bool) -> Result<(), DeviceError> {
         match self {
             Self::Kinova(_) => Ok(()),
             Self::Simulated(_) => super::not_emulated("simulated", rig_is_emulated),
@@ -130,12 +130,12 @@ impl FollowerSettings {
             }
             Self::Simulated(settings) => Opener {
                 driver: "simulated arm".to_owned(),
-                open: Box::new(move || Ok(Box::new(simulated_arm::Driver::open(&settings)?))),
+                open: Box::new(move || Ok(Box::new(simulated_arm::SimulatedArmDriver::open(&settings)?))),
                 clear_faults: None,
             },
             Self::External(settings) => Opener {
                 driver: format!("external arm, {}", settings.place()),
-                open: Box::new(move || Ok(Box::new(external::Arm::open(&settings)?))),
+                open: Box::new(move || Ok(Box::new(external::ExternalArm::open(&settings)?))),
                 clear_faults: None,
             },
         }
@@ -145,10 +145,10 @@ impl FollowerSettings {
         match self.clone() {
             Self::Kinova(settings) => probes::arm(name, settings),
             Self::Simulated(settings) => {
-                let open = move || simulated_arm::Driver::open(&settings);
-                Box::new(DeviceProbe::new(name, "this program".to_owned(), Speaks::Always, open))
+                let open = move || simulated_arm::SimulatedArmDriver::open(&settings);
+                Box::new(DeviceProbe::new(name, "this program".to_owned(), DataTiming::Always, open))
             }
-            Self::External(settings) => probes::external(name, external::Kind::Arm, settings),
+            Self::External(settings) => probes::external(name, external::ExternalKind::Arm, settings),
         }
     }
 }

@@ -1,24 +1,24 @@
 use std::net::SocketAddr;
 
 use nima_devices::{
-    Leader, Lever, Slot, Trouble,
+    DeviceError, DeviceSlot, Leader, Lever,
     discovery::{Probe, probes},
     external, force_dimension, haply,
 };
 use serde::{Deserialize, Serialize, Serializer};
 
 use super::Opener;
-use crate::rig::{DeviceRole, Part, RigError, RosterEntry, Side};
+use crate::rig::{DeviceRole, RigError, RigPart, RosterEntry, Side};
 
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum LeaderSettings {
     /// `make = "force_dimension"`, the default: omega.7.
-    ForceDimension(force_dimension::Settings),
+    ForceDimension(force_dimension::ForceDimensionSettings),
     /// `make = "haply"`: Inverse3 or Minverse.
-    Haply(haply::Settings),
+    Haply(haply::HaplySettings),
     /// `make = "external"`: a user's program over UDP.
-    External(external::Settings),
+    External(external::ExternalSettings),
 }
 
 impl Serialize for LeaderSettings {
@@ -39,7 +39,7 @@ impl LeaderSettings {
     pub(crate) const MAKERS: &[&str] = &["Force Dimension", "Haply", "external"];
 
     /// Returns the settings if the handle is made by Force Dimension.
-    pub const fn force_dimension(&self) -> Option<&force_dimension::Settings> {
+    pub const fn force_dimension(&self) -> Option<&force_dimension::ForceDimensionSettings> {
         match self {
             Self::ForceDimension(settings) => Some(settings),
             Self::Haply(_) | Self::External(_) => None,
@@ -47,14 +47,14 @@ impl LeaderSettings {
     }
 
     /// Returns the settings if the handle is made by Force Dimension.
-    pub const fn force_dimension_mut(&mut self) -> Option<&mut force_dimension::Settings> {
+    pub const fn force_dimension_mut(&mut self) -> Option<&mut force_dimension::ForceDimensionSettings> {
         match self {
             Self::ForceDimension(settings) => Some(settings),
             Self::Haply(_) | Self::External(_) => None,
         }
     }
 
-    /// Returns the make for the screen, one of [`Part::makes`](crate::rig::Part::makes).
+    /// Returns the make for the screen, one of [`RigPart::makes`](crate::rig::RigPart::makes).
     pub(crate) const fn maker(&self) -> &'static str {
         match self {
             Self::ForceDimension(_) => "Force Dimension",
@@ -66,18 +66,18 @@ impl LeaderSettings {
     /// Checks every setting.
     ///
     /// # Errors
-    /// [`Trouble::Setting`] for the first invalid one.
-    pub fn check(&self) -> Result<(), Trouble> {
+    /// [`DeviceError::Setting`] for the first invalid one.
+    pub fn check(&self) -> Result<(), DeviceError> {
         match self {
             Self::ForceDimension(settings) => settings.check(),
             Self::Haply(settings) => settings.check(),
-            Self::External(settings) => settings.check(external::Kind::Handle),
+            Self::External(settings) => settings.check(external::ExternalKind::Handle),
         }
     }
 
     /// Checks that the handle is emulated if and only if the rig is. An emulated handle must never replace a real one
     /// unnoticed, and an emulated rig, which engages automatically, must never move a real handle.
-    pub(in crate::rig) fn check_emulated(&self, rig_is_emulated: bool) -> Result<(), Trouble> {
+    pub(in crate::rig) fn check_emulated(&self, rig_is_emulated: bool) -> Result<(), DeviceError> {
         let settings = match self {
             Self::ForceDimension(settings) => settings,
             Self::Haply(_) => return super::not_emulated("haply", rig_is_emulated),
@@ -89,16 +89,16 @@ impl LeaderSettings {
         let value = settings.emulator.map_or_else(|| "not given".to_owned(), |address| address.to_string());
         let allowed =
             "127.0.0.1:PORT for each handle of an emulated rig (emulated = true), omitted on any other rig".to_owned();
-        Err(Trouble::Setting { key: "emulator".to_owned(), value, allowed })
+        Err(DeviceError::Setting { key: "emulator".to_owned(), value, allowed })
     }
 
     /// Checks that the settings distinguish the two handles.
-    pub(in crate::rig) fn check_beside(&self, other: &Self) -> Result<(), Trouble> {
+    pub(in crate::rig) fn check_beside(&self, other: &Self) -> Result<(), DeviceError> {
         let (one, other) = match (self, other) {
             (Self::ForceDimension(one), Self::ForceDimension(other)) => (one, other),
             (Self::Haply(one), Self::Haply(other)) if one.port == other.port => {
                 let allowed = "a different port than the left handle's".to_owned();
-                return Err(Trouble::Setting { key: "port".to_owned(), value: one.port.clone(), allowed });
+                return Err(DeviceError::Setting { key: "port".to_owned(), value: one.port.clone(), allowed });
             }
             // External handles have separate addresses, which are checked together with the addresses of all parts.
             _ => return Ok(()),
@@ -108,7 +108,7 @@ impl LeaderSettings {
         }
         let value = one.serial.map_or_else(|| "not given".to_owned(), |serial| serial.to_string());
         let allowed = "a different serial number for each of two handles".to_owned();
-        Err(Trouble::Setting { key: "serial".to_owned(), value, allowed })
+        Err(DeviceError::Setting { key: "serial".to_owned(), value, allowed })
     }
 
     /// Returns the local address for an external handle.
@@ -165,12 +165,12 @@ impl LeaderSettings {
             }
             Self::Haply(settings) => Opener {
                 driver: format!("Haply handle, {}", settings.port),
-                open: Box::new(move || Ok(Box::new(haply::Driver::open(&settings)?))),
+                open: Box::new(move || Ok(Box::new(haply::HaplyDriver::open(&settings)?))),
                 clear_faults: None,
             },
             Self::External(settings) => Opener {
                 driver: format!("external handle, {}", settings.place()),
-                open: Box::new(move || Ok(Box::new(external::Handle::open(&settings)?))),
+                open: Box::new(move || Ok(Box::new(external::ExternalHandle::open(&settings)?))),
                 clear_faults: None,
             },
         }
@@ -180,11 +180,11 @@ impl LeaderSettings {
     ///
     /// # Errors
     /// [`RigError`] if no thread can be created.
-    pub fn start(&self, lever: &Lever) -> Result<(Slot<Box<dyn Leader>>, RosterEntry), RigError> {
+    pub fn start(&self, lever: &Lever) -> Result<(DeviceSlot<Box<dyn Leader>>, RosterEntry), RigError> {
         let Opener { driver, mut open, clear_faults } = self.opener();
         let lever = lever.clone();
-        let role = DeviceRole::Part(Part::Handle(Side::Right));
-        let slot = Slot::start(role.name(), move || open().inspect(|handle| handle.attach(&lever)))?;
+        let role = DeviceRole::Part(RigPart::Handle(Side::Right));
+        let slot = DeviceSlot::start(role.name(), move || open().inspect(|handle| handle.attach(&lever)))?;
         let entry = RosterEntry { clear_faults, ..RosterEntry::new(role, driver, slot.view()) };
         Ok((slot, entry))
     }
@@ -194,7 +194,7 @@ impl LeaderSettings {
         match self.clone() {
             Self::ForceDimension(settings) => probes::handle(name, settings),
             Self::Haply(settings) => probes::haply(name, settings),
-            Self::External(settings) => probes::external(name, external::Kind::Handle, settings),
+            Self::External(settings) => probes::external(name, external::ExternalKind::Handle, settings),
         }
     }
 }

@@ -12,7 +12,7 @@ use std::ops::Range;
 
 pub use follower::FollowerSettings;
 pub use leader::LeaderSettings;
-use nima_devices::{ClearFaults, Trouble};
+use nima_devices::{ClearFaults, DeviceError};
 pub use sensor::SensorSettings;
 use toml::{
     Spanned,
@@ -26,17 +26,17 @@ pub(super) struct Opener<P> {
     /// Name of the driver, for the screen.
     pub(super) driver: String,
     /// Opens the device; called again whenever the connection was lost.
-    pub(super) open: Box<dyn FnMut() -> Result<P, Trouble> + Send>,
+    pub(super) open: Box<dyn FnMut() -> Result<P, DeviceError> + Send>,
     pub(super) clear_faults: Option<ClearFaults>,
 }
 
 /// Refuses a make that an emulated rig cannot have: its devices belong to one emulated world, which does not include
 /// this make.
-fn not_emulated(make: &str, rig_is_emulated: bool) -> Result<(), Trouble> {
+fn not_emulated(make: &str, rig_is_emulated: bool) -> Result<(), DeviceError> {
     if !rig_is_emulated {
         return Ok(());
     }
-    Err(Trouble::Setting {
+    Err(DeviceError::Setting {
         key: "make".to_owned(),
         value: make.to_owned(),
         allowed: "omit `make` on an emulated rig (emulated = true), which emulates every device".to_owned(),
@@ -129,17 +129,17 @@ mod tests {
 
     #[test]
     fn what_is_wrong_below_a_make_is_told_with_its_line() {
-        let told = |text: &str| arm(text).unwrap_err();
+        let report = |text: &str| arm(text).unwrap_err();
         for wrong in ["host = \"10.0.0.1\"\nmake = \"acme\"", "host = \"10.0.0.1\"\nmake = 1"] {
-            assert_eq!(told(wrong), "2: make is one of: kinova, simulated, external");
+            assert_eq!(report(wrong), "2: make must be one of: kinova, simulated, external");
         }
-        let other = told(&format!("{SIMULATED}host = \"10.0.0.1\""));
+        let other = report(&format!("{SIMULATED}host = \"10.0.0.1\""));
         assert!(other.starts_with("3: unknown field `host`"), "{other}");
-        let missing = told("make = \"simulated\"");
+        let missing = report("make = \"simulated\"");
         assert!(missing.contains("missing field `start_rad`"), "{missing}");
-        let key = told("# the arm\n\nhosts = \"10.0.0.1\"");
+        let key = report("# the arm\n\nhosts = \"10.0.0.1\"");
         assert!(key.starts_with("3: unknown field `hosts`"), "{key}");
-        let value = told("host = \"10.0.0.1\"\nspeed_fraction = \"half\"");
+        let value = report("host = \"10.0.0.1\"\nspeed_fraction = \"half\"");
         assert!(value.starts_with("2: invalid type: string"), "{value}");
     }
 }

@@ -1,7 +1,7 @@
 use std::net::SocketAddr;
 
 use nima_devices::{
-    ForceSensor, Trouble, bota,
+    DeviceError, ForceSensor, bota,
     discovery::{Probe, probes},
     external,
 };
@@ -13,9 +13,9 @@ use super::Opener;
 #[serde(rename_all = "snake_case")]
 pub enum SensorSettings {
     /// `make = "bota"`, the default.
-    Bota(bota::Settings),
+    Bota(bota::BotaSettings),
     /// `make = "external"`: a user's program over UDP.
-    External(external::Settings),
+    External(external::ExternalSettings),
 }
 
 impl Serialize for SensorSettings {
@@ -35,7 +35,7 @@ impl SensorSettings {
     pub(crate) const MAKERS: &[&str] = &["Bota", "external"];
 
     /// Returns the settings if the sensor is made by Bota.
-    pub const fn bota(&self) -> Option<&bota::Settings> {
+    pub const fn bota(&self) -> Option<&bota::BotaSettings> {
         match self {
             Self::Bota(settings) => Some(settings),
             Self::External(_) => None,
@@ -43,7 +43,7 @@ impl SensorSettings {
     }
 
     /// Returns the settings if the sensor is made by Bota.
-    pub const fn bota_mut(&mut self) -> Option<&mut bota::Settings> {
+    pub const fn bota_mut(&mut self) -> Option<&mut bota::BotaSettings> {
         match self {
             Self::Bota(settings) => Some(settings),
             Self::External(_) => None,
@@ -58,7 +58,7 @@ impl SensorSettings {
         }
     }
 
-    /// Returns the make for the screen, one of [`Part::makes`](crate::rig::Part::makes).
+    /// Returns the make for the screen, one of [`RigPart::makes`](crate::rig::RigPart::makes).
     pub(in crate::rig) const fn maker(&self) -> &'static str {
         match self {
             Self::Bota(_) => "Bota",
@@ -67,7 +67,7 @@ impl SensorSettings {
     }
 
     /// Checks that an emulated rig has an emulated sensor.
-    pub(in crate::rig) fn check_emulated(&self, rig_is_emulated: bool) -> Result<(), Trouble> {
+    pub(in crate::rig) fn check_emulated(&self, rig_is_emulated: bool) -> Result<(), DeviceError> {
         match self {
             Self::Bota(_) => Ok(()),
             Self::External(_) => super::not_emulated("external", rig_is_emulated),
@@ -85,18 +85,18 @@ impl SensorSettings {
     /// Checks every setting.
     ///
     /// # Errors
-    /// [`Trouble::Setting`] for the first invalid one.
-    pub fn check(&self) -> Result<(), Trouble> {
+    /// [`DeviceError::Setting`] for the first invalid one.
+    pub fn check(&self) -> Result<(), DeviceError> {
         match self {
             Self::Bota(settings) => settings.check(),
-            Self::External(settings) => settings.check(external::Kind::Sensor),
+            Self::External(settings) => settings.check(external::ExternalKind::Sensor),
         }
     }
 
     /// Returns the device file of the sensor, if it has one.
     pub(in crate::rig) const fn device_file(&mut self) -> Option<&mut String> {
         match self {
-            Self::Bota(bota::Settings { transport: bota::Transport::Socket, .. }) | Self::External(_) => None,
+            Self::Bota(bota::BotaSettings { transport: bota::Transport::Socket, .. }) | Self::External(_) => None,
             Self::Bota(settings) => Some(&mut settings.port),
         }
     }
@@ -119,12 +119,12 @@ impl SensorSettings {
         match self.clone() {
             Self::Bota(settings) => Opener {
                 driver: format!("Bota sensor, {}", settings.port),
-                open: Box::new(move || Ok(Box::new(bota::Driver::open(&settings)?))),
+                open: Box::new(move || Ok(Box::new(bota::BotaDriver::open(&settings)?))),
                 clear_faults: None,
             },
             Self::External(settings) => Opener {
                 driver: format!("external sensor, {}", settings.place()),
-                open: Box::new(move || Ok(Box::new(external::Sensor::open(&settings)?))),
+                open: Box::new(move || Ok(Box::new(external::ExternalSensor::open(&settings)?))),
                 clear_faults: None,
             },
         }
@@ -133,7 +133,7 @@ impl SensorSettings {
     pub(in crate::rig) fn probe(&self, name: &str) -> Box<dyn Probe> {
         match self.clone() {
             Self::Bota(settings) => probes::sensor(name, settings),
-            Self::External(settings) => probes::external(name, external::Kind::Sensor, settings),
+            Self::External(settings) => probes::external(name, external::ExternalKind::Sensor, settings),
         }
     }
 }

@@ -95,7 +95,7 @@ fn a_stalled_loop_pauses_about_once_a_second_for_the_named_time() {
 #[test]
 fn a_text_that_names_no_profile_is_refused_with_those_that_there_are() {
     for text in ["", "late", "late-0", "late--1", "late-51", "late-NaN", "stall-0", "stall-1001", "stall-5.5", "Busy"] {
-        let told = text.parse::<ClockProfile>().unwrap_err().to_string();
-        assert!(told.contains(&format!("\"{text}\"")) && told.contains("stall-MS (1 to 1000)"), "{told}");
+        let report = text.parse::<ClockProfile>().unwrap_err().to_string();
+        assert!(report.contains(&format!("\"{text}\"")) && report.contains("stall-MS (1 to 1000)"), "{report}");
     }
 }

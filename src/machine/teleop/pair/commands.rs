@@ -5,13 +5,13 @@ use std::ops::RangeInclusive;
 use nima_core::{
     impedance::Mode,
     limits::{DEAD_BAND_M_S, DELAY_S, GAIN, GAIN_ABOVE_ONE, Limits},
-    safety::{Change, Wish},
+    safety::{InterlockRequest, StateChange},
 };
 
 use super::Pair;
 use crate::{
     messages::{Command, Event, Fault, ForceReport, LoopState, Refusal, Watchdog},
-    rig::{GRIP_MAX_RAD, GUIDE_MAX_M, Identified, Prompt},
+    rig::{GRIP_MAX_RAD, GUIDE_MAX_M, Prompt, RemoteIdentification},
     teleop::Link,
 };
 
@@ -44,7 +44,7 @@ impl<L: Link> Pair<L> {
             Command::Prompt(_, prompt) => return self.prompt(prompt),
             Command::Guide(_, guide_m) => {
                 self.is_not_latched()?;
-                let coordinates_m = guide_m.iter().flat_map(|at_m| at_m.iter());
+                let coordinates_m = guide_m.iter().flat_map(|position_m| position_m.iter());
                 all_within(-GUIDE_MAX_M..=GUIDE_MAX_M, coordinates_m)?;
                 self.screen.guide_m = guide_m;
             }
@@ -69,10 +69,10 @@ impl<L: Link> Pair<L> {
             }
             Command::Engage | Command::EngageOne(_) => {
                 self.may_engage()?;
-                return self.ask(Wish::Engage, t_s);
+                return self.ask(InterlockRequest::Engage, t_s);
             }
-            Command::Rest => return self.ask(Wish::Rest, t_s),
-            Command::Stop => return self.ask(Wish::Stop, t_s),
+            Command::Rest => return self.ask(InterlockRequest::Rest, t_s),
+            Command::Stop => return self.ask(InterlockRequest::Stop, t_s),
             Command::ReleaseStop => return self.release(t_s),
             Command::TestWatchdog(watchdog) => return self.test_watchdog(watchdog, t_s),
             Command::Checked(passed) => self.checked = self.checked.map(|_| passed),
@@ -125,16 +125,16 @@ impl<L: Link> Pair<L> {
     }
 
     /// Stores data of the follower's half at the other machine; returns its force.
-    pub(super) fn hear(&mut self, identified: &Identified) -> ForceReport {
+    pub(super) fn receive_identified(&mut self, identified: &RemoteIdentification) -> ForceReport {
         if let Some(delay_s) = self.link.turn_far(identified, &self.settings) {
             self.leader.renderer.set_delay(delay_s);
         }
         // The packets of a local identification are suppressed in the same way.
         let is_withheld = self.withholds(Watchdog::Link);
-        self.link.hear((!is_withheld).then_some(identified))
+        self.link.receive_identified((!is_withheld).then_some(identified))
     }
 
-    fn ask(&mut self, wish: Wish, t_s: f64) -> Result<(), Refusal> {
+    fn ask(&mut self, wish: InterlockRequest, t_s: f64) -> Result<(), Refusal> {
         let change = self.interlock.ask(wish, t_s).map_err(|_| Refusal::State(self.state()))?;
         if let Some(change) = change {
             self.enter(change, t_s);
@@ -147,7 +147,7 @@ impl<L: Link> Pair<L> {
         let is_of_other_machine = self.link.far_stop().is_some() && !self.state().is_latched();
         if !is_of_other_machine {
             self.may_release(t_s)?;
-            self.ask(Wish::Release, t_s)?;
+            self.ask(InterlockRequest::Release, t_s)?;
         }
         self.releases = self.releases.wrapping_add(1);
         Ok(())
@@ -168,8 +168,8 @@ impl<L: Link> Pair<L> {
     }
 
     /// Actions on entering a state: every state starts from zero force and a follower at rest.
-    pub(super) fn enter(&mut self, change: Change<Fault>, t_s: f64) {
-        let Change { from, to, why } = change;
+    pub(super) fn enter(&mut self, change: StateChange<Fault>, t_s: f64) {
+        let StateChange { from, to, why } = change;
         self.note(Event::StateChanged { t_s, side: self.side, from, to, why });
         self.leader.rest();
         self.watchdog_test = None;

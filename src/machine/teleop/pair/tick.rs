@@ -3,17 +3,17 @@
 use nalgebra::Vector3;
 use nima_core::{
     calibration::frames::FrameSample,
-    impedance::Rendered,
-    safety::{GateReport, Observed, Request, Seen, Why},
+    impedance::RenderedForces,
+    safety::{ForceRequest, GateReport, InterlockInput, PlausibilityInput, TransitionCause},
 };
 
 use super::Pair;
 use crate::{
     messages::{Command, Event, Fault, ForceReport, LoopState, Tick, UNKNOWN_N, Watchdog},
-    rig::{Inputs, Outputs, Sensed, Switches, View},
+    rig::{Inputs, Outputs, SensedForce, Switches, ViewOrientation},
     teleop::{
-        Link, Timing, far_link::LINK_SILENT_AFTER_S, follower_half::NO_FORCE, leader_half::Lead,
-        samples::SILENT_AFTER_S, timing::Passed,
+        Link, Timing, far_link::LINK_SILENT_AFTER_S, follower_half::NO_FORCE, leader_half::TipLead,
+        samples::SILENT_AFTER_S, timing::TickSpacing,
     },
 };
 
@@ -31,7 +31,7 @@ struct Delivery {
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Felt {
+struct HandForce {
     /// Force after the gates, N, in the workspace.
     rendered_n: Vector3<f64>,
     gates: GateReport,
@@ -81,10 +81,10 @@ impl<L: Link> Pair<L> {
     /// identification is reset, because packets with a time in the future would never grow old.
     fn check_clock(&mut self, timing: &Timing) {
         let passed = self.ticks.pass(timing);
-        if passed != Passed::Evenly {
+        if passed != TickSpacing::Evenly {
             self.fail_if_driven(Fault::ClockJumped, timing.now_s);
         }
-        if passed == Passed::Backwards {
+        if passed == TickSpacing::Backwards {
             self.follower.identifier.reset();
             self.leader.renderer.reset();
             self.link.clear();
@@ -98,7 +98,7 @@ impl<L: Link> Pair<L> {
         let now_s = timing.now_s;
         let was_usable = self.follower.force.source.is_usable();
         self.follower.force = match &inputs.sensed {
-            Sensed::FarEnd(identified) => self.hear(identified),
+            SensedForce::FarEnd(identified) => self.receive_identified(identified),
             sensed => self.follower.force_path.step(now_s, sensed),
         };
         let is_usable = self.follower.force.source.is_usable();
@@ -124,16 +124,16 @@ impl<L: Link> Pair<L> {
     }
 
     /// Returns the input of the plausibility check for this sample.
-    fn observed(&self, inputs: &Inputs, now_s: f64) -> Observed {
+    fn observed(&self, inputs: &Inputs, now_s: f64) -> PlausibilityInput {
         let force = &self.follower.force;
         let silent_s = inputs.silent_s;
         let is_far = self.link.far().is_some();
-        Observed {
+        PlausibilityInput {
             t_s: now_s,
             raw: inputs.raw,
             // An unknown force counts as zero for this check; the first known force restarts it.
             force_n: if force.source.is_usable() { force.tip_n } else { Vector3::zeros() },
-            least_n: force.source.least_n(),
+            min_n: force.source.min_n(),
             world_from_s1: inputs.sensed.wrist().and_then(|sample| sample.world_from_s1),
             tip_m: inputs.tip_m,
             hand_m: inputs.hand.position_m,
@@ -177,10 +177,10 @@ impl<L: Link> Pair<L> {
 
     fn step_interlock(&mut self, inputs: Option<&Inputs>, moved_m: f64, now_s: f64) {
         let switches = self.samples.last.map_or_else(Switches::default, |seen| seen.switches);
-        let seen = Seen {
+        let seen = InterlockInput {
             connected: !self.samples.are_silent(now_s),
             powered: inputs.is_some_and(|inputs| inputs.powered),
-            agreed: inputs.is_some_and(|inputs| inputs.view != View::Unseen)
+            agreed: inputs.is_some_and(|inputs| inputs.view != ViewOrientation::Unseen)
                 && self.follower.force.source.is_usable()
                 && !self.link.is_old()
                 && moved_m <= AT_REST_M,
@@ -189,7 +189,7 @@ impl<L: Link> Pair<L> {
         };
         if let Some(change) = self.interlock.step(&seen, now_s) {
             self.enter(change, now_s);
-            if change.why == Why::Late {
+            if change.why == TransitionCause::Late {
                 let why = self.waits_for(seen, inputs);
                 self.note(Event::CommandRefused { t_s: now_s, side: self.side, command: Command::Engage, why });
             }
@@ -234,10 +234,10 @@ impl<L: Link> Pair<L> {
         &mut self,
         inputs: Option<&Inputs>,
         seen: &Inputs,
-        rendered: &Rendered,
+        rendered: &RenderedForces,
         delivery: &Delivery,
         now_s: f64,
-    ) -> Felt {
+    ) -> HandForce {
         let permitted = self.state().permits().coupled && self.follower.force.source.is_usable();
         let force_n = self.leader.modes.force_n(rendered);
         if self.leader.modes.settle(rendered) {
@@ -245,7 +245,7 @@ impl<L: Link> Pair<L> {
         }
         let age_s = delivery.age_s;
         let mapping = self.leader.hand_eye.mapping();
-        let (rendered_n, gates) = self.leader.gates.step(Request {
+        let (rendered_n, gates) = self.leader.gates.step(ForceRequest {
             t_s: now_s,
             force_n,
             age_s,
@@ -258,19 +258,19 @@ impl<L: Link> Pair<L> {
         });
         let gripper_n = self.leader.gates.grip(inputs, now_s, age_s, permitted);
         self.leader.hand_force_n = mapping.force_to_hand(&rendered_n);
-        Felt { rendered_n, gates, gripper_n }
+        HandForce { rendered_n, gates, gripper_n }
     }
 
     /// Compares the force of each mode with the current force, if known: if the follower's half is at another machine,
     /// that machine evaluates the modes.
-    fn judge_modes(&mut self, came: bool, rendered: &Rendered) {
+    fn judge_modes(&mut self, came: bool, rendered: &RenderedForces) {
         let force = &self.follower.force;
         if came && force.source.is_known() && self.link.far().is_none() {
             self.accuracy.add(rendered, self.follower.identifier.report().modes, &force.tip_n);
         }
     }
 
-    fn outputs(&self, seen: &Inputs, lead: &Lead, felt: &Felt) -> Outputs {
+    fn outputs(&self, seen: &Inputs, lead: &TipLead, felt: &HandForce) -> Outputs {
         Outputs {
             drives: self.state().permits().drives,
             tip_command_m: lead.tip_m,
@@ -288,10 +288,10 @@ impl<L: Link> Pair<L> {
     fn report(
         &self,
         seen: &Inputs,
-        lead: &Lead,
-        rendered: &Rendered,
+        lead: &TipLead,
+        rendered: &RenderedForces,
         delivery: &Delivery,
-        felt: &Felt,
+        felt: &HandForce,
         timing: &Timing,
     ) -> Tick {
         let force = self.force_now(seen);

@@ -4,22 +4,22 @@ use std::io::{self, Read as _};
 
 use lz4_flex::frame::FrameDecoder;
 
-use super::{parse, source::Source};
+use super::{parse, source::ReaderSource};
 use crate::session::{
     chunk::LZ4,
     format::{HEAD, kind},
 };
 
-pub(super) struct Chunk {
+pub(super) struct ReaderChunk {
     pub(super) records: Vec<u8>,
     pub(super) times_ns: (u64, u64),
 }
 
 /// An LZ4 byte expands to at most this many bytes; a chunk that claims more is rejected.
-const MOST_FOR_A_BYTE: u64 = 255;
+const MAX_FOR_A_BYTE: u64 = 255;
 
 /// Reads the chunk at this position, or returns what is wrong with it.
-pub(super) fn read(source: &Source, at: u64, length: u64) -> io::Result<Result<Chunk, String>> {
+pub(super) fn read(source: &ReaderSource, at: u64, length: u64) -> io::Result<Result<ReaderChunk, String>> {
     let bytes = match source.read(at, length) {
         Err(error) if error.kind() == io::ErrorKind::UnexpectedEof => return Ok(Err("it is beyond the file".into())),
         read => read?,
@@ -30,7 +30,7 @@ pub(super) fn read(source: &Source, at: u64, length: u64) -> io::Result<Result<C
     };
     Ok(decompress(&head, compressed).and_then(|records| {
         if head.crc == 0 || crc32fast::hash(&records) == head.crc {
-            Ok(Chunk { records, times_ns: head.times_ns })
+            Ok(ReaderChunk { records, times_ns: head.times_ns })
         } else {
             Err("its checksum does not agree: bits have changed".into())
         }
@@ -38,15 +38,15 @@ pub(super) fn read(source: &Source, at: u64, length: u64) -> io::Result<Result<C
 }
 
 fn decompress(head: &parse::ChunkHead, compressed: &[u8]) -> Result<Vec<u8>, String> {
-    let most = match head.compression.as_str() {
+    let max = match head.compression.as_str() {
         "" => compressed.len() as u64,
-        LZ4 => compressed.len() as u64 * MOST_FOR_A_BYTE,
+        LZ4 => compressed.len() as u64 * MAX_FOR_A_BYTE,
         other => {
             let other = nima_files::quoted(other);
             return Err(format!("it is compressed with {other}; convert the file: mcap compress --compression lz4"));
         }
     };
-    if head.uncompressed > most {
+    if head.uncompressed > max {
         return Err("it claims to be longer than it can be".into());
     }
     // Allocates at first only for a likely compression ratio, whatever the chunk claims.

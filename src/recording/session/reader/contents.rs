@@ -4,14 +4,14 @@ use std::{collections::BTreeMap, io};
 
 use super::{
     chunk,
-    parse::{self, Attachment, RawChannel, Schema},
-    source::{Place, Source, Walk},
+    parse::{self, Attachment, ParseSchema, RawChannel},
+    source::{ReaderSource, RecordPlace, Walk},
 };
 use crate::session::format::{END, HEAD, MAGIC, Statistics, kind};
 
 /// Position of messages: a chunk, or a run of messages outside chunks, as other programs write them.
 #[derive(Clone, Debug)]
-pub(super) struct Messages {
+pub(super) struct ContentsMessages {
     pub(super) is_chunk: bool,
     pub(super) at: u64,
     pub(super) length: u64,
@@ -21,10 +21,10 @@ pub(super) struct Messages {
 }
 
 #[derive(Default)]
-pub(super) struct Contents {
-    pub(super) schemas: BTreeMap<u16, Schema>,
+pub(super) struct ReaderContents {
+    pub(super) schemas: BTreeMap<u16, ParseSchema>,
     pub(super) channels: BTreeMap<u16, RawChannel>,
-    pub(super) messages: Vec<Messages>,
+    pub(super) messages: Vec<ContentsMessages>,
     pub(super) attachments: Vec<Attachment>,
     /// Positions and lengths of the records of metadata.
     pub(super) metadata: Vec<(u64, u64)>,
@@ -38,9 +38,9 @@ const NOTES: usize = 20;
 /// Runs of messages outside chunks are read in parts of this size.
 const ROW: u64 = 4 << 20;
 
-impl Contents {
+impl ReaderContents {
     /// Reads the summary, or returns why this is impossible.
-    pub(super) fn of_summary(source: &Source) -> io::Result<Result<Self, &'static str>> {
+    pub(super) fn of_summary(source: &ReaderSource) -> io::Result<Result<Self, &'static str>> {
         let Some(end) = source.size().checked_sub(END as u64) else { return Ok(Err("it is cut short")) };
         let last = source.read(end, END as u64)?;
         if last[END - MAGIC.len()..] != MAGIC {
@@ -58,7 +58,7 @@ impl Contents {
         }
         let mut contents = Self::default();
         let mut walk = Walk::new(source, footer.summary_start, end);
-        let mut told = None;
+        let mut report = None;
         while let Some(place) = walk.step()? {
             match place.kind {
                 kind::FOOTER => break,
@@ -67,7 +67,7 @@ impl Contents {
                 _ => {}
             }
             if place.kind == kind::STATISTICS {
-                told = parse::statistics(walk.content(place, u64::MAX)?);
+                report = parse::statistics(walk.content(place, u64::MAX)?);
                 continue;
             }
             if contents.take_summary_record(&mut walk, place)?.is_none() {
@@ -78,16 +78,16 @@ impl Contents {
             return Ok(Err("its summary is damaged"));
         }
         let none = contents.messages.is_empty();
-        match told {
+        match report {
             // Messages outside chunks are in no index.
-            Some(told) if told.messages == 0 || !none => contents.statistics = told,
+            Some(report) if report.messages == 0 || !none => contents.statistics = report,
             None if !none => {}
             _ => return Ok(Err("its summary has no index")),
         }
         Ok(Ok(contents))
     }
 
-    fn take_summary_record(&mut self, walk: &mut Walk, place: Place) -> io::Result<Option<()>> {
+    fn take_summary_record(&mut self, walk: &mut Walk, place: RecordPlace) -> io::Result<Option<()>> {
         let content = match place.kind {
             kind::SCHEMA | kind::CHANNEL | kind::CHUNK_INDEX | kind::ATTACHMENT_INDEX | kind::METADATA_INDEX => {
                 walk.content(place, u64::MAX)?
@@ -100,7 +100,7 @@ impl Contents {
                 let at = index.at;
                 let length = index.length;
                 let times_ns = index.times_ns;
-                self.messages.push(Messages { is_chunk: true, at, length, times_ns, channels: index.channels });
+                self.messages.push(ContentsMessages { is_chunk: true, at, length, times_ns, channels: index.channels });
             }),
             kind::ATTACHMENT_INDEX => parse::attachment_index(content).map(|index| self.attachments.push(index)),
             _ => parse::metadata_index(content).map(|index| self.metadata.push(index)),
@@ -126,7 +126,7 @@ impl Contents {
     }
 
     /// Scans the records, beginning at `begin`.
-    pub(super) fn of_records(source: &Source, begin: u64) -> io::Result<Self> {
+    pub(super) fn of_records(source: &ReaderSource, begin: u64) -> io::Result<Self> {
         let mut contents = Self::default();
         let mut walk = Walk::new(source, begin, source.size());
         loop {
@@ -161,7 +161,7 @@ impl Contents {
         Ok(contents)
     }
 
-    fn scan_chunk(&mut self, source: &Source, place: Place) -> io::Result<()> {
+    fn scan_chunk(&mut self, source: &ReaderSource, place: RecordPlace) -> io::Result<()> {
         let chunk = match chunk::read(source, place.at, place.length)? {
             Ok(chunk) => chunk,
             Err(why) => {
@@ -184,11 +184,11 @@ impl Contents {
             *self.statistics.by_channel.entry(channel).or_default() += count;
         }
         let channels = channels.into_keys().collect();
-        self.messages.push(Messages { is_chunk: true, at, length, times_ns, channels });
+        self.messages.push(ContentsMessages { is_chunk: true, at, length, times_ns, channels });
         Ok(())
     }
 
-    fn scan_message(&mut self, head: &[u8], place: Place) {
+    fn scan_message(&mut self, head: &[u8], place: RecordPlace) {
         let Some(message) = parse::message(head) else { return };
         *self.statistics.by_channel.entry(message.channel).or_default() += 1;
         let time = message.log_time_ns;
@@ -202,7 +202,7 @@ impl Contents {
                 let at = place.at;
                 let length = place.length;
                 let times_ns = (time, time);
-                self.messages.push(Messages { is_chunk: false, at, length, times_ns, channels: Vec::new() });
+                self.messages.push(ContentsMessages { is_chunk: false, at, length, times_ns, channels: Vec::new() });
             }
         }
     }
@@ -232,7 +232,7 @@ impl Contents {
 }
 
 /// Covers the summary and the footer up to the checksum.
-fn checksum_agrees(source: &Source, begin: u64, end: u64, crc: u32) -> io::Result<bool> {
+fn checksum_agrees(source: &ReaderSource, begin: u64, end: u64, crc: u32) -> io::Result<bool> {
     let length = (end + HEAD as u64 + 16).checked_sub(begin);
     Ok(match length {
         Some(length) => crc32fast::hash(&source.read(begin, length)?) == crc,

@@ -8,20 +8,20 @@ use std::{
 };
 
 use super::{
-    Reader, chunk, contents,
+    SessionReader, chunk, contents,
     parse::{self, MESSAGE_HEAD, MessageHead},
 };
 use crate::session::{ReadError, format::kind, writer::ChannelId};
 
 /// One message, which shares its data with the other messages of its chunk.
 #[derive(Clone)]
-pub struct Message {
+pub struct SessionMessage {
     head: MessageHead,
     records: Arc<Vec<u8>>,
     data: Range<usize>,
 }
 
-impl Message {
+impl SessionMessage {
     pub fn channel(&self) -> ChannelId {
         ChannelId(self.head.channel)
     }
@@ -49,20 +49,20 @@ impl Message {
 
 /// The requested messages in the order of their times. A damaged chunk gives one error, then the messages after it
 /// follow.
-pub struct Messages<'a> {
-    reader: &'a Reader,
+pub struct ReaderMessages<'a> {
+    reader: &'a SessionReader,
     /// `None` for all channels.
     wanted: Option<BTreeSet<u16>>,
     times_ns: Range<u64>,
     /// In the order of their first times.
-    places: Vec<&'a contents::Messages>,
+    places: Vec<&'a contents::ContentsMessages>,
     next_place: usize,
     /// Messages of the chunks that are open.
     open: BinaryHeap<Reverse<InOrder>>,
 }
 
 /// Time, position of the chunk, position in it.
-struct InOrder((u64, u64, usize), Message);
+struct InOrder((u64, u64, usize), SessionMessage);
 
 impl PartialEq for InOrder {
     fn eq(&self, other: &Self) -> bool {
@@ -81,9 +81,9 @@ impl Ord for InOrder {
     }
 }
 
-impl<'a> Messages<'a> {
-    pub(super) fn new(reader: &'a Reader, wanted: Option<BTreeSet<u16>>, times_ns: Range<u64>) -> Self {
-        let may_hold = |one: &&contents::Messages| {
+impl<'a> ReaderMessages<'a> {
+    pub(super) fn new(reader: &'a SessionReader, wanted: Option<BTreeSet<u16>>, times_ns: Range<u64>) -> Self {
+        let may_hold = |one: &&contents::ContentsMessages| {
             let (first, last) = one.times_ns;
             let theirs = wanted.as_ref().is_none_or(|wanted| {
                 one.channels.is_empty() || one.channels.iter().any(|channel| wanted.contains(channel))
@@ -95,14 +95,14 @@ impl<'a> Messages<'a> {
         Self { reader, wanted, times_ns, places, next_place: 0, open: BinaryHeap::new() }
     }
 
-    fn open(&mut self, place: &contents::Messages) -> Result<(), ReadError> {
+    fn open(&mut self, place: &contents::ContentsMessages) -> Result<(), ReadError> {
         let records = Arc::new(self.reader.records(place)?);
         for (kind, content, at) in chunk::records(&records) {
             let Some(head) = parse::message(content).filter(|_| kind == kind::MESSAGE) else { continue };
             let wanted = self.wanted.as_ref().is_none_or(|wanted| wanted.contains(&head.channel));
             if wanted && self.times_ns.contains(&head.log_time_ns) {
                 let data = at + MESSAGE_HEAD..at + content.len();
-                let message = Message { head, records: records.clone(), data };
+                let message = SessionMessage { head, records: records.clone(), data };
                 self.open.push(Reverse(InOrder((head.log_time_ns, place.at, at), message)));
             }
         }
@@ -110,8 +110,8 @@ impl<'a> Messages<'a> {
     }
 }
 
-impl Iterator for Messages<'_> {
-    type Item = Result<Message, ReadError>;
+impl Iterator for ReaderMessages<'_> {
+    type Item = Result<SessionMessage, ReadError>;
 
     fn next(&mut self) -> Option<Self::Item> {
         while let Some(&place) = self.places.get(self.next_place) {

@@ -16,10 +16,10 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use contents::Contents;
-pub(super) use source::{Source, Walk};
+use contents::ReaderContents;
+pub(super) use source::{ReaderSource, Walk};
 
-pub use messages::{Message, Messages};
+pub use messages::{ReaderMessages, SessionMessage};
 pub use parse::Attachment;
 
 use super::{
@@ -33,11 +33,11 @@ use super::{
 /// Never uses more memory than a file of its size can justify, whatever its bytes claim.
 ///
 /// ```
-/// use nima_recording::session::{Encoding, Reader, Writer};
+/// use nima_recording::session::{Encoding, SessionReader, SessionWriter};
 ///
 /// let folder = tempfile::tempdir()?;
 /// let path = folder.path().join("session.mcap");
-/// let mut writer = Writer::create(&path, "an example")?;
+/// let mut writer = SessionWriter::create(&path, "an example")?;
 /// let text = Encoding { message_encoding: "text".into(), ..Encoding::default() };
 /// let words = writer.channel("words", text)?;
 /// for (time_ns, word) in [(1, "one"), (2, "two"), (3, "three")] {
@@ -45,25 +45,25 @@ use super::{
 /// }
 /// writer.flush()?;
 ///
-/// let reader = Reader::open(&path)?;
+/// let reader = SessionReader::open(&path)?;
 /// let read: Result<Vec<_>, _> = reader.messages(&["words"], 2..4).collect();
 /// let read: Vec<_> = read?.iter().map(|message| message.data().to_vec()).collect();
 /// assert_eq!(read, [b"two".to_vec(), b"three".to_vec()]);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub struct Reader {
+pub struct SessionReader {
     path: PathBuf,
-    source: Source,
+    source: ReaderSource,
     library: String,
-    contents: Contents,
-    channels: Vec<Channel>,
+    contents: ReaderContents,
+    channels: Vec<ReaderChannel>,
 }
 
 /// A metadata record: its name and its values.
 pub type Metadata = (String, BTreeMap<String, String>);
 
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Channel {
+pub struct ReaderChannel {
     pub id: ChannelId,
     pub topic: String,
     /// Encoding of its messages.
@@ -72,27 +72,27 @@ pub struct Channel {
     pub messages: Option<u64>,
 }
 
-impl Reader {
+impl SessionReader {
     /// Opens a file and reads its summary. If the summary is missing or damaged, scans all records, which takes as long
-    /// as reading the file; [`Reader::notes`] then says so.
+    /// as reading the file; [`SessionReader::notes`] then says so.
     ///
     /// # Errors
     /// The file does not exist, is empty, has another format or an unknown version, or is damaged before the first
     /// record.
     pub fn open(path: &Path) -> Result<Self, ReadError> {
         let (file, size) = nima_files::open_file(path).map_err(|error| ReadError::open(path, &error))?;
-        Self::of_source(path, Source::File(file, size))
+        Self::of_source(path, ReaderSource::File(file, size))
     }
 
     /// Opens bytes in memory; `name` replaces the path in messages.
     ///
     /// # Errors
-    /// As [`Reader::open`].
+    /// As [`SessionReader::open`].
     pub fn of_bytes(name: &str, bytes: Vec<u8>) -> Result<Self, ReadError> {
-        Self::of_source(Path::new(name), Source::Bytes(bytes))
+        Self::of_source(Path::new(name), ReaderSource::Bytes(bytes))
     }
 
-    fn of_source(path: &Path, source: Source) -> Result<Self, ReadError> {
+    fn of_source(path: &Path, source: ReaderSource) -> Result<Self, ReadError> {
         let failed = |error: io::Error| ReadError::open(path, &error);
         if source.size() == 0 {
             return Err(ReadError::Empty { path: path.to_owned() });
@@ -104,13 +104,13 @@ impl Reader {
         let header = walk.step().map_err(failed)?.filter(|place| place.kind == kind::HEADER);
         let header = header.ok_or_else(|| damaged("there is no header"))?;
         let library = {
-            let mut fields = parse::Fields(walk.content(header, u64::MAX).map_err(failed)?);
+            let mut fields = parse::ParseFields(walk.content(header, u64::MAX).map_err(failed)?);
             fields.text().and_then(|_| fields.text()).ok_or_else(|| damaged("the header is damaged"))?
         };
-        let contents = match Contents::of_summary(&source).map_err(failed)? {
+        let contents = match ReaderContents::of_summary(&source).map_err(failed)? {
             Ok(contents) => contents,
             Err(why) => {
-                let mut contents = Contents::of_records(&source, walk.at).map_err(failed)?;
+                let mut contents = ReaderContents::of_records(&source, walk.at).map_err(failed)?;
                 contents.notes.insert(0, format!("{why}: scanned all records instead"));
                 contents
             }
@@ -129,7 +129,7 @@ impl Reader {
     }
 
     /// Sorted by number.
-    pub fn channels(&self) -> &[Channel] {
+    pub fn channels(&self) -> &[ReaderChannel] {
         &self.channels
     }
 
@@ -146,12 +146,12 @@ impl Reader {
 
     /// Returns the messages of these topics (of all topics if the list is empty) with times in this range, in the order
     /// of their times. Reads only the chunks that may contain some.
-    pub fn messages(&self, topics: &[&str], times_ns: Range<u64>) -> Messages<'_> {
+    pub fn messages(&self, topics: &[&str], times_ns: Range<u64>) -> ReaderMessages<'_> {
         let wanted = (!topics.is_empty()).then(|| {
             let channels = self.channels.iter().filter(|channel| topics.contains(&channel.topic.as_str()));
             channels.map(|channel| channel.id.0).collect()
         });
-        Messages::new(self, wanted, times_ns)
+        ReaderMessages::new(self, wanted, times_ns)
     }
 
     /// Returns all attachments without their data.
@@ -193,7 +193,7 @@ impl Reader {
     }
 
     /// Reads the records of one chunk, or of a run of messages outside chunks.
-    fn records(&self, place: &contents::Messages) -> Result<Vec<u8>, ReadError> {
+    fn records(&self, place: &contents::ContentsMessages) -> Result<Vec<u8>, ReadError> {
         let failed = |error: io::Error| ReadError::open(&self.path, &error);
         if !place.is_chunk {
             return self.source.read(place.at, place.length).map_err(failed);
@@ -223,16 +223,16 @@ fn check_magic(path: &Path, magic: &[u8]) -> Result<(), ReadError> {
     }
 }
 
-fn of_channel(channel: &parse::RawChannel, contents: &Contents) -> Channel {
+fn of_channel(channel: &parse::RawChannel, contents: &ReaderContents) -> ReaderChannel {
     let schema = contents.schemas.get(&channel.schema);
-    let text = |of: fn(&parse::Schema) -> &String| schema.map(of).cloned().unwrap_or_default();
+    let text = |of: fn(&parse::ParseSchema) -> &String| schema.map(of).cloned().unwrap_or_default();
     let encoding = Encoding {
         schema: text(|schema| &schema.name),
         schema_encoding: text(|schema| &schema.encoding),
         schema_data: schema.map(|schema| schema.data.clone()).unwrap_or_default(),
         message_encoding: channel.encoding.clone(),
     };
-    let told = &contents.statistics.by_channel;
-    let messages = (!told.is_empty()).then(|| told.get(&channel.id).copied().unwrap_or_default());
-    Channel { id: ChannelId(channel.id), topic: channel.topic.clone(), encoding, messages }
+    let report = &contents.statistics.by_channel;
+    let messages = (!report.is_empty()).then(|| report.get(&channel.id).copied().unwrap_or_default());
+    ReaderChannel { id: ChannelId(channel.id), topic: channel.topic.clone(), encoding, messages }
 }

@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 use crate::session::format::{HEAD, Statistics};
 
 /// The unread part of a record.
-pub(super) struct Fields<'a>(pub(super) &'a [u8]);
+pub(super) struct ParseFields<'a>(pub(super) &'a [u8]);
 
-impl<'a> Fields<'a> {
+impl<'a> ParseFields<'a> {
     pub(super) fn take(&mut self, count: usize) -> Option<&'a [u8]> {
         let (taken, left) = self.0.split_at_checked(count)?;
         self.0 = left;
@@ -67,21 +67,21 @@ pub(super) fn first_record(bytes: &[u8]) -> Option<(u8, &[u8], &[u8])> {
 }
 
 pub(super) fn head(bytes: &[u8]) -> Option<(u8, u64)> {
-    let mut fields = Fields(bytes);
+    let mut fields = ParseFields(bytes);
     Some((fields.take(1)?[0], fields.u64()?))
 }
 
-pub(super) struct Schema {
+pub(super) struct ParseSchema {
     pub(super) id: u16,
     pub(super) name: String,
     pub(super) encoding: String,
     pub(super) data: Vec<u8>,
 }
 
-pub(super) fn schema(content: &[u8]) -> Option<Schema> {
-    let mut fields = Fields(content);
+pub(super) fn schema(content: &[u8]) -> Option<ParseSchema> {
+    let mut fields = ParseFields(content);
     let id = fields.u16().filter(|&id| id != 0)?;
-    Some(Schema { id, name: fields.text()?, encoding: fields.text()?, data: fields.bytes()?.to_vec() })
+    Some(ParseSchema { id, name: fields.text()?, encoding: fields.text()?, data: fields.bytes()?.to_vec() })
 }
 
 pub(super) struct RawChannel {
@@ -92,7 +92,7 @@ pub(super) struct RawChannel {
 }
 
 pub(super) fn channel(content: &[u8]) -> Option<RawChannel> {
-    let mut fields = Fields(content);
+    let mut fields = ParseFields(content);
     let id = fields.u16()?;
     let schema = fields.u16()?;
     let topic = fields.text()?;
@@ -114,7 +114,7 @@ pub(super) struct MessageHead {
 pub(super) const MESSAGE_HEAD: usize = 2 + 4 + 8 + 8;
 
 pub(super) fn message(content: &[u8]) -> Option<MessageHead> {
-    let mut fields = Fields(content);
+    let mut fields = ParseFields(content);
     let channel = fields.u16()?;
     let sequence = fields.u32()?;
     Some(MessageHead { channel, sequence, log_time_ns: fields.u64()?, publish_time_ns: fields.u64()? })
@@ -129,7 +129,7 @@ pub(super) struct ChunkHead {
 }
 
 pub(super) fn chunk(content: &[u8]) -> Option<(ChunkHead, &[u8])> {
-    let mut fields = Fields(content);
+    let mut fields = ParseFields(content);
     let head = ChunkHead {
         times_ns: (fields.u64()?, fields.u64()?),
         uncompressed: fields.u64()?,
@@ -147,7 +147,7 @@ pub(super) struct ChunkIndex {
 }
 
 pub(super) fn chunk_index(content: &[u8]) -> Option<ChunkIndex> {
-    let mut fields = Fields(content);
+    let mut fields = ParseFields(content);
     let times_ns = (fields.u64()?, fields.u64()?);
     let at = fields.u64()?;
     let length = fields.u64()?;
@@ -173,7 +173,7 @@ pub struct Attachment {
 }
 
 pub(super) fn attachment_index(content: &[u8]) -> Option<Attachment> {
-    let mut fields = Fields(content);
+    let mut fields = ParseFields(content);
     let place = (fields.u64()?, fields.u64()?);
     let log_time_ns = fields.u64()?;
     fields.u64()?;
@@ -183,7 +183,7 @@ pub(super) fn attachment_index(content: &[u8]) -> Option<Attachment> {
 
 /// Parses the fields before an attachment's data; `place` is the position of the record, `size` the size of the data.
 pub(super) fn attachment_head(content: &[u8], place: (u64, u64)) -> Option<Attachment> {
-    let mut fields = Fields(content);
+    let mut fields = ParseFields(content);
     let log_time_ns = fields.u64()?;
     fields.u64()?;
     Some(Attachment { place, log_time_ns, name: fields.text()?, media_type: fields.text()?, size: fields.u64()? })
@@ -192,9 +192,9 @@ pub(super) fn attachment_head(content: &[u8], place: (u64, u64)) -> Option<Attac
 /// Returns its data, and whether the checksum is correct.
 pub(super) fn attachment_data(content: &[u8]) -> Option<(&[u8], bool)> {
     let (checked, mut crc) =
-        content.split_at_checked(content.len().checked_sub(4)?).map(|(all, crc)| (all, Fields(crc)))?;
+        content.split_at_checked(content.len().checked_sub(4)?).map(|(all, crc)| (all, ParseFields(crc)))?;
     let crc = crc.u32()?;
-    let mut fields = Fields(checked);
+    let mut fields = ParseFields(checked);
     fields.take(16)?;
     fields.bytes()?;
     fields.bytes()?;
@@ -204,17 +204,17 @@ pub(super) fn attachment_data(content: &[u8]) -> Option<(&[u8], bool)> {
 
 /// Returns the position and length of a metadata record.
 pub(super) fn metadata_index(content: &[u8]) -> Option<(u64, u64)> {
-    let mut fields = Fields(content);
+    let mut fields = ParseFields(content);
     Some((fields.u64()?, fields.u64()?))
 }
 
 pub(super) fn metadata(content: &[u8]) -> Option<(String, BTreeMap<String, String>)> {
-    let mut fields = Fields(content);
+    let mut fields = ParseFields(content);
     Some((fields.text()?, fields.texts()?))
 }
 
 pub(super) fn statistics(content: &[u8]) -> Option<Statistics> {
-    let mut fields = Fields(content);
+    let mut fields = ParseFields(content);
     Some(Statistics {
         messages: fields.u64()?,
         schemas: fields.u16()?,
@@ -233,7 +233,7 @@ pub(super) struct Footer {
 }
 
 pub(super) fn footer(content: &[u8]) -> Option<Footer> {
-    let mut fields = Fields(content);
+    let mut fields = ParseFields(content);
     let summary_start = fields.u64()?;
     fields.u64()?;
     Some(Footer { summary_start, crc: fields.u32()? })

@@ -8,12 +8,12 @@ use std::{
 use super::parse;
 use crate::session::{at, format::HEAD};
 
-pub(in crate::session) enum Source {
+pub(in crate::session) enum ReaderSource {
     File(File, u64),
     Bytes(Vec<u8>),
 }
 
-impl Source {
+impl ReaderSource {
     pub(in crate::session) fn size(&self) -> u64 {
         match self {
             Self::File(_, size) => *size,
@@ -37,7 +37,7 @@ impl Source {
 
 /// Walks over records in windows and reads only the requested bytes.
 pub(in crate::session) struct Walk<'a> {
-    source: &'a Source,
+    source: &'a ReaderSource,
     /// Position of the next record.
     pub(in crate::session) at: u64,
     end: u64,
@@ -46,7 +46,7 @@ pub(in crate::session) struct Walk<'a> {
 }
 
 #[derive(Clone, Copy)]
-pub(in crate::session) struct Place {
+pub(in crate::session) struct RecordPlace {
     pub(in crate::session) kind: u8,
     pub(in crate::session) at: u64,
     /// Includes the record's head.
@@ -56,12 +56,12 @@ pub(in crate::session) struct Place {
 const WINDOW: u64 = 64 << 10;
 
 impl<'a> Walk<'a> {
-    pub(in crate::session) fn new(source: &'a Source, at: u64, end: u64) -> Self {
+    pub(in crate::session) fn new(source: &'a ReaderSource, at: u64, end: u64) -> Self {
         Self { source, at, end: end.min(source.size()), window: Vec::new(), window_at: 0 }
     }
 
     /// Returns the next record, complete or not; `None` at the end, and if the rest is too short for a record.
-    pub(in crate::session) fn step(&mut self) -> io::Result<Option<Place>> {
+    pub(in crate::session) fn step(&mut self) -> io::Result<Option<RecordPlace>> {
         if self.end.saturating_sub(self.at) < HEAD as u64 {
             return Ok(None);
         }
@@ -71,12 +71,12 @@ impl<'a> Walk<'a> {
             return Ok(None);
         };
         self.at += length;
-        Ok(Some(Place { kind, at, length }))
+        Ok(Some(RecordPlace { kind, at, length }))
     }
 
-    /// Returns the content of a record, or its first `most` bytes.
-    pub(in crate::session) fn content(&mut self, place: Place, most: u64) -> io::Result<&[u8]> {
-        self.bytes(place.at + HEAD as u64, (place.length - HEAD as u64).min(most))
+    /// Returns the content of a record, or its first `max` bytes.
+    pub(in crate::session) fn content(&mut self, place: RecordPlace, max: u64) -> io::Result<&[u8]> {
+        self.bytes(place.at + HEAD as u64, (place.length - HEAD as u64).min(max))
     }
 
     fn bytes(&mut self, at: u64, length: u64) -> io::Result<&[u8]> {

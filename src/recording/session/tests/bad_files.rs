@@ -8,7 +8,7 @@ use super::*;
 fn small() -> Vec<u8> {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("session.mcap");
-    let mut writer = Writer::create(&path, "nima test").unwrap();
+    let mut writer = SessionWriter::create(&path, "nima test").unwrap();
     let channels = [writer.channel("a", json("A")).unwrap(), writer.channel("b", plain_text()).unwrap()];
     writer.metadata("session", &values()).unwrap();
     writer.attachment("rig.toml", "text/plain", 5, b"mode = \"best\"").unwrap();
@@ -39,7 +39,7 @@ fn of_others() -> Vec<u8> {
 
 #[test]
 fn what_is_no_session_gets_one_clear_line() {
-    let read = |bytes: &[u8]| Reader::of_bytes("x.mcap", bytes.to_vec()).err().map(|error| error.to_string());
+    let read = |bytes: &[u8]| SessionReader::of_bytes("x.mcap", bytes.to_vec()).err().map(|error| error.to_string());
     let whole = small();
     let mut newer = whole.clone();
     newer[5] = b'1';
@@ -57,9 +57,9 @@ fn what_is_no_session_gets_one_clear_line() {
     }
     let folder = tempfile::tempdir().unwrap();
     let none = folder.path().join("none");
-    let told = std::fs::File::open(&none).unwrap_err().to_string();
-    for (path, words) in [(none, told.as_str()), (folder.path().to_owned(), "a folder")] {
-        let line = Reader::open(&path).err().unwrap().to_string();
+    let report = std::fs::File::open(&none).unwrap_err().to_string();
+    for (path, words) in [(none, report.as_str()), (folder.path().to_owned(), "a folder")] {
+        let line = SessionReader::open(&path).err().unwrap().to_string();
         assert!(line.contains(words) && !line.contains('\n'), "{line}");
     }
 }
@@ -67,22 +67,22 @@ fn what_is_no_session_gets_one_clear_line() {
 #[test]
 fn a_file_that_is_cut_anywhere_is_read_up_to_there() {
     let whole = small();
-    let all = ours(&Reader::of_bytes("whole", whole.clone()).unwrap());
+    let all = ours(&SessionReader::of_bytes("whole", whole.clone()).unwrap());
     assert_eq!(all.len(), 30);
-    let mut most = 0;
+    let mut max = 0;
     for length in 60..whole.len() {
-        let reader = Reader::of_bytes("cut", whole[..length].to_vec()).unwrap();
+        let reader = SessionReader::of_bytes("cut", whole[..length].to_vec()).unwrap();
         let read = ours(&reader);
         assert!(reader.notes()[0].starts_with("it is cut short: scanned all records"), "{:?}", reader.notes());
-        assert!(read[..] == all[..read.len()] && read.len() >= most, "cut at {length}");
-        most = read.len();
+        assert!(read[..] == all[..read.len()] && read.len() >= max, "cut at {length}");
+        max = read.len();
     }
-    assert_eq!(most, 30);
+    assert_eq!(max, 30);
 }
 
 #[test]
 fn a_file_of_others_without_chunks_and_summary_is_read() {
-    let reader = Reader::of_bytes("others", of_others()).unwrap();
+    let reader = SessionReader::of_bytes("others", of_others()).unwrap();
     assert_eq!(reader.notes(), ["it has no summary: scanned all records instead"]);
     let read = ours(&reader);
     assert_eq!(read.len(), 10);
@@ -92,7 +92,7 @@ fn a_file_of_others_without_chunks_and_summary_is_read() {
 #[test]
 fn every_flipped_bit_of_a_chunk_is_found_and_the_rest_is_read() {
     let whole = small();
-    let reader = Reader::of_bytes("whole", whole.clone()).unwrap();
+    let reader = SessionReader::of_bytes("whole", whole.clone()).unwrap();
     let all = ours(&reader);
     let places: Vec<(u64, u64)> = reader.chunk_places().collect();
     let mut named = 0;
@@ -101,7 +101,7 @@ fn every_flipped_bit_of_a_chunk_is_found_and_the_rest_is_read() {
         for byte in at..at + length {
             let mut bytes = whole.clone();
             bytes[byte as usize] ^= 1 << (byte % 8);
-            let reader = Reader::of_bytes("flipped", bytes).unwrap();
+            let reader = SessionReader::of_bytes("flipped", bytes).unwrap();
             let read: Vec<_> = reader.messages(&[], 0..u64::MAX).collect();
             let errors: Vec<_> = read.iter().filter_map(|one| one.as_ref().err()).map(ToString::to_string).collect();
             seen += 1;
@@ -126,7 +126,7 @@ fn flipped_bits_in_what_is_beside_the_messages_are_found() {
         let mut bytes = whole.clone();
         let found = bytes.windows(needle.len()).enumerate().filter(|(_, window)| *window == needle).nth(nth).unwrap().0;
         bytes[found] ^= 2;
-        Reader::of_bytes("flipped", bytes).unwrap()
+        SessionReader::of_bytes("flipped", bytes).unwrap()
     };
     let reader = flipped(b"mode =", 0);
     let error = reader.attachment(&reader.attachments()[0]).unwrap_err().to_string();
@@ -139,13 +139,13 @@ fn flipped_bits_in_what_is_beside_the_messages_are_found() {
 #[test]
 fn what_claims_to_be_huge_takes_no_memory() {
     let whole = small();
-    let reader = Reader::of_bytes("whole", whole.clone()).unwrap();
+    let reader = SessionReader::of_bytes("whole", whole.clone()).unwrap();
     let (at, _) = reader.chunk_places().next().unwrap();
     for claimed in [u64::MAX, 1 << 40, 100_000] {
         let mut bytes = whole.clone();
         // The uncompressed length follows the two times.
         bytes[at as usize + 9 + 16..][..8].copy_from_slice(&claimed.to_le_bytes());
-        let reader = Reader::of_bytes("huge", bytes).unwrap();
+        let reader = SessionReader::of_bytes("huge", bytes).unwrap();
         let error = reader.messages(&[], 0..u64::MAX).find_map(Result::err).unwrap().to_string();
         assert!(error.contains("longer than it can be") || error.contains("the length that it claims"), "{error}");
     }
@@ -172,7 +172,7 @@ fn a_chunk_that_is_named_twice_is_read_once() {
     bytes[indexes[2].clone()].copy_from_slice(&first);
     let checksum = bytes.len() - 12;
     bytes[checksum..checksum + 4].fill(0);
-    let reader = Reader::of_bytes("twice", bytes).unwrap();
+    let reader = SessionReader::of_bytes("twice", bytes).unwrap();
     assert!(reader.notes()[0].starts_with("its summary is damaged"), "{:?}", reader.notes());
     assert_eq!(ours(&reader).len(), 30);
 }
@@ -180,7 +180,7 @@ fn a_chunk_that_is_named_twice_is_read_once() {
 /// Calls everything that a reader offers.
 fn ask(bytes: Vec<u8>) -> usize {
     let size = bytes.len() as u64;
-    let Ok(reader) = Reader::of_bytes("mutated", bytes) else { return 0 };
+    let Ok(reader) = SessionReader::of_bytes("mutated", bytes) else { return 0 };
     for attachment in reader.attachments() {
         if let Ok(data) = reader.attachment(attachment) {
             assert!(data.len() as u64 <= size);

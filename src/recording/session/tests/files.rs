@@ -8,7 +8,7 @@ use super::*;
 fn everything_written_is_read_by_us_and_by_others_before_and_after_the_end() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("session.mcap");
-    let mut writer = Writer::create(&path, "nima test").unwrap();
+    let mut writer = SessionWriter::create(&path, "nima test").unwrap();
     let forces = writer.channel("forces", json("Force")).unwrap();
     let poses = writer.channel("poses", json("Pose")).unwrap();
     assert_eq!(writer.channel("forces", json("Force")).unwrap(), forces, "the same again");
@@ -31,7 +31,7 @@ fn everything_written_is_read_by_us_and_by_others_before_and_after_the_end() {
     writer.flush().unwrap();
 
     let check = |sound_summary: bool| {
-        let reader = Reader::open(&path).unwrap();
+        let reader = SessionReader::open(&path).unwrap();
         assert_eq!(reader.notes(), [""; 0]);
         assert_eq!((reader.library(), reader.times_ns()), ("nima test", Some((0, 5_000_000_000))));
         assert_eq!(reader.channels()[1].encoding, json("Pose"));
@@ -57,7 +57,7 @@ fn everything_written_is_read_by_us_and_by_others_before_and_after_the_end() {
 fn a_range_of_one_topic_is_read_in_order_also_where_chunks_overlap() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("session.mcap");
-    let mut writer = Writer::create(&path, "nima test").unwrap();
+    let mut writer = SessionWriter::create(&path, "nima test").unwrap();
     let channels = ["a", "b"].map(|topic| writer.channel(topic, plain_text()).unwrap());
     let mut random = fastrand::Rng::with_seed(3);
     let mut times: Vec<u64> = (0..2_000).map(|_| random.u64(0..3_000_000_000)).collect();
@@ -67,7 +67,7 @@ fn a_range_of_one_topic_is_read_in_order_also_where_chunks_overlap() {
     assert!(writer.finish().unwrap().chunks > 100, "times that jump close chunks");
     times = times.into_iter().step_by(2).filter(|time| (1_000_000_000..1_500_000_000).contains(time)).collect();
     times.sort_unstable();
-    let reader = Reader::open(&path).unwrap();
+    let reader = SessionReader::open(&path).unwrap();
     let read: Vec<u64> =
         reader.messages(&["a"], 1_000_000_000..1_500_000_000).map(|message| message.unwrap().log_time_ns()).collect();
     assert_eq!(read, times);
@@ -78,7 +78,7 @@ fn a_range_of_one_topic_is_read_in_order_also_where_chunks_overlap() {
 fn a_long_session_with_many_growths_keeps_what_makes_it_valid_small() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("session.mcap");
-    let mut writer = Writer::create(&path, "nima test").unwrap();
+    let mut writer = SessionWriter::create(&path, "nima test").unwrap();
     let channels: Vec<_> =
         (0..20).map(|number| writer.channel(&format!("topic {number}"), json("Any")).unwrap()).collect();
     let mut random = fastrand::Rng::with_seed(4);
@@ -93,19 +93,19 @@ fn a_long_session_with_many_growths_keeps_what_makes_it_valid_small() {
     let (written, data) = writer.bytes();
     println!("{written} bytes written for {data} bytes of data");
     assert!(data > 150 << 20 && (written as f64) < 1.08 * data as f64, "{written} of {data}");
-    let reader = Reader::open(&path).unwrap();
+    let reader = SessionReader::open(&path).unwrap();
     assert_eq!(reader.statistics().chunks, 2_399, "all but the open one");
     let last = 2_398 * 500_000_000;
     assert_eq!(reader.messages(&["topic 7"], last..u64::MAX).count(), 1);
     assert_eq!(writer.finish().unwrap().chunks, 2_400);
-    assert_eq!(Reader::open(&path).unwrap().notes(), [""; 0]);
+    assert_eq!(SessionReader::open(&path).unwrap().notes(), [""; 0]);
 }
 
 #[test]
 fn an_index_that_another_program_has_changed_is_not_lost_in_silence() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("session.mcap");
-    let mut writer = Writer::create(&path, "nima test").unwrap();
+    let mut writer = SessionWriter::create(&path, "nima test").unwrap();
     let channel = writer.channel("a", plain_text()).unwrap();
     for chunk in 0..5 {
         writer.message(channel, chunk * 500_000_000, b"a").unwrap();
@@ -133,7 +133,7 @@ fn who_writes_is_seen_and_who_reads_is_not() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("session.mcap");
     assert!(is_being_written(&path).is_err(), "no such file");
-    let writer = Writer::create(&path, "").unwrap();
+    let writer = SessionWriter::create(&path, "").unwrap();
     let reader = fs::File::open(&path).unwrap();
     assert!(is_being_written(&path).unwrap() && is_being_written(&path).unwrap());
     writer.finish().unwrap();
@@ -151,8 +151,8 @@ fn who_writes_is_seen_and_who_reads_is_not() {
 fn what_cannot_be_created_or_goes_away_is_told_in_one_line() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("session.mcap");
-    let refused = |path: &std::path::Path| Writer::create(path, "").err().unwrap().to_string();
-    let mut writer = Writer::create(&path, "").unwrap();
+    let refused = |path: &std::path::Path| SessionWriter::create(path, "").err().unwrap().to_string();
+    let mut writer = SessionWriter::create(&path, "").unwrap();
     assert!(refused(&path).contains("never overwritten"));
     assert!(refused(&folder.path().join("none/a.mcap")).contains("make its folder first"));
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1, "nothing else is left behind");

@@ -20,7 +20,7 @@ const MESSAGE: usize = 50_000;
 #[ignore = "run by the tests below in its own process"]
 fn of_a_process_with_a_small_disk() {
     let Ok(path) = std::env::var(FILE) else { return };
-    let mut writer = match Writer::create(path.as_ref(), "") {
+    let mut writer = match SessionWriter::create(path.as_ref(), "") {
         Ok(writer) => writer,
         Err(error) => return println!("{error}"),
     };
@@ -59,10 +59,10 @@ fn text(output: &Output) -> String {
 }
 
 /// All accepted messages are in the file, except the last half second.
-fn check(told: &str, path: &Path) {
-    assert!(told.contains("the part already written stays readable"), "{told}");
-    let taken: usize = told.split("taken ").nth(1).unwrap().split(':').next().unwrap().parse().unwrap();
-    let read = ours(&Reader::open(path).unwrap());
+fn check(report: &str, path: &Path) {
+    assert!(report.contains("the part already written stays readable"), "{report}");
+    let taken: usize = report.split("taken ").nth(1).unwrap().split(':').next().unwrap().parse().unwrap();
+    let read = ours(&SessionReader::open(path).unwrap());
     println!("{taken} taken, {} read", read.len());
     assert!(taken > 100 && read.len() + 26 > taken, "half a second is missing at most: {} of {taken}", read.len());
     let bytes = fs::read(path).unwrap();
@@ -102,8 +102,8 @@ fn a_file_on_a_full_disk_stays_readable() {
             unjudged::left_out("a small disk cannot be mounted");
             return;
         }
-        let told = text(&output);
-        assert!(told.contains("No space left on device") && told.contains("record to another disk"), "{told}");
-        check(&told, &kept);
+        let report = text(&output);
+        assert!(report.contains("No space left on device") && report.contains("record to another disk"), "{report}");
+        check(&report, &kept);
     }
 }

@@ -25,10 +25,10 @@ const LOST_NS: u64 = 600_000_000;
 fn the_writer_of_another_process() {
     let Ok(folder) = std::env::var(FOLDER) else { return };
     let folder = Path::new(&folder);
-    let told = fs::File::create(folder.join("told")).unwrap();
+    let report = fs::File::create(folder.join("told")).unwrap();
     let mut random = fastrand::Rng::with_seed(7);
     let noise: Vec<u8> = std::iter::repeat_with(|| random.u8(..)).take(1 << 20).collect();
-    let mut writer = Writer::create(&folder.join("session.mcap"), "nima test").unwrap();
+    let mut writer = SessionWriter::create(&folder.join("session.mcap"), "nima test").unwrap();
     let channels: Vec<_> =
         (0..CHANNELS).map(|number| writer.channel(&number.to_string(), json("Any")).unwrap()).collect();
     for tick in 0_u64.. {
@@ -36,7 +36,7 @@ fn the_writer_of_another_process() {
             let at = (tick as usize * 1_789 + number * 211) % (noise.len() - 200);
             writer.message(channel, tick * TICK_NS, &noise[at..at + 200]).unwrap();
         }
-        told.write_all_at(&(tick + 1).to_le_bytes(), 0).unwrap();
+        report.write_all_at(&(tick + 1).to_le_bytes(), 0).unwrap();
         match tick % 3_000 {
             700 => writer.attachment(&format!("at {tick}"), "text/plain", tick * TICK_NS, &noise[..50_000]).unwrap(),
             1_400 => writer.metadata(&format!("at {tick}"), &values()).unwrap(),
@@ -85,10 +85,10 @@ fn kill_one(random: &mut fastrand::Rng) -> Left {
     running.0.kill().unwrap();
     running.0.wait().unwrap();
 
-    let told = fs::read(folder.path().join("told")).unwrap();
-    let told = told.try_into().map_or(0, u64::from_le_bytes);
+    let report = fs::read(folder.path().join("told")).unwrap();
+    let report = report.try_into().map_or(0, u64::from_le_bytes);
     let bytes = fs::read(&path).unwrap();
-    let reader = Reader::open(&path).unwrap();
+    let reader = SessionReader::open(&path).unwrap();
     assert_eq!(reader.notes(), [""; 0]);
     let read = ours(&reader);
     assert!(peer::indexed(&bytes).unwrap() == read, "by the index");
@@ -107,7 +107,7 @@ fn kill_one(random: &mut fastrand::Rng) -> Left {
         assert_eq!((topic.parse(), *time_ns), (Ok(number % CHANNELS), number / CHANNELS * TICK_NS), "a gap");
     }
     let recorded_ns = read.len() as u64 / CHANNELS * TICK_NS;
-    let lost_ns = (told * TICK_NS).saturating_sub(recorded_ns);
+    let lost_ns = (report * TICK_NS).saturating_sub(recorded_ns);
     assert!(lost_ns <= LOST_NS, "{} ms lost", lost_ns / 1_000_000);
     Left { lost_ns, recorded_ns, early_end, bytes: bytes.len() }
 }
@@ -118,10 +118,10 @@ fn kill(count: usize, seed: u64) {
     left.sort_by_key(|one| one.lost_ns);
     let early = left.iter().filter(|one| one.early_end).count();
     let middle = left[count / 2].lost_ns / 1_000_000;
-    let most = left[count - 1].lost_ns / 1_000_000;
+    let max = left[count - 1].lost_ns / 1_000_000;
     let grown = left.iter().filter(|one| one.bytes > 17 << 20).count();
     let longest_s = left.iter().map(|one| one.recorded_ns).max().unwrap_or_default() / 1_000_000_000;
-    println!("{count} processes killed, all files open; lost: median {middle} ms, most {most} ms");
+    println!("{count} processes killed, all files open; lost: median {middle} ms, most {max} ms");
     println!(
         "up to {longest_s} s recorded, {grown} files had grown; early end for who does not use the index: {early}"
     );

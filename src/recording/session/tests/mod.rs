@@ -3,9 +3,9 @@
 mod bad_files;
 mod files;
 mod full_disk;
+mod images;
 mod killed;
 mod peer;
-mod pictures;
 mod torn;
 
 use std::collections::BTreeMap;
@@ -31,8 +31,8 @@ fn values() -> BTreeMap<String, String> {
 }
 
 /// Returns everything that our reader returns, checked against its own statistics.
-fn ours(reader: &Reader) -> peer::Told {
-    let told: Result<peer::Told, ReadError> = reader
+fn ours(reader: &SessionReader) -> peer::PeerMessage {
+    let report: Result<peer::PeerMessage, ReadError> = reader
         .messages(&[], 0..u64::MAX)
         .map(|message| {
             message.map(|message| {
@@ -41,11 +41,11 @@ fn ours(reader: &Reader) -> peer::Told {
             })
         })
         .collect();
-    let told = told.unwrap();
+    let report = report.unwrap();
     for attachment in reader.attachments() {
         assert_eq!(reader.attachment(attachment).unwrap().len() as u64, attachment.size);
     }
     assert_eq!(reader.metadata().unwrap().len(), reader.statistics().metadata as usize);
-    assert_eq!(told.len() as u64, reader.statistics().messages);
-    told
+    assert_eq!(report.len() as u64, reader.statistics().messages);
+    report
 }

@@ -10,10 +10,10 @@ use mcap::{
 };
 
 /// Topic, time, data.
-pub(super) type Told = Vec<(String, u64, Vec<u8>)>;
+pub(super) type PeerMessage = Vec<(String, u64, Vec<u8>)>;
 
 /// Reads by the index.
-pub(super) fn indexed(bytes: &[u8]) -> McapResult<Told> {
+pub(super) fn indexed(bytes: &[u8]) -> McapResult<PeerMessage> {
     let summary = Summary::read(bytes)?.expect("there is a summary");
     for index in &summary.attachment_indexes {
         mcap::read::attachment(bytes, index)?;
@@ -23,7 +23,7 @@ pub(super) fn indexed(bytes: &[u8]) -> McapResult<Told> {
     }
     let mut reader = IndexedReader::new(&summary)?;
     reader.add_decompressor(Lz4::default())?;
-    let mut told = Vec::new();
+    let mut report = Vec::new();
     while let Some(event) = reader.next_event() {
         match event? {
             IndexedReadEvent::ReadChunkRequest { offset, length } => {
@@ -32,17 +32,17 @@ pub(super) fn indexed(bytes: &[u8]) -> McapResult<Told> {
             }
             IndexedReadEvent::Message { header, data } => {
                 let topic = summary.channels[&header.channel_id].topic.clone();
-                told.push((topic, header.log_time, data.to_vec()));
+                report.push((topic, header.log_time, data.to_vec()));
             }
         }
     }
     let count = summary.stats.expect("there are statistics").message_count;
-    assert_eq!(count, told.len() as u64, "the statistics agree");
-    Ok(told)
+    assert_eq!(count, report.len() as u64, "the statistics agree");
+    Ok(report)
 }
 
 /// Reads sequentially and verifies every checksum.
-pub(super) fn linear(bytes: &[u8]) -> McapResult<Told> {
+pub(super) fn linear(bytes: &[u8]) -> McapResult<PeerMessage> {
     let options = LinearReaderOptions::default()
         .with_validate_chunk_crcs(true)
         .with_validate_data_section_crc(true)

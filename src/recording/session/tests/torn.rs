@@ -32,7 +32,7 @@ struct Moments {
 fn script() -> Vec<(u64, Vec<u8>)> {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("session.mcap");
-    let mut writer = Writer::create_growing_by(&path, "nima test", 256 << 10).unwrap();
+    let mut writer = SessionWriter::create_growing_by(&path, "nima test", 256 << 10).unwrap();
     let mut random = fastrand::Rng::with_seed(6);
     let channel = writer.channel("a", json("Any")).unwrap();
     for chunk in 0..CHUNKS {
@@ -53,7 +53,7 @@ fn script() -> Vec<(u64, Vec<u8>)> {
 
 /// Checks that the file is valid, and contains at least these messages and at most one chunk more.
 fn check(disk: &Disk, before: usize, moments: &RefCell<Moments>) -> usize {
-    let reader = Reader::of_bytes("torn", disk.0.clone()).unwrap();
+    let reader = SessionReader::of_bytes("torn", disk.0.clone()).unwrap();
     assert_eq!(reader.notes(), [""; 0]);
     let read = ours(&reader);
     assert!((before..=before + 1).contains(&read.len()), "{} after {before}", read.len());
@@ -147,8 +147,8 @@ fn after_a_power_failure_what_was_waited_for_is_read() {
         let end = synced + random.usize(1..20);
         let mut disk = Disk(Vec::new());
         log[..synced].iter().for_each(|(at, bytes)| disk.write(*at, bytes));
-        let before = ours(&Reader::of_bytes("before", disk.0).unwrap()).len();
-        let reader = Reader::of_bytes("after", without_power(&log, synced, end, &mut random)).unwrap();
+        let before = ours(&SessionReader::of_bytes("before", disk.0).unwrap()).len();
+        let reader = SessionReader::of_bytes("after", without_power(&log, synced, end, &mut random)).unwrap();
         let read = reader.messages(&[], 0..u64::MAX).flatten().count();
         if reader.notes().is_empty() {
             sound += 1;

@@ -5,10 +5,10 @@ use nima_core::Side;
 
 use super::{Objects, RingPair};
 use crate::physics::{
-    contact::{Law, Memory, Pair, Push, Touch},
+    contact::{ContactMemory, ContactPair, ContactPush, ContactTouch, Law},
     geometry::{PLACES, Segment, unit_or},
     ring::Ring,
-    tool::{PARTS, SHAFT, Tool},
+    tool::{PARTS, PhysicsTool, SHAFT},
 };
 
 /// An impact faster than this wakes a ring, m/s.
@@ -41,7 +41,7 @@ impl Objects {
         for side in Side::LEFT_TO_RIGHT.map(Side::index) {
             let pairs = &mut self.memories.ring_tools[i][side];
             let Some(tool) = &mut self.tools[side] else {
-                pairs.iter_mut().for_each(Pair::forget);
+                pairs.iter_mut().for_each(ContactPair::forget);
                 continue;
             };
             for part in 0..PARTS {
@@ -64,16 +64,20 @@ impl Objects {
             return;
         }
         let half_m = board.size_m.map(|size_m| 0.5 * size_m);
-        for (memory, at_m) in memories.iter_mut().zip(ring.places_m) {
-            let depth_m = board.z_m + ring.tube_radius_m - at_m.z;
-            let above = at_m.x.abs() <= half_m[0] && at_m.y.abs() <= half_m[1];
+        for (memory, position_m) in memories.iter_mut().zip(ring.places_m) {
+            let depth_m = board.z_m + ring.tube_radius_m - position_m.z;
+            let above = position_m.x.abs() <= half_m[0] && position_m.y.abs() <= half_m[1];
             if depth_m <= 0.0 || depth_m > ring.tube_radius_m + BESIDE_M || !above {
-                *memory = Memory::default();
+                *memory = ContactMemory::default();
                 continue;
             }
-            let touched_m = at_m - Vector3::z() * (ring.tube_radius_m - 0.5 * depth_m);
-            let touch =
-                Touch { depth_m, normal: Vector3::z(), velocity_m_s: ring.velocity_at(&touched_m), spin_rad_s: 0.0 };
+            let touched_m = position_m - Vector3::z() * (ring.tube_radius_m - 0.5 * depth_m);
+            let touch = ContactTouch {
+                depth_m,
+                normal: Vector3::z(),
+                velocity_m_s: ring.velocity_at(&touched_m),
+                spin_rad_s: 0.0,
+            };
             let push = self.laws.ring_board.push(memory, &touch, step_s);
             ring.push(&touched_m, &push);
             self.notes[i].supported = true;
@@ -93,7 +97,7 @@ impl Objects {
                 continue;
             }
             let touched = capsule_on_ring(ring, segment, radius_m, pair, |ring, memory, contact| {
-                let touch = Touch { velocity_m_s: ring.velocity_at(&contact.at_m), ..contact.touch };
+                let touch = ContactTouch { velocity_m_s: ring.velocity_at(&contact.position_m), ..contact.touch };
                 self.laws.ring_peg.push(memory, &touch, step_s)
             });
             self.notes[i].supported |= touched;
@@ -138,9 +142,9 @@ fn wake_both(a: &mut Ring, b: &mut Ring) {
 }
 
 /// One contact of a capsule with a ring; the normal points to the ring.
-struct Contact {
-    at_m: Vector3<f64>,
-    touch: Touch,
+struct RingContact {
+    position_m: Vector3<f64>,
+    touch: ContactTouch,
 }
 
 /// Applies `law` wherever the capsule touches the ring; returns whether it does.
@@ -148,8 +152,8 @@ fn capsule_on_ring(
     ring: &mut Ring,
     segment: &Segment,
     radius_m: f64,
-    pair: &mut Pair,
-    mut law: impl FnMut(&Ring, &mut Memory, &Contact) -> Push,
+    pair: &mut ContactPair,
+    mut law: impl FnMut(&Ring, &mut ContactMemory, &RingContact) -> ContactPush,
 ) -> bool {
     let reach_m = ring.tube_radius_m + radius_m;
     let nearest = ring.circle.nearest(&ring.places_m, segment, reach_m);
@@ -165,10 +169,10 @@ fn capsule_on_ring(
         let (Some([ours_m, theirs_m]), Some(on_ring_m)) = (nearest, on_ring_m[place]) else { continue };
         let (normal, distance_m) = unit_or(&(ours_m - theirs_m), &ring.circle.axis);
         let depth_m = reach_m - distance_m;
-        let at_m = theirs_m + normal * (radius_m - 0.5 * depth_m);
-        let touch = Touch { depth_m, normal, velocity_m_s: Vector3::zeros(), spin_rad_s: 0.0 };
-        let push = law(ring, &mut memories[place], &Contact { at_m, touch });
-        ring.push(&at_m, &push);
+        let position_m = theirs_m + normal * (radius_m - 0.5 * depth_m);
+        let touch = ContactTouch { depth_m, normal, velocity_m_s: Vector3::zeros(), spin_rad_s: 0.0 };
+        let push = law(ring, &mut memories[place], &RingContact { position_m, touch });
+        ring.push(&position_m, &push);
         pair.keep(place, on_ring_m, memories[place]);
     }
     true
@@ -177,9 +181,9 @@ fn capsule_on_ring(
 /// Contact of one part of an instrument with a ring: its pressure, N towards the ring, if it touches.
 fn tool_on_ring(
     ring: &mut Ring,
-    tool: &mut Tool,
+    tool: &mut PhysicsTool,
     part: usize,
-    pair: &mut Pair,
+    pair: &mut ContactPair,
     law: &Law,
     step_s: f64,
 ) -> Option<Vector3<f64>> {
@@ -187,15 +191,15 @@ fn tool_on_ring(
     let radius_m = tool.radii_m[part];
     let mut pressed_n = Vector3::zeros();
     let touched = capsule_on_ring(ring, &segment, radius_m, pair, |ring, memory, contact| {
-        let Contact { at_m, touch } = contact;
-        let touch = Touch {
-            velocity_m_s: ring.velocity_at(at_m) - tool.velocity_at(part, at_m),
+        let RingContact { position_m, touch } = contact;
+        let touch = ContactTouch {
+            velocity_m_s: ring.velocity_at(position_m) - tool.velocity_at(part, position_m),
             spin_rad_s: ring.turning_rad_s.dot(&touch.normal) - tool.spin_about(part, &touch.normal),
             ..*touch
         };
         let push = law.push(memory, &touch, step_s);
         pressed_n += touch.normal * push.normal_n;
-        tool.push(part, at_m, &push.reverse());
+        tool.push(part, position_m, &push.reverse());
         push
     });
     if touched && ring.asleep {
@@ -215,15 +219,15 @@ fn places_on_ring(a: &mut Ring, b: &mut Ring, pair: &mut RingPair, law: &Law, st
         let (normal, distance_m) = unit_or(&(ours_m - theirs_m), &b.circle.axis);
         let depth_m = reach_m - distance_m;
         if depth_m <= 0.0 {
-            *memory = Memory::default();
+            *memory = ContactMemory::default();
             continue;
         }
         touching = true;
-        let at_m = theirs_m + normal * (b.tube_radius_m - 0.5 * depth_m);
-        let velocity_m_s = a.velocity_at(&at_m) - b.velocity_at(&at_m);
-        let push = law.push(memory, &Touch { depth_m, normal, velocity_m_s, spin_rad_s: 0.0 }, step_s);
-        a.push(&at_m, &push);
-        b.push(&at_m, &push.reverse());
+        let position_m = theirs_m + normal * (b.tube_radius_m - 0.5 * depth_m);
+        let velocity_m_s = a.velocity_at(&position_m) - b.velocity_at(&position_m);
+        let push = law.push(memory, &ContactTouch { depth_m, normal, velocity_m_s, spin_rad_s: 0.0 }, step_s);
+        a.push(&position_m, &push);
+        b.push(&position_m, &push.reverse());
     }
     touching
 }

@@ -3,8 +3,8 @@
 use nalgebra::{UnitQuaternion, Vector3};
 use nima_core::SIDES;
 
-use super::{Note, Objects};
-use crate::physics::{ring::Ring, setting::View};
+use super::{Objects, RingNote};
+use crate::physics::{ring::Ring, setting::ViewBox};
 
 /// Minimum pressure of both fingers on a ring that counts as held, N: with a friction of 0.4 just enough for 2 g.
 const HOLDS_N: f64 = 0.03;
@@ -17,7 +17,7 @@ const UPRIGHT: f64 = 0.2;
 
 /// State of a ring.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Doing {
+pub enum RingActivity {
     /// On a peg, counted from 0, and not held by jaws.
     OnPeg(usize),
     /// Both fingers of an instrument, or of both, press it from opposite sides.
@@ -40,7 +40,7 @@ pub struct RingState {
     pub centre_m: Vector3<f64>,
     /// Its orientation; z is the axis through the hole.
     pub world_from_ring: UnitQuaternion<f64>,
-    pub doing: Doing,
+    pub doing: RingActivity,
     /// The peg through it, whether it is held or not.
     pub around: Option<usize>,
     /// Whether board, a peg or another ring touches it.
@@ -59,7 +59,7 @@ impl RingState {
         Self {
             centre_m: ring.centre_m,
             world_from_ring: ring.world_from_ring,
-            doing: Doing::Falling,
+            doing: RingActivity::Falling,
             around: None,
             supported: false,
             touched_by: [false; SIDES],
@@ -68,13 +68,13 @@ impl RingState {
     }
 }
 
-impl View {
-    fn shows(&self, at_m: &Vector3<f64>) -> bool {
-        (0..3).all(|axis| (self.from_m[axis]..=self.to_m[axis]).contains(&at_m[axis]))
+impl ViewBox {
+    fn shows(&self, position_m: &Vector3<f64>) -> bool {
+        (0..3).all(|axis| (self.from_m[axis]..=self.to_m[axis]).contains(&position_m[axis]))
     }
 }
 
-impl Note {
+impl RingNote {
     fn held_by(&self) -> [bool; SIDES] {
         self.fingers_n.map(|[one, other]| {
             one.norm() > HOLDS_N && other.norm() > HOLDS_N && one.dot(&other) < -0.3 * one.norm() * other.norm()
@@ -84,7 +84,7 @@ impl Note {
 
 impl Objects {
     /// Determines, at the end of a step, which rings are lost or at rest, and the published state of each.
-    pub(super) fn tell(&mut self) {
+    pub(super) fn report(&mut self) {
         for i in 0..self.rings.len() {
             let around = self.peg_in(&self.rings[i]);
             let view = *self.view();
@@ -105,11 +105,11 @@ impl Objects {
             }
             let supported = note.supported || ring.asleep;
             let doing = match around {
-                _ if ring.lost => Doing::OutOfView,
-                _ if held => Doing::Held { by },
-                Some(peg) => Doing::OnPeg(peg),
-                None if supported => Doing::Lying,
-                None => Doing::Falling,
+                _ if ring.lost => RingActivity::OutOfView,
+                _ if held => RingActivity::Held { by },
+                Some(peg) => RingActivity::OnPeg(peg),
+                None if supported => RingActivity::Lying,
+                None => RingActivity::Falling,
             };
             self.states[i] = RingState {
                 centre_m: ring.centre_m,

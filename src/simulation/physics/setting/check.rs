@@ -1,9 +1,9 @@
 //! The ranges of all values.
 
-use super::{Setting, SettingError, Start};
+use super::{ObjectSettings, RingStart, SettingError};
 
 /// Maximum number of pegs: bounds the cost of a step.
-const PEGS_MOST: usize = 32;
+const PEGS_MAX: usize = 32;
 /// Maximum number of rings.
 pub const RINGS_MAX: usize = 12;
 
@@ -11,7 +11,7 @@ fn within(key: &'static str, value: f64, fits: bool, allowed: &'static str) -> R
     if fits && value.is_finite() { Ok(()) } else { Err(SettingError { key, value, allowed }) }
 }
 
-impl Setting {
+impl ObjectSettings {
     /// # Errors
     /// [`SettingError`] for the first value out of range.
     pub fn validate(&self) -> Result<(), SettingError> {
@@ -35,9 +35,9 @@ impl Setting {
         for size_m in board.size_m {
             within("board.size_m", size_m, (0.01..=1.0).contains(&size_m), "from 0.01 to 1 m")?;
         }
-        let count = pegs.at_m.len();
-        within("pegs.at_m (count)", count as f64, count <= PEGS_MOST, "at most 32")?;
-        for entry in pegs.at_m.iter().flatten() {
+        let count = pegs.position_m.len();
+        within("pegs.at_m (count)", count as f64, count <= PEGS_MAX, "at most 32")?;
+        for entry in pegs.position_m.iter().flatten() {
             within("pegs.at_m", *entry, entry.abs() <= 0.5, "within 0.5 m of the origin")?;
         }
         within("pegs.radius_m", pegs.radius_m, (5e-4..=0.02).contains(&pegs.radius_m), "from 0.0005 to 0.02 m")?;
@@ -56,14 +56,14 @@ impl Setting {
         within("rings (count)", count as f64, count <= RINGS_MAX, "at most 12")?;
         for start in &self.rings {
             match start {
-                Start::Peg(peg) => {
-                    within("rings.peg", *peg as f64, *peg < self.pegs.at_m.len(), "the number of a peg, from 0")?;
+                RingStart::Peg(peg) => {
+                    within("rings.peg", *peg as f64, *peg < self.pegs.position_m.len(), "the number of a peg, from 0")?;
                     let hole_m = ring.major_radius_m - ring.tube_radius_m;
                     let fits = hole_m > self.pegs.radius_m;
                     within("pegs.radius_m", self.pegs.radius_m, fits, "less than the hole of the rings on them")?;
                 }
-                Start::At(at_m) => {
-                    for entry in at_m {
+                RingStart::At(position_m) => {
+                    for entry in position_m {
                         within("rings.at_m", *entry, entry.abs() <= 0.5, "within 0.5 m of the origin")?;
                     }
                 }

@@ -3,10 +3,10 @@
 use std::time::Instant;
 
 use super::{LEFT, RIGHT, Scene, at, instrument};
-use crate::physics::{Setting, tests::OPEN_RAD};
+use crate::physics::{ObjectSettings, tests::OPEN_RAD};
 
 /// Times `ticks` steps; `before` is called before each step and not timed.
-fn told(name: &str, scene: &mut Scene, ticks: u32, mut before: impl FnMut(&mut Scene, u32)) {
+fn report(name: &str, scene: &mut Scene, ticks: u32, mut before: impl FnMut(&mut Scene, u32)) {
     let mut costs_us: Vec<f64> = (0..ticks)
         .map(|tick| {
             before(scene, tick);
@@ -16,7 +16,7 @@ fn told(name: &str, scene: &mut Scene, ticks: u32, mut before: impl FnMut(&mut S
         })
         .collect();
     costs_us.sort_by(f64::total_cmp);
-    let at = |share: f64| costs_us[((costs_us.len() - 1) as f64 * share) as usize];
+    let at = |fraction: f64| costs_us[((costs_us.len() - 1) as f64 * fraction) as usize];
     println!("{name}: p50 {:.1} us, p99 {:.1} us, p99.9 {:.1} us of {ticks}", at(0.5), at(0.99), at(0.999));
 }
 
@@ -40,23 +40,23 @@ fn throw(scene: &mut Scene) {
 #[test]
 #[ignore = "measures time"]
 fn figures_of_a_step() {
-    let mut scene = Scene::new(&Setting { rings: Vec::new(), ..Setting::default() });
-    told("two instruments, no rings", &mut scene, 10_000, |scene, tick| swing(scene, tick, 0.06));
-    let mut scene = Scene::new(&Setting::default());
+    let mut scene = Scene::new(&ObjectSettings { rings: Vec::new(), ..ObjectSettings::default() });
+    report("two instruments, no rings", &mut scene, 10_000, |scene, tick| swing(scene, tick, 0.06));
+    let mut scene = Scene::new(&ObjectSettings::default());
     scene.run(1.0);
-    told("six rings at rest on pegs", &mut scene, 10_000, |scene, tick| swing(scene, tick, 0.06));
-    let mut scene = Scene::new(&Setting::default());
+    report("six rings at rest on pegs", &mut scene, 10_000, |scene, tick| swing(scene, tick, 0.06));
+    let mut scene = Scene::new(&ObjectSettings::default());
     scene.grasp(LEFT, 0, -1.0);
     let tip_m = scene.hands[LEFT].unwrap().tip_m;
     scene.glide(LEFT, tip_m + at(0.0, 0.0, 0.05), 0.1);
     scene.hands[RIGHT] = Some(instrument(RIGHT, at(0.03, 0.0, 0.05), OPEN_RAD));
-    told("one held", &mut scene, 10_000, |scene, tick| {
+    report("one held", &mut scene, 10_000, |scene, tick| {
         scene.hands[LEFT].as_mut().unwrap().tip_m.y += 1e-5 * libm::sin(f64::from(tick) * 2e-3);
     });
-    let mut scene = Scene::new(&Setting::default());
-    told("two instruments sweep through all", &mut scene, 10_000, |scene, tick| swing(scene, tick, 0.004));
-    let mut scene = Scene::new(&Setting::default());
-    told("all tumbling, two instruments among them", &mut scene, 10_000, |scene, tick| {
+    let mut scene = Scene::new(&ObjectSettings::default());
+    report("two instruments sweep through all", &mut scene, 10_000, |scene, tick| swing(scene, tick, 0.004));
+    let mut scene = Scene::new(&ObjectSettings::default());
+    report("all tumbling, two instruments among them", &mut scene, 10_000, |scene, tick| {
         swing(scene, tick, 0.004);
         if tick % 400 == 0 {
             throw(scene);

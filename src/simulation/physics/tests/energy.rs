@@ -3,12 +3,12 @@
 use nalgebra::Vector3;
 
 use super::{Scene, at};
-use crate::physics::Setting;
+use crate::physics::ObjectSettings;
 
 /// Simulates six rings for this long, at rest or `thrown`. The energy may never exceed its earlier value, except for
 /// the energy stored in contacts.
 fn energy_never_grows(thrown: bool, seconds: u32) {
-    let mut scene = Scene::new(&Setting::default());
+    let mut scene = Scene::new(&ObjectSettings::default());
     if thrown {
         for ring in 0..6 {
             let i = ring as f64;
@@ -17,7 +17,7 @@ fn energy_never_grows(thrown: bool, seconds: u32) {
             scene.objects.ring_mut(ring).throw(at(0.016 * i - 0.04, 0.013, 0.04), velocity_m_s, turn);
         }
     }
-    let mut least_j = scene.objects.energy_j();
+    let mut min_j = scene.objects.energy_j();
     for _ in 0..seconds {
         for _ in 0..1000 {
             scene.objects.step(&[None, None]);
@@ -25,8 +25,8 @@ fn energy_never_grows(thrown: bool, seconds: u32) {
             (0..6).for_each(|ring| scene.objects.ring_mut(ring).wake());
         }
         let energy_j = scene.objects.energy_j();
-        assert!(energy_j < least_j + 2e-7, "from {least_j} J to {energy_j} J");
-        least_j = least_j.min(energy_j);
+        assert!(energy_j < min_j + 2e-7, "from {min_j} J to {energy_j} J");
+        min_j = min_j.min(energy_j);
     }
     if thrown {
         let slow = (0..6).all(|ring| scene.objects.ring_mut(ring).velocity_m_s.norm() < 1e-3);

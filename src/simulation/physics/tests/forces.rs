@@ -3,14 +3,14 @@
 use nalgebra::{UnitQuaternion, Vector3};
 
 use super::{LEFT, RIGHT, Scene, at, downwards, instrument, one_ring};
-use crate::physics::{Instrument, Loads, Objects, Setting, Shape, Start};
+use crate::physics::{Instrument, InstrumentLoads, ObjectSettings, Objects, RingShape, RingStart};
 
 const GRAVITY_M_S2: f64 = 9.806_65;
 
 /// A ring with a thin tube between jaws in the air, pressed with 1 N. The fingers are then nearly parallel.
 fn gripped() -> Scene {
-    let mut setting = one_ring(Start::At([-0.007, 0.0, 0.05]));
-    setting.ring = Shape { major_radius_m: 0.007, tube_radius_m: 5e-4, ..Shape::default() };
+    let mut setting = one_ring(RingStart::At([-0.007, 0.0, 0.05]));
+    setting.ring = RingShape { major_radius_m: 0.007, tube_radius_m: 5e-4, ..RingShape::default() };
     setting.jaws.finger_length_m = 0.02;
     setting.jaws.stiffness_n_m = 2000.0;
     setting.contact.ring_stiffness_n_m = 10_000.0;
@@ -49,22 +49,22 @@ fn a_grip_of_1_n_carries_a_ring_and_slips_at_twice_mu_n() {
 
 #[test]
 fn the_jaws_press_with_their_stiffness_times_the_width_up_to_their_most() {
-    for (opening_rad, most_n) in [(0.25, 5.0), (0.0, 5.0), (0.0, 1.5)] {
-        let mut setting = one_ring(Start::At([-0.00725, 0.0, 0.00175]));
-        setting.jaws.force_max_n = most_n;
+    for (opening_rad, max_n) in [(0.25, 5.0), (0.0, 5.0), (0.0, 1.5)] {
+        let mut setting = one_ring(RingStart::At([-0.00725, 0.0, 0.00175]));
+        setting.jaws.force_max_n = max_n;
         let mut scene = Scene::new(&setting);
         scene.hands[RIGHT] = Some(instrument(RIGHT, at(0.0, 0.0, 0.001), super::OPEN_RAD));
         scene.jaws(RIGHT, opening_rad);
         scene.run(0.3);
         let wide_m = 0.01 * (scene.objects.openings_rad()[RIGHT].unwrap() - opening_rad);
-        let law_n = (500.0 * wide_m).min(most_n);
+        let law_n = (500.0 * wide_m).min(max_n);
         assert!(law_n > 0.3 && (scene.loads[RIGHT].opening_n - law_n).abs() < 0.01 * law_n, "{:?}", scene.loads);
     }
 }
 
 #[test]
 fn a_ring_held_off_its_centre_turns_the_shaft_by_its_weight() {
-    let mut scene = Scene::new(&one_ring(Start::At([-0.00725, 0.0, 0.00175])));
+    let mut scene = Scene::new(&one_ring(RingStart::At([-0.00725, 0.0, 0.00175])));
     scene.hands[RIGHT] = Some(instrument(RIGHT, at(0.0, 0.0, 0.001), super::OPEN_RAD));
     scene.jaws(RIGHT, 0.0);
     scene.glide(RIGHT, at(0.0, 0.0, 0.05), 0.1);
@@ -88,7 +88,7 @@ fn a_ring_held_off_its_centre_turns_the_shaft_by_its_weight() {
 
 #[test]
 fn shafts_push_each_other_apart_with_opposite_forces() {
-    let setting = Setting { rings: Vec::new(), ..Setting::default() };
+    let setting = ObjectSettings { rings: Vec::new(), ..ObjectSettings::default() };
     let mut scene = Scene::new(&setting);
     let crossing = |side: usize, y_m: f64| {
         let x_m = if side == LEFT { -0.05 } else { 0.05 };
@@ -110,8 +110,8 @@ fn shafts_push_each_other_apart_with_opposite_forces() {
 
 #[test]
 fn a_peg_pushes_back_what_is_pressed_against_it_and_holds_by_friction() {
-    let mut scene = Scene::new(&Setting { rings: Vec::new(), ..Setting::default() });
-    let [x_m, y_m] = crate::physics::Pegs::default().at_m[6];
+    let mut scene = Scene::new(&ObjectSettings { rings: Vec::new(), ..ObjectSettings::default() });
+    let [x_m, y_m] = crate::physics::Pegs::default().position_m[6];
     // Above the peg's top for the shaft, which is thicker than the fingers.
     let touching_m = 0.00175 + 2.0 * 0.0008;
     scene.hands[RIGHT] = Some(instrument(RIGHT, at(x_m + touching_m + 0.002, y_m, 0.019), 0.0));
@@ -126,8 +126,8 @@ fn a_peg_pushes_back_what_is_pressed_against_it_and_holds_by_friction() {
 
 #[test]
 fn no_rings_cost_nothing_and_an_absent_instrument_feels_nothing() {
-    let mut objects = Objects::new(&Setting { rings: Vec::new(), ..Setting::default() }, 1e-3);
+    let mut objects = Objects::new(&ObjectSettings { rings: Vec::new(), ..ObjectSettings::default() }, 1e-3);
     assert!(objects.rings().is_empty());
-    assert_eq!(objects.step(&[None, None]), [Loads::default(); 2]);
+    assert_eq!(objects.step(&[None, None]), [InstrumentLoads::default(); 2]);
     assert_eq!(objects.openings_rad(), [None, None]);
 }

@@ -4,7 +4,7 @@ use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use proptest::prelude::*;
 
 use super::{LEFT, RIGHT, Scene, at, instrument};
-use crate::physics::{Doing, Instrument, Setting};
+use crate::physics::{Instrument, ObjectSettings, RingActivity};
 
 fn all_finite(scene: &Scene) -> bool {
     let loads = scene
@@ -31,7 +31,7 @@ fn what_is_not_a_number_counts_as_absent() {
         Instrument { opening_rad: f64::NEG_INFINITY, ..sane },
         Instrument { tip_m: at(1e300, 0.0, 0.0), ..sane },
     ];
-    let mut scene = Scene::new(&Setting::default());
+    let mut scene = Scene::new(&ObjectSettings::default());
     for hand in poisoned {
         scene.hands[LEFT] = Some(sane);
         scene.run(0.005);
@@ -50,7 +50,7 @@ fn motion() -> impl Strategy<Value = Vec<([f64; 3], [f64; 3], f64, u32)>> {
 }
 
 fn round(left: &[([f64; 3], [f64; 3], f64, u32)], right: &[([f64; 3], [f64; 3], f64, u32)]) {
-    let mut scene = Scene::new(&Setting::default());
+    let mut scene = Scene::new(&ObjectSettings::default());
     for (left, right) in left.iter().zip(right) {
         for (side, (to_m, turn_rad, opening_rad, _)) in [(LEFT, left), (RIGHT, right)] {
             let hand = scene.hands[side].get_or_insert_with(|| instrument(side, at(0.0, 0.0, 0.05), 0.0));
@@ -68,7 +68,7 @@ fn round(left: &[([f64; 3], [f64; 3], f64, u32)], right: &[([f64; 3], [f64; 3], 
         }
     }
     for ring in scene.objects.rings() {
-        assert!(ring.doing == Doing::OutOfView || ring.centre_m.norm() < 1.6, "{ring:?}");
+        assert!(ring.doing == RingActivity::OutOfView || ring.centre_m.norm() < 1.6, "{ring:?}");
     }
 }
 

@@ -1,19 +1,19 @@
 //! Tests of the whole: rings among instruments.
 
-mod carrying;
 mod cost;
 mod energy;
 mod forces;
 mod hostile;
 mod repeats;
+mod ring_task;
 mod setting;
 mod transfer;
 mod wire;
 
 use nalgebra::{UnitQuaternion, Vector3};
-use nima_core::{SIDES, Side, task::Event};
+use nima_core::{SIDES, Side, task::TaskEvent};
 
-use crate::physics::{Instrument, Loads, Objects, Setting, Start, Watch};
+use crate::physics::{Instrument, InstrumentLoads, ObjectSettings, Objects, RingStart, RingWatch};
 
 pub(crate) const LEFT: usize = Side::Left.index();
 pub(crate) const RIGHT: usize = Side::Right.index();
@@ -34,31 +34,31 @@ pub(crate) fn instrument(side: usize, tip_m: Vector3<f64>, opening_rad: f64) -> 
     Instrument { tip_m, world_from_jaws: downwards(), trocar_m, opening_rad }
 }
 
-pub(crate) fn one_ring(start: Start) -> Setting {
-    Setting { rings: vec![start], ..Setting::default() }
+pub(crate) fn one_ring(start: RingStart) -> ObjectSettings {
+    ObjectSettings { rings: vec![start], ..ObjectSettings::default() }
 }
 
 /// Objects, and two hands that a test controls.
 pub(crate) struct Scene {
     pub objects: Objects,
     pub hands: [Option<Instrument>; SIDES],
-    pub loads: [Loads; SIDES],
-    pub events: Vec<Event>,
+    pub loads: [InstrumentLoads; SIDES],
+    pub events: Vec<TaskEvent>,
     /// Realistic hands: tremor, an error of aim of this size, m, and jaws in line with the shaft.
     pub unsure_m: f64,
     ticks: u32,
-    watch: Watch,
+    watch: RingWatch,
 }
 
 impl Scene {
-    pub(crate) fn new(setting: &Setting) -> Self {
+    pub(crate) fn new(setting: &ObjectSettings) -> Self {
         setting.validate().unwrap();
         let objects = Objects::new(setting, 1e-3);
-        let watch = Watch::new(&objects);
+        let watch = RingWatch::new(&objects);
         Self {
             objects,
             hands: [None; SIDES],
-            loads: [Loads::default(); SIDES],
+            loads: [InstrumentLoads::default(); SIDES],
             events: Vec::new(),
             unsure_m: 0.0,
             ticks: 0,
@@ -101,8 +101,8 @@ impl Scene {
         let from_m = self.hands[side].unwrap().tip_m;
         let ticks = ((to_m - from_m).norm() / speed_m_s * 1e3).ceil().max(1.0) as u32;
         for tick in 1..=ticks {
-            let share = f64::from(tick) / f64::from(ticks);
-            let smooth = share * share * (3.0 - 2.0 * share);
+            let fraction = f64::from(tick) / f64::from(ticks);
+            let smooth = fraction * fraction * (3.0 - 2.0 * fraction);
             self.hands[side].as_mut().unwrap().tip_m = from_m + (to_m - from_m) * smooth;
             self.tick();
         }
@@ -112,8 +112,8 @@ impl Scene {
     pub(crate) fn jaws(&mut self, side: usize, opening_rad: f64) {
         let from_rad = self.hands[side].unwrap().opening_rad;
         for tick in 1..=150 {
-            let share = f64::from(tick) / 150.0;
-            self.hands[side].as_mut().unwrap().opening_rad = from_rad + (opening_rad - from_rad) * share;
+            let fraction = f64::from(tick) / 150.0;
+            self.hands[side].as_mut().unwrap().opening_rad = from_rad + (opening_rad - from_rad) * fraction;
             self.tick();
         }
         self.run(0.1);

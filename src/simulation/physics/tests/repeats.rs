@@ -1,12 +1,12 @@
 //! The same calls give the same bits.
 
 use super::{LEFT, RIGHT, Scene, at, instrument};
-use crate::physics::{Objects, Setting};
+use crate::physics::{ObjectSettings, Objects};
 
 /// Ten seconds in which both hands grasp, shove and cross.
 fn digest(period_s: f64) -> u64 {
-    let mut scene = Scene::new(&Setting::default());
-    scene.objects = Objects::new(&Setting::default(), period_s);
+    let mut scene = Scene::new(&ObjectSettings::default());
+    scene.objects = Objects::new(&ObjectSettings::default(), period_s);
     let mut digest = 0xcbf2_9ce4_8422_2325_u64;
     let mut mix = |x: f64| digest = (digest ^ x.to_bits()).wrapping_mul(0x0100_0000_01b3);
     let ticks = (10.0 / period_s) as u32;
@@ -46,10 +46,12 @@ fn ten_seconds_repeat_to_the_last_bit_in_every_build() {
 #[test]
 fn other_rates_run_too() {
     for period_s in [2.5e-4, 4e-3, f64::NAN, -1.0] {
-        let mut objects = Objects::new(&Setting::default(), period_s);
+        let mut objects = Objects::new(&ObjectSettings::default(), period_s);
         for _ in 0..200 {
             objects.step(&[None, None]);
         }
-        assert!(objects.rings().iter().enumerate().all(|(i, ring)| ring.doing == crate::physics::Doing::OnPeg(i)));
+        assert!(
+            objects.rings().iter().enumerate().all(|(i, ring)| ring.doing == crate::physics::RingActivity::OnPeg(i))
+        );
     }
 }

@@ -1,9 +1,9 @@
 //! The task performed by two hands.
 
-use nima_core::{Side, task::Event};
+use nima_core::{Side, task::TaskEvent};
 
 use super::{LEFT, OPEN_RAD, RIGHT, Scene, at, one_ring};
-use crate::physics::{Doing, PegTransfer, Pegs, Setting, Start};
+use crate::physics::{ObjectSettings, PegTransfer, Pegs, RingActivity, RingStart};
 
 impl Scene {
     /// One hand takes a ring from its peg to the middle; the other takes it there and puts it on a peg.
@@ -24,7 +24,7 @@ impl Scene {
     }
 
     fn place(&mut self, side: usize, ring: usize, peg: usize) {
-        let [x_m, y_m] = Pegs::default().at_m[peg];
+        let [x_m, y_m] = Pegs::default().position_m[peg];
         let grip_m = self.hands[side].unwrap().tip_m - self.centre_m(ring);
         self.glide(side, at(x_m, y_m, 0.045) + grip_m, 0.1);
         self.run(0.1);
@@ -40,25 +40,25 @@ impl Scene {
 
 #[test]
 fn a_ring_goes_from_hand_to_hand_in_mid_air_once_and_is_not_dropped() {
-    let mut scene = Scene::new(&one_ring(Start::Peg(0)));
+    let mut scene = Scene::new(&one_ring(RingStart::Peg(0)));
     scene.carry_over(LEFT, 0, 6);
     let expected = [
-        Event::RingGrasped { ring: 0, side: Side::Left },
-        Event::RingLifted { ring: 0, side: Side::Left },
-        Event::RingTransferred { ring: 0, to: Side::Right },
-        Event::RingPlaced { ring: 0, side: Side::Right, peg: 6 },
+        TaskEvent::RingGrasped { ring: 0, side: Side::Left },
+        TaskEvent::RingLifted { ring: 0, side: Side::Left },
+        TaskEvent::RingTransferred { ring: 0, to: Side::Right },
+        TaskEvent::RingPlaced { ring: 0, side: Side::Right, peg: 6 },
     ];
     assert_eq!(scene.events, expected);
 }
 
 #[test]
 fn one_ring_goes_over_and_back() {
-    let setting = one_ring(Start::Peg(0));
+    let setting = one_ring(RingStart::Peg(0));
     let mut task = PegTransfer::new(&setting);
     let mut scene = Scene::new(&setting);
     scene.carry_over(LEFT, 0, 6);
     scene.carry_over(RIGHT, 0, 0);
-    assert_eq!(scene.objects.rings()[0].doing, Doing::OnPeg(0));
+    assert_eq!(scene.objects.rings()[0].doing, RingActivity::OnPeg(0));
     assert_eq!(scene.events.len(), 8, "{:?}", scene.events);
     assert!(!task.is_done());
     scene.events.iter().for_each(|event| task.take(*event));
@@ -67,7 +67,7 @@ fn one_ring_goes_over_and_back() {
 
 #[test]
 fn six_rings_go_over_and_back() {
-    let setting = Setting::default();
+    let setting = ObjectSettings::default();
     let mut task = PegTransfer::new(&setting);
     let mut scene = Scene::new(&setting);
     for ring in 0..6 {
@@ -86,7 +86,7 @@ fn six_rings_go_over_and_back() {
 
 #[test]
 fn unsure_hands_without_a_wrist_do_it_too() {
-    let setting = one_ring(Start::Peg(1));
+    let setting = one_ring(RingStart::Peg(1));
     for unsure_m in [5e-4, 1e-3] {
         let mut scene = Scene::new(&setting);
         scene.unsure_m = unsure_m;

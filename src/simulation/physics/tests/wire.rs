@@ -1,11 +1,11 @@
 //! A loop on a wire.
 
 use nalgebra::{UnitQuaternion, Vector3};
-use nima_core::{SIDES, Side, task::Event};
+use nima_core::{SIDES, Side, task::TaskEvent};
 use proptest::prelude::*;
 
 use super::{LEFT, RIGHT, at};
-use crate::physics::{Instrument, Loads, Wire, WireSetting, WireTask};
+use crate::physics::{Instrument, InstrumentLoads, Wire, WireSetting, WireTask};
 
 const PERIOD_S: f64 = 1e-3;
 
@@ -25,14 +25,14 @@ fn room_m(setting: &WireSetting) -> f64 {
 }
 
 /// Around the wire at the origin, then at rest at this offset.
-fn at_rest(setting: &WireSetting, off_m: Vector3<f64>) -> (Wire, Loads) {
+fn at_rest(setting: &WireSetting, off_m: Vector3<f64>) -> (Wire, InstrumentLoads) {
     let mut wire = Wire::new(setting, PERIOD_S);
     let middle_m = at(0.0, 0.0, 0.03);
     let steps = (off_m.norm() / 1e-3).ceil().max(1.0) as u32;
-    let mut loads = Loads::default();
+    let mut loads = InstrumentLoads::default();
     for step in 0..=steps + 1 {
-        let share = f64::from(step.min(steps)) / f64::from(steps);
-        loads = wire.step(&Side::Right.alone(holding(middle_m + off_m * share)))[RIGHT];
+        let fraction = f64::from(step.min(steps)) / f64::from(steps);
+        loads = wire.step(&Side::Right.alone(holding(middle_m + off_m * fraction)))[RIGHT];
     }
     (wire, loads)
 }
@@ -76,7 +76,7 @@ fn a_loop_that_leans_against_a_straight_wire_has_less_room_by_the_cosine() {
 fn sliding_along_the_wire_is_held_back_by_the_law_of_coulomb() {
     let setting = straight();
     let (mut wire, _) = at_rest(&setting, at(0.0, 0.0, room_m(&setting) + 1e-3));
-    let mut loads = Loads::default();
+    let mut loads = InstrumentLoads::default();
     for tick in 0..400 {
         let tip_m = at(f64::from(tick) * 2e-5, 0.0, 0.03 + room_m(&setting) + 1e-3);
         loads = wire.step(&Side::Right.alone(holding(tip_m)))[RIGHT];
@@ -94,8 +94,8 @@ fn tried_m(wire: &Wire, setting: &WireSetting, centre_m: &Vector3<f64>) -> f64 {
     };
     let pieces = points_m.windows(2).flat_map(|pair| {
         let from_m = pair[0];
-        let way_m = pair[1] - pair[0];
-        (0..=1000).map(move |part| from_m + way_m * (f64::from(part) / 1000.0))
+        let travel_m = pair[1] - pair[0];
+        (0..=1000).map(move |part| from_m + travel_m * (f64::from(part) / 1000.0))
     });
     pieces.map(gap_m).fold(f64::INFINITY, f64::min)
 }
@@ -132,8 +132,8 @@ fn the_curve_goes_through_its_points_and_is_as_long_as_an_arc_is() {
     let curve = WireSetting { points_m: arc.collect(), ..WireSetting::default() }.curve();
     let exact_m = 0.03 * std::f64::consts::FRAC_PI_2;
     assert!((curve.length_m() / exact_m - 1.0).abs() < 2e-3, "{} m", curve.length_m());
-    let most_m = curve.points_m().iter().map(|at_m| (at_m.xy().norm() - 0.03).abs()).fold(0.0, f64::max);
-    assert!(most_m < 1e-4, "{most_m} m from the arc");
+    let max_m = curve.points_m().iter().map(|position_m| (position_m.xy().norm() - 0.03).abs()).fold(0.0, f64::max);
+    assert!(max_m < 1e-4, "{max_m} m from the arc");
 }
 
 /// A mass that hangs on nothing but the loop, thrown inside it, bounces from side to side for ten minutes.
@@ -149,7 +149,7 @@ fn energy_of_a_loop_that_bounces_around_the_wire_does_not_grow() {
         let mut speed_m_s = at(0.02, 0.09, -0.07);
         let first_j = 0.5 * MASS_KG * speed_m_s.norm_squared();
         // In free flight all of the energy is motion.
-        let mut most_j = 0.0_f64;
+        let mut max_j = 0.0_f64;
         let mut bounces = 0;
         for tick in 0..600_000 {
             let loads = wire.step(&Side::Right.alone(holding(tip_m)))[RIGHT];
@@ -160,11 +160,11 @@ fn energy_of_a_loop_that_bounces_around_the_wire_does_not_grow() {
             if wire.states()[RIGHT].touches {
                 bounces += 1;
             } else {
-                most_j = most_j.max(0.5 * MASS_KG * speed_m_s.norm_squared());
+                max_j = max_j.max(0.5 * MASS_KG * speed_m_s.norm_squared());
             }
         }
         // The step of 1 ms on springs without damping causes this much ripple.
-        assert!(bounces > 100 && most_j < 1.03 * first_j, "{damping_n_s_m}: {most_j} J of {first_j} J, {bounces}");
+        assert!(bounces > 100 && max_j < 1.03 * first_j, "{damping_n_s_m}: {max_j} J of {first_j} J, {bounces}");
         let last_j = 0.5 * MASS_KG * speed_m_s.norm_squared();
         assert!(damping_n_s_m == 0.0 || last_j < 0.2 * first_j, "what is damped comes to rest: {last_j} J");
     }
@@ -207,10 +207,10 @@ fn what_is_not_a_number_counts_as_absent_and_what_is_far_away_feels_nothing() {
     let setting = straight();
     let (mut wire, _) = at_rest(&setting, at(0.0, 0.0, room_m(&setting) + 1e-3));
     let poisoned = Some(holding(at(0.0, f64::NAN, 0.03)));
-    assert_eq!(wire.step(&[poisoned, poisoned]), [Loads::default(); 2]);
+    assert_eq!(wire.step(&[poisoned, poisoned]), [InstrumentLoads::default(); 2]);
     assert_eq!(wire.states()[RIGHT].along_m, None);
     let far = Some(holding(at(0.0, 0.04, 0.06)));
-    assert_eq!(wire.step(&[far, far]), [Loads::default(); 2]);
+    assert_eq!(wire.step(&[far, far]), [InstrumentLoads::default(); 2]);
     for x_m in [0.0, 1e3, -1e300, f64::INFINITY] {
         let loads = wire.step(&[at(0.0, x_m, 0.03), at(x_m, 0.0, 0.03)].map(|tip_m| Some(holding(tip_m))));
         assert!(loads.iter().all(|loads| loads.tip_n.iter().all(|x| x.is_finite() && x.abs() < 100.0)));
@@ -235,14 +235,14 @@ fn a_loop_is_held_back_by_the_board_and_turns_with_its_shaft_if_told_so() {
     assert_eq!(wire.states()[RIGHT].along_m, None);
 }
 
-struct Told {
+struct WireReport {
     wire: Wire,
     task: WireTask,
-    events: Vec<(f64, Event)>,
+    events: Vec<(f64, TaskEvent)>,
     t_s: f64,
 }
 
-impl Told {
+impl WireReport {
     fn new(setting: &WireSetting) -> Self {
         let task = WireTask::new(setting);
         Self { wire: Wire::new(setting, PERIOD_S), task, events: Vec::new(), t_s: 0.0 }
@@ -265,46 +265,46 @@ impl Told {
 #[test]
 fn touches_are_counted_once_with_their_times_and_the_goal_ends_the_task() {
     let setting = straight();
-    let mut told = Told::new(&setting);
+    let mut report = WireReport::new(&setting);
     let middle = |x_m: f64| at(x_m, 0.0, 0.03);
     let up_m = at(0.0, 0.0, room_m(&setting) + 3e-4);
-    told.glide(RIGHT, middle(-0.06), middle(-0.02), 1.0);
-    told.glide(RIGHT, middle(-0.02), middle(-0.02) + up_m, 0.5);
-    told.glide(RIGHT, middle(-0.02) + up_m, middle(-0.02), 0.5);
+    report.glide(RIGHT, middle(-0.06), middle(-0.02), 1.0);
+    report.glide(RIGHT, middle(-0.02), middle(-0.02) + up_m, 0.5);
+    report.glide(RIGHT, middle(-0.02) + up_m, middle(-0.02), 0.5);
     // Clear for only 20 ms: the same touch.
     for _ in 0..3 {
-        told.glide(RIGHT, middle(-0.02) + up_m, middle(-0.02) + up_m, 0.1);
-        told.glide(RIGHT, middle(-0.02), middle(-0.02), 0.02);
+        report.glide(RIGHT, middle(-0.02) + up_m, middle(-0.02) + up_m, 0.1);
+        report.glide(RIGHT, middle(-0.02), middle(-0.02), 0.02);
     }
-    told.glide(RIGHT, middle(-0.02), middle(0.06), 2.0);
+    report.glide(RIGHT, middle(-0.02), middle(0.06), 2.0);
     let right = Side::Right;
-    let kinds: Vec<Event> = told.events.iter().map(|(_, event)| *event).collect();
-    let touch = [Event::WireTouched { side: right }, Event::WireLeft { side: right }];
-    assert_eq!(kinds, [touch[0], touch[1], touch[0], touch[1], Event::Ended], "{:?}", told.events);
+    let kinds: Vec<TaskEvent> = report.events.iter().map(|(_, event)| *event).collect();
+    let touch = [TaskEvent::WireTouched { side: right }, TaskEvent::WireLeft { side: right }];
+    assert_eq!(kinds, [touch[0], touch[1], touch[0], touch[1], TaskEvent::Ended], "{:?}", report.events);
     // It overlaps by at most 0.3 mm of a path of about 4.9 mm in 0.5 s, there and back.
-    let lasts_s = told.events[1].0 - told.events[0].0;
+    let lasts_s = report.events[1].0 - report.events[0].0;
     let law_s = 2.0 * 0.5 * 3e-4 / up_m.z;
     assert!((lasts_s - law_s).abs() < 4e-3, "{lasts_s} s instead of {law_s} s");
-    assert!(told.task.is_done() && told.task.touches() == 2);
-    told.task.begin();
-    assert!(!told.task.is_done() && told.task.touches() == 0 && told.task.share() < 1e-9);
+    assert!(report.task.is_done() && report.task.touches() == 2);
+    report.task.begin();
+    assert!(!report.task.is_done() && report.task.touches() == 0 && report.task.fraction() < 1e-9);
 }
 
 #[test]
 fn only_a_loop_that_came_from_the_free_end_reaches_the_goal() {
     let setting = straight();
-    let mut told = Told::new(&setting);
+    let mut report = WireReport::new(&setting);
     let middle = |x_m: f64| at(x_m, 0.0, 0.03);
     // Over the other end, to the middle, and back to the goal.
-    told.glide(LEFT, middle(0.06), middle(0.0), 1.0);
-    told.glide(LEFT, middle(0.0), middle(0.0495), 1.0);
-    assert!(!told.task.is_done() && told.task.share() < 1e-9);
+    report.glide(LEFT, middle(0.06), middle(0.0), 1.0);
+    report.glide(LEFT, middle(0.0), middle(0.0495), 1.0);
+    assert!(!report.task.is_done() && report.task.fraction() < 1e-9);
     // To the free end, over it and half way back: it leaves the wire there, and its run no longer counts.
-    told.glide(LEFT, middle(0.0495), middle(-0.045), 1.0);
-    told.glide(LEFT, middle(-0.045), middle(0.0), 1.0);
-    assert!((told.task.share() - 0.05 / 0.099).abs() < 1e-3, "{}", told.task.share());
-    told.glide(LEFT, middle(0.0), middle(-0.06), 1.0);
-    assert!(told.task.share() < 1e-9 && told.events.is_empty());
+    report.glide(LEFT, middle(0.0495), middle(-0.045), 1.0);
+    report.glide(LEFT, middle(-0.045), middle(0.0), 1.0);
+    assert!((report.task.fraction() - 0.05 / 0.099).abs() < 1e-3, "{}", report.task.fraction());
+    report.glide(LEFT, middle(0.0), middle(-0.06), 1.0);
+    assert!(report.task.fraction() < 1e-9 && report.events.is_empty());
 }
 
 #[test]

@@ -1,8 +1,8 @@
 //! One ring, followed from event to event.
 
-use nima_core::{SIDES, Side, task::Event};
+use nima_core::{SIDES, Side, task::TaskEvent};
 
-use crate::physics::objects::{Doing, RingState};
+use crate::physics::objects::{RingActivity, RingState};
 
 /// A ring counts as grasped when it has been held for this long, s.
 const GRASPED_AFTER_S: f64 = 0.03;
@@ -21,7 +21,7 @@ const LIES_AT_LAST_S: f64 = 2.0;
 
 /// Tracked state of a ring.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Stage {
+enum FollowingStage {
     /// Not held; on this peg, or elsewhere.
     Free {
         peg: Option<usize>,
@@ -42,8 +42,8 @@ enum Stage {
 }
 
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Following {
-    stage: Stage,
+pub(super) struct RingFollower {
+    stage: FollowingStage,
     /// For how long each side has held it, and has not, s.
     held_s: [f64; SIDES],
     loose_s: [f64; SIDES],
@@ -59,10 +59,10 @@ fn for_s(time_s: f64, lasts: bool, period_s: f64) -> f64 {
     if lasts { time_s + period_s } else { 0.0 }
 }
 
-impl Following {
+impl RingFollower {
     pub(super) fn new(state: &RingState) -> Self {
         Self {
-            stage: Stage::Free { peg: state.around },
+            stage: FollowingStage::Free { peg: state.around },
             held_s: [0.0; SIDES],
             loose_s: [f64::INFINITY; SIDES],
             on_s: 0.0,
@@ -80,32 +80,32 @@ impl Following {
         state: &RingState,
         last: Option<Side>,
         period_s: f64,
-        tell: &mut dyn FnMut(Event),
+        report: &mut dyn FnMut(TaskEvent),
     ) {
         self.measure(state, period_s);
-        let lost = state.doing == Doing::OutOfView;
+        let lost = state.doing == RingActivity::OutOfView;
         let of = |side: Option<Side>| side.or(last).unwrap_or(Side::Right);
         self.stage = match self.stage {
-            Stage::Lost => Stage::Lost,
-            Stage::Free { .. } if lost => {
-                tell(Event::RingDropped { ring, side: of(self.last), in_view: false });
-                Stage::Lost
+            FollowingStage::Lost => FollowingStage::Lost,
+            FollowingStage::Free { .. } if lost => {
+                report(TaskEvent::RingDropped { ring, side: of(self.last), in_view: false });
+                FollowingStage::Lost
             }
-            Stage::Held { side, .. } | Stage::LetGo { side, .. } if lost => {
-                tell(Event::RingDropped { ring, side, in_view: false });
-                Stage::Lost
+            FollowingStage::Held { side, .. } | FollowingStage::LetGo { side, .. } if lost => {
+                report(TaskEvent::RingDropped { ring, side, in_view: false });
+                FollowingStage::Lost
             }
-            Stage::Free { peg } => self.free(ring, peg, tell),
-            Stage::Held { side, peg } => self.held(ring, state, side, peg, tell),
-            Stage::LetGo { side, peg, landed, since_s } => {
+            FollowingStage::Free { peg } => self.free(ring, peg, report),
+            FollowingStage::Held { side, peg } => self.held(ring, state, side, peg, report),
+            FollowingStage::LetGo { side, peg, landed, since_s } => {
                 let landed = landed || (state.supported && !state.touched_by.contains(&true)) || state.around.is_some();
-                self.let_go(ring, side, peg, (landed, since_s + period_s), tell)
+                self.let_go(ring, side, peg, (landed, since_s + period_s), report)
             }
         };
     }
 
     fn measure(&mut self, state: &RingState, period_s: f64) {
-        let by = if let Doing::Held { by } = state.doing { by } else { [false; SIDES] };
+        let by = if let RingActivity::Held { by } = state.doing { by } else { [false; SIDES] };
         for side in Side::LEFT_TO_RIGHT {
             let i = side.index();
             self.loose_s[i] = for_s(self.loose_s[i], !by[i], period_s);
@@ -117,8 +117,8 @@ impl Following {
         self.on_s = for_s(self.on_s, state.around == self.on && self.on.is_some(), period_s);
         self.on = state.around;
         let peg = match self.stage {
-            Stage::Free { peg } | Stage::Held { peg, .. } | Stage::LetGo { peg, .. } => peg,
-            Stage::Lost => None,
+            FollowingStage::Free { peg } | FollowingStage::Held { peg, .. } | FollowingStage::LetGo { peg, .. } => peg,
+            FollowingStage::Lost => None,
         };
         self.off_s = for_s(self.off_s, peg.is_some() && state.around != peg, period_s);
         self.rest_s = for_s(self.rest_s, state.supported && state.slow && !by.contains(&true), period_s);
@@ -129,19 +129,19 @@ impl Following {
         Side::LEFT_TO_RIGHT.into_iter().find(|side| Some(*side) != than && self.held_s[side.index()] >= GRASPED_AFTER_S)
     }
 
-    fn free(&self, ring: usize, peg: Option<usize>, tell: &mut dyn FnMut(Event)) -> Stage {
+    fn free(&self, ring: usize, peg: Option<usize>, report: &mut dyn FnMut(TaskEvent)) -> FollowingStage {
         if let Some(side) = self.firm(None) {
-            tell(Event::RingGrasped { ring, side });
-            return Stage::Held { side, peg };
+            report(TaskEvent::RingGrasped { ring, side });
+            return FollowingStage::Held { side, peg };
         }
         match peg {
             Some(_) if self.off_s >= KNOCKED_AFTER_S => {
-                tell(Event::RingKnockedOff { ring, side: self.last });
-                Stage::Free { peg: None }
+                report(TaskEvent::RingKnockedOff { ring, side: self.last });
+                FollowingStage::Free { peg: None }
             }
             // A ring that was pushed onto a peg, or fell on it, counts as on it.
-            None if self.on_s >= ON_PEG_AFTER_S => Stage::Free { peg: self.on },
-            peg => Stage::Free { peg },
+            None if self.on_s >= ON_PEG_AFTER_S => FollowingStage::Free { peg: self.on },
+            peg => FollowingStage::Free { peg },
         }
     }
 
@@ -151,24 +151,25 @@ impl Following {
         state: &RingState,
         side: Side,
         peg: Option<usize>,
-        tell: &mut dyn FnMut(Event),
-    ) -> Stage {
+        report: &mut dyn FnMut(TaskEvent),
+    ) -> FollowingStage {
         let peg = if self.off_s >= OFF_PEG_AFTER_S {
-            tell(Event::RingLifted { ring, side });
+            report(TaskEvent::RingLifted { ring, side });
             None
         } else {
             peg
         };
         if self.loose_s[side.index()] < LET_GO_AFTER_S {
-            return Stage::Held { side, peg };
+            return FollowingStage::Held { side, peg };
         }
         let Some(to) = self.firm(Some(side)) else {
-            return Stage::LetGo { side, peg, landed: false, since_s: 0.0 };
+            return FollowingStage::LetGo { side, peg, landed: false, since_s: 0.0 };
         };
         let in_air = !state.supported && state.around.is_none();
-        let event = if in_air { Event::RingTransferred { ring, to } } else { Event::RingGrasped { ring, side: to } };
-        tell(event);
-        Stage::Held { side: to, peg }
+        let event =
+            if in_air { TaskEvent::RingTransferred { ring, to } } else { TaskEvent::RingGrasped { ring, side: to } };
+        report(event);
+        FollowingStage::Held { side: to, peg }
     }
 
     fn let_go(
@@ -177,31 +178,31 @@ impl Following {
         side: Side,
         peg: Option<usize>,
         (landed, since_s): (bool, f64),
-        tell: &mut dyn FnMut(Event),
-    ) -> Stage {
+        report: &mut dyn FnMut(TaskEvent),
+    ) -> FollowingStage {
         if let Some(by) = self.firm(None) {
             match (landed, peg) {
                 (false, _) if by == side => {}
-                (false, _) => tell(Event::RingTransferred { ring, to: by }),
-                (true, Some(_)) => tell(Event::RingGrasped { ring, side: by }),
+                (false, _) => report(TaskEvent::RingTransferred { ring, to: by }),
+                (true, Some(_)) => report(TaskEvent::RingGrasped { ring, side: by }),
                 (true, None) => {
-                    tell(Event::RingDropped { ring, side, in_view: true });
-                    tell(Event::RingGrasped { ring, side: by });
+                    report(TaskEvent::RingDropped { ring, side, in_view: true });
+                    report(TaskEvent::RingGrasped { ring, side: by });
                 }
             }
-            return Stage::Held { side: by, peg };
+            return FollowingStage::Held { side: by, peg };
         }
         if let (Some(on), true) = (self.on, self.on_s >= ON_PEG_AFTER_S) {
             // A ring that never left its peg was not placed.
             if peg != Some(on) {
-                tell(Event::RingPlaced { ring, side, peg: on });
+                report(TaskEvent::RingPlaced { ring, side, peg: on });
             }
-            return Stage::Free { peg: Some(on) };
+            return FollowingStage::Free { peg: Some(on) };
         }
         if self.rest_s >= LIES_AFTER_S || (landed && since_s >= LIES_AT_LAST_S) {
-            tell(Event::RingDropped { ring, side, in_view: true });
-            return Stage::Free { peg: None };
+            report(TaskEvent::RingDropped { ring, side, in_view: true });
+            return FollowingStage::Free { peg: None };
         }
-        Stage::LetGo { side, peg, landed, since_s }
+        FollowingStage::LetGo { side, peg, landed, since_s }
     }
 }

@@ -11,7 +11,7 @@ use crate::physics::geometry::Circle;
 /// Maximum length of a piece, m. In a bend of 5 mm radius it deviates from the arc by 6 um.
 const PIECE_M: f64 = 5e-4;
 /// Minimum number of pieces between two points.
-const PIECES_LEAST: usize = 8;
+const PIECES_MIN: usize = 8;
 /// Steps of the golden section that narrow down a closest point, to 1/15000 of the interval.
 const NARROWINGS: usize = 20;
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
@@ -27,7 +27,7 @@ const GOLDEN: f64 = 0.618_033_988_749_894_9;
 /// ```
 #[derive(Clone, Debug)]
 #[expect(clippy::struct_field_names, reason = "a name ends with its unit")]
-pub struct Curve {
+pub struct SmoothCurve {
     points_m: Vec<Vector3<f64>>,
     /// Length from the beginning to each point, m.
     along_m: Vec<f64>,
@@ -40,7 +40,7 @@ pub struct Curve {
 /// A closest point between wire and loop.
 #[derive(Clone, Copy, Debug)]
 #[expect(clippy::struct_field_names, reason = "a name ends with its unit")]
-pub(super) struct Place {
+pub(super) struct NearestPlace {
     /// Position along the wire, m.
     pub along_m: f64,
     pub wire_m: Vector3<f64>,
@@ -50,24 +50,24 @@ pub(super) struct Place {
 
 /// The part of a curve near a loop.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Reach {
+pub(super) struct CurveReach {
     /// Closest points that are nearer than allowed.
-    pub places: [Option<Place>; PLACES],
+    pub places: [Option<NearestPlace>; PLACES],
     /// The crossing of the loop's plane that is nearest to the loop's middle: m along the curve, and distance from the
     /// middle, m.
     pub through: Option<(f64, f64)>,
 }
 
-impl Curve {
+impl SmoothCurve {
     /// Through these points: at least two, each apart from the next.
     pub(super) fn through(given_m: &[[f64; 3]]) -> Self {
-        let given: Vec<Vector3<f64>> = given_m.iter().map(|at_m| Vector3::from(*at_m)).collect();
+        let given: Vec<Vector3<f64>> = given_m.iter().map(|position_m| Vector3::from(*position_m)).collect();
         let mut curve =
             Self { points_m: Vec::new(), along_m: Vec::new(), given_m: Vec::with_capacity(given.len()), piece_m: 0.0 };
         let slopes = slopes(&given);
         for (i, pair) in given.windows(2).enumerate() {
             let chord_m = (pair[1] - pair[0]).norm();
-            let pieces = ((chord_m / PIECE_M).ceil() as usize).max(PIECES_LEAST);
+            let pieces = ((chord_m / PIECE_M).ceil() as usize).max(PIECES_MIN);
             if i == 0 {
                 curve.push(pair[0]);
             }
@@ -113,8 +113,8 @@ impl Curve {
         }
         let from_m = self.along_m[after - 1];
         let to_m = self.along_m[after];
-        let share = if to_m > from_m { ((along_m - from_m) / (to_m - from_m)).clamp(0.0, 1.0) } else { 0.0 };
-        from + (to - from) * share
+        let fraction = if to_m > from_m { ((along_m - from_m) / (to_m - from_m)).clamp(0.0, 1.0) } else { 0.0 };
+        from + (to - from) * fraction
     }
 
     /// Returns the position along the curve and the point at a fractional index.
@@ -122,18 +122,18 @@ impl Curve {
         let last = self.points_m.len() - 1;
         let place = place.clamp(0.0, last as f64);
         let i = (place as usize).min(last.saturating_sub(1));
-        let share = place - i as f64;
+        let fraction = place - i as f64;
         let next = (i + 1).min(last);
         (
-            self.along_m[i] + (self.along_m[next] - self.along_m[i]) * share,
-            self.points_m[i] + (self.points_m[next] - self.points_m[i]) * share,
+            self.along_m[i] + (self.along_m[next] - self.along_m[i]) * fraction,
+            self.points_m[i] + (self.points_m[next] - self.points_m[i]) * fraction,
         )
     }
 
     /// Returns where it is closer to a loop's middle line than `both_m`, and where it passes through the loop.
-    pub(super) fn near(&self, circle: &Circle, both_m: f64) -> Reach {
+    pub(super) fn near(&self, circle: &Circle, both_m: f64) -> CurveReach {
         let reach_m = circle.radius_m + both_m + self.piece_m;
-        let mut reach = Reach::default();
+        let mut reach = CurveReach::default();
         // The two previous points; infinity where they were skipped.
         let mut gaps_m = [f64::INFINITY; 2];
         let mut height_before_m = None;
@@ -153,7 +153,7 @@ impl Curve {
             let height_m = height_m(circle, &self.points_m[i]);
             if let Some(before_m) = height_before_m.filter(|before_m| crosses(*before_m, height_m)) {
                 let (along_m, off_axis_m) = self.cross(circle, i - 1, before_m, height_m);
-                if reach.through.is_none_or(|(_, least_m)| off_axis_m < least_m) {
+                if reach.through.is_none_or(|(_, min_m)| off_axis_m < min_m) {
                     reach.through = Some((along_m, off_axis_m));
                 }
             }
@@ -166,29 +166,29 @@ impl Curve {
     }
 
     /// Notes the point before `next` if it is closer than its neighbours, and close enough.
-    fn note(&self, circle: &Circle, next: usize, gaps_m: &[f64; 3], both_m: f64, reach: &mut Reach) {
+    fn note(&self, circle: &Circle, next: usize, gaps_m: &[f64; 3], both_m: f64, reach: &mut CurveReach) {
         let [before_m, here_m, after_m] = *gaps_m;
         // Within a piece the gap decreases by at most half its length more.
-        let is_least = here_m < before_m && here_m <= after_m && here_m < both_m + self.piece_m;
-        let Some(free) = reach.places.iter_mut().find(|place| place.is_none()).filter(|_| is_least) else { return };
+        let is_min = here_m < before_m && here_m <= after_m && here_m < both_m + self.piece_m;
+        let Some(free) = reach.places.iter_mut().find(|place| place.is_none()).filter(|_| is_min) else { return };
         let point = (next - 1) as f64;
         let place = self.closest(circle, [point - 1.0, point + 1.0]);
         *free = ((place.loop_m - place.wire_m).norm() < both_m).then_some(place);
     }
 
     /// Returns the closest point within this distance along the wire, m.
-    pub(super) fn closest_around(&self, circle: &Circle, along_m: f64, within_m: f64) -> Place {
+    pub(super) fn closest_around(&self, circle: &Circle, along_m: f64, within_m: f64) -> NearestPlace {
         let place = |along_m: f64| self.along_m.partition_point(|before_m| *before_m < along_m) as f64;
         self.closest(circle, [place(along_m - within_m) - 1.0, place(along_m + within_m)])
     }
 
     /// Returns the closest point between two fractional indices (golden section; Kiefer, Proc. Amer. Math. Soc. 4,
     /// 1953).
-    fn closest(&self, circle: &Circle, [mut low, mut high]: [f64; 2]) -> Place {
+    fn closest(&self, circle: &Circle, [mut low, mut high]: [f64; 2]) -> NearestPlace {
         let place = |at: f64| {
             let (along_m, wire_m) = self.between(at);
             let loop_m = circle.closest(&wire_m);
-            (Place { along_m, wire_m, loop_m }, (loop_m - wire_m).norm_squared())
+            (NearestPlace { along_m, wire_m, loop_m }, (loop_m - wire_m).norm_squared())
         };
         for _ in 0..NARROWINGS {
             let one = high - (high - low) * GOLDEN;
@@ -206,12 +206,12 @@ impl Curve {
     pub(super) fn crossing(&self, circle: &Circle, from_m: f64, within_m: f64) -> Option<f64> {
         let last = self.points_m.len().checked_sub(2)?;
         let here = self.along_m.partition_point(|along_m| *along_m <= from_m).saturating_sub(1).min(last);
-        let most = (within_m / self.piece_m.max(1e-6)) as usize + 1;
+        let max = (within_m / self.piece_m.max(1e-6)) as usize + 1;
         let of = |piece: usize| {
             let heights_m = [piece, piece + 1].map(|i| height_m(circle, &self.points_m[i]));
             crosses(heights_m[0], heights_m[1]).then(|| self.cross(circle, piece, heights_m[0], heights_m[1]).0)
         };
-        (0..=most).find_map(|away| {
+        (0..=max).find_map(|away| {
             let above = Some(here + away).filter(|piece| *piece <= last).and_then(of);
             above.or_else(|| here.checked_sub(away).filter(|_| away > 0).and_then(of))
         })
@@ -221,8 +221,8 @@ impl Curve {
     /// m.
     fn cross(&self, circle: &Circle, piece: usize, from_m: f64, to_m: f64) -> (f64, f64) {
         let span_m = from_m - to_m;
-        let share = if span_m.abs() > 0.0 { (from_m / span_m).clamp(0.0, 1.0) } else { 0.0 };
-        let (along_m, point_m) = self.between(piece as f64 + share);
+        let fraction = if span_m.abs() > 0.0 { (from_m / span_m).clamp(0.0, 1.0) } else { 0.0 };
+        let (along_m, point_m) = self.between(piece as f64 + fraction);
         (along_m, (point_m - circle.centre_m).norm())
     }
 }
@@ -239,9 +239,9 @@ fn crosses(from_m: f64, to_m: f64) -> bool {
 /// Slopes per length at each point: of the parabola through it and its neighbours, and straight at the ends.
 fn slopes(points_m: &[Vector3<f64>]) -> Vec<Vector3<f64>> {
     let secant = |i: usize| {
-        let way_m = points_m[i + 1] - points_m[i];
-        let length_m = way_m.norm().max(1e-9);
-        (way_m / length_m, length_m)
+        let travel_m = points_m[i + 1] - points_m[i];
+        let length_m = travel_m.norm().max(1e-9);
+        (travel_m / length_m, length_m)
     };
     let last = points_m.len() - 1;
     (0..=last)

@@ -1,6 +1,6 @@
 //! Detects the events of loops on a wire, and the end of the task.
 
-use nima_core::{SIDES, Side, task::Event};
+use nima_core::{SIDES, Side, task::TaskEvent};
 
 use super::{Wire, WireSetting, WireState};
 
@@ -16,7 +16,7 @@ const BEGINNING_M: f64 = 0.012;
 /// use nalgebra::{UnitQuaternion, Vector3};
 /// use nima_core::Side;
 /// use nima_simulation::physics::{Instrument, Wire, WireSetting, WireTask};
-/// use nima_core::task::Event;
+/// use nima_core::task::TaskEvent;
 ///
 /// let setting = WireSetting { points_m: vec![[0.0, 0.0, 0.03], [0.05, 0.0, 0.03]], goal_point: 1, ..WireSetting::default() };
 /// let (mut wire, mut task, mut ended) = (Wire::new(&setting, 1e-3), WireTask::new(&setting), false);
@@ -25,20 +25,20 @@ const BEGINNING_M: f64 = 0.012;
 ///     let trocar_m = Vector3::new(0.0, -0.06, 0.14);
 ///     let right = Instrument { tip_m, world_from_jaws: UnitQuaternion::identity(), trocar_m, opening_rad: 0.0 };
 ///     wire.step(&Side::Right.alone(right));
-///     task.look(&wire, &mut |_, event| ended |= event == Event::Ended);
+///     task.look(&wire, &mut |_, event| ended |= event == TaskEvent::Ended);
 /// }
 /// assert!(ended && task.is_done() && task.touches() == 0);
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct WireTask {
     goal_m: f64,
-    loops: [Following; SIDES],
+    loops: [WireFollower; SIDES],
     touches: u32,
     is_done: bool,
 }
 
 #[derive(Clone, Copy, Debug, Default)]
-struct Following {
+struct WireFollower {
     touching: bool,
     clear_s: f64,
     /// Whether it entered the wire at its free end and has stayed on it since.
@@ -53,27 +53,27 @@ const REACHED_M: f64 = 1e-3;
 impl WireTask {
     pub fn new(setting: &WireSetting) -> Self {
         let goal_m = setting.curve().given_m(setting.goal_point) - REACHED_M;
-        Self { goal_m, loops: [Following::default(); SIDES], touches: 0, is_done: false }
+        Self { goal_m, loops: [WireFollower::default(); SIDES], touches: 0, is_done: false }
     }
 
     /// Restarts the task; a current touch then counts as a new one.
     pub fn begin(&mut self) {
-        *self = Self { loops: [Following::default(); SIDES], touches: 0, is_done: false, ..*self };
+        *self = Self { loops: [WireFollower::default(); SIDES], touches: 0, is_done: false, ..*self };
     }
 
-    /// Examines the loops after a step; call it once for each step. `tell` receives each event and its age, s.
-    pub fn look(&mut self, wire: &Wire, tell: &mut dyn FnMut(f64, Event)) {
+    /// Examines the loops after a step; call it once for each step. `report` receives each event and its age, s.
+    pub fn look(&mut self, wire: &Wire, report: &mut dyn FnMut(f64, TaskEvent)) {
         if self.is_done {
             return;
         }
         for side in Side::LEFT_TO_RIGHT {
             let state = &wire.states()[side.index()];
             let following = &mut self.loops[side.index()];
-            self.touches += u32::from(following.touch(side, state, wire.period_s(), tell));
+            self.touches += u32::from(following.touch(side, state, wire.period_s(), report));
             self.is_done |= following.goes(state) >= self.goal_m;
         }
         if self.is_done {
-            tell(0.0, Event::Ended);
+            report(0.0, TaskEvent::Ended);
         }
     }
 
@@ -88,26 +88,26 @@ impl WireTask {
     }
 
     /// Completed fraction of the path to the goal.
-    pub fn share(&self) -> f64 {
+    pub fn fraction(&self) -> f64 {
         let farthest_m = self.loops.iter().map(|following| following.farthest_m).fold(0.0, f64::max);
         (farthest_m / self.goal_m.max(1e-9)).clamp(0.0, 1.0)
     }
 }
 
-impl Following {
-    fn touch(&mut self, side: Side, state: &WireState, period_s: f64, tell: &mut dyn FnMut(f64, Event)) -> bool {
+impl WireFollower {
+    fn touch(&mut self, side: Side, state: &WireState, period_s: f64, report: &mut dyn FnMut(f64, TaskEvent)) -> bool {
         if state.touches {
             self.clear_s = 0.0;
             let begins = !std::mem::replace(&mut self.touching, true);
             if begins {
-                tell(0.0, Event::WireTouched { side });
+                report(0.0, TaskEvent::WireTouched { side });
             }
             return begins;
         }
         self.clear_s += period_s;
         if self.touching && self.clear_s >= CLEAR_AFTER_S {
             self.touching = false;
-            tell(self.clear_s, Event::WireLeft { side });
+            report(self.clear_s, TaskEvent::WireLeft { side });
         }
         false
     }

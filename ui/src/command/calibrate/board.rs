@@ -4,15 +4,15 @@ use std::path::PathBuf;
 
 use anyhow::Context as _;
 use clap::Args;
-use nima_endoscope::{Board, board::Corners};
+use nima_endoscope::{Checkerboard, board::BoardCorners};
 
 use crate::command::output;
 
 #[derive(Debug, Args)]
-pub(in crate::command) struct Arguments {
+pub(in crate::command) struct CalibrateBoardArguments {
     /// Inner corners along both sides, one number odd and the other even
     #[arg(long, value_name = "AxB", default_value = "9x6")]
-    board: Corners,
+    board: BoardCorners,
     /// Side length of a square
     #[arg(long, value_name = "MM", default_value_t = 10.0)]
     square_mm: f64,
@@ -21,9 +21,9 @@ pub(in crate::command) struct Arguments {
     out: PathBuf,
 }
 
-pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    let Corners(corners) = arguments.board;
-    let board = Board::new(corners, arguments.square_mm * 1e-3)?;
+pub(super) fn run(arguments: &CalibrateBoardArguments) -> anyhow::Result<()> {
+    let BoardCorners(corners) = arguments.board;
+    let board = Checkerboard::new(corners, arguments.square_mm * 1e-3)?;
     output::check(&arguments.out, &[])?;
     nima_files::write_atomically(&arguments.out, |file| file.write_all(board.svg().as_bytes()))
         .with_context(|| format!("cannot write {}", arguments.out.display()))?;

@@ -6,17 +6,17 @@ use anyhow::{Context as _, bail};
 use clap::Args;
 use nima_core::calibration::{
     AxisStats, Verdict,
-    correspondence::{CorrespondenceRecord, CorrespondenceReport, Options, Solution, fit},
+    correspondence::{CorrespondenceOptions, CorrespondenceRecord, CorrespondenceReport, CorrespondenceSolution, fit},
 };
 use nima_recording::{
     csv::read_pairs,
     store::{self, utc_now},
 };
 
-use crate::{command::output, words::Words as _};
+use crate::{command::output, report_text::ShortText as _};
 
 #[derive(Debug, Args)]
-pub(in crate::command) struct Arguments {
+pub(in crate::command) struct CorrespondenceArguments {
     /// CSV file with `f1x_n, f1y_n, f1z_n` (wrist, gravity-free), `f2x_n, f2y_n, f2z_n` (tissue) and, if the wrist turned
     /// between the pushes, `qw, qx, qy, qz` (`s1_from_c`)
     pairs: PathBuf,
@@ -44,7 +44,7 @@ pub(in crate::command) struct Arguments {
     json: bool,
 }
 
-pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+pub(super) fn run(arguments: &CorrespondenceArguments) -> anyhow::Result<()> {
     if arguments.override_by.as_deref().is_some_and(|name| name.trim().is_empty()) {
         bail!("--override requires the name of the person who decides");
     }
@@ -52,9 +52,9 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         super::check(out, &arguments.pairs)?;
     }
     let pairs = read_pairs(&arguments.pairs)?;
-    let options = Options { flip_s2: arguments.flip_s2, ..Options::default() };
+    let options = CorrespondenceOptions { flip_s2: arguments.flip_s2, ..CorrespondenceOptions::default() };
     let report = fit(&pairs, &options).with_context(|| format!("cannot use {}", arguments.pairs.display()))?;
-    if arguments.json { output::json(&report) } else { output::line(&in_words(&report)) }?;
+    if arguments.json { output::json(&report) } else { output::line(&as_text(&report)) }?;
     let accepted = report.verdict == Verdict::Accepted;
     if let Some(out) = &arguments.out
         && (accepted || arguments.override_by.is_some())
@@ -73,7 +73,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     Ok(())
 }
 
-fn in_words(report: &CorrespondenceReport) -> String {
+fn as_text(report: &CorrespondenceReport) -> String {
     // Writing to a String cannot fail.
     let mut text = format!("{}: {}\n", report.verdict.words(), report.reason);
     let excitation = &report.excitation;
@@ -91,7 +91,7 @@ fn in_words(report: &CorrespondenceReport) -> String {
     text
 }
 
-fn describe(text: &mut String, solution: &Solution) {
+fn describe(text: &mut String, solution: &CorrespondenceSolution) {
     let [w, x, y, z] = solution.rotation_wxyz;
     let [roll, pitch, yaw] = solution.roll_pitch_yaw_deg;
     let agreement = &solution.agreement;

@@ -6,21 +6,21 @@ use anyhow::{Context as _, bail};
 use clap::{Args, ValueEnum};
 use nima_core::calibration::{
     Residuals, Verdict,
-    gravity::{GravityReport, ModelKind, Settings, fit},
+    gravity::{GravityReport, GravitySettings, ModelKind, fit},
 };
 use nima_recording::{csv::read_poses, store};
 
-use crate::{command::output, words::Words as _};
+use crate::{command::output, report_text::ShortText as _};
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
-enum Model {
+enum GravityModelChoice {
     Physical,
     Gain,
     Paper,
 }
 
 #[derive(Debug, Args)]
-pub(in crate::command) struct Arguments {
+pub(in crate::command) struct GravityArguments {
     /// CSV file, one still pose per row: `fx_n,fy_n,fz_n[,tx_nm,ty_nm,tz_nm]` with `ax,ay,az` (m/s^2) or `qw,qx,qy,qz` (base from sensor)
     poses: PathBuf,
     /// Write an accepted calibration to this TOML file and keep the previous one as F.toml.previous (replaces an existing
@@ -38,7 +38,7 @@ pub(in crate::command) struct Arguments {
     flip_imu: bool,
     /// Model to use (default: physical, or gain if the poses clearly support it)
     #[arg(long)]
-    model: Option<Model>,
+    model: Option<GravityModelChoice>,
     /// Write the file even if the verdict rejects it; your name is stored in the file
     #[arg(long = "override", value_name = "NAME", requires = "out")]
     override_by: Option<String>,
@@ -50,17 +50,18 @@ pub(in crate::command) struct Arguments {
     json: bool,
 }
 
-pub(in crate::command) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+pub(in crate::command) fn run(arguments: &GravityArguments) -> anyhow::Result<()> {
     if let Some(out) = &arguments.out {
         super::check(out, &arguments.poses)?;
     }
     let poses = read_poses(&arguments.poses)?;
     let model = arguments.model.map(|model| match model {
-        Model::Physical => ModelKind::Physical,
-        Model::Gain => ModelKind::Gain,
-        Model::Paper => ModelKind::Paper,
+        GravityModelChoice::Physical => ModelKind::Physical,
+        GravityModelChoice::Gain => ModelKind::Gain,
+        GravityModelChoice::Paper => ModelKind::Paper,
     });
-    let settings = Settings { model, imu_sign: if arguments.flip_imu { -1 } else { 1 }, ..Settings::default() };
+    let settings =
+        GravitySettings { model, imu_sign: if arguments.flip_imu { -1 } else { 1 }, ..GravitySettings::default() };
     let report = fit(&poses, &settings).with_context(|| format!("poses {}", arguments.poses.display()))?;
     let accepted = report.verdict == Verdict::Accepted;
     if accepted || arguments.override_by.is_some() {
@@ -69,7 +70,7 @@ pub(in crate::command) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     if arguments.json {
         output::json(&report)?;
     } else {
-        output::line(&in_words(&report))?;
+        output::line(&as_text(&report))?;
     }
     if !accepted {
         bail!("{}: {}", report.verdict.words(), report.reason);
@@ -77,7 +78,7 @@ pub(in crate::command) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     Ok(())
 }
 
-fn save(arguments: &Arguments, report: &GravityReport) -> anyhow::Result<()> {
+fn save(arguments: &GravityArguments, report: &GravityReport) -> anyhow::Result<()> {
     let Some(out) = &arguments.out else { return Ok(()) };
     let Some(mut record) = report.record(&arguments.sensor, &arguments.tool, &store::utc_now()) else {
         bail!("no model to write to {}: {}", out.display(), report.reason);
@@ -89,7 +90,7 @@ fn save(arguments: &Arguments, report: &GravityReport) -> anyhow::Result<()> {
     Ok(())
 }
 
-fn in_words(report: &GravityReport) -> String {
+fn as_text(report: &GravityReport) -> String {
     let mut text = format!("{}: {}\n", report.verdict.words(), report.reason);
     let condition = report.condition.map_or_else(|| "infinite".to_owned(), |condition| format!("{condition:.1}"));
     // Writing to a String cannot fail.

@@ -15,13 +15,13 @@ use super::output;
 #[derive(Debug, Subcommand)]
 pub(super) enum CalibrateCommand {
     /// Find the tool's weight and the sensor's bias from still poses
-    Gravity(gravity::Arguments),
+    Gravity(gravity::GravityArguments),
     /// Find the rotation between the sensor under the tissue and the wrist sensor from pairs of forces
-    Correspondence(correspondence::Arguments),
+    Correspondence(correspondence::CorrespondenceArguments),
     /// Draw a checkerboard in true size, for printing
-    Board(board::Arguments),
+    Board(board::CalibrateBoardArguments),
     /// Run all calibrations of an emulated rig by its simulated technician, and save them (some minutes)
-    Rig(rig::Arguments),
+    Rig(rig::CalibrateRigArguments),
 }
 
 pub(super) fn run(command: &CalibrateCommand) -> anyhow::Result<()> {

@@ -14,31 +14,31 @@ use clap::Args;
 use nima_machine::{
     messages::{Command, LoopState, Tick},
     rig::{Prompt, Roster, SIDES, Side},
-    runtime::Handle,
+    runtime::LoopHandle,
 };
 use nima_recording::store::Store;
 use nima_simulation::{
-    Plan,
-    screen::{Screen, Task},
+    SimulationPlan,
+    screen::{PersonTask, Screen},
 };
 
 use crate::{
-    command::setup::{Setup, side},
+    command::rig_args::{Setup, side},
     console::{
-        in_force::InForce,
-        reader::{Reader, task_of},
-        wizards::{Attended, Binding, Saving, Which, Wizards},
+        active_calibrations::ActiveCalibrations,
+        reader::{ScreenReader, task_of},
+        wizards::{Binding, SaveRequest, WizardKind, WizardOutcome, Wizards},
     },
     emulators::Emulators,
-    leaving::Leave,
-    telling::tell,
+    shutdown::Leave,
+    stderr::print_line,
 };
 
 /// Timeout of a step.
 const PATIENCE: Duration = Duration::from_mins(5);
 
 #[derive(Debug, Args)]
-pub(in crate::command) struct Arguments {
+pub(in crate::command) struct CalibrateRigArguments {
     /// Rig: built-in name or TOML file; must be emulated
     #[arg(long, value_name = "RIG", default_value = "emulated")]
     rig: String,
@@ -51,23 +51,23 @@ pub(in crate::command) struct Arguments {
     arm: Option<Side>,
     /// Run only this calibration
     #[arg(long, value_name = "WIZARD")]
-    only: Option<Which>,
+    only: Option<WizardKind>,
     /// Also run the frame calibrations: sensor mount, tip, hand-eye, table, view and trocar
     #[arg(long, conflicts_with = "only")]
     frames: bool,
 }
 
-impl Arguments {
+impl CalibrateRigArguments {
     /// By default only the force calibrations: the file of an emulated rig has the right frames.
-    fn does(&self, which: Which) -> bool {
-        let usual = self.frames || !matches!(which, Which::Frame(_));
+    fn does(&self, which: WizardKind) -> bool {
+        let usual = self.frames || !matches!(which, WizardKind::Frame(_));
         // The simulated technician has no board.
-        which != Which::Camera && self.only.map_or(usual, |only| only == which)
+        which != WizardKind::Camera && self.only.map_or(usual, |only| only == which)
     }
 }
 
-pub(in crate::command) fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    if arguments.only == Some(Which::Camera) {
+pub(in crate::command) fn run(arguments: &CalibrateRigArguments) -> anyhow::Result<()> {
+    if arguments.only == Some(WizardKind::Camera) {
         bail!("the simulated technician has no board; calibrate the camera with `nima console --calibrate camera`");
     }
     let setup = Setup::of(&arguments.rig, arguments.scene.as_deref());
@@ -81,15 +81,15 @@ pub(in crate::command) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let Some(emulators) = Emulators::start(setup.rig(), setup.scene(), rig.devices.as_ref())? else {
         bail!("rig \"{}\" has no simulated technician; calibrate with `nima console --calibrate gravity`", rig.name);
     };
-    let in_force = InForce::load(None, &rig, &scene);
-    let rig = in_force.with_checked(rig);
-    let plan = Plan { rig, scene, calibrations: Default::default(), engage: false };
-    let mut bench = Bench::start(plan, arguments.rig.clone(), in_force, emulators.technician(), leave)?;
-    for which in Which::built().filter(|which| arguments.does(*which)) {
+    let active = ActiveCalibrations::load(None, &rig, &scene);
+    let rig = active.with_checked(rig);
+    let plan = SimulationPlan { rig, scene, calibrations: Default::default(), engage: false };
+    let mut bench = CalibrationBench::start(plan, arguments.rig.clone(), active, emulators.technician(), leave)?;
+    for which in WizardKind::built().filter(|which| arguments.does(*which)) {
         for side in &sides {
             let began = Instant::now();
             bench.calibrate(which, *side)?;
-            tell(format_args!(
+            print_line(format_args!(
                 "{} arm, {}: {:.0} s",
                 side.word(),
                 which.name().to_lowercase(),
@@ -100,12 +100,12 @@ pub(in crate::command) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     super::output::line(&bench.saved.join("\n"))
 }
 
-struct Bench {
-    plan: Plan,
+struct CalibrationBench {
+    plan: SimulationPlan,
     rig: String,
-    handle: Option<Handle>,
-    in_force: InForce,
-    reader: Reader,
+    handle: Option<LoopHandle>,
+    active: ActiveCalibrations,
+    reader: ScreenReader,
     read: Option<Screen>,
     wizards: Wizards,
     ticks: [Option<Tick>; SIDES],
@@ -114,12 +114,18 @@ struct Bench {
     leave: Leave,
 }
 
-impl Bench {
-    fn start(plan: Plan, rig: String, in_force: InForce, reader: Reader, leave: Leave) -> anyhow::Result<Self> {
+impl CalibrationBench {
+    fn start(
+        plan: SimulationPlan,
+        rig: String,
+        active: ActiveCalibrations,
+        reader: ScreenReader,
+        leave: Leave,
+    ) -> anyhow::Result<Self> {
         let wizards = Wizards::default();
         let ticks = [None; SIDES];
         let saved = Vec::new();
-        let mut this = Self { plan, rig, handle: None, in_force, reader, read: None, wizards, ticks, saved, leave };
+        let mut this = Self { plan, rig, handle: None, active, reader, read: None, wizards, ticks, saved, leave };
         this.restart()?;
         Ok(this)
     }
@@ -127,8 +133,8 @@ impl Bench {
     /// Ends the loop and restarts it idle, as the console does when a calibration is saved.
     fn restart(&mut self) -> anyhow::Result<()> {
         self.handle = None;
-        self.in_force.bind(&self.plan.rig, &self.plan.scene);
-        self.plan.calibrations = self.in_force.calibrations(&self.plan.rig);
+        self.active.bind(&self.plan.rig, &self.plan.scene);
+        self.plan.calibrations = self.active.calibrations(&self.plan.rig);
         let handle = nima_simulation::start(&self.plan)?;
         let ender = handle.ender();
         self.leave.at_once(move || ender.end());
@@ -137,8 +143,8 @@ impl Bench {
         Ok(())
     }
 
-    fn calibrate(&mut self, which: Which, side: Side) -> anyhow::Result<()> {
-        self.in_force.choose(side);
+    fn calibrate(&mut self, which: WizardKind, side: Side) -> anyhow::Result<()> {
+        self.active.choose(side);
         self.wizards = Wizards::at(which);
         let what = format!("{} arm, {}", side.word(), which.name().to_lowercase());
         let mut shown = None;
@@ -154,11 +160,11 @@ impl Bench {
                 continue;
             }
             match self.wizards.attend(&binding).context("no wizard is open")? {
-                Attended::Proven(saving) => break saving,
-                Attended::NotProven(reason) => bail!("{what}: not proven: {reason}"),
-                Attended::Working(step, notice) => {
+                WizardOutcome::Proven(saving) => break saving,
+                WizardOutcome::NotProven(reason) => bail!("{what}: not proven: {reason}"),
+                WizardOutcome::Working(step, notice) => {
                     if shown != Some(step) {
-                        tell(format_args!("{what}: {}", step.to_lowercase()));
+                        print_line(format_args!("{what}: {}", step.to_lowercase()));
                         shown = Some(step);
                         since = Instant::now();
                     }
@@ -172,7 +178,7 @@ impl Bench {
     fn binding(&self) -> Binding {
         let none = Roster::new();
         let roster = self.handle.as_ref().map_or(&none, |handle| handle.roster());
-        self.in_force.binding_of(&self.rig, &self.plan.rig, roster)
+        self.active.binding_of(&self.rig, &self.plan.rig, roster)
     }
 
     fn wait(since: Instant, what: &str, step: &str, notice: Option<&str>) -> anyhow::Result<()> {
@@ -203,11 +209,11 @@ impl Bench {
             if tick.side == side {
                 self.wizards.tick(tick, rate_hz);
             }
-            self.in_force.watch(tick);
+            self.active.watch(tick);
             self.ticks[tick.side.index()] = Some(*tick);
         });
         handle.drain_events(|_| {});
-        self.in_force.meet(handle, &self.plan.rig);
+        self.active.meet(handle, &self.plan.rig);
         let prompt = self.wizards.prompt();
         self.reader.show(Screen { side, task: task_of(self.wizards.open), prompt }, &mut self.read);
         let tick = self.ticks[side.index()];
@@ -217,23 +223,23 @@ impl Bench {
         Ok(())
     }
 
-    fn save(&mut self, saving: Saving) -> anyhow::Result<()> {
-        let side = self.in_force.side();
+    fn save(&mut self, saving: SaveRequest) -> anyhow::Result<()> {
+        let side = self.active.side();
         self.wizards = Wizards::default();
-        self.reader.show(Screen { side, task: Task::Surgery, prompt: Prompt::Rest }, &mut self.read);
-        let told = match saving {
-            Saving::Frame(saving) => {
+        self.reader.show(Screen { side, task: PersonTask::Surgery, prompt: Prompt::Rest }, &mut self.read);
+        let report = match saving {
+            SaveRequest::Frame(saving) => {
                 let folder = Store::of_user().ok().and_then(|store| Some(store.folder().parent()?.to_path_buf()));
-                let saved = self.in_force.save_frame(*saving, &self.rig, folder.as_deref());
+                let saved = self.active.save_frame(*saving, &self.rig, folder.as_deref());
                 let (rig, path, words) = saved.map_err(anyhow::Error::msg)?;
                 self.plan.rig = rig;
                 self.rig = path.display().to_string();
                 words
             }
-            saving => self.in_force.save(saving).map_err(anyhow::Error::msg)?,
+            saving => self.active.save(saving).map_err(anyhow::Error::msg)?,
         };
-        tell(told);
-        self.saved = self.in_force.lines();
+        print_line(report);
+        self.saved = self.active.lines();
         self.restart()
     }
 }

@@ -7,7 +7,7 @@ use clap::Subcommand;
 #[derive(Debug, Subcommand)]
 pub(super) enum CheckCommand {
     /// Run the ready check of an emulated or simulated rig (about a minute), and save its record
-    Rig(rig::Arguments),
+    Rig(rig::CheckRigArguments),
 }
 
 pub(super) fn run(command: &CheckCommand) -> anyhow::Result<()> {

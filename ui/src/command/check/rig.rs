@@ -14,24 +14,24 @@ use clap::Args;
 use nima_machine::{
     config::RigConfig,
     messages::{Command, Tick},
-    ready::{Ask, Entry, State},
+    ready::{PersonRequest, ReadyEntry, ReadyState},
     rig::{Roster, SIDES},
-    runtime::Handle,
+    runtime::LoopHandle,
 };
 use nima_recording::store::Store;
-use nima_simulation::{Plan, scene::Scene, screen::Screen};
+use nima_simulation::{SimulationPlan, scene::Scene, screen::Screen};
 
 use crate::{
-    command::{output, setup::Setup},
+    command::{output, rig_args::Setup},
     console::{
-        in_force::InForce,
-        reader::Reader,
-        ready::{Run, record, subject},
+        active_calibrations::ActiveCalibrations,
+        reader::ScreenReader,
+        ready::{ReadyRun, record, subject},
     },
     emulators::Emulators,
-    leaving::Leave,
-    telling::tell,
-    words::{ask_words, cause_words, check_name, figure_words, lacks_words},
+    report_text::{ask_text, cause_text, check_name, figure_text, lacks_text},
+    shutdown::Leave,
+    stderr::print_line,
 };
 
 /// Timeout for the serial numbers of the force sensors.
@@ -42,7 +42,7 @@ const ANSWERS_AFTER: Duration = Duration::from_millis(300);
 const SIMULATED: &str = "correspondence";
 
 #[derive(Debug, Args)]
-pub(in crate::command) struct Arguments {
+pub(in crate::command) struct CheckRigArguments {
     /// Rig: built-in name or TOML file; must be emulated or simulated
     #[arg(long, value_name = "RIG", default_value = "emulated")]
     rig: String,
@@ -57,7 +57,7 @@ pub(in crate::command) struct Arguments {
     json: bool,
 }
 
-pub(in crate::command) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+pub(in crate::command) fn run(arguments: &CheckRigArguments) -> anyhow::Result<()> {
     let rig = RigConfig::load(&arguments.rig)?;
     let guided = if rig.devices.is_some() { Scene::default_for(&rig) } else { SIMULATED };
     let scene_name = arguments.scene.as_deref().unwrap_or(guided);
@@ -67,62 +67,62 @@ pub(in crate::command) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     }
     let leave = Setup::of(&arguments.rig, Some(scene_name)).leave()?;
     let emulators = Emulators::start(&arguments.rig, scene_name, rig.devices.as_ref())?;
-    let mut in_force = InForce::load(None, &rig, &scene);
-    let calibrations = in_force.calibrations(&rig);
-    let rig = in_force.with_checked(rig);
-    let plan = Plan { rig, scene, calibrations, engage: false };
+    let mut active = ActiveCalibrations::load(None, &rig, &scene);
+    let calibrations = active.calibrations(&rig);
+    let rig = active.with_checked(rig);
+    let plan = SimulationPlan { rig, scene, calibrations, engage: false };
     let handle = nima_simulation::start(&plan)?;
     let ender = handle.ender();
     leave.at_once(move || ender.end());
     let reader = emulators.as_ref().map(Emulators::technician);
-    let mut bench = Bench { plan, handle, in_force, reader, read: None, ticks: [None; SIDES], leave };
+    let mut bench = CheckBench { plan, handle, active, reader, read: None, ticks: [None; SIDES], leave };
     bench.await_sensors()?;
     let roster = bench.handle.roster().clone();
-    let mut run = Run::new(subject(&arguments.rig, &bench.plan.rig, &bench.plan.scene, &roster, &bench.in_force));
+    let mut run = ReadyRun::new(subject(&arguments.rig, &bench.plan.rig, &bench.plan.scene, &roster, &bench.active));
     bench.go_through(&mut run, arguments.json)?;
     end(&run, arguments, &roster)
 }
 
 /// Saves and prints the record; returns an error if the rig is not ready.
-fn end(run: &Run, arguments: &Arguments, roster: &Roster) -> anyhow::Result<()> {
+fn end(run: &ReadyRun, arguments: &CheckRigArguments, roster: &Roster) -> anyhow::Result<()> {
     let record = record(&run.session, &arguments.rig, &arguments.by, roster);
     let path = Store::of_user()?.save_check(&record)?;
     if arguments.json {
         output::json(&record)?;
     }
-    tell(format_args!("{:.0} s; record saved in {}", record.took_s, path.display()));
+    print_line(format_args!("{:.0} s; record saved in {}", record.took_s, path.display()));
     if record.passed {
         return Ok(());
     }
-    let failed = run.session.list().iter().filter(|entry| matches!(entry.state, State::Failed(_)));
+    let failed = run.session.list().iter().filter(|entry| matches!(entry.state, ReadyState::Failed(_)));
     let names: Vec<_> = failed.map(|entry| check_name(entry.check)).collect();
     bail!("the rig is not ready: {}; see {} for causes and remedies", names.join(", "), path.display())
 }
 
-fn line(entry: &Entry, roster: &Roster) -> String {
+fn line(entry: &ReadyEntry, roster: &Roster) -> String {
     let name = check_name(entry.check);
     match &entry.state {
-        State::Waiting | State::Asking(_) => name,
-        State::Passed(figure) => format!("{name}: passed ({})", figure_words(figure)),
-        State::Failed(cause) => {
-            let [cause, cure] = cause_words(cause, roster);
+        ReadyState::Waiting | ReadyState::Asking(_) => name,
+        ReadyState::Passed(figure) => format!("{name}: passed ({})", figure_text(figure)),
+        ReadyState::Failed(cause) => {
+            let [cause, cure] = cause_text(cause, roster);
             format!("{name}: FAILED: {cause}; {cure}")
         }
-        State::LeftOut(lacks) => format!("{name}: skipped, {}", lacks_words(*lacks)),
+        ReadyState::LeftOut(lacks) => format!("{name}: skipped, {}", lacks_text(*lacks)),
     }
 }
 
-struct Bench {
-    plan: Plan,
-    handle: Handle,
-    in_force: InForce,
-    reader: Option<Reader>,
+struct CheckBench {
+    plan: SimulationPlan,
+    handle: LoopHandle,
+    active: ActiveCalibrations,
+    reader: Option<ScreenReader>,
     read: Option<Screen>,
     ticks: [Option<Tick>; SIDES],
     leave: Leave,
 }
 
-impl Bench {
+impl CheckBench {
     fn may_go_on(&self) -> anyhow::Result<()> {
         if self.leave.is_asked() {
             bail!("ended on request; no record was saved");
@@ -137,25 +137,25 @@ impl Bench {
     /// Waits until the active calibrations are known.
     fn await_sensors(&mut self) -> anyhow::Result<()> {
         let began = Instant::now();
-        while self.in_force.is_waiting() && began.elapsed() < SENSORS_WITHIN {
+        while self.active.is_waiting() && began.elapsed() < SENSORS_WITHIN {
             self.may_go_on()?;
             self.handle.drain_ticks(|_| {});
-            self.in_force.meet(&self.handle, &self.plan.rig);
+            self.active.meet(&self.handle, &self.plan.rig);
         }
         Ok(())
     }
 
-    fn go_through(&mut self, run: &mut Run, quiet: bool) -> anyhow::Result<()> {
-        let mut told = 0;
-        let mut asked = (Ask::Nothing, Instant::now());
+    fn go_through(&mut self, run: &mut ReadyRun, quiet: bool) -> anyhow::Result<()> {
+        let mut report = 0;
+        let mut asked = (PersonRequest::Nothing, Instant::now());
         while !run.session.is_finished() {
             self.may_go_on()?;
             self.look(run);
             let ask = run.session.ask();
             if ask != asked.0 {
                 asked = (ask, Instant::now());
-                if ask != Ask::Nothing {
-                    tell(ask_words(&ask));
+                if ask != PersonRequest::Nothing {
+                    print_line(ask_text(&ask));
                 }
             } else if asked.1.elapsed() >= ANSWERS_AFTER
                 && let Some(answer) = run.answer()
@@ -165,19 +165,19 @@ impl Bench {
             }
             let list = run.session.list();
             while let Some(entry) =
-                list.get(told).filter(|entry| !matches!(entry.state, State::Waiting | State::Asking(_)))
+                list.get(report).filter(|entry| !matches!(entry.state, ReadyState::Waiting | ReadyState::Asking(_)))
             {
                 if !quiet {
                     output::line(&line(entry, self.handle.roster()))?;
                 }
-                told += 1;
+                report += 1;
             }
         }
         Ok(())
     }
 
     /// Receives the data of the loop, and shows the instruction at the arms.
-    fn look(&mut self, run: &mut Run) {
+    fn look(&mut self, run: &mut ReadyRun) {
         self.handle.drain_ticks(|tick| {
             run.session.tick(tick);
             self.ticks[tick.side.index()] = Some(*tick);
@@ -187,7 +187,7 @@ impl Bench {
         if let Some(healths) = self.handle.healths() {
             run.session.healths(&healths);
         }
-        self.in_force.meet(&self.handle, &self.plan.rig);
+        self.active.meet(&self.handle, &self.plan.rig);
         let command: Option<Command> = run.look();
         let prompts = self.ticks.iter().flatten().filter_map(|tick| run.prompt_for(tick));
         for command in command.into_iter().chain(prompts) {

@@ -10,10 +10,10 @@ use std::{
 use anyhow::Context as _;
 use nima_files::write_atomically;
 use nima_machine::{messages::Tick, rig::Side};
-use nima_session::replay::{Change, Compared, Difference, Hole, compare};
+use nima_session::replay::{ComparedSide, Difference, JournalGap, WhatIfChange, compare};
 use serde::Serialize;
 
-use super::{Opened, output};
+use super::{JournalOpening, output};
 
 const FORCES: &str = "forces.csv";
 const HEADER: &str = "t_s,side,recorded_state,changed_state,recorded_x_n,recorded_y_n,recorded_z_n,\
@@ -23,11 +23,11 @@ const LIMIT: &str = "the inputs come from the recording: a different force would
  force; these are the forces that the hand would have felt with the recorded motion";
 
 #[derive(Serialize)]
-struct Told<'a> {
+struct WhatIfReport<'a> {
     session: &'a Path,
     changed: String,
     ticks: u64,
-    arms: Vec<Arm>,
+    arms: Vec<WhatIfArm>,
     #[serde(skip_serializing_if = "Option::is_none")]
     ends_at_hole_after_tick: Option<u64>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -36,7 +36,7 @@ struct Told<'a> {
 }
 
 #[derive(Serialize)]
-struct Arm {
+struct WhatIfArm {
     side: &'static str,
     engaged_ticks: u64,
     in_one_engaged_only: u64,
@@ -58,16 +58,16 @@ impl Lengths {
         Self { mean_n: difference.mean_n, rms_n: difference.rms_n(), max_n: difference.max_n }
     }
 
-    fn in_words(&self, name: &str) -> String {
+    fn as_text(&self, name: &str) -> String {
         let Self { mean_n, rms_n, max_n } = self;
         format!("\n  {name:44}  mean {mean_n:8.4} N   rms {rms_n:8.4} N   max {max_n:8.4} N")
     }
 }
 
 pub(super) fn run(
-    journal: &dyn Fn() -> Opened,
+    journal: &dyn Fn() -> JournalOpening,
     session: &Path,
-    change: &Change,
+    change: &WhatIfChange,
     stretch_s: &Range<f64>,
     out: Option<&Path>,
     json: bool,
@@ -78,36 +78,36 @@ pub(super) fn run(
         Some(out) => with_forces(journal, session, change, stretch_s, out)?,
     };
     let arm = |side: Side| {
-        let Compared { engaged, apart, rendered, recorded_error, changed_error } = compared[side.index()]?;
+        let ComparedSide { engaged, apart, rendered, recorded_error, changed_error } = compared[side.index()]?;
         let [difference, recorded_error, changed_error] =
             [rendered, recorded_error, changed_error].map(|one| Lengths::of(&one));
         let side = side.word();
         let engaged_ticks = engaged;
         let in_one_engaged_only = apart;
-        Some(Arm { side, engaged_ticks, in_one_engaged_only, difference, recorded_error, changed_error })
+        Some(WhatIfArm { side, engaged_ticks, in_one_engaged_only, difference, recorded_error, changed_error })
     };
-    let told = Told {
+    let report = WhatIfReport {
         session,
-        changed: in_words(change),
+        changed: as_text(change),
         ticks,
         arms: Side::ALL.into_iter().filter_map(arm).collect(),
-        ends_at_hole_after_tick: hole.map(|Hole { tick, .. }| tick),
+        ends_at_hole_after_tick: hole.map(|JournalGap { tick, .. }| tick),
         forces: out.map(|out| out.join(FORCES)),
         limit: LIMIT,
     };
-    if json { output::json(&told) } else { output::line(&table(&told)) }
+    if json { output::json(&report) } else { output::line(&table(&report)) }
 }
 
-type Answer = ([Option<Compared>; nima_machine::rig::SIDES], u64, Option<Hole>);
+type WhatIfAnswer = ([Option<ComparedSide>; nima_machine::rig::SIDES], u64, Option<JournalGap>);
 
 /// Compares, and writes the forces of both.
 fn with_forces(
-    journal: &dyn Fn() -> Opened,
+    journal: &dyn Fn() -> JournalOpening,
     session: &Path,
-    change: &Change,
+    change: &WhatIfChange,
     stretch_s: &Range<f64>,
     out: &Path,
-) -> anyhow::Result<Answer> {
+) -> anyhow::Result<WhatIfAnswer> {
     output::folder(out, &[FORCES], &[session])?;
     let path = out.join(FORCES);
     let mut answer = None;
@@ -125,7 +125,7 @@ fn with_forces(
         let compared = answer.insert(compared).as_ref();
         compared.map_or_else(|_| Err(io::Error::other("the session cannot be replayed")), |_| written)
     });
-    let compared: Answer = answer.transpose().with_context(|| session.display().to_string())?.unwrap_or_default();
+    let compared: WhatIfAnswer = answer.transpose().with_context(|| session.display().to_string())?.unwrap_or_default();
     written.with_context(|| format!("cannot write {}", path.display())).map(|()| compared)
 }
 
@@ -139,8 +139,8 @@ fn row(was: &Tick, would: &Tick) -> String {
     row + "\n"
 }
 
-fn in_words(change: &Change) -> String {
-    let Change { mode, delay_s, gain } = change;
+fn as_text(change: &WhatIfChange) -> String {
+    let WhatIfChange { mode, delay_s, gain } = change;
     let parts = [
         mode.map(|mode| format!("mode {mode}")),
         delay_s.map(|delay_s| format!("delay {:.0} ms", delay_s * 1e3)),
@@ -149,18 +149,18 @@ fn in_words(change: &Change) -> String {
     parts.into_iter().flatten().collect::<Vec<_>>().join(", ")
 }
 
-fn table(told: &Told<'_>) -> String {
-    let Told { session, changed, ticks, arms, ends_at_hole_after_tick, forces, limit } = told;
+fn table(report: &WhatIfReport<'_>) -> String {
+    let WhatIfReport { session, changed, ticks, arms, ends_at_hole_after_tick, forces, limit } = report;
     let mut text = format!("{}: {ticks} ticks with {changed}", session.display());
-    for Arm { side, engaged_ticks, in_one_engaged_only, difference, recorded_error, changed_error } in arms {
+    for WhatIfArm { side, engaged_ticks, in_one_engaged_only, difference, recorded_error, changed_error } in arms {
         let apart = match in_one_engaged_only {
             0 => String::new(),
             _ => format!(", {in_one_engaged_only} more engaged in only one of the two"),
         };
         write!(text, "\n{side} arm, {engaged_ticks} ticks engaged{apart}").ok();
-        text += &difference.in_words("rendered force, changed minus recorded");
-        text += &recorded_error.in_words("recorded, minus the force at the tip then");
-        text += &changed_error.in_words("changed, minus the force at the tip then");
+        text += &difference.as_text("rendered force, changed minus recorded");
+        text += &recorded_error.as_text("recorded, minus the force at the tip then");
+        text += &changed_error.as_text("changed, minus the force at the tip then");
     }
     if let Some(tick) = ends_at_hole_after_tick {
         write!(text, "\nthe recording has a gap after tick {tick}: the comparison ends there").ok();

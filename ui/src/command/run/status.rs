@@ -5,47 +5,47 @@ use std::{
     time::{Duration, Instant},
 };
 
-use nima_devices::Trouble;
+use nima_devices::DeviceError;
 use nima_machine::{
     messages::{LoopState, Tick},
-    runtime::Handle,
+    runtime::LoopHandle,
 };
 
-use crate::{telling::tell, words::newtons};
+use crate::{report_text::newtons, stderr::print_line};
 
 /// Reports why a device cannot be opened, once per cause.
 #[derive(Default)]
 pub(super) struct Troubles {
-    told: Vec<Option<Trouble>>,
+    report: Vec<Option<DeviceError>>,
     first: Option<String>,
     looked: Option<Instant>,
 }
 
 impl Troubles {
-    pub(super) fn look(&mut self, handle: &Handle, status: &StatusLine) {
+    pub(super) fn look(&mut self, handle: &LoopHandle, status: &StatusLine) {
         const LOOK_EVERY: Duration = Duration::from_millis(500);
         if self.looked.is_some_and(|looked| looked.elapsed() < LOOK_EVERY) {
             return;
         }
         self.looked = Some(Instant::now());
-        self.told.resize(handle.roster().len(), None);
+        self.report.resize(handle.roster().len(), None);
         self.first = None;
-        for (entry, told) in handle.roster().iter().zip(&mut self.told) {
+        for (entry, report) in handle.roster().iter().zip(&mut self.report) {
             let trouble = entry.view.report().trouble;
             if let Some(trouble) = &trouble {
                 let words = format!("{}: {trouble}. {}", entry.name(), trouble.cure());
-                if told.as_ref() != Some(trouble) {
-                    status.tell(&words);
+                if report.as_ref() != Some(trouble) {
+                    status.notify(&words);
                 }
                 self.first.get_or_insert(words);
             }
-            *told = trouble;
+            *report = trouble;
         }
     }
 
     /// The first missing device, with cause and remedy.
     pub(super) fn first(&self) -> Option<String> {
-        let others = self.told.iter().flatten().count().saturating_sub(1);
+        let others = self.report.iter().flatten().count().saturating_sub(1);
         let more = if others > 0 { format!(" (and {others} more)") } else { String::new() };
         self.first.as_ref().map(|first| format!("{first}{more}"))
     }
@@ -95,17 +95,17 @@ impl StatusLine {
     }
 
     /// Prints a permanent line above the status line.
-    pub(super) fn tell(&self, line: &str) {
+    pub(super) fn notify(&self, line: &str) {
         if self.wanted && self.terminal && self.last.is_some() {
-            tell(format_args!("\r\x1b[K{line}"));
+            print_line(format_args!("\r\x1b[K{line}"));
         } else {
-            tell(line);
+            print_line(line);
         }
     }
 
     pub(super) fn end(&self) {
         if self.wanted && self.terminal && self.last.is_some() {
-            tell("");
+            print_line("");
         }
     }
 }

@@ -7,7 +7,7 @@ use std::collections::VecDeque;
 
 use nima_recording::store::utc_now;
 
-use super::{Alarm, Kind, Priority};
+use super::{Alarm, AlarmKind, AlarmPriority};
 
 /// Number of alarms stored.
 pub const KEPT: usize = 50;
@@ -16,7 +16,7 @@ const SAME_S: f64 = 5.0;
 
 /// A time on three clocks.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Moment {
+pub struct AlarmMoment {
     /// Hours, minutes and seconds, UTC.
     pub utc: String,
     /// Time on the loop's clock, s; `None` before the loop has sent anything.
@@ -25,7 +25,7 @@ pub struct Moment {
     pub window_s: f64,
 }
 
-impl Moment {
+impl AlarmMoment {
     pub fn now(loop_s: Option<f64>, window_s: f64) -> Self {
         let utc = utc_now().get(11..19).unwrap_or_default().to_owned();
         Self { utc, loop_s, window_s }
@@ -33,24 +33,24 @@ impl Moment {
 }
 
 #[derive(Clone, Debug, PartialEq)]
-pub struct Entry {
+pub struct AlarmEntry {
     pub alarm: Alarm,
     /// Time at which its cause appeared.
-    pub began: Moment,
+    pub began: AlarmMoment,
     /// Time at which its cause ended; `None` while it is active.
-    pub ended: Option<Moment>,
+    pub ended: Option<AlarmMoment>,
     pub acknowledged: bool,
 }
 
 /// Recent alarms, oldest first.
 #[derive(Clone, Debug, Default)]
 pub struct AlarmLog {
-    entries: VecDeque<Entry>,
+    entries: VecDeque<AlarmEntry>,
 }
 
 impl AlarmLog {
-    pub fn update(&mut self, alarms: &[Alarm], now: &Moment) {
-        let is_wrong = |kind: Kind| alarms.iter().find(|alarm| alarm.kind == kind);
+    pub fn update(&mut self, alarms: &[Alarm], now: &AlarmMoment) {
+        let is_wrong = |kind: AlarmKind| alarms.iter().find(|alarm| alarm.kind == kind);
         for entry in self.entries.iter_mut().filter(|entry| entry.ended.is_none()) {
             match is_wrong(entry.alarm.kind) {
                 Some(alarm) => entry.alarm.clone_from(alarm),
@@ -68,7 +68,7 @@ impl AlarmLog {
                 _ => {
                     let alarm = alarm.clone();
                     let began = now.clone();
-                    self.entries.push_back(Entry { alarm, began, ended: None, acknowledged: false });
+                    self.entries.push_back(AlarmEntry { alarm, began, ended: None, acknowledged: false });
                 }
             }
         }
@@ -80,13 +80,13 @@ impl AlarmLog {
     }
 
     /// Active alarms: the most urgent first; of the same urgency, the earliest first.
-    pub fn live(&self) -> Vec<&Entry> {
-        let mut live: Vec<&Entry> = self.entries.iter().filter(|entry| entry.ended.is_none()).collect();
+    pub fn live(&self) -> Vec<&AlarmEntry> {
+        let mut live: Vec<&AlarmEntry> = self.entries.iter().filter(|entry| entry.ended.is_none()).collect();
         live.sort_by_key(|entry| entry.alarm.priority);
         live
     }
 
-    pub fn newest_first(&self) -> impl Iterator<Item = &Entry> {
+    pub fn newest_first(&self) -> impl Iterator<Item = &AlarmEntry> {
         self.entries.iter().rev()
     }
 
@@ -101,11 +101,11 @@ impl AlarmLog {
 
     /// The priority that requires flashing and sound; `None` if all active alarms are acknowledged, less urgent than an
     /// acknowledged one, or of low priority.
-    pub fn calls(&self) -> Option<Priority> {
+    pub fn calls(&self) -> Option<AlarmPriority> {
         let live = self.live();
         let seen = live.iter().filter(|entry| entry.acknowledged).map(|entry| entry.alarm.priority).min();
         let unseen = live.iter().filter(|entry| !entry.acknowledged).map(|entry| entry.alarm.priority).min();
-        unseen.filter(|unseen| *unseen < Priority::Low && seen.is_none_or(|seen| *unseen <= seen))
+        unseen.filter(|unseen| *unseen < AlarmPriority::Low && seen.is_none_or(|seen| *unseen <= seen))
     }
 }
 
@@ -115,36 +115,36 @@ mod tests {
 
     use super::*;
 
-    fn alarm(kind: Kind, priority: Priority) -> Alarm {
+    fn alarm(kind: AlarmKind, priority: AlarmPriority) -> Alarm {
         Alarm { kind, priority, cause: format!("{kind:?}"), cure: "wait".to_owned() }
     }
 
-    fn at(window_s: f64) -> Moment {
-        Moment { utc: "12:00:00".to_owned(), loop_s: Some(window_s), window_s }
+    fn at(window_s: f64) -> AlarmMoment {
+        AlarmMoment { utc: "12:00:00".to_owned(), loop_s: Some(window_s), window_s }
     }
 
     fn fault() -> Alarm {
-        alarm(Kind::Fault(Fault::SourceSilent), Priority::High)
+        alarm(AlarmKind::Fault(Fault::SourceSilent), AlarmPriority::High)
     }
 
     #[test]
     fn the_first_fault_stays_first_and_a_more_urgent_one_goes_before_it() {
-        let missed = alarm(Kind::Missed, Priority::Medium);
-        let bias = alarm(Kind::BiasMoved, Priority::Medium);
+        let missed = alarm(AlarmKind::Missed, AlarmPriority::Medium);
+        let bias = alarm(AlarmKind::BiasMoved, AlarmPriority::Medium);
         let mut log = AlarmLog::default();
         log.update(std::slice::from_ref(&bias), &at(1.0));
         log.update(&[missed.clone(), bias.clone()], &at(2.0));
         let kinds = |log: &AlarmLog| log.live().iter().map(|entry| entry.alarm.kind).collect::<Vec<_>>();
-        assert_eq!(kinds(&log), [Kind::BiasMoved, Kind::Missed]);
+        assert_eq!(kinds(&log), [AlarmKind::BiasMoved, AlarmKind::Missed]);
         log.update(&[fault(), missed, bias], &at(3.0));
-        assert_eq!(kinds(&log), [fault().kind, Kind::BiasMoved, Kind::Missed]);
+        assert_eq!(kinds(&log), [fault().kind, AlarmKind::BiasMoved, AlarmKind::Missed]);
     }
 
     #[test]
     fn an_acknowledgement_silences_and_never_clears() {
         let mut log = AlarmLog::default();
         log.update(&[fault()], &at(1.0));
-        assert_eq!(log.calls(), Some(Priority::High));
+        assert_eq!(log.calls(), Some(AlarmPriority::High));
         log.acknowledge();
         log.update(&[fault()], &at(2.0));
         assert_eq!((log.calls(), log.live().len()), (None, 1));
@@ -153,16 +153,16 @@ mod tests {
 
     #[test]
     fn what_is_new_calls_again_only_when_it_is_as_urgent() {
-        let missed = alarm(Kind::Missed, Priority::Medium);
+        let missed = alarm(AlarmKind::Missed, AlarmPriority::Medium);
         let mut log = AlarmLog::default();
         log.update(std::slice::from_ref(&missed), &at(1.0));
         log.acknowledge();
-        let bias = alarm(Kind::BiasMoved, Priority::Medium);
+        let bias = alarm(AlarmKind::BiasMoved, AlarmPriority::Medium);
         log.update(&[missed.clone(), bias.clone()], &at(2.0));
-        assert_eq!(log.calls(), Some(Priority::Medium), "the same priority");
+        assert_eq!(log.calls(), Some(AlarmPriority::Medium), "the same priority");
         log.acknowledge();
         log.update(&[fault(), missed.clone(), bias.clone()], &at(3.0));
-        assert_eq!(log.calls(), Some(Priority::High), "a higher one");
+        assert_eq!(log.calls(), Some(AlarmPriority::High), "a higher one");
         let mut log = AlarmLog::default();
         log.update(&[fault()], &at(1.0));
         log.acknowledge();
@@ -174,13 +174,13 @@ mod tests {
     #[test]
     fn a_low_priority_never_flashes_or_sounds() {
         let mut log = AlarmLog::default();
-        log.update(&[alarm(Kind::Scheduling, Priority::Low)], &at(1.0));
+        log.update(&[alarm(AlarmKind::Scheduling, AlarmPriority::Low)], &at(1.0));
         assert_eq!(log.calls(), None);
     }
 
     #[test]
     fn what_flickers_is_one_alarm_and_what_comes_back_later_a_new_one() {
-        let missed = alarm(Kind::Missed, Priority::Medium);
+        let missed = alarm(AlarmKind::Missed, AlarmPriority::Medium);
         let mut log = AlarmLog::default();
         log.update(std::slice::from_ref(&missed), &at(1.0));
         log.acknowledge();
@@ -190,13 +190,13 @@ mod tests {
         assert_eq!((log.calls(), log.newest_first().count()), (None, 1));
         log.update(&[], &at(4.0));
         log.update(&[missed], &at(20.0));
-        assert_eq!((log.calls(), log.newest_first().count()), (Some(Priority::Medium), 2));
+        assert_eq!((log.calls(), log.newest_first().count()), (Some(AlarmPriority::Medium), 2));
     }
 
     #[test]
     fn the_log_keeps_the_last_and_never_loses_what_lives() {
         let mut log = AlarmLog::default();
-        let missed = alarm(Kind::Missed, Priority::Medium);
+        let missed = alarm(AlarmKind::Missed, AlarmPriority::Medium);
         log.update(&[fault()], &at(0.0));
         for i in 1..200 {
             let t_s = f64::from(i) * 20.0;

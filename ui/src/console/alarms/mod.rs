@@ -11,12 +11,12 @@ use egui::Color32;
 use nima_machine::messages::{Fault, LoopState, Scheduling};
 
 use super::theme;
-use crate::words::lack_words;
-use crate::{console::text, words::Remedy as _};
+use crate::report_text::lack_text;
+use crate::{console::text, report_text::Remedy as _};
 
 /// Urgency by IEC 60601-1-8.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Priority {
+pub enum AlarmPriority {
     /// Act now. Red, flashing twice per second.
     High,
     /// Act soon. Yellow, flashing every 1.5 s.
@@ -25,7 +25,7 @@ pub enum Priority {
     Low,
 }
 
-impl Priority {
+impl AlarmPriority {
     /// Colour at this time on the dark background of alarms; flashing dims it but never hides it. Acknowledged alarms
     /// and those of low priority do not flash.
     pub fn colour(self, time_s: f64, flashes: bool) -> Color32 {
@@ -65,7 +65,7 @@ impl Priority {
 
 /// Kind of an alarm: an alarm whose figures change keeps its kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum AlarmKind {
     /// A stop did not reach the loop.
     StopStuck,
     /// A fault stopped the loop.
@@ -88,7 +88,7 @@ pub enum Kind {
     Unrecorded,
 }
 
-impl Kind {
+impl AlarmKind {
     /// Whether its text may contain a name given by a person, such as that of a folder.
     pub const fn has_names(self) -> bool {
         match self {
@@ -107,8 +107,8 @@ impl Kind {
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Alarm {
-    pub kind: Kind,
-    pub priority: Priority,
+    pub kind: AlarmKind,
+    pub priority: AlarmPriority,
     /// Cause, with its time if known.
     pub cause: String,
     /// Remedy.
@@ -117,7 +117,7 @@ pub struct Alarm {
 
 /// A required device that does not deliver.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Missing {
+pub struct MissingDevice {
     pub place: usize,
     /// Its name in the roster.
     pub name: String,
@@ -133,7 +133,7 @@ pub struct Missing {
 #[derive(Clone, Debug, Default)]
 pub struct Signs {
     /// Missing devices, in the order of the roster.
-    pub missing: Vec<Missing>,
+    pub missing: Vec<MissingDevice>,
     /// State of the loop as last seen.
     pub state: Option<LoopState>,
     /// The first fault since the last release, and its time (s on the loop's clock).
@@ -143,7 +143,7 @@ pub struct Signs {
     /// Time since the last tick.
     pub silence: Duration,
     /// Fraction of periods missed in the last seconds, 0 to 1.
-    pub missed_share: f64,
+    pub missed_fraction: f64,
     /// Real-time privileges that the operating system granted, once known.
     pub scheduling: Option<Scheduling>,
     /// A stop could not be sent to the loop.
@@ -161,84 +161,84 @@ pub struct Signs {
 /// Ticks arrive every few milliseconds; half a second without one is an alarm.
 const SILENCE_MAX: Duration = Duration::from_millis(500);
 /// A hand feels more than one missed period in a hundred as roughness.
-const MISSED_SHARE_MAX: f64 = 0.01;
+const MISSED_FRACTION_MAX: f64 = 0.01;
 
 /// All alarms, most urgent first.
 pub fn judge(signs: &Signs) -> Vec<Alarm> {
     let mut alarms = Vec::new();
     if signs.stop_is_stuck {
         alarms.push(Alarm {
-            kind: Kind::StopStuck,
-            priority: Priority::High,
+            kind: AlarmKind::StopStuck,
+            priority: AlarmPriority::High,
             cause: text::alarms::STOP_STUCK_CAUSE.get().to_owned(),
             cure: text::alarms::STOP_STUCK_CURE.get().to_owned(),
         });
     }
     if let (Some(LoopState::Faulted(_)), Some((t_s, fault))) = (signs.state, signs.first_fault) {
         alarms.push(Alarm {
-            kind: Kind::Fault(fault),
-            priority: Priority::High,
+            kind: AlarmKind::Fault(fault),
+            priority: AlarmPriority::High,
             cause: text::alarms::fault(&cause_of(fault, signs), t_s),
             cure: fault.cure().to_owned(),
         });
     }
     if !signs.running || (signs.state.is_some() && signs.silence > SILENCE_MAX) {
         alarms.push(Alarm {
-            kind: Kind::Silence,
-            priority: Priority::High,
+            kind: AlarmKind::Silence,
+            priority: AlarmPriority::High,
             cause: text::alarms::LOOP_SILENT_CAUSE.get().to_owned(),
             cure: text::alarms::LOOP_SILENT_CURE.get().to_owned(),
         });
     }
     alarms.extend(signs.missing.iter().map(missing));
-    if signs.missed_share > MISSED_SHARE_MAX {
+    if signs.missed_fraction > MISSED_FRACTION_MAX {
         // While no side is driven, no hand can feel missed periods. They then rank below the reasons why the arm cannot be
         // engaged.
         let driven = signs.state.is_none_or(|state| state.permits().drives);
         alarms.push(Alarm {
-            kind: Kind::Missed,
-            priority: if driven { Priority::Medium } else { Priority::Low },
-            cause: text::alarms::periods_missed(100.0 * signs.missed_share),
+            kind: AlarmKind::Missed,
+            priority: if driven { AlarmPriority::Medium } else { AlarmPriority::Low },
+            cause: text::alarms::periods_missed(100.0 * signs.missed_fraction),
             cure: text::alarms::PERIODS_MISSED_CURE.get().to_owned(),
         });
     }
     if let Some(by_n) = signs.bias_moved_n {
         alarms.push(Alarm {
-            kind: Kind::BiasMoved,
-            priority: Priority::Medium,
+            kind: AlarmKind::BiasMoved,
+            priority: AlarmPriority::Medium,
             cause: text::alarms::bias_moved(by_n),
             cure: text::alarms::BIAS_MOVED_CURE.get().to_owned(),
         });
     }
     if let Some(lack) = signs.scheduling.and_then(|granted| granted.lack()) {
-        let [cause, cure] = lack_words(lack);
+        let [cause, cure] = lack_text(lack);
         alarms.push(Alarm {
-            kind: Kind::Scheduling,
-            priority: Priority::Low,
+            kind: AlarmKind::Scheduling,
+            priority: AlarmPriority::Low,
             cause: sentence(cause),
             cure: sentence(cure),
         });
     }
     if signs.is_unchecked {
         alarms.push(Alarm {
-            kind: Kind::Unchecked,
-            priority: Priority::Low,
+            kind: AlarmKind::Unchecked,
+            priority: AlarmPriority::Low,
             cause: text::alarms::UNCHECKED_CAUSE.get().to_owned(),
             cure: text::alarms::UNCHECKED_CURE.get().to_owned(),
         });
     }
     if let Some([cause, cure]) = signs.question {
         alarms.push(Alarm {
-            kind: Kind::Question,
-            priority: Priority::Low,
+            kind: AlarmKind::Question,
+            priority: AlarmPriority::Low,
             cause: cause.to_owned(),
             cure: cure.to_owned(),
         });
     }
     if let Some(why) = &signs.unrecorded {
         alarms.push(Alarm {
-            kind: Kind::Unrecorded,
-            priority: Priority::Low,
+            kind: AlarmKind::Unrecorded,
+            priority: AlarmPriority::Low,
             cause: text::sessions::cause(why),
             cure: text::sessions::CURE.get().to_owned(),
         });
@@ -247,11 +247,11 @@ pub fn judge(signs: &Signs) -> Vec<Alarm> {
     alarms
 }
 
-fn missing(device: &Missing) -> Alarm {
+fn missing(device: &MissingDevice) -> Alarm {
     let words = if device.was_there { text::alarms::device_lost } else { text::alarms::device };
     Alarm {
-        kind: Kind::Device(device.place),
-        priority: Priority::Medium,
+        kind: AlarmKind::Device(device.place),
+        priority: AlarmPriority::Medium,
         cause: words(&device.name, &device.cause),
         cure: device.cure.clone(),
     }
@@ -289,7 +289,7 @@ mod tests {
         let alarms = judge(&Signs {
             state: Some(LoopState::Faulted(fault)),
             first_fault: Some((12.34, fault)),
-            missed_share: 0.05,
+            missed_fraction: 0.05,
             bias_moved_n: Some(0.41),
             scheduling: Some(Scheduling::default()),
             ..healthy()
@@ -297,13 +297,13 @@ mod tests {
         assert!(alarms.is_sorted_by_key(|alarm| alarm.priority));
         assert!(alarms[0].cause.contains(fault.cause()) && alarms[0].cause.contains("12.3 s"));
         assert!(alarms.iter().all(|alarm| !alarm.cure.is_empty()), "{alarms:?}");
-        assert!(alarms.iter().any(|alarm| alarm.priority == Priority::Medium && alarm.cause.contains("0.41 N")));
+        assert!(alarms.iter().any(|alarm| alarm.priority == AlarmPriority::Medium && alarm.cause.contains("0.41 N")));
         assert_eq!(alarms.len(), 4);
     }
 
     #[test]
     fn a_missing_device_stands_before_the_periods_that_its_absence_costs() {
-        let device = Missing {
+        let device = MissingDevice {
             place: 1,
             name: "right arm".to_owned(),
             was_there: false,
@@ -312,21 +312,21 @@ mod tests {
         };
         let signs = Signs {
             state: Some(LoopState::Disconnected),
-            missed_share: 0.05,
+            missed_fraction: 0.05,
             missing: vec![device],
             scheduling: Some(Scheduling::default()),
             ..healthy()
         };
         let mut log = log::AlarmLog::default();
         // The missed periods come first here.
-        log.update(&judge(&Signs { missing: Vec::new(), ..signs.clone() }), &log::Moment::now(None, 0.0));
-        log.update(&judge(&signs), &log::Moment::now(None, 1.0));
+        log.update(&judge(&Signs { missing: Vec::new(), ..signs.clone() }), &log::AlarmMoment::now(None, 0.0));
+        log.update(&judge(&signs), &log::AlarmMoment::now(None, 1.0));
         let pinned = &log.live()[0].alarm;
-        assert_eq!(pinned.kind, Kind::Device(1), "{pinned:?}");
+        assert_eq!(pinned.kind, AlarmKind::Device(1), "{pinned:?}");
         assert!(pinned.cause.contains("right arm") && pinned.cause.contains("127.0.0.1:47100"), "{pinned:?}");
         assert!(pinned.cure.contains("port number"), "{pinned:?}");
         let engaged = judge(&Signs { state: Some(LoopState::Engaged), missing: Vec::new(), ..signs });
-        assert_eq!(engaged[0].priority, Priority::Medium, "an engaged hand feels missed periods");
+        assert_eq!(engaged[0].priority, AlarmPriority::Medium, "an engaged hand feels missed periods");
     }
 
     #[test]
@@ -344,14 +344,14 @@ mod tests {
     fn flashing_never_hides_and_low_is_steady() {
         for i in 0..100 {
             let time_s = f64::from(i) * 0.05;
-            assert_eq!(Priority::Low.colour(time_s, true), theme::DARK.alarm_low);
-            assert!(Priority::High.colour(time_s, true).a() > 0);
-            assert_eq!(Priority::High.colour(time_s, false), theme::DARK.alarm_high, "acknowledged: steady");
+            assert_eq!(AlarmPriority::Low.colour(time_s, true), theme::DARK.alarm_low);
+            assert!(AlarmPriority::High.colour(time_s, true).a() > 0);
+            assert_eq!(AlarmPriority::High.colour(time_s, false), theme::DARK.alarm_high, "acknowledged: steady");
         }
-        assert_ne!(Priority::High.colour(0.1, true), Priority::High.colour(0.3, true));
-        assert!((1.4..=2.8).contains(&Priority::High.flash_hz().unwrap()));
-        assert!((0.4..=0.8).contains(&Priority::Medium.flash_hz().unwrap()));
-        for priority in [Priority::High, Priority::Medium] {
+        assert_ne!(AlarmPriority::High.colour(0.1, true), AlarmPriority::High.colour(0.3, true));
+        assert!((1.4..=2.8).contains(&AlarmPriority::High.flash_hz().unwrap()));
+        assert!((0.4..=0.8).contains(&AlarmPriority::Medium.flash_hz().unwrap()));
+        for priority in [AlarmPriority::High, AlarmPriority::Medium] {
             for i in 0..100 {
                 let time_s = 0.013 + f64::from(i) * 0.07;
                 let change_s = time_s + priority.until_change_s(time_s).unwrap();
@@ -359,6 +359,6 @@ mod tests {
                 assert_ne!(priority.colour(time_s, true), priority.colour(change_s + 1e-6, true));
             }
         }
-        assert_eq!(Priority::Low.until_change_s(1.0), None);
+        assert_eq!(AlarmPriority::Low.until_change_s(1.0), None);
     }
 }

@@ -13,7 +13,7 @@ use std::{
 
 use tempfile::TempDir;
 
-use super::Priority;
+use super::AlarmPriority;
 
 /// Programs that play the file that their last argument names, the most common first.
 const PLAYERS: &[&str] = if cfg!(windows) {
@@ -41,7 +41,7 @@ pub struct Sound {
     bursts: Option<TempDir>,
     playing: Option<Child>,
     /// Priority of the last burst, and its time, s on the window's clock.
-    last: Option<(Priority, f64)>,
+    last: Option<(AlarmPriority, f64)>,
     failure: Option<String>,
 }
 
@@ -66,7 +66,7 @@ impl Sound {
     }
 
     /// Plays a burst when one is due; call in each frame with the priority that requires a sound.
-    pub fn step(&mut self, calls: Option<Priority>, time_s: f64) {
+    pub fn step(&mut self, calls: Option<AlarmPriority>, time_s: f64) {
         if let Some(Ok(Some(status))) = self.playing.as_mut().map(Child::try_wait) {
             self.playing = None;
             self.failure = (!status.success()).then(|| text::alarms::player_failed(&status));
@@ -75,7 +75,7 @@ impl Sound {
             self.last = None;
             return;
         };
-        let every_s = if priority == Priority::High { HIGH_EVERY_S } else { MEDIUM_EVERY_S };
+        let every_s = if priority == AlarmPriority::High { HIGH_EVERY_S } else { MEDIUM_EVERY_S };
         let due = self.last.is_none_or(|(last, at_s)| last != priority || time_s - at_s >= every_s);
         if !due || self.playing.is_some() {
             return;
@@ -96,7 +96,7 @@ impl Sound {
         }
     }
 
-    fn play(&mut self, player: &Path, priority: Priority) -> io::Result<Child> {
+    fn play(&mut self, player: &Path, priority: AlarmPriority) -> io::Result<Child> {
         let folder = match self.bursts.take() {
             Some(folder) => folder,
             None => bursts()?,
@@ -125,33 +125,33 @@ fn find(mut folders: impl Iterator<Item = PathBuf>) -> Option<PathBuf> {
 /// Creates the files of both bursts.
 fn bursts() -> io::Result<TempDir> {
     let folder = tempfile::tempdir()?;
-    for priority in [Priority::High, Priority::Medium] {
+    for priority in [AlarmPriority::High, AlarmPriority::Medium] {
         std::fs::write(folder.path().join(file_of(priority)), wav(&burst(priority)))?;
     }
     Ok(folder)
 }
 
-const fn file_of(priority: Priority) -> &'static str {
+const fn file_of(priority: AlarmPriority) -> &'static str {
     match priority {
-        Priority::High => "high.wav",
-        Priority::Medium | Priority::Low => "medium.wav",
+        AlarmPriority::High => "high.wav",
+        AlarmPriority::Medium | AlarmPriority::Low => "medium.wav",
     }
 }
 
 /// Start of each pulse of a burst, and its duration, s.
-fn pulses(priority: Priority) -> (Vec<f64>, f64) {
+fn pulses(priority: AlarmPriority) -> (Vec<f64>, f64) {
     match priority {
-        Priority::High => {
+        AlarmPriority::High => {
             let five = [0.0, 0.2, 0.4, 0.75, 0.95];
             (five.iter().copied().chain(five.iter().map(|t_s| t_s + 1.75)).collect(), 0.12)
         }
-        Priority::Medium | Priority::Low => (vec![0.0, 0.4, 0.8], 0.2),
+        AlarmPriority::Medium | AlarmPriority::Low => (vec![0.0, 0.4, 0.8], 0.2),
     }
 }
 
 /// Samples of a burst, -1 to 1: a tone with four harmonics, which is easier to locate than a pure tone.
-fn burst(priority: Priority) -> Vec<f64> {
-    let tone_hz = if priority == Priority::High { 660.0 } else { 440.0 };
+fn burst(priority: AlarmPriority) -> Vec<f64> {
+    let tone_hz = if priority == AlarmPriority::High { 660.0 } else { 440.0 };
     let (starts_s, length_s) = pulses(priority);
     let ends_s = starts_s.last().copied().unwrap_or_default() + length_s + 0.05;
     let samples = (ends_s * f64::from(RATE_HZ)) as usize;
@@ -198,27 +198,27 @@ mod tests {
     use super::*;
 
     /// Number of pulses in a burst: sound separated by at least 30 ms of silence.
-    fn pulses_heard(samples: &[f64]) -> usize {
+    fn pulses_received(samples: &[f64]) -> usize {
         let quiet = (0.03 * f64::from(RATE_HZ)) as usize;
-        let mut heard = 0;
+        let mut received = 0;
         let mut silent = quiet;
         for sample in samples {
             if sample.abs() > 0.05 {
-                heard += usize::from(silent >= quiet);
+                received += usize::from(silent >= quiet);
                 silent = 0;
             } else {
                 silent += 1;
             }
         }
-        heard
+        received
     }
 
     #[test]
     fn high_is_ten_pulses_and_medium_three_and_neither_is_clipped() {
-        for (priority, expected) in [(Priority::High, 10), (Priority::Medium, 3)] {
+        for (priority, expected) in [(AlarmPriority::High, 10), (AlarmPriority::Medium, 3)] {
             let samples = burst(priority);
-            assert_eq!(pulses_heard(&samples), expected, "{priority:?}");
-            let loudest = samples.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+            assert_eq!(pulses_received(&samples), expected, "{priority:?}");
+            let loudest = samples.iter().fold(0.0_f64, |max, x| max.max(x.abs()));
             assert!((0.3..1.0).contains(&loudest), "{loudest}");
             assert_eq!(wav(&samples).len(), 44 + 2 * samples.len());
         }
@@ -231,12 +231,12 @@ mod tests {
         use std::os::unix::fs::PermissionsExt as _;
         let folder = tempfile::tempdir().unwrap();
         let player = folder.path().join("aplay");
-        let told = folder.path().join("told");
+        let report = folder.path().join("told");
         let set = |script: &str| {
             std::fs::write(&player, script).unwrap();
             std::fs::set_permissions(&player, std::fs::Permissions::from_mode(0o755)).unwrap();
         };
-        set(&format!("#!/bin/sh\necho \"$(basename $1) $(wc -c < $1)\" >> {}\n", told.display()));
+        set(&format!("#!/bin/sh\necho \"$(basename $1) $(wc -c < $1)\" >> {}\n", report.display()));
         let mut sound = Sound::of(&[folder.path()]);
         assert_eq!(sound.trouble(), None);
         let finish = |sound: &mut Sound, calls, time_s| {
@@ -244,18 +244,21 @@ mod tests {
             sound.playing.iter_mut().for_each(|child| drop(child.wait()));
             sound.step(calls, time_s);
         };
-        for (calls, time_s) in
-            [(Priority::Medium, 0.0), (Priority::Medium, 1.0), (Priority::High, 2.0), (Priority::High, 8.5)]
-        {
+        for (calls, time_s) in [
+            (AlarmPriority::Medium, 0.0),
+            (AlarmPriority::Medium, 1.0),
+            (AlarmPriority::High, 2.0),
+            (AlarmPriority::High, 8.5),
+        ] {
             finish(&mut sound, Some(calls), time_s);
         }
-        let played = std::fs::read_to_string(&told).unwrap();
+        let played = std::fs::read_to_string(&report).unwrap();
         let names: Vec<&str> = played.lines().filter_map(|line| line.split(' ').next()).collect();
         assert_eq!(names, ["medium.wav", "high.wav", "high.wav"], "not twice within a burst's period");
         finish(&mut sound, None, 20.0);
-        assert_eq!(std::fs::read_to_string(&told).unwrap(), played, "acknowledged: silent");
+        assert_eq!(std::fs::read_to_string(&report).unwrap(), played, "acknowledged: silent");
         set("#!/bin/sh\nexit 3\n");
-        finish(&mut sound, Some(Priority::High), 30.0);
+        finish(&mut sound, Some(AlarmPriority::High), 30.0);
         assert!(sound.trouble().unwrap().contains("could not be played"));
         let empty = tempfile::tempdir().unwrap();
         assert!(Sound::of(&[empty.path()]).trouble().unwrap().contains("No alarm sound: none"));

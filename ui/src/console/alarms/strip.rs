@@ -11,7 +11,7 @@ use egui::{
 
 use super::{
     Signs, judge,
-    log::{AlarmLog, Entry, Moment},
+    log::{AlarmEntry, AlarmLog, AlarmMoment},
     sound::Sound,
 };
 use crate::console::{
@@ -36,7 +36,7 @@ impl Alarms {
     /// Updates the alarms, plays their sound if enabled, and shows the strip; `loop_s` is the time on the loop's clock.
     pub fn strip_ui(&mut self, ui: &mut Ui, signs: &Signs, loop_s: Option<f64>, sounds: bool) {
         let time_s = ui.input(|input| input.time);
-        self.log.update(&judge(signs), &Moment::now(loop_s, time_s));
+        self.log.update(&judge(signs), &AlarmMoment::now(loop_s, time_s));
         let calls = self.log.calls();
         self.sound.step(calls.filter(|_| sounds), time_s);
         let live = self.log.live();
@@ -102,7 +102,7 @@ impl Alarms {
 }
 
 /// The alarm in the strip; returns true if it was clicked.
-fn words_ui(ui: &mut Ui, first: &Entry, others: usize, colour: Color32) -> bool {
+fn words_ui(ui: &mut Ui, first: &AlarmEntry, others: usize, colour: Color32) -> bool {
     let (rect, _) = ui.allocate_exact_size(vec2(24.0, 30.0), Sense::hover());
     sign(ui.painter(), Sign::Triangle, rect.center(), 9.0, colour);
     let width = (ui.available_width() - BUTTONS).max(240.0);
@@ -121,10 +121,10 @@ fn words_ui(ui: &mut Ui, first: &Entry, others: usize, colour: Color32) -> bool 
     ui.interact(words.response.rect, ui.scope_id().with("alarm"), Sense::CLICK).clicked()
 }
 
-fn entry_ui(ui: &mut Ui, entry: &Entry) {
-    let Entry { alarm, began, ended, acknowledged } = entry;
+fn entry_ui(ui: &mut Ui, entry: &AlarmEntry) {
+    let AlarmEntry { alarm, began, ended, acknowledged } = entry;
     let ink = if ended.is_none() { theme::now().text } else { theme::now().text_weak };
-    let at = |moment: &Moment| {
+    let at = |moment: &AlarmMoment| {
         moment.loop_s.map_or_else(|| moment.utc.clone(), |loop_s| format!("{} ({loop_s:.1} s)", moment.utc))
     };
     let until = ended.as_ref().map_or_else(|| text::alarms::NOW.get().to_owned(), &at);

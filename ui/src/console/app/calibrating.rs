@@ -10,20 +10,20 @@ use nima_simulation::{scene::Scene, screen::Screen};
 
 use super::ConsoleApp;
 use crate::console::{
-    desk::Panel as Tile,
     overview::{following, overview},
-    panels::{CalibrationWish, Page, calibrations_ui},
+    panels::{CalibrationPage, CalibrationWish, calibrations_ui},
     reader::task_of,
     text, theme,
+    tiles::Panel as Tile,
     widgets::card,
-    wizards::{Asked, Binding, GoOn, Saving, Wanted, Which, Wizards},
+    wizards::{Binding, CalibrationTarget, GoOn, SaveRequest, WizardKind, WizardPageRequest, Wizards},
 };
 
 impl ConsoleApp {
     /// Opens a wizard. A simulated rig changes to the wizard's scene, in which a simulated person guides the arm; the arm of
     /// a rig with devices has a technician.
-    pub(super) fn open_wizard(&mut self, which: Which) {
-        let side = self.in_force.side();
+    pub(super) fn open_wizard(&mut self, which: WizardKind) {
+        let side = self.active.side();
         let Some(scene) = which.scene().filter(|_| self.live.rig.devices.is_none()) else {
             // A simulated rig has no arm with joints: the wizard reports it.
             let rests = matches!(self.live.state(), LoopState::Idle | LoopState::Disconnected)
@@ -32,7 +32,7 @@ impl ConsoleApp {
             let scene = self.live.scene.clone();
             match if rests { Ok(()) } else { self.restart(rig, scene) } {
                 Ok(()) => self.wizards.open = Some(which),
-                Err(reason) => self.in_force.tell(text::calibrations::not_opened(&reason)),
+                Err(reason) => self.active.notify(text::calibrations::not_opened(&reason)),
             }
             return;
         };
@@ -46,7 +46,7 @@ impl ConsoleApp {
         };
         match opened {
             Ok(()) => self.wizards.open = Some(which),
-            Err(reason) => self.in_force.tell(text::calibrations::not_opened(&reason)),
+            Err(reason) => self.active.notify(text::calibrations::not_opened(&reason)),
         }
     }
 
@@ -64,19 +64,19 @@ impl ConsoleApp {
         self.close_check();
         self.listing.close();
         let Some(scene) = self.watched.take() else {
-            self.outbox.push(Command::Prompt(self.in_force.side(), Prompt::Rest));
+            self.outbox.push(Command::Prompt(self.active.side(), Prompt::Rest));
             return;
         };
         if let Err(reason) = self.restart(self.live.rig.clone(), scene.clone()) {
             self.watched = Some(scene);
-            self.in_force.tell(text::calibrations::still_in_the_experiment(&reason));
+            self.active.notify(text::calibrations::still_in_the_experiment(&reason));
         }
     }
 
     /// Selects the wrist sensor of the other arm: data of one sensor must not be mixed with another's.
     fn choose_arm(&mut self, side: Side) {
-        self.outbox.push(Command::Prompt(self.in_force.side(), Prompt::Rest));
-        self.in_force.choose(side);
+        self.outbox.push(Command::Prompt(self.active.side(), Prompt::Rest));
+        self.active.choose(side);
         self.forget_what_was_taken();
         if let Some(which) = self.wizards.open.take() {
             self.open_wizard(which);
@@ -89,30 +89,30 @@ impl ConsoleApp {
     }
 
     /// Saves a calibration and activates it.
-    pub(super) fn save(&mut self, saving: Saving) {
+    pub(super) fn save(&mut self, saving: SaveRequest) {
         let saved = self.saved(saving);
         // Read before the restart: afterwards the sensor must be opened first.
         let following = saved.as_ref().ok().and_then(|(rig, _)| self.following(rig));
-        let told = match saved {
+        let report = match saved {
             Ok((rig, words)) => match self.restart(rig, self.live.scene.clone()) {
                 Ok(()) => Ok(words),
-                Err(reason) => Ok(text::calibrations::in_force_with_next_start(&words, &reason)),
+                Err(reason) => Ok(text::calibrations::active_after_restart(&words, &reason)),
             },
             Err(reason) => Err(text::calibrations::not_saved(&reason)),
         };
-        self.wizards.tell_saved(told, following);
+        self.wizards.report_saved(report, following);
     }
 
     /// The step after the open calibration on this rig; a simulated rig needs no ready check.
     fn following(&self, rig: &RigConfig) -> Option<GoOn> {
-        let arms = overview(&self.in_force, rig, &self.running.rig);
-        let wanted = following(&arms, self.wizards.wanted(self.in_force.side()));
+        let arms = overview(&self.active, rig, &self.running.rig);
+        let wanted = following(&arms, self.wizards.wanted(self.active.side()));
         wanted.map(GoOn::Calibrate).or(rig.devices.as_ref().map(|_| GoOn::Check))
     }
 
     /// Opens the wizard of this calibration, for its arm.
-    pub(super) fn open_wanted(&mut self, wanted: Wanted) {
-        if wanted.side != self.in_force.side() {
+    pub(super) fn open_wanted(&mut self, wanted: CalibrationTarget) {
+        if wanted.side != self.active.side() {
             self.obey_calibrations(Some(CalibrationWish::Choose(wanted.side)));
         }
         self.wizards.choose_part(wanted);
@@ -120,19 +120,19 @@ impl ConsoleApp {
     }
 
     /// Saves; returns the new rig and a text for the screen.
-    fn saved(&mut self, saving: Saving) -> Result<(RigConfig, String), String> {
+    fn saved(&mut self, saving: SaveRequest) -> Result<(RigConfig, String), String> {
         let (rig, path, words) = match saving {
-            Saving::Frame(saving) => self.in_force.save_frame(*saving, &self.running.rig, self.settings.folder())?,
-            Saving::Camera(changes) => {
-                let (path, rig) = self.in_force.change_rig(&changes, &self.running.rig, self.settings.folder())?;
+            SaveRequest::Frame(saving) => self.active.save_frame(*saving, &self.running.rig, self.settings.folder())?,
+            SaveRequest::Camera(changes) => {
+                let (path, rig) = self.active.change_rig(&changes, &self.running.rig, self.settings.folder())?;
                 let words = text::wizards::written(&path);
                 (rig, path, words)
             }
-            Saving::Undo(changes) => {
-                let (path, rig) = self.in_force.change_rig(&changes, &self.running.rig, self.settings.folder())?;
+            SaveRequest::Undo(changes) => {
+                let (path, rig) = self.active.change_rig(&changes, &self.running.rig, self.settings.folder())?;
                 (rig, path, text::frames::UNDONE.get().to_owned())
             }
-            saving => return Ok((self.live.rig.clone(), self.in_force.save(saving)?)),
+            saving => return Ok((self.live.rig.clone(), self.active.save(saving)?)),
         };
         self.running.rig = path.display().to_string();
         self.running.remember(&mut self.settings.now.recent);
@@ -145,7 +145,7 @@ impl ConsoleApp {
             return;
         }
         let wanted = self.wizards.prompt();
-        let side = self.in_force.side();
+        let side = self.active.side();
         if let Some(reader) = &self.reader {
             reader.show(Screen { side, task: task_of(self.wizards.open), prompt: wanted }, &mut self.read);
         }
@@ -160,7 +160,7 @@ impl ConsoleApp {
     fn binding(&self) -> Binding {
         let none = Roster::new();
         let roster = self.door.as_ref().map_or(&none, |door| door.handle().roster());
-        self.in_force.binding_of(&self.running.rig, &self.live.rig, roster)
+        self.active.binding_of(&self.running.rig, &self.live.rig, roster)
     }
 
     /// The Technician view with one wizard, the active calibrations, and the button to return.
@@ -170,7 +170,7 @@ impl ConsoleApp {
         Panel::left("calibrations").exact_size(316.0).resizable(false).frame(side).show(ui, |ui| {
             let panel = Tile::Calibrations;
             wish = card(ui, panel.title(), panel.meaning(), |ui| {
-                calibrations_ui(ui, &self.live, &self.in_force, self.wizards.open.map(Page::Wizard))
+                calibrations_ui(ui, &self.live, &self.active, self.wizards.open.map(CalibrationPage::Wizard))
             });
         });
         let binding = self.binding();
@@ -183,9 +183,9 @@ impl ConsoleApp {
             });
         });
         match asked {
-            Some(Asked::Save(saving)) => self.save(saving),
-            Some(Asked::GoOn(GoOn::Calibrate(wanted))) => self.open_wanted(wanted),
-            Some(Asked::GoOn(GoOn::Check)) => self.obey_calibrations(Some(CalibrationWish::Check)),
+            Some(WizardPageRequest::Save(saving)) => self.save(saving),
+            Some(WizardPageRequest::GoOn(GoOn::Calibrate(wanted))) => self.open_wanted(wanted),
+            Some(WizardPageRequest::GoOn(GoOn::Check)) => self.obey_calibrations(Some(CalibrationWish::Check)),
             None => {}
         }
         self.obey_calibrations(wish);

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant, SystemTime};
 use egui::{CentralPanel, Frame, Margin, Panel, ScrollArea, Ui};
 use nima_machine::{
     messages::{Command, LoopState},
-    ready::Ask,
+    ready::PersonRequest,
     rig::Roster,
 };
 use nima_simulation::scene::Scene;
@@ -13,10 +13,10 @@ use nima_simulation::scene::Scene;
 use super::ConsoleApp;
 use crate::console::{
     chain,
-    desk::Panel as Tile,
-    panels::{CalibrationWish, Page, calibrations_ui},
-    ready::{Run, Wish, devices_of, ready_ui, record, subject},
+    panels::{CalibrationPage, CalibrationWish, calibrations_ui},
+    ready::{ReadyRequest, ReadyRun, devices_of, ready_ui, record, subject},
     text, theme,
+    tiles::Panel as Tile,
     widgets::card,
 };
 
@@ -28,10 +28,10 @@ const SENSORS_WITHIN: Duration = Duration::from_secs(15);
 const LOOK_EVERY: Duration = Duration::from_secs(5);
 
 #[derive(Debug, Default)]
-pub(super) struct Checking {
+pub(super) struct CheckPage {
     /// Time at which its page was opened.
     open: Option<Instant>,
-    run: Option<Run>,
+    run: Option<ReadyRun>,
     by: String,
     /// Path of the record, or the reason why it was not saved.
     saved: Option<String>,
@@ -39,17 +39,17 @@ pub(super) struct Checking {
     valid: Option<(bool, Instant)>,
 }
 
-impl Checking {
+impl CheckPage {
     pub(super) const fn is_open(&self) -> bool {
         self.open.is_some()
     }
 
-    pub(super) const fn run_mut(&mut self) -> Option<&mut Run> {
+    pub(super) const fn run_mut(&mut self) -> Option<&mut ReadyRun> {
         self.run.as_mut()
     }
 
     /// Current instruction of the check.
-    pub(super) fn ask(&self) -> Option<Ask> {
+    pub(super) fn ask(&self) -> Option<PersonRequest> {
         self.run.as_ref().map(|run| run.session.ask())
     }
 
@@ -88,7 +88,7 @@ impl ConsoleApp {
                     self.checking.by = std::env::var("USER").unwrap_or_default();
                 }
             }
-            Err(reason) => self.in_force.tell(text::calibrations::not_opened(&reason)),
+            Err(reason) => self.active.notify(text::calibrations::not_opened(&reason)),
         }
     }
 
@@ -106,12 +106,12 @@ impl ConsoleApp {
         self.look_for_a_check();
         let Some(since) = self.checking.open else { return };
         if self.checking.run.is_none() {
-            if self.in_force.is_waiting() && since.elapsed() < SENSORS_WITHIN {
+            if self.active.is_waiting() && since.elapsed() < SENSORS_WITHIN {
                 return;
             }
             let roster = self.roster();
-            let subject = subject(&self.running.rig, &self.live.rig, &self.live.scene, &roster, &self.in_force);
-            self.checking.run = Some(Run::new(subject));
+            let subject = subject(&self.running.rig, &self.live.rig, &self.live.scene, &roster, &self.active);
+            self.checking.run = Some(ReadyRun::new(subject));
         }
         let Some(run) = &mut self.checking.run else { return };
         run.session.healths(&self.live.healths);
@@ -130,7 +130,7 @@ impl ConsoleApp {
     fn keep_check(&mut self) {
         let (Some(run), roster) = (&self.checking.run, self.roster()) else { return };
         let record = record(&run.session, &self.running.rig, &self.checking.by, &roster);
-        let saved = self.in_force.store().map(|store| store.save_check(&record));
+        let saved = self.active.store().map(|store| store.save_check(&record));
         self.checking.saved = Some(match saved {
             Some(Ok(path)) => text::ready::saved(&path),
             Some(Err(error)) => text::ready::not_saved(&chain(&error)),
@@ -144,7 +144,7 @@ impl ConsoleApp {
         if self.live.rig.devices.is_none() || self.checking.valid.is_some_and(|(_, at)| at.elapsed() < LOOK_EVERY) {
             return;
         }
-        let last = self.in_force.store().and_then(|store| store.last_check(&self.live.rig.name));
+        let last = self.active.store().and_then(|store| store.last_check(&self.live.rig.name));
         let valid = last.is_some_and(|record| record.is_valid(&devices_of(&self.roster()), SystemTime::now()));
         self.checking.valid = Some((valid, Instant::now()));
         self.live.is_unchecked = !valid;
@@ -160,12 +160,12 @@ impl ConsoleApp {
         Panel::left("calibrations").exact_size(316.0).resizable(false).frame(side).show(ui, |ui| {
             let panel = Tile::Calibrations;
             wish = card(ui, panel.title(), panel.meaning(), |ui| {
-                calibrations_ui(ui, &self.live, &self.in_force, Some(Page::Check))
+                calibrations_ui(ui, &self.live, &self.active, Some(CalibrationPage::Check))
             });
         });
         let mut wanted = None;
         let roster = self.roster();
-        let Checking { run, by, saved, .. } = &mut self.checking;
+        let CheckPage { run, by, saved, .. } = &mut self.checking;
         CentralPanel::default().frame(Frame::new().inner_margin(Margin::symmetric(18, 14))).show(ui, |ui| {
             ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
                 ui.set_max_width(760.0);
@@ -173,14 +173,14 @@ impl ConsoleApp {
             });
         });
         match wanted {
-            Some(Wish::Again) => {
+            Some(ReadyRequest::Again) => {
                 *saved = None;
                 if let Some(run) = run {
                     run.session.again();
                 }
             }
-            Some(Wish::Whole) => self.checking.begin_anew(),
-            Some(Wish::Close) => wish = Some(CalibrationWish::Close),
+            Some(ReadyRequest::Whole) => self.checking.begin_anew(),
+            Some(ReadyRequest::Close) => wish = Some(CalibrationWish::Close),
             None => {}
         }
         self.obey_calibrations(wish);

@@ -7,45 +7,45 @@ use nima_machine::config::{RigConfig, RigFile, own_copy};
 use super::{ConsoleApp, starting::Undo};
 use crate::console::{
     chain,
-    panels::devices::{Change, why_not_to_change},
-    start::Choice,
+    panels::devices::{RigEdit, why_not_to_change},
+    start::RigChoice,
     text,
 };
 
 impl ConsoleApp {
     /// Changes the rig file and restarts the machine; shows the result or the reason for a refusal on the panel.
-    pub(super) fn connect(&mut self, change: &Change) {
+    pub(super) fn connect(&mut self, change: &RigEdit) {
         // The newest state counts: a side may have been engaged since the panel was drawn.
         self.take_in();
-        let told = match why_not_to_change(&self.live, self.starting.is_some()) {
+        let report = match why_not_to_change(&self.live, self.starting.is_some()) {
             Some(reason) => Err(reason.to_owned()),
             None => write(self.settings.folder(), &self.running.rig, change),
         };
-        match told {
-            Ok(Written { path, told, undo }) => {
-                self.panels.devices.tell(told);
-                let choice = Choice { rig: path.display().to_string(), ..self.running.clone() };
+        match report {
+            Ok(RigFileUpdate { path, report, undo }) => {
+                self.panels.devices.notify(report);
+                let choice = RigChoice { rig: path.display().to_string(), ..self.running.clone() };
                 self.begin_changed(choice, undo);
             }
-            Err(cause) => self.panels.devices.tell(text::devices::not_changed(&cause)),
+            Err(cause) => self.panels.devices.notify(text::devices::not_changed(&cause)),
         }
     }
 }
 
 #[derive(Debug)]
-struct Written {
+struct RigFileUpdate {
     path: PathBuf,
-    told: String,
+    report: String,
     undo: Undo,
 }
 
 /// Writes the changed rig to its own file, or to a new one in `folder` if it is built in.
-fn write(folder: Option<&Path>, rig: &str, change: &Change) -> Result<Written, String> {
+fn write(folder: Option<&Path>, rig: &str, change: &RigEdit) -> Result<RigFileUpdate, String> {
     let mut file = RigFile::of(rig).map_err(|error| chain(&error))?;
     let before = file.text();
     match change {
-        Change::ExchangeSides(kind) => file.exchange_sides(*kind),
-        Change::Choose(part, chosen) => file.choose(*part, chosen),
+        RigEdit::ExchangeSides(kind) => file.exchange_sides(*kind),
+        RigEdit::Choose(part, chosen) => file.choose(*part, chosen),
     }
     let changed = file.rig().map_err(|error| chain(&error))?;
     let is_built_in = RigConfig::names().any(|name| name == rig);
@@ -56,21 +56,21 @@ fn write(folder: Option<&Path>, rig: &str, change: &Change) -> Result<Written, S
         file.set("name", new_name);
     }
     let name = file.save(&path).map_err(|error| chain(&error))?.name;
-    let told = if is_built_in { text::devices::saved_as(&name, &path) } else { text::devices::saved(&path) };
+    let report = if is_built_in { text::devices::saved_as(&name, &path) } else { text::devices::saved(&path) };
     let undo = Undo { path: path.clone(), text: (!is_built_in).then_some(before) };
-    Ok(Written { path, told, undo })
+    Ok(RigFileUpdate { path, report, undo })
 }
 
 #[cfg(test)]
 mod tests {
     use nima_machine::{
-        config::Chosen,
-        rig::{Part, PartKind, Settings, Side},
+        config::ChosenDevice,
+        rig::{PartKind, RigPart, RigSettings, Side},
     };
 
     use super::*;
 
-    fn devices(path: &Path) -> Settings {
+    fn devices(path: &Path) -> RigSettings {
         RigConfig::load(path.to_str().unwrap()).unwrap().devices.unwrap()
     }
 
@@ -78,15 +78,19 @@ mod tests {
     fn a_built_in_rig_is_copied_and_the_copy_is_changed_in_its_place() {
         let folder = tempfile::tempdir().unwrap();
         let was = RigConfig::load("emulated").unwrap().devices.unwrap();
-        let handles = Change::ExchangeSides(PartKind::Handle);
+        let handles = RigEdit::ExchangeSides(PartKind::Handle);
         let first = write(Some(folder.path()), "emulated", &handles).unwrap();
         assert_eq!(first.path, folder.path().join("rigs/emulated-2.toml"));
-        assert!(first.told.contains("\"Emulated rig 2\"") && first.told.contains("emulated-2.toml"), "{}", first.told);
+        assert!(
+            first.report.contains("\"Emulated rig 2\"") && first.report.contains("emulated-2.toml"),
+            "{}",
+            first.report
+        );
         assert_eq!(devices(&first.path).right.unwrap().handle, was.left.as_ref().unwrap().handle);
         let second = write(Some(folder.path()), "emulated", &handles).unwrap();
         assert_eq!(second.path, folder.path().join("rigs/emulated-3.toml"), "nothing is written over");
 
-        let sensor = Change::Choose(Part::Sensor(Side::Left), Chosen::Of(Part::TissueSensor));
+        let sensor = RigEdit::Choose(RigPart::Sensor(Side::Left), ChosenDevice::Of(RigPart::TissueSensor));
         let again = write(None, first.path.to_str().unwrap(), &sensor).unwrap();
         assert_eq!(again.path, first.path);
         let now = devices(&first.path);
@@ -101,7 +105,7 @@ mod tests {
 
     #[test]
     fn without_a_folder_or_a_file_nothing_is_written_and_the_cause_is_told() {
-        let handles = Change::ExchangeSides(PartKind::Handle);
+        let handles = RigEdit::ExchangeSides(PartKind::Handle);
         assert_eq!(write(None, "emulated", &handles).unwrap_err(), text::start::NO_FOLDER.get());
         assert!(write(None, "/no/such/rig.toml", &handles).unwrap_err().contains("/no/such/rig.toml"));
     }

@@ -6,10 +6,10 @@ use egui::{CentralPanel, Frame, Margin, Panel, ScrollArea, Ui};
 
 use super::ConsoleApp;
 use crate::console::{
-    desk::Panel as Tile,
-    overview::{OfArm, overview, overview_ui},
-    panels::{Page, calibrations_ui},
+    overview::{ArmOverview, overview, overview_ui},
+    panels::{CalibrationPage, calibrations_ui},
     text, theme,
+    tiles::Panel as Tile,
     widgets::card,
 };
 
@@ -18,7 +18,7 @@ const AGAIN_EVERY: Duration = Duration::from_secs(2);
 
 /// The list while its page is open, and its update time.
 #[derive(Debug, Default)]
-pub(super) struct Listing(Option<(Vec<OfArm>, Instant)>);
+pub(super) struct Listing(Option<(Vec<ArmOverview>, Instant)>);
 
 impl Listing {
     pub(super) const fn is_open(&self) -> bool {
@@ -35,7 +35,7 @@ impl ConsoleApp {
     pub(super) fn open_listing(&mut self) {
         self.close_check();
         self.wizards.open = None;
-        let arms = overview(&self.in_force, &self.live.rig, &self.running.rig);
+        let arms = overview(&self.active, &self.live.rig, &self.running.rig);
         self.listing.0 = Some((arms, Instant::now()));
     }
 
@@ -49,7 +49,7 @@ impl ConsoleApp {
         Panel::left("calibrations").exact_size(316.0).resizable(false).frame(side).show(ui, |ui| {
             let panel = Tile::Calibrations;
             wish = card(ui, panel.title(), panel.meaning(), |ui| {
-                calibrations_ui(ui, &self.live, &self.in_force, Some(Page::All))
+                calibrations_ui(ui, &self.live, &self.active, Some(CalibrationPage::All))
             });
         });
         let closed = text::calibrations::closed(self.live.state());

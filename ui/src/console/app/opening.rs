@@ -2,29 +2,29 @@
 
 use std::path::Path;
 
-use nima_simulation::Watched;
+use nima_simulation::ObjectFeed;
 
 use super::{ConsoleApp, WARM_UP};
 use crate::language;
 use crate::{
     console::{
-        Options, frames::Meter, in_force::InForce, pictures::Photographer, screenshot, sessions::Sessions,
-        settings::Kept, wizards::Wizards,
+        ConsoleOptions, active_calibrations::ActiveCalibrations, frames::FrameMeter, screenshot,
+        screenshots::ScreenshotRun, sessions::ConsoleSessions, settings::SettingsStore, wizards::Wizards,
     },
-    link::{LineDoor, Reopen},
-    telling::tell,
+    link::{LineConnection, Reopen},
+    stderr::print_line,
 };
 
 impl ConsoleApp {
     /// Applies the options of the command line.
     #[must_use]
-    pub fn with_options(mut self, options: Options) -> Self {
+    pub fn with_options(mut self, options: ConsoleOptions) -> Self {
         self.options = options;
-        self.meter = self.options.frames.as_ref().map(|_| Meter::new(self.options.exit_after));
+        self.meter = self.options.frames.as_ref().map(|_| FrameMeter::new(self.options.exit_after));
         if let Some(seconds) = self.options.traces_s {
             self.panels.forces.show_last(seconds);
         }
-        self.photographer = self.options.pictures.clone().map(Photographer::new);
+        self.photographer = self.options.images.clone().map(ScreenshotRun::new);
         self.settings.now.role = self.options.role.unwrap_or(self.settings.now.role);
         self.settings.now.language = self.options.language.unwrap_or(self.settings.now.language);
         self.use_language();
@@ -57,9 +57,9 @@ impl ConsoleApp {
 
     /// Uses these settings; changes are saved.
     #[must_use]
-    pub fn with_settings(mut self, settings: Kept) -> Self {
-        if let Some(told) = settings.told() {
-            self.in_force.tell(format!("{told}."));
+    pub fn with_settings(mut self, settings: SettingsStore) -> Self {
+        if let Some(report) = settings.report() {
+            self.active.notify(format!("{report}."));
         }
         if settings.is_first_run() {
             // The first page is about the simulated rig; a user who names a rig with devices does not need it.
@@ -77,21 +77,21 @@ impl ConsoleApp {
 
     /// Continues the recording of the running loop, and records later loops.
     #[must_use]
-    pub(crate) fn with_sessions(mut self, sessions: Sessions) -> Self {
+    pub(crate) fn with_sessions(mut self, sessions: ConsoleSessions) -> Self {
         self.sessions = sessions;
         self
     }
 
     /// Source of the simulated rig's objects.
     #[must_use]
-    pub fn with_objects(mut self, objects: Option<Watched>) -> Self {
+    pub fn with_objects(mut self, objects: Option<ObjectFeed>) -> Self {
         self.objects = objects;
         self
     }
 
     /// The arm is at another machine: shows the state of the link, and reopens it for every loop that restarts.
     #[must_use]
-    pub(crate) fn with_line(mut self, far: Option<(Box<dyn LineDoor>, Reopen)>) -> Self {
+    pub(crate) fn with_line(mut self, far: Option<(Box<dyn LineConnection>, Reopen)>) -> Self {
         if let Some((door, reopen)) = far {
             self.live.line = Some(door);
             self.reopen = Some(reopen);
@@ -103,7 +103,7 @@ impl ConsoleApp {
     /// tools.
     #[must_use]
     pub fn with_store(mut self, folder: &Path) -> Self {
-        self.in_force = InForce::load(Some(folder), &self.live.rig, &self.live.scene);
+        self.active = ActiveCalibrations::load(Some(folder), &self.live.rig, &self.live.scene);
         self
     }
 
@@ -131,13 +131,13 @@ impl ConsoleApp {
     /// Runs the timed options of the command line: screenshots, a stall, the end.
     pub(super) fn obey_options(&mut self, ctx: &egui::Context) {
         let open = self.opened.elapsed();
-        let Options { exit_after, screenshot, .. } = self.options.clone();
-        if let Some(path) = screenshot.filter(|_| !self.pictured && open >= self.picture_at()) {
-            self.pictured = true;
-            ctx.request_screenshot(move |picture| {
+        let ConsoleOptions { exit_after, screenshot, .. } = self.options.clone();
+        if let Some(path) = screenshot.filter(|_| !self.shown && open >= self.image_at()) {
+            self.shown = true;
+            ctx.request_screenshot(move |image| {
                 // Errors can be reported only on the terminal.
-                if let Err(error) = screenshot::save(&path, &picture) {
-                    tell(format_args!("{error:#}"));
+                if let Err(error) = screenshot::save(&path, &image) {
+                    print_line(format_args!("{error:#}"));
                 }
             });
         }

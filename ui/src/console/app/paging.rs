@@ -9,7 +9,7 @@ use nima_simulation::scene::Scene;
 use super::ConsoleApp;
 use crate::console::{
     chain,
-    page::{Broken, Closed, Now, Prepared, Room, Run, Wish},
+    page::{ClosedRun, PageContext, PageRequest, PageRun, PreparedRun, Room, RunBreak},
     start::is_real,
     text,
 };
@@ -20,7 +20,7 @@ impl ConsoleApp {
         self.run().is_some()
     }
 
-    pub(super) fn run(&self) -> Option<&dyn Run> {
+    pub(super) fn run(&self) -> Option<&dyn PageRun> {
         self.page.as_ref().and_then(|page| page.run())
     }
 
@@ -70,7 +70,7 @@ impl ConsoleApp {
         let closed = self.page.as_mut().and_then(|page| page.ui(ui, room));
         self.sessions.rest(self.is_held());
         // The previous rig runs again.
-        if let Some(Closed(Some(before))) = closed {
+        if let Some(ClosedRun(Some(before))) = closed {
             let now = self.running.clone();
             self.begin(before, Some(now), None);
         }
@@ -80,8 +80,8 @@ impl ConsoleApp {
     pub(super) fn go_on_with_page(&mut self) {
         let Some(page) = &mut self.page else { return };
         let has_ended = self.door.as_ref().is_some_and(|door| !door.handle().is_running());
-        let why = if self.options.leave.is_asked() { Broken::Closed } else { Broken::LoopEnded };
-        let now = Now {
+        let why = if self.options.leave.is_asked() { RunBreak::Closed } else { RunBreak::LoopEnded };
+        let now = PageContext {
             running: &self.running,
             ended: has_ended.then_some(why),
             is_latched: self.live.state().is_latched(),
@@ -89,26 +89,26 @@ impl ConsoleApp {
         };
         match page.go_on(&now) {
             None => {}
-            Some(Wish::End { again }) => self.end_run(again),
-            Some(Wish::Run) => {
+            Some(PageRequest::End { again }) => self.end_run(again),
+            Some(PageRequest::Run) => {
                 if let Err(why) = self.begin_run() {
-                    self.tell_page(Some(why));
+                    self.report_on_page(Some(why));
                 }
             }
-            Some(Wish::Start(choice)) => {
+            Some(PageRequest::Start(choice)) => {
                 let before = self.running.clone();
                 self.begin(choice, Some(before), None);
                 if self.starting.is_none() {
                     // The start page shows the cause when it is opened.
-                    self.tell_page(self.start.told().map(str::to_owned));
+                    self.report_on_page(self.start.report().map(str::to_owned));
                 }
             }
         }
     }
 
-    fn tell_page(&mut self, why: Option<String>) {
+    fn report_on_page(&mut self, why: Option<String>) {
         if let Some(page) = &mut self.page {
-            page.tell(why);
+            page.notify(why);
         }
     }
 
@@ -119,7 +119,7 @@ impl ConsoleApp {
             return Err(why.to_owned());
         }
         let Some(page) = &mut self.page else { return Ok(()) };
-        let Prepared { rig, scene, is_by_mouse } = page.prepare()?;
+        let PreparedRun { rig, scene, is_by_mouse } = page.prepare()?;
         self.panels.scene.be_of_participant(true, is_by_mouse);
         self.clear_for_trial();
         // End the old loop first: a rig must have only one controller.
@@ -127,13 +127,13 @@ impl ConsoleApp {
         self.sessions.end();
         let started = rig.and_then(|rig| self.start_loop(rig, scene).ok());
         if started.is_none() {
-            self.break_off(Broken::NotStarted);
+            self.break_off(RunBreak::NotStarted);
             self.end_run(true);
         }
         Ok(())
     }
 
-    fn break_off(&mut self, why: Broken) {
+    fn break_off(&mut self, why: RunBreak) {
         if let Some(run) = self.page.as_mut().and_then(|page| page.run_mut()) {
             run.break_off(why);
         }
@@ -156,14 +156,14 @@ impl ConsoleApp {
         });
         let started = loaded.map_err(|error| chain(&error)).and_then(|(rig, scene)| self.start_loop(rig, scene));
         if let Err(why) = started {
-            self.tell_page(Some(text::start::not_started(&why, None)));
+            self.report_on_page(Some(text::start::not_started(&why, None)));
         }
     }
 
     /// When the window closes, an unfinished run is recorded as aborted.
     pub(super) fn leave_page(&mut self) {
         if self.in_trial() {
-            self.break_off(Broken::Closed);
+            self.break_off(RunBreak::Closed);
             self.end_run(false);
         }
     }

@@ -15,9 +15,9 @@ use super::ConsoleApp;
 use crate::{
     console::{
         chain,
-        reader::Reader,
+        reader::ScreenReader,
         roles::Role,
-        start::{Choice, Now, Way, drawn_anew},
+        start::{RigChoice, StartInputs, WelcomeChoice, drawn_anew},
         text,
     },
     emulators::Emulators,
@@ -25,13 +25,13 @@ use crate::{
 
 /// A rig that is being started.
 #[derive(Debug)]
-pub(super) struct Starting {
-    choice: Choice,
+pub(super) struct StartingRig {
+    choice: RigChoice,
     rig: RigConfig,
     scene: Scene,
     emulators: Receiver<Result<Option<Emulators>, String>>,
     /// The previous rig and scene, to return to if the start fails.
-    before: Option<Choice>,
+    before: Option<RigChoice>,
     /// Reason for the restart, if the rig stays the same.
     because: Option<String>,
     /// File to write back if the start fails.
@@ -59,7 +59,7 @@ impl Undo {
 impl ConsoleApp {
     /// This rig and scene are running, with these emulators for an emulated rig.
     #[must_use]
-    pub(crate) fn with_choice(mut self, running: Choice, emulators: Option<Emulators>) -> Self {
+    pub(crate) fn with_choice(mut self, running: RigChoice, emulators: Option<Emulators>) -> Self {
         self.running = running;
         self.serve(emulators);
         self
@@ -67,7 +67,7 @@ impl ConsoleApp {
 
     /// Shows the wizards' instructions to this reader, for tests whose emulators run in the same process.
     #[must_use]
-    pub fn with_reader(mut self, reader: Reader) -> Self {
+    pub fn with_reader(mut self, reader: ScreenReader) -> Self {
         self.reader = Some(reader);
         self
     }
@@ -87,7 +87,7 @@ impl ConsoleApp {
     }
 
     /// The running rig and scene.
-    pub const fn running(&self) -> &Choice {
+    pub const fn running(&self) -> &RigChoice {
         &self.running
     }
 
@@ -99,9 +99,9 @@ impl ConsoleApp {
         }
         match self.start.welcome.ui(ctx, room) {
             None => return,
-            Some(Way::Simulated) => return self.help.begin_tour(),
-            Some(Way::Demo) => self.settings.now.role = Role::Demo,
-            Some(Way::Own) => self.open_start(),
+            Some(WelcomeChoice::Simulated) => return self.help.begin_tour(),
+            Some(WelcomeChoice::Demo) => self.settings.now.role = Role::Demo,
+            Some(WelcomeChoice::Own) => self.open_start(),
         }
         // The tour is in the View menu.
         self.settings.now.toured = true;
@@ -113,12 +113,12 @@ impl ConsoleApp {
     }
 
     pub(super) fn start_layout(&mut self, ui: &mut Ui) {
-        let now = Now {
+        let now = StartInputs {
             live: &self.live,
             running: &self.running,
             recent: &self.settings.now.recent,
             is_starting: self.starting.is_some(),
-            picture: self.panels.eyes.told(),
+            image: self.panels.eyes.report(),
             page: self.page.as_ref().map(|page| page.name()),
         };
         let chosen = self.start.ui(ui, &now);
@@ -134,10 +134,10 @@ impl ConsoleApp {
     }
 
     /// Starts a rig whose file was changed; the change is undone if the start fails.
-    pub(super) fn begin_changed(&mut self, choice: Choice, undo: Undo) {
+    pub(super) fn begin_changed(&mut self, choice: RigChoice, undo: Undo) {
         if self.reopen.is_some() {
             undo.take_back();
-            return self.panels.devices.tell(text::devices::not_changed(text::link::ONE_RIG.get()));
+            return self.panels.devices.notify(text::devices::not_changed(text::link::ONE_RIG.get()));
         }
         let before = self.running.clone();
         self.begin(choice, Some(before), None);
@@ -148,9 +148,9 @@ impl ConsoleApp {
     }
 
     /// Ends the loop and starts this choice. A choice that cannot be loaded does not end the loop.
-    pub(super) fn begin(&mut self, choice: Choice, before: Option<Choice>, because: Option<String>) {
+    pub(super) fn begin(&mut self, choice: RigChoice, before: Option<RigChoice>, because: Option<String>) {
         if self.reopen.is_some() {
-            return self.start.tell(Some(text::link::ONE_RIG.get().to_owned()));
+            return self.start.notify(Some(text::link::ONE_RIG.get().to_owned()));
         }
         let loaded = RigConfig::load(&choice.rig).and_then(|rig| {
             let scene = Scene::load(&choice.scene)?.mounted_at(&rig)?;
@@ -159,13 +159,13 @@ impl ConsoleApp {
         });
         let (rig, scene) = match loaded {
             Ok(loaded) => loaded,
-            Err(error) => return self.start.tell(Some(text::start::not_started(&chain(&error), None))),
+            Err(error) => return self.start.notify(Some(text::start::not_started(&chain(&error), None))),
         };
         // End the old loop first: a rig must have only one controller, and emulators at the same addresses cannot run twice.
         drop(self.door.take());
         self.sessions.end();
         self.serve(None);
-        self.start.tell(None);
+        self.start.notify(None);
         let (give, emulators) = channel();
         let ctx = self.ctx.clone();
         let devices = rig.devices.clone();
@@ -181,7 +181,7 @@ impl ConsoleApp {
         };
         // If no thread can be created, `give` is dropped, which is reported.
         thread::Builder::new().name("emulators".to_owned()).spawn(work).ok();
-        self.starting = Some(Starting { choice, rig, scene, emulators, before, because, undo: None });
+        self.starting = Some(StartingRig { choice, rig, scene, emulators, before, because, undo: None });
     }
 
     /// Continues the start once the emulators serve.
@@ -192,14 +192,14 @@ impl ConsoleApp {
             Err(TryRecvError::Disconnected) => Err(text::start::NO_THREAD.get().to_owned()),
             Ok(emulators) => emulators,
         };
-        let Some(Starting { choice, rig, scene, before, because, undo, .. }) = self.starting.take() else { return };
+        let Some(StartingRig { choice, rig, scene, before, because, undo, .. }) = self.starting.take() else { return };
         let started = emulators.and_then(|emulators| {
             self.serve(emulators);
             self.start_loop(rig, scene)
         });
         if let (Err(cause), Some(undo)) = (&started, &undo) {
             undo.take_back();
-            self.panels.devices.tell(text::devices::not_changed(cause));
+            self.panels.devices.notify(text::devices::not_changed(cause));
         }
         match (started, before) {
             (Ok(()), _) => {
@@ -209,13 +209,13 @@ impl ConsoleApp {
                 self.forget_what_was_taken();
                 self.watched = None;
                 self.start.is_open = because.is_some();
-                self.start.tell(because.map(|cause| text::start::not_started(&cause, Some(&self.live.rig.name))));
+                self.start.notify(because.map(|cause| text::start::not_started(&cause, Some(&self.live.rig.name))));
                 self.running = choice;
             }
             (Err(cause), Some(before)) => self.begin(before, None, Some(cause)),
             (Err(cause), None) => {
                 self.start.is_open = true;
-                self.start.tell(Some(text::start::not_started(&because.unwrap_or(cause), None)));
+                self.start.notify(Some(text::start::not_started(&because.unwrap_or(cause), None)));
             }
         }
     }

@@ -2,7 +2,7 @@
 
 use egui::Ui;
 
-use super::{ConsoleApp, reaching::Page};
+use super::{ConsoleApp, availability::ActivePage};
 use crate::console::roles::{Wishes, role_ui};
 
 impl ConsoleApp {
@@ -12,15 +12,15 @@ impl ConsoleApp {
             past.panels.scene.is_seen = false;
         }
         match self.page() {
-            Page::Trial => self.trial_layout(ui),
-            Page::Past => self.past_layout(ui),
-            Page::List => self.list_layout(ui),
-            Page::Check => self.check_layout(ui),
-            Page::Listing => self.listing_layout(ui),
-            Page::Wizard => self.wizard_layout(ui),
-            Page::Start => self.start_layout(ui),
-            Page::OfExtra => self.page_of_extra_layout(ui),
-            Page::Monitor => self.monitor_layout(ui),
+            ActivePage::Trial => self.trial_layout(ui),
+            ActivePage::Past => self.past_layout(ui),
+            ActivePage::List => self.list_layout(ui),
+            ActivePage::Check => self.check_layout(ui),
+            ActivePage::Listing => self.listing_layout(ui),
+            ActivePage::Wizard => self.wizard_layout(ui),
+            ActivePage::Start => self.start_layout(ui),
+            ActivePage::OfExtra => self.page_of_extra_layout(ui),
+            ActivePage::Monitor => self.monitor_layout(ui),
         }
     }
 
@@ -28,7 +28,7 @@ impl ConsoleApp {
         self.panels.devices.is_seen = false;
         self.panels.devices.is_starting = self.starting.is_some();
         let Wishes { restart, calibration, devices } =
-            role_ui(ui, &mut self.settings.now, &mut self.live, &mut self.panels, &self.in_force, &mut self.outbox);
+            role_ui(ui, &mut self.settings.now, &mut self.live, &mut self.panels, &self.active, &mut self.outbox);
         // At the end of the frame, after everything was drawn with the old loop. A stop requested in the same frame takes
         // precedence.
         if self.outbox.holds_stop() {

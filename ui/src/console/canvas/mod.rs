@@ -30,7 +30,7 @@ pub struct Canvas {
     /// The shapes on the surface. Kept alive, so that no address that is part of a hash is reused.
     before: Vec<ClippedShape>,
     prints: Vec<u64>,
-    ground: Ground,
+    ground: CanvasGround,
     /// Number of the frame that `before` belongs to.
     frame: u64,
     background: fn() -> Color32,
@@ -38,7 +38,7 @@ pub struct Canvas {
 
 /// Properties of the window as a whole.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Ground {
+struct CanvasGround {
     rect: Rect,
     pixels_per_point: f32,
     background: Color32,
@@ -47,12 +47,12 @@ struct Ground {
 impl Canvas {
     /// Keeps the image on this surface, over this background.
     pub fn new(surface: Arc<Surface>, background: fn() -> Color32) -> Self {
-        let ground = Ground { rect: Rect::NOTHING, pixels_per_point: 0.0, background: Color32::TRANSPARENT };
+        let ground = CanvasGround { rect: Rect::NOTHING, pixels_per_point: 0.0, background: Color32::TRANSPARENT };
         Self { surface, before: Vec::new(), prints: Vec::new(), ground, frame: 0, background }
     }
 
     /// The parts of the window that these shapes change, in points.
-    fn changed(&self, shapes: &[ClippedShape], prints: &[u64], ground: Ground) -> Vec<Rect> {
+    fn changed(&self, shapes: &[ClippedShape], prints: &[u64], ground: CanvasGround) -> Vec<Rect> {
         if ground != self.ground || self.frame.is_multiple_of(WHOLE_EVERY) || !self.surface.shows(self.frame) {
             return vec![ground.rect];
         }
@@ -83,7 +83,7 @@ impl egui::Plugin for Canvas {
         if self.surface.is_refused() {
             return;
         }
-        let ground = Ground {
+        let ground = CanvasGround {
             rect: ctx.viewport_rect(),
             pixels_per_point: output.pixels_per_point,
             background: (self.background)(),
@@ -97,7 +97,7 @@ impl egui::Plugin for Canvas {
             let shape = Shape::Callback(egui::PaintCallback { rect: ground.rect, callback: Arc::new(work) });
             ClippedShape::new(ground.rect, shape)
         };
-        let share = f64::from(area / ground.rect.area().max(1.0));
+        let fraction = f64::from(area / ground.rect.area().max(1.0));
         let size = ground.rect.size() * ground.pixels_per_point;
         let begin = self.surface.begin(size, rects == [ground.rect], &rects, ground.background);
         output.shapes.push(callback(begin));
@@ -107,7 +107,7 @@ impl egui::Plugin for Canvas {
                 touching.map(|shape| ClippedShape { clip_rect: shape.clip_rect.intersect(rect), ..shape.clone() }),
             );
         }
-        output.shapes.push(callback(self.surface.end(ctx, self.frame, share, ground.background)));
+        output.shapes.push(callback(self.surface.end(ctx, self.frame, fraction, ground.background)));
         self.before = shapes;
         self.prints = prints;
         self.ground = ground;

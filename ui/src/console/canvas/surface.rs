@@ -26,17 +26,17 @@ const LOST_MAX: u32 = 3;
 /// State of the window's image, shared between the comparison of frames and the drawing code.
 #[derive(Debug, Default)]
 pub struct Surface {
-    inner: Mutex<Inner>,
+    inner: Mutex<SurfaceInner>,
     /// Number of the frame that is in the window.
     drawn: AtomicU64,
     /// Fraction of the window that was redrawn in it, in millionths.
-    share: AtomicU64,
+    fraction: AtomicU64,
     refused: AtomicBool,
 }
 
 #[derive(Debug, Default)]
-struct Inner {
-    sink: Option<Sink>,
+struct SurfaceInner {
+    sink: Option<PixelSink>,
     size: [i32; 2],
     /// The mark set by the last frame.
     sign: Option<u8>,
@@ -47,7 +47,7 @@ struct Inner {
 
 /// A framebuffer of one pixel.
 #[derive(Debug)]
-struct Sink {
+struct PixelSink {
     framebuffer: glow::Framebuffer,
     colour: glow::Renderbuffer,
 }
@@ -76,8 +76,8 @@ impl Surface {
     }
 
     /// Fraction of the window that was redrawn in the last frame, 0 to 1.
-    pub fn drawn_share(&self) -> f64 {
-        if self.is_refused() { 1.0 } else { self.share.load(Ordering::Relaxed) as f64 * 1e-6 }
+    pub fn drawn_fraction(&self) -> f64 {
+        if self.is_refused() { 1.0 } else { self.fraction.load(Ordering::Relaxed) as f64 * 1e-6 }
     }
 
     /// Called before the shapes of a frame: clears these parts of the window (points). `expected` is the window's size
@@ -115,8 +115,8 @@ impl Surface {
         })
     }
 
-    /// Called after the shapes. From now on the window shows `frame`, of which `share` was redrawn.
-    pub(super) fn end(self: &Arc<Self>, ctx: &Context, frame: u64, share: f64, background: Color32) -> CallbackFn {
+    /// Called after the shapes. From now on the window shows `frame`, of which `fraction` was redrawn.
+    pub(super) fn end(self: &Arc<Self>, ctx: &Context, frame: u64, fraction: f64, background: Color32) -> CallbackFn {
         let surface = Arc::clone(self);
         let ctx = ctx.clone();
         CallbackFn::new(move |_, painter| {
@@ -131,7 +131,7 @@ impl Surface {
                 return;
             }
             surface.drawn.store(if inner.torn { 0 } else { frame }, Ordering::Relaxed);
-            surface.share.store((share * 1e6) as u64, Ordering::Relaxed);
+            surface.fraction.store((fraction * 1e6) as u64, Ordering::Relaxed);
         })
     }
 
@@ -145,7 +145,7 @@ impl Surface {
     }
 }
 
-impl Inner {
+impl SurfaceInner {
     /// Whether the image in the window is the one that the last frame left.
     ///
     /// # Safety The context must be current, with the window's framebuffer bound.
@@ -174,7 +174,7 @@ impl Inner {
             gl.clear_color(r, g, f32::from(blue) / 255.0, 1.0);
             gl.clear(glow::COLOR_BUFFER_BIT);
             if self.sink.is_none() {
-                self.sink = Sink::new(gl);
+                self.sink = PixelSink::new(gl);
             }
             let Some(sink) = &self.sink else { return false };
             gl.bind_framebuffer(glow::DRAW_FRAMEBUFFER, Some(sink.framebuffer));
@@ -184,7 +184,7 @@ impl Inner {
     }
 }
 
-impl Sink {
+impl PixelSink {
     /// # Safety
     /// The context must be current.
     unsafe fn new(gl: &glow::Context) -> Option<Self> {

@@ -6,7 +6,7 @@ use super::super::text;
 
 /// Modifiers of a key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum With {
+pub enum KeyModifiers {
     Nothing,
     Shift,
     /// Control (Command on a Mac).
@@ -16,7 +16,7 @@ pub enum With {
     CtrlAndSign,
 }
 
-impl With {
+impl KeyModifiers {
     /// Whether these modifiers, and no others, are held down.
     pub(in crate::console) fn holds(self, modifiers: Modifiers) -> bool {
         let Modifiers { alt, shift, command, .. } = modifiers;
@@ -44,12 +44,12 @@ impl With {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stroke {
     pub key: Key,
-    pub with: With,
+    pub with: KeyModifiers,
 }
 
 impl Stroke {
     pub(super) const fn plain(key: Key) -> Self {
-        Self { key, with: With::Nothing }
+        Self { key, with: KeyModifiers::Nothing }
     }
 
     pub fn name(self) -> String {
@@ -58,10 +58,10 @@ impl Stroke {
             key => key.name(),
         };
         let held = match self.with {
-            With::Nothing => "",
-            With::Shift => text::commands::SHIFT.get(),
-            With::Ctrl | With::CtrlAndSign => text::commands::CTRL.get(),
-            With::CtrlShift => text::commands::CTRL_SHIFT.get(),
+            KeyModifiers::Nothing => "",
+            KeyModifiers::Shift => text::commands::SHIFT.get(),
+            KeyModifiers::Ctrl | KeyModifiers::CtrlAndSign => text::commands::CTRL.get(),
+            KeyModifiers::CtrlShift => text::commands::CTRL_SHIFT.get(),
         };
         format!("{held}{key}")
     }
@@ -69,20 +69,23 @@ impl Stroke {
     /// Whether the key has a function in a focused text field.
     pub(in crate::console) fn writes(self) -> bool {
         match self.with {
-            With::Nothing => !(Key::F1..=Key::F12).contains(&self.key),
-            With::Shift => true,
-            With::Ctrl | With::CtrlShift => self.key == Key::Z,
-            With::CtrlAndSign => false,
+            KeyModifiers::Nothing => !(Key::F1..=Key::F12).contains(&self.key),
+            KeyModifiers::Shift => true,
+            KeyModifiers::Ctrl | KeyModifiers::CtrlShift => self.key == Key::Z,
+            KeyModifiers::CtrlAndSign => false,
         }
     }
 }
 
 /// Larger, and smaller.
 pub(in crate::console) const SIZE: [&[Stroke]; 2] = [
-    &[Stroke { key: Key::Plus, with: With::CtrlAndSign }, Stroke { key: Key::Equals, with: With::CtrlAndSign }],
-    &[Stroke { key: Key::Minus, with: With::CtrlAndSign }],
+    &[
+        Stroke { key: Key::Plus, with: KeyModifiers::CtrlAndSign },
+        Stroke { key: Key::Equals, with: KeyModifiers::CtrlAndSign },
+    ],
+    &[Stroke { key: Key::Minus, with: KeyModifiers::CtrlAndSign }],
 ];
 
 /// Undo, and redo.
 pub(in crate::console) const UNDO: [&[Stroke]; 2] =
-    [&[Stroke { key: Key::Z, with: With::Ctrl }], &[Stroke { key: Key::Z, with: With::CtrlShift }]];
+    [&[Stroke { key: Key::Z, with: KeyModifiers::Ctrl }], &[Stroke { key: Key::Z, with: KeyModifiers::CtrlShift }]];

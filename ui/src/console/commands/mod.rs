@@ -6,12 +6,12 @@
 mod keys;
 mod table;
 
-use super::{desk::Panel, roles::Role, scene3d::extras::Switch, text, wizards::Which};
+use super::{roles::Role, scene3d::extras::MenuSwitch, text, tiles::Panel, wizards::WizardKind};
 use crate::language::Language;
 
 pub(in crate::console) use self::keys::{SIZE, UNDO};
 pub use self::{
-    keys::{Stroke, With},
+    keys::{KeyModifiers, Stroke},
     table::table,
 };
 
@@ -66,14 +66,14 @@ pub enum Action {
     ResetLayout,
     Check,
     Calibrations,
-    Calibrate(Which),
+    Calibrate(WizardKind),
     /// Leaves the page of a wizard, of the check or of the list.
     CloseWizard,
     /// Pauses or resumes the traces.
     Pause,
     LastTenSeconds,
     /// Switches a part of the field view.
-    Draws(Switch),
+    Draws(MenuSwitch),
     /// Starts or stops mouse control.
     Drive,
     /// Drives the other instrument.
@@ -143,7 +143,7 @@ impl Action {
 
 /// Place of a command, in addition to the palette.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Place {
+pub enum CommandPlace {
     Bar,
     ViewMenu,
     Alarms,
@@ -157,7 +157,7 @@ pub enum Place {
     Keys,
 }
 
-impl Place {
+impl CommandPlace {
     pub fn name(self) -> &'static str {
         match self {
             Self::Bar => text::commands::AT_BAR.get(),
@@ -166,7 +166,7 @@ impl Place {
             Self::Calibration => text::commands::AT_CALIBRATION.get(),
             Self::Traces => text::commands::AT_TRACES.get(),
             Self::Field => text::commands::AT_FIELD.get(),
-            Self::Picture => text::commands::AT_PICTURE.get(),
+            Self::Picture => text::commands::AT_IMAGE.get(),
             Self::Past => text::commands::AT_PAST.get(),
             Self::Keys => text::commands::AT_KEYS.get(),
         }
@@ -174,23 +174,23 @@ impl Place {
 }
 
 #[derive(Clone, Debug)]
-pub struct Entry {
+pub struct CommandEntry {
     pub action: Action,
     pub title: String,
     /// English name, by which it is found in every language, because the docs use it.
     pub english: String,
     pub does: &'static str,
     pub keys: &'static [Stroke],
-    pub place: Place,
+    pub place: CommandPlace,
 }
 
-impl Entry {
+impl CommandEntry {
     pub(in crate::console) fn of(action: Action) -> Option<&'static Self> {
         table().iter().find(|entry| entry.action == action)
     }
 
     /// Text of its keys; empty if it has none.
-    pub fn keys_told(&self) -> String {
+    pub fn keys_text(&self) -> String {
         self.keys.iter().map(|stroke| stroke.name()).collect::<Vec<_>>().join(", ")
     }
 
@@ -198,14 +198,14 @@ impl Entry {
     pub(in crate::console) fn with_keys(&self) -> String {
         match self.keys {
             [] => self.title.clone(),
-            _ => text::commands::with_keys(&self.title, &self.keys_told()),
+            _ => text::commands::with_keys(&self.title, &self.keys_text()),
         }
     }
 }
 
 /// Availability of a command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Reach {
+pub enum Availability {
     Can,
     /// On the screen but not possible, for this reason.
     Cannot(&'static str),
@@ -213,7 +213,7 @@ pub enum Reach {
     Absent,
 }
 
-impl Reach {
+impl Availability {
     /// Not possible for this reason, if there is one.
     pub(in crate::console) const fn unless(reason: Option<&'static str>) -> Self {
         match reason {

@@ -2,15 +2,15 @@ use std::sync::LazyLock;
 
 use egui::Key;
 
-use super::{Action, Entry, Place, SIZE, SIZES_PERCENT, Stroke, UNDO, With};
+use super::{Action, CommandEntry, CommandPlace, KeyModifiers, SIZE, SIZES_PERCENT, Stroke, UNDO};
 use crate::console::{
-    desk::Panel, roles::Role, scene3d::extras::Switch, text, text::commands as names, wizards::Which,
+    roles::Role, scene3d::extras::MenuSwitch, text, text::commands as names, tiles::Panel, wizards::WizardKind,
 };
 use crate::extras::{self, Extra};
 use crate::language::{self, Language, Text};
-use crate::words::within;
+use crate::report_text::within;
 
-type Keys = &'static [Stroke];
+type CommandKeys = &'static [Stroke];
 
 /// One key without modifiers.
 macro_rules! key {
@@ -20,10 +20,10 @@ macro_rules! key {
 }
 
 /// Every command, in the order of the palette.
-pub fn table() -> &'static [Entry] {
-    static ENGLISH: LazyLock<Vec<Entry>> = LazyLock::new(|| made(Language::English));
-    static GERMAN: LazyLock<Vec<Entry>> = LazyLock::new(|| made(Language::German));
-    static PSEUDO: LazyLock<Vec<Entry>> = LazyLock::new(|| made(Language::Pseudo));
+pub fn table() -> &'static [CommandEntry] {
+    static ENGLISH: LazyLock<Vec<CommandEntry>> = LazyLock::new(|| made(Language::English));
+    static GERMAN: LazyLock<Vec<CommandEntry>> = LazyLock::new(|| made(Language::German));
+    static PSEUDO: LazyLock<Vec<CommandEntry>> = LazyLock::new(|| made(Language::Pseudo));
     match language::current() {
         Language::English => &ENGLISH,
         Language::German => &GERMAN,
@@ -31,54 +31,60 @@ pub fn table() -> &'static [Entry] {
     }
 }
 
-fn made(language: Language) -> Vec<Entry> {
+fn made(language: Language) -> Vec<CommandEntry> {
     let all = || [views(), pages(), screen(), calibration(), traces_and_field(), past(), machine()].concat();
     let english = language::with(Language::English, all);
     let named = language::with(language, all).into_iter().zip(english);
-    named.map(|(entry, english)| Entry { english: english.title, ..entry }).collect()
+    named.map(|(entry, english)| CommandEntry { english: english.title, ..entry }).collect()
 }
 
-fn entry(action: Action, (title, does): (Text, Text), keys: Keys, place: Place) -> Entry {
+fn entry(action: Action, (title, does): (Text, Text), keys: CommandKeys, place: CommandPlace) -> CommandEntry {
     named(action, title.get(), does.get(), keys, place)
 }
 
 /// A command whose name is built from other texts.
-fn named(action: Action, title: impl Into<String>, does: &'static str, keys: Keys, place: Place) -> Entry {
-    Entry { action, title: title.into(), english: String::new(), does, keys, place }
+fn named(
+    action: Action,
+    title: impl Into<String>,
+    does: &'static str,
+    keys: CommandKeys,
+    place: CommandPlace,
+) -> CommandEntry {
+    CommandEntry { action, title: title.into(), english: String::new(), does, keys, place }
 }
 
-fn views() -> Vec<Entry> {
+fn views() -> Vec<CommandEntry> {
     let of = |role: Role| {
-        let keys: Keys = match role {
+        let keys: CommandKeys = match role {
             Role::Surgeon => key!(F1),
             Role::Technician => key!(F2),
             Role::Demo => key!(F3),
         };
-        named(Action::View(role), names::view(role.name()), role.meaning(), keys, Place::Bar)
+        named(Action::View(role), names::view(role.name()), role.meaning(), keys, CommandPlace::Bar)
     };
     Role::ALL.map(of).into()
 }
 
-fn pages() -> Vec<Entry> {
-    const PALETTE: Keys = &[Stroke { key: Key::P, with: With::Ctrl }];
+fn pages() -> Vec<CommandEntry> {
+    const PALETTE: CommandKeys = &[Stroke { key: Key::P, with: KeyModifiers::Ctrl }];
     let mut entries = vec![
-        entry(Action::Glossary, names::GLOSSARY, key!(F4), Place::ViewMenu),
-        entry(Action::Alarms, names::ALARMS, key!(F5), Place::ViewMenu),
-        entry(Action::Rig, names::RIG, key!(F6), Place::Bar),
-        entry(Action::Sessions, names::SESSIONS, key!(F7), Place::Bar),
+        entry(Action::Glossary, names::GLOSSARY, key!(F4), CommandPlace::ViewMenu),
+        entry(Action::Alarms, names::ALARMS, key!(F5), CommandPlace::ViewMenu),
+        entry(Action::Rig, names::RIG, key!(F6), CommandPlace::Bar),
+        entry(Action::Sessions, names::SESSIONS, key!(F7), CommandPlace::Bar),
     ];
     if extras::part(Extra::page).is_some() {
-        entries.push(entry(Action::Studies, names::STUDIES, key!(F8), Place::Keys));
+        entries.push(entry(Action::Studies, names::STUDIES, key!(F8), CommandPlace::Keys));
     }
     entries.extend([
-        entry(Action::Tour, names::TOUR, &[], Place::ViewMenu),
-        entry(Action::Palette, names::PALETTE, PALETTE, Place::ViewMenu),
+        entry(Action::Tour, names::TOUR, &[], CommandPlace::ViewMenu),
+        entry(Action::Palette, names::PALETTE, PALETTE, CommandPlace::ViewMenu),
     ]);
     entries
 }
 
-fn screen() -> Vec<Entry> {
-    let menu = Place::ViewMenu;
+fn screen() -> Vec<CommandEntry> {
+    let menu = CommandPlace::ViewMenu;
     let [larger, smaller] = SIZE;
     let [undo, redo] = UNDO;
     // Each language by its own name, so that users who cannot read the current one find theirs.
@@ -89,8 +95,8 @@ fn screen() -> Vec<Entry> {
         entry(Action::Redo, names::REDO, redo, menu),
         entry(Action::Light(false), names::DARK, &[], menu),
         entry(Action::Light(true), names::LIGHT, &[], menu),
-        entry(Action::Larger, names::LARGER, larger, Place::Keys),
-        entry(Action::Smaller, names::SMALLER, smaller, Place::Keys),
+        entry(Action::Larger, names::LARGER, larger, CommandPlace::Keys),
+        entry(Action::Smaller, names::SMALLER, smaller, CommandPlace::Keys),
     ];
     entries.extend(
         SIZES_PERCENT
@@ -105,19 +111,19 @@ fn screen() -> Vec<Entry> {
         entry(Action::ResetLayout, (names::RESET_LAYOUT, text::menu::RESET_LAYOUT_HOVER), &[], menu),
         entry(Action::Sound, (text::menu::SOUND, text::menu::SOUND_HOVER), &[], menu),
         entry(Action::ForcesOfNow, (text::menu::FORCES_OF_NOW, text::menu::FORCES_OF_NOW_HOVER), &[], menu),
-        entry(Action::PlainPicture, (text::menu::PICTURE_PLAIN, text::menu::PICTURE_PLAIN_HOVER), &[], menu),
-        entry(Action::RecordsPicture, (text::menu::RECORDS_PICTURE, text::menu::RECORDS_PICTURE_HOVER), &[], menu),
+        entry(Action::PlainPicture, (text::menu::IMAGE_PLAIN, text::menu::IMAGE_PLAIN_HOVER), &[], menu),
+        entry(Action::RecordsPicture, (text::menu::RECORDS_IMAGE, text::menu::RECORDS_IMAGE_HOVER), &[], menu),
     ]);
     entries
 }
 
-fn calibration() -> Vec<Entry> {
-    let at = Place::Calibration;
+fn calibration() -> Vec<CommandEntry> {
+    let at = CommandPlace::Calibration;
     let mut entries = vec![
         entry(Action::Check, (text::ready::OPEN, text::ready::MEANING), &[], at),
         entry(Action::Calibrations, (text::overview::OPEN, text::overview::MEANING), &[], at),
     ];
-    entries.extend(Which::built().map(|which| {
+    entries.extend(WizardKind::built().map(|which| {
         let title = text::calibrations::calibrate(&within(which.name()));
         named(Action::Calibrate(which), title, which.meaning(), &[], at)
     }));
@@ -130,38 +136,41 @@ fn calibration() -> Vec<Entry> {
     entries
 }
 
-fn traces_and_field() -> Vec<Entry> {
+fn traces_and_field() -> Vec<CommandEntry> {
     let mut entries = vec![
-        entry(Action::Mark, names::MARK, key!(E), Place::ViewMenu),
-        entry(Action::Keep, names::KEEP, key!(K), Place::Bar),
-        entry(Action::Pause, (names::PAUSE, text::forces::PAUSE_HOVER), &[], Place::Traces),
+        entry(Action::Mark, names::MARK, key!(E), CommandPlace::ViewMenu),
+        entry(Action::Keep, names::KEEP, key!(K), CommandPlace::Bar),
+        entry(Action::Pause, (names::PAUSE, text::traces::PAUSE_HOVER), &[], CommandPlace::Traces),
         entry(
             Action::LastTenSeconds,
-            (text::forces::LAST_TEN_SECONDS, text::forces::LAST_TEN_SECONDS_HOVER),
+            (text::traces::LAST_TEN_SECONDS, text::traces::LAST_TEN_SECONDS_HOVER),
             &[],
-            Place::Traces,
+            CommandPlace::Traces,
         ),
     ];
     entries.extend(
-        Switch::ALL.map(|switch| named(Action::Draws(switch), switch.name(), switch.meaning(), &[], Place::Field)),
+        MenuSwitch::ALL
+            .map(|switch| named(Action::Draws(switch), switch.name(), switch.meaning(), &[], CommandPlace::Field)),
     );
     entries.extend([
-        entry(Action::Drive, names::DRIVE, key!(M), Place::Field),
-        entry(Action::OtherHand, names::OTHER_HAND, key!(H), Place::Field),
-        entry(Action::Jaws, names::JAWS, key!(G), Place::Field),
-        entry(Action::MarkPlace, names::MARK_PLACE, key!(X), Place::Field),
-        entry(Action::EndTrial, names::END_TRIAL, key!(D), Place::Field),
-        entry(Action::BeginTrial, names::BEGIN_TRIAL, key!(N), Place::Field),
-        entry(Action::HideForces, names::HIDE_FORCES, key!(O), Place::Picture),
-        entry(Action::Lens, names::LENS, key!(V), Place::Picture),
+        entry(Action::Drive, names::DRIVE, key!(M), CommandPlace::Field),
+        entry(Action::OtherHand, names::OTHER_HAND, key!(H), CommandPlace::Field),
+        entry(Action::Jaws, names::JAWS, key!(G), CommandPlace::Field),
+        entry(Action::MarkPlace, names::MARK_PLACE, key!(X), CommandPlace::Field),
+        entry(Action::EndTrial, names::END_TRIAL, key!(D), CommandPlace::Field),
+        entry(Action::BeginTrial, names::BEGIN_TRIAL, key!(N), CommandPlace::Field),
+        entry(Action::HideForces, names::HIDE_FORCES, key!(O), CommandPlace::Picture),
+        entry(Action::Lens, names::LENS, key!(V), CommandPlace::Picture),
     ]);
     entries
 }
 
-fn past() -> Vec<Entry> {
-    const FINE: [Keys; 2] =
-        [&[Stroke { key: Key::ArrowLeft, with: With::Shift }], &[Stroke { key: Key::ArrowRight, with: With::Shift }]];
-    let at = Place::Past;
+fn past() -> Vec<CommandEntry> {
+    const FINE: [CommandKeys; 2] = [
+        &[Stroke { key: Key::ArrowLeft, with: KeyModifiers::Shift }],
+        &[Stroke { key: Key::ArrowRight, with: KeyModifiers::Shift }],
+    ];
+    let at = CommandPlace::Past;
     vec![
         entry(Action::LeavePast, names::LEAVE_PAST, key!(L), at),
         entry(Action::Play, (names::PLAY, names::PLAY_DOES), key!(P), at),
@@ -173,13 +182,13 @@ fn past() -> Vec<Entry> {
 }
 
 /// Last, so that no one reaches these commands by accident.
-fn machine() -> Vec<Entry> {
-    const STOP: Keys = &[Stroke::plain(Key::Space), Stroke::plain(Key::Escape)];
+fn machine() -> Vec<CommandEntry> {
+    const STOP: CommandKeys = &[Stroke::plain(Key::Space), Stroke::plain(Key::Escape)];
     vec![
-        entry(Action::Acknowledge, names::ACKNOWLEDGE, key!(A), Place::Alarms),
-        entry(Action::Stop, names::STOP, STOP, Place::Bar),
-        entry(Action::Release, names::RELEASE, &[], Place::Bar),
-        entry(Action::Engage, names::ENGAGE, &[], Place::Bar),
+        entry(Action::Acknowledge, names::ACKNOWLEDGE, key!(A), CommandPlace::Alarms),
+        entry(Action::Stop, names::STOP, STOP, CommandPlace::Bar),
+        entry(Action::Release, names::RELEASE, &[], CommandPlace::Bar),
+        entry(Action::Engage, names::ENGAGE, &[], CommandPlace::Bar),
     ]
 }
 
@@ -197,7 +206,7 @@ mod tests {
 
     #[test]
     fn no_two_commands_share_a_name_an_action_or_a_key() {
-        let keys = |entry: &Entry| entry.keys.iter().map(|stroke| stroke.name()).collect::<Vec<_>>();
+        let keys = |entry: &CommandEntry| entry.keys.iter().map(|stroke| stroke.name()).collect::<Vec<_>>();
         for (i, one) in table().iter().enumerate() {
             assert!(!one.title.is_empty() && !one.does.is_empty(), "{one:?}");
             for other in &table()[i + 1..] {
@@ -210,23 +219,23 @@ mod tests {
     #[test]
     fn a_command_whose_key_is_pressed_for_it_has_one_without_modifiers() {
         for entry in table().iter().filter(|entry| entry.action.is_of_part()) {
-            assert!(matches!(entry.keys, [Stroke { with: With::Nothing, .. }]), "{entry:?}");
+            assert!(matches!(entry.keys, [Stroke { with: KeyModifiers::Nothing, .. }]), "{entry:?}");
         }
     }
 
     #[test]
     fn the_keys_of_the_views_are_those_of_the_roles() {
         for role in Role::ALL {
-            let view = Entry::of(Action::View(role)).unwrap();
+            let view = CommandEntry::of(Action::View(role)).unwrap();
             assert_eq!(view.keys, [Stroke::plain(role.key())]);
         }
     }
 
     /// `docs/reference/commands.md`, from the table.
     fn page() -> String {
-        let row = |entry: &Entry| {
+        let row = |entry: &CommandEntry| {
             let does = entry.does.lines().next().unwrap_or_default();
-            format!("| {} | {} | {} | {does} |\n", entry.title, entry.keys_told(), entry.place.name())
+            format!("| {} | {} | {} | {does} |\n", entry.title, entry.keys_text(), entry.place.name())
         };
         let commands: Vec<String> = table().iter().map(row).collect();
         let by_hand = names::BY_HAND.map(|(keys, does)| format!("| {keys} | {does} |\n"));

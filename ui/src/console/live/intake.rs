@@ -12,25 +12,25 @@ use nima_machine::{
     rig::{Gauges, SIDES, Side},
 };
 
-use super::{BLOCKS_KEPT, FIGURES_EVERY, Live, READINGS_EVERY, Refused, TRAIL_S, TRAIL_STEP_S, TREND_S};
+use super::{BLOCKS_KEPT, FIGURES_EVERY, LiveState, READINGS_EVERY, RefusedCommand, TRAIL_S, TRAIL_STEP_S, TREND_S};
 use crate::console::{
     activity::Activity,
-    door::{Door, News},
     history::CHANNELS,
-    readings::{Change, Figures, Twist},
-    rolling::Fading,
+    loop_connection::{LoopConnection, LoopMessage},
+    readings::{DisplayFigures, ShaftTwist, StateEntry},
+    rolling::FadingMean,
 };
 
-impl Live {
+impl LiveState {
     /// Reads everything that the loop has sent; `each` is called with all of it.
-    pub fn take_in(&mut self, door: &Door, mut each: impl FnMut(&News<'_>)) {
+    pub fn take_in(&mut self, door: &LoopConnection, mut each: impl FnMut(&LoopMessage<'_>)) {
         let handle = door.handle();
         if self.roster.len() != handle.roster().len() {
             self.roster.clone_from(handle.roster());
             self.activity = Activity::of(&self.roster);
         }
         if let Some(line) = &mut self.line {
-            line.hear();
+            line.receive();
         }
         if let Some(healths) = handle.healths() {
             self.healths = healths;
@@ -38,9 +38,9 @@ impl Live {
         let mut came = false;
         door.take(|news| {
             match news {
-                News::Event(event) => self.event(event),
-                News::Gauges(gauges) => self.gauges(gauges),
-                News::Tick(tick) => {
+                LoopMessage::Event(event) => self.event(event),
+                LoopMessage::Gauges(gauges) => self.gauges(gauges),
+                LoopMessage::Tick(tick) => {
                     self.tick(tick);
                     came = true;
                 }
@@ -80,13 +80,13 @@ impl Live {
                 }
             }
             Event::StateChanged { t_s, side, from, to, why } => {
-                self.changes[side.index()] = Some(Change { t_s, from, why });
+                self.changes[side.index()] = Some(StateEntry { t_s, from, why });
                 if !matches!(to, LoopState::Faulted(_)) {
                     self.first_fault = None;
                 }
             }
             Event::CommandRefused { side, command, why, .. } => {
-                self.refusal = Some((Instant::now(), Refused { side, command, why }));
+                self.refusal = Some((Instant::now(), RefusedCommand { side, command, why }));
             }
             Event::Scheduling(scheduling) => self.scheduling = Some(scheduling),
             Event::Device(event) => {
@@ -122,7 +122,7 @@ impl Live {
         let dt_s = before.map_or(0.0, |before| (tick.t_s - before.t_s).max(0.0));
         let missed = before.map_or(0, |before| tick.missed.saturating_sub(before.missed));
         self.deadlines.push(tick.t_s, missed);
-        self.missed_share.push(missed as f64 / (missed as f64 + 1.0), dt_s, 3.0);
+        self.missed_fraction.push(missed as f64 / (missed as f64 + 1.0), dt_s, 3.0);
         let of_matched = matches!(tick.mode, Mode::Matched | Mode::Nima | Mode::Best);
         let identification = &tick.identification;
         self.degrees.push(if of_matched { identification.degree_of(tick.mode) } else { identification.degree });
@@ -160,7 +160,7 @@ impl Live {
         self.history[side].push(tick.t_s, &forces_of(tick));
         match tick.known_n() {
             Some(force_n) => self.measured[side].push(force_n.norm(), dt_s, 0.05),
-            None => self.measured[side] = Fading::default(),
+            None => self.measured[side] = FadingMean::default(),
         }
         self.rendered[side].push(r.norm(), dt_s, 0.05);
         self.gates[side].push(tick, dt_s);
@@ -186,19 +186,19 @@ impl Live {
     }
 
     fn refresh_readings(&mut self) {
-        self.figures.measured_n = self.measured.map(Fading::known);
-        self.figures.rendered_n = self.rendered.map(Fading::get);
+        self.figures.measured_n = self.measured.map(FadingMean::known);
+        self.figures.rendered_n = self.rendered.map(FadingMean::get);
         self.figures.twist = Side::ALL.map(|side| self.twist(side).unwrap_or_default());
         self.readings_at = Instant::now();
     }
 
-    fn twist(&self, side: Side) -> Option<Twist> {
+    fn twist(&self, side: Side) -> Option<ShaftTwist> {
         let tick = self.tick_of(side)?;
         let trocar_m = self.scene.of_side(side)?.trocar_m;
         let out = (trocar_m - tick.tip_m).try_normalize(1e-6)?;
         let jaws = self.objects.as_ref().and_then(|objects| objects.jaws[side.index()]);
         let wrist_nm = |sample: &WristSample| Some((sample.world_from_s1? * sample.raw.torque_nm).dot(&out));
-        Some(Twist {
+        Some(ShaftTwist {
             jaws_nm: jaws.map(|jaws| jaws.torque_nm.dot(&out)),
             wrist_nm: tick.wrist.as_ref().and_then(wrist_nm),
         })
@@ -206,8 +206,8 @@ impl Live {
 
     /// All other figures; the ticks since the last time covered this time, s.
     fn refresh_others(&mut self, seconds: f64) {
-        self.figures = Figures {
-            horizon_n: self.horizon.map(Fading::known),
+        self.figures = DisplayFigures {
+            horizon_n: self.horizon.map(FadingMean::known),
             wake_us: self.wake.quantiles(),
             work_us: self.work.quantiles(),
             sample_to_force_us: self.sample_to_force.quantiles(),
@@ -246,11 +246,11 @@ mod tests {
         let follows = (Side::Right, Fault::OtherArm);
         let fails = (Side::Left, cause);
         for order in [[follows, fails, follows], [fails, follows, follows], [follows, follows, fails]] {
-            let mut live = Live::new(RigConfig::load("simulated").unwrap(), Scene::load("bimanual").unwrap());
+            let mut live = LiveState::new(RigConfig::load("simulated").unwrap(), Scene::load("bimanual").unwrap());
             live.replay(order.map(raised).iter(), &[None; SIDES]);
             assert_eq!(live.signs(false, None).first_fault, Some((2.7, cause)));
         }
-        let mut live = Live::new(RigConfig::load("simulated").unwrap(), Scene::load("bimanual").unwrap());
+        let mut live = LiveState::new(RigConfig::load("simulated").unwrap(), Scene::load("bimanual").unwrap());
         live.replay([raised(follows)].iter(), &[None; SIDES]);
         assert_eq!(live.signs(false, None).first_fault, Some((2.7, Fault::OtherArm)));
     }

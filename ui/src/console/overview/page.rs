@@ -2,20 +2,20 @@
 
 use egui::{Button, Grid, Label, RichText, Ui, WidgetInfo, vec2};
 
-use super::{Line, OfArm, following, made_words, verdict_words};
+use super::{ArmOverview, OverviewLine, following, made_text, verdict_text};
 use crate::console::{
     scene3d::side_name,
     text, theme,
     widgets::{Sign, next_button, sign_ui, small},
-    wizards::{GoOn, Wanted},
+    wizards::{CalibrationTarget, GoOn},
 };
-use crate::words::within;
+use crate::report_text::within;
 
 /// Widths of the text columns.
 const WIDTHS: [f32; 3] = [150.0, 260.0, 260.0];
 
 /// Draws the page; returns the calibration to start. With a reason in `closed` none can be started.
-pub(crate) fn overview_ui(ui: &mut Ui, arms: &[OfArm], closed: Option<&str>) -> Option<Wanted> {
+pub(crate) fn overview_ui(ui: &mut Ui, arms: &[ArmOverview], closed: Option<&str>) -> Option<CalibrationTarget> {
     ui.label(RichText::new(text::overview::TITLE.get()).font(theme::strong(22.0)));
     ui.label(small(text::overview::MEANING.get()));
     ui.add_space(theme::GAP);
@@ -58,7 +58,7 @@ pub(crate) fn overview_ui(ui: &mut Ui, arms: &[OfArm], closed: Option<&str>) -> 
 }
 
 /// The button that opens the next calibration.
-fn following_ui(ui: &mut Ui, arms: &[OfArm], closed: Option<&str>) -> Option<Wanted> {
+fn following_ui(ui: &mut Ui, arms: &[ArmOverview], closed: Option<&str>) -> Option<CalibrationTarget> {
     let wanted = following(arms, None)?;
     let name = RichText::new(GoOn::Calibrate(wanted).words()).font(theme::strong(15.0));
     let free = closed.is_none();
@@ -69,7 +69,7 @@ fn following_ui(ui: &mut Ui, arms: &[OfArm], closed: Option<&str>) -> Option<Wan
 }
 
 /// One line; returns whether to recalibrate.
-fn line_ui(ui: &mut Ui, line: &Line, arm: &str, closed: Option<&str>) -> bool {
+fn line_ui(ui: &mut Ui, line: &OverviewLine, arm: &str, closed: Option<&str>) -> bool {
     let (what, colour) = if line.is_in_order() {
         (Sign::Disc, theme::now().engaged)
     } else {
@@ -78,7 +78,7 @@ fn line_ui(ui: &mut Ui, line: &Line, arm: &str, closed: Option<&str>) -> bool {
     sign_ui(ui, what, 5.0, colour);
     ui.label(line.wanted.name());
     let words = match &line.kept {
-        Ok(Some(kept)) => [made_words(kept), verdict_words(kept), line.since.clone()],
+        Ok(Some(kept)) => [made_text(kept), verdict_text(kept), line.since.clone()],
         Ok(None) => [text::overview::NEVER.get().to_owned(), String::new(), String::new()],
         Err(why) => [String::new(), why.clone(), String::new()],
     };

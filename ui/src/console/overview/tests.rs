@@ -1,21 +1,21 @@
 //! The list of calibrations: saved ones with age and verdict, missing ones, and unusable ones.
 
 use nima_core::calibration::{RecordHead, Verdict, gravity::GravityRecord};
-use nima_machine::{config::RigConfig, ready::Check, rig::Side};
-use nima_recording::store::{CheckedItem, Outcome, READY_CHECK, ReadyRecord, Store, utc_now};
+use nima_machine::{config::RigConfig, ready::ReadyPoint, rig::Side};
+use nima_recording::store::{CheckedItem, PointOutcome, READY_CHECK, ReadyRecord, Store, utc_now};
 use nima_simulation::scene::Scene;
 use nima_tests::gravity::gravity;
 
-use super::{InForce, Line, OfArm, following, found_since, made_words, overview, verdict_words};
+use super::{ActiveCalibrations, ArmOverview, OverviewLine, following, found_since, made_text, overview, verdict_text};
 use crate::{
-    console::wizards::{Kind, Wanted, Which},
-    words::check_name,
+    console::wizards::{CalibrationTarget, FrameKind, WizardKind},
+    report_text::check_name,
 };
 
-fn listed(store: &Store) -> Vec<super::OfArm> {
+fn listed(store: &Store) -> Vec<super::ArmOverview> {
     let rig = RigConfig::load("simulated").unwrap();
     let scene = Scene::load("palpation").unwrap();
-    overview(&InForce::load(Some(store.folder()), &rig, &scene), &rig, "simulated")
+    overview(&ActiveCalibrations::load(Some(store.folder()), &rig, &scene), &rig, "simulated")
 }
 
 #[test]
@@ -27,10 +27,14 @@ fn what_was_made_stands_with_age_and_verdict_and_what_was_not_says_so() {
     let [arm] = &arms[..] else { panic!("{arms:?}") };
     assert_eq!(arm.wrist.as_ref().unwrap().serial_number, "SIM-S1-0001");
     let which: Vec<_> = arm.lines.iter().map(|line| line.wanted.which).collect();
-    assert_eq!(which, [Which::Gravity, Which::Correspondence, Which::TipForce], "a simulated arm has no frames");
+    assert_eq!(
+        which,
+        [WizardKind::Gravity, WizardKind::Correspondence, WizardKind::TipForce],
+        "a simulated arm has no frames"
+    );
     let kept = arm.lines[0].kept.as_ref().unwrap().as_ref().unwrap();
-    assert!(made_words(kept).ends_with(", less than a day old"), "{}", made_words(kept));
-    assert!(verdict_words(kept).starts_with("Accepted, held-out error 0.0"), "{}", verdict_words(kept));
+    assert!(made_text(kept).ends_with(", less than a day old"), "{}", made_text(kept));
+    assert!(verdict_text(kept).starts_with("Accepted, held-out error 0.0"), "{}", verdict_text(kept));
     assert!(arm.lines[0].since.contains("being checked"), "{}", arm.lines[0].since);
     assert_eq!(arm.lines[1].kept, Ok(None));
 }
@@ -46,8 +50,8 @@ fn an_old_one_an_overridden_one_and_a_damaged_one_are_told() {
     store.save(&record).unwrap();
     let arms = listed(&store);
     let kept = arms[0].lines[0].kept.as_ref().unwrap().as_ref().unwrap();
-    assert!(made_words(kept).starts_with("2026-01-02, ") && made_words(kept).ends_with(" days old"));
-    assert!(verdict_words(kept).ends_with("kept by Ada Lovelace"), "{}", verdict_words(kept));
+    assert!(made_text(kept).starts_with("2026-01-02, ") && made_text(kept).ends_with(" days old"));
+    assert!(verdict_text(kept).ends_with("accepted by Ada Lovelace"), "{}", verdict_text(kept));
     std::fs::write(store.path::<GravityRecord>(&record.head.sensor).unwrap(), "kind = 3").unwrap();
     let arms = listed(&store);
     assert!(arms[0].lines[0].kept.is_err(), "{:?}", arms[0].lines[0]);
@@ -56,8 +60,8 @@ fn an_old_one_an_overridden_one_and_a_damaged_one_are_told() {
 #[test]
 fn a_ready_check_tells_what_has_changed_since_if_it_was_later() {
     let item = CheckedItem {
-        check: check_name(Check::Trocar(Side::Left)),
-        outcome: Outcome::Passed,
+        check: check_name(ReadyPoint::Trocar(Side::Left)),
+        outcome: PointOutcome::Passed,
         value: Some(0.31),
         limit: Some(1.0),
         unit: Some("mm".to_owned()),
@@ -76,7 +80,7 @@ fn a_ready_check_tells_what_has_changed_since_if_it_was_later() {
         devices: Vec::new(),
         items: vec![item],
     };
-    let since = |side, date: &str| found_since(Some(&check), Check::Trocar(side), date);
+    let since = |side, date: &str| found_since(Some(&check), ReadyPoint::Trocar(side), date);
     let words = Some("ready check on 2026-08-21: 0.31 mm, limit 1.00".to_owned());
     assert_eq!(since(Side::Left, "2026-08-20T10:20:30Z"), words);
     assert_eq!(since(Side::Left, &utc_now()), None, "calibrated after the check");
@@ -89,15 +93,15 @@ fn what_is_to_be_calibrated_next_is_the_first_that_is_not_in_order_after_what_wa
     let store = Store::open(folder.path().join("calibrations"));
     store.save(&gravity()).unwrap();
     let [good, missing] = [listed(&store)[0].lines[0].kept.clone(), Ok(None)];
-    let wanted = |side, which| Wanted { side, which, by_handle: false };
-    let tip = Which::Frame(Kind::Tip);
-    let arm = |side, kept: [&Result<_, _>; 2]| OfArm {
+    let wanted = |side, which| CalibrationTarget { side, which, by_handle: false };
+    let tip = WizardKind::Frame(FrameKind::Tip);
+    let arm = |side, kept: [&Result<_, _>; 2]| ArmOverview {
         side,
         wrist: None,
-        lines: [tip, Which::Gravity]
+        lines: [tip, WizardKind::Gravity]
             .into_iter()
             .zip(kept)
-            .map(|(which, kept)| Line { wanted: wanted(side, which), kept: kept.clone(), since: String::new() })
+            .map(|(which, kept)| OverviewLine { wanted: wanted(side, which), kept: kept.clone(), since: String::new() })
             .collect(),
     };
     let right = Side::Right;
@@ -106,8 +110,8 @@ fn what_is_to_be_calibrated_next_is_the_first_that_is_not_in_order_after_what_wa
     assert_eq!(next([&missing, &good], [&good, &missing], None), Some(wanted(right, tip)));
     let after = |side, which| Some(wanted(side, which));
     assert_eq!(next([&good, &good], [&missing, &missing], after(right, tip)), after(left, tip));
-    assert_eq!(next([&missing, &good], [&good, &good], after(left, Which::Gravity)), after(right, tip));
+    assert_eq!(next([&missing, &good], [&good, &good], after(left, WizardKind::Gravity)), after(right, tip));
     // A calibration accepted without proof is not suggested again at once.
-    assert_eq!(next([&good, &missing], [&good, &good], after(right, Which::Gravity)), None);
+    assert_eq!(next([&good, &missing], [&good, &good], after(right, WizardKind::Gravity)), None);
     assert_eq!(next([&good; 2], [&good; 2], None), None);
 }

@@ -4,19 +4,19 @@ use std::ops::RangeInclusive;
 
 use egui_plot::{GridInput, GridMark};
 
-use crate::words::newtons;
+use crate::report_text::newtons;
 
 /// Marks at round values over the range of an axis, at least `apart` points apart, so that the numbers are readable however
 /// small the plot is.
 pub(super) fn marks(grid: &GridInput, apart: f64) -> Vec<GridMark> {
     let (low, high) = grid.bounds;
     // egui_plot's base step is 8 points long.
-    let least = (grid.base_step_size * apart / 8.0).max((high - low) / 12.0);
-    if !least.is_finite() || least <= 0.0 {
+    let min = (grid.base_step_size * apart / 8.0).max((high - low) / 12.0);
+    if !min.is_finite() || min <= 0.0 {
         return Vec::new();
     }
-    let decade = 10f64.powf(least.log10().floor());
-    let step_size = [1.0, 2.0, 5.0, 10.0].map(|x| x * decade).into_iter().find(|&step| step >= least).unwrap_or(least);
+    let decade = 10f64.powf(min.log10().floor());
+    let step_size = [1.0, 2.0, 5.0, 10.0].map(|x| x * decade).into_iter().find(|&step| step >= min).unwrap_or(min);
     let first = (low / step_size).ceil() as i64;
     (first..=first + 12)
         .map(|i| GridMark { value: i as f64 * step_size, step_size })

@@ -7,24 +7,24 @@ use nima_machine::{
     rig::Side,
 };
 
-use crate::words::within;
+use crate::report_text::within;
 use crate::{
     console::{
+        active_calibrations::ActiveCalibrations,
         alarms::sentence,
-        in_force::InForce,
-        live::Live,
+        live::LiveState,
         scene3d::side_name,
         text, theme,
         widgets::{Sign, fitting_style, next_button, sign_ui, small, weak},
-        wizards::Which,
+        wizards::WizardKind,
     },
-    words::Words as _,
+    report_text::ShortText as _,
 };
 
 /// A request of the technician.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CalibrationWish {
-    Open(Which),
+    Open(WizardKind),
     Check,
     List,
     /// Select the wrist sensor of this arm.
@@ -35,34 +35,39 @@ pub enum CalibrationWish {
 
 /// The page next to the panel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Page {
-    Wizard(Which),
+pub enum CalibrationPage {
+    Wizard(WizardKind),
     Check,
     All,
 }
 
 /// The panel; `open` is the page next to it.
-pub fn calibrations_ui(ui: &mut Ui, live: &Live, in_force: &InForce, open: Option<Page>) -> Option<CalibrationWish> {
+pub fn calibrations_ui(
+    ui: &mut Ui,
+    live: &LiveState,
+    active: &ActiveCalibrations,
+    open: Option<CalibrationPage>,
+) -> Option<CalibrationWish> {
     let closed = text::calibrations::closed(live.state());
     let mut wish = rig_ui(ui, live, open);
     ui.add_space(2.0);
     source_ui(ui, live);
-    for told in in_force.told() {
-        ui.label(told);
+    for report in active.report() {
+        ui.label(report);
     }
     ui.add_space(4.0);
     if live.is_bimanual() {
-        wish = side_ui(ui, in_force.side()).or(wish);
+        wish = side_ui(ui, active.side()).or(wish);
     }
     // Only an arm with joints has frames.
     let has_arm = live.rig.devices.is_some();
-    let offered = |which: &Which| match which {
-        Which::Camera => live.rig.endoscope.is_some(),
+    let offered = |which: &WizardKind| match which {
+        WizardKind::Camera => live.rig.endoscope.is_some(),
         _ => has_arm || which.scene().is_some(),
     };
-    for which in Which::built().filter(offered) {
+    for which in WizardKind::built().filter(offered) {
         let text = text::calibrations::calibrate(&within(which.name()));
-        let is_open = open == Some(Page::Wizard(which));
+        let is_open = open == Some(CalibrationPage::Wizard(which));
         let button =
             Button::selectable(is_open, text).frame_when_inactive(true).min_size(vec2(ui.available_width(), 28.0));
         let response = ui.add_enabled(closed.is_none() && !is_open, button);
@@ -79,7 +84,7 @@ pub fn calibrations_ui(ui: &mut Ui, live: &Live, in_force: &InForce, open: Optio
     }
     // Below the buttons, which must not move under a hand when a sensor connects or disconnects.
     ui.add_space(4.0);
-    for line in in_force.lines() {
+    for line in active.lines() {
         ui.label(small(line));
     }
     wish
@@ -87,7 +92,7 @@ pub fn calibrations_ui(ui: &mut Ui, live: &Live, in_force: &InForce, open: Optio
 
 /// Controls for the whole rig: the ready check and the list of all calibrations. On a rig with devices, the one required
 /// before engaging stands out.
-fn rig_ui(ui: &mut Ui, live: &Live, open: Option<Page>) -> Option<CalibrationWish> {
+fn rig_ui(ui: &mut Ui, live: &LiveState, open: Option<CalibrationPage>) -> Option<CalibrationWish> {
     let mut wish = None;
     let closed = text::calibrations::closed(live.state());
     let next = next_page(live).filter(|_| live.rig.devices.is_some() && open.is_none());
@@ -95,12 +100,17 @@ fn rig_ui(ui: &mut Ui, live: &Live, open: Option<Page>) -> Option<CalibrationWis
     ui.horizontal(|ui| {
         for (page, name, meaning, opens) in [
             (
-                Page::Check,
+                CalibrationPage::Check,
                 text::ready::OPEN.get(),
                 text::calibrations::opens(text::ready::MEANING.get()),
                 CalibrationWish::Check,
             ),
-            (Page::All, text::overview::OPEN.get(), text::overview::MEANING.get().to_owned(), CalibrationWish::List),
+            (
+                CalibrationPage::All,
+                text::overview::OPEN.get(),
+                text::overview::MEANING.get().to_owned(),
+                CalibrationWish::List,
+            ),
         ] {
             let is_open = open == Some(page);
             let next = next == Some(page);
@@ -108,7 +118,7 @@ fn rig_ui(ui: &mut Ui, live: &Live, open: Option<Page>) -> Option<CalibrationWis
             let name = RichText::new(name).font(fitting_style(ui, name, &TextStyle::Button, room));
             let button =
                 next_button(name, next).selected(is_open).frame_when_inactive(true).min_size(vec2(width, 28.0));
-            let can_open = closed.is_none() || page == Page::All;
+            let can_open = closed.is_none() || page == CalibrationPage::All;
             let button = ui.add_enabled(can_open && !is_open, button).on_hover_text(meaning);
             if button.on_disabled_hover_text(closed.unwrap_or(text::calibrations::IS_OPEN.get())).clicked() {
                 wish = Some(opens);
@@ -124,14 +134,14 @@ fn rig_ui(ui: &mut Ui, live: &Live, open: Option<Page>) -> Option<CalibrationWis
 
 /// The page to complete before an idle rig can be engaged: a missing calibration, then the ready check. If the force is
 /// unknown for another reason, neither helps.
-fn next_page(live: &Live) -> Option<Page> {
+fn next_page(live: &LiveState) -> Option<CalibrationPage> {
     let is_idle = live.state() == LoopState::Idle;
     let mut sources = live.ticks.iter().flatten().filter(|_| is_idle).map(|tick| tick.force.source);
     let first = sources.clone().find(|source| !source.is_usable()).or_else(|| sources.next())?;
     match first {
-        ForceSource::Uncalibrated | ForceSource::Poisoned => Some(Page::All),
+        ForceSource::Uncalibrated | ForceSource::Poisoned => Some(CalibrationPage::All),
         source if !source.is_usable() => None,
-        _ => live.is_unchecked.then_some(Page::Check),
+        _ => live.is_unchecked.then_some(CalibrationPage::Check),
     }
 }
 
@@ -151,7 +161,7 @@ fn side_ui(ui: &mut Ui, now: Side) -> Option<CalibrationWish> {
     wish
 }
 
-fn source_ui(ui: &mut Ui, live: &Live) {
+fn source_ui(ui: &mut Ui, live: &LiveState) {
     let source = live.first_tick().map_or(ForceSource::NoSample, |tick| tick.force.source);
     let sure = source.is_known() && source.doubt().is_none();
     let (what, colour) = if sure { (Sign::Disc, theme::now().engaged) } else { (Sign::Triangle, theme::now().text) };
@@ -168,7 +178,7 @@ fn source_ui(ui: &mut Ui, live: &Live) {
 #[cfg(test)]
 mod tests {
     use nima_machine::config::RigConfig;
-    use nima_simulation::{Plan, run_virtual, scene::Scene};
+    use nima_simulation::{SimulationPlan, run_virtual, scene::Scene};
 
     use super::*;
 
@@ -176,8 +186,9 @@ mod tests {
     fn a_button_leads_to_the_calibrations_only_where_one_is_missing() {
         let rig = RigConfig::load("simulated").unwrap();
         let scene = Scene::load("peg_transfer").unwrap();
-        let plan = Plan { rig: rig.clone(), scene: scene.clone(), calibrations: Default::default(), engage: false };
-        let mut live = Live::new(rig, scene);
+        let plan =
+            SimulationPlan { rig: rig.clone(), scene: scene.clone(), calibrations: Default::default(), engage: false };
+        let mut live = LiveState::new(rig, scene);
         assert_eq!(next_page(&live), None);
         run_virtual(&plan, 0.1, |tick| {
             live.ticks[0] = Some(*tick);
@@ -191,8 +202,11 @@ mod tests {
         };
         for source in ForceSource::UNUSABLE {
             let is_calibration = matches!(source, ForceSource::Uncalibrated | ForceSource::Poisoned);
-            assert_eq!(next(source, true), is_calibration.then_some(Page::All), "{source:?}");
+            assert_eq!(next(source, true), is_calibration.then_some(CalibrationPage::All), "{source:?}");
         }
-        assert_eq!([true, false].map(|unchecked| next(ForceSource::Wrist, unchecked)), [Some(Page::Check), None]);
+        assert_eq!(
+            [true, false].map(|unchecked| next(ForceSource::Wrist, unchecked)),
+            [Some(CalibrationPage::Check), None]
+        );
     }
 }

@@ -6,16 +6,16 @@ use egui::{Align2, Rect, Sense, Ui, vec2};
 use nima_core::impedance::Mode;
 
 use crate::console::{
-    live::{DEGREES_S, Live},
+    live::{DEGREES_S, LiveState},
     rolling::DEGREES,
     theme,
     widgets::{figure, small},
 };
-use crate::words::three_digits;
+use crate::report_text::three_digits;
 
 const CHART_HEIGHT: f32 = 92.0;
 
-pub fn degrees_ui(ui: &mut Ui, live: &Live) {
+pub fn degrees_ui(ui: &mut Ui, live: &LiveState) {
     let compares = live.first_tick().is_some_and(|tick| tick.identification.modes.contains(Mode::Literal));
     ui.horizontal(|ui| {
         key_ui(ui, theme::now().rendered, text::degrees::KEY_OURS.get(), text::degrees::KEY_OURS_HOVER.get());
@@ -25,20 +25,20 @@ pub fn degrees_ui(ui: &mut Ui, live: &Live) {
         ui.label(small(text::degrees::last_minutes(DEGREES_S / 60.0)));
     });
     chart_ui(ui, live, compares);
-    let share = |share: f64| format!("{:.0} %", 100.0 * share);
+    let fraction = |fraction: f64| format!("{:.0} %", 100.0 * fraction);
     figure(
         ui,
         text::degrees::NONLINEAR_OURS.get(),
-        share(live.degrees.nonlinear()),
+        fraction(live.degrees.nonlinear()),
         text::degrees::NONLINEAR_OURS_HOVER.get(),
     );
     let papers =
-        if compares { share(live.paper_degrees.nonlinear()) } else { text::degrees::NOT_COMPUTED.get().to_owned() };
+        if compares { fraction(live.paper_degrees.nonlinear()) } else { text::degrees::NOT_COMPUTED.get().to_owned() };
     figure(ui, text::degrees::NONLINEAR_PAPER.get(), papers, text::degrees::NONLINEAR_PAPER_HOVER.get());
     quality_ui(ui, live, compares);
 }
 
-fn quality_ui(ui: &mut Ui, live: &Live, compares: bool) {
+fn quality_ui(ui: &mut Ui, live: &LiveState, compares: bool) {
     let Some(tick) = live.first_tick() else { return };
     let report = &tick.identification;
     if !compares {
@@ -74,15 +74,15 @@ fn key_ui(ui: &mut Ui, colour: egui::Color32, name: &str, meaning: &str) {
 }
 
 /// Six pairs of bars, degrees 0 to 5, with their percentages above.
-fn chart_ui(ui: &mut Ui, live: &Live, compares: bool) {
+fn chart_ui(ui: &mut Ui, live: &LiveState, compares: bool) {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), CHART_HEIGHT + 20.0), Sense::hover());
-    let ours = live.degrees.shares();
-    let papers = live.paper_degrees.shares();
-    let words = |shares: &[f64; DEGREES]| {
-        shares
+    let ours = live.degrees.fractions();
+    let papers = live.paper_degrees.fractions();
+    let words = |fractions: &[f64; DEGREES]| {
+        fractions
             .iter()
             .enumerate()
-            .map(|(n, share)| format!("{n}: {:.0} %", 100.0 * share))
+            .map(|(n, fraction)| format!("{n}: {:.0} %", 100.0 * fraction))
             .collect::<Vec<_>>()
             .join("   ")
     };
@@ -103,19 +103,19 @@ fn chart_ui(ui: &mut Ui, live: &Live, compares: bool) {
             (ours[degree], middle - width - 1.0, theme::now().rendered),
             (papers[degree], middle + 1.0, theme::now().reference),
         ];
-        for (share, left, colour) in bars.into_iter().take(1 + usize::from(compares)) {
-            let height = (CHART_HEIGHT - 18.0) * share as f32;
+        for (fraction, left, colour) in bars.into_iter().take(1 + usize::from(compares)) {
+            let height = (CHART_HEIGHT - 18.0) * fraction as f32;
             let filled = Rect::from_min_max(
                 egui::pos2(left, ground.bottom() - height.max(1.0)),
                 egui::pos2(left + width, ground.bottom()),
             );
             painter.rect_filled(filled, 1.0, colour);
-            if share >= 0.005 {
+            if fraction >= 0.005 {
                 let place = egui::pos2(left + 0.5 * width, ground.bottom() - height - 8.0);
                 painter.text(
                     place,
                     Align2::CENTER_CENTER,
-                    format!("{:.0}", 100.0 * share),
+                    format!("{:.0}", 100.0 * fraction),
                     theme::regular(11.0),
                     theme::now().text_weak,
                 );

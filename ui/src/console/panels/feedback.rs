@@ -12,13 +12,13 @@ use nima_machine::messages::Command;
 
 use crate::{
     console::{
-        live::Live,
+        live::LiveState,
         outbox::Outbox,
         text, theme,
         widgets::{at_the_right, small},
     },
     extras::{self, Extra},
-    words::{OFFERED, mode_meaning, mode_name},
+    report_text::{OFFERED, mode_meaning, mode_name},
 };
 
 /// How long a control shows the requested value before it shows the active value again, s: the gain ramps at 2 per second.
@@ -26,16 +26,16 @@ const ASKED_SHOWN_S: f64 = 1.6;
 
 /// A requested value and the time of the request (s on the window's clock).
 #[derive(Clone, Copy, Debug, Default)]
-struct Asked(Option<(f64, f64)>);
+struct RequestedValue(Option<(f64, f64)>);
 
-impl Asked {
+impl RequestedValue {
     /// The value that a control shows at `time_s`, given the active value.
-    fn shown(&mut self, in_force: f64, time_s: f64) -> f64 {
+    fn shown(&mut self, active: f64, time_s: f64) -> f64 {
         match self.0 {
-            Some((value, at_s)) if time_s - at_s < ASKED_SHOWN_S && (value - in_force).abs() > 1e-6 => value,
+            Some((value, at_s)) if time_s - at_s < ASKED_SHOWN_S && (value - active).abs() > 1e-6 => value,
             _ => {
                 self.0 = None;
-                in_force
+                active
             }
         }
     }
@@ -44,12 +44,12 @@ impl Asked {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct FeedbackState {
     allow_above_one: bool,
-    gain: Asked,
-    delay_ms: Asked,
-    dead_band_mm_s: Asked,
+    gain: RequestedValue,
+    delay_ms: RequestedValue,
+    dead_band_mm_s: RequestedValue,
 }
 
-pub fn feedback_ui(ui: &mut Ui, live: &mut Live, state: &mut FeedbackState, outbox: &mut Outbox) {
+pub fn feedback_ui(ui: &mut Ui, live: &mut LiveState, state: &mut FeedbackState, outbox: &mut Outbox) {
     mode_ui(ui, live, outbox);
     ui.add_space(4.0);
     gain_ui(ui, live, state, outbox);
@@ -59,7 +59,7 @@ pub fn feedback_ui(ui: &mut Ui, live: &mut Live, state: &mut FeedbackState, outb
     standstill_ui(ui, live, state, outbox);
 }
 
-fn mode_ui(ui: &mut Ui, live: &Live, outbox: &mut Outbox) {
+fn mode_ui(ui: &mut Ui, live: &LiveState, outbox: &mut Outbox) {
     ui.spacing_mut().item_spacing = vec2(6.0, 4.0);
     // Two in a row, and three in the last one where they are an odd number.
     let (pairs, last) = OFFERED.split_at(MODES - 3 * (MODES % 2));
@@ -84,7 +84,7 @@ fn mode_ui(ui: &mut Ui, live: &Live, outbox: &mut Outbox) {
 }
 
 /// One setting: its name, its value and a slider over its range.
-struct Setting<'a> {
+struct FeedbackSetting<'a> {
     name: &'static str,
     meaning: &'a str,
     suffix: &'static str,
@@ -96,17 +96,17 @@ struct Setting<'a> {
 /// Shows the setting; returns the newly requested value, if there is one, and the slider's rectangle.
 fn setting_ui(
     ui: &mut Ui,
-    setting: &Setting<'_>,
+    setting: &FeedbackSetting<'_>,
     limits: &Limits,
-    in_force: f64,
-    asked: &mut Asked,
+    active: f64,
+    asked: &mut RequestedValue,
 ) -> (Option<f64>, egui::Rect) {
     let time_s = ui.input(|input| input.time);
     // Rounded for display here: a widget that rounds or clamps would report an edit, and the window would send a setting that
     // no one chose.
     let step = 10f64.powi(-i32::from(setting.decimals));
     let whole = |value: f64| (value / step).round() * step;
-    let mut value = whole(asked.shown(in_force, time_s));
+    let mut value = whole(asked.shown(active, time_s));
     let number = DragValue::new(&mut value)
         .range(limits.min..=limits.max)
         .clamp_existing_to_range(false)
@@ -135,8 +135,8 @@ fn setting_ui(
     (wanted.then_some(whole(value)), rail)
 }
 
-fn gain_ui(ui: &mut Ui, live: &Live, state: &mut FeedbackState, outbox: &mut Outbox) {
-    let setting = Setting {
+fn gain_ui(ui: &mut Ui, live: &LiveState, state: &mut FeedbackState, outbox: &mut Outbox) {
+    let setting = FeedbackSetting {
         name: text::feedback::GAIN.get(),
         meaning: &text::feedback::gain_hover(live.gate_settings().gain_rate_per_s),
         suffix: "",
@@ -157,7 +157,7 @@ fn gain_ui(ui: &mut Ui, live: &Live, state: &mut FeedbackState, outbox: &mut Out
             ui.checkbox(&mut state.allow_above_one, text::feedback::ALLOW_ABOVE_1.get()).on_hover_text(meaning);
         if unlock.changed() && !state.allow_above_one && live.gain() > GAIN.max {
             outbox.push(Command::SetGain(GAIN.max));
-            state.gain = Asked::default();
+            state.gain = RequestedValue::default();
         }
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             ui.label(small(text::feedback::gain_in_use(live.gain())))
@@ -167,7 +167,7 @@ fn gain_ui(ui: &mut Ui, live: &Live, state: &mut FeedbackState, outbox: &mut Out
 }
 
 /// The gain alone, large: one number, one slider, two buttons for steps of 0.1. Never above [`GAIN`].
-pub fn calm_gain_ui(ui: &mut Ui, live: &Live, state: &mut FeedbackState, outbox: &mut Outbox) {
+pub fn calm_gain_ui(ui: &mut Ui, live: &LiveState, state: &mut FeedbackState, outbox: &mut Outbox) {
     let time_s = ui.input(|input| input.time);
     let shown = state.gain.shown(live.gain(), time_s);
     let mut wanted = None;
@@ -197,24 +197,23 @@ pub fn calm_gain_ui(ui: &mut Ui, live: &Live, state: &mut FeedbackState, outbox:
         wanted = Some(value);
     }
     if let Some(gain) = wanted.map(|gain| gain.clamp(GAIN.min, GAIN.max)) {
-        state.gain = Asked(Some((gain, time_s)));
+        state.gain = RequestedValue(Some((gain, time_s)));
         outbox.push(Command::SetGain(gain));
     }
 }
 
-fn delay_ui(ui: &mut Ui, live: &Live, state: &mut FeedbackState, outbox: &mut Outbox) {
-    let setting = Setting {
+fn delay_ui(ui: &mut Ui, live: &LiveState, state: &mut FeedbackState, outbox: &mut Outbox) {
+    let setting = FeedbackSetting {
         name: text::feedback::LINK_DELAY.get(),
         meaning: &text::feedback::delay_hover(),
         suffix: " ms",
         decimals: 0,
         at_once: false,
     };
-    let in_force = live.delay_s() * 1e3;
+    let active = live.delay_s() * 1e3;
     let measured = live.line.is_some();
     ui.add_enabled_ui(!measured, |ui| {
-        if let Some(delay_ms) =
-            setting_ui(ui, &setting, &SLIDER_DELAY_S.per(1e-3, "ms"), in_force, &mut state.delay_ms).0
+        if let Some(delay_ms) = setting_ui(ui, &setting, &SLIDER_DELAY_S.per(1e-3, "ms"), active, &mut state.delay_ms).0
         {
             outbox.push(Command::SetDelay(delay_ms * 1e-3));
         }
@@ -223,17 +222,17 @@ fn delay_ui(ui: &mut Ui, live: &Live, state: &mut FeedbackState, outbox: &mut Ou
     .on_disabled_hover_text(text::link::DELAY_IS_MEASURED.get());
 }
 
-fn standstill_ui(ui: &mut Ui, live: &Live, state: &mut FeedbackState, outbox: &mut Outbox) {
-    let setting = Setting {
+fn standstill_ui(ui: &mut Ui, live: &LiveState, state: &mut FeedbackState, outbox: &mut Outbox) {
+    let setting = FeedbackSetting {
         name: text::feedback::DEAD_BAND.get(),
         meaning: &text::feedback::dead_band_hover(),
         suffix: " mm/s",
         decimals: 1,
         at_once: true,
     };
-    let in_force = live.gate_settings().dead_band_m_s * 1e3;
+    let active = live.gate_settings().dead_band_m_s * 1e3;
     let limits = SLIDER_DEAD_BAND_M_S.per(1e-3, "mm/s");
-    if let Some(mm_s) = setting_ui(ui, &setting, &limits, in_force, &mut state.dead_band_mm_s).0 {
+    if let Some(mm_s) = setting_ui(ui, &setting, &limits, active, &mut state.dead_band_mm_s).0 {
         outbox.push(Command::SetDeadBand(mm_s * 1e-3));
     }
     let mut hold = live.gate_settings().static_hold;
@@ -252,7 +251,7 @@ mod tests {
 
     #[test]
     fn a_control_shows_what_was_asked_for_a_moment_and_then_the_truth() {
-        let mut asked = Asked(Some((0.3, 10.0)));
+        let mut asked = RequestedValue(Some((0.3, 10.0)));
         assert!((asked.shown(0.9, 10.5) - 0.3).abs() < 1e-12);
         assert!((asked.shown(0.9, 12.0) - 0.9).abs() < 1e-12, "the loop did not follow: show that");
         assert!((asked.shown(0.4, 10.5) - 0.4).abs() < 1e-12, "once given up it stays with the truth");

@@ -7,10 +7,10 @@ use egui::{Align2, Color32, Painter, Pos2, Rect, Sense, Stroke, Ui, Vec2, pos2, 
 use nalgebra::Vector3;
 use nima_machine::rig::Side;
 
-use super::forces_state::stepped;
+use super::traces_state::stepped;
 use crate::console::{
-    cloud::{Ellipsoid, GAP_S, Pair, SECONDS},
-    live::Live,
+    force_cloud::{Ellipsoid, ForcePair, GAP_S, SECONDS},
+    live::LiveState,
     text, theme,
     widgets::fitting,
 };
@@ -18,7 +18,7 @@ use crate::console::{
 /// Height of the caption.
 const CAPTION: f32 = 40.0;
 /// Smallest radius of the view, N.
-const LEAST_N: f32 = 0.75;
+const MIN_N: f32 = 0.75;
 const RING: u32 = 48;
 
 /// Direction of view, and radius.
@@ -34,12 +34,12 @@ pub struct ForceSpaceState {
 
 impl Default for ForceSpaceState {
     fn default() -> Self {
-        Self { yaw: 0.6, pitch: 0.35, reach_n: LEAST_N, ellipsoid: (0, f64::NEG_INFINITY, None) }
+        Self { yaw: 0.6, pitch: 0.35, reach_n: MIN_N, ellipsoid: (0, f64::NEG_INFINITY, None) }
     }
 }
 
 /// Projection from force to the screen.
-struct View {
+struct ForceProjection {
     centre: Pos2,
     points_per_n: f32,
     right: Vector3<f32>,
@@ -48,7 +48,7 @@ struct View {
     middle_n: Vector3<f32>,
 }
 
-impl View {
+impl ForceProjection {
     fn place(&self, force_n: &Vector3<f32>) -> Pos2 {
         let from_middle = force_n - self.middle_n;
         self.centre + self.points_per_n * vec2(from_middle.dot(&self.right), -from_middle.dot(&self.up))
@@ -56,21 +56,21 @@ impl View {
 }
 
 /// Draws the plot over the available space; `cursor_s` is the time at the cursor of a trace, s on the loop's clock.
-pub fn force_space_ui(ui: &mut Ui, live: &Live, side: Side, state: &mut ForceSpaceState, cursor_s: Option<f64>) {
+pub fn force_space_ui(ui: &mut Ui, live: &LiveState, side: Side, state: &mut ForceSpaceState, cursor_s: Option<f64>) {
     let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
     let cloud = &live.clouds[side.index()];
     let newest_s = cloud.pairs().next_back().map_or(0.0, |pair| pair.t_s);
     let now_s = live.tick_of(side).map_or(newest_s, |tick| tick.t_s);
     let is_known = now_s - newest_s < GAP_S;
-    let shown_s = stepped(now_s, live.least_step_s());
+    let shown_s = stepped(now_s, live.min_step_s());
     let (count, until_s, _) = state.ellipsoid;
     if count != cloud.pairs().len() || until_s.total_cmp(&shown_s).is_ne() {
         state.ellipsoid = (cloud.pairs().len(), shown_s, cloud.ellipsoid());
     }
     let ellipsoid = state.ellipsoid.2.filter(|_| is_known);
     // Slightly less than what is stored: the oldest samples are dropped between two frames.
-    let shown = (shown_s - SECONDS + 2.0 * live.least_step_s())..=shown_s;
-    let pairs: Vec<&Pair> = cloud.pairs().filter(|pair| shown.contains(&pair.t_s)).collect();
+    let shown = (shown_s - SECONDS + 2.0 * live.min_step_s())..=shown_s;
+    let pairs: Vec<&ForcePair> = cloud.pairs().filter(|pair| shown.contains(&pair.t_s)).collect();
     let words = if is_known { caption(ellipsoid.as_ref()) } else { text::force_space::unknown(SECONDS) };
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, text::force_space::canvas(&words)));
     if response.dragged() {
@@ -83,14 +83,14 @@ pub fn force_space_ui(ui: &mut Ui, live: &Live, side: Side, state: &mut ForceSpa
     response.on_hover_text(text::force_space::HOVER.get());
     let painter = ui.painter_at(rect);
     painter.rect_filled(rect, theme::CORNER, theme::now().groove);
-    let most_n = pairs.iter().map(|pair| pair.measured_n.amax().max(pair.rendered_n.amax())).fold(0.0, f64::max);
-    state.reach_n = reach_n(most_n as f32, state.reach_n);
+    let max_n = pairs.iter().map(|pair| pair.measured_n.amax().max(pair.rendered_n.amax())).fold(0.0, f64::max);
+    state.reach_n = reach_n(max_n as f32, state.reach_n);
     let place = Rect::from_min_max(rect.min, rect.max - vec2(0.0, CAPTION));
     let view = view(state, place);
     axes(&painter, &view, state.reach_n);
     ceiling(&painter.with_clip_rect(place), &view, live.gate_settings().ceiling_n as f32);
     for (colour, width, rendered) in [(theme::now().measured, 2.2, false), (theme::now().rendered, 1.6, true)] {
-        let force_n = |pair: &Pair| if rendered { pair.rendered_n } else { pair.measured_n };
+        let force_n = |pair: &ForcePair| if rendered { pair.rendered_n } else { pair.measured_n };
         // One line for each interval in which the measured force was known.
         for run in pairs.chunk_by(|before, after| after.t_s - before.t_s < GAP_S) {
             let points = run.iter().map(|pair| view.place(&force_n(pair).cast())).collect();
@@ -126,16 +126,16 @@ fn caption(ellipsoid: Option<&Ellipsoid>) -> String {
 }
 
 /// A round radius that contains all samples and does not shrink at once.
-fn reach_n(most_n: f32, now_n: f32) -> f32 {
-    let steps = [LEAST_N, 1.5, 3.0, 4.5, 6.0, 9.0, 12.0];
-    let wanted = steps.into_iter().find(|&step| most_n <= step).unwrap_or(12.0);
-    if wanted > now_n || most_n < 0.3 * now_n { wanted } else { now_n }
+fn reach_n(max_n: f32, now_n: f32) -> f32 {
+    let steps = [MIN_N, 1.5, 3.0, 4.5, 6.0, 9.0, 12.0];
+    let wanted = steps.into_iter().find(|&step| max_n <= step).unwrap_or(12.0);
+    if wanted > now_n || max_n < 0.3 * now_n { wanted } else { now_n }
 }
 
-fn view(state: &ForceSpaceState, place: Rect) -> View {
+fn view(state: &ForceSpaceState, place: Rect) -> ForceProjection {
     let (sin_yaw, cos_yaw) = state.yaw.sin_cos();
     let (sin_pitch, cos_pitch) = state.pitch.sin_cos();
-    View {
+    ForceProjection {
         centre: place.center(),
         points_per_n: 0.56 * place.width().min(place.height()) / state.reach_n,
         right: Vector3::new(cos_yaw, sin_yaw, 0.0),
@@ -145,7 +145,7 @@ fn view(state: &ForceSpaceState, place: Rect) -> View {
 }
 
 /// Three axes with a mark at every newton, or every half newton if the radius is small.
-fn axes(painter: &Painter, view: &View, reach_n: f32) {
+fn axes(painter: &Painter, view: &ForceProjection, reach_n: f32) {
     let stroke = Stroke::new(1.0, theme::now().line.lerp_to_gamma(theme::now().text_weak, 0.4));
     let step_n = if reach_n > 4.0 {
         2.0
@@ -190,7 +190,7 @@ fn ring(at: impl Fn(f32, f32) -> Pos2) -> Vec<Pos2> {
 }
 
 /// Outline of the sphere of the force ceiling.
-fn ceiling(painter: &Painter, view: &View, ceiling_n: f32) {
+fn ceiling(painter: &Painter, view: &ForceProjection, ceiling_n: f32) {
     let points = ring(|cos, sin| view.place(&(ceiling_n * (view.right * cos + view.up * sin))));
     painter.add(egui::Shape::Vec(egui::Shape::dashed_line(
         &points,
@@ -201,7 +201,7 @@ fn ceiling(painter: &Painter, view: &View, ceiling_n: f32) {
 }
 
 /// The ellipsoid, drawn as its three sections through two half axes each.
-fn rings(painter: &Painter, view: &View, around_n: &Vector3<f32>, ellipsoid: &Ellipsoid) {
+fn rings(painter: &Painter, view: &ForceProjection, around_n: &Vector3<f32>, ellipsoid: &Ellipsoid) {
     let half_n = ellipsoid.half_axes_n.cast::<f32>();
     let centre_n = around_n + ellipsoid.mean_n.cast::<f32>();
     let colour: Color32 = theme::now().engaged;
@@ -217,9 +217,9 @@ mod tests {
 
     #[test]
     fn the_reach_grows_at_once_and_shrinks_late() {
-        assert!((reach_n(2.4, LEAST_N) - 3.0).abs() < 1e-6);
+        assert!((reach_n(2.4, MIN_N) - 3.0).abs() < 1e-6);
         assert!((reach_n(1.2, 3.0) - 3.0).abs() < 1e-6);
-        assert!((reach_n(0.1, 3.0) - LEAST_N).abs() < 1e-6);
+        assert!((reach_n(0.1, 3.0) - MIN_N).abs() < 1e-6);
         assert!((reach_n(1e9, 3.0) - 12.0).abs() < 1e-6);
     }
 

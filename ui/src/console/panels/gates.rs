@@ -7,15 +7,15 @@ use nima_machine::{
     rig::Side,
 };
 
-use crate::words::{side_word, state_name, within};
+use crate::report_text::{side_word, state_name, within};
 use crate::{
     console::{
-        live::Live,
+        live::LiveState,
         scene3d::side_name,
         text, theme,
         widgets::{Sign, fitting_style, sign_ui, small},
     },
-    words::{Words as _, gate_words},
+    report_text::{ShortText as _, gate_text},
 };
 
 /// A smaller force is not considered a contact, N.
@@ -33,7 +33,7 @@ impl Default for GatesState {
     }
 }
 
-pub fn gates_ui(ui: &mut Ui, live: &Live, state: &mut GatesState) {
+pub fn gates_ui(ui: &mut Ui, live: &LiveState, state: &mut GatesState) {
     if live.is_bimanual() {
         ui.horizontal(|ui| {
             for side in Side::LEFT_TO_RIGHT {
@@ -59,7 +59,7 @@ pub fn gates_ui(ui: &mut Ui, live: &Live, state: &mut GatesState) {
 }
 
 /// The summary: the first closed gate, or that there is no problem.
-fn answer(live: &Live, side: Side) -> String {
+fn answer(live: &LiveState, side: Side) -> String {
     let is_free = live.figures.measured_n[side.index()].is_none_or(|measured_n| measured_n < CONTACT_N);
     why_no_force(live, side).unwrap_or_else(|| {
         if is_free {
@@ -71,7 +71,7 @@ fn answer(live: &Live, side: Side) -> String {
 }
 
 /// Reason why this hand gets no force, or less than it should; `None` if there is no problem.
-pub fn why_no_force(live: &Live, side: Side) -> Option<String> {
+pub fn why_no_force(live: &LiveState, side: Side) -> Option<String> {
     let gates = &live.gates[side.index()];
     let hand = side.index();
     let rendered_n = live.figures.rendered_n[hand];
@@ -107,7 +107,7 @@ pub fn why_no_force(live: &Live, side: Side) -> Option<String> {
 }
 
 /// Reason why no side is engaged: the first obstacle before pressing Engage.
-fn why_idle(live: &Live, source: ForceSource) -> String {
+fn why_idle(live: &LiveState, source: ForceSource) -> String {
     if live.is_shown_only() {
         return text::gates::NONE_IDLE_THEN.get().to_owned();
     }
@@ -119,19 +119,19 @@ fn why_idle(live: &Live, source: ForceSource) -> String {
 }
 
 /// One gate as displayed.
-pub(super) struct Gate {
+pub(super) struct GateView {
     pub(super) which: Which,
     pub(super) name: &'static str,
-    share: f64,
+    fraction: f64,
     limits: bool,
     pub(super) note: String,
     pub(super) meaning: &'static str,
 }
 
-impl Gate {
+impl GateView {
     /// Its symbol and state.
     pub(super) fn standing(&self) -> (Sign, &'static str) {
-        let acting = self.share > if self.limits { 0.05 } else { 0.5 };
+        let acting = self.fraction > if self.limits { 0.05 } else { 0.5 };
         match (acting, self.limits) {
             (false, _) => (Sign::Disc, text::gates::OPEN.get()),
             (true, false) => (Sign::Square, text::gates::CLOSED.get()),
@@ -141,22 +141,22 @@ impl Gate {
 }
 
 /// All gates, in the order of the chain.
-pub(super) fn gates(live: &Live, side: Side) -> [Gate; GATES] {
+pub(super) fn gates(live: &LiveState, side: Side) -> [GateView; GATES] {
     let gates = &live.gates[side.index()];
     Which::ALL.map(|which| {
-        let [name, meaning] = gate_words(which);
-        let share = match which {
+        let [name, meaning] = gate_text(which);
+        let fraction = match which {
             // A ramp of the gain does not count as a closed gate; a gain of zero does.
             Which::Gain => f64::from(u8::from(live.gain() < 0.01)),
-            _ => gates.share(which),
+            _ => gates.fraction(which),
         };
         let limits = matches!(which, Which::Slew | Which::Energy | Which::Ceiling | Which::Governor);
-        Gate { which, name, share, limits, note: note(live, side, which), meaning }
+        GateView { which, name, fraction, limits, note: note(live, side, which), meaning }
     })
 }
 
 /// Text next to a gate: its setting, or its current effect.
-fn note(live: &Live, side: Side, which: Which) -> String {
+fn note(live: &LiveState, side: Side, which: Which) -> String {
     let gates = &live.gates[side.index()];
     let chain = &live.rig.gates;
     if which == Which::Permission {
@@ -181,7 +181,7 @@ fn note(live: &Live, side: Side, which: Which) -> String {
 }
 
 /// Energy that the hand can still get back.
-fn stored(live: &Live, side: Side) -> String {
+fn stored(live: &LiveState, side: Side) -> String {
     if live.gate_settings().energy == EnergyMode::Off {
         return text::gates::ENERGY_OFF.get().to_owned();
     }
@@ -189,18 +189,18 @@ fn stored(live: &Live, side: Side) -> String {
 }
 
 /// How often the gate has acted since the loop was created, and the reason of the last time.
-pub(super) fn history(live: &Live, side: Side, gate: Which) -> String {
+pub(super) fn history(live: &LiveState, side: Side, gate: Which) -> String {
     let Some(counts) = live.tick_of(side).map(|tick| tick.gates.counts) else { return String::new() };
     let acted = counts.acted[gate.index()];
-    let share = counts.share(gate);
+    let fraction = counts.fraction(gate);
     let last = counts.last[gate.index()];
     match last {
         Reason::Open => text::gates::NEVER_ACTED.get().to_owned(),
-        last => text::gates::acted(acted, 100.0 * share, last.words()),
+        last => text::gates::acted(acted, 100.0 * fraction, last.words()),
     }
 }
 
-fn gate_ui(ui: &mut Ui, live: &Live, side: Side, gate: &Gate) {
+fn gate_ui(ui: &mut Ui, live: &LiveState, side: Side, gate: &GateView) {
     let (what, word) = gate.standing();
     let acting = what != Sign::Disc;
     let colour = if acting { theme::now().text } else { theme::now().engaged.gamma_multiply(0.75) };
@@ -219,25 +219,26 @@ fn gate_ui(ui: &mut Ui, live: &Live, side: Side, gate: &Gate) {
 #[cfg(test)]
 mod tests {
     use nima_machine::{config::RigConfig, messages::Tick, rig::SIDES};
-    use nima_simulation::{Plan, run_virtual, scene::Scene};
+    use nima_simulation::{SimulationPlan, run_virtual, scene::Scene};
 
     use super::*;
 
     /// A tick of this scene on the simulated rig at rest, without calibrations.
-    fn idle(scene: &str) -> (Live, Tick) {
+    fn idle(scene: &str) -> (LiveState, Tick) {
         let rig = RigConfig::load("simulated").unwrap();
         let scene = Scene::load(scene).unwrap();
-        let plan = Plan { rig: rig.clone(), scene: scene.clone(), calibrations: Default::default(), engage: false };
+        let plan =
+            SimulationPlan { rig: rig.clone(), scene: scene.clone(), calibrations: Default::default(), engage: false };
         let mut last = None;
         run_virtual(&plan, 0.1, |tick| {
             last = Some(*tick);
             None
         })
         .unwrap();
-        (Live::new(rig, scene), last.unwrap())
+        (LiveState::new(rig, scene), last.unwrap())
     }
 
-    fn told(live: &mut Live, tick: &Tick) -> String {
+    fn report(live: &mut LiveState, tick: &Tick) -> String {
         live.replay([].iter(), &[Some(*tick), None]);
         live.settle(0.1);
         why_no_force(live, Side::Right).unwrap()
@@ -247,19 +248,19 @@ mod tests {
     fn press_engage_stands_only_where_it_can_be_pressed() {
         let (mut live, tick) = idle("peg_transfer");
         assert_eq!(why_no_force(&live, Side::Right).unwrap(), text::gates::NONE_STARTING.get());
-        assert_eq!(told(&mut live, &tick), text::gates::NONE_IDLE.get());
+        assert_eq!(report(&mut live, &tick), text::gates::NONE_IDLE.get());
         live.engage_closed = Some(text::start::OPEN_DISABLED_HOVER.get());
-        let closed = told(&mut live, &tick);
+        let closed = report(&mut live, &tick);
         assert!(closed.contains("Close the calibration wizard") && !closed.contains("press Engage"), "{closed}");
-        let mut past = Live::of_past(live.rig.clone(), live.scene.clone());
-        assert_eq!(told(&mut past, &tick), text::gates::NONE_IDLE_THEN.get());
+        let mut past = LiveState::of_past(live.rig.clone(), live.scene.clone());
+        assert_eq!(report(&mut past, &tick), text::gates::NONE_IDLE_THEN.get());
     }
 
     #[test]
     fn a_force_that_is_not_known_is_the_cause_before_all_that_follows_from_it() {
         let (mut live, tick) = idle("palpation");
-        let told = told(&mut live, &tick);
-        assert!(told.contains("the wrist sensor is not calibrated") && !told.contains("Engage"), "{told}");
+        let report = report(&mut live, &tick);
+        assert!(report.contains("the wrist sensor is not calibrated") && !report.contains("Engage"), "{report}");
         for source in ForceSource::UNUSABLE {
             let mut tick = tick;
             tick.force.source = source;
@@ -272,7 +273,7 @@ mod tests {
     #[test]
     fn an_unknown_force_is_no_number_on_the_screen_and_a_known_one_is_again() {
         let (mut live, mut tick) = idle("peg_transfer");
-        let mut show = |live: &mut Live, force_n: Option<f64>| {
+        let mut show = |live: &mut LiveState, force_n: Option<f64>| {
             for _ in 0..200 {
                 tick.t_s += 1e-3;
                 tick.measured_n = nalgebra::Vector3::new(0.0, 0.0, force_n.unwrap_or(f64::NAN));

@@ -5,21 +5,21 @@ use nima_core::impedance::{Mode, ModeSet};
 use nima_machine::messages::Command;
 
 use crate::console::{
-    live::{Live, TREND_S},
+    live::{LiveState, TREND_S},
     outbox::Outbox,
     text, theme,
     widgets::{Sign, bar, sign, small},
 };
-use crate::words::{COMPARED, mode_meaning, mode_name, newtons_in_three, three_digits};
+use crate::report_text::{COMPARED, mode_meaning, mode_name, newtons_in_three, three_digits};
 
 /// Upper end of the bars, as a multiple of the error of delayed DFR.
 const LONGEST: f64 = 2.5;
 /// Height of the trend plot.
 const TREND_HEIGHT: f32 = 46.0;
 /// A smaller error is noise, and its ratio has no meaning, N.
-const LEAST_N: f64 = 1e-4;
+const MIN_N: f64 = 1e-4;
 
-pub fn horizon_ui(ui: &mut Ui, live: &Live, outbox: &mut Outbox) {
+pub fn horizon_ui(ui: &mut Ui, live: &LiveState, outbox: &mut Outbox) {
     let computed = live.first_tick().map_or(ModeSet::only(Mode::Dfr), |tick| tick.identification.modes);
     let dfr_n = live.figures.horizon_n[Mode::Dfr.index()];
     ui.label(small(text::horizon::ahead(live.delay_s() * 1e3)));
@@ -38,14 +38,14 @@ pub fn horizon_ui(ui: &mut Ui, live: &Live, outbox: &mut Outbox) {
 }
 
 /// Mean error of a mode over the last minutes, N; `None` if the force was never known.
-fn mean_n(live: &Live, mode: Mode) -> Option<f64> {
+fn mean_n(live: &LiveState, mode: Mode) -> Option<f64> {
     let errors_n = live.trend_n.iter().map(|errors_n| errors_n[mode.index()]).filter(|error_n| error_n.is_finite());
     let (count, sum_n) = errors_n.fold((0.0, 0.0), |(count, sum_n), error_n| (count + 1.0, sum_n + error_n));
     (count > 0.0).then(|| sum_n / count)
 }
 
 /// Errors of the active mode and of delayed DFR over the last minutes, one point per second.
-fn trend_ui(ui: &mut Ui, live: &Live) {
+fn trend_ui(ui: &mut Ui, live: &LiveState) {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), TREND_HEIGHT), Sense::hover());
     let [ours, dfr] = [live.mode(), Mode::Dfr].map(|mode| newtons_in_three(mean_n(live, mode)));
     let words = text::horizon::trend(live.trend_n.len(), mode_name(live.mode()), &ours, &dfr);
@@ -53,7 +53,7 @@ fn trend_ui(ui: &mut Ui, live: &Live) {
     response.on_hover_text(text::horizon::trend_meaning(&words));
     let painter = ui.painter();
     painter.rect_filled(rect, 3.0, theme::now().groove);
-    let highest_n = 1.1 * live.trend_n.iter().map(|errors_n| errors_n[Mode::Dfr.index()]).fold(LEAST_N, f64::max);
+    let highest_n = 1.1 * live.trend_n.iter().map(|errors_n| errors_n[Mode::Dfr.index()]).fold(MIN_N, f64::max);
     for (mode, colour) in [(Mode::Dfr, theme::now().reference), (live.mode(), theme::now().rendered)] {
         let points = live.trend_n.iter().rev().enumerate().map(|(age_s, errors_n)| {
             let along = 1.0 - age_s as f32 / (TREND_S - 1) as f32;
@@ -88,7 +88,7 @@ fn trend_ui(ui: &mut Ui, live: &Live) {
 
 fn mode_ui(ui: &mut Ui, mode: Mode, error_n: Option<f64>, dfr_n: Option<f64>, active: bool) {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 38.0), Sense::hover());
-    let dfr_n = dfr_n.filter(|dfr_n| *dfr_n > LEAST_N);
+    let dfr_n = dfr_n.filter(|dfr_n| *dfr_n > MIN_N);
     let ratio = error_n.zip(dfr_n).map_or(f64::NAN, |(error_n, dfr_n)| error_n / dfr_n);
     let ratio_text = if mode == Mode::Dfr {
         text::horizon::REFERENCE.get().to_owned()

@@ -2,9 +2,9 @@
 
 use egui::Ui;
 
-use crate::console::{live::Live, text, widgets::weak};
+use crate::console::{live::LiveState, text, widgets::weak};
 
-pub fn link_ui(ui: &mut Ui, live: &Live) {
+pub fn link_ui(ui: &mut Ui, live: &LiveState) {
     if let Some(line) = &live.line {
         return line.ui(ui, live.state().permits().drives);
     }
@@ -24,8 +24,8 @@ mod tests {
 
     #[test]
     fn without_another_machine_the_panel_says_how_there_can_be_one() {
-        let live = Live::new(RigConfig::load("simulated").unwrap(), Scene::load("peg_transfer").unwrap());
-        let panel = |ui: &mut Ui, live: &mut Live| {
+        let live = LiveState::new(RigConfig::load("simulated").unwrap(), Scene::load("peg_transfer").unwrap());
+        let panel = |ui: &mut Ui, live: &mut LiveState| {
             theme::apply(ui.ctx());
             link_ui(ui, live);
         };

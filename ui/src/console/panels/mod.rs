@@ -1,4 +1,4 @@
-//! One file per panel. Each panel is a function that shows [`super::live::Live`] and puts the operator's commands into the
+//! One file per panel. Each panel is a function that shows [`super::live::LiveState`] and puts the operator's commands into the
 //! outbox.
 
 mod axis;
@@ -7,8 +7,6 @@ pub mod degrees;
 pub mod devices;
 pub mod feedback;
 pub mod force_space;
-pub mod forces;
-mod forces_state;
 pub mod gates;
 pub mod horizon;
 pub mod link;
@@ -16,15 +14,14 @@ pub mod safety;
 pub mod timing;
 mod timing_bars;
 pub mod top_bar;
+pub mod traces;
+mod traces_state;
 
-pub use calibrations::{CalibrationWish, Page, calibrations_ui};
+pub use calibrations::{CalibrationPage, CalibrationWish, calibrations_ui};
 pub use degrees::degrees_ui;
 pub use devices::{DevicesState, devices_ui};
 pub use feedback::{FeedbackState, calm_gain_ui, feedback_ui};
 pub use force_space::{ForceSpaceState, force_space_ui};
-pub use forces::forces_ui;
-pub use forces_state::ForcesState;
-pub(super) use forces_state::ForcesView;
 pub use gates::{GatesState, gates_ui, why_no_force};
 pub use horizon::horizon_ui;
 pub use link::link_ui;
@@ -32,18 +29,21 @@ pub use safety::safety_ui;
 pub use timing::{TimingState, timing_ui};
 pub(super) use top_bar::state_ui;
 pub use top_bar::{TopBarState, top_bar_ui};
+pub use traces::force_traces_ui;
+pub(super) use traces_state::ForcesView;
+pub use traces_state::TracesState;
 
 use std::fmt::Debug;
 
 use egui::{Rect, Ui};
 use nima_machine::config::RigConfig;
 
-use super::{live::Live, outbox::Outbox};
+use super::{live::LiveState, outbox::Outbox};
 
 /// A panel of an extra. Dropping it ends its background work.
 pub trait Tile: Debug {
     /// Draws the panel. Returns a rig if the loop must be restarted with it.
-    fn ui(&mut self, ui: &mut Ui, live: &Live, outbox: &mut Outbox) -> Option<RigConfig>;
+    fn ui(&mut self, ui: &mut Ui, live: &LiveState, outbox: &mut Outbox) -> Option<RigConfig>;
 
     /// Reports the outcome of the restart.
     fn restarted(&mut self, outcome: Result<(), String>);
@@ -56,4 +56,4 @@ pub trait Tile: Debug {
 }
 
 /// Draws a strip below a slider with this rectangle, whose right end has this value.
-pub(crate) type StripUi = fn(&mut Ui, &Live, Rect, f64);
+pub(crate) type StripUi = fn(&mut Ui, &LiveState, Rect, f64);

@@ -2,19 +2,19 @@
 //! a force passes them, with the number and reason of their actions.
 
 use egui::{Align2, Color32, Painter, Pos2, Rect, ScrollArea, Sense, Stroke, Ui, pos2, vec2};
-use nima_core::safety::Why;
+use nima_core::safety::TransitionCause;
 use nima_machine::{messages::LoopState, rig::Side};
 
-use super::gates::{Gate, gates, history};
+use super::gates::{GateView, gates, history};
 use crate::console::{
-    live::Live,
-    readings::Change,
+    live::LiveState,
+    readings::StateEntry,
     scene3d::side_name,
     text, theme,
     widgets::{Sign, fitting, sign},
 };
 use crate::language::Text;
-use crate::words::{side_word, state_name, within};
+use crate::report_text::{side_word, state_name, within};
 
 const NODE: egui::Vec2 = vec2(82.0, 28.0);
 const DIAGRAM_HEIGHT: f32 = 118.0;
@@ -22,7 +22,7 @@ const DIAGRAM_HEIGHT: f32 = 118.0;
 const DIAGRAM_WIDTH: f32 = 440.0;
 const GATE_HEIGHT: f32 = 82.0;
 
-pub fn safety_ui(ui: &mut Ui, live: &Live) {
+pub fn safety_ui(ui: &mut Ui, live: &LiveState) {
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         let mut sides: Vec<Side> = live.sides().collect();
         sides.reverse();
@@ -44,7 +44,7 @@ pub fn safety_ui(ui: &mut Ui, live: &Live) {
 }
 
 /// Suffix that names the side of a rig with two arms.
-fn of_side(live: &Live, side: Side) -> String {
+fn of_side(live: &LiveState, side: Side) -> String {
     if live.is_bimanual() { text::safety::of_hand(side_word(side)) } else { String::new() }
 }
 
@@ -73,26 +73,26 @@ const fn place_of(state: LoopState) -> usize {
     }
 }
 
-fn why_words(why: Why) -> &'static str {
+fn why_text(why: TransitionCause) -> &'static str {
     match why {
-        Why::Asked => text::safety::WHY_ASKED.get(),
-        Why::Connected => text::safety::WHY_CONNECTED.get(),
-        Why::Disconnected => text::safety::WHY_DISCONNECTED.get(),
-        Why::Agreed => text::safety::WHY_AGREED.get(),
-        Why::Clutch => text::safety::WHY_CLUTCH.get(),
-        Why::Late => text::safety::WHY_LATE.get(),
-        Why::Absent => text::safety::WHY_ABSENT.get(),
-        Why::Fault => text::safety::WHY_FAULT.get(),
+        TransitionCause::Asked => text::safety::WHY_ASKED.get(),
+        TransitionCause::Connected => text::safety::WHY_CONNECTED.get(),
+        TransitionCause::Disconnected => text::safety::WHY_DISCONNECTED.get(),
+        TransitionCause::Agreed => text::safety::WHY_AGREED.get(),
+        TransitionCause::Clutch => text::safety::WHY_CLUTCH.get(),
+        TransitionCause::Late => text::safety::WHY_LATE.get(),
+        TransitionCause::Absent => text::safety::WHY_ABSENT.get(),
+        TransitionCause::Fault => text::safety::WHY_FAULT.get(),
     }
 }
 
-fn interlock_ui(ui: &mut Ui, live: &Live, side: Side) {
+fn interlock_ui(ui: &mut Ui, live: &LiveState, side: Side) {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), DIAGRAM_HEIGHT + 40.0), Sense::hover());
     let state = live.tick_of(side).map_or(LoopState::Idle, |tick| tick.state);
     let change = live.changes[side.index()];
     let since = change.map_or_else(
         || text::safety::SINCE_START.get().to_owned(),
-        |Change { t_s, why, .. }| text::safety::since(t_s, why_words(why)),
+        |StateEntry { t_s, why, .. }| text::safety::since(t_s, why_text(why)),
     );
     let title = text::safety::interlock(&of_side(live, side), &within(state_name(state)));
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, format!("{title}, {since}")));
@@ -183,7 +183,7 @@ fn arrow(painter: &Painter, from: Pos2, to: Pos2, stroke: Stroke) {
     painter.add(egui::Shape::convex_polygon(vec![to, base + side, base - side], stroke.color, Stroke::NONE));
 }
 
-fn gates_row_ui(ui: &mut Ui, live: &Live, side: Side) {
+fn gates_row_ui(ui: &mut Ui, live: &LiveState, side: Side) {
     let Some(tick) = live.tick_of(side) else { return };
     let asked_n = tick.asked_n[tick.mode.index()].norm();
     ui.add_space(6.0);
@@ -218,7 +218,7 @@ fn end_ui(ui: &mut Ui, width: f32, name: &str, force_n: f64) {
 }
 
 /// One gate: indicator, effect, and how often it acted.
-fn gate_ui(ui: &mut Ui, live: &Live, side: Side, gate: &Gate, width: f32) {
+fn gate_ui(ui: &mut Ui, live: &LiveState, side: Side, gate: &GateView, width: f32) {
     let (rect, response) = ui.allocate_exact_size(vec2(width, GATE_HEIGHT), Sense::hover());
     let (what, word) = gate.standing();
     let acted = live.tick_of(side).map_or(0, |tick| tick.gates.counts.acted[gate.which.index()]);

@@ -3,14 +3,14 @@
 use egui::{Grid, RichText, Ui};
 use nima_core::statistics::Quantiles;
 
-use super::timing_bars::{Timing, bars_ui, missed_ui};
+use super::timing_bars::{TimingBar, bars_ui, missed_ui};
 use crate::console::{
     alarms::sentence,
-    live::Live,
+    live::LiveState,
     text, theme,
     widgets::{figure, small, weak},
 };
-use crate::words::scheduling_words;
+use crate::report_text::scheduling_text;
 
 /// Interval of counting the histograms, which takes some time.
 const BARS_EVERY_S: f64 = 0.25;
@@ -23,24 +23,24 @@ pub struct TimingState {
 }
 
 /// The measured durations, in the order of a tick. A duration without its own deadline is compared with the period.
-fn timings(live: &Live) -> Vec<Timing<'_>> {
+fn timings(live: &LiveState) -> Vec<TimingBar<'_>> {
     let deadline_us = 1e6 / live.rig.rate_hz;
     vec![
-        Timing {
+        TimingBar {
             name: text::timing::WAKE_UP.get(),
             meaning: text::timing::WAKE_UP_HOVER.get(),
             quantiles: live.figures.wake_us,
             durations: live.wake(),
             deadline_us,
         },
-        Timing {
+        TimingBar {
             name: text::timing::WORK.get(),
             meaning: text::timing::WORK_HOVER.get(),
             quantiles: live.figures.work_us,
             durations: live.work(),
             deadline_us,
         },
-        Timing {
+        TimingBar {
             name: text::timing::SAMPLE_TO_FORCE.get(),
             meaning: text::timing::SAMPLE_TO_FORCE_HOVER.get(),
             quantiles: live.figures.sample_to_force_us,
@@ -50,14 +50,14 @@ fn timings(live: &Live) -> Vec<Timing<'_>> {
     ]
 }
 
-pub fn timing_ui(ui: &mut Ui, live: &Live, state: &mut TimingState) {
+pub fn timing_ui(ui: &mut Ui, live: &LiveState, state: &mut TimingState) {
     let timings = timings(live);
     table_ui(ui, &timings);
     ui.add_space(2.0);
     let time_s = ui.input(|input| input.time);
     if state.made_at_s.is_none_or(|at_s| time_s - at_s >= BARS_EVERY_S) {
         state.made_at_s = Some(time_s);
-        state.bars = timings.iter().map(Timing::bars).collect();
+        state.bars = timings.iter().map(TimingBar::bars).collect();
     }
     for (timing, bars) in timings.iter().zip(&state.bars) {
         bars_ui(ui, timing, bars);
@@ -82,7 +82,7 @@ pub fn timing_ui(ui: &mut Ui, live: &Live, state: &mut TimingState) {
     );
 }
 
-fn table_ui(ui: &mut Ui, timings: &[Timing<'_>]) {
+fn table_ui(ui: &mut Ui, timings: &[TimingBar<'_>]) {
     // Four numbers are next to a name, which takes several lines if it is long.
     let room = (ui.available_width() - 4.0 * 52.0).max(60.0);
     Grid::new("timing").num_columns(5).spacing([10.0, 3.0]).min_col_width(40.0).show(ui, |ui| {
@@ -91,7 +91,7 @@ fn table_ui(ui: &mut Ui, timings: &[Timing<'_>]) {
             right(ui, small(head));
         }
         ui.end_row();
-        for Timing { name, meaning, quantiles, .. } in timings {
+        for TimingBar { name, meaning, quantiles, .. } in timings {
             ui.scope(|ui| {
                 ui.set_max_width(room);
                 ui.add(egui::Label::new(weak(*name)).wrap()).on_hover_text(*meaning);
@@ -118,13 +118,13 @@ fn right(ui: &mut Ui, text: RichText) {
     ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| ui.label(text));
 }
 
-fn scheduling_ui(ui: &mut Ui, live: &Live) {
+fn scheduling_ui(ui: &mut Ui, live: &LiveState) {
     let Some(scheduling) = live.scheduling else { return };
     let yes_no = |granted| if granted { text::timing::GRANTED.get() } else { text::timing::REFUSED.get() };
     let meaning = text::timing::SCHEDULING_HOVER.get();
     figure(ui, text::timing::REAL_TIME_PRIORITY.get(), yes_no(scheduling.fifo), meaning);
     figure(ui, text::timing::LOCKED_MEMORY.get(), yes_no(scheduling.memory_locked), meaning);
-    if let Some(advice) = scheduling_words(scheduling) {
+    if let Some(advice) = scheduling_text(scheduling) {
         ui.label(small(sentence(&advice)));
     }
 }
@@ -148,7 +148,10 @@ mod tests {
 
     #[test]
     fn long_durations_have_a_larger_unit() {
-        assert_eq!([4.2, 9_999.0, 10_000.0, 999_000.0, 1_234_567.0].map(short), ["4", "9999", "10 ms", "999 ms", "1 s"]);
+        assert_eq!(
+            [4.2, 9_999.0, 10_000.0, 999_000.0, 1_234_567.0].map(short),
+            ["4", "9999", "10 ms", "999 ms", "1 s"]
+        );
     }
 
     #[test]

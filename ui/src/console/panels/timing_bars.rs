@@ -20,7 +20,7 @@ const AXIS: f32 = 15.0;
 const STRIP: f32 = 26.0;
 
 /// A duration measured in every tick.
-pub(super) struct Timing<'a> {
+pub(super) struct TimingBar<'a> {
     pub(super) name: &'static str,
     pub(super) meaning: &'static str,
     pub(super) quantiles: Quantiles,
@@ -29,7 +29,7 @@ pub(super) struct Timing<'a> {
     pub(super) deadline_us: f64,
 }
 
-impl Timing<'_> {
+impl TimingBar<'_> {
     /// Counts of all bars.
     pub(super) fn bars(&self) -> Vec<u64> {
         self.durations.bars(self.step_us(), BARS)
@@ -52,21 +52,21 @@ impl Timing<'_> {
 }
 
 /// Converts a fraction to percent, with enough digits to show that it is not zero.
-fn percent(share: f64) -> String {
-    match 100.0 * share {
+fn percent(fraction: f64) -> String {
+    match 100.0 * fraction {
         x if x <= 0.0 => "0 %".to_owned(),
         x if x >= 0.1 => format!("{x:.1} %"),
         x => format!("{x:.5} %"),
     }
 }
 
-/// Height of a bar, 0 to 1, on a logarithmic scale with `most` at 1. A single tick is visible.
-fn height(count: u64, most: u64) -> f32 {
-    if count == 0 { 0.0 } else { ((1.0 + count as f64).ln() / (1.0 + most.max(1) as f64).ln()) as f32 }
+/// Height of a bar, 0 to 1, on a logarithmic scale with `max` at 1. A single tick is visible.
+fn height(count: u64, max: u64) -> f32 {
+    if count == 0 { 0.0 } else { ((1.0 + count as f64).ln() / (1.0 + max.max(1) as f64).ln()) as f32 }
 }
 
 /// Draws one histogram; the bar under the pointer shows its text.
-pub(super) fn bars_ui(ui: &mut Ui, timing: &Timing<'_>, bars: &[u64]) {
+pub(super) fn bars_ui(ui: &mut Ui, timing: &TimingBar<'_>, bars: &[u64]) {
     ui.label(small(timing.name)).on_hover_text(timing.meaning);
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT + AXIS), Sense::hover());
     let ground = Rect::from_min_size(rect.min, vec2(rect.width(), HEIGHT));
@@ -82,16 +82,16 @@ pub(super) fn bars_ui(ui: &mut Ui, timing: &Timing<'_>, bars: &[u64]) {
     });
     let painter = ui.painter();
     painter.rect_filled(ground, 3.0, theme::now().groove);
-    let most = bars.iter().copied().max().unwrap_or_default();
+    let max = bars.iter().copied().max().unwrap_or_default();
     let width = ground.width() / BARS as f32;
     for (bar, count) in bars.iter().enumerate().filter(|(_, count)| **count > 0) {
         let left = ground.left() + width * bar as f32;
-        let top = ground.bottom() - (HEIGHT - 12.0) * height(*count, most).max(0.06);
+        let top = ground.bottom() - (HEIGHT - 12.0) * height(*count, max).max(0.06);
         let filled = Rect::from_min_max(pos2(left + 0.5, top), pos2(left + width - 0.5, ground.bottom()));
         let colour = if pointed == Some(bar) { theme::now().text } else { theme::now().rendered };
         painter.rect_filled(filled, 0.0, colour);
     }
-    axis(painter, ground, timing.deadline_us, most);
+    axis(painter, ground, timing.deadline_us, max);
     if let Some(bar) = pointed {
         response.on_hover_text_at_pointer(timing.words(bars, bar));
     }
@@ -104,10 +104,10 @@ fn late(bars: &[u64]) -> u64 {
 }
 
 /// Marks below the histogram, the deadline in it, and the explanation of its height.
-fn axis(painter: &Painter, ground: Rect, deadline_us: f64, most: u64) {
+fn axis(painter: &Painter, ground: Rect, deadline_us: f64, max: u64) {
     let font = theme::regular(11.0);
     let ink = theme::now().text_weak;
-    let x = |share: f64| ground.left() + ground.width() * (share / REACH) as f32;
+    let x = |fraction: f64| ground.left() + ground.width() * (fraction / REACH) as f32;
     painter.vline(x(1.0), ground.y_range(), Stroke::new(1.5, theme::now().text));
     let under = ground.bottom() + 2.0;
     painter.text(pos2(ground.left(), under), Align2::LEFT_TOP, "0", font.clone(), ink);
@@ -115,7 +115,7 @@ fn axis(painter: &Painter, ground: Rect, deadline_us: f64, most: u64) {
     let deadline = text::timing::deadline(deadline_us);
     let smaller = fitting(painter, &deadline, font.clone(), 2.0 * (ground.right() - x(1.0) - 8.0));
     painter.text(pos2(x(1.0) + 8.0, under), Align2::CENTER_TOP, deadline, smaller, ink);
-    let scale = text::timing::log_scale(&grouped(most));
+    let scale = text::timing::log_scale(&grouped(max));
     painter.text(pos2(x(1.0) - 6.0, ground.top() + 1.0), Align2::RIGHT_TOP, scale, font, ink);
 }
 
@@ -129,10 +129,10 @@ pub(super) fn missed_ui(ui: &mut Ui, deadlines: &Deadlines) {
     let painter = ui.painter();
     painter.rect_filled(rect, 3.0, theme::now().groove);
     let width = rect.width() / SECONDS as f32;
-    let most = deadlines.newest_first().map(|(_, count)| count).max().unwrap_or_default();
+    let max = deadlines.newest_first().map(|(_, count)| count).max().unwrap_or_default();
     for (age, count) in deadlines.newest_first().filter(|(_, count)| *count > 0) {
         let right = rect.right() - width * age as f32;
-        let top = rect.bottom() - (STRIP - 2.0) * height(count, most).max(0.15);
+        let top = rect.bottom() - (STRIP - 2.0) * height(count, max).max(0.15);
         painter.rect_filled(
             Rect::from_min_max(pos2(right - width, top), pos2(right, rect.bottom())),
             0.0,
@@ -157,7 +157,7 @@ mod tests {
             durations.record(40e-6);
         }
         durations.record(1.03e-3);
-        let timing = Timing {
+        let timing = TimingBar {
             name: "Work",
             meaning: "",
             quantiles: Quantiles::default(),
@@ -180,7 +180,7 @@ mod tests {
         let mut harness = egui_kittest::Harness::builder().with_size([400.0, 300.0]).build_ui(|ui| {
             theme::apply(ui.ctx());
             let quantiles = durations.quantiles();
-            let timing = Timing { name: "Work", meaning: "", quantiles, durations: &durations, deadline_us: 1000.0 };
+            let timing = TimingBar { name: "Work", meaning: "", quantiles, durations: &durations, deadline_us: 1000.0 };
             bars_ui(ui, &timing, &timing.bars());
         });
         let rect = harness.get_by_label_contains("Work histogram: 0 of 7 ticks").rect();

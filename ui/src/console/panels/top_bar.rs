@@ -5,26 +5,26 @@ use std::mem::discriminant;
 use egui::{Align, Align2, Area, Button, Id, Label, Layout, Order, Rect, RichText, Sense, Stroke, Ui, vec2};
 use nima_machine::{
     messages::{Command, LoopState, Refusal},
-    ready::Ask,
+    ready::PersonRequest,
     rig::Side,
 };
 
-use crate::words::{side_word, state_name};
+use crate::report_text::{side_word, state_name};
 use crate::{
     console::{
-        alarms::{Missing, strip::Alarms},
-        commands::{Action, Entry},
-        live::{Live, Refused},
+        alarms::{MissingDevice, strip::Alarms},
+        commands::{Action, CommandEntry},
+        live::{LiveState, RefusedCommand},
         menu::menu_ui,
         outbox::Outbox,
         roles::{Role, switch_ui},
         scene3d::side_name,
-        sessions::Shown,
-        settings::Settings,
+        sessions::DisplayState,
+        settings::ConsoleSettings,
         text, theme,
         widgets::{Sign, next_button, sign, small, weak},
     },
-    words::{cure_of_refusal, refused_because},
+    report_text::{cure_of_refusal, refused_because},
 };
 
 /// After a change of state the next step is disabled for this time (s), so that a double click never triggers two steps.
@@ -40,9 +40,9 @@ pub struct TopBarState {
     /// Current and past alarms; their strip is below the bar.
     pub alarms: Alarms,
     /// Instruction of the ready check that concerns a button of the bar, which then stands out.
-    pub(in crate::console) asked: Option<Ask>,
+    pub(in crate::console) asked: Option<PersonRequest>,
     /// The session that is being recorded.
-    pub(in crate::console) recorded: Option<Shown>,
+    pub(in crate::console) recorded: Option<DisplayState>,
     /// The command of the pressed button or menu entry.
     pub(in crate::console) wanted: Option<Action>,
     /// The next step requested from elsewhere, as if its button were pressed.
@@ -58,10 +58,10 @@ pub struct TopBarState {
 /// The bar, with role switch and menu. While a person guides the arm (`calibrating`), it cannot be engaged.
 pub fn top_bar_ui(
     ui: &mut Ui,
-    live: &Live,
+    live: &LiveState,
     state: &mut TopBarState,
     outbox: &mut Outbox,
-    settings: &mut Settings,
+    settings: &mut ConsoleSettings,
     calibrating: bool,
 ) {
     let wants_step = state.wants_step.take();
@@ -85,13 +85,13 @@ pub fn top_bar_ui(
         ui.add_space(10.0);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let (place, _) = ui.allocate_exact_size(theme::STOP_SIZE, Sense::hover());
-            let of_past = state.past.then_some(text::past::BLOCKED.get());
+            let of_past = state.past.then_some(text::playback::BLOCKED.get());
             let closed = if now == LoopState::Idle { of_past.or(live.engage_closed) } else { of_past };
-            let next = state.asked == Some(Ask::Release);
+            let next = state.asked == Some(PersonRequest::Release);
             let ready = since_s >= STEP_WAITS_S && closed.is_none();
-            step_ui(ui, now, Step { ready, next, wanted: wants_step, closed }, outbox);
+            step_ui(ui, now, TopBarStep { ready, next, wanted: wants_step, closed }, outbox);
             // After the step, which is at its left: in reading order.
-            stop_ui(ui, place, now, state.asked == Some(Ask::PressStop), outbox);
+            stop_ui(ui, place, now, state.asked == Some(PersonRequest::PressStop), outbox);
             ui.add_space(6.0);
             refusal_ui(ui, live);
         });
@@ -99,7 +99,13 @@ pub fn top_bar_ui(
 }
 
 /// Name of the program, and below it the role switch, the button of the start page, and the menu.
-fn identity_ui(ui: &mut Ui, live: &Live, settings: &mut Settings, state: &mut TopBarState, calibrating: bool) {
+fn identity_ui(
+    ui: &mut Ui,
+    live: &LiveState,
+    settings: &mut ConsoleSettings,
+    state: &mut TopBarState,
+    calibrating: bool,
+) {
     ui.vertical(|ui| {
         ui.add_space(8.0);
         ui.spacing_mut().item_spacing.y = 4.0;
@@ -114,13 +120,13 @@ fn identity_ui(ui: &mut Ui, live: &Live, settings: &mut Settings, state: &mut To
         ui.horizontal(|ui| {
             switch_ui(ui, &Role::ALL, &mut settings.role, !calibrating);
             let start = Button::new(text::start::OPEN.get()).min_size(vec2(44.0, 30.0));
-            let why = if state.past { text::past::BLOCKED.get() } else { text::start::OPEN_DISABLED_HOVER.get() };
+            let why = if state.past { text::playback::BLOCKED.get() } else { text::start::OPEN_DISABLED_HOVER.get() };
             let free = !calibrating && !state.past;
             let start = ui.add_enabled(free, start).on_hover_text(text::start::OPEN_HOVER.get());
             let wants_start = start.on_disabled_hover_text(why).clicked();
             let of_menu = menu_ui(ui, settings, &mut state.alarms, state.can_undo);
-            let sessions = Button::new(text::past::SESSIONS.get()).min_size(vec2(72.0, 30.0));
-            let sessions = ui.add_enabled(free, sessions).on_hover_text(text::past::SESSIONS_HOVER.get());
+            let sessions = Button::new(text::playback::SESSIONS.get()).min_size(vec2(72.0, 30.0));
+            let sessions = ui.add_enabled(free, sessions).on_hover_text(text::playback::SESSIONS_HOVER.get());
             let wants_sessions = sessions.on_disabled_hover_text(why).clicked();
             let keeps = recorded_ui(ui, state);
             state.wanted = of_menu
@@ -150,7 +156,7 @@ fn recorded_ui(ui: &mut Ui, state: &TopBarState) -> bool {
 
 /// The state of the arm that needs more attention. If the states differ, both, one below the other: an idle arm must not hide
 /// that the other hand feels a force.
-pub(in crate::console) fn state_ui(ui: &mut Ui, live: &Live, state: LoopState) {
+pub(in crate::console) fn state_ui(ui: &mut Ui, live: &LiveState, state: LoopState) {
     let (what, colour, meaning) = match state {
         LoopState::Disconnected => (Sign::Ring, theme::now().text_weak, text::top_bar::DISCONNECTED_MEANING.get()),
         LoopState::Ready => (Sign::Ring, theme::now().engaged, text::top_bar::READY_MEANING.get()),
@@ -176,7 +182,7 @@ pub(in crate::console) fn state_ui(ui: &mut Ui, live: &Live, state: LoopState) {
     }
 }
 
-fn state_lines(live: &Live, state: LoopState) -> Vec<String> {
+fn state_lines(live: &LiveState, state: LoopState) -> Vec<String> {
     let states: Vec<(Side, LoopState)> =
         live.sides().filter_map(|side| Some((side, live.tick_of(side)?.state))).collect();
     if states.iter().all(|(_, of_side)| discriminant(of_side) == discriminant(&state)) {
@@ -227,7 +233,7 @@ fn stop_button(ui: &mut Ui, button: Button<'_>, ink: egui::Color32) -> egui::Res
 
 /// State of the next step.
 #[derive(Clone, Copy)]
-struct Step {
+struct TopBarStep {
     /// Its button can be pressed.
     ready: bool,
     /// Its button stands out.
@@ -239,7 +245,7 @@ struct Step {
 }
 
 /// The button for the next step, next to the stop button and never below it.
-fn step_ui(ui: &mut Ui, state: LoopState, Step { ready, next, wanted, closed }: Step, outbox: &mut Outbox) {
+fn step_ui(ui: &mut Ui, state: LoopState, TopBarStep { ready, next, wanted, closed }: TopBarStep, outbox: &mut Outbox) {
     let (action, command, meaning) = match state {
         LoopState::Idle => (Action::Engage, Command::Engage, text::top_bar::ENGAGE_HOVER.get()),
         LoopState::Stopped => (Action::Release, Command::ReleaseStop, text::top_bar::RELEASE_STOP_HOVER.get()),
@@ -249,7 +255,7 @@ fn step_ui(ui: &mut Ui, state: LoopState, Step { ready, next, wanted, closed }: 
             return;
         }
     };
-    let name = Entry::of(action).map_or("", |entry| entry.title.as_str());
+    let name = CommandEntry::of(action).map_or("", |entry| entry.title.as_str());
     let text = RichText::new(name).font(theme::strong(17.0));
     let button = next_button(text, next).min_size(theme::STOP_SIZE).corner_radius(theme::CORNER);
     let response = ui.add_enabled(ready, button).on_hover_text(meaning);
@@ -263,8 +269,8 @@ fn step_ui(ui: &mut Ui, state: LoopState, Step { ready, next, wanted, closed }: 
 }
 
 /// The last refused command, for some seconds.
-fn refusal_ui(ui: &mut Ui, live: &Live) {
-    let Some(Refused { side, command, why }) = live.refusal() else { return };
+fn refusal_ui(ui: &mut Ui, live: &LiveState) {
+    let Some(RefusedCommand { side, command, why }) = live.refusal() else { return };
     let what = match command {
         Command::Engage | Command::EngageOne(_) => text::top_bar::NOT_ENGAGED.get(),
         Command::ReleaseStop => text::top_bar::NOT_RELEASED.get(),
@@ -274,7 +280,7 @@ fn refusal_ui(ui: &mut Ui, live: &Live) {
     // Take the reason from the list of devices.
     let missing = live.missing().next().filter(|_| why == Refusal::State(LoopState::Disconnected));
     let words = match missing {
-        Some(Missing { name, cause, cure, .. }) => {
+        Some(MissingDevice { name, cause, cure, .. }) => {
             text::top_bar::refused(what, arm, &text::top_bar::device(&name, &cause), &cure)
         }
         None => text::top_bar::refused(what, arm, &refused_because(why), cure_of_refusal(why)),
@@ -285,7 +291,7 @@ fn refusal_ui(ui: &mut Ui, live: &Live) {
 #[cfg(test)]
 mod tests {
     use nima_machine::config::RigConfig;
-    use nima_simulation::{Plan, run_virtual, scene::Scene};
+    use nima_simulation::{SimulationPlan, run_virtual, scene::Scene};
 
     use super::*;
 
@@ -293,8 +299,9 @@ mod tests {
     fn an_idle_arm_does_not_hide_that_the_other_one_is_engaged() {
         let rig = RigConfig::load("simulated").unwrap();
         let scene = Scene::load("bimanual").unwrap();
-        let plan = Plan { rig: rig.clone(), scene: scene.clone(), calibrations: Default::default(), engage: true };
-        let mut live = Live::new(rig, scene);
+        let plan =
+            SimulationPlan { rig: rig.clone(), scene: scene.clone(), calibrations: Default::default(), engage: true };
+        let mut live = LiveState::new(rig, scene);
         run_virtual(&plan, 1.0, |tick| {
             live.ticks[tick.side.index()] = Some(*tick);
             None

@@ -2,21 +2,21 @@
 
 use egui::{Label, RichText, TextEdit, Ui, vec2};
 use nima_machine::{
-    ready::{Ask, Entry, State},
+    ready::{PersonRequest, ReadyEntry, ReadyState},
     rig::Roster,
 };
 
-use super::Run;
+use super::ReadyRun;
 use crate::{
     console::{
         text, theme,
         widgets::{Sign, card, next_button, sign_ui, small},
     },
-    words::{ask_words, cause_words, check_name, figure_words, lacks_words},
+    report_text::{ask_text, cause_text, check_name, figure_text, lacks_text},
 };
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Wish {
+pub(crate) enum ReadyRequest {
     /// Repeat the failed points.
     Again,
     /// Repeat the whole list.
@@ -27,11 +27,11 @@ pub(crate) enum Wish {
 /// Draws the page; `saved` is the text about the record.
 pub(crate) fn ready_ui(
     ui: &mut Ui,
-    run: Option<&Run>,
+    run: Option<&ReadyRun>,
     by: &mut String,
     saved: Option<&str>,
     roster: &Roster,
-) -> Option<Wish> {
+) -> Option<ReadyRequest> {
     ui.label(RichText::new(text::ready::TITLE.get()).font(theme::strong(22.0)));
     ui.label(small(text::ready::MEANING.get()));
     ui.add_space(theme::GAP);
@@ -50,8 +50,9 @@ pub(crate) fn ready_ui(
         if session.is_finished() {
             wish = end_ui(ui, run, saved);
         } else {
-            let words = ask_words(&session.ask());
-            let words = if session.ask() == Ask::Nothing { text::ready::BY_ITSELF.get().to_owned() } else { words };
+            let words = ask_text(&session.ask());
+            let words =
+                if session.ask() == PersonRequest::Nothing { text::ready::BY_ITSELF.get().to_owned() } else { words };
             ui.add(Label::new(RichText::new(words).font(theme::strong(18.0))).wrap());
             ui.label(small(text::ready::took(session.took_s())));
         }
@@ -63,7 +64,7 @@ pub(crate) fn ready_ui(
     wish
 }
 
-fn end_ui(ui: &mut Ui, run: &Run, saved: Option<&str>) -> Option<Wish> {
+fn end_ui(ui: &mut Ui, run: &ReadyRun, saved: Option<&str>) -> Option<ReadyRequest> {
     let passed = run.session.has_passed();
     let words = if passed { text::ready::PASSED.get() } else { text::ready::FAILED.get() };
     ui.horizontal(|ui| {
@@ -78,45 +79,45 @@ fn end_ui(ui: &mut Ui, run: &Run, saved: Option<&str>) -> Option<Wish> {
     }
     let mut wish = None;
     ui.horizontal(|ui| {
-        let mut offer = |name: &str, meaning: &str, wanted: Wish| {
-            let button = next_button(name, wanted != Wish::Whole).min_size(vec2(200.0, 34.0));
+        let mut offer = |name: &str, meaning: &str, wanted: ReadyRequest| {
+            let button = next_button(name, wanted != ReadyRequest::Whole).min_size(vec2(200.0, 34.0));
             if ui.add(button).on_hover_text(meaning).clicked() {
                 wish = Some(wanted);
             }
         };
         if passed {
-            offer(text::ready::CLOSE.get(), text::ready::CLOSE_HOVER.get(), Wish::Close);
+            offer(text::ready::CLOSE.get(), text::ready::CLOSE_HOVER.get(), ReadyRequest::Close);
         } else {
-            offer(text::ready::AGAIN.get(), text::ready::AGAIN_HOVER.get(), Wish::Again);
+            offer(text::ready::AGAIN.get(), text::ready::AGAIN_HOVER.get(), ReadyRequest::Again);
         }
-        offer(text::ready::WHOLE.get(), text::ready::WHOLE_HOVER.get(), Wish::Whole);
+        offer(text::ready::WHOLE.get(), text::ready::WHOLE_HOVER.get(), ReadyRequest::Whole);
     });
     wish
 }
 
-fn entry_ui(ui: &mut Ui, entry: &Entry, roster: &Roster) {
+fn entry_ui(ui: &mut Ui, entry: &ReadyEntry, roster: &Roster) {
     let (what, colour) = match entry.state {
-        State::Asking(_) => (Sign::Ring, theme::now().engaged),
-        State::Passed(_) => (Sign::Disc, theme::now().engaged),
-        State::Failed(_) => (Sign::Triangle, theme::now().alarm_medium),
-        State::Waiting | State::LeftOut(_) => (Sign::Ring, theme::now().text_weak),
+        ReadyState::Asking(_) => (Sign::Ring, theme::now().engaged),
+        ReadyState::Passed(_) => (Sign::Disc, theme::now().engaged),
+        ReadyState::Failed(_) => (Sign::Triangle, theme::now().alarm_medium),
+        ReadyState::Waiting | ReadyState::LeftOut(_) => (Sign::Ring, theme::now().text_weak),
     };
     let name = check_name(entry.check);
     ui.horizontal_wrapped(|ui| {
         sign_ui(ui, what, 6.0, colour);
         match &entry.state {
-            State::Waiting => drop(ui.label(RichText::new(name).color(theme::now().text_weak))),
-            State::Asking(_) => drop(ui.label(RichText::new(name).font(theme::strong(14.0)))),
-            State::Passed(figure) => drop(ui.label(text::ready::line(&name, &figure_words(figure)))),
-            State::Failed(cause) => {
-                let [cause, cure] = cause_words(cause, roster);
+            ReadyState::Waiting => drop(ui.label(RichText::new(name).color(theme::now().text_weak))),
+            ReadyState::Asking(_) => drop(ui.label(RichText::new(name).font(theme::strong(14.0)))),
+            ReadyState::Passed(figure) => drop(ui.label(text::ready::line(&name, &figure_text(figure)))),
+            ReadyState::Failed(cause) => {
+                let [cause, cure] = cause_text(cause, roster);
                 ui.vertical(|ui| {
                     ui.add(Label::new(text::ready::line(&name, &cause)).wrap());
                     ui.add(Label::new(small(cure)).wrap());
                 });
             }
-            State::LeftOut(lacks) => {
-                let words = text::ready::left_out(&name, lacks_words(*lacks));
+            ReadyState::LeftOut(lacks) => {
+                let words = text::ready::left_out(&name, lacks_text(*lacks));
                 ui.label(RichText::new(words).color(theme::now().text_weak));
             }
         }

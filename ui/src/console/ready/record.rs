@@ -1,13 +1,13 @@
 //! The record of a ready check.
 
 use nima_machine::{
-    ready::{Entry, Session, State},
+    ready::{ReadyEntry, ReadySession, ReadyState},
     rig::Roster,
 };
-use nima_recording::store::{CheckedDevice, CheckedItem, Outcome, READY_CHECK, ReadyRecord, utc_now};
+use nima_recording::store::{CheckedDevice, CheckedItem, PointOutcome, READY_CHECK, ReadyRecord, utc_now};
 
 use crate::language::{self, Language};
-use crate::words::{cause_words, check_name, lacks_words, unit};
+use crate::report_text::{cause_text, check_name, lacks_text, unit};
 
 /// The devices of a rig with their reported serial numbers.
 pub(crate) fn devices_of(roster: &Roster) -> Vec<CheckedDevice> {
@@ -20,10 +20,10 @@ pub(crate) fn devices_of(roster: &Roster) -> Vec<CheckedDevice> {
 }
 
 /// The record of this check on the rig of this file, by this person.
-pub(crate) fn record(session: &Session, rig_file: &str, by: &str, roster: &Roster) -> ReadyRecord {
+pub(crate) fn record(session: &ReadySession, rig_file: &str, by: &str, roster: &Roster) -> ReadyRecord {
     // Files are in English, whatever the language of the window.
     let item =
-        |entry: &Entry| language::with(Language::English, || item(&check_name(entry.check), &entry.state, roster));
+        |entry: &ReadyEntry| language::with(Language::English, || item(&check_name(entry.check), &entry.state, roster));
     ReadyRecord {
         kind: READY_CHECK.to_owned(),
         date: utc_now(),
@@ -38,10 +38,10 @@ pub(crate) fn record(session: &Session, rig_file: &str, by: &str, roster: &Roste
     }
 }
 
-fn item(check: &str, state: &State, roster: &Roster) -> CheckedItem {
+fn item(check: &str, state: &ReadyState, roster: &Roster) -> CheckedItem {
     let blank = CheckedItem {
         check: check.to_owned(),
-        outcome: Outcome::NotReached,
+        outcome: PointOutcome::NotReached,
         value: None,
         limit: None,
         unit: None,
@@ -49,20 +49,20 @@ fn item(check: &str, state: &State, roster: &Roster) -> CheckedItem {
         cure: None,
     };
     match state {
-        State::Waiting | State::Asking(_) => blank,
-        State::Passed(figure) => CheckedItem {
-            outcome: Outcome::Passed,
+        ReadyState::Waiting | ReadyState::Asking(_) => blank,
+        ReadyState::Passed(figure) => CheckedItem {
+            outcome: PointOutcome::Passed,
             value: Some(figure.value),
             limit: Some(figure.limit),
             unit: Some(unit(figure.unit).to_owned()).filter(|unit| !unit.is_empty()),
             ..blank
         },
-        State::Failed(cause) => {
-            let [cause, cure] = cause_words(cause, roster);
-            CheckedItem { outcome: Outcome::Failed, cause: Some(cause), cure: Some(cure), ..blank }
+        ReadyState::Failed(cause) => {
+            let [cause, cure] = cause_text(cause, roster);
+            CheckedItem { outcome: PointOutcome::Failed, cause: Some(cause), cure: Some(cure), ..blank }
         }
-        State::LeftOut(lacks) => {
-            CheckedItem { outcome: Outcome::LeftOut, cause: Some(lacks_words(*lacks).to_owned()), ..blank }
+        ReadyState::LeftOut(lacks) => {
+            CheckedItem { outcome: PointOutcome::LeftOut, cause: Some(lacks_text(*lacks).to_owned()), ..blank }
         }
     }
 }

@@ -13,17 +13,17 @@ use serde::{Deserialize, Serialize};
 pub use demo::DemoState;
 
 use super::{
-    desk::Desk,
-    eyes::Eyes,
-    in_force::InForce,
-    live::Live,
+    active_calibrations::ActiveCalibrations,
+    endoscope_view::EndoscopeView,
+    live::LiveState,
     outbox::Outbox,
-    panels::devices::Change,
+    panels::devices::RigEdit,
     panels::{
-        CalibrationWish, DevicesState, FeedbackState, ForceSpaceState, ForcesState, GatesState, Tile, TimingState,
+        CalibrationWish, DevicesState, FeedbackState, ForceSpaceState, GatesState, Tile, TimingState, TracesState,
     },
-    scene3d::{Look, SceneView},
-    settings::Settings,
+    scene3d::{CameraLook, SceneView},
+    settings::ConsoleSettings,
+    tiles::PanelTiles,
 };
 use crate::{
     console::text,
@@ -75,16 +75,16 @@ impl Role {
 #[derive(Debug)]
 pub struct Panels {
     pub feedback: FeedbackState,
-    pub forces: ForcesState,
+    pub forces: TracesState,
     pub space: ForceSpaceState,
     /// The Trade-off panel, in a build that has it.
     pub tradeoff: Option<Box<dyn Tile>>,
     pub scene: SceneView,
-    pub eyes: Eyes,
+    pub eyes: EndoscopeView,
     pub gates: GatesState,
     pub devices: DevicesState,
     pub timing: TimingState,
-    pub desk: Desk,
+    pub desk: PanelTiles,
     pub demo: DemoState,
 }
 
@@ -93,14 +93,14 @@ impl Default for Panels {
         Self {
             tradeoff: extras::part(Extra::tradeoff).map(|panel| panel()),
             feedback: FeedbackState::default(),
-            forces: ForcesState::default(),
+            forces: TracesState::default(),
             space: ForceSpaceState::default(),
             scene: SceneView::default(),
-            eyes: Eyes::default(),
+            eyes: EndoscopeView::default(),
             gates: GatesState::default(),
             devices: DevicesState::default(),
             timing: TimingState::default(),
-            desk: Desk::default(),
+            desk: PanelTiles::default(),
             demo: DemoState::default(),
         }
     }
@@ -111,20 +111,20 @@ impl Default for Panels {
 pub struct Wishes {
     pub restart: Option<RigConfig>,
     pub calibration: Option<CalibrationWish>,
-    pub devices: Option<Change>,
+    pub devices: Option<RigEdit>,
 }
 
 /// Draws the view of the current role, below the top bar.
 pub fn role_ui(
     ui: &mut Ui,
-    settings: &mut Settings,
-    live: &mut Live,
+    settings: &mut ConsoleSettings,
+    live: &mut LiveState,
     panels: &mut Panels,
-    in_force: &InForce,
+    active: &ActiveCalibrations,
     outbox: &mut Outbox,
 ) -> Wishes {
     let role = settings.role;
-    panels.scene.look = if role == Role::Surgeon { Look::Endoscope } else { Look::Free };
+    panels.scene.look = if role == Role::Surgeon { CameraLook::Endoscope } else { CameraLook::Free };
     panels.scene.figures = role != Role::Surgeon;
     if role != Role::Demo {
         panels.demo.leave(outbox);
@@ -134,7 +134,7 @@ pub fn role_ui(
             surgeon::surgeon_ui(ui, live, panels, outbox);
             Wishes::default()
         }
-        Role::Technician => technician::technician_ui(ui, &mut settings.layout, live, panels, in_force, outbox),
+        Role::Technician => technician::technician_ui(ui, &mut settings.layout, live, panels, active, outbox),
         Role::Demo => {
             demo::demo_ui(ui, live, panels, outbox);
             Wishes::default()

@@ -6,21 +6,21 @@ use nima_machine::rig::Side;
 
 use super::{Panels, acts};
 use crate::console::{
-    live::Live,
+    live::LiveState,
     outbox::Outbox,
     panels::{calm_gain_ui, why_no_force},
     scene3d::{scene_ui, side_name},
     text, theme,
     widgets::{bar, fitting, force_sign, small},
 };
-use crate::words::{mode_name, newtons, newtons_read};
+use crate::report_text::{mode_name, newtons, newtons_read};
 
 const STRIP: f32 = 176.0;
 const GAIN_WIDTH: f32 = 330.0;
 /// Upper end of a bar, as a multiple of the ceiling.
 const BEYOND_CEILING: f64 = 1.25;
 
-pub(super) fn surgeon_ui(ui: &mut Ui, live: &mut Live, panels: &mut Panels, outbox: &mut Outbox) {
+pub(super) fn surgeon_ui(ui: &mut Ui, live: &mut LiveState, panels: &mut Panels, outbox: &mut Outbox) {
     let past = live.is_shown_only();
     let strip = Frame::new().fill(theme::now().panel).inner_margin(Margin::same(8));
     Panel::bottom("strip").exact_size(STRIP).resizable(false).frame(strip).show(ui, |ui| {
@@ -32,13 +32,13 @@ pub(super) fn surgeon_ui(ui: &mut Ui, live: &mut Live, panels: &mut Panels, outb
         if live.is_bimanual() {
             hand_ui(ui, live, Side::Left, left);
         } else {
-            told_ui(ui, live, left);
+            reported_ui(ui, live, left);
         }
         ui.scope_builder(egui::UiBuilder::new().max_rect(gain), |ui| {
             theme::card().show(ui, |ui| {
                 ui.set_min_size(ui.available_size());
                 acts(ui, past, |ui| calm_gain_ui(ui, live, &mut panels.feedback, outbox));
-                ui.add(egui::Label::new(small(told(live))).wrap());
+                ui.add(egui::Label::new(small(report(live))).wrap());
             });
         });
     });
@@ -52,7 +52,7 @@ pub(super) fn surgeon_ui(ui: &mut Ui, live: &mut Live, panels: &mut Panels, outb
 }
 
 /// Reason why a hand gets less force than it should, with the hand; otherwise the mode.
-fn told(live: &Live) -> String {
+fn report(live: &LiveState) -> String {
     let whys: Vec<(Side, String)> =
         live.sides().filter_map(|side| why_no_force(live, side).map(|why| (side, why))).collect();
     match whys.as_slice() {
@@ -64,7 +64,7 @@ fn told(live: &Live) -> String {
 }
 
 /// Explanation of the colours, instead of a second hand.
-fn told_ui(ui: &Ui, live: &Live, place: Rect) {
+fn reported_ui(ui: &Ui, live: &LiveState, place: Rect) {
     let painter = ui.painter_at(place);
     painter.rect_filled(place, theme::CORNER, theme::now().card);
     let text = place.left_top() + vec2(16.0, 16.0);
@@ -79,7 +79,7 @@ fn told_ui(ui: &Ui, live: &Live, place: Rect) {
 }
 
 /// Both forces of a hand as numbers and as bars with the ceiling.
-fn hand_ui(ui: &mut Ui, live: &Live, side: Side, place: Rect) {
+fn hand_ui(ui: &mut Ui, live: &LiveState, side: Side, place: Rect) {
     let ceiling_n = live.gate_settings().ceiling_n;
     let measured_n = live.figures.measured_n[side.index()];
     let rendered_n = live.figures.rendered_n[side.index()];

@@ -4,24 +4,25 @@ use egui::{Frame, Margin, Ui};
 
 use super::{Panels, Wishes, acts};
 use crate::console::{
-    desk::{Layout, Panel},
-    in_force::InForce,
-    live::{Live, Of},
+    active_calibrations::ActiveCalibrations,
+    live::{LiveState, ScreenSource},
     outbox::Outbox,
     panels::{
-        calibrations_ui, devices_ui, feedback_ui, force_space_ui, forces_ui, gates_ui, horizon_ui, link_ui, timing_ui,
+        calibrations_ui, devices_ui, feedback_ui, force_space_ui, force_traces_ui, gates_ui, horizon_ui, link_ui,
+        timing_ui,
     },
     scene3d::scene_ui,
     text,
+    tiles::{Panel, PanelLayout},
     widgets::weak,
 };
 
 pub(super) fn technician_ui(
     ui: &mut Ui,
-    layout: &mut Layout,
-    live: &mut Live,
+    layout: &mut PanelLayout,
+    live: &mut LiveState,
     panels: &mut Panels,
-    in_force: &InForce,
+    active: &ActiveCalibrations,
     outbox: &mut Outbox,
 ) -> Wishes {
     let mut wishes = Wishes::default();
@@ -37,12 +38,12 @@ pub(super) fn technician_ui(
         Panel::Feedback => acts(ui, past, |ui| feedback_ui(ui, live, &mut panels.feedback, outbox)),
         Panel::Devices if past => devices_then_ui(ui, live),
         Panel::Devices => wishes.devices = devices_ui(ui, live, &mut panels.devices),
-        Panel::Calibrations => wishes.calibration = acts(ui, past, |ui| calibrations_ui(ui, live, in_force, None)),
+        Panel::Calibrations => wishes.calibration = acts(ui, past, |ui| calibrations_ui(ui, live, active, None)),
         Panel::Gates => gates_ui(ui, live, &mut panels.gates),
         Panel::Horizon => horizon_ui(ui, live, outbox),
         Panel::Timing => timing_ui(ui, live, &mut panels.timing),
         Panel::Link if past => {
-            let elsewhere = live.of == Of::Elsewhere;
+            let elsewhere = live.of == ScreenSource::Elsewhere;
             ui.label(weak(if elsewhere { text::monitor::NO_LINK.get() } else { text::link::NOT_IN_SESSIONS.get() }));
         }
         Panel::Link => link_ui(ui, live),
@@ -57,23 +58,27 @@ pub(super) fn technician_ui(
 }
 
 /// The devices of a recorded session or of another machine, and a note on data that are missing here.
-fn devices_then_ui(ui: &mut Ui, live: &Live) {
-    let elsewhere = live.of == Of::Elsewhere;
+fn devices_then_ui(ui: &mut Ui, live: &LiveState) {
+    let elsewhere = live.of == ScreenSource::Elsewhere;
     Frame::new().inner_margin(Margin::same(8)).show(ui, |ui| {
         if live.devices_then.is_empty() {
-            ui.label(if elsewhere { text::monitor::SIMULATED.get() } else { text::past::SIMULATED.get() });
+            ui.label(if elsewhere { text::monitor::SIMULATED.get() } else { text::playback::SIMULATED.get() });
         }
         for (name, standing) in &live.devices_then {
-            ui.label(text::past::device(*name, *standing));
+            ui.label(text::playback::device(*name, *standing));
         }
         ui.add_space(6.0);
-        ui.label(weak(if elsewhere { text::monitor::NOT_OF_DEVICES.get() } else { text::past::NOT_OF_DEVICES.get() }));
+        ui.label(weak(if elsewhere {
+            text::monitor::NOT_OF_DEVICES.get()
+        } else {
+            text::playback::NOT_OF_DEVICES.get()
+        }));
     });
 }
 
 /// The traces, with space for the last number of the time axis, half of which is outside the plot.
-fn traces_ui(ui: &mut Ui, live: &mut Live, panels: &mut Panels) {
+fn traces_ui(ui: &mut Ui, live: &mut LiveState, panels: &mut Panels) {
     Frame::new().inner_margin(Margin { left: 8, right: 18, top: 6, bottom: 6 }).show(ui, |ui| {
-        forces_ui(ui, live, &mut panels.forces, &[0, 1, 2]);
+        force_traces_ui(ui, live, &mut panels.forces, &[0, 1, 2]);
     });
 }

@@ -6,7 +6,7 @@ use egui::{Color32, Painter, Pos2, Rect, Shape, Stroke};
 use nalgebra::Vector3;
 use nima_simulation::scene::Scene;
 
-use super::{Camera, training};
+use super::{SceneCamera, training};
 
 /// Colour of the mark, used for nothing else in the view.
 const LED: Color32 = Color32::from_rgb(0x9c, 0xe8, 0x7a);
@@ -20,7 +20,7 @@ const SECOND: f32 = 16.0;
 const FOOT_M: f32 = 0.001;
 const CORNERS: u32 = 36;
 
-pub(super) struct Aim<'a> {
+pub(super) struct SceneAim<'a> {
     pub(super) scene: &'a Scene,
     pub(super) tip_m: Vector3<f32>,
     /// Centre of the ring in the jaws.
@@ -28,7 +28,7 @@ pub(super) struct Aim<'a> {
 }
 
 /// Marks the tip of the other instrument, which stays where it was left.
-pub(super) fn paint_other(painter: &Painter, rect: Rect, camera: &Camera, tip_m: &Vector3<f32>) {
+pub(super) fn paint_other(painter: &Painter, rect: Rect, camera: &SceneCamera, tip_m: &Vector3<f32>) {
     if let Some(tip) = camera.project(tip_m, rect) {
         painter.circle_stroke(tip, CIRCLE, Stroke::new(1.5, RESTS));
     }
@@ -40,8 +40,8 @@ fn ground_m(scene: &Scene) -> Option<f32> {
     training::board_of(scene).map(|board| board.z_m as f32).or(tissue_m)
 }
 
-impl Aim<'_> {
-    pub(super) fn paint(&self, painter: &Painter, rect: Rect, camera: &Camera) {
+impl SceneAim<'_> {
+    pub(super) fn paint(&self, painter: &Painter, rect: Rect, camera: &SceneCamera) {
         if let Some((from, foot, outline)) = self.below(rect, camera) {
             painter.add(Shape::Vec(Shape::dashed_line(&[from, foot], Stroke::new(2.0, DOWN), 6.0, 4.0)));
             painter.add(Shape::closed_line(outline, Stroke::new(2.0, DOWN)));
@@ -54,7 +54,7 @@ impl Aim<'_> {
     }
 
     /// Start and end of the line, and the shape at its end. `None` without a surface below.
-    fn below(&self, rect: Rect, camera: &Camera) -> Option<(Pos2, Pos2, Vec<Pos2>)> {
+    fn below(&self, rect: Rect, camera: &SceneCamera) -> Option<(Pos2, Pos2, Vec<Pos2>)> {
         let ground_m = ground_m(self.scene)?;
         let from_m = self.ring_m.unwrap_or(self.tip_m);
         let foot_m = Vector3::new(from_m.x, from_m.y, ground_m);
@@ -82,8 +82,8 @@ mod tests {
         let tip_m = Vector3::new(0.02, 0.01, 0.03);
         for (name, has_ground) in [("rings", true), ("wire", true), ("peg_transfer", true), ("free_motion", false)] {
             let scene = Scene::load(name).unwrap();
-            let camera = Camera::of(&scene);
-            let below = |ring_m| Aim { scene: &scene, tip_m, ring_m }.below(rect, &camera);
+            let camera = SceneCamera::of(&scene);
+            let below = |ring_m| SceneAim { scene: &scene, tip_m, ring_m }.below(rect, &camera);
             let width = |outline: &[Pos2]| {
                 let x = |i: usize| outline[i].x;
                 (0..outline.len()).map(x).fold(0.0, f32::max) - (0..outline.len()).map(x).fold(1e6, f32::min)

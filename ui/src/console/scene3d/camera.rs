@@ -20,7 +20,7 @@ const PITCH: std::ops::RangeInclusive<f32> = 0.03..=1.5;
 const FLATTEST: f32 = 0.15;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Camera {
+pub struct SceneCamera {
     /// Point looked at, m.
     pub target_m: Vector3<f32>,
     /// Distance from it, m.
@@ -33,7 +33,7 @@ pub struct Camera {
     pub field_of_view: f32,
 }
 
-impl Default for Camera {
+impl Default for SceneCamera {
     fn default() -> Self {
         // From the far side of the field, so that the shaft leans away and covers neither the tip nor the forces.
         let target_m = Vector3::new(0.0, -0.010, 0.046);
@@ -41,7 +41,7 @@ impl Default for Camera {
     }
 }
 
-impl Camera {
+impl SceneCamera {
     /// Default camera of a scene. Two instruments, and a wire, are seen from the operator's side, so that the right
     /// instrument and the end of the wire are on the right.
     pub fn of(scene: &Scene) -> Self {
@@ -161,7 +161,7 @@ mod tests {
 
     #[test]
     fn the_target_is_in_the_middle_and_up_is_up() {
-        let mut camera = Camera::default();
+        let mut camera = SceneCamera::default();
         camera.orbit(Vec2::new(37.0, -20.0));
         let middle = camera.project(&camera.target_m, view()).unwrap();
         assert!((middle - view().center()).length() < 0.1, "{middle:?}");
@@ -176,36 +176,45 @@ mod tests {
     #[test]
     fn from_every_camera_the_targets_are_seen_and_the_right_hand_is_on_the_right() {
         let scene = Scene::load("bimanual").unwrap();
-        for camera in [Camera::of(&scene), Camera::endoscope(&scene)] {
-            let place = |at_m: &Vector3<f64>| camera.project(&at_m.cast(), view()).unwrap();
-            assert!(scene.targets_m.iter().all(|at_m| view().contains(place(at_m))));
-            let middle = |targets_m: &[Vector3<f64>]| targets_m.iter().map(|at_m| place(at_m).x).sum::<f32>() / 3.0;
+        for camera in [SceneCamera::of(&scene), SceneCamera::endoscope(&scene)] {
+            let place = |position_m: &Vector3<f64>| camera.project(&position_m.cast(), view()).unwrap();
+            assert!(scene.targets_m.iter().all(|position_m| view().contains(place(position_m))));
+            let middle =
+                |targets_m: &[Vector3<f64>]| targets_m.iter().map(|position_m| place(position_m).x).sum::<f32>() / 3.0;
             assert!(middle(&scene.targets_m) > middle(&scene.left.as_ref().unwrap().targets_m) + 50.0);
         }
         let single = Scene::load("peg_transfer").unwrap();
-        let camera = Camera::endoscope(&single);
-        assert!(single.targets_m.iter().all(|at_m| view().contains(camera.project(&at_m.cast(), view()).unwrap())));
+        let camera = SceneCamera::endoscope(&single);
+        assert!(
+            single
+                .targets_m
+                .iter()
+                .all(|position_m| view().contains(camera.project(&position_m.cast(), view()).unwrap()))
+        );
     }
 
     #[test]
     fn the_round_picture_has_the_tips_at_the_start_of_every_task_and_the_pegs() {
         let views = [[1280.0, 560.0], [1600.0, 840.0], [1920.0, 920.0], [700.0, 700.0]];
         let views = views.map(|[width, height]| Rect::from_min_size(pos2(0.0, 110.0), vec2(width, height)));
-        let seen = |scene: &Scene, at_m: &Vector3<f64>, view: Rect| {
-            let camera = Camera::endoscope(scene);
-            camera.project(&at_m.cast(), view).is_some_and(|at| vignette::shows(view, at, aim::CIRCLE))
+        let seen = |scene: &Scene, position_m: &Vector3<f64>, view: Rect| {
+            let camera = SceneCamera::endoscope(scene);
+            camera.project(&position_m.cast(), view).is_some_and(|at| vignette::shows(view, at, aim::CIRCLE))
         };
         for name in Scene::names() {
             let scene = Scene::load(name).unwrap();
             if scene.task.is_none() {
                 continue;
             }
-            for (at_m, view) in
-                Worlds::new(&scene, 1e3).tips_m().iter().flatten().flat_map(|at_m| views.map(|view| (at_m, view)))
+            for (position_m, view) in Worlds::new(&scene, 1e3)
+                .tips_m()
+                .iter()
+                .flatten()
+                .flat_map(|position_m| views.map(|view| (position_m, view)))
             {
-                assert!(seen(&scene, at_m, view), "{name}: {at_m} in {view}");
+                assert!(seen(&scene, position_m, view), "{name}: {position_m} in {view}");
             }
-            for [x, y] in scene.objects.iter().flat_map(|setting| &setting.pegs.at_m) {
+            for [x, y] in scene.objects.iter().flat_map(|setting| &setting.pegs.position_m) {
                 let foot_m = Vector3::new(*x, *y, 0.0);
                 let passed_m = Vector3::new(0.0, 0.0, 0.08);
                 assert!(
@@ -220,7 +229,7 @@ mod tests {
 
     #[test]
     fn it_never_flips_over_or_dives_through() {
-        let mut camera = Camera::default();
+        let mut camera = SceneCamera::default();
         for _ in 0..1000 {
             camera.orbit(Vec2::new(13.0, 40.0));
             camera.zoom(1.2);
@@ -233,22 +242,24 @@ mod tests {
 
     #[test]
     fn a_place_on_the_screen_is_on_the_level_that_it_shows_and_none_is_too_far() {
-        for camera in [Camera::of(&Scene::load("rings").unwrap()), Camera::endoscope(&Scene::load("rings").unwrap())] {
-            for at_m in [Vector3::new(0.045, -0.026, 0.002), Vector3::new(-0.02, 0.03, 0.04), Vector3::zeros()] {
-                let on_screen = camera.project(&at_m, view()).unwrap();
-                let found_m = camera.on_level(on_screen, view(), at_m.z).unwrap();
-                assert!((found_m - at_m).norm() < 1e-4, "{found_m} for {at_m}");
+        for camera in
+            [SceneCamera::of(&Scene::load("rings").unwrap()), SceneCamera::endoscope(&Scene::load("rings").unwrap())]
+        {
+            for position_m in [Vector3::new(0.045, -0.026, 0.002), Vector3::new(-0.02, 0.03, 0.04), Vector3::zeros()] {
+                let on_screen = camera.project(&position_m, view()).unwrap();
+                let found_m = camera.on_level(on_screen, view(), position_m.z).unwrap();
+                assert!((found_m - position_m).norm() < 1e-4, "{found_m} for {position_m}");
             }
             let above_eye_m = camera.eye_m().z + 0.01;
             assert_eq!(camera.on_level(view().center(), view(), above_eye_m), None);
         }
-        let flat = Camera { pitch: 0.1, ..Camera::default() };
+        let flat = SceneCamera { pitch: 0.1, ..SceneCamera::default() };
         assert_eq!(flat.on_level(view().center(), view(), 0.0), None);
     }
 
     #[test]
     fn what_is_behind_the_eye_has_no_place() {
-        let camera = Camera::default();
+        let camera = SceneCamera::default();
         let behind = camera.eye_m() + (camera.eye_m() - camera.target_m);
         assert_eq!(camera.project(&behind, view()), None);
     }

@@ -10,13 +10,13 @@ use nalgebra::Vector3;
 use nima_simulation::scene::Scene;
 
 use super::{
-    Camera,
-    stage::{self, Arm},
-    written::label,
+    SceneCamera,
+    labels::label,
+    stage::{self, StageArm},
 };
 use crate::console::{text, theme};
 use crate::language::Text;
-use crate::words::side_word;
+use crate::report_text::side_word;
 
 /// Length of a frame's axes, m.
 const AXIS_M: f32 = 0.016;
@@ -53,7 +53,7 @@ impl Default for Extras {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Switch {
+pub enum MenuSwitch {
     Ceiling,
     Frames,
     Shadows,
@@ -61,7 +61,7 @@ pub enum Switch {
     Round,
 }
 
-impl Switch {
+impl MenuSwitch {
     /// All switches, in the order of the menu.
     pub const ALL: [Self; 5] = [Self::Ceiling, Self::Frames, Self::Shadows, Self::Depth, Self::Round];
 
@@ -88,7 +88,7 @@ impl Switch {
 
 /// Origin (m) and axes of a frame, in the workspace.
 #[derive(Clone, Debug)]
-struct Axes {
+struct FrameAxes {
     name: String,
     origin_m: Vector3<f32>,
     ways: [Vector3<f32>; 3],
@@ -96,13 +96,13 @@ struct Axes {
 
 impl Extras {
     /// The setting that this switch changes.
-    pub(in crate::console) const fn of(&mut self, switch: Switch) -> &mut bool {
+    pub(in crate::console) const fn of(&mut self, switch: MenuSwitch) -> &mut bool {
         match switch {
-            Switch::Ceiling => &mut self.ceiling,
-            Switch::Frames => &mut self.frames,
-            Switch::Shadows => &mut self.shadows,
-            Switch::Depth => &mut self.depth,
-            Switch::Round => &mut self.round,
+            MenuSwitch::Ceiling => &mut self.ceiling,
+            MenuSwitch::Frames => &mut self.frames,
+            MenuSwitch::Shadows => &mut self.shadows,
+            MenuSwitch::Depth => &mut self.depth,
+            MenuSwitch::Round => &mut self.round,
         }
     }
 
@@ -117,7 +117,7 @@ impl Extras {
             let menu = MenuButton::from_button(button).config(config);
             let (response, _) = menu.ui(ui, |ui| {
                 ui.set_min_width(200.0);
-                for switch in Switch::ALL {
+                for switch in MenuSwitch::ALL {
                     ui.checkbox(self.of(switch), switch.name()).on_hover_text(switch.meaning());
                 }
             });
@@ -129,9 +129,9 @@ impl Extras {
         self,
         painter: &Painter,
         rect: Rect,
-        camera: &Camera,
+        camera: &SceneCamera,
         scene: &Scene,
-        arms: &[Arm],
+        arms: &[StageArm],
         ceiling_n: f64,
     ) {
         if self.ceiling {
@@ -148,7 +148,7 @@ impl Extras {
 }
 
 /// Outline of the sphere that represents the force ceiling, around this tip.
-fn ceiling(painter: &Painter, rect: Rect, camera: &Camera, arm: &Arm, ceiling_n: f32) {
+fn ceiling(painter: &Painter, rect: Rect, camera: &SceneCamera, arm: &StageArm, ceiling_n: f32) {
     let radius_m = ceiling_n * stage::ARROW_M_PER_N;
     let outline = (0..=RING).filter_map(|i| {
         let (sin, cos) = (std::f32::consts::TAU * i as f32 / RING as f32).sin_cos();
@@ -171,12 +171,12 @@ fn ceiling(painter: &Painter, rect: Rect, camera: &Camera, arm: &Arm, ceiling_n:
 }
 
 /// All frames of a scene.
-fn frames(scene: &Scene, arms: &[Arm]) -> Vec<Axes> {
+fn frames(scene: &Scene, arms: &[StageArm]) -> Vec<FrameAxes> {
     let base = [Vector3::x(), Vector3::y(), Vector3::z()];
-    let endoscope = Camera::endoscope(scene);
+    let endoscope = SceneCamera::endoscope(scene);
     let mut frames = vec![
-        Axes { name: text::field::FRAME_WORLD.get().to_owned(), origin_m: Vector3::zeros(), ways: base },
-        Axes {
+        FrameAxes { name: text::field::FRAME_WORLD.get().to_owned(), origin_m: Vector3::zeros(), ways: base },
+        FrameAxes {
             name: text::field::ENDOSCOPE.get().to_owned(),
             origin_m: endoscope.eye_m(),
             ways: [endoscope.right(), endoscope.up(), endoscope.right().cross(&endoscope.up())],
@@ -184,11 +184,15 @@ fn frames(scene: &Scene, arms: &[Arm]) -> Vec<Axes> {
     ];
     for arm in arms {
         let side = if arms.len() > 1 { format!(" {}", side_word(arm.side)) } else { String::new() };
-        frames.push(Axes { name: text::field::TROCAR.get().to_owned() + &side, origin_m: arm.trocar_m, ways: base });
+        frames.push(FrameAxes {
+            name: text::field::TROCAR.get().to_owned() + &side,
+            origin_m: arm.trocar_m,
+            ways: base,
+        });
         let Some(z) = (arm.trocar_m - arm.pose.tip_m).try_normalize(1e-4) else { continue };
         // The direction of x closest to the base's x.
         let x = (Vector3::x() - z * z.x).try_normalize(1e-3).unwrap_or_else(Vector3::y);
-        frames.push(Axes {
+        frames.push(FrameAxes {
             name: text::field::TIP.get().to_owned() + &side,
             origin_m: arm.pose.tip_m,
             ways: [x, z.cross(&x), z],
@@ -197,7 +201,7 @@ fn frames(scene: &Scene, arms: &[Arm]) -> Vec<Axes> {
     frames
 }
 
-fn axes(painter: &Painter, rect: Rect, camera: &Camera, frame: &Axes) {
+fn axes(painter: &Painter, rect: Rect, camera: &SceneCamera, frame: &FrameAxes) {
     let Some(origin) = camera.project(&frame.origin_m, rect).filter(|at| rect.contains(*at)) else { return };
     for (name, axis) in ["x", "y", "z"].into_iter().zip(frame.ways) {
         let Some(end) = camera.project(&(frame.origin_m + axis * AXIS_M), rect) else { continue };
@@ -217,12 +221,18 @@ mod tests {
     #[test]
     fn every_frame_is_right_handed_and_of_unit_length() {
         let scene = Scene::load("bimanual").unwrap();
-        let pose = stage::Pose { tip_m: Vector3::new(0.0, 0.02, 0.0), measured_n: None, rendered_n: Vector3::zeros() };
-        let arm =
-            |side, x| Arm { side, trocar_m: Vector3::new(x, -0.06, 0.14), targets_m: vec![], pose, trail_m: vec![] };
+        let pose =
+            stage::StagePose { tip_m: Vector3::new(0.0, 0.02, 0.0), measured_n: None, rendered_n: Vector3::zeros() };
+        let arm = |side, x| StageArm {
+            side,
+            trocar_m: Vector3::new(x, -0.06, 0.14),
+            targets_m: vec![],
+            pose,
+            trail_m: vec![],
+        };
         let frames = frames(&scene, &[arm(Side::Right, 0.05), arm(Side::Left, 0.0)]);
         assert_eq!(frames.len(), 6);
-        for Axes { name, ways: [x, y, z], .. } in frames {
+        for FrameAxes { name, ways: [x, y, z], .. } in frames {
             assert!((x.cross(&y) - z).norm() < 1e-5 && (x.norm() - 1.0).abs() < 1e-5, "{name}: {x} {y} {z}");
         }
     }

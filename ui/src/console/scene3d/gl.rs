@@ -15,7 +15,7 @@ use super::mesh::{Material, Mesh};
 
 /// Data of one frame.
 #[derive(Debug)]
-pub struct Frame {
+pub struct GlFrame {
     pub mesh: Mesh,
     /// Transformation from workspace to clip space.
     pub clip_from_workspace: Matrix4<f32>,
@@ -33,7 +33,7 @@ pub struct Frame {
 /// Bands of the background gradient; neighbouring bands differ by at most 1/255.
 const BACKDROP_STEPS: i32 = 32;
 const SAMPLES: i32 = 4;
-/// Size of a [`Vertex`](super::mesh::Vertex), checked by a test of the mesh.
+/// Size of a [`MeshVertex`](super::mesh::MeshVertex), checked by a test of the mesh.
 const VERTEX_BYTES: i32 = 28;
 const ATTRIBUTES: [&str; 3] = ["a_position", "a_normal", "a_colour"];
 
@@ -43,9 +43,9 @@ const PROGRAMS: [(Material, usize); 5] =
 /// Drawing order: front objects first, so that hidden pixels are not shaded.
 const ORDER: [Material; 4] = [Material::Plain, Material::Metal, Material::Matte, Material::Tissue];
 
-/// The shader programs and their buffers on the GPU. Must be released with [`Renderer::destroy`].
+/// The shader programs and their buffers on the GPU. Must be released with [`GlRenderer::destroy`].
 #[derive(Debug)]
-pub struct Renderer {
+pub struct GlRenderer {
     programs: Vec<glow::Program>,
     array: glow::VertexArray,
     vertices: glow::Buffer,
@@ -57,21 +57,21 @@ pub struct Renderer {
 #[derive(Debug)]
 enum TargetState {
     None,
-    Made(Target),
+    Made(RenderTarget),
     /// The driver does not support it: no antialiasing.
     Refused,
 }
 
 /// A multisampled framebuffer for the view.
 #[derive(Debug)]
-struct Target {
+struct RenderTarget {
     framebuffer: glow::Framebuffer,
     colour: glow::Renderbuffer,
     depth: glow::Renderbuffer,
     size: [i32; 2],
 }
 
-impl Renderer {
+impl GlRenderer {
     /// Compiles the shader programs; the error is the driver's message.
     pub fn new(gl: &glow::Context) -> Result<Self, String> {
         // SAFETY: called with eframe's current context; every object created here is destroyed in `destroy`.
@@ -99,7 +99,7 @@ impl Renderer {
     }
 
     /// Draws one frame into egui's viewport, in the bound framebuffer.
-    pub fn paint(&self, gl: &glow::Context, place: &ViewportInPixels, frame: &Frame) {
+    pub fn paint(&self, gl: &glow::Context, place: &ViewportInPixels, frame: &GlFrame) {
         let size = [place.width_px, place.height_px];
         if frame.mesh.indices.is_empty() || size.iter().any(|&x| x < 1) {
             return;
@@ -132,7 +132,7 @@ impl Renderer {
 
     /// # Safety
     /// The context must be current, with framebuffer, viewport and scissor set.
-    unsafe fn draw(&self, gl: &glow::Context, frame: &Frame) {
+    unsafe fn draw(&self, gl: &glow::Context, frame: &GlFrame) {
         unsafe {
             gl.disable(glow::BLEND);
             gl.enable(glow::DEPTH_TEST);
@@ -196,11 +196,11 @@ impl TargetState {
             Self::None => {}
         }
         // SAFETY: as for this function.
-        *self = unsafe { Target::new(gl, size) }.map_or(Self::Refused, Self::Made);
+        *self = unsafe { RenderTarget::new(gl, size) }.map_or(Self::Refused, Self::Made);
     }
 }
 
-impl Target {
+impl RenderTarget {
     /// # Safety
     /// The context must be current.
     unsafe fn new(gl: &glow::Context, size: [i32; 2]) -> Option<Self> {
@@ -282,8 +282,8 @@ unsafe fn clear(gl: &glow::Context, [left, bottom]: [i32; 2], [width, height]: [
         gl.clear_depth_f32(1.0);
         for step in 0..BACKDROP_STEPS {
             let [from, to] = [step, step + 1].map(|step| height * step / BACKDROP_STEPS);
-            let share = step as f32 / (BACKDROP_STEPS - 1) as f32;
-            let [r, g, b] = [0, 1, 2].map(|i| ground[i] + share * (top[i] - ground[i]));
+            let fraction = step as f32 / (BACKDROP_STEPS - 1) as f32;
+            let [r, g, b] = [0, 1, 2].map(|i| ground[i] + fraction * (top[i] - ground[i]));
             gl.scissor(left, bottom + from, width, to - from);
             gl.clear_color(r, g, b, 1.0);
             gl.clear(glow::COLOR_BUFFER_BIT | glow::DEPTH_BUFFER_BIT);
@@ -294,7 +294,7 @@ unsafe fn clear(gl: &glow::Context, [left, bottom]: [i32; 2], [width, height]: [
 
 /// The bytes of a slice of plain numbers, in the GPU's format.
 fn bytes<T: Copy>(slice: &[T]) -> &[u8] {
-    // SAFETY: `T` is `Vertex` (seven 4-byte fields, no padding) or `u32`; every byte is initialised.
+    // SAFETY: `T` is `MeshVertex` (seven 4-byte fields, no padding) or `u32`; every byte is initialised.
     unsafe { std::slice::from_raw_parts(slice.as_ptr().cast(), size_of_val(slice)) }
 }
 
@@ -302,7 +302,7 @@ fn bytes<T: Copy>(slice: &[T]) -> &[u8] {
 ///
 /// # Safety
 /// The context must be current, with the program in use.
-unsafe fn uniforms(gl: &glow::Context, program: glow::Program, frame: &Frame) {
+unsafe fn uniforms(gl: &glow::Context, program: glow::Program, frame: &GlFrame) {
     unsafe {
         let place = |name| gl.get_uniform_location(program, name);
         gl.uniform_3_f32(place("u_eye").as_ref(), frame.eye_m.x, frame.eye_m.y, frame.eye_m.z);

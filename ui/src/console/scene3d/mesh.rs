@@ -20,7 +20,7 @@ pub enum Material {
 /// One vertex in the GPU's format: 28 bytes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
-pub struct Vertex {
+pub struct MeshVertex {
     /// Workspace position, m.
     pub position: [f32; 3],
     /// Outward normal, unit length.
@@ -34,7 +34,7 @@ pub struct Paint(pub Color32, pub Material);
 
 #[derive(Clone, Debug, Default)]
 pub struct Mesh {
-    pub vertices: Vec<Vertex>,
+    pub vertices: Vec<MeshVertex>,
     /// Indices of the vertices, three per triangle.
     pub indices: Vec<u32>,
 }
@@ -43,7 +43,7 @@ impl Mesh {
     /// Adds a vertex; returns its index.
     pub fn vertex(&mut self, position: Vector3<f32>, normal: Vector3<f32>, paint: Paint) -> u32 {
         let [r, g, b, _] = paint.0.to_array();
-        self.vertices.push(Vertex {
+        self.vertices.push(MeshVertex {
             position: position.into(),
             normal: normal.into(),
             colour: [r, g, b, paint.1 as u8],
@@ -297,6 +297,6 @@ mod tests {
 
     #[test]
     fn the_gpu_reads_28_bytes_a_corner() {
-        assert_eq!(size_of::<Vertex>(), 28);
+        assert_eq!(size_of::<MeshVertex>(), 28);
     }
 }

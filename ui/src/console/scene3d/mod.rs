@@ -5,8 +5,9 @@ mod aim;
 pub mod camera;
 pub mod extras;
 pub mod gl;
-mod lead;
+mod labels;
 pub mod mesh;
+mod mouse_drive;
 mod objects;
 mod pick;
 mod reach;
@@ -14,7 +15,6 @@ mod shadows;
 pub mod stage;
 mod training;
 mod vignette;
-mod written;
 
 use std::sync::Arc;
 
@@ -24,22 +24,22 @@ use nalgebra::Vector3;
 use nima_machine::rig::{SIDES, Side};
 use nima_simulation::{Worlds, scene::Scene};
 
-pub use self::{camera::Camera, written::side_name};
+pub use self::{camera::SceneCamera, labels::side_name};
 
 use self::{
-    aim::Aim,
+    aim::SceneAim,
     extras::Extras,
-    gl::Renderer,
-    lead::Lead,
-    objects::Shown,
-    stage::{Arm, Pose},
-    written::{axes, hint, labels, readings, readings_width},
+    gl::GlRenderer,
+    labels::{axes, hint, labels, readings, readings_width},
+    mouse_drive::MouseDrive,
+    objects::DisplayedObjects,
+    stage::{StageArm, StagePose},
 };
-use super::{live::Live, outbox::Outbox, theme};
+use super::{live::LiveState, outbox::Outbox, theme};
 use crate::console::text;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Look {
+pub enum CameraLook {
     #[default]
     Free,
     Endoscope,
@@ -50,7 +50,7 @@ pub enum Look {
 #[expect(clippy::struct_excessive_bools, reason = "each is a switch of its own")]
 pub struct SceneView {
     pub smooth: bool,
-    pub look: Look,
+    pub look: CameraLook,
     /// Show the forces as numbers and gauges.
     pub figures: bool,
     /// Draw the forces as arrows.
@@ -58,43 +58,43 @@ pub struct SceneView {
     pub extras: Extras,
     /// Drawn in this frame.
     pub(in crate::console) is_seen: bool,
-    camera: Camera,
+    camera: SceneCamera,
     /// Name of the scene for which the cameras were set.
     set_for: Option<String>,
     /// Tip positions before the first tick.
     starts_m: [Option<Vector3<f64>>; SIDES],
-    lead: Lead,
-    renderer: Option<Arc<Renderer>>,
+    lead: MouseDrive,
+    renderer: Option<Arc<GlRenderer>>,
     /// The last drawn scene; if nothing has changed, no new triangles are built, and a software renderer does not draw.
-    drawn: Option<(Drawn, egui::PaintCallback)>,
+    drawn: Option<(SceneInputs, egui::PaintCallback)>,
     problem: Option<String>,
 }
 
 /// Everything that the triangles depend on.
 #[derive(Clone, Debug, PartialEq)]
-struct Drawn {
+struct SceneInputs {
     rect: Rect,
     scene: String,
-    camera: Camera,
+    camera: SceneCamera,
     smooth: bool,
     extras: Extras,
-    arms: Vec<Arm>,
-    shown: Option<Shown>,
+    arms: Vec<StageArm>,
+    shown: Option<DisplayedObjects>,
 }
 
 impl Default for SceneView {
     fn default() -> Self {
         Self {
             smooth: true,
-            look: Look::Free,
+            look: CameraLook::Free,
             figures: true,
             arrows: true,
             extras: Extras::default(),
             is_seen: false,
-            camera: Camera::default(),
+            camera: SceneCamera::default(),
             set_for: None,
             starts_m: [None; SIDES],
-            lead: Lead::default(),
+            lead: MouseDrive::default(),
             renderer: None,
             drawn: None,
             problem: None,
@@ -105,7 +105,7 @@ impl Default for SceneView {
 impl SceneView {
     /// A view that draws with this context; without one it shows labels only.
     pub fn new(gl: Option<&glow::Context>) -> Self {
-        match gl.map(Renderer::new) {
+        match gl.map(GlRenderer::new) {
             None => Self::default(),
             Some(Ok(renderer)) => Self { renderer: Some(Arc::new(renderer)), ..Self::default() },
             Some(Err(problem)) => Self { problem: Some(problem), ..Self::default() },
@@ -134,10 +134,10 @@ impl SceneView {
         self.lead.is_on()
     }
 
-    fn camera(&self, scene: &Scene) -> Camera {
+    fn camera(&self, scene: &Scene) -> SceneCamera {
         match self.look {
-            Look::Free => self.camera,
-            Look::Endoscope => Camera::endoscope(scene),
+            CameraLook::Free => self.camera,
+            CameraLook::Endoscope => SceneCamera::endoscope(scene),
         }
     }
 
@@ -150,11 +150,11 @@ impl SceneView {
 }
 
 /// Draws the view over the available space.
-pub fn scene_ui(ui: &mut Ui, live: &Live, view: &mut SceneView, outbox: &mut Outbox) {
+pub fn scene_ui(ui: &mut Ui, live: &LiveState, view: &mut SceneView, outbox: &mut Outbox) {
     view.is_seen = true;
     if view.set_for.as_ref() != Some(&live.scene.name) {
         view.set_for = Some(live.scene.name.clone());
-        view.camera = Camera::of(&live.scene);
+        view.camera = SceneCamera::of(&live.scene);
         view.starts_m = Worlds::new(&live.scene, live.rig.rate_hz).tips_m();
     }
     let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
@@ -168,20 +168,20 @@ pub fn scene_ui(ui: &mut Ui, live: &Live, view: &mut SceneView, outbox: &mut Out
         view.extras.ui(ui, rect);
     }
     let leading = offered && view.lead.ui(ui, rect, &response, live, &camera, outbox);
-    if view.look == Look::Free {
+    if view.look == CameraLook::Free {
         turn(ui, live, view, &response, leading);
     }
     let camera = view.camera(&live.scene);
-    let arms: Vec<Arm> = live.sides().filter_map(|side| arm(live, side, view)).collect();
+    let arms: Vec<StageArm> = live.sides().filter_map(|side| arm(live, side, view)).collect();
     let painter = ui.painter_at(rect);
     let led = view.lead.side();
-    let shown = Shown::of(live, led);
+    let shown = DisplayedObjects::of(live, led);
     let reach = shown.as_ref().and_then(|shown| shown.reach);
     if let Some(marked) = view.lead.marked() {
-        for Arm { side, pose: Pose { tip_m, .. }, .. } in &arms {
+        for StageArm { side, pose: StagePose { tip_m, .. }, .. } in &arms {
             if *side == marked {
-                let ring_m = shown.as_ref().and_then(Shown::held_m);
-                Aim { scene: &live.scene, tip_m: *tip_m, ring_m }.paint(&painter, rect, &camera);
+                let ring_m = shown.as_ref().and_then(DisplayedObjects::held_m);
+                SceneAim { scene: &live.scene, tip_m: *tip_m, ring_m }.paint(&painter, rect, &camera);
             } else {
                 aim::paint_other(&painter, rect, &camera, tip_m);
             }
@@ -190,7 +190,7 @@ pub fn scene_ui(ui: &mut Ui, live: &Live, view: &mut SceneView, outbox: &mut Out
     if let Some(callback) = triangles(rect, live, view, &arms, shown) {
         painter.set(ground, callback);
     }
-    if view.look == Look::Endoscope && view.extras.round {
+    if view.look == CameraLook::Endoscope && view.extras.round {
         vignette::paint(&painter, rect);
     }
     if view.figures {
@@ -202,13 +202,13 @@ pub fn scene_ui(ui: &mut Ui, live: &Live, view: &mut SceneView, outbox: &mut Out
     if view.figures {
         readings(&painter, rect, live);
     }
-    if view.look == Look::Free {
+    if view.look == CameraLook::Free {
         axes(&painter, rect, &camera);
     }
     hint(&painter, rect, live, view);
     // The keys of a study trial are shown next to it, except those of the jaws.
-    let told_led = led.filter(|_| !view.lead.is_held || live.scene.objects.is_some());
-    training::line_ui(ui, rect, training::told(live, told_led, reach), readings_width(live), view.figures);
+    let reported_led = led.filter(|_| !view.lead.is_held || live.scene.objects.is_some());
+    training::line_ui(ui, rect, training::report(live, reported_led, reach), readings_width(live), view.figures);
     // No hover texts in the Surgeon view, nor over the driven instrument.
     let pointed_at = response.hover_pos().filter(|_| view.figures && !response.dragged() && !leading);
     if let Some(words) = pointed_at.and_then(|pointer| pick::pick(pointer, rect, &camera, &live.scene, &arms)) {
@@ -217,12 +217,12 @@ pub fn scene_ui(ui: &mut Ui, live: &Live, view: &mut SceneView, outbox: &mut Out
 }
 
 /// Rotates and zooms the free camera with mouse and wheel.
-fn turn(ui: &Ui, live: &Live, view: &mut SceneView, response: &egui::Response, leading: bool) {
+fn turn(ui: &Ui, live: &LiveState, view: &mut SceneView, response: &egui::Response, leading: bool) {
     if response.dragged() && !leading {
         view.camera.orbit(response.drag_delta());
     }
     if response.double_clicked() {
-        view.camera = Camera::of(&live.scene);
+        view.camera = SceneCamera::of(&live.scene);
     }
     if response.contains_pointer() && !leading {
         let wheel = ui.input(|input| input.smooth_scroll_delta().y + 100.0 * (input.zoom_delta() - 1.0));
@@ -232,23 +232,23 @@ fn turn(ui: &Ui, live: &Live, view: &mut SceneView, response: &egui::Response, l
 
 /// The objects of one side from its newest tick, or the start of the task before the first tick. Forces only if arrows are
 /// drawn.
-fn arm(live: &Live, side: Side, view: &SceneView) -> Option<Arm> {
+fn arm(live: &LiveState, side: Side, view: &SceneView) -> Option<StageArm> {
     let scene = live.scene.of_side(side)?;
     let finite = |v: Vector3<f64>| v.iter().all(|x| x.is_finite());
     let start_m = view.starts_m[side.index()].unwrap_or_default();
-    let rest = Pose { tip_m: start_m.cast(), measured_n: None, rendered_n: Vector3::zeros() };
-    let pose = live.tick_of(side).filter(|tick| finite(tick.tip_m)).map_or(rest, |tick| Pose {
+    let rest = StagePose { tip_m: start_m.cast(), measured_n: None, rendered_n: Vector3::zeros() };
+    let pose = live.tick_of(side).filter(|tick| finite(tick.tip_m)).map_or(rest, |tick| StagePose {
         tip_m: tick.tip_m.cast(),
         measured_n: tick.known_n().map(nalgebra::Matrix::cast),
         rendered_n: tick.rendered_n.cast(),
     });
     // Hidden forces must not reveal anything, not even that they are unknown.
-    let hidden = Pose { measured_n: Some(Vector3::zeros()), rendered_n: Vector3::zeros(), ..pose };
+    let hidden = StagePose { measured_n: Some(Vector3::zeros()), rendered_n: Vector3::zeros(), ..pose };
     let pose = if view.arrows { pose } else { hidden };
-    Some(Arm {
+    Some(StageArm {
         side,
         trocar_m: scene.trocar_m.cast(),
-        targets_m: scene.targets_m.iter().map(|at_m| at_m.cast()).collect(),
+        targets_m: scene.targets_m.iter().map(|position_m| position_m.cast()).collect(),
         pose,
         trail_m: live.trails[side.index()].iter().copied().collect(),
     })
@@ -256,27 +256,27 @@ fn arm(live: &Live, side: Side, view: &SceneView) -> Option<Arm> {
 
 fn triangles(
     rect: Rect,
-    live: &Live,
+    live: &LiveState,
     view: &mut SceneView,
-    arms: &[Arm],
-    shown: Option<Shown>,
+    arms: &[StageArm],
+    shown: Option<DisplayedObjects>,
 ) -> Option<egui::PaintCallback> {
     let renderer = view.renderer.clone()?;
     let camera = view.camera(&live.scene);
     let scene = live.scene.name.clone();
     let smooth = view.smooth;
     let extras = view.extras;
-    let wanted = Drawn { rect, scene, camera, smooth, extras, arms: arms.to_vec(), shown };
+    let wanted = SceneInputs { rect, scene, camera, smooth, extras, arms: arms.to_vec(), shown };
     if let Some((_, callback)) = view.drawn.as_ref().filter(|(drawn, _)| *drawn == wanted) {
         return Some(callback.clone());
     }
     let eye_m = camera.eye_m();
     let right = camera.right();
-    let style = stage::Style { eye_m: &eye_m, right: &right, fine: smooth, shadows: extras.shadows };
-    let is_round = view.look == Look::Endoscope && extras.round;
+    let style = stage::SceneStyle { eye_m: &eye_m, right: &right, fine: smooth, shadows: extras.shadows };
+    let is_round = view.look == CameraLook::Endoscope && extras.round;
     // The covered part of a round image is neither drawn nor redrawn.
     let part = if is_round { vignette::part_of(rect) } else { rect };
-    let frame = gl::Frame {
+    let frame = gl::GlFrame {
         mesh: stage::build(&live.scene, arms, wanted.shown.as_ref(), style),
         dims: if extras.depth { camera.dims() } else { [0.0; 2] },
         clip_from_workspace: vignette::part_from_whole(part, rect) * camera.clip_from_workspace(rect.aspect_ratio()),

@@ -3,15 +3,15 @@
 use egui::Color32;
 use nalgebra::{UnitQuaternion, Vector3};
 use nima_machine::rig::{SIDES, Side};
-use nima_session::objects::Objects;
-use nima_simulation::{LoopSeen, Training, scene::Scene};
+use nima_session::objects::ObjectStates;
+use nima_simulation::{LoopObservation, Training, scene::Scene};
 
 use super::{
     mesh::{Material, Mesh, Paint},
-    reach::Reach,
+    reach::JawReach,
     shadows::Shadows,
 };
-use crate::console::live::Live;
+use crate::console::live::LiveState;
 
 pub(super) const BOARD: Paint = Paint(Color32::from_rgb(0x3a, 0x45, 0x52), Material::Matte);
 const PEG: Paint = Paint(Color32::from_rgb(0xc9, 0xcf, 0xd6), Material::Matte);
@@ -24,40 +24,40 @@ const BOARD_THICKNESS_M: f32 = 0.003;
 
 /// Moving parts in addition to the instruments.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Shown {
+pub struct DisplayedObjects {
     rings: Vec<(Vector3<f32>, UnitQuaternion<f32>)>,
     /// The ring that the jaws of the driven instrument would grip or hold.
-    pub(super) reach: Option<Reach>,
+    pub(super) reach: Option<JawReach>,
     /// Unknown in sessions of older versions.
     opening_rad: [Option<f32>; SIDES],
     /// Marked places, each with whether it is on a lump (shown only after the trial).
     pub(super) marks: Vec<(Vector3<f32>, bool)>,
-    pub(super) loops: [LoopSeen; SIDES],
+    pub(super) loops: [LoopObservation; SIDES],
     pub(super) ended: bool,
 }
 
-impl Shown {
+impl DisplayedObjects {
     /// The last reported objects, with the driven instrument; `None` in a scene without its own training task.
-    pub(super) fn of(live: &Live, led: Option<Side>) -> Option<Self> {
+    pub(super) fn of(live: &LiveState, led: Option<Side>) -> Option<Self> {
         if !live.scene.is_played() {
             return None;
         }
-        let none = Objects::default();
+        let none = ObjectStates::default();
         let blank = Training::default();
-        let Objects { rings, jaws, .. } = live.objects.as_ref().unwrap_or(&none);
+        let ObjectStates { rings, jaws, .. } = live.objects.as_ref().unwrap_or(&none);
         let training = live.training.as_ref().unwrap_or(&blank);
         let rings = rings.iter().flatten();
         let rings: Vec<_> = rings.map(|ring| (ring.translation.vector.cast(), ring.rotation.cast())).collect();
         let reach = led.and_then(|side| {
             let tick = live.tick_of(side)?;
             let jaws = jaws[side.index()].as_ref()?;
-            Reach::of(live.scene.objects.as_ref()?, &rings, &tick.tip_m, jaws)
+            JawReach::of(live.scene.objects.as_ref()?, &rings, &tick.tip_m, jaws)
         });
         Some(Self {
             rings,
             reach,
             opening_rad: jaws.map(|jaws| jaws.map(|jaws| jaws.opening_rad as f32)),
-            marks: training.marks.iter().flatten().map(|mark| (mark.at_m.cast(), mark.is_true)).collect(),
+            marks: training.marks.iter().flatten().map(|mark| (mark.position_m.cast(), mark.is_true)).collect(),
             loops: training.loops,
             ended: training.ended,
         })
@@ -65,21 +65,21 @@ impl Shown {
 
     /// Centre of the ring in the jaws of the driven instrument, m.
     pub(super) fn held_m(&self) -> Option<Vector3<f32>> {
-        let held = self.reach.filter(|reach| matches!(reach, Reach::Held(_)))?;
+        let held = self.reach.filter(|reach| matches!(reach, JawReach::Held(_)))?;
         self.rings.get(held.ring()).map(|(middle_m, _)| *middle_m)
     }
 
     fn paint_of(&self, ring: usize) -> Paint {
         match self.reach.filter(|reach| reach.ring() == ring) {
             None => RING,
-            Some(Reach::Above(_) | Reach::Between(_)) => RING_REACHED,
-            Some(Reach::Held(_)) => RING_HELD,
+            Some(JawReach::Above(_) | JawReach::Between(_)) => RING_REACHED,
+            Some(JawReach::Held(_)) => RING_HELD,
         }
     }
 }
 
 /// A board with its surface at this height, m.
-pub(super) fn board(mesh: &mut Mesh, board: &nima_simulation::physics::Board) {
+pub(super) fn board(mesh: &mut Mesh, board: &nima_simulation::physics::BoardSettings) {
     let [x_m, y_m] = board.size_m.map(|m| 0.5 * m as f32);
     let top_m = board.z_m as f32;
     let low = Vector3::new(-x_m, -y_m, top_m - BOARD_THICKNESS_M);
@@ -87,7 +87,7 @@ pub(super) fn board(mesh: &mut Mesh, board: &nima_simulation::physics::Board) {
 }
 
 /// Board, pegs and rings.
-pub(super) fn ground(mesh: &mut Mesh, scene: &Scene, shown: &Shown, shadows: &mut Shadows) {
+pub(super) fn ground(mesh: &mut Mesh, scene: &Scene, shown: &DisplayedObjects, shadows: &mut Shadows) {
     let Some(setting) = &scene.objects else { return };
     let [tube_m, major_m] = [setting.ring.tube_radius_m, setting.ring.major_radius_m].map(|m| m as f32);
     for (i, (centre_m, turn)) in shown.rings.iter().enumerate() {
@@ -97,7 +97,7 @@ pub(super) fn ground(mesh: &mut Mesh, scene: &Scene, shown: &Shown, shadows: &mu
     let radius_m = setting.pegs.radius_m as f32;
     let foot_m = setting.board.z_m as f32;
     let top_m = foot_m + setting.pegs.height_m as f32 - radius_m;
-    for [x, y] in &setting.pegs.at_m {
+    for [x, y] in &setting.pegs.position_m {
         let [foot, top] = [foot_m, top_m].map(|z| Vector3::new(*x as f32, *y as f32, z));
         mesh.tube([foot, top], [radius_m; 2], 16, PEG);
         mesh.sphere(top, radius_m, 8, PEG);
@@ -109,7 +109,7 @@ pub(super) fn ground(mesh: &mut Mesh, scene: &Scene, shown: &Shown, shadows: &mu
 pub(super) fn jaws(
     mesh: &mut Mesh,
     scene: &Scene,
-    shown: &Shown,
+    shown: &DisplayedObjects,
     side: Side,
     tip_m: &Vector3<f32>,
     shadows: &mut Shadows,

@@ -5,27 +5,40 @@ use nalgebra::Vector3;
 use nima_simulation::scene::Scene;
 
 use super::{
-    Camera,
-    stage::{self, Arm},
+    SceneCamera,
+    stage::{self, StageArm},
 };
 use crate::console::text;
-use crate::words::side_word;
+use crate::report_text::side_word;
 
 /// Distance from the pointer within which an object is hit, points.
 const REACH: f32 = 12.0;
 
 /// Text of the frontmost object under the pointer; `None` if there is none.
-pub(super) fn pick(pointer: Pos2, rect: Rect, camera: &Camera, scene: &Scene, arms: &[Arm]) -> Option<String> {
+pub(super) fn pick(
+    pointer: Pos2,
+    rect: Rect,
+    camera: &SceneCamera,
+    scene: &Scene,
+    arms: &[StageArm],
+) -> Option<String> {
     arms.iter().find_map(|arm| of_arm(pointer, rect, camera, scene, arm, arms.len() > 1)).or_else(|| {
         let place_m = on_tissue(pointer, rect, camera, scene)?;
         Some(text::field::tissue(&place(&place_m)))
     })
 }
 
-fn of_arm(pointer: Pos2, rect: Rect, camera: &Camera, scene: &Scene, arm: &Arm, both: bool) -> Option<String> {
+fn of_arm(
+    pointer: Pos2,
+    rect: Rect,
+    camera: &SceneCamera,
+    scene: &Scene,
+    arm: &StageArm,
+    both: bool,
+) -> Option<String> {
     let at = |point_m: &Vector3<f32>| camera.project(point_m, rect);
     let near = |point_m: &Vector3<f32>| at(point_m).is_some_and(|at| at.distance(pointer) < REACH);
-    let Arm { side, trocar_m, pose, targets_m, .. } = arm;
+    let StageArm { side, trocar_m, pose, targets_m, .. } = arm;
     let whose = if both { text::field::of_hand(side_word(*side)) } else { String::new() };
     let [measured, rendered] = stage::arrow_bases_m(pose, trocar_m, &camera.right());
     for (name, base_m, force_n) in [
@@ -52,8 +65,8 @@ fn of_arm(pointer: Pos2, rect: Rect, camera: &Camera, scene: &Scene, arm: &Arm, 
 }
 
 /// A position in millimetres in the base frame.
-fn place(at_m: &Vector3<f32>) -> String {
-    text::field::place((at_m * 1e3).into())
+fn place(position_m: &Vector3<f32>) -> String {
+    text::field::place((position_m * 1e3).into())
 }
 
 /// Distance from a point to a line segment, points.
@@ -64,7 +77,7 @@ fn distance(point: Pos2, from: Pos2, to: Pos2) -> f32 {
 }
 
 /// Intersection of the ray through the pointer with the tissue's surface at rest, m.
-fn on_tissue(pointer: Pos2, rect: Rect, camera: &Camera, scene: &Scene) -> Option<Vector3<f32>> {
+fn on_tissue(pointer: Pos2, rect: Rect, camera: &SceneCamera, scene: &Scene) -> Option<Vector3<f32>> {
     let tissue = scene.tissue?;
     let place_m = camera.on_level(pointer, rect, tissue.surface_z_m as f32)?;
     let [half_x, half_y] = tissue.size_m.map(|size_m| 0.5 * size_m as f32);
@@ -82,19 +95,19 @@ mod tests {
         Rect::from_min_max(pos2(100.0, 50.0), pos2(1000.0, 650.0))
     }
 
-    fn arm() -> Arm {
-        let pose = stage::Pose {
+    fn arm() -> StageArm {
+        let pose = stage::StagePose {
             tip_m: Vector3::new(0.01, 0.018, -0.004),
             measured_n: Some(Vector3::new(0.5, 0.0, 2.0)),
             rendered_n: Vector3::zeros(),
         };
         let targets_m = vec![Vector3::new(-0.03, 0.02, 0.0)];
-        Arm { side: Side::Right, trocar_m: Vector3::new(0.0, -0.06, 0.14), targets_m, pose, trail_m: vec![] }
+        StageArm { side: Side::Right, trocar_m: Vector3::new(0.0, -0.06, 0.14), targets_m, pose, trail_m: vec![] }
     }
 
     fn at(point_m: &Vector3<f32>) -> Option<String> {
         let scene = Scene::load("peg_transfer").unwrap();
-        let camera = Camera::of(&scene);
+        let camera = SceneCamera::of(&scene);
         pick(camera.project(point_m, view()).unwrap(), view(), &camera, &scene, &[arm()])
     }
 
@@ -105,7 +118,7 @@ mod tests {
         assert!(tip.contains("x 10.0, y 18.0, z -4.0 mm (world)") && tip.contains("4.0 mm below"), "{tip}");
         assert!(at(&arm.targets_m[0]).unwrap().starts_with("Target 1"));
         let scene = Scene::load("peg_transfer").unwrap();
-        let [base_m, _] = stage::arrow_bases_m(&arm.pose, &arm.trocar_m, &Camera::of(&scene).right());
+        let [base_m, _] = stage::arrow_bases_m(&arm.pose, &arm.trocar_m, &SceneCamera::of(&scene).right());
         let force = at(&(base_m + arm.pose.measured_n.unwrap() * 0.5 * stage::ARROW_M_PER_N)).unwrap();
         assert!(force.contains("2.06 N") && force.contains("x +0.50"), "{force}");
         assert!(at(&arm.trocar_m).unwrap().contains("remote centre"));

@@ -1,12 +1,12 @@
 //! The ring that an instrument's jaws would grip or hold: a user who drives by mouse cannot feel it.
 
 use nalgebra::{UnitQuaternion, Vector3};
-use nima_session::objects::Jaws;
-use nima_simulation::physics::Setting;
+use nima_session::objects::JawState;
+use nima_simulation::physics::ObjectSettings;
 
 /// Relation of a ring to the jaws.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Reach {
+pub(super) enum JawReach {
     /// The open jaws are above it: moved straight down, they enclose its rim.
     Above(usize),
     /// Between the open jaws.
@@ -23,12 +23,12 @@ const OPEN_RAD: f64 = 0.4;
 const BESIDE_M: f64 = 0.0015;
 const DEEP_M: std::ops::RangeInclusive<f64> = -0.0005..=0.006;
 /// Maximum component of the rim's direction across the fingers' plane: jaws parallel to a rim close next to it.
-const ALONG_MOST: f64 = 0.5;
+const ALONG_MAX: f64 = 0.5;
 /// Maximum apparent distance of jaws from the rim that they hold, m: ring and jaws are reported some milliseconds after the
 /// tip.
 const HELD_OFF_M: f64 = 0.004;
 
-impl Reach {
+impl JawReach {
     pub(super) const fn ring(self) -> usize {
         match self {
             Self::Above(ring) | Self::Between(ring) | Self::Held(ring) => ring,
@@ -37,10 +37,10 @@ impl Reach {
 
     /// For jaws at this tip (m, `world`), which open along x, among these rings.
     pub(super) fn of(
-        setting: &Setting,
+        setting: &ObjectSettings,
         rings: &[(Vector3<f32>, UnitQuaternion<f32>)],
         tip_m: &Vector3<f64>,
-        jaws: &Jaws,
+        jaws: &JawState,
     ) -> Option<Self> {
         let [touches_ring, ..] = jaws.touched;
         let rims = rings.iter().enumerate().filter_map(|(i, ring)| Some((i, Rim::nearest(setting, ring, tip_m)?)));
@@ -66,7 +66,7 @@ struct Rim {
 
 impl Rim {
     fn nearest(
-        setting: &Setting,
+        setting: &ObjectSettings,
         (middle_m, turn): &(Vector3<f32>, UnitQuaternion<f32>),
         tip_m: &Vector3<f64>,
     ) -> Option<Self> {
@@ -79,10 +79,10 @@ impl Rim {
     }
 
     /// Whether it fits between fingers that are lowered straight down.
-    fn fits(&self, setting: &Setting, opening_rad: f64) -> bool {
+    fn fits(&self, setting: &ObjectSettings, opening_rad: f64) -> bool {
         let inside_m = setting.jaws.finger_length_m * (0.5 * opening_rad).sin();
         let room_m = inside_m - setting.ring.tube_radius_m;
-        self.from_tip_m.x.abs() <= room_m && self.from_tip_m.y.abs() <= BESIDE_M && self.along.x.abs() <= ALONG_MOST
+        self.from_tip_m.x.abs() <= room_m && self.from_tip_m.y.abs() <= BESIDE_M && self.along.x.abs() <= ALONG_MAX
     }
 
     fn off_m(&self) -> f64 {
@@ -95,7 +95,7 @@ impl Rim {
 mod tests {
     use super::*;
 
-    const OPEN: Jaws = Jaws {
+    const OPEN: JawState = JawState {
         opening_rad: 0.6,
         opens_n: 0.0,
         force_n: Vector3::new(0.0, 0.0, 0.0),
@@ -103,31 +103,31 @@ mod tests {
         touched: [false; 4],
     };
 
-    fn reach(tip_m: [f64; 3], jaws: &Jaws) -> Option<Reach> {
-        let setting = Setting::default();
+    fn reach(tip_m: [f64; 3], jaws: &JawState) -> Option<JawReach> {
+        let setting = ObjectSettings::default();
         let flat = UnitQuaternion::identity();
         let rings = [(Vector3::new(-0.019, 0.0, 0.00175), flat), (Vector3::new(-0.045, 0.0, 0.00175), flat)];
-        Reach::of(&setting, &rings, &tip_m.into(), jaws)
+        JawReach::of(&setting, &rings, &tip_m.into(), jaws)
     }
 
     #[test]
     fn open_jaws_reach_a_rim_that_fits_between_them_and_no_other() {
         let rim_m = -0.019 - 0.00725;
-        assert_eq!(reach([rim_m, 0.0, 0.030], &OPEN), Some(Reach::Above(0)));
-        assert_eq!(reach([rim_m, 0.0, 0.001], &OPEN), Some(Reach::Between(0)));
-        assert_eq!(reach([-0.045 + 0.00725, 0.0, 0.001], &OPEN), Some(Reach::Between(1)), "the inner side too");
+        assert_eq!(reach([rim_m, 0.0, 0.030], &OPEN), Some(JawReach::Above(0)));
+        assert_eq!(reach([rim_m, 0.0, 0.001], &OPEN), Some(JawReach::Between(0)));
+        assert_eq!(reach([-0.045 + 0.00725, 0.0, 0.001], &OPEN), Some(JawReach::Between(1)), "the inner side too");
         assert_eq!(reach([rim_m + 0.002, 0.0, 0.030], &OPEN), None, "a finger would come down on it");
         assert_eq!(reach([-0.019, 0.00725, 0.030], &OPEN), None, "there the rim runs from finger to finger");
-        assert_eq!(reach([rim_m, 0.0, 0.030], &Jaws { opening_rad: 0.1, ..OPEN }), None, "closed");
+        assert_eq!(reach([rim_m, 0.0, 0.030], &JawState { opening_rad: 0.1, ..OPEN }), None, "closed");
         assert_eq!(reach([rim_m, 0.0, -0.020], &OPEN), None, "below it");
     }
 
     #[test]
     fn jaws_hold_what_presses_them_apart() {
-        let holds = Jaws { opening_rad: 0.35, opens_n: 2.5, touched: [true, false, false, false], ..OPEN };
+        let holds = JawState { opening_rad: 0.35, opens_n: 2.5, touched: [true, false, false, false], ..OPEN };
         let rim_m = [-0.019 - 0.00725, 0.0, 0.001];
-        assert_eq!(reach(rim_m, &holds), Some(Reach::Held(0)));
-        assert_eq!(reach(rim_m, &Jaws { touched: [false, true, false, false], ..holds }), None, "a peg");
-        assert_eq!(reach(rim_m, &Jaws { opens_n: 0.0, ..holds }), None, "it only touches");
+        assert_eq!(reach(rim_m, &holds), Some(JawReach::Held(0)));
+        assert_eq!(reach(rim_m, &JawState { touched: [false, true, false, false], ..holds }), None, "a peg");
+        assert_eq!(reach(rim_m, &JawState { opens_n: 0.0, ..holds }), None, "it only touches");
     }
 }

@@ -15,7 +15,7 @@ const LAMP: Vector3<f32> = Vector3::new(-0.42, 0.30, 0.857);
 /// Increase of a shadow's half width, and decrease of its core's, per height above the board.
 const BLUR: f32 = 0.035;
 /// Minimum width of the core, as a fraction of the object's width.
-const CORE_LEAST: f32 = 0.35;
+const CORE_MIN: f32 = 0.35;
 /// Height of the edges of shadows and of their cores above the board, m: the core is above all edges.
 const LIFT_M: [f32; 2] = [4e-5, 8e-5];
 /// Brightness of edge and core.
@@ -29,14 +29,14 @@ const CAP: u32 = 12;
 /// Shadows on one board, collected while objects are drawn.
 #[derive(Debug)]
 pub(super) struct Shadows {
-    board: Option<nima_simulation::physics::Board>,
+    board: Option<nima_simulation::physics::BoardSettings>,
     edges: Mesh,
     cores: Mesh,
 }
 
 impl Shadows {
     /// Without a board there are none.
-    pub(super) fn on(board: Option<&nima_simulation::physics::Board>) -> Self {
+    pub(super) fn on(board: Option<&nima_simulation::physics::BoardSettings>) -> Self {
         Self { board: board.copied(), edges: Mesh::default(), cores: Mesh::default() }
     }
 
@@ -50,7 +50,7 @@ impl Shadows {
             let paint = Paint(shaded(BOARD.0, SHADE[layer]), BOARD.1);
             let width_m = |height_m: f32| match layer {
                 0 => radius_m + BLUR * height_m,
-                _ => (radius_m - BLUR * height_m).max(CORE_LEAST * radius_m),
+                _ => (radius_m - BLUR * height_m).max(CORE_MIN * radius_m),
             };
             band(mesh, &fallen, half_m, LIFT_M[layer], width_m, paint);
         }
@@ -58,8 +58,8 @@ impl Shadows {
 
     /// Adds a straight rod.
     pub(super) fn rod(&mut self, from_m: &Vector3<f32>, to_m: &Vector3<f32>, radius_m: f32) {
-        let way_m = to_m - from_m;
-        self.line((0..=ALONG).map(|step| from_m + way_m * (step as f32 / ALONG as f32)), radius_m);
+        let travel_m = to_m - from_m;
+        self.line((0..=ALONG).map(|step| from_m + travel_m * (step as f32 / ALONG as f32)), radius_m);
     }
 
     /// Adds a ring about its own z axis, rotated.
@@ -84,12 +84,12 @@ impl Shadows {
 /// Position of a point's shadow on a plane of this height, m, and height of the point above it.
 fn fallen(point_m: &Vector3<f32>, plane_m: f32) -> Option<(Vector3<f32>, f32)> {
     let height_m = (point_m.z - plane_m).max(0.0);
-    let at_m = point_m - LAMP * (height_m / LAMP.z);
-    at_m.iter().all(|x| x.is_finite()).then_some((Vector3::new(at_m.x, at_m.y, plane_m), height_m))
+    let position_m = point_m - LAMP * (height_m / LAMP.z);
+    position_m.iter().all(|x| x.is_finite()).then_some((Vector3::new(position_m.x, position_m.y, plane_m), height_m))
 }
 
-fn shaded(colour: Color32, share: f32) -> Color32 {
-    let [r, g, b, _] = colour.to_array().map(|part| (f32::from(part) * share).round() as u8);
+fn shaded(colour: Color32, fraction: f32) -> Color32 {
+    let [r, g, b, _] = colour.to_array().map(|part| (f32::from(part) * fraction).round() as u8);
     Color32::from_rgb(r, g, b)
 }
 
@@ -108,8 +108,8 @@ fn band(
     let first = mesh.vertices.len() as u32;
     let mut across = Vector3::x();
     for (i, (point_m, height_m)) in points.iter().enumerate() {
-        let way_m = points[(i + 1).min(points.len() - 1)].0 - points[i.saturating_sub(1)].0;
-        across = Vector3::z().cross(&way_m).try_normalize(1e-7).unwrap_or(across);
+        let travel_m = points[(i + 1).min(points.len() - 1)].0 - points[i.saturating_sub(1)].0;
+        across = Vector3::z().cross(&travel_m).try_normalize(1e-7).unwrap_or(across);
         for side in [-1.0, 1.0] {
             let corner_m = point_m + across * (side * width_m(*height_m));
             let [x, y] = [corner_m.x.clamp(-half_m[0], half_m[0]), corner_m.y.clamp(-half_m[1], half_m[1])];
@@ -123,11 +123,11 @@ fn band(
 }
 
 /// A flat disc, cut off at the edges of the board: the round end of a band.
-fn cap(mesh: &mut Mesh, at_m: &Vector3<f32>, half_m: [f32; 2], lift_m: f32, radius_m: f32, paint: Paint) {
+fn cap(mesh: &mut Mesh, position_m: &Vector3<f32>, half_m: [f32; 2], lift_m: f32, radius_m: f32, paint: Paint) {
     let mut corner = |out: Vector3<f32>| {
-        let corner_m = at_m + out * radius_m;
+        let corner_m = position_m + out * radius_m;
         let [x, y] = [corner_m.x.clamp(-half_m[0], half_m[0]), corner_m.y.clamp(-half_m[1], half_m[1])];
-        mesh.vertex(Vector3::new(x, y, at_m.z + lift_m), Vector3::z(), paint)
+        mesh.vertex(Vector3::new(x, y, position_m.z + lift_m), Vector3::z(), paint)
     };
     let middle = corner(Vector3::zeros());
     for side in 0..=CAP {
@@ -149,7 +149,7 @@ mod tests {
 
     #[test]
     fn a_shadow_falls_away_from_the_lamp_and_never_beyond_the_board() {
-        let board = nima_simulation::physics::Board { z_m: 0.01, size_m: [0.1, 0.1] };
+        let board = nima_simulation::physics::BoardSettings { z_m: 0.01, size_m: [0.1, 0.1] };
         let mut shadows = Shadows::on(Some(&board));
         let foot_m = Vector3::new(0.0, 0.0, 0.01);
         shadows.rod(&foot_m, &(foot_m + Vector3::z() * 0.02), 0.001);
@@ -171,7 +171,7 @@ mod tests {
         let mut shadows = Shadows::on(None);
         shadows.rod(&Vector3::zeros(), &Vector3::z(), 0.001);
         assert!(laid(shadows).vertices.is_empty());
-        let mut shadows = Shadows::on(Some(&nima_simulation::physics::Board::default()));
+        let mut shadows = Shadows::on(Some(&nima_simulation::physics::BoardSettings::default()));
         shadows.line([Vector3::repeat(f32::NAN), Vector3::repeat(f32::INFINITY)], 0.001);
         assert!(laid(shadows).vertices.is_empty());
     }

@@ -7,7 +7,7 @@ use nima_simulation::scene::Scene;
 
 use super::{
     mesh::{Material, Mesh, Paint},
-    objects::{self, Shown},
+    objects::{self, DisplayedObjects},
     shadows::Shadows,
     training,
 };
@@ -16,9 +16,9 @@ use crate::console::theme;
 /// Length of a force arrow, m per N.
 pub const ARROW_M_PER_N: f32 = 0.017;
 /// A smaller force has no arrow, because it would show noise, N.
-const ARROW_LEAST_N: f32 = 0.06;
+const ARROW_MIN_N: f32 = 0.06;
 /// Force at which an arrow reaches its maximum length, N.
-const ARROW_MOST_N: f32 = 8.0;
+const ARROW_MAX_N: f32 = 8.0;
 /// Radius of the instrument's shaft, m (a 5 mm instrument).
 pub const SHAFT_RADIUS_M: f32 = 0.0025;
 /// Width of the dent under a tip, m.
@@ -40,7 +40,7 @@ const TRAIL: Paint = Paint(Color32::from_rgb(0xc8, 0xcf, 0xd8), Material::Plain)
 
 /// Data that change from frame to frame, in the workspace frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pose {
+pub struct StagePose {
     /// Tip of the instrument, m.
     pub tip_m: Vector3<f32>,
     /// Force measured at it, N; `None` while it is unknown.
@@ -52,12 +52,12 @@ pub struct Pose {
 /// Deformation of the surface around a tip.
 #[derive(Clone, Copy, Debug)]
 pub struct Dent {
-    at_m: [f32; 2],
+    position_m: [f32; 2],
     depth_m: f32,
 }
 
 impl Dent {
-    pub const NONE: Self = Self { at_m: [0.0; 2], depth_m: 0.0 };
+    pub const NONE: Self = Self { position_m: [0.0; 2], depth_m: 0.0 };
 
     /// The deformation by a tip in the scene's tissue; none if the tip is next to or above it.
     pub fn new(scene: &Scene, tip_m: &Vector3<f32>) -> Self {
@@ -66,13 +66,13 @@ impl Dent {
             let over = tip_m.x.abs() <= x_m && tip_m.y.abs() <= y_m;
             if over { (tissue.surface_z_m as f32 - tip_m.z).clamp(0.0, SLAB_THICKNESS_M * 0.9) } else { 0.0 }
         });
-        Self { at_m: [tip_m.x, tip_m.y], depth_m }
+        Self { position_m: [tip_m.x, tip_m.y], depth_m }
     }
 
     /// Change of height at a position, m: down under the tip, with a slight bulge around it, as in a soft body of
     /// constant volume.
     pub fn lift_m(&self, x: f32, y: f32) -> f32 {
-        let q = ((x - self.at_m[0]).powi(2) + (y - self.at_m[1]).powi(2)) / (DENT_M * DENT_M);
+        let q = ((x - self.position_m[0]).powi(2) + (y - self.position_m[1]).powi(2)) / (DENT_M * DENT_M);
         // Further away the change is below a micrometre.
         if self.depth_m <= 0.0 || q > 18.0 {
             return 0.0;
@@ -103,19 +103,19 @@ impl Dents {
 
 /// The objects of one arm pair.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Arm {
+pub struct StageArm {
     pub side: Side,
     /// Position of its trocar, m.
     pub trocar_m: Vector3<f32>,
     /// Positions of its targets, m.
     pub targets_m: Vec<Vector3<f32>>,
-    pub pose: Pose,
+    pub pose: StagePose,
     /// Recent positions of its tip, m, oldest first.
     pub trail_m: Vec<Vector3<f32>>,
 }
 
 #[derive(Clone, Copy, Debug)]
-pub struct Style<'a> {
+pub struct SceneStyle<'a> {
     /// Eye position, m.
     pub eye_m: &'a Vector3<f32>,
     /// Direction to the right of the screen.
@@ -126,13 +126,13 @@ pub struct Style<'a> {
     pub shadows: bool,
 }
 
-pub fn build(scene: &Scene, arms: &[Arm], shown: Option<&Shown>, style: Style<'_>) -> Mesh {
-    let Style { eye_m, right, fine, .. } = style;
+pub fn build(scene: &Scene, arms: &[StageArm], shown: Option<&DisplayedObjects>, style: SceneStyle<'_>) -> Mesh {
+    let SceneStyle { eye_m, right, fine, .. } = style;
     let mut shadows = Shadows::on(training::board_of(scene).filter(|_| style.shadows));
     let mut mesh = Mesh { vertices: Vec::with_capacity(12_000), indices: Vec::with_capacity(60_000) };
     let mut dents = Dents([Dent::NONE; SIDES]);
     // Front objects first, so that hidden pixels are not shaded.
-    for Arm { side, trocar_m, pose, .. } in arms {
+    for StageArm { side, trocar_m, pose, .. } in arms {
         let [measured, rendered] = arrow_bases_m(pose, trocar_m, right);
         pose.measured_n.iter().for_each(|force_n| measured_arrow(&mut mesh, measured, force_n));
         rendered_arrow(&mut mesh, rendered, &pose.rendered_n);
@@ -147,7 +147,7 @@ pub fn build(scene: &Scene, arms: &[Arm], shown: Option<&Shown>, style: Style<'_
         shadows.rod(&tool.unwrap_or(pose.tip_m), trocar_m, SHAFT_RADIUS_M);
         dents.0[side.index()] = Dent::new(scene, &pose.tip_m);
     }
-    for Arm { targets_m, trail_m, .. } in arms {
+    for StageArm { targets_m, trail_m, .. } in arms {
         for target_m in targets_m.iter().filter(|_| shown.is_none()) {
             mesh.ring(*target_m, [0.0055, 0.0008], |x, y| dents.lift_m(x, y), TARGET);
         }
@@ -207,8 +207,8 @@ fn tissue(mesh: &mut Mesh, scene: &Scene, dents: &Dents, cells: u32) {
 fn mottled(x: f32, y: f32) -> Color32 {
     let wave = (x * 97.0 + 2.1 * (y * 61.0).sin()).sin() + (y * 83.0 - 2.3 * (x * 53.0).sin() + 1.0).sin();
     let fine = ((x + 0.7 * y) * 271.0 + (y * 190.0).sin()).sin();
-    let share = (0.5 + 0.22 * wave + 0.10 * fine).clamp(0.0, 1.0);
-    TISSUE_DARK.lerp_to_gamma(TISSUE_PALE, share)
+    let fraction = (0.5 + 0.22 * wave + 0.10 * fine).clamp(0.0, 1.0);
+    TISSUE_DARK.lerp_to_gamma(TISSUE_PALE, fraction)
 }
 
 /// Shaft through the trocar, with a blunt tip; its lowest point is the tip position.
@@ -232,7 +232,7 @@ const SHAFT: Paint = Paint(Color32::from_rgb(0x6d, 0x76, 0x82), Material::Metal)
 
 /// Starting points of both arrows: next to the tip, on the side that the shaft does not cover in the operator's view, the
 /// measured force further out, so that equal forces do not overlap.
-pub fn arrow_bases_m(pose: &Pose, trocar_m: &Vector3<f32>, right: &Vector3<f32>) -> [Vector3<f32>; 2] {
+pub fn arrow_bases_m(pose: &StagePose, trocar_m: &Vector3<f32>, right: &Vector3<f32>) -> [Vector3<f32>; 2] {
     let side = if (trocar_m - pose.tip_m).dot(right) > 0.0 { -1.0 } else { 1.0 };
     [0.0135, 0.0060].map(|away| pose.tip_m + right * (side * away) + Vector3::z() * 0.002)
 }
@@ -241,7 +241,7 @@ pub fn arrow_bases_m(pose: &Pose, trocar_m: &Vector3<f32>, right: &Vector3<f32>)
 fn size_and_direction(force_n: &Vector3<f32>) -> Option<(f32, Vector3<f32>)> {
     let size_n = force_n.norm();
     // A force far above the ceiling would otherwise fill the view.
-    (size_n.is_finite() && size_n >= ARROW_LEAST_N).then(|| (size_n.min(ARROW_MOST_N), force_n / size_n))
+    (size_n.is_finite() && size_n >= ARROW_MIN_N).then(|| (size_n.min(ARROW_MAX_N), force_n / size_n))
 }
 
 /// Whether the force is large enough for an arrow.
@@ -285,15 +285,15 @@ mod tests {
 
     const EYE_M: Vector3<f32> = Vector3::new(0.0, -0.3, 0.2);
     const RIGHT: Vector3<f32> = Vector3::new(1.0, 0.0, 0.0);
-    const STYLE: Style<'static> = Style { eye_m: &EYE_M, right: &RIGHT, fine: true, shadows: true };
+    const STYLE: SceneStyle<'static> = SceneStyle { eye_m: &EYE_M, right: &RIGHT, fine: true, shadows: true };
 
-    fn pose(z: f32, force_n: Vector3<f32>) -> Pose {
-        Pose { tip_m: Vector3::new(0.0, 0.018, z), measured_n: Some(force_n), rendered_n: force_n * 0.5 }
+    fn pose(z: f32, force_n: Vector3<f32>) -> StagePose {
+        StagePose { tip_m: Vector3::new(0.0, 0.018, z), measured_n: Some(force_n), rendered_n: force_n * 0.5 }
     }
 
-    fn arm(pose: Pose) -> Arm {
+    fn arm(pose: StagePose) -> StageArm {
         let trocar_m = Vector3::new(0.0, -0.06, 0.14);
-        Arm { side: Side::Right, trocar_m, targets_m: vec![], pose, trail_m: vec![] }
+        StageArm { side: Side::Right, trocar_m, targets_m: vec![], pose, trail_m: vec![] }
     }
 
     #[test]
@@ -311,8 +311,8 @@ mod tests {
     fn both_instruments_stand_on_the_stage() {
         let scene = Scene::load("free_motion").unwrap();
         let one = arm(pose(0.01, Vector3::z()));
-        let other = Arm { side: Side::Left, ..one.clone() };
-        let corners = |arms: &[Arm]| build(&scene, arms, None, STYLE).vertices.len();
+        let other = StageArm { side: Side::Left, ..one.clone() };
+        let corners = |arms: &[StageArm]| build(&scene, arms, None, STYLE).vertices.len();
         assert_eq!(corners(&[one.clone(), other]), 2 * corners(&[one]));
     }
 
@@ -335,7 +335,7 @@ mod tests {
         let size = |scene: &Scene, force_n| build(scene, &[arm(pose(0.01, force_n))], None, STYLE).vertices.len();
         assert!(size(&full, Vector3::zeros()) > size(&bare, Vector3::zeros()) + 4000);
         assert!(size(&bare, Vector3::z()) > size(&bare, Vector3::z() * 0.01));
-        let coarse = Style { fine: false, ..STYLE };
+        let coarse = SceneStyle { fine: false, ..STYLE };
         let coarse = build(&full, &[arm(pose(0.01, Vector3::zeros()))], None, coarse);
         assert!(2 * coarse.vertices.len() < 2 * 1000 + size(&full, Vector3::zeros()));
     }

@@ -8,12 +8,12 @@ use nima_simulation::{Training, scene::Scene};
 
 use super::{
     mesh::{Material, Mesh, Paint},
-    objects::{self, Shown},
-    reach::Reach,
+    objects::{self, DisplayedObjects},
+    reach::JawReach,
     shadows::Shadows,
     side_name,
 };
-use crate::console::{live::Live, text, theme};
+use crate::console::{live::LiveState, text, theme};
 
 const WIRE: Paint = Paint(Color32::from_rgb(0xa9, 0xbd, 0xcc), Material::Metal);
 const LOOP: Paint = Paint(Color32::from_rgb(0xd8, 0xdd, 0xe2), Material::Metal);
@@ -52,8 +52,8 @@ pub(super) fn wire(mesh: &mut Mesh, scene: &Scene, shadows: &mut Shadows) {
     mesh.sphere(points_m[0], 1.4 * radius_m, 8, ENDS);
     let goal_m = curve.given_m(setting.goal_point);
     for band in 0..3 {
-        let at_m = goal_m + 0.003 * f64::from(band);
-        let ends = [at_m, at_m + 0.0012].map(|along_m| curve.at(along_m).cast());
+        let position_m = goal_m + 0.003 * f64::from(band);
+        let ends = [position_m, position_m + 0.0012].map(|along_m| curve.at(along_m).cast());
         mesh.tube(ends, [1.9 * radius_m; 2], 14, ENDS);
     }
     shadows.line(points_m, radius_m);
@@ -63,7 +63,7 @@ pub(super) fn wire(mesh: &mut Mesh, scene: &Scene, shadows: &mut Shadows) {
 pub(super) fn hoop(
     mesh: &mut Mesh,
     scene: &Scene,
-    shown: &Shown,
+    shown: &DisplayedObjects,
     (side, tip_m, trocar_m): (Side, &Vector3<f32>, &Vector3<f32>),
     shadows: &mut Shadows,
 ) -> Option<Vector3<f32>> {
@@ -82,9 +82,9 @@ pub(super) fn hoop(
 }
 
 /// Pins at the operator's marks; after the trial also the lumps, and false marks look different.
-pub(super) fn marks(mesh: &mut Mesh, scene: &Scene, shown: &Shown, lift_m: impl Fn(f32, f32) -> f32) {
-    for (at_m, is_true) in &shown.marks {
-        let foot_m = at_m + Vector3::z() * lift_m(at_m.x, at_m.y);
+pub(super) fn marks(mesh: &mut Mesh, scene: &Scene, shown: &DisplayedObjects, lift_m: impl Fn(f32, f32) -> f32) {
+    for (position_m, is_true) in &shown.marks {
+        let foot_m = position_m + Vector3::z() * lift_m(position_m.x, position_m.y);
         let head_m = foot_m + Vector3::z() * PIN_M;
         mesh.tube([foot_m, head_m], [0.0004; 2], 8, PIN);
         if shown.ended && !is_true {
@@ -95,9 +95,9 @@ pub(super) fn marks(mesh: &mut Mesh, scene: &Scene, shown: &Shown, lift_m: impl 
     }
     let Some((lumps, tissue)) = scene.placed_lumps().zip(scene.tissue).filter(|_| shown.ended) else { return };
     for lump in &lumps.list {
-        let [x, y] = lump.at_m.map(|m| m as f32);
-        let at_m = Vector3::new(x, y, tissue.surface_z_m as f32);
-        mesh.ring(at_m, [lump.radius_m as f32, 0.0007], &lift_m, LUMP);
+        let [x, y] = lump.position_m.map(|m| m as f32);
+        let position_m = Vector3::new(x, y, tissue.surface_z_m as f32);
+        mesh.ring(position_m, [lump.radius_m as f32, 0.0007], &lift_m, LUMP);
     }
 }
 
@@ -109,13 +109,13 @@ pub(super) fn board(mesh: &mut Mesh, scene: &Scene) {
 }
 
 /// The board of a scene.
-pub(super) fn board_of(scene: &Scene) -> Option<&nima_simulation::physics::Board> {
+pub(super) fn board_of(scene: &Scene) -> Option<&nima_simulation::physics::BoardSettings> {
     let under_pegs = scene.objects.as_ref().map(|setting| &setting.board);
     under_pegs.or_else(|| scene.wire.as_ref().map(|setting| &setting.board))
 }
 
 /// Progress of the trial as text, and the ring in reach of the driven instrument; `None` in a scene where it is unknown.
-pub(super) fn told(live: &Live, led: Option<Side>, reach: Option<Reach>) -> Option<String> {
+pub(super) fn report(live: &LiveState, led: Option<Side>, reach: Option<JawReach>) -> Option<String> {
     let training = live.training.as_ref()?;
     let is_led = led.is_some();
     if live.scene.objects.is_some() {
@@ -124,7 +124,7 @@ pub(super) fn told(live: &Live, led: Option<Side>, reach: Option<Reach>) -> Opti
         return Some(text::training::rings(jaws.as_deref(), [*passed, *placed, *dropped], training.ended));
     }
     if live.scene.wire.is_some() {
-        return Some(text::training::wire(training.touches, training.share, training.ended, is_led));
+        return Some(text::training::wire(training.touches, training.fraction, training.ended, is_led));
     }
     let lumps = live.scene.task.as_ref().filter(|_| live.scene.is_searched())?.lumps.unwrap_or(0);
     let mark_false = training.marks.iter().flatten().filter(|mark| !mark.is_true).count() as u32;
@@ -139,17 +139,17 @@ pub(super) fn told(live: &Live, led: Option<Side>, reach: Option<Reach>) -> Opti
 const LONG_S: f64 = 0.01;
 
 /// Whether the rings will end in a fault in the current mode.
-pub(super) fn needs_another_mode(live: &Live) -> bool {
+pub(super) fn needs_another_mode(live: &LiveState) -> bool {
     let carries_force = matches!(live.mode(), Mode::Best | Mode::Anchored);
     let shares_rings = live.scene.objects.is_some() && live.is_bimanual();
     shares_rings && carries_force && live.delay_s() > LONG_S && !live.is_shown_only()
 }
 
-fn name_of(reach: Reach) -> &'static str {
+fn name_of(reach: JawReach) -> &'static str {
     match reach {
-        Reach::Above(_) => text::training::JAWS_ABOVE.get(),
-        Reach::Between(_) => text::training::JAWS_AROUND.get(),
-        Reach::Held(_) => text::training::JAWS_HOLD.get(),
+        JawReach::Above(_) => text::training::JAWS_ABOVE.get(),
+        JawReach::Between(_) => text::training::JAWS_AROUND.get(),
+        JawReach::Held(_) => text::training::JAWS_HOLD.get(),
     }
 }
 
@@ -171,12 +171,12 @@ pub(super) fn line_ui(ui: &mut Ui, rect: Rect, words: Option<String>, readings: 
 #[cfg(test)]
 mod tests {
     use nima_machine::config::RigConfig;
-    use nima_simulation::{LoopSeen, MARKS_MAX, Mark};
+    use nima_simulation::{LoopObservation, MARKS_MAX, PlaceMark};
 
     use super::*;
 
-    fn live(scene: &str, training: &Training) -> Live {
-        let mut live = Live::new(RigConfig::load("simulated").unwrap(), Scene::load(scene).unwrap());
+    fn live(scene: &str, training: &Training) -> LiveState {
+        let mut live = LiveState::new(RigConfig::load("simulated").unwrap(), Scene::load(scene).unwrap());
         live.training = Some(*training);
         live
     }
@@ -184,14 +184,14 @@ mod tests {
     fn marked(ended: bool) -> Training {
         let mut marks = [None; MARKS_MAX];
         for (mark, is_true) in marks.iter_mut().zip([true, false, false]) {
-            *mark = Some(Mark { at_m: Vector3::new(0.01, 0.0, 0.0), is_true });
+            *mark = Some(PlaceMark { position_m: Vector3::new(0.01, 0.0, 0.0), is_true });
         }
         Training { ended, marks, marked: 3, found: 1, ..Training::default() }
     }
 
-    fn vertices(live: &Live) -> usize {
+    fn vertices(live: &LiveState) -> usize {
         let mut mesh = Mesh::default();
-        marks(&mut mesh, &live.scene, &Shown::of(live, None).unwrap(), |_, _| 0.0);
+        marks(&mut mesh, &live.scene, &DisplayedObjects::of(live, None).unwrap(), |_, _| 0.0);
         mesh.vertices.len()
     }
 
@@ -205,25 +205,25 @@ mod tests {
         let wrong = live("find_lumps", &wrong);
         assert_eq!(vertices(&during), vertices(&wrong), "a true mark looks as a false one does");
         let led = Some(Side::Right);
-        assert_eq!(told(&during, led, None), told(&wrong, led, None));
+        assert_eq!(report(&during, led, None), report(&wrong, led, None));
         assert!(vertices(&after) > vertices(&during) + 1000, "the lumps");
-        assert_eq!(told(&after, None, None).unwrap(), "Lumps found: 1 of 5, false marks: 2");
-        assert_eq!(told(&live("lumps", &marked(true)), None, None), None, "nobody looks for them");
+        assert_eq!(report(&after, None, None).unwrap(), "Lumps found: 1 of 5, false marks: 2");
+        assert_eq!(report(&live("lumps", &marked(true)), None, None), None, "nobody looks for them");
     }
 
     #[test]
     fn what_jaws_hold_is_told_with_what_was_counted() {
         let training = Training { passed: 3, placed: 2, dropped: 1, ..Training::default() };
-        let told = |training: &Training, led, reach| told(&live("rings", training), led, reach).unwrap();
+        let report = |training: &Training, led, reach| report(&live("rings", training), led, reach).unwrap();
         let counted = "passed 3, placed 2, dropped 1";
-        assert_eq!(told(&training, None, None), format!("Rings: {counted}"));
-        let left = |reach| told(&training, Some(Side::Left), reach);
+        assert_eq!(report(&training, None, None), format!("Rings: {counted}"));
+        let left = |reach| report(&training, Some(Side::Left), reach);
         assert_eq!(left(None), format!("Left instrument. Rings: {counted}"));
-        assert_eq!(left(Some(Reach::Held(4))), format!("Left instrument holds a ring. Rings: {counted}"));
-        assert_eq!(left(Some(Reach::Above(4))), format!("Left instrument above a ring. Rings: {counted}"));
-        assert_eq!(left(Some(Reach::Between(4))), format!("Left instrument around a ring. Rings: {counted}"));
+        assert_eq!(left(Some(JawReach::Held(4))), format!("Left instrument holds a ring. Rings: {counted}"));
+        assert_eq!(left(Some(JawReach::Above(4))), format!("Left instrument above a ring. Rings: {counted}"));
+        assert_eq!(left(Some(JawReach::Between(4))), format!("Left instrument around a ring. Rings: {counted}"));
         let done = Training { passed: 12, placed: 12, ended: true, ..Training::default() };
-        assert_eq!(told(&done, None, None), "Task done. Rings: passed 12, placed 12, dropped 0");
+        assert_eq!(report(&done, None, None), "Task done. Rings: passed 12, placed 12, dropped 0");
     }
 
     #[test]
@@ -232,7 +232,7 @@ mod tests {
             let mut rig = RigConfig::load("simulated").unwrap();
             rig.mode = mode;
             rig.delay_s = delay_s;
-            needs_another_mode(&Live::new(rig, Scene::load(scene).unwrap()))
+            needs_another_mode(&LiveState::new(rig, Scene::load(scene).unwrap()))
         };
         assert!(needs("rings", Mode::Best, 0.05) && needs("rings", Mode::Anchored, 0.05));
         assert!(!needs("rings", Mode::Matched, 0.05) && !needs("rings", Mode::Best, 0.0));
@@ -242,11 +242,11 @@ mod tests {
     #[test]
     fn a_loop_hangs_on_its_shaft_and_shows_that_it_touches() {
         let mut training = Training::default();
-        training.loops[Side::Right.index()] = LoopSeen { touches: true, on_wire: true };
+        training.loops[Side::Right.index()] = LoopObservation { touches: true, on_wire: true };
         let of = |training: &Training| {
             let live = live("wire", training);
             let mut mesh = Mesh::default();
-            let shown = Shown::of(&live, None).unwrap();
+            let shown = DisplayedObjects::of(&live, None).unwrap();
             let tip_m = Vector3::new(0.0, 0.0, 0.03);
             let trocar_m = Vector3::new(0.0, -0.06, 0.14);
             let mut shadows = Shadows::on(board_of(&live.scene));

@@ -85,8 +85,8 @@ mod tests {
     fn the_disc_fills_the_height_of_a_wide_view_and_the_width_of_a_narrow_one() {
         for size in [vec2(1600.0, 700.0), vec2(300.0, 900.0)] {
             let [clear, dark] = radii(Rect::from_min_size(Pos2::ZERO, size));
-            let least = size.x.min(size.y);
-            assert!(clear < dark && clear > 0.5 * least && dark < 0.7 * least, "{size:?}: {clear} {dark}");
+            let min = size.x.min(size.y);
+            assert!(clear < dark && clear > 0.5 * min && dark < 0.7 * min, "{size:?}: {clear} {dark}");
             let rect = Rect::from_min_size(pos2(13.0, 7.0), size);
             let part = part_of(rect);
             assert!(rect.contains_rect(part) && (part.height() - size.y).abs() < 1e-6, "{part}");

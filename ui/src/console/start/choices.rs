@@ -13,14 +13,14 @@ use crate::{console::text, extras};
 
 /// A rig and a scene, by name or path.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Choice {
+pub struct RigChoice {
     /// Name of an embedded rig, or the path of a file.
     pub rig: String,
     /// Name of a built-in scene, or the path of a file.
     pub scene: String,
 }
 
-impl Default for Choice {
+impl Default for RigChoice {
     fn default() -> Self {
         Self { rig: "simulated".to_owned(), scene: "peg_transfer".to_owned() }
     }
@@ -37,7 +37,7 @@ pub(crate) fn drawn_anew(scene: Scene) -> Scene {
 /// Number of choices that are remembered.
 const RECENT_MAX: usize = 5;
 
-impl Choice {
+impl RigChoice {
     /// Selects another rig. The scene stays, unless it was specific to the previous rig.
     pub(super) fn with_rig(&self, rig: &str) -> Self {
         let default = |rig: &str| RigConfig::load(rig).map(|rig| Scene::default_for(&rig)).ok();
@@ -56,8 +56,8 @@ impl Choice {
 
 /// One entry of a list.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Entry {
-    /// Name or path, as in [`Choice`].
+pub(super) struct ChoiceEntry {
+    /// Name or path, as in [`RigChoice`].
     pub(super) key: String,
     pub(super) name: String,
     pub(super) about: String,
@@ -69,14 +69,14 @@ pub(super) struct Entry {
 /// Both lists, as last read.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Lists {
-    pub(super) rigs: Vec<Entry>,
-    pub(super) scenes: Vec<Entry>,
+    pub(super) rigs: Vec<ChoiceEntry>,
+    pub(super) scenes: Vec<ChoiceEntry>,
 }
 
 impl Lists {
     /// Reads the user's files in `folder` in addition to the built-in ones. Files of these choices are listed too, wherever
     /// they are.
-    pub(super) fn read(folder: Option<&Path>, used: &[Choice]) -> Self {
+    pub(super) fn read(folder: Option<&Path>, used: &[RigChoice]) -> Self {
         let rigs = keys(
             RigConfig::names().filter(|name| extras::emulates() || !is_emulated(name)),
             folder.map(|folder| folder.join("rigs")).as_deref(),
@@ -116,29 +116,29 @@ fn keys<'a>(
     keys
 }
 
-fn rig((key, own): (String, bool)) -> Entry {
+fn rig((key, own): (String, bool)) -> ChoiceEntry {
     match RigConfig::load(&key) {
         Ok(rig) => {
             let about = rig.devices.as_ref().map_or_else(
                 || if rig.has_real_hand() { text::start::LED.get() } else { text::start::SIMULATED.get() }.to_owned(),
                 |devices| text::start::of_devices(rig.probes().len(), devices.emulated),
             );
-            Entry { key, name: rig.name, about, usable: true, own }
+            ChoiceEntry { key, name: rig.name, about, usable: true, own }
         }
         Err(error) => unusable(key, &error, own),
     }
 }
 
-fn scene((key, own): (String, bool)) -> Entry {
+fn scene((key, own): (String, bool)) -> ChoiceEntry {
     match Scene::load(&key) {
-        Ok(scene) => Entry { key, name: scene.name, about: scene.description, usable: true, own },
+        Ok(scene) => ChoiceEntry { key, name: scene.name, about: scene.description, usable: true, own },
         Err(error) => unusable(key, &error, own),
     }
 }
 
-fn unusable(key: String, error: &dyn std::error::Error, own: bool) -> Entry {
+fn unusable(key: String, error: &dyn std::error::Error, own: bool) -> ChoiceEntry {
     let about = text::start::unusable(&crate::console::chain(error));
-    Entry { name: key.clone(), key, about, usable: false, own }
+    ChoiceEntry { name: key.clone(), key, about, usable: false, own }
 }
 
 #[cfg(test)]
@@ -147,8 +147,8 @@ mod tests {
 
     use super::*;
 
-    fn choice(rig: &str) -> Choice {
-        Choice { rig: rig.to_owned(), scene: "bimanual".to_owned() }
+    fn choice(rig: &str) -> RigChoice {
+        RigChoice { rig: rig.to_owned(), scene: "bimanual".to_owned() }
     }
 
     #[test]
@@ -162,11 +162,11 @@ mod tests {
 
     #[test]
     fn another_rig_brings_its_own_scene_unless_one_was_chosen() {
-        let first = Choice::default();
+        let first = RigChoice::default();
         let two_arms = first.with_rig("emulated");
-        assert_eq!(two_arms, Choice { rig: "emulated".to_owned(), scene: "bimanual".to_owned() });
+        assert_eq!(two_arms, RigChoice { rig: "emulated".to_owned(), scene: "bimanual".to_owned() });
         assert_eq!(two_arms.with_rig("simulated"), first);
-        let chosen = Choice { scene: "palpation".to_owned(), ..first };
+        let chosen = RigChoice { scene: "palpation".to_owned(), ..first };
         assert_eq!(chosen.with_rig("emulated").scene, "palpation");
     }
 

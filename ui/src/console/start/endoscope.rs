@@ -8,11 +8,11 @@ use std::{
 
 use egui::{Button, Context, Label, TextEdit, Ui, vec2};
 use nima_core::calibration::frames::RigChange;
-use nima_endoscope::{Address, Feed, Look, Picture, Standing};
-use nima_machine::config::{Endoscope, RigConfig, change_rig};
+use nima_endoscope::{Address, DecodedImage, EndoscopeFeed, FeedSnapshot, FrameHealth};
+use nima_machine::config::{EndoscopeConfig, RigConfig, change_rig};
 
 use super::{answer_ui, trouble_ui};
-use crate::console::{chain, double_buffer::DoubleBuffer, eyes::wrong_told, text, widgets::small};
+use crate::console::{chain, double_buffer::DoubleBuffer, endoscope_view::fault_text, text, widgets::small};
 
 /// Delay between the last key press and the test of an address.
 const TYPED: Duration = Duration::from_millis(500);
@@ -25,19 +25,19 @@ const TABLE: &str = "endoscope";
 #[derive(Default)]
 pub(super) struct EndoscopeCard {
     /// Endoscope in the file of the chosen rig.
-    of_rig: Option<Endoscope>,
+    of_rig: Option<EndoscopeConfig>,
     typed: String,
     /// Time of the last key press, if the address was not tried yet.
     typed_at: Option<Instant>,
-    tried: Option<Tried>,
+    tried: Option<AddressResult>,
     preview: DoubleBuffer,
     number: u64,
 }
 
 /// Result of an address.
-enum Tried {
+enum AddressResult {
     /// Open, or being opened.
-    Feed(Feed),
+    Feed(EndoscopeFeed),
     /// Reason why it cannot be used.
     Refused(String),
 }
@@ -79,9 +79,9 @@ impl EndoscopeCard {
         }
         let address = self.typed.trim().to_owned();
         match running.filter(|(url, _)| *url == address) {
-            Some((_, [told, cure])) => {
+            Some((_, [report, cure])) => {
                 self.close();
-                outcome_ui(ui, told, cure);
+                outcome_ui(ui, report, cure);
             }
             None if address.is_empty() => {
                 self.close();
@@ -116,44 +116,44 @@ impl EndoscopeCard {
         let wakes = ctx.clone();
         let parsed = address.parse::<Address>().map_err(|error| error.to_string());
         let feed = parsed.and_then(|address| {
-            Feed::start(address, None, move || wakes.request_repaint()).map_err(|error| error.to_string())
+            EndoscopeFeed::start(address, None, move || wakes.request_repaint()).map_err(|error| error.to_string())
         });
-        self.tried = Some(feed.map_or_else(Tried::Refused, Tried::Feed));
+        self.tried = Some(feed.map_or_else(AddressResult::Refused, AddressResult::Feed));
     }
 
     fn tried_ui(&mut self, ui: &mut Ui, width: f32) {
         let look = match &self.tried {
             None => return drop(ui.label(small(text::start::ENDOSCOPE_TYPING.get()))),
-            Some(Tried::Refused(why)) => {
-                return outcome_ui(ui, &text::eyes::refused(why), text::start::ENDOSCOPE_FORMS.get());
+            Some(AddressResult::Refused(why)) => {
+                return outcome_ui(ui, &text::endoscope_view::refused(why), text::start::ENDOSCOPE_FORMS.get());
             }
-            Some(Tried::Feed(feed)) => feed.look(Instant::now()),
+            Some(AddressResult::Feed(feed)) => feed.look(Instant::now()),
         };
         match &look.standing {
-            Standing::Opening => drop(ui.label(small(text::start::ENDOSCOPE_OPENING.get()))),
-            Standing::Live | Standing::Still => {
-                let size_px = look.picture.as_ref().map_or([0; 2], |(_, picture)| picture.size_px);
-                let rate_hz = (look.standing == Standing::Live).then_some(look.rate_hz);
+            FrameHealth::Opening => drop(ui.label(small(text::start::ENDOSCOPE_OPENING.get()))),
+            FrameHealth::Live | FrameHealth::Still => {
+                let size_px = look.image.as_ref().map_or([0; 2], |(_, image)| image.size_px);
+                let rate_hz = (look.standing == FrameHealth::Live).then_some(look.rate_hz);
                 answer_ui(ui, true, &text::start::endoscope_sends(size_px, rate_hz));
             }
-            Standing::Wrong(wrong) => {
-                let [told, cure] = wrong_told(wrong);
-                outcome_ui(ui, &told, &cure);
+            FrameHealth::Wrong(wrong) => {
+                let [report, cure] = fault_text(wrong);
+                outcome_ui(ui, &report, &cure);
             }
-            Standing::Lost(trouble) => outcome_ui(ui, &trouble.to_string(), trouble.cure()),
+            FrameHealth::Lost(trouble) => outcome_ui(ui, &trouble.to_string(), trouble.cure()),
         }
         self.preview_ui(ui, &look, width);
     }
 
     /// A small preview of the image.
-    fn preview_ui(&mut self, ui: &mut Ui, look: &Look<Arc<Picture>>, width: f32) {
-        let Some((number, picture)) = &look.picture else { return };
+    fn preview_ui(&mut self, ui: &mut Ui, look: &FeedSnapshot<Arc<DecodedImage>>, width: f32) {
+        let Some((number, image)) = &look.image else { return };
         if self.preview.id().is_none() || self.number != *number {
-            self.preview.upload(ui.ctx(), "tried", picture);
+            self.preview.upload(ui.ctx(), "tried", image);
             self.number = *number;
         }
         let Some(texture) = self.preview.id() else { return };
-        let [columns, rows] = picture.size_px.map(|side| side.max(1) as f32);
+        let [columns, rows] = image.size_px.map(|side| side.max(1) as f32);
         ui.add(egui::Image::new((texture, vec2(width, width * rows / columns))));
     }
 
@@ -174,11 +174,11 @@ impl EndoscopeCard {
 }
 
 /// Problem and remedy; only a state if there is no problem.
-fn outcome_ui(ui: &mut Ui, told: &str, cure: &str) {
+fn outcome_ui(ui: &mut Ui, report: &str, cure: &str) {
     if cure.is_empty() {
-        answer_ui(ui, true, told);
+        answer_ui(ui, true, report);
     } else {
-        trouble_ui(ui, text::start::ENDOSCOPE.get(), told, cure);
+        trouble_ui(ui, text::start::ENDOSCOPE.get(), report, cure);
     }
 }
 
@@ -199,7 +199,7 @@ mod tests {
         let url = "http://192.168.10.7:8080/a \"b\"";
         let path = card("simulated", url).write("simulated", Some(folder.path())).unwrap();
         let rig = RigConfig::load(&path).unwrap();
-        assert_eq!(rig.endoscope, Some(Endoscope { url: url.to_owned(), ..Endoscope::default() }));
+        assert_eq!(rig.endoscope, Some(EndoscopeConfig { url: url.to_owned(), ..EndoscopeConfig::default() }));
         assert_eq!(RigConfig::load("simulated").unwrap().endoscope, None, "what is built in stays");
         // Other settings of the endoscope stay with a new address.
         let text = std::fs::read_to_string(&path).unwrap();

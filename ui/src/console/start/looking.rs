@@ -8,7 +8,7 @@ use std::{
 
 use crate::language;
 use egui::Context;
-use nima_devices::discovery::{Diagnosis, Plugged, TIMEOUT, diagnose};
+use nima_devices::discovery::{DiscoveryDiagnosis, PluggedDevices, TIMEOUT, diagnose};
 use nima_machine::config::RigConfig;
 
 /// Interval of the search for connected devices.
@@ -16,18 +16,18 @@ const AGAIN: Duration = Duration::from_secs(2);
 
 /// Work on a separate thread, and its last result.
 #[derive(Debug)]
-pub(crate) struct Looked<T> {
+pub(crate) struct BackgroundQuery<T> {
     running: Option<Receiver<T>>,
     found: Option<T>,
 }
 
-impl<T> Default for Looked<T> {
+impl<T> Default for BackgroundQuery<T> {
     fn default() -> Self {
         Self { running: None, found: None }
     }
 }
 
-impl<T: Send + 'static> Looked<T> {
+impl<T: Send + 'static> BackgroundQuery<T> {
     /// Starts the work; the window is woken when there is a result. Does nothing while work is in progress.
     pub(crate) fn begin(&mut self, ctx: &Context, work: impl FnOnce() -> T + Send + 'static) {
         if self.running.is_some() {
@@ -65,16 +65,16 @@ impl<T: Send + 'static> Looked<T> {
 /// Devices connected to this computer.
 #[derive(Debug, Default)]
 pub(super) struct PluggedIn {
-    looked: Looked<Plugged>,
+    looked: BackgroundQuery<PluggedDevices>,
     at: Option<Instant>,
 }
 
 impl PluggedIn {
     /// At most some seconds old; `None` before the first result.
-    pub(super) fn now(&mut self, ctx: &Context) -> Option<&Plugged> {
+    pub(super) fn now(&mut self, ctx: &Context) -> Option<&PluggedDevices> {
         if self.at.is_none_or(|at| at.elapsed() > AGAIN) {
             self.at = Some(Instant::now());
-            self.looked.begin(ctx, Plugged::list);
+            self.looked.begin(ctx, PluggedDevices::list);
         }
         ctx.request_repaint_after(AGAIN);
         self.looked.found()
@@ -82,9 +82,9 @@ impl PluggedIn {
 }
 
 /// Responses of a rig's devices.
-pub(super) type Answers = Looked<Vec<Diagnosis>>;
+pub(super) type DeviceAnswers = BackgroundQuery<Vec<DiscoveryDiagnosis>>;
 
-impl Answers {
+impl DeviceAnswers {
     /// Opens every device of the rig briefly.
     pub(super) fn check(&mut self, ctx: &Context, rig: &RigConfig) {
         let probes = rig.probes();

@@ -9,20 +9,20 @@ mod welcome;
 use std::path::{Path, PathBuf};
 
 use egui::{Align, Button, CentralPanel, Frame, Label, Layout, Margin, RichText, ScrollArea, TextEdit, Ui, vec2};
-use nima_devices::discovery::{Diagnosis, Found, Outcome, Plugged};
+use nima_devices::discovery::{DiscoveryDiagnosis, FoundDevice, PluggedDevices, TestOutcome};
 use nima_machine::{config::RigConfig, messages::LoopState};
 
-pub use choices::Choice;
+pub use choices::RigChoice;
 pub(crate) use choices::drawn_anew;
-use choices::{Entry, Lists};
+use choices::{ChoiceEntry, Lists};
 use endoscope::EndoscopeCard;
-pub(crate) use looking::Looked;
-use looking::{Answers, PluggedIn};
-pub(in crate::console) use welcome::Way;
+pub(crate) use looking::BackgroundQuery;
+use looking::{DeviceAnswers, PluggedIn};
 use welcome::Welcome;
+pub(in crate::console) use welcome::WelcomeChoice;
 
 use super::{
-    live::Live,
+    live::LiveState,
     picking::Picking,
     text, theme,
     widgets::{Sign, card, next_button, sign_ui, small, weak},
@@ -38,15 +38,15 @@ pub struct StartPage {
     pub(super) wants_page: bool,
     /// The page for newcomers.
     pub(super) welcome: Welcome,
-    chosen: Choice,
+    chosen: RigChoice,
     folder: Option<PathBuf>,
     lists: Lists,
     /// The chosen rig, as long as its file is unchanged since then.
     rig: Option<RigConfig>,
     new_name: String,
-    told: Option<String>,
+    report: Option<String>,
     plugged: PluggedIn,
-    answers: Answers,
+    answers: DeviceAnswers,
     endoscope: EndoscopeCard,
     /// The chosen rig's file may have changed.
     is_stale: bool,
@@ -54,21 +54,21 @@ pub struct StartPage {
 }
 
 /// Input for drawing the page.
-pub(super) struct Now<'a> {
-    pub(super) live: &'a Live,
+pub(super) struct StartInputs<'a> {
+    pub(super) live: &'a LiveState,
     /// The running rig and scene.
-    pub(super) running: &'a Choice,
-    pub(super) recent: &'a [Choice],
+    pub(super) running: &'a RigChoice,
+    pub(super) recent: &'a [RigChoice],
     /// A rig is being started.
     pub(super) is_starting: bool,
     /// State of the running rig's endoscope, and remedy.
-    pub(super) picture: Option<[String; 2]>,
+    pub(super) image: Option<[String; 2]>,
     /// Name and purpose of the page of an extra.
     pub(super) page: Option<[&'static str; 2]>,
 }
 
 impl StartPage {
-    pub(super) fn new(chosen: Choice) -> Self {
+    pub(super) fn new(chosen: RigChoice) -> Self {
         Self {
             is_open: false,
             wants_page: false,
@@ -78,9 +78,9 @@ impl StartPage {
             lists: Lists::default(),
             rig: None,
             new_name: String::new(),
-            told: None,
+            report: None,
             plugged: PluggedIn::default(),
-            answers: Answers::default(),
+            answers: DeviceAnswers::default(),
             endoscope: EndoscopeCard::default(),
             is_stale: true,
             picking: None,
@@ -88,33 +88,33 @@ impl StartPage {
     }
 
     /// Shows the page and reads everything again; the running rig is selected.
-    pub(super) fn open(&mut self, running: &Choice, recent: &[Choice]) {
+    pub(super) fn open(&mut self, running: &RigChoice, recent: &[RigChoice]) {
         self.is_open = true;
-        self.told = None;
+        self.report = None;
         self.is_stale = true;
         self.read(running, recent);
         self.choose(running.clone());
     }
 
     /// Shows this text below the button.
-    pub(super) fn tell(&mut self, told: Option<String>) {
-        self.told = told;
+    pub(super) fn notify(&mut self, report: Option<String>) {
+        self.report = report;
     }
 
-    pub(super) fn told(&self) -> Option<&str> {
-        self.told.as_deref()
+    pub(super) fn report(&self) -> Option<&str> {
+        self.report.as_deref()
     }
 
     pub(super) fn set_folder(&mut self, folder: Option<&Path>) {
         self.folder = folder.map(Path::to_path_buf);
     }
 
-    fn read(&mut self, running: &Choice, recent: &[Choice]) {
+    fn read(&mut self, running: &RigChoice, recent: &[RigChoice]) {
         let used: Vec<_> = recent.iter().chain([running]).cloned().collect();
         self.lists = Lists::read(self.folder.as_deref(), &used);
     }
 
-    fn choose(&mut self, choice: Choice) {
+    fn choose(&mut self, choice: RigChoice) {
         if choice.rig != self.chosen.rig || self.is_stale {
             self.answers.forget();
             let rig = RigConfig::load(&choice.rig).ok();
@@ -126,7 +126,7 @@ impl StartPage {
     }
 
     /// Draws the page; returns the choice to start.
-    pub(super) fn ui(&mut self, ui: &mut Ui, now: &Now<'_>) -> Option<Choice> {
+    pub(super) fn ui(&mut self, ui: &mut Ui, now: &StartInputs<'_>) -> Option<RigChoice> {
         let mut start = None;
         let frame = Frame::new().inner_margin(Margin::symmetric(14, 12));
         CentralPanel::default().frame(frame).show(ui, |ui| {
@@ -144,7 +144,7 @@ impl StartPage {
         start
     }
 
-    fn rigs_ui(&mut self, ui: &mut Ui, now: &Now<'_>) {
+    fn rigs_ui(&mut self, ui: &mut Ui, now: &StartInputs<'_>) {
         let mut chosen = None;
         card(ui, text::start::RIGS.get(), text::start::RIGS_HOVER.get(), |ui| {
             let others: Vec<_> = now.recent.iter().filter(|choice| *choice != now.running).collect();
@@ -200,15 +200,15 @@ impl StartPage {
         }
     }
 
-    fn make(&mut self, now: &Now<'_>) {
+    fn make(&mut self, now: &StartInputs<'_>) {
         match making::make(self.folder.as_deref(), &self.chosen.rig, &self.new_name) {
             Ok(path) => {
-                self.told = Some(text::start::made(&path));
+                self.report = Some(text::start::made(&path));
                 self.new_name.clear();
                 self.read(now.running, now.recent);
-                self.choose(Choice { rig: path.display().to_string(), ..self.chosen.clone() });
+                self.choose(RigChoice { rig: path.display().to_string(), ..self.chosen.clone() });
             }
-            Err(told) => self.told = Some(told),
+            Err(report) => self.report = Some(report),
         }
     }
 
@@ -222,7 +222,7 @@ impl StartPage {
         });
     }
 
-    fn devices_ui(&mut self, ui: &mut Ui, now: &Now<'_>) {
+    fn devices_ui(&mut self, ui: &mut Ui, now: &StartInputs<'_>) {
         card(ui, text::start::MISSING.get(), text::start::MISSING_HOVER.get(), |ui| self.missing_ui(ui, now));
         card(ui, text::start::ENDOSCOPE.get(), text::start::ENDOSCOPE_HOVER.get(), |ui| self.endoscope_ui(ui, now));
         card(ui, text::start::PLUGGED.get(), text::start::PLUGGED_HOVER.get(), |ui| {
@@ -233,20 +233,20 @@ impl StartPage {
         });
     }
 
-    fn endoscope_ui(&mut self, ui: &mut Ui, now: &Now<'_>) {
-        let runs = now.live.rig.endoscope.as_ref().zip(now.picture.as_ref());
-        let running = runs.map(|(endoscope, told)| (endoscope.url.as_str(), told));
+    fn endoscope_ui(&mut self, ui: &mut Ui, now: &StartInputs<'_>) {
+        let runs = now.live.rig.endoscope.as_ref().zip(now.image.as_ref());
+        let running = runs.map(|(endoscope, report)| (endoscope.url.as_str(), report));
         if !self.endoscope.ui(ui, running) {
             return;
         }
         match self.endoscope.write(&self.chosen.rig, self.folder.as_deref()) {
             Ok(rig) => {
-                self.told = Some(text::start::endoscope_written(&rig));
+                self.report = Some(text::start::endoscope_written(&rig));
                 self.read(now.running, now.recent);
                 self.is_stale = true;
-                self.choose(Choice { rig, ..self.chosen.clone() });
+                self.choose(RigChoice { rig, ..self.chosen.clone() });
             }
-            Err(told) => self.told = Some(told),
+            Err(report) => self.report = Some(report),
         }
     }
 
@@ -256,7 +256,7 @@ impl StartPage {
     }
 
     /// For the running rig, its list of devices shows missing ones; devices of another rig are opened briefly.
-    fn missing_ui(&mut self, ui: &mut Ui, now: &Now<'_>) {
+    fn missing_ui(&mut self, ui: &mut Ui, now: &StartInputs<'_>) {
         let Some(rig) = self.rig.as_ref().filter(|rig| rig.devices.is_some() || rig.has_real_hand()) else {
             ui.label(text::start::SIMULATED.get());
             return;
@@ -282,22 +282,22 @@ impl StartPage {
             let ctx = ui.ctx().clone();
             self.answers.check(&ctx, rig);
         }
-        for Diagnosis { name, outcome, .. } in self.answers.found().into_iter().flatten() {
+        for DiscoveryDiagnosis { name, outcome, .. } in self.answers.found().into_iter().flatten() {
             match outcome {
-                Outcome::Connected(Found { identity, .. }) => {
+                TestOutcome::Connected(FoundDevice { identity, .. }) => {
                     answer_ui(ui, true, &text::start::answers(name, &identity.product, &identity.serial));
                 }
-                Outcome::Trouble { cause, cure, .. } => trouble_ui(ui, name, cause, cure),
+                TestOutcome::Trouble { cause, cure, .. } => trouble_ui(ui, name, cause, cure),
             }
         }
     }
 
-    fn foot_ui(&mut self, ui: &mut Ui, now: &Now<'_>) -> Option<Choice> {
+    fn foot_ui(&mut self, ui: &mut Ui, now: &StartInputs<'_>) -> Option<RigChoice> {
         let mut start = None;
         ui.horizontal(|ui| {
             let held = now.live.state() == LoopState::Engaged && is_real(&now.live.rig);
             let same = self.chosen == *now.running;
-            let usable = |list: &[Entry], key: &str| list.iter().any(|entry| entry.key == key && entry.usable);
+            let usable = |list: &[ChoiceEntry], key: &str| list.iter().any(|entry| entry.key == key && entry.usable);
             let ready = usable(&self.lists.rigs, &self.chosen.rig) && usable(&self.lists.scenes, &self.chosen.scene);
             let words = if same { text::start::START_AGAIN.get() } else { text::start::START.get() };
             let name = RichText::new(words).font(theme::strong(17.0));
@@ -321,8 +321,8 @@ impl StartPage {
                 if now.is_starting {
                     ui.label(weak(text::start::STARTING.get()));
                 }
-                if let Some(told) = &self.told {
-                    ui.add(Label::new(told).wrap());
+                if let Some(report) = &self.report {
+                    ui.add(Label::new(report).wrap());
                 }
             });
         });
@@ -335,7 +335,7 @@ pub(super) fn is_real(rig: &RigConfig) -> bool {
     !rig.is_harmless()
 }
 
-fn name_in<'a>(list: &'a [Entry], key: &'a str) -> &'a str {
+fn name_in<'a>(list: &'a [ChoiceEntry], key: &'a str) -> &'a str {
     list.iter().find(|entry| entry.key == key).map_or(key, |entry| &entry.name)
 }
 
@@ -354,7 +354,7 @@ fn row_ui(ui: &mut Ui, chosen: bool, usable: bool, name: &str, about: &str) -> e
     if about.is_empty() { button } else { button.on_hover_text(about).on_disabled_hover_text(about) }
 }
 
-fn entry_ui(ui: &mut Ui, entry: &Entry, chosen: bool, running: bool) -> bool {
+fn entry_ui(ui: &mut Ui, entry: &ChoiceEntry, chosen: bool, running: bool) -> bool {
     let clicked = row_ui(ui, chosen, entry.usable, &entry.name, &entry.key).clicked();
     let words = if running { format!("{}. {}", text::start::RUNNING.get(), entry.about) } else { entry.about.clone() };
     ui.add(Label::new(small(words)).wrap());
@@ -377,7 +377,7 @@ fn trouble_ui(ui: &mut Ui, name: &str, cause: &str, cure: &str) {
     ui.add(Label::new(small(cure)).wrap());
 }
 
-fn plugged_ui(ui: &mut Ui, plugged: &Plugged) {
+fn plugged_ui(ui: &mut Ui, plugged: &PluggedDevices) {
     let lines = plugged.lines();
     if lines.is_empty() {
         ui.label(weak(text::start::NOTHING_PLUGGED.get()));

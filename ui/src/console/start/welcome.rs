@@ -10,7 +10,7 @@ use crate::console::{
 
 /// Ways to continue.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::console) enum Way {
+pub(in crate::console) enum WelcomeChoice {
     Demo,
     /// The running rig.
     Simulated,
@@ -29,7 +29,7 @@ impl Welcome {
     }
 
     /// Draws it into `room`, which does not cover the stop button; returns the chosen way and closes.
-    pub(in crate::console) fn ui(&mut self, ctx: &Context, room: Rect) -> Option<Way> {
+    pub(in crate::console) fn ui(&mut self, ctx: &Context, room: Rect) -> Option<WelcomeChoice> {
         if !self.is_open {
             return None;
         }
@@ -42,11 +42,11 @@ impl Welcome {
             ui.add(Label::new(RichText::new(words::WELCOME_NOT.get()).font(theme::strong(15.0))).wrap());
             ui.add_space(6.0);
             for (way, name, about) in [
-                (Way::Simulated, words::WELCOME_SIMULATED.get(), words::WELCOME_SIMULATED_ABOUT.get()),
-                (Way::Demo, words::WELCOME_DEMO.get(), words::WELCOME_DEMO_ABOUT.get()),
-                (Way::Own, words::WELCOME_OWN.get(), words::WELCOME_OWN_ABOUT.get()),
+                (WelcomeChoice::Simulated, words::WELCOME_SIMULATED.get(), words::WELCOME_SIMULATED_ABOUT.get()),
+                (WelcomeChoice::Demo, words::WELCOME_DEMO.get(), words::WELCOME_DEMO_ABOUT.get()),
+                (WelcomeChoice::Own, words::WELCOME_OWN.get(), words::WELCOME_OWN_ABOUT.get()),
             ] {
-                let button = if way == Way::Simulated { next_button(name, true) } else { Button::new(name) };
+                let button = if way == WelcomeChoice::Simulated { next_button(name, true) } else { Button::new(name) };
                 if ui.add(button.min_size(vec2(ui.available_width(), 36.0))).clicked() {
                     chosen = Some(way);
                 }

@@ -1,6 +1,6 @@
 //! Alarms: their causes and remedies, the alarm strip, and the list of recent alarms.
 
-use crate::language::{Text, told};
+use crate::language::{Text, text_format};
 
 pub(in crate::console) const ALARM: Text = Text::of("Alarm", "Alarm");
 pub(in crate::console) const WARNING: Text = Text::of("Warning", "Warnung");
@@ -58,15 +58,15 @@ pub(in crate::console) const DEVICE_MISSING_CURE: Text = Text::of(
 
 /// Fault with the time of its first report, s on the loop's clock.
 pub(in crate::console) fn fault(cause: &str, t_s: f64) -> String {
-    told!("{cause} (at {t_s:.1} s)", "{cause} (bei {t_s:.1} s)")
+    text_format!("{cause} (at {t_s:.1} s)", "{cause} (bei {t_s:.1} s)")
 }
 
 pub(in crate::console) fn device(name: &str, cause: &str) -> String {
-    told!("The {name} is missing: {cause}", "{name} fehlt: {cause}")
+    text_format!("The {name} is missing: {cause}", "{name} fehlt: {cause}")
 }
 
 pub(in crate::console) fn device_lost(name: &str, cause: &str) -> String {
-    told!("The {name} is lost: {cause}", "{name} ausgefallen: {cause}")
+    text_format!("The {name} is lost: {cause}", "{name} ausgefallen: {cause}")
 }
 
 pub(in crate::console) fn fault_of(name: &str, cause: &str) -> String {
@@ -74,18 +74,21 @@ pub(in crate::console) fn fault_of(name: &str, cause: &str) -> String {
 }
 
 pub(in crate::console) fn periods_missed(percent: f64) -> String {
-    told!("The control loop misses {percent:.1} % of its periods", "Die Regelung versäumt {percent:.1} % ihrer Takte")
+    text_format!(
+        "The control loop misses {percent:.1} % of its periods",
+        "Die Regelung versäumt {percent:.1} % ihrer Takte"
+    )
 }
 
 pub(in crate::console) fn bias_moved(by_n: f64) -> String {
-    told!(
+    text_format!(
         "The wrist sensor reads {by_n:.2} N without contact: its bias has drifted since the calibration",
         "Der Handgelenksensor misst {by_n:.2} N ohne Kontakt: Nullpunkt seit der Kalibrierung gedriftet"
     )
 }
 
 pub(in crate::console) fn no_player(players: &str) -> String {
-    told!(
+    text_format!(
         "No alarm sound: none of these players is installed: {players}; install one",
         "Kein Alarmton: keines dieser Abspielprogramme ist installiert: {players}; eines installieren"
     )
@@ -101,22 +104,25 @@ pub(in crate::console) const UNCHECKED_CURE: Text = Text::of(
 );
 
 pub(in crate::console) fn player_failed(status: &impl std::fmt::Display) -> String {
-    told!("The alarm sound could not be played ({status})", "Alarmton nicht abspielbar ({status})")
+    text_format!("The alarm sound could not be played ({status})", "Alarmton nicht abspielbar ({status})")
 }
 
 pub(in crate::console) fn player_not_started(error: &impl std::fmt::Display) -> String {
-    told!("The alarm sound could not be played: {error}", "Alarmton nicht abspielbar: {error}")
+    text_format!("The alarm sound could not be played: {error}", "Alarmton nicht abspielbar: {error}")
 }
 
 /// The alarm in the strip; `remarks` mention further alarms and the acknowledgement.
 pub(in crate::console) fn pinned(priority: &str, cause: &str, began_utc: &str, remarks: &str) -> String {
-    told!("{priority}: {cause}, since {began_utc} UTC{remarks}", "{priority}: {cause}, seit {began_utc} UTC{remarks}")
+    text_format!(
+        "{priority}: {cause}, since {began_utc} UTC{remarks}",
+        "{priority}: {cause}, seit {began_utc} UTC{remarks}"
+    )
 }
 
 pub(in crate::console) fn others(count: usize) -> String {
-    told!(" (+{count} more)", " (+{count} weitere)")
+    text_format!(" (+{count} more)", " (+{count} weitere)")
 }
 
 pub(in crate::console) fn entry(began: &str, until: &str, priority: &str, standing: &str) -> String {
-    told!("{began} to {until}: {priority}, {standing}", "{began} bis {until}: {priority}, {standing}")
+    text_format!("{began} to {until}: {priority}, {standing}", "{began} bis {until}: {priority}, {standing}")
 }

@@ -3,7 +3,7 @@
 use nima_machine::messages::LoopState;
 use nima_recording::store::WristId;
 
-use crate::language::{Text, told, word};
+use crate::language::{Text, text_format, word};
 
 pub(in crate::console) const NOT_OF_A_SENSOR: Text =
     Text::of("these values belong in the rig file", "diese Werte gehören in die Aufbaudatei");
@@ -86,28 +86,28 @@ pub(crate) fn closed(state: LoopState) -> Option<&'static str> {
 
 /// Button that opens a wizard; the wizard's name is in lower case.
 pub(in crate::console) fn calibrate(wizard: &str) -> String {
-    told!("Calibrate {wizard}…", "{wizard} kalibrieren…")
+    text_format!("Calibrate {wizard}…", "{wizard} kalibrieren…")
 }
 
 pub(in crate::console) fn opens(meaning: &str) -> String {
-    told!("{meaning}\nThe loop is set to idle", "{meaning}\nDie Regelung geht in den Leerlauf")
+    text_format!("{meaning}\nThe loop is set to idle", "{meaning}\nDie Regelung geht in den Leerlauf")
 }
 
 pub(in crate::console) fn source(words: &str) -> String {
-    told!("Tip force: {words}", "Kraft an der Spitze: {words}")
+    text_format!("Tip force: {words}", "Kraft an der Spitze: {words}")
 }
 
 pub(in crate::console) fn arm(side: &str) -> String {
     let after = side.to_lowercase();
-    told!("{side} arm", "Arm {after}")
+    text_format!("{side} arm", "Arm {after}")
 }
 
 pub(in crate::console) fn bound_to(sensor: &str, tool: &str) -> String {
-    told!("Sensor {sensor}, {tool}", "Sensor {sensor}, {tool}")
+    text_format!("Sensor {sensor}, {tool}", "Sensor {sensor}, {tool}")
 }
 
 pub(in crate::console) fn other_sensors_are_calibrated(sensor: &str, tool: &str, others: &str) -> String {
-    told!(
+    text_format!(
         "Sensor {sensor} has no gravity calibration with {tool}; sensor {others} has one: connect that sensor, or \
          calibrate this one.",
         "Sensor {sensor} hat keine Schwerkraft-Kalibrierung mit {tool}, Sensor {others} hat eine: jenen verbinden oder \
@@ -116,7 +116,7 @@ pub(in crate::console) fn other_sensors_are_calibrated(sensor: &str, tool: &str,
 }
 
 pub(in crate::console) fn sensors_are_exchanged(right: &WristId, left: &WristId) -> String {
-    told!(
+    text_format!(
         "The right and left sensors, or their tools in the rig file, are swapped: {} is calibrated with {}, and \
          {} with {}. Swap the cables, or press Swap sensors in the Devices panel.",
         "Rechter und linker Sensor oder ihre Instrumente in der Aufbaudatei sind vertauscht: {} ist mit {} kalibriert \
@@ -128,8 +128,8 @@ pub(in crate::console) fn sensors_are_exchanged(right: &WristId, left: &WristId)
     )
 }
 
-pub(in crate::console) fn not_in_force(what: &str, why: &str) -> String {
-    told!(
+pub(in crate::console) fn not_active(what: &str, why: &str) -> String {
+    text_format!(
         "{what}: the saved calibration is not used: {why}",
         "{what}: gespeicherte Kalibrierung nicht verwendet: \
      {why}"
@@ -137,22 +137,22 @@ pub(in crate::console) fn not_in_force(what: &str, why: &str) -> String {
 }
 
 pub(in crate::console) fn saved(path: &std::path::Path) -> String {
-    told!("Saved and in use: {}", "Gespeichert, aktiv: {}", path.display())
+    text_format!("Saved and in use: {}", "Gespeichert, aktiv: {}", path.display())
 }
 
 pub(in crate::console) fn gravity(day: &str, poses: usize, error_n: f64, remarks: &str) -> String {
-    told!(
+    text_format!(
         "Gravity: {day}, {poses} poses, held-out error {error_n:.3} N{remarks}",
         "Schwerkraft: {day}, {poses} Posen, Testfehler {error_n:.3} N{remarks}"
     )
 }
 
 pub(in crate::console) fn bias_checked(found_at: &str, words: &str) -> String {
-    told!("Bias, checked at {found_at} UTC: {words}", "Nullpunkt, geprüft um {found_at} UTC: {words}")
+    text_format!("Bias, checked at {found_at} UTC: {words}", "Nullpunkt, geprüft um {found_at} UTC: {words}")
 }
 
 pub(in crate::console) fn bias(words: &str) -> String {
-    told!("Bias: {words}", "Nullpunkt: {words}")
+    text_format!("Bias: {words}", "Nullpunkt: {words}")
 }
 
 pub(in crate::console) fn correspondence(
@@ -162,7 +162,7 @@ pub(in crate::console) fn correspondence(
     known_to_deg: f64,
     remarks: &str,
 ) -> String {
-    told!(
+    text_format!(
         "Correspondence: {day}, {pairs} pushes, held-out error {error_n:.3} N, uncertainty {known_to_deg:.2} \
          deg{remarks}",
         "Korrespondenz: {day}, {pairs}-mal gedrückt, Testfehler {error_n:.3} N, Unsicherheit {known_to_deg:.2} \
@@ -171,36 +171,42 @@ pub(in crate::console) fn correspondence(
 }
 
 pub(in crate::console) fn tip_force(day: &str, rows: usize, error_n: f64, remarks: &str) -> String {
-    told!(
+    text_format!(
         "Tip force: {day}, {rows} rows, error on new data {error_n:.3} N{remarks}",
         "Kraft an der Spitze: {day}, {rows} Zeilen, Fehler auf neuen Daten {error_n:.3} N{remarks}"
     )
 }
 
 pub(in crate::console) fn days_old(days: u64) -> String {
-    told!("; {days} days old, calibrate again", "; {days} Tage alt, neu kalibrieren")
+    text_format!("; {days} days old, calibrate again", "; {days} Tage alt, neu kalibrieren")
 }
 
 pub(in crate::console) fn not_proven(name: &str) -> String {
-    told!("; NOT PROVEN, accepted by {name}", "; NICHT BELEGT, übernommen von {name}")
+    text_format!("; NOT PROVEN, accepted by {name}", "; NICHT BELEGT, übernommen von {name}")
 }
 
 pub(in crate::console) fn not_opened(reason: &str) -> String {
-    told!("Not opened: {reason}", "Nicht geöffnet: {reason}")
+    text_format!("Not opened: {reason}", "Nicht geöffnet: {reason}")
 }
 
 pub(in crate::console) fn still_in_the_experiment(reason: &str) -> String {
-    told!("Could not return to the monitor: {reason}", "Rückkehr zum Monitor nicht möglich: {reason}")
+    text_format!("Could not return to the monitor: {reason}", "Rückkehr zum Monitor nicht möglich: {reason}")
 }
 
-pub(in crate::console) fn in_force_with_next_start(saved: &str, reason: &str) -> String {
-    told!("{saved}. It will be used after the next start: {reason}", "{saved}. Gilt ab dem nächsten Start: {reason}")
+pub(in crate::console) fn active_after_restart(saved: &str, reason: &str) -> String {
+    text_format!(
+        "{saved}. It will be used after the next start: {reason}",
+        "{saved}. Gilt ab dem nächsten Start: {reason}"
+    )
 }
 
 pub(in crate::console) fn not_saved(reason: &str) -> String {
-    told!("Not saved: {reason}", "Nicht gespeichert: {reason}")
+    text_format!("Not saved: {reason}", "Nicht gespeichert: {reason}")
 }
 
 pub(in crate::console) fn not_started_again(error: &impl std::fmt::Display) -> String {
-    told!("the control loop could not be restarted: {error}", "die Regelung ließ sich nicht neu starten: {error}")
+    text_format!(
+        "the control loop could not be restarted: {error}",
+        "die Regelung ließ sich nicht neu starten: {error}"
+    )
 }

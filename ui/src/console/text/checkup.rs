@@ -1,6 +1,6 @@
 //! Measurements of the device test.
 
-use crate::language::{Text, told};
+use crate::language::{Text, text_format};
 
 pub(in crate::console) const RATE: Text = Text::of("Rate", "Rate");
 pub(in crate::console) const RATE_HOVER: Text =
@@ -38,23 +38,23 @@ pub(in crate::console) const UP_HOVER: Text = Text::of(
 pub(in crate::console) const NO_AGE: Text = Text::of("no reading yet", "noch kein Messwert");
 
 pub(in crate::console) fn noise_of(name: &str) -> String {
-    told!("Noise of {name}", "Rauschen: {name}")
+    text_format!("Noise of {name}", "Rauschen: {name}")
 }
 
 pub(in crate::console) fn span_of(name: &str) -> String {
-    told!("Range of {name}", "Bereich: {name}")
+    text_format!("Range of {name}", "Bereich: {name}")
 }
 
 pub(in crate::console) fn rate(hz: f64, nominal_hz: Option<f64>) -> String {
     match nominal_hz {
-        Some(nominal_hz) => told!("{hz:.0} of {nominal_hz:.0} Hz", "{hz:.0} von {nominal_hz:.0} Hz"),
-        None => told!("{hz:.0} Hz", "{hz:.0} Hz"),
+        Some(nominal_hz) => text_format!("{hz:.0} of {nominal_hz:.0} Hz", "{hz:.0} von {nominal_hz:.0} Hz"),
+        None => text_format!("{hz:.0} Hz", "{hz:.0} Hz"),
     }
 }
 
 /// Median and 99th percentile of the ages, s.
 pub(in crate::console) fn age([p50_s, p99_s]: [f64; 2]) -> String {
-    told!("p50 {:.0} ms, p99 {:.0} ms", "p50 {:.0} ms, p99 {:.0} ms", p50_s * 1e3, p99_s * 1e3)
+    text_format!("p50 {:.0} ms, p99 {:.0} ms", "p50 {:.0} ms, p99 {:.0} ms", p50_s * 1e3, p99_s * 1e3)
 }
 
 pub(in crate::console) fn losses(lost: u64, damaged: u64, refused: u64) -> String {
@@ -62,12 +62,12 @@ pub(in crate::console) fn losses(lost: u64, damaged: u64, refused: u64) -> Strin
 }
 
 pub(in crate::console) fn up(axis: &str, off_deg: f64, size_m_s2: f64) -> String {
-    told!(
+    text_format!(
         "{axis}, {off_deg:.0}\u{b0} off; {size_m_s2:.2} m/s\u{b2}",
         "{axis}, Abweichung {off_deg:.0}\u{b0}; {size_m_s2:.2} m/s\u{b2}"
     )
 }
 
-pub(in crate::console) fn share(percent: f64) -> String {
-    told!("{percent:.0} % of its range", "{percent:.0} % des Bereichs")
+pub(in crate::console) fn fraction(percent: f64) -> String {
+    text_format!("{percent:.0} % of its range", "{percent:.0} % des Bereichs")
 }

@@ -1,6 +1,6 @@
 //! Commands: names, effects, places on the screen, and reasons why a command is not available.
 
-use crate::language::{Text, told};
+use crate::language::{Text, text_format};
 
 /// Name and meaning of each command.
 pub(in crate::console) const STOP: (Text, Text) = (
@@ -109,7 +109,7 @@ pub(in crate::console) const SIZE_DOES: Text = Text::of(
 pub(in crate::console) const RESET_LAYOUT: Text = Text::of("Reset layout", "Layout zurücksetzen");
 pub(in crate::console) const PAUSE: Text = Text::of("Pause or resume the traces", "Verläufe anhalten oder fortsetzen");
 pub(in crate::console) const DRIVE: (Text, Text) = (
-    Text::of("Start or stop mouse control", "Maussteuerung starten oder beenden"),
+    Text::of("Toggle mouse control", "Maussteuerung starten oder beenden"),
     Text::of("Mouse and keys move the instrument", "Maus und Tasten bewegen das Instrument"),
 );
 pub(in crate::console) const OTHER_HAND: (Text, Text) = (
@@ -174,7 +174,7 @@ pub(in crate::console) const AT_ALARMS: Text = Text::of("Alarm strip", "Alarmlei
 pub(in crate::console) const AT_CALIBRATION: Text = Text::of("Calibration panel", "Panel Kalibrierung");
 pub(in crate::console) const AT_TRACES: Text = Text::of("Traces panel", "Panel Verläufe");
 pub(in crate::console) const AT_FIELD: Text = Text::of("Operating field", "OP-Feld");
-pub(in crate::console) const AT_PICTURE: Text = Text::of("Endoscope image", "Endoskopbild");
+pub(in crate::console) const AT_IMAGE: Text = Text::of("Endoscope image", "Endoskopbild");
 pub(in crate::console) const AT_PAST: Text = Text::of("Recorded session", "Aufgezeichnete Sitzung");
 pub(in crate::console) const AT_KEYS: Text = Text::of("Keyboard", "Tastatur");
 
@@ -256,19 +256,19 @@ pub(in crate::console) const BY_HAND: [(Text, Text); 6] = [
 ];
 
 pub(in crate::console) fn view(name: &str) -> String {
-    told!("View: {name}", "Ansicht: {name}")
+    text_format!("View: {name}", "Ansicht: {name}")
 }
 
 pub(in crate::console) fn panel(name: &str) -> String {
-    told!("Panel: {name}", "Panel: {name}")
+    text_format!("Panel: {name}", "Panel: {name}")
 }
 
 pub(in crate::console) fn language(name: &str) -> String {
-    told!("Language: {name}", "Sprache: {name}")
+    text_format!("Language: {name}", "Sprache: {name}")
 }
 
 pub(in crate::console) fn size(percent: u16) -> String {
-    told!("Size {percent} %", "Größe {percent} %")
+    text_format!("Size {percent} %", "Größe {percent} %")
 }
 
 pub(in crate::console) fn with_keys(name: &str, keys: &str) -> String {

@@ -1,6 +1,6 @@
 //! Names that several panels use.
 
-use crate::language::{Text, told};
+use crate::language::{Text, text_format};
 
 pub(in crate::console) const RIGHT: Text = Text::of("Right", "Rechts");
 pub(in crate::console) const LEFT: Text = Text::of("Left", "Links");
@@ -10,5 +10,5 @@ pub(in crate::console) const RENDERED: Text = Text::of("Rendered", "Dargestellt"
 /// Name of a hand, as in "Right hand".
 pub(in crate::console) fn hand(side: &str) -> String {
     let after = side.to_lowercase();
-    told!("{side} hand", "Hand {after}")
+    text_format!("{side} hand", "Hand {after}")
 }

@@ -1,6 +1,6 @@
 //! The wizard that finds the rotation between the wrist sensor and the tissue sensor.
 
-use crate::language::{Text, told};
+use crate::language::{Text, text_format};
 
 pub(in crate::console) const STEP_CHECK_HOVER: Text = Text::of(
     "Checks that all sensors send data and read zero without contact",
@@ -67,7 +67,7 @@ pub(in crate::console) const PUSH_HOVER: Text = Text::of(
 pub(in crate::console) const PHASE_WRIST_SILENT: Text =
     Text::of("the wrist sensor sends no data; connect it", "der Handgelenksensor sendet keine Daten; verbinden");
 pub(in crate::console) const PUSH_PROGRESS: Text = Text::of("Push", "Druck");
-pub(in crate::console) const DIRECTIONS_PICTURE: Text = Text::of("Push directions", "Druckrichtungen");
+pub(in crate::console) const DIRECTIONS_IMAGE: Text = Text::of("Push directions", "Druckrichtungen");
 pub(in crate::console) const SO_FAR_HOVER: Text = Text::of(
     "The result is updated after each push, from the sixth push on",
     "Das Ergebnis wird ab dem sechsten Druck nach jedem Druck erneuert",
@@ -138,15 +138,15 @@ pub(in crate::console) const R2_OVERALL_HOVER: Text = Text::of(
 );
 
 pub(in crate::console) fn taken_of(count: usize, asked: usize) -> String {
-    told!("{count} recorded, at least {asked} needed", "{count} aufgezeichnet, mindestens {asked} nötig")
+    text_format!("{count} recorded, at least {asked} needed", "{count} aufgezeichnet, mindestens {asked} nötig")
 }
 
 pub(in crate::console) fn pushes(count: usize) -> String {
-    told!("{count} pushes", "{count}-mal gedrückt")
+    text_format!("{count} pushes", "{count}-mal gedrückt")
 }
 
 pub(in crate::console) fn at_rest(wrist_n: f64, tissue_n: f64) -> String {
-    told!(
+    text_format!(
         "wrist {wrist_n:.2} N, tissue {tissue_n:.2} N; touch nothing; if a sensor stays above 0.3 N, set it to zero",
         "Handgelenk {wrist_n:.2} N, Gewebe {tissue_n:.2} N; nichts berühren; bleibt ein Sensor über 0.3 N, ihn auf \
          null setzen"
@@ -154,32 +154,32 @@ pub(in crate::console) fn at_rest(wrist_n: f64, tissue_n: f64) -> String {
 }
 
 pub(in crate::console) fn hold(force_n: f64) -> String {
-    told!("{force_n:.1} N; hold still", "{force_n:.1} N; stillhalten")
+    text_format!("{force_n:.1} N; hold still", "{force_n:.1} N; stillhalten")
 }
 
 pub(in crate::console) fn let_go(force_n: f64) -> String {
-    told!("{force_n:.1} N; enough, release", "{force_n:.1} N; genug, loslassen")
+    text_format!("{force_n:.1} N; enough, release", "{force_n:.1} N; genug, loslassen")
 }
 
 pub(in crate::console) fn push_taken(number: usize) -> String {
-    told!("push {number} recorded", "Druck {number} aufgezeichnet")
+    text_format!("push {number} recorded", "Druck {number} aufgezeichnet")
 }
 
 pub(in crate::console) fn not_taken(why: &str) -> String {
-    told!("not recorded: {why}", "nicht aufgezeichnet: {why}")
+    text_format!("not recorded: {why}", "nicht aufgezeichnet: {why}")
 }
 
 pub(in crate::console) fn used(pairs: usize, left_out: usize, weak: usize) -> String {
-    told!(
+    text_format!(
         "{pairs}; not used: {left_out} contradictory, {weak} too weak",
         "{pairs}; nicht verwendet: {left_out} widersprüchlich, {weak} zu schwach"
     )
 }
 
 pub(in crate::console) fn rotation(name: &str) -> String {
-    told!("Rotation {name}", "Drehung {name}")
+    text_format!("Rotation {name}", "Drehung {name}")
 }
 
 pub(in crate::console) fn agreement(fitted: f64, held_out: f64) -> String {
-    told!("{fitted:.3} fitted, {held_out:.3} held out", "Fit {fitted:.3}, Test {held_out:.3}")
+    text_format!("{fitted:.3} fitted, {held_out:.3} held out", "Fit {fitted:.3}, Test {held_out:.3}")
 }

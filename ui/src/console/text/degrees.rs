@@ -1,6 +1,6 @@
 //! The panel that compares the chosen polynomial degrees.
 
-use crate::language::{Text, told};
+use crate::language::{Text, text_format};
 
 pub(in crate::console) const KEY_OURS: Text = Text::of("this console", "diese Konsole");
 pub(in crate::console) const KEY_OURS_HOVER: Text = Text::of(
@@ -56,17 +56,17 @@ pub(in crate::console) const NOT_COMPUTED: Text = Text::of("not computed", "nich
 pub(in crate::console) const NONE: Text = Text::of("none", "keiner");
 
 pub(in crate::console) fn last_minutes(minutes: f64) -> String {
-    told!("last {minutes:.0} min", "letzte {minutes:.0} min")
+    text_format!("last {minutes:.0} min", "letzte {minutes:.0} min")
 }
 
 pub(in crate::console) fn columns(rank: u8, of: usize, used: u8) -> String {
-    told!("{rank} of {of} columns, {used} used", "{rank} von {of} Spalten, {used} verwendet")
+    text_format!("{rank} of {of} columns, {used} used", "{rank} von {of} Spalten, {used} verwendet")
 }
 
-pub(in crate::console) fn chosen(shares: &str) -> String {
-    told!("Degrees chosen: {shares}", "Gewählte Grade: {shares}")
+pub(in crate::console) fn chosen(fractions: &str) -> String {
+    text_format!("Degrees chosen: {fractions}", "Gewählte Grade: {fractions}")
 }
 
 pub(in crate::console) fn both(ours: &str, papers: &str) -> String {
-    told!("This console  {ours}\nPaper's rule  {papers}", "Diese Konsole  {ours}\nRegel des Artikels  {papers}")
+    text_format!("This console  {ours}\nPaper's rule  {papers}", "Diese Konsole  {ours}\nRegel des Artikels  {papers}")
 }

@@ -1,11 +1,11 @@
 //! The Devices panel: connection, identification, choice and test of devices.
 
-use nima_machine::rig::{Part, PartKind};
+use nima_machine::rig::{PartKind, RigPart};
 
-use crate::words::{channel_name, marker};
+use crate::report_text::{channel_name, marker};
 
-use crate::language::{Text, told, word};
-use crate::words::{part_name, within};
+use crate::language::{Text, text_format, word};
+use crate::report_text::{part_name, within};
 
 pub(in crate::console) const NONE: Text =
     Text::of("This rig is simulated: it has no devices", "Dieser Aufbau ist simuliert: er hat keine Geräte");
@@ -89,52 +89,59 @@ pub(in crate::console) const STOPPED: Text = Text::of("Press Release stop first"
 pub(in crate::console) const STARTING: Text = Text::of("The machine is starting", "Die Maschine startet");
 
 pub(in crate::console) fn not_changeable(reason: &str) -> String {
-    told!(
+    text_format!(
         "Devices cannot be swapped or chosen now. {reason}.",
         "Geräte lassen sich jetzt nicht tauschen oder wählen. {reason}."
     )
 }
 
 pub(in crate::console) fn not_to_be_engaged(side: &str, obstacle: &impl std::fmt::Display) -> String {
-    told!("The {side} arm cannot be engaged: {obstacle}", "Arm {side} lässt sich nicht koppeln: {obstacle}")
+    text_format!("The {side} arm cannot be engaged: {obstacle}", "Arm {side} lässt sich nicht koppeln: {obstacle}")
 }
 
 pub(in crate::console) fn identity(product: &str, serial: &str, firmware: &str) -> String {
-    let serial =
-        if serial.is_empty() { String::new() } else { told!(", serial number {serial}", ", Seriennummer {serial}") };
-    let firmware =
-        if firmware.is_empty() { String::new() } else { told!(", firmware {firmware}", ", Firmware {firmware}") };
+    let serial = if serial.is_empty() {
+        String::new()
+    } else {
+        text_format!(", serial number {serial}", ", Seriennummer {serial}")
+    };
+    let firmware = if firmware.is_empty() {
+        String::new()
+    } else {
+        text_format!(", firmware {firmware}", ", Firmware {firmware}")
+    };
     format!("{product}{serial}{firmware}")
 }
 
 /// Accessible name of the button that clears a device's faults.
 pub(in crate::console) fn clear_faults_of(name: &str) -> String {
-    told!("Clear faults of the {name}", "Störungen zurücksetzen: {name}")
+    text_format!("Clear faults of the {name}", "Störungen zurücksetzen: {name}")
 }
 
 pub(in crate::console) fn delivery(rate_hz: f64, lost: u64, damaged: u64, refused: u64) -> String {
     if lost + damaged + refused == 0 {
-        return told!(
+        return text_format!(
             "{rate_hz:.0} readings per second, none lost or damaged",
             "{rate_hz:.0} Messwerte/s, keiner verloren oder beschädigt"
         );
     }
-    told!(
+    text_format!(
         "{rate_hz:.0} readings per second; lost {lost}, damaged {damaged}, refused {refused}",
         "{rate_hz:.0} Messwerte/s; verloren {lost}, beschädigt {damaged}, abgelehnt {refused}"
     )
 }
 
 pub(in crate::console) fn outages(count: u64, longest_s: f64) -> String {
-    let times = if count == 1 { word("once", "einmal").to_owned() } else { told!("{count} times", "{count}-mal") };
-    told!(
+    let times =
+        if count == 1 { word("once", "einmal").to_owned() } else { text_format!("{count} times", "{count}-mal") };
+    text_format!(
         "; lost {times} since the start, for up to {longest_s:.1} s",
         "; seit dem Start {times} ausgefallen, bis zu {longest_s:.1} s lang"
     )
 }
 
 pub(in crate::console) fn lost(cause: &str, delivery: &str) -> String {
-    told!("lost: {cause}; {delivery}", "ausgefallen: {cause}; {delivery}")
+    text_format!("lost: {cause}; {delivery}", "ausgefallen: {cause}; {delivery}")
 }
 
 /// Accessible name of a button of one device.
@@ -164,14 +171,14 @@ pub(in crate::console) fn kind(kind: PartKind) -> &'static str {
 
 /// Accessible name of that button.
 pub(in crate::console) fn exchange(of: PartKind) -> String {
-    told!("Swap {}", "{} tauschen", within(kind(of)))
+    text_format!("Swap {}", "{} tauschen", within(kind(of)))
 }
 
 /// Accessible name of the light next to a device.
 pub(in crate::console) fn light(name: &str, motion: Option<&str>) -> String {
     match motion {
-        Some(motion) => told!("Light of the {name}: {motion}", "Lampe {name}: {motion}"),
-        None => told!("Light of the {name}: at rest", "Lampe {name}: in Ruhe"),
+        Some(motion) => text_format!("Light of the {name}: {motion}", "Lampe {name}: {motion}"),
+        None => text_format!("Light of the {name}: at rest", "Lampe {name}: in Ruhe"),
     }
 }
 
@@ -184,13 +191,13 @@ pub(in crate::console) fn motion(kind: PartKind, channel: usize) -> String {
         (PartKind::Handle, _) => word("button", "Taste").to_owned(),
         (PartKind::Sensor, 0..=5) | (PartKind::Pedal, _) => word("pressed", "gedrückt").to_owned(),
         (PartKind::Sensor, _) => word("moved", "bewegt").to_owned(),
-        (PartKind::Tracker, _) => told!("{} moved", "{} bewegt", marker(channel / 3)),
-        (PartKind::Arm | PartKind::Servos, _) => told!("{} moved", "{} bewegt", channel_name(kind, channel)),
+        (PartKind::Tracker, _) => text_format!("{} moved", "{} bewegt", marker(channel / 3)),
+        (PartKind::Arm | PartKind::Servos, _) => text_format!("{} moved", "{} bewegt", channel_name(kind, channel)),
     }
 }
 
-pub(in crate::console) fn candidate(identity: &str, other: Part) -> String {
-    told!(
+pub(in crate::console) fn candidate(identity: &str, other: RigPart) -> String {
+    text_format!(
         "{identity}: currently the {}; the two will be swapped",
         "{identity}: derzeit {}; beide werden getauscht",
         part_name(other)
@@ -201,7 +208,7 @@ pub(in crate::console) fn candidate(identity: &str, other: Part) -> String {
 pub(in crate::console) const UNKNOWN_IDENTITY: Text = Text::of("Not connected", "Nicht verbunden");
 
 pub(in crate::console) fn found(identity: &str, place: &str) -> String {
-    told!("{identity} at {place}", "{identity} an {place}")
+    text_format!("{identity} at {place}", "{identity} an {place}")
 }
 
 pub(in crate::console) fn not_there(place: &str, cause: &str) -> String {
@@ -209,7 +216,7 @@ pub(in crate::console) fn not_there(place: &str, cause: &str) -> String {
 }
 
 pub(in crate::console) fn saved(path: &std::path::Path) -> String {
-    told!(
+    text_format!(
         "Saved in the rig file {}. The machine has restarted, idle.",
         "In der Aufbaudatei {} gespeichert. Die Maschine ist neu gestartet, im Leerlauf.",
         path.display()
@@ -217,7 +224,7 @@ pub(in crate::console) fn saved(path: &std::path::Path) -> String {
 }
 
 pub(in crate::console) fn saved_as(name: &str, path: &std::path::Path) -> String {
-    told!(
+    text_format!(
         "A built-in rig cannot be changed: saved as the new rig \"{name}\" in {}, which is now in use. The \
          machine has restarted, idle.",
         "Ein eingebauter Aufbau ist nicht änderbar: als neuer Aufbau „{name}“ in {} gespeichert und jetzt aktiv. Die \
@@ -227,5 +234,5 @@ pub(in crate::console) fn saved_as(name: &str, path: &std::path::Path) -> String
 }
 
 pub(in crate::console) fn not_changed(cause: &str) -> String {
-    told!("Not changed: {cause}", "Nicht geändert: {cause}")
+    text_format!("Not changed: {cause}", "Nicht geändert: {cause}")
 }

@@ -2,24 +2,24 @@
 
 use nima_core::limits::{self, GAIN_ABOVE_ONE, Limits, SLIDER_DEAD_BAND_M_S, SLIDER_DELAY_S};
 
-use crate::language::{Text, told};
+use crate::language::{Text, text_format};
 
 /// Hover text of the gain, with its maximum rate of change, 1/s.
 pub(in crate::console) fn gain_hover(rate_per_s: f64) -> String {
     let Limits { min, max, .. } = limits::GAIN;
-    let most = GAIN_ABOVE_ONE.max;
-    told!(
+    let highest = GAIN_ABOVE_ONE.max;
+    text_format!(
         "Ratio of the force in the hand to the force that the mode requests, no unit: {min} to {max}, or up to \
-         {most} if allowed below. 0 is no force, 1 is natural. The gain changes by at most {rate_per_s} per \
+         {highest} if allowed below. 0 is no force, 1 is natural. The gain changes by at most {rate_per_s} per \
          second.",
-        "Verhältnis der Kraft in der Hand zu der vom Modus verlangten, ohne Einheit: {min} bis {max}, oder bis {most}, wenn \
+        "Verhältnis der Kraft in der Hand zu der vom Modus verlangten, ohne Einheit: {min} bis {max}, oder bis {highest}, wenn \
          unten erlaubt. 0 ist keine Kraft, 1 ist natürlich. Ändert sich um höchstens {rate_per_s} je Sekunde."
     )
 }
 
 pub(in crate::console) fn delay_hover() -> String {
     let Limits { min, max, unit } = SLIDER_DELAY_S.per(1e-3, "ms");
-    told!(
+    text_format!(
         "One-way delay from the follower to the hand, {min} to {max} {unit}, added to the link's own. The paper uses \
          300 ms. Every mode gets its data this late and predicts this far ahead. Applied when you release the \
          slider.",
@@ -31,7 +31,7 @@ pub(in crate::console) fn delay_hover() -> String {
 
 pub(in crate::console) fn dead_band_hover() -> String {
     let Limits { min, max, unit } = SLIDER_DEAD_BAND_M_S.per(1e-3, "mm/s");
-    told!(
+    text_format!(
         "Hand speed, {min} to {max} {unit}, below which no force is rendered: at standstill an impedance cannot \
          be identified. The paper uses 1 mm/s; 0 switches the dead band off. The force fades in and reaches its \
          full magnitude at twice this speed. No effect while \"Keep force at standstill\" is on.",
@@ -48,12 +48,12 @@ pub(in crate::console) const HOLD_HOVER: Text = Text::of(
 );
 pub(in crate::console) const GAIN: Text = Text::of("Gain", "Verstärkung");
 pub(in crate::console) fn allow_above_1_hover() -> String {
-    let most = GAIN_ABOVE_ONE.max;
+    let highest = GAIN_ABOVE_ONE.max;
     let max = limits::GAIN.max;
-    told!(
-        "Allows a gain of up to {most}, so that soft tissue feels stiffer than it is. The force ceiling still \
+    text_format!(
+        "Allows a gain of up to {highest}, so that soft tissue feels stiffer than it is. The force ceiling still \
          applies. Clearing the box reduces the gain to at most {max}.",
-        "Erlaubt Verstärkungen bis {most}, sodass sich weiches Gewebe steifer anfühlt, als es ist. Die Höchstkraft gilt \
+        "Erlaubt Verstärkungen bis {highest}, sodass sich weiches Gewebe steifer anfühlt, als es ist. Die Höchstkraft gilt \
          weiter. Abwählen bringt die Verstärkung auf höchstens {max} zurück."
     )
 }
@@ -67,10 +67,10 @@ pub(in crate::console) const DEAD_BAND: Text = Text::of("Dead band", "Totband");
 pub(in crate::console) const HOLD: Text = Text::of("Keep force at standstill", "Kraft im Stillstand halten");
 
 pub(in crate::console) fn gain_in_use(gain: f64) -> String {
-    told!("in use {gain:.2}", "wirksam {gain:.2}")
+    text_format!("in use {gain:.2}", "wirksam {gain:.2}")
 }
 
 /// Hover text of a button that changes a value by 0.1.
 pub(in crate::console) fn by_a_tenth(name: &str) -> String {
-    told!("{name} by 0.1", "{name} um 0.1")
+    text_format!("{name} by 0.1", "{name} um 0.1")
 }

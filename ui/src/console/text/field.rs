@@ -1,6 +1,6 @@
 //! The 3-D view of the operating field.
 
-use crate::language::{Text, told, word};
+use crate::language::{Text, text_format, word};
 
 pub(in crate::console) const OPERATING_FIELD: Text = Text::of("Operating field", "OP-Feld");
 pub(in crate::console) const SHOW: Text = Text::of("Show", "Zeigen");
@@ -57,68 +57,68 @@ pub(in crate::console) fn lead_hover(has_jaws: bool, is_bimanual: bool) -> Strin
         (true, true) => word(". H: the other instrument", ". H: anderes Instrument"),
         (true, false) => word("\nH: the other instrument", "\nH: anderes Instrument"),
     };
-    told!(
+    text_format!(
         "Drag: move the instrument. Wheel, Page Up, Page Down: height. Arrow keys: small steps{jaws}{other}",
         "Ziehen: Instrument bewegen. Mausrad, Bild auf, Bild ab: Höhe. Pfeiltasten: kleine Schritte{jaws}{other}"
     )
 }
 
 pub(in crate::console) fn led(side: &str) -> String {
-    told!("{side} (driven)", "{side} (gesteuert)")
+    text_format!("{side} (driven)", "{side} (gesteuert)")
 }
 
 pub(in crate::console) fn not_drawn(problem: &str) -> String {
-    told!(
+    text_format!(
         "This graphics driver cannot draw the 3-D view: {problem}",
         "Dieser Grafiktreiber kann die 3-D-Ansicht nicht zeichnen: {problem}"
     )
 }
 
 pub(in crate::console) fn ceiling_sphere(ceiling_n: f32) -> String {
-    told!("ceiling {ceiling_n:.1} N", "Höchstkraft {ceiling_n:.1} N")
+    text_format!("ceiling {ceiling_n:.1} N", "Höchstkraft {ceiling_n:.1} N")
 }
 
 pub(in crate::console) fn ceiling_mark(ceiling_n: f64) -> String {
-    told!("ceiling\n{ceiling_n:.0} N", "max.\n{ceiling_n:.0} N")
+    text_format!("ceiling\n{ceiling_n:.0} N", "max.\n{ceiling_n:.0} N")
 }
 
 /// Suffix that names the side of a rig with two arms.
 pub(in crate::console) fn of_hand(side: &str) -> String {
-    told!(" of the {side} hand", " (Hand {side})")
+    text_format!(" of the {side} hand", " (Hand {side})")
 }
 
 /// Position in the base frame, mm.
 pub(in crate::console) fn place([x, y, z]: [f32; 3]) -> String {
-    told!("x {x:.1}, y {y:.1}, z {z:.1} mm (world)", "x {x:.1}, y {y:.1}, z {z:.1} mm (Welt)")
+    text_format!("x {x:.1}, y {y:.1}, z {z:.1} mm (world)", "x {x:.1}, y {y:.1}, z {z:.1} mm (Welt)")
 }
 
 pub(in crate::console) fn tissue(place: &str) -> String {
-    told!("Tissue at {place}", "Gewebe bei {place}")
+    text_format!("Tissue at {place}", "Gewebe bei {place}")
 }
 
 /// Hover text of an arrow; the force in N, `whose` from [`of_hand`].
 pub(in crate::console) fn arrow(name: &str, whose: &str, size_n: f32, [x, y, z]: [f32; 3]) -> String {
-    told!(
+    text_format!(
         "{name}{whose}: {size_n:.2} N\nx {x:+.2}, y {y:+.2}, z {z:+.2} N (world)",
         "{name}{whose}: {size_n:.2} N\nx {x:+.2}, y {y:+.2}, z {z:+.2} N (Welt)"
     )
 }
 
 pub(in crate::console) fn depth(depth_mm: f32) -> String {
-    told!("\n{depth_mm:.1} mm below the surface at rest", "\n{depth_mm:.1} mm unter der Ruheoberfläche")
+    text_format!("\n{depth_mm:.1} mm below the surface at rest", "\n{depth_mm:.1} mm unter der Ruheoberfläche")
 }
 
 /// Hover text of the tip; `depth` from [`depth`].
 pub(in crate::console) fn tip(whose: &str, place: &str, depth: &str) -> String {
-    told!("Tip{whose} at {place}{depth}", "Spitze{whose} bei {place}{depth}")
+    text_format!("Tip{whose} at {place}{depth}", "Spitze{whose} bei {place}{depth}")
 }
 
 pub(in crate::console) fn target(number: usize, whose: &str, place: &str) -> String {
-    told!("Target {number}{whose} at {place}", "Ziel {number}{whose} bei {place}")
+    text_format!("Target {number}{whose} at {place}", "Ziel {number}{whose} bei {place}")
 }
 
 pub(in crate::console) fn trocar(whose: &str, place: &str) -> String {
-    told!(
+    text_format!(
         "Trocar{whose}, the remote centre of motion, at {place}",
         "Trokar{whose}, ferner Drehpunkt der Bewegung, bei {place}"
     )

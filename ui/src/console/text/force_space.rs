@@ -1,6 +1,6 @@
 //! The view of both forces in force space.
 
-use crate::language::{Text, told};
+use crate::language::{Text, text_format};
 
 pub(in crate::console) const HOVER: Text = Text::of(
     "Measured and rendered force of the last six seconds in force space (N, world axes), one line each. The dot \
@@ -17,12 +17,12 @@ pub(in crate::console) const HOVER: Text = Text::of(
 
 /// Accessible name of the plot.
 pub(in crate::console) fn canvas(words: &str) -> String {
-    told!("Force space. {words}", "Kraftraum. {words}")
+    text_format!("Force space. {words}", "Kraftraum. {words}")
 }
 
 /// Two lines, separated by a semicolon.
 pub(in crate::console) fn unknown(seconds: f64) -> String {
-    told!(
+    text_format!(
         "Last {seconds:.0} s; the measured force is currently unknown",
         "Letzte {seconds:.0} s; die gemessene Kraft ist jetzt unbekannt"
     )
@@ -30,7 +30,7 @@ pub(in crate::console) fn unknown(seconds: f64) -> String {
 
 /// Two lines, separated by a semicolon.
 pub(in crate::console) fn too_short(seconds: f64) -> String {
-    told!(
+    text_format!(
         "Last {seconds:.0} s; the error ellipsoid needs one second of data",
         "Letzte {seconds:.0} s; das Fehlerellipsoid braucht eine Sekunde Daten"
     )
@@ -38,7 +38,7 @@ pub(in crate::console) fn too_short(seconds: f64) -> String {
 
 /// Two lines, separated by a semicolon. Mean and half axes in N, `percent` of samples inside.
 pub(in crate::console) fn error(seconds: f64, mean_n: f64, [a, b, c]: [f64; 3], percent: f64) -> String {
-    told!(
+    text_format!(
         "Error, last {seconds:.0} s: mean {mean_n:.2} N, 95 % half axes; {a:.2}, {b:.2}, {c:.2} N (contains \
          {percent:.0} %)",
         "Fehler, letzte {seconds:.0} s: Mittel {mean_n:.2} N, 95-%-Halbachsen; {a:.2}, {b:.2}, {c:.2} N (enthält \

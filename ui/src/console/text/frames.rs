@@ -1,6 +1,6 @@
 //! The wizards of the frame calibrations: sensor mount, tip, hand-eye, table, view, trocar.
 
-use crate::language::{Text, told, word};
+use crate::language::{Text, text_format, word};
 
 pub(in crate::console) const MOUNT: Text = Text::of("Sensor mount", "Sensormontage");
 pub(in crate::console) const TIP: Text = Text::of("Tip", "Spitze");
@@ -254,17 +254,17 @@ pub(in crate::console) const UNDONE: Text =
     Text::of("The previous values are in the rig file again", "Die vorigen Werte stehen wieder in der Aufbaudatei");
 
 pub(in crate::console) fn hold(name: &str) -> String {
-    told!("Hold still: {name}", "Stillhalten: {name}")
+    text_format!("Hold still: {name}", "Stillhalten: {name}")
 }
 
 pub(in crate::console) fn moved(what: &str, way: &str) -> String {
-    told!("{what}: {way}, then hold still", "{what}: {way}, dann stillhalten")
+    text_format!("{what}: {way}, then hold still", "{what}: {way}, dann stillhalten")
 }
 
 pub(in crate::console) fn coverage(count: usize, units: &str, missing: Option<&str>) -> String {
     let missing = missing.map_or_else(
         || word("complete", "vollständig").to_owned(),
-        |missing| told!("still needed: {missing}", "noch nötig: {missing}"),
+        |missing| text_format!("still needed: {missing}", "noch nötig: {missing}"),
     );
     format!("{count} {units}; {missing}")
 }
@@ -281,16 +281,20 @@ pub(in crate::console) fn effect(change: Option<[f64; 2]>) -> String {
         },
         |[m, deg]| {
             // A point has no angle, and a rotation has no position.
-            let moved = (m > 1e-9).then(|| told!("moved by {:.2} mm", "verschoben um {:.2} mm", m * 1e3));
-            let turned = (deg > 1e-6).then(|| told!("turned by {deg:.2} deg", "gedreht um {deg:.2} deg"));
+            let moved = (m > 1e-9).then(|| text_format!("moved by {:.2} mm", "verschoben um {:.2} mm", m * 1e3));
+            let turned = (deg > 1e-6).then(|| text_format!("turned by {deg:.2} deg", "gedreht um {deg:.2} deg"));
             let words: Vec<_> = moved.into_iter().chain(turned).collect();
-            told!("dashed: now   solid: new   {}", "gestrichelt: jetzt   durchgezogen: neu   {}", words.join(", "))
+            text_format!(
+                "dashed: now   solid: new   {}",
+                "gestrichelt: jetzt   durchgezogen: neu   {}",
+                words.join(", ")
+            )
         },
     )
 }
 
 pub(in crate::console) fn scale(length_m: f64) -> String {
-    told!("{} mm", "{} mm", (length_m * 1e4).round() / 10.0)
+    text_format!("{} mm", "{} mm", (length_m * 1e4).round() / 10.0)
 }
 
 pub(in crate::console) fn mount_found(off_deg: f64, agrees: bool) -> String {
@@ -299,16 +303,16 @@ pub(in crate::console) fn mount_found(off_deg: f64, agrees: bool) -> String {
     } else {
         word("the rig file is wrong", "die Aufbaudatei ist falsch")
     };
-    told!(
+    text_format!(
         "The measured mount differs by {off_deg:.1} deg: {verdict}",
         "Die gemessene Montage weicht um {off_deg:.1} deg ab: {verdict}"
     )
 }
 
 pub(in crate::console) fn mount_axes(axes: &str) -> String {
-    told!("The sensor's x, y, z are the rig file's {axes}", "x, y, z des Sensors sind {axes} der Aufbaudatei")
+    text_format!("The sensor's x, y, z are the rig file's {axes}", "x, y, z des Sensors sind {axes} der Aufbaudatei")
 }
 
 pub(in crate::console) fn written(record: &std::path::Path, rig: &std::path::Path) -> String {
-    told!("Saved: {}; in use: {}", "Gespeichert: {}; aktiv: {}", record.display(), rig.display())
+    text_format!("Saved: {}; in use: {}", "Gespeichert: {}; aktiv: {}", record.display(), rig.display())
 }

@@ -1,6 +1,6 @@
 //! The panel "Why no force?": each gate, and the summary above them.
 
-use crate::language::{Text, told};
+use crate::language::{Text, text_format};
 
 pub(in crate::console) const FREE_MOTION: Text = Text::of(
     "Free motion: no contact, so there is no force to render",
@@ -56,55 +56,55 @@ pub(in crate::console) const LIMITING: Text = Text::of("limiting", "begrenzt");
 pub(in crate::console) const ENERGY_OFF: Text = Text::of("off", "aus");
 
 pub(in crate::console) fn gates_of(side: &str) -> String {
-    told!("Shows why there is no force in the {side} hand", "Zeigt, warum in der Hand {side} keine Kraft ist")
+    text_format!("Shows why there is no force in the {side} hand", "Zeigt, warum in der Hand {side} keine Kraft ist")
 }
 
 /// `source`: source of the tip force, or the reason why it is unknown.
 pub(in crate::console) fn none_unknown(source: &str) -> String {
-    told!("No force; tip force: {source}", "Keine Kraft; Kraft an der Spitze: {source}")
+    text_format!("No force; tip force: {source}", "Keine Kraft; Kraft an der Spitze: {source}")
 }
 
 /// `why`: a sentence.
 pub(in crate::console) fn none_idle_closed(why: &str) -> String {
-    told!("No force: the loop is idle. {why}", "Keine Kraft: Regelung im Leerlauf. {why}")
+    text_format!("No force: the loop is idle. {why}", "Keine Kraft: Regelung im Leerlauf. {why}")
 }
 
 pub(in crate::console) fn rendered(rendered_n: f64) -> String {
-    told!("Force in the hand: {rendered_n:.1} N", "Kraft in der Hand: {rendered_n:.1} N")
+    text_format!("Force in the hand: {rendered_n:.1} N", "Kraft in der Hand: {rendered_n:.1} N")
 }
 
 pub(in crate::console) fn withheld_by_dead_band(withheld_n: f64) -> String {
-    told!(
+    text_format!(
         "{withheld_n:.1} N not rendered: the hand is slower than the dead band",
         "{withheld_n:.1} N nicht dargestellt: Hand langsamer als das Totband"
     )
 }
 
 pub(in crate::console) fn withheld(withheld_n: f64) -> String {
-    told!("{withheld_n:.1} N not rendered", "{withheld_n:.1} N nicht dargestellt")
+    text_format!("{withheld_n:.1} N not rendered", "{withheld_n:.1} N nicht dargestellt")
 }
 
 pub(in crate::console) fn on_its_way(delay_ms: f64) -> String {
-    told!(
+    text_format!(
         "No force yet: the link delays it by {delay_ms:.0} ms",
         "Noch keine Kraft: die Verbindung verzögert um {delay_ms:.0} ms"
     )
 }
 
 pub(in crate::console) fn zero_after(age_ms: f64) -> String {
-    told!("zero after {age_ms:.0} ms", "null nach {age_ms:.0} ms")
+    text_format!("zero after {age_ms:.0} ms", "null nach {age_ms:.0} ms")
 }
 
 pub(in crate::console) fn governed(percent: f64) -> String {
-    told!("{percent:.0} % withheld", "{percent:.0} % zurückgehalten")
+    text_format!("{percent:.0} % withheld", "{percent:.0} % zurückgehalten")
 }
 
 pub(in crate::console) fn energy_left(stored_mj: f64) -> String {
-    told!("{stored_mj:.0} mJ left", "{stored_mj:.0} mJ übrig")
+    text_format!("{stored_mj:.0} mJ left", "{stored_mj:.0} mJ übrig")
 }
 
 pub(in crate::console) fn acted(ticks: u64, percent: f64, why: &str) -> String {
-    told!(
+    text_format!(
         "Acted in {ticks} ticks ({percent:.1} %); last reason: {why}",
         "Griff in {ticks} Takten ein ({percent:.1} %); letzter Grund: {why}"
     )

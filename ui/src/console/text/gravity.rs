@@ -1,6 +1,6 @@
 //! The wizard that removes the weight of the tool.
 
-use crate::language::{Text, told};
+use crate::language::{Text, text_format};
 
 pub(in crate::console) const STEP_CHECK_HOVER: Text = Text::of(
     "Checks that the sensor sends good data and that nothing touches the tool",
@@ -61,10 +61,10 @@ pub(in crate::console) const POSE_HOVER: Text = Text::of(
     "Turn the tool as the outline shows, release it, and wait until the bar is full",
     "Instrument drehen, wie der Umriss zeigt, loslassen und warten, bis der Balken voll ist",
 );
-pub(in crate::console) const ALL_POSES_RECORDED: Text =
+pub(in crate::console) const POSES_COMPLETE: Text =
     Text::of("All poses recorded: continue to the result", "Alle Posen aufgezeichnet: weiter zum Ergebnis");
 pub(in crate::console) const POSE_PROGRESS: Text = Text::of("Pose", "Pose");
-pub(in crate::console) const DIRECTIONS_PICTURE: Text = Text::of("Directions of gravity", "Schwerkraftrichtungen");
+pub(in crate::console) const DIRECTIONS_IMAGE: Text = Text::of("Directions of gravity", "Schwerkraftrichtungen");
 pub(in crate::console) const DIRECTIONS: Text = Text::of("Directions", "Richtungen");
 pub(in crate::console) const SO_FAR_HOVER: Text = Text::of(
     "The model is updated after each pose, from the sixth pose on",
@@ -158,18 +158,18 @@ pub(in crate::console) const UNDETERMINED: Text = Text::of("undetermined", "unbe
 pub(in crate::console) const LARGEST: Text = Text::of("largest", "größter");
 
 pub(in crate::console) fn pose_taken(number: usize) -> String {
-    told!("pose {number} recorded", "Pose {number} aufgezeichnet")
+    text_format!("pose {number} recorded", "Pose {number} aufgezeichnet")
 }
 
 pub(in crate::console) fn touched(by_n: f64) -> String {
-    told!(
+    text_format!(
         "{by_n:.1} N too much: something touches the tool; release it",
         "{by_n:.1} N zu viel: etwas berührt das Instrument; loslassen"
     )
 }
 
 pub(in crate::console) fn was_touched(seconds: f64) -> String {
-    told!(
+    text_format!(
         "Something touched the tool for {seconds:.0} s while it was still",
         "Etwas berührte das Instrument {seconds:.0} s lang in Ruhe"
     )
@@ -183,17 +183,17 @@ pub(in crate::console) const WAS_TOUCHED_HOVER: Text = Text::of(
 );
 
 pub(in crate::console) fn left_out(numbers: &str) -> String {
-    told!("poses {numbers}", "Posen {numbers}")
+    text_format!("poses {numbers}", "Posen {numbers}")
 }
 
 pub(in crate::console) fn recorded_of(recorded: usize, asked: usize) -> String {
-    told!("{recorded} of {asked} recorded", "{recorded} von {asked} aufgezeichnet")
+    text_format!("{recorded} of {asked} recorded", "{recorded} von {asked} aufgezeichnet")
 }
 
 pub(in crate::console) fn of_allowed(force_n: f64, limit_n: f64) -> String {
-    told!("{force_n:.2} N of {limit_n} N allowed", "{force_n:.2} N von {limit_n} N erlaubt")
+    text_format!("{force_n:.2} N of {limit_n} N allowed", "{force_n:.2} N von {limit_n} N erlaubt")
 }
 
 pub(in crate::console) fn chosen(model: &str) -> String {
-    told!("{model} (chosen)", "{model} (gewählt)")
+    text_format!("{model} (chosen)", "{model} (gewählt)")
 }

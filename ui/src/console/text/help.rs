@@ -1,6 +1,6 @@
 //! The tour, the list of keys, and the glossary.
 
-use crate::language::{Text, told};
+use crate::language::{Text, text_format};
 
 pub(in crate::console) const STEP_BACK: Text = Text::of("Step back", "Schritt zurück");
 pub(in crate::console) const NEXT_STEP: Text = Text::of("Next step", "Nächster Schritt");
@@ -8,7 +8,7 @@ pub(in crate::console) const BEGIN: Text = Text::of("Start", "Beginnen");
 pub(in crate::console) const SKIP_THE_TOUR: Text = Text::of("Skip tour", "Überspringen");
 
 pub(in crate::console) fn step_of(step: usize, steps: usize) -> String {
-    told!("{step} of {steps}", "{step} von {steps}")
+    text_format!("{step} of {steps}", "{step} von {steps}")
 }
 
 /// Title and text of each step.

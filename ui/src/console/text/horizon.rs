@@ -1,6 +1,6 @@
 //! The Prediction error panel, which compares the modes.
 
-use crate::language::{Text, told};
+use crate::language::{Text, text_format};
 
 pub(in crate::console) const LAST_3_MIN: Text = Text::of("last 3 min", "letzte 3 min");
 pub(in crate::console) const REFERENCE: Text = Text::of("reference", "Referenz");
@@ -14,7 +14,7 @@ pub(in crate::console) const COMPARE_HOVER: Text = Text::of(
 pub(in crate::console) const IN_USE: Text = Text::of(" (in use)", " (aktiv)");
 
 pub(in crate::console) fn ahead(delay_ms: f64) -> String {
-    told!(
+    text_format!(
         "Mean error {delay_ms:.0} ms ahead, last seconds; line: delayed DFR",
         "Mittlerer Fehler {delay_ms:.0} ms voraus, letzte Sekunden; Linie: verzögerte DFR"
     )
@@ -22,18 +22,18 @@ pub(in crate::console) fn ahead(delay_ms: f64) -> String {
 
 /// Mean errors of the two curves of the trend, with their unit.
 pub(in crate::console) fn trend(seconds: usize, mode: &str, error: &str, dfr: &str) -> String {
-    told!(
+    text_format!(
         "Last {seconds} s: {mode} {error}, delayed DFR {dfr}",
         "Letzte {seconds} s: {mode} {error}, verzögerte DFR {dfr}"
     )
 }
 
 pub(in crate::console) fn trend_name(trend: &str) -> String {
-    told!("Error over the last minutes. {trend}", "Fehler der letzten Minuten. {trend}")
+    text_format!("Error over the last minutes. {trend}", "Fehler der letzten Minuten. {trend}")
 }
 
 pub(in crate::console) fn trend_meaning(trend: &str) -> String {
-    told!(
+    text_format!(
         "{trend}\nMean prediction error (N) of each second, for up to three minutes",
         "{trend}\nMittlerer Vorhersagefehler (N) jeder Sekunde, bis zu drei Minuten"
     )
@@ -41,5 +41,5 @@ pub(in crate::console) fn trend_meaning(trend: &str) -> String {
 
 /// Accessible name of a bar.
 pub(in crate::console) fn error(words: &str) -> String {
-    told!("Error {words}", "Fehler {words}")
+    text_format!("Error {words}", "Fehler {words}")
 }

@@ -20,7 +20,7 @@ pub(in crate::console) const SOUND_HOVER: Text = Text::of(
     "Zehn Töne bei Alarm, drei bei Warnung, wiederholt bis zum Quittieren",
 );
 pub(in crate::console) const SOUND: Text = Text::of("Alarm sound", "Alarmton");
-pub(in crate::console) const PICTURE: Text = Text::of("Endoscope image", "Endoskopbild");
+pub(in crate::console) const IMAGE: Text = Text::of("Endoscope image", "Endoskopbild");
 pub(in crate::console) const BRIGHTNESS: Text = Text::of("Brightness", "Helligkeit");
 pub(in crate::console) const CONTRAST: Text = Text::of("Contrast", "Kontrast");
 pub(in crate::console) const GAMMA: Text = Text::of("Gamma", "Gamma");
@@ -43,13 +43,13 @@ pub(in crate::console) const FORCES_OF_NOW_HOVER: Text = Text::of(
     "Zeichnet die Kräfte an den jetzigen Orten der Spitzen. Sonst gehören die Kräfte zum Zeitpunkt des Bildes \
      und liegen auf den sichtbaren Spitzen.",
 );
-pub(in crate::console) const PICTURE_PLAIN: Text = Text::of("Show the unmodified image", "Originalbild zeigen");
-pub(in crate::console) const PICTURE_PLAIN_HOVER: Text = Text::of(
+pub(in crate::console) const IMAGE_PLAIN: Text = Text::of("Show the unmodified image", "Originalbild zeigen");
+pub(in crate::console) const IMAGE_PLAIN_HOVER: Text = Text::of(
     "With the camera's own brightness and colours, not cropped",
     "Mit Helligkeit und Farben der Kamera, nicht zugeschnitten",
 );
-pub(in crate::console) const RECORDS_PICTURE: Text = Text::of("Record the endoscope image", "Endoskopbild aufzeichnen");
-pub(in crate::console) const RECORDS_PICTURE_HOVER: Text = Text::of(
+pub(in crate::console) const RECORDS_IMAGE: Text = Text::of("Record the endoscope image", "Endoskopbild aufzeichnen");
+pub(in crate::console) const RECORDS_IMAGE_HOVER: Text = Text::of(
     "In sessions, as the camera sends it: about 60 to 200 MB more per minute",
     "In Sitzungen, so wie die Kamera es sendet: etwa 60 bis 200 MB mehr pro Minute",
 );

@@ -1,6 +1,6 @@
 //! A rig at another machine, shown without control.
 
-use crate::language::{Text, told};
+use crate::language::{Text, text_format};
 
 pub(in crate::console) const WATCHING: Text = Text::of("WATCHING", "NUR ANSICHT");
 pub(in crate::console) const WATCHING_HOVER: Text = Text::of(
@@ -27,7 +27,7 @@ pub(in crate::console) const NOT_OF_DEVICES: Text = Text::of(
 );
 
 pub(in crate::console) fn title(rig: &str) -> String {
-    told!("{rig}: watching", "{rig}: nur Ansicht")
+    text_format!("{rig}: watching", "{rig}: nur Ansicht")
 }
 
 pub(in crate::console) fn rig_and_scene(rig: &str, scene: &str) -> String {
@@ -35,7 +35,7 @@ pub(in crate::console) fn rig_and_scene(rig: &str, scene: &str) -> String {
 }
 
 pub(in crate::console) fn silent(seconds: f64) -> String {
-    told!(
+    text_format!(
         "No data from the rig for {seconds:.0} s: the display is out of date",
         "Seit {seconds:.0} s nichts vom Aufbau: die Anzeige ist veraltet"
     )

@@ -1,6 +1,6 @@
 //! The page that lists all calibrations of the rig.
 
-use crate::language::{Text, told, word};
+use crate::language::{Text, text_format, word};
 
 pub(in crate::console) const TITLE: Text = Text::of("All calibrations", "Alle Kalibrierungen");
 pub(in crate::console) const MEANING: Text = Text::of(
@@ -33,17 +33,17 @@ pub(in crate::console) const FUTURE: Text = Text::of("in the future", "in der Zu
 /// Accessible name of a button that starts a calibration.
 pub(in crate::console) fn button(verb: &str, arm: &str, calibration: &str) -> String {
     let after = arm.to_lowercase();
-    told!("{verb} {arm} arm, {calibration}", "{verb}: Arm {after}, {calibration}")
+    text_format!("{verb} {arm} arm, {calibration}", "{verb}: Arm {after}, {calibration}")
 }
 
 pub(in crate::console) fn of_arm(arm: &str, sensor: &str, tool: &str) -> String {
     let after = arm.to_lowercase();
-    told!("{arm} arm: sensor {sensor}, {tool}", "Arm {after}: Sensor {sensor}, {tool}")
+    text_format!("{arm} arm: sensor {sensor}, {tool}", "Arm {after}: Sensor {sensor}, {tool}")
 }
 
 pub(in crate::console) fn of_unknown(arm: &str, why: &str) -> String {
     let after = arm.to_lowercase();
-    told!("{arm} arm: {why}", "Arm {after}: {why}")
+    text_format!("{arm} arm: {why}", "Arm {after}: {why}")
 }
 
 pub(in crate::console) fn made(day: &str, age: &str) -> String {
@@ -54,7 +54,7 @@ pub(in crate::console) fn days(days: u64) -> String {
     match days {
         0 => word("less than a day old", "weniger als einen Tag alt").to_owned(),
         1 => word("1 day old", "1 Tag alt").to_owned(),
-        _ => told!("{days} days old", "{days} Tage alt"),
+        _ => text_format!("{days} days old", "{days} Tage alt"),
     }
 }
 
@@ -62,21 +62,21 @@ pub(in crate::console) fn verdict(verdict: &str, error: &str) -> String {
     if error.is_empty() {
         verdict.to_owned()
     } else {
-        told!("{verdict}, held-out error {error}", "{verdict}, Testfehler {error}")
+        text_format!("{verdict}, held-out error {error}", "{verdict}, Testfehler {error}")
     }
 }
 
 pub(in crate::console) fn overridden(verdict: &str, name: &str) -> String {
-    told!("{verdict}, accepted by {name}", "{verdict}, übernommen von {name}")
+    text_format!("{verdict}, accepted by {name}", "{verdict}, übernommen von {name}")
 }
 
 pub(in crate::console) fn checked(day: &str, found: &str) -> String {
-    told!("ready check on {day}: {found}", "Startprüfung vom {day}: {found}")
+    text_format!("ready check on {day}: {found}", "Startprüfung vom {day}: {found}")
 }
 
 /// Fractions of the time with force, 0 to 1, in which the network was outside its training data and not used.
 pub(in crate::console) fn in_use(outside: f64, without: f64) -> String {
-    let shares = told!(
+    let fractions = text_format!(
         "outside its training {:.0} % of the time, not used {:.0} %",
         "{:.0} % der Zeit außerhalb des Trainings, {:.0} % nicht genutzt",
         100.0 * outside,
@@ -84,9 +84,9 @@ pub(in crate::console) fn in_use(outside: f64, without: f64) -> String {
     );
     let much = without >= 0.02 || outside >= 0.3;
     if much {
-        told!("{shares}: record more data where you work", "{shares}: im Arbeitsbereich mehr aufzeichnen")
+        text_format!("{fractions}: record more data where you work", "{fractions}: im Arbeitsbereich mehr aufzeichnen")
     } else {
-        shares
+        fractions
     }
 }
 
@@ -95,5 +95,5 @@ pub(in crate::console) fn newton(newton: f64) -> String {
 }
 
 pub(in crate::console) fn within(value: f64, limit: f64, unit: &str) -> String {
-    told!("{value:.2} {unit}, limit {limit:.2}", "{value:.2} {unit}, Grenze {limit:.2}")
+    text_format!("{value:.2} {unit}, limit {limit:.2}", "{value:.2} {unit}, Grenze {limit:.2}")
 }

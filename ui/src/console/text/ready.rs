@@ -1,6 +1,6 @@
 //! The ready check.
 
-use crate::language::{Text, told};
+use crate::language::{Text, text_format};
 
 pub(in crate::console) const TITLE: Text = Text::of("Ready check", "Startprüfung");
 pub(in crate::console) const MEANING: Text = Text::of(
@@ -36,15 +36,15 @@ pub(in crate::console) fn line(check: &str, words: &str) -> String {
 }
 
 pub(in crate::console) fn left_out(check: &str, why: &str) -> String {
-    told!("{check}: skipped, {why}", "{check}: ausgelassen, {why}")
+    text_format!("{check}: skipped, {why}", "{check}: ausgelassen, {why}")
 }
 
 pub(in crate::console) fn saved(path: &std::path::Path) -> String {
-    told!("Saved in {}", "Gespeichert in {}", path.display())
+    text_format!("Saved in {}", "Gespeichert in {}", path.display())
 }
 
 pub(in crate::console) fn not_saved(reason: &str) -> String {
-    told!("The record was not saved: {reason}", "Protokoll nicht gespeichert: {reason}")
+    text_format!("The record was not saved: {reason}", "Protokoll nicht gespeichert: {reason}")
 }
 
 pub(in crate::console) fn took(seconds: f64) -> String {

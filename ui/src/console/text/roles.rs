@@ -1,6 +1,6 @@
 //! The three views, and the script of the demonstration.
 
-use crate::language::{Text, told};
+use crate::language::{Text, text_format};
 
 pub(in crate::console) const SURGEON: Text = Text::of("Surgeon", "Chirurg");
 pub(in crate::console) const TECHNICIAN: Text = Text::of("Technician", "Technik");
@@ -140,14 +140,14 @@ pub(in crate::console) const BARS_HOVER: Text = Text::of(
 /// Travel of the handle since its release, mm.
 pub(in crate::console) fn handle_went(travel_mm: f64) -> String {
     if travel_mm < 10.0 {
-        told!("The handle moved {travel_mm:.1} mm.", "Weg des Handgeräts: {travel_mm:.1} mm.")
+        text_format!("The handle moved {travel_mm:.1} mm.", "Weg des Handgeräts: {travel_mm:.1} mm.")
     } else {
-        told!("The handle moved {travel_mm:.0} mm.", "Weg des Handgeräts: {travel_mm:.0} mm.")
+        text_format!("The handle moved {travel_mm:.0} mm.", "Weg des Handgeräts: {travel_mm:.0} mm.")
     }
 }
 
 pub(in crate::console) fn recovers_from_fault(cause: &str, left_s: f64) -> String {
-    let what = told!(
+    let what = text_format!(
         "Fault: {cause}. The loop removed force and motion at once",
         "Störung: {cause}. Die Regelung hat Kraft und Bewegung sofort weggenommen"
     );
@@ -156,12 +156,12 @@ pub(in crate::console) fn recovers_from_fault(cause: &str, left_s: f64) -> Strin
 
 pub(in crate::console) fn recovers(what: &str, left_s: f64) -> String {
     if left_s > 0.0 {
-        told!(
+        text_format!(
             "{what}. Nothing here is real: the chapter restarts in {left_s:.0} s, unless you press Stop.",
             "{what}. Hier ist nichts echt: das Kapitel beginnt in {left_s:.0} s neu, außer bei Halt."
         )
     } else {
-        told!(
+        text_format!(
             "{what}. Nothing here is real: the chapter restarts as soon as the loop permits it.",
             "{what}. Hier ist nichts echt: das Kapitel beginnt neu, sobald die Regelung es erlaubt."
         )
@@ -171,12 +171,12 @@ pub(in crate::console) fn recovers(what: &str, left_s: f64) -> String {
 /// A fault that only a person releases: `stopped` if Stop was pressed, otherwise because the rig has devices.
 pub(in crate::console) fn fault_waits(cause: &str, stopped: bool) -> String {
     if stopped {
-        told!(
+        text_format!(
             "Fault: {cause}. Stop was pressed, so the demonstration waits until you press Release stop, then Engage.",
             "Störung: {cause}. Halt wurde gedrückt, deshalb wartet die Vorführung, bis der Halt gelöst und gekoppelt wird."
         )
     } else {
-        told!(
+        text_format!(
             "Fault: {cause}. No force, no motion. Press Release stop, then Engage.",
             "Störung: {cause}. Keine Kraft, keine Bewegung. Halt lösen, dann koppeln."
         )
@@ -185,7 +185,7 @@ pub(in crate::console) fn fault_waits(cause: &str, stopped: bool) -> String {
 
 /// Hover text of a view, with its key.
 pub(in crate::console) fn meaning_and_key(meaning: &str, key: &str) -> String {
-    told!("{meaning}\nKey {key}", "{meaning}\nTaste {key}")
+    text_format!("{meaning}\nKey {key}", "{meaning}\nTaste {key}")
 }
 
 /// Replaces a bar whose force is unknown.
@@ -193,12 +193,12 @@ pub(in crate::console) const UNKNOWN: Text = Text::of("unknown", "unbekannt");
 
 /// `measured` has its unit, or is "unknown".
 pub(in crate::console) fn hand(name: &str, measured: &str, rendered_n: f64, ceiling_n: f64) -> String {
-    told!(
+    text_format!(
         "{name}: measured {measured}, rendered {rendered_n:.1} N, ceiling {ceiling_n:.0} N",
         "{name}: gemessen {measured}, dargestellt {rendered_n:.1} N, Höchstkraft {ceiling_n:.0} N"
     )
 }
 
 pub(in crate::console) fn ceiling(ceiling_n: f64) -> String {
-    told!("ceiling {ceiling_n:.0} N", "Höchstkraft {ceiling_n:.0} N")
+    text_format!("ceiling {ceiling_n:.0} N", "Höchstkraft {ceiling_n:.0} N")
 }

@@ -1,6 +1,6 @@
 //! The safety panel: the interlock and the row of gates.
 
-use crate::language::{Text, told};
+use crate::language::{Text, text_format};
 
 pub(in crate::console) const IDLE: Text = Text::of("Idle", "Leerlauf");
 pub(in crate::console) const READY: Text = Text::of("Ready", "Bereit");
@@ -40,22 +40,22 @@ pub(in crate::console) const NEVER: Text = Text::of("never", "nie");
 
 /// Suffix that names the side of a rig with two arms.
 pub(in crate::console) fn of_hand(side: &str) -> String {
-    told!(", {side} hand", ", Hand {side}")
+    text_format!(", {side} hand", ", Hand {side}")
 }
 
 /// Time at which the state was entered, s on the loop's clock, and the cause.
 pub(in crate::console) fn since(t_s: f64, why: &str) -> String {
-    told!("since {t_s:.1} s: {why}", "seit {t_s:.1} s: {why}")
+    text_format!("since {t_s:.1} s: {why}", "seit {t_s:.1} s: {why}")
 }
 
 /// Title of the diagram; `whose` from [`of_hand`].
 pub(in crate::console) fn interlock(whose: &str, state: &str) -> String {
-    told!("Interlock{whose}: {state}", "Verriegelung{whose}: {state}")
+    text_format!("Interlock{whose}: {state}", "Verriegelung{whose}: {state}")
 }
 
 /// Gate in one sentence; `whose` from [`of_hand`].
 pub(in crate::console) fn gate(name: &str, whose: &str, standing: &str, ticks: u64) -> String {
-    told!(
+    text_format!(
         "Gate {name}{whose}: {standing}, acted in {ticks} ticks",
         "Sperre {name}{whose}: {standing}, wirkte in {ticks} Takten"
     )

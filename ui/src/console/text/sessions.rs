@@ -2,9 +2,9 @@
 
 use std::{io, path::Path, time::Duration};
 
-use crate::console::sessions::Shown;
+use crate::console::sessions::DisplayState;
 
-use crate::language::{Text, told, word};
+use crate::language::{Text, text_format, word};
 
 pub(in crate::console) const NAME_KEEP: Text = Text::of("Keep this session", "Diese Sitzung sichern");
 pub(in crate::console) const NAME_KEPT: Text = Text::of("This session is kept", "Diese Sitzung ist gesichert");
@@ -26,7 +26,7 @@ pub(in crate::console) fn recorded_for(seconds: u64, kept: bool) -> String {
     }
 }
 
-pub(in crate::console) fn hover(shown: &Shown) -> String {
+pub(in crate::console) fn hover(shown: &DisplayState) -> String {
     let what = if shown.kept {
         word(
             "This session is kept. Press to allow its deletion when space is needed (key K)",
@@ -40,7 +40,7 @@ pub(in crate::console) fn hover(shown: &Shown) -> String {
         )
     };
     let lost = if shown.lost > 0 {
-        told!(
+        text_format!(
             "\n{} entries lost: the disk is too slow",
             "\n{} Einträge verloren: die Platte ist zu langsam",
             shown.lost
@@ -49,28 +49,28 @@ pub(in crate::console) fn hover(shown: &Shown) -> String {
         String::new()
     };
     let watched = shown.watched.iter().fold(String::new(), |words, one| {
-        words + &told!("\nShared at {}: {} watching", "\nZuschauer über {}: jetzt {}", one.at, one.watchers)
+        words + &text_format!("\nShared at {}: {} watching", "\nZuschauer über {}: jetzt {}", one.at, one.watchers)
     });
     let path = shown.path.display();
     let megabytes = shown.bytes as f64 * 1e-6;
-    let pictures = if shown.pictures > 0 {
-        told!("\n{} endoscope images", "\n{} Endoskopbilder", shown.pictures)
+    let images = if shown.images > 0 {
+        text_format!("\n{} endoscope images", "\n{} Endoskopbilder", shown.images)
     } else {
         String::new()
     };
-    told!(
-        "{what}\n{path}\n{megabytes:.1} MB, marks: {} (key E sets one){pictures}{lost}{watched}",
-        "{what}\n{path}\n{megabytes:.1} MB, Marken: {} (Taste E setzt eine){pictures}{lost}{watched}",
+    text_format!(
+        "{what}\n{path}\n{megabytes:.1} MB, marks: {} (key E sets one){images}{lost}{watched}",
+        "{what}\n{path}\n{megabytes:.1} MB, Marken: {} (Taste E setzt eine){images}{lost}{watched}",
         shown.marks
     )
 }
 
 pub(in crate::console) fn no_folder(folder: &Path, error: &io::Error) -> String {
-    told!("the folder {} cannot be used: {error}", "der Ordner {} ist nicht nutzbar: {error}", folder.display())
+    text_format!("the folder {} cannot be used: {error}", "der Ordner {} ist nicht nutzbar: {error}", folder.display())
 }
 
 pub(in crate::console) fn not_kept(path: &Path, error: &io::Error) -> String {
-    told!(
+    text_format!(
         "cannot change whether {} is kept: {error}",
         "die Sicherung von {} lässt sich nicht ändern: {error}",
         path.display()
@@ -78,7 +78,7 @@ pub(in crate::console) fn not_kept(path: &Path, error: &io::Error) -> String {
 }
 
 pub(in crate::console) fn slow(waits: Duration) -> String {
-    told!(
+    text_format!(
         "the disk has not responded for {:.1} s; after 2 s a part of the session is lost",
         "die Platte antwortet seit {:.1} s nicht; nach 2 s geht ein Teil der Sitzung verloren",
         waits.as_secs_f64()
@@ -86,32 +86,32 @@ pub(in crate::console) fn slow(waits: Duration) -> String {
 }
 
 pub(in crate::console) fn lost(entries: u64) -> String {
-    told!(
+    text_format!(
         "the disk is too slow: {entries} entries of this session are lost; a replay ends at the first of them",
         "die Platte ist zu langsam: {entries} Einträge dieser Sitzung fehlen, eine Wiedergabe endet beim ersten davon"
     )
 }
 
-pub(in crate::console) fn pictures_lost(pictures: u64) -> String {
-    told!(
-        "the disk is too slow: {pictures} endoscope images are missing from this session, but nothing else",
-        "die Platte ist zu langsam: in dieser Sitzung fehlen {pictures} Endoskopbilder, sonst nichts"
+pub(in crate::console) fn images_lost(images: u64) -> String {
+    text_format!(
+        "the disk is too slow: {images} endoscope images are missing from this session, but nothing else",
+        "die Platte ist zu langsam: in dieser Sitzung fehlen {images} Endoskopbilder, sonst nichts"
     )
 }
 
 pub(in crate::console) fn cause(why: &str) -> String {
-    told!("Recording: {why}", "Aufzeichnung: {why}")
+    text_format!("Recording: {why}", "Aufzeichnung: {why}")
 }
 
 /// Entry of the session log.
 pub(in crate::console) fn mark(number: usize) -> String {
-    told!("mark {number}", "Marke {number}")
+    text_format!("mark {number}", "Marke {number}")
 }
 
 pub(in crate::console) fn alarm(cause: &str) -> String {
-    told!("alarm: {cause}", "Alarm: {cause}")
+    text_format!("alarm: {cause}", "Alarm: {cause}")
 }
 
 pub(in crate::console) fn alarm_over(cause: &str) -> String {
-    told!("alarm ended: {cause}", "Alarm beendet: {cause}")
+    text_format!("alarm ended: {cause}", "Alarm beendet: {cause}")
 }

@@ -1,6 +1,6 @@
 //! Errors of the settings file.
 
-use crate::language::{Text, told};
+use crate::language::{Text, text_format};
 
 pub(in crate::console) const LAYOUT_LOST: Text = Text::of(
     "The panel layout cannot be read; the default layout is used",
@@ -8,11 +8,11 @@ pub(in crate::console) const LAYOUT_LOST: Text = Text::of(
 );
 
 pub(in crate::console) fn not_read(error: &impl std::fmt::Display) -> String {
-    told!("The settings cannot be read: {error}", "Einstellungen nicht lesbar: {error}")
+    text_format!("The settings cannot be read: {error}", "Einstellungen nicht lesbar: {error}")
 }
 
 pub(in crate::console) fn not_kept(error: &impl std::fmt::Display) -> String {
-    told!("The settings cannot be saved: {error}", "Einstellungen nicht speicherbar: {error}")
+    text_format!("The settings cannot be saved: {error}", "Einstellungen nicht speicherbar: {error}")
 }
 
 pub(in crate::console) fn layout_lost(error: &impl std::fmt::Display) -> String {
@@ -20,14 +20,14 @@ pub(in crate::console) fn layout_lost(error: &impl std::fmt::Display) -> String 
 }
 
 pub(in crate::console) fn set_aside(error: &impl std::fmt::Display, name: &str) -> String {
-    told!(
+    text_format!(
         "The settings file was damaged ({error}); it was renamed to {name}, and the defaults are used",
         "Die Einstellungsdatei war beschädigt ({error}); sie heißt jetzt {name}, es gelten die Standardwerte"
     )
 }
 
 pub(in crate::console) fn damaged(error: &impl std::fmt::Display) -> String {
-    told!(
+    text_format!(
         "The settings file is damaged ({error}); the defaults are used",
         "Die Einstellungsdatei ist beschädigt ({error}); es gelten die Standardwerte"
     )

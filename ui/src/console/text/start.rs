@@ -1,6 +1,6 @@
 //! The start page: rig and scene.
 
-use crate::language::{Text, told, word};
+use crate::language::{Text, text_format, word};
 
 pub(in crate::console) const OPEN: Text = Text::of("Rig", "Aufbau");
 pub(in crate::console) const OPEN_HOVER: Text = Text::of(
@@ -153,42 +153,53 @@ pub(in crate::console) const NO_ENDOSCOPE: Text =
 /// Size of the image in px, and frame rate; `None` for a still image.
 pub(in crate::console) fn endoscope_sends([width, height]: [usize; 2], rate_hz: Option<f64>) -> String {
     match rate_hz {
-        Some(rate_hz) => told!(
+        Some(rate_hz) => text_format!(
             "Sends {width} x {height} pixels, {rate_hz:.0} images per second",
             "Sendet {width} x {height} Pixel, {rate_hz:.0} Bilder pro Sekunde"
         ),
-        None => told!("One image of {width} x {height} pixels", "Ein Bild mit {width} x {height} Pixeln"),
+        None => text_format!("One image of {width} x {height} pixels", "Ein Bild mit {width} x {height} Pixeln"),
     }
 }
 
 pub(in crate::console) fn endoscope_written(path: &str) -> String {
-    told!("Written: {path}. Start the rig to use the address.", "Geschrieben: {path}. Zum Nutzen der Adresse starten.")
+    text_format!(
+        "Written: {path}. Start the rig to use the address.",
+        "Geschrieben: {path}. Zum Nutzen der Adresse starten."
+    )
 }
 
 pub(in crate::console) fn of_devices(count: usize, emulated: bool) -> String {
-    let devices =
-        if count == 1 { word("1 device", "1 Gerät").to_owned() } else { told!("{count} devices", "{count} Geräte") };
-    if emulated { told!("{devices}, emulated", "{devices}, emuliert") } else { devices }
+    let devices = if count == 1 {
+        word("1 device", "1 Gerät").to_owned()
+    } else {
+        text_format!("{count} devices", "{count} Geräte")
+    };
+    if emulated { text_format!("{devices}, emulated", "{devices}, emuliert") } else { devices }
 }
 
 pub(in crate::console) fn unusable(cause: &str) -> String {
-    told!("Cannot be used: {cause}", "Nicht nutzbar: {cause}")
+    text_format!("Cannot be used: {cause}", "Nicht nutzbar: {cause}")
 }
 
 pub(in crate::console) fn taken(path: &std::path::Path) -> String {
-    told!("A rig with this name exists: {}", "Ein Aufbau heißt schon so: {}", path.display())
+    text_format!("A rig with this name exists: {}", "Ein Aufbau heißt schon so: {}", path.display())
 }
 
 pub(in crate::console) fn made(path: &std::path::Path) -> String {
-    told!("Written: {}", "Geschrieben: {}", path.display())
+    text_format!("Written: {}", "Geschrieben: {}", path.display())
 }
 
 pub(in crate::console) fn not_started(cause: &str, instead: Option<&str>) -> String {
     match instead {
         Some(rig) => {
-            told!("Not started: {cause}. {rig} is running again.", "Nicht gestartet: {cause}. {rig} läuft wieder.")
+            text_format!(
+                "Not started: {cause}. {rig} is running again.",
+                "Nicht gestartet: {cause}. {rig} läuft wieder."
+            )
         }
-        None => told!("Not started: {cause}. No rig is running.", "Nicht gestartet: {cause}. Kein Aufbau läuft."),
+        None => {
+            text_format!("Not started: {cause}. No rig is running.", "Nicht gestartet: {cause}. Kein Aufbau läuft.")
+        }
     }
 }
 

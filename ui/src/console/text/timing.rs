@@ -1,6 +1,6 @@
 //! The timing panel.
 
-use crate::language::{Text, told};
+use crate::language::{Text, text_format};
 
 pub(in crate::console) const WAKE_UP: Text = Text::of("Wake-up", "Aufwachen");
 pub(in crate::console) const WAKE_UP_HOVER: Text = Text::of(
@@ -57,54 +57,54 @@ pub(in crate::console) const GRANTED: Text = Text::of("granted", "gewährt");
 pub(in crate::console) const REFUSED: Text = Text::of("refused", "verweigert");
 
 pub(in crate::console) fn and_more(from_us: f64) -> String {
-    told!("{from_us:.0} µs or more", "{from_us:.0} µs oder mehr")
+    text_format!("{from_us:.0} µs or more", "{from_us:.0} µs oder mehr")
 }
 
 pub(in crate::console) fn from_to(from_us: f64, to_us: f64) -> String {
-    told!("{from_us:.0} to {to_us:.0} µs", "{from_us:.0} bis {to_us:.0} µs")
+    text_format!("{from_us:.0} to {to_us:.0} µs", "{from_us:.0} bis {to_us:.0} µs")
 }
 
 /// Hover text of a bar.
-pub(in crate::console) fn bar(name: &str, range: &str, ticks: &str, share: &str) -> String {
-    told!("{name}: {range}\n{ticks} ticks, {share}", "{name}: {range}\n{ticks} Takte, {share}")
+pub(in crate::console) fn bar(name: &str, range: &str, ticks: &str, fraction: &str) -> String {
+    text_format!("{name}: {range}\n{ticks} ticks, {fraction}", "{name}: {range}\n{ticks} Takte, {fraction}")
 }
 
 pub(in crate::console) fn histogram(name: &str, late: &str, total: &str, deadline_us: f64) -> String {
-    told!(
+    text_format!(
         "{name} histogram: {late} of {total} ticks exceeded the deadline of {deadline_us:.0} µs",
         "Histogramm {name}: {late} von {total} Takten über der Frist von {deadline_us:.0} µs"
     )
 }
 
 pub(in crate::console) fn deadline(deadline_us: f64) -> String {
-    told!("deadline {deadline_us:.0} µs", "Frist {deadline_us:.0} µs")
+    text_format!("deadline {deadline_us:.0} µs", "Frist {deadline_us:.0} µs")
 }
 
 pub(in crate::console) fn log_scale(top: &str) -> String {
-    told!("log scale, maximum {top}", "log. Skala, Maximum {top}")
+    text_format!("log scale, maximum {top}", "log. Skala, Maximum {top}")
 }
 
 pub(in crate::console) fn missed(minutes: usize, count: &str) -> String {
-    told!("Missed in the last {minutes} min: {count}", "Versäumt in den letzten {minutes} min: {count}")
+    text_format!("Missed in the last {minutes} min: {count}", "Versäumt in den letzten {minutes} min: {count}")
 }
 
 /// Accessible name of the strip.
 pub(in crate::console) fn missed_periods(words: &str) -> String {
-    told!("{words} periods", "{words} Takte")
+    text_format!("{words} periods", "{words} Takte")
 }
 
 /// Hover text of a bar of the strip.
 pub(in crate::console) fn missed_at(age_s: usize, count: &str) -> String {
-    told!("{age_s} s ago: {count} periods missed", "vor {age_s} s: {count} Takte versäumt")
+    text_format!("{age_s} s ago: {count} periods missed", "vor {age_s} s: {count} Takte versäumt")
 }
 
 pub(in crate::console) fn ticks_at(ticks: &str, rate_hz: f64) -> String {
-    told!("{ticks} at {rate_hz:.0} Hz", "{ticks} mit {rate_hz:.0} Hz")
+    text_format!("{ticks} at {rate_hz:.0} Hz", "{ticks} mit {rate_hz:.0} Hz")
 }
 
 /// Time between two frames (median and 99th percentile) and work per frame, ms.
 pub(in crate::console) fn frame([p50_ms, p99_ms]: [f64; 2], work_ms: f64) -> String {
-    told!(
+    text_format!(
         "p50 {p50_ms:.0}, p99 {p99_ms:.0}, work {work_ms:.0} ms",
         "p50 {p50_ms:.0}, p99 {p99_ms:.0}, Arbeit {work_ms:.0} ms"
     )

@@ -1,6 +1,6 @@
 //! The wizard that trains and checks the tip-force network.
 
-use crate::language::{Text, told};
+use crate::language::{Text, text_format};
 
 pub(in crate::console) const PAPER: Text = Text::of("paper", "Artikel");
 pub(in crate::console) const STEP_READY: Text = Text::of("Ready", "Bereit");
@@ -48,7 +48,7 @@ pub(in crate::console) const NO_FOLDER: Text = Text::of(
     "No folder for the recording was found: set NIMA_DATA_DIR",
     "Kein Ordner für die Aufzeichnung gefunden: NIMA_DATA_DIR setzen",
 );
-pub(in crate::console) const NO_CHECKED_NETWORK: Text =
+pub(in crate::console) const NETWORK_UNCHECKED: Text =
     Text::of("No checked network: go back", "Kein geprüftes Netz: zurückgehen");
 pub(in crate::console) const CHECK_TITLE: Text = Text::of("A new recording", "Neue Aufzeichnung");
 pub(in crate::console) const CHECK_HOVER: Text = Text::of(
@@ -118,7 +118,7 @@ pub(in crate::console) const REGRESSION_PLOT: Text = Text::of(
     "Regressionsdiagramm: vorhergesagte gegen gemessene Kraft, drei Achsen",
 );
 pub(in crate::console) const NO_CONTACT_AXIS: Text = Text::of("Predicted (N)", "Vorhersage (N)");
-pub(in crate::console) const SHARE_AXIS: Text = Text::of("Rows (%)", "Anteil der Zeilen (%)");
+pub(in crate::console) const FRACTION_AXIS: Text = Text::of("Rows (%)", "Anteil der Zeilen (%)");
 pub(in crate::console) const NO_CONTACT_PLOT: Text = Text::of(
     "Histogram of the predicted force without contact, three axes",
     "Histogramm der vorhergesagten Kraft ohne Kontakt, drei Achsen",
@@ -276,38 +276,38 @@ pub(in crate::console) const PHASE_PAUSED: Text = Text::of("paused", "pausiert")
 pub(in crate::console) const PHASE_RECORDING: Text = Text::of("recording", "zeichnet auf");
 
 pub(in crate::console) fn not_judged(error: &str) -> String {
-    told!("The network could not be evaluated: {error}", "Das Netz ließ sich nicht bewerten: {error}")
+    text_format!("The network could not be evaluated: {error}", "Das Netz ließ sich nicht bewerten: {error}")
 }
 
 pub(in crate::console) fn not_trained(error: &str) -> String {
-    told!("Not trained: {error}. The recording is kept.", "Nicht trainiert: {error}. Die Aufzeichnung bleibt.")
+    text_format!("Not trained: {error}. The recording is kept.", "Nicht trainiert: {error}. Die Aufzeichnung bleibt.")
 }
 
 pub(in crate::console) fn state(phase: &str) -> String {
-    told!("State: {phase}", "Zustand: {phase}")
+    text_format!("State: {phase}", "Zustand: {phase}")
 }
 
 pub(in crate::console) fn check_task(work_s: f64, free_s: f64) -> String {
-    told!(
+    text_format!(
         "{work_s:.0} s of work on the tissue, then {free_s:.0} s without touching it",
         "{work_s:.0} s Arbeit am Gewebe, dann {free_s:.0} s ohne Berührung"
     )
 }
 
 pub(in crate::console) fn verdict(reason: &str) -> String {
-    told!("Verdict: {reason}", "Urteil: {reason}")
+    text_format!("Verdict: {reason}", "Urteil: {reason}")
 }
 
 pub(in crate::console) fn doubt(percent: f64, rows: usize) -> String {
-    told!("{percent:.1} % of {rows} rows", "{percent:.1} % von {rows} Zeilen")
+    text_format!("{percent:.1} % of {rows} rows", "{percent:.1} % von {rows} Zeilen")
 }
 
 pub(in crate::console) fn no_thread(error: &impl std::fmt::Display) -> String {
-    told!("The background task could not be started: {error}", "Hintergrundaufgabe nicht gestartet: {error}")
+    text_format!("The background task could not be started: {error}", "Hintergrundaufgabe nicht gestartet: {error}")
 }
 
 pub(in crate::console) fn not_written(path: &std::path::Path, error: &impl std::fmt::Display) -> String {
-    told!(
+    text_format!(
         "The recording could not be written to {}: {error}",
         "Die Aufzeichnung ließ sich nicht nach {} schreiben: {error}",
         path.display()
@@ -315,14 +315,14 @@ pub(in crate::console) fn not_written(path: &std::path::Path, error: &impl std::
 }
 
 pub(in crate::console) fn trained_on_too_little(goal: &str) -> String {
-    told!(
+    text_format!(
         "the recording used for training is incomplete ({goal}); record more",
         "die Trainingsaufzeichnung ist unvollständig ({goal}); mehr aufzeichnen"
     )
 }
 
 pub(in crate::console) fn rows_and_seconds(rows: usize, seconds: f64, paper_rows: usize, paper_s: f64) -> String {
-    told!(
+    text_format!(
         "{rows}, {seconds:.0} s (paper: {paper_rows}, {paper_s:.0} s)",
         "{rows}, {seconds:.0} s (Artikel: {paper_rows}, {paper_s:.0} s)"
     )
@@ -333,49 +333,52 @@ pub(in crate::console) fn advice(when: &str, advice: &str, goal: &str) -> String
 }
 
 pub(in crate::console) fn nothing_taken(why: &str) -> String {
-    told!("not recording: {why}", "keine Aufzeichnung: {why}")
+    text_format!("not recording: {why}", "keine Aufzeichnung: {why}")
 }
 
 pub(in crate::console) fn taking_zero(percent: f64) -> String {
-    told!(
+    text_format!(
         "setting the sensor under the tissue to zero: {percent:.0} %",
         "Sensor unter dem Gewebe wird genullt: {percent:.0} %"
     )
 }
 
 pub(in crate::console) fn networks_on_rows(networks: usize, rows: usize) -> String {
-    told!("{networks} networks on {rows} rows", "{networks} Netze mit {rows} Zeilen")
+    text_format!("{networks} networks on {rows} rows", "{networks} Netze mit {rows} Zeilen")
 }
 
 pub(in crate::console) fn not_complete(goal: &str) -> String {
-    told!(
+    text_format!(
         "The recording is incomplete ({goal}): you can accept this network only under your name",
         "Die Aufzeichnung ist unvollständig ({goal}): dieses Netz nur unter eigenem Namen zu übernehmen"
     )
 }
 
 pub(in crate::console) fn held_out(network: usize) -> String {
-    told!("{network} held out", "{network} Test")
+    text_format!("{network} held out", "{network} Test")
 }
 
 pub(in crate::console) fn training(network: usize) -> String {
-    told!("{network} training", "{network} Training")
+    text_format!("{network} training", "{network} Training")
 }
 
 pub(in crate::console) fn losses(networks: usize, epochs: usize) -> String {
-    told!("Losses of {networks} networks over {epochs} epochs", "Verluste von {networks} Netzen über {epochs} Epochen")
+    text_format!(
+        "Losses of {networks} networks over {epochs} epochs",
+        "Verluste von {networks} Netzen über {epochs} Epochen"
+    )
 }
 
 pub(in crate::console) fn rows_of(rows: usize, asked: usize) -> String {
-    told!("{rows} of {asked}", "{rows} von {asked}")
+    text_format!("{rows} of {asked}", "{rows} von {asked}")
 }
 
 pub(in crate::console) fn rows_and_time(rows: usize, seconds: f64) -> String {
-    told!("{rows} rows, {seconds:.0} s", "{rows} Zeilen, {seconds:.0} s")
+    text_format!("{rows} rows, {seconds:.0} s", "{rows} Zeilen, {seconds:.0} s")
 }
 
 pub(in crate::console) fn time_left(percent: f64, elapsed_s: f64, left_s: f64) -> String {
-    told!(
+    text_format!(
         "{percent:.0} %, {elapsed_s:.0} s, at most {left_s:.0} s left",
         "{percent:.0} %, {elapsed_s:.0} s, höchstens noch {left_s:.0} s"
     )

@@ -1,6 +1,6 @@
 //! The top bar: state, stop, engage, refusals.
 
-use crate::language::{Text, told};
+use crate::language::{Text, text_format};
 
 pub(in crate::console) const NIMA_CONSOLE: Text = Text::of("NIMA Console", "NIMA-Konsole");
 pub(in crate::console) const RESEARCH_ONLY: Text =
@@ -56,7 +56,7 @@ pub(in crate::console) const NOT_SET: Text = Text::of("Not set", "Nicht gesetzt"
 
 /// Refused command; `arm` is empty for a rig with one arm.
 pub(in crate::console) fn refused(what: &str, arm: &str, cause: &str, cure: &str) -> String {
-    let arm = if arm.is_empty() { String::new() } else { told!(" ({arm} arm)", " (Arm {arm})") };
+    let arm = if arm.is_empty() { String::new() } else { text_format!(" ({arm} arm)", " (Arm {arm})") };
     format!("{what}{arm}: {cause}; {cure}")
 }
 
@@ -65,12 +65,12 @@ pub(in crate::console) fn device(name: &str, cause: &str) -> String {
 }
 
 pub(in crate::console) fn scene_and_rig(scene: &str, rig: &str) -> String {
-    told!("Scene: {scene}\nRig: {rig}", "Szene: {scene}\nAufbau: {rig}")
+    text_format!("Scene: {scene}\nRig: {rig}", "Szene: {scene}\nAufbau: {rig}")
 }
 
 /// Hover text of the state.
 pub(in crate::console) fn state_meaning(meaning: &str) -> String {
-    told!("State of the control loop\n{meaning}", "Zustand der Regelung\n{meaning}")
+    text_format!("State of the control loop\n{meaning}", "Zustand der Regelung\n{meaning}")
 }
 
 pub(in crate::console) fn state_of_side(side: &str, state: &str) -> String {
@@ -79,5 +79,5 @@ pub(in crate::console) fn state_of_side(side: &str, state: &str) -> String {
 
 /// Accessible name of the state.
 pub(in crate::console) fn state(state: &str) -> String {
-    told!("Loop state: {state}", "Regelung: {state}")
+    text_format!("Loop state: {state}", "Regelung: {state}")
 }

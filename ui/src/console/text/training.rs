@@ -1,6 +1,6 @@
 //! Progress of a trial of a training scene.
 
-use crate::language::{Text, told, word};
+use crate::language::{Text, text_format, word};
 
 pub(in crate::console) fn lumps_marked(marked: u32, is_led: bool) -> String {
     let keys = if is_led {
@@ -8,25 +8,25 @@ pub(in crate::console) fn lumps_marked(marked: u32, is_led: bool) -> String {
     } else {
         ""
     };
-    told!("Places marked: {marked}{keys}", "Markierte Stellen: {marked}{keys}")
+    text_format!("Places marked: {marked}{keys}", "Markierte Stellen: {marked}{keys}")
 }
 
 pub(in crate::console) fn lumps_found(found: u32, lumps: u32, mark_false: u32) -> String {
-    told!(
+    text_format!(
         "Lumps found: {found} of {lumps}, false marks: {mark_false}",
         "Gefundene Knoten: {found} von {lumps}, falsche Marken: {mark_false}"
     )
 }
 
-pub(in crate::console) fn wire(touches: u32, share: f64, ended: bool, is_led: bool) -> String {
+pub(in crate::console) fn wire(touches: u32, fraction: f64, ended: bool, is_led: bool) -> String {
     let keys = if is_led { word(" (N restarts the trial)", " (N startet den Versuch neu)") } else { "" };
     if ended {
-        return told!("Goal reached, touches: {touches}{keys}", "Ziel erreicht, Berührungen: {touches}{keys}");
+        return text_format!("Goal reached, touches: {touches}{keys}", "Ziel erreicht, Berührungen: {touches}{keys}");
     }
-    told!(
+    text_format!(
         "Path to the goal: {:.0} %, touches: {touches}{keys}",
         "Weg zum Ziel: {:.0} %, Berührungen: {touches}{keys}",
-        100.0 * share
+        100.0 * fraction
     )
 }
 
@@ -37,14 +37,14 @@ pub(in crate::console) const JAWS_HOLD: Text = Text::of("holds a ring", "hält e
 pub(in crate::console) fn jaws(side: &str, with_ring: Option<&str>) -> String {
     let with_ring = with_ring.map(|words| format!(" {words}")).unwrap_or_default();
     let after = side.to_lowercase();
-    told!("{side} instrument{with_ring}", "Instrument {after}{with_ring}")
+    text_format!("{side} instrument{with_ring}", "Instrument {after}{with_ring}")
 }
 
 /// Peg transfer; `led` from [`jaws`]. Counts of rings passed in mid-air, placed on pegs and dropped.
 pub(in crate::console) fn rings(led: Option<&str>, [passed, placed, dropped]: [u32; 3], ended: bool) -> String {
     let done = if ended { word("Task done. ", "Fertig. ") } else { "" };
     let led = led.map(|words| format!("{words}. ")).unwrap_or_default();
-    told!(
+    text_format!(
         "{done}{led}Rings: passed {passed}, placed {placed}, dropped {dropped}",
         "{done}{led}Ringe: übergeben {passed}, gesetzt {placed}, gefallen {dropped}"
     )

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use crate::language::{Text, told};
-use crate::words::within;
+use crate::language::{Text, text_format};
+use crate::report_text::within;
 
 pub(crate) const LAST_STEP: Text = Text::of("This is the last step", "Das ist der letzte Schritt");
 pub(crate) const NEEDS_CHECKS: Text = Text::of(
@@ -72,7 +72,7 @@ pub(in crate::console) const REASON: Text = Text::of("Reason", "Grund");
 pub(in crate::console) const SAVE_ANYWAY: Text = Text::of("Save despite the verdict", "Trotz des Urteils speichern");
 pub(in crate::console) const SAVE_ANYWAY_DISABLED_HOVER: Text =
     Text::of("Enter a name and a reason first", "Erst Name und Grund eingeben");
-pub(in crate::console) const POSE_PICTURE: Text =
+pub(in crate::console) const POSE_IMAGE: Text =
     Text::of("Drawing of the required pose", "Zeichnung der einzunehmenden Pose");
 pub(in crate::console) const POSE_HELD: Text = Text::of("solid: current tool", "voll: Instrument jetzt");
 pub(in crate::console) const POSE_UNKNOWN: Text =
@@ -89,37 +89,37 @@ pub(in crate::console) const FOLLOWING_CHECK: Text = Text::of("Next: ready check
 pub(in crate::console) const DONE: Text = Text::of("(done)", "(fertig)");
 
 pub(in crate::console) fn tilt_off(tilt_deg: f64) -> String {
-    told!(
+    text_format!(
         "outline: target   solid: current tool   tilt error {tilt_deg:.0} deg",
         "Umriss: Ziel   voll: Instrument jetzt   Neigungsfehler {tilt_deg:.0} deg"
     )
 }
 
 pub(in crate::console) fn rings_and_discs(name: &str) -> String {
-    told!("{name} (rings: to do, discs: recorded)", "{name} (Ringe: offen, Scheiben: aufgezeichnet)")
+    text_format!("{name} (rings: to do, discs: recorded)", "{name} (Ringe: offen, Scheiben: aufgezeichnet)")
 }
 
 pub(in crate::console) fn fields_filled(title: &str, filled: usize, fields: usize) -> String {
-    told!("{title}: {filled} of {fields} fields filled", "{title}: {filled} von {fields} Feldern gefüllt")
+    text_format!("{title}: {filled} of {fields} fields filled", "{title}: {filled} von {fields} Feldern gefüllt")
 }
 
 pub(in crate::console) fn met(measured: &str) -> String {
-    told!("{measured}, passed", "{measured}, OK")
+    text_format!("{measured}, passed", "{measured}, OK")
 }
 
 pub(in crate::console) fn following(arm: &str, calibration: &str) -> String {
     let after = arm.to_lowercase();
-    told!("Next: {arm} arm, {}", "Weiter: Arm {after}, {}", within(calibration))
+    text_format!("Next: {arm} arm, {}", "Weiter: Arm {after}, {}", within(calibration))
 }
 
 pub(in crate::console) fn title(wizard: &str) -> String {
-    told!("{wizard} calibration", "Kalibrierung: {wizard}")
+    text_format!("{wizard} calibration", "Kalibrierung: {wizard}")
 }
 
 pub(in crate::console) fn recorded(name: &str, count: usize) -> String {
-    told!("{name}: {count} recorded", "{name}: {count} aufgezeichnet")
+    text_format!("{name}: {count} recorded", "{name}: {count} aufgezeichnet")
 }
 
 pub(in crate::console) fn written(path: &Path) -> String {
-    told!("Saved in {}", "Gespeichert in {}", path.display())
+    text_format!("Saved in {}", "Gespeichert in {}", path.display())
 }

@@ -1,21 +1,21 @@
 //! Runs a wizard without a screen: the same sessions and the same order of steps; each step ends as soon as it is complete.
 
-use super::{Binding, CorrespondenceWizard, FrameWizard, Kind, Saving, TipForceWizard, Which, Wizards};
+use super::{Binding, CorrespondenceWizard, FrameKind, FrameWizard, SaveRequest, TipForceWizard, WizardKind, Wizards};
 
 /// Result of attending to the open wizard.
 #[derive(Debug)]
-pub enum Attended {
+pub enum WizardOutcome {
     /// In progress, in this step, with the message of the wizard.
     Working(&'static str, Option<String>),
     /// Proven, and ready to be saved.
-    Proven(Saving),
+    Proven(SaveRequest),
     /// Ended without proof, for this reason.
     NotProven(String),
 }
 
 impl Wizards {
     /// Acts as the technician in the open wizard; `None` if none is open.
-    pub fn attend(&mut self, binding: &Binding) -> Option<Attended> {
+    pub fn attend(&mut self, binding: &Binding) -> Option<WizardOutcome> {
         let which = self.open?;
         let wizard = self.the_mut(which)?;
         wizard.refresh(binding);
@@ -25,33 +25,33 @@ impl Wizards {
             if wizard.attend(binding) && wizard.may_go_on(binding).is_ok() {
                 wizard.go_to(now + 1);
             }
-            return Some(Attended::Working(steps[now].name.get(), wizard.notice().map(str::to_owned)));
+            return Some(WizardOutcome::Working(steps[now].name.get(), wizard.notice().map(str::to_owned)));
         }
         let proven = wizard.proof().is_some();
         let made = wizard.made(binding);
         Some(match made {
             Some(saving) if proven => {
                 self.forget_what_rests_on(&saving);
-                Attended::Proven(saving)
+                WizardOutcome::Proven(saving)
             }
             Some(mut saving) => {
                 let reason = saving.judgement_mut().map(|judgement| judgement.reason.clone());
-                Attended::NotProven(reason.unwrap_or_default())
+                WizardOutcome::NotProven(reason.unwrap_or_default())
             }
-            None => Attended::NotProven(String::new()),
+            None => WizardOutcome::NotProven(String::new()),
         })
     }
 
     /// Discards data that depend on the saved calibration. Pushes and recordings use the gravity calibration; those made with
     /// the previous one must not be mixed with new ones. The recordings of the other frame wizards belong to the previous rig
     /// file.
-    pub(super) fn forget_what_rests_on(&mut self, saving: &Saving) {
-        if matches!(saving, Saving::Gravity(_)) {
+    pub(super) fn forget_what_rests_on(&mut self, saving: &SaveRequest) {
+        if matches!(saving, SaveRequest::Gravity(_)) {
             self.correspondence = CorrespondenceWizard::default();
             self.tip_force = TipForceWizard::default();
         }
-        if matches!(saving, Saving::Frame(_) | Saving::Undo(_)) {
-            for kind in Kind::ALL.into_iter().filter(|kind| self.open != Some(Which::Frame(*kind))) {
+        if matches!(saving, SaveRequest::Frame(_) | SaveRequest::Undo(_)) {
+            for kind in FrameKind::ALL.into_iter().filter(|kind| self.open != Some(WizardKind::Frame(*kind))) {
                 self.frames[kind as usize] = FrameWizard::new(kind);
             }
         }

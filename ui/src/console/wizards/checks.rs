@@ -1,7 +1,7 @@
 //! Checks that must pass before a wizard starts, and switches that describe the rig.
 
 use egui::{Checkbox, Ui};
-use nima_core::calibration::gravity::{Check, CheckState};
+use nima_core::calibration::gravity::{CheckState, PrecheckResult};
 
 use crate::console::{
     alarms::sentence,
@@ -10,7 +10,7 @@ use crate::console::{
 };
 
 /// One check with its measured value, or with cause and remedy.
-pub(super) fn check_ui(ui: &mut Ui, check: &Check) {
+pub(super) fn check_ui(ui: &mut Ui, check: &PrecheckResult) {
     let (what, colour, words) = match &check.state {
         CheckState::Good if check.measured.is_empty() => {
             (Sign::Disc, theme::now().engaged, text::wizards::FINE.get().to_owned())

@@ -5,18 +5,19 @@ use nalgebra::UnitVector3;
 use nima_core::calibration::{
     Verdict,
     correspondence::{
-        Agreement, CorrespondenceRecord, CorrespondenceReport, CorrespondenceSession, Missing, OffsetFrame, Phase,
-        PushTarget, SessionSettings, Solution, TARGETS,
+        CorrespondencePhase, CorrespondenceRecord, CorrespondenceReport, CorrespondenceSession,
+        CorrespondenceSessionSettings, CorrespondenceSolution, MissingInput, OffsetFrame, PushAgreement, PushTarget,
+        TARGETS,
     },
 };
 use nima_machine::{messages::Tick, rig::Prompt};
 
 use super::{
-    Binding, Saving,
+    Binding, SaveRequest,
     checks::{check_line, switch_ui, waiting_line},
-    frame::{Frame, Step, Wish, Wizard},
-    pictures::{progress, sphere_picture},
-    report::{Report, result_ui, verdict_line},
+    drawings::{progress, sphere_image},
+    frame::{Wizard, WizardFrame, WizardRequest, WizardStep},
+    report::{WizardReport, result_ui, verdict_line},
 };
 use crate::{
     console::{
@@ -24,18 +25,18 @@ use crate::{
         text, theme,
         widgets::{card, figure, small},
     },
-    words::{self, Words as _, three_digits},
+    report_text::{self, ShortText as _, three_digits},
 };
 
 /// Minimum number of pushes for a fit.
 const PUSHES_MIN: usize = 6;
 /// Requested number of pushes: one in each direction.
 const PUSHES_ASKED: usize = TARGETS.len();
-const STEPS: [Step; 4] = [
-    Step { name: text::wizards::STEP_CHECK, meaning: text::correspondence::STEP_CHECK_HOVER },
-    Step { name: text::correspondence::STEP_PUSHES, meaning: text::correspondence::STEP_PUSHES_HOVER },
-    Step { name: text::wizards::STEP_RESULT, meaning: text::correspondence::STEP_RESULT_HOVER },
-    Step { name: text::wizards::STEP_SAVE, meaning: text::wizards::STEP_SAVE_HOVER },
+const STEPS: [WizardStep; 4] = [
+    WizardStep { name: text::wizards::STEP_CHECK, meaning: text::correspondence::STEP_CHECK_HOVER },
+    WizardStep { name: text::correspondence::STEP_PUSHES, meaning: text::correspondence::STEP_PUSHES_HOVER },
+    WizardStep { name: text::wizards::STEP_RESULT, meaning: text::correspondence::STEP_RESULT_HOVER },
+    WizardStep { name: text::wizards::STEP_SAVE, meaning: text::wizards::STEP_SAVE_HOVER },
 ];
 const CHECK: usize = 0;
 const PUSHES: usize = 1;
@@ -43,7 +44,7 @@ const RESULT: usize = 2;
 
 /// Sources that delivered together with the wrist sensor's sample in the last tick.
 #[derive(Clone, Copy, Debug, Default)]
-struct Sources {
+struct DeliveredSources {
     gravity: bool,
     tissue: bool,
     chain: bool,
@@ -52,26 +53,26 @@ struct Sources {
 #[derive(Debug)]
 pub struct CorrespondenceWizard {
     session: CorrespondenceSession,
-    frame: Frame,
+    frame: WizardFrame,
     /// `None` while the wrist sensor is silent.
-    sources: Option<Sources>,
+    sources: Option<DeliveredSources>,
     /// Loop time, which starts at zero with each start of the loop, and session time, which continues.
     clock_s: (f64, f64),
-    report: Report<CorrespondenceReport>,
+    report: WizardReport<CorrespondenceReport>,
 }
 
 impl Default for CorrespondenceWizard {
     fn default() -> Self {
-        Self::of(SessionSettings::default())
+        Self::of(CorrespondenceSessionSettings::default())
     }
 }
 
 impl CorrespondenceWizard {
     /// Without data, for a rig with these settings.
-    fn of(settings: SessionSettings) -> Self {
+    fn of(settings: CorrespondenceSessionSettings) -> Self {
         Self {
             session: CorrespondenceSession::new(settings),
-            frame: Frame::default(),
+            frame: WizardFrame::default(),
             sources: None,
             clock_s: (0.0, 0.0),
             report: None,
@@ -93,7 +94,7 @@ impl CorrespondenceWizard {
         self.report.as_ref().and_then(|report| report.as_ref().ok())
     }
 
-    fn solution(&self) -> Option<&Solution> {
+    fn solution(&self) -> Option<&CorrespondenceSolution> {
         self.good_report().and_then(|report| report.solution.as_ref())
     }
 
@@ -102,13 +103,13 @@ impl CorrespondenceWizard {
         let Some(sources) = self.sources else { return Err(text::correspondence::NEEDS_WRIST_SENSOR.get()) };
         match self.session.phase() {
             _ if !sources.gravity => Err(text::correspondence::NEEDS_GRAVITY.get()),
-            Phase::Missing(_) => Err(text::wizards::NEEDS_CHECKS.get()),
-            Phase::Resting { .. } => Err(text::correspondence::NEEDS_REST.get()),
+            CorrespondencePhase::Missing(_) => Err(text::wizards::NEEDS_CHECKS.get()),
+            CorrespondencePhase::Resting { .. } => Err(text::correspondence::NEEDS_REST.get()),
             _ => Ok(()),
         }
     }
 
-    fn start_anew(&mut self, settings: SessionSettings) {
+    fn start_anew(&mut self, settings: CorrespondenceSessionSettings) {
         *self = Self { clock_s: self.clock_s, ..Self::of(settings) };
     }
 
@@ -122,7 +123,7 @@ impl CorrespondenceWizard {
                 text::correspondence::CHECK_TRACKER_UNUSED.get()
             };
             let names = [text::correspondence::CHECK_TISSUE.get(), tracker, text::correspondence::CHECK_REST.get()];
-            let Some(Sources { gravity, tissue, chain }) = self.sources else {
+            let Some(DeliveredSources { gravity, tissue, chain }) = self.sources else {
                 let why = text::correspondence::NEEDS_WRIST_SENSOR.get();
                 check_line(ui, text::correspondence::CHECK_WRIST.get(), false, why);
                 // Without the wrist sensor the state of the others is unknown.
@@ -131,15 +132,15 @@ impl CorrespondenceWizard {
                 }
                 return;
             };
-            let (_, words) = phase_words(&self.session.phase());
+            let (_, words) = phase_text(&self.session.phase());
             let rests = self.may_push().is_ok();
-            check_line(ui, text::correspondence::CHECK_WRIST.get(), gravity, Missing::WristForce.words());
-            check_line(ui, names[0], tissue, Missing::TissueForce.words());
-            check_line(ui, names[1], chain || !self.session.settings().chain, Missing::Chain.words());
+            check_line(ui, text::correspondence::CHECK_WRIST.get(), gravity, MissingInput::WristForce.words());
+            check_line(ui, names[0], tissue, MissingInput::TissueForce.words());
+            check_line(ui, names[1], chain || !self.session.settings().chain, MissingInput::Chain.words());
             check_line(ui, names[2], rests, &words);
         });
         card(ui, text::wizards::OPTIONS_TITLE.get(), text::wizards::OPTIONS_HOVER.get(), |ui| {
-            let SessionSettings { chain, options, .. } = *self.session.settings();
+            let CorrespondenceSessionSettings { chain, options, .. } = *self.session.settings();
             let flip = text::correspondence::OPTION_FLIP.get();
             let meaning = text::correspondence::OPTION_FLIP_HOVER.get();
             if let Some(flip_s2) = switch_ui(ui, true, options.flip_s2, flip, meaning) {
@@ -149,7 +150,7 @@ impl CorrespondenceWizard {
             let alone = text::correspondence::OPTION_NO_TRACKER.get();
             let meaning = text::correspondence::OPTION_NO_TRACKER_HOVER.get();
             if let Some(alone) = switch_ui(ui, self.session.pushes() == 0, !chain, alone, meaning) {
-                self.start_anew(SessionSettings { chain: !alone, ..*self.session.settings() });
+                self.start_anew(CorrespondenceSessionSettings { chain: !alone, ..*self.session.settings() });
             }
         });
     }
@@ -159,27 +160,27 @@ impl CorrespondenceWizard {
         let wanted = self.wanted();
         card(ui, text::correspondence::PUSH_TITLE.get(), text::correspondence::PUSH_HOVER.get(), |ui| {
             ui.label(RichText::new(sentence(wanted.name)).font(theme::strong(19.0)));
-            let (share, words) = if self.sources.is_some() {
-                phase_words(&self.session.phase())
+            let (fraction, words) = if self.sources.is_some() {
+                phase_text(&self.session.phase())
             } else {
                 (0.0, text::correspondence::PHASE_WRIST_SILENT.get().to_owned())
             };
-            progress(ui, text::correspondence::PUSH_PROGRESS.get(), share, &words);
+            progress(ui, text::correspondence::PUSH_PROGRESS.get(), fraction, &words);
             ui.add_space(6.0);
             let directions = TARGETS.map(|target| target.push_in_world);
             let taken = self.session.taken_in_world();
-            sphere_picture(
+            sphere_image(
                 ui,
-                text::correspondence::DIRECTIONS_PICTURE.get(),
+                text::correspondence::DIRECTIONS_IMAGE.get(),
                 &directions,
                 &taken,
                 Some(wanted.push_in_world),
             );
-            let share = count as f64 / PUSHES_ASKED as f64;
+            let fraction = count as f64 / PUSHES_ASKED as f64;
             progress(
                 ui,
                 text::correspondence::STEP_PUSHES.get(),
-                share,
+                fraction,
                 &text::correspondence::taken_of(count, PUSHES_ASKED),
             );
         });
@@ -218,11 +219,11 @@ impl CorrespondenceWizard {
 }
 
 impl Wizard for CorrespondenceWizard {
-    fn steps(&self) -> &'static [Step] {
+    fn steps(&self) -> &'static [WizardStep] {
         &STEPS
     }
 
-    fn frame_mut(&mut self) -> &mut Frame {
+    fn frame_mut(&mut self) -> &mut WizardFrame {
         &mut self.frame
     }
 
@@ -232,7 +233,7 @@ impl Wizard for CorrespondenceWizard {
             return;
         };
         let mut f1_n = tick.force.gravity_free.map(|wrench| wrench.force_n);
-        self.sources = Some(Sources {
+        self.sources = Some(DeliveredSources {
             gravity: f1_n.is_some(),
             tissue: sample.tissue_n.is_some(),
             chain: sample.s1_from_c().is_some(),
@@ -280,7 +281,7 @@ impl Wizard for CorrespondenceWizard {
         self.frame.step != PUSHES || self.session.target().is_none()
     }
 
-    fn step_ui(&mut self, ui: &mut Ui, _: &Binding) -> Option<Wish> {
+    fn step_ui(&mut self, ui: &mut Ui, _: &Binding) -> Option<WizardRequest> {
         match self.frame.step {
             CHECK => self.check_ui(ui),
             PUSHES => self.pushes_ui(ui),
@@ -294,11 +295,11 @@ impl Wizard for CorrespondenceWizard {
         accepted.then(|| text::correspondence::PROOF.get().to_owned())
     }
 
-    fn made(&self, binding: &Binding) -> Option<Saving> {
+    fn made(&self, binding: &Binding) -> Option<SaveRequest> {
         let flip_s2 = self.session.settings().options.flip_s2;
         let record =
             CorrespondenceRecord::of(self.good_report()?, [&binding.sensor, &binding.tool], flip_s2, &binding.date)?;
-        Some(Saving::Correspondence(Box::new(record)))
+        Some(SaveRequest::Correspondence(Box::new(record)))
     }
 
     fn start_over(&mut self) {
@@ -307,15 +308,17 @@ impl Wizard for CorrespondenceWizard {
 }
 
 /// Progress of the push, and the instruction.
-fn phase_words(phase: &Phase) -> (f64, String) {
+fn phase_text(phase: &CorrespondencePhase) -> (f64, String) {
     match phase {
-        Phase::Missing(missing) => (0.0, missing.words().to_owned()),
-        Phase::Resting { share, f1_n, f2_n } => (*share, text::correspondence::at_rest(*f1_n, *f2_n)),
-        Phase::Ready => (0.0, text::correspondence::PHASE_READY.get().to_owned()),
-        Phase::Pushing { force_n, enough: false } => (0.5, text::correspondence::hold(*force_n)),
-        Phase::Pushing { force_n, enough: true } => (1.0, text::correspondence::let_go(*force_n)),
-        Phase::Recorded(index) => (1.0, text::correspondence::push_taken(index + 1)),
-        Phase::Refused(refusal) => (0.0, text::correspondence::not_taken(&words::refusal(refusal))),
+        CorrespondencePhase::Missing(missing) => (0.0, missing.words().to_owned()),
+        CorrespondencePhase::Resting { fraction, f1_n, f2_n } => {
+            (*fraction, text::correspondence::at_rest(*f1_n, *f2_n))
+        }
+        CorrespondencePhase::Ready => (0.0, text::correspondence::PHASE_READY.get().to_owned()),
+        CorrespondencePhase::Pushing { force_n, enough: false } => (0.5, text::correspondence::hold(*force_n)),
+        CorrespondencePhase::Pushing { force_n, enough: true } => (1.0, text::correspondence::let_go(*force_n)),
+        CorrespondencePhase::Recorded(index) => (1.0, text::correspondence::push_taken(index + 1)),
+        CorrespondencePhase::Refused(refusal) => (0.0, text::correspondence::not_taken(&report_text::refusal(refusal))),
     }
 }
 
@@ -348,14 +351,14 @@ fn verdict_ui(ui: &mut Ui, report: &CorrespondenceReport) {
             figure(
                 ui,
                 text::correspondence::OFFSET.get(),
-                format!("{offset} ({})", frame_words(diagnosis.offset_frame)),
+                format!("{offset} ({})", frame_text(diagnosis.offset_frame)),
                 text::correspondence::OFFSET_HOVER.get(),
             );
         }
     });
 }
 
-fn frame_words(frame: OffsetFrame) -> &'static str {
+fn frame_text(frame: OffsetFrame) -> &'static str {
     match frame {
         OffsetFrame::S1 => text::correspondence::OFFSET_OF_WRIST.get(),
         OffsetFrame::S2 => text::correspondence::OFFSET_OF_TISSUE.get(),
@@ -364,7 +367,7 @@ fn frame_words(frame: OffsetFrame) -> &'static str {
 }
 
 /// The paper's Validation I: agreement of the rotated force under the tissue with that at the wrist.
-fn agreement_ui(ui: &mut Ui, agreement: &Agreement) {
+fn agreement_ui(ui: &mut Ui, agreement: &PushAgreement) {
     let meaning = text::correspondence::AGREEMENT_HOVER.get();
     card(ui, text::correspondence::AGREEMENT_TITLE.get(), meaning, |ui| {
         Grid::new("agreement").num_columns(7).spacing(vec2(22.0, 6.0)).show(ui, |ui| {

@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use egui::{Button, RichText, TextEdit, Ui, vec2};
 use nima_core::calibration::Judgement;
-use nima_endoscope::Picture;
+use nima_endoscope::DecodedImage;
 use nima_machine::{messages::Tick, rig::Prompt};
 
-use super::{Asked, Binding, GoOn, Saving};
+use super::{Binding, GoOn, SaveRequest, WizardPageRequest};
 use crate::console::{
     text, theme,
     widgets::{card, figure, next_button, small, weak},
@@ -15,14 +15,14 @@ use crate::console::{
 use crate::language::Text;
 
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Step {
+pub(crate) struct WizardStep {
     pub(crate) name: Text,
     pub(crate) meaning: Text,
 }
 
 /// A request of the technician.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Wish {
+pub(crate) enum WizardRequest {
     GoTo(usize),
     StartOver,
     /// Continue elsewhere.
@@ -31,7 +31,7 @@ pub(crate) enum Wish {
 
 /// State of a wizard: its step, and the inputs and messages of the last step.
 #[derive(Debug, Default)]
-pub(crate) struct Frame {
+pub(crate) struct WizardFrame {
     pub(crate) step: usize,
     /// Name of the person who overrides the verdict.
     name: String,
@@ -40,14 +40,14 @@ pub(crate) struct Frame {
     pub(crate) saved: Option<Result<String, String>>,
     /// The step after saving.
     following: Option<GoOn>,
-    /// The step or the saved data have changed since [`Frame::take_changed`].
+    /// The step or the saved data have changed since [`WizardFrame::take_changed`].
     pub(super) changed: bool,
 }
 
-impl Frame {
+impl WizardFrame {
     /// Shows the result of saving, and the step after it.
-    pub(super) fn tell_saved(&mut self, told: Result<String, String>, following: Option<GoOn>) {
-        self.saved = Some(told);
+    pub(super) fn report_saved(&mut self, report: Result<String, String>, following: Option<GoOn>) {
+        self.saved = Some(report);
         self.changed = true;
         self.following = following;
     }
@@ -75,8 +75,8 @@ impl Frame {
 /// A wizard for one calibration. It draws its own steps except the last one (saving), which is common.
 pub(crate) trait Wizard: std::fmt::Debug {
     /// Its steps; the last one saves.
-    fn steps(&self) -> &'static [Step];
-    fn frame_mut(&mut self) -> &mut Frame;
+    fn steps(&self) -> &'static [WizardStep];
+    fn frame_mut(&mut self) -> &mut WizardFrame;
 
     /// Adds one tick of a loop of this rate (Hz).
     fn tick(&mut self, tick: &Tick, rate_hz: f64);
@@ -85,16 +85,16 @@ pub(crate) trait Wizard: std::fmt::Debug {
     /// Whether the next step may start; otherwise the reason.
     fn may_go_on(&self, binding: &Binding) -> Result<(), &'static str>;
     /// Draws a step before the last.
-    fn step_ui(&mut self, ui: &mut Ui, binding: &Binding) -> Option<Wish>;
+    fn step_ui(&mut self, ui: &mut Ui, binding: &Binding) -> Option<WizardRequest>;
     /// Evidence that the result is good, as text; `None` if it can only be saved with an override.
     fn proof(&self) -> Option<String>;
     /// The record to save, if there is one, with its verdict before any override.
-    fn made(&self, binding: &Binding) -> Option<Saving>;
+    fn made(&self, binding: &Binding) -> Option<SaveRequest>;
     /// Removes the data, but keeps the settings of the rig.
     fn start_over(&mut self);
 
     /// Receives the endoscope's newest image.
-    fn see(&mut self, _newest: Option<(u64, Arc<Picture>)>, _ctx: &egui::Context) {}
+    fn see(&mut self, _newest: Option<(u64, Arc<DecodedImage>)>, _ctx: &egui::Context) {}
 
     /// Whether the result belongs to the wrist sensor and its tool.
     fn is_of_a_sensor(&self) -> bool {
@@ -120,7 +120,7 @@ pub(crate) trait Wizard: std::fmt::Debug {
         true
     }
     /// Draws the part below the last step; returns further data to save.
-    fn after_saving(&mut self, _ui: &mut Ui) -> Option<Saving> {
+    fn after_saving(&mut self, _ui: &mut Ui) -> Option<SaveRequest> {
         None
     }
     fn go_to(&mut self, step: usize) {
@@ -129,7 +129,7 @@ pub(crate) trait Wizard: std::fmt::Debug {
 }
 
 /// Draws a wizard; returns its request.
-pub(super) fn wizard_ui(wizard: &mut dyn Wizard, ui: &mut Ui, binding: &Binding) -> Option<Asked> {
+pub(super) fn wizard_ui(wizard: &mut dyn Wizard, ui: &mut Ui, binding: &Binding) -> Option<WizardPageRequest> {
     wizard.refresh(binding);
     let steps = wizard.steps();
     let now = wizard.frame_mut().step;
@@ -150,18 +150,18 @@ pub(super) fn wizard_ui(wizard: &mut dyn Wizard, ui: &mut Ui, binding: &Binding)
         if save_card(ui, of_sensor, proof.as_deref(), wizard.frame_mut()) {
             saving = wizard.made(binding);
         }
-        if let (None, Some(judgement)) = (proof, saving.as_mut().and_then(Saving::judgement_mut)) {
+        if let (None, Some(judgement)) = (proof, saving.as_mut().and_then(SaveRequest::judgement_mut)) {
             wizard.frame_mut().override_in(judgement);
         }
         saving = wizard.after_saving(ui).or(saving);
     }
     match wish {
-        Some(Wish::GoTo(step)) => wizard.go_to(step),
-        Some(Wish::StartOver) => wizard.start_over(),
-        Some(Wish::GoOn(following)) => return Some(Asked::GoOn(following)),
+        Some(WizardRequest::GoTo(step)) => wizard.go_to(step),
+        Some(WizardRequest::StartOver) => wizard.start_over(),
+        Some(WizardRequest::GoOn(following)) => return Some(WizardPageRequest::GoOn(following)),
         None => {}
     }
-    saving.map(Asked::Save)
+    saving.map(WizardPageRequest::Save)
 }
 
 /// State of the button for the next step.
@@ -175,7 +175,7 @@ struct GoingOn {
 }
 
 /// The row of steps with buttons for back, next and reset. Going back loses no data.
-fn steps_ui(ui: &mut Ui, steps: &[Step], now: usize, going_on: &GoingOn) -> Option<Wish> {
+fn steps_ui(ui: &mut Ui, steps: &[WizardStep], now: usize, going_on: &GoingOn) -> Option<WizardRequest> {
     let mut wish = None;
     ui.horizontal_wrapped(|ui| {
         for (i, step) in steps.iter().enumerate() {
@@ -194,14 +194,15 @@ fn steps_ui(ui: &mut Ui, steps: &[Step], now: usize, going_on: &GoingOn) -> Opti
     ui.horizontal_wrapped(|ui| {
         let size = vec2(96.0, 34.0);
         if ui.add_enabled(now > 0, Button::new(text::wizards::BACK.get()).min_size(size)).clicked() {
-            wish = Some(Wish::GoTo(now - 1));
+            wish = Some(WizardRequest::GoTo(now - 1));
         }
         let last = now + 1 == steps.len();
         let (name, goes_to) = match going_on.following.filter(|_| last) {
-            Some(following) => (following.words(), Some(Wish::GoOn(following))),
-            None => {
-                (text::wizards::NEXT.get().to_owned(), (!last && going_on.may.is_ok()).then_some(Wish::GoTo(now + 1)))
-            }
+            Some(following) => (following.words(), Some(WizardRequest::GoOn(following))),
+            None => (
+                text::wizards::NEXT.get().to_owned(),
+                (!last && going_on.may.is_ok()).then_some(WizardRequest::GoTo(now + 1)),
+            ),
         };
         let next = next_button(name, goes_to.is_some() && going_on.is_done).min_size(size);
         let next = ui.add_enabled(goes_to.is_some(), next);
@@ -214,7 +215,7 @@ fn steps_ui(ui: &mut Ui, steps: &[Step], now: usize, going_on: &GoingOn) -> Opti
         }
         ui.add_space(24.0);
         if ui.button(text::wizards::START_OVER.get()).on_hover_text(text::wizards::START_OVER_HOVER.get()).clicked() {
-            wish = Some(Wish::StartOver);
+            wish = Some(WizardRequest::StartOver);
         }
     });
     wish
@@ -222,7 +223,7 @@ fn steps_ui(ui: &mut Ui, steps: &[Step], now: usize, going_on: &GoingOn) -> Opti
 
 /// The last step of every wizard: sensor and tool of the record, if it is bound to them, and the save button; returns true
 /// when pressed. Without `proof` a name and a reason are required.
-fn save_card(ui: &mut Ui, binding: Option<&Binding>, proof: Option<&str>, frame: &mut Frame) -> bool {
+fn save_card(ui: &mut Ui, binding: Option<&Binding>, proof: Option<&str>, frame: &mut WizardFrame) -> bool {
     let meaning =
         if binding.is_some() { text::wizards::SAVE_HOVER.get() } else { text::wizards::STEP_SAVE_IN_RIG_HOVER.get() };
     card(ui, text::wizards::STEP_SAVE.get(), meaning, |ui| {
@@ -244,8 +245,8 @@ fn save_card(ui: &mut Ui, binding: Option<&Binding>, proof: Option<&str>, frame:
             ui.label(weak(text::wizards::NOT_PROVEN.get()));
             override_ui(ui, [&mut frame.name, &mut frame.why])
         };
-        if let Some(Ok(told) | Err(told)) = &frame.saved {
-            ui.label(told);
+        if let Some(Ok(report) | Err(report)) = &frame.saved {
+            ui.label(report);
         }
         wanted
     })

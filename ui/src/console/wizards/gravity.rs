@@ -7,8 +7,8 @@ use nima_core::{
     calibration::{
         Verdict,
         gravity::{
-            CheckPass, Compensator, DEFAULT_TIME_CONSTANT_S, GravityReport, GravitySession, ModelFit, PassResult,
-            Phase, Precheck, SessionSettings, TARGETS,
+            CheckPass, Compensator, DEFAULT_TIME_CONSTANT_S, GravityPhase, GravityReport, GravitySession,
+            GravitySessionSettings, ModelFit, PassResult, Precheck, TARGETS,
         },
     },
     frames::WristSample,
@@ -16,18 +16,18 @@ use nima_core::{
 use nima_machine::{messages::Tick, rig::Prompt};
 
 use super::{
-    Binding, Saving,
+    Binding, SaveRequest,
     checks::{check_ui, switch_ui},
-    frame::{Frame, Step, Wish, Wizard},
-    pictures::{pose_picture, progress, sphere_picture},
-    report::{Report, result_ui, verdict_line},
+    drawings::{pose_image, progress, sphere_image},
+    frame::{Wizard, WizardFrame, WizardRequest, WizardStep},
+    report::{WizardReport, result_ui, verdict_line},
 };
 use crate::{
     console::{
         text, theme,
         widgets::{card, figure, small},
     },
-    words::{Words as _, three_digits},
+    report_text::{ShortText as _, three_digits},
 };
 
 /// Limit of the 95th percentile of the force in free motion, N; includes the noise of a sample.
@@ -36,12 +36,12 @@ const FREE_MOTION_LIMIT_N: f64 = 0.25;
 const FREE_MOTION_SAMPLES: u64 = 8000;
 /// Minimum number of poses for a fit.
 const POSES_MIN: usize = 6;
-const STEPS: [Step; 5] = [
-    Step { name: text::wizards::STEP_CHECK, meaning: text::gravity::STEP_CHECK_HOVER },
-    Step { name: text::gravity::STEP_POSES, meaning: text::gravity::STEP_POSES_HOVER },
-    Step { name: text::wizards::STEP_RESULT, meaning: text::gravity::STEP_RESULT_HOVER },
-    Step { name: text::gravity::STEP_FREE_MOTION, meaning: text::gravity::STEP_FREE_MOTION_HOVER },
-    Step { name: text::wizards::STEP_SAVE, meaning: text::wizards::STEP_SAVE_HOVER },
+const STEPS: [WizardStep; 5] = [
+    WizardStep { name: text::wizards::STEP_CHECK, meaning: text::gravity::STEP_CHECK_HOVER },
+    WizardStep { name: text::gravity::STEP_POSES, meaning: text::gravity::STEP_POSES_HOVER },
+    WizardStep { name: text::wizards::STEP_RESULT, meaning: text::gravity::STEP_RESULT_HOVER },
+    WizardStep { name: text::gravity::STEP_FREE_MOTION, meaning: text::gravity::STEP_FREE_MOTION_HOVER },
+    WizardStep { name: text::wizards::STEP_SAVE, meaning: text::wizards::STEP_SAVE_HOVER },
 ];
 const CHECK: usize = 0;
 const POSES: usize = 1;
@@ -55,29 +55,29 @@ pub struct GravityWizard {
     session: GravitySession,
     precheck: Precheck,
     rate_hz: f64,
-    frame: Frame,
-    phase: Phase,
+    frame: WizardFrame,
+    phase: GravityPhase,
     held: Option<UnitQuaternion<f64>>,
-    report: Report<GravityReport>,
+    report: WizardReport<GravityReport>,
     pass: Option<CheckPass>,
     left_n: Option<f64>,
 }
 
 impl Default for GravityWizard {
     fn default() -> Self {
-        Self::of(SessionSettings::default())
+        Self::of(GravitySessionSettings::default())
     }
 }
 
 impl GravityWizard {
     /// Without data, for a rig with these settings.
-    fn of(settings: SessionSettings) -> Self {
+    fn of(settings: GravitySessionSettings) -> Self {
         Self {
             session: GravitySession::new(settings),
             precheck: Precheck::new(settings),
             rate_hz: f64::INFINITY,
-            frame: Frame::default(),
-            phase: Phase::NoSample,
+            frame: WizardFrame::default(),
+            phase: GravityPhase::NoSample,
             held: None,
             report: None,
             pass: None,
@@ -87,7 +87,7 @@ impl GravityWizard {
 
     fn pose(&mut self, sample: &WristSample, t_s: f64) {
         let phase = self.session.step(sample, t_s);
-        if matches!(phase, Phase::Recorded { .. }) {
+        if matches!(phase, GravityPhase::Recorded { .. }) {
             self.fit();
         }
         self.phase = phase;
@@ -118,12 +118,12 @@ impl GravityWizard {
             }
         });
         card(ui, text::wizards::OPTIONS_TITLE.get(), text::wizards::OPTIONS_HOVER.get(), |ui| {
-            let SessionSettings { use_arm, fit, .. } = *self.session.settings();
+            let GravitySessionSettings { use_arm, fit, .. } = *self.session.settings();
             let none_taken = self.session.poses().is_empty();
             let by_arm = text::gravity::OPTION_BY_ARM.get();
             let meaning = text::gravity::OPTION_BY_ARM_HOVER.get();
             if let Some(use_arm) = switch_ui(ui, none_taken, use_arm, by_arm, meaning) {
-                *self = Self::of(SessionSettings { use_arm, ..*self.session.settings() });
+                *self = Self::of(GravitySessionSettings { use_arm, ..*self.session.settings() });
             }
             let flipped = text::gravity::OPTION_FLIP_IMU.get();
             let meaning = text::gravity::OPTION_FLIP_IMU_HOVER.get();
@@ -140,17 +140,17 @@ impl GravityWizard {
         let met = self.session.targets_met();
         let target = self.session.target();
         card(ui, text::gravity::POSE_TITLE.get(), text::gravity::POSE_HOVER.get(), |ui| {
-            let name = target.map_or(text::gravity::ALL_POSES_RECORDED.get(), |target| target.name);
+            let name = target.map_or(text::gravity::POSES_COMPLETE.get(), |target| target.name);
             ui.label(RichText::new(crate::console::alarms::sentence(name)).font(theme::strong(19.0)));
-            let (share, words) = phase_words(&self.phase);
-            progress(ui, text::gravity::POSE_PROGRESS.get(), share, &words);
+            let (fraction, words) = phase_text(&self.phase);
+            progress(ui, text::gravity::POSE_PROGRESS.get(), fraction, &words);
             ui.add_space(6.0);
             let directions: Vec<Vector3<f64>> = TARGETS.iter().map(|target| Vector3::from(target.down_s1)).collect();
             let taken = self.session.taken_down_s1();
             let down_now = self.held.map(|held| held.inverse() * -Vector3::z());
             ui.horizontal_wrapped(|ui| {
-                pose_picture(ui, target.map(|target| target.world_from_s1()).as_ref(), self.held.as_ref());
-                sphere_picture(ui, text::gravity::DIRECTIONS_PICTURE.get(), &directions, &taken, down_now);
+                pose_image(ui, target.map(|target| target.world_from_s1()).as_ref(), self.held.as_ref());
+                sphere_image(ui, text::gravity::DIRECTIONS_IMAGE.get(), &directions, &taken, down_now);
             });
             progress(
                 ui,
@@ -230,11 +230,11 @@ impl GravityWizard {
 }
 
 impl Wizard for GravityWizard {
-    fn steps(&self) -> &'static [Step] {
+    fn steps(&self) -> &'static [WizardStep] {
         &STEPS
     }
 
-    fn frame_mut(&mut self) -> &mut Frame {
+    fn frame_mut(&mut self) -> &mut WizardFrame {
         &mut self.frame
     }
 
@@ -244,7 +244,7 @@ impl Wizard for GravityWizard {
             self.precheck.step(tick.wrist.as_ref(), tick.t_s);
         }
         let Some(sample) = &tick.wrist else {
-            self.phase = Phase::NoSample;
+            self.phase = GravityPhase::NoSample;
             return;
         };
         self.held = sample.world_from_s1;
@@ -285,7 +285,7 @@ impl Wizard for GravityWizard {
         }
     }
 
-    fn step_ui(&mut self, ui: &mut Ui, _: &Binding) -> Option<Wish> {
+    fn step_ui(&mut self, ui: &mut Ui, _: &Binding) -> Option<WizardRequest> {
         match self.frame.step {
             CHECK => self.check_ui(ui),
             POSES => self.poses_ui(ui),
@@ -299,9 +299,9 @@ impl Wizard for GravityWizard {
         self.is_proven().then(|| text::gravity::PROOF.get().to_owned())
     }
 
-    fn made(&self, binding: &Binding) -> Option<Saving> {
+    fn made(&self, binding: &Binding) -> Option<SaveRequest> {
         let record = self.good_report()?.record(&binding.sensor, &binding.tool, &binding.date)?;
-        Some(Saving::Gravity(Box::new(record)))
+        Some(SaveRequest::Gravity(Box::new(record)))
     }
 
     fn go_to(&mut self, step: usize) {
@@ -325,15 +325,15 @@ impl Wizard for GravityWizard {
     }
 }
 
-fn phase_words(phase: &Phase) -> (f64, String) {
+fn phase_text(phase: &GravityPhase) -> (f64, String) {
     match phase {
-        Phase::NoSample => (0.0, text::gravity::PHASE_NO_SAMPLE.get().to_owned()),
-        Phase::Moving => (0.0, text::gravity::PHASE_MOVING.get().to_owned()),
-        Phase::Disturbed => (0.0, text::gravity::PHASE_DISTURBED.get().to_owned()),
-        Phase::TakenHere => (0.0, text::gravity::PHASE_SAME_POSE.get().to_owned()),
-        Phase::Recording { share } => (*share, text::gravity::PHASE_RECORDING.get().to_owned()),
-        Phase::Recorded { index } => (1.0, text::gravity::pose_taken(index + 1)),
-        Phase::Touched { by_n } => (0.0, text::gravity::touched(*by_n)),
+        GravityPhase::NoSample => (0.0, text::gravity::PHASE_NO_SAMPLE.get().to_owned()),
+        GravityPhase::Moving => (0.0, text::gravity::PHASE_MOVING.get().to_owned()),
+        GravityPhase::Disturbed => (0.0, text::gravity::PHASE_DISTURBED.get().to_owned()),
+        GravityPhase::TakenHere => (0.0, text::gravity::PHASE_SAME_POSE.get().to_owned()),
+        GravityPhase::Recording { fraction } => (*fraction, text::gravity::PHASE_RECORDING.get().to_owned()),
+        GravityPhase::Recorded { index } => (1.0, text::gravity::pose_taken(index + 1)),
+        GravityPhase::Touched { by_n } => (0.0, text::gravity::touched(*by_n)),
     }
 }
 

@@ -6,10 +6,10 @@
 mod attend;
 pub(crate) mod checks;
 mod correspondence;
+pub(crate) mod drawings;
 pub(crate) mod frame;
 mod frames;
 mod gravity;
-pub(crate) mod pictures;
 pub(crate) mod report;
 mod tip_force;
 
@@ -24,9 +24,9 @@ use nima_core::{
         frames::RigChange,
         gravity::GravityRecord,
     },
-    tip_force::Model,
+    tip_force::ForceModel,
 };
-use nima_endoscope::Picture;
+use nima_endoscope::DecodedImage;
 use nima_machine::{
     config::RigFile,
     messages::Tick,
@@ -35,10 +35,10 @@ use nima_machine::{
 use nima_recording::store::Store;
 use nima_simulation::scene::Scene;
 
-pub use attend::Attended;
+pub use attend::WizardOutcome;
 pub use correspondence::CorrespondenceWizard;
-pub(in crate::console) use frames::sizes_words;
-pub use frames::{FrameCalibration, FrameKept, FrameSaving, FrameWizard, Kind, Subject, frame_kept};
+pub(in crate::console) use frames::sizes_text;
+pub use frames::{FrameCalibration, FrameKind, FrameSaving, FrameSubject, FrameWizard, StoredFrame, frame_kept};
 pub use gravity::GravityWizard;
 pub use tip_force::TipForceWizard;
 
@@ -63,7 +63,7 @@ pub struct Binding {
     /// Store of calibrations and their data; `None` without a folder.
     pub store: Option<Store>,
     /// The arm in its rig file; `None` if the rig has no such arm.
-    pub subject: Option<Subject>,
+    pub subject: Option<FrameSubject>,
     /// Name or path of the rig.
     pub rig: String,
 }
@@ -76,19 +76,19 @@ impl Binding {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Which {
+pub enum WizardKind {
     Gravity,
     /// Rotation between the sensor under the tissue and the one at the wrist.
     Correspondence,
     /// The network that removes the trocar's friction.
     TipForce,
-    Frame(Kind),
+    Frame(FrameKind),
     /// Lens and position of the endoscope's camera.
     Camera,
 }
 
 /// Each wizard is one word on the command line, including the frame calibrations.
-impl ValueEnum for Which {
+impl ValueEnum for WizardKind {
     fn value_variants<'a>() -> &'a [Self] {
         &Self::ALL
     }
@@ -105,15 +105,15 @@ impl ValueEnum for Which {
     }
 }
 
-impl Which {
+impl WizardKind {
     /// All wizards, in the order of use: the frames rotate the forces measured at the wrist, so they come first.
     pub const ALL: [Self; 10] = [
-        Self::Frame(Kind::Mount),
-        Self::Frame(Kind::Tip),
-        Self::Frame(Kind::HandEye),
-        Self::Frame(Kind::Table),
-        Self::Frame(Kind::View),
-        Self::Frame(Kind::Trocar),
+        Self::Frame(FrameKind::Mount),
+        Self::Frame(FrameKind::Tip),
+        Self::Frame(FrameKind::HandEye),
+        Self::Frame(FrameKind::Table),
+        Self::Frame(FrameKind::View),
+        Self::Frame(FrameKind::Trocar),
         Self::Gravity,
         Self::Correspondence,
         Self::TipForce,
@@ -171,15 +171,15 @@ impl Which {
 
 /// One calibration of one arm.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Wanted {
+pub struct CalibrationTarget {
     pub side: Side,
     /// The wizard for it.
-    pub which: Which,
+    pub which: WizardKind,
     /// The handle's part of a view.
     pub by_handle: bool,
 }
 
-impl Wanted {
+impl CalibrationTarget {
     pub fn name(&self) -> &'static str {
         if self.by_handle { text::overview::HANDLE.get() } else { self.which.name() }
     }
@@ -188,7 +188,7 @@ impl Wanted {
 /// The step after a calibration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GoOn {
-    Calibrate(Wanted),
+    Calibrate(CalibrationTarget),
     /// Nothing is missing: the ready check.
     Check,
 }
@@ -204,19 +204,19 @@ impl GoOn {
 
 /// The technician's request on a wizard's page.
 #[derive(Clone, Debug)]
-pub enum Asked {
-    Save(Saving),
+pub enum WizardPageRequest {
+    Save(SaveRequest),
     /// Continue elsewhere.
     GoOn(GoOn),
 }
 
 /// A record to be saved and used.
 #[derive(Clone, Debug)]
-pub enum Saving {
+pub enum SaveRequest {
     Gravity(Box<GravityRecord>),
     Correspondence(Box<CorrespondenceRecord>),
     /// A network with its check.
-    TipForce(Box<Model>),
+    TipForce(Box<ForceModel>),
     /// A frame calibration, with its changes to the rig file.
     Frame(Box<FrameSaving>),
     /// Lens and position of the camera, as changes to the rig file.
@@ -225,7 +225,7 @@ pub enum Saving {
     Undo(Vec<RigChange>),
 }
 
-impl Saving {
+impl SaveRequest {
     /// Its judgement; a network without a check has none.
     fn judgement_mut(&mut self) -> Option<&mut Judgement> {
         match self {
@@ -241,12 +241,12 @@ impl Saving {
 /// All wizards; each keeps its data until it is reset.
 #[derive(Debug)]
 pub struct Wizards {
-    pub open: Option<Which>,
+    pub open: Option<WizardKind>,
     gravity: GravityWizard,
     correspondence: CorrespondenceWizard,
     tip_force: TipForceWizard,
-    /// In the order of [`Kind::ALL`].
-    frames: [FrameWizard; Kind::ALL.len()],
+    /// In the order of [`FrameKind::ALL`].
+    frames: [FrameWizard; FrameKind::ALL.len()],
     /// `None` in a build without it.
     camera: Option<Box<dyn Wizard>>,
 }
@@ -258,34 +258,34 @@ impl Default for Wizards {
             gravity: GravityWizard::default(),
             correspondence: CorrespondenceWizard::default(),
             tip_force: TipForceWizard::default(),
-            frames: Kind::ALL.map(FrameWizard::new),
+            frames: FrameKind::ALL.map(FrameWizard::new),
             camera: extras::part(Extra::camera_wizard).map(|wizard| wizard()),
         }
     }
 }
 
 impl Wizards {
-    pub fn at(which: Which) -> Self {
+    pub fn at(which: WizardKind) -> Self {
         Self { open: Some(which), ..Self::default() }
     }
 
-    fn the(&self, which: Which) -> Option<&dyn Wizard> {
+    fn the(&self, which: WizardKind) -> Option<&dyn Wizard> {
         Some(match which {
-            Which::Gravity => &self.gravity,
-            Which::Correspondence => &self.correspondence,
-            Which::TipForce => &self.tip_force,
-            Which::Frame(kind) => &self.frames[kind as usize],
-            Which::Camera => return self.camera.as_deref(),
+            WizardKind::Gravity => &self.gravity,
+            WizardKind::Correspondence => &self.correspondence,
+            WizardKind::TipForce => &self.tip_force,
+            WizardKind::Frame(kind) => &self.frames[kind as usize],
+            WizardKind::Camera => return self.camera.as_deref(),
         })
     }
 
-    fn the_mut(&mut self, which: Which) -> Option<&mut (dyn Wizard + 'static)> {
+    fn the_mut(&mut self, which: WizardKind) -> Option<&mut (dyn Wizard + 'static)> {
         Some(match which {
-            Which::Gravity => &mut self.gravity,
-            Which::Correspondence => &mut self.correspondence,
-            Which::TipForce => &mut self.tip_force,
-            Which::Frame(kind) => &mut self.frames[kind as usize],
-            Which::Camera => return self.camera.as_deref_mut(),
+            WizardKind::Gravity => &mut self.gravity,
+            WizardKind::Correspondence => &mut self.correspondence,
+            WizardKind::TipForce => &mut self.tip_force,
+            WizardKind::Frame(kind) => &mut self.frames[kind as usize],
+            WizardKind::Camera => return self.camera.as_deref_mut(),
         })
     }
 
@@ -297,8 +297,8 @@ impl Wizards {
     }
 
     /// Passes the endoscope's newest image to a wizard that uses it; `newest` is called only then.
-    pub fn see(&mut self, newest: impl FnOnce() -> Option<(u64, Arc<Picture>)>, ctx: &egui::Context) {
-        if let Some(wizard) = self.camera.as_mut().filter(|_| self.open == Some(Which::Camera)) {
+    pub fn see(&mut self, newest: impl FnOnce() -> Option<(u64, Arc<DecodedImage>)>, ctx: &egui::Context) {
+        if let Some(wizard) = self.camera.as_mut().filter(|_| self.open == Some(WizardKind::Camera)) {
             wizard.see(newest(), ctx);
         }
     }
@@ -309,34 +309,35 @@ impl Wizards {
     }
 
     /// Chooses between the two parts of a view.
-    pub fn choose_part(&mut self, wanted: Wanted) {
-        if wanted.which == Which::Frame(Kind::View) {
-            self.frames[Kind::View as usize].choose_way(wanted.by_handle);
+    pub fn choose_part(&mut self, wanted: CalibrationTarget) {
+        if wanted.which == WizardKind::Frame(FrameKind::View) {
+            self.frames[FrameKind::View as usize].choose_way(wanted.by_handle);
         }
     }
 
     /// The calibration of the open wizard.
-    pub fn wanted(&self, side: Side) -> Option<Wanted> {
+    pub fn wanted(&self, side: Side) -> Option<CalibrationTarget> {
         let which = self.open?;
-        let by_handle = which == Which::Frame(Kind::View) && self.frames[Kind::View as usize].goes_the_other_way();
-        Some(Wanted { side, which, by_handle })
+        let by_handle =
+            which == WizardKind::Frame(FrameKind::View) && self.frames[FrameKind::View as usize].goes_the_other_way();
+        Some(CalibrationTarget { side, which, by_handle })
     }
 
     /// Shows the result of saving in the open wizard, and the step after it.
-    pub fn tell_saved(&mut self, told: Result<String, String>, following: Option<GoOn>) {
+    pub fn report_saved(&mut self, report: Result<String, String>, following: Option<GoOn>) {
         if let Some(wizard) = self.open.and_then(|which| self.the_mut(which)) {
-            wizard.frame_mut().tell_saved(told, following);
+            wizard.frame_mut().report_saved(report, following);
         }
     }
 
     /// Draws the open wizard; returns its request.
-    pub fn ui(&mut self, ui: &mut Ui, binding: &Binding) -> Option<Asked> {
+    pub fn ui(&mut self, ui: &mut Ui, binding: &Binding) -> Option<WizardPageRequest> {
         let which = self.open?;
         ui.label(RichText::new(text::wizards::title(which.name())).font(theme::strong(22.0)));
         ui.label(small(which.meaning()));
         ui.add_space(theme::GAP);
         let asked = wizard_ui(self.the_mut(which)?, ui, binding)?;
-        if let Asked::Save(saving) = &asked {
+        if let WizardPageRequest::Save(saving) = &asked {
             self.forget_what_rests_on(saving);
         }
         Some(asked)

@@ -5,20 +5,20 @@ use nima_core::calibration::Verdict;
 
 use crate::{
     console::{text, theme, widgets::card},
-    words::Words as _,
+    report_text::ShortText as _,
 };
 
 /// Result of a session, or the reason for a missing one; `None` with too few data.
-pub(super) type Report<R> = Option<Result<R, String>>;
+pub(super) type WizardReport<R> = Option<Result<R, String>>;
 
 /// Text of a verdict and its reason.
-pub(super) fn verdict_words(verdict: Verdict, reason: &str) -> String {
+pub(super) fn verdict_text(verdict: Verdict, reason: &str) -> String {
     format!("{}: {reason}", verdict.words())
 }
 
 /// The same text as a line of a card.
 pub(crate) fn verdict_line(ui: &mut Ui, verdict: Verdict, reason: &str) {
-    ui.label(RichText::new(verdict_words(verdict, reason)).font(theme::strong(14.0)));
+    ui.label(RichText::new(verdict_text(verdict, reason)).font(theme::strong(14.0)));
 }
 
 /// The step that shows the result: the report, the error, or that there are too few data.

@@ -1,82 +1,82 @@
 //! The bridges to other programs: `OpenIGTLink`, and marks over the Lab Streaming Layer.
 
-mod words;
+mod bridge_text;
 
 use std::{net::SocketAddr, path::Path, time::Duration};
 
 use nima_bridges::{
-    igtl::{self, Image, Outline, Pictures},
-    lsl::{self, CONTACT_N, Marker},
+    igtl::{self, Image, ImageProvider, LoopOutline},
+    lsl::{self, CONTACT_N, MarkStream},
 };
-use nima_endoscope::{Compressed, Glimpse, Reel, jpeg};
+use nima_endoscope::{CompressedFrame, FrameQueue, LatestFrame, jpeg};
 use nima_machine::{messages::Fault, rig::Side};
 use nima_score::TaskFile;
-use nima_session::outlet::Audience;
-use nima_simulation::Plan;
+use nima_session::sinks::Audience;
+use nima_simulation::SimulationPlan;
 
 use super::Extra;
 use crate::{
     recording::PROGRAM,
-    telling::tell,
-    watching::{INSTALLED, Server, Show, Shown},
-    words::Remedy as _,
+    report_text::Remedy as _,
+    stderr::print_line,
+    watching::{INSTALLED, Show, WatchServer, WatchStatus},
 };
-use words::trouble_of;
+use bridge_text::trouble_of;
 
 pub(super) struct Bridges;
 
 impl Extra for Bridges {
-    fn server(&self, show: Show, at: SocketAddr) -> Option<anyhow::Result<Box<dyn Server>>> {
+    fn server(&self, show: Show, at: SocketAddr) -> Option<anyhow::Result<Box<dyn WatchServer>>> {
         (show == Show::Igtl).then(|| igtl_at(at))
     }
 
-    fn marks(&self, library: &Path) -> Option<anyhow::Result<Box<dyn Server>>> {
+    fn marks(&self, library: &Path) -> Option<anyhow::Result<Box<dyn WatchServer>>> {
         Some(marks_by(library))
     }
 }
 
 /// Passes the newest image of a queue to a bridge, as pixels.
 #[derive(Debug)]
-struct OfReel(Glimpse);
+struct OfReel(LatestFrame);
 
-impl Pictures for OfReel {
+impl ImageProvider for OfReel {
     fn newest(&mut self, is_wanted: bool) -> Option<(Image, Duration)> {
-        let Compressed { bytes, arrived, .. } = self.0.take(is_wanted).filter(|_| is_wanted)?;
+        let CompressedFrame { bytes, arrived, .. } = self.0.take(is_wanted).filter(|_| is_wanted)?;
         // A damaged image is skipped; the next one arrives soon.
-        let jpeg::Picture { size_px, rgba } = jpeg::decode(&bytes).ok()?;
+        let jpeg::DecodedImage { size_px, rgba } = jpeg::decode(&bytes).ok()?;
         let [width, height] = size_px.map(u16::try_from);
         let pixels = rgba.chunks_exact(4).flat_map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect();
         Some((Image { size_px: [width.ok()?, height.ok()?], colours: 3, pixels }, arrived.elapsed()))
     }
 }
 
-impl Server for igtl::Server {
-    fn audience(&self, plan: &Plan, reel: &Reel) -> Box<dyn Audience> {
-        let pictures = plan.rig.endoscope.as_ref().map(|_| Box::new(OfReel(reel.glimpse())) as Box<dyn Pictures>);
-        self.show(pictures);
+impl WatchServer for igtl::IgtlServer {
+    fn audience(&self, plan: &SimulationPlan, reel: &FrameQueue) -> Box<dyn Audience> {
+        let images = plan.rig.endoscope.as_ref().map(|_| Box::new(OfReel(reel.glimpse())) as Box<dyn ImageProvider>);
+        self.show(images);
         self.audience(outline(plan))
     }
 
-    fn shows_pictures(&self) -> bool {
+    fn shows_images(&self) -> bool {
         true
     }
 
-    fn shown(&self) -> Shown {
-        Shown { at: format!("igtl://{}", self.address()), watchers: self.clients() }
+    fn shown(&self) -> WatchStatus {
+        WatchStatus { at: format!("igtl://{}", self.address()), watchers: self.clients() }
     }
 }
 
-fn outline(plan: &Plan) -> Outline {
+fn outline(plan: &SimulationPlan) -> LoopOutline {
     let trocar = |side| plan.scene.of_side(side).filter(|_| plan.has(side)).map(|scene| scene.trocar_m);
-    Outline { trocars_m: Side::ALL.map(trocar) }
+    LoopOutline { trocars_m: Side::ALL.map(trocar) }
 }
 
-fn igtl_at(address: SocketAddr) -> anyhow::Result<Box<dyn Server>> {
-    let server = igtl::Server::start(address, trouble_of)?;
+fn igtl_at(address: SocketAddr) -> anyhow::Result<Box<dyn WatchServer>> {
+    let server = igtl::IgtlServer::start(address, trouble_of)?;
     let at = server.address();
-    tell(format_args!("nima: OpenIGTLink at {at}: connect 3D Slicer (OpenIGTLinkIF, client) or pyigtl to it"));
+    print_line(format_args!("nima: OpenIGTLink at {at}: connect 3D Slicer (OpenIGTLinkIF, client) or pyigtl to it"));
     if !at.ip().is_loopback() {
-        tell(
+        print_line(
             "nima: OpenIGTLink: anyone who can reach this address can read poses, forces and images, without a \
          password",
         );
@@ -84,30 +84,34 @@ fn igtl_at(address: SocketAddr) -> anyhow::Result<Box<dyn Server>> {
     Ok(Box::new(server))
 }
 
-impl Server for Marker {
-    fn audience(&self, plan: &Plan, _: &Reel) -> Box<dyn Audience> {
+impl WatchServer for MarkStream {
+    fn audience(&self, plan: &SimulationPlan, _: &FrameQueue) -> Box<dyn Audience> {
         self.audience(marked(plan, None))
     }
 
-    fn blind_audience(&self, plan: &Plan, trial: &str) -> Option<Box<dyn Audience>> {
+    fn blind_audience(&self, plan: &SimulationPlan, trial: &str) -> Option<Box<dyn Audience>> {
         Some(self.audience(marked(plan, Some(trial.to_owned()))))
     }
 
-    fn shown(&self) -> Shown {
-        Shown { at: format!("LSL stream {}", lsl::STREAM), watchers: usize::from(self.is_heard()) }
+    fn shown(&self) -> WatchStatus {
+        WatchStatus { at: format!("LSL stream {}", lsl::STREAM), watchers: usize::from(self.is_received()) }
     }
 }
 
-fn marked(plan: &Plan, trial: Option<String>) -> lsl::About {
+fn marked(plan: &SimulationPlan, trial: Option<String>) -> lsl::MarkContext {
     let contact_n =
         plan.scene.task.as_ref().and_then(|task| TaskFile::of(task).ok()).map_or(CONTACT_N, |task| task.contact_n);
-    lsl::About { contact_n, trial, words: Fault::cause }
+    lsl::MarkContext { contact_n, trial, words: Fault::cause }
 }
 
-fn marks_by(library: &Path) -> anyhow::Result<Box<dyn Server>> {
+fn marks_by(library: &Path) -> anyhow::Result<Box<dyn WatchServer>> {
     let named = (library != Path::new(INSTALLED)).then_some(library);
-    let marker = Marker::start(named, PROGRAM, &machine())?;
-    tell(format_args!("nima: marks over the Lab Streaming Layer: stream {}, type {}", lsl::STREAM, lsl::STREAM_TYPE));
+    let marker = MarkStream::start(named, PROGRAM, &machine())?;
+    print_line(format_args!(
+        "nima: marks over the Lab Streaming Layer: stream {}, type {}",
+        lsl::STREAM,
+        lsl::STREAM_TYPE
+    ));
     Ok(Box::new(marker))
 }
 
@@ -130,7 +134,7 @@ mod tests {
         for (scene, arms) in [("peg_transfer", 1), ("bimanual", 2)] {
             let rig = RigConfig::load("simulated").unwrap();
             let scene = Scene::load(scene).unwrap();
-            let plan = Plan { rig, scene: scene.clone(), calibrations: Default::default(), engage: false };
+            let plan = SimulationPlan { rig, scene: scene.clone(), calibrations: Default::default(), engage: false };
             let known = outline(&plan).trocars_m;
             assert_eq!(known.iter().flatten().count(), arms);
             assert_eq!(known[0], Some(scene.trocar_m));
@@ -142,7 +146,7 @@ mod tests {
         let rig = RigConfig::load("simulated").unwrap();
         let scene = Scene::load("rings").unwrap();
         let contact_n = TaskFile::of(scene.task.as_ref().unwrap()).unwrap().contact_n;
-        let plan = Plan { rig, scene, calibrations: Default::default(), engage: false };
+        let plan = SimulationPlan { rig, scene, calibrations: Default::default(), engage: false };
         let marked_n = marked(&plan, Some("P03 4".to_owned())).contact_n;
         assert_eq!(marked_n.to_bits(), contact_n.to_bits());
     }

@@ -9,17 +9,17 @@ use std::{
 
 use anyhow::{Context as _, bail};
 use clap::Args;
-use nima_camera::{Ask, Grey, Offer, Report, Session, Sight, Terms, calibrate, find};
+use nima_camera::{BoardSight, CameraSession, Grey, LensReport, Terms, ViewOutcome, ViewRequest, calibrate, find};
 use nima_core::calibration::Verdict;
-use nima_endoscope::{Address, Board, Feed, Standing, Wrong, board::Corners, jpeg};
+use nima_endoscope::{Address, Checkerboard, EndoscopeFeed, FrameFault, FrameHealth, board::BoardCorners, jpeg};
 use nima_machine::config::{RigFile, change_rig};
 use serde_json::json;
 
-use super::{lens::changes, words as camera};
-use crate::{command::output, leaving::Leave, telling::tell, words::Words as _};
+use super::{camera_calibration::changes, report_text as camera};
+use crate::{command::output, report_text::ShortText as _, shutdown::Leave, stderr::print_line};
 
 /// Maximum number of images in a folder.
-const PICTURES: usize = 500;
+const IMAGES: usize = 500;
 /// Maximum size of an image, bytes.
 const BYTES: u64 = 16 << 20;
 /// A camera is watched until no new view was captured for this time.
@@ -27,14 +27,14 @@ const PATIENCE: Duration = Duration::from_mins(2);
 const NAP: Duration = Duration::from_millis(20);
 
 #[derive(Debug, Args)]
-pub(super) struct Arguments {
+pub(super) struct CalibrateCameraArguments {
     /// Folder with JPEGs of the board, or the camera itself (http://HOST:PORT/PATH), which is watched while you move the
     /// board
     #[arg(value_name = "FOLDER_OR_URL")]
     source: String,
     /// Inner corners along both sides, one number odd and the other even
     #[arg(long, value_name = "AxB", default_value = "9x6")]
-    board: Corners,
+    board: BoardCorners,
     /// Side length of a square
     #[arg(long, value_name = "MM", default_value_t = 10.0)]
     square_mm: f64,
@@ -48,14 +48,14 @@ pub(super) struct Arguments {
 }
 
 /// Views, and their names.
-struct Taken {
+struct NamedViews {
     size_px: [usize; 2],
-    views: Vec<(String, Sight)>,
+    views: Vec<(String, BoardSight)>,
 }
 
-pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    let Corners(corners) = arguments.board;
-    let board = Board::new(corners, arguments.square_mm * 1e-3)?;
+pub(super) fn run(arguments: &CalibrateCameraArguments) -> anyhow::Result<()> {
+    let BoardCorners(corners) = arguments.board;
+    let board = Checkerboard::new(corners, arguments.square_mm * 1e-3)?;
     if let Some(out) = &arguments.out {
         let rig = rig_file(out)?;
         if rig.value("endoscope.url").is_none() {
@@ -68,13 +68,13 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         Address::File(folder) => of_folder(folder, &board)?,
         Address::Http(_) | Address::Rtsp(_) | Address::Camera { .. } => of_camera(address, board)?,
     };
-    let views: Vec<Sight> = taken.views.iter().map(|(_, view)| view.clone()).collect();
+    let views: Vec<BoardSight> = taken.views.iter().map(|(_, view)| view.clone()).collect();
     let report = calibrate(&board, taken.size_px, &views);
     let reason = report.cause.as_ref().map(camera::camera_cause);
     if arguments.json {
         output::json(&in_json(&report, &taken, reason.as_deref()))?;
     } else {
-        output::line(&in_words(&report, &taken))?;
+        output::line(&as_text(&report, &taken))?;
     }
     if let Some(reason) = reason {
         bail!("{}: {reason}", report.verdict().words());
@@ -84,7 +84,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let changes = changes(&rig_file(out)?, &found.lens, None);
     let folder = out.parent().unwrap_or_else(|| Path::new("."));
     change_rig(&name, folder, &changes)?;
-    tell(format_args!(
+    print_line(format_args!(
         "{name}: lens written; now calibrate the camera position with `nima console --calibrate camera`"
     ));
     Ok(())
@@ -98,7 +98,7 @@ fn rig_file(out: &Path) -> anyhow::Result<RigFile> {
 }
 
 /// The views in the JPEGs of a folder, sorted by name.
-fn of_folder(folder: &Path, board: &Board) -> anyhow::Result<Taken> {
+fn of_folder(folder: &Path, board: &Checkerboard) -> anyhow::Result<NamedViews> {
     let about = || format!("cannot read the images in {}", folder.display());
     let entries = std::fs::read_dir(folder).with_context(about)?;
     let mut paths: Vec<PathBuf> =
@@ -107,42 +107,42 @@ fn of_folder(folder: &Path, board: &Board) -> anyhow::Result<Taken> {
         path.extension().is_some_and(|ending| ["jpg", "jpeg"].iter().any(|jpeg| ending.eq_ignore_ascii_case(jpeg)))
     });
     paths.sort();
-    if paths.is_empty() || paths.len() > PICTURES {
-        bail!("{} JPEGs in {}: use a folder with 8 to {PICTURES}", paths.len(), folder.display());
+    if paths.is_empty() || paths.len() > IMAGES {
+        bail!("{} JPEGs in {}: use a folder with 8 to {IMAGES}", paths.len(), folder.display());
     }
-    let mut taken = Taken { size_px: [0, 0], views: Vec::new() };
+    let mut taken = NamedViews { size_px: [0, 0], views: Vec::new() };
     for path in paths {
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let bytes = nima_files::read(&path, BYTES).with_context(|| path.display().to_string())?;
-        let picture = jpeg::decode(&bytes).with_context(|| path.display().to_string())?;
-        let [width, height] = picture.size_px;
-        if taken.size_px != [0, 0] && taken.size_px != picture.size_px {
+        let image = jpeg::decode(&bytes).with_context(|| path.display().to_string())?;
+        let [width, height] = image.size_px;
+        if taken.size_px != [0, 0] && taken.size_px != image.size_px {
             bail!("{} is {width} x {height} px, unlike the images before it: use images of one size", path.display());
         }
-        taken.size_px = picture.size_px;
-        let found = Grey::of(&picture).map(|grey| find(&grey, board));
+        taken.size_px = image.size_px;
+        let found = Grey::of(&image).map(|grey| find(&grey, board));
         match found {
             Some(Ok(sight)) => taken.views.push((name, sight)),
-            Some(Err(why)) => tell(format_args!("{name}: {}", camera::unseen(why))),
-            None => tell(format_args!("{name}: the file is empty")),
+            Some(Err(why)) => print_line(format_args!("{name}: {}", camera::unseen(why))),
+            None => print_line(format_args!("{name}: the file is empty")),
         }
     }
     Ok(taken)
 }
 
 /// Watches the camera while the board is moved, and prints the next request.
-fn of_camera(address: Address, board: Board) -> anyhow::Result<Taken> {
+fn of_camera(address: Address, board: Checkerboard) -> anyhow::Result<NamedViews> {
     let leave = Leave::on_signals()?;
     let shown = address.to_string();
-    let feed = Feed::start(address, None, || {}).context("no thread for decoding the image")?;
-    let mut session: Option<Session> = None;
+    let feed = EndoscopeFeed::start(address, None, || {}).context("no thread for decoding the image")?;
+    let mut session: Option<CameraSession> = None;
     let mut last = 0;
     let mut since = Instant::now();
-    let mut told = String::new();
+    let mut report = String::new();
     let mut say = |words: String| {
-        if told != words {
-            tell(&words);
-            told = words;
+        if report != words {
+            print_line(&words);
+            report = words;
         }
     };
     loop {
@@ -153,29 +153,29 @@ fn of_camera(address: Address, board: Board) -> anyhow::Result<Taken> {
             bail!("no new view for {} s: {shown} shows no board that is held still", PATIENCE.as_secs());
         }
         let look = feed.look(Instant::now());
-        if let Standing::Lost(trouble) = &look.standing {
+        if let FrameHealth::Lost(trouble) = &look.standing {
             bail!("{trouble}: {}", trouble.cure());
         }
-        if matches!(look.standing, Standing::Wrong(Wrong::Black)) {
+        if matches!(look.standing, FrameHealth::Wrong(FrameFault::Black)) {
             say("the image is black".to_owned());
         }
-        let Some((number, picture)) = look.picture.filter(|(number, _)| *number != last) else {
+        let Some((number, image)) = look.image.filter(|(number, _)| *number != last) else {
             thread::sleep(NAP);
             continue;
         };
         last = number;
-        if session.as_ref().is_some_and(|session| session.size_px() != picture.size_px) {
+        if session.as_ref().is_some_and(|session| session.size_px() != image.size_px) {
             bail!("the image size has changed: set the camera to one size");
         }
-        let session = session.get_or_insert_with(|| Session::new(board, picture.size_px));
+        let session = session.get_or_insert_with(|| CameraSession::new(board, image.size_px));
         let asked = session.asks();
-        if asked == Ask::Complete {
+        if asked == ViewRequest::Complete {
             break;
         }
         say(format!("{} views: {}", session.views().len(), camera::ask(asked)));
-        match Grey::of(&picture).map(|grey| find(&grey, &board)) {
+        match Grey::of(&image).map(|grey| find(&grey, &board)) {
             Some(Ok(sight)) => {
-                if session.offer(sight) == Offer::Taken {
+                if session.offer(sight) == ViewOutcome::Taken {
                     since = Instant::now();
                 }
             }
@@ -184,14 +184,14 @@ fn of_camera(address: Address, board: Board) -> anyhow::Result<Taken> {
     }
     let session = session.context("no image received")?;
     let views = session.views().iter().enumerate().map(|(at, view)| (format!("view {}", at + 1), view.clone()));
-    Ok(Taken { size_px: session.size_px(), views: views.collect() })
+    Ok(NamedViews { size_px: session.size_px(), views: views.collect() })
 }
 
-const fn terms_words(terms: Terms) -> [(&'static str, bool); 3] {
+const fn terms_text(terms: Terms) -> [(&'static str, bool); 3] {
     [("pixels are not square", terms.aspect), ("k2", terms.k2), ("p1, p2", terms.tangential)]
 }
 
-fn in_words(report: &Report, taken: &Taken) -> String {
+fn as_text(report: &LensReport, taken: &NamedViews) -> String {
     let mut text = format!("{}\n", report.verdict().words());
     // Writing to a String cannot fail.
     writeln!(
@@ -199,7 +199,7 @@ fn in_words(report: &Report, taken: &Taken) -> String {
         "{} of {} views used; corners in {:.0} % of the image",
         report.used.len(),
         taken.views.len(),
-        100.0 * report.coverage.share()
+        100.0 * report.coverage.fraction()
     )
     .ok();
     for (at, why) in &report.left_out {
@@ -226,7 +226,7 @@ fn in_words(report: &Report, taken: &Taken) -> String {
         lens.bend.k1, sd.bend.k1, lens.bend.k2, lens.bend.p1, lens.bend.p2
     )
     .ok();
-    for (name, is_found) in terms_words(found.terms) {
+    for (name, is_found) in terms_text(found.terms) {
         writeln!(
             text,
             "{name}: {}",
@@ -243,7 +243,7 @@ fn in_words(report: &Report, taken: &Taken) -> String {
     text
 }
 
-fn in_json(report: &Report, taken: &Taken, reason: Option<&str>) -> serde_json::Value {
+fn in_json(report: &LensReport, taken: &NamedViews, reason: Option<&str>) -> serde_json::Value {
     let left_out =
         report.left_out.iter().map(|(at, why)| json!({ "view": taken.views[*at].0, "why": camera::left_out(*why) }));
     let lens = report.lens.as_ref().map(|found| {
@@ -276,7 +276,7 @@ fn in_json(report: &Report, taken: &Taken, reason: Option<&str>) -> serde_json::
         "views": taken.views.len(),
         "used": report.used.len(),
         "left_out": left_out.collect::<Vec<_>>(),
-        "coverage": report.coverage.share(),
+        "coverage": report.coverage.fraction(),
         "lens": lens,
     })
 }

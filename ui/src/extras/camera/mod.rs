@@ -1,10 +1,10 @@
 //! Calibration of the endoscope's camera, from images of a checkerboard.
 
+mod camera_calibration;
 mod command;
-mod lens;
+mod report_text;
 mod screen;
 mod text;
-mod words;
 
 use clap::{ArgMatches, Subcommand};
 
@@ -12,16 +12,16 @@ use super::{Extra, given};
 use crate::console::wizards::Wizard;
 use screen::CameraWizard;
 
-pub(super) struct Camera;
+pub(super) struct CameraExtra;
 
 // Its addition to `nima calibrate`. A doc comment would replace the help of that command.
 #[derive(Debug, Subcommand)]
 enum Calibrate {
     /// Find the lens of the endoscope's camera from images of a checkerboard
-    Camera(command::Arguments),
+    Camera(command::CalibrateCameraArguments),
 }
 
-impl Extra for Camera {
+impl Extra for CameraExtra {
     fn commands(&self, line: clap::Command) -> clap::Command {
         line.mut_subcommands(|command| {
             if command.get_name() == "calibrate" { Calibrate::augment_subcommands(command) } else { command }

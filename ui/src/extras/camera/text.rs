@@ -2,7 +2,7 @@
 
 use nima_endoscope::Bend;
 
-use crate::language::{Text, told, word};
+use crate::language::{Text, text_format, word};
 
 pub(super) const STEP_CHECK_HOVER: Text =
     Text::of("Checks the endoscope image and the board", "Prüft Endoskopbild und Tafel");
@@ -32,8 +32,8 @@ pub(super) const CHECK_ENDOSCOPE: Text = Text::of(
 );
 pub(super) const NO_ENDOSCOPE: Text =
     Text::of("add [endoscope] with its url to the rig file", "[endoscope] mit url in der Aufbaudatei ergänzen");
-pub(super) const CHECK_PICTURE: Text = Text::of("Image", "Bild");
-pub(super) const NO_PICTURE: Text =
+pub(super) const CHECK_IMAGE: Text = Text::of("Image", "Bild");
+pub(super) const NO_IMAGE: Text =
     Text::of("no image received; see the Devices panel for the cause", "kein Bild empfangen; Grund im Panel Geräte");
 pub(super) const BOARD_TITLE: Text = Text::of("Board", "Tafel");
 pub(super) const BOARD_HOVER: Text = Text::of(
@@ -179,28 +179,28 @@ pub(super) const NEEDS_PLACE: Text =
     Text::of("No good position yet: touch the marked corners", "Noch keine gute Lage: die markierten Ecken berühren");
 
 pub(super) fn no_board(why: &str) -> String {
-    told!("No board: {why}", "Keine Tafel: {why}")
+    text_format!("No board: {why}", "Keine Tafel: {why}")
 }
 
-pub(super) fn views(count: usize, told: &str) -> String {
-    told!("{count} captured; {told}", "{count} aufgenommen; {told}")
+pub(super) fn views(count: usize, report: &str) -> String {
+    text_format!("{count} captured; {report}", "{count} aufgenommen; {report}")
 }
 
-pub(super) fn picture(told: &str) -> String {
-    told!("Endoscope image: {told}", "Endoskopbild: {told}")
+pub(super) fn image(report: &str) -> String {
+    text_format!("Endoscope image: {report}", "Endoskopbild: {report}")
 }
 
-pub(super) fn covered(share: f64) -> String {
-    told!("{:.0} % of the image covered", "{:.0} % des Bildes abgedeckt", 100.0 * share)
+pub(super) fn covered(fraction: f64) -> String {
+    text_format!("{:.0} % of the image covered", "{:.0} % des Bildes abgedeckt", 100.0 * fraction)
 }
 
 pub(super) fn left_out(number: usize, why: &str) -> String {
-    told!("View {number} left out: {why}", "Ansicht {number} ausgelassen: {why}")
+    text_format!("View {number} left out: {why}", "Ansicht {number} ausgelassen: {why}")
 }
 
 /// A value with its standard deviation, px.
 pub(super) fn with_deviation(value: f64, sd: f64) -> String {
-    told!("{value:.1} ± {sd:.1} px", "{value:.1} ± {sd:.1} px")
+    text_format!("{value:.1} ± {sd:.1} px", "{value:.1} ± {sd:.1} px")
 }
 
 /// Distortion, with the standard deviation of its first term.
@@ -210,7 +210,7 @@ pub(super) fn bend(bend: &Bend, sd: &Bend) -> String {
 }
 
 pub(super) fn touch(corner: usize) -> String {
-    told!(
+    text_format!(
         "Touch the marked corner with the tip (corner {})",
         "Markierte Ecke mit der Spitze berühren (Ecke {})",
         corner + 1
@@ -218,21 +218,21 @@ pub(super) fn touch(corner: usize) -> String {
 }
 
 pub(super) fn touched(count: usize, tip: &str) -> String {
-    told!("{count} corners touched; {tip}", "{count} Ecken berührt; {tip}")
+    text_format!("{count} corners touched; {tip}", "{count} Ecken berührt; {tip}")
 }
 
 pub(super) fn proof(lens_px: Option<f64>, place: Option<(f64, bool)>) -> String {
     let lens = lens_px
         .map_or(word("The lens comes from the rig file", "Das Objektiv ist das der Aufbaudatei").to_owned(), |px| {
-            told!("Held-out corners: {px:.2} px", "Testecken: {px:.2} px")
+            text_format!("Held-out corners: {px:.2} px", "Testecken: {px:.2} px")
         });
     let place = match place {
         None => word("position unknown, no forces are drawn", "Lage unbekannt, keine Kräfte im Bild").to_owned(),
-        Some((px, true)) => told!(
+        Some((px, true)) => text_format!(
             "touched corners: {px:.1} px; the position follows the endoscope's marker",
             "berührte Ecken: {px:.1} px; die Lage folgt dem Marker des Endoskops"
         ),
-        Some((px, false)) => told!(
+        Some((px, false)) => text_format!(
             "touched corners: {px:.1} px; the position is valid until the endoscope is moved",
             "berührte Ecken: {px:.1} px; die Lage gilt, bis das Endoskop bewegt wird"
         ),

@@ -8,7 +8,9 @@ use std::{
 };
 
 use anyhow::{Context as _, bail};
-use nima_department::{Authority, Found, Identity, Recording, Rig, Role, Step, find, find_at};
+use nima_department::{
+    Authority, FoundRig, MachineIdentity, MachineRole, RecordStep, RemoteRig, RigRecording, find, find_at,
+};
 use nima_machine::config::RigConfig;
 use nima_recording::store::{Store, utc_of};
 use nima_simulation::scene::Scene;
@@ -16,15 +18,15 @@ use serde::Serialize;
 
 use crate::{
     command::{
-        department::{DepartmentCommand, MonitorArguments, RecordArguments, RigsArguments, Which},
+        department::{DepartmentCommand, MonitorArguments, RecordArguments, RigSelection, RigsArguments},
         output,
     },
     console::{
-        monitor::{self, Heard, Options, Teller},
-        settings::Kept,
+        monitor::{self, MonitorMessage, MonitorOptions, MonitorSender},
+        settings::SettingsStore,
     },
-    leaving::Leave,
-    telling::tell,
+    shutdown::Leave,
+    stderr::print_line,
 };
 
 /// Default port of a shared rig.
@@ -45,7 +47,7 @@ pub(super) fn run(command: &DepartmentCommand) -> anyhow::Result<()> {
             ))
         }
         DepartmentCommand::Issue { name, watcher, out } => {
-            let role = if *watcher { Role::Watcher } else { Role::Rig };
+            let role = if *watcher { MachineRole::Watcher } else { MachineRole::Rig };
             let identity = Authority::load(&folder()?)?.issue(name, role, out)?;
             output::line(&format!(
                 "certificate of {} {} written to {}: copy it to that machine, run `nima department join` there, \
@@ -56,8 +58,8 @@ pub(super) fn run(command: &DepartmentCommand) -> anyhow::Result<()> {
             ))
         }
         DepartmentCommand::Join { file } => {
-            let identity = Identity::join(&folder()?, file)?;
-            let Identity { department, name, role, .. } = &identity;
+            let identity = MachineIdentity::join(&folder()?, file)?;
+            let MachineIdentity { department, name, role, .. } = &identity;
             output::line(&format!(
                 "this machine is now {} {name} of department {department}; delete {}",
                 role.word(),
@@ -77,12 +79,12 @@ fn folder() -> anyhow::Result<PathBuf> {
 }
 
 /// Identity of this machine.
-pub(super) fn own_identity() -> anyhow::Result<Identity> {
-    Ok(Identity::load(&folder()?)?)
+pub(super) fn own_identity() -> anyhow::Result<MachineIdentity> {
+    Ok(MachineIdentity::load(&folder()?)?)
 }
 
 #[derive(Serialize)]
-struct Listed {
+struct ListedRig {
     name: String,
     address: String,
     /// `None`: no loop is running there.
@@ -93,8 +95,8 @@ struct Listed {
     program: String,
 }
 
-impl Listed {
-    fn of(found: &Found) -> Self {
+impl ListedRig {
+    fn of(found: &FoundRig) -> Self {
         let about = &found.about;
         let runs = about.session != 0;
         let name = |text: &str| toml::from_str::<toml::Table>(text).ok()?.get("name")?.as_str().map(str::to_owned);
@@ -109,7 +111,7 @@ impl Listed {
         }
     }
 
-    fn in_words(&self) -> String {
+    fn as_text(&self) -> String {
         let Self { name, address, rig, scene, running_since, watchers, .. } = self;
         let runs = match (rig, scene, running_since) {
             (Some(rig), Some(scene), Some(since)) => format!("rig {rig}, scene {scene}, since {since}"),
@@ -127,7 +129,7 @@ fn rigs(arguments: &RigsArguments) -> anyhow::Result<()> {
         let at = |address: &String| find_at(&own, &with_port(address));
         arguments.at.iter().map(at).collect::<Result<_, _>>()?
     };
-    let listed: Vec<Listed> = found.iter().map(Listed::of).collect();
+    let listed: Vec<ListedRig> = found.iter().map(ListedRig::of).collect();
     if arguments.json {
         return output::json(&listed);
     }
@@ -136,11 +138,11 @@ fn rigs(arguments: &RigsArguments) -> anyhow::Result<()> {
             "no rig of this department is shared on the local network; use --at HOST for a rig elsewhere",
         );
     }
-    listed.iter().try_for_each(|rig| output::line(&rig.in_words()))
+    listed.iter().try_for_each(|rig| output::line(&rig.as_text()))
 }
 
-impl Which {
-    fn address(&self, own: &Identity) -> anyhow::Result<String> {
+impl RigSelection {
+    fn address(&self, own: &MachineIdentity) -> anyhow::Result<String> {
         if let Some(address) = &self.at {
             return Ok(with_port(address));
         }
@@ -165,36 +167,38 @@ impl Which {
 fn watch(arguments: &MonitorArguments) -> anyhow::Result<()> {
     let own = own_identity()?;
     let address = arguments.which.address(&own)?;
-    let rig = Rig::open(&own, &address)?;
-    let options = Options {
+    let rig = RemoteRig::open(&own, &address)?;
+    let options = MonitorOptions {
         role: arguments.role,
-        language: arguments.language.unwrap_or_else(|| Kept::of_user().now.language),
+        language: arguments.language.unwrap_or_else(|| SettingsStore::of_user().now.language),
         exit_after: arguments.exit_after.map(Duration::from_secs_f64),
         screenshot: arguments.screenshot.clone(),
     };
     let name = rig.name().to_owned();
-    monitor::open(&name, options, move |teller| {
+    monitor::open(&name, options, move |publisher| {
         let thread = thread::Builder::new().name("monitor".to_owned());
-        let listen = move || listen(rig, &own, &address, &teller);
+        let listen = move || listen(rig, &own, &address, &publisher);
         if let Err(error) = thread.spawn(listen) {
-            tell(format_args!("nima: cannot start a thread: {error}; close other programs, then try again"));
+            print_line(format_args!("nima: cannot start a thread: {error}; close other programs, then try again"));
         }
     })
 }
 
 /// Passes a rig's data to a window until the window is closed. A missing rig is searched for again.
-fn listen(rig: Rig, own: &Identity, address: &str, teller: &Teller) {
+fn listen(rig: RemoteRig, own: &MachineIdentity, address: &str, publisher: &MonitorSender) {
     let mut rig = Some(rig);
     loop {
-        let heard = match rig.take() {
-            Some(rig) => listen_to(&rig, teller),
-            None => Rig::open(own, address).map_err(anyhow::Error::from).and_then(|rig| listen_to(&rig, teller)),
+        let received = match rig.take() {
+            Some(rig) => listen_to(&rig, publisher),
+            None => {
+                RemoteRig::open(own, address).map_err(anyhow::Error::from).and_then(|rig| listen_to(&rig, publisher))
+            }
         };
-        match heard {
+        match received {
             Ok(()) => return,
             Err(why) => {
                 tracing::warn!("{why:#}");
-                if !teller.tell(Heard::Trouble(format!("{why:#}"))) {
+                if !publisher.notify(MonitorMessage::Trouble(format!("{why:#}"))) {
                     return;
                 }
             }
@@ -204,7 +208,7 @@ fn listen(rig: Rig, own: &Identity, address: &str, teller: &Teller) {
 }
 
 /// Returns when the window is closed.
-fn listen_to(rig: &Rig, teller: &Teller) -> anyhow::Result<()> {
+fn listen_to(rig: &RemoteRig, publisher: &MonitorSender) -> anyhow::Result<()> {
     let (to, came) = crossbeam_channel::unbounded();
     let presence = rig.presence()?;
     let _watching = rig.watch(move |session, moments| drop(to.send((session, moments))))?;
@@ -214,15 +218,15 @@ fn listen_to(rig: &Rig, teller: &Teller) -> anyhow::Result<()> {
         let about = rig.about()?;
         if shown != Some(about.session) {
             shown = Some(about.session);
-            let heard = if about.session == 0 {
-                Heard::Rests
+            let received = if about.session == 0 {
+                MonitorMessage::Rests
             } else {
                 let rig: RigConfig = nima_files::from_toml(&about.rig).context("the rig's file cannot be read here")?;
                 let scene: Scene =
                     nima_files::from_toml(&about.scene).context("the rig's scene cannot be read here")?;
-                Heard::Runs(Box::new(rig), Box::new(scene))
+                MonitorMessage::Runs(Box::new(rig), Box::new(scene))
             };
-            if !teller.tell(heard) {
+            if !publisher.notify(received) {
                 return Ok(());
             }
         }
@@ -230,7 +234,7 @@ fn listen_to(rig: &Rig, teller: &Teller) -> anyhow::Result<()> {
             if shown != Some(session) {
                 break;
             }
-            if !teller.tell(Heard::Shows(moments?)) {
+            if !publisher.notify(MonitorMessage::Shows(moments?)) {
                 return Ok(());
             }
         }
@@ -244,22 +248,22 @@ fn record(arguments: &RecordArguments) -> anyhow::Result<()> {
     let own = own_identity()?;
     let leave = Leave::on_signals()?;
     let address = arguments.which.address(&own)?;
-    let rig = Rig::open(&own, &address)?;
-    let mut recording = Recording::start(&rig, &arguments.into)?;
-    tell(format_args!("nima: recording {} into {}", rig.name(), arguments.into.display()));
+    let rig = RemoteRig::open(&own, &address)?;
+    let mut recording = RigRecording::start(&rig, &arguments.into)?;
+    print_line(format_args!("nima: recording {} into {}", rig.name(), arguments.into.display()));
     let ends = arguments.seconds.map(|seconds| Instant::now() + Duration::from_secs_f64(seconds));
     let mut written = None;
     while !leave.is_asked() && ends.is_none_or(|ends| Instant::now() < ends) {
         match recording.step(Duration::from_millis(250))? {
-            Step::Writes { file, .. } if written.as_ref() != Some(&file) => {
-                tell(format_args!("nima: a session: {}", file.display()));
+            RecordStep::Writes { file, .. } if written.as_ref() != Some(&file) => {
+                print_line(format_args!("nima: a session: {}", file.display()));
                 written = Some(file);
             }
-            Step::Ended { file, messages } => ended(&file, messages)?,
-            Step::Writes { .. } | Step::Waits => {}
+            RecordStep::Ended { file, messages } => ended(&file, messages)?,
+            RecordStep::Writes { .. } | RecordStep::Waits => {}
         }
     }
-    if let Step::Ended { file, messages } = recording.finish()? {
+    if let RecordStep::Ended { file, messages } = recording.finish()? {
         ended(&file, messages)?;
     }
     Ok(())

@@ -4,15 +4,15 @@ mod engine;
 
 use std::net::SocketAddr;
 
-use nima_endoscope::Reel;
-use nima_session::outlet::Audience;
-use nima_simulation::Plan;
+use nima_endoscope::FrameQueue;
+use nima_session::sinks::Audience;
+use nima_simulation::SimulationPlan;
 
 use super::Extra;
 use crate::{
     command::department::DepartmentCommand,
-    telling::tell,
-    watching::{Server, Show, Shown},
+    stderr::print_line,
+    watching::{Show, WatchServer, WatchStatus},
 };
 
 pub(super) struct Department;
@@ -22,24 +22,29 @@ impl Extra for Department {
         Some(engine::run(command))
     }
 
-    fn server(&self, show: Show, at: SocketAddr) -> Option<anyhow::Result<Box<dyn Server>>> {
-        (show == Show::Share).then(|| share_at(at))
+    fn server(&self, show: Show, at: SocketAddr) -> Option<anyhow::Result<Box<dyn WatchServer>>> {
+        (show == Show::Share).then(|| fraction_at(at))
     }
 }
 
-impl Server for nima_department::Share {
-    fn audience(&self, _: &Plan, _: &Reel) -> Box<dyn Audience> {
+impl WatchServer for nima_department::SharedRig {
+    fn audience(&self, _: &SimulationPlan, _: &FrameQueue) -> Box<dyn Audience> {
         self.audience()
     }
 
-    fn shown(&self) -> Shown {
-        Shown { at: format!("{} ({})", self.address(), self.name()), watchers: self.watchers() }
+    fn shown(&self) -> WatchStatus {
+        WatchStatus { at: format!("{} ({})", self.address(), self.name()), watchers: self.watchers() }
     }
 }
 
-fn share_at(address: SocketAddr) -> anyhow::Result<Box<dyn Server>> {
+fn fraction_at(address: SocketAddr) -> anyhow::Result<Box<dyn WatchServer>> {
     let own = engine::own_identity()?;
-    let share = nima_department::Share::start(&own, address, !address.ip().is_loopback())?;
-    tell(format_args!("nima: shared with department {} as {} at {}", own.department, share.name(), share.address()));
+    let share = nima_department::SharedRig::start(&own, address, !address.ip().is_loopback())?;
+    print_line(format_args!(
+        "nima: shared with department {} as {} at {}",
+        own.department,
+        share.name(),
+        share.address()
+    ));
     Ok(Box::new(share))
 }

@@ -8,21 +8,21 @@ use std::{
 
 use anyhow::{Context as _, bail};
 use clap::Args;
-use nima_core::impedance::{Choice, MAX_DEGREE, Mode, OwnMotion, Reading, Recipe};
+use nima_core::impedance::{DegreeChoice, IncrementReading, MAX_DEGREE, Mode, OwnMotion, Recipe};
 use nima_files::write_atomically;
 use nima_machine::rig::Side;
-use nima_recording::csv::{AXIS_NAMES, Recording};
-use nima_study::replay::{Figures, Options, Row, Summary, replay};
+use nima_recording::csv::{AXIS_NAMES, CsvRecording};
+use nima_study::replay::{ReplayFigures, ReplayOptions, ReplayRow, ReplaySummary, replay};
 use serde::{
     Serialize,
     de::{DeserializeOwned, IntoDeserializer as _, value::Error},
 };
 
-use super::motion;
-use crate::command::{output, setup::side};
+use super::recording_input;
+use crate::command::{output, rig_args::side};
 
 #[derive(Debug, Args)]
-pub(super) struct Arguments {
+pub(super) struct IdentifyArguments {
     /// CSV files with `t_s`, `x_m, y_m, z_m`, `fx_n, fy_n, fz_n` (one to three axes), or recorded sessions (.mcap); for
     /// several, a summary is printed too
     #[arg(required = true, value_name = "RECORDING")]
@@ -51,11 +51,11 @@ pub(super) struct Arguments {
     #[arg(long)]
     cross_talk: bool,
     /// Regressors of literal and linear: increments (changes of the motion over the window) or displacement (from the origin)
-    #[arg(long, value_name = "READING", default_value = "increments", value_parser = word::<Reading>)]
-    reading: Reading,
+    #[arg(long, value_name = "READING", default_value = "increments", value_parser = word::<IncrementReading>)]
+    reading: IncrementReading,
     /// Error by which literal chooses its degree: window (in the window that it fitted) or next (over the 10 ms after it)
-    #[arg(long, value_name = "CHOICE", default_value = "window", value_parser = word::<Choice>)]
-    choice: Choice,
+    #[arg(long, value_name = "CHOICE", default_value = "window", value_parser = word::<DegreeChoice>)]
+    choice: DegreeChoice,
     /// Give literal and linear a free constant force
     #[arg(long)]
     constant: bool,
@@ -73,44 +73,44 @@ pub(super) struct Arguments {
 
 /// Output for several recordings.
 #[derive(Serialize)]
-struct Many<'a> {
-    recordings: Vec<One<'a>>,
-    summary: &'a Summary,
+struct SummaryReport<'a> {
+    recordings: Vec<RecordingReport<'a>>,
+    summary: &'a ReplaySummary,
 }
 
 #[derive(Serialize)]
-struct One<'a> {
+struct RecordingReport<'a> {
     recording: &'a str,
     #[serde(flatten)]
-    figures: &'a Figures,
+    figures: &'a ReplayFigures,
 }
 
-pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+pub(super) fn run(arguments: &IdentifyArguments) -> anyhow::Result<()> {
     let [recording] = &arguments.recordings[..] else { return run_many(arguments) };
     if let Some(out) = &arguments.out {
         output::check(out, &[recording])?;
     }
     let figures = identify(arguments, recording)?;
-    if arguments.json { output::json(&figures) } else { output::line(&in_words(&figures)) }
+    if arguments.json { output::json(&figures) } else { output::line(&as_text(&figures)) }
 }
 
 /// Runs all recordings with the same options, and a summary.
-fn run_many(arguments: &Arguments) -> anyhow::Result<()> {
+fn run_many(arguments: &IdentifyArguments) -> anyhow::Result<()> {
     if arguments.out.is_some() {
         bail!("--out writes the samples of a single recording: use one recording, or omit --out");
     }
     let one = |path: &PathBuf| Ok((path.display().to_string(), identify(arguments, path)?));
-    let all: Vec<(String, Figures)> = arguments.recordings.iter().map(one).collect::<anyhow::Result<_>>()?;
-    let summary = Summary::of(&all);
+    let all: Vec<(String, ReplayFigures)> = arguments.recordings.iter().map(one).collect::<anyhow::Result<_>>()?;
+    let summary = ReplaySummary::of(&all);
     if !arguments.json {
-        return output::line(&many_in_words(&all, &summary));
+        return output::line(&many_as_text(&all, &summary));
     }
-    let recordings = all.iter().map(|(recording, figures)| One { recording, figures }).collect();
-    output::json(&Many { recordings, summary: &summary })
+    let recordings = all.iter().map(|(recording, figures)| RecordingReport { recording, figures }).collect();
+    output::json(&SummaryReport { recordings, summary: &summary })
 }
 
-fn identify(arguments: &Arguments, path: &Path) -> anyhow::Result<Figures> {
-    let recording = motion::read_with_leader(path, &arguments.map, arguments.arm)?;
+fn identify(arguments: &IdentifyArguments, path: &Path) -> anyhow::Result<ReplayFigures> {
+    let recording = recording_input::read_with_leader(path, &arguments.map, arguments.arm)?;
     let mut trace = header(&recording);
     let keep = arguments.out.is_some();
     let figures = replay(&recording, &options(arguments), |row| {
@@ -125,12 +125,12 @@ fn identify(arguments: &Arguments, path: &Path) -> anyhow::Result<Figures> {
     Ok(figures)
 }
 
-fn options(arguments: &Arguments) -> Options {
-    let &Arguments { mode, max_degree, cross_talk, reading, choice, constant, ridge, .. } = arguments;
+fn options(arguments: &IdentifyArguments) -> ReplayOptions {
+    let &IdentifyArguments { mode, max_degree, cross_talk, reading, choice, constant, ridge, .. } = arguments;
     let window_s = arguments.window_ms * 1e-3;
     let delay_s = arguments.delay_ms * 1e-3;
     let literal = Recipe { reading, choice, constant, ridge };
-    Options { mode, window_s, delay_s, max_degree, cross_talk, literal }
+    ReplayOptions { mode, window_s, delay_s, max_degree, cross_talk, literal }
 }
 
 /// Parses a word of a rig file.
@@ -138,7 +138,7 @@ fn word<T: DeserializeOwned>(text: &str) -> Result<T, Error> {
     T::deserialize(text.into_deserializer())
 }
 
-fn header(recording: &Recording) -> String {
+fn header(recording: &CsvRecording) -> String {
     let mut text = String::from("t_s");
     for prefix in ["f", "r", "h"] {
         for &axis in &recording.axes {
@@ -149,7 +149,7 @@ fn header(recording: &Recording) -> String {
     text
 }
 
-fn push_row(trace: &mut String, row: &Row, axes: usize) {
+fn push_row(trace: &mut String, row: &ReplayRow, axes: usize) {
     // Writing to a String cannot fail. Rust prints the fewest digits that read back as the same number.
     write!(trace, "{}", row.t_s).ok();
     for force in [Some(&row.measured), row.rendered.as_ref(), row.held.as_ref()] {
@@ -165,37 +165,37 @@ fn push_row(trace: &mut String, row: &Row, axes: usize) {
 }
 
 /// The rendered force's error as a multiple of the held force's error, if there is one.
-fn ratio_in_words(ratio: Option<f64>) -> String {
+fn ratio_text(ratio: Option<f64>) -> String {
     ratio.map_or_else(|| "none: the held force is exact".to_owned(), |ratio| format!("{ratio:.3}"))
 }
 
-fn ratio_of(figures: &Figures) -> Option<f64> {
+fn ratio_of(figures: &ReplayFigures) -> Option<f64> {
     (figures.hold.mae > 0.0).then(|| figures.error.mae / figures.hold.mae)
 }
 
 /// One line per recording, and one for all.
-fn many_in_words(all: &[(String, Figures)], summary: &Summary) -> String {
+fn many_as_text(all: &[(String, ReplayFigures)], summary: &ReplaySummary) -> String {
     let row = |name: &str, compared: usize, error: f64, hold: f64, ratio: Option<f64>| {
-        format!("{compared:>9}  {error:>9.5}  {hold:>9.5}  {:>7}  {name}\n", ratio_in_words(ratio))
+        format!("{compared:>9}  {error:>9.5}  {hold:>9.5}  {:>7}  {name}\n", ratio_text(ratio))
     };
     let mut text = String::from("  samples      error       held    ratio  recording\n");
     for (name, figures) in all {
-        let Figures { compared, error, hold, .. } = figures;
+        let ReplayFigures { compared, error, hold, .. } = figures;
         text += &row(name, *compared, error.mae, hold.mae, ratio_of(figures));
     }
-    let Summary { compared, error_mae, hold_mae, ratio, holes, rejected, .. } = *summary;
+    let ReplaySummary { compared, error_mae, hold_mae, ratio, holes, rejected, .. } = *summary;
     text += &row(&format!("all {}", summary.recordings), compared, error_mae, hold_mae, ratio);
     if let (Some(ratios), Some(worst)) = (&summary.ratios, &summary.worst) {
         let median = ratios.median;
-        writeln!(text, "ratio: median {median:.3}, from {:.3} to {:.3} ({worst})", ratios.least, ratios.greatest).ok();
+        writeln!(text, "ratio: median {median:.3}, from {:.3} to {:.3} ({worst})", ratios.min, ratios.greatest).ok();
     }
     writeln!(text, "rejected {rejected}; gaps {holes}").ok();
     text.push_str("(mean prediction errors in units of the recordings; ratio: rendered force to held force)");
     text
 }
 
-fn in_words(figures: &Figures) -> String {
-    let ratio = ratio_in_words(ratio_of(figures));
+fn as_text(figures: &ReplayFigures) -> String {
+    let ratio = ratio_text(ratio_of(figures));
     let motion = match figures.own_motion {
         OwnMotion::Follower => "",
         OwnMotion::Handle => "; force from the leader's own motion",
@@ -208,7 +208,7 @@ fn in_words(figures: &Figures) -> String {
         ),
     };
     let reconstruction = &figures.reconstruction;
-    let [d1, d2, d3, d4, d5] = figures.degree_share.map(|share| share * 100.0);
+    let [d1, d2, d3, d4, d5] = figures.degree_fraction.map(|fraction| fraction * 100.0);
     format!(
         "{samples} samples at {rate:.1} Hz, axes {axes}; mode {mode}, window {window:.1} ms, delay {delay:.1} ms{motion}{holes}\n\
          error at the horizon   mean {:.5}   sd {:.5}   p95 {:.5}   max {:.5}\n\
@@ -233,7 +233,7 @@ fn in_words(figures: &Figures) -> String {
         reconstruction.degree_4.mae,
         reconstruction.degree_5.mae,
         reconstruction.selected.mae,
-        figures.nonlinear_share * 100.0,
+        figures.nonlinear_fraction * 100.0,
         figures.condition.p50,
         figures.condition.p95,
         figures.condition.max,

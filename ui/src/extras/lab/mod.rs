@@ -1,29 +1,29 @@
 //! The laboratory: emulated devices, studies that print results, and their parts of the window.
 
 mod emulate;
+mod ground_truth;
 mod identify;
-mod motion;
+mod recording_input;
 mod screen;
 mod study;
 mod text;
-mod truth;
 
 use clap::{ArgMatches, Subcommand};
 
 use super::{Extra, given};
 use crate::{
     console::panels::{StripUi, Tile},
-    truth::Comparison,
+    ground_truth::TruthComparison,
 };
 
 pub(super) struct Lab;
 
 #[derive(Debug, Subcommand)]
-enum Command {
+enum LabCommand {
     /// Emulate devices on their real interfaces (serial port, network, HID)
-    Emulate(emulate::Arguments),
+    Emulate(emulate::EmulateArguments),
     /// Identify impedance on a recording, sample by sample, from past data only
-    Identify(identify::Arguments),
+    Identify(identify::IdentifyArguments),
     /// Run an experiment and print its results
     #[command(subcommand, arg_required_else_help = false)]
     Study(study::StudyCommand),
@@ -31,14 +31,14 @@ enum Command {
 
 impl Extra for Lab {
     fn commands(&self, line: clap::Command) -> clap::Command {
-        Command::augment_subcommands(line)
+        LabCommand::augment_subcommands(line)
     }
 
     fn run(&self, matches: &ArgMatches) -> Option<anyhow::Result<()>> {
         Some(match given(matches)? {
-            Ok(Command::Emulate(arguments)) => emulate::run(&arguments),
-            Ok(Command::Identify(arguments)) => identify::run(&arguments),
-            Ok(Command::Study(command)) => study::run(&command),
+            Ok(LabCommand::Emulate(arguments)) => emulate::run(&arguments),
+            Ok(LabCommand::Identify(arguments)) => identify::run(&arguments),
+            Ok(LabCommand::Study(command)) => study::run(&command),
             Err(error) => Err(error.into()),
         })
     }
@@ -48,12 +48,12 @@ impl Extra for Lab {
         nima_emulation::emulated::provide_handles();
     }
 
-    fn comparison(&self) -> Option<Box<dyn Comparison>> {
-        Some(Box::new(truth::TipComparison::default()))
+    fn comparison(&self) -> Option<Box<dyn TruthComparison>> {
+        Some(Box::new(ground_truth::TipComparison::default()))
     }
 
     fn tradeoff(&self) -> Option<fn() -> Box<dyn Tile>> {
-        Some(|| Box::new(screen::Tradeoff::default()))
+        Some(|| Box::new(screen::TradeoffPanel::default()))
     }
 
     fn stable_gain(&self) -> Option<StripUi> {

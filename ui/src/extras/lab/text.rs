@@ -1,8 +1,8 @@
 //! The Trade-off panel (computing time versus accuracy), and the strip below the gain slider.
 
-use nima_study::stability_map::Verdict;
+use nima_study::stability_map::StabilityMapVerdict;
 
-use crate::language::{Text, told, word};
+use crate::language::{Text, text_format, word};
 
 pub(super) const CANCELLED: Text =
     Text::of("Cancelled. The earlier results were kept.", "Abgebrochen. Die früheren Ergebnisse bleiben.");
@@ -75,23 +75,23 @@ pub(super) const STABLE_GAIN_HOVER: Text = Text::of(
 );
 
 pub(super) fn not_started(error: &impl std::fmt::Display) -> String {
-    told!("The measurement could not be started: {error}", "Messung nicht gestartet: {error}")
+    text_format!("The measurement could not be started: {error}", "Messung nicht gestartet: {error}")
 }
 
 pub(super) fn measured(percent: f32) -> String {
-    told!("Trade-off measured: {percent:.0} %", "Abwägung gemessen: {percent:.0} %")
+    text_format!("Trade-off measured: {percent:.0} %", "Abwägung gemessen: {percent:.0} %")
 }
 
 pub(super) fn applied(choice: &str) -> String {
-    told!("Applied: {choice}", "Angewendet: {choice}")
+    text_format!("Applied: {choice}", "Angewendet: {choice}")
 }
 
 pub(super) fn not_applied(reason: &str) -> String {
-    told!("Not applied: {reason}", "Nicht angewendet: {reason}")
+    text_format!("Not applied: {reason}", "Nicht angewendet: {reason}")
 }
 
 pub(super) fn point(name: &str, [median_us, p99_us]: [&str; 2], delay_ms: f64, [error_n, ratio]: [&str; 2]) -> String {
-    told!(
+    text_format!(
         "{name}\none tick: median {median_us} µs, p99 {p99_us} µs\nmean error at {delay_ms:.0} ms: {error_n} N, \
          {ratio} x delayed DFR",
         "{name}\nein Takt: Median {median_us} µs, p99 {p99_us} µs\nmittlerer Fehler bei {delay_ms:.0} ms: {error_n} N, \
@@ -100,23 +100,23 @@ pub(super) fn point(name: &str, [median_us, p99_us]: [&str; 2], delay_ms: f64, [
 }
 
 pub(super) fn error_axis(unit: &str) -> String {
-    told!("Mean error ({unit})", "Mittlerer Fehler ({unit})")
+    text_format!("Mean error ({unit})", "Mittlerer Fehler ({unit})")
 }
 
 pub(super) fn plot(points: usize) -> String {
-    told!(
+    text_format!(
         "Trade-off plot: {points} points, time per tick versus prediction error",
         "Abwägungsdiagramm: {points} Punkte, Zeit eines Takts gegen Vorhersagefehler"
     )
 }
 
-pub(super) fn stable_up_to(verdict: Verdict, greatest: f64, stiffness_n_m: f64) -> String {
+pub(super) fn stable_up_to(verdict: StabilityMapVerdict, greatest: f64, stiffness_n_m: f64) -> String {
     let verdict = match verdict {
-        Verdict::Stable => word("stable", "stabil"),
-        Verdict::Marginal => word("at the limit", "an der Grenze"),
-        Verdict::Unstable => word("unstable", "instabil"),
+        StabilityMapVerdict::Stable => word("stable", "stabil"),
+        StabilityMapVerdict::Marginal => word("at the limit", "an der Grenze"),
+        StabilityMapVerdict::Unstable => word("unstable", "instabil"),
     };
-    told!(
+    text_format!(
         "This gain is {verdict}; stable up to {greatest:.2} at {stiffness_n_m:.0} N/m",
         "Diese Verstärkung ist {verdict}; stabil bis {greatest:.2} bei {stiffness_n_m:.0} N/m"
     )

@@ -5,18 +5,18 @@ pub(super) mod scoring;
 
 use clap::{ArgMatches, Subcommand};
 use nima_score::{TaskFile, provide_tasks};
-use nima_simulation::{Plan, Watched};
+use nima_simulation::{ObjectFeed, SimulationPlan};
 
 use super::{Extra, given};
-use crate::scoring::Scorer;
-use scoring::Scoring;
+use crate::scoring::RunScorer;
+use scoring::LiveScorer;
 
 pub(super) struct Tasks;
 
 #[derive(Debug, Subcommand)]
-enum Command {
+enum TaskCommand {
     /// Score recorded sessions: time, path, speed, smoothness and force of each hand; also as a table of trials
-    Score(score::Arguments),
+    Score(score::ScoreArguments),
 }
 
 impl Extra for Tasks {
@@ -25,18 +25,22 @@ impl Extra for Tasks {
     }
 
     fn commands(&self, line: clap::Command) -> clap::Command {
-        Command::augment_subcommands(line)
+        TaskCommand::augment_subcommands(line)
     }
 
     fn run(&self, matches: &ArgMatches) -> Option<anyhow::Result<()>> {
         Some(match given(matches)? {
-            Ok(Command::Score(arguments)) => score::run(&arguments),
+            Ok(TaskCommand::Score(arguments)) => score::run(&arguments),
             Err(error) => Err(error.into()),
         })
     }
 
-    fn scorer(&self, plan: &Plan, watched: &mut Option<Watched>) -> Option<anyhow::Result<Box<dyn Scorer>>> {
+    fn scorer(
+        &self,
+        plan: &SimulationPlan,
+        watched: &mut Option<ObjectFeed>,
+    ) -> Option<anyhow::Result<Box<dyn RunScorer>>> {
         let task = TaskFile::of(plan.scene.task.as_ref()?);
-        Some(task.map(|task| Box::new(Scoring::new(&task, watched.take())) as _).map_err(Into::into))
+        Some(task.map(|task| Box::new(LiveScorer::new(&task, watched.take())) as _).map_err(Into::into))
     }
 }

@@ -9,14 +9,14 @@ use std::{
 use anyhow::{Context as _, bail};
 use clap::Args;
 use nima_files::{csv_cell, write_atomically};
-use nima_recording::session::Reader;
-use nima_score::{MEASURES, Measure, Score, TaskFile, scored};
-use nima_session::{objects, plotted};
+use nima_recording::session::SessionReader;
+use nima_score::{MEASURES, Measure, Score, TaskFile, trial_score};
+use nima_session::{objects, plot_channels};
 use nima_simulation::scene::Scene;
 use serde::Serialize;
 
 use crate::{
-    command::{output, stretch::Stretch},
+    command::{output, time_range::TimeRange},
     recording::SCENE,
 };
 
@@ -24,12 +24,12 @@ use crate::{
 const FREE: &str = "name = 'Free'\nkind = 'free'\ntime_limit_s = 1200.0";
 
 #[derive(Debug, Args)]
-pub(super) struct Arguments {
+pub(super) struct ScoreArguments {
     /// Session files; each is a trial
     #[arg(required = true, value_name = "SESSION.mcap")]
     sessions: Vec<PathBuf>,
     #[command(flatten)]
-    stretch: Stretch,
+    stretch: TimeRange,
     /// Task file (TOML): name, kind, time limit, thresholds (default: the task of the recorded scene, if its events are
     /// recorded)
     #[arg(long, value_name = "FILE")]
@@ -49,7 +49,7 @@ pub(super) struct Arguments {
 }
 
 #[derive(Serialize)]
-struct Scored {
+struct ScoredSession {
     session: String,
     condition: String,
     task: String,
@@ -57,8 +57,8 @@ struct Scored {
     score: Score,
 }
 
-pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    let Arguments { sessions, stretch, task, participant, condition, out, json } = arguments;
+pub(super) fn run(arguments: &ScoreArguments) -> anyhow::Result<()> {
+    let ScoreArguments { sessions, stretch, task, participant, condition, out, json } = arguments;
     if stretch.is_asked() && sessions.len() > 1 {
         bail!("--from and --to apply to a single session, not to {}", sessions.len());
     }
@@ -76,7 +76,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     match scored.as_slice() {
         [one] if *json => output::json(one),
         several if *json => output::json(&several),
-        several => several.iter().try_for_each(|one| output::line(&one.in_words())),
+        several => several.iter().try_for_each(|one| output::line(&one.as_text())),
     }
 }
 
@@ -87,8 +87,8 @@ fn task_of(path: &Path) -> anyhow::Result<TaskFile> {
 }
 
 /// The task of the session's scene. Without recorded events there is nothing to count: then it is free motion.
-fn recorded_task(session: &Path, reader: &Reader) -> anyhow::Result<TaskFile> {
-    let scene = reader.attachments().iter().find(|one| one.name == SCENE).filter(|_| objects::are_told(reader));
+fn recorded_task(session: &Path, reader: &SessionReader) -> anyhow::Result<TaskFile> {
+    let scene = reader.attachments().iter().find(|one| one.name == SCENE).filter(|_| objects::are_reported(reader));
     let Some(scene) = scene else { return Ok(TaskFile::from_toml(FREE)?) };
     let text = String::from_utf8_lossy(&reader.attachment(scene)?).into_owned();
     let scene = Scene::parse(Path::new(SCENE), &text).with_context(|| {
@@ -99,16 +99,16 @@ fn recorded_task(session: &Path, reader: &Reader) -> anyhow::Result<TaskFile> {
 
 fn scored(
     session: &Path,
-    stretch: &Stretch,
+    stretch: &TimeRange,
     task: Option<&TaskFile>,
     condition: Option<&str>,
-) -> anyhow::Result<Scored> {
-    let reader = Reader::open(session)?;
+) -> anyhow::Result<ScoredSession> {
+    let reader = SessionReader::open(session)?;
     let task = task.map_or_else(|| recorded_task(session, &reader), |task| Ok(task.clone()))?;
-    let begin_ns = plotted::beginning_ns(&reader)?;
+    let begin_ns = plot_channels::beginning_ns(&reader)?;
     let times_s = stretch.of(session, &reader)?;
     let ns = |t_s: f64| if t_s.is_finite() { begin_ns.saturating_add((t_s * 1e9).round() as u64) } else { u64::MAX };
-    let score = scored::score(&reader, session, &(ns(times_s.start)..ns(times_s.end)), &task)?;
+    let score = trial_score::score(&reader, session, &(ns(times_s.start)..ns(times_s.end)), &task)?;
     let score =
         score.with_context(|| format!("session {}: no arm was engaged, so it contains no trial", session.display()))?;
     let tables: BTreeMap<_, _> = reader.metadata()?.into_iter().collect();
@@ -116,11 +116,11 @@ fn scored(
     let delay_ms =
         word("delay_s").parse::<f64>().map_or_else(|_| String::new(), |delay_s| format!(" {:.0} ms", 1e3 * delay_s));
     let condition = condition.map_or_else(|| word("mode") + &delay_ms, str::to_owned);
-    Ok(Scored { session: session.display().to_string(), condition, task: task.name, score })
+    Ok(ScoredSession { session: session.display().to_string(), condition, task: task.name, score })
 }
 
-impl Scored {
-    fn in_words(&self) -> String {
+impl ScoredSession {
+    fn as_text(&self) -> String {
         let Self { session, condition, task, score } = self;
         let mut text = format!("{session}, {condition}, task: {task}\n");
         for definition in MEASURES {
@@ -145,7 +145,7 @@ fn four_digits(value: f64) -> String {
 }
 
 /// One row per session, one column per available measure.
-fn table(scored: &[Scored], participant: &str) -> String {
+fn table(scored: &[ScoredSession], participant: &str) -> String {
     let has =
         |place: &usize| scored.iter().any(|one| one.score.measures().nth(*place).is_some_and(|m| m.value.is_some()));
     let names: Vec<String> =
@@ -157,7 +157,7 @@ fn table(scored: &[Scored], participant: &str) -> String {
     }
     text.push('\n');
     for (number, one) in scored.iter().enumerate() {
-        let Scored { session, condition, score, .. } = one;
+        let ScoredSession { session, condition, score, .. } = one;
         write!(text, "{},{},{},{}", csv_cell(participant), csv_cell(condition), number + 1, csv_cell(session)).ok();
         let values: Vec<Option<f64>> = score.measures().map(|measure| measure.value).collect();
         for place in &columns {

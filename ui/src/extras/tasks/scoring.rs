@@ -1,30 +1,30 @@
 //! The score of a run in a scene with a task.
 
 use nima_machine::messages::Tick;
-use nima_score::{Score, TaskFile, scored::LiveTrial};
-use nima_simulation::Watched;
+use nima_score::{Score, TaskFile, trial_score::LiveTrial};
+use nima_simulation::ObjectFeed;
 
-use crate::scoring::Scorer;
+use crate::scoring::RunScorer;
 
 /// Scores from the first tick in which an arm is engaged.
 #[derive(Debug)]
-pub(crate) struct Scoring {
+pub(crate) struct LiveScorer {
     pub(in crate::extras) trial: LiveTrial,
-    watched: Option<Watched>,
+    watched: Option<ObjectFeed>,
 }
 
-impl Scoring {
+impl LiveScorer {
     /// `watched` reports the events of the objects.
-    pub(crate) fn new(task: &TaskFile, watched: Option<Watched>) -> Self {
+    pub(crate) fn new(task: &TaskFile, watched: Option<ObjectFeed>) -> Self {
         Self { trial: LiveTrial::new(task), watched }
     }
 
     pub(crate) fn tick(&mut self, tick: &Tick) {
-        self.hear();
+        self.receive();
         self.trial.tick(tick);
     }
 
-    fn hear(&mut self) {
+    fn receive(&mut self) {
         let Some(watched) = &self.watched else { return };
         for moment in watched.moments() {
             self.trial.opening(moment.t_s, moment.opening_rad);
@@ -36,13 +36,13 @@ impl Scoring {
 
     /// `None` if no arm was engaged.
     pub(crate) fn end(mut self) -> Option<Score> {
-        self.hear();
+        self.receive();
         // Without objects, the end of the task is not reported.
         self.trial.end(self.watched.is_none())
     }
 }
 
-impl Scorer for Scoring {
+impl RunScorer for LiveScorer {
     fn tick(&mut self, tick: &Tick) {
         self.tick(tick);
     }

@@ -7,13 +7,13 @@ use nima_machine::config::SchedulingClass;
 
 use super::network;
 use crate::{
-    command::{run, setup::Setup},
-    telling::tell,
-    watching::Watching,
+    command::{rig_args::Setup, run},
+    stderr::print_line,
+    watching::WatchArguments,
 };
 
 #[derive(Debug, Args)]
-pub(super) struct Arguments {
+pub(super) struct FollowerArguments {
     #[command(flatten)]
     setup: Setup,
     /// Address of this machine to listen at (default: only consoles on this machine)
@@ -29,20 +29,20 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "FILE.mcap")]
     record: Option<PathBuf>,
     #[command(flatten)]
-    watching: Watching,
+    watching: WatchArguments,
     /// Print the results as one JSON object
     #[arg(long)]
     json: bool,
 }
 
-pub(super) fn run(arguments: Arguments) -> anyhow::Result<()> {
+pub(super) fn run(arguments: FollowerArguments) -> anyhow::Result<()> {
     let at = network::listening(arguments.listen.as_deref())?;
-    let Arguments { setup, seconds, scheduling, record, watching, json, .. } = arguments;
+    let FollowerArguments { setup, seconds, scheduling, record, watching, json, .. } = arguments;
     // The console determines the rendering.
-    let run = run::Arguments { setup, seconds, scheduling, record, watching, json, ..run::Arguments::default() };
+    let run = run::RunArguments { setup, seconds, scheduling, record, watching, json, ..run::RunArguments::default() };
     run::run_with(&run, |rig, scene| {
         let line = network::listen(rig, scene, at)?;
-        tell(format_args!("the follower listens at {at}"));
+        print_line(format_args!("the follower listens at {at}"));
         Ok(Some(line))
     })
 }

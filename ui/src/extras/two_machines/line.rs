@@ -3,25 +3,25 @@
 use crossbeam_channel::{Receiver, Sender, bounded};
 use egui::Ui;
 use nima_machine::{
-    remote::{Wire, joined},
-    rig::Ends,
+    remote::{RemoteWire, joined},
+    rig::RigEnds,
     runtime::Assembly,
 };
 use nima_network::{
-    endpoint::{Control, Endpoint, LinkState},
-    figures::{Dropped, Figures},
+    endpoint::{ControlRole, Endpoint, LinkState},
+    figures::{DroppedCounts, SessionMeasurements},
 };
 use serde::Serialize;
 
 use super::{
+    link_text::{link_rows, link_trouble, state_text},
     screen::link_ui,
     text,
-    words::{link_rows, link_trouble, state_in_words},
 };
-use crate::link::{Line, LineDoor};
+use crate::link::{LineConnection, RemoteLine};
 
 /// Interval of the reports, s.
-const TOLD_EVERY_S: f64 = 0.1;
+const REPORT_EVERY_S: f64 = 0.1;
 
 /// Maximum number of waiting reports and requests.
 const WAITING: usize = 4;
@@ -29,8 +29,8 @@ const WAITING: usize = 4;
 /// One end of the link. The loop's thread drives it.
 pub(super) struct NetworkLine {
     endpoint: Endpoint,
-    here: Ends,
-    told: Sender<LineReport>,
+    here: RigEnds,
+    reported: Sender<LineReport>,
     wishes: Receiver<LineWish>,
     door: Channels,
     next_s: f64,
@@ -49,7 +49,7 @@ pub(super) struct NetworkDoor {
     channels: Channels,
     newest: Option<LineReport>,
     /// Text of the last reported state.
-    told: Option<String>,
+    reported: Option<String>,
 }
 
 /// An operator's request about the follower at the other end.
@@ -74,12 +74,12 @@ impl NetworkDoor {
     }
 }
 
-impl LineDoor for NetworkDoor {
-    fn hear(&mut self) -> Option<String> {
+impl LineConnection for NetworkDoor {
+    fn receive(&mut self) -> Option<String> {
         let newest = self.channels.reports.try_iter().last()?;
         self.newest = Some(newest);
-        let words = state_in_words(newest.state);
-        (self.told.as_ref() != Some(&words)).then(|| self.told.insert(words).clone())
+        let words = state_text(newest.state);
+        (self.reported.as_ref() != Some(&words)).then(|| self.reported.insert(words).clone())
     }
 
     fn has_reported(&self) -> bool {
@@ -99,7 +99,7 @@ impl LineDoor for NetworkDoor {
     }
 
     fn question(&self) -> Option<[&'static str; 2]> {
-        let asks = self.newest?.control == Control::HoldsAsked;
+        let asks = self.newest?.control == ControlRole::HoldsAsked;
         asks.then(|| [text::CONTROL_ASKED_CAUSE.get(), text::CONTROL_ASKED_CURE.get()])
     }
 
@@ -118,21 +118,21 @@ impl LineDoor for NetworkDoor {
 pub(super) struct LineReport {
     pub(super) state: LinkState,
     /// Owner of control over the follower.
-    pub(super) control: Control,
-    pub(super) figures: Figures,
-    pub(super) dropped: Dropped,
+    pub(super) control: ControlRole,
+    pub(super) figures: SessionMeasurements,
+    pub(super) dropped: DroppedCounts,
 }
 
 impl NetworkLine {
     /// Over this endpoint, with these devices at this end.
-    pub(super) fn new(endpoint: Endpoint, here: Ends) -> Self {
-        let (told, reports) = bounded(WAITING);
+    pub(super) fn new(endpoint: Endpoint, here: RigEnds) -> Self {
+        let (reported, reports) = bounded(WAITING);
         let (wish, wishes) = bounded(WAITING);
-        Self { endpoint, here, told, wishes, door: Channels { reports, wishes: wish }, next_s: 0.0 }
+        Self { endpoint, here, reported, wishes, door: Channels { reports, wishes: wish }, next_s: 0.0 }
     }
 
     pub(super) fn network_door(&self) -> NetworkDoor {
-        NetworkDoor { channels: self.door.clone(), newest: None, told: None }
+        NetworkDoor { channels: self.door.clone(), newest: None, reported: None }
     }
 
     /// Handles one waiting request per tick.
@@ -145,12 +145,12 @@ impl NetworkLine {
         }
     }
 
-    fn tell(&mut self, now_s: f64) {
+    fn notify(&mut self, now_s: f64) {
         if now_s < self.next_s {
             return;
         }
-        self.next_s = now_s + TOLD_EVERY_S;
-        let Self { endpoint, told, .. } = self;
+        self.next_s = now_s + REPORT_EVERY_S;
+        let Self { endpoint, reported, .. } = self;
         let report = LineReport {
             state: endpoint.state(),
             control: endpoint.control(),
@@ -158,16 +158,16 @@ impl NetworkLine {
             dropped: endpoint.dropped(),
         };
         // A receiver may be missing: the newest four wait.
-        told.try_send(report).ok();
+        reported.try_send(report).ok();
     }
 }
 
-impl Line for NetworkLine {
-    fn here(&self) -> Ends {
+impl RemoteLine for NetworkLine {
+    fn here(&self) -> RigEnds {
         self.here
     }
 
-    fn door(&self) -> Box<dyn LineDoor> {
+    fn door(&self) -> Box<dyn LineConnection> {
         Box::new(self.network_door())
     }
 
@@ -177,7 +177,7 @@ impl Line for NetworkLine {
     }
 }
 
-impl Wire for NetworkLine {
+impl RemoteWire for NetworkLine {
     fn send(&mut self, now_s: f64, message: &[u8]) {
         self.endpoint.send(now_s, message);
     }
@@ -188,7 +188,7 @@ impl Wire for NetworkLine {
             take(payload.bytes);
         }
         self.obey();
-        self.tell(now_s);
+        self.notify(now_s);
     }
 }
 

@@ -6,27 +6,27 @@ use anyhow::{Context as _, bail};
 use nima_machine::{
     config::RigConfig,
     remote::at_follower,
-    rig::{Ends, Side},
+    rig::{RigEnds, Side},
 };
 use nima_network::{
-    endpoint::{Config, Endpoint, PORT, Role},
-    keys::{Keys, Peers, PublicKey},
+    endpoint::{Endpoint, EndpointConfig, EndpointRole, PORT},
+    keys::{NetworkKeys, Peers, PublicKey},
     stream::StreamSettings,
 };
 use nima_simulation::scene::Scene;
 
 use super::line::NetworkLine;
-use crate::link::{Line, Way};
+use crate::link::{ArmLink, RemoteLine};
 
 /// The connection to a machine where `nima follower` runs.
-pub(super) struct Network;
+pub(super) struct FollowerNetwork;
 
-impl Way for Network {
+impl ArmLink for FollowerNetwork {
     fn is_loopback(&self, host: &str) -> bool {
         address(host).is_ok_and(|follower| follower.ip().is_loopback())
     }
 
-    fn open(&self, host: &str, rig: &mut RigConfig, scene: &Scene) -> anyhow::Result<Box<dyn Line>> {
+    fn open(&self, host: &str, rig: &mut RigConfig, scene: &Scene) -> anyhow::Result<Box<dyn RemoteLine>> {
         without_objects(scene)?;
         let follower = address(host)?;
         let (keys, peers) = own_keys()?;
@@ -36,13 +36,13 @@ impl Way for Network {
         let Some(key) = key else {
             bail!("this machine is not paired with {host}: run `nima pair {host}` here and `nima pair --offer` there");
         };
-        here(rig, Ends::Leader);
-        open(arms(rig, scene), Role::Console { follower, key }, keys, Ends::Leader)
+        here(rig, RigEnds::Leader);
+        open(arms(rig, scene), EndpointRole::Console { follower, key }, keys, RigEnds::Leader)
     }
 }
 
 /// Opens the follower's end at this address; reduces the rig to the parts at this machine.
-pub(super) fn listen(rig: &mut RigConfig, scene: &Scene, at: SocketAddr) -> anyhow::Result<Box<dyn Line>> {
+pub(super) fn listen(rig: &mut RigConfig, scene: &Scene, at: SocketAddr) -> anyhow::Result<Box<dyn RemoteLine>> {
     without_objects(scene)?;
     let (keys, mut consoles) = own_keys()?;
     // The same user's console on this machine.
@@ -51,8 +51,8 @@ pub(super) fn listen(rig: &mut RigConfig, scene: &Scene, at: SocketAddr) -> anyh
         consoles.add("this machine", own)?;
     }
     *rig = at_follower(rig);
-    here(rig, Ends::Follower);
-    open(arms(rig, scene), Role::Follower { at: Some(at), consoles }, keys, Ends::Follower)
+    here(rig, RigEnds::Follower);
+    open(arms(rig, scene), EndpointRole::Follower { at: Some(at), consoles }, keys, RigEnds::Follower)
 }
 
 /// The tools of a follower belong to its own simulated hand, which would do the task by itself.
@@ -65,7 +65,7 @@ fn without_objects(scene: &Scene) -> anyhow::Result<()> {
     Ok(())
 }
 
-fn here(rig: &mut RigConfig, ends: Ends) {
+fn here(rig: &mut RigConfig, ends: RigEnds) {
     if let Some(devices) = &mut rig.devices {
         devices.ends = ends;
     }
@@ -75,8 +75,9 @@ fn arms(rig: &RigConfig, scene: &Scene) -> usize {
     Side::ALL.into_iter().filter(|side| scene.has(rig, *side)).count()
 }
 
-fn open(arms: usize, role: Role, keys: Keys, ends: Ends) -> anyhow::Result<Box<dyn Line>> {
-    let endpoint = Endpoint::open(Config { stream: StreamSettings::of_arms(arms), ..Config::new(role, keys) })?;
+fn open(arms: usize, role: EndpointRole, keys: NetworkKeys, ends: RigEnds) -> anyhow::Result<Box<dyn RemoteLine>> {
+    let endpoint =
+        Endpoint::open(EndpointConfig { stream: StreamSettings::of_arms(arms), ..EndpointConfig::new(role, keys) })?;
     Ok(Box::new(NetworkLine::new(endpoint, ends)))
 }
 
@@ -90,9 +91,9 @@ pub(super) fn folder() -> anyhow::Result<std::path::PathBuf> {
 }
 
 /// This machine's key, and the paired machines.
-pub(super) fn own_keys() -> anyhow::Result<(Keys, Peers)> {
+pub(super) fn own_keys() -> anyhow::Result<(NetworkKeys, Peers)> {
     let folder = folder()?;
-    Ok((Keys::open(&folder)?, Peers::open(&folder)?))
+    Ok((NetworkKeys::open(&folder)?, Peers::open(&folder)?))
 }
 
 /// The name under which a paired machine is stored: its address without the port.

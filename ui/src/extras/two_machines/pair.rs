@@ -14,11 +14,11 @@ use nima_network::pairing::{Attempts, Pairing};
 use super::network;
 use crate::{
     command::{output, run::positive_seconds},
-    leaving::Leave,
+    shutdown::Leave,
 };
 
 #[derive(Debug, Args)]
-pub(super) struct Arguments {
+pub(super) struct PairArguments {
     /// Host of the follower's machine, given at the console's machine
     #[arg(value_name = "HOST[:PORT]", required_unless_present = "offer", conflicts_with = "offer")]
     host: Option<String>,
@@ -36,7 +36,7 @@ pub(super) struct Arguments {
     wait: f64,
 }
 
-pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+pub(super) fn run(arguments: &PairArguments) -> anyhow::Result<()> {
     let folder = network::folder()?;
     let (keys, mut peers) = network::own_keys()?;
     let called_off = Arc::new(AtomicBool::new(false));

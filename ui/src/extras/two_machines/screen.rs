@@ -1,12 +1,12 @@
 //! The Link panel: whether messages pass, which console controls the follower, and the network statistics.
 
 use egui::{Button, RichText, Ui, vec2};
-use nima_network::endpoint::Control;
+use nima_network::endpoint::ControlRole;
 
 use super::{
     line::{LineReport, LineWish, NetworkDoor},
+    link_text::{link_rows, link_trouble},
     text,
-    words::{link_rows, link_trouble},
 };
 use crate::console::{
     alarms::sentence,
@@ -35,12 +35,12 @@ pub(super) fn link_ui(ui: &mut Ui, door: &NetworkDoor, drives: bool) {
 /// The console in control of the follower, and the buttons that transfer control.
 fn control_ui(ui: &mut Ui, report: &LineReport, drives: bool, door: &NetworkDoor) {
     let words = match report.control {
-        Control::None => return,
-        Control::Holds => text::HOLDS.get(),
-        Control::HoldsAsked => text::ASKED.get(),
-        Control::Waits => text::WAITS.get(),
-        Control::Asks => text::ASKS.get(),
-        Control::Denied => text::DENIED.get(),
+        ControlRole::None => return,
+        ControlRole::Holds => text::HOLDS.get(),
+        ControlRole::HoldsAsked => text::ASKED.get(),
+        ControlRole::Waits => text::WAITS.get(),
+        ControlRole::Asks => text::ASKS.get(),
+        ControlRole::Denied => text::DENIED.get(),
     };
     ui.label(words).on_hover_text(text::CONTROL_HOVER.get());
     let size = vec2(ui.available_width(), 28.0);
@@ -51,7 +51,7 @@ fn control_ui(ui: &mut Ui, report: &LineReport, drives: bool, door: &NetworkDoor
             .clicked()
     };
     match report.control {
-        Control::HoldsAsked => {
+        ControlRole::HoldsAsked => {
             // Control must not change while the arm is driven: the arm would stop in a fault.
             if button(ui, !drives, text::GIVE.get(), text::GIVE_HOVER.get()) {
                 door.wish(LineWish::Answer { consents: true });
@@ -63,17 +63,17 @@ fn control_ui(ui: &mut Ui, report: &LineReport, drives: bool, door: &NetworkDoor
                 door.wish(LineWish::Answer { consents: false });
             }
         }
-        Control::Waits | Control::Denied => {
+        ControlRole::Waits | ControlRole::Denied => {
             if button(ui, true, text::ASK.get(), text::ASK_HOVER.get()) {
                 door.wish(LineWish::Control);
             }
         }
-        Control::Asks => {
+        ControlRole::Asks => {
             if button(ui, true, text::WITHDRAW.get(), text::WITHDRAW_HOVER.get()) {
                 door.wish(LineWish::Nothing);
             }
         }
-        Control::None | Control::Holds => {}
+        ControlRole::None | ControlRole::Holds => {}
     }
 }
 
@@ -83,14 +83,14 @@ mod tests {
     use std::time::{Duration, Instant};
 
     use egui_kittest::{Harness, kittest::Queryable as _};
-    use nima_machine::{remote::Wire as _, rig::Ends};
+    use nima_machine::{remote::RemoteWire as _, rig::RigEnds};
     use nima_network::{
-        endpoint::{Config, Endpoint, Role},
-        keys::{Keys, Peers},
+        endpoint::{Endpoint, EndpointConfig, EndpointRole},
+        keys::{NetworkKeys, Peers},
     };
 
     use super::*;
-    use crate::{extras::two_machines::line::NetworkLine, link::LineDoor as _};
+    use crate::{extras::two_machines::line::NetworkLine, link::LineConnection as _};
 
     /// A follower and two consoles over loopback.
     struct Three {
@@ -107,7 +107,7 @@ mod tests {
             let keys = |name: &str| {
                 let own = folder.path().join(name);
                 std::fs::create_dir_all(&own).unwrap();
-                Keys::open(&own).unwrap()
+                NetworkKeys::open(&own).unwrap()
             };
             let follower = keys("follower");
             let first = keys("first");
@@ -116,19 +116,19 @@ mod tests {
             consoles.add("first", first.public()).unwrap();
             consoles.add("second", second.public()).unwrap();
             let key = follower.public();
-            let role = Role::Follower { at: Some((Ipv4Addr::LOCALHOST, 0).into()), consoles };
-            let follower = Endpoint::open(Config::new(role, follower)).unwrap();
+            let role = EndpointRole::Follower { at: Some((Ipv4Addr::LOCALHOST, 0).into()), consoles };
+            let follower = Endpoint::open(EndpointConfig::new(role, follower)).unwrap();
             let at = follower.address().unwrap();
             let console = |keys| {
-                let role = Role::Console { follower: at, key };
-                NetworkLine::new(Endpoint::open(Config::new(role, keys)).unwrap(), Ends::Leader)
+                let role = EndpointRole::Console { follower: at, key };
+                NetworkLine::new(Endpoint::open(EndpointConfig::new(role, keys)).unwrap(), RigEnds::Leader)
             };
-            let ends = [NetworkLine::new(follower, Ends::Follower), console(first), console(second)];
+            let ends = [NetworkLine::new(follower, RigEnds::Follower), console(first), console(second)];
             Self { _folder: folder, ends, running: 2, begun: Instant::now() }
         }
 
         /// Drives the running ones until this console's report matches, and shows it in the panel.
-        fn until(&mut self, window: &mut Harness<'_, NetworkDoor>, control: Control) {
+        fn until(&mut self, window: &mut Harness<'_, NetworkDoor>, control: ControlRole) {
             while window.state().newest().is_none_or(|report| report.control != control) {
                 assert!(self.begun.elapsed() < Duration::from_mins(1), "never {control:?}: {:?}", window.state());
                 let now_s = self.begun.elapsed().as_secs_f64();
@@ -136,7 +136,7 @@ mod tests {
                     end.receive(now_s, &mut |_| {});
                     end.send(now_s, b"payload");
                 }
-                window.state_mut().hear();
+                window.state_mut().receive();
                 std::thread::sleep(Duration::from_millis(1));
             }
             window.run_steps(2);
@@ -157,24 +157,24 @@ mod tests {
         let mut three = Three::new();
         let mut first = three.panel(1);
         let mut second = three.panel(2);
-        three.until(&mut first, Control::Holds);
+        three.until(&mut first, ControlRole::Holds);
         three.running = 3;
-        three.until(&mut second, Control::Waits);
+        three.until(&mut second, ControlRole::Waits);
         second.get_by_label(text::ASK.get()).click();
         second.run_steps(2);
-        three.until(&mut second, Control::Asks);
-        three.until(&mut first, Control::HoldsAsked);
+        three.until(&mut second, ControlRole::Asks);
+        three.until(&mut first, ControlRole::HoldsAsked);
         first.get_by_label(text::KEEP.get()).click();
         first.run_steps(2);
-        three.until(&mut second, Control::Denied);
-        three.until(&mut first, Control::Holds);
+        three.until(&mut second, ControlRole::Denied);
+        three.until(&mut first, ControlRole::Holds);
         second.get_by_label(text::ASK.get()).click();
         second.run_steps(2);
-        three.until(&mut first, Control::HoldsAsked);
+        three.until(&mut first, ControlRole::HoldsAsked);
         first.get_by_label(text::GIVE.get()).click();
         first.run_steps(2);
-        three.until(&mut second, Control::Holds);
-        three.until(&mut first, Control::Waits);
-        first.get_by_label_contains("nother console holds the follower");
+        three.until(&mut second, ControlRole::Holds);
+        three.until(&mut first, ControlRole::Waits);
+        first.get_by_label_contains("nother console controls the follower");
     }
 }

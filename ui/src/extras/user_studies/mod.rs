@@ -14,23 +14,23 @@ use crate::console::page::Page;
 pub(super) struct UserStudies;
 
 #[derive(Debug, Subcommand)]
-enum Command {
+enum UserStudiesCommand {
     /// Run a user study: orders, blind conditions, trials, questionnaires
     #[command(subcommand, arg_required_else_help = false)]
     UserStudy(commands::UserStudyCommand),
     /// Analyse a user study: one page with tables and plots, the tables as CSV, and a script for R
-    StudyReport(commands::report::Arguments),
+    StudyReport(commands::report::StudyReportArguments),
 }
 
 impl Extra for UserStudies {
     fn commands(&self, line: clap::Command) -> clap::Command {
-        Command::augment_subcommands(line)
+        UserStudiesCommand::augment_subcommands(line)
     }
 
     fn run(&self, matches: &ArgMatches) -> Option<anyhow::Result<()>> {
         Some(match given(matches)? {
-            Ok(Command::UserStudy(command)) => commands::run(&command),
-            Ok(Command::StudyReport(arguments)) => commands::report::run(&arguments),
+            Ok(UserStudiesCommand::UserStudy(command)) => commands::run(&command),
+            Ok(UserStudiesCommand::StudyReport(arguments)) => commands::report::run(&arguments),
             Err(error) => Err(error.into()),
         })
     }

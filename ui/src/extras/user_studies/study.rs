@@ -12,13 +12,16 @@ use nima_machine::{
 };
 use nima_recording::store::utc_now;
 use nima_score::TaskFile;
-use nima_session::outlet::Destination;
-use nima_simulation::{Plan, Watched, scene::Scene};
+use nima_session::sinks::Destination;
+use nima_simulation::{ObjectFeed, SimulationPlan, scene::Scene};
 use nima_user_study::{
-    Condition, Ending, Mistakes, Phase, Running, Step, Study, StudyError, StudyFile, TrialId, simulated::Hand,
+    Condition, Mistakes, RunningTrial, StudyError, StudyFile, StudyStep, TrialEnding, TrialId, TrialPhase, UserStudy,
+    simulated::SimulatedHand,
 };
 
-use crate::{extras::tasks::scoring::Scoring, leaving::Leave, objects::OfSimulation, recording, words::Remedy as _};
+use crate::{
+    extras::tasks::scoring::LiveScorer, objects::OfSimulation, recording, report_text::Remedy as _, shutdown::Leave,
+};
 
 /// Names of the templates.
 pub(super) const READY: [&str; 2] = ["paper", "short"];
@@ -37,10 +40,10 @@ pub(super) const NOT_STARTED: &str = "the loop did not start";
 const ENGAGES_S: f64 = 5.0;
 
 /// Result of a trial.
-pub(super) struct Ran {
+pub(super) struct TrialRun {
     pub(super) trial: TrialId,
     /// `None` if it was aborted.
-    pub(super) ending: Option<Ending>,
+    pub(super) ending: Option<TrialEnding>,
     pub(super) completion_time_s: Option<f64>,
     /// Reason for the abort.
     pub(super) why: Option<String>,
@@ -67,14 +70,14 @@ pub(super) fn mistakes(file: &StudyFile) -> Vec<String> {
     wrong
 }
 
-pub(super) fn create(folder: &Path, file: &StudyFile) -> anyhow::Result<Study> {
+pub(super) fn create(folder: &Path, file: &StudyFile) -> anyhow::Result<UserStudy> {
     let scene = scene_of(file)?;
     let rig = RigConfig::load(&file.rig)?;
     for condition in &file.conditions {
         under(rig.clone(), condition).with_context(|| format!("condition \"{}\"", condition.name))?;
     }
     let scene = toml::to_string(&scene).context("the scene cannot be written")?;
-    Ok(Study::create(folder, file, &scene, &utc_now())?)
+    Ok(UserStudy::create(folder, file, &scene, &utc_now())?)
 }
 
 /// The scene of a study, with its task and its number of rings.
@@ -111,31 +114,31 @@ pub(super) fn under(mut rig: RigConfig, condition: &Condition) -> Result<RigConf
 }
 
 /// The hand of the scene, with other random sequences in each trial.
-pub(super) fn plain_hand(study: &Study, participant: &str) -> anyhow::Result<Hand> {
+pub(super) fn plain_hand(study: &UserStudy, participant: &str) -> anyhow::Result<SimulatedHand> {
     let scene = scene_in(study)?;
     // Trials and interruptions, so that a repetition differs.
     let of = study.state().progress(participant).map_or(0, |one| u64::from(one.interruptions));
     let seed = scene.seed.wrapping_add(u64::from(made(study, participant).0) + 1000 * of);
-    let nima_simulation::scene::Hand { pace, tremor_m, intended_n, .. } = scene.hand;
-    Ok(Hand { pace, tremor_m, intended_n, seed })
+    let nima_simulation::scene::SceneHand { pace, tremor_m, intended_n, .. } = scene.hand;
+    Ok(SimulatedHand { pace, tremor_m, intended_n, seed })
 }
 
 /// Numbers of trials of a participant, practice included: in total, and since the last break.
-pub(super) fn made(study: &Study, participant: &str) -> (u32, u32) {
+pub(super) fn made(study: &UserStudy, participant: &str) -> (u32, u32) {
     let progress = study.state().progress(participant);
     progress.map_or((0, 0), |one| ((one.practice_s.len() + one.trials.len()) as u32, one.since_break()))
 }
 
-fn scene_in(study: &Study) -> anyhow::Result<Scene> {
+fn scene_in(study: &UserStudy) -> anyhow::Result<Scene> {
     Ok(Scene::parse(&scene_file(study), study.scene())?)
 }
 
-pub(super) fn scene_file(study: &Study) -> PathBuf {
+pub(super) fn scene_file(study: &UserStudy) -> PathBuf {
     study.folder().join("scene.toml")
 }
 
 /// The scene for a trial on this rig, with this hand, its random sequences, and its task.
-pub(super) fn scene_for(study: &Study, rig: &RigConfig, hand: &Hand) -> anyhow::Result<(Scene, TaskFile)> {
+pub(super) fn scene_for(study: &UserStudy, rig: &RigConfig, hand: &SimulatedHand) -> anyhow::Result<(Scene, TaskFile)> {
     let mut scene = scene_in(study)?;
     scene.hand.pace = hand.pace;
     scene.hand.tremor_m = hand.tremor_m;
@@ -147,24 +150,24 @@ pub(super) fn scene_for(study: &Study, rig: &RigConfig, hand: &Hand) -> anyhow::
 
 /// Records the end of a trial, with the reason of an abort in `why`.
 pub(super) fn close(
-    study: &mut Study,
-    running: Running,
+    study: &mut UserStudy,
+    running: RunningTrial,
     why: Option<String>,
-    scoring: Option<Scoring>,
-) -> Result<Ran, StudyError> {
+    scoring: Option<LiveScorer>,
+) -> Result<TrialRun, StudyError> {
     let trial = running.trial();
-    let score = scoring.and_then(Scoring::end);
-    let ended = score.as_ref().and_then(|score| Some((Ending::of(score.outcome())?, score)));
+    let score = scoring.and_then(LiveScorer::end);
+    let ended = score.as_ref().and_then(|score| Some((TrialEnding::of(score.outcome())?, score)));
     match (why, ended) {
         (None, Some((ending, score))) => {
             study.end_trial(running, ending, score, &utc_now())?;
             let completion_time_s = score.value("completion_time_s");
-            Ok(Ran { trial, ending: Some(ending), completion_time_s, why: None })
+            Ok(TrialRun { trial, ending: Some(ending), completion_time_s, why: None })
         }
         (why, _) => {
             let why = why.unwrap_or_else(|| "the loop was never engaged".to_owned());
             study.abort_trial(running, &why, &utc_now())?;
-            Ok(Ran { trial, ending: None, completion_time_s: None, why: Some(why) })
+            Ok(TrialRun { trial, ending: None, completion_time_s: None, why: Some(why) })
         }
     }
 }
@@ -176,13 +179,18 @@ pub(super) fn ended_by(fault: Fault) -> String {
 
 /// Runs the next trial on the simulated rig with a simulated hand, on the virtual clock. Returns its number, but not its
 /// condition.
-pub(super) fn run_virtual(study: &mut Study, participant: &str, hand: &Hand, leave: &Leave) -> anyhow::Result<Ran> {
+pub(super) fn run_virtual(
+    study: &mut UserStudy,
+    participant: &str,
+    hand: &SimulatedHand,
+    leave: &Leave,
+) -> anyhow::Result<TrialRun> {
     let rig = RigConfig::load(&study.plan().rig)?;
     if !rig.has_simulated_hand() {
         bail!("rig \"{}\" has devices, which need the real clock: --virtual is for simulated rigs", rig.name);
     }
     let (scene, task) = scene_for(study, &rig, hand)?;
-    let mut plan = Plan { rig, scene, calibrations: Default::default(), engage: true };
+    let mut plan = SimulationPlan { rig, scene, calibrations: Default::default(), engage: true };
     if !plan.may_engage() {
         bail!("scene \"{}\" cannot be engaged: the force at its tip is unknown", plan.scene.name);
     }
@@ -195,10 +203,10 @@ pub(super) fn run_virtual(study: &mut Study, participant: &str, hand: &Hand, lea
         running.session().map(|file| recording::begin(Destination::file(file), &plan, Some(VirtualClock::PERFECT)));
     let (tap, recorder) = recorded.transpose()?.unzip();
     let (assembly, mut watched) = plan.watched()?;
-    if let Some((recorder, watched)) = recorder.as_ref().zip(watched.as_mut().and_then(Watched::another)) {
+    if let Some((recorder, watched)) = recorder.as_ref().zip(watched.as_mut().and_then(ObjectFeed::another)) {
         recorder.watch(OfSimulation::source(&plan, watched));
     }
-    let mut scoring = Scoring::new(&task, watched);
+    let mut scoring = LiveScorer::new(&task, watched);
     let mut fault = None;
     let each = |tick: &Tick| {
         scoring.tick(tick);
@@ -220,15 +228,15 @@ pub(super) fn run_virtual(study: &mut Study, participant: &str, hand: &Hand, lea
     Ok(close(study, running, why, Some(scoring))?)
 }
 
-impl Ran {
+impl TrialRun {
     /// Text without the condition, and without the result unless it is to be shown.
-    pub(super) fn in_words(&self, shows_result: bool) -> String {
+    pub(super) fn as_text(&self, shows_result: bool) -> String {
         let Self { trial, ending, completion_time_s, why } = self;
-        let what = if trial.phase == Phase::Practice { "practice trial" } else { "trial" };
+        let what = if trial.phase == TrialPhase::Practice { "practice trial" } else { "trial" };
         let how = match (ending, completion_time_s, why) {
             (Some(_), ..) if !shows_result => "ended (result hidden)".to_owned(),
             (_, Some(time_s), _) => format!("completed in {time_s:.1} s"),
-            (Some(Ending::OutOfTime), ..) => "the time limit is reached".to_owned(),
+            (Some(TrialEnding::OutOfTime), ..) => "the time limit is reached".to_owned(),
             (.., Some(why)) => format!("aborted ({why})"),
             _ => "ended".to_owned(),
         };
@@ -237,6 +245,6 @@ impl Ran {
 }
 
 /// Text of the next step within a sentence.
-pub(super) fn next_in_words(step: &Step) -> String {
+pub(super) fn next_text(step: &StudyStep) -> String {
     format!("next: {step}")
 }

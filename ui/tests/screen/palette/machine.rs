@@ -6,7 +6,7 @@ use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use nima_console::console::{ConsoleApp, commands::Action};
 use nima_core::impedance::Mode;
 use nima_machine::{messages::LoopState, rig::Side};
-use nima_simulation::Plan;
+use nima_simulation::SimulationPlan;
 use nima_tests::plan;
 
 use super::{FIELD, SIZE, alike, begin, by_key, choose, close, entry, expect, is_open, open, rows};
@@ -72,7 +72,7 @@ fn an_alarm_is_acknowledged() {
 fn the_instrument_is_driven_from_the_palette_too() {
     let mut plan = plan("rings");
     plan.rig.mode = Mode::Matched;
-    let mut console = shown(&Plan { engage: true, ..plan }, SIZE, |app| app);
+    let mut console = shown(&SimulationPlan { engage: true, ..plan }, SIZE, |app| app);
     until(&mut console, "engaged", |tick| tick.state == LoopState::Engaged);
     let led = |tick: &nima_machine::messages::Tick| tick.guide_m.is_some();
     let greyed = rows(&mut console);

@@ -5,10 +5,10 @@ use egui_kittest::kittest::Queryable as _;
 use nima_console::{
     console::{
         commands::{Action, SIZES_PERCENT},
-        desk::{Layout, Panel},
         roles::Role,
-        scene3d::extras::{Extras, SHOW, Switch},
-        settings::{PictureSettings, Settings},
+        scene3d::extras::{Extras, MenuSwitch, SHOW},
+        settings::{ConsoleSettings, ImageSettings},
+        tiles::{Panel, PanelLayout},
     },
     language::Language,
 };
@@ -17,10 +17,10 @@ use super::{alike, begin, by_key, choose, entry, expect, rows};
 use crate::bench::{Console, pick, press, shows};
 
 /// The initial settings with this change.
-fn set(change: impl Fn(&mut Settings)) -> impl Fn(&mut Console) {
+fn set(change: impl Fn(&mut ConsoleSettings)) -> impl Fn(&mut Console) {
     move |console| {
         let settings = console.state_mut().settings_mut();
-        *settings = Settings { toured: true, recent: settings.recent.clone(), ..Settings::default() };
+        *settings = ConsoleSettings { toured: true, recent: settings.recent.clone(), ..ConsoleSettings::default() };
         change(settings);
     }
 }
@@ -80,20 +80,19 @@ fn what_the_view_menu_and_the_keys_of_the_screen_do() {
         let seen = |console: &mut Console| format!("{:?}", console.state_mut().settings_mut().layout.closed);
         done.push(alike(&mut console, Action::Panel(panel), reset, other, seen));
     }
-    let reset = set(|settings| settings.layout = Layout { closed: vec![Panel::Link], ..Layout::default() });
+    let reset = set(|settings| settings.layout = PanelLayout { closed: vec![Panel::Link], ..PanelLayout::default() });
     done.push(alike(&mut console, Action::ResetLayout, reset, of_menu(Kind::Button, "Reset layout"), settings));
     for action in [Action::Sound, Action::ForcesOfNow, Action::RecordsPicture] {
         done.push(alike(&mut console, action, set(|_| {}), of_menu(Kind::CheckBox, &entry(action).title), settings));
     }
     let reset = set(|settings| {
-        settings.picture =
-            PictureSettings { brightness_percent: 20, forces_of_now: true, ..PictureSettings::default() };
+        settings.image = ImageSettings { brightness_percent: 20, forces_of_now: true, ..ImageSettings::default() };
     });
     let plain = &entry(Action::PlainPicture).title;
     done.push(alike(&mut console, Action::PlainPicture, reset, of_menu(Kind::Button, plain), settings));
     set(|_| {})(&mut console);
     console.run_steps(3);
-    for switch in Switch::ALL {
+    for switch in MenuSwitch::ALL {
         let other = |console: &mut Console| {
             press(console, SHOW.get());
             console.get_by_role_and_label(Kind::CheckBox, switch.name()).click_accesskit();

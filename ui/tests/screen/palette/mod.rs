@@ -13,7 +13,7 @@ use std::path::Path;
 use egui::{Key, Modifiers, accesskit::Role as Kind};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use nima_console::console::{
-    commands::{Action, Entry, table},
+    commands::{Action, CommandEntry, table},
     roles::Role,
 };
 use nima_machine::messages::LoopState;
@@ -23,7 +23,7 @@ use crate::bench::{Console, console_of, press, shows, texts, toured, until, writ
 pub(super) const SIZE: [f32; 2] = [1600.0, 1000.0];
 pub(super) const FIELD: &str = "Find a command";
 
-pub(super) fn entry(action: Action) -> &'static Entry {
+pub(super) fn entry(action: Action) -> &'static CommandEntry {
     table().iter().find(|entry| entry.action == action).unwrap()
 }
 

@@ -1,8 +1,8 @@
 //! Commands of a part of the window: the endoscope image, a recorded session.
 
 use egui::Key;
-use nima_console::console::{commands::Action, wizards::Which};
-use nima_machine::config::{Endoscope, StereoView};
+use nima_console::console::{commands::Action, wizards::WizardKind};
+use nima_machine::config::{EndoscopeConfig, StereoView};
 
 use super::{
     SIZE, alike, by_key, choose, entry, rows,
@@ -10,17 +10,20 @@ use super::{
 };
 use crate::{
     bench::{Console, TIMEOUT, comes, console_of, pick, shows, wait},
-    eyes, past,
+    endoscope_view, playback,
 };
 
 #[test]
 fn the_endoscope_has_its_commands_where_its_picture_is() {
-    let (_serving, endoscope) = eyes::lenses(Some(0.004));
-    let endoscope = Endoscope { view: Some(StereoView::Left), baseline_m: Some(0.004), ..endoscope };
-    let mut console = eyes::surgeon(endoscope, [1280.0, 720.0]);
-    eyes::told(&mut console, "Endoscope image: live");
+    let (_serving, endoscope) = endoscope_view::lenses(Some(0.004));
+    let endoscope = EndoscopeConfig { view: Some(StereoView::Left), baseline_m: Some(0.004), ..endoscope };
+    let mut console = endoscope_view::surgeon(endoscope, [1280.0, 720.0]);
+    endoscope_view::report(&mut console, "Endoscope image: live");
     let is = |console: &mut Console, words: &str| {
-        assert!(comes(console, TIMEOUT, |console| eyes::is_painted(console, words)), "never painted: {words}");
+        assert!(
+            comes(console, TIMEOUT, |console| endoscope_view::is_painted(console, words)),
+            "never painted: {words}"
+        );
     };
     is(&mut console, "Left image");
     choose(&mut console, Action::Lens);
@@ -34,7 +37,7 @@ fn the_endoscope_has_its_commands_where_its_picture_is() {
     is(&mut console, "O hides them");
     console.key_press(Key::F2);
     console.run_steps(3);
-    let camera = Action::Calibrate(Which::Camera);
+    let camera = Action::Calibrate(WizardKind::Camera);
     let title = &entry(camera).title;
     let opened = |console: &mut Console| {
         pick(console, "Calibration");
@@ -49,14 +52,14 @@ fn the_endoscope_has_its_commands_where_its_picture_is() {
 fn the_past_is_played_and_left() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("session.mcap");
-    past::record(&path, "peg_transfer", "6");
+    playback::record(&path, "peg_transfer", "6");
     let mut console = console_of("peg_transfer", SIZE, move |app| app.with_session(&path));
-    past::until_whole(&mut console);
+    playback::until_whole(&mut console);
     let shown_ms = |console: &mut Console| console.state().past().map(|(_, t_s)| (t_s * 1e3).round() as i64);
     let at_three = |console: &mut Console| {
         console.state_mut().show_past(3.0);
         console.step();
-        past::until_whole(console);
+        playback::until_whole(console);
     };
     for ms in [-1000, 1000, -10, 10] {
         for by_palette in [true, false] {
@@ -67,7 +70,7 @@ fn the_past_is_played_and_left() {
             } else {
                 by_key(&mut console, action);
             }
-            past::until_whole(&mut console);
+            playback::until_whole(&mut console);
             assert_eq!(shown_ms(&mut console), Some(3000 + i64::from(ms)), "{action:?} {by_palette}");
         }
     }

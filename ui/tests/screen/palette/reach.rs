@@ -1,8 +1,8 @@
 //! Available commands: by role, and for a participant in a trial.
 
 use nima_console::console::{
-    Options,
-    commands::{Action, Entry, table},
+    ConsoleOptions,
+    commands::{Action, CommandEntry, table},
     roles::Role,
 };
 use nima_machine::messages::LoopState;
@@ -22,15 +22,15 @@ fn every_role_finds_what_it_can_reach_and_nothing_else() {
         console.run_steps(3);
         titles(console)
     };
-    let of_technician = |entry: &Entry| {
+    let of_technician = |entry: &CommandEntry| {
         matches!(entry.action, Action::Panel(_) | Action::ResetLayout | Action::Check | Action::Calibrations)
             || matches!(entry.action, Action::Calibrate(which) if which.scene().is_some())
     };
-    let with_traces = |entry: &Entry| {
+    let with_traces = |entry: &CommandEntry| {
         matches!(entry.action, Action::Pause | Action::LastTenSeconds | Action::Draws(_) | Action::Drive)
     };
     // In this scene, with one hand, without an endoscope, live.
-    let nowhere = |entry: &Entry| {
+    let nowhere = |entry: &CommandEntry| {
         use Action::{
             BeginTrial, CloseWizard, EndTrial, HideForces, Jaws, LeavePast, Lens, MarkPlace, OtherHand, Palette, Play,
         };
@@ -67,7 +67,7 @@ fn every_role_finds_what_it_can_reach_and_nothing_else() {
 fn a_participant_finds_only_what_a_trial_has() {
     let folder = tempfile::tempdir().unwrap();
     studies::make(folder.path(), "trials = 1", 6.0, "");
-    let mut console = studies::console(folder.path(), Options::default());
+    let mut console = studies::console(folder.path(), ConsoleOptions::default());
     studies::open(&mut console);
     let greyed = rows(&mut console);
     for blocked in [Action::View(Role::Surgeon), Action::Rig, Action::Sessions, Action::Studies] {

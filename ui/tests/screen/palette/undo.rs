@@ -2,14 +2,14 @@
 
 use egui::accesskit::Role as Kind;
 use egui_kittest::kittest::Queryable as _;
-use nima_console::console::{ConsoleApp, commands::Action, scene3d::extras::Switch};
+use nima_console::console::{ConsoleApp, commands::Action, scene3d::extras::MenuSwitch};
 use nima_machine::messages::LoopState;
 use nima_tests::plan;
 
 use super::{SIZE, begin, by_key, choose, rows};
 use crate::{
     bench::{Console, press, until, wait},
-    past,
+    playback,
 };
 
 /// An action of a person.
@@ -19,7 +19,7 @@ type Does<'a> = &'a dyn Fn(&mut Console);
 #[test]
 fn nothing_that_went_to_the_machine_is_undone() {
     let plan = plan("peg_transfer");
-    let (handle, commands) = past::watched(&plan);
+    let (handle, commands) = playback::watched(&plan);
     let mut console = egui_kittest::Harness::builder()
         .with_size(SIZE)
         .with_step_dt(1.0 / 30.0)
@@ -76,7 +76,7 @@ fn panels_and_plots_are_put_back() {
         &|console| press(console, "Close Traces"),
         &|console| press(console, "Close Safety"),
         &|console| choose(console, Action::Light(true)),
-        &|console| choose(console, Action::Draws(Switch::Ceiling)),
+        &|console| choose(console, Action::Draws(MenuSwitch::Ceiling)),
         &|console| choose(console, Action::Larger),
     ];
     for step in steps {

@@ -2,7 +2,7 @@
 
 use egui::accesskit::Role as Kind;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use nima_console::console::{commands::Action, wizards::Which};
+use nima_console::console::{commands::Action, wizards::WizardKind};
 use nima_machine::messages::LoopState;
 use nima_testing::real_time::{alone, judged};
 
@@ -28,7 +28,7 @@ fn every_wizard_is_opened_and_left() {
     let folder = tempfile::tempdir().unwrap();
     let mut console = begin(folder.path(), "peg_transfer");
     let mut done = Vec::new();
-    let simulated = Which::ALL.into_iter().filter(|which| which.scene().is_some()).map(Action::Calibrate);
+    let simulated = WizardKind::ALL.into_iter().filter(|which| which.scene().is_some()).map(Action::Calibrate);
     for action in [Action::Calibrations, Action::Check].into_iter().chain(simulated) {
         let title = &entry(action).title;
         done.push(alike(&mut console, action, back, |console| pick(console, title), open_pages));
@@ -38,9 +38,12 @@ fn every_wizard_is_opened_and_left() {
     assert!(!shows(&console, "Back to the monitor"));
     done.push(Action::CloseWizard);
     let offered = rows(&mut console);
-    assert!(offered.iter().all(|(title, _)| *title != entry(Action::Calibrate(Which::Camera)).title), "no endoscope");
+    assert!(
+        offered.iter().all(|(title, _)| *title != entry(Action::Calibrate(WizardKind::Camera)).title),
+        "no endoscope"
+    );
     // Other tests open those that need arms or an endoscope.
-    done.extend(Which::ALL.into_iter().filter(|which| which.scene().is_none()).map(Action::Calibrate));
+    done.extend(WizardKind::ALL.into_iter().filter(|which| which.scene().is_none()).map(Action::Calibrate));
     expect(&done, "the wizards");
 }
 
@@ -57,7 +60,7 @@ fn every_wizard_of_a_rig_with_arms_is_opened() {
             until(console, "idle", |tick| tick.state == LoopState::Idle);
         };
         idle(&mut console);
-        for which in Which::ALL.into_iter().filter(|which| matches!(which, Which::Frame(_))) {
+        for which in WizardKind::ALL.into_iter().filter(|which| matches!(which, WizardKind::Frame(_))) {
             let action = Action::Calibrate(which);
             let title = &entry(action).title;
             alike(&mut console, action, idle, |console| pick(console, title), open_pages);

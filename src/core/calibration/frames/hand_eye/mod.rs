@@ -1,7 +1,7 @@
 //! Hand-eye calibration: finds the marker on the flange and the tracker next to the arm together.
 //!
 //! In every pose `base_from_flange * flange_from_m = base_from_c * c_from_m`, in short `A X = Y B`. A published solver
-//! gives the start ([`Solver`]); a Gauss-Newton method on the rigid motions refines it, with the errors weighted by a
+//! gives the start ([`HandEyeSolver`]); a Gauss-Newton method on the rigid motions refines it, with the errors weighted by a
 //! tracker's noise. The errors are evaluated at the tip: its position from the tracker is compared with its position
 //! from the joints.
 
@@ -11,11 +11,12 @@ mod solvers;
 use nalgebra::{Isometry3, Point3, Vector3};
 use serde::{Deserialize, Serialize};
 
-use self::refine::Refined;
+use self::refine::RefinedFrames;
 use super::{
-    Calibration, Carrier, Cause, Coverage, FrameReport, FrameSample, Limits, Mistake, Sizes, Source, StoredPose,
-    examine::{Miss, Problem, examined},
-    record::Found,
+    Calibration, CalibrationSource, Carrier, FrameCause, FrameCoverage, FrameLimits, FrameReport, FrameSample, Mistake,
+    Sizes, StoredPose,
+    examine::{Problem, RowMiss, examined},
+    record::CalibrationResult,
     report::finite,
     spread::{Turns, radius_95},
     tip::{of_turns, turned},
@@ -23,7 +24,7 @@ use super::{
 
 /// Published solver that gives the start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Solver {
+pub enum HandEyeSolver {
     /// Park and Martin, "Robot sensor calibration: solving AX = XB on the Euclidean group", IEEE Trans. Robot. Autom. 10, 1994:
     /// `X` from the motions between all pairs of poses, then `Y` as a mean.
     ParkMartin,
@@ -33,37 +34,37 @@ pub enum Solver {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct HandEye {
+pub struct HandEyeSettings {
     /// The tip in the flange's frame, m, where the errors are evaluated.
     pub tip_in_flange_m: Vector3<f64>,
-    pub solver: Solver,
+    pub solver: HandEyeSolver,
     pub refine: bool,
-    pub limits: Limits,
+    pub limits: FrameLimits,
 }
 
-impl HandEye {
+impl HandEyeSettings {
     /// Creates the settings for an instrument with its tip at this position in the flange's frame, m.
     pub const fn new(tip_in_flange_m: Vector3<f64>) -> Self {
-        let limits = Limits {
-            least: 10,
+        let limits = FrameLimits {
+            min: 10,
             held_out: Sizes::both(2.0e-3, 0.4),
             uncertainty: Sizes::both(1.0e-3, 0.2),
             outliers: 0.25,
         };
-        Self { tip_in_flange_m, solver: Solver::Shah, refine: true, limits }
+        Self { tip_in_flange_m, solver: HandEyeSolver::Shah, refine: true, limits }
     }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct HandEyeFound {
+pub struct HandEyeResult {
     /// The marker on the flange.
     pub flange_from_m: StoredPose,
     /// The tracker's camera in the frame of the arm's base.
     pub base_from_c: StoredPose,
 }
 
-impl Found for HandEyeFound {
+impl CalibrationResult for HandEyeResult {
     const KIND: &'static str = "hand_eye";
 
     fn fault(&self) -> Option<&'static str> {
@@ -73,49 +74,49 @@ impl Found for HandEyeFound {
 
 /// `A` and `B` of one pose.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Row {
+pub(super) struct HandEyeRow {
     base_from_flange: Isometry3<f64>,
     c_from_m: Isometry3<f64>,
 }
 
 /// `X` and `Y`.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Frames {
+pub(super) struct HandEyeFrames {
     flange_from_m: Isometry3<f64>,
     base_from_c: Isometry3<f64>,
 }
 
-impl Problem for HandEye {
-    type Row = Row;
-    type Model = Frames;
+impl Problem for HandEyeSettings {
+    type Row = HandEyeRow;
+    type Model = HandEyeFrames;
     const HYPOTHESIS: usize = 4;
-    const FLOOR: Miss = Miss { place_m: Some(2.0e-3), angle_rad: Some(0.006) };
+    const FLOOR: RowMiss = RowMiss { place_m: Some(2.0e-3), angle_rad: Some(0.006) };
 
-    fn guess(&self, rows: &[Row]) -> Option<Frames> {
+    fn guess(&self, rows: &[HandEyeRow]) -> Option<HandEyeFrames> {
         solvers::park_martin(rows)
     }
 
-    fn solve(&self, rows: &[Row]) -> Option<Frames> {
+    fn solve(&self, rows: &[HandEyeRow]) -> Option<HandEyeFrames> {
         let start = match self.solver {
-            Solver::ParkMartin => solvers::park_martin(rows),
-            Solver::Shah => solvers::shah(rows),
+            HandEyeSolver::ParkMartin => solvers::park_martin(rows),
+            HandEyeSolver::Shah => solvers::shah(rows),
         }?;
         Some(if self.refine { refine::refined(rows, start)?.frames } else { start })
     }
 
-    fn miss(&self, frames: &Frames, row: &Row) -> Miss {
+    fn miss(&self, frames: &HandEyeFrames, row: &HandEyeRow) -> RowMiss {
         let seen = frames.base_from_c * row.c_from_m * frames.flange_from_m.inverse();
         let tip_m = Point3::from(self.tip_in_flange_m);
         let place_m = (seen * tip_m - row.base_from_flange * tip_m).norm();
-        Miss { place_m: Some(place_m), angle_rad: Some(seen.rotation.angle_to(&row.base_from_flange.rotation)) }
+        RowMiss { place_m: Some(place_m), angle_rad: Some(seen.rotation.angle_to(&row.base_from_flange.rotation)) }
     }
 }
 
-impl Calibration for HandEye {
-    type Found = HandEyeFound;
+impl Calibration for HandEyeSettings {
+    type Solution = HandEyeResult;
 
-    fn needs(&self) -> Vec<Source> {
-        vec![Source::Flange, Source::Marker]
+    fn needs(&self) -> Vec<CalibrationSource> {
+        vec![CalibrationSource::Flange, CalibrationSource::Marker]
     }
 
     fn carrier(&self) -> Carrier {
@@ -126,7 +127,7 @@ impl Calibration for HandEye {
         turned(sample, taken, Carrier::Flange)
     }
 
-    fn coverage(&self, taken: &[FrameSample]) -> Coverage {
+    fn coverage(&self, taken: &[FrameSample]) -> FrameCoverage {
         of_turns(taken, Carrier::Flange)
     }
 
@@ -134,29 +135,30 @@ impl Calibration for HandEye {
         (!finite(&self.tip_in_flange_m)).then_some("the tip in the flange's frame is not finite")
     }
 
-    fn attempt(&self, samples: &[FrameSample]) -> FrameReport<HandEyeFound> {
-        let row =
-            |sample: &FrameSample| Some(Row { base_from_flange: sample.base_from_flange?, c_from_m: sample.c_from_m? });
-        let rows: Vec<Row> = samples.iter().filter_map(row).collect();
+    fn attempt(&self, samples: &[FrameSample]) -> FrameReport<HandEyeResult> {
+        let row = |sample: &FrameSample| {
+            Some(HandEyeRow { base_from_flange: sample.base_from_flange?, c_from_m: sample.c_from_m? })
+        };
+        let rows: Vec<HandEyeRow> = samples.iter().filter_map(row).collect();
         let have = rows.len();
-        let least = self.limits.least;
-        if have < least {
-            return FrameReport::nothing(have, Cause::TooFew { have, least });
+        let min = self.limits.min;
+        if have < min {
+            return FrameReport::nothing(have, FrameCause::TooFew { have, min });
         }
         if let Some(cause) = lacking(&rows) {
             return FrameReport::nothing(have, cause);
         }
         let Some(found) = examined(self, &rows) else {
-            return FrameReport::nothing(have, Cause::OneAxis { second_deg: 0.0, least_deg: 0.0 });
+            return FrameReport::nothing(have, FrameCause::OneAxis { second_deg: 0.0, min_deg: 0.0 });
         };
-        let kept: Vec<Row> = found.kept.iter().map(|&i| rows[i]).collect();
+        let kept: Vec<HandEyeRow> = found.kept.iter().map(|&i| rows[i]).collect();
         if let Some(cause) = lacking(&kept) {
             return FrameReport::nothing(have, cause);
         }
         let uncertainty = self.uncertainty(&kept, found.model);
-        let Frames { flange_from_m, base_from_c } = found.model;
+        let HandEyeFrames { flange_from_m, base_from_c } = found.model;
         let value =
-            HandEyeFound { flange_from_m: StoredPose::of(&flange_from_m), base_from_c: StoredPose::of(&base_from_c) };
+            HandEyeResult { flange_from_m: StoredPose::of(&flange_from_m), base_from_c: StoredPose::of(&base_from_c) };
         FrameReport::of(have, found, uncertainty, value).judged(&self.limits)
     }
 
@@ -181,17 +183,19 @@ impl Calibration for HandEye {
 
 /// Both must turn: a turning flange with a marker that does not turn is not a hand-eye motion, but a swapped arm or
 /// marker.
-fn lacking(rows: &[Row]) -> Option<Cause> {
+fn lacking(rows: &[HandEyeRow]) -> Option<FrameCause> {
     let flange = Turns::of(rows.iter().map(|row| &row.base_from_flange));
     let marker = Turns::of(rows.iter().map(|row| &row.c_from_m));
     flange.lacking().or_else(|| marker.lacking())
 }
 
-impl HandEye {
+impl HandEyeSettings {
     /// Returns the uncertainty at the tip, averaged over the poses, in the frame of the base, from the covariance of
     /// the refinement. Empty if it is not determined.
-    fn uncertainty(&self, rows: &[Row], frames: Frames) -> Sizes {
-        let Some(Refined { covariance, freedom, .. }) = refine::unmoved(rows, frames) else { return Sizes::default() };
+    fn uncertainty(&self, rows: &[HandEyeRow], frames: HandEyeFrames) -> Sizes {
+        let Some(RefinedFrames { covariance, freedom, .. }) = refine::unmoved(rows, frames) else {
+            return Sizes::default();
+        };
         let regions = rows.iter().map(|row| {
             let [place, turn] = refine::slopes_at_tip(row, &frames, &self.tip_in_flange_m);
             [place * covariance * place.transpose(), turn * covariance * turn.transpose()]

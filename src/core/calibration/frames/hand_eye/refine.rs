@@ -6,11 +6,11 @@
 
 use nalgebra::{Isometry3, Matrix3, SMatrix, SVector, UnitQuaternion, Vector3};
 
-use super::{Frames, Row};
+use super::{HandEyeFrames, HandEyeRow};
 
 const UNKNOWNS: usize = 12;
 type Normal = SMatrix<f64, UNKNOWNS, UNKNOWNS>;
-type Step = SVector<f64, UNKNOWNS>;
+type RefineStep = SVector<f64, UNKNOWNS>;
 type Slopes = SMatrix<f64, 3, UNKNOWNS>;
 
 /// Noise of a tracker; only the ratio of the two matters here. 0.25 mm and 0.02 degrees.
@@ -19,24 +19,24 @@ const NOISE_RAD: f64 = 3.5e-4;
 const STEPS: usize = 10;
 /// A step that lowers the sum of squares by a smaller fraction is the last one. From a solver's start this takes two or
 /// three steps.
-const LAST_SHARE: f64 = 1e-7;
+const LAST_FRACTION: f64 = 1e-7;
 
-pub(super) struct Refined {
-    pub(super) frames: Frames,
+pub(super) struct RefinedFrames {
+    pub(super) frames: HandEyeFrames,
     /// Covariance of a step: `x`, then `y`.
     pub(super) covariance: Normal,
     /// Degrees of freedom of its variance.
     pub(super) freedom: usize,
 }
 
-struct Linear {
+struct RefineLinear {
     normal: Normal,
-    right: Step,
+    right: RefineStep,
     squares: f64,
 }
 
 /// Returns the frames of smallest weighted squares near `start`; `None` if the poses do not determine them.
-pub(super) fn refined(rows: &[Row], start: Frames) -> Option<Refined> {
+pub(super) fn refined(rows: &[HandEyeRow], start: HandEyeFrames) -> Option<RefinedFrames> {
     let mut frames = start;
     let mut here = linear(rows, &frames);
     let mut damping = 1e-6;
@@ -49,7 +49,7 @@ pub(super) fn refined(rows: &[Row], start: Frames) -> Option<Refined> {
         let tried = moved(&frames, &step);
         let there = linear(rows, &tried);
         if there.squares <= here.squares {
-            let last = here.squares - there.squares <= LAST_SHARE * here.squares;
+            let last = here.squares - there.squares <= LAST_FRACTION * here.squares;
             frames = tried;
             here = there;
             damping *= 0.1;
@@ -64,18 +64,18 @@ pub(super) fn refined(rows: &[Row], start: Frames) -> Option<Refined> {
 }
 
 /// Returns the covariance at these frames, without a step.
-pub(super) fn unmoved(rows: &[Row], frames: Frames) -> Option<Refined> {
+pub(super) fn unmoved(rows: &[HandEyeRow], frames: HandEyeFrames) -> Option<RefinedFrames> {
     with_covariance(rows, frames, &linear(rows, &frames))
 }
 
-fn with_covariance(rows: &[Row], frames: Frames, here: &Linear) -> Option<Refined> {
+fn with_covariance(rows: &[HandEyeRow], frames: HandEyeFrames, here: &RefineLinear) -> Option<RefinedFrames> {
     let freedom = (6 * rows.len()).saturating_sub(UNKNOWNS).max(1);
     let covariance = here.normal.cholesky()?.inverse() * (here.squares / freedom as f64);
-    Some(Refined { frames, covariance, freedom })
+    Some(RefinedFrames { frames, covariance, freedom })
 }
 
-fn linear(rows: &[Row], frames: &Frames) -> Linear {
-    let mut linear = Linear { normal: Normal::zeros(), right: Step::zeros(), squares: 0.0 };
+fn linear(rows: &[HandEyeRow], frames: &HandEyeFrames) -> RefineLinear {
+    let mut linear = RefineLinear { normal: Normal::zeros(), right: RefineStep::zeros(), squares: 0.0 };
     let c_from_base = frames.base_from_c.inverse();
     for row in rows {
         let expected = c_from_base * row.base_from_flange * frames.flange_from_m;
@@ -95,7 +95,7 @@ fn linear(rows: &[Row], frames: &Frames) -> Linear {
     linear
 }
 
-impl Linear {
+impl RefineLinear {
     fn add(&mut self, slopes: &Slopes, error: &Vector3<f64>) {
         self.normal += slopes.transpose() * slopes;
         self.right += slopes.transpose() * error;
@@ -103,17 +103,17 @@ impl Linear {
     }
 }
 
-fn moved(frames: &Frames, step: &Step) -> Frames {
+fn moved(frames: &HandEyeFrames, step: &RefineStep) -> HandEyeFrames {
     let motion = |from: usize| {
         let turn = UnitQuaternion::from_scaled_axis(step.fixed_rows::<3>(from + 3).into_owned());
         Isometry3::from_parts(step.fixed_rows::<3>(from).into_owned().into(), turn)
     };
-    Frames { flange_from_m: frames.flange_from_m * motion(0), base_from_c: frames.base_from_c * motion(6) }
+    HandEyeFrames { flange_from_m: frames.flange_from_m * motion(0), base_from_c: frames.base_from_c * motion(6) }
 }
 
 /// Returns the change per step of the tip (m) and of its rotation vector (rad), as the tracker measures them in one
 /// pose, in the base's frame.
-pub(super) fn slopes_at_tip(row: &Row, frames: &Frames, tip_in_flange_m: &Vector3<f64>) -> [Slopes; 2] {
+pub(super) fn slopes_at_tip(row: &HandEyeRow, frames: &HandEyeFrames, tip_in_flange_m: &Vector3<f64>) -> [Slopes; 2] {
     let in_m = frames.flange_from_m.inverse() * nalgebra::Point3::from(*tip_in_flange_m);
     let in_c = row.c_from_m * in_m;
     let y = frames.base_from_c.rotation.to_rotation_matrix().into_inner();

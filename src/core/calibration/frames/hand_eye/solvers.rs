@@ -1,13 +1,13 @@
-//! Two published solutions of `A X = Y B` in closed form. Sources: [`super::Solver`].
+//! Two published solutions of `A X = Y B` in closed form. Sources: [`super::HandEyeSolver`].
 
 use nalgebra::{Isometry3, Matrix3, Matrix6, Rotation3, SMatrix, SymmetricEigen, UnitQuaternion, Vector3, Vector6};
 
-use super::{Frames, Row};
+use super::{HandEyeFrames, HandEyeRow};
 use crate::calibration::{frames::spread::nearest_orthogonal, rotation_mean::RotationMean};
 
 /// Solves by Park and Martin over all pairs of poses: with the rotation vectors `a` and `b` of the motions of flange
 /// and marker, `a = R_X b`, so `R_X = (M^T M)^(-1/2) M^T` with `M = sum b a^T`; then the positions by least squares.
-pub(super) fn park_martin(rows: &[Row]) -> Option<Frames> {
+pub(super) fn park_martin(rows: &[HandEyeRow]) -> Option<HandEyeFrames> {
     let mut moment = Matrix3::zeros();
     for (i, one) in rows.iter().enumerate() {
         for other in &rows[..i] {
@@ -28,7 +28,7 @@ pub(super) fn park_martin(rows: &[Row]) -> Option<Frames> {
 
 /// Solves by Shah: `R_A R_X R_B^T = R_Y` is linear in the entries of both, `(R_B (x) R_A) vec(R_X) = vec(R_Y)`, so they
 /// are the singular vectors of the largest singular value of the sum.
-pub(super) fn shah(rows: &[Row]) -> Option<Frames> {
+pub(super) fn shah(rows: &[HandEyeRow]) -> Option<HandEyeFrames> {
     let mut sum = SMatrix::<f64, 9, 9>::zeros();
     for row in rows {
         let a = row.base_from_flange.rotation.to_rotation_matrix().into_inner();
@@ -51,7 +51,7 @@ fn rotation(matrix: &Matrix3<f64>) -> Option<UnitQuaternion<f64>> {
 }
 
 /// Returns both positions for known rotations: `R_A t_X - t_Y = R_Y t_B - t_A`, least squares over all poses.
-fn with_places(rows: &[Row], x: UnitQuaternion<f64>, y: UnitQuaternion<f64>) -> Option<Frames> {
+fn with_places(rows: &[HandEyeRow], x: UnitQuaternion<f64>, y: UnitQuaternion<f64>) -> Option<HandEyeFrames> {
     let mut normal = Matrix6::zeros();
     let mut right = Vector6::zeros();
     for row in rows {
@@ -72,7 +72,7 @@ fn with_places(rows: &[Row], x: UnitQuaternion<f64>, y: UnitQuaternion<f64>) -> 
     }
     let places_m = normal.cholesky()?.solve(&right);
     let place = |from: usize| -> Vector3<f64> { places_m.fixed_rows::<3>(from).into_owned() };
-    Some(Frames {
+    Some(HandEyeFrames {
         flange_from_m: Isometry3::from_parts(place(0).into(), x),
         base_from_c: Isometry3::from_parts(place(3).into(), y),
     })

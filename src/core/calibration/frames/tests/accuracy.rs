@@ -20,9 +20,10 @@ struct Figures {
 impl Figures {
     fn note<F>(&mut self, report: &FrameReport<F>, error: Sizes) {
         self.accepted += usize::from(report.verdict == Verdict::Accepted);
-        let below = |error: Option<f64>, told: Option<f64>| error.is_none_or(|error| error <= told.unwrap());
-        let told = report.uncertainty;
-        self.within += usize::from(below(error.place_m, told.place_m) && below(error.angle_deg, told.angle_deg));
+        let below = |error: Option<f64>, reported: Option<f64>| error.is_none_or(|error| error <= reported.unwrap());
+        let reported = report.uncertainty;
+        self.within +=
+            usize::from(below(error.place_m, reported.place_m) && below(error.angle_deg, reported.angle_deg));
         self.place_mm.extend(error.place_m.map(|m| 1e3 * m));
         self.angle_deg.extend(error.angle_deg);
     }
@@ -38,7 +39,7 @@ impl Figures {
 
 #[test]
 fn a_tip_by_the_tracker_or_the_arm_is_within_half_a_millimetre() {
-    for tip in [Tip::by_tracker(), Tip::by_arm()] {
+    for tip in [TipSettings::by_tracker(), TipSettings::by_arm()] {
         for count in [12, 20, 40] {
             let mut figures = Figures::default();
             for seed in 0..SEEDS {
@@ -63,11 +64,14 @@ fn a_tip_by_the_tracker_or_the_arm_is_within_half_a_millimetre() {
 
 #[test]
 fn hand_eye_is_within_half_a_millimetre_and_a_tenth_of_a_degree_at_the_tip() {
-    for (solver, refine) in
-        [(Solver::ParkMartin, false), (Solver::Shah, false), (Solver::ParkMartin, true), (Solver::Shah, true)]
-    {
+    for (solver, refine) in [
+        (HandEyeSolver::ParkMartin, false),
+        (HandEyeSolver::Shah, false),
+        (HandEyeSolver::ParkMartin, true),
+        (HandEyeSolver::Shah, true),
+    ] {
         for count in [10, 20, 40] {
-            let hand_eye = HandEye { solver, refine, ..HandEye::new(TIP_IN_FLANGE_M) };
+            let hand_eye = HandEyeSettings { solver, refine, ..HandEyeSettings::new(TIP_IN_FLANGE_M) };
             let mut figures = Figures::default();
             for seed in 0..SEEDS {
                 let mut rig = Rig::new(seed);
@@ -77,10 +81,10 @@ fn hand_eye_is_within_half_a_millimetre_and_a_tenth_of_a_degree_at_the_tip() {
                 // Another pose, measured without noise.
                 let at = others[seed as usize % others.len()];
                 let seen = base_from_c().inverse() * at * flange_from_m();
-                let told = found.base_from_c.pose() * seen * found.flange_from_m.pose().inverse();
+                let reported = found.base_from_c.pose() * seen * found.flange_from_m.pose().inverse();
                 let tip = Point3::from(TIP_IN_FLANGE_M);
-                let angle_deg = told.rotation.angle_to(&at.rotation).to_degrees();
-                figures.note(&report, Sizes::both((told * tip - at * tip).norm(), angle_deg));
+                let angle_deg = reported.rotation.angle_to(&at.rotation).to_degrees();
+                figures.note(&report, Sizes::both((reported * tip - at * tip).norm(), angle_deg));
             }
             let [place_mm, angle_deg] = figures.p95(&format!("hand-eye {solver:?}, refined {refine}, {count} poses"));
             assert!(place_mm <= 0.5 && angle_deg <= 0.1 && figures.accepted == 200, "{place_mm} {angle_deg}");
@@ -91,7 +95,7 @@ fn hand_eye_is_within_half_a_millimetre_and_a_tenth_of_a_degree_at_the_tip() {
 
 #[test]
 fn a_trocar_is_within_half_a_millimetre() {
-    let trocar = Trocar::by_tracker(&arm(), &flange_from_m());
+    let trocar = TrocarSettings::by_tracker(&arm(), &flange_from_m());
     let truth = base_from_c().inverse() * Point3::from(TROCAR_M);
     for count in [30, 40, 100] {
         let mut figures = Figures::default();
@@ -99,11 +103,11 @@ fn a_trocar_is_within_half_a_millimetre() {
         for seed in 0..SEEDS {
             let report = trocar.fit(&Rig::new(seed).samples(through_trocar(), count)).unwrap();
             let found = report.found.unwrap();
-            let way_m = Vector3::from(found.trocar_m) - truth.coords;
+            let travel_m = Vector3::from(found.trocar_m) - truth.coords;
             let axes = found.ellipsoid_m.map(Vector3::from);
-            let squares: f64 = axes.iter().map(|axis| (way_m.dot(axis) / axis.norm_squared()).powi(2)).sum();
+            let squares: f64 = axes.iter().map(|axis| (travel_m.dot(axis) / axis.norm_squared()).powi(2)).sum();
             inside += usize::from(squares <= 1.0);
-            figures.note(&report, Sizes::place(way_m.norm()));
+            figures.note(&report, Sizes::place(travel_m.norm()));
         }
         let [place_mm, _] = figures.p95(&format!("trocar, {count} lines"));
         println!("{inside} of {SEEDS} within the ellipsoid");
@@ -116,7 +120,9 @@ fn a_trocar_is_within_half_a_millimetre() {
 fn a_table_is_where_it_was_touched() {
     let points = [[0.0, 0.0], [0.12, 0.0], [0.02, 0.1], [0.1, 0.09], [0.06, 0.05], [0.12, 0.05]];
     for count in [4, 6] {
-        for table in [Table::by_arm(TIP_IN_FLANGE_M, Vector3::z()), Table::by_tracker(tip_in(Carrier::Marker))] {
+        for table in
+            [TableSettings::by_arm(TIP_IN_FLANGE_M, Vector3::z()), TableSettings::by_tracker(tip_in(Carrier::Marker))]
+        {
             let truth = match table.carrier {
                 Carrier::Marker => base_from_c().inverse() * base_from_table(),
                 _ => base_from_table(),
@@ -137,7 +143,7 @@ fn a_table_is_where_it_was_touched() {
 
 #[test]
 fn a_view_is_as_right_as_the_persons_moves() {
-    let view = View::by_arm(TIP_IN_FLANGE_M);
+    let view = ViewSettings::by_arm(TIP_IN_FLANGE_M);
     for off_deg in [2.0, 5.0] {
         let mut figures = Figures::default();
         for seed in 0..SEEDS {
@@ -155,15 +161,16 @@ fn a_view_is_as_right_as_the_persons_moves() {
 fn right_on_the_handle_is_right_in_the_picture() {
     let leader_from_view = pose([0.0; 3], [-90.0, 0.0, 90.0]).rotation;
     let mut rig = Rig::new(1);
-    let by_tip = View::by_arm(TIP_IN_FLANGE_M).fit(&moved(&mut rig, &all_moves(), 1.0)).unwrap().found.unwrap();
+    let by_tip = ViewSettings::by_arm(TIP_IN_FLANGE_M).fit(&moved(&mut rig, &all_moves(), 1.0)).unwrap().found.unwrap();
     let mut hand_m = Vector3::zeros();
     let mut samples = vec![FrameSample::from(hand_m)];
     for direction in all_moves() {
         hand_m += leader_from_view * direction * 0.04;
         samples.push(hand_m.into());
     }
-    let by_handle = View::by_handle().fit(&samples).unwrap().found.unwrap();
-    let mapping = crate::kinematics::Mapping::new(&by_tip.from_view(), &by_handle.from_view().inverse(), 1.0).unwrap();
+    let by_handle = ViewSettings::by_handle().fit(&samples).unwrap().found.unwrap();
+    let mapping =
+        crate::kinematics::MotionMapping::new(&by_tip.from_view(), &by_handle.from_view().inverse(), 1.0).unwrap();
     let right_m = leader_from_view * Vector3::x() * 0.01;
     let seen = base_from_view().inverse() * mapping.to_tip(&right_m);
     assert!(seen.angle(&Vector3::x()).to_degrees() < 3.0, "{seen}");
@@ -203,21 +210,22 @@ fn a_sensor_mount_is_found_from_weight_and_agrees_or_names_the_axes() {
 
 #[test]
 fn a_gravity_pose_of_the_arm_serves_for_the_mount_too() {
-    use crate::calibration::gravity::{Orientation, Pose};
+    use crate::calibration::gravity::{GravityPose, Orientation};
     let mut rig = Rig::new(3);
-    let in_force = pose([0.0; 3], [0.0, 0.0, 40.0]).rotation;
-    let truth = in_force * UnitQuaternion::from(Rotation3::from_euler_angles(0.0, 0.1, 0.0));
+    let active = pose([0.0; 3], [0.0, 0.0, 40.0]).rotation;
+    let truth = active * UnitQuaternion::from(Rotation3::from_euler_angles(0.0, 0.1, 0.0));
     let base = pose([0.0; 3], [0.0, 0.0, 25.0]).rotation;
     let samples: Vec<FrameSample> = (0..12)
         .map(|_| {
             let turn = any_turn(&mut rig);
             let wrench = weighed(&mut rig, turn, &truth).wrench.unwrap();
             // The gravity session computes the orientation with the active mount.
-            let orientation = Orientation::Arm(base * turn * in_force);
-            FrameSample::of_gravity_pose(&Pose { wrench, has_torque: true, orientation }, &in_force, &base).unwrap()
+            let orientation = Orientation::Arm(base * turn * active);
+            FrameSample::of_gravity_pose(&GravityPose { wrench, has_torque: true, orientation }, &active, &base)
+                .unwrap()
         })
         .collect();
-    let found = SensorMount::new(in_force, Vector3::z()).fit(&samples).unwrap().found.unwrap();
+    let found = SensorMount::new(active, Vector3::z()).fit(&samples).unwrap().found.unwrap();
     assert!(found.flange_from_s1().angle_to(&truth).to_degrees() < 1.0 && !found.agrees(), "{found:?}");
     assert!(found.axes == Some(SignedAxes::SAME), "5.7 degrees are not swapped axes");
 }
@@ -233,7 +241,7 @@ fn three_poses_of_twenty_with_the_tip_out_of_the_dimple_do_no_harm() {
             let pose = samples[index].c_from_m.as_mut().unwrap();
             pose.translation.vector += off_m;
         }
-        let report = Tip::by_tracker().fit(&samples).unwrap();
+        let report = TipSettings::by_tracker().fit(&samples).unwrap();
         assert_eq!(report.outliers, [2, 9, 17], "seed {seed}");
         let found = report.found.unwrap();
         errors_mm.push(1e3 * (Vector3::from(found.tip_in_carrier_m) - tip_in(Carrier::Marker)).norm());

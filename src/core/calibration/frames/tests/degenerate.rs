@@ -42,8 +42,8 @@ fn turns_that_do_not_suffice_are_refused() {
             .iter()
             .map(|sample| FrameSample { c_from_other_m: None, other_base_from_flange: None, ..*sample })
             .collect();
-        refused(&Tip::by_tracker(), &alone, seed);
-        refused(&Tip::by_arm(), &alone, seed);
+        refused(&TipSettings::by_tracker(), &alone, seed);
+        refused(&TipSettings::by_arm(), &alone, seed);
         let free: Vec<FrameSample> = turns
             .iter()
             .map(|turn| Isometry3::from_parts((TROCAR_M + rig.vector(0.1)).into(), *turn))
@@ -53,13 +53,13 @@ fn turns_that_do_not_suffice_are_refused() {
                 ..Rig::new(seed).sample(&pose)
             })
             .collect();
-        refused(&HandEye::new(TIP_IN_FLANGE_M), &free, seed);
+        refused(&HandEyeSettings::new(TIP_IN_FLANGE_M), &free, seed);
     }
 }
 
 #[test]
 fn lines_that_are_nearly_parallel_are_refused() {
-    let trocar = Trocar::by_tracker(&arm(), &flange_from_m());
+    let trocar = TrocarSettings::by_tracker(&arm(), &flange_from_m());
     for seed in 0..SETS {
         let mut rig = Rig::new(seed);
         let samples: Vec<FrameSample> = (0..40)
@@ -76,7 +76,8 @@ fn lines_that_are_nearly_parallel_are_refused() {
 
 #[test]
 fn points_on_a_line_are_refused() {
-    let tables = [Table::by_arm(TIP_IN_FLANGE_M, Vector3::z()), Table::by_tracker(tip_in(Carrier::Marker))];
+    let tables =
+        [TableSettings::by_arm(TIP_IN_FLANGE_M, Vector3::z()), TableSettings::by_tracker(tip_in(Carrier::Marker))];
     for seed in 0..SETS {
         let mut rig = Rig::new(seed);
         let slope = rig.noise.gaussian();
@@ -91,7 +92,7 @@ fn points_on_a_line_are_refused() {
 
 #[test]
 fn moves_along_a_line_or_in_a_plane_are_refused() {
-    let view = View::by_arm(TIP_IN_FLANGE_M);
+    let view = ViewSettings::by_arm(TIP_IN_FLANGE_M);
     for seed in 0..SETS {
         let mut rig = Rig::new(seed);
         let axes = [rig.vector(1.0).normalize(), rig.vector(1.0).normalize()];
@@ -133,7 +134,7 @@ fn a_sensor_that_feels_no_weight_is_refused() {
             sample.wrench.as_mut().unwrap().force_n = BIAS_N + rig.vector(if seed % 2 == 0 { 0.02 } else { 0.0 });
         }
         let report = SensorMount::new(UnitQuaternion::identity(), Vector3::z()).fit(&samples).unwrap();
-        assert!(matches!(report.cause, Cause::Weightless { .. }), "seed {seed}: {:?}", report.cause);
+        assert!(matches!(report.cause, FrameCause::Weightless { .. }), "seed {seed}: {:?}", report.cause);
     }
 }
 
@@ -142,11 +143,11 @@ fn too_few_poses_and_none_at_all_are_refused() {
     let mut rig = Rig::new(1);
     for count in [0, 1, 2, 5] {
         let samples = rig.samples(in_dimple(), count);
-        refused(&Tip::by_tracker(), &samples, 0);
-        refused(&HandEye::new(TIP_IN_FLANGE_M), &samples, 0);
-        refused(&Trocar::by_arm(&arm()), &samples, 0);
-        refused(&Table::by_arm(TIP_IN_FLANGE_M, Vector3::z()), &samples[..count.min(2)], 0);
-        refused(&View::by_arm(TIP_IN_FLANGE_M), &samples, 0);
+        refused(&TipSettings::by_tracker(), &samples, 0);
+        refused(&HandEyeSettings::new(TIP_IN_FLANGE_M), &samples, 0);
+        refused(&TrocarSettings::by_arm(&arm()), &samples, 0);
+        refused(&TableSettings::by_arm(TIP_IN_FLANGE_M, Vector3::z()), &samples[..count.min(2)], 0);
+        refused(&ViewSettings::by_arm(TIP_IN_FLANGE_M), &samples, 0);
         let weighed = all_weighed(&mut rig, count, &UnitQuaternion::identity());
         refused(&SensorMount::new(UnitQuaternion::identity(), Vector3::z()), &weighed, 0);
     }

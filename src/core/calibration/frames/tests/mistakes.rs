@@ -19,7 +19,7 @@ fn named<C: Calibration>(
         let good = samples(&mut Rig::new(seed));
         let wrong: Vec<FrameSample> = good.iter().map(|sample| made.undone(sample, carrier).unwrap()).collect();
         let cause = calibration.fit(&wrong).unwrap().cause;
-        let right = cause == Cause::Mistake { mistake: made };
+        let right = cause == FrameCause::Mistake { mistake: made };
         if !right {
             println!("seed {seed}: {made:?} was named {cause:?}");
         }
@@ -31,7 +31,7 @@ fn named<C: Calibration>(
 
 #[test]
 fn a_tip_names_swaps_inverses_and_signs() {
-    for tip in [Tip::by_tracker(), Tip::by_arm()] {
+    for tip in [TipSettings::by_tracker(), TipSettings::by_arm()] {
         for made in Mistake::of_pivoting(tip.carrier) {
             // An arm's poses come from its joints; inverse poses cannot be detected there.
             if made == Mistake::InversePose && tip.carrier == Carrier::Flange {
@@ -44,7 +44,7 @@ fn a_tip_names_swaps_inverses_and_signs() {
 
 #[test]
 fn hand_eye_names_swaps_inverses_and_signs() {
-    let hand_eye = HandEye::new(TIP_IN_FLANGE_M);
+    let hand_eye = HandEyeSettings::new(TIP_IN_FLANGE_M);
     for (made, carrier) in hand_eye.mistakes() {
         named(&hand_eye, made, carrier, |rig| {
             let mut samples = rig.samples(through_trocar(), 16);
@@ -56,7 +56,7 @@ fn hand_eye_names_swaps_inverses_and_signs() {
 
 #[test]
 fn a_trocar_names_swaps_inverses_and_signs() {
-    for trocar in [Trocar::by_arm(&arm()), Trocar::by_tracker(&arm(), &flange_from_m())] {
+    for trocar in [TrocarSettings::by_arm(&arm()), TrocarSettings::by_tracker(&arm(), &flange_from_m())] {
         for made in Mistake::of_pivoting(trocar.carrier) {
             named(&trocar, made, trocar.carrier, |rig| {
                 let mut samples = rig.samples(through_trocar(), 40);
@@ -70,16 +70,17 @@ fn a_trocar_names_swaps_inverses_and_signs() {
 #[test]
 fn a_table_names_swaps_and_exchanged_axes() {
     let points = [[0.0, 0.0], [0.12, 0.0], [0.02, 0.1], [0.1, 0.09], [0.06, 0.05]];
-    named(&Table::by_arm(TIP_IN_FLANGE_M, Vector3::z()), Mistake::SwappedArm, Carrier::Flange, |rig| {
+    named(&TableSettings::by_arm(TIP_IN_FLANGE_M, Vector3::z()), Mistake::SwappedArm, Carrier::Flange, |rig| {
         let mut samples = touched(rig, &points);
         resting(&mut samples);
         samples
     });
     for seed in 0..SEEDS {
         let exchanged = points.map(|[x, y]| [y, x]);
-        let report =
-            Table::by_arm(TIP_IN_FLANGE_M, Vector3::z()).fit(&touched(&mut Rig::new(seed), &exchanged)).unwrap();
-        assert_eq!(report.cause, Cause::Mistake { mistake: Mistake::Mirrored }, "seed {seed}");
+        let report = TableSettings::by_arm(TIP_IN_FLANGE_M, Vector3::z())
+            .fit(&touched(&mut Rig::new(seed), &exchanged))
+            .unwrap();
+        assert_eq!(report.cause, FrameCause::Mistake { mistake: Mistake::Mirrored }, "seed {seed}");
     }
 }
 
@@ -94,7 +95,7 @@ fn resting(samples: &mut [FrameSample]) {
 
 #[test]
 fn a_view_names_swaps_and_mirrors_and_leaves_one_reversed_move_out() {
-    let view = View::by_arm(TIP_IN_FLANGE_M);
+    let view = ViewSettings::by_arm(TIP_IN_FLANGE_M);
     named(&view, Mistake::SwappedArm, Carrier::Flange, |rig| {
         let mut samples = moved(rig, &all_moves(), 3.0);
         resting(&mut samples);
@@ -111,20 +112,20 @@ fn a_view_names_swaps_and_mirrors_and_leaves_one_reversed_move_out() {
             };
         }
         let report = view.fit(&moved(&mut Rig::new(seed), &mirrored, 3.0)).unwrap();
-        assert_eq!(report.cause, Cause::Mistake { mistake: Mistake::Mirrored }, "seed {seed}");
+        assert_eq!(report.cause, FrameCause::Mistake { mistake: Mistake::Mirrored }, "seed {seed}");
         let mut one = [all_moves(), all_moves()].concat();
         one[3] = -one[3];
         let report = view.fit(&moved(&mut Rig::new(seed), &one, 3.0)).unwrap();
-        assert_eq!((report.cause, report.outliers), (Cause::Proven, vec![3]), "seed {seed}");
+        assert_eq!((report.cause, report.outliers), (FrameCause::Proven, vec![3]), "seed {seed}");
     }
 }
 
 #[test]
 fn a_sensor_mount_names_swaps_inverses_signs_and_exchanged_axes() {
-    let in_force = pose([0.0; 3], [0.0, 0.0, 30.0]).rotation;
+    let active = pose([0.0; 3], [0.0, 0.0, 30.0]).rotation;
     // The active mount is a little off the truth.
-    let truth = in_force * pose([0.0; 3], [1.0, 1.0, -1.0]).rotation;
-    let mount = SensorMount::new(in_force, Vector3::z());
+    let truth = active * pose([0.0; 3], [1.0, 1.0, -1.0]).rotation;
+    let mount = SensorMount::new(active, Vector3::z());
     for made in [Mistake::SwappedArm, Mistake::InverseRotation] {
         named(&mount, made, Carrier::Flange, |rig| all_weighed(rig, 12, &truth));
     }
@@ -145,7 +146,7 @@ fn a_sensor_mount_names_swaps_inverses_signs_and_exchanged_axes() {
             }
             let cause = mount.fit(&samples).unwrap().cause;
             let mistake = Mistake::WrongAxes(SignedAxes(axes));
-            assert_eq!(cause, Cause::Mistake { mistake }, "seed {seed}");
+            assert_eq!(cause, FrameCause::Mistake { mistake }, "seed {seed}");
         }
     }
 }

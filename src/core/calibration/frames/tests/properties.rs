@@ -37,8 +37,8 @@ fn tried<C: Calibration>(calibration: C, samples: &[FrameSample]) {
     if samples.iter().any(|sample| !sample.is_finite()) {
         assert!(report.is_err());
     }
-    let share = calibration.coverage(samples).share;
-    assert!((0.0..=1.0).contains(&share));
+    let fraction = calibration.coverage(samples).fraction;
+    assert!((0.0..=1.0).contains(&fraction));
     let mut session = FrameSession::new(calibration);
     for (tick, sample) in samples.iter().enumerate() {
         session.step(sample, tick as f64 * 0.1);
@@ -47,11 +47,11 @@ fn tried<C: Calibration>(calibration: C, samples: &[FrameSample]) {
 }
 
 fn all_tried(samples: &[FrameSample]) {
-    tried(Tip::by_tracker(), samples);
-    tried(HandEye::new(TIP_IN_FLANGE_M), samples);
-    tried(Trocar::by_arm(&arm()), samples);
-    tried(Table::by_arm(TIP_IN_FLANGE_M, Vector3::z()), samples);
-    tried(View::by_handle(), samples);
+    tried(TipSettings::by_tracker(), samples);
+    tried(HandEyeSettings::new(TIP_IN_FLANGE_M), samples);
+    tried(TrocarSettings::by_arm(&arm()), samples);
+    tried(TableSettings::by_arm(TIP_IN_FLANGE_M, Vector3::z()), samples);
+    tried(ViewSettings::by_handle(), samples);
     tried(SensorMount::new(UnitQuaternion::identity(), Vector3::z()), samples);
 }
 
@@ -99,16 +99,16 @@ proptest! {
             (a.translation.vector - b.translation.vector).norm() < 1e-8 && a.rotation.angle_to(&b.rotation) < 1e-7
         };
         let samples: Vec<FrameSample> = through_trocar()[..12].iter().map(sample).collect();
-        for solver in [Solver::ParkMartin, Solver::Shah] {
+        for solver in [HandEyeSolver::ParkMartin, HandEyeSolver::Shah] {
             for refine in [false, true] {
-                let hand_eye = HandEye { solver, refine, ..HandEye::new(TIP_IN_FLANGE_M) };
+                let hand_eye = HandEyeSettings { solver, refine, ..HandEyeSettings::new(TIP_IN_FLANGE_M) };
                 let found = hand_eye.fit(&samples).unwrap().found.unwrap();
                 prop_assert!(near(&found.flange_from_m.pose(), &flange_from_m), "{solver:?} {refine} {found:?}");
                 prop_assert!(near(&found.base_from_c.pose(), &base_from_c), "{solver:?} {refine} {found:?}");
             }
         }
         let samples: Vec<FrameSample> = in_dimple()[..20].iter().map(sample).collect();
-        let tip = Tip::by_tracker().fit(&samples).unwrap().found.unwrap();
+        let tip = TipSettings::by_tracker().fit(&samples).unwrap().found.unwrap();
         let truth = flange_from_m.inverse() * Point3::from(TIP_IN_FLANGE_M);
         prop_assert!((Vector3::from(tip.tip_in_carrier_m) - truth.coords).norm() < 1e-9);
     }

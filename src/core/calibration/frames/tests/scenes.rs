@@ -5,7 +5,7 @@ use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 
 use super::rig::*;
 use crate::{
-    calibration::frames::{FrameSample, Move},
+    calibration::frames::{FrameSample, ViewMove},
     frames::{GRAVITY_M_S2, Wrench},
 };
 
@@ -46,7 +46,7 @@ pub(crate) fn moved(rig: &mut Rig, moves: &[Vector3<f64>], off_deg: f64) -> Vec<
 }
 
 pub(crate) fn all_moves() -> Vec<Vector3<f64>> {
-    Move::ALL.into_iter().map(Move::in_view).collect()
+    ViewMove::ALL.into_iter().map(ViewMove::in_view).collect()
 }
 
 /// Returns a still pose of the flange with the tool's weight, as read by a sensor with this mount.

@@ -37,7 +37,7 @@ fn an_hour_of_noise_gives_no_alarm() {
 }
 
 /// Returns the time until a shift is detected, s.
-fn told_after_s(rig: &mut Rig, shift_m: &Vector3<f64>, tilt: f64) -> Option<f64> {
+fn reported_after_s(rig: &mut Rig, shift_m: &Vector3<f64>, tilt: f64) -> Option<f64> {
     let mut watch = TrocarWatch::new(TROCAR_M, TrocarWatch::LIMIT_M);
     let start_s = 3.0 + 4.0 * rig.noise.uniform();
     (0..1200).map(|tick| f64::from(tick) / RATE_HZ).find_map(|t_s| {
@@ -54,16 +54,16 @@ fn two_millimetres_across_the_shaft_are_told_within_a_second() {
         let mut rig = Rig::new(seed);
         let across = Vector3::new(rig.noise.gaussian(), rig.noise.gaussian(), 0.0).normalize();
         let tilt = 0.2 * rig.noise.uniform();
-        times_s.push(told_after_s(&mut rig, &(across * 2e-3), tilt).unwrap());
+        times_s.push(reported_after_s(&mut rig, &(across * 2e-3), tilt).unwrap());
     }
     let worst_s = times_s.iter().copied().fold(0.0, f64::max);
     let p95_s = p95(times_s);
     println!("2 mm across: p95 {p95_s:.2} s, at most {worst_s:.2} s");
     assert!(worst_s < 1.0, "{worst_s}");
     let mut rig = Rig::new(1);
-    let along = told_after_s(&mut rig, &(Vector3::z() * 5e-3), 0.35);
+    let along = reported_after_s(&mut rig, &(Vector3::z() * 5e-3), 0.35);
     println!("5 mm along a shaft that pivots by 20 degrees: {along:?} s");
-    assert!(told_after_s(&mut rig, &(Vector3::z() * 5e-3), 0.0).is_none(), "along a shaft at rest nothing is seen");
+    assert!(reported_after_s(&mut rig, &(Vector3::z() * 5e-3), 0.0).is_none(), "along a shaft at rest nothing is seen");
 }
 
 #[test]

@@ -8,9 +8,10 @@ use nalgebra::{Isometry3, Matrix3, Point3, Vector3};
 use serde::{Deserialize, Serialize};
 
 use super::{
-    Calibration, Carrier, Cause, Coverage, FrameReport, FrameSample, Limits, Missing, Mistake, Sizes, Source,
-    examine::{Miss, Problem, examined},
-    record::{Found, place_fault},
+    Calibration, CalibrationSource, Carrier, FrameCause, FrameCoverage, FrameLimits, FrameReport, FrameSample,
+    MissingMotion, Mistake, Sizes,
+    examine::{Problem, RowMiss, examined},
+    record::{CalibrationResult, place_fault},
     report::finite,
     spread::{below, ellipsoid_95},
 };
@@ -18,7 +19,7 @@ use crate::kinematics::Arm;
 pub use watch::{TrocarState, TrocarWatch};
 
 /// Minimum root mean square tilt of the lines from their mean, degrees.
-const LEAST_TILT_DEG: f64 = 4.0;
+const MIN_TILT_DEG: f64 = 4.0;
 /// Minimum angle between two lines, rad: 2 degrees, so that a shaft that hardly moves does not fill the session with
 /// equal lines. Chosen.
 const APART_RAD: f64 = 0.035;
@@ -60,15 +61,15 @@ fn across(direction: &Vector3<f64>) -> Matrix3<f64> {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Trocar {
+pub struct TrocarSettings {
     /// Source of the shaft's pose: marker or flange.
     pub carrier: Carrier,
     /// The shaft in the frame of the marker or of the flange.
     pub shaft: ShaftLine,
-    pub limits: Limits,
+    pub limits: FrameLimits,
 }
 
-impl Trocar {
+impl TrocarSettings {
     pub fn by_arm(arm: &Arm) -> Self {
         Self::of(Carrier::Flange, ShaftLine::of_arm(arm))
     }
@@ -80,7 +81,7 @@ impl Trocar {
 
     fn of(carrier: Carrier, shaft: ShaftLine) -> Self {
         let limits =
-            Limits { least: 30, held_out: Sizes::place(2.0e-3), uncertainty: Sizes::place(1.0e-3), outliers: 0.25 };
+            FrameLimits { min: 30, held_out: Sizes::place(2.0e-3), uncertainty: Sizes::place(1.0e-3), outliers: 0.25 };
         Self { carrier, shaft, limits }
     }
 
@@ -97,7 +98,7 @@ impl Trocar {
 /// A calibrated trocar, in the frame of the camera or of the arm's base.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct TrocarFound {
+pub struct TrocarResult {
     /// Source of the lines: marker (frame of the camera) or flange (frame of the base).
     pub carrier: Carrier,
     pub trocar_m: [f64; 3],
@@ -107,7 +108,7 @@ pub struct TrocarFound {
     pub ellipsoid_m: [[f64; 3]; 3],
 }
 
-impl Found for TrocarFound {
+impl CalibrationResult for TrocarResult {
     const KIND: &'static str = "trocar";
 
     fn fault(&self) -> Option<&'static str> {
@@ -123,13 +124,13 @@ struct Centre {
     covariance: Matrix3<f64>,
 }
 
-struct Lines;
+struct ShaftLines;
 
-impl Problem for Lines {
+impl Problem for ShaftLines {
     type Row = ShaftLine;
     type Model = Centre;
     const HYPOTHESIS: usize = 4;
-    const FLOOR: Miss = Miss::of_place(1.5e-3);
+    const FLOOR: RowMiss = RowMiss::of_place(1.5e-3);
 
     fn solve(&self, rows: &[ShaftLine]) -> Option<Centre> {
         let mut normal = Matrix3::zeros();
@@ -143,8 +144,8 @@ impl Problem for Lines {
         Some(Centre { point_m: covariance * right, covariance })
     }
 
-    fn miss(&self, centre: &Centre, row: &ShaftLine) -> Miss {
-        Miss::of_place(row.miss_m(&centre.point_m).norm())
+    fn miss(&self, centre: &Centre, row: &ShaftLine) -> RowMiss {
+        RowMiss::of_place(row.miss_m(&centre.point_m).norm())
     }
 }
 
@@ -162,10 +163,10 @@ fn tilt_deg(lines: impl Iterator<Item = ShaftLine>) -> f64 {
     libm::asin((sum / count).symmetric_eigenvalues().min().max(0.0).sqrt()).to_degrees()
 }
 
-impl Calibration for Trocar {
-    type Found = TrocarFound;
+impl Calibration for TrocarSettings {
+    type Solution = TrocarResult;
 
-    fn needs(&self) -> Vec<Source> {
+    fn needs(&self) -> Vec<CalibrationSource> {
         vec![self.carrier.source()]
     }
 
@@ -183,10 +184,10 @@ impl Calibration for Trocar {
             .is_some_and(|line| self.lines(taken).all(|other| other.direction.angle(&line.direction) >= APART_RAD))
     }
 
-    fn coverage(&self, taken: &[FrameSample]) -> Coverage {
-        Coverage::least([
-            (taken.len() as f64 / PLENTY as f64, Missing::Poses),
-            (tilt_deg(self.lines(taken)) / PLENTY_TILT_DEG, Missing::Tilt),
+    fn coverage(&self, taken: &[FrameSample]) -> FrameCoverage {
+        FrameCoverage::min([
+            (taken.len() as f64 / PLENTY as f64, MissingMotion::Poses),
+            (tilt_deg(self.lines(taken)) / PLENTY_TILT_DEG, MissingMotion::Tilt),
         ])
     }
 
@@ -196,22 +197,22 @@ impl Calibration for Trocar {
             .then_some("the shaft's line is not finite, or its direction does not have length one")
     }
 
-    fn attempt(&self, samples: &[FrameSample]) -> FrameReport<TrocarFound> {
+    fn attempt(&self, samples: &[FrameSample]) -> FrameReport<TrocarResult> {
         let rows: Vec<ShaftLine> = self.lines(samples).collect();
         let have = rows.len();
-        let least = self.limits.least;
-        if have < least {
-            return FrameReport::nothing(have, Cause::TooFew { have, least });
+        let min = self.limits.min;
+        if have < min {
+            return FrameReport::nothing(have, FrameCause::TooFew { have, min });
         }
         let parallel = |rows: &mut dyn Iterator<Item = ShaftLine>| {
             let tilt_deg = tilt_deg(rows);
-            below(tilt_deg, LEAST_TILT_DEG).then_some(Cause::NearlyParallel { tilt_deg, least_deg: LEAST_TILT_DEG })
+            below(tilt_deg, MIN_TILT_DEG).then_some(FrameCause::NearlyParallel { tilt_deg, min_deg: MIN_TILT_DEG })
         };
         if let Some(cause) = parallel(&mut rows.iter().copied()) {
             return FrameReport::nothing(have, cause);
         }
-        let Some(found) = examined(&Lines, &rows) else {
-            return FrameReport::nothing(have, Cause::NearlyParallel { tilt_deg: 0.0, least_deg: LEAST_TILT_DEG });
+        let Some(found) = examined(&ShaftLines, &rows) else {
+            return FrameReport::nothing(have, FrameCause::NearlyParallel { tilt_deg: 0.0, min_deg: MIN_TILT_DEG });
         };
         if let Some(cause) = parallel(&mut found.kept.iter().map(|&i| rows[i])) {
             return FrameReport::nothing(have, cause);
@@ -219,7 +220,7 @@ impl Calibration for Trocar {
         let freedom = (2 * found.kept.len()).saturating_sub(3).max(1);
         let axes = ellipsoid_95(&(found.model.covariance * (found.squares_m2() / freedom as f64)), freedom);
         let inward: Vector3<f64> = found.kept.iter().map(|&i| rows[i].direction).sum();
-        let value = TrocarFound {
+        let value = TrocarResult {
             carrier: self.carrier,
             trocar_m: found.model.point_m.into(),
             inward: inward.normalize().into(),

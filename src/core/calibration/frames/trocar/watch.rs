@@ -85,10 +85,10 @@ impl TrocarWatch {
         self.state
     }
 
-    fn average(&mut self, line: &ShaftLine, share: f64) {
+    fn average(&mut self, line: &ShaftLine, fraction: f64) {
         let across = across(&line.direction);
-        self.normal += (across - self.normal) * share;
-        self.right_m += (across * (line.point_m - self.trocar_m) - self.right_m) * share;
+        self.normal += (across - self.normal) * fraction;
+        self.right_m += (across * (line.point_m - self.trocar_m) - self.right_m) * fraction;
     }
 
     fn judge(&mut self) {

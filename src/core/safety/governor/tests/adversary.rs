@@ -4,7 +4,7 @@ use nalgebra::Vector1;
 
 use crate::{
     noise::Noise,
-    safety::{Chain, ChainSettings, Request},
+    safety::{ChainSettings, ForceRequest, SafetyChain},
 };
 
 const PERIOD_S: f64 = 1e-3;
@@ -48,7 +48,7 @@ struct Plan {
 
 impl Plan {
     fn new(noise: &mut Noise) -> Self {
-        let mut pick = |most: f64| (most * noise.uniform()) as u32;
+        let mut pick = |max: f64| (max * noise.uniform()) as u32;
         let pattern = PATTERNS[pick(10.0) as usize];
         let left = 1 + pick(400.0);
         let every = 2 + pick(40.0);
@@ -92,42 +92,42 @@ impl Plan {
 }
 
 /// Most energy (J) that a lone handle was given in one episode by so many adversarial requests.
-pub(super) fn most_given_j(requests: u64, seed: u64, settings: ChainSettings) -> f64 {
+pub(super) fn max_given_j(requests: u64, seed: u64, settings: ChainSettings) -> f64 {
     let mut noise = Noise::new(seed);
-    let mut most_j = 0.0_f64;
+    let mut max_j = 0.0_f64;
     for _ in 0..requests.div_ceil((EPISODE_S / PERIOD_S) as u64) {
-        most_j = most_j.max(episode_j(&mut noise, settings));
+        max_j = max_j.max(episode_j(&mut noise, settings));
     }
-    most_j
+    max_j
 }
 
 fn episode_j(noise: &mut Noise, settings: ChainSettings) -> f64 {
-    let mut chain = Chain::<1>::new(settings, PERIOD_S);
+    let mut chain = SafetyChain::<1>::new(settings, PERIOD_S);
     let handle_kg = 0.2 + 0.11 * noise.uniform();
-    let mut at_m = 0.0;
+    let mut position_m = 0.0;
     let mut speed_m_s = 0.0;
     let mut given_j = 0.0;
-    let mut most_j = 0.0_f64;
+    let mut max_j = 0.0_f64;
     let mut plan = Plan::new(noise);
     for tick in 0..(EPISODE_S / PERIOD_S) as u32 {
         if plan.left == 0 {
             plan = Plan::new(noise);
         }
         plan.left -= 1;
-        let request = Request {
+        let request = ForceRequest {
             t_s: f64::from(tick) * PERIOD_S,
             force_n: plan.force_n(tick, speed_m_s, noise).map(Vector1::new),
             age_s: 0.0,
             speed_m_s: 1.0,
-            hand_m: Some(Vector1::new((at_m / 1e-5_f64).round() * 1e-5)),
+            hand_m: Some(Vector1::new((position_m / 1e-5_f64).round() * 1e-5)),
             hand_age_s: 0.0,
             permitted: true,
         };
         let held_n = chain.step(&request).0.x;
         speed_m_s += (held_n - 0.1 * speed_m_s) / handle_kg * PERIOD_S;
-        at_m += speed_m_s * PERIOD_S;
+        position_m += speed_m_s * PERIOD_S;
         given_j += held_n * speed_m_s * PERIOD_S;
-        most_j = most_j.max(given_j);
+        max_j = max_j.max(given_j);
     }
-    most_j
+    max_j
 }

@@ -7,7 +7,7 @@ use nalgebra::Vector1;
 
 use crate::{
     noise::Noise,
-    safety::{Chain, ChainSettings, GateReport, Request},
+    safety::{ChainSettings, ForceRequest, GateReport, SafetyChain},
     signal::Speed,
 };
 
@@ -60,7 +60,7 @@ impl Person {
 }
 
 #[derive(Clone, Debug)]
-pub(super) struct Bench {
+pub(super) struct Fixture {
     pub(super) person: Person,
     render: Render,
     delay: usize,
@@ -68,7 +68,7 @@ pub(super) struct Bench {
     pub(super) stiffer: f64,
     pub(super) tighter: f64,
     pub(super) gripped: bool,
-    chain: Chain<1>,
+    chain: SafetyChain<1>,
     noise: Noise,
     phases: [f64; 3],
     tick: usize,
@@ -87,7 +87,7 @@ pub(super) struct Bench {
     pub(super) report: GateReport,
 }
 
-impl Bench {
+impl Fixture {
     /// With the usual gates and a brake of this viscosity, N s/m.
     pub(super) fn new(person: Person, render: Render, delay: usize, brake_n_s_m: f64, seed: u64) -> Self {
         Self::of(person, render, delay, ChainSettings { brake_n_s_m, ..ChainSettings::default() }, seed)
@@ -104,7 +104,7 @@ impl Bench {
             stiffer: 1.0,
             tighter: 1.0,
             gripped: true,
-            chain: Chain::new(settings, PERIOD_S),
+            chain: SafetyChain::new(settings, PERIOD_S),
             noise,
             phases,
             tick: 0,
@@ -136,7 +136,7 @@ impl Bench {
         self.command_m += (read_m - self.command_m).clamp(-FOLLOWER_M_S * PERIOD_S, FOLLOWER_M_S * PERIOD_S);
         self.commands_m[self.tick % PAST] = self.command_m;
         let asked_n = self.asked(read_m);
-        let (force_n, report) = self.chain.step(&Request {
+        let (force_n, report) = self.chain.step(&ForceRequest {
             t_s: now_s,
             force_n: Some(Vector1::new(asked_n)),
             age_s: 0.0,
@@ -161,8 +161,8 @@ impl Bench {
         }
     }
 
-    fn tissue_n(&self, at_m: f64, velocity_m_s: f64) -> f64 {
-        let depth_m = (-at_m).max(0.0);
+    fn tissue_n(&self, position_m: f64, velocity_m_s: f64) -> f64 {
+        let depth_m = (-position_m).max(0.0);
         (self.stiffer * 1300.0 * depth_m.powf(1.3) * (1.0 - 1.5 * velocity_m_s)).max(0.0)
     }
 

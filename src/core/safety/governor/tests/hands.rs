@@ -29,9 +29,9 @@ pub(super) fn person(noise: &mut Noise) -> Person {
 /// Where the hand means to be in each tick (m): reaches of minimum jerk at random speeds, pauses, palpation. It aims deeper where its
 /// grip is softer, as one who wants to press does.
 pub(super) fn way(noise: &mut Noise, ticks: usize, grip_n_m: f64) -> Vec<f64> {
-    let mut way_m = Vec::with_capacity(ticks);
-    let mut at_m = 0.005;
-    while way_m.len() < ticks {
+    let mut travel_m = Vec::with_capacity(ticks);
+    let mut position_m = 0.005;
+    while travel_m.len() < ticks {
         let kind = noise.uniform();
         if kind < 0.7 {
             let to_m = if noise.uniform() < 0.6 {
@@ -40,29 +40,30 @@ pub(super) fn way(noise: &mut Noise, ticks: usize, grip_n_m: f64) -> Vec<f64> {
                 between(noise, [-0.006, 0.015])
             };
             let fastest_m_s = spread(noise, [0.01, 0.35]);
-            let seconds = (1.875 * (to_m - at_m).abs() / fastest_m_s).max(0.04);
+            let seconds = (1.875 * (to_m - position_m).abs() / fastest_m_s).max(0.04);
             let count = (1e3 * seconds) as usize + 1;
-            way_m.extend((0..count).map(|tick| at_m + (to_m - at_m) * reach(tick as f64 / (1e3 * seconds))));
-            at_m = to_m;
+            travel_m
+                .extend((0..count).map(|tick| position_m + (to_m - position_m) * reach(tick as f64 / (1e3 * seconds))));
+            position_m = to_m;
         } else if kind < 0.85 {
             let count = (1e3 * between(noise, [0.05, 1.5])) as usize;
-            way_m.extend(std::iter::repeat_n(at_m, count));
+            travel_m.extend(std::iter::repeat_n(position_m, count));
         } else {
             let count = (1e3 * between(noise, [0.5, 2.0])) as usize;
             let hz = spread(noise, [0.5, 5.0]);
             let size_m = between(noise, [0.5e-3, 6e-3]);
-            way_m.extend((0..count).map(|tick| {
+            travel_m.extend((0..count).map(|tick| {
                 let ends = (tick as f64 / 200.0).min((count - tick) as f64 / 200.0).min(1.0);
-                at_m + size_m * ends * (std::f64::consts::TAU * hz * tick as f64 * 1e-3).sin()
+                position_m + size_m * ends * (std::f64::consts::TAU * hz * tick as f64 * 1e-3).sin()
             }));
         }
     }
-    way_m.truncate(ticks);
-    way_m
+    travel_m.truncate(ticks);
+    travel_m
 }
 
-pub(super) fn reach(share: f64) -> f64 {
-    let s = share.clamp(0.0, 1.0);
+pub(super) fn reach(fraction: f64) -> f64 {
+    let s = fraction.clamp(0.0, 1.0);
     s.powi(3) * (10.0 + s * (-15.0 + 6.0 * s))
 }
 

@@ -2,12 +2,12 @@ mod adversary;
 mod bench;
 mod hands;
 
-use bench::{Bench, PERIOD_S, Person, Render};
+use bench::{Fixture, PERIOD_S, Person, Render};
 
 use nalgebra::Vector3;
 use proptest::prelude::*;
 
-use super::{Governor, Handle, Reading};
+use super::{FreeHandle, Governor, GovernorReading};
 use crate::{
     noise::Noise,
     safety::{ALLOWANCE_J, ChainSettings, EnergyMode, Gate, LEAK_S, Reason},
@@ -38,7 +38,7 @@ impl LetGo {
 }
 
 /// Presses at 20 mm/s until the tissue answers with `force_n`, holds for two seconds if `held`, and opens the hand.
-fn let_go(bench: &mut Bench, force_n: f64, held: bool) -> LetGo {
+fn let_go(bench: &mut Fixture, force_n: f64, held: bool) -> LetGo {
     let mut wanted_m = 0.005;
     while bench.tip_n < force_n {
         wanted_m -= 0.020 * PERIOD_S;
@@ -59,9 +59,9 @@ fn let_go(bench: &mut Bench, force_n: f64, held: bool) -> LetGo {
     bench.gripped = false;
     for tick in 1..=1000 {
         let held_n = bench.force_n;
-        let at_m = bench.handle_m;
+        let position_m = bench.handle_m;
         bench.step(wanted_m);
-        energy_j += held_n * (bench.handle_m - at_m);
+        energy_j += held_n * (bench.handle_m - position_m);
         let t_s = f64::from(tick) * PERIOD_S;
         let swing_m = swing_m_s * swing_s * (1.0 - (-t_s / swing_s).exp());
         out.travel_mm = out.travel_mm.max(1e3 * (bench.handle_m - from_m).abs());
@@ -102,7 +102,7 @@ fn worst(force_n: f64, brake_n_s_m: f64, kinds: Kinds<'_>) -> LetGo {
                     for &count_m in kinds.counts_m {
                         for seed in 0..kinds.seeds {
                             let person = Person { handle_kg, coulomb_n, count_m, ..Person::STANDARD };
-                            let mut bench = Bench::new(person, render, delay, brake_n_s_m, seed);
+                            let mut bench = Fixture::new(person, render, delay, brake_n_s_m, seed);
                             let out = let_go(&mut bench, force_n, held);
                             if out.before_n > 0.5 * force_n.min(4.0) {
                                 worst.include(&out);
@@ -169,14 +169,14 @@ fn present(runs: u64, first_seed: u64, handle_kg: f64) -> Lost {
         let render = [Render::Reflection, Render::Model, Render::Spring][(seed % 3) as usize];
         let delay = [0, 10, 50, 100, 300][(seed / 3 % 5) as usize];
         let ticks = 6000;
-        let way_m = hands::way(&mut noise, ticks, person.grip_n_m);
+        let travel_m = hands::way(&mut noise, ticks, person.grip_n_m);
         let grip = if noise.uniform() < 0.5 { hands::grip(&mut noise, ticks) } else { vec![1.0; ticks] };
-        let mut bench = Bench::new(person, render, delay, 30.0, seed);
+        let mut bench = Fixture::new(person, render, delay, 30.0, seed);
         bench.stiffer = hands::spread(&mut noise, [0.37, 2.7]);
         let mut withheld = 0.0;
         let mut force = 0.0;
         let mut closed_ms = 0;
-        for (wanted_m, tighter) in way_m.into_iter().zip(grip) {
+        for (wanted_m, tighter) in travel_m.into_iter().zip(grip) {
             bench.tighter = tighter;
             bench.step(wanted_m);
             if bench.report.governed > 0.0 {
@@ -198,11 +198,11 @@ fn present(runs: u64, first_seed: u64, handle_kg: f64) -> Lost {
     lost
 }
 
-fn judge_present(runs: u64, first_seed: u64, most_withheld: f64) -> Lost {
+fn judge_present(runs: u64, first_seed: u64, max_withheld: f64) -> Lost {
     let lost = present(runs, first_seed, 0.25);
     assert_eq!(lost.declared, 0, "{lost:?}");
     assert!(
-        lost.withheld_ns <= most_withheld * lost.force_ns,
+        lost.withheld_ns <= max_withheld * lost.force_ns,
         "{:.4} of the force: {lost:?}",
         lost.withheld_ns / lost.force_ns
     );
@@ -230,11 +230,11 @@ fn bound_j() -> f64 {
 
 fn judge_adversary(requests: u64, seed: u64) -> [f64; 2] {
     let held = ChainSettings { static_hold: true, ..ChainSettings::default() };
-    let with_j = adversary::most_given_j(requests, seed, held);
+    let with_j = adversary::max_given_j(requests, seed, held);
     assert!(with_j <= bound_j(), "{with_j} J");
     // Without both gates the same requests give a hundred times as much: it is an adversary.
     let bare = ChainSettings { energy: EnergyMode::Off, ..held.without_governor() };
-    let bare_j = adversary::most_given_j(requests.min(200_000), seed, bare);
+    let bare_j = adversary::max_given_j(requests.min(200_000), seed, bare);
     assert!(bare_j > 20.0 * bound_j(), "{bare_j} J");
     [with_j, bare_j]
 }
@@ -257,7 +257,7 @@ fn fuzz_no_requests_give_a_lone_handle_more_than_the_bound() {
 /// leaves the tissue twelve times with this fastest speed (m/s).
 fn cost_of_withdrawal_n(render: Render, delay: usize, m_s: f64) -> f64 {
     let mut benches = [ChainSettings::default(), ChainSettings::default().without_governor()]
-        .map(|settings| Bench::of(Person::STANDARD, render, delay, settings, 3));
+        .map(|settings| Fixture::of(Person::STANDARD, render, delay, settings, 3));
     let deep_m = -0.014;
     let out_m = 0.005;
     let ticks = 1500;
@@ -265,9 +265,9 @@ fn cost_of_withdrawal_n(render: Render, delay: usize, m_s: f64) -> f64 {
     for _ in 0..12 {
         for tick in 0..ticks {
             let t_s = f64::from(tick) * PERIOD_S;
-            let share = hands::reach(t_s / 0.6) - hands::reach((t_s - 1.0) * m_s / (1.875 * (out_m - deep_m)));
+            let fraction = hands::reach(t_s / 0.6) - hands::reach((t_s - 1.0) * m_s / (1.875 * (out_m - deep_m)));
             for (bench, error_n) in benches.iter_mut().zip(&mut errors_n) {
-                bench.step(out_m + (deep_m - out_m) * share);
+                bench.step(out_m + (deep_m - out_m) * fraction);
                 *error_n += (bench.force_n - bench.tip_n.min(4.0)).abs() / f64::from(12 * ticks);
             }
         }
@@ -292,61 +292,62 @@ fn a_hand_that_withdraws_loses_next_to_nothing() {
 #[test]
 fn a_handle_read_on_another_clock_is_braked_only_when_it_is_let_go() {
     const RELEASE_S: f64 = 4.0;
-    let handle = Handle { mass_kg: 0.25, damping_n_s_m: 0.5, brake_n_s_m: 30.0, step_m: 1e-5 };
+    let handle = FreeHandle { mass_kg: 0.25, damping_n_s_m: 0.5, brake_n_s_m: 30.0, step_m: 1e-5 };
     let mut governor = Governor::<1>::new(handle, 500.0, PERIOD_S);
     let mut noise = Noise::new(7);
-    let (mut at_m, mut speed_m_s, mut held_n) = (0.0_f64, 0.0_f64, 0.0_f64);
+    let (mut position_m, mut speed_m_s, mut held_n) = (0.0_f64, 0.0_f64, 0.0_f64);
     let (mut read_m, mut next_read_s) = (0.0, 0.0);
     let mut released_m = 0.0;
     for step in 0..43_000_u32 {
         let t_s = f64::from(step) * 1e-4;
         // The device reads every 1.003 ms, and pauses for up to 4 ms now and then.
         if t_s >= next_read_s {
-            read_m = (at_m * 1e5).round() * 1e-5;
+            read_m = (position_m * 1e5).round() * 1e-5;
             next_read_s += 1.003e-3 + if noise.uniform() < 0.01 { 4e-3 * noise.uniform() } else { 0.0 };
         }
         // Free motion first: there the error of the times shows. Then the hand carries a force.
         let asked_n = 3.0 * (10.0 * (t_s - 0.5)).clamp(0.0, 1.0);
         if step % 10 == 0 {
-            let governed = governor.step(t_s, Some(Reading { t_s, at_m: [read_m].into() }), [asked_n].into());
+            let governed =
+                governor.step(t_s, Some(GovernorReading { t_s, position_m: [read_m].into() }), [asked_n].into());
             assert!(t_s > RELEASE_S || (governed.force_n.x - asked_n).abs() < 1e-9, "at {t_s} s: {governed:?}");
             held_n = governed.force_n.x;
         }
         let (aim_m, aim_m_s) = (0.015 * (4.0 * t_s).sin(), 0.06 * (4.0 * t_s).cos());
         let hand_n =
-            if t_s < RELEASE_S { 900.0 * (aim_m - at_m) + 20.0 * (aim_m_s - speed_m_s) - asked_n } else { 0.0 };
+            if t_s < RELEASE_S { 900.0 * (aim_m - position_m) + 20.0 * (aim_m_s - speed_m_s) - asked_n } else { 0.0 };
         if t_s < RELEASE_S {
-            released_m = at_m;
+            released_m = position_m;
         }
         speed_m_s += (held_n + hand_n - 0.5 * speed_m_s) / 0.25 * 1e-4;
-        at_m += speed_m_s * 1e-4;
+        position_m += speed_m_s * 1e-4;
     }
-    assert!((at_m - released_m).abs() < 0.02 && held_n.abs() < 0.1, "{} m, {held_n} N", at_m - released_m);
+    assert!((position_m - released_m).abs() < 0.02 && held_n.abs() < 0.1, "{} m, {held_n} N", position_m - released_m);
 }
 
 #[test]
 fn in_space_it_does_along_the_push_what_it_does_on_one_axis() {
-    let handle = Handle { mass_kg: 0.25, damping_n_s_m: 0.5, brake_n_s_m: 30.0, step_m: 1e-5 };
+    let handle = FreeHandle { mass_kg: 0.25, damping_n_s_m: 0.5, brake_n_s_m: 30.0, step_m: 1e-5 };
     let along = Vector3::new(2.0, -1.0, 0.5).normalize();
     let mut line = Governor::<1>::new(handle, 500.0, PERIOD_S);
     let mut space = Governor::<3>::new(handle, 500.0, PERIOD_S);
-    let mut at_m = 0.0;
+    let mut position_m = 0.0;
     let mut speed_m_s = 0.0;
     let mut held_n = 3.0;
-    let mut most = 0.0_f64;
+    let mut max = 0.0_f64;
     for tick in 0..400 {
         let t_s = f64::from(tick) * PERIOD_S;
-        let hand_n = if tick < 100 { -3.0 - 900.0 * at_m - 20.0 * speed_m_s } else { 0.0 };
+        let hand_n = if tick < 100 { -3.0 - 900.0 * position_m - 20.0 * speed_m_s } else { 0.0 };
         speed_m_s += (held_n + hand_n) / 0.25 * PERIOD_S;
-        at_m += speed_m_s * PERIOD_S;
-        let one = line.step(t_s, Some(Reading { t_s, at_m: [at_m].into() }), [3.0].into());
-        let three = space.step(t_s, Some(Reading { t_s, at_m: along * at_m }), along * 3.0);
+        position_m += speed_m_s * PERIOD_S;
+        let one = line.step(t_s, Some(GovernorReading { t_s, position_m: [position_m].into() }), [3.0].into());
+        let three = space.step(t_s, Some(GovernorReading { t_s, position_m: along * position_m }), along * 3.0);
         assert!((three.force_n - along * one.force_n.x).norm() < 1e-9, "tick {tick}: {one:?} {three:?}");
         assert_eq!(one.reason, three.reason);
         held_n = one.force_n.x;
-        most = most.max(one.withheld);
+        max = max.max(one.withheld);
     }
-    assert!(most >= 1.0 && at_m < 2e-3);
+    assert!(max >= 1.0 && position_m < 2e-3);
 }
 
 proptest! {
@@ -365,15 +366,15 @@ proptest! {
         step_m in prop_oneof![Just(1e-7), Just(1e-5), Just(1e-3)],
         period_s in prop_oneof![Just(1e-4), Just(1e-3), Just(1e-2)],
     ) {
-        let handle = Handle { mass_kg, damping_n_s_m, brake_n_s_m, step_m };
+        let handle = FreeHandle { mass_kg, damping_n_s_m, brake_n_s_m, step_m };
         let mut governor = Governor::<3>::new(handle, 500.0, period_s);
-        let mut at_m = Vector3::zeros();
+        let mut position_m = Vector3::zeros();
         let mut t_s = 0.0;
         for (asked, way, age_s, spacing_s) in ticks {
             let asked_n = Vector3::from(asked);
-            at_m += Vector3::from(way);
+            position_m += Vector3::from(way);
             t_s += spacing_s;
-            let reading = age_s.map(|age_s| Reading { t_s: t_s - age_s, at_m });
+            let reading = age_s.map(|age_s| GovernorReading { t_s: t_s - age_s, position_m });
             let governed = governor.step(t_s, reading, asked_n);
             prop_assert!(governed.force_n.iter().all(|f| f.is_finite()));
             prop_assert!((0.0..=1.0).contains(&governed.withheld));
@@ -383,8 +384,8 @@ proptest! {
             if governed.reason != Reason::LetGo && governed.reason != Reason::NotFinite {
                 prop_assert!(governed.force_n.dot(&asked_n) >= 0.0, "a hand that is there is never opposed");
             }
-            if !at_m.iter().all(|x| x.is_finite()) {
-                at_m = Vector3::zeros();
+            if !position_m.iter().all(|x| x.is_finite()) {
+                position_m = Vector3::zeros();
             }
             if !f64::is_finite(t_s) {
                 t_s = 0.0;

@@ -7,29 +7,29 @@ use nima_machine::{
     rig::SIDES,
 };
 use nima_recording::session::Encoding;
-use nima_session::outlet::Audience;
+use nima_session::sinks::Audience;
 
 use super::{
-    Outline, Shared,
-    moment::{Arm, Moment, Told},
+    IgtlShared, LoopOutline,
+    moment::{HubMessage, IgtlArm, LoopMoment},
 };
 
 /// Watches one loop.
 #[derive(Debug)]
-pub(super) struct Watching {
-    shared: Arc<Shared>,
-    outline: Outline,
+pub(super) struct LoopWatcher {
+    shared: Arc<IgtlShared>,
+    outline: LoopOutline,
     states: [Option<LoopState>; SIDES],
 }
 
-impl Watching {
-    pub(super) const fn new(shared: Arc<Shared>, outline: Outline) -> Self {
+impl LoopWatcher {
+    pub(super) const fn new(shared: Arc<IgtlShared>, outline: LoopOutline) -> Self {
         Self { shared, outline, states: [None; SIDES] }
     }
 
     /// Sends to the hub; returns whether the queue had room.
-    fn tell(&self, told: Told) -> bool {
-        let arrived = self.shared.told.try_send(told).is_ok();
+    fn report(&self, report: HubMessage) -> bool {
+        let arrived = self.shared.report.try_send(report).is_ok();
         if !arrived {
             self.shared.dropped.fetch_add(1, Ordering::Relaxed);
         }
@@ -37,9 +37,9 @@ impl Watching {
     }
 }
 
-impl Audience for Watching {
+impl Audience for LoopWatcher {
     fn begins(&mut self, _program: &str, started_ns: u64) {
-        self.tell(Told::Begins(started_ns, self.outline));
+        self.report(HubMessage::Begins(started_ns, self.outline));
     }
 
     fn channel(&mut self, _topic: &str, _encoding: &Encoding) {}
@@ -52,16 +52,16 @@ impl Audience for Watching {
         if !has_changed && t_s < self.shared.due_s() {
             return;
         }
-        let arms = ticks.each_ref().map(|tick| tick.as_ref().map(Arm::of));
+        let arms = ticks.each_ref().map(|tick| tick.as_ref().map(IgtlArm::of));
         // A change that found no room is sent with the next tick.
-        if self.tell(Told::Moment(Moment { t_s, arms })) {
+        if self.report(HubMessage::Moment(LoopMoment { t_s, arms })) {
             self.states = states;
         }
     }
 }
 
-impl Drop for Watching {
+impl Drop for LoopWatcher {
     fn drop(&mut self) {
-        self.tell(Told::Ends);
+        self.report(HubMessage::Ends);
     }
 }

@@ -9,10 +9,10 @@ use crossbeam_channel::RecvTimeoutError;
 use nima_machine::{messages::LoopState, rig::SIDES};
 
 use super::{
-    super::{Content, Kind, Message, StatusCode},
-    Hears, Outline, Shared,
-    client::{Client, EARLY_S, now_ns, refusal},
-    moment::{BUNDLE, Moment, Told, Writer},
+    super::{Content, ContentKind, IgtlMessage, StatusCode},
+    HubReceiver, IgtlShared, LoopOutline,
+    client::{EARLY_S, IgtlClient, now_ns, refusal},
+    moment::{BUNDLE, HubMessage, IgtlWriter, LoopMoment},
 };
 
 /// Interval of the checks for disconnected clients and due states.
@@ -23,34 +23,34 @@ const STATUS_EVERY: Duration = Duration::from_secs(1);
 const SILENT: Duration = Duration::from_secs(2);
 
 pub(super) struct Hub {
-    shared: Arc<Shared>,
-    outline: Outline,
+    shared: Arc<IgtlShared>,
+    outline: LoopOutline,
     started_ns: u64,
-    newest: Option<Moment>,
-    heard: Instant,
+    newest: Option<LoopMoment>,
+    received: Instant,
     looked: Instant,
 }
 
 impl Hub {
-    pub(super) fn new(shared: Arc<Shared>) -> Self {
+    pub(super) fn new(shared: Arc<IgtlShared>) -> Self {
         let now = Instant::now();
-        Self { shared, outline: Outline::default(), started_ns: 0, newest: None, heard: now, looked: now }
+        Self { shared, outline: LoopOutline::default(), started_ns: 0, newest: None, received: now, looked: now }
     }
 
     /// Runs until the server ends.
-    pub(super) fn run(mut self, hears: &Hears) {
+    pub(super) fn run(mut self, receives: &HubReceiver) {
         while !self.shared.is_ending() {
-            match hears.recv_timeout(LOOK_EVERY) {
-                Ok(Told::Begins(started_ns, outline)) => {
+            match receives.recv_timeout(LOOK_EVERY) {
+                Ok(HubMessage::Begins(started_ns, outline)) => {
                     self.started_ns = started_ns;
                     self.outline = outline;
                     self.newest = None;
                     self.shared.hurry();
                 }
-                Ok(Told::Moment(moment)) => self.moment(moment),
-                Ok(Told::Ends) => {
+                Ok(HubMessage::Moment(moment)) => self.moment(moment),
+                Ok(HubMessage::Ends) => {
                     self.newest = None;
-                    self.tell_all();
+                    self.send_all();
                 }
                 Err(RecvTimeoutError::Timeout) => {}
                 Err(RecvTimeoutError::Disconnected) => return,
@@ -68,14 +68,14 @@ impl Hub {
     }
 
     /// Processes a state of the loop.
-    fn moment(&mut self, moment: Moment) {
+    fn moment(&mut self, moment: LoopMoment) {
         let has_changed = self.newest.as_ref().map(states) != Some(states(&moment));
         self.newest = Some(moment);
-        self.heard = Instant::now();
+        self.received = Instant::now();
         if has_changed {
-            self.tell_all();
+            self.send_all();
         }
-        let writer = Writer { moment: &moment, outline: &self.outline, time_ns: self.time_ns(moment.t_s) };
+        let writer = IgtlWriter { moment: &moment, outline: &self.outline, time_ns: self.time_ns(moment.t_s) };
         let clients = self.shared.clients();
         let mut due_s = f64::INFINITY;
         for client in clients.iter().filter(|client| !client.is_gone()) {
@@ -84,10 +84,10 @@ impl Hub {
                 let asked = wants.take_asked();
                 let mut bytes = Vec::new();
                 asked.of_moment().for_each(|kind| writer.put(kind, &mut bytes));
-                if asked.has(Kind::Status) {
+                if asked.has(ContentKind::Status) {
                     writer.put_status(self.shared.words, &mut bytes);
                 }
-                client.mailbox.tell(bytes);
+                client.mailbox.report(bytes);
             }
             if let Some(kinds) = wants.due(moment.t_s) {
                 let mut bytes = Vec::new();
@@ -108,44 +108,44 @@ impl Hub {
         if clients.is_empty() {
             self.shared.set_due(f64::INFINITY);
         }
-        let is_silent = self.newest.is_none() || now.duration_since(self.heard) > SILENT;
+        let is_silent = self.newest.is_none() || now.duration_since(self.received) > SILENT;
         for client in clients.iter() {
             let mut wants = client.wants();
             let asked = is_silent && wants.asks();
             if asked {
                 wants.take_asked();
             }
-            if asked || wants.hears_states() && wants.status_due.is_none_or(|due| now >= due) {
+            if asked || wants.wants_states() && wants.status_due.is_none_or(|due| now >= due) {
                 wants.status_due = Some(now + STATUS_EVERY);
                 drop(wants);
-                self.tell(client, is_silent);
+                self.report(client, is_silent);
             }
         }
     }
 
     /// Sends the status of the loop to all clients that have requested it.
-    fn tell_all(&self) {
+    fn send_all(&self) {
         for client in self.shared.clients().iter() {
             let mut wants = client.wants();
-            if wants.hears_states() {
+            if wants.wants_states() {
                 wants.status_due = Some(Instant::now() + STATUS_EVERY);
                 drop(wants);
-                self.tell(client, self.newest.is_none());
+                self.report(client, self.newest.is_none());
             }
         }
     }
 
-    fn tell(&self, client: &Client, is_silent: bool) {
+    fn report(&self, client: &IgtlClient, is_silent: bool) {
         let bytes = match &self.newest {
             Some(moment) if !is_silent => {
-                let writer = Writer { moment, outline: &self.outline, time_ns: self.time_ns(moment.t_s) };
+                let writer = IgtlWriter { moment, outline: &self.outline, time_ns: self.time_ns(moment.t_s) };
                 let mut bytes = Vec::new();
                 writer.put_status(self.shared.words, &mut bytes);
                 bytes
             }
-            _ => Message::new(BUNDLE, now_ns(), no_loop()).encode(),
+            _ => IgtlMessage::new(BUNDLE, now_ns(), no_loop()).encode(),
         };
-        client.mailbox.tell(bytes);
+        client.mailbox.report(bytes);
     }
 }
 
@@ -153,6 +153,6 @@ fn no_loop() -> Content {
     refusal(StatusCode::NOT_READY, "no data now: no loop is running, or a trial of a blind study is")
 }
 
-fn states(moment: &Moment) -> [Option<LoopState>; SIDES] {
+fn states(moment: &LoopMoment) -> [Option<LoopState>; SIDES] {
     moment.arms.map(|arm| arm.map(|arm| arm.state))
 }

@@ -6,39 +6,39 @@ use std::{
 };
 
 /// Maximum number of waiting answers and states; beyond it the oldest is dropped.
-const MOST_TOLD: usize = 64;
+const MAX_MESSAGES: usize = 64;
 
 /// Between the hub and a client's writer. Neither waits for the other: the lock is held only for adding or removing an
 /// entry.
 #[derive(Debug, Default)]
 pub(super) struct Mailbox {
-    mail: Mutex<Mail>,
+    mail: Mutex<QueuedMail>,
     comes: Condvar,
 }
 
 #[derive(Debug, Default)]
-struct Mail {
-    told: VecDeque<Vec<u8>>,
+struct QueuedMail {
+    report: VecDeque<Vec<u8>>,
     bundle: Option<Vec<u8>>,
-    picture: Option<Vec<u8>>,
+    image: Option<Vec<u8>>,
     /// Bundles and images replaced by newer ones, and dropped answers.
     replaced: u64,
     ends: bool,
 }
 
 impl Mailbox {
-    fn mail(&self) -> MutexGuard<'_, Mail> {
+    fn mail(&self) -> MutexGuard<'_, QueuedMail> {
         self.mail.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Adds an answer or a state.
-    pub(super) fn tell(&self, bytes: Vec<u8>) {
+    pub(super) fn report(&self, bytes: Vec<u8>) {
         let mut mail = self.mail();
-        if mail.told.len() >= MOST_TOLD {
-            mail.told.pop_front();
+        if mail.report.len() >= MAX_MESSAGES {
+            mail.report.pop_front();
             mail.replaced += 1;
         }
-        mail.told.push_back(bytes);
+        mail.report.push_back(bytes);
         self.comes.notify_one();
     }
 
@@ -50,15 +50,15 @@ impl Mailbox {
     }
 
     /// Sets the newest image.
-    pub(super) fn picture(&self, bytes: Vec<u8>) {
+    pub(super) fn image(&self, bytes: Vec<u8>) {
         let mut mail = self.mail();
-        mail.replaced += u64::from(mail.picture.replace(bytes).is_some());
+        mail.replaced += u64::from(mail.image.replace(bytes).is_some());
         self.comes.notify_one();
     }
 
     /// Whether an image is waiting, so that another one would be wasted.
-    pub(super) fn has_picture(&self) -> bool {
-        self.mail().picture.is_some()
+    pub(super) fn has_image(&self) -> bool {
+        self.mail().image.is_some()
     }
 
     /// Number of replaced and dropped entries.
@@ -80,7 +80,7 @@ impl Mailbox {
             if mail.ends {
                 return None;
             }
-            let next = mail.told.pop_front().or_else(|| mail.bundle.take()).or_else(|| mail.picture.take());
+            let next = mail.report.pop_front().or_else(|| mail.bundle.take()).or_else(|| mail.image.take());
             if next.is_some() {
                 return next;
             }
@@ -98,10 +98,10 @@ mod tests {
         let mailbox = Mailbox::default();
         for number in 0..10 {
             mailbox.bundle(vec![number]);
-            mailbox.picture(vec![100 + number]);
-            mailbox.tell(vec![50 + number]);
+            mailbox.image(vec![100 + number]);
+            mailbox.report(vec![50 + number]);
         }
-        assert!(mailbox.has_picture() && mailbox.replaced() == 18);
+        assert!(mailbox.has_image() && mailbox.replaced() == 18);
         let taken: Vec<u8> = (0..12).filter_map(|_| mailbox.next()).flatten().collect();
         assert_eq!(taken, [50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 9, 109]);
         mailbox.end();
@@ -112,9 +112,9 @@ mod tests {
     fn a_client_that_takes_nothing_costs_no_more_memory() {
         let mailbox = Mailbox::default();
         for number in 0..10_000_u32 {
-            mailbox.tell(number.to_be_bytes().to_vec());
+            mailbox.report(number.to_be_bytes().to_vec());
         }
-        assert_eq!(mailbox.mail().told.len(), MOST_TOLD);
-        assert_eq!(mailbox.next(), Some((10_000 - MOST_TOLD as u32).to_be_bytes().to_vec()));
+        assert_eq!(mailbox.mail().report.len(), MAX_MESSAGES);
+        assert_eq!(mailbox.next(), Some((10_000 - MAX_MESSAGES as u32).to_be_bytes().to_vec()));
     }
 }

@@ -16,7 +16,7 @@ use std::{
 
 use clap::Parser;
 
-use crate::{link::Link, publish::Publisher};
+use crate::{link::Ros2Link, publish::Publisher};
 
 /// Interval between two attempts to connect to the console.
 const AGAIN: Duration = Duration::from_secs(1);
@@ -24,7 +24,7 @@ const AGAIN: Duration = Duration::from_secs(1);
 /// Publishes poses, forces and states of a running loop of NIMA Console as ROS 2 topics with the names of CRTK
 #[derive(Debug, Parser)]
 #[command(version)]
-struct Arguments {
+struct Ros2Arguments {
     /// Address at which `nima run --igtl` or `nima console --igtl` listens
     #[arg(long, value_name = "ADDRESS", default_value = "127.0.0.1:18944")]
     from: SocketAddr,
@@ -78,7 +78,7 @@ fn now_ns() -> u64 {
 }
 
 fn main() -> ExitCode {
-    let arguments = Arguments::parse();
+    let arguments = Ros2Arguments::parse();
     let publisher = match Publisher::new(arguments.domain, &arguments.network, &arguments.namespace) {
         Ok(publisher) => publisher,
         Err(error) => {
@@ -87,11 +87,11 @@ fn main() -> ExitCode {
         }
     };
     eprintln!("nima-bridge-ros2: publishes /{}/... in domain {}", arguments.namespace, arguments.domain);
-    let mut told = String::new();
+    let mut report = String::new();
     loop {
-        let ended = Link::open(arguments.from, arguments.rate).and_then(|mut link| {
+        let ended = Ros2Link::open(arguments.from, arguments.rate).and_then(|mut link| {
             eprintln!("nima-bridge-ros2: reads from {}", arguments.from);
-            told.clear();
+            report.clear();
             loop {
                 let message = link.next()?;
                 publisher.publish(&topics::samples(&message));
@@ -101,9 +101,9 @@ fn main() -> ExitCode {
         // Report the same reason only once.
         if let Err::<(), _>(error) = ended {
             let words = words(&error);
-            if words != told {
+            if words != report {
                 eprintln!("nima-bridge-ros2: {}: {words}", arguments.from);
-                told = words;
+                report = words;
             }
         }
         sleep(AGAIN);
@@ -125,14 +125,14 @@ mod tests {
     #[test]
     fn the_command_line_is_sound() {
         use clap::CommandFactory as _;
-        Arguments::command().debug_assert();
-        assert!(Arguments::try_parse_from(["x", "--rate", "0"]).is_err());
-        assert!(Arguments::try_parse_from(["x", "--domain", "233"]).is_err());
+        Ros2Arguments::command().debug_assert();
+        assert!(Ros2Arguments::try_parse_from(["x", "--rate", "0"]).is_err());
+        assert!(Ros2Arguments::try_parse_from(["x", "--domain", "233"]).is_err());
     }
 
     #[test]
     fn it_is_this_computer_alone_unless_another_of_its_addresses_is_named() {
-        let network = |arguments: &[&str]| Arguments::try_parse_from(arguments).map(|all| all.network);
+        let network = |arguments: &[&str]| Ros2Arguments::try_parse_from(arguments).map(|all| all.network);
         assert_eq!(network(&["x"]).unwrap(), [Ipv4Addr::LOCALHOST]);
         assert_eq!(network(&["x", "--network", "127.0.0.1,127.0.0.2"]).unwrap().len(), 2);
         // An address reserved for documentation (RFC 5737), which no computer has.

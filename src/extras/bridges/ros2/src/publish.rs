@@ -9,7 +9,7 @@ use ros2_client::{
 };
 use serde::Serialize;
 
-use crate::topics::{Data, OperatingState, PoseStamped, Sample, Side, Topic, WrenchStamped};
+use crate::topics::{ArmSide, OperatingState, PoseStamped, Ros2Sample, Ros2Topic, TopicData, WrenchStamped};
 
 /// Name of the node.
 const NODE: &str = "nima_bridge_ros2";
@@ -21,7 +21,7 @@ enum OfTopic {
 }
 
 pub struct Publisher {
-    writers: BTreeMap<(Side, Topic), OfTopic>,
+    writers: BTreeMap<(ArmSide, Ros2Topic), OfTopic>,
     /// Dropping it ends the publication.
     _node: Node,
 }
@@ -29,9 +29,7 @@ pub struct Publisher {
 /// Reliable, so that it matches readers of either kind; only the newest sample is kept, so that no reader waits for old
 /// ones.
 fn usual() -> QosProfile {
-    QosProfile::publisher_default()
-        .reliability_reliable(WhenFull::Fail)
-        .history(History::KeepLast { depth: 1 })
+    QosProfile::publisher_default().reliability_reliable(WhenFull::Fail).history(History::KeepLast { depth: 1 })
 }
 
 impl Publisher {
@@ -48,7 +46,7 @@ impl Publisher {
         let options = NodeOptions::new().enable_rosout(false).start_parameter_services(false);
         let mut node = context.new_node(name, options).map_err(|error| error.to_string())?;
         let mut writers = BTreeMap::new();
-        for (side, topic) in Side::ALL.into_iter().flat_map(|side| Topic::ALL.map(|topic| (side, topic))) {
+        for (side, topic) in ArmSide::ALL.into_iter().flat_map(|side| Ros2Topic::ALL.map(|topic| (side, topic))) {
             let name = Name::new(&format!("/{namespace}/{}", side.word()), topic.name());
             let name = name.map_err(|error| error.to_string())?;
             writers.insert((side, topic), of_topic(&mut node, &name, topic)?);
@@ -57,32 +55,32 @@ impl Publisher {
     }
 
     /// Publishes samples. A sample that cannot be written now is superseded by the next one.
-    pub fn publish(&self, samples: &[Sample]) {
+    pub fn publish(&self, samples: &[Ros2Sample]) {
         for sample in samples {
             self.write(sample);
         }
     }
 
-    fn write(&self, sample: &Sample) {
+    fn write(&self, sample: &Ros2Sample) {
         match (self.writers.get(&(sample.side, sample.topic)), &sample.data) {
-            (Some(OfTopic::Pose(writer)), Data::Pose(pose)) => drop(writer.publish(pose.clone())),
-            (Some(OfTopic::Wrench(writer)), Data::Wrench(wrench)) => drop(writer.publish(wrench.clone())),
-            (Some(OfTopic::State(writer)), Data::State(state)) => drop(writer.publish(state.clone())),
+            (Some(OfTopic::Pose(writer)), TopicData::Pose(pose)) => drop(writer.publish(pose.clone())),
+            (Some(OfTopic::Wrench(writer)), TopicData::Wrench(wrench)) => drop(writer.publish(wrench.clone())),
+            (Some(OfTopic::State(writer)), TopicData::State(state)) => drop(writer.publish(state.clone())),
             _ => {}
         }
     }
 }
 
-fn of_topic(node: &mut Node, name: &Name, topic: Topic) -> Result<OfTopic, String> {
+fn of_topic(node: &mut Node, name: &Name, topic: Ros2Topic) -> Result<OfTopic, String> {
     Ok(match topic {
-        Topic::MeasuredCp | Topic::SetpointCp => {
+        Ros2Topic::MeasuredCp | Ros2Topic::SetpointCp => {
             OfTopic::Pose(writer(node, name, ["geometry_msgs", "PoseStamped"], usual())?)
         }
-        Topic::MeasuredCf | Topic::RenderedCf => {
+        Ros2Topic::MeasuredCf | Ros2Topic::RenderedCf => {
             OfTopic::Wrench(writer(node, name, ["geometry_msgs", "WrenchStamped"], usual())?)
         }
         // A late reader gets the state at once.
-        Topic::OperatingState => {
+        Ros2Topic::OperatingState => {
             let qos = usual().durability(Durability::TransientLocal);
             OfTopic::State(writer(node, name, ["crtk_msgs", "OperatingState"], qos)?)
         }

@@ -1,6 +1,6 @@
 //! The published topics, with their CRTK names (<https://crtk-robotics.readthedocs.io>).
 
-use nima_bridges::igtl::{Content, Message, Position, Sensor, Status, StatusCode, Unit};
+use nima_bridges::igtl::{Content, ContentStatus, IgtlMessage, IgtlUnit, Position, SensorContent, StatusCode};
 use serde::{Deserialize, Serialize};
 
 /// The frame of all poses and forces.
@@ -13,24 +13,24 @@ pub struct Time {
     nanosec: u32,
 }
 
-/// `std_msgs/msg/Header`.
+/// `std_msgs/msg/Ros2Header`.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Header {
+pub struct Ros2Header {
     stamp: Time,
     frame_id: String,
 }
 
-/// `geometry_msgs/msg/Point` and `Vector3`.
+/// `geometry_msgs/msg/LikelihoodPoint` and `Ros2Vector3`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Vector3 {
+pub struct Ros2Vector3 {
     x: f64,
     y: f64,
     z: f64,
 }
 
-/// `geometry_msgs/msg/Quaternion`.
+/// `geometry_msgs/msg/TopicQuaternion`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Quaternion {
+pub struct TopicQuaternion {
     x: f64,
     y: f64,
     z: f64,
@@ -40,35 +40,35 @@ pub struct Quaternion {
 /// `geometry_msgs/msg/PoseStamped`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PoseStamped {
-    header: Header,
-    position: Vector3,
-    orientation: Quaternion,
+    header: Ros2Header,
+    position: Ros2Vector3,
+    orientation: TopicQuaternion,
 }
 
 /// `geometry_msgs/msg/WrenchStamped`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct WrenchStamped {
-    header: Header,
-    force: Vector3,
-    torque: Vector3,
+    header: Ros2Header,
+    force: Ros2Vector3,
+    torque: Ros2Vector3,
 }
 
 /// `crtk_msgs/msg/OperatingState`.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct OperatingState {
-    header: Header,
+    header: Ros2Header,
     state: String,
     is_homed: bool,
     is_busy: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Side {
+pub enum ArmSide {
     Right,
     Left,
 }
 
-impl Side {
+impl ArmSide {
     pub const ALL: [Self; 2] = [Self::Right, Self::Left];
 
     pub const fn word(self) -> &'static str {
@@ -81,7 +81,7 @@ impl Side {
 
 /// Topic of an arm's sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Topic {
+pub enum Ros2Topic {
     MeasuredCp,
     SetpointCp,
     MeasuredCf,
@@ -89,7 +89,7 @@ pub enum Topic {
     OperatingState,
 }
 
-impl Topic {
+impl Ros2Topic {
     pub const ALL: [Self; 5] =
         [Self::MeasuredCp, Self::SetpointCp, Self::MeasuredCf, Self::RenderedCf, Self::OperatingState];
 
@@ -106,20 +106,20 @@ impl Topic {
 }
 
 #[derive(Clone, Debug, PartialEq)]
-pub enum Data {
+pub enum TopicData {
     Pose(PoseStamped),
     Wrench(WrenchStamped),
     State(OperatingState),
 }
 
 #[derive(Clone, Debug, PartialEq)]
-pub struct Sample {
-    pub side: Side,
-    pub topic: Topic,
-    pub data: Data,
+pub struct Ros2Sample {
+    pub side: ArmSide,
+    pub topic: Ros2Topic,
+    pub data: TopicData,
 }
 
-impl Header {
+impl Ros2Header {
     /// `None` beyond the year 2038, which ROS 2 cannot represent.
     fn at(time_ns: u64) -> Option<Self> {
         let sec = i32::try_from(time_ns / 1_000_000_000).ok()?;
@@ -129,7 +129,7 @@ impl Header {
 }
 
 /// Returns the samples of a message; empty for messages without a topic.
-pub fn samples(message: &Message) -> Vec<Sample> {
+pub fn samples(message: &IgtlMessage) -> Vec<Ros2Sample> {
     match &message.content {
         Content::Status(status) if status.code == StatusCode::NOT_READY => unknown(message.time_ns),
         _ => sample(message).into_iter().collect(),
@@ -137,47 +137,51 @@ pub fn samples(message: &Message) -> Vec<Sample> {
 }
 
 /// States of both arms while they are unknown; otherwise a late reader would take the last states for current ones.
-pub fn unknown(time_ns: u64) -> Vec<Sample> {
+pub fn unknown(time_ns: u64) -> Vec<Ros2Sample> {
     let of = |side| {
-        let header = Header::at(time_ns)?;
+        let header = Ros2Header::at(time_ns)?;
         let state = OperatingState { header, state: "UNKNOWN".to_owned(), is_homed: false, is_busy: false };
-        Some(Sample { side, topic: Topic::OperatingState, data: Data::State(state) })
+        Some(Ros2Sample { side, topic: Ros2Topic::OperatingState, data: TopicData::State(state) })
     };
-    Side::ALL.into_iter().filter_map(of).collect()
+    ArmSide::ALL.into_iter().filter_map(of).collect()
 }
 
-fn sample(message: &Message) -> Option<Sample> {
+fn sample(message: &IgtlMessage) -> Option<Ros2Sample> {
     let (arm, what) = message.device.split_once('.')?;
-    let side = Side::ALL.into_iter().find(|side| side.word() == arm)?;
-    let header = Header::at(message.time_ns)?;
+    let side = ArmSide::ALL.into_iter().find(|side| side.word() == arm)?;
+    let header = Ros2Header::at(message.time_ns)?;
     let (topic, data) = match (what, &message.content) {
-        ("tip", Content::Position(position)) => (Topic::MeasuredCp, pose(header, position)),
-        ("leader", Content::Position(position)) => (Topic::SetpointCp, pose(header, position)),
-        ("measured", Content::Sensor(sensor)) => (Topic::MeasuredCf, wrench(header, sensor)?),
-        ("rendered", Content::Sensor(sensor)) => (Topic::RenderedCf, wrench(header, sensor)?),
-        ("state", Content::Status(status)) => (Topic::OperatingState, state(header, status)),
+        ("tip", Content::Position(position)) => (Ros2Topic::MeasuredCp, pose(header, position)),
+        ("leader", Content::Position(position)) => (Ros2Topic::SetpointCp, pose(header, position)),
+        ("measured", Content::Sensor(sensor)) => (Ros2Topic::MeasuredCf, wrench(header, sensor)?),
+        ("rendered", Content::Sensor(sensor)) => (Ros2Topic::RenderedCf, wrench(header, sensor)?),
+        ("state", Content::Status(status)) => (Ros2Topic::OperatingState, state(header, status)),
         _ => return None,
     };
-    Some(Sample { side, topic, data })
+    Some(Ros2Sample { side, topic, data })
 }
 
 /// ROS uses metres.
-fn pose(header: Header, position: &Position) -> Data {
+fn pose(header: Ros2Header, position: &Position) -> TopicData {
     let [x, y, z] = position.place_mm.map(|mm| f64::from(mm) * 1e-3);
     let [qx, qy, qz, qw] = position.turn.unwrap_or([0.0, 0.0, 0.0, 1.0]).map(f64::from);
-    let orientation = Quaternion { x: qx, y: qy, z: qz, w: qw };
-    Data::Pose(PoseStamped { header, position: Vector3 { x, y, z }, orientation })
+    let orientation = TopicQuaternion { x: qx, y: qy, z: qz, w: qw };
+    TopicData::Pose(PoseStamped { header, position: Ros2Vector3 { x, y, z }, orientation })
 }
 
 /// Torques are not measured.
-fn wrench(header: Header, sensor: &Sensor) -> Option<Data> {
+fn wrench(header: Ros2Header, sensor: &SensorContent) -> Option<TopicData> {
     let [x, y, z] = *sensor.values.as_slice() else { return None };
-    let torque = Vector3::default();
-    (sensor.unit == Unit::NEWTON).then_some(Data::Wrench(WrenchStamped { header, force: Vector3 { x, y, z }, torque }))
+    let torque = Ros2Vector3::default();
+    (sensor.unit == IgtlUnit::NEWTON).then_some(TopicData::Wrench(WrenchStamped {
+        header,
+        force: Ros2Vector3 { x, y, z },
+        torque,
+    }))
 }
 
 /// The states of CRTK; the subcodes are those of docs/bridges.md.
-fn state(header: Header, status: &Status) -> Data {
+fn state(header: Ros2Header, status: &ContentStatus) -> TopicData {
     let state = match status.subcode {
         3 => "ENABLED",
         2 | 4 => "PAUSED",
@@ -186,23 +190,23 @@ fn state(header: Header, status: &Status) -> Data {
     };
     let is_homed = status.subcode != 0;
     let is_busy = false;
-    Data::State(OperatingState { header, state: state.to_owned(), is_homed, is_busy })
+    TopicData::State(OperatingState { header, state: state.to_owned(), is_homed, is_busy })
 }
 
 #[cfg(test)]
 mod tests {
-    use nima_bridges::igtl::Text;
+    use nima_bridges::igtl::TextContent;
 
     use super::*;
 
-    fn of(device: &str, content: Content) -> Option<Sample> {
-        samples(&Message::new(device, 1_700_000_000_250_000_000, content)).pop()
+    fn of(device: &str, content: Content) -> Option<Ros2Sample> {
+        samples(&IgtlMessage::new(device, 1_700_000_000_250_000_000, content)).pop()
     }
 
     #[test]
     fn millimetres_become_metres_and_times_stay() {
         let position = Position { place_mm: [1.0, -2.0, 3.5], turn: Some([0.0, 0.6, 0.0, 0.8]) };
-        let Some(Sample { side: Side::Left, topic: Topic::MeasuredCp, data: Data::Pose(pose) }) =
+        let Some(Ros2Sample { side: ArmSide::Left, topic: Ros2Topic::MeasuredCp, data: TopicData::Pose(pose) }) =
             of("left.tip", Content::Position(position))
         else {
             panic!()
@@ -215,47 +219,54 @@ mod tests {
     #[test]
     fn forces_need_the_right_unit_and_three_numbers() {
         let force = |unit, values: &[f64]| {
-            of("right.measured", Content::Sensor(Sensor { status: 0, unit, values: values.to_vec() }))
+            of("right.measured", Content::Sensor(SensorContent { status: 0, unit, values: values.to_vec() }))
         };
-        let Some(Sample { data: Data::Wrench(wrench), topic: Topic::MeasuredCf, .. }) =
-            force(Unit::NEWTON, &[0.1, 0.2, -0.3])
+        let Some(Ros2Sample { data: TopicData::Wrench(wrench), topic: Ros2Topic::MeasuredCf, .. }) =
+            force(IgtlUnit::NEWTON, &[0.1, 0.2, -0.3])
         else {
             panic!()
         };
-        assert_eq!(wrench.force, Vector3 { x: 0.1, y: 0.2, z: -0.3 });
-        assert_eq!(force(Unit(0), &[0.1, 0.2, -0.3]), None);
-        assert_eq!(force(Unit::NEWTON, &[0.1, 0.2]), None);
+        assert_eq!(wrench.force, Ros2Vector3 { x: 0.1, y: 0.2, z: -0.3 });
+        assert_eq!(force(IgtlUnit(0), &[0.1, 0.2, -0.3]), None);
+        assert_eq!(force(IgtlUnit::NEWTON, &[0.1, 0.2]), None);
     }
 
     #[test]
     fn states_are_those_of_crtk() {
-        let told = |subcode| {
-            let status = Status { code: StatusCode::OK, subcode, name: String::new(), text: String::new() };
-            let Some(Sample { data: Data::State(state), .. }) = of("right.state", Content::Status(status)) else {
+        let report = |subcode| {
+            let status = ContentStatus { code: StatusCode::OK, subcode, name: String::new(), text: String::new() };
+            let Some(Ros2Sample { data: TopicData::State(state), .. }) = of("right.state", Content::Status(status))
+            else {
                 panic!()
             };
             (state.state, state.is_homed)
         };
         let expected = ["DISABLED", "DISABLED", "PAUSED", "ENABLED", "PAUSED", "DISABLED", "FAULT"];
         for (subcode, state) in expected.into_iter().enumerate() {
-            assert_eq!(told(subcode as i64), (state.to_owned(), subcode != 0));
+            assert_eq!(report(subcode as i64), (state.to_owned(), subcode != 0));
         }
     }
 
     #[test]
     fn without_a_loop_the_last_states_do_not_stay() {
-        let status =
-            Status { code: StatusCode::NOT_READY, subcode: 0, name: String::new(), text: "no loop runs".to_owned() };
-        let told = samples(&Message::new("nima", 1_700_000_000_250_000_000, Content::Status(status)));
-        assert_eq!(told, unknown(1_700_000_000_250_000_000));
-        assert_eq!(told.iter().map(|sample| sample.side).collect::<Vec<_>>(), Side::ALL);
-        assert!(told.iter().all(|sample| matches!(&sample.data, Data::State(state) if state.state == "UNKNOWN")));
+        let status = ContentStatus {
+            code: StatusCode::NOT_READY,
+            subcode: 0,
+            name: String::new(),
+            text: "no loop runs".to_owned(),
+        };
+        let report = samples(&IgtlMessage::new("nima", 1_700_000_000_250_000_000, Content::Status(status)));
+        assert_eq!(report, unknown(1_700_000_000_250_000_000));
+        assert_eq!(report.iter().map(|sample| sample.side).collect::<Vec<_>>(), ArmSide::ALL);
+        assert!(
+            report.iter().all(|sample| matches!(&sample.data, TopicData::State(state) if state.state == "UNKNOWN"))
+        );
     }
 
     #[test]
     fn what_has_no_topic_is_left_out() {
-        assert_eq!(of("nima", Content::Text(Text::of("{}"))), None);
+        assert_eq!(of("nima", Content::Text(TextContent::of("{}"))), None);
         assert_eq!(of("middle.tip", Content::Position(Position { place_mm: [0.0; 3], turn: None })), None);
-        assert_eq!(of("right.tip", Content::Text(Text::of("x"))), None);
+        assert_eq!(of("right.tip", Content::Text(TextContent::of("x"))), None);
     }
 }

@@ -1,10 +1,10 @@
 //! Frames of an emulated sensor at its own rate, with the faults of their content.
 
 use nalgebra::Vector3;
-use nima_devices::bota::codec::{Frame, INERTIAL_BYTES, Inertial};
+use nima_devices::bota::codec::{BotaFrame, INERTIAL_BYTES, Inertial};
 
-use super::{Body, Wire};
-use crate::emulators::{EmulatedFault, Peer, Turn};
+use super::{BotaBody, BotaWire};
+use crate::emulators::{EmulatedFault, EmulatorTurn, WirePeer};
 
 /// Maximum backlog that a delayed thread makes up, s; earlier frames are lost.
 const BACKLOG_S: f64 = 0.5;
@@ -14,25 +14,31 @@ const BLOCK: usize = 32;
 const JUMP_N: f32 = 1.5;
 
 /// Makes the frames that are due.
-pub(super) struct Frames {
-    body: Body,
+pub(super) struct BotaFrames {
+    body: BotaBody,
     zero_us: u32,
     status: u16,
     next_s: Option<f64>,
-    frozen: Option<Frame>,
+    frozen: Option<BotaFrame>,
     /// The numbers since the beginning of a sensor fault.
-    since: Vec<Frame>,
+    since: Vec<BotaFrame>,
     in_block: usize,
     made: u64,
 }
 
-impl Frames {
-    pub(super) fn new(body: Body, zero_us: u32, status: u16) -> Self {
+impl BotaFrames {
+    pub(super) fn new(body: BotaBody, zero_us: u32, status: u16) -> Self {
         Self { body, zero_us, status, next_s: None, frozen: None, since: Vec::new(), in_block: 0, made: 0 }
     }
 
     /// Sends every frame that is due, with its bytes completed by `finish`.
-    pub(super) fn due(&mut self, turn: &mut Turn<'_>, wire: &dyn Wire, to: Peer, finish: impl Fn(&mut [u8])) {
+    pub(super) fn due(
+        &mut self,
+        turn: &mut EmulatorTurn<'_>,
+        wire: &dyn BotaWire,
+        to: WirePeer,
+        finish: impl Fn(&mut [u8]),
+    ) {
         let Some(period_s) = wire.period_s() else {
             self.next_s = None;
             return;
@@ -54,7 +60,7 @@ impl Frames {
         self.next_s
     }
 
-    fn frame(&mut self, t_s: f64, wire: &dyn Wire, fault: EmulatedFault) -> Frame {
+    fn frame(&mut self, t_s: f64, wire: &dyn BotaWire, fault: EmulatedFault) -> BotaFrame {
         if fault == EmulatedFault::Freeze
             && let Some(frozen) = self.frozen
         {
@@ -67,9 +73,9 @@ impl Frames {
             angular_velocity_rad_s: array(felt.angular_velocity_rad_s.unwrap_or_default()),
         });
         let bits = [felt.status.throttled, felt.status.overrange, felt.status.invalid, felt.status.raw];
-        let told = bits.iter().enumerate().fold(0, |sum, (bit, set)| sum | (u16::from(*set) << bit));
-        let mut frame = Frame {
-            status: self.status | told,
+        let report = bits.iter().enumerate().fold(0, |sum, (bit, set)| sum | (u16::from(*set) << bit));
+        let mut frame = BotaFrame {
+            status: self.status | report,
             force_n: array(felt.wrench.force_n),
             torque_nm: array(felt.wrench.torque_nm),
             timestamp_us: self.zero_us.wrapping_add((t_s * 1e6).round() as u64 as u32),
@@ -88,7 +94,7 @@ impl Frames {
     }
 
     /// Applies faults of the sensor itself: its clock keeps running.
-    fn fail(&mut self, frame: &mut Frame, fault: EmulatedFault) {
+    fn fail(&mut self, frame: &mut BotaFrame, fault: EmulatedFault) {
         if !EmulatedFault::OF_SENSORS.contains(&fault) {
             self.since.clear();
             self.in_block = 0;
@@ -107,8 +113,8 @@ impl Frames {
                 self.in_block = (self.in_block + 1) % BLOCK;
             }
             EmulatedFault::EndOfRange => {
-                for (now, most) in frame.force_n.iter_mut().zip(first.force_n) {
-                    *now = now.min(most);
+                for (now, max) in frame.force_n.iter_mut().zip(first.force_n) {
+                    *now = now.min(max);
                 }
             }
             _ => frame.force_n[2] += JUMP_N,

@@ -4,14 +4,14 @@
 //! with code 1.
 
 use nima_devices::bota::{
-    codec::Frame,
+    codec::BotaFrame,
     gen0::{COMMAND_BYTES, SINC, rate_hz},
 };
 
-use super::{Emulated, Wire};
+use super::{BotaWire, EmulatedBota};
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Mode {
+enum Gen0Mode {
     /// Starting; does not receive until then, s.
     Booting(f64),
     Init,
@@ -20,18 +20,18 @@ enum Mode {
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Config {
+struct Gen0Config {
     sinc: u16,
     offset: [f32; 6],
 }
 
 #[derive(Debug)]
 pub(super) struct Gen0 {
-    mode: Mode,
-    config: Config,
-    saved: Config,
+    mode: Gen0Mode,
+    config: Gen0Config,
+    saved: Gen0Config,
     pending: Vec<u8>,
-    heard_s: f64,
+    received_s: f64,
     boot_s: f64,
     raw_starts: u32,
     raw: bool,
@@ -46,14 +46,14 @@ const IDLE_S: f64 = 0.020;
 const RAW_PER_UNIT: f32 = 4321.0;
 
 impl Gen0 {
-    pub(super) fn new(emulated: &Emulated) -> Self {
-        let config = Config { sinc: 512, offset: [0.0; 6] };
+    pub(super) fn new(emulated: &EmulatedBota) -> Self {
+        let config = Gen0Config { sinc: 512, offset: [0.0; 6] };
         Self {
-            mode: Mode::Init,
+            mode: Gen0Mode::Init,
             config,
             saved: config,
             pending: Vec::new(),
-            heard_s: 0.0,
+            received_s: 0.0,
             boot_s: emulated.boot_s,
             raw_starts: emulated.raw_starts,
             raw: false,
@@ -72,27 +72,27 @@ impl Gen0 {
     fn letter(&mut self, letter: u8, now_s: f64, answer: &mut Vec<u8>) {
         let good = match letter {
             b'C' => {
-                self.mode = Mode::Config;
+                self.mode = Gen0Mode::Config;
                 true
             }
             b'R' => {
-                self.mode = Mode::Run;
+                self.mode = Gen0Mode::Run;
                 true
             }
             b'I' => {
                 self.start();
-                self.mode = Mode::Init;
+                self.mode = Gen0Mode::Init;
                 true
             }
             b'#' => {
                 self.opened(now_s);
                 return;
             }
-            b's' if self.mode == Mode::Config => {
+            b's' if self.mode == Gen0Mode::Config => {
                 self.saved = self.config;
                 true
             }
-            b'l' if self.mode == Mode::Config => {
+            b'l' if self.mode == Gen0Mode::Config => {
                 self.config = self.saved;
                 true
             }
@@ -109,11 +109,11 @@ impl Gen0 {
         if line == "p?" {
             // The two fields between are unknown.
             answer.extend(format!("p,0,{},0,0,{}\r\n", self.serial, self.product).bytes());
-            acknowledge(b'p', self.mode == Mode::Config, answer);
+            acknowledge(b'p', self.mode == Gen0Mode::Config, answer);
             return;
         }
         let values: Option<Vec<f32>> = line.split(',').skip(1).map(|field| field.parse().ok()).collect();
-        let good = self.mode == Mode::Config && values.is_some_and(|values| self.set(letter, &values));
+        let good = self.mode == Gen0Mode::Config && values.is_some_and(|values| self.set(letter, &values));
         acknowledge(letter, good, answer);
     }
 
@@ -144,14 +144,14 @@ fn acknowledge(letter: u8, good: bool, answer: &mut Vec<u8>) {
     answer.extend(format!("r,0,{},{}\r\n", char::from(letter), u8::from(!good)).bytes());
 }
 
-impl Wire for Gen0 {
+impl BotaWire for Gen0 {
     fn opened(&mut self, now_s: f64) {
-        self.mode = Mode::Booting(now_s + self.boot_s);
+        self.mode = Gen0Mode::Booting(now_s + self.boot_s);
         self.pending.clear();
     }
 
-    fn hear(&mut self, bytes: &[u8], now_s: f64, answer: &mut Vec<u8>) {
-        if matches!(self.mode, Mode::Booting(_)) {
+    fn receive(&mut self, bytes: &[u8], now_s: f64, answer: &mut Vec<u8>) {
+        if matches!(self.mode, Gen0Mode::Booting(_)) {
             return;
         }
         for byte in bytes {
@@ -166,34 +166,34 @@ impl Wire for Gen0 {
                 _ => self.pending.push(*byte),
             }
         }
-        self.heard_s = now_s;
+        self.received_s = now_s;
     }
 
     fn tick(&mut self, now_s: f64, answer: &mut Vec<u8>) {
         match self.mode {
-            Mode::Booting(until_s) if now_s >= until_s => {
+            Gen0Mode::Booting(until_s) if now_s >= until_s => {
                 self.start();
-                self.mode = Mode::Run;
+                self.mode = Gen0Mode::Run;
                 let name = &self.product;
                 let serial = &self.serial;
                 let firmware = &self.firmware;
                 answer
                     .extend(format!("App Init\r\nname: {name}\r\nS/N: {serial}\r\nFW version: {firmware}\r\n").bytes());
             }
-            _ if !self.pending.is_empty() && now_s - self.heard_s > IDLE_S => self.command(answer),
+            _ if !self.pending.is_empty() && now_s - self.received_s > IDLE_S => self.command(answer),
             _ => {}
         }
     }
 
     fn period_s(&self) -> Option<f64> {
-        (self.mode == Mode::Run).then(|| 1.0 / rate_hz(self.config.sinc))
+        (self.mode == Gen0Mode::Run).then(|| 1.0 / rate_hz(self.config.sinc))
     }
 
     fn is_inertial(&self) -> bool {
         false
     }
 
-    fn finish(&self, frame: &mut Frame) {
+    fn finish(&self, frame: &mut BotaFrame) {
         let values = frame.force_n.iter_mut().chain(&mut frame.torque_nm);
         for (value, offset) in values.zip(self.config.offset) {
             *value = if self.raw { *value * RAW_PER_UNIT } else { *value + offset };

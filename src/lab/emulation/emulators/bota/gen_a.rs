@@ -4,11 +4,11 @@
 //! disconnected.
 
 use nima_devices::bota::{
-    codec::Frame,
+    codec::BotaFrame,
     gen_a::{INIT, MODE_INERTIAL, MODE_MAX, RATES_HZ, RUN, hex_of},
 };
 
-use super::{Emulated, Wire};
+use super::{BotaWire, EmulatedBota};
 
 #[derive(Debug)]
 pub(super) struct GenA {
@@ -22,7 +22,7 @@ pub(super) struct GenA {
     destination_port: u32,
     texts: [String; 3],
     pending: Vec<u8>,
-    heard_s: f64,
+    received_s: f64,
 }
 
 /// A command without a terminator is complete after this much silence, s.
@@ -38,7 +38,7 @@ const UNKNOWN_PARAMETER: u32 = 18;
 const UNKNOWN_PART: u32 = 19;
 
 impl GenA {
-    pub(super) fn new(emulated: &Emulated) -> Self {
+    pub(super) fn new(emulated: &EmulatedBota) -> Self {
         let serial = format!("SN{:0>6}", emulated.serial);
         Self {
             state: INIT,
@@ -51,7 +51,7 @@ impl GenA {
             destination_port: u32::from(emulated.destination.port()),
             texts: [&emulated.product, &serial, &emulated.firmware].map(|text| hex_of(text)),
             pending: Vec::new(),
-            heard_s: 0.0,
+            received_s: 0.0,
         }
     }
 
@@ -59,14 +59,14 @@ impl GenA {
         let line = String::from_utf8_lossy(&self.pending).into_owned();
         self.pending.clear();
         let fields: Vec<&str> = line.split(',').collect();
-        let (letters, told) = match fields[..] {
+        let (letters, report) = match fields[..] {
             ["wh", id, sub, value] => ("wh", self.write(id, sub, value)),
             ["rh", id, sub] | ["rh", id, sub, _] => ("rh", self.read(id, sub)),
             ["wh", ..] => ("wh", Err(SYNTAX)),
             ["rh", ..] => ("rh", Err(SYNTAX)),
             _ => return,
         };
-        let (status, value) = told.map_or_else(|status| (status, "0".to_owned()), |value| (0, value));
+        let (status, value) = report.map_or_else(|status| (status, "0".to_owned()), |value| (0, value));
         answer.extend(format!("{letters},{status},{value}\n").bytes());
     }
 
@@ -100,7 +100,7 @@ impl GenA {
         if id != 1 && self.state == RUN {
             return Err(WRONG_STATE);
         }
-        let (place, most) = match (id, sub) {
+        let (place, max) = match (id, sub) {
             (1, _) => (&mut self.state, RUN),
             (2, _) => (&mut self.offset_bits[sub - 1], u32::MAX),
             (3, _) => (&mut self.mode, u32::from(MODE_MAX)),
@@ -111,7 +111,7 @@ impl GenA {
             (31, _) => (&mut self.destination_port, u32::from(u16::MAX)),
             _ => return Err(READ_ONLY),
         };
-        if number > most {
+        if number > max {
             return Err(INVALID_VALUE);
         }
         *place = number;
@@ -119,12 +119,12 @@ impl GenA {
     }
 }
 
-impl Wire for GenA {
+impl BotaWire for GenA {
     fn opened(&mut self, _: f64) {
         self.pending.clear();
     }
 
-    fn hear(&mut self, bytes: &[u8], now_s: f64, answer: &mut Vec<u8>) {
+    fn receive(&mut self, bytes: &[u8], now_s: f64, answer: &mut Vec<u8>) {
         for byte in bytes {
             match byte {
                 b'\n' | 0 => self.command(answer),
@@ -133,11 +133,11 @@ impl Wire for GenA {
                 _ => self.pending.push(*byte),
             }
         }
-        self.heard_s = now_s;
+        self.received_s = now_s;
     }
 
     fn tick(&mut self, now_s: f64, answer: &mut Vec<u8>) {
-        if !self.pending.is_empty() && now_s - self.heard_s > IDLE_S {
+        if !self.pending.is_empty() && now_s - self.received_s > IDLE_S {
             self.command(answer);
         }
     }
@@ -150,7 +150,7 @@ impl Wire for GenA {
         self.mode >= u32::from(MODE_INERTIAL)
     }
 
-    fn finish(&self, frame: &mut Frame) {
+    fn finish(&self, frame: &mut BotaFrame) {
         let values = frame.force_n.iter_mut().chain(&mut frame.torque_nm);
         for (value, bits) in values.zip(self.offset_bits) {
             *value += f32::from_bits(bits);
@@ -164,10 +164,10 @@ mod tests {
 
     #[test]
     fn parameters_are_kept_and_refused_with_the_statuses_of_the_reference() {
-        let mut wire = GenA::new(&Emulated::default());
+        let mut wire = GenA::new(&EmulatedBota::default());
         let mut ask = |command: &str| {
             let mut answer = Vec::new();
-            wire.hear(command.as_bytes(), 0.0, &mut answer);
+            wire.receive(command.as_bytes(), 0.0, &mut answer);
             String::from_utf8(answer).unwrap()
         };
         assert_eq!(ask("wh,1,2,1\n"), "wh,0,1\n");

@@ -1,15 +1,15 @@
 //! Emulated sensors on real interfaces: pseudo-terminals, TCP and UDP, so that the manufacturer's client accepts them
 //! as real ones.
 //!
-//! The measured values come from a [`Body`], a closure of the emulator's time. Opening the port of a first-generation
+//! The measured values come from a [`BotaBody`], a closure of the emulator's time. Opening the port of a first-generation
 //! sensor restarts it, as in reality. Baud rates are emulated: a client with a wrong one reads garbage and is not
 //! understood.
 
-pub(super) mod alone;
 mod frames;
 mod gen0;
 mod gen_a;
 mod sensor;
+pub(super) mod standalone;
 #[cfg(test)]
 mod wire_tests;
 
@@ -19,18 +19,18 @@ use nalgebra::Vector3;
 use nima_core::frames::Wrench;
 use nima_devices::{
     ForceReading,
-    bota::{Transport, codec::Frame},
+    bota::{Transport, codec::BotaFrame},
 };
 
 use crate::emulators::Emulator;
 
 /// Returns the values that the sensor measures at a time, s since the emulator began; readings of the inertial unit are
 /// used if frames contain them.
-pub type Body = Box<dyn FnMut(f64) -> ForceReading + Send>;
+pub type BotaBody = Box<dyn FnMut(f64) -> ForceReading + Send>;
 
 /// Properties of an emulated sensor.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Emulated {
+pub struct EmulatedBota {
     /// Generation and interface: a pseudo-terminal, or the network of this computer.
     pub transport: Transport,
     pub product: String,
@@ -55,7 +55,7 @@ pub struct Emulated {
     pub destination: std::net::SocketAddrV4,
 }
 
-impl Default for Emulated {
+impl Default for EmulatedBota {
     fn default() -> Self {
         Self {
             transport: Transport::GenA,
@@ -74,23 +74,23 @@ impl Default for Emulated {
     }
 }
 
-impl Emulated {
+impl EmulatedBota {
     /// Makes the emulator with a source of values.
-    pub fn with(self, body: Body) -> Box<dyn Emulator> {
-        let wire: Box<dyn Wire> = match self.transport {
+    pub fn with(self, body: BotaBody) -> Box<dyn Emulator> {
+        let wire: Box<dyn BotaWire> = match self.transport {
             Transport::Gen0 => Box::new(gen0::Gen0::new(&self)),
             Transport::GenA | Transport::Socket => Box::new(gen_a::GenA::new(&self)),
         };
-        Box::new(sensor::Sensor::new(wire, self, body))
+        Box::new(sensor::EmulatedSensor::new(wire, self, body))
     }
 }
 
 /// The protocol of a generation of sensors.
-trait Wire: Send {
+trait BotaWire: Send {
     /// Called when a client has opened the port.
     fn opened(&mut self, now_s: f64);
     /// Processes received bytes; appends the response to `answer`.
-    fn hear(&mut self, bytes: &[u8], now_s: f64, answer: &mut Vec<u8>);
+    fn receive(&mut self, bytes: &[u8], now_s: f64, answer: &mut Vec<u8>);
     /// Called when time has passed: completes a start, or a command without a terminator.
     fn tick(&mut self, now_s: f64, answer: &mut Vec<u8>);
     /// Time between readings while it measures, s.
@@ -98,11 +98,11 @@ trait Wire: Send {
     /// Whether frames contain the inertial unit.
     fn is_inertial(&self) -> bool;
     /// Applies the sensor's own offset and status bits to a reading.
-    fn finish(&self, frame: &mut Frame);
+    fn finish(&self, frame: &mut BotaFrame);
 }
 
 /// A slow, plausible motion for a standalone emulator: a tool of 0.4 kg being rotated, and a slow pull.
-pub fn slow_motion() -> Body {
+pub fn slow_motion() -> BotaBody {
     Box::new(|t_s| {
         let turn = (0.5 * (TAU * 0.10 * t_s).sin(), 0.3 * (TAU * 0.07 * t_s).cos());
         let up = Vector3::new(turn.0.sin() * turn.1.cos(), turn.1.sin(), turn.0.cos() * turn.1.cos());

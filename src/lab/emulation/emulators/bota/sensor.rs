@@ -9,38 +9,38 @@ use std::io;
 
 use nima_devices::bota::Transport;
 
-use super::{Body, Emulated, Wire, frames::Frames};
+use super::{BotaBody, BotaWire, EmulatedBota, frames::BotaFrames};
 use crate::emulators::{
-    EmulatedFault, Emulator, End, Peer, Turn,
+    EmulatedFault, Emulator, EmulatorTurn, WireEnd, WirePeer,
     wires::{tcp_for_one, terminal, udp},
 };
 
 /// Data without a command in this many bytes are garbage.
 const GARBAGE_BYTES: usize = 4096;
 
-pub(super) struct Sensor {
-    wire: Box<dyn Wire>,
-    frames: Frames,
-    of: Emulated,
+pub(super) struct EmulatedSensor {
+    wire: Box<dyn BotaWire>,
+    frames: BotaFrames,
+    of: EmulatedBota,
     /// Whether a command of the client has been answered.
     known: bool,
     /// Bytes of the client since its last answered command.
     unanswered: usize,
 }
 
-impl Sensor {
-    pub(super) fn new(wire: Box<dyn Wire>, of: Emulated, body: Body) -> Self {
-        let frames = Frames::new(body, of.first_timestamp_us, of.status);
+impl EmulatedSensor {
+    pub(super) fn new(wire: Box<dyn BotaWire>, of: EmulatedBota, body: BotaBody) -> Self {
+        let frames = BotaFrames::new(body, of.first_timestamp_us, of.status);
         Self { wire, frames, of, known: false, unanswered: 0 }
     }
 
     /// Another baud rate changes the bytes.
-    fn understands(&self, turn: &Turn<'_>) -> bool {
+    fn understands(&self, turn: &EmulatorTurn<'_>) -> bool {
         turn.baud.is_none() || self.of.baud.is_none() || turn.baud == self.of.baud
     }
 
     /// Sends an answer, which only the fault of silence suppresses.
-    fn answer(&mut self, mut answer: Vec<u8>, turn: &mut Turn<'_>) {
+    fn answer(&mut self, mut answer: Vec<u8>, turn: &mut EmulatorTurn<'_>) {
         if answer.is_empty() {
             return;
         }
@@ -48,7 +48,7 @@ impl Sensor {
         self.unanswered = 0;
         if turn.fault != EmulatedFault::Silence {
             garble(&mut answer, self.understands(turn));
-            turn.send_unspoilt(Peer::Everyone, &answer);
+            turn.send_unspoilt(WirePeer::Everyone, &answer);
         }
     }
 }
@@ -59,8 +59,8 @@ fn garble(bytes: &mut [u8], understood: bool) {
     }
 }
 
-impl Emulator for Sensor {
-    fn wires(&self) -> io::Result<Vec<Box<dyn End>>> {
+impl Emulator for EmulatedSensor {
+    fn wires(&self) -> io::Result<Vec<Box<dyn WireEnd>>> {
         let line = |name| terminal(self.of.link.as_deref(), name, None);
         Ok(match self.of.transport {
             Transport::Gen0 => vec![line("bota-gen0")?],
@@ -73,18 +73,18 @@ impl Emulator for Sensor {
         !self.known
     }
 
-    fn meet(&mut self, _: Peer, turn: &mut Turn<'_>) {
+    fn meet(&mut self, _: WirePeer, turn: &mut EmulatorTurn<'_>) {
         self.known = false;
         self.unanswered = 0;
         self.wire.opened(turn.now_s);
     }
 
-    fn hear(&mut self, _: Peer, bytes: &[u8], turn: &mut Turn<'_>) {
+    fn receive(&mut self, _: WirePeer, bytes: &[u8], turn: &mut EmulatorTurn<'_>) {
         if !self.understands(turn) {
             return;
         }
         let mut answer = Vec::new();
-        self.wire.hear(bytes, turn.now_s, &mut answer);
+        self.wire.receive(bytes, turn.now_s, &mut answer);
         self.unanswered += bytes.len();
         self.answer(answer, turn);
         if self.unanswered >= GARBAGE_BYTES {
@@ -92,13 +92,13 @@ impl Emulator for Sensor {
         }
     }
 
-    fn pass(&mut self, turn: &mut Turn<'_>) {
+    fn pass(&mut self, turn: &mut EmulatorTurn<'_>) {
         let mut answer = Vec::new();
         self.wire.tick(turn.now_s, &mut answer);
         self.answer(answer, turn);
         let to = match self.of.transport {
-            Transport::Socket => Peer::Address(self.of.destination.into()),
-            Transport::Gen0 | Transport::GenA => Peer::Everyone,
+            Transport::Socket => WirePeer::Address(self.of.destination.into()),
+            Transport::Gen0 | Transport::GenA => WirePeer::Everyone,
         };
         let understood = self.understands(turn);
         self.frames.due(turn, &*self.wire, to, |bytes| garble(bytes, understood));
@@ -108,7 +108,7 @@ impl Emulator for Sensor {
         self.frames.next_s()
     }
 
-    fn lose(&mut self, _: Peer) {
+    fn lose(&mut self, _: WirePeer) {
         self.known = false;
     }
 }
@@ -124,17 +124,17 @@ mod tests {
     use nima_testing::real_time::judged;
 
     use super::*;
-    use crate::emulators::{Serving, bota::slow_motion};
+    use crate::emulators::{EmulatorThread, bota::slow_motion};
 
     /// An active client is answered within milliseconds; this allows for busy machines.
     const LONG: Duration = Duration::from_secs(20);
 
-    fn sensor() -> Serving {
-        let emulated = Emulated { transport: Transport::Socket, tcp_port: 0, ..Emulated::default() };
+    fn sensor() -> EmulatorThread {
+        let emulated = EmulatedBota { transport: Transport::Socket, tcp_port: 0, ..EmulatedBota::default() };
         emulated.with(slow_motion()).serve().unwrap()
     }
 
-    fn client(serving: &Serving) -> TcpStream {
+    fn client(serving: &EmulatorThread) -> TcpStream {
         let stream = TcpStream::connect(&serving.endpoint).unwrap();
         stream.set_read_timeout(Some(LONG)).unwrap();
         stream

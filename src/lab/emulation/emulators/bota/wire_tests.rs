@@ -4,18 +4,18 @@ use std::{
 };
 
 use nima_devices::{
-    Device as _, Health, Loss, Slot, Standing, Trouble,
-    bota::{Driver, Settings, Timeouts, Transport},
+    ConnectionState, Device as _, DeviceError, DeviceSlot, Health, Loss,
+    bota::{BotaDriver, BotaSettings, BotaTimeouts, Transport},
 };
 use nima_testing::real_time::judged;
 
 use crate::emulators::{
-    EmulatedFault, Serving,
-    bota::{Emulated, slow_motion},
+    EmulatedFault, EmulatorThread,
+    bota::{EmulatedBota, slow_motion},
 };
 
 /// Short, to keep tests short; the emulated sensors start within it.
-const TIMEOUT: Timeouts = Timeouts {
+const TIMEOUT: BotaTimeouts = BotaTimeouts {
     boot: Duration::from_millis(300),
     answer: Duration::from_millis(100),
     tries: 2,
@@ -27,19 +27,19 @@ fn free_udp_port() -> u16 {
 }
 
 /// A sensor that starts quickly, on a clock that is about to wrap around.
-fn emulated() -> Emulated {
-    Emulated {
+fn emulated() -> EmulatedBota {
+    EmulatedBota {
         boot_s: 0.02,
         first_timestamp_us: u32::MAX - 200_000,
         tcp_port: 0,
         destination: SocketAddrV4::new(Ipv4Addr::LOCALHOST, free_udp_port()),
-        ..Emulated::default()
+        ..EmulatedBota::default()
     }
 }
 
-fn serve(transport: Transport, emulated: Emulated) -> (Serving, Settings) {
-    let serving = Emulated { transport, ..emulated }.with(slow_motion()).serve().unwrap();
-    let settings = Settings::new(transport, serving.endpoint.clone());
+fn serve(transport: Transport, emulated: EmulatedBota) -> (EmulatorThread, BotaSettings) {
+    let serving = EmulatedBota { transport, ..emulated }.with(slow_motion()).serve().unwrap();
+    let settings = BotaSettings::new(transport, serving.endpoint.clone());
     (serving, settings)
 }
 
@@ -52,7 +52,7 @@ fn sensors_on_real_wires_are_read_whole_and_without_loss() {
         for (transport, product_hz) in TRANSPORTS.into_iter().zip([800.0, 500.0, 500.0]) {
             let (_serving, mut settings) = serve(transport, emulated());
             settings.serial_number = Some("SN000853".to_owned());
-            let mut driver = Driver::open_within(&settings, TIMEOUT).unwrap();
+            let mut driver = BotaDriver::open_within(&settings, TIMEOUT).unwrap();
             assert_eq!(driver.identity().product, "BFT-SENS-SER-M8");
             assert_eq!(driver.identity().firmware, "1.0.9");
             assert!((driver.rate_hz() - product_hz).abs() < 1e-9);
@@ -87,7 +87,11 @@ fn sensors_on_real_wires_are_read_whole_and_without_loss() {
 }
 
 /// Polls until `done`; `None` after 4 s, otherwise the time it took.
-fn until(slot: &mut Slot<Driver>, zero: Instant, mut done: impl FnMut(&Health, bool) -> bool) -> Option<Duration> {
+fn until(
+    slot: &mut DeviceSlot<BotaDriver>,
+    zero: Instant,
+    mut done: impl FnMut(&Health, bool) -> bool,
+) -> Option<Duration> {
     let begin = Instant::now();
     while begin.elapsed() < Duration::from_secs(4) {
         let is_reading = slot.poll(zero.elapsed().as_secs_f64()).is_some();
@@ -103,14 +107,14 @@ fn until(slot: &mut Slot<Driver>, zero: Instant, mut done: impl FnMut(&Health, b
 /// there must be readings again.
 fn faults(transport: Transport, faults: &[(EmulatedFault, Expected)]) {
     let (serving, settings) = serve(transport, emulated());
-    let mut slot = Slot::start("bota", move || Driver::open_within(&settings, TIMEOUT)).unwrap();
+    let mut slot = DeviceSlot::start("bota", move || BotaDriver::open_within(&settings, TIMEOUT)).unwrap();
     let zero = Instant::now();
     for (fault, expected) in faults {
         assert!(until(&mut slot, zero, |_, reading| reading).is_some(), "{transport:?} before {fault:?}");
         let before = *slot.health();
         serving.faults.set(*fault);
         let seen = until(&mut slot, zero, |health, _| match expected {
-            Expected::Loss(loss) => health.standing == Standing::Lost(*loss),
+            Expected::Loss(loss) => health.standing == ConnectionState::Lost(*loss),
             Expected::Counter(counter) => counter(health) > counter(&before),
         });
         let took = seen.unwrap_or_else(|| panic!("{transport:?} {fault:?}: {:?}", slot.health()));
@@ -191,28 +195,28 @@ fn faults_that_are_only_counted() {
     });
 }
 
-fn trouble(settings: &Settings) -> Trouble {
-    Driver::open_within(settings, TIMEOUT).unwrap_err()
+fn trouble(settings: &BotaSettings) -> DeviceError {
+    BotaDriver::open_within(settings, TIMEOUT).unwrap_err()
 }
 
 #[test]
 #[ignore = "real lines in real time: `./dev test` runs it alone"]
 fn troubles_of_the_line_are_told_apart() {
     judged(|| {
-        let nowhere = Settings::new(Transport::Gen0, "/dev/nima-no-such-port");
-        assert!(matches!(trouble(&nowhere), Trouble::Absent { .. }));
-        let (_serving, settings) = serve(Transport::Gen0, Emulated { baud: Some(115_200), ..emulated() });
-        assert!(matches!(trouble(&settings), Trouble::WrongBaud { baud: 460_800, .. }));
+        let nowhere = BotaSettings::new(Transport::Gen0, "/dev/nima-no-such-port");
+        assert!(matches!(trouble(&nowhere), DeviceError::Absent { .. }));
+        let (_serving, settings) = serve(Transport::Gen0, EmulatedBota { baud: Some(115_200), ..emulated() });
+        assert!(matches!(trouble(&settings), DeviceError::WrongBaud { baud: 460_800, .. }));
         let (serving, settings) = serve(Transport::Gen0, emulated());
         serving.faults.set(EmulatedFault::Silence);
-        assert!(matches!(trouble(&settings), Trouble::Silent { .. }));
+        assert!(matches!(trouble(&settings), DeviceError::Silent { .. }));
         serving.faults.set(EmulatedFault::None);
-        let held = Driver::open_within(&settings, TIMEOUT).unwrap();
-        assert!(matches!(trouble(&settings), Trouble::Busy { .. }));
+        let held = BotaDriver::open_within(&settings, TIMEOUT).unwrap();
+        assert!(matches!(trouble(&settings), DeviceError::Busy { .. }));
         drop(held);
-        let other = Settings { serial_number: Some("854".to_owned()), ..settings };
+        let other = BotaSettings { serial_number: Some("854".to_owned()), ..settings };
         match trouble(&other) {
-            Trouble::OtherSerial { found, .. } => assert!(found.ends_with("853"), "{found}"),
+            DeviceError::OtherSerial { found, .. } => assert!(found.ends_with("853"), "{found}"),
             other => panic!("{other:?}"),
         }
     });
@@ -226,8 +230,8 @@ fn the_wrong_generation_is_told_by_its_name() {
             [(Transport::Gen0, Transport::GenA, "first"), (Transport::GenA, Transport::Gen0, "second")]
         {
             let (_serving, settings) = serve(real, emulated());
-            match trouble(&Settings { transport: taken_for, ..settings }) {
-                Trouble::WrongProduct { found, .. } => assert!(found.starts_with(name), "{found}"),
+            match trouble(&BotaSettings { transport: taken_for, ..settings }) {
+                DeviceError::WrongProduct { found, .. } => assert!(found.starts_with(name), "{found}"),
                 other => panic!("{other:?}"),
             }
         }
@@ -238,15 +242,15 @@ fn the_wrong_generation_is_told_by_its_name() {
 #[ignore = "real lines in real time: `./dev test` runs it alone"]
 fn a_sensor_without_its_calibration_is_restarted_and_one_that_stays_so_is_refused() {
     judged(|| {
-        let (_serving, settings) = serve(Transport::Gen0, Emulated { raw_starts: 2, ..emulated() });
-        let driver = Driver::open_within(&settings, TIMEOUT).unwrap();
+        let (_serving, settings) = serve(Transport::Gen0, EmulatedBota { raw_starts: 2, ..emulated() });
+        let driver = BotaDriver::open_within(&settings, TIMEOUT).unwrap();
         assert!(!driver.status().raw);
         for (transport, status, word) in
             [(Transport::Gen0, 8, "raw"), (Transport::GenA, 2, "overrange"), (Transport::Socket, 4, "invalid")]
         {
-            let (_serving, settings) = serve(transport, Emulated { status, ..emulated() });
+            let (_serving, settings) = serve(transport, EmulatedBota { status, ..emulated() });
             match trouble(&settings) {
-                Trouble::DeviceFault { words, .. } => assert!(words.contains(word), "{words}"),
+                DeviceError::DeviceFault { words, .. } => assert!(words.contains(word), "{words}"),
                 other => panic!("{other:?}"),
             }
         }
@@ -258,12 +262,12 @@ fn a_sensor_without_its_calibration_is_restarted_and_one_that_stays_so_is_refuse
 fn troubles_of_the_network_are_told_apart() {
     judged(|| {
         let closed = std::net::TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap();
-        let nobody = Settings::new(Transport::Socket, closed.to_string());
-        assert!(matches!(trouble(&nobody), Trouble::NobodyListens { .. }));
+        let nobody = BotaSettings::new(Transport::Socket, closed.to_string());
+        assert!(matches!(trouble(&nobody), DeviceError::NobodyListens { .. }));
         let elsewhere = SocketAddrV4::new(Ipv4Addr::new(192, 0, 2, 1), free_udp_port());
-        let (_serving, settings) = serve(Transport::Socket, Emulated { destination: elsewhere, ..emulated() });
+        let (_serving, settings) = serve(Transport::Socket, EmulatedBota { destination: elsewhere, ..emulated() });
         match trouble(&settings) {
-            Trouble::SendsElsewhere { to, here, .. } => {
+            DeviceError::SendsElsewhere { to, here, .. } => {
                 assert_eq!((to, here.as_str()), (elsewhere.to_string(), "127.0.0.1"));
             }
 
@@ -271,18 +275,18 @@ fn troubles_of_the_network_are_told_apart() {
         }
         let taken = UdpSocket::bind("0.0.0.0:0").unwrap();
         let destination = SocketAddrV4::new(Ipv4Addr::LOCALHOST, taken.local_addr().unwrap().port());
-        let (_serving, settings) = serve(Transport::Socket, Emulated { destination, ..emulated() });
-        assert!(matches!(trouble(&settings), Trouble::Busy { .. }));
+        let (_serving, settings) = serve(Transport::Socket, EmulatedBota { destination, ..emulated() });
+        assert!(matches!(trouble(&settings), DeviceError::Busy { .. }));
     });
 }
 
 #[test]
 fn readings_are_taken_at_one_address_and_from_the_sensor_alone() {
     let destination = SocketAddrV4::new(Ipv4Addr::LOCALHOST, free_udp_port());
-    let (_serving, settings) = serve(Transport::Socket, Emulated { destination, ..emulated() });
+    let (_serving, settings) = serve(Transport::Socket, EmulatedBota { destination, ..emulated() });
     // One of several attempts succeeds, even on a busy computer.
-    let long = Timeouts { answer: Duration::from_secs(5), stream: Duration::from_secs(5), ..TIMEOUT };
-    let mut driver = (0..5).find_map(|_| Driver::open_within(&settings, long).ok()).expect("opened");
+    let long = BotaTimeouts { answer: Duration::from_secs(5), stream: Duration::from_secs(5), ..TIMEOUT };
+    let mut driver = (0..5).find_map(|_| BotaDriver::open_within(&settings, long).ok()).expect("opened");
     #[cfg(target_os = "linux")]
     UdpSocket::bind(("127.0.0.2", destination.port())).expect("the port is free at this computer's other addresses");
     let stranger = UdpSocket::bind("127.0.0.1:0").unwrap();
@@ -302,7 +306,7 @@ fn readings_are_taken_at_one_address_and_from_the_sensor_alone() {
 fn a_command_that_the_sensor_refuses_is_told_with_its_words() {
     judged(|| {
         let listener = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
-        let settings = Settings::new(Transport::Socket, listener.local_addr().unwrap().to_string());
+        let settings = BotaSettings::new(Transport::Socket, listener.local_addr().unwrap().to_string());
         let sensor = std::thread::spawn(move || {
             use std::io::{Read as _, Write as _};
             let (mut stream, _) = listener.accept().unwrap();
@@ -312,7 +316,7 @@ fn a_command_that_the_sensor_refuses_is_told_with_its_words() {
             stream.write_all(b"wh,17,0\n").unwrap();
         });
         match trouble(&settings) {
-            Trouble::Refused { answer, .. } => assert_eq!(answer, "the action failed"),
+            DeviceError::Refused { answer, .. } => assert_eq!(answer, "the action failed"),
             other => panic!("{other:?}"),
         }
         sensor.join().unwrap();

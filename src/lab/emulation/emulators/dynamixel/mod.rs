@@ -1,16 +1,16 @@
 //! Emulated servos on one bus: every instruction of Protocol 2.0, at the baud rate of the bus.
 //!
 //! [`Bus::receive`] takes data of a client, [`Bus::send`] returns the data to send by now. The forces on the shafts
-//! come from a closure, [`Body`], called at every instruction and every millisecond between them; the same call passes
+//! come from a closure, [`DynamixelBody`], called at every instruction and every millisecond between them; the same call passes
 //! it the effects of commands.
 //!
 //! Inferred, because the e-manual does not say: servos after a missing one do not answer a sync read; a failed part of
 //! a fast read returns zeros with its error.
 
-pub(super) mod alone;
 mod motor;
 mod registers;
 mod servo;
+pub(super) mod standalone;
 #[cfg(test)]
 mod tests;
 mod wire;
@@ -18,11 +18,11 @@ mod wire;
 use std::{collections::VecDeque, io, path::PathBuf};
 
 use nima_devices::dynamixel::{
-    codec::{BROADCAST, Incoming, Outgoing, STATUS},
-    message::{self, Instruction, Keep, Refusal},
-    table::{self, BAUDS, HardwareError, Model},
+    codec::{BROADCAST, IncomingPackets, OutgoingPackets, STATUS},
+    message::{self, Instruction, Keep, ServoRefusal},
+    table::{self, BAUDS, HardwareError, ServoModel},
 };
-use servo::Servo;
+use servo::EmulatedServo;
 
 use crate::emulators::{EmulatedFault, Emulator};
 
@@ -35,7 +35,7 @@ const PAUSE_S: f64 = 0.050;
 
 /// A servo's shaft as seen by the world: before offset and sign.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Shaft {
+pub struct ServoShaft {
     pub angle_rad: f64,
     pub velocity_rad_s: f64,
     /// Whether the motor is driven; otherwise only the load moves it.
@@ -43,7 +43,7 @@ pub struct Shaft {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Surroundings {
+pub struct ServoSurroundings {
     /// Torque on the shaft, Nm.
     pub load_nm: f64,
     /// Supply, V.
@@ -53,10 +53,10 @@ pub struct Surroundings {
 }
 
 /// The world: called with the time, s, the index of the servo, and its shaft.
-pub type Body = Box<dyn FnMut(f64, usize, &Shaft) -> Surroundings + Send>;
+pub type DynamixelBody = Box<dyn FnMut(f64, usize, &ServoShaft) -> ServoSurroundings + Send>;
 
 #[derive(Clone, Debug)]
-pub struct Emulated {
+pub struct EmulatedDynamixel {
     /// Ids on the bus.
     pub ids: Vec<u8>,
     pub model: u16,
@@ -68,31 +68,31 @@ pub struct Emulated {
     pub link: Option<PathBuf>,
 }
 
-impl Default for Emulated {
+impl Default for EmulatedDynamixel {
     fn default() -> Self {
         Self { ids: vec![1, 2, 3, 4], model: 1020, baud: 1_000_000, fast: true, link: None }
     }
 }
 
-impl Emulated {
+impl EmulatedDynamixel {
     /// Starts the servos on a bus; without a body the shafts sway slowly.
     ///
     /// # Errors
     /// If the model or the baud rate does not exist.
-    pub fn with(&self, body: Option<Body>) -> io::Result<Box<dyn Emulator>> {
+    pub fn with(&self, body: Option<DynamixelBody>) -> io::Result<Box<dyn Emulator>> {
         Ok(Box::new(Bus::new(self, body)?))
     }
 }
 
 pub struct Bus {
-    servos: Vec<Servo>,
-    body: Body,
+    servos: Vec<EmulatedServo>,
+    body: DynamixelBody,
     fast: bool,
-    incoming: Incoming,
-    out: Outgoing,
+    incoming: IncomingPackets,
+    out: OutgoingPackets,
     queue: VecDeque<(f64, Vec<u8>)>,
     link: Option<PathBuf>,
-    heard_s: f64,
+    received_s: f64,
     advanced_s: f64,
     free_s: f64,
     fault: EmulatedFault,
@@ -105,11 +105,11 @@ impl std::fmt::Debug for Bus {
 }
 
 /// A default body: a soft hand sways the shafts slowly, which resist once the torque is on.
-pub fn swaying(supply_v: f64) -> Body {
+pub fn swaying(supply_v: f64) -> DynamixelBody {
     Box::new(move |now_s, index, shaft| {
         let there_rad = 0.4 * (0.6 * now_s + index as f64).sin();
         let load_nm = if shaft.torque_on { 0.05 } else { 0.5 } * (there_rad - shaft.angle_rad).clamp(-1.0, 1.0);
-        Surroundings { load_nm, supply_v, temperature_c: 31.0 }
+        ServoSurroundings { load_nm, supply_v, temperature_c: 31.0 }
     })
 }
 
@@ -118,21 +118,21 @@ impl Bus {
     ///
     /// # Errors
     /// If the model or the baud rate does not exist.
-    pub fn new(settings: &Emulated, body: Option<Body>) -> io::Result<Self> {
+    pub fn new(settings: &EmulatedDynamixel, body: Option<DynamixelBody>) -> io::Result<Self> {
         let baud = BAUDS.iter().position(|baud| *baud == settings.baud);
-        let (Some(model), Some(baud)) = (Model::numbered(settings.model), baud) else {
+        let (Some(model), Some(baud)) = (ServoModel::numbered(settings.model), baud) else {
             return Err(io::Error::new(io::ErrorKind::InvalidInput, "no servo has this model number and line speed"));
         };
         let supply_v = if model.is_small() { 5.0 } else { 12.0 };
         Ok(Self {
-            servos: settings.ids.iter().map(|id| Servo::new(model, *id, baud as u8)).collect(),
+            servos: settings.ids.iter().map(|id| EmulatedServo::new(model, *id, baud as u8)).collect(),
             body: body.unwrap_or_else(|| swaying(supply_v)),
             fast: settings.fast,
-            incoming: Incoming::new(LONGEST),
-            out: Outgoing::new(LONGEST),
+            incoming: IncomingPackets::new(LONGEST),
+            out: OutgoingPackets::new(LONGEST),
             queue: VecDeque::new(),
             link: settings.link.clone(),
-            heard_s: 0.0,
+            received_s: 0.0,
             advanced_s: f64::NEG_INFINITY,
             free_s: 0.0,
             fault: EmulatedFault::None,
@@ -152,8 +152,8 @@ impl Bus {
         }
     }
 
-    pub fn shaft(&self, index: usize) -> Option<Shaft> {
-        self.servos.get(index).map(Servo::shaft)
+    pub fn shaft(&self, index: usize) -> Option<ServoShaft> {
+        self.servos.get(index).map(EmulatedServo::shaft)
     }
 
     /// Interrupts a servo's power for a moment; it restarts by itself.
@@ -165,10 +165,10 @@ impl Bus {
 
     /// Processes data of a client at `now_s`.
     pub fn receive(&mut self, now_s: f64, bytes: &[u8]) {
-        if self.incoming.is_midway() && now_s - self.heard_s > PAUSE_S {
+        if self.incoming.is_midway() && now_s - self.received_s > PAUSE_S {
             self.incoming.reset();
         }
-        self.heard_s = now_s;
+        self.received_s = now_s;
         let mut taken = 0;
         while taken < bytes.len() {
             taken += self.incoming.feed(&bytes[taken..]);
@@ -230,7 +230,7 @@ impl Bus {
 
     fn obey(&mut self, id: u8, instruction: u8, body: &[u8], now_s: f64) {
         for servo in &mut self.servos {
-            servo.hear(now_s);
+            servo.receive(now_s);
         }
         let instruction = Instruction::decode(instruction, body);
         match instruction {
@@ -267,10 +267,10 @@ impl Bus {
     }
 
     fn write_silently(&mut self, id: u8, address: u16, data: &[u8], now_s: f64) {
-        let meant = |servo: &&mut Servo| (servo.id() == id || servo.is_shadow_of(id)) && servo.is_up(now_s);
+        let meant = |servo: &&mut EmulatedServo| (servo.id() == id || servo.is_shadow_of(id)) && servo.is_up(now_s);
         for servo in self.servos.iter_mut().filter(meant) {
             // Not reported, as on the real bus.
-            let _silent: Result<(), Refusal> = servo.write(address, data, now_s);
+            let _silent: Result<(), ServoRefusal> = servo.write(address, data, now_s);
         }
     }
 
@@ -302,12 +302,12 @@ impl Bus {
 
     /// Executes an instruction on a servo; returns the status return level from which it answers, and the answer.
     fn one(
-        servo: &mut Servo,
+        servo: &mut EmulatedServo,
         instruction: &Instruction<'_>,
         all: bool,
         now_s: f64,
         data: &mut Vec<u8>,
-    ) -> (i64, Result<(), Refusal>) {
+    ) -> (i64, Result<(), ServoRefusal>) {
         let result = match *instruction {
             Instruction::Ping => {
                 let firmware = servo.get(table::FIRMWARE) as u8;
@@ -319,7 +319,7 @@ impl Bus {
             Instruction::Write { address, data } => servo.write(address, data, now_s),
             Instruction::RegWrite { address, data } => servo.register(address, data),
             Instruction::Action => servo.act(now_s),
-            Instruction::FactoryReset { keep: Keep::Nothing } if all => Err(Refusal::Range),
+            Instruction::FactoryReset { keep: Keep::Nothing } if all => Err(ServoRefusal::Range),
             Instruction::FactoryReset { keep } => {
                 servo.factory_reset(keep, now_s);
                 Ok(())
@@ -336,12 +336,12 @@ impl Bus {
             Instruction::SyncRead { .. }
             | Instruction::SyncWrite { .. }
             | Instruction::BulkRead { .. }
-            | Instruction::BulkWrite { .. } => Err(Refusal::Instruction),
+            | Instruction::BulkWrite { .. } => Err(ServoRefusal::Instruction),
         };
         (2, result)
     }
 
-    fn answer(&mut self, index: usize, level: i64, result: Result<(), Refusal>, data: &[u8]) {
+    fn answer(&mut self, index: usize, level: i64, result: Result<(), ServoRefusal>, data: &[u8]) {
         let servo = &self.servos[index];
         if servo.get(table::STATUS_RETURN_LEVEL) < level {
             return;

@@ -44,7 +44,7 @@ impl Plant {
 
 /// Register values that control the motor; positions in the shaft's own ticks, before sign and offset.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Drive {
+pub(super) struct MotorDrive {
     pub(super) torque_on: bool,
     pub(super) mode: u8,
     pub(super) goal_ticks: f64,
@@ -86,7 +86,7 @@ impl Motor {
         self.error_before = 0.0;
     }
 
-    pub(super) fn step(&mut self, drive: &Drive, plant: &Plant) {
+    pub(super) fn step(&mut self, drive: &MotorDrive, plant: &Plant) {
         let volts = if drive.torque_on { self.control(drive, plant) } else { None };
         let Plant { resistance_ohm, torque_nm_per_a, back_emf_v_s_per_rad, inertia_kg_m2, friction_nm_s_per_rad } =
             *plant;
@@ -119,7 +119,7 @@ impl Motor {
     }
 
     /// Returns the voltage on the motor.
-    fn control(&mut self, drive: &Drive, plant: &Plant) -> Option<f64> {
+    fn control(&mut self, drive: &MotorDrive, plant: &Plant) -> Option<f64> {
         let limit = drive.pwm_limit.min(if drive.mode == 16 { PWM_FULL } else { drive.goal_pwm.abs() });
         let pwm = match drive.mode {
             0 => {
@@ -136,18 +136,18 @@ impl Motor {
         Some(self.pwm / PWM_FULL * drive.supply_v)
     }
 
-    fn velocity_control(&mut self, drive: &Drive) -> f64 {
+    fn velocity_control(&mut self, drive: &MotorDrive) -> f64 {
         let goal_rad_s = drive.goal_velocity * VELOCITY_UNIT_RAD_S;
-        let most = drive.profile_acceleration * ACCELERATION_UNIT_RAD_S2 * STEP_S;
+        let max = drive.profile_acceleration * ACCELERATION_UNIT_RAD_S2 * STEP_S;
         let change = goal_rad_s - self.wanted_rad_s;
-        self.wanted_rad_s += if most > 0.0 { change.clamp(-most, most) } else { change };
+        self.wanted_rad_s += if max > 0.0 { change.clamp(-max, max) } else { change };
         let error = (self.wanted_rad_s - self.velocity_rad_s) / VELOCITY_UNIT_RAD_S;
         let [p, i] = drive.velocity_pi;
         self.integral = (self.integral + error).clamp(-PWM_FULL * 65_536.0, PWM_FULL * 65_536.0);
         p / 128.0 * error + i / 65_536.0 * self.integral
     }
 
-    fn position_control(&mut self, drive: &Drive) -> f64 {
+    fn position_control(&mut self, drive: &MotorDrive) -> f64 {
         self.follow_profile(drive);
         let error = (self.wanted_rad - self.angle_rad) / std::f64::consts::TAU * TICKS_PER_TURN;
         let slope = error - self.error_before;
@@ -162,7 +162,7 @@ impl Motor {
     }
 
     /// A trapezoidal speed profile towards the goal; without limits, a jump.
-    fn follow_profile(&mut self, drive: &Drive) {
+    fn follow_profile(&mut self, drive: &MotorDrive) {
         let goal_rad = rad_from_ticks(drive.goal_ticks);
         let fastest = drive.profile_velocity * VELOCITY_UNIT_RAD_S;
         let acceleration = drive.profile_acceleration * ACCELERATION_UNIT_RAD_S2;
@@ -178,10 +178,10 @@ impl Motor {
         if acceleration > 0.0 {
             // Keeps the ability to stop in time; half a step is reserved for the step length.
             speed = speed.min((2.0 * acceleration * (rest.abs() - 0.5 * STEP_S * before.abs()).max(0.0)).sqrt());
-            let most = acceleration * STEP_S;
+            let max = acceleration * STEP_S;
             let target = speed.copysign(rest);
-            self.wanted_rad_s += (target - before).clamp(-most, most);
-            if rest.abs() < most * STEP_S && self.wanted_rad_s.abs() <= 2.0 * most {
+            self.wanted_rad_s += (target - before).clamp(-max, max);
+            if rest.abs() < max * STEP_S && self.wanted_rad_s.abs() <= 2.0 * max {
                 self.wanted_rad = goal_rad;
                 self.wanted_rad_s = 0.0;
             }

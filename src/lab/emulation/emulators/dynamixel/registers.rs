@@ -2,7 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-use nima_devices::dynamixel::table::{self, Model, Register};
+use nima_devices::dynamixel::table::{self, DynamixelRegister, ServoModel};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Access {
@@ -15,7 +15,7 @@ pub(super) enum Access {
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Rule {
-    pub(super) register: Register,
+    pub(super) register: DynamixelRegister,
     pub(super) access: Access,
     pub(super) low: i64,
     pub(super) high: i64,
@@ -24,12 +24,12 @@ pub(super) struct Rule {
 
 pub(super) const TABLE_BYTES: usize = 662;
 
-const fn rule(register: Register, access: Access, range: (i64, i64), factory: i64) -> Rule {
+const fn rule(register: DynamixelRegister, access: Access, range: (i64, i64), factory: i64) -> Rule {
     Rule { register, access, low: range.0, high: range.1, factory }
 }
 
-const fn at(address: u16, bytes: u16) -> Register {
-    Register { address, bytes }
+const fn at(address: u16, bytes: u16) -> DynamixelRegister {
+    DynamixelRegister { address, bytes }
 }
 
 const U16: (i64, i64) = (0, 0xFFFF);
@@ -111,18 +111,18 @@ const LARGE: [Indirect; 2] =
     [Indirect { pointers: 168, data: 224, count: 28 }, Indirect { pointers: 578, data: 634, count: 28 }];
 const SMALL: [Indirect; 1] = [Indirect { pointers: 168, data: 208, count: 20 }];
 
-const fn indirect(model: &Model) -> &'static [Indirect] {
+const fn indirect(model: &ServoModel) -> &'static [Indirect] {
     if model.is_small() { &SMALL } else { &LARGE }
 }
 
 /// Returns the position of the pointer for indirect data at `address`, if it is indirect.
-pub(super) fn pointer_of(model: &Model, address: u16) -> Option<u16> {
+pub(super) fn pointer_of(model: &ServoModel, address: u16) -> Option<u16> {
     let block = indirect(model).iter().find(|block| (block.data..block.data + block.count).contains(&address))?;
     Some(block.pointers + 2 * (address - block.data))
 }
 
 /// The rule of the register that begins at `address`.
-pub(super) fn rule_at(model: &Model, address: u16) -> Option<Rule> {
+pub(super) fn rule_at(model: &ServoModel, address: u16) -> Option<Rule> {
     if let Some(known) = RULES.iter().chain([&BACKUP_READY]).find(|rule| rule.register.address == address) {
         return Some(of_model(*known, model));
     }
@@ -141,12 +141,12 @@ pub(super) fn rule_at(model: &Model, address: u16) -> Option<Rule> {
 }
 
 /// All rules of a model.
-pub(super) fn rules(model: &'static Model) -> impl Iterator<Item = Rule> {
+pub(super) fn rules(model: &'static ServoModel) -> impl Iterator<Item = Rule> {
     (0..TABLE_BYTES as u16).filter_map(|address| rule_at(model, address))
 }
 
 /// Applies the differences between models.
-fn of_model(mut rule: Rule, model: &Model) -> Rule {
+fn of_model(mut rule: Rule, model: &ServoModel) -> Rule {
     let register = rule.register;
     if register == table::MODEL {
         rule.factory = model.number.into();
@@ -159,7 +159,7 @@ fn of_model(mut rule: Rule, model: &Model) -> Rule {
     if !model.is_small() {
         return rule;
     }
-    let small: [(Register, (i64, i64), i64); 11] = [
+    let small: [(DynamixelRegister, (i64, i64), i64); 11] = [
         (table::BAUD, (0, 6), 1),
         (table::TEMPERATURE_LIMIT, (0, 100), 70),
         (table::VOLTAGE_MAX, (31, 70), 70),

@@ -1,10 +1,10 @@
 //! A checkerboard in front of the lens, held by a person during the camera calibration.
 
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector2};
-use nima_endoscope::{Board, Lens, board::Portrait};
+use nima_endoscope::{Checkerboard, Lens, board::Portrait};
 
 /// Returns the pose of the board in front of the lens at a time, s since the emulator began.
-pub type Hands = Box<dyn FnMut(f64) -> Isometry3<f64> + Send>;
+pub type BoardHands = Box<dyn FnMut(f64) -> Isometry3<f64> + Send>;
 
 /// Duration of holding a pose, and of the movement to the next one, s.
 const HELD_S: f64 = 1.8;
@@ -35,67 +35,67 @@ const POSES: usize = 20;
 const NOISE: f32 = 2.0;
 
 /// A person who holds the board at one position after the other, over the whole image, and tilts it in every direction.
-pub fn held(board: Board, lens: &Lens) -> Hands {
+pub fn held(board: Checkerboard, lens: &Lens) -> BoardHands {
     let poses: Vec<_> = (0..POSES).map(|k| pose(&board, lens, k)).collect();
     Box::new(move |now_s| {
         let at = (now_s / (HELD_S + WAY_S)).max(0.0);
         let [from, to] = [0, 1].map(|more| poses[(at as usize + more) % POSES]);
-        let share = (at.fract() * (HELD_S + WAY_S) - HELD_S) / WAY_S;
-        from.lerp_slerp(&to, share.clamp(0.0, 1.0))
+        let fraction = (at.fract() * (HELD_S + WAY_S) - HELD_S) / WAY_S;
+        from.lerp_slerp(&to, fraction.clamp(0.0, 1.0))
     })
 }
 
 /// A pose of the list, as close to its position as the whole board is visible.
-fn pose(board: &Board, lens: &Lens, k: usize) -> Isometry3<f64> {
+fn pose(board: &Checkerboard, lens: &Lens, k: usize) -> Isometry3<f64> {
     let [width, height] = lens.size_px.map(|side| side as f64);
     let side_m = board.corners()[0] as f64 * board.square_m();
     let far_m = lens.focal_px.x * side_m / (WIDE * width);
     let [level, upright, turn] = TURNS_DEG[k % TURNS_DEG.len()].map(f64::to_radians);
     let rotation = UnitQuaternion::from_euler_angles(level, upright, turn);
     let [x, y] = PLACES[k % PLACES.len()];
-    let at = |share: f64| {
-        let place_px = Vector2::new(0.5 * width * (1.0 + share * x), 0.5 * height * (1.0 + share * y));
+    let at = |fraction: f64| {
+        let place_px = Vector2::new(0.5 * width * (1.0 + fraction * x), 0.5 * height * (1.0 + fraction * y));
         let middle_m = lens.direction(&place_px)? * far_m;
         Some(Isometry3::from_parts(Translation3::from(middle_m - rotation * board.middle_m()), rotation))
     };
     let inside = |place_px: Vector2<f64>| {
         (FREE_PX..width - FREE_PX).contains(&place_px.x) && (FREE_PX..height - FREE_PX).contains(&place_px.y)
     };
-    let most = SQUEEZED * lens.bend.tangent_most();
+    let max = SQUEEZED * lens.bend.tangent_max();
     let is_whole = |pose: &Isometry3<f64>| {
         board.places_m().into_iter().all(|place_m| {
-            let at_m = (pose * nalgebra::Point3::from(place_m)).coords;
-            (at_m.xy() / at_m.z).norm() < most && lens.project(&at_m).is_some_and(inside)
+            let position_m = (pose * nalgebra::Point3::from(place_m)).coords;
+            (position_m.xy() / position_m.z).norm() < max && lens.project(&position_m).is_some_and(inside)
         })
     };
-    let shares = (0..=20).rev().map(|k| f64::from(k) / 20.0);
+    let fractions = (0..=20).rev().map(|k| f64::from(k) / 20.0);
     let far = Isometry3::from_parts(Translation3::new(0.0, 0.0, far_m), rotation);
-    shares.filter_map(at).find(is_whole).unwrap_or(far)
+    fractions.filter_map(at).find(is_whole).unwrap_or(far)
 }
 
 /// Draws the board into images with three bytes per pixel.
-pub(super) struct Drawn {
-    board: Board,
+pub(super) struct BoardDrawing {
+    board: Checkerboard,
     portrait: Portrait,
-    picture: Vec<u8>,
+    image: Vec<u8>,
     noise: u32,
 }
 
-impl Drawn {
+impl BoardDrawing {
     /// Takes some tenths of a second.
-    pub(super) fn new(board: Board, lens: &Lens) -> Self {
+    pub(super) fn new(board: Checkerboard, lens: &Lens) -> Self {
         let [width, height] = lens.size_px;
-        Self { board, portrait: Portrait::new(lens), picture: vec![0; 3 * width * height], noise: 1 }
+        Self { board, portrait: Portrait::new(lens), image: vec![0; 3 * width * height], noise: 1 }
     }
 
     pub(super) fn draw(&mut self, camera_from_board: &Isometry3<f64>) -> &mut [u8] {
         let greys = self.portrait.draw(&self.board, camera_from_board);
-        for (pixel, grey) in self.picture.chunks_exact_mut(3).zip(greys) {
+        for (pixel, grey) in self.image.chunks_exact_mut(3).zip(greys) {
             // Numerical Recipes' quick generator is good enough here.
             self.noise = self.noise.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
             let noise = ((self.noise >> 16) as f32 / 65_536.0 - 0.5) * 2.0 * NOISE;
             pixel.fill((grey + noise).clamp(0.0, 255.0) as u8);
         }
-        &mut self.picture
+        &mut self.image
     }
 }

@@ -5,7 +5,7 @@ use nalgebra::{Vector2, Vector3};
 use nima_endoscope::Camera;
 use nima_simulation::scene::Scene;
 
-use super::Instrument;
+use super::EndoscopeInstrument;
 
 type Colour = [f64; 3];
 
@@ -42,22 +42,22 @@ pub(super) struct Painter {
     camera: Camera,
     surface_m: f64,
     ground: Vec<u8>,
-    picture: Vec<u8>,
+    image: Vec<u8>,
 }
 
 impl Painter {
     /// Takes some tenths of a second, for the ground.
     pub(super) fn new(camera: Camera, scene: &Scene) -> Self {
-        let ground = Ground::of(scene);
+        let ground = DrawGround::of(scene);
         let [width, height] = camera.lens.size_px;
         let places = (0..height).flat_map(|y| (0..width).map(move |x| Vector2::new(x as f64 + 0.5, y as f64 + 0.5)));
         let pixels: Vec<u8> = places.flat_map(|place_px| ground.pixel(&camera, &place_px)).collect();
-        Self { camera, surface_m: ground.surface_m, picture: pixels.clone(), ground: pixels }
+        Self { camera, surface_m: ground.surface_m, image: pixels.clone(), ground: pixels }
     }
 
     /// Draws the image with these instruments.
-    pub(super) fn draw(&mut self, instruments: &[Instrument]) -> &[u8] {
-        self.picture.copy_from_slice(&self.ground);
+    pub(super) fn draw(&mut self, instruments: &[EndoscopeInstrument]) -> &[u8] {
+        self.image.copy_from_slice(&self.ground);
         for instrument in instruments {
             self.shadow(instrument);
         }
@@ -65,25 +65,25 @@ impl Painter {
             self.shaft(instrument);
             self.mark(instrument);
         }
-        &self.picture
+        &self.image
     }
 
     /// Darkens the tissue under a tip: the closer, the darker.
-    fn shadow(&mut self, Instrument { tip_m, .. }: &Instrument) {
+    fn shadow(&mut self, EndoscopeInstrument { tip_m, .. }: &EndoscopeInstrument) {
         let below_m = Vector3::new(tip_m.x, tip_m.y, self.surface_m);
-        let share = 1.0 - ((tip_m.z - self.surface_m) / SHADOW_HEIGHT_M).clamp(0.0, 1.0);
-        if share <= 0.0 {
+        let fraction = 1.0 - ((tip_m.z - self.surface_m) / SHADOW_HEIGHT_M).clamp(0.0, 1.0);
+        if fraction <= 0.0 {
             return;
         }
         let Some((middle_px, radius_px)) = self.disc(&below_m, SHADOW_M) else { return };
         self.near([middle_px; 2], radius_px, |pixel, away| {
-            let keep = 1.0 - 0.6 * share * (1.0 - away * away);
+            let keep = 1.0 - 0.6 * fraction * (1.0 - away * away);
             *pixel = pixel.map(|value| (f64::from(value) * keep) as u8);
         });
     }
 
     /// From the far end to the tip, so that near parts cover far ones.
-    fn shaft(&mut self, Instrument { tip_m, trocar_m }: &Instrument) {
+    fn shaft(&mut self, EndoscopeInstrument { tip_m, trocar_m }: &EndoscopeInstrument) {
         let Some(axis) = (trocar_m - tip_m).try_normalize(1e-6) else { return };
         let [width, height] = self.camera.lens.size_px.map(|side| side as f64);
         let inside = |place_px: &Vector2<f64>| {
@@ -109,7 +109,7 @@ impl Painter {
         }
     }
 
-    fn mark(&mut self, Instrument { tip_m, .. }: &Instrument) {
+    fn mark(&mut self, EndoscopeInstrument { tip_m, .. }: &EndoscopeInstrument) {
         let Some((middle_px, radius_px)) = self.disc(tip_m, MARK_M) else { return };
         self.near([middle_px; 2], radius_px, |pixel, _| *pixel = MARK);
     }
@@ -124,10 +124,10 @@ impl Painter {
     /// Visits every pixel that is nearer than `radius_px` to a line; `paint` gets its distance in radii.
     fn near(&mut self, ends_px: [Vector2<f64>; 2], radius_px: f64, mut paint: impl FnMut(&mut [u8; 3], f64)) {
         let [width, height] = self.camera.lens.size_px;
-        let range = |of: fn(&Vector2<f64>) -> f64, most: usize| {
+        let range = |of: fn(&Vector2<f64>) -> f64, max: usize| {
             let [a, b] = ends_px.each_ref().map(of);
-            let from = (a.min(b) - radius_px).floor().clamp(0.0, most as f64) as usize;
-            from..(a.max(b) + radius_px + 1.0).ceil().clamp(0.0, most as f64) as usize
+            let from = (a.min(b) - radius_px).floor().clamp(0.0, max as f64) as usize;
+            from..(a.max(b) + radius_px + 1.0).ceil().clamp(0.0, max as f64) as usize
         };
         let way = ends_px[1] - ends_px[0];
         let square = way.norm_squared();
@@ -142,7 +142,7 @@ impl Painter {
                 let away = (from - way * along).norm() / radius_px;
                 let at = 3 * (width * y + x);
                 if away <= 1.0
-                    && let Some(pixel) = self.picture[at..].first_chunk_mut()
+                    && let Some(pixel) = self.image[at..].first_chunk_mut()
                 {
                     paint(pixel, away);
                 }
@@ -153,14 +153,14 @@ impl Painter {
 
 /// The surface under the instruments.
 #[expect(clippy::struct_field_names, reason = "the unit")]
-struct Ground {
+struct DrawGround {
     surface_m: f64,
     /// Half the sides of the tissue, m; `None` without tissue.
     half_m: Option<[f64; 2]>,
     targets_m: Vec<Vector3<f64>>,
 }
 
-impl Ground {
+impl DrawGround {
     fn of(scene: &Scene) -> Self {
         let of_left = scene.left.iter().flat_map(|left| &left.targets_m);
         Self {
@@ -172,24 +172,24 @@ impl Ground {
 
     fn pixel(&self, camera: &Camera, place_px: &Vector2<f64>) -> [u8; 3] {
         let Some([eye_m, direction]) = camera.sight(place_px) else { return BEYOND_THE_LENS };
-        let colour = |at_m: Vector3<f64>, colour: Colour| {
-            let light = (LIT_M / (at_m - eye_m).norm()).powi(2).min(1.1);
+        let colour = |position_m: Vector3<f64>, colour: Colour| {
+            let light = (LIT_M / (position_m - eye_m).norm()).powi(2).min(1.1);
             colour.map(|value| (value * light).clamp(0.0, 255.0) as u8)
         };
         let steps = (self.surface_m - eye_m.z) / direction.z;
         if !(steps > 0.0 && steps < 10.0) {
             return AROUND.map(|value| (0.3 * value) as u8);
         }
-        let at_m = eye_m + direction * steps;
-        let on_tissue = self.half_m.is_some_and(|[x_m, y_m]| at_m.x.abs() <= x_m && at_m.y.abs() <= y_m);
+        let position_m = eye_m + direction * steps;
+        let on_tissue = self.half_m.is_some_and(|[x_m, y_m]| position_m.x.abs() <= x_m && position_m.y.abs() <= y_m);
         let [ring_m, wide_m] = RING_M;
-        let on_ring = |target_m: &Vector3<f64>| ((target_m - at_m).xy().norm() - ring_m).abs() <= wide_m;
+        let on_ring = |target_m: &Vector3<f64>| ((target_m - position_m).xy().norm() - ring_m).abs() <= wide_m;
         if self.targets_m.iter().any(on_ring) {
-            colour(at_m, TARGET)
+            colour(position_m, TARGET)
         } else if on_tissue {
-            colour(at_m, mottled(at_m.x, at_m.y))
+            colour(position_m, mottled(position_m.x, position_m.y))
         } else {
-            colour(at_m, AROUND)
+            colour(position_m, AROUND)
         }
     }
 }
@@ -198,6 +198,6 @@ impl Ground {
 fn mottled(x: f64, y: f64) -> Colour {
     let wave = (x * 97.0 + 2.1 * (y * 61.0).sin()).sin() + (y * 83.0 - 2.3 * (x * 53.0).sin() + 1.0).sin();
     let fine = ((x + 0.7 * y) * 671.0 + (y * 490.0).sin()).sin();
-    let share = (0.5 + 0.20 * wave + 0.12 * fine).clamp(0.0, 1.0);
-    std::array::from_fn(|i| TISSUE_DARK[i] + share * (TISSUE_PALE[i] - TISSUE_DARK[i]))
+    let fraction = (0.5 + 0.20 * wave + 0.12 * fine).clamp(0.0, 1.0);
+    std::array::from_fn(|i| TISSUE_DARK[i] + fraction * (TISSUE_PALE[i] - TISSUE_DARK[i]))
 }

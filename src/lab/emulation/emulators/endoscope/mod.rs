@@ -2,48 +2,48 @@
 //! JPEG over HTTP and, in a program with the feature `h264`, as H.264 over RTSP at the same port; and into a named
 //! pipe.
 //!
-//! The scene comes from a [`Body`], a closure of the emulator's time; or the camera sees a calibration board in a
-//! person's [`Hands`]. A code in the upper left corner of the image contains the time of rendering. Images are rendered
+//! The scene comes from a [`EndoscopeBody`], a closure of the emulator's time; or the camera sees a calibration board in a
+//! person's [`BoardHands`]. A code in the upper left corner of the image contains the time of rendering. Images are rendered
 //! only while a client is connected. Faults of the content are its own (`freeze`, `black`, `torn`, `late`,
 //! `wrong-size`, `other-format`); a client that does not read its images is disconnected.
 
-pub(super) mod alone;
 mod board;
 mod draw;
 mod pipe;
+mod render;
+mod render_thread;
 mod rtsp;
 mod serve;
-mod shot;
+pub(super) mod standalone;
 #[cfg(test)]
 mod tests;
-mod workshop;
 
 use std::path::PathBuf;
 
-pub use board::{Hands, held};
+pub use board::{BoardHands, held};
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
-use nima_endoscope::{Board, Camera};
+use nima_endoscope::{Camera, Checkerboard};
 use nima_simulation::{
     camera::{camera_of, usual},
     scene::Scene,
 };
 
-use self::shot::{Seen, Subject};
+use self::render::{ShotState, ShotSubject};
 use super::Emulator;
 
 /// One instrument in the workspace, as seen by an endoscope.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Instrument {
+pub struct EndoscopeInstrument {
     pub tip_m: Vector3<f64>,
     pub trocar_m: Vector3<f64>,
 }
 
 /// Returns the instruments at a time, s since the emulator began.
-pub type Body = Box<dyn FnMut(f64) -> Vec<Instrument> + Send>;
+pub type EndoscopeBody = Box<dyn FnMut(f64) -> Vec<EndoscopeInstrument> + Send>;
 
 /// Properties of an emulated endoscope.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Emulated {
+pub struct EmulatedEndoscope {
     /// TCP port; 0 selects a free one.
     pub port: u16,
     /// Frames per second.
@@ -62,7 +62,7 @@ pub struct Emulated {
     pub gives_way: bool,
 }
 
-impl Emulated {
+impl EmulatedEndoscope {
     /// The default endoscope of a scene, on this port.
     pub fn of(scene: &Scene, port: u16) -> Self {
         Self {
@@ -78,17 +78,17 @@ impl Emulated {
     }
 
     /// Makes the emulator with a source of instruments.
-    pub fn with(self, scene: &Scene, mut body: Body) -> Box<dyn Emulator> {
-        let seen = Box::new(move |now_s: f64| Seen::Instruments(body(now_s)));
-        Box::new(serve::Endoscope::new(self, Subject::Scene(Box::new(scene.clone())), seen))
+    pub fn with(self, scene: &Scene, mut body: EndoscopeBody) -> Box<dyn Emulator> {
+        let seen = Box::new(move |now_s: f64| ShotState::Instruments(body(now_s)));
+        Box::new(serve::EndoscopeServer::new(self, ShotSubject::Scene(Box::new(scene.clone())), seen))
     }
 
     /// Makes the emulator with a calibration board in front of its single lens, and without a time code, which would
     /// cover the board.
-    pub fn with_board(self, board: Board, mut hands: Hands) -> Box<dyn Emulator> {
-        let seen = Box::new(move |now_s: f64| Seen::Board(hands(now_s)));
+    pub fn with_board(self, board: Checkerboard, mut hands: BoardHands) -> Box<dyn Emulator> {
+        let seen = Box::new(move |now_s: f64| ShotState::Board(hands(now_s)));
         let emulated = Self { square_px: 0, baseline_m: None, ..self };
-        Box::new(serve::Endoscope::new(emulated, Subject::Board(board), seen))
+        Box::new(serve::EndoscopeServer::new(emulated, ShotSubject::Board(board), seen))
     }
 }
 

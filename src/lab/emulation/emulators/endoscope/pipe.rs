@@ -10,30 +10,30 @@ use std::{
     time::Duration,
 };
 
-use nima_endoscope::{h264::Encoder, jpeg};
+use nima_endoscope::{h264::H264Encoder, jpeg};
 
-use super::shot::Shot;
+use super::render::Shot;
 use crate::emulators::EmulatedFault;
 
 const RETRY: Duration = Duration::from_millis(200);
 
 /// An image to be written.
-struct Job {
+struct ImageJob {
     rgb: Vec<u8>,
     size_px: [usize; 2],
     fault: EmulatedFault,
 }
 
-pub(super) struct Pipe(SyncSender<Job>);
+pub(super) struct Pipe(SyncSender<ImageJob>);
 
 /// Coding of a stream.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Coding {
+enum PipeCoding {
     Jpeg(u8),
     H264(f64),
 }
 
-impl Coding {
+impl PipeCoding {
     /// Chosen by the path's ending.
     fn of(path: &std::path::Path, rate_hz: f64, quality: u8) -> Self {
         let is_h264 = |ending: &std::ffi::OsStr| ["h264", "264"].iter().any(|known| ending.eq_ignore_ascii_case(known));
@@ -46,9 +46,9 @@ impl Coding {
 /// # Errors
 /// In a program built without the required feature.
 pub(super) fn check(path: &std::path::Path, rate_hz: f64) -> io::Result<()> {
-    match Coding::of(path, rate_hz, 1) {
-        Coding::Jpeg(_) => Ok(()),
-        Coding::H264(rate_hz) => Encoder::new(rate_hz).map(drop),
+    match PipeCoding::of(path, rate_hz, 1) {
+        PipeCoding::Jpeg(_) => Ok(()),
+        PipeCoding::H264(rate_hz) => H264Encoder::new(rate_hz).map(drop),
     }
 }
 
@@ -56,7 +56,7 @@ impl Pipe {
     /// Writes on its own thread, because opening a named pipe waits for its reader.
     pub(super) fn start(path: PathBuf, rate_hz: f64, quality: u8) -> io::Result<Self> {
         check(&path, rate_hz)?;
-        let coding = Coding::of(&path, rate_hz, quality);
+        let coding = PipeCoding::of(&path, rate_hz, quality);
         let (sender, jobs) = sync_channel(1);
         Builder::new().name("pipe".to_owned()).spawn(move || {
             // Ends with the emulator, which holds the other end of `jobs`.
@@ -69,25 +69,25 @@ impl Pipe {
 
     /// Sends an image if the previous one has been written.
     pub(super) fn send(&self, shot: &Shot<'_>, fault: EmulatedFault) {
-        self.0.try_send(Job { rgb: shot.rgb.to_vec(), size_px: shot.size_px, fault }).ok();
+        self.0.try_send(ImageJob { rgb: shot.rgb.to_vec(), size_px: shot.size_px, fault }).ok();
     }
 }
 
 /// Writes until the reader closes (then it is tried again), or the emulator ends.
-fn write(path: &std::path::Path, coding: Coding, jobs: &Receiver<Job>) -> io::Result<Option<()>> {
+fn write(path: &std::path::Path, coding: PipeCoding, jobs: &Receiver<ImageJob>) -> io::Result<Option<()>> {
     let Ok(mut file) = OpenOptions::new().write(true).create(true).truncate(true).open(path) else {
         // The folder does not exist yet; waiting images will be outdated then.
         return Ok(jobs.recv().ok().map(drop));
     };
     let mut encoder = None;
-    while let Ok(Job { rgb, size_px, fault }) = jobs.recv() {
+    while let Ok(ImageJob { rgb, size_px, fault }) = jobs.recv() {
         let mut bytes = match coding {
             _ if fault == EmulatedFault::OtherFormat => b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR".to_vec(),
-            Coding::Jpeg(quality) => jpeg::encode(&rgb, size_px, quality),
-            Coding::H264(rate_hz) => {
+            PipeCoding::Jpeg(quality) => jpeg::encode(&rgb, size_px, quality),
+            PipeCoding::H264(rate_hz) => {
                 let encoder = match &mut encoder {
                     Some(encoder) => encoder,
-                    none => none.insert(Encoder::new(rate_hz)?),
+                    none => none.insert(H264Encoder::new(rate_hz)?),
                 };
                 encoder.encode(&rgb, size_px, false)?
             }

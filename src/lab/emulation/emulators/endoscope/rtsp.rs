@@ -6,9 +6,9 @@ use std::time::Duration;
 use nima_endoscope::h264;
 
 /// Maximum request, bytes.
-const REQUEST_MOST: usize = 8 << 10;
+const REQUEST_MAX: usize = 8 << 10;
 /// Maximum payload of a packet, bytes: fits into an Ethernet frame, as sent by cameras.
-const PAYLOAD_MOST: usize = 1400;
+const PAYLOAD_MAX: usize = 1400;
 const CLOCK_HZ: f64 = 90_000.0;
 const PAYLOAD_TYPE: u8 = 96;
 const SOURCE: u32 = 0x4e49_4d41;
@@ -20,7 +20,7 @@ const FRAGMENTS: u8 = 28;
 
 /// A connection that speaks RTSP.
 #[derive(Debug, Default)]
-pub(super) struct Session {
+pub(super) struct RtspSession {
     held: Vec<u8>,
     /// Channel of the packets while playing; the reports use the next one.
     channel: u8,
@@ -33,7 +33,7 @@ pub(super) struct Session {
 
 /// Result of a request.
 #[derive(Debug, PartialEq, Eq)]
-pub(super) struct Reply {
+pub(super) struct RtspReply {
     pub(super) text: String,
     /// Whether it starts to play.
     pub(super) begins: bool,
@@ -45,10 +45,10 @@ pub(super) fn is_rtsp(request: &[u8]) -> bool {
     request.split(|byte| *byte == b'\n').next().is_some_and(|line| line.trim_ascii_end().ends_with(b"RTSP/1.0"))
 }
 
-impl Session {
+impl RtspSession {
     /// Processes bytes of a client; returns a response to each complete request. `announces` is the camera's
     /// description of its stream.
-    pub(super) fn hear(&mut self, bytes: &[u8], announces: &str) -> Vec<Reply> {
+    pub(super) fn receive(&mut self, bytes: &[u8], announces: &str) -> Vec<RtspReply> {
         self.held.extend_from_slice(bytes);
         let mut replies = Vec::new();
         loop {
@@ -64,57 +64,57 @@ impl Session {
             let Some(end) = self.held.windows(4).position(|four| four == b"\r\n\r\n") else { break };
             let head = String::from_utf8_lossy(&self.held[..end]).into_owned();
             let body = header(&head, "content-length").and_then(|length| length.parse().ok()).unwrap_or(0_usize);
-            if body > REQUEST_MOST || self.held.len() < end + 4 + body {
+            if body > REQUEST_MAX || self.held.len() < end + 4 + body {
                 break;
             }
             self.held.drain(..end + 4 + body);
             replies.push(self.reply(&head, announces));
         }
-        if self.held.len() > REQUEST_MOST {
-            replies.push(Reply { text: answer("400 Bad Request", "0", "", ""), begins: false, ends: true });
+        if self.held.len() > REQUEST_MAX {
+            replies.push(RtspReply { text: answer("400 Bad Request", "0", "", ""), begins: false, ends: true });
         }
         replies
     }
 
-    fn reply(&mut self, head: &str, announces: &str) -> Reply {
+    fn reply(&mut self, head: &str, announces: &str) -> RtspReply {
         let mut words = head.split_whitespace();
         let method = words.next().unwrap_or_default();
         let url = words.next().unwrap_or_default();
         let number: String =
             header(head, "cseq").unwrap_or("0").chars().filter(char::is_ascii_digit).take(10).collect();
         let session = "Session: 4e494d41;timeout=60\r\n";
-        let told = |status: &str, more: &str, body: &str| answer(status, &number, more, body);
-        let mut reply = Reply { text: String::new(), begins: false, ends: false };
+        let report = |status: &str, more: &str, body: &str| answer(status, &number, more, body);
+        let mut reply = RtspReply { text: String::new(), begins: false, ends: false };
         reply.text = match method {
-            _ if !is_known(url) => told("404 Not Found", "", ""),
-            "OPTIONS" => told("200 OK", "Public: OPTIONS, DESCRIBE, SETUP, PLAY, TEARDOWN, GET_PARAMETER\r\n", ""),
-            "DESCRIBE" if announces.is_empty() => told("501 Not Implemented", "", ""),
+            _ if !is_known(url) => report("404 Not Found", "", ""),
+            "OPTIONS" => report("200 OK", "Public: OPTIONS, DESCRIBE, SETUP, PLAY, TEARDOWN, GET_PARAMETER\r\n", ""),
+            "DESCRIBE" if announces.is_empty() => report("501 Not Implemented", "", ""),
             "DESCRIBE" => {
                 let base = url.trim_end_matches('/');
-                told("200 OK", &format!("Content-Base: {base}/\r\nContent-Type: application/sdp\r\n"), announces)
+                report("200 OK", &format!("Content-Base: {base}/\r\nContent-Type: application/sdp\r\n"), announces)
             }
             "SETUP" => match channels(header(head, "transport").unwrap_or_default()) {
                 Some(channel) => {
                     self.channel = channel;
                     let next = u16::from(channel) + 1;
                     let transport = format!("Transport: RTP/AVP/TCP;unicast;interleaved={channel}-{next}\r\n{session}");
-                    told("200 OK", &transport, "")
+                    report("200 OK", &transport, "")
                 }
                 // Players request datagrams first.
-                None => told("461 Unsupported Transport", "", ""),
+                None => report("461 Unsupported Transport", "", ""),
             },
             "PLAY" => {
                 self.plays = true;
                 reply.begins = true;
-                told("200 OK", &format!("{session}Range: npt=0.000-\r\n"), "")
+                report("200 OK", &format!("{session}Range: npt=0.000-\r\n"), "")
             }
-            "GET_PARAMETER" | "SET_PARAMETER" => told("200 OK", session, ""),
+            "GET_PARAMETER" | "SET_PARAMETER" => report("200 OK", session, ""),
             "TEARDOWN" => {
                 self.plays = false;
                 reply.ends = true;
-                told("200 OK", session, "")
+                report("200 OK", session, "")
             }
-            _ => told("405 Method Not Allowed", "", ""),
+            _ => report("405 Method Not Allowed", "", ""),
         };
         reply
     }
@@ -131,14 +131,14 @@ impl Session {
         let mut nals = h264::nal_units(unit).peekable();
         while let Some(nal) = nals.next() {
             let is_last = nals.peek().is_none();
-            if nal.len() <= PAYLOAD_MOST {
+            if nal.len() <= PAYLOAD_MAX {
                 self.packet(&mut out, stamp, is_last, &[nal]);
                 continue;
             }
             let head = nal[0];
             let body = &nal[1..];
-            let pieces = body.len().div_ceil(PAYLOAD_MOST - 2);
-            for (number, piece) in body.chunks(PAYLOAD_MOST - 2).enumerate() {
+            let pieces = body.len().div_ceil(PAYLOAD_MAX - 2);
+            for (number, piece) in body.chunks(PAYLOAD_MAX - 2).enumerate() {
                 let begins = if number == 0 { 0x80 } else { 0 };
                 let ends = if number + 1 == pieces { 0x40 } else { 0 };
                 let heads = [head & 0x60 | FRAGMENTS, begins | ends | head & 0x1f];
@@ -226,15 +226,15 @@ fn framed(out: &mut Vec<u8>, channel: u8, parts: &[&[u8]]) {
 mod tests {
     use super::*;
 
-    fn asked(session: &mut Session, request: &str) -> Reply {
-        let mut replies = session.hear(request.as_bytes(), &announcement("H264"));
+    fn asked(session: &mut RtspSession, request: &str) -> RtspReply {
+        let mut replies = session.receive(request.as_bytes(), &announcement("H264"));
         assert_eq!(replies.len(), 1, "{request}");
         replies.remove(0)
     }
 
     #[test]
     fn a_player_is_answered_from_the_first_question_to_the_last() {
-        let mut session = Session::default();
+        let mut session = RtspSession::default();
         let url = "rtsp://127.0.0.1:47150/stream";
         assert!(is_rtsp(format!("OPTIONS {url} RTSP/1.0\r\nCSeq").as_bytes()) && !is_rtsp(b"GET / HTTP/1.1\r\n"));
         let mut ask = |text: String| asked(&mut session, &text);
@@ -254,11 +254,11 @@ mod tests {
 
     #[test]
     fn requests_in_pieces_reports_between_them_and_nonsense_are_borne() {
-        let mut session = Session::default();
+        let mut session = RtspSession::default();
         let bytes = b"$\x01\x00\x03abcOPTIONS * RTSP/1.0\r\nCSeq: 1\r\n\r\n$\x01\x00\x01xOPTIONS * RTSP/1.0\r\nCSeq: 2\r\nContent-Length: 3\r\n\r\nabc";
-        let replies: Vec<Reply> = bytes.iter().flat_map(|byte| session.hear(&[*byte], "")).collect();
+        let replies: Vec<RtspReply> = bytes.iter().flat_map(|byte| session.receive(&[*byte], "")).collect();
         assert_eq!(replies.len(), 2);
-        assert!(Session::default().hear(&vec![b'a'; 10_000], "").iter().all(|reply| reply.ends));
+        assert!(RtspSession::default().receive(&vec![b'a'; 10_000], "").iter().all(|reply| reply.ends));
         let mut random = fastrand::Rng::with_seed(1);
         for _ in 0..2000 {
             let mut bytes =
@@ -267,7 +267,7 @@ mod tests {
                 let at = random.usize(..bytes.len());
                 bytes[at] = random.u8(..);
             }
-            Session::default().hear(&bytes, "x");
+            RtspSession::default().receive(&bytes, "x");
         }
     }
 
@@ -279,7 +279,7 @@ mod tests {
             (0..4000).map(|at| if at == 0 { 0x65 } else { (at % 251 + 1) as u8 }).collect(),
         ];
         let unit: Vec<u8> = nals.iter().flat_map(|nal| [&[0, 0, 0, 1][..], nal].concat()).collect();
-        let mut session = Session { channel: 2, ..Session::default() };
+        let mut session = RtspSession { channel: 2, ..RtspSession::default() };
         let since = Duration::new(1_700_000_000, 250_000_000);
         let bytes = session.packets(&unit, since);
         let mut at = 0;

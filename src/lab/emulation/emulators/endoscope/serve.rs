@@ -9,19 +9,19 @@ use std::{
 use nima_endoscope::h264;
 
 use super::{
-    Emulated,
+    EmulatedEndoscope,
     pipe::Pipe,
-    rtsp::{self, Reply},
-    shot::{Seen, Subject},
-    workshop::{BOUNDARY, Order, Sent, Workshop},
+    render::{ShotState, ShotSubject},
+    render_thread::{BOUNDARY, RenderOrder, RenderThread, RenderedImage},
+    rtsp::{self, RtspReply},
 };
 use crate::emulators::{
-    EmulatedFault, Emulator, Peer, Turn,
-    wires::{End, tcp},
+    EmulatedFault, Emulator, EmulatorTurn, WirePeer,
+    wires::{WireEnd, tcp},
 };
 
 /// Maximum request, bytes.
-const REQUEST_MOST: usize = 8 << 10;
+const REQUEST_MAX: usize = 8 << 10;
 /// Delay of a late image, s.
 const LATE_S: f64 = 0.4;
 /// Interval at which a finished image is checked for, s.
@@ -29,25 +29,25 @@ const LOOK_S: f64 = 1e-3;
 /// Paths that a browser or a player may request.
 const PATHS: [&str; 4] = ["/", "/stream", "/stream.mjpg", "/?action=stream"];
 
-pub(super) struct Endoscope {
-    emulated: Emulated,
+pub(super) struct EndoscopeServer {
+    emulated: EmulatedEndoscope,
     /// Returns the view at a time.
-    seen: Box<dyn FnMut(f64) -> Seen + Send>,
-    subject: Option<Subject>,
+    seen: Box<dyn FnMut(f64) -> ShotState + Send>,
+    subject: Option<ShotSubject>,
     /// Started when the first image is requested.
-    workshop: Option<Workshop>,
+    workshop: Option<RenderThread>,
     /// Whether the next image must be one with which a player can begin.
     wants_key: bool,
-    clients: Vec<Client>,
+    clients: Vec<EndoscopeClient>,
     due_s: f64,
     /// When to check next for a finished image, s.
     looks_s: f64,
     /// When to send each late image, s.
-    late: VecDeque<(f64, Sent)>,
+    late: VecDeque<(f64, RenderedImage)>,
 }
 
-struct Client {
-    peer: Peer,
+struct EndoscopeClient {
+    peer: WirePeer,
     request: Vec<u8>,
     watches: Watches,
 }
@@ -56,17 +56,21 @@ enum Watches {
     /// Has not sent a request yet.
     Nothing,
     Parts,
-    Packets(rtsp::Session),
+    Packets(rtsp::RtspSession),
 }
 
-impl Client {
+impl EndoscopeClient {
     fn wants_unit(&self) -> bool {
         matches!(&self.watches, Watches::Packets(session) if session.plays)
     }
 }
 
-impl Endoscope {
-    pub(super) fn new(emulated: Emulated, subject: Subject, seen: Box<dyn FnMut(f64) -> Seen + Send>) -> Self {
+impl EndoscopeServer {
+    pub(super) fn new(
+        emulated: EmulatedEndoscope,
+        subject: ShotSubject,
+        seen: Box<dyn FnMut(f64) -> ShotState + Send>,
+    ) -> Self {
         Self {
             emulated,
             seen,
@@ -81,7 +85,7 @@ impl Endoscope {
     }
 
     fn is_watched(&self) -> bool {
-        let watches = |client: &Client| client.wants_unit() || matches!(client.watches, Watches::Parts);
+        let watches = |client: &EndoscopeClient| client.wants_unit() || matches!(client.watches, Watches::Parts);
         self.emulated.pipe.is_some() || self.clients.iter().any(watches)
     }
 
@@ -95,22 +99,22 @@ impl Endoscope {
         let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
         let seen = (self.seen)(now_s);
         if let Some(subject) = self.subject.take() {
-            let Emulated { pipe, rate_hz, quality, .. } = &self.emulated;
+            let EmulatedEndoscope { pipe, rate_hz, quality, .. } = &self.emulated;
             // Whether it can be written was checked when it was requested.
             let pipe = pipe.clone().and_then(|path| Pipe::start(path, *rate_hz, *quality).ok());
             // Without a thread there is no image, and the client reports that no data arrive.
-            self.workshop = Workshop::start(self.emulated.clone(), subject, pipe).ok();
+            self.workshop = RenderThread::start(self.emulated.clone(), subject, pipe).ok();
         }
         let parts = self.clients.iter().any(|client| matches!(client.watches, Watches::Parts));
-        let units = self.clients.iter().any(Client::wants_unit);
+        let units = self.clients.iter().any(EndoscopeClient::wants_unit);
         let key = self.wants_key;
         if let Some(workshop) = &mut self.workshop {
-            workshop.order(Order { since, seen, fault, parts, units, key });
+            workshop.order(RenderOrder { since, seen, fault, parts, units, key });
             self.wants_key &= !units;
         }
     }
 
-    fn send(&mut self, sent: &Sent, turn: &mut Turn<'_>) {
+    fn send(&mut self, sent: &RenderedImage, turn: &mut EmulatorTurn<'_>) {
         for client in &mut self.clients {
             match &mut client.watches {
                 // A client that connected while the image was rendered waits for the next one.
@@ -124,7 +128,7 @@ impl Endoscope {
     }
 
     /// Answers a player's requests.
-    fn replied(&mut self, from: Peer, replies: &[Reply], turn: &mut Turn<'_>) {
+    fn replied(&mut self, from: WirePeer, replies: &[RtspReply], turn: &mut EmulatorTurn<'_>) {
         for reply in replies {
             turn.send(from, reply.text.as_bytes());
             if reply.begins {
@@ -168,8 +172,8 @@ fn announces(fault: EmulatedFault) -> String {
     }
 }
 
-impl Emulator for Endoscope {
-    fn wires(&self) -> io::Result<Vec<Box<dyn End>>> {
+impl Emulator for EndoscopeServer {
+    fn wires(&self) -> io::Result<Vec<Box<dyn WireEnd>>> {
         Ok(vec![tcp(self.emulated.port)])
     }
 
@@ -177,14 +181,14 @@ impl Emulator for Endoscope {
         format!("http://{}/", places[0])
     }
 
-    fn meet(&mut self, peer: Peer, _: &mut Turn<'_>) {
-        self.clients.push(Client { peer, request: Vec::new(), watches: Watches::Nothing });
+    fn meet(&mut self, peer: WirePeer, _: &mut EmulatorTurn<'_>) {
+        self.clients.push(EndoscopeClient { peer, request: Vec::new(), watches: Watches::Nothing });
     }
 
-    fn hear(&mut self, from: Peer, bytes: &[u8], turn: &mut Turn<'_>) {
+    fn receive(&mut self, from: WirePeer, bytes: &[u8], turn: &mut EmulatorTurn<'_>) {
         let Some(client) = self.clients.iter_mut().find(|client| client.peer == from) else { return };
         if let Watches::Packets(session) = &mut client.watches {
-            let replies = session.hear(bytes, &announces(turn.fault));
+            let replies = session.receive(bytes, &announces(turn.fault));
             self.replied(from, &replies, turn);
             return;
         }
@@ -194,11 +198,11 @@ impl Emulator for Endoscope {
         client.request.extend_from_slice(bytes);
         let is_whole = client.request.windows(4).any(|four| four == b"\r\n\r\n");
         if is_whole && rtsp::is_rtsp(&client.request) {
-            let mut session = rtsp::Session::default();
-            let replies = session.hear(&std::mem::take(&mut client.request), &announces(turn.fault));
+            let mut session = rtsp::RtspSession::default();
+            let replies = session.receive(&std::mem::take(&mut client.request), &announces(turn.fault));
             client.watches = Watches::Packets(session);
             self.replied(from, &replies, turn);
-        } else if is_whole || client.request.len() > REQUEST_MOST {
+        } else if is_whole || client.request.len() > REQUEST_MAX {
             let (answer, watches) = answer(&client.request);
             client.request.clear();
             client.watches = if watches { Watches::Parts } else { Watches::Nothing };
@@ -208,7 +212,7 @@ impl Emulator for Endoscope {
         }
     }
 
-    fn pass(&mut self, turn: &mut Turn<'_>) {
+    fn pass(&mut self, turn: &mut EmulatorTurn<'_>) {
         if turn.fault != EmulatedFault::Late {
             self.late.clear();
         }
@@ -216,11 +220,11 @@ impl Emulator for Endoscope {
             self.send(&sent, turn);
         }
         // The description sent at the beginning must remain valid: a camera that changes it disconnects.
-        if turn.fault == EmulatedFault::OtherFormat && self.clients.iter().any(Client::wants_unit) {
+        if turn.fault == EmulatedFault::OtherFormat && self.clients.iter().any(EndoscopeClient::wants_unit) {
             turn.hang_up();
-            self.lose(Peer::Everyone);
+            self.lose(WirePeer::Everyone);
         }
-        if let Some(sent) = self.workshop.as_mut().and_then(Workshop::made) {
+        if let Some(sent) = self.workshop.as_mut().and_then(RenderThread::made) {
             if turn.fault == EmulatedFault::Late {
                 self.late.push_back((turn.now_s + LATE_S, sent));
             } else {
@@ -241,8 +245,8 @@ impl Emulator for Endoscope {
         [late_s, due_s].into_iter().flatten().reduce(f64::min).or(Some(f64::INFINITY))
     }
 
-    fn lose(&mut self, peer: Peer) {
-        self.clients.retain(|client| client.peer != peer && peer != Peer::Everyone);
+    fn lose(&mut self, peer: WirePeer) {
+        self.clients.retain(|client| client.peer != peer && peer != WirePeer::Everyone);
         if self.clients.is_empty() {
             self.late.clear();
         }

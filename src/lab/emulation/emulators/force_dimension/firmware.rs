@@ -4,12 +4,12 @@
 //! According to the SDK: force on selects FORCE; stop, excessive speed and an expired watchdog select BRAKE with a
 //! cause; brakes off selects IDLE. Force is applied only in FORCE.
 
-use drd::wire::Order;
+use drd::wire::ClientOrder;
 use nalgebra::Vector3;
 use nima_devices::force_dimension::status::{ENTRIES, ForceOffCause};
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Mode {
+pub enum FirmwareMode {
     /// No current.
     Idle,
     /// Force is applied.
@@ -21,9 +21,9 @@ pub enum Mode {
 
 /// Output of the motors.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Applied {
-    pub mode: Mode,
-    /// Force on the hand, N; zero outside [`Mode::Force`].
+pub struct MotorOutput {
+    pub mode: FirmwareMode,
+    /// Force on the hand, N; zero outside [`FirmwareMode::Force`].
     pub force_n: Vector3<f64>,
     /// Force of the gripper, N.
     pub gripper_n: f64,
@@ -34,7 +34,7 @@ pub struct Applied {
 /// A device that has just been switched on: velocity threshold 2 m/s, no watchdog.
 #[derive(Clone, Debug)]
 pub(super) struct Firmware {
-    applied: Applied,
+    applied: MotorOutput,
     commanded_s: f64,
     motor_limit_n: f64,
     pub(super) watchdog_steps: u32,
@@ -55,7 +55,7 @@ impl Firmware {
     /// With this limit of the motors, N.
     pub(super) fn new(motor_limit_n: f64) -> Self {
         Self {
-            applied: Applied::default(),
+            applied: MotorOutput::default(),
             commanded_s: 0.0,
             motor_limit_n,
             watchdog_steps: 0,
@@ -66,19 +66,20 @@ impl Firmware {
     }
 
     /// Output of the motors.
-    pub(super) const fn applied(&self) -> &Applied {
+    pub(super) const fn applied(&self) -> &MotorOutput {
         &self.applied
     }
 
     /// Switches the force off.
     pub(super) const fn cut(&mut self, cause: ForceOffCause) {
-        self.applied = Applied { mode: Mode::Brake, force_n: Vector3::new(0.0, 0.0, 0.0), gripper_n: 0.0, cause };
+        self.applied =
+            MotorOutput { mode: FirmwareMode::Brake, force_n: Vector3::new(0.0, 0.0, 0.0), gripper_n: 0.0, cause };
     }
 
     /// Advances the time with the hand at `position_m`.
     pub(super) fn pass(&mut self, now_s: f64, position_m: &Vector3<f64>) {
         let silent_s = now_s - self.commanded_s;
-        if self.applied.mode == Mode::Force
+        if self.applied.mode == FirmwareMode::Force
             && self.watchdog_steps > 0
             && silent_s > f64::from(self.watchdog_steps) * STEP_S
         {
@@ -91,40 +92,43 @@ impl Firmware {
         self.past = Some((now_s, *position_m));
         let speed_m_s = (position_m - past_m).norm() / (now_s - past_s);
         let too_fast = speed_m_s * 1e3 > f64::from(self.threshold_mm_s) && speed_m_s < JUMP_M_S;
-        if self.applied.mode == Mode::Force && self.threshold_mm_s > 0 && too_fast {
+        if self.applied.mode == FirmwareMode::Force && self.threshold_mm_s > 0 && too_fast {
             self.cut(ForceOffCause::Velocity);
         }
     }
 
     /// Executes an order; returns whether the motors were saturated.
-    pub(super) fn obey(&mut self, now_s: f64, order: Order, argument: u32, values: [f64; 4]) -> bool {
+    pub(super) fn obey(&mut self, now_s: f64, order: ClientOrder, argument: u32, values: [f64; 4]) -> bool {
         match order {
-            Order::Force => return self.force(now_s, values),
-            Order::EnableForce if argument == 0 => {
+            ClientOrder::Force => return self.force(now_s, values),
+            ClientOrder::EnableForce if argument == 0 => {
                 self.cut(ForceOffCause::Software);
-                self.applied.mode = Mode::Idle;
+                self.applied.mode = FirmwareMode::Idle;
             }
-            Order::EnableForce => {
+            ClientOrder::EnableForce => {
                 // The last cause of switching off remains readable.
-                self.applied = Applied { mode: Mode::Force, cause: self.applied.cause, ..Applied::default() };
+                self.applied =
+                    MotorOutput { mode: FirmwareMode::Force, cause: self.applied.cause, ..MotorOutput::default() };
                 self.commanded_s = now_s;
             }
-            Order::Brakes => {
+            ClientOrder::Brakes => {
                 self.cut(ForceOffCause::Software);
-                self.applied.mode = if argument == 0 { Mode::Idle } else { Mode::Brake };
+                self.applied.mode = if argument == 0 { FirmwareMode::Idle } else { FirmwareMode::Brake };
             }
-            Order::Watchdog => (self.watchdog_steps, self.commanded_s) = (argument, now_s),
-            Order::VelocityThreshold => self.threshold_mm_s = argument,
-            Order::Button => self.gripper_button = argument != 0,
-            Order::Close => self.cut(ForceOffCause::Software),
-            Order::Hello | Order::Open | Order::Read => {}
+            ClientOrder::Watchdog => (self.watchdog_steps, self.commanded_s) = (argument, now_s),
+            ClientOrder::VelocityThreshold => self.threshold_mm_s = argument,
+            ClientOrder::Button => self.gripper_button = argument != 0,
+            ClientOrder::Close => self.cut(ForceOffCause::Software),
+            ClientOrder::Hello | ClientOrder::Open | ClientOrder::Read => {}
         }
         false
     }
 
     fn force(&mut self, now_s: f64, [x, y, z, gripper_n]: [f64; 4]) -> bool {
         let asked_n = Vector3::new(x, y, z);
-        if self.applied.mode != Mode::Force || !asked_n.iter().chain([&gripper_n]).all(|value| value.is_finite()) {
+        if self.applied.mode != FirmwareMode::Force
+            || !asked_n.iter().chain([&gripper_n]).all(|value| value.is_finite())
+        {
             return false;
         }
         self.commanded_s = now_s;
@@ -138,7 +142,7 @@ impl Firmware {
         let mode = self.applied.mode;
         let off = self.applied.cause as u32;
         let on = u32::from;
-        let modes = [on(mode == Mode::Idle), on(mode == Mode::Force), on(mode == Mode::Brake)];
+        let modes = [on(mode == FirmwareMode::Idle), on(mode == FirmwareMode::Force), on(mode == FirmwareMode::Brake)];
         let [idle, force, brake] = modes;
         [1, 1, 1, on(reset), idle, force, brake, 0, 1, on(fault), 0, 0, 1, 0, off, 0, 1]
     }
@@ -151,9 +155,9 @@ mod tests {
 
     fn on_with_watchdog(steps: u32) -> Firmware {
         let mut firmware = Firmware::new(12.0);
-        firmware.obey(0.0, Order::Watchdog, steps, [0.0; 4]);
-        firmware.obey(0.0, Order::EnableForce, 1, [0.0; 4]);
-        firmware.obey(0.0, Order::Force, 0, [3.0, 0.0, 0.0, 1.0]);
+        firmware.obey(0.0, ClientOrder::Watchdog, steps, [0.0; 4]);
+        firmware.obey(0.0, ClientOrder::EnableForce, 1, [0.0; 4]);
+        firmware.obey(0.0, ClientOrder::Force, 0, [3.0, 0.0, 0.0, 1.0]);
         firmware
     }
 
@@ -165,10 +169,10 @@ mod tests {
         firmware.pass(0.0201, &Vector3::zeros());
         assert_eq!(
             firmware.applied(),
-            &Applied { cause: ForceOffCause::Watchdog, ..Applied::default() },
+            &MotorOutput { cause: ForceOffCause::Watchdog, ..MotorOutput::default() },
             "brakes, no force"
         );
-        firmware.obey(0.03, Order::Force, 0, [3.0, 0.0, 0.0, 0.0]);
+        firmware.obey(0.03, ClientOrder::Force, 0, [3.0, 0.0, 0.0, 0.0]);
         assert_eq!(firmware.applied().force_n.norm(), 0.0, "a force command alone does not bring it back");
     }
 
@@ -179,19 +183,19 @@ mod tests {
         for k in 0..100 {
             firmware.pass(f64::from(k) * 1e-3, &at(1.9, k));
         }
-        assert_eq!(firmware.applied().mode, Mode::Force);
+        assert_eq!(firmware.applied().mode, FirmwareMode::Force);
         for k in 100..120 {
             firmware.pass(f64::from(k) * 1e-3, &at(2.1, k));
         }
-        assert_eq!((firmware.applied().mode, firmware.applied().cause), (Mode::Brake, ForceOffCause::Velocity));
+        assert_eq!((firmware.applied().mode, firmware.applied().cause), (FirmwareMode::Brake, ForceOffCause::Velocity));
     }
 
     #[test]
     fn motors_saturate_and_refuse_what_is_no_number() {
         let mut firmware = on_with_watchdog(0);
-        assert!(firmware.obey(0.0, Order::Force, 0, [0.0, 30.0, 40.0, 0.0]));
+        assert!(firmware.obey(0.0, ClientOrder::Force, 0, [0.0, 30.0, 40.0, 0.0]));
         assert!((firmware.applied().force_n - Vector3::new(0.0, 7.2, 9.6)).norm() < 1e-12);
-        firmware.obey(0.0, Order::Force, 0, [f64::NAN, 0.0, 0.0, 0.0]);
+        firmware.obey(0.0, ClientOrder::Force, 0, [f64::NAN, 0.0, 0.0, 0.0]);
         assert!((firmware.applied().force_n.norm() - 12.0).abs() < 1e-12);
     }
 }

@@ -1,25 +1,25 @@
 //! The emulated omega.7 at the other end of the stub library's socket.
 //!
 //! A program that loads the stub library (our driver, or a third-party client) sends its requests here, one datagram
-//! for one USB exchange. The hand that holds the handle is a [`Body`]: it receives the motors' output and returns the
+//! for one USB exchange. The hand that holds the handle is a [`ForceDimensionBody`]: it receives the motors' output and returns the
 //! pose of the handle.
 
-pub(super) mod alone;
 mod firmware;
+pub(super) mod standalone;
 #[cfg(test)]
 #[expect(clippy::float_cmp, reason = "forces and positions arrive as they were sent, to the last bit")]
 mod tests;
 
 use std::{io, path::PathBuf};
 
-use drd::wire::{FRESH, Order, Reply, Request, SATURATED, TAKEN};
+use drd::wire::{ClientOrder, DeviceReply, DeviceRequest, FRESH, SATURATED, TAKEN};
 use firmware::Firmware;
 use nalgebra::{UnitQuaternion, Vector3};
-use nima_devices::force_dimension::status::{ForceOffCause, Kind, SdkError};
+use nima_devices::force_dimension::status::{ForceDimensionKind, ForceOffCause, SdkError};
 
-pub use firmware::{Applied, Mode};
+pub use firmware::{FirmwareMode, MotorOutput};
 
-use crate::emulators::{EmulatedFault, Emulator, End, Peer, Turn, wires::udp};
+use crate::emulators::{EmulatedFault, Emulator, EmulatorTurn, WireEnd, WirePeer, wires::udp};
 
 /// Pose of the handle, in the device's frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,13 +47,13 @@ impl Default for HandState {
 }
 
 /// The hand: called with the time since the start (s) and the motors' output, about once per millisecond.
-pub trait Body: FnMut(f64, &Applied) -> HandState + Send + 'static {}
+pub trait ForceDimensionBody: FnMut(f64, &MotorOutput) -> HandState + Send + 'static {}
 
-impl<T: FnMut(f64, &Applied) -> HandState + Send + 'static> Body for T {}
+impl<T: FnMut(f64, &MotorOutput) -> HandState + Send + 'static> ForceDimensionBody for T {}
 
 /// A hand that moves slowly on its own path and yields to force like a spring.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Held {
+pub struct EmulatedHand {
     /// Rest position, m.
     pub rest_m: Vector3<f64>,
     /// Radius of its circular path, m; one turn takes four seconds.
@@ -66,7 +66,7 @@ pub struct Held {
     pub stiffness_n_m: f64,
 }
 
-impl Default for Held {
+impl Default for EmulatedHand {
     fn default() -> Self {
         Self {
             rest_m: Vector3::new(0.0, 0.0, 0.02),
@@ -81,20 +81,20 @@ impl Default for Held {
 /// Time constant with which a held handle yields, s.
 const GIVE_S: f64 = 0.010;
 
-impl Held {
-    pub fn body(self) -> impl Body {
+impl EmulatedHand {
+    pub fn body(self) -> impl ForceDimensionBody {
         let mut last_s = 0.0;
         let mut given_m = Vector3::zeros();
-        move |now_s: f64, applied: &Applied| {
-            let share = ((now_s - last_s) / GIVE_S).clamp(0.0, 1.0);
+        move |now_s: f64, applied: &MotorOutput| {
+            let fraction = ((now_s - last_s) / GIVE_S).clamp(0.0, 1.0);
             last_s = now_s;
-            given_m += (applied.force_n / self.stiffness_n_m - given_m) * share;
+            given_m += (applied.force_n / self.stiffness_n_m - given_m) * fraction;
             let angle = now_s * std::f64::consts::FRAC_PI_2;
-            let way_m = Vector3::new(angle.cos(), angle.sin(), 0.5 * (2.0 * angle).sin()) * self.radius_m;
+            let travel_m = Vector3::new(angle.cos(), angle.sin(), 0.5 * (2.0 * angle).sin()) * self.radius_m;
             // Yaw and gripper move with the hand, by an amount that vanishes with the radius.
             let wave = (angle * 0.5).sin() * (self.radius_m / 0.02).min(1.0);
             HandState {
-                position_m: self.rest_m + way_m + given_m,
+                position_m: self.rest_m + travel_m + given_m,
                 orientation: UnitQuaternion::from_euler_angles(0.0, 0.0, self.yaw_rad + 0.3 * wave),
                 gripper_rad: self.gripper_rad + 0.1 * wave,
                 ..HandState::default()
@@ -104,10 +104,10 @@ impl Held {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Emulated {
+pub struct EmulatedForceDimension {
     pub serial: u16,
     /// Right or left hand; our driver refuses any other kind of device.
-    pub kind: Kind,
+    pub kind: ForceDimensionKind,
     /// Force beyond which the motors are saturated, N.
     pub motor_limit_n: f64,
     /// Whether it waits for its calibration.
@@ -116,9 +116,9 @@ pub struct Emulated {
     pub port: u16,
 }
 
-impl Default for Emulated {
+impl Default for EmulatedForceDimension {
     fn default() -> Self {
-        let kind = Kind::Omega7 { left_handed: false };
+        let kind = ForceDimensionKind::Omega7 { left_handed: false };
         Self { serial: 1234, kind, motor_limit_n: nima_devices::force_dimension::FORCE_MAX_N, reset: false, port: 0 }
     }
 }
@@ -129,16 +129,16 @@ const FIRMWARE: f64 = 3.2;
 /// The gripper counts as pressed below this, rad.
 const GRIPPER_CLOSED_RAD: f64 = 0.02;
 
-impl Emulated {
+impl EmulatedForceDimension {
     /// Held by this hand. The endpoint is the address for `NIMA_EMULATED_HANDLE`.
-    pub fn with(self, body: impl Body) -> Box<dyn Emulator> {
-        Box::new(Machine::new(self, Box::new(body), None))
+    pub fn with(self, body: impl ForceDimensionBody) -> Box<dyn Emulator> {
+        Box::new(ForceDimensionMachine::new(self, Box::new(body), None))
     }
 }
 
-struct Machine {
-    of: Emulated,
-    body: Box<dyn Body>,
+struct ForceDimensionMachine {
+    of: EmulatedForceDimension,
+    body: Box<dyn ForceDimensionBody>,
     /// Path of the stub library, reported with the endpoint.
     library: Option<PathBuf>,
     firmware: Firmware,
@@ -149,8 +149,8 @@ struct Machine {
     pressed: bool,
 }
 
-impl Machine {
-    fn new(of: Emulated, mut body: Box<dyn Body>, library: Option<PathBuf>) -> Self {
+impl ForceDimensionMachine {
+    fn new(of: EmulatedForceDimension, mut body: Box<dyn ForceDimensionBody>, library: Option<PathBuf>) -> Self {
         let firmware = Firmware::new(of.motor_limit_n);
         let state = body(0.0, firmware.applied());
         Self { of, body, library, firmware, state, frozen: None, client: None, pressed: false }
@@ -161,12 +161,12 @@ impl Machine {
         self.state = (self.body)(now_s, self.firmware.applied());
         self.firmware.pass(now_s, &self.state.position_m);
         // The button on the base switches force off and on again.
-        if self.state.force_button && !self.pressed && self.firmware.applied().mode == Mode::Force {
+        if self.state.force_button && !self.pressed && self.firmware.applied().mode == FirmwareMode::Force {
             self.firmware.cut(ForceOffCause::Button);
         }
         self.pressed = self.state.force_button;
         self.frozen = (fault == EmulatedFault::Freeze).then(|| self.frozen.unwrap_or(self.state));
-        if self.client.is_some_and(|(_, heard_s)| now_s - heard_s > SESSION_S) {
+        if self.client.is_some_and(|(_, received_s)| now_s - received_s > SESSION_S) {
             self.lose_client();
         }
     }
@@ -178,19 +178,19 @@ impl Machine {
         }
     }
 
-    fn reply(&mut self, now_s: f64, request: &Request, fault: EmulatedFault) -> Reply {
+    fn reply(&mut self, now_s: f64, request: &DeviceRequest, fault: EmulatedFault) -> DeviceReply {
         let taken = self.client.is_some_and(|(client, _)| client != request.client);
         let mut flags = if taken { TAKEN } else { 0 };
         let refused = match request.order {
-            Order::Hello => None,
+            ClientOrder::Hello => None,
             _ if taken => Some(SdkError::IN_USE),
-            Order::Open => {
+            ClientOrder::Open => {
                 self.client = Some((request.client, now_s));
                 None
             }
             _ if self.client.is_none() => Some(SdkError::NO_DEVICE),
             order => {
-                self.client = Some((request.client, now_s)).filter(|_| order != Order::Close);
+                self.client = Some((request.client, now_s)).filter(|_| order != ClientOrder::Close);
                 if self.firmware.obey(now_s, order, request.argument, request.values) {
                     flags |= SATURATED;
                 }
@@ -203,7 +203,7 @@ impl Machine {
         self.state_of(request, refused.map_or(0, |error| error.0.cast_unsigned()), flags, fault)
     }
 
-    fn state_of(&self, request: &Request, error: u32, flags: u32, fault: EmulatedFault) -> Reply {
+    fn state_of(&self, request: &DeviceRequest, error: u32, flags: u32, fault: EmulatedFault) -> DeviceReply {
         let state = self.frozen.as_ref().unwrap_or(&self.state);
         let mut position_m: [f64; 3] = state.position_m.into();
         if fault == EmulatedFault::NotANumber {
@@ -211,9 +211,9 @@ impl Machine {
         }
         let rotation = state.orientation.to_rotation_matrix();
         let frame = std::array::from_fn(|index| rotation.matrix()[(index / 3, index % 3)]);
-        let left = self.of.kind == Kind::Omega7 { left_handed: true };
+        let left = self.of.kind == ForceDimensionKind::Omega7 { left_handed: true };
         let pressed = self.firmware.gripper_button && state.gripper_rad < GRIPPER_CLOSED_RAD;
-        Reply {
+        DeviceReply {
             client: request.client,
             sequence: request.sequence,
             error,
@@ -232,8 +232,8 @@ impl Machine {
     }
 }
 
-impl Emulator for Machine {
-    fn wires(&self) -> io::Result<Vec<Box<dyn End>>> {
+impl Emulator for ForceDimensionMachine {
+    fn wires(&self) -> io::Result<Vec<Box<dyn WireEnd>>> {
         Ok(vec![udp(self.of.port)])
     }
 
@@ -249,8 +249,8 @@ impl Emulator for Machine {
         nima_devices::force_dimension::prepare_thread();
     }
 
-    fn hear(&mut self, from: Peer, bytes: &[u8], turn: &mut Turn<'_>) {
-        let Some(request) = Request::decode(bytes) else { return };
+    fn receive(&mut self, from: WirePeer, bytes: &[u8], turn: &mut EmulatorTurn<'_>) {
+        let Some(request) = DeviceRequest::decode(bytes) else { return };
         self.tick(turn.now_s, turn.fault);
         let mut frame = self.reply(turn.now_s, &request, turn.fault).encode().to_vec();
         match turn.fault {
@@ -261,11 +261,11 @@ impl Emulator for Machine {
         turn.send(from, &frame);
     }
 
-    fn pass(&mut self, turn: &mut Turn<'_>) {
+    fn pass(&mut self, turn: &mut EmulatorTurn<'_>) {
         self.tick(turn.now_s, turn.fault);
     }
 
-    fn lose(&mut self, _: Peer) {
+    fn lose(&mut self, _: WirePeer) {
         self.lose_client();
     }
 }

@@ -1,11 +1,11 @@
 //! An emulated Inverse3 on a pseudo-terminal: it answers every request at once, as the manufacturer's own client
 //! expects.
 //!
-//! The position of the grip comes from its [`Body`], which receives the force on the hand. The protocol has no checksum
+//! The position of the grip comes from its [`HaplyBody`], which receives the force on the hand. The protocol has no checksum
 //! and no fault bits. Kinematics, gravity compensation, power and temperatures are not emulated. The reaction of a real
 //! handle to a silent connection is not documented and not emulated either: here the last force remains.
 
-pub(super) mod alone;
+pub(super) mod standalone;
 #[cfg(test)]
 mod tests;
 
@@ -18,14 +18,14 @@ use std::{
 use nalgebra::Vector3;
 use nima_devices::haply::{
     CENTRE_M,
-    codec::{DeviceInfo, FORCE, FORCE_BYTES, STATE, State, WAKE_UP, force_of},
+    codec::{DeviceInfo, FORCE, FORCE_BYTES, HaplyState, STATE, WAKE_UP, force_of},
 };
 
-use crate::emulators::{EmulatedFault, Emulator, End, Peer, Turn, wires::terminal};
+use crate::emulators::{EmulatedFault, Emulator, EmulatorTurn, WireEnd, WirePeer, wires::terminal};
 
 /// Returns the state of the grip at a time (s since the emulator began) with this force on the hand (N, in the device's
 /// axes).
-pub type Body = Box<dyn FnMut(f64, &Vector3<f64>) -> State + Send>;
+pub type HaplyBody = Box<dyn FnMut(f64, &Vector3<f64>) -> HaplyState + Send>;
 
 /// Requests of the manufacturer's client that our driver does not use: torques and angles of the joints, a position.
 const TORQUES: u8 = 0x1A;
@@ -38,32 +38,40 @@ const PAUSE_S: f64 = 0.02;
 
 /// Properties of an emulated handle.
 #[derive(Clone, Debug)]
-pub struct Emulated {
+pub struct EmulatedHaply {
     pub info: DeviceInfo,
     /// The name of its port; by default in its own folder.
     pub link: Option<PathBuf>,
 }
 
-impl Default for Emulated {
+impl Default for EmulatedHaply {
     fn default() -> Self {
         let info = DeviceInfo { id: 0x049D, model: 4, hardware: 2, firmware: 9, uuid: *b"nima-emulated-01" };
         Self { info, link: None }
     }
 }
 
-impl Emulated {
+impl EmulatedHaply {
     /// Makes the emulator with a source of positions.
-    pub fn with(self, body: Body) -> Box<dyn Emulator> {
+    pub fn with(self, body: HaplyBody) -> Box<dyn Emulator> {
         let Self { info, link } = self;
-        Box::new(Device { info, link, body, heard: Vec::new(), heard_s: 0.0, force_n: Vector3::zeros(), frozen: None })
+        Box::new(HaplyDevice {
+            info,
+            link,
+            body,
+            received: Vec::new(),
+            received_s: 0.0,
+            force_n: Vector3::zeros(),
+            frozen: None,
+        })
     }
 }
 
 /// The force on the hand, readable from outside.
 #[derive(Clone, Debug, Default)]
-pub struct Felt(Arc<Mutex<Vector3<f64>>>);
+pub struct HapticForce(Arc<Mutex<Vector3<f64>>>);
 
-impl Felt {
+impl HapticForce {
     /// Returns the newest force, N.
     pub fn force_n(&self) -> Vector3<f64> {
         *self.0.lock().unwrap_or_else(PoisonError::into_inner)
@@ -71,7 +79,7 @@ impl Felt {
 
     /// A grip that a soft spring (300 N/m) leads along a circle of 10 mm about the middle of the workspace, and that
     /// yields to the force.
-    pub fn on_a_circle(&self) -> Body {
+    pub fn on_a_circle(&self) -> HaplyBody {
         const SPRING_N_M: f64 = 300.0;
         const RADIUS_M: f64 = 0.01;
         const RATE_RAD_S: f64 = 1.9;
@@ -80,27 +88,27 @@ impl Felt {
             *felt.0.lock().unwrap_or_else(PoisonError::into_inner) = *force_n;
             let (sine, cosine) = (RATE_RAD_S * now_s).sin_cos();
             let round_m = Vector3::new(cosine, sine, 0.0) * RADIUS_M;
-            let at_m = Vector3::from(CENTRE_M) + round_m + force_n / SPRING_N_M;
+            let position_m = Vector3::from(CENTRE_M) + round_m + force_n / SPRING_N_M;
             let velocity_m_s = Vector3::new(-sine, cosine, 0.0) * (RADIUS_M * RATE_RAD_S);
             let short = |vector: Vector3<f64>| -> [f32; 3] { vector.map(|axis| axis as f32).into() };
-            State { position_m: short(at_m), velocity_m_s: short(velocity_m_s) }
+            HaplyState { position_m: short(position_m), velocity_m_s: short(velocity_m_s) }
         })
     }
 }
 
-struct Device {
+struct HaplyDevice {
     info: DeviceInfo,
     link: Option<PathBuf>,
-    body: Body,
+    body: HaplyBody,
     /// The beginning of a request.
-    heard: Vec<u8>,
-    heard_s: f64,
+    received: Vec<u8>,
+    received_s: f64,
     force_n: Vector3<f64>,
     /// The state repeated while it is frozen.
-    frozen: Option<State>,
+    frozen: Option<HaplyState>,
 }
 
-impl Device {
+impl HaplyDevice {
     /// Returns the length of a request, bytes; `None` for an unknown code.
     const fn length_of(code: u8) -> Option<usize> {
         match code {
@@ -110,7 +118,7 @@ impl Device {
         }
     }
 
-    fn state(&mut self, now_s: f64, fault: EmulatedFault) -> State {
+    fn state(&mut self, now_s: f64, fault: EmulatedFault) -> HaplyState {
         let mut state = (self.body)(now_s, &self.force_n);
         if fault == EmulatedFault::Freeze {
             state = *self.frozen.get_or_insert(state);
@@ -124,16 +132,16 @@ impl Device {
     }
 
     /// Answers the first received request; false if it is incomplete.
-    fn answer(&mut self, to: Peer, turn: &mut Turn<'_>) -> bool {
-        let Some(code) = self.heard.first().copied() else { return false };
+    fn answer(&mut self, to: WirePeer, turn: &mut EmulatorTurn<'_>) -> bool {
+        let Some(code) = self.received.first().copied() else { return false };
         let Some(length) = Self::length_of(code) else {
-            self.heard.remove(0);
+            self.received.remove(0);
             return true;
         };
-        if self.heard.len() < length {
+        if self.received.len() < length {
             return false;
         }
-        let request: Vec<u8> = self.heard.drain(..length).collect();
+        let request: Vec<u8> = self.received.drain(..length).collect();
         let mut answer = match code {
             WAKE_UP => self.info.encode().to_vec(),
             TORQUES | ANGLES => [vec![JOINTS], vec![0; 24]].concat(),
@@ -151,23 +159,23 @@ impl Device {
     }
 }
 
-impl Emulator for Device {
-    fn wires(&self) -> io::Result<Vec<Box<dyn End>>> {
+impl Emulator for HaplyDevice {
+    fn wires(&self) -> io::Result<Vec<Box<dyn WireEnd>>> {
         Ok(vec![terminal(self.link.as_deref(), "haply", None)?])
     }
 
-    fn hear(&mut self, from: Peer, bytes: &[u8], turn: &mut Turn<'_>) {
-        if turn.now_s - self.heard_s > PAUSE_S {
-            self.heard.clear();
+    fn receive(&mut self, from: WirePeer, bytes: &[u8], turn: &mut EmulatorTurn<'_>) {
+        if turn.now_s - self.received_s > PAUSE_S {
+            self.received.clear();
         }
-        self.heard_s = turn.now_s;
-        self.heard.extend_from_slice(bytes);
+        self.received_s = turn.now_s;
+        self.received.extend_from_slice(bytes);
         while self.answer(from, turn) {}
     }
 
-    fn pass(&mut self, _: &mut Turn<'_>) {}
+    fn pass(&mut self, _: &mut EmulatorTurn<'_>) {}
 
-    fn lose(&mut self, _: Peer) {
-        self.heard.clear();
+    fn lose(&mut self, _: WirePeer) {
+        self.received.clear();
     }
 }

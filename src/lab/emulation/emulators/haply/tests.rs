@@ -4,28 +4,28 @@ use std::time::{Duration, Instant};
 
 use nalgebra::Vector3;
 use nima_devices::{
-    Device as _, Leader as _, Lever, Loss, Standing, Trouble,
+    ConnectionState, Device as _, DeviceError, Leader as _, Lever, Loss,
     discovery::probe_named,
-    haply::{Driver, Settings},
+    haply::{HaplyDriver, HaplySettings},
 };
 use nima_testing::real_time::judged;
 
-use super::{Emulated, Felt};
-use crate::emulators::{EmulatedFault, Serving};
+use super::{EmulatedHaply, HapticForce};
+use crate::emulators::{EmulatedFault, EmulatorThread};
 
-fn serving() -> (Serving, Felt) {
-    let felt = Felt::default();
-    (Emulated::default().with(felt.on_a_circle()).serve().unwrap(), felt)
+fn serving() -> (EmulatorThread, HapticForce) {
+    let felt = HapticForce::default();
+    (EmulatedHaply::default().with(felt.on_a_circle()).serve().unwrap(), felt)
 }
 
 /// Runs a loop with a tick every millisecond and this force, until `good` or for this long; returns whether `good` was
 /// reached.
 fn run(
-    driver: &mut Driver,
+    driver: &mut HaplyDriver,
     begin: Instant,
     force_n: Vector3<f64>,
     within: Duration,
-    good: impl Fn(&Driver) -> bool,
+    good: impl Fn(&HaplyDriver) -> bool,
 ) -> bool {
     let since = Instant::now();
     while since.elapsed() < within {
@@ -44,7 +44,7 @@ fn the_hand_feels_the_force_and_gives_way_and_the_lever_reaches_it_without_the_l
     judged(|| {
         let (serving, felt) = serving();
         let begin = Instant::now();
-        let mut driver = Driver::open(&Settings::at(serving.endpoint.as_str())).unwrap();
+        let mut driver = HaplyDriver::open(&HaplySettings::at(serving.endpoint.as_str())).unwrap();
         assert_eq!(driver.identity().serial, "049D");
         let lever = Lever::default();
         driver.attach(&lever);
@@ -76,7 +76,7 @@ fn the_hand_feels_the_force_and_gives_way_and_the_lever_reaches_it_without_the_l
         std::thread::sleep(Duration::from_millis(20));
         assert_eq!(felt.force_n(), Vector3::zeros(), "closing takes the force away");
         lever.pull();
-        let again = Driver::open(&Settings::at(serving.endpoint.as_str()));
+        let again = HaplyDriver::open(&HaplySettings::at(serving.endpoint.as_str()));
         assert!(again.is_ok(), "the lever of a closed one holds no line: {:?}", again.err());
     });
 }
@@ -97,12 +97,12 @@ fn every_fault_is_told_or_harmless() {
         ] {
             let (serving, _) = serving();
             let begin = Instant::now();
-            let mut driver = Driver::open(&Settings::at(serving.endpoint.as_str())).unwrap();
+            let mut driver = HaplyDriver::open(&HaplySettings::at(serving.endpoint.as_str())).unwrap();
             run(&mut driver, begin, Vector3::zeros(), Duration::from_millis(60), |_| false);
             serving.faults.set(fault);
             run(&mut driver, begin, Vector3::zeros(), Duration::from_millis(120), |_| false);
             let loss = match driver.health().standing {
-                Standing::Lost(loss) => Some(loss),
+                ConnectionState::Lost(loss) => Some(loss),
                 _ => None,
             };
             assert_eq!(loss, expected, "{fault:?}: {:?}", driver.health());
@@ -111,7 +111,7 @@ fn every_fault_is_told_or_harmless() {
             drop(driver);
             let opens = (0..20).any(|_| {
                 std::thread::sleep(Duration::from_millis(10));
-                Driver::open(&Settings::at(serving.endpoint.as_str())).is_ok()
+                HaplyDriver::open(&HaplySettings::at(serving.endpoint.as_str())).is_ok()
             });
             assert!(opens, "after {fault:?}");
         }
@@ -123,7 +123,7 @@ fn noise_between_the_answers_is_skipped_or_told_and_never_a_position() {
     judged(|| {
         let (serving, _) = serving();
         let begin = Instant::now();
-        let mut driver = Driver::open(&Settings::at(serving.endpoint.as_str())).unwrap();
+        let mut driver = HaplyDriver::open(&HaplySettings::at(serving.endpoint.as_str())).unwrap();
         serving.faults.set(EmulatedFault::Garbage);
         let since = Instant::now();
         while since.elapsed() < Duration::from_millis(300) {
@@ -142,13 +142,13 @@ fn a_probe_finds_it_and_tells_what_is_wrong() {
         let (serving, _) = serving();
         let probe = |text: &str| probe_named(text).unwrap().probe(Duration::from_millis(800));
         let found = probe(&format!("haply={}", serving.endpoint)).unwrap();
-        assert_eq!((found.identity.serial.as_str(), found.standing), ("049D", Standing::Connected));
+        assert_eq!((found.identity.serial.as_str(), found.standing), ("049D", ConnectionState::Connected));
         assert!(found.readings > 20, "{found:?}");
-        let held = Driver::open(&Settings::at(serving.endpoint.as_str())).unwrap();
-        assert!(matches!(probe(&format!("haply={}", serving.endpoint)), Err(Trouble::Busy { .. })));
+        let held = HaplyDriver::open(&HaplySettings::at(serving.endpoint.as_str())).unwrap();
+        assert!(matches!(probe(&format!("haply={}", serving.endpoint)), Err(DeviceError::Busy { .. })));
         drop(held);
         serving.faults.set(EmulatedFault::Silence);
-        assert!(matches!(probe(&format!("haply={}", serving.endpoint)), Err(Trouble::Silent { .. })));
-        assert!(matches!(probe("haply=/no/such/port"), Err(Trouble::Absent { .. })));
+        assert!(matches!(probe(&format!("haply={}", serving.endpoint)), Err(DeviceError::Silent { .. })));
+        assert!(matches!(probe("haply=/no/such/port"), Err(DeviceError::Absent { .. })));
     });
 }

@@ -17,24 +17,24 @@ use nima_devices::{
     CapReading, PedalReading,
     hid::{
         cap_codec::{self, CapReport, counts_of},
-        pedal_codec::{self, Layout},
+        pedal_codec::{self, PedalLayout},
         seqpacket,
         source::HidIdentity,
-        spacenavd::Event,
+        spacenavd::SpacenavdEvent,
     },
 };
 
-use crate::emulators::{EmulatedFault, Emulator, End, Peer, Turn, wires::socket};
+use crate::emulators::{EmulatedFault, Emulator, EmulatorTurn, WireEnd, WirePeer, wires::socket};
 
-pub(super) mod alone;
 mod models;
+pub(super) mod standalone;
 #[cfg(test)]
 mod tests;
 pub use models::{CapBody, CapModel, PedalBody, PedalModel};
 use models::{CapSide, PedalSide, SpacenavdSide};
 
 /// One kind of device: makes the data to send.
-trait Side: Send {
+trait WireSide: Send {
     /// Name of its socket in its own folder.
     const NAME: &'static str;
     /// Time between two steps.
@@ -69,8 +69,8 @@ struct Periodic<S> {
     due_s: f64,
 }
 
-impl<S: Side> Emulator for Periodic<S> {
-    fn wires(&self) -> io::Result<Vec<Box<dyn End>>> {
+impl<S: WireSide> Emulator for Periodic<S> {
+    fn wires(&self) -> io::Result<Vec<Box<dyn WireEnd>>> {
         let listen =
             if self.side.hello().is_some() { seqpacket::listen } else { |path: &Path| UnixListener::bind(path) };
         Ok(vec![socket(self.path.as_deref(), S::NAME, listen)?])
@@ -81,19 +81,19 @@ impl<S: Side> Emulator for Periodic<S> {
         format!("{kind}:{}", places[0])
     }
 
-    fn meet(&mut self, peer: Peer, turn: &mut Turn<'_>) {
+    fn meet(&mut self, peer: WirePeer, turn: &mut EmulatorTurn<'_>) {
         if let Some(hello) = self.side.hello() {
             turn.send_unspoilt(peer, hello.as_bytes());
         }
     }
 
-    fn hear(&mut self, _: Peer, bytes: &[u8], _: &mut Turn<'_>) {
+    fn receive(&mut self, _: WirePeer, bytes: &[u8], _: &mut EmulatorTurn<'_>) {
         self.side.command(bytes);
     }
 
-    fn pass(&mut self, turn: &mut Turn<'_>) {
+    fn pass(&mut self, turn: &mut EmulatorTurn<'_>) {
         if turn.now_s >= self.due_s {
-            self.side.step(turn.now_s, turn.fault, &mut |frame| turn.send(Peer::Everyone, frame));
+            self.side.step(turn.now_s, turn.fault, &mut |frame| turn.send(WirePeer::Everyone, frame));
             // No burst after a pause of the whole machine.
             self.due_s = (self.due_s + self.side.period().as_secs_f64()).max(turn.now_s);
         }

@@ -1,8 +1,8 @@
 //! The emulated devices themselves: content and timing of their reports.
 
 use super::{
-    CapReading, CapReport, Duration, EmulatedFault, Event, HidIdentity, Layout, PedalReading, Side, Vector3, cap_codec,
-    counts_of, pedal_codec,
+    CapReading, CapReport, Duration, EmulatedFault, HidIdentity, PedalLayout, PedalReading, SpacenavdEvent, Vector3,
+    WireSide, cap_codec, counts_of, pedal_codec,
 };
 
 /// Zero reports before a cap falls silent at rest.
@@ -58,13 +58,13 @@ struct Mover {
     body: CapBody,
     reading: CapReading,
     zeros_left: u32,
-    told_buttons: u32,
+    reported_buttons: u32,
 }
 
 impl Mover {
     const fn new(body: CapBody) -> Self {
         let reading = CapReading { translation: ZERO, rotation: ZERO, buttons: 0 };
-        Self { body, reading, zeros_left: 0, told_buttons: 0 }
+        Self { body, reading, zeros_left: 0, reported_buttons: 0 }
     }
 
     /// Advances; returns whether axes must be sent, and the buttons if they changed.
@@ -76,8 +76,8 @@ impl Mover {
         let speaks = deflected || self.zeros_left > 0;
         self.zeros_left = if deflected { ZEROS } else { self.zeros_left.saturating_sub(1) };
         let buttons = self.reading.buttons;
-        let changed = buttons != self.told_buttons;
-        self.told_buttons = buttons;
+        let changed = buttons != self.reported_buttons;
+        self.reported_buttons = buttons;
         (speaks, changed.then_some(buttons))
     }
 }
@@ -107,7 +107,7 @@ impl CapSide {
     }
 }
 
-impl Side for CapSide {
+impl WireSide for CapSide {
     const NAME: &'static str = "spacemouse.sock";
 
     fn period(&self) -> Duration {
@@ -168,7 +168,7 @@ impl SpacenavdSide {
 /// Time between two events of the daemon, ms.
 const SPACENAVD_MS: u8 = 16;
 
-impl Side for SpacenavdSide {
+impl WireSide for SpacenavdSide {
     const NAME: &'static str = "spnav.sock";
 
     fn period(&self) -> Duration {
@@ -180,19 +180,19 @@ impl Side for SpacenavdSide {
     }
 
     fn step(&mut self, now_s: f64, fault: EmulatedFault, send: &mut dyn FnMut(&[u8])) {
-        let before = self.mover.told_buttons;
+        let before = self.mover.reported_buttons;
         let (speaks, buttons) = self.mover.step(now_s, fault);
         let mut changed = buttons.map_or(0, |now| now ^ before);
         while changed != 0 {
             let number = changed.trailing_zeros();
             changed &= changed - 1;
-            let pressed = self.mover.told_buttons >> number & 1 == 1;
-            send(&Event::Button { number, pressed }.encode(0));
+            let pressed = self.mover.reported_buttons >> number & 1 == 1;
+            send(&SpacenavdEvent::Button { number, pressed }.encode(0));
         }
         if speaks {
             let [x, y, z, rx, ry, rz] = counts_of(&self.mover.reading).map(i32::from);
             // Converts the device's axes to the daemon's.
-            let mut event = Event::Motion([x, -z, -y, rx, -rz, -ry]).encode(i32::from(SPACENAVD_MS));
+            let mut event = SpacenavdEvent::Motion([x, -z, -y, rx, -rz, -ry]).encode(i32::from(SPACENAVD_MS));
             if fault == EmulatedFault::WrongFrame {
                 event[..4].copy_from_slice(&99_i32.to_ne_bytes());
             }
@@ -238,24 +238,24 @@ impl PedalBody {
 
 pub(super) struct PedalSide {
     model: PedalModel,
-    layout: Layout,
+    layout: PedalLayout,
     body: PedalBody,
     reading: PedalReading,
-    told: PedalReading,
+    report: PedalReading,
 }
 
 impl PedalSide {
     pub(super) const fn new(model: PedalModel, body: PedalBody) -> Self {
         let layout = match model {
-            PedalModel::Keyboard => Layout::Keyboard { keys: [5, 4, 6, 0, 0, 0, 0, 0] },
-            PedalModel::Switches => Layout::Switches,
+            PedalModel::Keyboard => PedalLayout::Keyboard { keys: [5, 4, 6, 0, 0, 0, 0, 0] },
+            PedalModel::Switches => PedalLayout::Switches,
         };
         let released = PedalReading { pressed: 0 };
-        Self { model, layout, body, reading: released, told: released }
+        Self { model, layout, body, reading: released, report: released }
     }
 }
 
-impl Side for PedalSide {
+impl WireSide for PedalSide {
     const NAME: &'static str = "pedal.sock";
 
     fn period(&self) -> Duration {
@@ -277,10 +277,10 @@ impl Side for PedalSide {
         }
         // A faulty device reports without a foot on it.
         let chatters = matches!(fault, Garbage | NotANumber | Reorder | WrongFrame);
-        if self.reading == self.told && !chatters {
+        if self.reading == self.report && !chatters {
             return;
         }
-        self.told = self.reading;
+        self.report = self.reading;
         let mut buffer = [0; pedal_codec::LENGTH_MAX];
         let mut length = self.layout.encode(self.reading.pressed, &mut buffer);
         match (fault, self.model) {

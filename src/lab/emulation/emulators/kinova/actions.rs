@@ -4,26 +4,26 @@ use std::collections::VecDeque;
 
 use nima_devices::{
     ARM_JOINTS,
-    kinova::messages::{JointAngle, JointAngles, Number, Rpc},
+    kinova::messages::{JointAngle, JointAngles, KinovaNumber, Rpc},
 };
 use prost::Message as _;
 
 use super::{
-    forms::Handle,
+    entity_store::EntityStore,
+    forms::EntityHandle,
     interface::{
-        ACTION_TOPIC, Answered, ENTITY_NOT_FOUND, EXECUTE_ACTION, EXECUTE_REFERENCE, EXECUTE_WAYPOINTS,
-        INVALID_DURATION, INVALID_PARAM, JOINT_COUNT, OUTSIDE_WORKSPACE, PLAY_SEQUENCE, READ_ACTION, READ_ACTIONS,
-        READ_SEQUENCE, READ_SEQUENCES, Refused, SEQUENCE_TOPIC, UNSUPPORTED_ACTION, UNSUPPORTED_METHOD,
+        ACTION_TOPIC, AnswerPayload, ENTITY_NOT_FOUND, EXECUTE_ACTION, EXECUTE_REFERENCE, EXECUTE_WAYPOINTS,
+        INVALID_DURATION, INVALID_PARAM, InterfaceError, JOINT_COUNT, OUTSIDE_WORKSPACE, PLAY_SEQUENCE, READ_ACTION,
+        READ_ACTIONS, READ_SEQUENCE, READ_SEQUENCES, SEQUENCE_TOPIC, UNSUPPORTED_ACTION, UNSUPPORTED_METHOD,
         VALIDATE_WAYPOINTS, read,
     },
-    motion::{Joints, Leg, goal, leg, reach},
+    joint_motion::{KinovaJoints, Leg, goal, leg, reach},
     moves::{
-        Action, ActionHandle, ActionTold, Actions, ReachAngles, Sequence, SequenceTold, Waypoint, WaypointError,
-        WaypointErrors, WaypointReport, Waypoints,
+        ActionHandle, ActionReport, Actions, KinovaAction, ReachAngles, Sequence, SequenceReport, Waypoint,
+        WaypointError, WaypointErrors, WaypointReport, Waypoints,
     },
     robot::Robot,
-    shelf::Shelf,
-    topics::Topics,
+    topics::KinovaTopics,
 };
 
 /// `ActionType`.
@@ -49,25 +49,31 @@ const OWN: [(u32, &str, [f32; ARM_JOINTS]); 3] = [
 ];
 
 /// The action in progress.
-enum Playing {
+enum RunningAction {
     Action(ActionHandle),
-    Sequence { handle: Handle, task: u32, rest: VecDeque<Action> },
+    Sequence { handle: EntityHandle, task: u32, rest: VecDeque<KinovaAction> },
 }
 
 #[derive(Default)]
 pub(super) struct Player {
-    pub(super) sequences: Shelf,
-    playing: Option<Playing>,
+    pub(super) sequences: EntityStore,
+    playing: Option<RunningAction>,
 }
 
 impl Player {
     /// Answers calls about actions and sequences, except those that create and delete sequences.
-    pub(super) fn answer(&mut self, rpc: Rpc, payload: &[u8], robot: &mut Robot, topics: &mut Topics) -> Answered {
+    pub(super) fn answer(
+        &mut self,
+        rpc: Rpc,
+        payload: &[u8],
+        robot: &mut Robot,
+        topics: &mut KinovaTopics,
+    ) -> AnswerPayload {
         match rpc {
             READ_SEQUENCE => return self.sequences.get(payload),
             READ_SEQUENCES => return Ok(self.sequences.all()),
             READ_ACTIONS => {
-                let kind = read::<Number>(payload)?.value;
+                let kind = read::<KinovaNumber>(payload)?.value;
                 let actions = if matches!(kind, 0 | REACH_JOINT_ANGLES) { OWN.map(own).to_vec() } else { Vec::new() };
                 return Ok(Actions { actions }.encode_to_vec());
             }
@@ -79,7 +85,7 @@ impl Player {
             EXECUTE_REFERENCE => self.execute(&referred(&read(payload)?)?, robot, topics)?,
             EXECUTE_ACTION => self.execute(&read(payload)?, robot, topics)?,
             EXECUTE_WAYPOINTS => {
-                let action = Action { waypoints: Some(read(payload)?), ..Action::default() };
+                let action = KinovaAction { waypoints: Some(read(payload)?), ..KinovaAction::default() };
                 self.execute(&action, robot, topics)?;
             }
             PLAY_SEQUENCE => self.play(payload, robot, topics)?,
@@ -88,38 +94,45 @@ impl Player {
         Ok(Vec::new())
     }
 
-    fn execute(&mut self, action: &Action, robot: &mut Robot, topics: &mut Topics) -> Result<(), Refused> {
+    fn execute(
+        &mut self,
+        action: &KinovaAction,
+        robot: &mut Robot,
+        topics: &mut KinovaTopics,
+    ) -> Result<(), InterfaceError> {
         robot.follow(plan(action, &robot.body().joint_rad)?)?;
         let handle = action.handle.unwrap_or_default();
-        topics.tell(ACTION_TOPIC, &ActionTold { event: START, handle: Some(handle), abort: 0 });
-        self.playing = Some(Playing::Action(handle));
+        topics.report(ACTION_TOPIC, &ActionReport { event: START, handle: Some(handle), abort: 0 });
+        self.playing = Some(RunningAction::Action(handle));
         Ok(())
     }
 
-    fn play(&mut self, payload: &[u8], robot: &mut Robot, topics: &mut Topics) -> Result<(), Refused> {
-        let handle = read::<Handle>(payload)?;
+    fn play(&mut self, payload: &[u8], robot: &mut Robot, topics: &mut KinovaTopics) -> Result<(), InterfaceError> {
+        let handle = read::<EntityHandle>(payload)?;
         let sequence = read::<Sequence>(&self.sequences.get(payload)?)?;
-        let mut rest: VecDeque<Action> = sequence.tasks.into_iter().filter_map(|task| task.action).collect();
+        let mut rest: VecDeque<KinovaAction> = sequence.tasks.into_iter().filter_map(|task| task.action).collect();
         let first = rest.pop_front().ok_or(INVALID_PARAM)?;
         robot.follow(plan(&first, &robot.body().joint_rad)?)?;
         for event in [STARTED, TASK_STARTED] {
-            topics.tell(SEQUENCE_TOPIC, &SequenceTold { event, handle: Some(handle), task: 0, abort: 0 });
+            topics.report(SEQUENCE_TOPIC, &SequenceReport { event, handle: Some(handle), task: 0, abort: 0 });
         }
-        self.playing = Some(Playing::Sequence { handle, task: 0, rest });
+        self.playing = Some(RunningAction::Sequence { handle, task: 0, rest });
         Ok(())
     }
 
     /// Reports what has ended, and continues a sequence. Returns true when nothing is in progress any more.
-    pub(super) fn advance(&mut self, robot: &mut Robot, topics: &mut Topics) -> bool {
+    pub(super) fn advance(&mut self, robot: &mut Robot, topics: &mut KinovaTopics) -> bool {
         let Some(ended) = robot.take_end() else { return false };
         match self.playing.take() {
             None => {}
-            Some(Playing::Action(handle)) => {
+            Some(RunningAction::Action(handle)) => {
                 let event = if ended.is_ok() { END } else { ABORT };
                 let abort = ended.err().map_or(0, u32::from);
-                topics.tell(ACTION_TOPIC, &ActionTold { event, handle: Some(handle), abort });
+                topics.report(ACTION_TOPIC, &ActionReport { event, handle: Some(handle), abort });
             }
-            Some(Playing::Sequence { handle, task, rest }) => self.next_task(ended, handle, task, rest, robot, topics),
+            Some(RunningAction::Sequence { handle, task, rest }) => {
+                self.next_task(ended, handle, task, rest, robot, topics);
+            }
         }
         self.playing.is_none()
     }
@@ -127,51 +140,51 @@ impl Player {
     fn next_task(
         &mut self,
         ended: Result<(), u16>,
-        handle: Handle,
+        handle: EntityHandle,
         task: u32,
-        mut rest: VecDeque<Action>,
+        mut rest: VecDeque<KinovaAction>,
         robot: &mut Robot,
-        topics: &mut Topics,
+        topics: &mut KinovaTopics,
     ) {
-        let mut tell = |event, task, abort| {
-            topics.tell(SEQUENCE_TOPIC, &SequenceTold { event, handle: Some(handle), task, abort });
+        let mut report = |event, task, abort| {
+            topics.report(SEQUENCE_TOPIC, &SequenceReport { event, handle: Some(handle), task, abort });
         };
         if let Err(code) = ended {
-            tell(ABORTED, task, u32::from(code));
+            report(ABORTED, task, u32::from(code));
             return;
         }
-        tell(TASK_COMPLETED, task, 0);
+        report(TASK_COMPLETED, task, 0);
         let Some(next) = rest.pop_front() else {
-            tell(COMPLETED, task, 0);
+            report(COMPLETED, task, 0);
             return;
         };
         let task = task + 1;
         match plan(&next, &robot.body().joint_rad).and_then(|legs| robot.follow(legs)) {
             Ok(()) => {
-                tell(TASK_STARTED, task, 0);
-                self.playing = Some(Playing::Sequence { handle, task, rest });
+                report(TASK_STARTED, task, 0);
+                self.playing = Some(RunningAction::Sequence { handle, task, rest });
             }
-            Err((_, code)) => tell(ABORTED, task, u32::from(code)),
+            Err((_, code)) => report(ABORTED, task, u32::from(code)),
         }
     }
 }
 
-fn own((identifier, name, degrees): (u32, &str, [f32; ARM_JOINTS])) -> Action {
+fn own((identifier, name, degrees): (u32, &str, [f32; ARM_JOINTS])) -> KinovaAction {
     let angle = |(joint, value_deg): (usize, f32)| JointAngle { joint: joint as u32, value_deg };
     let angles = JointAngles { angles: degrees.into_iter().enumerate().map(angle).collect() };
-    Action {
+    KinovaAction {
         handle: Some(ActionHandle { identifier, kind: REACH_JOINT_ANGLES, permission: 1 }),
         name: name.to_owned(),
         reach_angles: Some(ReachAngles { angles: Some(angles) }),
-        ..Action::default()
+        ..KinovaAction::default()
     }
 }
 
-fn referred(handle: &ActionHandle) -> Result<Action, Refused> {
+fn referred(handle: &ActionHandle) -> Result<KinovaAction, InterfaceError> {
     OWN.into_iter().find(|(identifier, ..)| *identifier == handle.identifier).map(own).ok_or(ENTITY_NOT_FOUND)
 }
 
-fn plan(action: &Action, from_rad: &Joints) -> Result<Vec<Leg>, Refused> {
+fn plan(action: &KinovaAction, from_rad: &KinovaJoints) -> Result<Vec<Leg>, InterfaceError> {
     let to_rad = if let Some(reached) = &action.reach_angles {
         // The order counts, because the manufacturer's examples omit the joints' numbers.
         let angles = reached.angles.iter().flat_map(|angles| &angles.angles);
@@ -189,7 +202,7 @@ fn plan(action: &Action, from_rad: &Joints) -> Result<Vec<Leg>, Refused> {
 }
 
 /// Returns the path through the waypoints, or which waypoint is impossible, and why.
-fn legs(list: &Waypoints, from_rad: &Joints) -> Result<Vec<Leg>, (usize, Refused)> {
+fn legs(list: &Waypoints, from_rad: &KinovaJoints) -> Result<Vec<Leg>, (usize, InterfaceError)> {
     if !(1..=WAYPOINTS).contains(&list.waypoints.len()) {
         return Err((0, INVALID_PARAM));
     }
@@ -203,7 +216,7 @@ fn legs(list: &Waypoints, from_rad: &Joints) -> Result<Vec<Leg>, (usize, Refused
     Ok(legs)
 }
 
-fn way(waypoint: &Waypoint, from_rad: &Joints) -> Result<Leg, Refused> {
+fn way(waypoint: &Waypoint, from_rad: &KinovaJoints) -> Result<Leg, InterfaceError> {
     if let Some(angular) = &waypoint.angular {
         return leg(from_rad, goal(&angular.angles_deg, from_rad)?, f64::from(angular.duration_s));
     }
@@ -212,7 +225,7 @@ fn way(waypoint: &Waypoint, from_rad: &Joints) -> Result<Leg, Refused> {
 }
 
 /// Returns the report of a list that cannot be followed (`TrajectoryErrorType`).
-fn errors(list: &Waypoints, from_rad: &Joints) -> Vec<WaypointError> {
+fn errors(list: &Waypoints, from_rad: &KinovaJoints) -> Vec<WaypointError> {
     let Err((waypoint, refused)) = legs(list, from_rad) else { return Vec::new() };
     let (kind, message) = match refused {
         OUTSIDE_WORKSPACE => (1, "the pose cannot be reached"),

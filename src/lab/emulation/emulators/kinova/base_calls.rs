@@ -5,7 +5,7 @@ use nima_devices::{
     kinova::{
         kinematics::{theta_rad, tool},
         limits::wire_degrees,
-        messages::{ERROR_DEVICE, JointAngle, JointAngles, Number, Pose, Rpc, TwistCommand},
+        messages::{ERROR_DEVICE, JointAngle, JointAngles, KinovaNumber, KinovaPose, Rpc, TwistCommand},
     },
 };
 use prost::Message as _;
@@ -14,18 +14,18 @@ use super::{
     calls::{Base, Call},
     forms::{BridgeResult, InverseQuestion, JointSpeeds, Product, Reals},
     interface::{
-        Answered, CONTROL_MODE, ENABLE_BRIDGE, EXECUTE_ACTION, EXECUTE_REFERENCE, EXECUTE_WAYPOINTS,
-        FORWARD_KINEMATICS, GRIPPER_COMMAND, GRIPPER_MOVEMENT, INVALID_PARAM, INVERSE_KINEMATICS, JOINT_COUNT,
-        JOINT_SPEEDS, PLAY_SEQUENCE, PRODUCT, Refused, STOP_ACTION, STOP_SEQUENCE, UNSUPPORTED_METHOD, read,
+        AnswerPayload, CONTROL_MODE, ENABLE_BRIDGE, EXECUTE_ACTION, EXECUTE_REFERENCE, EXECUTE_WAYPOINTS,
+        FORWARD_KINEMATICS, GRIPPER_COMMAND, GRIPPER_MOVEMENT, INVALID_PARAM, INVERSE_KINEMATICS, InterfaceError,
+        JOINT_COUNT, JOINT_SPEEDS, PLAY_SEQUENCE, PRODUCT, STOP_ACTION, STOP_SEQUENCE, UNSUPPORTED_METHOD, read,
     },
-    motion::{Joints, goal, reach},
+    joint_motion::{KinovaJoints, goal, reach},
 };
 
 /// `BridgeStatus`: there is no bridge to a serial port or a network behind the arm.
 const NO_BRIDGES: u32 = 5;
 
 impl Base {
-    pub(super) fn base_call(&mut self, call: &Call<'_>) -> Answered {
+    pub(super) fn base_call(&mut self, call: &Call<'_>) -> AnswerPayload {
         let device = |code| (ERROR_DEVICE, code);
         let Call { rpc, payload, session, .. } = *call;
         match rpc {
@@ -46,7 +46,7 @@ impl Base {
                 })?;
             }
             Rpc::SET_SERVOING_MODE => {
-                self.robot.set_mode(read::<Number>(payload)?.value).map_err(device)?;
+                self.robot.set_mode(read::<KinovaNumber>(payload)?.value).map_err(device)?;
                 self.release();
             }
             // There is no gripper: the command has no effect, and no finger is reported.
@@ -56,9 +56,9 @@ impl Base {
         Ok(Vec::new())
     }
 
-    fn question(&mut self, call: &Call<'_>) -> Answered {
+    fn question(&mut self, call: &Call<'_>) -> AnswerPayload {
         let Call { rpc, payload, .. } = *call;
-        let number = |value: u32| Ok(Number { value }.encode_to_vec());
+        let number = |value: u32| Ok(KinovaNumber { value }.encode_to_vec());
         let joint_rad = self.robot.body().joint_rad;
         match rpc {
             Rpc::GET_SERVOING_MODE => number(self.robot.mode() as u32),
@@ -98,26 +98,26 @@ impl Base {
     }
 }
 
-fn angles(joint_rad: &Joints) -> JointAngles {
+fn angles(joint_rad: &KinovaJoints) -> JointAngles {
     let angle = |(joint, angle): (usize, &f64)| JointAngle { joint: joint as u32, value_deg: wire_degrees(*angle) };
     JointAngles { angles: joint_rad.iter().enumerate().map(angle).collect() }
 }
 
-fn pose(joint_rad: &Joints) -> Pose {
+fn pose(joint_rad: &KinovaJoints) -> KinovaPose {
     let pose = tool(joint_rad);
     let theta = theta_rad(&pose.rotation).map(|angle| angle.to_degrees() as f32);
     let place = pose.translation.vector.cast::<f32>();
-    Pose { x: place.x, y: place.y, z: place.z, theta_x: theta[0], theta_y: theta[1], theta_z: theta[2] }
+    KinovaPose { x: place.x, y: place.y, z: place.z, theta_x: theta[0], theta_y: theta[1], theta_z: theta[2] }
 }
 
 /// Joint angles of a client, in order.
-fn given(angles: &JointAngles) -> Result<Joints, Refused> {
+fn given(angles: &JointAngles) -> Result<KinovaJoints, InterfaceError> {
     let degrees: Vec<f32> = angles.angles.iter().map(|angle| angle.value_deg).collect();
     goal(&degrees, &[0.0; ARM_JOINTS])
 }
 
 /// Joint speeds of a client, rad/s, by the numbers of the joints.
-fn speeds(asked: &JointSpeeds) -> Result<Joints, Refused> {
+fn speeds(asked: &JointSpeeds) -> Result<KinovaJoints, InterfaceError> {
     if asked.speeds.len() != ARM_JOINTS {
         return Err(JOINT_COUNT);
     }

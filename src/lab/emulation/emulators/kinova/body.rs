@@ -12,7 +12,7 @@ use nima_devices::{
 
 /// Current command of the emulated base to the body.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum Asked {
+pub enum BodyCommand {
     /// None: brakes on, or a holding base.
     #[default]
     Rest,
@@ -41,13 +41,13 @@ pub struct BodyState {
 }
 
 /// A body of an emulated arm: a closure that takes the time since the last call (s) and the command.
-pub trait Body: Send {
+pub trait KinovaBody: Send {
     /// Advances by `elapsed_s`.
-    fn step(&mut self, elapsed_s: f64, asked: &Asked) -> BodyState;
+    fn step(&mut self, elapsed_s: f64, asked: &BodyCommand) -> BodyState;
 }
 
-impl<F: FnMut(f64, &Asked) -> BodyState + Send> Body for F {
-    fn step(&mut self, elapsed_s: f64, asked: &Asked) -> BodyState {
+impl<F: FnMut(f64, &BodyCommand) -> BodyState + Send> KinovaBody for F {
+    fn step(&mut self, elapsed_s: f64, asked: &BodyCommand) -> BodyState {
         self(elapsed_s, asked)
     }
 }
@@ -79,19 +79,19 @@ impl StandIn {
         Self { sways: true, ..Self::at(home_deg.map(f64::to_radians)) }
     }
 
-    fn speeds(&mut self, elapsed_s: f64, asked: &Asked) -> [f64; ARM_JOINTS] {
+    fn speeds(&mut self, elapsed_s: f64, asked: &BodyCommand) -> [f64; ARM_JOINTS] {
         let mut speeds = [0.0; ARM_JOINTS];
         match asked {
-            Asked::Rest if self.sways => {
+            BodyCommand::Rest if self.sways => {
                 self.time_s += elapsed_s;
                 speeds[ARM_JOINTS - 1] = SWAY.0 * SWAY.1 * (SWAY.1 * self.time_s).cos();
             }
-            Asked::Rest => {}
-            Asked::Joints(angles) => {
-                let share = -(-elapsed_s / LAG_S).exp_m1();
-                speeds = std::array::from_fn(|j| (angles[j] - self.state.joint_rad[j]) * share / elapsed_s);
+            BodyCommand::Rest => {}
+            BodyCommand::Joints(angles) => {
+                let fraction = -(-elapsed_s / LAG_S).exp_m1();
+                speeds = std::array::from_fn(|j| (angles[j] - self.state.joint_rad[j]) * fraction / elapsed_s);
             }
-            Asked::Twist { frame, linear_m_s, angular_rad_s } => {
+            BodyCommand::Twist { frame, linear_m_s, angular_rad_s } => {
                 let rotation = tool(&self.state.joint_rad).rotation;
                 let turned = |own: bool, vector: &Vector3<f64>| if own { rotation * vector } else { *vector };
                 let linear = turned(*frame == TwistFrame::Tool, linear_m_s);
@@ -100,13 +100,13 @@ impl StandIn {
                 speeds = joint_speeds(&self.state.joint_rad, &twist);
             }
         }
-        self.sways &= *asked == Asked::Rest;
+        self.sways &= *asked == BodyCommand::Rest;
         speeds
     }
 }
 
-impl Body for StandIn {
-    fn step(&mut self, elapsed_s: f64, asked: &Asked) -> BodyState {
+impl KinovaBody for StandIn {
+    fn step(&mut self, elapsed_s: f64, asked: &BodyCommand) -> BodyState {
         if elapsed_s <= 0.0 {
             return self.state;
         }
@@ -116,7 +116,7 @@ impl Body for StandIn {
             self.state.joint_rad_s[j] = speed;
             self.state.joint_rad[j] += speed * elapsed_s;
             self.state.joint_nm[j] = match asked {
-                Asked::Joints(angles) => STIFFNESS * (angles[j] - self.state.joint_rad[j]),
+                BodyCommand::Joints(angles) => STIFFNESS * (angles[j] - self.state.joint_rad[j]),
                 _ => 0.0,
             };
         }

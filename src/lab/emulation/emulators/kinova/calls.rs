@@ -1,31 +1,31 @@
 //! Sessions and calls of the emulated base.
 
 use nima_devices::kinova::{
-    frame::Frame,
-    messages::{Command, CreateSessionInfo, ERROR_DEVICE, Number, Rpc, ServoingMode, sub},
+    frame::KinovaFrame,
+    messages::{CreateSessionInfo, ERROR_DEVICE, KinovaCommand, KinovaNumber, Rpc, ServoingMode, sub},
 };
 use prost::Message;
 
 use super::{
-    Body, Emulated,
+    EmulatedKinova, KinovaBody,
     actions::Player,
-    control::Control,
-    devices::Devices,
-    entities::Kept,
+    control::KinovaControl,
+    devices::KinovaDevices,
+    entities::StoredEntity,
     interface::{
-        ACTION_TOPIC, ARM_STATE_TOPIC, Answered, CLEAR_ACTUATOR_FAULTS, CONFIGURATION_TOPIC, CONTROL_CONFIG_MODE,
-        CONTROL_TOPIC, CONTROL_UNSUBSCRIBE, Refused, SEQUENCE_TOPIC, SERVOING_TOPIC, UNSUBSCRIBE, UNSUPPORTED_METHOD,
-        UNSUPPORTED_SERVICE, read,
+        ACTION_TOPIC, ARM_STATE_TOPIC, AnswerPayload, CLEAR_ACTUATOR_FAULTS, CONFIGURATION_TOPIC, CONTROL_CONFIG_MODE,
+        CONTROL_TOPIC, CONTROL_UNSUBSCRIBE, InterfaceError, SEQUENCE_TOPIC, SERVOING_TOPIC, UNSUBSCRIBE,
+        UNSUPPORTED_METHOD, UNSUPPORTED_SERVICE, read,
     },
     robot::Robot,
-    topics::{Notice, Topics},
+    topics::{KinovaTopics, Notice},
 };
-use crate::emulators::{EmulatedFault, Peer};
+use crate::emulators::{EmulatedFault, WirePeer};
 
-struct Session {
+struct CallSession {
     number: u16,
-    link: Peer,
-    heard_s: f64,
+    link: WirePeer,
+    received_s: f64,
     /// After this much silence it is closed, s.
     closes_s: f64,
     /// After this much silence its motion stops, s.
@@ -38,36 +38,36 @@ pub(super) struct Call<'a> {
     device: u8,
     pub(super) payload: &'a [u8],
     pub(super) session: u16,
-    link: Peer,
+    link: WirePeer,
 }
 
 /// The base: sessions, control of the arm, the devices within the arm, and the robot behind it.
 pub(super) struct Base {
-    pub(super) arm: Emulated,
+    pub(super) arm: EmulatedKinova,
     pub(super) robot: Robot,
-    pub(super) devices: Devices,
-    pub(super) control: Control,
-    pub(super) kept: Kept,
+    pub(super) devices: KinovaDevices,
+    pub(super) control: KinovaControl,
+    pub(super) kept: StoredEntity,
     pub(super) player: Player,
-    pub(super) topics: Topics,
-    sessions: Vec<Session>,
+    pub(super) topics: KinovaTopics,
+    sessions: Vec<CallSession>,
     made: u16,
     /// The session whose command moves the arm.
     driving: Option<u16>,
     /// Arm state and servoing mode of the last notification.
-    told: (u32, ServoingMode),
+    report: (u32, ServoingMode),
 }
 
 impl Base {
-    pub(super) fn new(arm: Emulated, body: Box<dyn Body>) -> Self {
+    pub(super) fn new(arm: EmulatedKinova, body: Box<dyn KinovaBody>) -> Self {
         let robot = Robot::new(arm.clone(), body);
         Self {
-            devices: Devices::new(arm.joints, arm.serial.clone()),
-            control: Control::new(),
-            kept: Kept::default(),
+            devices: KinovaDevices::new(arm.joints, arm.serial.clone()),
+            control: KinovaControl::new(),
+            kept: StoredEntity::default(),
             player: Player::default(),
-            topics: Topics::default(),
-            told: (robot.state(), robot.mode()),
+            topics: KinovaTopics::default(),
+            report: (robot.state(), robot.mode()),
             arm,
             robot,
             sessions: Vec::new(),
@@ -78,24 +78,24 @@ impl Base {
 
     pub(super) fn advance(&mut self, now_s: f64, fault: EmulatedFault) {
         self.robot.advance(now_s, fault);
-        let silent = |session: &Session| now_s - session.heard_s > session.stops_s;
+        let silent = |session: &CallSession| now_s - session.received_s > session.stops_s;
         if self.sessions.iter().any(|session| Some(session.number) == self.driving && silent(session)) {
             self.release();
         }
-        self.sessions.retain(|session| now_s - session.heard_s <= session.closes_s);
+        self.sessions.retain(|session| now_s - session.received_s <= session.closes_s);
         self.forget_topics();
         if self.player.advance(&mut self.robot, &mut self.topics) {
             self.driving = None;
         }
         let state = self.robot.state();
         let mode = self.robot.mode();
-        if self.told.0 != state {
-            self.topics.tell(ARM_STATE_TOPIC, &Number { value: state });
+        if self.report.0 != state {
+            self.topics.report(ARM_STATE_TOPIC, &KinovaNumber { value: state });
         }
-        if self.told.1 != mode {
-            self.topics.tell(SERVOING_TOPIC, &Number { value: mode as u32 });
+        if self.report.1 != mode {
+            self.topics.report(SERVOING_TOPIC, &KinovaNumber { value: mode as u32 });
         }
-        self.told = (state, mode);
+        self.report = (state, mode);
     }
 
     fn forget_topics(&mut self) {
@@ -109,7 +109,7 @@ impl Base {
     }
 
     /// Removes the sessions of closed connections.
-    pub(super) fn forget(&mut self, gone: impl Fn(Peer) -> bool) {
+    pub(super) fn forget(&mut self, gone: impl Fn(WirePeer) -> bool) {
         if self.sessions.iter().any(|session| Some(session.number) == self.driving && gone(session.link)) {
             self.release();
         }
@@ -125,8 +125,8 @@ impl Base {
     pub(super) fn drive(
         &mut self,
         session: u16,
-        command: impl FnOnce(&mut Self) -> Result<(), Refused>,
-    ) -> Result<(), Refused> {
+        command: impl FnOnce(&mut Self) -> Result<(), InterfaceError>,
+    ) -> Result<(), InterfaceError> {
         if self.driving.is_some_and(|driving| driving != session) {
             return Err((ERROR_DEVICE, sub::NOT_IN_CONTROL));
         }
@@ -138,28 +138,28 @@ impl Base {
     /// Returns the session number and the payload of the answer.
     pub(super) fn answer(
         &mut self,
-        link: Peer,
-        asked: &Frame<'_>,
+        link: WirePeer,
+        asked: &KinovaFrame<'_>,
         now_s: f64,
         fault: EmulatedFault,
-    ) -> Result<(u16, Vec<u8>), Refused> {
+    ) -> Result<(u16, Vec<u8>), InterfaceError> {
         let header = &asked.header;
         let rpc = asked.header.rpc();
         if rpc == Rpc::CREATE_SESSION {
             return self.log_in(link, &read(asked.payload)?, now_s).map(|number| (number, Vec::new()));
         }
-        let own = |session: &&mut Session| session.number == header.session && session.link == link;
+        let own = |session: &&mut CallSession| session.number == header.session && session.link == link;
         let session = self.sessions.iter_mut().find(own).ok_or((ERROR_DEVICE, sub::INVALID_SESSION))?;
-        session.heard_s = now_s;
+        session.received_s = now_s;
         let number = session.number;
         let call = Call { rpc, device: header.device, payload: asked.payload, session: number, link };
         Ok((number, self.serve(&call, now_s, fault)?))
     }
 
-    fn serve(&mut self, call: &Call<'_>, now_s: f64, fault: EmulatedFault) -> Answered {
+    fn serve(&mut self, call: &Call<'_>, now_s: f64, fault: EmulatedFault) -> AnswerPayload {
         let Call { rpc, device, payload, .. } = *call;
         // The cyclic connection carries only the cycle and its session.
-        if matches!(call.link, Peer::Address(_)) && !matches!(rpc.service, 1 | 3) {
+        if matches!(call.link, WirePeer::Address(_)) && !matches!(rpc.service, 1 | 3) {
             return Err(UNSUPPORTED_SERVICE);
         }
         match rpc.service {
@@ -176,10 +176,10 @@ impl Base {
             1 => self.session_call(call),
             2 | 16 if is_topic(rpc) => {
                 let identifier = self.topics.subscribe(rpc, call.session, call.link)?;
-                Ok(Number { value: u32::from(identifier) }.encode_to_vec())
+                Ok(KinovaNumber { value: u32::from(identifier) }.encode_to_vec())
             }
             2 | 16 if matches!(rpc, UNSUBSCRIBE | CONTROL_UNSUBSCRIBE) => {
-                self.topics.unsubscribe(read::<Number>(payload)?.value, call.session)?;
+                self.topics.unsubscribe(read::<KinovaNumber>(payload)?.value, call.session)?;
                 Ok(Vec::new())
             }
             2 => self.base_call(call),
@@ -190,7 +190,7 @@ impl Base {
         }
     }
 
-    fn log_in(&mut self, link: Peer, login: &CreateSessionInfo, now_s: f64) -> Result<u16, Refused> {
+    fn log_in(&mut self, link: WirePeer, login: &CreateSessionInfo, now_s: f64) -> Result<u16, InterfaceError> {
         if login.username != self.arm.user {
             return Err((ERROR_DEVICE, sub::USER_NOT_FOUND));
         }
@@ -199,17 +199,17 @@ impl Base {
         }
         self.made = self.made.checked_add(1).unwrap_or(1);
         self.sessions.retain(|session| session.link != link);
-        self.sessions.push(Session {
+        self.sessions.push(CallSession {
             number: self.made,
             link,
-            heard_s: now_s,
+            received_s: now_s,
             closes_s: f64::from(login.session_inactivity_ms) * 1e-3,
             stops_s: f64::from(login.connection_inactivity_ms) * 1e-3,
         });
         Ok(self.made)
     }
 
-    fn session_call(&mut self, call: &Call<'_>) -> Answered {
+    fn session_call(&mut self, call: &Call<'_>) -> AnswerPayload {
         match call.rpc {
             Rpc::KEEP_ALIVE => {}
             Rpc::CLOSE_SESSION => {
@@ -224,27 +224,27 @@ impl Base {
         Ok(Vec::new())
     }
 
-    fn cycle(&mut self, rpc: Rpc, payload: &[u8], now_s: f64, fault: EmulatedFault) -> Answered {
+    fn cycle(&mut self, rpc: Rpc, payload: &[u8], now_s: f64, fault: EmulatedFault) -> AnswerPayload {
         let device = |code| (ERROR_DEVICE, code);
         match rpc {
-            Rpc::REFRESH => self.robot.command(now_s, &read::<Command>(payload)?).map_err(device)?,
+            Rpc::REFRESH => self.robot.command(now_s, &read::<KinovaCommand>(payload)?).map_err(device)?,
             Rpc::REFRESH_COMMAND => {
-                self.robot.command(now_s, &read::<Command>(payload)?).map_err(device)?;
+                self.robot.command(now_s, &read::<KinovaCommand>(payload)?).map_err(device)?;
                 return Ok(Vec::new());
             }
             Rpc::REFRESH_FEEDBACK => {}
             _ => return Err(UNSUPPORTED_METHOD),
         }
-        Ok(self.robot.told(fault).encode_to_vec())
+        Ok(self.robot.report(fault).encode_to_vec())
     }
 
-    fn control_call(&mut self, rpc: Rpc, payload: &[u8]) -> Answered {
+    fn control_call(&mut self, rpc: Rpc, payload: &[u8]) -> AnswerPayload {
         if rpc == CONTROL_CONFIG_MODE {
-            return Ok(Number { value: self.robot.control_mode() }.encode_to_vec());
+            return Ok(KinovaNumber { value: self.robot.control_mode() }.encode_to_vec());
         }
         let (answer, event) = self.control.answer(rpc.function, payload)?;
         if let Some(event) = event {
-            self.topics.tell(CONTROL_TOPIC, &Number { value: event });
+            self.topics.report(CONTROL_TOPIC, &KinovaNumber { value: event });
         }
         Ok(answer)
     }

@@ -9,50 +9,50 @@ use std::{
 
 use nalgebra::Vector3;
 use nima_devices::{
-    ARM_JOINTS, ArmReading, Device as _, Loss, Stamped, Standing, Trouble,
+    ARM_JOINTS, ArmReading, ConnectionState, Device as _, DeviceError, Loss, TimedReading,
     kinova::{
-        Driver, FaultClearing, Refusal, Settings, ToolTwist, TwistFrame, faults,
+        FaultClearing, KinovaDriver, KinovaRefusal, KinovaSettings, ToolTwist, TwistFrame, faults,
         kinematics::tool,
-        limits::{Beyond, GEN3, STEP_MAX_S, unwrapped, wire_degrees},
-        messages::{ActuatorCommand, Command, Number, Rpc, sub},
+        limits::{ExceededLimit, GEN3, STEP_MAX_S, unwrapped, wire_degrees},
+        messages::{ActuatorCommand, KinovaCommand, KinovaNumber, Rpc, sub},
         open, open_clearing,
-        session::{Failure, Lines},
+        session::{KinovaFailure, KinovaLines},
     },
 };
 use nima_testing::real_time::judged;
 
 use crate::emulators::{
-    Serving,
-    kinova::{Asked, Body, Emulated, StandIn},
+    EmulatorThread,
+    kinova::{BodyCommand, EmulatedKinova, KinovaBody, StandIn},
 };
 
 const TICK_S: f64 = 1e-3;
 const HOME_RAD: [f64; ARM_JOINTS] = [0.0, 0.26, 3.12, -2.27, 0.0, 0.96, 1.57];
 
 /// An arm that tolerates pauses of a busy machine.
-pub(super) fn patient() -> Emulated {
-    Emulated { watchdog_ms: 5_000.0, ..Emulated::default() }
+pub(super) fn patient() -> EmulatedKinova {
+    EmulatedKinova { watchdog_ms: 5_000.0, ..EmulatedKinova::default() }
 }
 
-pub(super) fn started(arm: Emulated) -> (Serving, Settings) {
+pub(super) fn started(arm: EmulatedKinova) -> (EmulatorThread, KinovaSettings) {
     started_with(arm, StandIn::at(HOME_RAD))
 }
 
-fn started_with(arm: Emulated, body: impl Body + 'static) -> (Serving, Settings) {
+fn started_with(arm: EmulatedKinova, body: impl KinovaBody + 'static) -> (EmulatorThread, KinovaSettings) {
     let serving = arm.with(body).serve().unwrap();
-    let settings = Settings::at(&serving.endpoint).unwrap();
-    (serving, Settings { speed_fraction: 1.0, lead_rad: 0.2, ..settings })
+    let settings = KinovaSettings::at(&serving.endpoint).unwrap();
+    (serving, KinovaSettings { speed_fraction: 1.0, lead_rad: 0.2, ..settings })
 }
 
 /// A driver with its own clock of ticks.
 pub(super) struct Ticking {
-    pub(super) driver: Driver,
+    pub(super) driver: KinovaDriver,
     pub(super) now_s: f64,
-    pub(super) reading: Option<Stamped<ArmReading>>,
+    pub(super) reading: Option<TimedReading<ArmReading>>,
 }
 
 impl Ticking {
-    pub(super) fn open(settings: &Settings) -> Self {
+    pub(super) fn open(settings: &KinovaSettings) -> Self {
         Self { driver: open(settings).unwrap(), now_s: 0.0, reading: None }
     }
 
@@ -80,8 +80,8 @@ impl Ticking {
     fn lead(&mut self, target_rad: &[f64; ARM_JOINTS]) {
         let at = *self.driver.command_rad();
         let furthest = target_rad.iter().zip(&at).map(|(to, at)| (to - at).abs()).fold(0.0, f64::max);
-        let share = (TICK_S / furthest).min(1.0);
-        self.driver.aim(&std::array::from_fn(|j| at[j] + (target_rad[j] - at[j]) * share)).unwrap();
+        let fraction = (TICK_S / furthest).min(1.0);
+        self.driver.aim(&std::array::from_fn(|j| at[j] + (target_rad[j] - at[j]) * fraction)).unwrap();
         self.tick();
     }
 
@@ -94,36 +94,36 @@ impl Ticking {
 }
 
 /// Sessions without a driver, for calls that the driver never makes.
-fn raw(settings: &Settings) -> Lines {
-    let mut lines = Lines::connect(settings).unwrap();
+fn raw(settings: &KinovaSettings) -> KinovaLines {
+    let mut lines = KinovaLines::connect(settings).unwrap();
     lines.log_in(settings).unwrap();
     lines
 }
 
-fn mode(settings: &Settings) -> u32 {
+fn mode(settings: &KinovaSettings) -> u32 {
     use prost::Message as _;
     let payload = raw(settings).ask(Rpc::GET_SERVOING_MODE, &()).unwrap();
-    Number::decode(payload.as_slice()).unwrap().value
+    KinovaNumber::decode(payload.as_slice()).unwrap().value
 }
 
-fn refresh(frame_id: u32, joint_rad: &[f64; ARM_JOINTS]) -> Command {
+fn refresh(frame_id: u32, joint_rad: &[f64; ARM_JOINTS]) -> KinovaCommand {
     let actuators = joint_rad.map(|angle| ActuatorCommand {
         command_id: frame_id,
         flags: 1,
         position_deg: wire_degrees(angle),
         ..ActuatorCommand::default()
     });
-    Command { frame_id, actuators: actuators.to_vec() }
+    KinovaCommand { frame_id, actuators: actuators.to_vec() }
 }
 
 /// The commands to the body over time.
-type Log = Arc<Mutex<Vec<Asked>>>;
+type Log = Arc<Mutex<Vec<BodyCommand>>>;
 
-fn logged() -> (Log, impl Body) {
+fn logged() -> (Log, impl KinovaBody) {
     let log = Log::default();
     let kept = Arc::clone(&log);
     let mut arm = StandIn::at(HOME_RAD);
-    let body = move |elapsed_s: f64, asked: &Asked| {
+    let body = move |elapsed_s: f64, asked: &BodyCommand| {
         let mut log = kept.lock().unwrap();
         if log.last() != Some(asked) {
             log.push(*asked);
@@ -146,14 +146,14 @@ fn it_connects_and_loses_nothing() {
         let health = ticking.driver.health();
         assert!(health.readings > 700, "{health:?}");
         assert_eq!((health.lost, health.damaged, health.out_of_order, health.refused), (0, 0, 0, 0), "{health:?}");
-        assert_eq!(health.standing, Standing::Connected);
+        assert_eq!(health.standing, ConnectionState::Connected);
         let reading = ticking.latest();
         assert!(!reading.servoing && reading.joint_rad.iter().zip(&HOME_RAD).all(|(is, was)| (is - was).abs() < 1e-6));
-        let told = ticking.driver.tool();
+        let report = ticking.driver.tool();
         let expected = tool(&HOME_RAD);
-        assert!((told.position_m - expected.translation.vector).amax() < 1e-6);
-        assert!(told.orientation.angle_to(&expected.rotation) < 1e-5);
-        assert_eq!(ticking.driver.aim(&HOME_RAD), Err(Refusal::NotServoing));
+        assert!((report.position_m - expected.translation.vector).amax() < 1e-6);
+        assert!(report.orientation.angle_to(&expected.rotation) < 1e-5);
+        assert_eq!(ticking.driver.aim(&HOME_RAD), Err(KinovaRefusal::NotServoing));
     });
 }
 
@@ -164,8 +164,8 @@ fn low_level_moves_to_targets_over_the_turn_without_jumps() {
         let (serving, settings) = started_with(patient(), body);
         let mut ticking = Ticking::open(&settings);
         ticking.enter_low_level();
-        assert_eq!(ticking.driver.twist(&ToolTwist::default()), Err(Refusal::NotSingleLevel));
-        assert_eq!(ticking.driver.aim(&[f64::NAN; ARM_JOINTS]), Err(Refusal::NotFinite));
+        assert_eq!(ticking.driver.twist(&ToolTwist::default()), Err(KinovaRefusal::NotSingleLevel));
+        assert_eq!(ticking.driver.aim(&[f64::NAN; ARM_JOINTS]), Err(KinovaRefusal::NotFinite));
         // The first joint crosses from 0 to 360 degrees on the wire, the third from below half a turn to above it.
         let mut target = HOME_RAD;
         target[0] = -0.15;
@@ -187,7 +187,7 @@ fn low_level_moves_to_targets_over_the_turn_without_jumps() {
         let log = log.lock().unwrap().clone();
         let mut last = HOME_RAD;
         for asked in &log {
-            if let Asked::Joints(angles) = asked {
+            if let BodyCommand::Joints(angles) = asked {
                 for j in 0..ARM_JOINTS {
                     let step = (angles[j] - last[j]).abs();
                     // On a busy machine several commands arrive between two steps of the body.
@@ -196,7 +196,7 @@ fn low_level_moves_to_targets_over_the_turn_without_jumps() {
                 last = *angles;
             }
         }
-        assert_eq!(log.last(), Some(&Asked::Rest));
+        assert_eq!(log.last(), Some(&BodyCommand::Rest));
         assert!(serving.is_serving());
         let mut lines = raw(&settings);
         assert!(lines.ask(Rpc::ARM_STATE, &()).is_ok_and(|payload| payload == [8, 7]), "ready, without a fault");
@@ -207,11 +207,11 @@ fn low_level_moves_to_targets_over_the_turn_without_jumps() {
 fn a_command_beyond_the_limits_is_refused_counted_and_ends_the_servoing() {
     judged(|| {
         let (_serving, settings) = started(patient());
-        let mut ticking = Ticking::open(&Settings { speed_fraction: 0.3, ..settings });
+        let mut ticking = Ticking::open(&KinovaSettings { speed_fraction: 0.3, ..settings });
         ticking.enter_low_level();
         let mut jump = *ticking.driver.command_rad();
         jump[4] += 0.02;
-        let refused = Err(Refusal::Beyond { joint: 5, beyond: Beyond::Speed });
+        let refused = Err(KinovaRefusal::Beyond { joint: 5, beyond: ExceededLimit::Speed });
         assert_eq!(ticking.driver.aim(&jump), refused);
         assert_eq!(ticking.driver.health().refused, 1);
         assert!(ticking.until(1000, |ticking| !ticking.latest().servoing));
@@ -219,7 +219,7 @@ fn a_command_beyond_the_limits_is_refused_counted_and_ends_the_servoing() {
             ticking.latest().joint_rad.iter().zip(&HOME_RAD).all(|(is, was)| (is - was).abs() < 1e-6),
             "it did not move"
         );
-        assert_eq!(ticking.driver.health().standing, Standing::Connected);
+        assert_eq!(ticking.driver.health().standing, ConnectionState::Connected);
         ticking.enter_low_level();
     });
 }
@@ -239,10 +239,10 @@ fn leaving_brakes_first_and_the_arm_can_be_taken_over_by_others() {
         ticking.enter_low_level();
         // Another client switches the arm back to single-level servoing.
         let mut other = raw(&settings);
-        other.ask(Rpc::SET_SERVOING_MODE, &Number { value: 2 }).unwrap();
+        other.ask(Rpc::SET_SERVOING_MODE, &KinovaNumber { value: 2 }).unwrap();
         assert!(ticking.until(500, |ticking| ticking.driver.ousted() == 1));
         assert!(ticking.until(500, |ticking| !ticking.latest().servoing));
-        assert_eq!(ticking.driver.health().standing, Standing::Connected);
+        assert_eq!(ticking.driver.health().standing, ConnectionState::Connected);
         assert_eq!(ticking.driver.answer().unwrap().sub_error, sub::WRONG_SERVOING_MODE);
     });
 }
@@ -252,7 +252,7 @@ fn a_twist_moves_the_tool_and_ends_when_it_is_not_renewed() {
     judged(|| {
         let (log, body) = logged();
         let (_serving, settings) = started_with(patient(), body);
-        let settings = Settings { twist_m_s: 0.05, ..settings };
+        let settings = KinovaSettings { twist_m_s: 0.05, ..settings };
         let mut ticking = Ticking::open(&settings);
         assert!(ticking.until(500, |ticking| ticking.reading.is_some()));
         let begin_m = ticking.driver.tool().position_m;
@@ -261,25 +261,25 @@ fn a_twist_moves_the_tool_and_ends_when_it_is_not_renewed() {
             ticking.driver.twist(&twist).unwrap();
             ticking.tick();
         }
-        assert_eq!(ticking.driver.enter_low_level(), Err(Refusal::Moving));
+        assert_eq!(ticking.driver.enter_low_level(), Err(KinovaRefusal::Moving));
         let moved_m = ticking.driver.tool().position_m - begin_m;
         assert!(moved_m.z > 0.005 && moved_m.xy().amax() < 0.2 * moved_m.z, "{moved_m}");
-        let moving = Asked::Twist {
+        let moving = BodyCommand::Twist {
             frame: TwistFrame::Base,
             linear_m_s: Vector3::new(0.0, 0.0, f64::from(0.05_f32)),
             angular_rad_s: Vector3::zeros(),
         };
         assert_eq!(log.lock().unwrap().last(), Some(&moving), "cut to the setting");
-        assert!(ticking.until(1000, |_| log.lock().unwrap().last() == Some(&Asked::Rest)), "not renewed");
+        assert!(ticking.until(1000, |_| log.lock().unwrap().last() == Some(&BodyCommand::Rest)), "not renewed");
         ticking.driver.twist(&twist).unwrap();
         assert!(ticking.until(500, |_| log.lock().unwrap().last() == Some(&moving)));
         ticking.driver.stop();
-        assert!(ticking.until(50, |_| log.lock().unwrap().last() == Some(&Asked::Rest)), "stopped");
+        assert!(ticking.until(50, |_| log.lock().unwrap().last() == Some(&BodyCommand::Rest)), "stopped");
         ticking.driver.twist(&twist).unwrap();
         assert!(ticking.until(500, |_| log.lock().unwrap().last() == Some(&moving)));
         drop(ticking);
         let end = Instant::now() + Duration::from_secs(2);
-        while log.lock().unwrap().last() != Some(&Asked::Rest) {
+        while log.lock().unwrap().last() != Some(&BodyCommand::Rest) {
             assert!(Instant::now() < end, "released when dropped");
             sleep(Duration::from_millis(1));
         }
@@ -290,17 +290,17 @@ fn a_twist_moves_the_tool_and_ends_when_it_is_not_renewed() {
 fn the_emulator_refuses_what_the_arm_refuses() {
     judged(|| {
         let (_serving, settings) = started(patient());
-        let mut stranger = Lines::connect(&settings).unwrap();
-        assert_eq!(stranger.ask(Rpc::ARM_STATE, &()), Err(Failure::Refused(3, sub::INVALID_SESSION)));
+        let mut stranger = KinovaLines::connect(&settings).unwrap();
+        assert_eq!(stranger.ask(Rpc::ARM_STATE, &()), Err(KinovaFailure::Refused(3, sub::INVALID_SESSION)));
         let mut lines = raw(&settings);
-        let wrong_mode = Err(Failure::Refused(3, sub::WRONG_SERVOING_MODE));
+        let wrong_mode = Err(KinovaFailure::Refused(3, sub::WRONG_SERVOING_MODE));
         assert_eq!(lines.ask_cyclic(Rpc::REFRESH, &refresh(1, &HOME_RAD)), wrong_mode);
-        assert_eq!(lines.ask_cyclic(Rpc::ARM_STATE, &()), Err(Failure::Refused(1, sub::UNSUPPORTED_SERVICE)));
+        assert_eq!(lines.ask_cyclic(Rpc::ARM_STATE, &()), Err(KinovaFailure::Refused(1, sub::UNSUPPORTED_SERVICE)));
         assert_eq!(
             lines.ask(Rpc { service: 2, function: 160 }, &()),
-            Err(Failure::Refused(1, sub::UNSUPPORTED_METHOD))
+            Err(KinovaFailure::Refused(1, sub::UNSUPPORTED_METHOD))
         );
-        lines.ask(Rpc::SET_SERVOING_MODE, &Number { value: 3 }).unwrap();
+        lines.ask(Rpc::SET_SERVOING_MODE, &KinovaNumber { value: 3 }).unwrap();
         assert!(lines.ask_cyclic(Rpc::REFRESH, &refresh(1, &HOME_RAD)).is_ok());
         assert_eq!(lines.ask(Rpc::SEND_TWIST, &nima_devices::kinova::messages::TwistCommand::default()), wrong_mode);
         // A jump trips the following error, which stays until it is cleared.
@@ -308,35 +308,38 @@ fn the_emulator_refuses_what_the_arm_refuses() {
         jump[4] += 0.2;
         lines.ask_cyclic(Rpc::REFRESH, &refresh(2, &jump)).unwrap();
         let payload = lines.ask_cyclic(Rpc::REFRESH, &refresh(3, &HOME_RAD)).unwrap();
-        let told = nima_devices::kinova::feedback::Feedback::decode(&payload).unwrap();
-        assert_eq!(told.actuators[4].banks.fault[0], faults::FOLLOWING_ERROR);
-        assert!((unwrapped(told.actuators[4].position_deg, 0.0) - HOME_RAD[4]).abs() < 1e-6, "it did not move");
-        assert_eq!(told.state, nima_devices::kinova::messages::ArmState::IN_FAULT);
-        lines.ask(Rpc::SET_SERVOING_MODE, &Number { value: 2 }).unwrap();
-        let in_fault = Err(Failure::Refused(3, sub::IN_FAULT));
-        assert_eq!(lines.ask(Rpc::SET_SERVOING_MODE, &Number { value: 3 }), in_fault);
+        let report = nima_devices::kinova::feedback::KinovaFeedback::decode(&payload).unwrap();
+        assert_eq!(report.actuators[4].banks.fault[0], faults::FOLLOWING_ERROR);
+        assert!((unwrapped(report.actuators[4].position_deg, 0.0) - HOME_RAD[4]).abs() < 1e-6, "it did not move");
+        assert_eq!(report.state, nima_devices::kinova::messages::ArmState::IN_FAULT);
+        lines.ask(Rpc::SET_SERVOING_MODE, &KinovaNumber { value: 2 }).unwrap();
+        let in_fault = Err(KinovaFailure::Refused(3, sub::IN_FAULT));
+        assert_eq!(lines.ask(Rpc::SET_SERVOING_MODE, &KinovaNumber { value: 3 }), in_fault);
         lines.ask(Rpc::CLEAR_FAULTS, &()).unwrap();
-        assert!(lines.ask(Rpc::SET_SERVOING_MODE, &Number { value: 3 }).is_ok());
+        assert!(lines.ask(Rpc::SET_SERVOING_MODE, &KinovaNumber { value: 3 }).is_ok());
     });
 }
 
 #[test]
 fn a_missed_cycle_is_a_fault_that_only_a_command_clears() {
     judged(|| {
-        let (_serving, settings) = started(Emulated { watchdog_ms: 200.0, ..Emulated::default() });
+        let (_serving, settings) = started(EmulatedKinova { watchdog_ms: 200.0, ..EmulatedKinova::default() });
         let mut ticking = Ticking::open(&settings);
         ticking.enter_low_level();
         sleep(Duration::from_millis(400));
-        assert!(ticking.until(100, |ticking| matches!(ticking.driver.health().standing, Standing::Lost(_))));
-        let lost = Standing::Lost(Loss::Device { code: faults::COMMUNICATION_TICK_LOST });
+        assert!(ticking.until(100, |ticking| matches!(ticking.driver.health().standing, ConnectionState::Lost(_))));
+        let lost = ConnectionState::Lost(Loss::Device { code: faults::COMMUNICATION_TICK_LOST });
         assert_eq!(ticking.driver.health().standing, lost);
         assert!(ticking.driver.faults().to_string().contains("joint 7: cyclic command missed (0x400000)"));
-        assert_eq!(ticking.driver.aim(&HOME_RAD), Err(Refusal::Lost));
+        assert_eq!(ticking.driver.aim(&HOME_RAD), Err(KinovaRefusal::Lost));
         drop(ticking);
         let clearing = FaultClearing::default();
         for _ in 0..2 {
             let trouble = open_clearing(&settings, &clearing).unwrap_err();
-            assert!(matches!(&trouble, Trouble::DeviceFault { words, .. } if words.contains("missed")), "{trouble}");
+            assert!(
+                matches!(&trouble, DeviceError::DeviceFault { words, .. } if words.contains("missed")),
+                "{trouble}"
+            );
         }
         clearing.command();
         let mut ticking = Ticking { driver: open_clearing(&settings, &clearing).unwrap(), now_s: 0.0, reading: None };

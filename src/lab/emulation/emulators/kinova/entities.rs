@@ -5,15 +5,15 @@ use nima_devices::kinova::messages::Rpc;
 use prost::Message as _;
 
 use super::{
-    forms::{ConfigurationChange, Handle, NewUser, User},
+    entity_store::EntityStore,
+    forms::{ConfigurationChange, EntityHandle, NewUser, User},
     interface::{
-        Answered, CONFIGURATION_TOPIC, CREATE_SEQUENCE, CREATE_USER, CREATE_ZONE, DELETE_SEQUENCE, DELETE_USER,
-        DELETE_ZONE, READ_USER, READ_USERS, READ_ZONE, READ_ZONES, Refused, UNSUPPORTED_METHOD, USERNAME_EMPTY,
+        AnswerPayload, CONFIGURATION_TOPIC, CREATE_SEQUENCE, CREATE_USER, CREATE_ZONE, DELETE_SEQUENCE, DELETE_USER,
+        DELETE_ZONE, InterfaceError, READ_USER, READ_USERS, READ_ZONE, READ_ZONES, UNSUPPORTED_METHOD, USERNAME_EMPTY,
         USERNAME_TAKEN, read,
     },
     moves::Sequence,
-    shelf::Shelf,
-    topics::Topics,
+    topics::KinovaTopics,
 };
 
 /// `ConfigurationNotificationEvent`.
@@ -21,13 +21,19 @@ const DELETED: u32 = 2;
 const CREATED: u32 = 4;
 
 #[derive(Default)]
-pub(super) struct Kept {
-    users: Shelf,
-    zones: Shelf,
+pub(super) struct StoredEntity {
+    users: EntityStore,
+    zones: EntityStore,
 }
 
-impl Kept {
-    pub(super) fn answer(&mut self, rpc: Rpc, payload: &[u8], sequences: &mut Shelf, topics: &mut Topics) -> Answered {
+impl StoredEntity {
+    pub(super) fn answer(
+        &mut self,
+        rpc: Rpc,
+        payload: &[u8],
+        sequences: &mut EntityStore,
+        topics: &mut KinovaTopics,
+    ) -> AnswerPayload {
         let handle = match rpc {
             READ_USER => return self.users.get(payload),
             READ_USERS => return Ok(self.users.all()),
@@ -48,18 +54,18 @@ impl Kept {
             _ => return Err(UNSUPPORTED_METHOD),
         };
         let created = matches!(rpc, CREATE_USER | CREATE_ZONE | CREATE_SEQUENCE);
-        let told = |calls: [Rpc; 2]| calls.contains(&rpc).then_some(handle);
+        let report = |calls: [Rpc; 2]| calls.contains(&rpc).then_some(handle);
         let change = ConfigurationChange {
             event: if created { CREATED } else { DELETED },
-            sequence: told([CREATE_SEQUENCE, DELETE_SEQUENCE]),
-            user: told([CREATE_USER, DELETE_USER]),
-            zone: told([CREATE_ZONE, DELETE_ZONE]),
+            sequence: report([CREATE_SEQUENCE, DELETE_SEQUENCE]),
+            user: report([CREATE_USER, DELETE_USER]),
+            zone: report([CREATE_ZONE, DELETE_ZONE]),
         };
-        topics.tell(CONFIGURATION_TOPIC, &change);
+        topics.report(CONFIGURATION_TOPIC, &change);
         Ok(if created { handle.encode_to_vec() } else { Vec::new() })
     }
 
-    fn create_user(&mut self, payload: &[u8]) -> Result<Handle, Refused> {
+    fn create_user(&mut self, payload: &[u8]) -> Result<EntityHandle, InterfaceError> {
         let profile = read::<NewUser>(payload)?.profile;
         let name = read::<User>(&profile)?.name;
         if name.is_empty() {

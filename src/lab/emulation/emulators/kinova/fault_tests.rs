@@ -6,8 +6,8 @@ use std::{
 };
 
 use nima_devices::{
-    Device as _, Health, Loss, Slot, Standing,
-    kinova::{Driver, Settings, faults, open},
+    ConnectionState, Device as _, DeviceSlot, Health, Loss,
+    kinova::{KinovaDriver, KinovaSettings, faults, open},
 };
 
 use nima_testing::real_time::judged;
@@ -17,7 +17,7 @@ use crate::emulators::EmulatedFault;
 
 /// Whether a fault has its expected effect.
 fn is_noticed(fault: EmulatedFault, health: &Health, before: &Health) -> bool {
-    let lost_by = |loss: Loss| health.standing == Standing::Lost(loss);
+    let lost_by = |loss: Loss| health.standing == ConnectionState::Lost(loss);
     match fault {
         EmulatedFault::Loss => health.lost > before.lost,
         EmulatedFault::Reorder => health.out_of_order > before.out_of_order,
@@ -66,7 +66,11 @@ fn every_loss_is_told_within_twenty_milliseconds_of_loop_time() {
 }
 
 /// Runs a slot until `good`.
-fn until(slot: &mut Slot<Driver>, begin: Instant, good: impl Fn(&mut Slot<Driver>) -> bool) -> bool {
+fn until(
+    slot: &mut DeviceSlot<KinovaDriver>,
+    begin: Instant,
+    good: impl Fn(&mut DeviceSlot<KinovaDriver>) -> bool,
+) -> bool {
     let end = Instant::now() + Duration::from_secs(5);
     while Instant::now() < end {
         slot.poll(begin.elapsed().as_secs_f64());
@@ -83,15 +87,15 @@ fn every_fault_is_noticed_and_passes_without_a_restart() {
     // A delay by a busy machine shows as silence first, and hides the expected reason.
     judged(|| {
         let (serving, settings) = started(patient());
-        let settings = Settings { timeout_s: 0.4, ..settings };
-        let mut slot = Slot::start("kinova", move || open(&settings)).unwrap();
+        let settings = KinovaSettings { timeout_s: 0.4, ..settings };
+        let mut slot = DeviceSlot::start("kinova", move || open(&settings)).unwrap();
         let begin = Instant::now();
-        let connected = |slot: &mut Slot<Driver>| slot.health().standing == Standing::Connected;
+        let connected = |slot: &mut DeviceSlot<KinovaDriver>| slot.health().standing == ConnectionState::Connected;
         for fault in EmulatedFault::ALL {
             assert!(until(&mut slot, begin, connected), "before {fault:?}: {:?}", slot.view().report());
             let before = *slot.health();
             serving.faults.set(fault);
-            let noticed = |slot: &mut Slot<Driver>| is_noticed(fault, slot.health(), &before);
+            let noticed = |slot: &mut DeviceSlot<KinovaDriver>| is_noticed(fault, slot.health(), &before);
             assert!(until(&mut slot, begin, noticed), "{fault:?}: {:?}", slot.health());
             serving.faults.set(EmulatedFault::None);
         }
@@ -124,5 +128,5 @@ fn figures_of_the_cycle() {
     }
     let health = driver.health();
     println!("{polls} polls, mean {:?}, longest {longest:?}; {health:?}", total / polls);
-    assert_eq!(health.standing, Standing::Connected);
+    assert_eq!(health.standing, ConnectionState::Connected);
 }

@@ -1,12 +1,12 @@
 //! Messages of the services that the driver does not use, as far as the emulated arm parses them. Field numbers: the
 //! `.proto` files of `Kinovarobotics/ros_kortex`. Angles are in degrees.
 
-use nima_devices::kinova::messages::{JointAngles, Pose};
+use nima_devices::kinova::messages::{JointAngles, KinovaPose};
 use prost::Message;
 
 /// A reference to a stored entity: an action (with its type between), a sequence, a user, a protection zone.
 #[derive(Clone, Copy, PartialEq, Message)]
-pub(super) struct Handle {
+pub(super) struct EntityHandle {
     #[prost(uint32, tag = "1")]
     pub(super) identifier: u32,
     #[prost(fixed32, tag = "2")]
@@ -44,14 +44,14 @@ pub(super) struct Real {
 
 /// A message of one `fixed32` in field 1: `ControlLoop`.
 #[derive(Clone, Copy, PartialEq, Message)]
-pub(super) struct Bits {
+pub(super) struct FormBits {
     #[prost(fixed32, tag = "1")]
     pub(super) value: u32,
 }
 
 /// Numbers in field 1: `CustomDataSelection`.
 #[derive(Clone, PartialEq, Message)]
-pub(super) struct Numbers {
+pub(super) struct FormNumbers {
     #[prost(uint32, repeated, tag = "1")]
     pub(super) values: Vec<u32>,
 }
@@ -67,7 +67,7 @@ pub(super) struct Offsets {
 
 /// `GravityVector` (m/s^2), `Position` (m).
 #[derive(Clone, Copy, PartialEq, Message)]
-pub(super) struct Vector {
+pub(super) struct FormVector {
     #[prost(float, tag = "1")]
     pub(super) x: f32,
     #[prost(float, tag = "2")]
@@ -77,21 +77,21 @@ pub(super) struct Vector {
 }
 
 #[derive(Clone, Copy, PartialEq, Message)]
-pub(super) struct Payload {
+pub(super) struct PayloadForm {
     #[prost(float, tag = "1")]
     pub(super) mass_kg: f32,
     #[prost(message, optional, tag = "2")]
-    pub(super) centre: Option<Vector>,
+    pub(super) centre: Option<FormVector>,
 }
 
 #[derive(Clone, Copy, PartialEq, Message)]
-pub(super) struct Tool {
+pub(super) struct FormTool {
     #[prost(message, optional, tag = "1")]
-    pub(super) transform: Option<Pose>,
+    pub(super) transform: Option<KinovaPose>,
     #[prost(float, tag = "2")]
     pub(super) mass_kg: f32,
     #[prost(message, optional, tag = "3")]
-    pub(super) centre: Option<Vector>,
+    pub(super) centre: Option<FormVector>,
 }
 
 /// `TwistLinearSoftLimit`, `TwistAngularSoftLimit`.
@@ -174,7 +174,7 @@ pub(super) struct Product {
 /// Identifier and settings: `GPIOState` (value), `GPIOConfiguration` (mode, pull, default), `UARTConfiguration`,
 /// `EthernetConfiguration`, `I2CConfiguration`.
 #[derive(Clone, Copy, PartialEq, Message)]
-pub(super) struct Port {
+pub(super) struct PortForm {
     #[prost(uint32, tag = "1")]
     pub(super) identifier: u32,
     #[prost(uint32, tag = "2")]
@@ -192,7 +192,7 @@ pub(super) struct Port {
 #[derive(Clone, Copy, PartialEq, Message)]
 pub(super) struct BridgeResult {
     #[prost(message, optional, tag = "1")]
-    pub(super) bridge: Option<Handle>,
+    pub(super) bridge: Option<EntityHandle>,
     #[prost(uint32, tag = "2")]
     pub(super) status: u32,
 }
@@ -214,7 +214,7 @@ pub(super) struct JointSpeeds {
 #[derive(Clone, PartialEq, Message)]
 pub(super) struct InverseQuestion {
     #[prost(message, optional, tag = "1")]
-    pub(super) pose: Option<Pose>,
+    pub(super) pose: Option<KinovaPose>,
     #[prost(message, optional, tag = "2")]
     pub(super) guess: Option<JointAngles>,
 }
@@ -237,9 +237,9 @@ pub(super) struct ConfigurationChange {
     #[prost(uint32, tag = "1")]
     pub(super) event: u32,
     #[prost(message, optional, tag = "4")]
-    pub(super) sequence: Option<Handle>,
+    pub(super) sequence: Option<EntityHandle>,
     #[prost(message, optional, tag = "9")]
-    pub(super) user: Option<Handle>,
+    pub(super) user: Option<EntityHandle>,
     #[prost(message, optional, tag = "10")]
-    pub(super) zone: Option<Handle>,
+    pub(super) zone: Option<EntityHandle>,
 }

@@ -1,12 +1,12 @@
 //! The module at the end of the arm: its expansion port, with nothing connected to it.
 
-use nima_devices::kinova::messages::Number;
+use nima_devices::kinova::messages::KinovaNumber;
 use prost::Message;
 
 use super::{
-    forms::Port,
-    interface::{Answered, INVALID_PARAM, METHOD_TIMEOUT, Refused, UNSUPPORTED_METHOD, read},
-    setting::Setting,
+    forms::PortForm,
+    interface::{AnswerPayload, INVALID_PARAM, InterfaceError, METHOD_TIMEOUT, UNSUPPORTED_METHOD, read},
+    setting::KinovaSetting,
 };
 
 const PINS: usize = 4;
@@ -20,31 +20,32 @@ const HIGH: u32 = 2;
 
 pub(super) struct Interconnect {
     /// UART, Ethernet and I2C.
-    ports: [Setting; 3],
+    ports: [KinovaSetting; 3],
     /// Configuration and value of each pin.
-    pins: [(Port, u32); PINS],
+    pins: [(PortForm, u32); PINS],
 }
 
 impl Interconnect {
     pub(super) fn new() -> Self {
-        let port = Port { identifier: 1, ..Port::default() };
-        let first = |port: &Port| port.identifier == 1;
-        let pin =
-            |index| (Port { identifier: index as u32 + 1, mode: INPUT, third: 1, fourth: LOW, ..Port::default() }, LOW);
+        let port = PortForm { identifier: 1, ..PortForm::default() };
+        let first = |port: &PortForm| port.identifier == 1;
+        let pin = |index| {
+            (PortForm { identifier: index as u32 + 1, mode: INPUT, third: 1, fourth: LOW, ..PortForm::default() }, LOW)
+        };
         Self {
-            ports: [(1, 2), (3, 4), (9, 10)].map(|(get, set)| Setting::new(get, set, &port, first)),
+            ports: [(1, 2), (3, 4), (9, 10)].map(|(get, set)| KinovaSetting::new(get, set, &port, first)),
             pins: std::array::from_fn(pin),
         }
     }
 
-    pub(super) fn answer(&mut self, function: u16, payload: &[u8]) -> Answered {
+    pub(super) fn answer(&mut self, function: u16, payload: &[u8]) -> AnswerPayload {
         if let Some(answered) = self.ports.iter_mut().find_map(|port| port.answer(function, payload)) {
             return answered;
         }
         match function {
             5 => Ok(self.pin(payload)?.0.encode_to_vec()),
             6 => {
-                let wanted = read::<Port>(payload)?;
+                let wanted = read::<PortForm>(payload)?;
                 *self.pin(payload)? = (wanted, wanted.fourth);
                 Ok(Vec::new())
             }
@@ -52,10 +53,10 @@ impl Interconnect {
                 let (port, value) = *self.pin(payload)?;
                 let open = if port.third == PULL_UP { HIGH } else { LOW };
                 let value = if port.mode == INPUT { open } else { value };
-                Ok(Port { identifier: port.identifier, mode: value, ..Port::default() }.encode_to_vec())
+                Ok(PortForm { identifier: port.identifier, mode: value, ..PortForm::default() }.encode_to_vec())
             }
             8 => {
-                let value = read::<Port>(payload)?.mode;
+                let value = read::<PortForm>(payload)?.mode;
                 let pin = self.pin(payload)?;
                 if pin.0.mode == INPUT || !matches!(value, LOW | HIGH) {
                     return Err(INVALID_PARAM);
@@ -69,8 +70,8 @@ impl Interconnect {
         }
     }
 
-    fn pin(&mut self, payload: &[u8]) -> Result<&mut (Port, u32), Refused> {
-        let index = (read::<Number>(payload)?.value as usize).wrapping_sub(1);
+    fn pin(&mut self, payload: &[u8]) -> Result<&mut (PortForm, u32), InterfaceError> {
+        let index = (read::<KinovaNumber>(payload)?.value as usize).wrapping_sub(1);
         self.pins.get_mut(index).ok_or(INVALID_PARAM)
     }
 }

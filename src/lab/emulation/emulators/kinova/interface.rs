@@ -5,26 +5,26 @@ use nima_devices::kinova::messages::{ERROR_DEVICE, ERROR_SERVER, Rpc, sub};
 use prost::Message;
 
 /// Error class and sub error.
-pub(super) type Refused = (u8, u16);
+pub(super) type InterfaceError = (u8, u16);
 /// The payload of an answer.
-pub(super) type Answered = Result<Vec<u8>, Refused>;
+pub(super) type AnswerPayload = Result<Vec<u8>, InterfaceError>;
 
-pub(super) const UNSUPPORTED_METHOD: Refused = (ERROR_SERVER, sub::UNSUPPORTED_METHOD);
-pub(super) const UNSUPPORTED_SERVICE: Refused = (ERROR_SERVER, sub::UNSUPPORTED_SERVICE);
-pub(super) const INVALID_PARAM: Refused = (ERROR_DEVICE, 3);
-pub(super) const ENTITY_NOT_FOUND: Refused = (ERROR_DEVICE, 17);
-pub(super) const NO_MORE_STORAGE: Refused = (ERROR_DEVICE, 20);
-pub(super) const UNSUPPORTED_ACTION: Refused = (ERROR_DEVICE, 46);
-pub(super) const ABOVE_MAXIMUM: Refused = (ERROR_DEVICE, 48);
-pub(super) const DEVICE_DISCONNECTED: Refused = (ERROR_DEVICE, 50);
-pub(super) const OUTSIDE_WORKSPACE: Refused = (ERROR_DEVICE, 56);
-pub(super) const JOINT_COUNT: Refused = (ERROR_DEVICE, 57);
-pub(super) const INVALID_DURATION: Refused = (ERROR_DEVICE, 58);
-pub(super) const LARGE_SPEED: Refused = (ERROR_DEVICE, 60);
-pub(super) const JOINT_LIMIT: Refused = (ERROR_DEVICE, 65);
-pub(super) const USERNAME_TAKEN: Refused = (ERROR_DEVICE, 104);
-pub(super) const USERNAME_EMPTY: Refused = (ERROR_DEVICE, 105);
-pub(super) const METHOD_TIMEOUT: Refused = (ERROR_DEVICE, 131);
+pub(super) const UNSUPPORTED_METHOD: InterfaceError = (ERROR_SERVER, sub::UNSUPPORTED_METHOD);
+pub(super) const UNSUPPORTED_SERVICE: InterfaceError = (ERROR_SERVER, sub::UNSUPPORTED_SERVICE);
+pub(super) const INVALID_PARAM: InterfaceError = (ERROR_DEVICE, 3);
+pub(super) const ENTITY_NOT_FOUND: InterfaceError = (ERROR_DEVICE, 17);
+pub(super) const NO_MORE_STORAGE: InterfaceError = (ERROR_DEVICE, 20);
+pub(super) const UNSUPPORTED_ACTION: InterfaceError = (ERROR_DEVICE, 46);
+pub(super) const ABOVE_MAXIMUM: InterfaceError = (ERROR_DEVICE, 48);
+pub(super) const DEVICE_DISCONNECTED: InterfaceError = (ERROR_DEVICE, 50);
+pub(super) const OUTSIDE_WORKSPACE: InterfaceError = (ERROR_DEVICE, 56);
+pub(super) const JOINT_COUNT: InterfaceError = (ERROR_DEVICE, 57);
+pub(super) const INVALID_DURATION: InterfaceError = (ERROR_DEVICE, 58);
+pub(super) const LARGE_SPEED: InterfaceError = (ERROR_DEVICE, 60);
+pub(super) const JOINT_LIMIT: InterfaceError = (ERROR_DEVICE, 65);
+pub(super) const USERNAME_TAKEN: InterfaceError = (ERROR_DEVICE, 104);
+pub(super) const USERNAME_EMPTY: InterfaceError = (ERROR_DEVICE, 105);
+pub(super) const METHOD_TIMEOUT: InterfaceError = (ERROR_DEVICE, 131);
 
 /// Sub errors that end a motion.
 pub(super) const MANUAL_STOP: u16 = 55;
@@ -86,6 +86,6 @@ ids! {
     ALL_DEVICES = 23 / 1;
 }
 
-pub(super) fn read<T: Message + Default>(payload: &[u8]) -> Result<T, Refused> {
+pub(super) fn read<T: Message + Default>(payload: &[u8]) -> Result<T, InterfaceError> {
     T::decode(payload).map_err(|_| (ERROR_SERVER, sub::PAYLOAD_DECODING))
 }

@@ -1,15 +1,14 @@
 //! An emulated Gen3: sessions, calls and the cycle on the real interface, and a body that follows commands.
 //!
-//! It answers the calls of the manufacturer's examples for an arm with 7 joints: `Session`, `Base` (servoing, twists,
+//! It answers the calls of the manufacturer's examples for an arm with 7 joints: `CallSession`, `Base` (servoing, twists,
 //! joint speeds, actions, waypoints, sequences, kinematics, users, protection zones, notifications), `BaseCyclic`, and
 //! through the device id of a request `DeviceManager`, `DeviceConfig`, `ActuatorConfig`, `InterconnectConfig` and
 //! `ControlConfig`. All other calls are refused with the base's error frame.
 //!
 //! Unknown for the real arm, and assumed here: the time of the watchdog and the distance that trips a following error.
-//! Both are in [`Emulated`].
+//! Both are in [`EmulatedKinova`].
 
 mod actions;
-pub(super) mod alone;
 mod base_calls;
 mod body;
 mod calls;
@@ -18,12 +17,14 @@ mod devices;
 #[cfg(test)]
 mod driver_tests;
 mod entities;
+mod entity_store;
 #[cfg(test)]
 mod fault_tests;
+mod feedback_message;
 mod forms;
 mod interconnect;
 mod interface;
-mod motion;
+mod joint_motion;
 mod moves;
 #[cfg(test)]
 mod opening_tests;
@@ -31,20 +32,19 @@ mod robot;
 #[cfg(test)]
 mod route_tests;
 mod setting;
-mod shelf;
-mod told;
+pub(super) mod standalone;
 mod topics;
 mod wire;
 
 use nima_devices::ARM_JOINTS;
 
-pub use body::{Asked, Body, BodyState, StandIn};
+pub use body::{BodyCommand, BodyState, KinovaBody, StandIn};
 
 use crate::emulators::Emulator;
 
 /// Properties of the emulated arm.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Emulated {
+pub struct EmulatedKinova {
     /// User that may log in.
     pub user: String,
     pub password: String,
@@ -65,7 +65,7 @@ pub struct Emulated {
     pub udp_port: u16,
 }
 
-impl Default for Emulated {
+impl Default for EmulatedKinova {
     fn default() -> Self {
         Self {
             user: "admin".to_owned(),
@@ -81,10 +81,10 @@ impl Default for Emulated {
     }
 }
 
-impl Emulated {
+impl EmulatedKinova {
     /// Makes the emulator with a body. The endpoint is `127.0.0.1 tcp=PORT udp=PORT`, for
-    /// [`Settings::at`](nima_devices::kinova::Settings::at).
-    pub fn with(self, body: impl Body + 'static) -> Box<dyn Emulator> {
-        Box::new(wire::Server::new(self, Box::new(body)))
+    /// [`EmulatorSettings::at`](nima_devices::kinova::KinovaSettings::at).
+    pub fn with(self, body: impl KinovaBody + 'static) -> Box<dyn Emulator> {
+        Box::new(wire::KinovaServer::new(self, Box::new(body)))
     }
 }

@@ -1,9 +1,9 @@
 //! Messages of actions, waypoints and sequences. Field numbers: `Base.proto` of `Kinovarobotics/ros_kortex`. Angles are in degrees.
 
-use nima_devices::kinova::messages::{JointAngles, Pose};
+use nima_devices::kinova::messages::{JointAngles, KinovaPose};
 use prost::Message;
 
-use super::forms::Handle;
+use super::forms::EntityHandle;
 
 #[derive(Clone, Copy, PartialEq, Message)]
 pub(super) struct ActionHandle {
@@ -18,7 +18,7 @@ pub(super) struct ActionHandle {
 #[derive(Clone, Copy, PartialEq, Message)]
 pub(super) struct ReachPose {
     #[prost(message, optional, tag = "1")]
-    pub(super) pose: Option<Pose>,
+    pub(super) pose: Option<KinovaPose>,
 }
 
 #[derive(Clone, PartialEq, Message)]
@@ -29,7 +29,7 @@ pub(super) struct ReachAngles {
 
 /// An action, with the parameters that can be executed here.
 #[derive(Clone, PartialEq, Message)]
-pub(super) struct Action {
+pub(super) struct KinovaAction {
     #[prost(message, optional, tag = "1")]
     pub(super) handle: Option<ActionHandle>,
     #[prost(string, tag = "2")]
@@ -47,12 +47,12 @@ pub(super) struct Action {
 #[derive(Clone, PartialEq, Message)]
 pub(super) struct Actions {
     #[prost(message, repeated, tag = "1")]
-    pub(super) actions: Vec<Action>,
+    pub(super) actions: Vec<KinovaAction>,
 }
 
 /// `ActionNotification`; `SequenceInfoNotification` has other fields.
 #[derive(Clone, Copy, PartialEq, Message)]
-pub(super) struct ActionTold {
+pub(super) struct ActionReport {
     #[prost(uint32, tag = "1")]
     pub(super) event: u32,
     #[prost(message, optional, tag = "2")]
@@ -62,11 +62,11 @@ pub(super) struct ActionTold {
 }
 
 #[derive(Clone, Copy, PartialEq, Message)]
-pub(super) struct SequenceTold {
+pub(super) struct SequenceReport {
     #[prost(uint32, tag = "1")]
     pub(super) event: u32,
     #[prost(message, optional, tag = "2")]
-    pub(super) handle: Option<Handle>,
+    pub(super) handle: Option<EntityHandle>,
     #[prost(uint32, tag = "3")]
     pub(super) task: u32,
     #[prost(uint32, tag = "7")]
@@ -74,15 +74,15 @@ pub(super) struct SequenceTold {
 }
 
 #[derive(Clone, PartialEq, Message)]
-pub(super) struct Task {
+pub(super) struct MoveTask {
     #[prost(message, optional, tag = "2")]
-    pub(super) action: Option<Action>,
+    pub(super) action: Option<KinovaAction>,
 }
 
 #[derive(Clone, PartialEq, Message)]
 pub(super) struct Sequence {
     #[prost(message, repeated, tag = "4")]
-    pub(super) tasks: Vec<Task>,
+    pub(super) tasks: Vec<MoveTask>,
 }
 
 #[derive(Clone, PartialEq, Message)]
@@ -96,7 +96,7 @@ pub(super) struct AngularWaypoint {
 #[derive(Clone, Copy, PartialEq, Message)]
 pub(super) struct CartesianWaypoint {
     #[prost(message, optional, tag = "1")]
-    pub(super) pose: Option<Pose>,
+    pub(super) pose: Option<KinovaPose>,
 }
 
 #[derive(Clone, PartialEq, Message)]

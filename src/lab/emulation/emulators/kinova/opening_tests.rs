@@ -6,18 +6,18 @@ use std::{
 };
 
 use nima_devices::{
-    Trouble,
-    kinova::{Settings, open},
+    DeviceError,
+    kinova::{KinovaSettings, open},
 };
 use nima_testing::real_time::judged;
 
 use super::driver_tests::{patient, started};
-use crate::emulators::{EmulatedFault, kinova::Emulated};
+use crate::emulators::{EmulatedFault, kinova::EmulatedKinova};
 
 #[test]
 fn every_trouble_while_opening_has_its_cause() {
     judged(|| {
-        let trouble = |arm: Emulated, change: fn(&mut Settings)| {
+        let trouble = |arm: EmulatedKinova, change: fn(&mut KinovaSettings)| {
             let (serving, mut settings) = started(arm);
             settings.timeout_s = 0.5;
             change(&mut settings);
@@ -25,22 +25,24 @@ fn every_trouble_while_opening_has_its_cause() {
             assert!(serving.is_serving() && !trouble.cure().is_empty());
             trouble
         };
-        let same = |_: &mut Settings| {};
+        let same = |_: &mut KinovaSettings| {};
         let refused = trouble(patient(), |settings| settings.password = "wrong".to_owned());
-        assert!(matches!(refused, Trouble::RefusedLogin { user, .. } if user == "admin"));
+        assert!(matches!(refused, DeviceError::RefusedLogin { user, .. } if user == "admin"));
         let refused = trouble(patient(), |settings| settings.user = "nobody".to_owned());
-        assert!(matches!(refused, Trouble::RefusedLogin { user, .. } if user == "nobody"));
-        let other = trouble(Emulated { joints: 6, ..patient() }, same);
-        assert!(matches!(other, Trouble::WrongProduct { found, .. } if found == "arm with 6 joints"));
-        let exchanged = trouble(Emulated { serial: "KP-2".to_owned(), ..patient() }, |settings| {
+        assert!(matches!(refused, DeviceError::RefusedLogin { user, .. } if user == "nobody"));
+        let other = trouble(EmulatedKinova { joints: 6, ..patient() }, same);
+        assert!(matches!(other, DeviceError::WrongProduct { found, .. } if found == "arm with 6 joints"));
+        let exchanged = trouble(EmulatedKinova { serial: "KP-2".to_owned(), ..patient() }, |settings| {
             settings.serial_number = Some("KP-1".to_owned());
         });
-        assert!(matches!(exchanged, Trouble::OtherSerial { found, .. } if found == "KP-2"));
-        let starting = trouble(Emulated { idle_state: 3, ..patient() }, same);
-        assert!(matches!(starting, Trouble::NotReady { mode, .. } if mode == "initialisation"));
-        let nobody = |change: fn(&mut Settings)| matches!(trouble(patient(), change), Trouble::NobodyListens { .. });
+        assert!(matches!(exchanged, DeviceError::OtherSerial { found, .. } if found == "KP-2"));
+        let starting = trouble(EmulatedKinova { idle_state: 3, ..patient() }, same);
+        assert!(matches!(starting, DeviceError::NotReady { mode, .. } if mode == "initialisation"));
+        let nobody =
+            |change: fn(&mut KinovaSettings)| matches!(trouble(patient(), change), DeviceError::NobodyListens { .. });
         assert!(nobody(|settings| settings.tcp_port = 1) && nobody(|settings| settings.udp_port = 1));
-        let setting = |change: fn(&mut Settings)| matches!(trouble(patient(), change), Trouble::Setting { .. });
+        let setting =
+            |change: fn(&mut KinovaSettings)| matches!(trouble(patient(), change), DeviceError::Setting { .. });
         assert!(setting(|settings| settings.speed_fraction = 1.5) && setting(|settings| settings.lead_rad = f64::NAN));
     });
 }
@@ -49,13 +51,13 @@ fn every_trouble_while_opening_has_its_cause() {
 fn a_silent_arm_and_a_stranger_at_its_port_are_told_apart() {
     judged(|| {
         let (serving, settings) = started(patient());
-        let settings = Settings { timeout_s: 0.3, ..settings };
+        let settings = KinovaSettings { timeout_s: 0.3, ..settings };
         serving.faults.set(EmulatedFault::Silence);
-        assert!(matches!(open(&settings).unwrap_err(), Trouble::Silent { .. }));
+        assert!(matches!(open(&settings).unwrap_err(), DeviceError::Silent { .. }));
         serving.faults.set(EmulatedFault::DeviceFault);
         let fault = open(&settings).unwrap_err();
         assert!(
-            matches!(&fault, Trouble::DeviceFault { words, .. } if words.contains("joint 3: too much torque")),
+            matches!(&fault, DeviceError::DeviceFault { words, .. } if words.contains("joint 3: too much torque")),
             "{fault}"
         );
         let stranger = TcpListener::bind(("127.0.0.1", 0)).unwrap();
@@ -66,8 +68,8 @@ fn a_silent_arm_and_a_stranger_at_its_port_are_told_apart() {
             assert!(stream.read(&mut buffer).unwrap() > 0);
             stream.write_all(b"HTTP/1.1 400 Bad Request\r\n\r\n").unwrap();
         });
-        let trouble = open(&Settings { tcp_port, ..settings }).unwrap_err();
-        assert!(matches!(&trouble, Trouble::WrongProduct { .. }), "{trouble}");
+        let trouble = open(&KinovaSettings { tcp_port, ..settings }).unwrap_err();
+        assert!(matches!(&trouble, DeviceError::WrongProduct { .. }), "{trouble}");
         answering.join().unwrap();
     });
 }

@@ -11,15 +11,15 @@ use nima_devices::{
         },
         kinematics::{jacobian, theta_rad, tool},
         limits::{GEN3, unwrapped, wire_degrees},
-        messages::{ArmState, Command, ERROR_DEVICE, ServoingMode, TwistCommand, sub},
+        messages::{ArmState, ERROR_DEVICE, KinovaCommand, ServoingMode, TwistCommand, sub},
     },
 };
 
 use super::{
-    Asked, Body, BodyState, Emulated,
-    interface::{LARGE_SPEED, MANUAL_STOP, MOVEMENT_IN_PROGRESS, Refused},
-    motion::{Joints, Leg, Motion},
-    told::{ActuatorFeedback, BaseFeedback, Feedback},
+    BodyCommand, BodyState, EmulatedKinova, KinovaBody,
+    feedback_message::{ActuatorFeedback, BaseFeedback, FeedbackMessage},
+    interface::{InterfaceError, LARGE_SPEED, MANUAL_STOP, MOVEMENT_IN_PROGRESS},
+    joint_motion::{KinovaJoints, KinovaMotion, Leg},
 };
 use crate::emulators::EmulatedFault;
 
@@ -35,13 +35,13 @@ const STATUS_SERVOING: u32 = 0x20 | 0x800;
 const STATUS_FAULT: u32 = 0x20 | 0x400 | 0x1000;
 
 pub(super) struct Robot {
-    arm: Emulated,
-    body: Box<dyn Body>,
+    arm: EmulatedKinova,
+    body: Box<dyn KinovaBody>,
     state: BodyState,
-    asked: Asked,
-    motion: Option<Motion>,
+    asked: BodyCommand,
+    motion: Option<KinovaMotion>,
     /// How the last path ended, until it is read: at its end, or stopped with this sub error.
-    ended: Option<Obeyed>,
+    ended: Option<ObeyResult>,
     mode: ServoingMode,
     base_fault: u32,
     actuator_faults: [u32; ARM_JOINTS],
@@ -54,16 +54,16 @@ pub(super) struct Robot {
 }
 
 /// A refusal has the sub error of `ERROR_DEVICE`.
-pub(super) type Obeyed = Result<(), u16>;
+pub(super) type ObeyResult = Result<(), u16>;
 
 impl Robot {
-    pub(super) fn new(arm: Emulated, mut body: Box<dyn Body>) -> Self {
-        let state = body.step(0.0, &Asked::Rest);
+    pub(super) fn new(arm: EmulatedKinova, mut body: Box<dyn KinovaBody>) -> Self {
+        let state = body.step(0.0, &BodyCommand::Rest);
         Self {
             arm,
             body,
             state,
-            asked: Asked::Rest,
+            asked: BodyCommand::Rest,
             motion: None,
             ended: None,
             mode: ServoingMode::Single,
@@ -80,8 +80,8 @@ impl Robot {
 
     /// Advances the time to `now_s`.
     pub(super) fn advance(&mut self, now_s: f64, fault: EmulatedFault) {
-        let unheard = self.commanded_s.is_some_and(|heard_s| now_s - heard_s > self.arm.watchdog_ms * 1e-3);
-        if self.mode == ServoingMode::Low && unheard && !self.is_faulty() {
+        let is_silent = self.commanded_s.is_some_and(|received_s| now_s - received_s > self.arm.watchdog_ms * 1e-3);
+        if self.mode == ServoingMode::Low && is_silent && !self.is_faulty() {
             self.trip([COMMUNICATION_TICK_LOST; ARM_JOINTS]);
         }
         self.emulated_fault = fault == EmulatedFault::DeviceFault;
@@ -106,21 +106,21 @@ impl Robot {
             self.asked = asked;
         } else {
             self.motion = None;
-            self.asked = Asked::Rest;
+            self.asked = BodyCommand::Rest;
             self.ended = Some(Ok(()));
         }
     }
 
     /// Ends every motion with this sub error.
     fn rest(&mut self, why: u16) {
-        self.asked = Asked::Rest;
+        self.asked = BodyCommand::Rest;
         if self.motion.take().is_some_and(|motion| motion.is_path()) {
             self.ended = Some(Err(why));
         }
     }
 
     /// Returns once how the last path ended.
-    pub(super) const fn take_end(&mut self) -> Option<Obeyed> {
+    pub(super) const fn take_end(&mut self) -> Option<ObeyResult> {
         self.ended.take()
     }
 
@@ -162,7 +162,7 @@ impl Robot {
         self.mode
     }
 
-    pub(super) fn set_mode(&mut self, mode: u32) -> Obeyed {
+    pub(super) fn set_mode(&mut self, mode: u32) -> ObeyResult {
         match mode {
             2 => self.mode = ServoingMode::Single,
             3 if self.is_faulty() => return Err(sub::IN_FAULT),
@@ -200,7 +200,7 @@ impl Robot {
     }
 
     /// Whether the base may begin a motion.
-    fn ready(&self) -> Obeyed {
+    fn ready(&self) -> ObeyResult {
         match &self.motion {
             _ if self.mode == ServoingMode::Low => Err(sub::WRONG_SERVOING_MODE),
             _ if self.is_faulty() => Err(sub::IN_FAULT),
@@ -210,14 +210,14 @@ impl Robot {
     }
 
     /// Begins a path from the current pose.
-    pub(super) fn follow(&mut self, legs: Vec<Leg>) -> Result<(), Refused> {
+    pub(super) fn follow(&mut self, legs: Vec<Leg>) -> Result<(), InterfaceError> {
         self.ready().map_err(|code| (ERROR_DEVICE, code))?;
-        self.motion = Some(Motion::path(self.state.joint_rad, legs));
+        self.motion = Some(KinovaMotion::path(self.state.joint_rad, legs));
         Ok(())
     }
 
     /// Moves the joints at these speeds, rad/s, until the next command.
-    pub(super) fn move_joints(&mut self, rad_s: Joints) -> Result<(), Refused> {
+    pub(super) fn move_joints(&mut self, rad_s: KinovaJoints) -> Result<(), InterfaceError> {
         self.ready().map_err(|code| (ERROR_DEVICE, code))?;
         // A speed at a joint's limit is accepted, despite rounding in the wire's degrees.
         if !rad_s.iter().zip(&GEN3).all(|(speed, joint)| speed.abs() <= joint.speed_rad_s * 1.001) {
@@ -226,7 +226,7 @@ impl Robot {
         if rad_s.iter().all(|speed| *speed == 0.0) {
             self.rest(MANUAL_STOP);
         } else {
-            self.motion = Some(Motion::speeds(self.state.joint_rad, rad_s));
+            self.motion = Some(KinovaMotion::speeds(self.state.joint_rad, rad_s));
         }
         Ok(())
     }
@@ -234,14 +234,14 @@ impl Robot {
     /// The active `ControlMode`.
     pub(super) const fn control_mode(&self) -> u32 {
         match (&self.motion, &self.asked) {
-            (Some(Motion::Path { .. }), _) => 4,
-            (Some(Motion::Speeds { .. }), _) => 1,
-            (None, Asked::Twist { .. }) => 2,
+            (Some(KinovaMotion::Path { .. }), _) => 4,
+            (Some(KinovaMotion::Speeds { .. }), _) => 1,
+            (None, BodyCommand::Twist { .. }) => 2,
             (None, _) => 13,
         }
     }
 
-    pub(super) fn twist(&mut self, command: &TwistCommand) -> Obeyed {
+    pub(super) fn twist(&mut self, command: &TwistCommand) -> ObeyResult {
         self.ready()?;
         let frame = match command.reference_frame {
             1 => TwistFrame::Mixed,
@@ -258,12 +258,12 @@ impl Robot {
         }
         self.motion = None;
         let still = linear_m_s == Vector3::zeros() && angular_rad_s == Vector3::zeros();
-        self.asked = if still { Asked::Rest } else { Asked::Twist { frame, linear_m_s, angular_rad_s } };
+        self.asked = if still { BodyCommand::Rest } else { BodyCommand::Twist { frame, linear_m_s, angular_rad_s } };
         Ok(())
     }
 
     /// Executes a cyclic command. Refused outside low-level servoing; without effect in a fault.
-    pub(super) fn command(&mut self, now_s: f64, command: &Command) -> Obeyed {
+    pub(super) fn command(&mut self, now_s: f64, command: &KinovaCommand) -> ObeyResult {
         if self.mode != ServoingMode::Low {
             return Err(sub::WRONG_SERVOING_MODE);
         }
@@ -272,7 +272,7 @@ impl Robot {
         if self.is_faulty() {
             return Ok(());
         }
-        let mut wanted = if let Asked::Joints(angles) = self.asked { angles } else { self.state.joint_rad };
+        let mut wanted = if let BodyCommand::Joints(angles) = self.asked { angles } else { self.state.joint_rad };
         let mut faults = [0; ARM_JOINTS];
         for (j, actuator) in command.actuators.iter().take(ARM_JOINTS).enumerate() {
             // Commands out of their time are dropped.
@@ -285,7 +285,7 @@ impl Robot {
             wanted[j] = angle;
         }
         if faults == [0; ARM_JOINTS] {
-            self.asked = Asked::Joints(wanted);
+            self.asked = BodyCommand::Joints(wanted);
         } else {
             self.trip(faults);
         }
@@ -310,14 +310,14 @@ impl Robot {
     }
 
     /// Returns the answer to a refresh.
-    pub(super) fn told(&mut self, fault: EmulatedFault) -> Feedback {
+    pub(super) fn report(&mut self, fault: EmulatedFault) -> FeedbackMessage {
         let mut actuators: Vec<_> = (0..ARM_JOINTS.min(self.arm.joints as usize)).map(|j| self.actuator(j)).collect();
         if fault == EmulatedFault::NotANumber {
             for actuator in &mut actuators {
                 actuator.position_deg = f32::NAN;
             }
         }
-        Feedback { frame_id: self.frame_id, base: Some(self.base()), actuators }
+        FeedbackMessage { frame_id: self.frame_id, base: Some(self.base()), actuators }
     }
 
     fn noise(&mut self, size: f32) -> f32 {

@@ -2,21 +2,21 @@
 
 use prost::Message;
 
-use super::interface::{Answered, INVALID_PARAM, read};
+use super::interface::{AnswerPayload, INVALID_PARAM, read};
 
-pub(super) struct Setting {
+pub(super) struct KinovaSetting {
     get: u16,
     set: u16,
     reset: Option<u16>,
     initial: Vec<u8>,
     value: Vec<u8>,
-    checked: Check,
+    checked: SettingCheck,
 }
 
 /// Returns the stored form of an offered value, or why it is refused.
-type Check = Box<dyn Fn(&[u8]) -> Answered + Send>;
+type SettingCheck = Box<dyn Fn(&[u8]) -> AnswerPayload + Send>;
 
-impl Setting {
+impl KinovaSetting {
     /// A value read and set by these functions of its service; `fits` returns which values are accepted.
     pub(super) fn new<M>(get: u16, set: u16, initial: &M, fits: fn(&M) -> bool) -> Self
     where
@@ -41,7 +41,7 @@ impl Setting {
     }
 
     /// Returns the answer, if the function belongs to this value.
-    pub(super) fn answer(&mut self, function: u16, payload: &[u8]) -> Option<Answered> {
+    pub(super) fn answer(&mut self, function: u16, payload: &[u8]) -> Option<AnswerPayload> {
         if function == self.set {
             return Some((self.checked)(payload).map(|value| {
                 self.value = value;

@@ -1,13 +1,13 @@
 //! Notifications of the base to its subscribers.
 
 use nima_devices::kinova::{
-    frame::{Header, NOTIFICATION},
+    frame::{KinovaHeader, NOTIFICATION},
     messages::Rpc,
 };
 use prost::Message;
 
-use super::interface::{ENTITY_NOT_FOUND, NO_MORE_STORAGE, Refused};
-use crate::emulators::Peer;
+use super::interface::{ENTITY_NOT_FOUND, InterfaceError, NO_MORE_STORAGE};
+use crate::emulators::WirePeer;
 
 const SUBSCRIPTIONS: usize = 64;
 
@@ -15,26 +15,26 @@ struct Subscription {
     identifier: u16,
     topic: Rpc,
     session: u16,
-    link: Peer,
+    link: WirePeer,
 }
 
 /// One notification to be sent.
 pub(super) struct Notice {
-    pub(super) link: Peer,
-    pub(super) header: Header,
+    pub(super) link: WirePeer,
+    pub(super) header: KinovaHeader,
     pub(super) payload: Vec<u8>,
 }
 
 #[derive(Default)]
-pub(super) struct Topics {
+pub(super) struct KinovaTopics {
     given: u16,
     subscriptions: Vec<Subscription>,
     waiting: Vec<Notice>,
 }
 
-impl Topics {
+impl KinovaTopics {
     /// Returns the number that notifications of this subscription carry.
-    pub(super) fn subscribe(&mut self, topic: Rpc, session: u16, link: Peer) -> Result<u16, Refused> {
+    pub(super) fn subscribe(&mut self, topic: Rpc, session: u16, link: WirePeer) -> Result<u16, InterfaceError> {
         if self.subscriptions.len() >= SUBSCRIPTIONS {
             return Err(NO_MORE_STORAGE);
         }
@@ -44,7 +44,7 @@ impl Topics {
     }
 
     /// Only the session that subscribed may unsubscribe.
-    pub(super) fn unsubscribe(&mut self, identifier: u32, session: u16) -> Result<(), Refused> {
+    pub(super) fn unsubscribe(&mut self, identifier: u32, session: u16) -> Result<(), InterfaceError> {
         let own = |one: &Subscription| u32::from(one.identifier) == identifier && one.session == session;
         let at = self.subscriptions.iter().position(own).ok_or(ENTITY_NOT_FOUND)?;
         self.subscriptions.remove(at);
@@ -56,16 +56,16 @@ impl Topics {
         self.subscriptions.retain(|one| is_open(one.session));
     }
 
-    pub(super) fn tell(&mut self, topic: Rpc, message: &impl Message) {
+    pub(super) fn report(&mut self, topic: Rpc, message: &impl Message) {
         for one in self.subscriptions.iter().filter(|one| one.topic == topic) {
             let Rpc { service, function } = topic;
-            let header = Header {
+            let header = KinovaHeader {
                 kind: NOTIFICATION,
                 session: one.session,
                 message: one.identifier,
                 service,
                 function,
-                ..Header::default()
+                ..KinovaHeader::default()
             };
             self.waiting.push(Notice { link: one.link, header, payload: message.encode_to_vec() });
         }

@@ -3,30 +3,30 @@
 use std::io;
 
 use nima_devices::kinova::{
-    frame::{self, Frame, Header, PacketReader, REQUEST, RESPONSE},
+    frame::{self, KinovaFrame, KinovaHeader, PacketReader, REQUEST, RESPONSE},
     messages::{ERROR_SERVER, ErrorInfo, Rpc, sub},
 };
 use prost::Message as _;
 
-use super::{Body, Emulated, calls::Base};
+use super::{EmulatedKinova, KinovaBody, calls::Base};
 use crate::emulators::{
-    EmulatedFault, Emulator, End, Peer, Turn,
+    EmulatedFault, Emulator, EmulatorTurn, WireEnd, WirePeer,
     wires::{tcp, udp},
 };
 
-pub(super) struct Server {
+pub(super) struct KinovaServer {
     base: Base,
     /// Data received from each connection.
-    packets: Vec<(Peer, PacketReader)>,
+    packets: Vec<(WirePeer, PacketReader)>,
     frozen: Option<Vec<u8>>,
 }
 
-impl Server {
-    pub(super) fn new(arm: Emulated, body: Box<dyn Body>) -> Self {
+impl KinovaServer {
+    pub(super) fn new(arm: EmulatedKinova, body: Box<dyn KinovaBody>) -> Self {
         Self { base: Base::new(arm, body), packets: Vec::new(), frozen: None }
     }
 
-    fn calls(&mut self, from: Peer, mut bytes: &[u8], turn: &mut Turn<'_>) {
+    fn calls(&mut self, from: WirePeer, mut bytes: &[u8], turn: &mut EmulatorTurn<'_>) {
         let Some((_, packets)) = self.packets.iter_mut().find(|(peer, _)| *peer == from) else { return };
         while !bytes.is_empty() {
             let room = packets.room();
@@ -42,7 +42,7 @@ impl Server {
     }
 
     /// Returns the answer on the cyclic connection, modified by the fault.
-    fn datagram(&mut self, from: Peer, asked: &Frame<'_>, turn: &Turn<'_>) -> Vec<u8> {
+    fn datagram(&mut self, from: WirePeer, asked: &KinovaFrame<'_>, turn: &EmulatorTurn<'_>) -> Vec<u8> {
         let (mut header, payload) = answer(&mut self.base, from, asked, turn.now_s, turn.fault);
         let cyclic = header.service == Rpc::REFRESH.service && header.error == 0;
         if cyclic && turn.fault == EmulatedFault::WrongFrame {
@@ -64,7 +64,7 @@ impl Server {
 }
 
 /// Over TCP, where bytes are neither lost nor late.
-fn send_packed(to: Peer, header: &Header, payload: &[u8], turn: &mut Turn<'_>) {
+fn send_packed(to: WirePeer, header: &KinovaHeader, payload: &[u8], turn: &mut EmulatorTurn<'_>) {
     if turn.fault != EmulatedFault::Silence {
         let mut out = Vec::new();
         frame::packed(&mut out, |out| frame::encode_written(header, payload, out));
@@ -72,8 +72,8 @@ fn send_packed(to: Peer, header: &Header, payload: &[u8], turn: &mut Turn<'_>) {
     }
 }
 
-impl Emulator for Server {
-    fn wires(&self) -> io::Result<Vec<Box<dyn End>>> {
+impl Emulator for KinovaServer {
+    fn wires(&self) -> io::Result<Vec<Box<dyn WireEnd>>> {
         Ok(vec![tcp(self.base.arm.tcp_port), udp(self.base.arm.udp_port)])
     }
 
@@ -82,21 +82,21 @@ impl Emulator for Server {
         format!("127.0.0.1 tcp={} udp={}", ports[0], ports[1])
     }
 
-    fn meet(&mut self, peer: Peer, _: &mut Turn<'_>) {
+    fn meet(&mut self, peer: WirePeer, _: &mut EmulatorTurn<'_>) {
         self.packets.push((peer, PacketReader::default()));
     }
 
-    fn hear(&mut self, from: Peer, bytes: &[u8], turn: &mut Turn<'_>) {
+    fn receive(&mut self, from: WirePeer, bytes: &[u8], turn: &mut EmulatorTurn<'_>) {
         self.base.advance(turn.now_s, turn.fault);
-        if !matches!(from, Peer::Address(_)) {
+        if !matches!(from, WirePeer::Address(_)) {
             self.calls(from, bytes, turn);
-        } else if let Ok(asked) = Frame::decode(bytes) {
+        } else if let Ok(asked) = KinovaFrame::decode(bytes) {
             let out = self.datagram(from, &asked, turn);
             turn.send(from, &out);
         }
     }
 
-    fn pass(&mut self, turn: &mut Turn<'_>) {
+    fn pass(&mut self, turn: &mut EmulatorTurn<'_>) {
         self.base.advance(turn.now_s, turn.fault);
         // Notifications about a call follow its answer.
         for notice in self.base.notices() {
@@ -104,21 +104,27 @@ impl Emulator for Server {
         }
     }
 
-    fn lose(&mut self, peer: Peer) {
-        let gone = |link| peer == Peer::Everyone || peer == link;
+    fn lose(&mut self, peer: WirePeer) {
+        let gone = |link| peer == WirePeer::Everyone || peer == link;
         self.packets.retain(|(link, _)| !gone(*link));
         self.base.forget(gone);
     }
 }
 
 /// Returns header and payload of the answer to a frame.
-fn answer(base: &mut Base, link: Peer, asked: &Frame<'_>, now_s: f64, fault: EmulatedFault) -> (Header, Vec<u8>) {
+fn answer(
+    base: &mut Base,
+    link: WirePeer,
+    asked: &KinovaFrame<'_>,
+    now_s: f64,
+    fault: EmulatedFault,
+) -> (KinovaHeader, Vec<u8>) {
     let answered = if asked.header.kind == REQUEST {
         base.answer(link, asked, now_s, fault)
     } else {
         Err((ERROR_SERVER, sub::UNSUPPORTED_FRAME))
     };
-    let mut header = Header { kind: RESPONSE, ..asked.header };
+    let mut header = KinovaHeader { kind: RESPONSE, ..asked.header };
     match answered {
         Ok((session, payload)) => {
             header.session = session;
@@ -128,8 +134,8 @@ fn answer(base: &mut Base, link: Peer, asked: &Frame<'_>, now_s: f64, fault: Emu
             header.error = error;
             header.sub_error = code;
             let text = sub::words(code).to_owned();
-            let told = ErrorInfo { code: u32::from(error), sub_code: u32::from(code), text };
-            (header, told.encode_to_vec())
+            let report = ErrorInfo { code: u32::from(error), sub_code: u32::from(code), text };
+            (header, report.encode_to_vec())
         }
     }
 }

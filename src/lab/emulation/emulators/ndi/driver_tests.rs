@@ -13,12 +13,15 @@ use std::{
 };
 
 use nalgebra::{UnitQuaternion, Vector3};
-use nima_devices::{Device, Health, Loss, Stamped, Standing, TRACKED_TOOLS, Tracked, TrackerReading, Trouble, ndi::*};
+use nima_devices::{
+    ConnectionState, Device, DeviceError, Health, Loss, TRACKED_TOOLS, TimedReading, TrackedTool, TrackerReading,
+    ndi::*,
+};
 use nima_testing::real_time::judged;
 
 use crate::emulators::{
-    Serving,
-    ndi::{Body, FRAME_HZ, Profile, wandering},
+    EmulatorThread,
+    ndi::{FRAME_HZ, NdiBody, NdiProfile, wandering},
 };
 
 pub(super) fn definitions(count: usize) -> (tempfile::TempDir, Vec<PathBuf>) {
@@ -36,8 +39,8 @@ pub(super) fn definitions(count: usize) -> (tempfile::TempDir, Vec<PathBuf>) {
     (folder, paths)
 }
 
-pub(super) fn profile(firmware: &str) -> Profile {
-    Profile { firmware: firmware.to_owned(), ..Profile::default() }
+pub(super) fn profile(firmware: &str) -> NdiProfile {
+    NdiProfile { firmware: firmware.to_owned(), ..NdiProfile::default() }
 }
 
 pub(super) const TEXT_FIRMWARE: &str = "Polaris Vega 008";
@@ -47,8 +50,8 @@ pub(super) const BLOCK_FIRMWARE: &str = "Polaris Vega 014";
 pub(super) fn until(
     begin: Instant,
     seconds: f64,
-    mut poll: impl FnMut(f64) -> Option<Stamped<TrackerReading>>,
-    mut good: impl FnMut(Option<Stamped<TrackerReading>>) -> bool,
+    mut poll: impl FnMut(f64) -> Option<TimedReading<TrackerReading>>,
+    mut good: impl FnMut(Option<TimedReading<TrackerReading>>) -> bool,
 ) -> bool {
     let end = Instant::now() + Duration::from_secs_f64(seconds);
     while Instant::now() < end {
@@ -61,17 +64,17 @@ pub(super) fn until(
     false
 }
 
-pub(super) fn network(served: &Serving, tools: Vec<PathBuf>) -> Settings {
-    Settings { address: Some(served.endpoint.clone()), tools, ..Settings::default() }
+pub(super) fn network(served: &EmulatorThread, tools: Vec<PathBuf>) -> NdiSettings {
+    NdiSettings { address: Some(served.endpoint.clone()), tools, ..NdiSettings::default() }
 }
 
-pub(super) fn line(served: &Serving, tools: Vec<PathBuf>) -> Settings {
-    Settings { port: Some(served.endpoint.clone()), tools, ..Settings::default() }
+pub(super) fn line(served: &EmulatorThread, tools: Vec<PathBuf>) -> NdiSettings {
+    NdiSettings { port: Some(served.endpoint.clone()), tools, ..NdiSettings::default() }
 }
 
 /// Returns a driver's readings in its first second.
-fn attempt(settings: &Settings, form: Form) -> (Health, Vec<Stamped<TrackerReading>>) {
-    let mut driver = Driver::open(settings).unwrap();
+fn attempt(settings: &NdiSettings, form: ReplyForm) -> (Health, Vec<TimedReading<TrackerReading>>) {
+    let mut driver = NdiDriver::open(settings).unwrap();
     assert_eq!(driver.form(), form);
     assert_eq!(driver.identity().product, "Polaris Vega");
     let begin = Instant::now();
@@ -91,21 +94,21 @@ fn attempt(settings: &Settings, form: Form) -> (Health, Vec<Stamped<TrackerReadi
 
 /// Checks that the readings of the first second agree with the body, frame by frame. The number of lost frames depends
 /// on the machine's load: none on an idle one; at most a tenth is accepted here.
-fn follows(settings: &Settings, form: Form, within_m: f64) {
+fn follows(settings: &NdiSettings, form: ReplyForm, within_m: f64) {
     // A machine that stalls for a tenth of a second makes a tracker silent: a second and a third attempt are allowed.
     let attempts = (0..3).map(|_| attempt(settings, form));
-    let complete = |(health, _): &(Health, Vec<_>)| health.standing == Standing::Connected && health.lost <= 8;
+    let complete = |(health, _): &(Health, Vec<_>)| health.standing == ConnectionState::Connected && health.lost <= 8;
     let (health, readings) = attempts.into_iter().find(complete).expect("complete in one of three attempts");
     assert!(health.damaged == 0 && health.out_of_order == 0, "{health:?}");
     assert!(readings.len() as u64 + health.lost >= 70, "{} readings", readings.len());
     println!("{form:?}: {} readings, {:.1} Hz, {} lost", readings.len(), health.rate_hz, health.lost);
-    for Stamped { device_s, value, .. } in &readings {
+    for TimedReading { device_s, value, .. } in &readings {
         let at_s = f64::from(value.frame) / FRAME_HZ;
         assert!((device_s.unwrap() - at_s).abs() < 1e-9);
         for number in 0..settings.tools.len() {
             let (
-                Tracked::Seen { c_from_tool, position_in_c_m, error_m, .. },
-                Tracked::Seen { c_from_tool: turned, position_in_c_m: place, error_m: error, .. },
+                TrackedTool::Seen { c_from_tool, position_in_c_m, error_m, .. },
+                TrackedTool::Seen { c_from_tool: turned, position_in_c_m: place, error_m: error, .. },
             ) = (value.tools[number], wandering(at_s, number))
             else {
                 panic!("tool {number} is not seen")
@@ -114,7 +117,7 @@ fn follows(settings: &Settings, form: Form, within_m: f64) {
             assert!(c_from_tool.angle_to(&turned) < 3e-4);
             assert!((error_m - error).abs() < 1e-7);
         }
-        assert_eq!(value.tools[settings.tools.len()..].iter().filter(|one| **one != Tracked::Absent).count(), 0);
+        assert_eq!(value.tools[settings.tools.len()..].iter().filter(|one| **one != TrackedTool::Absent).count(), 0);
     }
 }
 
@@ -123,7 +126,9 @@ fn follows(settings: &Settings, form: Form, within_m: f64) {
 fn over_a_network_every_frame_arrives_in_both_forms() {
     judged(|| {
         let (_folder, tools) = definitions(2);
-        for (firmware, form, within_m) in [(BLOCK_FIRMWARE, Form::Binary, 1e-6), (TEXT_FIRMWARE, Form::Text, 1e-5)] {
+        for (firmware, form, within_m) in
+            [(BLOCK_FIRMWARE, ReplyForm::Binary, 1e-6), (TEXT_FIRMWARE, ReplyForm::Text, 1e-5)]
+        {
             let served = profile(firmware).on_network(0, wandering).serve().unwrap();
             follows(&network(&served, tools.clone()), form, within_m);
         }
@@ -136,7 +141,7 @@ fn over_a_line_every_frame_arrives_in_binary() {
     judged(|| {
         let (_folder, tools) = definitions(2);
         let served = profile(BLOCK_FIRMWARE).on_line(None, wandering).serve().unwrap();
-        follows(&line(&served, tools), Form::Binary, 1e-6);
+        follows(&line(&served, tools), ReplyForm::Binary, 1e-6);
     });
 }
 
@@ -146,13 +151,13 @@ fn over_a_line_text_arrives_as_often_as_the_line_carries_it() {
     judged(|| {
         let (_folder, tools) = definitions(1);
         let served = profile(TEXT_FIRMWARE).on_line(None, wandering).serve().unwrap();
-        let settings = Settings { baud: 230_400, ..line(&served, tools) };
-        follows(&settings, Form::Text, 1e-5);
+        let settings = NdiSettings { baud: 230_400, ..line(&served, tools) };
+        follows(&settings, ReplyForm::Text, 1e-5);
     });
 }
 
 /// Sends one command at `baud` and waits for its reply, like another program.
-fn say(endpoint: &str, baud: u32, command: &Command<'_>) -> String {
+fn say(endpoint: &str, baud: u32, command: &NdiCommand<'_>) -> String {
     let mut port = serialport::new(endpoint, baud).timeout(Duration::from_secs(1)).open_native().unwrap();
     port.write_all(command.encode().as_bytes()).unwrap();
     let mut reply = Vec::new();
@@ -174,13 +179,13 @@ fn a_line_left_at_another_speed_is_found_or_reset() {
         let served = profile(BLOCK_FIRMWARE).on_line(None, wandering).serve().unwrap();
         let settings = line(&served, tools);
         for left_at in [115_200, 38_400] {
-            assert_eq!(say(&served.endpoint, 9600, &Command::Comm { baud: left_at }), "OKAYA896\r");
-            assert_eq!(say(&served.endpoint, left_at, &Command::Init), "OKAYA896\r");
-            let mut driver = Driver::open(&settings).unwrap();
+            assert_eq!(say(&served.endpoint, 9600, &NdiCommand::Comm { baud: left_at }), "OKAYA896\r");
+            assert_eq!(say(&served.endpoint, left_at, &NdiCommand::Init), "OKAYA896\r");
+            let mut driver = NdiDriver::open(&settings).unwrap();
             assert!(until(Instant::now(), 1.0, |now_s| driver.poll(now_s), |reading| reading.is_some()));
-            assert!(matches!(Driver::open(&settings), Err(Trouble::Busy { .. })), "one driver for one line");
+            assert!(matches!(NdiDriver::open(&settings), Err(DeviceError::Busy { .. })), "one driver for one line");
         }
-        assert_eq!(say(&served.endpoint, 9600, &Command::Init), "OKAYA896\r", "left at its first speed");
+        assert_eq!(say(&served.endpoint, 9600, &NdiCommand::Init), "OKAYA896\r", "left at its first speed");
     });
 }
 
@@ -192,20 +197,20 @@ struct World {
     beeps: Arc<AtomicUsize>,
 }
 
-impl Body for World {
-    fn tool(&mut self, unit_s: f64, number: usize) -> Tracked {
+impl NdiBody for World {
+    fn tool(&mut self, unit_s: f64, number: usize) -> TrackedTool {
         match (self.mode.load(Ordering::Relaxed), number) {
-            (1, 0) => Tracked::Missing { out_of_volume: false },
-            (2, 0) => Tracked::Missing { out_of_volume: true },
-            (3, 0) => Tracked::Disabled,
-            (4, 0) => Tracked::Absent,
-            (5, 0) => Tracked::Seen {
+            (1, 0) => TrackedTool::Missing { out_of_volume: false },
+            (2, 0) => TrackedTool::Missing { out_of_volume: true },
+            (3, 0) => TrackedTool::Disabled,
+            (4, 0) => TrackedTool::Absent,
+            (5, 0) => TrackedTool::Seen {
                 c_from_tool: UnitQuaternion::identity(),
                 position_in_c_m: Vector3::new(0.0, 0.0, -1.0),
                 error_m: 1e-4,
                 at_the_edge: true,
             },
-            (6, 0) => Tracked::Seen {
+            (6, 0) => TrackedTool::Seen {
                 c_from_tool: UnitQuaternion::identity(),
                 position_in_c_m: Vector3::new(0.0, 0.0, -50.0),
                 error_m: 1e-4,
@@ -232,16 +237,16 @@ fn what_happens_to_a_tool_is_told() {
         for firmware in [BLOCK_FIRMWARE, TEXT_FIRMWARE] {
             let world = World::default();
             let served = profile(firmware).on_network(0, world.clone()).serve().unwrap();
-            let mut driver = Driver::open(&network(&served, tools.clone())).unwrap();
+            let mut driver = NdiDriver::open(&network(&served, tools.clone())).unwrap();
             let begin = Instant::now();
             for mode in 0..6 {
                 world.mode.store(mode, Ordering::Relaxed);
-                let right = |tool: &Tracked| match mode {
-                    0 => matches!(tool, Tracked::Seen { at_the_edge: false, .. }),
-                    1 => *tool == Tracked::Missing { out_of_volume: false },
-                    2 => *tool == Tracked::Missing { out_of_volume: true },
-                    5 => matches!(tool, Tracked::Seen { at_the_edge: true, .. }),
-                    _ => *tool == Tracked::Disabled,
+                let right = |tool: &TrackedTool| match mode {
+                    0 => matches!(tool, TrackedTool::Seen { at_the_edge: false, .. }),
+                    1 => *tool == TrackedTool::Missing { out_of_volume: false },
+                    2 => *tool == TrackedTool::Missing { out_of_volume: true },
+                    5 => matches!(tool, TrackedTool::Seen { at_the_edge: true, .. }),
+                    _ => *tool == TrackedTool::Disabled,
                 };
                 let seen = until(
                     begin,
@@ -249,7 +254,10 @@ fn what_happens_to_a_tool_is_told() {
                     |now_s| driver.poll(now_s),
                     |reading| {
                         reading.is_some_and(|reading| {
-                            assert!(matches!(reading.value.tools[1], Tracked::Seen { .. }), "the other is not touched");
+                            assert!(
+                                matches!(reading.value.tools[1], TrackedTool::Seen { .. }),
+                                "the other is not touched"
+                            );
                             right(&reading.value.tools[0])
                         })
                     },
@@ -262,7 +270,7 @@ fn what_happens_to_a_tool_is_told() {
             assert!(until(begin, 1.0, |now_s| driver.poll(now_s), beeped));
             assert!(until(begin, 1.0, |now_s| driver.poll(now_s), |reading| reading.is_some()), "and tracks on");
             world.mode.store(6, Ordering::Relaxed);
-            let mut last = Standing::Connected;
+            let mut last = ConnectionState::Connected;
             until(
                 begin,
                 1.0,
@@ -273,7 +281,7 @@ fn what_happens_to_a_tool_is_told() {
                 },
                 |_| false,
             );
-            assert_eq!(last, Standing::Lost(Loss::Implausible), "50 m away is nowhere");
+            assert_eq!(last, ConnectionState::Lost(Loss::Implausible), "50 m away is nowhere");
             assert_eq!(driver.health().refused, 1);
         }
     });
@@ -284,8 +292,8 @@ fn what_happens_to_a_tool_is_told() {
 fn dropping_it_stops_tracking() {
     judged(|| {
         let (_folder, tools) = definitions(1);
-        let served = Profile::default().on_network(0, wandering).serve().unwrap();
-        let mut driver = Driver::open(&network(&served, tools)).unwrap();
+        let served = NdiProfile::default().on_network(0, wandering).serve().unwrap();
+        let mut driver = NdiDriver::open(&network(&served, tools)).unwrap();
         let begin = Instant::now();
         assert!(until(begin, 1.0, |now_s| driver.poll(now_s), |reading| reading.is_some()));
         drop(driver);
@@ -320,19 +328,19 @@ fn who_is_not_a_tracker_is_told() {
     judged(|| {
         let (_folder, tools) = definitions(1);
         let open = |address: String| {
-            Driver::open(&Settings { address: Some(address), tools: tools.clone(), ..Settings::default() })
+            NdiDriver::open(&NdiSettings { address: Some(address), tools: tools.clone(), ..NdiSettings::default() })
         };
         let (address, thread) = stranger(b"HTTP/1.1 400 Bad Request\r\n\r\n");
-        assert!(matches!(open(address), Err(Trouble::WrongProduct { .. })));
+        assert!(matches!(open(address), Err(DeviceError::WrongProduct { .. })));
         thread.join().unwrap();
         let (address, thread) = stranger(b"ERROR1538C2\r");
         let refused = open(address);
-        assert!(matches!(&refused, Err(Trouble::Refused { command, .. }) if command == "INIT"), "{refused:?}");
+        assert!(matches!(&refused, Err(DeviceError::Refused { command, .. }) if command == "INIT"), "{refused:?}");
         thread.join().unwrap();
         let (address, thread) = stranger(b"");
-        assert!(matches!(open(address.clone()), Err(Trouble::Other { .. })), "closed");
+        assert!(matches!(open(address.clone()), Err(DeviceError::Other { .. })), "closed");
         thread.join().unwrap();
-        assert!(matches!(open(address), Err(Trouble::NobodyListens { .. })));
+        assert!(matches!(open(address), Err(DeviceError::NobodyListens { .. })));
     });
 }
 
@@ -343,9 +351,12 @@ fn a_unit_with_a_fault_is_told_while_opening() {
         let (_folder, tools) = definitions(1);
         let world = World::default();
         world.system.store(1 << 9, Ordering::Relaxed);
-        let served = Profile::default().on_network(0, world).serve().unwrap();
-        let trouble = Driver::open(&network(&served, tools)).unwrap_err();
-        assert!(matches!(&trouble, Trouble::DeviceFault { words, .. } if words.contains("temperature")), "{trouble}");
+        let served = NdiProfile::default().on_network(0, world).serve().unwrap();
+        let trouble = NdiDriver::open(&network(&served, tools)).unwrap_err();
+        assert!(
+            matches!(&trouble, DeviceError::DeviceFault { words, .. } if words.contains("temperature")),
+            "{trouble}"
+        );
     });
 }
 
@@ -353,24 +364,25 @@ fn a_unit_with_a_fault_is_told_while_opening() {
 #[ignore = "real lines in real time: `./dev test` runs it alone"]
 fn impossible_settings_are_told() {
     let (folder, tools) = definitions(5);
-    let key_of = |settings: &Settings| match Driver::open(settings) {
-        Err(Trouble::Setting { key, .. } | Trouble::File { key, .. }) => key,
+    let key_of = |settings: &NdiSettings| match NdiDriver::open(settings) {
+        Err(DeviceError::Setting { key, .. } | DeviceError::File { key, .. }) => key,
         other => panic!("{other:?}"),
     };
-    let good = Settings { address: Some("127.0.0.1:1".to_owned()), tools: tools[..1].to_vec(), ..Settings::default() };
-    assert_eq!(key_of(&Settings { port: Some("/dev/x".to_owned()), ..good.clone() }), "address");
-    assert_eq!(key_of(&Settings { address: None, ..good.clone() }), "address");
-    assert_eq!(key_of(&Settings { baud: 9600, ..good.clone() }), "baud");
-    assert_eq!(key_of(&Settings { tools: tools.clone(), ..good.clone() }), "tools");
-    assert_eq!(key_of(&Settings { tools: vec![], ..good.clone() }), "tools");
-    assert_eq!(key_of(&Settings { frame_hz: f64::NAN, ..good.clone() }), "frame_hz");
+    let good =
+        NdiSettings { address: Some("127.0.0.1:1".to_owned()), tools: tools[..1].to_vec(), ..NdiSettings::default() };
+    assert_eq!(key_of(&NdiSettings { port: Some("/dev/x".to_owned()), ..good.clone() }), "address");
+    assert_eq!(key_of(&NdiSettings { address: None, ..good.clone() }), "address");
+    assert_eq!(key_of(&NdiSettings { baud: 9600, ..good.clone() }), "baud");
+    assert_eq!(key_of(&NdiSettings { tools: tools.clone(), ..good.clone() }), "tools");
+    assert_eq!(key_of(&NdiSettings { tools: vec![], ..good.clone() }), "tools");
+    assert_eq!(key_of(&NdiSettings { frame_hz: f64::NAN, ..good.clone() }), "frame_hz");
     let absent = folder.path().join("absent.rom");
-    assert_eq!(key_of(&Settings { tools: vec![tools[0].clone(), absent], ..good.clone() }), "tools[1]");
+    assert_eq!(key_of(&NdiSettings { tools: vec![tools[0].clone(), absent], ..good.clone() }), "tools[1]");
     let strange = folder.path().join("strange.rom");
     std::fs::write(&strange, "a text").unwrap();
-    assert_eq!(key_of(&Settings { tools: vec![strange], ..good.clone() }), "tools[0]");
-    let line = Settings { address: None, port: Some("/dev/not-there".to_owned()), ..good };
-    assert!(matches!(Driver::open(&line), Err(Trouble::Absent { .. })));
+    assert_eq!(key_of(&NdiSettings { tools: vec![strange], ..good.clone() }), "tools[0]");
+    let line = NdiSettings { address: None, port: Some("/dev/not-there".to_owned()), ..good };
+    assert!(matches!(NdiDriver::open(&line), Err(DeviceError::Absent { .. })));
     assert_eq!(TRACKED_TOOLS, 4);
 }
 
@@ -378,7 +390,7 @@ fn impossible_settings_are_told() {
 #[ignore = "real lines in real time: `./dev test` runs it alone"]
 fn settings_are_read_as_documented() {
     let text = "address = \"10.0.0.5\"\ntools = [\"a.rom\"]\nreplies = \"text\"\n";
-    let settings: Settings = toml::from_str(text).unwrap();
+    let settings: NdiSettings = toml::from_str(text).unwrap();
     assert_eq!((settings.place().as_str(), settings.replies, settings.baud), ("10.0.0.5:8765", Replies::Text, 115_200));
-    assert!(toml::from_str::<Settings>("adress = \"x\"").is_err());
+    assert!(toml::from_str::<NdiSettings>("adress = \"x\"").is_err());
 }

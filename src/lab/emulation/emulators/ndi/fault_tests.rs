@@ -2,11 +2,11 @@
 
 use std::time::Instant;
 
-use nima_devices::{Loss, Slot, Stamped, Standing, TrackerReading, ndi::*};
+use nima_devices::{ConnectionState, DeviceSlot, Loss, TimedReading, TrackerReading, ndi::*};
 use nima_testing::real_time::judged;
 
 use super::driver_tests::{BLOCK_FIRMWARE, TEXT_FIRMWARE, definitions, line, network, profile, until};
-use crate::emulators::{EmulatedFault, Serving, ndi::wandering};
+use crate::emulators::{EmulatedFault, EmulatorThread, ndi::wandering};
 
 /// Effect of a fault on the driver.
 #[derive(Debug)]
@@ -42,8 +42,15 @@ fn outcome(fault: EmulatedFault) -> Outcome {
 }
 
 /// Sets one fault on a working slot, checks its effect, removes the fault, and checks that the slot recovers.
-fn survives(fault: EmulatedFault, form: Form, served: &Serving, slot: &mut Slot<Driver>, begin: Instant) {
-    let delivering = |slot: &mut Slot<Driver>| until(begin, 5.0, |now_s| slot.poll(now_s), |reading| reading.is_some());
+fn survives(
+    fault: EmulatedFault,
+    form: ReplyForm,
+    served: &EmulatorThread,
+    slot: &mut DeviceSlot<NdiDriver>,
+    begin: Instant,
+) {
+    let delivering =
+        |slot: &mut DeviceSlot<NdiDriver>| until(begin, 5.0, |now_s| slot.poll(now_s), |reading| reading.is_some());
     assert!(delivering(slot), "before {fault:?}");
     let before = *slot.health();
     let set = Instant::now();
@@ -58,14 +65,14 @@ fn survives(fault: EmulatedFault, form: Form, served: &Serving, slot: &mut Slot<
             slot.poll(now_s);
             let health = slot.health();
             shown.set(match (&outcome, health.standing) {
-                (Outcome::Lost(losses), Standing::Lost(loss)) => losses.contains(&loss),
+                (Outcome::Lost(losses), ConnectionState::Lost(loss)) => losses.contains(&loss),
                 (Outcome::Lags, _) => health.lost >= before.lost + 4,
                 (Outcome::Disorder, _) => health.out_of_order >= before.out_of_order + 4,
                 _ => false,
             });
             None
         },
-        |_: Option<Stamped<TrackerReading>>| shown.get(),
+        |_: Option<TimedReading<TrackerReading>>| shown.get(),
     );
     assert!(shown.get(), "{fault:?} over {form:?} gave {:?}, not {outcome:?}", slot.health());
     println!("{fault:?} {form:?}: {outcome:?} after {} ms", set.elapsed().as_millis());
@@ -73,15 +80,15 @@ fn survives(fault: EmulatedFault, form: Form, served: &Serving, slot: &mut Slot<
     assert!(delivering(slot), "after {fault:?}: {:?}, {:?}", slot.health(), slot.view().report().trouble);
 }
 
-fn survives_all(served: &Serving, settings: Settings, form: Form, faults: &[EmulatedFault]) {
-    let mut slot = Slot::start("tracker", move || Driver::open(&settings)).unwrap();
+fn survives_all(served: &EmulatorThread, settings: NdiSettings, form: ReplyForm, faults: &[EmulatedFault]) {
+    let mut slot = DeviceSlot::start("tracker", move || NdiDriver::open(&settings)).unwrap();
     let begin = Instant::now();
     for fault in faults {
         survives(*fault, form, served, &mut slot, begin);
     }
 }
 
-fn survives_over_a_network(firmware: &str, form: Form, faults: &[EmulatedFault]) {
+fn survives_over_a_network(firmware: &str, form: ReplyForm, faults: &[EmulatedFault]) {
     judged(|| {
         let (_folder, tools) = definitions(1);
         let served = profile(firmware).on_network(0, wandering).serve().unwrap();
@@ -92,30 +99,30 @@ fn survives_over_a_network(firmware: &str, form: Form, faults: &[EmulatedFault])
 #[test]
 fn it_survives_a_network_that_loses_and_goes() {
     use EmulatedFault::{Disconnect, Freeze, Loss, Silence};
-    survives_over_a_network(BLOCK_FIRMWARE, Form::Binary, &[Loss, Freeze, Silence, Disconnect]);
+    survives_over_a_network(BLOCK_FIRMWARE, ReplyForm::Binary, &[Loss, Freeze, Silence, Disconnect]);
 }
 
 #[test]
 fn it_survives_a_network_that_is_late() {
-    survives_over_a_network(BLOCK_FIRMWARE, Form::Binary, &[EmulatedFault::Delay]);
+    survives_over_a_network(BLOCK_FIRMWARE, ReplyForm::Binary, &[EmulatedFault::Delay]);
 }
 
 #[test]
 fn it_survives_damaged_blocks() {
     use EmulatedFault::{BadChecksum, Garbage, WrongFrame};
-    survives_over_a_network(BLOCK_FIRMWARE, Form::Binary, &[Garbage, BadChecksum, WrongFrame]);
+    survives_over_a_network(BLOCK_FIRMWARE, ReplyForm::Binary, &[Garbage, BadChecksum, WrongFrame]);
 }
 
 #[test]
 fn it_survives_damaged_text() {
     use EmulatedFault::{BadChecksum, Garbage, Silence, WrongFrame};
-    survives_over_a_network(TEXT_FIRMWARE, Form::Text, &[Silence, Garbage, BadChecksum, WrongFrame]);
+    survives_over_a_network(TEXT_FIRMWARE, ReplyForm::Text, &[Silence, Garbage, BadChecksum, WrongFrame]);
 }
 
 #[test]
 fn it_survives_a_unit_that_is_wrong() {
     use EmulatedFault::{DeviceFault, NotANumber, Reorder};
-    for (firmware, form) in [(BLOCK_FIRMWARE, Form::Binary), (TEXT_FIRMWARE, Form::Text)] {
+    for (firmware, form) in [(BLOCK_FIRMWARE, ReplyForm::Binary), (TEXT_FIRMWARE, ReplyForm::Text)] {
         survives_over_a_network(firmware, form, &[Reorder, DeviceFault, NotANumber]);
     }
 }
@@ -124,7 +131,7 @@ fn survives_over_a_line(faults: &[EmulatedFault]) {
     judged(|| {
         let (_folder, tools) = definitions(1);
         let served = profile(BLOCK_FIRMWARE).on_line(None, wandering).serve().unwrap();
-        survives_all(&served, line(&served, tools), Form::Binary, faults);
+        survives_all(&served, line(&served, tools), ReplyForm::Binary, faults);
     });
 }
 

@@ -7,28 +7,28 @@
 //! bytes need. A pseudo-terminal cannot carry a break; setting its rate to 9600 while the unit has another one counts
 //! as a break.
 
-pub(super) mod alone;
 #[cfg(test)]
 mod driver_tests;
 #[cfg(test)]
 mod fault_tests;
 mod port;
+pub(super) mod standalone;
 mod unit;
 mod wire;
 
 use nalgebra::{UnitQuaternion, Vector3};
-use nima_devices::{Tracked, ndi::words::SystemStatus};
+use nima_devices::{TrackedTool, ndi::text::SystemStatus};
 
-pub use unit::{Answer, Unit};
+pub use unit::{NdiUnit, UnitAnswer};
 
 /// Frame rate of the emulated unit, Hz.
 pub const FRAME_HZ: f64 = 60.0;
 
 /// The simulated world as seen by the unit. Called on the emulator's thread.
-pub trait Body: Send {
+pub trait NdiBody: Send {
     /// Returns the pose of the tool with this number (in the order in which its handle was requested) at this time of
     /// the unit, s.
-    fn tool(&mut self, unit_s: f64, number: usize) -> Tracked;
+    fn tool(&mut self, unit_s: f64, number: usize) -> TrackedTool;
 
     /// Returns the status of the unit.
     fn system(&mut self) -> SystemStatus {
@@ -39,15 +39,15 @@ pub trait Body: Send {
     fn beep(&mut self, _times: u8) {}
 }
 
-impl<F: FnMut(f64, usize) -> Tracked + Send> Body for F {
-    fn tool(&mut self, unit_s: f64, number: usize) -> Tracked {
+impl<F: FnMut(f64, usize) -> TrackedTool + Send> NdiBody for F {
+    fn tool(&mut self, unit_s: f64, number: usize) -> TrackedTool {
         self(unit_s, number)
     }
 }
 
 /// Identity of the emulated unit.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Profile {
+pub struct NdiProfile {
     /// Product, as in the first line of its version text.
     pub product: String,
     pub serial: String,
@@ -55,7 +55,7 @@ pub struct Profile {
     pub firmware: String,
 }
 
-impl Default for Profile {
+impl Default for NdiProfile {
     fn default() -> Self {
         Self {
             product: "Polaris Vega".to_owned(),
@@ -66,10 +66,10 @@ impl Default for Profile {
 }
 
 /// Standalone, without a world: the tools circle slowly 1.5 m in front of the camera, 0.2 m apart.
-pub fn wandering(unit_s: f64, number: usize) -> Tracked {
+pub fn wandering(unit_s: f64, number: usize) -> TrackedTool {
     let turn = 0.5 * unit_s + number as f64;
     let centre = Vector3::new(-0.3 + 0.2 * number as f64, 0.0, -1.5);
-    Tracked::Seen {
+    TrackedTool::Seen {
         c_from_tool: UnitQuaternion::from_euler_angles(0.2 * turn.sin(), 0.2 * turn.cos(), 0.3 * (0.7 * turn).sin()),
         position_in_c_m: centre + 0.05 * Vector3::new(turn.cos(), turn.sin(), (0.5 * turn).sin()),
         error_m: 0.000_15,

@@ -2,11 +2,11 @@
 
 use std::fmt::Write as _;
 
-use nima_devices::ndi::{definition::DEFINITION, words::PortStatus};
+use nima_devices::ndi::{definition::DEFINITION, text::PortStatus};
 
 /// The unit's state of one handle.
 #[derive(Clone, Debug)]
-pub(super) struct Port {
+pub(super) struct NdiPort {
     pub(super) handle: u8,
     pub(super) number: usize,
     pub(super) definition: Box<[u8; DEFINITION]>,
@@ -15,7 +15,7 @@ pub(super) struct Port {
     pub(super) enabled: bool,
 }
 
-impl Port {
+impl NdiPort {
     pub(super) fn status(&self) -> u32 {
         let bit = |on, bit| if on { bit } else { 0 };
         bit(self.written, PortStatus::OCCUPIED)
@@ -25,7 +25,7 @@ impl Port {
 }
 
 /// Returns the answer to `PHINF` for its option bits, in their order (reference 1.3).
-pub(super) fn information(port: &Port, options: u16) -> String {
+pub(super) fn information(port: &NdiPort, options: u16) -> String {
     let mut text = String::new();
     let status = port.status() & 0xFF;
     if options & 0x01 != 0 {

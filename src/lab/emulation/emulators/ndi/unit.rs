@@ -1,19 +1,19 @@
 //! The unit itself, without I/O: takes a command line, returns a reply.
 
 use nima_devices::{
-    Tracked,
+    TrackedTool,
     ndi::{
-        command::{COMMAND_MAX, Command, Filter, Form, OUTSIDE_TOO, STRAYS, TRANSFORMS},
+        command::{COMMAND_MAX, Filter, NdiCommand, OUTSIDE_TOO, ReplyForm, STRAYS, TRANSFORMS},
         definition::DEFINITION,
         reply::{block_of, finish_line},
-        tracking::{Frames, HandleFrame, Sight, Transform},
-        words::{ErrorCode, PortStatus, SystemStatus},
+        text::{ErrorCode, PortStatus, SystemStatus},
+        tracking::{HandleFrame, ToolVisibility, TrackingReply, Transform},
     },
 };
 
 use super::{
-    Body, FRAME_HZ, Profile,
-    port::{Port, information},
+    FRAME_HZ, NdiBody, NdiProfile,
+    port::{NdiPort, information},
 };
 use crate::emulators::EmulatedFault;
 
@@ -35,7 +35,7 @@ const PARAMETERS: [(&str, &str); 4] = [
 
 /// A reply, and its consequence.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Answer {
+pub struct UnitAnswer {
     /// The bytes of the reply on the wire.
     pub bytes: Vec<u8>,
     /// Baud rate of the line after the reply, bit/s.
@@ -44,10 +44,10 @@ pub struct Answer {
 
 /// The mode and state of a unit.
 #[derive(Debug)]
-pub struct Unit {
-    profile: Profile,
+pub struct NdiUnit {
+    profile: NdiProfile,
     network: bool,
-    ports: Vec<Port>,
+    ports: Vec<NdiPort>,
     initialised: bool,
     tracking: bool,
     /// Time of the unit at which the frame counter was 0, s.
@@ -56,7 +56,7 @@ pub struct Unit {
     asked: u32,
 }
 
-enum Reply {
+enum UnitReply {
     Line(String),
     Okay,
     Bytes(Vec<u8>),
@@ -64,9 +64,9 @@ enum Reply {
     Reset,
 }
 
-impl Unit {
+impl NdiUnit {
     /// A unit that has just been switched on; `network` if it has no serial port.
-    pub fn new(profile: Profile, network: bool) -> Self {
+    pub fn new(profile: NdiProfile, network: bool) -> Self {
         let ports = Vec::new();
         Self { profile, network, ports, initialised: false, tracking: false, zero_s: 0.0, frozen_s: None, asked: 0 }
     }
@@ -81,25 +81,25 @@ impl Unit {
     }
 
     /// Returns the reply to a reset.
-    pub fn reset(&mut self) -> Answer {
+    pub fn reset(&mut self) -> UnitAnswer {
         *self = Self { zero_s: self.zero_s, ..Self::new(self.profile.clone(), self.network) };
-        Answer { bytes: line("RESET"), then_baud: Some(FIRST_BAUD) }
+        UnitAnswer { bytes: line("RESET"), then_baud: Some(FIRST_BAUD) }
     }
 
     /// Answers a line (without its CR) at `unit_s`, time of the unit in s. A failed command is answered with an error;
     /// faults of the content are applied here.
-    pub fn answer(&mut self, unit_s: f64, text: &[u8], fault: EmulatedFault, body: &mut dyn Body) -> Answer {
-        let command = if text.len() < COMMAND_MAX { Command::parse(text) } else { Err(ErrorCode::TOO_LONG) };
+    pub fn answer(&mut self, unit_s: f64, text: &[u8], fault: EmulatedFault, body: &mut dyn NdiBody) -> UnitAnswer {
+        let command = if text.len() < COMMAND_MAX { NdiCommand::parse(text) } else { Err(ErrorCode::TOO_LONG) };
         let mut then_baud = None;
         let mut bytes = match command.and_then(|command| self.obey(&command, unit_s, fault, body)) {
-            Ok(Reply::Okay) => line("OKAY"),
-            Ok(Reply::Line(text)) => line(&text),
-            Ok(Reply::Bytes(bytes)) => bytes,
-            Ok(Reply::Switch(baud)) => {
+            Ok(UnitReply::Okay) => line("OKAY"),
+            Ok(UnitReply::Line(text)) => line(&text),
+            Ok(UnitReply::Bytes(bytes)) => bytes,
+            Ok(UnitReply::Switch(baud)) => {
                 then_baud = Some(baud);
                 line("OKAY")
             }
-            Ok(Reply::Reset) => {
+            Ok(UnitReply::Reset) => {
                 let answer = self.reset();
                 then_baud = answer.then_baud;
                 answer.bytes
@@ -107,7 +107,7 @@ impl Unit {
             Err(ErrorCode(code)) => line(&format!("ERROR{code:02X}")),
         };
         self.spoil(&mut bytes, fault);
-        Answer { bytes, then_baud }
+        UnitAnswer { bytes, then_baud }
     }
 
     fn spoil(&self, bytes: &mut Vec<u8>, fault: EmulatedFault) {
@@ -128,66 +128,66 @@ impl Unit {
 
     fn obey(
         &mut self,
-        command: &Command<'_>,
+        command: &NdiCommand<'_>,
         unit_s: f64,
         fault: EmulatedFault,
-        body: &mut dyn Body,
-    ) -> Result<Reply, ErrorCode> {
+        body: &mut dyn NdiBody,
+    ) -> Result<UnitReply, ErrorCode> {
         self.permitted(command)?;
         match *command {
-            Command::Init => {
+            NdiCommand::Init => {
                 self.ports.clear();
                 self.initialised = true;
                 self.tracking = false;
-                Ok(Reply::Okay)
+                Ok(UnitReply::Okay)
             }
-            Command::Reset => Ok(Reply::Reset),
-            Command::ApiRevision => Ok(Reply::Line("G.003.004".to_owned())),
-            Command::Comm { .. } if self.network => Err(ErrorCode::COMM_PARAMETERS),
-            Command::Comm { baud } => Ok(Reply::Switch(baud)),
-            Command::Version(number) => self.version(number),
-            Command::GetInfo(name) => Self::parameter_info(name),
-            Command::Get(name) => Self::parameter(name),
-            Command::Set(pair) => {
+            NdiCommand::Reset => Ok(UnitReply::Reset),
+            NdiCommand::ApiRevision => Ok(UnitReply::Line("G.003.004".to_owned())),
+            NdiCommand::Comm { .. } if self.network => Err(ErrorCode::COMM_PARAMETERS),
+            NdiCommand::Comm { baud } => Ok(UnitReply::Switch(baud)),
+            NdiCommand::Version(number) => self.version(number),
+            NdiCommand::GetInfo(name) => Self::parameter_info(name),
+            NdiCommand::Get(name) => Self::parameter(name),
+            NdiCommand::Set(pair) => {
                 let name = pair.split('=').next().unwrap_or_default();
                 Err(if known(name).is_some() { ErrorCode::READ_ONLY } else { ErrorCode::NO_SUCH_PARAMETER })
             }
-            Command::Echo(text) => Ok(Reply::Line(text.to_owned())),
-            Command::Beep(times) => {
+            NdiCommand::Echo(text) => Ok(UnitReply::Line(text.to_owned())),
+            NdiCommand::Beep(times) => {
                 body.beep(times);
-                Ok(Reply::Line("1".to_owned()))
+                Ok(UnitReply::Line("1".to_owned()))
             }
-            Command::Start { anew } => {
+            NdiCommand::Start { anew } => {
                 self.tracking = true;
                 if anew {
                     self.zero_s = unit_s;
                 }
-                Ok(Reply::Okay)
+                Ok(UnitReply::Okay)
             }
-            Command::Stop => {
+            NdiCommand::Stop => {
                 self.tracking = false;
-                Ok(Reply::Okay)
+                Ok(UnitReply::Okay)
             }
-            Command::Track(form, options) => self.track(form, options, unit_s, fault, body),
+            NdiCommand::Track(form, options) => self.track(form, options, unit_s, fault, body),
             _ => self.obey_port(command),
         }
     }
 
     /// Checks that a command is allowed in the current mode.
-    const fn permitted(&self, command: &Command<'_>) -> Result<(), ErrorCode> {
+    const fn permitted(&self, command: &NdiCommand<'_>) -> Result<(), ErrorCode> {
         let anytime = matches!(
             command,
-            Command::Init
-                | Command::Reset
-                | Command::ApiRevision
-                | Command::Get(_)
-                | Command::GetInfo(_)
-                | Command::Echo(_)
-                | Command::Beep(_)
+            NdiCommand::Init
+                | NdiCommand::Reset
+                | NdiCommand::ApiRevision
+                | NdiCommand::Get(_)
+                | NdiCommand::GetInfo(_)
+                | NdiCommand::Echo(_)
+                | NdiCommand::Beep(_)
         );
-        let before = matches!(command, Command::Comm { .. } | Command::Version(_));
-        let during = matches!(command, Command::Track(..) | Command::Stop | Command::Handles(_));
-        let only_during = matches!(command, Command::Track(..) | Command::Stop);
+        let before = matches!(command, NdiCommand::Comm { .. } | NdiCommand::Version(_));
+        let during = matches!(command, NdiCommand::Track(..) | NdiCommand::Stop | NdiCommand::Handles(_));
+        let only_during = matches!(command, NdiCommand::Track(..) | NdiCommand::Stop);
         if anytime || (before && !self.tracking) {
             Ok(())
         } else if !self.initialised {
@@ -199,83 +199,83 @@ impl Unit {
         }
     }
 
-    fn version(&self, number: u8) -> Result<Reply, ErrorCode> {
-        let Profile { product, serial, firmware } = &self.profile;
+    fn version(&self, number: u8) -> Result<UnitReply, ErrorCode> {
+        let NdiProfile { product, serial, firmware } = &self.profile;
         match number {
-            0 => Ok(Reply::Line(format!(
+            0 => Ok(UnitReply::Line(format!(
                 "{product} Control Firmware\nNDI S/N: {serial}\nCharacterization Date: 01/01/26\n\
                  Freeze Tag: {firmware}\nFreeze Date: 01/01/26\n(emulated)\n"
             ))),
-            3 | 4 | 5 | 7 | 8 => Ok(Reply::Line(format!("{product} part {number}\nFreeze Tag: {firmware}\n"))),
+            3 | 4 | 5 | 7 | 8 => Ok(UnitReply::Line(format!("{product} part {number}\nFreeze Tag: {firmware}\n"))),
             _ => Err(ErrorCode::OUT_OF_RANGE),
         }
     }
 
-    fn parameter_info(name: &str) -> Result<Reply, ErrorCode> {
+    fn parameter_info(name: &str) -> Result<UnitReply, ErrorCode> {
         match known(name) {
-            Some(_) if name == PARAMETERS[0].0 => Ok(Reply::Line(FIRMWARE_INFO.to_owned())),
-            Some(value) => Ok(Reply::Line(format!("{name}={value};1;1;0;60;;Longest time of the command, s"))),
+            Some(_) if name == PARAMETERS[0].0 => Ok(UnitReply::Line(FIRMWARE_INFO.to_owned())),
+            Some(value) => Ok(UnitReply::Line(format!("{name}={value};1;1;0;60;;Longest time of the command, s"))),
             None => Err(ErrorCode::NO_SUCH_PARAMETER),
         }
     }
 
-    fn parameter(name: &str) -> Result<Reply, ErrorCode> {
+    fn parameter(name: &str) -> Result<UnitReply, ErrorCode> {
         let value = known(name).ok_or(ErrorCode::NO_SUCH_PARAMETER)?;
-        Ok(Reply::Line(format!("{name}={value}\n")))
+        Ok(UnitReply::Line(format!("{name}={value}\n")))
     }
 
-    fn port(&mut self, handle: u8) -> Result<&mut Port, ErrorCode> {
+    fn port(&mut self, handle: u8) -> Result<&mut NdiPort, ErrorCode> {
         self.ports.iter_mut().find(|port| port.handle == handle).ok_or(ErrorCode::INVALID_HANDLE)
     }
 
     /// Executes the commands on handles.
-    fn obey_port(&mut self, command: &Command<'_>) -> Result<Reply, ErrorCode> {
+    fn obey_port(&mut self, command: &NdiCommand<'_>) -> Result<UnitReply, ErrorCode> {
         match *command {
-            Command::Handles(filter) => Ok(Reply::Line(self.list(filter))),
-            Command::Request(_) => self.request().map(Reply::Line),
-            Command::Write { handle, address, data } => {
+            NdiCommand::Handles(filter) => Ok(UnitReply::Line(self.list(filter))),
+            NdiCommand::Request(_) => self.request().map(UnitReply::Line),
+            NdiCommand::Write { handle, address, data } => {
                 let port = self.port(handle)?;
                 let place = usize::from(address)..usize::from(address) + data.len();
                 port.definition.get_mut(place).ok_or(ErrorCode::OUT_OF_RANGE)?.copy_from_slice(&data);
                 port.written = true;
-                Ok(Reply::Okay)
+                Ok(UnitReply::Okay)
             }
-            Command::Initialise(handle) => {
+            NdiCommand::Initialise(handle) => {
                 let port = self.port(handle)?;
                 port.initialised = port.written;
-                if port.written { Ok(Reply::Okay) } else { Err(ErrorCode::NO_TOOL) }
+                if port.written { Ok(UnitReply::Okay) } else { Err(ErrorCode::NO_TOOL) }
             }
-            Command::Enable(handle, _) => {
+            NdiCommand::Enable(handle, _) => {
                 let port = self.port(handle)?;
                 port.enabled = port.initialised;
-                if port.initialised { Ok(Reply::Okay) } else { Err(ErrorCode::NOT_INITIALISED) }
+                if port.initialised { Ok(UnitReply::Okay) } else { Err(ErrorCode::NOT_INITIALISED) }
             }
-            Command::Disable(handle) => {
+            NdiCommand::Disable(handle) => {
                 let port = self.port(handle)?;
-                if std::mem::take(&mut port.enabled) { Ok(Reply::Okay) } else { Err(ErrorCode::NOT_ENABLED) }
+                if std::mem::take(&mut port.enabled) { Ok(UnitReply::Okay) } else { Err(ErrorCode::NOT_ENABLED) }
             }
-            Command::Free(handle) => {
+            NdiCommand::Free(handle) => {
                 self.port(handle)?;
                 self.ports.retain(|port| port.handle != handle);
-                Ok(Reply::Okay)
+                Ok(UnitReply::Okay)
             }
-            Command::Information { handle, options } => {
+            NdiCommand::Information { handle, options } => {
                 let port = self.port(handle)?;
-                Ok(Reply::Line(if port.written { information(port, options) } else { "UNOCCUPIED".to_owned() }))
+                Ok(UnitReply::Line(if port.written { information(port, options) } else { "UNOCCUPIED".to_owned() }))
             }
             _ => Err(ErrorCode::INVALID_COMMAND),
         }
     }
 
     fn list(&self, filter: Filter) -> String {
-        let wanted = |port: &&Port| match filter {
+        let wanted = |port: &&NdiPort| match filter {
             Filter::All => true,
             Filter::ToFree => false,
             Filter::ToInitialise => port.written && !port.initialised,
             Filter::ToEnable => port.initialised && !port.enabled,
             Filter::Enabled => port.enabled,
         };
-        let ports: Vec<&Port> = self.ports.iter().filter(wanted).collect();
+        let ports: Vec<&NdiPort> = self.ports.iter().filter(wanted).collect();
         let entries = ports.iter().map(|port| format!("{:02X}{:03X}", port.handle, port.status()));
         format!("{:02X}{}", ports.len(), entries.collect::<String>())
     }
@@ -285,35 +285,35 @@ impl Unit {
         let number = (0..HANDLES).find(free).ok_or(ErrorCode::NO_HANDLES_LEFT)?;
         let handle = FIRST_HANDLE + number as u8;
         let definition = Box::new([0; DEFINITION]);
-        self.ports.push(Port { handle, number, definition, written: false, initialised: false, enabled: false });
+        self.ports.push(NdiPort { handle, number, definition, written: false, initialised: false, enabled: false });
         self.ports.sort_by_key(|port| port.handle);
         Ok(format!("{handle:02X}"))
     }
 
     fn track(
         &mut self,
-        form: Form,
+        form: ReplyForm,
         options: u16,
         unit_s: f64,
         fault: EmulatedFault,
-        body: &mut dyn Body,
-    ) -> Result<Reply, ErrorCode> {
+        body: &mut dyn NdiBody,
+    ) -> Result<UnitReply, ErrorCode> {
         if options & !(TRANSFORMS | OUTSIDE_TOO | STRAYS) != 0 || options & TRANSFORMS == 0 {
             return Err(ErrorCode::OUT_OF_RANGE);
         }
         let frame = self.frame_at(unit_s, fault);
         let frames = self.frames(frame, fault, body);
         Ok(match form {
-            Form::Binary => {
+            ReplyForm::Binary => {
                 let mut reply = Vec::with_capacity(512);
                 frames.write_block(options, &mut reply);
-                Reply::Bytes(block_of(&reply))
+                UnitReply::Bytes(block_of(&reply))
             }
-            Form::Text => {
+            ReplyForm::Text => {
                 let mut reply = Vec::with_capacity(1024);
                 frames.write_text(options, &mut reply);
                 finish_line(&mut reply);
-                Reply::Bytes(reply)
+                UnitReply::Bytes(reply)
             }
         })
     }
@@ -331,7 +331,7 @@ impl Unit {
     }
 
     /// Returns the tools at the time of a frame; the same frame always gives the same result.
-    fn frames(&self, frame: u64, fault: EmulatedFault, body: &mut dyn Body) -> Frames {
+    fn frames(&self, frame: u64, fault: EmulatedFault, body: &mut dyn NdiBody) -> TrackingReply {
         let at_s = self.zero_s + frame as f64 / FRAME_HZ;
         let mut system = body.system();
         if fault == EmulatedFault::DeviceFault {
@@ -339,31 +339,31 @@ impl Unit {
         }
         let mut frames = Vec::with_capacity(self.ports.len());
         for port in self.ports.iter().filter(|port| port.initialised) {
-            let tracked = if port.enabled { body.tool(at_s, port.number) } else { Tracked::Disabled };
+            let tracked = if port.enabled { body.tool(at_s, port.number) } else { TrackedTool::Disabled };
             let Some((sight, bits)) = sight_of(&tracked, fault) else { continue };
             let status = PortStatus(port.status() | bits);
             frames.push(HandleFrame { handle: port.handle, sight, status, frame: frame as u32 });
         }
-        Frames::new(&frames, system)
+        TrackingReply::new(&frames, system)
     }
 }
 
 /// Returns the wire form, with its status bits; `None` for a missing tool.
-fn sight_of(tracked: &Tracked, fault: EmulatedFault) -> Option<(Sight, u32)> {
+fn sight_of(tracked: &TrackedTool, fault: EmulatedFault) -> Option<(ToolVisibility, u32)> {
     match tracked {
-        Tracked::Absent => None,
-        Tracked::Disabled => Some((Sight::Disabled, 0)),
-        Tracked::Missing { out_of_volume } => {
-            Some((Sight::Missing, if *out_of_volume { PortStatus::OUT_OF_VOLUME } else { 0 }))
+        TrackedTool::Absent => None,
+        TrackedTool::Disabled => Some((ToolVisibility::Disabled, 0)),
+        TrackedTool::Missing { out_of_volume } => {
+            Some((ToolVisibility::Missing, if *out_of_volume { PortStatus::OUT_OF_VOLUME } else { 0 }))
         }
-        Tracked::Seen { c_from_tool, position_in_c_m, error_m, at_the_edge } => {
+        TrackedTool::Seen { c_from_tool, position_in_c_m, error_m, at_the_edge } => {
             let q = c_from_tool.quaternion();
             let bad = fault == EmulatedFault::NotANumber;
             // ASCII cannot express such a number; a quaternion of zeros is just as impossible.
             let quaternion = if bad { [f64::NAN; 4] } else { [q.w, q.i, q.j, q.k] };
             let translation_mm = (position_in_c_m * 1e3).into();
             let transform = Transform { quaternion, translation_mm, error_mm: error_m * 1e3 };
-            Some((Sight::Valid(transform), if *at_the_edge { PortStatus::PARTLY_OUT } else { 0 }))
+            Some((ToolVisibility::Valid(transform), if *at_the_edge { PortStatus::PARTLY_OUT } else { 0 }))
         }
     }
 }

@@ -4,9 +4,9 @@ use std::{io, path::PathBuf};
 
 use nima_devices::ndi::command::COMMAND_MAX;
 
-use super::{Answer, Body, Profile, Unit, unit::FIRST_BAUD};
+use super::{NdiBody, NdiProfile, NdiUnit, UnitAnswer, unit::FIRST_BAUD};
 use crate::emulators::{
-    EmulatedFault, Emulator, End, Peer, Turn,
+    EmulatedFault, Emulator, EmulatorTurn, WireEnd, WirePeer,
     wires::{tcp_for_one, terminal},
 };
 
@@ -15,34 +15,34 @@ const RESET_S: f64 = 0.300;
 /// Bits on the line per byte.
 const BITS: f64 = 10.0;
 
-impl Profile {
+impl NdiProfile {
     /// Serves such a unit on TCP; `port` 0 selects a free one. The newest connection is answered.
-    pub fn on_network(self, port: u16, body: impl Body + 'static) -> Box<dyn Emulator> {
-        let hearing = Hearing::new(self, true, Box::new(body));
-        Box::new(Network { port, hearing })
+    pub fn on_network(self, port: u16, body: impl NdiBody + 'static) -> Box<dyn Emulator> {
+        let listening_unit = ListeningUnit::new(self, true, Box::new(body));
+        Box::new(NdiNetwork { port, listening_unit })
     }
 
     /// Serves such a unit on a pseudo-terminal: at `link`, or in its own folder.
-    pub fn on_line(self, link: Option<PathBuf>, body: impl Body + 'static) -> Box<dyn Emulator> {
-        let hearing = Hearing::new(self, false, Box::new(body));
-        Box::new(Line { link, hearing, baud: FIRST_BAUD, taken_s: 0.0, due: None, reset_s: None })
+    pub fn on_line(self, link: Option<PathBuf>, body: impl NdiBody + 'static) -> Box<dyn Emulator> {
+        let listening_unit = ListeningUnit::new(self, false, Box::new(body));
+        Box::new(NdiLine { link, listening_unit, baud: FIRST_BAUD, taken_s: 0.0, due: None, reset_s: None })
     }
 }
 
 /// A unit, and its input buffer.
-struct Hearing {
-    unit: Unit,
-    body: Box<dyn Body>,
+struct ListeningUnit {
+    unit: NdiUnit,
+    body: Box<dyn NdiBody>,
     command: Vec<u8>,
 }
 
-impl Hearing {
-    fn new(profile: Profile, network: bool, body: Box<dyn Body>) -> Self {
-        Self { unit: Unit::new(profile, network), body, command: Vec::with_capacity(COMMAND_MAX) }
+impl ListeningUnit {
+    fn new(profile: NdiProfile, network: bool, body: Box<dyn NdiBody>) -> Self {
+        Self { unit: NdiUnit::new(profile, network), body, command: Vec::with_capacity(COMMAND_MAX) }
     }
 
     /// Processes one byte; returns the answer if the byte completes a command.
-    fn hear(&mut self, byte: u8, turn: &Turn<'_>) -> Option<Answer> {
+    fn receive(&mut self, byte: u8, turn: &EmulatorTurn<'_>) -> Option<UnitAnswer> {
         if byte != b'\r' {
             // A command that is too long keeps its maximum length, and is refused.
             if self.command.len() < COMMAND_MAX {
@@ -57,59 +57,59 @@ impl Hearing {
 }
 
 /// Sends a reply in one write. The fault of reordering is applied by the unit, which returns an older frame.
-fn say(reply: &[u8], turn: &mut Turn<'_>) {
+fn say(reply: &[u8], turn: &mut EmulatorTurn<'_>) {
     if turn.fault == EmulatedFault::Reorder {
-        turn.send_unspoilt(Peer::Everyone, reply);
+        turn.send_unspoilt(WirePeer::Everyone, reply);
     } else {
-        turn.send(Peer::Everyone, reply);
+        turn.send(WirePeer::Everyone, reply);
     }
 }
 
-struct Network {
+struct NdiNetwork {
     port: u16,
-    hearing: Hearing,
+    listening_unit: ListeningUnit,
 }
 
-impl Emulator for Network {
-    fn wires(&self) -> io::Result<Vec<Box<dyn End>>> {
+impl Emulator for NdiNetwork {
+    fn wires(&self) -> io::Result<Vec<Box<dyn WireEnd>>> {
         Ok(vec![tcp_for_one(self.port)])
     }
 
-    fn meet(&mut self, _: Peer, _: &mut Turn<'_>) {
-        self.hearing.command.clear();
+    fn meet(&mut self, _: WirePeer, _: &mut EmulatorTurn<'_>) {
+        self.listening_unit.command.clear();
     }
 
-    fn hear(&mut self, _: Peer, bytes: &[u8], turn: &mut Turn<'_>) {
+    fn receive(&mut self, _: WirePeer, bytes: &[u8], turn: &mut EmulatorTurn<'_>) {
         for byte in bytes {
-            if let Some(answer) = self.hearing.hear(*byte, turn) {
+            if let Some(answer) = self.listening_unit.receive(*byte, turn) {
                 say(&answer.bytes, turn);
             }
         }
     }
 
-    fn pass(&mut self, _: &mut Turn<'_>) {}
+    fn pass(&mut self, _: &mut EmulatorTurn<'_>) {}
 }
 
-struct Line {
+struct NdiLine {
     link: Option<PathBuf>,
-    hearing: Hearing,
+    listening_unit: ListeningUnit,
     /// Baud rate of the unit's side, bit/s.
     baud: u32,
     /// Until when the last reply occupies the line, s.
     taken_s: f64,
     /// The reply to be sent once the bytes of the command have had their time.
-    due: Option<(f64, Answer)>,
+    due: Option<(f64, UnitAnswer)>,
     reset_s: Option<f64>,
 }
 
-impl Line {
+impl NdiLine {
     /// A pseudo-terminal cannot carry a break: the host's change to the initial rate counts as one.
     fn watch_break(&mut self, now_s: f64, host: Option<u32>) {
         if self.baud == FIRST_BAUD || host != Some(FIRST_BAUD) {
             self.reset_s = None;
         } else if now_s - *self.reset_s.get_or_insert(now_s) >= RESET_S {
-            let answer = self.hearing.unit.reset();
-            self.hearing.command.clear();
+            let answer = self.listening_unit.unit.reset();
+            self.listening_unit.command.clear();
             self.baud = FIRST_BAUD;
             self.due = Some((now_s, answer));
             self.reset_s = None;
@@ -117,12 +117,12 @@ impl Line {
     }
 }
 
-impl Emulator for Line {
-    fn wires(&self) -> io::Result<Vec<Box<dyn End>>> {
+impl Emulator for NdiLine {
+    fn wires(&self) -> io::Result<Vec<Box<dyn WireEnd>>> {
         Ok(vec![terminal(self.link.as_deref(), "tty", Some(FIRST_BAUD))?])
     }
 
-    fn hear(&mut self, _: Peer, bytes: &[u8], turn: &mut Turn<'_>) {
+    fn receive(&mut self, _: WirePeer, bytes: &[u8], turn: &mut EmulatorTurn<'_>) {
         // At another baud rate the bytes are not received.
         for byte in bytes.iter().filter(|_| turn.baud == Some(self.baud)) {
             // The unit is half duplex: bytes that arrive before its reply is out are lost, so that a flood of requests
@@ -130,8 +130,8 @@ impl Emulator for Line {
             if self.due.is_some() {
                 break;
             }
-            let length = self.hearing.command.len() + 1;
-            if let Some(answer) = self.hearing.hear(*byte, turn) {
+            let length = self.listening_unit.command.len() + 1;
+            if let Some(answer) = self.listening_unit.receive(*byte, turn) {
                 let took_s = |bytes: usize| bytes as f64 * BITS / f64::from(self.baud);
                 // The reply is written as a whole when its first byte is due; the line is occupied until its last byte
                 // has passed.
@@ -142,7 +142,7 @@ impl Emulator for Line {
         }
     }
 
-    fn pass(&mut self, turn: &mut Turn<'_>) {
+    fn pass(&mut self, turn: &mut EmulatorTurn<'_>) {
         self.watch_break(turn.now_s, turn.baud);
         if let Some((_, answer)) = self.due.take_if(|(due_s, _)| *due_s <= turn.now_s) {
             say(&answer.bytes, turn);
@@ -154,8 +154,8 @@ impl Emulator for Line {
         Some(self.due.as_ref().map_or(f64::INFINITY, |(due_s, _)| *due_s))
     }
 
-    fn lose(&mut self, _: Peer) {
-        self.hearing.command.clear();
+    fn lose(&mut self, _: WirePeer) {
+        self.listening_unit.command.clear();
         self.due = None;
     }
 }
@@ -164,7 +164,7 @@ impl Emulator for Line {
 mod tests {
     use std::time::{Duration, Instant};
 
-    use nima_devices::transport::{Bytes as _, Serial, SerialSettings};
+    use nima_devices::transport::{ByteStream as _, Serial, SerialSettings};
 
     use nima_testing::real_time::judged;
 
@@ -175,7 +175,7 @@ mod tests {
     #[test]
     fn a_flood_of_empty_commands_takes_the_line_for_no_longer_than_a_reply() {
         judged(|| {
-            let serving = Profile::default().on_line(None, wandering).serve().unwrap();
+            let serving = NdiProfile::default().on_line(None, wandering).serve().unwrap();
             let mut host = Serial::open(&SerialSettings { port: serving.endpoint.clone(), baud: FIRST_BAUD }).unwrap();
             let begin = Instant::now();
             let mut rest = 20_000_usize;
@@ -188,15 +188,15 @@ mod tests {
             }
             assert_eq!(rest, 0, "a busy machine had the line full for a minute");
             let begin = Instant::now();
-            let mut heard = Vec::new();
-            while !String::from_utf8_lossy(&heard).contains("Polaris Vega") {
-                assert!(begin.elapsed() < Duration::from_secs(30), "{}", String::from_utf8_lossy(&heard));
+            let mut received = Vec::new();
+            while !String::from_utf8_lossy(&received).contains("Polaris Vega") {
+                assert!(begin.elapsed() < Duration::from_secs(30), "{}", String::from_utf8_lossy(&received));
                 // A request during the unit's reply is lost.
                 host.send(b"VER 0\r").unwrap();
                 for _ in 0..500 {
                     let mut buffer = [0; 4096];
                     let count = host.receive(&mut buffer).unwrap();
-                    heard.extend(&buffer[..count]);
+                    received.extend(&buffer[..count]);
                     std::thread::sleep(Duration::from_millis(1));
                 }
             }

@@ -7,34 +7,34 @@ use std::{
     net::{Ipv4Addr, SocketAddr, TcpListener, TcpStream},
 };
 
-use super::{Arrival, End, Peer};
-use crate::emulators::places::taken;
+use super::{WireArrival, WireEnd, WirePeer};
+use crate::emulators::addresses::taken;
 
 /// A TCP port of this computer; 0 selects a free one. A client that does not read its data is disconnected.
-pub(in crate::emulators) fn tcp(port: u16) -> Box<dyn End> {
-    Box::new(Connections::new(Port((Ipv4Addr::LOCALHOST, port).into()), false))
+pub(in crate::emulators) fn tcp(port: u16) -> Box<dyn WireEnd> {
+    Box::new(Connections::new(ConnectionPort((Ipv4Addr::LOCALHOST, port).into()), false))
 }
 
 /// The same for one client at a time: the next client replaces it.
-pub(in crate::emulators) fn tcp_for_one(port: u16) -> Box<dyn End> {
-    Box::new(Connections::new(Port((Ipv4Addr::LOCALHOST, port).into()), true))
+pub(in crate::emulators) fn tcp_for_one(port: u16) -> Box<dyn WireEnd> {
+    Box::new(Connections::new(ConnectionPort((Ipv4Addr::LOCALHOST, port).into()), true))
 }
 
 /// A descriptor that can be waited for together with others.
 #[cfg(unix)]
-pub(super) trait Waited: AsRawFd {}
+pub(super) trait Waitable: AsRawFd {}
 #[cfg(unix)]
-impl<T: AsRawFd> Waited for T {}
+impl<T: AsRawFd> Waitable for T {}
 /// Other systems can wait for one descriptor only (see `wait`).
 #[cfg(not(unix))]
-pub(super) trait Waited {}
+pub(super) trait Waitable {}
 #[cfg(not(unix))]
-impl<T> Waited for T {}
+impl<T> Waitable for T {}
 
 /// A source of connections.
-pub(super) trait Place: Send {
-    type Listener: Send + Waited;
-    type Stream: Send + Waited + Read + Write;
+pub(super) trait ConnectionPlace: Send {
+    type Listener: Send + Waitable;
+    type Stream: Send + Waitable + Read + Write;
     /// Whether unread data are dropped; otherwise the client is disconnected.
     const LOSES: bool;
 
@@ -45,29 +45,29 @@ pub(super) trait Place: Send {
     fn leave(&self) {}
 }
 
-pub(super) struct Connections<P: Place> {
+pub(super) struct Connections<P: ConnectionPlace> {
     place: P,
     for_one: bool,
     listener: Option<P::Listener>,
-    clients: Vec<Client<P::Stream>>,
+    clients: Vec<ConnectionClient<P::Stream>>,
     accepted: u64,
     /// The client to be served next.
     next: usize,
 }
 
-struct Client<S> {
-    peer: Peer,
+struct ConnectionClient<S> {
+    peer: WirePeer,
     stream: S,
     alive: bool,
 }
 
-impl<P: Place> Connections<P> {
+impl<P: ConnectionPlace> Connections<P> {
     pub(super) const fn new(place: P, for_one: bool) -> Self {
         Self { place, for_one, listener: None, clients: Vec::new(), accepted: 0, next: 0 }
     }
 }
 
-impl<P: Place> End for Connections<P> {
+impl<P: ConnectionPlace> WireEnd for Connections<P> {
     fn endpoint(&self) -> String {
         self.place.endpoint()
     }
@@ -84,33 +84,33 @@ impl<P: Place> End for Connections<P> {
         self.listener.take().map(|_| self.place.leave()).is_some()
     }
 
-    fn next(&mut self, buffer: &mut [u8], admits: bool) -> Option<Arrival> {
+    fn next(&mut self, buffer: &mut [u8], admits: bool) -> Option<WireArrival> {
         if admits && let Ok(stream) = P::accept(self.listener.as_ref()?) {
             if self.for_one {
                 self.clients.clear();
             }
             self.accepted += 1;
-            let peer = Peer::Connection(self.accepted);
-            self.clients.push(Client { peer, stream, alive: true });
-            return Some(Arrival::Came(peer, 0));
+            let peer = WirePeer::Connection(self.accepted);
+            self.clients.push(ConnectionClient { peer, stream, alive: true });
+            return Some(WireArrival::Came(peer, 0));
         }
         // In turn, so that a client that sends much data does not delay the others.
         for _ in 0..self.clients.len() {
             let at = self.next % self.clients.len();
             self.next = at + 1;
-            let Client { peer, stream, alive } = &mut self.clients[at];
+            let ConnectionClient { peer, stream, alive } = &mut self.clients[at];
             match stream.read(buffer) {
-                Ok(count) if *alive && count > 0 => return Some(Arrival::Heard(*peer, count)),
+                Ok(count) if *alive && count > 0 => return Some(WireArrival::Heard(*peer, count)),
                 Err(error) if *alive && matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::Interrupted) => {}
-                _ => return Some(Arrival::Gone(self.clients.remove(at).peer)),
+                _ => return Some(WireArrival::Gone(self.clients.remove(at).peer)),
             }
         }
         None
     }
 
-    fn send(&mut self, to: Peer, bytes: &[u8]) {
-        for Client { peer, stream, alive } in &mut self.clients {
-            if to == Peer::Everyone || to == *peer {
+    fn send(&mut self, to: WirePeer, bytes: &[u8]) {
+        for ConnectionClient { peer, stream, alive } in &mut self.clients {
+            if to == WirePeer::Everyone || to == *peer {
                 let whole = stream.write(bytes).is_ok_and(|count| count == bytes.len());
                 *alive &= whole || P::LOSES;
             }
@@ -128,9 +128,9 @@ impl<P: Place> End for Connections<P> {
     }
 }
 
-struct Port(SocketAddr);
+struct ConnectionPort(SocketAddr);
 
-impl Place for Port {
+impl ConnectionPlace for ConnectionPort {
     type Listener = TcpListener;
     type Stream = TcpStream;
     const LOSES: bool = false;

@@ -7,20 +7,20 @@ use std::{
     net::{Ipv4Addr, SocketAddr, UdpSocket},
 };
 
-use super::{Arrival, End, Peer};
-use crate::emulators::places::taken;
+use super::{WireArrival, WireEnd, WirePeer};
+use crate::emulators::addresses::taken;
 
 /// A UDP port of this computer; 0 selects a free one.
-pub(in crate::emulators) fn udp(port: u16) -> Box<dyn End> {
-    Box::new(Datagrams { address: (Ipv4Addr::LOCALHOST, port).into(), socket: None })
+pub(in crate::emulators) fn udp(port: u16) -> Box<dyn WireEnd> {
+    Box::new(WireDatagrams { address: (Ipv4Addr::LOCALHOST, port).into(), socket: None })
 }
 
-struct Datagrams {
+struct WireDatagrams {
     address: SocketAddr,
     socket: Option<UdpSocket>,
 }
 
-impl End for Datagrams {
+impl WireEnd for WireDatagrams {
     fn endpoint(&self) -> String {
         self.address.to_string()
     }
@@ -39,13 +39,13 @@ impl End for Datagrams {
         self.socket.take().is_some()
     }
 
-    fn next(&mut self, buffer: &mut [u8], _: bool) -> Option<Arrival> {
+    fn next(&mut self, buffer: &mut [u8], _: bool) -> Option<WireArrival> {
         let (count, from) = self.socket.as_ref()?.recv_from(buffer).ok()?;
-        Some(Arrival::Heard(Peer::Address(from), count))
+        Some(WireArrival::Heard(WirePeer::Address(from), count))
     }
 
-    fn send(&mut self, to: Peer, bytes: &[u8]) {
-        if let (Some(socket), Peer::Address(to)) = (&self.socket, to) {
+    fn send(&mut self, to: WirePeer, bytes: &[u8]) {
+        if let (Some(socket), WirePeer::Address(to)) = (&self.socket, to) {
             // A closed port returns an error, which does not matter here.
             socket.send_to(bytes, to).ok();
         }

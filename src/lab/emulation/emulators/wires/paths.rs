@@ -7,16 +7,16 @@ use std::{
 };
 
 use super::{
-    End,
-    connections::{Connections, Place},
+    WireEnd,
+    connections::{ConnectionPlace, Connections},
 };
-use crate::emulators::places::socket_path;
+use crate::emulators::addresses::socket_path;
 
 type Listen = fn(&Path) -> io::Result<UnixListener>;
 
 /// A socket at `path`, opened by `listen`; without a path, at `name` in its own folder. Data that a client does not
 /// read are dropped.
-pub(in crate::emulators) fn socket(path: Option<&Path>, name: &str, listen: Listen) -> io::Result<Box<dyn End>> {
+pub(in crate::emulators) fn socket(path: Option<&Path>, name: &str, listen: Listen) -> io::Result<Box<dyn WireEnd>> {
     let (path, folder) = socket_path(path, name)?;
     Ok(Box::new(Connections::new(SocketPath { path, _folder: folder, listen }, false)))
 }
@@ -28,7 +28,7 @@ struct SocketPath {
     listen: Listen,
 }
 
-impl Place for SocketPath {
+impl ConnectionPlace for SocketPath {
     type Listener = UnixListener;
     type Stream = UnixStream;
     const LOSES: bool = true;

@@ -11,40 +11,44 @@ use std::{
 use nima_devices::os;
 use serialport::{SerialPort as _, TTYPort};
 
-use super::{Arrival, End, Peer};
-use crate::emulators::places::TerminalName;
+use super::{WireArrival, WireEnd, WirePeer};
+use crate::emulators::addresses::TerminalName;
 
 /// Interval between checks for settings that clients left on a terminal.
 const TIDY: Duration = Duration::from_millis(250);
 
 /// A terminal at `link`; without one, at `name` in its own folder. With a baud rate (bit/s) the terminal is set to it
 /// and outlives its clients; without one every client that opens it is reported.
-pub(in crate::emulators) fn terminal(link: Option<&Path>, name: &str, baud: Option<u32>) -> io::Result<Box<dyn End>> {
+pub(in crate::emulators) fn terminal(
+    link: Option<&Path>,
+    name: &str,
+    baud: Option<u32>,
+) -> io::Result<Box<dyn WireEnd>> {
     Ok(Box::new(Terminal { name: TerminalName::claim(link, name)?, baud, line: None }))
 }
 
 struct Terminal {
     name: TerminalName,
     baud: Option<u32>,
-    line: Option<Line>,
+    line: Option<TerminalLine>,
 }
 
-struct Line {
+struct TerminalLine {
     near: TTYPort,
     bytes: File,
-    far: Option<Far>,
+    far: Option<ClientEnd>,
     /// Whether a client has the terminal open, or we keep it open for all.
     present: bool,
 }
 
 /// The clients' end, kept open.
-struct Far {
+struct ClientEnd {
     port: TTYPort,
     lock: File,
     tidied: Instant,
 }
 
-impl Far {
+impl ClientEnd {
     /// A client that locked the terminal and has closed it leaves the lock. Removing it takes a shared lock, which
     /// would keep the next client out.
     fn tidy(&mut self) {
@@ -57,7 +61,7 @@ impl Far {
 }
 
 impl Terminal {
-    fn line(&self) -> io::Result<Line> {
+    fn line(&self) -> io::Result<TerminalLine> {
         let (near, mut port) = TTYPort::pair()?;
         let bytes = os::bytes_of(&near)?;
         if let Some(baud) = self.baud {
@@ -65,14 +69,14 @@ impl Terminal {
         }
         self.name.lead_to(&port)?;
         if self.baud.is_none() {
-            return Ok(Line { near, bytes, far: None, present: false });
+            return Ok(TerminalLine { near, bytes, far: None, present: false });
         }
         let lock = os::bytes_of(&port)?;
-        Ok(Line { near, bytes, far: Some(Far { port, lock, tidied: Instant::now() }), present: true })
+        Ok(TerminalLine { near, bytes, far: Some(ClientEnd { port, lock, tidied: Instant::now() }), present: true })
     }
 }
 
-impl End for Terminal {
+impl WireEnd for Terminal {
     fn endpoint(&self) -> String {
         self.name.path()
     }
@@ -89,7 +93,7 @@ impl End for Terminal {
         self.line.take().is_some()
     }
 
-    fn next(&mut self, buffer: &mut [u8], _: bool) -> Option<Arrival> {
+    fn next(&mut self, buffer: &mut [u8], _: bool) -> Option<WireArrival> {
         let line = self.line.as_mut()?;
         if let Some(far) = &mut line.far {
             far.tidy();
@@ -102,15 +106,15 @@ impl End for Terminal {
         };
         let before = std::mem::replace(&mut line.present, read.is_some());
         match read {
-            Some(count) if !before => Some(Arrival::Came(Peer::Everyone, count)),
-            Some(count) if count > 0 => Some(Arrival::Heard(Peer::Everyone, count)),
-            None if before => Some(Arrival::Gone(Peer::Everyone)),
+            Some(count) if !before => Some(WireArrival::Came(WirePeer::Everyone, count)),
+            Some(count) if count > 0 => Some(WireArrival::Heard(WirePeer::Everyone, count)),
+            None if before => Some(WireArrival::Gone(WirePeer::Everyone)),
             _ => None,
         }
     }
 
-    fn send(&mut self, to: Peer, bytes: &[u8]) {
-        if let Some(line) = self.line.as_mut().filter(|line| line.present && to == Peer::Everyone) {
+    fn send(&mut self, to: WirePeer, bytes: &[u8]) {
+        if let Some(line) = self.line.as_mut().filter(|line| line.present && to == WirePeer::Everyone) {
             // Data that do not fit are lost, as on a real serial port without a reader.
             let _lost = line.bytes.write(bytes);
         }

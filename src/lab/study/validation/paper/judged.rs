@@ -1,45 +1,47 @@
 //! Results of the paper's recipe on a recording: inside the window that it was fitted to, and at the horizon.
 
 use nalgebra::Vector3;
-use nima_core::impedance::{Choice, Identifier, Mode, ModeSet, Reading, Recipe, Settings};
+use nima_core::impedance::{DegreeChoice, Identifier, ImpedanceSettings, IncrementReading, Mode, ModeSet, Recipe};
 use nima_machine::teleop::ErrorStats;
-use nima_recording::csv::Recording;
+use nima_recording::csv::CsvRecording;
 use serde::Serialize;
 
-use crate::validation::{ValidationError, rendering::Figures};
+use crate::validation::{ValidationError, rendering::RenderingFigures};
 
 /// Delays of the link, s.
 pub const DELAYS_S: [f64; 4] = [0.01, 0.05, 0.1, 0.3];
 
 /// The recipe as printed.
 pub const PRINTED: Recipe =
-    Recipe { reading: Reading::Increments, choice: Choice::Window, constant: false, ridge: 0.0 };
+    Recipe { reading: IncrementReading::Increments, choice: DegreeChoice::Window, constant: false, ridge: 0.0 };
 /// Interpretations of the recipe, from the printed one to the usable one.
 pub const RECIPES: [(&str, Recipe); 5] = [
     ("as printed", PRINTED),
-    ("choice = next", Recipe { choice: Choice::Next, ..PRINTED }),
-    ("and constant", Recipe { choice: Choice::Next, constant: true, ..PRINTED }),
+    ("choice = next", Recipe { choice: DegreeChoice::Next, ..PRINTED }),
+    ("and constant", Recipe { choice: DegreeChoice::Next, constant: true, ..PRINTED }),
     ("and ridge = 0.003", REPAIRED),
-    ("and displacement", Recipe { reading: Reading::Displacement, ..REPAIRED }),
+    ("and displacement", Recipe { reading: IncrementReading::Displacement, ..REPAIRED }),
 ];
 /// With all corrections except the interpretation.
-pub const REPAIRED: Recipe = Recipe { choice: Choice::Next, constant: true, ridge: 3e-3, ..PRINTED };
+pub const REPAIRED: Recipe = Recipe { choice: DegreeChoice::Next, constant: true, ridge: 3e-3, ..PRINTED };
 
 /// Results inside the window: fits judged on the newest sample of their own window, all axes alike.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct InWindow {
     /// The degree chosen by the error in the window, as the paper does.
-    pub nonlinear: Figures,
+    pub nonlinear: RenderingFigures,
     /// Degree 1.
-    pub linear: Figures,
+    pub linear: RenderingFigures,
     /// `nonlinear` with displacements instead of increments.
-    pub displacement: Figures,
+    pub displacement: RenderingFigures,
     /// Relative reduction from `linear` to `nonlinear`.
     pub less: f64,
     /// Fraction of windows for which a degree above 1 is chosen by the error in the window.
-    pub window_share: f64,
+    #[serde(rename = "window_share")]
+    pub window_fraction: f64,
     /// The same if each degree is judged over the 10 ms after its window.
-    pub next_share: f64,
+    #[serde(rename = "next_share")]
+    pub next_fraction: f64,
 }
 
 /// Prediction errors at the horizon with one interpretation of the recipe.
@@ -52,15 +54,15 @@ pub struct AtHorizon {
     /// Delay of the link, s.
     pub delay_s: f64,
     /// Force of the literal mode.
-    pub literal: Figures,
+    pub literal: RenderingFigures,
     /// The delayed force, unmodified.
-    pub dfr: Figures,
+    pub dfr: RenderingFigures,
     /// Stiffness in the fit (the coefficient of `u`, the largest of the axes, 99th percentile over the windows), N/m.
     pub stiffness_p99_n_m: f64,
 }
 
 #[derive(Clone, Debug, Serialize)]
-pub struct Judged {
+pub struct JudgedRecording {
     pub in_window: InWindow,
     /// At the horizon, for each interpretation of the recipe and each delay.
     pub at_horizon: Vec<AtHorizon>,
@@ -68,31 +70,31 @@ pub struct Judged {
 
 /// # Errors
 /// [`ValidationError`] if its rate or its axes are out of range.
-pub fn judge(recording: &Recording) -> Result<Judged, ValidationError> {
+pub fn judge(recording: &CsvRecording) -> Result<JudgedRecording, ValidationError> {
     let mut at_horizon = Vec::new();
     for (name, recipe) in RECIPES {
         for delay_s in DELAYS_S {
             at_horizon.push(horizon(recording, name, recipe, delay_s)?);
         }
     }
-    Ok(Judged { in_window: in_window(recording)?, at_horizon })
+    Ok(JudgedRecording { in_window: in_window(recording)?, at_horizon })
 }
 
 /// Runs the identification over a recording.
 fn identify(
-    recording: &Recording,
+    recording: &CsvRecording,
     recipe: Recipe,
     delay_s: f64,
     mut each: impl FnMut(&Vector3<f64>, &Identifier),
 ) -> Result<(), ValidationError> {
-    let Recording { rate_hz, axes, samples, .. } = recording;
-    let mut identifier = Identifier::new(&Settings {
+    let CsvRecording { rate_hz, axes, samples, .. } = recording;
+    let mut identifier = Identifier::new(&ImpedanceSettings {
         rate_hz: *rate_hz,
         delay_s,
         axes: axes.len(),
         modes: ModeSet::only(Mode::Literal).with(Mode::Linear),
         literal: recipe,
-        ..Settings::default()
+        ..ImpedanceSettings::default()
     })?;
     for sample in samples {
         identifier.step(sample);
@@ -102,9 +104,9 @@ fn identify(
 }
 
 #[derive(Default)]
-struct Errors([ErrorStats; 3]);
+struct JudgedErrors([ErrorStats; 3]);
 
-impl Errors {
+impl JudgedErrors {
     fn add(&mut self, error_n: &Vector3<f64>) {
         for (axis, stats) in self.0.iter_mut().enumerate() {
             stats.add(&Vector3::new(error_n[axis], 0.0, 0.0));
@@ -112,19 +114,19 @@ impl Errors {
     }
 
     /// Mean absolute error and standard deviation over all axes of this recording together.
-    fn figures(&self, recording: &Recording) -> Figures {
+    fn figures(&self, recording: &CsvRecording) -> RenderingFigures {
         let count = recording.axes.len().max(1) as f64;
         let mean = |of: fn(&ErrorStats) -> f64| self.0[..recording.axes.len()].iter().map(of).sum::<f64>() / count;
-        Figures { mae_n: mean(|stats| stats.mae_n), sd_n: mean(|stats| stats.sd_n().powi(2)).sqrt() }
+        RenderingFigures { mae_n: mean(|stats| stats.mae_n), sd_n: mean(|stats| stats.sd_n().powi(2)).sqrt() }
     }
 }
 
-pub(super) fn in_window(recording: &Recording) -> Result<InWindow, ValidationError> {
-    let mut nonlinear = Errors::default();
-    let mut linear = Errors::default();
-    let mut displacement = Errors::default();
-    let mut window = Share::default();
-    let mut next = Share::default();
+pub(super) fn in_window(recording: &CsvRecording) -> Result<InWindow, ValidationError> {
+    let mut nonlinear = JudgedErrors::default();
+    let mut linear = JudgedErrors::default();
+    let mut displacement = JudgedErrors::default();
+    let mut window = NonlinearFraction::default();
+    let mut next = NonlinearFraction::default();
     identify(recording, PRINTED, 0.0, |_, identifier| {
         let report = identifier.report();
         if let degree @ 1.. = usize::from(report.paper_degree) {
@@ -133,10 +135,10 @@ pub(super) fn in_window(recording: &Recording) -> Result<InWindow, ValidationErr
             linear.add(&report.reconstruction_n[0]);
         }
     })?;
-    identify(recording, Recipe { choice: Choice::Next, ..PRINTED }, 0.0, |_, identifier| {
+    identify(recording, Recipe { choice: DegreeChoice::Next, ..PRINTED }, 0.0, |_, identifier| {
         next.add(usize::from(identifier.report().paper_degree));
     })?;
-    identify(recording, Recipe { reading: Reading::Displacement, ..PRINTED }, 0.0, |_, identifier| {
+    identify(recording, Recipe { reading: IncrementReading::Displacement, ..PRINTED }, 0.0, |_, identifier| {
         let report = identifier.report();
         if let degree @ 1.. = usize::from(report.paper_degree) {
             displacement.add(&report.reconstruction_n[degree - 1]);
@@ -149,24 +151,24 @@ pub(super) fn in_window(recording: &Recording) -> Result<InWindow, ValidationErr
         linear,
         displacement: displacement.figures(recording),
         less: 1.0 - nonlinear.mae_n / linear.mae_n.max(f64::MIN_POSITIVE),
-        window_share: window.value(),
-        next_share: next.value(),
+        window_fraction: window.value(),
+        next_fraction: next.value(),
     })
 }
 
 pub(super) fn horizon(
-    recording: &Recording,
+    recording: &CsvRecording,
     name: &'static str,
     recipe: Recipe,
     delay_s: f64,
 ) -> Result<AtHorizon, ValidationError> {
-    let mut literal = Errors::default();
-    let mut dfr = Errors::default();
+    let mut literal = JudgedErrors::default();
+    let mut dfr = JudgedErrors::default();
     let mut stiffness = Vec::new();
     identify(recording, recipe, delay_s, |measured_n, identifier| {
         let model = identifier.parcel().models.literal;
         if model.degree > 0 {
-            stiffness.push(model.coefficients[0].0.iter().fold(0.0_f64, |most, m| m.abs().max(most)));
+            stiffness.push(model.coefficients[0].0.iter().fold(0.0_f64, |max, m| m.abs().max(max)));
         }
         // Before the first data arrive there is nothing to judge; a mode that renders nothing errs by the whole force.
         let report = identifier.report();
@@ -184,12 +186,12 @@ pub(super) fn horizon(
 
 /// Fraction of windows with a degree above 1, among those with a chosen degree.
 #[derive(Default)]
-struct Share {
+struct NonlinearFraction {
     yes: u32,
     all: u32,
 }
 
-impl Share {
+impl NonlinearFraction {
     fn add(&mut self, degree: usize) {
         self.all += u32::from(degree > 0);
         self.yes += u32::from(degree > 1);

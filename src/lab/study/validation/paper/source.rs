@@ -2,11 +2,11 @@
 
 use nima_core::impedance::{AXES, Sample};
 use nima_machine::config::RigConfig;
-use nima_recording::csv::Recording;
-use nima_simulation::{Plan, run_virtual, scene::Scene};
+use nima_recording::csv::CsvRecording;
+use nima_simulation::{SimulationPlan, run_virtual, scene::Scene};
 use serde::Serialize;
 
-use crate::{tradeoff::Source, validation::ValidationError};
+use crate::{tradeoff::TradeoffSource, validation::ValidationError};
 
 /// The paper's task, and its programmed delay (s).
 const SCENE: &str = "peg_transfer";
@@ -58,7 +58,7 @@ impl Conditions {
     ///
     /// # Errors
     /// [`ValidationError`] if the scene or a setting is invalid.
-    pub fn record(&self, seed: u64, seconds: f64) -> Result<Recording, ValidationError> {
+    pub fn record(&self, seed: u64, seconds: f64) -> Result<CsvRecording, ValidationError> {
         let mut scene = Scene { seed, ..Scene::load(SCENE)? };
         scene.hand.hold_s = self.hold_s;
         scene.hand.tremor_m = self.tremor_m;
@@ -66,15 +66,15 @@ impl Conditions {
             sensor.noise_n = self.noise_n;
         }
         if !self.feels {
-            return Ok(Source::from_scene(&scene, RATE_HZ, seconds).recording);
+            return Ok(TradeoffSource::from_scene(&scene, RATE_HZ, seconds).recording);
         }
         let rig = RigConfig { delay_s: DELAY_S, rate_hz: RATE_HZ, ..RigConfig::load("simulated")? };
-        let plan = Plan { rig, scene, calibrations: Default::default(), engage: true };
+        let plan = SimulationPlan { rig, scene, calibrations: Default::default(), engage: true };
         let mut samples = Vec::with_capacity((seconds * RATE_HZ) as usize + 1);
         run_virtual(&plan, seconds, |tick| {
             samples.push(Sample { t_s: tick.t_s, position_m: tick.tip_m, force_n: tick.measured_n });
             None
         })?;
-        Ok(Recording { path: SCENE.into(), axes: (0..AXES).collect(), rate_hz: RATE_HZ, samples, leader_m: None })
+        Ok(CsvRecording { path: SCENE.into(), axes: (0..AXES).collect(), rate_hz: RATE_HZ, samples, leader_m: None })
     }
 }

@@ -1,37 +1,37 @@
 //! Another device for a part: devices of other parts of the rig, and found devices.
 
 use egui::{Button, Label, TextEdit, Ui, vec2};
-use nima_devices::discovery::Plugged;
+use nima_devices::discovery::PluggedDevices;
 use nima_machine::{
-    config::Chosen,
-    rig::{Offer, Part, Sought, seek},
+    config::ChosenDevice,
+    rig::{DeviceOffer, RigPart, SearchResult, seek},
 };
 
-use super::{Change, DevicesState, row::identity_words};
-use crate::console::{live::Live, start::Looked, text, widgets::small};
+use super::{DevicesState, RigEdit, row::identity_text};
+use crate::console::{live::LiveState, start::BackgroundQuery, text, widgets::small};
 
 /// Choice below a part.
 #[derive(Debug)]
 pub(super) struct Chooser {
-    part: Part,
+    part: RigPart,
     place: String,
-    sought: Looked<Vec<Sought>>,
+    sought: BackgroundQuery<Vec<SearchResult>>,
 }
 
 /// Opens or closes the choice of this part.
-pub(super) fn toggle(state: &mut DevicesState, part: Part) {
+pub(super) fn toggle(state: &mut DevicesState, part: RigPart) {
     let is_open = state.chooser.as_ref().is_some_and(|chooser| chooser.part == part);
-    state.chooser = (!is_open).then(|| Chooser { part, place: String::new(), sought: Looked::default() });
+    state.chooser = (!is_open).then(|| Chooser { part, place: String::new(), sought: BackgroundQuery::default() });
 }
 
 /// Draws the choice if it is open at this part; returns the requested change.
 pub(super) fn chooser_ui(
     ui: &mut Ui,
-    live: &Live,
+    live: &LiveState,
     state: &mut DevicesState,
-    part: Part,
+    part: RigPart,
     refused: Option<&str>,
-) -> Option<Change> {
+) -> Option<RigEdit> {
     let chooser = state.chooser.as_mut().filter(|chooser| chooser.part == part)?;
     let mut chosen = None;
     ui.indent(part.key(), |ui| {
@@ -46,7 +46,7 @@ pub(super) fn chooser_ui(
                 Ok(offer) => {
                     let words = text::devices::found(&words_of(offer), &offer.place);
                     if candidate_ui(ui, &words, refused) {
-                        chosen = Some(Chosen::Found(offer.clone()));
+                        chosen = Some(ChosenDevice::Found(offer.clone()));
                     }
                 }
                 Err(trouble) => {
@@ -59,20 +59,20 @@ pub(super) fn chooser_ui(
             ui.label(small(text::devices::NOTHING_FOUND.get()));
         }
     });
-    chosen.map(|chosen| Change::Choose(part, chosen))
+    chosen.map(|chosen| RigEdit::Choose(part, chosen))
 }
 
 /// The devices of other parts of this kind, to swap with this one.
-fn others_ui(ui: &mut Ui, live: &Live, part: Part, refused: Option<&str>) -> Option<Chosen> {
+fn others_ui(ui: &mut Ui, live: &LiveState, part: RigPart, refused: Option<&str>) -> Option<ChosenDevice> {
     let mut chosen = None;
     let mut any = false;
     for entry in &live.roster {
         let Some(other) = entry.part.filter(|other| *other != part && other.kind() == part.kind()) else { continue };
         any = true;
-        let identity = entry.view.report().identity.as_ref().and_then(identity_words);
+        let identity = entry.view.report().identity.as_ref().and_then(identity_text);
         let identity = identity.as_deref().unwrap_or(text::devices::UNKNOWN_IDENTITY.get());
         if candidate_ui(ui, &text::devices::candidate(identity, other), refused) {
-            chosen = Some(Chosen::Of(other));
+            chosen = Some(ChosenDevice::Of(other));
         }
     }
     if !any {
@@ -87,11 +87,11 @@ fn candidate_ui(ui: &mut Ui, words: &str, refused: Option<&str>) -> bool {
     button.on_disabled_hover_text(refused.unwrap_or_default()).clicked()
 }
 
-fn words_of(offer: &Offer) -> String {
-    identity_words(&offer.identity).unwrap_or_else(|| text::devices::UNKNOWN_IDENTITY.get().to_owned())
+fn words_of(offer: &DeviceOffer) -> String {
+    identity_text(&offer.identity).unwrap_or_else(|| text::devices::UNKNOWN_IDENTITY.get().to_owned())
 }
 
-fn look_ui(ui: &mut Ui, live: &Live, chooser: &mut Chooser) {
+fn look_ui(ui: &mut Ui, live: &LiveState, chooser: &mut Chooser) {
     let Chooser { part, place, sought } = chooser;
     ui.horizontal(|ui| {
         let looking = sought.is_running();
@@ -107,7 +107,7 @@ fn look_ui(ui: &mut Ui, live: &Live, chooser: &mut Chooser) {
             let part = *part;
             let place = place.clone();
             sought.forget();
-            sought.begin(ui.ctx(), move || seek(part, &devices, &Plugged::list(), &place));
+            sought.begin(ui.ctx(), move || seek(part, &devices, &PluggedDevices::list(), &place));
         }
     });
 }

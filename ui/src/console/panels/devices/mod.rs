@@ -1,6 +1,6 @@
 //! The devices of the rig: identification, connection, test, and assignment to parts.
 //!
-//! Left and right are side by side if there is room. The window carries out a [`Change`] of the rig: it writes the rig file
+//! Left and right are side by side if there is room. The window carries out a [`RigEdit`] of the rig: it writes the rig file
 //! and restarts the machine.
 
 mod choosing;
@@ -9,20 +9,20 @@ mod row;
 
 use egui::{Align, Button, Label, Layout, RichText, Ui, vec2};
 use nima_machine::{
-    config::Chosen,
+    config::ChosenDevice,
     messages::LoopState,
     rig::{
-        Gauges, Part, PartKind, Roster, SIDES, Side,
-        checkup::{BLOCKS, Checkup, Subject},
+        Gauges, PartKind, RigPart, Roster, SIDES, Side,
+        checkup::{BLOCKS, Checkup, TestSubject},
     },
 };
 
 use crate::console::{
-    live::Live,
+    live::LiveState,
     text, theme,
     widgets::{small, weak},
 };
-use crate::words::{obstacle_words, side_word};
+use crate::report_text::{obstacle_text, side_word};
 use choosing::Chooser;
 use row::row_ui;
 
@@ -33,11 +33,11 @@ const TEST_MAX: std::time::Duration = std::time::Duration::from_secs(6);
 
 /// A requested change of the rig.
 #[derive(Clone, Debug)]
-pub enum Change {
+pub enum RigEdit {
     /// Swap the devices of this kind between right and left.
     ExchangeSides(PartKind),
     /// Use another device for this part.
-    Choose(Part, Chosen),
+    Choose(RigPart, ChosenDevice),
 }
 
 /// A running test.
@@ -55,9 +55,9 @@ pub struct DevicesState {
     test: Option<Test>,
     results: Vec<(usize, Checkup)>,
     chooser: Option<Chooser>,
-    told: Option<String>,
+    report: Option<String>,
     /// State of the endoscope and remedy; `None` for a rig without one.
-    pub(in crate::console) picture: Option<[String; 2]>,
+    pub(in crate::console) image: Option<[String; 2]>,
     pub(in crate::console) is_starting: bool,
     /// The panel was drawn in the last frame: lights are updated while the window rests.
     pub(in crate::console) is_seen: bool,
@@ -65,8 +65,8 @@ pub struct DevicesState {
 
 impl DevicesState {
     /// Shows this text at the top of the panel.
-    pub(in crate::console) fn tell(&mut self, told: String) {
-        self.told = Some(told);
+    pub(in crate::console) fn notify(&mut self, report: String) {
+        self.report = Some(report);
     }
 
     /// Discards everything known about the previous devices.
@@ -81,9 +81,9 @@ impl DevicesState {
         self.test.is_some()
     }
 
-    fn begin_test(&mut self, places: Vec<usize>, live: &Live) {
+    fn begin_test(&mut self, places: Vec<usize>, live: &LiveState) {
         self.results.retain(|(place, _)| !places.contains(place));
-        self.told = None;
+        self.report = None;
         self.test = Some(Test { places, from: live.blocks_counted, began: std::time::Instant::now() });
     }
 
@@ -96,12 +96,12 @@ impl DevicesState {
     }
 
     /// Ends a test that has its data.
-    fn follow_test(&mut self, live: &Live) {
+    fn follow_test(&mut self, live: &LiveState) {
         let Some(test) = &self.test else { return };
         if live.blocks_counted < test.from + BLOCKS as u64 {
             if test.began.elapsed() > TEST_MAX {
                 self.test = None;
-                self.tell(text::devices::TEST_BROKEN_OFF.get().to_owned());
+                self.notify(text::devices::TEST_BROKEN_OFF.get().to_owned());
             }
             return;
         }
@@ -113,7 +113,7 @@ impl DevicesState {
         };
         for place in test.places {
             let part = live.roster.get(place).and_then(|entry| entry.part);
-            let subject = part.and_then(|part| Subject::of(part, place, &live.rig, &blocks));
+            let subject = part.and_then(|part| TestSubject::of(part, place, &live.rig, &blocks));
             let checkup = subject.and_then(|subject| Checkup::of(&subject));
             self.results.extend(checkup.map(|checkup| (place, checkup)));
         }
@@ -121,7 +121,7 @@ impl DevicesState {
 }
 
 /// Reason why the rig cannot be changed now.
-pub(in crate::console) fn why_not_to_change(live: &Live, is_starting: bool) -> Option<&'static str> {
+pub(in crate::console) fn why_not_to_change(live: &LiveState, is_starting: bool) -> Option<&'static str> {
     if is_starting {
         return Some(text::devices::STARTING.get());
     }
@@ -133,19 +133,19 @@ pub(in crate::console) fn why_not_to_change(live: &Live, is_starting: bool) -> O
 }
 
 /// The panel; for a rig without devices it says that everything is simulated. Returns a requested change of the rig.
-pub fn devices_ui(ui: &mut Ui, live: &Live, state: &mut DevicesState) -> Option<Change> {
+pub fn devices_ui(ui: &mut Ui, live: &LiveState, state: &mut DevicesState) -> Option<RigEdit> {
     state.is_seen = true;
     if live.roster.is_empty() {
         ui.label(weak(text::devices::NONE.get()));
         ui.add(Label::new(small(text::devices::NONE_TO_CONNECT.get())).wrap());
-        picture_ui(ui, state);
+        image_ui(ui, state);
         return None;
     }
     state.follow_test(live);
     let refused = why_not_to_change(live, state.is_starting);
     let mut change = head_ui(ui, live, state, refused);
-    if let Some(told) = &state.told {
-        ui.add(Label::new(told).wrap());
+    if let Some(report) = &state.report {
+        ui.add(Label::new(report).wrap());
     }
     ui.add_space(4.0);
     let columns = columns_of(&live.roster, ui.available_width());
@@ -164,43 +164,43 @@ pub fn devices_ui(ui: &mut Ui, live: &Live, state: &mut DevicesState) -> Option<
     });
     for (side, obstacle) in Side::ALL.into_iter().zip(&live.healths.obstacles) {
         if let Some(obstacle) = obstacle {
-            ui.add(Label::new(text::devices::not_to_be_engaged(side_word(side), &obstacle_words(obstacle))).wrap());
+            ui.add(Label::new(text::devices::not_to_be_engaged(side_word(side), &obstacle_text(obstacle))).wrap());
         }
     }
-    picture_ui(ui, state);
+    image_ui(ui, state);
     change
 }
 
 /// The endoscope, which the loop does not use.
-fn picture_ui(ui: &mut Ui, state: &DevicesState) {
-    let Some([told, cure]) = &state.picture else { return };
+fn image_ui(ui: &mut Ui, state: &DevicesState) {
+    let Some([report, cure]) = &state.image else { return };
     ui.add_space(6.0);
-    ui.label(small(text::eyes::ENDOSCOPE.get()));
-    ui.add(Label::new(RichText::new(told)).wrap());
+    ui.label(small(text::endoscope_view::ENDOSCOPE.get()));
+    ui.add(Label::new(RichText::new(report)).wrap());
     if !cure.is_empty() {
         ui.add(Label::new(weak(cure)).wrap());
     }
 }
 
-type Column = (Option<Side>, Vec<usize>);
+type DeviceColumn = (Option<Side>, Vec<usize>);
 
 /// Rows of columns: left and right side by side if there is room, shared devices in a separate column.
-fn columns_of(roster: &Roster, width: f32) -> Vec<Vec<Column>> {
+fn columns_of(roster: &Roster, width: f32) -> Vec<Vec<DeviceColumn>> {
     let of = |side: Option<Side>| {
-        let is_of = |place: &usize| roster[*place].part.and_then(Part::side) == side;
+        let is_of = |place: &usize| roster[*place].part.and_then(RigPart::side) == side;
         (side, (0..roster.len()).filter(is_of).collect::<Vec<_>>())
     };
     let columns = [of(Some(Side::Left)), of(Some(Side::Right)), of(None)];
-    let columns: Vec<Column> = columns.into_iter().filter(|(_, places)| !places.is_empty()).collect();
+    let columns: Vec<DeviceColumn> = columns.into_iter().filter(|(_, places)| !places.is_empty()).collect();
     let side_by_side = ((width / TWO_COLUMNS * SIDES as f32) as usize).clamp(1, columns.len().max(1));
     if side_by_side == 1 {
         return columns.into_iter().map(|column| vec![column]).collect();
     }
-    columns.chunks(side_by_side).map(<[Column]>::to_vec).collect()
+    columns.chunks(side_by_side).map(<[DeviceColumn]>::to_vec).collect()
 }
 
 /// Above the devices: explanation of the lights, the test of all devices, the swaps.
-fn head_ui(ui: &mut Ui, live: &Live, state: &mut DevicesState, refused: Option<&str>) -> Option<Change> {
+fn head_ui(ui: &mut Ui, live: &LiveState, state: &mut DevicesState, refused: Option<&str>) -> Option<RigEdit> {
     ui.add(Label::new(weak(text::devices::WHICH.get())).wrap());
     let mut change = None;
     let both = |kind: PartKind| {
@@ -227,7 +227,7 @@ fn head_ui(ui: &mut Ui, live: &Live, state: &mut DevicesState, refused: Option<&
             });
             let button = button.on_hover_text(text::devices::EXCHANGE_HOVER.get());
             if button.on_disabled_hover_text(refused.unwrap_or_default()).clicked() {
-                change = Some(Change::ExchangeSides(kind));
+                change = Some(RigEdit::ExchangeSides(kind));
             }
         }
     });

@@ -4,7 +4,7 @@ use egui::{Grid, Label, RichText, Ui};
 use nalgebra::Vector3;
 use nima_machine::rig::{
     PartKind,
-    checkup::{Checkup, Measured},
+    checkup::{Checkup, CheckupNumber},
 };
 
 use crate::{
@@ -13,7 +13,7 @@ use crate::{
         theme,
         widgets::{Sign, sign_ui, small},
     },
-    words::{channel_group, finding_words, three_digits},
+    report_text::{channel_group, finding_text, three_digits},
 };
 
 pub(super) fn report_ui(ui: &mut Ui, checkup: &Checkup) {
@@ -32,7 +32,7 @@ fn result_ui(ui: &mut Ui, checkup: &Checkup) {
         ui.label(RichText::new(verdict).font(theme::strong(14.0)));
     });
     for finding in &checkup.findings {
-        let [cause, cure] = finding_words(checkup.part.kind(), finding);
+        let [cause, cure] = finding_text(checkup.part.kind(), finding);
         ui.add(Label::new(cause).wrap());
         ui.add(Label::new(small(cure)).wrap());
     }
@@ -47,9 +47,9 @@ fn result_ui(ui: &mut Ui, checkup: &Checkup) {
     });
 }
 
-type Figure = (String, String, &'static str);
+type ConsoleFigure = (String, String, &'static str);
 
-fn figures(checkup: &Checkup) -> Vec<Figure> {
+fn figures(checkup: &Checkup) -> Vec<ConsoleFigure> {
     let Checkup { rate_hz, nominal_hz, age_s, lost, damaged, refused, .. } = *checkup;
     let named = |name: &str, value: String, meaning| (name.to_owned(), value, meaning);
     let mut figures = Vec::new();
@@ -64,9 +64,9 @@ fn figures(checkup: &Checkup) -> Vec<Figure> {
         figures.push((words::noise_of(name), format!("{} {unit}", noise.join(", ")), words::NOISE_HOVER.get()));
         let spans: Vec<_> = members.iter().map(|one| span(one, scale)).collect();
         let mut value = format!("{} {unit}", spans.join(", "));
-        let shares: Vec<f64> = members.iter().filter_map(|one| reached_percent(one)).collect();
-        if let Some(most) = shares.into_iter().reduce(f64::max) {
-            value = format!("{value}; {}", words::share(most));
+        let fractions: Vec<f64> = members.iter().filter_map(|one| reached_percent(one)).collect();
+        if let Some(max) = fractions.into_iter().reduce(f64::max) {
+            value = format!("{value}; {}", words::fraction(max));
         }
         figures.push((words::span_of(name), value, words::SPAN_HOVER.get()));
     }
@@ -76,7 +76,7 @@ fn figures(checkup: &Checkup) -> Vec<Figure> {
     figures
 }
 
-type Group<'a> = (&'static str, &'static str, f64, Vec<&'a Measured>);
+type Group<'a> = (&'static str, &'static str, f64, Vec<&'a CheckupNumber>);
 
 /// Values of the readings, grouped by quantity.
 fn groups(checkup: &Checkup) -> Vec<Group<'_>> {
@@ -92,7 +92,7 @@ fn groups(checkup: &Checkup) -> Vec<Group<'_>> {
 }
 
 /// Lowest and highest reading; one number if they hardly differ.
-fn span(one: &Measured, scale: f64) -> String {
+fn span(one: &CheckupNumber, scale: f64) -> String {
     let [low, high] = [one.low, one.high].map(|value| short(value * scale));
     if low == high { low } else { format!("{low}\u{2026}{high}") }
 }
@@ -106,7 +106,7 @@ fn short(value: f64) -> String {
 }
 
 /// Maximum distance from the middle of the range, in percent of the possible distance.
-fn reached_percent(one: &Measured) -> Option<f64> {
+fn reached_percent(one: &CheckupNumber) -> Option<f64> {
     let [low, high] = one.range?;
     let middle = f64::midpoint(low, high);
     let half = (high - low) / 2.0;
@@ -146,7 +146,7 @@ mod tests {
 
     #[test]
     fn ranges_are_short_and_zero_has_no_sign() {
-        let one = |low, high, range| Measured { channel: 0, noise: 0.0, low, high, range };
+        let one = |low, high, range| CheckupNumber { channel: 0, noise: 0.0, low, high, range };
         assert_eq!(span(&one(-0.001, 0.5, None), 1.0), "0.00\u{2026}0.50");
         assert_eq!(span(&one(0.012_34, 0.012_34, None), 1e3), "12.3");
         assert_eq!(reached_percent(&one(-0.5, 1.2, Some([-1.6, 1.6]))).map(f64::round), Some(75.0));

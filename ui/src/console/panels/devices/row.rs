@@ -1,16 +1,16 @@
 //! One device: its light, its state, its buttons, and the area opened below it.
 
 use egui::{Button, Color32, Label, RichText, Sense, Ui, Vec2, vec2};
-use nima_devices::{Health, Identity, Standing, Trouble};
+use nima_devices::{ConnectionState, DeviceError, DeviceIdentity, Health};
 use nima_machine::rig::RosterEntry;
 
-use super::{Change, DevicesState, choosing, report::report_ui};
+use super::{DevicesState, RigEdit, choosing, report::report_ui};
 use crate::console::{
-    live::Live,
+    live::LiveState,
     text, theme,
     widgets::{Sign, sign, sign_ui, small},
 };
-use crate::words::{loss_words, role_name};
+use crate::report_text::{loss_text, role_name};
 
 const BUTTON: Vec2 = vec2(62.0, 22.0);
 /// Radius of the light.
@@ -19,14 +19,14 @@ const LIGHT: f32 = 8.0;
 /// Draws a device; returns a requested change of the rig.
 pub(super) fn row_ui(
     ui: &mut Ui,
-    live: &Live,
+    live: &LiveState,
     state: &mut DevicesState,
     place: usize,
     refused: Option<&str>,
-) -> Option<Change> {
+) -> Option<RigEdit> {
     let entry = live.roster.get(place)?;
     let health = live.healths.devices.get(place)?;
-    let (what, colour, words) = standing_words(health);
+    let (what, colour, words) = standing_text(health);
     ui.horizontal(|ui| {
         sign_ui(ui, what, 5.0, colour);
         ui.label(RichText::new(role_name(entry.role)).font(theme::strong(14.0))).on_hover_text(&entry.driver);
@@ -34,7 +34,7 @@ pub(super) fn row_ui(
     });
     ui.add(Label::new(small(words)).wrap());
     let report = entry.view.report();
-    if let Some(words) = report.identity.as_ref().and_then(identity_words) {
+    if let Some(words) = report.identity.as_ref().and_then(identity_text) {
         ui.add(Label::new(small(words)).wrap());
     }
     if let Some(trouble) = report.trouble {
@@ -50,13 +50,13 @@ pub(super) fn row_ui(
 }
 
 /// Name and serial number; `None` if the device reports neither.
-pub(super) fn identity_words(identity: &Identity) -> Option<String> {
-    let Identity { product, serial, firmware } = identity;
+pub(super) fn identity_text(identity: &DeviceIdentity) -> Option<String> {
+    let DeviceIdentity { product, serial, firmware } = identity;
     (!product.is_empty()).then(|| text::devices::identity(product, serial, firmware))
 }
 
 /// The light that shows which device is being moved.
-fn light_ui(ui: &mut Ui, live: &Live, entry: &RosterEntry, place: usize) {
+fn light_ui(ui: &mut Ui, live: &LiveState, entry: &RosterEntry, place: usize) {
     let Some(part) = entry.part else { return };
     let motion = live.activity.lit(place).map(|channel| text::devices::motion(part.kind(), channel));
     let (rect, light) = ui.allocate_exact_size(Vec2::splat(LIGHT * 2.4), Sense::hover());
@@ -74,10 +74,10 @@ fn light_ui(ui: &mut Ui, live: &Live, entry: &RosterEntry, place: usize) {
     }
 }
 
-fn trouble_ui(ui: &mut Ui, entry: &RosterEntry, trouble: &Trouble) {
+fn trouble_ui(ui: &mut Ui, entry: &RosterEntry, trouble: &DeviceError) {
     ui.add(Label::new(trouble.to_string()).wrap());
     ui.add(Label::new(small(trouble.cure())).wrap());
-    if let (Trouble::DeviceFault { .. }, Some(clear)) = (trouble, &entry.clear_faults) {
+    if let (DeviceError::DeviceFault { .. }, Some(clear)) = (trouble, &entry.clear_faults) {
         let button = ui.add(Button::new(small(text::devices::CLEAR_FAULTS.get())).min_size(vec2(84.0, 22.0)));
         button.widget_info(|| {
             egui::WidgetInfo::labeled(egui::Role::Button, true, text::devices::clear_faults_of(&role_name(entry.role)))
@@ -97,9 +97,9 @@ fn button_ui(ui: &mut Ui, entry: &RosterEntry, words: &str, hover: &str, enabled
     button.on_hover_text(hover).clicked()
 }
 
-fn buttons_ui(ui: &mut Ui, live: &Live, state: &mut DevicesState, place: usize) {
+fn buttons_ui(ui: &mut Ui, live: &LiveState, state: &mut DevicesState, place: usize) {
     let entry = &live.roster[place];
-    let wanted = live.healths.devices.get(place).is_some_and(|health| health.standing != Standing::Closed);
+    let wanted = live.healths.devices.get(place).is_some_and(|health| health.standing != ConnectionState::Closed);
     ui.horizontal_wrapped(|ui| {
         if let Some(part) = entry.part {
             if button_ui(ui, entry, text::devices::TEST.get(), text::devices::TEST_HOVER.get(), !state.is_testing()) {
@@ -119,18 +119,18 @@ fn buttons_ui(ui: &mut Ui, live: &Live, state: &mut DevicesState, place: usize) 
     });
 }
 
-fn standing_words(health: &Health) -> (Sign, Color32, String) {
+fn standing_text(health: &Health) -> (Sign, Color32, String) {
     let figures = || {
         let Health { rate_hz, lost, damaged, refused, outages, longest_outage_s, .. } = *health;
         let delivery = text::devices::delivery(rate_hz, lost, damaged, refused);
         if outages > 0 { delivery + &text::devices::outages(outages, longest_outage_s) } else { delivery }
     };
     match health.standing {
-        Standing::Connected => (Sign::Disc, theme::now().engaged, figures()),
-        Standing::Opening => (Sign::Ring, theme::now().text, text::devices::OPENING.get().to_owned()),
-        Standing::Closed => (Sign::Ring, theme::now().text_weak, text::devices::DISCONNECTED.get().to_owned()),
-        Standing::Lost(loss) => {
-            (Sign::Triangle, theme::now().alarm_medium, text::devices::lost(loss_words(loss), &figures()))
+        ConnectionState::Connected => (Sign::Disc, theme::now().engaged, figures()),
+        ConnectionState::Opening => (Sign::Ring, theme::now().text, text::devices::OPENING.get().to_owned()),
+        ConnectionState::Closed => (Sign::Ring, theme::now().text_weak, text::devices::DISCONNECTED.get().to_owned()),
+        ConnectionState::Lost(loss) => {
+            (Sign::Triangle, theme::now().alarm_medium, text::devices::lost(loss_text(loss), &figures()))
         }
     }
 }

@@ -1,13 +1,13 @@
 //! A hand that repeatedly releases the handle, to show the purpose of the governor.
 
 use nalgebra::Vector3;
-use nima_core::safety::Why;
+use nima_core::safety::TransitionCause;
 use nima_machine::{
     messages::{Command, LoopState},
     rig::Side,
 };
 
-use crate::console::{live::Live, outbox::Outbox};
+use crate::console::{live::LiveState, outbox::Outbox};
 
 /// The hand releases the handle when it presses at least this hard, N, and grips it again after this time, s.
 const LET_GO_N: f64 = 1.5;
@@ -43,7 +43,7 @@ impl LettingGo {
     }
 
     /// Opens the hand when it presses, closes it a while later, and engages again if the governor ended the engagement.
-    pub(super) fn play(&mut self, live: &Live, outbox: &mut Outbox) {
+    pub(super) fn play(&mut self, live: &LiveState, outbox: &mut Outbox) {
         let Some(tick) = live.first_tick() else { return };
         let for_s = tick.t_s - *self.since_s.get_or_insert(tick.t_s);
         let Some(from_m) = self.from_m else {
@@ -61,10 +61,10 @@ impl LettingGo {
         };
         if tick.state == LoopState::Engaged {
             // After the end of the engagement the hand's position is not on the same scale.
-            self.travel_m = self.travel_m.map(|most_m| most_m.max((tick.leader_m - from_m).norm()));
+            self.travel_m = self.travel_m.map(|max_m| max_m.max((tick.leader_m - from_m).norm()));
         }
         // An engagement that ended for another reason stays ended.
-        let ended = live.changes[Side::Right.index()].is_some_and(|change| change.why == Why::Absent);
+        let ended = live.changes[Side::Right.index()].is_some_and(|change| change.why == TransitionCause::Absent);
         self.gone |= tick.state == LoopState::Idle && ended;
         if for_s > OPEN_S {
             self.close(tick.t_s, outbox);

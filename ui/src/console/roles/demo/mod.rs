@@ -1,8 +1,8 @@
 //! The demonstration: a script that shows the modes at a long and a short delay, explains them, and invites the audience to
 //! try. Only for simulated and emulated rigs; afterwards mode and delay are restored.
 
+mod chapter_time;
 mod letting_go;
-mod pace;
 mod recovery;
 mod script;
 mod state;
@@ -18,12 +18,11 @@ use self::{
 };
 use super::Panels;
 use crate::console::{
-    desk,
-    live::Live,
+    live::LiveState,
     outbox::Outbox,
-    panels::{force_space_ui, forces_ui, horizon_ui},
+    panels::{force_space_ui, force_traces_ui, horizon_ui},
     scene3d::scene_ui,
-    text, theme,
+    text, theme, tiles,
     widgets::{bar, card, small},
 };
 
@@ -32,9 +31,9 @@ pub use self::state::DemoState;
 /// Below this width the chapters need two rows.
 const ONE_ROW: f32 = 1310.0;
 /// Below this height the force-space plot is left out.
-const LEAST_SPACE: f32 = 190.0;
+const MIN_SPACE: f32 = 190.0;
 
-pub(super) fn demo_ui(ui: &mut Ui, live: &mut Live, panels: &mut Panels, outbox: &mut Outbox) {
+pub(super) fn demo_ui(ui: &mut Ui, live: &mut LiveState, panels: &mut Panels, outbox: &mut Outbox) {
     if may_play(live) && !live.is_shown_only() {
         panels.demo.play(live, panels.scene.is_led(), outbox);
     }
@@ -47,11 +46,11 @@ pub(super) fn demo_ui(ui: &mut Ui, live: &mut Live, panels: &mut Panels, outbox:
         caption.show(ui, |ui| caption_ui(ui, live, &mut panels.demo));
     }
     Panel::right("figures").exact_size(348.0).resizable(false).frame(side).show(ui, |ui| {
-        let panel = desk::Panel::Horizon;
+        let panel = tiles::Panel::Horizon;
         card(ui, panel.title(), panel.meaning(), |ui| horizon_ui(ui, live, outbox));
         let Panels { forces, space, .. } = panels;
         let room = vec2(ui.available_width(), ui.available_height().min(380.0));
-        if room.y < LEAST_SPACE {
+        if room.y < MIN_SPACE {
             return;
         }
         ui.allocate_ui(room, |ui| force_space_ui(ui, live, forces.side(), space, forces.cursor_at_s(live)));
@@ -59,14 +58,14 @@ pub(super) fn demo_ui(ui: &mut Ui, live: &mut Live, panels: &mut Panels, outbox:
     CentralPanel::no_frame().show(ui, |ui| {
         let frame = Frame::new().inner_margin(Margin::symmetric(12, 8));
         Panel::bottom("trace").exact_size(200.0).resizable(false).frame(frame).show(ui, |ui| {
-            forces_ui(ui, live, &mut panels.forces, &[2]);
+            force_traces_ui(ui, live, &mut panels.forces, &[2]);
         });
         scene_ui(ui, live, &mut panels.scene, outbox);
     });
 }
 
 /// The steps, the current text, and the progress.
-fn caption_ui(ui: &mut Ui, live: &Live, demo: &mut DemoState) {
+fn caption_ui(ui: &mut Ui, live: &LiveState, demo: &mut DemoState) {
     let plays = may_play(live);
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = vec2(6.0, 6.0);

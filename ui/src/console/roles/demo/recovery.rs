@@ -4,13 +4,13 @@
 //! no hand feels a force and nothing moves. On every other rig a person does that. A stop is not a fault: a person requested
 //! it, and only a person ends it, even if it was pressed while a fault was latched.
 
-use nima_core::safety::Why;
+use nima_core::safety::TransitionCause;
 use nima_machine::messages::{Command, Fault, LoopState};
 
-use super::pace::PAUSE_S;
+use super::chapter_time::PAUSE_S;
 use crate::{
-    console::{live::Live, outbox::Outbox, text},
-    words::Remedy as _,
+    console::{live::LiveState, outbox::Outbox, text},
+    report_text::Remedy as _,
 };
 
 /// Time in which the cause is explained, s: about 30 words, read at 4 words per second.
@@ -22,7 +22,7 @@ const ARRIVES_S: f64 = 0.5;
 
 /// Reason why the loop ended the engagement.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Trouble {
+enum EngagementEnd {
     Fault(Fault),
     /// The governor found no hand at the handle.
     HandGone,
@@ -30,16 +30,21 @@ enum Trouble {
     Late,
 }
 
-impl Trouble {
-    fn of(live: &Live) -> Option<Self> {
+impl EngagementEnd {
+    fn of(live: &LiveState) -> Option<Self> {
         match live.state() {
             LoopState::Faulted(fault) => Some(Self::Fault(live.first_fault().unwrap_or(fault))),
             LoopState::Idle => live.sides().find_map(|side| {
                 live.tick_of(side).filter(|tick| tick.state == LoopState::Idle)?;
                 match live.changes[side.index()]?.why {
-                    Why::Absent => Some(Self::HandGone),
-                    Why::Late => Some(Self::Late),
-                    Why::Asked | Why::Connected | Why::Disconnected | Why::Agreed | Why::Clutch | Why::Fault => None,
+                    TransitionCause::Absent => Some(Self::HandGone),
+                    TransitionCause::Late => Some(Self::Late),
+                    TransitionCause::Asked
+                    | TransitionCause::Connected
+                    | TransitionCause::Disconnected
+                    | TransitionCause::Agreed
+                    | TransitionCause::Clutch
+                    | TransitionCause::Fault => None,
                 }
             }),
             LoopState::Disconnected
@@ -54,7 +59,7 @@ impl Trouble {
 /// Recovery from the end of an engagement.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Recovery {
-    trouble: Trouble,
+    trouble: EngagementEnd,
     /// Time for which the cause has been explained to a viewer, s; a pause between frames does not count.
     explained_s: f64,
     /// The last requested command, and the time of its next repetition, s of that time.
@@ -63,8 +68,8 @@ pub(super) struct Recovery {
 
 impl Recovery {
     /// `None` if the loop has no problem.
-    pub(super) fn of(live: &Live) -> Option<Self> {
-        Trouble::of(live).map(|trouble| Self { trouble, explained_s: 0.0, asked: None })
+    pub(super) fn of(live: &LiveState) -> Option<Self> {
+        EngagementEnd::of(live).map(|trouble| Self { trouble, explained_s: 0.0, asked: None })
     }
 
     /// Continues after this time, s.
@@ -82,9 +87,9 @@ impl Recovery {
     pub(super) fn words(&self) -> String {
         let left_s = (EXPLAINED_S - self.explained_s).ceil();
         match self.trouble {
-            Trouble::Fault(fault) => text::roles::recovers_from_fault(fault.cause(), left_s),
-            Trouble::HandGone => text::roles::recovers(text::roles::HAND_GONE.get(), left_s),
-            Trouble::Late => text::roles::recovers(text::roles::NOT_ENGAGED_IN_TIME.get(), left_s),
+            EngagementEnd::Fault(fault) => text::roles::recovers_from_fault(fault.cause(), left_s),
+            EngagementEnd::HandGone => text::roles::recovers(text::roles::HAND_GONE.get(), left_s),
+            EngagementEnd::Late => text::roles::recovers(text::roles::NOT_ENGAGED_IN_TIME.get(), left_s),
         }
     }
 }
@@ -99,7 +104,7 @@ pub(super) struct PersonsStop {
 
 impl PersonsStop {
     /// Checks the person's commands up to this time, s.
-    pub(super) fn notice(&mut self, live: &Live, now_s: f64, outbox: &Outbox) {
+    pub(super) fn notice(&mut self, live: &LiveState, now_s: f64, outbox: &Outbox) {
         let stops = outbox.stops();
         if self.counted.replace(stops).is_some_and(|before| before != stops) {
             self.at_s = Some(now_s);

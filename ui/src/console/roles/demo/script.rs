@@ -6,7 +6,7 @@ use crate::{console::text, language::Text};
 
 /// One step of the script.
 #[derive(Debug)]
-pub(super) struct Step {
+pub(super) struct ScriptStep {
     pub(super) name: Text,
     /// Explanation.
     pub(super) words: Text,
@@ -14,21 +14,21 @@ pub(super) struct Step {
     /// Delay of the link, s.
     pub(super) delay_s: f64,
     /// Whether the hand releases the handle while it presses, and if so, with or without the governor.
-    pub(super) lets_go: Option<Governor>,
+    pub(super) lets_go: Option<GovernorAction>,
     /// Duration, s.
     pub(super) seconds: f64,
 }
 
 /// The governor while the hand releases the handle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Governor {
+pub(super) enum GovernorAction {
     Watches,
     /// Off, to show its purpose.
     LeftOut,
 }
 
-pub(super) const SCRIPT: [Step; 9] = [
-    Step {
+pub(super) const SCRIPT: [ScriptStep; 9] = [
+    ScriptStep {
         name: text::roles::DEMO_START,
         words: text::roles::DEMO_START_CAPTION,
         mode: Mode::Best,
@@ -36,7 +36,7 @@ pub(super) const SCRIPT: [Step; 9] = [
         lets_go: None,
         seconds: 14.0,
     },
-    Step {
+    ScriptStep {
         name: text::roles::DEMO_DIRECT,
         words: text::roles::DEMO_DIRECT_CAPTION,
         mode: Mode::Dfr,
@@ -44,7 +44,7 @@ pub(super) const SCRIPT: [Step; 9] = [
         lets_go: None,
         seconds: 14.0,
     },
-    Step {
+    ScriptStep {
         name: text::roles::DEMO_LINEAR,
         words: text::roles::DEMO_LINEAR_CAPTION,
         mode: Mode::Linear,
@@ -52,7 +52,7 @@ pub(super) const SCRIPT: [Step; 9] = [
         lets_go: None,
         seconds: 14.0,
     },
-    Step {
+    ScriptStep {
         name: text::roles::DEMO_LITERAL,
         words: text::roles::DEMO_LITERAL_CAPTION,
         mode: Mode::Literal,
@@ -60,7 +60,7 @@ pub(super) const SCRIPT: [Step; 9] = [
         lets_go: None,
         seconds: 14.0,
     },
-    Step {
+    ScriptStep {
         name: text::roles::DEMO_ANCHORED,
         words: text::roles::DEMO_ANCHORED_CAPTION,
         mode: Mode::Anchored,
@@ -68,7 +68,7 @@ pub(super) const SCRIPT: [Step; 9] = [
         lets_go: None,
         seconds: 14.0,
     },
-    Step {
+    ScriptStep {
         name: text::roles::DEMO_MATCHED,
         words: text::roles::DEMO_MATCHED_CAPTION,
         mode: Mode::Matched,
@@ -76,23 +76,23 @@ pub(super) const SCRIPT: [Step; 9] = [
         lets_go: None,
         seconds: 14.0,
     },
-    Step {
+    ScriptStep {
         name: text::roles::DEMO_LET_GO,
         words: text::roles::DEMO_LET_GO_CAPTION,
         mode: Mode::Dfr,
         delay_s: 0.3,
-        lets_go: Some(Governor::LeftOut),
+        lets_go: Some(GovernorAction::LeftOut),
         seconds: 16.0,
     },
-    Step {
+    ScriptStep {
         name: text::roles::DEMO_GOVERNOR,
         words: text::roles::DEMO_GOVERNOR_CAPTION,
         mode: Mode::Dfr,
         delay_s: 0.3,
-        lets_go: Some(Governor::Watches),
+        lets_go: Some(GovernorAction::Watches),
         seconds: 16.0,
     },
-    Step {
+    ScriptStep {
         name: text::roles::DEMO_YOUR_TURN,
         words: text::roles::DEMO_YOUR_TURN_CAPTION,
         mode: Mode::Best,

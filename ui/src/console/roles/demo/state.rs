@@ -4,24 +4,24 @@ use nima_core::impedance::Mode;
 use nima_machine::messages::{Command, LoopState};
 
 use super::{
+    chapter_time::ChapterPace,
     letting_go::LettingGo,
-    pace::Pace,
     recovery::{PersonsStop, Recovery},
-    script::{Governor, SCRIPT, Step},
+    script::{GovernorAction, SCRIPT, ScriptStep},
 };
 use crate::{
-    console::{live::Live, outbox::Outbox, text},
-    words::Remedy as _,
+    console::{live::LiveState, outbox::Outbox, text},
+    report_text::Remedy as _,
 };
 
 #[derive(Clone, Copy, Debug, Default)]
 pub struct DemoState {
     pub(super) step: usize,
     pub(super) held: bool,
-    pace: Pace,
+    pace: ChapterPace,
     /// The last step whose settings were sent to the loop.
-    told: Option<usize>,
-    before: Option<Before>,
+    report: Option<usize>,
+    before: Option<PreviousSettings>,
     letting_go: LettingGo,
     recovery: Option<Recovery>,
     stop: PersonsStop,
@@ -29,7 +29,7 @@ pub struct DemoState {
 
 /// Settings before the demonstration.
 #[derive(Clone, Copy, Debug)]
-struct Before {
+struct PreviousSettings {
     mode: Mode,
     delay_s: f64,
     compares: bool,
@@ -42,7 +42,7 @@ impl DemoState {
         let Self { mut letting_go, before, .. } = *self;
         self.begin_anew();
         letting_go.close(0.0, outbox);
-        if let Some(Before { mode, delay_s, compares, static_hold }) = before {
+        if let Some(PreviousSettings { mode, delay_s, compares, static_hold }) = before {
             outbox.push(Command::SetGovernor(true));
             outbox.push(Command::SetStaticHold(static_hold));
             outbox.push(Command::SetMode(mode));
@@ -58,7 +58,7 @@ impl DemoState {
 
     /// Advances to the newest tick. Paused while a visitor drives the instrument, by the pause button, or while the loop does
     /// not run.
-    pub(super) fn play(&mut self, live: &Live, leading: bool, outbox: &mut Outbox) {
+    pub(super) fn play(&mut self, live: &LiveState, leading: bool, outbox: &mut Outbox) {
         let Some(tick) = live.first_tick() else { return };
         let passed_s = self.pace.passed_s(tick.t_s);
         self.stop.notice(live, tick.t_s, outbox);
@@ -83,38 +83,38 @@ impl DemoState {
             self.pace.go_on(SCRIPT[self.step].seconds);
             self.step = possible.unwrap_or_default();
         }
-        if self.told != Some(self.step) {
-            self.tell(live, before, outbox);
+        if self.report != Some(self.step) {
+            self.notify(live, before, outbox);
         }
     }
 
     /// Starts the demonstration, if it has not started; returns the previous settings.
-    fn enter(&mut self, live: &Live, outbox: &mut Outbox) -> Before {
+    fn enter(&mut self, live: &LiveState, outbox: &mut Outbox) -> PreviousSettings {
         *self.before.get_or_insert_with(|| {
             outbox.push(Command::Compare(true));
             let static_hold = live.gate_settings().static_hold;
-            Before { mode: live.mode(), delay_s: live.delay_s(), compares: live.compares(), static_hold }
+            PreviousSettings { mode: live.mode(), delay_s: live.delay_s(), compares: live.compares(), static_hold }
         })
     }
 
     /// Sends the settings of the chapter to the loop.
-    fn tell(&mut self, live: &Live, before: Before, outbox: &mut Outbox) {
-        let Step { mode, delay_s, lets_go, .. } = SCRIPT[self.step];
+    fn notify(&mut self, live: &LiveState, before: PreviousSettings, outbox: &mut Outbox) {
+        let ScriptStep { mode, delay_s, lets_go, .. } = SCRIPT[self.step];
         self.letting_go.close(live.first_tick().map_or(0.0, |tick| tick.t_s), outbox);
         self.letting_go.travel_m = None;
         // The previous chapter switched the governor off, or the next one needs it.
         if may_let_go(live) {
-            outbox.push(Command::SetGovernor(lets_go != Some(Governor::LeftOut)));
+            outbox.push(Command::SetGovernor(lets_go != Some(GovernorAction::LeftOut)));
         }
         // A force that fades at standstill would leave nothing to release.
         outbox.push(Command::SetStaticHold(lets_go.is_some() || before.static_hold));
         outbox.push(Command::SetMode(mode));
         outbox.push(Command::SetDelay(delay_s));
-        self.told = Some(self.step);
+        self.report = Some(self.step);
     }
 
     /// Recovers from a problem that occurred while the demonstration ran. A loop that was already in a fault is left alone.
-    fn recover(&mut self, live: &Live, passed_s: f64, outbox: &mut Outbox) {
+    fn recover(&mut self, live: &LiveState, passed_s: f64, outbox: &mut Outbox) {
         let state = live.state();
         if state.is_latched() {
             // The loop has closed the hand.
@@ -130,7 +130,7 @@ impl DemoState {
             self.recovery = Recovery::of(live);
             if self.recovery.is_some() {
                 self.go_to(self.step);
-                self.told = None;
+                self.report = None;
             }
         }
         if let Some(recovery) = &mut self.recovery {
@@ -155,7 +155,7 @@ impl DemoState {
     }
 
     /// Explanation of the chapter, or the reason why the demonstration waits, with the remedy.
-    pub(super) fn caption(&self, live: &Live) -> String {
+    pub(super) fn caption(&self, live: &LiveState) -> String {
         let chapter = || SCRIPT[self.step].words.get().to_owned();
         if !may_play(live) {
             return text::roles::NOTE_REAL_RIG.get().to_owned();
@@ -182,21 +182,21 @@ impl DemoState {
 }
 
 /// Whether the rig is simulated or emulated, so that no one can be hurt. An arm at another machine may be real.
-pub(super) fn may_play(live: &Live) -> bool {
+pub(super) fn may_play(live: &LiveState) -> bool {
     live.rig.is_harmless() && live.line.is_none()
 }
 
 /// Whether the hand is simulated and may therefore release the handle.
-fn may_let_go(live: &Live) -> bool {
+fn may_let_go(live: &LiveState) -> bool {
     live.rig.has_simulated_hand()
 }
 
 /// Whether the demonstration may leave a fault and engage: the rig has no device, here or at another machine.
-fn may_recover(live: &Live) -> bool {
+fn may_recover(live: &LiveState) -> bool {
     may_play(live) && live.rig.devices.is_none() && live.rig.desk.is_none()
 }
 
 /// Whether this chapter can be shown on the rig.
-pub(super) fn may_show(live: &Live, step: &Step) -> bool {
+pub(super) fn may_show(live: &LiveState, step: &ScriptStep) -> bool {
     may_play(live) && (step.lets_go.is_none() || may_let_go(live))
 }

@@ -1,21 +1,21 @@
 //! The demonstration on synthetic ticks: its time, its faults, and who may end a stop.
 
-use nima_core::safety::Why;
+use nima_core::safety::TransitionCause;
 use nima_machine::{
     config::RigConfig,
     messages::{Command, Event, Fault, LoopState, Tick},
     rig::Side,
 };
-use nima_simulation::{Plan, run_virtual, scene::Scene};
+use nima_simulation::{SimulationPlan, run_virtual, scene::Scene};
 
 use super::{DemoState, script::SCRIPT};
-use crate::console::{live::Live, outbox::Outbox};
+use crate::console::{live::LiveState, outbox::Outbox};
 
 const FAULT: Fault = Fault::SourceSilent;
 const RATE_HZ: f64 = 30.0;
 
 struct Show {
-    live: Live,
+    live: LiveState,
     demo: DemoState,
     outbox: Outbox,
     tick: Tick,
@@ -27,7 +27,8 @@ impl Show {
         let rig = RigConfig::load(rig).unwrap();
         let scene = Scene::load("peg_transfer").unwrap();
         let simulated = RigConfig::load("simulated").unwrap();
-        let plan = Plan { rig: simulated, scene: scene.clone(), calibrations: Default::default(), engage: false };
+        let plan =
+            SimulationPlan { rig: simulated, scene: scene.clone(), calibrations: Default::default(), engage: false };
         let mut first = None;
         run_virtual(&plan, 0.01, |tick| {
             first.get_or_insert(*tick);
@@ -36,17 +37,17 @@ impl Show {
         .unwrap();
         let tick = Tick { t_s: 0.0, ..first.unwrap() };
         let mut show = Self {
-            live: Live::new(rig, scene),
+            live: LiveState::new(rig, scene),
             demo: DemoState::default(),
             outbox: Outbox::default(),
             tick,
             rate_hz: RATE_HZ,
         };
-        show.enters(LoopState::Engaged, Why::Agreed);
+        show.enters(LoopState::Engaged, TransitionCause::Agreed);
         show
     }
 
-    fn enters(&mut self, to: LoopState, why: Why) {
+    fn enters(&mut self, to: LoopState, why: TransitionCause) {
         let side = Side::Right;
         let t_s = self.tick.t_s;
         let from = self.tick.state;
@@ -81,11 +82,11 @@ impl Show {
                 asked.push((self.tick.t_s - began_s, command));
                 match (command, self.tick.state) {
                     (Command::ReleaseStop, LoopState::Faulted(_) | LoopState::Stopped) => {
-                        self.enters(LoopState::Idle, Why::Asked);
+                        self.enters(LoopState::Idle, TransitionCause::Asked);
                     }
                     (Command::Engage, LoopState::Idle) => {
-                        self.enters(LoopState::Ready, Why::Asked);
-                        self.enters(LoopState::Engaged, Why::Agreed);
+                        self.enters(LoopState::Ready, TransitionCause::Asked);
+                        self.enters(LoopState::Engaged, TransitionCause::Agreed);
                     }
                     _ => {}
                 }
@@ -102,17 +103,17 @@ impl Show {
         self.outbox.push(Command::Stop);
         assert_eq!(self.frame(), [Command::Stop], "nothing goes with a stop");
         if !self.tick.state.is_latched() {
-            self.enters(LoopState::Stopped, Why::Asked);
+            self.enters(LoopState::Stopped, TransitionCause::Asked);
         }
     }
 
     /// A person presses Release stop, then Engage.
     fn person_engages(&mut self) {
         self.frames(1.0);
-        self.enters(LoopState::Idle, Why::Asked);
+        self.enters(LoopState::Idle, TransitionCause::Asked);
         assert!(resumes(&self.frames(30.0)).is_empty(), "it does not engage for a person who has only released a stop");
-        self.enters(LoopState::Ready, Why::Asked);
-        self.enters(LoopState::Engaged, Why::Agreed);
+        self.enters(LoopState::Ready, TransitionCause::Asked);
+        self.enters(LoopState::Engaged, TransitionCause::Agreed);
     }
 }
 
@@ -160,7 +161,7 @@ fn a_fault_in_each_chapter_is_explained_and_the_chapter_restarts() {
         show.demo.go_to(i);
         show.frames(5.0);
         assert!(show.demo.progress() > 0.2 && show.caption().starts_with(step.words.get()), "{}", step.name);
-        show.enters(LoopState::Faulted(FAULT), Why::Fault);
+        show.enters(LoopState::Faulted(FAULT), TransitionCause::Fault);
         show.frame();
         assert!(show.caption().contains("The rig sent no valid data for 20 ms"), "{}", show.caption());
         assert!(show.caption().contains("the chapter restarts in 8 s"), "{}", show.caption());
@@ -182,13 +183,13 @@ fn a_fault_in_each_chapter_is_explained_and_the_chapter_restarts() {
 fn a_cause_that_is_still_present_is_asked_about_again_and_a_second_fault_is_explained_too() {
     let mut show = Show::of("simulated");
     show.frames(3.0);
-    show.enters(LoopState::Faulted(FAULT), Why::Fault);
+    show.enters(LoopState::Faulted(FAULT), TransitionCause::Fault);
     let refused = resumes(&show.frames(19.0));
     assert_eq!(refused, [Command::ReleaseStop; 6], "every other second from the eighth on");
     assert!(show.caption().contains("as soon as the loop permits it"), "{}", show.caption());
     show.obeyed(3.0);
     assert_eq!(show.tick.state, LoopState::Engaged);
-    show.enters(LoopState::Faulted(Fault::SamplesLost), Why::Fault);
+    show.enters(LoopState::Faulted(Fault::SamplesLost), TransitionCause::Fault);
     show.frame();
     assert!(show.caption().contains("the chapter restarts in 8 s"), "{}", show.caption());
 }
@@ -202,7 +203,7 @@ fn a_persons_stop_stays() {
     assert!(show.caption().contains("waits until you press Release stop"), "{}", show.caption());
     show.person_engages();
     show.frames(3.0);
-    show.enters(LoopState::Faulted(FAULT), Why::Fault);
+    show.enters(LoopState::Faulted(FAULT), TransitionCause::Fault);
     assert_eq!(resumes(&show.frames(8.1)), [Command::ReleaseStop], "a fault after that is one again");
 }
 
@@ -211,14 +212,14 @@ fn a_stop_under_a_fault_stays_although_the_loop_still_tells_the_fault() {
     for before_s in [0.1, 4.0, 7.9, 9.0] {
         let mut show = Show::of("simulated");
         show.frames(3.0);
-        show.enters(LoopState::Faulted(FAULT), Why::Fault);
+        show.enters(LoopState::Faulted(FAULT), TransitionCause::Fault);
         show.frames(before_s);
         show.person_stops();
         assert!(resumes(&show.frames(60.0)).is_empty(), "{before_s} s");
         assert!(show.caption().contains("Stop was pressed"), "{}", show.caption());
         show.person_engages();
         show.frames(3.0);
-        show.enters(LoopState::Faulted(FAULT), Why::Fault);
+        show.enters(LoopState::Faulted(FAULT), TransitionCause::Fault);
         assert_eq!(resumes(&show.frames(8.1)), [Command::ReleaseStop]);
     }
 }
@@ -230,7 +231,7 @@ fn a_stop_in_the_moment_of_the_fault_stays() {
     show.outbox.push(Command::Stop);
     show.frame();
     show.frame();
-    show.enters(LoopState::Faulted(FAULT), Why::Fault);
+    show.enters(LoopState::Faulted(FAULT), TransitionCause::Fault);
     assert!(resumes(&show.frames(60.0)).is_empty());
 }
 
@@ -238,9 +239,11 @@ fn a_stop_in_the_moment_of_the_fault_stays() {
 fn what_a_person_put_to_rest_rests_and_what_the_governor_ended_restarts() {
     let mut show = Show::of("simulated");
     show.frames(3.0);
-    show.enters(LoopState::Idle, Why::Asked);
+    show.enters(LoopState::Idle, TransitionCause::Asked);
     assert!(resumes(&show.frames(60.0)).is_empty());
-    for (why, cause) in [(Why::Absent, "no hand at the handle"), (Why::Late, "did not engage in time")] {
+    for (why, cause) in
+        [(TransitionCause::Absent, "no hand at the handle"), (TransitionCause::Late, "did not engage in time")]
+    {
         let mut show = Show::of("simulated");
         show.frames(3.0);
         show.enters(LoopState::Idle, why);
@@ -256,16 +259,16 @@ fn no_other_rig_and_no_fault_from_before_is_released() {
     for rig in ["emulated", "desk", "haply-desk", "paper"] {
         let mut show = Show::of(rig);
         show.frames(3.0);
-        show.enters(LoopState::Faulted(FAULT), Why::Fault);
+        show.enters(LoopState::Faulted(FAULT), TransitionCause::Fault);
         assert!(resumes(&show.frames(60.0)).is_empty(), "{rig}");
     }
     let mut show = Show::of("emulated");
     show.frames(3.0);
-    show.enters(LoopState::Faulted(FAULT), Why::Fault);
+    show.enters(LoopState::Faulted(FAULT), TransitionCause::Fault);
     show.frame();
     assert!(show.caption().contains("20 ms") && show.caption().contains("Press Release stop"), "{}", show.caption());
     let mut show = Show::of("simulated");
-    show.enters(LoopState::Faulted(FAULT), Why::Fault);
+    show.enters(LoopState::Faulted(FAULT), TransitionCause::Fault);
     assert!(show.frames(60.0).is_empty(), "a technician may be looking at it");
 }
 

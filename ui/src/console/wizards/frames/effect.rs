@@ -3,8 +3,8 @@
 use egui::{Align2, Color32, Painter, Pos2, Sense, Shape, Stroke, Ui, WidgetInfo, vec2};
 use nalgebra::{Isometry3, Vector3};
 
-use super::numbers::Effect;
-use crate::console::{text::frames as texts, theme, widgets::fitting, wizards::pictures::on_paper};
+use super::numbers::FrameEffect;
+use crate::console::{text::frames as texts, theme, widgets::fitting, wizards::drawings::on_paper};
 
 const HEIGHT: f32 = 250.0;
 /// Length of an axis, in half heights.
@@ -12,11 +12,11 @@ const AXIS: f64 = 0.62;
 /// Distance between the drawn points before and after, in half heights; smaller changes than this length are drawn to its
 /// scale, m.
 const APART: f64 = 0.55;
-const LEAST_M: f64 = 0.2e-3;
+const MIN_M: f64 = 0.2e-3;
 /// Lengths of the scale, m.
 const SCALES_M: [f64; 8] = [1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3, 1e-2, 1e-1];
 
-pub(super) fn effect_picture(ui: &mut Ui, effect: &Effect) {
+pub(super) fn effect_image(ui: &mut Ui, effect: &FrameEffect) {
     let size = vec2(ui.available_width().min(420.0), HEIGHT);
     let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
     let words = texts::effect(effect.change());
@@ -24,8 +24,8 @@ pub(super) fn effect_picture(ui: &mut Ui, effect: &Effect) {
     let painter = ui.painter_at(rect);
     painter.rect_filled(rect, theme::CORNER, theme::now().groove);
     let half = f64::from(rect.height()) * 0.5;
-    let way_m = effect.change().map_or(0.0, |[way_m, _]| way_m);
-    let points_per_m = APART * half / way_m.max(LEAST_M);
+    let travel_m = effect.change().map_or(0.0, |[travel_m, _]| travel_m);
+    let points_per_m = APART * half / travel_m.max(MIN_M);
     // The new frame is in the middle, because it is known best.
     let centre = rect.center() + vec2(0.0, 18.0);
     let middle_m = effect.after.translation.vector;

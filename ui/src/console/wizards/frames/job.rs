@@ -5,40 +5,40 @@ use std::{fmt::Debug, path::PathBuf, time::SystemTime};
 use nima_core::calibration::{
     Judgement, RecordHead, Verdict,
     frames::{
-        Calibration, Cause, Coverage, Found, FrameError, FrameRecord, FrameReport, FrameSample, FrameSession,
-        HandEyeFound, Phase, RigChange, SensorMountFound, Serials, Sizes, Source, TableFound, TipFound, TrocarFound,
-        ViewFound,
+        Calibration, CalibrationResult, CalibrationSource, FrameCause, FrameCoverage, FrameError, FramePhase,
+        FrameRecord, FrameReport, FrameSample, FrameSession, HandEyeResult, RigChange, SensorMountResult, Serials,
+        Sizes, TableResult, TipResult, TrocarResult, ViewResult,
     },
 };
-use nima_recording::store::{self, Age, Loaded, Store, StoreError};
+use nima_recording::store::{self, CalibrationAge, LoadedRecord, Store, StoreError};
 
-use super::kind::Kind;
+use super::kind::FrameKind;
 use crate::language::{self, Language};
 
 /// A session of any frame calibration.
-pub(super) trait Job: Debug {
-    fn needs(&self) -> Vec<Source>;
-    fn step(&mut self, sample: &FrameSample, t_s: f64) -> Phase;
-    fn coverage(&self) -> Coverage;
+pub(super) trait FrameJob: Debug {
+    fn needs(&self) -> Vec<CalibrationSource>;
+    fn step(&mut self, sample: &FrameSample, t_s: f64) -> FramePhase;
+    fn coverage(&self) -> FrameCoverage;
     fn samples(&self) -> &[FrameSample];
     fn undo(&mut self);
     fn report(&self) -> Result<Outcome, FrameError>;
 }
 
-impl<C> Job for FrameSession<C>
+impl<C> FrameJob for FrameSession<C>
 where
     C: Calibration + Debug,
-    Outcome: From<FrameReport<C::Found>>,
+    Outcome: From<FrameReport<C::Solution>>,
 {
-    fn needs(&self) -> Vec<Source> {
+    fn needs(&self) -> Vec<CalibrationSource> {
         self.calibration().needs()
     }
 
-    fn step(&mut self, sample: &FrameSample, t_s: f64) -> Phase {
+    fn step(&mut self, sample: &FrameSample, t_s: f64) -> FramePhase {
         Self::step(self, sample, t_s)
     }
 
-    fn coverage(&self) -> Coverage {
+    fn coverage(&self) -> FrameCoverage {
         Self::coverage(self)
     }
 
@@ -88,21 +88,21 @@ macro_rules! each {
 
 of_each!(
     /// The result of a frame calibration.
-    pub(super) Outcome(FrameReport): Tip(TipFound), HandEye(HandEyeFound), Trocar(TrocarFound), Table(TableFound), View(ViewFound),
-    Mount(SensorMountFound)
+    pub(super) Outcome(FrameReport): Tip(TipResult), HandEye(HandEyeResult), Trocar(TrocarResult), Table(TableResult), View(ViewResult),
+    Mount(SensorMountResult)
 );
 
 of_each!(
     /// The record of a frame calibration.
-    pub FrameCalibration(FrameRecord): Tip(TipFound), HandEye(HandEyeFound), Trocar(TrocarFound), Table(TableFound), View(ViewFound),
-    Mount(SensorMountFound)
+    pub FrameCalibration(FrameRecord): Tip(TipResult), HandEye(HandEyeResult), Trocar(TrocarResult), Table(TableResult), View(ViewResult),
+    Mount(SensorMountResult)
 );
 
 /// Common parts of all results.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Quality {
     pub(super) verdict: Verdict,
-    pub(super) cause: Cause,
+    pub(super) cause: FrameCause,
     pub(super) poses: usize,
     pub(super) fitted: Sizes,
     pub(super) held_out: Sizes,
@@ -135,7 +135,7 @@ impl Outcome {
 
     /// `None` without a result.
     pub(super) fn record(&self, head: RecordHead, serials: Serials) -> Option<FrameCalibration> {
-        let reason = language::with(Language::English, || crate::words::cause(&self.quality().cause));
+        let reason = language::with(Language::English, || crate::report_text::cause(&self.quality().cause));
         each!(self, report => report.record(head, serials, &reason).map(Into::into))
     }
 }
@@ -174,10 +174,10 @@ const HANDLE: &str = "view_handle";
 
 /// Facts of a saved frame calibration of any kind.
 #[derive(Clone, Debug)]
-pub struct FrameKept {
+pub struct StoredFrame {
     /// Date, UTC, ISO 8601.
     pub date: String,
-    pub age: Age,
+    pub age: CalibrationAge,
     pub judgement: Judgement,
     /// Root mean square error on held-out poses.
     pub held_out: Sizes,
@@ -185,8 +185,8 @@ pub struct FrameKept {
     pub rig: Vec<RigChange>,
 }
 
-impl<F: Found> From<Loaded<FrameRecord<F>>> for FrameKept {
-    fn from(Loaded { record, age, .. }: Loaded<FrameRecord<F>>) -> Self {
+impl<F: CalibrationResult> From<LoadedRecord<FrameRecord<F>>> for StoredFrame {
+    fn from(LoadedRecord { record, age, .. }: LoadedRecord<FrameRecord<F>>) -> Self {
         let FrameRecord { head, judgement, held_out, rig, .. } = record;
         Self { date: head.date, age, judgement, held_out, rig }
     }
@@ -198,33 +198,33 @@ impl<F: Found> From<Loaded<FrameRecord<F>>> for FrameKept {
 /// As [`Store::load`].
 pub fn frame_kept(
     store: &Store,
-    kind: Kind,
+    kind: FrameKind,
     handle: bool,
     [sensor, tool]: [&str; 2],
-) -> Result<Option<FrameKept>, StoreError> {
-    fn of<F: Found>(store: &Store, [sensor, tool]: [&str; 2]) -> Result<Option<FrameKept>, StoreError> {
+) -> Result<Option<StoredFrame>, StoreError> {
+    fn of<F: CalibrationResult>(store: &Store, [sensor, tool]: [&str; 2]) -> Result<Option<StoredFrame>, StoreError> {
         Ok(store.load::<FrameRecord<F>>(sensor, tool, SystemTime::now())?.map(Into::into))
     }
     let wrist = [sensor, tool];
     match kind {
-        Kind::Tip => of::<TipFound>(store, wrist),
-        Kind::HandEye => of::<HandEyeFound>(store, wrist),
-        Kind::Trocar => of::<TrocarFound>(store, wrist),
-        Kind::Table => of::<TableFound>(store, wrist),
-        Kind::View if handle => {
+        FrameKind::Tip => of::<TipResult>(store, wrist),
+        FrameKind::HandEye => of::<HandEyeResult>(store, wrist),
+        FrameKind::Trocar => of::<TrocarResult>(store, wrist),
+        FrameKind::Table => of::<TableResult>(store, wrist),
+        FrameKind::View if handle => {
             let path = store.path_of(HANDLE, sensor, "toml")?;
-            let record = store::read::<FrameRecord<ViewFound>>(&path)?;
+            let record = store::read::<FrameRecord<ViewResult>>(&path)?;
             Ok(record.map(|record| {
-                let age = store.age_of(&record.head.date, SystemTime::now()).unwrap_or(Age::Future);
-                Loaded { record, age, path }.into()
+                let age = store.age_of(&record.head.date, SystemTime::now()).unwrap_or(CalibrationAge::Future);
+                LoadedRecord { record, age, path }.into()
             }))
         }
-        Kind::View => of::<ViewFound>(store, wrist),
-        Kind::Mount => of::<SensorMountFound>(store, wrist),
+        FrameKind::View => of::<ViewResult>(store, wrist),
+        FrameKind::Mount => of::<SensorMountResult>(store, wrist),
     }
 }
 
 /// Changes of the last saved calibration of this kind to the rig file; empty if there is none for this sensor and tool.
-pub(super) fn last_changes(store: &Store, kind: Kind, handle: bool, wrist: [&str; 2]) -> Vec<RigChange> {
+pub(super) fn last_changes(store: &Store, kind: FrameKind, handle: bool, wrist: [&str; 2]) -> Vec<RigChange> {
     frame_kept(store, kind, handle, wrist).ok().flatten().map(|kept| kept.rig).unwrap_or_default()
 }

@@ -2,17 +2,20 @@
 
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 use nima_core::calibration::{
-    frames::{FrameSample, FrameSession, HandEye, SensorMount, Table, Tip, Trocar, View},
+    frames::{
+        FrameSample, FrameSession, HandEyeSettings, SensorMount, TableSettings, TipSettings, TrocarSettings,
+        ViewSettings,
+    },
     gravity::PoseTarget,
 };
 use nima_machine::rig::Prompt;
 
-use super::{Subject, job::Job};
+use super::{FrameSubject, job::FrameJob};
 use crate::console::text::frames as texts;
 
 /// The frame calibrations, in the order of use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
-pub enum Kind {
+pub enum FrameKind {
     /// Mount of the wrist sensor on the flange.
     Mount,
     /// Position of the instrument's tip.
@@ -39,7 +42,7 @@ pub(super) struct Texts {
     pub(super) other_way: Option<[&'static str; 2]>,
 }
 
-impl Kind {
+impl FrameKind {
     /// All kinds, in the order of use.
     pub const ALL: [Self; 6] = [Self::Mount, Self::Tip, Self::HandEye, Self::Table, Self::View, Self::Trocar];
 
@@ -83,7 +86,7 @@ impl Kind {
     }
 
     /// Whether the alternative method is available on this rig; otherwise the reason.
-    pub(super) fn other_way_needs(self, subject: &Subject) -> Result<(), &'static str> {
+    pub(super) fn other_way_needs(self, subject: &FrameSubject) -> Result<(), &'static str> {
         match self {
             Self::Tip | Self::Trocar if subject.hand_eye().is_none() => Err(texts::NEEDS_HAND_EYE.get()),
             _ => Ok(()),
@@ -91,29 +94,29 @@ impl Kind {
     }
 
     /// A session without poses; `other_way`: by the tracker, or with the handle.
-    pub(super) fn job(self, subject: &Subject, other_way: bool) -> Option<Box<dyn Job>> {
+    pub(super) fn job(self, subject: &FrameSubject, other_way: bool) -> Option<Box<dyn FrameJob>> {
         let tip_m = subject.tip_in_flange_m();
         Some(match self {
-            Self::Tip if other_way => Box::new(FrameSession::new(Tip::by_tracker())),
-            Self::Tip => Box::new(FrameSession::new(Tip::by_arm())),
-            Self::HandEye => Box::new(FrameSession::new(HandEye::new(tip_m))),
+            Self::Tip if other_way => Box::new(FrameSession::new(TipSettings::by_tracker())),
+            Self::Tip => Box::new(FrameSession::new(TipSettings::by_arm())),
+            Self::HandEye => Box::new(FrameSession::new(HandEyeSettings::new(tip_m))),
             Self::Trocar if other_way => {
                 let [flange_from_m, _] = subject.hand_eye()?;
-                Box::new(FrameSession::new(Trocar::by_tracker(&subject.arm()?, &flange_from_m)))
+                Box::new(FrameSession::new(TrocarSettings::by_tracker(&subject.arm()?, &flange_from_m)))
             }
-            Self::Trocar => Box::new(FrameSession::new(Trocar::by_arm(&subject.arm()?))),
-            Self::Table => Box::new(FrameSession::new(Table::by_arm(tip_m, subject.up_in_base()))),
-            Self::View if other_way => Box::new(FrameSession::new(View::by_handle())),
-            Self::View => Box::new(FrameSession::new(View::by_arm(tip_m))),
+            Self::Trocar => Box::new(FrameSession::new(TrocarSettings::by_arm(&subject.arm()?))),
+            Self::Table => Box::new(FrameSession::new(TableSettings::by_arm(tip_m, subject.up_in_base()))),
+            Self::View if other_way => Box::new(FrameSession::new(ViewSettings::by_handle())),
+            Self::View => Box::new(FrameSession::new(ViewSettings::by_arm(tip_m))),
             Self::Mount => {
-                let in_force = subject.arm.flange_from_s1.rotation;
-                Box::new(FrameSession::new(SensorMount::new(in_force, subject.up_in_base())))
+                let active = subject.arm.flange_from_s1.rotation;
+                Box::new(FrameSession::new(SensorMount::new(active, subject.up_in_base())))
             }
         })
     }
 
     /// The sample as this calibration uses it.
-    pub(super) fn seen(self, sample: &FrameSample, subject: &Subject) -> FrameSample {
+    pub(super) fn seen(self, sample: &FrameSample, subject: &FrameSubject) -> FrameSample {
         match (self, sample.leader_from_handle, sample.base_from_flange) {
             // A hand never holds a handle without rotation; only the handle's position counts.
             (Self::View, Some(handle), _) => {
@@ -134,7 +137,7 @@ impl Kind {
 
     /// Instruction after `taken` records; `target` is the next pose of the list.
     pub(super) fn prompt(self, other_way: bool, taken: usize, target: impl Fn() -> PoseTarget) -> Prompt {
-        let asked = View::by_arm(Vector3::zeros()).asked(taken);
+        let asked = ViewSettings::by_arm(Vector3::zeros()).asked(taken);
         match self {
             Self::Mount => Prompt::Hold { world_from_s1: target().world_from_s1() },
             Self::Tip => Prompt::PivotInDimple,
@@ -157,8 +160,10 @@ impl Kind {
             Prompt::Touch { point: 1 } => texts::TOUCH_X.get().to_owned(),
             Prompt::Touch { point: 2 } => texts::TOUCH_Y.get().to_owned(),
             Prompt::Touch { .. } => texts::TOUCH_FURTHER.get().to_owned(),
-            Prompt::MoveTip(way) => texts::moved(texts::THE_TIP.get(), crate::words::Words::words(*way)),
-            Prompt::MoveHandle(way) => texts::moved(texts::THE_HANDLE.get(), crate::words::Words::words(*way)),
+            Prompt::MoveTip(way) => texts::moved(texts::THE_TIP.get(), crate::report_text::ShortText::words(*way)),
+            Prompt::MoveHandle(way) => {
+                texts::moved(texts::THE_HANDLE.get(), crate::report_text::ShortText::words(*way))
+            }
             _ => texts::HOLD_STILL.get().to_owned(),
         }
     }

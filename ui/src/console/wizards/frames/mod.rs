@@ -1,4 +1,4 @@
-//! One wizard for all frame calibrations: check, record, result, save. [`Kind`] distinguishes them. Recorded data are kept
+//! One wizard for all frame calibrations: check, record, result, save. [`FrameKind`] distinguishes them. Recorded data are kept
 //! when going back and when closing.
 
 mod effect;
@@ -15,40 +15,40 @@ use egui::Ui;
 use nalgebra::{UnitQuaternion, Vector3};
 use nima_core::calibration::{
     RecordHead, Verdict,
-    frames::{FrameSample, Phase, RigChange, Source},
+    frames::{CalibrationSource, FramePhase, FrameSample, RigChange},
     gravity::{PoseTarget, TARGETS},
 };
 use nima_machine::{
     messages::Tick,
-    rig::{Prompt, View},
+    rig::{Prompt, ViewOrientation},
 };
 
-pub use job::{FrameCalibration, FrameKept, frame_kept};
-pub use kind::Kind;
-pub(in crate::console) use result_ui::sizes_words;
-pub use subject::Subject;
+pub use job::{FrameCalibration, StoredFrame, frame_kept};
+pub use kind::FrameKind;
+pub(in crate::console) use result_ui::sizes_text;
+pub use subject::FrameSubject;
 
 use self::{
-    job::{Job, Outcome, last_changes},
+    job::{FrameJob, Outcome, last_changes},
     kind::Texts,
-    numbers::Number,
+    numbers::FrameNumber,
     result_ui::outcome_ui,
 };
 use super::{
-    Binding, Saving,
-    frame::{Frame, Step, Wish, Wizard},
-    report::{Report, result_ui},
+    Binding, SaveRequest,
+    frame::{Wizard, WizardFrame, WizardRequest, WizardStep},
+    report::{WizardReport, result_ui},
 };
 use crate::console::{
     text::{self, frames as texts},
     widgets::card,
 };
 
-const STEPS: [Step; 4] = [
-    Step { name: text::wizards::STEP_CHECK, meaning: texts::STEP_CHECK_HOVER },
-    Step { name: texts::STEP_RECORD, meaning: texts::STEP_RECORD_HOVER },
-    Step { name: text::wizards::STEP_RESULT, meaning: texts::STEP_RESULT_HOVER },
-    Step { name: text::wizards::STEP_SAVE, meaning: texts::STEP_SAVE_HOVER },
+const STEPS: [WizardStep; 4] = [
+    WizardStep { name: text::wizards::STEP_CHECK, meaning: texts::STEP_CHECK_HOVER },
+    WizardStep { name: texts::STEP_RECORD, meaning: texts::STEP_RECORD_HOVER },
+    WizardStep { name: text::wizards::STEP_RESULT, meaning: texts::STEP_RESULT_HOVER },
+    WizardStep { name: text::wizards::STEP_SAVE, meaning: texts::STEP_SAVE_HOVER },
 ];
 const CHECK: usize = 0;
 const RECORD: usize = 1;
@@ -73,12 +73,12 @@ pub struct FrameSaving {
 /// The wizard of one frame calibration.
 #[derive(Debug)]
 pub struct FrameWizard {
-    kind: Kind,
+    kind: FrameKind,
     other_way: bool,
-    frame: Frame,
-    subject: Option<Subject>,
-    job: Option<Box<dyn Job>>,
-    phase: Phase,
+    frame: WizardFrame,
+    subject: Option<FrameSubject>,
+    job: Option<Box<dyn FrameJob>>,
+    phase: FramePhase,
     seen: FrameSample,
     seen_view: Option<UnitQuaternion<f64>>,
     paused: bool,
@@ -86,20 +86,20 @@ pub struct FrameWizard {
     passed: (usize, f64),
     /// Loop time, which starts at zero with each start of the loop, and session time, which continues, s.
     clock_s: (f64, f64),
-    report: Report<Outcome>,
+    report: WizardReport<Outcome>,
     /// Changes of the last saved calibration, if the rig file still has these values.
     undoable: Vec<RigChange>,
 }
 
 impl FrameWizard {
-    pub fn new(kind: Kind) -> Self {
+    pub fn new(kind: FrameKind) -> Self {
         Self {
             kind,
             other_way: false,
-            frame: Frame::default(),
+            frame: WizardFrame::default(),
             subject: None,
             job: None,
-            phase: Phase::Missing(None),
+            phase: FramePhase::Missing(None),
             seen: FrameSample::default(),
             seen_view: None,
             paused: false,
@@ -131,11 +131,11 @@ impl FrameWizard {
     }
 
     fn is_complete(&self) -> bool {
-        self.job.as_ref().is_some_and(|job| job.coverage().share >= 1.0)
+        self.job.as_ref().is_some_and(|job| job.coverage().fraction >= 1.0)
     }
 
     /// Restarts for this subject.
-    fn begin(&mut self, subject: Option<Subject>) {
+    fn begin(&mut self, subject: Option<FrameSubject>) {
         let job = subject.as_ref().and_then(|subject| self.kind.job(subject, self.other_way));
         let other_way = self.other_way;
         let clock_s = self.clock_s;
@@ -159,12 +159,12 @@ impl FrameWizard {
         let (Some(job), Some(subject)) = (&mut self.job, &self.subject) else { return };
         self.phase = job.step(&self.kind.seen(&self.seen, subject), t_s);
         match self.phase {
-            Phase::Recorded { .. } => {
+            FramePhase::Recorded { .. } => {
                 self.report = None;
                 self.frame.saved = None;
                 self.passed = (0, 0.0);
             }
-            Phase::TakenHere => {
+            FramePhase::TakenHere => {
                 self.passed.1 += since_s;
                 if self.passed.1 > PASSED_S {
                     self.passed = (self.passed.0 + 1, 0.0);
@@ -197,19 +197,19 @@ impl FrameWizard {
         self.report.as_ref().and_then(|report| report.as_ref().ok())
     }
 
-    fn numbers(&self) -> Vec<Number> {
+    fn numbers(&self) -> Vec<FrameNumber> {
         let found = self.outcome().zip(self.subject.as_ref());
         found
             .and_then(|(outcome, subject)| numbers::of(outcome, subject, self.seen_view))
             .map_or(Vec::new(), |(all, _)| all)
     }
 
-    fn lacks(&self) -> Option<Source> {
-        let has = |source: &Source| match source {
-            Source::Flange => self.seen.base_from_flange.is_some(),
-            Source::Marker => self.seen.c_from_m.is_some(),
-            Source::Handle => self.seen.leader_from_handle.is_some(),
-            Source::Wrench => self.seen.wrench.is_some(),
+    fn lacks(&self) -> Option<CalibrationSource> {
+        let has = |source: &CalibrationSource| match source {
+            CalibrationSource::Flange => self.seen.base_from_flange.is_some(),
+            CalibrationSource::Marker => self.seen.c_from_m.is_some(),
+            CalibrationSource::Handle => self.seen.leader_from_handle.is_some(),
+            CalibrationSource::Wrench => self.seen.wrench.is_some(),
         };
         self.job.as_ref()?.needs().into_iter().find(|source| !has(source))
     }
@@ -226,18 +226,18 @@ impl FrameWizard {
     fn look_for_undo(&mut self, binding: &Binding) {
         let Some(store) = &binding.store else { return };
         let wrist = [binding.sensor.as_str(), binding.tool.as_str()];
-        let handle = self.kind == Kind::View && self.other_way;
+        let handle = self.kind == FrameKind::View && self.other_way;
         self.undoable = last_changes(store, self.kind, handle, wrist);
         self.undoable.retain(|change| binding.rig_value(&change.key) == change.after);
     }
 }
 
 impl Wizard for FrameWizard {
-    fn steps(&self) -> &'static [Step] {
+    fn steps(&self) -> &'static [WizardStep] {
         &STEPS
     }
 
-    fn frame_mut(&mut self) -> &mut Frame {
+    fn frame_mut(&mut self) -> &mut WizardFrame {
         &mut self.frame
     }
 
@@ -266,7 +266,7 @@ impl Wizard for FrameWizard {
             return;
         }
         self.seen = tick.frames;
-        if let View::Seen(world_from_view) = tick.view
+        if let ViewOrientation::Seen(world_from_view) = tick.view
             && self.frame.step == RECORD
         {
             self.seen_view = Some(world_from_view);
@@ -300,7 +300,7 @@ impl Wizard for FrameWizard {
         self.frame.step != RECORD || self.is_complete()
     }
 
-    fn step_ui(&mut self, ui: &mut Ui, _: &Binding) -> Option<Wish> {
+    fn step_ui(&mut self, ui: &mut Ui, _: &Binding) -> Option<WizardRequest> {
         match self.frame.step {
             CHECK => self.check_ui(ui),
             RECORD => self.record_ui(ui),
@@ -314,26 +314,26 @@ impl Wizard for FrameWizard {
         proven.then(|| texts::PROOF.get().to_owned())
     }
 
-    fn made(&self, binding: &Binding) -> Option<Saving> {
+    fn made(&self, binding: &Binding) -> Option<SaveRequest> {
         let head = RecordHead::new(&binding.sensor, &binding.tool, &binding.date);
         let record = self.outcome()?.record(head, self.subject.as_ref()?.serials.clone())?;
         let numbers = self
             .numbers()
             .into_iter()
-            .filter(Number::changes)
+            .filter(FrameNumber::changes)
             .map(|number| (number.key.clone(), number.toml()))
             .collect();
-        Some(Saving::Frame(Box::new(FrameSaving { record, numbers })))
+        Some(SaveRequest::Frame(Box::new(FrameSaving { record, numbers })))
     }
 
-    fn after_saving(&mut self, ui: &mut Ui) -> Option<Saving> {
+    fn after_saving(&mut self, ui: &mut Ui) -> Option<SaveRequest> {
         if self.undoable.is_empty() {
             return None;
         }
         let wanted = card(ui, texts::UNDO_TITLE.get(), texts::UNDO_CARD_HOVER.get(), |ui| {
             ui.button(texts::UNDO.get()).clicked()
         });
-        wanted.then(|| Saving::Undo(self.undoable.iter().cloned().map(RigChange::undone).collect()))
+        wanted.then(|| SaveRequest::Undo(self.undoable.iter().cloned().map(RigChange::undone).collect()))
     }
 
     fn go_to(&mut self, step: usize) {
@@ -341,7 +341,7 @@ impl Wizard for FrameWizard {
         self.frame.changed = true;
         if step == RECORD {
             self.paused = false;
-            self.phase = Phase::Missing(None);
+            self.phase = FramePhase::Missing(None);
         }
         if step == RESULT && self.report.is_none() {
             self.fit();

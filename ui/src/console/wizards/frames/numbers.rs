@@ -3,19 +3,19 @@
 use nalgebra::{Isometry3, Point3, UnitQuaternion, Vector3};
 use nima_core::{
     calibration::frames::{
-        Carrier, HandEyeFound, SensorMountFound, Sizes, TableFound, TipFound, TrocarFound, ViewFound,
+        Carrier, HandEyeResult, SensorMountResult, Sizes, TableResult, TipResult, TrocarResult, ViewResult,
     },
     frames::{from_roll_pitch_yaw_deg, to_roll_pitch_yaw_deg},
 };
 
-use super::{Subject, job::Outcome};
+use super::{FrameSubject, job::Outcome};
 
 /// Decimal places: hundredths of a millimetre, thousandths of a degree.
 const DIGITS_M: usize = 5;
 const DIGITS_DEG: usize = 3;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Unit {
+pub(super) enum NumberUnit {
     Metres,
     Degrees,
     /// Part of a direction.
@@ -24,20 +24,20 @@ pub(super) enum Unit {
 
 /// A value of the rig file: one number or three.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Number {
+pub(super) struct FrameNumber {
     pub(super) key: String,
-    pub(super) unit: Unit,
+    pub(super) unit: NumberUnit,
     /// Value in the rig file; `None` if it has none.
     pub(super) before: Option<Vec<f64>>,
     pub(super) after: Vec<f64>,
 }
 
-impl Number {
-    fn one(key: String, unit: Unit, before: f64, after: f64) -> Self {
+impl FrameNumber {
+    fn one(key: String, unit: NumberUnit, before: f64, after: f64) -> Self {
         Self { key, unit, before: Some(vec![before]), after: vec![after] }
     }
 
-    fn three(key: String, unit: Unit, before: Option<Vector3<f64>>, after: Vector3<f64>) -> Self {
+    fn three(key: String, unit: NumberUnit, before: Option<Vector3<f64>>, after: Vector3<f64>) -> Self {
         Self { key, unit, before: before.map(|before| before.as_slice().to_vec()), after: after.as_slice().to_vec() }
     }
 
@@ -48,7 +48,7 @@ impl Number {
     }
 
     pub(super) fn toml(&self) -> String {
-        let digits = if self.unit == Unit::Degrees { DIGITS_DEG } else { DIGITS_M };
+        let digits = if self.unit == NumberUnit::Degrees { DIGITS_DEG } else { DIGITS_M };
         let number = |x: &f64| {
             let words = format!("{x:.digits$}");
             // Avoids `-0`.
@@ -63,12 +63,12 @@ impl Number {
 
 /// Effect of the result on a point or a frame, for a drawing: before, if known, and after, in the same frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Effect {
+pub(super) struct FrameEffect {
     pub(super) before: Option<Isometry3<f64>>,
     pub(super) after: Isometry3<f64>,
 }
 
-impl Effect {
+impl FrameEffect {
     fn of_points(before_m: Vector3<f64>, after_m: Vector3<f64>) -> Self {
         let at = |point_m: Vector3<f64>| Isometry3::from_parts(point_m.into(), UnitQuaternion::identity());
         Self { before: Some(at(before_m)), after: at(after_m) }
@@ -87,7 +87,7 @@ impl Effect {
 
     /// Whether the change is smaller than the uncertainty of the result.
     pub(super) fn is_within(&self, known_to: Sizes) -> bool {
-        let within = |by: f64, most: Option<f64>| most.map_or(by <= 1e-9, |most| by <= most);
+        let within = |by: f64, max: Option<f64>| max.map_or(by <= 1e-9, |max| by <= max);
         self.change().is_some_and(|[m, deg]| within(m, known_to.place_m) && within(deg, known_to.angle_deg))
     }
 }
@@ -95,9 +95,9 @@ impl Effect {
 /// The values that the result changes, and its effect; `None` without a result.
 pub(super) fn of(
     outcome: &Outcome,
-    subject: &Subject,
+    subject: &FrameSubject,
     seen_view: Option<UnitQuaternion<f64>>,
-) -> Option<(Vec<Number>, Effect)> {
+) -> Option<(Vec<FrameNumber>, FrameEffect)> {
     match outcome {
         Outcome::Tip(report) => tip(&report.found?, subject),
         Outcome::HandEye(report) => Some(hand_eye(&report.found?, subject)),
@@ -109,7 +109,7 @@ pub(super) fn of(
 }
 
 /// Moves the shaft's axis sideways, parallel to itself, until it passes through the tip; its length follows.
-fn tip(found: &TipFound, subject: &Subject) -> Option<(Vec<Number>, Effect)> {
+fn tip(found: &TipResult, subject: &FrameSubject) -> Option<(Vec<FrameNumber>, FrameEffect)> {
     let found_m = Point3::from(Vector3::from(found.tip_in_carrier_m));
     let tip_m = match found.carrier {
         Carrier::Marker => subject.hand_eye()?[0] * found_m,
@@ -121,45 +121,55 @@ fn tip(found: &TipFound, subject: &Subject) -> Option<(Vec<Number>, Effect)> {
     let sensor_m = subject.set.mount.sensor_m;
     let moved = Isometry3::from_parts((sensor_m + across_m).into(), mount.rotation);
     let mut numbers = vec![
-        Number::three(subject.key("mount.sensor_m"), Unit::Metres, Some(sensor_m), moved.translation.vector),
-        Number::one(subject.key("mount.shaft_m"), Unit::Metres, subject.arm.shaft_m, tip_in_s1_m.z),
+        FrameNumber::three(subject.key("mount.sensor_m"), NumberUnit::Metres, Some(sensor_m), moved.translation.vector),
+        FrameNumber::one(subject.key("mount.shaft_m"), NumberUnit::Metres, subject.arm.shaft_m, tip_in_s1_m.z),
     ];
     numbers.extend(marker_stays(subject, &moved));
-    Some((numbers, Effect::of_points(subject.tip_in_flange_m(), tip_m.coords)))
+    Some((numbers, FrameEffect::of_points(subject.tip_in_flange_m(), tip_m.coords)))
 }
 
 /// The marker stays where it was on the flange, so its pose in the frame of a sensor that moved changes.
-fn marker_stays(subject: &Subject, flange_from_s1: &Isometry3<f64>) -> Vec<Number> {
+fn marker_stays(subject: &FrameSubject, flange_from_s1: &Isometry3<f64>) -> Vec<FrameNumber> {
     let Some([flange_from_m, _]) = subject.hand_eye() else { return Vec::new() };
     marker(subject, &(flange_from_s1.inverse() * flange_from_m))
 }
 
-fn marker(subject: &Subject, s1_from_m: &Isometry3<f64>) -> Vec<Number> {
+fn marker(subject: &FrameSubject, s1_from_m: &Isometry3<f64>) -> Vec<FrameNumber> {
     let angles_deg = to_roll_pitch_yaw_deg(&s1_from_m.rotation);
     vec![
-        Number::three(subject.key("s1_from_m_deg"), Unit::Degrees, subject.set.s1_from_m_deg, angles_deg),
-        Number::three(subject.key("s1_from_m_m"), Unit::Metres, subject.set.s1_from_m_m, s1_from_m.translation.vector),
+        FrameNumber::three(subject.key("s1_from_m_deg"), NumberUnit::Degrees, subject.set.s1_from_m_deg, angles_deg),
+        FrameNumber::three(
+            subject.key("s1_from_m_m"),
+            NumberUnit::Metres,
+            subject.set.s1_from_m_m,
+            s1_from_m.translation.vector,
+        ),
     ]
 }
 
-fn hand_eye(found: &HandEyeFound, subject: &Subject) -> (Vec<Number>, Effect) {
+fn hand_eye(found: &HandEyeResult, subject: &FrameSubject) -> (Vec<FrameNumber>, FrameEffect) {
     let s1_from_m = subject.arm.flange_from_s1.inverse() * found.flange_from_m.pose();
     let base_from_c = found.base_from_c.pose();
     let set = &subject.set;
     let angles_deg = to_roll_pitch_yaw_deg(&base_from_c.rotation);
     let place_m = base_from_c.translation.vector;
     let mut numbers = marker(subject, &s1_from_m);
-    numbers.push(Number::three(subject.key("base_from_c_m"), Unit::Metres, set.base_from_c_m, place_m));
-    numbers.push(Number::three(subject.key("base_from_c_deg"), Unit::Degrees, set.base_from_c_deg, angles_deg));
+    numbers.push(FrameNumber::three(subject.key("base_from_c_m"), NumberUnit::Metres, set.base_from_c_m, place_m));
+    numbers.push(FrameNumber::three(
+        subject.key("base_from_c_deg"),
+        NumberUnit::Degrees,
+        set.base_from_c_deg,
+        angles_deg,
+    ));
     // A rig file without the marker's pose has at least its orientation.
     let before = subject.s1_from_m().or_else(|| {
         let turn = from_roll_pitch_yaw_deg(&set.s1_from_m_deg?);
         Some(Isometry3::from_parts(s1_from_m.translation, turn))
     });
-    (numbers, Effect { before, after: s1_from_m })
+    (numbers, FrameEffect { before, after: s1_from_m })
 }
 
-fn trocar(found: &TrocarFound, subject: &Subject) -> Option<(Vec<Number>, Effect)> {
+fn trocar(found: &TrocarResult, subject: &FrameSubject) -> Option<(Vec<FrameNumber>, FrameEffect)> {
     let found_m = Point3::from(Vector3::from(found.trocar_m));
     let in_base_m = match found.carrier {
         Carrier::Marker => subject.base_from_c()? * found_m,
@@ -167,12 +177,12 @@ fn trocar(found: &TrocarFound, subject: &Subject) -> Option<(Vec<Number>, Effect
     };
     let before_m = subject.set.rcm.trocar_m;
     let after_m = (subject.arm.world_from_base * in_base_m).coords;
-    let number = Number::three(subject.key("rcm.trocar_m"), Unit::Metres, Some(before_m), after_m);
-    Some((vec![number], Effect::of_points(before_m, after_m)))
+    let number = FrameNumber::three(subject.key("rcm.trocar_m"), NumberUnit::Metres, Some(before_m), after_m);
+    Some((vec![number], FrameEffect::of_points(before_m, after_m)))
 }
 
 /// The table's frame is the workspace: the base gets its pose in it, and the trocar, which has not moved, is transformed too.
-fn table(found: &TableFound, subject: &Subject) -> (Vec<Number>, Effect) {
+fn table(found: &TableResult, subject: &FrameSubject) -> (Vec<FrameNumber>, FrameEffect) {
     let before = subject.arm.world_from_base;
     let after = found.from_table.pose().inverse();
     let moved = after * before.inverse();
@@ -181,24 +191,33 @@ fn table(found: &TableFound, subject: &Subject) -> (Vec<Number>, Effect) {
     let angles_deg = to_roll_pitch_yaw_deg(&after.rotation);
     let trocar_m = (moved * Point3::from(rcm.trocar_m)).coords;
     let numbers = vec![
-        Number::three(subject.key("mount.base_m"), Unit::Metres, Some(mount.base_m), after.translation.vector),
-        Number::three(subject.key("mount.base_deg"), Unit::Degrees, Some(mount.base_deg), angles_deg),
-        Number::three(subject.key("rcm.trocar_m"), Unit::Metres, Some(rcm.trocar_m), trocar_m),
-        Number::three(subject.key("rcm.inward"), Unit::One, Some(rcm.inward), moved.rotation * rcm.inward),
+        FrameNumber::three(
+            subject.key("mount.base_m"),
+            NumberUnit::Metres,
+            Some(mount.base_m),
+            after.translation.vector,
+        ),
+        FrameNumber::three(subject.key("mount.base_deg"), NumberUnit::Degrees, Some(mount.base_deg), angles_deg),
+        FrameNumber::three(subject.key("rcm.trocar_m"), NumberUnit::Metres, Some(rcm.trocar_m), trocar_m),
+        FrameNumber::three(subject.key("rcm.inward"), NumberUnit::One, Some(rcm.inward), moved.rotation * rcm.inward),
     ];
     // The drawing shows the table in the frame of the base, where it was touched.
-    (numbers, Effect { before: Some(before.inverse()), after: found.from_table.pose() })
+    (numbers, FrameEffect { before: Some(before.inverse()), after: found.from_table.pose() })
 }
 
-fn view(found: &ViewFound, subject: &Subject, seen_view: Option<UnitQuaternion<f64>>) -> (Vec<Number>, Effect) {
+fn view(
+    found: &ViewResult,
+    subject: &FrameSubject,
+    seen_view: Option<UnitQuaternion<f64>>,
+) -> (Vec<FrameNumber>, FrameEffect) {
     let teleoperation = &subject.teleoperation;
     if found.carrier == Carrier::Handle {
         let before = teleoperation.view_from_leader();
         let after = found.from_view().inverse();
         let key = "teleoperation.view_from_leader_deg".to_owned();
         let angles_deg = to_roll_pitch_yaw_deg(&after);
-        let number = Number::three(key, Unit::Degrees, teleoperation.view_from_leader_deg, angles_deg);
-        return (vec![number], Effect::of_turns(before, after));
+        let number = FrameNumber::three(key, NumberUnit::Degrees, teleoperation.view_from_leader_deg, angles_deg);
+        return (vec![number], FrameEffect::of_turns(before, after));
     }
     let after = subject.arm.world_from_base.rotation * found.from_view();
     // With a marker on the endoscope, the rig file contains the rotation of the image relative to the marker.
@@ -206,26 +225,27 @@ fn view(found: &ViewFound, subject: &Subject, seen_view: Option<UnitQuaternion<f
         let n_from_view = from_roll_pitch_yaw_deg(&endoscope.n_from_view_deg) * seen.inverse() * after;
         let key = "devices.endoscope.n_from_view_deg".to_owned();
         let angles_deg = to_roll_pitch_yaw_deg(&n_from_view);
-        let number = Number::three(key, Unit::Degrees, Some(endoscope.n_from_view_deg), angles_deg);
-        return (vec![number], Effect::of_turns(seen, after));
+        let number = FrameNumber::three(key, NumberUnit::Degrees, Some(endoscope.n_from_view_deg), angles_deg);
+        return (vec![number], FrameEffect::of_turns(seen, after));
     }
     let before_deg = teleoperation.world_from_view_deg;
     let key = "teleoperation.world_from_view_deg".to_owned();
-    let number = Number::three(key, Unit::Degrees, Some(before_deg), to_roll_pitch_yaw_deg(&after));
-    (vec![number], Effect::of_turns(from_roll_pitch_yaw_deg(&before_deg), after))
+    let number = FrameNumber::three(key, NumberUnit::Degrees, Some(before_deg), to_roll_pitch_yaw_deg(&after));
+    (vec![number], FrameEffect::of_turns(from_roll_pitch_yaw_deg(&before_deg), after))
 }
 
 /// A mount that agrees stays: a design drawing gives an angle more accurately than a weight.
-fn mount(found: &SensorMountFound, subject: &Subject) -> (Vec<Number>, Effect) {
+fn mount(found: &SensorMountResult, subject: &FrameSubject) -> (Vec<FrameNumber>, FrameEffect) {
     let before = subject.arm.flange_from_s1;
     let after = found.flange_from_s1();
-    let effect = Effect::of_turns(before.rotation, after);
+    let effect = FrameEffect::of_turns(before.rotation, after);
     if found.agrees() {
         return (Vec::new(), effect);
     }
     let before_deg = subject.set.mount.sensor_deg;
     let key = subject.key("mount.sensor_deg");
-    let mut numbers = vec![Number::three(key, Unit::Degrees, Some(before_deg), to_roll_pitch_yaw_deg(&after))];
+    let mut numbers =
+        vec![FrameNumber::three(key, NumberUnit::Degrees, Some(before_deg), to_roll_pitch_yaw_deg(&after))];
     numbers.extend(marker_stays(subject, &Isometry3::from_parts(before.translation, after)));
     (numbers, effect)
 }

@@ -5,10 +5,10 @@ use nalgebra::UnitQuaternion;
 use nima_core::calibration::frames::{SignedAxes, Sizes};
 
 use super::{
-    Subject,
-    effect::effect_picture,
+    FrameSubject,
+    effect::effect_image,
     job::{Outcome, Quality},
-    numbers::{self, Number, Unit},
+    numbers::{self, FrameNumber, NumberUnit},
 };
 use crate::{
     console::{
@@ -16,35 +16,35 @@ use crate::{
         text::frames as texts,
         widgets::{card, figure, small},
     },
-    words::{self, Words as _},
+    report_text::{self, ShortText as _},
 };
 
 /// Draws the result; `units` is the name of the recorded items.
 pub(super) fn outcome_ui(
     ui: &mut Ui,
     outcome: &Outcome,
-    subject: &Subject,
+    subject: &FrameSubject,
     seen_view: Option<UnitQuaternion<f64>>,
     units: &str,
 ) {
     let quality = outcome.quality();
     card(ui, quality.verdict.words(), texts::VERDICT_HOVER.get(), |ui| {
-        ui.label(sentence(&words::cause(&quality.cause)));
+        ui.label(sentence(&report_text::cause(&quality.cause)));
         ui.add_space(4.0);
         figures_ui(ui, &quality, outcome.outliers(), units);
         if let Outcome::Mount(report) = outcome
             && let Some(found) = &report.found
         {
-            ui.label(texts::mount_found(found.from_in_force_deg, found.agrees()));
+            ui.label(texts::mount_found(found.from_active_deg, found.agrees()));
             if let Some(axes) = found.axes.filter(|axes| *axes != SignedAxes::SAME) {
-                ui.label(texts::mount_axes(&words::axes_words(axes)));
+                ui.label(texts::mount_axes(&report_text::axes_text(axes)));
             }
             figure(ui, texts::TOOL_MASS.get(), format!("{:.3} kg", found.mass_kg), texts::TOOL_MASS_HOVER.get());
         }
     });
     let Some((numbers, effect)) = numbers::of(outcome, subject, seen_view) else { return };
     card(ui, texts::CHANGE_TITLE.get(), texts::CHANGE_HOVER.get(), |ui| {
-        effect_picture(ui, &effect);
+        effect_image(ui, &effect);
         ui.add_space(6.0);
         if numbers.is_empty() {
             ui.label(texts::NO_CHANGE.get());
@@ -72,20 +72,20 @@ fn figures_ui(ui: &mut Ui, quality: &Quality, outliers: &[usize], units: &str) {
         (texts::UNCERTAINTY.get(), quality.uncertainty, texts::UNCERTAINTY_HOVER.get()),
     ];
     for (name, sizes, meaning) in rows {
-        if let Some(words) = sizes_words(sizes) {
+        if let Some(words) = sizes_text(sizes) {
             figure(ui, name, words, meaning);
         }
     }
 }
 
-pub(in crate::console) fn sizes_words(sizes: Sizes) -> Option<String> {
+pub(in crate::console) fn sizes_text(sizes: Sizes) -> Option<String> {
     let place = sizes.place_m.map(|m| format!("{:.2} mm", m * 1e3));
     let angle = sizes.angle_deg.map(|deg| format!("{deg:.2} deg"));
     let words: Vec<_> = place.into_iter().chain(angle).collect();
     (!words.is_empty()).then(|| words.join(", "))
 }
 
-fn numbers_ui(ui: &mut Ui, numbers: &[Number]) {
+fn numbers_ui(ui: &mut Ui, numbers: &[FrameNumber]) {
     Grid::new("rig_numbers").num_columns(4).spacing(vec2(22.0, 6.0)).show(ui, |ui| {
         for head in [texts::KEY.get(), texts::BEFORE.get(), texts::AFTER.get(), texts::CHANGE.get()] {
             ui.label(small(head));
@@ -103,13 +103,13 @@ fn numbers_ui(ui: &mut Ui, numbers: &[Number]) {
     });
 }
 
-fn shown(values: &[f64], unit: Unit) -> String {
+fn shown(values: &[f64], unit: NumberUnit) -> String {
     let (scale, digits, name) = of_unit(unit);
     let numbers: Vec<_> = values.iter().map(|x| format!("{:.digits$}", rounded(x * scale, digits))).collect();
     format!("{}{name}", numbers.join(", "))
 }
 
-fn changed(before: &[f64], number: &Number) -> String {
+fn changed(before: &[f64], number: &FrameNumber) -> String {
     let (scale, digits, name) = of_unit(number.unit);
     let by = before.iter().zip(&number.after).map(|(a, b)| rounded((b - a) * scale, digits));
     let by: Vec<_> = by.map(|x| format!("{x:+.digits$}")).collect();
@@ -123,10 +123,10 @@ fn rounded(x: f64, digits: usize) -> f64 {
 }
 
 /// Scale, digits and name of a unit on the screen.
-const fn of_unit(unit: Unit) -> (f64, usize, &'static str) {
+const fn of_unit(unit: NumberUnit) -> (f64, usize, &'static str) {
     match unit {
-        Unit::Metres => (1e3, 2, " mm"),
-        Unit::Degrees => (1.0, 2, " deg"),
-        Unit::One => (1.0, 3, ""),
+        NumberUnit::Metres => (1e3, 2, " mm"),
+        NumberUnit::Degrees => (1.0, 2, " deg"),
+        NumberUnit::One => (1.0, 3, ""),
     }
 }

@@ -1,9 +1,9 @@
 //! The first two steps: the required sources before the recording, and the recording with its instructions.
 
 use egui::{Button, RichText, Ui};
-use nima_core::calibration::frames::Source;
+use nima_core::calibration::frames::CalibrationSource;
 
-use super::{FrameWizard, Kind, kind::Texts};
+use super::{FrameKind, FrameWizard, kind::Texts};
 use crate::{
     console::{
         text::frames as texts,
@@ -11,11 +11,11 @@ use crate::{
         widgets::{card, small},
         wizards::{
             checks::{check_line, switch_ui},
+            drawings::progress,
             frame::Wizard as _,
-            pictures::progress,
         },
     },
-    words::{self, Words as _},
+    report_text::{self, ShortText as _},
 };
 
 impl FrameWizard {
@@ -29,10 +29,10 @@ impl FrameWizard {
             ui.add_space(6.0);
             for source in job.needs() {
                 let (name, met) = match source {
-                    Source::Flange => (texts::CHECK_ARM.get(), self.seen.base_from_flange.is_some()),
-                    Source::Marker => (texts::CHECK_MARKER.get(), self.seen.c_from_m.is_some()),
-                    Source::Handle => (texts::CHECK_HANDLE.get(), self.seen.leader_from_handle.is_some()),
-                    Source::Wrench => (texts::CHECK_WRENCH.get(), self.seen.wrench.is_some()),
+                    CalibrationSource::Flange => (texts::CHECK_ARM.get(), self.seen.base_from_flange.is_some()),
+                    CalibrationSource::Marker => (texts::CHECK_MARKER.get(), self.seen.c_from_m.is_some()),
+                    CalibrationSource::Handle => (texts::CHECK_HANDLE.get(), self.seen.leader_from_handle.is_some()),
+                    CalibrationSource::Wrench => (texts::CHECK_WRENCH.get(), self.seen.wrench.is_some()),
                 };
                 check_line(ui, name, met, source.words());
             }
@@ -54,24 +54,24 @@ impl FrameWizard {
     pub(super) fn record_ui(&mut self, ui: &mut Ui) {
         let Texts { task, units, .. } = self.texts();
         let Some(coverage) = self.job.as_ref().map(|job| job.coverage()) else { return };
-        let complete = coverage.share >= 1.0;
+        let complete = coverage.fraction >= 1.0;
         card(ui, texts::RECORD_TITLE.get(), texts::RECORD_HOVER.get(), |ui| {
             let asked = if complete {
                 texts::ALL_RECORDED.get().to_owned()
             } else {
-                Kind::asks(&self.prompt(), self.target().name)
+                FrameKind::asks(&self.prompt(), self.target().name)
             };
             ui.label(RichText::new(asked).font(theme::strong(19.0)));
             if !complete {
                 ui.label(task);
                 ui.add_space(6.0);
                 let paused = (0.0, texts::PAUSED.get().to_owned());
-                let (share, phase) = if self.paused { paused } else { words::phase(&self.phase) };
-                progress(ui, texts::PROGRESS.get(), share, &phase);
+                let (fraction, phase) = if self.paused { paused } else { report_text::phase(&self.phase) };
+                progress(ui, texts::PROGRESS.get(), fraction, &phase);
                 ui.add_space(4.0);
             }
-            let words = texts::coverage(self.taken(), units, coverage.missing.map(words::Words::words));
-            progress(ui, texts::COVERAGE.get(), coverage.share, &words);
+            let words = texts::coverage(self.taken(), units, coverage.missing.map(report_text::ShortText::words));
+            progress(ui, texts::COVERAGE.get(), coverage.fraction, &words);
             ui.add_space(6.0);
             ui.horizontal(|ui| {
                 let pause = if self.paused { texts::GO_ON.get() } else { texts::PAUSE.get() };

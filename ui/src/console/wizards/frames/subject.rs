@@ -4,12 +4,12 @@ use nalgebra::{Isometry3, IsometryMatrix3, Point3, UnitQuaternion, Vector3};
 use nima_core::{calibration::frames::Serials, frames::from_roll_pitch_yaw_deg, kinematics::Arm};
 use nima_machine::{
     config::{RigConfig, Teleoperation},
-    rig::{ArmSet, EndoscopeSettings, Part, Roster, Side},
+    rig::{ArmSet, EndoscopeSettings, RigPart, Roster, Side},
 };
 
 /// The arm pair of a side in a rig file.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Subject {
+pub struct FrameSubject {
     pub side: Side,
     /// Its devices, and their mounts.
     pub set: ArmSet,
@@ -34,19 +34,19 @@ fn pose(isometry: &IsometryMatrix3<f64>) -> Isometry3<f64> {
     Isometry3::from_parts(isometry.translation, UnitQuaternion::from_rotation_matrix(&isometry.rotation))
 }
 
-impl Subject {
+impl FrameSubject {
     /// The arm of this side; `None` if the rig has none.
     pub fn of(rig: &RigConfig, side: Side, roster: &Roster) -> Option<Self> {
         let devices = rig.devices.as_ref()?;
         let set = devices.arm(side)?.clone();
         let arm = Arm::new(&set.mount).ok()?;
-        let serial = |part: Part| {
+        let serial = |part: RigPart| {
             let entry = roster.iter().find(|entry| entry.part == Some(part))?;
             entry.view.report().identity.map(|identity| identity.serial).filter(|serial| !serial.is_empty())
         };
         let marker = devices.tracker.as_ref().and_then(|tracker| tracker.tools.get(side.index()));
         let marker = marker.and_then(|path| Some(path.file_stem()?.to_string_lossy().into_owned()));
-        let serials = Serials { arm: serial(Part::Arm(side)), tracker: serial(Part::Tracker), marker };
+        let serials = Serials { arm: serial(RigPart::Arm(side)), tracker: serial(RigPart::Tracker), marker };
         let arm = Geometry {
             world_from_base: pose(arm.world_from_base()),
             flange_from_s1: pose(arm.flange_from_s1()),

@@ -2,7 +2,7 @@
 
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 use nima_core::{
-    calibration::frames::{Carrier, Cause, FrameReport, FrameSample, Phase, StoredPose, TableFound},
+    calibration::frames::{Carrier, FrameCause, FramePhase, FrameReport, FrameSample, StoredPose, TableResult},
     frames::from_roll_pitch_yaw_deg,
 };
 use nima_machine::{
@@ -13,34 +13,34 @@ use nima_machine::{
 use nima_simulation::scene::Scene;
 
 use super::*;
-use crate::console::in_force::InForce;
+use crate::console::active_calibrations::ActiveCalibrations;
 
-struct Bench {
+struct Fixture {
     wizard: FrameWizard,
-    in_force: InForce,
+    active: ActiveCalibrations,
     rig_name: String,
     rig: RigConfig,
     folder: tempfile::TempDir,
     tick: Tick,
 }
 
-impl Bench {
-    fn new(kind: Kind) -> Self {
+impl Fixture {
+    fn new(kind: FrameKind) -> Self {
         let folder = tempfile::tempdir().unwrap();
         let simulated = RigConfig::load("simulated").unwrap();
         // Records are bound to the simulated rig's sensor; the arm is that of the emulated rig.
-        let in_force = InForce::load(Some(folder.path()), &simulated, &Scene::load("palpation").unwrap());
+        let active = ActiveCalibrations::load(Some(folder.path()), &simulated, &Scene::load("palpation").unwrap());
         let mut control = Loop::new(&simulated, &[Some(Calibrations::default()), None]).unwrap();
         let (_, [tick, _]) = control.step([None; SIDES], &Timing::default());
         let rig = RigConfig::load("emulated").unwrap();
         let wizard = FrameWizard::new(kind);
-        let mut bench = Self { wizard, in_force, rig_name: "emulated".to_owned(), rig, folder, tick: tick.unwrap() };
+        let mut bench = Self { wizard, active, rig_name: "emulated".to_owned(), rig, folder, tick: tick.unwrap() };
         bench.refresh();
         bench
     }
 
     fn binding(&self) -> Binding {
-        self.in_force.binding_of(&self.rig_name, &self.rig, &Roster::new())
+        self.active.binding_of(&self.rig_name, &self.rig, &Roster::new())
     }
 
     fn refresh(&mut self) {
@@ -64,26 +64,26 @@ impl Bench {
         self.refresh();
     }
 
-    fn subject(&self) -> Subject {
-        Subject::of(&self.rig, Side::Right, &Roster::new()).unwrap()
+    fn subject(&self) -> FrameSubject {
+        FrameSubject::of(&self.rig, Side::Right, &Roster::new()).unwrap()
     }
 
     fn save(&mut self) -> Result<(), String> {
         let saving = match self.wizard.made(&self.binding()).unwrap() {
-            Saving::Frame(saving) => *saving,
+            SaveRequest::Frame(saving) => *saving,
             other => panic!("{other:?}"),
         };
-        let (rig, path, words) = self.in_force.save_frame(saving, &self.rig_name, Some(self.folder.path()))?;
+        let (rig, path, words) = self.active.save_frame(saving, &self.rig_name, Some(self.folder.path()))?;
         self.rig = rig;
         self.rig_name = path.display().to_string();
-        self.wizard.frame.tell_saved(Ok(words), None);
+        self.wizard.frame.report_saved(Ok(words), None);
         self.refresh();
         Ok(())
     }
 
     fn undo(&mut self) {
         let changes: Vec<_> = self.wizard.undoable.iter().cloned().map(RigChange::undone).collect();
-        let (_, rig) = self.in_force.change_rig(&changes, &self.rig_name, Some(self.folder.path())).unwrap();
+        let (_, rig) = self.active.change_rig(&changes, &self.rig_name, Some(self.folder.path())).unwrap();
         self.rig = rig;
         self.refresh();
     }
@@ -110,7 +110,7 @@ fn pivoting(tip_m: Vector3<f64>, i: u32) -> FrameSample {
 
 #[test]
 fn a_tip_is_recorded_judged_written_into_the_rig_file_and_undone() {
-    let mut bench = Bench::new(Kind::Tip);
+    let mut bench = Fixture::new(FrameKind::Tip);
     let before = bench.subject();
     let tip_m = before.tip_in_flange_m() + Vector3::new(0.002, -0.001, 0.003);
     assert_eq!(bench.wizard.may_go_on(&bench.binding()), Err(text::wizards::NEEDS_CHECKS.get()), "no joints yet");
@@ -152,7 +152,7 @@ fn a_tip_is_recorded_judged_written_into_the_rig_file_and_undone() {
 
 #[test]
 fn a_mount_is_recorded_while_the_arm_turns_about_the_vertical() {
-    let mut bench = Bench::new(Kind::Mount);
+    let mut bench = Fixture::new(FrameKind::Mount);
     let subject = bench.subject();
     let mount = subject.arm.flange_from_s1.rotation;
     let up = subject.up_in_base();
@@ -195,10 +195,10 @@ fn seen(i: u32, flange_from_m: &Isometry3<f64>, base_from_c: &Isometry3<f64>) ->
 fn hand_eye_gives_marker_and_camera_and_opens_the_tracker_for_the_trocar() {
     let flange_from_m = at(Vector3::new(0.03, -0.04, 0.08), turn(7));
     let base_from_c = at(Vector3::new(1.3, 0.7, 0.9), turn(3) * turn(5));
-    let mut bench = Bench::new(Kind::HandEye);
-    assert_eq!(Kind::Trocar.other_way_needs(&bench.subject()), Err(texts::NEEDS_HAND_EYE.get()));
+    let mut bench = Fixture::new(FrameKind::HandEye);
+    assert_eq!(FrameKind::Trocar.other_way_needs(&bench.subject()), Err(texts::NEEDS_HAND_EYE.get()));
     bench.hold(&FrameSample { c_from_m: None, ..seen(0, &flange_from_m, &base_from_c) }, 0.1);
-    assert_eq!(bench.wizard.lacks(), Some(Source::Marker));
+    assert_eq!(bench.wizard.lacks(), Some(CalibrationSource::Marker));
     bench.hold(&seen(0, &flange_from_m, &base_from_c), 0.1);
     bench.next();
     for i in 0..30 {
@@ -211,7 +211,7 @@ fn hand_eye_gives_marker_and_camera_and_opens_the_tracker_for_the_trocar() {
     let [found, camera] = bench.subject().hand_eye().unwrap();
     let off = [found.inverse() * flange_from_m, camera.inverse() * base_from_c];
     assert!(off.iter().all(|off| off.translation.vector.norm() < 5e-5 && off.rotation.angle() < 5e-5), "{off:?}");
-    assert_eq!(Kind::Trocar.other_way_needs(&bench.subject()), Ok(()));
+    assert_eq!(FrameKind::Trocar.other_way_needs(&bench.subject()), Ok(()));
     // Two of the keys did not exist: undo removes them again.
     bench.undo();
     assert!(bench.subject().hand_eye().is_none());
@@ -220,7 +220,7 @@ fn hand_eye_gives_marker_and_camera_and_opens_the_tracker_for_the_trocar() {
 
 #[test]
 fn a_tip_that_leaves_its_dimple_is_refused_and_kept_only_under_a_name() {
-    let mut bench = Bench::new(Kind::Tip);
+    let mut bench = Fixture::new(FrameKind::Tip);
     let tip_m = bench.subject().tip_in_flange_m();
     bench.hold(&pivoting(tip_m, 0), 0.1);
     bench.next();
@@ -234,15 +234,15 @@ fn a_tip_that_leaves_its_dimple_is_refused_and_kept_only_under_a_name() {
     assert_eq!(bench.wizard.proof(), None);
     if bench.wizard.outcome().unwrap().is_found() {
         bench.next();
-        let told = bench.save().unwrap_err();
-        assert!(told.contains("refused"), "{told}");
+        let report = bench.save().unwrap_err();
+        assert!(report.contains("refused"), "{report}");
         assert_eq!(bench.rig_name, "emulated", "and nothing is written");
     }
 }
 
 #[test]
 fn a_pause_and_a_new_start_of_the_loop_record_nothing_wrong() {
-    let mut bench = Bench::new(Kind::Tip);
+    let mut bench = Fixture::new(FrameKind::Tip);
     let tip_m = bench.subject().tip_in_flange_m();
     bench.hold(&pivoting(tip_m, 0), 0.1);
     bench.next();
@@ -257,16 +257,16 @@ fn a_pause_and_a_new_start_of_the_loop_record_nothing_wrong() {
     assert_eq!((bench.wizard.taken(), bench.wizard.prompt()), (1, Prompt::Rest));
     bench.wizard.paused = false;
     bench.hold(&FrameSample::default(), 0.1);
-    assert_eq!(bench.wizard.phase, Phase::Missing(Some(Source::Flange)));
+    assert_eq!(bench.wizard.phase, FramePhase::Missing(Some(CalibrationSource::Flange)));
 }
 
 #[test]
 fn a_table_moves_the_base_and_leaves_the_trocar_where_it_is_on_the_patient() {
-    let bench = Bench::new(Kind::Table);
+    let bench = Fixture::new(FrameKind::Table);
     let subject = bench.subject();
     let base_from_table = at(Vector3::new(-0.38, 0.02, -0.26), from_roll_pitch_yaw_deg(&Vector3::new(0.5, -0.3, 4.0)));
-    let found = TableFound { carrier: Carrier::Flange, from_table: stored(&base_from_table) };
-    let report = FrameReport { found: Some(found), ..FrameReport::nothing(6, Cause::Proven) };
+    let found = TableResult { carrier: Carrier::Flange, from_table: stored(&base_from_table) };
+    let report = FrameReport { found: Some(found), ..FrameReport::nothing(6, FrameCause::Proven) };
     let (all, _) = numbers::of(&Outcome::Table(report), &subject, None).unwrap();
     let of =
         |name: &str| Vector3::from_column_slice(&all.iter().find(|number| number.key.ends_with(name)).unwrap().after);

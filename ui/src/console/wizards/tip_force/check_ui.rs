@@ -5,12 +5,12 @@ use egui_plot::{AxisHints, Bar, BarChart, Corner, Legend, Line, LineStyle, Marke
 use nima_core::calibration::Verdict;
 use nima_core::tip_force::{FRICTION, NO_MODEL};
 use nima_recording::tip_force::ROW_EVERY_S;
-use nima_training::Part;
+use nima_training::EvaluationPart;
 
 use super::{
-    super::{frame::Wish, pictures::progress},
+    super::{drawings::progress, frame::WizardRequest},
     Binding, CHECK_ROWS, CHECK_WORK, RECORD, TipForceWizard,
-    job::{BIN_N, BINS, Checked},
+    job::{BIN_N, BINS, CheckResult},
     take::words,
 };
 use crate::{
@@ -18,7 +18,7 @@ use crate::{
         text, theme,
         widgets::{card, figure, fitting_style, next_button, small, weak},
     },
-    words::Words as _,
+    report_text::ShortText as _,
 };
 
 const AXES: [&str; 3] = ["x", "y", "z"];
@@ -29,14 +29,14 @@ const HEIGHT: f32 = 228.0;
 
 impl TipForceWizard {
     /// Returns the request to go back and record more.
-    pub(super) fn check_ui(&mut self, ui: &mut Ui, binding: &Binding) -> Option<Wish> {
+    pub(super) fn check_ui(&mut self, ui: &mut Ui, binding: &Binding) -> Option<WizardRequest> {
         let mut wish = None;
         card(ui, text::tip_force::CHECK_TITLE.get(), text::tip_force::CHECK_HOVER.get(), |ui| {
             let work_s = CHECK_WORK as f64 * ROW_EVERY_S;
             let free_s = (CHECK_ROWS - CHECK_WORK) as f64 * ROW_EVERY_S;
             ui.label(RichText::new(self.task(work_s, free_s)).font(theme::strong(18.0)));
             if let Some(take) = &self.proof {
-                ui.label(text::tip_force::state(&take.phase_words()));
+                ui.label(text::tip_force::state(&take.phase_text()));
             }
             ui.horizontal(|ui| {
                 self.check_button_ui(ui, binding);
@@ -45,7 +45,7 @@ impl TipForceWizard {
                     .on_hover_text(text::tip_force::RECORD_MORE_HOVER.get())
                     .clicked()
                 {
-                    wish = Some(Wish::GoTo(RECORD));
+                    wish = Some(WizardRequest::GoTo(RECORD));
                 }
             });
             let judged = self.judging.is_some() || self.checked.is_some();
@@ -101,7 +101,7 @@ impl TipForceWizard {
     }
 }
 
-fn verdict_ui(ui: &mut Ui, checked: &Checked) {
+fn verdict_ui(ui: &mut Ui, checked: &CheckResult) {
     let check = &checked.check;
     card(ui, check.judgement.verdict.words(), text::tip_force::VERDICT_HOVER.get(), |ui| {
         let words = text::tip_force::verdict(&check.judgement.reason);
@@ -109,13 +109,13 @@ fn verdict_ui(ui: &mut Ui, checked: &Checked) {
         if check.judgement.verdict != Verdict::Accepted {
             ui.label(small(text::tip_force::VERDICT_OVERRIDE.get()));
         }
-        let doubt = text::tip_force::doubt(100.0 * check.doubt_share, check.rows);
+        let doubt = text::tip_force::doubt(100.0 * check.doubt_fraction, check.rows);
         figure(ui, text::tip_force::DOUBT.get(), doubt, text::tip_force::DOUBT_HOVER.get());
     });
 }
 
 /// Mean absolute error of another method on an axis, N, as text.
-fn mae_of(part: &Part, method: &str, axis: usize) -> String {
+fn mae_of(part: &EvaluationPart, method: &str, axis: usize) -> String {
     let figures = part.methods.iter().find(|figures| figures.method == method);
     let stats = figures.and_then(|figures| figures.outputs.get(axis).copied().flatten());
     stats.map_or_else(|| "-".to_owned(), |stats| format!("{:.3}", stats.mae))
@@ -124,7 +124,7 @@ fn mae_of(part: &Part, method: &str, axis: usize) -> String {
 /// Maximum width of the header of an error column.
 const HEAD: f32 = 100.0;
 
-fn figures_ui(ui: &mut Ui, checked: &Checked) {
+fn figures_ui(ui: &mut Ui, checked: &CheckResult) {
     let meaning = text::tip_force::ERRORS_HOVER.get();
     card(ui, text::tip_force::ERRORS_TITLE.get(), meaning, |ui| {
         let check = &checked.check;
@@ -162,7 +162,7 @@ fn figures_ui(ui: &mut Ui, checked: &Checked) {
     });
 }
 
-fn plots_ui(ui: &mut Ui, checked: &Checked) {
+fn plots_ui(ui: &mut Ui, checked: &CheckResult) {
     ui.columns(2, |columns| {
         card(&mut columns[0], text::tip_force::REGRESSION_TITLE.get(), text::tip_force::REGRESSION_HOVER.get(), |ui| {
             regression_ui(ui, checked);
@@ -184,7 +184,7 @@ fn plot<'a>(name: &str, x: &str, y: &str) -> Plot<'a> {
         .legend(Legend::default().position(Corner::LeftTop).follow_insertion_order(true))
 }
 
-fn regression_ui(ui: &mut Ui, checked: &Checked) {
+fn regression_ui(ui: &mut Ui, checked: &CheckResult) {
     let all = || checked.points.iter().flatten().flatten();
     let (low, high) = all().fold((-1.0_f64, 1.0_f64), |(low, high), value| (low.min(*value), high.max(*value)));
     let response =
@@ -203,16 +203,16 @@ fn regression_ui(ui: &mut Ui, checked: &Checked) {
     response.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, described));
 }
 
-fn free_ui(ui: &mut Ui, checked: &Checked) {
-    let response = plot("tip_force_free", text::tip_force::NO_CONTACT_AXIS.get(), text::tip_force::SHARE_AXIS.get())
+fn free_ui(ui: &mut Ui, checked: &CheckResult) {
+    let response = plot("tip_force_free", text::tip_force::NO_CONTACT_AXIS.get(), text::tip_force::FRACTION_AXIS.get())
         .show(ui, |plot| {
             for (k, ((axis, bins), colour)) in AXES.iter().zip(&checked.bins).zip(theme::now().series).enumerate() {
                 // Three narrow bars side by side in each bin.
-                let bar = |(i, share): (usize, &f64)| {
+                let bar = |(i, fraction): (usize, &f64)| {
                     let middle_n = (i as f64 - (BINS / 2) as f64) * BIN_N;
-                    Bar::new(middle_n + (k as f64 - 1.0) * BIN_N / 3.0, 100.0 * share).width(BIN_N / 3.0)
+                    Bar::new(middle_n + (k as f64 - 1.0) * BIN_N / 3.0, 100.0 * fraction).width(BIN_N / 3.0)
                 };
-                let bars = bins.iter().enumerate().filter(|(_, share)| **share > 0.0).map(bar).collect();
+                let bars = bins.iter().enumerate().filter(|(_, fraction)| **fraction > 0.0).map(bar).collect();
                 plot.bar_chart(BarChart::new(*axis, bars).color(colour));
             }
         });

@@ -12,25 +12,25 @@ use std::{
 
 use nima_core::{
     calibration::Verdict,
-    tip_force::{Check, Estimator, GoalKind, Model, TrainingSettings},
+    tip_force::{Estimator, ForceModel, GoalKind, OriginCheck, TrainingSettings},
 };
 use nima_recording::{
     store::{Store, keep_previous},
-    tip_force::{DataSet, Recorder, Selection},
+    tip_force::{DataSet, Selection, TipForceRecorder},
 };
-use nima_training::{Evaluation, Part, Progress, check, train_model};
+use nima_training::{Evaluation, EvaluationPart, TrainingProgress, check, train_model};
 
 use crate::console::text;
 use crate::language::{self, Language};
 
 /// A background thread. Dropping this requests it to stop; it then ends on its own, and its result is discarded.
 #[derive(Debug)]
-pub(super) struct Job<T> {
+pub(super) struct TrainingJob<T> {
     cancel: Arc<AtomicBool>,
     thread: Option<JoinHandle<Result<T, String>>>,
 }
 
-impl<T: Send + 'static> Job<T> {
+impl<T: Send + 'static> TrainingJob<T> {
     /// Starts `work` on a thread with normal priority; the loop's thread has priority over it if that is granted.
     pub(super) fn start(
         name: &str,
@@ -50,7 +50,7 @@ impl<T: Send + 'static> Job<T> {
     }
 }
 
-impl<T> Job<T> {
+impl<T> TrainingJob<T> {
     /// Requests it to stop.
     pub(super) fn cancel(&self) {
         self.cancel.store(true, Ordering::Relaxed);
@@ -62,7 +62,7 @@ impl<T> Job<T> {
     }
 }
 
-impl<T> Drop for Job<T> {
+impl<T> Drop for TrainingJob<T> {
     fn drop(&mut self) {
         self.cancel();
     }
@@ -70,42 +70,42 @@ impl<T> Drop for Job<T> {
 
 /// Losses of one member by epoch.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Curve {
+pub(super) struct LossCurve {
     /// Epoch, and logarithm (base 10) of the loss on training rows.
     pub(super) training: Vec<[f64; 2]>,
     /// Logarithm of the loss on held-out rows.
     pub(super) held_out: Vec<[f64; 2]>,
-    share: f64,
+    fraction: f64,
 }
 
 /// Progress of the training.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Curves {
     /// Losses of each member.
-    pub(super) members: Vec<Curve>,
+    pub(super) members: Vec<LossCurve>,
     /// Time since the start, s.
     pub(super) elapsed_s: f64,
 }
 
 impl Curves {
-    fn add(&mut self, now: &Progress) {
-        self.members.resize_with(self.members.len().max(now.members), Curve::default);
+    fn add(&mut self, now: &TrainingProgress) {
+        self.members.resize_with(self.members.len().max(now.members), LossCurve::default);
         self.elapsed_s = now.elapsed_s;
         let decades = |loss: f64| [now.epoch as f64, loss.max(1e-12).log10()];
         let Some(curve) = self.members.get_mut(now.member) else { return };
         curve.training.push(decades(now.training_loss));
         curve.held_out.push(decades(now.validation_loss));
-        curve.share = if now.finished { 1.0 } else { now.epoch as f64 / now.epochs_max.max(1) as f64 };
+        curve.fraction = if now.finished { 1.0 } else { now.epoch as f64 / now.epochs_max.max(1) as f64 };
     }
 
     /// Fraction of the work that is done, 0 to 1.
-    pub(super) fn share(&self) -> f64 {
-        self.members.iter().map(|curve| curve.share).sum::<f64>() / self.members.len().max(1) as f64
+    pub(super) fn fraction(&self) -> f64 {
+        self.members.iter().map(|curve| curve.fraction).sum::<f64>() / self.members.len().max(1) as f64
     }
 }
 
 /// Losses shared by two threads.
-pub(super) type Shared = Arc<Mutex<Curves>>;
+pub(super) type SharedLosses = Arc<Mutex<Curves>>;
 
 /// Locks the losses; if a thread has panicked, they are used in their last state.
 pub(super) fn look(curves: &Mutex<Curves>) -> MutexGuard<'_, Curves> {
@@ -114,8 +114,8 @@ pub(super) fn look(curves: &Mutex<Curves>) -> MutexGuard<'_, Curves> {
 
 /// Inputs of the training, and the store for its data.
 #[derive(Debug)]
-pub(super) struct Order {
-    pub(super) recorder: Recorder,
+pub(super) struct TrainingOrder {
+    pub(super) recorder: TipForceRecorder,
     /// Keep the existing data set, which is from another recording.
     pub(super) keep_previous: bool,
     pub(super) settings: TrainingSettings,
@@ -128,7 +128,7 @@ pub(super) fn path_of(store: &Store, kind: &str, sensor: &str) -> Result<PathBuf
     store.path_of(kind, sensor, "csv").map_err(|error| error.to_string())
 }
 
-fn write(recorder: &Recorder, path: &Path, keeps: bool) -> Result<(), String> {
+fn write(recorder: &TipForceRecorder, path: &Path, keeps: bool) -> Result<(), String> {
     let failed = |error: std::io::Error| text::tip_force::not_written(path, &error);
     path.parent().map_or(Ok(()), fs::create_dir_all).map_err(failed)?;
     if keeps {
@@ -138,14 +138,14 @@ fn write(recorder: &Recorder, path: &Path, keeps: bool) -> Result<(), String> {
 }
 
 /// Saves the data set, so that it is not lost and the command line can use it, then trains on it.
-pub(super) fn train(order: Order, curves: &Mutex<Curves>, cancel: &AtomicBool) -> Result<Model, String> {
-    let Order { recorder, keep_previous, settings, bound: [sensor, tool], store } = order;
+pub(super) fn train(order: TrainingOrder, curves: &Mutex<Curves>, cancel: &AtomicBool) -> Result<ForceModel, String> {
+    let TrainingOrder { recorder, keep_previous, settings, bound: [sensor, tool], store } = order;
     let path = path_of(&store, "tip-force-data", &sensor)?;
     write(&recorder, &path, keep_previous)?;
     drop(recorder);
     let data = DataSet::read(&[path], &Selection::default()).map_err(|error| error.to_string())?;
-    let told = |now: &Progress| look(curves).add(now);
-    train_model(&data, &settings, [Some(sensor), Some(tool)], cancel, &told).map_err(|error| error.to_string())
+    let report = |now: &TrainingProgress| look(curves).add(now);
+    train_model(&data, &settings, [Some(sensor), Some(tool)], cancel, &report).map_err(|error| error.to_string())
 }
 
 /// Bins of the histogram of predictions without contact, and their width, N.
@@ -156,11 +156,11 @@ const POINTS: usize = 700;
 
 /// Result of a check, prepared for drawing.
 #[derive(Clone, Debug)]
-pub(super) struct Checked {
+pub(super) struct CheckResult {
     /// Errors and verdict.
-    pub(super) check: Check,
+    pub(super) check: OriginCheck,
     /// Errors of all methods.
-    pub(super) part: Part,
+    pub(super) part: EvaluationPart,
     /// Per axis: measured and predicted force, N; a subset of the rows.
     pub(super) points: [Vec<[f64; 2]>; 3],
     /// Per axis: fraction of rows without contact in each bin; the middle bin is around zero, the outer ones include
@@ -171,11 +171,11 @@ pub(super) struct Checked {
 /// Evaluates a model on a new recording, which is saved next to the data set. If the training data were incomplete
 /// (`narrow`), the model is not accepted, whatever its errors.
 pub(super) fn judge(
-    recorder: &Recorder,
-    model: Model,
+    recorder: &TipForceRecorder,
+    model: ForceModel,
     narrow: Option<GoalKind>,
     (store, sensor): (&Store, &str),
-) -> Result<Checked, String> {
+) -> Result<CheckResult, String> {
     let path = path_of(store, "tip-force-check", sensor)?;
     write(recorder, &path, true)?;
     let mut estimator = Estimator::new(model);
@@ -189,7 +189,7 @@ pub(super) fn judge(
     }
     let points = points(&data, &evaluation);
     let bins = bins(&data, &evaluation);
-    Ok(Checked { check, part: evaluation.overall, points, bins })
+    Ok(CheckResult { check, part: evaluation.overall, points, bins })
 }
 
 fn points(data: &DataSet, evaluation: &Evaluation) -> [Vec<[f64; 2]>; 3] {

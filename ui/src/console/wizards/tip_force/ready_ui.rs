@@ -14,7 +14,7 @@ use crate::console::{text, widgets::card};
 use crate::language::Text;
 
 /// Which of [`SOURCES`] delivered in a tick.
-pub(super) type Sources = [bool; SOURCES.len()];
+pub(super) type ReadySources = [bool; SOURCES.len()];
 
 /// Required sources: name, and the text if it is missing.
 const SOURCES: [(Text, Text); 5] = [
@@ -26,8 +26,8 @@ const SOURCES: [(Text, Text); 5] = [
 ];
 
 /// Sources that delivered in this tick.
-pub(super) fn sources(tick: &Tick) -> Sources {
-    tick.wrist.as_ref().map_or_else(Sources::default, |sample| {
+pub(super) fn sources(tick: &Tick) -> ReadySources {
+    tick.wrist.as_ref().map_or_else(ReadySources::default, |sample| {
         let gravity = tick.force.gravity_free.is_some();
         [true, gravity, sample.tissue_n.is_some(), sample.s1_from_c().is_some(), sample.insertion_m.is_some()]
     })

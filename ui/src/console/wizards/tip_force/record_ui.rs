@@ -1,15 +1,15 @@
 //! The recording page: the task, the number of rows, missing goals, and three maps of the coverage.
 
 use egui::{Align, Button, Layout, RichText, Ui, vec2};
-use nima_core::tip_force::Coverage;
+use nima_core::tip_force::TipForceCoverage;
 use nima_machine::rig::Prompt;
 use nima_recording::tip_force::ROW_EVERY_S;
 use nima_training::MIN_ROWS;
 
 use super::{
     super::{
-        frame::{Wish, Wizard as _},
-        pictures::{AxisWords, heat_map, progress},
+        drawings::{AxisText, heat_map, progress},
+        frame::{Wizard as _, WizardRequest},
     },
     Binding, TRAIN, TipForceWizard,
     take::words,
@@ -18,14 +18,14 @@ use crate::console::{
     text, theme,
     widgets::{card, next_button, small},
 };
-use crate::words::{goal_words, within};
+use crate::report_text::{goal_text, within};
 
 /// Number of rows of the paper's data set.
 const PAPER_ROWS: usize = 30_000;
 
 impl TipForceWizard {
     /// Returns the request to train although not all requirements are met.
-    pub(super) fn record_ui(&mut self, ui: &mut Ui, binding: &Binding) -> Option<Wish> {
+    pub(super) fn record_ui(&mut self, ui: &mut Ui, binding: &Binding) -> Option<WizardRequest> {
         let running = self.is_recording();
         let rows = self.rows();
         let mut wish = None;
@@ -45,15 +45,15 @@ impl TipForceWizard {
                     );
                     let anyway = anyway.on_hover_text(text::tip_force::TRAIN_ANYWAY_HOVER.get());
                     if anyway.on_disabled_hover_text(text::tip_force::TRAIN_ANYWAY_DISABLED_HOVER.get()).clicked() {
-                        wish = Some(Wish::GoTo(TRAIN));
+                        wish = Some(WizardRequest::GoTo(TRAIN));
                     }
                 });
             });
             let seconds = rows as f64 * ROW_EVERY_S;
-            let told = text::tip_force::rows_and_seconds(rows, seconds, PAPER_ROWS, PAPER_ROWS as f64 * ROW_EVERY_S);
-            progress(ui, text::tip_force::ROWS.get(), rows as f64 / PAPER_ROWS as f64, &told);
+            let report = text::tip_force::rows_and_seconds(rows, seconds, PAPER_ROWS, PAPER_ROWS as f64 * ROW_EVERY_S);
+            progress(ui, text::tip_force::ROWS.get(), rows as f64 / PAPER_ROWS as f64, &report);
         });
-        let empty = Coverage::default();
+        let empty = TipForceCoverage::default();
         let coverage = self.recording.as_ref().map_or(&empty, |take| take.recorder.coverage());
         goals_ui(ui, coverage);
         maps_ui(ui, coverage);
@@ -79,11 +79,11 @@ impl TipForceWizard {
             } else {
                 text::tip_force::ADVICE_NOW.get()
             };
-            let [name, advice] = goal_words(goal.what);
+            let [name, advice] = goal_text(goal.what);
             let advice = text::tip_force::advice(when, advice, &within(name));
             ui.label(RichText::new(advice).font(theme::strong(16.0)));
         }
-        ui.label(text::tip_force::state(&take.phase_words()));
+        ui.label(text::tip_force::state(&take.phase_text()));
     }
 
     /// The start button; returns true when it is pressed.
@@ -112,30 +112,30 @@ impl TipForceWizard {
     }
 }
 
-fn goals_ui(ui: &mut Ui, coverage: &Coverage) {
+fn goals_ui(ui: &mut Ui, coverage: &TipForceCoverage) {
     card(ui, text::tip_force::GOALS_TITLE.get(), text::tip_force::GOALS_HOVER.get(), |ui| {
         ui.columns(2, |columns| {
             let goals = coverage.goals();
             for (i, goal) in goals.iter().enumerate() {
                 // Rounded down, so that 100 is shown only when the requirement is met.
-                let percent = format!("{:.0} %", (100.0 * goal.share).floor());
+                let percent = format!("{:.0} %", (100.0 * goal.fraction).floor());
                 progress(
                     &mut columns[i / goals.len().div_ceil(2)],
-                    goal_words(goal.what)[0],
-                    goal.share,
-                    if goal.share < 1.0 { &percent } else { text::wizards::MET.get() },
+                    goal_text(goal.what)[0],
+                    goal.fraction,
+                    if goal.fraction < 1.0 { &percent } else { text::wizards::MET.get() },
                 );
             }
         });
     });
 }
 
-fn maps_ui(ui: &mut Ui, coverage: &Coverage) {
-    let tilt: [AxisWords; 2] =
+fn maps_ui(ui: &mut Ui, coverage: &TipForceCoverage) {
+    let tilt: [AxisText; 2] =
         [["-53 deg", text::tip_force::TILT_X.get(), "53 deg"], ["-53", text::tip_force::TILT_Y.get(), "53"]];
-    let force: [AxisWords; 2] =
+    let force: [AxisText; 2] =
         [["0 N", text::tip_force::FORCE_ACROSS.get(), "5 N"], ["-5", text::tip_force::FORCE_ALONG.get(), "5"]];
-    let travel: [AxisWords; 2] =
+    let travel: [AxisText; 2] =
         [["0 mm", text::tip_force::TRAVEL_DEPTH.get(), "300 mm"], ["-160", text::tip_force::TRAVEL_SPEED.get(), "160"]];
     let meaning = text::tip_force::COVERAGE_HOVER.get();
     card(ui, text::tip_force::COVERAGE_TITLE.get(), meaning, |ui| {

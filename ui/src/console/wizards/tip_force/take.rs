@@ -2,21 +2,21 @@
 
 use nima_core::calibration::correspondence::Correspondence;
 use nima_machine::{messages::Tick, rig::Prompt};
-use nima_recording::tip_force::{MOST_ROWS, Recorder, RecorderPhase};
+use nima_recording::tip_force::{MAX_ROWS, RecorderPhase, TipForceRecorder};
 
-use crate::{console::text, words::Words as _};
+use crate::{console::text, report_text::ShortText as _};
 
 /// A gap in the ticks longer than this, s, means that the rig was not observed meanwhile.
 const HOLE_S: f64 = 1.0;
 
 /// A continuous clock: the loop's clock starts at zero with each start.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Clock {
+pub(super) struct RecordingClock {
     begin_s: f64,
     last_s: Option<f64>,
 }
 
-impl Clock {
+impl RecordingClock {
     /// Continuous time, s; and whether ticks were missing before this one.
     pub(super) fn at(&mut self, t_s: f64) -> (f64, bool) {
         let now_s = self.begin_s + t_s;
@@ -33,9 +33,9 @@ impl Clock {
 
 /// A recording.
 #[derive(Clone, Debug)]
-pub(super) struct Take {
+pub(super) struct TipForceRecording {
     /// The recorded rows.
-    pub(super) recorder: Recorder,
+    pub(super) recorder: TipForceRecorder,
     /// Whether the recording is running, even if a source is missing at the moment.
     pub(super) running: bool,
     /// Whether the wrist sensor is silent.
@@ -44,9 +44,9 @@ pub(super) struct Take {
     asked: Prompt,
 }
 
-impl Take {
+impl TipForceRecording {
     pub(super) fn new(correspondence: Correspondence) -> Self {
-        Self { recorder: Recorder::new(correspondence), running: false, silent: false, asked: Prompt::Rest }
+        Self { recorder: TipForceRecorder::new(correspondence), running: false, silent: false, asked: Prompt::Rest }
     }
 
     /// Adds one tick; `work` is the instruction after the rest period.
@@ -73,15 +73,15 @@ impl Take {
         if self.running { self.asked } else { Prompt::Rest }
     }
 
-    pub(super) fn phase_words(&self) -> String {
-        if self.recorder.rows() == MOST_ROWS {
+    pub(super) fn phase_text(&self) -> String {
+        if self.recorder.rows() == MAX_ROWS {
             return text::tip_force::PHASE_FULL.get().to_owned();
         }
         match self.recorder.phase() {
             _ if !self.running => text::tip_force::PHASE_PAUSED.get().to_owned(),
             _ if self.silent => text::tip_force::PHASE_WRIST_SILENT.get().to_owned(),
             RecorderPhase::Lacks(lack) => text::tip_force::nothing_taken(lack.words()),
-            RecorderPhase::Resting { share } => text::tip_force::taking_zero(100.0 * share),
+            RecorderPhase::Resting { fraction } => text::tip_force::taking_zero(100.0 * fraction),
             RecorderPhase::NotMoved => text::tip_force::PHASE_NOT_MOVED.get().to_owned(),
             RecorderPhase::Recording | RecorderPhase::Full => text::tip_force::PHASE_RECORDING.get().to_owned(),
         }
@@ -98,11 +98,11 @@ pub(super) fn words(prompt: Prompt) -> &'static str {
 
 #[cfg(test)]
 mod tests {
-    use super::Clock;
+    use super::RecordingClock;
 
     #[test]
     fn time_only_rises_and_every_hole_is_told() {
-        let mut clock = Clock::default();
+        let mut clock = RecordingClock::default();
         assert_eq!(clock.at(5.0), (5.0, false));
         assert_eq!(clock.at(5.001), (5.001, false));
         assert_eq!(clock.at(9.0), (9.0, true), "nobody watched for four seconds");

@@ -5,7 +5,7 @@ use egui_plot::{AxisHints, Corner, GridInput, GridMark, Legend, Line, LineStyle,
 use nima_recording::tip_force::ROW_EVERY_S;
 
 use super::{
-    super::pictures::progress,
+    super::drawings::progress,
     Binding, Size, TipForceWizard,
     job::{Curves, look},
 };
@@ -13,7 +13,7 @@ use crate::console::{
     text, theme,
     widgets::{card, figure, next_button, small},
 };
-use crate::words::{goal_words, within};
+use crate::report_text::{goal_text, within};
 
 const HEIGHT: f32 = 330.0;
 
@@ -22,9 +22,9 @@ impl TipForceWizard {
         card(ui, text::tip_force::STEP_TRAIN.get(), text::tip_force::TRAIN_HOVER.get(), |ui| {
             self.size_ui(ui);
             let rows = self.rows();
-            let told = text::tip_force::rows_and_time(rows, rows as f64 * ROW_EVERY_S);
-            figure(ui, text::tip_force::TRAIN_DATA.get(), told, text::tip_force::TRAIN_DATA_HOVER.get());
-            let (share, elapsed_s) = self.progress();
+            let report = text::tip_force::rows_and_time(rows, rows as f64 * ROW_EVERY_S);
+            figure(ui, text::tip_force::TRAIN_DATA.get(), report, text::tip_force::TRAIN_DATA_HOVER.get());
+            let (fraction, elapsed_s) = self.progress();
             ui.horizontal(|ui| {
                 if self.is_training() {
                     if ui.add(Button::new(text::tip_force::TRAIN_CANCEL.get()).min_size(vec2(180.0, 40.0))).clicked() {
@@ -43,7 +43,7 @@ impl TipForceWizard {
                     self.start_training(binding);
                 }
             });
-            progress(ui, text::tip_force::TRAIN_PROGRESS.get(), share, &self.progress_words(share, elapsed_s));
+            progress(ui, text::tip_force::TRAIN_PROGRESS.get(), fraction, &self.progress_text(fraction, elapsed_s));
         });
         self.outcome_ui(ui);
         let meaning = text::tip_force::LOSS_HOVER.get();
@@ -73,13 +73,13 @@ impl TipForceWizard {
         });
     }
 
-    fn progress_words(&self, share: f64, elapsed_s: f64) -> String {
+    fn progress_text(&self, fraction: f64, elapsed_s: f64) -> String {
         match &self.training {
             Some((job, _)) if job.is_cancelled() => text::tip_force::TRAIN_STOPPING.get().to_owned(),
-            Some(_) if share <= 0.0 => text::tip_force::TRAIN_STARTING.get().to_owned(),
+            Some(_) if fraction <= 0.0 => text::tip_force::TRAIN_STARTING.get().to_owned(),
             Some(_) => {
-                let left_s = elapsed_s * (1.0 - share) / share;
-                text::tip_force::time_left(100.0 * share, elapsed_s, left_s)
+                let left_s = elapsed_s * (1.0 - fraction) / fraction;
+                text::tip_force::time_left(100.0 * fraction, elapsed_s, left_s)
             }
             None if self.trained.is_some() => text::tip_force::TRAIN_DONE.get().to_owned(),
             None => text::tip_force::TRAIN_NOT_STARTED.get().to_owned(),
@@ -92,8 +92,8 @@ impl TipForceWizard {
             let origin = &trained.model.origin;
             let losses = origin.figures.iter().map(|member| member.validation_loss);
             let mean = losses.sum::<f64>() / origin.figures.len().max(1) as f64;
-            let told = text::tip_force::networks_on_rows(origin.figures.len(), origin.rows);
-            figure(ui, text::tip_force::ENSEMBLE.get(), told, text::tip_force::ENSEMBLE_HOVER.get());
+            let report = text::tip_force::networks_on_rows(origin.figures.len(), origin.rows);
+            figure(ui, text::tip_force::ENSEMBLE.get(), report, text::tip_force::ENSEMBLE_HOVER.get());
             figure(
                 ui,
                 text::tip_force::HELD_OUT_LOSS.get(),
@@ -101,7 +101,7 @@ impl TipForceWizard {
                 text::tip_force::HELD_OUT_LOSS_HOVER.get(),
             );
             if let Some(goal) = trained.narrow {
-                let [goal, _] = goal_words(goal);
+                let [goal, _] = goal_text(goal);
                 ui.label(text::tip_force::not_complete(&within(goal)));
             }
             if origin.rows < self.rows() {

@@ -9,22 +9,22 @@ use std::{
 };
 
 use egui::Context;
-use nima_camera::{Grey, Sight, Unseen, find};
-use nima_endoscope::{Board, Picture};
+use nima_camera::{BoardSight, DetectionFailure, Grey, find};
+use nima_endoscope::{Checkerboard, DecodedImage};
 
 /// An image and the board in it.
 #[derive(Debug)]
-pub(super) struct Found {
-    pub(super) picture: Arc<Picture>,
-    pub(super) board: Board,
-    pub(super) sight: Result<Sight, Unseen>,
+pub(super) struct BoardImage {
+    pub(super) image: Arc<DecodedImage>,
+    pub(super) board: Checkerboard,
+    pub(super) sight: Result<BoardSight, DetectionFailure>,
 }
 
 /// The thread, which ends when this is dropped.
 #[derive(Debug)]
 pub(super) struct Detector {
-    asked: Sender<(Arc<Picture>, Board)>,
-    found: Receiver<Found>,
+    asked: Sender<(Arc<DecodedImage>, Checkerboard)>,
+    found: Receiver<BoardImage>,
     busy: bool,
     last: u64,
 }
@@ -32,13 +32,13 @@ pub(super) struct Detector {
 impl Detector {
     /// `None` if no thread can be created.
     pub(super) fn new(ctx: &Context) -> Option<Self> {
-        let (asked, pictures) = channel::<(Arc<Picture>, Board)>();
+        let (asked, images) = channel::<(Arc<DecodedImage>, Checkerboard)>();
         let (finds, found) = channel();
         let ctx = ctx.clone();
         let work = move || {
-            while let Ok((picture, board)) = pictures.recv() {
-                let sight = Grey::of(&picture).map_or(Err(Unseen::Nothing), |grey| find(&grey, &board));
-                if finds.send(Found { picture, board, sight }).is_err() {
+            while let Ok((image, board)) = images.recv() {
+                let sight = Grey::of(&image).map_or(Err(DetectionFailure::Nothing), |grey| find(&grey, &board));
+                if finds.send(BoardImage { image, board, sight }).is_err() {
                     return;
                 }
                 ctx.request_repaint();
@@ -49,15 +49,15 @@ impl Detector {
     }
 
     /// Passes the newest image; images that arrive during a search are skipped.
-    pub(super) fn show(&mut self, (number, picture): (u64, Arc<Picture>), board: Board) {
+    pub(super) fn show(&mut self, (number, image): (u64, Arc<DecodedImage>), board: Checkerboard) {
         if !self.busy && number != self.last {
-            self.busy = self.asked.send((picture, board)).is_ok();
+            self.busy = self.asked.send((image, board)).is_ok();
             self.last = number;
         }
     }
 
     /// Results since the last call.
-    pub(super) fn take(&mut self) -> Option<Found> {
+    pub(super) fn take(&mut self) -> Option<BoardImage> {
         let found = self.found.try_recv().ok();
         self.busy &= found.is_none();
         found

@@ -1,7 +1,7 @@
 //! The Camera wizard: check, views of a board, the lens, the corners touched with the tip, save. It writes to the rig file.
 
 mod detector;
-mod picture;
+mod image;
 mod steps_ui;
 #[cfg(test)]
 mod tests;
@@ -10,41 +10,44 @@ mod tip;
 use std::sync::Arc;
 
 use egui::Ui;
-use nima_camera::{Offer, PlaceError, Placed, Report, Session, Sight, Touch, Unseen, calibrate, place};
+use nima_camera::{
+    BoardSight, CameraPlacement, CameraSession, DetectionFailure, LensReport, PlaceError, TouchedCorner, ViewOutcome,
+    calibrate, place,
+};
 use nima_core::calibration::{Verdict, frames::RigChange};
-use nima_endoscope::{Board, BoardError, Lens, Picture, board::Corners};
+use nima_endoscope::{BoardError, Checkerboard, DecodedImage, Lens, board::BoardCorners};
 use nima_machine::{
-    config::{Endoscope, RigConfig, RigFile},
+    config::{EndoscopeConfig, RigConfig, RigFile},
     messages::Tick,
     rig::Prompt,
 };
 use nima_simulation::camera::lens_of;
 
 use self::{
-    detector::{Detector, Found},
-    picture::Shown,
+    detector::{BoardImage, Detector},
+    image::DisplayedImage,
     steps_ui::is_good,
-    tip::{Marker, Tip},
+    tip::{CameraTip, EndoscopeMarker},
 };
 use super::{
-    lens::{FoundPlace, changes, undone},
-    text as texts, words,
+    camera_calibration::{FoundPlace, changes, undone},
+    report_text, text as texts,
 };
 use crate::console::{
     text,
     widgets::card,
     wizards::{
-        Binding, Saving, Wizard,
-        frame::{Frame, Step, Wish},
+        Binding, SaveRequest, Wizard,
+        frame::{WizardFrame, WizardRequest, WizardStep},
     },
 };
 
-const STEPS: [Step; 5] = [
-    Step { name: text::wizards::STEP_CHECK, meaning: texts::STEP_CHECK_HOVER },
-    Step { name: texts::STEP_VIEWS, meaning: texts::STEP_VIEWS_HOVER },
-    Step { name: texts::STEP_LENS, meaning: texts::STEP_LENS_HOVER },
-    Step { name: texts::STEP_TOUCH, meaning: texts::STEP_TOUCH_HOVER },
-    Step { name: text::wizards::STEP_SAVE, meaning: text::wizards::STEP_SAVE_IN_RIG_HOVER },
+const STEPS: [WizardStep; 5] = [
+    WizardStep { name: text::wizards::STEP_CHECK, meaning: texts::STEP_CHECK_HOVER },
+    WizardStep { name: texts::STEP_VIEWS, meaning: texts::STEP_VIEWS_HOVER },
+    WizardStep { name: texts::STEP_LENS, meaning: texts::STEP_LENS_HOVER },
+    WizardStep { name: texts::STEP_TOUCH, meaning: texts::STEP_TOUCH_HOVER },
+    WizardStep { name: text::wizards::STEP_SAVE, meaning: text::wizards::STEP_SAVE_IN_RIG_HOVER },
 ];
 const CHECK: usize = 0;
 const VIEWS: usize = 1;
@@ -55,30 +58,30 @@ const SAVE: usize = 4;
 const MOVED_PX: f64 = 3.0;
 
 pub(super) struct CameraWizard {
-    frame: Frame,
+    frame: WizardFrame,
     corners: String,
     square_mm: f64,
     keeps_lens: bool,
     /// The endoscope in the rig file.
-    endoscope: Option<Endoscope>,
+    endoscope: Option<EndoscopeConfig>,
     rig: Option<String>,
     detector: Option<Detector>,
     /// The newest searched image, until it is uploaded.
-    fresh: Option<Arc<Picture>>,
-    shown: Shown,
-    sight: Option<Sight>,
-    last: Option<Result<Offer, Unseen>>,
-    session: Option<Session>,
-    report: Option<Report>,
-    tip: Tip,
+    fresh: Option<Arc<DecodedImage>>,
+    shown: DisplayedImage,
+    sight: Option<BoardSight>,
+    last: Option<Result<ViewOutcome, DetectionFailure>>,
+    session: Option<CameraSession>,
+    report: Option<LensReport>,
+    tip: CameraTip,
     /// The endoscope's marker while the board is at rest, if its pose is known.
-    marker: Marker,
+    marker: EndoscopeMarker,
     /// The board at rest while it is touched, and the previous sight, which must be the same.
-    base: Option<Sight>,
-    lying: Option<Sight>,
+    base: Option<BoardSight>,
+    lying: Option<BoardSight>,
     moved: bool,
-    touches: Vec<Touch>,
-    placed: Option<Result<Placed, PlaceError>>,
+    touches: Vec<TouchedCorner>,
+    placed: Option<Result<CameraPlacement, PlaceError>>,
     /// Changes to be saved, and saved changes.
     pending: Option<Vec<RigChange>>,
     undoable: Vec<RigChange>,
@@ -93,7 +96,7 @@ impl std::fmt::Debug for CameraWizard {
 impl Default for CameraWizard {
     fn default() -> Self {
         Self {
-            frame: Frame::default(),
+            frame: WizardFrame::default(),
             corners: "9x6".to_owned(),
             square_mm: 10.0,
             keeps_lens: false,
@@ -101,13 +104,13 @@ impl Default for CameraWizard {
             rig: None,
             detector: None,
             fresh: None,
-            shown: Shown::default(),
+            shown: DisplayedImage::default(),
             sight: None,
             last: None,
             session: None,
             report: None,
-            tip: Tip::default(),
-            marker: Marker::default(),
+            tip: CameraTip::default(),
+            marker: EndoscopeMarker::default(),
             base: None,
             lying: None,
             moved: false,
@@ -120,12 +123,12 @@ impl Default for CameraWizard {
 }
 
 impl CameraWizard {
-    fn take(&mut self, Found { picture, board, sight }: Found) {
-        let size_px = picture.size_px;
-        self.fresh = Some(picture);
+    fn take(&mut self, BoardImage { image, board, sight }: BoardImage) {
+        let size_px = image.size_px;
+        self.fresh = Some(image);
         self.sight = sight.as_ref().ok().cloned();
         if self.session.as_ref().is_none_or(|session| session.size_px() != size_px || *session.board() != board) {
-            self.session = Some(Session::new(board, size_px));
+            self.session = Some(CameraSession::new(board, size_px));
         }
         self.last = Some(match sight {
             Ok(sight) if self.frame.step == VIEWS && !self.keeps_lens => Ok(self.offer(sight)),
@@ -133,19 +136,19 @@ impl CameraWizard {
                 if self.frame.step == TOUCH {
                     self.lie(&sight);
                 }
-                Ok(Offer::TakenHere)
+                Ok(ViewOutcome::TakenHere)
             }
             Err(unseen) => {
-                self.session.iter_mut().for_each(Session::miss);
+                self.session.iter_mut().for_each(CameraSession::miss);
                 Err(unseen)
             }
         });
     }
 
-    fn offer(&mut self, sight: Sight) -> Offer {
-        let Some(session) = &mut self.session else { return Offer::Moving };
+    fn offer(&mut self, sight: BoardSight) -> ViewOutcome {
+        let Some(session) = &mut self.session else { return ViewOutcome::Moving };
         let offer = session.offer(sight);
-        if offer == Offer::Taken {
+        if offer == ViewOutcome::Taken {
             self.report = None;
             self.frame.saved = None;
         }
@@ -154,7 +157,7 @@ impl CameraWizard {
 
     /// Checks that the board is at rest before it is touched: it must be seen twice at the same position; a later sight
     /// elsewhere means that it has moved.
-    fn lie(&mut self, sight: &Sight) {
+    fn lie(&mut self, sight: &BoardSight) {
         let limit_px = MOVED_PX * sight_width(self.session.as_ref()) / 1280.0;
         match &self.base {
             Some(base) => self.moved |= !self.touches.is_empty() && base.mean_move_px(sight) > limit_px,
@@ -166,11 +169,11 @@ impl CameraWizard {
         if self.touches.is_empty() && self.base.as_ref().is_some_and(|base| base.mean_move_px(sight) > limit_px) {
             self.base = None;
             self.lying = Some(sight.clone());
-            self.marker = Marker::default();
+            self.marker = EndoscopeMarker::default();
         }
     }
 
-    fn board(&self) -> Result<Board, BoardError> {
+    fn board(&self) -> Result<Checkerboard, BoardError> {
         board_of(&self.corners, self.square_mm)
     }
 
@@ -192,12 +195,12 @@ impl CameraWizard {
     }
 
     /// State of the board in the newest image.
-    fn told(&self) -> String {
+    fn report(&self) -> String {
         match &self.last {
             None => texts::LOOKING.get().to_owned(),
             Some(Ok(_)) if self.frame.step != VIEWS => texts::SEEN.get().to_owned(),
-            Some(Ok(offer)) => words::offer(*offer).to_owned(),
-            Some(Err(unseen)) => words::unseen(*unseen),
+            Some(Ok(offer)) => report_text::offer(*offer).to_owned(),
+            Some(Err(unseen)) => report_text::unseen(*unseen),
         }
     }
 
@@ -219,7 +222,7 @@ impl CameraWizard {
         let (Some(tip_m), Some(corner)) = (self.tip.still_m(), self.wanted().get(self.touches.len()).copied()) else {
             return;
         };
-        self.touches.push(Touch { corner, tip_m });
+        self.touches.push(TouchedCorner { corner, tip_m });
         self.find_place();
     }
 
@@ -237,7 +240,7 @@ impl CameraWizard {
         self.base = None;
         self.lying = None;
         self.moved = false;
-        self.marker = Marker::default();
+        self.marker = EndoscopeMarker::default();
         self.touches.clear();
         self.find_place();
     }
@@ -251,27 +254,27 @@ impl CameraWizard {
         Some(FoundPlace { pose: on_marker.unwrap_or(world_from_camera), on_marker: on_marker.is_some(), checked_px })
     }
 
-    fn good_place(&self) -> Option<&Placed> {
+    fn good_place(&self) -> Option<&CameraPlacement> {
         let placed = self.placed.as_ref()?.as_ref().ok()?;
         (placed.verdict() == Verdict::Accepted && !self.moved).then_some(placed)
     }
 }
 
-fn sight_width(session: Option<&Session>) -> f64 {
+fn sight_width(session: Option<&CameraSession>) -> f64 {
     session.map_or(1280.0, |session| session.size_px()[0] as f64)
 }
 
-fn board_of(corners: &str, square_mm: f64) -> Result<Board, BoardError> {
-    let Corners(corners) = corners.trim().parse()?;
-    Board::new(corners, square_mm * 1e-3)
+fn board_of(corners: &str, square_mm: f64) -> Result<Checkerboard, BoardError> {
+    let BoardCorners(corners) = corners.trim().parse()?;
+    Checkerboard::new(corners, square_mm * 1e-3)
 }
 
 impl Wizard for CameraWizard {
-    fn steps(&self) -> &'static [Step] {
+    fn steps(&self) -> &'static [WizardStep] {
         &STEPS
     }
 
-    fn frame_mut(&mut self) -> &mut Frame {
+    fn frame_mut(&mut self) -> &mut WizardFrame {
         &mut self.frame
     }
 
@@ -304,14 +307,14 @@ impl Wizard for CameraWizard {
         }
     }
 
-    fn see(&mut self, picture: Option<(u64, Arc<Picture>)>, ctx: &egui::Context) {
+    fn see(&mut self, image: Option<(u64, Arc<DecodedImage>)>, ctx: &egui::Context) {
         if self.detector.is_none() {
             self.detector = Detector::new(ctx);
         }
         let (Some(detector), Ok(board)) = (&mut self.detector, board_of(&self.corners, self.square_mm)) else { return };
         let found = detector.take();
-        if let Some(picture) = picture {
-            detector.show(picture, board);
+        if let Some(image) = image {
+            detector.show(image, board);
         }
         if let Some(found) = found.filter(|found| found.board == board) {
             self.take(found);
@@ -338,15 +341,15 @@ impl Wizard for CameraWizard {
 
     fn is_done(&self) -> bool {
         match self.frame.step {
-            VIEWS => self.keeps_lens || self.session.as_ref().is_some_and(|session| session.share() >= 1.0),
+            VIEWS => self.keeps_lens || self.session.as_ref().is_some_and(|session| session.fraction() >= 1.0),
             TOUCH => self.good_place().is_some() && self.next_corner().is_none(),
             _ => true,
         }
     }
 
-    fn step_ui(&mut self, ui: &mut Ui, _: &Binding) -> Option<Wish> {
-        if let Some(picture) = self.fresh.take() {
-            self.shown.upload(ui, &picture);
+    fn step_ui(&mut self, ui: &mut Ui, _: &Binding) -> Option<WizardRequest> {
+        if let Some(image) = self.fresh.take() {
+            self.shown.upload(ui, &image);
         }
         match self.frame.step {
             CHECK => self.check_ui(ui),
@@ -364,8 +367,8 @@ impl Wizard for CameraWizard {
         Some(texts::proof(held_out_px.filter(|_| !self.keeps_lens), place))
     }
 
-    fn made(&self, _: &Binding) -> Option<Saving> {
-        self.pending.clone().map(Saving::Camera)
+    fn made(&self, _: &Binding) -> Option<SaveRequest> {
+        self.pending.clone().map(SaveRequest::Camera)
     }
 
     fn before_saving(&self, ui: &mut Ui) -> bool {
@@ -375,14 +378,14 @@ impl Wizard for CameraWizard {
         self.lens().is_some()
     }
 
-    fn after_saving(&mut self, ui: &mut Ui) -> Option<Saving> {
+    fn after_saving(&mut self, ui: &mut Ui) -> Option<SaveRequest> {
         if self.undoable.is_empty() {
             return None;
         }
         let wanted = card(ui, text::frames::UNDO_TITLE.get(), text::frames::UNDO_CARD_HOVER.get(), |ui| {
             ui.button(text::frames::UNDO.get()).clicked()
         });
-        wanted.then(|| Saving::Undo(undone(&self.undoable)))
+        wanted.then(|| SaveRequest::Undo(undone(&self.undoable)))
     }
 
     fn go_to(&mut self, step: usize) {

@@ -1,13 +1,13 @@
 //! Content of each step.
 
 use egui::{Button, DragValue, RichText, TextEdit, Ui};
-use nima_camera::{Ask, Lack, Report};
+use nima_camera::{LensReport, PlaceLack, ViewRequest};
 use nima_core::calibration::Verdict;
 use nima_endoscope::board::SQUARE_M;
 
 use super::{
     CameraWizard,
-    picture::{MAP_WIDTH, coverage_ui, picture_ui},
+    image::{MAP_WIDTH, coverage_ui, image_ui},
 };
 use crate::{
     console::{
@@ -15,15 +15,15 @@ use crate::{
         widgets::{card, figure, small},
         wizards::{
             checks::{check_line, switch_ui},
-            pictures::progress,
+            drawings::progress,
             report::verdict_line,
         },
     },
-    extras::camera::{text as texts, words},
+    extras::camera::{report_text, text as texts},
 };
 
 /// Maximum image width, points: with the map next to it and the instruction above it, it fits a window of 1280 x 720.
-const PICTURE: f32 = 500.0;
+const IMAGE: f32 = 500.0;
 
 impl CameraWizard {
     pub(super) fn check_ui(&mut self, ui: &mut Ui) {
@@ -31,7 +31,7 @@ impl CameraWizard {
             ui.label(texts::TASK.get());
             ui.add_space(6.0);
             check_line(ui, texts::CHECK_ENDOSCOPE.get(), self.endoscope.is_some(), texts::NO_ENDOSCOPE.get());
-            check_line(ui, texts::CHECK_PICTURE.get(), self.shown.has_come(), texts::NO_PICTURE.get());
+            check_line(ui, texts::CHECK_IMAGE.get(), self.shown.has_come(), texts::NO_IMAGE.get());
         });
         let free = self.views() == 0 && self.touches.is_empty();
         card(ui, texts::BOARD_TITLE.get(), texts::BOARD_HOVER.get(), |ui| {
@@ -41,8 +41,8 @@ impl CameraWizard {
                 ui.add_enabled(free, edit).labelled_by(label.id).on_hover_text(texts::CORNERS_HOVER.get());
                 ui.add_space(16.0);
                 let label = ui.label(texts::SQUARE.get());
-                let [least_mm, most_mm] = [SQUARE_M.start(), SQUARE_M.end()].map(|side_m| side_m * 1e3);
-                let drag = DragValue::new(&mut self.square_mm).range(least_mm..=most_mm).speed(0.1).suffix(" mm");
+                let [min_mm, max_mm] = [SQUARE_M.start(), SQUARE_M.end()].map(|side_m| side_m * 1e3);
+                let drag = DragValue::new(&mut self.square_mm).range(min_mm..=max_mm).speed(0.1).suffix(" mm");
                 ui.add_enabled(free, drag).labelled_by(label.id).on_hover_text(texts::SQUARE_HOVER.get());
             });
             match self.board() {
@@ -67,18 +67,18 @@ impl CameraWizard {
             return;
         }
         let Some(session) = &self.session else {
-            ui.label(texts::NO_PICTURE.get());
+            ui.label(texts::NO_IMAGE.get());
             return;
         };
         let asked = session.asks();
-        let share = session.share();
+        let fraction = session.fraction();
         let views = session.views().len();
         let coverage = session.coverage();
         let size_px = session.size_px();
         card(ui, texts::VIEWS_TITLE.get(), texts::VIEWS_HOVER.get(), |ui| {
-            ui.label(RichText::new(words::ask(asked)).font(theme::strong(19.0)));
-            let told = self.told();
-            progress(ui, texts::PROGRESS.get(), share, &texts::views(views, &told));
+            ui.label(RichText::new(report_text::ask(asked)).font(theme::strong(19.0)));
+            let report = self.report();
+            progress(ui, texts::PROGRESS.get(), fraction, &texts::views(views, &report));
             ui.add_space(4.0);
             ui.horizontal_top(|ui| {
                 self.live_ui(ui, None);
@@ -86,10 +86,10 @@ impl CameraWizard {
             });
             ui.add_space(4.0);
             if ui.add_enabled(views > 0, Button::new(texts::REMOVE_LAST.get())).clicked() {
-                self.session.iter_mut().for_each(nima_camera::Session::undo);
+                self.session.iter_mut().for_each(nima_camera::CameraSession::undo);
                 self.report = None;
             }
-            if asked != Ask::Complete {
+            if asked != ViewRequest::Complete {
                 ui.label(small(texts::VIEWS_NOTE.get()));
             }
         });
@@ -155,13 +155,13 @@ impl CameraWizard {
                 ui.label(small(texts::PLACE_OPTIONAL.get()));
             }
             Some(Err(error)) => {
-                ui.label(words::place_error(*error));
+                ui.label(report_text::place_error(*error));
             }
             Some(Ok(placed)) => {
-                let reason = placed
-                    .lack
-                    .as_ref()
-                    .map_or_else(|| texts::PLACE_GOOD.get().to_owned(), |lack: &Lack| words::place_lack(lack));
+                let reason = placed.lack.as_ref().map_or_else(
+                    || texts::PLACE_GOOD.get().to_owned(),
+                    |lack: &PlaceLack| report_text::place_lack(lack),
+                );
                 verdict_line(ui, placed.verdict(), &reason);
                 figure(
                     ui,
@@ -182,24 +182,29 @@ impl CameraWizard {
 
     /// The image with the detected corners.
     pub(super) fn live_ui(&self, ui: &mut Ui, marked: Option<usize>) {
-        let width = (ui.available_width() - MAP_WIDTH - 16.0).clamp(160.0, PICTURE);
+        let width = (ui.available_width() - MAP_WIDTH - 16.0).clamp(160.0, IMAGE);
         // While the board is at rest, its corners stay at their positions, whatever hides them.
         let sight = if marked.is_some() { self.base.as_ref() } else { self.sight.as_ref() };
         let board = self.board().ok();
-        let words = texts::picture(&self.told());
-        picture_ui(ui, width, &self.shown, sight.zip(board.as_ref()), marked, &words);
+        let words = texts::image(&self.report());
+        image_ui(ui, width, &self.shown, sight.zip(board.as_ref()), marked, &words);
     }
 }
 
-fn lens_figures(ui: &mut Ui, report: &Report) {
-    let reason = report.cause.as_ref().map_or_else(|| texts::LENS_GOOD.get().to_owned(), words::camera_cause);
+fn lens_figures(ui: &mut Ui, report: &LensReport) {
+    let reason = report.cause.as_ref().map_or_else(|| texts::LENS_GOOD.get().to_owned(), report_text::camera_cause);
     verdict_line(ui, report.verdict(), &reason);
     ui.add_space(4.0);
     figure(ui, texts::VIEWS_USED.get(), report.used.len().to_string(), texts::VIEWS_USED_HOVER.get());
     for (at, why) in &report.left_out {
-        ui.label(small(texts::left_out(at + 1, words::left_out(*why))));
+        ui.label(small(texts::left_out(at + 1, report_text::left_out(*why))));
     }
-    figure(ui, texts::COVERAGE.get(), format!("{:.0} %", 100.0 * report.coverage.share()), texts::COVERAGE_HOVER.get());
+    figure(
+        ui,
+        texts::COVERAGE.get(),
+        format!("{:.0} %", 100.0 * report.coverage.fraction()),
+        texts::COVERAGE_HOVER.get(),
+    );
     let Some(found) = &report.lens else { return };
     let lens = &found.lens;
     let sd = &found.deviations;
@@ -218,6 +223,6 @@ fn lens_figures(ui: &mut Ui, report: &Report) {
 }
 
 /// Whether a lens can be used.
-pub(super) fn is_good(report: &Report) -> bool {
+pub(super) fn is_good(report: &LensReport) -> bool {
     report.verdict() == Verdict::Accepted
 }

@@ -3,8 +3,8 @@ use nima_endoscope::{Bend, board::Portrait};
 
 use super::*;
 
-fn board() -> Board {
-    Board::new([9, 6], 0.01).unwrap()
+fn board() -> Checkerboard {
+    Checkerboard::new([9, 6], 0.01).unwrap()
 }
 
 fn lens() -> Lens {
@@ -12,20 +12,20 @@ fn lens() -> Lens {
 }
 
 /// Result of the detector for a board at this pose, without an image.
-fn found(camera_from_board: &Isometry3<f64>) -> Found {
+fn found(camera_from_board: &Isometry3<f64>) -> BoardImage {
     let place = |place_m: &Vector3<f64>| lens().project(&(camera_from_board * nalgebra::Point3::from(*place_m)).coords);
     let corners_px: Option<Vec<_>> = board().places_m().iter().map(place).collect();
     let light = nima_camera::Grey::new([64, 36], vec![200.0; 64 * 36]).unwrap();
     let small: Vec<_> = corners_px.as_ref().unwrap().iter().map(|at| at / 20.0).collect();
-    let coverage = nima_camera::Coverage::of(&light, &small);
-    let sight = Ok(Sight { corners_px: corners_px.unwrap(), blur_px: 1.0, coverage });
-    let picture = Arc::new(Picture { size_px: [1280, 720], rgba: Vec::new() });
-    Found { picture, board: board(), sight }
+    let coverage = nima_camera::CameraCoverage::of(&light, &small);
+    let sight = Ok(BoardSight { corners_px: corners_px.unwrap(), blur_px: 1.0, coverage });
+    let image = Arc::new(DecodedImage { size_px: [1280, 720], rgba: Vec::new() });
+    BoardImage { image, board: board(), sight }
 }
 
-fn pose(at_m: [f64; 3], turn: [f64; 3]) -> Isometry3<f64> {
+fn pose(position_m: [f64; 3], turn: [f64; 3]) -> Isometry3<f64> {
     let rotation = UnitQuaternion::from_euler_angles(turn[0], turn[1], turn[2]);
-    Isometry3::from_parts(Translation3::from(Vector3::from(at_m) - rotation * board().middle_m()), rotation)
+    Isometry3::from_parts(Translation3::from(Vector3::from(position_m) - rotation * board().middle_m()), rotation)
 }
 
 fn shown(wizard: &mut CameraWizard, camera_from_board: &Isometry3<f64>) {
@@ -39,8 +39,8 @@ fn with_lens() -> CameraWizard {
     wizard.go_to(VIEWS);
     for k in 0..22 {
         let turn = 0.9 * f64::from(k);
-        let at_m = [0.055 * (2.0 * turn).cos(), 0.032 * (3.0 * turn).sin(), 0.15];
-        shown(&mut wizard, &pose(at_m, [0.5 * turn.cos(), 0.5 * turn.sin(), 0.1]));
+        let position_m = [0.055 * (2.0 * turn).cos(), 0.032 * (3.0 * turn).sin(), 0.15];
+        shown(&mut wizard, &pose(position_m, [0.5 * turn.cos(), 0.5 * turn.sin(), 0.1]));
     }
     assert!(wizard.views() >= 12 && wizard.views() <= 22, "{}", wizard.views());
     wizard.go_to(LENS);
@@ -53,12 +53,12 @@ fn a_board_that_moves_is_not_taken_and_one_that_rests_is_taken_once() {
     wizard.go_to(VIEWS);
     for k in 0..5 {
         wizard.take(found(&pose([0.004 * f64::from(k), 0.0, 0.15], [0.0; 3])));
-        assert_eq!((wizard.views(), wizard.last), (0, Some(Ok(Offer::Moving))));
+        assert_eq!((wizard.views(), wizard.last), (0, Some(Ok(ViewOutcome::Moving))));
     }
     for _ in 0..4 {
         wizard.take(found(&pose([0.016, 0.0, 0.15], [0.0; 3])));
     }
-    assert_eq!((wizard.views(), wizard.last), (1, Some(Ok(Offer::TakenHere))));
+    assert_eq!((wizard.views(), wizard.last), (1, Some(Ok(ViewOutcome::TakenHere))));
     wizard.start_over();
     assert_eq!(wizard.views(), 0);
 }
@@ -127,9 +127,9 @@ fn the_thread_finds_the_board_in_a_picture() {
     let camera_from_board = pose([0.0, 0.0, 0.16], [0.2, -0.1, 0.1]);
     let greys = Portrait::new(&lens()).draw(&board(), &camera_from_board);
     let rgba = greys.iter().flat_map(|grey| [*grey as u8, *grey as u8, *grey as u8, 255]).collect();
-    let picture = Arc::new(Picture { size_px: [1280, 720], rgba });
+    let image = Arc::new(DecodedImage { size_px: [1280, 720], rgba });
     for _ in 0..3000 {
-        wizard.see(Some((1, Arc::clone(&picture))), &ctx);
+        wizard.see(Some((1, Arc::clone(&image))), &ctx);
         if wizard.sight.is_some() {
             break;
         }

@@ -13,11 +13,11 @@ const HELD_S: f64 = 0.3;
 const STILL_M: f64 = 0.3e-3;
 
 #[derive(Debug, Default)]
-pub(super) struct Tip {
+pub(super) struct CameraTip {
     kept: VecDeque<(f64, Vector3<f64>)>,
 }
 
-impl Tip {
+impl CameraTip {
     pub(super) fn note(&mut self, t_s: f64, tip_m: Vector3<f64>) {
         if !tip_m.iter().all(|x| x.is_finite()) {
             self.kept.clear();
@@ -51,11 +51,11 @@ impl Tip {
 const MARKED_S: f64 = 5.0;
 
 #[derive(Debug, Default)]
-pub(super) struct Marker {
+pub(super) struct EndoscopeMarker {
     kept: VecDeque<(f64, Isometry3<f64>)>,
 }
 
-impl Marker {
+impl EndoscopeMarker {
     /// Adds a tick; both sides report the same marker.
     pub(super) fn note(&mut self, t_s: f64, world_from_n: Option<&Isometry3<f64>>) {
         if self.kept.back().is_some_and(|(last_s, _)| t_s < *last_s) {

@@ -1,7 +1,7 @@
 //! `nima emulate link`: a bad network between a console and a follower, generated from a seed, without special rights.
 //!
 //! `--set to=HOST[:PORT]` is the follower, `--set at=ADDRESS[:PORT]` the address for consoles (by default port 47151 of this
-//! machine). The keys of [`nima_network::impairment::Settings`] set the impairments, for both directions or, after `there.`
+//! machine). The keys of [`nima_network::impairment::ImpairmentSettings`] set the impairments, for both directions or, after `there.`
 //! or `back.`, for one.
 
 use anyhow::{Context as _, bail};
@@ -12,27 +12,27 @@ use nima_network::{
 };
 use serde::Deserialize;
 
-use super::Endpoint;
-use crate::{command::output, extras::two_machines::network::address, leaving::Leave};
+use super::EmulatorEndpoint;
+use crate::{command::output, extras::two_machines::network::address, shutdown::Leave};
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields, default)]
-struct Line {
+struct LinkLine {
     at: String,
     to: String,
     seed: u64,
-    there: impairment::Settings,
-    back: impairment::Settings,
+    there: impairment::ImpairmentSettings,
+    back: impairment::ImpairmentSettings,
 }
 
-impl Default for Line {
+impl Default for LinkLine {
     fn default() -> Self {
-        let [there, back] = [impairment::Settings::default(); 2];
+        let [there, back] = [impairment::ImpairmentSettings::default(); 2];
         Self { at: format!("127.0.0.1:{}", PORT + 1), to: format!("127.0.0.1:{PORT}"), seed: 1, there, back }
     }
 }
 
-fn line(set: &[String]) -> anyhow::Result<Line> {
+fn line(set: &[String]) -> anyhow::Result<LinkLine> {
     let mut text = String::new();
     for setting in set {
         let Some((key, value)) = setting.split_once('=') else {
@@ -58,11 +58,11 @@ fn line(set: &[String]) -> anyhow::Result<Line> {
 }
 
 pub(super) fn run(set: &[String]) -> anyhow::Result<()> {
-    let Line { at, to, seed, there, back } = line(set)?;
+    let LinkLine { at, to, seed, there, back } = line(set)?;
     let settings = RelaySettings { at: address(&at)?, to: address(&to)?, there, back, seed };
     let relay = Relay::start(settings).with_context(|| format!("cannot emulate a link at {at}"))?;
     let endpoint = relay.address().to_string();
-    output::line(&serde_json::to_string(&Endpoint { device: "link", endpoint: &endpoint })?)?;
+    output::line(&serde_json::to_string(&EmulatorEndpoint { device: "link", endpoint: &endpoint })?)?;
     let leave = Leave::on_signals()?;
     while !leave.is_asked() {
         std::thread::sleep(std::time::Duration::from_millis(50));
@@ -76,17 +76,17 @@ pub(super) fn run(set: &[String]) -> anyhow::Result<()> {
 
 #[cfg(test)]
 mod tests {
-    use nima_network::impairment::{Jitter, Loss};
+    use nima_network::impairment::{ImpairmentJitter, LossModel};
 
     use super::*;
 
-    fn told(set: &[&str]) -> anyhow::Result<Line> {
+    fn report(set: &[&str]) -> anyhow::Result<LinkLine> {
         line(&set.iter().map(|&setting| setting.to_owned()).collect::<Vec<_>>())
     }
 
     #[test]
     fn a_setting_is_for_both_directions_or_for_one() {
-        let line = told(&[
+        let line = report(&[
             "to=theatre:99",
             "delay_s=0.02",
             "jitter.normal.deviation_s=0.001",
@@ -97,15 +97,15 @@ mod tests {
         .unwrap();
         assert_eq!((line.to.as_str(), line.at.as_str()), ("theatre:99", "127.0.0.1:47151"));
         assert!([line.there.delay_s, line.back.delay_s].iter().all(|delay_s| (delay_s - 0.02).abs() < 1e-12));
-        assert_eq!(line.there.jitter, Jitter::Normal { deviation_s: 0.001 });
-        assert_eq!((line.there.loss, line.back.loss), (Loss::None, Loss::Independent { share: 0.3 }));
+        assert_eq!(line.there.jitter, ImpairmentJitter::Normal { deviation_s: 0.001 });
+        assert_eq!((line.there.loss, line.back.loss), (LossModel::None, LossModel::Independent { fraction: 0.3 }));
         assert!(line.there.flap.is_some() && line.back.flap.is_none());
     }
 
     #[test]
     fn what_is_no_setting_is_told_with_all_that_are() {
         for bad in ["delay=20", "delay_s", "delay_s=long", "loss=0.3"] {
-            let words = told(&[bad]).unwrap_err().to_string();
+            let words = report(&[bad]).unwrap_err().to_string();
             assert!(words.contains("delay_s") && words.lines().count() == 1, "{bad}: {words}");
         }
     }

@@ -6,11 +6,11 @@
 use std::time::Duration;
 
 use anyhow::{Context as _, bail};
-use nima_emulation::emulated::{EmulatedRig, HandFrame, Witness};
+use nima_emulation::emulated::{EmulatedRig, GroundTruth, HandFrame};
 use nima_machine::{config::RigConfig, rig::Side};
 use nima_simulation::{scene::Scene, screen::Screen};
 
-use crate::{command::output, extras::lab::truth::Known, telling::tell, truth::now_s};
+use crate::{command::output, extras::lab::ground_truth::TrueForce, ground_truth::now_s, stderr::print_line};
 
 pub(super) fn run(rig: &str, scene: &str, until_input_ends: bool) -> anyhow::Result<()> {
     let rig = RigConfig::load(rig)?;
@@ -41,7 +41,7 @@ fn show(emulated: &EmulatedRig, line: &str) -> bool {
     let Some(shown) = line.strip_prefix("screen ") else { return false };
     match shown.parse::<Screen>() {
         Ok(screen) => emulated.technician().reads(&screen),
-        Err(expected) => tell(format_args!("unknown screen \"{shown}\"; {expected}")),
+        Err(expected) => print_line(format_args!("unknown screen \"{shown}\"; {expected}")),
     }
     true
 }
@@ -52,19 +52,19 @@ fn testify(emulated: &EmulatedRig, line: &str) -> bool {
     match rate.trim().parse::<u32>() {
         Ok(rate_hz @ 1..=1000) => {
             let witness = emulated.witness();
-            std::thread::spawn(move || tell_truth(&witness, Duration::from_secs(1) / rate_hz));
+            std::thread::spawn(move || print_truth(&witness, Duration::from_secs(1) / rate_hz));
         }
-        _ => tell(format_args!("unknown command \"{line}\"; expected: truth HZ, from 1 to 1000")),
+        _ => print_line(format_args!("unknown command \"{line}\"; expected: truth HZ, from 1 to 1000")),
     }
     true
 }
 
-fn tell_truth(witness: &Witness, pause: Duration) {
+fn print_truth(witness: &GroundTruth, pause: Duration) {
     loop {
         for side in Side::ALL {
             let at_s = now_s();
             let Some(truth) = witness.truth(side) else { continue };
-            let known = Known { truth: side, at_s, tip_n: truth.tip_n.into() };
+            let known = TrueForce { truth: side, at_s, tip_n: truth.tip_n.into() };
             let written = serde_json::to_string(&known).map(|line| output::line(&line));
             if !matches!(written, Ok(Ok(()))) {
                 return;
@@ -79,7 +79,7 @@ fn press(emulated: &EmulatedRig, line: &str) -> bool {
     let Some(switches) = line.strip_prefix("pedal ") else { return false };
     match switches.trim().parse() {
         Ok(switches) => emulated.press(switches),
-        Err(_) => tell(format_args!("unknown command \"{line}\"; expected: pedal BITS, 1 for the first switch")),
+        Err(_) => print_line(format_args!("unknown command \"{line}\"; expected: pedal BITS, 1 for the first switch")),
     }
     true
 }

@@ -6,4 +6,4 @@ mod tradeoff_apply;
 mod tradeoff_plot;
 
 pub(super) use stable_gain::stable_gain_ui;
-pub(super) use tradeoff::Tradeoff;
+pub(super) use tradeoff::TradeoffPanel;

@@ -2,10 +2,10 @@
 //! is not, for the current mode, delay and contact stiffness.
 
 use egui::{Rect, Sense, Stroke, Ui, pos2, vec2};
-use nima_study::stability_map::{StabilityMap, Verdict};
+use nima_study::stability_map::{StabilityMap, StabilityMapVerdict};
 
 use crate::{
-    console::{live::Live, theme, widgets::small},
+    console::{live::LiveState, theme, widgets::small},
     extras::lab::text,
 };
 
@@ -17,11 +17,11 @@ const PARTS: u32 = 60;
 ///
 /// In a separate scope: the content changes with the first contact, and the widgets below must keep their ids, or a slider
 /// drag would end at that moment.
-pub(in crate::extras::lab) fn stable_gain_ui(ui: &mut Ui, live: &Live, rail: Rect, limit: f64) {
+pub(in crate::extras::lab) fn stable_gain_ui(ui: &mut Ui, live: &LiveState, rail: Rect, limit: f64) {
     ui.scope(|ui| strip_ui(ui, live, rail, limit));
 }
 
-fn strip_ui(ui: &mut Ui, live: &Live, rail: Rect, limit: f64) {
+fn strip_ui(ui: &mut Ui, live: &LiveState, rail: Rect, limit: f64) {
     let Some(map) = StabilityMap::committed() else { return };
     if !StabilityMap::has(live.mode()) {
         ui.label(small(text::STABLE_GAIN_UNMEASURED.get())).on_hover_text(text::STABLE_GAIN_HOVER.get());
@@ -42,18 +42,18 @@ fn strip_ui(ui: &mut Ui, live: &Live, rail: Rect, limit: f64) {
         let x = |edge: u32| ends.min + ends.span() * edge as f32 / PARTS as f32;
         let cell = Rect::from_x_y_ranges(x(part)..=x(part + 1), rect.y_range());
         match map.at(mode, gain, delay_s, n_m) {
-            Verdict::Stable => {
+            StabilityMapVerdict::Stable => {
                 painter.rect_filled(cell, 0.0, theme::now().engaged.gamma_multiply(0.8));
             }
-            Verdict::Marginal => {
+            StabilityMapVerdict::Marginal => {
                 painter.rect_filled(cell.shrink2(vec2(0.0, 2.5)), 0.0, theme::now().at_rest);
             }
-            Verdict::Unstable if part % 2 == 0 => {
+            StabilityMapVerdict::Unstable if part % 2 == 0 => {
                 let low = pos2(cell.left(), cell.bottom());
                 let high = pos2(cell.right(), cell.top());
                 painter.line_segment([low, high], Stroke::new(1.5, theme::now().text));
             }
-            Verdict::Unstable => {}
+            StabilityMapVerdict::Unstable => {}
         }
     }
     let greatest = map.greatest_stable_gain(mode, delay_s, n_m);

@@ -11,13 +11,15 @@ use std::{
 
 use egui::{Button, ProgressBar, Ui, vec2};
 use nima_machine::config::RigConfig;
-use nima_study::tradeoff::{Choice, Method, Plan, Point, Source, SourceFigures, Study, SweepError, sweep};
+use nima_study::tradeoff::{
+    ParameterChoice, PlanMethod, SourceFigures, SweepError, SweepPoint, SweepStudy, TradeoffPlan, TradeoffSource, sweep,
+};
 
 use super::{tradeoff_apply::Apply, tradeoff_plot::plot_ui};
 use crate::{
-    console::{live::Live, outbox::Outbox, panels::Tile, text::calibrations, widgets::small},
+    console::{live::LiveState, outbox::Outbox, panels::Tile, text::calibrations, widgets::small},
     extras::lab::text,
-    words::{mode_meaning, mode_name, three_digits},
+    report_text::{mode_meaning, mode_name, three_digits},
 };
 
 /// Duration of the scene on which it is measured, s.
@@ -25,8 +27,8 @@ const SCENE_S: f64 = 6.0;
 const BUTTON: egui::Vec2 = vec2(120.0, 30.0);
 
 #[derive(Debug, Default)]
-pub(in crate::extras::lab) struct Tradeoff {
-    job: Option<Job>,
+pub(in crate::extras::lab) struct TradeoffPanel {
+    job: Option<SweepJob>,
     measured: Option<SourceFigures>,
     selected: Option<usize>,
     message: String,
@@ -34,52 +36,52 @@ pub(in crate::extras::lab) struct Tradeoff {
 
 /// A background sweep. Dropping it requests its end.
 #[derive(Debug)]
-struct Job {
+struct SweepJob {
     cancel: Arc<AtomicBool>,
     progress: Arc<[AtomicUsize; 2]>,
-    thread: JoinHandle<Result<Study, SweepError>>,
+    thread: JoinHandle<Result<SweepStudy, SweepError>>,
 }
 
-impl Job {
-    fn start(live: &Live) -> std::io::Result<Self> {
+impl SweepJob {
+    fn start(live: &LiveState) -> std::io::Result<Self> {
         let plan = plan(live);
         let rate_hz = live.rig.rate_hz;
         let scene = live.scene.clone();
         let cancel = Arc::new(AtomicBool::new(false));
         let progress = Arc::new([AtomicUsize::new(0), AtomicUsize::new(1)]);
         let stop = Arc::clone(&cancel);
-        let told = Arc::clone(&progress);
+        let report = Arc::clone(&progress);
         // A thread with normal priority: the loop's thread has real-time priority if granted, and is not delayed.
         let thread = Builder::new().name("trade-off".to_owned()).spawn(move || {
-            let source = Source::from_scene(&scene, rate_hz, SCENE_S);
+            let source = TradeoffSource::from_scene(&scene, rate_hz, SCENE_S);
             sweep(&[source], &plan, &stop, |done, total| {
-                told[0].store(done, Ordering::Relaxed);
-                told[1].store(total, Ordering::Relaxed);
+                report[0].store(done, Ordering::Relaxed);
+                report[1].store(total, Ordering::Relaxed);
             })
         })?;
         Ok(Self { cancel, progress, thread })
     }
 
-    fn share(&self) -> f32 {
+    fn fraction(&self) -> f32 {
         let [done, total] = [&self.progress[0], &self.progress[1]].map(|count| count.load(Ordering::Relaxed) as f32);
         done / total.max(1.0)
     }
 
-    fn join(self) -> Option<Result<Study, SweepError>> {
+    fn join(self) -> Option<Result<SweepStudy, SweepError>> {
         let Self { thread, .. } = self;
         thread.join().ok()
     }
 }
 
 /// Plan of the measurement: the current rig, at the current delay.
-pub(super) fn plan(live: &Live) -> Plan {
+pub(super) fn plan(live: &LiveState) -> TradeoffPlan {
     let mut rig = live.rig.clone();
     rig.delay_s = live.delay_s();
-    Plan::quick(rig.settings())
+    TradeoffPlan::quick(rig.settings())
 }
 
-impl Tradeoff {
-    fn tell(&mut self, message: impl Into<String>) {
+impl TradeoffPanel {
+    fn notify(&mut self, message: impl Into<String>) {
         self.message = message.into();
     }
 
@@ -92,26 +94,26 @@ impl Tradeoff {
                 self.measured = Some(figures);
                 self.message.clear();
             }
-            Some(Err(SweepError::Cancelled)) => self.tell(text::CANCELLED.get()),
-            Some(Err(error)) => self.tell(error.to_string()),
-            Some(Ok(_)) | None => self.tell(text::FAILED.get()),
+            Some(Err(SweepError::Cancelled)) => self.notify(text::CANCELLED.get()),
+            Some(Err(error)) => self.notify(error.to_string()),
+            Some(Ok(_)) | None => self.notify(text::FAILED.get()),
         }
     }
 }
 
-impl Drop for Tradeoff {
+impl Drop for TradeoffPanel {
     fn drop(&mut self) {
         self.stop();
     }
 }
 
-impl Tile for Tradeoff {
-    fn ui(&mut self, ui: &mut Ui, live: &Live, outbox: &mut Outbox) -> Option<RigConfig> {
+impl Tile for TradeoffPanel {
+    fn ui(&mut self, ui: &mut Ui, live: &LiveState, outbox: &mut Outbox) -> Option<RigConfig> {
         tradeoff_ui(ui, live, self, outbox)
     }
 
     fn restarted(&mut self, outcome: Result<(), String>) {
-        self.tell(match outcome {
+        self.notify(match outcome {
             Ok(()) => text::APPLIED_BY_RESTART.get().to_owned(),
             Err(reason) => text::not_applied(&reason),
         });
@@ -130,7 +132,7 @@ impl Tile for Tradeoff {
 
 /// The panel. Returns a rig if the operator applies a point that the running loop cannot change to: the loop must then
 /// be restarted with it.
-fn tradeoff_ui(ui: &mut Ui, live: &Live, state: &mut Tradeoff, outbox: &mut Outbox) -> Option<RigConfig> {
+fn tradeoff_ui(ui: &mut Ui, live: &LiveState, state: &mut TradeoffPanel, outbox: &mut Outbox) -> Option<RigConfig> {
     state.take_in();
     measure_ui(ui, live, state);
     if !state.message.is_empty() {
@@ -148,24 +150,24 @@ fn tradeoff_ui(ui: &mut Ui, live: &Live, state: &mut Tradeoff, outbox: &mut Outb
     apply_ui(ui, live, &point, state, outbox)
 }
 
-fn measure_ui(ui: &mut Ui, live: &Live, state: &mut Tradeoff) {
+fn measure_ui(ui: &mut Ui, live: &LiveState, state: &mut TradeoffPanel) {
     let Some(job) = &state.job else {
         let meaning = text::MEASURE_HOVER.get();
         let button = Button::new(text::MEASURE.get()).min_size(vec2(ui.available_width(), 30.0));
         if ui.add(button).on_hover_text(meaning).clicked() {
-            match Job::start(live) {
+            match SweepJob::start(live) {
                 Ok(job) => state.job = Some(job),
-                Err(error) => state.tell(text::not_started(&error)),
+                Err(error) => state.notify(text::not_started(&error)),
             }
         }
         return;
     };
     ui.horizontal(|ui| {
-        let share = job.share();
+        let fraction = job.fraction();
         let width = (ui.available_width() - BUTTON.x - 8.0).max(60.0);
-        let bar = ui.add(ProgressBar::new(share).desired_width(width).text(format!("{:.0} %", 100.0 * share)));
+        let bar = ui.add(ProgressBar::new(fraction).desired_width(width).text(format!("{:.0} %", 100.0 * fraction)));
         bar.widget_info(|| {
-            let words = text::measured(100.0 * share);
+            let words = text::measured(100.0 * fraction);
             egui::WidgetInfo::labeled(egui::Role::ProgressIndicator, true, words)
         });
         let cancel = ui.add(Button::new(text::CANCEL.get()).min_size(BUTTON));
@@ -187,7 +189,13 @@ fn front_ui(ui: &mut Ui, figures: &SourceFigures, selected: &mut Option<usize>) 
     }
 }
 
-fn apply_ui(ui: &mut Ui, live: &Live, point: &Point, state: &mut Tradeoff, outbox: &mut Outbox) -> Option<RigConfig> {
+fn apply_ui(
+    ui: &mut Ui,
+    live: &LiveState,
+    point: &SweepPoint,
+    state: &mut TradeoffPanel,
+    outbox: &mut Outbox,
+) -> Option<RigConfig> {
     let mode = point.choice.method.mode()?;
     let apply = Apply::of(live, mode, &point.choice);
     let restart = matches!(apply, Apply::Restart(_));
@@ -208,7 +216,7 @@ fn apply_ui(ui: &mut Ui, live: &Live, point: &Point, state: &mut Tradeoff, outbo
         Apply::Restart(rig) => return Some(*rig),
         Apply::AtOnce(commands) => commands.into_iter().for_each(|command| outbox.push(command)),
     }
-    state.tell(text::applied(&name(point)));
+    state.notify(text::applied(&name(point)));
     None
 }
 
@@ -226,22 +234,22 @@ fn most_accurate(figures: &SourceFigures) -> Option<usize> {
 }
 
 /// Name of a point: mode, degree and window, as far as they apply.
-pub(super) fn name(point: &Point) -> String {
-    let Choice { method, degree, window_ms, .. } = point.choice;
+pub(super) fn name(point: &SweepPoint) -> String {
+    let ParameterChoice { method, degree, window_ms, .. } = point.choice;
     match method {
-        Method::Mode(mode) if mode.has_degrees() => format!("{}, N = {degree}, {window_ms:.0} ms", mode_name(mode)),
-        Method::Mode(mode) if mode.has_window() => format!("{}, {window_ms:.0} ms", mode_name(mode)),
-        Method::Mode(mode) => mode_name(mode).to_owned(),
-        Method::Solver(solver) => solver.name().to_owned(),
+        PlanMethod::Mode(mode) if mode.has_degrees() => format!("{}, N = {degree}, {window_ms:.0} ms", mode_name(mode)),
+        PlanMethod::Mode(mode) if mode.has_window() => format!("{}, {window_ms:.0} ms", mode_name(mode)),
+        PlanMethod::Mode(mode) => mode_name(mode).to_owned(),
+        PlanMethod::Solver(solver) => solver.name().to_owned(),
     }
 }
 
-fn figures_of(point: &Point) -> String {
+fn figures_of(point: &SweepPoint) -> String {
     format!("{} µs, {} N", three_digits(point.cost_us.p50), three_digits(point.error))
 }
 
 /// Hover text of a point.
-pub(super) fn words(point: &Point) -> String {
+pub(super) fn words(point: &SweepPoint) -> String {
     let front = if point.pareto { text::ON_FRONT.get() } else { "" };
     let [median_us, p99_us, error_n, ratio] =
         [point.cost_us.p50, point.cost_us.p99, point.error, point.ratio].map(three_digits);

@@ -5,9 +5,9 @@ use nima_machine::{
     config::{Identification, RigConfig},
     messages::Command,
 };
-use nima_study::tradeoff::Choice;
+use nima_study::tradeoff::ParameterChoice;
 
-use crate::console::live::Live;
+use crate::console::live::LiveState;
 
 /// How the loop changes to a choice.
 #[derive(Clone, Debug)]
@@ -19,7 +19,7 @@ pub(super) enum Apply {
 }
 
 impl Apply {
-    pub(super) fn of(live: &Live, mode: Mode, choice: &Choice) -> Self {
+    pub(super) fn of(live: &LiveState, mode: Mode, choice: &ParameterChoice) -> Self {
         if needs_restart(&live.rig.identification, mode, choice) {
             return Self::Restart(Box::new(rig_with(live, mode, choice)));
         }
@@ -28,7 +28,7 @@ impl Apply {
     }
 }
 
-fn needs_restart(now: &Identification, mode: Mode, choice: &Choice) -> bool {
+fn needs_restart(now: &Identification, mode: Mode, choice: &ParameterChoice) -> bool {
     let degree = choice.degree != now.max_degree;
     let window = (choice.window_ms - now.window_s * 1e3).abs() > 1e-6;
     (mode.has_degrees() && degree) || (mode.has_window() && window)
@@ -36,7 +36,7 @@ fn needs_restart(now: &Identification, mode: Mode, choice: &Choice) -> bool {
 
 /// The rig with this choice and all settings that the operator has changed since the start; a gain above 1 is reset to
 /// 1.
-fn rig_with(live: &Live, mode: Mode, choice: &Choice) -> RigConfig {
+fn rig_with(live: &LiveState, mode: Mode, choice: &ParameterChoice) -> RigConfig {
     let mut rig = live.rig.clone();
     rig.mode = mode;
     rig.identification.compare = false;
@@ -66,7 +66,7 @@ mod tests {
         teleop::{Calibrations, Loop, Timing},
     };
     use nima_simulation::{World, scene::Scene};
-    use nima_study::tradeoff::{Knob, Plan, Point, Source, SourceFigures, sweep};
+    use nima_study::tradeoff::{Knob, SourceFigures, SweepPoint, TradeoffPlan, TradeoffSource, sweep};
 
     use super::*;
     use crate::extras::lab::screen::tradeoff::{name, plan};
@@ -76,27 +76,27 @@ mod tests {
     const PASSES: usize = 5;
 
     /// A rig whose settings are not the default ones and that compares all modes when the operator presses Apply.
-    fn live() -> Live {
+    fn live() -> LiveState {
         let mut rig = RigConfig::load("simulated").unwrap();
         rig.identification.compare = true;
         rig.identification.cross_talk = true;
         rig.identification.rest_n = 0.12;
         rig.delay_s = 0.04;
-        Live::new(rig, Scene::load("peg_transfer").unwrap())
+        LiveState::new(rig, Scene::load("peg_transfer").unwrap())
     }
 
-    fn measured(source: &Source, plan: &Plan) -> SourceFigures {
+    fn measured(source: &TradeoffSource, plan: &TradeoffPlan) -> SourceFigures {
         sweep(std::slice::from_ref(source), plan, &AtomicBool::new(false), |_, _| {}).unwrap().sources.remove(0)
     }
 
     /// Every point that can be on the front. Measured times decide which of them are.
-    fn grid(figures: &SourceFigures) -> Vec<Point> {
+    fn grid(figures: &SourceFigures) -> Vec<SweepPoint> {
         let curves = figures.curves.iter().filter(|curve| curve.knob == Knob::Grid);
         curves.flat_map(|curve| &curve.points).map(|&index| figures.points[index]).collect()
     }
 
     /// The loop at the simulated peg transfer, engaged, 2 s after its start and after `apply`.
-    fn loop_after(live: &Live, apply: &Apply) -> Loop {
+    fn loop_after(live: &LiveState, apply: &Apply) -> Loop {
         let (rig, commands) = match apply {
             Apply::AtOnce(commands) => (&live.rig, &commands[..]),
             Apply::Restart(rig) => (&**rig, &[][..]),
@@ -123,7 +123,7 @@ mod tests {
     #[test]
     fn after_apply_the_loop_does_the_work_that_was_measured() {
         let live = live();
-        let source = Source::from_scene(&live.scene, live.rig.rate_hz, 4.2);
+        let source = TradeoffSource::from_scene(&live.scene, live.rig.rate_hz, 4.2);
         let points = grid(&measured(&source, &plan(&live)));
         let mut restarts = 0;
         for point in &points {
@@ -169,9 +169,9 @@ mod tests {
     #[ignore = "prints the times of docs/results/tradeoff.md: `./dev figures` runs it"]
     fn figures_of_what_apply_costs() {
         let rig = RigConfig::load("simulated").unwrap();
-        let live = Live::new(rig, Scene::load("peg_transfer").unwrap());
-        let source = Source::from_scene(&live.scene, live.rig.rate_hz, 6.0);
-        let figures = measured(&source, &Plan { passes: PASSES, ..plan(&live) });
+        let live = LiveState::new(rig, Scene::load("peg_transfer").unwrap());
+        let source = TradeoffSource::from_scene(&live.scene, live.rig.rate_hz, 6.0);
+        let figures = measured(&source, &TradeoffPlan { passes: PASSES, ..plan(&live) });
         println!("| row | measured by the study (us) | in the loop (us) | ratio |\n|---|---|---|---|");
         for point in grid(&figures) {
             let mode = point.choice.method.mode().unwrap();

@@ -5,13 +5,13 @@ use egui_plot::{
     AxisHints, GridInput, GridMark, HoverPosition, Line, MarkerShape, Plot, PlotPoint, PlotPoints, Points,
 };
 use nima_core::impedance::Mode;
-use nima_study::tradeoff::{Point, SourceFigures};
+use nima_study::tradeoff::{SourceFigures, SweepPoint};
 
 use super::tradeoff::words;
 use crate::{
     console::{theme, widgets::still},
     extras::lab::text,
-    words::{mode_name, three_digits},
+    report_text::{mode_name, three_digits},
 };
 
 const HEIGHT: f32 = 230.0;
@@ -84,7 +84,7 @@ fn look(mode: Mode) -> (MarkerShape, Color32, f32) {
 }
 
 /// Points at the source's own rate and with the default differentiator that can be drawn.
-fn shown(points: &[Point]) -> Vec<usize> {
+fn shown(points: &[SweepPoint]) -> Vec<usize> {
     let usual = points.first().map(|point| point.choice.differentiator);
     (0..points.len())
         .filter(|&i| {
@@ -96,13 +96,13 @@ fn shown(points: &[Point]) -> Vec<usize> {
 }
 
 /// Position of a point: decades of time and of error.
-fn place(point: &Point) -> [f64; 2] {
+fn place(point: &SweepPoint) -> [f64; 2] {
     [point.cost_us.p50.log10(), point.error.log10()]
 }
 
-type Range = ([f64; 2], [f64; 2]);
+type PlotRange = ([f64; 2], [f64; 2]);
 
-fn range(points: &[Point], shown: &[usize]) -> Option<Range> {
+fn range(points: &[SweepPoint], shown: &[usize]) -> Option<PlotRange> {
     let mut low = [f64::INFINITY; 2];
     let mut high = [f64::NEG_INFINITY; 2];
     for &i in shown {
@@ -116,7 +116,7 @@ fn range(points: &[Point], shown: &[usize]) -> Option<Range> {
     (!shown.is_empty()).then_some(grown)
 }
 
-fn nearest(points: &[Point], shown: &[usize], (low, high): &Range, at: PlotPoint) -> Option<usize> {
+fn nearest(points: &[SweepPoint], shown: &[usize], (low, high): &PlotRange, at: PlotPoint) -> Option<usize> {
     let distance = |i: usize| {
         let [x, y] = place(&points[i]);
         ((x - at.x) / (high[0] - low[0])).hypot((y - at.y) / (high[1] - low[1]))

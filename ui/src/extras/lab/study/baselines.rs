@@ -4,13 +4,13 @@ use clap::Args;
 use nima_machine::runtime::VirtualClock;
 use nima_simulation::scene::Scene;
 use nima_study::{
-    baselines::{Options, Split},
-    tradeoff::Source,
+    baselines::{BaselineOptions, Split},
+    tradeoff::TradeoffSource,
 };
 
 use super::{
-    Asked,
-    sources::{RATE_HZ, Sources, delays_s},
+    ExperimentArguments,
+    sources::{RATE_HZ, SourceArguments, delays_s},
 };
 
 /// Scenes with contact for the comparison without a recording (in `bimanual` the right hand does the same as in
@@ -22,9 +22,9 @@ const SCENE_S: f64 = 20.0;
 const DELAYS_MS: [f64; 4] = [10.0, 50.0, 100.0, 300.0];
 
 #[derive(Debug, Args)]
-pub(in crate::extras::lab) struct Arguments {
+pub(in crate::extras::lab) struct BaselinesArguments {
     #[command(flatten)]
-    sources: Sources,
+    sources: SourceArguments,
     /// One-way delay of the link in ms; may be given several times (default: 10, 50, 100 and 300)
     #[arg(long, value_name = "D", allow_negative_numbers = true)]
     delay_ms: Vec<f64>,
@@ -33,12 +33,12 @@ pub(in crate::extras::lab) struct Arguments {
     cross_talk: bool,
 }
 
-impl Asked for Arguments {
-    type Experiment = Options;
+impl ExperimentArguments for BaselinesArguments {
+    type Experiment = BaselineOptions;
 
-    fn experiment(&self) -> anyhow::Result<Options> {
+    fn experiment(&self) -> anyhow::Result<BaselineOptions> {
         let delays_ms = if self.delay_ms.is_empty() { &DELAYS_MS[..] } else { &self.delay_ms };
-        Ok(Options {
+        Ok(BaselineOptions {
             sources: sources(&self.sources)?,
             delays_s: delays_s(delays_ms)?,
             cross_talk: self.cross_talk,
@@ -47,14 +47,14 @@ impl Asked for Arguments {
     }
 }
 
-fn sources(asked: &Sources) -> anyhow::Result<Vec<(Source, Split)>> {
+fn sources(asked: &SourceArguments) -> anyhow::Result<Vec<(TradeoffSource, Split)>> {
     let recorded = asked.recordings()?.into_iter().map(|source| (Split::of_recording(&source.name), source));
     let scenes = asked.scenes(&[VirtualClock::PERFECT], SCENE_S)?.into_iter().map(|source| (Split::Scene, source));
     let mut sources: Vec<_> = recorded.chain(scenes).map(|(split, source)| (source, split)).collect();
     if asked.is_empty() {
         for (name, seed) in SCENES.into_iter().flat_map(|name| (1..=SEEDS).map(move |seed| (name, seed))) {
             let scene = Scene { seed, ..Scene::load(name)? };
-            let mut source = Source::from_scene(&scene, RATE_HZ, SCENE_S);
+            let mut source = TradeoffSource::from_scene(&scene, RATE_HZ, SCENE_S);
             source.name = format!("{name} {seed}");
             sources.push((source, Split::Scene));
         }

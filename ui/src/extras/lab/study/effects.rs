@@ -3,11 +3,11 @@
 use clap::Args;
 use nima_study::effects::Effects;
 
-use super::Asked;
+use super::ExperimentArguments;
 use crate::command::run::positive_seconds;
 
 #[derive(Debug, Args)]
-pub(in crate::extras::lab) struct Arguments {
+pub(in crate::extras::lab) struct EffectsArguments {
     /// Scenes, built-in name or TOML file; may be repeated (default: all built-in scenes)
     #[arg(long, value_name = "SCENE")]
     scene: Vec<String>,
@@ -16,7 +16,7 @@ pub(in crate::extras::lab) struct Arguments {
     seconds: f64,
 }
 
-impl Asked for Arguments {
+impl ExperimentArguments for EffectsArguments {
     type Experiment = Effects;
 
     fn experiment(&self) -> anyhow::Result<Effects> {

@@ -1,13 +1,13 @@
 //! Arguments of `nima study faults`.
 
 use clap::Args;
-use nima_study::faults::Options;
+use nima_study::faults::FaultOptions;
 
-use super::Asked;
+use super::ExperimentArguments;
 use crate::command::run::positive_seconds;
 
 #[derive(Debug, Args)]
-pub(in crate::extras::lab) struct Faults {
+pub(in crate::extras::lab) struct FaultsStudy {
     /// Number of moments at which each fault is injected while engaged, 1 to 20
     #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=20))]
     moments: u32,
@@ -16,10 +16,10 @@ pub(in crate::extras::lab) struct Faults {
     calm: f64,
 }
 
-impl Asked for Faults {
-    type Experiment = Options;
+impl ExperimentArguments for FaultsStudy {
+    type Experiment = FaultOptions;
 
-    fn experiment(&self) -> anyhow::Result<Options> {
-        Ok(Options { moments: self.moments, live: true, calm_s: self.calm })
+    fn experiment(&self) -> anyhow::Result<FaultOptions> {
+        Ok(FaultOptions { moments: self.moments, live: true, calm_s: self.calm })
     }
 }

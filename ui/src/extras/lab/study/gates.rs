@@ -1,12 +1,12 @@
 //! Arguments of `nima study gates`.
 
 use clap::Args;
-use nima_study::gates::Options;
+use nima_study::gates::GateOptions;
 
-use super::Asked;
+use super::ExperimentArguments;
 
 #[derive(Debug, Args)]
-pub(in crate::extras::lab) struct Gates {
+pub(in crate::extras::lab) struct GatesStudy {
     /// Number of requests, up to 1e12
     #[arg(long, value_name = "N", default_value = "1e8", value_parser = requests)]
     requests: u64,
@@ -23,10 +23,10 @@ fn requests(text: &str) -> Result<u64, String> {
     }
 }
 
-impl Asked for Gates {
-    type Experiment = Options;
+impl ExperimentArguments for GatesStudy {
+    type Experiment = GateOptions;
 
-    fn experiment(&self) -> anyhow::Result<Options> {
-        Ok(Options { requests: self.requests, seed: self.seed })
+    fn experiment(&self) -> anyhow::Result<GateOptions> {
+        Ok(GateOptions { requests: self.requests, seed: self.seed })
     }
 }

@@ -1,13 +1,12 @@
 //! Arguments of `nima study hands`.
 
 use clap::Args;
-use nima_study::hands::Options;
+use nima_study::hands::HandOptions;
 
-use super::{Asked, clocks::Clocks};
+use super::{ExperimentArguments, clocks::StudyClocks};
 
 #[derive(Debug, Args)]
-#[expect(clippy::struct_field_names, reason = "the name of the option")]
-pub(in crate::extras::lab) struct Hands {
+pub(in crate::extras::lab) struct HandsStudy {
     /// Hands of each kind on each clock
     #[arg(long, value_name = "N", default_value_t = 20, value_parser = clap::value_parser!(u64).range(1..=100_000))]
     hands: u64,
@@ -21,7 +20,7 @@ pub(in crate::extras::lab) struct Hands {
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
     #[command(flatten)]
-    clocks: Clocks,
+    clocks: StudyClocks,
 }
 
 fn seconds(text: &str) -> Result<f64, String> {
@@ -29,11 +28,11 @@ fn seconds(text: &str) -> Result<f64, String> {
     seconds.ok_or_else(|| "give a time from 1 to 3600 s".to_owned())
 }
 
-impl Asked for Hands {
-    type Experiment = Options;
+impl ExperimentArguments for HandsStudy {
+    type Experiment = HandOptions;
 
-    fn experiment(&self) -> anyhow::Result<Options> {
+    fn experiment(&self) -> anyhow::Result<HandOptions> {
         let Self { hands, seconds, releases, seed, .. } = *self;
-        Ok(Options { clocks: self.clocks.chosen(), hands, seconds, releases, seed })
+        Ok(HandOptions { clocks: self.clocks.chosen(), hands, seconds, releases, seed })
     }
 }

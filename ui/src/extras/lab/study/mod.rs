@@ -30,7 +30,7 @@ use nima_study::{Experiment, Findings as _};
 use crate::command::output;
 
 /// Arguments that describe the experiment.
-pub(super) trait Asked: Args {
+pub(super) trait ExperimentArguments: Args {
     type Experiment: Experiment;
 
     fn experiment(&self) -> anyhow::Result<Self::Experiment>;
@@ -42,7 +42,7 @@ pub(super) trait Asked: Args {
 
 /// Arguments of one study, and where to write its results.
 #[derive(Debug, Args)]
-pub(super) struct Study<A: Args> {
+pub(super) struct StudyArguments<A: Args> {
     #[command(flatten)]
     asked: A,
     #[command(flatten)]
@@ -65,7 +65,7 @@ macro_rules! studies {
     ($($(#[$meaning:meta])* $name:ident($asked:ty),)*) => {
         #[derive(Debug, Subcommand)]
         pub(super) enum StudyCommand {
-            $($(#[$meaning])* $name(Study<$asked>),)*
+            $($(#[$meaning])* $name(StudyArguments<$asked>),)*
         }
 
         pub(super) fn run(command: &StudyCommand) -> anyhow::Result<()> {
@@ -78,35 +78,35 @@ macro_rules! studies {
 
 studies! {
     /// Compare baseline methods with every mode, on recordings and scenes: prediction error relative to delayed reflection
-    Baselines(baselines::Arguments),
+    Baselines(baselines::BaselinesArguments),
     /// Measure the cost of each effect of a scene per tick, and the change of the force without it
-    Effects(effects::Arguments),
+    Effects(effects::EffectsArguments),
     /// Inject every kind of fault in every state; report detection, detection time, and the force error at the hand
-    Faults(faults::Faults),
+    Faults(faults::FaultsStudy),
     /// Send extreme force requests through the gates and count violations of their limits
-    Gates(gates::Gates),
+    Gates(gates::GatesStudy),
     /// Move simulated hands that hold and release the handle, in front of the last gate: how often, how hard and how late it
     /// acts
-    Hands(hands::Hands),
+    Hands(hands::HandsStudy),
     /// Run two machines over a bad network, in every mode: force error, energy and stops over delay, jitter, loss, outages
     /// and clock faults
-    Network(network::Network),
+    Network(network::NetworkStudy),
     /// Release a handle pressed with up to 5 N: every mode, baseline and delay, with and without the governor
-    Release(release::Release),
+    Release(release::ReleaseStudy),
     /// Measure whether the loop gives energy to the hand, and whether a loose grip oscillates, in every mode and at every
     /// delay
     Passivity(passivity::Passivity),
     /// Compare every solver with an arbitrary-precision reference in extreme cases
     Stability(stability::Stability),
     /// Find by simulation which gain, delay and stiffness are stable with a gripping hand (takes minutes)
-    StabilityMap(stability_map::StabilityMap),
+    StabilityMap(stability_map::StabilityMapStudy),
     /// Measure computing time and accuracy for every setting of the identification
-    Tradeoff(tradeoff::Arguments),
+    Tradeoff(tradeoff::TradeoffArguments),
     /// Compare the conditions of a user study, from a table of trials: tests, intervals, effect sizes, a mixed model
-    Trials(trials::Arguments),
+    Trials(trials::TrialsArguments),
     /// Measure the loop's timing while its console renders, all cores are busy, the window is blocked, or the disk is written
     /// heavily
-    Timing(timing::Arguments),
+    Timing(timing::TimingArguments),
     /// Repeat the paper's three validations on the simulated rig and compare the results
     Validation(validation::Validation),
 }

@@ -2,12 +2,12 @@
 
 use clap::Args;
 use nima_core::impedance::{Mode, OwnMotion};
-use nima_study::network::{Extent, Options};
+use nima_study::network::{NetworkOptions, PlanExtent};
 
-use super::{Asked, clocks::Clocks};
+use super::{ExperimentArguments, clocks::StudyClocks};
 
 #[derive(Debug, Args)]
-pub(in crate::extras::lab) struct Network {
+pub(in crate::extras::lab) struct NetworkStudy {
     /// Six short cells, in seconds
     #[arg(long, conflicts_with = "full")]
     quick: bool,
@@ -22,19 +22,19 @@ pub(in crate::extras::lab) struct Network {
     #[arg(long)]
     own_motion_handle: bool,
     #[command(flatten)]
-    clocks: Clocks,
+    clocks: StudyClocks,
 }
 
-impl Asked for Network {
-    type Experiment = Options;
+impl ExperimentArguments for NetworkStudy {
+    type Experiment = NetworkOptions;
 
-    fn experiment(&self) -> anyhow::Result<Options> {
+    fn experiment(&self) -> anyhow::Result<NetworkOptions> {
         let extent = match (self.quick, self.full) {
-            (true, _) => Extent::Quick,
-            (_, true) => Extent::Full,
-            _ => Extent::Usual,
+            (true, _) => PlanExtent::Quick,
+            (_, true) => PlanExtent::Full,
+            _ => PlanExtent::Usual,
         };
         let own_motion = if self.own_motion_handle { OwnMotion::Handle } else { OwnMotion::Follower };
-        Ok(Options { extent, clocks: self.clocks.chosen(), modes: self.mode.clone(), own_motion })
+        Ok(NetworkOptions { extent, clocks: self.clocks.chosen(), modes: self.mode.clone(), own_motion })
     }
 }

@@ -1,20 +1,20 @@
 //! Arguments of `nima study passivity`.
 
 use clap::Args;
-use nima_study::passivity::Options;
+use nima_study::passivity::PassivityOptions;
 
-use super::{Asked, clocks::Clocks};
+use super::{ExperimentArguments, clocks::StudyClocks};
 
 #[derive(Debug, Args)]
 pub(in crate::extras::lab) struct Passivity {
     #[command(flatten)]
-    clocks: Clocks,
+    clocks: StudyClocks,
 }
 
-impl Asked for Passivity {
-    type Experiment = Options;
+impl ExperimentArguments for Passivity {
+    type Experiment = PassivityOptions;
 
-    fn experiment(&self) -> anyhow::Result<Options> {
-        Ok(Options { clocks: self.clocks.chosen() })
+    fn experiment(&self) -> anyhow::Result<PassivityOptions> {
+        Ok(PassivityOptions { clocks: self.clocks.chosen() })
     }
 }

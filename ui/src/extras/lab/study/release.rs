@@ -1,20 +1,20 @@
 //! Arguments of `nima study release`.
 
 use clap::Args;
-use nima_study::release::Options;
+use nima_study::release::ReleaseOptions;
 
-use super::{Asked, clocks::Clocks};
+use super::{ExperimentArguments, clocks::StudyClocks};
 
 #[derive(Debug, Args)]
-pub(in crate::extras::lab) struct Release {
+pub(in crate::extras::lab) struct ReleaseStudy {
     #[command(flatten)]
-    clocks: Clocks,
+    clocks: StudyClocks,
 }
 
-impl Asked for Release {
-    type Experiment = Options;
+impl ExperimentArguments for ReleaseStudy {
+    type Experiment = ReleaseOptions;
 
-    fn experiment(&self) -> anyhow::Result<Options> {
-        Ok(Options { clocks: self.clocks.chosen() })
+    fn experiment(&self) -> anyhow::Result<ReleaseOptions> {
+        Ok(ReleaseOptions { clocks: self.clocks.chosen() })
     }
 }

@@ -6,17 +6,17 @@ use anyhow::{Context as _, bail};
 use clap::Args;
 use nima_core::limits::DELAY_S;
 use nima_machine::{rig::Side, runtime::VirtualClock};
-use nima_recording::csv::Mapping;
+use nima_recording::csv::ColumnMapping;
 use nima_simulation::scene::Scene;
-use nima_study::tradeoff::Source;
+use nima_study::tradeoff::TradeoffSource;
 
-use crate::{command::setup::side, extras::lab::motion};
+use crate::{command::rig_args::side, extras::lab::recording_input};
 
 /// Rate of a scene, Hz.
 pub(super) const RATE_HZ: f64 = 1000.0;
 
 #[derive(Debug, Args)]
-pub(super) struct Sources {
+pub(super) struct SourceArguments {
     /// CSV file with motion and force, or session, as for `nima identify`; may be repeated
     #[arg(long, value_name = "FILE", num_args = 1..)]
     recording: Vec<PathBuf>,
@@ -32,7 +32,7 @@ pub(super) struct Sources {
     scene: Vec<String>,
 }
 
-impl Sources {
+impl SourceArguments {
     /// Whether neither a recording nor a scene is given.
     pub(super) fn is_empty(&self) -> bool {
         self.recording.is_empty() && self.scene.is_empty()
@@ -43,25 +43,27 @@ impl Sources {
         self.recording.iter().cloned().chain(self.scene.iter().map(PathBuf::from)).collect()
     }
 
-    pub(super) fn recordings(&self) -> anyhow::Result<Vec<Source>> {
+    pub(super) fn recordings(&self) -> anyhow::Result<Vec<TradeoffSource>> {
         if !self.map.is_empty() && self.recording.is_empty() {
             bail!("--map requires a recording: add --recording");
         }
         if self.arm.is_some() && self.recording.is_empty() {
             bail!("--arm requires a session: add --recording");
         }
-        let mapping = Mapping::parse(&self.map)?;
+        let mapping = ColumnMapping::parse(&self.map)?;
         let forces = ["fx_n", "fy_n", "fz_n"];
         let unit = if forces.into_iter().any(|force| mapping.names(force)) { "recorded unit" } else { "N" };
-        let read = |path: &PathBuf| Ok(Source::from_recording(motion::read(path, &self.map, self.arm)?, unit));
+        let read = |path: &PathBuf| {
+            Ok(TradeoffSource::from_recording(recording_input::read(path, &self.map, self.arm)?, unit))
+        };
         self.recording.iter().map(read).collect()
     }
 
     /// The given scenes, each for this duration (s), on each of these clocks.
-    pub(super) fn scenes(&self, clocks: &[VirtualClock], seconds: f64) -> anyhow::Result<Vec<Source>> {
+    pub(super) fn scenes(&self, clocks: &[VirtualClock], seconds: f64) -> anyhow::Result<Vec<TradeoffSource>> {
         let load = |name: &String| Scene::load(name).with_context(|| format!("--scene {name}"));
         let scenes = self.scene.iter().map(load).collect::<anyhow::Result<Vec<_>>>()?;
-        let on = |scene| clocks.iter().map(move |clock| Source::on_clock(*clock, scene, RATE_HZ, seconds));
+        let on = |scene| clocks.iter().map(move |clock| TradeoffSource::on_clock(*clock, scene, RATE_HZ, seconds));
         Ok(scenes.iter().flat_map(on).collect())
     }
 }

@@ -1,9 +1,9 @@
 //! Arguments of `nima study stability`.
 
 use clap::Args;
-use nima_study::stability::Options;
+use nima_study::stability::StabilityOptions;
 
-use super::Asked;
+use super::ExperimentArguments;
 
 #[derive(Debug, Args)]
 pub(in crate::extras::lab) struct Stability {
@@ -15,10 +15,10 @@ pub(in crate::extras::lab) struct Stability {
     quick: bool,
 }
 
-impl Asked for Stability {
-    type Experiment = Options;
+impl ExperimentArguments for Stability {
+    type Experiment = StabilityOptions;
 
-    fn experiment(&self) -> anyhow::Result<Options> {
-        Ok(Options { ticks: self.ticks, quick: self.quick })
+    fn experiment(&self) -> anyhow::Result<StabilityOptions> {
+        Ok(StabilityOptions { ticks: self.ticks, quick: self.quick })
     }
 }

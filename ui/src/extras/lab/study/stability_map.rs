@@ -1,17 +1,17 @@
 //! Arguments of `nima study stability-map`: none.
 
 use clap::Args;
-use nima_study::stability_map::Options;
+use nima_study::stability_map::StabilityMapOptions;
 
-use super::Asked;
+use super::ExperimentArguments;
 
 #[derive(Debug, Args)]
-pub(in crate::extras::lab) struct StabilityMap;
+pub(in crate::extras::lab) struct StabilityMapStudy;
 
-impl Asked for StabilityMap {
-    type Experiment = Options;
+impl ExperimentArguments for StabilityMapStudy {
+    type Experiment = StabilityMapOptions;
 
-    fn experiment(&self) -> anyhow::Result<Options> {
-        Ok(Options)
+    fn experiment(&self) -> anyhow::Result<StabilityMapOptions> {
+        Ok(StabilityMapOptions)
     }
 }

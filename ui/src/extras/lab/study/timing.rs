@@ -21,11 +21,11 @@ use nima_machine::config::SchedulingClass;
 use nima_study::{Experiment, Findings};
 use serde::{Deserialize, Serialize};
 
-use super::Asked;
-use crate::{command::run::positive_seconds, telling::tell};
+use super::ExperimentArguments;
+use crate::{command::run::positive_seconds, stderr::print_line};
 
 #[derive(Clone, Debug, Args)]
-pub(in crate::extras::lab) struct Arguments {
+pub(in crate::extras::lab) struct TimingArguments {
     /// Length of each case, s
     #[arg(long, value_name = "S", default_value_t = 20.0, value_parser = positive_seconds)]
     seconds: f64,
@@ -37,7 +37,7 @@ pub(in crate::extras::lab) struct Arguments {
 /// Load that runs parallel to the loop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-enum Beside {
+enum ParallelLoad {
     Nothing,
     Console,
     Hogs,
@@ -45,7 +45,7 @@ enum Beside {
     Disk,
 }
 
-impl Beside {
+impl ParallelLoad {
     const ALL: [Self; 5] = [Self::Nothing, Self::Console, Self::Hogs, Self::StalledConsole, Self::Disk];
 
     const fn words(self) -> &'static str {
@@ -65,45 +65,45 @@ impl Beside {
 
 /// Displayed fields of [`nima_core::statistics::Quantiles`].
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-struct Quantiles {
+struct TimingQuantiles {
     p50: f64,
     p99: f64,
     p999: f64,
     max: f64,
 }
 
-/// Displayed fields of [`nima_machine::runtime::Summary`].
+/// Displayed fields of [`nima_machine::runtime::RuntimeSummary`].
 #[derive(Clone, Debug, Serialize, Deserialize)]
-struct Figures {
+struct TimingFigures {
     ticks: u64,
     missed: u64,
-    wake_us: Quantiles,
-    work_us: Quantiles,
-    scheduling: Scheduling,
+    wake_us: TimingQuantiles,
+    work_us: TimingQuantiles,
+    scheduling: TimingScheduling,
 }
 
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-struct Scheduling {
+struct TimingScheduling {
     fifo: bool,
     deadline: bool,
     memory_locked: bool,
 }
 
 #[derive(Debug, Serialize)]
-pub(super) struct Case {
-    beside: Beside,
+pub(super) struct TimingCase {
+    beside: ParallelLoad,
     asked: SchedulingClass,
     #[serde(flatten)]
-    figures: Option<Figures>,
+    figures: Option<TimingFigures>,
     /// Reason for missing results; `None` if there are some.
     skipped: Option<String>,
 }
 
 #[derive(Debug, Serialize)]
 #[serde(transparent)]
-pub(in crate::extras::lab) struct Cases(Vec<Case>);
+pub(in crate::extras::lab) struct Cases(Vec<TimingCase>);
 
-impl Asked for Arguments {
+impl ExperimentArguments for TimingArguments {
     type Experiment = Self;
 
     fn experiment(&self) -> anyhow::Result<Self> {
@@ -111,7 +111,7 @@ impl Asked for Arguments {
     }
 }
 
-impl Experiment for Arguments {
+impl Experiment for TimingArguments {
     const NAME: &'static str = "timing";
     type Findings = Cases;
     type Error = Infallible;
@@ -123,12 +123,12 @@ impl Experiment for Arguments {
     /// Prints one line per case, because each takes a while.
     fn run(&self, _: &mut dyn FnMut(usize, usize, &str)) -> Result<Cases, Infallible> {
         let mut cases = Vec::new();
-        for beside in Beside::ALL {
+        for beside in ParallelLoad::ALL {
             for asked in [SchedulingClass::Fifo, SchedulingClass::Deadline, SchedulingClass::Ordinary] {
-                tell(format_args!("{}, {}", beside.words(), asked.name()));
+                print_line(format_args!("{}, {}", beside.words(), asked.name()));
                 let measured = measure(self, beside, asked);
                 let skipped = measured.as_ref().err().map(|error| format!("{error:#}"));
-                cases.push(Case { beside, asked, figures: measured.ok(), skipped });
+                cases.push(TimingCase { beside, asked, figures: measured.ok(), skipped });
             }
         }
         Ok(Cases(cases))
@@ -141,12 +141,12 @@ impl Findings for Cases {
     }
 }
 
-fn measure(arguments: &Arguments, beside: Beside, asked: SchedulingClass) -> anyhow::Result<Figures> {
+fn measure(arguments: &TimingArguments, beside: ParallelLoad, asked: SchedulingClass) -> anyhow::Result<TimingFigures> {
     let program = std::env::current_exe().context("cannot find the path of this program")?;
     let folder = tempfile::tempdir()?;
     let load = match beside {
-        Beside::Hogs => Load::hogs(),
-        Beside::Disk => Load::disk(folder.path().join("load")),
+        ParallelLoad::Hogs => Load::hogs(),
+        ParallelLoad::Disk => Load::disk(folder.path().join("load")),
         _ => Load::default(),
     };
     let mut command = Command::new(program);
@@ -157,7 +157,7 @@ fn measure(arguments: &Arguments, beside: Beside, asked: SchedulingClass) -> any
     } else {
         command.args(["run", "--seconds", &seconds, "--json"]);
     }
-    if beside == Beside::StalledConsole {
+    if beside == ParallelLoad::StalledConsole {
         command.args(["--stall", "5"]);
     }
     command.args(["--scene", &arguments.scene]);
@@ -171,8 +171,8 @@ fn measure(arguments: &Arguments, beside: Beside, asked: SchedulingClass) -> any
     let text = if beside.has_window() { std::fs::read(&summary).unwrap_or_default() } else { done.stdout };
     // A delayed loop ends in a fault; its results are still used.
     serde_json::from_slice(&text).map_err(|error| {
-        let told = String::from_utf8_lossy(&done.stderr).lines().next_back().map(str::to_owned);
-        told.filter(|_| !done.status.success()).map_or_else(|| error.into(), anyhow::Error::msg)
+        let report = String::from_utf8_lossy(&done.stderr).lines().next_back().map(str::to_owned);
+        report.filter(|_| !done.status.success()).map_or_else(|| error.into(), anyhow::Error::msg)
     })
 }
 
@@ -229,15 +229,15 @@ impl Drop for Load {
     }
 }
 
-fn table(cases: &[Case]) -> String {
+fn table(cases: &[TimingCase]) -> String {
     let mut out = String::from(
         "| load | class | ticks | missed | wake-up us p50 | p99 | p99.9 | max | work us p50 | p99 \
          |\n|---|---|---|---|---|---|---|---|---|---|\n",
     );
-    for Case { beside, asked, figures, skipped } in cases {
+    for TimingCase { beside, asked, figures, skipped } in cases {
         // Writing to a String cannot fail.
         write!(out, "| {} | {} |", beside.words(), asked.name()).ok();
-        let Some(Figures { ticks, missed, wake_us: wake, work_us: work, scheduling }) = figures else {
+        let Some(TimingFigures { ticks, missed, wake_us: wake, work_us: work, scheduling }) = figures else {
             let why = skipped.as_deref().unwrap_or("not measured");
             writeln!(out, " {why} | | | | | | | |").ok();
             continue;

@@ -5,10 +5,10 @@ use std::path::PathBuf;
 use clap::Args;
 use nima_study::trials::Trials;
 
-use super::Asked;
+use super::ExperimentArguments;
 
 #[derive(Debug, Args)]
-pub(in crate::extras::lab) struct Arguments {
+pub(in crate::extras::lab) struct TrialsArguments {
     /// Table (CSV): one row per trial with `participant`, `condition`, optionally `trial`, and one column per measure
     #[arg(value_name = "TRIALS.csv")]
     table: PathBuf,
@@ -19,21 +19,21 @@ pub(in crate::extras::lab) struct Arguments {
     #[arg(long, value_name = "CONDITION")]
     reference: Option<String>,
     /// Confidence level of the intervals, as a fraction
-    #[arg(long, value_name = "SHARE", value_parser = share, default_value = "0.95")]
+    #[arg(long, value_name = "SHARE", value_parser = fraction, default_value = "0.95")]
     confidence: f64,
     /// Print the number of participants that gives this power, as a fraction, if the differences are as measured here
-    #[arg(long, value_name = "SHARE", value_parser = share)]
+    #[arg(long, value_name = "SHARE", value_parser = fraction)]
     power: Option<f64>,
 }
 
-fn share(text: &str) -> Result<f64, String> {
+fn fraction(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
-        Ok(share) if (0.5..1.0).contains(&share) => Ok(share),
+        Ok(fraction) if (0.5..1.0).contains(&fraction) => Ok(fraction),
         _ => Err("enter a fraction from 0.5 to below 1, such as 0.95".to_owned()),
     }
 }
 
-impl Asked for Arguments {
+impl ExperimentArguments for TrialsArguments {
     type Experiment = Trials;
 
     fn experiment(&self) -> anyhow::Result<Trials> {

@@ -5,11 +5,11 @@ use std::path::PathBuf;
 use clap::Args;
 use nima_core::limits::DELAY_S;
 use nima_machine::rig::Side;
-use nima_recording::tip_force::MOST_ROWS;
-use nima_study::validation::{Options, isolation::ROWS, paper};
+use nima_recording::tip_force::MAX_ROWS;
+use nima_study::validation::{ValidationOptions, isolation::ROWS, paper};
 
-use super::{Asked, Results, clocks::Clocks};
-use crate::{command::setup::side, extras::lab::motion};
+use super::{ExperimentArguments, Results, clocks::StudyClocks};
+use crate::{command::rig_args::side, extras::lab::recording_input};
 
 #[derive(Debug, Args)]
 pub(in crate::extras::lab) struct Validation {
@@ -23,7 +23,7 @@ pub(in crate::extras::lab) struct Validation {
     #[arg(long, value_name = "D", default_value_t = 300.0, value_parser = delay_ms, conflicts_with = "paper")]
     delay_ms: f64,
     #[command(flatten)]
-    clocks: Clocks,
+    clocks: StudyClocks,
     /// Only the rendering part, on the perfect clock, under the paper's conditions and under others: in its window, at the
     /// prediction horizon, and when the hand releases the handle
     #[arg(long, conflicts_with_all = ["clock", "clock_seed"])]
@@ -44,8 +44,8 @@ pub(in crate::extras::lab) struct Validation {
 
 fn rows(text: &str) -> Result<usize, String> {
     match text.parse() {
-        Ok(rows @ 2000..=MOST_ROWS) => Ok(rows),
-        _ => Err(format!("enter a number of rows from 2000 to {MOST_ROWS}")),
+        Ok(rows @ 2000..=MAX_ROWS) => Ok(rows),
+        _ => Err(format!("enter a number of rows from 2000 to {MAX_ROWS}")),
     }
 }
 
@@ -62,19 +62,24 @@ fn delay_ms(text: &str) -> Result<f64, String> {
     delay_ms.ok_or_else(|| format!("enter a delay from {limits}"))
 }
 
-impl Asked for Validation {
-    type Experiment = Options;
+impl ExperimentArguments for Validation {
+    type Experiment = ValidationOptions;
 
-    fn experiment(&self) -> anyhow::Result<Options> {
-        Ok(Options { seed: self.seed, clocks: self.clocks.chosen(), rows: self.rows, delay_s: 1e-3 * self.delay_ms })
+    fn experiment(&self) -> anyhow::Result<ValidationOptions> {
+        Ok(ValidationOptions {
+            seed: self.seed,
+            clocks: self.clocks.chosen(),
+            rows: self.rows,
+            delay_s: 1e-3 * self.delay_ms,
+        })
     }
 
     fn carry_out(&self, results: &Results) -> anyhow::Result<()> {
         if !self.paper {
             return results.of(&self.experiment()?);
         }
-        let read = |path: &PathBuf| motion::read(path, &self.map, self.arm);
+        let read = |path: &PathBuf| recording_input::read(path, &self.map, self.arm);
         let recordings = self.recording.iter().map(read).collect::<Result<_, _>>()?;
-        results.of(&paper::Options { seed: self.seed, seconds: self.seconds, recordings })
+        results.of(&paper::PaperOptions { seed: self.seed, seconds: self.seconds, recordings })
     }
 }

@@ -4,10 +4,10 @@ use std::path::PathBuf;
 
 use clap::Args;
 use nima_recording::store::utc_now;
-use nima_user_study::Study;
+use nima_user_study::UserStudy;
 
 #[derive(Debug, Args)]
-pub(in crate::extras::user_studies) struct Arguments {
+pub(in crate::extras::user_studies) struct ExcludeTrialArguments {
     /// Folder of the study
     #[arg(value_name = "DIR")]
     study: PathBuf,
@@ -22,7 +22,7 @@ pub(in crate::extras::user_studies) struct Arguments {
     reason: String,
 }
 
-pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    let Arguments { study, participant, trial, reason } = arguments;
-    Ok(Study::open(study, &utc_now())?.exclude(participant, *trial, reason, &utc_now())?)
+pub(super) fn run(arguments: &ExcludeTrialArguments) -> anyhow::Result<()> {
+    let ExcludeTrialArguments { study, participant, trial, reason } = arguments;
+    Ok(UserStudy::open(study, &utc_now())?.exclude(participant, *trial, reason, &utc_now())?)
 }

@@ -15,21 +15,21 @@ use clap::Subcommand;
 #[derive(Debug, Subcommand)]
 pub(super) enum UserStudyCommand {
     /// Create the folder of a study: pseudonyms, orders, sealed conditions
-    New(new::Arguments),
+    New(new::NewStudyArguments),
     /// Show the progress of all participants, and the next steps
-    Status(status::Arguments),
+    Status(status::StudyStatusArguments),
     /// Run the next step of a participant
-    Next(next::Arguments),
+    Next(next::NextTrialArguments),
     /// Write a note to the journal
-    Note(note::Arguments),
+    Note(note::NoteArguments),
     /// Exclude a participant, or one trial, from the analysis
-    Exclude(exclude::Arguments),
+    Exclude(exclude::ExcludeTrialArguments),
     /// Reveal the conditions; name, time and reason are stored
-    Unblind(unblind::Arguments),
+    Unblind(unblind::UnblindArguments),
     /// Write the table of trials for `nima study trials`
-    Table(table::Arguments),
+    Table(table::StudyTableArguments),
     /// Let simulated participants do the whole study
-    Simulate(simulate::Arguments),
+    Simulate(simulate::SimulateStudyArguments),
 }
 
 pub(super) fn run(command: &UserStudyCommand) -> anyhow::Result<()> {

@@ -11,7 +11,7 @@ use crate::{
 };
 
 #[derive(Debug, Args)]
-pub(in crate::extras::user_studies) struct Arguments {
+pub(in crate::extras::user_studies) struct NewStudyArguments {
     /// Study: `paper`, `short`, or a TOML file
     #[arg(value_name = "STUDY")]
     file: String,
@@ -23,8 +23,8 @@ pub(in crate::extras::user_studies) struct Arguments {
     json: bool,
 }
 
-pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    let Arguments { file, out, json } = arguments;
+pub(super) fn run(arguments: &NewStudyArguments) -> anyhow::Result<()> {
+    let NewStudyArguments { file, out, json } = arguments;
     let study = study_file(file)?;
     let made = create(out, &study)?;
     let plan = made.plan();

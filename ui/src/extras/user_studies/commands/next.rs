@@ -5,17 +5,17 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context as _, bail};
 use clap::Args;
 use nima_recording::store::utc_now;
-use nima_user_study::{Answers, Progress, Questionnaire, Step, Study};
+use nima_user_study::{ParticipantProgress, Questionnaire, QuestionnaireAnswers, StudyStep, UserStudy};
 use serde_json::json;
 
 use crate::{
     command::output,
-    extras::user_studies::study::{next_in_words, plain_hand, run_virtual},
-    leaving::Leave,
+    extras::user_studies::study::{next_text, plain_hand, run_virtual},
+    shutdown::Leave,
 };
 
 #[derive(Debug, Args)]
-pub(in crate::extras::user_studies) struct Arguments {
+pub(in crate::extras::user_studies) struct NextTrialArguments {
     /// Folder of the study
     #[arg(value_name = "DIR")]
     study: PathBuf,
@@ -36,13 +36,13 @@ pub(in crate::extras::user_studies) struct Arguments {
     json: bool,
 }
 
-pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    let Arguments { study, participant, virtual_clock, answers, answers_file, json } = arguments;
-    let mut study = Study::open(study, &utc_now())?;
+pub(super) fn run(arguments: &NextTrialArguments) -> anyhow::Result<()> {
+    let NextTrialArguments { study, participant, virtual_clock, answers, answers_file, json } = arguments;
+    let mut study = UserStudy::open(study, &utc_now())?;
     let step = study.next(participant)?;
     let words = match step {
-        Step::Done { .. } => bail!("{participant}: no next step ({step})"),
-        Step::Questionnaire { questionnaire, .. } => {
+        StudyStep::Done { .. } => bail!("{participant}: no next step ({step})"),
+        StudyStep::Questionnaire { questionnaire, .. } => {
             let given = given(questionnaire, answers.as_deref(), answers_file.as_deref())?;
             study.answer(participant, given, false, &utc_now())?;
             format!("{step}: kept")
@@ -53,26 +53,26 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         _ if !virtual_clock => {
             bail!("{participant}: next is {step}; add --virtual to run it in the simulated rig")
         }
-        Step::Break { least_s } => {
-            study.take_break(participant, least_s, true, &utc_now())?;
+        StudyStep::Break { min_s } => {
+            study.take_break(participant, min_s, true, &utc_now())?;
             "break (simulated)".to_owned()
         }
-        Step::Practice { .. } | Step::Trial { .. } | Step::Running { .. } => {
+        StudyStep::Practice { .. } | StudyStep::Trial { .. } | StudyStep::Running { .. } => {
             let leave = Leave::on_signals()?;
             let hand = plain_hand(&study, participant)?;
             let ran = run_virtual(&mut study, participant, &hand, &leave)?;
-            let shows = study.state().progress(participant).is_none_or(Progress::shows_result);
-            ran.in_words(shows)
+            let shows = study.state().progress(participant).is_none_or(ParticipantProgress::shows_result);
+            ran.as_text(shows)
         }
     };
     let next = study.next(participant)?;
     if *json {
         return output::json(&json!({ "participant": participant, "step": step, "result": words, "next": next }));
     }
-    output::line(&format!("{participant}: {words}; {}", next_in_words(&next)))
+    output::line(&format!("{participant}: {words}; {}", next_text(&next)))
 }
 
-fn given(asked: Questionnaire, text: Option<&str>, file: Option<&Path>) -> anyhow::Result<Answers> {
+fn given(asked: Questionnaire, text: Option<&str>, file: Option<&Path>) -> anyhow::Result<QuestionnaireAnswers> {
     let text = match (text, file) {
         (Some(text), _) => text.to_owned(),
         (None, Some(file)) => {
@@ -80,5 +80,6 @@ fn given(asked: Questionnaire, text: Option<&str>, file: Option<&Path>) -> anyho
         }
         (None, None) => String::new(),
     };
-    Answers::from_toml(&text, asked).map_err(|why| anyhow::anyhow!("{why}; add it with --answers or --answers-file"))
+    QuestionnaireAnswers::from_toml(&text, asked)
+        .map_err(|why| anyhow::anyhow!("{why}; add it with --answers or --answers-file"))
 }

@@ -4,10 +4,10 @@ use std::path::PathBuf;
 
 use clap::Args;
 use nima_recording::store::utc_now;
-use nima_user_study::Study;
+use nima_user_study::UserStudy;
 
 #[derive(Debug, Args)]
-pub(in crate::extras::user_studies) struct Arguments {
+pub(in crate::extras::user_studies) struct NoteArguments {
     /// Folder of the study
     #[arg(value_name = "DIR")]
     study: PathBuf,
@@ -19,7 +19,7 @@ pub(in crate::extras::user_studies) struct Arguments {
     participant: Option<String>,
 }
 
-pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    let Arguments { study, text, participant } = arguments;
-    Ok(Study::open(study, &utc_now())?.note(participant.as_deref(), text, &utc_now())?)
+pub(super) fn run(arguments: &NoteArguments) -> anyhow::Result<()> {
+    let NoteArguments { study, text, participant } = arguments;
+    Ok(UserStudy::open(study, &utc_now())?.note(participant.as_deref(), text, &utc_now())?)
 }

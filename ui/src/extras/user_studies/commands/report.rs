@@ -3,13 +3,13 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use nima_user_study::Study;
+use nima_user_study::UserStudy;
 
 use crate::command::output;
 use crate::extras::user_studies::report;
 
 #[derive(Debug, Args)]
-pub(in crate::extras::user_studies) struct Arguments {
+pub(in crate::extras::user_studies) struct StudyReportArguments {
     /// Folder of the study
     #[arg(value_name = "DIR")]
     study: PathBuf,
@@ -21,9 +21,9 @@ pub(in crate::extras::user_studies) struct Arguments {
     all: bool,
 }
 
-pub(in crate::extras::user_studies) fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    let Arguments { study, out, all } = arguments;
-    let study = Study::read(study)?;
+pub(in crate::extras::user_studies) fn run(arguments: &StudyReportArguments) -> anyhow::Result<()> {
+    let StudyReportArguments { study, out, all } = arguments;
+    let study = UserStudy::read(study)?;
     let out = out.clone().unwrap_or_else(|| study.folder().join("report"));
     let page = report::write(&study, &out, *all)?;
     output::line(&format!("written: {}", page.display()))

@@ -5,16 +5,16 @@ use std::path::PathBuf;
 use anyhow::bail;
 use clap::Args;
 use nima_recording::store::utc_now;
-use nima_user_study::{Step, Study, simulated::Person};
+use nima_user_study::{StudyStep, UserStudy, simulated::SimulatedParticipant};
 
 use crate::{
     command::output,
     extras::user_studies::study::{made, run_virtual},
-    leaving::Leave,
+    shutdown::Leave,
 };
 
 #[derive(Debug, Args)]
-pub(in crate::extras::user_studies) struct Arguments {
+pub(in crate::extras::user_studies) struct SimulateStudyArguments {
     /// Folder of the study, in which no real person has taken part
     #[arg(value_name = "DIR")]
     study: PathBuf,
@@ -26,10 +26,10 @@ pub(in crate::extras::user_studies) struct Arguments {
     steps: Option<usize>,
 }
 
-pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    let Arguments { study, seed, steps } = arguments;
-    let mut study = Study::open(study, &utc_now())?;
-    let is_real = |(_, one): (&str, &nima_user_study::Progress)| {
+pub(super) fn run(arguments: &SimulateStudyArguments) -> anyhow::Result<()> {
+    let SimulateStudyArguments { study, seed, steps } = arguments;
+    let mut study = UserStudy::open(study, &utc_now())?;
+    let is_real = |(_, one): (&str, &nima_user_study::ParticipantProgress)| {
         one.trials.iter().any(|made| !made.simulated) || one.answers.iter().any(|given| !given.2)
     };
     if study.state().participants().any(is_real) {
@@ -39,17 +39,17 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let names: Vec<String> = study.plan().participants.iter().map(|one| one.name.clone()).collect();
     let mut left = steps.unwrap_or(usize::MAX);
     for (number, name) in (0..).zip(names) {
-        let person = Person::new(*seed, number);
+        let person = SimulatedParticipant::new(*seed, number);
         while left > 0 {
             let (before, since_break) = made(&study, &name);
             match study.next(&name)? {
-                Step::Done { .. } => break,
-                Step::Break { least_s } => study.take_break(&name, least_s, true, &utc_now())?,
-                Step::Questionnaire { questionnaire, .. } => {
+                StudyStep::Done { .. } => break,
+                StudyStep::Break { min_s } => study.take_break(&name, min_s, true, &utc_now())?,
+                StudyStep::Questionnaire { questionnaire, .. } => {
                     study.answer(&name, person.answers(questionnaire, before), true, &utc_now())?;
                 }
-                Step::Running { .. } => bail!("{name}: a trial is running"),
-                Step::Practice { attempt, .. } | Step::Trial { attempt, .. } => {
+                StudyStep::Running { .. } => bail!("{name}: a trial is running"),
+                StudyStep::Practice { attempt, .. } | StudyStep::Trial { attempt, .. } => {
                     run_virtual(&mut study, &name, &person.hand(before, since_break, attempt), &leave)?;
                 }
             }

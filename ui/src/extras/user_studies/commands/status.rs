@@ -3,13 +3,13 @@
 use std::{fmt::Write as _, path::PathBuf};
 
 use clap::Args;
-use nima_user_study::{Label, Step, Study};
+use nima_user_study::{Label, StudyStep, UserStudy};
 use serde::Serialize;
 
 use crate::command::output;
 
 #[derive(Debug, Args)]
-pub(in crate::extras::user_studies) struct Arguments {
+pub(in crate::extras::user_studies) struct StudyStatusArguments {
     /// Folder of the study
     #[arg(value_name = "DIR")]
     study: PathBuf,
@@ -19,7 +19,7 @@ pub(in crate::extras::user_studies) struct Arguments {
 }
 
 #[derive(Serialize)]
-struct Standing<'a> {
+struct ParticipantStatus<'a> {
     participant: &'a str,
     order: &'a [Label],
     practice: usize,
@@ -27,31 +27,31 @@ struct Standing<'a> {
     without_result: usize,
     interruptions: u32,
     excluded: Option<&'a str>,
-    next: Step,
+    next: StudyStep,
 }
 
 #[derive(Serialize)]
-struct Status<'a> {
+struct StudyStatus<'a> {
     name: &'a str,
     blind: bool,
     unblinded: Option<&'a nima_user_study::Unblinding>,
     simulated: bool,
     commitment: &'a str,
     trials_of_each: u32,
-    participants: Vec<Standing<'a>>,
+    participants: Vec<ParticipantStatus<'a>>,
     excluded: Vec<nima_user_study::Exclusion>,
     notes: &'a [(String, Option<String>, String)],
     torn_bytes: &'a [u64],
 }
 
-pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    let study = Study::read(&arguments.study)?;
-    let status = Status::of(&study)?;
-    if arguments.json { output::json(&status) } else { output::line(status.in_words().trim_end()) }
+pub(super) fn run(arguments: &StudyStatusArguments) -> anyhow::Result<()> {
+    let study = UserStudy::read(&arguments.study)?;
+    let status = StudyStatus::of(&study)?;
+    if arguments.json { output::json(&status) } else { output::line(status.as_text().trim_end()) }
 }
 
-impl<'a> Status<'a> {
-    fn of(study: &'a Study) -> anyhow::Result<Self> {
+impl<'a> StudyStatus<'a> {
+    fn of(study: &'a UserStudy) -> anyhow::Result<Self> {
         let plan = study.plan();
         let state = study.state();
         let standing = |participant: &'a nima_user_study::Participant| {
@@ -59,7 +59,7 @@ impl<'a> Status<'a> {
             let results = |with: bool| {
                 progress.map_or(0, |one| one.trials.iter().filter(|made| made.measures.is_some() == with).count())
             };
-            Ok(Standing {
+            Ok(ParticipantStatus {
                 participant: &participant.name,
                 order: &participant.order,
                 practice: progress.map_or(0, |one| one.practice_s.len()),
@@ -84,7 +84,7 @@ impl<'a> Status<'a> {
         })
     }
 
-    fn in_words(&self) -> String {
+    fn as_text(&self) -> String {
         let sealed = match (self.blind, self.unblinded) {
             (false, _) => "not blind".to_owned(),
             (true, None) => "blind".to_owned(),

@@ -5,12 +5,12 @@ use std::path::PathBuf;
 use anyhow::Context as _;
 use clap::Args;
 use nima_files::write_atomically;
-use nima_user_study::{Study, Table};
+use nima_user_study::{StudyTable, UserStudy};
 
 use crate::command::output;
 
 #[derive(Debug, Args)]
-pub(in crate::extras::user_studies) struct Arguments {
+pub(in crate::extras::user_studies) struct StudyTableArguments {
     /// Folder of the study
     #[arg(value_name = "DIR")]
     study: PathBuf,
@@ -22,11 +22,12 @@ pub(in crate::extras::user_studies) struct Arguments {
     questionnaires: bool,
 }
 
-pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    let Arguments { study, out, questionnaires } = arguments;
-    let study = Study::read(study)?;
+pub(super) fn run(arguments: &StudyTableArguments) -> anyhow::Result<()> {
+    let StudyTableArguments { study, out, questionnaires } = arguments;
+    let study = UserStudy::read(study)?;
     output::check(out, &[&study.folder().join(nima_user_study::JOURNAL)])?;
-    let Table { csv, rows, excluded, missing } = if *questionnaires { study.questionnaires() } else { study.trials() };
+    let StudyTable { csv, rows, excluded, missing } =
+        if *questionnaires { study.questionnaires() } else { study.trials() };
     write_atomically(out, |file| file.write_all(csv.as_bytes()))
         .with_context(|| format!("cannot write {}", out.display()))?;
     output::line(&format!("{rows} rows in {}", out.display()))?;

@@ -4,13 +4,13 @@ use std::path::PathBuf;
 
 use clap::Args;
 use nima_recording::store::utc_now;
-use nima_user_study::Study;
+use nima_user_study::UserStudy;
 use serde_json::json;
 
-use crate::{command::output, telling::tell};
+use crate::{command::output, stderr::print_line};
 
 #[derive(Debug, Args)]
-pub(in crate::extras::user_studies) struct Arguments {
+pub(in crate::extras::user_studies) struct UnblindArguments {
     /// Folder of the study
     #[arg(value_name = "DIR")]
     study: PathBuf,
@@ -25,14 +25,14 @@ pub(in crate::extras::user_studies) struct Arguments {
     json: bool,
 }
 
-pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    let Arguments { study, name, reason, json } = arguments;
-    let mut study = Study::open(study, &utc_now())?;
+pub(super) fn run(arguments: &UnblindArguments) -> anyhow::Result<()> {
+    let UnblindArguments { study, name, reason, json } = arguments;
+    let mut study = UserStudy::open(study, &utc_now())?;
     study.unblind(name, reason, &utc_now())?;
     if study.state().unblinding.as_ref().is_some_and(|unblinding| !unblinding.complete) {
-        tell("warning: not all participants have finished; trials from now on are marked as unblinded");
+        print_line("warning: not all participants have finished; trials from now on are marked as unblinded");
     }
-    let labels: Vec<_> = study.opened().into_iter().flat_map(nima_user_study::Opened::labels).collect();
+    let labels: Vec<_> = study.opened().into_iter().flat_map(nima_user_study::Assignment::labels).collect();
     if *json {
         let labels: serde_json::Map<_, _> =
             labels.iter().map(|(label, name)| (label.to_string(), json!(name))).collect();

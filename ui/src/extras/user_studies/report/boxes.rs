@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 
 use maud::{Markup, html};
-use nima_analysis::Summary;
+use nima_analysis::SampleSummary;
 use nima_charts::COLOURS;
-use nima_study::trials::Table;
+use nima_study::trials::TrialTable;
 
 use crate::report::{html::drawing, plots::step};
 
@@ -20,11 +20,11 @@ const HALF_BOX: f64 = 28.0;
 const REACH: f64 = 1.5;
 
 /// The means of the participants under each condition, in this order; empty without values.
-pub(super) fn svg(table: &Table, measure: &str, order: &[String], axis: &str) -> Markup {
+pub(super) fn svg(table: &TrialTable, measure: &str, order: &[String], axis: &str) -> Markup {
     let groups: Vec<(&String, Vec<f64>)> =
         order.iter().map(|name| (name, means(table, measure, name))).filter(|(_, values)| !values.is_empty()).collect();
     let all: Vec<f64> = groups.iter().flat_map(|(_, values)| values.iter().copied()).collect();
-    let Ok(whole) = Summary::of(&all) else { return html! {} };
+    let Ok(whole) = SampleSummary::of(&all) else { return html! {} };
     let [low, high] = whole.extremes;
     let room = 0.05 * if high > low { high - low } else { high.abs().max(1.0) };
     let low = low - room;
@@ -52,16 +52,18 @@ pub(super) fn svg(table: &Table, measure: &str, order: &[String], axis: &str) ->
 }
 
 fn group(x: f64, values: &[f64], colour: &str, down: impl Fn(f64) -> f64) -> Markup {
-    let Ok(Summary { quartiles: [first, third], median, .. }) = Summary::of(values) else { return html! {} };
+    let Ok(SampleSummary { quartiles: [first, third], median, .. }) = SampleSummary::of(values) else {
+        return html! {};
+    };
     let reach = REACH * (third - first);
     let within = values.iter().copied().filter(|value| (first - reach..=third + reach).contains(value));
-    let (least, most) = within.fold((first, third), |(least, most), value| (least.min(value), most.max(value)));
+    let (min, max) = within.fold((first, third), |(min, max), value| (min.min(value), max.max(value)));
     let top = down(third);
     let bottom = down(first);
     let left = x - HALF_BOX;
     let width = 2.0 * HALF_BOX;
     html! {
-        path d=(format_args!("M{x:.1} {:.1}V{top:.1}M{x:.1} {bottom:.1}V{:.1}", down(most), down(least))) stroke=(colour) {}
+        path d=(format_args!("M{x:.1} {:.1}V{top:.1}M{x:.1} {bottom:.1}V{:.1}", down(max), down(min))) stroke=(colour) {}
         rect x=(format_args!("{left:.1}")) y=(format_args!("{top:.1}")) width=(width) height=(format_args!("{:.1}", bottom - top))
             fill=(colour) fill-opacity="0.2" stroke=(colour) {}
         path d=(format_args!("M{left:.1} {:.1}h{width}", down(median))) stroke=(colour) stroke-width="2.5" {}
@@ -74,7 +76,7 @@ fn group(x: f64, values: &[f64], colour: &str, down: impl Fn(f64) -> f64) -> Mar
 }
 
 /// The mean of each participant under a condition.
-fn means(table: &Table, measure: &str, condition: &str) -> Vec<f64> {
+fn means(table: &TrialTable, measure: &str, condition: &str) -> Vec<f64> {
     let Some(column) = table.measures.iter().position(|known| known == measure) else { return Vec::new() };
     let mut of: BTreeMap<&str, Vec<f64>> = BTreeMap::new();
     for trial in table.trials.iter().filter(|trial| trial.condition == condition) {
@@ -82,18 +84,18 @@ fn means(table: &Table, measure: &str, condition: &str) -> Vec<f64> {
             of.entry(&trial.participant).or_default().push(value);
         }
     }
-    of.values().filter_map(|values| Some(Summary::of(values).ok()?.mean)).collect()
+    of.values().filter_map(|values| Some(SampleSummary::of(values).ok()?.mean)).collect()
 }
 
 #[cfg(test)]
 mod tests {
-    use nima_study::trials::Trial;
+    use nima_study::trials::TableTrial;
 
     use super::*;
 
     #[test]
     fn a_box_for_each_condition_a_point_for_each_participant() {
-        let trial = |participant: &str, condition: &str, value: f64| Trial {
+        let trial = |participant: &str, condition: &str, value: f64| TableTrial {
             participant: participant.to_owned(),
             condition: condition.to_owned(),
             number: None,
@@ -101,15 +103,12 @@ mod tests {
         };
         let trials =
             vec![trial("P01", "A", 1.0), trial("P01", "A", 3.0), trial("P02", "A", 5.0), trial("P01", "B", 2.0)];
-        let table = Table { measures: vec!["time_s".to_owned()], trials };
+        let table = TrialTable { measures: vec!["time_s".to_owned()], trials };
         let order = ["A", "B", "C"].map(str::to_owned);
         assert_eq!(means(&table, "time_s", "A"), [2.0, 5.0]);
-        let picture = svg(&table, "time_s", &order, "time_s (s)").into_string();
-        assert_eq!((picture.matches("<rect").count(), picture.matches("<circle").count()), (2, 3), "{picture}");
-        assert!(
-            picture.contains("A (n = 2)") && picture.contains("B (n = 1)") && !picture.contains("NaN"),
-            "{picture}"
-        );
+        let image = svg(&table, "time_s", &order, "time_s (s)").into_string();
+        assert_eq!((image.matches("<rect").count(), image.matches("<circle").count()), (2, 3), "{image}");
+        assert!(image.contains("A (n = 2)") && image.contains("B (n = 1)") && !image.contains("NaN"), "{image}");
         assert_eq!(svg(&table, "absent", &order, "absent").into_string(), "");
     }
 }

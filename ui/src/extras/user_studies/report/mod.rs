@@ -14,12 +14,12 @@ use std::{
 use anyhow::Context as _;
 use maud::{Markup, html};
 use nima_core::Side;
-use nima_score::{Definition, MEASURES};
+use nima_score::{CatalogueDefinition, MEASURES};
 use nima_study::{
     Experiment as _, Findings as _,
-    trials::{Report, Table, Trials},
+    trials::{TrialReport, TrialTable, Trials},
 };
-use nima_user_study::{Label, Study};
+use nima_user_study::{Label, UserStudy};
 
 use crate::{
     command::output,
@@ -33,7 +33,7 @@ const QUESTIONNAIRES: &str = "questionnaires.csv";
 const SCORES: [&str; 4] = ["nasa_tlx_weighted", "nasa_tlx_raw", "sus", "realism"];
 
 /// Writes the report of a study into a folder, which is created if missing; returns the path of the page.
-pub(super) fn write(study: &Study, out: &Path, all: bool) -> anyhow::Result<PathBuf> {
+pub(super) fn write(study: &UserStudy, out: &Path, all: bool) -> anyhow::Result<PathBuf> {
     let journal = study.folder().join(nima_user_study::JOURNAL);
     output::folder(out, &[PAGE, TRIALS, QUESTIONNAIRES], &[&journal])?;
     let trials = study.trials();
@@ -44,10 +44,10 @@ pub(super) fn write(study: &Study, out: &Path, all: bool) -> anyhow::Result<Path
     let named: Vec<String> = std::iter::once(&plan.primary).chain(&plan.secondary).cloned().collect();
     let wanted = if all { columns(&trials.csv, |name| !named.iter().any(|known| known == name)) } else { Vec::new() };
     let wanted: Vec<String> = named.into_iter().chain(wanted).collect();
-    let measures = Analysed::of(study, out, TRIALS, &trials.csv, &wanted, "trials")?;
+    let measures = AnalysedTable::of(study, out, TRIALS, &trials.csv, &wanted, "trials")?;
     // Only questionnaires of this study.
     let scores = columns(&questionnaires.csv, |name| SCORES.contains(&name));
-    let scores = Analysed::of(study, out, QUESTIONNAIRES, &questionnaires.csv, &scores, "questionnaires")?;
+    let scores = AnalysedTable::of(study, out, QUESTIONNAIRES, &questionnaires.csv, &scores, "questionnaires")?;
     let page = page(study, &trials, measures.as_ref(), scores.as_ref());
     output::write(out, PAGE, &page).context("the report")?;
     Ok(out.join(PAGE))
@@ -63,17 +63,17 @@ fn columns(csv: &str, filter: impl Fn(&str) -> bool) -> Vec<String> {
 }
 
 /// A table with its analysis.
-struct Analysed {
-    table: Table,
-    report: Report,
+struct AnalysedTable {
+    table: TrialTable,
+    report: TrialReport,
     /// Measures without a value in any trial.
     absent: Vec<String>,
 }
 
-impl Analysed {
+impl AnalysedTable {
     /// `None` if nothing can be compared: no rows, or none of the measures.
     fn of(
-        study: &Study,
+        study: &UserStudy,
         out: &Path,
         file: &str,
         csv: &str,
@@ -87,7 +87,7 @@ impl Analysed {
             return Ok(None);
         }
         let path = out.join(file);
-        let table = Table::read(&path, &measures)?;
+        let table = TrialTable::read(&path, &measures)?;
         // Before unblinding, the reference would reveal its condition.
         let reference = study.opened().and_then(|opened| opened.reference().map(str::to_owned));
         let reference = reference.filter(|name| table.conditions().contains(name));
@@ -102,10 +102,10 @@ impl Analysed {
 }
 
 fn page(
-    study: &Study,
-    trials: &nima_user_study::Table,
-    measures: Option<&Analysed>,
-    scores: Option<&Analysed>,
+    study: &UserStudy,
+    trials: &nima_user_study::StudyTable,
+    measures: Option<&AnalysedTable>,
+    scores: Option<&AnalysedTable>,
 ) -> String {
     let plan = study.plan();
     let body = html! {
@@ -127,7 +127,7 @@ fn page(
 }
 
 /// Blindness of the study, and its conditions.
-fn conditions(study: &Study) -> Markup {
+fn conditions(study: &UserStudy) -> Markup {
     let plan = study.plan();
     let row = |(label, name): (Label, &str)| {
         let condition = study.opened().and_then(|opened| opened.condition(label));
@@ -150,7 +150,7 @@ fn conditions(study: &Study) -> Markup {
     section("Conditions", &body)
 }
 
-fn blinding(study: &Study) -> Markup {
+fn blinding(study: &UserStudy) -> Markup {
     let state = study.state();
     if !study.plan().blind {
         return html! { p { "The study is not blind." } };
@@ -173,8 +173,8 @@ fn blinding(study: &Study) -> Markup {
     }
 }
 
-fn definition(key: &str) -> Option<&'static Definition> {
-    let is = |definition: &&Definition| {
+fn definition(key: &str) -> Option<&'static CatalogueDefinition> {
+    let is = |definition: &&CatalogueDefinition| {
         let of = |side: Side| format!("{}_{}", definition.id, side.word()) == key;
         if definition.per_hand { Side::ALL.into_iter().any(of) } else { definition.id == key }
     };
@@ -182,8 +182,8 @@ fn definition(key: &str) -> Option<&'static Definition> {
 }
 
 /// The tables and the plot of each measure that passes a filter.
-fn compared(title: &str, study: &Study, analysed: Option<&Analysed>, filter: impl Fn(&str) -> bool) -> Markup {
-    let Some(Analysed { table, report, absent }) = analysed else {
+fn compared(title: &str, study: &UserStudy, analysed: Option<&AnalysedTable>, filter: impl Fn(&str) -> bool) -> Markup {
+    let Some(AnalysedTable { table, report, absent }) = analysed else {
         return section(title, &html! { p { "Nothing to compare yet." } });
     };
     let order: Vec<String> = match study.opened() {
@@ -210,7 +210,7 @@ fn compared(title: &str, study: &Study, analysed: Option<&Analysed>, filter: imp
     section(title, &body)
 }
 
-fn methods(measures: Option<&Analysed>, scores: Option<&Analysed>) -> Markup {
+fn methods(measures: Option<&AnalysedTable>, scores: Option<&AnalysedTable>) -> Markup {
     let mut rows = vec![vec![TRIALS, "every trial that counts, with all measures"]];
     if measures.is_some() {
         rows.push(vec!["trials-analysis.R", "repeats the tests in R: Rscript trials-analysis.R trials.csv"]);

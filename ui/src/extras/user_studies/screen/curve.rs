@@ -2,7 +2,7 @@
 
 use egui::{Label, Ui};
 use egui_plot::{AxisHints, Line, MarkerShape, Plot, PlotBounds, PlotPoints, Points};
-use nima_user_study::Learning;
+use nima_user_study::LearningModel;
 
 use crate::{
     console::{
@@ -14,7 +14,7 @@ use crate::{
 
 const HEIGHT: f32 = 190.0;
 
-pub(super) fn curve_ui(ui: &mut Ui, learning: Option<&Learning>) {
+pub(super) fn curve_ui(ui: &mut Ui, learning: Option<&LearningModel>) {
     let Some(learning) = learning.filter(|learning| learning.times_s.iter().any(Option::is_some)) else {
         ui.label(weak(text::studies::NO_TIMES.get()));
         return;
@@ -27,7 +27,7 @@ pub(super) fn curve_ui(ui: &mut Ui, learning: Option<&Learning>) {
     let [practice, trials] = [true, false].map(places);
     let described = text::studies::curve(&learning.participant, practice.len(), trials.len());
     let count = learning.times_s.len() as f64;
-    let most_s = practice.iter().chain(&trials).map(|place| place[1]).fold(1.0, f64::max);
+    let max_s = practice.iter().chain(&trials).map(|place| place[1]).fold(1.0, f64::max);
     let curve = learning.curve.as_ref().map(|curve| {
         let numbers = 1..=learning.times_s.len() as u32;
         numbers.map(|number| [f64::from(number), curve.time_s(number)]).collect::<Vec<_>>()
@@ -37,7 +37,7 @@ pub(super) fn curve_ui(ui: &mut Ui, learning: Option<&Learning>) {
         .custom_x_axes(vec![AxisHints::new_x().label(text::studies::TRIAL_AXIS.get())])
         .custom_y_axes(vec![AxisHints::new_y().label(text::studies::TIME_AXIS.get()).min_thickness(48.0)]);
     let response = plot.show(ui, |plot| {
-        plot.set_plot_bounds(PlotBounds::from_min_max([0.0, 0.0], [count + 1.0, 1.15 * most_s]));
+        plot.set_plot_bounds(PlotBounds::from_min_max([0.0, 0.0], [count + 1.0, 1.15 * max_s]));
         if let Some(curve) = curve {
             let line = Line::new("curve", PlotPoints::from(curve)).color(theme::now().text_weak).width(1.2);
             plot.line(line.allow_hover(false));

@@ -3,10 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use nima_core::{Side, impedance::Mode, task::TaskKind};
-use nima_score::{Criterion, Definition, MEASURES, TaskFile};
+use nima_score::{CatalogueDefinition, MEASURES, TaskCriterion, TaskFile};
 use nima_simulation::scene::Scene;
 use nima_user_study::{
-    Breaks, Comparison, Condition, Excludes, ExclusionRule, NotReached, Practice, StudyFile, keys_of,
+    Breaks, Condition, Excludes, ExclusionRule, MeasureComparison, NotReached, Practice, StudyFile, keys_of,
 };
 
 use super::list::folder_of;
@@ -19,14 +19,14 @@ pub(super) struct Draft {
     pub(super) ready: &'static str,
     pub(super) file: StudyFile,
     /// Scenes to choose from.
-    pub(super) scenes: Vec<Place>,
+    pub(super) scenes: Vec<ScenePlace>,
     /// The task of this study.
     pub(super) task: Option<TaskFile>,
     /// Use only some rings of the scene.
     pub(super) takes_few: bool,
     pub(super) rings: u32,
     /// Measures available in this scene.
-    pub(super) measures: Vec<Known>,
+    pub(super) measures: Vec<MeasureChoice>,
     pub(super) practises: bool,
     pub(super) practice: Practice,
     /// Practised condition, counted from 0; `None`: each in turn.
@@ -38,7 +38,7 @@ pub(super) struct Draft {
 }
 
 #[derive(Clone, Debug)]
-pub(super) struct Place {
+pub(super) struct ScenePlace {
     /// Built-in name or file.
     pub(super) of: String,
     pub(super) name: String,
@@ -53,13 +53,13 @@ pub(super) struct Place {
 
 /// A measure, with its key and its text.
 #[derive(Clone, Debug)]
-pub(super) struct Known {
+pub(super) struct MeasureChoice {
     pub(super) key: String,
     pub(super) words: &'static str,
     pub(super) unit: &'static str,
 }
 
-impl Place {
+impl ScenePlace {
     /// The scene of this name, if it has a task or gets this one.
     fn of(name: &str, task: Option<TaskFile>) -> Option<Self> {
         let scene = Scene::load(name).ok()?;
@@ -69,12 +69,12 @@ impl Place {
         Some(Self { of, name, about: scene.description, task, kind, two_hands: scene.left.is_some(), rings })
     }
 
-    fn measures(&self) -> Vec<Known> {
+    fn measures(&self) -> Vec<MeasureChoice> {
         let hands: &[Side] = if self.two_hands { &Side::LEFT_TO_RIGHT } else { &[Side::Right] };
         // A simulated scene does not report objects that leave the image.
-        let fits = |one: &&Definition| one.is_of(self.kind, self.two_hands) && one.id != "out_of_view_share";
-        let known = |definition: &'static Definition| {
-            let of = move |key| Known { key, words: definition.words, unit: definition.unit };
+        let fits = |one: &&CatalogueDefinition| one.is_of(self.kind, self.two_hands) && one.id != "out_of_view_share";
+        let known = |definition: &'static CatalogueDefinition| {
+            let of = move |key| MeasureChoice { key, words: definition.words, unit: definition.unit };
             keys_of(definition, hands).into_iter().map(of)
         };
         MEASURES.iter().filter(fits).flat_map(known).collect()
@@ -88,7 +88,8 @@ fn task_of(file: &StudyFile) -> Option<TaskFile> {
 
 /// Two trials in a row within 150 s without a drop out of view, as in the paper's study.
 fn usual_practice() -> Practice {
-    let criterion = Criterion { time_s: 150.0, drops_out_of_view: 0, consecutive: 2, additional: 0, max_trials: 12 };
+    let criterion =
+        TaskCriterion { time_s: 150.0, drops_out_of_view: 0, consecutive: 2, additional: 0, max_trials: 12 };
     Practice { under: None, not_reached: NotReached::GoOn, criterion }
 }
 
@@ -101,10 +102,10 @@ impl Draft {
         };
         let practice = file.practice.clone().unwrap_or_else(usual_practice);
         let task = task_of(&file);
-        let own = file.task.is_some().then(|| Place::of(&file.scene, file.task.clone())).flatten();
-        let scenes: Vec<Place> =
-            own.into_iter().chain(Scene::names().filter_map(|name| Place::of(name, None))).collect();
-        let measures = scenes.iter().find(|place| place.of == file.scene).map_or_else(Vec::new, Place::measures);
+        let own = file.task.is_some().then(|| ScenePlace::of(&file.scene, file.task.clone())).flatten();
+        let scenes: Vec<ScenePlace> =
+            own.into_iter().chain(Scene::names().filter_map(|name| ScenePlace::of(name, None))).collect();
+        let measures = scenes.iter().find(|place| place.of == file.scene).map_or_else(Vec::new, ScenePlace::measures);
         Some(Self {
             ready,
             scenes,
@@ -116,7 +117,7 @@ impl Draft {
             under: place(&practice.under),
             practice,
             rests: file.breaks.is_some(),
-            breaks: file.breaks.unwrap_or(Breaks { after_trials: 6, least_s: 180.0 }),
+            breaks: file.breaks.unwrap_or(Breaks { after_trials: 6, min_s: 180.0 }),
             reference: place(&file.reference),
             file,
         })
@@ -136,7 +137,7 @@ impl Draft {
     }
 
     /// The chosen scene.
-    pub(super) fn place_of_scene(&self) -> Option<&Place> {
+    pub(super) fn place_of_scene(&self) -> Option<&ScenePlace> {
         self.scenes.iter().find(|place| place.of == self.file.scene)
     }
 
@@ -168,7 +169,7 @@ impl Draft {
     }
 
     pub(super) fn add_rule(&mut self) {
-        let is = Comparison::Above;
+        let is = MeasureComparison::Above;
         let exclude = Excludes::Trial;
         let measure = self.file.primary.clone();
         self.file.exclusion.push(ExclusionRule { measure, is, limit: None, exclude, times: 1 });

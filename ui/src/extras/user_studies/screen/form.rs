@@ -9,8 +9,8 @@ use nima_core::{
 };
 use nima_score::LONGEST_TRIAL_S;
 use nima_user_study::{
-    ATTEMPTS_MAX, BREAK_AFTER_MAX, BREAK_MAX_S, Condition, Interrupted, NotReached, PARTICIPANTS_MAX, PRACTICE_MAX,
-    Questionnaire, Study, TRIALS_MAX, order,
+    ATTEMPTS_MAX, BREAK_AFTER_MAX, BREAK_MAX_S, Condition, InterruptionPolicy, NotReached, PARTICIPANTS_MAX,
+    PRACTICE_MAX, Questionnaire, TRIALS_MAX, UserStudy, order,
 };
 
 use super::{
@@ -28,7 +28,7 @@ use crate::{
         study::{self, READY},
         text,
     },
-    words::{mode_meaning, mode_name},
+    report_text::{mode_meaning, mode_name},
 };
 
 /// Height of the footer with buttons and errors.
@@ -37,23 +37,23 @@ const FOOT: f32 = 84.0;
 const LEFT: f32 = 0.42;
 
 #[derive(Debug)]
-pub(super) struct Form {
+pub(super) struct StudyForm {
     draft: Draft,
-    told: Vec<String>,
+    report: Vec<String>,
 }
 
 /// The chosen action.
-pub(super) enum Done {
+pub(super) enum FormChoice {
     Back,
-    Made(Box<Study>),
+    Made(Box<UserStudy>),
 }
 
-impl Form {
+impl StudyForm {
     pub(super) fn new() -> Option<Self> {
-        Some(Self { draft: Draft::of(READY[0])?, told: Vec::new() })
+        Some(Self { draft: Draft::of(READY[0])?, report: Vec::new() })
     }
 
-    pub(super) fn ui(&mut self, ui: &mut Ui, data: Option<&Path>) -> Option<Done> {
+    pub(super) fn ui(&mut self, ui: &mut Ui, data: Option<&Path>) -> Option<FormChoice> {
         let room = ui.available_size() - vec2(0.0, FOOT);
         let draft = &mut self.draft;
         ui.horizontal_top(|ui| {
@@ -76,7 +76,7 @@ impl Form {
         self.foot_ui(ui, data)
     }
 
-    fn foot_ui(&mut self, ui: &mut Ui, data: Option<&Path>) -> Option<Done> {
+    fn foot_ui(&mut self, ui: &mut Ui, data: Option<&Path>) -> Option<FormChoice> {
         let mut done = None;
         ui.horizontal(|ui| {
             let name = RichText::new(text::study_form::MAKE.get()).font(theme::strong(17.0));
@@ -89,15 +89,15 @@ impl Form {
                 done = self.make(data);
             }
             if ui.add(Button::new(text::studies::BACK.get()).min_size(theme::STOP_SIZE)).clicked() {
-                done = Some(Done::Back);
+                done = Some(FormChoice::Back);
             }
             ScrollArea::vertical().id_salt("mistakes").max_height(FOOT - 12.0).auto_shrink(false).show(ui, |ui| {
                 ui.vertical(|ui| {
                     let place = data.map(|data| text::study_form::place(&self.draft.place(data)));
-                    if self.told.is_empty() {
+                    if self.report.is_empty() {
                         ui.add(Label::new(small(place.unwrap_or_default())).wrap());
                     }
-                    for mistake in &self.told {
+                    for mistake in &self.report {
                         ui.add(Label::new(mistake).wrap());
                     }
                 });
@@ -107,16 +107,16 @@ impl Form {
     }
 
     /// All errors are shown at once.
-    fn make(&mut self, data: &Path) -> Option<Done> {
+    fn make(&mut self, data: &Path) -> Option<FormChoice> {
         let file = self.draft.file();
-        self.told = study::mistakes(&file);
-        if !self.told.is_empty() {
+        self.report = study::mistakes(&file);
+        if !self.report.is_empty() {
             return None;
         }
         match study::create(&self.draft.place(data), &file) {
-            Ok(study) => Some(Done::Made(Box::new(study))),
+            Ok(study) => Some(FormChoice::Made(Box::new(study))),
             Err(error) => {
-                self.told = vec![format!("{error:#}")];
+                self.report = vec![format!("{error:#}")];
                 None
             }
         }
@@ -155,8 +155,8 @@ fn what_ui(ui: &mut Ui, draft: &mut Draft) {
                 ui,
                 &mut file.interrupted,
                 [
-                    (Interrupted::Repeat, text::study_form::REPEATED.get()),
-                    (Interrupted::Resume, text::study_form::SKIPPED.get()),
+                    (InterruptionPolicy::Repeat, text::study_form::REPEATED.get()),
+                    (InterruptionPolicy::Resume, text::study_form::SKIPPED.get()),
                 ],
             );
         });
@@ -176,7 +176,7 @@ fn practice_ui(ui: &mut Ui, draft: &mut Draft) {
                 whole_ui(ui, text::study_form::DROPS.get(), &mut criterion.drops_out_of_view, 0..=20);
                 whole_ui(ui, text::study_form::IN_A_ROW.get(), &mut criterion.consecutive, 0..=50);
                 whole_ui(ui, text::study_form::MORE.get(), &mut criterion.additional, 0..=50);
-                whole_ui(ui, text::study_form::MOST.get(), &mut criterion.max_trials, 0..=PRACTICE_MAX);
+                whole_ui(ui, text::study_form::MAX.get(), &mut criterion.max_trials, 0..=PRACTICE_MAX);
                 choice_ui(ui, text::study_form::UNDER.get(), &mut draft.under, &names, text::study_form::IN_TURN.get());
             });
             ui.horizontal_wrapped(|ui| {
@@ -283,7 +283,7 @@ fn breaks_ui(ui: &mut Ui, draft: &mut Draft) {
         ui.add_enabled_ui(draft.rests, |ui| {
             Grid::new("breaks").num_columns(2).spacing(vec2(12.0, 4.0)).show(ui, |ui| {
                 whole_ui(ui, text::study_form::EVERY.get(), &mut draft.breaks.after_trials, 0..=BREAK_AFTER_MAX);
-                seconds_ui(ui, text::study_form::LEAST.get(), &mut draft.breaks.least_s, 0.0..=BREAK_MAX_S);
+                seconds_ui(ui, text::study_form::MIN.get(), &mut draft.breaks.min_s, 0.0..=BREAK_MAX_S);
             });
         });
     });

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use egui::{Button, Label, RichText, Ui, vec2};
 use nima_recording::store::utc_now;
-use nima_user_study::{Step, Study};
+use nima_user_study::{StudyStep, UserStudy};
 
 use super::{column, field_ui};
 use crate::{
@@ -21,25 +21,25 @@ const PLAN: &str = "study.toml";
 const BUTTON: egui::Vec2 = vec2(150.0, 36.0);
 
 #[derive(Debug, Default)]
-pub(super) struct List {
-    rows: Vec<Row>,
+pub(super) struct StudyList {
+    rows: Vec<StudyListRow>,
     /// The folder typed by the user.
     other: String,
-    told: Option<String>,
+    report: Option<String>,
 }
 
 #[derive(Debug)]
-struct Row {
+struct StudyListRow {
     folder: PathBuf,
     name: String,
     about: Result<String, String>,
 }
 
 /// The chosen action.
-pub(super) enum Done {
+pub(super) enum StudyListChoice {
     Back,
     New,
-    Open(Box<Study>),
+    Open(Box<UserStudy>),
 }
 
 pub(super) fn folder_of(data: &Path) -> PathBuf {
@@ -51,7 +51,7 @@ pub(super) fn is_in(data: Option<&Path>, folder: &Path) -> bool {
     data.is_some_and(|data| folder.parent() == Some(&folder_of(data)))
 }
 
-impl List {
+impl StudyList {
     /// Reads the list again.
     pub(super) fn read(&mut self, data: Option<&Path>, known: &[PathBuf]) {
         let entries = data.map(folder_of).and_then(|folder| std::fs::read_dir(folder).ok());
@@ -59,31 +59,31 @@ impl List {
         folders.retain(|folder| folder.join(PLAN).is_file());
         folders.sort();
         folders.extend(known.iter().cloned());
-        self.rows = folders.into_iter().map(Row::of).collect();
-        self.told = data.is_none().then(|| text::studies::NO_FOLDER.get().to_owned());
+        self.rows = folders.into_iter().map(StudyListRow::of).collect();
+        self.report = data.is_none().then(|| text::studies::NO_FOLDER.get().to_owned());
     }
 
-    fn open(&mut self, folder: &Path) -> Option<Done> {
-        match Study::open(folder, &utc_now()) {
-            Ok(study) => Some(Done::Open(Box::new(study))),
+    fn open(&mut self, folder: &Path) -> Option<StudyListChoice> {
+        match UserStudy::open(folder, &utc_now()) {
+            Ok(study) => Some(StudyListChoice::Open(Box::new(study))),
             Err(error) => {
-                self.told = Some(error.to_string());
+                self.report = Some(error.to_string());
                 None
             }
         }
     }
 
-    pub(super) fn ui(&mut self, ui: &mut Ui) -> Option<Done> {
+    pub(super) fn ui(&mut self, ui: &mut Ui) -> Option<StudyListChoice> {
         let mut done = None;
         let mut wanted = None;
         ui.horizontal(|ui| {
             if ui.add(Button::new(text::studies::BACK.get()).min_size(BUTTON)).clicked() {
-                done = Some(Done::Back);
+                done = Some(StudyListChoice::Back);
             }
             ui.label(RichText::new(text::studies::OPEN.get()).font(theme::strong(19.0)));
         });
         // A separate line, so that the content below never moves.
-        ui.add(Label::new(weak(self.told.clone().unwrap_or_default())).wrap());
+        ui.add(Label::new(weak(self.report.clone().unwrap_or_default())).wrap());
         ui.add_space(4.0);
         let room = ui.available_size();
         let gap = theme::GAP;
@@ -105,7 +105,7 @@ impl List {
                 let name = RichText::new(text::studies::NEW.get()).font(theme::strong(17.0));
                 let button = next_button(name, self.rows.is_empty()).min_size(vec2(ui.available_width(), 44.0));
                 if ui.add(button).on_hover_text(text::study_form::READY_HOVER.get()).clicked() {
-                    done = Some(Done::New);
+                    done = Some(StudyListChoice::New);
                 }
                 ui.add_space(theme::GAP);
                 card(ui, text::studies::OTHER.get(), text::studies::YOURS_HOVER.get(), |ui| {
@@ -123,9 +123,9 @@ impl List {
     }
 }
 
-impl Row {
+impl StudyListRow {
     fn of(folder: PathBuf) -> Self {
-        match Study::read(&folder) {
+        match UserStudy::read(&folder) {
             Ok(study) => Self { name: study.plan().name.clone(), about: Ok(standing(&study)), folder },
             Err(error) => Self { name: folder.display().to_string(), about: Err(error.to_string()), folder },
         }
@@ -154,17 +154,17 @@ impl Row {
 }
 
 /// Number of finished or excluded participants.
-pub(super) fn finished(study: &Study) -> usize {
+pub(super) fn finished(study: &UserStudy) -> usize {
     let plan = study.plan();
     let state = study.state();
-    plan.participants.iter().filter(|one| matches!(state.next(plan, one), Step::Done { .. })).count()
+    plan.participants.iter().filter(|one| matches!(state.next(plan, one), StudyStep::Done { .. })).count()
 }
 
-pub(super) fn blindness(study: &Study) -> &'static str {
+pub(super) fn blindness(study: &UserStudy) -> &'static str {
     text::studies::blindness(study.plan().blind, study.state().unblinding.is_some())
 }
 
-fn standing(study: &Study) -> String {
+fn standing(study: &UserStudy) -> String {
     let participants = study.plan().participants.len();
     text::studies::standing(finished(study), participants, study.state().results(), blindness(study))
 }

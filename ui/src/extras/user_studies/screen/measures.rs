@@ -2,10 +2,10 @@
 
 use egui::{Button, ComboBox, DragValue, Grid, Label, Ui, vec2};
 use nima_score::LONGEST_TRIAL_S;
-use nima_user_study::{Comparison, Excludes, ExclusionRule};
+use nima_user_study::{Excludes, ExclusionRule, MeasureComparison};
 
 use super::{
-    draft::{Draft, Known},
+    draft::{Draft, MeasureChoice},
     form::{seconds_ui, whole_ui},
 };
 use crate::{
@@ -116,7 +116,7 @@ pub(super) fn exclusion_ui(ui: &mut Ui, draft: &mut Draft) {
     }
 }
 
-fn rule_ui(ui: &mut Ui, rule: &mut ExclusionRule, number: usize, measures: &[Known]) {
+fn rule_ui(ui: &mut Ui, rule: &mut ExclusionRule, number: usize, measures: &[MeasureChoice]) {
     let named = |what: &str| text::study_form::of_rule(what, number);
     let mut chosen = None;
     let combo = measure_ui(ui, ("rule", number), &rule.measure, measures, &mut chosen);
@@ -127,7 +127,7 @@ fn rule_ui(ui: &mut Ui, rule: &mut ExclusionRule, number: usize, measures: &[Kno
     let is =
         choose_ui(ui, ("is", number), &mut rule.is, &COMPARISONS.map(|one| (one, text::study_form::comparison(one))));
     is.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, named(text::study_form::IS.get())));
-    if rule.is == Comparison::Missing {
+    if rule.is == MeasureComparison::Missing {
         rule.limit = None;
         ui.label("");
     } else {
@@ -160,7 +160,8 @@ fn rule_ui(ui: &mut Ui, rule: &mut ExclusionRule, number: usize, measures: &[Kno
 
 /// Text for an unset limit.
 const NO_LIMIT: &str = "...";
-const COMPARISONS: [Comparison; 3] = [Comparison::Above, Comparison::Below, Comparison::Missing];
+const COMPARISONS: [MeasureComparison; 3] =
+    [MeasureComparison::Above, MeasureComparison::Below, MeasureComparison::Missing];
 
 /// A list of values, by their texts.
 fn choose_ui<T: PartialEq + Copy>(
@@ -183,7 +184,7 @@ fn measure_ui(
     ui: &mut Ui,
     id: (&str, usize),
     shown: &str,
-    measures: &[Known],
+    measures: &[MeasureChoice],
     chosen: &mut Option<String>,
 ) -> egui::Response {
     let combo = ComboBox::from_id_salt(id).width(190.0).selected_text(shown).show_ui(ui, |ui| {
@@ -198,6 +199,6 @@ fn measure_ui(
     combo.response
 }
 
-fn meaning(measures: &[Known], key: &str) -> String {
+fn meaning(measures: &[MeasureChoice], key: &str) -> String {
     measures.iter().find(|known| known.key == *key).map_or_else(String::new, |known| known.words.to_owned())
 }

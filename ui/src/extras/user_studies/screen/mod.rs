@@ -5,15 +5,15 @@
 //! dropped when the study is created; a trial passes its condition only to the loop. While a trial runs the window shows
 //! [`trial`] and nothing else.
 
-mod aside;
+mod break_page;
 mod curve;
-mod desk;
 mod draft;
 mod form;
 mod list;
 mod measures;
+mod open_study;
 mod questions;
-mod rest;
+mod side_panel;
 mod trial;
 
 use std::path::Path;
@@ -21,38 +21,38 @@ use std::path::Path;
 use egui::{Align, CentralPanel, Frame, Layout, Margin, Response, ScrollArea, TextEdit, Ui, vec2};
 use nima_machine::config::RigConfig;
 use nima_recording::store::utc_now;
-use nima_user_study::Study;
+use nima_user_study::UserStudy;
 
 use crate::{
     console::{
         chain,
-        page::{Broken, Closed, Now, Page, Prepared, Room, Run, Wish},
-        start::Choice,
+        page::{ClosedRun, Page, PageContext, PageRequest, PageRun, PreparedRun, Room, RunBreak},
+        start::RigChoice,
     },
     extras::user_studies::{study, text},
 };
-use desk::{Desk, Hand};
-use trial::Trial;
+use open_study::{HandSource, OpenStudy};
+use trial::TrialScreen;
 
 /// The pages, and the open study.
 #[derive(Debug, Default)]
 pub(super) struct Studies {
     is_shown: bool,
-    list: list::List,
-    form: Option<form::Form>,
-    desk: Option<Desk>,
-    trial: Option<Trial>,
+    list: list::StudyList,
+    form: Option<form::StudyForm>,
+    desk: Option<OpenStudy>,
+    trial: Option<TrialScreen>,
     /// A trial that starts as soon as the rig of the study runs.
-    wanted: Option<Wanted>,
+    wanted: Option<TrialRequest>,
     /// Rig and scene that ran before the study.
-    before: Option<Choice>,
+    before: Option<RigChoice>,
 }
 
 /// A trial that is about to start.
 #[derive(Clone, Debug)]
-struct Wanted {
+struct TrialRequest {
     participant: String,
-    hand: Hand,
+    hand: HandSource,
     /// The rig of the study was started for it.
     is_starting: bool,
 }
@@ -61,17 +61,17 @@ struct Wanted {
 #[derive(Debug)]
 enum Leaves {
     /// Start the next trial of this participant.
-    Trial(String, Hand),
+    Trial(String, HandSource),
     Closed,
 }
 
 impl Studies {
-    fn take_study(&mut self, study: Study, told: Option<String>, room: &mut Room<'_>) {
+    fn take_study(&mut self, study: UserStudy, report: Option<String>, room: &mut Room<'_>) {
         let folder = study.folder().to_owned();
         if !list::is_in(room.folder, &folder) && !room.known.contains(&folder) {
             room.known.push(folder);
         }
-        self.desk = Some(Desk::new(study, told));
+        self.desk = Some(OpenStudy::new(study, report));
         self.form = None;
     }
 
@@ -89,44 +89,44 @@ impl Studies {
         }
         if let Some(form) = &mut self.form {
             match form.ui(ui, room.folder) {
-                Some(form::Done::Back) => self.form = None,
-                Some(form::Done::Made(study)) => {
-                    let told = text::study_form::made(study.folder());
-                    self.take_study(*study, Some(told), &mut room);
+                Some(form::FormChoice::Back) => self.form = None,
+                Some(form::FormChoice::Made(study)) => {
+                    let report = text::study_form::made(study.folder());
+                    self.take_study(*study, Some(report), &mut room);
                 }
                 None => {}
             }
             return None;
         }
         match self.list.ui(ui) {
-            Some(list::Done::Back) => self.is_shown = false,
-            Some(list::Done::New) => self.form = form::Form::new(),
-            Some(list::Done::Open(study)) => self.take_study(*study, None, &mut room),
+            Some(list::StudyListChoice::Back) => self.is_shown = false,
+            Some(list::StudyListChoice::New) => self.form = form::StudyForm::new(),
+            Some(list::StudyListChoice::Open(study)) => self.take_study(*study, None, &mut room),
             None => {}
         }
         None
     }
 
     /// Starts a trial when the rig of its study runs.
-    fn begin(&mut self, now: &Now<'_>) -> Option<Wish> {
+    fn begin(&mut self, now: &PageContext<'_>) -> Option<PageRequest> {
         let wanted = self.wanted.as_mut().filter(|_| !now.is_starting)?;
         let Some(desk) = &mut self.desk else {
             self.wanted = None;
             return None;
         };
         let scene = study::scene_file(&desk.study).display().to_string();
-        let choice = Choice { rig: desk.study.plan().rig.clone(), scene };
+        let choice = RigChoice { rig: desk.study.plan().rig.clone(), scene };
         if *now.running == choice {
-            return Some(Wish::Run);
+            return Some(PageRequest::Run);
         }
         if wanted.is_starting {
             self.wanted = None;
-            desk.told = Some(text::studies::NOT_STARTED.get().to_owned());
+            desk.report = Some(text::studies::NOT_STARTED.get().to_owned());
             return None;
         }
         wanted.is_starting = true;
         self.before.get_or_insert_with(|| now.running.clone());
-        Some(Wish::Start(choice))
+        Some(PageRequest::Start(choice))
     }
 }
 
@@ -152,35 +152,35 @@ impl Page for Studies {
         self.desk.is_some()
     }
 
-    fn ui(&mut self, ui: &mut Ui, room: Room<'_>) -> Option<Closed> {
+    fn ui(&mut self, ui: &mut Ui, room: Room<'_>) -> Option<ClosedRun> {
         let frame = Frame::new().inner_margin(Margin::symmetric(14, 12));
         let leaves = CentralPanel::default().frame(frame).show(ui, |ui| self.page_ui(ui, room)).inner?;
         match leaves {
             Leaves::Trial(participant, hand) => {
-                self.wanted = Some(Wanted { participant, hand, is_starting: false });
+                self.wanted = Some(TrialRequest { participant, hand, is_starting: false });
                 None
             }
-            Leaves::Closed => Some(Closed(self.before.take())),
+            Leaves::Closed => Some(ClosedRun(self.before.take())),
         }
     }
 
-    fn go_on(&mut self, now: &Now<'_>) -> Option<Wish> {
+    fn go_on(&mut self, now: &PageContext<'_>) -> Option<PageRequest> {
         let Some(trial) = &mut self.trial else { return self.begin(now) };
         if let Some(why) = now.ended {
             trial.break_off(why);
-            return Some(Wish::End { again: why == Broken::LoopEnded });
+            return Some(PageRequest::End { again: why == RunBreak::LoopEnded });
         }
-        (trial.is_over() && !now.is_latched).then_some(Wish::End { again: true })
+        (trial.is_over() && !now.is_latched).then_some(PageRequest::End { again: true })
     }
 
-    fn tell(&mut self, why: Option<String>) {
+    fn notify(&mut self, why: Option<String>) {
         self.wanted = None;
         if let Some(desk) = &mut self.desk {
-            desk.told = why;
+            desk.report = why;
         }
     }
 
-    fn prepare(&mut self) -> Result<Prepared, String> {
+    fn prepare(&mut self) -> Result<PreparedRun, String> {
         let (Some(desk), Some(wanted)) = (&mut self.desk, self.wanted.take()) else {
             return Err(text::studies::NOT_STARTED.get().to_owned());
         };
@@ -193,18 +193,18 @@ impl Page for Studies {
         let running = running.map_err(|error| error.to_string())?;
         // The reason why a rig does not permit a condition would reveal the condition.
         let rig = study::under(rig, running.condition()).ok();
-        let trial = Trial::new(participant, running, task, wanted.hand, of.plan().trials_of_each());
+        let trial = TrialScreen::new(participant, running, task, wanted.hand, of.plan().trials_of_each());
         let is_by_mouse = trial.is_by_mouse();
         self.trial = Some(trial);
-        Ok(Prepared { rig, scene, is_by_mouse })
+        Ok(PreparedRun { rig, scene, is_by_mouse })
     }
 
-    fn run(&self) -> Option<&dyn Run> {
-        self.trial.as_ref().map(|trial| trial as &dyn Run)
+    fn run(&self) -> Option<&dyn PageRun> {
+        self.trial.as_ref().map(|trial| trial as &dyn PageRun)
     }
 
-    fn run_mut(&mut self) -> Option<&mut (dyn Run + 'static)> {
-        self.trial.as_mut().map(|trial| trial as &mut dyn Run)
+    fn run_mut(&mut self) -> Option<&mut (dyn PageRun + 'static)> {
+        self.trial.as_mut().map(|trial| trial as &mut dyn PageRun)
     }
 
     fn finish_run(&mut self) {

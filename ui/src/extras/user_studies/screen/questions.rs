@@ -2,7 +2,7 @@
 
 use egui::{Button, Label, Response, RichText, ScrollArea, Slider, TextEdit, Ui, vec2};
 use nima_user_study::{
-    Answers, Label as Letter, PAIRS, Questionnaire, REALISM_ITEM, Ratings, SUS_ITEMS, TLX_SCALES, TlxScale,
+    Label as Letter, PAIRS, Questionnaire, QuestionnaireAnswers, REALISM_ITEM, Ratings, SUS_ITEMS, TLX_SCALES, TlxScale,
 };
 
 use crate::{
@@ -21,7 +21,7 @@ const STEP: f64 = 5.0;
 
 /// A questionnaire that is being filled in.
 #[derive(Debug)]
-pub(super) struct Sheet {
+pub(super) struct QuestionnairePage {
     pub(super) participant: String,
     pub(super) which: Questionnaire,
     pub(super) after: Option<Letter>,
@@ -33,9 +33,9 @@ pub(super) struct Sheet {
 }
 
 /// The chosen action.
-pub(super) enum Done {
+pub(super) enum QuestionChoice {
     Back,
-    Submit(Answers),
+    Submit(QuestionnaireAnswers),
 }
 
 /// All values; `None` if one is missing.
@@ -48,7 +48,7 @@ fn name_of(scale: TlxScale) -> String {
     found.map_or_else(String::new, |(_, name, _)| sentence(name))
 }
 
-impl Sheet {
+impl QuestionnairePage {
     pub(super) fn new(participant: &str, which: Questionnaire, after: Option<Letter>) -> Self {
         Self {
             participant: participant.to_owned(),
@@ -67,7 +67,7 @@ impl Sheet {
     }
 
     /// The answers, or the missing items.
-    fn answers(&self) -> Result<Answers, Vec<String>> {
+    fn answers(&self) -> Result<QuestionnaireAnswers, Vec<String>> {
         let missing = |names: &mut dyn Iterator<Item = String>| names.collect::<Vec<_>>();
         let unrated = || {
             missing(
@@ -79,9 +79,9 @@ impl Sheet {
             )
         };
         match self.which {
-            Questionnaire::NasaTlx => {
-                all(&self.ratings).map(|ratings| Answers::NasaTlx(Ratings::of(ratings))).ok_or_else(unrated)
-            }
+            Questionnaire::NasaTlx => all(&self.ratings)
+                .map(|ratings| QuestionnaireAnswers::NasaTlx(Ratings::of(ratings)))
+                .ok_or_else(unrated),
             Questionnaire::NasaTlxWeighted => {
                 let mut wrong = unrated();
                 let pairs = self.chosen.iter().filter(|one| one.is_none()).count();
@@ -89,23 +89,23 @@ impl Sheet {
                 let chosen = self.chosen.map(|one| one.unwrap_or(TlxScale::Mental));
                 match all(&self.ratings) {
                     Some(ratings) if wrong.is_empty() => {
-                        Ok(Answers::NasaTlxWeighted { ratings: Ratings::of(ratings), chosen })
+                        Ok(QuestionnaireAnswers::NasaTlxWeighted { ratings: Ratings::of(ratings), chosen })
                     }
                     _ => Err(wrong),
                 }
             }
-            Questionnaire::Sus => all(&self.items).map(Answers::Sus).ok_or_else(|| {
+            Questionnaire::Sus => all(&self.items).map(QuestionnaireAnswers::Sus).ok_or_else(|| {
                 let open = self.items.iter().zip(1..).filter(|(item, _)| item.is_none());
                 missing(&mut open.map(|(_, number)| text::questionnaires::statement(number)))
             }),
             Questionnaire::Realism => {
-                self.realism.map(Answers::Realism).ok_or_else(|| vec![text::questionnaires::statement(1)])
+                self.realism.map(QuestionnaireAnswers::Realism).ok_or_else(|| vec![text::questionnaires::statement(1)])
             }
-            Questionnaire::FreeText => Ok(Answers::FreeText(self.text.trim().to_owned())),
+            Questionnaire::FreeText => Ok(QuestionnaireAnswers::FreeText(self.text.trim().to_owned())),
         }
     }
 
-    pub(super) fn ui(&mut self, ui: &mut Ui) -> Option<Done> {
+    pub(super) fn ui(&mut self, ui: &mut Ui) -> Option<QuestionChoice> {
         let mut done = None;
         let title = text::questionnaires::asked(self.which, &self.participant, self.after);
         ui.label(RichText::new(title).font(theme::strong(19.0)));
@@ -131,10 +131,10 @@ impl Sheet {
             let button = next_button(name, answers.is_ok()).min_size(theme::STOP_SIZE);
             let clicked = ui.add_enabled(answers.is_ok(), button).clicked();
             if ui.add(Button::new(text::studies::BACK.get()).min_size(theme::STOP_SIZE)).clicked() {
-                done = Some(Done::Back);
+                done = Some(QuestionChoice::Back);
             }
             match answers {
-                Ok(answers) if clicked => done = Some(Done::Submit(answers)),
+                Ok(answers) if clicked => done = Some(QuestionChoice::Submit(answers)),
                 Ok(_) => {}
                 Err(what) => {
                     ui.add(Label::new(weak(text::questionnaires::missing(&what))).wrap());
@@ -235,24 +235,17 @@ fn tapped(slider: &Response) -> Option<f64> {
 }
 
 /// A question that is answered by a number from 1 on.
-fn scale_ui(ui: &mut Ui, question: &str, answer: &mut Option<u8>, most: u8) {
-    numbered_ui(ui, question, answer, most, 1, ["", ""]);
+fn scale_ui(ui: &mut Ui, question: &str, answer: &mut Option<u8>, max: u8) {
+    numbered_ui(ui, question, answer, max, 1, ["", ""]);
 }
 
 /// Like [`scale_ui`], with the meanings of the first and last number.
-fn numbered_ui(
-    ui: &mut Ui,
-    question: &str,
-    answer: &mut Option<u8>,
-    most: u8,
-    number: usize,
-    [first, last]: [&str; 2],
-) {
+fn numbered_ui(ui: &mut Ui, question: &str, answer: &mut Option<u8>, max: u8, number: usize, [first, last]: [&str; 2]) {
     ui.add_space(4.0);
     ui.add(Label::new(question).wrap());
     ui.horizontal(|ui| {
         ui.label(small(first));
-        for value in 1..=most {
+        for value in 1..=max {
             let on = *answer == Some(value);
             let button = Button::selectable(on, value.to_string()).frame_when_inactive(true);
             let response = ui.add(button.min_size(vec2(48.0, 30.0)));

@@ -2,57 +2,58 @@
 //! label. Only alarms and stop are shown in addition.
 
 use egui::{Align, Button, CentralPanel, Frame, Label, Layout, Margin, Panel, RichText, Ui, vec2};
-use nima_endoscope::Reel;
+use nima_endoscope::FrameQueue;
 use nima_machine::{
     config::SchedulingClass,
     messages::{LoopState, Tick},
     rig::SIDES,
-    runtime::{self, Assembly, Clock},
+    runtime::{self, Assembly, RuntimeClock},
 };
 use nima_score::TaskFile;
 use nima_session::{
-    outlet::{Audience, Destination},
-    recorder::Recorder,
+    recorder::SessionRecorder,
+    sinks::{Audience, Destination},
 };
-use nima_simulation::{Plan, Watched};
-use nima_user_study::{Phase, Progress, Running, Study, TrialId};
+use nima_simulation::{ObjectFeed, SimulationPlan};
+use nima_user_study::{ParticipantProgress, RunningTrial, TrialId, TrialPhase, UserStudy};
 
-use super::desk::Hand;
+use super::open_study::HandSource;
 use crate::{
     console::{
         alarms,
-        app::Started,
+        app::StartedLoop,
         chain,
-        live::Live,
+        live::LiveState,
         outbox::Outbox,
-        page::{Broken, Run},
-        scene3d::{Look, SceneView, scene_ui},
+        page::{PageRun, RunBreak},
+        scene3d::{CameraLook, SceneView, scene_ui},
         text::top_bar,
         theme,
         widgets::weak,
     },
     extras::{
-        tasks::scoring::Scoring,
+        tasks::scoring::LiveScorer,
         user_studies::{study, text},
     },
+    image_recorder,
     objects::OfSimulation,
-    pictures, recording,
+    recording,
 };
 
 /// Height of the line above the field.
 const HEAD: f32 = 64.0;
 
 #[derive(Debug)]
-pub(super) struct Trial {
+pub(super) struct TrialScreen {
     participant: String,
-    running: Running,
+    running: RunningTrial,
     task: TaskFile,
-    hand: Hand,
+    hand: HandSource,
     /// Number of trials of a participant.
     of: u32,
-    scoring: Option<Scoring>,
-    recorder: Option<Recorder>,
-    over: Option<Over>,
+    scoring: Option<LiveScorer>,
+    recorder: Option<SessionRecorder>,
+    over: Option<TrialEnd>,
     /// Number of the newest tick of each side, and count of missing ticks.
     newest: [Option<u64>; SIDES],
     lost: u64,
@@ -62,15 +63,15 @@ pub(super) struct Trial {
 
 /// End of a trial.
 #[derive(Clone, Debug, PartialEq, Eq)]
-enum Over {
+enum TrialEnd {
     /// The task is done, or the time limit is reached.
     Done,
     /// Aborted, for this reason.
     Broken(String),
 }
 
-impl Trial {
-    pub(super) fn new(participant: &str, running: Running, task: TaskFile, hand: Hand, of: u32) -> Self {
+impl TrialScreen {
+    pub(super) fn new(participant: &str, running: RunningTrial, task: TaskFile, hand: HandSource, of: u32) -> Self {
         Self {
             participant: participant.to_owned(),
             running,
@@ -88,7 +89,7 @@ impl Trial {
 
     /// Aborts the trial, if it is not over yet.
     fn break_off_because(&mut self, why: &str) {
-        self.over.get_or_insert_with(|| Over::Broken(why.to_owned()));
+        self.over.get_or_insert_with(|| TrialEnd::Broken(why.to_owned()));
     }
 
     pub(super) const fn is_over(&self) -> bool {
@@ -96,32 +97,32 @@ impl Trial {
     }
 
     pub(super) fn is_by_mouse(&self) -> bool {
-        self.hand == Hand::Mouse
+        self.hand == HandSource::Mouse
     }
 
     /// Records the end of the trial; returns its text, and further notes. The loop must have ended.
-    pub(super) fn close(self, study: &mut Study) -> (String, Vec<String>) {
+    pub(super) fn close(self, study: &mut UserStudy) -> (String, Vec<String>) {
         let Self { participant, running, scoring, recorder, over, lost, .. } = self;
         let trial = running.trial();
         let mut notes = Vec::new();
-        if let Some(Err(error)) = recorder.map(Recorder::finish) {
+        if let Some(Err(error)) = recorder.map(SessionRecorder::finish) {
             notes.push(text::studies::record_failed(&chain(&error)));
         }
         if lost > 0 {
             notes.push(text::studies::note_lost(trial, lost));
         }
         let why = match over {
-            Some(Over::Done) => None,
-            Some(Over::Broken(why)) => Some(why),
+            Some(TrialEnd::Done) => None,
+            Some(TrialEnd::Broken(why)) => Some(why),
             None => Some(study::CLOSED.to_owned()),
         };
         let closed = study::close(study, running, why, scoring);
-        let shows = study.state().progress(&participant).is_none_or(Progress::shows_result);
-        let words = closed.map_or_else(|error| error.to_string(), |ran| alarms::sentence(&ran.in_words(shows)));
+        let shows = study.state().progress(&participant).is_none_or(ParticipantProgress::shows_result);
+        let words = closed.map_or_else(|error| error.to_string(), |ran| alarms::sentence(&ran.as_text(shows)));
         (words, notes)
     }
 
-    fn head_ui(&mut self, ui: &mut Ui, live: &Live) {
+    fn head_ui(&mut self, ui: &mut Ui, live: &LiveState) {
         ui.horizontal_centered(|ui| {
             ui.vertical(|ui| {
                 ui.add_space(4.0);
@@ -143,50 +144,50 @@ impl Trial {
                     self.is_asked = true;
                 }
                 ui.add_space(12.0);
-                ui.add(Label::new(state_words(live)).wrap());
+                ui.add(Label::new(state_text(live)).wrap());
             });
         });
     }
 }
 
-impl Run for Trial {
+impl PageRun for TrialScreen {
     fn participant(&self) -> &str {
         &self.participant
     }
 
     fn name(&self) -> String {
         let TrialId { phase, number, attempt } = self.running.trial();
-        let practice = if phase == Phase::Practice { " practice" } else { "" };
+        let practice = if phase == TrialPhase::Practice { " practice" } else { "" };
         let again = if attempt > 1 { format!(" attempt {attempt}") } else { String::new() };
         format!("{}{practice} {number}{again}", self.participant)
     }
 
     fn start(
         &mut self,
-        plan: &Plan,
+        plan: &SimulationPlan,
         speed: Option<f64>,
-        (reel, audiences): (&Reel, Vec<Box<dyn Audience>>),
-    ) -> Result<Started, String> {
+        (reel, audiences): (&FrameQueue, Vec<Box<dyn Audience>>),
+    ) -> Result<StartedLoop, String> {
         let to = Destination { file: self.running.session(), audiences };
-        let is_heard = to.file.is_some() || !to.audiences.is_empty();
-        let recorded = is_heard.then(|| recording::begin(to, plan, None));
+        let is_received = to.file.is_some() || !to.audiences.is_empty();
+        let recorded = is_received.then(|| recording::begin(to, plan, None));
         let (tap, recorder) = recorded.transpose().map_err(|error| chain(&error))?.unzip();
         self.recorder = recorder;
         if let Some(recorder) = &self.recorder {
-            pictures::film(recorder, &plan.rig, reel);
+            image_recorder::film(recorder, &plan.rig, reel);
         }
         let (assembly, mut watched) = match speed {
             Some(speed) => {
                 let (assembly, watched) = plan.watched().map_err(|error| chain(&error))?;
                 let scheduling = SchedulingClass::Ordinary;
-                (Assembly { clock: Clock::Simulated { speed }, scheduling, ..assembly }, watched)
+                (Assembly { clock: RuntimeClock::Simulated { speed }, scheduling, ..assembly }, watched)
             }
             None => plan.watched_assembly().map_err(|error| chain(&error))?,
         };
-        if let Some((recorder, watched)) = self.recorder.as_ref().zip(watched.as_mut().and_then(Watched::another)) {
+        if let Some((recorder, watched)) = self.recorder.as_ref().zip(watched.as_mut().and_then(ObjectFeed::another)) {
             recorder.watch(OfSimulation::source(plan, watched));
         }
-        self.scoring = Some(Scoring::new(&self.task, watched.as_mut().and_then(Watched::another)));
+        self.scoring = Some(LiveScorer::new(&self.task, watched.as_mut().and_then(ObjectFeed::another)));
         let handle = runtime::start(Assembly { tap, ..assembly }).map_err(|error| chain(&error))?;
         Ok((handle, watched))
     }
@@ -197,22 +198,22 @@ impl Run for Trial {
         self.lost += before.map_or(0, |before| tick.index.saturating_sub(before + 1));
         scoring.tick(tick);
         self.over = match tick.state {
-            LoopState::Faulted(fault) => Some(Over::Broken(study::ended_by(fault))),
-            LoopState::Stopped => Some(Over::Broken(study::STOPPED.to_owned())),
-            _ => scoring.trial.is_over().then_some(Over::Done),
+            LoopState::Faulted(fault) => Some(TrialEnd::Broken(study::ended_by(fault))),
+            LoopState::Stopped => Some(TrialEnd::Broken(study::STOPPED.to_owned())),
+            _ => scoring.trial.is_over().then_some(TrialEnd::Done),
         };
     }
 
-    fn break_off(&mut self, why: Broken) {
+    fn break_off(&mut self, why: RunBreak) {
         self.break_off_because(match why {
-            Broken::Closed => study::CLOSED,
-            Broken::LoopEnded => study::LOOP_ENDED,
-            Broken::NotStarted => study::NOT_STARTED,
+            RunBreak::Closed => study::CLOSED,
+            RunBreak::LoopEnded => study::LOOP_ENDED,
+            RunBreak::NotStarted => study::NOT_STARTED,
         });
     }
 
-    fn ui(&mut self, ui: &mut Ui, live: &Live, view: &mut SceneView, outbox: &mut Outbox) {
-        view.look = Look::Endoscope;
+    fn ui(&mut self, ui: &mut Ui, live: &LiveState, view: &mut SceneView, outbox: &mut Outbox) {
+        view.look = CameraLook::Endoscope;
         view.figures = false;
         let frame = Frame::new().fill(theme::now().panel).inner_margin(Margin::symmetric(14, 6));
         Panel::top("trial").exact_size(HEAD).resizable(false).frame(frame).show(ui, |ui| self.head_ui(ui, live));
@@ -221,7 +222,7 @@ impl Run for Trial {
 }
 
 /// Current instruction to the participant.
-fn state_words(live: &Live) -> &'static str {
+fn state_text(live: &LiveState) -> &'static str {
     match live.state() {
         _ if live.first_tick().is_none() => text::studies::STATE_STARTING.get(),
         LoopState::Stopped | LoopState::Faulted(_) => text::studies::STATE_STOPPED.get(),

@@ -2,7 +2,7 @@
 
 use nima_user_study::{Label, Questionnaire};
 
-use crate::language::{Text, told, word};
+use crate::language::{Text, text_format, word};
 
 pub(in crate::extras::user_studies) const SUBMIT: Text = Text::of("Submit", "Absenden");
 pub(in crate::extras::user_studies) const SUBMITTED: Text = Text::of("Answers saved", "Antworten gespeichert");
@@ -32,19 +32,19 @@ pub(in crate::extras::user_studies) fn questionnaire(which: Questionnaire) -> &'
 pub(in crate::extras::user_studies) fn asked(which: Questionnaire, participant: &str, after: Option<Label>) -> String {
     let about = after.map_or_else(
         || word("the whole session", "die ganze Sitzung").to_owned(),
-        |label| told!("condition {label}", "Bedingung {label}"),
+        |label| text_format!("condition {label}", "Bedingung {label}"),
     );
-    told!("{}, {participant}, about {about}", "{}, {participant}, über {about}", questionnaire(which))
+    text_format!("{}, {participant}, about {about}", "{}, {participant}, über {about}", questionnaire(which))
 }
 
 pub(in crate::extras::user_studies) fn missing(what: &[String]) -> String {
-    told!("Missing: {}", "Es fehlt: {}", what.join(", "))
+    text_format!("Missing: {}", "Es fehlt: {}", what.join(", "))
 }
 
 pub(in crate::extras::user_studies) fn missing_pairs(count: usize) -> String {
-    if count == 1 { word("1 pair", "1 Paar").to_owned() } else { told!("{count} pairs", "{count} Paare") }
+    if count == 1 { word("1 pair", "1 Paar").to_owned() } else { text_format!("{count} pairs", "{count} Paare") }
 }
 
 pub(in crate::extras::user_studies) fn statement(number: usize) -> String {
-    told!("statement {number}", "Aussage {number}")
+    text_format!("statement {number}", "Aussage {number}")
 }

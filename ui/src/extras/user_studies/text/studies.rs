@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-use nima_score::{LEAST_TRIALS, LearningCurve, Shape};
-use nima_user_study::{Done, Label, Phase, Step, TrialId};
+use nima_score::{CurveShape, LearningCurve, MIN_TRIALS};
+use nima_user_study::{EndReason, Label, StudyStep, TrialId, TrialPhase};
 
 use super::questionnaires::questionnaire;
-use crate::language::{Text, told, word};
+use crate::language::{Text, text_format, word};
 
 pub(in crate::extras::user_studies) const OPEN: Text = Text::of("User studies", "Nutzerstudien");
 pub(in crate::extras::user_studies) const OPEN_HOVER: Text =
@@ -159,7 +159,7 @@ pub(in crate::extras::user_studies) fn standing(
     results: usize,
     blindness: &str,
 ) -> String {
-    told!(
+    text_format!(
         "{finished} of {participants} finished, {results} trials, {blindness}",
         "{finished} von {participants} fertig, {results} Versuche, {blindness}"
     )
@@ -174,48 +174,48 @@ pub(in crate::extras::user_studies) fn blindness(blind: bool, unblinded: bool) -
 }
 
 pub(in crate::extras::user_studies) fn open_named(name: &str) -> String {
-    told!("Open {name}", "{name} öffnen")
+    text_format!("Open {name}", "{name} öffnen")
 }
 
 fn attempt(attempt: u32) -> String {
-    if attempt > 1 { told!(", attempt {attempt}", ", Anlauf {attempt}") } else { String::new() }
+    if attempt > 1 { text_format!(", attempt {attempt}", ", Anlauf {attempt}") } else { String::new() }
 }
 
-pub(in crate::extras::user_studies) fn next(step: &Step, trials: u32) -> String {
+pub(in crate::extras::user_studies) fn next(step: &StudyStep, trials: u32) -> String {
     match step {
-        Step::Practice { number, attempt: nth } => {
-            told!("Practice trial {number}{}", "Übungsversuch {number}{}", attempt(*nth))
+        StudyStep::Practice { number, attempt: nth } => {
+            text_format!("Practice trial {number}{}", "Übungsversuch {number}{}", attempt(*nth))
         }
-        Step::Trial { number, attempt: nth, label } => {
-            told!(
+        StudyStep::Trial { number, attempt: nth, label } => {
+            text_format!(
                 "Trial {number} of {trials}, condition {label}{}",
                 "Versuch {number} von {trials}, Bedingung {label}{}",
                 attempt(*nth)
             )
         }
-        Step::Break { least_s } => told!("A break of at least {}", "Pause von mindestens {}", clock(*least_s)),
-        Step::Questionnaire { questionnaire: which, after: Some(label) } => {
-            told!("{} about condition {label}", "{} über Bedingung {label}", questionnaire(*which))
+        StudyStep::Break { min_s } => text_format!("A break of at least {}", "Pause von mindestens {}", clock(*min_s)),
+        StudyStep::Questionnaire { questionnaire: which, after: Some(label) } => {
+            text_format!("{} about condition {label}", "{} über Bedingung {label}", questionnaire(*which))
         }
-        Step::Questionnaire { questionnaire: which, after: None } => {
-            told!("{} at the end", "{} am Ende", questionnaire(*which))
+        StudyStep::Questionnaire { questionnaire: which, after: None } => {
+            text_format!("{} at the end", "{} am Ende", questionnaire(*which))
         }
-        Step::Running { trial } => {
-            told!("Waiting for the end of trial {}", "Warten auf das Ende von Versuch {}", trial.number)
+        StudyStep::Running { trial } => {
+            text_format!("Waiting for the end of trial {}", "Warten auf das Ende von Versuch {}", trial.number)
         }
-        Step::Done { why: Done::Finished } => word("Finished", "Fertig").to_owned(),
-        Step::Done { why: Done::Excluded } => word("Excluded", "Ausgeschlossen").to_owned(),
+        StudyStep::Done { why: EndReason::Finished } => word("Finished", "Fertig").to_owned(),
+        StudyStep::Done { why: EndReason::Excluded } => word("Excluded", "Ausgeschlossen").to_owned(),
     }
 }
 
 /// Label of the button of the next step; `None` if the step has no button.
-pub(in crate::extras::user_studies) fn begin(step: &Step) -> Option<&'static str> {
+pub(in crate::extras::user_studies) fn begin(step: &StudyStep) -> Option<&'static str> {
     match step {
-        Step::Practice { .. } => Some(word("Start the practice trial", "Übungsversuch beginnen")),
-        Step::Trial { .. } => Some(word("Start the trial", "Versuch beginnen")),
-        Step::Break { .. } => Some(word("Start the break", "Pause beginnen")),
-        Step::Questionnaire { .. } => Some(word("Fill in the questionnaire", "Fragebogen ausfüllen")),
-        Step::Running { .. } | Step::Done { .. } => None,
+        StudyStep::Practice { .. } => Some(word("Start the practice trial", "Übungsversuch beginnen")),
+        StudyStep::Trial { .. } => Some(word("Start the trial", "Versuch beginnen")),
+        StudyStep::Break { .. } => Some(word("Start the break", "Pause beginnen")),
+        StudyStep::Questionnaire { .. } => Some(word("Fill in the questionnaire", "Fragebogen ausfüllen")),
+        StudyStep::Running { .. } | StudyStep::Done { .. } => None,
     }
 }
 
@@ -226,8 +226,9 @@ pub(in crate::extras::user_studies) fn done(
     interruptions: u32,
     breaks: usize,
 ) -> String {
-    let lost = if lost > 0 { told!(" ({lost} without a result)", " ({lost} ohne Ergebnis)") } else { String::new() };
-    told!(
+    let lost =
+        if lost > 0 { text_format!(" ({lost} without a result)", " ({lost} ohne Ergebnis)") } else { String::new() };
+    text_format!(
         "Done: {practice} practice trials, {trials} trials{lost}, {breaks} breaks, {interruptions} interruptions",
         "Erledigt: {practice} Übungsversuche, {trials} Versuche{lost}, {breaks} Pausen, {interruptions} Unterbrechungen"
     )
@@ -235,19 +236,21 @@ pub(in crate::extras::user_studies) fn done(
 
 pub(in crate::extras::user_studies) fn order(labels: &[Label]) -> String {
     let labels: Vec<String> = labels.iter().map(ToString::to_string).collect();
-    told!("Order {}", "Reihenfolge {}", labels.join(" "))
+    text_format!("Order {}", "Reihenfolge {}", labels.join(" "))
 }
 
 pub(in crate::extras::user_studies) fn trial(trial: TrialId, trials: u32, label: Option<Label>) -> String {
     let nth = attempt(trial.attempt);
     match (trial.phase, label) {
-        (Phase::Trial, Some(label)) => told!(
+        (TrialPhase::Trial, Some(label)) => text_format!(
             "Trial {} of {trials}{nth}, condition {label}",
             "Versuch {} von {trials}{nth}, Bedingung {label}",
             trial.number
         ),
-        (Phase::Trial, None) => told!("Trial {} of {trials}{nth}", "Versuch {} von {trials}{nth}", trial.number),
-        (Phase::Practice, _) => told!("Practice trial {}{nth}", "Übungsversuch {}{nth}", trial.number),
+        (TrialPhase::Trial, None) => {
+            text_format!("Trial {} of {trials}{nth}", "Versuch {} von {trials}{nth}", trial.number)
+        }
+        (TrialPhase::Practice, _) => text_format!("Practice trial {}{nth}", "Übungsversuch {}{nth}", trial.number),
     }
 }
 
@@ -256,20 +259,20 @@ pub(in crate::extras::user_studies) fn clock(seconds: f64) -> String {
     format!("{}:{:02}", whole / 60, whole % 60)
 }
 
-pub(in crate::extras::user_studies) fn break_least(least_s: f64) -> String {
-    told!(
+pub(in crate::extras::user_studies) fn break_min(min_s: f64) -> String {
+    text_format!(
         "Time until the break may end; the study requires at least {}",
         "Bis sie enden darf; die Studie verlangt mindestens {}",
-        clock(least_s)
+        clock(min_s)
     )
 }
 
 pub(in crate::extras::user_studies) fn time_of(seconds: f64, limit_s: f64) -> String {
-    told!("{} of {}", "{} von {}", clock(seconds), clock(limit_s))
+    text_format!("{} of {}", "{} von {}", clock(seconds), clock(limit_s))
 }
 
 pub(in crate::extras::user_studies) fn curve(participant: &str, practice: usize, trials: usize) -> String {
-    told!(
+    text_format!(
         "Learning of {participant}: {practice} practice trials, {trials} trials completed",
         "Lernen von {participant}: {practice} Übungsversuche, {trials} Versuche abgeschlossen"
     )
@@ -278,8 +281,8 @@ pub(in crate::extras::user_studies) fn curve(participant: &str, practice: usize,
 pub(in crate::extras::user_studies) fn curve_marks(curve: Option<&LearningCurve>) -> String {
     let marks = word("Rings: practice. Discs: trials that count.", "Ringe: Übung. Scheiben: zählende Versuche.");
     match curve {
-        Some(curve) if curve.shape == Shape::Flat => {
-            told!("{marks} Line: {:.0} s, no learning", "{marks} Linie: {:.0} s, kein Lernen", curve.asymptote_s)
+        Some(curve) if curve.shape == CurveShape::Flat => {
+            text_format!("{marks} Line: {:.0} s, no learning", "{marks} Linie: {:.0} s, kein Lernen", curve.asymptote_s)
         }
         Some(curve) => {
             let seen = if curve.plateau_seen {
@@ -287,15 +290,15 @@ pub(in crate::extras::user_studies) fn curve_marks(curve: Option<&LearningCurve>
             } else {
                 word("not reached yet", "noch nicht erreicht")
             };
-            told!(
+            text_format!(
                 "{marks} Line: fitted curve, plateau {:.0} s ({seen})",
                 "{marks} Linie: angepasste Kurve, Plateau {:.0} s ({seen})",
                 curve.asymptote_s
             )
         }
-        None => told!(
-            "{marks} A curve needs {LEAST_TRIALS} completed trials",
-            "{marks} Eine Kurve braucht {LEAST_TRIALS} abgeschlossene Versuche"
+        None => text_format!(
+            "{marks} A curve needs {MIN_TRIALS} completed trials",
+            "{marks} Eine Kurve braucht {MIN_TRIALS} abgeschlossene Versuche"
         ),
     }
 }
@@ -307,7 +310,7 @@ pub(in crate::extras::user_studies) fn facts(
     results: usize,
     blind: &str,
 ) -> String {
-    told!(
+    text_format!(
         "Rig: {rig}\nFinished: {finished} of {participants}\nTrials with a result: {results}\nThe study is {blind}",
         "Aufbau: {rig}\nFertig: {finished} von {participants}\nVersuche mit Ergebnis: {results}\nDie Studie ist {blind}"
     )
@@ -315,13 +318,15 @@ pub(in crate::extras::user_studies) fn facts(
 
 pub(in crate::extras::user_studies) fn left_out(participant: &str, trial: Option<u32>) -> String {
     trial.map_or_else(
-        || told!("{participant}: excluded", "{participant}: ausgeschlossen"),
-        |trial| told!("{participant}, trial {trial}: excluded", "{participant}, Versuch {trial}: ausgeschlossen"),
+        || text_format!("{participant}: excluded", "{participant}: ausgeschlossen"),
+        |trial| {
+            text_format!("{participant}, trial {trial}: excluded", "{participant}, Versuch {trial}: ausgeschlossen")
+        },
     )
 }
 
 pub(in crate::extras::user_studies) fn unblinded(who: &str, at: &str, why: &str) -> String {
-    told!("Unblinded by {who} at {at}: {why}", "Entblindet von {who}, {at}: {why}")
+    text_format!("Unblinded by {who} at {at}: {why}", "Entblindet von {who}, {at}: {why}")
 }
 
 pub(in crate::extras::user_studies) fn stands_for(label: Label, name: &str) -> String {
@@ -329,16 +334,16 @@ pub(in crate::extras::user_studies) fn stands_for(label: Label, name: &str) -> S
 }
 
 pub(in crate::extras::user_studies) fn report_written(page: &Path) -> String {
-    told!("Written: {}", "Geschrieben: {}", page.display())
+    text_format!("Written: {}", "Geschrieben: {}", page.display())
 }
 
 pub(in crate::extras::user_studies) fn report_failed(why: &str) -> String {
-    told!("Not written: {why}", "Nicht geschrieben: {why}")
+    text_format!("Not written: {why}", "Nicht geschrieben: {why}")
 }
 
 /// Entry of the journal.
 pub(in crate::extras::user_studies) fn note_lost(trial: TrialId, lost: u64) -> String {
-    told!(
+    text_format!(
         "trial {}: {lost} ticks of the loop are missing from the score",
         "Versuch {}: {lost} Takte der Regelung fehlen in der Wertung",
         trial.number
@@ -346,9 +351,12 @@ pub(in crate::extras::user_studies) fn note_lost(trial: TrialId, lost: u64) -> S
 }
 
 pub(in crate::extras::user_studies) fn record_failed(why: &str) -> String {
-    told!("The recording of the trial is incomplete: {why}", "Die Aufzeichnung des Versuchs ist unvollständig: {why}")
+    text_format!(
+        "The recording of the trial is incomplete: {why}",
+        "Die Aufzeichnung des Versuchs ist unvollständig: {why}"
+    )
 }
 
 pub(in crate::extras::user_studies) fn of_trial(number: u32) -> String {
-    told!("Trial {number}", "Versuch {number}")
+    text_format!("Trial {number}", "Versuch {number}")
 }

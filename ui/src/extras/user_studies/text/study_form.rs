@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use nima_user_study::{Comparison, Excludes};
+use nima_user_study::{Excludes, MeasureComparison};
 
-use crate::language::{Text, told, word};
+use crate::language::{Text, text_format, word};
 
 pub(in crate::extras::user_studies) const READY: Text = Text::of("Start from a template", "Mit einer Vorlage beginnen");
 pub(in crate::extras::user_studies) const READY_HOVER: Text = Text::of(
@@ -88,7 +88,7 @@ pub(in crate::extras::user_studies) const DROPS: Text =
     Text::of("Maximum drops out of view", "Max. außer Sicht gefallen");
 pub(in crate::extras::user_studies) const IN_A_ROW: Text = Text::of("Such trials in a row", "Solche Versuche in Folge");
 pub(in crate::extras::user_studies) const MORE: Text = Text::of("plus this many more", "plus so viele weitere");
-pub(in crate::extras::user_studies) const MOST: Text = Text::of("Maximum practice trials", "Max. Übungsversuche");
+pub(in crate::extras::user_studies) const MAX: Text = Text::of("Maximum practice trials", "Max. Übungsversuche");
 pub(in crate::extras::user_studies) const UNDER: Text = Text::of("Under", "Unter");
 pub(in crate::extras::user_studies) const IN_TURN: Text = Text::of("each condition in turn", "jeder Bedingung reihum");
 pub(in crate::extras::user_studies) const NOT_REACHED: Text =
@@ -100,7 +100,7 @@ pub(in crate::extras::user_studies) const BREAKS_HOVER: Text =
     Text::of("Practice trials count too", "Übungsversuche zählen mit");
 pub(in crate::extras::user_studies) const RESTS: Text = Text::of("Breaks between trials", "Pausen zwischen Versuchen");
 pub(in crate::extras::user_studies) const EVERY: Text = Text::of("After this many trials", "Nach so vielen Versuchen");
-pub(in crate::extras::user_studies) const LEAST: Text = Text::of("Minimum duration", "Mindestdauer");
+pub(in crate::extras::user_studies) const MIN: Text = Text::of("Minimum duration", "Mindestdauer");
 pub(in crate::extras::user_studies) const QUESTIONNAIRES: Text = Text::of("Questionnaires", "Fragebögen");
 pub(in crate::extras::user_studies) const QUESTIONNAIRES_HOVER: Text = Text::of(
     "Published questionnaires with their scores, and two additional ones",
@@ -145,19 +145,19 @@ pub(in crate::extras::user_studies) fn leave_off(key: &str) -> String {
 }
 
 pub(in crate::extras::user_studies) fn leave_off_hover(meaning: &str) -> String {
-    told!("{meaning} Click to remove it.", "{meaning} Klick entfernt sie.")
+    text_format!("{meaning} Click to remove it.", "{meaning} Klick entfernt sie.")
 }
 
 /// Accessible name of the control of a rule.
 pub(in crate::extras::user_studies) fn of_rule(what: &str, number: usize) -> String {
-    told!("Rule {number}: {what}", "Regel {number}: {what}")
+    text_format!("Rule {number}: {what}", "Regel {number}: {what}")
 }
 
-pub(in crate::extras::user_studies) fn comparison(is: Comparison) -> &'static str {
+pub(in crate::extras::user_studies) fn comparison(is: MeasureComparison) -> &'static str {
     match is {
-        Comparison::Above => word("above", "über"),
-        Comparison::Below => word("below", "unter"),
-        Comparison::Missing => word("missing", "fehlt"),
+        MeasureComparison::Above => word("above", "über"),
+        MeasureComparison::Below => word("below", "unter"),
+        MeasureComparison::Missing => word("missing", "fehlt"),
     }
 }
 
@@ -170,13 +170,13 @@ pub(in crate::extras::user_studies) fn excludes(what: Excludes) -> &'static str 
 
 pub(in crate::extras::user_studies) fn balance(participants: usize, rows: usize) -> String {
     if rows > 0 && participants.is_multiple_of(rows) {
-        told!(
+        text_format!(
             "Balanced: each order occurs {} times",
             "Balanciert: jede Reihenfolge kommt {} Mal vor",
             participants / rows
         )
     } else {
-        told!(
+        text_format!(
             "Not balanced: use a multiple of {rows} participants",
             "Nicht balanciert: ein Vielfaches von {rows} Versuchspersonen nehmen"
         )
@@ -184,11 +184,11 @@ pub(in crate::extras::user_studies) fn balance(participants: usize, rows: usize)
 }
 
 pub(in crate::extras::user_studies) fn place(folder: &Path) -> String {
-    told!("The study will be created in {}", "Die Studie wird angelegt in {}", folder.display())
+    text_format!("The study will be created in {}", "Die Studie wird angelegt in {}", folder.display())
 }
 
 pub(in crate::extras::user_studies) fn made(folder: &Path) -> String {
-    told!(
+    text_format!(
         "Created: {}. Copy the commitment now and keep it elsewhere.",
         "Angelegt: {}. Jetzt die Prüfsumme kopieren und anderswo aufbewahren.",
         folder.display()

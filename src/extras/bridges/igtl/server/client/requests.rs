@@ -1,6 +1,6 @@
 //! Splits a client's data into messages.
 
-use super::super::super::{Header, Message, Wrong};
+use super::super::super::{IgtlFormatError, IgtlHeader, IgtlMessage};
 
 /// Maximum body that is parsed, bytes; a request has 36 bytes. Longer ones are skipped.
 const LONGEST: u64 = 4096;
@@ -14,28 +14,32 @@ pub(super) struct Requests {
 }
 
 impl Requests {
-    /// Processes the next bytes and passes the messages that they complete to `hear`.
+    /// Processes the next bytes and passes the messages that they complete to `receive`.
     ///
     /// # Errors
-    /// [`Wrong`] if a header is invalid: the position of the next message is then unknown.
-    pub(super) fn take(&mut self, mut bytes: &[u8], mut hear: impl FnMut(Result<Message, Wrong>)) -> Result<(), Wrong> {
+    /// [`IgtlFormatError`] if a header is invalid: the position of the next message is then unknown.
+    pub(super) fn take(
+        &mut self,
+        mut bytes: &[u8],
+        mut receive: impl FnMut(Result<IgtlMessage, IgtlFormatError>),
+    ) -> Result<(), IgtlFormatError> {
         loop {
             let skipped = bytes.len().min(usize::try_from(self.passed_over).unwrap_or(usize::MAX));
             self.passed_over -= skipped as u64;
             bytes = &bytes[skipped..];
-            if !self.fill(&mut bytes, Header::BYTES) {
+            if !self.fill(&mut bytes, IgtlHeader::BYTES) {
                 return Ok(());
             }
-            let header = Header::read(&self.buffer)?;
+            let header = IgtlHeader::read(&self.buffer)?;
             if header.body_bytes > LONGEST {
                 self.passed_over = header.body_bytes;
                 self.buffer.clear();
                 continue;
             }
-            if !self.fill(&mut bytes, Header::BYTES + header.body_bytes as usize) {
+            if !self.fill(&mut bytes, IgtlHeader::BYTES + header.body_bytes as usize) {
                 return Ok(());
             }
-            hear(Message::read(&header, &self.buffer[Header::BYTES..]));
+            receive(IgtlMessage::read(&header, &self.buffer[IgtlHeader::BYTES..]));
             self.buffer.clear();
         }
     }
@@ -53,47 +57,47 @@ impl Requests {
 #[cfg(test)]
 mod tests {
     use super::{
-        super::super::super::{Content, Kind, Stream, Text, Verb},
+        super::super::super::{Content, ContentKind, ContentStream, TextContent, Verb},
         *,
     };
 
-    fn request() -> Message {
-        let stream = Stream { interval_ms: 20, frame: "world".to_owned() };
-        Message::new("", 0, Content::Request(Verb::Start, Kind::Tracking, Some(stream)))
+    fn request() -> IgtlMessage {
+        let stream = ContentStream { interval_ms: 20, frame: "world".to_owned() };
+        IgtlMessage::new("", 0, Content::Request(Verb::Start, ContentKind::Tracking, Some(stream)))
     }
 
     #[test]
     fn messages_become_whole_however_they_are_cut_and_long_ones_are_passed_over() {
-        let long = Message::new("", 0, Content::Text(Text::of(&"x".repeat(20_000)))).encode();
+        let long = IgtlMessage::new("", 0, Content::Text(TextContent::of(&"x".repeat(20_000)))).encode();
         let all = [request().encode(), long, request().encode(), request().encode()].concat();
         for size in [1, 7, 58, 59, 1024, 50_000] {
             let mut requests = Requests::default();
-            let mut heard = Vec::new();
+            let mut received = Vec::new();
             for chunk in all.chunks(size) {
-                requests.take(chunk, |message| heard.push(message)).unwrap();
-                assert!(requests.buffer.len() < Header::BYTES + LONGEST as usize);
+                requests.take(chunk, |message| received.push(message)).unwrap();
+                assert!(requests.buffer.len() < IgtlHeader::BYTES + LONGEST as usize);
             }
-            assert_eq!(heard, vec![Ok(request()); 3], "in pieces of {size}");
+            assert_eq!(received, vec![Ok(request()); 3], "in pieces of {size}");
         }
     }
 
     #[test]
     fn bytes_that_are_no_header_end_the_conversation_and_a_body_that_is_wrong_does_not() {
         let mut requests = Requests::default();
-        assert_eq!(requests.take(&[b'G'; 58], |_| panic!()), Err(Wrong::Version(0x4747)));
+        assert_eq!(requests.take(&[b'G'; 58], |_| panic!()), Err(IgtlFormatError::Version(0x4747)));
         let mut damaged = request().encode();
-        damaged[Header::BYTES] ^= 1;
+        damaged[IgtlHeader::BYTES] ^= 1;
         let mut requests = Requests::default();
-        let mut heard = Vec::new();
+        let mut received = Vec::new();
         let bytes = [damaged, request().encode()].concat();
-        requests.take(&bytes, |message| heard.push(message)).unwrap();
-        assert_eq!(heard, [Err(Wrong::Checksum), Ok(request())]);
+        requests.take(&bytes, |message| received.push(message)).unwrap();
+        assert_eq!(received, [Err(IgtlFormatError::Checksum), Ok(request())]);
     }
 
     #[test]
     fn a_length_that_nobody_can_send_takes_no_memory() {
-        let mut head = request().encode()[..Header::BYTES].to_vec();
-        head[Header::BYTES - 16..Header::BYTES - 8].fill(0xFF);
+        let mut head = request().encode()[..IgtlHeader::BYTES].to_vec();
+        head[IgtlHeader::BYTES - 16..IgtlHeader::BYTES - 8].fill(0xFF);
         let mut requests = Requests::default();
         requests.take(&head, |_| panic!()).unwrap();
         for _ in 0..100 {

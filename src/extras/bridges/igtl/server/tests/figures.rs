@@ -5,11 +5,11 @@ use std::collections::BTreeMap;
 use hdrhistogram::Histogram;
 use nima_machine::runtime::{self, Assembly, tap};
 use nima_session::{
-    Words,
-    outlet::Destination,
-    recorder::{About, Recorder},
+    SentenceChannel,
+    recorder::{RecordingInfo, SessionRecorder},
+    sinks::Destination,
 };
-use nima_simulation::{Plan, scene::Scene};
+use nima_simulation::{SimulationPlan, scene::Scene};
 
 use super::*;
 
@@ -32,17 +32,23 @@ fn percentiles(of: &Histogram<u64>) -> String {
 }
 
 /// Runs the simulated rig on the real clock with the bridge as the only recipient; returns the lateness of its ticks.
-fn run(server: &Server, seconds: u64) -> Histogram<u64> {
+fn run(server: &IgtlServer, seconds: u64) -> Histogram<u64> {
     let rig = RigConfig::load("simulated").unwrap();
     let scene = Scene::load("bimanual").unwrap();
-    let plan = Plan { rig, scene, calibrations: Default::default(), engage: true };
+    let plan = SimulationPlan { rig, scene, calibrations: Default::default(), engage: true };
     let (tap, end) = tap();
     let started_ns = super::super::client::now_ns();
-    let words = Words { event: |_, _| String::new(), operation: |_, _| String::new(), happening: |_| String::new() };
-    let about =
-        About { program: "figures".to_owned(), started_ns, metadata: BTreeMap::default(), files: Vec::new(), words };
-    let to = Destination { audiences: vec![server.audience(Outline::default())], ..Destination::default() };
-    let recorder = Recorder::start(to, about, plan.origin(), end).unwrap();
+    let words =
+        SentenceChannel { event: |_, _| String::new(), operation: |_, _| String::new(), happening: |_| String::new() };
+    let about = RecordingInfo {
+        program: "figures".to_owned(),
+        started_ns,
+        metadata: BTreeMap::default(),
+        files: Vec::new(),
+        words,
+    };
+    let to = Destination { audiences: vec![server.audience(LoopOutline::default())], ..Destination::default() };
+    let recorder = SessionRecorder::start(to, about, plan.origin(), end).unwrap();
     let handle = runtime::start(Assembly { tap: Some(tap), ..plan.assembly().unwrap() }).unwrap();
     let begin = Instant::now();
     let mut late = histogram();
@@ -57,7 +63,7 @@ fn run(server: &Server, seconds: u64) -> Histogram<u64> {
 }
 
 /// Delay of bundles: arrival minus time stamp, minus the minimum of all (the recorder's estimate of the loop's start).
-fn lateness(server: &Server, ends: &Arc<AtomicBool>) -> JoinHandle<(Histogram<u64>, Histogram<u64>)> {
+fn lateness(server: &IgtlServer, ends: &Arc<AtomicBool>) -> JoinHandle<(Histogram<u64>, Histogram<u64>)> {
     let mut peer = Peer::of(server);
     let ends = Arc::clone(ends);
     spawn(move || {
@@ -70,11 +76,11 @@ fn lateness(server: &Server, ends: &Arc<AtomicBool>) -> JoinHandle<(Histogram<u6
                 stamps.push(message.time_ns);
             }
         }
-        let least = ages.iter().copied().min().unwrap_or_default();
+        let min = ages.iter().copied().min().unwrap_or_default();
         let mut late = histogram();
         let mut between = histogram();
         for age in ages {
-            late.saturating_record(((age - least) / 1000) as u64);
+            late.saturating_record(((age - min) / 1000) as u64);
         }
         for pair in stamps.windows(2) {
             between.saturating_record((pair[1] - pair[0]) / 1000);
@@ -103,8 +109,9 @@ fn figures_of_the_bridge_and_its_clients() {
                 }
             })),
             "a flooding client" => Some(spawn(move || {
-                let bytes =
-                    Message::new("", 0, Content::Request(Verb::Get, Kind::Capability, None)).encode().repeat(1000);
+                let bytes = IgtlMessage::new("", 0, Content::Request(Verb::Get, ContentKind::Capability, None))
+                    .encode()
+                    .repeat(1000);
                 let mut stream = connect();
                 stream.set_write_timeout(Some(Duration::from_millis(100))).unwrap();
                 while !ended.load(Ordering::Relaxed) {

@@ -4,10 +4,10 @@ use nima_devices::dynamixel::table::{self, HardwareError, TICK_WRAP, TICKS_PER_T
 
 use super::{
     super::{
-        Shaft, Surroundings,
-        motor::{Drive, Plant, STEP_S},
+        ServoShaft, ServoSurroundings,
+        motor::{MotorDrive, Plant, STEP_S},
     },
-    Servo,
+    EmulatedServo,
 };
 
 /// Full drive at standstill for this long counts as an overload, s.
@@ -17,7 +17,7 @@ const CATCH_UP_STEPS: usize = 200;
 /// An impossible reading, for the corresponding fault.
 const IMPOSSIBLE_TICKS: i64 = 0x7FFF_FFFF;
 
-impl Servo {
+impl EmulatedServo {
     /// Sign and offset between the shaft's ticks and the register's.
     fn frame(&self) -> (f64, f64) {
         let homing = self.get(table::HOMING_OFFSET);
@@ -31,8 +31,8 @@ impl Servo {
         table::TICKS_AT_ZERO + sign * (self.motor.ticks() - table::TICKS_AT_ZERO) + homing
     }
 
-    pub(in super::super) fn shaft(&self) -> Shaft {
-        Shaft {
+    pub(in super::super) fn shaft(&self) -> ServoShaft {
+        ServoShaft {
             angle_rad: self.motor.angle_rad,
             velocity_rad_s: self.motor.velocity_rad_s,
             torque_on: self.torque_on(),
@@ -40,7 +40,7 @@ impl Servo {
     }
 
     /// Moves the motor until `now_s`, and measures.
-    pub(in super::super) fn advance(&mut self, now_s: f64, around: &Surroundings) {
+    pub(in super::super) fn advance(&mut self, now_s: f64, around: &ServoSurroundings) {
         self.watch(now_s);
         let begin_s = *self.stepped_s.get_or_insert(now_s);
         let steps = (((now_s - begin_s) / STEP_S) as usize).min(CATCH_UP_STEPS);
@@ -61,7 +61,7 @@ impl Servo {
     fn watch(&mut self, now_s: f64) {
         let units = self.get(table::BUS_WATCHDOG);
         let active = self.torque_on() && (1..=127).contains(&units);
-        if active && now_s - self.heard_s > units as f64 * table::WATCHDOG_UNIT_S {
+        if active && now_s - self.received_s > units as f64 * table::WATCHDOG_UNIT_S {
             self.set(table::BUS_WATCHDOG, table::WATCHDOG_EXPIRED.into());
             // Stops quickly at the current position.
             self.motor.restart();
@@ -76,11 +76,11 @@ impl Servo {
         }
     }
 
-    fn drive(&self, around: &Surroundings) -> Drive {
+    fn drive(&self, around: &ServoSurroundings) -> MotorDrive {
         let (sign, homing) = self.frame();
         let number = |register| self.get(register) as f64;
         let goal = number(table::GOAL_POSITION) - homing - table::TICKS_AT_ZERO;
-        Drive {
+        MotorDrive {
             torque_on: self.torque_on(),
             mode: self.get(table::OPERATING_MODE) as u8,
             goal_ticks: table::TICKS_AT_ZERO + sign * goal,
@@ -100,7 +100,7 @@ impl Servo {
     }
 
     /// Detects an overload: full drive or full current without movement for too long.
-    fn guard(&mut self, drive: &Drive) {
+    fn guard(&mut self, drive: &MotorDrive) {
         let all_pwm = self.motor.pwm.abs() >= 0.95 * drive.pwm_limit && drive.pwm_limit > 0.0;
         let all_current = drive.mode != 5 && self.motor.current_a.abs() >= 0.95 * drive.current_limit_a;
         let strained = all_pwm || all_current;
@@ -111,7 +111,7 @@ impl Servo {
         }
     }
 
-    fn limits(&mut self, around: &Surroundings) {
+    fn limits(&mut self, around: &ServoSurroundings) {
         let tenths = (around.supply_v * 10.0).round() as i64;
         if !(self.get(table::VOLTAGE_MIN)..=self.get(table::VOLTAGE_MAX)).contains(&tenths) {
             self.fail(HardwareError(0x01));
@@ -121,7 +121,7 @@ impl Servo {
         }
     }
 
-    fn measure(&mut self, now_s: f64, around: &Surroundings) {
+    fn measure(&mut self, now_s: f64, around: &ServoSurroundings) {
         let (sign, homing) = self.frame();
         let register = |rad_s: f64| (sign * rad_s / VELOCITY_UNIT_RAD_S).round() as i64;
         let motor = self.motor;

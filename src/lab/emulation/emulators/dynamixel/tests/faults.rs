@@ -1,16 +1,16 @@
 //! Every emulated fault, in virtual time: the resulting loss or counter, its delay, and the recovery.
 
 use nima_devices::{
-    Device as _, Loss, Standing,
-    dynamixel::{Driver, Fault, HardwareError, Pace as _, Taken},
+    ConnectionState, Device as _, Loss,
+    dynamixel::{DynamixelDriver, GoalResult, HardwareError, ServoFault, WaitClock as _},
     transport::MemoryBytes,
 };
 
-use super::world::Bench;
+use super::world::Fixture;
 use crate::emulators::EmulatedFault;
 
-fn running() -> (Bench, Driver<MemoryBytes>) {
-    let mut bench = Bench::usual();
+fn running() -> (Fixture, DynamixelDriver<MemoryBytes>) {
+    let mut bench = Fixture::usual();
     let mut driver = bench.open().unwrap();
     bench.run(&mut driver, 0.5).unwrap();
     let health = driver.health();
@@ -19,11 +19,11 @@ fn running() -> (Bench, Driver<MemoryBytes>) {
 }
 
 /// Polls at 1 kHz until it is lost; returns the loss, and the time since the last good reading.
-fn until_lost(bench: &Bench, driver: &mut Driver<MemoryBytes>) -> Option<(Loss, f64)> {
+fn until_lost(bench: &Fixture, driver: &mut DynamixelDriver<MemoryBytes>) -> Option<(Loss, f64)> {
     let begin_s = bench.now_s();
     while bench.now_s() - begin_s < 1.0 {
         bench.poll(driver, 1e-3);
-        if let Standing::Lost(loss) = driver.health().standing {
+        if let ConnectionState::Lost(loss) = driver.health().standing {
             return Some((loss, bench.now_s() - begin_s));
         }
     }
@@ -32,7 +32,7 @@ fn until_lost(bench: &Bench, driver: &mut Driver<MemoryBytes>) -> Option<(Loss, 
 
 #[test]
 fn each_fault_is_told_in_time_and_a_new_opening_brings_it_back() {
-    let overload = Fault { id: 1, error: HardwareError(HardwareError::OVERLOAD) };
+    let overload = ServoFault { id: 1, error: HardwareError(HardwareError::OVERLOAD) };
     for (fault, expected) in [
         (EmulatedFault::Delay, Loss::Silent),
         (EmulatedFault::Freeze, Loss::Silent),
@@ -85,7 +85,7 @@ fn a_cut_line_is_told_at_once() {
     let (bench, mut driver) = running();
     bench.world.borrow().end.cut();
     assert!(bench.poll(&mut driver, 1e-3).is_none());
-    assert_eq!(driver.health().standing, Standing::Lost(Loss::Disconnected));
+    assert_eq!(driver.health().standing, ConnectionState::Lost(Loss::Disconnected));
 }
 
 #[test]
@@ -94,7 +94,7 @@ fn a_caller_that_pauses_has_not_lost_the_servos() {
     for pause_s in [0.05, 1.0, 40.0] {
         bench.poll(&mut driver, pause_s);
         assert!(bench.run(&mut driver, 0.05).is_some());
-        assert_eq!(driver.health().standing, Standing::Connected, "{pause_s} s");
+        assert_eq!(driver.health().standing, ConnectionState::Connected, "{pause_s} s");
     }
 }
 
@@ -104,7 +104,7 @@ fn a_bus_that_falls_quiet_stops_the_servos_and_that_is_told() {
     driver.set_torque(true);
     bench.run(&mut driver, 0.3);
     assert!(driver.is_torque_on());
-    assert_eq!(driver.set_goals(&[1.0; 4]), Taken::AsAsked);
+    assert_eq!(driver.set_goals(&[1.0; 4]), GoalResult::AsAsked);
     // The caller stalls for longer than the watchdog waits.
     for _ in 0..300 {
         bench.world.borrow_mut().pass(1e-3);
@@ -115,7 +115,7 @@ fn a_bus_that_falls_quiet_stops_the_servos_and_that_is_told() {
     assert!((later_rad - stopped_rad).abs() < 0.05 && later_rad < 0.9, "{stopped_rad} {later_rad}");
     let (loss, _) = until_lost(&bench, &mut driver).unwrap();
     let Loss::Device { code } = loss else { panic!("{loss:?}") };
-    assert_eq!(Fault::of_code(code).error.to_string(), "the bus watchdog expired");
+    assert_eq!(ServoFault::of_code(code).error.to_string(), "the bus watchdog expired");
 }
 
 #[test]
@@ -133,7 +133,7 @@ fn hardware_errors_have_words() {
     assert_eq!(HardwareError(0x30).to_string(), "electrical shock or too little power, overload");
     assert_eq!(HardwareError(0x02).to_string(), "hardware error 0x02");
     for code in [0x0120, 0xFC81] {
-        assert_eq!(Fault::of_code(code).code(), code);
+        assert_eq!(ServoFault::of_code(code).code(), code);
     }
-    assert_eq!(Fault::of_code(0x0308).to_string(), "servo 3: motor encoder failed");
+    assert_eq!(ServoFault::of_code(0x0308).to_string(), "servo 3: motor encoder failed");
 }

@@ -1,28 +1,28 @@
 //! Opening: the settings written to the servos, and every cause of failure.
 
 use nima_devices::{
-    Device as _, Loss, Standing, Trouble,
+    ConnectionState, Device as _, DeviceError, Loss,
     dynamixel::{
-        HardwareError, OperatingMode, Pace as _, Settings,
-        codec::{BROADCAST, Incoming, Outgoing},
+        DynamixelSettings, HardwareError, OperatingMode, WaitClock as _,
+        codec::{BROADCAST, IncomingPackets, OutgoingPackets},
         message::Instruction,
         open_over,
     },
-    transport::{Bytes, MemoryBytes},
+    transport::{ByteStream, MemoryBytes},
 };
 
 use super::{
-    super::{Bus, Emulated},
-    world::{Bench, emulated, settings},
+    super::{Bus, EmulatedDynamixel},
+    world::{Fixture, emulated, settings},
 };
 use crate::emulators::EmulatedFault;
 
 /// Reads registers of a servo, bypassing the driver.
-fn peek(bench: &Bench, id: u8, address: u16, count: u16) -> Vec<u8> {
-    let mut out = Outgoing::new(64);
+fn peek(bench: &Fixture, id: u8, address: u16, count: u16) -> Vec<u8> {
+    let mut out = OutgoingPackets::new(64);
     Instruction::Read { address, count }.encode(id, &mut out);
     let mut world = bench.world.borrow_mut();
-    let mut incoming = Incoming::new(512);
+    let mut incoming = IncomingPackets::new(512);
     let mut body = Vec::new();
     let now_s = world.now_s;
     world.emulator.receive(now_s, out.bytes());
@@ -50,10 +50,13 @@ fn the_servos_become_what_the_settings_say() {
     servo.goal_current_a = Some(0.269);
     servo.gains.position_d = 77;
     servo.profile_acceleration_rad_s2 = 0.01;
-    let mut bench = Bench::new(Bus::new(&emulated(), None).unwrap(), wanted);
+    let mut bench = Fixture::new(Bus::new(&emulated(), None).unwrap(), wanted);
     let driver = bench.open().unwrap();
     assert_eq!(driver.identity().product, "XM430-W350 XM430-W350 XM430-W350 XM430-W350");
-    assert_eq!((driver.identity().serial.as_str(), driver.health().standing), ("ids 1 2 3 4", Standing::Opening));
+    assert_eq!(
+        (driver.identity().serial.as_str(), driver.health().standing),
+        ("ids 1 2 3 4", ConnectionState::Opening)
+    );
     assert!(driver.uses_fast_sync_read());
     for (id, address, count, value) in [
         (1, 9, 1, 0),
@@ -80,8 +83,8 @@ fn the_servos_become_what_the_settings_say() {
 
 #[test]
 fn an_old_firmware_is_asked_one_by_one() {
-    let settings_of = Emulated { fast: false, ..emulated() };
-    let mut bench = Bench::new(Bus::new(&settings_of, None).unwrap(), settings());
+    let settings_of = EmulatedDynamixel { fast: false, ..emulated() };
+    let mut bench = Fixture::new(Bus::new(&settings_of, None).unwrap(), settings());
     let mut driver = bench.open().unwrap();
     assert!(!driver.uses_fast_sync_read());
     assert!(bench.run(&mut driver, 1.0).is_some());
@@ -91,9 +94,9 @@ fn an_old_firmware_is_asked_one_by_one() {
 
 #[test]
 fn servos_that_answer_to_reads_alone_are_told_to_answer() {
-    let mut bench = Bench::usual();
+    let mut bench = Fixture::usual();
     drop(bench.open().unwrap());
-    let mut out = Outgoing::new(64);
+    let mut out = OutgoingPackets::new(64);
     Instruction::Write { address: 68, data: &[1] }.encode(2, &mut out);
     let now_s = bench.now_s();
     bench.world.borrow_mut().emulator.receive(now_s, out.bytes());
@@ -102,26 +105,27 @@ fn servos_that_answer_to_reads_alone_are_told_to_answer() {
 
 #[test]
 fn what_is_missing_or_another_is_named() {
-    let opened =
-        |emulator: Emulated, settings: Settings| Bench::new(Bus::new(&emulator, None).unwrap(), settings).open().err();
-    let missing = opened(Emulated { ids: vec![1, 2, 4], ..emulated() }, settings());
-    assert_eq!(missing, Some(Trouble::Absent { place: "servo 3 on test".to_owned() }));
-    let nobody = opened(Emulated { ids: vec![], ..emulated() }, settings());
-    assert_eq!(nobody, Some(Trouble::Silent { place: "test".to_owned() }));
+    let opened = |emulator: EmulatedDynamixel, settings: DynamixelSettings| {
+        Fixture::new(Bus::new(&emulator, None).unwrap(), settings).open().err()
+    };
+    let missing = opened(EmulatedDynamixel { ids: vec![1, 2, 4], ..emulated() }, settings());
+    assert_eq!(missing, Some(DeviceError::Absent { place: "servo 3 on test".to_owned() }));
+    let nobody = opened(EmulatedDynamixel { ids: vec![], ..emulated() }, settings());
+    assert_eq!(nobody, Some(DeviceError::Silent { place: "test".to_owned() }));
     let mut wanted = settings();
     wanted.servos[1].model = Some("XM540-W270".to_owned());
     let other = opened(emulated(), wanted);
     let found = ("servo 2 on test".to_owned(), "XM540-W270".to_owned(), "XM430-W350".to_owned());
-    assert_eq!(other, Some(Trouble::WrongProduct { place: found.0, expected: found.1, found: found.2 }));
+    assert_eq!(other, Some(DeviceError::WrongProduct { place: found.0, expected: found.1, found: found.2 }));
     let mut weak = settings();
     weak.servos.iter_mut().for_each(|servo| servo.current_limit_a = 1.8);
-    let small = opened(Emulated { model: 1200, ..emulated() }, weak);
-    assert!(matches!(&small, Some(Trouble::Setting { key, .. }) if key == "current_limit_a"), "{small:?}");
+    let small = opened(EmulatedDynamixel { model: 1200, ..emulated() }, weak);
+    assert!(matches!(&small, Some(DeviceError::Setting { key, .. }) if key == "current_limit_a"), "{small:?}");
 }
 
 #[test]
 fn impossible_settings_are_refused_by_key() {
-    type Change = fn(&mut Settings);
+    type Change = fn(&mut DynamixelSettings);
     let changes: [(&str, Change); 10] = [
         ("baud", |s| s.baud = 123),
         ("bus_watchdog_s", |s| s.bus_watchdog_s = 3.0),
@@ -138,37 +142,37 @@ fn impossible_settings_are_refused_by_key() {
     for (key, change) in changes {
         let mut changed = settings();
         change(&mut changed);
-        assert!(matches!(changed.check(), Err(Trouble::Setting { key: told, .. }) if told == key), "{key}");
+        assert!(matches!(changed.check(), Err(DeviceError::Setting { key: report, .. }) if report == key), "{key}");
     }
     let text = "port = \"x\"\nbaud = 57600\nspeed = 1\nservos = []";
-    assert!(toml::from_str::<Settings>(text).is_err(), "unknown keys are refused");
+    assert!(toml::from_str::<DynamixelSettings>(text).is_err(), "unknown keys are refused");
     let written = toml::to_string(&settings()).unwrap();
-    assert_eq!(toml::from_str::<Settings>(&written).unwrap(), settings());
+    assert_eq!(toml::from_str::<DynamixelSettings>(&written).unwrap(), settings());
 }
 
 #[test]
 fn a_servo_that_shut_down_opens_after_a_restart_by_command_only() {
-    let mut bench = Bench::usual();
+    let mut bench = Fixture::usual();
     bench.world.borrow_mut().emulator.fail(1, HardwareError(0x24));
-    let told = bench.open().err();
+    let report = bench.open().err();
     let words = "servo 2: overheated, overload".to_owned();
-    assert!(matches!(&told, Some(Trouble::DeviceFault { words: told, .. }) if *told == words), "{told:?}");
-    assert!(told.unwrap().cure().contains("servo 2"));
+    assert!(matches!(&report, Some(DeviceError::DeviceFault { words: report, .. }) if *report == words), "{report:?}");
+    assert!(report.unwrap().cure().contains("servo 2"));
     bench.reboots.ask(1);
     let mut driver = bench.open().unwrap();
     assert!(bench.run(&mut driver, 0.1).is_some() && !bench.reboots.is_any());
 }
 
 /// A connection on which another program keeps switching on the torque of servo 1.
-struct Meddler(MemoryBytes);
+struct TorqueMeddlingLine(MemoryBytes);
 
-impl Bytes for Meddler {
+impl ByteStream for TorqueMeddlingLine {
     fn receive(&mut self, buffer: &mut [u8]) -> Result<usize, Loss> {
         self.0.receive(buffer)
     }
 
     fn send(&mut self, bytes: &[u8]) -> Result<(), Loss> {
-        let mut out = Outgoing::new(64);
+        let mut out = OutgoingPackets::new(64);
         Instruction::SyncWrite { address: 64, count: 1, items: &[1, 1] }.encode(BROADCAST, &mut out);
         self.0.send(out.bytes())?;
         self.0.send(bytes)
@@ -177,13 +181,13 @@ impl Bytes for Meddler {
 
 #[test]
 fn a_servo_that_does_not_keep_what_is_written_is_told() {
-    let mut bench = Bench::usual();
+    let mut bench = Fixture::usual();
     let [ours, theirs] = MemoryBytes::pair();
     bench.world.borrow_mut().end = theirs;
     let wanted = bench.settings.clone();
     let reboots = bench.reboots.clone();
-    let told = open_over(Meddler(ours), &mut bench, &wanted, &reboots).err();
-    let Some(Trouble::Refused { place, command, answer }) = told else { panic!("{told:?}") };
+    let report = open_over(TorqueMeddlingLine(ours), &mut bench, &wanted, &reboots).err();
+    let Some(DeviceError::Refused { place, command, answer }) = report else { panic!("{report:?}") };
     assert_eq!((place.as_str(), command.as_str()), ("servo 1 on test", "0 in register 64"));
     assert_eq!(answer, "it remains 1");
 }

@@ -1,18 +1,18 @@
 //! Emulated servos: their rules, their motion, and the driver's commands.
 
 use nima_devices::{
-    Device as _, Loss, Standing,
+    ConnectionState, Device as _, Loss,
     dynamixel::{
-        Driver, HardwareError, Pace as _, Taken,
-        codec::{BROADCAST, Incoming, Outgoing},
+        DynamixelDriver, GoalResult, HardwareError, WaitClock as _,
+        codec::{BROADCAST, IncomingPackets, OutgoingPackets},
         message::{Instruction as I, Keep},
     },
     transport::MemoryBytes,
 };
 
 use super::{
-    super::{Bus, Emulated, Surroundings},
-    world::{Bench, emulated, settings},
+    super::{Bus, EmulatedDynamixel, ServoSurroundings},
+    world::{Fixture, emulated, settings},
 };
 use crate::emulators::EmulatedFault;
 
@@ -24,21 +24,21 @@ struct Client {
 
 impl Client {
     fn new() -> Self {
-        let still = |_: f64, _: usize, _: &_| Surroundings { load_nm: 0.0, supply_v: 12.0, temperature_c: 30.0 };
-        let settings = Emulated { ids: vec![1, 2], ..Emulated::default() };
+        let still = |_: f64, _: usize, _: &_| ServoSurroundings { load_nm: 0.0, supply_v: 12.0, temperature_c: 30.0 };
+        let settings = EmulatedDynamixel { ids: vec![1, 2], ..EmulatedDynamixel::default() };
         Self { emulator: Bus::new(&settings, Some(Box::new(still))).unwrap(), now_s: 0.0 }
     }
 
     /// Returns everything received within 10 ms: id, error, parameters.
     fn ask(&mut self, id: u8, instruction: &I<'_>) -> Vec<(u8, u8, Vec<u8>)> {
-        let mut out = Outgoing::new(512);
+        let mut out = OutgoingPackets::new(512);
         instruction.encode(id, &mut out);
         self.emulator.receive(self.now_s, out.bytes());
         self.wait(0.010)
     }
 
     fn wait(&mut self, length_s: f64) -> Vec<(u8, u8, Vec<u8>)> {
-        let mut incoming = Incoming::new(512);
+        let mut incoming = IncomingPackets::new(512);
         let mut answers = Vec::new();
         for _ in 0..(length_s * 1e3).round() as usize {
             self.now_s += 1e-3;
@@ -151,12 +151,12 @@ fn resets_and_backups_do_what_they_say() {
 #[test]
 fn a_blocked_servo_shuts_down_until_it_restarts() {
     let mut client = Client::new();
-    let blocked = |_: f64, _: usize, shaft: &super::super::Shaft| Surroundings {
+    let blocked = |_: f64, _: usize, shaft: &super::super::ServoShaft| ServoSurroundings {
         load_nm: -10.0 * shaft.angle_rad - 0.5 * shaft.velocity_rad_s,
         supply_v: 12.0,
         temperature_c: 30.0,
     };
-    client.emulator = Bus::new(&Emulated::default(), Some(Box::new(blocked))).unwrap();
+    client.emulator = Bus::new(&EmulatedDynamixel::default(), Some(Box::new(blocked))).unwrap();
     assert_eq!((client.write(64, &[1]), client.write(116, &4000_i32.to_le_bytes())), (0, 0));
     client.wait(3.0);
     let answer = client.ask(1, &I::Ping);
@@ -223,8 +223,8 @@ fn gains_and_profiles_have_their_effect() {
 fn a_position_that_is_off_under_load_comes_home_with_the_integral() {
     let sag = |gain: i32| {
         let mut client = Client::new();
-        let loaded = |_: f64, _: usize, _: &_| Surroundings { load_nm: -0.5, supply_v: 12.0, temperature_c: 30.0 };
-        client.emulator = Bus::new(&Emulated::default(), Some(Box::new(loaded))).unwrap();
+        let loaded = |_: f64, _: usize, _: &_| ServoSurroundings { load_nm: -0.5, supply_v: 12.0, temperature_c: 30.0 };
+        client.emulator = Bus::new(&EmulatedDynamixel::default(), Some(Box::new(loaded))).unwrap();
         client.write(82, &gain.to_le_bytes()[..2]);
         client.write(64, &[1]);
         client.write(116, &2048_i32.to_le_bytes());
@@ -236,9 +236,9 @@ fn a_position_that_is_off_under_load_comes_home_with_the_integral() {
     assert!(without > 10.0 && with.abs() < 2.0, "{without} {with}");
 }
 
-fn held(bench: &mut Bench) -> Driver<MemoryBytes> {
+fn held(bench: &mut Fixture) -> DynamixelDriver<MemoryBytes> {
     let mut driver = bench.open().unwrap();
-    assert_eq!(driver.set_goals(&[0.0; 4]), Taken::Refused, "no goals without torque");
+    assert_eq!(driver.set_goals(&[0.0; 4]), GoalResult::Refused, "no goals without torque");
     bench.run(&mut driver, 0.1);
     driver.set_torque(true);
     bench.run(&mut driver, 0.1);
@@ -247,7 +247,7 @@ fn held(bench: &mut Bench) -> Driver<MemoryBytes> {
 
 #[test]
 fn goals_are_reached_in_radians_with_sign_and_offset() {
-    let mut bench = Bench::usual();
+    let mut bench = Fixture::usual();
     bench.settings.servos[1].reverse = true;
     bench.settings.servos[2].homing_offset_rad = 0.3;
     let mut driver = held(&mut bench);
@@ -257,29 +257,29 @@ fn goals_are_reached_in_radians_with_sign_and_offset() {
         assert!((here.position_rad[index] - later.position_rad[index]).abs() < 0.02, "held where it was");
     }
     let goals = [0.5, 0.4, -0.3, 0.2];
-    assert_eq!(driver.set_goals(&goals), Taken::AsAsked);
+    assert_eq!(driver.set_goals(&goals), GoalResult::AsAsked);
     let there = bench.run(&mut driver, 2.0).unwrap();
     for index in 0..4 {
         assert!((there.position_rad[index] - goals[index]).abs() < 0.01, "{there:?}");
     }
     let shaft = |index: usize| bench.world.borrow().emulator.shaft(index).unwrap().angle_rad;
     assert!((shaft(1) + 0.4).abs() < 0.01 && (shaft(2) + 0.6).abs() < 0.01, "{} {}", shaft(1), shaft(2));
-    assert_eq!(driver.set_goals(&[9.0, 0.0, 0.0, 0.0]), Taken::Limited);
+    assert_eq!(driver.set_goals(&[9.0, 0.0, 0.0, 0.0]), GoalResult::Limited);
     assert!((bench.run(&mut driver, 2.0).unwrap().position_rad[0] - 1.5).abs() < 0.01);
-    assert_eq!(driver.set_goals(&[f64::NAN, 0.0, 0.0, 0.0]), Taken::Refused);
+    assert_eq!(driver.set_goals(&[f64::NAN, 0.0, 0.0, 0.0]), GoalResult::Refused);
     let conditions = driver.conditions().map(Option::unwrap);
     assert!(conditions.iter().all(|c| c.torque_on && (c.voltage_v - 12.0).abs() < 0.01 && c.temperature_c > 20.0));
     driver.set_torque(false);
     bench.run(&mut driver, 0.5);
     assert!((0..4).all(|index| !bench.world.borrow().emulator.shaft(index).unwrap().torque_on));
-    assert_eq!(driver.health().standing, Standing::Connected);
+    assert_eq!(driver.health().standing, ConnectionState::Connected);
 }
 
 #[test]
 fn the_current_of_a_load_is_read_in_ampere() {
-    let loaded = |_: f64, _: usize, _: &_| Surroundings { load_nm: -1.0, supply_v: 12.0, temperature_c: 30.0 };
+    let loaded = |_: f64, _: usize, _: &_| ServoSurroundings { load_nm: -1.0, supply_v: 12.0, temperature_c: 30.0 };
     let emulator = Bus::new(&emulated(), Some(Box::new(loaded))).unwrap();
-    let mut bench = Bench::new(emulator, settings());
+    let mut bench = Fixture::new(emulator, settings());
     let mut driver = held(&mut bench);
     let reading = bench.run(&mut driver, 1.0).unwrap();
     // 4.1 Nm take 2.3 A.
@@ -288,7 +288,7 @@ fn the_current_of_a_load_is_read_in_ampere() {
 
 #[test]
 fn dropping_the_driver_lets_the_torque_go() {
-    let mut bench = Bench::usual();
+    let mut bench = Fixture::usual();
     let driver = held(&mut bench);
     assert!(bench.world.borrow().emulator.shaft(3).unwrap().torque_on);
     drop(driver);
@@ -298,7 +298,7 @@ fn dropping_the_driver_lets_the_torque_go() {
 
 #[test]
 fn a_lost_torque_command_is_given_again() {
-    let mut bench = Bench::usual();
+    let mut bench = Fixture::usual();
     let mut driver = bench.open().unwrap();
     bench.run(&mut driver, 0.1);
     driver.set_torque(true);
@@ -309,22 +309,22 @@ fn a_lost_torque_command_is_given_again() {
         assert!(bench.now_s() - begin_s < 0.1);
     }
     let mut lost = [0; 1024];
-    nima_devices::transport::Bytes::receive(&mut bench.world.borrow_mut().end, &mut lost).unwrap();
+    nima_devices::transport::ByteStream::receive(&mut bench.world.borrow_mut().end, &mut lost).unwrap();
     bench.run(&mut driver, 0.5);
     assert!((0..4).all(|index| bench.world.borrow().emulator.shaft(index).unwrap().torque_on));
 }
 
 #[test]
 fn a_reboot_by_command_leads_through_a_new_opening() {
-    let mut bench = Bench::usual();
+    let mut bench = Fixture::usual();
     let mut driver = held(&mut bench);
     driver.reboot(2);
     bench.run(&mut driver, 0.05);
-    assert_eq!(driver.health().standing, Standing::Lost(Loss::Silent));
+    assert_eq!(driver.health().standing, ConnectionState::Lost(Loss::Silent));
     drop(driver);
     let mut driver = bench.open().unwrap();
     assert!(!bench.reboots.is_any() && bench.run(&mut driver, 0.2).is_some());
     bench.world.borrow_mut().emulator.fail(0, HardwareError(0x01));
     bench.run(&mut driver, 0.02);
-    assert!(matches!(driver.health().standing, Standing::Lost(Loss::Device { .. })));
+    assert!(matches!(driver.health().standing, ConnectionState::Lost(Loss::Device { .. })));
 }

@@ -3,20 +3,20 @@
 use std::time::{Duration, Instant};
 
 use nima_devices::{
-    Device as _, Loss, Slot, Standing, Trouble,
-    dynamixel::{Driver, Reboots, Settings, open, open_with},
+    ConnectionState, Device as _, DeviceError, DeviceSlot, Loss,
+    dynamixel::{DynamixelDriver, DynamixelSettings, Reboots, open, open_with},
 };
 use nima_testing::real_time::judged;
 
 use super::{
-    super::Emulated,
+    super::EmulatedDynamixel,
     world::{emulated, settings},
 };
-use crate::emulators::{EmulatedFault, Serving};
+use crate::emulators::{EmulatedFault, EmulatorThread};
 
-fn serving(settings_of: &Emulated) -> (Serving, Settings) {
+fn serving(settings_of: &EmulatedDynamixel) -> (EmulatorThread, DynamixelSettings) {
     let serving = settings_of.with(None).unwrap().serve().unwrap();
-    let mut settings = Settings { port: serving.endpoint.clone(), baud: settings_of.baud, ..settings() };
+    let mut settings = DynamixelSettings { port: serving.endpoint.clone(), baud: settings_of.baud, ..settings() };
     // Other programs of this machine may delay either side.
     settings.silence_s = 0.5;
     (serving, settings)
@@ -52,7 +52,7 @@ fn it_delivers_over_the_terminal_without_a_loss() {
 fn measure_rate_and_losses() {
     for baud in [1_000_000, 4_000_000] {
         for fast in [true, false] {
-            let (_serving, settings) = serving(&Emulated { baud, fast, ..emulated() });
+            let (_serving, settings) = serving(&EmulatedDynamixel { baud, fast, ..emulated() });
             let mut driver = open(&settings).unwrap();
             let begin = Instant::now();
             let mut polls = 0_u64;
@@ -70,7 +70,11 @@ fn measure_rate_and_losses() {
     }
 }
 
-fn until(slot: &mut Slot<Driver>, begin: Instant, good: impl Fn(&Slot<Driver>) -> bool) -> bool {
+fn until(
+    slot: &mut DeviceSlot<DynamixelDriver>,
+    begin: Instant,
+    good: impl Fn(&DeviceSlot<DynamixelDriver>) -> bool,
+) -> bool {
     let limit = Instant::now() + Duration::from_secs(10);
     while Instant::now() < limit {
         slot.poll(begin.elapsed().as_secs_f64());
@@ -90,14 +94,17 @@ fn a_slot_brings_it_back_after_faults_and_a_cut_line() {
         let reboots = Reboots::default();
         let wanted = settings;
         let asked = reboots.clone();
-        let mut slot = Slot::start("servos", move || open_with(&wanted, &asked)).unwrap();
+        let mut slot = DeviceSlot::start("servos", move || open_with(&wanted, &asked)).unwrap();
         let begin = Instant::now();
-        let connected = |slot: &Slot<Driver>| slot.health().standing == Standing::Connected;
+        let connected = |slot: &DeviceSlot<DynamixelDriver>| slot.health().standing == ConnectionState::Connected;
         assert!(until(&mut slot, begin, connected));
         for fault in [EmulatedFault::Disconnect, EmulatedFault::BadChecksum, EmulatedFault::DeviceFault] {
             serving.faults.set(fault);
-            assert!(until(&mut slot, begin, |slot| matches!(slot.health().standing, Standing::Lost(_))), "{fault:?}");
-            let Standing::Lost(loss) = slot.health().standing else { unreachable!() };
+            assert!(
+                until(&mut slot, begin, |slot| matches!(slot.health().standing, ConnectionState::Lost(_))),
+                "{fault:?}"
+            );
+            let ConnectionState::Lost(loss) = slot.health().standing else { unreachable!() };
             match fault {
                 EmulatedFault::Disconnect => assert_eq!(loss, Loss::Disconnected),
                 EmulatedFault::BadChecksum => assert_eq!(loss, Loss::Corrupt),
@@ -117,14 +124,14 @@ fn a_slot_brings_it_back_after_faults_and_a_cut_line() {
 fn why_it_cannot_be_opened_is_told() {
     judged(|| {
         let (serving, settings) = serving(&emulated());
-        let wrong = Settings { baud: 57_600, ..settings.clone() };
-        assert_eq!(open(&wrong).err(), Some(Trouble::WrongBaud { place: settings.port.clone(), baud: 57_600 }));
+        let wrong = DynamixelSettings { baud: 57_600, ..settings.clone() };
+        assert_eq!(open(&wrong).err(), Some(DeviceError::WrongBaud { place: settings.port.clone(), baud: 57_600 }));
         let driver = open(&settings).unwrap();
-        assert!(matches!(open(&settings).err(), Some(Trouble::Busy { .. })));
+        assert!(matches!(open(&settings).err(), Some(DeviceError::Busy { .. })));
         drop(driver);
         serving.faults.set(EmulatedFault::Silence);
-        assert!(matches!(open(&settings).err(), Some(Trouble::Silent { .. })));
+        assert!(matches!(open(&settings).err(), Some(DeviceError::Silent { .. })));
         drop(serving);
-        assert_eq!(open(&settings).err(), Some(Trouble::Absent { place: settings.port.clone() }));
+        assert_eq!(open(&settings).err(), Some(DeviceError::Absent { place: settings.port.clone() }));
     });
 }

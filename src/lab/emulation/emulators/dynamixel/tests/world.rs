@@ -3,15 +3,17 @@
 use std::{cell::RefCell, rc::Rc};
 
 use nima_devices::{
-    Device as _, ServoReading, Stamped, Trouble,
-    dynamixel::{Driver, Gains, OperatingMode, Pace, Reboots, ServoSettings, Settings, open_over},
-    transport::{Bytes as _, MemoryBytes},
+    Device as _, DeviceError, ServoReading, TimedReading,
+    dynamixel::{
+        DynamixelDriver, DynamixelSettings, Gains, OperatingMode, Reboots, ServoSettings, WaitClock, open_over,
+    },
+    transport::{ByteStream as _, MemoryBytes},
 };
 
-use super::super::{Bus, Emulated};
-use crate::emulators::{EmulatedFault, Peer, faults::FaultyLine};
+use super::super::{Bus, EmulatedDynamixel};
+use crate::emulators::{EmulatedFault, WirePeer, faults::FaultyLine};
 
-pub(super) fn settings() -> Settings {
+pub(super) fn settings() -> DynamixelSettings {
     let servo = |id| ServoSettings {
         id,
         model: None,
@@ -26,7 +28,7 @@ pub(super) fn settings() -> Settings {
         profile_acceleration_rad_s2: 100.0,
         gains: Gains::default(),
     };
-    Settings {
+    DynamixelSettings {
         port: "test".to_owned(),
         baud: 4_000_000,
         servos: [1, 2, 3, 4].map(servo),
@@ -36,8 +38,8 @@ pub(super) fn settings() -> Settings {
     }
 }
 
-pub(super) fn emulated() -> Emulated {
-    Emulated { baud: 4_000_000, ..Emulated::default() }
+pub(super) fn emulated() -> EmulatedDynamixel {
+    EmulatedDynamixel { baud: 4_000_000, ..EmulatedDynamixel::default() }
 }
 
 pub(super) struct World {
@@ -60,19 +62,19 @@ impl World {
         let Self { emulator, end, now_s, fault, line } = self;
         let mut out = |_, bytes: &[u8]| end.send(bytes).unwrap_or_default();
         line.let_late_ones_go(*now_s, &mut out);
-        emulator.send(*now_s, *fault, &mut |frame| line.pass(*now_s, Peer::Everyone, frame, *fault, &mut out));
+        emulator.send(*now_s, *fault, &mut |frame| line.pass(*now_s, WirePeer::Everyone, frame, *fault, &mut out));
     }
 }
 
 /// The common time of driver and servos.
 #[derive(Clone)]
-pub(super) struct Bench {
+pub(super) struct Fixture {
     pub(super) world: Rc<RefCell<World>>,
     pub(super) reboots: Reboots,
-    pub(super) settings: Settings,
+    pub(super) settings: DynamixelSettings,
 }
 
-impl Pace for Bench {
+impl WaitClock for Fixture {
     fn now_s(&self) -> f64 {
         self.world.borrow().now_s
     }
@@ -82,8 +84,8 @@ impl Pace for Bench {
     }
 }
 
-impl Bench {
-    pub(super) fn new(emulator: Bus, settings: Settings) -> Self {
+impl Fixture {
+    pub(super) fn new(emulator: Bus, settings: DynamixelSettings) -> Self {
         let end = MemoryBytes::pair()[0].clone();
         let world = World { emulator, end, now_s: 0.0, fault: EmulatedFault::None, line: FaultyLine::default() };
         Self { world: Rc::new(RefCell::new(world)), reboots: Reboots::default(), settings }
@@ -94,7 +96,7 @@ impl Bench {
     }
 
     /// Plugs in a new cable and opens the driver.
-    pub(super) fn open(&mut self) -> Result<Driver<MemoryBytes>, Trouble> {
+    pub(super) fn open(&mut self) -> Result<DynamixelDriver<MemoryBytes>, DeviceError> {
         let [ours, theirs] = MemoryBytes::pair();
         self.world.borrow_mut().end = theirs;
         let settings = self.settings.clone();
@@ -107,14 +109,18 @@ impl Bench {
     }
 
     /// Polls the driver once after `step_s`.
-    pub(super) fn poll(&self, driver: &mut Driver<MemoryBytes>, step_s: f64) -> Option<Stamped<ServoReading>> {
+    pub(super) fn poll(
+        &self,
+        driver: &mut DynamixelDriver<MemoryBytes>,
+        step_s: f64,
+    ) -> Option<TimedReading<ServoReading>> {
         self.world.borrow_mut().pass(step_s);
         let now_s = self.now_s();
         driver.poll(now_s)
     }
 
     /// Polls at 1 kHz for this long; returns the last reading.
-    pub(super) fn run(&self, driver: &mut Driver<MemoryBytes>, length_s: f64) -> Option<ServoReading> {
+    pub(super) fn run(&self, driver: &mut DynamixelDriver<MemoryBytes>, length_s: f64) -> Option<ServoReading> {
         let count = (length_s * 1e3).round() as usize;
         (0..count).filter_map(|_| self.poll(driver, 1e-3)).last().map(|reading| reading.value)
     }

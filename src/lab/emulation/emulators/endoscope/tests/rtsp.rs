@@ -7,19 +7,19 @@ use std::{
     time::{Duration, Instant},
 };
 
-use nima_endoscope::{Damage, Feed, Standing, Trouble, Wrong, time_code};
+use nima_endoscope::{Damage, EndoscopeError, EndoscopeFeed, FrameFault, FrameHealth, time_code};
 use nima_testing::{real_time, unjudged};
 
 use super::{SQUARE_PX, every_fault_is_told, is_live, serve, time_us, until};
-use crate::emulators::{EmulatedFault, Serving};
+use crate::emulators::{EmulatedFault, EmulatorThread};
 
 /// Returns the RTSP address of the same emulator.
-fn rtsp(serving: &Serving) -> String {
+fn rtsp(serving: &EmulatorThread) -> String {
     format!("rtsp{}stream", serving.endpoint.strip_prefix("http").unwrap())
 }
 
-fn feed(serving: &Serving) -> Feed {
-    Feed::start(rtsp(serving).parse().unwrap(), Some([640, 360]), || {}).unwrap()
+fn feed(serving: &EmulatorThread) -> EndoscopeFeed {
+    EndoscopeFeed::start(rtsp(serving).parse().unwrap(), Some([640, 360]), || {}).unwrap()
 }
 
 #[test]
@@ -28,17 +28,17 @@ fn a_stream_is_shown_and_every_fault_in_it_is_told_by_its_name() {
     let feed = feed(&serving);
     every_fault_is_told(&serving, &feed, |fault| match fault {
         EmulatedFault::Torn => {
-            Some(|standing| matches!(standing, Standing::Wrong(Wrong::Damaged(Damage::Undecodable { .. }))))
+            Some(|standing| matches!(standing, FrameHealth::Wrong(FrameFault::Damaged(Damage::Undecodable { .. }))))
         }
-        EmulatedFault::OtherFormat => {
-            Some(|standing| matches!(standing, Standing::Lost(Trouble::OtherFormat { found, .. }) if found == "h265"))
-        }
+        EmulatedFault::OtherFormat => Some(
+            |standing| matches!(standing, FrameHealth::Lost(EndoscopeError::OtherFormat { found, .. }) if found == "h265"),
+        ),
         _ => None,
     });
     let look = until(&feed, "live", |look| {
-        is_live(look) && look.picture.as_ref().is_some_and(|(_, picture)| time_us(picture).is_some())
+        is_live(look) && look.image.as_ref().is_some_and(|(_, image)| time_us(image).is_some())
     });
-    assert_eq!(look.picture.unwrap().1.size_px, [640, 360]);
+    assert_eq!(look.image.unwrap().1.size_px, [640, 360]);
 }
 
 #[test]
@@ -49,7 +49,7 @@ fn a_cut_is_mended_within_a_second() {
         let feed = feed(&serving);
         until(&feed, "live", |look| is_live(look) && look.rate_hz > 25.0);
         serving.faults.set(EmulatedFault::Disconnect);
-        until(&feed, "lost", |look| matches!(look.standing, Standing::Lost(_)));
+        until(&feed, "lost", |look| matches!(look.standing, FrameHealth::Lost(_)));
         thread::sleep(Duration::from_millis(300));
         serving.faults.set(EmulatedFault::None);
         let begin = Instant::now();
@@ -62,15 +62,15 @@ fn a_cut_is_mended_within_a_second() {
 fn a_wrong_path_is_told() {
     let serving = serve();
     let address = rtsp(&serving).replace("stream", "nothing").parse().unwrap();
-    let feed = Feed::start(address, None, || {}).unwrap();
-    until(&feed, "404", |look| matches!(look.standing, Standing::Lost(Trouble::Refused { status: 404, .. })));
+    let feed = EndoscopeFeed::start(address, None, || {}).unwrap();
+    until(&feed, "404", |look| matches!(look.standing, FrameHealth::Lost(EndoscopeError::Refused { status: 404, .. })));
 }
 
 /// Waits until a feed of this address is live with images of this size.
 fn plays(address: &str, size_px: [usize; 2]) {
-    let feed = Feed::start(address.parse().unwrap(), Some(size_px), || {}).unwrap();
+    let feed = EndoscopeFeed::start(address.parse().unwrap(), Some(size_px), || {}).unwrap();
     let look = until(&feed, address, is_live);
-    assert_eq!(look.picture.unwrap().1.size_px, size_px);
+    assert_eq!(look.image.unwrap().1.size_px, size_px);
 }
 
 #[test]
@@ -86,8 +86,8 @@ fn ffmpeg_plays_our_streams_and_we_play_those_of_ffmpeg() {
         .args(["-f", "rawvideo", "-pix_fmt", "gray", "-"])
         .output()
         .unwrap();
-    let pictures: Vec<_> = read.stdout.chunks_exact(640 * 360).collect();
-    let codes: Vec<_> = pictures.iter().map(|grey| time_code::read(SQUARE_PX, |x, y| grey[640 * y + x])).collect();
+    let images: Vec<_> = read.stdout.chunks_exact(640 * 360).collect();
+    let codes: Vec<_> = images.iter().map(|grey| time_code::read(SQUARE_PX, |x, y| grey[640 * y + x])).collect();
     assert!(codes.len() == 15 && codes.is_sorted(), "{codes:?} {}", String::from_utf8_lossy(&read.stderr));
     assert!(codes.iter().all(Option::is_some), "{codes:?}");
     println!("ffmpeg has read 15 pictures over RTSP");
@@ -158,6 +158,6 @@ fn a_stream_of_h264_is_written_for_who_reads_raw_ones() {
 }
 
 fn has_time_codes(path: &Path) {
-    let feed = Feed::start(path.to_str().unwrap().parse().unwrap(), None, || {}).unwrap();
-    until(&feed, "a time code", |look| look.picture.as_ref().is_some_and(|(_, picture)| time_us(picture).is_some()));
+    let feed = EndoscopeFeed::start(path.to_str().unwrap().parse().unwrap(), None, || {}).unwrap();
+    until(&feed, "a time code", |look| look.image.as_ref().is_some_and(|(_, image)| time_us(image).is_some()));
 }

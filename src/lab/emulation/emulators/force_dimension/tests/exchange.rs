@@ -1,11 +1,18 @@
 //! Round trips of the exchange's datagrams; only intact ones are accepted.
 
-use drd::wire::{FRESH, Order, REPLY_BYTES, REQUEST_BYTES, Reply, Request, SATURATED};
+use drd::wire::{ClientOrder, DeviceReply, DeviceRequest, FRESH, REPLY_BYTES, REQUEST_BYTES, SATURATED};
 
-fn request(random: &mut fastrand::Rng) -> Request {
-    let orders = [Order::Hello, Order::Open, Order::Read, Order::Force, Order::EnableForce, Order::Brakes];
-    let others = [Order::Watchdog, Order::VelocityThreshold, Order::Button, Order::Close];
-    Request {
+fn request(random: &mut fastrand::Rng) -> DeviceRequest {
+    let orders = [
+        ClientOrder::Hello,
+        ClientOrder::Open,
+        ClientOrder::Read,
+        ClientOrder::Force,
+        ClientOrder::EnableForce,
+        ClientOrder::Brakes,
+    ];
+    let others = [ClientOrder::Watchdog, ClientOrder::VelocityThreshold, ClientOrder::Button, ClientOrder::Close];
+    DeviceRequest {
         client: random.u64(..),
         sequence: random.u32(..),
         order: *[&orders[..], &others[..]].concat().get(random.usize(..10)).unwrap(),
@@ -14,8 +21,8 @@ fn request(random: &mut fastrand::Rng) -> Request {
     }
 }
 
-fn reply(random: &mut fastrand::Rng) -> Reply {
-    Reply {
+fn reply(random: &mut fastrand::Rng) -> DeviceReply {
+    DeviceReply {
         client: random.u64(..),
         sequence: random.u32(..),
         error: random.u32(..23),
@@ -36,7 +43,7 @@ fn reply(random: &mut fastrand::Rng) -> Reply {
 #[test]
 fn the_bytes_of_a_request_are_those_of_the_contract() {
     let values = [1.0, -2.0, 0.5, 0.25];
-    let bytes = Request { client: 2, sequence: 3, order: Order::Force, argument: 4, values }.encode();
+    let bytes = DeviceRequest { client: 2, sequence: 3, order: ClientOrder::Force, argument: 4, values }.encode();
     assert_eq!(&bytes[..24], b"NIMQ\x02\0\0\0\0\0\0\0\x03\0\0\0\x03\0\0\0\x04\0\0\0");
     assert_eq!(&bytes[24..32], &1.0_f64.to_le_bytes());
     assert_eq!(&bytes[48..56], &0.25_f64.to_le_bytes());
@@ -54,8 +61,8 @@ fn datagrams_come_back_as_they_went_in() {
     for _ in 0..1000 {
         let request = request(&mut random);
         let reply = reply(&mut random);
-        assert_eq!(Request::decode(&request.encode()), Some(request));
-        assert_eq!(Reply::decode(&reply.encode()), Some(reply));
+        assert_eq!(DeviceRequest::decode(&request.encode()), Some(request));
+        assert_eq!(DeviceReply::decode(&reply.encode()), Some(reply));
     }
 }
 
@@ -82,7 +89,9 @@ fn fuzz(rounds: u32, seed: u64) -> u32 {
             }
             if random.u8(..) < 32 { random.usize(..length) } else { length }
         };
-        wrong += u32::from(Request::decode(&bytes[..length]).is_some() || Reply::decode(&bytes[..length]).is_some());
+        wrong += u32::from(
+            DeviceRequest::decode(&bytes[..length]).is_some() || DeviceReply::decode(&bytes[..length]).is_some(),
+        );
     }
     wrong
 }

@@ -1,6 +1,6 @@
 //! Every emulated fault: the driver's reaction, and its recovery in its slot without a restart.
 
-use nima_devices::{Health, Loss, Slot};
+use nima_devices::{DeviceSlot, Health, Loss};
 use nima_testing::real_time::judged;
 
 use super::*;
@@ -27,7 +27,10 @@ fn expected(fault: EmulatedFault) -> Expected {
     }
 }
 
-fn wait(slot: &mut Slot<Driver>, good: impl Fn(&Slot<Driver>, bool) -> bool) -> bool {
+fn wait(
+    slot: &mut DeviceSlot<ForceDimensionDriver>,
+    good: impl Fn(&DeviceSlot<ForceDimensionDriver>, bool) -> bool,
+) -> bool {
     let begin = Instant::now();
     while begin.elapsed() < Duration::from_secs(8) {
         let reading = slot.poll(now_s()).is_some();
@@ -44,8 +47,8 @@ const ATTEMPTS: u32 = 6;
 
 fn goes_through(faults: &[EmulatedFault]) {
     judged(|| {
-        let (serving, hand, settings) = rig(Emulated::default());
-        let mut slot = Slot::start("handle", move || open(&settings)).unwrap();
+        let (serving, hand, settings) = rig(EmulatedForceDimension::default());
+        let mut slot = DeviceSlot::start("handle", move || open(&settings)).unwrap();
         for fault in faults {
             let mut seen = Vec::new();
             let found = (0..ATTEMPTS).any(|_| {
@@ -61,17 +64,17 @@ fn goes_through(faults: &[EmulatedFault]) {
 
 /// Sets one fault on a handle that is pushing; returns whether the effect is as expected.
 fn shows(
-    slot: &mut Slot<Driver>,
+    slot: &mut DeviceSlot<ForceDimensionDriver>,
     hand: &Hand,
-    serving: &Serving,
+    serving: &EmulatorThread,
     fault: EmulatedFault,
-    seen: &mut Vec<Standing>,
+    seen: &mut Vec<ConnectionState>,
 ) -> bool {
-    let lost = |slot: &Slot<Driver>| matches!(slot.health().standing, Standing::Lost(_));
+    let lost = |slot: &DeviceSlot<ForceDimensionDriver>| matches!(slot.health().standing, ConnectionState::Lost(_));
     assert!(wait(slot, |_, reading| reading), "delivers before {fault:?}: {:?}", slot.view().report().trouble);
     // A loss must also end the force.
     slot.device().unwrap().enable_force();
-    assert!(wait(slot, |slot, _| hand.applied().mode == Mode::Force || lost(slot)));
+    assert!(wait(slot, |slot, _| hand.applied().mode == FirmwareMode::Force || lost(slot)));
     if lost(slot) {
         seen.push(slot.health().standing);
         return false;
@@ -89,18 +92,22 @@ fn shows(
                 slot.health().standing
             );
             seen.push(slot.health().standing);
-            assert!(wait(slot, |_, _| hand.applied().mode == Mode::Brake), "{fault:?}: brakes are on");
-            slot.health().standing == Standing::Lost(loss)
+            assert!(wait(slot, |_, _| hand.applied().mode == FirmwareMode::Brake), "{fault:?}: brakes are on");
+            slot.health().standing == ConnectionState::Lost(loss)
         }
         Expected::Lossy => goes_on(slot, seen, |now| now.lost > before.lost + 3 && now.damaged == before.damaged),
         Expected::Noisy => goes_on(slot, seen, |now| now.damaged > before.damaged + 3),
     }
 }
 
-fn goes_on(slot: &mut Slot<Driver>, seen: &mut Vec<Standing>, counted: impl Fn(&Health) -> bool) -> bool {
-    assert!(wait(slot, |slot, _| counted(slot.health()) || matches!(slot.health().standing, Standing::Lost(_))));
+fn goes_on(
+    slot: &mut DeviceSlot<ForceDimensionDriver>,
+    seen: &mut Vec<ConnectionState>,
+    counted: impl Fn(&Health) -> bool,
+) -> bool {
+    assert!(wait(slot, |slot, _| counted(slot.health()) || matches!(slot.health().standing, ConnectionState::Lost(_))));
     seen.push(slot.health().standing);
-    slot.health().standing == Standing::Connected
+    slot.health().standing == ConnectionState::Connected
 }
 
 #[test]

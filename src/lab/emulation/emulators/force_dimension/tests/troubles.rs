@@ -2,31 +2,35 @@
 
 use std::process::{Command, Stdio};
 
-use nima_devices::Trouble;
+use nima_devices::DeviceError;
 use nima_testing::real_time::judged;
 
 use super::*;
 use crate::emulators::EmulatedFault;
 
-fn trouble(settings: &Settings) -> Trouble {
+fn trouble(settings: &ForceDimensionSettings) -> DeviceError {
     open(settings).map(drop).unwrap_err()
 }
 
 #[test]
 fn a_library_that_is_not_there_is_told_with_where_it_was_looked_for() {
-    let settings = Settings { library: Some("/nowhere/libdrd.so.3".into()), ..Settings::default() };
-    let Trouble::SdkMissing { searched, .. } = trouble(&settings) else { panic!("{:?}", trouble(&settings)) };
+    let settings =
+        ForceDimensionSettings { library: Some("/nowhere/libdrd.so.3".into()), ..ForceDimensionSettings::default() };
+    let DeviceError::SdkMissing { searched, .. } = trouble(&settings) else { panic!("{:?}", trouble(&settings)) };
     assert_eq!(searched, "/nowhere/libdrd.so.3");
 }
 
 #[test]
 fn a_real_handle_gets_no_stand_in_even_where_its_file_is_named_or_found() {
     judged(|| {
-        let told = trouble(&Settings { library: Some(library()), ..Settings::default() });
-        assert!(matches!(&told, Trouble::SdkUnusable { reason, .. } if reason.contains("emulates")), "{told:?}");
+        let report = trouble(&ForceDimensionSettings { library: Some(library()), ..ForceDimensionSettings::default() });
+        assert!(
+            matches!(&report, DeviceError::SdkUnusable { reason, .. } if reason.contains("emulates")),
+            "{report:?}"
+        );
         // Cargo makes the system search its own folders, which contain the stub under the library's name.
-        match open(&Settings::default()) {
-            Err(Trouble::SdkMissing { searched, .. }) => assert!(searched.contains("drd"), "{searched}"),
+        match open(&ForceDimensionSettings::default()) {
+            Err(DeviceError::SdkMissing { searched, .. }) => assert!(searched.contains("drd"), "{searched}"),
             // A machine with the real SDK and no device.
             other => assert!(nima_devices::force_dimension::installed_library().is_some(), "{other:?}"),
         }
@@ -38,19 +42,19 @@ fn a_library_that_does_not_fit_is_told_with_the_reason() {
     let folder = tempfile::tempdir().unwrap();
     let text = folder.path().join("libdrd.so.3");
     std::fs::write(&text, "not a library").unwrap();
-    let settings = Settings { library: Some(text), ..Settings::default() };
-    let told = trouble(&settings);
-    assert!(matches!(&told, Trouble::SdkUnusable { .. }), "{told:?}");
+    let settings = ForceDimensionSettings { library: Some(text), ..ForceDimensionSettings::default() };
+    let report = trouble(&settings);
+    assert!(matches!(&report, DeviceError::SdkUnusable { .. }), "{report:?}");
     #[cfg(target_os = "linux")]
     {
         // Any other library lacks the symbols.
         let maps = std::fs::read_to_string("/proc/self/maps").unwrap();
         let libc = maps.lines().filter_map(|line| line.split_whitespace().last()).find(|path| path.contains("libc.so"));
-        let settings = Settings { library: libc.map(Into::into), ..Settings::default() };
-        let told = trouble(&settings);
+        let settings = ForceDimensionSettings { library: libc.map(Into::into), ..ForceDimensionSettings::default() };
+        let report = trouble(&settings);
         assert!(
-            matches!(&told, Trouble::SdkUnusable { reason, .. } if reason == "it has no symbol dhdGetSDKVersion"),
-            "{told:?}"
+            matches!(&report, DeviceError::SdkUnusable { reason, .. } if reason == "it has no symbol dhdGetSDKVersion"),
+            "{report:?}"
         );
     }
 }
@@ -58,57 +62,66 @@ fn a_library_that_does_not_fit_is_told_with_the_reason() {
 #[test]
 fn devices_that_are_absent_taken_or_others_are_told_apart() {
     judged(|| {
-        let (_serving, _hand, settings) = rig(Emulated { serial: 7, ..Emulated::default() });
-        let Trouble::Absent { place } = trouble(&Settings { serial: Some(8), ..settings.clone() }) else { panic!() };
+        let (_serving, _hand, settings) =
+            rig(EmulatedForceDimension { serial: 7, ..EmulatedForceDimension::default() });
+        let DeviceError::Absent { place } = trouble(&ForceDimensionSettings { serial: Some(8), ..settings.clone() })
+        else {
+            panic!()
+        };
         assert_eq!(place, "omega.7 with serial number 8 (1 attached)");
         let nobody = std::net::UdpSocket::bind("127.0.0.1:0").unwrap().local_addr().unwrap();
-        let no_device = Settings { emulator: Some(nobody), library: Some(library()), ..settings.clone() };
-        assert_eq!(trouble(&no_device), Trouble::Absent { place: "omega.7 (0 attached)".to_owned() });
+        let no_device = ForceDimensionSettings { emulator: Some(nobody), library: Some(library()), ..settings.clone() };
+        assert_eq!(trouble(&no_device), DeviceError::Absent { place: "omega.7 (0 attached)".to_owned() });
         let first = open(&settings).unwrap();
         // To the device, another copy of the library is another program.
-        let other = Settings { library: Some(library()), serial: Some(7), ..settings.clone() };
-        assert_eq!(trouble(&other), Trouble::Busy { place: "omega.7 with serial number 7".to_owned() });
+        let other = ForceDimensionSettings { library: Some(library()), serial: Some(7), ..settings.clone() };
+        assert_eq!(trouble(&other), DeviceError::Busy { place: "omega.7 with serial number 7".to_owned() });
         drop(first);
         drop(open(&other).unwrap());
-        let (_sigma, _hand, settings) = rig(Emulated { kind: Kind::Other(104), ..Emulated::default() });
-        assert!(matches!(trouble(&settings), Trouble::WrongProduct { found, .. } if found == "sigma.7"));
+        let (_sigma, _hand, settings) =
+            rig(EmulatedForceDimension { kind: ForceDimensionKind::Other(104), ..EmulatedForceDimension::default() });
+        assert!(matches!(trouble(&settings), DeviceError::WrongProduct { found, .. } if found == "sigma.7"));
     });
 }
 
 #[test]
 fn devices_that_are_not_ready_or_broken_are_told_apart() {
     judged(|| {
-        let (_serving, _hand, settings) = rig(Emulated { reset: true, ..Emulated::default() });
-        assert!(matches!(trouble(&settings), Trouble::NotReady { mode, .. } if mode.starts_with("reset")));
-        let (serving, _hand, settings) = rig(Emulated::default());
+        let (_serving, _hand, settings) =
+            rig(EmulatedForceDimension { reset: true, ..EmulatedForceDimension::default() });
+        assert!(matches!(trouble(&settings), DeviceError::NotReady { mode, .. } if mode.starts_with("reset")));
+        let (serving, _hand, settings) = rig(EmulatedForceDimension::default());
         serving.faults.set(EmulatedFault::DeviceFault);
-        assert!(matches!(trouble(&settings), Trouble::DeviceFault { words, .. } if words.contains("code 109")));
+        assert!(matches!(trouble(&settings), DeviceError::DeviceFault { words, .. } if words.contains("code 109")));
         serving.faults.set(EmulatedFault::NotANumber);
-        assert!(matches!(trouble(&settings), Trouble::DeviceFault { .. }));
+        assert!(matches!(trouble(&settings), DeviceError::DeviceFault { .. }));
         serving.faults.set(EmulatedFault::Silence);
         // The emulator checks its faults at intervals.
         std::thread::sleep(Duration::from_millis(20));
-        let told = trouble(&settings);
-        assert!(matches!(told, Trouble::Absent { .. }), "a device that does not answer is not attached: {told:?}");
+        let report = trouble(&settings);
+        assert!(
+            matches!(report, DeviceError::Absent { .. }),
+            "a device that does not answer is not attached: {report:?}"
+        );
     });
 }
 
 #[test]
 fn impossible_settings_are_refused() {
     for (settings, wrong) in [
-        (Settings { rate_hz: 5000.0, ..Settings::default() }, "rate_hz"),
-        (Settings { watchdog_ms: 0.0, ..Settings::default() }, "watchdog_ms"),
-        (Settings { force_max_n: f64::NAN, ..Settings::default() }, "force_max_n"),
-        (Settings { gripper_max_n: 8.1, ..Settings::default() }, "gripper_max_n"),
+        (ForceDimensionSettings { rate_hz: 5000.0, ..ForceDimensionSettings::default() }, "rate_hz"),
+        (ForceDimensionSettings { watchdog_ms: 0.0, ..ForceDimensionSettings::default() }, "watchdog_ms"),
+        (ForceDimensionSettings { force_max_n: f64::NAN, ..ForceDimensionSettings::default() }, "force_max_n"),
+        (ForceDimensionSettings { gripper_max_n: 8.1, ..ForceDimensionSettings::default() }, "gripper_max_n"),
     ] {
-        assert!(matches!(trouble(&settings), Trouble::Setting { key, .. } if key == wrong));
+        assert!(matches!(trouble(&settings), DeviceError::Setting { key, .. } if key == wrong));
     }
-    assert_eq!(Settings::default().watchdog_steps(), 160);
-    assert!(toml::from_str::<Settings>("wachdog_ms = 3.0").is_err());
+    assert_eq!(ForceDimensionSettings::default().watchdog_steps(), 160);
+    assert!(toml::from_str::<ForceDimensionSettings>("wachdog_ms = 3.0").is_err());
 }
 
 /// Runs this test's program again with only one task.
-fn child(test: &str, settings: &Settings, more: (&str, &str)) -> std::process::Child {
+fn child(test: &str, settings: &ForceDimensionSettings, more: (&str, &str)) -> std::process::Child {
     Command::new(std::env::current_exe().unwrap())
         .args(["--exact", &format!("emulators::force_dimension::tests::troubles::{test}"), "--ignored", "--nocapture"])
         .env("NIMA_TEST_LIBRARY", settings.library.as_ref().unwrap())
@@ -120,9 +133,13 @@ fn child(test: &str, settings: &Settings, more: (&str, &str)) -> std::process::C
         .unwrap()
 }
 
-fn of_parent() -> Settings {
+fn of_parent() -> ForceDimensionSettings {
     let emulator = std::env::var(drd::wire::ADDRESS_VARIABLE).ok().and_then(|address| address.parse().ok());
-    Settings { library: std::env::var_os("NIMA_TEST_LIBRARY").map(Into::into), emulator, ..Settings::default() }
+    ForceDimensionSettings {
+        library: std::env::var_os("NIMA_TEST_LIBRARY").map(Into::into),
+        emulator,
+        ..ForceDimensionSettings::default()
+    }
 }
 
 /// Exits like a program that returns from `main`: on Windows std's own `exit` ends all threads at once.
@@ -164,17 +181,17 @@ fn every_way_out_of_the_program_leaves_the_brakes_on() {
         for (end, cause) in
             [("exit", ForceOffCause::Software), ("panic", ForceOffCause::Software), ("abort", ForceOffCause::Watchdog)]
         {
-            let (_serving, hand, settings) = rig(Emulated::default());
+            let (_serving, hand, settings) = rig(EmulatedForceDimension::default());
             let mut child = child("pushes_and_leaves", &settings, ("NIMA_TEST_END", end));
             let begin = Instant::now();
-            let wait = |good: &dyn Fn(Applied) -> bool| {
+            let wait = |good: &dyn Fn(MotorOutput) -> bool| {
                 while !good(hand.applied()) {
                     assert!(begin.elapsed() < Duration::from_secs(5), "{end}: {:?}", hand.applied());
                     std::thread::sleep(Duration::from_millis(1));
                 }
             };
             wait(&|applied| applied.force_n.x == 2.0);
-            wait(&|applied| applied.mode == Mode::Brake);
+            wait(&|applied| applied.mode == FirmwareMode::Brake);
             assert_eq!((hand.applied().cause, hand.applied().force_n.norm()), (cause, 0.0), "{end}");
             child.wait().unwrap();
         }
@@ -184,14 +201,16 @@ fn every_way_out_of_the_program_leaves_the_brakes_on() {
 #[test]
 #[ignore = "started by another test"]
 fn finds_an_old_library() {
-    let told = trouble(&of_parent());
-    assert!(matches!(told, Trouble::SdkUnusable { reason, .. } if reason == "its version 3.10.0.0 is older than 3.16"));
+    let report = trouble(&of_parent());
+    assert!(
+        matches!(report, DeviceError::SdkUnusable { reason, .. } if reason == "its version 3.10.0.0 is older than 3.16")
+    );
 }
 
 #[test]
 fn a_library_that_is_too_old_is_refused() {
     judged(|| {
-        let settings = Settings { library: Some(library()), ..Settings::default() };
+        let settings = ForceDimensionSettings { library: Some(library()), ..ForceDimensionSettings::default() };
         let mut child = child("finds_an_old_library", &settings, ("NIMA_EMULATED_SDK_VERSION", "3.10.0.0"));
         assert!(child.wait().unwrap().success());
     });
@@ -200,11 +219,14 @@ fn a_library_that_is_too_old_is_refused() {
 #[test]
 fn dropping_the_driver_brakes_the_hand() {
     judged(|| {
-        let (_serving, hand, settings) = rig(Emulated::default());
+        let (_serving, hand, settings) = rig(EmulatedForceDimension::default());
         let mut driver = open(&settings).unwrap();
         push(&mut driver, &hand);
         drop(driver);
         let applied = hand.applied();
-        assert_eq!((applied.mode, applied.cause, applied.force_n.norm()), (Mode::Brake, ForceOffCause::Software, 0.0));
+        assert_eq!(
+            (applied.mode, applied.cause, applied.force_n.norm()),
+            (FirmwareMode::Brake, ForceOffCause::Software, 0.0)
+        );
     });
 }

@@ -13,7 +13,7 @@ fn both_kinds_of_pedal_tell_presses_and_releases_in_time() {
             std::thread::sleep(Duration::from_millis(30));
             for pressed in [0b01, 0b11, 0b10, 0b100, 0] {
                 foot.store(pressed, Ordering::Release);
-                let told = |_: &mut PedalDriver, reading: Option<Stamped<PedalReading>>| {
+                let report = |_: &mut PedalDriver, reading: Option<TimedReading<PedalReading>>| {
                     reading.is_some_and(|reading| {
                         let PedalReading { pressed: got } = reading.value;
                         assert_eq!(roles.clutch(reading.value), got & 1 == 1);
@@ -21,7 +21,7 @@ fn both_kinds_of_pedal_tell_presses_and_releases_in_time() {
                         got == pressed
                     })
                 };
-                assert!(until(&mut driver, told).is_some(), "{model:?}: {pressed:#b}");
+                assert!(until(&mut driver, report).is_some(), "{model:?}: {pressed:#b}");
             }
             assert_eq!(driver.health().damaged + driver.health().refused + driver.health().lost, 0);
         }
@@ -38,17 +38,17 @@ fn a_pressed_pedal_that_is_unplugged_or_broken_is_released_and_stays_so_until_it
         ] {
             let (serving, foot) = pedal(PedalModel::Keyboard);
             let settings = pedal_settings(&serving);
-            let mut slot = Slot::start("pedal", move || PedalDriver::open(&settings)).unwrap();
+            let mut slot = DeviceSlot::start("pedal", move || PedalDriver::open(&settings)).unwrap();
             let begin = Instant::now();
-            let mut held = Held::<PedalReading>::default();
-            assert!(until_slot(&mut slot, begin, |health, _| health.standing == Standing::Connected));
+            let mut held = HeldValue::<PedalReading>::default();
+            assert!(until_slot(&mut slot, begin, |health, _| health.standing == ConnectionState::Connected));
             foot.store(1, Ordering::Release);
             assert!(until_slot(&mut slot, begin, |health, reading| held.update(reading, health).pressed == 1));
             serving.faults.set(fault);
             let mut lost = false;
             assert!(
                 until_slot(&mut slot, begin, |health, reading| {
-                    lost |= health.standing == Standing::Lost(loss);
+                    lost |= health.standing == ConnectionState::Lost(loss);
                     lost && held.update(reading, health).pressed == 0
                 }),
                 "{fault:?}: {:?}",
@@ -57,7 +57,7 @@ fn a_pressed_pedal_that_is_unplugged_or_broken_is_released_and_stays_so_until_it
             serving.faults.set(EmulatedFault::None);
             assert!(until_slot(&mut slot, begin, |health, reading| {
                 assert_eq!(held.update(reading, health).pressed, 0, "it must be pressed again");
-                health.standing == Standing::Connected
+                health.standing == ConnectionState::Connected
             }));
             foot.store(0, Ordering::Release);
             std::thread::sleep(Duration::from_millis(30));
@@ -81,12 +81,12 @@ fn one_report_that_is_not_understood_releases_everything_at_once() {
         assert!(driver.poll(0.1).is_none(), "a foot that does not move says nothing");
         there.send(&[0xf1, 0]).unwrap();
         assert_eq!(driver.poll(0.2).unwrap().value.pressed, 0);
-        assert_eq!((driver.health().refused, driver.health().standing), (1, Standing::Connected));
+        assert_eq!((driver.health().refused, driver.health().standing), (1, ConnectionState::Connected));
         there.send(&[1, 0]).unwrap();
         assert_eq!(driver.poll(0.3).unwrap().value.pressed, 1);
         there.cut();
         assert_eq!(driver.poll(0.4).unwrap().value.pressed, 0, "gone is released");
         assert!(driver.poll(0.5).is_none());
-        assert_eq!(driver.health().standing, Standing::Lost(Loss::Disconnected));
+        assert_eq!(driver.health().standing, ConnectionState::Lost(Loss::Disconnected));
     });
 }

@@ -2,12 +2,12 @@
 
 use std::io::Write as _;
 
-use nima_devices::kinova::frame::{Frame, encode, encode_written, packed};
+use nima_devices::kinova::frame::{KinovaFrame, encode, encode_written, packed};
 use nima_testing::real_time::judged;
 use prost::Message as _;
 
 use super::{Client, HOME_DEG, arm};
-use crate::emulators::kinova::moves::ActionTold;
+use crate::emulators::kinova::moves::ActionReport;
 
 /// Call, request and answer: session 1, messages from 2 on.
 const EXCHANGES: [(&str, &str, &str); 31] = [
@@ -186,12 +186,12 @@ fn requests_of_the_device_route_are_answered_byte_for_byte() {
             packed(&mut out, |out| out.extend(bytes(request)));
             client.stream.write_all(&out).unwrap();
             let (header, payload) = client.answer();
-            let mut told = Vec::new();
-            encode_written(&header, &payload, &mut told);
-            assert_eq!(told, bytes(answer), "{name}: {header:?}");
+            let mut report = Vec::new();
+            encode_written(&header, &payload, &mut report);
+            assert_eq!(report, bytes(answer), "{name}: {header:?}");
             // The other direction: this crate writes the same request.
             let whole = bytes(request);
-            let frame = Frame::decode(&whole).unwrap();
+            let frame = KinovaFrame::decode(&whole).unwrap();
             let mut written = Vec::new();
             encode_written(&frame.header, frame.payload, &mut written);
             assert_eq!(written, whole, "{name}");
@@ -201,9 +201,9 @@ fn requests_of_the_device_route_are_answered_byte_for_byte() {
         }
         exchange(&mut client, "ExecuteActionFromReference", HOME[0], HOME[1]);
         let (header, payload) = client.frame();
-        let told = ActionTold::decode(payload.as_slice()).unwrap();
+        let report = ActionReport::decode(payload.as_slice()).unwrap();
         let mut written = Vec::new();
-        encode(&header, &told, &mut written);
-        assert_eq!(written, bytes(HOME[2]), "{told:?}");
+        encode(&header, &report, &mut written);
+        assert_eq!(written, bytes(HOME[2]), "{report:?}");
     });
 }

@@ -1,0 +1,436 @@
+//! The gates in their fixed order: permission, validity, age, dead band, gain, slew, energy, ceiling, governor.
+//!
+//! The same gates, with the required number of axes, serve a force in space, a torque and a gripper force: one chain
+//! each.
+
+mod age;
+mod ceiling;
+mod dead_band;
+mod energy;
+mod gain;
+mod slew;
+mod validity;
+
+use nalgebra::SVector;
+
+pub use age::AgeGate;
+pub use ceiling::Ceiling;
+pub use dead_band::DeadBand;
+pub use energy::{ALLOWANCE_J, Energy, LEAK_S, MAX_J};
+pub use gain::Gain;
+pub use slew::Slew;
+pub use validity::{PLAUSIBLE_N, admitted};
+
+use super::{ChainSettings, EnergyMode, Gate, GateCounts, GateReport, Governor, GovernorReading, Reason};
+use crate::limits::DEAD_BAND_M_S;
+
+/// A force that is to reach the hand. [`ForceRequest::default`] is not permitted.
+#[derive(Clone, Copy, Debug)]
+pub struct ForceRequest<const D: usize = 3> {
+    pub t_s: f64,
+    /// The force that a mode requests, N; `None` if the mode has no valid force.
+    pub force_n: Option<SVector<f64, D>>,
+    /// Age of its newest data beyond the link's own delay, s.
+    pub age_s: f64,
+    pub speed_m_s: f64,
+    /// Position of the handle, m, on the axes of the force, as the device reports it (not scaled); `None` if unknown:
+    /// the energy gate then assumes no motion. A position instead of a velocity, because force times travel is exactly
+    /// the energy.
+    pub hand_m: Option<SVector<f64, D>>,
+    /// Age of the handle's reading at `t_s`, s.
+    pub hand_age_s: f64,
+    /// Whether the state machine permits force at all.
+    pub permitted: bool,
+}
+
+impl<const D: usize> Default for ForceRequest<D> {
+    fn default() -> Self {
+        Self {
+            t_s: 0.0,
+            force_n: None,
+            age_s: f64::INFINITY,
+            speed_m_s: 0.0,
+            hand_m: None,
+            hand_age_s: 0.0,
+            permitted: false,
+        }
+    }
+}
+
+/// The chain and its state (gain ramp, last force, dead band, energy, counters).
+#[derive(Clone, Debug)]
+pub struct SafetyChain<const D: usize = 3> {
+    settings: ChainSettings,
+    period_s: f64,
+    age: AgeGate,
+    dead_band: DeadBand,
+    gain: Gain,
+    slew: Slew<D>,
+    energy: Energy<D>,
+    ceiling: Ceiling,
+    governor: Governor<D>,
+    last_s: Option<f64>,
+    /// The last force that reached the hand, N. The slew limit stores its own last force, before the governor.
+    applied_n: SVector<f64, D>,
+    counts: GateCounts,
+}
+
+pub type GripperChain = SafetyChain<1>;
+pub type TorqueChain = SafetyChain<3>;
+
+impl<const D: usize> SafetyChain<D> {
+    /// Creates a chain for a loop of this nominal period (s). Settings outside their ranges are clamped, the gain to at
+    /// most 1.
+    pub fn new(settings: ChainSettings, period_s: f64) -> Self {
+        let mut settings = settings.pulled_in();
+        let gain = Gain::new(settings.gain, settings.gain_rate_per_s);
+        settings.gain = gain.chosen();
+        Self {
+            settings,
+            period_s,
+            age: AgeGate::new(settings.fade_after_s, settings.zero_after_s),
+            dead_band: DeadBand::new(settings.dead_band_m_s),
+            gain,
+            slew: Slew::new(settings.slew_n_per_s, period_s),
+            energy: Energy::new(settings.energy),
+            ceiling: Ceiling::new(settings.ceiling_n, settings.device_limit_n),
+            governor: Governor::new(settings.handle(), settings.slew_n_per_s, period_s),
+            last_s: None,
+            applied_n: SVector::zeros(),
+            counts: GateCounts::default(),
+        }
+    }
+
+    pub const fn settings(&self) -> &ChainSettings {
+        &self.settings
+    }
+
+    pub const fn counts(&self) -> &GateCounts {
+        &self.counts
+    }
+
+    /// Returns the maximum force that the chain can pass, N.
+    pub const fn max_n(&self) -> f64 {
+        self.ceiling.max_n()
+    }
+
+    /// Sets the gain to ramp to, 0 to 1. A larger gain is clamped to 1, unless [`SafetyChain::set_gain_above_one`] was called
+    /// since the last gain of 1 or less. NaN is ignored.
+    pub const fn set_ordinary_gain(&mut self, gain: f64) {
+        self.gain.choose(gain);
+        self.settings.gain = self.gain.chosen();
+    }
+
+    /// Sets a gain within [`GAIN_ABOVE_ONE`](crate::limits::GAIN_ABOVE_ONE): the operator's second, deliberate action.
+    /// NaN is ignored.
+    pub const fn set_gain_above_one(&mut self, gain: f64) {
+        self.gain.choose_above_one(gain);
+        self.settings.gain = self.gain.chosen();
+    }
+
+    /// Sets the dead band, m/s, clamped to 0 to 0.1; NaN is ignored.
+    pub fn set_dead_band(&mut self, threshold_m_s: f64) {
+        if !threshold_m_s.is_nan() {
+            self.settings.dead_band_m_s = threshold_m_s.clamp(DEAD_BAND_M_S.min, DEAD_BAND_M_S.max);
+            self.dead_band.threshold_m_s = self.settings.dead_band_m_s;
+        }
+    }
+
+    /// Keeps the force at standstill (true) or fades it in the dead band (false).
+    pub const fn set_static_hold(&mut self, hold: bool) {
+        self.settings.static_hold = hold;
+    }
+
+    /// Switches the governor off or on. Off is for simulated handles only.
+    pub fn set_governor(&mut self, on: bool) {
+        self.settings.handle_kg = if on { self.governor.handle().mass_kg } else { 0.0 };
+        self.governor.watch(on);
+    }
+
+    /// Resets the last force, so that the next force starts from zero, and the hand's motion; a hand is assumed to hold
+    /// the handle.
+    pub fn reset(&mut self) {
+        self.slew.left(SVector::zeros());
+        self.energy.reset();
+        self.governor.reset();
+        self.applied_n = SVector::zeros();
+    }
+
+    /// Sends one request through all gates; returns the force for the hand (N) and the action of each gate. Call once
+    /// per tick.
+    ///
+    /// ```
+    /// use nalgebra::Vector3;
+    /// use nima_core::safety::{SafetyChain, ChainSettings, Gate, Reason, ForceRequest};
+    ///
+    /// let settings = ChainSettings { ceiling_n: 2.0, ..ChainSettings::default() };
+    /// let mut chain = SafetyChain::new(settings, 1e-3);
+    /// let mut request = ForceRequest {
+    ///     t_s: 0.0,
+    ///     force_n: Some(Vector3::new(0.0, 0.0, 50.0)),
+    ///     age_s: 0.0,
+    ///     speed_m_s: 0.1,
+    ///     permitted: true,
+    ///     ..ForceRequest::default()
+    /// };
+    /// for _ in 0..1000 {
+    ///     request.t_s += 1e-3;
+    ///     let (force_n, _) = chain.step(&request);
+    ///     assert!(force_n.norm() <= 2.0 + 1e-9, "the ceiling holds");
+    /// }
+    ///
+    /// // NaN closes the chain and names the gate.
+    /// request.force_n = Some(Vector3::new(f64::NAN, 0.0, 0.0));
+    /// let (_, report) = chain.step(&request);
+    /// assert_eq!(report.first().map(|(gate, _)| gate), Some(Gate::Validity));
+    /// assert_eq!(chain.step(&request).0, Vector3::zeros());
+    /// ```
+    pub fn step(&mut self, request: &ForceRequest<D>) -> (SVector<f64, D>, GateReport) {
+        let mut report = GateReport::default();
+        let dt_s = self.since_last_s(request.t_s);
+        if self.settings.energy != EnergyMode::Off {
+            self.energy.observe(request.hand_m, &self.applied_n, dt_s);
+        }
+        self.applied_n = self.through(request, dt_s, &mut report);
+        report.stored_j = self.energy.stored_j();
+        self.counts.add(&report.reasons);
+        report.counts = self.counts;
+        (self.applied_n, report)
+    }
+
+    /// Returns the time since the last request, s: one period for the first request, zero if the clock did not advance.
+    fn since_last_s(&mut self, t_s: f64) -> f64 {
+        if !t_s.is_finite() {
+            return 0.0;
+        }
+        self.last_s.replace(t_s).map_or(self.period_s, |last_s| (t_s - last_s).max(0.0))
+    }
+
+    fn through(&mut self, request: &ForceRequest<D>, dt_s: f64, report: &mut GateReport) -> SVector<f64, D> {
+        let admitted = admitted(request.force_n);
+        let (fresh, age) = self.age.fraction(request.age_s);
+        let (gain, ramp) = self.gain.step(dt_s);
+        report.gain = gain;
+        report.note(Gate::Validity, admitted.err().unwrap_or_default());
+        report.note(Gate::Age, age);
+        report.note(Gate::Gain, ramp);
+        let aged_n = admitted.unwrap_or_else(|_| SVector::zeros()) * fresh;
+        let moving_n = self.past_dead_band(aged_n, request.speed_m_s, dt_s, report);
+        if !request.permitted {
+            report.note(Gate::Permission, Reason::NotPermitted);
+            self.reset();
+            return SVector::zeros();
+        }
+        let limited_n = if report.acted(Gate::Validity) {
+            // A stop takes effect at once: the slew limit does not apply to a release.
+            SVector::zeros()
+        } else {
+            self.limited(moving_n * gain, dt_s, report)
+        };
+        self.slew.left(limited_n);
+        let reading =
+            request.hand_m.map(|position_m| GovernorReading { t_s: request.t_s - request.hand_age_s, position_m });
+        let governed = self.governor.step(request.t_s, reading, limited_n);
+        report.note(Gate::Governor, governed.reason);
+        report.governed = governed.withheld;
+        governed.force_n
+    }
+
+    /// Applies slew limit, energy gate and ceiling.
+    fn limited(&self, force_n: SVector<f64, D>, dt_s: f64, report: &mut GateReport) -> SVector<f64, D> {
+        let (slewed_n, slew) = self.slew.limited(force_n, dt_s);
+        report.note(Gate::Slew, slew);
+        let (paid_n, energy) = self.energy.controlled(slewed_n);
+        report.note(Gate::Energy, energy);
+        // The force that the energy gate removes decreases as fast as the slew limit allows, no faster. The ceiling
+        // shortens towards a ball that contains the last force, which never moves two forces further apart: the slew
+        // limit still holds after it.
+        let (force_n, ceiling) = self.ceiling.under(self.slew.limited(paid_n, dt_s).0);
+        report.note(Gate::Ceiling, ceiling);
+        force_n
+    }
+
+    fn past_dead_band(
+        &mut self,
+        force_n: SVector<f64, D>,
+        speed_m_s: f64,
+        dt_s: f64,
+        report: &mut GateReport,
+    ) -> SVector<f64, D> {
+        let fraction = self.dead_band.step(speed_m_s, dt_s);
+        if self.settings.static_hold || fraction >= 1.0 {
+            return force_n;
+        }
+        report.note(Gate::DeadBand, if speed_m_s.is_finite() { Reason::HandSlow } else { Reason::SpeedUnknown });
+        report.withheld_n = force_n.norm() * (1.0 - fraction);
+        force_n * fraction
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{SVector, Vector3};
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn request(force_n: Vector3<f64>) -> ForceRequest {
+        ForceRequest { force_n: Some(force_n), age_s: 0.0, speed_m_s: 0.1, permitted: true, ..ForceRequest::default() }
+    }
+
+    /// A chain whose clock advances by one period with each request.
+    struct Clocked<const D: usize>(SafetyChain<D>, f64);
+
+    impl<const D: usize> Clocked<D> {
+        fn new(settings: ChainSettings) -> Self {
+            Self(SafetyChain::new(settings, 1e-3), 0.0)
+        }
+
+        fn step(&mut self, request: &ForceRequest<D>) -> (SVector<f64, D>, GateReport) {
+            self.1 += 1e-3;
+            self.0.step(&ForceRequest { t_s: self.1, ..*request })
+        }
+    }
+
+    #[test]
+    fn a_modest_force_passes_untouched_once_the_slew_has_caught_up() {
+        let mut chain = Clocked::new(ChainSettings::default());
+        let asked = Vector3::new(1.0, -0.5, 2.0);
+        for _ in 0..100 {
+            chain.step(&request(asked));
+        }
+        let (force_n, report) = chain.step(&request(asked));
+        assert!((force_n - asked).norm() < 1e-12);
+        assert_eq!(report.first_closed(), "open");
+        assert_eq!(report.counts.ticks, 101);
+    }
+
+    #[test]
+    fn silence_fades_after_5_ms_and_is_zero_at_20_ms() {
+        let settings = ChainSettings { slew_n_per_s: 1e9, ..ChainSettings::default() };
+        let mut chain = Clocked::new(settings);
+        let at = |chain: &mut Clocked<3>, age_s| chain.step(&ForceRequest { age_s, ..request(Vector3::z()) }).0.z;
+        assert!((at(&mut chain, 0.005) - 1.0).abs() < 1e-12);
+        let halfway = at(&mut chain, 0.0125);
+        assert!((halfway - 0.5).abs() < 1e-12, "{halfway}");
+        assert!(at(&mut chain, 0.020).abs() < 1e-12);
+        assert!(at(&mut chain, f64::NAN).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_stop_takes_the_force_away_at_once() {
+        let mut chain = Clocked::new(ChainSettings::default());
+        for _ in 0..100 {
+            chain.step(&request(Vector3::z() * 3.0));
+        }
+        let (force_n, report) = chain.step(&ForceRequest { permitted: false, ..request(Vector3::z() * 3.0) });
+        assert!(force_n.norm() < 1e-15);
+        assert_eq!(report.first(), Some((Gate::Permission, Reason::NotPermitted)));
+        assert_eq!(chain.0.counts().acted[Gate::Permission.index()], 1);
+    }
+
+    #[test]
+    fn the_dead_band_says_how_much_it_withholds() {
+        let mut chain = Clocked::new(ChainSettings::default());
+        let held = ForceRequest { speed_m_s: 0.0, ..request(Vector3::z() * 1.4) };
+        let (force_n, report) = chain.step(&held);
+        assert!(force_n.norm() < 1e-15 && (report.withheld_n - 1.4).abs() < 1e-12);
+        chain.0.set_static_hold(true);
+        for _ in 0..10 {
+            chain.step(&held);
+        }
+        assert!((chain.step(&held).0.z - 1.4).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_ceiling_is_never_above_what_the_device_can_give() {
+        let settings = ChainSettings { device_limit_n: 2.5, ..ChainSettings::default() };
+        let mut chain = Clocked::new(settings);
+        let last = (0..100).map(|_| chain.step(&request(Vector3::z() * 30.0))).last().unwrap();
+        assert!((last.0.norm() - 2.5).abs() < 1e-12);
+        assert_eq!(last.1.reason(Gate::Ceiling), Reason::AboveDeviceLimit);
+    }
+
+    #[test]
+    fn a_gripper_and_a_torque_pass_gates_of_their_own() {
+        let mut gripper = Clocked::<1>::new(ChainSettings::gripper());
+        let squeeze = ForceRequest::<1> {
+            force_n: Some(SVector::from([1e2])),
+            age_s: 0.0,
+            permitted: true,
+            ..ForceRequest::default()
+        };
+        let held = (0..100).map(|_| gripper.step(&squeeze).0.x).last().unwrap();
+        assert!((held - 4.0).abs() < 1e-12, "a held grip is felt, up to the ceiling: {held}");
+        let mut torque = Clocked::<3>::new(ChainSettings::torque(0.4));
+        let twist = (0..100).map(|_| torque.step(&request(Vector3::x())).0.norm()).last().unwrap();
+        assert!((twist - 0.1).abs() < 1e-12, "{twist} Nm");
+        let mut none = Clocked::<3>::new(ChainSettings::torque(0.0));
+        assert!(none.step(&request(Vector3::x())).0.norm() < 1e-15, "a device without torques is sent none");
+    }
+
+    #[test]
+    fn a_gain_above_one_takes_the_second_action() {
+        let settings = ChainSettings { gain: 2.0, gain_rate_per_s: 1e3, ..ChainSettings::default() };
+        let mut chain = Clocked::new(settings);
+        assert!((chain.0.settings().gain - 1.0).abs() < 1e-12);
+        let felt = |chain: &mut Clocked<3>| (0..20).map(|_| chain.step(&request(Vector3::x())).0.x).last().unwrap();
+        chain.0.set_ordinary_gain(2.0);
+        assert!((felt(&mut chain) - 1.0).abs() < 1e-12);
+        chain.0.set_gain_above_one(2.0);
+        assert!((felt(&mut chain) - 2.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_late_tick_allows_no_larger_step() {
+        let mut chain = SafetyChain::new(ChainSettings::default(), 1e-3);
+        let asked = |t_s| ForceRequest { t_s, ..request(Vector3::z() * 3.0) };
+        let mut last_n = chain.step(&asked(0.0)).0.z;
+        for t_s in [1e-3, 1.4e-3, 8e-3, 8e-3, 7e-3, 9e-3] {
+            let now_n = chain.step(&asked(t_s)).0.z;
+            assert!(now_n >= last_n && now_n - last_n <= 0.5 + 1e-12, "at {t_s} s: from {last_n} to {now_n} N");
+            last_n = now_n;
+        }
+        assert!((last_n - 2.2).abs() < 1e-9, "0.5 N for each period that passed, 0.2 N for the early tick: {last_n}");
+    }
+
+    /// Force (N), age (s), speed (m/s), permission, gain, and the time since the last request (s).
+    type RequestedForce = ([f64; 3], f64, f64, bool, f64, f64);
+
+    fn any_request() -> impl Strategy<Value = RequestedForce> {
+        let number = || prop_oneof![-20.0..20.0f64, prop::num::f64::ANY];
+        let spacing_s = prop_oneof![4 => Just(1e-3), 4 => 0.0..6e-3f64, 1 => prop::num::f64::ANY];
+        (prop::array::uniform3(number()), number(), number(), any::<bool>(), 0.0..5.0f64, spacing_s)
+    }
+
+    proptest! {
+        #[test]
+        fn no_sequence_of_requests_at_any_spacing_breaches_ceiling_or_slew(
+            requests in prop::collection::vec(any_request(), 1..200),
+        ) {
+            let settings = ChainSettings::default();
+            let mut chain = SafetyChain::new(settings, 1e-3);
+            let mut last = Vector3::<f64>::zeros();
+            let mut last_gain = 1.0;
+            let mut t_s = 0.0;
+            let mut last_s = -1e-3;
+            for (force, age_s, speed_m_s, permitted, gain, spacing_s) in requests {
+                chain.set_gain_above_one(gain);
+                let force = Vector3::from(force);
+                t_s = if f64::is_finite(t_s) { t_s + spacing_s } else { 0.0 };
+                let hand_m = Some(force * 1e-4);
+                let asked = ForceRequest { t_s, force_n: Some(force), age_s, speed_m_s, hand_m, permitted, hand_age_s: 0.0 };
+                let (now, report) = chain.step(&asked);
+                prop_assert!(now.iter().all(|f| f.is_finite()));
+                prop_assert!(now.norm() <= settings.ceiling_n * (1.0 + 1e-12));
+                let change = (now - last).norm();
+                prop_assert!(now.norm() == 0.0 || change <= 0.5 * (1.0 + 1e-9), "change {}", change);
+                let ramp = 2.0 * f64::max(t_s - last_s, 0.0);
+                prop_assert!((report.gain - last_gain).abs() <= ramp * (1.0 + 1e-9) + 2.001e-3);
+                last = now;
+                last_gain = report.gain;
+                last_s = if f64::is_finite(t_s) { t_s } else { last_s };
+            }
+        }
+    }
+}

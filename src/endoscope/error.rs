@@ -1,0 +1,120 @@
+//! Why there is no image: each cause with its remedy.
+
+use std::io::{self, ErrorKind};
+
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum EndoscopeError {
+    #[error("no response from {place}")]
+    NobodyListens { place: String },
+    #[error("{place} cannot be reached")]
+    Unreachable { place: String },
+    #[error("unknown host name in {place}")]
+    NoSuchName { place: String },
+    #[error("{place} answers with the status {status}")]
+    Refused { place: String, status: u16 },
+    #[error("{place} sends {found}, not {wanted}")]
+    OtherFormat { place: String, found: String, wanted: &'static str },
+    /// The response is not HTTP or exceeds a limit.
+    #[error("{place} sends an unreadable response: {reason}")]
+    Unreadable { place: String, reason: String },
+    #[error("{place} is open but sends nothing")]
+    Silent { place: String },
+    #[error("{place} closed the connection")]
+    Closed { place: String },
+    #[error("{path} does not exist")]
+    NoCamera { path: String },
+    #[error("{path} is in use by another program")]
+    Busy { path: String },
+    #[error("this user has no permission to use {path}")]
+    NoPermission { path: String },
+    #[error("{path} is not a camera")]
+    NotCamera { path: String },
+    #[error("{path} does not offer {wanted}, only {offered}")]
+    NoSuchFormat { path: String, wanted: String, offered: String },
+    #[error("{path} does not offer images of {}x{}, only {offered}", .wanted[0], .wanted[1])]
+    NoSuchSize { path: String, wanted: [u32; 2], offered: String },
+    /// The USB bus lacks bandwidth for the stream.
+    #[error("{path} lacks bandwidth on its USB bus")]
+    NoBandwidth { path: String },
+    #[error("{path} was unplugged")]
+    Unplugged { path: String },
+    #[error("{path} is open but sends no images")]
+    NoPictures { path: String },
+    #[error("{path}: {reason}")]
+    Camera { path: String, reason: String },
+    #[error("this program was built without {what}")]
+    NotBuilt { what: &'static str },
+    #[error("{path}: {reason}")]
+    File { path: String, reason: String },
+    #[error("{place}: {reason}")]
+    Other { place: String, reason: String },
+}
+
+impl EndoscopeError {
+    /// Returns the remedy, in one sentence.
+    pub fn cure(&self) -> &'static str {
+        match self {
+            Self::NobodyListens { .. } => {
+                "Correct the port in the rig file, or wait until the program that sends the picture has started."
+            }
+            Self::Unreachable { .. } => {
+                "Check the cable and that this computer has an address in the network of the endoscope."
+            }
+            Self::NoSuchName { .. } => "Correct the name in the rig file, or give an address in numbers.",
+            Self::Refused { status: 401 | 403, .. } => {
+                "Put user and password of the camera into its address in the rig file, as in http://USER:PASSWORD@HOST/PATH, or correct them."
+            }
+            Self::Refused { status: 404, .. } => "Correct the path in the rig file: the camera has no such page.",
+            Self::Refused { .. } => "Correct the address in the rig file, or start the camera again.",
+            Self::OtherFormat { wanted: "H.264", .. } => {
+                "Set the camera to H.264, or correct the path in the rig file."
+            }
+            Self::OtherFormat { .. } => "Set the camera to motion JPEG (MJPEG), or correct the path in the rig file.",
+            Self::Unreadable { .. } => {
+                "Correct the port in the rig file: another program answers there, or the camera does not keep to its protocol."
+            }
+            Self::Silent { .. } => "Switch the camera on, and check that it sends a picture to a browser.",
+            Self::Closed { .. } => "Nothing is to be done: it is opened again at once and then twice a second.",
+            Self::NoCamera { .. } => {
+                "Plug the camera in, or correct its path in the rig file: `nima devices` lists cameras."
+            }
+            Self::Busy { .. } => "Close the other program that shows this camera.",
+            Self::NoPermission { .. } => {
+                "Add this user to the group video (`sudo usermod -aG video $USER`), then log out and in."
+            }
+            Self::NotCamera { .. } => "Name a device that takes pictures: `nima devices` lists cameras.",
+            Self::NoSuchFormat { .. } => {
+                "Leave `format` out of the address; a camera without motion JPEG, NV12 and YUYV cannot be used."
+            }
+            Self::NoSuchSize { .. } => "Give a size that the camera has, in the address in the rig file.",
+            Self::NoBandwidth { .. } => {
+                "Plug it into its own USB port, without a hub, or set a smaller size or rate in the address."
+            }
+            Self::Unplugged { .. } => "Plug the camera in again: it is opened again by itself.",
+            Self::NoPictures { .. } => {
+                "Check that a signal arrives at the capture card, and the cable of the camera; then plug it in again."
+            }
+            Self::Camera { .. } => "Plug the camera in again; look into `dmesg` for what its driver says.",
+            Self::NotBuilt { .. } => {
+                "Build it with `cargo build --release --locked -p nima-console --features h264`, or let the camera send motion JPEG."
+            }
+            Self::File { .. } => "Put the file there, or correct its path in the rig file.",
+            Self::Other { .. } => "Check the camera and its address in the rig file.",
+        }
+    }
+
+    /// Converts an error of a connection.
+    pub(crate) fn of_network(place: &str, error: &io::Error) -> Self {
+        let place = place.to_owned();
+        match error.kind() {
+            ErrorKind::ConnectionRefused => Self::NobodyListens { place },
+            ErrorKind::TimedOut
+            | ErrorKind::WouldBlock
+            | ErrorKind::HostUnreachable
+            | ErrorKind::NetworkUnreachable
+            | ErrorKind::NetworkDown => Self::Unreachable { place },
+            ErrorKind::ConnectionReset | ErrorKind::ConnectionAborted | ErrorKind::BrokenPipe => Self::Closed { place },
+            _ => Self::Other { place, reason: error.to_string() },
+        }
+    }
+}

@@ -1,0 +1,210 @@
+//! Operations on a study, each written to its journal before the call returns.
+
+use std::{
+    io,
+    path::{Path, PathBuf},
+};
+
+use nima_score::Score;
+
+use super::{MEASURES, UserStudy};
+use crate::{
+    Condition, Label, Participant, QuestionnaireAnswers, StudyError, StudyEvent, StudyStep, TrialEnding, TrialId,
+    TrialMeasures, entry::measures, unblinding_risk,
+};
+
+/// A trial that has begun. Its `Debug` does not reveal the condition.
+#[derive(Debug)]
+pub struct RunningTrial {
+    participant: String,
+    trial: TrialId,
+    label: Option<Label>,
+    condition: Condition,
+    session: Option<PathBuf>,
+}
+
+impl RunningTrial {
+    pub const fn trial(&self) -> TrialId {
+        self.trial
+    }
+
+    /// The label of its condition; `None` in practice.
+    pub const fn label(&self) -> Option<Label> {
+        self.label
+    }
+
+    /// The feedback to the hand: only for the loop, must never be displayed.
+    pub const fn condition(&self) -> &Condition {
+        &self.condition
+    }
+
+    /// Path of its recording, if it is recorded. Encrypted when the trial is over.
+    pub fn session(&self) -> Option<&Path> {
+        self.session.as_deref()
+    }
+}
+
+impl UserStudy {
+    /// Begins the next trial; it is in the journal when this returns.
+    ///
+    /// # Errors
+    /// [`StudyError::NotNow`] if the next step is not a trial.
+    pub fn begin_trial(&mut self, participant: &str, simulated: bool, at: &str) -> Result<RunningTrial, StudyError> {
+        let who = self.plan.participant(participant)?.clone();
+        let next = self.state.next(&self.plan, &who);
+        let (trial, label) = next.trial().ok_or_else(|| not_now(participant, "a trial", &next))?;
+        let condition = self.condition(&who, trial, label).cloned();
+        let condition = condition.ok_or_else(|| StudyError::Refused("the assignment has no such label".to_owned()))?;
+        let session = self.plan.record.then(|| self.session_of(participant, trial)).transpose()?;
+        if !self.state.progress(participant).is_some_and(|progress| progress.began) {
+            self.write(at, StudyEvent::ParticipantBegan { participant: participant.to_owned() })?;
+        }
+        self.write(at, StudyEvent::TrialBegan { participant: participant.to_owned(), trial, label, simulated })?;
+        Ok(RunningTrial { participant: participant.to_owned(), trial, label, condition, session })
+    }
+
+    fn condition(&self, who: &Participant, trial: TrialId, label: Option<Label>) -> Option<&Condition> {
+        if let Some(label) = label {
+            return self.secret.condition(label);
+        }
+        // If practice has no fixed condition, it uses each in turn.
+        let turn = (trial.number as usize).checked_sub(1)? % who.order.len().max(1);
+        self.secret.practice().or_else(|| self.secret.condition(*who.order.get(turn)?))
+    }
+
+    /// Ends a trial with a result.
+    ///
+    /// # Errors
+    /// I/O errors.
+    pub fn end_trial(
+        &mut self,
+        running: RunningTrial,
+        ending: TrialEnding,
+        score: &Score,
+        at: &str,
+    ) -> Result<(), StudyError> {
+        let is_reported = self.state.is_open(&self.plan);
+        let (telling, report): (TrialMeasures, TrialMeasures) =
+            measures(score).into_iter().partition(|(key, _)| !is_reported && unblinding_risk::tells(key));
+        let withheld = (!telling.is_empty()).then(|| {
+            let text = serde_json::to_vec(&telling).map_err(io::Error::from)?;
+            self.key.seal(MEASURES, &text)
+        });
+        let withheld = withheld.transpose().map_err(StudyError::io(&self.folder))?;
+        let session = running.session.as_deref().filter(|path| path.is_file());
+        let session = session.map(|path| self.put_away(path)).transpose()?;
+        let RunningTrial { participant, trial, .. } = running;
+        self.write(at, StudyEvent::TrialEnded { participant, trial, ending, measures: report, withheld, session })
+    }
+
+    /// Gives up a trial; the rule of the study determines the next step.
+    ///
+    /// # Errors
+    /// I/O errors.
+    pub fn abort_trial(&mut self, running: RunningTrial, why: &str, at: &str) -> Result<(), StudyError> {
+        if let Some(path) = running.session.as_deref().filter(|path| path.is_file()) {
+            self.put_away(path)?;
+        }
+        let RunningTrial { participant, trial, .. } = running;
+        self.write(at, StudyEvent::TrialAborted { participant, trial, why: why.to_owned() })
+    }
+
+    /// Records a break, even one that was not due.
+    ///
+    /// # Errors
+    /// [`StudyError::Refused`] if it was shorter than the study requires.
+    pub fn take_break(&mut self, participant: &str, seconds: f64, simulated: bool, at: &str) -> Result<(), StudyError> {
+        let next = self.next(participant)?;
+        if let StudyStep::Break { min_s } = next
+            && seconds < min_s
+        {
+            return Err(StudyError::Refused(format!(
+                "{participant}: the break has to last {min_s:.0} s, and it was {seconds:.0} s"
+            )));
+        }
+        if matches!(next, StudyStep::Running { .. }) || !seconds.is_finite() {
+            return Err(not_now(participant, "a break", &next));
+        }
+        self.write(at, StudyEvent::BreakTaken { participant: participant.to_owned(), seconds, simulated })
+    }
+
+    /// Records the answers to the next questionnaire.
+    ///
+    /// # Errors
+    /// [`StudyError::NotNow`] if it is not the next step, [`StudyError::Answers`] if the form does not allow an answer.
+    pub fn answer(
+        &mut self,
+        participant: &str,
+        answers: QuestionnaireAnswers,
+        simulated: bool,
+        at: &str,
+    ) -> Result<(), StudyError> {
+        let next = self.next(participant)?;
+        let StudyStep::Questionnaire { questionnaire, after } = next else {
+            return Err(not_now(participant, "a questionnaire", &next));
+        };
+        if questionnaire != answers.questionnaire() {
+            return Err(not_now(participant, answers.questionnaire().name(), &next));
+        }
+        answers.check().map_err(|why| StudyError::Answers { participant: participant.to_owned(), why })?;
+        self.write(at, StudyEvent::Answered { participant: participant.to_owned(), after, answers, simulated })
+    }
+
+    /// Excludes a participant, or one trial, from the analysis.
+    ///
+    /// # Errors
+    /// The trial has not been made.
+    pub fn exclude(&mut self, participant: &str, number: Option<u32>, why: &str, at: &str) -> Result<(), StudyError> {
+        self.plan.participant(participant)?;
+        if why.trim().is_empty() {
+            return Err(StudyError::Refused("an exclusion needs a reason".to_owned()));
+        }
+        self.write(at, StudyEvent::Excluded { participant: participant.to_owned(), number, why: why.to_owned() })
+    }
+
+    /// Records a note.
+    ///
+    /// # Errors
+    /// The participant does not exist.
+    pub fn note(&mut self, participant: Option<&str>, text: &str, at: &str) -> Result<(), StudyError> {
+        participant.map(|name| self.plan.participant(name)).transpose()?;
+        self.write(at, StudyEvent::Noted { participant: participant.map(str::to_owned), text: text.to_owned() })
+    }
+
+    /// Reveals the assignment, which is recorded. From then on the tables name the conditions.
+    ///
+    /// # Errors
+    /// [`StudyError::Refused`] without a name and a reason, in a study that is not blind, and the second time.
+    pub fn unblind(&mut self, who: &str, why: &str, at: &str) -> Result<(), StudyError> {
+        let refused = |why: String| Err(StudyError::Refused(why));
+        if who.trim().is_empty() || why.trim().is_empty() {
+            return refused("an unblinding needs a name and a reason".to_owned());
+        }
+        if !self.plan.blind {
+            return refused("the study is not blind: its conditions are known".to_owned());
+        }
+        if let Some(before) = &self.state.unblinding {
+            return refused(format!("the study was unblinded already, by {} at {}", before.who, before.at));
+        }
+        let [who, why] = [who, why].map(|text| text.trim().to_owned());
+        self.write(at, StudyEvent::Unblinded { who, why, commitment: self.plan.commitment.clone() })?;
+        self.tidy()
+    }
+
+    pub(super) fn write(&mut self, at: &str, event: StudyEvent) -> Result<(), StudyError> {
+        let Some(journal) = &mut self.journal else { return Err(StudyError::ReadOnly) };
+        // An entry that the state refuses must not be written: the journal could then no longer be read.
+        let mut state = self.state.clone();
+        let refused = |why: String| StudyError::Refused(why);
+        state
+            .take(&self.plan, &crate::JournalEntry { n: 0, at: at.to_owned(), event: event.clone() })
+            .map_err(refused)?;
+        journal.append(at, event)?;
+        self.state = state;
+        Ok(())
+    }
+}
+
+fn not_now(participant: &str, asked: &str, next: &StudyStep) -> StudyError {
+    StudyError::NotNow { participant: participant.to_owned(), asked: asked.to_owned(), next: next.to_string() }
+}

@@ -1,0 +1,248 @@
+//! A tap in the loop: all input of the loop in its order, and all output.
+//!
+//! Together with the loop's [`LoopOrigin`](crate::teleop::LoopOrigin) this is everything on which the loop depends, so that a
+//! session can be replayed to the bit. The loop's end of the tap neither waits nor allocates: ticks are copied into
+//! boxes that circulate between both ends. Entries that find no room are dropped; entries are numbered, so that the
+//! other end detects the gap.
+
+use std::{
+    sync::{
+        Arc,
+        atomic::{AtomicU64, Ordering},
+    },
+    thread,
+    time::{Duration, Instant},
+};
+
+use crossbeam_channel::{Receiver, Sender, TryRecvError, bounded, unbounded};
+
+use crate::{
+    messages::{Command, Event, Tick},
+    rig::{DeviceEvent, Inputs, Outputs, SIDES, Side},
+    teleop::{Calibrations, Timing},
+};
+
+/// Capacity in ticks between the loop and the reader of the tap; 2 s at 1 kHz.
+pub const TICKS_TAPPED_MAX: usize = 2048;
+/// Additional capacity for operations and events.
+const OTHERS_MAX: usize = 512;
+/// Polling period of the other end: a viewer over a network gets a tick that much later at most.
+const LOOK_EVERY: Duration = Duration::from_millis(3);
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Operation {
+    /// [`Loop::obey`](crate::teleop::Loop::obey).
+    Command {
+        command: Command,
+        /// Loop time of the command, s.
+        t_s: f64,
+    },
+    /// [`Loop::notice`](crate::teleop::Loop::notice).
+    Device(DeviceEvent),
+    /// [`Loop::suspend_calibrations`](crate::teleop::Loop::suspend_calibrations).
+    Suspend(Side),
+    /// [`Loop::exchange_force_path`](crate::teleop::Loop::exchange_force_path), with a path created from these
+    /// calibrations. The loop refuses it while the drives of the side are on.
+    Calibrations {
+        side: Side,
+        /// Number of the calibrations in [`TapEnd::calibrations`].
+        number: u64,
+    },
+    /// [`Loop::notice_stall`](crate::teleop::Loop::notice_stall).
+    Stall { silent_s: f64, t_s: f64 },
+}
+
+#[derive(Clone, Debug)]
+pub struct TickRecord {
+    pub timing: Timing,
+    pub inputs: [Option<Inputs>; SIDES],
+    pub outputs: [Outputs; SIDES],
+    pub ticks: [Option<Tick>; SIDES],
+}
+
+impl TickRecord {
+    const NOTHING: Self = Self {
+        timing: Timing { now_s: 0.0, wake_s: 0.0, work_s: 0.0, sample_to_force_s: None, missed_now: 0 },
+        inputs: [None; SIDES],
+        outputs: [Outputs::SAFE; SIDES],
+        ticks: [None; SIDES],
+    };
+}
+
+#[derive(Debug)]
+pub enum TapPayload {
+    Operation(Operation),
+    /// An event that the loop reported in the following tick.
+    Event(Event),
+    /// A tick of the loop. Return it with [`TapEnd::give_back`].
+    Stepped(Box<TickRecord>),
+}
+
+/// An entry, numbered from 0 without gaps as long as nothing is dropped.
+#[derive(Debug)]
+pub struct TapEntry {
+    pub number: u64,
+    pub passed: TapPayload,
+}
+
+#[derive(Debug)]
+pub struct Tap {
+    entries: Sender<TapEntry>,
+    spare: Receiver<Box<TickRecord>>,
+    /// Boxes that have not been used yet. Circulating boxes are taken first, because they are still in the processor's
+    /// caches.
+    reserve: Vec<Box<TickRecord>>,
+    /// A box whose entry found no room: it is kept, because freeing it here would call the allocator.
+    kept: Option<Box<TickRecord>>,
+    offered: Arc<AtomicU64>,
+    waits: bool,
+    filing: CalibrationFiler,
+}
+
+/// Passes on the calibrations that other threads prepare for the loop.
+#[derive(Clone, Debug)]
+pub(super) struct CalibrationFiler {
+    next: Arc<AtomicU64>,
+    calibrations: Sender<(u64, Calibrations)>,
+}
+
+#[derive(Debug)]
+pub struct TapEnd {
+    pub entries: Receiver<TapEntry>,
+    calibrations: Receiver<(u64, Calibrations)>,
+    spare: Sender<Box<TickRecord>>,
+    offered: Arc<AtomicU64>,
+}
+
+/// Creates both ends of a tap. All memory is allocated and touched here.
+pub fn tap() -> (Tap, TapEnd) {
+    let (entries, entries_out) = bounded(TICKS_TAPPED_MAX + OTHERS_MAX);
+    // The loop may hold one more box.
+    let (spare, spare_out) = bounded(TICKS_TAPPED_MAX + 1);
+    let reserve = (0..TICKS_TAPPED_MAX).map(|_| Box::new(TickRecord::NOTHING)).collect();
+    touch(&entries, &entries_out);
+    let offered = Arc::<AtomicU64>::default();
+    let (file, filed) = unbounded();
+    let filing = CalibrationFiler { next: Arc::default(), calibrations: file };
+    let tap =
+        Tap { entries, spare: spare_out, reserve, kept: None, offered: Arc::clone(&offered), waits: false, filing };
+    (tap, TapEnd { entries: entries_out, calibrations: filed, spare, offered })
+}
+
+/// Writes once to every slot of the queue, so that no tick causes a page fault.
+fn touch(into: &Sender<TapEntry>, out: &Receiver<TapEntry>) {
+    let nothing = || Operation::Suspend(Side::Right);
+    while into.try_send(TapEntry { number: 0, passed: TapPayload::Operation(nothing()) }).is_ok() {}
+    out.try_iter().for_each(drop);
+}
+
+impl Tap {
+    /// Makes the loop wait while there is no room; for the virtual clock, on which nothing is late.
+    #[must_use]
+    pub(super) fn waiting(self) -> Self {
+        Self { waits: true, ..self }
+    }
+
+    pub(super) fn filing(&self) -> CalibrationFiler {
+        self.filing.clone()
+    }
+
+    pub(super) fn operation(&mut self, operation: Operation) {
+        self.offer(TapPayload::Operation(operation));
+    }
+
+    pub fn tick<'a>(
+        &mut self,
+        events: impl Iterator<Item = &'a Event>,
+        timing: &Timing,
+        inputs: &[Option<Inputs>; SIDES],
+        outputs: &[Outputs; SIDES],
+        ticks: &[Option<Tick>; SIDES],
+    ) {
+        for event in events {
+            self.offer(TapPayload::Event(*event));
+        }
+        let Some(mut stepped) = self.spare() else {
+            // Dropped: the number is skipped.
+            self.number();
+            return;
+        };
+        stepped.timing = *timing;
+        stepped.inputs = *inputs;
+        stepped.outputs = *outputs;
+        stepped.ticks = *ticks;
+        self.offer(TapPayload::Stepped(stepped));
+    }
+
+    fn spare(&mut self) -> Option<Box<TickRecord>> {
+        let spare = self.kept.take().or_else(|| self.spare.try_recv().ok()).or_else(|| self.reserve.pop());
+        spare.or_else(|| if self.waits { self.spare.recv().ok() } else { None })
+    }
+
+    fn number(&self) -> u64 {
+        // Only this thread counts.
+        self.offered.fetch_add(1, Ordering::Release)
+    }
+
+    fn offer(&mut self, passed: TapPayload) {
+        let entry = TapEntry { number: self.number(), passed };
+        let back = if self.waits {
+            self.entries.send(entry).err().map(|error| error.0)
+        } else {
+            self.entries.try_send(entry).err().map(crossbeam_channel::TrySendError::into_inner)
+        };
+        if let Some(TapEntry { passed: TapPayload::Stepped(stepped), .. }) = back {
+            self.kept = Some(stepped);
+        }
+    }
+}
+
+impl CalibrationFiler {
+    /// Passes on these calibrations; returns their number.
+    pub(super) fn file(&self, calibrations: &Calibrations) -> u64 {
+        let number = self.next.fetch_add(1, Ordering::Relaxed);
+        // Fails only when the reader of the tap is gone.
+        self.calibrations.send((number, calibrations.clone())).ok();
+        number
+    }
+}
+
+#[derive(Debug)]
+pub enum TapItem {
+    Entry(TapEntry),
+    Nothing,
+    End,
+}
+
+impl TapEnd {
+    /// Returns the next entry, or nothing if none arrives within this time.
+    ///
+    /// Polls now and then. A thread that slept until the next entry would have to be woken by the loop, which costs a
+    /// tick more than all the rest of the tap.
+    pub fn next(&self, patience: Duration) -> TapItem {
+        let begin = Instant::now();
+        loop {
+            match self.entries.try_recv() {
+                Ok(entry) => return TapItem::Entry(entry),
+                Err(TryRecvError::Disconnected) => return TapItem::End,
+                Err(TryRecvError::Empty) if begin.elapsed() >= patience => return TapItem::Nothing,
+                Err(TryRecvError::Empty) => thread::sleep(LOOK_EVERY),
+            }
+        }
+    }
+
+    pub fn give_back(&self, stepped: Box<TickRecord>) {
+        self.spare.try_send(stepped).ok();
+    }
+
+    /// Returns the calibrations passed on since the last call, with their numbers. Calibrations to which an operation
+    /// refers arrive before it.
+    pub fn calibrations(&self) -> impl Iterator<Item = (u64, Calibrations)> {
+        self.calibrations.try_iter()
+    }
+
+    /// Returns the number of entries that the loop has offered so far, including dropped ones.
+    pub fn offered(&self) -> u64 {
+        self.offered.load(Ordering::Acquire)
+    }
+}

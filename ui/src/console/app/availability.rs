@@ -1,0 +1,224 @@
+//! Availability of each command for the person at this screen, with the reason if it is not available.
+
+use nima_machine::messages::LoopState;
+
+use super::ConsoleApp;
+use crate::console::{
+    commands::{Action, Availability},
+    roles::{Panels, Role},
+    settings::ImageSettings,
+    text,
+    tiles::Panel,
+    wizards::WizardKind,
+};
+
+/// Content below the top bar.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum ActivePage {
+    Trial,
+    Past,
+    List,
+    Check,
+    Listing,
+    Wizard,
+    Start,
+    OfExtra,
+    Monitor,
+}
+
+impl ConsoleApp {
+    pub(super) fn page(&self) -> ActivePage {
+        if self.in_trial() {
+            ActivePage::Trial
+        } else if self.past.is_some() {
+            ActivePage::Past
+        } else if self.list.is_open {
+            ActivePage::List
+        } else if self.checking.is_open() {
+            ActivePage::Check
+        } else if self.listing.is_open() {
+            ActivePage::Listing
+        } else if self.wizards.open.is_some() {
+            ActivePage::Wizard
+        } else if self.start.is_open {
+            ActivePage::Start
+        } else if self.is_page_shown() {
+            ActivePage::OfExtra
+        } else {
+            ActivePage::Monitor
+        }
+    }
+
+    /// A person guides the arm, or a study is open: the views are locked, and the arm cannot be engaged.
+    pub(super) fn is_calibrating(&self) -> bool {
+        self.wizards.open.is_some() || self.checking.is_open() || self.is_held() && !self.in_trial()
+    }
+
+    pub(super) fn may(&self, action: Action) -> Availability {
+        if self.in_trial() && !action.is_of_participant() {
+            return Availability::Absent;
+        }
+        match action {
+            Action::Engage | Action::Release => self.may_step(action),
+            Action::View(_) => {
+                Availability::unless(self.is_calibrating().then_some(text::roles::SWITCH_DISABLED_HOVER.get()))
+            }
+            Action::Rig | Action::Sessions | Action::Studies => self.may_turn_to(action),
+            Action::Acknowledge => {
+                let is_quiet = !self.top_bar.alarms.log.has_unseen();
+                Availability::unless(is_quiet.then_some(text::commands::NO_ALARM.get()))
+            }
+            Action::Mark => Availability::unless(self.past.is_some().then_some(text::playback::BLOCKED.get())),
+            Action::Keep => {
+                let nothing = self.sessions.shown().is_none();
+                Availability::unless(nothing.then_some(text::commands::NOTHING_RECORDED.get()))
+            }
+            Action::Undo => {
+                Availability::unless((!self.history.can_undo()).then_some(text::commands::NOTHING_TO_UNDO.get()))
+            }
+            Action::Redo => {
+                Availability::unless((!self.history.can_redo()).then_some(text::commands::NOTHING_TO_REDO.get()))
+            }
+            Action::PlainPicture => {
+                Availability::unless(self.shows_image_plain().then_some(text::commands::IS_PLAIN.get()))
+            }
+            Action::Panel(_) | Action::ResetLayout => Availability::Can.only_if(self.role() == Role::Technician),
+            Action::Check | Action::Calibrations | Action::Calibrate(_) | Action::CloseWizard => {
+                self.may_calibrate(action)
+            }
+            Action::Pause | Action::LastTenSeconds | Action::Draws(_) => self.may_draw(action),
+            action if action.is_of_part() => self.may_in_part(action),
+            Action::LeavePast => Availability::Can.only_if(self.past.is_some()),
+            Action::Play | Action::Step(_) => {
+                let opening = self.past.as_ref().is_some_and(|past| past.live.is_none());
+                Availability::unless(opening.then_some(text::playback::OPENING.get())).only_if(self.past.is_some())
+            }
+            _ => Availability::Can,
+        }
+    }
+
+    fn may_step(&self, action: Action) -> Availability {
+        let state = self.live.state();
+        let latched = state.is_latched();
+        let why = match (action, state) {
+            (Action::Release, _) if !latched => Some(text::commands::NOT_STOPPED.get()),
+            (Action::Engage, _) if latched => Some(text::commands::RELEASE_FIRST.get()),
+            (Action::Engage, LoopState::Disconnected) => text::calibrations::closed(state),
+            (Action::Engage, LoopState::Engaged | LoopState::Ready | LoopState::Clutched) => {
+                Some(text::commands::IS_ENGAGED.get())
+            }
+            _ if self.past.is_some() => Some(text::playback::BLOCKED.get()),
+            (Action::Engage, _) if self.is_calibrating() => Some(text::start::OPEN_DISABLED_HOVER.get()),
+            _ => None,
+        };
+        Availability::unless(why)
+    }
+
+    fn may_turn_to(&self, action: Action) -> Availability {
+        let why = if self.past.is_some() {
+            Some(text::playback::BLOCKED.get())
+        } else if self.is_held() && action == Action::Studies {
+            Some(text::commands::STUDY_IS_OPEN.get())
+        } else if self.is_calibrating() {
+            Some(text::start::OPEN_DISABLED_HOVER.get())
+        } else {
+            // The page itself shows its progress.
+            let may_look = action == Action::Rig && !self.start.is_open;
+            (self.starting.is_some() && !may_look).then_some(text::commands::IS_STARTING.get())
+        };
+        Availability::unless(why)
+    }
+
+    /// As on the Calibration panel, which is in the Technician view and next to the wizards.
+    fn may_calibrate(&self, action: Action) -> Availability {
+        let page = self.page();
+        let is_beside = matches!(page, ActivePage::Check | ActivePage::Listing | ActivePage::Wizard);
+        if action == Action::CloseWizard {
+            return Availability::Can.only_if(is_beside);
+        }
+        let rig = &self.live.rig;
+        let (is_open, is_offered) = match action {
+            Action::Check => (page == ActivePage::Check, true),
+            Action::Calibrations => (page == ActivePage::Listing, true),
+            Action::Calibrate(which) => {
+                let is_open = page == ActivePage::Wizard && self.wizards.open == Some(which);
+                let is_offered = match which {
+                    WizardKind::Camera => rig.endoscope.is_some(),
+                    _ => rig.devices.is_some() || which.scene().is_some(),
+                };
+                (is_open, is_offered)
+            }
+            _ => (false, false),
+        };
+        let closed = text::calibrations::closed(self.live.state()).filter(|_| action != Action::Calibrations);
+        let why = is_open.then_some(text::calibrations::IS_OPEN.get()).or(closed);
+        let why = self.past.is_some().then_some(text::playback::BLOCKED.get()).or(why);
+        let of_technician = self.role() == Role::Technician && matches!(page, ActivePage::Monitor | ActivePage::Past);
+        Availability::unless(why).only_if(is_offered && (is_beside || of_technician))
+    }
+
+    /// Traces and field are in the Technician and Demo views.
+    fn may_draw(&self, action: Action) -> Availability {
+        let is_here = self.role() != Role::Surgeon && self.panels_in_view().is_some();
+        let of_technician = self.role() == Role::Technician;
+        let why = match action {
+            Action::Draws(_) => {
+                let seen = self.panels_in_view().is_some_and(|panels| panels.scene.is_seen);
+                (!seen).then_some(text::commands::FIELD_IS_HIDDEN.get())
+            }
+            _ if of_technician && !self.settings.now.layout.is_open(Panel::Traces) => {
+                Some(text::commands::PANEL_IS_CLOSED.get())
+            }
+            _ => None,
+        };
+        Availability::unless(why).only_if(is_here)
+    }
+
+    /// As the part of the window reads its keys.
+    fn may_in_part(&self, action: Action) -> Availability {
+        if matches!(action, Action::HideForces | Action::Lens) {
+            let eyes = self.panels_in_view().map(|panels| &panels.eyes);
+            let eyes = eyes.filter(|eyes| eyes.is_on() && self.role() == Role::Surgeon);
+            let has = eyes.is_some_and(|eyes| action == Action::HideForces || eyes.has_two_lenses());
+            return Availability::Can.only_if(has);
+        }
+        let scene = &self.live.scene;
+        let view = &self.panels.scene;
+        let is_searched = scene.is_searched();
+        let is_offered = match action {
+            Action::OtherHand => self.live.is_bimanual(),
+            Action::Jaws => scene.objects.is_some(),
+            Action::MarkPlace | Action::EndTrial => is_searched,
+            Action::BeginTrial => is_searched || scene.wire.is_some(),
+            _ => true,
+        };
+        let runs = matches!(self.live.state(), LoopState::Idle | LoopState::Engaged);
+        let why = if !view.is_seen {
+            Some(text::commands::FIELD_IS_HIDDEN.get())
+        } else if !runs {
+            Some(text::commands::NOT_NOW.get())
+        } else {
+            (action != Action::Drive && !view.is_led()).then_some(text::commands::DRIVE_FIRST.get())
+        };
+        let is_here = match self.page() {
+            ActivePage::Trial => true,
+            ActivePage::Monitor => self.role() != Role::Surgeon || view.is_led() && view.is_seen,
+            _ => false,
+        };
+        Availability::unless(why).only_if(is_offered && is_here)
+    }
+
+    /// The panels of the views on the screen: of the machine, or of the recorded session.
+    fn panels_in_view(&self) -> Option<&Panels> {
+        match (self.page(), &self.past) {
+            (ActivePage::Past, Some(past)) if past.beside.is_none() && !self.list.is_open => Some(&past.panels),
+            (ActivePage::Monitor, _) => Some(&self.panels),
+            _ => None,
+        }
+    }
+
+    fn shows_image_plain(&self) -> bool {
+        let image = self.settings.now.image;
+        image == ImageSettings { forces_of_now: image.forces_of_now, ..ImageSettings::default() }
+    }
+}

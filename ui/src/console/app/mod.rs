@@ -1,0 +1,440 @@
+//! The window: receives data from the loop, lays out the panels, and sends the operator's commands.
+
+mod availability;
+mod calibrating;
+mod checking;
+mod connecting;
+mod dispatch;
+mod frame_rate;
+mod listing;
+mod opening;
+mod paging;
+mod playback_mode;
+mod starting;
+mod views;
+mod visible_state;
+
+use std::{
+    path::PathBuf,
+    sync::Arc,
+    time::{Duration, Instant},
+};
+
+use eframe::glow;
+use egui::{Frame, Id, Margin, Panel, Ui, UiBuilder};
+use nima_machine::{
+    config::RigConfig,
+    messages::Command,
+    rig::Side,
+    runtime::{self, Assembly, LoopHandle, LoopStartError},
+};
+use nima_simulation::{ObjectFeed, SimulationPlan, scene::Scene, screen::Screen};
+
+use super::{
+    ConsoleOptions,
+    active_calibrations::ActiveCalibrations,
+    alarms::judge,
+    canvas::{Canvas, Surface, renderer_of},
+    commands::{Action, Availability},
+    frames::FrameMeter,
+    help::Help,
+    keys,
+    live::LiveState,
+    loop_connection::{LoopConnection, LoopMessage},
+    menu,
+    outbox::Outbox,
+    page::Page,
+    palette::CommandPalette,
+    panels::{TopBarState, TracesState, top_bar_ui},
+    playback::{Playback, list::SessionList},
+    reader::ScreenReader,
+    roles::Panels,
+    run_log::RunLog,
+    scene3d::SceneView,
+    screenshots::ScreenshotRun,
+    sessions::ConsoleSessions,
+    settings::SettingsStore,
+    start::{RigChoice, StartPage},
+    theme,
+    undo::LookHistory,
+    wizards::Wizards,
+};
+use crate::language::{self, Language};
+use crate::{
+    console::text,
+    emulators::Emulators,
+    extras::{self, Extra},
+    link::{RemoteLine, Reopen},
+    objects::{self, OfSimulation},
+};
+use checking::CheckPage;
+use listing::Listing;
+use starting::StartingRig;
+
+/// Antialiasing in 3-D is switched off if the median time between frames is longer than this (fewer than 26 frames per
+/// second), ...
+const SLOW_MS: f64 = 38.0;
+/// ... after the window has had this time to warm up.
+const WARM_UP: Duration = Duration::from_secs(4);
+
+#[derive(Debug)]
+pub struct ConsoleApp {
+    door: Option<LoopConnection>,
+    /// The emulators of an emulated rig; they end after the loop.
+    emulators: Option<Emulators>,
+    /// The emulators' technician, who follows the wizards' instructions.
+    reader: Option<ScreenReader>,
+    running: RigChoice,
+    starting: Option<StartingRig>,
+    start: StartPage,
+    /// Speed of loops in simulated time, as a multiple of real time.
+    simulated_speed: Option<f64>,
+    /// Opens the link to the machine with the arm, if it is another machine.
+    reopen: Option<Reopen>,
+    /// Source of a simulated rig's objects.
+    objects: Option<ObjectFeed>,
+    /// The program that starts emulators: this one, except in a test.
+    program: Option<PathBuf>,
+    /// Wakes the window from another thread.
+    ctx: egui::Context,
+    live: LiveState,
+    outbox: Outbox,
+    top_bar: TopBarState,
+    panels: Panels,
+    settings: SettingsStore,
+    help: Help,
+    palette: CommandPalette,
+    history: LookHistory,
+    photographer: Option<ScreenshotRun>,
+    wizards: Wizards,
+    checking: CheckPage,
+    listing: Listing,
+    list: SessionList,
+    /// The page of an extra that may reserve the machine.
+    page: Option<Box<dyn Page>>,
+    /// A recorded session that is shown instead of the machine.
+    past: Option<Playback>,
+    active: ActiveCalibrations,
+    diary: RunLog,
+    sessions: ConsoleSessions,
+    /// The scene that was shown before a wizard changed it.
+    watched: Option<Scene>,
+    /// The last screen that the emulated rig's technician has read.
+    read: Option<Screen>,
+    options: ConsoleOptions,
+    surface: Option<Arc<Surface>>,
+    renderer: String,
+    meter: Option<FrameMeter>,
+    opened: Instant,
+    framed: Instant,
+    /// Time at which a side was last engaged or a wizard was open.
+    moved: Instant,
+    /// Time at which the waiting ticks and events were last read.
+    taken: Instant,
+    shown: bool,
+    /// Few frames are drawn, because nothing is engaged.
+    calm: bool,
+}
+
+/// Starts the loop of a plan, recorded if sessions are recorded.
+pub(crate) fn start_recorded(
+    plan: &SimulationPlan,
+    sessions: &mut ConsoleSessions,
+    line: Option<Box<dyn RemoteLine>>,
+) -> Result<StartedLoop, LoopStartError> {
+    let (assembly, mut watched) = plan.watched_assembly()?;
+    let assembly = Assembly { tap: sessions.begin(plan), ..assembly };
+    if let Some(watched) = watched.as_mut().and_then(ObjectFeed::another) {
+        sessions.watch(OfSimulation::source(plan, watched));
+    }
+    let handle = runtime::start(match line {
+        Some(line) => line.join(assembly),
+        None => assembly,
+    })?;
+    Ok((handle, watched))
+}
+
+/// A running loop, and the source of a simulated rig's objects.
+pub(crate) type StartedLoop = (LoopHandle, Option<ObjectFeed>);
+
+impl ConsoleApp {
+    /// Creates the console for a running loop. Sets fonts and style of the context; draws in 3-D if OpenGL is available.
+    pub fn new(cc: &eframe::CreationContext<'_>, handle: LoopHandle, rig: RigConfig, scene: Scene) -> Self {
+        theme::apply(&cc.egui_ctx);
+        let now = Instant::now();
+        let surface = cc.gl.as_deref().and_then(Surface::where_it_pays);
+        if let Some(surface) = &surface {
+            cc.egui_ctx.add_plugin(Canvas::new(Arc::clone(surface), || theme::now().background));
+        }
+        let active = ActiveCalibrations::load(None, &rig, &scene);
+        let mut live = LiveState::new(rig, scene);
+        live.rough_edges = surface.is_some();
+        Self {
+            renderer: cc.gl.as_deref().map(renderer_of).unwrap_or_default(),
+            meter: None,
+            door: Some(door_of(handle, &cc.egui_ctx)),
+            emulators: None,
+            reader: None,
+            running: RigChoice::default(),
+            starting: None,
+            start: StartPage::new(RigChoice::default()),
+            simulated_speed: None,
+            reopen: None,
+            objects: None,
+            program: None,
+            ctx: cc.egui_ctx.clone(),
+            active,
+            diary: RunLog::default(),
+            sessions: ConsoleSessions::default(),
+            wizards: Wizards::default(),
+            checking: CheckPage::default(),
+            listing: Listing::default(),
+            list: SessionList::default(),
+            page: extras::part(Extra::page).map(|page| page()),
+            past: None,
+            watched: None,
+            read: None,
+            live,
+            surface,
+            outbox: Outbox::default(),
+            top_bar: TopBarState::default(),
+            panels: Panels { scene: SceneView::new(cc.gl.as_deref()), ..Panels::default() },
+            settings: SettingsStore::default(),
+            help: Help::default(),
+            palette: CommandPalette::default(),
+            history: LookHistory::default(),
+            photographer: None,
+            options: ConsoleOptions::default(),
+            opened: now,
+            framed: now,
+            moved: now,
+            taken: now,
+            shown: false,
+            calm: false,
+        }
+    }
+
+    /// Reads all data that the loop has sent.
+    fn take_in(&mut self) {
+        if let Some(moment) = self.objects.as_ref().and_then(ObjectFeed::newest) {
+            let scene = &self.live.scene;
+            let has_jaws = Side::ALL.map(|side| scene.objects.is_some() && scene.has(&self.live.rig, side));
+            self.live.objects = Some(objects::objects(&moment, has_jaws));
+            self.live.training = Some(moment.training);
+        }
+        let Some(door) = &self.door else { return };
+        self.taken = Instant::now();
+        let rate_hz = self.live.rig.rate_hz;
+        let wizards = &mut self.wizards;
+        let active = &mut self.active;
+        let diary = &mut self.diary;
+        let eyes = &mut self.panels.eyes;
+        let calibrated = active.side();
+        let mut check = self.checking.run_mut();
+        let mut run = self.page.as_mut().and_then(|page| page.run_mut());
+        self.live.take_in(door, |news| {
+            if let Some(check) = &mut check {
+                check.take(news);
+            }
+            let LoopMessage::Tick(tick) = news else { return };
+            if tick.side == calibrated {
+                wizards.tick(tick, rate_hz);
+            }
+            active.watch(tick);
+            eyes.note(tick);
+            match &mut run {
+                // The diary has the mode.
+                Some(run) => run.tick(tick),
+                None if tick.side == Side::Right => diary.tick(tick),
+                None => {}
+            }
+        });
+        if active.meet(door.handle(), &self.live.rig)[calibrated.index()] {
+            self.forget_what_was_taken();
+        }
+        self.live.bias_moved_n = self.active.bias_moved_n();
+    }
+
+    /// Ends the loop and restarts it idle: only the operator engages it. Not possible in a stop or a fault.
+    fn restart(&mut self, rig: RigConfig, scene: Scene) -> Result<(), String> {
+        rig.validate().and_then(|()| scene.validate()).map_err(|error| error.to_string())?;
+        self.take_in();
+        if let Some(why) = text::calibrations::closed(self.live.state()) {
+            return Err(why.to_owned());
+        }
+        // End the old loop first: a rig must have only one controller.
+        drop(self.door.take());
+        self.sessions.end();
+        self.start_loop(rig, scene)
+    }
+
+    /// Starts the loop of this rig, idle, after the old one has ended.
+    fn start_loop(&mut self, mut rig: RigConfig, scene: Scene) -> Result<(), String> {
+        let line = match &self.reopen {
+            Some(reopen) => reopen.open(&mut rig, &scene).map_err(|error| {
+                let cause = format!("{error:#}");
+                text::calibrations::not_started_again(&cause)
+            })?,
+            None => None,
+        };
+        let door = line.as_ref().map(|line| line.door());
+        self.active.bind(&rig, &scene);
+        let calibrations = self.active.calibrations(&rig);
+        let rig = self.active.with_checked(rig);
+        let plan = SimulationPlan { rig: rig.clone(), scene: scene.clone(), calibrations, engage: false };
+        let run = self.page.as_mut().and_then(|page| page.run_mut());
+        let started = match (run, self.simulated_speed) {
+            (Some(run), speed) => {
+                let audiences = self.sessions.blind_audiences(&plan, &run.name());
+                run.start(&plan, speed, (self.sessions.reel(), audiences))
+            }
+            (None, Some(speed)) => nima_simulation::start_watched(&plan, speed).map_err(|error| error.to_string()),
+            (None, None) => start_recorded(&plan, &mut self.sessions, line).map_err(|error| error.to_string()),
+        };
+        let started = started.map_err(|error| text::calibrations::not_started_again(&error));
+        let rough_edges = self.live.rough_edges;
+        self.live = LiveState::new(rig, scene);
+        self.live.rough_edges = rough_edges;
+        self.live.line = door;
+        self.panels.forces = TracesState::default();
+        self.history.adopt();
+        self.panels.devices.begin_anew();
+        self.panels.demo.begin_anew();
+        self.checking.forget();
+        self.outbox = Outbox::default();
+        let (handle, watched) = started?;
+        self.door = Some(door_of(handle, &self.ctx));
+        self.objects = watched;
+        self.leave_when_asked();
+        Ok(())
+    }
+
+    /// Applies the choice of the Trade-off panel.
+    fn apply_tradeoff(&mut self, rig: RigConfig) {
+        let outcome = self.restart(rig, self.live.scene.clone());
+        if let Some(tradeoff) = &mut self.panels.tradeoff {
+            tradeoff.restarted(outcome);
+        }
+    }
+
+    fn layout(&mut self, ui: &mut Ui) {
+        let bar = Frame::new().fill(theme::now().panel).inner_margin(Margin::symmetric(14, 0));
+        Panel::top("top_bar").exact_size(72.0).resizable(false).frame(bar).show(ui, |ui| {
+            let calibrating = self.is_calibrating();
+            let before = self.role();
+            self.live.engage_closed = match self.may(Action::Engage) {
+                Availability::Cannot(why) => Some(why),
+                Availability::Can | Availability::Absent => None,
+            };
+            self.top_bar.participant = self.run().map(|run| run.participant().to_owned());
+            self.top_bar.asked = self.checking.ask();
+            self.top_bar.past = self.past.is_some();
+            self.top_bar.can_undo = [self.history.can_undo(), self.history.can_redo()];
+            self.sessions.look_after();
+            self.top_bar.recorded = self.sessions.shown();
+            let live = &self.live;
+            let bar = &mut self.top_bar;
+            let settings = &mut self.settings.now;
+            top_bar_ui(ui, live, bar, &mut self.outbox, settings, calibrating);
+            let chosen = (self.role() != before).then_some(Action::View(self.role()));
+            if let Some(action) = self.top_bar.wanted.take().or(chosen) {
+                self.act(action, ui.ctx());
+            }
+        });
+        let signs = self.live.signs(self.outbox.stop_is_stuck(), self.sessions.trouble());
+        let loop_s = self.live.first_tick().map(|tick| tick.t_s);
+        self.top_bar.alarms.strip_ui(ui, &signs, loop_s, self.settings.now.sound);
+        let written = || judge(&self.live.signs(self.outbox.stop_is_stuck(), self.sessions.trouble()));
+        let written = language::with(Language::English, written);
+        self.sessions.notify(&self.live.marks_s, &self.top_bar.alarms.log, &written, loop_s);
+        let room = ui.available_rect_before_wrap();
+        // A separate id: an alarm that appears above must not end the drag of a slider.
+        ui.scope_builder(UiBuilder::new().scope_id(Id::unique("page")), |ui| self.page_layout(ui));
+        self.top_bar.alarms.list_ui(ui.ctx(), room);
+        self.settings.now.toured |= self.help.ui(ui.ctx(), room, !self.list.is_open);
+        self.welcome(ui.ctx(), room);
+        self.palette_ui(ui.ctx(), room);
+    }
+}
+
+impl eframe::App for ConsoleApp {
+    fn logic(&mut self, ctx: &egui::Context, _frame: &mut eframe::Frame) {
+        self.use_language();
+        if self.only_flashes(ctx) {
+            return;
+        }
+        // Also while the window is hidden, so that the queues stay empty and the history complete.
+        self.go_on_starting();
+        self.take_in();
+        self.ask();
+        self.go_on_checking();
+        self.go_on_with_page();
+    }
+
+    fn ui(&mut self, ui: &mut Ui, frame: &mut eframe::Frame) {
+        let ctx = ui.ctx().clone();
+        self.use_language();
+        self.measure(&ctx, frame);
+        // Not switched on again: a view that keeps changing its look would be worse.
+        let slow = self.opened.elapsed() > WARM_UP && self.live.figures.frame_ms[0] > SLOW_MS;
+        // Screenshots for the documents are always antialiased, however long that takes.
+        self.live.rough_edges = self.photographer.is_none() && (self.live.rough_edges || slow);
+        self.panels.scene.smooth = !self.live.rough_edges;
+        self.sessions.reel().rest(!self.settings.now.records_image);
+        self.panels.eyes.show_as(self.settings.now.image);
+        self.panels.eyes.serve(self.live.rig.endoscope.as_ref(), self.sessions.reel(), &ctx);
+        self.panels.devices.image = self.panels.eyes.report();
+        menu::apply(&ctx, &self.settings.now);
+        if keys::stop_pressed(&ctx) {
+            self.outbox.push(Command::Stop);
+            self.palette.close();
+        }
+        self.obey_commands(&ctx);
+        // The elapsed time: `stable_dt` is 1/60 s in every window that waits between its frames.
+        self.go_on_in_past(f64::from(ui.input(|input| input.unstable_dt)));
+        self.layout(ui);
+        if !self.start.is_open {
+            self.start.rest();
+        }
+        self.remember_look(&ctx);
+        self.settings.save();
+        if self.past.is_some() {
+            self.outbox.only_stop();
+        }
+        if self.live.line.is_some() {
+            self.outbox.without_delay();
+        }
+        self.outbox.flush(self.door.as_ref().map(LoopConnection::handle));
+        self.obey_options(&ctx);
+        self.rest(&ctx);
+        if let Some(meter) = &mut self.meter {
+            meter.end(self.framed.elapsed());
+        }
+    }
+
+    /// The background of the whole window: clearing is much cheaper than painting panels over it.
+    fn clear_color(&self, _visuals: &egui::Visuals) -> [f32; 4] {
+        theme::now().background.to_normalized_gamma_f32()
+    }
+
+    fn on_exit(&mut self, gl: Option<&glow::Context>) {
+        if let Some(gl) = gl {
+            self.panels.scene.destroy(gl);
+        }
+        if let Some(tradeoff) = &self.panels.tradeoff {
+            tradeoff.stop();
+        }
+        self.leave_page();
+        self.write_figures();
+        if let (Some(gl), Some(surface)) = (gl, &self.surface) {
+            surface.destroy(gl);
+        }
+    }
+}
+
+/// Connects to a loop that wakes the window of this context.
+fn door_of(handle: LoopHandle, ctx: &egui::Context) -> LoopConnection {
+    let ctx = ctx.clone();
+    // A short delay, because egui would draw two frames without one.
+    LoopConnection::new(handle, move || ctx.request_repaint_after(Duration::from_millis(1)))
+}

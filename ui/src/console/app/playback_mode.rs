@@ -1,0 +1,132 @@
+//! The console during playback: the list of sessions, and an open one.
+//!
+//! The machine keeps running, its alarms are shown and its stop works; no other control reaches it.
+
+use std::path::Path;
+
+use egui::{CentralPanel, Stroke, StrokeKind, Ui};
+
+use super::ConsoleApp;
+use crate::console::{
+    loop_connection::LoopConnection,
+    playback::{FRAME, Playback, bar_ui, both_ui, head_ui},
+    roles::role_ui,
+    text, theme,
+    widgets::weak,
+};
+
+impl ConsoleApp {
+    /// Shows this session; the machine keeps running.
+    #[must_use]
+    pub fn with_session(mut self, session: &Path) -> Self {
+        self.open_past(session);
+        self
+    }
+
+    /// The session on the screen, and its time, s.
+    pub fn past(&self) -> Option<(&Path, f64)> {
+        self.past.as_ref().map(|past| (past.path.as_path(), past.shown_s()))
+    }
+
+    /// The session that it is compared with, and its time, s.
+    pub fn past_beside(&self) -> Option<(&Path, f64)> {
+        let beside = self.past.as_ref()?.beside.as_ref().filter(|beside| beside.live.is_some())?;
+        Some((beside.path.as_path(), beside.shown_s()))
+    }
+
+    /// The recorded ticks on the screen, once all figures are replayed.
+    pub fn past_ticks(&self) -> Option<&[Option<nima_machine::messages::Tick>]> {
+        let past = self.past.as_ref().filter(|past| past.is_whole())?;
+        past.live.as_ref().map(|live| live.ticks.as_slice())
+    }
+
+    /// The recorded objects on the screen.
+    pub fn past_objects(&self) -> Option<&nima_session::objects::ObjectStates> {
+        self.past.as_ref()?.live.as_ref()?.objects.as_ref()
+    }
+
+    pub fn show_past(&mut self, t_s: f64) {
+        if let Some(past) = &mut self.past {
+            past.show(t_s);
+        }
+    }
+
+    /// Opens a session. First ends everything that the screen does to the machine automatically: a demonstration, or mouse
+    /// control.
+    pub(super) fn open_past(&mut self, session: &Path) {
+        self.panels.demo.leave(&mut self.outbox);
+        self.panels.scene.let_go(&mut self.outbox);
+        self.outbox.flush(self.door.as_ref().map(LoopConnection::handle));
+        self.start.is_open = false;
+        self.list.is_open = false;
+        self.past = Some(Playback::open(session, &self.ctx, self.panels.scene.twin()));
+    }
+
+    pub(super) fn close_past(&mut self) {
+        self.past = None;
+        self.list.is_open = false;
+    }
+
+    /// Advances playback by this time.
+    pub(super) fn go_on_in_past(&mut self, dt_s: f64) {
+        if let Some(past) = &mut self.past {
+            past.step(dt_s, self.live.state().permits().drives);
+        }
+    }
+
+    pub(super) fn toggle_list(&mut self) {
+        if self.list.is_open {
+            self.list.is_open = false;
+        } else {
+            self.start.is_open = false;
+            self.list.open(&self.ctx, self.settings.folder());
+        }
+    }
+
+    pub(super) fn list_layout(&mut self, ui: &mut Ui) {
+        if let Some(session) = self.list.ui(ui) {
+            self.open_past(&session);
+        }
+    }
+
+    /// The same views as for the machine, in a frame with its own colour.
+    pub(super) fn past_layout(&mut self, ui: &mut Ui) {
+        let Some(past) = &mut self.past else { return };
+        let room = ui.available_rect_before_wrap();
+        let live_again = head_ui(ui, past);
+        bar_ui(ui, past);
+        let wants_beside = std::mem::take(&mut past.wants_beside);
+        let smooth = self.panels.scene.smooth;
+        CentralPanel::no_frame().show(ui, |ui| {
+            if self.list.is_open {
+                if let Some(session) = self.list.ui(ui) {
+                    past.set_beside(Playback::open(&session, &self.ctx, self.panels.scene.twin()));
+                }
+                return;
+            }
+            if past.beside.is_some() {
+                return both_ui(ui, past, smooth);
+            }
+            let Some(live) = &mut past.live else {
+                let words = past.refused().unwrap_or(text::playback::OPENING.get());
+                ui.centered_and_justified(|ui| ui.label(weak(words)));
+                return;
+            };
+            live.rough_edges = self.live.rough_edges;
+            past.panels.scene.smooth = smooth;
+            past.panels.eyes.show_as(self.settings.now.image);
+            // Commands of the views for the machine are discarded.
+            role_ui(ui, &mut self.settings.now, live, &mut past.panels, &past.active, &mut past.outbox);
+            past.outbox.forget();
+        });
+        let stroke = Stroke::new(FRAME, theme::now().past);
+        ui.painter().rect_stroke(room, 0.0, stroke, StrokeKind::Inside);
+        if wants_beside {
+            self.list.open(&self.ctx, self.settings.folder());
+            self.list.for_beside = true;
+        }
+        if live_again {
+            self.close_past();
+        }
+    }
+}

@@ -1,0 +1,64 @@
+//! State of the window, for tests and callers.
+
+use nima_machine::{config::RigConfig, messages::Tick};
+use nima_session::objects::ObjectStates;
+
+use super::ConsoleApp;
+use crate::console::{
+    active_calibrations::ActiveCalibrations, roles::Role, scene3d::extras::Extras, settings::ConsoleSettings,
+};
+
+impl ConsoleApp {
+    /// The settings that are saved between sessions, for tests.
+    pub const fn settings_mut(&mut self) -> &mut ConsoleSettings {
+        &mut self.settings.now
+    }
+
+    pub const fn role(&self) -> Role {
+        self.settings.now.role
+    }
+
+    /// The newest tick that the window has received.
+    pub fn tick(&self) -> Option<&Tick> {
+        self.live.first_tick()
+    }
+
+    /// The last report of the simulation about the objects of its scene.
+    pub const fn objects(&self) -> Option<&ObjectStates> {
+        self.live.objects.as_ref()
+    }
+
+    /// The rig that the loop is running on.
+    pub fn rig(&self) -> &RigConfig {
+        &self.live.rig
+    }
+
+    /// Whether the Trade-off panel has results.
+    pub fn is_tradeoff_measured(&self) -> bool {
+        self.panels.tradeoff.as_ref().is_some_and(|tradeoff| tradeoff.is_measured())
+    }
+
+    /// Optional objects in the 3-D view.
+    pub const fn extras(&self) -> Extras {
+        self.panels.scene.extras
+    }
+
+    /// Interval of the traces, s, counted back from now.
+    pub const fn traces_s(&self) -> (f64, f64) {
+        self.panels.forces.view().view_s
+    }
+
+    /// Sets the time span of the traces, for tests.
+    pub fn show_traces(&mut self, seconds: f64) {
+        self.panels.forces.show_last(seconds);
+    }
+
+    /// Marks set by the operator, s on the loop's clock.
+    pub fn marks_s(&self) -> impl Iterator<Item = f64> {
+        self.live.marks_s.iter().copied()
+    }
+
+    pub fn active(&self) -> &ActiveCalibrations {
+        &self.active
+    }
+}

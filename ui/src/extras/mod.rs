@@ -1,0 +1,215 @@
+//! The optional parts of this program. A feature of `Cargo.toml` controls each of them, and only this file lists those in the
+//! build: an extra offers its parts through [`Extra`], and callers request a part by its kind.
+//!
+//! An extra has its files in one folder: `screen` is its part of the window, `text` and `words` are its texts.
+
+#[cfg(feature = "bridges")]
+mod bridges;
+#[cfg(feature = "camera")]
+mod camera;
+#[cfg(feature = "department")]
+mod department;
+#[cfg(feature = "lab")]
+mod lab;
+#[cfg(feature = "live")]
+mod live;
+#[cfg(feature = "tasks")]
+mod tasks;
+#[cfg(feature = "two-machines")]
+mod two_machines;
+#[cfg(feature = "user-studies")]
+mod user_studies;
+
+use std::{net::SocketAddr, path::Path};
+
+use clap::{ArgMatches, Subcommand};
+use nima_simulation::{ObjectFeed, SimulationPlan};
+
+use crate::{
+    command::department::DepartmentCommand,
+    console::{
+        page::Page,
+        panels::{StripUi, Tile},
+        wizards::Wizard,
+    },
+    ground_truth::TruthComparison,
+    link::ArmLink,
+    scoring::RunScorer,
+    watching::{Show, WatchServer},
+};
+
+const BUILT: &[&dyn Extra] = &[
+    #[cfg(feature = "bridges")]
+    &bridges::Bridges,
+    #[cfg(feature = "camera")]
+    &camera::CameraExtra,
+    #[cfg(feature = "department")]
+    &department::Department,
+    #[cfg(feature = "lab")]
+    &lab::Lab,
+    #[cfg(feature = "live")]
+    &live::LiveExtra,
+    #[cfg(feature = "tasks")]
+    &tasks::Tasks,
+    #[cfg(feature = "two-machines")]
+    &two_machines::TwoMachines,
+    #[cfg(feature = "user-studies")]
+    &user_studies::UserStudies,
+];
+
+/// Commands of extras, with the feature that builds each.
+const COMMANDS: [(&str, &str); 9] = [
+    ("camera", "camera"),
+    ("emulate", "lab"),
+    ("follower", "two-machines"),
+    ("identify", "lab"),
+    ("pair", "two-machines"),
+    ("score", "tasks"),
+    ("study", "lab"),
+    ("study-report", "user-studies"),
+    ("user-study", "user-studies"),
+];
+
+/// Parts that an extra can offer.
+pub(crate) trait Extra: Sync {
+    /// Adds its commands to the command line.
+    fn commands(&self, line: clap::Command) -> clap::Command {
+        line
+    }
+
+    /// Runs the given command; `None` if the command does not belong to this extra.
+    fn run(&self, _given: &ArgMatches) -> Option<anyhow::Result<()>> {
+        None
+    }
+
+    fn department(&self, _command: &DepartmentCommand) -> Option<anyhow::Result<()>> {
+        None
+    }
+
+    /// Serves viewers of this kind at this address.
+    fn server(&self, _show: Show, _at: SocketAddr) -> Option<anyhow::Result<Box<dyn WatchServer>>> {
+        None
+    }
+
+    /// Sends event marks over the Lab Streaming Layer, with this file of liblsl or [the installed
+    /// one](crate::watching::INSTALLED).
+    fn marks(&self, _library: &Path) -> Option<anyhow::Result<Box<dyn WatchServer>>> {
+        None
+    }
+
+    /// Connection to a machine with the arm.
+    fn way(&self) -> Option<&'static dyn ArmLink> {
+        None
+    }
+
+    /// Called once, before any command runs.
+    fn begin(&self) {}
+
+    /// Compares forces with the true forces, which this extra's command `emulate` reports.
+    fn comparison(&self) -> Option<Box<dyn TruthComparison>> {
+        None
+    }
+
+    fn camera_wizard(&self) -> Option<fn() -> Box<dyn Wizard>> {
+        None
+    }
+
+    /// A page of the window that reserves the machine while it is open.
+    fn page(&self) -> Option<fn() -> Box<dyn Page>> {
+        None
+    }
+
+    /// The Trade-off panel.
+    fn tradeoff(&self) -> Option<fn() -> Box<dyn Tile>> {
+        None
+    }
+
+    /// The strip below the gain slider that shows the highest gain at which a gripping hand is stable.
+    fn stable_gain(&self) -> Option<StripUi> {
+        None
+    }
+
+    /// Scores the run of a plan with a task; `watched` reports the events of the objects.
+    fn scorer(
+        &self,
+        _plan: &SimulationPlan,
+        _watched: &mut Option<ObjectFeed>,
+    ) -> Option<anyhow::Result<Box<dyn RunScorer>>> {
+        None
+    }
+}
+
+/// The first part of this kind.
+pub(crate) fn part<T>(mut offered: impl FnMut(&'static dyn Extra) -> Option<T>) -> Option<T> {
+    BUILT.iter().find_map(|extra| offered(*extra))
+}
+
+/// Whether this build can emulate the devices of a rig.
+pub(crate) fn emulates() -> bool {
+    part(Extra::comparison).is_some()
+}
+
+pub(crate) fn begin() {
+    for extra in BUILT {
+        extra.begin();
+    }
+}
+
+/// Adds the commands of all extras.
+pub(crate) fn commands(line: clap::Command) -> clap::Command {
+    BUILT.iter().fold(line, |line, extra| extra.commands(line))
+}
+
+pub(crate) fn given<C: Subcommand>(matches: &ArgMatches) -> Option<Result<C, clap::Error>> {
+    let (name, _) = matches.subcommand()?;
+    C::has_subcommand(name).then(|| C::from_arg_matches(matches))
+}
+
+/// Error for a command that another build has and this command line has nowhere.
+pub(crate) fn absent_command(line: &clap::Command, name: &str) -> Option<anyhow::Error> {
+    fn has(line: &clap::Command, name: &str) -> bool {
+        line.get_subcommands().any(|command| command.get_name() == name || has(command, name))
+    }
+    let (_, feature) = COMMANDS.into_iter().find(|(known, _)| *known == name)?;
+    (!has(line, name)).then(|| not_built(&format!("command `{name}`"), feature))
+}
+
+/// Error for a part that another build has.
+pub(crate) fn not_built(what: &str, feature: &str) -> anyhow::Error {
+    anyhow::anyhow!(
+        "this build has no {what}; build it with `cargo build --release --locked -p nima-console --features {feature}`"
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory as _;
+
+    use super::*;
+
+    #[derive(Debug, clap::Parser)]
+    struct Own {
+        #[command(subcommand)]
+        command: OwnCommand,
+    }
+
+    #[derive(Debug, Subcommand)]
+    enum OwnCommand {
+        /// Its own help
+        Calibrate,
+    }
+
+    /// A build without an extra can name the feature only of a listed command.
+    #[test]
+    fn every_command_of_an_extra_is_listed() {
+        let line = commands(Own::command());
+        let own = line.get_subcommands().filter(|command| command.get_name() != "calibrate");
+        let below = line.find_subcommand("calibrate").unwrap().get_subcommands();
+        let mut known: Vec<&str> = own.chain(below).map(clap::Command::get_name).collect();
+        known.sort_unstable();
+        assert_eq!(known, COMMANDS.map(|(command, _)| command));
+        assert!(absent_command(&line, "camera").is_none() && absent_command(&Own::command(), "camera").is_some());
+        let help = line.find_subcommand("calibrate").and_then(clap::Command::get_about).map(ToString::to_string);
+        assert_eq!(help.as_deref(), Some("Its own help"));
+    }
+}

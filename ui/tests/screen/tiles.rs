@@ -1,0 +1,182 @@
+//! The layout of the Technician view by mouse and by names: tiles are dragged, closed, reopened and reset, and the layout is
+//! restored at the next start.
+
+use std::path::Path;
+
+use egui::{
+    Rect,
+    accesskit::{Role, Toggled},
+    vec2,
+};
+use egui_kittest::{
+    Harness,
+    kittest::{NodeT as _, Queryable as _},
+};
+use nima_console::console::{
+    ConsoleApp,
+    tiles::{LayoutNode, Panel, PanelLayout},
+};
+
+use crate::bench::{console_of, press, toured, until};
+
+const SIZE: [f32; 2] = [1600.0, 1000.0];
+
+fn console(folder: &Path) -> Harness<'static, ConsoleApp> {
+    let path = folder.to_path_buf();
+    let mut harness = console_of("peg_transfer", SIZE, move |app| app.with_settings(toured(&path)));
+    until(&mut harness, "any tick", |_| true);
+    harness.run_steps(3);
+    harness
+}
+
+fn tab(harness: &Harness<'_, ConsoleApp>, panel: Panel) -> Rect {
+    harness.get_by_role_and_label(Role::Button, panel.title()).rect()
+}
+
+fn drag(harness: &mut Harness<'_, ConsoleApp>, from: egui::Pos2, to: egui::Pos2) {
+    harness.drag_at(from);
+    harness.step();
+    for fraction in [0.3, 0.7, 1.0, 1.0] {
+        harness.hover_at(from + (to - from) * fraction);
+        harness.step();
+    }
+    harness.drop_at(to);
+    harness.run_steps(3);
+}
+
+fn layout_of(harness: &mut Harness<'_, ConsoleApp>) -> PanelLayout {
+    harness.state_mut().settings_mut().layout.clone()
+}
+
+/// Panels that share a group of tabs with this one.
+fn beside(node: &LayoutNode, panel: Panel) -> Option<Vec<Panel>> {
+    match node {
+        LayoutNode::Panel(_) => None,
+        LayoutNode::Tabs(of) => {
+            let panels: Vec<Panel> = of
+                .iter()
+                .filter_map(|node| if let LayoutNode::Panel(panel) = node { Some(*panel) } else { None })
+                .collect();
+            if panels.contains(&panel) { Some(panels) } else { of.iter().find_map(|node| beside(node, panel)) }
+        }
+        LayoutNode::Row(parts) | LayoutNode::Column(parts) => parts.iter().find_map(|part| beside(&part.of, panel)),
+    }
+}
+
+#[test]
+fn a_dragged_title_joins_other_tabs_and_stays_there_the_next_day() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = console(folder.path());
+    let from = tab(&harness, Panel::Timing);
+    let to = tab(&harness, Panel::Degrees);
+    drag(&mut harness, from.center(), to.center() + vec2(0.6 * to.width(), 0.0));
+    let places = layout_of(&mut harness).places.unwrap();
+    assert!(beside(&places, Panel::Timing).unwrap().contains(&Panel::Degrees), "{places:?}");
+    assert!(harness.query_by_label_contains("Wake-up histogram: ").is_some(), "what was dragged is in front");
+    drop(harness);
+    let mut again = console(folder.path());
+    assert_eq!(layout_of(&mut again).places, Some(places));
+    let timing = tab(&again, Panel::Timing);
+    let degrees = tab(&again, Panel::Degrees);
+    assert!((timing.center().y - degrees.center().y).abs() < 1.0);
+}
+
+#[test]
+fn an_edge_is_dragged_and_the_default_comes_back() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = console(folder.path());
+    let field = |harness: &Harness<'_, ConsoleApp>| harness.get_by_label("Operating field").rect();
+    let before = field(&harness);
+    let edge = before.left_center() - vec2(3.0, 0.0);
+    drag(&mut harness, edge, edge + vec2(120.0, 0.0));
+    let after = field(&harness);
+    assert!((after.left() - before.left() - 120.0).abs() < 4.0, "{before:?} {after:?}");
+    assert!(layout_of(&mut harness).places.is_some());
+    press(&mut harness, "View");
+    press(&mut harness, "Reset layout");
+    harness.run_steps(2);
+    assert_eq!(layout_of(&mut harness).places, None);
+    assert!((field(&harness).left() - before.left()).abs() < 1.0);
+}
+
+#[test]
+fn a_panel_is_closed_and_opened_from_the_menu_and_its_neighbours_take_the_room() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = console(folder.path());
+    let before = harness.get_by_label("Operating field").rect();
+    press(&mut harness, "Close Traces");
+    press(&mut harness, "Close Safety");
+    press(&mut harness, "Close Force space");
+    harness.run_steps(2);
+    let after = harness.get_by_label("Operating field").rect();
+    assert!(after.height() > 1.5 * before.height(), "{before:?} {after:?}");
+    press(&mut harness, "View");
+    press(&mut harness, "Traces");
+    harness.run_steps(2);
+    let mut layout = layout_of(&mut harness);
+    layout.closed.sort_unstable();
+    assert_eq!((layout.places, layout.closed), (None, vec![Panel::ForceSpace, Panel::Safety]));
+    drop(harness);
+    let mut again = console(folder.path());
+    assert!(again.query_by_role_and_label(Role::Button, "Close Traces").is_some());
+    assert!(again.query_by_role_and_label(Role::Button, "Close Force space").is_none());
+    for panel in Panel::ALL {
+        let layout = &mut again.state_mut().settings_mut().layout;
+        if layout.is_open(panel) {
+            layout.toggle(panel);
+        }
+    }
+    again.run_steps(3);
+    again.get_by_label_contains("All panels are closed");
+    let stop = again.get_by_role_and_label(Role::Button, "Stop");
+    assert!(!stop.accesskit_node().is_disabled());
+}
+
+#[test]
+fn a_tab_is_brought_to_the_front_by_the_keyboard_and_the_default_still_goes_by_the_window() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = console(folder.path());
+    harness.get_by_role_and_label(Role::Button, Panel::Safety.title()).focus();
+    harness.step();
+    harness.key_press(egui::Key::Enter);
+    harness.run_steps(3);
+    harness.get_by_label_contains("Interlock: ");
+    let layout = layout_of(&mut harness);
+    assert!(layout.front.contains(&Panel::Safety) && layout.places.is_none());
+    harness.set_size(vec2(1280.0, 720.0));
+    harness.run_steps(4);
+    harness.get_by_label_contains("Interlock: ");
+    harness.get_by_role_and_label(Role::Button, Panel::Safety.title());
+    let safety = tab(&harness, Panel::Safety);
+    let space = tab(&harness, Panel::ForceSpace);
+    assert!((safety.center().y - space.center().y).abs() < 1.0, "no room beside the traces: a tab");
+}
+
+#[test]
+fn the_histograms_tell_how_many_ticks_are_later_than_the_deadline() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = console(folder.path());
+    until(&mut harness, "a second", |tick| tick.t_s > 1.0);
+    // The bars are counted four times per second.
+    harness.run_steps(12);
+    assert!(harness.query_all_by_label_contains("exceeded the deadline of 1000 µs").count() >= 3);
+    assert!(harness.query_all_by_label_contains("Missed in the last 2 min: ").next().is_some());
+}
+
+#[test]
+fn the_gates_of_the_selected_hand_are_shown() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().to_path_buf();
+    let mut harness = console_of("bimanual", SIZE, move |app| app.with_settings(toured(&path)));
+    until(&mut harness, "engaged", |tick| tick.state == nima_machine::messages::LoopState::Engaged);
+    harness.run_steps(3);
+    for hand in ["Left hand", "Right hand"] {
+        press(&mut harness, hand);
+        let chosen = harness.get_by_role_and_label(Role::Button, hand).accesskit_node().toggled();
+        assert_eq!(chosen, Some(Toggled::True), "{hand}");
+    }
+    press(&mut harness, "Stop");
+    press(&mut harness, "Left hand");
+    harness.run_steps(10);
+    harness.get_by_label_contains("No force: stopped by the operator");
+}

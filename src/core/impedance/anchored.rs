@@ -12,7 +12,7 @@ use super::{
     Mode, Models,
     envelope::Envelope,
     messages::{IdentificationReport, LinkPacket, Posture, clip},
-    method::{LeaderInput, RenderingMethod, FollowerEnd, LeaderEnd, MethodInput, Place},
+    method::{FollowerEnd, LeaderEnd, LeaderInput, MethodInput, Place, RenderingMethod},
     mixture::Mixture,
     packed::{PackedNumbers, PackedReader, PackedWriter},
     regression::{ImpedanceRegression, LENGTHS, NESTED, RIDGES, Solutions, predict},

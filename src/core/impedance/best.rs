@@ -5,7 +5,7 @@
 use super::{
     Mode, SLOTS,
     messages::{IdentificationReport, LinkPacket},
-    method::{LeaderInput, RenderingMethod, LeaderEnd},
+    method::{LeaderEnd, LeaderInput, RenderingMethod},
     motion_clock::{fraction, newest_fraction},
     settings::{ImpedanceSettings, MAX_DELAY_S},
 };

@@ -1,7 +1,7 @@
 //! Direct force reflection: what every other mode is compared with.
 
 use super::{
-    method::{LeaderInput, RenderingMethod, LeaderEnd},
+    method::{LeaderEnd, LeaderInput, RenderingMethod},
     settings::ImpedanceSettings,
 };
 use crate::signal::Lanes;

@@ -8,7 +8,7 @@ use super::{
     gram::Gram,
     literal::LiteralSolver,
     messages::{IdentificationReport, LinkPacket, active},
-    method::{LeaderInput, RenderingMethod, FollowerEnd, LeaderEnd, MethodInput, Place},
+    method::{FollowerEnd, LeaderEnd, LeaderInput, MethodInput, Place, RenderingMethod},
     packed::{PackedNumbers, PackedReader, PackedWriter},
     recipe::{DegreeChoice, NextDegree},
     settings::{ImpedanceSettings, ModeSet},

@@ -17,8 +17,8 @@ use std::{fmt::Debug, marker::PhantomData};
 
 use nima_core::{
     impedance::{
-        LeaderInput, Baseline, RenderingMethod, BaselineModel, Entry, FollowerEnd, IdentificationReport,
-        ImpedanceSettings, LeaderEnd, LinkPacket, MethodInput, ModeSet, Scales, add_baselines,
+        Baseline, BaselineModel, Entry, FollowerEnd, IdentificationReport, ImpedanceSettings, LeaderEnd, LeaderInput,
+        LinkPacket, MethodInput, ModeSet, RenderingMethod, Scales, add_baselines,
     },
     signal::{Lanes, Motion},
 };

@@ -153,7 +153,11 @@ impl BaselineSender for ModelMediated {
             errors_kept: kept(ERROR_S, rate_hz),
             every: ((rate_hz / SOLVE_HZ).round() as usize).max(1),
             tick: 0,
-            candidates: std::array::from_fn(|_| ModelCandidate { contact: NONE, rls: rls.clone(), error_n: Lanes::ZERO }),
+            candidates: std::array::from_fn(|_| ModelCandidate {
+                contact: NONE,
+                rls: rls.clone(),
+                error_n: Lanes::ZERO,
+            }),
             range_m: [Lanes::ZERO; 2],
             envelope: Envelope::new(rate_hz),
             contact: NONE,

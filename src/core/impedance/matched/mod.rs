@@ -38,7 +38,7 @@ use super::{
     best::eighth_power,
     envelope::Envelope,
     messages::{IdentificationReport, LinkPacket, Posture},
-    method::{LeaderInput, RenderingMethod, FollowerEnd, LeaderEnd, MethodInput, Place},
+    method::{FollowerEnd, LeaderEnd, LeaderInput, MethodInput, Place, RenderingMethod},
     motion_clock::newest_fraction,
     settings::{ImpedanceSettings, MAX_DELAY_S, ModeSet},
 };

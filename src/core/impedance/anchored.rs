@@ -12,7 +12,7 @@ use super::{
     Mode, Models,
     envelope::Envelope,
     messages::{IdentificationReport, LinkPacket, Posture, clip},
-    method::{AnchoredMoment, BaselineMethod, FollowerEnd, LeaderEnd, MethodInput, Place},
+    method::{FollowerEnd, LeaderEnd, LeaderInput, MethodInput, Place, RenderingMethod},
     mixture::Mixture,
     packed::{PackedNumbers, PackedReader, PackedWriter},
     regression::{ImpedanceRegression, LENGTHS, NESTED, RIDGES, Solutions, predict},
@@ -42,7 +42,7 @@ const FIRST_S: f64 = 0.3;
 #[derive(Clone, Debug)]
 pub(super) struct AnchoredMethod;
 
-impl BaselineMethod for AnchoredMethod {
+impl RenderingMethod for AnchoredMethod {
     const NAME: &'static str = "anchored";
     const ABOUT: &'static str = "our rendering: delayed force plus its learned change";
     const PARAMETERS: Option<Place> = Some(|models| &mut models.anchored);
@@ -66,7 +66,7 @@ impl BaselineMethod for AnchoredMethod {
 }
 
 impl LeaderEnd for AnchoredMethod {
-    fn render(&mut self, moment: &AnchoredMoment<'_>) -> Option<Lanes> {
+    fn render(&mut self, moment: &LeaderInput<'_>) -> Option<Lanes> {
         Some(moment.parcel.models.anchored.force(moment.measured_n, moment.now, moment.then))
     }
 }
@@ -77,15 +77,15 @@ pub struct AnchoredModel {
     /// N per change of position (m), of its differences from four low-passes (m), of friction
     /// (1), of square, cube and product of the position about the centre (m², m³, m²).
     pub motion: [Lanes; 9],
-    /// What the follower alone knows: the change expected without any motion (N).
+    /// Change expected without any motion (N), known to the follower alone.
     pub constant_n: Lanes,
     /// Slow mean of the follower's position (m).
     pub centre_m: Lanes,
     /// Where friction saturates (m).
     pub knee: Lanes,
-    /// Least force rendered (N): forces beyond those seen are not invented.
+    /// Minimum rendered force (N): forces beyond those seen are not invented.
     pub low_n: Lanes,
-    /// Greatest force rendered (N).
+    /// Maximum rendered force (N).
     pub high_n: Lanes,
     /// Largest correction (N, norm over the axes).
     pub bound_n: f64,

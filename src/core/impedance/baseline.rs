@@ -37,7 +37,7 @@ impl Baseline {
     }
 }
 
-/// What a baseline sends besides the force: plain numbers, fixed size.
+/// Parameters of a baseline in a packet: plain numbers of fixed size.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[expect(clippy::large_enum_variant, reason = "it crosses the link by value, in a parcel of fixed size")]
 pub enum BaselineModel {
@@ -59,7 +59,7 @@ pub enum BaselineModel {
         /// N/s.
         rate_n_s: Lanes,
     },
-    /// Autoregressive: the force foretold for one delay later.
+    /// Autoregressive: the force predicted for one delay later.
     Forecast {
         /// N.
         force_n: Lanes,
@@ -78,7 +78,7 @@ pub struct HuntCrossleyContact {
     /// For the side above and below the surface stiffness (N at the reach) and damping (N s/m at the reach); then the offset (N), the
     /// instrument's damping (N s/m) and mass (kg).
     pub parameters: [Lanes; 7],
-    /// Least and greatest force rendered (N).
+    /// Minimum and maximum rendered force (N).
     pub bounds_n: [Lanes; 2],
 }
 

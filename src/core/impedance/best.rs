@@ -5,7 +5,7 @@
 use super::{
     Mode, SLOTS,
     messages::{IdentificationReport, LinkPacket},
-    method::{AnchoredMoment, BaselineMethod, LeaderEnd},
+    method::{LeaderEnd, LeaderInput, RenderingMethod},
     motion_clock::{fraction, newest_fraction},
     settings::{ImpedanceSettings, MAX_DELAY_S},
 };
@@ -33,7 +33,7 @@ pub(super) struct Best {
     judge: Option<Judge>,
 }
 
-impl BaselineMethod for Best {
+impl RenderingMethod for Best {
     const NAME: &'static str = "best";
     const ABOUT: &'static str = "anchored and matched, weighted by their recent errors";
     const PARTS: &'static [Mode] = &[Mode::Anchored, Mode::Matched];
@@ -48,7 +48,7 @@ impl BaselineMethod for Best {
 }
 
 impl LeaderEnd for Best {
-    fn render(&mut self, moment: &AnchoredMoment<'_>) -> Option<Lanes> {
+    fn render(&mut self, moment: &LeaderInput<'_>) -> Option<Lanes> {
         let weight = self.judge.as_ref().map_or(Lanes::ZERO, Judge::anchored);
         let anchored = moment.forces_n[Mode::Anchored.index()]?;
         let matched = moment.forces_n[Mode::Matched.index()];

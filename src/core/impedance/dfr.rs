@@ -1,7 +1,7 @@
 //! Direct force reflection: what every other mode is compared with.
 
 use super::{
-    method::{AnchoredMoment, BaselineMethod, LeaderEnd},
+    method::{LeaderEnd, LeaderInput, RenderingMethod},
     settings::ImpedanceSettings,
 };
 use crate::signal::Lanes;
@@ -10,7 +10,7 @@ use crate::signal::Lanes;
 #[derive(Clone, Debug)]
 pub(super) struct Dfr;
 
-impl BaselineMethod for Dfr {
+impl RenderingMethod for Dfr {
     const NAME: &'static str = "dfr";
     const ABOUT: &'static str = "the delayed force itself, for comparison";
 
@@ -20,7 +20,7 @@ impl BaselineMethod for Dfr {
 }
 
 impl LeaderEnd for Dfr {
-    fn render(&mut self, moment: &AnchoredMoment<'_>) -> Option<Lanes> {
+    fn render(&mut self, moment: &LeaderInput<'_>) -> Option<Lanes> {
         Some(moment.measured_n)
     }
 }

@@ -28,7 +28,7 @@ impl Envelope {
         self.edges_n = Some([leaked(low).zip(force_n, f64::min), leaked(high).zip(force_n, f64::max)]);
     }
 
-    /// Least and greatest force to render (N): the range and its margin; zero before any force was seen.
+    /// Minimum and maximum force to render (N): the range and its margin; zero before any force was seen.
     pub fn bounds_n(&self) -> [Lanes; 2] {
         let [low, high] = self.edges_n.unwrap_or_default();
         let margin = (high - low) * MARGIN;

@@ -165,7 +165,7 @@ impl IdentificationReport {
         mode.entry().map_or(0, |entry| (entry.degree)(self))
     }
 
-    /// Takes over what a parcel tells of the identification, where the parcel is all that there is of it.
+    /// Copies the identification's results from a packet, for a leader without the follower's report.
     pub fn note(&mut self, parcel: &LinkPacket) {
         self.t_s = parcel.t_s;
         self.modes = parcel.modes;

@@ -1,6 +1,6 @@
-//! What a way to render consists of: a part at either end of the link, and parameters that cross it.
+//! Trait of the rendering methods: a part at each end of the link, and the parameters sent from one to the other.
 //!
-//! The list of all ways is in `mode`; this file has the trait that each of them implements, and runs them.
+//! `mode` lists all methods; this file runs them.
 
 use std::fmt::Debug;
 
@@ -19,44 +19,43 @@ use super::{
 };
 use crate::signal::Lanes;
 
-/// A way to render. Its error at the horizon is that of its leader's part, which the identifier also runs on the follower's own motion.
-pub trait BaselineMethod {
+/// Rendering method. Its prediction error is the error of its leader part, which the identifier also runs on the follower's motion.
+pub trait RenderingMethod {
     /// The name on the command line, in files and on the screen.
     const NAME: &'static str;
     /// Short description for tables.
     const ABOUT: &'static str;
-    /// Whether it is fitted to a window of samples, whose length is then a setting of it.
+    /// Whether it uses a window of samples, whose length is then one of its settings.
     const HAS_WINDOW: bool = false;
-    /// Whether it chooses among polynomial degrees, the highest of which is then a setting of it.
+    /// Whether it selects a polynomial degree, up to a maximum that is then one of its settings.
     const HAS_DEGREES: bool = false;
-    /// Whether its force is damped where the leader's own motion is that of the handle.
+    /// Whether its force is damped if the leader's motion is measured at the handle.
     const IS_DAMPED: bool = false;
-    /// The modes whose forces it uses. They are computed with it, and come before it in the list.
+    /// Modes whose forces it uses: computed with it, and earlier in the list.
     const PARTS: &'static [Mode] = &[];
-    /// Its parameters in a parcel, if it sends any.
+    /// Field of its parameters in a packet, if it sends any.
     const PARAMETERS: Option<Place> = None;
 
-    /// The follower's part; `None` if the measured force and the parameters of other modes are enough.
+    /// Returns the follower part; `None` if the measured force and the parameters of other modes are enough.
     fn follower(_settings: &ImpedanceSettings, _delay_ticks: usize) -> Option<Box<dyn FollowerEnd>> {
         None
     }
 
-    /// The leader's part.
     fn leader(settings: &ImpedanceSettings) -> Box<dyn LeaderEnd>;
 
-    /// The degree that it uses; 0: none.
+    /// Returns the selected degree; 0: none.
     fn degree(_report: &IdentificationReport) -> u8 {
         0
     }
 
-    /// Enters into a report what a parcel tells of the follower's part.
+    /// Copies the results of the follower part from a packet to a report.
     fn note(_models: &Models, _report: &mut IdentificationReport) {}
 }
 
-/// Where the parameters of a method are in a parcel.
+/// Access to the parameters of a method in a packet.
 pub type Place = fn(&mut Models) -> &mut dyn PackedParameters;
 
-/// A method as a row of the list.
+/// Row of the list of methods.
 #[derive(Clone, Copy, Debug)]
 pub struct Entry {
     pub(super) name: &'static str,
@@ -73,8 +72,7 @@ pub struct Entry {
 }
 
 impl Entry {
-    /// The row of a method.
-    pub const fn of<M: BaselineMethod>() -> Self {
+    pub const fn of<M: RenderingMethod>() -> Self {
         Self {
             name: M::NAME,
             about: M::ABOUT,
@@ -91,7 +89,7 @@ impl Entry {
     }
 }
 
-/// What the follower's part of a method sees of a sample.
+/// Input of a follower part for one sample.
 #[derive(Clone, Copy, Debug)]
 pub struct MethodInput<'a> {
     pub posture: &'a Posture,
@@ -99,19 +97,19 @@ pub struct MethodInput<'a> {
     pub x: &'a ImpedanceFeatures,
     /// The force, or the last good one, N.
     pub force_n: Lanes,
-    /// The sample was measured, not bridged.
+    /// The sample was measured, not interpolated.
     pub good: bool,
-    /// Its features are those of a full filter, too.
+    /// The filters that compute its features are settled.
     pub usable: bool,
-    /// There is something to learn from.
+    /// The method may learn from the sample.
     pub learn: bool,
-    /// The parcel that the leader has now; without a delay the last one stands for it.
+    /// The packet that the leader has now; without a delay, the previous packet.
     pub sent: Option<&'a LinkPacket>,
 }
 
-/// The follower's part of a method: learns from samples and writes its parameters into the parcel.
+/// Follower part of a method: learns from samples and writes its parameters into the packet.
 pub trait FollowerEnd: Debug + DynClone + Send + Sync {
-    /// Whether it is at work while these modes are computed.
+    /// Returns whether these modes need it.
     fn serves(&self, modes: ModeSet) -> bool;
 
     /// Returns whether the method restarts when the modes change from `before` to `now`.
@@ -125,12 +123,12 @@ pub trait FollowerEnd: Debug + DynClone + Send + Sync {
 
     fn reset(&mut self);
 
-    /// The paper's solutions of every degree, if it solves them.
+    /// Returns the paper's solutions of every degree, if it computes them.
     fn paper(&self) -> Option<&LiteralSolver> {
         None
     }
 
-    /// The nested solutions on the newest window, if it solves them.
+    /// Returns the nested solutions for the newest window, if it computes them.
     fn nested(&self) -> Option<&ImpedanceSolution> {
         None
     }
@@ -138,7 +136,7 @@ pub trait FollowerEnd: Debug + DynClone + Send + Sync {
 
 clone_trait_object!(FollowerEnd);
 
-/// The follower's parts that there is memory for.
+/// Follower parts of the modes in the settings.
 #[derive(Clone, Debug)]
 pub(super) struct Followers(Vec<Box<dyn FollowerEnd>>);
 
@@ -154,50 +152,49 @@ impl Followers {
         self.0.iter_mut()
     }
 
-    /// The first thing of this kind that one of them has.
+    /// Returns the first result of this kind.
     pub(super) fn find<'a, T>(&'a self, of: impl Fn(&'a dyn FollowerEnd) -> Option<T>) -> Option<T> {
         self.0.iter().find_map(|follower| of(&**follower))
     }
 }
 
-/// What the leader's part of a method sees in a tick.
+/// Input of a leader part for one tick.
 #[derive(Clone, Copy, Debug)]
-pub struct AnchoredMoment<'a> {
+pub struct LeaderInput<'a> {
     pub parcel: &'a LinkPacket,
-    /// The force in the parcel, N; it is finite.
+    /// Force in the packet, N; finite.
     pub measured_n: Lanes,
-    /// The leader's own motion now, and at the time of the parcel.
+    /// The leader's motion now, and at the time of the packet.
     pub now: &'a Posture,
     pub then: &'a Posture,
-    /// The paper's `X` of the leader's own motion.
+    /// The paper's `X` of the leader's motion.
     pub x: &'a ImpedanceFeatures,
-    /// Age of the parcel.
+    /// Age of the packet.
     pub age_ticks: usize,
-    /// The forces of the modes that come before in the list, N, by [`Mode::index`].
+    /// Forces of the earlier modes in the list, N, by [`Mode::index`].
     pub forces_n: &'a [Option<Lanes>; SLOTS],
 }
 
-/// The leader's part of a method: makes a force of the newest parcel and the leader's own motion.
+/// Leader part of a method: computes a force from the newest packet and the leader's motion.
 pub trait LeaderEnd: Debug + DynClone + Send + Sync {
-    /// The force (N) of this tick; `None` without parameters or where it is not finite.
-    fn render(&mut self, moment: &AnchoredMoment<'_>) -> Option<Lanes>;
+    /// Returns the force (N) of this tick; `None` without parameters or if the force is not finite.
+    fn render(&mut self, moment: &LeaderInput<'_>) -> Option<Lanes>;
 
-    /// Takes the forces of all modes in this tick, N. `pace`: how fast time runs by the motion.
+    /// Stores the forces of all modes in this tick, N. `pace`: rate of the motion clock.
     fn keep(&mut self, _forces_n: &[Option<Lanes>; SLOTS], _pace: f64) {}
 
-    /// Takes a parcel that has just come, to judge what was kept `age_ticks` ago.
+    /// Compares a newly received packet with the forces stored `age_ticks` ago.
     fn judge(&mut self, _parcel: &LinkPacket, _age_ticks: usize) {}
 
-    /// The modes `now` take the place of those `before`.
+    /// Replaces the computed modes `before` by the modes `now`.
     fn compute(&mut self, _before: ModeSet, _now: ModeSet) {}
 
-    /// Forgets everything.
     fn reset(&mut self) {}
 }
 
 clone_trait_object!(LeaderEnd);
 
-/// The leader's parts of all modes, by [`Mode::index`]; of the baselines that of the one in the settings.
+/// Leader parts of all modes, by [`Mode::index`], and of the baseline in the settings.
 #[derive(Clone, Debug)]
 pub(super) struct Leaders(Vec<Box<dyn LeaderEnd>>);
 
@@ -207,8 +204,8 @@ impl Leaders {
         Self(modes.filter_map(|mode| Some((mode.entry()?.leader)(settings))).collect())
     }
 
-    /// The force of every mode (N), by [`Mode::index`]. Nothing is made of a force that is not finite: limits would turn it into one of
-    /// their edges.
+    /// Returns the force of every mode (N), by [`Mode::index`]. A measured force that is not finite gives none: a limit would turn it into
+    /// its own value.
     pub(super) fn render(
         &mut self,
         parcel: &LinkPacket,
@@ -222,7 +219,7 @@ impl Leaders {
             return forces_n;
         }
         for (slot, leader) in self.0.iter_mut().enumerate() {
-            let moment = AnchoredMoment { parcel, measured_n, now, then, x, age_ticks, forces_n: &forces_n };
+            let moment = LeaderInput { parcel, measured_n, now, then, x, age_ticks, forces_n: &forces_n };
             forces_n[slot] = leader.render(&moment);
         }
         for mode in Mode::ALL.into_iter().filter(|mode| !parcel.modes.contains(*mode)) {

@@ -74,7 +74,7 @@ pub use identifier::Identifier;
 pub use literal::LiteralSolver;
 pub use matched::{MatchedModel, ModelForm};
 pub use messages::{IdentificationReport, ImpedanceExcitation, LinkPacket, Posture, RenderedForces, Sample};
-pub use method::{AnchoredMoment, BaselineMethod, Entry, FollowerEnd, LeaderEnd, MethodInput, Place};
+pub use method::{Entry, FollowerEnd, LeaderEnd, LeaderInput, MethodInput, Place, RenderingMethod};
 pub use mode::{MODES, Mode, Models, ParseModeError, SLOTS, add_baselines};
 pub use packed::{PACKED_MAX, ParameterPack};
 pub use paper::LiteralModel;

@@ -14,7 +14,7 @@ use super::{
     paper::{Linear, Literal, LiteralModel},
 };
 
-/// Declares the modes from one list, each with the [`BaselineMethod`](super::BaselineMethod) that it stands for.
+/// Declares the modes from one list, each with the [`RenderingMethod`](super::RenderingMethod) that it stands for.
 macro_rules! modes {
     ($(#[$attribute:meta])* enum Mode { $($(#[$doc:meta])* $mode:ident: $method:ty,)* }) => {
         $(#[$attribute])*

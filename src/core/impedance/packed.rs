@@ -182,7 +182,7 @@ mod tests {
         Baseline, BaselineModel, HuntCrossleyContact, Identifier, ImpedanceSettings, Models, SLOTS, Sample, Wave,
     };
 
-    /// The last parcel of two seconds of pressing, with every rendering of our own and a model of a method of others.
+    /// The last parcel of two seconds of pressing, with all modes and the model of one baseline.
     fn parcel(baseline: &BaselineModel) -> LinkPacket {
         let mut identifier =
             Identifier::new(&ImpedanceSettings { delay_s: 0.05, ..ImpedanceSettings::default() }).unwrap();

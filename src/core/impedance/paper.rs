@@ -8,7 +8,7 @@ use super::{
     gram::Gram,
     literal::LiteralSolver,
     messages::{IdentificationReport, LinkPacket, active},
-    method::{AnchoredMoment, BaselineMethod, FollowerEnd, LeaderEnd, MethodInput, Place},
+    method::{FollowerEnd, LeaderEnd, LeaderInput, MethodInput, Place, RenderingMethod},
     packed::{PackedNumbers, PackedReader, PackedWriter},
     recipe::{DegreeChoice, NextDegree},
     settings::{ImpedanceSettings, ModeSet},
@@ -20,7 +20,7 @@ use crate::signal::Lanes;
 #[derive(Clone, Debug)]
 pub(super) struct Literal;
 
-impl BaselineMethod for Literal {
+impl RenderingMethod for Literal {
     const NAME: &'static str = "literal";
     const ABOUT: &'static str = ABOUT;
     const HAS_WINDOW: bool = true;
@@ -45,7 +45,7 @@ impl BaselineMethod for Literal {
 }
 
 impl LeaderEnd for Literal {
-    fn render(&mut self, moment: &AnchoredMoment<'_>) -> Option<Lanes> {
+    fn render(&mut self, moment: &LeaderInput<'_>) -> Option<Lanes> {
         moment.parcel.models.literal.force(moment.x)
     }
 }
@@ -54,7 +54,7 @@ impl LeaderEnd for Literal {
 #[derive(Clone, Debug)]
 pub(super) struct Linear;
 
-impl BaselineMethod for Linear {
+impl RenderingMethod for Linear {
     const NAME: &'static str = "linear";
     const ABOUT: &'static str = ABOUT;
     const HAS_WINDOW: bool = true;
@@ -74,7 +74,7 @@ impl BaselineMethod for Linear {
 }
 
 impl LeaderEnd for Linear {
-    fn render(&mut self, moment: &AnchoredMoment<'_>) -> Option<Lanes> {
+    fn render(&mut self, moment: &LeaderInput<'_>) -> Option<Lanes> {
         moment.parcel.models.linear.force(moment.x)
     }
 }

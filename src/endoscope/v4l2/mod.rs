@@ -330,7 +330,7 @@ impl CameraOpening<'_> {
             Err(error) if error.raw_os_error() == Some(libc::ENOSPC) => {
                 Err(EndoscopeError::NoBandwidth { path: self.place.to_owned() })
             }
-            answer => answer.map_err(|error| report(self.place, &error, "beginning to stream")),
+            answer => answer.map_err(|error| report(self.place, &error, "starting the stream")),
         }
     }
 }

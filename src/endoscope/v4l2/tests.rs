@@ -291,10 +291,10 @@ fn each_cause_is_told_with_its_cure() {
         (Table::default(), "format=nv12", "does not offer NV12, only YUYV, MJPG", "format"),
         (Table { formats: Vec::new(), ..Table::default() }, "", "only nothing", "format"),
         (Table::default(), "size=800x600", "does not offer images of 800x600, only 640x480, 1280x720", "size"),
-        (Table { sizes: vec![[9000, 9000]], ..Table::default() }, "", "too many", "dmesg"),
+        (Table { sizes: vec![[9000, 9000]], ..Table::default() }, "", "exceed the limit", "dmesg"),
         (Table { buffers: 1, ..Table::default() }, "", "gives 1 buffers", "dmesg"),
         (failing(18, libc::ENOSPC), "", "lacks bandwidth on its USB", "its own USB port"),
-        (failing(18, libc::EIO), "", "beginning to stream failed", "dmesg"),
+        (failing(18, libc::EIO), "", "starting the stream failed", "dmesg"),
     ] {
         let (_, started) = start(table, wanted);
         let trouble = started.err().unwrap();

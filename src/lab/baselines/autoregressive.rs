@@ -11,7 +11,7 @@ use nima_core::{
 };
 
 use crate::{
-    Sender,
+    BaselineSender,
     rls::{Rls, dot},
 };
 
@@ -54,7 +54,7 @@ impl Autoregressive {
     }
 }
 
-impl Sender for Autoregressive {
+impl BaselineSender for Autoregressive {
     const BASELINE: Baseline = Baseline::Autoregressive;
 
     fn new(rate_hz: f64, delay_ticks: usize) -> Self {

@@ -12,7 +12,7 @@ use nima_core::{
     signal::{Lanes, Motion},
 };
 
-use crate::Sender;
+use crate::BaselineSender;
 
 /// Time constant of the rate (s), and bandwidth of the filter (Hz): `w^4` is the spectral density of the noise divided
 /// by that of the measurement (chosen on recordings, see docs/modes.md).
@@ -32,7 +32,7 @@ pub(crate) struct Kalman {
     state: Option<[Lanes; 2]>,
 }
 
-impl Sender for Kalman {
+impl BaselineSender for Kalman {
     const BASELINE: Baseline = Baseline::Kalman;
 
     fn new(rate_hz: f64, _delay_ticks: usize) -> Self {

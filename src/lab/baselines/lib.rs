@@ -1,6 +1,6 @@
 //! Methods of others, to compare with: each from its published form, as one more mode behind the same gates.
 //!
-//! They are built into the loop through the trait that the program's own modes have, [`BaselineMethod`], by whoever calls [`provide`] first. At most
+//! They are built into the loop through the trait that the program's own modes have, [`RenderingMethod`], by whoever calls [`provide`] first. At most
 //! one is computed, and only where it is asked for by name. Every axis is taken for a channel of its own, as in the publications, which
 //! have one degree of freedom. Sources, constants, figures, and what was left out: docs/modes.md.
 
@@ -17,8 +17,8 @@ use std::{fmt::Debug, marker::PhantomData};
 
 use nima_core::{
     impedance::{
-        AnchoredMoment, Baseline, BaselineMethod, BaselineModel, Entry, FollowerEnd, IdentificationReport,
-        ImpedanceSettings, LeaderEnd, LinkPacket, MethodInput, ModeSet, Scales, add_baselines,
+        Baseline, BaselineModel, Entry, FollowerEnd, IdentificationReport, ImpedanceSettings, LeaderEnd, LeaderInput,
+        LinkPacket, MethodInput, ModeSet, RenderingMethod, Scales, add_baselines,
     },
     signal::{Lanes, Motion},
 };
@@ -27,7 +27,7 @@ use crate::{
     autoregressive::Autoregressive,
     kalman::Kalman,
     model_mediated::ModelMediated,
-    passivity::{Controller, Returned},
+    passivity::{PassivityController, ReturnedEnergy},
     waves::Waves,
 };
 
@@ -35,16 +35,16 @@ use crate::{
 /// nothing.
 pub fn provide() {
     add_baselines(|baseline| match baseline {
-        Baseline::ModelMediated => Entry::of::<Other<ModelMediated>>(),
-        Baseline::Waves => Entry::of::<Other<Waves>>(),
-        Baseline::Passivity => Entry::of::<Other<Returned>>(),
-        Baseline::Kalman => Entry::of::<Other<Kalman>>(),
-        Baseline::Autoregressive => Entry::of::<Other<Autoregressive>>(),
+        Baseline::ModelMediated => Entry::of::<BaselineMethod<ModelMediated>>(),
+        Baseline::Waves => Entry::of::<BaselineMethod<Waves>>(),
+        Baseline::Passivity => Entry::of::<BaselineMethod<ReturnedEnergy>>(),
+        Baseline::Kalman => Entry::of::<BaselineMethod<Kalman>>(),
+        Baseline::Autoregressive => Entry::of::<BaselineMethod<Autoregressive>>(),
     });
 }
 
 /// What a method of others does at the follower.
-trait Sender: Clone + Debug + Send + Sync + 'static {
+trait BaselineSender: Clone + Debug + Send + Sync + 'static {
     /// Its name.
     const BASELINE: Baseline;
 
@@ -60,18 +60,18 @@ trait Sender: Clone + Debug + Send + Sync + 'static {
 }
 
 /// One of them as a mode.
-struct Other<S>(PhantomData<S>);
+struct BaselineMethod<S>(PhantomData<S>);
 
-impl<S: Sender> BaselineMethod for Other<S> {
+impl<S: BaselineSender> RenderingMethod for BaselineMethod<S> {
     const NAME: &'static str = S::BASELINE.name();
     const ABOUT: &'static str = "a method of others";
 
     fn follower(settings: &ImpedanceSettings, delay_ticks: usize) -> Option<Box<dyn FollowerEnd>> {
-        Some(Box::new(AtFollower { scales: settings.scales, sender: S::new(settings.rate_hz, delay_ticks) }))
+        Some(Box::new(BaselineFollower { scales: settings.scales, sender: S::new(settings.rate_hz, delay_ticks) }))
     }
 
     fn leader(settings: &ImpedanceSettings) -> Box<dyn LeaderEnd> {
-        Box::new(AtLeader {
+        Box::new(BaselineLeader {
             scales: settings.scales,
             period_s: settings.rate_hz.recip(),
             controller: Controller::new(settings.rate_hz),
@@ -81,12 +81,12 @@ impl<S: Sender> BaselineMethod for Other<S> {
 
 /// The follower's part.
 #[derive(Clone, Debug)]
-struct AtFollower<S> {
+struct BaselineFollower<S> {
     scales: Scales,
     sender: S,
 }
 
-impl<S: Sender> FollowerEnd for AtFollower<S> {
+impl<S: BaselineSender> FollowerEnd for BaselineFollower<S> {
     /// There is memory for one of all baselines.
     fn serves(&self, modes: ModeSet) -> bool {
         modes.baseline().is_some()
@@ -112,14 +112,14 @@ impl<S: Sender> FollowerEnd for AtFollower<S> {
 
 /// The leader's part, the same for all of them: what came says what to make of it.
 #[derive(Clone, Debug)]
-struct AtLeader {
+struct BaselineLeader {
     scales: Scales,
     period_s: f64,
-    controller: Controller,
+    controller: PassivityController,
 }
 
-impl LeaderEnd for AtLeader {
-    fn render(&mut self, moment: &AnchoredMoment<'_>) -> Option<Lanes> {
+impl LeaderEnd for BaselineLeader {
+    fn render(&mut self, moment: &LeaderInput<'_>) -> Option<Lanes> {
         moment.parcel.modes.baseline()?;
         let own = moment.now.motion(&self.scales);
         let force = match &moment.parcel.models.baseline {

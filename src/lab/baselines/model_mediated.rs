@@ -17,7 +17,7 @@ use nima_core::{
 };
 
 use crate::{
-    Sender, kept,
+    BaselineSender, kept,
     rls::{Rls, dot},
 };
 
@@ -85,7 +85,7 @@ fn power(depth: f64, exponent: f64) -> f64 {
 
 /// A surface and an exponent, with the contact identified for them.
 #[derive(Clone, Debug)]
-struct Candidate {
+struct ModelCandidate {
     contact: HuntCrossleyContact,
     rls: Rls<COLUMNS>,
     error_n: Lanes,
@@ -96,7 +96,7 @@ pub(crate) struct ModelMediated {
     errors_kept: f64,
     every: usize,
     tick: usize,
-    candidates: [Candidate; CANDIDATES],
+    candidates: [ModelCandidate; CANDIDATES],
     range_m: [Lanes; 2],
     envelope: Envelope,
     contact: HuntCrossleyContact,
@@ -144,7 +144,7 @@ impl ModelMediated {
     }
 }
 
-impl Sender for ModelMediated {
+impl BaselineSender for ModelMediated {
     const BASELINE: Baseline = Baseline::ModelMediated;
 
     fn new(rate_hz: f64, _delay_ticks: usize) -> Self {
@@ -153,7 +153,11 @@ impl Sender for ModelMediated {
             errors_kept: kept(ERROR_S, rate_hz),
             every: ((rate_hz / SOLVE_HZ).round() as usize).max(1),
             tick: 0,
-            candidates: std::array::from_fn(|_| Candidate { contact: NONE, rls: rls.clone(), error_n: Lanes::ZERO }),
+            candidates: std::array::from_fn(|_| ModelCandidate {
+                contact: NONE,
+                rls: rls.clone(),
+                error_n: Lanes::ZERO,
+            }),
             range_m: [Lanes::ZERO; 2],
             envelope: Envelope::new(rate_hz),
             contact: NONE,
@@ -191,7 +195,7 @@ impl Sender for ModelMediated {
     }
 }
 
-impl Candidate {
+impl ModelCandidate {
     fn learn(&mut self, motion: &Motion, force_n: Lanes, kept: f64) {
         let columns = columns(&self.contact, motion);
         let error_n = (force_n - dot(&self.contact.parameters, &columns)).map(f64::abs);

@@ -17,16 +17,16 @@ use nima_core::{
     signal::{Lanes, Motion},
 };
 
-use crate::Sender;
+use crate::BaselineSender;
 
 /// The follower's part: energy that the tissue returns.
 #[derive(Clone, Debug)]
-pub(crate) struct Returned {
+pub(crate) struct ReturnedEnergy {
     period_s: f64,
     energy_j: Lanes,
 }
 
-impl Sender for Returned {
+impl BaselineSender for ReturnedEnergy {
     const BASELINE: Baseline = Baseline::Passivity;
 
     fn new(rate_hz: f64, _delay_ticks: usize) -> Self {
@@ -47,14 +47,14 @@ impl Sender for Returned {
 
 /// The leader's part: observer and controller.
 #[derive(Clone, Debug)]
-pub(crate) struct Controller {
+pub(crate) struct PassivityController {
     period_s: f64,
     came_j: Lanes,
     /// `E_in - E_out + E_pc`.
     store_j: Lanes,
 }
 
-impl Controller {
+impl PassivityController {
     pub(crate) fn new(rate_hz: f64) -> Self {
         Self { period_s: rate_hz.recip(), came_j: Lanes::ZERO, store_j: Lanes::ZERO }
     }

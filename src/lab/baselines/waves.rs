@@ -14,7 +14,7 @@ use nima_core::{
     signal::{Lanes, Motion},
 };
 
-use crate::{Sender, kept};
+use crate::{BaselineSender, kept};
 
 /// Wave impedance as a fraction of the force per speed in motion, `sum |(f - mean f) v| / sum v^2`: the publication
 /// leaves it to the task, and a number in N s/m would suit only one device and one unit (chosen on recordings, see
@@ -39,7 +39,7 @@ pub(crate) struct Waves {
     last_n: Lanes,
 }
 
-impl Sender for Waves {
+impl BaselineSender for Waves {
     const BASELINE: Baseline = Baseline::Waves;
 
     fn new(rate_hz: f64, _delay_ticks: usize) -> Self {

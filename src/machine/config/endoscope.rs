@@ -270,7 +270,7 @@ mod tests {
             ("\"both\"", "\"middle\"", "middle"),
             ("0.004", "4.0", "baseline_m is 4"),
             ("view = \"both\"\n", "", "endoscope.view"),
-            ("record = false", "crop_px = [700, 0, 700, 0]", "leave a tenth"),
+            ("record = false", "crop_px = [700, 0, 700, 0]", "leave at least a tenth"),
             ("record = false", "crop_px = [1, 2, 3]", "invalid length 3"),
         ] {
             let report = rig(&WHOLE.replace(from, to)).unwrap_err();

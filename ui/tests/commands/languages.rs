@@ -74,10 +74,10 @@ fn literal(source: &str) -> Option<(String, &str)> {
 fn modules() -> Vec<(PathBuf, String)> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
     let mut files: Vec<PathBuf> = Vec::new();
-    for folder in ["console/text", "words"] {
+    for folder in ["console/text", "report_text"] {
         sources(&root.join(folder), &mut files);
     }
-    for path in ["text", "words"].into_iter().flat_map(of_extras) {
+    for path in ["text", "report_text", "bridge_text", "link_text"].into_iter().flat_map(of_extras) {
         sources(&path, &mut files);
     }
     files.sort();

@@ -72,7 +72,7 @@ fn run(store: &Path, step_n: f64) -> String {
 fn a_run_without_a_screen_prints_how_the_bias_stands() {
     let folder = tempfile::tempdir().unwrap();
     let text = run(folder.path(), 0.0);
-    assert!(text.contains("bias of the wrist sensor: 0.0") && text.contains("good"), "{text}");
+    assert!(text.contains("bias of the wrist sensor: 0.0") && text.contains("passed"), "{text}");
     let text = run(folder.path(), -0.5);
     assert!(text.contains("bias of the wrist sensor: drifted by 0.5"), "{text}");
 }

@@ -95,7 +95,7 @@ fn the_picture_is_shown_with_the_forces_in_it_and_each_of_its_faults_in_words() 
         (EmulatedFault::Black, "Image is black"),
         (EmulatedFault::Torn, "Image is damaged: its end is missing"),
         (EmulatedFault::Late, "ms old"),
-        (EmulatedFault::WrongSize, "Picture is 320 x 180 pixels, not 640 x 360"),
+        (EmulatedFault::WrongSize, "Image is 320 x 180 pixels, not 640 x 360"),
         (EmulatedFault::OtherFormat, "sends image/png, not motion JPEG"),
         (EmulatedFault::Disconnect, "Image is lost: no response from 127.0.0.1"),
     ] {
@@ -152,7 +152,7 @@ fn the_forces_fade_where_the_check_of_the_camera_was_worse_than_ten_pixels() {
     let (_serving, mut faded) = checked(Some(14.0));
     // The gauges next to the image have the same text.
     assert!(comes(&mut faded, TIMEOUT, |harness| {
-        is_painted(harness, "14 px beside the tips") && faint(harness) > faint(&good)
+        is_painted(harness, "14 px or more away from the tips") && faint(harness) > faint(&good)
     }));
 }
 

@@ -38,7 +38,7 @@ use super::{
     best::eighth_power,
     envelope::Envelope,
     messages::{IdentificationReport, LinkPacket, Posture},
-    method::{AnchoredMoment, BaselineMethod, FollowerEnd, LeaderEnd, MethodInput, Place},
+    method::{FollowerEnd, LeaderEnd, LeaderInput, MethodInput, Place, RenderingMethod},
     motion_clock::newest_fraction,
     settings::{ImpedanceSettings, MAX_DELAY_S, ModeSet},
 };
@@ -67,7 +67,7 @@ pub(super) struct MatchedMethod {
     slip: Slip,
 }
 
-impl BaselineMethod for MatchedMethod {
+impl RenderingMethod for MatchedMethod {
     const NAME: &'static str = "matched";
     const ABOUT: &'static str = "parameters alone, the force from the hand's own motion";
     const IS_DAMPED: bool = true;
@@ -91,7 +91,7 @@ impl BaselineMethod for MatchedMethod {
 }
 
 impl LeaderEnd for MatchedMethod {
-    fn render(&mut self, moment: &AnchoredMoment<'_>) -> Option<Lanes> {
+    fn render(&mut self, moment: &LeaderInput<'_>) -> Option<Lanes> {
         moment.parcel.models.matched.force(moment.now, &mut self.slip)
     }
 
@@ -104,7 +104,7 @@ impl LeaderEnd for MatchedMethod {
 #[derive(Clone, Debug)]
 pub(super) struct Nima;
 
-impl BaselineMethod for Nima {
+impl RenderingMethod for Nima {
     const NAME: &'static str = "nima";
     const ABOUT: &'static str = "the paper's columns with a constant, a kept origin and a ridge";
     const HAS_WINDOW: bool = true;
@@ -130,7 +130,7 @@ impl BaselineMethod for Nima {
 }
 
 impl LeaderEnd for Nima {
-    fn render(&mut self, moment: &AnchoredMoment<'_>) -> Option<Lanes> {
+    fn render(&mut self, moment: &LeaderInput<'_>) -> Option<Lanes> {
         moment.parcel.models.nima.force(moment.now, &mut Slip::default())
     }
 }
@@ -277,7 +277,7 @@ impl Learner {
         Some((sent, self.twin.step(sent, posture)))
     }
 
-    /// Goes on without learning: what was learnt stays in force.
+    /// Continues without learning: the learnt parameters stay active.
     fn rest(&mut self, posture: &Posture, sent: Option<&MatchedModel>) {
         self.leader(posture, sent);
         let phase = self.tick % self.every;

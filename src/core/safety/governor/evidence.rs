@@ -1,8 +1,8 @@
-//! Does anybody hold the handle? What a hand can do, and what only a lone handle does.
+//! Decides whether a hand holds the handle, from limits of hands and signs of a released handle.
 //!
 //! *Push*: the handle accelerates along the force faster than a hand moves. *Step*: the force that the hand carried vanishes
 //! faster than a hand changes its own. Both are certain beyond what a voluntary motion reaches, and likely beyond a
-//! fraction of it. *Travel*: the force alone explains the motion over a longer way than that of any hand.
+//! fraction of it. *Travel*: the force alone explains the motion over a longer path than any hand shows.
 
 use nalgebra::SVector;
 
@@ -39,10 +39,10 @@ const CARRIED: f64 = 0.5;
 const PUSHES_S: [f64; 5] = [0.004, 0.006, 0.009, LONG_S, 2.0 * LONG_S];
 const STEPS_S: [[f64; 2]; 4] = [[0.008, 0.005], [0.008, 0.008], [0.010, 0.011], [0.016, 0.014]];
 const LONG_S: f64 = 0.014;
-/// Windows in which the travel is judged, s: the shortest that knows the force.
+/// Windows for judging the travel, s; the shortest usable one decides.
 const TRAVELS_S: [f64; 3] = [LONG_S, 2.0 * LONG_S, 4.0 * LONG_S];
-/// A fit whose readings scatter by more than this fraction of the applied force knows nothing: beyond it, hands whose device reads on a
-/// clock of its own (`nima study hands`) are taken for none.
+/// Largest scatter of a usable fit, as a fraction of the applied force. With 0.4, hands whose device reads on its own clock were mistaken
+/// for released handles (`nima study hands`).
 const SCATTER: f64 = 0.3;
 /// Travel under the force alone that is suspicious above the rare acceleration, and that is certain at any, m. No motion of the study
 /// goes more than 13 mm so.
@@ -83,7 +83,7 @@ struct ForceRun<const D: usize> {
     from_rest: bool,
 }
 
-/// Along and beside the applied force.
+/// Components along and across the applied force.
 #[expect(clippy::struct_field_names, reason = "the unit")]
 struct MotionParts {
     /// Size of the applied force, N.

@@ -1,6 +1,6 @@
 //! The hand's force as the second derivative of [`ObserverHistory::y`]: one parabola, or a parabola whose curvature steps once.
 //!
-//! Each force comes with a bound on its error: the largest that readings in steps can cause (half a step each, all of the worst
+//! Each force has a bound on its error: the largest that readings in steps can cause (half a step each, all of the worst
 //! sign), three deviations of the residuals, or what the inexact times of the readings cause at the present speed, whichever is
 //! largest. So friction that sticks and slips, vibration and inexact times widen the bound instead of looking like a hand. *Scatter* is
 //! the part of the bound that the steps do not explain.
@@ -55,13 +55,13 @@ pub(super) struct Kink<const D: usize> {
 }
 
 /// Bounds on the error of a parameter.
-struct Error {
+struct ErrorBound {
     all: f64,
     /// Part that steps of the reading do not explain.
     scatter: f64,
 }
 
-impl Error {
+impl ErrorBound {
     /// From the bound by steps, the residuals' deviation, the error of each sample by inexact times, and the parameter's deviation for
     /// samples of deviation 1.
     fn of(steps: f64, residual: f64, off: f64, deviation: f64) -> Self {
@@ -112,7 +112,7 @@ impl<const D: usize> ObserverHistory<D> {
         let worst = 0.5 * self.handle.mass_kg * self.handle.step_m * weights;
         // y' = m v + c (x - x_now) + the impulse until now; the last two are none at the newest sample.
         let velocity_m_s = (slope + bend * (2.0 * centred(0) - cubes / squares)) / self.handle.mass_kg;
-        let error = Error::of(worst, residual, self.off_kg_m(end), 1.0 / norm.sqrt());
+        let error = ErrorBound::of(worst, residual, self.off_kg_m(end), 1.0 / norm.sqrt());
         let fit = Parabola {
             hand_n: bend * 2.0,
             error_n: 2.0 * error.all,
@@ -147,7 +147,7 @@ impl<const D: usize> ObserverHistory<D> {
         let error = |sum: Vector4<f64>| {
             let weights = (0..=end).map(|k| (inverse * row(k)).dot(&sum).abs()).sum::<f64>();
             let deviation = sum.dot(&(inverse * sum)).max(0.0).sqrt();
-            Error::of(half_step * weights, residual, off, deviation)
+            ErrorBound::of(half_step * weights, residual, off, deviation)
         };
         let [after, step] = [Vector4::new(0.0, 0.0, 1.0, 1.0), Vector4::w()].map(error);
         let before_n: SVector<f64, D> = solved.row(2).transpose() / (span_s * span_s);

@@ -1,27 +1,27 @@
-//! Last gate: a handle that nobody holds is braked instead of pushed.
+//! Last gate: brakes a released handle instead of pushing it.
 //!
-//! In: the time of the tick (s), the handle's reading (m) and its time, and the force that all other gates let pass (`F_d`, N). Out:
-//! the force for the hand (N), the fraction withheld and why. The governor knows the handle alone: [`FreeHandle`].
+//! Input: the time of the tick (s), the handle's reading (m) with its time (s), and the force that all other gates pass (`F_d`, N).
+//! Output: the force for the hand (N), the withheld fraction and the reason. The only model is that of the handle: [`FreeHandle`].
 //!
 //! The force of the hand on the handle follows from the readings and the applied force at true times ([`observer`], [`fit`]).
-//! [`evidence`] compares it with what a hand can do. Four states follow from that:
+//! [`evidence`] compares this force with the limits of a hand. There are four states:
 //!
 //! - *held*: `F = F_d`. A withheld fraction returns within [`RETURN_S`].
 //! - *doubtful*: the motion is rare for a hand. The force fades, `F = (1 - A) F_d`, no faster than the slew limit. If the handle then
-//!   coasts, nobody holds it; if its motion needs a hand, it is held.
-//! - *let go*: no hand moves so. The force falls to zero at once; then `F = -b v`, at most `|F_d|`, built up within the slew limit.
+//!   coasts, it was released; if its motion requires a hand, it is held.
+//! - *let go*: a hand cannot move like this. The force falls to zero at once; then `F = -b v`, at most `|F_d|`, built up within the slew limit.
 //! - *gone*: the handle has rested for [`GONE_AFTER_S`] after one of the two. No force until a reset.
 //!
-//! Certain, whatever is asked and whatever the evidence says: `|F| <= |F_d|`; while a hand is there `F` has the direction of `F_d`
-//! and changes no faster than the slew limit; once let go, `F . v <= 0` with the estimated `v`. The energy gate before this one
+//! Guaranteed for every request and every evidence: `|F| <= |F_d|`; while a hand is present, `F` has the direction of `F_d`
+//! and changes no faster than the slew limit; after a release, `F . v <= 0` with the estimated `v`. The energy gate before this one
 //! observes the applied force, so its bound holds too.
 //!
-//! A device that reads on a clock of its own gives readings that are up to a period older than their times. How much is measured while the
-//! handle moves, and widens the error of the hand's force; where that says nothing any more, a longer window is asked.
+//! A device that reads on its own clock delivers readings that are up to one period older than their times. This error is measured while
+//! the handle moves and widens the bound on the hand's force; where the bound becomes too wide, a longer window decides.
 //!
-//! Measured, not certain: how far a released handle travels, and how rarely a hand looks like none (`docs/results/release.md`,
-//! `docs/results/hands.md`). Below about 1.5 N a slowly opening hand and a fast voluntary motion look the same; there the handle travels
-//! farther, because a hand that is there must never be braked.
+//! Measured, not guaranteed: the travel of a released handle, and the rate of false alarms (`docs/results/release.md`,
+//! `docs/results/hands.md`). Below about 1.5 N, a slowly opening hand and a fast voluntary motion look the same; there the handle
+//! travels farther, because a present hand must never be braked.
 
 mod evidence;
 mod fit;
@@ -42,12 +42,12 @@ use super::{PLAUSIBLE_N, Reason};
 const BRAKE_OF_MASS: f64 = 0.15;
 /// Below this speed nothing is braked, m/s.
 const STILL_M_S: f64 = 2e-3;
-/// Windows in which the hand's force is judged while the force is withheld, s: the long one once it fits in, for readings that scatter.
+/// Windows for judging the hand's force while no force is applied, s. The long one serves scattered readings, once enough time has passed.
 const JUDGED_S: f64 = 0.009;
 const JUDGED_LONG_S: f64 = 0.028;
 /// A soft grip (400 N/m, 8 N s/m) pulls a handle whose force has vanished by more than friction after this time, s.
 const ANSWER_S: f64 = 0.020;
-/// A finding that lasts so long is no error of one reading, s.
+/// Minimum duration of a finding, s: longer than the effect of one wrong reading.
 const COASTS_S: f64 = 0.0025;
 const PULLS_S: f64 = 0.005;
 /// The brake has stopped a handle after this time, s: seven times `m / b`. Until then an opening hand still touches it.
@@ -73,7 +73,7 @@ pub struct GovernorReading<const D: usize> {
     pub position_m: SVector<f64, D>,
 }
 
-/// What left the governor.
+/// Output of the governor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GovernorOutput<const D: usize> {
     /// Force for the hand, N.
@@ -98,12 +98,12 @@ enum GripState<const D: usize> {
     Gone,
 }
 
-/// What has been seen since a grip became doubtful or was lost; times in s.
+/// Observations since a grip became doubtful or was lost; durations in s.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[expect(clippy::struct_field_names, reason = "the unit")]
 struct Since {
     lasted_s: f64,
-    /// The whole force is withheld.
+    /// Time without any force.
     faded_s: f64,
     pulls_s: f64,
     coasts_s: f64,
@@ -174,7 +174,7 @@ impl<const D: usize> Governor<D> {
         &self.handle
     }
 
-    /// Watches the handle, or lets every force pass. What is withheld returns as to a hand.
+    /// Watches the handle, or passes every force. A withheld force returns gradually.
     pub fn watch(&mut self, on: bool) {
         self.watching = on && self.handle.mass_kg > 0.0;
         self.grip = GripState::Held;
@@ -190,8 +190,8 @@ impl<const D: usize> Governor<D> {
         self.applied_n = SVector::zeros();
     }
 
-    /// The tick is at `t_s` (s), the handle was read there (`None`: unknown, then the grip stays as it is), and all gates before
-    /// let `asked_n` (N) pass. Anything that is not finite gives no force.
+    /// Returns the force for the hand at the tick's time `t_s` (s). `reading`: the newest one; with `None` the grip does not change.
+    /// `asked_n`: the force that all earlier gates passed (N). Values that are not finite result in zero force.
     pub fn step(
         &mut self,
         t_s: f64,
@@ -205,7 +205,7 @@ impl<const D: usize> Governor<D> {
         let reading_is_far = reading.is_some_and(|reading| far(&reading.position_m, FAR_M) || !reading.t_s.is_finite());
         if far(&asked_n, PLAUSIBLE_N) || reading_is_far || !t_s.is_finite() {
             self.observer.forget();
-            // What was withheld at once returns as to a hand.
+            // The force then returns gradually.
             self.applied_n = SVector::zeros();
             self.withheld = 1.0;
             return GovernorOutput { force_n: SVector::zeros(), withheld: 1.0, reason: Reason::NotFinite };
@@ -254,7 +254,7 @@ impl<const D: usize> Governor<D> {
             GripState::Held | GripState::Gone => SVector::zeros(),
             GripState::Doubtful { mut since, force_n, ripe_s } => {
                 let ripe = since.faded_s > ripe_s;
-                // On its way along the force that is gone, strong enough to be told from a slow motion.
+                // It moves along the former force, which was strong enough to distinguish this from a slow motion.
                 let coasting = now.velocity_m_s.dot(&force_n) > OUT_M_S * force_n.norm() && force_n.norm() > COASTING_N;
                 self.notice(&mut since, &past, &now, dt_s, ripe);
                 since.coasts_s = if coasting { since.coasts_s } else { 0.0 };
@@ -270,7 +270,7 @@ impl<const D: usize> Governor<D> {
         }
     }
 
-    /// What the handle does while the force is withheld; a pull counts only once it can be told (`ripe`).
+    /// Observes the handle without force; a pull counts only after it can be distinguished (`ripe`).
     fn notice(&mut self, since: &mut Since, past: &ObserverHistory<D>, now: &Parabola<D>, dt_s: f64, ripe: bool) {
         // A long tick is one look, not many.
         let looked_s = dt_s.min(self.period_s);
@@ -316,18 +316,18 @@ impl<const D: usize> Governor<D> {
             }
             GripState::LetGo(since) => {
                 self.withheld = 1.0;
-                // The first look takes the force off; what follows is the brake's own.
+                // The first tick removes the force; later ticks apply the brake alone.
                 if since.lasted_s <= dt_s {
                     return SVector::zeros();
                 }
-                // What the shorter request takes comes first, so that both together keep the slew limit.
+                // A smaller request uses up part of the slew limit; the brake gets the rest.
                 let max_n = asked_n.norm();
                 let kept_n = within(self.applied_n, max_n);
                 let room_n = (step_n - (kept_n - self.applied_n).norm()).max(0.0);
                 kept_n + within(within(brake_n, max_n) - kept_n, room_n)
             }
             GripState::Doubtful { .. } | GripState::Held => {
-                // What the asked force changes by comes first, so that both together keep the slew limit.
+                // A change of the request uses up part of the slew limit; fading gets the rest.
                 let kept_n = asked_n * (1.0 - self.withheld);
                 let room_n = (step_n - (kept_n - self.applied_n).norm()).max(0.0);
                 let change = (room_n / asked_n.norm().max(1e-9)).min(1.0);

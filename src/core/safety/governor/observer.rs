@@ -27,17 +27,17 @@ const SPACING_S: f64 = 0.4e-3;
 const GAP_S: f64 = 0.010;
 /// A handle that moved by this many steps of the reading moves on by at least one; a reading that repeats the one before is old.
 const MOVES_STEPS: f64 = 3.0;
-/// Shortest time between two readings in which such a motion must show, s, and the longest for which an old reading is passed over.
+/// Shortest time between two readings in which such a motion must show, s, and longest time for which old readings are ignored.
 const SHOWS_S: f64 = 0.7e-3;
 const OLD_S: f64 = 5e-3;
 /// The times of readings are judged while the handle moves faster than this, m/s, and over spacings up to this, s.
 const MOVES_M_S: f64 = 0.01;
 const CLOSE_S: f64 = 6e-3;
-/// A hand bends the path between readings no more than this acceleration does, m/s^2.
+/// Largest acceleration of a hand, m/s^2, which bends the path between readings (see `HAND_M_S2`).
 const BENDS_M_S2: f64 = 6.0;
-/// The largest error of the times is remembered for this time, s: longer than two clocks of 1 kHz need to drift apart by a period.
+/// Time constant for forgetting the largest error, s. Clocks of 1 kHz that differ by 100 ppm need 10 s to drift apart by one period.
 const REMEMBERED_S: f64 = 60.0;
-/// Least mass that is believed, kg: a lighter handle moves farther in a tick than can be judged.
+/// Smallest plausible mass, kg: a lighter handle moves farther in a tick than can be judged.
 const MIN_KG: f64 = 0.01;
 
 #[derive(Clone, Copy, Debug)]

@@ -375,7 +375,7 @@ mod tests {
         assert!(message("a,b\n1e300,2\n", "a", "b").contains("line 2, column \"a\""));
         assert!(message("a,b\n1\n", "a", "b").contains("line"));
         assert!(message("a,b\n1,2\n", "a", "a").contains("twice"));
-        assert!(message("a,b\n", "a", "b").contains("0 rows"));
+        assert!(message("a,b\n", "a", "b").contains("too few rows: 0"));
         assert!(message("", "a", "b").contains("no column"));
         let absent = DataSet::read(&[PathBuf::from("/nowhere/d.csv")], &Selection::default()).unwrap_err();
         assert!(absent.to_string().contains("/nowhere/d.csv"));

@@ -41,7 +41,7 @@ pub(crate) fn head_ui(ui: &mut Ui, past: &Playback) -> bool {
     Panel::top("past").exact_size(HEAD).resizable(false).frame(frame).show(ui, |ui| {
         let ink = colours.background;
         ui.horizontal_centered(|ui| {
-            let word = RichText::new(text::playback::PAST.get()).font(theme::strong(30.0)).color(ink);
+            let word = RichText::new(text::playback::PAST.get()).font(theme::strong(20.0)).color(ink);
             ui.label(word).on_hover_text(text::playback::PAST_HOVER.get());
             ui.add_space(8.0);
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {

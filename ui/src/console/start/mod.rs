@@ -169,7 +169,7 @@ impl StartPage {
                     }
                 }
             }
-            let elsewhere = Button::new(text::start::ELSEWHERE.get()).min_size(vec2(ui.available_width(), 32.0));
+            let elsewhere = Button::new(text::start::ELSEWHERE.get()).small();
             let elsewhere = ui.add_enabled(self.picking.is_none(), elsewhere);
             if elsewhere.on_hover_text(text::start::ELSEWHERE_HOVER.get()).clicked() {
                 let kind = [text::start::RIG_FILES.get(), "toml"];

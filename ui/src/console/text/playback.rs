@@ -55,7 +55,7 @@ pub(in crate::console) const DELETE_NOW: Text = Text::of("Delete it?", "Löschen
 pub(in crate::console) const DELETE_NOW_HOVER: Text =
     Text::of("Deletes the file permanently", "Löscht die Datei endgültig");
 pub(in crate::console) const BACK: Text = Text::of("Back to the view", "Zurück zur Ansicht");
-pub(in crate::console) const ELSEWHERE: Text = Text::of("Open file...", "Datei öffnen...");
+pub(in crate::console) const ELSEWHERE: Text = Text::of("Open file…", "Datei öffnen…");
 pub(in crate::console) const ELSEWHERE_HOVER: Text = Text::of(
     "Opens a session from any folder; the list has only those in yours",
     "Öffnet eine Sitzung aus einem beliebigen Ordner; die Liste enthält nur die in Ihrem",

@@ -36,7 +36,7 @@ pub(in crate::console) const PLUGGED_HOVER: Text = Text::of(
 pub(in crate::console) const RECENT: Text = Text::of("Recent", "Zuletzt");
 pub(in crate::console) const BUILT_IN: Text = Text::of("Built in", "Eingebaut");
 pub(in crate::console) const YOURS: Text = Text::of("Yours", "Eigene");
-pub(in crate::console) const ELSEWHERE: Text = Text::of("Open file...", "Datei öffnen...");
+pub(in crate::console) const ELSEWHERE: Text = Text::of("Open file…", "Datei öffnen…");
 pub(in crate::console) const ELSEWHERE_HOVER: Text =
     Text::of("Chooses a rig file from any folder", "Wählt eine Aufbaudatei aus einem beliebigen Ordner");
 /// The kind of file in the system's dialog.

@@ -92,7 +92,7 @@ pub(in crate::extras::user_studies) const MAX: Text = Text::of("Maximum practice
 pub(in crate::extras::user_studies) const UNDER: Text = Text::of("Under", "Unter");
 pub(in crate::extras::user_studies) const IN_TURN: Text = Text::of("each condition in turn", "jeder Bedingung reihum");
 pub(in crate::extras::user_studies) const NOT_REACHED: Text =
-    Text::of("Participants who do not meet the criterion", "Wer das Kriterium verfehlt,");
+    Text::of("Participants who fail", "Wer das Kriterium verfehlt,");
 pub(in crate::extras::user_studies) const GOES_ON: Text = Text::of("continue", "macht weiter");
 pub(in crate::extras::user_studies) const EXCLUDED: Text = Text::of("are excluded", "wird ausgeschlossen");
 pub(in crate::extras::user_studies) const BREAKS: Text = Text::of("Breaks", "Pausen");

@@ -74,7 +74,7 @@ impl<S: BaselineSender> RenderingMethod for BaselineMethod<S> {
         Box::new(BaselineLeader {
             scales: settings.scales,
             period_s: settings.rate_hz.recip(),
-            controller: Controller::new(settings.rate_hz),
+            controller: PassivityController::new(settings.rate_hz),
         })
     }
 }

@@ -2,7 +2,7 @@ use nalgebra::Vector3;
 use nima_core::impedance::{HuntCrossleyContact, Identifier, Mode, Renderer, Sample, Wave};
 use proptest::prelude::*;
 
-use super::{passivity::Controller, *};
+use super::{passivity::PassivityController, *};
 
 const RATE_HZ: f64 = 1000.0;
 
@@ -100,8 +100,8 @@ fn a_wave_is_decoded_to_the_force_and_the_change_of_speed() {
 /// Presses a spring of 500 N/m behind a link of `delay` ticks 8 mm deep twice per second for 4 s. Returns the energy
 /// given to the hand (without the hand's own work) and the energy that the tissue returned, J.
 fn cycled(delay: usize, controlled: bool) -> [f64; 2] {
-    let mut follower = Returned::new(RATE_HZ, 0);
-    let mut controller = Controller::new(RATE_HZ);
+    let mut follower = ReturnedEnergy::new(RATE_HZ, 0);
+    let mut controller = PassivityController::new(RATE_HZ);
     let mut sent = Vec::new();
     let mut got_j = 0.0;
     for k in 0..4000 {
@@ -132,7 +132,7 @@ fn passivity_takes_the_energy_that_a_delay_makes() {
 
 #[test]
 fn the_controller_only_ever_takes() {
-    let mut controller = Controller::new(RATE_HZ);
+    let mut controller = PassivityController::new(RATE_HZ);
     let mut taken = 0;
     for k in 0..5000 {
         let t = f64::from(k) * 1e-3;

@@ -105,7 +105,7 @@ fn what_cannot_start_is_told_and_what_ran_before_runs_again() {
     pick(&mut harness, "Bare rig");
     std::fs::remove_file(&path).unwrap();
     pick(&mut harness, "Start");
-    harness.get_by_label_contains("Not started: there is no rig");
+    harness.get_by_label_contains("Not started: unknown rig");
     assert_eq!(harness.state().running(), &RigChoice::default());
     pick(&mut harness, "Back");
     until(&mut harness, "it was never ended", |tick| tick.state == LoopState::Engaged);

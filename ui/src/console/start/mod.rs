@@ -144,6 +144,15 @@ impl StartPage {
         start
     }
 
+    fn elsewhere_ui(&mut self, ui: &mut Ui) {
+        let button = ui.add_enabled(self.picking.is_none(), Button::new(text::start::ELSEWHERE.get()).small());
+        if button.on_hover_text(text::start::ELSEWHERE_HOVER.get()).clicked() {
+            let kind = [text::start::RIG_FILES.get(), "toml"];
+            let folder = self.folder.as_deref();
+            self.picking = Some(Picking::open(ui.ctx(), text::start::ELSEWHERE.get(), kind, folder));
+        }
+    }
+
     fn rigs_ui(&mut self, ui: &mut Ui, now: &StartInputs<'_>) {
         let mut chosen = None;
         card(ui, text::start::RIGS.get(), text::start::RIGS_HOVER.get(), |ui| {
@@ -159,22 +168,20 @@ impl StartPage {
                 }
             }
             for (heading, own) in [(text::start::BUILT_IN.get(), false), (text::start::YOURS.get(), true)] {
-                let rigs: Vec<_> = self.lists.rigs.iter().filter(|entry| entry.own == own).collect();
+                let rigs: Vec<_> = self.lists.rigs.iter().filter(|entry| entry.own == own).cloned().collect();
                 if !rigs.is_empty() {
-                    ui.label(small(heading));
+                    ui.horizontal(|ui| {
+                        ui.label(small(heading));
+                        if !own {
+                            ui.with_layout(Layout::right_to_left(Align::Center), |ui| self.elsewhere_ui(ui));
+                        }
+                    });
                 }
-                for entry in rigs {
+                for entry in &rigs {
                     if entry_ui(ui, entry, self.chosen.rig == entry.key, now.running.rig == entry.key) {
                         chosen = Some(self.chosen.with_rig(&entry.key));
                     }
                 }
-            }
-            let elsewhere = Button::new(text::start::ELSEWHERE.get()).small();
-            let elsewhere = ui.add_enabled(self.picking.is_none(), elsewhere);
-            if elsewhere.on_hover_text(text::start::ELSEWHERE_HOVER.get()).clicked() {
-                let kind = [text::start::RIG_FILES.get(), "toml"];
-                let folder = self.folder.as_deref();
-                self.picking = Some(Picking::open(ui.ctx(), text::start::ELSEWHERE.get(), kind, folder));
             }
         });
         if let Some(path) = Picking::take(&mut self.picking) {

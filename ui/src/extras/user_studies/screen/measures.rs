@@ -70,6 +70,8 @@ pub(super) fn measures_ui(ui: &mut Ui, draft: &mut Draft) {
         ui.label(weak(text::study_form::SECONDARY.get()));
         let mut gone = None;
         ui.horizontal_wrapped(|ui| {
+            // A wider row above must not carry these beyond the window.
+            ui.set_max_width(ui.available_width().min(SECONDARY_WIDTH));
             for (at, key) in file.secondary.iter().enumerate() {
                 let button = ui.add(Button::new(text::study_form::leave_off(key)));
                 if button.on_hover_text(text::study_form::leave_off_hover(&meaning(measures, key))).clicked() {
@@ -86,6 +88,9 @@ pub(super) fn measures_ui(ui: &mut Ui, draft: &mut Draft) {
         file.secondary.extend(chosen);
     });
 }
+
+/// Width within which the secondary measures wrap, points: a third of the smallest window.
+const SECONDARY_WIDTH: f32 = 300.0;
 
 /// Rules that exclude trials and participants.
 pub(super) fn exclusion_ui(ui: &mut Ui, draft: &mut Draft) {

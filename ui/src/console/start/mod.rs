@@ -145,7 +145,8 @@ impl StartPage {
     }
 
     fn elsewhere_ui(&mut self, ui: &mut Ui) {
-        let button = ui.add_enabled(self.picking.is_none(), Button::new(text::start::ELSEWHERE.get()).small());
+        let button = ui
+            .add_enabled(self.picking.is_none(), Button::new(text::start::ELSEWHERE.get()).min_size(theme::STOP_SIZE));
         if button.on_hover_text(text::start::ELSEWHERE_HOVER.get()).clicked() {
             let kind = [text::start::RIG_FILES.get(), "toml"];
             let folder = self.folder.as_deref();
@@ -168,16 +169,11 @@ impl StartPage {
                 }
             }
             for (heading, own) in [(text::start::BUILT_IN.get(), false), (text::start::YOURS.get(), true)] {
-                let rigs: Vec<_> = self.lists.rigs.iter().filter(|entry| entry.own == own).cloned().collect();
+                let rigs: Vec<_> = self.lists.rigs.iter().filter(|entry| entry.own == own).collect();
                 if !rigs.is_empty() {
-                    ui.horizontal(|ui| {
-                        ui.label(small(heading));
-                        if !own {
-                            ui.with_layout(Layout::right_to_left(Align::Center), |ui| self.elsewhere_ui(ui));
-                        }
-                    });
+                    ui.label(small(heading));
                 }
-                for entry in &rigs {
+                for entry in rigs {
                     if entry_ui(ui, entry, self.chosen.rig == entry.key, now.running.rig == entry.key) {
                         chosen = Some(self.chosen.with_rig(&entry.key));
                     }
@@ -321,6 +317,7 @@ impl StartPage {
             if ui.add_enabled(!now.is_starting, back).on_hover_text(text::start::BACK_HOVER.get()).clicked() {
                 self.is_open = false;
             }
+            self.elsewhere_ui(ui);
             ui.vertical(|ui| {
                 let [rig, scene] = [(&self.lists.rigs, &self.chosen.rig), (&self.lists.scenes, &self.chosen.scene)]
                     .map(|(list, key)| name_in(list, key));

@@ -145,8 +145,11 @@ impl StartPage {
     }
 
     fn elsewhere_ui(&mut self, ui: &mut Ui) {
-        let button = ui
-            .add_enabled(self.picking.is_none(), Button::new(text::start::ELSEWHERE.get()).min_size(theme::STOP_SIZE));
+        // At the right edge, below the shortest column.
+        let corner = ui.max_rect().right_top() - vec2(theme::STOP_SIZE.x, 0.0);
+        let place = egui::Rect::from_min_size(corner, theme::STOP_SIZE);
+        let button = Button::new(text::start::ELSEWHERE.get());
+        let button = ui.add_enabled_ui(self.picking.is_none(), |ui| ui.put(place, button)).inner;
         if button.on_hover_text(text::start::ELSEWHERE_HOVER.get()).clicked() {
             let kind = [text::start::RIG_FILES.get(), "toml"];
             let folder = self.folder.as_deref();
@@ -317,7 +320,6 @@ impl StartPage {
             if ui.add_enabled(!now.is_starting, back).on_hover_text(text::start::BACK_HOVER.get()).clicked() {
                 self.is_open = false;
             }
-            self.elsewhere_ui(ui);
             ui.vertical(|ui| {
                 let [rig, scene] = [(&self.lists.rigs, &self.chosen.rig), (&self.lists.scenes, &self.chosen.scene)]
                     .map(|(list, key)| name_in(list, key));
@@ -329,6 +331,7 @@ impl StartPage {
                     ui.add(Label::new(report).wrap());
                 }
             });
+            self.elsewhere_ui(ui);
         });
         start
     }

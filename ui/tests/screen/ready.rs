@@ -28,7 +28,7 @@ fn the_list_is_gone_through_by_the_person_at_the_screen_and_the_one_at_the_arm()
     until(&mut console, "a tick", |tick| tick.state == LoopState::Idle);
     press(&mut console, "Ready check…");
     read(&mut console, "Checked by");
-    read(&mut console, "Devices present and steady: left out, this rig is simulated");
+    read(&mut console, "Devices present and steady: skipped, this rig is simulated");
     // The simulated person obeys the instructions at the arm; the stop is pressed here.
     read(&mut console, "Press Stop");
     assert!(shows(&console, "Right arm: direction of the force: "), "the push was made");
@@ -47,7 +47,7 @@ fn the_list_is_gone_through_by_the_person_at_the_screen_and_the_one_at_the_arm()
     read(&mut console, "Saved in ");
     let record = Store::open(folder.path().join("calibrations")).last_check("Simulated rig").unwrap();
     assert!(record.passed && record.items.iter().all(|item| item.outcome != PointOutcome::Failed), "{record:?}");
-    press(&mut console, "Back to the monitor");
+    press(&mut console, "Continue to the monitor");
     assert!(!shows(&console, "Checked by"));
 }
 

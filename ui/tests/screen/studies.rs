@@ -199,7 +199,7 @@ fn scene_task_measures_and_rules_are_made_in_the_form_and_both_tips_are_seen_fro
     choose(&mut window, "Primary measure", "idle_time_s: How long both hands rested");
     choose(&mut window, "Add measure", "drops: How often a ring was dropped");
     choose(&mut window, "Add measure", "drops: How often a ring was dropped");
-    let rules = window.query_all_by_label_contains(": leaves out").count();
+    let rules = window.query_all_by_label_contains(": excludes").count();
     for number in (1..=rules).rev() {
         pick(&mut window, &format!("Rule {number}: Remove"));
     }
@@ -207,7 +207,7 @@ fn scene_task_measures_and_rules_are_made_in_the_form_and_both_tips_are_seen_fro
     pick(&mut window, "Add rule");
     choose(&mut window, "Rule 1: Measure", "trial_time_s: How long the trial lasted");
     choose(&mut window, "Rule 1: is", "below");
-    choose(&mut window, "Rule 1: leaves out", "the participant");
+    choose(&mut window, "Rule 1: excludes", "the participant");
     set(&mut window, "Rule 1: from this many times", 2.0);
     pick(&mut window, "Create study");
     for mistake in ["time_limit_s = 0", "drops occurs twice", "exclusion 1: limit is missing"] {
@@ -260,7 +260,7 @@ fn twelve_trials_with_one_given_up_one_stopped_and_a_power_cut_lose_nothing_else
                 begin(&mut window, "Start the trial");
                 press(&mut window, "Abort this trial");
                 press(&mut window, "Abort now?");
-                read(&mut window, "Trial 3: broken off (given up by the operator)");
+                read(&mut window, "Trial 3: aborted (given up by the operator)");
             }
             6 => {
                 begin(&mut window, "Start the trial");
@@ -271,7 +271,7 @@ fn twelve_trials_with_one_given_up_one_stopped_and_a_power_cut_lose_nothing_else
                     "the stop stays on the screen"
                 );
                 press(&mut window, "Release stop");
-                read(&mut window, "Trial 6: broken off (stopped by the operator)");
+                read(&mut window, "Trial 6: aborted (stopped by the operator)");
             }
             9 => {
                 begin(&mut window, "Start the trial");
@@ -355,7 +355,7 @@ fn questionnaires_break_notes_exclusion_unblinding_and_report_are_done_on_the_sc
     pick(&mut window, "Trial 2");
     write_into(&mut window, "Reason", "a telephone rang");
     pick(&mut window, "Exclude");
-    read(&mut window, "P01, trial 2: left out");
+    read(&mut window, "P01, trial 2: excluded");
     pick(&mut window, "Write the report");
     read(&mut window, "Written: ");
     assert!(!can_press(&window, "Unblind the study"), "neither name nor reason");

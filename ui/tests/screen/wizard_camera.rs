@@ -86,18 +86,18 @@ fn a_technician_finds_the_lens_from_live_views_saves_it_and_undoes_it() {
     let mut bench = Fixture::new();
     let (mut console, rig) = bench.console(folder.path(), [1280.0, 720.0]);
     until(&mut console, "any tick", |_| true);
-    read(&mut console, "Picture: fine");
+    read(&mut console, "Image: passed");
     pick(&mut console, "Next");
     read(&mut console, "Hold the board straight in front of the lens");
     assert!(!can_press(&console, "Next"), "there are no views yet");
     for number in 0..18 {
         bench.hold(number);
-        read(&mut console, &format!("{} taken;", number + 1));
+        read(&mut console, &format!("{} captured;", number + 1));
     }
     read(&mut console, "All views captured");
     language::fits(&mut console, "views");
     pick(&mut console, "Remove the last view");
-    read(&mut console, "18 taken;");
+    read(&mut console, "18 captured;");
     pick(&mut console, "Next");
     read(&mut console, "Accepted: it predicts held-out views");
     language::fits(&mut console, "lens");

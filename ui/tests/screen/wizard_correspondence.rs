@@ -49,11 +49,11 @@ fn nine_pushes_as_asked_end_in_a_saved_correspondence_and_more_may_follow() {
     let mut harness = console(Scene::load("peg_transfer").unwrap(), folder.path(), Calibrations::default());
     pick(&mut harness, "Calibrate correspondence…");
     pick(&mut harness, "Next");
-    read(&mut harness, "Pushes: 2 recorded of 9");
+    read(&mut harness, "Pushes: 2 recorded, at least 9 needed");
     pick(&mut harness, "Remove the last push");
-    read(&mut harness, "Pushes: 1 recorded of 9");
+    read(&mut harness, "Pushes: 1 recorded, at least 9 needed");
     assert!(!can_press(&harness, "Next"), "one push is no calibration");
-    read(&mut harness, "Pushes: 9 recorded of 9");
+    read(&mut harness, "Pushes: 9 recorded, at least 9 needed");
     language::fits(&mut harness, "pushes");
     pick(&mut harness, "Next");
     read(&mut harness, "Euler cross-check");
@@ -78,7 +78,7 @@ fn nine_pushes_as_asked_end_in_a_saved_correspondence_and_more_may_follow() {
     // Saving restarted the loop and its clock: the pushes continue.
     pick(&mut harness, "Back");
     pick(&mut harness, "Back");
-    read(&mut harness, &format!("Pushes: {} recorded of 9", record.pairs + 1));
+    read(&mut harness, &format!("Pushes: {} recorded, at least 9 needed", record.pairs + 1));
 }
 
 #[test]
@@ -87,7 +87,7 @@ fn without_gravity_no_push_is_asked_for() {
     let mut harness = console(Scene::load("peg_transfer").unwrap(), folder.path(), Calibrations::default());
     pick(&mut harness, "Calibrate correspondence…");
     read(&mut harness, "Gravity is not calibrated: calibrate it first");
-    read(&mut harness, "Force under the tissue: fine");
+    read(&mut harness, "Force under the tissue: passed");
     let from = Instant::now();
     while from.elapsed() < Duration::from_secs(1) {
         harness.step();
@@ -138,7 +138,7 @@ fn a_sensor_of_the_opposite_sign_is_named_and_the_switch_cures_it_without_new_pu
         console(scene.clone(), folder.path(), Calibrations { gravity: Some(record.model), ..Calibrations::default() });
     pick(&mut harness, "Calibrate correspondence…");
     pick(&mut harness, "Next");
-    read(&mut harness, "Pushes: 9 recorded of 9");
+    read(&mut harness, "Pushes: 9 recorded, at least 9 needed");
     pick(&mut harness, "Next");
     read(&mut harness, "opposite forces");
     pick(&mut harness, "Back");
@@ -161,5 +161,5 @@ fn a_sensor_of_the_opposite_sign_is_named_and_the_switch_cures_it_without_new_pu
     assert!(record.flip_s2 && record.judgement.verdict == Verdict::Accepted, "{}", record.judgement.reason);
     pick(&mut harness, "Start over");
     switch(&mut harness, "No tracker");
-    read(&mut harness, "Arm and tracker (not used): fine");
+    read(&mut harness, "Arm and tracker (not used): passed");
 }

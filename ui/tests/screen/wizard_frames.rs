@@ -103,7 +103,7 @@ fn a_technician_finds_the_tip_sees_the_change_saves_it_and_undoes_it() {
         let (mut console, _emulators, rig) = console(folder.path());
         let wrong_m = shaft_m(&rig);
         press(&mut console, "Calibrate tip…");
-        until(&mut console, "the joints", |c| shows(c, "Joints of the arm: fine"));
+        until(&mut console, "the joints", |c| shows(c, "Joints of the arm: passed"));
         assert!(shows(&console, "put its tip into a dimple"));
         press(&mut console, "Next");
         until(&mut console, "some poses", |c| shows(c, "4 poses; still needed: "));

@@ -171,7 +171,7 @@ fn a_noisy_sensor_is_told_with_its_figure_and_the_way_on_stays_shut() {
     let mut console = console(scene, folder.path());
     pick(&mut console, "Calibrate gravity…");
     wait(&mut console, "the noise", |c| shows(c, "Force noise: 0.3") && shows(c, "check shield and earth"));
-    wait(&mut console, "the good lines", |c| shows(c, "Rate: ") && shows(c, "of the loop's 1000 Hz, fine"));
+    wait(&mut console, "the good lines", |c| shows(c, "Rate: ") && shows(c, "of the loop's 1000 Hz, passed"));
     assert!(!can_press(&console, "Next"));
 }
 

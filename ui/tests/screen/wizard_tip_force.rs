@@ -275,8 +275,8 @@ fn without_a_correspondence_nothing_can_be_recorded() {
     pick(&mut real, "Calibrate tip force…");
     wait(&mut real, "the reason", |window| {
         window.query_by_label_contains("The correspondence is unknown: calibrate it first").is_some()
-            && window.query_by_label_contains("Correspondence: not known; press").is_some()
-            && window.query_by_label_contains("Gravity: fine").is_some()
+            && window.query_by_label_contains("Correspondence: unknown; press").is_some()
+            && window.query_by_label_contains("Gravity: passed").is_some()
     });
     for _ in 0..20 {
         real.step();
@@ -290,10 +290,10 @@ fn work_in_one_place_never_meets_the_goals_and_its_network_needs_a_name() {
     let mut console = Console::new(Some(Flaw::WorksInOnePlace), folder.path());
     console.press("Next");
     console.press("Start recording");
-    console.read("Still to do: reach left, right, near and far (tilt of the shaft)");
+    console.read("To do: reach left, right, near and far (tilt of the shaft)");
     console.record(6500);
     assert!(
-        console.shows("Still to do: reach left") && !console.is_ready("Next"),
+        console.shows("To do: reach left") && !console.is_ready("Next"),
         "all rows, and not enough of the space"
     );
     console.press("Train anyway");

@@ -292,10 +292,7 @@ fn work_in_one_place_never_meets_the_goals_and_its_network_needs_a_name() {
     console.press("Start recording");
     console.read("To do: reach left, right, near and far (tilt of the shaft)");
     console.record(6500);
-    assert!(
-        console.shows("To do: reach left") && !console.is_ready("Next"),
-        "all rows, and not enough of the space"
-    );
+    assert!(console.shows("To do: reach left") && !console.is_ready("Next"), "all rows, and not enough of the space");
     console.press("Train anyway");
     console.train("Small (16)");
     assert!(console.shows("The recording is incomplete (tilt of the shaft)"));

@@ -5,7 +5,7 @@
 //! Numbers vary with the clock of the computer, so each text with a digit is drawn as a bar of its size. Timing and ports of
 //! this computer are covered, and names of temporary folders are missing.
 
-use std::{env, fs, path::Path};
+use std::{env, fs, path::Path, time::Duration};
 
 use egui::{
     Color32, ColorImage, Pos2, Rect, Shape, TextureId, Vec2,
@@ -14,6 +14,8 @@ use egui::{
 use egui_kittest::{Harness, kittest::Queryable as _};
 use image::GrayImage;
 use nima_console::console::theme;
+
+use crate::bench::comes;
 
 /// Points of the window per pixel of a picture, in each direction.
 const SHRUNK: usize = 4;
@@ -26,6 +28,9 @@ const SQUARE: u32 = 4;
 const TOLERANCE: f32 = 12.0;
 /// Colour of the bars instead of texts with a digit.
 const BAR: Color32 = Color32::GRAY;
+
+/// Longest time in which a busy computer finishes drawing.
+const SETTLING_TIME: Duration = Duration::from_secs(20);
 
 /// Difference of the window from its stored picture; `None` if there is none. `UPDATE_SNAPSHOTS=1` stores the new one.
 pub(crate) fn differs<A>(window: &Harness<'_, A>, name: &str) -> Option<String> {
@@ -50,6 +55,12 @@ pub(crate) fn differs<A>(window: &Harness<'_, A>, name: &str) -> Option<String> 
         new.display()
     );
     (!is_meant).then_some(report)
+}
+
+/// The same for a window that may still be drawing: the difference that remains after a while.
+pub(crate) fn still_differs<A>(window: &mut Harness<'_, A>, name: &str) -> Option<String> {
+    comes(window, SETTLING_TIME, |window| differs(window, name).is_none());
+    differs(window, name)
 }
 
 /// Checks that the window looks as in its stored picture.

@@ -166,7 +166,7 @@ def read_recording(
     OSError
         The file cannot be read.
     ValueError
-        A column is missing, a field is not a number, or time does not rise; the error names the line.
+        A column is missing, a field is not a number, or time does not increase; the error names the line.
     """
     return Recording(**_nima.read_recording(path, _map_texts(map), arm))
 
@@ -235,7 +235,7 @@ def identify(
     Raises
     ------
     ValueError
-        Wrong shape, a value that is not finite, a time that does not rise, or a setting out of its range.
+        Wrong shape, a value that is not finite, a time that does not increase, or a setting out of its range.
     """
     axes: list[str] | None = None
     times: Floats | None

@@ -84,7 +84,7 @@ pub(crate) fn rising(times_s: &ArrayView1<'_, f64>) -> PyResult<()> {
         let before_s = if row > 0 { times_s[row - 1] } else { f64::NEG_INFINITY };
         if *now_s <= before_s {
             return Err(value(format_args!(
-                "times_s, row {row}: time does not rise ({before_s} s, then {now_s} s); sort the rows and remove duplicates"
+                "times_s, row {row}: time does not increase ({before_s} s, then {now_s} s); sort the rows and remove duplicates"
             )));
         }
     }

@@ -77,7 +77,7 @@ impl Session {
         let start = from_s.map_or(Ok(0), |from_s| time_ns("from_s", from_s))?;
         let end = to_s.map_or(Ok(u64::MAX), |to_s| time_ns("to_s", to_s))?;
         if start >= end {
-            return Err(value("from_s must lie before to_s"));
+            return Err(value("from_s must be before to_s"));
         }
         Ok(start..end)
     }
@@ -274,7 +274,7 @@ impl Session {
                     let t_s = self.seconds(message.log_time_ns());
                     let Ok(line) = Log::decode(message.data()) else {
                         return Err(value(format_args!(
-                            "the log at {t_s} s holds a line that is none of this program"
+                            "the log at {t_s} s contains a line that this program did not write"
                         )));
                     };
                     let level = format!("{:?}", line.level()).to_lowercase();

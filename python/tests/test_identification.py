@@ -184,7 +184,7 @@ FEW = np.linspace(0.0, 1.0, 500)
         ({"rate_hz": 1000.0, "ridge": -1.0}, "the ridge -1 is out of range"),
         ({"rate_hz": 1000.0, "reading": "sideways"}, "reading: unknown variant `sideways`"),
         ({"rate_hz": 1000.0, "choice": "best"}, "choice: unknown variant `best`"),
-        ({"times_s": np.zeros(500)}, "times_s, row 1: time does not rise (0 s, then 0 s)"),
+        ({"times_s": np.zeros(500)}, "times_s, row 1: time does not increase (0 s, then 0 s)"),
         ({"times_s": np.arange(7.0)}, "times_s has 7 rows, positions_m has 500"),
         ({"rate_hz": 1000.0, "positions_m": np.zeros((500, 4)), "forces_n": np.zeros((500, 4))}, "positions_m has 4 axes"),
         ({"rate_hz": 1000.0, "positions_m": np.zeros((500, 0)), "forces_n": np.zeros((500, 0))}, "positions_m has 0 axes"),

@@ -77,7 +77,7 @@ def test_what_is_wrong_is_one_clear_line(session, tmp_path):
     for call, words in [
         (lambda: reader.ticks(), "two arms: choose one"),
         (lambda: reader.ticks("middle"), 'arm is "middle"; give "right" or "left"'),
-        (lambda: reader.ticks("right", from_s=2.0, to_s=1.0), "from_s must lie before to_s"),
+        (lambda: reader.ticks("right", from_s=2.0, to_s=1.0), "from_s must be before to_s"),
         (lambda: reader.ticks("right", from_s=-1.0), "from_s is -1"),
         (lambda: reader.ticks("right", to_s=float("nan")), "to_s is NaN"),
         (lambda: reader.plot("right/nothing"), "has no channel"),

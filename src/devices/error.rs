@@ -31,7 +31,7 @@ pub enum DeviceError {
         /// Serial number that the device reports; `unknown` if it reports none.
         found: String,
     },
-    #[error("{place} is for the {hand} hand")]
+    #[error("{place} is a {hand}-hand device")]
     OtherHand {
         place: String,
         /// `right` or `left`.
@@ -136,7 +136,7 @@ impl DeviceError {
             Self::WrongBaud { .. } => "Enter the device's speed as `baud` in the rig file.".to_owned(),
             Self::Silent { .. } => "Switch the device on, and check its cable and that it is configured to send.".to_owned(),
             Self::NobodySends { .. } => {
-                "Start the device program and let it send to this address; see docs/external-device.md.".to_owned()
+                "Start the device program and configure it to send to this address; see docs/external-device.md.".to_owned()
             }
             Self::Unheard { .. } => {
                 "Let the program read the socket from which it sends, and open any firewall between the two in both directions."
@@ -153,11 +153,11 @@ impl DeviceError {
                     "Assign the device's destination address ({to}) to this computer, or configure the device to send here."
                 )
             }
-            Self::RefusedLogin { .. } => "Correct user and password in the rig file.".to_owned(),
+            Self::RefusedLogin { .. } => "Correct the user name and password in the rig file.".to_owned(),
             Self::SdkMissing { searched, .. } => {
                 format!("Install the manufacturer's package, or set its folder; searched in {searched}.")
             }
-            Self::SdkUnusable { .. } => "Install the version that the documentation names.".to_owned(),
+            Self::SdkUnusable { .. } => "Install the version named in the documentation.".to_owned(),
             Self::NotReady { cure, .. } | Self::DeviceFault { cure, .. } => cure.clone(),
             Self::Refused { .. } => "Check that the firmware is supported, then reconnect.".to_owned(),
             Self::Setting { allowed, .. } => format!("Correct the rig file: {allowed}."),

@@ -86,7 +86,7 @@ impl Pixels {
 
 /// An address that cannot be used.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("\"{address}\" is not an address of an image source: {why}")]
+#[error("\"{address}\" is not a valid image source: {why}")]
 pub struct AddressError {
     pub address: String,
     /// The fault, and what is possible.
@@ -102,7 +102,7 @@ impl FromStr for Address {
         let shown = || public.chars().take(80).filter(|c| !c.is_control()).collect();
         let wrong = |why| Err(AddressError { address: shown(), why });
         if text.is_empty() {
-            return wrong("give http://HOST:PORT/PATH, rtsp://HOST/PATH, /dev/video0, or the path of a file or folder");
+            return wrong("use http://HOST:PORT/PATH, rtsp://HOST/PATH, /dev/video0, or the path of a file or folder");
         }
         if text.len() > LENGTH_MAX || text.chars().any(char::is_control) {
             return wrong("it is too long, or has characters that no address has");
@@ -127,7 +127,7 @@ impl FromStr for Address {
 fn camera(text: &str) -> Result<Address, &'static str> {
     let (path, settings) = text.split_once('?').unwrap_or((text, ""));
     if !path.starts_with("/dev/") {
-        return Err("give the camera as /dev/video0 or v4l2:/dev/video0?size=1280x720&rate=30");
+        return Err("write the camera as /dev/video0 or v4l2:/dev/video0?size=1280x720&rate=30");
     }
     let mut capture = Capture::default();
     for setting in settings.split('&').filter(|setting| !setting.is_empty()) {
@@ -135,17 +135,17 @@ fn camera(text: &str) -> Result<Address, &'static str> {
             Some(("size", size)) => {
                 let sides = size.split_once('x').and_then(|(a, b)| Some([a.parse().ok()?, b.parse().ok()?]));
                 let sides = sides.filter(|sides: &[usize; 2]| sides.iter().all(|side| (16..=4096).contains(side)));
-                capture.size_px = Some(sides.ok_or("size is WIDTHxHEIGHT, 16 to 4096 pixels each")?);
+                capture.size_px = Some(sides.ok_or("size must be WIDTHxHEIGHT, 16 to 4096 pixels each")?);
             }
             Some(("rate", rate)) => {
                 let rate = rate.parse().ok().filter(|rate| (1..=240).contains(rate));
-                capture.rate_hz = Some(rate.ok_or("rate is 1 to 240 frames per second")?);
+                capture.rate_hz = Some(rate.ok_or("rate must be 1 to 240 frames per second")?);
             }
             Some(("format", name)) => {
                 let pixels = Pixels::ALL.into_iter().find(|pixels| pixels.name() == name);
-                capture.pixels = Some(pixels.ok_or("format is mjpeg, yuyv or nv12")?);
+                capture.pixels = Some(pixels.ok_or("format must be mjpeg, yuyv or nv12")?);
             }
-            _ => return Err("a camera has the settings size, rate and format"),
+            _ => return Err("the settings of a camera are size, rate and format"),
         }
     }
     Ok(Address::Camera { path: path.into(), capture })
@@ -169,7 +169,7 @@ fn endpoint(rest: &str, usual_port: u16) -> Result<Endpoint, &'static str> {
     }
     let sound = |text: &str| text.chars().all(|c| c.is_ascii_graphic());
     if host.is_empty() || !sound(host) || !sound(path) {
-        return Err("give HOST:PORT/PATH, without blanks");
+        return Err("use HOST:PORT/PATH, without spaces");
     }
     let path = if path.starts_with('/') { path.to_owned() } else { format!("/{path}") };
     Ok(Endpoint { host: host.to_owned(), port, path, login })
@@ -269,7 +269,7 @@ mod tests {
     #[test]
     fn what_cannot_be_used_is_told_in_one_line() {
         for (text, word) in [
-            ("", "give http"),
+            ("", "use http"),
             ("rtmp://cam/stream", "only http"),
             ("rtsp://", "HOST"),
             ("v4l2:video0", "/dev/video0"),
@@ -284,7 +284,7 @@ mod tests {
             ("http://cam:0/", "1 to 65535"),
             ("http://cam:70000/", "1 to 65535"),
             ("http:///stream", "HOST"),
-            ("http://cam/a b", "blanks"),
+            ("http://cam/a b", "spaces"),
             ("http://cam/a\r\nX: y", "characters"),
         ] {
             let report = text.parse::<Address>().unwrap_err().to_string();

@@ -35,14 +35,14 @@ pub struct Checkerboard {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum BoardError {
     /// Not written as two numbers.
-    #[error("\"{0}\" is not a board size; give its inner corners, such as 9x6")]
+    #[error("\"{0}\" is not a board size; enter the number of inner corners, such as 9x6")]
     Text(String),
     /// A side has too few or too many corners.
-    #[error("a board cannot have {0} inner corners along a side; give {min} to {max}", min = CORNERS.start(), max = CORNERS.end())]
+    #[error("a board cannot have {0} inner corners along a side; use {min} to {max}", min = CORNERS.start(), max = CORNERS.end())]
     Corners(usize),
-    #[error("a board of {0}x{1} inner corners looks the same upside down; give an odd and an even number, such as 9x6")]
+    #[error("a board of {0}x{1} inner corners looks the same upside down; use an odd and an even number, such as 9x6")]
     Ambiguous(usize, usize),
-    #[error("squares cannot have a side of {0} mm; give {min} to {max} mm", min = SQUARE_M.start() * 1e3, max = SQUARE_M.end() * 1e3)]
+    #[error("squares cannot have a side of {0} mm; use {min} to {max} mm", min = SQUARE_M.start() * 1e3, max = SQUARE_M.end() * 1e3)]
     Square(f64),
 }
 
@@ -229,8 +229,8 @@ mod tests {
     #[test]
     fn a_board_that_cannot_be_told_from_itself_is_refused() {
         for (text, square_m, word) in [
-            ("9", 0.01, "give its inner corners"),
-            ("axb", 0.01, "give its inner corners"),
+            ("9", 0.01, "enter the number of inner corners"),
+            ("axb", 0.01, "enter the number of inner corners"),
             ("2x5", 0.01, "3 to 40"),
             ("9x7", 0.01, "upside down"),
             ("8x8", 0.01, "upside down"),

@@ -10,7 +10,7 @@ pub enum EndoscopeError {
     Unreachable { place: String },
     #[error("unknown host name in {place}")]
     NoSuchName { place: String },
-    #[error("{place} answers with the status {status}")]
+    #[error("{place} responds with status {status}")]
     Refused { place: String, status: u16 },
     #[error("{place} sends {found}, not {wanted}")]
     OtherFormat { place: String, found: String, wanted: &'static str },
@@ -55,48 +55,48 @@ impl EndoscopeError {
     pub fn cure(&self) -> &'static str {
         match self {
             Self::NobodyListens { .. } => {
-                "Correct the port in the rig file, or wait until the program that sends the picture has started."
+                "Correct the port in the rig file, or wait until the program that sends the image has started."
             }
             Self::Unreachable { .. } => {
                 "Check the cable and that this computer has an address in the network of the endoscope."
             }
-            Self::NoSuchName { .. } => "Correct the name in the rig file, or give an address in numbers.",
+            Self::NoSuchName { .. } => "Correct the host name in the rig file, or enter a numeric address.",
             Self::Refused { status: 401 | 403, .. } => {
-                "Put user and password of the camera into its address in the rig file, as in http://USER:PASSWORD@HOST/PATH, or correct them."
+                "Add the camera's user name and password to its address in the rig file, as in http://USER:PASSWORD@HOST/PATH, or correct them."
             }
             Self::Refused { status: 404, .. } => "Correct the path in the rig file: the camera has no such page.",
-            Self::Refused { .. } => "Correct the address in the rig file, or start the camera again.",
+            Self::Refused { .. } => "Correct the address in the rig file, or restart the camera.",
             Self::OtherFormat { wanted: "H.264", .. } => {
                 "Set the camera to H.264, or correct the path in the rig file."
             }
             Self::OtherFormat { .. } => "Set the camera to motion JPEG (MJPEG), or correct the path in the rig file.",
             Self::Unreadable { .. } => {
-                "Correct the port in the rig file: another program answers there, or the camera does not keep to its protocol."
+                "Correct the port in the rig file: another program answers there, or the camera does not follow the protocol."
             }
-            Self::Silent { .. } => "Switch the camera on, and check that it sends a picture to a browser.",
-            Self::Closed { .. } => "Nothing is to be done: it is opened again at once and then twice a second.",
+            Self::Silent { .. } => "Switch the camera on, and check that a browser shows its image.",
+            Self::Closed { .. } => "No action is needed: the console reconnects at once, then tries twice per second.",
             Self::NoCamera { .. } => {
                 "Plug the camera in, or correct its path in the rig file: `nima devices` lists cameras."
             }
-            Self::Busy { .. } => "Close the other program that shows this camera.",
+            Self::Busy { .. } => "Close the other program that uses this camera.",
             Self::NoPermission { .. } => {
                 "Add this user to the group video (`sudo usermod -aG video $USER`), then log out and in."
             }
-            Self::NotCamera { .. } => "Name a device that takes pictures: `nima devices` lists cameras.",
+            Self::NotCamera { .. } => "Enter the path of a camera: `nima devices` lists cameras.",
             Self::NoSuchFormat { .. } => {
-                "Leave `format` out of the address; a camera without motion JPEG, NV12 and YUYV cannot be used."
+                "Omit `format` from the address; the camera must offer motion JPEG, NV12 or YUYV."
             }
-            Self::NoSuchSize { .. } => "Give a size that the camera has, in the address in the rig file.",
+            Self::NoSuchSize { .. } => "Choose a size that the camera offers, in its address in the rig file.",
             Self::NoBandwidth { .. } => {
-                "Plug it into its own USB port, without a hub, or set a smaller size or rate in the address."
+                "Connect the camera to its own USB port, without a hub, or set a smaller size or rate in the address."
             }
-            Self::Unplugged { .. } => "Plug the camera in again: it is opened again by itself.",
+            Self::Unplugged { .. } => "Plug the camera in again: it reconnects automatically.",
             Self::NoPictures { .. } => {
-                "Check that a signal arrives at the capture card, and the cable of the camera; then plug it in again."
+                "Check the signal at the capture card and the camera's cable, then plug the camera in again."
             }
-            Self::Camera { .. } => "Plug the camera in again; look into `dmesg` for what its driver says.",
+            Self::Camera { .. } => "Plug the camera in again; see `dmesg` for the driver's messages.",
             Self::NotBuilt { .. } => {
-                "Build it with `cargo build --release --locked -p nima-console --features h264`, or let the camera send motion JPEG."
+                "Build it with `cargo build --release --locked -p nima-console --features h264`, or set the camera to motion JPEG."
             }
             Self::File { .. } => "Put the file there, or correct its path in the rig file.",
             Self::Other { .. } => "Check the camera and its address in the rig file.",

@@ -40,14 +40,14 @@ pub(crate) fn open(path: &Path) -> Result<Box<dyn ImageSource>, EndoscopeError> 
 fn trouble(path: &Path, error: &std::io::Error) -> EndoscopeError {
     let reason = match error.kind() {
         std::io::ErrorKind::NotFound => "no such file or folder".to_owned(),
-        std::io::ErrorKind::PermissionDenied => "this user may not read it".to_owned(),
+        std::io::ErrorKind::PermissionDenied => "this user has no permission to read it".to_owned(),
         _ => error.to_string(),
     };
     EndoscopeError::File { path: path.display().to_string(), reason }
 }
 
 fn without_images(path: &Path) -> EndoscopeError {
-    EndoscopeError::File { path: path.display().to_string(), reason: "there is no whole JPEG in it".to_owned() }
+    EndoscopeError::File { path: path.display().to_string(), reason: "it contains no complete JPEG".to_owned() }
 }
 
 fn is_jpeg(path: &Path) -> bool {
@@ -63,7 +63,7 @@ fn read(path: &Path) -> Result<Vec<u8>, EndoscopeError> {
     let file = File::open(path).map_err(|error| trouble(path, &error))?;
     file.take(BYTES_MAX + 1).read_to_end(&mut bytes).map_err(|error| trouble(path, &error))?;
     if bytes.len() as u64 > BYTES_MAX {
-        let reason = format!("a picture has at most {} MB", BYTES_MAX >> 20);
+        let reason = format!("the image is larger than {} MB", BYTES_MAX >> 20);
         return Err(EndoscopeError::File { path: path.display().to_string(), reason });
     }
     Ok(bytes)
@@ -215,7 +215,7 @@ impl ImageSeries for FileStream {
             if count == 0 {
                 let last = self.splitter.rest();
                 if last.is_none() && !self.found {
-                    let reason = "there is no picture of H.264 in it".to_owned();
+                    let reason = "it contains no H.264 image".to_owned();
                     return Err(EndoscopeError::File { path: self.path.display().to_string(), reason });
                 }
                 *self = Self::open(&self.path)?;
@@ -281,13 +281,13 @@ mod tests {
             next(&mut *source).unwrap_err().to_string()
         };
         assert!(report(folder.path().join("missing.mjpeg")).contains("no such file or folder"));
-        assert!(report(folder.path().to_owned()).contains("no whole JPEG"));
+        assert!(report(folder.path().to_owned()).contains("no complete JPEG"));
         let text = folder.path().join("text");
         fs::write(&text, "no picture").unwrap();
-        assert!(report(text).contains("no whole JPEG"));
+        assert!(report(text).contains("no complete JPEG"));
         let stream = folder.path().join("text.h264");
         fs::write(&stream, "no picture").unwrap();
-        let expected = if h264::IS_BUILT { "no picture of H.264" } else { "built without RTSP and H.264" };
+        let expected = if h264::IS_BUILT { "no H.264 image" } else { "built without RTSP and H.264" };
         assert!(report(stream).contains(expected));
     }
 }

@@ -57,7 +57,7 @@ impl CompressedFrame {
         match self.format {
             Format::Jpeg => jpeg::decode(&self.bytes),
             Format::Raw(raw) => raw.image(&self.bytes),
-            Format::H264 { .. } => Err(Damage::Undecodable { reason: "it refers to other pictures".to_owned() }),
+            Format::H264 { .. } => Err(Damage::Undecodable { reason: "it depends on other images".to_owned() }),
         }
     }
 }

@@ -47,9 +47,9 @@ record!(MonitorRow { ticks: [Option<Tick>; SIDES] });
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum WatchError {
-    #[error("the rig runs another version of this program; install the same version on both computers")]
+    #[error("the rig runs a different version of this program; install the same version on both computers")]
     Version,
-    #[error("a message of the rig is damaged: {0}")]
+    #[error("a message from the rig is damaged: {0}")]
     Damaged(#[from] CodecError),
 }
 

@@ -34,7 +34,7 @@ pub enum PlottedError {
     Foreign { path: PathBuf, arm: Side, t_s: f64 },
     #[error("session {path} at {t_s} s: {what} is not a finite number; export an excerpt without it: nima export")]
     NotFinite { path: PathBuf, t_s: f64, what: &'static str },
-    #[error("session {path}: time does not rise at {t_s} s; export an excerpt without it: nima export")]
+    #[error("session {path}: time does not increase at {t_s} s; export an excerpt without it: nima export")]
     Clock { path: PathBuf, t_s: f64 },
 }
 
@@ -154,7 +154,7 @@ pub fn recording(path: &Path, asked: Option<Side>) -> Result<CsvRecording, Plott
             return Ok(());
         }
         let is_finite = |vector: &Vector3<f64>| vector.iter().all(|value| value.is_finite());
-        for (vector, what) in [(&position_m, "the place of the tip"), (&force_n, "the force at the tip")] {
+        for (vector, what) in [(&position_m, "the position of the tip"), (&force_n, "the force at the tip")] {
             if !is_finite(vector) {
                 return Err(PlottedError::NotFinite { path: path.to_owned(), t_s, what });
             }

@@ -223,13 +223,13 @@ impl SessionHead {
 
 #[derive(Debug, thiserror::Error)]
 pub enum CopyError {
-    #[error("the rig runs another version of this program; install the same version on both computers")]
+    #[error("the rig runs a different version of this program; install the same version on both computers")]
     Version,
-    #[error("a message of the rig is damaged: {0}")]
+    #[error("a message from the rig is damaged: {0}")]
     Damaged(String),
     #[error(transparent)]
     Write(#[from] WriteError),
-    #[error("bundle {came} of the session arrived, but bundle {due} was expected; begin a new copy")]
+    #[error("part {came} of the session arrived, but part {due} was expected; start a new copy")]
     Gap { came: u64, due: u64 },
 }
 

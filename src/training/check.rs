@@ -80,7 +80,7 @@ fn judge(evaluation: &Evaluation, [rows, free]: [usize; 2]) -> (Verdict, String)
         );
         (Verdict::PoorData, reason)
     } else if mae_n > MAE_N {
-        (Verdict::PoorData, format!("the mean error is {mae_n:.2} N, the limit {MAE_N:.2} N; record more"))
+        (Verdict::PoorData, format!("the mean error is {mae_n:.2} N (limit {MAE_N:.2} N); record more"))
     } else if mae_n >= wrist_n {
         (
             Verdict::PoorData,

@@ -121,7 +121,7 @@ fn a_wrong_file_is_refused_in_one_line_and_never_read_as_a_model() {
     let mut poisoned = good.clone();
     let end = poisoned.len();
     poisoned[end - 4..].copy_from_slice(&f32::NAN.to_le_bytes());
-    assert!(refused(&poisoned).contains("not finite"));
+    assert!(refused(&poisoned).contains("non-finite"));
 }
 
 #[test]

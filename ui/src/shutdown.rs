@@ -31,7 +31,7 @@ impl Leave {
     pub fn on_signals() -> anyhow::Result<Self> {
         let leave = Self::default();
         let asked = leave.clone();
-        ctrlc::set_handler(move || asked.ask()).context("Ctrl-C cannot be caught")?;
+        ctrlc::set_handler(move || asked.ask()).context("cannot install the Ctrl-C handler")?;
         Ok(leave)
     }
 

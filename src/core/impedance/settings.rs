@@ -232,7 +232,7 @@ pub enum SettingsError {
     Delay { delay_s: f64 },
     #[error("the highest degree {degree} is out of range: use 1 to {MAX_DEGREE}")]
     Degree { degree: usize },
-    #[error("{axes} axes are not possible: use 1, 2 or 3")]
+    #[error("{axes} axes are not supported: use 1, 2 or 3")]
     Axes { axes: usize },
     #[error("the scale {name} = {value} is out of range: use 1e-9 to 1e9")]
     Scale {
@@ -242,9 +242,9 @@ pub enum SettingsError {
     },
     #[error("the resting force of {rest_n} N is out of range: use {REST_N}")]
     Rest { rest_n: f64 },
-    #[error("the ridge {ridge} is out of range: use {RIDGE}")]
+    #[error("the ridge parameter {ridge} is out of range: use {RIDGE}")]
     Ridge { ridge: f64 },
     /// The methods of others are not in this program; see [`add_baselines`](super::add_baselines).
-    #[error("the mode {name} is not in this program; build it with the feature lab, or choose another mode")]
+    #[error("this program was built without the mode {name}; build it with the feature lab, or choose another mode")]
     Baseline { name: &'static str },
 }

@@ -67,7 +67,7 @@ pub enum ReadyError {
     )]
     TooFar { needed_m: f64, reach_m: f64 },
     #[error(
-        "no pose reaches this tip and shaft (best miss {best_miss_m:.4} m in {starts} starts): the trocar is too near to the arm's base; move the arm"
+        "no pose reaches this tip and shaft (best miss {best_miss_m:.4} m in {starts} starts): the trocar is too close to the arm's base; move the arm"
     )]
     NoPose {
         /// Smallest remaining error of tip and direction, m.

@@ -255,7 +255,7 @@ mod tests {
         assert!(row.is_ok());
         let mut after = features.clone();
         assert_eq!(after.step(now_s + 0.04, &wrench, &sample(0.106)), Err(NoRow::NotMoved), "40 ms without a sample");
-        assert!(features.clone().step(now_s, &wrench, &sample(0.106)).is_err(), "time that does not rise");
+        assert!(features.clone().step(now_s, &wrench, &sample(0.106)).is_err(), "time that does not increase");
         let mut without = sample(0.106);
         without.insertion_m = None;
         for incomplete in [sample(f64::NAN), without] {

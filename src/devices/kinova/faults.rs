@@ -146,7 +146,7 @@ impl Display for KinovaFaults {
         if !first {
             return Ok(());
         }
-        f.write_str(if self.in_fault { "a fault without a name" } else { "none" })
+        f.write_str(if self.in_fault { "an unnamed fault" } else { "none" })
     }
 }
 

@@ -50,7 +50,7 @@ const AHEAD_OF_TIME_S: f64 = 0.025;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ExceededLimit {
-    #[error("outside of its range")]
+    #[error("outside its range")]
     Range,
     /// Further from the last command than the speed limit allows.
     #[error("faster than its limit")]

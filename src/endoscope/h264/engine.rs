@@ -107,7 +107,7 @@ fn parameters(nal: &[u8]) -> Result<Colours, Damage> {
     let size_px = [width as usize, height as usize];
     check_size(size_px)?;
     if set.chroma_info.chroma_format != ChromaFormat::YUV420 {
-        return Err(undecodable("its colours are not those of a camera"));
+        return Err(undecodable("its colour format is not supported"));
     }
     let mut colours = Colours::usual(size_px);
     if let Some(signal) = set.vui_parameters.and_then(|vui| vui.video_signal_type) {

@@ -107,11 +107,11 @@ impl HttpAnswer {
         let kind = head.kind();
         self.boundary = match (kind.as_str(), head.boundary()) {
             (kind, Some(boundary)) if kind.starts_with("multipart/") => boundary,
-            ("", _) => return Err(HttpFault::Format("something without a type".to_owned())),
+            ("", _) => return Err(HttpFault::Format("a response without a content type".to_owned())),
             (kind, _) if kind.starts_with("multipart/") => {
-                return Err(HttpFault::Unreadable("parts without a boundary"));
+                return Err(HttpFault::Unreadable("a multipart response without a boundary"));
             }
-            ("image/jpeg", _) => return Err(HttpFault::Format("a single picture".to_owned())),
+            ("image/jpeg", _) => return Err(HttpFault::Format("a single image".to_owned())),
             (kind, _) => return Err(HttpFault::Format(short(kind))),
         };
         let rest = self.held.split_off(begins);
@@ -145,7 +145,7 @@ impl HttpAnswer {
             return Ok(AnswerStep::Wait);
         };
         if head.length.is_some_and(|length| length > IMAGE_MAX) {
-            return Err(HttpFault::Unreadable("a picture that is too long"));
+            return Err(HttpFault::Unreadable("an image that is too large"));
         }
         match head.kind().as_str() {
             "" | "image/jpeg" | "image/jpg" => Ok(self.to(AnswerState::Body(head), begins)),
@@ -172,7 +172,7 @@ impl HttpAnswer {
             self.state = AnswerState::Body(head);
             let too_long = self.held.len() > IMAGE_MAX;
             return if too_long {
-                Err(HttpFault::Unreadable("a picture that is too long"))
+                Err(HttpFault::Unreadable("an image that is too large"))
             } else {
                 Ok(AnswerStep::Wait)
             };

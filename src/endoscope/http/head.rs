@@ -38,8 +38,10 @@ impl HttpHead {
                 Ok(Some((Self::of(status, response.headers)?, length)))
             }
             Ok(Status::Partial) if bytes.len() <= HEAD_MAX => Ok(None),
-            Ok(Status::Partial) | Err(Error::TooManyHeaders) => Err(HttpFault::Unreadable("a head that does not end")),
-            Err(_) => Err(HttpFault::Unreadable("an answer that is not HTTP")),
+            Ok(Status::Partial) | Err(Error::TooManyHeaders) => {
+                Err(HttpFault::Unreadable("a header that does not end"))
+            }
+            Err(_) => Err(HttpFault::Unreadable("a response that is not HTTP")),
         }
     }
 
@@ -64,7 +66,7 @@ impl HttpHead {
                 "transfer-encoding" => match value.to_ascii_lowercase().as_str() {
                     "chunked" => head.is_chunked = true,
                     "identity" => {}
-                    _ => return Err(HttpFault::Unreadable("a compression that was not asked for")),
+                    _ => return Err(HttpFault::Unreadable("an unexpected compression")),
                 },
                 // Seconds, as sent by mjpg-streamer and others.
                 "x-timestamp" => head.stamp_s = value.parse().ok().filter(|stamp_s: &f64| stamp_s.is_finite()),

@@ -169,7 +169,7 @@ impl ImageSource for Http {
                 Err(trouble) => return Err(trouble),
             }
             if self.parts.is_empty() && self.whole.elapsed() > SLOW {
-                let reason = format!("a picture took longer than {} s", SLOW.as_secs());
+                let reason = format!("an image took longer than {} s", SLOW.as_secs());
                 return Err(EndoscopeError::Unreadable { place: self.place.clone(), reason });
             }
             if begin.elapsed() > PATIENCE && self.parts.is_empty() {

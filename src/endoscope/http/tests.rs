@@ -91,8 +91,8 @@ fn what_is_no_motion_jpeg_is_told() {
     let of = |head: &str| taken(format!("{head}\r\n\r\n").as_bytes(), 7).unwrap_err();
     assert_eq!(of("HTTP/1.1 404 Not Found"), HttpFault::Status(404));
     assert_eq!(of("HTTP/1.1 200 OK\r\nContent-Type: text/html; a"), HttpFault::Format("text/html".to_owned()));
-    assert_eq!(of("HTTP/1.1 200 OK\r\nContent-Type: image/jpeg"), HttpFault::Format("a single picture".to_owned()));
-    assert_eq!(of("HTTP/1.1 200 OK"), HttpFault::Format("something without a type".to_owned()));
+    assert_eq!(of("HTTP/1.1 200 OK\r\nContent-Type: image/jpeg"), HttpFault::Format("a single image".to_owned()));
+    assert_eq!(of("HTTP/1.1 200 OK"), HttpFault::Format("a response without a content type".to_owned()));
     assert!(matches!(of("SSH-2.0-OpenSSH_9.6"), HttpFault::Unreadable(_)));
     assert!(matches!(of("HTTP/1.1 200 OK\r\nContent-Type: multipart/x-mixed-replace"), HttpFault::Unreadable(_)));
     let png = [HEAD, "--frame\r\nContent-Type: image/png\r\n\r\n"].concat();

@@ -105,7 +105,7 @@ pub fn decode(jpeg: &[u8]) -> Result<DecodedImage, Damage> {
     check_size(size_px)?;
     let mut rgba = vec![255; 4 * size_px[0] * size_px[1]];
     if decoder.output_buffer_size() != Some(rgba.len()) {
-        return Err(Damage::Undecodable { reason: "its colours are not those of a camera".to_owned() });
+        return Err(Damage::Undecodable { reason: "its colour format is not supported".to_owned() });
     }
     decoder.decode_into(&mut rgba).map_err(damage)?;
     Ok(DecodedImage { size_px, rgba })

@@ -202,20 +202,20 @@ impl CameraOpening<'_> {
             Err(error) if error.raw_os_error() == Some(libc::EINVAL) => {
                 return Err(EndoscopeError::NotCamera { path: path() });
             }
-            answer => answer.map_err(|error| report(self.place, &error, "asking what it is"))?,
+            answer => answer.map_err(|error| report(self.place, &error, "querying its capabilities"))?,
         }
         let all = about.get(at::CAP_ALL);
         let able = if all & HAS_OWN == 0 { all } else { about.get(at::CAP_OWN) };
         let card = about.text(at::CAP_CARD, 32);
         if able & CAN_CAPTURE == 0 && able & CAN_CAPTURE_PLANES != 0 {
-            let reason = format!("{card} gives its pictures in several planes, which this program does not read");
+            let reason = format!("{card} sends its images in several planes, which is not supported");
             return Err(EndoscopeError::Camera { path: path(), reason });
         }
         if able & CAN_CAPTURE == 0 {
             return Err(EndoscopeError::NotCamera { path: path() });
         }
         if able & CAN_STREAM == 0 {
-            let reason = format!("{card} does not stream into buffers");
+            let reason = format!("{card} does not support streaming");
             return Err(EndoscopeError::Camera { path: path(), reason });
         }
         Ok(())
@@ -309,10 +309,10 @@ impl CameraOpening<'_> {
     fn stream(&mut self) -> Result<(), EndoscopeError> {
         let block = LayoutBlock::of(REQBUFS).with(0, BUFFERS).with(at::REQ_TYPE, CAPTURE);
         let mut block = block.with(at::REQ_MEMORY, MEMORY_MMAP);
-        self.ask(REQBUFS, &mut block, "asking for buffers")?;
+        self.ask(REQBUFS, &mut block, "requesting buffers")?;
         let count = block.get(0);
         if !(BUFFERS_MIN..=32).contains(&count) {
-            let reason = format!("the driver gives {count} buffers");
+            let reason = format!("the driver provides {count} buffers");
             return Err(EndoscopeError::Camera { path: self.place.to_owned(), reason });
         }
         for index in 0..count {

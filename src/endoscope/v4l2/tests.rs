@@ -276,10 +276,10 @@ fn each_cause_is_told_with_its_cure() {
         (
             Table { capabilities: 0x0400_1000, ..Table::default() },
             "",
-            "Camera gives its pictures in several planes",
+            "Camera sends its images in several planes",
             "dmesg",
         ),
-        (Table { capabilities: 1, ..Table::default() }, "", "does not stream", "dmesg"),
+        (Table { capabilities: 1, ..Table::default() }, "", "does not support streaming", "dmesg"),
         (failing(5, libc::EBUSY), "", "in use by another program", "Close"),
         (failing(8, libc::EBUSY), "", "in use by another program", "Close"),
         (
@@ -292,7 +292,7 @@ fn each_cause_is_told_with_its_cure() {
         (Table { formats: Vec::new(), ..Table::default() }, "", "only nothing", "format"),
         (Table::default(), "size=800x600", "does not offer images of 800x600, only 640x480, 1280x720", "size"),
         (Table { sizes: vec![[9000, 9000]], ..Table::default() }, "", "exceed the limit", "dmesg"),
-        (Table { buffers: 1, ..Table::default() }, "", "gives 1 buffers", "dmesg"),
+        (Table { buffers: 1, ..Table::default() }, "", "provides 1 buffers", "dmesg"),
         (failing(18, libc::ENOSPC), "", "lacks bandwidth on its USB", "its own USB port"),
         (failing(18, libc::EIO), "", "starting the stream failed", "dmesg"),
     ] {

@@ -99,9 +99,7 @@ fn corrected(tail: f64, drawn: &[f64], sample: &[f64], statistic: impl Fn(&[f64]
     let below = drawn.partition_point(|value| *value < estimate - rounding);
     let not_above = drawn.partition_point(|value| *value <= estimate + rounding);
     if not_above == 0 || below == drawn.len() {
-        return Err(AnalysisError::NotEstimable {
-            why: "every drawn sample gives more than the sample itself, or every one less",
-        });
+        return Err(AnalysisError::NotEstimable { why: "all resampled values are on one side of the estimate" });
     }
     let bias = normal_quantile((below + not_above) as f64 / (2 * drawn.len()) as f64);
     let acceleration = acceleration(sample, statistic)?;

@@ -3,17 +3,17 @@
 /// Input that cannot be used, or a question that it cannot answer. The text is one sentence for the user.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum AnalysisError {
-    #[error("{what}: {found} are too few; give at least {needed}")]
+    #[error("{what}: {found} are too few; provide at least {needed}")]
     TooFew { what: &'static str, needed: usize, found: usize },
-    #[error("{what}: {found} are too many; give at most {max}")]
+    #[error("{what}: {found} are too many; provide at most {max}")]
     TooMany { what: &'static str, max: usize, found: usize },
     #[error("value {position} of {what} is not a usable number (finite, and smaller than 1e150); correct it")]
     NotFinite { what: String, position: usize },
-    #[error("{what} and {with} differ in number: {found} instead of {expected}; give the same number of both")]
+    #[error("{what} and {with} differ in number: {found} instead of {expected}; provide the same number of both")]
     UnequalLengths { what: String, with: &'static str, found: usize, expected: usize },
     #[error("{what} must be {range}, not {value}")]
     OutOfRange { what: &'static str, range: &'static str, value: f64 },
-    #[error("{what} are all the same, so there is no variation to judge by; give values that differ")]
+    #[error("{what} are all the same, so there is no variation to judge by; provide values that differ")]
     NoVariation { what: &'static str },
     #[error("there is no condition called '{name}'")]
     UnknownCondition { name: String },

@@ -15,13 +15,13 @@ pub enum DepartmentError {
         cure: &'static str,
     },
     /// The file exists already.
-    #[error("{0} exists already; delete it first if it is no longer needed")]
+    #[error("{0} already exists; delete it first if it is no longer needed")]
     Exists(PathBuf),
     #[error("{path}: {source}")]
     File { path: PathBuf, source: io::Error },
     #[error("{path} is not a certificate of a department: {why}; use the file issued by nima department")]
     NotOne { path: PathBuf, why: String },
-    #[error("cannot make a certificate: {0}")]
+    #[error("cannot create a certificate: {0}")]
     Certificate(String),
     /// This machine has the wrong role.
     #[error("this machine joined as a {is}, but a {needed} is required; join with another certificate")]
@@ -33,7 +33,7 @@ pub enum DepartmentError {
     },
     /// The rig cannot be shared.
     #[error(
-        "cannot share at {address}: {why}; end the program that uses this port, or choose another one with --share"
+        "cannot share on {address}: {why}; end the program that uses this port, or choose another one with --share"
     )]
     Listen { address: String, why: String },
     /// The rig does not answer.

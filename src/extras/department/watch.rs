@@ -146,7 +146,7 @@ impl RemoteRig {
             let sample = reply.into_result().ok()?;
             keys::rig_of(sample.key_expr().as_str()).map(str::to_owned)
         });
-        let name = names.next().ok_or_else(|| failed("it is none".to_owned()))?;
+        let name = names.next().ok_or_else(|| failed("the program there shares no rig".to_owned()))?;
         Ok(Self { session, name, address: address.to_owned(), token: None })
     }
 

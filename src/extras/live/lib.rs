@@ -23,7 +23,7 @@ const BACKLOG: usize = 16_384;
 pub enum LiveError {
     /// The address cannot be used.
     #[error(
-        "live viewing: cannot listen at {address}: {reason}; end the program that uses this port, or choose another port"
+        "live viewing: cannot listen on {address}: {reason}; end the program that uses this port, or choose another port"
     )]
     Listen { address: SocketAddr, reason: String },
 }

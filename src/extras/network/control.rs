@@ -139,7 +139,7 @@ impl std::fmt::Display for SessionRefusal {
                 "the other machine speaks version {version} of the protocol, this one {}; install the same version of nima on both",
                 crate::wire::VERSION
             ),
-            Self::Key => f.write_str("the other machine does not know this one's key; pair the two machines"),
+            Self::Key => f.write_str("the other machine does not have this machine's key; pair the two machines"),
             Self::Full => f.write_str("too many consoles are connected to this follower; close one"),
         }
     }
@@ -148,13 +148,15 @@ impl std::fmt::Display for SessionRefusal {
 impl std::fmt::Display for LinkCause {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
-            Self::PeerClosed => f.write_str("the other side's program was closed"),
+            Self::PeerClosed => f.write_str("the program on the other machine was closed"),
             Self::Silent { for_s } => {
-                write!(f, "nothing has come for {for_s:.1} s; look at the cable, the network and the other machine")
+                write!(f, "no data for {for_s:.1} s; check the cable, the network and the other machine")
             }
-            Self::ClockJumped { by_s } => write!(f, "a clock jumped by {:.1} ms", by_s * 1e3),
-            Self::HeldByAnother => f.write_str("another console holds this follower; ask for control"),
-            Self::NotAsked => f.write_str("no console has control of this follower; ask for control"),
+            Self::ClockJumped { by_s } => {
+                write!(f, "the clock of one of the two machines jumped by {:.1} ms", by_s * 1e3)
+            }
+            Self::HeldByAnother => f.write_str("another console controls this follower; request control"),
+            Self::NotAsked => f.write_str("no console controls this follower; request control"),
             Self::Refused(refusal) => refusal.fmt(f),
         }
     }

@@ -102,7 +102,7 @@ impl ImpairmentSettings {
         };
         let time = |name: &str, value: f64| {
             let allowed = (0.0..=60.0).contains(&value);
-            if allowed { Ok(()) } else { Err(format!("{name} = {value}: it is between 0 and 60 s")) }
+            if allowed { Ok(()) } else { Err(format!("{name} = {value}: it must be between 0 and 60 s")) }
         };
         time("delay_s", self.delay_s)?;
         time("reorder_s", self.reorder_s)?;
@@ -115,7 +115,7 @@ impl ImpairmentSettings {
             ImpairmentJitter::Pareto { mean_s, shape } => {
                 time("mean_s", mean_s)?;
                 if !(shape > 1.0 && shape <= 100.0) {
-                    return Err(format!("shape = {shape}: it is above 1, and 100 at most"));
+                    return Err(format!("shape = {shape}: it must be above 1 and at most 100"));
                 }
             }
         }
@@ -131,11 +131,11 @@ impl ImpairmentSettings {
             time("down_s", down_s)?;
             time("every_s", every_s)?;
             if down_s >= every_s {
-                return Err(format!("down_s = {down_s}: it is shorter than every_s = {every_s}"));
+                return Err(format!("down_s = {down_s}: it must be shorter than every_s = {every_s}"));
             }
         }
         if !(self.rate_bit_s >= 0.0 && self.rate_bit_s.is_finite()) {
-            return Err(format!("rate_bit_s = {}: it is 0 (no limit) or above", self.rate_bit_s));
+            return Err(format!("rate_bit_s = {}: it must be 0 (no limit) or above", self.rate_bit_s));
         }
         Ok(())
     }

@@ -148,7 +148,7 @@ impl NetworkKeys {
             write_new(&path, &format!("{}\n", PublicKey(keys.private)))?;
             return Ok(keys);
         };
-        let what = "not a key of nima; delete the file to make a new one, and pair again";
+        let what = "not a nima key; delete the file to create a new key, then pair again";
         let private = bytes_of(text.trim()).and_then(Self::of);
         private.ok_or(KeyError::Content { path, line: 1, what })
     }
@@ -193,7 +193,8 @@ impl Peers {
         let mut this = Self::default();
         for (line, text) in read(&path)?.unwrap_or_default().lines().enumerate() {
             let content = |what| KeyError::Content { path: path.clone(), line: line + 1, what };
-            let (key, name) = text.split_once(' ').ok_or_else(|| content("a line is a key, a space and a name"))?;
+            let (key, name) =
+                text.split_once(' ').ok_or_else(|| content("a line must be a key, a space and a name"))?;
             let key = key.parse().map_err(|_| content("a key has 64 hexadecimal digits"))?;
             this.add(name, key).map_err(|_| content("too many machines, or a name that is empty or too long"))?;
         }
@@ -223,11 +224,11 @@ impl Peers {
     pub fn add(&mut self, name: &str, key: PublicKey) -> Result<(), KeyError> {
         let name = name.trim();
         if name.is_empty() || name.chars().count() > NAME_MAX || name.chars().any(char::is_control) {
-            return Err(KeyError::Peers("the name of a machine has 1 to 60 characters in one line"));
+            return Err(KeyError::Peers("the name of a machine must be one line of 1 to 60 characters"));
         }
         self.remove(&key);
         if self.list.len() == PEERS_MAX {
-            return Err(KeyError::Peers("32 machines are paired with this one; remove one"));
+            return Err(KeyError::Peers("32 machines are already paired with this one; remove one of them"));
         }
         self.list.push(PairedMachine { name: name.into(), key });
         Ok(())
@@ -331,7 +332,7 @@ mod tests {
     fn damaged_files_are_told_with_their_line() {
         let folder = tempfile::tempdir().unwrap();
         write_new(&folder.path().join(KEY_FILE), "abc\n").unwrap();
-        assert!(NetworkKeys::open(folder.path()).unwrap_err().to_string().contains("not a key"));
+        assert!(NetworkKeys::open(folder.path()).unwrap_err().to_string().contains("not a nima key"));
         let key = NetworkKeys::random().unwrap().public();
         write_new(&folder.path().join(PEERS_FILE), &format!("{key} one\n{key}\n")).unwrap();
         assert!(Peers::open(folder.path()).unwrap_err().to_string().contains("line 2"));

@@ -120,7 +120,7 @@ impl QuestionnaireAnswers {
         let on_scale = |ratings: Ratings| {
             let wrong = TLX_SCALES.iter().zip(ratings.all()).find(|(_, rating)| *rating > 100 || rating % 5 != 0);
             wrong.map_or(Ok(()), |((_, name, _), rating)| {
-                Err(format!("{name} = {rating}: a rating is from 0 to 100 in steps of 5"))
+                Err(format!("{name} = {rating}: it must be from 0 to 100 in steps of 5"))
             })
         };
         match self {
@@ -133,11 +133,15 @@ impl QuestionnaireAnswers {
             }
             Self::Sus(items) => {
                 let wrong = items.iter().position(|answer| !(1..=5).contains(answer));
-                wrong.map_or(Ok(()), |at| Err(format!("sus: answer {} is {}: it is from 1 to 5", at + 1, items[at])))
+                wrong.map_or(Ok(()), |at| {
+                    Err(format!("sus: answer {} is {}: it must be from 1 to 5", at + 1, items[at]))
+                })
             }
-            Self::Realism(answer) if !(1..=7).contains(answer) => Err(format!("realism = {answer}: it is from 1 to 7")),
+            Self::Realism(answer) if !(1..=7).contains(answer) => {
+                Err(format!("realism = {answer}: it must be from 1 to 7"))
+            }
             Self::FreeText(text) if text.chars().count() > TEXT_MAX => {
-                Err(format!("free_text has more than {TEXT_MAX} letters"))
+                Err(format!("free_text has more than {TEXT_MAX} characters"))
             }
             Self::Realism(_) | Self::FreeText(_) => Ok(()),
         }

@@ -47,26 +47,26 @@ impl Condition {
         let mut wrong = Vec::new();
         let usable = |letter: char| letter.is_alphanumeric() || " _-.+()%".contains(letter);
         if name.trim() != name || name.is_empty() || name.chars().count() > NAME_MAX || !name.chars().all(usable) {
-            wrong.push(format!("its name has to be 1 to {NAME_MAX} letters, digits, spaces or any of _ - . + ( ) %"));
+            wrong.push(format!("its name must be 1 to {NAME_MAX} letters, digits, spaces or any of _ - . + ( ) %"));
         }
         if name.chars().count() == 1 {
             wrong.push("a name of one letter could be mistaken for a label: give it a longer one".to_owned());
         }
         if *no_force && (mode.is_some() || gain.is_some() || own_motion.is_some()) {
-            wrong.push("with no_force there is no mode, gain or own_motion: remove them or no_force".to_owned());
+            wrong.push("no_force excludes mode, gain and own_motion: remove them or no_force".to_owned());
         }
         if !*no_force && mode.is_none() {
-            wrong.push("mode is missing; or say no_force = true".to_owned());
+            wrong.push("mode is missing: add it, or set no_force = true".to_owned());
         }
         if !*no_force && delay_ms.is_none() {
             wrong.push("delay_ms is missing; write 0 for no delay".to_owned());
         }
         let delays_ms = DELAY_S.per(1e-3, "ms");
         if delay_ms.is_some_and(|delay_ms| !delays_ms.contains(delay_ms)) {
-            wrong.push(format!("delay_ms has to be from {delays_ms}"));
+            wrong.push(format!("delay_ms must be from {delays_ms}"));
         }
         if gain.is_some_and(|gain| !(gain > GAIN.min && gain <= GAIN.max)) {
-            wrong.push(format!("gain has to be above 0 and at most {}; without force say no_force = true", GAIN.max));
+            wrong.push(format!("gain must be above 0 and at most {}; for no force, set no_force = true", GAIN.max));
         }
         wrong
     }

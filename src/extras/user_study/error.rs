@@ -9,7 +9,7 @@ use crate::file::Mistakes;
 pub enum StudyError {
     #[error(transparent)]
     Mistakes(#[from] Mistakes),
-    #[error("{} exists already: choose a new folder for the study", .folder.display())]
+    #[error("{} already exists: choose a new folder for the study", .folder.display())]
     Exists { folder: PathBuf },
     #[error("{}: {source}", .path.display())]
     Io { path: PathBuf, source: io::Error },

@@ -67,13 +67,15 @@ impl ExclusionRule {
         let Self { is, limit, exclude, times, .. } = self;
         let mut wrong = Vec::new();
         match (is, limit) {
-            (MeasureComparison::Missing, Some(_)) => wrong.push("with is = \"missing\" there is no limit".to_owned()),
+            (MeasureComparison::Missing, Some(_)) => {
+                wrong.push("is = \"missing\" takes no limit: remove it".to_owned())
+            }
             (MeasureComparison::Above | MeasureComparison::Below, None) => wrong.push("limit is missing".to_owned()),
-            (_, Some(limit)) if !limit.is_finite() => wrong.push("limit has to be a number".to_owned()),
+            (_, Some(limit)) if !limit.is_finite() => wrong.push("limit must be a number".to_owned()),
             _ => {}
         }
         if *times == 0 || (*times > 1 && *exclude == Excludes::Trial) {
-            wrong.push("times has to be at least 1, and more than 1 only with exclude = \"participant\"".to_owned());
+            wrong.push("times must be at least 1, and more than 1 only with exclude = \"participant\"".to_owned());
         }
         wrong
     }

@@ -141,8 +141,8 @@ pub struct Mistakes(pub Vec<String>);
 impl fmt::Display for Mistakes {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.0.as_slice() {
-            [one] => write!(f, "the study file has a mistake: {one}"),
-            several => write!(f, "the study file has {} mistakes: {}", several.len(), several.join("; ")),
+            [one] => write!(f, "the study file has an error: {one}"),
+            several => write!(f, "the study file has {} errors: {}", several.len(), several.join("; ")),
         }
     }
 }
@@ -214,11 +214,11 @@ impl StudyFile {
     fn check_numbers(&self, wrong: &mut Vec<String>) {
         let Self { name, participants, trials, attempts, rings, task, breaks, .. } = self;
         if name.trim().is_empty() || name.chars().count() > NAME_MAX || name.chars().any(char::is_control) {
-            wrong.push(format!("name has to be one line of 1 to {NAME_MAX} letters"));
+            wrong.push(format!("name must be one line of 1 to {NAME_MAX} characters"));
         }
         let mut within = |key: &str, value: u32, max: u32| {
             if !(1..=max).contains(&value) {
-                wrong.push(format!("{key} = {value}: it has to be from 1 to {max}"));
+                wrong.push(format!("{key} = {value}: it must be from 1 to {max}"));
             }
         };
         within("participants", *participants, PARTICIPANTS_MAX);
@@ -228,7 +228,7 @@ impl StudyFile {
         within("breaks.after_trials", breaks.map_or(1, |breaks| breaks.after_trials), BREAK_AFTER_MAX);
         let min_s = breaks.map_or(0.0, |breaks| breaks.min_s);
         if !(0.0..=BREAK_MAX_S).contains(&min_s) {
-            wrong.push(format!("breaks.least_s = {min_s}: it has to be from 0 to {BREAK_MAX_S:.0} s"));
+            wrong.push(format!("breaks.least_s = {min_s}: it must be from 0 to {BREAK_MAX_S:.0} s"));
         }
         if let Some(Err(error)) = task.as_ref().map(TaskFile::check) {
             wrong.push(format!("task: {error}"));
@@ -238,7 +238,7 @@ impl StudyFile {
     fn check_conditions(&self, wrong: &mut Vec<String>) {
         let conditions = &self.conditions;
         if !(2..=Label::MAX).contains(&conditions.len()) {
-            wrong.push(format!("there are {} conditions: it takes 2 to {}", conditions.len(), Label::MAX));
+            wrong.push(format!("there are {} conditions: use 2 to {}", conditions.len(), Label::MAX));
         }
         for (at, condition) in conditions.iter().enumerate() {
             let of = |mistake: String| format!("condition {} (\"{}\"): {mistake}", at + 1, shown(&condition.name));
@@ -268,7 +268,7 @@ impl StudyFile {
             if !is_measure(key) {
                 let key = shown(key);
                 wrong.push(format!(
-                    "there is no measure \"{key}\": docs/reference/measures.md lists them; one of a hand ends with _left or _right"
+                    "there is no measure \"{key}\": docs/reference/measures.md lists all measures; a measure of one hand ends with _left or _right"
                 ));
             }
         }
@@ -296,7 +296,7 @@ impl StudyFile {
     fn check_practice(&self, wrong: &mut Vec<String>) {
         if self.feedback == FeedbackSchedule::Fades && self.skill().is_none() {
             wrong.push(
-                "feedback = \"fades\" goes by a criterion of skill: add [practice.criterion], or a [task] with proficiency"
+                "feedback = \"fades\" requires a skill criterion: add [practice.criterion], or a [task] with proficiency"
                     .to_owned(),
             );
         }
@@ -304,12 +304,12 @@ impl StudyFile {
         let TaskCriterion { time_s, consecutive, additional, max_trials, .. } = *criterion;
         if !(time_s > 0.0 && time_s <= LONGEST_TRIAL_S) {
             wrong.push(format!(
-                "practice.criterion.time_s = {time_s}: it has to be above 0 and at most {LONGEST_TRIAL_S} s"
+                "practice.criterion.time_s = {time_s}: it must be above 0 and at most {LONGEST_TRIAL_S} s"
             ));
         }
         if consecutive == 0 || max_trials == 0 || max_trials > PRACTICE_MAX {
             wrong.push(format!(
-                "practice.criterion: consecutive has to be at least 1, max_trials from 1 to {PRACTICE_MAX}"
+                "practice.criterion: consecutive must be at least 1, and max_trials from 1 to {PRACTICE_MAX}"
             ));
         }
         if consecutive.saturating_add(additional) > max_trials {
@@ -326,7 +326,7 @@ impl StudyFile {
         let report: Vec<String> = self.conditions.iter().flat_map(Condition::tells).collect();
         let report = report.iter().find(|word| !word.trim().is_empty() && name.contains(&words(word)))?;
         Some(format!(
-            "name: it contains \"{}\" of a condition, and all users read it: choose a neutral one",
+            "name contains \"{}\", which is part of a condition, and everyone can read it: choose a neutral name",
             shown(report)
         ))
     }

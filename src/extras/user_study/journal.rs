@@ -44,9 +44,8 @@ fn parse(path: &Path, bytes: &[u8]) -> Result<JournalContents, StudyError> {
     let mut entries = Vec::new();
     for (line, text) in (1..).zip(bytes[..end].split_inclusive(|byte| *byte == b'\n')) {
         let damaged = |why: String| StudyError::Journal { path: path.to_owned(), line, why };
-        let entry: JournalEntry = serde_json::from_slice(text).map_err(|error| {
-            damaged(format!("it is not a line of a journal ({error}): restore the file from a copy"))
-        })?;
+        let entry: JournalEntry = serde_json::from_slice(text)
+            .map_err(|error| damaged(format!("it is not a journal entry ({error}): restore the file from a copy")))?;
         if entry.n != line {
             return Err(damaged(format!("it has number {}: lines are missing or were moved", entry.n)));
         }

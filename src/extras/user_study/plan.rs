@@ -120,7 +120,7 @@ impl StudyPlan {
         match plan.version {
             OLDEST..=VERSION => Ok(plan),
             other => Err(format!(
-                "it has version {other}, and this program knows versions {OLDEST} to {VERSION}: use a newer program"
+                "it has version {other}, but this program supports versions {OLDEST} to {VERSION}: use a newer program"
             )),
         }
     }

@@ -147,7 +147,10 @@ impl ParticipantProgress {
         if next.trial() != Some((trial, label)) {
             let TrialId { phase, number, attempt } = trial;
             let what = if phase == TrialPhase::Practice { "practice trial" } else { "trial" };
-            return Err(format!("{} began {what} {number}, attempt {attempt}, but next is {next}", participant.name));
+            return Err(format!(
+                "{} began {what} {number}, attempt {attempt}, but the next step is {next}",
+                participant.name
+            ));
         }
         self.open = Some((trial, simulated));
         Ok(())

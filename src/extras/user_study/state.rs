@@ -103,7 +103,9 @@ impl StudyState {
             StudyEvent::StudyMade { commitment } | StudyEvent::Unblinded { commitment, .. }
                 if *commitment != plan.commitment =>
             {
-                return Err("the commitment is not that of study.toml: one of the two files was changed".to_owned());
+                return Err(
+                    "the commitment differs from that in study.toml: one of the two files was changed".to_owned()
+                );
             }
             StudyEvent::StudyMade { .. } => {}
             StudyEvent::ParticipantBegan { participant } => {
@@ -140,7 +142,7 @@ impl StudyState {
                 let next = progress.next(plan, who);
                 if next != asked {
                     return Err(format!(
-                        "{participant} answered {}, but next is {next}",
+                        "{participant} answered {}, but the next step is {next}",
                         answers.questionnaire().name()
                     ));
                 }
@@ -152,7 +154,7 @@ impl StudyState {
             StudyEvent::Excluded { participant, number: Some(number), why } => {
                 let progress = found(plan, &mut self.participants, participant)?.1;
                 if !progress.trials.iter().any(|made| made.number == *number) {
-                    return Err(format!("{participant} has not made trial {number}"));
+                    return Err(format!("{participant} has not done trial {number}"));
                 }
                 progress.excluded_trials.insert(*number, why.clone());
             }

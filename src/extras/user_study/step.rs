@@ -84,7 +84,7 @@ impl std::fmt::Display for StudyStep {
                 write!(f, "questionnaire {} at the end", questionnaire.name())
             }
             Self::Running { trial } => write!(f, "the end of trial {}, which has begun", trial.number),
-            Self::Done { why: EndReason::Finished } => write!(f, "nothing: all is done"),
+            Self::Done { why: EndReason::Finished } => write!(f, "nothing: all steps are done"),
             Self::Done { why: EndReason::Excluded } => write!(f, "nothing: the participant is excluded"),
         }
     }

@@ -41,7 +41,7 @@ pub enum ConfigError {
     },
     #[error("rig \"{name}\"")]
     Device { name: String, source: DeviceError },
-    #[error("{kind} \"{name}\": {key} is {value}, must be {range}")]
+    #[error("{kind} \"{name}\": {key} is {value}, but it must be {range}")]
     Range {
         /// `rig` or `scene`.
         kind: &'static str,

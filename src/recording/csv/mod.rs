@@ -2,7 +2,7 @@
 //!
 //! Columns: `t_s`; `x_m, y_m, z_m` with `fx_n, fy_n, fz_n`, one to three axes. Other names can be mapped to these, and
 //! the leader's motion can be mapped as well. SI units, or any consistent ones (rad and Nm of a lever). A missing
-//! column, a field that is not a number and a time that does not rise are errors that state their position. A row whose
+//! column, a field that is not a number and a time that does not increase are errors that state their position. A row whose
 //! force fields are all empty is left out, because its force is unknown. A file is read as a stream, so it may be a
 //! pipe, up to [`nima_files::TABLE_MAX`] bytes.
 
@@ -62,7 +62,7 @@ pub enum RecordingError {
         field: String,
     },
     #[error(
-        "recording {path}, line {line}: time does not rise ({before_s} s, then {now_s} s); sort the rows and remove duplicates"
+        "recording {path}, line {line}: time does not increase ({before_s} s, then {now_s} s); sort the rows and remove duplicates"
     )]
     Clock {
         path: PathBuf,
@@ -95,7 +95,7 @@ impl CsvRecording {
     ///
     /// # Errors
     /// [`RecordingError`], with the position, for a file that cannot be read, a missing column, a field that is not a
-    /// number, a time that does not rise, or fewer than three samples.
+    /// number, a time that does not increase, or fewer than three samples.
     ///
     /// ```
     /// use nima_recording::csv::{ColumnMapping, CsvRecording};
@@ -253,7 +253,7 @@ mod tests {
         assert!(message("t_s,a,b\n0,1,2\n", &["x=a", "fx=c"]).contains("its columns are t_s, a, b"));
         assert!(message("t_s,x_m,fx_n\n0,1,2\n1,nan,2\n", &[]).contains("line 3, column \"x_m\""));
         assert!(message("t_s,x_m,fx_n\n0,1,2\n1,,2\n", &[]).contains("line 3"));
-        assert!(message("t_s,x_m,fx_n\n0,1,2\n1,1,2\n1,1,2\n", &[]).contains("line 4: time does not rise"));
+        assert!(message("t_s,x_m,fx_n\n0,1,2\n1,1,2\n1,1,2\n", &[]).contains("line 4: time does not increase"));
         assert!(message("t_s,x_m,fx_n\n0,1,2\n1,1\n", &[]).contains("line"));
         assert!(message("t_s,x_m,fx_n\n0,1,2\n", &[]).contains("1 samples"));
         assert!(message("", &[]).contains("t_s"));

@@ -45,7 +45,7 @@ pub struct JointStateEncoder {
 
 /// A list of values whose length differs from the number of names and is not zero.
 #[derive(Debug, thiserror::Error, PartialEq, Eq)]
-#[error("JointState message has {values} values for {names} names; give one value for each name, or none")]
+#[error("JointState message has {values} values for {names} names; send one value per name, or none")]
 pub struct WrongLength {
     pub values: usize,
     pub names: usize,

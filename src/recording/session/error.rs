@@ -23,8 +23,10 @@ pub enum WriteError {
 impl WriteError {
     pub(super) fn create(path: &Path, error: &io::Error) -> Self {
         let cure = match error.kind() {
-            io::ErrorKind::AlreadyExists => "choose another name, a session is never overwritten",
-            io::ErrorKind::NotFound | io::ErrorKind::NotADirectory => "make its folder first or choose another one",
+            io::ErrorKind::AlreadyExists => "choose another name: sessions are never overwritten",
+            io::ErrorKind::NotFound | io::ErrorKind::NotADirectory => {
+                "create its folder first, or choose another folder"
+            }
             _ => cure(error.kind()),
         };
         Self::Create { path: path.to_owned(), reason: error.to_string(), kind: error.kind(), cure }
@@ -48,7 +50,7 @@ fn cure(kind: io::ErrorKind) -> &'static str {
     match kind {
         io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => "free some space or record to another disk",
         io::ErrorKind::ReadOnlyFilesystem | io::ErrorKind::PermissionDenied => "choose a folder that you may write to",
-        io::ErrorKind::FileTooLarge => "record to a disk that takes larger files",
+        io::ErrorKind::FileTooLarge => "record to a disk that supports larger files",
         _ => "check the disk or record to another one",
     }
 }

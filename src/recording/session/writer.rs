@@ -382,7 +382,7 @@ fn same_schema(one: &Encoding, other: &Encoding) -> bool {
 /// Lays out the empty file under another name, so that it appears complete.
 fn create(path: &Path, library: &str, growth: u64, summary: &RecordingSummary) -> io::Result<RecordingLayout> {
     if path.symlink_metadata().is_ok() {
-        return Err(io::Error::new(ErrorKind::AlreadyExists, "the file exists already"));
+        return Err(io::Error::new(ErrorKind::AlreadyExists, "the file already exists"));
     }
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or_else(|| Path::new("."));
     #[cfg_attr(not(unix), expect(unused_mut, reason = "rights are set where there are any"))]

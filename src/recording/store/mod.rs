@@ -31,10 +31,10 @@ pub struct WristId {
 
 #[derive(Debug, thiserror::Error)]
 pub enum StoreError {
-    #[error("no folder for calibrations found; set NIMA_DATA_DIR to a folder")]
+    #[error("no folder for calibrations was found; set NIMA_DATA_DIR")]
     NoFolder,
     #[error(
-        "\"{name}\" cannot be part of a file name; use letters, digits, '-', '_' and '.', at most 64, not first a '.'"
+        "\"{name}\" cannot be part of a file name; use at most 64 letters, digits, '-', '_' and '.', not beginning with '.'"
     )]
     Name { name: String },
     #[error("cannot read calibration {path}")]
@@ -199,7 +199,8 @@ impl Store {
             }
         }
         let Some(age) = self.age_of(&record.head().date, now) else {
-            let message = format!("date = \"{}\" is not like 2026-08-21T10:20:30Z", quoted(&record.head().date));
+            let message =
+                format!("date = \"{}\" is invalid; write it like 2026-08-21T10:20:30Z", quoted(&record.head().date));
             return Err(StoreError::Damaged { path, message });
         };
         Ok(Some(LoadedRecord { record, age, path }))

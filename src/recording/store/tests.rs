@@ -158,7 +158,7 @@ fn every_damage_names_the_file_and_the_place() {
         damaged(&|good| good.replace("uncertainty_deg = ", "uncertainty_deg = nan # ")).contains("uncertainty_deg")
     );
     let of_the_date = |good: &str| good.replace("date = \"20", "date = \"soon 20");
-    assert!(damaged(&of_the_date).contains("is not like 2026-08-21T10:20:30Z"));
+    assert!(damaged(&of_the_date).contains("write it like 2026-08-21T10:20:30Z"));
 }
 
 /// Reads this text once with an additional key in each of its tables, and with each of its keys misspelled.

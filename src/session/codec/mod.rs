@@ -37,10 +37,10 @@ pub(crate) trait WordSource {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum CodecError {
     /// Words are missing.
-    #[error("it is shorter than it claims")]
+    #[error("it is shorter than it states")]
     Short,
     /// Words are left over.
-    #[error("it is longer than it claims")]
+    #[error("it is longer than it states")]
     Long,
     /// A word without a meaning.
     #[error("it contains an undefined value")]

@@ -48,7 +48,7 @@ pub enum JournalError {
     Version { found: u16 },
     #[error("its content does not match its checksum: the file was changed or damaged")]
     Damaged,
-    #[error("its content is wrong: {0}")]
+    #[error("its content is invalid: {0}")]
     Wrong(#[from] CodecError),
     #[error("its {what} cannot be used: {why}")]
     Part { what: &'static str, why: String },

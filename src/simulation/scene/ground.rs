@@ -132,7 +132,7 @@ impl Scene {
             if let (Some(drawn), Some(tissue)) = (&lumps.drawn, &self.tissue) {
                 drawn.validate(ranges, lumps.thickness_m, tissue.size_m)?;
                 let placed = lumps.placed(self.seed, tissue.size_m).list.len() - lumps.list.len();
-                let allowed = "a number for which there is room: fewer lumps, or nearer to each other";
+                let allowed = "a number for which there is space: use fewer lumps, or place them closer together";
                 ranges.check("lumps.drawn.count", f64::from(drawn.count), placed == drawn.count as usize, allowed)?;
             }
         }

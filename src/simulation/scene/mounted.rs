@@ -20,10 +20,10 @@ impl Scene {
     pub fn mounted_at(self, rig: &RigConfig) -> Result<Self, ConfigError> {
         let Some(devices) = &rig.devices else { return Ok(self) };
         let rings = self.objects.as_ref().map_or(0, |objects| objects.rings.len());
-        let allowed = "none at a rig with devices: only simulated instruments have jaws that hold rings";
+        let allowed = "none on a rig with devices: only simulated instruments have jaws that hold rings";
         Ranges { kind: "scene", name: &self.name }.check("objects.rings (count)", rings as f64, rings == 0, allowed)?;
         let wires = if self.wire.is_some() { 1.0 } else { 0.0 };
-        let allowed = "none at a rig with devices: only simulated instruments have loops";
+        let allowed = "none on a rig with devices: only simulated instruments have loops";
         Ranges { kind: "scene", name: &self.name }.check("number of [wire]", wires, self.wire.is_none(), allowed)?;
         let mut scene = if devices.arm(Side::Left).is_some() { self.with_left_hand() } else { self };
         if let Some(set) = devices.arm(Side::Right) {
@@ -70,7 +70,7 @@ pub(super) fn moved_to_the_rig(error: ConfigError) -> ConfigError {
     });
     let message = match (moved, message.split_once(": ")) {
         (Some(key), Some((line, _))) => format!(
-            "{line}: wrist.{key} belongs to the rig now: delete the lines \"serial\" and \"tool\" here; a simulated rig has them in \
+            "{line}: wrist.{key} is now part of the rig file: delete the lines \"serial\" and \"tool\" here; a simulated rig has them in \
              [simulated.right]"
         ),
         _ => message,

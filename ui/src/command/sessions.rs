@@ -33,7 +33,7 @@ pub(super) struct SessionsArguments {
 
 pub(super) fn run(arguments: &SessionsArguments) -> anyhow::Result<()> {
     let store = Store::of_user()?;
-    let folder = store.folder().parent().context("no folder for your files was found; set NIMA_DATA_DIR")?;
+    let folder = store.folder().parent().context("no data folder was found; set NIMA_DATA_DIR")?;
     let shelf = SessionStore::new(folder.join("sessions"), MAX_BYTES);
     let SessionsArguments { delete, keep: kept, unkeep, json } = arguments;
     if let Some(name) = delete {

@@ -81,7 +81,7 @@ fn what_cannot_be_used_is_told_in_one_line() {
         (vec!["/nowhere"], "cannot read the images in /nowhere"),
         (vec![rig], "cannot read the images"),
         (vec!["http://127.0.0.1:1/"], "no response from"),
-        (vec!["ftp://127.0.0.1/"], "not an address"),
+        (vec!["ftp://127.0.0.1/"], "not a valid image source"),
     ] {
         let output = nima(&[&["calibrate", "camera"], &arguments[..]].concat());
         let errors = one_line(&output);

@@ -89,7 +89,7 @@ fn a_rig_of_real_devices_is_sent_to_the_console_and_leaves_nothing() {
         let output = nima(folder.path(), &["--rig", rig]);
         let report = String::from_utf8(output.stderr).unwrap();
         assert!(
-            !output.status.success() && report.lines().count() == 1 && report.contains("check it in `nima console`"),
+            !output.status.success() && report.lines().count() == 1 && report.contains("run it in `nima console`"),
             "{report}"
         );
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);

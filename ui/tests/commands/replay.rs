@@ -108,7 +108,7 @@ fn what_cannot_be_replayed_is_told_in_one_line() {
     let line = refused(&["replay", &at("empty.mcap"), "--out", &at("out")]);
     assert!(line.contains("--out requires a change"), "{line}");
     let line = refused(&["run", "--virtual", "--record", &at("no/such/folder/s.mcap")]);
-    assert!(line.contains("make its folder first"), "{line}");
+    assert!(line.contains("create its folder first"), "{line}");
 }
 
 /// Runs this script in a shell with a separate disk of 9 MB in the folder `disk`; `None` if users cannot mount one on this

@@ -173,7 +173,9 @@ fn twelve_trials_with_a_killed_program_and_a_stop_lose_nothing_but_these_attempt
         .map(|row| row.split(',').nth(2).unwrap().to_owned())
         .collect();
     assert_eq!(numbers, (1..=12).map(|number| number.to_string()).collect::<Vec<_>>());
-    assert!(refused(&["user-study", "next", study, "--participant", "P01", "--virtual"]).contains("all is done"));
+    assert!(
+        refused(&["user-study", "next", study, "--participant", "P01", "--virtual"]).contains("all steps are done")
+    );
 }
 
 /// A whole study with simulated people; returns p after Holm of the primary measure, and the page.
@@ -187,7 +189,7 @@ fn simulated(conditions: &str) -> (f64, String) {
     report(&["user-study", "new", &file, "--out", study]);
     report(&["user-study", "simulate", study, "--seed", "2", "--steps", "5"]);
     let text = report(&["user-study", "simulate", study, "--seed", "2"]);
-    assert_eq!(text.matches("all is done").count(), 10, "{text}");
+    assert_eq!(text.matches("all steps are done").count(), 10, "{text}");
     report(&["user-study", "unblind", study, "--name", "A", "--reason", "end"]);
     report(&["study-report", study]);
     let read = |name: &str| fs::read_to_string(place.join("report").join(name)).unwrap();
@@ -245,18 +247,18 @@ fn bad_studies_and_steps_are_one_line() {
     let with = |head: &str, conditions: &str| file(folder.path(), head, 3.0, conditions);
     assert!(new("nowhere.toml").contains("paper, short"));
     assert!(new(&with("participants = 0\ntrials = 1", BLIND)).contains("participants = 0"));
-    assert!(new(&with("participants = 0\ntrials = 0", BLIND)).contains("2 mistakes"));
+    assert!(new(&with("participants = 0\ntrials = 0", BLIND)).contains("2 errors"));
     assert!(new(&with("participants = 2\ntrials = 1\nrings = 2", BLIND)).contains("has none"));
     assert!(new(&with("participants = 2\ntrials = 1\nrig = 'desktop'", BLIND)).contains("desktop"));
     assert!(!place.exists(), "nothing is made of a file with mistakes");
     report(&["user-study", "new", &with("participants = 2\ntrials = 1", BLIND), "--out", study]);
-    assert!(new("short").contains("exists already"));
+    assert!(new("short").contains("already exists"));
     let next = |more: &[&str]| refused(&[&["user-study", "next", study, "--participant"], more].concat());
     assert!(next(&["P07", "--virtual"]).contains("P01, P02") || next(&["P07", "--virtual"]).contains("P01 to P02"));
     assert!(next(&["P01"]).contains("--virtual"));
     assert!(next(&["P01", "--answers", "realism = 3"]).contains("takes no answers"));
     assert!(refused(&["user-study", "status", folder.path().to_str().unwrap()]).contains("study.toml"));
-    assert!(refused(&["user-study", "unblind", study, "--name", " ", "--reason", "x"]).contains("needs a name"));
+    assert!(refused(&["user-study", "unblind", study, "--name", " ", "--reason", "x"]).contains("requires a name"));
     let empty = report(&["study-report", study]);
     assert!(
         fs::read_to_string(place.join("report/report.html")).unwrap().contains("Nothing to compare yet"),

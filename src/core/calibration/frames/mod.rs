@@ -70,7 +70,7 @@ pub use view::{ViewMove, ViewResult, ViewSettings};
 /// Reason why samples could not be fitted. Messages count poses from 1.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum FrameError {
-    #[error("pose {} lacks a source ({from:?}); remove it", index + 1)]
+    #[error("pose {} has no {from:?} reading; remove it", index + 1)]
     Missing { index: usize, from: CalibrationSource },
     #[error("pose {} contains a non-finite number or an invalid rotation; remove or repeat it", index + 1)]
     NotFinite { index: usize },

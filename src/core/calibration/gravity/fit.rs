@@ -278,10 +278,10 @@ fn poor(report: &GravityReport, fit: &ModelFit, limits: &GravityLimits) -> Optio
     let max_limit = limits.max_n.max(limits.max_fraction * weight_n);
     let fraction = report.outliers.len() as f64 / report.poses as f64;
     if mae_n > mae_limit {
-        return Some(format!("the mean error on held-out poses is {mae_n:.3} N, the limit {mae_limit:.3} N"));
+        return Some(format!("the mean error on held-out poses is {mae_n:.3} N (limit {mae_limit:.3} N)"));
     }
     if max_n > max_limit {
-        return Some(format!("the largest error on a held-out pose is {max_n:.3} N, the limit {max_limit:.3} N"));
+        return Some(format!("the largest error on a held-out pose is {max_n:.3} N (limit {max_limit:.3} N)"));
     }
     if fraction > limits.max_outliers {
         return Some(format!(
@@ -293,7 +293,7 @@ fn poor(report: &GravityReport, fit: &ModelFit, limits: &GravityLimits) -> Optio
     let torque_nm = fit.torque_nm.map_or(0.0, |torque| torque.held_out.mean_mae());
     (torque_nm > limits.torque_mae_nm).then(|| {
         let limit = limits.torque_mae_nm;
-        format!("the mean error of the torque on held-out poses is {torque_nm:.4} Nm, the limit {limit:.4} Nm")
+        format!("the mean error of the torque on held-out poses is {torque_nm:.4} Nm (limit {limit:.4} Nm)")
     })
 }
 

@@ -49,7 +49,7 @@ pub enum GravityError {
     #[error("pose {} contains a non-finite number; remove or repeat it", index + 1)]
     NotFinite { index: usize },
     /// Orientations from the accelerometer and from the arm are mixed.
-    #[error("pose {} has a different source of orientation than the first pose; use one source for all", index + 1)]
+    #[error("pose {} takes its orientation from a different source than the first pose; use one source for all poses", index + 1)]
     MixedSources { index: usize },
     #[error("pose {}: the accelerometer reads {norm_m_s2:.2} m/s^2 instead of 9.81; check the sensor and its units", index + 1)]
     DeadAccelerometer { index: usize, norm_m_s2: f64 },

@@ -54,7 +54,9 @@ impl MixedDesign {
         let y = &response - &q * &projected;
         // Relative to the variation of the responses, and to the rounding error of their size.
         if y.norm() <= 1e-12 * summary::squares(&model.response).sqrt() + 1e-14 * response.norm() {
-            return Err(AnalysisError::NotEstimable { why: "the fixed effects explain the responses without rest" });
+            return Err(AnalysisError::NotEstimable {
+                why: "the fixed effects explain the responses exactly, without a residual",
+            });
         }
         let participants = names.into_iter().map(str::to_owned).collect();
         let reference = model.reference.clone();
@@ -136,12 +138,12 @@ impl DesignDegrees {
     fn check(&self) -> Result<()> {
         if self.within == 0 {
             return Err(AnalysisError::NotEstimable {
-                why: "there are no more trials than participants and effects within them explain",
+                why: "there are too few trials for the participants and the effects within them",
             });
         }
         if self.between == 0 {
             return Err(AnalysisError::NotEstimable {
-                why: "there are no more participants than effects that differ between them",
+                why: "there are too few participants for the effects that differ between them",
             });
         }
         Ok(())

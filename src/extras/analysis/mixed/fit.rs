@@ -76,7 +76,7 @@ struct FitSolution {
 
 impl MixedFit {
     pub(super) fn at(design: &MixedDesign, ratio: f64, criterion: MixedCriterion, confidence: f64) -> Result<Self> {
-        let flat = AnalysisError::NotEstimable { why: "the effects cannot be separated at the best variances" };
+        let flat = AnalysisError::NotEstimable { why: "the effects cannot be separated at the best-fitting variances" };
         let profile = LikelihoodProfile::of(design, criterion);
         let point = profile.at(ratio).ok_or(flat.clone())?;
         let precision = Precision::of(design, &profile, &point)?;
@@ -153,7 +153,7 @@ impl FitSolution {
         let count = effects.len();
         let covariance: DMatrix<f64> = self.precision.covariance.view((first, first), (count, count)).into_owned();
         let turned = SymmetricEigen::try_new(covariance, f64::EPSILON, 1000)
-            .ok_or(AnalysisError::NotEstimable { why: "the covariance of the conditions cannot be taken apart" })?;
+            .ok_or(AnalysisError::NotEstimable { why: "the covariance of the conditions cannot be decomposed" })?;
         let mut squares = 0.0;
         let mut dfs = Vec::with_capacity(count);
         for (variance, direction) in turned.eigenvalues.iter().zip(turned.eigenvectors.column_iter()) {

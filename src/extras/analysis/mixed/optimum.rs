@@ -18,7 +18,9 @@ pub(super) fn ratio(design: &MixedDesign, criterion: MixedCriterion) -> Result<f
     let deviances: Vec<f64> = points.iter().map(|point| profile.deviance(point)).collect();
     let best = (0..points.len()).min_by(|&a, &b| deviances[a].total_cmp(&deviances[b])).ok_or(FLAT)?;
     if best + 1 == points.len() {
-        return Err(AnalysisError::NotEstimable { why: "the trials of each participant differ by the effects alone" });
+        return Err(AnalysisError::NotEstimable {
+            why: "the trials of each participant differ only by the fixed effects",
+        });
     }
     if best == 0 && profile.slope(&points[0]) >= 0.0 {
         return Ok(0.0);
@@ -28,7 +30,7 @@ pub(super) fn ratio(design: &MixedDesign, criterion: MixedCriterion) -> Result<f
     zero(low, high, |ratio| profile.at(ratio).map(|point| profile.slope(&point)))
 }
 
-const FLAT: AnalysisError = AnalysisError::NotEstimable { why: "the likelihood has no maximum that can be found" };
+const FLAT: AnalysisError = AnalysisError::NotEstimable { why: "no maximum of the likelihood was found" };
 
 /// By halving; the slope is negative below the ratio and positive above.
 fn zero(mut low: f64, mut high: f64, slope: impl Fn(f64) -> Option<f64>) -> Result<f64> {

@@ -19,7 +19,7 @@ pub(super) struct Precision {
 
 impl Precision {
     pub(super) fn of(design: &MixedDesign, profile: &LikelihoodProfile, point: &LikelihoodPoint) -> Result<Self> {
-        let lost = AnalysisError::NotEstimable { why: "the likelihood is too flat about its maximum" };
+        let lost = AnalysisError::NotEstimable { why: "the likelihood is too flat around its maximum" };
         let back = design.r.clone().try_inverse().ok_or(lost.clone())?;
         let residual_variance = profile.residual_variance(point);
         let covariance = &back * point.information.inverse() * back.transpose() * residual_variance;

@@ -33,34 +33,37 @@ fn values_that_are_no_numbers_are_named() {
 
 #[test]
 fn too_few_values_are_counted() {
-    says(SampleSummary::of(&NONE), "the sample: 0 are too few; give at least 1");
-    says(Bootstrap::default().median(&[1.0]), "the sample: 1 are too few; give at least 2");
-    says(wilcoxon(&NONE), "differences: 0 are too few; give at least 1");
-    says(friedman::test(&[[1.0, 2.0]]), "participants: 1 are too few; give at least 2");
-    says(effect::cohens_d(&[1.0], &[1.0, 2.0]), "values of the first group: 1 are too few; give at least 2");
-    says(correction::holm(&NONE), "p-values: 0 are too few; give at least 1");
+    says(SampleSummary::of(&NONE), "the sample: 0 are too few; provide at least 1");
+    says(Bootstrap::default().median(&[1.0]), "the sample: 1 are too few; provide at least 2");
+    says(wilcoxon(&NONE), "differences: 0 are too few; provide at least 1");
+    says(friedman::test(&[[1.0, 2.0]]), "participants: 1 are too few; provide at least 2");
+    says(effect::cohens_d(&[1.0], &[1.0, 2.0]), "values of the first group: 1 are too few; provide at least 2");
+    says(correction::holm(&NONE), "p-values: 0 are too few; provide at least 1");
     let many = vec![1.0; 51];
     let exact = SignedRankOptions { distribution: Distribution::Exact, ..SignedRankOptions::default() };
-    says(signed_rank::of_differences(&many, &exact), "differences for an exact test: 51 are too many; give at most 50");
-    says(signed_rank::location(&[1.0; 2001], 0.9), "differences: 2001 are too many; give at most 2000");
+    says(
+        signed_rank::of_differences(&many, &exact),
+        "differences for an exact test: 51 are too many; provide at most 50",
+    );
+    says(signed_rank::location(&[1.0; 2001], 0.9), "differences: 2001 are too many; provide at most 2000");
 }
 
 #[test]
 fn lengths_that_differ_are_told() {
     says(
         t_test::paired(&[1.0, 2.0], &[1.0], 0.95),
-        "the second values and the first ones differ in number: 1 instead of 2; give the same number of both",
+        "the second values and the first ones differ in number: 1 instead of 2; provide the same number of both",
     );
     let rows = [vec![1.0, 2.0], vec![1.0]];
     says(
         friedman::test(&rows),
-        "the values in the row of participant 2 and the conditions differ in number: 1 instead of 2; give the same number of both",
+        "the values in the row of participant 2 and the conditions differ in number: 1 instead of 2; provide the same number of both",
     );
 }
 
 #[test]
 fn what_does_not_vary_cannot_be_judged() {
-    let all = "are all the same, so there is no variation to judge by; give values that differ";
+    let all = "are all the same, so there is no variation to judge by; provide values that differ";
     says(wilcoxon(&[0.0, -0.0, 0.0]), &format!("the two values of every participant {all}"));
     says(effect::rank_biserial(&[0.0]), &format!("the two values of every participant {all}"));
     says(mann_whitney::test(&[1.0, 1.0], &[1.0], Distribution::Normal), &format!("the values of both groups {all}"));
@@ -103,7 +106,7 @@ fn a_power_that_is_not_reached_is_told() {
     let power = |n| simulation.paired(&Population::Normal { sd: 1.0 }, 0.0, n, PairedTest::T);
     let error = MinimumSample::of(0.9, 5, 20, power).unwrap_err();
     assert!(matches!(error, AnalysisError::NotReached { largest: 20, .. }), "{error}");
-    says(MinimumSample::of(0.9, 5, 4, power), "the maximum number of participants: 4 are too few; give at least 5");
+    says(MinimumSample::of(0.9, 5, 4, power), "the maximum number of participants: 4 are too few; provide at least 5");
 }
 
 fn fit(
@@ -127,9 +130,9 @@ fn a_model_that_cannot_be_fitted_says_why() {
     says(fit("aabbcc", "zyzyzy", &y, None), "there is no condition called 'x'");
     says(
         fit("aabbc", "xyxyx", &y, None),
-        "the participants and the responses differ in number: 5 instead of 6; give the same number of both",
+        "the participants and the responses differ in number: 5 instead of 6; provide the same number of both",
     );
-    says(fit("aaaaaa", "xyxyxy", &y, None), "participants: 1 are too few; give at least 2");
+    says(fit("aaaaaa", "xyxyxy", &y, None), "participants: 1 are too few; provide at least 2");
     let nan = [1.0, f64::NAN, 2.0, 3.0, 0.0, 2.0];
     says(
         fit("aabbcc", "xyxyxy", &nan, None),
@@ -146,19 +149,20 @@ fn a_model_that_cannot_be_fitted_says_why() {
     );
     says(
         fit("abcdef", "xyxyxy", &y, None),
-        "the variances cannot be estimated: there are no more trials than participants and effects within them explain",
+        "the variances cannot be estimated: there are too few trials for the participants and the effects within them",
     );
     // The condition differs only between the two participants.
     says(
         fit("aaabbb", "xxxyyy", &y, None),
-        "the variances cannot be estimated: there are no more participants than effects that differ between them",
+        "the variances cannot be estimated: there are too few participants for the effects that differ between them",
     );
-    let without_rest = "the variances cannot be estimated: the fixed effects explain the responses without rest";
+    let without_rest =
+        "the variances cannot be estimated: the fixed effects explain the responses exactly, without a residual";
     says(fit("aabbcc", "xyxyxy", &[1.0, 2.0, 1.0, 2.0, 1.0, 2.0], None), without_rest);
     says(fit("aabbcc", "xyxyxy", &[0.1; 6], None), without_rest);
     says(
         fit("aabbcc", "xyxyxy", &[1.0, 2.0, 3.0, 4.0, 7.0, 8.0], None),
-        "the variances cannot be estimated: the trials of each participant differ by the effects alone",
+        "the variances cannot be estimated: the trials of each participant differ only by the fixed effects",
     );
     let fit = fit("aabbcc", "xyxyxy", &y, None).unwrap();
     says(fit.between("x", "q"), "there is no condition called 'q'");

@@ -50,10 +50,10 @@ impl Image {
         let begin = [from.u16()?, from.u16()?, from.u16()?];
         let part = [from.u16()?, from.u16()?, from.u16()?];
         if scalar != BYTES_OF_8_BITS || ![1, 3, 4].contains(&colours) {
-            return Err(wrong("the kind of pixels (8 bits a colour are read)"));
+            return Err(wrong("the pixel type (8 bits per colour are supported)"));
         }
         if begin != [0; 3] || part != size || size[2] != 1 {
-            return Err(wrong("the part of the image (one whole slice is read)"));
+            return Err(wrong("the part of the image (one complete slice is supported)"));
         }
         let count = usize::from(size[0]) * usize::from(size[1]) * usize::from(colours);
         if content.len() != HEAD + count {

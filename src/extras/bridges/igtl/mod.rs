@@ -38,7 +38,7 @@ pub use unit::IgtlUnit;
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum IgtlFormatError {
     /// Fewer bytes than the message needs.
-    #[error("the message ends early")]
+    #[error("the message is truncated")]
     Short,
     #[error("the header's version is {0}, but only 1 and 2 are supported; use another version of the sender")]
     Version(u16),
@@ -46,10 +46,10 @@ pub enum IgtlFormatError {
     #[error("the checksum does not match: the message was damaged in transit")]
     Checksum,
     /// The body's length does not match its own counts.
-    #[error("a message {kind} of {bytes} bytes does not match its own counts")]
+    #[error("a {kind} message of {bytes} bytes does not match the counts in it")]
     Length { kind: String, bytes: usize },
     /// A number without a meaning.
-    #[error("a message {kind} has an undefined value: {what}")]
+    #[error("a {kind} message has an invalid value: {what}")]
     Value {
         kind: String,
         /// Name of the value.

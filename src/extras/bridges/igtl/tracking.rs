@@ -49,7 +49,7 @@ impl ToolKind {
 
     fn of(number: u8, kind: &str) -> Result<Self, IgtlFormatError> {
         let found = Self::ALL.into_iter().find(|known| known.number() == number);
-        found.ok_or_else(|| IgtlFormatError::Value { kind: kind.to_owned(), what: "the kind of a tool" })
+        found.ok_or_else(|| IgtlFormatError::Value { kind: kind.to_owned(), what: "the type of a tool" })
     }
 }
 

@@ -150,7 +150,7 @@ impl Lsl {
             let reason = (self.last_error)();
             if reason.is_null() { String::new() } else { CStr::from_ptr(reason).to_string_lossy().into_owned() }
         };
-        let reason = if reason.is_empty() { "the library does not say why".to_owned() } else { reason };
+        let reason = if reason.is_empty() { "the library gives no reason".to_owned() } else { reason };
         LslError::Stream { reason }
     }
 }

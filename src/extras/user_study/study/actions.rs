@@ -119,7 +119,7 @@ impl UserStudy {
             && seconds < min_s
         {
             return Err(StudyError::Refused(format!(
-                "{participant}: the break has to last {min_s:.0} s, and it was {seconds:.0} s"
+                "{participant}: the break must last {min_s:.0} s, but it lasted {seconds:.0} s"
             )));
         }
         if matches!(next, StudyStep::Running { .. }) || !seconds.is_finite() {
@@ -157,7 +157,7 @@ impl UserStudy {
     pub fn exclude(&mut self, participant: &str, number: Option<u32>, why: &str, at: &str) -> Result<(), StudyError> {
         self.plan.participant(participant)?;
         if why.trim().is_empty() {
-            return Err(StudyError::Refused("an exclusion needs a reason".to_owned()));
+            return Err(StudyError::Refused("an exclusion requires a reason".to_owned()));
         }
         self.write(at, StudyEvent::Excluded { participant: participant.to_owned(), number, why: why.to_owned() })
     }
@@ -178,7 +178,7 @@ impl UserStudy {
     pub fn unblind(&mut self, who: &str, why: &str, at: &str) -> Result<(), StudyError> {
         let refused = |why: String| Err(StudyError::Refused(why));
         if who.trim().is_empty() || why.trim().is_empty() {
-            return refused("an unblinding needs a name and a reason".to_owned());
+            return refused("unblinding requires a name and a reason".to_owned());
         }
         if !self.plan.blind {
             return refused("the study is not blind: its conditions are known".to_owned());

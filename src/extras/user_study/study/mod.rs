@@ -100,10 +100,10 @@ impl UserStudy {
         };
         let damaged = |name: &str, why: String| StudyError::Damaged { path: folder.join(name), why };
         let plan = StudyPlan::parse(&text(PLAN)?).map_err(|why| damaged(PLAN, why))?;
-        let key = Key::from_hex(&text(KEY)?).ok_or_else(|| damaged(KEY, "it is not a key of a study".to_owned()))?;
+        let key = Key::from_hex(&text(KEY)?).ok_or_else(|| damaged(KEY, "it is not a study key".to_owned()))?;
         let plain = key.open(CONDITIONS, &text(SEALED)?).map_err(|error| damaged(SEALED, error.to_string()))?;
         if seal::hash(&plain) != plan.commitment {
-            let why = "the assignment does not fit to the commitment in study.toml: one of them was changed".to_owned();
+            let why = "the assignment does not match the commitment in study.toml: one of them was changed".to_owned();
             return Err(damaged(SEALED, why));
         }
         let unreadable = || damaged(SEALED, "it was written by another version of the program".to_owned());
@@ -116,7 +116,7 @@ impl UserStudy {
 
     fn follow(&mut self, path: &Path, entries: &[crate::JournalEntry]) -> Result<(), StudyError> {
         if !matches!(entries.first().map(|entry| &entry.event), Some(StudyEvent::StudyMade { .. })) {
-            let why = "it does not begin with the making of the study: restore it from a copy".to_owned();
+            let why = "its first entry is not the creation of the study: restore it from a copy".to_owned();
             return Err(StudyError::Damaged { path: path.to_owned(), why });
         }
         let wrong = |(line, why): (u64, String)| StudyError::Journal { path: path.to_owned(), line, why };

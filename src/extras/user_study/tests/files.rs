@@ -11,7 +11,7 @@ fn every_mistake_is_one_line_that_names_the_key() {
     let ending = |lines: &str| format!("{TWO}\n{lines}");
     for (text, words) in [
         (TWO.replace("name = 'Touching'", ""), "name"),
-        (TWO.replace("'Touching'", "''"), "name has to be"),
+        (TWO.replace("'Touching'", "''"), "name must be"),
         (TWO.replace("participants = 4", "participants = 0"), "participants = 0"),
         (TWO.replace("participants = 4", "participants = 'many'"), "line 5"),
         (TWO.replace("trials = 3", "trials = 1000"), "trials = 1000"),
@@ -23,14 +23,14 @@ fn every_mistake_is_one_line_that_names_the_key() {
         (with("reference = 'Gnu'"), "no condition \"Gnu\""),
         (TWO.replace("mode = 'anchored'\n", ""), "mode is missing"),
         (TWO.replace("'anchored'", "'sideways'"), "sideways"),
-        (TWO.replace("delay_ms = 137.5", "delay_ms = -1.0"), "delay_ms has to be"),
+        (TWO.replace("delay_ms = 137.5", "delay_ms = -1.0"), "delay_ms must be"),
         (TWO.replace("delay_ms = 137.5\n", ""), "delay_ms is missing"),
-        (TWO.replace("gain = 0.8125", "gain = 1.5"), "gain has to be"),
-        (TWO.replace("gain = 0.8125", "gain = nan"), "gain has to be"),
+        (TWO.replace("gain = 0.8125", "gain = 1.5"), "gain must be"),
+        (TWO.replace("gain = 0.8125", "gain = nan"), "gain must be"),
         (TWO.replace("no_force = true", "no_force = true\ngain = 0.5"), "no_force"),
         (TWO.replace("'Yak'", "'Zebra'"), "called \"Zebra\""),
         (TWO.replace("'Yak'", "'B'"), "mistaken for a label"),
-        (TWO.replace("'Yak'", "'Ya,k'"), "its name has to be"),
+        (TWO.replace("'Yak'", "'Ya,k'"), "its name must be"),
         (ending("[[conditions]]\nname = 'Gnu'\nno_force = true"), "are the same"),
         (ending("[[exclusion]]\nmeasure = 'drops'\nis = 'above'\nexclude = 'trial'"), "limit is missing"),
         (ending("[[exclusion]]\nmeasure = 'drops'\nis = 'missing'\nexclude = 'trial'\ntimes = 2"), "times"),
@@ -64,7 +64,7 @@ fn all_mistakes_are_told_at_once() {
 fn the_name_of_a_blind_study_tells_no_condition() {
     for name in ["Zebra against Yak", "Touching, anchored", "Touching over 137.5 ms"] {
         let text = TWO.replace("Touching", name);
-        assert!(mistakes(&text)[0].contains("all users read it"), "{name}");
+        assert!(mistakes(&text)[0].contains("everyone can read it"), "{name}");
         assert!(!file(&format!("blind = false\n{text}")).blind);
     }
 }

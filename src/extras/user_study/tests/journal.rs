@@ -124,9 +124,9 @@ fn what_is_not_next_is_refused_and_does_not_stand_in_the_journal() {
     };
     refused(study.answer("P01", QuestionnaireAnswers::Realism(3), true, AT), "not the next step; do trial 1");
     refused(study.answer("P77", QuestionnaireAnswers::Realism(3), true, AT), "choose one of P01 to P04");
-    refused(study.exclude("P01", Some(1), "fell asleep", AT), "has not made trial 1");
-    refused(study.exclude("P01", None, " ", AT), "needs a reason");
-    refused(study.unblind("", "x", AT), "needs a name");
+    refused(study.exclude("P01", Some(1), "fell asleep", AT), "has not done trial 1");
+    refused(study.exclude("P01", None, " ", AT), "requires a reason");
+    refused(study.unblind("", "x", AT), "requires a name");
     assert_eq!(fs::read(journal(&folder)).unwrap(), before);
     (0..3).for_each(|_| trial(&mut study, "P01", 20));
     refused(study.begin_trial("P01", true, AT).map(drop), "questionnaire realism");

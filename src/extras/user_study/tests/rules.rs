@@ -176,7 +176,7 @@ fn breaks_and_questionnaires_come_where_the_file_puts_them() {
         realism(1),
         "questionnaire sus at the end".to_owned(),
         "questionnaire free_text at the end".to_owned(),
-        "nothing: all is done".to_owned(),
+        "nothing: all steps are done".to_owned(),
     ];
     assert_eq!(steps, expected);
     let table = study.questionnaires();

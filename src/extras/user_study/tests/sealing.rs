@@ -93,7 +93,7 @@ fn an_assignment_or_a_plan_that_was_changed_is_refused() {
         fs::remove_file(place(name)).unwrap();
         fs::copy(other.path().join("study").join(name), place(name)).unwrap();
     }
-    refused("does not fit to the commitment");
+    refused("does not match the commitment");
     let text = fs::read_to_string(place("study.toml")).unwrap();
     let theirs = fs::read_to_string(other.path().join("study/study.toml")).unwrap();
     let line = |text: &str| text.lines().find(|line| line.starts_with("commitment")).unwrap().to_owned();

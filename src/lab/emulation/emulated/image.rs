@@ -25,7 +25,7 @@ impl EmulatedRig {
     ) -> Result<(), EmulatedRigError> {
         let place = |wanted| EmulatedRigError::Place { device: NAME.to_owned(), place: endoscope.url.clone(), wanted };
         let Ok(Address::Http(Endpoint { host, port, .. })) = endoscope.url.parse() else {
-            return Err(place("give the endoscope of an emulated rig url = \"http://127.0.0.1:PORT/\""));
+            return Err(place("in [endoscope] of an emulated rig, set url = \"http://127.0.0.1:PORT/\""));
         };
         addresses::local(NAME, &host)?;
         let worlds: Vec<_> = Side::ALL

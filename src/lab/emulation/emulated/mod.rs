@@ -94,15 +94,15 @@ pub enum EmulatedRigError {
         wanted: &'static str,
     },
     /// The scene that describes the paper's rig.
-    #[error("cannot load the paper's rig")]
+    #[error("cannot load the built-in scene of the paper's rig")]
     Paper(#[from] ConfigError),
     #[error("cannot emulate the rig")]
     Settings(#[from] DeviceError),
     /// The arm's mount is impossible.
-    #[error("the mount of the {device} is impossible; correct it in the rig file")]
+    #[error("the mount of the {device} is invalid; correct it in the rig file")]
     Mount { device: String, source: ArmError },
     /// The trocar is impossible.
-    #[error("the trocar of the {device} is impossible; correct it in the rig file")]
+    #[error("the trocar of the {device} is invalid; correct it in the rig file")]
     Trocar { device: String, source: RcmError },
     /// The arm cannot reach the start position of the hand.
     #[error("the {device} cannot reach the start position of the scene's hand")]

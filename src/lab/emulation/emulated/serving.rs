@@ -76,7 +76,7 @@ fn handle(side: Side, set: &ArmSet, shared: &SharedWorld) -> ServedDevices {
     let name = format!("{} handle", side.word());
     let chosen = set.handle.force_dimension();
     let Some((chosen, address)) = chosen.and_then(|chosen| Some((chosen, chosen.emulator?))) else {
-        let wanted = "give the handle of an emulated rig emulator = \"127.0.0.1:PORT\"";
+        let wanted = "for a handle of an emulated rig, set emulator = \"127.0.0.1:PORT\"";
         return Err(EmulatedRigError::Place { device: name, place: "no address".to_owned(), wanted });
     };
     addresses::local(&name, &address.ip().to_string())?;

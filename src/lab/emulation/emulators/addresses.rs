@@ -16,7 +16,7 @@ pub(super) fn taken<T>(port: u16, protocol: &str, bound: Result<T>) -> Result<T>
             ErrorKind::AddrInUse => {
                 "is in use by another program, perhaps by another emulated rig: end it, or change the port"
             }
-            ErrorKind::PermissionDenied => "needs more rights (as all below 1024): take another port",
+            ErrorKind::PermissionDenied => "requires administrator rights, like all ports below 1024: use another port",
             _ => return error,
         };
         Error::new(error.kind(), format!("{protocol} port {port} of this computer {reason}"))
@@ -45,7 +45,7 @@ fn foreign(path: &Path) -> Error {
 
 #[cfg(unix)]
 fn served(path: &Path) -> Error {
-    let report = format!("{} is served by another emulator: end it, or take another place", path.display());
+    let report = format!("{} is in use by another emulator: end that emulator, or use another path", path.display());
     Error::new(ErrorKind::AddrInUse, report)
 }
 

@@ -54,12 +54,12 @@ pub enum BaselinesError {
     #[error("{name}: {source}")]
     Settings { name: String, source: SettingsError },
     #[error(
-        "{name} has {samples} samples; a delay of {delay_ms} ms at {rate_hz} Hz needs more than {needed}; record longer or give a shorter --delay-ms"
+        "{name} has {samples} samples; a delay of {delay_ms} ms at {rate_hz} Hz needs more than {needed}; record longer or use a shorter --delay-ms"
     )]
     TooShort { name: String, samples: usize, needed: usize, delay_ms: f64, rate_hz: f64 },
     /// Reflection has no error, so no ratio can be computed.
     #[error(
-        "{name}: the delayed force is never wrong at a delay of {delay_ms} ms (no force, or less than half a sample of delay); give a recording with contact or a longer --delay-ms"
+        "{name}: the delayed force is never wrong at a delay of {delay_ms} ms (no force, or less than half a sample of delay); use a recording with contact or a longer --delay-ms"
     )]
     NothingToCompare { name: String, delay_ms: f64 },
 }

@@ -37,7 +37,7 @@ impl Findings for HandReport {
         }
         let HeldTally { reversed_ticks, reversed_n, beyond_slew_n, .. } = all;
         Err(format!(
-            "the governor opposed hands that were there: {reversed_ticks} ticks reversed, by up to {reversed_n:.2} N; \
+            "the governor opposed hands that held the handle: {reversed_ticks} ticks reversed, by up to {reversed_n:.2} N; \
              steps up to {beyond_slew_n:.2} N beyond the slew limit"
         ))
     }

@@ -37,7 +37,7 @@ pub enum RecordingReplayError {
     TooShort { path: String, found: usize, needed: usize, window_ms: f64, delay_ms: f64, rate_hz: f64 },
     /// A delay that would be rounded to zero.
     #[error(
-        "the delay of {delay_ms} ms is less than half a sample of recording {path} ({rate_hz} Hz); give 0 or at least {min_ms:.3} ms"
+        "the delay of {delay_ms} ms is less than half a sample of recording {path} ({rate_hz} Hz); use 0 or at least {min_ms:.3} ms"
     )]
     ShortDelay { path: String, delay_ms: f64, rate_hz: f64, min_ms: f64 },
 }

@@ -56,7 +56,7 @@ impl StabilityOptions {
 /// Why the study could not run.
 #[derive(Debug, thiserror::Error)]
 pub enum StabilityError {
-    #[error("{ticks} ticks are out of range; give 10000 to 1000000000")]
+    #[error("{ticks} ticks are out of range; use 10000 to 1000000000")]
     Ticks { ticks: u64 },
     #[error(transparent)]
     Settings(#[from] SettingsError),

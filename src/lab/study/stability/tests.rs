@@ -35,5 +35,5 @@ fn a_long_run_answers_as_one_that_began_later() {
 #[test]
 fn too_few_ticks_are_refused() {
     let error = study(&StabilityOptions { ticks: 9, quick: true }, |_, _, _| {}).unwrap_err();
-    assert_eq!(error.to_string(), "9 ticks are out of range; give 10000 to 1000000000");
+    assert_eq!(error.to_string(), "9 ticks are out of range; use 10000 to 1000000000");
 }

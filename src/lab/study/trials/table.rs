@@ -57,7 +57,7 @@ impl TrialTable {
         let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(input);
         let names: Vec<String> = reader.headers().map_err(|error| plain(&error))?.iter().map(str::to_owned).collect();
         if names.len() > COLUMNS_MAX {
-            return Err(format!("{} columns are more than {COLUMNS_MAX}", names.len()));
+            return Err(format!("{} columns exceed the limit of {COLUMNS_MAX}", names.len()));
         }
         if let Some(twice) = names.iter().enumerate().find(|(at, name)| names[..*at].contains(name)) {
             return Err(format!("column \"{}\" occurs twice", quoted(twice.1)));
@@ -85,7 +85,7 @@ impl TrialTable {
             wanted.iter().filter_map(|name| column(name)).collect()
         };
         if measures.is_empty() {
-            return Err("no column but participant, condition and trial holds numbers alone".to_owned());
+            return Err("no column except participant, condition and trial contains only numbers".to_owned());
         }
         let cell = |line: u64, row: &csv::StringRecord, at: usize| {
             value(&row[at])
@@ -187,7 +187,7 @@ mod tests {
     fn what_is_wrong_is_told_with_its_line() {
         for (text, wanted, words) in [
             ("a,b\n1,2\n", &[][..], "no column \"participant\""),
-            ("participant,condition\na,x\n", &[], "holds numbers alone"),
+            ("participant,condition\na,x\n", &[], "contains only numbers"),
             ("participant,condition,t\na,x,1\na,y,fast\n", &["t"], "line 3: \"fast\" in column t"),
             ("participant,condition,t\na,x,inf\n", &["t"], "line 2"),
             ("participant,condition,t\na,,1\n", &[], "line 2: condition is empty"),

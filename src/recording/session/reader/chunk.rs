@@ -21,18 +21,20 @@ const MAX_FOR_A_BYTE: u64 = 255;
 /// Reads the chunk at this position, or returns what is wrong with it.
 pub(super) fn read(source: &ReaderSource, at: u64, length: u64) -> io::Result<Result<ReaderChunk, String>> {
     let bytes = match source.read(at, length) {
-        Err(error) if error.kind() == io::ErrorKind::UnexpectedEof => return Ok(Err("it is beyond the file".into())),
+        Err(error) if error.kind() == io::ErrorKind::UnexpectedEof => {
+            return Ok(Err("it is beyond the end of the file".into()));
+        }
         read => read?,
     };
     let found = parse::first_record(&bytes).filter(|&(kind, _, behind)| kind == kind::CHUNK && behind.is_empty());
     let Some((head, compressed)) = found.and_then(|(_, content, _)| parse::chunk(content)) else {
-        return Ok(Err("it is not a whole chunk".into()));
+        return Ok(Err("it is not a complete chunk".into()));
     };
     Ok(decompress(&head, compressed).and_then(|records| {
         if head.crc == 0 || crc32fast::hash(&records) == head.crc {
             Ok(ReaderChunk { records, times_ns: head.times_ns })
         } else {
-            Err("its checksum does not agree: bits have changed".into())
+            Err("its checksum does not match: the data were changed or damaged".into())
         }
     }))
 }
@@ -47,7 +49,7 @@ fn decompress(head: &parse::ChunkHead, compressed: &[u8]) -> Result<Vec<u8>, Str
         }
     };
     if head.uncompressed > max {
-        return Err("it claims to be longer than it can be".into());
+        return Err("its stated length is longer than it can be".into());
     }
     // Allocates at first only for a likely compression ratio, whatever the chunk claims.
     let likely = head.uncompressed.min(8 * compressed.len() as u64);
@@ -62,7 +64,7 @@ fn decompress(head: &parse::ChunkHead, compressed: &[u8]) -> Result<Vec<u8>, Str
     if records.len() as u64 == head.uncompressed {
         Ok(records)
     } else {
-        Err("it has not the length that it claims".into())
+        Err("it does not have the length that it states".into())
     }
 }
 

@@ -41,10 +41,10 @@ const ROW: u64 = 4 << 20;
 impl ReaderContents {
     /// Reads the summary, or returns why this is impossible.
     pub(super) fn of_summary(source: &ReaderSource) -> io::Result<Result<Self, &'static str>> {
-        let Some(end) = source.size().checked_sub(END as u64) else { return Ok(Err("it is cut short")) };
+        let Some(end) = source.size().checked_sub(END as u64) else { return Ok(Err("it is truncated")) };
         let last = source.read(end, END as u64)?;
         if last[END - MAGIC.len()..] != MAGIC {
-            return Ok(Err("it is cut short"));
+            return Ok(Err("it is truncated"));
         }
         let footer = parse::first_record(&last).filter(|&(kind, ..)| kind == kind::FOOTER);
         let Some(footer) = footer.and_then(|(_, content, _)| parse::footer(content)) else {
@@ -165,7 +165,7 @@ impl ReaderContents {
         let chunk = match chunk::read(source, place.at, place.length)? {
             Ok(chunk) => chunk,
             Err(why) => {
-                self.note(|| format!("the chunk at byte {} is left out: {why}", place.at));
+                self.note(|| format!("the chunk at byte {} is skipped: {why}", place.at));
                 return Ok(());
             }
         };

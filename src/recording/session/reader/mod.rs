@@ -200,7 +200,7 @@ impl SessionReader {
         }
         let chunk = chunk::read(&self.source, place.at, place.length).map_err(failed)?.and_then(|chunk| {
             let agree = chunk.times_ns == place.times_ns;
-            if agree { Ok(chunk) } else { Err("its times are not those of its index".to_owned()) }
+            if agree { Ok(chunk) } else { Err("its times differ from those in its index".to_owned()) }
         });
         let seconds = |ns: u64| ns as f64 * 1e-9;
         let what = |why: String| {

@@ -73,7 +73,7 @@ fn a_file_that_is_cut_anywhere_is_read_up_to_there() {
     for length in 60..whole.len() {
         let reader = SessionReader::of_bytes("cut", whole[..length].to_vec()).unwrap();
         let read = ours(&reader);
-        assert!(reader.notes()[0].starts_with("it is cut short: scanned all records"), "{:?}", reader.notes());
+        assert!(reader.notes()[0].starts_with("it is truncated: scanned all records"), "{:?}", reader.notes());
         assert!(read[..] == all[..read.len()] && read.len() >= max, "cut at {length}");
         max = read.len();
     }
@@ -147,7 +147,7 @@ fn what_claims_to_be_huge_takes_no_memory() {
         bytes[at as usize + 9 + 16..][..8].copy_from_slice(&claimed.to_le_bytes());
         let reader = SessionReader::of_bytes("huge", bytes).unwrap();
         let error = reader.messages(&[], 0..u64::MAX).find_map(Result::err).unwrap().to_string();
-        assert!(error.contains("longer than it can be") || error.contains("the length that it claims"), "{error}");
+        assert!(error.contains("longer than it can be") || error.contains("the length that it states"), "{error}");
     }
 }
 

@@ -154,7 +154,7 @@ fn what_cannot_be_created_or_goes_away_is_told_in_one_line() {
     let refused = |path: &std::path::Path| SessionWriter::create(path, "").err().unwrap().to_string();
     let mut writer = SessionWriter::create(&path, "").unwrap();
     assert!(refused(&path).contains("never overwritten"));
-    assert!(refused(&folder.path().join("none/a.mcap")).contains("make its folder first"));
+    assert!(refused(&folder.path().join("none/a.mcap")).contains("create its folder first"));
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1, "nothing else is left behind");
     let channel = writer.channel("a", plain_text()).unwrap();
     writer.message(channel, 0, b"a").unwrap();

@@ -223,7 +223,7 @@ impl DataSet {
             firsts = swings.iter().map(|swings| swings.first().copied()).collect();
             let all: Vec<f32> = swings.concat();
             if all.is_empty() {
-                let reason = format!("\"{}\" needs a position that turns back in the data", self.inputs[input]);
+                let reason = format!("\"{}\" requires a position that reverses in the data", self.inputs[input]);
                 return Err(TipForceError::Columns { reason });
             }
             let mean = all.iter().sum::<f32>() / all.len() as f32;
@@ -291,14 +291,14 @@ fn check_columns(set: &DataSet) -> Result<(), TipForceError> {
     let refuse = |reason: String| Err(TipForceError::Columns { reason });
     let names: Vec<&String> = set.inputs.iter().chain(&set.outputs).collect();
     if let Some(twice) = names.iter().enumerate().find(|(i, name)| names[..*i].contains(name)) {
-        return refuse(format!("\"{}\" is named twice", quoted(twice.1)));
+        return refuse(format!("\"{}\" is listed twice", quoted(twice.1)));
     }
     if set.outputs.is_empty() || set.outputs.len() > MAX_OUTPUTS {
-        return refuse(format!("there are {} outputs, 1 to {MAX_OUTPUTS} are possible", set.outputs.len()));
+        return refuse(format!("there are {} outputs; use 1 to {MAX_OUTPUTS}", set.outputs.len()));
     }
     let width = Expansion::fit(&set.inputs, &[]).width();
     if width > MAX_FEATURES {
-        return refuse(format!("the inputs make {width} numbers, at most {MAX_FEATURES} are possible"));
+        return refuse(format!("the inputs result in {width} numbers; the limit is {MAX_FEATURES}"));
     }
     Ok(())
 }
@@ -354,7 +354,7 @@ mod tests {
         let other = read(&["x,f,y\n0,1,0\n1,1,0\n"], &set.inputs.join(","), "y").unwrap();
         assert_eq!(other.x[5].to_bits(), 2.0_f32.to_bits());
         let message = |inputs: &str| read(&["x,f,y\n0,1,0\n1,1,0\n"], inputs, "y").unwrap_err().to_string();
-        assert!(message("midline:f:x:0.5").contains("turns back"));
+        assert!(message("midline:f:x:0.5").contains("reverses"));
         assert!(message("presliding:x").contains("presliding:POSITION:WIDTH"));
         assert!(message("presliding:z:1").contains("no column \"z\""));
     }

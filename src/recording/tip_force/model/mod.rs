@@ -121,13 +121,15 @@ pub fn load_model(path: &Path) -> Result<ForceModel, TipForceError> {
 /// # Errors
 /// A message with the fault.
 pub fn model_from_bytes(file: &[u8]) -> Result<ForceModel, String> {
-    let (_, metadata) = SafeTensors::read_metadata(file).map_err(|error| format!("no safetensors file ({error})"))?;
-    let tensors = SafeTensors::deserialize(file).map_err(|error| format!("no safetensors file ({error})"))?;
-    let text = metadata.metadata().as_ref().and_then(|texts| texts.get(KEY)).ok_or("it has no metadata of ours")?;
+    let (_, metadata) =
+        SafeTensors::read_metadata(file).map_err(|error| format!("it is not a safetensors file ({error})"))?;
+    let tensors = SafeTensors::deserialize(file).map_err(|error| format!("it is not a safetensors file ({error})"))?;
+    let text =
+        metadata.metadata().as_ref().and_then(|texts| texts.get(KEY)).ok_or("it has no metadata of this program")?;
     let header: ModelHeader =
-        serde_json::from_str(text).map_err(|error| format!("its metadata are wrong ({error})"))?;
+        serde_json::from_str(text).map_err(|error| format!("its metadata are invalid ({error})"))?;
     if header.format != FORMAT {
-        return Err(format!("it is \"{}\", this version reads \"{FORMAT}\"", header.format));
+        return Err(format!("its format is \"{}\", but this version reads \"{FORMAT}\"", header.format));
     }
     let read = |name: &str| values(&tensors, name);
     let soft = read("soft")?;
@@ -136,12 +138,12 @@ pub fn model_from_bytes(file: &[u8]) -> Result<ForceModel, String> {
     let scale = normalisation(&tensors, "outputs", header.outputs.len())?;
     let members =
         (0..header.members).map(|m| member(&tensors, m, header.layers)).collect::<Result<Vec<_>, String>>()?;
-    let network = TipForceNetwork::new(members).ok_or("its members do not fit together")?;
+    let network = TipForceNetwork::new(members).ok_or("its members do not match one another")?;
     if network.shape() != (expansion.width(), header.outputs.len()) {
-        return Err("its weights do not fit its columns".into());
+        return Err("its weights do not match its columns".into());
     }
     if !header.baselines.fits(header.inputs.len(), header.outputs.len()) {
-        return Err("its baselines do not fit its columns".into());
+        return Err("its baselines do not match its columns".into());
     }
     let doubt = doubt(&tensors, expansion.measured(), header.limits)?;
     let ModelHeader { inputs, outputs, baselines, origin, .. } = header;
@@ -156,10 +158,10 @@ fn member(tensors: &SafeTensors<'_>, m: usize, layers: usize) -> Result<Member, 
         let bias = values(tensors, &format!("{m}.{k}.bias"))?;
         let [inputs, outputs] = shape[..] else { return Err(format!("tensor {name} is not a matrix")) };
         TipForceLayer::new(inputs, outputs, &weights, &bias)
-            .ok_or_else(|| format!("tensor {name} does not fit its bias"))
+            .ok_or_else(|| format!("tensor {name} does not match its bias"))
     };
     let all = (0..layers).map(layer).collect::<Result<Vec<_>, _>>()?;
-    Member::new(all, layer(layers)?).ok_or_else(|| format!("the layers of member {m} do not follow one another"))
+    Member::new(all, layer(layers)?).ok_or_else(|| format!("the layers of member {m} do not match one another"))
 }
 
 fn doubt(tensors: &SafeTensors<'_>, width: usize, limits: [f32; 3]) -> Result<Doubt, String> {
@@ -168,7 +170,7 @@ fn doubt(tensors: &SafeTensors<'_>, width: usize, limits: [f32; 3]) -> Result<Do
     let range: Vec<[f32; 2]> = values(tensors, "doubt.range")?.chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect();
     let fits = whitening.len() == width * width && range.len() == width && centres.len() % width.max(1) == 0;
     if !fits || centres.is_empty() || !limits.iter().all(|limit| limit.is_finite() && *limit > 0.0) {
-        return Err("its doubt does not fit its columns".into());
+        return Err("its uncertainty limits do not match its columns".into());
     }
     let [distance_limit, range_limit, spread_limit] = limits;
     Ok(Doubt { width, whitening, centres, range, distance_limit, range_limit, spread_limit })
@@ -179,17 +181,21 @@ fn normalisation(tensors: &SafeTensors<'_>, name: &str, width: usize) -> Result<
         (values(tensors, &format!("{name}.mean"))?, values(tensors, &format!("{name}.inverse_sd"))?);
     let fits = mean.len() == width && inverse_sd.len() == width && inverse_sd.iter().all(|inverse| *inverse >= 0.0);
     fits.then_some(Normalisation { mean, inverse_sd })
-        .ok_or_else(|| format!("its normalisation of {name} does not fit"))
+        .ok_or_else(|| format!("its normalisation of {name} does not match its columns"))
 }
 
 fn values(tensors: &SafeTensors<'_>, name: &str) -> Result<Vec<f32>, String> {
-    let tensor = tensors.tensor(name).map_err(|_| format!("tensor {name} is absent"))?;
+    let tensor = tensors.tensor(name).map_err(|_| format!("tensor {name} is missing"))?;
     if tensor.dtype() != Dtype::F32 {
         return Err(format!("tensor {name} is not f32"));
     }
     let values: Vec<f32> =
         tensor.data().chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect();
-    if values.iter().all(|value| value.is_finite()) { Ok(values) } else { Err(format!("tensor {name} is not finite")) }
+    if values.iter().all(|value| value.is_finite()) {
+        Ok(values)
+    } else {
+        Err(format!("tensor {name} contains a non-finite number"))
+    }
 }
 
 fn bytes(values: &[f32]) -> Vec<u8> {

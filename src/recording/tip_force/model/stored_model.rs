@@ -16,7 +16,7 @@ const ENDING: &str = "safetensors";
 /// [`TipForceError`] if the model has no sensor, tool or accepted check, or the file cannot be written.
 pub fn keep_model(model: &ForceModel, store: &Store) -> Result<std::path::PathBuf, TipForceError> {
     let (Some(sensor), Some(_)) = (&model.origin.sensor, &model.origin.tool) else {
-        return Err(TipForceError::NotProven { reason: "it names no sensor and tool".to_owned() });
+        return Err(TipForceError::NotProven { reason: "it does not name a sensor and a tool".to_owned() });
     };
     proven(model)?;
     let path = store.path_of(KIND, sensor, ENDING)?;

@@ -135,7 +135,7 @@ pub struct ViewBox {
 }
 
 #[derive(Clone, Debug, PartialEq, Error)]
-#[error("the objects of the scene have {key} = {value}: it must be {allowed}")]
+#[error("scene objects: {key} = {value}, but it must be {allowed}")]
 pub struct SettingError {
     pub key: &'static str,
     pub value: f64,

@@ -75,7 +75,7 @@ pub(in crate::command) fn run(arguments: &CalibrateRigArguments) -> anyhow::Resu
     let sides: Vec<_> = Side::ALL.into_iter().filter(|side| arguments.arm.is_none_or(|arm| arm == *side)).collect();
     let sides: Vec<_> = sides.into_iter().filter(|side| scene.measures_at_wrist(&rig, *side)).collect();
     if sides.is_empty() {
-        bail!("rig \"{}\" has no wrist sensor on such an arm: nothing to calibrate", rig.name);
+        bail!("rig \"{}\" has no wrist sensor on the selected arm: nothing to calibrate", rig.name);
     }
     let leave = setup.leave()?;
     let Some(emulators) = Emulators::start(setup.rig(), setup.scene(), rig.devices.as_ref())? else {

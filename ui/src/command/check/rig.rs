@@ -63,7 +63,10 @@ pub(in crate::command) fn run(arguments: &CheckRigArguments) -> anyhow::Result<(
     let scene_name = arguments.scene.as_deref().unwrap_or(guided);
     let scene = Scene::load(scene_name)?.mounted_at(&rig)?;
     if !rig.is_harmless() {
-        bail!("rig \"{}\" is for real devices, whose stop a person must press; check it in `nima console`", rig.name);
+        bail!(
+            "rig \"{}\" has real devices, so a person must press Stop during the check; run it in `nima console`",
+            rig.name
+        );
     }
     let leave = Setup::of(&arguments.rig, Some(scene_name)).leave()?;
     let emulators = Emulators::start(&arguments.rig, scene_name, rig.devices.as_ref())?;

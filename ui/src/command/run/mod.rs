@@ -175,7 +175,7 @@ pub(crate) fn run_with(
     };
     if !plan.may_engage() {
         bail!(
-            "scene \"{}\" cannot be engaged: the force at its tip is unknown; calibrate with `nima console \
+            "scene \"{}\" cannot be engaged: the force at the instrument's tip is unknown; calibrate with `nima console \
              --calibrate gravity`",
             plan.scene.name
         );
@@ -376,7 +376,7 @@ fn on_the_real_clock(
     status.end();
     let summary = handle
         .stop_and_join()
-        .context("the real-time thread ended unexpectedly: its results are lost; run it again")?;
+        .context("the real-time thread ended unexpectedly: its results are lost; run the command again")?;
     if leave.is_asked() {
         print_line("nima: ended on request: force and drives are off");
     }

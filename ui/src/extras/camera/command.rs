@@ -108,7 +108,7 @@ fn of_folder(folder: &Path, board: &Checkerboard) -> anyhow::Result<NamedViews> 
     });
     paths.sort();
     if paths.is_empty() || paths.len() > IMAGES {
-        bail!("{} JPEGs in {}: use a folder with 8 to {IMAGES}", paths.len(), folder.display());
+        bail!("found {} JPEGs in {}: use a folder with 8 to {IMAGES}", paths.len(), folder.display());
     }
     let mut taken = NamedViews { size_px: [0, 0], views: Vec::new() };
     for path in paths {
@@ -117,7 +117,7 @@ fn of_folder(folder: &Path, board: &Checkerboard) -> anyhow::Result<NamedViews> 
         let image = jpeg::decode(&bytes).with_context(|| path.display().to_string())?;
         let [width, height] = image.size_px;
         if taken.size_px != [0, 0] && taken.size_px != image.size_px {
-            bail!("{} is {width} x {height} px, unlike the images before it: use images of one size", path.display());
+            bail!("{} is {width} x {height} px, unlike the previous images: use images of one size", path.display());
         }
         taken.size_px = image.size_px;
         let found = Grey::of(&image).map(|grey| find(&grey, board));
@@ -134,7 +134,7 @@ fn of_folder(folder: &Path, board: &Checkerboard) -> anyhow::Result<NamedViews> 
 fn of_camera(address: Address, board: Checkerboard) -> anyhow::Result<NamedViews> {
     let leave = Leave::on_signals()?;
     let shown = address.to_string();
-    let feed = EndoscopeFeed::start(address, None, || {}).context("no thread for decoding the image")?;
+    let feed = EndoscopeFeed::start(address, None, || {}).context("cannot start a thread to decode the image")?;
     let mut session: Option<CameraSession> = None;
     let mut last = 0;
     let mut since = Instant::now();
@@ -150,7 +150,7 @@ fn of_camera(address: Address, board: Checkerboard) -> anyhow::Result<NamedViews
             bail!("ended on request; nothing was written");
         }
         if since.elapsed() > PATIENCE {
-            bail!("no new view for {} s: {shown} shows no board that is held still", PATIENCE.as_secs());
+            bail!("no new view for {} s: hold the board still in view of {shown}", PATIENCE.as_secs());
         }
         let look = feed.look(Instant::now());
         if let FrameHealth::Lost(trouble) = &look.standing {
@@ -165,7 +165,7 @@ fn of_camera(address: Address, board: Checkerboard) -> anyhow::Result<NamedViews
         };
         last = number;
         if session.as_ref().is_some_and(|session| session.size_px() != image.size_px) {
-            bail!("the image size has changed: set the camera to one size");
+            bail!("the image size has changed: set the camera to a fixed size");
         }
         let session = session.get_or_insert_with(|| CameraSession::new(board, image.size_px));
         let asked = session.asks();

@@ -74,7 +74,7 @@ pub(super) fn run(command: &DepartmentCommand) -> anyhow::Result<()> {
 
 fn folder() -> anyhow::Result<PathBuf> {
     let store = Store::of_user()?;
-    let folder = store.folder().parent().context("no folder for your files was found; set NIMA_DATA_DIR")?;
+    let folder = store.folder().parent().context("no data folder was found; set NIMA_DATA_DIR")?;
     Ok(folder.join("department"))
 }
 
@@ -158,7 +158,7 @@ impl RigSelection {
             ),
             several => {
                 let names: Vec<&str> = several.iter().map(|found| found.about.name.as_str()).collect();
-                bail!("several rigs are shared: {}: select one by name", names.join(", "))
+                bail!("several rigs are shared ({}): select one by name", names.join(", "))
             }
         }
     }
@@ -221,9 +221,10 @@ fn listen_to(rig: &RemoteRig, publisher: &MonitorSender) -> anyhow::Result<()> {
             let received = if about.session == 0 {
                 MonitorMessage::Rests
             } else {
-                let rig: RigConfig = nima_files::from_toml(&about.rig).context("the rig's file cannot be read here")?;
+                let rig: RigConfig =
+                    nima_files::from_toml(&about.rig).context("cannot read the rig file sent by the rig")?;
                 let scene: Scene =
-                    nima_files::from_toml(&about.scene).context("the rig's scene cannot be read here")?;
+                    nima_files::from_toml(&about.scene).context("cannot read the scene sent by the rig")?;
                 MonitorMessage::Runs(Box::new(rig), Box::new(scene))
             };
             if !publisher.notify(received) {
@@ -239,7 +240,7 @@ fn listen_to(rig: &RemoteRig, publisher: &MonitorSender) -> anyhow::Result<()> {
             }
         }
         if !presence.is_there() {
-            bail!("{} has ended or cannot be reached", rig.name());
+            bail!("rig {} was closed or cannot be reached", rig.name());
         }
     }
 }

@@ -84,7 +84,7 @@ fn open(arms: usize, role: EndpointRole, keys: NetworkKeys, ends: RigEnds) -> an
 /// Folder of this machine's key and of the paired machines.
 pub(super) fn folder() -> anyhow::Result<std::path::PathBuf> {
     let store = nima_recording::store::Store::of_user()?;
-    let folder = store.folder().parent().context("no folder for your files was found; set NIMA_DATA_DIR")?;
+    let folder = store.folder().parent().context("no data folder was found; set NIMA_DATA_DIR")?;
     let folder = folder.join("network");
     std::fs::create_dir_all(&folder).with_context(|| format!("cannot create the folder {}", folder.display()))?;
     Ok(folder)

@@ -192,7 +192,7 @@ pub(super) fn run_virtual(
     let (scene, task) = scene_for(study, &rig, hand)?;
     let mut plan = SimulationPlan { rig, scene, calibrations: Default::default(), engage: true };
     if !plan.may_engage() {
-        bail!("scene \"{}\" cannot be engaged: the force at its tip is unknown", plan.scene.name);
+        bail!("scene \"{}\" cannot be engaged: the force at the instrument's tip is unknown", plan.scene.name);
     }
     let running = study.begin_trial(participant, true, &utc_now())?;
     // The reason would reveal the condition. The only possible one is a rig changed since `new`.

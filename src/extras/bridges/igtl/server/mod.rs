@@ -63,7 +63,7 @@ pub struct LoopOutline {
 pub enum IgtlError {
     /// The address cannot be used.
     #[error(
-        "OpenIGTLink: cannot listen at {address}: {source}; end the program that uses this port, or choose another port"
+        "OpenIGTLink: cannot listen on {address}: {source}; end the program that uses this port, or choose another port"
     )]
     Listen { address: SocketAddr, source: io::Error },
     /// The operating system gives no thread.

@@ -53,22 +53,22 @@ fn namespace(text: &str) -> Result<String, String> {
     if name.split('/').all(is_part) {
         Ok(name.to_owned())
     } else {
-        Err("give letters, digits and underscores, parts between slashes: nima or lab/nima".to_owned())
+        Err("use letters, digits and underscores, with slashes between parts: nima or lab/nima".to_owned())
     }
 }
 
 /// DDS would accept a foreign address too, but no reader would receive anything.
 fn own_address(text: &str) -> Result<Ipv4Addr, String> {
-    let address: Ipv4Addr = text.parse().map_err(|_| "give an address as 192.168.1.5".to_owned())?;
-    UdpSocket::bind((address, 0)).map(|_| address).map_err(|_| "no address of this computer".to_owned())
+    let address: Ipv4Addr = text.parse().map_err(|_| "enter an address such as 192.168.1.5".to_owned())?;
+    UdpSocket::bind((address, 0)).map(|_| address).map_err(|_| "this computer does not have this address".to_owned())
 }
 
 /// Explains a lost connection, with the remedy.
 fn words(error: &io::Error) -> String {
     match error.kind() {
-        io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut => "nothing came for 5 s; is this the console?".to_owned(),
-        io::ErrorKind::UnexpectedEof => "the run ended; waits for the next one".to_owned(),
-        io::ErrorKind::InvalidData => format!("{error}; give the address of `--igtl`"),
+        io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut => "no data for 5 s; check that this is the console's address".to_owned(),
+        io::ErrorKind::UnexpectedEof => "the run has ended; waiting for the next run".to_owned(),
+        io::ErrorKind::InvalidData => format!("{error}; use the address of `--igtl`"),
         _ => format!("{error}; start `nima run --igtl` or `nima console --igtl`"),
     }
 }
@@ -147,8 +147,8 @@ mod tests {
             words(&io::ErrorKind::ConnectionRefused.into())
                 .ends_with("start `nima run --igtl` or `nima console --igtl`")
         );
-        assert!(words(&io::ErrorKind::UnexpectedEof.into()).starts_with("the run ended"));
-        assert!(words(&io::ErrorKind::WouldBlock.into()).starts_with("nothing came for 5 s"));
+        assert!(words(&io::ErrorKind::UnexpectedEof.into()).starts_with("the run has ended"));
+        assert!(words(&io::ErrorKind::WouldBlock.into()).starts_with("no data for 5 s"));
         assert!(words(&io::Error::new(io::ErrorKind::InvalidData, "x")).contains("address of `--igtl`"));
     }
 }

@@ -10,7 +10,7 @@ pub(in crate::emulators) fn bus(settings: &EmulatorSettings) -> Result<Box<dyn E
     let ids = match settings.get::<String>("ids")? {
         Some(list) => {
             let ids = list.split(',').map(|id| id.trim().parse().ok()).collect::<Option<_>>();
-            ids.ok_or_else(|| unusable("ids", list, "give numbers up to 252, as in 1,2,3,4"))?
+            ids.ok_or_else(|| unusable("ids", list, "enter numbers up to 252, such as 1,2,3,4"))?
         }
         None => factory.ids,
     };

@@ -10,7 +10,7 @@ pub(in crate::emulators) fn handle(settings: &EmulatorSettings) -> Result<Box<dy
     let mut usual = EmulatedHaply::default();
     if let Some(id) = settings.get::<String>("id")? {
         let number = u16::from_str_radix(&id, 16);
-        usual.info.id = number.map_err(|_| unusable("id", &id, "give four hexadecimal digits, as in 049D"))?;
+        usual.info.id = number.map_err(|_| unusable("id", &id, "enter four hexadecimal digits, such as 049D"))?;
     }
     usual.info.model = settings.get_or("model", usual.info.model)?;
     usual.info.firmware = settings.get_or("firmware", usual.info.firmware)?;

@@ -16,7 +16,7 @@ fn cap_body(settings: &EmulatorSettings) -> Result<CapBody> {
     for (key, axis) in ["x", "y", "z", "rx", "ry", "rz"].into_iter().zip(translation.iter_mut().chain(rotation)) {
         if let Some(value) = settings.get::<f64>(key)? {
             if !(-1.0..=1.0).contains(&value) {
-                return Err(unusable(key, value, "give a number from -1 to 1"));
+                return Err(unusable(key, value, "enter a number from -1 to 1"));
             }
             *axis = value;
             held = true;

@@ -49,7 +49,7 @@ fn line(set: &[String]) -> anyhow::Result<LinkLine> {
     }
     nima_files::from_toml(&text).map_err(|misfit| {
         anyhow::anyhow!(
-            "{}; keys: to, at, seed, and for both directions or behind there. or back.: delay_s, jitter.normal.deviation_s, \
+            "{}; keys: to, at, seed, and, for both directions or with the prefix there. or back.: delay_s, jitter.normal.deviation_s, \
              jitter.pareto.mean_s and .shape, overtakes, loss.independent.share, loss.bursts.share and .burst_s, reorder, reorder_s, \
              duplicate, rate_bit_s, queue_s, flap.down_s and flap.every_s",
             misfit.message()
@@ -60,7 +60,7 @@ fn line(set: &[String]) -> anyhow::Result<LinkLine> {
 pub(super) fn run(set: &[String]) -> anyhow::Result<()> {
     let LinkLine { at, to, seed, there, back } = line(set)?;
     let settings = RelaySettings { at: address(&at)?, to: address(&to)?, there, back, seed };
-    let relay = Relay::start(settings).with_context(|| format!("cannot emulate a link at {at}"))?;
+    let relay = Relay::start(settings).with_context(|| format!("cannot emulate a link on {at}"))?;
     let endpoint = relay.address().to_string();
     output::line(&serde_json::to_string(&EmulatorEndpoint { device: "link", endpoint: &endpoint })?)?;
     let leave = Leave::on_signals()?;

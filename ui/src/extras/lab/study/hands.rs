@@ -25,7 +25,7 @@ pub(in crate::extras::lab) struct HandsStudy {
 
 fn seconds(text: &str) -> Result<f64, String> {
     let seconds = text.parse::<f64>().ok().filter(|seconds| (1.0..=3600.0).contains(seconds));
-    seconds.ok_or_else(|| "give a time from 1 to 3600 s".to_owned())
+    seconds.ok_or_else(|| "enter a time from 1 to 3600 s".to_owned())
 }
 
 impl ExperimentArguments for HandsStudy {

@@ -48,10 +48,10 @@ pub(super) fn run(arguments: &NextTrialArguments) -> anyhow::Result<()> {
             format!("{step}: kept")
         }
         _ if answers.is_some() || answers_file.is_some() => {
-            bail!("{participant}: next is {step}, which takes no answers")
+            bail!("{participant}: the next step is {step}, which takes no answers")
         }
         _ if !virtual_clock => {
-            bail!("{participant}: next is {step}; add --virtual to run it in the simulated rig")
+            bail!("{participant}: the next step is {step}; add --virtual to run it in the simulated rig")
         }
         StudyStep::Break { min_s } => {
             study.take_break(participant, min_s, true, &utc_now())?;

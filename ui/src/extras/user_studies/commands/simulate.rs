@@ -54,7 +54,7 @@ pub(super) fn run(arguments: &SimulateStudyArguments) -> anyhow::Result<()> {
                 }
             }
             if leave.is_asked() {
-                bail!("ended on request; the same command continues");
+                bail!("ended on request; run the same command to continue");
             }
             left -= 1;
         }

@@ -159,7 +159,7 @@ impl fmt::Debug for IgtlClient {
 
 /// Closes a connection for which there is no room, with a message.
 pub(super) fn refuse(mut stream: &TcpStream, max: usize) {
-    let text = format!("{max} clients are connected already: end one of them");
+    let text = format!("{max} clients are already connected: disconnect one of them");
     let bytes = IgtlMessage::new(BUNDLE, now_ns(), refusal(StatusCode::BUSY, &text)).encode();
     stream.set_nonblocking(true).ok();
     // A new connection has room for this; if not, there is no client to inform.

@@ -2,9 +2,9 @@
 //!
 //! Columns: `t_s`; `x_m, y_m, z_m` with `fx_n, fy_n, fz_n`, one to three axes. Other names can be mapped to these, and
 //! the leader's motion can be mapped as well. SI units, or any consistent ones (rad and Nm of a lever). A missing
-//! column, a field that is not a number and a time that does not increase are errors that state their position. A row whose
-//! force fields are all empty is left out, because its force is unknown. A file is read as a stream, so it may be a
-//! pipe, up to [`nima_files::TABLE_MAX`] bytes.
+//! column, a field that is not a number and a time that does not increase are errors that state their position. A row
+//! whose force fields are all empty is left out, because its force is unknown. A file is read as a stream, so it may
+//! be a pipe, up to [`nima_files::TABLE_MAX`] bytes.
 
 mod mapping;
 mod pairs;

@@ -33,10 +33,11 @@ pub(super) struct ConsoleArguments {
     watching: WatchArguments,
     #[command(flatten)]
     network: ToFollower,
-    /// Start in this view (default: the last one used)
+    /// Start in this view (default: the last view used)
     #[arg(long)]
     role: Option<Role>,
-    /// Language of the window: en or de (default: the last one chosen, initially en); the command line stays English
+    /// Language of the window: en or de (default: the last language chosen, initially en); the command line is always
+    /// in English
     #[arg(long, value_name = "LANGUAGE", hide_possible_values = true)]
     language: Option<Language>,
     /// Open this calibration wizard at the start
@@ -66,7 +67,7 @@ pub(super) struct ConsoleArguments {
     /// Time span of the traces at the start, s
     #[arg(long, value_name = "S", value_parser = super::run::positive_seconds)]
     traces: Option<f64>,
-    /// Start idle; by default the built-in rigs simulated and emulated engage automatically
+    /// Start idle (default: the built-in rigs `simulated` and `emulated` engage automatically)
     #[arg(long)]
     at_rest: bool,
     /// Block the window once for this many seconds, to show that the loop is not affected

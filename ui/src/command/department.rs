@@ -9,7 +9,7 @@ use crate::{console::roles::Role, extras, language::Language};
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum DepartmentCommand {
-    /// Create a department on this machine, which issues the certificates
+    /// Create a department on this machine, which then issues the certificates
     Create {
         /// Name of the department: letters, digits and -
         name: String,
@@ -73,7 +73,7 @@ pub(crate) struct MonitorArguments {
     /// Start in this view: surgeon or technician
     #[arg(long, value_name = "ROLE", default_value = "surgeon", value_parser = watching_role)]
     pub(crate) role: Role,
-    /// Language of the window: en or de (default: the one of the console on this computer)
+    /// Language of the window: en or de (default: the language of the console on this computer)
     #[arg(long, value_name = "LANGUAGE", hide_possible_values = true)]
     pub(crate) language: Option<Language>,
     /// Close after this many seconds

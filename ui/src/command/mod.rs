@@ -43,7 +43,8 @@ const NO_WINDOW: u8 = 69;
 #[derive(Debug, Parser)]
 #[command(name = "nima", version, max_term_width = 100)]
 struct Cli {
-    /// Write what background threads report to stderr, with times; the variable `NIMA_LOG` does the same
+    /// Write the log messages of background threads to stderr, with times; the environment variable `NIMA_LOG` does the
+    /// same
     #[arg(long, global = true, value_name = "LEVEL", value_parser = PossibleValuesParser::new(LEVELS).try_map(|level| level.parse::<LevelFilter>()))]
     log: Option<LevelFilter>,
     #[command(subcommand)]
@@ -56,9 +57,9 @@ enum CliCommand {
     Console(console::ConsoleArguments),
     /// Run the control loop without a window, then print its timing and errors
     Run(run::RunArguments),
-    /// Replay a recorded session through the same loop and compare every tick, or change one setting
+    /// Replay a recorded session through the same loop: compare every tick, or show the effect of other settings
     Replay(replay::ReplayArguments),
-    /// Write a recorded session as a table, or an excerpt as a separate session
+    /// Export a recorded session as a table, or an excerpt of it as a separate session
     Export(export::ExportArguments),
     /// List, keep or delete recorded sessions
     Sessions(sessions::SessionsArguments),
@@ -72,10 +73,10 @@ enum CliCommand {
     /// Calibrate from a file, or calibrate a whole emulated rig; print held-out errors and a verdict
     #[command(subcommand, arg_required_else_help = false)]
     Calibrate(calibrate::CalibrateCommand),
-    /// Check whether a rig is ready for the day; save a record, and fail if it is not ready
+    /// Check whether a rig is ready for the day, and save a record; the exit status is 1 if the rig is not ready
     #[command(subcommand, arg_required_else_help = false)]
     Check(check::CheckCommand),
-    /// Train models from data
+    /// Train models on data
     #[command(subcommand, arg_required_else_help = false)]
     Train(train::TrainCommand),
     /// Evaluate models on data that were not used for training

@@ -12,7 +12,7 @@ use crate::{
 
 #[derive(Clone, Debug, Default, Args)]
 pub(crate) struct ToFollower {
-    /// Use the arm and sensor at this machine, where `nima follower` runs; handle and screen are here
+    /// Use the arm and sensor on another machine (HOST), where `nima follower` runs; handle and screen are on this one
     #[arg(long, value_name = "HOST[:PORT]")]
     follower: Option<String>,
 }

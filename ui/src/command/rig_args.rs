@@ -24,7 +24,7 @@ pub(crate) struct Setup {
     /// are hidden)
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(..=i64::MAX as u64))]
     seed: Option<u64>,
-    /// End when standard input closes: the parent process holds its other end
+    /// End when standard input closes, for a parent process that holds its other end
     #[arg(long, hide = true)]
     until_input_ends: bool,
 }

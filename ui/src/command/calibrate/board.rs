@@ -10,13 +10,13 @@ use crate::command::output;
 
 #[derive(Debug, Args)]
 pub(in crate::command) struct CalibrateBoardArguments {
-    /// Inner corners along both sides, one number odd and the other even
+    /// Number of inner corners along each side: one number odd, the other even
     #[arg(long, value_name = "AxB", default_value = "9x6")]
     board: BoardCorners,
     /// Side length of a square
     #[arg(long, value_name = "MM", default_value_t = 10.0)]
     square_mm: f64,
-    /// File for the drawing
+    /// SVG file to write
     #[arg(long, value_name = "F.svg")]
     out: PathBuf,
 }

@@ -18,9 +18,9 @@ pub(super) enum CalibrateCommand {
     Gravity(gravity::GravityArguments),
     /// Find the rotation between the sensor under the tissue and the wrist sensor from pairs of forces
     Correspondence(correspondence::CorrespondenceArguments),
-    /// Draw a checkerboard in true size, for printing
+    /// Draw a checkerboard at true size, for printing
     Board(board::CalibrateBoardArguments),
-    /// Run all calibrations of an emulated rig by its simulated technician, and save them (some minutes)
+    /// Let the simulated technician of an emulated rig run all its calibrations, and save them (takes a few minutes)
     Rig(rig::CalibrateRigArguments),
 }
 

@@ -29,15 +29,15 @@ pub(super) struct ReplayArguments {
     session: PathBuf,
     #[command(flatten)]
     stretch: TimeRange,
-    /// What if: render with this mode
+    /// Replay with this mode instead
     #[arg(long)]
     mode: Option<Mode>,
-    /// What if: this one-way delay of the link in ms
+    /// Replay with this one-way delay of the link, in ms
     #[arg(long, value_name = "D", value_parser = delay_ms, allow_negative_numbers = true)]
     delay_ms: Option<f64>,
-    #[arg(long, value_name = "G", value_parser = gain, allow_negative_numbers = true, help = format!("What if: this feedback gain, {GAIN}"))]
+    #[arg(long, value_name = "G", value_parser = gain, allow_negative_numbers = true, help = format!("Replay with this feedback gain, {GAIN}"))]
     gain: Option<f64>,
-    /// Write the forces of both, tick by tick, into this folder (only with a change)
+    /// Write the recorded and the changed forces, tick by tick, into this folder (requires a changed setting)
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Print the results as one JSON object

@@ -81,7 +81,7 @@ pub(crate) struct RunArguments {
     /// Scheduling class to request for the loop: ordinary, fifo or deadline (default: the rig's)
     #[arg(long, value_name = "CLASS")]
     pub(crate) scheduling: Option<SchedulingClass>,
-    /// Record the session into a new file, which `nima replay` repeats bit by bit
+    /// Record the session into a new file, which `nima replay` can reproduce bit by bit
     #[arg(long, value_name = "FILE.mcap")]
     pub(crate) record: Option<PathBuf>,
     #[command(flatten)]
@@ -99,7 +99,7 @@ pub(crate) struct Late {
     /// percentage of ticks is 0.5 to 4 ms late), stall-MS (a pause about once per second)
     #[arg(long, value_name = "NAME", default_value_t, requires = "virtual_clock")]
     clock: ClockProfile,
-    /// Seed of the late ticks
+    /// Random seed for the times of late ticks
     #[arg(long, value_name = "N", default_value_t = 1, requires = "clock")]
     clock_seed: u64,
 }

@@ -32,7 +32,7 @@ pub(super) struct CalibrateCameraArguments {
     /// board
     #[arg(value_name = "FOLDER_OR_URL")]
     source: String,
-    /// Inner corners along both sides, one number odd and the other even
+    /// Number of inner corners along each side: one number odd, the other even
     #[arg(long, value_name = "AxB", default_value = "9x6")]
     board: BoardCorners,
     /// Side length of a square

@@ -30,8 +30,9 @@ pub(super) struct IdentifyArguments {
     /// Arm of a session, right or left (required if it has both)
     #[arg(long, value_name = "ARM", value_parser = side)]
     arm: Option<Side>,
-    /// Other column names, with an optional factor: `x=px_mm*0.001`, or three axes at once: `xyz=px_mm,py_mm,pz_mm*0.001`,
-    /// `fxyz=...`. `lx`, `ly`, `lz` or `lxyz` select the leader's own motion, from which the force is then computed
+    /// Column of a quantity that has another name, with an optional factor: `x=px_mm*0.001`, or three axes at once:
+    /// `xyz=px_mm,py_mm,pz_mm*0.001`, `fxyz=...`. `lx`, `ly`, `lz` or `lxyz` select the leader's own motion, from which
+    /// the force is then computed
     #[arg(long, value_name = "NAME=COLUMN[*SCALE]")]
     map: Vec<String>,
     /// Rendering mode: anchored, matched, best, nima, dfr, linear, literal, or a baseline: `model_mediated`, waves, passivity,
@@ -56,10 +57,11 @@ pub(super) struct IdentifyArguments {
     /// Error by which literal chooses its degree: window (in the window that it fitted) or next (over the 10 ms after it)
     #[arg(long, value_name = "CHOICE", default_value = "window", value_parser = word::<DegreeChoice>)]
     choice: DegreeChoice,
-    /// Give literal and linear a free constant force
+    /// Let literal and linear also fit a constant force
     #[arg(long)]
     constant: bool,
-    /// Ridge of literal and linear per row of the window, in columns divided by the workspace's scales; 0 for none
+    /// Ridge parameter of literal and linear per row of the window, for columns divided by the scales of the workspace;
+    /// 0 for none
     #[arg(long, value_name = "R", default_value_t = 0.0, allow_negative_numbers = true)]
     ridge: f64,
     /// Write one row per sample of a single recording to this CSV file (replaces an existing file and keeps its permissions;

@@ -22,7 +22,7 @@ pub(super) struct Lab;
 enum LabCommand {
     /// Emulate devices on their real interfaces (serial port, network, HID)
     Emulate(emulate::EmulateArguments),
-    /// Identify impedance on a recording, sample by sample, from past data only
+    /// Identify the impedance in a recording, sample by sample, from past data only
     Identify(identify::IdentifyArguments),
     /// Run an experiment and print its results
     #[command(subcommand, arg_required_else_help = false)]

@@ -25,7 +25,7 @@ const FREE: &str = "name = 'Free'\nkind = 'free'\ntime_limit_s = 1200.0";
 
 #[derive(Debug, Args)]
 pub(super) struct ScoreArguments {
-    /// Session files; each is a trial
+    /// Session files, one trial each
     #[arg(required = true, value_name = "SESSION.mcap")]
     sessions: Vec<PathBuf>,
     #[command(flatten)]

@@ -16,7 +16,7 @@ use crate::{
 pub(super) struct FollowerArguments {
     #[command(flatten)]
     setup: Setup,
-    /// Address of this machine to listen at (default: only consoles on this machine)
+    /// Address of this machine to listen on (default: only consoles on this machine)
     #[arg(long, value_name = "ADDRESS[:PORT]")]
     listen: Option<String>,
     /// Seconds to run (default: until Ctrl-C)

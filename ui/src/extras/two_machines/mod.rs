@@ -17,9 +17,9 @@ pub(super) struct TwoMachines;
 
 #[derive(Debug, Subcommand)]
 enum TwoMachineCommand {
-    /// Run the arm and its sensor here for a console at another machine (`nima console --follower HOST`)
+    /// Run the arm and its sensor here for a console on another machine (`nima console --follower HOST`)
     Follower(follower::FollowerArguments),
-    /// Pair this machine with another one, once, by a code that both show
+    /// Pair this machine with another one, once: each shows a code to enter on the other
     Pair(pair::PairArguments),
 }
 

@@ -19,16 +19,16 @@ use crate::{
 
 #[derive(Debug, Args)]
 pub(super) struct PairArguments {
-    /// Host of the follower's machine, given at the console's machine
+    /// Host name or address of the follower's machine (run on the console's machine)
     #[arg(value_name = "HOST[:PORT]", required_unless_present = "offer", conflicts_with = "offer")]
     host: Option<String>,
-    /// Wait for a console, at the follower's machine
+    /// Wait for a console to pair (run on the follower's machine)
     #[arg(long)]
     offer: bool,
-    /// With --offer: address of this machine to listen at (default: only consoles on this machine)
+    /// With --offer: address of this machine to listen on (default: only consoles on this machine)
     #[arg(long, value_name = "ADDRESS[:PORT]", requires = "offer")]
     listen: Option<String>,
-    /// With --offer: name of the console in the list of this machine
+    /// With --offer: name under which this machine lists the console
     #[arg(long, value_name = "NAME", requires = "offer", default_value = "console")]
     name: String,
     /// Seconds to wait for the other machine

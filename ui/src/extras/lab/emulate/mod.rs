@@ -37,10 +37,10 @@ pub(super) struct EmulateArguments {
     /// With `rig`: the scene, built-in name or TOML file (default: `bimanual` for a rig with two arms, else `peg_transfer`)
     #[arg(long)]
     scene: Option<String>,
-    /// Fault that is active from the start, as `fault NAME` on standard input sets it; an unknown name lists all faults
+    /// Fault to activate at the start, as with `fault NAME` on standard input; an unknown name lists all faults
     #[arg(long, value_name = "NAME")]
     fault: Option<String>,
-    /// End silently when standard input closes: the parent process holds its other end
+    /// End silently when standard input closes, for a parent process that holds its other end
     #[arg(long, hide = true)]
     until_input_ends: bool,
 }

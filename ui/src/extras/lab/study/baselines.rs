@@ -25,7 +25,7 @@ const DELAYS_MS: [f64; 4] = [10.0, 50.0, 100.0, 300.0];
 pub(in crate::extras::lab) struct BaselinesArguments {
     #[command(flatten)]
     sources: SourceArguments,
-    /// One-way delay of the link in ms; may be given several times (default: 10, 50, 100 and 300)
+    /// One-way delay of the link in ms; may be repeated (default: 10, 50, 100 and 300)
     #[arg(long, value_name = "D", allow_negative_numbers = true)]
     delay_ms: Vec<f64>,
     /// Let matched and best learn the force on each axis from the motion of all axes

@@ -13,12 +13,12 @@ enum ClockName {
 
 #[derive(Debug, Args)]
 pub(super) struct StudyClocks {
-    /// Wake-up times of the loop's ticks: perfect, quiet or busy (recorded on such a computer), late-PERCENT (this percentage
-    /// of ticks is 0.5 to 4 ms late), stall-MS (a pause about once per second), or all; may be given several times (default:
-    /// quiet and perfect)
+    /// Wake-up times of the loop's ticks: perfect, quiet or busy (recorded on such a computer), late-PERCENT (this
+    /// percentage of ticks is 0.5 to 4 ms late), stall-MS (a pause about once per second), or all; may be repeated
+    /// (default: quiet and perfect)
     #[arg(long, value_name = "NAME", value_parser = named)]
     clock: Vec<ClockName>,
-    /// Seed of the late ticks
+    /// Random seed for the times of late ticks
     #[arg(long, value_name = "N", default_value_t = 1)]
     clock_seed: u64,
 }

@@ -11,7 +11,7 @@ pub(in crate::extras::lab) struct FaultsStudy {
     /// Number of moments at which each fault is injected while engaged, 1 to 20
     #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=20))]
     moments: u32,
-    /// Length of each of the 40 runs without a fault, in which none may be reported, s
+    /// Length of each of the 40 fault-free runs, in which no fault may be reported, s
     #[arg(long, value_name = "S", default_value_t = 20.0, value_parser = positive_seconds)]
     calm: f64,
 }

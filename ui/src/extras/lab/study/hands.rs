@@ -7,16 +7,16 @@ use super::{ExperimentArguments, clocks::StudyClocks};
 
 #[derive(Debug, Args)]
 pub(in crate::extras::lab) struct HandsStudy {
-    /// Hands of each kind on each clock
+    /// Number of simulated hands of each kind, for each clock
     #[arg(long, value_name = "N", default_value_t = 20, value_parser = clap::value_parser!(u64).range(1..=100_000))]
     hands: u64,
-    /// Time for which each hand is there
+    /// Time for which each hand holds the handle, s
     #[arg(long, value_name = "S", default_value_t = 20.0, value_parser = seconds)]
     seconds: f64,
-    /// Releases of each force on each clock
+    /// Number of releases at each force, for each clock
     #[arg(long, value_name = "N", default_value_t = 60, value_parser = clap::value_parser!(u64).range(1..=100_000))]
     releases: u64,
-    /// Seed of the hands
+    /// Seed of the simulated hands
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
     #[command(flatten)]

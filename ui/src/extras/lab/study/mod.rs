@@ -85,8 +85,7 @@ studies! {
     Faults(faults::FaultsStudy),
     /// Send extreme force requests through the gates and count violations of their limits
     Gates(gates::GatesStudy),
-    /// Move simulated hands that hold and release the handle, in front of the last gate: how often, how hard and how late it
-    /// acts
+    /// Let simulated hands hold and release the handle; report how often, how strongly and how late the last gate acts
     Hands(hands::HandsStudy),
     /// Run two machines over a bad network, in every mode: force error, energy and stops over delay, jitter, loss, outages
     /// and clock faults

@@ -8,14 +8,15 @@ use super::{ExperimentArguments, clocks::StudyClocks};
 
 #[derive(Debug, Args)]
 pub(in crate::extras::lab) struct NetworkStudy {
-    /// Six short cells, in seconds
+    /// Run only six short cells (takes seconds)
     #[arg(long, conflicts_with = "full")]
     quick: bool,
-    /// Every combination of delay, jitter, loss, bursts, outages, faults of the clock and modes (more than 100 000 cells: days)
+    /// Run every combination of delay, jitter, loss, bursts, outages, clock faults and modes (more than 100 000 cells;
+    /// takes days)
     #[arg(long)]
     full: bool,
-    /// Only this mode, in addition to delayed reflection; may be given several times, and the first one is judged (default:
-    /// all modes, and best is judged)
+    /// Run only this mode and delayed reflection; may be repeated; the first mode is judged (default: all modes; best
+    /// is judged)
     #[arg(long, value_name = "M")]
     mode: Vec<Mode>,
     /// Compute the force from the motion of the handle, as the rig key `own_motion = "handle"` does

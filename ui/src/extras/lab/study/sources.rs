@@ -23,10 +23,10 @@ pub(super) struct SourceArguments {
     /// Arm of the sessions, right or left (required if a session has both)
     #[arg(long, value_name = "ARM", value_parser = side)]
     arm: Option<Side>,
-    /// Other column names in the recordings, with an optional factor: `x=px_mm*0.001`
+    /// Column of a quantity that has another name in the recordings, with an optional factor: `x=px_mm*0.001`
     #[arg(long, value_name = "NAME=COLUMN[*SCALE]")]
     map: Vec<String>,
-    /// Scene, recorded open-loop: built-in name or TOML file; may be given several times (default: scenes of this study, or none
+    /// Scene, recorded open-loop: built-in name or TOML file; may be repeated (default: scenes of this study, or none
     /// with --recording)
     #[arg(long, value_name = "SCENE")]
     scene: Vec<String>,

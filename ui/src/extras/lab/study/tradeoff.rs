@@ -29,10 +29,10 @@ pub(in crate::extras::lab) struct TradeoffArguments {
     sources: SourceArguments,
     #[command(flatten)]
     clocks: StudyClocks,
-    /// One-way delay of the link in ms; may be given several times (default: 10, 50, 100 and 300; with --quick 50)
+    /// One-way delay of the link in ms; may be repeated (default: 10, 50, 100 and 300; with --quick 50)
     #[arg(long, value_name = "D", allow_negative_numbers = true)]
     delay_ms: Vec<f64>,
-    /// Fewer values of every setting, one pass
+    /// Use fewer values of every setting, in one pass
     #[arg(long)]
     quick: bool,
 }

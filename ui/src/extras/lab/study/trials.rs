@@ -21,7 +21,8 @@ pub(in crate::extras::lab) struct TrialsArguments {
     /// Confidence level of the intervals, as a fraction
     #[arg(long, value_name = "SHARE", value_parser = fraction, default_value = "0.95")]
     confidence: f64,
-    /// Print the number of participants that gives this power, as a fraction, if the differences are as measured here
+    /// Print the number of participants needed for this power (a fraction), if the true differences are those in the
+    /// table
     #[arg(long, value_name = "SHARE", value_parser = fraction)]
     power: Option<f64>,
 }

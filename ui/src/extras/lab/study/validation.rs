@@ -24,20 +24,20 @@ pub(in crate::extras::lab) struct Validation {
     delay_ms: f64,
     #[command(flatten)]
     clocks: StudyClocks,
-    /// Only the rendering part, on the perfect clock, under the paper's conditions and under others: in its window, at the
-    /// prediction horizon, and when the hand releases the handle
+    /// Run only the rendering part, on the perfect clock, under the paper's conditions and under others: in its window,
+    /// at the prediction horizon, and when the hand releases the handle
     #[arg(long, conflicts_with_all = ["clock", "clock_seed"])]
     paper: bool,
     /// Duration of the task under each condition, s
     #[arg(long, value_name = "S", default_value_t = paper::SECONDS, value_parser = seconds, requires = "paper")]
     seconds: f64,
-    /// CSV file with motion and force, or session, as for `nima identify`, to evaluate too; may be given several times
+    /// CSV file with motion and force, or session, as for `nima identify`, to evaluate too; may be repeated
     #[arg(long, value_name = "FILE", requires = "paper")]
     recording: Vec<PathBuf>,
     /// Arm of the sessions, right or left (required if a session has both)
     #[arg(long, value_name = "ARM", value_parser = side, requires = "recording")]
     arm: Option<Side>,
-    /// Other column names in the recordings, with an optional factor: `x=px_mm*0.001`
+    /// Column of a quantity that has another name in the recordings, with an optional factor: `x=px_mm*0.001`
     #[arg(long, value_name = "NAME=COLUMN[*SCALE]", requires = "recording")]
     map: Vec<String>,
 }

@@ -21,7 +21,7 @@ pub(in crate::extras::user_studies) struct SimulateStudyArguments {
     /// Seed of the simulated participants
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
-    /// Stop after this many steps; a later call continues
+    /// Stop after this many steps; run the command again to continue
     #[arg(long, value_name = "N")]
     steps: Option<usize>,
 }

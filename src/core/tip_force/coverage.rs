@@ -115,7 +115,7 @@ impl GoalKind {
             Self::Speed => "make quick strokes in and out, up to 10 cm/s",
             Self::Force => "press into the tissue up to 3 N, and drag it sideways",
             Self::Contact => "be in contact half of the time",
-            Self::Rows => "go on",
+            Self::Rows => "keep going",
         }
     }
 }

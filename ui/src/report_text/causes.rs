@@ -60,7 +60,7 @@ pub(crate) fn cause_text(cause: &ReadyCause, roster: &Roster) -> [String; 2] {
 }
 
 const NO_GAUGES: [Text; 2] = [
-    Text::of("The devices delivered no statistics", "Die Geräte lieferten keine Kennzahlen"),
+    Text::of("The devices reported no statistics", "Die Geräte lieferten keine Kennzahlen"),
     Text::of("See the Devices panel, then check again", "Siehe Panel Geräte, dann neu prüfen"),
 ];
 

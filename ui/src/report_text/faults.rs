@@ -18,7 +18,7 @@ fn unknown_because(source: ForceSource) -> &'static str {
             "Die Kraft an der Spitze ist unbekannt: die Orientierung des Handgelenks fehlt",
         ),
         ForceSource::Poisoned => word(
-            "The force at the tip is unknown: the calibration or the network gives invalid numbers",
+            "The force at the tip is unknown: the calibration or the network produces invalid numbers",
             "Die Kraft an der Spitze ist unbekannt: Kalibrierung oder Netz liefert ungültige Zahlen",
         ),
         ForceSource::Unidentified => word(

@@ -166,8 +166,8 @@ fn noisy(kind: PartKind, channel: usize, is: &str, max: &str) -> [String; 2] {
             "Marker reinigen, Reflexe und Sonnenlicht fernhalten, näher an die Kamera bringen",
         ),
         _ => word(
-            "Make sure that nothing touches the device and that it stands firmly",
-            "Sicherstellen, dass nichts es berührt und es fest steht",
+            "Make sure that nothing touches the device and that it is mounted firmly",
+            "Sicherstellen, dass nichts das Gerät berührt und es fest montiert ist",
         ),
     };
     [

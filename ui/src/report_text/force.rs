@@ -44,7 +44,7 @@ impl ShortText for ForceSource {
                 "unbekannt: die Orientierung des Handgelenks fehlt",
             ),
             Self::Poisoned => word(
-                "unknown: the calibration or the network gives invalid numbers",
+                "unknown: the calibration or the network produces invalid numbers",
                 "unbekannt: Kalibrierung oder Netz liefert ungültige Zahlen",
             ),
             Self::NoSample => {

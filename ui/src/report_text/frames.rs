@@ -32,9 +32,9 @@ impl ShortText for CalibrationSource {
 impl ShortText for MissingMotion {
     fn words(self) -> &'static str {
         match self {
-            Self::Poses => word("more of the same", "weitere davon"),
+            Self::Poses => word("more measurements", "weitere Messungen"),
             Self::Turns => word(
-                "larger turns: tilt further to all sides",
+                "larger turns: tilt further in all directions",
                 "größere Drehungen: nach allen Seiten \
              weiter kippen",
             ),
@@ -43,17 +43,17 @@ impl ShortText for MissingMotion {
                 "Drehungen um eine andere Achse: auch um den Schaft drehen",
             ),
             Self::Tilt => word(
-                "larger tilts: pivot further to all sides",
+                "larger tilts: pivot further in all directions",
                 "stärkere Kippung: nach allen Seiten weiter \
              schwenken",
             ),
-            Self::SecondTilt => word("tilts to the other sides", "Kippung nach den anderen Seiten"),
+            Self::SecondTilt => word("tilts in the other directions", "Kippung nach den anderen Seiten"),
             Self::Distance => word("points further apart", "weiter auseinanderliegende Punkte"),
             Self::Beside => {
                 word("a point away from the line through the others", "ein Punkt abseits der Linie durch die anderen")
             }
             Self::Directions => word(
-                "other directions: shaft level and up, to all sides",
+                "other orientations: shaft level and upwards, in all directions",
                 "andere Richtungen: Schaft waagrecht und nach oben, nach allen Seiten",
             ),
             Self::Move(way) => way.words(),
@@ -96,8 +96,8 @@ pub(crate) fn cause(cause: &FrameCause) -> String {
         ),
         FrameCause::NearlyParallel { tilt_deg, min_deg } => {
             text_format!(
-                "the shaft's lines are nearly parallel ({tilt_deg:.1} of {min_deg:.0} deg); pivot further to all \
-                 sides",
+                "the shaft's lines are nearly parallel ({tilt_deg:.1} of {min_deg:.0} deg); pivot further in all \
+                 directions",
                 "die Schaftlinien sind fast parallel ({tilt_deg:.1} von {min_deg:.0} deg); nach allen Seiten weiter \
                  schwenken"
             )

@@ -57,10 +57,10 @@ pub(crate) fn gate_text(gate: Gate) -> [&'static str; 2] {
         Gate::Energy => [
             word("Energy", "Energie"),
             word(
-                "Returns to the hand the energy that the hand put in, and a little more. When that is used up, \
-                 the gate removes the force component along the hand's motion.",
-                "Gibt der Hand die Energie zurück, die sie gab, und etwas mehr. Ist das verbraucht, entfällt der \
-                 Kraftanteil entlang der Handbewegung.",
+                "Limits the energy returned to the hand to the energy that the hand put in, plus a small margin. \
+                 Beyond that, the gate removes the force component along the hand's motion.",
+                "Begrenzt die der Hand zurückgegebene Energie auf die von ihr eingebrachte und eine kleine Reserve. \
+                 Darüber entfällt der Kraftanteil entlang der Handbewegung.",
             ),
         ],
         Gate::Ceiling => [
@@ -88,7 +88,7 @@ impl ShortText for Reason {
             Self::Open => word("open", "offen"),
             Self::NotPermitted => word("the loop is not engaged", "die Regelung ist nicht gekoppelt"),
             Self::RunsAway => word(
-                "the handle moves as if nobody held it, so the force fades",
+                "the handle moves as if no hand held it, so the force fades",
                 "das Handgerät bewegt sich, als hielte es niemand, die Kraft wird ausgeblendet",
             ),
             Self::LetGo => word(
@@ -99,7 +99,7 @@ impl ShortText for Reason {
             Self::NothingAsked => word("the mode has no valid result", "der Modus hat kein gültiges Ergebnis"),
             Self::NotFinite => word("the mode's result is not a number", "das Ergebnis des Modus ist keine Zahl"),
             Self::Implausible => word(
-                "the mode asks for more force than any contact can give",
+                "the mode requests more force than any contact can cause",
                 "der Modus verlangt mehr Kraft, als ein Kontakt geben kann",
             ),
             Self::Ageing => word(
@@ -125,7 +125,7 @@ impl ShortText for Reason {
             ),
             Self::AboveCeiling => word("the force is above the ceiling", "die Kraft liegt über der Höchstkraft"),
             Self::AboveDeviceLimit => word(
-                "the force is above what the device can give",
+                "the force exceeds the device's limit",
                 "die Kraft liegt über dem, was das Gerät geben \
                  kann",
             ),

@@ -61,7 +61,7 @@ fn words(mode: Mode) -> [&'static str; 2] {
             word("Matched", "Abgeglichen"),
             word(
                 "Only the tissue's parameters cross the link; the force is computed from the hand's own motion, \
-                 so no late force can kick",
+                 so a delayed force cannot kick the handle",
                 "Nur die Parameter des Gewebes gehen über die Verbindung; die Kraft wird aus der Bewegung der \
                  Hand berechnet, so kann keine verspätete Kraft stoßen",
             ),

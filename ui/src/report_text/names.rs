@@ -211,7 +211,7 @@ pub(crate) fn goal_text(what: GoalKind) -> [&'static str; 2] {
             word("Contact and free", "Kontakt und frei"),
             word("be in contact half of the time", "die Hälfte der Zeit in Kontakt sein"),
         ],
-        GoalKind::Rows => [word("Rows", "Zeilen"), word("go on", "weitermachen")],
+        GoalKind::Rows => [word("Rows", "Zeilen"), word("keep going", "weitermachen")],
     }
 }
 

@@ -33,8 +33,8 @@ pub(super) fn exchanged(exchange: SideSwap) -> [String; 2] {
              Aufbaudatei tauschen",
         ),
         SideSwap::Trocars => word(
-            "Insert each instrument through its own trocar; if they are, swap the two [devices.*.rcm] in the rig \
-             file",
+            "Insert each instrument through its own trocar; if that is already the case, swap the two [devices.*.rcm] \
+             in the rig file",
             "Jedes Instrument durch seinen Trokar führen; ist es so, die beiden [devices.*.rcm] in der Aufbaudatei \
              tauschen",
         ),
@@ -113,7 +113,7 @@ pub(super) fn handle_stuck(by_m: f64) -> [String; 2] {
 pub(super) fn handle_askew(by_deg: f64) -> [String; 2] {
     with(
         text_format!(
-            "The handle's reading moved {by_deg:.0} degrees away from the requested direction",
+            "The handle's reading differed by {by_deg:.0} degrees from the requested direction",
             "Der Messwert des Handgeräts wich {by_deg:.0} Grad von der verlangten Richtung ab"
         ),
         word(

@@ -208,7 +208,7 @@ fn scene_task_measures_and_rules_are_made_in_the_form_and_both_tips_are_seen_fro
     choose(&mut window, "Rule 1: Measure", "trial_time_s: How long the trial lasted");
     choose(&mut window, "Rule 1: is", "below");
     choose(&mut window, "Rule 1: excludes", "the participant");
-    set(&mut window, "Rule 1: from this many times", 2.0);
+    set(&mut window, "Rule 1: at least this many times", 2.0);
     pick(&mut window, "Create study");
     for mistake in ["time_limit_s = 0", "drops occurs twice", "exclusion 1: limit is missing"] {
         assert!(shows(&window, mistake), "{mistake}: {:?}", texts(&window));

@@ -23,8 +23,8 @@ pub(in crate::console) const NOISE_HOVER: Text = Text::of(
      zählt",
 );
 pub(in crate::console) const SPAN_HOVER: Text = Text::of(
-    "Lowest and highest reading of each value (x, y, z, or per joint). Where the device's range is known, also \
-     the part of it that was reached, from the middle.",
+    "Lowest and highest reading of each value (x, y, z, or per joint). Where the device's range is known, also the \
+     fraction of it that was reached, measured from its middle.",
     "Kleinster und größter Messwert (x, y, z oder je Gelenk). Wo der Gerätebereich bekannt ist, auch der ab \
      dessen Mitte erreichte Anteil.",
 );

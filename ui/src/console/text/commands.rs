@@ -68,7 +68,7 @@ pub(in crate::console) const MARK: (Text, Text) = (
 pub(in crate::console) const KEEP: (Text, Text) = (
     Text::of("Keep the session", "Sitzung sichern"),
     Text::of(
-        "Keeps the session being recorded, or no longer keeps it",
+        "Keeps the session being recorded, or stops keeping it",
         "Die laufende Sitzung wird gesichert oder nicht mehr",
     ),
 );
@@ -122,14 +122,14 @@ pub(in crate::console) const OTHER_HAND: (Text, Text) = (
 pub(in crate::console) const JAWS: (Text, Text) = (
     Text::of("Open or close the jaws", "Backen öffnen oder schließen"),
     Text::of(
-        "On the instrument that you drive, in a scene with rings",
+        "Of the controlled instrument, in a scene with rings",
         "Am gesteuerten Instrument, in einer Szene mit Ringen",
     ),
 );
 pub(in crate::console) const MARK_PLACE: (Text, Text) = (
     Text::of("Mark the place under the tip", "Stelle unter der Spitze markieren"),
     Text::of(
-        "Palpation: marks the place with the instrument that you drive",
+        "Palpation: marks the place with the controlled instrument",
         "Palpation: markiert mit dem gesteuerten Instrument",
     ),
 );
@@ -233,18 +233,18 @@ pub(in crate::console) const BY_HAND: [(Text, Text); 6] = [
     (
         Text::of("Arrow keys", "Pfeiltasten"),
         Text::of(
-            "Move the instrument that you drive in small steps",
+            "Move the controlled instrument in small steps",
             "Bewegen das gesteuerte Instrument in kleinen Schritten",
         ),
     ),
     (
         Text::of("Page Up, Page Down", "Bild auf, Bild ab"),
-        Text::of("Move the instrument that you drive up or down", "Bewegen das gesteuerte Instrument auf oder ab"),
+        Text::of("Move the controlled instrument up or down", "Bewegen das gesteuerte Instrument auf oder ab"),
     ),
     (
         Text::of("Tab, Shift Tab", "Tab, Shift Tab"),
         Text::of(
-            "Select the next or the previous control; it gets a frame",
+            "Select the next or the previous control, which is then outlined",
             "Nächstes oder voriges Bedienelement wählen; es erhält einen Rahmen",
         ),
     ),

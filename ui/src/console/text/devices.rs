@@ -29,8 +29,8 @@ pub(in crate::console) const DISCONNECTED: Text = Text::of("disconnected", "getr
 
 pub(in crate::console) const TEST: Text = Text::of("Test", "Testen");
 pub(in crate::console) const TEST_HOVER: Text = Text::of(
-    "Measures rate, noise, range, age of the readings and losses for two seconds. Keep the device at rest \
-     meanwhile.",
+    "Measures rate, noise, range, age of the readings and losses for two seconds. Keep the device at rest during the \
+     measurement.",
     "Misst zwei Sekunden lang: Rate, Rauschen, Bereich, Alter der Messwerte, Verluste. Das Gerät dabei ruhen lassen.",
 );
 pub(in crate::console) const TEST_ALL: Text = Text::of("Test all", "Alle testen");

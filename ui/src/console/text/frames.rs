@@ -46,8 +46,8 @@ pub(in crate::console) const TIP_BEFORE: Text = Text::of(
      Aufzeichnung beginnt mit dem nächsten Schritt.",
 );
 pub(in crate::console) const TIP_TASK: Text = Text::of(
-    "Tilt to all sides by 20 to 30 degrees, and turn about the shaft. Hold each pose still for half a second. The tip \
-     must stay in the dimple.",
+    "Tilt by 20 to 30 degrees in all directions, and turn about the shaft. Hold each pose still for half a second. \
+     The tip must stay in the dimple.",
     "Nach allen Seiten um 20 bis 30 Grad kippen und um den Schaft drehen. Jede Pose eine halbe Sekunde stillhalten. \
      Die Spitze muss in der Mulde bleiben.",
 );
@@ -97,7 +97,8 @@ pub(in crate::console) const TROCAR_BEFORE: Text = Text::of(
      nächsten Schritt.",
 );
 pub(in crate::console) const TROCAR_TASK: Text = Text::of(
-    "Pivot the instrument to all sides by 10 degrees or more, at several depths. Lines are recorded while it moves.",
+    "Pivot the instrument by 10 degrees or more in all directions, at several depths. Lines are recorded \
+     while it moves.",
     "Instrument in mehreren Tiefen nach allen Seiten um 10 Grad oder mehr schwenken. Linien werden in der Bewegung \
      aufgezeichnet.",
 );
@@ -120,11 +121,11 @@ pub(in crate::console) const BY_TRACKER_HOVER: Text = Text::of(
 pub(in crate::console) const BY_HANDLE: Text =
     Text::of("Move the handle instead of the tip", "Handgerät statt Spitze bewegen");
 pub(in crate::console) const BY_HANDLE_HOVER: Text = Text::of(
-    "Do both, one after the other: then right on the handle is right in the image",
-    "Beides nacheinander tun: dann ist rechts am Handgerät auch rechts im Bild",
+    "Do both, one after the other: a motion of the handle to the right then moves the tip to the right in the image",
+    "Beides nacheinander tun: dann bewegt das Handgerät nach rechts die Spitze im Bild nach rechts",
 );
 pub(in crate::console) const NEEDS_HAND_EYE: Text =
-    Text::of("Do the hand-eye calibration first", "Zuerst Hand-Auge kalibrieren");
+    Text::of("Complete the hand-eye calibration first", "Zuerst Hand-Auge kalibrieren");
 
 pub(in crate::console) const PIVOT: Text =
     Text::of("Turn about the tip, then hold still", "Um die Spitze drehen, dann stillhalten");
@@ -188,7 +189,7 @@ pub(in crate::console) const REMOVE_LAST: Text = Text::of("Remove last", "Letzte
 pub(in crate::console) const PAUSE: Text = Text::of("Pause", "Pause");
 pub(in crate::console) const GO_ON: Text = Text::of("Resume", "Fortsetzen");
 pub(in crate::console) const PAUSE_HOVER: Text =
-    Text::of("Records nothing until you press Resume", "Zeichnet nichts auf, bis Fortsetzen gedrückt wird");
+    Text::of("No data are recorded until you press Resume", "Zeichnet nichts auf, bis Fortsetzen gedrückt wird");
 pub(in crate::console) const NEEDS_MORE: Text =
     Text::of("Not enough is recorded yet", "Noch nicht genug aufgezeichnet");
 pub(in crate::console) const NEEDS_RESULT: Text = Text::of(

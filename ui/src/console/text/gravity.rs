@@ -8,7 +8,7 @@ pub(in crate::console) const STEP_CHECK_HOVER: Text = Text::of(
 );
 pub(in crate::console) const STEP_POSES: Text = Text::of("Poses", "Posen");
 pub(in crate::console) const STEP_POSES_HOVER: Text = Text::of(
-    "Twelve orientations of the tool, so that gravity pulls from all sides",
+    "Twelve orientations of the tool, so that gravity pulls in all directions",
     "Zwölf Orientierungen des Instruments, damit die Schwerkraft von allen Seiten zieht",
 );
 pub(in crate::console) const STEP_RESULT_HOVER: Text = Text::of(

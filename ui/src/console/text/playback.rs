@@ -22,10 +22,8 @@ pub(in crate::console) const SESSIONS_HOVER: Text = Text::of(
 pub(in crate::console) const LIST: Text = Text::of("Recorded sessions", "Aufgezeichnete Sitzungen");
 pub(in crate::console) const EMPTY: Text =
     Text::of("No session has been recorded yet", "Noch keine Sitzung aufgezeichnet");
-pub(in crate::console) const NO_SHELF: Text = Text::of(
-    "No folder for your files was found: set NIMA_DATA_DIR",
-    "Kein Ordner für Ihre Dateien: NIMA_DATA_DIR setzen",
-);
+pub(in crate::console) const NO_SHELF: Text =
+    Text::of("No data folder was found: set NIMA_DATA_DIR", "Kein Datenordner gefunden: NIMA_DATA_DIR setzen");
 pub(in crate::console) const LOOKING: Text = Text::of("Reading the folder", "Ordner wird gelesen");
 pub(in crate::console) const RECORDING: Text = Text::of("being recorded", "wird aufgezeichnet");
 pub(in crate::console) const OPEN: Text = Text::of("Open", "Öffnen");

@@ -64,7 +64,7 @@ pub(in crate::console) const DEMO_ANCHORED_CAPTION: Text = Text::of(
 pub(in crate::console) const DEMO_MATCHED: Text = Text::of("Matched", "Abgeglichen");
 pub(in crate::console) const DEMO_MATCHED_CAPTION: Text = Text::of(
     "Same delay, but no force crosses the link, only the tissue's parameters. The blue arrow is computed from \
-     the hand's own motion, so a late force cannot kick.",
+     the hand's own motion, so a delayed force cannot kick the handle.",
     "Gleiche Verzögerung, doch keine Kraft geht über die Verbindung, nur die Parameter des Gewebes. Der blaue \
      Pfeil wird aus der Bewegung der Hand selbst berechnet, so kann keine verspätete Kraft stoßen.",
 );
@@ -116,7 +116,7 @@ pub(in crate::console) const NOTE_STOPPED: Text = Text::of(
 );
 /// Reason why the loop ended an engagement without a fault.
 pub(in crate::console) const HAND_GONE: Text = Text::of(
-    "The governor found no hand at the handle and ended the engagement",
+    "The governor detected no hand on the handle and ended the engagement",
     "Der Wächter fand keine Hand am Handgerät und hat die Kopplung beendet",
 );
 pub(in crate::console) const NOT_ENGAGED_IN_TIME: Text =

@@ -19,7 +19,7 @@ pub(in crate::console) const RIGS_HOVER: Text = Text::of(
 );
 pub(in crate::console) const SCENES: Text = Text::of("2. Choose a scene", "2. Szene wählen");
 pub(in crate::console) const SCENES_HOVER: Text = Text::of(
-    "The field that a simulated or emulated rig works on. A real rig only shows it in the 3-D view.",
+    "The operating field on which a simulated or emulated rig works. A real rig only shows it in the 3-D view.",
     "Das Feld, an dem ein simulierter oder emulierter Aufbau arbeitet. Ein echter zeigt es nur in der \
      3-D-Ansicht.",
 );
@@ -78,10 +78,8 @@ pub(in crate::console) const ENGAGED: Text =
 pub(in crate::console) const ALL_THERE: Text = Text::of("All devices respond", "Alle Geräte antworten");
 pub(in crate::console) const NO_THREAD: Text =
     Text::of("the system cannot start a thread for the emulators", "das System gibt keinen Thread für die Emulatoren");
-pub(in crate::console) const NO_FOLDER: Text = Text::of(
-    "There is no folder for your files: set NIMA_DATA_DIR",
-    "Kein Ordner für Ihre Dateien: NIMA_DATA_DIR setzen",
-);
+pub(in crate::console) const NO_FOLDER: Text =
+    Text::of("No data folder was found: set NIMA_DATA_DIR", "Kein Datenordner gefunden: NIMA_DATA_DIR setzen");
 pub(in crate::console) const NAME_FIRST: Text = Text::of(
     "Enter a name of letters, digits, spaces, dashes or underscores",
     "Namen aus Buchstaben, Ziffern, Leerzeichen, Binde- oder Unterstrichen eingeben",
@@ -124,7 +122,7 @@ pub(in crate::console) const WELCOME_OWN_ABOUT: Text = Text::of(
 
 pub(in crate::console) const ENDOSCOPE: Text = Text::of("Endoscope of this rig", "Endoskop dieses Aufbaus");
 pub(in crate::console) const ENDOSCOPE_HOVER: Text = Text::of(
-    "Source of the surgeon's image. A typed address is tried at once",
+    "Source of the surgeon's image. A typed address is tested at once",
     "Woher das Bild des Operateurs kommt. Eingaben werden sofort probiert",
 );
 pub(in crate::console) const ENDOSCOPE_ADDRESS: Text = Text::of("Address of the endoscope", "Adresse des Endoskops");

@@ -24,7 +24,7 @@ pub(super) struct LettingGo {
     from_m: Option<Vector3<f64>>,
     /// Time at which the hand opened or closed, s on the loop's clock.
     since_s: Option<f64>,
-    /// The governor found no hand at the handle and ended the engagement.
+    /// The governor detected no hand on the handle and ended the engagement.
     gone: bool,
     /// Time at which the hand was back and an engagement was requested, s.
     returned_s: Option<f64>,

@@ -242,7 +242,7 @@ fn what_a_person_put_to_rest_rests_and_what_the_governor_ended_restarts() {
     show.enters(LoopState::Idle, TransitionCause::Asked);
     assert!(resumes(&show.frames(60.0)).is_empty());
     for (why, cause) in
-        [(TransitionCause::Absent, "no hand at the handle"), (TransitionCause::Late, "did not engage in time")]
+        [(TransitionCause::Absent, "no hand on the handle"), (TransitionCause::Late, "did not engage in time")]
     {
         let mut show = Show::of("simulated");
         show.frames(3.0);

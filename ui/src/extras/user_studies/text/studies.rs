@@ -23,10 +23,8 @@ pub(in crate::extras::user_studies) const OPEN_THIS: Text = Text::of("Open", "Ö
 pub(in crate::extras::user_studies) const OTHER: Text = Text::of("Another study", "Andere Studie");
 pub(in crate::extras::user_studies) const OTHER_FOLDER: Text = Text::of("Study folder", "Ordner der Studie");
 pub(in crate::extras::user_studies) const OTHER_OPEN: Text = Text::of("Open this folder", "Diesen Ordner öffnen");
-pub(in crate::extras::user_studies) const NO_FOLDER: Text = Text::of(
-    "No folder for your files was found: set NIMA_DATA_DIR",
-    "Kein Ordner für Ihre Dateien: NIMA_DATA_DIR setzen",
-);
+pub(in crate::extras::user_studies) const NO_FOLDER: Text =
+    Text::of("No data folder was found: set NIMA_DATA_DIR", "Kein Datenordner gefunden: NIMA_DATA_DIR setzen");
 pub(in crate::extras::user_studies) const NOT_OVER_A_LINE: Text = Text::of(
     "A study needs arm and handle on this machine, because it sets the delay itself",
     "Eine Studie braucht Arm und Handgerät an diesem Rechner, weil sie die Verzögerung selbst einstellt",
@@ -85,7 +83,7 @@ pub(in crate::extras::user_studies) const REASON: Text = Text::of("Reason", "Gru
 pub(in crate::extras::user_studies) const LEAVE_OUT_NOW: Text = Text::of("Exclude", "Ausschließen");
 pub(in crate::extras::user_studies) const ABOUT: Text = Text::of("Study", "Studie");
 pub(in crate::extras::user_studies) const ABOUT_HOVER: Text =
-    Text::of("What everyone may know about the study", "Was alle davon wissen dürfen");
+    Text::of("Public information about the study", "Was alle davon wissen dürfen");
 pub(in crate::extras::user_studies) const COMMITMENT: Text = Text::of("Commitment", "Prüfsumme");
 pub(in crate::extras::user_studies) const COMMITMENT_HOVER: Text = Text::of(
     "BLAKE2b-256 of the sealed assignment. Keep it outside the folder: it proves later that the assignment was \

@@ -94,7 +94,7 @@ pub enum DeviceError {
     },
     #[error("{place} refused {command}: {answer}")]
     Refused { place: String, command: String, answer: String },
-    #[error("{key} = {value} is not possible: {allowed}")]
+    #[error("{key} = {value} is invalid: {allowed}")]
     Setting { key: String, value: String, allowed: String },
     #[error("{key} = {path}: {reason}")]
     File { key: String, path: String, reason: String },
@@ -139,7 +139,7 @@ impl DeviceError {
                 "Start the device program and configure it to send to this address; see docs/external-device.md.".to_owned()
             }
             Self::Unheard { .. } => {
-                "Let the program read the socket from which it sends, and open any firewall between the two in both directions."
+                "Make the device program read from the socket from which it sends, and open any firewall between the two in both directions."
                     .to_owned()
             }
             Self::Unreachable { .. } => {

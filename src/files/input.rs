@@ -134,7 +134,7 @@ impl Input {
                 }
                 Err(error) if error.kind() == io::ErrorKind::WouldBlock => {
                     if begin.elapsed() > timeout {
-                        return Err(refusal("it is a pipe and nothing comes through it; check what writes to it"));
+                        return Err(refusal("no data arrive through this pipe; check the program that writes to it"));
                     }
                     thread::sleep(NAP);
                 }

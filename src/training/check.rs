@@ -84,10 +84,12 @@ fn judge(evaluation: &Evaluation, [rows, free]: [usize; 2]) -> (Verdict, String)
     } else if mae_n >= wrist_n {
         (
             Verdict::PoorData,
-            format!("its error ({mae_n:.2} N) is as large as that of the wrist force itself: it does not help"),
+            format!(
+                "the model's error ({mae_n:.2} N) is as large as that of the wrist force itself: the model does not help"
+            ),
         )
     } else if free_n > FREE_MEAN_N {
-        let reason = format!("it predicts {free_n:.2} N without contact; record more without contact");
+        let reason = format!("the model predicts {free_n:.2} N without contact; record more data without contact");
         (Verdict::PoorData, reason)
     } else {
         (Verdict::Accepted, format!("mean error {mae_n:.2} N on new data; the wrist force alone has {wrist_n:.2} N"))

@@ -76,7 +76,9 @@ pub struct Evaluation {
 /// [`Selection::of`](nima_recording::tip_force::Selection::of)).
 pub fn evaluate(estimator: &mut Estimator, data: &DataSet) -> Result<Evaluation, TipForceError> {
     if data.inputs != estimator.model().inputs || data.outputs != estimator.model().outputs {
-        return Err(TipForceError::Columns { reason: "the data were read with other columns than the model's".into() });
+        return Err(TipForceError::Columns {
+            reason: "the data were read with different columns from the model's".into(),
+        });
     }
     let outputs = data.outputs.len();
     let mut times = Percentiles::new();

@@ -114,7 +114,7 @@ fn a_wrong_file_is_refused_in_one_line_and_never_read_as_a_model() {
         bytes
     };
     assert!(refused(&swapped("nima tip force 2", "nima tip force 9")).contains("this version reads"));
-    assert!(refused(&swapped("doubt.centres", "doubt.central")).contains("doubt.centres is absent"));
+    assert!(refused(&swapped("doubt.centres", "doubt.central")).contains("doubt.centres is missing"));
     assert!(refused(&swapped("\"nima\"", "\"nina\"")).contains("metadata"));
     // A misspelled optional key must not be ignored.
     assert!(refused(&swapped("epochs", "epocks")).contains("unknown field `epocks`"));

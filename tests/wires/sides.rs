@@ -321,7 +321,7 @@ impl Machine {
         match row.report {
             ReportSource::Kept(parts) => {
                 let kept = |machine: &Self| {
-                    let is_exchanged = |(_, trouble): &(String, DeviceError)| trouble.cure().contains("xchange");
+                    let is_exchanged = |(_, trouble): &(String, DeviceError)| trouble.cure().contains("swapped");
                     let names: Vec<_> =
                         machine.troubles().into_iter().filter(is_exchanged).map(|(name, _)| name).collect();
                     parts.iter().all(|part| names.iter().any(|name| name == part))
@@ -332,7 +332,7 @@ impl Machine {
                     format!("{name}: {trouble}: {}", trouble.cure())
                 };
                 let report: Vec<_> = self.troubles().into_iter().map(words).collect();
-                assert!(report.iter().all(|words| words.contains("xchange")), "{report:?}");
+                assert!(report.iter().all(|words| words.contains("swapped")), "{report:?}");
                 report
             }
             ReportSource::Obstacle(exchange) => {

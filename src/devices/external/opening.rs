@@ -60,7 +60,7 @@ pub(super) fn meet(
             place,
             words: format!("its watchdog time is {} ms", f64::from(first.watchdog_us) * 1e-3),
             cure: format!(
-                "Let its program switch the device off after {} ms without a command and report that time, or raise watchdog_ms in the rig file.",
+                "Configure the device program to switch the device off after {} ms without a command and to report that time, or raise watchdog_ms in the rig file.",
                 settings.watchdog_ms
             ),
         });

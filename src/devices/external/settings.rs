@@ -168,12 +168,12 @@ impl ExternalSettings {
         for (key, value, low, high, allowed) in ranges {
             match value {
                 Ok(Some(value)) if !(low..=high).contains(&value) => return refuse(key, value.to_string(), allowed),
-                Err(true) => return refuse(key, "given".to_owned(), &format!("left out: {} has none", kind.word())),
+                Err(true) => return refuse(key, "given".to_owned(), &format!("omit it: {} has none", kind.word())),
                 _ => {}
             }
         }
         if self.inertial.is_some() && kind != ExternalKind::Sensor {
-            return refuse("inertial", "given".to_owned(), &format!("left out: {} has none", kind.word()));
+            return refuse("inertial", "given".to_owned(), &format!("omit it: {} has none", kind.word()));
         }
         Ok(())
     }

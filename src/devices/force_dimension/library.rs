@@ -119,7 +119,10 @@ pub(super) fn of(settings: &ForceDimensionSettings) -> Result<&'static Sdk, Devi
     match settings.emulator {
         Some(address) => sdk.emulate(&address.to_string())?,
         None if sdk.is_stand_in() => {
-            return Err(unusable(sdk.path(), "it emulates handles, and this one is not emulated".to_owned()));
+            return Err(unusable(
+                sdk.path(),
+                "it is the library for emulated handles, but this handle is not emulated".to_owned(),
+            ));
         }
         None => {}
     }

@@ -111,7 +111,7 @@ pub(super) fn lost_at_once(place: &str, loss: Loss) -> DeviceError {
     match loss {
         Loss::Disconnected => DeviceError::Absent { place },
         Loss::Silent => DeviceError::Silent { place },
-        Loss::Corrupt => DeviceError::Other { place, reason: "exchanges over USB fail".to_owned() },
+        Loss::Corrupt => DeviceError::Other { place, reason: "communication over USB fails".to_owned() },
         Loss::Implausible => DeviceError::DeviceFault {
             place,
             words: "it reports impossible positions".to_owned(),

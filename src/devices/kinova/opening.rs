@@ -90,7 +90,7 @@ fn prepare(
     let state: KinovaNumber = ask(lines, Rpc::ARM_STATE)?;
     let state = ArmState(state.value);
     if state.is_unready() {
-        let cure = "Wait until the arm has started, or end its current action in its web page.".to_owned();
+        let cure = "Wait until the arm has started, or stop its current action on its web page.".to_owned();
         return Err(DeviceError::NotReady { place: lines.place.clone(), mode: state.words().to_owned(), cure });
     }
     let feedback = first_feedback(lines)?;

@@ -186,7 +186,7 @@ impl NdiOpening {
         Err(DeviceError::DeviceFault {
             place: self.place.clone(),
             words: format!("{} (system status {:04X})", frames.system.words(), frames.system.0),
-            cure: "Let the camera reach its operating temperature and check its cables; if this persists, restart it."
+            cure: "Wait until the camera has reached its operating temperature, and check its cables; if this persists, restart it."
                 .to_owned(),
         })
     }

@@ -234,7 +234,7 @@ impl RigSettings {
                 return Err(DeviceError::Setting {
                     key: "devices.left.tool".to_owned(),
                     value: format!("\"{}\"", left.tool),
-                    allowed: "a different name than the right tool's: calibrations belong to sensor and tool, and swapped sensors would keep theirs".to_owned(),
+                    allowed: "a different name from the right tool's: otherwise swapped sensors would keep their calibrations, which belong to a sensor and a tool".to_owned(),
                 });
             }
         }
@@ -314,7 +314,8 @@ impl RigSettings {
             return Err(refuse("tracker", "not given".to_owned(), "the tracker that detects the endoscope's marker"));
         }
         if !(SIDES..TRACKED_TOOLS).contains(&endoscope.tool) {
-            let allowed = format!("a tool from {SIDES} to {}; the lower ones are on the arms", TRACKED_TOOLS - 1);
+            let allowed =
+                format!("a tool from {SIDES} to {}; tools with lower numbers are on the arms", TRACKED_TOOLS - 1);
             return Err(refuse("endoscope.tool", endoscope.tool.to_string(), &allowed));
         }
         if !endoscope.n_from_view_deg.iter().all(|deg| deg.is_finite()) {

@@ -74,7 +74,7 @@ pub enum FrameError {
     Missing { index: usize, from: CalibrationSource },
     #[error("pose {} contains a non-finite number or an invalid rotation; remove or repeat it", index + 1)]
     NotFinite { index: usize },
-    #[error("pose {} is {place_m:.0} m away; check the units (m)", index + 1)]
+    #[error("pose {} is {place_m:.0} m from the origin; check the units (m)", index + 1)]
     NotPlausible { index: usize, place_m: f64 },
     #[error("{setting}; correct the settings")]
     Setting { setting: &'static str },

@@ -208,7 +208,7 @@ pub(in crate::console) fn hole(lost: u64) -> String {
 
 pub(in crate::console) fn differs(t_s: f64) -> String {
     text_format!(
-        "recorded by another version of this program, or the file was changed: it differs at {t_s:.3} s",
+        "recorded by a different version of this program, or the file was changed: the replay differs at {t_s:.3} s",
         "andere Programmversion oder geänderte Datei: weicht ab bei {t_s:.3} s"
     )
 }

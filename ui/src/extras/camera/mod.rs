@@ -17,7 +17,7 @@ pub(super) struct CameraExtra;
 // Its addition to `nima calibrate`. A doc comment would replace the help of that command.
 #[derive(Debug, Subcommand)]
 enum Calibrate {
-    /// Find the lens of the endoscope's camera from images of a checkerboard
+    /// Calibrate the lens of the endoscope's camera with images of a checkerboard
     Camera(command::CalibrateCameraArguments),
 }
 

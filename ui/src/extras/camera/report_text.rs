@@ -47,8 +47,8 @@ pub(super) fn camera_cause(cause: &CameraCause) -> String {
             )
         }
         CameraCause::NoFit => word(
-            "no lens explains the corners; check the number of corners, and check that the board is flat",
-            "kein Objektiv erklärt die Ecken; Eckenzahl prüfen, und ob die Tafel eben ist",
+            "no lens model fits the corners; check the number of corners, and check that the board is flat",
+            "kein Objektivmodell passt zu den Ecken; Eckenzahl prüfen, und ob die Tafel eben ist",
         )
         .to_owned(),
         CameraCause::HeldOut { rms_px, max_px } => {

@@ -54,7 +54,8 @@ pub(super) struct IdentifyArguments {
     /// Regressors of literal and linear: increments (changes of the motion over the window) or displacement (from the origin)
     #[arg(long, value_name = "READING", default_value = "increments", value_parser = word::<IncrementReading>)]
     reading: IncrementReading,
-    /// Error by which literal chooses its degree: window (in the window that it fitted) or next (over the 10 ms after it)
+    /// Error by which literal chooses its degree: window (inside the fitted window) or next (in the 10 ms after the
+    /// window)
     #[arg(long, value_name = "CHOICE", default_value = "window", value_parser = word::<DegreeChoice>)]
     choice: DegreeChoice,
     /// Let literal and linear also fit a constant force

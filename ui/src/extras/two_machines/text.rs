@@ -6,7 +6,7 @@ pub(super) const NOTHING_YET: Text =
     Text::of("The link has not reported yet", "Die Verbindung hat noch nichts gemeldet");
 pub(super) const HOLDS: Text = Text::of("This console controls the follower", "Diese Konsole steuert den Folgearm");
 pub(super) const ASKED: Text =
-    Text::of("Another console requests the follower", "Eine andere Konsole fragt nach dem Folgearm");
+    Text::of("Another console requests control", "Eine andere Konsole fragt die Steuerung an");
 pub(super) const WAITS: Text =
     Text::of("This console does not control the follower", "Diese Konsole steuert den Folgearm nicht");
 pub(super) const ASKS: Text = Text::of(

@@ -15,7 +15,7 @@ use crate::{
 
 #[derive(Debug, Args)]
 pub(in crate::extras::user_studies) struct SimulateStudyArguments {
-    /// Folder of the study, in which no real person has taken part
+    /// Folder of a study in which no real person has taken part
     #[arg(value_name = "DIR")]
     study: PathBuf,
     /// Seed of the simulated participants

@@ -25,7 +25,7 @@ fn a_real_handle_gets_no_stand_in_even_where_its_file_is_named_or_found() {
     judged(|| {
         let report = trouble(&ForceDimensionSettings { library: Some(library()), ..ForceDimensionSettings::default() });
         assert!(
-            matches!(&report, DeviceError::SdkUnusable { reason, .. } if reason.contains("emulates")),
+            matches!(&report, DeviceError::SdkUnusable { reason, .. } if reason.contains("for emulated handles")),
             "{report:?}"
         );
         // Cargo makes the system search its own folders, which contain the stub under the library's name.

@@ -20,7 +20,7 @@ impl Loss {
     /// Returns the cause, for a screen.
     pub const fn cause(self) -> &'static str {
         match self {
-            Self::Disconnected => "the connection is gone",
+            Self::Disconnected => "the connection was interrupted",
             Self::Silent => "it sends no data",
             Self::Corrupt => "its data are damaged",
             Self::Implausible => "it sends impossible values",

@@ -117,7 +117,7 @@ impl Read for Input {
             None => self.line + count,
         };
         if self.line > LINE_MAX {
-            return Err(refusal("it has a line of more than 1 MiB; is it a table (CSV)?"));
+            return Err(refusal("it has a line of more than 1 MiB; check that it is a table (CSV)"));
         }
         Ok(count)
     }

@@ -206,7 +206,7 @@ fn cut_out(
     let name = session.file_name().unwrap_or_default().to_string_lossy();
     let Cut { messages, journal } = trim::write(reader, &name, times_ns, new, leave.flag())?;
     let journal = match journal {
-        JournalOutcome::Yes => "with the journal up to the cut: `nima replay` can replay it",
+        JournalOutcome::Yes => "with the journal up to the end of the excerpt: `nima replay` can replay it",
         JournalOutcome::LeftOut => "without the journal, which can be replayed only from its start",
         JournalOutcome::None => "the session has no journal",
     };

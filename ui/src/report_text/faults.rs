@@ -51,9 +51,10 @@ impl Remedy for Fault {
             ),
             Self::ForceUnknown { source } => unknown_because(source),
             Self::DeviceLost { loss, .. } => match loss {
-                Loss::Disconnected => {
-                    word("A device was lost: its connection is gone", "Ein Gerät ist ausgefallen: Verbindung getrennt")
-                }
+                Loss::Disconnected => word(
+                    "A device was lost: its connection was interrupted",
+                    "Ein Gerät ist ausgefallen: Verbindung getrennt",
+                ),
                 Loss::Silent => word(
                     "A device was lost: it sends no data",
                     "Ein Gerät ist ausgefallen: es sendet \

@@ -61,7 +61,7 @@ pub(crate) fn part_name(part: RigPart) -> String {
 
 pub(crate) fn loss_text(loss: Loss) -> &'static str {
     match loss {
-        Loss::Disconnected => word("the connection is gone", "Verbindung getrennt"),
+        Loss::Disconnected => word("the connection was interrupted", "Verbindung getrennt"),
         Loss::Silent => word("it sends no data", "sendet keine Daten"),
         Loss::Corrupt => word("its data are damaged", "Daten beschädigt"),
         Loss::Implausible => word("it sends impossible values", "sendet unmögliche Werte"),

@@ -171,7 +171,7 @@ fn a_stretch_is_a_session_with_all_that_was_in_it() {
     let inner = at("inner.mcap");
     record(&session, "peg_transfer", "4");
     let report = done(&["export", &session, "--out", &begin, "--to", "2"]);
-    assert!(report.contains("with the journal up to the cut"), "{report}");
+    assert!(report.contains("with the journal up to the end of the excerpt"), "{report}");
     let replayed = json(&["replay", &begin, "--json"]);
     assert_eq!((&replayed["identical"], &replayed["ticks"]), (&Value::from(true), &Value::from(2000)), "{replayed}");
     let report = done(&["export", &session, "--out", &middle, "--from", "1", "--to", "3"]);

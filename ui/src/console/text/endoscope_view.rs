@@ -115,15 +115,15 @@ pub(in crate::console) fn recorded(age: Duration) -> String {
 }
 
 pub(in crate::console) const SEARCHING: Text =
-    Text::of("Searching for the image of this moment", "Sucht das Bild dieses Moments");
+    Text::of("Searching for the image at this time", "Sucht das Bild dieses Moments");
 
 pub(in crate::console) fn none_then(why: Option<&str>) -> String {
     why.map_or_else(
         || {
-            word("No image in the two seconds before this moment", "Kein Bild in den zwei Sekunden vor diesem Moment")
+            word("No image in the two seconds before this time", "Kein Bild in den zwei Sekunden vor diesem Moment")
                 .to_owned()
         },
-        |why| text_format!("The image of this moment cannot be read: {why}", "Bild dieses Moments nicht lesbar: {why}"),
+        |why| text_format!("The image at this time cannot be read: {why}", "Bild dieses Moments nicht lesbar: {why}"),
     )
 }
 

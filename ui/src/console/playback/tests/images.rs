@@ -233,7 +233,7 @@ fn the_words_over_a_recorded_picture_are_those_of_its_moment() {
     let frozen = words(&mut past, 4.8);
     assert!(frozen.contains("Image is frozen: no new image for 0."), "{frozen}");
     let none = words(&mut past, 6.4);
-    assert!(none.contains("No image in the two seconds before this moment"), "{none}");
+    assert!(none.contains("No image in the two seconds before this time"), "{none}");
 }
 
 fn texts(shape: &egui::Shape, all: &mut String) {

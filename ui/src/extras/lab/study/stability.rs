@@ -7,7 +7,7 @@ use super::ExperimentArguments;
 
 #[derive(Debug, Args)]
 pub(in crate::extras::lab) struct Stability {
-    /// Ticks of the run that tests for numerical drift, about 3 µs each
+    /// Number of ticks in the test for numerical drift, about 3 µs per tick
     #[arg(long, value_name = "N", default_value_t = 1_000_000)]
     ticks: u64,
     /// Skip windows longer than 300 samples

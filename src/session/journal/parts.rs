@@ -72,7 +72,7 @@ fn rig_text(rig: &RigConfig) -> Result<String, JournalError> {
     if read_rig(&text)? == without_checked(rig) {
         Ok(text)
     } else {
-        Err(part("it does not read back unchanged".to_owned()))
+        Err(part("it changes when it is written and read back".to_owned()))
     }
 }
 

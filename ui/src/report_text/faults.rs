@@ -169,7 +169,7 @@ impl Remedy for FarStop {
                  ausgefallen",
             ),
             Self::DrivesOff => word(
-                "The arm at the follower's machine does not follow its commands",
+                "The arm on the follower's machine does not follow its commands",
                 "Der Arm am Rechner des Folgearms folgt seinen Befehlen nicht",
             ),
             Self::SamplesLost => word(
@@ -186,7 +186,7 @@ impl Remedy for FarStop {
                 "Die Uhr am Rechner des Folgearms sprang oder blieb stehen",
             ),
             Self::Implausible => word(
-                "A measurement at the follower's machine is not plausible",
+                "A measurement on the follower's machine is not plausible",
                 "Eine Messung am Rechner des Folgearms ist nicht plausibel",
             ),
             Self::Other => word(

@@ -98,7 +98,7 @@ pub(crate) fn cure_of_refusal(why: Refusal) -> &'static str {
             "kurz warten, Sicht des Trackers freimachen, dann neu koppeln",
         ),
         Refusal::Obstacle(EngageBlocker::FarEnd) => word(
-            "remove the cause at the follower's machine, then engage again",
+            "remove the cause on the follower's machine, then engage again",
             "Grund am Rechner des Folgearms beseitigen, dann neu koppeln",
         ),
         Refusal::Obstacle(_) => word("move the arm, then engage again", "Arm bewegen, dann neu koppeln"),

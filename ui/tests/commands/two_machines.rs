@@ -37,7 +37,7 @@ fn report(output: &Output) -> String {
 
 /// The code that a pairing shows.
 fn code(lines: &mut impl Iterator<Item = std::io::Result<String>>) -> String {
-    let line = lines.map(Result::unwrap).find(|line| line.starts_with("code to enter at the other machine"));
+    let line = lines.map(Result::unwrap).find(|line| line.starts_with("code to enter on the other machine"));
     line.unwrap().rsplit(": ").next().unwrap().to_owned()
 }
 

@@ -263,7 +263,7 @@ fn weightless(report: &GravityReport, limits: &GravityLimits) -> Option<String> 
     let seen = weight_n >= min_n;
     (!seen).then(|| {
         format!(
-            "no weight was measured: only {weight_n:.3} N of the force follow gravity, but at least {min_n:.3} N are required above the noise; \
+            "no weight was measured: gravity explains only {weight_n:.3} N of the force, but at least {min_n:.3} N are required above the noise; \
              check that the sensor sends new readings in N and that the tool hangs on it"
         )
     })

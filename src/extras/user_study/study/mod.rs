@@ -106,7 +106,7 @@ impl UserStudy {
             let why = "the assignment does not match the commitment in study.toml: one of them was changed".to_owned();
             return Err(damaged(SEALED, why));
         }
-        let unreadable = || damaged(SEALED, "it was written by another version of the program".to_owned());
+        let unreadable = || damaged(SEALED, "it was written by a different version of this program".to_owned());
         let secret: Assignment = serde_json::from_slice(&plain).map_err(|_| unreadable())?;
         let secret_text = String::from_utf8(plain).map_err(|_| unreadable())?;
         let scene = text(SCENE)?;

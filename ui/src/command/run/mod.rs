@@ -154,7 +154,7 @@ pub(crate) fn run_with(
     let arm = arguments.network.arm();
     if arm == ArmLocation::Elsewhere {
         print_line(
-            "the arm at another machine may be real, so it stays idle: engage it in `nima console --follower \
+            "the arm on another machine may be real, so it stays idle: engage it in `nima console --follower \
              HOST`",
         );
     }

@@ -9,8 +9,8 @@ pub(in crate::console) const TABLE: Text = Text::of("Table", "Tisch");
 pub(in crate::console) const VIEW: Text = Text::of("View", "Bildlage");
 pub(in crate::console) const TROCAR: Text = Text::of("Trocar", "Trokar");
 pub(in crate::console) const MOUNT_MEANING: Text = Text::of(
-    "Checks how the wrist sensor is turned on the arm's flange",
-    "Prüft, wie der Handgelenksensor am Flansch des Arms verdreht ist",
+    "Checks the orientation of the wrist sensor on the arm's flange",
+    "Prüft die Orientierung des Handgelenksensors am Flansch des Arms",
 );
 pub(in crate::console) const TIP_MEANING: Text = Text::of(
     "Finds the instrument's tip in the frame of the arm's flange",

@@ -22,7 +22,7 @@ pub(in crate::console) const DELAY_IS_MEASURED: Text = Text::of(
     "Gemessene Verzögerung des Netzes zum anderen Rechner; nicht einstellbar",
 );
 pub(in crate::console) const ONE_RIG: Text = Text::of(
-    "This console uses the arm at another machine. To use another rig or scene, close the console and start it \
+    "This console uses the arm on another machine. To use another rig or scene, close the console and start it \
      without --follower.",
     "Diese Konsole nutzt den Arm an einem anderen Rechner. Für einen anderen Aufbau oder eine andere Szene die \
      Konsole schließen und ohne --follower starten.",

@@ -4,7 +4,7 @@ use crate::language::{Text, text_format};
 
 pub(in crate::console) const WATCHING: Text = Text::of("WATCHING", "NUR ANSICHT");
 pub(in crate::console) const WATCHING_HOVER: Text = Text::of(
-    "This window shows a rig at another machine, about 0.1 s late; it cannot control the rig",
+    "This window shows a rig on another machine, about 0.1 s late; it cannot control the rig",
     "Dieses Fenster zeigt einen Aufbau an einem anderen Rechner, etwa 0.1 s verspätet; es kann nicht auf ihn einwirken",
 );
 pub(in crate::console) const BLOCKED: Text =

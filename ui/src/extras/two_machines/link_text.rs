@@ -54,7 +54,7 @@ pub(super) fn link_trouble(state: LinkState) -> Option<[String; 2]> {
     }
     let [cause, cure] = match cause {
         LinkCause::PeerClosed => [
-            word("the program at the other machine was closed", "das Programm der Gegenstelle wurde geschlossen"),
+            word("the program on the other machine was closed", "das Programm der Gegenstelle wurde geschlossen"),
             word("restart it there", "dort neu starten"),
         ],
         LinkCause::HeldByAnother => [

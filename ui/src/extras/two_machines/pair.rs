@@ -50,10 +50,10 @@ pub(super) fn run(arguments: &PairArguments) -> anyhow::Result<()> {
         (network::name_of(host), pairing.ask(network::address(host)?)?)
     } else {
         let at = network::listening(arguments.listen.as_deref())?;
-        output::line(&format!("waiting at {at} for `nima pair HOST` at the console's machine"))?;
+        output::line(&format!("waiting at {at} for `nima pair HOST` on the console's machine"))?;
         (arguments.name.as_str(), pairing.offer(at)?)
     };
-    output::line(&format!("code to enter at the other machine: {}", pending.code()))?;
+    output::line(&format!("code to enter on the other machine: {}", pending.code()))?;
     output::line("Enter the code that the other screen shows:")?;
     let mut entered = String::new();
     std::io::stdin().lock().read_line(&mut entered).context("cannot read the code")?;

@@ -46,10 +46,10 @@ pub enum IgtlFormatError {
     #[error("the checksum does not match: the message was damaged in transit")]
     Checksum,
     /// The body's length does not match its own counts.
-    #[error("a {kind} message of {bytes} bytes does not match the counts in it")]
+    #[error("a message of type {kind} with {bytes} bytes does not match the counts in it")]
     Length { kind: String, bytes: usize },
     /// A number without a meaning.
-    #[error("a {kind} message has an invalid value: {what}")]
+    #[error("a message of type {kind} has an invalid value: {what}")]
     Value {
         kind: String,
         /// Name of the value.

@@ -68,7 +68,7 @@ impl ExclusionRule {
         let mut wrong = Vec::new();
         match (is, limit) {
             (MeasureComparison::Missing, Some(_)) => {
-                wrong.push("is = \"missing\" takes no limit: remove it".to_owned())
+                wrong.push("is = \"missing\" takes no limit: remove it".to_owned());
             }
             (MeasureComparison::Above | MeasureComparison::Below, None) => wrong.push("limit is missing".to_owned()),
             (_, Some(limit)) if !limit.is_finite() => wrong.push("limit must be a number".to_owned()),

@@ -154,7 +154,7 @@ fn every_way_to_read_the_paper_changes_the_literal_mode_and_no_other() {
     }
     refused(&["identify", path.to_str().unwrap(), "--choice", "best"], &["`window` or `next`"]);
     refused(&["identify", path.to_str().unwrap(), "--reading", "sideways"], &["`displacement`"]);
-    refused(&["identify", path.to_str().unwrap(), "--ridge", "-1"], &["the ridge -1 is out of range"]);
+    refused(&["identify", path.to_str().unwrap(), "--ridge", "-1"], &["the ridge parameter -1 is out of range"]);
 }
 
 #[test]

@@ -83,7 +83,7 @@ fn a_journal_that_was_changed_is_refused_with_its_line() {
     for (text, words) in [
         (without(0), "line 1: it has number 2"),
         (without(1), "line 2: it has number 3"),
-        (whole.replace("trial_ended", "trial_won"), "line 4: it is not a line"),
+        (whole.replace("trial_ended", "trial_won"), "line 4: it is not a journal entry"),
         (
             whole.replace("\"number\":1,\"attempt\":1,\"label\"", "\"number\":2,\"attempt\":1,\"label\""),
             "line 3: P01 began trial 2",

@@ -39,7 +39,7 @@ fn time_s(calls: usize, work: &mut impl FnMut()) -> f64 {
 #[expect(unsafe_code, reason = "the standard library does not report it")]
 fn processor_s() -> f64 {
     let mut time = libc::timespec { tv_sec: 0, tv_nsec: 0 };
-    // SAFETY: a structure of the right type that lives through the call.
+    // SAFETY: `time` is a valid `timespec` that outlives the call.
     unsafe { libc::clock_gettime(libc::CLOCK_THREAD_CPUTIME_ID, &raw mut time) };
     time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64
 }

@@ -77,7 +77,7 @@ impl Axis {
         let map = |value: f64| if self.logarithmic { value.log10() } else { value };
         let [from, to] = self.range.map(map);
         let place = (map(value) - from) / (to - from);
-        // The logarithm of zero is minus infinity and is drawn at the lower edge. NaN cannot be drawn.
+        // The logarithm of zero is minus infinity, which is drawn at the lower edge; NaN cannot be drawn.
         (!place.is_nan() && (place.is_finite() || value == 0.0)).then(|| place.clamp(0.0, 1.0))
     }
 

@@ -127,7 +127,7 @@ impl Outages {
         if let Some(since_s) = self.since_s {
             self.longest_s = self.longest_s.max(now_s - since_s);
         }
-        // A device that a person disconnects does not have an outage.
+        // A device that a person disconnects does not count as an outage.
         if matches!(health.standing, ConnectionState::Connected | ConnectionState::Closed) {
             self.since_s = None;
         }

@@ -128,7 +128,7 @@ impl<D: Device> DeviceSlot<D> {
     /// first: an arm that is not served while another one brakes would report a fault.
     pub fn retire(&mut self) {
         if let Some(device) = self.device.take() {
-            // While an older device is being closed, this one is closed here.
+            // While an older device is still being closed, close this one here.
             self.lost.try_send(device).ok();
         }
         self.shared.stop.store(true, Ordering::Release);
@@ -205,7 +205,7 @@ impl<D: Device> SlotWorker<D> {
                     out = self.give.try_send(device).is_ok();
                 }
                 Err(trouble) => {
-                    // The same trouble, twice a second, is one line.
+                    // Log the same error, which recurs twice a second, only once.
                     if report.as_ref() != Some(&trouble) {
                         warn!(device = self.name, %trouble, "not open");
                         report = Some(trouble.clone());

@@ -97,7 +97,7 @@ impl FromStr for Address {
     type Err = AddressError;
 
     fn from_str(text: &str) -> Result<Self, AddressError> {
-        // A message is one short line, and never shows a password.
+        // Keep the message to one short line that never shows a password.
         let public = text.rsplit_once('@').map_or(text, |(_, place)| place);
         let shown = || public.chars().take(80).filter(|c| !c.is_control()).collect();
         let wrong = |why| Err(AddressError { address: shown(), why });

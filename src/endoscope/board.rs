@@ -182,7 +182,7 @@ impl Portrait {
         let from = camera_from_board.inverse();
         let way = camera_from_board.rotation.inverse();
         let eye = from.translation.vector / board.square_m;
-        // The intersection of a line of sight with the board, in squares.
+        // Intersection of a line of sight with the board, in squares.
         let meets = |sight: &Vector2<f64>| {
             let direction = way * sight.push(1.0);
             let steps = -eye.z / direction.z;
@@ -198,7 +198,7 @@ impl Portrait {
                 continue;
             };
             let [x, y] = [at % width, at / width];
-            // The step to the next pixel on the board.
+            // Distance to the next pixel, measured on the board.
             let next = |there: bool, step: usize| if there { met[at + step].map(|next| next - middle) } else { None };
             let before = |there: bool, step: usize| if there { met[at - step].map(|last| middle - last) } else { None };
             let across = next(x + 1 < width, 1).or_else(|| before(x > 0, 1)).unwrap_or_default();

@@ -200,8 +200,7 @@ mod tests {
         assert!((at(0.01, 0.0).x - 640.0 - 90.0 * 1.003).abs() < 1e-9);
         assert_eq!(lens(0.0).project(&Vector3::new(0.0, 0.0, -0.1)), None);
         assert_eq!(lens(0.0).project(&Vector3::new(f64::NAN, 0.0, 0.1)), None);
-        // Barrel distortion folds back on itself: a point far to the side must not appear a second time within the
-        // image.
+        // Barrel distortion folds back on itself: a point far to the side must not appear again within the image.
         assert_eq!(lens(-0.3).project(&Vector3::new(0.2, 0.0, 0.1)), None);
     }
 

@@ -150,7 +150,7 @@ impl FrameWatch {
         if let Some((_, damage)) = self.damage.as_ref().filter(|(at, _)| comes && since(*at) < DAMAGE_REPORTED) {
             return Some(FrameFault::Damaged(damage.clone()));
         }
-        // Black images are all equal: if they keep arriving, the light is the cause, not a frozen camera.
+        // Black images are all equal: if they keep arriving, the light is off; the camera is not frozen.
         if comes && self.shown.is_some_and(|shown| shown.is_black) {
             return Some(FrameFault::Black);
         }

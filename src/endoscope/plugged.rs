@@ -29,7 +29,7 @@ fn camera(folder: &Path) -> Option<(u32, PluggedCamera)> {
     let node = folder.file_name()?.to_str()?;
     let number = node.strip_prefix("video")?.parse().ok()?;
     let line = |name: &str| fs::read_to_string(folder.join(name)).ok();
-    // A camera has further nodes that do not deliver images (the settings of each image, for example).
+    // A camera has further nodes that do not deliver images (metadata of each image, for example).
     if line("index").is_some_and(|index| index.trim() != "0") {
         return None;
     }

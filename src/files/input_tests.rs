@@ -13,7 +13,7 @@ fn soon<T: Send + 'static>(work: impl FnOnce() -> T + Send + 'static) -> T {
 fn what_is_no_plain_file_of_a_plausible_size_is_refused_at_once() {
     let folder = tempfile::tempdir().unwrap();
     let place = |name: &str| folder.path().join(name);
-    // A sparse file: it uses no disk space, but reading it would take gigabytes of memory.
+    // A sparse file uses no disk space, but reading it would take gigabytes of memory.
     fs::File::create(place("large")).unwrap().set_len(2 << 30).unwrap();
     fs::write(place("bytes"), [0xff; 8]).unwrap();
     let none = fs::File::open(place("none")).unwrap_err().to_string();

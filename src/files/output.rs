@@ -72,7 +72,7 @@ pub fn copy_atomically(from: &Path, to: &Path) -> io::Result<()> {
 /// ```
 pub fn write_private(path: &Path, text: &str) -> io::Result<()> {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or_else(|| Path::new("."));
-    // The temporary file is private to its owner from the beginning.
+    // The temporary file is readable by its owner only from the start.
     let mut file = NamedTempFile::new_in(folder)?;
     file.write_all(text.as_bytes())?;
     file.as_file().sync_all()?;
@@ -124,7 +124,7 @@ impl OutputTarget {
             io::ErrorKind::NotFound => refusal("it is a link to a file that does not exist; name that file itself"),
             _ => error,
         };
-        // Let the system follow the link first: it forbids following links of other users in shared folders.
+        // Let the system follow the link first: it refuses to follow other users' links in shared folders.
         let old = if is_link { fs::metadata(path).map_err(nothing)? } else { here };
         if let Some(what) = what_it_is(&old) {
             return Err(refusal(&format!("{what} exists and is never replaced; choose another name")));
@@ -189,7 +189,7 @@ fn keep(file: &File, like: &Metadata) -> io::Result<()> {
     let mut mode = like.mode() & 0o777;
     if (ours.uid(), ours.gid()) != (like.uid(), like.gid()) && fchown(file, Some(like.uid()), Some(like.gid())).is_err()
     {
-        // The file now belongs to our group, so the old group's rights must not apply.
+        // The file now belongs to our group, so the old group's permissions must not apply.
         mode &= 0o707;
     }
     file.set_permissions(fs::Permissions::from_mode(mode))

@@ -143,7 +143,7 @@ mod unix {
         for name in ["input", "link", "hard link"] {
             let error = check_output(&place(name), &[&other, &input]).unwrap_err().to_string();
             assert!(error.contains("is the input") && error.contains("itself"), "{name}: {error}");
-            // The same with the roles swapped: the input is named by a link.
+            // The same with the roles swapped: the input is given by a link.
             check_output(&input, &[&other, &place(name)]).unwrap_err();
         }
         check_output(&other, &[&input]).unwrap();

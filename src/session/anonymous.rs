@@ -194,7 +194,7 @@ impl RewrittenTopic {
                 if !decoder.decode(data) {
                     return Ok(());
                 }
-                // Other columns are left out.
+                // Leave out other columns.
                 let column =
                     |(name, value): (&String, &f64)| Some((names.iter().find(|known| *known == name)?, *value));
                 let columns: Vec<(&String, f64)> =

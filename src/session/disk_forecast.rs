@@ -34,12 +34,12 @@ impl DiskForecast {
         if grown < GROWN {
             return None;
         }
-        // A bare name is in the current folder.
+        // A name without a folder is in the current folder.
         let folder =
             self.file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or_else(|| Path::new("."));
         let left = free_bytes(folder)?.saturating_add(others) as f64;
         let per_s = bytes.saturating_sub(self.bytes) as f64 / grown.as_secs_f64();
-        // A file that does not grow never fills the disk.
+        // For a file that does not grow, the quotient is infinite: `None`, because the disk never fills.
         Duration::try_from_secs_f64(left / per_s).ok()
     }
 }
@@ -55,11 +55,11 @@ mod tests {
         let begin = Instant::now();
         let minute = Duration::from_mins(1);
         let outlook = DiskForecast::new(&folder.path().join("a.mcap"), 0, begin);
-        // In two minutes it has used a fraction of the disk that leaves room for ten hours.
+        // In two minutes the file has used a fraction of the disk that leaves room for ten hours.
         let bytes = free / 300;
         assert_eq!(outlook.full_in(bytes / 4, 0, begin + minute / 2), None, "too early to predict");
         let hours = |lasts: Option<Duration>| lasts.unwrap().as_secs_f64() / 3600.0;
-        // Other programs use this disk too.
+        // Other programs also use this disk.
         let near = |hours: f64, expected: f64| (hours / expected - 1.0).abs() < 0.2;
         let lasts = hours(outlook.full_in(bytes, 0, begin + 2 * minute));
         assert!(near(lasts, 10.0), "{lasts} h");

@@ -111,7 +111,7 @@ pub fn each_tick<E: From<PlottedError>>(
     let topics = topics.each_ref().map(String::as_str);
     let channel_of = |topic: &str| reader.channels().iter().find(|channel| channel.topic == topic).map(|one| one.id);
     let channels = topics.map(channel_of);
-    // The last message of each topic.
+    // Last message of each topic.
     let mut parts: [Option<SessionMessage>; 3] = Default::default();
     let Some(mut columns) =
         TopicColumns::of(topics[0]).zip(TopicColumns::of(topics[1])).zip(TopicColumns::of(topics[2]))

@@ -114,7 +114,7 @@ fn whoever_comes_late_writes_a_stretch_with_every_table_and_without_the_journal(
     assert_eq!(tables[trim::TABLE][trim::BEGINNING], START_NS.to_string());
     assert!(reader.channels().iter().all(|channel| channel.topic != JOURNAL_TOPIC));
     let firsts: Vec<u8> = reader.messages(&[], 0..u64::MAX).map(|message| message.unwrap().data()[0]).collect();
-    // Two tables, a file, two channels, and a table among 75 messages: the eighth bundle begins with message 74.
+    // Two tables, a file, two channels, and a table among 75 messages: the eighth batch begins with message 74.
     assert_eq!(firsts, (75..100).filter(|i| i % 2 == 1).collect::<Vec<u8>>());
 }
 

@@ -98,7 +98,7 @@ impl SessionStore {
                 if about.is_file() {
                     let kept = mark_of(&path).exists();
                     let written = about.modified()?;
-                    // If this is unknown, assume it for a file with a recent write.
+                    // If the system cannot say, assume that a recently written file is still being written.
                     let lately = || written.elapsed().is_ok_and(|since| since < IN_USE);
                     let writing = is_being_written(&path)
                         .map_or_else(|_| lately(), |writes| writes || cfg!(not(any(unix, windows))) && lately());
@@ -185,7 +185,7 @@ pub fn free_bytes(folder: &Path) -> Option<u64> {
     let mut name: Vec<u16> = folder.as_os_str().encode_wide().collect();
     name.push(0);
     let mut free = 0;
-    // SAFETY: the name is zero-terminated, and the output lives through the call; pointers to unused outputs may be null.
+    // SAFETY: the name is zero-terminated, and the output outlives the call; pointers to unused outputs may be null.
     let report = unsafe {
         windows_sys::Win32::Storage::FileSystem::GetDiskFreeSpaceExW(
             name.as_ptr(),

@@ -226,7 +226,7 @@ impl SessionSinks {
 
     /// Ends the file after a failure; only the viewers remain.
     fn give_up(&mut self, why: RecordError) {
-        // The file may hang in the system as long as the disk does.
+        // Closing the file may block as long as the disk does.
         if let Some((_, sync)) = self.sync.take() {
             sync.leave();
         }

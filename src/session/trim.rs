@@ -77,7 +77,7 @@ pub fn write(
 ) -> Result<Cut, CutError> {
     let begin_ns = plot_channels::beginning_ns(reader)?;
     let journal = journal(reader, times_ns.start)?;
-    // The origin of the loop is stored before the first tick.
+    // The start state of the loop is stored before the first tick.
     let start_ns = if journal == JournalOutcome::Yes { 0 } else { times_ns.start };
     let mut writer = SessionWriter::create(to, reader.library())?;
     let mut tables = reader.metadata()?;
@@ -134,7 +134,7 @@ pub(crate) fn table(
     journal: JournalOutcome,
     before: Option<&BTreeMap<String, String>>,
 ) -> BTreeMap<String, String> {
-    // An excerpt of an excerpt counts as an excerpt of the session.
+    // An excerpt of an excerpt counts as an excerpt of the original session.
     let session = before.and_then(|before| before.get(SESSION)).map_or(name, String::as_str);
     let mut table = stretch(begin_ns, times_ns);
     for (key, value) in [(SESSION, session), ("journal", journal.word())] {

@@ -83,7 +83,7 @@ impl HapticInput {
     pub(super) fn write(&mut self, outputs: &Outputs) {
         let switched = std::mem::replace(&mut self.driven, outputs.drives) != outputs.drives;
         let Some(handle) = self.slot.device() else { return };
-        // Only an engagement switches it on: a handle that was reopened stays off until the next engagement.
+        // Only an engagement switches the force on: a handle that was reopened stays off until the next engagement.
         if switched {
             handle.switch_force(outputs.drives);
         }

@@ -135,7 +135,7 @@ impl InputDevices {
         let Some(gripper_rad) = self.gripper_rad else { return self.acts.note(TaskAction::Mark) };
         let is_open = self.grip_rad.unwrap_or(gripper_rad) > OPEN_FRACTION * OPEN_RAD;
         self.grip_rad = Some(if is_open { 0.0 } else { OPEN_RAD });
-        // While its jaws are led, the hand does not continue its own task.
+        // While its jaws are controlled by the user, the hand does not continue its own task.
         self.position_m.get_or_insert(self.hands_m[Side::Right.index()]);
     }
 

@@ -73,7 +73,7 @@ impl PalpationTask {
         let tissue = scene.tissue?;
         let half_m = tissue.size_m.map(|size_m| (0.5 * size_m - EDGE_M).max(CELL_M));
         let [mut cells, mut lanes] = [half_m[0] / CELL_M, half_m[1] / LANE_M].map(|half| 2 * half.floor() as usize + 1);
-        // Of a very large tissue only the middle is searched.
+        // If the tissue is very large, search only its middle.
         lanes = lanes.min(CELLS_MAX / 64);
         cells = cells.min(CELLS_MAX / lanes);
         let size = [lanes, cells];
@@ -131,7 +131,7 @@ impl PalpationTask {
         }
         let up_m = self.above(&end_m);
         go(up_m, press_s);
-        // The map is judged while the hand waits: one cell in each step, whatever its length.
+        // The hand waits while the map is evaluated, one cell per step of any length.
         go(up_m, 1.0 + 1e-3 * (lanes * cells) as f64);
         self.stroked = parts.len() - 2;
         self.visit = parts.len();
@@ -146,14 +146,14 @@ impl PalpationTask {
     /// Records the force (N) that the hand feels here in this part of its task; call it once per step.
     pub(super) fn feel(&mut self, part: usize, position_m: &Vector3<f64>, force_n: &Vector3<f64>) {
         if part >= self.stroked {
-            // Judges while waiting, and also later if the waiting was too short.
+            // Evaluate while waiting, and afterwards if the waiting was too short.
             self.judge();
             return;
         }
         let [y_m, x_m] = self.first_m;
         let [lane, cell] = [(position_m.y - y_m) / LANE_M, (position_m.x - x_m) / CELL_M].map(f64::round);
         let is_inside = lane >= 0.0 && cell >= 0.0 && (lane as usize) < self.size[0] && (cell as usize) < self.size[1];
-        // On its way down or between lanes the force has other causes.
+        // On the way down and between lanes, the force has other causes.
         let is_stroking =
             (position_m.y - y_m - lane * LANE_M).abs() < 0.25 * LANE_M && position_m.z < self.depth_m + 0.5 * CARRY_M;
         if part > 1 && is_inside && is_stroking && force_n.z.is_finite() {
@@ -281,7 +281,7 @@ mod tests {
     fn it_marks_each_place_that_is_stiffer_than_around_and_no_other() {
         let lumps_m = [[-0.03, 0.02], [0.01, -0.015], [0.041, 0.027], [-0.045, -0.03]];
         let more = |position_m: &Vector3<f64>| {
-            // The tissue as a whole becomes stiffer to the right.
+            // The stiffness of the whole tissue increases to the right.
             let even = 1.0 + 2.0 * position_m.x;
             let over = lumps_m.iter().any(|[x, y]| (position_m.x - x).hypot(position_m.y - y) < 0.005);
             even * if over { 1.3 } else { 1.0 }

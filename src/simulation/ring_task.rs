@@ -55,7 +55,7 @@ pub(super) fn ways(setting: &ObjectSettings, two_hands: bool) -> [Vec<HandTaskPa
         CarryingTask { rim_m, lies_m, peg_m, parts: [vec![], vec![]], position_m: waits, grip_rad: [0.0; SIDES] };
     let pegs = &setting.pegs.position_m;
     let foot_m = |peg: usize| pegs.get(peg).map(|[x, y]| Vector3::new(*x, *y, setting.board.z_m));
-    // The pegs of the right side are in the same order as those of the left side.
+    // The pegs on the right are in the same order as those on the left.
     let opposite = |peg: usize| if peg < pegs.len() / 2 { peg + pegs.len() / 2 } else { peg - pegs.len() / 2 };
     let pairs: Vec<_> = setting
         .rings
@@ -74,7 +74,8 @@ pub(super) fn ways(setting: &ObjectSettings, two_hands: bool) -> [Vec<HandTaskPa
             task.carry(Side::Right, from_m, to_m);
         }
     }
-    // A ring may lie some millimetres from where it began, and these hands are blind: they carry it over and back once.
+    // A ring may be some millimetres from where it started, and these hands are blind, so they carry each ring over and
+    // back only once.
     if !pairs.is_empty() {
         task.act(Side::Right, task.position_m[Side::Right.index()], 0.0, DONE_S);
     }

@@ -81,7 +81,7 @@ impl Trocar {
         let down = -Vector3::z();
         let tilt = direction - down * direction.dot(&down);
         let straighten_n = -(tilt - direction * tilt.dot(direction)) * self.config.wall_n;
-        // Friction is computed from the displacement of the tip, transferred to the wall.
+        // Friction is computed at the wall, from the displacement of the tip.
         let limit_m = self.config.across_n / ACROSS_STIFFNESS_N_M;
         let stretched = self.stretch_across_m + turn * depth_m;
         let across = stretched - direction * stretched.dot(direction);

@@ -31,7 +31,7 @@ pub(super) fn way(setting: &WireSetting, hand: &SceneHand, seed: u64) -> Vec<Han
     let mut parts = vec![part(position_m, position_m, hand.hold_s)];
     for step in 0..=steps {
         let fraction = f64::from(step) / f64::from(steps);
-        // No error at the goal: there the hand must be within the loop's reach of it.
+        // At the goal there is no aiming error, because the loop must reach it.
         let error_m = if step < steps { hand.aim_error_m } else { 0.0 };
         let to_m = curve.at(goal_m * fraction)
             + beside(&curve, goal_m * fraction) * error_m * lot.gaussian()

@@ -85,7 +85,7 @@ impl Worlds {
             let step_s = left_s.min(*period_s - *ahead_s);
             arms.iter_mut().flatten().for_each(|world| world.step(step_s));
             left_s -= step_s;
-            // The objects move in whole periods: after a late tick they wait until a whole period is due.
+            // Objects move in whole periods: after a late tick they wait until a whole period is due.
             *ahead_s += step_s;
             if *ahead_s < *period_s * (1.0 - ROUNDING_PERIODS) {
                 continue;

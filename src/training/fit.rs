@@ -44,7 +44,7 @@ impl TrainingFit<'_> {
         let epochs_max = self.settings.epochs_for(training.len());
         let patience = ((epochs_max as f64 * PATIENCE).ceil() as usize).max(5);
         let mut order = training.to_vec();
-        // A network that does not improve the held-out rows is dropped, and the linear path is used alone.
+        // A network that does not improve the held-out rows is dropped, leaving only the linear path.
         let training_loss = self.loss(&network, training);
         let validation_loss = self.loss(&network, validation);
         let mut figures = MemberFigures { epoch: 0, epochs: 0, training_loss, validation_loss };

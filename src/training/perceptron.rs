@@ -156,7 +156,7 @@ mod tests {
         let skip = draw(2, 5);
         let batch = Batch { x: draw(5, 40), y: draw(2, 40) };
         let mut network = Perceptron::new((5, 2), &[7, 4], skip.as_slice(), &mut fastrand::Rng::with_seed(2));
-        // The last layer starts at zero, where the other layers have no gradient; so start elsewhere.
+        // The last layer starts at zero, where the other layers have no gradient, so start elsewhere.
         let start = draw(network.parameters.len(), 1);
         network.parameters.copy_from_slice(start.as_slice());
         let mut gradient = Vec::new();

@@ -81,7 +81,7 @@ fn a_model_comes_back_from_its_file_bit_by_bit_and_a_seed_repeats_it() {
     let mut estimators = [model, trained(&data), load_model(&path).unwrap()].map(Estimator::new);
     let [before, after] = [0, 2].map(|k| estimators[k].model().origin.clone());
     for (a, b) in before.figures.iter().zip(&after.figures) {
-        // JSON may change the last bit of an f64.
+        // JSON may change the last bit of an f64, so allow a tolerance.
         assert!((a.validation_loss - b.validation_loss).abs() < 1e-12 && a.epoch == b.epoch);
     }
     assert_eq!(before, ModelOrigin { figures: before.figures.clone(), ..after });
@@ -179,7 +179,7 @@ fn inputs_that_never_change_are_refused() {
     assert!(refusal(&|x| x.fill(0.0)).is_some_and(|report| report.contains(words)));
     assert!(refusal(&|x| (x[0], x[1]) = (1.3, -2.1)).is_some_and(|report| report.contains(words)), "both forces hang");
     assert_eq!(refusal(&|x| x[0] = 0.0), None, "one axis may be unused");
-    // Columns with other names are not known to be forces; but something in the data must change.
+    // Columns with other names are not assumed to be forces, but something in the data must change.
     let mut data = world(12, 5);
     data.inputs = ["a", "b", "c"].map(str::to_owned).to_vec();
     data.x.fill(1.0);

@@ -14,7 +14,7 @@ thread_local! {
 }
 
 fn count() {
-    // The counter of an ending thread no longer exists; its allocations do not matter.
+    // The counter of a thread that ends no longer exists; its allocations do not matter.
     let _ = CALLS.try_with(|calls| calls.set(calls.get() + 1));
 }
 

@@ -85,7 +85,7 @@ fn polling_and_answering_allocate_nothing_also_when_the_program_floods_and_ends(
             assert!(health.readings > 100 && health.damaged > 10, "{health:?}");
             assert!(matches!(health.standing, ConnectionState::Lost(_)));
         };
-        // The thread must end in any case.
+        // End the thread in any case, even if the test panics.
         let result = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| judge(opened.unwrap())));
         does.store(ENDS, Relaxed);
         thread.join().unwrap();

@@ -54,7 +54,7 @@ fn a_tick_of_an_open_link_allocates_nothing() {
             sleep(TICK);
         }
         scope(|scope| {
-            // Another console comes and goes; unknown programs send foreign datagrams.
+            // Another console connects and disconnects; unknown programs send foreign datagrams.
             scope.spawn(|| {
                 let mut other = console(&others, address, theirs.public());
                 let socket = UdpSocket::bind((Ipv4Addr::LOCALHOST, 0)).unwrap();
@@ -69,7 +69,7 @@ fn a_tick_of_an_open_link_allocates_nothing() {
             let mut got = 0;
             for count in 0..1500 {
                 got += tick(&mut near, now_s());
-                // It stops for a quarter of a second.
+                // The console stops sending for a quarter of a second.
                 if !(1000..1250).contains(&count) {
                     got += tick(&mut far, now_s());
                 }

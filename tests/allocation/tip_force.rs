@@ -71,7 +71,7 @@ fn the_loop_with_a_network_in_it_allocates_nothing() {
         if k == 100 {
             control.obey(Command::Engage, now_s).unwrap();
         }
-        // Missing samples at intervals, which reset the features' state.
+        // Drop samples at intervals, which resets the features' state.
         let inputs = world.exchange(now_s, &outputs).filter(|_| k % 3000 > 15);
         let (next, tick) = control.step(false, inputs, &Timing { now_s, ..Timing::default() });
         outputs = next;

@@ -100,7 +100,8 @@ fn a_tick_of_the_whole_loop_and_of_the_simulation_allocates_nothing() {
     let rig = RigConfig::load("simulated").unwrap();
     let mut control = Loop::new(&rig, &[Some(Calibrations::default()), Some(Calibrations::default())]).unwrap();
     let mut world = Worlds::new(&Scene::load("bimanual").unwrap(), rig.rate_hz);
-    // Its other end is read for a while, then neglected, then dropped: none of this may cause an allocation in a tick.
+    // The other end of the tap is read for a while, then neglected, then dropped: none of this may cause an allocation
+    // in a tick.
     let (mut tap, end) = tap();
     let mut end = Some(end);
     control.obey(Command::Engage, 0.0);
@@ -116,7 +117,7 @@ fn a_tick_of_the_whole_loop_and_of_the_simulation_allocates_nothing() {
             6000 => control.obey(Command::Engage, now_s),
             _ => {}
         }
-        // Missing samples at intervals, and at the end for long enough to cause a fault.
+        // Drop samples at intervals, and at the end for long enough to cause a fault.
         let inputs = world.read(now_s).map(|inputs| inputs.filter(|_| k % 1000 > 5 && k < 9000));
         let timing = Timing { now_s, ..Timing::default() };
         let (outputs, ticks) = control.step(inputs, &timing);

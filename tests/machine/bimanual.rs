@@ -340,7 +340,7 @@ fn a_handle_that_is_let_go_is_an_absent_hand_and_nothing_resumes() {
         pressed = if bench.ticks[0].rendered_n.norm() > 2.5 && moved_m < 2e-4 { pressed + 1 } else { 0 };
         assert!(bench.tick < 20_000, "the scene presses and holds");
     }
-    // From here on the handle is alone, 0.25 kg and 0.5 N s/m, read in steps of 10 um.
+    // From here on the handle is released: 0.25 kg and 0.5 N s/m, read in steps of 10 um.
     let last_m = hand_m.get();
     let from_m = last_m[0];
     let mut travel_m = Vector3::zeros();

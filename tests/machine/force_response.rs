@@ -36,7 +36,7 @@ fn with_force_a_person_presses_less_and_is_slower_and_without_it_feeling_is_no_m
     let [felt, blind, without] = [pressed(1.0, Some(1.0)), pressed(1.0, None), pressed(0.0, Some(1.0))];
     println!("felt {felt:?}, blind {blind:?}, without force {without:?}");
     assert_eq!(without, pressed(0.0, None));
-    // The peak is over within the reaction time; it is lower than without force only because of the hand's impedance.
+    // The peak occurs within the reaction time, so only the hand's impedance makes it lower than without force.
     assert!(felt.1 < 0.95 * blind.1, "the mean falls: {felt:?}, {blind:?}");
     assert!(felt.0 < 0.75 * without.0 && felt.1 < 0.67 * without.1, "{felt:?}, {without:?}");
     assert!(felt.2 < blind.2 && blind.2 == without.2, "slower where more is felt: {felt:?}, {blind:?}, {without:?}");

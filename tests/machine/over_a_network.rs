@@ -267,7 +267,7 @@ fn another_console_that_has_released_more_stops_releases_none_here() {
     let wire = bench.leader.rig.wire();
     other.rig.wire_mut().out = wire.out.clone();
     other.rig.wire_mut().back = wire.back.clone();
-    // Its loop has run longer, and has seen a stop and a release that are unknown here.
+    // The other console's loop has run longer, and has had a stop and a release that are unknown here.
     other.ahead_s = 500.0;
     other.rig.wire_mut().ahead_s = 500.0;
     other.rig.wire_mut().is_cut = Arc::new(Mutex::new(true));

@@ -89,7 +89,7 @@ fn friction_of_unknown_direction_is_not_taken_for_tissue_until_the_instrument_ha
 
 #[test]
 fn a_little_outside_its_training_the_network_is_better_than_the_wrist_force() {
-    // Both contain 1.2 N of weight that is unknown to every calibration.
+    // Both contain 1.2 N of weight that no calibration accounts for.
     let scene = heavier_by(0.12, 11);
     let all = work(path(Some(Fallback::WristForce)), &scene, 20.0);
     let fraction = |source| all.iter().filter(|(report, _)| report.source == source).count() as f64 / all.len() as f64;

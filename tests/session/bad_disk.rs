@@ -85,7 +85,8 @@ fn unplug(path: &Path) {
         .collect();
     assert_eq!(of_file.len(), 2, "one is written to, and one is synchronised");
     for number in of_file {
-        // SAFETY: both are open files of this process, and the owner of the second still has an open file afterwards.
+        // SAFETY: both are open files of this process, and the owner of the second one still has an open file
+        // afterwards.
         assert!(unsafe { libc::dup2(broken.as_raw_fd(), number) } == number);
     }
 }
@@ -107,7 +108,7 @@ fn a_slow_disk_is_told_and_the_loop_goes_on_and_the_file_says_what_is_missing() 
         let (recorder, handle) = run(to);
         wait_for(|| recorder.progress().ticks > 500);
         slow.blocks.store(true, Ordering::Relaxed);
-        // There is room for 2.5 s, and the loop is not informed.
+        // There is room for 2.5 s of data, and the loop is not informed.
         wait_for_ticks(&handle, 4000);
         let waits = recorder.progress().waits;
         assert!(waits > Duration::from_millis(300), "4 s of the loop, at four times its pace: {waits:?}");

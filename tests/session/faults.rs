@@ -172,7 +172,7 @@ fn calibrations_put_in_force_while_the_loop_runs_are_in_the_journal() {
     while t_s < 3.5 && begin.elapsed() < Duration::from_mins(2) {
         let change = handle.wrist_change(Side::Right);
         if change.is_there() && seen != Some(change) {
-            // A different one each time.
+            // Use a different mass each time.
             let mass_kg = if seen.is_none() { 0.4 } else { 0.39 };
             seen = handle.activate(change, &calibrated(mass_kg)).then_some(change);
         }
@@ -217,7 +217,7 @@ fn a_hole_is_told_and_nothing_behind_it_is_compared() {
     let (mut tap, end) = tap();
     let reader = thread::spawn({
         let start = start_of(&plan);
-        // Read too late for the queue's capacity.
+        // Read too late for the capacity of the queue.
         move || {
             thread::sleep(Duration::from_millis(300));
             JournalMessages::of(&start, &end)

@@ -190,7 +190,7 @@ fn files_that_cannot_be_replayed_are_named() {
     recorded(&at("whole"), &plan("peg_transfer"), 4.0, |_| None);
     let whole = std::fs::read(at("whole")).unwrap();
     std::fs::write(at("cut"), &whole[..whole.len() / 2]).unwrap();
-    // The existing part is replayed and the missing end is reported, or the cut itself is.
+    // Either the remaining part is replayed and the missing end is reported, or the cut itself is reported.
     match replayed(&at("cut")) {
         Ok(outcome) => {
             assert!(outcome.ticks > 500 && outcome.ticks < 4000 && !outcome.closed, "{outcome:?}");
@@ -229,7 +229,7 @@ fn a_folder_that_is_gone_is_told_at_once_and_the_loop_goes_on() {
     wait_for(&|| recorder.trouble().is_some());
     let words = recorder.trouble().unwrap().to_string();
     assert!(words.contains("deleted") && words.contains("session.mcap"), "{words}");
-    // The tap is emptied nevertheless, and the loop keeps running.
+    // The tap is still emptied, and the loop keeps running.
     let before = Instant::now();
     let mut newest = 0;
     while before.elapsed() < Duration::from_millis(500) {

@@ -148,7 +148,7 @@ fn pictures_are_recorded_as_they_came_at_the_loops_time_of_their_arrival() {
             Some(true).filter(|_| report.number > 0)
         );
     }
-    // The loop's clock and the code's clock differ by the start of the loop.
+    // The loop's clock and the clock in the code differ by the loop's start time.
     offsets_s.sort_by(f64::total_cmp);
     let spread_s = offsets_s[offsets_s.len() - 1] - offsets_s[0];
     assert!(spread_s < PERIOD.as_secs_f64(), "{spread_s} s");
@@ -195,7 +195,7 @@ fn a_stream_is_recorded_and_a_picture_comes_with_those_that_it_refers_to() {
         let key = number - number % KEY_EVERY;
         let needed: Vec<u8> = if key < first { Vec::new() } else { (key..=number).collect() };
         assert_eq!(numbers(images.leading_to(*time_ns, None, is_key).unwrap()), needed);
-        // A decoder that is three frames behind continues; one that is ahead, or far behind, restarts.
+        // A decoder that is three frames behind continues from there; one that is ahead, or far behind, restarts.
         if let Some(three_before) = usize::from(number - first).checked_sub(3) {
             let known_ns = Some(times_ns[three_before]);
             assert_eq!(

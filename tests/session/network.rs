@@ -66,7 +66,7 @@ fn a_network_in_force_replays_to_the_bit_and_tells_no_name_of_a_person() {
         let mut by_fallback = 0;
         let mut unknown_s = 0.0;
         let kept = record(&plan, 8.0, |tick| {
-            // A force that is held and faded is not measured, nor does the link deliver a measured one.
+            // A force that is held or faded does not count as measured, nor does the link deliver it as measured.
             let is_known = tick.force.source.is_known();
             unknown_s = if is_known { 0.0 } else { unknown_s + 1e-3 };
             assert_eq!(tick.known_n().is_some(), is_known);

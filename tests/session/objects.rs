@@ -44,7 +44,7 @@ fn moment(number: u32) -> ObjectStates {
     let t_s = f64::from(number) * 0.01;
     let turn = UnitQuaternion::from_euler_angles(0.1, t_s, -0.3);
     let ring = |x_m: f64| Isometry3::from_parts(Translation3::new(x_m, t_s, 0.1 * t_s), turn);
-    // A ring that is out of view, before another.
+    // One ring is out of view; it is listed before the visible one.
     let rings = vec![(number < 200).then(|| ring(-0.02)), Some(ring(0.01))];
     let jaws = JawState {
         opening_rad: 0.2 * t_s,
@@ -77,7 +77,7 @@ fn record(path: &Path) {
     let plan = plan("peg_transfer");
     let (tap, end) = tap();
     let recorder = SessionRecorder::start(Destination::file(path), about(), plan.origin(), end).unwrap();
-    // Longer than the session: states of times that the loop never reached are not recorded.
+    // Longer than the session: states at times that the loop never reached are not recorded.
     recorder.watch(Box::new(RingPublisher { moments: (0..400).map(moment).collect(), happenings: events().into() }));
     runtime::run_virtual(Assembly { tap: Some(tap), ..plan.simulated().unwrap() }, 3.0, |_| None);
     recorder.finish().unwrap();

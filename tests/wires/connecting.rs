@@ -73,7 +73,7 @@ fn the_chosen_handle_and_the_exchanged_sensors_are_the_ones_that_the_machine_use
         let devices = elsewhere(folder.path());
         let emulated = started(&devices);
         let mut file = rig_file(&devices);
-        // Emulated handles report their hands, like real ones, so a swap must be set explicitly.
+        // Emulated handles report which hand they are for, like real ones, so a swap must be set explicitly.
         file.set("devices.right.handle.hand", "right");
         file.set("devices.left.handle.hand", "left");
         file.choose(RigPart::Handle(Side::Right), &ChosenDevice::Of(RigPart::Handle(Side::Left)));
@@ -88,7 +88,7 @@ fn the_chosen_handle_and_the_exchanged_sensors_are_the_ones_that_the_machine_use
         let serials = [RigPart::Sensor(Side::Right), RigPart::Sensor(Side::Left)].map(|part| machine.serial(part));
         assert_eq!(serials, ["SN000902", "SN000901"]);
 
-        // A device that falls silent shows which part it serves.
+        // A device that falls silent reveals which part it serves.
         for (device, part) in
             [("left sensor", RigPart::Sensor(Side::Right)), ("left servos", RigPart::Servos(Side::Right))]
         {
@@ -114,7 +114,7 @@ fn what_every_device_delivers_reaches_the_screen() {
         let delivers = |machine: &Machine, part: RigPart| {
             let numbers = match part.kind() {
                 PartKind::Handle | PartKind::Arm => 7,
-                // The one under the tissue is of the first generation and has no accelerometer.
+                // The sensor under the tissue is a first-generation one without an accelerometer.
                 PartKind::Sensor if part == RigPart::TissueSensor => 6,
                 PartKind::Sensor | PartKind::Tracker => 9,
                 PartKind::Servos => 4,

@@ -165,7 +165,7 @@ impl Row {
         let wrong = |what: String| Err(format!("{device}, {fault}: {what} ({seen})"));
         let limit_ms = SLACK_MS + if *device == "tracker" { TRACKER_REPORT_MS } else { REPORT_MS };
         let carries_force = !["pedal", "right servos", "tissue sensor", "tracker"].contains(device);
-        // Frames are affected at random: while enough good ones arrive they are only counted, and the device is lost
+        // Frames are affected at random: while enough good frames arrive, bad ones are only counted; the device is lost
         // when too many in a row are bad, which may happen at any time.
         let asked_and_late = *device == "tracker" && *fault == "delay";
         let by_chance = ["loss", "garbage", "reorder"].contains(fault) || asked_and_late;
@@ -174,7 +174,7 @@ impl Row {
         if asked_and_late && report.is_empty() {
             return wrong("missing frames are not counted".to_owned());
         }
-        // A pedal sends only when a foot moves.
+        // A pedal reports only when a foot moves, so it may report nothing here.
         if reported_ms.is_none() && !by_chance && *device != "pedal" {
             return wrong("never told".to_owned());
         }
@@ -241,7 +241,7 @@ impl Trial {
     /// Observes it at this time after the end of the fault, until it has recovered.
     fn look_for_it(&mut self, bench: &Fixture, after: Duration) {
         let entry = &bench.handle.roster()[self.place];
-        // A fault of the device itself is cleared by a command, as from the console's button.
+        // A fault of the device itself is cleared by a command, like the one of the console's button.
         if let (Some(DeviceError::DeviceFault { .. }), Some(clear)) = (entry.view.report().trouble, &entry.clear_faults)
         {
             clear.command();
@@ -269,7 +269,7 @@ fn try_out(bench: &mut Fixture, devices: &[&'static str], fault: EmulatedFault) 
         if zero.is_none() && bench.rendered_n() < 1e-9 {
             zero = Some(begin.elapsed());
         }
-        // Without a fault of the loop the force varies with the task.
+        // Unless the loop is in a fault, the force varies with the task.
         if bench.state() == LoopState::Engaged {
             zero = None;
         }
@@ -357,7 +357,7 @@ fn all_pass(faults: &[EmulatedFault]) -> Vec<Row> {
             });
             rows.extend(last.take());
         }
-        // Device by device, in the given order.
+        // Order by device, as given.
         rows[first..].sort_by_key(|row| devices.iter().position(|device| *device == row.device));
     }
     assert!(bench.borrow().handle.is_running());

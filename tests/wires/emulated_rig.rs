@@ -124,7 +124,7 @@ fn pressed(rig: &EmulatedRig, set: &ArmSet) -> Option<[Vec<Vector3<f64>>; 2]> {
             servoing = reading.value.servoing;
         }
         let newest = sensor.poll(t_s).map(|stamped| stamped.value);
-        // After a delay of a busy computer the motion continues without a jump.
+        // After a delay on a busy computer, continue the motion without a jump.
         while servoing && ticked_s < t_s {
             let fraction = (f64::from(tick) * 1e-3).min(1.0) - (f64::from(tick) * 1e-3 - 2.0).clamp(0.0, 1.0);
             inverse.step(&(truth.tip_m + travel_m * fraction));
@@ -179,7 +179,7 @@ fn both_arms_of_the_embedded_rigs_reach_all_of_their_space() {
             let set = devices.arm(side).unwrap();
             let arm = Arm::new(&set.mount).unwrap();
             let rcm = Rcm::new(&set.rcm).unwrap();
-            // The start position of the scene's hand, at the same distance from the trocar.
+            // Start position of the scene's hand, at the same distance from the trocar.
             let start_m =
                 set.rcm.trocar_m + Vector3::new(if side == Side::Right { -0.03 } else { 0.03 }, 0.042, -0.123);
             let ready = find(&arm, &rcm, &start_m).unwrap();
@@ -219,7 +219,7 @@ fn the_tracker_tells_how_the_endoscope_looks_whatever_the_rig_file_has() {
         assert_eq!(of_side[0].name(), format!("{} sensor", side.word()));
         assert_eq!(of_side[0].view.report().identity.unwrap().serial, number);
     }
-    // The tracker sends nothing: the orientation of the endoscope must not be assumed.
+    // The tracker sends nothing, so the loop must not assume an orientation of the endoscope.
     assert!(emulated.set_fault("tracker", EmulatedFault::Silence));
     let blind = |rig: &mut DeviceRig| {
         let inputs = rig.read(begin.elapsed().as_secs_f64());
@@ -294,7 +294,7 @@ fn jaws_in_motion(devices: &RigSettings) -> JawsShown {
     if readings < READINGS {
         return JawsShown { rms_deg: f64::INFINITY, readings, late_s: f64::INFINITY, period_p99_s };
     }
-    // The integral part settles in the first second.
+    // Skip the first second, in which the integral part settles.
     let rms_deg = |late: usize| {
         let pairs = way[..way.len() - late].iter().zip(&way[late..]).skip(1000);
         let (sum, count) = pairs.fold((0.0, 0.0), |(sum, count), ((asked, _), (_, jaws))| {

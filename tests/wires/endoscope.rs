@@ -116,7 +116,7 @@ fn the_camera_goes_with_the_marker_on_a_pushed_endoscope() {
 
         let feed = EndoscopeFeed::start(url.parse().unwrap(), Some(settings.size_px), || {}).unwrap();
         assert!(emulated.set_fault("endoscope", EmulatedFault::Moved));
-        // The first image from there takes some tenths of a second to render.
+        // Rendering the first image takes some tenths of a second.
         let end = Instant::now() + Duration::from_secs(20);
         let misses_px = loop {
             let world_from_n = marker(&mut rig, begin, Duration::from_millis(500)).unwrap();

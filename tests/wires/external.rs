@@ -188,7 +188,7 @@ impl Fixture {
 
     /// Engages by command, and waits until the hand feels the sensor's force.
     fn engage(&mut self) {
-        // The status may date from before a loss.
+        // The status may be from before a loss.
         self.healths = [Health::default(); 3];
         self.until("all connected", |bench| bench.healths.iter().all(|h| h.standing == ConnectionState::Connected));
         // A release is refused until the first readings have arrived.

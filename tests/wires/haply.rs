@@ -95,7 +95,7 @@ fn a_haply_handle_feels_the_simulated_tissue_and_a_silent_one_takes_the_force_aw
         rig.mode = Mode::Dfr;
         rig.gates.static_hold = true;
         let scene = Scene::load("peg_transfer").unwrap();
-        // A request that is refused: a person's hand may be at the handle.
+        // The request to engage is refused, because a person's hand may be on the handle.
         let plan = SimulationPlan { rig, scene, calibrations: Default::default(), engage: true };
         let handle = nima_simulation::start(&plan).unwrap();
         assert_eq!(handle.roster()[0].name(), "right handle");

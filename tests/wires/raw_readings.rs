@@ -149,7 +149,7 @@ fn tried(name: &str, bench: &mut Fixture, times: usize, set: impl Fn(EmulatedFau
             let limit_s = if fault == EmulatedFault::Block { BLOCK_GONE_S } else { GONE_S };
             println!("{name}, {}: {raised}, no force after {:.1} ms", fault.name(), gone_s * 1e3);
             gone_ms.push(gone_s * 1e3);
-            // A range may end where the force does not go for a while.
+            // The simulated range may end at a value that the force does not reach for a while.
             let is_late = gone_s > limit_s && fault != EmulatedFault::EndOfRange;
             assert!(raised.contains("Force") && !is_late, "{name}, {}: {raised}, {gone_s} s", fault.name());
         }
@@ -308,7 +308,7 @@ fn external(ports: [u16; 3], place: SensorPlace) -> SimulationPlan {
     rig.mode = Mode::Dfr;
     rig.gates.static_hold = true;
     rig.devices.as_mut().unwrap().right.as_mut().unwrap().sensor_at = place;
-    // The example's sensor has no tool to weigh.
+    // The example's sensor carries no tool that could be weighed.
     let parameters = GravityParameters::Physical {
         mass_kg: 0.0,
         s1_from_source_wxyz: [1.0, 0.0, 0.0, 0.0],

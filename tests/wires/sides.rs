@@ -286,7 +286,7 @@ impl Machine {
             }
         });
         *healths = handle.healths().unwrap_or(*healths);
-        // On a busy machine a device may seem silent for a moment: releases that too.
+        // On a busy machine a device may seem silent for a moment; release the stop that this causes too.
         handle.send(if latched { Command::ReleaseStop } else { Command::Engage });
     }
 

@@ -70,7 +70,7 @@ mod tests {
         .into();
         assert_eq!(engaging(Starter::Window, ArmLocation::Here, &built_in), ["simulated", "emulated"]);
         assert_eq!(engaging(Starter::Window, ArmLocation::Here, &files), [""; 0]);
-        // The command `nima run` is enough where no one can be hurt.
+        // For rigs that cannot hurt anyone, the command `nima run` is enough.
         assert_eq!(engaging(Starter::Run, ArmLocation::Here, &built_in), ["simulated", "desk", "emulated"]);
         assert_eq!(engaging(Starter::Run, ArmLocation::Here, &files), files[..4]);
     }

@@ -47,7 +47,7 @@ impl Emulators {
         }
         let mut command = Command::new(program);
         command.args(["emulate", "rig", "--rig", rig, "--scene", scene, "--until-input-ends"]);
-        // Ctrl-C is for the loop only, which ends in order and then ends the emulators.
+        // Ctrl-C goes to the loop only, which shuts down cleanly and then ends the emulators.
         #[cfg(unix)]
         std::os::unix::process::CommandExt::process_group(&mut command, 0);
         let mut child =
@@ -63,7 +63,7 @@ impl Emulators {
         let Some(report) = self.child.stdout.take() else { return Ok(()) };
         let (line, lines) = std::sync::mpsc::channel();
         std::thread::spawn(move || {
-            // Reads until the end, because the emulators would block on a full pipe.
+            // Read until the end, because the emulators would block on a full pipe.
             for text in BufReader::new(report).lines().map_while(Result::ok) {
                 line.send(text).ok();
             }
@@ -106,7 +106,7 @@ fn write(input: &Mutex<Option<ChildStdin>>, line: &str) {
 
 impl Drop for Emulators {
     fn drop(&mut self) {
-        // The emulators end in order when their standard input closes.
+        // The emulators shut down cleanly when their standard input closes.
         drop(self.input.lock().unwrap_or_else(PoisonError::into_inner).take());
         for _ in 0..100 {
             if !matches!(self.child.try_wait(), Ok(None)) {

@@ -138,7 +138,7 @@ pub fn pseudo(english: &str) -> String {
 }
 
 fn pseudo_line(line: &str) -> String {
-    // Words with accents were lengthened before.
+    // Words with accents have already been lengthened.
     let is_plain = |word: &&str| word.chars().all(|letter| letter.is_ascii() || !letter.is_alphabetic());
     let plain = line.split_whitespace().filter(is_plain);
     let letters = plain.flat_map(str::chars).filter(char::is_ascii_alphabetic).count();

@@ -1,5 +1,5 @@
 //! The user interfaces of NIMA Console: command line and window.
-// These macros panic if stderr or stdout is closed: use `stderr` and `command::output` instead.
+// These macros panic if stderr or stdout is closed, so use `stderr` and `command::output` instead.
 #![cfg_attr(not(test), deny(clippy::print_stderr, clippy::print_stdout))]
 
 mod by_itself;

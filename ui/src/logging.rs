@@ -14,7 +14,7 @@ const VARIABLE: &str = "NIMA_LOG";
 pub(crate) fn begin(level: Option<LevelFilter>) {
     let given = || env::var(VARIABLE).ok()?.parse().ok();
     let Some(level) = level.or_else(given) else { return };
-    // Libraries report much that is of no use here.
+    // Libraries log much that is of no use here.
     let filter = Targets::new().with_default(level.min(LevelFilter::WARN)).with_target("nima", level);
     let lines = fmt::layer().with_writer(io::stderr).with_filter(filter);
     tracing_subscriber::registry().with(lines).try_init().ok();

@@ -59,7 +59,7 @@ fn about(plan: &SimulationPlan, clock: Option<VirtualClock>) -> RecordingInfo {
         ("mode", rig.mode.to_string()),
         ("delay_s", rig.delay_s.to_string()),
     ];
-    // A replay needs neither: the journal contains the times of the ticks.
+    // A replay does not need the profile or the seed, because the journal contains the times of the ticks.
     let late = clock.filter(|clock| clock.profile != ClockProfile::Perfect);
     let late = late.map(|clock| [("clock_profile", clock.profile.to_string()), ("clock_seed", clock.seed.to_string())]);
     let session = session.into_iter().chain(late.into_iter().flatten());

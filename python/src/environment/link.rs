@@ -49,8 +49,8 @@ impl Link for OwnLink {
         let delivered = self.under.receive(now_s);
         self.delayed_n = delivered.map(|parcel| parcel.force_n);
         let Some(asked_n) = self.asked_n else { return self.under.receive(now_s) };
-        // The detector of frozen lines triggers on numbers that repeat to the last bit. A controller may hold its force
-        // constant, so its last bit alternates.
+        // The frozen-data check triggers on values that repeat bit for bit. A controller may hold its force constant,
+        // so alternate its last bit.
         self.turned = !self.turned;
         self.own.force_n = if self.turned { asked_n.map(f64::next_up) } else { asked_n };
         self.own.t_s = now_s - self.delay_s;

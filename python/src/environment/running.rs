@@ -106,7 +106,7 @@ impl SimulationRun {
             self.obey(Command::Grip(SIDE, Some(grip_rad.clamp(0.0, GRIP_MAX_RAD))));
         }
         for _ in 0..ticks {
-            // The scene's hand waits at the handle, and the loop is informed that the handle is led.
+            // The scene's hand waits at the handle; the loop is notified that the handle is being guided.
             let guide = |position_m: Vector3<f64>| position_m.map(|x| x.clamp(-GUIDE_MAX_M, GUIDE_MAX_M));
             let command = self.rig.position_m().map(|position_m| Command::Guide(SIDE, Some(guide(position_m))));
             self.tick(command)?;

@@ -274,7 +274,7 @@ impl Learner {
             if learn {
                 found = self.regression.solve(ridge);
             }
-            // Last resort: a sum that is not finite is neither kept nor sent.
+            // Last resort: a result that is not finite is neither kept nor sent.
             if !found.iter().flatten().all(|p| p.is_finite()) {
                 self.regression.reset();
                 found = UNKNOWN;

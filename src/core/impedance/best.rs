@@ -115,7 +115,7 @@ impl MixtureTrial {
         follow(&mut self.anchored_n, anchored_n, fraction);
         follow(&mut self.mixed_n, mixed_n, fraction);
         let odds = odds(self.mixed_n, self.anchored_n);
-        // Twice the exponent, so that the mixture is rarely worse by more than a few per cent.
+        // Squaring the odds doubles the exponent, so that the mixture is rarely worse by more than a few per cent.
         (odds * odds).map(|odds| 1.0 / (1.0 + odds.recip()))
     }
 }
@@ -131,7 +131,7 @@ impl LastingError {
     fn step(&mut self, block: usize, error_n: Lanes) -> Lanes {
         if self.ticks.is_multiple_of(block) {
             let [newest_n, _] = self.min_n;
-            // No error has lasted before there is a block to compare with.
+            // Before there is a block to compare with, no error can have lasted.
             self.min_n = [error_n, if self.ticks > 0 { newest_n } else { Lanes::ZERO }];
         }
         self.ticks += 1;
@@ -191,7 +191,7 @@ impl Judge {
         let learning = 1.0 - LEARNING * (1.0 - full);
         let odds = odds(self.matched_n.zip(lasting_n, f64::max) * learning, self.anchored_n);
         self.anchored = odds.map(|odds| 1.0 / (1.0 + odds.recip()));
-        // In the first half of the memory both modes are still learning.
+        // In the first half of the memory, both modes are still learning, so neither is given up.
         if full > 0.5 {
             let given_up = self.trial.step([anchored_n, mixed_n], pace, self.rate_hz) * (2.0 * full - 1.0);
             self.anchored += (Lanes::splat(1.0) - self.anchored) * given_up;
@@ -270,7 +270,8 @@ mod tests {
     fn an_error_that_does_not_go_away_tells_another_tissue_before_anchored_has_been_right_again() {
         let mut bench = Fixture::new();
         assert!(bench.run(5000, [0.1, 0.05]) < 0.01, "on a known tissue matched is the better");
-        // Both err by the new tissue: anchored for one delay. When it is right again, no newer error is known yet.
+        // On new tissue both modes are wrong: anchored for one delay. Once anchored is right again, no newer error is
+        // known yet.
         bench.run(DELAY, [0.6, 0.6]);
         let weight = bench.run(DELAY, [0.1, 0.6]);
         assert!(weight > 0.9, "{weight} when the first errors of the new tissue have all come");

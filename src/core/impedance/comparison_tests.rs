@@ -197,7 +197,7 @@ fn what_comes_later_changes_nothing_before() {
     for k in 0..2000 {
         let sample = super::tests::sample(k, 1000.0);
         plain.step(&sample);
-        // From tick 1000 on the force differs: with unchanged motion this must not be felt before tick 1040.
+        // From tick 1000 on the force differs; with unchanged motion, this must have no effect before tick 1040.
         let force_n = if k < 1000 { sample.force_n } else { Vector3::new(3.0, -2.0, 1.0) };
         other.step(&Sample { force_n, ..sample });
         let same = plain.report().prediction_n == other.report().prediction_n;

@@ -81,7 +81,7 @@ impl WindowSummary for ImpedanceFactor {
             let squares = v.iter().fold(Lanes::ZERO, |sum, v| sum + *v * *v);
             let a = self.elements[start + k];
             let norm = norm_of(a * a + squares);
-            // u = (a + sign(a) norm, v); the reflection I - tau u u' takes (a, v) to (-sign(a) norm, 0).
+            // u = (a + sign(a) norm, v); the reflection I - tau u u' maps (a, v) to (-sign(a) norm, 0).
             let signed_norm = norm.zip(a, f64::copysign);
             let head = a + signed_norm;
             let tau = (signed_norm * head).recip_or_zero();
@@ -125,7 +125,7 @@ fn add_rows<const COUNT: usize>(mut targets: [&mut ImpedanceFactor; COUNT], rows
             let diagonal = column[j];
             let norm = norm_of(diagonal * diagonal + entry * entry);
             let inverse = norm.recip_or_zero();
-            // Nothing to rotate: the row continues to the next column unchanged.
+            // Nothing to rotate: pass the row to the next column unchanged.
             let cosine = (diagonal * inverse).zip(norm, |cosine, norm| if norm == 0.0 { 1.0 } else { cosine });
             rotations[j] = (cosine, entry * inverse);
             column[j] = norm;

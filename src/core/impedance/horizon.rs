@@ -98,7 +98,7 @@ impl Horizon {
     }
 
     fn judge(&mut self, features: &ImpedanceFeatures, force_n: Lanes) {
-        // This runs before the tick is stored: the newest entry is one tick old.
+        // This runs before the tick is stored, so the newest entry is one tick old.
         let Some(then) = self.past.get(self.delay_ticks - 1) else { return };
         let age = (self.tick - 1) / self.every - (self.tick - self.delay_ticks) / self.every;
         let Some(solution) = self.solutions.get(age) else { return };

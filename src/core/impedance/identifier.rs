@@ -195,7 +195,8 @@ impl Identifier {
             let force = forces[mode.index()];
             self.report.prediction_n[mode.index()] = force.unwrap_or_default().vector();
             self.report.prediction_valid[mode.index()] = force.is_some();
-            // A mode that renders nothing errs by the whole force; before the first arrival nothing is evaluated.
+            // For a mode that renders nothing, the error is the whole force; before the first arrival nothing is
+            // evaluated.
             if good && self.computed.contains(mode) && forces[Mode::Dfr.index()].is_some() {
                 let error_n = (self.last_force_n - force.unwrap_or_default()).norm();
                 let mean = &mut self.report.horizon_error_n[mode.index()];

@@ -47,7 +47,7 @@ impl LiteralSolver {
             let columns = first + 3 * degree;
             let mut m = back_substitute(&r, columns, n);
             let squares = residual_squares(gram, &m, columns);
-            // This sum is not finite in a lane where any coefficient or the error is not.
+            // This sum is not finite in any lane where a coefficient or the error is not finite.
             let finite = m[..columns].iter().fold(squares, |sum, m| sum + *m * 0.0);
             let solved: [bool; LANES] =
                 std::array::from_fn(|lane| lane < self.axes && definite[lane] >= columns && finite[lane].is_finite());

@@ -50,7 +50,7 @@ impl<const EXPERTS: usize> Mixture<EXPERTS> {
         self.weights = self.errors_n.map(odds);
         let sum = self.weights.iter().fold(odds(held_n), |sum, weight| sum + *weight);
         let trust = (self.judged / (RAMP_S * self.rate_hz)).min(1.0);
-        // If the force has not changed, no expert erred and nothing is known.
+        // If the force has not changed, no expert was wrong and there is nothing to learn.
         let known = self.held_n.map(|held_n| if held_n > EQUAL_N { trust } else { 0.0 });
         let scale = sum.recip_or_zero() * known;
         self.weights.iter_mut().for_each(|weight| *weight *= scale);

@@ -115,7 +115,7 @@ static OTHERS: OnceLock<fn(Baseline) -> Entry> = OnceLock::new();
 
 /// Adds the methods of others to this process. Without them a mode of theirs is a [`SettingsError::Baseline`](super::SettingsError).
 pub fn add_baselines(entry: fn(Baseline) -> Entry) {
-    // A second time changes nothing.
+    // A second call has no effect.
     OTHERS.set(entry).ok();
 }
 

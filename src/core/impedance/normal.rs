@@ -123,7 +123,7 @@ impl SimdLoop for Renew<'_> {
         let mut first = 0;
         while first < columns {
             let width = BLOCK.min(columns - first);
-            // The entries of these columns, row by row, and the sums of products of each two of them.
+            // The entries of these columns, row by row, and the sums of products of every two of them.
             let mut rows = [[none; BLOCK]; MAX];
             let mut products = [[none; BLOCK]; BLOCK];
             let mut z = [none; BLOCK];

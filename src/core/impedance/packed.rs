@@ -218,7 +218,7 @@ mod tests {
     ];
 
     fn close(one: &Models, other: &Models) -> bool {
-        // Every parameter to 32 bits: the debug text of both, number by number, would hide nothing, but it is slow.
+        // Compares every parameter to 32 bits: comparing the debug texts number by number would be equivalent but slow.
         let near = |a: Lanes, b: Lanes| (a - b).norm() <= 1e-6 * (a.norm() + 1e-9);
         let rows = |a: &[Lanes], b: &[Lanes]| a.iter().zip(b).all(|(a, b)| near(*a, *b));
         rows(&one.matched.parameters, &other.matched.parameters)

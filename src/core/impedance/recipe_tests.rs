@@ -96,7 +96,7 @@ fn forces_that_have_not_come_yet_choose_nothing() {
         for k in 0..1200 {
             let sample = sample(k, 1000.0);
             plain.step(&sample);
-            // A different force from tick 800 on, in the middle of ten ticks that are evaluated together.
+            // The force differs from tick 805 on, in the middle of ten ticks that are evaluated together.
             let force_n = if k < 805 { sample.force_n } else { Vector3::new(3.0, -2.0, 1.0) };
             other.step(&Sample { force_n, ..sample });
             assert!(k >= 805 || plain.parcel() == other.parcel(), "tick {k}: {recipe:?}");
@@ -108,7 +108,7 @@ fn forces_that_have_not_come_yet_choose_nothing() {
 
 #[test]
 fn the_next_samples_choose_no_degree_for_the_noise() {
-    // A plain spring, measured with noise: every degree above 1 describes noise.
+    // A plain spring, measured with noise: every degree above 1 fits only noise.
     let mean_degree = |choice| {
         let mut identifier = Identifier::new(&settings(Recipe { choice, ..PRINTED })).unwrap();
         let mut state = 1;

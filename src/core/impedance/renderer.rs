@@ -84,7 +84,7 @@ impl Renderer {
         } else {
             self.waiting = self.waiting.saturating_add(1);
         }
-        // Without that much motion yet, the anchor is now, i.e. there is no correction.
+        // If there has not been that much motion yet, anchor at the current tick, which means no correction.
         let age = self.delay_ticks.saturating_add(self.waiting);
         let then = self.postures.get(age).unwrap_or(&now);
         let mut forces = self.leaders.render(parcel, [&now, then], &x, age);
@@ -104,7 +104,7 @@ impl Renderer {
     /// Changes the programmed delay, exact to one sample, at most [`MAX_DELAY_S`].
     pub fn set_delay(&mut self, delay_s: f64) {
         self.delay_ticks = self.settings.delay_ticks(delay_s);
-        // A longer link delivers packets with earlier time stamps than the last one: they are still new.
+        // Packets of a longer link have earlier time stamps than the last one, but they are still new.
         self.parcel_t_s = f64::NEG_INFINITY;
         self.waiting = 0;
     }

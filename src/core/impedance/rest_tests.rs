@@ -41,7 +41,7 @@ fn without_contact_nothing_is_learnt_and_learning_goes_on_with_the_next_contact(
             }
         }
         assert!(touches > 500);
-        // Far from the tissue; a force that is still predicted there is unlearned first.
+        // Far from the tissue, any force that is still predicted must be unlearned first.
         assert!(learnt[1] < learnt[0] + 200, "{mode}: {learnt:?} samples");
         assert!(learnt[2] > learnt[1] + 500, "{mode}: it learns again");
     }

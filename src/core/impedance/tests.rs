@@ -124,7 +124,7 @@ fn the_best_of_two_is_judged_by_what_the_leader_rendered() {
         identifier.step(&truth);
         link.push(*identifier.parcel());
         let rendered = renderer.step(&sample(k + 20, 1000.0).position_m, k.checked_sub(10).map(|k| &link[k]));
-        // The softmin's memory is one second of motion, including the first moments.
+        // The softmin averages over one second of motion, so skip the first moments.
         if k >= 6000 {
             for (i, mode) in modes.into_iter().enumerate() {
                 here_n[i] += (identifier.report().prediction(mode).unwrap() - truth.force_n).norm();
@@ -182,7 +182,7 @@ fn metres_and_millimetres_agree() {
         let s = sample(k, 1000.0);
         a.step(&s);
         b.step(&Sample { position_m: 1e3 * s.position_m, ..s });
-        // Not literal: the paper's normal equations of degree 5 square a condition number near 1e8, and depend on the unit.
+        // Not literal: the paper's degree-5 normal equations square a condition number near 1e8 and depend on the unit.
         let literal = [&a, &b].map(|identifier| identifier.report().prediction_n[Mode::Literal.index()]);
         worst = worst.max((literal[0] - literal[1]).norm() / (1e-3 + literal[0].norm()));
         let all = [Mode::Linear, Mode::Dfr, Mode::Anchored, Mode::Matched, Mode::Nima, Mode::Best];
@@ -296,7 +296,7 @@ fn nothing_that_comes_in_makes_a_number_that_is_not_finite() {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (state >> 11) as f64 / (1_u64 << 53) as f64
     };
-    // Segments of ordinary motion, of constant values, and of numbers of every size.
+    // Segments of ordinary motion, of constant values, and of values of any magnitude.
     let mut still = sample(0, 1000.0);
     for k in 0..30_000 {
         let mut s = sample(k, 1000.0);

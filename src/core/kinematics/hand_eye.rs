@@ -190,7 +190,7 @@ impl HandEyeCoupling {
             if let (Some(now), Some(then)) = (hand.orientation, before.orientation) {
                 let world_from_leader = self.mapping.world_from_leader;
                 let turn = world_from_leader * (now * then.inverse()) * world_from_leader.inverse();
-                // Renormalised, because rounding of many small rotations accumulates.
+                // Renormalised, because rounding errors of many small rotations accumulate.
                 self.target.world_from_jaws =
                     UnitQuaternion::new_normalize((turn * self.target.world_from_jaws).into_inner());
             }
@@ -278,7 +278,8 @@ mod tests {
         let held = hand(0.0, 0.0, 0.0);
         hand_eye.step(&HandPose { orientation: Some(start), ..held });
         let jaws = hand_eye.step(&HandPose { orientation: Some(turned), ..held });
-        // A rotation about the line of sight (away from the user) becomes one about the image's z: the base's -z.
+        // A rotation about the line of sight (away from the user) becomes one about the image's z axis, which is the
+        // base's -z.
         let expected = UnitQuaternion::from_scaled_axis(-Vector3::z() * 0.3) * target().world_from_jaws;
         assert!(jaws.world_from_jaws.angle_to(&expected) < 1e-12);
         assert_eq!(jaws.tip_m, target().tip_m);

@@ -73,7 +73,7 @@ impl Arm {
                 return Err(ArmError::NotFinite { field });
             }
         }
-        // Written so that NaN is refused as well.
+        // Written so that NaN is rejected too.
         if !(*shaft_m > 0.0 && *shaft_m <= 1.0) {
             return Err(ArmError::ShaftLength { shaft_m: *shaft_m });
         }
@@ -161,8 +161,8 @@ mod tests {
     #[test]
     fn the_tip_is_where_chain_adapter_and_shaft_put_it() {
         let arm = Arm::new(&settings()).unwrap();
-        // With the arm stretched upwards the flange points up, so the tip is above it by the lengths of adapter and
-        // shaft.
+        // With the arm stretched upwards the flange points up, so the tip is above it by the lengths of the adapter and
+        // the shaft.
         let pose = arm.pose(&Joints::zeros());
         assert!((pose.direction - Vector3::z()).norm() < 1e-12);
         assert!((pose.tip_m.z - (1.187_385 + 0.06 + 0.42)).abs() < 1e-9);

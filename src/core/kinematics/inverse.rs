@@ -118,7 +118,7 @@ impl Inverse {
     /// # Errors
     /// [`ArmStartError`] if the arm cannot start from there.
     pub fn new(arm: Arm, rcm: Rcm, period_s: f64, joint_rad: &Joints) -> Result<Self, ArmStartError> {
-        // Written so that NaN is refused as well.
+        // Written so that NaN is rejected too.
         if !(period_s > 0.0 && period_s <= 0.02) {
             return Err(ArmStartError::Period { period_s });
         }
@@ -235,7 +235,7 @@ impl Inverse {
         let travel_m = self.travel_m(goal);
         let moved_m = self.last_goal.map_or_else(Vector3::zeros, |last| travel_m - self.travel_m(&last));
         self.last_goal = Some(*goal);
-        // The distance to the target is limited in speed; the motion of the target itself is followed without lag.
+        // Approaching the target is limited in speed; motion of the target itself is followed without lag.
         let moved_m = moved_m * self.twist_fraction(&moved_m, goal.insertion_m);
         self.target_motion_m += (moved_m - self.target_motion_m) * (self.period_s / TARGET_MOTION_S).min(1.0);
         let relief =

@@ -113,7 +113,7 @@ impl Rcm {
         if inward.norm() < POINT_M {
             return refuse("inward", inward.norm(), "its length must not be zero");
         }
-        // Written so that NaN is refused as well.
+        // Written so that NaN is rejected too.
         if !(cone_deg > 0.0 && cone_deg <= 80.0) {
             return refuse("cone_deg", cone_deg, "it must be above 0 and at most 80 degrees");
         }
@@ -175,7 +175,7 @@ impl Rcm {
             (self.inward, 0.0)
         } else if tilt_rad > self.cone_rad {
             confined.outside_cone = true;
-            // Project onto the cone, so that the tip slides along it; behind its apex the projection is the apex.
+            // Project onto the cone, so that the tip slides along it; behind the apex, project to the apex.
             let excess_rad = tilt_rad - self.cone_rad;
             (self.on_the_cone(&travel_m), length_m * libm::cos(excess_rad).max(0.0))
         } else {
@@ -192,7 +192,7 @@ impl Rcm {
         let side = if sideways.norm() > POINT_M {
             sideways.normalize()
         } else {
-            // If it points exactly opposite to the cone, any side will do.
+            // If it points exactly opposite to the cone, any side is equally close.
             let other = if self.inward.x.abs() < 0.9 { Vector3::x() } else { Vector3::y() };
             self.inward.cross(&other).normalize()
         };

@@ -203,7 +203,7 @@ impl<F: Copy> Interlock<F> {
     /// [`InvalidRequest`] if the state does not allow the request.
     pub fn ask(&mut self, wish: InterlockRequest, now_s: f64) -> Result<Option<StateChange<F>>, InvalidRequest> {
         let next = match (wish, self.at) {
-            // The safe state is reachable from everywhere; a fault stays visible under a stop's latch.
+            // The safe state is reachable from everywhere; a fault stays visible under a latched stop.
             (InterlockRequest::Stop, InterlockPhase::Stopped(_) | InterlockPhase::Faulted(..)) => return Ok(None),
             (InterlockRequest::Stop, InterlockPhase::Disconnected(at)) => InterlockPhase::Stopped(at.stop()),
             (InterlockRequest::Stop, InterlockPhase::Idle(at)) => InterlockPhase::Stopped(at.stop()),
@@ -257,7 +257,7 @@ impl<F: Copy> Interlock<F> {
             InterlockPhase::Ready(at) if seen.powered && seen.agreed && seen.present && !seen.clutch => {
                 (InterlockPhase::Engaged(at.engage()), TransitionCause::Agreed)
             }
-            // NaN is not in time.
+            // NaN does not count as in time.
             InterlockPhase::Ready(at) if !in_time => (InterlockPhase::Idle(at.rest()), TransitionCause::Late),
             InterlockPhase::Engaged(at) if !seen.present => (InterlockPhase::Idle(at.rest()), TransitionCause::Absent),
             InterlockPhase::Engaged(at) if seen.clutch => {

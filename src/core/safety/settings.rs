@@ -76,10 +76,10 @@ impl Default for ChainSettings {
             dead_band_m_s: 1e-3,
             static_hold: false,
             energy: EnergyMode::default(),
-            // An omega.7 at its grip.
+            // Effective mass of an omega.7 at its grip.
             handle_kg: 0.25,
             handle_n_s_m: 0.5,
-            // An omega.7, and the simulated handles.
+            // Position resolution of an omega.7, and of the simulated handles.
             handle_step_m: 1e-5,
             // The maximum damping that chai3d uses for an omega.7.
             brake_n_s_m: 30.0,
@@ -102,7 +102,8 @@ impl ChainSettings {
             device_limit_n: device_limit_nm,
             slew_n_per_s: 12.5,
             dead_band_m_s: 0.02,
-            // The allowance of the energy gate is meant for forces; a torque's energy is a hundredth of it.
+            // The energy gate's allowance is meant for forces; the energy of a torque is a hundredth of it, so only
+            // observe.
             energy: EnergyMode::Observe,
             ..Self::default()
         }

@@ -66,7 +66,7 @@ impl<const D: usize> Speed<D> {
                 self.readings.clear();
             }
             if self.readings.is_empty() {
-                // Assume that the handle was at rest until now.
+                // Assume that the handle has been at rest until now.
                 self.readings.extend((1..=self.room).map(|back| (t_s - back as f64 * self.period_s, position_m)));
             }
             self.readings.push_front((t_s, position_m));
@@ -90,7 +90,7 @@ impl<const D: usize> Speed<D> {
                 break;
             }
             slope = line;
-            // The slope may be too large by as much as the permitted error.
+            // The slope may exceed the true speed by the permitted error.
             if self.step_m * (1.0 + FRACTION) <= dt_s * (FRACTION * slope.abs() + MIN_M_S) {
                 break;
             }
@@ -137,7 +137,7 @@ mod tests {
                     let half_s = read.iter().position(|read_m_s| *read_m_s >= 0.5 * m_s).unwrap() as f64 / rate_hz;
                     let max_s = (2.2 * step_m / m_s).max(0.015);
                     assert!(half_s <= max_s, "{step_m} m, {m_s} m/s: {half_s} s");
-                    // A single step must not look like a jump either.
+                    // A single position step must not look like a jump either.
                     let max_m_s = read.iter().copied().fold(0.0, f64::max);
                     assert!(max_m_s <= 1.25 * m_s + 0.5 * step_m * rate_hz.min(500.0), "{step_m} {m_s}: {max_m_s}");
                 }
@@ -155,7 +155,7 @@ mod tests {
                 let position_m = 1e-5 * (std::f64::consts::TAU * 9.7 * t_s).sin();
                 max_m_s = max_m_s.max(speed.step(t_s, Vector1::new((position_m / step_m).round() * step_m)));
             }
-            // The true speed is 0.61 mm/s at most.
+            // The true speed never exceeds 0.61 mm/s.
             assert!(max_m_s < 0.9e-3, "{step_m} m: {max_m_s} m/s");
         }
     }

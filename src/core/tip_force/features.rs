@@ -92,8 +92,8 @@ impl TipForceFeatures {
     /// # Errors
     /// [`NoRow`] if the sample is incomplete or the state is not known yet.
     pub fn step(&mut self, t_s: f64, gravity_free: &Wrench, sample: &WristSample) -> Result<FeatureRow, NoRow> {
-        // The state survives an incomplete sample: the next complete sample shows how far the instrument moved
-        // meanwhile.
+        // The state survives an incomplete sample: the next complete sample shows how far the instrument has moved in
+        // the meantime.
         let complete = sample.world_from_s1.zip(sample.insertion_m);
         let finite = gravity_free.is_finite() && sample.is_finite() && t_s.is_finite();
         let Some((world_from_s1, insertion_m)) = complete.filter(|_| finite) else { return Err(NoRow::Missing) };

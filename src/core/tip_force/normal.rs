@@ -38,7 +38,7 @@ impl Normalisation {
             }
         }
         let inverse = |(variance, mean): (&f64, &f64)| {
-            // A standard deviation below the precision of f32 is only rounding.
+            // A standard deviation below the precision of f32 is only rounding error.
             let sd = variance.sqrt();
             if sd > 1e-6 * mean.abs() && sd > 1e-30 { (1.0 / sd) as f32 } else { 0.0 }
         };

@@ -40,7 +40,7 @@ impl BotaClock {
             return BotaClockStep::Newer { device_s: self.total_us as f64 * 1e-6, missing: 0 };
         };
         let ahead_us = timestamp_us.wrapping_sub(newest);
-        // More than half the range ahead means behind.
+        // A difference of more than half the range means that the clock is behind.
         if ahead_us == 0 || ahead_us > u32::MAX / 2 {
             return self.behind(timestamp_us, newest);
         }

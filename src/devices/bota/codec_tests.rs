@@ -183,7 +183,7 @@ fn fuzz(rounds: u64, seed: u64) {
         }
     }
     assert!(decoder.skipped() <= fed);
-    // With a 16-bit checksum one false header in 65536 passes; it may hide a frame or look like one.
+    // With a 16-bit checksum, one false header in 65536 passes; it may hide a frame or look like one.
     let off = found.abs_diff(sent) as f64 / sent as f64;
     assert!(off < 2e-3, "{found} frames found of {sent} sent among {fed} bytes");
 }

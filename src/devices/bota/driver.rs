@@ -196,7 +196,7 @@ impl Device for BotaDriver {
 
 impl Drop for BotaDriver {
     fn drop(&mut self) {
-        // Unread data when a connection is closed would make the system discard this last command.
+        // If a connection is closed with unread data, the operating system may discard this last command.
         if self.link.discard().is_ok() {
             self.link.send(self.stop).ok();
         }

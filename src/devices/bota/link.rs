@@ -47,7 +47,7 @@ impl BotaLink {
     }
 
     fn receive_datagrams(&mut self, mut give: impl FnMut(BotaFrame)) -> Result<(), Loss> {
-        // No command is sent while the sensor runs, but a closed connection means that the sensor is gone.
+        // No command is sent while the sensor runs, but a closed control connection means that the sensor is gone.
         self.control.receive(&mut [0; 64])?;
         let Some(stream) = &mut self.stream else { return Ok(()) };
         let mut buffer = [0; DATAGRAM_BYTES];

@@ -126,7 +126,7 @@ fn start(mut probe: Box<dyn Probe>, timeout: Duration) -> (String, mpsc::Receive
     let work = move || {
         let begin = Instant::now();
         let result = probe.probe(timeout.saturating_sub(RESERVE));
-        // Closed before reporting, so that the device is free when the result is read.
+        // Close the device before reporting, so that it is free when the result is read.
         drop(probe);
         give.send((result, begin.elapsed())).ok();
     };

@@ -108,7 +108,7 @@ impl Probe for SerialProbe {
         }
         let place = port.clone();
         let wrong_baud = Err(DeviceError::WrongBaud { place: place.clone(), baud: *baud });
-        // A break, or starting in the middle of a byte, causes one or two errors; a wrong speed causes errors
+        // A break, or starting in the middle of a byte, causes one or two errors; a wrong baud rate causes errors
         // continuously.
         let errors = line.line_errors().zip(errors_before).map_or(0, |(now, before)| now.wrapping_sub(before));
         if errors as usize > 2 + received.len() / 50 {

@@ -84,7 +84,7 @@ mod tests {
     fn what_was_long_on_the_way_is_old_and_a_slow_clock_is_not() {
         let mut clock = DeviceClock::new(0.015);
         for k in 0..20_000_u16 {
-            // A servo's clock that is 1 % slow.
+            // The servo's clock is 1 % slow.
             assert_ne!(clock.take((f64::from(k) * 0.99) as u16, f64::from(k) * 1e-3).1, ReadingAge::Old, "{k}");
         }
         assert_eq!(clock.take(19_801, 20.050).1, ReadingAge::Old, "50 ms late");

@@ -339,7 +339,7 @@ impl<'a, T: ByteStream, P: WaitClock> DynamixelSession<'a, T, P> {
     }
 
     fn send(&mut self, id: u8, instruction: &Instruction<'_>) -> Result<(), DeviceError> {
-        // Pending bytes belong to earlier instructions.
+        // Pending bytes are from earlier instructions.
         let mut rest = [0; LONGEST];
         for _ in 0..REST_READS {
             if self.line.receive(&mut rest).map_err(|_| self.gone())? == 0 {

@@ -99,7 +99,7 @@ impl Device for ExternalHandle {
 
     fn poll(&mut self, now_s: f64) -> Option<TimedReading<HandleReading>> {
         let newest = self.line.receive(now_s, reading);
-        // If the loop sets no force, the program still gets an answer, with zero force.
+        // If the loop sets no force, the program still gets a response, with zero force.
         if !std::mem::take(&mut self.report) {
             self.line.report(self.is_wanted(), &[]);
         }
@@ -123,7 +123,7 @@ impl Leader for ExternalHandle {
         let is_finite = force_n.iter().chain([&gripper_n]).all(|x| x.is_finite());
         let on = self.is_wanted();
         let (force_n, gripper_n) = if is_finite && on {
-            // Axis by axis first, so that the squares of large numbers stay finite.
+            // Clamp each axis first, so that the squares of large numbers stay finite.
             let cut_n = force_n.map(|axis| axis.clamp(-force_max_n, force_max_n));
             (cut_n.cap_magnitude(force_max_n), gripper_n.clamp(-gripper_max_n, gripper_max_n))
         } else {

@@ -174,14 +174,15 @@ impl ExternalLine {
         }
         if let Some((sequence, time_us)) = self.received {
             let ahead = datagram.sequence.wrapping_sub(sequence);
-            // More than half of the range ahead means behind. A sender whose clock stands still repeats itself.
+            // A difference of more than half the range means that the clock is behind. A sender whose clock is stopped
+            // repeats itself.
             if ahead == 0 || ahead > u32::MAX / 2 || datagram.time_us <= time_us {
                 return ReceivedDatagram::Stale;
             }
             self.health.lost += u64::from(ahead - 1);
         }
         self.received = Some((datagram.sequence, datagram.time_us));
-        // A time in the future comes from an earlier opening.
+        // An echoed time in the future is from an earlier session.
         if !(must_know_us..=self.now_us).contains(&datagram.echo_us) {
             return ReceivedDatagram::Stale;
         }

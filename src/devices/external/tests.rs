@@ -158,7 +158,7 @@ fn late_repeated_and_exchanged_readings_are_counted_and_never_handed_on() {
         assert_eq!(bench.poll(&mut handle), None, "{count}");
         assert_eq!(handle.health().out_of_order, count as u64 + 1);
     }
-    // Sent in time by its own clock, but by a program that has not received a command for longer than the limit.
+    // Sent on time by its own clock, but by a program that has not received a command for longer than the limit.
     for _ in 0..6 {
         bench.receive();
         bench.next.echo_us = echo_us;

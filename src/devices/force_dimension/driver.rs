@@ -202,7 +202,7 @@ impl ForceDimensionDriver {
             gripper_n = 0.0;
             answer = ForceAnswer::NotFinite;
         }
-        // Axis by axis first, so that the squares of large numbers stay finite.
+        // Clamp each axis first, so that the squares of large numbers stay finite.
         let cut_n = force_n.map(|axis| axis.clamp(-force_max_n, force_max_n));
         let size_n = cut_n.norm();
         let bounded_n = if size_n > force_max_n { cut_n * (force_max_n / size_n) } else { cut_n };
@@ -214,7 +214,7 @@ impl ForceDimensionDriver {
         if self.commands.try_send(command).is_err() {
             return ForceAnswer::Full;
         }
-        // Without a lock, which a channel with a waiting receiver would take.
+        // `unpark` does not lock; a channel with a waiting receiver would.
         if let Some(thread) = &self.thread {
             thread.thread().unpark();
         }
@@ -297,7 +297,7 @@ impl Drop for ForceDimensionDriver {
         let begin = Instant::now();
         while !thread.is_finished() {
             if begin.elapsed() > JOIN_MAX {
-                // The library hangs; the device's watchdog has switched the force off.
+                // The library hangs; by now the device's own watchdog has switched the force off.
                 return;
             }
             std::thread::sleep(Duration::from_millis(1));

@@ -148,8 +148,8 @@ fn installed() -> Result<&'static Sdk, DeviceError> {
         match (open_library(&path), candidate) {
             (Ok(library), _) if is_stand_in(&library) => {}
             (Ok(library), _) => return keep(&path, library),
-            // A message that begins with this file's name means that it is missing; with another name, that a library
-            // which it needs is missing.
+            // A message that begins with this file's name means that the file is missing; with another name, that a
+            // required library is missing.
             (Err(error), LibraryCandidate::Name(name)) if error.starts_with(name) || cfg!(not(target_os = "linux")) => {
             }
             (Err(error), _) => return Err(unusable(&path.display().to_string(), error)),

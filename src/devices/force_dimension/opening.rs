@@ -49,7 +49,7 @@ pub(super) fn open(sdk: &'static Sdk, settings: &ForceDimensionSettings) -> Resu
         return Err(DeviceError::OtherHand { place, hand: hand.word().to_owned() });
     }
     check(&place, &device.status().map_err(|error| refused("to report its status", error))?)?;
-    // Brakes first: a handle must not push while it is configured.
+    // Brake first: a handle must not push while it is being configured.
     device.stop().map_err(|error| refused("to stop", error))?;
     device.set_watchdog(settings.watchdog_steps()).map_err(|error| refused("the watchdog", error))?;
     let optional = |command: &str, outcome: Result<_, SdkError>| match outcome {

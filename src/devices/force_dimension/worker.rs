@@ -142,7 +142,7 @@ impl ForceDimensionWorker {
             self.step();
             begin = self.wait(begin);
         }
-        // A full queue must not hide a loss.
+        // A full queue must not hide the loss of the device.
         while self.loss.is_some() && !self.ends.shared.stop.load(Ordering::Acquire) && !is_ending() {
             match self.ends.reports.try_send(self.report(None)) {
                 Err(TrySendError::Full(_)) => std::thread::sleep(self.period),
@@ -155,7 +155,7 @@ impl ForceDimensionWorker {
     /// thread, and the reading that follows is available when the loop reads again. Without a force a cycle takes a
     /// period. Returns the time at which the next cycle was due.
     fn wait(&mut self, begin: Instant) -> Instant {
-        // The loop sends once per period, a little earlier or later.
+        // The loop sends once per period, with some jitter, so accept a force from half a period on.
         let earliest = begin + self.period / 2;
         let mut latest = begin + self.period;
         if self.is_led {
@@ -181,8 +181,7 @@ impl ForceDimensionWorker {
 
     fn step(&mut self) {
         self.cycle += 1;
-        // After a failed reading the next one is tried at once, because other calls would only run into the same
-        // failure.
+        // After a failed reading, retry the reading at once, because other calls would only fail in the same way.
         if self.failure.is_none() {
             if self.cycle % STATUS_EVERY == 1 {
                 self.read_status();
@@ -231,7 +230,7 @@ impl ForceDimensionWorker {
             }
         };
         self.failure = None;
-        // The velocity is missing until two positions were read within its averaging window, which is not a fault.
+        // The velocity is missing until two positions were read within its averaging window; that is not a fault.
         let velocity = self.device.velocity_m_s().ok();
         // Left-handed devices use the opposite sign.
         let gripper_rad = if self.left_handed { gripper_rad.abs() } else { gripper_rad };
@@ -244,7 +243,7 @@ impl ForceDimensionWorker {
             return None;
         };
         self.implausible = 0;
-        // The time guard repeats the last data: the reading is new only if it differs.
+        // The SDK's time guard repeats the last data: the reading is new only if it differs.
         if success == Success::TimeGuard && self.last.is_some_and(|last| same_place(&last, &reading)) {
             self.counters.time_guarded += 1;
             return None;
@@ -292,7 +291,7 @@ impl ForceDimensionWorker {
     }
 
     fn send_event(&self, event: HandleEvent) {
-        // If the events are not read, the status still shows it.
+        // If the events are not read, the status still shows the loss.
         self.ends.events.try_send(event).ok();
     }
 
@@ -320,7 +319,7 @@ impl ForceDimensionWorker {
                 if let Err(error) = self.device.enable_force(true) {
                     return self.fail(error);
                 }
-                // Only commands from now on count.
+                // Only commands sent from now on count.
                 self.command = None;
                 self.drive = WorkerDrive::Asked(Instant::now());
             }

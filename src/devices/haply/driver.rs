@@ -205,7 +205,7 @@ impl HaplyDriver {
         } else if self.decoder.skipped() - self.skipped_before > SKIPPED_MAX {
             Loss::Corrupt
         } else if self.now_s - self.health.newest_s.unwrap_or(first_s) > SILENCE_S {
-            // Without answers few requests are sent, so the fault of the last answers decides.
+            // Without answers few requests are sent, so the error of the last answers is the most likely cause.
             if self.bad_in_a_row > 0 {
                 Loss::Implausible
             } else if self.decoder.skipped() > self.skipped_before {
@@ -257,7 +257,7 @@ impl Leader for HaplyDriver {
 
     fn set_force(&mut self, force_n: Vector3<f64>, _gripper_n: f64) {
         let is_finite = force_n.iter().all(|axis| axis.is_finite());
-        // Axis by axis first, so that the squares of large numbers stay finite.
+        // Clamp each axis first, so that the squares of large numbers stay finite.
         let cut_n = force_n.map(|axis| if is_finite { axis.clamp(-self.force_max_n, self.force_max_n) } else { 0.0 });
         self.ask(cut_n.cap_magnitude(self.force_max_n));
         self.report = true;
@@ -272,7 +272,7 @@ impl Leader for HaplyDriver {
         let writer = Arc::clone(&self.writer);
         lever.attach(move || {
             wanted.store(false, Ordering::Release);
-            // The loop stands still: its last force must not persist.
+            // The loop has stopped: its last force must not persist.
             if let Some(writer) = &mut *writer.lock().unwrap_or_else(PoisonError::into_inner) {
                 writer.write_all(&force_request([0.0; 3])).ok();
             }
@@ -282,7 +282,7 @@ impl Leader for HaplyDriver {
 
 impl Drop for HaplyDriver {
     fn drop(&mut self) {
-        // In any state: a handle that no longer answers may still listen.
+        // In any state: a handle that no longer answers may still receive commands.
         self.line.send(&force_request([0.0; 3])).ok();
         self.writer.lock().unwrap_or_else(PoisonError::into_inner).take();
     }

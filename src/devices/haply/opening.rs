@@ -62,7 +62,7 @@ pub(super) fn meet(line: &mut dyn ByteStream, settings: &HaplySettings) -> Resul
         line.send(&[WAKE_UP]).map_err(gone)?;
         let answer = received(line, DEVICE_BYTES).map_err(gone)?;
         any |= !answer.is_empty();
-        // After the rest of an older answer.
+        // Skip the rest of an older answer.
         found = answer.windows(DEVICE_BYTES).rev().find_map(DeviceInfo::decode);
         if found.is_some() {
             break;

@@ -153,7 +153,7 @@ fn a_dirty_stream_is_taken_up_again_and_counted() {
     let mut noise = 0;
     for message in 0..200 {
         for _ in 0..random.usize(..30) {
-            // Includes the first byte of a mark, so that incomplete marks occur.
+            // Include the first byte of a mark, so that incomplete marks occur.
             stream.push(if random.bool() { MARK[0] } else { random.u8(128..) });
             noise += 1;
         }

@@ -140,7 +140,7 @@ impl Guard {
         self.allowed_s = (self.allowed_s + elapsed_s).min(AHEAD_OF_TIME_S);
         if let Some(target_rad) = self.target_rad {
             let speed = |j: usize| (target_rad[j] - self.command_rad[j]) / elapsed_s;
-            // An early command looks faster than it is.
+            // A command that arrives early looks faster than it is.
             let fraction = (0..ARM_JOINTS).map(|j| self.limits.speed_rad_s[j] / speed(j).abs()).fold(1.0, f64::min);
             self.speed_rad_s = std::array::from_fn(|j| speed(j) * fraction);
             self.command_rad = target_rad;

@@ -80,7 +80,7 @@ fn prepare(
     check_serial(settings, &identity, &lines.place)?;
     let mode: KinovaNumber = ask(lines, Rpc::GET_SERVOING_MODE)?;
     if mode.value != ServoingMode::Single as u32 {
-        // A client that broke off may have left the arm in low-level servoing.
+        // A client that disconnected may have left the arm in low-level servoing.
         call(lines, Rpc::SET_SERVOING_MODE, &KinovaNumber { value: ServoingMode::Single as u32 })?;
     }
     if clearing.0.swap(false, Ordering::AcqRel) {

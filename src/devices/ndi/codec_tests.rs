@@ -256,7 +256,7 @@ fn fuzz(count: u32, seed: u64) -> u32 {
             _ => (0..random.usize(..80)).for_each(|_| bytes.push(random.u8(..))),
         }
         mutated(&mut random, &mut bytes);
-        // Reply bodies, as they are after a correct checksum, go directly to the parsers; lines and blocks also as a
+        // Reply bodies go directly to the parsers, as after a correct checksum; lines and blocks also go through as a
         // stream.
         let read = [TrackingReply::of_block(&bytes, options), TrackingReply::of_text(&bytes, options)];
         whole += read.iter().flatten().count() as u32;

@@ -75,7 +75,7 @@ fn over_line(place: &str, baud: u32, timeouts: NdiTimeouts) -> Result<NdiSession
     let line = Serial::open(&SerialSettings { port: place.to_owned(), baud })?;
     let mut session = NdiSession::new(NdiWire::Serial(line));
     let report = |command, failure| trouble(place, Some(baud), command, failure);
-    // The line may still contain half a command, or a reply, of the last session, so the first attempt may fail.
+    // The line may still contain half a command or a reply from the last session, so the first attempt may fail.
     let mut found = false;
     for speed in [baud, FIRST_BAUD] {
         set_baud(&mut session, speed).map_err(|failure| report("INIT", failure))?;

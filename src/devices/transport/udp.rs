@@ -102,8 +102,8 @@ impl TransportDatagrams for Udp {
 
     fn keep_to_sender(&mut self) {
         let Some(sender) = self.sender.filter(|_| !self.kept) else { return };
-        // From here on the system drops datagrams of other senders before they use buffer space; this code drops those
-        // that already wait.
+        // From here on the system drops datagrams from other senders before they use buffer space; this code drops
+        // those already queued.
         self.kept = self.socket.connect(sender).is_ok();
     }
 }

@@ -155,7 +155,7 @@ pub fn of_planes(
     let [width, height] = size_px;
     let half_px = size_px.map(|side| side.div_ceil(2));
     for (plane, [width, height]) in [y, u, v].iter().zip([size_px, half_px, half_px]) {
-        // The library skips rows whose gap is missing.
+        // The decoder library skips rows that have no padding after them.
         if plane.stride < width || plane.bytes.len() < plane.stride * height {
             return Err(Damage::Torn);
         }

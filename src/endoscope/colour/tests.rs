@@ -214,8 +214,7 @@ fn figures_of_colours_beside_ffmpeg() {
                 .output()
                 .unwrap();
             assert_eq!(ran.stdout.len(), 3 * SIZE_PX[0] * SIZE_PX[1], "{}", String::from_utf8_lossy(&ran.stderr));
-            // Within the bars and the grey ramp: at an edge the result depends on the assumed position of a pair's
-            // colours.
+            // Within the bars and the grey ramp; at an edge the result depends on the assumed chroma position.
             let inside = |at: usize| {
                 (6..34).contains(&(at % SIZE_PX[0] % 40)) && at / SIZE_PX[0] % 12 > 3 && at / SIZE_PX[0] < 33
             };

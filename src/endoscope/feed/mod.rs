@@ -207,7 +207,7 @@ impl FeedShared {
             let was_good = {
                 let mut state = locked(&self.state);
                 let was_good = state.trouble.is_none() && state.opened;
-                // The same trouble, twice a second, is one line.
+                // Log the same error, which recurs twice a second, only once.
                 if state.trouble.as_ref() != Some(&trouble) {
                     warn!(%trouble, "no picture");
                 }
@@ -215,7 +215,7 @@ impl FeedShared {
                 was_good
             };
             wake();
-            // Retries without delay only if the source worked for a while, so that a camera that closes at once is not
+            // Retries at once only if the source worked for a while, so that a camera that keeps disconnecting is not
             // polled continuously.
             let soon = was_good && begin.elapsed() > RETRY;
             self.rest(if soon { RETRY_FIRST } else { RETRY });
@@ -300,7 +300,7 @@ impl FeedShared {
                 }
             }
             wake();
-            // A frame of a stream cannot be decoded again: the next frame gets the new tone.
+            // A frame of a video stream cannot be decoded again, so the new tone applies from the next frame.
             last = Some((compressed, tone)).filter(|(compressed, _)| compressed.stands_alone());
         }
     }

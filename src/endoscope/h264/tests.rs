@@ -21,7 +21,7 @@ fn a_stream_comes_back_with_its_colours() {
         let colour = |x: usize| bar(x).map(|level| [40, 210, 120, 250][level % 4]);
         (0..size_px[0] * size_px[1]).flat_map(|at| colour(at % size_px[0])).collect()
     };
-    // The encoder marks the colours as BT.709, which no decoder would assume for so small an image.
+    // The encoder marks the colours as BT.709, which no decoder would assume for such a small image.
     for size_px in [[128, 96], [640, 360]] {
         let mut encoder = H264Encoder::new(30.0).unwrap();
         let mut decoder = H264Decoder::default();

@@ -63,14 +63,14 @@ impl H264Splitter {
                 self.searched = self.searched.max(self.held.len().saturating_sub(2));
                 return None;
             };
-            // The head, and the byte after it.
+            // The NAL header, and the byte after it.
             let Some([head, first]) = self.held.get(at + 3..at + 5) else {
                 self.searched = at;
                 return None;
             };
             let kind = head & 0x1f;
             let is_part = (1..=5).contains(&kind);
-            // Parameters, or the first slice of a frame (whose first macroblock is number 0, coded as one bit).
+            // Parameter sets, or the first slice of a frame (its first macroblock has number 0, coded as one bit).
             let begins = (6..=9).contains(&kind) || is_part && first & 0x80 != 0;
             if self.has_image && begins {
                 let cut = if at > 0 && self.held[at - 1] == 0 { at - 1 } else { at };

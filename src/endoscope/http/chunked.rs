@@ -37,7 +37,7 @@ impl ChunkedBody {
             let body = usize::try_from(self.left.saturating_sub(LINE_END)).unwrap_or(usize::MAX).min(bytes.len());
             out.extend_from_slice(&bytes[..body]);
             let gone = body.max(1);
-            // Either bytes of the body, or one of the end of its line.
+            // Either bytes of the body, or one byte of its line ending.
             bytes = &bytes[gone..];
             self.left -= gone as u64;
         }

@@ -27,7 +27,7 @@ impl HttpHead {
     pub(super) fn read(bytes: &[u8]) -> Result<Option<(Self, usize)>, HttpFault> {
         let mut lines = [EMPTY_HEADER; LINES_MOST];
         let mut response = Response::new(&mut lines);
-        // As lenient as browsers are, with which cameras are tried.
+        // As lenient as browsers, because cameras are tested with browsers.
         let mut parser = ParserConfig::default();
         parser.allow_spaces_after_header_name_in_responses(true);
         parser.allow_multiple_spaces_in_response_status_delimiters(true);

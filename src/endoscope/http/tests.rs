@@ -236,7 +236,7 @@ fn a_password_is_given_as_the_camera_asks_for_it() {
     let (image, sent) = logged_in("WWW-Authenticate: Basic realm=\"x\"\r\n", login("eva"));
     // base64 of eva:secret
     assert_eq!((image.unwrap().bytes, sent.as_deref()), (body(0), Some("Basic ZXZhOnNlY3JldA==")));
-    // The safer way is taken of two.
+    // If both are offered, Digest is used, because it is safer.
     let both = "WWW-Authenticate: Basic realm=\"x\"\r\nWWW-Authenticate: Digest realm=\"x\", nonce=\"1\"\r\n";
     for challenges in [both, "www-authenticate: Digest realm=\"x\", qop=\"auth\", nonce=\"1\", algorithm=MD5\r\n"] {
         let (image, sent) = logged_in(challenges, login("eva"));

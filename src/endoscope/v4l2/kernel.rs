@@ -39,7 +39,7 @@ struct Buffer {
     length: usize,
 }
 
-// SAFETY: the mapping belongs to the process, not to the thread that made it, and only its owner reaches it.
+// SAFETY: the mapping belongs to the process, not to the thread that made it, and only its owner can access it.
 unsafe impl Send for Buffer {}
 
 impl Drop for Buffer {
@@ -62,7 +62,8 @@ impl Kernel for KernelDevice {
             return Err(Error::from(ErrorKind::InvalidInput));
         }
         loop {
-            // SAFETY: the kernel reads and writes the number of bytes in the request code, which is the size of the structure; it has no pointers.
+            // SAFETY: the kernel reads and writes the number of bytes in the request code, which is the size of the
+            // structure; the structure contains no pointers.
             let answer = unsafe {
                 libc::ioctl(self.file.as_raw_fd(), libc::Ioctl::from(request.code()), structure.as_mut_ptr())
             };

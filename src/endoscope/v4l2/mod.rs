@@ -123,7 +123,7 @@ impl V4l2 {
     fn newest(&mut self) -> Result<Option<CompressedFrame>, EndoscopeError> {
         let mut newest: Option<LayoutBlock> = None;
         while let Some(buffer) = self.take()? {
-            // Any data counts as a sign of life, even an image that cannot be shown.
+            // Any data count as a sign of life, even an image that cannot be shown.
             self.received = Instant::now();
             let is_whole = buffer.get(at::BUF_FLAGS) & DAMAGED == 0 && buffer.get(at::BUF_USED) > 0;
             let older = if is_whole { newest.replace(buffer) } else { Some(buffer) };

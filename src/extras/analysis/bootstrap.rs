@@ -94,7 +94,8 @@ impl Bootstrap {
 /// Returns the quantiles of the bootstrap distribution that `BCa` uses instead of `tail` and `1 - tail`.
 fn corrected(tail: f64, drawn: &[f64], sample: &[f64], statistic: impl Fn(&[f64]) -> f64) -> Result<[f64; 2]> {
     let estimate = statistic(sample);
-    // The same values in another order may give a differently rounded mean, which still equals the estimate.
+    // The same values in another order may give a differently rounded mean, which must still count as equal to the
+    // estimate.
     let rounding = 1e-12 * (drawn[drawn.len() - 1] - drawn[0]);
     let below = drawn.partition_point(|value| *value < estimate - rounding);
     let not_above = drawn.partition_point(|value| *value <= estimate + rounding);

@@ -60,7 +60,7 @@ pub fn test<Row: AsRef<[f64]>>(rows: &[Row]) -> Result<Friedman> {
     let n = rows.len() as f64;
     let k = conditions as f64;
     let spread = n * k * (k + 1.0) - ties / (k - 1.0);
-    // Each row with equal values subtracts k (k + 1): nothing remains if all rows have equal values.
+    // Each row of equal values subtracts k (k + 1), so nothing remains if all rows have equal values.
     if spread < 0.5 {
         return Err(AnalysisError::NoVariation { what: "the values of every participant" });
     }

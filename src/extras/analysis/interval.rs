@@ -34,7 +34,7 @@ impl ConfidenceInterval {
 /// `wilcox.test`. With ties the confidence is at least the reported one (Lehmann, Nonparametrics, 1975, sections 2.7
 /// and 4.5).
 pub(crate) fn exact(sorted: &[f64], masses: &[f64], confidence: f64) -> ConfidenceInterval {
-    // Rounding in the sums must not push a tail that just reaches the limit above it.
+    // Rounding in the sums must not push a tail that just reaches the limit beyond it.
     let missed = (1.0 - confidence) / 2.0 - 1e-14;
     let mut k = 0;
     let mut below = 0.0;

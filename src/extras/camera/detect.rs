@@ -128,8 +128,8 @@ fn in_order(smooth: &Grey, saddles: &[Saddle], cells: &Cells, board: &Checkerboa
         let all: Option<Vec<&Saddle>> =
             (0..down).flat_map(|j| (0..across).map(move |i| [i, j])).map(|[i, j]| saddle(i, j)).collect();
         let all = all?;
-        // Below an edge to the right of a corner there is a black square if column and row are both even or both odd;
-        // most edges must agree.
+        // The square below an edge to the right of a corner is black if column and row are both even or both odd; most
+        // edges must agree.
         let says = |at: usize| {
             let [from, to] = [all[at], all[at + 1]];
             let contrast = from.contrast.min(to.contrast);

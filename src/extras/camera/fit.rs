@@ -195,7 +195,7 @@ impl CameraFit {
         let free = count.saturating_sub(terms.count() + 6 * views.len());
         let variance = self.square(views)? / free.max(1) as f64;
         let (inner, _) = self.equations(views, terms)?.reduced(0.0)?;
-        // Scaled first, because pixels and coefficients differ by a million.
+        // Scale first, because pixels and coefficients differ by a factor of a million.
         let scale = inner.diagonal().map(|part| part.max(0.0).sqrt().recip());
         let scaled: FitInner = SMatrix::from_fn(|row, column| inner[(row, column)] * scale[row] * scale[column]);
         let inverse: Option<FitInner> = scaled.try_inverse();

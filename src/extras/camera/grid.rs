@@ -107,11 +107,13 @@ struct Front {
 /// Grows a grid from a saddle with four neighbours.
 fn grown(saddles: &[Saddle], edges: &[Vec<Edge>], seed: usize) -> Option<GrowingGrid> {
     let way = |from: usize, to: usize| saddles[to].place_px - saddles[from].place_px;
-    // Along columns the right-hand side is light at the seed; the row's direction is to the right of it.
+    // Edges along a column have the light square on their right at the seed; the row direction is to the right of the
+    // column.
     let along =
         |light: bool| edges[seed].iter().filter(move |edge| edge.light_right == light).map(|edge| way(seed, edge.to));
     let [columns, rows] = [true, false].map(|light| along(light).collect::<Vec<_>>());
-    // At the border of the board a farther saddle may be mistaken for a neighbour, which could swap rows and columns.
+    // At the border of the board a more distant saddle point may be mistaken for a neighbour, which could swap rows and
+    // columns.
     let are_opposite = |ways: &[Vector2<f64>]| match ways {
         [a, b] => a.dot(b) < OPPOSITE * a.norm() * b.norm(),
         _ => false,

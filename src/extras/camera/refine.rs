@@ -53,7 +53,7 @@ fn towards(smooth: &Grey, place_px: &Vector2<f64>, reach_px: f64) -> Option<Vect
         for x in range(place_px.x) {
             let at_px = Vector2::new(x as f64 + 0.5, y as f64 + 0.5) - place_px;
             let gradient = Vector2::new(f64::from(here[x + 1] - here[x - 1]), f64::from(below[x] - above[x]));
-            // Falls to an eighth at the window's edge.
+            // The weight falls to an eighth at the window's edge.
             let weight = (-2.0 * at_px.norm_squared() / (reach_px * reach_px)).exp();
             let part = gradient * gradient.transpose() * weight;
             matrix += part;

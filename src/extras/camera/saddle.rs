@@ -74,7 +74,7 @@ fn strengths(smooth: &Grey) -> Vec<f32> {
 fn is_peak(strength: &[f32], width: usize, [x, y]: [usize; 2]) -> bool {
     let here = (strength[y * width + x], y * width + x);
     (y - APART..=y + APART).all(|v| {
-        // Among equal ones the first counts.
+        // Among equal peaks, the first in reading order counts.
         (x - APART..=x + APART).all(|u| {
             let at = v * width + u;
             strength[at] < here.0 || (strength[at] <= here.0 && at >= here.1)

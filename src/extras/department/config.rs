@@ -68,7 +68,7 @@ pub(crate) fn watcher(own: &MachineIdentity, address: &str) -> Result<Config, De
                     "connect_certificate_base64": certificate,
                     "connect_private_key_base64": key,
                     "enable_mtls": true,
-                    // The certificate of any rig of the department is accepted, whatever its address.
+                    // The certificate of any rig in the department is accepted, whatever its address.
                     "verify_name_on_connect": false,
                 },
                 "tx": { "lease": LEASE_MS },

@@ -171,7 +171,7 @@ impl Recap {
             Event::Scheduling(_) => self.scheduling = Some(*event),
             Event::StateChanged { side, to, .. } => {
                 let states = &mut self.states[side.index()];
-                // The fault that led here was reported before.
+                // The fault that led to this state was reported before it.
                 let is_fault = matches!(to, LoopState::Faulted(_));
                 states.retain(|state| is_fault && matches!(state, Event::FaultRaised { .. }));
                 states.insert(0, *event);

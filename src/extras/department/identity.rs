@@ -105,13 +105,13 @@ impl Authority {
         let params = params_of_authority(&self.department)?;
         let issuer = Issuer::new(params, KeyPair::from_pem(&self.key)?);
         let key = KeyPair::generate()?;
-        // The name is not checked: a rig is found by its address, which may be any.
+        // The name is not checked, because a rig is found by its address, which is arbitrary.
         let mut params = CertificateParams::new(vec![name.clone()])?;
         params.distinguished_name.push(DnType::CommonName, name.clone());
         params.key_usages = vec![KeyUsagePurpose::DigitalSignature];
         params.extended_key_usages = vec![ExtendedKeyUsagePurpose::ClientAuth];
         if role == MachineRole::Rig {
-            // Required for its answer to be accepted as a rig's.
+            // Required so that clients accept its response as a rig's.
             params.extended_key_usages.push(ExtendedKeyUsagePurpose::ServerAuth);
         }
         let certificate = params.signed_by(&key, &issuer)?;

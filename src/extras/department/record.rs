@@ -87,7 +87,7 @@ impl<'a> RigRecording<'a> {
         };
         match (bundle, &self.file) {
             (Some(bundle), Some(open)) if bundle.session == open.session => self.take(&bundle),
-            // Another session has begun; the end of this one was missed, or can still be requested.
+            // Another session has started; the end of this one was missed, or can still be requested.
             (Some(_), Some(_)) => {
                 self.catch_up()?;
                 self.end()
@@ -149,7 +149,7 @@ impl<'a> RigRecording<'a> {
 
     fn take(&mut self, bundle: &Bundle) -> Result<RecordStep, DepartmentError> {
         let Some(open) = &mut self.file else { return Ok(RecordStep::Waits) };
-        // Requested bundles arrive a second time.
+        // Requested batches arrive a second time.
         if bundle.session != open.session || bundle.number < open.copy.due() {
             return Ok(self.report());
         }
@@ -193,7 +193,7 @@ impl<'a> RigRecording<'a> {
 
     fn lose(&mut self) -> Result<RecordStep, DepartmentError> {
         let ended = self.end()?;
-        // The session may continue: the following data become an excerpt of it in a separate file.
+        // The session may continue; its further data become an excerpt in a separate file.
         self.over = None;
         Ok(ended)
     }

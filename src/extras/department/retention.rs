@@ -37,7 +37,7 @@ impl RetainedSession {
         while self.bytes > self.max_bytes && self.bundles.len() > 1 {
             let Some(oldest) = self.bundles.pop_front() else { break };
             self.bytes -= oldest.len();
-            // It was packed here.
+            // Unpacking cannot fail, because the batch was packed here.
             if let Some(bundle) = unpack(&oldest).and_then(|bytes| Bundle::read(&bytes).ok()) {
                 self.head.outlive(bundle);
             }

@@ -234,7 +234,7 @@ fn publish(
             FeedMessage::File(file, text) => locked(state).about.file(&file, text),
             FeedMessage::Bundle(bundle) => {
                 let mut state = locked(state);
-                // The end of a session that has already been followed by another one.
+                // This is the end of a session that has already been followed by another one.
                 let Some(kept) = state.kept.as_mut().filter(|kept| kept.session() == bundle.session) else { continue };
                 let packed = kept.add(&bundle).to_vec();
                 if bundle.closes {

@@ -192,7 +192,7 @@ fn strangers_and_those_without_a_certificate_are_refused() {
         SharedRig::start(&ours.watcher, "127.0.0.1:0".parse().unwrap(), false),
         Err(DepartmentError::Role { .. })
     ));
-    // A watcher that claims to be a rig has a certificate that says otherwise.
+    // A watcher that claims to be a rig has a certificate that contradicts it.
     let poser = MachineIdentity { role: MachineRole::Rig, ..ours.watcher.clone() };
     let posed = SharedRig::start(&poser, "127.0.0.1:0".parse().unwrap(), false).unwrap();
     assert!(RemoteRig::open(&ours.watcher, &address(&posed)).is_err());
@@ -256,7 +256,7 @@ fn a_screen_that_is_too_slow_makes_nobody_wait() {
     let department = Department::new("lab");
     let share = department.share();
     let running = Running::start(&department.folder.path().join("session.mcap"), &share);
-    // Fast until it watches, so that it connects at all.
+    // The connection is fast until it watches, so that it can connect at all.
     let slow = slow_way(share.address(), 20_000);
     let slow = RemoteRig::open(&department.watcher, &slow.to_string()).unwrap();
     let of_slow = slow.watch(|_, _| ()).unwrap();
@@ -293,7 +293,7 @@ fn figures_of_ten_watchers() {
             let running = Running::start(&session, &share);
             let slow = slow_way(share.address(), 1000).to_string();
             let of = |number: usize| if number == 0 { slow.clone() } else { address(&share) };
-            // The slow one may not even complete the handshake.
+            // The slow client may not even complete the handshake.
             let rigs: Vec<RemoteRig> =
                 (0..count).filter_map(|number| RemoteRig::open(&department.watcher, &of(number)).ok()).collect();
             let watching: Vec<_> = rigs.iter().map(|rig| rig.watch(|_, _| ()).unwrap()).collect();

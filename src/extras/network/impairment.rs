@@ -176,7 +176,7 @@ impl Impairment {
     /// not go back.
     pub fn pass(&mut self, now_s: f64, len: usize) -> DeliveryTimes {
         let ImpairmentSettings { flap, duplicate, reorder, reorder_s, delay_s, overtakes, .. } = self.settings;
-        // Every datagram draws the same number of random values, whatever its result.
+        // Draw the same number of random values for every datagram, whatever its outcome, so that runs stay comparable.
         let lost = self.noise.uniform();
         let twice = self.noise.uniform();
         let held = self.noise.uniform();
@@ -224,7 +224,7 @@ impl Impairment {
                     self.is_bad = !self.is_bad;
                 }
                 let good_s = burst_s * (1.0 / fraction - 1.0);
-                // Few changes occur: each state lasts as long as the mean of its kind.
+                // Few changes occur, because each state lasts as long as the mean of its kind.
                 for _ in 0..1000 {
                     let mean_s = if self.is_bad { burst_s } else { good_s };
                     self.until_s += -mean_s * libm::log(1.0 - self.noise.uniform());

@@ -261,7 +261,7 @@ impl Pairing<'_> {
                     question = datagram(token, REVEAL, &own.bytes());
                     asked = None;
                 }
-                // The answer differs from an earlier one.
+                // The response differs from an earlier one.
                 (Some((_, ANSWER, content)), Some(theirs)) if content != theirs.bytes() => {
                     return Err(PairingError::Contradiction);
                 }
@@ -285,7 +285,7 @@ impl Pairing<'_> {
         self.attempts.may_begin(begin)?;
         let socket = Socket::open(at, None).map_err(|source| PairingError::Address { address: at, source })?;
         let mut buffer = [0; 2 * LEN];
-        // For each console its address, its number, its commitment, and our part, which differs for each.
+        // Address, number and commitment of each console, and our part, which differs for each.
         let mut asked: Vec<(SocketAddr, u64, [u8; 32], PairingPart)> = Vec::new();
         while self.goes_on(begin) {
             let Some((len, from)) = next(&socket, &mut buffer) else {

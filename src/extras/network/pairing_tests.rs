@@ -88,13 +88,13 @@ fn a_wrong_code_is_refused_and_the_third_makes_a_pause() {
 
 #[test]
 fn who_stands_between_is_seen() {
-    // An attacker pairs with both sides using other keys: the codes differ.
+    // An attacker pairs with both sides under other keys, so the codes differ.
     let [console, follower, between] = [0; 3].map(|_| PairingPart::new(&NetworkKeys::random().unwrap()).unwrap());
     let [[at_console, _], [_, at_follower]] = [codes(&console, &between), codes(&between, &follower)];
     let [[_, expected_there], [expected_here, _]] = [codes(&console, &between), codes(&between, &follower)];
     assert_ne!(at_console, expected_here);
     assert_ne!(at_follower, expected_there);
-    // An attacker must commit before the follower's part is known; a part other than the committed one is detected.
+    // An attacker must commit before it has the follower's part, so a part other than the committed one is detected.
     let at = free_address();
     let stop = AtomicBool::new(false);
     let keys = NetworkKeys::random().unwrap();

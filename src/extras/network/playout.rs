@@ -228,7 +228,7 @@ impl Playout {
             return;
         }
         if number < self.next {
-            // While its slot is remembered, it is certain that it had not arrived before.
+            // While its slot is remembered, it is certain that the payload had not arrived before.
             self.counts.stale += u64::from(self.next - number <= room && self.slots[index].mark < number + 1);
             self.slots[index].mark = self.slots[index].mark.max(number + 1);
             return;
@@ -308,7 +308,7 @@ impl Playout {
     pub fn take(&mut self, now_s: f64, offset_s: f64) -> Option<DuePayload<'_>> {
         let delay_s = if self.settings.waits { self.delay_s? } else { f64::NEG_INFINITY };
         let room = self.slots.len() as u64;
-        // At most all slots, and only after as many were lost.
+        // This scans all slots at most, and only after that many payloads were lost.
         let number = (self.next..self.end).find(|number| self.slots[(number % room) as usize].mark == number + 1)?;
         let index = (number % room) as usize;
         let slot = self.slots[index];

@@ -49,7 +49,7 @@ fn payloads_come_in_order_once_and_with_an_even_age() {
 #[test]
 fn the_percentile_is_that_of_the_last_five_seconds() {
     let mut playout = playout();
-    // 2 in 1000 are late by 30 ms, then none, then less than 1 in 1000.
+    // First 2 in 1000 are late by 30 ms, then none, then less than 1 in 1000.
     run(&mut playout, 0, 6000, |i| Some(if i % 500 == 7 { 40e-3 } else { 10e-3 }));
     assert!((playout.wanted_s().unwrap() - 40.5e-3).abs() < 1e-9);
     run(&mut playout, 6000, 6000, |_| Some(10e-3));
@@ -128,7 +128,7 @@ fn a_step_of_the_clock_moves_no_payload() {
     let before_s = playout.delay_s().unwrap();
     playout.clock_stepped(50e-3);
     assert!((playout.delay_s().unwrap() - (before_s - 50e-3)).abs() < 1e-12);
-    // From now on their stamps are 50 ms higher.
+    // From now on their time stamps are 50 ms higher.
     let mut late = 0;
     for tick in 3000..4000_u64 {
         let now_s = tick as f64 * 1e-3;

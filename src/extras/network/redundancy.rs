@@ -202,7 +202,7 @@ impl Losses {
             return;
         }
         if number >= self.end {
-            // In an outage, numbers far behind are lost without checking each.
+            // After an outage, numbers far behind count as lost without checking each.
             if number - self.end > ROOM - PATIENCE {
                 self.skip_to(number);
             }
@@ -242,7 +242,7 @@ impl Losses {
             part.lost = part.lost.saturating_add(u32::from(is_lost));
             part.again = part.again.saturating_add(u32::from(run > 1));
         } else {
-            // Removes once what the run has added; a run across two parts leaves some.
+            // Undo what this run has added, once; a run across two parts leaves a remainder.
             let added = std::mem::take(&mut self.added);
             part.lost = part.lost.saturating_sub(added);
             part.again = part.again.saturating_sub(added.saturating_sub(1));
@@ -263,12 +263,12 @@ impl Losses {
     pub fn fractions(&self) -> (f64, f64) {
         let fraction = |parts| {
             let (all, lost, _) = self.sum(parts);
-            // Too few for a fraction.
+            // Too few datagrams for a meaningful fraction.
             if all < 100.0 { 0.0 } else { lost / all }
         };
         let loss = f64::max(fraction(PARTS), fraction(RECENT));
         let (_, lost, again) = self.sum(PARTS);
-        // Two isolated losses at this rate are added, so that a single chance run does not count as a burst.
+        // Weighs in ten losses at the average rate, so that a single chance run does not count as a burst.
         let again = if lost == 0.0 { loss } else { (again + 10.0 * loss) / (lost + 10.0) };
         (loss, again.max(loss).min(1.0))
     }

@@ -28,7 +28,8 @@ impl DatagramArrival {
     pub(crate) fn came_s(&self, now_s: f64, looked: Duration) -> f64 {
         let Some(stamp) = self.stamp else { return now_s };
         let age_s = looked.as_secs_f64() - stamp.as_secs_f64();
-        // A recent datagram may be slightly newer than `looked`; an older stamp shows that the system's clock was set.
+        // A recent datagram may be slightly newer than `looked`; an older time stamp shows that the system's clock was
+        // changed.
         if (-0.01..1.0).contains(&age_s) { now_s - age_s } else { now_s }
     }
 }
@@ -73,7 +74,7 @@ impl Socket {
 
     /// Returns the next datagram, if there is one.
     pub(crate) fn receive(&self, buffer: &mut [u8]) -> Option<DatagramArrival> {
-        // An error may report that an earlier datagram of ours was not accepted; at most a few in a row.
+        // An error may report that an earlier datagram of ours was rejected; tolerate a few in a row.
         for _ in 0..4 {
             match stamps::receive(&self.socket, buffer) {
                 Ok(arrival) => return Some(arrival),
@@ -117,7 +118,7 @@ mod stamps {
     }
 
     pub(super) fn receive(socket: &UdpSocket, buffer: &mut [u8]) -> io::Result<DatagramArrival> {
-        // SAFETY: all zeros is a valid value of both.
+        // SAFETY: both types are valid when all bytes are zero.
         let (mut name, mut message): (libc::sockaddr_storage, libc::msghdr) = unsafe { (zeroed(), zeroed()) };
         let mut control = [0_u64; 16];
         let mut part = libc::iovec { iov_base: buffer.as_mut_ptr().cast(), iov_len: buffer.len() };
@@ -150,7 +151,7 @@ mod stamps {
     fn address(name: &libc::sockaddr_storage) -> Option<SocketAddr> {
         match libc::c_int::from(name.ss_family) {
             libc::AF_INET => {
-                // SAFETY: the family says that it is this structure, which is smaller than the storage.
+                // SAFETY: the family identifies this structure, which is smaller than the storage.
                 let v4 = unsafe { &*(&raw const *name).cast::<libc::sockaddr_in>() };
                 let ip = Ipv4Addr::from(u32::from_be(v4.sin_addr.s_addr));
                 Some(SocketAddrV4::new(ip, u16::from_be(v4.sin_port)).into())
@@ -193,7 +194,7 @@ mod tests {
             let two = Socket::open(home.parse().unwrap(), Some(one.address().unwrap())).unwrap();
             let mut buffer = [0; 60];
             let mut age_s = 0.0;
-            // The first socket of a system that requests stamps gets them slightly later.
+            // The first socket that requests time stamps gets them after a short delay.
             for _ in 0..50 {
                 // Windows drops datagrams longer than the buffer; the next one is received by the same call.
                 for len in if cfg!(windows) { &[100, 60][..] } else { &[100] } {

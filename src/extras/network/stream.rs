@@ -424,7 +424,7 @@ impl NetworkStream {
 /// ```
 pub fn payload_room(copies: usize, payloads_per_s: f64, rate_max_bit_s: f64) -> Option<usize> {
     let datagram = ((rate_max_bit_s / 8.0 / payloads_per_s) as usize).min(DATAGRAM_MAX + UDP_LEN);
-    // One head of several is a long one.
+    // One header in every few is a long one.
     let head = HEAD_MIN + (HEAD_MAX - HEAD_MIN).div_ceil(REPORT_EVERY as usize);
     let room = datagram.checked_sub(UDP_LEN + OUTER_LEN + head + TAG_LEN)?;
     let all = |len: usize| {

@@ -93,7 +93,7 @@ fn a_good_line_loses_nothing_and_knows_its_delay() {
         let true_s = if i == 0 { 100.0 } else { -100.0 };
         assert!((clock.offset_s - true_s).abs() < 0.2e-3 && (clock.bound_s - 5e-3).abs() < 0.2e-3, "{clock:?}");
         assert!(figures.sent.rate_bit_s < 1.001e6, "{:?}", figures.sent);
-        // Taking it in the tick in which it is due adds up to one tick.
+        // Taking a payload in the tick in which it is due adds up to one tick.
         let steady = link.got[i].iter().skip(2000);
         assert!(steady.clone().all(|&(_, age_s)| (0.0..1.4e-3).contains(&(age_s - playout_s))), "{playout_s}");
     }
@@ -132,7 +132,7 @@ fn the_limit_of_the_rate_is_kept_and_named() {
             rate_bit_s < rate_max_bit_s + 1e3 && rate_bit_s > 0.8 * rate_max_bit_s,
             "{rate_bit_s} of {rate_max_bit_s}"
         );
-        // Payloads that could not be sent alone go with the next.
+        // Payloads that did not fit into the rate on their own are sent with the next one.
         assert!(len == 40 || figures.held > 100, "{figures:?}");
     }
 }
@@ -238,7 +238,7 @@ fn directions_can_differ() {
     assert!(one.loss > 0.08 && one.loss_there < 0.01 && other.loss < 0.01 && other.loss_there > 0.08);
     let clock = one.clock.unwrap();
     assert!((clock.round_trip_s - 40e-3).abs() < 2e-3, "{clock:?}");
-    // The two directions cannot be distinguished; the bound states the maximum error.
+    // The delays of the two directions cannot be distinguished; the bound states the maximum error.
     assert!((clock.offset_s - 100.0).abs() <= clock.bound_s, "{clock:?}");
 }
 

@@ -95,7 +95,8 @@ mod tests {
         for kind in [TaskKind::Free, TaskKind::PegTransfer, TaskKind::Palpation, TaskKind::WireLoop] {
             let has = measured(kind);
             for definition in &MEASURES {
-                // Jaws and paths between events are known in any kind of trial here, and a free one is ended by hand.
+                // Jaw motion and paths between events are known in any kind of trial here, and a free trial is ended by
+                // hand.
                 let known_here = ["path_economy", "jaw_openings", "jaw_openings_per_min", "completion_time_s"];
                 if !known_here.contains(&definition.id) {
                     assert_eq!(

@@ -255,7 +255,7 @@ fn score_motion(score: &mut Score, tips: &[TipTrack; SIDES], handled_s: &[Vec<f6
     score.set_hands("log_dimensionless_jerk_per_movement", single.map(|[jerk, _]| jerk));
     score.set_hands("sparc_per_movement", single.map(|[_, arc]| arc));
     let hands = TwoHands::of(&motions);
-    // Each point of the grid counts for one step, although there is one step fewer than points.
+    // Each grid point counts for one step, although there is one step fewer than points.
     score.set("idle_time_s", hands.idle_s().map(|idle_s| idle_s.min(end_s)));
     score.set("both_move_share", hands.both_move());
     score.set("bimanual_dexterity", hands.correlation());

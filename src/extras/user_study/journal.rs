@@ -86,7 +86,7 @@ impl StudyJournal {
         let entry = JournalEntry { n: self.entries + 1, at: at.to_owned(), event };
         let written = self.write(&entry);
         if written.is_err() {
-            // Otherwise half a line would precede the next one.
+            // Otherwise the next line would follow an incomplete one.
             self.file.set_len(self.end).ok();
         }
         self.end += written.map_err(StudyError::io(&self.path))?;

@@ -111,7 +111,7 @@ impl ParticipantProgress {
                 None => return StudyStep::Done { why: EndReason::Finished },
             }
         };
-        // A repeated trial follows at once; the break is due after it.
+        // A repeated trial follows at once; the break comes after it.
         match plan.breaks {
             Some(breaks) if attempt == 1 && self.since_break >= breaks.after_trials => {
                 StudyStep::Break { min_s: breaks.min_s }

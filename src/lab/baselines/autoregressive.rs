@@ -95,7 +95,7 @@ impl BaselineSender for Autoregressive {
             }
         }
         self.tick = self.tick.wrapping_add(1);
-        // Until there are as many forces as taps, the prediction is reflection.
+        // Until there are as many forces as taps, the prediction is the newest force.
         let foretold = self.columns(0).map_or(newest, |now| dot(&self.coefficients, &now));
         let [low, high] = self.envelope.bounds_n();
         BaselineModel::Forecast { force_n: foretold.within(low, high) }

@@ -51,12 +51,12 @@ const NONE: HuntCrossleyContact = HuntCrossleyContact {
 pub(crate) fn force(contact: &HuntCrossleyContact, own: &Motion) -> Lanes {
     let force_n = dot(&contact.parameters, &columns(contact, own));
     let [low, high] = contact.bounds_n;
-    // A limit would turn what is not a number into one of its edges.
+    // Clamping would turn NaN into one of the limits.
     if force_n.is_finite() { force_n.within(low, high) } else { force_n }
 }
 
 fn columns(contact: &HuntCrossleyContact, motion: &Motion) -> [Lanes; COLUMNS] {
-    // Signed, in reaches.
+    // Signed depth in units of the reach.
     let depth = (motion.x - contact.surface_m) * contact.reach_m.recip_or_zero();
     let power = |side: f64| (depth * side).zip(contact.exponent, |depth, n| power(depth.max(0.0), n));
     let above = power(1.0);
@@ -172,7 +172,7 @@ impl BaselineSender for ModelMediated {
         self.visit(motion);
         for (i, candidate) in self.candidates.iter_mut().enumerate() {
             candidate.learn(motion, force_n, self.errors_kept);
-            // One after the other, and all on the first tick.
+            // Solve the candidates in turn, but all of them on the first tick.
             if self.tick == 0 || self.tick % self.every == i % self.every {
                 candidate.solve();
             }

@@ -40,7 +40,7 @@ fn the_contact_of_hunt_and_crossley_is_found() {
         let (x, v) = path(f64::from(k) * 1e-3);
         let contact = contact(&follower.step(&motion(x, v), Some(force(tissue(x, v)))));
         if k > 4000 {
-            // Anywhere in the range, not only where the follower is.
+            // Evaluate anywhere in the range, not only where the follower is.
             let (x, v) = path(f64::from(k) * 0.77e-3);
             worst_n = worst_n.max((model_mediated::force(&contact, &motion(x, v))[0] - tissue(x, v)).abs());
         }

@@ -55,7 +55,7 @@ impl BaselineSender for Waves {
     fn step(&mut self, motion: &Motion, force_n: Option<Lanes>) -> BaselineModel {
         if let Some(force_n) = force_n {
             self.last_n = force_n;
-            // A plain mean at first, then one with forgetting.
+            // A plain mean at first, then one with exponential forgetting.
             self.seen = self.seen * self.kept + 1.0;
             self.mean_n = (self.mean_n + (force_n - self.mean_n) * self.seen.recip()).settled();
             let own_n = force_n - self.mean_n;
@@ -64,8 +64,7 @@ impl BaselineSender for Waves {
             }
         }
         let [powers, squares] = self.sums;
-        // Never zero, so that the wave carries the force; at zero motion it is small enough to add nothing to the
-        // force.
+        // Never zero, so that the wave always carries the force; without motion, b is too small to add anything to it.
         let b = (powers * squares.recip_or_zero() * FRACTION).map(|b| b.clamp(1e-12, 1e12));
         let returning = (b * motion.v + self.last_n) / (b * 2.0).sqrt();
         BaselineModel::Wave(Wave { returning, impedance_n_s_m: b })

@@ -138,7 +138,7 @@ fn the_second_button_of_a_cap_opens_and_closes_jaws_and_the_other_hand_waits() {
 fn a_cap_leads_the_hand_and_a_pedal_is_the_clutch() {
     judged(|| {
         let push = CapReading { translation: Vector3::new(0.5, 0.0, 0.0), ..CapReading::default() };
-        // Released for a while, then pushed to the right.
+        // The cap is released for a while, then pushed to the right.
         let cap = cap(
             None,
             CapModel::default(),

@@ -90,7 +90,7 @@ fn a_rig_leads_an_arm_of_another_make_that_its_file_names() {
                 inputs.tip_m
             });
             assert_eq!(inputs.obstacle, None);
-            // Drives on first; then small steps to the end of the path.
+            // Drives on first, then small steps to the end of the path.
             if inputs.powered {
                 target_m += (home_m + TRAVEL_M - target_m).cap_magnitude(SPEED_M_S * 1e-3);
             }
@@ -107,7 +107,7 @@ fn a_rig_leads_an_arm_of_another_make_that_its_file_names() {
         assert!(until(&mut rig, begin, |_| Outputs::SAFE, |inputs| !inputs.powered), "drives stay on");
         let still = |inputs: &Inputs| (inputs.tip_m - tip_m).norm() < 1e-3;
         assert!(until(&mut rig, begin, |_| Outputs::SAFE, still), "does not rest");
-        // The supervisor has the arm's emergency release, and the arm's health is reported at its index.
+        // The supervisor holds the arm's emergency release, and the arm's health is reported at its index.
         assert_eq!(rig.levers().len(), 2);
         let arm = rig.health().devices[1];
         assert!(arm.standing == ConnectionState::Connected && arm.refused == 0, "{arm:?}");

@@ -47,7 +47,7 @@ impl Reference {
         let mut lower = vec![vec![zero(); unknowns]; unknowns + 1];
         let mut pivots: Vec<Option<Big>> = Vec::with_capacity(unknowns);
         for j in 0..=unknowns {
-            // First row j of L D, then of L.
+            // First compute row j of L D, then row j of L.
             let mut scaled: Vec<Big> = Vec::with_capacity(j);
             for k in 0..j.min(unknowns) {
                 let known = (0..k).fold(zero(), |sum, i| sum + &scaled[i] * &lower[k][i]);
@@ -123,7 +123,7 @@ fn big(value: f64) -> Option<Big> {
     if !value.is_finite() {
         return None;
     }
-    // Zero is positive here; its sign does not matter.
+    // Treat negative zero as zero; its sign does not matter.
     let repr = Repr::try_from(if value == 0.0 { 0.0 } else { value }).ok()?;
     Some(Big::from_repr(repr, Context::new(PRECISION_BITS)))
 }
@@ -157,7 +157,7 @@ mod tests {
             let rows = rows(40, duplicate);
             let reference = Reference::new(&rows, 4, 0.0).unwrap();
             assert_eq!(reference.rank(4), if duplicate { 3 } else { 4 });
-            // Also outside the span of the rows: the solution of minimum norm is unique.
+            // Evaluate outside the span of the rows, too, because the minimum-norm solution is unique.
             let at = vec![vec![1.0, 0.3, -0.4, 0.7], vec![0.0, 1.0, 0.0, 0.0]];
             for prefix in 1..=4 {
                 let x = DMatrix::from_fn(40, prefix, |i, j| rows[i][j]);

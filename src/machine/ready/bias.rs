@@ -29,7 +29,8 @@ impl Bias {
 
 impl Item for Bias {
     fn tick(&mut self, tick: &Tick) {
-        // The brief loss of a device does not engage an arm; the session ends the check when an arm is engaged.
+        // An arm cannot become engaged through the brief loss of a device; when an arm is engaged, the session ends the
+        // check.
         if tick.side != self.side || tick.state != LoopState::Idle {
             return;
         }

@@ -31,7 +31,7 @@ impl ReadyClocks {
 
 impl Item for ReadyClocks {
     fn tick(&mut self, tick: &Tick) {
-        // One arm is enough, because both have the same clock.
+        // One arm is enough, because both arms use the same clock.
         if self.newest.is_none_or(|newest| newest.side == tick.side) {
             self.newest = Some(*tick);
         }

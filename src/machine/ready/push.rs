@@ -103,7 +103,7 @@ impl Item for ReadyPush {
         let (since_s, sum_n) = self.felt.get_or_insert((tick.t_s, Vector3::zeros()));
         *sum_n += force_n;
         if tick.t_s - *since_s >= FELT_S {
-            // The pushed object pushes back.
+            // The object that is pushed exerts the opposite force.
             self.by_deg = Some(angle_deg(sum_n, &-asked().into_inner()));
         }
     }

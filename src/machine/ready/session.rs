@@ -118,7 +118,7 @@ impl ReadySession {
         let Event::CommandRefused { command, why, .. } = event else { return };
         match (command, &mut self.work) {
             (Command::TestWatchdog(_), Some((work, _))) => work.refused(*why),
-            // The other arm does not need the release.
+            // The other arm does not need to be released.
             (Command::ReleaseStop, _) if matches!(why, Refusal::State(_)) => {}
             (Command::ReleaseStop, _) => self.not_released = Some(*why),
             _ => {}
@@ -134,7 +134,7 @@ impl ReadySession {
         let (mut work, mut since_s) = self.work.take().unwrap_or_else(|| (begun(check, &self.subject), now_s));
         let in_the_way = self.in_the_way(work.as_ref(), now_s);
         if in_the_way.is_some() {
-            // Waiting does not count against the check's time.
+            // The check's time limit does not include waiting.
             since_s = now_s;
         }
         let mut state = in_the_way.unwrap_or_else(|| match work.look(now_s) {
@@ -153,7 +153,7 @@ impl ReadySession {
             if let ReadyState::Failed(ReadyCause::NotReleased(why)) = &mut state {
                 *why = refusal;
             }
-            // The full time is available again, also after a pause before a repetition.
+            // The full time is available again, even after a pause before a repetition.
             self.began_s = self.began_s.filter(|_| !self.is_finished());
         }
         self.list[place].state = state;

@@ -108,7 +108,7 @@ impl<R: Rig, W: RemoteWire> FarFollower<R, W> {
             if message.t_s <= last.message.t_s {
                 return;
             }
-            // Two messages may arrive in one tick: keep the parameters of the first one.
+            // Two messages may arrive in one tick: keep the parameters of the first.
             if last.at_s >= now_s {
                 keep_parameters(&mut message.sides, &last.message.sides);
             }

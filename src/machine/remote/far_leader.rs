@@ -121,8 +121,8 @@ impl<R: Rig, W: RemoteWire> FarLeader<R, W> {
         self.received = newest;
         self.commands = [None; COMMANDS_MAX];
         if let Some(received) = newest.filter(|received| received.at_s >= now_s) {
-            // A different or restarted console has a different clock and different counts: no command was given in
-            // between.
+            // A different or restarted console has a different clock and different counters; in that case no command
+            // was given in between.
             let goes_on = |before: &OperatorState| {
                 let reported_s = received.message.t_s - before.message.t_s;
                 let passed_s = received.at_s - before.at_s;

@@ -165,7 +165,7 @@ impl<'a> Unpacker<'a> {
             squares += coords[at] * coords[at];
         }
         coords[largest] = f64::max(1.0 - squares, 0.0).sqrt();
-        // If three components are not larger than the fourth, their squares add up to at most three quarters.
+        // Three components that are not larger than the fourth have squares that add up to at most three quarters.
         (squares <= 0.751).then(|| UnitQuaternion::new_normalize(Quaternion::from(coords)))
     }
 }

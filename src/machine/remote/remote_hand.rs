@@ -32,7 +32,7 @@ impl FarHand {
 
     /// Advances by one period of the loop.
     pub(super) fn advance(&mut self, period_s: f64) {
-        // A little more than the hand's speed, because the times of two messages are rounded.
+        // Slightly more than the hand's speed, because the time stamps of messages are rounded.
         let max_m = CATCH_UP_M_S.max(1.001 * self.speed_m_s) * period_s;
         let behind_m = self.behind_m.norm();
         let fraction = if behind_m > max_m { max_m / behind_m } else { 1.0 };
@@ -64,7 +64,7 @@ mod tests {
         let mut reported_m = 0.0;
         let mut before_m = 0.0;
         for tick in 0..400 {
-            // 120 mm/s, with 50 ms of silence.
+            // Moves at 120 mm/s, with 50 ms of silence.
             if !(100..150).contains(&tick) {
                 let ticks = if tick == 150 { 51.0 } else { 1.0 };
                 hand.report(&Vector3::new(0.12e-3 * ticks, 0.0, 0.0), ticks * PERIOD_S);

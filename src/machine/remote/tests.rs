@@ -64,7 +64,7 @@ fn messages_arrive_as_they_were_sent() {
     let mut got = FollowerMessage::unpack(bytes).unwrap();
     let [Some(now), Some(then)] = [got.sides[0], sent.sides[0]] else { panic!() };
     assert!(turned_rad(now.world_from_jaws, then.world_from_jaws) < 1e-5);
-    // The quaternion is the same rotation, but not the same numbers.
+    // The quaternion is the same rotation, but its numbers differ.
     got.sides[0] = Some(FollowerSide { world_from_jaws: then.world_from_jaws, tip_m: then.tip_m, ..now });
     got.sides[1] = got.sides[1].map(|side| FollowerSide { tip_m: then.tip_m, ..side });
     assert_eq!(got, sent);

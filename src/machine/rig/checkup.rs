@@ -233,7 +233,7 @@ impl Checkup {
             let reach = NEAR_END * (range[1] - range[0]) / 2.0;
             let middle = f64::midpoint(range[0], range[1]);
             let value = if high - middle > middle - low { high } else { low };
-            // A closed gripper is at the end of its range intentionally.
+            // A closed gripper is at the end of its range on purpose.
             let on_purpose = kind == PartKind::Handle && channel == 6;
             ((value - middle).abs() > reach && !on_purpose).then_some(CheckupFinding::AtTheEnd {
                 channel,

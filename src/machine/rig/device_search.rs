@@ -41,7 +41,7 @@ struct SearchScope {
 
 /// Searches for devices for this part: among the plugged devices, and at `place` if the user named one.
 pub fn seek(part: RigPart, devices: &RigSettings, plugged: &PluggedDevices, place: &str) -> Vec<SearchResult> {
-    // An external device sends to the address in the rig file by itself; a simulated device is not plugged in.
+    // An external device sends to the address in the rig file by itself, and a simulated device is not plugged in.
     if !part.has_usual_make(devices) {
         return Vec::new();
     }
@@ -76,7 +76,7 @@ fn report(
         TestOutcome::Trouble { trouble, .. } => Err(trouble),
         TestOutcome::Connected(found) => {
             let mut identity = found.identity;
-            // A bus has no serial number; its USB adapter has one.
+            // A servo bus has no serial number; its USB adapter has one.
             match serial {
                 Some(serial) => identity.serial = serial,
                 None => {
@@ -167,7 +167,7 @@ fn pedals(devices: &RigSettings, plugged: &PluggedDevices) -> Vec<SearchResult> 
         let usb = &node.usb;
         let ids = format!("{:04x}:{:04x}", usb.vendor, usb.product);
         let place = if usb.serial.is_empty() { ids } else { format!("{ids}:{}", usb.serial) };
-        // A pedal has a node for each of its interfaces.
+        // A pedal has one node for each of its interfaces.
         if used.as_ref() == Some(&place) || sought.iter().any(|one| one.place == place) {
             continue;
         }

@@ -71,7 +71,7 @@ impl JawsControl {
         gripper_rad: Option<f64>,
         reading: &ServoReading,
     ) -> [f64; SERVOS] {
-        // A tick right after a late one would turn one step of the reading into a large rate.
+        // Right after a late tick, one step of the reading would otherwise look like a high speed.
         let at_least_s = 0.5 * self.period_s;
         let dt_s = self.last_s.replace(now_s).map_or(self.period_s, |last_s| (now_s - last_s).max(at_least_s));
         let near = self.asked.unwrap_or_else(|| self.measured(reading));

@@ -72,7 +72,7 @@ fn drive(fraction: f64, cone_deg: f64, seed: u64, shown: &mut Shown) {
     for _ in 0..2000 {
         settled.step(&hand.target_m);
     }
-    // With the wide cone, start near a joint limit, which a slow arm would not reach within the test.
+    // With the wide cone, start near a joint limit; a slow arm would not reach one within the test.
     for _ in 0..5 * STEPS {
         if cone_deg < 45.0 || limit_margin_rad(settled.joint_rad()) < 0.03 {
             break;

@@ -117,7 +117,7 @@ pub struct TapEnd {
 /// Creates both ends of a tap. All memory is allocated and touched here.
 pub fn tap() -> (Tap, TapEnd) {
     let (entries, entries_out) = bounded(TICKS_TAPPED_MAX + OTHERS_MAX);
-    // The loop may hold one more box.
+    // One more than in the queue, because the loop may hold one.
     let (spare, spare_out) = bounded(TICKS_TAPPED_MAX + 1);
     let reserve = (0..TICKS_TAPPED_MAX).map(|_| Box::new(TickRecord::NOTHING)).collect();
     touch(&entries, &entries_out);
@@ -163,7 +163,7 @@ impl Tap {
             self.offer(TapPayload::Event(*event));
         }
         let Some(mut stepped) = self.spare() else {
-            // Dropped: the number is skipped.
+            // Skip the number of the dropped tick, so that the reader notices the gap.
             self.number();
             return;
         };
@@ -180,7 +180,7 @@ impl Tap {
     }
 
     fn number(&self) -> u64 {
-        // Only this thread counts.
+        // Only this thread increments it.
         self.offered.fetch_add(1, Ordering::Release)
     }
 
@@ -201,7 +201,7 @@ impl CalibrationFiler {
     /// Passes on these calibrations; returns their number.
     pub(super) fn file(&self, calibrations: &Calibrations) -> u64 {
         let number = self.next.fetch_add(1, Ordering::Relaxed);
-        // Fails only when the reader of the tap is gone.
+        // Fails only if the reader of the tap has gone.
         self.calibrations.send((number, calibrations.clone())).ok();
         number
     }

@@ -130,7 +130,7 @@ impl LoopHandle {
 
     /// Calls `each` for every pending tick, oldest first, without blocking.
     pub fn drain_ticks(&self, mut each: impl FnMut(&Tick)) {
-        // Bounded, so that a loop that produces ticks faster than the screen reads them cannot keep the screen in this
+        // Limited, so that a loop that produces ticks faster than the screen reads them cannot keep the screen in this
         // function.
         self.ticks.try_iter().take(TICKS_WAITING_MAX).for_each(|tick| each(&tick));
     }
@@ -190,7 +190,7 @@ impl LoopHandle {
 
     fn end(&mut self) -> Option<RuntimeSummary> {
         let thread = self.thread.take()?;
-        // Block until the queue has room: a full queue must not keep the loop alive.
+        // Block until the queue has room, because a full queue must not keep the loop alive.
         self.commands.send(Command::Shutdown).ok();
         let mut summary = thread.join().ok()?;
         summary.report_devices(&self.roster);
@@ -205,7 +205,7 @@ pub struct Ender(Sender<Command>);
 
 impl Ender {
     pub fn end(&self) {
-        // May block while the queue is full, which the loop empties. The send fails only if the loop has already ended.
+        // May block while the queue is full; the loop empties it. The send fails only if the loop has already ended.
         self.0.send(Command::Shutdown).ok();
     }
 }
@@ -280,7 +280,7 @@ impl Realtime {
             let late_ns = woke_ns.saturating_sub(deadline_ns);
             let (missed, rest_ns) = skip(late_ns, self.period_ns);
             deadline_ns += missed * self.period_ns;
-            // The devices are read and the force is sent now, not at the deadline.
+            // Devices are read and the force is sent now, not at the deadline.
             let now_s = (deadline_ns + rest_ns - start_ns) as f64 * 1e-9;
             TickTime { now_s, wake_s: late_ns as f64 * 1e-9, missed }.enter(timing);
             self.tick(timing, woke_ns);
@@ -294,7 +294,7 @@ impl Realtime {
             due_ns += pace_ns;
             os::sleep_until_ns(due_ns);
             let woke_ns = os::monotonic_ns();
-            // Do not catch up after a delay, which would cause a burst of ticks.
+            // Do not catch up after a delay, because that would cause a burst of ticks.
             due_ns = due_ns.max(woke_ns.saturating_sub(pace_ns));
             timing.now_s += self.period_ns as f64 * 1e-9;
             self.tick(timing, woke_ns);
@@ -353,7 +353,7 @@ impl Realtime {
         } else {
             self.pulse.beat(written_ns, stalls && outputs.iter().any(|outputs| outputs.drives));
         }
-        // After the force was sent to the device, so that it does not wait for the tap.
+        // After the force has been sent to the device, so that the force does not wait for the tap.
         if let Some(tap) = &mut self.tap {
             tap.tick(self.control.events(), timing, &inputs, &outputs, &ticks);
         }

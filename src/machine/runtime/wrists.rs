@@ -80,7 +80,7 @@ pub(super) fn ends(
 ) -> (Wrists, WristConnection) {
     let counts = WristsCounts::default();
     let (prepare, prepared) = bounded(WAITING_MAX);
-    // The other part empties this queue before it sends, so there are never more than twice as many.
+    // The other end empties this queue before it sends, so it never holds more than twice as many.
     let (spend, spent) = bounded(2 * WAITING_MAX);
     let of_device = std::array::from_fn(|device| roster.get(device).and_then(RosterEntry::force_sensor_of));
     let wrists = Wrists { counts: Arc::clone(&counts), of_device, prepared, spent: spend };
@@ -105,8 +105,8 @@ impl Wrists {
             report(tap, Operation::Calibrations { side, number });
         }
         if now == count && !control.exchange_force_path(side, &mut prepared.path) {
-            // Drives are on, so the calibrations cannot change now. A new count shows the caller that they are not
-            // active, so that it retries.
+            // The drives are on, so the calibrations cannot change now. A new count shows the caller that they are not
+            // active and that it must retry.
             self.count_on(side, prepared.change.is_there());
         }
         self.spent.try_send(prepared).ok();
@@ -220,7 +220,7 @@ mod tests {
             assert_eq!(bench.tick(), ForceSource::Unidentified, "it may be another sensor now");
             assert_eq!(bench.door.change(Side::Right).is_there(), standing == ConnectionState::Connected);
         }
-        // Prepared for the previous sensor: refused.
+        // Prepared for the previous sensor, so it is rejected.
         assert!(bench.door.activate(met, &calibrated()));
         assert_eq!(bench.tick(), ForceSource::Unidentified);
         assert!(bench.door.activate(bench.door.change(Side::Right), &calibrated()));

@@ -74,7 +74,7 @@ impl FarLink {
         {
             *renewed_s = identified.t_s;
         }
-        // Parameters that are lost repeatedly are not used: the received force is then reflected.
+        // Do not use parameters whose renewals are lost repeatedly: the received force is then reflected instead.
         for (slot, renewed_s) in self.renewed_s.iter().enumerate() {
             if identified.t_s - renewed_s > PARAMETERS_OLD_S {
                 ParameterPack::forget(slot as u8, parcel);

@@ -94,8 +94,8 @@ impl ForcePath {
     /// Returns the tip force of this sample, taken at `t_s` (s).
     pub fn step(&mut self, t_s: f64, sensed: &SensedForce) -> ForceReport {
         let report = self.report(t_s, sensed);
-        // An impossible force from a plausible sample means a wrong calibration, so there is no fallback to the last
-        // good force.
+        // An impossible force from a plausible sample means that the calibration is wrong, so do not fall back to the
+        // last good force.
         let possible = report.tip_n.iter().all(|f| f.abs() <= PLAUSIBLE_N);
         if possible || !report.source.is_usable() { report } else { ForceReport::none(ForceSource::Poisoned, None) }
     }

@@ -98,7 +98,7 @@ impl LeaderHalf {
         }
         match behind {
             0 => self.command_m,
-            // The newest command belongs to the previous tick.
+            // The newest command in the history belongs to the previous tick.
             behind => self.command_m.and_then(|_| self.tracking.command_m(behind - 1)),
         }
     }
@@ -141,8 +141,8 @@ impl LeaderHalf {
 
     /// Couples hand and tip at their current positions, so the first command is the current tip position.
     pub(super) fn engage(&mut self, seen: &Inputs, t_s: f64) {
-        // Only here: if the endoscope turns while engaged, the mapping must not change the direction of motion under
-        // the operator's hand.
+        // Only at this point: if the endoscope turns while engaged, the mapping must not change the direction of motion
+        // under the operator's hand.
         if let Some(world_from_view) = seen.view.world_from_view() {
             let mapping = self.teleoperation.seen(world_from_view, self.hand_eye.mapping().scale());
             self.hand_eye.set_mapping(mapping);
@@ -248,7 +248,7 @@ impl HandGates {
             t_s: now_s,
             force_n: grip_n.map(Vector1::new),
             age_s,
-            // Above the dead band, because a gripper that holds an object still must keep its force.
+            // Faster than the dead band, so that a gripper holding an object still keeps its force.
             speed_m_s: 1.0,
             hand_m: opening_rad.map(|rad| Vector1::new(rad * GRIPPER_ARM_M)),
             hand_age_s: 0.0,

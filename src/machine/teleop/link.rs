@@ -67,7 +67,7 @@ impl Link for ProgrammedLink {
 
     fn receive(&mut self, now_s: f64) -> Option<&LinkPacket> {
         let due_s = now_s - self.delay_s + self.half_period_s;
-        // At most the length of the ring; one step per tick except after a change of the delay.
+        // Steps at most through the whole ring; one step per tick except after a change of the delay.
         while self.delivered < self.sent && self.ring[self.slot(self.delivered)].t_s <= due_s {
             self.delivered += 1;
         }

@@ -65,7 +65,7 @@ impl Ticks {
             self.late = 0.0;
             self.early = 0.0;
         }
-        // A tenth more for a loop that shifts its phase.
+        // Allow a tenth of a period more for a loop that shifts its phase.
         if surplus.abs() <= 1.1 && !drifts { TickSpacing::Evenly } else { TickSpacing::Unevenly }
     }
 }
@@ -92,7 +92,7 @@ mod tests {
         }
         assert!(uneven(20, |tick| 0.5 * f64::from(tick) * PERIOD_S).is_some_and(|tick| tick <= 6));
         assert_eq!(uneven(100_000, |tick| f64::from(tick) * PERIOD_S), None);
-        // A loop that shifts its phase for as long as a shift may ever take.
+        // A loop that shifts its phase for as long as a shift may take at most.
         assert_eq!(uneven(1000, |tick| 1.001 * f64::from(tick) * PERIOD_S), None);
     }
 

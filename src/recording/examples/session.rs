@@ -157,7 +157,7 @@ impl ExampleSession {
             self.writer.message(*channel, time_ns, encoder.encode(time_ns, &[], &[], values)?)?;
         }
         self.writer.message(self.own, time_ns, &tick.to_le_bytes())?;
-        // About the refresh rate of a screen.
+        // Roughly the refresh rate of a screen.
         if tick.is_multiple_of(20) {
             let frames = frames(time_ns, &values[0]);
             self.writer.message(self.frames, time_ns, &frames.encode_to_vec())?;

@@ -18,7 +18,7 @@ use crate::session::Encoding;
 /// assert_eq!(encoding::<Log>().schema, "foxglove.Log");
 /// ```
 pub fn encoding<M: Encode>() -> Encoding {
-    // Every message of Foxglove has one.
+    // Every Foxglove message has a schema.
     let schema = M::get_schema().unwrap_or_else(|| Schema::new("", "", Vec::new()));
     Encoding {
         schema: schema.name,

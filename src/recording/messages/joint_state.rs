@@ -91,7 +91,7 @@ impl JointStateEncoder {
             return Err(WrongLength { values: list.len(), names: self.names });
         }
         let second = 1_000_000_000;
-        // The format's seconds end in 2038.
+        // The format's signed 32-bit seconds end in 2038.
         let seconds = i32::try_from(time_ns / second).unwrap_or(i32::MAX);
         self.message[STAMP..STAMP + 4].copy_from_slice(&seconds.to_le_bytes());
         self.message[STAMP + 4..STAMP + 8].copy_from_slice(&((time_ns % second) as u32).to_le_bytes());
@@ -143,7 +143,7 @@ mod tests {
             &[2, 0, 0, 0], b"a\0", &[0, 0],
             &[6, 0, 0, 0], b"force\0", &[0, 0],
             &[0; 4], &[0; 4],
-            // 52 bytes so far: four more up to a multiple of eight, counted from the end of the first four.
+            // 52 bytes so far: pad by four to a multiple of eight, counted from the end of the first four.
             &[2, 0, 0, 0],
             &1_f64.to_le_bytes(), &(-2_f64).to_le_bytes(),
         ].concat();

@@ -110,7 +110,7 @@ impl RecordingLayout {
 
     /// Makes room for this many bytes of data and of summary; returns the position of the data.
     pub(super) fn reserve(&mut self, data: u64, in_summary: u64, summary: &mut RecordingSummary) -> io::Result<u64> {
-        // Twice the summary: when it is rewritten, room must remain for the next rewrite.
+        // Reserve the summary twice: when it is rewritten, room must remain for the next rewrite.
         let needed = data + 4 * HEAD as u64 + 2 * (summary.room() + in_summary) + SPARE;
         if self.failed {
             return Err(io::Error::other("an earlier write failed"));
@@ -140,7 +140,7 @@ impl RecordingLayout {
         let mut bytes = summary.new_indexes().to_vec();
         let statistics = summary.statistics_record();
         let fits = |at: u64| at % PAGE + (bytes.len() + statistics.len() + 3 * HEAD) as u64 <= PAGE;
-        // If the head does not fit into this page, write into the next page before this page leads there.
+        // If the head does not fit into this page, write into the next page before this page points there.
         let at = if fits(begin) { begin } else { pages(begin + HEAD as u64) };
         let statistics_at = keep_whole(&mut bytes, at);
         bytes.extend_from_slice(&statistics);
@@ -213,7 +213,7 @@ impl RecordingLayout {
         let room = summary.room();
         let more = (needed + 2 * room + 2 * SPARE).max(self.growth).max(GROWTH_IN_SUMMARIES * room);
         let footer_at = pages(self.footer_at + more) - END as u64;
-        // The same summary in the remaining free space, with free space after it up to the new footer.
+        // Write the same summary into the remaining free space, with free space after it up to the new footer.
         let at = self.before_room_end(room)?;
         let tail = self.write_tail(summary, at, footer_at)?;
         let mut end = Vec::new();
@@ -221,7 +221,7 @@ impl RecordingLayout {
         self.write(&end, footer_at)?;
         self.footer_at = footer_at;
         self.leave_room_up_to(at, tail, summary)?;
-        // There is room before the footer now, so move the summary there.
+        // There is now room before the footer, so move the summary there.
         let at = footer_at - SPARE - room - room / 2;
         let tail = self.write_tail(summary, at, footer_at)?;
         self.lead_to(at, tail, summary)

@@ -170,7 +170,7 @@ impl SessionWriter {
             self.schemas.push(encoding.clone());
             self.summary.statistics.schemas += 1;
         }
-        // Also stored in the chunk, for readers that start at the beginning.
+        // Store it in the chunk as well, for readers that start at the beginning.
         let lane = if is_image(&encoding) { &mut self.images } else { &mut self.numbers };
         for (record, in_summary) in [(schema, &mut self.summary.schemas), (channel, &mut self.summary.channels)] {
             lane.chunk.put_record(&record);
@@ -194,7 +194,7 @@ impl SessionWriter {
         }
         let image = is_image(&self.channels[usize::from(channel.0)].encoding);
         let lane = if image { &self.images } else { &self.numbers };
-        // Write both, so that a killed process loses the same period of both.
+        // Write both, so that a killed process loses the same period of each.
         if lane.is_due(data.len(), log_time_ns) {
             self.flush()?;
         }
@@ -393,7 +393,7 @@ fn create(path: &Path, library: &str, growth: u64, summary: &RecordingSummary) -
     let layout = RecordingLayout::new(new.as_file().try_clone()?, library, growth, summary)?;
     at::lock(layout.file());
     new.persist_noclobber(path).map_err(|error| error.error)?;
-    // Makes the name survive a loss of power as well, where the system can do that.
+    // Makes the new name survive a power failure as well, on systems that support it.
     #[cfg(unix)]
     File::open(folder).and_then(|folder| folder.sync_all()).ok();
     Ok(layout)

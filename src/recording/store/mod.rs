@@ -207,7 +207,7 @@ impl Store {
     }
 
     const fn age(&self, made_s: u64, now_s: u64) -> CalibrationAge {
-        // Clocks of two computers may differ by minutes; more than a day is an error.
+        // Two computers' clocks may differ by minutes, but a difference of more than a day is an error.
         if made_s > now_s + DAY_S {
             return CalibrationAge::Future;
         }
@@ -231,7 +231,7 @@ pub fn write<R: CalibrationRecord>(path: &Path, record: &R) -> Result<(), StoreE
     }
     let text = toml::to_string(record).map_err(|error| unwritable(error.to_string()))?;
     let failed = |source| StoreError::Write { path: path.to_owned(), source };
-    // Copied, then replaced by renaming the new file, so that a calibration exists at every moment.
+    // Copy first, then rename the new file over it, so that a calibration exists at every moment.
     keep_previous(path).map_err(failed)?;
     write_atomically(path, |file| file.write_all(text.as_bytes())).map_err(failed)
 }

@@ -143,7 +143,7 @@ impl Store {
         names.retain(|name| {
             name.starts_with(&prefix) && name.rsplit_once('.').is_some_and(|(_, ending)| ending == "toml")
         });
-        // The name contains the date; of two names of the same second, the longer is later.
+        // The name contains the date; if two names have the same second, the longer one is later.
         names.sort_by(|one, other| stem(one).cmp(stem(other)));
         names.iter().rev().find_map(|name| {
             let text = nima_files::read_text(&self.checks().join(name), nima_files::CONFIG_MAX).ok()?;

@@ -234,7 +234,7 @@ impl ToWords for UnitVector3<f64> {
 
 impl FromWords for UnitVector3<f64> {
     fn take(from: &mut impl WordSource) -> Result<Self, CodecError> {
-        // Exact to the bit, so not normalised again.
+        // The bits must be exact, so do not normalise again.
         Vector3::take(from).map(Self::new_unchecked)
     }
 }
@@ -250,7 +250,7 @@ impl ToWords for UnitQuaternion<f64> {
 impl FromWords for UnitQuaternion<f64> {
     fn take(from: &mut impl WordSource) -> Result<Self, CodecError> {
         let [i, j, k, w] = <[f64; 4]>::take(from)?;
-        // Exact to the bit, so not normalised again.
+        // The bits must be exact, so do not normalise again.
         Ok(Self::new_unchecked(Quaternion::new(w, i, j, k)))
     }
 }

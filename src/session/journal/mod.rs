@@ -28,7 +28,8 @@ use parts::ByteWriter;
 /// felt.
 pub const VERSION: u16 = 5;
 
-// Ticks have columns for each mode and gate, and numbers for their reasons.
+// A tick has a column for each mode and gate, and a number for each reason, so the journal's format depends on these
+// counts.
 const _: () = assert!(
     SLOTS == 8 && GATES == 9 && Reason::ALL.len() == 18,
     "a mode, a gate or a reason was added: raise VERSION, and correct these numbers"

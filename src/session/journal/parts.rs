@@ -104,8 +104,8 @@ pub(super) fn put_calibrations(calibrations: &Calibrations, to: &mut ByteWriter)
         return Ok(());
     };
     let mut model = tip_force.model().clone();
-    // The name of the person who accepted an unproven network does not affect the loop, and sessions are shared with
-    // others.
+    // The name of the person who accepted an unproven network does not affect the loop and must not be shared with a
+    // session.
     if let Some(check) = &mut model.origin.check {
         for text in [&mut check.judgement.override_by, &mut check.judgement.override_reason].into_iter().flatten() {
             WITHHELD.clone_into(text);

@@ -281,7 +281,7 @@ impl OpenSession {
                         self.images(shared)?;
                     }
                 }
-                // The loop is idle, so write everything that is known without delay.
+                // The loop is idle, so write all pending data without delay.
                 TapItem::Nothing => {
                     self.notes(f64::INFINITY)?;
                     self.file.out.flush()?;

@@ -82,7 +82,7 @@ impl Pages for SessionFile {
         let t_s = stepped.timing.now_s;
         let time_ns = self.log_time_ns(t_s);
         let started_ns = self.started_ns;
-        // The simulation has reported everything up to this tick before the tick.
+        // The simulation has reported all object states up to this tick before the tick itself.
         self.topics.objects(&mut self.out, t_s, |t_s| log_time_ns(started_ns, t_s))?;
         self.out.tick(t_s, &stepped.ticks, events);
         Ok(self.topics.tick(&mut self.out, time_ns, stepped, events)?)

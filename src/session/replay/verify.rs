@@ -30,7 +30,7 @@ pub fn verify<I: Iterator<Item = Result<NumberedMessage, ReplayError>>>(
         match part {
             Ok(JournalPart::Ticks(rows)) => verifier.add(rows)?,
             other => {
-                // In order: a difference before an unreadable message comes first.
+                // In order, so that a difference before an unreadable message is reported first.
                 verifier.run()?;
                 if !verifier.is_over {
                     verifier.step(other?)?;

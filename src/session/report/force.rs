@@ -100,8 +100,8 @@ mod tests {
 
     #[test]
     fn a_sine_along_each_axis_has_the_figures_of_the_books() {
-        // Whole periods of 1, 2 and 3 Hz with 2, 1 and 0.5 N: standard deviations are the amplitudes over the root of
-        // two.
+        // Whole periods of 1, 2 and 3 Hz with 2, 1 and 0.5 N: the standard deviations are the amplitudes over the
+        // square root of two.
         let mut measured = ForceStatistics::default();
         let mut lengths_n = 0.0;
         let mut peak_n = 0.0_f64;
@@ -121,7 +121,7 @@ mod tests {
             near(sd_n, amplitude_n / 2.0_f64.sqrt(), 1e-3);
         }
         near(figures.volume_n3, 4.0 / 3.0 * PI * 1.0 / 8.0_f64.sqrt(), 1e-3);
-        // The mean square of each rate is half of the square of amplitude times angular frequency.
+        // The mean square of each rate is half the square of amplitude times angular frequency.
         let squares = [2.0 * TAU, 2.0 * TAU, 1.5 * TAU].map(|rate| 0.5 * rate * rate);
         near(figures.rate_rms_n_s, squares.iter().sum::<f64>().sqrt(), 2e-3);
         near(figures.rate_peak_n_s, (8.0 + 2.25_f64).sqrt() * TAU, 2e-2);

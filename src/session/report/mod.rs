@@ -309,7 +309,7 @@ fn journal(t_s: f64, data: &[u8], figures: &mut SessionFigures) {
         Ok(MessageOutline::End(_)) => figures.closed = Some(true),
         Err(error) => {
             let note = format!("its journal: {error}");
-            // One line for all messages of another version.
+            // One line covers all messages of another version.
             if !figures.notes.contains(&note) {
                 figures.notes.push(note);
             }

@@ -43,7 +43,7 @@ fn made(path: &Path) {
         let mut values = [0.0; 14];
         values[Gate::Permission.index()] = f64::from(u8::from(!(2000..8000).contains(&i)));
         values[Gate::Ceiling.index()] = f64::from(u8::from((3000..4500).contains(&i)));
-        // Stored energy, withheld force, state.
+        // Columns: stored energy, withheld force, state.
         values[10] = 0.1 - 1e-5 * f64::from(i);
         values[11] = 0.25;
         values[13] = state;
@@ -76,8 +76,8 @@ fn the_figures_of_a_made_session_are_those_of_the_books() {
     assert_eq!(arm.states.iter().map(|span| span.state).collect::<Vec<_>>(), [1, 3, 6]);
     near(arm.states[1].from_s, 2.0, 1e-6);
     near(arm.states[1].to_s, 8.0, 1e-6);
-    // Six whole periods: the mean of |sin| is 2 / pi, its standard deviation about zero the amplitude over the root of
-    // two.
+    // Six whole periods: the mean of |sin| is 2 / pi, and its standard deviation about zero is the amplitude over the
+    // square root of two.
     let [measured, delayed, rendered] = arm.forces.map(Option::unwrap);
     near(measured.peak_n, 2.0, 1e-4);
     near(measured.mean_n, 4.0 / std::f64::consts::PI, 1e-4);

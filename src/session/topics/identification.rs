@@ -60,7 +60,7 @@ impl IdentificationChannel {
         if let Some(report) = &tick.force.tip_force {
             self.network.add(report);
         }
-        // If the clock has gone back, start again.
+        // If the clock was set back, start again.
         if tick.t_s < self.due_s && tick.t_s > self.due_s - 2.0 * EVERY_S {
             return Ok(());
         }

@@ -59,7 +59,7 @@ impl ImageChannel {
                 self.waiting = Some(taken);
                 return Ok(());
             }
-            // The estimate of the clock may be corrected slightly.
+            // The estimated clock may be corrected slightly backwards.
             self.last_s = self.last_s.max(at_s);
             self.write(out, time_ns(self.last_s), taken)?;
         }
@@ -92,7 +92,7 @@ impl ImageChannel {
         let open = || out.channel(IMAGE_FIGURES_TOPIC, json_encoding(FIGURES_NAME, FIGURES_SCHEMA));
         let figures = opened(&mut self.figures, open)?;
         self.number += 1;
-        // Numbers and field names can always be written as JSON.
+        // Numbers and field names can always be serialised as JSON.
         let report = serde_json::to_vec(&report).unwrap_or_default();
         out.message(figures, time_ns, &report)
     }

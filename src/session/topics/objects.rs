@@ -168,7 +168,7 @@ impl OfObjects {
         };
         plot.values.extend(standing_numbers(standing));
         plot.write(out, time_ns, false)?;
-        // Removed marks are written as an empty list.
+        // Write an empty list when the marks were removed.
         if self.marks.is_some() || !standing.marks.is_empty() {
             let channel = match self.marks {
                 Some(channel) => channel,

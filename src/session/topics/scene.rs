@@ -63,7 +63,7 @@ impl SceneChannels {
         t_s: f64,
         ticks: impl Iterator<Item = &'a Tick>,
     ) -> Result<(), WriteError> {
-        // If the clock has gone back, start again.
+        // If the clock was set back, start again.
         if t_s < self.due_s && t_s > self.due_s - 2.0 * EVERY_S {
             return Ok(());
         }
@@ -121,7 +121,7 @@ pub(crate) fn endoscope_of(data: &[u8]) -> Option<Isometry3<f64>> {
 
 /// A force (N) at a position (m); no arrow if the force is zero or unknown.
 fn arrow(position_m: &Vector3<f64>, force_n: &Vector3<f64>, color: Color) -> Option<ArrowPrimitive> {
-    // An arrow points along its own x axis; for the opposite direction any half turn is correct.
+    // An arrow points along its own x axis; for the opposite direction, any half turn works.
     let turned = UnitQuaternion::rotation_between(&Vector3::x(), force_n)
         .unwrap_or_else(|| UnitQuaternion::from_axis_angle(&Vector3::z_axis(), std::f64::consts::PI));
     let length_m = force_n.norm() * LENGTH_M_N;

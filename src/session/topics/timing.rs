@@ -43,7 +43,7 @@ impl TimingChannel {
                 percentiles.record(time_s);
             }
         }
-        // If the clock has gone back, start again.
+        // If the clock was set back, start again.
         if now_s < self.due_s && now_s > self.due_s - 2.0 * EVERY_S {
             return Ok(());
         }

@@ -187,7 +187,7 @@ mod tests {
                 .fold(f64::INFINITY, f64::min);
             let nearest = circle.nearest(&circle.places_m(&directions()), &segment, 0.003);
             let found_m = nearest.iter().flatten().map(|[a, b]| (a - b).norm()).fold(f64::INFINITY, f64::min);
-            // No capsule gets nearer than 1 mm to the middle of a tube, because the fingers yield before.
+            // No finger gets nearer than 1 mm to the middle of a tube, because the grip gives way before that.
             if (0.001..0.00297).contains(&fine_m) {
                 prop_assert!((found_m - fine_m).abs() < 3e-5, "{} m instead of {} m", found_m, fine_m);
             } else if fine_m > 0.00301 {

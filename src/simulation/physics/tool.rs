@@ -118,7 +118,7 @@ impl PhysicsTool {
         let (sin, cos) = libm::sincos(0.5 * self.opening_rad);
         for finger in 0..SHAFT {
             let side = side_of(finger);
-            // Closed fingers lie side by side: the middle of each is one radius away from the hinge.
+            // When closed, the fingers are side by side: the middle of each is one radius from the hinge.
             let out = x * cos - z * (side * sin);
             let along = z * cos + x * (side * sin);
             let from_m = self.hinge_m + out * (side * self.jaws.finger_radius_m);

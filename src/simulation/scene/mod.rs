@@ -353,7 +353,7 @@ impl Scene {
         self.wrist.as_ref().map_or(Ok(()), |wrist| wrist.validate(&ranges))?;
         self.trocar.as_ref().map_or(Ok(()), |trocar| trocar.validate(&ranges))?;
         self.tissue_sensor.as_ref().map_or(Ok(()), |sensor| sensor.validate(&ranges))?;
-        // These parts only affect the wrist sensor's readings.
+        // These sections affect only the wrist sensor's readings.
         let needs_wrist = self.trocar.is_some() || self.tissue_sensor.is_some() || self.person.is_some();
         let wrists = if self.wrist.is_some() { 1.0 } else { 0.0 };
         ranges.check("number of [wrist] parts", wrists, self.wrist.is_some() || !needs_wrist, "1 with these parts")

@@ -181,7 +181,7 @@ impl Person {
                 let to_m = handle_m + self.travel_m(way);
                 self.handling.handle = HandMove { from_m: handle_m, to_m, seconds: self.handling.way_s };
             }
-            // Starts with the requested pose at once.
+            // Start with the requested pose at once.
             _ => self.handling.in_way_s = HELD_S,
         }
     }

@@ -204,7 +204,7 @@ impl Person {
         let s = if self.turn_s > 0.0 { self.in_turn_s / self.turn_s } else { 1.0 };
         let fraction = s * s * s * (10.0 + s * (-15.0 + 6.0 * s));
         let (from, to) = self.turn;
-        // For half a turn the shortest rotation is undefined; any will do.
+        // For a half turn the shortest rotation is undefined; any rotation will do.
         self.world_from_s1 = from.try_slerp(&to, fraction, 1e-9).unwrap_or(to);
         if self.flaw == Some(Flaw::Trembles) && matches!(self.prompt, Prompt::Hold { .. }) {
             let shake = Vector3::new((TAU * 2.3 * self.time_s).sin(), (TAU * 3.1 * self.time_s).cos(), 0.0) * 0.06;
@@ -217,7 +217,7 @@ impl Person {
         let t = self.time_s;
         let tilt = Vector3::new(1.1 * (0.9 * t).sin(), 1.0 * (0.67 * t + 0.4).sin(), 0.8 * (0.41 * t).sin());
         let target = along_shaft(&-Vector3::z()) * UnitQuaternion::from_scaled_axis(tilt);
-        // Approaches the target from the current orientation without a jump.
+        // Approach the target from the current orientation without a jump.
         self.world_from_s1 = self.world_from_s1.try_slerp(&target, 0.004, 1e-9).unwrap_or(target);
         self.turn = (self.world_from_s1, self.world_from_s1);
     }
@@ -236,13 +236,13 @@ impl Person {
             if self.flaw == Some(Flaw::PushesOnePlane) {
                 miss.y *= 0.1;
             }
-            // If asked to push out of the plane, this person pushes in some direction within it.
+            // If the target is out of that plane, this person pushes in some direction within it.
             let asked = if asked.norm() < 0.1 { self.somewhere_down() } else { asked.normalize() };
             self.push = -(asked + miss).normalize() * self.between(PUSH_N);
             if self.flaw == Some(Flaw::LeansOnTheStand) {
                 self.lean();
             }
-            // The tool is held a little differently in each push.
+            // The tool is held at a slightly different tilt in each push.
             let tilt = Vector3::from_fn(|_, _| 0.25 * self.noise.gaussian());
             self.turn_to(along_shaft(&-Vector3::z()) * UnitQuaternion::from_scaled_axis(tilt));
         }
@@ -282,7 +282,7 @@ impl Person {
     /// Starts a slow movement to another position.
     fn reach(&mut self, contact: bool) -> HandMove {
         let z_m = if contact && self.noise.uniform() < 0.6 { self.pressed_m() } else { self.between(CARRY_M) };
-        // Sometimes pauses, so that static friction of the seal is recorded too.
+        // Pause at times, so that static friction of the seal is recorded too.
         let stay = self.noise.uniform() < 0.2;
         let reach = if self.flaw == Some(Flaw::WorksInOnePlace) { 0.1 } else { 1.0 };
         let [x_m, y_m] = self.workspace.across_m.map(|[low_m, high_m]| {

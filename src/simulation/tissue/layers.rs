@@ -11,7 +11,7 @@ const STEPS_MAX: u32 = 60;
 ///
 /// Newton's method, kept inside the interval of the solution: the sum rises with the force.
 pub(super) fn force_n(layers: &[GroundLayer], depth_m: f64) -> f64 {
-    // Each layer alone is stiffer than all together, so the softest layer bounds the force.
+    // Each layer alone is stiffer than all of them in series, so the softest layer bounds the force.
     let alone_n = |layer: &GroundLayer| layer.stiffness * depth_m.powf(layer.exponent);
     let mut low_n = 0.0;
     let mut high_n = layers.iter().map(alone_n).fold(f64::INFINITY, f64::min);

@@ -43,7 +43,7 @@ impl Lumps {
 /// height `h - t (1 - 1/r)`.
 pub(super) fn factor(lumps: &Lumps, tip_m: &Vector3<f64>) -> f64 {
     let filled_m: f64 = lumps.list.iter().map(|lump| lump.times_softer(tip_m)).sum();
-    // Overlapping lumps leave at least a twentieth of a column.
+    // However much lumps overlap, at least a twentieth of the column remains soft.
     lumps.thickness_m / (lumps.thickness_m - filled_m).max(0.05 * lumps.thickness_m)
 }
 
@@ -87,7 +87,7 @@ mod tests {
             }
             seen.push(placed.list[0].position_m);
         }
-        // The draws reach every corner of the tissue.
+        // Random positions cover every corner of the tissue.
         for (x, y) in [(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)] {
             let near = seen.iter().filter(|[x_m, y_m]| x * x_m > 0.0 && y * y_m > 0.0).count();
             assert!(near > 25, "{near} of 200 in this corner");
@@ -104,7 +104,7 @@ mod tests {
     #[test]
     fn over_the_middle_the_column_is_shorter_by_the_lump() {
         let factor = factor(&lumps(), &Vector3::new(0.01, -0.02, 0.0));
-        // 30 mm, 12 mm of them ten times as stiff.
+        // A 30 mm column, 12 mm of it ten times as stiff.
         assert!((factor - 30.0 / (18.0 + 1.2)).abs() < 1e-12, "{factor}");
     }
 

@@ -36,7 +36,7 @@ impl RelaxationState {
         let over = step_s / self.config.time_s;
         self.step_s = step_s;
         self.decay = (-over).exp();
-        // Exact for an elastic force that changes linearly during the step.
+        // Exact if the elastic force changes linearly during the step.
         self.ramp = 1.0 - (1.0 - self.decay) / over;
     }
 
@@ -58,12 +58,12 @@ mod tests {
     #[test]
     fn a_force_that_is_held_fades_to_its_share_with_its_time() {
         let mut tissue = RelaxationState::new(CONFIG, STEP_S);
-        // A step within one millisecond.
+        // The depth jumps within one millisecond.
         let first_n = tissue.step(2.0);
         assert!((first_n - 2.0).abs() < 1e-3, "{first_n}");
         for i in 1..=6000 {
             let force_n = tissue.step(2.0);
-            // The ramp of the first millisecond acts like a jump in its middle.
+            // The ramp of the first millisecond acts like a jump in the middle of it.
             let t_s = (f64::from(i) + 0.5) * STEP_S;
             let exact_n = 2.0 * (1.0 - 0.4 * (1.0 - (-t_s / 0.8).exp()));
             assert!((force_n - exact_n).abs() < 1e-6, "{force_n} N instead of {exact_n} N at {t_s} s");

@@ -110,7 +110,7 @@ mod tests {
         });
         let mut palpation = Palpation::of(&scene).unwrap();
         let marked = |lump| vec![TaskEvent::LumpMarked { side: Side::Right, lump }];
-        // 5 mm and 3 mm of tolerance, at any height.
+        // Within the tolerance of 5 mm plus 3 mm, at any height.
         assert_eq!(report(&mut palpation, [-0.0121, 0.0, -0.004]), marked(Some(0)));
         assert_eq!(report(&mut palpation, [-0.0119, 0.0, 0.03]), marked(None));
         assert_eq!(report(&mut palpation, [-0.02, 0.0, 0.0]), marked(Some(0)), "again");

@@ -162,7 +162,7 @@ impl TrainingTask {
     ) -> [InstrumentLoads; SIDES] {
         let Self { game, is_done, publisher, .. } = self;
         let mut report = |age_s: f64, event: TaskEvent| {
-            // A task ends once; actions after the end are not part of the trial.
+            // A task ends only once; actions after its end are not part of the trial.
             let again = *is_done && event == TaskEvent::Ended;
             *is_done = event != TaskEvent::Begun && (*is_done || event == TaskEvent::Ended);
             if !again {

@@ -175,7 +175,7 @@ impl World {
 
     /// Pauses the hand's task, so that the hand follows the tip (true), or resumes it (false).
     pub fn wait(&mut self, waits: bool) {
-        // A person at the arm may also lead the handle.
+        // A person at the arm may also guide the handle.
         let beside_m = self.person.as_ref().map_or_else(Vector3::zeros, Person::handle_m);
         self.hand.wait(waits.then_some(self.tip_m + beside_m));
     }
@@ -227,7 +227,7 @@ impl World {
     }
 
     fn take(&mut self, outputs: &Outputs) {
-        // The leader's motors limit the force.
+        // The force is limited by the leader's motors.
         let max_n = self.leader.map_or(f64::INFINITY, |leader| leader.force_max_n);
         let asked = outputs.hand_force_n;
         let norm = asked.norm();
@@ -269,7 +269,7 @@ impl World {
 
     fn follow(&mut self, dt_s: f64) {
         let Some(FollowerModel { bandwidth_hz }) = self.follower else {
-            // A command is valid for a period, however soon the next one arrives.
+            // A command is valid for one period, however soon the next one arrives.
             self.tip_velocity_m_s = (self.command_m - self.tip_m) / dt_s.max(self.period_s);
             self.tip_m = self.command_m;
             return;

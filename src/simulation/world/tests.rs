@@ -105,7 +105,7 @@ fn a_late_tick_finds_the_hand_where_it_is_by_then() {
         let there_m = before_m + (after_m - before_m) * (f64::from(tenth % 10) / 10.0);
         fastest_m_s = fastest_m_s.max((after_m - before_m).norm() / 1e-3);
         let off_m = (late.hand().position_m() - there_m).norm();
-        // Half a period is 90 um at the maximum speed; unequal integration steps differ by less.
+        // Half a period of motion is 90 um at the maximum speed; unequal integration steps cause smaller differences.
         assert!(off_m < 2e-5, "at {:.1} ms: {:.1} um", f64::from(tenth) / 10.0, 1e6 * off_m);
     }
     assert!(fastest_m_s > 0.1, "{fastest_m_s} m/s");

@@ -11,7 +11,7 @@ fuzz_target!(|bytes: &[u8]| {
     if let Ok(message) = IgtlMessage::read(&header, body) {
         let written = message.encode();
         let header = IgtlHeader::read(&written).unwrap();
-        // Compared as bytes: NaN is not equal to itself.
+        // Compare the bytes, because NaN is not equal to itself.
         assert_eq!(IgtlMessage::read(&header, &written[IgtlHeader::BYTES..]).unwrap().encode(), written);
     }
 });

@@ -30,7 +30,7 @@ pub(super) fn completions(arguments: &CompletionsArguments) -> anyhow::Result<()
 }
 
 pub(super) fn man(arguments: &ManArguments) -> anyhow::Result<()> {
-    // `help` only repeats the other pages.
+    // The pages of `help` only repeat the others.
     let mut command = command_line().disable_help_subcommand(true);
     command.build();
     std::fs::create_dir_all(&arguments.folder)

@@ -85,7 +85,7 @@ pub(super) fn run(arguments: &DevicesArguments) -> anyhow::Result<()> {
     }
     let mut text = as_text(&report);
     if let Some(rig) = emulated.filter(|_| report.devices.iter().all(is_trouble)) {
-        // The devices' own remedies apply to real devices.
+        // The remedies are for real devices, not emulated ones.
         writeln!(
             text,
             "\nThis rig is emulated: start its devices with `nima emulate rig --rig {rig}` in another terminal"

@@ -85,7 +85,7 @@ pub(super) fn run(arguments: &ExportArguments) -> anyhow::Result<()> {
         return laid_out(&reader, session, name, out);
     }
     let times_ns = times_ns(&reader, arguments)?;
-    // Removes half-written files before the program ends.
+    // Remove half-written files before the program ends.
     let leave = Leave::on_signals()?;
     if is("csv") {
         return table(&reader, times_ns, arguments, &leave);
@@ -120,7 +120,7 @@ fn times_ns(
     let Range { start, end } = stretch.of(session, reader)?;
     let begin_ns = plot_channels::beginning_ns(reader)?;
     let time_ns = |seconds: f64| begin_ns.saturating_add((seconds * 1e9).round() as u64);
-    // Entries before the first tick belong to it.
+    // Entries before the first tick belong to the first tick.
     Ok(if start > 0.0 { time_ns(start) } else { 0 }..time_ns(end))
 }
 

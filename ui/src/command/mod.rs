@@ -120,7 +120,7 @@ pub fn main() -> ExitCode {
     let given = match command_line().try_get_matches() {
         Ok(given) => given,
         Err(error) if error.use_stderr() => return usage(&error),
-        // --help and --version.
+        // `--help` and `--version` end up here, too.
         Err(error) => error.exit(),
     };
     logging::begin(given.get_one("log").copied());
@@ -129,7 +129,7 @@ pub fn main() -> ExitCode {
     match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            // One line: the chain of causes is joined, line breaks in foreign messages are folded.
+            // Print one line: join the chain of causes, and fold line breaks in foreign messages.
             let line = one_line(&format!("{error:#}"));
             if error.is::<crate::console::NoWindow>() {
                 print_line(format_args!(

@@ -47,7 +47,7 @@ impl UsualNumber {
         let wide = block.extent() / (min + WIDE * self.noise);
         let change = apart.max(wide);
         if change > 1.0 {
-            // The new value can be the next rest position.
+            // The new value may be the next rest position.
             self.mean = mean;
             self.noise += LEARN_MOVING * (noise - self.noise);
         } else {
@@ -155,7 +155,7 @@ mod tests {
                 for (place, kind) in KINDS.into_iter().enumerate() {
                     for channel in 0..9 {
                         self.samples += 1;
-                        // Uniform, without a pattern within a block.
+                        // Pseudo-random and uniform, without a pattern within a block.
                         let even = (self.samples * self.samples % 9973) as f64 / 9973.0 - 0.5;
                         let noise = if kind == PartKind::Pedal { 0.0 } else { 0.6 * min(kind, channel) * even };
                         gauges.devices[place].channels[channel].add(1.0 + noise + moved(place, channel, t_s));
@@ -172,7 +172,7 @@ mod tests {
         for hand in [0, 1] {
             let mut bench = Fixture::new();
             let since_s = 2.0;
-            // 1 cm back and forth, twice per second.
+            // Moves 1 cm back and forth, twice per second.
             let to_and_fro = |place, channel, t_s: f64| {
                 if (place, channel) == (hand, 1) { 0.01 * (12.6 * (t_s - since_s)).sin() } else { 0.0 }
             };

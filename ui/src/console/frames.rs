@@ -212,7 +212,7 @@ fn thread_s(stat: &str) -> Option<(String, f64)> {
     let (head, rest) = stat.rsplit_once(") ")?;
     let name = head.split_once('(')?.1.to_owned();
     let ticks = |place: usize| rest.split(' ').nth(place)?.parse::<f64>().ok();
-    // Fields 14 and 15; field 3 is the first one after the name.
+    // User and system time are fields 14 and 15 of the line; field 3 is the first one after the name.
     Some((name, (ticks(11)? + ticks(12)?) / TICKS_PER_S))
 }
 

@@ -90,7 +90,7 @@ impl HistoryLevel {
             self.buckets.clear();
             self.first = number;
         }
-        // Missing samples leave empty buckets, so that the index corresponds to the time.
+        // Missing samples leave empty buckets, so that the index always corresponds to the time.
         while self.first + (self.buckets.len() as u64) <= number {
             if self.buckets.len() == CAPACITY {
                 self.buckets.pop_front();
@@ -176,7 +176,7 @@ impl SignalHistory {
         let level = self.level(from_s, to_s, max);
         let mut last_s = f64::INFINITY;
         for (begin_s, bucket) in level.between(from_s, to_s) {
-            // A bucket that is still being filled would change from frame to frame.
+            // Skip a bucket that is still being filled, because it would change from frame to frame.
             if begin_s + level.span_s > self.latest_s {
                 break;
             }

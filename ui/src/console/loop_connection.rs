@@ -249,7 +249,7 @@ impl VisibleState {
 
     /// Whether the difference would be visible.
     fn differs(&self, now: &Self) -> bool {
-        // Non-finite values differ only from finite ones.
+        // A non-finite value differs only from a finite one.
         let moved = |a: &Vector3<f64>, b: &Vector3<f64>, min: f64| {
             let by = (a - b).norm();
             by > min || (by.is_nan() && a.norm().is_nan() != b.norm().is_nan())
@@ -322,7 +322,7 @@ mod tests {
         wait_for(&door, |tick| tick.state == LoopState::Idle);
         door.rest(true);
         assert!(door.handle().send(Command::Shutdown));
-        // Woken once for the first data, and again because they were read since.
+        // Woken once for the first data, and again because they have been read since.
         wakes.recv_timeout(Duration::from_secs(20)).unwrap();
         door.take(|_| {});
         if door.handle().is_running() {

@@ -103,7 +103,7 @@ pub(crate) struct InitialRun {
 pub(crate) fn run(begun: InitialRun, options: ConsoleOptions) -> anyhow::Result<()> {
     let create: eframe::AppCreator<'_> = Box::new(move |cc| Ok(Box::new(console(cc, begun, options))));
     let ended = open_window(text::top_bar::NIMA_CONSOLE.get(), create);
-    // Messages from here on go to the terminal.
+    // From here on, messages go to the terminal, in English.
     language::set(Language::English);
     ended
 }
@@ -119,7 +119,8 @@ pub(crate) fn open_window(title: &str, create: eframe::AppCreator<'_>) -> anyhow
         viewport,
         renderer: eframe::Renderer::Glow,
         depth_buffer: 24,
-        // Only useful for gradients, which egui does not draw here; with a software renderer it costs time for every pixel.
+        // Useful only for gradients, which egui does not draw here; with a software renderer it costs time for every
+        // pixel.
         dithering: false,
         centered: true,
         ..Default::default()

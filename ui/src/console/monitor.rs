@@ -183,7 +183,7 @@ impl Monitor {
                     ui.add_space(10.0);
                 }
                 ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                    // From right to left.
+                    // Laid out from right to left.
                     ui.allocate_ui_with_layout(SWITCH, Layout::left_to_right(Align::Center), |ui| {
                         switch_ui(ui, &ROLES, &mut self.settings.role, true);
                     });

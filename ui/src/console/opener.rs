@@ -27,7 +27,7 @@ fn open_with(opener: &[&str], path: &Path) -> bool {
     command.status().is_ok_and(|status| status.success())
 }
 
-// Uses a program that every Unix has.
+// These tests use a program that every Unix has.
 #[cfg(all(test, unix))]
 mod tests {
     use super::*;

@@ -79,7 +79,7 @@ fn is_outdated(old: &Command, newer: Command) -> bool {
         (Command::Guide(old, _), Command::Guide(newer, _)) | (Command::Grip(old, _), Command::Grip(newer, _)) => {
             old == newer
         }
-        // All of them are sent.
+        // Task commands never replace each other: all of them are sent.
         (Command::Task(..), Command::Task(..)) => false,
         (old, newer) => std::mem::discriminant(&old) == std::mem::discriminant(&newer),
     }

@@ -131,7 +131,7 @@ impl Search {
     fn list_ui(&self, ui: &mut Ui, found: &[PaletteRow], keys: &PaletteKeys, height: f32) -> Option<Action> {
         let mut wanted = None;
         let height = height.clamp(120.0, 480.0);
-        // The window is as high as its content, so nothing else gives the list its height.
+        // The window is only as high as its content, so the list must set its own height.
         let list = ScrollArea::vertical().max_height(height).min_scrolled_height(height).auto_shrink([false, true]);
         list.show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = 2.0;
@@ -157,7 +157,7 @@ impl Search {
 }
 
 fn row_ui(ui: &mut Ui, entry: &CommandEntry, reach: Availability, is_at: bool) -> egui::Response {
-    // Weak text is unreadable on the selection colour.
+    // Weak text would be unreadable on the selection colour.
     let ink = if is_at { theme::now().text } else { theme::now().text_weak };
     let keys = RichText::new(entry.keys_text()).color(ink);
     let button = Button::selectable(is_at, entry.title.as_str()).right_text(keys).truncate();

@@ -36,7 +36,7 @@ pub const fn task_of(open: Option<WizardKind>) -> PersonTask {
     match open {
         // The emulators' technician has no board.
         None | Some(WizardKind::Camera) => PersonTask::Surgery,
-        // Both record poses in all directions of gravity.
+        // Both record poses with gravity in all directions.
         Some(WizardKind::Gravity | WizardKind::Frame(FrameKind::Mount)) => PersonTask::Gravity,
         Some(WizardKind::Correspondence) => PersonTask::Correspondence,
         Some(WizardKind::TipForce) => PersonTask::TipForce,

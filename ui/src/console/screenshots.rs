@@ -87,7 +87,7 @@ impl ScreenshotRun {
         let touches =
             |tick: &Tick| tick.known_n().is_some_and(|force_n| force_n.norm().min(tick.rendered_n.norm()) > CONTACT_N);
         let touching = live.first_tick().is_some_and(touches);
-        // At the start of the contact, because the screenshot is taken a frame or two later.
+        // Taken at the start of the contact, because the screenshot follows a frame or two later.
         let before = std::mem::replace(&mut self.touching, touching);
         let contact = touching && !before;
         if shown > min + GIVE_UP {

@@ -160,7 +160,7 @@ impl ConsoleSessions {
     pub(crate) fn end(&mut self) {
         let Some(CurrentRecording { recorder, path, kept, .. }) = self.now.take() else { return };
         match recorder.finish() {
-            // A failed deletion does not matter.
+            // It does not matter if the deletion fails.
             Ok(progress) if progress.ticks < MIN_TICKS && !kept => drop(std::fs::remove_file(path)),
             Ok(_) => {}
             Err(error) => self.trouble = Some(chain(&error)),

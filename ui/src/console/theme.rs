@@ -123,7 +123,7 @@ pub const LIGHT: ColourPalette = ColourPalette {
 };
 
 thread_local! {
-    // Thread-local: a window uses one thread, and tests have many windows on many threads.
+    // Thread-local: a window uses one thread, whereas tests have many windows on many threads.
     static NOW: Cell<&'static ColourPalette> = const { Cell::new(&DARK) };
 }
 
@@ -243,7 +243,7 @@ fn visuals(mut visuals: Visuals, palette: &ColourPalette) -> Visuals {
         state.corner_radius = CORNER;
         state.expansion = 0.0;
     }
-    // A slider's rail is painted with this fill: slightly lighter than the card, so that it is visible.
+    // A slider's rail is painted with this fill; it is slightly lighter than the card, so that it remains visible.
     visuals.widgets.hovered.bg_stroke = Stroke::new(1.0, palette.text_weak);
     visuals
 }
@@ -344,7 +344,7 @@ mod tests {
             assert!(contrast(palette.stop, palette.panel) > 10.0, "the stop must be found without looking");
             assert!(contrast(palette.measured, palette.rendered) > 1.4, "the forces differ in lightness too");
         }
-        // The alarm strip is dark in both.
+        // The alarm strip is dark in both palettes.
         assert!(contrast(DARK.text_weak, DARK.card) > MIN);
     }
 

@@ -68,7 +68,7 @@ pub fn width_of(painter: &Painter, words: &str, font: FontId) -> f32 {
 /// This font, smaller if the text is wider than `width`: languages differ in length where the space is fixed.
 pub fn fitting(painter: &Painter, words: &str, font: FontId, width: f32) -> FontId {
     let fraction = width / width_of(painter, words, font.clone()).max(1.0);
-    // Glyphs are placed on whole pixels, so a smaller line is slightly longer than its proportion.
+    // Glyphs are placed on whole pixels, so the width shrinks slightly less than the font size; 0.97 makes up for this.
     let size = if fraction < 1.0 { font.size * (0.97 * fraction).max(MIN_SIZE) } else { font.size };
     FontId { size, ..font }
 }

@@ -121,7 +121,7 @@ fn gaps(length_s: f64, states: &[StateSpan]) -> Vec<[f64; 2]> {
 
 /// Positions and texts of the mark numbers; close marks share one label, such as 1-3.
 fn labels(places: &[f64]) -> Vec<(f64, String)> {
-    // First and last number, first and last position.
+    // First and last index, then first and last position.
     let mut groups: Vec<(usize, usize, f64, f64)> = Vec::new();
     for (number, x) in (1..).zip(places) {
         match groups.last_mut() {

@@ -136,7 +136,7 @@ fn planted(session: &str, to: &Path) {
     for (channel, words) in [(log, &*all), (log, "command: gain 0.25"), (other_log, &all), (own, &all)] {
         writer.message(channel, begin_ns, &line(words, None)).unwrap();
     }
-    // The text of a line with a value is generated from the value.
+    // The text of a log line with a value is generated from the value.
     let lines = reader.messages(&["log"], 0..u64::MAX);
     let mut lines = lines.map(|message| Log::decode(message.unwrap().data()).unwrap());
     let engaged = lines.find(|line| line.message == ENGAGED).unwrap();
@@ -223,7 +223,7 @@ fn no_name_and_no_date_is_left_and_every_force_is() {
         let tables = SessionReader::open(Path::new(&session)).unwrap().metadata().unwrap();
         let day = tables.iter().find_map(|(_, table)| Some(table.get("started")?[..10].to_owned())).unwrap();
         assert!(!contains(&bytes, day.as_bytes()), "{day}");
-        // As a time in a message: seconds in 32 bits.
+        // As in a message's time stamp: seconds in 32 bits.
         let second = i32::try_from(begin_ns / 1_000_000_000).unwrap().to_le_bytes();
         assert!(!contains(&bytes, &second), "{}", path.display());
         assert_eq!(path.metadata().unwrap().modified().unwrap(), UNIX_EPOCH);
@@ -282,7 +282,7 @@ fn an_anonymous_session_has_a_report_and_a_table_and_can_be_cut_again() {
     }
     let rows = |table: &str| {
         let text = std::fs::read_to_string(table).unwrap();
-        // Without the second column, the time since 1970.
+        // Omit the second column, the time since 1970.
         let row = |line: &str| {
             line.split(',').enumerate().filter(|(i, _)| *i != 1).map(|(_, cell)| cell.to_owned()).collect()
         };

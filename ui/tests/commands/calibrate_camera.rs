@@ -39,7 +39,7 @@ fn images(folder: &Path, poses: impl Iterator<Item = u32>) {
 fn a_folder_of_pictures_gives_the_lens_and_changes_the_rig_file() {
     let folder = tempfile::tempdir().unwrap();
     images(folder.path(), 0..18);
-    // Not a board: it is reported and left out.
+    // This image shows no board: it must be reported and left out.
     std::fs::write(folder.path().join("99.jpg"), jpeg::encode(&vec![120; 3 * 640 * 360], [640, 360], 90)).unwrap();
     let rig = folder.path().join("rig.toml");
     let mut file = RigFile::of("simulated").unwrap();

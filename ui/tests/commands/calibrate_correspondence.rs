@@ -119,7 +119,7 @@ fn a_refused_set_is_written_only_under_a_name_and_still_fails() {
 fn a_wrong_sign_is_named_and_cured_by_the_right_one() {
     let folder = tempfile::tempdir().unwrap();
     let path = pairs(folder.path(), |v| v);
-    // The file contains the force on the instrument: changing its sign is the mistake.
+    // The file contains the force on the instrument, so changing its sign is the mistake here.
     assert!(one_line(&calibrate(&path, &["--flip-s2"])).contains("opposite forces"));
     assert!(calibrate(&path, &[]).status.success());
 }

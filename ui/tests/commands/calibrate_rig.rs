@@ -94,7 +94,7 @@ fn a_sensor_or_a_tool_in_anothers_place_is_told_at_the_start() {
     let home = Home::new(&rig());
     home.store().save(&record("SN000901", "Emulated right grasper")).unwrap();
     home.store().save(&record("SN000902", "Emulated left grasper")).unwrap();
-    // First the sensors are swapped, then the tools.
+    // Swap the sensors first, then the tools.
     let sensors = rig().replace("\"901\"", "\"9\"").replace("\"902\"", "\"901\"").replace("\"9\"", "\"902\"");
     let tools = rig().replace("right grasper", "scissors");
     let cases = [
@@ -175,7 +175,7 @@ fn is_ready(home: &Home) {
         let checked = home.nima(&["check", "rig", "--rig", "rig.toml"]);
         let report = String::from_utf8_lossy(&checked.stdout).into_owned();
         println!("{report}");
-        // A delay on a busy machine looks like a bad device.
+        // A delay on a busy machine looks like a faulty device.
         if report
             .lines()
             .any(|line| line.contains("FAILED") && (line.starts_with("Rates") || line.starts_with("Clocks")))

@@ -24,7 +24,7 @@ fn pages() -> Vec<(PathBuf, String)> {
         let files = std::fs::read_dir(root().join(folder)).unwrap().map(|entry| entry.unwrap().path());
         paths.extend(files.filter(|path| path.extension().is_some_and(|extension| extension == "md")));
     }
-    // The site's list of pages names generated pages; a separate test checks it.
+    // The site's list of pages names generated pages; another test checks it.
     paths.retain(|path| !path.ends_with("SUMMARY.md"));
     paths.sort();
     paths.into_iter().map(|path| (path.clone(), std::fs::read_to_string(path).unwrap())).collect()
@@ -102,7 +102,7 @@ fn every_command_and_flag_in_the_pages_exists() {
     for (page, text) in pages() {
         for command in commands(&text) {
             let words: Vec<String> = command.split_whitespace().skip(1).map(str::to_owned).collect();
-            // Some commands have a second word: `nima study faults`.
+            // These commands have a second word, such as `nima study faults`.
             let depth = if ["study", "train", "evaluate", "calibrate", "check", "department", "user-study"]
                 .contains(&words[0].as_str())
             {
@@ -146,7 +146,7 @@ fn every_file_that_the_pages_name_is_there() {
             let ours = ["src/", "ui/", "tests/", "benches/", "config/", "assets/", "docs/"]
                 .iter()
                 .any(|top| code.starts_with(top));
-            // A recipe names files to be written, and placeholders are in capitals or starred.
+            // A recipe names files that it writes, and placeholders are in capitals or contain a star.
             let example = ["Write ", "folder ", "add ", "Add "].iter().any(|verb| before.ends_with(verb))
                 || code.contains(['*', '<', ' '])
                 || code.contains("NAME");

@@ -31,7 +31,7 @@ fn nima(arguments: &[&str]) -> Command {
         .args(arguments)
         .env_remove("DISPLAY")
         .env_remove("WAYLAND_DISPLAY")
-        // Without the calibrations of the user who runs the tests.
+        // Keep out the calibrations of the user who runs the tests.
         .env("NIMA_DATA_DIR", "/dev/null/no/such/folder")
         .stdin(Stdio::null())
         .stdout(Stdio::piped())

@@ -14,7 +14,7 @@ pub(crate) fn nima(arguments: &[&str]) -> Output {
         .args(arguments)
         .env_remove("DISPLAY")
         .env_remove("WAYLAND_DISPLAY")
-        // Without the calibrations of the user who runs the tests.
+        // Keep out the calibrations of the user who runs the tests.
         .env("NIMA_DATA_DIR", "/dev/null/no/such/folder")
         .output()
         .unwrap()
@@ -296,7 +296,7 @@ fn every_baseline_runs_in_the_loop_and_over_a_recording() {
 
 #[test]
 fn run_on_the_real_clock_counts_every_period() {
-    // A loop delayed by a busy machine ends in a fault, but still counts its periods.
+    // On a busy machine a delayed loop ends in a fault, but still counts its periods.
     let output = nima(&["run", "--seconds", "2", "--json"]);
     let summary: Value = serde_json::from_slice(&output.stdout).unwrap();
     let ticks = summary["ticks"].as_u64().unwrap();

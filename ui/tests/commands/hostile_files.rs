@@ -196,7 +196,7 @@ fn a_recording_may_come_through_a_pipe() {
             .stderr(Stdio::piped())
             .spawn()
             .unwrap();
-        // The reader may have rejected the input by then.
+        // The command may already have rejected the input.
         child.stdin.take().unwrap().write_all(text.as_bytes()).ok();
         child.wait_with_output().unwrap()
     };
@@ -204,7 +204,7 @@ fn a_recording_may_come_through_a_pipe() {
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let figures: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(figures["samples"], 2000);
-    // A pipe without line breaks.
+    // A pipe with no line breaks.
     let output = run(&"y".repeat(8 << 20));
     assert!(!output.status.success() && String::from_utf8_lossy(&output.stderr).contains("more than 1 MiB"));
 }
@@ -231,11 +231,11 @@ fn no_command_overwrites_what_it_reads() {
             assert!(line.contains("is the input") && line.contains("itself"), "{line}");
         }
         assert_eq!(fs::read_to_string(&input).unwrap(), text, "{name}");
-        // With another name it works: the input was good.
+        // With another output name it succeeds, so the input was good.
         let all = run(&input, &folder.text(&format!("{name}.out")));
         accepted(&all.iter().map(String::as_str).collect::<Vec<_>>());
     }
-    // A calibration keeps the previous file as `.previous`, which may be the input, too.
+    // A calibration renames the old file to `.previous`, which may also be the input.
     let previous = folder.write("g.toml.previous", &poses(0.4));
     let out = folder.write("g.toml", "old");
     refused(&["calibrate", "gravity", &previous, "--out", &out]);
@@ -254,7 +254,7 @@ fn a_folder_of_results_spares_the_inputs_in_it() {
     let line = refused(&["evaluate", "tip-force", &model, &data, "--out", &folder.text(".")]);
     assert!(line.contains("itself"), "{line}");
     assert_eq!(fs::read_to_string(&data).unwrap(), data_set());
-    // The model through a link named like a picture.
+    // Write the model through a link that is named like an image.
     let elsewhere = folder.write("e.csv", &data_set());
     fs::create_dir(folder.place("results")).unwrap();
     let before = fs::read(&model).unwrap();
@@ -277,7 +277,7 @@ fn an_existing_output_is_refused_followed_or_keeps_its_mode() {
     assert!(refuse(&fifo).contains("a pipe exists and is never replaced"));
     assert!(refuse(&folder.link("to nothing", "nowhere")).contains("a link to a file that does not exist"));
     assert!(refuse(&folder.text(".")).contains("a folder exists"));
-    // A device like /dev/null, which only root can create.
+    // A device like /dev/null; only root can create one.
     let device = folder.text("null");
     if Command::new("mknod")
         .args([&device, "c", "1", "3"])

@@ -17,7 +17,7 @@ const PORTS: [u16; 9] = [47130, 47100, 47101, 47131, 47110, 47111, 47140, 47120,
 /// The embedded emulated rig on ports that are free for TCP and UDP, so that it disturbs no other process.
 pub(crate) fn rig() -> String {
     let mut text = include_str!("../../../config/rigs/emulated.toml").to_owned();
-    // All are held until the last is chosen, so that no two are the same.
+    // Hold all of them until the last has been chosen, so that no two are the same.
     let mut held = Vec::new();
     for port in PORTS {
         let free = loop {
@@ -66,7 +66,7 @@ fn the_emulated_rig_runs_with_nothing_beside_the_program() {
     judged(|| {
         let (readings, report) = run(folder.path());
         println!("readings of both handles and both arms: {readings:?}\n{report}");
-        // Load cannot cause these; another program may have taken a port in between.
+        // A busy machine cannot cause these; another program may have taken a port in between.
         for words in ["not installed", "cannot be used", "cannot emulate"] {
             assert!(!report.contains(words) || report.contains("in use by another program"), "{report}");
         }

@@ -22,7 +22,7 @@ fn commands() -> BTreeSet<String> {
     let help = printed(&["--help"]);
     let (_, list) = help.split_once("Commands:\n").unwrap();
     let (list, _) = list.split_once("\n\n").unwrap();
-    // A line that continues an explanation is indented further.
+    // A line that continues a description is indented further.
     let names = list.lines().filter_map(|line| line.strip_prefix("  ")).filter(|line| !line.starts_with(' '));
     let names: BTreeSet<_> = names.filter_map(|line| line.split_whitespace().next()).map(str::to_owned).collect();
     assert!(names.len() > 20, "{names:?}");
@@ -36,7 +36,7 @@ fn bash_completes_commands_options_and_values() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("nima");
     fs::write(&file, script).unwrap();
-    // As bash calls it: the words so far, the last one incomplete.
+    // As bash calls it: the words so far, of which the last is incomplete.
     let completed = |line: &str| {
         let words: Vec<&str> = line.split(' ').collect();
         let quoted: Vec<String> = words.iter().map(|word| format!("'{word}'")).collect();
@@ -91,7 +91,7 @@ fn every_command_has_a_manual_page() {
     let before = page("nima-run");
     printed(&["man", folder.to_str().unwrap()]);
     assert_eq!(page("nima-run"), before, "the same program writes the same page");
-    // An obstacle is reported.
+    // An obstacle is reported as an error.
     let report = crate::one_line(&nima(&["man", folder.join("nima.1").to_str().unwrap()]));
     assert!(report.contains("nima.1"), "{report}");
 }
@@ -145,7 +145,7 @@ fn a_crate_without_a_licence_text_fails_the_packages() {
     let cases: [(&str, Files, bool); 7] = [
         ("MIT", own, true),
         ("MIT", &[], false),
-        // The standard text of this one needs no name.
+        // This licence has a standard text, so no file is needed.
         ("MIT OR Apache-2.0", &[], true),
         ("MIT/Apache-2.0", &[], true),
         ("(MIT OR Apache-2.0) AND OFL-1.1", &[], false),
@@ -181,7 +181,7 @@ fn the_list_of_what_is_inside_names_every_crate_with_its_checksum() {
     assert_eq!(bom["components"][0]["hashes"][0]["content"], "ab12");
     let whole = bom["dependencies"].as_array().unwrap().iter().find(|one| one["ref"] == "pkg:cargo/nima-console@1.0.0");
     assert_eq!(whole.unwrap()["dependsOn"], json!(["pkg:cargo/a@1.0.0", "pkg:cargo/b@1.0.0"]));
-    // A text that two crates share occurs once.
+    // A text used by two crates appears only once.
     let texts = fs::read_to_string(folder.path().join("out/third-party.txt")).unwrap();
     assert_eq!(texts.matches("One text.").count(), 1);
     let before = read();

@@ -72,7 +72,7 @@ fn a_run_names_the_first_device_and_ends_with_its_cause() {
 /// Changes this device of the rig to an address without a device; `None` for a name outside the list above.
 fn take_away(file: &mut RigFile, device: &str, folder: &Path) -> Option<()> {
     let nowhere = folder.join("ttyACM-nothing-here").display().to_string();
-    // Bound and closed again, so that nothing listens there.
+    // Bind and close again, so that nothing listens on the port.
     let closed = || std::net::TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap();
     let (side, part) = device.split_once(' ').unwrap_or(("", device));
     match part {

@@ -71,7 +71,7 @@ fn a_table_of_trials_gives_the_answer_with_its_files() {
     let pair = &report["measures"][0]["pairs"][0];
     assert_eq!((&pair["first"], &pair["second"]), (&Value::from("matched"), &Value::from("dfr")));
     assert!((pair["difference"]["estimate"].as_f64().unwrap() + 9.0).abs() < 1e-6, "{pair}");
-    // All eight differ in the same direction: 2 of the 256 ways.
+    // All eight differ in the same direction, as in 2 of the 256 combinations.
     assert!((pair["p"].as_f64().unwrap() - 2.0 / 256.0).abs() < 1e-9, "{pair}");
     for name in ["analysis.json", "analysis.md", "analysis.csv", "analysis.R"] {
         assert!(folder.path().join("out").join(name).exists(), "{name}");

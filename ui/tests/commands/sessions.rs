@@ -37,7 +37,7 @@ fn sessions_are_listed_kept_and_deleted_and_nothing_else_is() {
     let part = at("part.mcap").display().to_string();
     done(data, &["export", &whole, "--out", &part, "--from", "0.5", "--to", "1.5"]);
     std::fs::write(at("empty.mcap"), []).unwrap();
-    // As left by a process that is killed while recording: not finished.
+    // In the state in which a process killed while recording leaves it: not finished.
     let mut killed = SessionWriter::create(&at("killed.mcap"), "a program").unwrap();
     killed.flush().unwrap();
     let outside = data.join("mine.mcap");

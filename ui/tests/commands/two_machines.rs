@@ -88,7 +88,7 @@ fn the_handle_is_at_one_machine_and_the_arm_at_the_other() {
         let there = there.wait_with_output().unwrap();
         let json: Value = serde_json::from_slice(&here.stdout).unwrap_or_default();
         println!("{json:#}\n{}\n{}", report(&here), report(&there));
-        // A machine that stood still for 0.1 s stops both.
+        // A machine that stalled for 0.1 s stops both.
         if json["final_state"] != "engaged" || json["link"]["open"] != true {
             too_busy();
         }
@@ -98,7 +98,7 @@ fn the_handle_is_at_one_machine_and_the_arm_at_the_other() {
             too_busy();
         }
         assert_eq!(json["link"]["dropped"], 0);
-        // The other machine lost this one: it stopped, and reports the cause.
+        // The other machine lost the connection: it stopped, and reports the cause.
         assert!(!there.status.success());
         assert!(report(&there).contains("the other machine was closed") || report(&there).contains("over the link"));
     });

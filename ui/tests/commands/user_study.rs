@@ -116,8 +116,8 @@ fn ended_by(signal: i32, study: &Path) -> bool {
     while began(&journal) == before && child.try_wait().unwrap().is_none() {
         thread::sleep(Duration::from_millis(1));
     }
-    // The program catches signals before it starts the trial. SAFETY: the child is ours and has not been waited for
-    // successfully, so its number is not another's.
+    // The program handles signals before it starts the trial. SAFETY: the child is ours and has not yet been waited
+    // for, so its id cannot belong to another process.
     #[expect(unsafe_code, reason = "a signal to a child")]
     unsafe {
         libc::kill(libc::pid_t::try_from(child.id()).unwrap(), signal);
@@ -213,7 +213,7 @@ fn a_simulated_study_finds_a_difference_that_is_there_and_none_that_is_not() {
     assert!(page.contains("Simulated:") && page.contains("<svg") && page.contains("With (n = 10)"), "{page}");
     assert!(page.contains("Unblinded by A") && page.contains("matched, gain 1") && page.contains("20 ms"), "{page}");
     assert!(!page.contains("<script") && !page.contains("src="), "nothing is loaded from elsewhere");
-    // Less than a tick apart: the same for the hand.
+    // The delays differ by less than a tick, so the hand feels no difference.
     let same = "[[conditions]]\nname = 'Same'\nmode = 'matched'\ndelay_ms = 20.1\n";
     let (p, _) = simulated(&format!("{with}{same}"));
     assert!(p > 0.05, "{p}");

@@ -48,7 +48,7 @@ fn nameless(console: &Console) -> Vec<String> {
             wrong.push(format!("{:?} at {:?}", node.role(), node.raw_bounds()));
         }
     }
-    // A trial has the fewest: abort, engage and stop.
+    // A trial has the fewest controls: abort, engage and stop.
     assert!(count >= 3, "only {count} nodes can be operated");
     wrong
 }
@@ -151,7 +151,7 @@ fn stops(console: &mut Console) -> Vec<(String, Rect)> {
         let node = console.query_all_by(|node| node.is_focused() && node.role() != Kind::Window).next()?;
         Some((node.accesskit_node().label().unwrap_or_default(), node.rect()))
     };
-    // Removes the previous focus.
+    // Remove the previous focus.
     if let Some(id) = console.ctx.memory(egui::Memory::focused) {
         console.ctx.memory_mut(|memory| memory.surrender_focus(id));
     }
@@ -189,18 +189,18 @@ fn disorder(stops: &[(String, Rect)], room: Rect) -> Vec<String> {
 fn the_keyboard_goes_through_the_top_bar_and_every_panel_as_they_are_read() {
     let folder = tempfile::tempdir().unwrap();
     let mut console = begin("bimanual", folder.path());
-    // So that the step next to the stop can be pressed.
+    // So that the step button next to the stop button can be pressed.
     press(&mut console, "Stop");
     until(&mut console, "stopped", |tick| tick.state == LoopState::Stopped);
     console.run_steps(30);
     let bar = Rect::from_min_max(egui::pos2(0.0, 0.0), egui::pos2(SIZE[0], 72.0));
     let page = Rect::from_min_max(egui::pos2(0.0, 72.0), SIZE.into());
-    // The surgeon's strip below the field.
+    // The strip below the field in the Surgeon view.
     let strip = Rect::from_min_max(egui::pos2(0.0, 824.0), SIZE.into());
     let mut wrong = Vec::new();
     let mut count = 0;
     for panel in Panel::ALL {
-        // Alone, so that everything below the bar belongs to this panel.
+        // Show it alone, so that everything below the bar belongs to this panel.
         let closed = Panel::ALL.into_iter().filter(|other| *other != panel).collect();
         console.state_mut().settings_mut().layout = PanelLayout { closed, ..PanelLayout::default() };
         console.run_steps(4);

@@ -97,7 +97,7 @@ fn open(harness: &mut Harness<'_, ConsoleApp>, overlay: &str) {
     }
     harness.run_steps(3);
     if overlay == "glossary dragged to the stop" {
-        // Its title bar is above its first word.
+        // The title bar is above the first word.
         let word =
             |harness: &Harness<'_, ConsoleApp>| harness.get_by_role_and_label(Role::Label, "Keys").rect().left_top();
         let before = word(harness);
@@ -168,7 +168,7 @@ fn an_accepted_stop_is_no_alarm() {
     harness.key_press(Key::F5);
     harness.run_steps(3);
     assert_eq!(reads(&harness, STUCK), 0);
-    // A loop without processor time for half a second is correctly reported as silent.
+    // A loop that gets no processor time for half a second is correctly reported as silent.
     assert!(reads(&harness, "Alarm: ") <= reads(&harness, SILENT));
 }
 

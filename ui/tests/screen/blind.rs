@@ -90,7 +90,7 @@ impl Reader {
             self.step();
             self.step();
         }
-        // Everything that the palette offers; then it is closed again.
+        // Run everything that the palette offers, and close it again.
         for _ in 0..2 {
             self.window.key_press_modifiers(egui::Modifiers::COMMAND, P);
             self.step();
@@ -139,7 +139,7 @@ fn a_blind_study_tells_its_conditions_on_no_page_and_in_no_file_until_it_is_open
     let place = make(folder.path(), "trials = 1\nrecord = true\nreference = 'Wildebeest'", 6.0, rest);
     let mut window = console(folder.path(), ConsoleOptions::default());
     until(&mut window, "any tick", |_| true);
-    // The previous loop has its own mode and gain on the screen.
+    // The screen shows the mode and gain of the previous loop.
     window.key_press(Key::F8);
     window.run_steps(3);
     let mut reader = Reader { window, seen: BTreeSet::new() };

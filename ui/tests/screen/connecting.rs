@@ -51,7 +51,7 @@ fn console(folder: &Path) -> Harness<'static, ConsoleApp> {
 fn on_emulated_rig(folder: &Path) -> (Harness<'static, ConsoleApp>, RigFile) {
     let mut file = rig_file(&elsewhere(folder));
     file.set("name", "Bench rig");
-    // Emulated handles report their hands, as real ones do: swapping them must be explicit.
+    // Emulated handles report which hand they are for, like real ones, so a swap must be explicit.
     file.set("devices.right.handle.hand", "right");
     file.set("devices.left.handle.hand", "left");
     file.save(&folder.join("rigs/bench.toml")).unwrap();

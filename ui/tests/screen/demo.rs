@@ -51,7 +51,7 @@ fn the_demonstration_goes_on_by_itself_and_stands_while_the_loop_is_stopped() {
     until(&mut harness, "stopped", |tick| tick.state == LoopState::Stopped);
     read(&mut harness, "waits until you press Release stop, then Engage");
     let stopped_s = harness.state().tick().unwrap().t_s;
-    // Far longer than a chapter, or the explanation of a fault.
+    // Far longer than a chapter, or than the explanation of a fault.
     until(&mut harness, "later", |tick| tick.t_s > stopped_s + 40.0);
     let tick = harness.state().tick().unwrap();
     assert_eq!((tick.mode, tick.state), (Mode::Best, LoopState::Stopped));
@@ -209,7 +209,8 @@ fn the_demonstration_lets_go_with_and_without_the_governor_and_leaves_everything
     until(&mut harness, "with the governor", |tick| tick.gate_settings == before_with_hold(before));
     until(&mut harness, "no hand holds the handle", |tick| tick.state == LoopState::Idle);
     let went = harness.get_by_label_contains("The handle moved").value().unwrap_or_default();
-    // The pressing force at which the hand releases the handle differs between runs: 0.9 to 2.1 mm were observed.
+    // The pressing force at which the hand releases the handle differs between runs, and so does the travel: 0.9 to 2.1
+    // mm were observed.
     assert!(["moved 0.", "moved 1.", "moved 2."].iter().any(|few| went.contains(few)), "{went}");
     until(&mut harness, "engaged again", |tick| tick.state == LoopState::Engaged);
     harness.key_press(Key::F2);

@@ -104,7 +104,7 @@ fn the_picture_is_shown_with_the_forces_in_it_and_each_of_its_faults_in_words() 
         serving.faults.set(EmulatedFault::None);
         report(&mut harness, "Endoscope image: live");
     }
-    // The loop continued: the image does not affect it.
+    // The loop kept running, because the image does not affect it.
     assert_eq!(harness.state().tick().unwrap().state, LoopState::Engaged);
 }
 
@@ -150,7 +150,7 @@ fn the_forces_fade_where_the_check_of_the_camera_was_worse_than_ten_pixels() {
     let (_serving, mut good) = checked(Some(4.0));
     assert!(comes(&mut good, TIMEOUT, |harness| is_painted(harness, "Forces are drawn at the tips")));
     let (_serving, mut faded) = checked(Some(14.0));
-    // The gauges next to the image have the same text.
+    // The gauges next to the image show the same text.
     assert!(comes(&mut faded, TIMEOUT, |harness| {
         is_painted(harness, "14 px or more away from the tips") && faint(harness) > faint(&good)
     }));
@@ -316,7 +316,7 @@ fn the_wheel_zooms_a_drag_moves_and_a_double_click_shows_all() {
     let moved = place(&harness).min.y - zoomed.min.y;
     assert!((moved - 50.0).abs() < 12.0, "moved by {moved}");
 
-    // Away from the tips, which are marked at the edge.
+    // Zoom away from the tips, which are then marked at the edge.
     wheel(&mut harness, whole.left_bottom() + vec2(4.0, -4.0), 800.0);
     assert!(comes(&mut harness, TIMEOUT, |harness| is_painted(harness, "Right tip")), "the tip is still to be found");
     assert!(place(&harness).width() < 8.1 * whole.width());
@@ -338,7 +338,7 @@ fn edges_are_cut_off_by_the_rig_file_and_on_the_screen() {
     harness.run_steps(2);
     let (on_screen, part) = image(&harness).unwrap();
     assert_eq!(part, Rect::from_min_max(pos2(0.1, 0.2), pos2(0.75, 1.0)));
-    // The remaining part is as large as possible, and not distorted.
+    // The cropped image is as large as possible, and not distorted.
     assert!((on_screen.height() - by_file.height()).abs() < 1.0);
     let proportions = on_screen.width() / on_screen.height();
     assert!((proportions - 640.0 * 0.65 / (360.0 * 0.8)).abs() < 0.01, "{proportions}");

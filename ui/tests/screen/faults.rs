@@ -65,7 +65,7 @@ pub(crate) fn faults_of_texts(
         let room = text.clip.intersect(window).expand(SLACK);
         let sideways = text.place.left() < room.left() || text.place.right() > room.right();
         let up_or_down = text.place.top() < room.top() || text.place.bottom() > room.bottom();
-        // A long column is scrolled: a text cut at its end becomes visible by scrolling.
+        // In a long column that scrolls, text cut off at the end can be scrolled into view.
         if text.cut || sideways || (up_or_down && !scrolls) {
             faults.push(format!("cut: \"{}\" at {:?}", text.words, text.place));
         }
@@ -170,7 +170,7 @@ pub(crate) fn faults(harness: &mut Harness<'_, ConsoleApp>, size: [f32; 2], page
 /// Content of a window of this size: its texts, the window, the operating field.
 fn seen(harness: &mut Harness<'_, ConsoleApp>, size: [f32; 2]) -> (Vec<Text>, Rect, Option<Rect>) {
     harness.set_size(size.into());
-    // Sizes settle within some frames.
+    // Sizes settle within a few frames.
     harness.run_steps(4);
     harness.check_accessibility();
     let window = Rect::from_min_size(Pos2::ZERO, size.into());

@@ -53,7 +53,7 @@ fn what_comes_and_goes_on_the_screen_takes_no_control_out_of_a_hand() {
         harness.run_steps(3);
         let engaged = controls(&harness);
         assert!(engaged.len() >= 5, "{role:?}: {engaged:?}");
-        // Out of contact, in it, and out again.
+        // Check without contact, with contact, and without again.
         for contact in [false, true, false] {
             until(&mut harness, "contact or none", |tick| (tick.measured_n.norm() > 0.5) == contact);
             harness.run_steps(10);

@@ -23,7 +23,7 @@ fn the_interlock_of_each_hand_shows_its_state_and_the_reason() {
     press(&mut harness, "Stop");
     until(&mut harness, "stopped", |tick| tick.state == LoopState::Stopped);
     let stopped_s = harness.state().tick().unwrap().t_s;
-    // A lamp follows its gate within some tenths of a second, so that it can be read.
+    // A lamp follows its gate with a delay of some tenths of a second, so that it can be read.
     until(&mut harness, "a moment later", |tick| tick.t_s > stopped_s + 0.5);
     harness.step();
     for side in ["left", "right"] {
@@ -36,7 +36,7 @@ fn the_interlock_of_each_hand_shows_its_state_and_the_reason() {
 
 #[test]
 fn the_gain_tells_where_it_is_stable_once_there_was_a_contact() {
-    // Without contact it never becomes known.
+    // Without contact, the stiffness never becomes known.
     let mut harness = console_of("free_motion", SIZE, |app| app);
     until(&mut harness, "the first ticks", |tick| tick.t_s > 0.1);
     harness.get_by_label("Highest stable gain: known after the first contact");
@@ -50,7 +50,7 @@ fn the_gain_tells_where_it_is_stable_once_there_was_a_contact() {
     harness.step();
     assert!(slider(&harness) == before, "what stands below would slip from the hand at the first contact");
     let report = harness.get_by_label_contains("stable up to").accesskit_node().value().unwrap();
-    // The scene's phantom has 300 to 500 N/m at the pressed place.
+    // At the pressed place, the scene's phantom has 300 to 500 N/m.
     let n_m: f64 = report.split("at ").last().unwrap().trim_end_matches(" N/m").parse().unwrap();
     assert!((150.0..800.0).contains(&n_m), "{report}");
 }

@@ -36,7 +36,7 @@ fn every_role_and_panel_looks_as_stored() {
         console.state().past().is_some_and(|(_, t_s)| (t_s - SHOWN_S).abs() < 1e-9)
     });
     playback::until_whole(&mut console);
-    // Parts that were first drawn from recorded plots are drawn from the replay.
+    // Parts that were first drawn from recorded plots are later drawn from the replay.
     comes(&mut console, Duration::from_secs(1), |_| false);
     let mut all = Vec::new();
     for (role, front) in VIEWS {
@@ -48,7 +48,7 @@ fn every_role_and_panel_looks_as_stored() {
             console.run_steps(4);
             let panels: Vec<_> = front.iter().map(|panel| format!("-{panel:?}")).collect();
             let name = format!("{role:?}{}{}", panels.concat(), if light { "-light" } else { "" });
-            // One light picture is enough for a role.
+            // One image in light colours is enough for a role.
             if !light || front.is_empty() {
                 all.extend(image::still_differs(&mut console, &name.to_lowercase()));
             }

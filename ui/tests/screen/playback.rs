@@ -80,7 +80,7 @@ fn do_everything(harness: &mut Harness<'_, ConsoleApp>) -> usize {
         .get_all_by(move |node| is_control(node.role()))
         .filter(|node| {
             let name = node.accesskit_node().label().unwrap_or_default();
-            // Other tests press controls that leave playback, stop, or open something over the rest.
+            // Other tests press the controls that leave playback, stop, or open a window over the rest.
             !["Stop", "Return to live (L)", "Close", "View", "Report", "Save excerpt"].contains(&name.as_str())
         })
         .map(|node| node.rect().center())
@@ -158,7 +158,7 @@ fn the_past_looks_like_the_past_and_one_key_leaves_it() {
     until_whole(&mut harness);
     let (_, shown_s) = harness.state().past().unwrap();
     assert!((shown_s - 2.5).abs() < 1e-9, "{shown_s}");
-    // Pressing the middle of the time line shows the middle of the session.
+    // A click in the middle of the time line shows the middle of the session.
     let line = harness.get_by_label("Time of the session").rect();
     harness.drag_at(line.center());
     harness.step();
@@ -246,7 +246,7 @@ fn sessions_are_listed_kept_deleted_and_opened() {
     press(&mut harness, "Delete 2.mcap");
     assert!(other.exists(), "it is asked once");
     press(&mut harness, "Delete it? 2.mcap");
-    // The rows below move up.
+    // The rows below have moved up.
     wait(&mut harness, "it is not listed any more", |harness| {
         harness.query_by_role_and_label(Kind::Button, "Open 2.mcap").is_none()
     });

@@ -32,7 +32,7 @@ fn another_scene_and_another_rig_start_idle_and_are_offered_again() {
     let mut harness = console(folder.path());
     harness.key_press(Key::F6);
     harness.step();
-    // By its name: the list of connected devices appears a moment later, and moves the page under a pointer.
+    // Picked by name: the list of connected devices appears a moment later and moves the page under the pointer.
     pick(&mut harness, "Bimanual peg transfer");
     pick(&mut harness, "Start");
     until_runs(&mut harness, "simulated", "bimanual");
@@ -95,7 +95,7 @@ fn a_rig_is_made_from_another_and_used() {
 fn what_cannot_start_is_told_and_what_ran_before_runs_again() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = console(folder.path());
-    // The scene needs a wrist sensor that this rig does not have.
+    // The scene needs a wrist sensor, which this rig does not have.
     let rig = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../config/rigs/simulated.toml")).unwrap();
     let bare = rig.split("[simulated.right]").next().unwrap().replace("Simulated rig", "Bare rig");
     std::fs::create_dir_all(folder.path().join("rigs")).unwrap();
@@ -160,7 +160,7 @@ fn an_endoscope_is_tried_while_its_address_is_typed_and_written_without_editing_
     pick(&mut harness, "Start");
     until_runs(&mut harness, path.to_str().unwrap(), "peg_transfer");
     assert_eq!(harness.state().rig().endoscope.as_ref().unwrap().url, serving.endpoint);
-    // The image of the running rig is not opened a second time.
+    // The running rig's image is not opened a second time.
     press(&mut harness, "Rig");
     read(&mut harness, "live");
     type_address(&mut harness, " ");

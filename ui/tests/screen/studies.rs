@@ -142,7 +142,7 @@ fn choose(window: &mut Console, list: &str, what: &str) {
     };
     click(window);
     pick(window, what);
-    // Without a pointer nothing closes it.
+    // Without a pointer, nothing closes the menu.
     if can_press(window, what) {
         click(window);
     }

@@ -157,7 +157,7 @@ fn the_histograms_tell_how_many_ticks_are_later_than_the_deadline() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = console(folder.path());
     until(&mut harness, "a second", |tick| tick.t_s > 1.0);
-    // The bars are counted four times per second.
+    // The histogram is updated four times per second.
     harness.run_steps(12);
     assert!(harness.query_all_by_label_contains("exceeded the deadline of 1000 µs").count() >= 3);
     assert!(harness.query_all_by_label_contains("Missed in the last 2 min: ").next().is_some());

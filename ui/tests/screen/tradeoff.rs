@@ -153,7 +153,7 @@ fn a_measured_point_is_applied_and_a_restart_comes_back_idle() {
     harness.step();
     harness.check_accessibility();
     harness.get_by_label_contains("Trade-off plot:");
-    // The fastest of all is direct reflection: the running loop changes to it.
+    // The fastest of all is direct reflection, and the running loop changes to it.
     harness
         .get_by(|node| node.role() == Role::Button && node.label().is_some_and(|l| l.starts_with("Direct (DFR): ")))
         .click_accesskit();
@@ -161,7 +161,7 @@ fn a_measured_point_is_applied_and_a_restart_comes_back_idle() {
     pick(&mut harness, "Apply");
     until(&mut harness, "direct", |tick| tick.mode == nima_core::impedance::Mode::Dfr);
     assert_eq!(harness.state().tick().unwrap().state, LoopState::Engaged);
-    // Another degree or window: the loop is restarted and waits for the operator.
+    // For another degree or window, the loop restarts and waits for the operator.
     let degree = choose_another(&harness);
     harness.step();
     pick(&mut harness, "Apply");

@@ -71,7 +71,7 @@ fn one_person_leads_both_instruments_one_at_a_time() {
     read(&mut harness, "Right instrument");
     let right_m = |harness: &Window<'_>| harness.state().tick().unwrap().guide_m.unwrap();
     let before_m = right_m(&harness);
-    // All in one frame: they are applied in order.
+    // All within one frame: they are applied in order.
     for key in [Key::PageDown, Key::PageDown, Key::H, Key::PageUp, Key::G] {
         harness.key_press(key);
     }

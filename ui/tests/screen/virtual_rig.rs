@@ -59,7 +59,7 @@ pub(crate) fn records() -> &'static (GravityRecord, CorrespondenceRecord) {
             let pushing = |target: correspondence::PushTarget| Prompt::Push {
                 direction: nalgebra::UnitVector3::new_normalize(target.push_in_world),
             };
-            // The zero first: both sensors rest.
+            // Zero the sensors first: both are unloaded.
             if t_s < 2.0 { Some(Prompt::Rest) } else { session.target().map(pushing) }
         });
         let report = session.report().unwrap();

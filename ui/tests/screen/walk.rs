@@ -121,7 +121,8 @@ fn nothing_is_cut_or_overlaps_on_the_pages_of_a_study_and_in_a_trial() {
         for size in SIZES {
             for light in [false, true] {
                 harness.state_mut().settings_mut().light = light;
-                // The form scrolls, and on a small screen a questionnaire does: content scrolled out of view has no position.
+                // The form scrolls, and on a small screen so does a questionnaire; content scrolled out of view has no
+                // position.
                 let is_form = page == "form" || page == "questionnaire" && size[1] < 1000.0;
                 let faults = faults(harness, size, if is_form { Page::Form } else { Page::Scrolls });
                 all.extend(faults.into_iter().map(|fault| format!("{page} {size:?} light {light}: {fault}")));
@@ -171,7 +172,7 @@ fn nothing_is_cut_or_overlaps_in_the_past_and_in_the_list_of_sessions() {
     bench::press(&mut harness, "Open 20261123T131415Z-Simulated-rig.mcap");
     playback::until_whole(&mut harness);
     all.extend(in_each_view(&mut harness, |harness, role, size| {
-        // On a small screen the technician's panels scroll more: content scrolled out of view has no position.
+        // On a small screen, the technician's panels scroll more; content scrolled out of view has no position.
         let is_form = role == Role::Technician && size[1] < 1000.0;
         faults(harness, size, if is_form { Page::Form } else { Page::of_view(role) })
     }));
@@ -280,7 +281,7 @@ fn controls(harness: &Harness<'_, ConsoleApp>) -> String {
     for node in harness.get_all_by(move |node| operated(node.role())) {
         let node = node.accesskit_node();
         let name: String = node.label().unwrap_or_default().chars().filter(|letter| !letter.is_ascii_digit()).collect();
-        // An alarm depends on the computer: without the right to a real-time thread there is one.
+        // Whether there is an alarm depends on the computer: there is one if a real-time thread is not permitted.
         if !(name.starts_with("All alarms") || name.starts_with("Acknowledge")) {
             writeln!(text, "{:?}: {}", node.role(), name.lines().next().unwrap_or_default()).unwrap();
         }

@@ -68,7 +68,7 @@ impl Fixture {
         let path = folder.join("theatre.toml");
         let rig = file.save(&path).unwrap();
         let name = path.display().to_string();
-        // Idle: an instrument that does its task would be at a corner only by chance.
+        // Not engaged: an instrument performing its task would be at a corner only by chance.
         let plan = SimulationPlan { rig, engage: false, ..plan("peg_transfer") };
         let kept = folder.to_path_buf();
         let running = name.clone();
@@ -103,7 +103,7 @@ fn a_technician_finds_the_lens_from_live_views_saves_it_and_undoes_it() {
     language::fits(&mut console, "lens");
     image::same(&console, "wizard-camera-lens");
     pick(&mut console, "Next");
-    // The board is at rest, but the tip does not move between corners: no pose results.
+    // The board is at rest, but the tip does not move between corners, so no pose results.
     for touched in 0..4 {
         read(&mut console, "Touch the marked corner with the tip");
         pick(&mut console, "Tip is on the corner");

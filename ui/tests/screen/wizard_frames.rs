@@ -35,7 +35,7 @@ fn rig_file(folder: &Path, devices: &RigSettings) -> String {
     put("tissue_sensor.port", &devices.tissue_sensor.as_ref().unwrap().bota().unwrap().port);
     put("tracker.address", devices.tracker.as_ref().unwrap().address.as_ref().unwrap());
     put("pedal.source", &devices.pedal.as_ref().unwrap().source);
-    // Nothing serves it here.
+    // No server uses this address.
     file.set("endoscope.url", "http://127.0.0.1:9/");
     for side in Side::ALL {
         let arm = devices.arm(side).unwrap().arm.kinova().unwrap();
@@ -45,7 +45,7 @@ fn rig_file(folder: &Path, devices: &RigSettings) -> String {
     }
     let tools = &devices.tracker.as_ref().unwrap().tools;
     assert!(file.set_text("devices.tracker.tools", &format!("{tools:?}")));
-    // The instrument was replaced by a longer one, and the rig file was not updated.
+    // The instrument was replaced by a longer one, but the rig file was not updated.
     let shaft_m = devices.right.as_ref().unwrap().mount.shaft_m - 0.006;
     file.set("devices.right.mount.shaft_m", shaft_m);
     let path = folder.join("theatre.toml");

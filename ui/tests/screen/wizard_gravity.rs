@@ -62,7 +62,7 @@ fn a_technician_walks_from_an_uncalibrated_wrist_to_a_force_that_is_known() {
     leave_the_checks(&mut console);
     wait(&mut console, "some poses", |c| shows(c, "4 of 12 recorded"));
     language::fits(&mut console, "poses");
-    // Back and closing lose no good data.
+    // Going back or closing does not lose good data.
     pick(&mut console, "Back");
     pick(&mut console, "Back to the monitor");
     wait(&mut console, "the monitor", |c| shows(c, "Calibrate gravity…") && c.state().tick().is_some());
@@ -98,7 +98,7 @@ fn a_hand_on_the_tool_is_told_and_cannot_be_saved_without_a_name() {
     let mut console = console(gravity_scene(Some(Flaw::Touches)), folder.path());
     pick(&mut console, "Calibrate gravity…");
     leave_the_checks(&mut console);
-    // While it is touched, or afterwards.
+    // Either while the tool is touched, or afterwards.
     let report = ["something touches it", "something touches the tool", "Something touched the tool"];
     wait(&mut console, "the touch", |c| report.iter().any(|words| shows(c, words)));
     assert_eq!(files(folder.path()), 0);
@@ -133,14 +133,14 @@ fn a_wrong_sign_is_named_and_an_override_is_written_into_the_file() {
     wait(&mut console, "enough poses", |c| shows(c, "8 of 12 recorded"));
     pick(&mut console, "Next");
     wait(&mut console, "the verdict", |c| shows(c, "Poor data") && shows(c, "sign"));
-    // The switch fixes it without a new pose; and back again.
+    // The switch fixes this without a new pose, and switching back restores it.
     for verdict in ["Accepted", "Poor data"] {
         pick(&mut console, "Back");
         pick(&mut console, "Back");
         let by_arm = console.query_all_by_label_contains("Take the orientation from the arm").next().unwrap();
         assert!(by_arm.accesskit_node().is_disabled(), "what is in the poses cannot be changed");
         console.query_all_by_label_contains("points down at rest").next().unwrap().click();
-        // The sensor is checked again: the next step is disabled until then, from the second frame on.
+        // The sensor is checked again: from the second frame on, the next step is disabled until the check is done.
         console.step();
         console.step();
         assert!(!can_press(&console, "Next"));

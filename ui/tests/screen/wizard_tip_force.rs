@@ -191,7 +191,7 @@ fn from_an_empty_recording_to_a_network_that_answers_in_the_loop() {
     console.press("Next");
     console.press("Small (16)");
     console.press("Start training");
-    // Another page does not end it.
+    // Showing another page does not end it.
     console.press("Back");
     assert!(console.shows("All goals are met"));
     console.press("Next");

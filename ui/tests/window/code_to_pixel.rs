@@ -175,7 +175,7 @@ fn run(size: &str, endoscope: &str, time: Duration) -> (ImageObservations, serde
         .status();
     assert!(moved.unwrap().success());
     thread::sleep(Duration::from_secs(1));
-    // A rig file does not engage automatically.
+    // With a rig file, the console does not engage automatically.
     console.click((width.parse::<i32>().unwrap() - ENGAGE_FROM_RIGHT, 36));
     thread::sleep(Duration::from_secs(3));
     let seen = ImageObservations::watch(&Screen::open(memory.path()), time);

@@ -31,7 +31,7 @@ impl<'a> Console<'a> {
         let console = Self { x, folder, process };
         wait_until("the window", || x.window_is_open());
         thread::sleep(Duration::from_millis(1500));
-        // Without a window manager the window does not get the keyboard. On a busy machine it cannot take it at once.
+        // Without a window manager the window does not get keyboard focus. On a busy machine it cannot take it at once.
         let focus = ["search", "--name", "NIMA Console", "windowfocus"];
         wait_until("the focus", || console.x.command("xdotool").args(focus).status().unwrap().success());
         thread::sleep(Duration::from_millis(500));

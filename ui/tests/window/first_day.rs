@@ -123,19 +123,20 @@ fn from_an_empty_folder_to_both_arms_engaged() {
     nima_testing::real_time::judged(|| {
         let began = Instant::now();
         let mut day = Day::begin(&x);
-        // The tour, which ends in the monitor.
+        // The tour ends in the monitor.
         day.follow("the tour", |day| day.next().is_none());
         day.console.key("F6");
         day.click(EMULATED_RIG);
         day.follow("the calibrations", Day::has_all_calibrations);
         println!("calibrated after {:.0} s and {} clicks", began.elapsed().as_secs_f64(), day.clicks.get());
-        // From the last page straight to the ready check and through it: its stop and its releases stand out too. A failed
-        // point is repeated, as its remedy says; a machine that is too busy for the rates never passes, and is not judged.
+        // Continue from the last page straight to the ready check and through it: its stop and its releases are
+        // highlighted too. A failed item is repeated, as its remedy says; a machine that is too busy for the rates
+        // never passes, and is not judged.
         day.follow("the ready check", |day| day.checks().len() >= CHECKS_MAX || day.is_ready());
         if !day.is_ready() {
             println!("{}", day.checks().join("\n\n"));
             *wrong.borrow_mut() = day.wrong();
-            // A failure that a busy machine cannot explain is not repeated.
+            // Do not repeat a failure that a busy machine cannot explain.
             if !wrong.borrow().is_empty() {
                 return;
             }

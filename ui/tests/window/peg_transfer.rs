@@ -40,7 +40,7 @@ fn all_six(x: &Xvfb, views: Views) {
     player.keep_image();
     let score = player.end();
     assert_eq!(counts(&score), [12.0, 12.0, 0.0, 0.0].map(Some), "{score}");
-    // The limit of the task, which a slow machine exceeds.
+    // The time limit of the task, which a slow machine exceeds.
     if began.elapsed() < Duration::from_secs(280) {
         assert!(score["completion_time_s"].as_f64().is_some_and(|time_s| time_s < 300.0), "{score}");
     }

@@ -78,7 +78,7 @@ pub(crate) fn field() -> Views {
     window.run_steps(4);
     let calm = window.get_by_label("Operating field").rect();
     window.state_mut().on_exit(None);
-    // A loop that is no longer running is an alarm.
+    // If the loop is no longer running, that is an alarm.
     let began = Instant::now();
     loop {
         window.run_steps(2);
@@ -126,7 +126,7 @@ impl<'a> Player<'a> {
         let size = part.size().round();
         let crop = format!("{}x{}+{}+{}", size.x, size.y, corner.x, corner.y);
         let mut import = self.console.x.command("import");
-        // The loop needs the other processors.
+        // Use one thread only, because the loop needs the other processors.
         import.env("MAGICK_THREAD_LIMIT", "1");
         let rgb = import.args(["-window", "root", "-crop", &crop, "-depth", "8", "rgb:-"]).output().unwrap().stdout;
         assert_eq!(rgb.len(), 3 * size.x as usize * size.y as usize, "{crop}");
@@ -261,7 +261,7 @@ impl<'a> Player<'a> {
 
     /// Finds the field again.
     fn find_field(&mut self) {
-        // The strip may flash.
+        // The alarm strip may flash, so look several times.
         let is_alarmed = (0..4).any(|_| {
             thread::sleep(Duration::from_millis(150));
             self.sees_alarm()
@@ -390,7 +390,7 @@ impl<'a> Player<'a> {
         self.take(giver, from);
         self.hand_over();
         self.put(self.peg(to));
-        // Back to where it will take the next one.
+        // Move back to where it will take the next ring.
         let taker = giver.other();
         self.height(OVER_RING_M);
         self.drag(Self::rim(taker, [0.0, 0.0]));

@@ -31,7 +31,7 @@ impl Xvfb {
             unjudged::left_out("Xvfb, xdotool or ImageMagick is not installed");
             return None;
         }
-        // Without -noreset it restarts when a window closes, and the next window may open in between.
+        // Without -noreset, the server restarts when a window closes, and the next window may open in between.
         let mut server = Command::new("Xvfb")
             .args(["-displayfd", "1", "-screen", "0", &format!("{size}x24"), "-nolisten", "tcp", "-noreset"])
             .args(memory.into_iter().flat_map(|folder| [OsStr::new("-fbdir"), folder.as_os_str()]))

@@ -130,14 +130,14 @@ fn left_alone(x: &Xvfb, folder: tempfile::TempDir, options: &[&str]) -> serde_js
 fn the_built_in_rig_engages_by_itself_and_a_rig_file_waits_for_a_person() {
     let _alone = nima_testing::real_time::alone();
     let Some(x) = Xvfb::start() else { return };
-    // Under other load an emulated device is lost now and then.
+    // Under load, an emulated device is occasionally lost.
     nima_testing::real_time::judged(|| engages_or_waits(&x));
 }
 
 fn engages_or_waits(x: &Xvfb) {
     let built_in = left_alone(x, tempfile::tempdir().unwrap(), &[]);
     assert!(states(&built_in).contains(&"Engaged"), "{:?}", states(&built_in));
-    // Nothing is missing: its sensors at the tips need no calibration.
+    // Nothing is missing: the sensors at the tips need no calibration.
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("finished.toml");
     let mut file = emulated::rig_file(&emulated::elsewhere(folder.path()));

@@ -123,7 +123,7 @@ fn uncertainty_deg(good: &[PushRow], noise_n: f64) -> f64 {
     let information: Matrix3<f64> =
         good.iter().map(|row| row.s2_n.cross_matrix().transpose() * row.s2_n.cross_matrix()).sum();
     let variance = information.try_inverse().map_or(f64::INFINITY, |inverse| noise_n * noise_n * inverse.trace());
-    // Written so that NaN gives the largest error.
+    // Written so that NaN maps to the largest error.
     if variance >= 0.0 { variance.sqrt().to_degrees().min(180.0) } else { 180.0 }
 }
 
@@ -243,7 +243,7 @@ fn disagreement(
         return Some(format!("the rotation explains only {r2:.2} of the variance of held-out forces (minimum {min})"));
     }
     let angle_deg = solution.cross_check_deg;
-    // Written so that NaN is refused as well.
+    // Written so that NaN is rejected too.
     let same = angle_deg <= limits.cross_check_deg;
     (!same)
         .then(|| format!("the two solvers differ by {angle_deg:.2} degrees; the pushes do not determine the rotation"))

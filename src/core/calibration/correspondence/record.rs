@@ -79,7 +79,7 @@ impl CalibrationRecord for CorrespondenceRecord {
 
     fn fault(&self) -> Option<&'static str> {
         let length = self.rotation_wxyz.iter().map(|part| part * part).sum::<f64>().sqrt();
-        // Written so that NaN is a fault.
+        // Written so that NaN is rejected too.
         let unit = (length - 1.0).abs() < 1e-6;
         if !unit {
             return Some("rotation_wxyz is not a quaternion of length one");

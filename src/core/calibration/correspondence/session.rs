@@ -173,7 +173,7 @@ impl CorrespondenceSession {
             CorrespondencePhase::Missing(_) | CorrespondencePhase::Resting { .. }
                 if reading.f1_n.norm() > self.settings.end_n =>
             {
-                // A push is not used if its beginning was missed.
+                // A push is not used if its start was missed.
                 CorrespondencePhase::Resting { fraction: 1.0, f1_n: reading.f1_n.norm(), f2_n: reading.f2_n.norm() }
             }
             CorrespondencePhase::Missing(_) | CorrespondencePhase::Resting { .. } => CorrespondencePhase::Ready,

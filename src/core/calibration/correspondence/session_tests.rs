@@ -76,7 +76,7 @@ fn pushes_in_the_directions_asked_for_give_an_accepted_rotation_within_a_fifth_o
         assert_eq!(bench.rest(700), CorrespondencePhase::Ready, "{seed}");
         let mut asked = Vec::new();
         while bench.session.pairs().len() < 20 {
-            // The wrist turns a little between pushes, like a real arm.
+            // The wrist turns slightly between pushes, like that of a real arm.
             bench.world_from_s1 *= from_roll_pitch_yaw_deg(&Vector3::new(3.0, -5.0, 8.0));
             let astray = bench.noise_n() * 3.0;
             let target = bench.session.target();
@@ -87,7 +87,7 @@ fn pushes_in_the_directions_asked_for_give_an_accepted_rotation_within_a_fifth_o
             let phase = bench.push(towards.normalize(), peak_n, 0.4);
             assert_eq!(phase, CorrespondencePhase::Recorded(index), "{seed}");
         }
-        // A push that deviates may count for a neighbouring target.
+        // A push that misses its direction may count towards a neighbouring target.
         assert!(asked.len() + 1 >= bench.session.targets() && bench.session.target().is_none(), "{asked:?}");
         let report = bench.session.report().unwrap();
         assert_eq!(report.verdict, Verdict::Accepted, "{seed}: {}", report.reason);
@@ -117,7 +117,7 @@ fn short_moved_and_one_sided_pushes_are_refused_with_their_reason() {
         bench.feel(Vector3::x() * force_n);
     }
     assert!(matches!(bench.rest(50), CorrespondencePhase::Refused(PushRefusal::Moved { by_n }) if by_n > 0.3));
-    // The shaft leans on something other than the tissue.
+    // The shaft leans on something other than the tissue, so the two sensors disagree.
     let lean = |bench: &mut Fixture, force_n: f64| {
         bench.t_s += 1e-3;
         let turn = Some(UnitQuaternion::identity());

@@ -88,7 +88,7 @@ pub(super) fn examined<P: Problem>(problem: &P, rows: &[P::Row]) -> Option<Exami
     let good: Vec<P::Row> = kept.iter().map(|&i| rows[i]).collect();
     let model = problem.solve(&good)?;
     let fitted: Vec<RowMiss> = good.iter().map(|row| problem.miss(&model, row)).collect();
-    // Rows that do not fit any model are not fitted repeatedly: their held-out errors would be as large.
+    // Do not refit rows that fit no model: their held-out errors would be just as large.
     let hopeless = median(problem, &model, &good) > HOPELESS;
     let held_out = if hopeless { fitted.clone() } else { held_out(problem, &good).unwrap_or_default() };
     Some(ExaminedModel { model, kept, outliers, fitted, held_out })

@@ -112,7 +112,7 @@ impl<F: CalibrationResult> CalibrationRecord for FrameRecord<F> {
         if self.kind != F::KIND {
             return Some("kind belongs to another calibration");
         }
-        // A file may contain an override, but not a verdict that contradicts its cause.
+        // A file may contain an override, but not a verdict that contradicts the cause.
         if self.judgement.verdict != self.cause.verdict() {
             return Some("verdict does not follow from cause");
         }
@@ -166,7 +166,7 @@ pub(super) fn place_fault(place_m: &[f64; 3]) -> Option<&'static str> {
 
 pub(super) fn rotation_fault(wxyz: &[f64; 4]) -> Option<&'static str> {
     let length = wxyz.iter().map(|part| part * part).sum::<f64>().sqrt();
-    // Written so that NaN is a fault.
+    // Written so that NaN is rejected too.
     let unit = (length - 1.0).abs() < 1e-6;
     (!unit).then_some("rotation_wxyz is not a quaternion of length one")
 }

@@ -213,7 +213,7 @@ pub trait Calibration {
         }
         check(samples, &self.needs())?;
         let given = self.attempt(samples);
-        // Data that fit in an impossible way have already revealed their mistake.
+        // Data that fit only an impossible geometry have already revealed the mistake.
         let fits = given.found.is_some() && matches!(given.cause, FrameCause::Mistake { .. });
         if given.verdict == Verdict::Accepted || fits {
             return Ok(given);

@@ -251,12 +251,12 @@ impl SensorMount {
         let error = |sign| {
             let found = WeightModel::of(rows, sign)?;
             let mut squares: Vec<f64> = rows.iter().map(|row| found.error_n(row).norm_squared()).collect();
-            // The median, so that a single touched pose has no influence.
+            // The median, so that a single pose in which the tool was touched has no influence.
             let middle = squares.len() / 2;
             Some((*squares.select_nth_unstable_by(middle, f64::total_cmp).1, found))
         };
         let (mirror, found) = error(-1.0)?;
-        // Without a rotation that finds any weight, only the mirror remains.
+        // If no rotation yields a weight, only the mirror image remains.
         let turn = error(1.0).map_or(f64::INFINITY, |(turn, _)| turn);
         if mirror >= MIRROR_FRACTION * MIRROR_FRACTION * turn {
             return None;

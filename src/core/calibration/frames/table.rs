@@ -186,8 +186,8 @@ impl Calibration for TableSettings {
         }
         let Some(found) = examined(&Touches, &points) else { return collinear(0.0) };
         let kept: Vec<Vector3<f64>> = found.kept.iter().map(|&i| points[i]).collect();
-        // The points that define the axes must be on the plane, and the others must not lie on a line with a single
-        // point off it.
+        // The points that define the axes must be on the plane, and the remaining points must not be collinear apart
+        // from a single one.
         let alone = (0..kept.len()).any(|i| {
             let others: Vec<Vector3<f64>> = kept.iter().enumerate().filter(|(j, _)| *j != i).map(|(_, p)| *p).collect();
             kept.len() > 3 && second_spread_m(&others) < 0.5 * MIN_SPREAD_M
@@ -222,7 +222,7 @@ fn uncertainty(points: &[Vector3<f64>], squares_m2: f64, x_m: f64) -> Sizes {
     let freedom = points.len().saturating_sub(3) + NOISE_FREEDOM;
     let variance_m2 = (squares_m2 + NOISE_FREEDOM as f64 * NOISE_M * NOISE_M) / freedom as f64;
     let spread_m = second_spread_m(points);
-    // Variances about the normal (two touches define x) and about x, the worse axis of the tilt.
+    // Variances about the normal (two touches define x) and about x, the less certain axis of the tilt.
     let about_normal = 2.0 * variance_m2 / (x_m * x_m);
     let tilt = variance_m2 / (points.len() as f64 * spread_m * spread_m);
     let turn = Matrix3::from_diagonal(&Vector3::new(tilt, tilt, about_normal));

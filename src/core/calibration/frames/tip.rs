@@ -147,8 +147,8 @@ impl Calibration for TipSettings {
         let value = TipResult { carrier: self.carrier, tip_in_carrier_m: tip_m.into(), pivot_m: dimple_m.into() };
         let uncertainty = Sizes::place(radius_m);
         let report = FrameReport::of(have, found, uncertainty, value).judged(&self.limits);
-        // Inverse poses fit as well, with tip and dimple swapped; but a camera is farther away than an instrument is
-        // long.
+        // Inverted poses fit as well, with tip and dimple swapped; but a camera is always farther away than an
+        // instrument is long.
         let exchanged = self.carrier == Carrier::Marker && tip_m.norm() > dimple_m.norm();
         if exchanged && report.verdict == Verdict::Accepted {
             return report.because(FrameCause::Mistake { mistake: Mistake::InversePose });

@@ -139,7 +139,7 @@ mod tests {
         let upright = tool.sample(UnitQuaternion::identity(), 0.0, 0.0);
         let tilted = tool.sample(UnitQuaternion::from_euler_angles(1.0, 0.0, 0.0), 0.0, 0.0);
         assert!(compensator.step(&upright).unwrap().force_n.norm() < 1e-6);
-        // Filtered with a time constant of one second, most of the tilt is still missing.
+        // The filter has a time constant of one second, so most of the tilt is still missing.
         assert!(compensator.step(&tilted).unwrap().force_n.norm() > 1.0);
         assert!(compensator.step(&WristSample { acceleration_m_s2: None, ..tilted }).is_none());
         assert!(compensator.step(&tilted).unwrap().force_n.norm() < 1e-6);

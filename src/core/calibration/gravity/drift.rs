@@ -88,12 +88,12 @@ impl DriftCheck {
         }
         let since_s = t_s - *self.began_s.get_or_insert(t_s);
         if !idle {
-            // A verdict is kept; without a verdict the check ends here.
+            // Keep an existing verdict; without one, the check ends here.
             self.give_up(NotChecked::Engaged);
             self.still.reset();
             return self.drift;
         }
-        // A sensor that hangs repeats its last sample, which would look still.
+        // A frozen sensor repeats its last sample, which would look like rest.
         if sample.is_some() && self.newest.as_ref() == sample {
             if since_s > TIMEOUT_S && t_s - self.fresh_s > SETTLE_S {
                 self.give_up(NotChecked::NoSample);

@@ -61,7 +61,7 @@ struct FitData {
 
 impl FitData {
     fn new(frame: &FitFrame, all: Vec<GravityRow>) -> Self {
-        // Poses that drift apart are not outliers: each is as good as the others, and least squares uses all of them.
+        // Poses that drift apart are not outliers: each is as good as the others, so least squares uses all of them.
         let drift_n = drift_n(&all, frame.floor_n);
         let frame = &FitFrame { drifts: drift_n.is_some(), ..*frame };
         let inliers = frame.agreeing(&all);
@@ -259,7 +259,7 @@ fn weightless(report: &GravityReport, limits: &GravityLimits) -> Option<String> 
     let weight_n = report.mass_kg? * GRAVITY_M_S2;
     let noise_n = fit.force_n.fitted.sd.into_iter().fold(0.0, f64::max);
     let min_n = limits.min_weight_n.max(limits.min_signal * noise_n);
-    // Written so that NaN is refused as well.
+    // Written so that NaN is rejected too.
     let seen = weight_n >= min_n;
     (!seen).then(|| {
         format!(

@@ -136,7 +136,7 @@ impl GravityModel {
     pub fn predict(&self, field_m_s2: &Vector3<f64>) -> Wrench {
         match &self.parameters {
             GravityParameters::Physical { mass_kg, s1_from_source_wxyz: [w, x, y, z], bias_n, torque } => {
-                // Not checked here: `fault` refuses a quaternion that does not have unit length.
+                // Not checked here: `fault` rejects a quaternion that does not have unit length.
                 let s1_from_source = UnitQuaternion::new_unchecked(Quaternion::new(*w, *x, *y, *z));
                 loaded(s1_from_source * field_m_s2 * *mass_kg, bias_n, torque.as_ref())
             }

@@ -148,7 +148,7 @@ fn ticks_that_did_not_reach_the_screen_are_no_slow_sensor() {
     let mut tool = Tool::new(6, 0.4);
     for tick in 0..3000 {
         let sample = tool.sample(UnitQuaternion::identity(), 0.03, 1e-3);
-        // A screen that misses 100 ms out of every 300.
+        // A display that drops 100 ms out of every 300.
         if tick % 300 < 200 {
             precheck.step(Some(&sample), f64::from(tick) * 1e-3);
         }

@@ -163,7 +163,7 @@ impl GravitySession {
             return GravityPhase::TakenHere;
         }
         if let Some(by_n) = self.refused {
-            // The pose stays refused while the tool is held like this; a new attempt starts after the tool has moved or
+            // The pose stays rejected while the tool is held like this; a new attempt starts once the tool has moved or
             // was released.
             if progress >= 1.0 {
                 self.still.reset();
@@ -374,7 +374,7 @@ mod tests {
             GravitySession::new(GravitySessionSettings { use_arm: true, ..GravitySessionSettings::default() });
         for tick in 0..1600 {
             let mut sample = tool.sample(held, 0.02, 1e-3);
-            // Noise of the joint sensors of half a degree per axis.
+            // Joint sensor noise of half a degree per axis.
             let tremble = UnitQuaternion::from_scaled_axis(tool.vector(0.009));
             sample.world_from_s1 = Some(held * tremble);
             if matches!(session.step(&sample, f64::from(tick) * 1e-3), GravityPhase::Recorded { .. }) {

@@ -122,7 +122,7 @@ fn paper(rows: &[GravityRow], has_torque: bool) -> Option<GravityParameters> {
 fn torque(rows: &[GravityRow], gain_kg: &Matrix3<f64>) -> Option<TorqueParameters> {
     let mut a = DMatrix::zeros(3 * rows.len(), 6);
     let mut b = DMatrix::zeros(3 * rows.len(), 1);
-    // The columns of the centre of mass have the magnitude of the weight; the columns of the bias are scaled to match.
+    // The columns of the centre of mass are of the order of the weight; the columns of the bias are scaled to match.
     let size = gain_kg.norm().max(f64::MIN_POSITIVE) * GRAVITY_M_S2 / 3_f64.sqrt();
     for (i, row) in rows.iter().enumerate() {
         let weight = gain_kg * row.field_m_s2;

@@ -76,7 +76,7 @@ mod tests {
             let (tool, poses) = warming(seed, 40, 0.15);
             let report = fit(&poses, &GravitySettings::default()).unwrap();
             let model = report.chosen_fit().unwrap().model;
-            // In the middle of the drift the bias is half of it away from either end.
+            // In the middle of the drift, the bias is off by half the drift from either end.
             errors.push(model.predict(&Vector3::zeros()).force_n - tool.bias.force_n);
         }
         assert!(AxisStats::of(errors).largest() < 0.15);

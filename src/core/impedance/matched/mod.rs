@@ -205,7 +205,7 @@ impl Learner {
             weight: Lanes::ZERO,
         };
         let experts = ridges.iter().enumerate().flat_map(|(ridge, Ridge { memory, .. })| {
-            // Knowledge of earlier touches helps only if the columns distinguish contact from free motion, which
+            // Memory of earlier touches helps only if the columns can distinguish contact from free motion, which
             // requires all of them.
             let min = if *memory == 0 { 0 } else { form.columns() };
             form.nested().iter().filter(move |columns| **columns >= min).map(move |&columns| expert(ridge, columns))
@@ -306,7 +306,7 @@ impl Learner {
             SlipLanes::default()
         };
         let row = self.form.row(posture, self.one, self.origin, &held);
-        // A long memory loses nothing if it adds only one sample per renewal.
+        // A long memory loses nothing by adding only one sample per renewal.
         let memories = if self.tick.is_multiple_of(self.every) { self.sums.len() } else { 1 };
         for (memory, sums) in self.sums.iter_mut().enumerate().take(memories) {
             let full = self.experts.iter().rfind(|expert| self.ridges[expert.ridge].memory == memory);
@@ -321,12 +321,12 @@ impl Learner {
     fn solve(&mut self) {
         let phase = self.tick % self.every;
         for (ridge, Ridge { s, memory }) in self.ridges.iter().enumerate() {
-            // All on the first tick: an expert without a prediction cannot be evaluated.
+            // On the first tick solve all of them, because an expert without a prediction cannot be evaluated.
             if phase != self.phase(ridge) && self.tick > 0 {
                 continue;
             }
             let sums = &mut self.sums[*memory];
-            // A long memory changes slowly.
+            // A long memory changes slowly, so it is renewed less often.
             let renew = *memory == 0 || (self.tick / self.every).is_multiple_of(LONG_RENEWALS);
             if renew {
                 sums.factorise(*s);

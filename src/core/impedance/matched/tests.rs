@@ -93,7 +93,7 @@ fn the_force_is_made_of_what_was_known_one_delay_ago_and_of_the_own_motion() {
             let position_m = hand_m(f64::from(k) * 1e-3);
             let noise = Vector3::new(7.0, -3.0, 11.0) * f64::from((k * 7919) % 101);
             clean.follower(position_m, Some(contact_n(position_m)));
-            // From here on the follower measures and does something else entirely; the leader's hand does not.
+            // From here on the follower's motion and force are entirely different; the leader's hand is unaffected.
             let (tip_m, force_n) = if k < changed {
                 (position_m, contact_n(position_m))
             } else {
@@ -158,7 +158,7 @@ fn nothing_is_forgotten_while_the_hand_stands_still() {
             pair.step(position_m, spring_n(position_m));
             pair.link.drain(..pair.link.len().saturating_sub(200));
         }
-        // Only the leader moves on: it feels the stiffness that was learned a minute ago.
+        // From here only the leader moves: it must render the stiffness that was learned a minute ago.
         let model = *pair.link.last().unwrap();
         let mut force_n = |position_m: Vector3<f64>| pair.leader_with(&model, position_m).unwrap();
         let rest_n = force_n(position_m);

@@ -98,7 +98,7 @@ mod tests {
         let mut gate = DeadBand::new(1e-3);
         let mut last = 0.0;
         for i in 0..20_000 {
-            // Up and down through both edges, in steps of at most 0.3 um/s.
+            // Moves up and down through both edges, in steps of at most 0.3 um/s.
             let fraction = gate.step(1.5e-3 * (1.0 - (f64::from(i) * 2e-4).cos()), 1e-3);
             assert!((fraction - last).abs() < 1e-3, "from {last} to {fraction}");
             last = fraction;

@@ -57,7 +57,7 @@ impl<const D: usize> Energy<D> {
         self.hand_m = hand_m;
         // The comparison is also false for the infinite difference of two finite positions.
         let travel_m = if travel_m.norm() <= JUMP_M_S * dt_s { travel_m } else { SVector::zeros() };
-        // The quotient of travel and time, low-passed, in an order that needs no division by a time of zero.
+        // Low-pass of travel over time, arranged so that it never divides by zero time.
         self.hand_m_s += (travel_m - self.hand_m_s * dt_s) / (SMOOTHING_S + dt_s);
         let leak = (dt_s / LEAK_S).min(1.0);
         self.stored_j += (ALLOWANCE_J - self.stored_j) * leak - held_n.dot(&travel_m);
@@ -72,7 +72,7 @@ impl<const D: usize> Energy<D> {
         if self.mode != EnergyMode::Control || fraction >= 1.0 || giving_w <= 0.0 || speed_m_s < 1e-6 {
             return (force_n, Reason::Open);
         }
-        // (f . v) v / |v|^2, in an order that cannot divide by the square of a tiny number.
+        // (f . v) v / |v|^2, arranged so that it never divides by the square of a tiny number.
         let direction = self.hand_m_s / speed_m_s;
         (force_n - direction * ((1.0 - fraction) * force_n.dot(&direction)), Reason::EnergySpent)
     }
@@ -130,7 +130,7 @@ mod tests {
         let mut gate = Energy::<1>::new(EnergyMode::Control);
         let mut held_n = 0.0;
         for i in 0..5000 {
-            // 500 N/m pressed 8 mm deep once per second, without loss.
+            // 500 N/m pressed 8 mm deep once per second, without loss of energy.
             let depth_m = 0.004 * (1.0 - (f64::from(i) * 1e-3 * std::f64::consts::TAU).cos());
             gate.observe(Some([-depth_m].into()), &[held_n].into(), 1e-3);
             let (force_n, reason) = gate.controlled([500.0 * depth_m].into());

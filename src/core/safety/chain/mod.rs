@@ -242,9 +242,9 @@ impl<const D: usize> SafetyChain<D> {
         report.note(Gate::Slew, slew);
         let (paid_n, energy) = self.energy.controlled(slewed_n);
         report.note(Gate::Energy, energy);
-        // The force that the energy gate removes decreases as fast as the slew limit allows, no faster. The ceiling
-        // shortens towards a ball that contains the last force, which never moves two forces further apart: the slew
-        // limit still holds after it.
+        // The force removed by the energy gate decreases as fast as the slew limit allows, no faster. The ceiling
+        // scales towards a ball that contains the last force, which never moves two forces further apart, so the slew
+        // limit still holds afterwards.
         let (force_n, ceiling) = self.ceiling.under(self.slew.limited(paid_n, dt_s).0);
         report.note(Gate::Ceiling, ceiling);
         force_n

@@ -182,7 +182,8 @@ fn steps<const D: usize>(past: &ObserverHistory<D>) -> EvidenceAnswer {
     for [before_s, after_s] in STEPS_S {
         let Some(kink) = past.kink(before_s, after_s) else { break };
         let size_n = kink.applied_after_n.norm();
-        // A released handle soon moves as the force drives it from rest; a handle that swings on a grip does not.
+        // The applied force soon accelerates a released handle from rest; a handle that swings in a grip does not move
+        // like that.
         let driven_m_s = DRIVEN * size_n / past.handle.mass_kg * kink.after_s;
         if size_n < WEAK_N || kink.velocity_m_s.dot(&kink.applied_after_n) < driven_m_s.max(OUT_M_S) * size_n {
             continue;
@@ -195,7 +196,7 @@ fn steps<const D: usize>(past: &ObserverHistory<D>) -> EvidenceAnswer {
         if !known || range.min_along_n < 0.5 * size_n || !parts.is_free(kink.after_error_n) || !was_carried {
             continue;
         }
-        // A wrong mass makes a step of the applied force look like one of the hand's.
+        // If the assumed mass is wrong, a step of the applied force looks like a step of the hand's force.
         let step_n = (kink.after_n - kink.before_n).dot(&along) - kink.step_error_n - MASS_OFF * range.change_n();
         let ramp_n = past.handle.mass_kg * HAND_M_S3 * 0.5 * kink.span_s;
         if step_n > ramp_n {

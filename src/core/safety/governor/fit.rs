@@ -101,7 +101,7 @@ impl<const D: usize> ObserverHistory<D> {
         let centred = |k: usize| self.t_s[k] - mean_s;
         let squares = (0..=end).map(|k| centred(k) * centred(k)).sum::<f64>();
         let cubes = (0..=end).map(|k| centred(k) * centred(k) * centred(k)).sum::<f64>();
-        // Orthogonal to 1 and t over these samples, evenly spaced or not.
+        // Orthogonal to 1 and t over these samples, whether or not they are evenly spaced.
         let square = |k: usize| centred(k) * (centred(k) - cubes / squares) - squares / n;
         let norm = (0..=end).map(|k| square(k) * square(k)).sum::<f64>();
         let slope = (0..=end).map(|k| self.y[k] * centred(k)).sum::<SVector<f64, D>>() / squares;
@@ -110,7 +110,7 @@ impl<const D: usize> ObserverHistory<D> {
         let left = |k: usize| (self.y[k] - mean_y - slope * centred(k) - bend * square(k)).norm_squared();
         let residual = ((0..=end).map(left).sum::<f64>() / (n - 3.0)).sqrt();
         let worst = 0.5 * self.handle.mass_kg * self.handle.step_m * weights;
-        // y' = m v + c (x - x_now) + the impulse until now; the last two are none at the newest sample.
+        // y' = m v + c (x - x_now) + the impulse until now; the last two terms are zero at the newest sample.
         let velocity_m_s = (slope + bend * (2.0 * centred(0) - cubes / squares)) / self.handle.mass_kg;
         let error = ErrorBound::of(worst, residual, self.off_kg_m(end), 1.0 / norm.sqrt());
         let fit = Parabola {
@@ -129,7 +129,7 @@ impl<const D: usize> ObserverHistory<D> {
         let at = self.window(0, after_s)?;
         let end = self.window(at, before_s)?;
         let span_s = -self.t_s[end];
-        // In units of the span, for the condition of the equations.
+        // In units of the span, to keep the equations well conditioned.
         let row = |k: usize| {
             let u = self.t_s[k] / span_s;
             let after = (self.t_s[k] - self.t_s[at]).max(0.0) / span_s;

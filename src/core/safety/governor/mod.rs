@@ -198,7 +198,7 @@ impl<const D: usize> Governor<D> {
         reading: Option<GovernorReading<D>>,
         asked_n: SVector<f64, D>,
     ) -> GovernorOutput<D> {
-        // The first tick, and one after the clock was set back, count as no time.
+        // The first tick, and a tick after the clock was set back, count as zero elapsed time.
         let before_s = if t_s.is_finite() { self.last_s.replace(t_s) } else { self.last_s };
         let dt_s = before_s.map_or(0.0, |before_s| (t_s - before_s).max(0.0));
         let far = |vector: &SVector<f64, D>, limit: f64| !vector.iter().all(|x| x.abs() <= limit);
@@ -211,7 +211,7 @@ impl<const D: usize> Governor<D> {
             return GovernorOutput { force_n: SVector::zeros(), withheld: 1.0, reason: Reason::NotFinite };
         }
         let brake_n = if self.watching { self.judge(dt_s, reading) } else { SVector::zeros() };
-        // After a late tick too: the hand feels the change at once, however long the tick before was held.
+        // At most one period: after a late tick the step would otherwise be larger, and the hand would feel it at once.
         let step_n = self.slew_n_per_s * dt_s.min(self.period_s);
         self.applied_n = self.force(asked_n, brake_n, step_n, dt_s);
         GovernorOutput { force_n: self.applied_n, withheld: self.withheld, reason: self.reason() }
@@ -254,7 +254,8 @@ impl<const D: usize> Governor<D> {
             GripState::Held | GripState::Gone => SVector::zeros(),
             GripState::Doubtful { mut since, force_n, ripe_s } => {
                 let ripe = since.faded_s > ripe_s;
-                // It moves along the former force, which was strong enough to distinguish this from a slow motion.
+                // The handle moves along the former force, which was strong enough to tell this from a slow motion of
+                // the hand.
                 let coasting = now.velocity_m_s.dot(&force_n) > OUT_M_S * force_n.norm() && force_n.norm() > COASTING_N;
                 self.notice(&mut since, &past, &now, dt_s, ripe);
                 since.coasts_s = if coasting { since.coasts_s } else { 0.0 };
@@ -272,7 +273,7 @@ impl<const D: usize> Governor<D> {
 
     /// Observes the handle without force; a pull counts only after it can be distinguished (`ripe`).
     fn notice(&mut self, since: &mut Since, past: &ObserverHistory<D>, now: &Parabola<D>, dt_s: f64, ripe: bool) {
-        // A long tick is one look, not many.
+        // A long tick counts as one observation, not as many.
         let looked_s = dt_s.min(self.period_s);
         let speed_m_s = now.velocity_m_s.norm();
         let friction_n = COULOMB_N + self.handle.damping_n_s_m * speed_m_s;
@@ -320,7 +321,7 @@ impl<const D: usize> Governor<D> {
                 if since.lasted_s <= dt_s {
                     return SVector::zeros();
                 }
-                // A smaller request uses up part of the slew limit; the brake gets the rest.
+                // A decrease of the request uses up part of the slew limit; the brake gets the rest.
                 let max_n = asked_n.norm();
                 let kept_n = within(self.applied_n, max_n);
                 let room_n = (step_n - (kept_n - self.applied_n).norm()).max(0.0);

@@ -244,7 +244,7 @@ impl PlausibilityChannel {
     fn is_saturated(&mut self, now: f64, t_s: f64) -> bool {
         let [high, low] = &mut self.extremes;
         self.seen[0].1 |= high.look(now) | low.look(-now);
-        // A number at rest is judged by its rest, not by its hits.
+        // A value that rests at an extreme is judged by its rest, not by its hits.
         let often = HITS.max(self.repeats + 2);
         let hit = (high.is_at(now) && high.hits >= often) || (low.is_at(-now) && low.hits >= often);
         hit && t_s - self.coarse_s >= LIVELY_S && self.is_lively() && self.is_noisy()

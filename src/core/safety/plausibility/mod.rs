@@ -252,8 +252,8 @@ impl Plausibility {
         if dt_s > 0.0 && dt_s <= GAP_S {
             return dt_s;
         }
-        // After a gap or a change of the clock, the possible travel is unknown. The properties of a device's numbers
-        // remain known.
+        // After a gap or a change of the clock, the possible travel is unknown. The value properties of a device remain
+        // known.
         self.moves = PlausibilityMoves::default();
         self.handle_stuck = HandleStuck::default();
         0.0
@@ -305,7 +305,7 @@ impl Plausibility {
             self.sensor.look_at_all(raw, step, around);
         }
         let is_new = raw.is_none() || step.is_some();
-        // For a sensor at another machine the lateness is unknown.
+        // For a sensor on another machine, the lateness is unknown.
         self.felt_s = if is_new { seen.t_s } else { self.felt_s };
         let late_s = if raw.is_none() { LATE_MAX_S } else { seen.t_s - self.felt_s };
         self.late_s = (self.late_s - dt_s * FORGETS_LATE).max(late_s);

@@ -181,7 +181,7 @@ fn a_sensor_on_an_arm_is_judged_by_its_own_numbers() {
                     let rig = Rig { at_wrist, late, seed, ..RIG };
                     let report = of_sensor(&rig, fault);
                     let late_ms = if late > 0.0 { 5.0 } else { 0.0 };
-                    // Of two alternating values, some of which a late loop misses, every second one is at an extreme.
+                    // With two alternating values and a loop that misses some, every second value is at an extreme.
                     let is_wanted = |what| {
                         what == wanted
                             || (fault == Fault::Block(2) && late > 0.0 && what == Implausible::ForceSaturated)
@@ -271,7 +271,8 @@ fn a_handle_and_an_arm_that_repeat_a_block_or_jump_are_told() {
 
 #[test]
 fn a_handle_on_the_table_and_an_arm_at_rest_are_no_fault() {
-    // After ten lively seconds the handle rests in whole counts, one of which flickers, and the arm holds its angles.
+    // After ten seconds of motion the handle rests on whole counts, one of which flickers, and the arm keeps its
+    // angles.
     let mut looks = Plausibility::default();
     let mut noise = Noise::new(3);
     for k in 1..40_000 {

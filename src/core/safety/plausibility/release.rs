@@ -57,7 +57,7 @@ impl ReleaseMemory {
             self.before_n[0] = *now_n;
             return Fall::No;
         }
-        // The accepted force stays the same as long as a fall is bridged.
+        // While a fall is bridged, the accepted force stays the same.
         let going = self.fall.filter(|fall| fall.believed_n == *believed_n);
         let mut fall = going.unwrap_or_else(|| self.begin(believed_n));
         let doing = fall.look(now_n);
@@ -82,7 +82,7 @@ impl FallState {
         let size_n = now_n.norm();
         let falls_n = self.size_n - size_n;
         let is_gone = size_n <= GONE_N;
-        // The force may not turn sideways, or to the opposite side, by more than the force that counts as zero.
+        // The force may not turn sideways or reverse by more than the force that counts as zero.
         let along_n = if from_n > 0.0 { now_n.dot(&self.from_n) / from_n } else { 0.0 };
         let aside_n = (now_n.norm_squared() - along_n * along_n).max(0.0).sqrt();
         self.falls &= aside_n <= GONE_N && along_n >= -GONE_N && (is_gone || falls_n >= FALLS_N);

@@ -138,7 +138,7 @@ fn reported_change(sizes_n: &[f64], again: Option<u32>) -> Option<(u32, Implausi
         let since = k.checked_sub(50).map(|since| again.map_or(since, |again| since % again));
         let size_n = since.map_or(pressed_n, |since| match sizes_n.get(since as usize) {
             Some(size_n) => *size_n,
-            // If the force recurs, press again slowly.
+            // If the force is to recur, press again slowly.
             None if again.is_some() => (0.2 * f64::from(since - sizes_n.len() as u32)).min(2.6),
             None => sizes_n.last().copied().unwrap_or(pressed_n),
         });
@@ -193,7 +193,7 @@ fn a_force_along_the_way_into_a_contact_is_told_and_a_puncture_is_not() {
 
 #[test]
 fn the_sign_is_judged_of_a_touch_that_the_tip_makes_and_not_of_one_that_comes_to_it() {
-    // The tip holds still, trembles, and from some moment on is pulled by 1.3 N: another hand takes the held object.
+    // The tip is still, trembles, and at some moment is pulled with 1.3 N: another hand takes the held object.
     let pulled = |from: u32, goes_m_s: f64| {
         Fixture::new().run(900, move |k, seen| {
             let t_s = f64::from(k) * 1e-3;
@@ -276,7 +276,7 @@ fn what_stands_while_its_cause_moves_is_stuck() {
     });
     assert_eq!(report, None, "led from the screen");
     let mut kept = None;
-    // The command is slow at that moment: its half millimetre takes longer than the 15 ms.
+    // The command is slow at that moment: moving half a millimetre takes longer than the 15 ms.
     let report = after(|_, seen| seen.tip_m = *kept.get_or_insert(seen.tip_m));
     assert!(matches!(report, Some((15..=60, Implausible::ArmAstray))), "{report:?}");
     let report = after(|_, seen| seen.command_m = Some(seen.tip_m + Vector3::x() * 0.05));

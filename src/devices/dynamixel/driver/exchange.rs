@@ -129,7 +129,7 @@ impl<T: ByteStream> DynamixelDriver<T> {
         }
         let (device_s, age) = self.clock.take(self.motions[0].tick, now_s);
         if age == ReadingAge::Old {
-            // An answer to an earlier exchange; the expected one may still come.
+            // An answer to an earlier exchange; the expected answer may still arrive.
             self.health.out_of_order += 1;
             if let Some(exchange) = &mut self.exchange {
                 exchange.question = ServoQuestion::Motion { next: 0 };

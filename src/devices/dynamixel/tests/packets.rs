@@ -33,7 +33,7 @@ fn stuffing_goes_in_and_comes_out() {
         assert_eq!(out.bytes(), hex(wire));
         assert_eq!(packets(&mut IncomingPackets::new(64), &hex(wire)), [(1, 3, hex(data))]);
     }
-    // Sent without any stuffing, as by a known client.
+    // Sent without byte stuffing, as a known client does.
     let bare = "FF FF FD 00 01 09 00 03 E2 00 FF FF FD 05 4B 97";
     assert_eq!(packets(&mut IncomingPackets::new(64), &hex(bare)), [(1, 3, hex("E2 00 FF FF FD 05"))]);
 }
@@ -44,7 +44,7 @@ fn any_parameters_survive_the_wire() {
     let mut out = OutgoingPackets::new(256);
     let mut incoming = IncomingPackets::new(256);
     for _ in 0..100_000 {
-        // Few byte values, so that marks are frequent, also across two calls of `put`.
+        // Use few byte values, so that marks are frequent, also across two calls of `put`.
         let data: Vec<u8> = (0..random.usize(0..40)).map(|_| *random.choice(&[0xFF, 0xFD, 0x00]).unwrap()).collect();
         let (head, tail) = data.split_at(random.usize(0..=data.len()));
         out.clear();
@@ -60,7 +60,7 @@ fn a_packet_is_found_behind_noise_and_behind_a_damaged_one() {
     let mut bad = good.clone();
     bad[9] ^= 1;
     let mut incoming = IncomingPackets::new(64);
-    // A length that would swallow everything, an incomplete header, a damaged packet.
+    // An oversized length that would swallow the rest, an incomplete header, and a damaged packet.
     let stream = [hex("00 FF FF FD 00 01 FF 7F 55 FF FF FF"), bad, good.clone(), vec![0xFF; 5], good].concat();
     for byte in &stream[..stream.len() - 10] {
         packets(&mut incoming, &[*byte]);
@@ -124,7 +124,7 @@ fn fuzz(rounds: u64, seed: u64) {
         }
     }
     assert!(found <= given / 10);
-    // Only a damaged length may swallow a good packet; the search within the damaged one then finds most of them.
+    // Only a damaged length can swallow a good packet, and the search within the damaged packet recovers most of them.
     assert!(found as f64 > 0.95 * whole as f64, "{found} of {whole}");
 }
 

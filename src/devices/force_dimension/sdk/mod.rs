@@ -169,7 +169,7 @@ pub(super) struct OpenDevice {
 impl Drop for OpenDevice {
     fn drop(&mut self) {
         self.stop().ok();
-        // SAFETY: no pointers; nothing uses the number after this.
+        // SAFETY: no pointers; the device id is not used afterwards.
         unsafe { (self.sdk.functions.close)(self.id) };
         shutdown::closed();
     }
@@ -195,7 +195,7 @@ impl OpenDevice {
     }
 
     pub(super) fn name(&self) -> Option<String> {
-        // SAFETY: no pointers go in.
+        // SAFETY: no pointer arguments.
         let name = unsafe { (self.sdk.functions.name)(self.id) };
         // SAFETY: not null: the library's own C string, which it does not change; copied at once.
         (!name.is_null()).then(|| quoted(&unsafe { CStr::from_ptr(name) }.to_string_lossy()))

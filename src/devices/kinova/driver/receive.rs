@@ -105,7 +105,7 @@ impl KinovaDriver {
 
     /// Returns whether the numbers are finite, within the arm's limits, and close enough to the last ones.
     fn is_possible(&self, feedback: &KinovaFeedback, joint_rad: &[f64; ARM_JOINTS], now_s: f64) -> bool {
-        // Before the first reading there is nothing to compare with.
+        // Before the first reading there is nothing to compare with, so `age_s` is infinite and any jump is accepted.
         let reach_rad = JUMP_RAD_S.mul_add(self.health.age_s(now_s), JUMP_RAD);
         feedback.is_finite()
             && feedback.actuators.iter().all(|a| a.position_deg.abs() <= 720.0 && a.velocity_deg_s.abs() <= 1000.0)
@@ -145,7 +145,7 @@ impl KinovaDriver {
         ArmReading {
             joint_rad: self.joint_rad,
             joint_rad_s: std::array::from_fn(|j| f64::from(actuators[j].velocity_deg_s).to_radians()),
-            // The arm reports torques with the sign opposite to that of torque commands.
+            // The arm reports measured torques with the opposite sign to commanded torques.
             joint_nm: std::array::from_fn(|j| -f64::from(actuators[j].torque_nm)),
             servoing: self.mode == KinovaMode::Low && self.feedback.state == ArmState::SERVOING_LOW_LEVEL,
         }

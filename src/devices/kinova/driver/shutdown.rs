@@ -35,7 +35,7 @@ impl KinovaDriver {
             self.poll(begin_s + begin.elapsed().as_secs_f64());
         }
         if self.mode != KinovaMode::Single {
-            // The cycle does not work: at least ask for single-level servoing and stop.
+            // The cyclic connection does not work: at least request single-level servoing and a stop.
             let single = KinovaNumber { value: ServoingMode::Single as u32 };
             self.lines.ask_within(Rpc::SET_SERVOING_MODE, &single, ANSWER).ok();
         }

@@ -33,9 +33,9 @@ fn largest(ranks: &[usize], chosen: usize) -> usize {
 /// mean.
 pub(super) fn two_sided(ranks: &Ranks, first: usize) -> f64 {
     let all = ranks.doubled.len();
-    // Both groups are equally far from their means; the smaller one takes less work.
+    // Both groups are equally far from their means; the smaller one needs less work.
     let chosen = if first <= all - first { 0..first } else { first..all };
-    // The mean of a doubled rank is all + 1.
+    // The mean of all doubled ranks is all + 1.
     let mean = chosen.len() * (all + 1);
     let far = ranks.doubled[chosen.clone()].iter().sum::<usize>().abs_diff(mean);
     let masses = sums(&ranks.doubled, chosen.len());

@@ -64,7 +64,7 @@ fn a_mixed_model_of_two_conditions_is_the_paired_t_test() {
 
 #[test]
 fn likelihood_takes_balanced_variances_by_the_share_of_participants() {
-    // For a balanced design, ML divides both sums of squares by one participant more.
+    // For a balanced design, ML divides both sums of squares by one more participant than REML.
     let reml = balanced(3, MixedCriterion::Reml);
     let ml = balanced(3, MixedCriterion::Ml);
     near(ml.residual_variance, reml.residual_variance * 5.0 / 6.0, 1e-11);
@@ -114,7 +114,7 @@ fn a_covariate_with_a_large_mean_costs_no_digits() {
 #[test]
 fn five_differences_of_one_sign_have_a_p_of_one_sixteenth() {
     near(wilcoxon(&[0.3, 1.2, 0.7, 2.0, 0.1]).unwrap().p, 1.0 / 16.0, 1e-15);
-    // With ties too: only all-positive and all-negative are as far out.
+    // The same with ties: only all-positive and all-negative samples are as extreme.
     near(wilcoxon(&[0.5, 0.5, 0.5, 1.0, 1.0]).unwrap().p, 1.0 / 16.0, 1e-15);
 }
 
@@ -122,7 +122,7 @@ fn five_differences_of_one_sign_have_a_p_of_one_sixteenth() {
 fn pratts_rule_lets_zeros_take_the_low_ranks() {
     let pratt = SignedRankOptions { zeros: Zeros::Pratt, distribution: Distribution::Automatic };
     let test = signed_rank::of_differences(&[0.0, -0.0, -1.0, 2.0, 3.0], &pratt).unwrap();
-    // Ranks 3, 4, 5: of eight combinations, sums of 3 or less, and 9 or more: 0, 3, 9, 12.
+    // Ranks 3, 4, 5: of the eight combinations, four have sums of at most 3 or at least 9: 0, 3, 9, 12.
     assert_eq!(
         (test.n, test.zeros, test.w_plus.to_bits(), test.w_minus.to_bits()),
         (3, 2, 9_f64.to_bits(), 3_f64.to_bits())
@@ -132,7 +132,7 @@ fn pratts_rule_lets_zeros_take_the_low_ranks() {
 
 #[test]
 fn the_exact_interval_tells_the_confidence_that_it_has() {
-    // For five differences the widest interval has 1 - 2/32, which is less than 95 %.
+    // For five differences the widest interval covers 1 - 2/32, which is less than 95 %.
     let interval = signed_rank::location(&[1.0, 2.0, 4.0, 8.0, 16.0], 0.95).unwrap().interval;
     assert!((interval.lower - 1.0).abs() + (interval.upper - 16.0).abs() < 1e-15);
     near(interval.confidence, 1.0 - 2.0 / 32.0, 1e-15);

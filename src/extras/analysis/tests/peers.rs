@@ -157,7 +157,7 @@ fn fit(set: &Value, criterion: MixedCriterion) -> MixedFit {
     let condition = words(&set["condition"]);
     let response = numbers(&set["response"]);
     let mut model = MixedModel::new(&participant, &condition, set["reference"].as_str().unwrap(), &response).unwrap();
-    // The script's order; a JSON map is read in alphabetical order.
+    // Follow the script's order, because a JSON map is read in alphabetical order.
     for name in ["trial", "place"] {
         if let Some(values) = set["covariates"].get(name) {
             model = model.covariate(name, &numbers(values)).unwrap();

@@ -89,7 +89,7 @@ impl Lsl {
         let names = by_variable.into_iter().chain(NAMES.iter().map(PathBuf::from));
         for name in names {
             match Self::load(&name) {
-                // A name that the system does not find.
+                // The system's loader did not find the name.
                 Err(LslError::Unusable { reason, .. }) if reason.starts_with(&*name.to_string_lossy()) => {}
                 found => return found,
             }
@@ -145,7 +145,7 @@ impl Lsl {
     }
 
     fn refused(&self) -> LslError {
-        // SAFETY: the library returns null or a text that is valid until the next call on this thread.
+        // SAFETY: the library returns null or a string that is valid until the next call on this thread.
         let reason = unsafe {
             let reason = (self.last_error)();
             if reason.is_null() { String::new() } else { CStr::from_ptr(reason).to_string_lossy().into_owned() }
@@ -179,8 +179,8 @@ impl LslStream {
     pub(super) fn push(&self, what: &str, at_s: f64) {
         let what = text(what);
         let sample = [what.as_ptr()];
-        // SAFETY: the outlet is valid; the C string for its only channel lives through the call, which copies it.
-        // It fails for a wrong number of channels only.
+        // SAFETY: the outlet is valid; the C string for its only channel lives through the call, which copies it. The
+        // call fails only for a wrong number of channels.
         unsafe { (self.lsl.push_sample_strtp)(self.outlet.as_ptr(), sample.as_ptr(), at_s, PUSH_THROUGH) };
     }
 

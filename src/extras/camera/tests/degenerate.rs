@@ -26,7 +26,7 @@ fn every_degenerate_set_is_refused_with_its_cause() {
         let mut blurred = noisy(&mut rng, &lens, &good, 0.1);
         blurred.iter_mut().skip(3).for_each(|view| view.blur_px = 4.0);
         assert_eq!(cause(&blurred), CameraCause::Blurred { blurred: 9, of: 12 });
-        // Moved, but never tilted; and tilted, but always in the same way.
+        // Moved but never tilted, and tilted but always in the same way.
         for tilt in [[0.0, 0.0, 0.0], [22.0, 10.0, 0.0]] {
             let fractions = (0..12).map(|k| [f64::from(k % 4) * 0.36 - 0.54, f64::from(k / 4) * 0.45 - 0.45]);
             let poses: Vec<_> = fractions

@@ -28,7 +28,7 @@ fn corners_are_found_through_any_lens_blur_noise_and_light() {
                 sensor.blur_px, sensor.noise, sight.blur_px
             );
             assert!(rms_px < largest_px && max_px < 6.0 * largest_px, "k1 {k1}: {rms_px} {max_px}");
-            // A part of it is the pixel itself.
+            // The pixel size itself contributes to the blur.
             assert!(
                 (sight.blur_px - f64::from(sensor.blur_px)).abs() < 0.75 + 0.1 * f64::from(sensor.blur_px),
                 "{}",

@@ -81,7 +81,7 @@ fn figures_of_calibrations_from_rendered_boards() {
         let sensor =
             Sensor { blur_px: 0.5 + 1.5 * rng.f32(), noise: 1.0 + 5.0 * rng.f64(), edge: 0.3 + 0.6 * rng.f64() };
         let portrait = Portrait::new(&real);
-        // A view in which the board is not found is skipped, like in the wizard.
+        // Skip a view in which the board is not found, as the wizard does.
         let find_in = |pose| find(&sensor.image(&mut rng, &portrait, &board(), pose), &board()).ok();
         let views: Vec<_> = usual(&mut Rng::with_seed(set), &real, &board(), 16).iter().filter_map(find_in).collect();
         seen += views.len();

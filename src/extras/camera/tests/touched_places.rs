@@ -37,7 +37,7 @@ fn the_camera_is_found_from_touched_corners() {
         let placed = placed(&mut rng, &touched).unwrap();
         let (lens, camera_from_board, world_from_camera) = scene();
         assert_eq!(placed.verdict(), Verdict::Accepted, "{placed:?}");
-        // The relevant result: where a tip on the board, and 1 cm in front of it, is drawn.
+        // The result that matters: where a tip is drawn on the board, and 1 cm in front of it.
         let camera = nima_endoscope::Camera { lens, world_from_camera: placed.world_from_camera };
         for z in [0.0, -0.01] {
             let tip_m = world_from_camera * camera_from_board * Point3::new(0.02, 0.012, z);

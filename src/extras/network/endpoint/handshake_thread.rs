@@ -170,7 +170,7 @@ impl HandshakeState {
         };
         let HandshakeResult { answer, trouble, agreed } = received;
         if let Some(agreed) = agreed {
-            // The session is passed on before the other side learns of it.
+            // Pass the session on before the other side is notified of it.
             let session = Box::new(NetworkSession::new(*agreed, letter.from, &self.settings));
             self.outbox.try_send(HandshakeEvent::Opened(session)).ok();
         }

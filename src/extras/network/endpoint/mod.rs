@@ -194,7 +194,7 @@ impl Endpoint {
         };
         let for_s = self.now_s - session.received_s;
         if session.is_confirmed && for_s > self.silent_after_s {
-            // A follower that was restarted with other keys refuses while the old session is silent.
+            // A restarted follower with other keys refuses while the old session is silent.
             return match self.refused {
                 Some((at_s, refusal)) if recent(at_s, REFUSED_REPORTED_S) => {
                     LinkState::Down(LinkCause::Refused(refusal))

@@ -28,7 +28,7 @@ impl Endpoint {
         session.received_s = self.now_s;
         if !self.is_follower {
             if self.session().is_some_and(|old| self.now_s - old.received_s < SEEK_AFTER_S) {
-                // The old session has recovered meanwhile and continues.
+                // The old session has recovered in the meantime and continues.
                 drop(self.clerk.free(session));
                 return;
             }
@@ -54,7 +54,7 @@ impl Endpoint {
                     }
                 }
             }
-            // The thread frees it; if the thread is behind, it is freed here, which only costs time.
+            // The thread frees it; if the thread is behind, free it here, which only costs time.
             None => drop(self.clerk.free(session)),
         }
     }

@@ -243,7 +243,7 @@ fn one_console_holds_and_another_gets_control_only_by_consent() {
         time.run(&mut ends, 0.4);
         assert!(ends[2].got.len() > before + 50, "payloads go to the new holder");
         assert!(ends[0].got.windows(2).filter(|pair| pair[1] < pair[0]).count() <= 1, "one change of streams");
-        // The controlling console leaves: no other takes control by itself.
+        // The controlling console leaves: no other console takes control by itself.
         ends[2].endpoint.close();
         drop(other);
         let mut ends = [&mut far, &mut holder];
@@ -265,7 +265,7 @@ fn a_stranger_and_another_version_are_refused() {
         let refused =
             |ends: &[&mut End]| ends[2].endpoint.state() == LinkState::Down(LinkCause::Refused(SessionRefusal::Key));
         time.until(&mut [&mut far, &mut near, &mut stranger], refused).expect("told why");
-        // A datagram of another version gets an answer that says so.
+        // A datagram of another version gets a response that says so.
         let socket = UdpSocket::bind(HOME).unwrap();
         socket.set_read_timeout(Some(Duration::from_secs(2))).unwrap();
         let mut hello = [0; HELLO_LEN];

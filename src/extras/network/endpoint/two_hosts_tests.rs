@@ -167,8 +167,8 @@ fn two_hosts_exchange_payloads_and_see_when_the_cable_is_out() {
             );
             assert_eq!(states, "waiting open silent open");
             assert!(got > 1900.0 && dropped < 1.0, "{figures:?}");
-            // Payloads sent while the cable was unplugged, and until the system had found the other host again: at most
-            // a second.
+            // Payloads sent while the cable was unplugged and until the system had found the other host again, which
+            // takes at most a second.
             assert!(lost > 300.0 && lost < 2000.0, "{figures:?}");
             assert!(median_ms < playout_ms + 1.5 && playout_ms < 20.0, "{figures:?}");
         }

@@ -271,8 +271,8 @@ impl Approach {
         if now_s < self.next_s {
             return 0;
         }
-        // Repeats the same initiation for as long as the follower's cookie is valid, because its response may have been
-        // lost; then starts again.
+        // Repeat the same initiation for as long as the follower's cookie is valid, because its response may have been
+        // lost; then start again.
         self.next_s = now_s + self.pause_s;
         self.pause_s = (2.0 * self.pause_s).min(AGAIN_MAX_S);
         if self.pause_s >= AGAIN_MAX_S && self.begin_again().is_err() {
@@ -304,7 +304,7 @@ impl Approach {
             },
             (Ok(DatagramKind::Response), Waits::Response { .. }) => match self.finish(content) {
                 Some(agreed) => {
-                    // Gives the loop time to adopt the session before another one is requested.
+                    // Give the loop time to adopt the session before another one is requested.
                     self.next_s = now_s + AGAIN_MAX_S;
                     self.pause_s = AGAIN_S;
                     HandshakeResult { answer: 0, trouble: None, agreed: Some(Box::new(agreed)) }
@@ -342,7 +342,7 @@ impl Approach {
         let Waits::Response { noise, ours, .. } = &mut self.waits else { return None };
         let mut theirs = [0; HANDSHAKE_MAX];
         let ours = *ours;
-        // A message that fails leaves the state unchanged: the genuine one may still arrive.
+        // A message that fails leaves the state unchanged, because the genuine one may still arrive.
         let len = noise.read_message(message, &mut theirs).ok()?;
         let theirs: [u8; NUMBER_LEN] = theirs[..len].try_into().ok()?;
         let Waits::Response { noise, .. } = std::mem::replace(&mut self.waits, Waits::Cookie) else { return None };

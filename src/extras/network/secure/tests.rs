@@ -148,7 +148,7 @@ fn a_flood_of_half_open_handshakes_costs_no_memory_and_few_key_agreements() {
     assert_eq!(answers + flooded, 50_000);
     assert!(answers < 1500, "half a second at 2000 per second, and what was saved up: {answers}");
     assert_eq!(reception.remembered(), 0, "no state");
-    // A sender that can receive is limited by its address: eight at once, then four per second.
+    // A sender that can receive is limited per address: eight at once, then four per second.
     let computed = (0..1000).filter(|&i| {
         let report = talk(&mut reception, &mut stranger, from(7), 10.0 + f64::from(i) * 1.001);
         report.2 == Some(HandshakeError::TheyRefuse(SessionRefusal::Key))

@@ -97,7 +97,7 @@ fn a_trial_without_an_end_is_unfinished() {
 fn lumps_are_found_missed_and_falsely_marked_with_their_force() {
     let hands = |t_s: f64| {
         let size_n = if (4.0..4.5).contains(&t_s) { 2.5 } else { 0.5 };
-        // Much more, but long before the first mark.
+        // A much larger force, but long before the first mark.
         let size_n = if t_s < 1.0 { 9.0 } else { size_n };
         Side::Right.alone(HandSample { force_n: Vector3::z() * size_n, ..HandSample::default() })
     };

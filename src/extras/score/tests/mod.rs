@@ -37,7 +37,7 @@ fn trial_at(
     hands: impl Fn(f64) -> Hands,
     events: &[(f64, TaskEvent)],
 ) -> Score {
-    // An offset, so that a clock time cannot be mistaken for a time since the beginning.
+    // Use an offset, so that a clock time cannot be mistaken for a time since the beginning.
     let zero_s = 5000.0;
     let mut scorer = Scorer::new(task);
     scorer.happening(&TimedTaskEvent { t_s: zero_s, event: TaskEvent::Begun });

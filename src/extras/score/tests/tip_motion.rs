@@ -41,7 +41,7 @@ fn a_straight_reach_has_the_known_acceleration_and_jerk() {
     let peak = 10.0 / 3_f64.sqrt() * 0.2 / 4.0;
     near("reach: peak_acceleration_m_per_s2", of(&score, "peak_acceleration_m_per_s2"), peak, 1e-3);
     near("reach: mean_acceleration_m_per_s2", of(&score, "mean_acceleration_m_per_s2"), 3.75 * 0.2 / 4.0, 1e-3);
-    // The acceleration goes from 0 to its peak, to the opposite one, and back.
+    // The acceleration rises from 0 to its peak, falls to the opposite peak, and returns to 0.
     near("reach: mean_jerk_m_per_s3", of(&score, "mean_jerk_m_per_s3"), 4.0 * peak / 2.0, 1e-2);
 }
 
@@ -51,7 +51,7 @@ fn a_straight_reach_has_the_known_smoothness() {
     // The integral of the squared jerk is 720 d^2 / T^5; the peak speed is 1.875 d / T.
     let known = -(720.0_f64 / (1.875 * 1.875)).ln();
     near("reach: log_dimensionless_jerk", of(&score, "log_dimensionless_jerk"), known, 2e-3);
-    // The authors' Python, run with NumPy on the exact speed.
+    // Result of the authors' Python code, run with NumPy on the exact speed.
     near("reach: sparc", of(&score, "sparc"), -1.405_829_284_156, 1e-4);
 }
 
@@ -72,7 +72,7 @@ fn a_reach_that_is_sampled_unevenly_or_slowly_is_the_same() {
 
 #[test]
 fn a_circle_has_the_known_speed_acceleration_and_jerk() {
-    // 5 cm, once in 4 s, three times, upright.
+    // A vertical circle of 5 cm, once in 4 s, three times.
     let radius = 0.05;
     let turn = PI / 2.0;
     let end_s = 12.0;
@@ -81,7 +81,7 @@ fn a_circle_has_the_known_speed_acceleration_and_jerk() {
     near("circle: path_length_m", of(&score, "path_length_m"), radius * turn * end_s, 1e-4);
     near("circle: mean_speed_m_per_s", of(&score, "mean_speed_m_per_s"), radius * turn, 1e-3);
     near("circle: mean_acceleration_m_per_s2", of(&score, "mean_acceleration_m_per_s2"), radius * turn * turn, 1e-2);
-    // It begins and ends in accelerated motion, where the jerk is too large: less so in a longer trial.
+    // The motion starts and ends accelerated, where the jerk is overestimated; this matters less in a longer trial.
     near("circle: mean_jerk_m_per_s3", of(&score, "mean_jerk_m_per_s3"), radius * turn.powi(3), 0.15);
     let long = trial(&task(""), 120.0, way, &[]);
     near("long circle: mean_jerk_m_per_s3", of(&long, "mean_jerk_m_per_s3"), radius * turn.powi(3), 0.015);
@@ -113,14 +113,15 @@ fn three_reaches_with_rests_are_three_smooth_movements() {
     let score = trial(&task(""), 6.0, way, &[]);
     near("three reaches: movements", of(&score, "movements"), 3.0, 0.0);
     near("three reaches: sparc_per_movement", of(&score, "sparc_per_movement"), -1.405_829_324_421, 0.02);
-    // Below 5 mm/s where 30 * 0.1 s^2 (1 - s)^2 is: s (1 - s) < sqrt(1 / 600).
+    // The speed is below 5 mm/s where 30 * 0.1 s^2 (1 - s)^2 is, that is, where s (1 - s) < sqrt(1 / 600).
     let early = (1.0 - (1.0 - 4.0 / 600_f64.sqrt()).sqrt()) / 2.0;
-    // So a movement is that much shorter. The jerk of the whole is 60 - 360 s + 360 s^2, the integral of its square:
+    // A movement is shorter by that much. The jerk of the whole is 60 - 360 s + 360 s^2, and the integral of its
+    // square:
     let square =
         |s: f64| 3600.0 * s - 21_600.0 * s.powi(2) + 57_600.0 * s.powi(3) - 64_800.0 * s.powi(4) + 25_920.0 * s.powi(5);
     let known = -((1.0 - 2.0 * early).powi(3) / 1.875_f64.powi(2) * (square(1.0 - early) - square(early))).ln();
     let ours = of(&score, "log_dimensionless_jerk_per_movement");
-    // Between rest and motion the jerk jumps, which the filter smooths.
+    // Between rest and motion the jerk jumps; the filter smooths this.
     near("three reaches: log_dimensionless_jerk_per_movement", ours, known, 0.03);
     assert!(of(&score, "sparc") < -3.0, "the whole of it is not smooth: {}", of(&score, "sparc"));
     near("three reaches: hand_idle_time_s", of(&score, "hand_idle_time_s"), 3.0 + 3.0 * 2.0 * early, 0.02);

@@ -89,7 +89,7 @@ impl ScoredTrial {
                 continue;
             }
             self.scorer.happening(&happening);
-            // A task may be done a moment after the hand has let go.
+            // A task may be completed shortly after the hand has released the handle.
             if happening.event == TaskEvent::Ended {
                 self.before_pause = None;
             }

@@ -67,7 +67,7 @@ impl UserStudy {
         if let Some(label) = label {
             return self.secret.condition(label);
         }
-        // If practice has no fixed condition, it uses each in turn.
+        // If practice has no fixed condition, use each in turn.
         let turn = (trial.number as usize).checked_sub(1)? % who.order.len().max(1);
         self.secret.practice().or_else(|| self.secret.condition(*who.order.get(turn)?))
     }

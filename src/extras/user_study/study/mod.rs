@@ -86,7 +86,7 @@ impl UserStudy {
         let path = folder.join(JOURNAL);
         let contents = journal::read(&path)?;
         study.follow(&path, &contents.entries)?;
-        // Another program may be writing this line now; opening the study for writing cuts it off.
+        // Another program may be writing this line now; opening the study for writing truncates it.
         if contents.torn > 0 {
             study.state.torn.push(contents.torn);
         }

@@ -20,7 +20,7 @@ fn the_weighted_tlx_is_weight_times_rating_over_fifteen() {
     assert_eq!(weights, [3, 0, 5, 1, 3, 3]);
     let ratings = [30, 15, 60, 40, 40, 30];
     assert!((weighted_tlx(&ratings, &chosen) - 640.0 / 15.0).abs() < 1e-12);
-    // Equal weights would give the raw score, which is the mean.
+    // Equal weights would give the raw score, the mean.
     assert!((raw_tlx(&ratings) - 215.0 / 6.0).abs() < 1e-12);
     assert!((weighted_tlx(&[70; 6], &chosen) - 70.0).abs() < 1e-12, "the weights add up to fifteen");
 }

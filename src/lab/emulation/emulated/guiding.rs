@@ -124,7 +124,7 @@ fn missing(pose: &InstrumentPose, hold: &ToolHold) -> (GuidingRows, GuidingMiss)
     let mut miss = GuidingMiss::zeros();
     match hold {
         ToolHold::Tilt(down_s1) => {
-            // A rotation about the vertical changes no tilt.
+            // A rotation about the vertical does not change the tilt.
             let e = rotation(&(pose.world_from_s1.rotation * down_s1), &-Vector3::z()) * LENGTH_M;
             for axis in 0..2 {
                 rows.row_mut(axis).copy_from(&turn.row(axis));

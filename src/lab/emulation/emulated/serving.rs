@@ -84,7 +84,7 @@ fn handle(side: Side, set: &ArmSet, shared: &SharedWorld) -> ServedDevices {
     let usual = emulators::force_dimension::EmulatedForceDimension::default();
     let emulated = emulators::force_dimension::EmulatedForceDimension {
         serial: chosen.serial.unwrap_or(usual.serial + side.index() as u16),
-        // Taken from the rig file, which may deliberately have the left-handed device on the right side.
+        // Taken from the rig file, which may intentionally have the left-handed device on the right side.
         kind: force_dimension::ForceDimensionKind::Omega7 { left_handed },
         port: address.port(),
         ..usual
@@ -127,7 +127,7 @@ fn sensor(
     };
     if chosen.transport == bota::Transport::Socket {
         emulated.tcp_port = addresses::port(&name, &chosen.port, bota::TCP_PORT)?;
-        // Readings go to the datagram port of the same number: two sensors never share one.
+        // Readings go to the datagram port of the same number, so two sensors must not have the same TCP port.
         emulated.destination = SocketAddrV4::new(Ipv4Addr::LOCALHOST, emulated.tcp_port);
     }
     served(name, emulated.with(body))
@@ -159,7 +159,7 @@ fn servos(side: Side, chosen: &dynamixel::DynamixelSettings) -> ServedDevices {
         link: Some(PathBuf::from(&chosen.port)),
     };
     let supply_v = if known.is_some_and(dynamixel::table::ServoModel::is_small) { 5.0 } else { 12.0 };
-    // Tissue does not load the jaws in this world; the cables that move them do.
+    // In this world, tissue does not load the jaws; the cables that move them do.
     let body = move |_: f64, _: usize, shaft: &emulators::dynamixel::ServoShaft| {
         let load_nm = CABLES_NM_PER_RAD * (CABLES_REST_RAD - shaft.angle_rad).clamp(-1.0, 1.0);
         emulators::dynamixel::ServoSurroundings { load_nm, supply_v, temperature_c: 31.0 }

@@ -97,7 +97,7 @@ impl SideWorld {
     ) -> Self {
         let pose = arm.pose(start_rad);
         let imu_deg = scene.wrist.as_ref().and_then(|wrist| wrist.imu).map(|imu| imu.s1_from_imu_deg);
-        // The arm is this side's own, and so is the person at it.
+        // Each side has its own arm, and its own person guiding it, so the scene's are removed.
         let world = World::new(&Scene { follower: None, person: None, ..scene.clone() }, STEP_S.recip());
         let start_m = world.hand().position_m();
         let mut side = Self {
@@ -236,7 +236,7 @@ impl SideWorld {
         self.world_from_s1 = orientation;
         self.tip_m = pose.tip_m + bent_m;
         self.world.carry(orientation);
-        // The technician releases an arm whose drives are on.
+        // The technician lets go of an arm whose drives are on.
         let hands_on = asked == BodyCommand::Rest && !self.technician.is_away();
         let touch = self.technician.touch();
         let aside = self.technician.sets_aside();
@@ -245,7 +245,7 @@ impl SideWorld {
         if hands_on {
             self.world.wait_at(self.start_m + self.technician.handle_m());
         } else {
-            // A hand does not begin its task before the arm follows it.
+            // The hand does not start its task before the arm follows it.
             self.world.wait(!matches!(asked, BodyCommand::Joints(_)));
         }
         let force_n = self.hand.leader_from_world.inverse() * self.applied.force_n;

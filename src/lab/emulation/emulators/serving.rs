@@ -132,7 +132,7 @@ impl Host {
         self.emulator.begin();
         while !stop.load(Ordering::Acquire) {
             if self.faults.get() != EmulatedFault::Disconnect {
-                // An endpoint that cannot be opened now is tried again in the next turn.
+                // If an endpoint cannot be opened now, try again in the next turn.
                 self.ends.iter_mut().for_each(|end| drop(end.open()));
             } else if self.cut() {
                 self.line.cut();

@@ -177,7 +177,7 @@ pub unsafe extern "C" fn dhdGetStatus(status: *mut c_int, id: c_char) -> c_int {
 
 #[unsafe(no_mangle)]
 pub extern "C" fn dhdGetComMode(id: c_char) -> c_int {
-    // Asynchronous, the default.
+    // The communication mode is asynchronous, the default.
     noted(with(id, |_| Ok(1)))
 }
 

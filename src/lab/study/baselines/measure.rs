@@ -28,7 +28,8 @@ pub(super) fn measure(
     if held_error <= 0.0 {
         return Err(BaselinesError::NothingToCompare { name: name(), delay_ms: delay_s * 1e3 });
     }
-    // The program's own modes in one pass; each baseline in its own pass, because only one is computed at a time.
+    // The program's own modes run in one pass; each baseline runs in its own pass, because only one is computed at a
+    // time.
     let own = OWN.into_iter().fold(ModeSet::only(Mode::Dfr), ModeSet::with);
     let sets = [own].into_iter().chain(Mode::BASELINES.map(ModeSet::only));
     let mut errors: Vec<(Mode, f64)> = Vec::new();

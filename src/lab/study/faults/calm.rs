@@ -49,7 +49,7 @@ pub(super) fn runs(seconds: f64) -> Result<FaultFreeRuns, FaultsError> {
                 rig.gates.static_hold = calm.runs % 2 == 0;
                 let known = Calibrations { gravity: Some(gravity), ..Calibrations::default() };
                 let scene = Scene::load(scene)?;
-                // Every run has another seed: other tremor, noise and start.
+                // Every run has its own seed, hence other tremor, noise and start.
                 let scene = Scene { seed: scene.seed + 1000 * calm.runs as u64, ..scene };
                 let calibrations = [known, Calibrations::default()];
                 let plan = SimulationPlan { rig, scene, calibrations, engage: true };

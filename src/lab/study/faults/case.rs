@@ -129,7 +129,7 @@ pub(super) fn tried(
         }
         let Some(step) = bench.step() else { break };
         watch.look(tick, &step);
-        // If the fault moved the arm elsewhere, the twin may latch and can no longer serve as a reference.
+        // If the fault moved the arm elsewhere, the twin may latch, and is then no longer a valid reference.
         if step.twin.state.is_latched() && !begun_latched {
             break;
         }
@@ -151,7 +151,7 @@ impl CaseWatch {
         if self.report.is_none() {
             let state = || format!("state {}", step.machine.state.word().to_lowercase());
             self.report = report(step).map(|what| (what, tick));
-            // A state that differs for only a tick or two does not count.
+            // Differing states for only a tick or two do not count.
             if self.report.is_none() && self.apart == APART {
                 self.report = Some((state(), tick));
             }
@@ -164,7 +164,8 @@ impl CaseWatch {
         if self.report.is_some() && self.felt && gone && self.zero.is_none() {
             self.zero = Some(tick);
         }
-        // The rig receives in each tick the outputs of the previous one; so does the twin's rig.
+        // Outputs take effect in the next tick, on this rig and on the twin's, so compare with the twin's previous
+        // output.
         if self.zero.is_none() {
             self.peak_error_n = self.peak_error_n.max((applied_n - step.twin_before_n).norm());
             self.compare(applied_n, step.twin_before_n);
@@ -199,8 +200,8 @@ impl CaseWatch {
 
     fn outcome(self, kind: FaultKind, sensor: SensorAt, mode: Mode, place: FaultPlace, moment: u32) -> CaseOutcome {
         let reported_at = self.report.as_ref().map(|(_, tick)| *tick);
-        // A report that came while no difference was visible is timed from the first small difference of the force, or
-        // from the start of the fault.
+        // If no difference was visible when the fault was reported, the report is timed from the first small force
+        // difference, or from the start of the fault.
         let on = |stretch: &DifferencePeriod| {
             stretch.began.filter(|_| reported_at.is_none_or(|report| report <= stretch.last + PAUSE))
         };

@@ -92,7 +92,7 @@ impl Faulty {
         match self.fault {
             Some(FaultKind::HandleWithoutForce) => outputs.hand_force_n = Vector3::zeros(),
             Some(FaultKind::HandleInverted) => outputs.hand_force_n = -outputs.hand_force_n,
-            // Even then the motors follow the switch.
+            // Even with this fault, the motors obey the drive switch.
             Some(FaultKind::HandleKeepsForce) if outputs.drives => {
                 outputs.hand_force_n = self.first.map_or(outputs, |(_, first)| first).hand_force_n;
             }

@@ -83,7 +83,7 @@ impl<const D: usize> GateWatch<D> {
         let finite = now_n.iter().all(|f| f.is_finite()) && report.gain.is_finite();
         let let_go = [Gate::Permission, Gate::Validity].iter().any(|gate| report.acted(*gate))
             || [Reason::HandGone, Reason::NotFinite].contains(&report.reason(Gate::Governor));
-        // Only a released handle loses its force or its brake faster: to zero.
+        // Only on a released handle may the force or the brake fall faster, and then to zero.
         let lets_go = report.reason(Gate::Governor) == Reason::LetGo;
         let falls = (let_go || lets_go || self.let_go) && now_n.norm() == 0.0;
         let step_n = self.slew_n_per_s * dt_s.min(self.period_s);

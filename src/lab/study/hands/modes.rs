@@ -94,7 +94,7 @@ fn touched(trial: &PairTrial, seconds: f64) -> Result<HeldTally, HandsError> {
         let reason = pair.report().reason(Gate::Governor);
         let governed = GovernorOutput { force_n: pair.force_n(), withheld, reason };
         asked_n = before_the_governor(&governed, &asked_n);
-        // A request that is no force is a stop, which has no slew limit and is not the governor's.
+        // A request that is not a number causes a stop, which is not slew-limited and is not the governor's doing.
         let before_n = if pair.report().acted(Gate::Validity) { governed.force_n } else { last_n };
         watch.tick(pair.now_s() - last_s, &before_n, &governed, &asked_n);
     }

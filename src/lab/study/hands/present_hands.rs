@@ -170,7 +170,7 @@ pub(super) fn held<const D: usize, G: LastGate<D>>(
         if now_s + 1e-9 < next_s {
             continue;
         }
-        // Two hands hold the tissue by what both together press into it.
+        // The depth at which two hands hold the tissue depends on the force of both.
         let depths_m = sides.iter().map(HeldSide::late_depth_m);
         let shared_m = kind.two_hands.then(|| depths_m.sum());
         for side in &mut sides {
@@ -197,7 +197,7 @@ fn sides<const D: usize, G: LastGate<D>>(
     let mut persons: Vec<PersonParameters<D>> =
         (0..kind.hands()).map(|_| PersonParameters::drawn(kind, noise)).collect();
     if let [one, other] = persons.as_mut_slice() {
-        // Each hand feels the motion of both: half of the stiffness leaves the loop as stable as that of one hand.
+        // Each hand feels the motion of both, so with half the stiffness the loop is as stable as with one hand.
         let n_m = 0.5 * one.tissue.n_m.min(other.tissue.n_m);
         one.tissue.n_m = n_m;
         other.tissue.n_m = n_m;

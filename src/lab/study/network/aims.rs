@@ -54,7 +54,7 @@ impl StudyAim {
             worst: *worst,
             place: row.place(),
             cells: measured.len(),
-            // A value that is not a number counts as a miss.
+            // NaN counts as a miss.
             missed: measured.iter().filter(|(value, _)| value.is_nan() || *value > limit).count(),
         })
     }

@@ -231,7 +231,7 @@ impl NetworkBench {
         self.command = command.or(self.command.take());
         let console = self.console.pace.tick_in(period);
         let follower = self.follower.pace.tick_in(period);
-        // In the order in which they wake up.
+        // Step the console and the follower in the order in which they wake up.
         let follower_first =
             console.zip(follower).is_some_and(|((_, console_s), (_, follower_s))| follower_s < console_s);
         if let (Some((time, late_s)), true) = (follower, follower_first) {
@@ -304,7 +304,7 @@ fn measure([console, follower]: &mut [NetworkEnd; 2], [there, back]: &mut [Impai
             end.arrive(&bytes, came_s + ahead_s);
         }
         end.receive(now_s + ahead_s, &mut |_| {});
-        // As long as a follower's usual message.
+        // As long as a typical message from the follower.
         end.send(now_s + ahead_s, &[0xff; 40]);
         end.out.drain(..).for_each(|bytes| to.send(now_s, &bytes));
     };

@@ -40,7 +40,7 @@ impl NetworkEnd {
 
     /// Processes a datagram that arrived at this time of this machine's clock, s.
     pub(super) fn arrive(&mut self, datagram: &[u8], came_s: f64) {
-        // Duplicates are refused; the line creates some.
+        // The link creates some duplicates; they are rejected.
         let accepted = self.stream.receive(datagram, came_s);
         if accepted.is_ok_and(|accepted| accepted.step.is_some()) {
             self.stepped.get_or_insert(self.tick);

@@ -162,7 +162,7 @@ pub fn study(
             continue;
         }
         let playout_ms = row.under_way_ms.iter().sum::<f64>() / 2.0;
-        // The playout delay adds a margin and the remainder of a tick.
+        // The playout delay adds a margin and the rest of a tick.
         let as_long = measured(cell.clock, NetworkCondition::clean(playout_ms.round() - 1.0), judged, runs)?;
         row.over_same_playout = Some(row.error_n / as_long.error_n);
     }

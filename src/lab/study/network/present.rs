@@ -373,7 +373,7 @@ impl Findings for NetworkReport {
     }
 
     fn files(&self) -> Vec<(String, String)> {
-        // The picture shows the first clock.
+        // The chart shows the first clock.
         let shown = self.clocks().first().map_or_else(|| self.clone(), |clock| self.on(*clock));
         vec![(".md".to_owned(), self.markdown()), (".csv".to_owned(), self.csv()), (".svg".to_owned(), shown.svg())]
     }

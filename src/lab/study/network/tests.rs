@@ -22,7 +22,7 @@ fn late_ticks_of_both_machines_cost_little_and_stop_nothing() {
         on(VirtualClock { profile, seed: 1 }, OwnMotion::Follower, NetworkCondition::clean(36.0), Mode::Dfr)
     });
     assert_eq!((late.stops, late.resumed, late.ceiling_breaches), (0, 0, 0), "{late:?}");
-    // For the mode's requested force: the effect of late ticks on the gates is judged in their own studies.
+    // Compares the force requested by the mode: the effect of late ticks on the gates is covered by their own studies.
     assert!((late.asked_error_n / perfect.asked_error_n - 1.0).abs() < 0.1, "{perfect:?} {late:?}");
     assert!(late.error_n.to_bits() != perfect.error_n.to_bits() && late.clock == ClockProfile::Late { percent: 1.0 });
 }
@@ -54,7 +54,7 @@ fn over_a_perfect_line_the_default_mode_is_far_better_than_reflection() {
     for row in [best, dfr] {
         assert_eq!((row.stops, row.resumed, row.ceiling_breaches, row.slew_breaches), (0, 0, 0, 0), "{row:?}");
         assert!((row.engaged - 1.0).abs() < 1e-9 && row.return_step_mm.is_none(), "{row:?}");
-        // The line, and half a millisecond of margin.
+        // The delay of the link plus up to two milliseconds of margin.
         assert!(row.under_way_ms.iter().all(|ms| (36.0..38.1).contains(ms)), "{row:?}");
         assert!((72.0..76.1).contains(&row.round_trip_ms), "{row:?}");
     }

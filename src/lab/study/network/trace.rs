@@ -85,7 +85,7 @@ impl RunTrace {
                 due_n.push(self.samples.get(due_n.len() + *lag).unwrap_or(sample).tip_n);
             }
         }
-        // The last commands, which never arrived.
+        // The last commands never arrived, so use the last known lag.
         let lag = lag.unwrap_or(0);
         while let Some(sample) = self.samples.get(due_n.len() + lag) {
             due_n.push(sample.tip_n);
@@ -178,7 +178,7 @@ mod tests {
             let rendered_n = position_m(tick.saturating_sub(late)) * -300.0;
             trace.push(TraceSample {
                 hand_m: position_m(tick),
-                // The follower is where the hand was when the newest command was given.
+                // The follower is where the hand was when it received the newest command.
                 tip_n: position_m(tick.saturating_sub(travel)) * -300.0,
                 rendered_n,
                 asked_n: rendered_n,

@@ -249,7 +249,7 @@ pub fn tasked_over(
         }
         let force_n = pair.force_n();
         let position_m = pair.handle_m();
-        // The hand is a period behind, as in simulations that count ticks.
+        // The hand lags by one period, as in simulations that count ticks.
         pair.step(|t_s, _| task.intended_m(t_s - 1.0 / RATE_HZ));
         if t_s >= FROM_S - 0.5 / RATE_HZ {
             let passed_s = pair.now_s() - t_s;

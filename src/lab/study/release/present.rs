@@ -20,7 +20,7 @@ impl Findings for ReleaseReport {
     }
 
     fn files(&self) -> Vec<(String, String)> {
-        // The picture shows the first clock.
+        // The chart shows the first clock.
         let shown = self.clocks().first().map_or_else(Self::default, |clock| self.on(*clock));
         vec![(".md".to_owned(), self.text()), (".svg".to_owned(), shown.svg())]
     }

@@ -42,7 +42,7 @@ impl ReplayTally {
             self.conditions.push(report.condition);
         }
         let Some(held) = row.held else { return };
-        // A mode without a valid force renders none: its error is the whole force.
+        // A mode without a valid force renders none, so its error is the whole force.
         self.error.add(&(row.rendered.unwrap_or_else(Vector3::zeros) - row.measured));
         self.hold.add(&(held - row.measured));
         self.degrees[row.degree.min(MAX_DEGREE)] += 1;

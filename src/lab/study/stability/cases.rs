@@ -43,7 +43,7 @@ fn tissue(x: f64, v: f64, a: f64, noise: &mut fastrand::Rng) -> f64 {
 
 /// A hand's motion of the given size at `t`: position, velocity, acceleration.
 fn hand(amplitude: f64, t: f64) -> [f64; 3] {
-    // The frequencies have no common period: over a common one the paper's `u` would be zero.
+    // The frequencies have no common period: if they had one, the paper's `u` would be zero over it.
     let waves = [(0.75, 0.713, 0.3), (0.2, 2.331, 1.1), (0.05, 6.127, 2.0)];
     waves.iter().fold([0.0; 3], |[x, v, a], (fraction, hz, phase)| {
         let size = amplitude * fraction;
@@ -129,7 +129,7 @@ fn inputs() -> Vec<StabilityCase> {
             }
         }),
         edited("late samples", |k, before, raw| {
-            // Four ticks repeat the old sample.
+            // For four ticks, repeat the old sample.
             if k % 97 < 4 {
                 *raw = before.unwrap_or(*raw);
             }

@@ -40,8 +40,8 @@ fn soft_contact_is_stable_and_late_reflection_of_a_wall_is_not() {
 
 #[test]
 fn late_reflection_is_stable_where_theory_says() {
-    // At any delay a loop is stable while gain times stiffness is below the smallest dynamic stiffness of the hand,
-    // k 2 z sqrt(1 - z^2) with z = 0.507 its damping ratio: 787 N/m. With a long delay it is unstable above.
+    // At any delay the loop is stable while gain times stiffness is below the smallest dynamic stiffness of the hand, k
+    // 2 z sqrt(1 - z^2) with the damping ratio z = 0.507: 787 N/m. Above that it is unstable for long delays.
     let map = StabilityMap::committed().unwrap();
     for n_m in STIFFNESSES_N_M {
         for gain in GAINS.into_iter().filter(|gain| (gain * n_m / 787.0 - 1.0).abs() > 0.01) {

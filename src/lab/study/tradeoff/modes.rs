@@ -117,7 +117,7 @@ fn judge(identifier: &Identifier, mode: Mode, sample: &Sample, errors: &mut Mode
     let report = identifier.report();
     let rendered = report.prediction(mode);
     let held = report.prediction(Mode::Dfr);
-    // Without a rendered force the error is the whole force.
+    // If no force is rendered, the error is the whole force.
     let error = (rendered.unwrap_or_default() - sample.force_n).norm();
     let dfr_error = (held.unwrap_or_default() - sample.force_n).norm();
     errors.add(error, dfr_error, rendered.is_some());

@@ -34,8 +34,8 @@ impl TradeoffSource {
         while t_s < (ticks - 0.5) / rate_hz {
             if let Some(inputs) = world.exchange(t_s, &outputs) {
                 outputs.tip_command_m = Some(inputs.hand.position_m);
-                // This study compares identification, not the force path, so a scene with a wrist sensor gives the true
-                // tip force.
+                // This study compares identification, not the force path, so for a scene with a wrist sensor, use the
+                // true tip force.
                 let force_n = match inputs.sensed {
                     SensedForce::AtTip(force_n) => force_n,
                     SensedForce::AtWrist(_) | SensedForce::FarEnd(_) => world.true_tip_n(),

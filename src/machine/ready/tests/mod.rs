@@ -197,7 +197,7 @@ fn a_stop_that_the_loop_does_not_release_fails_with_its_reason() {
     while bench.session.ask() != PersonRequest::Release {
         bench.step();
     }
-    // Until the loop detects that nothing is measured any more.
+    // Run until the loop detects that the force is no longer measured.
     (0..500).for_each(|_| bench.step());
     bench.flaws.obeys = |_| true;
     bench.run();

@@ -184,7 +184,7 @@ impl ArmPair {
             self.driven = outputs.drives;
             self.switch_drives(outputs.drives);
         }
-        // Also while the drives are off, when it is zero: this keeps the handle in step with the loop.
+        // Also while the drives are off and the force is zero: this keeps the handle in step with the loop.
         if let Some(handle) = self.handle.as_mut().and_then(DeviceSlot::device) {
             let (hand_n, gripper_n) =
                 if outputs.drives { (outputs.hand_force_n, outputs.gripper_n) } else { (Vector3::zeros(), 0.0) };
@@ -197,7 +197,7 @@ impl ArmPair {
     /// Switches the drives on only when commanded: drives that switched themselves off stay off until the next
     /// engagement.
     fn switch_drives(&mut self, on: bool) {
-        // When switched off, the arm leaves servoing only after it has come to rest.
+        // When switched off, the arm leaves servoing only once it has come to rest.
         if let (true, Some(arm)) = (on, self.follower.as_mut().and_then(|slots| slots.arm.device())) {
             arm.enter_servoing();
         }
@@ -222,7 +222,7 @@ impl ArmPair {
         };
         let measured_rad = Joints::from(joints.value.joint_rad);
         if self.inverse.is_none() && tip_command_m.is_some() {
-            // Start from the commanded angles, so that the first command is not a step.
+            // Start from the commanded angles, so that the first command does not jump.
             let from_rad = if joints.value.servoing { Joints::from(arm.command_rad()) } else { measured_rad };
             match self.measured.begin(&from_rad) {
                 Ok(inverse) => self.inverse = Some(inverse),
@@ -237,7 +237,7 @@ impl ArmPair {
                 None => inverse.brake(),
             };
             let at_rest = tip_command_m.is_none() && inverse.is_still();
-            // After a refused command the arm is not where the plan assumes it: start a new plan at the actual
+            // After a refused command the arm is not where the plan assumes it to be, so plan again from the actual
             // position.
             if !arm.aim(step.joint_rad.as_ref()) || at_rest {
                 self.inverse = None;

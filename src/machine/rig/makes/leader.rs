@@ -122,7 +122,7 @@ impl LeaderSettings {
     pub(in crate::rig) const fn rate_hz(&self) -> f64 {
         match self {
             Self::ForceDimension(settings) => settings.rate_hz,
-            // The handle is queried once per tick.
+            // The handle is queried once per tick, whatever the rate of the loop.
             Self::Haply(_) => f64::INFINITY,
             Self::External(settings) => settings.rate_hz,
         }

@@ -61,7 +61,7 @@ fn late_ticks_are_as_many_and_as_late_as_named() {
 
 #[test]
 fn recorded_clocks_are_as_late_as_the_recordings() {
-    // Fraction of ticks later than half a millisecond, and of missed periods, %.
+    // Percentage of ticks later than half a millisecond, and of missed periods.
     for (profile, late, missed) in
         [(ClockProfile::Quiet, 0.1..0.3, 0.1..0.35), (ClockProfile::Busy, 4.0..6.0, 3.5..7.0)]
     {
@@ -72,7 +72,7 @@ fn recorded_clocks_are_as_late_as_the_recordings() {
         ];
         assert!(late.contains(&late_percent), "{profile}: {late_percent} % late");
         assert!(missed.contains(&missed_percent), "{profile}: {missed_percent} % missed");
-        // Late ticks come in clusters: after one, another is likely within 20 ticks.
+        // Late ticks cluster: after one, another is likely within 20 ticks.
         let is_late = |time: &TickTime| time.wake_s > 0.5e-3;
         let after_late: Vec<_> = all.windows(21).filter(|window| is_late(&window[0])).collect();
         let (again, count) =

@@ -51,7 +51,7 @@ impl<L: Link> Pair<L> {
         let inputs = inputs.filter(|inputs| inputs.is_finite() && !self.withholds(Watchdog::Source));
         let moved_m = self.samples.moved_m(inputs.as_ref());
 
-        // The follower's half: readings, force at the tip, identification, packets into the link.
+        // The follower's half: readings, tip force, identification, packets into the link.
         let inputs = inputs.map(|inputs| self.take_in(inputs, timing));
         if inputs.is_none() && self.link.far().is_none() {
             self.follower.miss(timing);
@@ -63,7 +63,7 @@ impl<L: Link> Pair<L> {
         self.drop_old_force(now_s);
 
         // The leader's half: hand to command, packets and motion to a force, gates, handle. Without a new sample the
-        // link keeps delivering packets under way, which grow older, and the age gate removes the force.
+        // link keeps delivering packets in transit; these grow older, and the age gate removes the force.
         let seen = self.samples.last.unwrap_or(Inputs::NOTHING);
         let lead = self.leader.lead(&seen);
         let rendered = self.leader.render(&seen, &lead, &mut self.link, timing);
@@ -131,7 +131,7 @@ impl<L: Link> Pair<L> {
         PlausibilityInput {
             t_s: now_s,
             raw: inputs.raw,
-            // An unknown force counts as zero for this check; the first known force restarts it.
+            // An unknown force counts as zero for this check, which restarts at the first known force.
             force_n: if force.source.is_usable() { force.tip_n } else { Vector3::zeros() },
             min_n: force.source.min_n(),
             world_from_s1: inputs.sensed.wrist().and_then(|sample| sample.world_from_s1),
@@ -221,7 +221,7 @@ impl<L: Link> Pair<L> {
         let is_known = parcel.fresh && age_s < self.leader.gates.chain.settings().zero_after_s;
         let delayed_n = if is_known { parcel.force_n } else { UNKNOWN_N };
         self.link.note_age(Some(age_s));
-        // An engagement waits for the first new packet.
+        // Engagement waits for the first new packet.
         let is_awaited = self.link.is_old() && self.state() == LoopState::Ready;
         if age_s > LINK_SILENT_AFTER_S && !is_awaited {
             self.fail_if_driven(Fault::LinkSilent, now_s);
@@ -250,8 +250,8 @@ impl<L: Link> Pair<L> {
             force_n,
             age_s,
             speed_m_s: self.leader.gates.hand_speed_m_s,
-            // On the axes of the force. The travel of the hand itself, before scaling. A missing sample loses no
-            // travel, because the next one contains it.
+            // In the axes of the force: the travel of the hand itself, before scaling. A missing sample loses no
+            // travel, because the next one includes it.
             hand_m: self.samples.recent(now_s).map(|seen| mapping.world_from_leader() * seen.hand.position_m),
             hand_age_s: now_s - seen.hand_s(now_s),
             permitted,
@@ -308,7 +308,7 @@ impl<L: Link> Pair<L> {
             measured_n: force.measured_n(),
             force,
             wrist: recent.and_then(|seen| seen.sensed.wrist()).copied(),
-            // A repeated pose would look as if it were held still.
+            // A repeated pose would look like one that is held still.
             frames: if self.samples.came { seen.frames } else { FrameSample::default() },
             view: seen.view,
             prompt: self.screen.prompt,

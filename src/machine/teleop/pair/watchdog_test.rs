@@ -30,7 +30,7 @@ impl<L: Link> Pair<L> {
 
     /// Ends a test whose watchdog has not tripped.
     pub(super) fn end_late_test(&mut self, now_s: f64) {
-        // A NaN time ends it too.
+        // A time of NaN ends the test too.
         self.watchdog_test = self.watchdog_test.filter(|test| now_s <= test.until_s);
     }
 

@@ -51,7 +51,7 @@ fn decompress(head: &parse::ChunkHead, compressed: &[u8]) -> Result<Vec<u8>, Str
     if head.uncompressed > max {
         return Err("its stated length is longer than it can be".into());
     }
-    // Allocates at first only for a likely compression ratio, whatever the chunk claims.
+    // Allocate only for a likely compression ratio at first, whatever the chunk claims.
     let likely = head.uncompressed.min(8 * compressed.len() as u64);
     let mut records = Vec::with_capacity(likely as usize);
     if head.compression.is_empty() {

@@ -79,7 +79,7 @@ impl ReaderContents {
         }
         let none = contents.messages.is_empty();
         match report {
-            // Messages outside chunks are in no index.
+            // Messages outside chunks are not indexed.
             Some(report) if report.messages == 0 || !none => contents.statistics = report,
             None if !none => {}
             _ => return Ok(Err("its summary has no index")),

@@ -110,7 +110,7 @@ fn every_flipped_bit_of_a_chunk_is_found_and_the_rest_is_read() {
                 assert!(read.len() >= 25, "the other chunks are read");
                 named += 1;
             } else {
-                // Marks of the LZ4 frame do not affect the messages.
+                // Flags of the LZ4 frame do not affect the messages.
                 assert!(errors.is_empty() && ours(&reader) == all, "byte {} of the chunk at {at}", byte - at);
             }
         }
@@ -154,7 +154,7 @@ fn what_claims_to_be_huge_takes_no_memory() {
 #[test]
 fn a_chunk_that_is_named_twice_is_read_once() {
     let whole = small();
-    // The index of the first chunk instead of that of the second.
+    // Store the index of the first chunk instead of that of the second.
     let mut indexes = Vec::new();
     let mut at = 8;
     while let Some((head, _)) = whole[at..].split_first_chunk::<9>() {
@@ -199,7 +199,7 @@ fn mutated(original: &[u8], random: &mut fastrand::Rng) -> Vec<u8> {
             0 => bytes.truncate(at.max(1)),
             1 => bytes[at] = [0, 1, 0x7f, 0x80, 0xff][random.usize(..5)],
             2 => bytes[at] ^= 1 << random.u8(..8),
-            // A length or a position.
+            // Corrupt a length or a position.
             3 => {
                 let value =
                     if random.bool() { random.u64(..2 * original.len() as u64) } else { u64::MAX - random.u64(..64) };

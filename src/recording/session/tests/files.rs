@@ -16,7 +16,7 @@ fn everything_written_is_read_by_us_and_by_others_before_and_after_the_end() {
     writer.attachment("rig.toml", "text/plain", 5, b"mode = \"best\"").unwrap();
     let mut expected = Vec::new();
     for tick in 0..5_000_u64 {
-        // Noise in the middle keeps the blocks from compressing too well.
+        // Noise in the middle keeps the data from compressing too well.
         let data = format!("{{\"force_n\": {}}}", tick.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 11);
         for (channel, topic) in [(forces, "forces"), (poses, "poses")] {
             writer.message(channel, tick * 1_000_000, data.as_bytes()).unwrap();
@@ -137,7 +137,7 @@ fn who_writes_is_seen_and_who_reads_is_not() {
     let reader = fs::File::open(&path).unwrap();
     assert!(is_being_written(&path).unwrap() && is_being_written(&path).unwrap());
     writer.finish().unwrap();
-    // A program that another test starts inherits the lock until it is loaded.
+    // A program started by another test inherits the lock until it has been loaded.
     let free = (0..500).any(|_| {
         std::thread::sleep(std::time::Duration::from_millis(10));
         !is_being_written(&path).unwrap()

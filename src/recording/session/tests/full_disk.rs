@@ -89,7 +89,7 @@ fn a_file_on_a_full_disk_stays_readable() {
     let path = folder.path().join("disk/session.mcap");
     let kept = folder.path().join("kept.mcap");
     for kib in [9_000, 17_001, 30_000, 30_002] {
-        // A private file system of this size, which exists while the shell runs.
+        // A private file system of this size that exists while the shell runs.
         let disk = path.parent().unwrap();
         let copy = kept.display();
         fs::create_dir_all(disk).unwrap();

@@ -38,7 +38,7 @@ fn pictures_have_chunks_of_their_own_and_are_read_by_us_and_by_others() {
 
     let reader = SessionReader::open(&path).unwrap();
     assert_eq!(reader.notes(), [""; 0]);
-    // Sorted by time; the order within equal times is arbitrary.
+    // Sort by time; the order of equal times is arbitrary.
     let sorted = |mut report: peer::PeerMessage| {
         report.sort_by(|a, b| (a.1, &a.0).cmp(&(b.1, &b.0)));
         report
@@ -71,7 +71,7 @@ fn pictures_that_stop_are_not_left_in_memory() {
     for tick in 0..600_u64 {
         writer.message(numbers, tick * 1_000_000, b"{}").unwrap();
     }
-    // In the state in which a killed process leaves it.
+    // The file is in the state in which a killed process leaves it.
     let reader = SessionReader::open(&path).unwrap();
     assert_eq!(reader.messages(&["pictures"], 0..u64::MAX).count(), 1);
 }

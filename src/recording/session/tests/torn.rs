@@ -77,10 +77,10 @@ fn a_file_is_valid_at_every_moment() {
     let mut disk = Disk(Vec::new());
     let mut read = 0;
     let log = script();
-    // The first writes lay out the file before it has its name.
+    // The first writes lay out the file before it gets its name.
     let begin = log.iter().position(|(_, bytes)| bytes.ends_with(b"\x89MCAP0\r\n")).unwrap();
     for (number, (at, bytes)) in log.iter().enumerate() {
-        // Large writes of one kind are cut at a selection of pages only.
+        // Large writes of one kind are cut only at a selection of pages.
         let pages = bytes.len() / PAGE;
         let cuts: Vec<usize> = match pages {
             0..6 => (1..=pages).collect(),
@@ -100,7 +100,7 @@ fn a_file_is_valid_at_every_moment() {
     assert_eq!(read, CHUNKS as usize);
     let Moments { all, early_end } = moments.into_inner();
     println!("{all} moments of {} writes; early end for who does not use the index: {early_end}", log.len());
-    // Between the write of a growth's new footer and that of the head that leads to it.
+    // These are the moments between writing a new footer and writing the head that points to it.
     assert!((2..=8).contains(&early_end), "{early_end} of {all}");
 }
 
@@ -118,7 +118,7 @@ fn without_power(log: &[(u64, Vec<u8>)], synced: usize, end: usize, random: &mut
         let mut bytes = &bytes[..];
         while !bytes.is_empty() {
             let (part, rest) = bytes.split_at(bytes.len().min(PAGE - at as usize % PAGE));
-            // The last write whose version of this page reached the disk.
+            // Last write whose version of this page reached the disk.
             let reached = *last_version.entry(at / PAGE as u64).or_insert_with(|| random.usize(..=end - synced));
             if number < reached {
                 versions.write(at, part);
@@ -142,7 +142,7 @@ fn after_a_power_failure_what_was_waited_for_is_read() {
     let mut scanned = 0;
     let mut missing = 0;
     for _ in 0..600 {
-        // A second has two chunks: eight writes and occasionally some more.
+        // One second has two chunks: eight writes, sometimes a few more.
         let synced = random.usize(begin..log.len() - 20);
         let end = synced + random.usize(1..20);
         let mut disk = Disk(Vec::new());

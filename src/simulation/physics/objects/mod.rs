@@ -269,7 +269,8 @@ fn laws(setting: &ObjectSettings) -> Laws {
         friction,
         patch_radius_m,
     };
-    // A ring touches at two or three points on an edge, and at all of them when it lies flat.
+    // A ring on its edge touches at two or three points, and a ring that lies flat at all of them, so each point gets a
+    // fraction.
     let of_many = 0.25;
     Laws {
         instrument: Law {

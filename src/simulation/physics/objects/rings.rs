@@ -125,7 +125,7 @@ impl Objects {
                 wake_both(a, b);
             }
         } else if pair.touched {
-            // A ring that rested on the other must not stay in the air.
+            // A ring that rested on the other one must not stay in the air.
             wake_both(a, b);
             *pair = RingPair::default();
         }

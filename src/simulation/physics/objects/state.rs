@@ -131,7 +131,7 @@ impl Objects {
         }
         self.pegs.iter().position(|peg| {
             let across_m = peg.from_m - ring.centre_m;
-            // The intersection of the peg's axis with the plane of the ring, from its middle.
+            // Intersection of the peg's axis with the plane of the ring, relative to its middle.
             let up_m = -(axis.x * across_m.x + axis.y * across_m.y) / axis.z;
             let z_m = ring.centre_m.z + up_m;
             let through = across_m.xy().norm_squared() + up_m * up_m < ring.circle.radius_m * ring.circle.radius_m;

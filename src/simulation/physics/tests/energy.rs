@@ -21,7 +21,7 @@ fn energy_never_grows(thrown: bool, seconds: u32) {
     for _ in 0..seconds {
         for _ in 0..1000 {
             scene.objects.step(&[None, None]);
-            // Without sleep, which would hide a growth.
+            // Without sleep mode, which would hide a growth of energy.
             (0..6).for_each(|ring| scene.objects.ring_mut(ring).wake());
         }
         let energy_j = scene.objects.energy_j();

@@ -68,7 +68,7 @@ fn a_ring_held_off_its_centre_turns_the_shaft_by_its_weight() {
     scene.hands[RIGHT] = Some(instrument(RIGHT, at(0.0, 0.0, 0.001), super::OPEN_RAD));
     scene.jaws(RIGHT, 0.0);
     scene.glide(RIGHT, at(0.0, 0.0, 0.05), 0.1);
-    // The jaws rotate until they point along y; the shaft comes from behind.
+    // Rotate the jaws until they point along y, with the shaft behind them.
     for tick in 1..=500 {
         let turn = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), f64::from(tick) * 1e-3 * std::f64::consts::PI);
         let hand = scene.hands[RIGHT].as_mut().unwrap();
@@ -112,7 +112,7 @@ fn shafts_push_each_other_apart_with_opposite_forces() {
 fn a_peg_pushes_back_what_is_pressed_against_it_and_holds_by_friction() {
     let mut scene = Scene::new(&ObjectSettings { rings: Vec::new(), ..ObjectSettings::default() });
     let [x_m, y_m] = crate::physics::Pegs::default().position_m[6];
-    // Above the peg's top for the shaft, which is thicker than the fingers.
+    // Press with the fingers only: the shaft, which is thicker, stays above the peg's top.
     let touching_m = 0.00175 + 2.0 * 0.0008;
     scene.hands[RIGHT] = Some(instrument(RIGHT, at(x_m + touching_m + 0.002, y_m, 0.019), 0.0));
     scene.glide(RIGHT, at(x_m + touching_m - 0.001, y_m, 0.019), 0.02);

@@ -104,7 +104,7 @@ fn a_ring_dropped_or_pushed_out_of_view_is_lost() {
 #[test]
 fn a_ring_that_is_flung_off_its_peg_was_knocked_off() {
     let mut scene = Scene::new(&one_ring(RingStart::Peg(0)));
-    // From below the rim upwards along the peg, with closed jaws.
+    // Start below the rim and move up along the peg, with closed jaws.
     let peg_m = scene.centre_m(0);
     let tip_m = peg_m + at(-0.0075, 0.0, 0.012);
     scene.hands[LEFT] = Some(super::instrument(LEFT, tip_m, OPEN_RAD));

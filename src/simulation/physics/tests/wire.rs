@@ -46,7 +46,7 @@ fn the_force_is_stiffness_times_overlap_also_where_the_wire_is_pulled_through_th
         for way in [at(0.0, 0.0, 1.0), at(0.0, -0.6, 0.8), at(0.0, 1.0, 0.0)] {
             let (wire, loads) = at_rest(&setting, way * (room_m + overlap_m));
             let law_n = way * (-setting.contact.stiffness_n_m * overlap_m);
-            // Damping is over; friction of the approach acts along the approach.
+            // Damping has died out; friction from the approach acts along the approach.
             assert!((loads.tip_n - law_n).norm() < 0.02 * law_n.norm(), "{overlap_m}: {} {law_n}", loads.tip_n);
             let state = wire.states()[RIGHT];
             assert!(state.touches && (state.deepest_m - overlap_m).abs() < 1e-8, "{state:?}");
@@ -66,7 +66,7 @@ fn a_loop_that_leans_against_a_straight_wire_has_less_room_by_the_cosine() {
         let (wire, loads) = at_rest(&setting, Vector3::zeros());
         assert!((wire.states()[RIGHT].deepest_m - 2e-4).abs() < 2e-8, "{degrees}: {:?}", wire.states());
         if degrees > 0.0 {
-            // It touches on both sides, with forces that cancel and a torque that straightens it.
+            // It touches on both sides: the forces cancel, and the torque straightens it.
             assert!(loads.tip_n.norm() < 1e-6, "{}", loads.tip_n);
         }
     }
@@ -124,7 +124,7 @@ fn the_curve_goes_through_its_points_and_is_as_long_as_an_arc_is() {
         let there_m = curve.at(curve.given_m(number));
         assert!((there_m - Vector3::from(*point_m)).norm() < 1e-12, "point {number}: {there_m}");
     }
-    // A quarter of a circle of 30 mm through 10 points.
+    // A quarter circle of 30 mm through 10 points.
     let arc = (0..10).map(|i| {
         let (sin, cos) = libm::sincos(f64::from(i) / 9.0 * std::f64::consts::FRAC_PI_2);
         [0.03 * cos, 0.03 * sin, 0.02]
@@ -148,13 +148,13 @@ fn energy_of_a_loop_that_bounces_around_the_wire_does_not_grow() {
         let mut tip_m = wire.curve().at(0.05);
         let mut speed_m_s = at(0.02, 0.09, -0.07);
         let first_j = 0.5 * MASS_KG * speed_m_s.norm_squared();
-        // In free flight all of the energy is motion.
+        // In free flight, all energy is kinetic.
         let mut max_j = 0.0_f64;
         let mut bounces = 0;
         for tick in 0..600_000 {
             let loads = wire.step(&Side::Right.alone(holding(tip_m)))[RIGHT];
             speed_m_s += loads.tip_n * (PERIOD_S / MASS_KG);
-            // Otherwise it would fly along the wire to the board's end.
+            // Reverse the motion; otherwise the loop would fly to the end of the wire.
             speed_m_s.x *= if tick % 2000 == 1999 { -1.0 } else { 1.0 };
             tip_m += speed_m_s * PERIOD_S;
             if wire.states()[RIGHT].touches {
@@ -163,7 +163,7 @@ fn energy_of_a_loop_that_bounces_around_the_wire_does_not_grow() {
                 max_j = max_j.max(0.5 * MASS_KG * speed_m_s.norm_squared());
             }
         }
-        // The step of 1 ms on springs without damping causes this much ripple.
+        // A step of 1 ms on undamped springs causes this much ripple.
         assert!(bounces > 100 && max_j < 1.03 * first_j, "{damping_n_s_m}: {max_j} J of {first_j} J, {bounces}");
         let last_j = 0.5 * MASS_KG * speed_m_s.norm_squared();
         assert!(damping_n_s_m == 0.0 || last_j < 0.2 * first_j, "what is damped comes to rest: {last_j} J");
@@ -227,7 +227,7 @@ fn a_loop_is_held_back_by_the_board_and_turns_with_its_shaft_if_told_so() {
     let loads = wire.step(&Side::Right.alone(low))[RIGHT];
     assert!(loads.touching.board && (loads.tip_n.z - 1.0).abs() < 1e-9, "1 kN/m at 1 mm: {}", loads.tip_n);
     setting.hoop.axis = None;
-    // The shaft is upright, so the loop lies flat and the wire does not cross its plane.
+    // The shaft is upright, so the loop is horizontal and the wire does not cross its plane.
     let mut wire = Wire::new(&setting, PERIOD_S);
     let mut flat = holding(at(0.0, 0.02, 0.03));
     flat.trocar_m = at(0.0, 0.02, 0.15);
@@ -271,7 +271,7 @@ fn touches_are_counted_once_with_their_times_and_the_goal_ends_the_task() {
     report.glide(RIGHT, middle(-0.06), middle(-0.02), 1.0);
     report.glide(RIGHT, middle(-0.02), middle(-0.02) + up_m, 0.5);
     report.glide(RIGHT, middle(-0.02) + up_m, middle(-0.02), 0.5);
-    // Clear for only 20 ms: the same touch.
+    // Clear of the wire for only 20 ms, which counts as the same touch.
     for _ in 0..3 {
         report.glide(RIGHT, middle(-0.02) + up_m, middle(-0.02) + up_m, 0.1);
         report.glide(RIGHT, middle(-0.02), middle(-0.02), 0.02);
@@ -281,7 +281,7 @@ fn touches_are_counted_once_with_their_times_and_the_goal_ends_the_task() {
     let kinds: Vec<TaskEvent> = report.events.iter().map(|(_, event)| *event).collect();
     let touch = [TaskEvent::WireTouched { side: right }, TaskEvent::WireLeft { side: right }];
     assert_eq!(kinds, [touch[0], touch[1], touch[0], touch[1], TaskEvent::Ended], "{:?}", report.events);
-    // It overlaps by at most 0.3 mm of a path of about 4.9 mm in 0.5 s, there and back.
+    // Along a path of about 4.9 mm in 0.5 s, there and back, it overlaps by at most 0.3 mm.
     let lasts_s = report.events[1].0 - report.events[0].0;
     let law_s = 2.0 * 0.5 * 3e-4 / up_m.z;
     assert!((lasts_s - law_s).abs() < 4e-3, "{lasts_s} s instead of {law_s} s");
@@ -295,11 +295,11 @@ fn only_a_loop_that_came_from_the_free_end_reaches_the_goal() {
     let setting = straight();
     let mut report = WireReport::new(&setting);
     let middle = |x_m: f64| at(x_m, 0.0, 0.03);
-    // Over the other end, to the middle, and back to the goal.
+    // Start over the other end, to the middle, and back to the goal.
     report.glide(LEFT, middle(0.06), middle(0.0), 1.0);
     report.glide(LEFT, middle(0.0), middle(0.0495), 1.0);
     assert!(!report.task.is_done() && report.task.fraction() < 1e-9);
-    // To the free end, over it and half way back: it leaves the wire there, and its run no longer counts.
+    // Move to the free end, over it and half way back: the loop leaves the wire there, and the run no longer counts.
     report.glide(LEFT, middle(0.0495), middle(-0.045), 1.0);
     report.glide(LEFT, middle(-0.045), middle(0.0), 1.0);
     assert!((report.task.fraction() - 0.05 / 0.099).abs() < 1e-3, "{}", report.task.fraction());

@@ -139,7 +139,7 @@ impl RingFollower {
                 report(TaskEvent::RingKnockedOff { ring, side: self.last });
                 FollowingStage::Free { peg: None }
             }
-            // A ring that was pushed onto a peg, or fell on it, counts as on it.
+            // A ring that was pushed onto a peg, or fell onto it, counts as placed there.
             None if self.on_s >= ON_PEG_AFTER_S => FollowingStage::Free { peg: self.on },
             peg => FollowingStage::Free { peg },
         }

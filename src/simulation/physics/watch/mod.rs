@@ -45,7 +45,7 @@ impl RingWatch {
     /// Examines the rings after a step; call it once for each step.
     pub fn look(&mut self, objects: &Objects) {
         for (ring, (following, state)) in self.rings.iter_mut().zip(objects.rings()).enumerate() {
-            // The right one counts as the last if both touch.
+            // If both instruments touch a ring, the right one counts as the last.
             for side in Side::LEFT_TO_RIGHT {
                 if state.touched_by[side.index()] {
                     self.last = Some(side);

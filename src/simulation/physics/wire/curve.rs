@@ -168,7 +168,7 @@ impl SmoothCurve {
     /// Notes the point before `next` if it is closer than its neighbours, and close enough.
     fn note(&self, circle: &Circle, next: usize, gaps_m: &[f64; 3], both_m: f64, reach: &mut CurveReach) {
         let [before_m, here_m, after_m] = *gaps_m;
-        // Within a piece the gap decreases by at most half its length more.
+        // Within a piece, the gap decreases by at most half the piece's length.
         let is_min = here_m < before_m && here_m <= after_m && here_m < both_m + self.piece_m;
         let Some(free) = reach.places.iter_mut().find(|place| place.is_none()).filter(|_| is_min) else { return };
         let point = (next - 1) as f64;

@@ -115,7 +115,7 @@ impl LoopGeometry {
     pub(super) fn circle(&self, at: &Instrument) -> Circle {
         let along_shaft = at.trocar_m - at.tip_m;
         let (axis, _) = unit_or(&self.axis.map_or(along_shaft, Vector3::from), &Vector3::x());
-        // Any direction across the axis.
+        // Any direction not parallel to the axis.
         let helper = if axis.z.abs() < 0.9 { Vector3::z() } else { Vector3::x() };
         let (across, _) = unit_or(&helper.cross(&axis), &Vector3::y());
         let across = [across, axis.cross(&across)];

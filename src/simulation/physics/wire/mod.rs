@@ -187,7 +187,7 @@ impl Wire {
     fn through_m(&self, held: &TipLoop, found: &CurveReach, both_m: f64) -> Option<f64> {
         let radius_m = held.circle.radius_m;
         let Some(before_m) = held.through_m else {
-            // It enters over a free end, or is placed around the wire.
+            // The wire enters the loop over a free end, or the loop is placed around the wire.
             return found.through.filter(|(_, off_axis_m)| *off_axis_m < radius_m - both_m).map(|(along_m, _)| along_m);
         };
         let along_m = self.curve.crossing(&held.circle, before_m, SEARCH_M)?;

@@ -150,7 +150,7 @@ pub(crate) fn run_with(
     }
     let mut active = ActiveCalibrations::load(None, &rig, &scene);
     let calibrations = active.calibrations(&rig);
-    // With a calibrated wrist sensor, the bias is checked before the tool may touch anything.
+    // With a calibrated wrist sensor, check the bias before the tool may touch anything.
     let arm = arguments.network.arm();
     if arm == ArmLocation::Elsewhere {
         print_line(
@@ -221,7 +221,7 @@ pub(crate) fn run_with(
         output::line(&(as_text(&plan, &summary, is_measured) + &tip_error + &bias + &link + &kept))?;
     }
     recorded?;
-    // Without its calibrations an emulated rig does what it can, and has reported what is missing.
+    // Without its calibrations, an emulated rig runs as far as it can; what is missing has already been reported.
     let was_to_engage = by_itself && start.active.uncalibrated().is_none();
     start.reasons.of(&summary, was_to_engage).map_or(Ok(()), |why| Err(anyhow::anyhow!(why)))
 }
@@ -301,7 +301,7 @@ impl RunStart {
             None => "the force contains the trocar's friction",
         };
         let report = format!("not calibrated ({effect}): {words}; calibrate with `nima calibrate rig --rig {rig}`");
-        // A sensor or tool in another sensor's place.
+        // Also report a sensor or tool that is in another sensor's place.
         let report = std::iter::once(report).chain(self.active.report()).collect::<Vec<_>>().join(". ");
         let is_new = !words.is_empty() && self.lacking.as_ref() != Some(&report);
         is_new.then(|| self.lacking.insert(report).clone())

@@ -83,7 +83,7 @@ impl RunRecording {
         let now = Instant::now();
         let outlook = file.as_deref().map(|file| DiskForecast::new(file, recorder.progress().bytes, now));
         let ends = seconds.and_then(|seconds| now.checked_add(Duration::from_secs_f64(seconds)));
-        // On the virtual clock an image has no valid time.
+        // On the virtual clock, an image has no valid time.
         let films = file.is_some() && are_recorded(&plan.rig);
         let into = films.then_some(&recorder);
         let filming =
@@ -117,7 +117,7 @@ impl RunRecording {
         let now = Instant::now();
         let outlook = self.outlook.as_ref().filter(|_| over.is_none());
         let full_in = outlook.and_then(|outlook| outlook.full_in(progress.bytes, 0, now));
-        // A run that ends earlier needs no more space.
+        // If the run ends earlier, it needs no more space.
         let full_in = full_in.filter(|full_in| self.ends.is_none_or(|ends| now + *full_in < ends));
         let full = |within: Range<Duration>| {
             let words = full_in.filter(|full_in| within.contains(full_in)).map(disk_full_in)?;

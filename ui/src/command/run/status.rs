@@ -88,7 +88,7 @@ impl StatusLine {
 
     fn write(&self, text: &str) {
         let mut err = io::stderr().lock();
-        // The terminal cuts a line that is too long, and clears the rest of the previous one.
+        // The terminal truncates a line that is too long, and clears the rest of the previous one.
         let written =
             if self.terminal { write!(err, "\r\x1b[?7l{text}\x1b[K\x1b[?7h") } else { writeln!(err, "{text}") };
         written.and_then(|()| err.flush()).ok();

@@ -91,7 +91,7 @@ impl ActiveCalibrations {
 
     fn meet_one(&mut self, side: Side, handle: &LoopHandle, rig: &RigConfig) -> Option<bool> {
         let tool = &rig.devices.as_ref()?.arm(side)?.tool;
-        // Read the change first: if the sensor is swapped after this, the loop rejects the calibrations.
+        // Read the count first: if the sensor is swapped after this, the loop rejects the calibrations.
         let change = handle.wrist_change(side);
         let now = &self.sides[side.index()];
         if now.bound == SideBinding::Nothing || now.since == Some(change) {
@@ -107,7 +107,7 @@ impl ActiveCalibrations {
         };
         self.go_over(side, bound);
         let now = &mut self.sides[side.index()];
-        // If the loop does not accept them, they are offered again in the next frame.
+        // If the loop rejects them, they are offered again in the next frame.
         let taken = handle.activate(change, &now.calibrations(rig.tip_force.fallback));
         now.since = taken.then_some(change);
         Some(before.is_some() && now.last != before)

@@ -194,7 +194,7 @@ impl SideCalibrations {
         let idle = match tick.state {
             LoopState::Idle if tick.prompt == Prompt::Rest => true,
             LoopState::Engaged => false,
-            // A person guides the arm, or the sample is not new.
+            // A person is guiding the arm, or the sample is not new.
             _ => return,
         };
         let before = check.drift();

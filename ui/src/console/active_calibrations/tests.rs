@@ -177,7 +177,7 @@ impl Fixture {
     fn new(store: &Path, port: &Path) -> Self {
         let mut rig = RigConfig::load("paper").unwrap();
         rig.devices.as_mut().unwrap().left = None;
-        // The default scene has no wrist sensor; for a rig with devices that must not matter.
+        // The default scene has no wrist sensor, which must not matter for a rig with devices.
         let scene = Scene::load("peg_transfer").unwrap();
         let settings = bota::BotaSettings::new(bota::Transport::GenA, port.display().to_string());
         let slot = DeviceSlot::start("sensor", move || bota::BotaDriver::open(&settings)).unwrap();
@@ -193,7 +193,7 @@ impl Fixture {
     fn until(&mut self, what: &str, good: impl Fn(&Self) -> bool) {
         let began = Instant::now();
         while !good(self) {
-            // Far longer than it takes, also on a busy machine.
+            // Far longer than needed, even on a busy machine.
             assert!(began.elapsed() < Duration::from_mins(3), "never: {what}; {:?}", self.active.lines());
             std::thread::sleep(Duration::from_millis(2));
             self.handle.drain_ticks(|tick| self.source = Some(tick.force.source));
@@ -213,7 +213,7 @@ fn a_calibration_comes_into_force_with_its_sensor_and_leaves_with_it() {
     let port = folder.path().join("ttyACM-sensor");
     let mut bench = Fixture::new(store.path(), &port);
     assert!(bench.active.is_waiting());
-    // A rig with devices can be calibrated whatever the scene.
+    // A rig with devices can be calibrated in any scene.
     let first = sensor("4242", &port);
     bench.until("the sensor is known", |bench| bench.is_bound_to("SN004242"));
     assert_eq!(bench.active.binding().tool, "Right grasper");
@@ -236,11 +236,11 @@ fn a_calibration_comes_into_force_with_its_sensor_and_leaves_with_it() {
     std::thread::sleep(Duration::from_millis(50));
     bench.handle.drain_ticks(|tick| bench.source = Some(tick.force.source));
     assert_eq!(bench.source, Some(ForceSource::Uncalibrated), "the calibration of another sensor");
-    // The first one again.
+    // The first sensor again.
     drop(second);
     let _again = sensor("4242", &port);
     bench.until("it is in force again", |bench| bench.source == Some(ForceSource::Wrist));
-    // Another tool on it.
+    // Another tool on the same sensor.
     drop(bench);
     let mut bench = Fixture::new(store.path(), &port);
     bench.rig.devices.as_mut().unwrap().right.as_mut().unwrap().tool = "Scissors".to_owned();

@@ -73,7 +73,7 @@ impl AlarmLog {
             }
         }
         while self.entries.len() > KEPT {
-            // An active alarm is never removed: there are fewer kinds than places.
+            // There are fewer kinds of alarms than entries, so an active alarm is never removed.
             let gone = self.entries.iter().position(|entry| entry.ended.is_some()).unwrap_or(0);
             self.entries.remove(gone);
         }

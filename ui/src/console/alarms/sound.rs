@@ -111,7 +111,7 @@ impl Sound {
 impl Drop for Sound {
     fn drop(&mut self) {
         if let Some(child) = &mut self.playing {
-            // The player must end before its file is deleted.
+            // The player must exit before its file is deleted.
             child.kill().ok();
             child.wait().ok();
         }
@@ -162,7 +162,7 @@ fn burst(priority: AlarmPriority) -> Vec<f64> {
         for (i, sample) in burst.iter_mut().skip(first).take(count).enumerate() {
             let t_s = i as f64 / f64::from(RATE_HZ);
             let left_s = (count - i) as f64 / f64::from(RATE_HZ);
-            // Ramps, because a step would be heard as a click.
+            // Ramp the volume, because a step would be heard as a click.
             let loud = (t_s / 0.015).min(left_s / 0.015).min(1.0);
             let tone: f64 = (1..=4).map(|k| (TAU * tone_hz * f64::from(k) * t_s).sin() / f64::from(k)).sum();
             *sample = 0.35 * loud * tone;
@@ -224,7 +224,7 @@ mod tests {
         }
     }
 
-    // The player is a script.
+    // The player is a shell script.
     #[cfg(unix)]
     #[test]
     fn a_burst_is_played_when_due_and_silence_or_failure_is_told() {

@@ -42,7 +42,7 @@ impl Alarms {
         let live = self.log.live();
         let Some(&first) = live.first() else { return };
         if let Some(change_s) = calls.and_then(|priority| priority.until_change_s(time_s)) {
-            // Slightly later, so that the colour has changed by then.
+            // Slightly later than the change, so that the colour has changed by then.
             ui.ctx().request_repaint_after(std::time::Duration::from_secs_f64(change_s + 2e-3));
         }
         let colour = calls.unwrap_or(first.alarm.priority).colour(time_s, calls.is_some());
@@ -117,7 +117,7 @@ fn words_ui(ui: &mut Ui, first: &AlarmEntry, others: usize, colour: Color32) -> 
         ui.add(Label::new(RichText::new(cause).font(theme::strong(14.0)).color(theme::DARK.text)).wrap());
         ui.add(Label::new(RichText::new(&alarm.cure).font(theme::regular(13.0)).color(theme::DARK.text_weak)).wrap());
     });
-    // Not reachable with the Tab key: the button next to it does the same.
+    // Not in the Tab order, because the button next to it does the same.
     ui.interact(words.response.rect, ui.scope_id().with("alarm"), Sense::CLICK).clicked()
 }
 

@@ -91,7 +91,7 @@ impl ConsoleApp {
     /// Saves a calibration and activates it.
     pub(super) fn save(&mut self, saving: SaveRequest) {
         let saved = self.saved(saving);
-        // Read before the restart: afterwards the sensor must be opened first.
+        // Read this before the restart, because afterwards the sensor must first be opened.
         let following = saved.as_ref().ok().and_then(|(rig, _)| self.following(rig));
         let report = match saved {
             Ok((rig, words)) => match self.restart(rig, self.live.scene.clone()) {

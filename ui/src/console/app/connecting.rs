@@ -15,7 +15,7 @@ use crate::console::{
 impl ConsoleApp {
     /// Changes the rig file and restarts the machine; shows the result or the reason for a refusal on the panel.
     pub(super) fn connect(&mut self, change: &RigEdit) {
-        // The newest state counts: a side may have been engaged since the panel was drawn.
+        // Use the newest state, because a side may have been engaged since the panel was drawn.
         self.take_in();
         let report = match why_not_to_change(&self.live, self.starting.is_some()) {
             Some(reason) => Err(reason.to_owned()),

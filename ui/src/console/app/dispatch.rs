@@ -47,7 +47,7 @@ impl ConsoleApp {
         }
         match action {
             Action::Stop => self.outbox.push(Command::Stop),
-            // The button decides: it waits a moment after every change of state.
+            // Leave it to the button, which waits a moment after every change of state.
             Action::Engage | Action::Release => self.top_bar.wants_step = Some(action),
             Action::View(role) => self.show_view(role),
             Action::Rig if self.start.is_open => self.close_pages(),

@@ -243,7 +243,7 @@ impl ConsoleApp {
             active.watch(tick);
             eyes.note(tick);
             match &mut run {
-                // The diary has the mode.
+                // A trial of a study records the tick; its diary includes the mode.
                 Some(run) => run.tick(tick),
                 None if tick.side == Side::Right => diary.tick(tick),
                 None => {}
@@ -363,7 +363,7 @@ impl eframe::App for ConsoleApp {
         if self.only_flashes(ctx) {
             return;
         }
-        // Also while the window is hidden, so that the queues stay empty and the history complete.
+        // Also while the window is hidden, so that the queues stay empty and the history stays complete.
         self.go_on_starting();
         self.take_in();
         self.ask();
@@ -375,9 +375,9 @@ impl eframe::App for ConsoleApp {
         let ctx = ui.ctx().clone();
         self.use_language();
         self.measure(&ctx, frame);
-        // Not switched on again: a view that keeps changing its look would be worse.
+        // Do not switch it on again, because a view that keeps changing its look would be worse.
         let slow = self.opened.elapsed() > WARM_UP && self.live.figures.frame_ms[0] > SLOW_MS;
-        // Screenshots for the documents are always antialiased, however long that takes.
+        // Screenshots for the documentation are always antialiased, however long that takes.
         self.live.rough_edges = self.photographer.is_none() && (self.live.rough_edges || slow);
         self.panels.scene.smooth = !self.live.rough_edges;
         self.sessions.reel().rest(!self.settings.now.records_image);
@@ -390,7 +390,7 @@ impl eframe::App for ConsoleApp {
             self.palette.close();
         }
         self.obey_commands(&ctx);
-        // The elapsed time: `stable_dt` is 1/60 s in every window that waits between its frames.
+        // Use the elapsed time: `stable_dt` is 1/60 s in every window that waits between frames.
         self.go_on_in_past(f64::from(ui.input(|input| input.unstable_dt)));
         self.layout(ui);
         if !self.start.is_open {
@@ -435,6 +435,6 @@ impl eframe::App for ConsoleApp {
 /// Connects to a loop that wakes the window of this context.
 fn door_of(handle: LoopHandle, ctx: &egui::Context) -> LoopConnection {
     let ctx = ctx.clone();
-    // A short delay, because egui would draw two frames without one.
+    // Wait briefly, because egui would otherwise draw two frames.
     LoopConnection::new(handle, move || ctx.request_repaint_after(Duration::from_millis(1)))
 }

@@ -62,7 +62,7 @@ impl ConsoleApp {
             self.active.notify(format!("{report}."));
         }
         if settings.is_first_run() {
-            // The first page is about the simulated rig; a user who names a rig with devices does not need it.
+            // The tour is about the simulated rig; a user who names a rig with devices does not need it.
             if self.live.rig.devices.is_none() {
                 self.start.welcome.open();
             } else {
@@ -135,7 +135,7 @@ impl ConsoleApp {
         if let Some(path) = screenshot.filter(|_| !self.shown && open >= self.image_at()) {
             self.shown = true;
             ctx.request_screenshot(move |image| {
-                // Errors can be reported only on the terminal.
+                // By now, errors can be reported only on the terminal.
                 if let Err(error) = screenshot::save(&path, &image) {
                     print_line(format_args!("{error:#}"));
                 }

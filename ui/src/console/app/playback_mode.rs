@@ -115,7 +115,7 @@ impl ConsoleApp {
             live.rough_edges = self.live.rough_edges;
             past.panels.scene.smooth = smooth;
             past.panels.eyes.show_as(self.settings.now.image);
-            // Commands of the views for the machine are discarded.
+            // Discard commands that the views send to the machine.
             role_ui(ui, &mut self.settings.now, live, &mut past.panels, &past.active, &mut past.outbox);
             past.outbox.forget();
         });

@@ -161,7 +161,8 @@ impl ConsoleApp {
             Ok(loaded) => loaded,
             Err(error) => return self.start.notify(Some(text::start::not_started(&chain(&error), None))),
         };
-        // End the old loop first: a rig must have only one controller, and emulators at the same addresses cannot run twice.
+        // End the old loop first: a rig must have only one controller, and two sets of emulators cannot use the same
+        // addresses.
         drop(self.door.take());
         self.sessions.end();
         self.serve(None);

@@ -29,8 +29,8 @@ impl ConsoleApp {
         self.panels.devices.is_starting = self.starting.is_some();
         let Wishes { restart, calibration, devices } =
             role_ui(ui, &mut self.settings.now, &mut self.live, &mut self.panels, &self.active, &mut self.outbox);
-        // At the end of the frame, after everything was drawn with the old loop. A stop requested in the same frame takes
-        // precedence.
+        // At the end of the frame, when everything has been drawn with the old loop. A stop requested in the same frame
+        // takes precedence.
         if self.outbox.holds_stop() {
             return;
         }

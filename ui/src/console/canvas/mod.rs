@@ -57,7 +57,7 @@ impl Canvas {
             return vec![ground.rect];
         }
         let Some(rects) = differences((&self.before, &self.prints), (shapes, prints)) else { return vec![ground.rect] };
-        // Whole pixels, so that neighbouring pixels are not affected.
+        // Round to whole pixels, so that neighbouring pixels are not affected.
         let whole = |x: f32, up: bool| {
             let pixels = x * ground.pixels_per_point;
             (if up { pixels.ceil() } else { pixels.floor() }) / ground.pixels_per_point

@@ -154,7 +154,7 @@ impl SurfaceInner {
         let Some(sign) = self.sign.filter(|_| same_size) else { return false };
         let mut point = [0_u8; 4];
         let pixels = glow::PixelPackData::Slice(Some(&mut point));
-        // SAFETY: as for this function; one pixel of four bytes fits the slice.
+        // SAFETY: the same conditions as for this function; one pixel of four bytes fits into the slice.
         unsafe { gl.read_pixels(0, 0, 1, 1, glow::RGBA, glow::UNSIGNED_BYTE, pixels) };
         let found = point[2] == sign;
         self.lost = if found { 0 } else { self.lost + 1 };
@@ -166,7 +166,7 @@ impl SurfaceInner {
     /// # Safety
     /// The context must be current, with the window's framebuffer bound.
     unsafe fn leave(&mut self, gl: &glow::Context, frame: u64, background: Color32) -> bool {
-        // Three values in turn, so that the images of two alternating buffers cannot be confused.
+        // Cycle through three values, so that the images of two alternating buffers cannot be confused.
         let blue = background.b().clamp(1, 254) - 1 + (frame % 3) as u8;
         let [r, g, _, _] = background.to_normalized_gamma_f32();
         unsafe {

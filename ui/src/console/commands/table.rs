@@ -87,7 +87,7 @@ fn screen() -> Vec<CommandEntry> {
     let menu = CommandPlace::ViewMenu;
     let [larger, smaller] = SIZE;
     let [undo, redo] = UNDO;
-    // Each language by its own name, so that users who cannot read the current one find theirs.
+    // Each language is listed by its own name, so that users who cannot read the current one can find theirs.
     let languages = Language::CHOICES
         .map(|one| named(Action::Language(one), names::language(one.name()), names::LANGUAGE_DOES.get(), &[], menu));
     let mut entries = vec![

@@ -50,7 +50,7 @@ impl EndoscopeView {
             (None, ..) if self.mount.is_some() => text::endoscope_view::NO_MARKER.get().to_owned(),
             (None, ..) if has_lens => text::endoscope_view::NO_PLACE.get().to_owned(),
             (None, ..) => text::endoscope_view::NO_CAMERA.get().to_owned(),
-            // On an old image the forces would be at a wrong place.
+            // On an outdated image, the forces would be drawn in the wrong place.
             _ if !fits => String::new(),
             (_, true, _) => text::endoscope_view::FORCES_HIDDEN.get().to_owned(),
             (_, false, Some(off_px)) => text::endoscope_view::forces_off(off_px),

@@ -247,7 +247,7 @@ impl EndoscopeView {
             let instrument = |side| Some(OverlayInstrument { side, pose: pose(side)?, trocar_m: trocar(live, side) });
             tips.extend(seen.draw(live.sides().filter_map(instrument), self.hides_forces));
         }
-        // If there are two halves: the half under the pointer.
+        // If there are two halves, use the one under the pointer.
         let pointed = response.hover_pos().and_then(|at| halves.iter().find(|half| half.within.contains(at)));
         if let Some(half) = pointed.or(halves.first()) {
             self.aim.obey(&response, half.within, &half.place);

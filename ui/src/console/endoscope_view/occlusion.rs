@@ -27,7 +27,8 @@ impl InstrumentShaft {
         if !(a > 0.0 && c > 0.0 && min > 1e-12 * a * c) {
             return false;
         }
-        // Nearest point of the two lines, then the nearest point of the line of sight to the clamped end of the shaft.
+        // Nearest point on the shaft's axis, clamped to the ends of the shaft; then the nearest point on the line of
+        // sight to it.
         let along = ((b * d - a * e) / min).clamp(0.0, 1.0);
         let seen = (self.tip_m + shaft * along - lens_m).dot(&sight) / a;
         if !(0.0..BEHIND).contains(&seen) {

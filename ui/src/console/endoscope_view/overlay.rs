@@ -124,7 +124,7 @@ impl OverlayImage<'_> {
             match stretches.last_mut() {
                 Some(last) if last.hidden == hidden => last.points.push(point),
                 before => {
-                    // Starts at the end of the previous segment, so that there is no gap.
+                    // Start at the end of the previous segment, so that there is no gap.
                     let joint = before.and_then(|before| before.points.last().copied());
                     stretches.push(OverlaySegment { points: joint.into_iter().chain([point]).collect(), hidden });
                 }
@@ -145,7 +145,7 @@ impl OverlayImage<'_> {
         let Some(stretches) = self.line(&points_m, instrument) else { return };
         for OverlaySegment { points, hidden } in stretches {
             self.painter.add(Shape::line(points.clone(), Stroke::new(RING + 2.0, seen_through(SHADE, hidden))));
-            // Dashes: nothing else in the image has them.
+            // Draw dashes, because nothing else in the image has them.
             let stroke = Stroke::new(RING, seen_through(theme::DARK.text, hidden));
             self.painter.extend(Shape::dashed_line(&points, stroke, 6.0, 5.0));
         }
@@ -190,7 +190,7 @@ impl OverlayImage<'_> {
             let [fill, edge] = [colour, SHADE].map(|colour| seen_through(colour, ends_hidden));
             self.painter.add(Shape::convex_polygon(head, fill, Stroke::new(1.5, edge)));
         } else {
-            // Towards the lens or away from it: a ring around the tip.
+            // For a force towards or away from the lens, draw a ring around the tip.
             self.painter.circle_stroke(tip, FREE + 4.0, Stroke::new(ARROW + 3.0, SHADE));
             self.painter.circle_stroke(tip, FREE + 4.0, Stroke::new(ARROW, colour));
         }

@@ -55,7 +55,7 @@ impl Poses {
             return;
         }
         let last_s = self.markers.back().map(|(last_s, _)| *last_s);
-        // A restarted loop begins at zero.
+        // The time of a restarted loop begins at zero.
         if last_s.is_some_and(|last_s| t_s < last_s - KEPT_S) {
             self.markers.clear();
         } else if last_s.is_some_and(|last_s| t_s < last_s + STEP_S) {
@@ -86,7 +86,7 @@ impl Poses {
             return;
         }
         let kept = &mut self.kept[side.index()];
-        // A restarted loop begins at zero.
+        // The time of a restarted loop begins at zero.
         if kept.back().is_some_and(|(last_s, _)| t_s < *last_s) {
             kept.clear();
             self.offset_s = None;
@@ -132,7 +132,7 @@ mod tests {
         for tick in 0..3000 {
             let t_s = f64::from(tick) * 1e-3;
             let pose = TipPose { tip_m: Vector3::new(t_s, 0.0, 0.0), measured_n: None };
-            // The window's clock is 7 s ahead, and the window receives the ticks of up to 16 ms at once.
+            // The window's clock is 7 s ahead, and the window receives up to 16 ms of ticks at once.
             let now_s = 7.0 + f64::from(tick / 16 * 16 + 15) * 1e-3;
             poses.take(Side::Right, t_s, pose, now_s);
         }
@@ -152,7 +152,7 @@ mod tests {
         for tick in 0..1500 {
             let t_s = f64::from(tick) * 1e-3;
             poses.take(Side::Right, t_s, rest, 5.0 + t_s);
-            // The tip jumps by 5 mm after half a second, and is hidden after a second.
+            // The tip jumps by 5 mm after half a second and is hidden after one second.
             let x_m = if tick < 500 { 0.0 } else { 0.005 };
             if tick < 1000 {
                 poses.take_marker(t_s, Isometry3::translation(x_m, 0.0, 0.0));

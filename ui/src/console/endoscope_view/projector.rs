@@ -83,7 +83,7 @@ impl Projector {
                 wake();
             }
         };
-        // If no thread can be created, there is no image.
+        // If no thread can be created, no image is shown.
         Builder::new().name("projector".to_owned()).spawn(language::carried(work)).ok();
         Self { wishes, asked: (Tone::default(), f64::NAN), found }
     }

@@ -73,7 +73,7 @@ impl LiveState {
     fn event(&mut self, event: &Event) {
         match *event {
             Event::FaultRaised { t_s, fault, .. } => {
-                // Both arms may report in the same tick, first the one that only follows the other.
+                // Both arms may report in the same tick, and the one that only follows the other may come first.
                 match self.first_fault {
                     Some((_, first)) if first != Fault::OtherArm || fault == Fault::OtherArm => {}
                     _ => self.first_fault = Some((t_s, fault)),

@@ -372,7 +372,7 @@ impl LiveState {
                 (None, ConnectionState::Lost(loss)) => {
                     (loss_text(loss).to_owned(), text::alarms::DEVICE_MISSING_CURE.get().to_owned())
                 }
-                // The first attempt to open a device takes some time.
+                // The first attempt to open a device takes some time, so do not report it as missing yet.
                 (None, _) => return None,
             };
             Some(MissingDevice { place, name: role_name(entry.role), was_there, cause, cure })

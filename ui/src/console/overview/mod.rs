@@ -69,7 +69,7 @@ pub(crate) fn overview(active: &ActiveCalibrations, rig: &RigConfig, name: &str)
     let file = RigFile::of(name).ok();
     let sides = Side::ALL.into_iter().filter(|side| active.is_at_wrist(*side));
     let of_arm = |side: Side| {
-        // Without the sensor the calibrations of this arm are unknown.
+        // Without the sensor, it is unknown which calibrations belong to this arm.
         let wrist = active.wrist(side).cloned();
         let mut lines = Vec::new();
         if let (true, Some(store), Some(wrist)) = (has_joints, active.store(), &wrist) {
@@ -134,7 +134,7 @@ fn in_file(kept: &StoredFrame, file: Option<&RigFile>) -> String {
 
 /// Result of the last ready check for this point, if it was run after the calibration of this date.
 pub(crate) fn found_since(last: Option<&ReadyRecord>, check: ReadyPoint, date: &str) -> Option<String> {
-    // Dates of this form sort as text.
+    // Dates in this format sort as text.
     let last = last.filter(|last| last.date.as_str() >= date)?;
     let item = last.items.iter().find(|item| item.check == check_name(check))?;
     let found = match (item.outcome, item.value.zip(item.limit), &item.cause) {

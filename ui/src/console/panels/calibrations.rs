@@ -82,7 +82,7 @@ pub fn calibrations_ui(
             wish = Some(CalibrationWish::Close);
         }
     }
-    // Below the buttons, which must not move under a hand when a sensor connects or disconnects.
+    // Placed below the buttons, which must not move under the pointer when a sensor connects or disconnects.
     ui.add_space(4.0);
     for line in active.lines() {
         ui.label(small(line));
@@ -125,7 +125,7 @@ fn rig_ui(ui: &mut Ui, live: &LiveState, open: Option<CalibrationPage>) -> Optio
             }
         }
     });
-    // One line in every state, so that the buttons below do not move under a hand.
+    // One line in every state, so that the buttons below do not move under the pointer.
     let words = closed.unwrap_or(text::calibrations::SETS_IDLE.get());
     let font = fitting_style(ui, words, &TextStyle::Small, ui.available_width());
     ui.add(Label::new(weak(words).font(font)).truncate());

@@ -61,9 +61,9 @@ pub fn feedback_ui(ui: &mut Ui, live: &mut LiveState, state: &mut FeedbackState,
 
 fn mode_ui(ui: &mut Ui, live: &LiveState, outbox: &mut Outbox) {
     ui.spacing_mut().item_spacing = vec2(6.0, 4.0);
-    // Two in a row, and three in the last one where they are an odd number.
+    // Two per row; if the number is odd, three in the last row.
     let (pairs, last) = OFFERED.split_at(MODES - 3 * (MODES % 2));
-    // A method of others is computed, and offered, only where the rig file names it.
+    // A baseline method is computed, and offered, only if the rig file names it.
     let baseline: &[Mode] = match &live.rig.mode {
         baseline @ Mode::Baseline(_) => std::slice::from_ref(baseline),
         _ => &[],
@@ -102,8 +102,8 @@ fn setting_ui(
     asked: &mut RequestedValue,
 ) -> (Option<f64>, egui::Rect) {
     let time_s = ui.input(|input| input.time);
-    // Rounded for display here: a widget that rounds or clamps would report an edit, and the window would send a setting that
-    // no one chose.
+    // Round for display here: a widget that rounds or clamps would report an edit, and the window would send a setting
+    // that the user did not choose.
     let step = 10f64.powi(-i32::from(setting.decimals));
     let whole = |value: f64| (value / step).round() * step;
     let mut value = whole(asked.shown(active, time_s));

@@ -68,7 +68,7 @@ pub fn force_space_ui(ui: &mut Ui, live: &LiveState, side: Side, state: &mut For
         state.ellipsoid = (cloud.pairs().len(), shown_s, cloud.ellipsoid());
     }
     let ellipsoid = state.ellipsoid.2.filter(|_| is_known);
-    // Slightly less than what is stored: the oldest samples are dropped between two frames.
+    // Show slightly less than what is stored, because the oldest samples are dropped between two frames.
     let shown = (shown_s - SECONDS + 2.0 * live.min_step_s())..=shown_s;
     let pairs: Vec<&ForcePair> = cloud.pairs().filter(|pair| shown.contains(&pair.t_s)).collect();
     let words = if is_known { caption(ellipsoid.as_ref()) } else { text::force_space::unknown(SECONDS) };
@@ -91,12 +91,12 @@ pub fn force_space_ui(ui: &mut Ui, live: &LiveState, side: Side, state: &mut For
     ceiling(&painter.with_clip_rect(place), &view, live.gate_settings().ceiling_n as f32);
     for (colour, width, rendered) in [(theme::now().measured, 2.2, false), (theme::now().rendered, 1.6, true)] {
         let force_n = |pair: &ForcePair| if rendered { pair.rendered_n } else { pair.measured_n };
-        // One line for each interval in which the measured force was known.
+        // Draw one line for each interval in which the measured force was known.
         for run in pairs.chunk_by(|before, after| after.t_s - before.t_s < GAP_S) {
             let points = run.iter().map(|pair| view.place(&force_n(pair).cast())).collect();
             painter.line(points, Stroke::new(width, colour.gamma_multiply(0.75)));
         }
-        // The newest sample, or the one at the cursor of a trace, if the force was known then.
+        // The newest sample, or the sample at the cursor of a trace, if the force was known then.
         let at_s = cursor_s.unwrap_or(now_s);
         let pointed_at = pairs.iter().min_by(|a, b| (a.t_s - at_s).abs().total_cmp(&(b.t_s - at_s).abs()));
         if let Some(pair) = pointed_at.filter(|pair| (pair.t_s - at_s).abs() < GAP_S) {

@@ -50,7 +50,7 @@ pub fn gates_ui(ui: &mut Ui, live: &LiveState, state: &mut GatesState) {
     }
     ui.add(Label::new(RichText::new(answer(live, state.side)).font(theme::strong(14.0))).wrap());
     ui.add_space(2.0);
-    // Little spacing, so that all nine rows are visible.
+    // Use little spacing, so that all nine rows fit.
     ui.spacing_mut().item_spacing.y = 1.0;
     ui.spacing_mut().interact_size.y = 20.0;
     for gate in gates(live, state.side) {
@@ -146,7 +146,7 @@ pub(super) fn gates(live: &LiveState, side: Side) -> [GateView; GATES] {
     Which::ALL.map(|which| {
         let [name, meaning] = gate_text(which);
         let fraction = match which {
-            // A ramp of the gain does not count as a closed gate; a gain of zero does.
+            // A gain that is ramping does not count as a closed gate; a gain of zero does.
             Which::Gain => f64::from(u8::from(live.gain() < 0.01)),
             _ => gates.fraction(which),
         };
@@ -175,7 +175,7 @@ fn note(live: &LiveState, side: Side, which: Which) -> String {
         Which::Ceiling => format!("{:.1} N", chain.ceiling_n.min(chain.device_limit_n)),
         Which::Governor if chain.handle_kg <= 0.0 => text::gates::GOVERNOR_OFF.get().to_owned(),
         Which::Governor => text::gates::governed(100.0 * gates.governed.get()),
-        // Nothing to set.
+        // This gate has no setting.
         _ => String::new(),
     }
 }

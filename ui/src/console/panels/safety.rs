@@ -117,7 +117,7 @@ fn interlock_ui(ui: &mut Ui, live: &LiveState, side: Side) {
         let lit = last.is_some_and(|last| last == (from, to) || last == (to, from));
         way(&painter, at(from), at(to), from < 5, lit);
     }
-    // Transitions from every state to stop and fault: one line below all states.
+    // One line below all states stands for the transitions from every state to stop and fault.
     let rail = diagram.top() + 0.54 * diagram.height();
     let stroke = Stroke::new(1.0, theme::now().text_weak);
     painter.add(egui::Shape::dashed_line(&[pos2(at(0).left(), rail), pos2(at(4).right(), rail)], stroke, 4.0, 4.0));

@@ -83,7 +83,7 @@ pub fn timing_ui(ui: &mut Ui, live: &LiveState, state: &mut TimingState) {
 }
 
 fn table_ui(ui: &mut Ui, timings: &[TimingBar<'_>]) {
-    // Four numbers are next to a name, which takes several lines if it is long.
+    // Four numbers follow the name, which wraps if it is long.
     let room = (ui.available_width() - 4.0 * 52.0).max(60.0);
     Grid::new("timing").num_columns(5).spacing([10.0, 3.0]).min_col_width(40.0).show(ui, |ui| {
         ui.label(small("µs"));

@@ -90,7 +90,7 @@ pub fn top_bar_ui(
             let next = state.asked == Some(PersonRequest::Release);
             let ready = since_s >= STEP_WAITS_S && closed.is_none();
             step_ui(ui, now, TopBarStep { ready, next, wanted: wants_step, closed }, outbox);
-            // After the step, which is at its left: in reading order.
+            // Drawn after the step button to its left, so that keyboard focus follows the reading order.
             stop_ui(ui, place, now, state.asked == Some(PersonRequest::PressStop), outbox);
             ui.add_space(6.0);
             refusal_ui(ui, live);
@@ -167,7 +167,7 @@ pub(in crate::console) fn state_ui(ui: &mut Ui, live: &LiveState, state: LoopSta
         LoopState::Faulted(_) => (Sign::Triangle, theme::now().alarm_high, text::top_bar::FAULT_MEANING.get()),
     };
     let lines = state_lines(live, state);
-    // Two lines with arm names are longer than one.
+    // Two lines with arm names are wider than one line.
     let width = if lines.len() > 1 { 156.0 } else { 136.0 };
     let (rect, response) = ui.allocate_exact_size(vec2(width, 44.0), Sense::hover());
     let response = response.on_hover_text(text::top_bar::state_meaning(meaning));
@@ -277,7 +277,7 @@ fn refusal_ui(ui: &mut Ui, live: &LiveState) {
         _ => text::top_bar::NOT_SET.get(),
     };
     let arm = if live.is_bimanual() { side_word(side) } else { "" };
-    // Take the reason from the list of devices.
+    // If a device is missing, show the reason from the list of devices.
     let missing = live.missing().next().filter(|_| why == Refusal::State(LoopState::Disconnected));
     let words = match missing {
         Some(MissingDevice { name, cause, cure, .. }) => {

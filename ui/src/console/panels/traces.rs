@@ -61,12 +61,12 @@ pub fn force_traces_ui(ui: &mut Ui, live: &mut LiveState, state: &mut TracesStat
             state.step_s = if point_s.is_finite() { point_s.max(live.min_step_s()) } else { 0.0 };
         }
         interact(ui, state, &response);
-        // The plot under the pointer shows its values there.
+        // The plot under the pointer shows the values at the pointer itself.
         if let Some(at_s) = cursor_s.filter(|_| !response.response.hovered()) {
             read_at(ui, history, axis, (now_s, at_s), response.response.rect);
         }
     }
-    // The cursor is drawn in all plots; those above the pointer show it in the next frame.
+    // The cursor is drawn in all plots; those above the pointer get it in the next frame.
     if state.cursor_s != cursor_s {
         ui.ctx().request_repaint();
     }
@@ -199,8 +199,8 @@ fn plot_ui(
     let history = state.history(live);
     let seconds = AxisHints::new_x()
         .label(if last { text::traces::TIME_AXIS.get() } else { "" })
-        // Otherwise the axis is as high as its texts in the last frame, and an axis with other texts would draw its title
-        // over the numbers.
+        // By default the axis is as high as its labels in the last frame, so an axis with new labels would draw its
+        // title over the numbers.
         .min_thickness(time_axis_height(ui))
         .formatter(|mark, _| plain(mark.value));
     let newtons = AxisHints::new_y()
@@ -280,7 +280,7 @@ fn interact(ui: &Ui, state: &mut TracesState, plot: &PlotResponse<()>) {
 fn range_n(extent_n: Option<(f64, f64)>, (low_n, high_n): (f64, f64)) -> (f64, f64) {
     let (min, max) = extent_n.unwrap_or((0.0, 0.0));
     let wanted = (-round_up(-min), round_up(max));
-    // Shrinks only when less than half is used, because an axis that changes with every peak cannot be read.
+    // Shrink only when less than half is used, because an axis that changes with every peak cannot be read.
     let keep = |old: f64, wanted: f64| if wanted > old || wanted < 0.45 * old { wanted } else { old };
     (-keep(-low_n, -wanted.0), keep(high_n, wanted.1))
 }

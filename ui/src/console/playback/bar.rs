@@ -161,7 +161,7 @@ fn buttons_ui(ui: &mut Ui, past: &mut Playback) {
     let reading = (fraction < 0.999 && past.report.refused.is_none()).then(|| text::playback::read(fraction));
     let words = past.report.job.clone().or_else(|| past.report.limited.clone()).or(reading);
     if let Some(words) = words {
-        // The time line shows the reading progress if the row has no room for it.
+        // If the row has no room for it, the time line alone shows the reading progress.
         if ui.available_width() < MESSAGE {
             return;
         }
@@ -188,7 +188,7 @@ fn strip_ui(ui: &mut Ui, past: &mut Playback) {
     for edge_s in past.stretch_s.iter().flatten() {
         painter.vline(x_of(*edge_s), strip.y_range(), Stroke::new(1.5, theme::now().past));
     }
-    // The most urgent ones last, over the others.
+    // Draw the most urgent ones last, on top of the others.
     for kind in [LineKind::Told, LineKind::Happening, LineKind::Warning, LineKind::Mark, LineKind::Fault] {
         for note in past.overview.notes.iter().filter(|note| note.kind == kind) {
             mark(&painter, strip, x_of(note.t_s), kind);
@@ -241,7 +241,7 @@ fn mark(painter: &egui::Painter, strip: Rect, x: f32, kind: LineKind) {
         LineKind::Mark | LineKind::Happening => theme::now().text,
         LineKind::Told => theme::now().text_weak,
     };
-    // The operator's own marks span the strip, as in the traces.
+    // The operator's marks span the strip, as in the traces.
     let foot = if kind == LineKind::Mark { strip.bottom() } else { strip.top() + MARKS };
     painter.vline(x, strip.top()..=foot, Stroke::new(2.0, colour));
 }
@@ -266,7 +266,7 @@ fn forces(painter: &egui::Painter, strip: Rect, overview: &Overview, end_s: f64)
         if let Some(measured_n) = max.measured_n {
             painter.vline(x, top(measured_n)..=foot, Stroke::new(1.0, theme::now().measured.gamma_multiply(0.6)));
         }
-        // A line over the measured force, as in the traces.
+        // Draw the rendered force as a line over the measured force, as in the traces.
         if max.rendered_n > 0.0 {
             let rendered = top(max.rendered_n);
             painter.vline(x, rendered - 1.0..=rendered + 1.0, Stroke::new(1.0, theme::now().rendered));

@@ -150,7 +150,7 @@ pub(super) fn plots(
 /// A tick like this one, with all recorded plot values.
 fn tick(like: &Tick, side: Side, plotted: &PlottedTick) -> Tick {
     let PlottedTick { time_ns: _, t_s, tip_m, leader_m, measured_n, delayed_n, asked_n, rendered_n, state } = plotted;
-    // The plots do not contain the kind of fault: use that of the previous tick.
+    // The recorded plots do not contain the kind of fault, so use that of the previous tick.
     let state = if discriminant(state) == discriminant(&like.state) { like.state } else { *state };
     let mut tick = Tick {
         side,

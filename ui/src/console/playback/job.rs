@@ -73,14 +73,15 @@ impl SessionJob {
             // Files are in English.
             match language::with(Language::English, || crate::report::write(&[session], &folder)) {
                 Ok(page) => {
-                    // Otherwise the text on the screen gives the path of the file.
+                    // If no browser opens, the message on the screen still shows the file's path.
                     opener::open(&page);
                     text::playback::reported(&page)
                 }
                 Err(error) => text::playback::not_reported(&format!("{error:#}")),
             }
         });
-        // The page appears completely or not at all, and its program may run for a long time.
+        // No files need to be removed: the report is written completely or not at all, and the browser may stay open
+        // for a long time.
         job.tidies = None;
         job
     }

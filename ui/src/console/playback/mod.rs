@@ -199,7 +199,7 @@ impl Playback {
             WorkerAnswer::Refused(why) => self.report.refused = Some(text::playback::refused(&why)),
             WorkerAnswer::Read(part) => self.overview.add(part),
             WorkerAnswer::Limited(why) => self.report.limited = Some(text::playback::limited(&why)),
-            // A moment that is no longer requested arrives too late.
+            // Ignore a moment that is no longer requested.
             WorkerAnswer::Shown(live, extent, t_s) if (t_s - self.wanted_s).abs() < 1e-9 => {
                 self.extent = extent;
                 self.live = Some(live);
@@ -226,7 +226,7 @@ impl Playback {
         let end_s = self.about.map_or(f64::INFINITY, |about| about.end_s);
         self.play.runs = false;
         self.wanted_s = t_s.clamp(0.0, end_s);
-        // Until then the screen shows another moment.
+        // Until the worker answers, the screen shows another moment.
         self.extent = WorkerExtent::Plotted;
         self.worker.show(self.wanted_s);
         if let Some(beside) = &mut self.beside {

@@ -222,7 +222,7 @@ impl<'a> SessionIndex<'a> {
         }
         match (reached, is_replay) {
             (FeedPosition::End(why), true) => {
-                // A recording that was cut has more plots than journal.
+                // A truncated recording has more plots than journal.
                 self.why = self.why.take().or(why);
                 let has_more = self.read_s + NEXT_S < self.file.end_s;
                 self.reading = has_more.then_some(TickFeed::Plots(self.read_s + 1e-6));
@@ -247,7 +247,7 @@ impl<'a> SessionIndex<'a> {
         let to_ns = if self.reading.is_some() { self.file.time_ns(self.read_s) } else { u64::MAX };
         let times_ns = self.file.time_ns(self.log_s)..to_ns;
         self.log_s = self.read_s;
-        // An unreadable log has no entries; the replay or the plots report the damage.
+        // An unreadable log yields no entries; the replay or the plots report the damage.
         let lines = self.file.recorded.log(times_ns).unwrap_or_default();
         let devices = self.file.rig.device_names();
         let note = |LogLine { time_ns, kind, words, value }| {
@@ -302,7 +302,7 @@ impl<'a> SessionIndex<'a> {
     fn live(&self, t_s: f64) -> LiveState {
         let mut live = LiveState::of_past(self.file.rig.clone(), self.file.scene.clone());
         live.replay(self.events.iter().take_while(|(at_s, _)| *at_s < t_s).map(|(_, event)| event), &[None; SIDES]);
-        // Later marks are beyond the end of the traces.
+        // Later marks are to the right of the traces.
         live.marks_s.extend(&self.marks_s);
         for (columns, history) in self.columns.iter().zip(&mut live.history) {
             let from = columns.partition_point(|column| begin_s(column) < t_s - TRACES_S);
@@ -317,7 +317,7 @@ impl<'a> SessionIndex<'a> {
     /// The moment at this time, s, at once: recorded plot values, the rest from the last sample.
     pub(super) fn at_once(&self, t_s: f64) -> LiveState {
         let like = self.like(t_s);
-        // Damage there is reported when the first reading reaches it.
+        // Ignore damage here: it is reported when the first reading reaches it.
         let frames = plots(self.file, &like, t_s, t_s + NEXT_S).unwrap_or_default();
         let frame = frames.into_iter().next();
         let mut live = self.live(t_s);
@@ -356,7 +356,7 @@ impl Chase {
     /// The state to show, and the view to continue from.
     pub(super) fn end(mut self, file: &PlaybackFile) -> (LiveState, PlaybackPosition) {
         if self.live.ticks.iter().all(Option::is_none) {
-            // Nothing could be read here.
+            // No tick could be read here.
             self.live.replay(std::iter::empty(), &self.like);
         }
         self.live.settle(self.to_s - self.from_s);

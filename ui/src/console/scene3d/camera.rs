@@ -35,7 +35,7 @@ pub struct SceneCamera {
 
 impl Default for SceneCamera {
     fn default() -> Self {
-        // From the far side of the field, so that the shaft leans away and covers neither the tip nor the forces.
+        // Seen from the far side of the field, so that the shaft leans away and covers neither the tip nor the forces.
         let target_m = Vector3::new(0.0, -0.010, 0.046);
         Self { target_m, distance_m: 0.298, yaw: 2.62, pitch: 0.40, field_of_view: FIELD_OF_VIEW }
     }

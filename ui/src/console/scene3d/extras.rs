@@ -158,7 +158,7 @@ fn ceiling(painter: &Painter, rect: Rect, camera: &SceneCamera, arm: &StageArm, 
     let Some(top) = outline.iter().copied().min_by(|a, b| a.y.total_cmp(&b.y)) else { return };
     painter.add(Shape::convex_polygon(outline.clone(), Color32::from_white_alpha(10), Stroke::NONE));
     painter.add(Shape::Vec(Shape::dashed_line(&outline, Stroke::new(1.4, theme::DARK.text_weak), 7.0, 6.0)));
-    // Inside the view, however large the sphere is.
+    // Keep it inside the view, however large the sphere is.
     let place = pos2(top.x, top.y.max(rect.top() + 24.0));
     label(
         painter,
@@ -190,7 +190,7 @@ fn frames(scene: &Scene, arms: &[StageArm]) -> Vec<FrameAxes> {
             ways: base,
         });
         let Some(z) = (arm.trocar_m - arm.pose.tip_m).try_normalize(1e-4) else { continue };
-        // The direction of x closest to the base's x.
+        // Choose x as close as possible to the base's x axis.
         let x = (Vector3::x() - z * z.x).try_normalize(1e-3).unwrap_or_else(Vector3::y);
         frames.push(FrameAxes {
             name: text::field::TIP.get().to_owned() + &side,

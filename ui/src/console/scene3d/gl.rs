@@ -191,11 +191,11 @@ impl TargetState {
         match self {
             Self::Refused => return,
             Self::Made(target) if target.size == size => return,
-            // SAFETY: as for this function.
+            // SAFETY: the same conditions as for this function.
             Self::Made(target) => unsafe { target.destroy(gl) },
             Self::None => {}
         }
-        // SAFETY: as for this function.
+        // SAFETY: the same conditions as for this function.
         *self = unsafe { RenderTarget::new(gl, size) }.map_or(Self::Refused, Self::Made);
     }
 }
@@ -337,7 +337,7 @@ unsafe fn program(gl: &glow::Context, material: Material, shafts: usize) -> Resu
                 return Err(gl.get_shader_info_log(shader));
             }
             gl.attach_shader(program, shader);
-            // It is deleted together with the program that it is attached to.
+            // It is deleted with the program to which it is attached.
             gl.delete_shader(shader);
         }
         gl.link_program(program);

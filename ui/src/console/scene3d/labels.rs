@@ -29,7 +29,7 @@ pub(super) fn labels(
     let figures = view.figures;
     let at = |point_m: Vector3<f32>| camera.project(&point_m, rect);
     let StageArm { trocar_m, pose, side, .. } = arm;
-    // Not below the readings.
+    // Keep clear of the readings at the top left.
     let free = |place: &Pos2| !figures || place.y > rect.top() + 116.0 || place.x > rect.left() + readings_width(live);
     let along = (trocar_m - pose.tip_m).try_normalize(1e-4).unwrap_or_else(Vector3::z);
     let (align, shift) = match side {
@@ -38,7 +38,7 @@ pub(super) fn labels(
     };
     let name_at = at(pose.tip_m + along * NAME_ABOVE_M[usize::from(figures)]);
     let name_at = name_at.filter(|place| live.is_bimanual() && free(place));
-    // The name of a raised hand takes this place.
+    // A raised hand shows its name at this place.
     let beside_name = |place: &Pos2| name_at.is_none_or(|name| name.distance(*place) > NAMES_APART);
     if let Some(place) = at(*trocar_m).filter(free).filter(beside_name) {
         label(
@@ -57,7 +57,8 @@ pub(super) fn labels(
     }
     let right = camera.right();
     let [measured, rendered] = stage::arrow_bases_m(pose, trocar_m, &right);
-    // The number of the outer arrow is outside it and that of the inner one above its tip, so that they do not overlap.
+    // The number of the outer arrow is placed outside and that of the inner one above its tip, so that they do not
+    // overlap.
     let (outside, shift) = if (measured - rendered).dot(&right) < 0.0 {
         (Align2::RIGHT_CENTER, vec2(-9.0, -6.0))
     } else {
@@ -188,7 +189,7 @@ pub(super) fn hint(painter: &Painter, rect: Rect, live: &LiveState, view: &Scene
         None if view.lead.is_on() => {
             (text::field::lead_hover(live.scene.objects.is_some(), live.is_bimanual()), theme::DARK.text)
         }
-        // Not in a trial of a study: it would reveal the mode.
+        // Not during a study trial, where it would reveal the mode.
         None if view.arrows && training::needs_another_mode(live) => {
             (format!("{}\n{}", text::training::CHOOSE_MATCHED.get(), text::field::VIEW_HOVER.get()), theme::DARK.text)
         }

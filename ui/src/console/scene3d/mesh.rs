@@ -109,7 +109,7 @@ impl Mesh {
         let first = self.vertices.len() as u32;
         let (mut u, _) = across(&way(0).normalize());
         for (i, point) in points.iter().enumerate() {
-            // The frame turns as little as possible, so that the tube is not twisted.
+            // Turn the frame as little as possible, so that the tube does not twist.
             let along = way(i).normalize();
             u = (u - along * along.dot(&u)).try_normalize(1e-6).unwrap_or_else(|| across(&along).0);
             let v = along.cross(&u);

@@ -159,10 +159,10 @@ pub fn scene_ui(ui: &mut Ui, live: &LiveState, view: &mut SceneView, outbox: &mu
     }
     let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, text::field::OPERATING_FIELD.get()));
-    // Reserves a place below the buttons of the view, because the triangles are known only later.
+    // Reserve a place below the view's buttons, because the triangles are known only later.
     let ground = ui.painter_at(rect).add(egui::Shape::Noop);
     let camera = view.camera(&live.scene);
-    // Not in the Surgeon view: the surgeon uses the handle.
+    // Not offered in the Surgeon view, because the surgeon uses the handle.
     let offered = view.figures || view.lead.is_on() || view.lead.is_held;
     if view.figures {
         view.extras.ui(ui, rect);
@@ -206,10 +206,10 @@ pub fn scene_ui(ui: &mut Ui, live: &LiveState, view: &mut SceneView, outbox: &mu
         axes(&painter, rect, &camera);
     }
     hint(&painter, rect, live, view);
-    // The keys of a study trial are shown next to it, except those of the jaws.
+    // The keys of a study trial are shown next to it, except those for the jaws.
     let reported_led = led.filter(|_| !view.lead.is_held || live.scene.objects.is_some());
     training::line_ui(ui, rect, training::report(live, reported_led, reach), readings_width(live), view.figures);
-    // No hover texts in the Surgeon view, nor over the driven instrument.
+    // No hover texts in the Surgeon view or over the driven instrument.
     let pointed_at = response.hover_pos().filter(|_| view.figures && !response.dragged() && !leading);
     if let Some(words) = pointed_at.and_then(|pointer| pick::pick(pointer, rect, &camera, &live.scene, &arms)) {
         response.on_hover_text_at_pointer(words);
@@ -242,7 +242,7 @@ fn arm(live: &LiveState, side: Side, view: &SceneView) -> Option<StageArm> {
         measured_n: tick.known_n().map(nalgebra::Matrix::cast),
         rendered_n: tick.rendered_n.cast(),
     });
-    // Hidden forces must not reveal anything, not even that they are unknown.
+    // Hidden forces must not reveal anything, not even whether they are known.
     let hidden = StagePose { measured_n: Some(Vector3::zeros()), rendered_n: Vector3::zeros(), ..pose };
     let pose = if view.arrows { pose } else { hidden };
     Some(StageArm {
@@ -274,7 +274,7 @@ fn triangles(
     let right = camera.right();
     let style = stage::SceneStyle { eye_m: &eye_m, right: &right, fine: smooth, shadows: extras.shadows };
     let is_round = view.look == CameraLook::Endoscope && extras.round;
-    // The covered part of a round image is neither drawn nor redrawn.
+    // The masked part of a round image is neither drawn nor redrawn.
     let part = if is_round { vignette::part_of(rect) } else { rect };
     let frame = gl::GlFrame {
         mesh: stage::build(&live.scene, arms, wanted.shown.as_ref(), style),

@@ -115,7 +115,7 @@ impl MouseDrive {
     fn jaws(&mut self, live: &LiveState, outbox: &mut Outbox) {
         let i = self.side.index();
         let opening_rad = live.objects.as_ref().and_then(|objects| objects.jaws[i]).map(|jaws| jaws.opening_rad);
-        // The hand may have opened them before it was driven.
+        // The simulated hand may have opened the jaws before mouse control started.
         let was_open = self.open[i].unwrap_or_else(|| opening_rad.is_some_and(|rad| rad > OPEN_FRACTION * OPEN_RAD));
         self.open[i] = Some(!was_open);
         outbox.push(Command::Grip(self.side, Some(if was_open { 0.0 } else { OPEN_RAD })));
@@ -250,7 +250,7 @@ fn moved_m(position_m: &Vector3<f32>, way: Vec2, camera: &SceneCamera, rect: Rec
     }
     let to_m = camera.project(position_m, rect).and_then(|at| camera.on_level(at + way, rect, position_m.z));
     to_m.unwrap_or_else(|| {
-        // The line of sight is too flat for that.
+        // The line of sight is too flat to hit that level: move in the image plane instead.
         let travel_m = way * camera.metres_per_point(rect.height());
         position_m + camera.right() * travel_m.x - camera.away() * travel_m.y
     })

@@ -49,7 +49,7 @@ impl JawReach {
             return held.filter(|(_, off_m)| *off_m < HELD_OFF_M).map(|(i, _)| Self::Held(i));
         }
         let fits = rims.filter(|(_, rim)| jaws.opening_rad > OPEN_RAD && rim.fits(setting, jaws.opening_rad));
-        // The uppermost of the rings below the jaws.
+        // The topmost ring below the jaws.
         let (i, rim) = fits
             .filter(|(_, rim)| rim.from_tip_m.z <= *DEEP_M.end())
             .max_by(|one, other| one.1.from_tip_m.z.total_cmp(&other.1.from_tip_m.z))?;

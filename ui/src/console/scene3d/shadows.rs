@@ -155,7 +155,7 @@ mod tests {
         shadows.rod(&foot_m, &(foot_m + Vector3::z() * 0.02), 0.001);
         let mesh = laid(shadows);
         let end = mesh.vertices.iter().map(|vertex| vertex.position[0]).fold(0.0, f32::max);
-        // The lamp is at x < 0; the edge is wider than the rod.
+        // The lamp is at negative x; the edge of the shadow is wider than the rod.
         assert!((end - 0.02 * 0.42 / 0.857).abs() < 0.002, "{end}");
         assert!(mesh.vertices.iter().all(|vertex| (vertex.position[2] - 0.01 - 6e-5).abs() < 3e-5));
         let mut shadows = Shadows::on(Some(&board));

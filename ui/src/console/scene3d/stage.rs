@@ -73,7 +73,7 @@ impl Dent {
     /// constant volume.
     pub fn lift_m(&self, x: f32, y: f32) -> f32 {
         let q = ((x - self.position_m[0]).powi(2) + (y - self.position_m[1]).powi(2)) / (DENT_M * DENT_M);
-        // Further away the change is below a micrometre.
+        // Farther away, the change is below a micrometre.
         if self.depth_m <= 0.0 || q > 18.0 {
             return 0.0;
         }
@@ -131,7 +131,7 @@ pub fn build(scene: &Scene, arms: &[StageArm], shown: Option<&DisplayedObjects>,
     let mut shadows = Shadows::on(training::board_of(scene).filter(|_| style.shadows));
     let mut mesh = Mesh { vertices: Vec::with_capacity(12_000), indices: Vec::with_capacity(60_000) };
     let mut dents = Dents([Dent::NONE; SIDES]);
-    // Front objects first, so that hidden pixels are not shaded.
+    // Draw front objects first, so that hidden pixels are not shaded.
     for StageArm { side, trocar_m, pose, .. } in arms {
         let [measured, rendered] = arrow_bases_m(pose, trocar_m, right);
         pose.measured_n.iter().for_each(|force_n| measured_arrow(&mut mesh, measured, force_n));
@@ -240,7 +240,7 @@ pub fn arrow_bases_m(pose: &StagePose, trocar_m: &Vector3<f32>, right: &Vector3<
 /// Size and direction of an arrow; `None` for a force too small to be shown, or not finite.
 fn size_and_direction(force_n: &Vector3<f32>) -> Option<(f32, Vector3<f32>)> {
     let size_n = force_n.norm();
-    // A force far above the ceiling would otherwise fill the view.
+    // A force far above the force limit would otherwise fill the view.
     (size_n.is_finite() && size_n >= ARROW_MIN_N).then(|| (size_n.min(ARROW_MAX_N), force_n / size_n))
 }
 

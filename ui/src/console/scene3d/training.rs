@@ -156,7 +156,7 @@ fn name_of(reach: JawReach) -> &'static str {
 /// The line at the top of the view; `readings` is the width of the readings at its left, if figures are shown.
 pub(super) fn line_ui(ui: &mut Ui, rect: Rect, words: Option<String>, readings: f32, figures: bool) {
     let Some(words) = words else { return };
-    // Between the readings and the gauges, if they are shown.
+    // Place it between the readings and the gauges, if they are shown.
     let room = if figures {
         Rect::from_min_max(rect.left_top() + vec2(readings, 0.0), rect.right_bottom() - vec2(GAUGES, 0.0))
     } else {

@@ -20,7 +20,7 @@ fn radii(rect: Rect) -> [f32; 2] {
 /// The part of a view with the disc: nothing is drawn or changes outside it.
 pub(super) fn part_of(rect: Rect) -> Rect {
     let [_, dark] = radii(rect);
-    // Whole points, so that its edges are pixel edges.
+    // Round to whole points, so that the edges coincide with pixel edges.
     let half = (dark.ceil() + 1.0).min(0.5 * rect.width());
     let left = (rect.center().x - half).floor();
     let right = (rect.center().x + half).ceil();

@@ -30,7 +30,7 @@ impl Default for RigChoice {
 pub(crate) fn drawn_anew(scene: Scene) -> Scene {
     let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
     let lot = since.as_secs().wrapping_mul(1_000_003).wrapping_add(u64::from(since.subsec_nanos()));
-    // Six digits: a person can write the seed down.
+    // Six digits, so that a person can write the seed down.
     scene.drawn_anew(lot % 1_000_000)
 }
 

@@ -102,7 +102,7 @@ impl EndoscopeCard {
     /// Tries the typed address after the last key press.
     fn try_it(&mut self, ctx: &Context, address: &str) {
         let Some(typed_at) = self.typed_at else {
-            // After the rig that uses it has ended.
+            // Try again once the rig that uses the endoscope has ended.
             if self.tried.is_none() {
                 self.typed_at = Some(Instant::now());
             }
@@ -201,7 +201,7 @@ mod tests {
         let rig = RigConfig::load(&path).unwrap();
         assert_eq!(rig.endoscope, Some(EndoscopeConfig { url: url.to_owned(), ..EndoscopeConfig::default() }));
         assert_eq!(RigConfig::load("simulated").unwrap().endoscope, None, "what is built in stays");
-        // Other settings of the endoscope stay with a new address.
+        // The endoscope's other settings are kept when the address changes.
         let text = std::fs::read_to_string(&path).unwrap();
         std::fs::write(&path, text + "mirror = true\n").unwrap();
         assert_eq!(card(&path, "film.mjpeg").write(&path, Some(folder.path())).unwrap(), path);

@@ -145,7 +145,7 @@ impl StartPage {
     }
 
     fn elsewhere_ui(&mut self, ui: &mut Ui) {
-        // At the right edge, below the shortest column.
+        // Place it at the right edge, below the shortest column.
         let corner = ui.max_rect().right_top() - vec2(theme::STOP_SIZE.x, 0.0);
         let place = egui::Rect::from_min_size(corner, theme::STOP_SIZE);
         let button = Button::new(text::start::ELSEWHERE.get());

@@ -237,7 +237,7 @@ pub(in crate::console) fn device(name: DeviceName, standing: ConnectionState) ->
 /// Calibrations of a side, from the metadata of the session; used since this time, s, or since the beginning.
 pub(in crate::console) fn calibrations(side: &str, table: &BTreeMap<String, String>, since_s: Option<f64>) -> String {
     let report = |key: &str| table.get(key).filter(|value| !value.is_empty());
-    // Verdict, and error on held-out data.
+    // Verdict and error on held-out data.
     let result = |verdict: &str, error_n: &str| {
         let error_n = report(error_n).and_then(|error_n| error_n.parse::<f64>().ok());
         match (report(verdict), error_n) {

@@ -204,7 +204,7 @@ fn node(tiles: &Tiles<Panel>, id: TileId) -> Option<LayoutNode> {
             LinearDir::Horizontal => LayoutNode::Row(parts(linear)),
             LinearDir::Vertical => LayoutNode::Column(parts(linear)),
         }),
-        // Grids are never created; the members of one would become tabs.
+        // Grids are never created by the console; convert the members of one into tabs.
         Tile::Container(container @ (Container::Tabs(_) | Container::Grid(_))) => {
             Some(LayoutNode::Tabs(container.children().filter_map(|child| node(tiles, *child)).collect()))
         }

@@ -66,7 +66,7 @@ impl PanelTiles {
             layout.toggle(panel);
             return;
         }
-        // While a mouse button is down the tiles are still being moved.
+        // While a mouse button is down, the tiles are still being moved.
         if (self.moved || self.turned) && !ui.input(|input| input.pointer.any_down()) {
             *layout = PanelLayout::of(tree, self.moved, &self.seen, layout);
             self.seen = layout::in_front(tree);

@@ -126,7 +126,7 @@ impl CorrespondenceWizard {
             let Some(DeliveredSources { gravity, tissue, chain }) = self.sources else {
                 let why = text::correspondence::NEEDS_WRIST_SENSOR.get();
                 check_line(ui, text::correspondence::CHECK_WRIST.get(), false, why);
-                // Without the wrist sensor the state of the others is unknown.
+                // Without the wrist sensor, the state of the other checks is unknown.
                 for name in names {
                     waiting_line(ui, name);
                 }
@@ -241,7 +241,7 @@ impl Wizard for CorrespondenceWizard {
         let (begin_s, last_s) = self.clock_s;
         let mut now_s = begin_s + tick.t_s;
         if now_s < last_s {
-            // The loop was restarted: an unfinished push has a gap and is discarded.
+            // The loop was restarted, so an unfinished push has a gap and is discarded.
             now_s = last_s + 1e-3;
             self.clock_s.0 = now_s - tick.t_s;
             f1_n = None;

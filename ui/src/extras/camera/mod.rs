@@ -14,7 +14,7 @@ use screen::CameraWizard;
 
 pub(super) struct CameraExtra;
 
-// Its addition to `nima calibrate`. A doc comment would replace the help of that command.
+// Addition to `nima calibrate`. A doc comment here would replace that command's help.
 #[derive(Debug, Subcommand)]
 enum Calibrate {
     /// Calibrate the lens of the endoscope's camera with images of a checkerboard

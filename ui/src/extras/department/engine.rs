@@ -214,7 +214,7 @@ fn listen_to(rig: &RemoteRig, publisher: &MonitorSender) -> anyhow::Result<()> {
     let _watching = rig.watch(move |session, moments| drop(to.send((session, moments))))?;
     let mut shown = None;
     loop {
-        // The running rig and scene, at the start and whenever the session changes or no data arrive.
+        // The current rig and scene, at the start and whenever the session changes or no data arrive.
         let about = rig.about()?;
         if shown != Some(about.session) {
             shown = Some(about.session);

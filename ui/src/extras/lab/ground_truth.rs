@@ -157,7 +157,7 @@ mod tests {
         let compared = |late_s: f64| {
             let mut comparison = TipComparison::default();
             for (index, tick) in ticks.iter().enumerate() {
-                // Ticks arrive up to 5 ms after their time, and the true force before its tick.
+                // Ticks arrive up to 5 ms late, and the true force arrives before its tick.
                 let known =
                     TrueForce { truth: Side::Right, at_s: BEGAN_S + tick.t_s + late_s, tip_n: tick.measured_n.into() };
                 comparison.know(std::iter::once(known));

@@ -159,7 +159,7 @@ fn push_row(trace: &mut String, row: &ReplayRow, axes: usize) {
         for lane in 0..axes {
             match force {
                 Some(force) => write!(trace, ",{:e}", force[lane]).ok(),
-                // A blank, not a zero: no value had arrived yet.
+                // Leave it blank: no value had arrived yet, which is not the same as zero.
                 None => write!(trace, ",").ok(),
             };
         }

@@ -37,7 +37,7 @@ impl LiveScorer {
     /// `None` if no arm was engaged.
     pub(crate) fn end(mut self) -> Option<Score> {
         self.receive();
-        // Without objects, the end of the task is not reported.
+        // If the scene has no objects, the end of the task is not reported.
         self.trial.end(self.watched.is_none())
     }
 }

@@ -157,7 +157,7 @@ impl NetworkLine {
             figures: endpoint.figures(),
             dropped: endpoint.dropped(),
         };
-        // A receiver may be missing: the newest four wait.
+        // The receiver may be missing, so only the four newest reports are kept.
         reported.try_send(report).ok();
     }
 }

@@ -45,7 +45,7 @@ impl ArmLink for FollowerNetwork {
 pub(super) fn listen(rig: &mut RigConfig, scene: &Scene, at: SocketAddr) -> anyhow::Result<Box<dyn RemoteLine>> {
     without_objects(scene)?;
     let (keys, mut consoles) = own_keys()?;
-    // The same user's console on this machine.
+    // The key of the same user's console on this machine.
     let own: PublicKey = keys.public();
     if consoles.with_key(&own).is_none() {
         consoles.add("this machine", own)?;

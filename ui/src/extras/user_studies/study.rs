@@ -105,7 +105,7 @@ pub(super) fn scene_of(file: &StudyFile) -> anyhow::Result<Scene> {
 /// The same rig under a condition.
 pub(super) fn under(mut rig: RigConfig, condition: &Condition) -> Result<RigConfig, ConfigError> {
     rig.delay_s = condition.delay_ms.unwrap_or(0.0) * 1e-3;
-    // Without force the cheapest mode computes the force that the gain then removes.
+    // Without force feedback, compute the force with the cheapest mode; the gain then removes it.
     rig.mode = condition.mode.unwrap_or(Mode::Dfr);
     rig.gates.gain = if condition.no_force { 0.0 } else { condition.gain.unwrap_or(1.0) };
     rig.identification.own_motion = condition.own_motion.unwrap_or(rig.identification.own_motion);
@@ -116,7 +116,7 @@ pub(super) fn under(mut rig: RigConfig, condition: &Condition) -> Result<RigConf
 /// The hand of the scene, with other random sequences in each trial.
 pub(super) fn plain_hand(study: &UserStudy, participant: &str) -> anyhow::Result<SimulatedHand> {
     let scene = scene_in(study)?;
-    // Trials and interruptions, so that a repetition differs.
+    // Count trials and interruptions, so that a repetition differs.
     let of = study.state().progress(participant).map_or(0, |one| u64::from(one.interruptions));
     let seed = scene.seed.wrapping_add(u64::from(made(study, participant).0) + 1000 * of);
     let nima_simulation::scene::SceneHand { pace, tremor_m, intended_n, .. } = scene.hand;
@@ -195,7 +195,7 @@ pub(super) fn run_virtual(
         bail!("scene \"{}\" cannot be engaged: the force at the instrument's tip is unknown", plan.scene.name);
     }
     let running = study.begin_trial(participant, true, &utc_now())?;
-    // The reason would reveal the condition. The only possible one is a rig changed since `new`.
+    // The reason would reveal the condition. It can only be that the rig has changed since `new`.
     plan.rig = under(plan.rig, running.condition()).map_err(|_| {
         anyhow!("the rig of the study no longer permits this condition: check whether its file was changed")
     })?;

@@ -38,7 +38,7 @@ fn stop_release_engage_and_the_traces() {
     let greyed = rows(&mut console);
     assert!(greyed.contains(&("Engage".to_owned(), false)), "not before the stop is released: {greyed:?}");
     for (action, state) in [(Action::Release, LoopState::Idle), (Action::Engage, LoopState::Engaged)] {
-        // Button and command wait a moment after every change of state.
+        // Button and command become available a moment after every change of state.
         console.run_steps(30);
         open(&mut console);
         write_into(&mut console, FIELD, &entry(action).title);

@@ -59,7 +59,7 @@ fn what_the_view_menu_and_the_keys_of_the_screen_do() {
         let reset = set(|settings| settings.light = !light);
         done.push(alike(&mut console, Action::Light(light), reset, of_menu(Kind::Button, name), settings));
     }
-    // The way back is tested with German labels elsewhere.
+    // Switching back is tested elsewhere, with German labels.
     done.push(Action::Language(Language::English));
     let german = Action::Language(Language::German);
     let reset = set(|settings| settings.language = Language::English);

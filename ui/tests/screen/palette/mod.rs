@@ -155,9 +155,9 @@ const fn tried_in(action: Action) -> &'static str {
         Action::Drive | Action::OtherHand | Action::Jaws => "driving",
         Action::MarkPlace | Action::EndTrial | Action::BeginTrial => "palpation",
         Action::LeavePast | Action::Play | Action::Step(_) => "the past",
-        // It opens the palette, in every test.
+        // Every test opens the palette with it.
         Action::Palette => "all",
-        // Needs a session that is being recorded: tested next to the code that keeps one.
+        // Needs a session that is being recorded, so it is tested next to the code that keeps one.
         Action::Keep => "the console itself",
     }
 }

@@ -29,7 +29,7 @@ fn every_role_finds_what_it_can_reach_and_nothing_else() {
     let with_traces = |entry: &CommandEntry| {
         matches!(entry.action, Action::Pause | Action::LastTenSeconds | Action::Draws(_) | Action::Drive)
     };
-    // In this scene, with one hand, without an endoscope, live.
+    // Unavailable here: in this scene, with one hand, without an endoscope, live.
     let nowhere = |entry: &CommandEntry| {
         use Action::{
             BeginTrial, CloseWizard, EndTrial, HideForces, Jaws, LeavePast, Lens, MarkPlace, OtherHand, Palette, Play,

@@ -46,7 +46,7 @@ fn nothing_that_went_to_the_machine_is_undone() {
     for (name, act) in acts {
         act(&mut console);
         wait(&mut console, name, |_| !commands.lock().unwrap().is_empty());
-        // Until it is active.
+        // Wait until it is active.
         std::thread::sleep(std::time::Duration::from_millis(200));
         console.run_steps(10);
         commands.lock().unwrap().clear();

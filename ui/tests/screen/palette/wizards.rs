@@ -42,7 +42,7 @@ fn every_wizard_is_opened_and_left() {
         offered.iter().all(|(title, _)| *title != entry(Action::Calibrate(WizardKind::Camera)).title),
         "no endoscope"
     );
-    // Other tests open those that need arms or an endoscope.
+    // The wizards that need arms or an endoscope are opened by other tests.
     done.extend(WizardKind::ALL.into_iter().filter(|which| which.scene().is_none()).map(Action::Calibrate));
     expect(&done, "the wizards");
 }
@@ -50,7 +50,7 @@ fn every_wizard_is_opened_and_left() {
 #[cfg(target_os = "linux")]
 #[test]
 fn every_wizard_of_a_rig_with_arms_is_opened() {
-    // Its devices are emulated in real time: under other load one of them may be lost, and no wizard opens in a fault.
+    // Its devices are emulated in real time: under load one of them may be lost, and no wizard opens during a fault.
     judged(|| {
         let _alone = alone();
         let folder = tempfile::tempdir().unwrap();

@@ -172,8 +172,8 @@ impl Calibration for HandEyeSettings {
             (Mistake::InverseRotation, Carrier::Marker),
             (Mistake::LeftHanded, Carrier::Marker),
         ];
-        // Every set of signs, single axes first, because each has its own result here. All three together are a
-        // left-handed frame, turned.
+        // Try every combination of signs, single axes first, because each single axis has its own verdict. Flipping all
+        // three gives a rotated left-handed frame.
         let signs = [[true, false, false], [false, true, false], [false, false, true]];
         let more = [[true, true, false], [true, false, true], [false, true, true]];
         mistakes.extend(signs.into_iter().chain(more).map(|axes| (Mistake::WrongSign(axes), Carrier::Marker)));

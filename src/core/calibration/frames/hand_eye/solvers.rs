@@ -39,7 +39,7 @@ pub(super) fn shah(rows: &[HandEyeRow]) -> Option<HandEyeFrames> {
     let largest = decomposed.singular_values.imax();
     let x = Matrix3::from_iterator(decomposed.v_t?.row(largest).iter().copied());
     let y = Matrix3::from_iterator(decomposed.u?.column(largest).iter().copied());
-    // The vectors have length one and any sign; both rotations have the same factor.
+    // The vectors have unit length and arbitrary sign; both rotations have the same factor.
     let sign = x.determinant().signum();
     with_places(rows, rotation(&(x * sign))?, rotation(&(y * sign))?)
 }

@@ -174,7 +174,7 @@ fn right_on_the_handle_is_right_in_the_picture() {
     let right_m = leader_from_view * Vector3::x() * 0.01;
     let seen = base_from_view().inverse() * mapping.to_tip(&right_m);
     assert!(seen.angle(&Vector3::x()).to_degrees() < 3.0, "{seen}");
-    // With a marker on the endoscope, after the endoscope was turned.
+    // A marker on the endoscope, which was turned in the meantime.
     let c_from_n = any_turn(&mut rig);
     let turn = any_turn(&mut rig);
     let base_from_c = base_from_c().rotation;
@@ -196,7 +196,7 @@ fn a_sensor_mount_is_found_from_weight_and_agrees_or_names_the_axes() {
             assert!(found.agrees() && found.axes == Some(SignedAxes::SAME), "{found:?}");
             assert!((found.mass_kg - MASS_KG).abs() < 0.01 && (Vector3::from(found.bias_n) - BIAS_N).norm() < 0.1);
             figures.note(&report, Sizes::angle(found.flange_from_s1().angle_to(&flange_from_s1).to_degrees()));
-            // An active mount that differs by a quarter turn about z: the measured x is its y.
+            // The active mount is off by a quarter turn about z: the measured x is its y.
             let quarter = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), std::f64::consts::FRAC_PI_2);
             let other = SensorMount::new(flange_from_s1 * quarter, Vector3::z());
             let found = other.fit(&samples).unwrap().found.unwrap();

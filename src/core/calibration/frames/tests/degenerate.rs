@@ -32,12 +32,12 @@ fn turns_that_do_not_suffice_are_refused() {
         let pivoting: Vec<FrameSample> = turns
             .iter()
             .map(|turn| {
-                // No turn at all: a tip that wanders, as a dimple would not allow.
+                // No rotation at all: the tip wanders, which a dimple would prevent.
                 let tip_m = TROCAR_M + if seed % 3 == 2 { rig.vector(0.05) } else { Vector3::zeros() };
                 rig.sample(&with_tip_at(&tip_m, *turn))
             })
             .collect();
-        // The other side stands still because it is not used.
+        // The other side is at rest because it is not used.
         let alone: Vec<FrameSample> = pivoting
             .iter()
             .map(|sample| FrameSample { c_from_other_m: None, other_base_from_flange: None, ..*sample })

@@ -33,7 +33,7 @@ fn named<C: Calibration>(
 fn a_tip_names_swaps_inverses_and_signs() {
     for tip in [TipSettings::by_tracker(), TipSettings::by_arm()] {
         for made in Mistake::of_pivoting(tip.carrier) {
-            // An arm's poses come from its joints; inverse poses cannot be detected there.
+            // An arm's poses come from its joints, so inverted poses cannot be detected there.
             if made == Mistake::InversePose && tip.carrier == Carrier::Flange {
                 continue;
             }
@@ -104,7 +104,7 @@ fn a_view_names_swaps_and_mirrors_and_leaves_one_reversed_move_out() {
     for seed in 0..SEEDS {
         let mut mirrored = all_moves();
         for direction in &mut mirrored {
-            // Every second seed left for right, else up for right.
+            // Odd seeds swap right and up; even seeds swap left and right.
             *direction = if seed % 2 == 0 {
                 Vector3::new(-direction.x, direction.y, direction.z)
             } else {
@@ -123,7 +123,7 @@ fn a_view_names_swaps_and_mirrors_and_leaves_one_reversed_move_out() {
 #[test]
 fn a_sensor_mount_names_swaps_inverses_signs_and_exchanged_axes() {
     let active = pose([0.0; 3], [0.0, 0.0, 30.0]).rotation;
-    // The active mount is a little off the truth.
+    // The active mount is slightly off.
     let truth = active * pose([0.0; 3], [1.0, 1.0, -1.0]).rotation;
     let mount = SensorMount::new(active, Vector3::z());
     for made in [Mistake::SwappedArm, Mistake::InverseRotation] {

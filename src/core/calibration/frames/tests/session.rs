@@ -163,7 +163,7 @@ fn a_refused_result_keeps_its_cause_in_the_record() {
     let mut rig = Rig::new(11);
     let mut samples = rig.samples(in_dimple(), 24);
     for sample in &mut samples {
-        // A tip that slides by millimetres.
+        // The tip slides by millimetres.
         sample.c_from_m.as_mut().unwrap().translation.vector += rig.vector(0.004);
     }
     let record = stored(&TipSettings::by_tracker().fit(&samples).unwrap());

@@ -232,7 +232,7 @@ fn judge_adversary(requests: u64, seed: u64) -> [f64; 2] {
     let held = ChainSettings { static_hold: true, ..ChainSettings::default() };
     let with_j = adversary::max_given_j(requests, seed, held);
     assert!(with_j <= bound_j(), "{with_j} J");
-    // Without both gates the same requests give a hundred times as much: it is an adversary.
+    // Without both gates, the same requests yield a hundred times as much energy, so they are a valid adversary.
     let bare = ChainSettings { energy: EnergyMode::Off, ..held.without_governor() };
     let bare_j = adversary::max_given_j(requests.min(200_000), seed, bare);
     assert!(bare_j > 20.0 * bound_j(), "{bare_j} J");
@@ -280,10 +280,10 @@ fn a_hand_that_withdraws_loses_next_to_nothing() {
     for m_s in [0.05, 0.1, 0.2, 0.3] {
         for render in [Render::Model, Render::Spring] {
             let cost_n = cost_of_withdrawal_n(render, 0, m_s);
-            // At 0.3 m/s the hand leaves with 7.8 m/s^2, more than the hands of the study have.
+            // At 0.3 m/s the hand withdraws with 7.8 m/s^2, more than any hand in the study.
             assert!(cost_n <= 0.02, "{render:?}, {m_s} m/s: {cost_n} N");
         }
-        // Late forces push along a hand that has left: some of that is withheld.
+        // Late forces push along a hand that has already withdrawn, so part of them is withheld.
         let cost_n = cost_of_withdrawal_n(Render::Reflection, 300, m_s);
         assert!(cost_n <= 0.1, "reflection, {m_s} m/s: {cost_n} N");
     }
@@ -300,12 +300,12 @@ fn a_handle_read_on_another_clock_is_braked_only_when_it_is_let_go() {
     let mut released_m = 0.0;
     for step in 0..43_000_u32 {
         let t_s = f64::from(step) * 1e-4;
-        // The device reads every 1.003 ms, and pauses for up to 4 ms now and then.
+        // The device is read every 1.003 ms, with occasional pauses of up to 4 ms.
         if t_s >= next_read_s {
             read_m = (position_m * 1e5).round() * 1e-5;
             next_read_s += 1.003e-3 + if noise.uniform() < 0.01 { 4e-3 * noise.uniform() } else { 0.0 };
         }
-        // Free motion first: there the error of the times shows. Then the hand carries a force.
+        // First free motion, where the timing error shows; then the hand carries a force.
         let asked_n = 3.0 * (10.0 * (t_s - 0.5)).clamp(0.0, 1.0);
         if step % 10 == 0 {
             let governed =

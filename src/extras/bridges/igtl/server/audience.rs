@@ -53,7 +53,7 @@ impl Audience for LoopWatcher {
             return;
         }
         let arms = ticks.each_ref().map(|tick| tick.as_ref().map(IgtlArm::of));
-        // A change that found no room is sent with the next tick.
+        // If a change did not fit into the queue, send it with the next tick.
         if self.report(HubMessage::Moment(LoopMoment { t_s, arms })) {
             self.states = states;
         }

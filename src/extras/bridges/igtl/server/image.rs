@@ -48,7 +48,7 @@ pub(super) fn serve(shared: &IgtlShared) {
         sleep(LOOK_EVERY);
         let looking: Vec<_> =
             shared.clients().iter().filter(|client| !client.is_gone() && client.wants().looks()).cloned().collect();
-        // A client that has not taken the last image yet needs no other.
+        // A client that has not taken the last image yet needs no newer one.
         let is_wanted = looking.iter().any(|client| !client.mailbox.has_image());
         let newest = shared.images.source().as_mut().and_then(|source| source.newest(is_wanted));
         let Some((image, age)) = newest.filter(|_| is_wanted) else { continue };

@@ -49,7 +49,7 @@ fn bytes_of_the_reference_library_are_read_and_written_again() {
         assert_eq!((message.device.as_str(), message.time_ns), ("DeviceName", 287_445_237), "{name}");
         assert!(!matches!(message.content, Content::Other(_)), "{name}");
         if wire[1] == 1 {
-            // The stamp, from byte 34, has fractions of a nanosecond.
+            // The time stamp, from byte 34, has fractions of a nanosecond.
             let again = message.encode();
             assert_eq!((&again[..34], &again[42..]), (&wire[..34], &wire[42..]), "{name}");
         }

@@ -42,7 +42,7 @@ impl Publisher {
         let participant = builder.build().map_err(|error| error.to_string())?;
         let context = Context::from_domain_participant(participant).map_err(|error| error.to_string())?;
         let name = NodeName::new(&format!("/{namespace}"), NODE).map_err(|error| error.to_string())?;
-        // It publishes, and nothing else: without a spinner and these services it hears nobody.
+        // The node only publishes: without a spinner and these services it receives nothing.
         let options = NodeOptions::new().enable_rosout(false).start_parameter_services(false);
         let mut node = context.new_node(name, options).map_err(|error| error.to_string())?;
         let mut writers = BTreeMap::new();
@@ -79,7 +79,7 @@ fn of_topic(node: &mut Node, name: &Name, topic: Ros2Topic) -> Result<OfTopic, S
         Ros2Topic::MeasuredCf | Ros2Topic::RenderedCf => {
             OfTopic::Wrench(writer(node, name, ["geometry_msgs", "WrenchStamped"], usual())?)
         }
-        // A late reader gets the state at once.
+        // A subscriber that joins late receives the state at once.
         Ros2Topic::OperatingState => {
             let qos = usual().durability(Durability::TransientLocal);
             OfTopic::State(writer(node, name, ["crtk_msgs", "OperatingState"], qos)?)

@@ -108,7 +108,7 @@ impl BotaFrames {
         match fault {
             EmulatedFault::Repeat => *frame = first,
             EmulatedFault::Block => {
-                // While the block is being filled it equals the sensor's readings.
+                // Until the block is filled, it equals the sensor's readings.
                 *frame = self.since[self.in_block];
                 self.in_block = (self.in_block + 1) % BLOCK;
             }

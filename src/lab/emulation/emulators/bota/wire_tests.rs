@@ -76,7 +76,7 @@ fn sensors_on_real_wires_are_read_whole_and_without_loss() {
             assert!(times_s.windows(2).all(|pair| pair[1] > pair[0]), "{transport:?}");
             let span_s = times_s[times_s.len() - 1] - times_s[0];
             println!("{transport:?}: {} readings in {span_s:.3} s of the sensor", health.readings);
-            // More frames may have arrived together with the first, which does not show here.
+            // More frames may have arrived together with the first one, which cannot be seen here.
             let expected = span_s * product_hz + 1.0;
             assert!(
                 (0.0..=20.0).contains(&(health.readings as f64 - expected).round()),

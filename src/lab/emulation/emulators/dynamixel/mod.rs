@@ -181,7 +181,7 @@ impl Bus {
                 let wire_bytes = packet.wire_bytes;
                 let body = packet.body.to_vec();
                 self.advance(now_s);
-                // The answer begins after the request, and after data still being sent.
+                // The response starts after the request and after any data still being sent.
                 self.free_s = self.free_s.max(now_s) + wire_bytes as f64 * 10.0 / f64::from(self.baud());
                 self.obey(id, instruction, &body, now_s);
             }

@@ -104,7 +104,7 @@ impl Motor {
             self.turn(torque_nm, friction_nm_s_per_rad, inertia_kg_m2);
             self.current_a = limit_a.copysign(free_a);
         } else {
-            // The back EMF acts like friction; evaluated at the end of the step it keeps the step stable.
+            // The back EMF acts like friction; evaluating it at the end of the step keeps the integration stable.
             let braking = torque_nm_per_a * back_emf_v_s_per_rad / resistance_ohm;
             let torque_nm = torque_nm_per_a * volts / resistance_ohm + drive.load_nm;
             self.turn(torque_nm, friction_nm_s_per_rad + braking, inertia_kg_m2);
@@ -176,7 +176,7 @@ impl Motor {
         let before = self.wanted_rad_s;
         let mut speed = fastest.min(rest.abs() / STEP_S);
         if acceleration > 0.0 {
-            // Keeps the ability to stop in time; half a step is reserved for the step length.
+            // Limit the speed so that the motor can still stop in time; half a step is reserved for the step length.
             speed = speed.min((2.0 * acceleration * (rest.abs() - 0.5 * STEP_S * before.abs()).max(0.0)).sqrt());
             let max = acceleration * STEP_S;
             let target = speed.copysign(rest);

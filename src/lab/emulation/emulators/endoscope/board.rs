@@ -91,7 +91,7 @@ impl BoardDrawing {
     pub(super) fn draw(&mut self, camera_from_board: &Isometry3<f64>) -> &mut [u8] {
         let greys = self.portrait.draw(&self.board, camera_from_board);
         for (pixel, grey) in self.image.chunks_exact_mut(3).zip(greys) {
-            // Numerical Recipes' quick generator is good enough here.
+            // The quick generator from Numerical Recipes is good enough here.
             self.noise = self.noise.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
             let noise = ((self.noise >> 16) as f32 / 65_536.0 - 0.5) * 2.0 * NOISE;
             pixel.fill((grey + noise).clamp(0.0, 255.0) as u8);

@@ -102,7 +102,7 @@ impl Painter {
             let [(near_px, ..), (far_px, radius_px, along_m)] = [pair[0], pair[1]];
             let colour = if along_m <= STEEL_M { STEEL } else { SHAFT };
             self.near([near_px, far_px], radius_px, |pixel, away| {
-                // Shaded like a round rod lit from the lens.
+                // Shade it like a round rod lit from the lens.
                 let light = 0.25 + 0.75 * (1.0 - away * away).max(0.0).sqrt();
                 *pixel = colour.map(|value| (value * light) as u8);
             });

@@ -76,7 +76,7 @@ impl Pipe {
 /// Writes until the reader closes (then it is tried again), or the emulator ends.
 fn write(path: &std::path::Path, coding: PipeCoding, jobs: &Receiver<ImageJob>) -> io::Result<Option<()>> {
     let Ok(mut file) = OpenOptions::new().write(true).create(true).truncate(true).open(path) else {
-        // The folder does not exist yet; waiting images will be outdated then.
+        // If the folder does not exist yet, images that wait now will be outdated by then.
         return Ok(jobs.recv().ok().map(drop));
     };
     let mut encoder = None;

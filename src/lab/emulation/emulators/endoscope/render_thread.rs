@@ -89,7 +89,8 @@ impl RenderThread {
 fn give_way() {
     #[cfg(target_os = "linux")]
     #[expect(unsafe_code, reason = "std has no priorities")]
-    // SAFETY: a plain system call without pointers. On Linux it concerns the calling thread alone; where it is refused, nothing changes.
+    // SAFETY: a plain system call without pointers. On Linux it affects only the calling thread; if it is refused,
+    // nothing changes.
     unsafe {
         libc::setpriority(libc::PRIO_PROCESS, 0, NICE);
     }
@@ -130,7 +131,7 @@ impl RenderState {
         }
         // An encoder never repeats its bytes for an equal image, so a frozen stream sends no more images.
         if units && fault != EmulatedFault::Freeze {
-            // An image that the library rejects is not sent: the client reports that no data arrive.
+            // An image that the encoder rejects is not sent; the client then reports that no data arrive.
             sent.unit = self.coders.unit(&shot, key, self.rate_hz).unwrap_or_default();
             if fault == EmulatedFault::Torn {
                 sent.unit.truncate(sent.unit.len() * 6 / 10);

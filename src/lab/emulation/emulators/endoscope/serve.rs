@@ -95,12 +95,12 @@ impl EndoscopeServer {
 
     /// Orders the image of this time.
     fn order(&mut self, now_s: f64, fault: EmulatedFault) {
-        // Read the time before the view: a reader of this time knows that nothing in the image is older.
+        // Read the time before the view, so that a reader of this time can rely on nothing in the image being older.
         let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
         let seen = (self.seen)(now_s);
         if let Some(subject) = self.subject.take() {
             let EmulatedEndoscope { pipe, rate_hz, quality, .. } = &self.emulated;
-            // Whether it can be written was checked when it was requested.
+            // The pipe's path was checked when it was requested.
             let pipe = pipe.clone().and_then(|path| Pipe::start(path, *rate_hz, *quality).ok());
             // Without a thread there is no image, and the client reports that no data arrive.
             self.workshop = RenderThread::start(self.emulated.clone(), subject, pipe).ok();

@@ -38,7 +38,7 @@ pub(in crate::emulators) fn endoscope(settings: &EmulatorSettings) -> Result<Box
     if let Some(side) = camera.size_px.iter().find(|side| !SIDES_PX.contains(side)) {
         return Err(unusable("width or height", side, "give 64 to 4096"));
     }
-    // The same field of view at any size.
+    // Keep the field of view at any image size.
     camera.focal_px *= camera.size_px[1] as f64 / height as f64;
     if !DISTORTION.contains(camera.k1) {
         return Err(unusable("k1", camera.k1, &format!("give {DISTORTION}")));

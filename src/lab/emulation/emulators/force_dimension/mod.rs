@@ -91,7 +91,7 @@ impl EmulatedHand {
             given_m += (applied.force_n / self.stiffness_n_m - given_m) * fraction;
             let angle = now_s * std::f64::consts::FRAC_PI_2;
             let travel_m = Vector3::new(angle.cos(), angle.sin(), 0.5 * (2.0 * angle).sin()) * self.radius_m;
-            // Yaw and gripper move with the hand, by an amount that vanishes with the radius.
+            // Yaw and gripper move with the hand, by an amount that goes to zero with the radius.
             let wave = (angle * 0.5).sin() * (self.radius_m / 0.02).min(1.0);
             HandState {
                 position_m: self.rest_m + travel_m + given_m,

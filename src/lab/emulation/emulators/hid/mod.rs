@@ -94,7 +94,7 @@ impl<S: WireSide> Emulator for Periodic<S> {
     fn pass(&mut self, turn: &mut EmulatorTurn<'_>) {
         if turn.now_s >= self.due_s {
             self.side.step(turn.now_s, turn.fault, &mut |frame| turn.send(WirePeer::Everyone, frame));
-            // No burst after a pause of the whole machine.
+            // Do not send a burst after a pause of the whole machine.
             self.due_s = (self.due_s + self.side.period().as_secs_f64()).max(turn.now_s);
         }
     }

@@ -140,7 +140,7 @@ impl WireSide for CapSide {
             counts = [i16::MAX; 6];
         }
         let length = self.report(counts).encode(&mut buffer);
-        // No report has a length between the two.
+        // No report type has a length between the two.
         let length = if fault == EmulatedFault::WrongFrame { 5 } else { length };
         send(&buffer[..length]);
     }
@@ -204,7 +204,7 @@ impl WireSide for SpacenavdSide {
     }
 
     fn command(&mut self, _: &[u8]) {
-        // A request for protocol 1; without an answer a client uses protocol 0.
+        // Ignore the request for protocol 1: without an answer, the client uses protocol 0.
     }
 }
 
@@ -275,7 +275,7 @@ impl WireSide for PedalSide {
         if fault != EmulatedFault::Freeze {
             self.reading = (self.body.0)(now_s);
         }
-        // A faulty device reports without a foot on it.
+        // A faulty device sends reports even when no foot is on it.
         let chatters = matches!(fault, Garbage | NotANumber | Reorder | WrongFrame);
         if self.reading == self.report && !chatters {
             return;

@@ -158,7 +158,7 @@ impl Base {
 
     fn serve(&mut self, call: &Call<'_>, now_s: f64, fault: EmulatedFault) -> AnswerPayload {
         let Call { rpc, device, payload, .. } = *call;
-        // The cyclic connection carries only the cycle and its session.
+        // The cyclic connection carries only the cyclic service and its session.
         if matches!(call.link, WirePeer::Address(_)) && !matches!(rpc.service, 1 | 3) {
             return Err(UNSUPPORTED_SERVICE);
         }

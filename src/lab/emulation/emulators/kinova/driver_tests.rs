@@ -180,7 +180,7 @@ fn low_level_moves_to_targets_over_the_turn_without_jumps() {
         for _ in 0..100 {
             ticking.lead(&HOME_RAD);
         }
-        // Dropped in full motion.
+        // Drop the driver in full motion.
         assert_eq!(ticking.driver.health().lost, 0);
         drop(ticking);
         assert_eq!(mode(&settings), 2, "back in single level");

@@ -47,7 +47,7 @@ fn every_loss_is_told_within_twenty_milliseconds_of_loop_time() {
     judged(|| {
         for fault in EmulatedFault::ALL {
             if matches!(fault, EmulatedFault::Loss | EmulatedFault::Garbage) {
-                // Random: tested below.
+                // These faults are random; another test covers them.
                 continue;
             }
             let (serving, settings) = started(patient());
@@ -84,7 +84,7 @@ fn until(
 
 #[test]
 fn every_fault_is_noticed_and_passes_without_a_restart() {
-    // A delay by a busy machine shows as silence first, and hides the expected reason.
+    // A delay on a busy machine looks like silence, which would hide the expected reason.
     judged(|| {
         let (serving, settings) = started(patient());
         let settings = KinovaSettings { timeout_s: 0.4, ..settings };

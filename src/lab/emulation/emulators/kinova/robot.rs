@@ -275,7 +275,7 @@ impl Robot {
         let mut wanted = if let BodyCommand::Joints(angles) = self.asked { angles } else { self.state.joint_rad };
         let mut faults = [0; ARM_JOINTS];
         for (j, actuator) in command.actuators.iter().take(ARM_JOINTS).enumerate() {
-            // Commands out of their time are dropped.
+            // Commands with a wrong frame id are dropped.
             if actuator.command_id != command.frame_id || actuator.flags & 0x40 != 0 {
                 continue;
             }

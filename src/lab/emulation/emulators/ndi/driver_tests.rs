@@ -95,7 +95,7 @@ fn attempt(settings: &NdiSettings, form: ReplyForm) -> (Health, Vec<TimedReading
 /// Checks that the readings of the first second agree with the body, frame by frame. The number of lost frames depends
 /// on the machine's load: none on an idle one; at most a tenth is accepted here.
 fn follows(settings: &NdiSettings, form: ReplyForm, within_m: f64) {
-    // A machine that stalls for a tenth of a second makes a tracker silent: a second and a third attempt are allowed.
+    // A tenth of a second's stall of the machine makes a tracker look silent, so allow a second and a third attempt.
     let attempts = (0..3).map(|_| attempt(settings, form));
     let complete = |(health, _): &(Health, Vec<_>)| health.standing == ConnectionState::Connected && health.lost <= 8;
     let (health, readings) = attempts.into_iter().find(complete).expect("complete in one of three attempts");
@@ -297,7 +297,7 @@ fn dropping_it_stops_tracking() {
         let begin = Instant::now();
         assert!(until(begin, 1.0, |now_s| driver.poll(now_s), |reading| reading.is_some()));
         drop(driver);
-        // The next client is answered as by a unit that does not track.
+        // The next client gets the answers of a unit that is not tracking.
         let mut stream = std::net::TcpStream::connect(&served.endpoint).unwrap();
         stream.write_all(b"TX 0801\r").unwrap();
         let mut reply = [0; 12];

@@ -44,7 +44,7 @@ impl ListeningUnit {
     /// Processes one byte; returns the answer if the byte completes a command.
     fn receive(&mut self, byte: u8, turn: &EmulatorTurn<'_>) -> Option<UnitAnswer> {
         if byte != b'\r' {
-            // A command that is too long keeps its maximum length, and is refused.
+            // A command that is too long is cut to the maximum length, and then refused.
             if self.command.len() < COMMAND_MAX {
                 self.command.push(byte);
             }
@@ -125,16 +125,16 @@ impl Emulator for NdiLine {
     fn receive(&mut self, _: WirePeer, bytes: &[u8], turn: &mut EmulatorTurn<'_>) {
         // At another baud rate the bytes are not received.
         for byte in bytes.iter().filter(|_| turn.baud == Some(self.baud)) {
-            // The unit is half duplex: bytes that arrive before its reply is out are lost, so that a flood of requests
-            // does not occupy the line for long.
+            // The unit is half duplex: bytes that arrive before its reply has been sent are lost, so a flood of
+            // requests does not occupy the line for long.
             if self.due.is_some() {
                 break;
             }
             let length = self.listening_unit.command.len() + 1;
             if let Some(answer) = self.listening_unit.receive(*byte, turn) {
                 let took_s = |bytes: usize| bytes as f64 * BITS / f64::from(self.baud);
-                // The reply is written as a whole when its first byte is due; the line is occupied until its last byte
-                // has passed.
+                // Write the whole reply when its first byte is due; the line is occupied until its last byte has been
+                // sent.
                 let due_s = turn.now_s.max(self.taken_s) + took_s(length);
                 self.taken_s = due_s + took_s(answer.bytes.len());
                 self.due = Some((due_s, answer));

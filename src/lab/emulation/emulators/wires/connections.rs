@@ -94,7 +94,7 @@ impl<P: ConnectionPlace> WireEnd for Connections<P> {
             self.clients.push(ConnectionClient { peer, stream, alive: true });
             return Some(WireArrival::Came(peer, 0));
         }
-        // In turn, so that a client that sends much data does not delay the others.
+        // Serve clients in turn, so that one that sends much data does not delay the others.
         for _ in 0..self.clients.len() {
             let at = self.next % self.clients.len();
             self.next = at + 1;

@@ -170,7 +170,8 @@ pub(super) fn horizon(
         if model.degree > 0 {
             stiffness.push(model.coefficients[0].0.iter().fold(0.0_f64, |max, m| m.abs().max(max)));
         }
-        // Before the first data arrive there is nothing to judge; a mode that renders nothing errs by the whole force.
+        // Before the first data arrive there is nothing to evaluate; if a mode renders nothing, its error is the whole
+        // force.
         let report = identifier.report();
         if let Some(delayed_n) = report.prediction(Mode::Dfr) {
             dfr.add(&(delayed_n - measured_n));

@@ -112,7 +112,7 @@ mod tests {
         assert!(nonlinear.mae_n <= 0.015 && nonlinear.sd_n <= 0.025, "{inside:?}");
         assert!((0.145..0.25).contains(&linear.mae_n) && (0.3..0.45).contains(&linear.sd_n), "{inside:?}");
         assert!(less > 0.9 && window_fraction > 0.99 && (0.6..0.7).contains(&next_fraction), "{inside:?}");
-        // At rest in contact X vanishes and the force does not: no fit can represent this, unless u is a displacement.
+        // At rest in contact, X vanishes but the force does not: no fit can represent this, unless u is a displacement.
         let rests = Conditions { hold_s: 0.35, ..Conditions::PAPER }.record(1, 20.0).unwrap();
         let inside = judged::in_window(&rests).unwrap();
         assert!(inside.nonlinear.mae_n > 0.05 && inside.displacement.mae_n < 0.015, "{inside:?}");

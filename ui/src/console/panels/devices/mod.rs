@@ -152,7 +152,7 @@ pub fn devices_ui(ui: &mut Ui, live: &LiveState, state: &mut DevicesState) -> Op
     ui.columns(columns[0].len(), |columns_ui| {
         for row in &columns {
             for (ui, (side, places)) in columns_ui.iter_mut().zip(row) {
-                // Columns justify their texts; ragged lines are easier to read in a narrow column.
+                // Columns justify their text, but ragged lines are easier to read in a narrow column.
                 ui.with_layout(Layout::top_down(Align::Min), |ui| {
                     ui.label(small(text::devices::column(*side)));
                     for place in places {

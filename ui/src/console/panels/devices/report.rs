@@ -36,7 +36,7 @@ fn result_ui(ui: &mut Ui, checkup: &Checkup) {
         ui.add(Label::new(cause).wrap());
         ui.add(Label::new(small(cure)).wrap());
     }
-    // The rows are text only: they need not be as high as buttons.
+    // The rows are only text, so they need not be as high as buttons.
     ui.spacing_mut().interact_size.y = 0.0;
     Grid::new(("checkup", checkup.part)).num_columns(2).spacing([10.0, 2.0]).show(ui, |ui| {
         for (name, value, meaning) in figures(checkup) {

@@ -109,7 +109,7 @@ fn shown(past: &mut Playback) -> Option<Arc<DecodedImage>> {
     loop {
         past.step(0.0, false);
         if past.live.is_some() {
-            // Only a moment requested by a frame is found.
+            // A moment is found only if a frame has requested it.
             drawn(past);
             if let Some(found) = past.panels.eyes.projected(past.shown_s()) {
                 return found.0;
@@ -159,7 +159,7 @@ fn the_picture_of_a_moment_is_that_of_the_frame_before_it_also_while_it_is_playe
     assert!(past.panels.eyes.is_on());
     in_time_at_each_and_while_played(&mut past, begin_ns, &[3.9, 0.005, 0.8, 2.0005, 1.234, 0.039, 3.0]);
     past.toggle();
-    // A damaged image is reported, and the last whole one stays.
+    // A damaged image is reported, and the last intact one remains.
     let frame_s = PERIOD_NS as f64 / 1e9;
     settled(&mut past, 0.005 + 45.5 * frame_s);
     let behind_s = behind_s(&mut past, begin_ns).unwrap();

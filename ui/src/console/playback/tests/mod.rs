@@ -137,7 +137,7 @@ fn what_is_shown_at_once_has_the_forces_and_places_of_that_tick() {
         let was = ticks[number][0].unwrap();
         assert_eq!((shown.measured_n, shown.rendered_n, shown.tip_m), (was.measured_n, was.rendered_n, was.tip_m));
         assert_eq!((shown.leader_m, shown.state), (was.leader_m, was.state));
-        // Compared by bits: the link is still filling at the start, and NaN does not equal itself.
+        // Compared bit by bit: the link is still filling at the start, and NaN does not equal itself.
         assert_eq!(shown.delayed_n.map(f64::to_bits), was.delayed_n.map(f64::to_bits));
     }
 }

@@ -95,7 +95,7 @@ mod tests {
             let all_s = lengths_s.iter().sum::<f64>();
             assert_eq!(lengths_s.len(), 6);
             assert!(lengths_s.iter().all(|length_s| (length_s - 14.0).abs() <= frame_s), "{rate_hz} Hz: {lengths_s:?}");
-            // Frames that are farther apart than a pause restart each chapter.
+            // If frames are farther apart than a pause, each chapter restarts.
             let late_s = if rate_hz < 1.0 { 6.0 * frame_s } else { frame_s };
             assert!((84.0 - 1e-6..=84.0 + late_s).contains(&all_s), "{rate_hz} Hz: {all_s} s");
         }
@@ -107,9 +107,9 @@ mod tests {
             let frames = (0..10_000).map(|frame| f64::from(frame) / 30.0);
             lengths_s(frames.map(move |t_s| if t_s > from_s { t_s + pause_s } else { t_s }))
         };
-        // The pause fits into the chapter.
+        // The pause fits into the chapter's time.
         assert!(with_pause(5.0, 6.0).iter().all(|length_s| (length_s - 14.0).abs() < 0.05));
-        // The chapter was seen for 5 s: it ends with the pause, and the next one has its full time.
+        // The chapter had been shown for 5 s: it ends with the pause, and the next one gets its full time.
         let [first_s, second_s, ..] = with_pause(5.0, 60.0)[..] else { panic!() };
         assert!((first_s - 65.0).abs() < 0.1 && (second_s - 14.0).abs() < 0.1, "{first_s} s, {second_s} s");
         // The chapter had just started: it is shown before the next one.

@@ -60,10 +60,10 @@ impl LettingGo {
             return;
         };
         if tick.state == LoopState::Engaged {
-            // After the end of the engagement the hand's position is not on the same scale.
+            // After the engagement has ended, the hand's position is on another scale.
             self.travel_m = self.travel_m.map(|max_m| max_m.max((tick.leader_m - from_m).norm()));
         }
-        // An engagement that ended for another reason stays ended.
+        // If the engagement ended for another reason, do not restart it.
         let ended = live.changes[Side::Right.index()].is_some_and(|change| change.why == TransitionCause::Absent);
         self.gone |= tick.state == LoopState::Idle && ended;
         if for_s > OPEN_S {

@@ -39,7 +39,7 @@ pub(super) fn demo_ui(ui: &mut Ui, live: &mut LiveState, panels: &mut Panels, ou
     }
     let side = Frame::new().fill(theme::now().panel).inner_margin(Margin::same(8));
     let height = if ui.available_width() < ONE_ROW { 176.0 } else { 140.0 };
-    // The script does not belong to a recorded session.
+    // The script is not shown for a recorded session.
     if !live.is_shown_only() {
         let frame = side.inner_margin(Margin::symmetric(18, 12));
         let caption = Panel::bottom("caption").exact_size(height).resizable(false).frame(frame);

@@ -109,8 +109,8 @@ impl PersonsStop {
         if self.counted.replace(stops).is_some_and(|before| before != stops) {
             self.at_s = Some(now_s);
         }
-        // The loop reports a stop in its state, but only the window has a stop under a latched fault. A person ends it by
-        // engaging again.
+        // The loop reports a stop only in its state, but the window also stops while a fault is latched. A person ends
+        // the stop by engaging again.
         let engaged_s = live.first_tick().filter(|_| live.state() == LoopState::Engaged);
         let engaged_s = engaged_s.and_then(|tick| live.changes[tick.side.index()]).map(|change| change.t_s);
         if let (Some(engaged_s), Some(at_s)) = (engaged_s, self.at_s)

@@ -66,7 +66,7 @@ impl DemoState {
             return;
         }
         self.recover(live, passed_s, outbox);
-        // An engagement that the governor ended for the open hand is part of the show.
+        // If the governor ended the engagement because the hand was opened, that is part of the demonstration.
         if live.state() != LoopState::Engaged && !self.letting_go.is_open() {
             return;
         }
@@ -106,7 +106,7 @@ impl DemoState {
         if may_let_go(live) {
             outbox.push(Command::SetGovernor(lets_go != Some(GovernorAction::LeftOut)));
         }
-        // A force that fades at standstill would leave nothing to release.
+        // If the force faded at standstill, there would be nothing to release.
         outbox.push(Command::SetStaticHold(lets_go.is_some() || before.static_hold));
         outbox.push(Command::SetMode(mode));
         outbox.push(Command::SetDelay(delay_s));
@@ -117,7 +117,7 @@ impl DemoState {
     fn recover(&mut self, live: &LiveState, passed_s: f64, outbox: &mut Outbox) {
         let state = live.state();
         if state.is_latched() {
-            // The loop has closed the hand.
+            // The loop has closed the hand again.
             self.letting_go = LettingGo::default();
         }
         let now_s = live.first_tick().map_or(0.0, |tick| tick.t_s);

@@ -26,7 +26,7 @@ pub(super) fn effect_image(ui: &mut Ui, effect: &FrameEffect) {
     let half = f64::from(rect.height()) * 0.5;
     let travel_m = effect.change().map_or(0.0, |[travel_m, _]| travel_m);
     let points_per_m = APART * half / travel_m.max(MIN_M);
-    // The new frame is in the middle, because it is known best.
+    // The new frame is at the centre, because it is known best.
     let centre = rect.center() + vec2(0.0, 18.0);
     let middle_m = effect.after.translation.vector;
     let place = |frame: &Isometry3<f64>| {

@@ -156,7 +156,7 @@ impl FrameCalibration {
     /// As [`Store::save`].
     pub fn save(&self, store: &Store) -> Result<PathBuf, StoreError> {
         match self {
-            // The two parts of a view are two files.
+            // The two parts of a view calibration are saved as two files.
             Self::View(record) if record.found.carrier == nima_core::calibration::frames::Carrier::Handle => {
                 let path = store.path_of(HANDLE, &record.head.sensor, "toml")?;
                 let failed = |source| StoreError::Write { path: path.clone(), source };

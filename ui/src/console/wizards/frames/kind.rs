@@ -123,7 +123,7 @@ impl FrameKind {
                 let place_only = FrameSample::from(handle.translation.vector);
                 FrameSample { leader_from_handle: place_only.leader_from_handle, ..*sample }
             }
-            // Only the tilt counts: an arm held still drifts and rotates about the vertical.
+            // Only the tilt counts, because an arm that is held still drifts and rotates about the vertical.
             (Self::Mount, _, Some(flange)) => {
                 let up = subject.up_in_base();
                 let up_in_flange = flange.rotation.inverse() * up;

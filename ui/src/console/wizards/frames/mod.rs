@@ -146,7 +146,7 @@ impl FrameWizard {
     /// Time of the session at this time of the loop, s.
     fn session_s(&mut self, loop_s: f64) -> f64 {
         let (last_s, session_s) = self.clock_s;
-        // A restart of the loop creates a gap, which ends a pose.
+        // When the loop restarts, leave a gap, which ends the current pose.
         let way_s = if loop_s > last_s { loop_s - last_s } else { 1.0 };
         self.clock_s = (loop_s, session_s + way_s);
         self.clock_s.1
@@ -246,7 +246,7 @@ impl Wizard for FrameWizard {
             (Some(before), Some(now)) => !before.is_same_place(now),
             (before, now) => before.is_some() != now.is_some(),
         };
-        // Recorded data belong to the previous state of the rig.
+        // Recorded data belong to the rig's previous state, so keep it while there are any.
         if changed && self.taken() == 0 {
             let step = self.frame.step;
             self.begin(binding.subject.clone());

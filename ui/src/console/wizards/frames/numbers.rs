@@ -161,7 +161,7 @@ fn hand_eye(found: &HandEyeResult, subject: &FrameSubject) -> (Vec<FrameNumber>,
         set.base_from_c_deg,
         angles_deg,
     ));
-    // A rig file without the marker's pose has at least its orientation.
+    // If the rig file lacks the marker's pose, it has at least the orientation.
     let before = subject.s1_from_m().or_else(|| {
         let turn = from_roll_pitch_yaw_deg(&set.s1_from_m_deg?);
         Some(Isometry3::from_parts(s1_from_m.translation, turn))
@@ -201,7 +201,7 @@ fn table(found: &TableResult, subject: &FrameSubject) -> (Vec<FrameNumber>, Fram
         FrameNumber::three(subject.key("rcm.trocar_m"), NumberUnit::Metres, Some(rcm.trocar_m), trocar_m),
         FrameNumber::three(subject.key("rcm.inward"), NumberUnit::One, Some(rcm.inward), moved.rotation * rcm.inward),
     ];
-    // The drawing shows the table in the frame of the base, where it was touched.
+    // The drawing shows the table in the frame of the base in which it was touched.
     (numbers, FrameEffect { before: Some(before.inverse()), after: found.from_table.pose() })
 }
 

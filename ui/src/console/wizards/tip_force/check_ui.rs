@@ -207,7 +207,7 @@ fn free_ui(ui: &mut Ui, checked: &CheckResult) {
     let response = plot("tip_force_free", text::tip_force::NO_CONTACT_AXIS.get(), text::tip_force::FRACTION_AXIS.get())
         .show(ui, |plot| {
             for (k, ((axis, bins), colour)) in AXES.iter().zip(&checked.bins).zip(theme::now().series).enumerate() {
-                // Three narrow bars side by side in each bin.
+                // Three narrow bars side by side for each bin.
                 let bar = |(i, fraction): (usize, &f64)| {
                     let middle_n = (i as f64 - (BINS / 2) as f64) * BIN_N;
                     Bar::new(middle_n + (k as f64 - 1.0) * BIN_N / 3.0, 100.0 * fraction).width(BIN_N / 3.0)

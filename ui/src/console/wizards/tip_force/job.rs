@@ -183,7 +183,7 @@ pub(super) fn judge(
     let (mut check, evaluation) = check(&mut estimator, &data).map_err(|error| error.to_string())?;
     if let (Some(goal), Verdict::Accepted) = (narrow, check.judgement.verdict) {
         check.judgement.verdict = Verdict::InsufficientMotion;
-        // The reason is stored in the file.
+        // The reason is stored in the file, hence in English.
         let reason = || text::tip_force::trained_on_too_little(&goal.name().to_lowercase());
         check.judgement.reason = language::with(Language::English, reason);
     }

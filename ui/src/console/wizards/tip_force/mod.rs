@@ -191,7 +191,7 @@ impl TipForceWizard {
     fn take_model(&mut self, result: Result<ForceModel, String>, narrow: Option<GoalKind>, cancelled: bool) {
         match result {
             Ok(model) => {
-                // Results of the previous network are not valid for this one.
+                // Results of the previous network do not apply to this one.
                 self.trained = Some(TrainedNetwork { model, narrow });
                 self.proof = None;
                 self.checked = None;
@@ -236,7 +236,7 @@ impl TipForceWizard {
     fn start_check(&mut self, binding: &Binding) {
         let Some(correspondence) = binding.correspondence else { return };
         if self.checked.is_some() {
-            // The check is repeated; the previous check of the model stays until then.
+            // The check is repeated; until then the model keeps its previous check.
             self.proof = None;
         }
         self.proof.get_or_insert_with(|| TipForceRecording::new(correspondence)).running = true;

@@ -57,7 +57,7 @@ impl TipForceWizard {
             let known = binding.correspondence.is_some();
             let correspondence = (text::tip_force::SOURCE_CORRESPONDENCE, text::tip_force::SOURCE_NO_CORRESPONDENCE);
             let lines = SOURCES.into_iter().zip(self.sources).chain([(correspondence, known)]);
-            // Without the wrist sensor, the state of the others and the calibrations of this arm are unknown.
+            // Without the wrist sensor, the other checks and the calibrations of this arm are unknown.
             let has_sensor = self.has_sensor(binding);
             for (place, ((name, otherwise), there)) in lines.enumerate() {
                 match (place, has_sensor) {

@@ -117,7 +117,7 @@ fn goals_ui(ui: &mut Ui, coverage: &TipForceCoverage) {
         ui.columns(2, |columns| {
             let goals = coverage.goals();
             for (i, goal) in goals.iter().enumerate() {
-                // Rounded down, so that 100 is shown only when the requirement is met.
+                // Round down, so that 100 is shown only when the requirement is met.
                 let percent = format!("{:.0} %", (100.0 * goal.fraction).floor());
                 progress(
                     &mut columns[i / goals.len().div_ceil(2)],

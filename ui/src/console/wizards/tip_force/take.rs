@@ -56,7 +56,7 @@ impl TipForceRecording {
         match self.recorder.step(now_s, tick.force.gravity_free.as_ref(), sample) {
             RecorderPhase::Resting { .. } => self.asked = Prompt::Rest,
             RecorderPhase::NotMoved | RecorderPhase::Recording => self.asked = work,
-            // A short loss of a source does not change the instruction.
+            // A brief loss of a source does not change the instruction.
             RecorderPhase::Lacks(_) => {}
             RecorderPhase::Full => self.running = false,
         }

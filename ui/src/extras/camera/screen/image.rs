@@ -57,7 +57,7 @@ pub(super) fn image_ui(
     };
     let per_row = board.corners()[0];
     for index in 0..board.count() {
-        // Rows are joined, so that a board that was read in the wrong direction is noticed.
+        // Rows are joined by a line, so that a board read in the wrong direction is noticed.
         if let (Some(from), Some(to)) = (at(index), at(index + 1).filter(|_| (index + 1) % per_row != 0)) {
             painter.line_segment([from, to], Stroke::new(1.0, theme::DARK.measured));
         }

@@ -289,7 +289,7 @@ impl Wizard for CameraWizard {
             self.endoscope = RigConfig::load(&binding.rig).ok().and_then(|rig| rig.endoscope);
             self.keeps_lens &= self.rig_lens().is_some();
             if matches!(self.frame.saved, Some(Ok(_))) && self.frame.step == SAVE {
-                // Saved changes can be undone; undone changes can be saved again.
+                // A saved change can be undone, and an undone change can be saved again.
                 let saved = self.pending.take().unwrap_or_default();
                 self.undoable = if self.undoable.is_empty() { saved } else { Vec::new() };
             }

@@ -183,7 +183,7 @@ impl CameraWizard {
     /// The image with the detected corners.
     pub(super) fn live_ui(&self, ui: &mut Ui, marked: Option<usize>) {
         let width = (ui.available_width() - MAP_WIDTH - 16.0).clamp(160.0, IMAGE);
-        // While the board is at rest, its corners stay at their positions, whatever hides them.
+        // While the board is at rest, its corners keep their positions, whatever hides them.
         let sight = if marked.is_some() { self.base.as_ref() } else { self.sight.as_ref() };
         let board = self.board().ok();
         let words = texts::image(&self.report());

@@ -109,7 +109,7 @@ fn lens_and_touched_corners_place_the_camera_and_a_board_that_moved_does_not() {
     let again = world_from_n * place.pose;
     let off = again.inverse() * placed_at(&wizard);
     assert!(off.translation.vector.norm() < 1e-9 && off.rotation.angle() < 1e-9, "{off}");
-    // The endoscope is pushed.
+    // The endoscope has been pushed.
     shown(&mut wizard, &pose([0.002, 0.01, 0.14], [0.4, 0.1, 0.2]));
     assert!(wizard.moved && wizard.good_place().is_none() && wizard.may_go_on(&binding).is_err());
     wizard.lay_anew();

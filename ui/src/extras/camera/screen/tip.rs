@@ -24,7 +24,7 @@ impl CameraTip {
             return;
         }
         match self.kept.back() {
-            // A restarted loop begins at zero.
+            // The time of a restarted loop begins at zero.
             Some((last_s, _)) if t_s < *last_s => self.kept.clear(),
             Some((last_s, _)) if t_s < last_s + STEP_S => return,
             _ => {}

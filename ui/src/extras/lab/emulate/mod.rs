@@ -117,7 +117,7 @@ fn serve(
                 }
                 return Ok(());
             }
-            // Standard input was a file that has been read completely, or is missing.
+            // Standard input is missing, or was a file that has been read to its end.
             Err(RecvTimeoutError::Disconnected) => std::thread::sleep(Duration::from_millis(50)),
         }
     }

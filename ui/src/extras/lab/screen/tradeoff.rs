@@ -51,7 +51,8 @@ impl SweepJob {
         let progress = Arc::new([AtomicUsize::new(0), AtomicUsize::new(1)]);
         let stop = Arc::clone(&cancel);
         let report = Arc::clone(&progress);
-        // A thread with normal priority: the loop's thread has real-time priority if granted, and is not delayed.
+        // This thread has normal priority, so it does not delay the loop's thread, which has real-time priority where
+        // that is granted.
         let thread = Builder::new().name("trade-off".to_owned()).spawn(move || {
             let source = TradeoffSource::from_scene(&scene, rate_hz, SCENE_S);
             sweep(&[source], &plan, &stop, |done, total| {

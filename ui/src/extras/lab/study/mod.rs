@@ -115,7 +115,7 @@ impl Results {
         let inputs = experiment.inputs();
         let inputs: Vec<&Path> = inputs.iter().map(PathBuf::as_path).collect();
         if let Some(out) = &self.out {
-            // Checked before the work, so that an invalid name does not waste its time.
+            // Checked before the computation, so that an invalid name does not waste it.
             let names: Vec<String> = [".json"].iter().chain(E::FILES).map(|end| name::<E>(end)).collect();
             output::folder(out, &names.iter().map(String::as_str).collect::<Vec<_>>(), &inputs)?;
         }
@@ -143,7 +143,7 @@ fn progress(done: usize, of: usize, what: &str) {
     if !stderr.is_terminal() {
         return;
     }
-    // Errors are ignored: a closed terminal does not stop a study.
+    // Ignore errors, because a closed terminal must not stop a study.
     if done < of {
         write!(stderr, "\r\x1b[K{}/{of} {what}", done + 1).ok();
     } else {

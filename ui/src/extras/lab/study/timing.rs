@@ -162,7 +162,7 @@ fn measure(arguments: &TimingArguments, beside: ParallelLoad, asked: SchedulingC
     }
     command.args(["--scene", &arguments.scene]);
     command.args(["--scheduling", asked.name()]);
-    // Its standard input closes when this process ends for any reason, so no loop keeps running.
+    // Its standard input closes when this process ends for any reason, so no loop is left running.
     command.arg("--until-input-ends");
     let mut child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn()?;
     let held = child.stdin.take();

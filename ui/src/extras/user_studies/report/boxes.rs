@@ -68,7 +68,7 @@ fn group(x: f64, values: &[f64], colour: &str, down: impl Fn(f64) -> f64) -> Mar
             fill=(colour) fill-opacity="0.2" stroke=(colour) {}
         path d=(format_args!("M{left:.1} {:.1}h{width}", down(median))) stroke=(colour) stroke-width="2.5" {}
         @for (place, value) in values.iter().enumerate() {
-            // Next to the box, in columns, so that equal values remain visible.
+            // Draw the points next to the box, in columns, so that equal values remain visible.
             @let aside = HALF_BOX + 8.0 + 5.0 * (place % 4) as f64;
             circle cx=(format_args!("{:.1}", x + aside)) cy=(format_args!("{:.1}", down(*value))) r="2.5" fill=(colour) {}
         }

@@ -45,7 +45,7 @@ pub(super) fn write(study: &UserStudy, out: &Path, all: bool) -> anyhow::Result<
     let wanted = if all { columns(&trials.csv, |name| !named.iter().any(|known| known == name)) } else { Vec::new() };
     let wanted: Vec<String> = named.into_iter().chain(wanted).collect();
     let measures = AnalysedTable::of(study, out, TRIALS, &trials.csv, &wanted, "trials")?;
-    // Only questionnaires of this study.
+    // Use only this study's questionnaires.
     let scores = columns(&questionnaires.csv, |name| SCORES.contains(&name));
     let scores = AnalysedTable::of(study, out, QUESTIONNAIRES, &questionnaires.csv, &scores, "questionnaires")?;
     let page = page(study, &trials, measures.as_ref(), scores.as_ref());
@@ -88,7 +88,7 @@ impl AnalysedTable {
         }
         let path = out.join(file);
         let table = TrialTable::read(&path, &measures)?;
-        // Before unblinding, the reference would reveal its condition.
+        // Before unblinding, a reference would reveal its condition.
         let reference = study.opened().and_then(|opened| opened.reference().map(str::to_owned));
         let reference = reference.filter(|name| table.conditions().contains(name));
         let trials = Trials { path, measures, reference, confidence: 0.95, power: None };

@@ -70,7 +70,7 @@ pub(super) fn measures_ui(ui: &mut Ui, draft: &mut Draft) {
         ui.label(weak(text::study_form::SECONDARY.get()));
         let mut gone = None;
         ui.horizontal_wrapped(|ui| {
-            // A wider row above must not carry these beyond the window.
+            // A wider row above must not push these out of the window.
             ui.set_max_width(ui.available_width().min(SECONDARY_WIDTH));
             for (at, key) in file.secondary.iter().enumerate() {
                 let button = ui.add(Button::new(text::study_form::leave_off(key)));

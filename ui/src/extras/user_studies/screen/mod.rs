@@ -191,7 +191,7 @@ impl Page for Studies {
         let (scene, task) = study::scene_for(of, &rig, &hand).map_err(|error| format!("{error:#}"))?;
         let running = of.begin_trial(participant, wanted.hand.is_simulated(), &utc_now());
         let running = running.map_err(|error| error.to_string())?;
-        // The reason why a rig does not permit a condition would reveal the condition.
+        // A reason why a rig does not permit a condition would reveal the condition.
         let rig = study::under(rig, running.condition()).ok();
         let trial = TrialScreen::new(participant, running, task, wanted.hand, of.plan().trials_of_each());
         let is_by_mouse = trial.is_by_mouse();

@@ -80,7 +80,7 @@ impl OpenStudy {
     pub(super) fn new(study: UserStudy, report: Option<String>) -> Self {
         let rig = RigConfig::load(&study.plan().rig);
         let hand = rig.as_ref().map_or(HandSource::OfRig, HandSource::of);
-        // A participant in the middle of a session comes first.
+        // A participant who is in the middle of a session comes first.
         let plan = study.plan();
         let state = study.state();
         let goes_on = plan.participants.iter().find(|one| !matches!(state.next(plan, one), StudyStep::Done { .. }));

@@ -154,7 +154,7 @@ impl QuestionnairePage {
                 ui.spacing_mut().slider_width = SLIDER;
                 let mut value = rating.map_or(50.0, f64::from);
                 let slider = Slider::new(&mut value, 0.0..=100.0).step_by(STEP).show_value(false);
-                // A line that was not rated yet must not look like a rating in the middle.
+                // A scale that has not been rated must not look like a rating in the middle.
                 let opacity = if rating.is_some() { 1.0 } else { 0.4 };
                 let slider = slider.trailing_fill(rating.is_some());
                 let response = ui.scope(|ui| {
@@ -162,7 +162,7 @@ impl QuestionnairePage {
                     ui.add(slider)
                 });
                 let response = response.inner.labelled_by(label.id);
-                // A press on the middle changes nothing, but counts as an answer.
+                // Pressing the middle changes nothing, but counts as an answer.
                 if let Some(tapped) = tapped(&response) {
                     value = tapped;
                 } else if !(response.changed() || response.drag_started()) {
@@ -229,7 +229,7 @@ fn tapped(slider: &Response) -> Option<f64> {
         (pointer.primary_pressed() && pointer.primary_released(), pointer.interact_pos())
     });
     let at = at.filter(|_| is_tap && slider.contains_pointer())?;
-    // The middle of the handle stays within the line.
+    // Keep the middle of the handle within the line.
     let line = slider.rect.x_range().shrink(slider.rect.height() / 2.5);
     Some(f64::from(100.0 * ((at.x - line.min) / line.span()).clamp(0.0, 1.0)))
 }

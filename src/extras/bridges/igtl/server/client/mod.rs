@@ -162,7 +162,7 @@ pub(super) fn refuse(mut stream: &TcpStream, max: usize) {
     let text = format!("{max} clients are already connected: disconnect one of them");
     let bytes = IgtlMessage::new(BUNDLE, now_ns(), refusal(StatusCode::BUSY, &text)).encode();
     stream.set_nonblocking(true).ok();
-    // A new connection has room for this; if not, there is no client to inform.
+    // A new connection has room for this; if it does not, there is no client to inform.
     stream.write_all(&bytes).ok();
     stream.shutdown(Shutdown::Write).ok();
 }

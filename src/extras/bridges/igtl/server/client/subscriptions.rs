@@ -123,7 +123,7 @@ impl Wants {
 
     /// Returns the data due at this time of the loop, s, and sets the next time.
     pub(in super::super) fn due(&mut self, t_s: f64) -> Option<Kinds> {
-        // The clock of another loop.
+        // The clock belongs to another loop.
         if self.due_s > t_s + 2.0 * LONGEST_S {
             self.due_s = t_s;
         }
@@ -169,7 +169,7 @@ mod tests {
         let mut wants = Wants::default();
         assert!(wants.due(1000.0).is_some() && wants.due(1000.001).is_none());
         assert!(wants.due(0.0).is_some() && wants.due(0.001).is_none());
-        // After a pause nothing is made up.
+        // After a pause, missed messages are not sent later.
         assert!(wants.due(0.9).is_some() && wants.due(0.901).is_none());
     }
 

@@ -177,7 +177,7 @@ fn a_client_gets_tips_handles_forces_and_states_of_the_same_tick_without_asking(
         (engaged.device.as_str(), status.code, status.text.as_str()),
         ("right.state", StatusCode::OK, "it is Engaged")
     );
-    // A state precedes a waiting bundle, which may belong to an earlier tick.
+    // A state change precedes a waiting batch, which may belong to an earlier tick.
     let tip = peer.find(|message| {
         let is_later = message.device == "right.tip" && message.time_ns >= engaged.time_ns;
         (is_later && message.content.kind() == ContentKind::Transform.name()).then(|| message.clone())
@@ -194,7 +194,7 @@ fn a_client_gets_tips_handles_forces_and_states_of_the_same_tick_without_asking(
     };
     let Content::Text(text) = peer.of_device("nima", ContentKind::Text).content else { unreachable!() };
     let ticks = runs.end();
-    // A bundle belongs to a single tick, with its time.
+    // A batch belongs to a single tick, with its time.
     assert_eq!(tip.time_ns, bundle.time_ns);
     let number = ((tip.time_ns - STARTED_NS) as f64 / 1e6).round() as usize;
     let tick = ticks[number][0].unwrap();
@@ -239,7 +239,7 @@ fn requests_are_answered_and_what_was_stopped_does_not_come() {
         })
         .collect();
     for pair in times.windows(2) {
-        // A bundle may have been replaced by a newer one; none arrives too early.
+        // A batch may have been replaced by a newer one, but none arrives too early.
         let between_ms = ((pair[1] - pair[0]) as f64 / 1e6).round();
         assert!(between_ms >= 50.0 && between_ms % 50.0 < 1.5, "{between_ms} ms");
     }
@@ -307,16 +307,16 @@ fn clients_that_stall_flood_or_die_harm_nobody() {
     let server = server();
     let runs = Runs::on(&server);
     let mut good = Peer::of(&server);
-    // Reads nothing.
+    // This client reads nothing.
     let stalled = Peer::of(&server);
-    // Dies in the middle of a message.
+    // This client dies in the middle of a message.
     let mut killed = Peer::of(&server);
     killed
         .0
         .write_all(&IgtlMessage::new("", 0, Content::Request(Verb::Get, ContentKind::Status, None)).encode()[..40])
         .unwrap();
     drop(killed);
-    // Sends more than the server reads: requests, and bytes that are not messages.
+    // This client sends more than the server reads: requests, and bytes that are not messages.
     let request =
         IgtlMessage::new("", 0, Content::Request(Verb::Get, ContentKind::Capability, None)).encode().repeat(1000);
     let ends = Arc::new(AtomicBool::new(false));

@@ -164,7 +164,7 @@ impl EmulatedServo {
         if locked || no_mode || !(rule.low..=rule.high).contains(&value) {
             return Err(ServoRefusal::Range);
         }
-        // After a shutdown only a reboot allows the torque again.
+        // After a shutdown, torque can be enabled again only after a reboot.
         let shut_down = self.get(table::HARDWARE_ERROR) & self.get(table::SHUTDOWN) != 0;
         if register == table::TORQUE_ENABLE && value != 0 && shut_down {
             return Err(ServoRefusal::Access);

@@ -63,7 +63,7 @@ impl EmulatedServo {
         let active = self.torque_on() && (1..=127).contains(&units);
         if active && now_s - self.received_s > units as f64 * table::WATCHDOG_UNIT_S {
             self.set(table::BUS_WATCHDOG, table::WATCHDOG_EXPIRED.into());
-            // Stops quickly at the current position.
+            // Stop quickly at the current position.
             self.motor.restart();
             self.set(table::PROFILE_ACCELERATION, 0);
             self.set(table::PROFILE_VELOCITY, 0);

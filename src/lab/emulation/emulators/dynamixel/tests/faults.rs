@@ -65,7 +65,7 @@ fn faults_that_spare_some_answers_are_counted() {
     let (bench, mut driver) = running();
     bench.fault(EmulatedFault::Loss);
     bench.run(&mut driver, 0.05);
-    // Two missing in a row are allowed, three count as silence; either way they are counted.
+    // Two missing answers in a row are tolerated, three count as silence; both are counted.
     until_lost(&bench, &mut driver);
     assert!(driver.health().lost > 0, "{:?}", driver.health());
 

@@ -73,7 +73,7 @@ fn the_servos_become_what_the_settings_say() {
         (3, 20, 4, 326),
         (3, 80, 2, 77),
         (3, 102, 2, 100),
-        // Less than one step is still a limit.
+        // A limit of less than one step is still a limit.
         (3, 108, 4, 1),
         (3, 64, 1, 0),
     ] {

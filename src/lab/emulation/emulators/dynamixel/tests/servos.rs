@@ -124,7 +124,7 @@ fn instructions_for_several_do_what_they_say() {
     assert!(client.ask(BROADCAST, &I::Action).is_empty());
     assert_eq!((client.read(69, 1), client.read(65, 1)), (0, 1));
     assert_eq!(client.ask(1, &I::Action)[0].1, 1, "nothing is registered");
-    // The shadow id is executed silently.
+    // A servo obeys its shadow id without answering.
     assert_eq!(client.write(12, &[77]), 0);
     assert!(client.ask(77, &I::Write { address: 65, data: &[0] }).is_empty());
     assert_eq!(client.read(65, 1), 0);
@@ -212,7 +212,7 @@ fn gains_and_profiles_have_their_effect() {
     assert!(weak_s > 1.5 * usual_s || weak_overshoot < overshoot, "{weak_s} s, {weak_overshoot}");
     let (_, damped) = response(&[(80, 4000, 2)]);
     assert!(damped < 0.5 * overshoot, "{damped} of {overshoot}");
-    // 1000 ticks at 0.5 rad/s take 3.07 s; at 2 rad/s 0.77 s and some for the ramps.
+    // 1000 ticks take 3.07 s at 0.5 rad/s, and 0.77 s plus the ramps at 2 rad/s.
     let (slow_s, _) = response(&[(112, 21, 4)]);
     assert!(slow_s > 2.9, "{slow_s}");
     let (ramped_s, after) = response(&[(112, 83, 4), (108, 30, 4)]);
@@ -302,7 +302,7 @@ fn a_lost_torque_command_is_given_again() {
     let mut driver = bench.open().unwrap();
     bench.run(&mut driver, 0.1);
     driver.set_torque(true);
-    // Data sent now never arrive.
+    // Data sent from now on never arrive.
     let begin_s = bench.now_s();
     while !driver.is_torque_on() {
         bench.poll(&mut driver, 1e-3);

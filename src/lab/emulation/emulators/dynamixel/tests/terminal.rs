@@ -17,7 +17,7 @@ use crate::emulators::{EmulatedFault, EmulatorThread};
 fn serving(settings_of: &EmulatedDynamixel) -> (EmulatorThread, DynamixelSettings) {
     let serving = settings_of.with(None).unwrap().serve().unwrap();
     let mut settings = DynamixelSettings { port: serving.endpoint.clone(), baud: settings_of.baud, ..settings() };
-    // Other programs of this machine may delay either side.
+    // Other programs on this machine may delay either side.
     settings.silence_s = 0.5;
     (serving, settings)
 }
@@ -41,7 +41,7 @@ fn it_delivers_over_the_terminal_without_a_loss() {
         let health = driver.health();
         assert!(health.readings > 50, "{health:?}");
         assert_eq!((health.damaged, health.refused, health.skipped_bytes), (0, 0, 0));
-        // A pause of this machine may delay an answer; more than a few are our fault.
+        // A pause of this machine may delay an answer, but more than a few are our fault.
         assert!(health.lost + health.out_of_order <= 4, "{health:?}");
     });
 }

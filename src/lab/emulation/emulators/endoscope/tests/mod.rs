@@ -151,7 +151,7 @@ fn every_fault_is_told(serving: &EmulatorThread, feed: &EndoscopeFeed, own: impl
             }
             fault => match own(fault) {
                 Some(sign) => sign,
-                // These take a picture out now and then, or mean nothing to a camera.
+                // These occasionally remove an image, or do not apply to a camera.
                 None => continue,
             },
         };

@@ -98,7 +98,7 @@ fn fuzz(rounds: u32, seed: u64) -> u32 {
 
 #[test]
 fn damaged_datagrams_are_refused() {
-    // Very rarely, the same byte is changed back and forth and the datagram is intact.
+    // Very rarely, the same byte is changed and changed back, so that the datagram is intact.
     assert!(fuzz(200_000, 2) < 20);
 }
 

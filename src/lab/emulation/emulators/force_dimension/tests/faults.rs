@@ -72,7 +72,7 @@ fn shows(
 ) -> bool {
     let lost = |slot: &DeviceSlot<ForceDimensionDriver>| matches!(slot.health().standing, ConnectionState::Lost(_));
     assert!(wait(slot, |_, reading| reading), "delivers before {fault:?}: {:?}", slot.view().report().trouble);
-    // A loss must also end the force.
+    // The force must end when the device is lost, too.
     slot.device().unwrap().enable_force();
     assert!(wait(slot, |slot, _| hand.applied().mode == FirmwareMode::Force || lost(slot)));
     if lost(slot) {

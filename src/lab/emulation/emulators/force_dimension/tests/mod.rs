@@ -165,7 +165,7 @@ fn readings_in(driver: &mut ForceDimensionDriver, rounds: u32, mut each: impl Fn
         driver.poll(now_s());
         each(driver);
     }
-    // A handle waits for a loop that is half a period late, and no longer.
+    // A handle waits for a loop that is late by up to half a period, no longer.
     if late * 50 > rounds {
         too_busy();
     }

@@ -73,7 +73,7 @@ fn devices_that_are_absent_taken_or_others_are_told_apart() {
         let no_device = ForceDimensionSettings { emulator: Some(nobody), library: Some(library()), ..settings.clone() };
         assert_eq!(trouble(&no_device), DeviceError::Absent { place: "omega.7 (0 attached)".to_owned() });
         let first = open(&settings).unwrap();
-        // To the device, another copy of the library is another program.
+        // A second copy of the library looks like a second program to the device.
         let other = ForceDimensionSettings { library: Some(library()), serial: Some(7), ..settings.clone() };
         assert_eq!(trouble(&other), DeviceError::Busy { place: "omega.7 with serial number 7".to_owned() });
         drop(first);
@@ -160,7 +160,7 @@ fn exit() -> ! {
 #[test]
 #[ignore = "started by another test"]
 fn pushes_and_leaves() {
-    // On a busy machine the handle occasionally answers too late.
+    // On a busy machine, the handle occasionally answers too late.
     let mut driver = (0..20).find_map(|_| open(&of_parent()).ok()).unwrap();
     turn_on(&mut driver);
     let begin = Instant::now();

@@ -98,7 +98,7 @@ fn both_kinds_of_cap_arrive_whole_at_their_rates() {
                 driver.health().rate_hz > 0.0
             })
             .unwrap();
-            // Buttons are sent only when they change, so a client misses earlier changes.
+            // Buttons are sent only when they change, so the client has missed earlier changes.
             assert!(same(&newest, &CapReading { buttons: newest.buttons, ..deflected() }), "{newest:?}");
             let Health { rate_hz: rate, lost, damaged, refused, .. } = *driver.health();
             assert!(rate > 0.5 * rate_hz && rate < 1.3 * rate_hz, "{model:?}: {rate} Hz");

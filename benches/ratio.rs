@@ -2,7 +2,7 @@
 //! `benches/baseline.toml`. Unlike times, they hardly depend on the speed of the computer, nor on other users, because
 //! only the time counts in which the thread has a processor.
 
-/// Whether only the ratios were requested.
+/// Returns whether only the ratios were requested.
 pub(crate) fn alone() -> bool {
     std::env::args().any(|argument| argument == "--ratios")
 }

@@ -59,7 +59,7 @@ fn main() {
     println!("\nfour networks of 36-32-32-3 for one row as products of matrices: {:.1} us median", matrices_us());
 }
 
-/// The same arithmetic as products of dynamic matrices.
+/// Returns the same arithmetic as products of dynamic matrices.
 fn matrices() -> impl FnMut() {
     let mut generator = fastrand::Rng::with_seed(1);
     let mut random = |rows: usize, columns: usize| DMatrix::from_fn(rows, columns, |_, _| 2.0 * generator.f32() - 1.0);

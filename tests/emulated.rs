@@ -71,7 +71,7 @@ pub fn elsewhere(folder: &Path) -> RigSettings {
     devices
 }
 
-/// The built-in rig as a file with the devices at these addresses.
+/// Returns the built-in rig as a file with the devices at these addresses.
 pub fn rig_file(devices: &RigSettings) -> RigFile {
     let mut file = RigFile::of("emulated").unwrap();
     for side in Side::ALL {
@@ -96,7 +96,7 @@ pub fn rig_file(devices: &RigSettings) -> RigFile {
     file
 }
 
-/// The same with its sensors at the tips, where they measure only the tissue and need no calibration.
+/// Returns the same with its sensors at the tips, where they measure only the tissue and need no calibration.
 pub fn at_tip(folder: &Path) -> RigSettings {
     let mut devices = elsewhere(folder);
     for set in [&mut devices.right, &mut devices.left].into_iter().flatten() {

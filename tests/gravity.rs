@@ -8,7 +8,7 @@ use nima_machine::{
 use nima_recording::store::utc_now;
 use nima_simulation::{World, scene::Scene};
 
-/// A gravity calibration recorded sample by sample in its own scene.
+/// Returns a gravity calibration recorded sample by sample in its own scene.
 pub fn gravity() -> GravityRecord {
     let scene = Scene::load("gravity").unwrap();
     let mut world = World::new(&scene, 1000.0);

@@ -12,7 +12,8 @@ pub mod studies;
 use nima_machine::config::RigConfig;
 use nima_simulation::{SimulationPlan, scene::Scene};
 
-/// The simulated rig in this scene, without calibrations; it engages by itself. The methods of others can be chosen in it.
+/// Returns the simulated rig in this scene, without calibrations; it engages by itself. The methods of others can be
+/// chosen in it.
 pub fn plan(scene: &str) -> SimulationPlan {
     nima_baselines::provide();
     SimulationPlan {

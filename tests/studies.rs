@@ -14,7 +14,7 @@ name = 'Wildebeest'
 no_force = true
 ";
 
-/// A study file in which the right hand touches tissue for this many seconds per trial.
+/// Returns a study file in which the right hand touches tissue for this many seconds per trial.
 pub fn study_file(head: &str, seconds: f64, conditions: &str) -> String {
     format!(
         "name = 'Touching'\nscene = 'peg_transfer'\nprimary = 'mean_force_n_right'\n{head}\n\

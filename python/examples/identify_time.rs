@@ -10,7 +10,7 @@ use nima_core::impedance::{Mode, Recipe, Sample};
 use nima_recording::csv::CsvRecording;
 use nima_study::replay::{ReplayOptions, replay};
 
-/// The motion of `tests/speed.py`.
+/// Returns the motion of `tests/speed.py`.
 fn sample(i: usize) -> Sample {
     let t_s = i as f64 * 1e-3;
     let position_m = Vector3::new(0.02 * (7.0 * t_s).sin(), 0.015 * (4.4 * t_s).cos(), 0.008 * (12.0 * t_s).sin());

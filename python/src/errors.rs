@@ -12,12 +12,12 @@ use pyo3::{
     exceptions::{PyOSError, PyRuntimeError, PyValueError},
 };
 
-/// An invalid value.
+/// Returns an invalid value.
 pub(crate) fn value(error: impl Display) -> PyErr {
     PyValueError::new_err(one_line(&error))
 }
 
-/// An error of a file: an `OSError` if it cannot be opened, otherwise about its contents.
+/// Returns an error of a file: an `OSError` if it cannot be opened, otherwise about its contents.
 pub(crate) fn of_file(path: &Path, error: impl Display) -> PyErr {
     let is_readable = File::open(path).is_ok() && path.is_file();
     if is_readable { value(error) } else { PyOSError::new_err(one_line(&error)) }

@@ -110,7 +110,7 @@ impl Session {
         Ok(Self { path, reader, begin_ns })
     }
 
-    /// The program that wrote it.
+    /// Returns the program that wrote it.
     #[getter]
     fn library(&self) -> &str {
         self.reader.library()
@@ -122,7 +122,7 @@ impl Session {
         self.reader.notes().to_vec()
     }
 
-    /// The plotted arms.
+    /// Returns the plotted arms.
     #[getter]
     fn arms(&self) -> Vec<&'static str> {
         plot_channels::arms(&self.reader).into_iter().map(Side::word).collect()
@@ -156,7 +156,7 @@ impl Session {
         self.reader.attachments().iter().map(of).collect()
     }
 
-    /// The data of the attachment with this name.
+    /// Returns the data of the attachment with this name.
     fn attachment<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyBytes>> {
         let found = self.reader.attachments().iter().find(|one| one.name == name);
         let found = found.ok_or_else(|| {
@@ -166,7 +166,7 @@ impl Session {
         Ok(PyBytes::new(py, &data))
     }
 
-    /// The tables of the file, by name.
+    /// Returns the tables of the file, by name.
     #[getter]
     fn metadata(&self) -> PyResult<BTreeMap<String, BTreeMap<String, String>>> {
         let tables = self.reader.metadata().map_err(|error| self.wrong(error))?;
@@ -177,7 +177,7 @@ impl Session {
         Ok(all)
     }
 
-    /// The plotted signals of an arm in every tick.
+    /// Returns the plotted signals of an arm in every tick.
     #[pyo3(signature = (arm, from_s, to_s))]
     fn ticks<'py>(
         &self,
@@ -208,7 +208,7 @@ impl Session {
         Ok(result)
     }
 
-    /// The named numbers of a channel, and the times of its messages.
+    /// Returns the named numbers of a channel, and the times of its messages.
     #[pyo3(signature = (topic, from_s, to_s))]
     fn plot<'py>(
         &self,
@@ -257,7 +257,7 @@ impl Session {
         Ok(result)
     }
 
-    /// The lines of the log: time (s), level, part, text.
+    /// Returns the lines of the log: time (s), level, part, text.
     #[pyo3(signature = (from_s, to_s))]
     fn events(
         &self,

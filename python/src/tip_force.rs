@@ -81,7 +81,7 @@ impl TipForceModel {
         Ok(result)
     }
 
-    /// The force at the tip sample by sample, as computed by the loop.
+    /// Returns the force at the tip sample by sample, as computed by the loop.
     #[pyo3(signature = (times_s, forces_n, torques_nm, world_from_sensor_wxyz, insertion_m, fallback))]
     fn infer<'py>(
         &self,

@@ -63,7 +63,7 @@ impl ReelShared {
 }
 
 impl QueuedFrames {
-    /// Whether a decoder could use the image: a frame of a stream only after all frames since a key frame.
+    /// Returns whether a decoder could use the image: a frame of a stream only after all frames since a key frame.
     fn understands(&mut self, format: Format) -> bool {
         match format {
             Format::Raw(_) => false,

@@ -39,12 +39,12 @@ pub enum Format {
 }
 
 impl CompressedFrame {
-    /// A JPEG that arrived at this moment, with the camera's time stamp.
+    /// Creates a JPEG that arrived at this moment, with the camera's time stamp.
     pub(crate) const fn jpeg(bytes: Vec<u8>, arrived: Instant, stamp_s: Option<f64>) -> Self {
         Self { format: Format::Jpeg, bytes, arrived, stamp_s, taken: None }
     }
 
-    /// Whether it can be decoded without earlier images.
+    /// Returns whether it can be decoded without earlier images.
     pub const fn stands_alone(&self) -> bool {
         !matches!(self.format, Format::H264 { .. })
     }
@@ -70,7 +70,7 @@ pub trait ImageSource: Send {
     /// Why no more images will arrive: the source is then reopened.
     fn next(&mut self) -> Result<Option<CompressedFrame>, EndoscopeError>;
 
-    /// Whether it has a single image, which is not a fault when it never changes.
+    /// Returns whether it has a single image, which is not a fault when it never changes.
     fn is_still(&self) -> bool {
         false
     }

@@ -58,8 +58,8 @@ fn word(time_us: u64) -> u64 {
     time_us << CHECK_BITS | check(time_us)
 }
 
-/// A cyclic check with the polynomial x^12 + x^11 + x^3 + x^2 + x + 1 (CRC-12). It is not zero for zero, so that a
-/// black image is not a valid time.
+/// Returns a cyclic check with the polynomial x^12 + x^11 + x^3 + x^2 + x + 1 (CRC-12). It is not zero for zero, so
+/// that a black image is not a valid time.
 fn check(time_us: u64) -> u64 {
     let mut rest = 0xfff_u64;
     for bit in (0..TIME_BITS).rev() {

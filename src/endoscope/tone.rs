@@ -20,7 +20,7 @@ impl Default for Tone {
 }
 
 impl Tone {
-    /// Whether it changes nothing.
+    /// Returns whether it changes nothing.
     pub fn is_plain(&self) -> bool {
         *self == Self::default()
     }

@@ -12,7 +12,7 @@ pub fn quoted(text: &str) -> String {
     shortened(text, QUOTE)
 }
 
-/// The same with another limit. The rest is replaced by `...` and the size of the whole text.
+/// Returns the same with another limit. The rest is replaced by `...` and the size of the whole text.
 pub fn shortened(text: &str, max: usize) -> String {
     let mut short = String::new();
     // Reads at most `max` characters: the text may be a whole file.

@@ -144,7 +144,7 @@ fn kept(table: &BTreeMap<String, String>, words: &[(&str, Vec<&str>)], numbers: 
     words.iter().filter_map(word).chain(numbers.iter().filter_map(number)).collect()
 }
 
-/// Whether calibrations belong to a side or have a number.
+/// Returns whether calibrations belong to a side or have a number.
 fn is_ours(of: &str) -> bool {
     Side::ALL.iter().any(|side| side.word() == of) || of.parse::<u32>().is_ok()
 }

@@ -55,7 +55,7 @@ pub enum ImageCoding {
 }
 
 impl ImageCoding {
-    /// The name that Foxglove uses.
+    /// Returns the name that Foxglove uses.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Jpeg => "jpeg",

@@ -81,7 +81,7 @@ pub struct ChannelMessage {
 }
 
 impl FilePart {
-    /// Whether it is a message; every other part belongs into every file of the session.
+    /// Returns whether it is a message; every other part belongs into every file of the session.
     pub const fn is_message(&self) -> bool {
         matches!(self, Self::Message(_))
     }

@@ -63,7 +63,7 @@ fn made(path: &Path) -> (SessionHead, Vec<Bundle>) {
     (head, parts.chunks(10).enumerate().map(bundle).collect())
 }
 
-/// The whole content of a file.
+/// Returns the whole content of a file.
 fn content(path: &Path) -> String {
     let reader = SessionReader::open(path).unwrap();
     let messages: Vec<_> = reader

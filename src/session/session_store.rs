@@ -59,7 +59,7 @@ pub struct StoredSession {
 }
 
 impl SessionStore {
-    /// The sessions in this folder, which is created with the first one; those that are not kept use at most
+    /// Creates the sessions in this folder, which is created with the first one; those that are not kept use at most
     /// `max_bytes`.
     pub fn new(folder: impl Into<PathBuf>, max_bytes: u64) -> Self {
         Self { folder: folder.into(), max_bytes }

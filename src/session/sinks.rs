@@ -97,12 +97,12 @@ impl SessionSinks {
         Ok(Self { file, channels: Vec::new(), audiences, sync, trouble: None })
     }
 
-    /// A file that was begun earlier, without viewers.
+    /// Creates a file that was begun earlier, without viewers.
     pub(crate) const fn of(file: SessionWriter) -> Self {
         Self { file: Some(file), channels: Vec::new(), audiences: Vec::new(), sync: None, trouble: None }
     }
 
-    /// Whether any destination receives what is written.
+    /// Returns whether any destination receives what is written.
     pub(crate) const fn is_received(&self) -> bool {
         self.file.is_some() || !self.audiences.is_empty()
     }

@@ -48,7 +48,7 @@ pub(super) struct ForceResponse {
 }
 
 impl ForceResponse {
-    /// A person who intends this force, N.
+    /// Creates a person who intends this force, N.
     pub(super) fn new(intended_n: f64, seed: u64) -> Self {
         Self {
             intended_n,

@@ -131,12 +131,12 @@ pub struct Hand {
 }
 
 impl Hand {
-    /// The hand of `scene`, at rest above its first target.
+    /// Creates the hand of `scene`, at rest above its first target.
     pub fn new(scene: &Scene) -> Self {
         Self::with_task(scene, task(&scene.hand, &scene.targets_m))
     }
 
-    /// The hand of `scene` with this task, which it repeats.
+    /// Creates the hand of `scene` with this task, which it repeats.
     pub(super) fn with_task(scene: &Scene, mut task: Vec<HandTaskPart>) -> Self {
         for part in &mut task {
             part.way.seconds /= scene.hand.pace;
@@ -168,7 +168,7 @@ impl Hand {
         }
     }
 
-    /// The hand of `scene` with a task that depends on what is felt.
+    /// Creates the hand of `scene` with a task that depends on what is felt.
     pub(super) fn searching(scene: &Scene, task: Vec<HandTaskPart>, search: Box<PalpationTask>) -> Self {
         Self { search: Some(search), ..Self::with_task(scene, task) }
     }

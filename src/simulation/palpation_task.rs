@@ -97,7 +97,7 @@ impl PalpationTask {
         Some((search, parts))
     }
 
-    /// The middle of a cell, m, at the depth of the strokes.
+    /// Returns the middle of a cell, m, at the depth of the strokes.
     fn place_m(&self, [lane, cell]: [usize; 2]) -> Vector3<f64> {
         let [y_m, x_m] = self.first_m;
         Vector3::new(x_m + cell as f64 * CELL_M, y_m + lane as f64 * LANE_M, self.depth_m)

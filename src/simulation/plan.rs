@@ -28,19 +28,19 @@ pub struct SimulationPlan {
 }
 
 impl SimulationPlan {
-    /// Whether there is an arm pair on this side.
+    /// Returns whether there is an arm pair on this side.
     pub fn has(&self, side: Side) -> bool {
         self.scene.has(&self.rig, side)
     }
 
-    /// Whether the force of this side is measured at the wrist.
+    /// Returns whether the force of this side is measured at the wrist.
     pub fn is_at_wrist(&self, side: Side) -> bool {
         self.scene.measures_at_wrist(&self.rig, side)
     }
 
-    /// Whether the rig may be engaged automatically: the force at every tip is known or can become known with the
-    /// devices, and the followers can follow. On a simulated rig a person at the arm prevents the arm from following;
-    /// on an emulated rig a person comes only for a calibration.
+    /// Returns whether the rig may be engaged automatically: the force at every tip is known or can become known with
+    /// the devices, and the followers can follow. On a simulated rig a person at the arm prevents the arm from
+    /// following; on an emulated rig a person comes only for a calibration.
     pub fn may_engage(&self) -> bool {
         let knowable = |side: Side| self.rig.devices.is_some() || self.calibrations[side.index()].gravity.is_some();
         let follows = self.rig.devices.is_some() || self.scene.person.is_none();

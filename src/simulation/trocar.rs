@@ -20,7 +20,7 @@ pub struct Trocar {
 const ACROSS_STIFFNESS_N_M: f64 = 400.0;
 
 impl Trocar {
-    /// An undeformed seal at this position, m (`world`).
+    /// Creates an undeformed seal at this position, m (`world`).
     pub fn new(config: TrocarConfig, position_m: Vector3<f64>) -> Self {
         Self {
             config,

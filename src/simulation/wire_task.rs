@@ -47,7 +47,7 @@ fn part(from_m: Vector3<f64>, to_m: Vector3<f64>, seconds: f64) -> HandTaskPart 
     HandTaskPart { way: HandMove { from_m, to_m, seconds: seconds.max(0.05) }, grip_rad: [0.0; 2], then: None }
 }
 
-/// A position in front of the free end, in the direction in which the wire begins.
+/// Returns a position in front of the free end, in the direction in which the wire begins.
 fn before(curve: &SmoothCurve) -> Vector3<f64> {
     let end_m = curve.at(0.0);
     let into = (curve.at(1e-3) - end_m).try_normalize(1e-9).unwrap_or_else(Vector3::x);

@@ -41,7 +41,7 @@ fn doing(scene: &Scene) -> [Option<HandActivity>; SIDES] {
 }
 
 impl Worlds {
-    /// The worlds of a scene with `rate_hz` steps per second. The scene must have been validated.
+    /// Creates the worlds of a scene with `rate_hz` steps per second. The scene must have been validated.
     pub fn new(scene: &Scene, rate_hz: f64) -> Self {
         Self::watched(scene, rate_hz).0
     }

@@ -3,7 +3,7 @@
 /// The least contrast of text at level AA.
 pub const MIN: f64 = 4.5;
 
-/// The contrast of two colours in sRGB, 1 to 21.
+/// Returns the contrast of two colours in sRGB, 1 to 21.
 pub fn contrast(a: [u8; 3], b: [u8; 3]) -> f64 {
     let a = luminance(a);
     let b = luminance(b);

@@ -42,7 +42,7 @@ impl Fixture {
     }
 }
 
-/// A force that no reading repeats.
+/// Returns a force that no reading repeats.
 fn force_n(now_s: f64) -> Vector3<f64> {
     Vector3::new(0.3, 0.0, 1.0 + 1e-3 * now_s)
 }

@@ -239,7 +239,7 @@ fn a_hole_is_told_and_nothing_behind_it_is_compared() {
     assert!((2000..3000).contains(&tick) && lost > 3000, "{outcome:?}");
 }
 
-/// The same journal with a modification of the block with this number, including correct checksums.
+/// Returns the same journal with a modification of the block with this number, including correct checksums.
 fn forged(kept: &JournalMessages, which: usize, change: impl Fn(&mut JournalBlock)) -> JournalMessages {
     let mut encoder = JournalEncoder::default();
     let mut start = None::<JournalStart>;

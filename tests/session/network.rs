@@ -23,7 +23,7 @@ use crate::bench::record;
 
 const SOMEBODY: &str = "Dr Somebody";
 
-/// A network that was accepted by a person although it was not proven.
+/// Returns a network that was accepted by a person although it was not proven.
 fn network(known: &PriorCalibrations) -> ForceModel {
     let scene = SimulatedExperiment::scene("isolation", 3).unwrap();
     let data = recorded(&scene, known, FeatureSettings::default(), 6000, 7.0).unwrap().data(None).unwrap();

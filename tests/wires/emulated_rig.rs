@@ -252,14 +252,14 @@ struct JawsShown {
 }
 
 impl JawsShown {
-    /// Whether the readings were timely and sufficient, so that the results show the PID and not the load of the
-    /// computer. Other tests check that the servos answer at all.
+    /// Returns whether the readings were timely and sufficient, so that the results show the PID and not the load of
+    /// the computer. Other tests check that the servos answer at all.
     fn is_quiet(&self) -> bool {
         self.period_p99_s < 0.004 && self.readings >= READINGS
     }
 }
 
-/// The jaws rotate about all three axes against the load of their cables.
+/// Returns the jaws rotate about all three axes against the load of their cables.
 fn jaws_in_motion(devices: &RigSettings) -> JawsShown {
     let (mut rig, _) = DeviceRig::start(devices, 1e-3, [false; SIDES]).unwrap();
     let begin = Instant::now();

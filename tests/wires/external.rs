@@ -34,7 +34,7 @@ fn here(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(path)
 }
 
-/// The guide's rig, on free ports.
+/// Returns the guide's rig, on free ports.
 fn rig(ports: [u16; 3]) -> RigConfig {
     let guide = std::fs::read_to_string(here("docs/external-device.md")).unwrap();
     let (_, after) = guide.split_once("```toml\n").unwrap();

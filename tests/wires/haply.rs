@@ -26,7 +26,7 @@ const DEEP_M: f64 = 0.08;
 const SPEED_M_S: f64 = 0.02;
 const WAIT: Duration = Duration::from_secs(15);
 
-/// A hand that rests for two seconds and then moves down, held by a stiff spring.
+/// Returns a hand that rests for two seconds and then moves down, held by a stiff spring.
 fn pressing(felt: &HapticForce, begins: std::sync::Arc<std::sync::atomic::AtomicBool>) -> EmulatorThread {
     let mut body = felt.on_a_circle();
     let mut since_s = None;

@@ -42,7 +42,7 @@ fn the_loop_of_another_process() {
     std::thread::sleep(Duration::from_mins(1));
 }
 
-/// A rig that presses on tissue and holds still, so that the hand feels a steady force.
+/// Returns a rig that presses on tissue and holds still, so that the hand feels a steady force.
 fn pressing_rig(devices: RigSettings) -> RigConfig {
     let mut rig = RigConfig { devices: Some(devices), mode: Mode::Dfr, ..RigConfig::load("emulated").unwrap() };
     rig.gates.static_hold = true;

@@ -161,7 +161,7 @@ fn times() -> usize {
     std::env::var("NIMA_TIMES").ok().and_then(|times| times.parse().ok()).unwrap_or(1)
 }
 
-/// The emulated rig, its right arm, with the sensor at this location.
+/// Returns the emulated rig, its right arm, with the sensor at this location.
 fn emulated(folder: &Path, place: SensorPlace) -> (EmulatedRig, SimulationPlan) {
     let mut devices = at_tip(folder);
     devices = RigSettings { left: None, tissue_sensor: None, tracker: None, endoscope: None, pedal: None, ..devices };
@@ -294,7 +294,7 @@ impl Spoiler {
     }
 }
 
-/// The guide's rig, on these ports.
+/// Returns the guide's rig, on these ports.
 fn external(ports: [u16; 3], place: SensorPlace) -> SimulationPlan {
     let guide =
         std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/external-device.md")).unwrap();

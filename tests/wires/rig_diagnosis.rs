@@ -57,7 +57,7 @@ macro_rules! assert_reported {
     }};
 }
 
-/// Whether all are connected at their expected rates.
+/// Returns whether all are connected at their expected rates.
 fn all_well(found: &[DiscoveryDiagnosis]) -> bool {
     found.iter().all(|one| match &one.outcome {
         TestOutcome::Trouble { .. } => false,

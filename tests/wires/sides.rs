@@ -50,8 +50,8 @@ fn sets(devices: &mut RigSettings) -> [&mut ArmSet; 2] {
     [devices.right.as_mut().unwrap(), devices.left.as_mut().unwrap()]
 }
 
-/// The built-in rig on other ports, with a tissue sensor of the wrist sensors' generation; its trocars are next to each
-/// other.
+/// Returns the built-in rig on other ports, with a tissue sensor of the wrist sensors' generation; its trocars are next
+/// to each other.
 fn rig(folder: &Path) -> RigSettings {
     let mut devices = at_tip(folder);
     let tissue = devices.tissue_sensor.as_mut().unwrap().bota_mut().unwrap();

@@ -34,7 +34,7 @@ pub(super) struct Fixture {
 }
 
 impl Fixture {
-    /// The loop of these devices, idle, over the emulators of `rig`.
+    /// Creates the loop of these devices, idle, over the emulators of `rig`.
     pub(super) fn start(rig: EmulatedRig, devices: &RigSettings) -> Self {
         let config = RigConfig { devices: Some(devices.clone()), ..RigConfig::load("emulated").unwrap() };
         let scene = Scene::load("peg_transfer").unwrap();
@@ -80,7 +80,7 @@ impl Fixture {
         });
     }
 
-    /// Whether the loop's state has the instrument through its trocar.
+    /// Returns whether the loop's state has the instrument through its trocar.
     fn is_in_trocar(tick: &Tick) -> bool {
         tick.wrist.as_ref().is_some_and(|sample| sample.insertion_m.is_some_and(|depth_m| depth_m > 0.0))
     }

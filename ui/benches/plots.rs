@@ -66,7 +66,7 @@ fn frame_ms(ctx: &Context, number: usize, content: &mut dyn FnMut(&mut Ui)) -> f
     frame_ms
 }
 
-/// A frame of our panel, twice: three plots with two traces for each hand. Returns its time, ms.
+/// Returns a frame of our panel, twice: three plots with two traces for each hand. Returns its time, ms.
 fn ours() -> impl FnMut() -> f64 {
     let mut live = LiveState::new(RigConfig::load("simulated").unwrap(), Scene::load("bimanual").unwrap());
     let mut now_s = SECONDS;
@@ -91,7 +91,7 @@ fn ours() -> impl FnMut() -> f64 {
     }
 }
 
-/// A frame of the same twelve lines, with every sample given to the plots. Returns its time, ms.
+/// Returns a frame of the same twelve lines, with every sample given to the plots. Returns its time, ms.
 fn all_samples() -> impl FnMut() -> f64 {
     let count = (SECONDS * RATE_HZ) as u64;
     let lines: Vec<Vec<PlotPoint>> = (0..2 * CHANNELS)

@@ -28,7 +28,7 @@ pub(crate) enum ArmLocation {
     Elsewhere,
 }
 
-/// Whether the loop of this rig, loaded by this name or path, engages automatically.
+/// Returns whether the loop of this rig, loaded by this name or path, engages automatically.
 pub(crate) fn engages(starter: Starter, name: &str, rig: &RigConfig, arm: ArmLocation) -> bool {
     let may = match (starter, arm) {
         (Starter::Window, ArmLocation::Here) => BUILT_IN.contains(&name),

@@ -80,7 +80,7 @@ impl Emulators {
         Ok(())
     }
 
-    /// The simulated technician, who follows the screen.
+    /// Returns the simulated technician, who follows the screen.
     pub(crate) fn technician(&self) -> ScreenReader {
         let input = Arc::clone(&self.input);
         ScreenReader::new(move |screen| write(&input, &format!("screen {screen}")))

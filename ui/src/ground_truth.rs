@@ -21,9 +21,9 @@ pub(crate) trait TruthComparison: Debug {
     /// Adds the lines that the emulators reported since the last call, and compares all ticks that are now complete.
     fn receive(&mut self, report: &mut dyn Iterator<Item = String>);
 
-    /// The results for JSON output.
+    /// Returns the results for JSON output.
     fn figures(&self) -> Vec<serde_json::Value>;
 
-    /// The results as a table that starts with a line break; empty without results.
+    /// Returns the results as a table that starts with a line break; empty without results.
     fn as_text(&self) -> String;
 }

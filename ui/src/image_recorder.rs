@@ -26,7 +26,7 @@ impl RecordedImageSource for OfEndoscope {
     }
 }
 
-/// Whether the rig has an endoscope whose images are recorded.
+/// Returns whether the rig has an endoscope whose images are recorded.
 pub(crate) fn are_recorded(rig: &RigConfig) -> bool {
     rig.endoscope.as_ref().is_some_and(|endoscope| endoscope.record)
 }

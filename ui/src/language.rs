@@ -33,7 +33,7 @@ impl Language {
     /// Languages that a user can choose.
     pub const CHOICES: [Self; 2] = [Self::English, Self::German];
 
-    /// The language's own name.
+    /// Returns the language's own name.
     pub const fn name(self) -> &'static str {
         match self {
             Self::English => "English",
@@ -89,7 +89,7 @@ impl Text {
         Self { english, german }
     }
 
-    /// The text in the language of this thread.
+    /// Returns the text in the language of this thread.
     pub fn get(self) -> &'static str {
         match current() {
             Language::English => self.english,
@@ -105,7 +105,7 @@ impl fmt::Display for Text {
     }
 }
 
-/// A text that is used in one place, in the language of this thread.
+/// Returns a text that is used in one place, in the language of this thread.
 pub(crate) fn word(english: &'static str, german: &'static str) -> &'static str {
     Text::of(english, german).get()
 }
@@ -156,7 +156,7 @@ fn pseudo_line(line: &str) -> String {
     longer
 }
 
-/// A letter of similar look and width.
+/// Returns a letter of similar look and width.
 const fn accented(letter: char) -> char {
     match letter {
         'A' => '\u{c5}',

@@ -8,7 +8,8 @@ use nima_simulation::scene::Scene;
 
 /// Opens links to a machine with the arm.
 pub(crate) trait ArmLink: Sync {
-    /// Whether this host is this machine. An unresolved host counts as another machine; opening the link reports the error.
+    /// Returns whether this host is this machine. An unresolved host counts as another machine; opening the link
+    /// reports the error.
     fn is_loopback(&self, host: &str) -> bool;
 
     /// Opens the link to this host, and reduces the rig to the parts at this machine.
@@ -20,10 +21,10 @@ pub(crate) trait RemoteLine {
     /// Devices at this end.
     fn here(&self) -> RigEnds;
 
-    /// The handle for other threads.
+    /// Returns the handle for other threads.
     fn door(&self) -> Box<dyn LineConnection>;
 
-    /// The assembly with the other half of its rig at the other end.
+    /// Returns the assembly with the other half of its rig at the other end.
     fn join(self: Box<Self>, assembly: Assembly) -> Assembly;
 }
 
@@ -40,7 +41,7 @@ pub(crate) trait LineConnection: Debug + Send {
     /// Cause and remedy if no data pass.
     fn trouble(&self) -> Option<[String; 2]>;
 
-    /// Whether a message was received.
+    /// Returns whether a message was received.
     fn has_delivered(&self) -> bool;
 
     /// Cause and remedy of a request that waits for the operator.
@@ -49,7 +50,7 @@ pub(crate) trait LineConnection: Debug + Send {
     /// Names and values of the link statistics.
     fn rows(&self) -> Vec<[String; 2]>;
 
-    /// The link statistics for JSON output.
+    /// Returns the link statistics for JSON output.
     fn figures(&self) -> Option<serde_json::Value>;
 }
 

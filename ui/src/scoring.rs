@@ -7,6 +7,6 @@ use nima_machine::messages::Tick;
 pub(crate) trait RunScorer: Debug {
     fn tick(&mut self, tick: &Tick);
 
-    /// The score for JSON output; `None` if no arm was engaged.
+    /// Returns the score for JSON output; `None` if no arm was engaged.
     fn end(self: Box<Self>) -> Option<serde_json::Value>;
 }

@@ -123,13 +123,13 @@ impl Simulation {
         self.plan.rig.delay_s
     }
 
-    /// The active mode.
+    /// Returns the active mode.
     #[getter]
     fn mode(&self) -> &'static str {
         self.plan.rig.mode.name()
     }
 
-    /// Whether the instrument has jaws, whose opening is the last number of an action.
+    /// Returns whether the instrument has jaws, whose opening is the last number of an action.
     #[getter]
     fn has_jaws(&self) -> bool {
         self.has_jaws
@@ -170,7 +170,7 @@ impl Simulation {
         Ok((observation(py, &known)?, info(py, &known)?, known.tick.state == LoopState::Engaged))
     }
 
-    /// The score as JSON; `None` in a scene without a task, or after the first call.
+    /// Returns the score as JSON; `None` in a scene without a task, or after the first call.
     fn score(&mut self) -> PyResult<Option<String>> {
         let score = self.running.as_mut().and_then(SimulationRun::end);
         score.map(|score| serde_json::to_string(&score).map_err(value)).transpose()
@@ -204,7 +204,7 @@ fn array<'py>(py: Python<'py>, vector: &Vector3<f64>) -> Bound<'py, PyArray1<f64
     PyArray1::from_slice(py, vector.as_slice())
 }
 
-/// The information available to a controller at the leader.
+/// Returns the information available to a controller at the leader.
 fn observation<'py>(py: Python<'py>, known: &StepObservation) -> PyResult<Bound<'py, PyDict>> {
     let all = PyDict::new(py);
     let vectors = [

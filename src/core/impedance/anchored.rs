@@ -109,8 +109,8 @@ impl AnchoredModel {
         gain: 0.0,
     };
 
-    /// The force (N) for the motion now, from the force and the motion at the anchor. The force as it came where nothing is
-    /// corrected or the correction is not finite.
+    /// Returns the force (N) for the motion now, from the force and the motion at the anchor. The force as it came
+    /// where nothing is corrected or the correction is not finite.
     pub(super) fn force(&self, measured: Lanes, now: &Posture, then: &Posture) -> Lanes {
         if self.gain <= 0.0 {
             return measured;

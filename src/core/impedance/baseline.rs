@@ -25,7 +25,7 @@ impl Baseline {
     /// Every baseline.
     pub const ALL: [Self; 5] = [Self::ModelMediated, Self::Waves, Self::Passivity, Self::Kalman, Self::Autoregressive];
 
-    /// The name used on the command line, in files and on the screen.
+    /// Returns the name used on the command line, in files and on the screen.
     pub const fn name(self) -> &'static str {
         match self {
             Self::ModelMediated => "model_mediated",

@@ -156,7 +156,8 @@ impl Judge {
         }
     }
 
-    /// The weight of anchored rendering, 0 to 1; matched rendering has the rest, and everything until the first judgement.
+    /// Returns the weight of anchored rendering, 0 to 1; matched rendering has the rest, and everything until the first
+    /// judgement.
     const fn anchored(&self) -> Lanes {
         self.anchored
     }

@@ -138,7 +138,7 @@ fn sudden_loss(t: f64) -> (f64, f64) {
     (z, if t % 4.0 < 2.5 { -600.0 * z } else { 0.0 })
 }
 
-/// A handle held still against a force that wanders.
+/// Returns a handle held still against a force that wanders.
 fn held(t: f64) -> (f64, f64) {
     (-0.004, 2.0 + 0.3 * (1.1 * t).sin() + 0.2 * (2.7 * t + 1.0).sin())
 }

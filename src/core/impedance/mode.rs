@@ -139,7 +139,7 @@ impl Mode {
         }
     }
 
-    /// The method that it stands for; `None` for a baseline that this program does not have.
+    /// Returns the method that it stands for; `None` for a baseline that this program does not have.
     pub(super) fn entry(self) -> Option<Entry> {
         match self {
             Self::Baseline(baseline) => OTHERS.get().map(|entry| entry(baseline)),
@@ -147,7 +147,7 @@ impl Mode {
         }
     }
 
-    /// The modes whose forces it uses, which are computed with it.
+    /// Returns the modes whose forces it uses, which are computed with it.
     pub(super) const fn parts(self) -> &'static [Self] {
         match self.own() {
             Some(entry) => entry.parts,
@@ -182,7 +182,7 @@ impl Mode {
         }
     }
 
-    /// Whether its force is damped where the leader's own motion is that of the handle.
+    /// Returns whether its force is damped where the leader's own motion is that of the handle.
     pub(super) const fn is_damped(self) -> bool {
         matches!(self.own(), Some(Entry { is_damped: true, .. }))
     }

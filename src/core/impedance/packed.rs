@@ -152,7 +152,7 @@ impl PackedReader<'_> {
         first.is_finite().then(|| f64::from(*first))
     }
 
-    /// A whole number up to `max`.
+    /// Returns a whole number up to `max`.
     pub(super) fn count(&mut self, max: usize) -> Option<usize> {
         let number = self.take()?;
         let count = number as usize;
@@ -182,7 +182,7 @@ mod tests {
         Baseline, BaselineModel, HuntCrossleyContact, Identifier, ImpedanceSettings, Models, SLOTS, Sample, Wave,
     };
 
-    /// The last parcel of two seconds of pressing, with all modes and the model of one baseline.
+    /// Returns the last parcel of two seconds of pressing, with all modes and the model of one baseline.
     fn parcel(baseline: &BaselineModel) -> LinkPacket {
         let mut identifier =
             Identifier::new(&ImpedanceSettings { delay_s: 0.05, ..ImpedanceSettings::default() }).unwrap();

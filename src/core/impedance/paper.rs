@@ -103,7 +103,7 @@ impl LiteralModel {
         terms.fold(self.constant_n, |sum, (m, x)| sum + *m * *x)
     }
 
-    /// The same; `None` without a model or where the product is not finite.
+    /// Returns the same; `None` without a model or where the product is not finite.
     pub(super) fn force(&self, x: &ImpedanceFeatures) -> Option<Lanes> {
         let force = self.product(x);
         (self.degree > 0 && force.is_finite()).then_some(force)

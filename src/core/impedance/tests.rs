@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 
 use super::*;
 
-/// A palpation-like motion with contact, in three axes, deterministic.
+/// Returns a palpation-like motion with contact, in three axes, deterministic.
 pub(super) fn sample(k: usize, rate_hz: f64) -> Sample {
     let t = k as f64 / rate_hz;
     let x = Vector3::new(

@@ -55,7 +55,7 @@ pub struct MotionMapping {
 }
 
 impl Default for MotionMapping {
-    /// The leader's axes coincide with the workspace axes; scale 1.
+    /// Creates the leader's axes coincide with the workspace axes; scale 1.
     fn default() -> Self {
         Self { world_from_leader: UnitQuaternion::identity(), scale: 1.0 }
     }
@@ -216,7 +216,7 @@ mod tests {
         }
     }
 
-    /// The endoscope looks straight down; the right of its image is the base's -y.
+    /// Returns the endoscope looks straight down; the right of its image is the base's -y.
     fn looking_down() -> UnitQuaternion<f64> {
         let columns = [-Vector3::y(), -Vector3::x(), -Vector3::z()];
         UnitQuaternion::from_rotation_matrix(&Rotation3::from_basis_unchecked(&columns))

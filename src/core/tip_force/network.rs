@@ -192,7 +192,7 @@ mod tests {
         Member::new(layers, skip).unwrap()
     }
 
-    /// The same function, written in the simplest way in f64.
+    /// Returns the same function, written in the simplest way in f64.
     fn reference(member: &Member, inputs: &[f64]) -> Vec<f64> {
         let times = |layer: &TipForceLayer, inputs: &[f64]| -> Vec<f64> {
             let (n, m) = layer.shape();

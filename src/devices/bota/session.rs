@@ -19,7 +19,7 @@ pub struct BotaTimeouts {
 }
 
 impl Default for BotaTimeouts {
-    /// The times of the manufacturer's driver: 3 s for the start, 1 s for an answer.
+    /// Creates the times of the manufacturer's driver: 3 s for the start, 1 s for an answer.
     fn default() -> Self {
         Self {
             boot: Duration::from_secs(3),

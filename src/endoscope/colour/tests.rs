@@ -28,7 +28,7 @@ fn bars() -> Vec<u8> {
     (0..SIZE_PX[1]).flat_map(|y| (0..SIZE_PX[0]).flat_map(move |x| colour(x / 2 * 2, y / 2 * 2))).collect()
 }
 
-/// The same image in another layout, with padded rows.
+/// Returns the same image in another layout, with padded rows.
 fn packed(i420: &[u8], layout: PixelLayout, [width, height]: [usize; 2], gap: usize) -> (Vec<u8>, usize) {
     let half = width.div_ceil(2);
     let (y, colours) = i420.split_at(width * height);
@@ -64,7 +64,7 @@ fn packed(i420: &[u8], layout: PixelLayout, [width, height]: [usize; 2], gap: us
     (bytes, stride)
 }
 
-/// The formulas of the standards in double precision for one pixel, independent of the tested code.
+/// Returns the formulas of the standards in double precision for one pixel, independent of the tested code.
 fn reference([y, u, v]: [u8; 3], colours: Colours) -> [f64; 3] {
     let [y, u, v] = [y, u, v].map(f64::from);
     let (y, u, v) = match colours.range {

@@ -139,7 +139,7 @@ impl EndoscopeFeed {
         *locked(&self.shared.tone) = tone;
     }
 
-    /// Whether the images can go into a reel, which accepts only compressed ones.
+    /// Returns whether the images can go into a reel, which accepts only compressed ones.
     pub fn is_recordable(&self) -> bool {
         !matches!(locked(&self.shared.state).format, Some(Format::Raw(_)))
     }
@@ -187,7 +187,7 @@ impl FeedState {
 }
 
 impl FeedState {
-    /// Whether an image must be decoded now.
+    /// Returns whether an image must be decoded now.
     fn wants(&self, now: Instant) -> bool {
         let within = |at: Option<Instant>, time| at.is_some_and(|at| now.saturating_duration_since(at) < time);
         self.is_still || within(self.looked, LOOKED) || !within(self.decoded, UNSEEN)

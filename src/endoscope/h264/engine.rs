@@ -180,7 +180,7 @@ impl H264Encoder {
     }
 }
 
-/// The same quality for every frame.
+/// Returns the same quality for every frame.
 fn config(rate_hz: f64) -> EncoderConfig {
     EncoderConfig::new()
         .skip_frames(false)

@@ -3,7 +3,7 @@ use nima_testing::fuzz;
 use super::*;
 use crate::{CompressedFrame, Damage, Format, jpeg::tests::pattern};
 
-/// A few moving images.
+/// Returns a few moving images.
 fn stream(size_px: [usize; 2], count: usize) -> Vec<Vec<u8>> {
     let mut encoder = H264Encoder::new(30.0).unwrap();
     let image = |number: usize| {

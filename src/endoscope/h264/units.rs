@@ -28,7 +28,7 @@ pub fn nal_units(unit: &[u8]) -> impl Iterator<Item = &[u8]> {
     .filter(|nal| !nal.is_empty())
 }
 
-/// Whether a decoder can begin with this frame.
+/// Returns whether a decoder can begin with this frame.
 pub fn is_key(unit: &[u8]) -> bool {
     nal_units(unit).any(|nal| kind(nal) == KEY)
 }

@@ -211,7 +211,7 @@ impl HttpAnswer {
     }
 }
 
-/// A content type from the other end, shortened for a message.
+/// Returns a content type from the other end, shortened for a message.
 fn short(kind: &str) -> String {
     kind.chars().filter(char::is_ascii_graphic).take(60).collect()
 }

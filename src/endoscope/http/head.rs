@@ -23,7 +23,7 @@ pub(super) struct HttpHead {
 }
 
 impl HttpHead {
-    /// The head of an answer and its length in bytes; `None` before all of it is there.
+    /// Returns the head of an answer and its length in bytes; `None` before all of it is there.
     pub(super) fn read(bytes: &[u8]) -> Result<Option<(Self, usize)>, HttpFault> {
         let mut lines = [EMPTY_HEADER; LINES_MOST];
         let mut response = Response::new(&mut lines);
@@ -45,7 +45,7 @@ impl HttpHead {
         }
     }
 
-    /// The head of a part, from behind its boundary.
+    /// Returns the head of a part, from behind its boundary.
     pub(super) fn read_part(bytes: &[u8]) -> Result<Option<(Self, usize)>, HttpFault> {
         let end = bytes.len().min(HEAD_MAX + 1);
         let found = Self::read(&[PART, &bytes[..end]].concat())?;

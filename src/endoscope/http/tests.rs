@@ -176,7 +176,7 @@ fn endpoint(port: u16) -> Endpoint {
     Endpoint { host: "127.0.0.1".to_owned(), port, path: "/a?b".to_owned(), login: None }
 }
 
-/// A camera that answers one client in this way.
+/// Returns a camera that answers one client in this way.
 fn camera(act: impl FnOnce(TcpStream) + Send + 'static) -> u16 {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let port = listener.local_addr().unwrap().port();
@@ -186,7 +186,7 @@ fn camera(act: impl FnOnce(TcpStream) + Send + 'static) -> u16 {
     port
 }
 
-/// The next client and its request.
+/// Returns the next client and its request.
 fn asked(listener: &TcpListener) -> (TcpStream, String) {
     let (mut stream, _) = listener.accept().unwrap();
     let mut request = [0; 1000];

@@ -62,7 +62,7 @@ impl std::fmt::Debug for DecodedImage {
 }
 
 impl DecodedImage {
-    /// Whether the image is black.
+    /// Returns whether the image is black.
     pub fn is_black(&self) -> bool {
         let brightness = |pixel: &[u8]| pixel[..3].iter().map(|&value| u32::from(value)).max().unwrap_or(0);
         let mut sum = 0;

@@ -57,8 +57,8 @@ pub(crate) fn open(endpoint: &Endpoint) -> Result<Box<dyn ImageSource>, Endoscop
     guarded(&endpoint.place(), || begin(endpoint))
 }
 
-/// The client panics on some malformed responses, mostly in its parser of descriptions and in code that relies on it.
-/// Turns a panic into an error of the request, so that the thread survives.
+/// Returns the client panics on some malformed responses, mostly in its parser of descriptions and in code that relies
+/// on it. Turns a panic into an error of the request, so that the thread survives.
 fn guarded<T>(place: &str, work: impl FnOnce() -> Result<T, EndoscopeError>) -> Result<T, EndoscopeError> {
     catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|_| {
         let reason = "a response that cannot be parsed".to_owned();

@@ -19,8 +19,8 @@ fn endpoint(port: u16) -> Endpoint {
     Endpoint { host: "127.0.0.1".to_owned(), port, path: "/s".to_owned(), login: None }
 }
 
-/// A camera's responses to DESCRIBE, SETUP and PLAY; `N` is replaced by the number of the request. Some images and a
-/// report follow the last response.
+/// Returns a camera's responses to DESCRIBE, SETUP and PLAY; `N` is replaced by the number of the request. Some images
+/// and a report follow the last response.
 fn answers(encoding: &str) -> [Vec<u8>; 3] {
     let body = format!(
         "v=0\r\no=- 0 0 IN IP4 127.0.0.1\r\ns=x\r\nt=0 0\r\na=control:*\r\nm=audio 0 RTP/AVP 0\r\na=control:a\r\nm=video 0 RTP/AVP 96\r\n\

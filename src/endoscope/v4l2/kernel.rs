@@ -23,7 +23,7 @@ pub(super) trait Kernel: Send {
     fn copy(&self, buffer: usize, length: usize) -> Vec<u8>;
     /// Waits until data are available, at most this long.
     fn wait(&mut self, longest: Duration) -> Result<()>;
-    /// The monotonic clock, which the driver uses for its time stamps.
+    /// Returns the monotonic clock, which the driver uses for its time stamps.
     fn now(&self) -> Duration;
 }
 

@@ -72,7 +72,7 @@ fn name_of(pixels: u32) -> String {
 }
 
 impl Pixels {
-    /// The driver's names: motion JPEG has two.
+    /// Returns the driver's names: motion JPEG has two.
     const fn names(self) -> &'static [&'static [u8; 4]] {
         match self {
             Self::Mjpeg => &[b"MJPG", b"JPEG"],

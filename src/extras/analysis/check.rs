@@ -34,7 +34,7 @@ pub(crate) fn as_many(what: &str, found: usize, with: &'static str, expected: us
     }
 }
 
-/// Whether the values differ.
+/// Returns whether the values differ.
 pub(crate) fn varies(values: &[f64]) -> bool {
     values.windows(2).any(|two| (two[0] - two[1]).abs() > 0.0)
 }

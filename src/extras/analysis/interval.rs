@@ -15,7 +15,7 @@ pub struct ConfidenceInterval {
 }
 
 impl ConfidenceInterval {
-    /// Whether it contains `value`.
+    /// Returns whether it contains `value`.
     pub fn contains(&self, value: f64) -> bool {
         self.lower <= value && value <= self.upper
     }
@@ -48,8 +48,8 @@ pub(crate) fn exact(sorted: &[f64], masses: &[f64], confidence: f64) -> Confiden
     between(sorted, k, 1.0 - 2.0 * below)
 }
 
-/// The same for large samples, with the statistic's mean and standard deviation (Hollander & Wolfe, Nonparametric Statistical Methods, 1999,
-/// equations 3.41 and 4.37).
+/// Returns the same for large samples, with the statistic's mean and standard deviation (Hollander & Wolfe,
+/// Nonparametric Statistical Methods, 1999, equations 3.41 and 4.37).
 pub(crate) fn approximate(sorted: &[f64], mean: f64, sd: f64, confidence: f64) -> ConfidenceInterval {
     let k = mean - normal_quantile(f64::midpoint(1.0, confidence)) * sd;
     between(sorted, k.max(1.0) as usize, confidence)

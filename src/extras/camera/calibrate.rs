@@ -43,13 +43,13 @@ const STEPS: usize = 60;
 /// A term is kept if it reduces the error on held-out views by this fraction.
 const PAYS: f64 = 0.01;
 
-/// Whether a view is too blurred for an image of this width, px.
+/// Returns whether a view is too blurred for an image of this width, px.
 pub(crate) fn is_blurred(blur_px: f64, width_px: usize) -> bool {
     let is_sharp = blur_px <= BLUR * width_px as f64;
     !is_sharp
 }
 
-/// Whether the board is at the same place in both views.
+/// Returns whether the board is at the same place in both views.
 pub(crate) fn is_same_place(one: &BoardSight, other: &BoardSight, width_px: usize) -> bool {
     one.mean_move_px(other) < SAME * width_px as f64
 }

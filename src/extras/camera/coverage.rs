@@ -69,7 +69,7 @@ impl CameraCoverage {
         if lit == 0 { 0.0 } else { seen as f64 / lit as f64 }
     }
 
-    /// Whether it is lit, or a corner was seen there.
+    /// Returns whether it is lit, or a corner was seen there.
     const fn is_wanted(&self, at: usize) -> bool {
         self.lit[at] || self.corners[at] > 0
     }

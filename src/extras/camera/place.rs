@@ -158,7 +158,7 @@ pub fn place(
     })
 }
 
-/// The rigid motion that takes points to others best (Kabsch 1976); points on one line do not determine it.
+/// Returns the rigid motion that takes points to others best (Kabsch 1976); points on one line do not determine it.
 fn rigid(from: &[Vector3<f64>], to: &[Vector3<f64>]) -> Option<Isometry3<f64>> {
     let count = from.len().min(to.len()).max(1) as f64;
     let [a, b] = [from, to].map(|points| points.iter().sum::<Vector3<f64>>() / count);

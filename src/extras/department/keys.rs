@@ -30,12 +30,12 @@ pub(crate) fn moments(rig: &str) -> String {
     format!("nima/moments/{rig}")
 }
 
-/// The beginning of its session that is no longer in the stored bundles.
+/// Returns the beginning of its session that is no longer in the stored bundles.
 pub(crate) fn head(rig: &str) -> String {
     format!("nima/head/{rig}")
 }
 
-/// A bundle of its session.
+/// Returns a bundle of its session.
 pub(crate) fn bundle(rig: &str, number: u64) -> String {
     format!("nima/session/{rig}/{number}")
 }

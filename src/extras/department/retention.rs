@@ -19,7 +19,7 @@ pub(crate) struct RetainedSession {
 }
 
 impl RetainedSession {
-    /// The beginning of a session.
+    /// Creates the beginning of a session.
     pub(crate) const fn new(head: SessionHead) -> Self {
         Self { head, bundles: VecDeque::new(), bytes: 0, max_bytes: MAX_BYTES }
     }

@@ -70,7 +70,7 @@ impl LiveServer {
     }
 }
 
-/// The library's form of an address.
+/// Returns the library's form of an address.
 fn host(ip: IpAddr) -> String {
     match ip {
         IpAddr::V4(ip) => ip.to_string(),

@@ -160,7 +160,7 @@ impl NetworkKeys {
         Some(Self { private, public })
     }
 
-    /// The public half.
+    /// Returns the public half.
     pub const fn public(&self) -> PublicKey {
         self.public
     }

@@ -126,7 +126,7 @@ pub struct PendingPairing {
 }
 
 impl PendingPairing {
-    /// The code to show here, which must be entered on the other machine.
+    /// Returns the code to show here, which must be entered on the other machine.
     pub const fn code(&self) -> Code {
         self.shown
     }
@@ -229,7 +229,7 @@ pub struct Pairing<'a> {
 }
 
 impl Pairing<'_> {
-    /// The console's side: asks the follower at this address.
+    /// Returns the console's side: asks the follower at this address.
     ///
     /// # Errors
     /// [`PairingError`] if there is no answer, or too many wrong codes were entered before.
@@ -275,8 +275,8 @@ impl Pairing<'_> {
         Err(PairingError::Nobody)
     }
 
-    /// The follower's side: listens at this address. The first console that reveals its commitment is accepted; others
-    /// are then ignored.
+    /// Returns the follower's side: listens at this address. The first console that reveals its commitment is accepted;
+    /// others are then ignored.
     ///
     /// # Errors
     /// [`PairingError`] if no console asks, or too many wrong codes were entered before.

@@ -8,12 +8,12 @@ use crate::{
 
 const WAIT: Duration = Duration::from_secs(10);
 
-/// An address whose port was free a moment ago.
+/// Returns an address whose port was free a moment ago.
 fn free_address() -> SocketAddr {
     UdpSocket::bind((Ipv4Addr::LOCALHOST, 0)).unwrap().local_addr().unwrap()
 }
 
-/// A pairing of a machine without earlier wrong codes.
+/// Returns a pairing of a machine without earlier wrong codes.
 fn offered(keys: &NetworkKeys, at: SocketAddr, called_off: &AtomicBool) -> Result<PendingPairing, PairingError> {
     Pairing { keys, attempts: &mut Attempts::default(), wait: WAIT, called_off }.offer(at)
 }

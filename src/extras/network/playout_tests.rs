@@ -27,7 +27,7 @@ fn run(playout: &mut Playout, from: u64, count: u64, delay_s: impl Fn(u64) -> Op
     got
 }
 
-/// A pseudo-random delay between 0 and 5 ms.
+/// Returns a pseudo-random delay between 0 and 5 ms.
 fn scattered_s(i: u64) -> f64 {
     (i.wrapping_mul(2_654_435_761) % 1000) as f64 * 5e-6
 }

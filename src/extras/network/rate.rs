@@ -13,7 +13,7 @@ pub struct RateBucket {
 }
 
 impl RateBucket {
-    /// A full bucket that fills at this rate per second and has this capacity.
+    /// Creates a full bucket that fills at this rate per second and has this capacity.
     pub const fn new(per_s: f64, room: f64) -> Self {
         Self { per_s, room, level: room, filled_s: None }
     }

@@ -378,7 +378,7 @@ impl NetworkStream {
         self.newest.map(|(_, came_s)| came_s)
     }
 
-    /// The clock of the other side.
+    /// Returns the clock of the other side.
     pub const fn clock(&self) -> &NetworkClock {
         &self.clock
     }

@@ -152,7 +152,7 @@ pub const fn whole(near: u64, low: u32) -> u64 {
     near.saturating_add_signed(ahead as i64)
 }
 
-/// The same for numbers of which the lower 24 bits are sent.
+/// Returns the same for numbers of which the lower 24 bits are sent.
 pub const fn whole24(near: u64, low: u32) -> u64 {
     let ahead = (low.wrapping_sub(near as u32) << 8).cast_signed() >> 8;
     near.saturating_add_signed(ahead as i64)

@@ -86,12 +86,12 @@ impl Guidance {
         self.shown
     }
 
-    /// Whether the result of the newest trial is shown.
+    /// Returns whether the result of the newest trial is shown.
     pub fn is_shown(&self) -> bool {
         self.shown
     }
 
-    /// The fraction of the trials whose results are shown, at the current skill.
+    /// Returns the fraction of the trials whose results are shown, at the current skill.
     pub fn frequency(&self) -> f64 {
         match self.feedback {
             FeedbackSchedule::Always => 1.0,

@@ -88,7 +88,7 @@ impl LearningCurve {
     }
 }
 
-/// The remaining fraction of the gain in trial `n`.
+/// Returns the remaining fraction of the gain in trial `n`.
 fn decay(shape: CurveShape, rate: f64, n: f64) -> f64 {
     match shape {
         CurveShape::Exponential => libm::exp(-(n - 1.0) / rate),

@@ -42,7 +42,7 @@ pub struct Scorer {
 }
 
 impl Scorer {
-    /// A scorer for one trial of this task.
+    /// Creates a scorer for one trial of this task.
     pub fn new(task: &TaskFile) -> Self {
         Self {
             task: task.clone(),

@@ -13,7 +13,7 @@ const MOVED_M_PER_S: f64 = 0.005;
 /// Minimum number of points of a judged segment: 0.2 s.
 const MIN_POINTS: usize = 21;
 
-/// Whether there is a movement to judge.
+/// Returns whether there is a movement to judge.
 fn judged(speed: &[f64]) -> bool {
     speed.len() >= MIN_POINTS && peak(std::iter::once(speed)).is_some_and(|peak| peak >= MOVED_M_PER_S)
 }

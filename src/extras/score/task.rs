@@ -87,7 +87,8 @@ impl Default for TaskCriterion {
 }
 
 impl TaskCriterion {
-    /// Whether a trial meets it: by its completion time (s; `None` if it was not completed) and its drops out of view.
+    /// Returns whether a trial meets it: by its completion time (s; `None` if it was not completed) and its drops out
+    /// of view.
     pub fn is_met(&self, completion_time_s: Option<f64>, drops_out_of_view: u32) -> bool {
         completion_time_s.is_some_and(|time_s| time_s <= self.time_s) && drops_out_of_view <= self.drops_out_of_view
     }
@@ -150,7 +151,7 @@ impl TaskFile {
         positive("proficiency.max_trials", f64::from(max_trials), 1e4, "from 1 to 10000")
     }
 
-    /// The time limit, s, also for a task that was never checked: a trial is always bounded.
+    /// Returns the time limit, s, also for a task that was never checked: a trial is always bounded.
     pub(crate) fn limit_s(&self) -> f64 {
         if self.time_limit_s > 0.0 { self.time_limit_s.min(LONGEST_TRIAL_S) } else { time_limit_s() }
     }

@@ -96,7 +96,7 @@ impl<'a> TipMotion<'a> {
         longest.map_or([None; 2], |stretch| smoothness(&stretch.speed, &stretch.jerk))
     }
 
-    /// The same, as means over the movements: segments of at least 0.3 s in which the hand is not idle.
+    /// Returns the same, as means over the movements: segments of at least 0.3 s in which the hand is not idle.
     pub(crate) fn smoothness_of_movements(&self) -> [Option<f64>; 2] {
         let mut sums = [(0.0, 0_u32); 2];
         for stretch in &self.stretches {

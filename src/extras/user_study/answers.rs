@@ -101,7 +101,7 @@ impl QuestionnaireAnswers {
         answers.check().map(|()| answers)
     }
 
-    /// The questionnaire that they belong to.
+    /// Returns the questionnaire that they belong to.
     pub const fn questionnaire(&self) -> Questionnaire {
         match self {
             Self::NasaTlx(_) => Questionnaire::NasaTlx,

@@ -71,7 +71,7 @@ impl Condition {
         wrong
     }
 
-    /// Whether the hand would feel the same.
+    /// Returns whether the hand would feel the same.
     pub(crate) fn feels_like(&self, other: &Self) -> bool {
         let of =
             |one: &Self| (one.no_force, one.mode, one.gain.unwrap_or(1.0), one.delay_ms.unwrap_or(0.0), one.own_motion);

@@ -161,7 +161,7 @@ const fn three() -> u32 {
     3
 }
 
-/// Whether there is such a measure: `completion_time_s`, `peak_force_n_right`.
+/// Returns whether there is such a measure: `completion_time_s`, `peak_force_n_right`.
 pub(crate) fn is_measure(key: &str) -> bool {
     measure_keys().any(|known| known == key)
 }
@@ -287,7 +287,7 @@ impl StudyFile {
         }
     }
 
-    /// The criterion by which skill is judged: that of practice, or that of the study's task.
+    /// Returns the criterion by which skill is judged: that of practice, or that of the study's task.
     pub(crate) fn skill(&self) -> Option<TaskCriterion> {
         let practised = self.practice.as_ref().map(|practice| practice.criterion);
         practised.or_else(|| self.task.as_ref().map(|task| task.proficiency))
@@ -319,7 +319,7 @@ impl StudyFile {
         }
     }
 
-    /// A name that all users read must not reveal a condition or a number.
+    /// Returns a name that all users read must not reveal a condition or a number.
     fn reported_by_name(&self) -> Option<String> {
         let words = |text: &str| format!(" {} ", split(text).join(" "));
         let name = words(&self.name);

@@ -78,8 +78,8 @@ impl ParticipantProgress {
         self.open.map(|(trial, _)| trial)
     }
 
-    /// Whether the participant may be shown the result of the last finished trial: it follows from the rule of the
-    /// study and this participant's trials, including practice.
+    /// Returns whether the participant may be shown the result of the last finished trial: it follows from the rule of
+    /// the study and this participant's trials, including practice.
     pub fn shows_result(&self) -> bool {
         self.guidance.as_ref().is_none_or(Guidance::is_shown)
     }

@@ -56,12 +56,12 @@ impl Assignment {
         self.labels.iter().map(|(label, name)| (*label, name.as_str()))
     }
 
-    /// The condition with which the others are compared.
+    /// Returns the condition with which the others are compared.
     pub fn reference(&self) -> Option<&str> {
         self.reference.as_deref()
     }
 
-    /// The condition of practice, if it is always the same.
+    /// Returns the condition of practice, if it is always the same.
     pub(crate) fn practice(&self) -> Option<&Condition> {
         self.named(self.practice.as_ref()?)
     }

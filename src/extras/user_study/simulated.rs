@@ -39,7 +39,7 @@ pub struct SimulatedHand {
     pub seed: u64,
 }
 
-/// An approximately standard normal number: the sum of twelve uniform ones.
+/// Returns an approximately standard normal number: the sum of twelve uniform ones.
 fn normal(rng: &mut Rng) -> f64 {
     (0..12).map(|_| rng.f64()).sum::<f64>() - 6.0
 }
@@ -49,7 +49,7 @@ fn between(rng: &mut Rng, from: f64, to: f64) -> f64 {
 }
 
 impl SimulatedParticipant {
-    /// The participant with this number, from 0.
+    /// Creates the participant with this number, from 0.
     pub fn new(seed: u64, number: u64) -> Self {
         let seed = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15).wrapping_add(number);
         let mut rng = Rng::with_seed(seed);

@@ -67,7 +67,7 @@ impl StudyState {
         self.participants.get(participant)
     }
 
-    /// Whether conditions may be shown.
+    /// Returns whether conditions may be shown.
     pub fn is_open(&self, plan: &StudyPlan) -> bool {
         !plan.blind || self.unblinding.is_some()
     }
@@ -77,7 +77,7 @@ impl StudyState {
         self.participants.values().flat_map(|one| &one.trials).filter(|made| made.measures.is_some()).count()
     }
 
-    /// Whether parts of it were done by simulated people.
+    /// Returns whether parts of it were done by simulated people.
     pub fn is_simulated(&self) -> bool {
         let simulated = |one: &ParticipantProgress| {
             one.trials.iter().any(|made| made.simulated) || one.answers.iter().any(|given| given.2)

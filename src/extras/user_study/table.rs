@@ -29,7 +29,7 @@ struct StudyTableRow<'a> {
     values: TrialMeasures,
 }
 
-/// The name of a condition if it may be shown, otherwise its label. Names contain no commas and no quotes.
+/// Returns the name of a condition if it may be shown, otherwise its label. Names contain no commas and no quotes.
 fn shown(label: Label, opened: Option<&Assignment>) -> String {
     let named = opened.and_then(|opened| opened.condition(label));
     named.map_or_else(|| label.to_string(), |condition| condition.name.clone())

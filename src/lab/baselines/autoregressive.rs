@@ -40,7 +40,7 @@ pub(crate) struct Autoregressive {
 }
 
 impl Autoregressive {
-    /// The columns as they were `ago` ticks ago.
+    /// Returns the columns as they were `ago` ticks ago.
     fn columns(&self, ago: usize) -> Option<[Lanes; COLUMNS]> {
         let mut columns = [Lanes([1.0, 1.0, 1.0, 0.0]); COLUMNS];
         let mut later = *self.past.get(ago)?;

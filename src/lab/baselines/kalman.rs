@@ -19,7 +19,7 @@ use crate::BaselineSender;
 const LASTING_S: f64 = 0.005;
 const BANDWIDTH_HZ: f64 = 100.0;
 
-/// The force that this state leads to after a time.
+/// Returns the force that this state leads to after a time.
 pub(crate) fn extrapolated(force_n: Lanes, rate_n_s: Lanes, age_s: f64) -> Lanes {
     force_n - rate_n_s * (LASTING_S * libm::expm1(-age_s / LASTING_S))
 }

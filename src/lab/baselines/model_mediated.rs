@@ -47,7 +47,7 @@ const NONE: HuntCrossleyContact = HuntCrossleyContact {
     bounds_n: [Lanes::ZERO; 2],
 };
 
-/// The force (N) of a contact for a motion.
+/// Returns the force (N) of a contact for a motion.
 pub(crate) fn force(contact: &HuntCrossleyContact, own: &Motion) -> Lanes {
     let force_n = dot(&contact.parameters, &columns(contact, own));
     let [low, high] = contact.bounds_n;

@@ -26,7 +26,7 @@ pub(crate) struct Rls<const N: usize> {
 }
 
 impl<const N: usize> Rls<N> {
-    /// A memory (s), and a ridge in seconds of typical columns that say "as before".
+    /// Creates a memory (s), and a ridge in seconds of typical columns that say "as before".
     pub(crate) fn new(memory_s: f64, ridge_s: f64, rate_hz: f64) -> Self {
         Self {
             kept: kept(memory_s, rate_hz),
@@ -63,7 +63,7 @@ impl<const N: usize> Rls<N> {
         }
     }
 
-    /// The parameters, shrunk towards `prior`; that itself where nothing is known.
+    /// Returns the parameters, shrunk towards `prior`; that itself where nothing is known.
     pub(crate) fn solve(&self, prior: &[Lanes; N]) -> [Lanes; N] {
         let mut factor = [[Lanes::ZERO; N]; N];
         let mut inverse = [Lanes::ZERO; N];

@@ -23,7 +23,7 @@ const FRACTION: f64 = 0.4;
 /// Memory of the sums, and of the mean force (s).
 const MEMORY_S: f64 = 20.0;
 
-/// The force (N) of a returning wave, decoded with the leader's own velocity.
+/// Returns the force (N) of a returning wave, decoded with the leader's own velocity.
 pub(crate) fn decoded(wave: &Wave, own: &Motion) -> Lanes {
     let b = wave.impedance_n_s_m;
     wave.returning * (b * 2.0).sqrt() - own.v * b

@@ -54,8 +54,8 @@ pub trait Findings: Serialize {
     /// Text for a terminal; in Markdown if it is also written to a file.
     fn text(&self) -> String;
 
-    /// The files in addition to the JSON: the ending of each name (`.md`, `-errors.svg`), and its contents. By default
-    /// the text.
+    /// Returns the files in addition to the JSON: the ending of each name (`.md`, `-errors.svg`), and its contents. By
+    /// default the text.
     fn files(&self) -> Vec<(String, String)> {
         vec![(".md".to_owned(), self.text())]
     }

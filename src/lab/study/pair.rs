@@ -68,7 +68,7 @@ impl PairGrip {
     /// As in the scenes.
     pub(super) const FIRM: Self = Self { kg: 0.35, n_m: 900.0, n_s_m: 18.0 };
 
-    /// A grip of this stiffness (N/m) with the same damping ratio.
+    /// Creates a grip of this stiffness (N/m) with the same damping ratio.
     pub(super) fn of_stiffness(n_m: f64) -> Self {
         let Self { kg, n_m: firm_n_m, n_s_m } = Self::FIRM;
         Self { kg, n_m, n_s_m: n_s_m * (n_m / firm_n_m).sqrt() }

@@ -118,7 +118,7 @@ impl Reference {
     }
 }
 
-/// A finite f64, exactly.
+/// Returns a finite f64, exactly.
 fn big(value: f64) -> Option<Big> {
     if !value.is_finite() {
         return None;

@@ -62,8 +62,8 @@ impl LeastSquaresSolver {
         }
     }
 
-    /// Whether the columns are the paper's (increments in SI units, no constant) or this project's (positions, scaled,
-    /// a constant).
+    /// Returns whether the columns are the paper's (increments in SI units, no constant) or this project's (positions,
+    /// scaled, a constant).
     pub const fn is_paper(self) -> bool {
         matches!(self, Self::LiteralF32 | Self::LiteralF64 | Self::PseudoInverse)
     }
@@ -72,7 +72,7 @@ impl LeastSquaresSolver {
         if self.is_paper() { 3 * degree } else { 1 + 3 * degree }
     }
 
-    /// The columns of `row` for `degree`; the unused entries are zero.
+    /// Returns the columns of `row` for `degree`; the unused entries are zero.
     pub fn columns(self, row: &SolverRow, degree: usize, scales: &Scales) -> [f64; MAX_COLUMNS] {
         const SI: Scales = Scales { position_m: 1.0, velocity_m_s: 1.0, acceleration_m_s2: 1.0, force_n: 1.0 };
         let [x, v, a] = if self.is_paper() { row.increment } else { row.position }.map(Lanes::splat);
@@ -196,7 +196,7 @@ pub struct SlidingSolver {
 }
 
 impl SlidingSolver {
-    /// A window of `2 * block` rows.
+    /// Creates a window of `2 * block` rows.
     pub fn new(block: usize, max_degree: usize, scales: Scales, ridge: f64) -> Self {
         let max_degree = max_degree.clamp(1, MAX_DEGREE);
         let columns = LeastSquaresSolver::Sliding.unknowns(max_degree);
@@ -285,7 +285,7 @@ fn fresh_qr(x: DMatrix<f64>, f: &DVector<f64>, max_degree: usize) -> [Option<Vec
 mod tests {
     use super::*;
 
-    /// A motion that excites every column.
+    /// Returns a motion that excites every column.
     fn rows(count: usize) -> Vec<SolverRow> {
         (0..count)
             .map(|k| {

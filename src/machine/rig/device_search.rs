@@ -209,7 +209,8 @@ fn arms(part: RigPart, devices: &RigSettings, place: &str) -> Vec<SearchScope> {
     vec![SearchScope { place: place.to_owned(), serial: None, changes, probe: probes::arm(part.name(), settings) }]
 }
 
-/// A port that the system calls a modem is a sensor of the second generation; an adapter may carry either generation.
+/// Returns a port that the system calls a modem is a sensor of the second generation; an adapter may carry either
+/// generation.
 fn sensors(ports: &Ports) -> Vec<SearchScope> {
     use bota::Transport::{Gen0, GenA, Socket};
     let trial = |place: &str, transport, name: &str| {

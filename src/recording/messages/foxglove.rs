@@ -28,7 +28,7 @@ pub fn encoding<M: Encode>() -> Encoding {
     }
 }
 
-/// The moment this many nanoseconds after 1970, up to the year 2106.
+/// Returns the moment this many nanoseconds after 1970, up to the year 2106.
 pub fn timestamp(ns: u64) -> Timestamp {
     let second = 1_000_000_000;
     Timestamp::new(u32::try_from(ns / second).unwrap_or(u32::MAX), (ns % second) as u32)

@@ -38,7 +38,7 @@ impl RecordingChunk {
         Self::of(LZ4)
     }
 
-    /// A chunk for data that are compressed already.
+    /// Creates a chunk for data that are compressed already.
     pub(super) const fn plain() -> Self {
         Self::of(PLAIN)
     }

@@ -17,7 +17,7 @@ pub(super) struct RecordingSummary {
 }
 
 impl RecordingSummary {
-    /// The kinds kept here, in their order in the file; the indexes of chunks follow them.
+    /// Returns the kinds kept here, in their order in the file; the indexes of chunks follow them.
     pub(super) fn groups(&self) -> [(u8, &[u8]); 4] {
         [
             (kind::SCHEMA, &self.schemas),

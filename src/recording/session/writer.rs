@@ -102,7 +102,7 @@ impl WriterLane {
         Self { chunk, waiting: None }
     }
 
-    /// Whether the chunk must be written before it accepts a message of this length and time.
+    /// Returns whether the chunk must be written before it accepts a message of this length and time.
     fn is_due(&self, length: usize, time_ns: u64) -> bool {
         let full = self.chunk.len() + length > CHUNK_BYTES && self.chunk.len() > 0;
         self.waiting.is_some() || full || self.chunk.span_ns(time_ns) >= CHUNK_NS

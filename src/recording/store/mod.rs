@@ -307,7 +307,8 @@ pub fn previous(path: &Path) -> PathBuf {
     name.into()
 }
 
-/// Whether a name can be part of a file name: only letters, digits and a few symbols, so that it cannot contain a path.
+/// Returns whether a name can be part of a file name: only letters, digits and a few symbols, so that it cannot contain
+/// a path.
 ///
 /// ```
 /// use nima_recording::store::can_name_a_file;

@@ -94,14 +94,14 @@ impl ReadyRecord {
         (made_s <= now_s + 60).then(|| now_s.saturating_sub(made_s))
     }
 
-    /// Whether it passed, is recent enough, and was made with these devices.
+    /// Returns whether it passed, is recent enough, and was made with these devices.
     pub fn is_valid(&self, devices: &[CheckedDevice], now: SystemTime) -> bool {
         self.passed && self.devices == devices && self.age_s(now).is_some_and(|age_s| age_s <= VALID_S)
     }
 }
 
 impl Store {
-    /// The folder of the checks.
+    /// Returns the folder of the checks.
     fn checks(&self) -> PathBuf {
         self.folder().parent().unwrap_or(Path::new("")).join("checks")
     }

@@ -132,7 +132,7 @@ impl BlockWriter {
         TickRow { timing: stepped.timing, inputs: stepped.inputs, check }
     }
 
-    /// Whether the block must be written.
+    /// Returns whether the block must be written.
     pub const fn is_full(&self) -> bool {
         self.rows >= BLOCK_TICKS || self.noted.len() >= BLOCK_TICKS
     }

@@ -280,7 +280,7 @@ fn noted() -> BoxedStrategy<TickNote> {
     prop_oneof![operation.prop_map(TickNote::Operation), any::<u64>().prop_map(|lost| TickNote::Hole { lost })].boxed()
 }
 
-/// The steps of a block: the entries before each row, and the row.
+/// Returns the steps of a block: the entries before each row, and the row.
 fn steps() -> impl Strategy<Value = Vec<(Vec<TickNote>, TickRow)>> {
     proptest::collection::vec((proptest::collection::vec(noted(), 0..3), row()), 0..12)
 }

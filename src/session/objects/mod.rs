@@ -107,12 +107,12 @@ pub trait ObjectSource: Send + Debug {
     fn happening(&mut self) -> Option<TimedTaskEvent>;
 }
 
-/// Whether the recording of this session had a source of events, even if none occurred.
+/// Returns whether the recording of this session had a source of events, even if none occurred.
 pub fn are_reported(reader: &SessionReader) -> bool {
     has(reader, HAPPENINGS_TOPIC)
 }
 
-/// Whether rings, jaws or the state of a task are recorded in this session.
+/// Returns whether rings, jaws or the state of a task are recorded in this session.
 pub fn are_shown(reader: &SessionReader) -> bool {
     Side::ALL
         .into_iter()

@@ -36,7 +36,7 @@ pub struct Keyframe {
 }
 
 impl Keyframe {
-    /// The state before the first tick of a journal with this beginning.
+    /// Returns the state before the first tick of a journal with this beginning.
     ///
     /// # Errors
     /// [`ReplayError::Settings`] if the settings of the identification are invalid.
@@ -129,7 +129,7 @@ impl<I: Iterator<Item = Result<NumberedMessage, ReplayError>>> ReplayCursor<I> {
         Ok(Self { journal, machine, active: Vec::new(), came: Box::default(), ticks: 0, t_s: 0.0 })
     }
 
-    /// Whether a block of the journal has just been completed.
+    /// Returns whether a block of the journal has just been completed.
     pub fn is_between_blocks(&self) -> bool {
         self.journal.between_blocks().is_some()
     }

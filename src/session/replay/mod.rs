@@ -82,7 +82,8 @@ pub struct ReplayOutcome {
     pub closed: bool,
 }
 
-/// Whether a tick at this loop time (s) is not before a moment; allows for the whole nanoseconds of times in the file.
+/// Returns whether a tick at this loop time (s) is not before a moment; allows for the whole nanoseconds of times in
+/// the file.
 fn is_from(now_s: f64, moment_s: f64) -> bool {
     (now_s * 1e9).round() >= (moment_s * 1e9).round()
 }

@@ -94,13 +94,13 @@ pub(super) fn is_compared(row: &TickRow, from_s: f64) -> bool {
     is_from(row.timing.now_s, from_s)
 }
 
-/// A side without a pair.
+/// Returns a side without a pair.
 fn absent(rows: &[Vec<TickRow>], from_s: f64) -> SideBySideLane {
     let compared = rows.iter().flatten().filter(|row| is_compared(row, from_s)).count();
     SideBySideLane { digests: vec![of_side(&Outputs::SAFE, None); compared], events: Vec::new() }
 }
 
-/// The only pair.
+/// Returns the only pair.
 fn of_one(pair: &mut Pair, rows: &[Vec<TickRow>], from_s: f64) -> SideBySideLane {
     let mut lane = SideBySideLane::default();
     rows.iter().flatten().enumerate().for_each(|(number, row)| lane.step(pair, false, number, row, from_s));

@@ -29,7 +29,7 @@ pub struct WhatIfChange {
 }
 
 impl WhatIfChange {
-    /// Whether any setting is changed.
+    /// Returns whether any setting is changed.
     pub fn is_any(&self) -> bool {
         *self != Self::default()
     }
@@ -44,7 +44,7 @@ impl WhatIfChange {
         origin
     }
 
-    /// Whether the changed loop gets this command too.
+    /// Returns whether the changed loop gets this command too.
     const fn lets(&self, command: Command) -> bool {
         match command {
             Command::SetMode(_) => self.mode.is_none(),

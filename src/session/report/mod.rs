@@ -115,7 +115,7 @@ pub enum MarkLevel {
 }
 
 impl MarkLevel {
-    /// The name used in files.
+    /// Returns the name used in files.
     pub const fn word(self) -> &'static str {
         match self {
             Self::Error => "error",

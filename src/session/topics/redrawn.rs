@@ -5,8 +5,8 @@ use nima_recording::messages::foxglove::{FrameTransform, FrameTransforms, SceneE
 
 use super::scene::{DRAWN, WORLD, name_of_arrows, name_of_frame};
 
-/// The frames of tips and leaders. The endoscope is left out, because its position reveals the room, and its images are
-/// left out too.
+/// Returns the frames of tips and leaders. The endoscope is left out, because its position reveals the room, and its
+/// images are left out too.
 pub(crate) fn frames(time_ns: u64, of: &FrameTransforms) -> FrameTransforms {
     let names = Side::ALL.into_iter().flat_map(|side| DRAWN.map(|name| name_of_frame(side, name)));
     let anew = |name: String| {
@@ -24,7 +24,7 @@ pub(crate) fn frames(time_ns: u64, of: &FrameTransforms) -> FrameTransforms {
     FrameTransforms { transforms: names.filter_map(anew).collect() }
 }
 
-/// The arrows of the forces.
+/// Returns the arrows of the forces.
 pub(crate) fn arrows(time_ns: u64, of: &SceneUpdate) -> SceneUpdate {
     let anew = |id: String| {
         let arrows = of.entities.iter().find(|entity| entity.id == id)?.arrows.clone();

@@ -119,7 +119,7 @@ pub(crate) fn endoscope_of(data: &[u8]) -> Option<Isometry3<f64>> {
     world_from_n.to_homogeneous().iter().all(|number| number.is_finite()).then_some(world_from_n)
 }
 
-/// A force (N) at a position (m); no arrow if the force is zero or unknown.
+/// Returns a force (N) at a position (m); no arrow if the force is zero or unknown.
 fn arrow(position_m: &Vector3<f64>, force_n: &Vector3<f64>, color: Color) -> Option<ArrowPrimitive> {
     // An arrow points along its own x axis; for the opposite direction, any half turn works.
     let turned = UnitQuaternion::rotation_between(&Vector3::x(), force_n)

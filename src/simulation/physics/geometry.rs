@@ -42,7 +42,7 @@ impl Segment {
         self.at(self.fraction(point_m))
     }
 
-    /// The closest points of this and of another (Ericson, Real-Time Collision Detection, 2005, 5.1.9).
+    /// Returns the closest points of this and of another (Ericson, Real-Time Collision Detection, 2005, 5.1.9).
     pub(crate) fn closest_pair(&self, other: &Self) -> [Vector3<f64>; 2] {
         let d1 = self.to_m - self.from_m;
         let d2 = other.to_m - other.from_m;

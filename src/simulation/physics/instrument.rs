@@ -21,7 +21,7 @@ pub struct Instrument {
 }
 
 impl Instrument {
-    /// Whether all values are finite and the instrument is within range.
+    /// Returns whether all values are finite and the instrument is within range.
     pub(crate) fn is_sane(&self) -> bool {
         let near = |position_m: &Vector3<f64>| position_m.iter().all(|x| x.abs() <= FARTHEST_M);
         let turned = (self.world_from_jaws.norm_squared() - 1.0).abs() < 1e-3;

@@ -41,7 +41,7 @@ fn side_of(x_m: f64) -> Side {
 }
 
 impl PegTransfer {
-    /// The beginning: every ring is on its own side.
+    /// Creates the beginning: every ring is on its own side.
     pub fn new(setting: &ObjectSettings) -> Self {
         let pegs: Vec<Side> = setting.pegs.position_m.iter().map(|[x_m, _]| side_of(*x_m)).collect();
         let home = |start: &RingStart| match start {
@@ -86,7 +86,7 @@ impl PegTransfer {
         }
     }
 
-    /// Whether there is at least one ring and no ring has to go anywhere.
+    /// Returns whether there is at least one ring and no ring has to go anywhere.
     pub fn is_done(&self) -> bool {
         !self.rings.is_empty() && (0..self.rings.len()).all(|ring| self.goal(ring).is_none())
     }

@@ -72,7 +72,7 @@ impl Ring {
         self.circle.radius_m + self.tube_radius_m
     }
 
-    /// Whether it is simulated: neither asleep nor lost.
+    /// Returns whether it is simulated: neither asleep nor lost.
     pub(crate) const fn moves(&self) -> bool {
         !self.asleep && !self.lost
     }
@@ -136,7 +136,7 @@ impl Ring {
         self.slow_s = if slow { self.slow_s + period_s } else { 0.0 };
     }
 
-    /// Whether it has been slow for a while.
+    /// Returns whether it has been slow for a while.
     pub(crate) fn quiet(&self) -> bool {
         self.slow_s >= REST_AFTER_S
     }

@@ -167,7 +167,7 @@ const SCENES: [(&str, &str); 12] = [
 ];
 
 impl Scene {
-    /// The scene as seen by one hand; `None` for a left hand that the scene does not have.
+    /// Returns the scene as seen by one hand; `None` for a left hand that the scene does not have.
     pub fn of_side(&self, side: Side) -> Option<Self> {
         // Both hands feel the same lumps.
         let scene = Self { left: None, lumps: self.placed_lumps(), ..self.clone() };
@@ -188,7 +188,7 @@ impl Scene {
         })
     }
 
-    /// Whether the scene hides objects at positions determined by its seed.
+    /// Returns whether the scene hides objects at positions determined by its seed.
     pub fn is_drawn_by_lot(&self) -> bool {
         self.lumps.as_ref().is_some_and(|lumps| lumps.drawn.is_some())
     }
@@ -204,13 +204,13 @@ impl Scene {
         drawn.into_iter().find(|scene| scene.validate().is_ok()).unwrap_or(self)
     }
 
-    /// Whether the hands perform a training task with objects that the scene simulates for both: rings, a wire, or
-    /// lumps to find.
+    /// Returns whether the hands perform a training task with objects that the scene simulates for both: rings, a wire,
+    /// or lumps to find.
     pub fn is_played(&self) -> bool {
         self.objects.is_some() || self.wire.is_some() || self.is_searched()
     }
 
-    /// Whether the task is to find the lumps.
+    /// Returns whether the task is to find the lumps.
     pub fn is_searched(&self) -> bool {
         let palpation = |task: &SceneTask| task.kind == TaskKind::Palpation;
         self.tissue.is_some() && self.lumps.is_some() && self.task.as_ref().is_some_and(palpation)

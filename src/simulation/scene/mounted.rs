@@ -35,7 +35,7 @@ impl Scene {
         Ok(scene)
     }
 
-    /// Whether this rig has an arm pair on this side in this scene.
+    /// Returns whether this rig has an arm pair on this side in this scene.
     pub fn has(&self, rig: &RigConfig, side: Side) -> bool {
         match &rig.devices {
             Some(devices) => devices.arm(side).is_some(),
@@ -43,7 +43,7 @@ impl Scene {
         }
     }
 
-    /// Whether it has an arm pair with its force measured at the wrist.
+    /// Returns whether it has an arm pair with its force measured at the wrist.
     pub fn measures_at_wrist(&self, rig: &RigConfig, side: Side) -> bool {
         match &rig.devices {
             // Also for emulated devices: a scene without a wrist gets the paper's wrist. The force of an arm on another

@@ -88,7 +88,7 @@ impl PoseMotion {
         from + (to - from) * self.noise.uniform()
     }
 
-    /// A random horizontal axis times a random angle up to `max_rad`.
+    /// Returns a random horizontal axis times a random angle up to `max_rad`.
     fn tilt(&mut self, max_rad: f64) -> UnitQuaternion<f64> {
         let angle = max_rad * self.noise.uniform().sqrt();
         let side = TAU * self.noise.uniform();
@@ -121,7 +121,7 @@ impl PoseMotion {
     }
 }
 
-/// Whether this file carries out the instruction.
+/// Returns whether this file carries out the instruction.
 pub(super) const fn is_handling(prompt: &Prompt) -> bool {
     matches!(
         prompt,
@@ -248,7 +248,7 @@ impl Person {
         self.reach_on(0.0);
     }
 
-    /// A position of the tip beyond the trocar and above the tissue.
+    /// Returns a position of the tip beyond the trocar and above the tissue.
     fn beyond(&mut self, wall_m: &Vector3<f64>) -> Vector3<f64> {
         let middle = shaft(wall_m, &Vector3::new(0.0, 0.0, self.surface_z_m)).0;
         let max_rad = if self.flaw == Some(Flaw::WorksInOnePlace) { 0.1 * PIVOT_RAD } else { PIVOT_RAD };

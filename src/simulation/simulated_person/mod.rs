@@ -66,7 +66,7 @@ pub struct Person {
 }
 
 impl Person {
-    /// A person at the arm of `scene`, holding the tip above the middle of the tissue.
+    /// Creates a person at the arm of `scene`, holding the tip above the middle of the tissue.
     pub fn new(config: PersonConfig, scene: &Scene) -> Self {
         let mut noise = Noise::new(scene.seed ^ 0x9e_12);
         let surface_z_m = scene.tissue.map_or(0.0, |tissue| tissue.surface_z_m);

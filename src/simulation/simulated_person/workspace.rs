@@ -20,7 +20,7 @@ pub(super) struct Workspace {
 }
 
 impl Workspace {
-    /// The space of the scene's task: the box around its targets, limited to the tissue.
+    /// Creates the space of the scene's task: the box around its targets, limited to the tissue.
     pub(super) fn of(scene: &Scene) -> Self {
         let across_m = [0, 1].map(|axis| {
             let at = scene.targets_m.iter().map(|target_m| target_m[axis]);

@@ -29,7 +29,8 @@ impl Tissue {
         Self { config, anchor_m: None, layers: Vec::new(), lumps: None, relaxing: None, membrane: None }
     }
 
-    /// The untouched tissue of this scene with all its effects, for steps of this length (s); `None` without tissue.
+    /// Returns the untouched tissue of this scene with all its effects, for steps of this length (s); `None` without
+    /// tissue.
     pub fn of(scene: &Scene, step_s: f64) -> Option<Self> {
         let Scene { layers, lumps, relaxation, membrane, .. } = scene;
         let config = scene.tissue?;

@@ -23,7 +23,7 @@ pub(super) struct Palpation {
 }
 
 impl Palpation {
-    /// The palpation of this scene; `None` if its task is not to find lumps.
+    /// Returns the palpation of this scene; `None` if its task is not to find lumps.
     pub(super) fn of(scene: &Scene) -> Option<Self> {
         let tissue = scene.tissue?;
         let task = scene.task.as_ref()?;

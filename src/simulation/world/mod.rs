@@ -84,7 +84,7 @@ pub(super) const ROUNDING_PERIODS: f64 = 1e-3;
 const HAND_STEP_MAX_S: f64 = 1e-3;
 
 impl World {
-    /// The world of `scene` with `rate_hz` steps per second. The scene must have been validated.
+    /// Creates the world of `scene` with `rate_hz` steps per second. The scene must have been validated.
     pub fn new(scene: &Scene, rate_hz: f64) -> Self {
         let hand = Hand::new(scene);
         let start_m = hand.position_m();
@@ -116,7 +116,7 @@ impl World {
         }
     }
 
-    /// The same among objects that it shares with another world.
+    /// Creates the same among objects that it shares with another world.
     pub(super) fn playing(scene: &Scene, rate_hz: f64, doing: HandActivity) -> Self {
         let jaws = matches!(doing, HandActivity::Carrying(_));
         let mut world = Self { jaws, ..Self::new(scene, rate_hz) };
@@ -157,7 +157,7 @@ impl World {
         self.hand.fraction_pace(pace);
     }
 
-    /// The simulated hand, for tests and displays.
+    /// Returns the simulated hand, for tests and displays.
     pub const fn hand(&self) -> &Hand {
         &self.hand
     }

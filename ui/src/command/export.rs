@@ -112,7 +112,7 @@ fn laid_out(reader: &SessionReader, session: &Path, name: &str, out: &Path) -> a
     output::line(&format!("{name} in {}: import it as a layout", out.display()))
 }
 
-/// The requested times, ns.
+/// Returns the requested times, ns.
 fn times_ns(
     reader: &SessionReader,
     ExportArguments { session, stretch, .. }: &ExportArguments,

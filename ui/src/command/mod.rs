@@ -88,7 +88,7 @@ enum CliCommand {
     Man(completions::ManArguments),
 }
 
-/// The command line, with the commands of this build's extras.
+/// Returns the command line, with the commands of this build's extras.
 fn command_line() -> clap::Command {
     extras::commands(Cli::command())
 }

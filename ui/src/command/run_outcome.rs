@@ -83,7 +83,7 @@ impl Reasons {
     }
 }
 
-/// The first missing device of this arm, with cause and remedy.
+/// Returns the first missing device of this arm, with cause and remedy.
 fn missing(side: Side, summary: &RuntimeSummary) -> String {
     let absent = || summary.devices.iter().filter(|device| device.health.standing != ConnectionState::Connected);
     let first = absent().find(|device| device.name.starts_with(side.word())).or_else(|| absent().next());

@@ -29,7 +29,7 @@ impl TimeRange {
         self.from.is_some() || self.to.is_some()
     }
 
-    /// The times of the excerpt, s since the start of the session, checked against the session.
+    /// Returns the times of the excerpt, s since the start of the session, checked against the session.
     pub(crate) fn of(&self, session: &Path, reader: &SessionReader) -> anyhow::Result<Range<f64>> {
         let Self { from, to } = self;
         let begin_ns = plot_channels::beginning_ns(reader)?;

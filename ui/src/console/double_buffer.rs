@@ -23,7 +23,7 @@ impl DoubleBuffer {
         }
     }
 
-    /// The shown texture; `None` before the first image.
+    /// Returns the shown texture; `None` before the first image.
     pub(crate) fn id(&self) -> Option<TextureId> {
         self.textures[self.front].as_ref().map(TextureHandle::id)
     }

@@ -57,12 +57,12 @@ impl ForceCloud {
         }
     }
 
-    /// The stored pairs, oldest first.
+    /// Returns the stored pairs, oldest first.
     pub fn pairs(&self) -> impl DoubleEndedIterator<Item = &ForcePair> + ExactSizeIterator {
         self.pairs.iter()
     }
 
-    /// The 95 % ellipsoid of rendered minus measured force; `None` with less than a second of data.
+    /// Returns the 95 % ellipsoid of rendered minus measured force; `None` with less than a second of data.
     pub fn ellipsoid(&self) -> Option<Ellipsoid> {
         if self.pairs.len() < MIN {
             return None;

@@ -80,7 +80,7 @@ impl Help {
     }
 }
 
-/// The glossary in the alphabetical order of the language.
+/// Returns the glossary in the alphabetical order of the language.
 fn terms() -> [(&'static str, &'static str); GLOSSARY.len()] {
     let mut terms = GLOSSARY.map(|(word, meaning)| (word.get(), meaning.get()));
     terms.sort_by_key(|(word, _)| word.to_lowercase());

@@ -160,7 +160,7 @@ impl SignalHistory {
         self.began_s.unwrap_or(0.0).max(coarsest.first as f64 * coarsest.span_s)
     }
 
-    /// The finest level that reaches back to `from_s` and has at most about `max` buckets up to `to_s`.
+    /// Returns the finest level that reaches back to `from_s` and has at most about `max` buckets up to `to_s`.
     fn level(&self, from_s: f64, to_s: f64, max: usize) -> &HistoryLevel {
         let from_s = from_s.max(self.oldest_s());
         let fits =
@@ -203,7 +203,7 @@ impl SignalHistory {
         extent.map(|(low, high)| (f64::from(low), f64::from(high)))
     }
 
-    /// The value of a channel at a time: the middle of its bucket on the finest level that has it.
+    /// Returns the value of a channel at a time: the middle of its bucket on the finest level that has it.
     pub fn value_at(&self, channel: usize, t_s: f64) -> Option<f64> {
         let level = self.levels.iter().find(|level| level.reaches_back_to(t_s))?;
         let (_, bucket) = level.between(t_s, t_s).next()?;

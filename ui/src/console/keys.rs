@@ -26,13 +26,13 @@ pub(super) fn stop_pressed(ctx: &Context) -> bool {
     })
 }
 
-/// The role whose key was pressed, in a window that has no other commands.
+/// Returns the role whose key was pressed, in a window that has no other commands.
 pub(super) fn role_pressed(ctx: &Context) -> Option<Role> {
     ctx.input(|input| Role::ALL.into_iter().find(|role| input.key_pressed(role.key())))
 }
 
-/// The commands whose keys were pressed, in their order; presses of those that `may` run are consumed. A key with a function
-/// in the focused text field, or one that a part of the window reads itself, is left alone.
+/// Returns the commands whose keys were pressed, in their order; presses of those that `may` run are consumed. A key
+/// with a function in the focused text field, or one that a part of the window reads itself, is left alone.
 pub(super) fn pressed(ctx: &Context, may: impl Fn(Action) -> bool) -> Vec<Action> {
     let writing = ctx.text_edit_focused();
     let mut actions = Vec::new();

@@ -103,7 +103,7 @@ impl LoopConnection {
         Self { shared, keeper }
     }
 
-    /// The loop, for everything but ticks and events.
+    /// Returns the loop, for everything but ticks and events.
     pub fn handle(&self) -> &LoopHandle {
         &self.shared.handle
     }
@@ -124,7 +124,7 @@ impl LoopConnection {
         kept.woken = false;
     }
 
-    /// Whether the window was woken and has not read the data yet.
+    /// Returns whether the window was woken and has not read the data yet.
     pub fn has_woken(&self) -> bool {
         self.shared.lock().woken
     }
@@ -247,7 +247,7 @@ impl VisibleState {
         })
     }
 
-    /// Whether the difference would be visible.
+    /// Returns whether the difference would be visible.
     fn differs(&self, now: &Self) -> bool {
         // A non-finite value differs only from a finite one.
         let moved = |a: &Vector3<f64>, b: &Vector3<f64>, min: f64| {
@@ -276,7 +276,7 @@ mod tests {
 
     use super::*;
 
-    /// An idle loop, its connection, and a channel that reports when the window is woken.
+    /// Returns an idle loop, its connection, and a channel that reports when the window is woken.
     fn at_rest() -> (LoopConnection, mpsc::Receiver<()>) {
         let rig = RigConfig::load("simulated").unwrap();
         let scene = Scene::load("peg_transfer").unwrap();

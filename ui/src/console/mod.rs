@@ -128,7 +128,7 @@ pub(crate) fn open_window(title: &str, create: eframe::AppCreator<'_>) -> anyhow
     eframe::run_native(title, native, create).map_err(|error| NoWindow::new(&error.to_string()).into())
 }
 
-/// The console with the user's settings; screenshots use the defaults and do not change the settings.
+/// Returns the console with the user's settings; screenshots use the defaults and do not change the settings.
 fn console(cc: &eframe::CreationContext<'_>, begun: InitialRun, options: ConsoleOptions) -> ConsoleApp {
     let InitialRun { choice, emulators, started: (handle, objects), rig, scene, sessions, far } = begun;
     let settings = if options.images.is_some() { SettingsStore::default() } else { SettingsStore::of_user() };
@@ -137,7 +137,7 @@ fn console(cc: &eframe::CreationContext<'_>, begun: InitialRun, options: Console
     app.with_settings(settings).with_options(options)
 }
 
-/// An error with its causes, in one line.
+/// Returns an error with its causes, in one line.
 pub(crate) fn chain(error: &dyn std::error::Error) -> String {
     let mut words = error.to_string();
     let mut source = error.source();
@@ -157,7 +157,7 @@ pub struct NoWindow {
 }
 
 impl NoWindow {
-    /// The message without the source position at its start.
+    /// Creates the message without the source position at its start.
     fn new(words: &str) -> Self {
         let after_place = words.rsplit_once(".rs:").and_then(|(_, rest)| rest.split_once(": "));
         Self { reason: after_place.map_or(words, |(_, reason)| reason).to_owned() }

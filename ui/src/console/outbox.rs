@@ -66,14 +66,14 @@ impl Outbox {
         self.stops
     }
 
-    /// Whether the loop's queue had no room for a stop, which the operator must be told. Not yet true in the frame of the
-    /// request.
+    /// Returns whether the loop's queue had no room for a stop, which the operator must be told. Not yet true in the
+    /// frame of the request.
     pub const fn stop_is_stuck(&self) -> bool {
         self.stop_refused
     }
 }
 
-/// Whether this newer command makes a waiting one obsolete: both concern the same setting of the same side.
+/// Returns whether this newer command makes a waiting one obsolete: both concern the same setting of the same side.
 fn is_outdated(old: &Command, newer: Command) -> bool {
     match (*old, newer) {
         (Command::Guide(old, _), Command::Guide(newer, _)) | (Command::Grip(old, _), Command::Grip(newer, _)) => {

@@ -24,7 +24,7 @@ pub trait Page: Debug {
 
     fn hide(&mut self);
 
-    /// Whether it reserves the machine: then the rest of the screen is closed.
+    /// Returns whether it reserves the machine: then the rest of the screen is closed.
     fn holds_machine(&self) -> bool;
 
     fn ui(&mut self, ui: &mut Ui, room: Room<'_>) -> Option<ClosedRun>;
@@ -38,7 +38,7 @@ pub trait Page: Debug {
     /// Prepares the requested run.
     fn prepare(&mut self) -> Result<PreparedRun, String>;
 
-    /// The current run: then the window shows nothing else.
+    /// Returns the current run: then the window shows nothing else.
     fn run(&self) -> Option<&dyn PageRun>;
 
     fn run_mut(&mut self) -> Option<&mut (dyn PageRun + 'static)>;
@@ -49,10 +49,10 @@ pub trait Page: Debug {
 
 /// A run of a page, with its own loop.
 pub trait PageRun {
-    /// The person who moves the instruments.
+    /// Returns the person who moves the instruments.
     fn participant(&self) -> &str;
 
-    /// The name that live viewers may see.
+    /// Returns the name that live viewers may see.
     fn name(&self) -> String;
 
     /// Starts the loop, for these audiences; in simulated time if `speed` is given.

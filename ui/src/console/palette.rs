@@ -48,7 +48,7 @@ impl CommandPalette {
         self.open = None;
     }
 
-    /// The command chosen since the last frame.
+    /// Returns the command chosen since the last frame.
     pub(super) const fn take(&mut self) -> Option<Action> {
         self.chosen.take()
     }

@@ -41,7 +41,7 @@ impl Picking {
         Self(picked)
     }
 
-    /// The chosen file, once. Closes `picking` when the user has chosen or cancelled.
+    /// Returns the chosen file, once. Closes `picking` when the user has chosen or cancelled.
     pub(crate) fn take(picking: &mut Option<Self>) -> Option<PathBuf> {
         let report = picking.as_ref()?.0.try_recv();
         if report != Err(TryRecvError::Empty) {

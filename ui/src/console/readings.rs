@@ -79,7 +79,7 @@ impl GateActivity {
         self.acting[gate.index()].get()
     }
 
-    /// Whether it acted in most recent ticks.
+    /// Returns whether it acted in most recent ticks.
     pub fn closed(&self, gate: Gate) -> bool {
         self.fraction(gate) > 0.5
     }

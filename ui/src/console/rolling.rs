@@ -57,12 +57,12 @@ impl FadingMean {
         self.value = Some(self.value.map_or(value, |old| old + fraction * (value - old)));
     }
 
-    /// The current mean; `None` before the first value.
+    /// Returns the current mean; `None` before the first value.
     pub const fn known(self) -> Option<f64> {
         self.value
     }
 
-    /// The current mean; zero before the first value.
+    /// Returns the current mean; zero before the first value.
     pub fn get(self) -> f64 {
         self.value.unwrap_or(0.0)
     }

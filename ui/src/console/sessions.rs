@@ -225,7 +225,7 @@ impl ConsoleSessions {
         ended.or_else(slow).or_else(lost).or_else(images).or_else(|| self.trouble.clone()).or_else(full)
     }
 
-    /// The current recording; `None` if there is none.
+    /// Returns the current recording; `None` if there is none.
     pub(crate) fn shown(&self) -> Option<DisplayState> {
         let now = self.now.as_ref().filter(|now| now.recorder.trouble().is_none())?;
         let progress = now.recorder.progress();

@@ -123,13 +123,13 @@ pub struct SettingsStore {
 }
 
 impl SettingsStore {
-    /// The user's settings, saved next to the calibrations.
+    /// Creates the user's settings, saved next to the calibrations.
     pub fn of_user() -> Self {
         let folder = Store::of_user().ok().and_then(|store| store.folder().parent().map(Path::to_path_buf));
         folder.map_or_else(Self::default, |folder| Self::open(&folder))
     }
 
-    /// The settings in this folder; the defaults if there are none or they cannot be read.
+    /// Creates the settings in this folder; the defaults if there are none or they cannot be read.
     pub fn open(folder: &Path) -> Self {
         let (now, report) = match nima_files::read_text(&folder.join(FILE), nima_files::CONFIG_MAX) {
             Err(error) if error.kind() == io::ErrorKind::NotFound => (ConsoleSettings::default(), None),
@@ -141,7 +141,7 @@ impl SettingsStore {
         Self { folder: Some(folder.to_path_buf()), saved: now.clone(), now, report }
     }
 
-    /// The folder of the user's data; `None` if there is none.
+    /// Returns the folder of the user's data; `None` if there is none.
     pub fn folder(&self) -> Option<&Path> {
         self.folder.as_deref()
     }

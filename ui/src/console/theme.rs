@@ -151,12 +151,12 @@ pub const CORNER: CornerRadius = CornerRadius::same(6);
 
 const STRONG: &str = "strong";
 
-/// The bold font, for figures and headings.
+/// Returns the bold font, for figures and headings.
 pub fn strong(size: f32) -> FontId {
     FontId::new(size, FontFamily::Name(STRONG.into()))
 }
 
-/// The regular font.
+/// Returns the regular font.
 pub fn regular(size: f32) -> FontId {
     FontId::proportional(size)
 }
@@ -295,7 +295,7 @@ mod tests {
         nima_testing::contrast::contrast(a, b)
     }
 
-    /// The colours of a palette in which words and numbers are written.
+    /// Returns the colours of a palette in which words and numbers are written.
     fn inks(palette: &ColourPalette) -> Vec<(&'static str, Color32)> {
         let mut inks = vec![
             ("text", palette.text),

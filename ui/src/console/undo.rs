@@ -35,7 +35,8 @@ enum LookChange {
 }
 
 impl ScreenLook {
-    /// The difference between two looks. The front tab does not count: undoing it would hide the changes that matter.
+    /// Returns the difference between two looks. The front tab does not count: undoing it would hide the changes that
+    /// matter.
     fn change(&self, other: &Self) -> Option<LookChange> {
         let Self { layout, light, language, scale_percent, image, extras, traces } = self;
         let at_once = layout.places != other.layout.places

@@ -9,7 +9,7 @@ use egui_plot::Plot;
 
 use super::theme;
 
-/// A plot with a fixed range: the pointer does not move it.
+/// Returns a plot with a fixed range: the pointer does not move it.
 pub fn still(plot: Plot<'_>) -> Plot<'_> {
     plot.allow_drag(false)
         .allow_zoom(false)
@@ -23,7 +23,7 @@ pub fn still(plot: Plot<'_>) -> Plot<'_> {
         .grid_color(theme::now().line)
 }
 
-/// A card with a heading; `meaning` is its hover text.
+/// Returns a card with a heading; `meaning` is its hover text.
 pub fn card<R>(ui: &mut Ui, title: &str, meaning: &str, content: impl FnOnce(&mut Ui) -> R) -> R {
     let inner = theme::card().show(ui, |ui| {
         ui.set_width(ui.available_width());
@@ -78,7 +78,7 @@ pub fn fitting_style(ui: &Ui, words: &str, style: &TextStyle, width: f32) -> Fon
     fitting(ui.painter(), words, style.resolve(ui.style()), width)
 }
 
-/// A name on the left and its value on the right; `meaning` is their hover text. A long name takes several lines.
+/// Draws a name on the left and its value on the right; `meaning` is their hover text. A long name takes several lines.
 pub fn figure(ui: &mut Ui, name: &str, value: impl Into<String>, meaning: &str) -> Response {
     ui.spacing_mut().interact_size.y = 18.0;
     let value = value.into();
@@ -99,7 +99,7 @@ pub fn figure(ui: &mut Ui, name: &str, value: impl Into<String>, meaning: &str) 
     row.response
 }
 
-/// A button that stands out if it is the `next` one to press; at most one on the screen does.
+/// Returns a button that stands out if it is the `next` one to press; at most one on the screen does.
 pub fn next_button(name: impl Into<RichText>, next: bool) -> Button<'static> {
     let name = name.into();
     if next { Button::new(name.color(theme::DARK.text)).fill(theme::now().primary) } else { Button::new(name) }

@@ -114,17 +114,17 @@ pub(crate) trait Extra: Sync {
         None
     }
 
-    /// A page of the window that reserves the machine while it is open.
+    /// Returns a page of the window that reserves the machine while it is open.
     fn page(&self) -> Option<fn() -> Box<dyn Page>> {
         None
     }
 
-    /// The Trade-off panel.
+    /// Returns the Trade-off panel.
     fn tradeoff(&self) -> Option<fn() -> Box<dyn Tile>> {
         None
     }
 
-    /// The strip below the gain slider that shows the highest gain at which a gripping hand is stable.
+    /// Returns the strip below the gain slider that shows the highest gain at which a gripping hand is stable.
     fn stable_gain(&self) -> Option<StripUi> {
         None
     }
@@ -139,12 +139,12 @@ pub(crate) trait Extra: Sync {
     }
 }
 
-/// The first part of this kind.
+/// Returns the first part of this kind.
 pub(crate) fn part<T>(mut offered: impl FnMut(&'static dyn Extra) -> Option<T>) -> Option<T> {
     BUILT.iter().find_map(|extra| offered(*extra))
 }
 
-/// Whether this build can emulate the devices of a rig.
+/// Returns whether this build can emulate the devices of a rig.
 pub(crate) fn emulates() -> bool {
     part(Extra::comparison).is_some()
 }

@@ -4,7 +4,7 @@ use maud::{DOCTYPE, Markup, PreEscaped, Render, html};
 
 const STYLE: &str = include_str!("style.css");
 
-/// A page that needs no other file.
+/// Returns a page that needs no other file.
 pub(crate) fn page(title: &str, body: &Markup) -> String {
     let page = html! {
         (DOCTYPE)
@@ -24,7 +24,7 @@ pub(crate) fn page(title: &str, body: &Markup) -> String {
     page.into_string()
 }
 
-/// A part of a page under its title.
+/// Returns a part of a page under its title.
 pub(crate) fn section(title: &str, body: &impl Render) -> Markup {
     html! {
         section {
@@ -34,7 +34,7 @@ pub(crate) fn section(title: &str, body: &impl Render) -> Markup {
     }
 }
 
-/// A table of text or markup.
+/// Returns a table of text or markup.
 pub(crate) fn table<Cell: Render>(heads: &[impl Render], rows: &[Vec<Cell>]) -> Markup {
     html! {
         table {
@@ -48,7 +48,7 @@ pub(crate) fn table<Cell: Render>(heads: &[impl Render], rows: &[Vec<Cell>]) -> 
     }
 }
 
-/// A table, or this sentence in place of one without rows.
+/// Returns a table, or this sentence in place of one without rows.
 pub(crate) fn table_or<Cell: Render>(heads: &[impl Render], rows: &[Vec<Cell>], nothing: &str) -> Markup {
     if rows.is_empty() {
         html! { p { (nothing) } }
@@ -57,7 +57,7 @@ pub(crate) fn table_or<Cell: Render>(heads: &[impl Render], rows: &[Vec<Cell>], 
     }
 }
 
-/// A drawing of this width and height.
+/// Returns a drawing of this width and height.
 pub(crate) fn drawing(size: [f64; 2], title: &str, body: &Markup) -> Markup {
     let [width, height] = size;
     html! {
@@ -69,7 +69,7 @@ pub(crate) fn drawing(size: [f64; 2], title: &str, body: &Markup) -> Markup {
     }
 }
 
-/// A number with three significant digits.
+/// Returns a number with three significant digits.
 pub(crate) fn digits(value: f64) -> String {
     let size = value.abs();
     match size {

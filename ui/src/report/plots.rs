@@ -34,7 +34,7 @@ fn across(t_s: f64, length_s: f64) -> f64 {
     LEFT + (t_s / length_s.max(1e-3)).clamp(0.0, 1.0) * (WIDTH - LEFT - RIGHT)
 }
 
-/// A step of 1, 2 or 5 times a power of ten that divides a range into at most this many parts.
+/// Returns a step of 1, 2 or 5 times a power of ten that divides a range into at most this many parts.
 pub(crate) fn step(range: f64, parts: f64) -> f64 {
     let rough = (range / parts).max(1e-9);
     let power = 10.0_f64.powf(rough.log10().floor());
@@ -161,7 +161,7 @@ pub(super) fn forces(session: &SessionFigures, arm: &ArmFigures) -> Markup {
     drawing([WIDTH, 3.0 * PLOT + 20.0], &format!("Forces of the {} arm over time", arm.side), &body)
 }
 
-/// A vertical line for each bucket of a trace, from its least to its largest force.
+/// Returns a vertical line for each bucket of a trace, from its least to its largest force.
 fn path(trace: &SignalTrace, length_s: f64, up: impl Fn(f64) -> f64) -> String {
     let line = |(bucket, range): (usize, &Option<[f64; 2]>)| {
         let [min_n, max_n] = (*range)?;

@@ -142,7 +142,7 @@ fn in_state(state: LoopState) -> &'static str {
     }
 }
 
-/// The same text with a lower-case first letter, for use within a sentence.
+/// Returns the same text with a lower-case first letter, for use within a sentence.
 fn lower(words: &str) -> String {
     let mut letters = words.chars();
     letters.next().map_or_else(String::new, |first| first.to_lowercase().chain(letters).collect())

@@ -190,7 +190,7 @@ fn contains(bytes: &[u8], sought: &[u8]) -> bool {
     memchr::memmem::find(bytes, sought).is_some()
 }
 
-/// The names found in these bytes, in either encoding.
+/// Returns the names found in these bytes, in either encoding.
 fn found(bytes: &[u8]) -> Vec<&'static str> {
     let mut sought = PLANTED.to_vec();
     sought.extend(["Jane", "PLANTED", "jane"]);

@@ -25,7 +25,7 @@ fn truth() -> UnitQuaternion<f64> {
     from_roll_pitch_yaw_deg(&Vector3::new(25.0, -40.0, 130.0))
 }
 
-/// A file of 20 pushes, shaped by `shape`, with turned wrist and a little noise.
+/// Returns a file of 20 pushes, shaped by `shape`, with turned wrist and a little noise.
 fn pairs(folder: &Path, shape: impl Fn(Vector3<f64>) -> Vector3<f64>) -> PathBuf {
     let mut noise = Noise::new(11);
     let mut text = String::from("f1x_n,f1y_n,f1z_n,f2x_n,f2y_n,f2z_n,qw,qx,qy,qz\n");

@@ -18,7 +18,7 @@ fn store(data: &Path) -> Store {
     Store::open(data.join("calibrations"))
 }
 
-/// The simulated rig, whose wrist sensor's bias is off by `step_n` along x since its calibration.
+/// Returns the simulated rig, whose wrist sensor's bias is off by `step_n` along x since its calibration.
 fn checked(data: &Path, step_n: f64) -> (Output, ReadyRecord) {
     store(data).save(&gravity()).unwrap();
     let scene = include_str!("../../../config/scenes/correspondence.toml");

@@ -81,7 +81,7 @@ fn catches(pid: u32, signal: u32) -> bool {
     caught.is_some_and(|mask| u64::from_str_radix(mask.trim(), 16).unwrap() >> (signal - 1) & 1 == 1)
 }
 
-/// The embedded emulated rig changed to missing real devices.
+/// Returns the embedded emulated rig changed to missing real devices.
 fn absent_rig(folder: &Path) -> PathBuf {
     let text = include_str!("../../../config/rigs/emulated.toml")
         .replace("emulated = true", "emulated = false")
@@ -335,7 +335,8 @@ fn the_loop_of_another_process() {
     fs::write(std::env::var(SUMMARY).unwrap(), serde_json::to_vec(&summary).unwrap()).unwrap();
 }
 
-/// The right arm of the emulated rig as a file at `path`: it presses on tissue, and the hand feels a steady force.
+/// Returns the right arm of the emulated rig as a file at `path`: it presses on tissue, and the hand feels a steady
+/// force.
 fn pressing_rig(path: &Path) -> RigSettings {
     let mut file = emulated::rig_file(&emulated::elsewhere(path.parent().unwrap()));
     for part in ["left", "tissue_sensor", "tracker", "endoscope", "pedal"] {

@@ -41,7 +41,7 @@ fn refused(arguments: &[&str], words: &[&str]) -> String {
     text
 }
 
-/// A recording of a hand that presses a soft spring twice per second, at 1 kHz.
+/// Returns a recording of a hand that presses a soft spring twice per second, at 1 kHz.
 fn recording(folder: &Path, name: &str, rows: usize, edit: impl Fn(usize, &mut String)) -> PathBuf {
     let mut text = String::from("t_s,x_m,fx_n\n");
     for i in 0..rows {

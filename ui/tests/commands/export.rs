@@ -69,7 +69,7 @@ fn agrees(session: &str, table: &str, arm: &str) -> usize {
     rows
 }
 
-/// The results without the times of this computer.
+/// Returns the results without the times of this computer.
 fn figures(arguments: &[&str]) -> Value {
     let mut figures = json(arguments);
     figures.as_object_mut().unwrap().remove("tick_us").unwrap();

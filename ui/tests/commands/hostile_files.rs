@@ -41,7 +41,7 @@ fn nima(arguments: &[&str]) -> Output {
     child.wait_with_output().unwrap()
 }
 
-/// The one line of a command that must fail.
+/// Returns the one line of a command that must fail.
 fn refused(arguments: &[&str]) -> String {
     let output = nima(arguments);
     let text = String::from_utf8(output.stderr).unwrap();

@@ -12,8 +12,8 @@ use crate::{
     one_line,
 };
 
-/// A hand that presses a spring of this stiffness (N/m) on three axes, in mm and N with another program's column names; `h`
-/// is the leader, 20 ms ahead.
+/// Returns a hand that presses a spring of this stiffness (N/m) on three axes, in mm and N with another program's
+/// column names; `h` is the leader, 20 ms ahead.
 fn recording(folder: &Path, name: &str, stiffness_n_m: f64) -> PathBuf {
     let sine_m = |i: usize| [7.0, 4.4, 12.0].map(|rad_s: f64| 0.01 * (rad_s * i as f64 * 1e-3).sin());
     let mut text = String::from("t_s,px,py,pz,a,b,c,hx,hy,hz\n");

@@ -14,7 +14,7 @@ use serde_json::Value;
 /// Ports of the embedded rig.
 const PORTS: [u16; 9] = [47130, 47100, 47101, 47131, 47110, 47111, 47140, 47120, 47160];
 
-/// The embedded emulated rig on ports that are free for TCP and UDP, so that it disturbs no other process.
+/// Returns the embedded emulated rig on ports that are free for TCP and UDP, so that it disturbs no other process.
 pub(crate) fn rig() -> String {
     let mut text = include_str!("../../../config/rigs/emulated.toml").to_owned();
     // Hold all of them until the last has been chosen, so that no two are the same.

@@ -39,7 +39,7 @@ const SAME: [&str; 27] = [
 /// Start of a pair of literals.
 const BEGINNINGS: [&str; 3] = ["Text::of(", "word(", "text_format!("];
 
-/// The pairs in a source, with continued literals joined.
+/// Returns the pairs in a source, with continued literals joined.
 pub(crate) fn pairs(source: &str) -> Vec<[String; 2]> {
     let mut pairs = Vec::new();
     for beginning in BEGINNINGS {
@@ -56,7 +56,7 @@ pub(crate) fn pairs(source: &str) -> Vec<[String; 2]> {
     pairs
 }
 
-/// The literal at the start of this, and the rest.
+/// Returns the literal at the start of this, and the rest.
 fn literal(source: &str) -> Option<(String, &str)> {
     let rest = source.trim_start().strip_prefix('"')?;
     let mut escaped = false;
@@ -70,7 +70,7 @@ fn literal(source: &str) -> Option<(String, &str)> {
     Some((joined.collect(), &rest[end + 1..]))
 }
 
-/// The modules of texts, without their tests.
+/// Returns the modules of texts, without their tests.
 fn modules() -> Vec<(PathBuf, String)> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
     let mut files: Vec<PathBuf> = Vec::new();
@@ -95,7 +95,7 @@ fn all_pairs() -> Vec<[String; 2]> {
     all
 }
 
-/// The content of braces, sorted; a side after its noun is `after` in German, in lower case.
+/// Returns the content of braces, sorted; a side after its noun is `after` in German, in lower case.
 fn values(text: &str) -> Vec<String> {
     let plain = text.replace("{{", "").replace("}}", "");
     let plain = plain.replace("{side}", "{after}").replace("{arm}", "{after}");

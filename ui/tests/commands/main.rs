@@ -31,7 +31,7 @@ mod study;
 mod two_machines;
 mod user_study;
 
-/// The one line of a failed command.
+/// Returns the one line of a failed command.
 fn one_line(output: &std::process::Output) -> String {
     let text = String::from_utf8(output.stderr.clone()).unwrap();
     assert!(!output.status.success());

@@ -100,7 +100,8 @@ fn every_command_has_a_manual_page() {
 #[cfg(target_os = "linux")]
 type Files = &'static [(&'static str, &'static str)];
 
-/// The script that lists the content of the program, for crates in `folder`: their names, licences, and licence files.
+/// Returns the script that lists the content of the program, for crates in `folder`: their names, licences, and licence
+/// files.
 #[cfg(target_os = "linux")]
 fn inventory(folder: &Path, crates: &[(&str, &str, Files)]) -> Output {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");

@@ -13,13 +13,13 @@ use nima_testing::{
 };
 use nima_tests::emulated::{DEVICES, elsewhere, rig_file, started_in};
 
-/// The ten of the paper's rig.
+/// Returns the ten of the paper's rig.
 fn devices() -> impl Iterator<Item = &'static str> {
     DEVICES.into_iter().filter(|device| *device != "left servos")
 }
 
-/// The program with these arguments in a namespace without any network; `None`, with a message, if no namespace can be
-/// created.
+/// Returns the program with these arguments in a namespace without any network; `None`, with a message, if no namespace
+/// can be created.
 fn alone(arguments: &[&str]) -> Option<Output> {
     let inside = |program: &str, arguments: &[&str], folder: &std::path::Path| {
         let mut command = Command::new("unshare");

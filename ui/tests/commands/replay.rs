@@ -5,7 +5,7 @@ use serde_json::Value;
 
 use crate::every_command::{json, nima};
 
-/// The one line of a command that must fail.
+/// Returns the one line of a command that must fail.
 fn refused(arguments: &[&str]) -> String {
     let output = nima(arguments);
     let text = String::from_utf8(output.stderr).unwrap();

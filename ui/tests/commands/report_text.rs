@@ -10,7 +10,7 @@ use crate::languages::pairs;
 const LEFT: [(&str, usize); 4] =
     [("app/frame_rate.rs", 1), ("canvas/surface.rs", 1), ("scene3d/gl.rs", 2), ("screenshot.rs", 1)];
 
-/// The file or folder of this name in each extra.
+/// Returns the file or folder of this name in each extra.
 pub(crate) fn of_extras(name: &str) -> Vec<PathBuf> {
     let extras = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/extras");
     let folders = std::fs::read_dir(extras).unwrap().map(|entry| entry.unwrap().path()).filter(|path| path.is_dir());
@@ -36,7 +36,7 @@ pub(crate) fn sources(folder: &Path, files: &mut Vec<PathBuf>) {
     }
 }
 
-/// The string literals of a source, without its comments, its attributes and its tests.
+/// Returns the string literals of a source, without its comments, its attributes and its tests.
 pub(crate) fn literals(source: &str) -> Vec<String> {
     let source = source.split("#[cfg(test)]\nmod tests").next().unwrap_or_default();
     let mut literals = Vec::new();
@@ -71,7 +71,7 @@ fn joined(source: &str) -> Vec<String> {
     lines
 }
 
-/// Whether it has two words, or one that starts a sentence; the content of braces does not count.
+/// Returns whether it has two words, or one that starts a sentence; the content of braces does not count.
 pub(crate) fn has_text(literal: &str) -> bool {
     let mut depth = 0_i32;
     let plain: String = literal

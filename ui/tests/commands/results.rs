@@ -27,7 +27,7 @@ fn cells(line: &str) -> Vec<&str> {
     line.trim().trim_matches('|').split('|').map(str::trim).collect()
 }
 
-/// The cell that the marker names.
+/// Returns the cell that the marker names.
 fn cell<'a>(table: &'a str, caption: &str, row: &str, column: &str) -> Option<&'a str> {
     let below = table.lines().skip_while(|line| line.starts_with('|') || !line.contains(caption)).skip(1);
     let mut lines = below.skip_while(|line| !line.starts_with('|')).take_while(|line| line.starts_with('|'));
@@ -37,7 +37,7 @@ fn cell<'a>(table: &'a str, caption: &str, row: &str, column: &str) -> Option<&'
     found.get(at).copied()
 }
 
-/// The first number in the cell, with the digits of the quoted number.
+/// Returns the first number in the cell, with the digits of the quoted number.
 fn rounded(cell: &str, number: &str) -> Option<String> {
     let digits = number.split_once('.').map_or(0, |(_, fraction)| fraction.len());
     let first = cell.split_whitespace().find_map(|word| word.trim_matches([',', ';']).parse::<f64>().ok())?;

@@ -14,7 +14,7 @@ use crate::{
     export::done,
 };
 
-/// The scene with one ring, which two simulated hands carry over and back in about twenty seconds.
+/// Returns the scene with one ring, which two simulated hands carry over and back in about twenty seconds.
 fn scene(folder: &Path) -> String {
     let text = include_str!("../../../config/scenes/rings.toml");
     let one = text.replace("[objects]", "[objects]\nrings = [{ peg = 1 }]");

@@ -12,12 +12,12 @@ use std::{
 use nima_testing::real_time::{alone, judged, too_busy};
 use serde_json::Value;
 
-/// An address of this machine that is free.
+/// Returns an address of this machine that is free.
 fn free() -> String {
     UdpSocket::bind("127.0.0.1:0").unwrap().local_addr().unwrap().to_string()
 }
 
-/// A command of the machine whose files are in this folder.
+/// Returns a command of the machine whose files are in this folder.
 fn at(folder: &Path, arguments: &[&str]) -> Child {
     Command::new(env!("CARGO_BIN_EXE_nima"))
         .args(arguments)
@@ -35,7 +35,7 @@ fn report(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
-/// The code that a pairing shows.
+/// Returns the code that a pairing shows.
 fn code(lines: &mut impl Iterator<Item = std::io::Result<String>>) -> String {
     let line = lines.map(Result::unwrap).find(|line| line.starts_with("code to enter on the other machine"));
     line.unwrap().rsplit(": ").next().unwrap().to_owned()

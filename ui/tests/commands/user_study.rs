@@ -16,7 +16,7 @@ use crate::every_command::{json, nima};
 const SECRET: [&str; 9] =
     ["zebra", "wildebeest", "anchored", "no_force", "no force", "137.5", "0.1375", "0.8125", "rendered_n"];
 
-/// A study of short trials in which the right hand touches tissue.
+/// Returns a study of short trials in which the right hand touches tissue.
 fn file(folder: &Path, head: &str, seconds: f64, conditions: &str) -> String {
     let path = folder.join("file.toml");
     fs::write(&path, study_file(head, seconds, conditions)).unwrap();
@@ -178,7 +178,7 @@ fn twelve_trials_with_a_killed_program_and_a_stop_lose_nothing_but_these_attempt
     );
 }
 
-/// A whole study with simulated people; returns p after Holm of the primary measure, and the page.
+/// Returns a whole study with simulated people; returns p after Holm of the primary measure, and the page.
 fn simulated(conditions: &str) -> (f64, String) {
     let folder = tempfile::tempdir().unwrap();
     let rest = "[questionnaires]\nafter_condition = ['nasa_tlx_weighted']\nat_end = ['sus', 'free_text']";

@@ -168,7 +168,7 @@ fn stops(console: &mut Console) -> Vec<(String, Rect)> {
     stops
 }
 
-/// Whether `next` may follow: below, at the right in the same row, or at the top of the next column.
+/// Returns whether `next` may follow: below, at the right in the same row, or at the top of the next column.
 fn follows(last: Rect, next: Rect) -> bool {
     const SLACK: f32 = 2.0;
     let above = next.bottom() <= last.top() + SLACK;

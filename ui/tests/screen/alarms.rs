@@ -20,7 +20,7 @@ fn reads(harness: &Harness<'_, ConsoleApp>, words: &str) -> usize {
     harness.query_all_by_label_contains(words).count()
 }
 
-/// A console whose loop has ended unexpectedly.
+/// Returns a console whose loop has ended unexpectedly.
 fn of_a_dead_loop() -> Harness<'static, ConsoleApp> {
     let mut harness = console_of("free_motion", SIZE, |app| app);
     until(&mut harness, "any tick", |_| true);

@@ -23,14 +23,14 @@ pub(crate) const WIZARD_SPEED: f64 = 4.0;
 /// A window with the console.
 pub(crate) type Console = Harness<'static, ConsoleApp>;
 
-/// The settings in this folder, for a user who has seen the tour.
+/// Returns the settings in this folder, for a user who has seen the tour.
 pub(crate) fn toured(folder: &Path) -> SettingsStore {
     let mut kept = SettingsStore::open(folder);
     kept.now.toured = true;
     kept
 }
 
-/// The console on the simulated rig in this scene, prepared by `prepare`; with both hands if the scene has two.
+/// Returns the console on the simulated rig in this scene, prepared by `prepare`; with both hands if the scene has two.
 pub(crate) fn console_of(
     scene: &str,
     size: [f32; 2],
@@ -39,7 +39,8 @@ pub(crate) fn console_of(
     shown(&plan(scene), size, prepare)
 }
 
-/// The console on a loop of this plan, prepared by `prepare`. In simulated time, so that a busy machine causes no fault.
+/// Returns the console on a loop of this plan, prepared by `prepare`. In simulated time, so that a busy machine causes
+/// no fault.
 pub(crate) fn shown(
     plan: &SimulationPlan,
     size: [f32; 2],
@@ -99,7 +100,7 @@ pub(crate) fn read<A>(window: &mut Harness<'_, A>, words: &str) {
     wait(window, words, |window| shows(window, words));
 }
 
-/// Whether this text is on the screen.
+/// Returns whether this text is on the screen.
 pub(crate) fn shows<A>(window: &Harness<'_, A>, words: &str) -> bool {
     window.query_all_by_label_contains(words).next().is_some()
 }
@@ -110,7 +111,7 @@ pub(crate) fn texts<A>(window: &Harness<'_, A>) -> Vec<String> {
     window.query_all_by_label_contains("").filter_map(words).collect()
 }
 
-/// Whether this button exists and can be pressed.
+/// Returns whether this button exists and can be pressed.
 pub(crate) fn can_press<A>(window: &Harness<'_, A>, label: &str) -> bool {
     let button = window.query_by_role_and_label(Role::Button, label);
     button.is_some_and(|button| !button.accesskit_node().is_disabled())

@@ -31,7 +31,7 @@ const SIZE: [f32; 2] = [1600.0, 1000.0];
 const WITHIN: Duration = Duration::from_secs(40);
 const NIMA: &str = env!("CARGO_BIN_EXE_nima");
 
-/// A console with the Devices panel in front, on the simulated rig; its data folder is `folder`.
+/// Returns a console with the Devices panel in front, on the simulated rig; its data folder is `folder`.
 fn console(folder: &Path) -> Harness<'static, ConsoleApp> {
     let folder = folder.to_path_buf();
     let plan = plan("peg_transfer");
@@ -47,7 +47,7 @@ fn console(folder: &Path) -> Harness<'static, ConsoleApp> {
     harness
 }
 
-/// The emulated rig at its own addresses, as a file in the user's folder, is started from the start page.
+/// Returns the emulated rig at its own addresses, as a file in the user's folder, is started from the start page.
 fn on_emulated_rig(folder: &Path) -> (Harness<'static, ConsoleApp>, RigFile) {
     let mut file = rig_file(&elsewhere(folder));
     file.set("name", "Bench rig");

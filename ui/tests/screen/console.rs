@@ -47,7 +47,7 @@ fn ever(harness: &mut Harness<'_, ConsoleApp>, seconds: f64, good: impl Fn(&Tick
     false
 }
 
-/// Whether the dead band acts in any tick of this time, whichever ticks a frame shows.
+/// Returns whether the dead band acts in any tick of this time, whichever ticks a frame shows.
 fn closes_within(harness: &mut Harness<'_, ConsoleApp>, seconds: f64) -> bool {
     let acted = |tick: &Tick| tick.gates.counts.acted[Gate::DeadBand.index()];
     let before = harness.state().tick().map_or(0, acted);

@@ -111,7 +111,7 @@ impl Rig for Silent {
     }
 }
 
-/// A console on a simulated rig that falls silent on request.
+/// Returns a console on a simulated rig that falls silent on request.
 fn of_silent(speed: f64) -> (Console, Arc<AtomicBool>) {
     let plan = plan("peg_transfer");
     let is_silent = Arc::<AtomicBool>::default();
@@ -218,7 +218,7 @@ fn the_demonstration_lets_go_with_and_without_the_governor_and_leaves_everything
     until(&mut harness, "as before", |tick| tick.gate_settings == before && tick.mode == mode);
 }
 
-/// A force that fades at standstill would leave nothing to release.
+/// Returns a force that fades at standstill would leave nothing to release.
 fn before_with_hold(before: ChainSettings) -> ChainSettings {
     ChainSettings { static_hold: true, ..before }
 }

@@ -9,7 +9,7 @@ use nima_tests::gravity::gravity;
 
 use crate::bench::{Console, can_press, read, shown, shows};
 
-/// A wrist without a guiding person or trocar contact, with its bias off by `step_n` along x.
+/// Returns a wrist without a guiding person or trocar contact, with its bias off by `step_n` along x.
 fn free_scene(step_n: f64) -> Scene {
     let mut scene = Scene::load("palpation").unwrap();
     scene.trocar = None;

@@ -189,7 +189,7 @@ fn a_key_chooses_the_half_of_two_lenses_and_the_forces_go_with_it() {
     }
 }
 
-/// Whether forces are drawn, in both halves of the view if `both`.
+/// Returns whether forces are drawn, in both halves of the view if `both`.
 fn has_forces(harness: &Console, both: bool) -> bool {
     let mut places = Vec::new();
     for clipped in &harness.output().shapes {

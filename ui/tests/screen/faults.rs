@@ -87,7 +87,7 @@ fn scrolled_tabs<A>(harness: &Harness<'_, A>) -> Vec<Rect> {
     harness.query_all_by(move |node| is_arrow(node.label())).map(|node| node.rect()).collect()
 }
 
-/// Whether this is in one of these rows of tabs.
+/// Returns whether this is in one of these rows of tabs.
 fn is_among(rows: &[Rect], place: Rect) -> bool {
     rows.iter().any(|row| row.y_range().contains(place.center().y))
 }

@@ -20,7 +20,7 @@ use crate::bench::{console_of, press, read, until};
 const SIZE: [f32; 2] = [1600.0, 1000.0];
 const CONTROLS: [Role; 5] = [Role::Button, Role::Slider, Role::CheckBox, Role::SpinButton, Role::TextInput];
 
-/// The controls of a frame by name; duplicate names are left out.
+/// Returns the controls of a frame by name; duplicate names are left out.
 fn controls(harness: &Harness<'_, ConsoleApp>) -> BTreeMap<String, NodeId> {
     let mut named: BTreeMap<String, Vec<NodeId>> = BTreeMap::new();
     for role in CONTROLS {

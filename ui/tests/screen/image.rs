@@ -213,7 +213,7 @@ impl GreyImage {
     }
 }
 
-/// The first pixel whose centre is not before this position.
+/// Returns the first pixel whose centre is not before this position.
 fn from_centre(place: f32) -> usize {
     (place - 0.5).ceil().max(0.0) as usize
 }

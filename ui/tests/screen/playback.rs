@@ -42,7 +42,7 @@ pub(crate) fn until_whole(harness: &mut Harness<'_, ConsoleApp>) {
     harness.run_steps(3);
 }
 
-/// The commands that reach a loop, from its tap.
+/// Returns the commands that reach a loop, from its tap.
 pub(crate) fn watched(plan: &SimulationPlan) -> (runtime::LoopHandle, Arc<Mutex<Vec<Command>>>) {
     let (tap, end) = tap();
     let commands = Arc::<Mutex<Vec<Command>>>::default();

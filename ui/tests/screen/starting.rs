@@ -168,7 +168,7 @@ fn an_endoscope_is_tried_while_its_address_is_typed_and_written_without_editing_
     assert!(!std::fs::read_to_string(&path).unwrap().contains("endoscope"));
 }
 
-/// The console at its first start.
+/// Returns the console at its first start.
 fn newcomer(folder: &Path, size: [f32; 2]) -> Harness<'static, ConsoleApp> {
     let folder = folder.to_path_buf();
     let mut harness = console_of("peg_transfer", size, move |app| app.with_settings(SettingsStore::open(&folder)));

@@ -42,7 +42,7 @@ pub(crate) fn make(data: &Path, head: &str, seconds: f64, rest: &str) -> PathBuf
     place
 }
 
-/// The console with this folder of the user's data.
+/// Returns the console with this folder of the user's data.
 pub(crate) fn console(data: &Path, options: ConsoleOptions) -> Console {
     let data = data.to_path_buf();
     shown_at(SPEED, &plan("peg_transfer"), SIZE, move |app| app.with_settings(toured(&data)).with_options(options))
@@ -167,7 +167,7 @@ fn circles(window: &Console) -> Vec<Pos2> {
     found
 }
 
-/// Whether a circle is in the undimmed part of the round image.
+/// Returns whether a circle is in the undimmed part of the round image.
 fn is_in_image(window: &Console, at: Pos2) -> bool {
     let rect = window.get_by_role_and_label(Role::Canvas, "Operating field").rect();
     let clear = 0.57 * rect.height().min(rect.width());

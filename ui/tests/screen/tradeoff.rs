@@ -19,7 +19,7 @@ fn nima(arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_nima")).args(["study", "tradeoff"]).args(arguments).output().unwrap()
 }
 
-/// A recording of a hand that presses a soft spring twice per second, at 500 Hz, as a lever would give it.
+/// Returns a recording of a hand that presses a soft spring twice per second, at 500 Hz, as a lever would give it.
 fn recording(folder: &Path, rows: usize) -> PathBuf {
     let mut text = String::from("t_s,angle,torque\n");
     for i in 0..rows {

@@ -89,7 +89,7 @@ fn one_person_leads_both_instruments_one_at_a_time() {
     until(&mut harness, "let go", |tick| tick.guide_m.is_none());
 }
 
-/// The displayed torque about the shaft at the jaws, mNm.
+/// Returns the displayed torque about the shaft at the jaws, mNm.
 fn torque_mnm(window: &Window<'_>) -> Option<f64> {
     let begins = "Torque about the shaft: ";
     let report = texts(window).into_iter().find(|report| report.starts_with(begins))?;

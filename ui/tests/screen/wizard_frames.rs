@@ -21,7 +21,7 @@ use crate::{
 
 const SIZE: [f32; 2] = [1600.0, 1000.0];
 
-/// The built-in emulated rig as a file with the addresses of these devices, and with another shaft.
+/// Returns the built-in emulated rig as a file with the addresses of these devices, and with another shaft.
 fn rig_file(folder: &Path, devices: &RigSettings) -> String {
     let mut file = RigFile::of("emulated").unwrap();
     let mut put = |key: &str, value: &dyn std::fmt::Display| file.set(&format!("devices.{key}"), value.to_string());
@@ -53,7 +53,7 @@ fn rig_file(folder: &Path, devices: &RigSettings) -> String {
     path.display().to_string()
 }
 
-/// The console on the emulated interfaces, and the emulators.
+/// Returns the console on the emulated interfaces, and the emulators.
 pub(crate) fn console(folder: &Path) -> (Console, EmulatedRig, String) {
     let devices = elsewhere(folder);
     let emulators = started(&devices);

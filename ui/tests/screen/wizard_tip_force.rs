@@ -135,7 +135,7 @@ impl Console {
         self.step();
     }
 
-    /// The number in the label of the bar.
+    /// Returns the number in the label of the bar.
     fn rows(&self) -> usize {
         let label = self.window.get_by_label_contains(" s (paper: ").accesskit_node().label().unwrap();
         label.trim_start_matches("Rows: ").split(',').next().unwrap().parse().unwrap()
@@ -165,7 +165,7 @@ fn model_path(folder: &Path) -> PathBuf {
     Store::open(folder).path_of("tip-force", &records().0.head.sensor, "safetensors").unwrap()
 }
 
-/// The real console on a running loop, with the data of the wizards.
+/// Returns the real console on a running loop, with the data of the wizards.
 fn real_console(wizards: Wizards, folder: &Path) -> Harness<'static, ConsoleApp> {
     let rig = RigConfig::load("simulated").unwrap();
     let scene = Scene::load("isolation").unwrap();

@@ -48,7 +48,7 @@ impl Screen {
         Self { file, begin, row_bytes: word(12), size_px: [word(4) as usize, word(5) as usize] }
     }
 
-    /// The green part of some rows.
+    /// Returns the green part of some rows.
     fn rows(&self, from: usize, count: usize) -> Vec<u8> {
         let mut bytes = vec![0; count * self.row_bytes as usize];
         let from = self.begin + from as u64 * self.row_bytes;
@@ -56,7 +56,7 @@ impl Screen {
         bytes
     }
 
-    /// The time code of the image, at this shift.
+    /// Returns the time code of the image, at this shift.
     fn code_us(&self, lower: usize) -> Option<u64> {
         let [width, height] = self.size_px.map(|side| side as f64);
         let top = ABOVE + lower as f64;

@@ -41,7 +41,7 @@ impl<'a> Day<'a> {
         self.console.move_to(NOTHING);
     }
 
-    /// The middle of the button that stands out.
+    /// Returns the middle of the button that stands out.
     fn next(&self) -> Option<(i32, i32)> {
         let mut import = self.console.x.command("import");
         let image = import.args(["-window", "root", "-depth", "8", "rgb:-"]).output().unwrap().stdout;
@@ -78,7 +78,7 @@ impl<'a> Day<'a> {
         files
     }
 
-    /// The records of the ready checks so far, newest last.
+    /// Returns the records of the ready checks so far, newest last.
     fn checks(&self) -> Vec<String> {
         self.files("checks").iter().map(|path| std::fs::read_to_string(path).unwrap()).collect()
     }

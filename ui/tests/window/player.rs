@@ -253,7 +253,7 @@ impl<'a> Player<'a> {
         }
     }
 
-    /// A loop that this machine delays raises an alarm, whose strip moves the field.
+    /// Returns a loop that this machine delays raises an alarm, whose strip moves the field.
     fn sees_alarm(&self) -> bool {
         let strip = Rect::from_min_size(pos2(0.0, 60.0), vec2(WINDOW[0], 70.0));
         self.image(strip).places(|pixel| ALARMS.contains(&pixel)).len() > ALARM_PIXELS
@@ -289,7 +289,7 @@ impl<'a> Player<'a> {
         }
     }
 
-    /// The outer rim of a ring with its centre here, seen from a side.
+    /// Returns the outer rim of a ring with its centre here, seen from a side.
     pub(crate) fn rim(side: Side, [x, y]: [f32; 2]) -> [f32; 2] {
         [if side == Side::Left { x - RIM_M } else { x + RIM_M }, y]
     }
@@ -298,7 +298,7 @@ impl<'a> Player<'a> {
         self.scene.objects.as_ref().unwrap().pegs.position_m[number].map(|m| m as f32)
     }
 
-    /// The centre of the ring around this peg.
+    /// Returns the centre of the ring around this peg.
     fn ring_around(&mut self, peg: [f32; 2]) -> [f32; 2] {
         for _ in 0..4 {
             if let Some(ring) = self.sees_ring(peg) {

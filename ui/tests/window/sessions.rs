@@ -40,7 +40,7 @@ fn end(mut console: Console) -> [serde_json::Value; 3] {
     [summary, settings, marks(console.folder.path())]
 }
 
-/// The lines of the marks in all sessions in this folder of a user.
+/// Returns the lines of the marks in all sessions in this folder of a user.
 fn marks(folder: &Path) -> serde_json::Value {
     let mut words = Vec::new();
     for entry in std::fs::read_dir(folder.join("sessions")).unwrap() {
@@ -118,7 +118,7 @@ fn each_role_does_its_work_by_mouse_and_keyboard() {
     nima_testing::real_time::judged(|| demo(&x));
 }
 
-/// The states of the loop in a window without input.
+/// Returns the states of the loop in a window without input.
 fn left_alone(x: &Xvfb, folder: tempfile::TempDir, options: &[&str]) -> serde_json::Value {
     std::fs::write(folder.path().join("console.json"), r#"{"toured":true}"#).unwrap();
     let mut console = Console::begin(x, folder, options);

@@ -31,7 +31,7 @@ impl Picture {
     }
 }
 
-/// The rectangle around these positions; `None` if there are none.
+/// Returns the rectangle around these positions; `None` if there are none.
 pub(super) fn around(places: &[Pos2]) -> Option<Rect> {
     (!places.is_empty()).then(|| Rect::from_points(places))
 }
@@ -42,7 +42,7 @@ pub(super) fn is_of_ring([r, g, b]: [u8; 3]) -> bool {
     r > g + 25 && g > b + 12
 }
 
-/// The circle, the line and the mark below, where nothing else is green.
+/// Returns the circle, the line and the mark below, where nothing else is green.
 pub(super) fn is_green([r, g, b]: [u8; 3]) -> bool {
     let [r, g, b] = [r, g, b].map(i32::from);
     g > r + 20 && g > b + 25

@@ -44,7 +44,8 @@ impl MatchedModel {
         offset_n: Lanes::ZERO,
     };
 
-    /// The force (N) for a motion; `None` without a model or where it is not finite. `slip`: this end's springs, which move on.
+    /// Returns the force (N) for a motion; `None` without a model or where it is not finite. `slip`: this end's
+    /// springs, which move on.
     pub(super) fn force(&self, now: &Posture, slip: &mut Slip) -> Option<Lanes> {
         if self.degree == 0 {
             return None;

@@ -72,7 +72,7 @@ impl ErrorBound {
 }
 
 impl<const D: usize> ObserverHistory<D> {
-    /// The sample that ends a window of `span_s` (s) and of at least [`MIN_SAMPLES`] that begins at `from`.
+    /// Returns the sample that ends a window of `span_s` (s) and of at least [`MIN_SAMPLES`] that begins at `from`.
     fn window(&self, from: usize, span_s: f64) -> Option<usize> {
         let at_least = from + MIN_SAMPLES - 1;
         let begin_s = *self.t_s.get(from)?;

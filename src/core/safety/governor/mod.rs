@@ -169,7 +169,7 @@ impl<const D: usize> Governor<D> {
         }
     }
 
-    /// The handle that it watches.
+    /// Returns the handle that it watches.
     pub const fn handle(&self) -> &FreeHandle {
         &self.handle
     }
@@ -342,7 +342,7 @@ impl<const D: usize> Governor<D> {
 }
 
 impl Since {
-    /// The grip that this shows, if any.
+    /// Returns the grip that this shows, if any.
     fn verdict<const D: usize>(&self) -> Option<GripState<D>> {
         if self.pulls_s >= PULLS_S {
             Some(GripState::Held)
@@ -356,7 +356,7 @@ impl Since {
     }
 }
 
-/// The vector, shortened to this length.
+/// Returns the vector, shortened to this length.
 fn within<const D: usize>(vector: SVector<f64, D>, max: f64) -> SVector<f64, D> {
     let norm = vector.norm();
     if norm > max { vector * (max / norm) } else { vector }

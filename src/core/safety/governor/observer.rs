@@ -140,7 +140,7 @@ impl<const D: usize> Observer<D> {
         self.inexact_s = self.inexact_s.max(2.0 * off_m / speed_m_s);
     }
 
-    /// The samples relative to the newest one.
+    /// Returns the samples relative to the newest one.
     pub(super) fn past(&self) -> ObserverHistory<D> {
         let mut past = ObserverHistory::blank(self.handle, self.count, self.inexact_s);
         let now = self.ring[self.newest];

@@ -104,7 +104,7 @@ impl MixedFit {
         })
     }
 
-    /// The fixed effect of that name.
+    /// Returns the fixed effect of that name.
     pub fn effect(&self, name: &str) -> Option<&FixedEffect> {
         self.effects.iter().find(|effect| effect.name == name)
     }

@@ -88,7 +88,7 @@ pub(crate) fn wilson(fraction: f64, runs: f64) -> ConfidenceInterval {
     ConfidenceInterval { lower: (centre - half).max(0.0), upper: (centre + half).min(1.0), confidence }
 }
 
-/// A draw from the standard normal distribution.
+/// Returns a draw from the standard normal distribution.
 fn normal(rng: &mut fastrand::Rng) -> f64 {
     // The middle of one of 2^52 equal steps: never 0 or 1, whose quantiles are infinite.
     let fraction = ((rng.u64(..) >> 12) as f64 + 0.5) / (1_u64 << 52) as f64;

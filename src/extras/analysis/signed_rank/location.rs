@@ -45,7 +45,7 @@ pub fn location(differences: &[f64], confidence: f64) -> Result<Location> {
     Ok(Location { estimate: summary::median_of_sorted(&averages), interval })
 }
 
-/// The averages of all pairs, ascending.
+/// Returns the averages of all pairs, ascending.
 fn walsh_averages(differences: &[f64]) -> Vec<f64> {
     let with_the_rest = |at: usize| differences[at..].iter().map(move |other| f64::midpoint(differences[at], *other));
     let mut averages: Vec<f64> = (0..differences.len()).flat_map(with_the_rest).collect();

@@ -66,7 +66,7 @@ pub struct IgtlMessage {
 }
 
 impl IgtlMessage {
-    /// A message of this device and time (ns since 1970, UTC).
+    /// Creates a message of this device and time (ns since 1970, UTC).
     pub fn new(device: &str, time_ns: u64, content: Content) -> Self {
         Self { device: device.to_owned(), time_ns, content }
     }

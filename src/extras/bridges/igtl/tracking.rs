@@ -13,7 +13,7 @@ impl PoseMatrix {
     /// Size in bytes.
     pub(super) const BYTES: usize = 48;
 
-    /// A pose without rotation at this position (mm).
+    /// Creates a pose without rotation at this position (mm).
     pub const fn at(place_mm: [f32; 3]) -> Self {
         Self([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], place_mm])
     }

@@ -159,7 +159,7 @@ fn missing(searched: &str) -> LslError {
     LslError::Missing { searched: searched.to_owned() }
 }
 
-/// A C string; a text with a zero in it ends there.
+/// Returns a C string; a text with a zero in it ends there.
 fn text(of: &str) -> CString {
     CString::new(of.split('\0').next().unwrap_or_default()).unwrap_or_default()
 }
@@ -184,7 +184,7 @@ impl LslStream {
         unsafe { (self.lsl.push_sample_strtp)(self.outlet.as_ptr(), sample.as_ptr(), at_s, PUSH_THROUGH) };
     }
 
-    /// Whether a listener is connected.
+    /// Returns whether a listener is connected.
     pub(super) fn is_received(&self) -> bool {
         // SAFETY: the outlet is valid.
         unsafe { (self.lsl.have_consumers)(self.outlet.as_ptr()) != 0 }

@@ -130,7 +130,7 @@ impl MarkStream {
         Ok(Self { shared, thread: Some(thread) })
     }
 
-    /// Whether a listener is connected.
+    /// Returns whether a listener is connected.
     pub fn is_received(&self) -> bool {
         self.shared.received.load(Ordering::Relaxed)
     }

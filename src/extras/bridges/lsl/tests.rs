@@ -28,7 +28,7 @@ fn ticks() -> Vec<[Option<Tick>; SIDES]> {
     (0..1800).map(|number| [Some(at(number, &tick)), None]).collect()
 }
 
-/// A copy of this tick with another number.
+/// Returns a copy of this tick with another number.
 fn at(number: u32, like: &Tick) -> Tick {
     let mut tick = *like;
     tick.index = u64::from(number);

@@ -26,8 +26,8 @@ fn normal(rng: &mut Rng) -> f64 {
     (-2.0 * (1.0 - rng.f64()).ln()).sqrt() * (std::f64::consts::TAU * rng.f64()).cos()
 }
 
-/// A board whose middle is seen at this position in the image (-1 to 1 each), tilted about x and y and rotated about z,
-/// degrees.
+/// Returns a board whose middle is seen at this position in the image (-1 to 1 each), tilted about x and y and rotated
+/// about z, degrees.
 fn pose(
     lens: &Lens,
     board: &Checkerboard,
@@ -84,7 +84,7 @@ fn corners_px(lens: &Lens, board: &Checkerboard, pose: &Isometry3<f64>) -> Optio
     board.places_m().iter().map(|place_m| lens.project(&(pose.rotation * place_m + pose.translation.vector))).collect()
 }
 
-/// Whether all corners are in the image, with some margin for a window around them.
+/// Returns whether all corners are in the image, with some margin for a window around them.
 fn is_whole(lens: &Lens, board: &Checkerboard, pose: &Isometry3<f64>) -> bool {
     let [width, height] = lens.size_px.map(|side| side as f64);
     let inside = |at: &Vector2<f64>| (14.0..width - 14.0).contains(&at.x) && (14.0..height - 14.0).contains(&at.y);
@@ -130,7 +130,7 @@ fn rendered(rng: &mut Rng, lens: &Lens, poses: &[Isometry3<f64>], sensor: Sensor
     views.enumerate().map(|(at, view)| view.unwrap_or_else(|why| panic!("view {at}: {why:?}"))).collect()
 }
 
-/// The same without images: true corners with noise.
+/// Returns the same without images: true corners with noise.
 fn noisy(rng: &mut Rng, lens: &Lens, poses: &[Isometry3<f64>], noise_px: f64) -> Vec<BoardSight> {
     let light = Grey::new(SIZE_PX, vec![200.0; SIZE_PX[0] * SIZE_PX[1]]).unwrap();
     let view = |pose| {

@@ -4,7 +4,7 @@ use nima_core::calibration::Verdict;
 use super::*;
 use crate::{CameraPlacement, PlaceError, PlaceLack, TouchedCorner, place};
 
-/// A camera above a board that lies on the table.
+/// Returns a camera above a board that lies on the table.
 fn scene() -> (Lens, Isometry3<f64>, Isometry3<f64>) {
     let lens = lens(-0.3);
     let camera_from_board = pose(&lens, &board(), [0.1, -0.1], 0.1, [25.0, -10.0, 30.0]);

@@ -18,7 +18,7 @@ use crate::{
 const HOME: (Ipv4Addr, u16) = (Ipv4Addr::LOCALHOST, 0);
 const TICK: Duration = Duration::from_millis(1);
 
-/// A follower that admits consoles with these keys.
+/// Returns a follower that admits consoles with these keys.
 fn follower(keys: &NetworkKeys, consoles: &[&NetworkKeys], at: SocketAddr) -> Endpoint {
     let mut peers = Peers::default();
     for (i, console) in consoles.iter().enumerate() {
@@ -102,7 +102,7 @@ fn keys() -> NetworkKeys {
     NetworkKeys::random().unwrap()
 }
 
-/// A follower and its console, connected.
+/// Returns a follower and its console, connected.
 fn pair() -> (Time, End, End, NetworkKeys, NetworkKeys) {
     let theirs = keys();
     let ours = keys();

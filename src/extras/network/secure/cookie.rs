@@ -64,7 +64,7 @@ impl Cookies {
         mac(&self.secrets[0], from, token).finalize().into_bytes().into()
     }
 
-    /// Whether the cookie was made for this address and number in the last two minutes.
+    /// Returns whether the cookie was made for this address and number in the last two minutes.
     pub fn is_ours(&self, from: SocketAddr, token: u64, cookie: &[u8]) -> bool {
         self.secrets.iter().any(|secret| mac(secret, from, token).verify_slice(cookie).is_ok())
     }

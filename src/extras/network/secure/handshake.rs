@@ -69,7 +69,7 @@ impl HandshakeResult {
         Self { answer: 0, trouble: Some(trouble), agreed: None }
     }
 
-    /// Whether a session was made.
+    /// Returns whether a session was made.
     pub const fn is_agreed(&self) -> bool {
         self.agreed.is_some()
     }
@@ -213,7 +213,7 @@ impl Reception {
         Some((agreed, response, len))
     }
 
-    /// Whether another handshake of this address may be computed now.
+    /// Returns whether another handshake of this address may be computed now.
     fn may_compute(&mut self, ip: IpAddr, now_s: f64) -> bool {
         let known = self.addresses.iter().position(|(known, _)| *known == ip);
         let index = known.unwrap_or_else(|| {

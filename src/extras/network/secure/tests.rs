@@ -9,7 +9,7 @@ use crate::{
 
 type Datagram = [u8; HANDSHAKE_MAX];
 
-/// A follower with one paired console, that console, and one that is not paired.
+/// Returns a follower with one paired console, that console, and one that is not paired.
 fn machines() -> (Reception, Approach, Approach) {
     let follower = NetworkKeys::random().unwrap();
     let console = NetworkKeys::random().unwrap();

@@ -58,7 +58,7 @@ fn the_task_file_of_the_page_holds_the_defaults() {
     assert_eq!(TaskFile::from_toml(text).unwrap(), bare);
 }
 
-/// A trial with every kind of event.
+/// Returns a trial with every kind of event.
 fn full(more: &str) -> Score {
     let hands = |t_s: f64| {
         Side::ALL.map(|side| {

@@ -23,13 +23,13 @@ fn task(more: &str) -> TaskFile {
     TaskFile::from_toml(&format!("name = 'test'\n{kind}{more}")).unwrap()
 }
 
-/// A trial at 1 kHz from 0 s to `end_s`, with these events in addition to its beginning and end.
+/// Returns a trial at 1 kHz from 0 s to `end_s`, with these events in addition to its beginning and end.
 fn trial(task: &TaskFile, end_s: f64, hands: impl Fn(f64) -> Hands, events: &[(f64, TaskEvent)]) -> Score {
     let times_s = (0..=(end_s * 1000.0).round() as u32).map(|tick| f64::from(tick) * 1e-3);
     trial_at(task, times_s, end_s, hands, events)
 }
 
-/// The same at any times.
+/// Returns the same at any times.
 fn trial_at(
     task: &TaskFile,
     times_s: impl Iterator<Item = f64>,

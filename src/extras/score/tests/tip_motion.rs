@@ -8,7 +8,7 @@ use crate::{HandSample, Score, ellipsoid::CHI_SQUARE_95};
 
 const DIRECTION: Vector3<f64> = Vector3::new(0.6, 0.0, 0.8);
 
-/// A reach of 0.2 m in 2 s, which is the whole trial.
+/// Returns a reach of 0.2 m in 2 s, which is the whole trial.
 fn reach(times_s: impl Iterator<Item = f64>) -> Score {
     let way = |t_s: f64| right(DIRECTION * (0.2 * minimum_jerk(t_s / 2.0)) + Vector3::new(1.0, 2.0, 3.0));
     trial_at(&task(""), times_s, 2.0, way, &[])

@@ -25,7 +25,7 @@ pub struct LiveTrial {
 }
 
 impl LiveTrial {
-    /// A trial of this task.
+    /// Creates a trial of this task.
     pub fn new(task: &TaskFile) -> Self {
         Self {
             trial: ScoredTrial::new(task),
@@ -71,7 +71,7 @@ impl LiveTrial {
         sample.hands[side.index()] = Some(hand);
     }
 
-    /// Whether the task is done, or its time is over: later ticks do not count.
+    /// Returns whether the task is done, or its time is over: later ticks do not count.
     pub fn is_over(&self) -> bool {
         self.ended || self.elapsed_s() > self.limit_s
     }

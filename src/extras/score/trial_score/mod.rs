@@ -45,7 +45,7 @@ struct ScoredTrial {
 }
 
 impl ScoredTrial {
-    /// A trial of this task.
+    /// Creates a trial of this task.
     fn new(task: &TaskFile) -> Self {
         Self {
             scorer: Scorer::new(task),

@@ -28,12 +28,12 @@ impl RunningTrial {
         self.trial
     }
 
-    /// The label of its condition; `None` in practice.
+    /// Returns the label of its condition; `None` in practice.
     pub const fn label(&self) -> Option<Label> {
         self.label
     }
 
-    /// The feedback to the hand: only for the loop, must never be displayed.
+    /// Returns the feedback to the hand: only for the loop, must never be displayed.
     pub const fn condition(&self) -> &Condition {
         &self.condition
     }

@@ -128,12 +128,12 @@ impl UserStudy {
         &self.folder
     }
 
-    /// The public part of the study.
+    /// Returns the public part of the study.
     pub const fn plan(&self) -> &StudyPlan {
         &self.plan
     }
 
-    /// The text of its scene file.
+    /// Returns the text of its scene file.
     pub fn scene(&self) -> &str {
         &self.scene
     }
@@ -143,7 +143,7 @@ impl UserStudy {
         &self.state
     }
 
-    /// The assignment if it may be shown: after the unblinding, or in a study that is not blind.
+    /// Returns the assignment if it may be shown: after the unblinding, or in a study that is not blind.
     pub fn opened(&self) -> Option<&Assignment> {
         self.state.is_open(&self.plan).then_some(&self.secret)
     }

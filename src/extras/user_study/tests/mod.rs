@@ -49,7 +49,7 @@ pub(super) fn again(folder: &Path) -> UserStudy {
     UserStudy::open(&folder.join("study"), AT).unwrap()
 }
 
-/// A score of a trial with this duration and a force in the hand.
+/// Returns a score of a trial with this duration and a force in the hand.
 pub(super) fn score(seconds: u32) -> Score {
     let mut scorer = Scorer::new(&TaskFile::from_toml("name = 'x'\nkind = 'peg_transfer'").unwrap());
     scorer.happening(&TimedTaskEvent { t_s: 0.0, event: TaskEvent::Begun });

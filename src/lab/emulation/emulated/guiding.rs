@@ -72,7 +72,7 @@ impl Guide {
         found.min_by(|a, b| (a - from_rad).amax().total_cmp(&(b - from_rad).amax()))
     }
 
-    /// Whether the arm can move to this hold from here without taking another pose first.
+    /// Returns whether the arm can move to this hold from here without taking another pose first.
     pub(super) fn reaches(&self, from_rad: &Joints, hold: &ToolHold) -> bool {
         self.converged(*from_rad, hold).is_some()
     }

@@ -207,7 +207,7 @@ impl EmulatedRig {
         Ok(Self { devices, sides, pedal, markers_exchanged, endoscope })
     }
 
-    /// The running emulators.
+    /// Returns the running emulators.
     pub fn servings(&self) -> &[EmulatedDevice] {
         &self.devices
     }

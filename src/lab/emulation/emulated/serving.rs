@@ -203,7 +203,7 @@ fn tracker(
     served(name, emulator)
 }
 
-/// The emulated unit accepts any tool definition; if the rig names a missing file, this creates it.
+/// Returns the emulated unit accepts any tool definition; if the rig names a missing file, this creates it.
 fn define(path: &Path) -> std::io::Result<()> {
     if path.exists() {
         return Ok(());

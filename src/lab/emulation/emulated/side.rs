@@ -86,7 +86,7 @@ pub(super) struct SideWorld {
 }
 
 impl SideWorld {
-    /// The world of a scene adapted to this side, with the arm at these angles.
+    /// Creates the world of a scene adapted to this side, with the arm at these angles.
     pub(super) fn new(
         scene: &Scene,
         set: &ArmSet,

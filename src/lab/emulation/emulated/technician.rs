@@ -87,7 +87,7 @@ impl Carry {
 }
 
 impl SideTechnician {
-    /// A technician away from the arm of a scene adapted to its side. `ready_rad` are the joint angles with the
+    /// Creates a technician away from the arm of a scene adapted to its side. `ready_rad` are the joint angles with the
     /// instrument in the trocar.
     pub(super) fn new(arm: Arm, ready_rad: Joints, scene: &Scene, world_from_view: UnitQuaternion<f64>) -> Self {
         Self {
@@ -113,7 +113,7 @@ impl SideTechnician {
         }
     }
 
-    /// Whether no one is at the arm.
+    /// Returns whether no one is at the arm.
     pub(super) const fn is_away(&self) -> bool {
         matches!(self.doing, TechnicianActivity::Away)
     }
@@ -238,8 +238,8 @@ impl SideTechnician {
         }
     }
 
-    /// Whether body wall and tissue are removed: whenever the arm is moved, and for the calibrations without a wall.
-    /// Pushes then replace the tissue on its sensor.
+    /// Returns whether body wall and tissue are removed: whenever the arm is moved, and for the calibrations without a
+    /// wall. Pushes then replace the tissue on its sensor.
     pub(super) const fn sets_aside(&self) -> bool {
         match self.doing {
             TechnicianActivity::Away => false,

@@ -42,7 +42,7 @@ impl CameraMount {
         }
     }
 
-    /// The marker on the endoscope, before or after a push.
+    /// Returns the marker on the endoscope, before or after a push.
     pub(super) fn endoscope(
         &mut self,
         world_from_view: &UnitQuaternion<f64>,
@@ -86,7 +86,7 @@ impl CameraMount {
     }
 }
 
-/// A tool at this position relative to the middle of the workspace, m; the camera looks along its own -z.
+/// Returns a tool at this position relative to the middle of the workspace, m; the camera looks along its own -z.
 fn seen(c_from_tool: UnitQuaternion<f64>, from_middle_m: Vector3<f64>) -> TrackedTool {
     TrackedTool::Seen {
         c_from_tool,

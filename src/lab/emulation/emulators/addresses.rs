@@ -120,7 +120,7 @@ mod terminal {
             Ok(Self { path, _claim: claim, _folder: folder })
         }
 
-        /// The path that a client opens.
+        /// Returns the path that a client opens.
         pub(in crate::emulators) fn path(&self) -> String {
             self.path.display().to_string()
         }
@@ -152,7 +152,7 @@ mod terminal {
         path.with_file_name(format!(".{name}.{kind}"))
     }
 
-    /// Whether nothing exists at the path, or a link left by an emulator.
+    /// Returns whether nothing exists at the path, or a link left by an emulator.
     fn may_be_replaced(path: &Path) -> bool {
         match fs::symlink_metadata(path) {
             Err(_) => true,

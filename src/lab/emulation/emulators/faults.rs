@@ -132,7 +132,7 @@ impl FaultSwitch {
         self.0.store(fault as u32, Ordering::Release);
     }
 
-    /// The active fault.
+    /// Returns the active fault.
     pub fn get(&self) -> EmulatedFault {
         let code = self.0.load(Ordering::Acquire);
         EmulatedFault::every().find(|fault| *fault as u32 == code).unwrap_or_default()

@@ -47,7 +47,7 @@ pub trait Emulator: Send {
     /// Called first on the serving thread.
     fn begin(&mut self) {}
 
-    /// Whether another client may connect now.
+    /// Returns whether another client may connect now.
     fn admits(&self) -> bool {
         true
     }

@@ -37,7 +37,7 @@ pub struct EmulatorThread {
 }
 
 impl EmulatorThread {
-    /// Whether it is still serving.
+    /// Returns whether it is still serving.
     pub fn is_serving(&self) -> bool {
         self.thread.as_ref().is_some_and(|thread| !thread.is_finished())
     }

@@ -212,7 +212,7 @@ pub(crate) fn attached() -> Vec<(SocketAddr, DeviceReply)> {
     addresses().into_iter().filter_map(|address| Some((address, StandInHandle::reach(address)?.reply))).collect()
 }
 
-/// Whether a program has it open.
+/// Returns whether a program has it open.
 pub(crate) const fn is_taken(reply: &DeviceReply) -> bool {
     reply.flags & TAKEN != 0
 }
@@ -258,7 +258,7 @@ pub(crate) fn choose(id: c_char) -> Result<c_int, c_int> {
     Ok(0)
 }
 
-/// The default device.
+/// Returns the default device.
 pub(crate) fn chosen() -> Result<c_int, c_int> {
     let default = locked(&REGISTRY).default.ok_or(NO_DEVICE)?;
     c_int::try_from(default).map_err(|_| OUTSIDE_RANGE)

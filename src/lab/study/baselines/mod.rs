@@ -138,7 +138,7 @@ impl Experiment for BaselineOptions {
     }
 }
 
-/// The modes of the table, in its order.
+/// Returns the modes of the table, in its order.
 fn modes() -> impl Iterator<Item = Mode> {
     OWN.into_iter().chain(Mode::BASELINES)
 }

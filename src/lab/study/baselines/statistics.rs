@@ -29,8 +29,8 @@ impl MeanInterval {
     }
 }
 
-/// The 97.5 % quantile of Student's t: a table for few degrees of freedom, beyond it the expansion about the normal one
-/// (Abramowitz and Stegun, 26.7.5), accurate to 0.001.
+/// Returns the 97.5 % quantile of Student's t: a table for few degrees of freedom, beyond it the expansion about the
+/// normal one (Abramowitz and Stegun, 26.7.5), accurate to 0.001.
 fn t_975(freedom: usize) -> f64 {
     const TABLE: [f64; 8] = [12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306];
     if let Some(t) = freedom.checked_sub(1).and_then(|index| TABLE.get(index)) {

@@ -47,7 +47,7 @@ pub(super) fn all() -> Result<Vec<Special>, FaultsError> {
     Ok(specials)
 }
 
-/// The same model with its mass or gain scaled by `by`.
+/// Returns the same model with its mass or gain scaled by `by`.
 fn poisoned(model: &GravityModel, by: f64) -> GravityModel {
     let mut poisoned = *model;
     match &mut poisoned.parameters {
@@ -58,7 +58,7 @@ fn poisoned(model: &GravityModel, by: f64) -> GravityModel {
     poisoned
 }
 
-/// A loop whose calibration is corrupted after loading: engaging must be refused.
+/// Returns a loop whose calibration is corrupted after loading: engaging must be refused.
 fn in_memory(what: &str, gravity: &GravityModel) -> Result<Special, FaultsError> {
     let mut config = RigConfig::load("simulated")?;
     config.mode = Mode::Dfr;
@@ -87,7 +87,7 @@ fn in_memory(what: &str, gravity: &GravityModel) -> Result<Special, FaultsError>
     })
 }
 
-/// The hand opens on a rig without presence detection: measures the force that the gates still allow.
+/// Returns the hand opens on a rig without presence detection: measures the force that the gates still allow.
 fn let_go() -> Result<Special, FaultsError> {
     let tissue = Scene::load("peg_transfer")?.tissue;
     let wrong = |reason: String| FaultsError::Calibration(ValidationError::Calibration(reason));
@@ -109,7 +109,7 @@ fn let_go() -> Result<Special, FaultsError> {
     })
 }
 
-/// A network's file with one number made NaN, a truncated one, and one of another format.
+/// Returns a network's file with one number made NaN, a truncated one, and one of another format.
 fn networks(folder: &Path) -> Result<Vec<Special>, FaultsError> {
     let known = isolation::PriorCalibrations::calibrate(1)?;
     let scene = SimulatedExperiment::scene("isolation", 1)?;
@@ -146,7 +146,7 @@ fn refused(what: &str, report: Option<String>, path: &Path) -> Special {
     Special { what: what.to_owned(), verdict, report, detection_ms: None, zero_ms: None }
 }
 
-/// A calibration file with one number made NaN, a truncated one, and a valid one of another sensor and tool.
+/// Returns a calibration file with one number made NaN, a truncated one, and a valid one of another sensor and tool.
 fn gravity_files(folder: &Path) -> Result<Vec<Special>, FaultsError> {
     let wrong = |reason: String| FaultsError::Calibration(ValidationError::Calibration(reason));
     let record = experiment::gravity_report(1)?.record("S1", "grasper", &utc_now());

@@ -69,7 +69,7 @@ pub(super) struct BenchStep {
 }
 
 impl FaultBench {
-    /// An idle rig with its force sensor at this place, in this mode.
+    /// Returns an idle rig with its force sensor at this place, in this mode.
     pub(super) fn new(sensor: SensorAt, mode: Mode, seed: u64) -> Result<Self, FaultsError> {
         let mut config = RigConfig::load("simulated")?;
         config.mode = mode;
@@ -265,7 +265,7 @@ impl FaultBench {
         }
     }
 
-    /// Whether the tip is well above the tissue (`free`), or well in it.
+    /// Returns whether the tip is well above the tissue (`free`), or well in it.
     fn is_at(&self, free: bool) -> bool {
         let tip_z_m = self.rig.truth[FAULTY].map_or(0.0, |seen| seen.tip_m.z);
         if free { tip_z_m > 0.008 } else { tip_z_m < -0.005 }
@@ -298,7 +298,7 @@ fn force_apart_n(given: Option<&Inputs>, truth: Option<&Inputs>) -> f64 {
     given.zip(truth).map_or(0.0, apart)
 }
 
-/// Whether the loop's inputs differ from the measurements.
+/// Returns whether the loop's inputs differ from the measurements.
 fn differs(given: Option<&Inputs>, truth: Option<&Inputs>) -> bool {
     let (Some(given), Some(truth)) = (given, truth) else { return given.is_some() != truth.is_some() };
     let force_n = force_apart_n(Some(given), Some(truth));
@@ -318,7 +318,7 @@ fn differs(given: Option<&Inputs>, truth: Option<&Inputs>) -> bool {
     !near || turned || given.switches != truth.switches || given.powered != truth.powered || given.age_s > truth.age_s
 }
 
-/// Whether the rig's outputs differ from what the loop commanded.
+/// Returns whether the rig's outputs differ from what the loop commanded.
 fn altered(wanted: &Outputs, applied: &Outputs) -> bool {
     let apart_m = match (wanted.tip_command_m, applied.tip_command_m) {
         (Some(wanted), Some(applied)) => (wanted - applied).norm(),

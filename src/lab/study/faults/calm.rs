@@ -78,7 +78,7 @@ pub(super) fn runs(seconds: f64) -> Result<FaultFreeRuns, FaultsError> {
     Ok(calm)
 }
 
-/// A rig with an arm, whose readings are processed like those of a rig with devices.
+/// Returns a rig with an arm, whose readings are processed like those of a rig with devices.
 fn on_arm(calm: &mut FaultFreeRuns, sensor: SensorAt, mode: Mode, seconds: f64) -> Result<(), FaultsError> {
     let mut bench = FaultBench::new(sensor, mode, calm.runs as u64)?;
     bench.obey(Command::Engage);

@@ -22,7 +22,7 @@ pub enum FaultPart {
 }
 
 impl FaultPart {
-    /// Whether the force to the hand is computed from data of this part.
+    /// Returns whether the force to the hand is computed from data of this part.
     pub const fn is_on_force_path(self) -> bool {
         matches!(self, Self::Force | Self::Orientation | Self::Clock | Self::Link)
     }
@@ -186,8 +186,8 @@ impl FaultKind {
     /// Readings of a repeated block.
     pub(super) const BLOCK: usize = 32;
 
-    /// Whether it is in the readings or the actions of a device: then it is also tested on rigs with an arm. The others
-    /// do not depend on the rig.
+    /// Returns whether it is in the readings or the actions of a device: then it is also tested on rigs with an arm.
+    /// The others do not depend on the rig.
     pub const fn is_of_devices(self) -> bool {
         match self.part() {
             FaultPart::Force => !matches!(self, K::ForceLateTold | K::ForceLost),
@@ -198,7 +198,7 @@ impl FaultKind {
         }
     }
 
-    /// Whether it needs a sensor at the wrist.
+    /// Returns whether it needs a sensor at the wrist.
     pub const fn needs_wrist(self) -> bool {
         matches!(self.part(), FaultPart::Orientation)
     }

@@ -107,7 +107,7 @@ impl FaultPlace {
         }
     }
 
-    /// Whether force and motion are on when the fault begins.
+    /// Returns whether force and motion are on when the fault begins.
     pub const fn is_engaged(self) -> bool {
         matches!(self, Self::Free | Self::Contact)
     }

@@ -39,7 +39,7 @@ impl SensorAt {
         matches!(self, Self::Wrist | Self::ArmWrist | Self::ExternalWrist)
     }
 
-    /// The devices around the world; `None` for the simulated rig.
+    /// Returns the devices around the world; `None` for the simulated rig.
     pub(super) const fn wiring(self) -> Option<Wiring> {
         match self {
             Self::Tip | Self::Wrist => None,
@@ -59,12 +59,12 @@ impl SensorAt {
         }
     }
 
-    /// The states in which faults are tested: without an engagement the arm changes nothing.
+    /// Returns the states in which faults are tested: without an engagement the arm changes nothing.
     pub(super) const fn places(self) -> &'static [FaultPlace] {
         if self.wiring().is_some() { &[FaultPlace::Free, FaultPlace::Contact] } else { &FaultPlace::ALL }
     }
 
-    /// Whether this kind of fault is tested here.
+    /// Returns whether this kind of fault is tested here.
     pub(super) const fn has(self, kind: FaultKind) -> bool {
         let has_imu = matches!(self, Self::Wrist | Self::ArmWrist);
         (has_imu || !kind.needs_wrist()) && (self.wiring().is_none() || kind.is_of_devices())

@@ -106,7 +106,7 @@ impl<'a, const D: usize> Adversary<'a, D> {
         SVector::from_fn(|_, _| size * (2.0 * self.rng.f64() - 1.0))
     }
 
-    /// A vector with this value on at least one axis.
+    /// Returns a vector with this value on at least one axis.
     fn poisoned(&mut self, value: f64) -> SVector<f64, D> {
         let mut vector = self.vector(4.0);
         vector[self.rng.usize(..D)] = if self.rng.bool() { value } else { -value };

@@ -54,7 +54,7 @@ pub(crate) struct GateWatch<const D: usize> {
 }
 
 impl<const D: usize> GateWatch<D> {
-    /// The limits of a chain with these settings and this period (s), before its first force.
+    /// Creates the limits of a chain with these settings and this period (s), before its first force.
     pub(crate) fn of(settings: &ChainSettings, period_s: f64) -> Self {
         Self {
             max_n: settings.ceiling_n.min(settings.device_limit_n),

@@ -116,7 +116,7 @@ impl<const D: usize> StudyHand<D> {
     }
 }
 
-/// The vector, shortened to this length.
+/// Returns the vector, shortened to this length.
 pub(super) fn within<const D: usize>(vector: SVector<f64, D>, max: f64) -> SVector<f64, D> {
     let norm = vector.norm();
     if norm > max { vector * (max / norm) } else { vector }

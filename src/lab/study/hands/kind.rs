@@ -91,7 +91,8 @@ impl HandKind {
         if self.two_hands { 2 } else { 1 }
     }
 
-    /// Whether a release of this kind differs from a usual one: it has one hand, which no longer reaches or grips.
+    /// Returns whether a release of this kind differs from a usual one: it has one hand, which no longer reaches or
+    /// grips.
     pub(super) fn lets_go_otherwise(&self) -> bool {
         let Self { name, two_hands, targets, gripper, .. } = Self::USUAL;
         Self { name, two_hands, targets, gripper, ..*self } != Self::USUAL

@@ -149,14 +149,14 @@ impl HandOptions {
 }
 
 impl HandReport {
-    /// The clocks, in the order in which they were tried.
+    /// Returns the clocks, in the order in which they were tried.
     fn clocks(&self) -> Vec<ClockProfile> {
         let mut clocks: Vec<_> = self.held.iter().map(|row| row.clock).collect();
         clocks.dedup();
         clocks
     }
 
-    /// The sum over all kinds on this clock.
+    /// Returns the sum over all kinds on this clock.
     fn all_kinds(&self, clock: ClockProfile) -> HeldTally {
         let mut all = HeldTally::default();
         self.held.iter().filter(|row| row.clock == clock).for_each(|row| all.add(&row.tally));

@@ -101,8 +101,8 @@ fn touched(trial: &PairTrial, seconds: f64) -> Result<HeldTally, HandsError> {
     Ok(watch.tally)
 }
 
-/// The force that the governor was asked for (N), from what it withheld. While it withholds all of it, the one before stays; a brake
-/// counts as against it.
+/// Returns the force that the governor was asked for (N), from what it withheld. While it withholds all of it, the one
+/// before stays; a brake counts as against it.
 fn before_the_governor(governed: &GovernorOutput<3>, last_n: &Vector3<f64>) -> Vector3<f64> {
     let GovernorOutput { force_n, withheld, reason } = *governed;
     if reason == Reason::LetGo && force_n.norm() > 0.0 {

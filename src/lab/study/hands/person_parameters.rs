@@ -28,7 +28,7 @@ pub(super) fn between(noise: &mut Noise, [low, high]: [f64; 2]) -> f64 {
     low + (high - low) * noise.uniform()
 }
 
-/// A unit vector in any direction.
+/// Returns a unit vector in any direction.
 pub(super) fn direction<const D: usize>(noise: &mut Noise) -> SVector<f64, D> {
     let any = SVector::<f64, D>::from_fn(|_, _| noise.gaussian());
     any / any.norm().max(1e-9)
@@ -63,7 +63,7 @@ pub(super) struct ElasticTissue<const D: usize> {
 }
 
 impl<const D: usize> PersonParameters<D> {
-    /// A person of this kind.
+    /// Creates a person of this kind.
     pub(super) fn drawn(kind: &HandKind, noise: &mut Noise) -> Self {
         let grip_n_m = 400.0 * 5.0_f64.powf(noise.uniform());
         let stiffest_n_m = between(noise, [0.3, 0.6]) * grip_n_m;

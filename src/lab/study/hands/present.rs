@@ -16,7 +16,7 @@ use crate::{Findings, clocks};
 const HELD: &str = "alarms (1/min) | reversed (ticks) | reversed (N) | beyond slew (N) | withheld (%) | hands with an alarm (%) | declared gone |\n|---|---|---|---|---|---|---|---|\n";
 
 impl Findings for HandReport {
-    /// The aims and what misses them, all clocks in one table, and for each clock its tables.
+    /// Returns the aims and what misses them, all clocks in one table, and for each clock its tables.
     fn text(&self) -> String {
         let mut text = self.aims_text();
         text.push_str("Hands that stay, all kinds together:\n\n| clock | ");

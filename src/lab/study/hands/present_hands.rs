@@ -35,7 +35,7 @@ impl<const D: usize> LastGate<D> for Governor<D> {
     }
 }
 
-/// The governor with the settings as they come, for readings of this kind.
+/// Returns the governor with the settings as they come, for readings of this kind.
 pub(super) fn governor<const D: usize>(kind: &HandKind) -> Governor<D> {
     let handle = FreeHandle { mass_kg: HANDLE_KG, damping_n_s_m: 0.5, brake_n_s_m: 30.0, step_m: kind.step_m };
     Governor::new(handle, SLEW_N_PER_S, PERIOD_S)
@@ -269,7 +269,7 @@ impl<const D: usize> Reader<D> {
         }
     }
 
-    /// The newest position, with the time at which the loop believes it was read.
+    /// Returns the newest position, with the time at which the loop believes it was read.
     pub(super) fn reading(&self, now_s: f64, hand: &StudyHand<D>, kind: &HandKind) -> GovernorReading<D> {
         GovernorReading { t_s: now_s, position_m: self.newest.unwrap_or_else(|| position(hand, kind)) }
     }

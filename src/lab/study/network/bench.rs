@@ -210,7 +210,7 @@ impl NetworkBench {
         self.tick - self.begun
     }
 
-    /// The follower's clock minus the console's, s.
+    /// Returns the follower's clock minus the console's, s.
     pub(super) fn ahead_s(&self) -> f64 {
         self.condition.ahead_s(f64::from(self.ticks()) / RATE_HZ)
     }

@@ -109,7 +109,7 @@ impl LinkEvent {
         }
     }
 
-    /// Whether the follower's clock is set.
+    /// Returns whether the follower's clock is set.
     pub const fn sets_clock(self) -> bool {
         matches!(self, Self::ClockForward | Self::ClockBack)
     }
@@ -131,7 +131,7 @@ pub struct NetworkCondition {
 }
 
 impl NetworkCondition {
-    /// A line with only this delay, ms.
+    /// Creates a line with only this delay, ms.
     pub const fn clean(delay_ms: f64) -> Self {
         Self {
             delay_ms,
@@ -142,7 +142,7 @@ impl NetworkCondition {
         }
     }
 
-    /// Whether there is nothing but a delay.
+    /// Returns whether there is nothing but a delay.
     pub fn is_clean(&self) -> bool {
         *self == Self::clean(self.delay_ms)
     }
@@ -175,7 +175,7 @@ impl NetworkCondition {
         [both, ImpairmentSettings { delay_s: back_ms * 1e-3, ..both }]
     }
 
-    /// The follower's clock minus the console's at this time of the run, s.
+    /// Returns the follower's clock minus the console's at this time of the run, s.
     pub(super) fn ahead_s(&self, t_s: f64) -> f64 {
         let is_set = t_s >= CLOCK_SET_AT_S;
         AHEAD_S

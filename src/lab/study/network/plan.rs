@@ -102,7 +102,7 @@ fn of_one_clock(options: &NetworkOptions) -> Vec<(NetworkCondition, Mode)> {
     }
 }
 
-/// The line that is judged, at this delay, ms.
+/// Returns the line that is judged, at this delay, ms.
 pub(super) const fn judged_line(delay_ms: f64) -> NetworkCondition {
     NetworkCondition { jitter: JUDGED_JITTER, loss_percent: JUDGED_LOSS_PERCENT, ..NetworkCondition::clean(delay_ms) }
 }

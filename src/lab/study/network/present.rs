@@ -40,7 +40,7 @@ impl NetworkCondition {
 }
 
 impl NetworkRow {
-    /// The cell in a few words.
+    /// Returns the cell in a few words.
     pub(super) fn place(&self) -> String {
         let NetworkCondition { delay_ms, jitter, loss_percent, happening, .. } = self.condition;
         let mut text = format!("{}, {delay_ms} ms", self.mode);
@@ -136,7 +136,7 @@ impl NetworkRow {
     }
 }
 
-/// A force, or a text if there was none.
+/// Returns a force, or a text if there was none.
 fn newtons(value_n: f64) -> String {
     if value_n.is_finite() { format!("{value_n:.3}") } else { "never engaged".to_owned() }
 }

@@ -170,7 +170,7 @@ impl Band {
 mod tests {
     use super::*;
 
-    /// A hand on a sine of 1 cm at this frequency over a spring of 300 N/m, felt this many ticks late.
+    /// Returns a hand on a sine of 1 cm at this frequency over a spring of 300 N/m, felt this many ticks late.
     fn pressed(hz: f64, late: usize, travel: usize) -> TraceForce {
         let position_m = |tick: usize| Vector3::z() * 0.01 * (TAU * hz * tick as f64 / RATE_HZ).sin();
         let mut trace = RunTrace::new(1000);

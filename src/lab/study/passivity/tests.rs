@@ -38,7 +38,7 @@ fn the_best_of_two_is_never_much_worse_than_anchored_in_the_whole_grid() {
 
 const DELAYS_MS: [f64; 4] = [10.0, 50.0, 100.0, 300.0];
 
-/// The scene's tissue, softer, stiffer, and without friction.
+/// Returns the scene's tissue, softer, stiffer, and without friction.
 fn tissues() -> [TissueModel; 4] {
     let plain = tissue();
     [

@@ -120,7 +120,7 @@ pub struct ReleaseRow {
 }
 
 impl ReleaseRow {
-    /// Whether the held force was large enough to be judged, by the governor's criterion.
+    /// Returns whether the held force was large enough to be judged, by the governor's criterion.
     pub fn counts(&self) -> bool {
         self.before_n > 0.5 * self.contact_n.min(4.0) && !self.closed_before
     }
@@ -258,7 +258,7 @@ fn tried(
     release(&trial, situation, contact_n)
 }
 
-/// A hand presses as set by this trial, and opens.
+/// Returns a hand presses as set by this trial, and opens.
 pub(super) fn release(
     trial: &PairTrial,
     situation: ReleaseSituation,

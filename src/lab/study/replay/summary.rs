@@ -81,7 +81,7 @@ impl ReplaySummary {
     }
 }
 
-/// The rendered force's error as a multiple of the held force's.
+/// Returns the rendered force's error as a multiple of the held force's.
 fn ratio(error: f64, hold: f64) -> Option<f64> {
     (hold > 0.0).then(|| error / hold)
 }

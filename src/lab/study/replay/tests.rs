@@ -2,7 +2,7 @@ use nima_core::impedance::Baseline;
 
 use super::*;
 
-/// A hand that presses a soft spring, on three axes, with a gap at index `hole`.
+/// Returns a hand that presses a soft spring, on three axes, with a gap at index `hole`.
 fn sample(i: usize, hole: Option<usize>) -> Sample {
     let t_s = i as f64 * 1e-3 + if hole.is_some_and(|hole| i >= hole) { 1.0 } else { 0.0 };
     let position_m = Vector3::new(0.01 * (9.0 * t_s).sin(), 0.004 * (7.0 * t_s).cos(), 0.006 * (11.0 * t_s).sin());
@@ -24,7 +24,7 @@ const OPTIONS: ReplayOptions = ReplayOptions {
     },
 };
 
-/// The rows of 1500 samples, with the leader's motion if `leader` is given.
+/// Returns the rows of 1500 samples, with the leader's motion if `leader` is given.
 fn rows(
     mode: Mode,
     hole: Option<usize>,

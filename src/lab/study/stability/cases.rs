@@ -41,7 +41,7 @@ fn tissue(x: f64, v: f64, a: f64, noise: &mut fastrand::Rng) -> f64 {
     300.0 * x + 4e3 * x * x + 8.0 * v + 0.2 * a + FORCE_NOISE_N * (noise.f64() * 2.0 - 1.0)
 }
 
-/// A hand's motion of the given size at `t`: position, velocity, acceleration.
+/// Returns a hand's motion of the given size at `t`: position, velocity, acceleration.
 fn hand(amplitude: f64, t: f64) -> [f64; 3] {
     // The frequencies have no common period: if they had one, the paper's `u` would be zero over it.
     let waves = [(0.75, 0.713, 0.3), (0.2, 2.331, 1.1), (0.05, 6.127, 2.0)];
@@ -76,7 +76,7 @@ fn moving(group: &'static str, name: impl Into<String>, amplitude: f64, rate_hz:
     case(group, name, rate_hz, window, |t| hand(amplitude, t))
 }
 
-/// The ordinary motion with every sample modified (arguments: tick, previous sample, sample).
+/// Returns the ordinary motion with every sample modified (arguments: tick, previous sample, sample).
 fn edited(name: &str, edit: impl Fn(usize, Option<RawSample>, &mut RawSample)) -> StabilityCase {
     let mut case = moving("input", name, AMPLITUDE_M, RATE_HZ, WINDOW);
     for k in 0..case.samples.len() {

@@ -178,7 +178,7 @@ fn stream(case: &StabilityCase, unit: f64, guard: bool) -> StabilityStream {
     StabilityStream { rows, used }
 }
 
-/// The scales, lengths multiplied by `unit`.
+/// Returns the scales, lengths multiplied by `unit`.
 fn scales(unit: f64) -> Scales {
     let Scales { position_m, velocity_m_s, acceleration_m_s2, force_n } = Scales::default();
     Scales {

@@ -97,7 +97,8 @@ fn rendering(case: &StabilityCase, mode: Mode) -> Result<StabilityRendering, Set
     Ok(rendering)
 }
 
-/// A hand that presses soft tissue again and again: position (m) and force (N) at a tick, equal after every period.
+/// Returns a hand that presses soft tissue again and again: position (m) and force (N) at a tick, equal after every
+/// period.
 fn palpation(tick: u64) -> [f64; 2] {
     let t = (tick % Endurance::PERIOD) as f64 / Endurance::PERIOD as f64 * std::f64::consts::TAU;
     let x = 0.01 * ((7.0 * t).sin() + 0.4 * (19.0 * t + 1.0).sin() + 0.1 * (53.0 * t + 2.0).cos());

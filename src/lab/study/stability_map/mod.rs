@@ -169,7 +169,7 @@ impl StabilityMap {
         Ok(Self { verdicts })
     }
 
-    /// Whether this mode was simulated for the map.
+    /// Returns whether this mode was simulated for the map.
     pub fn has(mode: Mode) -> bool {
         MODES.contains(&mode)
     }

@@ -88,7 +88,7 @@ fn cost_against_error(figures: &SourceFigures) -> Chart {
     chart
 }
 
-/// A chart of these series with a logarithmic vertical axis.
+/// Returns a chart of these series with a logarithmic vertical axis.
 fn chart(
     title: String,
     [x, y]: [&str; 2],
@@ -142,7 +142,7 @@ fn setting(knob: Knob, point: &SweepPoint) -> f64 {
     }
 }
 
-/// A name that is safe in a path.
+/// Returns a name that is safe in a path.
 fn slug(name: &str) -> String {
     let mut slug = String::new();
     for c in name.chars() {

@@ -70,8 +70,8 @@ pub(super) fn look(cancel: &AtomicBool) -> Result<(), SweepError> {
     if cancel.load(Ordering::Relaxed) { Err(SweepError::Cancelled) } else { Ok(()) }
 }
 
-/// An identifier that computes only `mode`, as the loop does: its settings include every mode, so that any can be
-/// chosen while it runs.
+/// Returns an identifier that computes only `mode`, as the loop does: its settings include every mode, so that any can
+/// be chosen while it runs.
 pub(super) fn identifier(settings: &ImpedanceSettings, mode: Mode) -> Result<Identifier, SettingsError> {
     let mut identifier = Identifier::new(&ImpedanceSettings { modes: settings.modes.with(mode), ..settings.clone() })?;
     identifier.compute(ModeSet::only(mode));

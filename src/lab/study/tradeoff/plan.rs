@@ -130,7 +130,7 @@ impl TradeoffPlan {
         }
     }
 
-    /// A reduced plan that takes about a minute: three degrees, three windows, the delay of the base point.
+    /// Creates a reduced plan that takes about a minute: three degrees, three windows, the delay of the base point.
     pub fn quick(base: ImpedanceSettings) -> Self {
         Self {
             degrees: vec![1, 2, MAX_DEGREE],

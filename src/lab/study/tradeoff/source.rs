@@ -23,7 +23,7 @@ impl TradeoffSource {
         Self::on_clock(VirtualClock::PERFECT, scene, rate_hz, seconds)
     }
 
-    /// The same with the samples at the times of the ticks of another clock.
+    /// Creates the same with the samples at the times of the ticks of another clock.
     pub fn on_clock(clock: VirtualClock, scene: &Scene, rate_hz: f64, seconds: f64) -> Self {
         let mut world = World::new(scene, rate_hz);
         let mut outputs = Outputs::SAFE;
@@ -58,7 +58,7 @@ impl TradeoffSource {
         Self { name, unit: "N".to_owned(), recording }
     }
 
-    /// A recording, named after its file.
+    /// Creates a recording, named after its file.
     pub fn from_recording(recording: CsvRecording, unit: &str) -> Self {
         let name = recording.path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
         Self { name, unit: unit.to_owned(), recording }

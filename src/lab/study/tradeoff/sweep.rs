@@ -243,7 +243,7 @@ pub(super) fn mark_front(points: &mut [SweepPoint], on_grid: &[usize]) {
     }
 }
 
-/// Whether `a` is at least as good in both and better in one.
+/// Returns whether `a` is at least as good in both and better in one.
 fn beats(a: &SweepPoint, b: &SweepPoint) -> bool {
     let cost = a.cost_us.p50;
     let error = a.error;
@@ -251,7 +251,7 @@ fn beats(a: &SweepPoint, b: &SweepPoint) -> bool {
 }
 
 impl SourceFigures {
-    /// The point of delayed DFR at this delay (ms) and at the source's own rate, if it was measured.
+    /// Returns the point of delayed DFR at this delay (ms) and at the source's own rate, if it was measured.
     pub fn dfr(&self, delay_ms: f64) -> Option<&SweepPoint> {
         let wanted = PlanMethod::Mode(Mode::Dfr);
         self.points.iter().find(|point| {

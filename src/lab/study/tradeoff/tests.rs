@@ -15,7 +15,7 @@ use crate::{
     solvers::LeastSquaresSolver,
 };
 
-/// A hand that presses a soft spring twice per second.
+/// Returns a hand that presses a soft spring twice per second.
 fn source(seconds: f64, rate_hz: f64) -> TradeoffSource {
     let samples = (0..(seconds * rate_hz) as usize)
         .map(|k| {

@@ -27,7 +27,7 @@ impl Findings for TrialReport {
     }
 }
 
-/// A p-value in the usual notation of papers.
+/// Returns a p-value in the usual notation of papers.
 fn p_text(p: f64) -> String {
     if p < 0.001 { "< 0.001".to_owned() } else { format!("{p:.3}") }
 }
@@ -191,7 +191,7 @@ impl TrialReport {
         text
     }
 
-    /// The same in R, for verification.
+    /// Returns the same in R, for verification.
     fn script(&self) -> String {
         let quoted = |word: &str| format!("\"{}\"", word.replace('\\', "\\\\").replace('"', "\\\""));
         let measures: Vec<String> = self.measures.iter().map(|measure| quoted(&measure.measure)).collect();

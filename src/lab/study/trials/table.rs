@@ -150,7 +150,7 @@ fn value(cell: &str) -> Result<Option<f64>, String> {
     }
 }
 
-/// A short text for an error of the reader.
+/// Returns a short text for an error of the reader.
 fn plain(error: &csv::Error) -> String {
     match error.kind() {
         csv::ErrorKind::UnequalLengths { pos, expected_len, len } => {

@@ -97,7 +97,7 @@ impl RecordedSession {
         Ok(DataSet::parse(&texts, &Selection { inputs, outputs: None })?)
     }
 
-    /// The same with the true force at the tip instead of the measurement under the tissue.
+    /// Returns the same with the true force at the tip instead of the measurement under the tissue.
     ///
     /// # Errors
     /// [`ValidationError`] if the data set lacks a column.

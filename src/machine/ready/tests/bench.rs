@@ -73,7 +73,7 @@ fn gravity() -> GravityModel {
     GravityModel { source: GravitySource::Imu, imu_sign: 1, parameters }
 }
 
-/// The right arm of the emulated rig with a calibrated sensor.
+/// Returns the right arm of the emulated rig with a calibrated sensor.
 pub(super) fn subject() -> CheckSubject {
     let mut rig = RigConfig::load("emulated").unwrap();
     rig.devices.as_mut().unwrap().left = None;

@@ -4,7 +4,7 @@ use std::fs;
 
 use super::*;
 
-/// A small finished session with every kind of record.
+/// Returns a small finished session with every kind of record.
 fn small() -> Vec<u8> {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("session.mcap");
@@ -21,7 +21,7 @@ fn small() -> Vec<u8> {
     fs::read(path).unwrap()
 }
 
-/// The same without chunks, summary and index, as other programs write it.
+/// Returns the same without chunks, summary and index, as other programs write it.
 fn of_others() -> Vec<u8> {
     let mut bytes = std::io::Cursor::new(Vec::new());
     let options = mcap::WriteOptions::new().compression(None).use_chunks(false).emit_summary_records(false);

@@ -107,7 +107,7 @@ struct RingNote {
 }
 
 impl Objects {
-    /// The objects of a setting with a step every `period_s`. The setting must have been validated.
+    /// Creates the objects of a setting with a step every `period_s`. The setting must have been validated.
     pub fn new(setting: &ObjectSettings, period_s: f64) -> Self {
         let period_s = if period_s > 0.0 { period_s.min(PERIOD_MAX_S) } else { SUBSTEP_MAX_S };
         let BoardSettings { z_m, .. } = setting.board;

@@ -158,7 +158,7 @@ impl Default for ObjectSettings {
 }
 
 impl Default for BoardSettings {
-    /// The workspace of this project.
+    /// Creates the workspace of this project.
     fn default() -> Self {
         Self { z_m: 0.0, size_m: [0.12, 0.09] }
     }
@@ -200,8 +200,9 @@ impl Default for ContactSettings {
 }
 
 impl Default for JawSettings {
-    /// A 5 mm instrument with fingers of 10 mm. Fingers that are commanded to close on a ring press it with about 2.5
-    /// N. The maximum is our choice: graspers hold tissue with some N (Heijnsdijk et al., Surg. Endosc. 18, 2004).
+    /// Creates a 5 mm instrument with fingers of 10 mm. Fingers that are commanded to close on a ring press it with
+    /// about 2.5 N. The maximum is our choice: graspers hold tissue with some N (Heijnsdijk et al., Surg. Endosc. 18,
+    /// 2004).
     fn default() -> Self {
         Self {
             finger_length_m: 0.010,
@@ -214,7 +215,7 @@ impl Default for JawSettings {
 }
 
 impl Default for ViewBox {
-    /// The workspace and the space above it.
+    /// Creates the workspace and the space above it.
     fn default() -> Self {
         Self { from_m: [-0.06, -0.045, -0.01], to_m: [0.06, 0.045, 0.12] }
     }

@@ -7,7 +7,7 @@ use crate::physics::{Instrument, InstrumentLoads, ObjectSettings, Objects, RingS
 
 const GRAVITY_M_S2: f64 = 9.806_65;
 
-/// A ring with a thin tube between jaws in the air, pressed with 1 N. The fingers are then nearly parallel.
+/// Returns a ring with a thin tube between jaws in the air, pressed with 1 N. The fingers are then nearly parallel.
 fn gripped() -> Scene {
     let mut setting = one_ring(RingStart::At([-0.007, 0.0, 0.05]));
     setting.ring = RingShape { major_radius_m: 0.007, tube_radius_m: 5e-4, ..RingShape::default() };

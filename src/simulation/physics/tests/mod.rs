@@ -28,7 +28,7 @@ pub(crate) fn downwards() -> UnitQuaternion<f64> {
     UnitQuaternion::from_axis_angle(&Vector3::x_axis(), std::f64::consts::PI)
 }
 
-/// An instrument that points downwards, through a trocar of the scene `bimanual`.
+/// Returns an instrument that points downwards, through a trocar of the scene `bimanual`.
 pub(crate) fn instrument(side: usize, tip_m: Vector3<f64>, opening_rad: f64) -> Instrument {
     let trocar_m = at(if side == LEFT { -0.05 } else { 0.05 }, -0.06, 0.14);
     Instrument { tip_m, world_from_jaws: downwards(), trocar_m, opening_rad }
@@ -74,7 +74,8 @@ impl Scene {
         self.events.extend(std::iter::from_fn(|| self.watch.next_event()));
     }
 
-    /// The hands with 0.1 mm of tremor at 8 to 11 Hz (Elble and Koller 1990), and jaws along the shaft: no wrist.
+    /// Returns the hands with 0.1 mm of tremor at 8 to 11 Hz (Elble and Koller 1990), and jaws along the shaft: no
+    /// wrist.
     fn trembling(&self) -> [Option<Instrument>; SIDES] {
         let t_s = f64::from(self.ticks) * 1e-3;
         let shakes_m = at(libm::sin(50.0 * t_s), libm::sin(61.0 * t_s), libm::sin(69.0 * t_s)) * 1e-4;

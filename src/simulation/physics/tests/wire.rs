@@ -14,7 +14,7 @@ fn holding(tip_m: Vector3<f64>) -> Instrument {
     Instrument { tip_m, world_from_jaws: UnitQuaternion::identity(), trocar_m, opening_rad: 0.0 }
 }
 
-/// A straight wire along x, as high as the workspace's middle.
+/// Returns a straight wire along x, as high as the workspace's middle.
 fn straight() -> WireSetting {
     WireSetting { points_m: vec![[-0.05, 0.0, 0.03], [0.05, 0.0, 0.03]], goal_point: 1, ..WireSetting::default() }
 }

@@ -92,7 +92,7 @@ impl SmoothCurve {
         self.along_m.last().copied().unwrap_or(0.0)
     }
 
-    /// The points between which it is straight, m.
+    /// Returns the points between which it is straight, m.
     pub fn points_m(&self) -> &[Vector3<f64>] {
         &self.points_m
     }
@@ -257,7 +257,7 @@ fn slopes(points_m: &[Vector3<f64>]) -> Vec<Vector3<f64>> {
         .collect()
 }
 
-/// The cubic from one point and slope to another, at a fraction `t`.
+/// Returns the cubic from one point and slope to another, at a fraction `t`.
 fn hermite(
     from: Vector3<f64>,
     from_slope: Vector3<f64>,

@@ -77,7 +77,7 @@ impl WireTask {
         }
     }
 
-    /// Whether a loop has reached the goal.
+    /// Returns whether a loop has reached the goal.
     pub const fn is_done(&self) -> bool {
         self.is_done
     }

@@ -99,7 +99,7 @@ struct TipLoop {
 }
 
 impl Wire {
-    /// The wire of a setting with a step every `period_s`. The setting must have been validated.
+    /// Creates the wire of a setting with a step every `period_s`. The setting must have been validated.
     pub fn new(setting: &WireSetting, period_s: f64) -> Self {
         let period_s = if period_s > 0.0 { period_s.min(0.1) } else { 1e-3 };
         let contact = &setting.contact;
@@ -115,7 +115,7 @@ impl Wire {
         Self { setting: setting.clone(), period_s, curve, law, loops, states }
     }
 
-    /// The curve of the wire's middle.
+    /// Returns the curve of the wire's middle.
     pub const fn curve(&self) -> &SmoothCurve {
         &self.curve
     }
@@ -276,8 +276,8 @@ impl TipLoop {
         self.touched(place.along_m, &place.loop_m, both_m - distance_m, normal)
     }
 
-    /// The same for a wire that passes through the loop and lies beyond the middle line of its tube: it is pushed back
-    /// in.
+    /// Returns the same for a wire that passes through the loop and lies beyond the middle line of its tube: it is
+    /// pushed back in.
     fn outside(&self, place: &NearestPlace, both_m: f64) -> (f64, Vector3<f64>, ContactTouch) {
         let (outwards, _) = self.outwards(&place.wire_m);
         let (normal, distance_m) = unit_or(&(place.wire_m - place.loop_m), &outwards);

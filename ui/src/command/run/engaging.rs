@@ -21,7 +21,7 @@ impl RunEngagement {
         Self { asked: others, again_s: None }
     }
 
-    /// Whether to request an engagement now (s on the loop's clock), if everything is `ready`.
+    /// Returns whether to request an engagement now (s on the loop's clock), if everything is `ready`.
     pub(super) fn asks(&mut self, ready: bool, now_s: f64) -> bool {
         if self.again_s.take_if(|again_s| now_s >= *again_s).is_some() {
             self.asked = false;

@@ -105,14 +105,14 @@ pub(crate) struct Late {
 }
 
 impl RunArguments {
-    /// The virtual clock; `None` for the real clock.
+    /// Returns the virtual clock; `None` for the real clock.
     fn virtual_clock(&self) -> Option<VirtualClock> {
         let Late { clock: profile, clock_seed: seed } = self.late;
         self.virtual_clock.then_some(VirtualClock { profile, seed })
     }
 }
 
-/// A finite number of seconds above zero.
+/// Returns a finite number of seconds above zero.
 pub(crate) fn positive_seconds(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(seconds) if seconds > 0.0 && seconds <= 1e7 => Ok(seconds),

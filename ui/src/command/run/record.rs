@@ -98,7 +98,7 @@ impl RunRecording {
         }
     }
 
-    /// Whether the recording has ended on its own.
+    /// Returns whether the recording has ended on its own.
     pub(super) fn is_over(&self) -> bool {
         self.recorder.as_ref().is_some_and(|(recorder, _)| recorder.trouble().is_some())
     }

@@ -43,7 +43,7 @@ impl Troubles {
         }
     }
 
-    /// The first missing device, with cause and remedy.
+    /// Returns the first missing device, with cause and remedy.
     pub(super) fn first(&self) -> Option<String> {
         let others = self.report.iter().flatten().count().saturating_sub(1);
         let more = if others > 0 { format!(" (and {others} more)") } else { String::new() };

@@ -55,7 +55,7 @@ impl ActiveCalibrations {
         this
     }
 
-    /// The calibrations of a recorded session, from its metadata; they cannot be changed.
+    /// Creates the calibrations of a recorded session, from its metadata; they cannot be changed.
     pub fn of_past(lines: Vec<String>) -> Self {
         Self { store: None, sides: Default::default(), side: Side::Right, report: None, past: lines }
     }
@@ -113,12 +113,12 @@ impl ActiveCalibrations {
         Some(before.is_some() && now.last != before)
     }
 
-    /// Whether a sensor has yet to report its identity.
+    /// Returns whether a sensor has yet to report its identity.
     pub fn is_waiting(&self) -> bool {
         self.sides.iter().any(|of_side| of_side.bound == SideBinding::Waiting)
     }
 
-    /// A known sensor and tool without the gravity calibration that they need.
+    /// Returns a known sensor and tool without the gravity calibration that they need.
     pub fn uncalibrated(&self) -> Option<&WristId> {
         self.sides.iter().find_map(SideCalibrations::without_gravity)
     }
@@ -164,7 +164,7 @@ impl ActiveCalibrations {
         self.sides.iter().filter_map(moved).max_by(f64::total_cmp)
     }
 
-    /// The rig for a loop that is about to start, with the devices of its last passed ready check.
+    /// Returns the rig for a loop that is about to start, with the devices of its last passed ready check.
     #[must_use]
     pub fn with_checked(&self, mut rig: RigConfig) -> RigConfig {
         let last = self.store.as_ref().and_then(|store| store.last_passed_check(&rig.name));
@@ -177,12 +177,12 @@ impl ActiveCalibrations {
         self.sides.each_mut().map(|of_side| of_side.calibrations(rig.tip_force.fallback))
     }
 
-    /// The gravity calibration of a side, and the limit of the remaining force at rest, N.
+    /// Returns the gravity calibration of a side, and the limit of the remaining force at rest, N.
     pub fn gravity(&self, side: Side) -> Option<(GravityModel, f64)> {
         self.sides[side.index()].gravity()
     }
 
-    /// Whether the force of this side is measured at the wrist.
+    /// Returns whether the force of this side is measured at the wrist.
     pub fn is_at_wrist(&self, side: Side) -> bool {
         self.sides[side.index()].bound != SideBinding::Nothing
     }
@@ -192,17 +192,17 @@ impl ActiveCalibrations {
         self.sides[side.index()].wrist()
     }
 
-    /// The force calibrations of this side; `last` is the last ready check.
+    /// Returns the force calibrations of this side; `last` is the last ready check.
     pub(crate) fn kept(&self, side: Side, last: Option<&ReadyRecord>) -> Vec<OverviewLine> {
         self.sides[side.index()].kept(side, last)
     }
 
-    /// Whether a calibration is dated in the future: this computer's date is wrong, or was.
+    /// Returns whether a calibration is dated in the future: this computer's date is wrong, or was.
     pub fn is_date_behind(&self) -> bool {
         self.sides.iter().any(SideCalibrations::is_from_the_future)
     }
 
-    /// The store of calibrations and checks; `None` without a folder.
+    /// Returns the store of calibrations and checks; `None` without a folder.
     pub const fn store(&self) -> Option<&Store> {
         self.store.as_ref()
     }

@@ -96,12 +96,12 @@ impl SideCalibrations {
         self.wrist().filter(|_| self.gravity.is_none())
     }
 
-    /// The gravity calibration, and the limit of the remaining force at rest, N.
+    /// Returns the gravity calibration, and the limit of the remaining force at rest, N.
     pub(super) fn gravity(&self) -> Option<(GravityModel, f64)> {
         self.gravity.as_ref().map(|loaded| (loaded.record.model, loaded.record.drift_limit_n()))
     }
 
-    /// The calibrations of the force, in the order of use; `last` is the last ready check.
+    /// Returns the calibrations of the force, in the order of use; `last` is the last ready check.
     pub(super) fn kept(&self, side: Side, last: Option<&ReadyRecord>) -> Vec<OverviewLine> {
         let gravity = self.gravity.as_ref().map(|LoadedRecord { record, age, .. }| {
             kept_of(record, *age, text::overview::newton(record.residuals.held_out.mean_mae()))
@@ -146,7 +146,7 @@ impl SideCalibrations {
         .into()
     }
 
-    /// Whether a calibration is dated in the future.
+    /// Returns whether a calibration is dated in the future.
     pub(super) fn is_from_the_future(&self) -> bool {
         let ages = [
             self.gravity.as_ref().map(|loaded| loaded.age),
@@ -167,7 +167,8 @@ impl SideCalibrations {
         needed.into_iter().filter(|(_, there)| !there).map(|(name, _)| name).collect()
     }
 
-    /// The sensor of this side, if it has no gravity calibration with the tool here and the other side's sensor has one.
+    /// Returns the sensor of this side, if it has no gravity calibration with the tool here and the other side's sensor
+    /// has one.
     pub(super) fn is_exchanged_with(&self, across: &Self) -> Option<&WristId> {
         let other = &across.wrist()?.serial_number;
         self.without_gravity().filter(|_| self.others.contains(other))
@@ -208,7 +209,7 @@ impl SideCalibrations {
         self.drift.as_ref().map(|(check, _)| check.drift())
     }
 
-    /// The calibrations in the form that the loop uses.
+    /// Returns the calibrations in the form that the loop uses.
     pub(super) fn calibrations(&mut self, fallback: Fallback) -> Calibrations {
         let model = self.tip_force.as_ref().map(|loaded| loaded.record.clone());
         let tip_force = model.map(|model| LiveTipForce::new(model, fallback)).transpose();
@@ -268,7 +269,7 @@ fn kept_of(record: &impl CalibrationRecord, age: CalibrationAge, error: String) 
     CalibrationEntry { date: record.head().date.clone(), age, judgement: Some(record.judgement().clone()), error }
 }
 
-/// The loaded record; if its file cannot be used, the reason is stored.
+/// Returns the loaded record; if its file cannot be used, the reason is stored.
 fn usable<R>(
     what: WizardKind,
     loaded: Result<Option<R>, impl std::error::Error>,

@@ -17,7 +17,7 @@ use nima_tests::gravity;
 
 use super::*;
 
-/// The simulated gravity calibration, for this sensor and tool.
+/// Returns the simulated gravity calibration, for this sensor and tool.
 fn record(sensor: &str, tool: &str) -> GravityRecord {
     static MADE: std::sync::OnceLock<GravityRecord> = std::sync::OnceLock::new();
     let made = MADE.get_or_init(gravity::gravity).clone();
@@ -67,7 +67,7 @@ fn each_arm_has_the_calibration_of_its_own_sensor() {
     assert_eq!(active.binding().sensor, "SIM-S1-0002");
 }
 
-/// A rig whose right and left arms have sensors and tools of these names.
+/// Returns a rig whose right and left arms have sensors and tools of these names.
 fn mounted(right: [&str; 2], left: [&str; 2]) -> RigConfig {
     let mut rig = RigConfig::load("simulated").unwrap();
     let wrist = |[serial, tool]: [&str; 2]| Some(WristId { serial_number: serial.to_owned(), tool: tool.to_owned() });

@@ -94,13 +94,13 @@ impl AlarmLog {
         self.entries.iter_mut().filter(|entry| entry.ended.is_none()).for_each(|entry| entry.acknowledged = true);
     }
 
-    /// Whether there is an active alarm that is not acknowledged.
+    /// Returns whether there is an active alarm that is not acknowledged.
     pub fn has_unseen(&self) -> bool {
         self.live().iter().any(|entry| !entry.acknowledged)
     }
 
-    /// The priority that requires flashing and sound; `None` if all active alarms are acknowledged, less urgent than an
-    /// acknowledged one, or of low priority.
+    /// Returns the priority that requires flashing and sound; `None` if all active alarms are acknowledged, less urgent
+    /// than an acknowledged one, or of low priority.
     pub fn calls(&self) -> Option<AlarmPriority> {
         let live = self.live();
         let seen = live.iter().filter(|entry| entry.acknowledged).map(|entry| entry.alarm.priority).min();

@@ -53,7 +53,7 @@ impl AlarmPriority {
         Some(half_s - time_s.rem_euclid(half_s))
     }
 
-    /// A word for the priority, for readers who cannot distinguish the colours.
+    /// Returns a word for the priority, for readers who cannot distinguish the colours.
     pub fn word(self) -> &'static str {
         match self {
             Self::High => text::alarms::ALARM.get(),
@@ -89,7 +89,7 @@ pub enum AlarmKind {
 }
 
 impl AlarmKind {
-    /// Whether its text may contain a name given by a person, such as that of a folder.
+    /// Returns whether its text may contain a name given by a person, such as that of a folder.
     pub const fn has_names(self) -> bool {
         match self {
             Self::Device(_) | Self::Unrecorded => true,
@@ -264,7 +264,7 @@ fn cause_of(fault: Fault, signs: &Signs) -> String {
     name.map_or_else(|| fault.cause().to_owned(), |name| text::alarms::fault_of(name, fault.cause()))
 }
 
-/// The text with an upper-case first letter.
+/// Returns the text with an upper-case first letter.
 pub fn sentence(words: &str) -> String {
     let mut letters = words.chars();
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())

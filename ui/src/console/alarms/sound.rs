@@ -171,7 +171,7 @@ fn burst(priority: AlarmPriority) -> Vec<f64> {
     burst
 }
 
-/// A file of 16-bit samples, mono (RIFF WAVE).
+/// Returns a file of 16-bit samples, mono (RIFF WAVE).
 fn wav(samples: &[f64]) -> Vec<u8> {
     let bytes = 2 * samples.len() as u32;
     let mut file = Vec::with_capacity(44 + bytes as usize);

@@ -208,7 +208,7 @@ impl ConsoleApp {
         Availability::unless(why).only_if(is_offered && is_here)
     }
 
-    /// The panels of the views on the screen: of the machine, or of the recorded session.
+    /// Returns the panels of the views on the screen: of the machine, or of the recorded session.
     fn panels_in_view(&self) -> Option<&Panels> {
         match (self.page(), &self.past) {
             (ActivePage::Past, Some(past)) if past.beside.is_none() && !self.list.is_open => Some(&past.panels),

@@ -103,7 +103,7 @@ impl ConsoleApp {
         self.wizards.report_saved(report, following);
     }
 
-    /// The step after the open calibration on this rig; a simulated rig needs no ready check.
+    /// Returns the step after the open calibration on this rig; a simulated rig needs no ready check.
     fn following(&self, rig: &RigConfig) -> Option<GoOn> {
         let arms = overview(&self.active, rig, &self.running.rig);
         let wanted = following(&arms, self.wizards.wanted(self.active.side()));

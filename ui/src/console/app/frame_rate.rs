@@ -59,7 +59,7 @@ impl ConsoleApp {
         ctx.request_repaint_after(next);
     }
 
-    /// Whether this frame of an idle window is only for a flashing alarm: then nothing else is updated.
+    /// Returns whether this frame of an idle window is only for a flashing alarm: then nothing else is updated.
     pub(super) fn only_flashes(&mut self, ctx: &egui::Context) -> bool {
         let Some(door) = self.door.as_ref().filter(|_| self.calm) else { return false };
         let wanted = door.has_woken() || ctx.input(|input| !input.events.is_empty() || input.pointer.any_down());

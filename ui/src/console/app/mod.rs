@@ -412,7 +412,7 @@ impl eframe::App for ConsoleApp {
         }
     }
 
-    /// The background of the whole window: clearing is much cheaper than painting panels over it.
+    /// Returns the background of the whole window: clearing is much cheaper than painting panels over it.
     fn clear_color(&self, _visuals: &egui::Visuals) -> [f32; 4] {
         theme::now().background.to_normalized_gamma_f32()
     }

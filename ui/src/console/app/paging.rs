@@ -15,7 +15,7 @@ use crate::console::{
 };
 
 impl ConsoleApp {
-    /// Whether a run of a page is in progress: then the window shows nothing else.
+    /// Returns whether a run of a page is in progress: then the window shows nothing else.
     pub fn in_trial(&self) -> bool {
         self.run().is_some()
     }

@@ -23,12 +23,12 @@ impl ConsoleApp {
         self
     }
 
-    /// The session on the screen, and its time, s.
+    /// Returns the session on the screen, and its time, s.
     pub fn past(&self) -> Option<(&Path, f64)> {
         self.past.as_ref().map(|past| (past.path.as_path(), past.shown_s()))
     }
 
-    /// The session that it is compared with, and its time, s.
+    /// Returns the session that it is compared with, and its time, s.
     pub fn past_beside(&self) -> Option<(&Path, f64)> {
         let beside = self.past.as_ref()?.beside.as_ref().filter(|beside| beside.live.is_some())?;
         Some((beside.path.as_path(), beside.shown_s()))
@@ -40,7 +40,7 @@ impl ConsoleApp {
         past.live.as_ref().map(|live| live.ticks.as_slice())
     }
 
-    /// The recorded objects on the screen.
+    /// Returns the recorded objects on the screen.
     pub fn past_objects(&self) -> Option<&nima_session::objects::ObjectStates> {
         self.past.as_ref()?.live.as_ref()?.objects.as_ref()
     }

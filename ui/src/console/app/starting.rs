@@ -86,7 +86,7 @@ impl ConsoleApp {
         self.emulators = emulators;
     }
 
-    /// The running rig and scene.
+    /// Returns the running rig and scene.
     pub const fn running(&self) -> &RigChoice {
         &self.running
     }

@@ -9,7 +9,7 @@ use crate::console::{
 };
 
 impl ConsoleApp {
-    /// The settings that are saved between sessions, for tests.
+    /// Returns the settings that are saved between sessions, for tests.
     pub const fn settings_mut(&mut self) -> &mut ConsoleSettings {
         &mut self.settings.now
     }
@@ -18,7 +18,7 @@ impl ConsoleApp {
         self.settings.now.role
     }
 
-    /// The newest tick that the window has received.
+    /// Returns the newest tick that the window has received.
     pub fn tick(&self) -> Option<&Tick> {
         self.live.first_tick()
     }
@@ -28,12 +28,12 @@ impl ConsoleApp {
         self.live.objects.as_ref()
     }
 
-    /// The rig that the loop is running on.
+    /// Returns the rig that the loop is running on.
     pub fn rig(&self) -> &RigConfig {
         &self.live.rig
     }
 
-    /// Whether the Trade-off panel has results.
+    /// Returns whether the Trade-off panel has results.
     pub fn is_tradeoff_measured(&self) -> bool {
         self.panels.tradeoff.as_ref().is_some_and(|tradeoff| tradeoff.is_measured())
     }

@@ -51,7 +51,7 @@ impl Canvas {
         Self { surface, before: Vec::new(), prints: Vec::new(), ground, frame: 0, background }
     }
 
-    /// The parts of the window that these shapes change, in points.
+    /// Returns the parts of the window that these shapes change, in points.
     fn changed(&self, shapes: &[ClippedShape], prints: &[u64], ground: CanvasGround) -> Vec<Rect> {
         if ground != self.ground || self.frame.is_multiple_of(WHOLE_EVERY) || !self.surface.shows(self.frame) {
             return vec![ground.rect];
@@ -114,7 +114,7 @@ impl egui::Plugin for Canvas {
     }
 }
 
-/// The part of the window that a shape may touch.
+/// Returns the part of the window that a shape may touch.
 fn bounds(shape: &ClippedShape) -> Rect {
     let own = shape.shape.visual_bounding_rect();
     (shape.transform_after_tessellation * own).expand(EDGE).intersect(shape.clip_rect)

@@ -65,12 +65,12 @@ impl Surface {
         SOFTWARE.iter().any(|word| name.contains(word)).then(Arc::default)
     }
 
-    /// Whether partial drawing was given up.
+    /// Returns whether partial drawing was given up.
     pub fn is_refused(&self) -> bool {
         self.refused.load(Ordering::Relaxed)
     }
 
-    /// Whether the window shows this frame.
+    /// Returns whether the window shows this frame.
     pub fn shows(&self, frame: u64) -> bool {
         frame > 0 && self.drawn.load(Ordering::Relaxed) == frame
     }
@@ -146,7 +146,7 @@ impl Surface {
 }
 
 impl SurfaceInner {
-    /// Whether the image in the window is the one that the last frame left.
+    /// Returns whether the image in the window is the one that the last frame left.
     ///
     /// # Safety The context must be current, with the window's framebuffer bound.
     unsafe fn finds_its_sign(&mut self, gl: &glow::Context, size: [i32; 2]) -> bool {

@@ -17,7 +17,7 @@ pub enum KeyModifiers {
 }
 
 impl KeyModifiers {
-    /// Whether these modifiers, and no others, are held down.
+    /// Returns whether these modifiers, and no others, are held down.
     pub(in crate::console) fn holds(self, modifiers: Modifiers) -> bool {
         let Modifiers { alt, shift, command, .. } = modifiers;
         match self {
@@ -66,7 +66,7 @@ impl Stroke {
         format!("{held}{key}")
     }
 
-    /// Whether the key has a function in a focused text field.
+    /// Returns whether the key has a function in a focused text field.
     pub(in crate::console) fn writes(self) -> bool {
         match self.with {
             KeyModifiers::Nothing => !(Key::F1..=Key::F12).contains(&self.key),

@@ -95,7 +95,8 @@ pub enum Action {
 }
 
 impl Action {
-    /// Whether the part of the window concerned reads the key itself: from elsewhere the key press is simulated.
+    /// Returns whether the part of the window concerned reads the key itself: from elsewhere the key press is
+    /// simulated.
     pub(in crate::console) const fn is_of_part(self) -> bool {
         matches!(
             self,
@@ -110,7 +111,7 @@ impl Action {
         )
     }
 
-    /// Whether a participant may use it in a trial of a study.
+    /// Returns whether a participant may use it in a trial of a study.
     pub(in crate::console) const fn is_of_participant(self) -> bool {
         matches!(
             self,
@@ -130,12 +131,12 @@ impl Action {
         )
     }
 
-    /// Whether it leads towards motion and force: the palette then asks for confirmation.
+    /// Returns whether it leads towards motion and force: the palette then asks for confirmation.
     pub const fn leads_to_force(self) -> bool {
         matches!(self, Self::Engage | Self::Release)
     }
 
-    /// Whether holding the key repeats it.
+    /// Returns whether holding the key repeats it.
     pub(in crate::console) const fn repeats(self) -> bool {
         matches!(self, Self::Larger | Self::Smaller | Self::Step(_) | Self::Undo | Self::Redo)
     }

@@ -42,7 +42,7 @@ fn entry(action: Action, (title, does): (Text, Text), keys: CommandKeys, place: 
     named(action, title.get(), does.get(), keys, place)
 }
 
-/// A command whose name is built from other texts.
+/// Returns a command whose name is built from other texts.
 fn named(
     action: Action,
     title: impl Into<String>,

@@ -69,7 +69,7 @@ impl ImageZoom {
     }
 }
 
-/// A screen position as fractions of a rectangle.
+/// Returns a screen position as fractions of a rectangle.
 fn fraction(of: Rect, at: Pos2) -> Vec2 {
     (at - of.min) / of.size().max(Vec2::splat(1.0))
 }

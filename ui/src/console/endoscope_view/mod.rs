@@ -277,7 +277,7 @@ impl EndoscopeView {
         Some(RecordedMoment(found.look().ok().and_then(|look| look.image).map(|(_, image)| image)))
     }
 
-    /// The newest image, or that of the moment on the screen.
+    /// Returns the newest image, or that of the moment on the screen.
     fn look(&mut self, live: &LiveState, now: Instant) -> ImageState {
         let Some(projector) = &mut self.projector else {
             let look = self.feed.as_ref().map(|feed| feed.look(now));

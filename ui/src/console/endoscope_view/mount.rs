@@ -27,7 +27,7 @@ impl Mount {
         settings.position_m.is_some().then(|| Self::Fixed(camera_of(settings)))
     }
 
-    /// The camera in the workspace, with its marker; `None` while the pose of the marker is unknown.
+    /// Returns the camera in the workspace, with its marker; `None` while the pose of the marker is unknown.
     pub(super) fn camera(&self, world_from_n: Option<&Isometry3<f64>>) -> Option<Camera> {
         match self {
             Self::Fixed(camera) => Some(*camera),

@@ -14,7 +14,7 @@ pub(super) struct InstrumentShaft {
 }
 
 impl InstrumentShaft {
-    /// Whether it is between the lens and a point.
+    /// Returns whether it is between the lens and a point.
     pub(super) fn hides(&self, lens_m: &Vector3<f64>, point_m: &Vector3<f64>) -> bool {
         let [sight, shaft] = [point_m - lens_m, self.trocar_m - self.tip_m];
         let between = self.tip_m - lens_m;

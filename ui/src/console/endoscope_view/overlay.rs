@@ -112,8 +112,8 @@ impl OverlayImage<'_> {
         }
     }
 
-    /// A line of the workspace as seen by the lens, in visible and hidden segments; `None` if the lens does not see all of
-    /// it.
+    /// Returns a line of the workspace as seen by the lens, in visible and hidden segments; `None` if the lens does not
+    /// see all of it.
     fn line(&self, points_m: &[Vector3<f64>], instrument: &OverlayInstrument) -> Option<Vec<OverlaySegment>> {
         let lens_m = self.camera.world_from_camera.translation.vector;
         let shaft = instrument.trocar_m.map(|trocar_m| InstrumentShaft { tip_m: instrument.pose.tip_m, trocar_m });

@@ -46,7 +46,7 @@ impl ImagePlacement {
         Self { rect: full.intersect(view), full, part, fraction: [0.0, 1.0], size_px, rotation_deg, mirror }
     }
 
-    /// The same position for a part of an image.
+    /// Creates the same position for a part of an image.
     pub(super) const fn of_fraction(self, fraction: [f32; 2]) -> Self {
         Self { fraction, ..self }
     }

@@ -67,7 +67,7 @@ impl Poses {
         }
     }
 
-    /// The endoscope's marker at the time of an image of this age; `None` if the tracker did not see it then.
+    /// Returns the endoscope's marker at the time of an image of this age; `None` if the tracker did not see it then.
     pub(super) fn marker(&self, now: Instant, age: Duration) -> Option<Isometry3<f64>> {
         let now_s = now.duration_since(self.begin?).as_secs_f64();
         self.marker_at(now_s - age.as_secs_f64())
@@ -102,7 +102,7 @@ impl Poses {
         }
     }
 
-    /// The pose of a side at the time of an image of this age.
+    /// Returns the pose of a side at the time of an image of this age.
     pub(super) fn at(&self, side: Side, now: Instant, age: Duration) -> Option<TipPose> {
         let now_s = now.duration_since(self.begin?).as_secs_f64();
         self.at_s(side, now_s - age.as_secs_f64())

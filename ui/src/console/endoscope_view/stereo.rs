@@ -40,7 +40,7 @@ pub(super) fn whole_px([width, height]: [usize; 2], endoscope: &EndoscopeConfig)
     if endoscope.view.is_some() { [2 * width, height] } else { [width, height] }
 }
 
-/// The displayed parts of an image, and their positions.
+/// Returns the displayed parts of an image, and their positions.
 pub(super) fn halves(
     area: Rect,
     size_px: [usize; 2],

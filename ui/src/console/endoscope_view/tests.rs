@@ -33,7 +33,7 @@ fn now_us() -> u64 {
     SystemTime::now().duration_since(UNIX_EPOCH).unwrap().as_micros() as u64
 }
 
-/// An image that was taken after this time.
+/// Returns an image that was taken after this time.
 fn image_after(feed: &EndoscopeFeed, begin_us: u64) -> Arc<DecodedImage> {
     let begin = Instant::now();
     loop {
@@ -88,7 +88,7 @@ fn scene_trocar() -> Vector3<f64> {
     Vector3::new(0.05, -0.06, 0.14)
 }
 
-/// The filled rectangles that a text plate leaves.
+/// Returns the filled rectangles that a text plate leaves.
 fn plates(tips: &[Pos2]) -> Vec<Rect> {
     let view = Rect::from_min_size(pos2(0.0, 0.0), vec2(900.0, 470.0));
     let mut plates = Vec::new();

@@ -224,7 +224,7 @@ impl LiveState {
     }
 }
 
-/// The forces of a tick, N, in the order of their channels; NaN if unknown.
+/// Returns the forces of a tick, N, in the order of their channels; NaN if unknown.
 pub(in crate::console) fn forces_of(tick: &Tick) -> [f32; CHANNELS] {
     let m = tick.measured_n;
     let r = tick.rendered_n;

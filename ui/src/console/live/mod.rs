@@ -57,7 +57,7 @@ const BLOCKS_KEPT: usize = 40;
 /// How long a refused command is displayed.
 const REFUSAL_SHOWN: Duration = Duration::from_secs(6);
 
-/// A link without data as a missing device, after the last one of the roster.
+/// Returns a link without data as a missing device, after the last one of the roster.
 fn missing_line(line: &dyn LineConnection) -> Option<MissingDevice> {
     let [cause, cure] = line.trouble()?;
     let was_there = line.has_delivered();
@@ -237,7 +237,7 @@ impl LiveState {
         Self { of: ScreenSource::Elsewhere, devices_then, ..Self::new(rig, scene) }
     }
 
-    /// Whether nothing on the screen may act on a machine.
+    /// Returns whether nothing on the screen may act on a machine.
     pub fn is_shown_only(&self) -> bool {
         self.of != ScreenSource::Now
     }
@@ -305,7 +305,7 @@ impl LiveState {
         self.tick_of(Side::Right)
     }
 
-    /// Whether all modes are computed to compare them.
+    /// Returns whether all modes are computed to compare them.
     pub fn compares(&self) -> bool {
         self.first_tick().is_some_and(|tick| Mode::ALL.into_iter().all(|mode| tick.identification.modes.contains(mode)))
     }
@@ -324,7 +324,7 @@ impl LiveState {
         states.max_by_key(|state| attention(*state)).unwrap_or(LoopState::Idle)
     }
 
-    /// The fault that occurred first, while one is latched.
+    /// Returns the fault that occurred first, while one is latched.
     pub fn first_fault(&self) -> Option<Fault> {
         self.first_fault.map(|(_, fault)| fault)
     }

@@ -46,7 +46,7 @@ pub(crate) struct OverviewLine {
 }
 
 impl OverviewLine {
-    /// Whether nothing needs to be done: proven, and neither old nor overridden.
+    /// Returns whether nothing needs to be done: proven, and neither old nor overridden.
     fn is_in_order(&self) -> bool {
         let Ok(Some(kept)) = &self.kept else { return false };
         let is_proven = |judgement: &Judgement| judgement.allows() && judgement.override_by.is_none();
@@ -62,7 +62,7 @@ pub(crate) struct ArmOverview {
     pub(crate) lines: Vec<OverviewLine>,
 }
 
-/// The list of every arm with calibrations, for the rig of this name.
+/// Returns the list of every arm with calibrations, for the rig of this name.
 pub(crate) fn overview(active: &ActiveCalibrations, rig: &RigConfig, name: &str) -> Vec<ArmOverview> {
     let has_joints = rig.devices.is_some();
     let last = active.store().and_then(|store| store.last_check(&rig.name));
@@ -81,8 +81,8 @@ pub(crate) fn overview(active: &ActiveCalibrations, rig: &RigConfig, name: &str)
     sides.map(of_arm).collect()
 }
 
-/// The next calibration after this one (from the start without one): the first that needs work. The one just saved is not
-/// suggested again.
+/// Returns the next calibration after this one (from the start without one): the first that needs work. The one just
+/// saved is not suggested again.
 pub(crate) fn following(arms: &[ArmOverview], after: Option<CalibrationTarget>) -> Option<CalibrationTarget> {
     let all: Vec<&OverviewLine> = arms.iter().flat_map(|arm| &arm.lines).collect();
     let from = all.iter().position(|line| Some(line.wanted) == after).map_or(0, |place| place + 1);

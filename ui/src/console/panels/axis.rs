@@ -24,7 +24,7 @@ pub(super) fn marks(grid: &GridInput, apart: f64) -> Vec<GridMark> {
         .collect()
 }
 
-/// Whether a value is at the end of the axis, where its number would overlap the next plot.
+/// Returns whether a value is at the end of the axis, where its number would overlap the next plot.
 pub(super) fn near_end(value: f64, shown: &RangeInclusive<f64>) -> bool {
     let margin = 0.07 * (shown.end() - shown.start());
     value < shown.start() + margin || value > shown.end() - margin
@@ -41,7 +41,7 @@ pub(super) fn signed_n(force_n: Option<f64>) -> String {
     force_n.map_or_else(|| newtons(None, 2), |force_n| format!("{} N", signed(force_n)))
 }
 
-/// A number without trailing zeros.
+/// Returns a number without trailing zeros.
 pub(super) fn plain(value: f64) -> String {
     let text = format!("{value:.2}");
     let text = text.trim_end_matches('0').trim_end_matches('.');

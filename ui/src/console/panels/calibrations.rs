@@ -41,7 +41,7 @@ pub enum CalibrationPage {
     All,
 }
 
-/// The panel; `open` is the page next to it.
+/// Returns the panel; `open` is the page next to it.
 pub fn calibrations_ui(
     ui: &mut Ui,
     live: &LiveState,

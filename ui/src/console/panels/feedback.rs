@@ -29,7 +29,7 @@ const ASKED_SHOWN_S: f64 = 1.6;
 struct RequestedValue(Option<(f64, f64)>);
 
 impl RequestedValue {
-    /// The value that a control shows at `time_s`, given the active value.
+    /// Returns the value that a control shows at `time_s`, given the active value.
     fn shown(&mut self, active: f64, time_s: f64) -> f64 {
         match self.0 {
             Some((value, at_s)) if time_s - at_s < ASKED_SHOWN_S && (value - active).abs() > 1e-6 => value,

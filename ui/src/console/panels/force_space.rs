@@ -125,7 +125,7 @@ fn caption(ellipsoid: Option<&Ellipsoid>) -> String {
     )
 }
 
-/// A round radius that contains all samples and does not shrink at once.
+/// Returns a round radius that contains all samples and does not shrink at once.
 fn reach_n(max_n: f32, now_n: f32) -> f32 {
     let steps = [MIN_N, 1.5, 3.0, 4.5, 6.0, 9.0, 12.0];
     let wanted = steps.into_iter().find(|&step| max_n <= step).unwrap_or(12.0);

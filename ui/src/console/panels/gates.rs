@@ -58,7 +58,7 @@ pub fn gates_ui(ui: &mut Ui, live: &LiveState, state: &mut GatesState) {
     }
 }
 
-/// The summary: the first closed gate, or that there is no problem.
+/// Returns the summary: the first closed gate, or that there is no problem.
 fn answer(live: &LiveState, side: Side) -> String {
     let is_free = live.figures.measured_n[side.index()].is_none_or(|measured_n| measured_n < CONTACT_N);
     why_no_force(live, side).unwrap_or_else(|| {
@@ -223,7 +223,7 @@ mod tests {
 
     use super::*;
 
-    /// A tick of this scene on the simulated rig at rest, without calibrations.
+    /// Returns a tick of this scene on the simulated rig at rest, without calibrations.
     fn idle(scene: &str) -> (LiveState, Tick) {
         let rig = RigConfig::load("simulated").unwrap();
         let scene = Scene::load(scene).unwrap();

@@ -51,7 +51,7 @@ pub trait Tile: Debug {
     /// Requests the end of its background work.
     fn stop(&self);
 
-    /// Whether it has results.
+    /// Returns whether it has results.
     fn is_measured(&self) -> bool;
 }
 

@@ -22,7 +22,8 @@ pub struct TimingState {
     made_at_s: Option<f64>,
 }
 
-/// The measured durations, in the order of a tick. A duration without its own deadline is compared with the period.
+/// Returns the measured durations, in the order of a tick. A duration without its own deadline is compared with the
+/// period.
 fn timings(live: &LiveState) -> Vec<TimingBar<'_>> {
     let deadline_us = 1e6 / live.rig.rate_hz;
     vec![
@@ -129,7 +130,7 @@ fn scheduling_ui(ui: &mut Ui, live: &LiveState) {
     }
 }
 
-/// A number with its digits in groups of three.
+/// Returns a number with its digits in groups of three.
 pub(super) fn grouped(number: u64) -> String {
     let digits = number.to_string();
     let mut text = String::new();

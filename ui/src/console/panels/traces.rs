@@ -76,7 +76,7 @@ fn time_axis_height(ui: &Ui) -> f32 {
     TIME_AXIS_ROWS * ui.text_style_height(&egui::TextStyle::Body)
 }
 
-/// The forces along an axis at the end of this interval, and their maximum in it.
+/// Returns the forces along an axis at the end of this interval, and their maximum in it.
 fn summary(history: &SignalHistory, axis: usize, (from_s, to_s): (f64, f64)) -> String {
     let both = [axis, axis + 3].map(|channel| {
         let now_n = history.value_at(channel, to_s.min(history.latest_s()));
@@ -285,7 +285,7 @@ fn range_n(extent_n: Option<(f64, f64)>, (low_n, high_n): (f64, f64)) -> (f64, f
     (-keep(-low_n, -wanted.0), keep(high_n, wanted.1))
 }
 
-/// The next of 0.25, 0.5, 1, 1.5, 2, 3, 4, 6, 8, 12, ... with a margin of one tenth.
+/// Returns the next of 0.25, 0.5, 1, 1.5, 2, 3, 4, 6, 8, 12, ... with a margin of one tenth.
 fn round_up(value_n: f64) -> f64 {
     let needed = value_n * 1.1;
     let mut step = MIN_RANGE_N;

@@ -114,7 +114,7 @@ impl TracesState {
     }
 }
 
-/// The last multiple of the step before a time, both in s.
+/// Returns the last multiple of the step before a time, both in s.
 pub(super) fn stepped(t_s: f64, step_s: f64) -> f64 {
     if step_s > 0.0 { (t_s / step_s).floor() * step_s } else { t_s }
 }

@@ -33,7 +33,7 @@ const NEAR: f32 = 5.0;
 /// Width of the frame.
 pub(crate) const FRAME: f32 = 4.0;
 
-/// The header. Returns true when the operator returns to the machine.
+/// Returns the header. Returns true when the operator returns to the machine.
 pub(crate) fn head_ui(ui: &mut Ui, past: &Playback) -> bool {
     let mut live_again = false;
     let colours = theme::now();

@@ -84,7 +84,7 @@ impl TickFeed {
         }
     }
 
-    /// The current loop, if it is replayed and a block of the journal has just ended.
+    /// Returns the current loop, if it is replayed and a block of the journal has just ended.
     pub(super) fn keyframe(&self) -> Option<Keyframe> {
         match self {
             Self::Replay(cursor) => cursor.keyframe(),
@@ -121,7 +121,7 @@ fn replay(
     }
 }
 
-/// The recorded plots from `from_s` up to `to_s`, as ticks.
+/// Returns the recorded plots from `from_s` up to `to_s`, as ticks.
 pub(super) fn plots(
     file: &PlaybackFile,
     like: &[Option<Tick>; SIDES],
@@ -147,7 +147,7 @@ pub(super) fn plots(
     Ok(frames.into_values().collect())
 }
 
-/// A tick like this one, with all recorded plot values.
+/// Returns a tick like this one, with all recorded plot values.
 fn tick(like: &Tick, side: Side, plotted: &PlottedTick) -> Tick {
     let PlottedTick { time_ns: _, t_s, tip_m, leader_m, measured_n, delayed_n, asked_n, rendered_n, state } = plotted;
     // The recorded plots do not contain the kind of fault, so use that of the previous tick.

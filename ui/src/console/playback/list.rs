@@ -163,7 +163,7 @@ impl SessionList {
     }
 }
 
-/// The sessions of this folder, newest first.
+/// Returns the sessions of this folder, newest first.
 fn read(folder: &Path) -> Result<Vec<SessionListRow>, String> {
     let shelf = SessionStore::new(folder, MAX_BYTES);
     let sessions = shelf.sessions().map_err(|error| text::sessions::no_folder(folder, &error))?;

@@ -245,12 +245,12 @@ impl Playback {
         self.live.as_ref().map_or(self.wanted_s, |live| shown_s(live))
     }
 
-    /// Whether the screen is about to change.
+    /// Returns whether the screen is about to change.
     pub(crate) const fn moves(&self) -> bool {
         self.play.runs || self.job.is_some()
     }
 
-    /// Whether every value on the screen is replayed.
+    /// Returns whether every value on the screen is replayed.
     pub(crate) fn is_whole(&self) -> bool {
         self.extent == WorkerExtent::Whole
     }
@@ -270,7 +270,7 @@ impl Playback {
         }
     }
 
-    /// The selected excerpt, s.
+    /// Returns the selected excerpt, s.
     fn stretch_s(&self) -> Option<std::ops::Range<f64>> {
         let [Some(from_s), Some(to_s)] = self.stretch_s else { return None };
         (from_s < to_s).then_some(from_s..to_s)

@@ -98,20 +98,20 @@ impl PlaybackFile {
         self.begin_ns + (t_s.max(0.0) * 1e9).round() as u64
     }
 
-    /// The objects of the scene at this time, s; none if they are not recorded or cannot be read.
+    /// Returns the objects of the scene at this time, s; none if they are not recorded or cannot be read.
     fn objects(&self, t_s: f64) -> Option<ObjectStates> {
         let at = || objects::at(self.recorded.reader(), self.begin_ns, self.time_ns(t_s)).ok().flatten();
         self.has_objects.then(at)?
     }
 
-    /// The tables of the activated calibrations.
+    /// Returns the tables of the activated calibrations.
     pub(super) fn calibrations(&self) -> OverviewTables {
         let tables = self.recorded.reader().metadata().unwrap_or_default();
         let of = |name: &str| name.strip_prefix("calibrations ").map(str::to_owned);
         tables.into_iter().filter_map(|(name, table)| Some((of(&name)?, table))).collect()
     }
 
-    /// A tick of each arm with unknown values only.
+    /// Returns a tick of each arm with unknown values only.
     fn blank(&self) -> Result<[Option<Tick>; SIDES], String> {
         let known = Side::ALL.map(|side| self.arms.contains(&side).then(Calibrations::default));
         let mut control = Loop::new(&self.rig, &known).map_err(|error| chain(&error))?;
@@ -119,7 +119,7 @@ impl PlaybackFile {
     }
 }
 
-/// A settings table of a session from its file.
+/// Returns a settings table of a session from its file.
 fn attached<T: serde::de::DeserializeOwned>(recorded: &RecordedFile, name: &str) -> Result<T, String> {
     let reader = recorded.reader();
     let place =
@@ -204,7 +204,7 @@ impl<'a> SessionIndex<'a> {
         self.read_s
     }
 
-    /// Whether the loop can be replayed up to this time, s.
+    /// Returns whether the loop can be replayed up to this time, s.
     pub(super) fn is_exact(&self, t_s: f64) -> bool {
         t_s <= self.exact_s
     }
@@ -289,7 +289,7 @@ impl<'a> SessionIndex<'a> {
         }
     }
 
-    /// The last samples before this time, s, for values missing in the recorded plots.
+    /// Returns the last samples before this time, s, for values missing in the recorded plots.
     fn like(&self, t_s: f64) -> [Option<Tick>; SIDES] {
         Side::ALL.map(|side| {
             let samples = &self.samples[side.index()];
@@ -314,7 +314,7 @@ impl<'a> SessionIndex<'a> {
         live
     }
 
-    /// The moment at this time, s, at once: recorded plot values, the rest from the last sample.
+    /// Returns the moment at this time, s, at once: recorded plot values, the rest from the last sample.
     pub(super) fn at_once(&self, t_s: f64) -> LiveState {
         let like = self.like(t_s);
         // Ignore damage here: it is reported when the first reading reaches it.
@@ -353,7 +353,7 @@ impl Chase {
         reached != FeedPosition::More
     }
 
-    /// The state to show, and the view to continue from.
+    /// Returns the state to show, and the view to continue from.
     pub(super) fn end(mut self, file: &PlaybackFile) -> (LiveState, PlaybackPosition) {
         if self.live.ticks.iter().all(Option::is_none) {
             // No tick could be read here.
@@ -374,12 +374,12 @@ pub(super) struct PlaybackPosition {
 }
 
 impl PlaybackPosition {
-    /// Whether every value is replayed, not only those in the recorded plots.
+    /// Returns whether every value is replayed, not only those in the recorded plots.
     pub(super) const fn is_exact(&self) -> bool {
         matches!(self.feed, TickFeed::Replay(_))
     }
 
-    /// The ticks up to this time, s; `None` at the end.
+    /// Returns the ticks up to this time, s; `None` at the end.
     pub(super) fn go_on(&mut self, file: &PlaybackFile, to_s: f64) -> Option<Vec<TickFrame>> {
         let mut frames = Vec::new();
         let reached = loop {

@@ -175,7 +175,7 @@ fn run(path: &Path, wanted: &Receiver<WorkerRequest>, sender: &AnswerSender) -> 
 /// The window has closed the session.
 struct SessionClosed;
 
-/// The newest request; waits for one for `patience`, or without limit if there is no other work.
+/// Returns the newest request; waits for one for `patience`, or without limit if there is no other work.
 fn newest(
     wanted: &Receiver<WorkerRequest>,
     patience: Option<Duration>,

@@ -87,7 +87,7 @@ impl ReadyRun {
         Screen { side: self.side, task, prompt: ask.prompt() }
     }
 
-    /// The new instruction for an arm, if it changes.
+    /// Returns the new instruction for an arm, if it changes.
     pub(crate) fn prompt_for(&self, tick: &Tick) -> Option<Command> {
         let wanted =
             if self.session.ask().side() == Some(tick.side) { self.session.ask().prompt() } else { Prompt::Rest };

@@ -9,7 +9,7 @@ use nima_recording::store::{CheckedDevice, CheckedItem, PointOutcome, READY_CHEC
 use crate::language::{self, Language};
 use crate::report_text::{cause_text, check_name, lacks_text, unit};
 
-/// The devices of a rig with their reported serial numbers.
+/// Returns the devices of a rig with their reported serial numbers.
 pub(crate) fn devices_of(roster: &Roster) -> Vec<CheckedDevice> {
     let device = |entry: &nima_machine::rig::RosterEntry| CheckedDevice {
         name: entry.name().to_owned(),
@@ -19,7 +19,7 @@ pub(crate) fn devices_of(roster: &Roster) -> Vec<CheckedDevice> {
     roster.iter().map(device).collect()
 }
 
-/// The record of this check on the rig of this file, by this person.
+/// Returns the record of this check on the rig of this file, by this person.
 pub(crate) fn record(session: &ReadySession, rig_file: &str, by: &str, roster: &Roster) -> ReadyRecord {
     // Files are in English, whatever the language of the window.
     let item =

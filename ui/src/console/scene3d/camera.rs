@@ -101,8 +101,8 @@ impl SceneCamera {
         2.0 * self.distance_m * (0.5 * self.field_of_view).tan() / height.max(1.0)
     }
 
-    /// The depth cue: loss of brightness per metre, and the distance from which it starts, m. As with a light at the lens,
-    /// objects beyond the target are darker.
+    /// Returns the depth cue: loss of brightness per metre, and the distance from which it starts, m. As with a light
+    /// at the lens, objects beyond the target are darker.
     pub fn dims(&self) -> [f32; 2] {
         let distance_m = self.distance_m.max(0.01);
         [0.75 / distance_m, 0.88 * distance_m]

@@ -95,7 +95,7 @@ struct FrameAxes {
 }
 
 impl Extras {
-    /// The setting that this switch changes.
+    /// Returns the setting that this switch changes.
     pub(in crate::console) const fn of(&mut self, switch: MenuSwitch) -> &mut bool {
         match switch {
             MenuSwitch::Ceiling => &mut self.ceiling,

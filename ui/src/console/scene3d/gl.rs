@@ -292,7 +292,7 @@ unsafe fn clear(gl: &glow::Context, [left, bottom]: [i32; 2], [width, height]: [
     }
 }
 
-/// The bytes of a slice of plain numbers, in the GPU's format.
+/// Returns the bytes of a slice of plain numbers, in the GPU's format.
 fn bytes<T: Copy>(slice: &[T]) -> &[u8] {
     // SAFETY: `T` is `MeshVertex` (seven 4-byte fields, no padding) or `u32`; every byte is initialised.
     unsafe { std::slice::from_raw_parts(slice.as_ptr().cast(), size_of_val(slice)) }

@@ -51,7 +51,8 @@ impl Mesh {
         self.vertices.len() as u32 - 1
     }
 
-    /// The indices of all triangles, three per triangle, by [`Material`], in the order in which they were added.
+    /// Returns the indices of all triangles, three per triangle, by [`Material`], in the order in which they were
+    /// added.
     pub fn corners_by_material(&self) -> [Vec<u32>; 4] {
         let mut corners: [Vec<u32>; 4] = Default::default();
         for triangle in self.indices.chunks_exact(3) {
@@ -145,7 +146,7 @@ impl Mesh {
         self.sheet(first, rings, sides);
     }
 
-    /// A horizontal ring; each of its points is raised by `lift(x, y)`, so that it follows a surface.
+    /// Returns a horizontal ring; each of its points is raised by `lift(x, y)`, so that it follows a surface.
     pub fn ring(
         &mut self,
         centre: Vector3<f32>,
@@ -206,7 +207,7 @@ impl Mesh {
         }
     }
 
-    /// A band along points that faces the eye; `width` gives its width (m) at each point.
+    /// Returns a band along points that faces the eye; `width` gives its width (m) at each point.
     pub fn ribbon(
         &mut self,
         points: &[Vector3<f32>],
@@ -237,7 +238,7 @@ fn across(along: &Vector3<f32>) -> (Vector3<f32>, Vector3<f32>) {
     (u, along.cross(&u))
 }
 
-/// The direction after `step` of `steps` parts of a full rotation from `u` towards `v`.
+/// Returns the direction after `step` of `steps` parts of a full rotation from `u` towards `v`.
 fn around(u: &Vector3<f32>, v: &Vector3<f32>, step: u32, steps: u32) -> Vector3<f32> {
     let (sin, cos) = (std::f32::consts::TAU * step as f32 / steps as f32).sin_cos();
     u * cos + v * sin

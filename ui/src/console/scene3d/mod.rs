@@ -103,7 +103,7 @@ impl Default for SceneView {
 }
 
 impl SceneView {
-    /// A view that draws with this context; without one it shows labels only.
+    /// Creates a view that draws with this context; without one it shows labels only.
     pub fn new(gl: Option<&glow::Context>) -> Self {
         match gl.map(GlRenderer::new) {
             None => Self::default(),
@@ -112,7 +112,7 @@ impl SceneView {
         }
     }
 
-    /// A second view that uses the same GPU objects, with its own camera; this view releases them.
+    /// Creates a second view that uses the same GPU objects, with its own camera; this view releases them.
     pub(super) fn twin(&self) -> Self {
         Self { renderer: self.renderer.clone(), problem: self.problem.clone(), ..Self::default() }
     }
@@ -129,7 +129,7 @@ impl SceneView {
         self.lead.is_held = leads;
     }
 
-    /// Whether mouse control is on.
+    /// Returns whether mouse control is on.
     pub fn is_led(&self) -> bool {
         self.lead.is_on()
     }
@@ -230,8 +230,8 @@ fn turn(ui: &Ui, live: &LiveState, view: &mut SceneView, response: &egui::Respon
     }
 }
 
-/// The objects of one side from its newest tick, or the start of the task before the first tick. Forces only if arrows are
-/// drawn.
+/// Returns the objects of one side from its newest tick, or the start of the task before the first tick. Forces only if
+/// arrows are drawn.
 fn arm(live: &LiveState, side: Side, view: &SceneView) -> Option<StageArm> {
     let scene = live.scene.of_side(side)?;
     let finite = |v: Vector3<f64>| v.iter().all(|x| x.is_finite());

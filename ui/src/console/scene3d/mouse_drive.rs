@@ -45,7 +45,7 @@ pub(super) struct MouseDrive {
 }
 
 impl MouseDrive {
-    /// Whether an instrument is driven.
+    /// Returns whether an instrument is driven.
     pub(super) fn is_on(self) -> bool {
         self.position_m.iter().any(Option::is_some)
     }
@@ -54,7 +54,7 @@ impl MouseDrive {
         self.is_on().then_some(self.side)
     }
 
-    /// The instrument whose tip is marked, even before the first tick of a participant's trial.
+    /// Returns the instrument whose tip is marked, even before the first tick of a participant's trial.
     pub(super) fn marked(self) -> Option<Side> {
         (self.is_on() || self.is_held).then_some(self.side)
     }
@@ -243,7 +243,7 @@ fn within(position_m: Vector3<f32>, lowest_m: f32) -> Vector3<f32> {
     )
 }
 
-/// The position at the same height, this many points away on the screen: the tip stays under the pointer.
+/// Returns the position at the same height, this many points away on the screen: the tip stays under the pointer.
 fn moved_m(position_m: &Vector3<f32>, way: Vec2, camera: &SceneCamera, rect: Rect) -> Vector3<f32> {
     if way == Vec2::ZERO {
         return *position_m;

@@ -37,7 +37,7 @@ pub struct DisplayedObjects {
 }
 
 impl DisplayedObjects {
-    /// The last reported objects, with the driven instrument; `None` in a scene without its own training task.
+    /// Returns the last reported objects, with the driven instrument; `None` in a scene without its own training task.
     pub(super) fn of(live: &LiveState, led: Option<Side>) -> Option<Self> {
         if !live.scene.is_played() {
             return None;

@@ -64,7 +64,7 @@ fn of_arm(
     near(trocar_m).then(|| text::field::trocar(&whose, &place(trocar_m)))
 }
 
-/// A position in millimetres in the base frame.
+/// Returns a position in millimetres in the base frame.
 fn place(position_m: &Vector3<f32>) -> String {
     text::field::place((position_m * 1e3).into())
 }

@@ -78,7 +78,7 @@ impl Rim {
         Some(Self { from_tip_m, along: axis.cross(&out) })
     }
 
-    /// Whether it fits between fingers that are lowered straight down.
+    /// Returns whether it fits between fingers that are lowered straight down.
     fn fits(&self, setting: &ObjectSettings, opening_rad: f64) -> bool {
         let inside_m = setting.jaws.finger_length_m * (0.5 * opening_rad).sin();
         let room_m = inside_m - setting.ring.tube_radius_m;

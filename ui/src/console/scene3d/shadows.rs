@@ -93,7 +93,8 @@ fn shaded(colour: Color32, fraction: f32) -> Color32 {
     Color32::from_rgb(r, g, b)
 }
 
-/// A flat band along points, with the width that `width_m` gives for each height, cut off at the edges of the board.
+/// Returns a flat band along points, with the width that `width_m` gives for each height, cut off at the edges of the
+/// board.
 fn band(
     mesh: &mut Mesh,
     points: &[(Vector3<f32>, f32)],

@@ -59,7 +59,7 @@ pub struct Dent {
 impl Dent {
     pub const NONE: Self = Self { position_m: [0.0; 2], depth_m: 0.0 };
 
-    /// The deformation by a tip in the scene's tissue; none if the tip is next to or above it.
+    /// Creates the deformation by a tip in the scene's tissue; none if the tip is next to or above it.
     pub fn new(scene: &Scene, tip_m: &Vector3<f32>) -> Self {
         let depth_m = scene.tissue.map_or(0.0, |tissue| {
             let [x_m, y_m] = tissue.size_m.map(|x| 0.5 * x as f32);
@@ -203,7 +203,7 @@ fn tissue(mesh: &mut Mesh, scene: &Scene, dents: &Dents, cells: u32) {
     );
 }
 
-/// The tissue's colour at a position, with slow variations that look like blood below the surface.
+/// Returns the tissue's colour at a position, with slow variations that look like blood below the surface.
 fn mottled(x: f32, y: f32) -> Color32 {
     let wave = (x * 97.0 + 2.1 * (y * 61.0).sin()).sin() + (y * 83.0 - 2.3 * (x * 53.0).sin() + 1.0).sin();
     let fine = ((x + 0.7 * y) * 271.0 + (y * 190.0).sin()).sin();
@@ -244,7 +244,7 @@ fn size_and_direction(force_n: &Vector3<f32>) -> Option<(f32, Vector3<f32>)> {
     (size_n.is_finite() && size_n >= ARROW_MIN_N).then(|| (size_n.min(ARROW_MAX_N), force_n / size_n))
 }
 
-/// Whether the force is large enough for an arrow.
+/// Returns whether the force is large enough for an arrow.
 pub fn has_arrow(force_n: &Vector3<f32>) -> bool {
     size_and_direction(force_n).is_some()
 }

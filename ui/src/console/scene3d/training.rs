@@ -59,7 +59,7 @@ pub(super) fn wire(mesh: &mut Mesh, scene: &Scene, shadows: &mut Shadows) {
     shadows.line(points_m, radius_m);
 }
 
-/// The loop of an instrument; returns the end of the shaft. `None` in a scene without a wire.
+/// Returns the loop of an instrument; returns the end of the shaft. `None` in a scene without a wire.
 pub(super) fn hoop(
     mesh: &mut Mesh,
     scene: &Scene,
@@ -108,7 +108,7 @@ pub(super) fn board(mesh: &mut Mesh, scene: &Scene) {
     }
 }
 
-/// The board of a scene.
+/// Returns the board of a scene.
 pub(super) fn board_of(scene: &Scene) -> Option<&nima_simulation::physics::BoardSettings> {
     let under_pegs = scene.objects.as_ref().map(|setting| &setting.board);
     under_pegs.or_else(|| scene.wire.as_ref().map(|setting| &setting.board))
@@ -138,7 +138,7 @@ pub(super) fn report(live: &LiveState, led: Option<Side>, reach: Option<JawReach
 /// Above this delay, s, two hands that hold one ring excite each other through the link in the modes that carry force.
 const LONG_S: f64 = 0.01;
 
-/// Whether the rings will end in a fault in the current mode.
+/// Returns whether the rings will end in a fault in the current mode.
 pub(super) fn needs_another_mode(live: &LiveState) -> bool {
     let carries_force = matches!(live.mode(), Mode::Best | Mode::Anchored);
     let shares_rings = live.scene.objects.is_some() && live.is_bimanual();

@@ -17,7 +17,7 @@ fn radii(rect: Rect) -> [f32; 2] {
     [radius * (1.0 - RIM), radius]
 }
 
-/// The part of a view with the disc: nothing is drawn or changes outside it.
+/// Returns the part of a view with the disc: nothing is drawn or changes outside it.
 pub(super) fn part_of(rect: Rect) -> Rect {
     let [_, dark] = radii(rect);
     // Round to whole points, so that the edges coincide with pixel edges.
@@ -37,7 +37,7 @@ pub(super) fn part_from_whole(part: Rect, whole: Rect) -> Matrix4<f32> {
     matrix
 }
 
-/// Whether a position, with this much room around it, is in the undimmed part of the image.
+/// Returns whether a position, with this much room around it, is in the undimmed part of the image.
 #[cfg(test)]
 pub(super) fn shows(rect: Rect, place: Pos2, room: f32) -> bool {
     let [clear, _] = radii(rect);

@@ -26,7 +26,7 @@ impl Default for RigChoice {
     }
 }
 
-/// The scene with its hidden parts at new places, so that a trainee cannot learn them.
+/// Returns the scene with its hidden parts at new places, so that a trainee cannot learn them.
 pub(crate) fn drawn_anew(scene: Scene) -> Scene {
     let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
     let lot = since.as_secs().wrapping_mul(1_000_003).wrapping_add(u64::from(since.subsec_nanos()));
@@ -91,7 +91,7 @@ impl Lists {
     }
 }
 
-/// Whether this built-in rig consists of emulated devices.
+/// Returns whether this built-in rig consists of emulated devices.
 fn is_emulated(rig: &str) -> bool {
     RigConfig::load(rig).is_ok_and(|rig| rig.devices.is_some_and(|devices| devices.emulated))
 }

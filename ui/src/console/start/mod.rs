@@ -337,7 +337,7 @@ impl StartPage {
     }
 }
 
-/// Whether a person may be at the handle and a patient below the arm.
+/// Returns whether a person may be at the handle and a patient below the arm.
 pub(super) fn is_real(rig: &RigConfig) -> bool {
     !rig.is_harmless()
 }

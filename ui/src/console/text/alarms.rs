@@ -111,7 +111,7 @@ pub(in crate::console) fn player_not_started(error: &impl std::fmt::Display) -> 
     text_format!("The alarm sound could not be played: {error}", "Alarmton nicht abspielbar: {error}")
 }
 
-/// The alarm in the strip; `remarks` mention further alarms and the acknowledgement.
+/// Returns the alarm in the strip; `remarks` mention further alarms and the acknowledgement.
 pub(in crate::console) fn pinned(priority: &str, cause: &str, began_utc: &str, remarks: &str) -> String {
     text_format!(
         "{priority}: {cause}, since {began_utc} UTC{remarks}",

@@ -168,7 +168,7 @@ pub(in crate::console) fn recovers(what: &str, left_s: f64) -> String {
     }
 }
 
-/// A fault that only a person releases: `stopped` if Stop was pressed, otherwise because the rig has devices.
+/// Returns a fault that only a person releases: `stopped` if Stop was pressed, otherwise because the rig has devices.
 pub(in crate::console) fn fault_waits(cause: &str, stopped: bool) -> String {
     if stopped {
         text_format!(

@@ -81,7 +81,7 @@ impl PanelLayout {
         }
     }
 
-    /// The tiles of this layout for a desk of this size.
+    /// Returns the tiles of this layout for a desk of this size.
     pub(super) fn tree(&self, size: Vec2) -> Tree<Panel> {
         let mut tiles = Tiles::default();
         let mut placed = Vec::new();
@@ -109,8 +109,8 @@ impl PanelLayout {
         tree
     }
 
-    /// The layout of these tiles; `seen` are the panels that were in front before. The default layout stays the default
-    /// unless tiles were `moved`.
+    /// Creates the layout of these tiles; `seen` are the panels that were in front before. The default layout stays the
+    /// default unless tiles were `moved`.
     pub(super) fn of(tree: &Tree<Panel>, moved: bool, seen: &[Panel], before: &Self) -> Self {
         let places = if moved { tree.root.and_then(|root| node(&tree.tiles, root)) } else { before.places.clone() };
         let mut front = in_front(tree);
@@ -120,7 +120,7 @@ impl PanelLayout {
     }
 }
 
-/// The panels that are visible on the desk.
+/// Returns the panels that are visible on the desk.
 pub(super) fn in_front(tree: &Tree<Panel>) -> Vec<Panel> {
     let mut panels: Vec<Panel> =
         tree.active_tiles().into_iter().filter_map(|id| tree.tiles.get_pane(&id).copied()).collect();

@@ -134,7 +134,7 @@ impl Panel {
         vec2(width, height)
     }
 
-    /// Whether it fills the available space; other panels have a fixed length.
+    /// Returns whether it fills the available space; other panels have a fixed length.
     pub(super) const fn fills(self) -> bool {
         self.kind().fills
     }

@@ -85,7 +85,7 @@ impl CorrespondenceWizard {
         self.frame.saved = None;
     }
 
-    /// The next direction to request: first those without a push, then all in turn.
+    /// Returns the next direction to request: first those without a push, then all in turn.
     fn wanted(&self) -> PushTarget {
         self.session.target().unwrap_or(TARGETS[self.session.pushes() % TARGETS.len()])
     }

@@ -61,7 +61,7 @@ impl WizardFrame {
         self.following.filter(|_| self.is_saved())
     }
 
-    /// Whether the step or the saved data have changed since the last call.
+    /// Returns whether the step or the saved data have changed since the last call.
     pub(crate) const fn take_changed(&mut self) -> bool {
         std::mem::replace(&mut self.changed, false)
     }
@@ -88,7 +88,7 @@ pub(crate) trait Wizard: std::fmt::Debug {
     fn step_ui(&mut self, ui: &mut Ui, binding: &Binding) -> Option<WizardRequest>;
     /// Evidence that the result is good, as text; `None` if it can only be saved with an override.
     fn proof(&self) -> Option<String>;
-    /// The record to save, if there is one, with its verdict before any override.
+    /// Returns the record to save, if there is one, with its verdict before any override.
     fn made(&self, binding: &Binding) -> Option<SaveRequest>;
     /// Removes the data, but keeps the settings of the rig.
     fn start_over(&mut self);
@@ -96,11 +96,11 @@ pub(crate) trait Wizard: std::fmt::Debug {
     /// Receives the endoscope's newest image.
     fn see(&mut self, _newest: Option<(u64, Arc<DecodedImage>)>, _ctx: &egui::Context) {}
 
-    /// Whether the result belongs to the wrist sensor and its tool.
+    /// Returns whether the result belongs to the wrist sensor and its tool.
     fn is_of_a_sensor(&self) -> bool {
         true
     }
-    /// Whether this step is complete.
+    /// Returns whether this step is complete.
     fn is_done(&self) -> bool {
         true
     }
@@ -111,7 +111,7 @@ pub(crate) trait Wizard: std::fmt::Debug {
 
     /// Called before drawing.
     fn refresh(&mut self, _binding: &Binding) {}
-    /// A message shown in every step, below the row of steps.
+    /// Returns a message shown in every step, below the row of steps.
     fn notice(&self) -> Option<&str> {
         None
     }
@@ -174,7 +174,7 @@ struct GoingOn {
     following: Option<GoOn>,
 }
 
-/// The row of steps with buttons for back, next and reset. Going back loses no data.
+/// Returns the row of steps with buttons for back, next and reset. Going back loses no data.
 fn steps_ui(ui: &mut Ui, steps: &[WizardStep], now: usize, going_on: &GoingOn) -> Option<WizardRequest> {
     let mut wish = None;
     ui.horizontal_wrapped(|ui| {
@@ -221,8 +221,8 @@ fn steps_ui(ui: &mut Ui, steps: &[WizardStep], now: usize, going_on: &GoingOn) -
     wish
 }
 
-/// The last step of every wizard: sensor and tool of the record, if it is bound to them, and the save button; returns true
-/// when pressed. Without `proof` a name and a reason are required.
+/// Returns the last step of every wizard: sensor and tool of the record, if it is bound to them, and the save button;
+/// returns true when pressed. Without `proof` a name and a reason are required.
 fn save_card(ui: &mut Ui, binding: Option<&Binding>, proof: Option<&str>, frame: &mut WizardFrame) -> bool {
     let meaning =
         if binding.is_some() { text::wizards::SAVE_HOVER.get() } else { text::wizards::STEP_SAVE_IN_RIG_HOVER.get() };

@@ -222,7 +222,7 @@ impl GravityWizard {
         });
     }
 
-    /// Whether the result is good enough to be saved without an override.
+    /// Returns whether the result is good enough to be saved without an override.
     fn is_proven(&self) -> bool {
         self.good_report().is_some_and(|report| report.verdict == Verdict::Accepted)
             && self.pass_result().is_some_and(|result| result.passed)

@@ -69,7 +69,7 @@ pub struct Binding {
 }
 
 impl Binding {
-    /// A value of the rig file as TOML text.
+    /// Returns a value of the rig file as TOML text.
     fn rig_value(&self, key: &str) -> Option<String> {
         RigFile::of(&self.rig).ok()?.value(key)
     }
@@ -146,7 +146,7 @@ impl WizardKind {
         }
     }
 
-    /// The simulated experiment for it; `None` if it needs a rig with devices.
+    /// Returns the simulated experiment for it; `None` if it needs a rig with devices.
     pub const fn scene(self) -> Option<&'static str> {
         match self {
             Self::Gravity => Some("gravity"),
@@ -156,8 +156,8 @@ impl WizardKind {
         }
     }
 
-    /// Whether this scene has a person who guides the arm, and everything else that the wizard needs, so that it need not be
-    /// changed.
+    /// Returns whether this scene has a person who guides the arm, and everything else that the wizard needs, so that
+    /// it need not be changed.
     pub const fn suits(self, scene: &Scene) -> bool {
         let guided = scene.person.is_some() && scene.wrist.is_some();
         match self {
@@ -315,7 +315,7 @@ impl Wizards {
         }
     }
 
-    /// The calibration of the open wizard.
+    /// Returns the calibration of the open wizard.
     pub fn wanted(&self, side: Side) -> Option<CalibrationTarget> {
         let which = self.open?;
         let by_handle =

@@ -97,7 +97,7 @@ fn rig_file(out: &Path) -> anyhow::Result<RigFile> {
     Ok(RigFile::of(&out.to_string_lossy())?)
 }
 
-/// The views in the JPEGs of a folder, sorted by name.
+/// Returns the views in the JPEGs of a folder, sorted by name.
 fn of_folder(folder: &Path, board: &Checkerboard) -> anyhow::Result<NamedViews> {
     let about = || format!("cannot read the images in {}", folder.display());
     let entries = std::fs::read_dir(folder).with_context(about)?;

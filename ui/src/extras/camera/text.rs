@@ -198,7 +198,7 @@ pub(super) fn left_out(number: usize, why: &str) -> String {
     text_format!("View {number} left out: {why}", "Ansicht {number} ausgelassen: {why}")
 }
 
-/// A value with its standard deviation, px.
+/// Returns a value with its standard deviation, px.
 pub(super) fn with_deviation(value: f64, sd: f64) -> String {
     text_format!("{value:.1} ± {sd:.1} px", "{value:.1} ± {sd:.1} px")
 }

@@ -167,7 +167,7 @@ fn push_row(trace: &mut String, row: &ReplayRow, axes: usize) {
     writeln!(trace, ",{},{:e},{}", row.degree, row.condition, row.gate).ok();
 }
 
-/// The rendered force's error as a multiple of the held force's error, if there is one.
+/// Returns the rendered force's error as a multiple of the held force's error, if there is one.
 fn ratio_text(ratio: Option<f64>) -> String {
     ratio.map_or_else(|| "none: the held force is exact".to_owned(), |ratio| format!("{ratio:.3}"))
 }

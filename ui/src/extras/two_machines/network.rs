@@ -96,7 +96,7 @@ pub(super) fn own_keys() -> anyhow::Result<(NetworkKeys, Peers)> {
     Ok((NetworkKeys::open(&folder)?, Peers::open(&folder)?))
 }
 
-/// The name under which a paired machine is stored: its address without the port.
+/// Returns the name under which a paired machine is stored: its address without the port.
 pub(super) fn name_of(host: &str) -> &str {
     if host.parse::<std::net::Ipv6Addr>().is_ok() {
         return host;
@@ -104,7 +104,7 @@ pub(super) fn name_of(host: &str) -> &str {
     host.rsplit_once(':').map_or(host, |(name, _)| name)
 }
 
-/// The address of a host, with the default port if it has none.
+/// Returns the address of a host, with the default port if it has none.
 pub(crate) fn address(host: &str) -> anyhow::Result<SocketAddr> {
     let with_port = host.to_socket_addrs();
     let mut found = with_port.or_else(|_| (host, PORT).to_socket_addrs()).with_context(|| {

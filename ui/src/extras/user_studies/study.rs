@@ -80,7 +80,7 @@ pub(super) fn create(folder: &Path, file: &StudyFile) -> anyhow::Result<UserStud
     Ok(UserStudy::create(folder, file, &scene, &utc_now())?)
 }
 
-/// The scene of a study, with its task and its number of rings.
+/// Returns the scene of a study, with its task and its number of rings.
 pub(super) fn scene_of(file: &StudyFile) -> anyhow::Result<Scene> {
     let mut scene = Scene::load(&file.scene)?;
     if let Some(task) = &file.task {
@@ -102,7 +102,7 @@ pub(super) fn scene_of(file: &StudyFile) -> anyhow::Result<Scene> {
     Ok(scene)
 }
 
-/// The same rig under a condition.
+/// Returns the same rig under a condition.
 pub(super) fn under(mut rig: RigConfig, condition: &Condition) -> Result<RigConfig, ConfigError> {
     rig.delay_s = condition.delay_ms.unwrap_or(0.0) * 1e-3;
     // Without force feedback, compute the force with the cheapest mode; the gain then removes it.
@@ -113,7 +113,7 @@ pub(super) fn under(mut rig: RigConfig, condition: &Condition) -> Result<RigConf
     Ok(rig)
 }
 
-/// The hand of the scene, with other random sequences in each trial.
+/// Returns the hand of the scene, with other random sequences in each trial.
 pub(super) fn plain_hand(study: &UserStudy, participant: &str) -> anyhow::Result<SimulatedHand> {
     let scene = scene_in(study)?;
     // Count trials and interruptions, so that a repetition differs.
@@ -137,7 +137,7 @@ pub(super) fn scene_file(study: &UserStudy) -> PathBuf {
     study.folder().join("scene.toml")
 }
 
-/// The scene for a trial on this rig, with this hand, its random sequences, and its task.
+/// Returns the scene for a trial on this rig, with this hand, its random sequences, and its task.
 pub(super) fn scene_for(study: &UserStudy, rig: &RigConfig, hand: &SimulatedHand) -> anyhow::Result<(Scene, TaskFile)> {
     let mut scene = scene_in(study)?;
     scene.hand.pace = hand.pace;

@@ -16,7 +16,7 @@ use nima_console::{
 use super::{alike, begin, by_key, choose, entry, expect, rows};
 use crate::bench::{Console, pick, press, shows};
 
-/// The initial settings with this change.
+/// Returns the initial settings with this change.
 fn set(change: impl Fn(&mut ConsoleSettings)) -> impl Fn(&mut Console) {
     move |console| {
         let settings = console.state_mut().settings_mut();
@@ -29,7 +29,7 @@ fn settings(console: &mut Console) -> String {
     format!("{:?}", console.state_mut().settings_mut())
 }
 
-/// A button or switch of the View menu.
+/// Returns a button or switch of the View menu.
 fn of_menu(kind: Kind, label: &str) -> impl Fn(&mut Console) {
     move |console| {
         press(console, "View");
@@ -113,7 +113,7 @@ fn what_the_view_menu_and_the_keys_of_the_screen_do() {
     expect(&done, "the View menu");
 }
 
-/// The open page, identified by something unique to it.
+/// Returns the open page, identified by something unique to it.
 fn pages(console: &mut Console) -> String {
     let marks = ["1. Choose a rig", "Back to the view", "New study", "The last 50 alarms", "Terms"];
     let marks = marks.iter().chain(&["Three views of one loop"]);

@@ -123,7 +123,7 @@ pub(super) fn expect(done: &[Action], there: &str) {
     assert!(missing.is_empty(), "not tried: {missing:?}");
 }
 
-/// The test of a command. A command added to the table must be added here, or this does not compile.
+/// Returns the test of a command. A command added to the table must be added here, or this does not compile.
 const fn tried_in(action: Action) -> &'static str {
     match action {
         Action::View(_)

@@ -83,13 +83,13 @@ fn pool(seed: u64, cone_deg: f64, tip_m: impl Fn(&Vector3<f64>, &mut Noise) -> V
     poses
 }
 
-/// The shaft through the trocar, tilted by up to 20 degrees, 5 to 20 cm deep.
+/// Returns the shaft through the trocar, tilted by up to 20 degrees, 5 to 20 cm deep.
 pub(crate) fn through_trocar() -> &'static Pool {
     static POOL: OnceLock<Pool> = OnceLock::new();
     POOL.get_or_init(|| pool(1, 20.0, |d, noise| TROCAR_M + d * (0.05 + 0.15 * noise.uniform())))
 }
 
-/// The tip in a dimple, the shaft tilted by up to 30 degrees.
+/// Returns the tip in a dimple, the shaft tilted by up to 30 degrees.
 pub(crate) fn in_dimple() -> &'static Pool {
     static POOL: OnceLock<Pool> = OnceLock::new();
     POOL.get_or_init(|| pool(2, 30.0, |_, _| TROCAR_M - Vector3::z() * 0.1))
@@ -134,7 +134,7 @@ impl Rig {
     }
 }
 
-/// The tip in the flange's or the marker's frame, m.
+/// Returns the tip in the flange's or the marker's frame, m.
 pub(crate) fn tip_in(carrier: Carrier) -> Vector3<f64> {
     match carrier {
         Carrier::Marker => (flange_from_m().inverse() * Point3::from(TIP_IN_FLANGE_M)).coords,
@@ -147,7 +147,7 @@ pub(crate) fn with_tip_at(tip_m: &Vector3<f64>, turn: UnitQuaternion<f64>) -> Is
     Isometry3::from_parts((tip_m - turn * TIP_IN_FLANGE_M).into(), turn)
 }
 
-/// The flange's orientation with the shaft down.
+/// Returns the flange's orientation with the shaft down.
 pub(crate) fn shaft_down() -> UnitQuaternion<f64> {
     from_roll_pitch_yaw_deg(&Vector3::new(180.0, 0.0, 0.0))
 }

@@ -90,8 +90,8 @@ const ALL_KINDS: Kinds<'_> =
     Kinds { handles_kg: &[0.2, 0.25, 0.31], coulomb_n: &[0.0, 0.05, 0.15], counts_m: &[1e-5, 2e-5], seeds: 2 };
 const SOME_KINDS: Kinds<'_> = Kinds { coulomb_n: &[0.0, 0.15], counts_m: &[1e-5], seeds: 1, ..ALL_KINDS };
 
-/// The worst of letting go of this force (N), held and pressing, in all modes and delays, with a brake of this viscosity (N s/m).
-/// A force that has not yet arrived at the hand is not let go.
+/// Returns the worst of letting go of this force (N), held and pressing, in all modes and delays, with a brake of this
+/// viscosity (N s/m). A force that has not yet arrived at the hand is not let go.
 fn worst(force_n: f64, brake_n_s_m: f64, kinds: Kinds<'_>) -> LetGo {
     let mut worst = LetGo::default();
     let late = [0, 10, 50, 100, 200, 300].map(|delay| (Render::Reflection, delay));

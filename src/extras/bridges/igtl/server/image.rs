@@ -36,7 +36,7 @@ impl ImageSlot {
         *self.source() = source;
     }
 
-    /// Whether there is a source.
+    /// Returns whether there is a source.
     pub(super) fn is_taken(&self) -> bool {
         self.source().is_some()
     }

@@ -56,7 +56,7 @@ impl Mailbox {
         self.comes.notify_one();
     }
 
-    /// Whether an image is waiting, so that another one would be wasted.
+    /// Returns whether an image is waiting, so that another one would be wasted.
     pub(super) fn has_image(&self) -> bool {
         self.mail().image.is_some()
     }

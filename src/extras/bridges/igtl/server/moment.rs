@@ -153,7 +153,7 @@ impl IgtlWriter<'_> {
             .flatten()
     }
 
-    /// The same as text, for programs without support for sensors and status.
+    /// Returns the same as text, for programs without support for sensors and status.
     fn text(&self) -> String {
         let mut all = Map::from_iter([("t_s".to_owned(), json!(self.moment.t_s))]);
         for (side, arm) in self.arms() {

@@ -15,7 +15,7 @@ fn read(message: &[u8]) -> Result<IgtlMessage, IgtlFormatError> {
     IgtlMessage::read(&IgtlHeader::read(head)?, body)
 }
 
-/// A message of this type with this content and a correct checksum.
+/// Returns a message of this type with this content and a correct checksum.
 fn framed(kind: &str, version: u16, body: &[u8]) -> Vec<u8> {
     let mut message = IgtlMessage::new("Device", 0, Content::Other(kind.to_owned())).encode();
     message[..2].copy_from_slice(&version.to_be_bytes());

@@ -180,7 +180,7 @@ fn wrench(header: Ros2Header, sensor: &SensorContent) -> Option<TopicData> {
     }))
 }
 
-/// The states of CRTK; the subcodes are those of docs/bridges.md.
+/// Returns the states of CRTK; the subcodes are those of docs/bridges.md.
 fn state(header: Ros2Header, status: &ContentStatus) -> TopicData {
     let state = match status.subcode {
         3 => "ENABLED",

@@ -95,13 +95,13 @@ trait BotaWire: Send {
     fn tick(&mut self, now_s: f64, answer: &mut Vec<u8>);
     /// Time between readings while it measures, s.
     fn period_s(&self) -> Option<f64>;
-    /// Whether frames contain the inertial unit.
+    /// Returns whether frames contain the inertial unit.
     fn is_inertial(&self) -> bool;
     /// Applies the sensor's own offset and status bits to a reading.
     fn finish(&self, frame: &mut BotaFrame);
 }
 
-/// A slow, plausible motion for a standalone emulator: a tool of 0.4 kg being rotated, and a slow pull.
+/// Returns a slow, plausible motion for a standalone emulator: a tool of 0.4 kg being rotated, and a slow pull.
 pub fn slow_motion() -> BotaBody {
     Box::new(|t_s| {
         let turn = (0.5 * (TAU * 0.10 * t_s).sin(), 0.3 * (TAU * 0.07 * t_s).cos());

@@ -26,7 +26,7 @@ fn free_udp_port() -> u16 {
     UdpSocket::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port()
 }
 
-/// A sensor that starts quickly, on a clock that is about to wrap around.
+/// Returns a sensor that starts quickly, on a clock that is about to wrap around.
 fn emulated() -> EmulatedBota {
     EmulatedBota {
         boot_s: 0.02,

@@ -104,7 +104,7 @@ impl std::fmt::Debug for Bus {
     }
 }
 
-/// A default body: a soft hand sways the shafts slowly, which resist once the torque is on.
+/// Returns a default body: a soft hand sways the shafts slowly, which resist once the torque is on.
 pub fn swaying(supply_v: f64) -> DynamixelBody {
     Box::new(move |now_s, index, shaft| {
         let there_rad = 0.4 * (0.6 * now_s + index as f64).sin();

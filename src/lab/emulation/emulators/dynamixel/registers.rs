@@ -121,7 +121,7 @@ pub(super) fn pointer_of(model: &ServoModel, address: u16) -> Option<u16> {
     Some(block.pointers + 2 * (address - block.data))
 }
 
-/// The rule of the register that begins at `address`.
+/// Returns the rule of the register that begins at `address`.
 pub(super) fn rule_at(model: &ServoModel, address: u16) -> Option<Rule> {
     if let Some(known) = RULES.iter().chain([&BACKUP_READY]).find(|rule| rule.register.address == address) {
         return Some(of_model(*known, model));

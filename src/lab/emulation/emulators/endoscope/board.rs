@@ -34,7 +34,8 @@ const POSES: usize = 20;
 /// Noise of the sensor, of 255: without it every image of a still board would be equal, like that of a frozen camera.
 const NOISE: f32 = 2.0;
 
-/// A person who holds the board at one position after the other, over the whole image, and tilts it in every direction.
+/// Returns a person who holds the board at one position after the other, over the whole image, and tilts it in every
+/// direction.
 pub fn held(board: Checkerboard, lens: &Lens) -> BoardHands {
     let poses: Vec<_> = (0..POSES).map(|k| pose(&board, lens, k)).collect();
     Box::new(move |now_s| {
@@ -45,7 +46,7 @@ pub fn held(board: Checkerboard, lens: &Lens) -> BoardHands {
     })
 }
 
-/// A pose of the list, as close to its position as the whole board is visible.
+/// Returns a pose of the list, as close to its position as the whole board is visible.
 fn pose(board: &Checkerboard, lens: &Lens, k: usize) -> Isometry3<f64> {
     let [width, height] = lens.size_px.map(|side| side as f64);
     let side_m = board.corners()[0] as f64 * board.square_m();

@@ -63,7 +63,7 @@ pub struct EmulatedEndoscope {
 }
 
 impl EmulatedEndoscope {
-    /// The default endoscope of a scene, on this port.
+    /// Creates the default endoscope of a scene, on this port.
     pub fn of(scene: &Scene, port: u16) -> Self {
         Self {
             port,

@@ -40,7 +40,7 @@ pub(super) struct RtspReply {
     pub(super) ends: bool,
 }
 
-/// Whether bytes are the beginning of an RTSP request.
+/// Returns whether bytes are the beginning of an RTSP request.
 pub(super) fn is_rtsp(request: &[u8]) -> bool {
     request.split(|byte| *byte == b'\n').next().is_some_and(|line| line.trim_ascii_end().ends_with(b"RTSP/1.0"))
 }
@@ -176,7 +176,7 @@ impl RtspSession {
     }
 }
 
-/// The same paths as for a browser.
+/// Returns the same paths as for a browser.
 fn is_known(url: &str) -> bool {
     if url == "*" {
         return true;

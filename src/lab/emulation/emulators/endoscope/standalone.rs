@@ -77,7 +77,7 @@ fn board(settings: &EmulatorSettings) -> Result<Option<Checkerboard>> {
     made.map(Some).map_err(|error| unusable("board", &named, &error.to_string()))
 }
 
-/// The hands of a scene perform their task without contact.
+/// Returns the hands of a scene perform their task without contact.
 pub(super) fn in_the_air(scene: &Scene) -> EndoscopeBody {
     let sides: Vec<Scene> = Side::ALL.into_iter().filter_map(|side| scene.of_side(side)).collect();
     let mut hands: Vec<Hand> = sides.iter().map(Hand::new).collect();

@@ -77,8 +77,8 @@ impl HapticForce {
         *self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// A grip that a soft spring (300 N/m) leads along a circle of 10 mm about the middle of the workspace, and that
-    /// yields to the force.
+    /// Returns a grip that a soft spring (300 N/m) leads along a circle of 10 mm about the middle of the workspace, and
+    /// that yields to the force.
     pub fn on_a_circle(&self) -> HaplyBody {
         const SPRING_N_M: f64 = 300.0;
         const RADIUS_M: f64 = 0.01;

@@ -47,17 +47,17 @@ trait WireSide: Send {
     fn command(&mut self, bytes: &[u8]);
 }
 
-/// An emulated cap at this path, or in its own folder.
+/// Returns an emulated cap at this path, or in its own folder.
 pub fn cap(path: Option<PathBuf>, model: CapModel, body: CapBody) -> Box<dyn Emulator> {
     Box::new(Periodic { path, side: CapSide::new(model, body), due_s: 0.0 })
 }
 
-/// An emulated pedal, placed like a cap.
+/// Returns an emulated pedal, placed like a cap.
 pub fn pedal(path: Option<PathBuf>, model: PedalModel, body: PedalBody) -> Box<dyn Emulator> {
     Box::new(Periodic { path, side: PedalSide::new(model, body), due_s: 0.0 })
 }
 
-/// An emulated `spacenavd` with one cap, placed like a cap.
+/// Returns an emulated `spacenavd` with one cap, placed like a cap.
 pub fn spacenavd(path: Option<PathBuf>, body: CapBody) -> Box<dyn Emulator> {
     Box::new(Periodic { path, side: SpacenavdSide::new(body), due_s: 0.0 })
 }

@@ -26,7 +26,7 @@ pub struct CapBody {
 }
 
 impl CapBody {
-    /// A slow motion through all axes with a rest in every cycle of 8 s; the first button blinks.
+    /// Creates a slow motion through all axes with a rest in every cycle of 8 s; the first button blinks.
     pub fn alone() -> Self {
         Self { now: Box::new(demonstration), light: Box::new(|_| {}) }
     }

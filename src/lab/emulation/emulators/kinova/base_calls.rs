@@ -83,7 +83,7 @@ impl Base {
         }
     }
 
-    /// A Gen3 on a fixed base, with a spherical wrist and nothing at its end.
+    /// Returns a Gen3 on a fixed base, with a spherical wrist and nothing at its end.
     fn product(&self) -> Product {
         Product {
             kin: self.arm.serial.clone(),

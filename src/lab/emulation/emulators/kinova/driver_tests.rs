@@ -29,7 +29,7 @@ use crate::emulators::{
 const TICK_S: f64 = 1e-3;
 const HOME_RAD: [f64; ARM_JOINTS] = [0.0, 0.26, 3.12, -2.27, 0.0, 0.96, 1.57];
 
-/// An arm that tolerates pauses of a busy machine.
+/// Returns an arm that tolerates pauses of a busy machine.
 pub(super) fn patient() -> EmulatedKinova {
     EmulatedKinova { watchdog_ms: 5_000.0, ..EmulatedKinova::default() }
 }

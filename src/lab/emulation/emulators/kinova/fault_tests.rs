@@ -15,7 +15,7 @@ use nima_testing::real_time::judged;
 use super::driver_tests::{Ticking, patient, started};
 use crate::emulators::EmulatedFault;
 
-/// Whether a fault has its expected effect.
+/// Returns whether a fault has its expected effect.
 fn is_noticed(fault: EmulatedFault, health: &Health, before: &Health) -> bool {
     let lost_by = |loss: Loss| health.standing == ConnectionState::Lost(loss);
     match fault {

@@ -74,7 +74,7 @@ impl KinovaMotion {
     }
 }
 
-/// The path from one point to another in `wanted_s`, or as fast as the joints can if that is 0.
+/// Returns the path from one point to another in `wanted_s`, or as fast as the joints can if that is 0.
 pub(super) fn leg(from_rad: &KinovaJoints, to_rad: KinovaJoints, wanted_s: f64) -> Result<Leg, InterfaceError> {
     // Along half a cosine the maximum speed is pi/2 times the mean speed, the maximum acceleration pi^2/2 times
     // distance over time squared.

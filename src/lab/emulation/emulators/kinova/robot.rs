@@ -231,7 +231,7 @@ impl Robot {
         Ok(())
     }
 
-    /// The active `ControlMode`.
+    /// Returns the active `ControlMode`.
     pub(super) const fn control_mode(&self) -> u32 {
         match (&self.motion, &self.asked) {
             (Some(KinovaMotion::Path { .. }), _) => 4,

@@ -17,7 +17,7 @@ pub(super) struct KinovaSetting {
 type SettingCheck = Box<dyn Fn(&[u8]) -> AnswerPayload + Send>;
 
 impl KinovaSetting {
-    /// A value read and set by these functions of its service; `fits` returns which values are accepted.
+    /// Returns a value read and set by these functions of its service; `fits` returns which values are accepted.
     pub(super) fn new<M>(get: u16, set: u16, initial: &M, fits: fn(&M) -> bool) -> Self
     where
         M: Message + Default + 'static,
@@ -35,7 +35,7 @@ impl KinovaSetting {
         Self { reset: Some(reset), ..self }
     }
 
-    /// Whether the function changes it.
+    /// Returns whether the function changes it.
     pub(super) fn is_changed_by(&self, function: u16) -> bool {
         function == self.set || Some(function) == self.reset
     }

@@ -306,7 +306,7 @@ fn dropping_it_stops_tracking() {
     });
 }
 
-/// A TCP server that sends `reply` to everything.
+/// Returns a TCP server that sends `reply` to everything.
 fn stranger(reply: &'static [u8]) -> (String, std::thread::JoinHandle<()>) {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let address = listener.local_addr().unwrap().to_string();

@@ -65,7 +65,7 @@ enum UnitReply {
 }
 
 impl NdiUnit {
-    /// A unit that has just been switched on; `network` if it has no serial port.
+    /// Creates a unit that has just been switched on; `network` if it has no serial port.
     pub fn new(profile: NdiProfile, network: bool) -> Self {
         let ports = Vec::new();
         Self { profile, network, ports, initialised: false, tracking: false, zero_s: 0.0, frozen_s: None, asked: 0 }

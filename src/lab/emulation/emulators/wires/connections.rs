@@ -10,12 +10,12 @@ use std::{
 use super::{WireArrival, WireEnd, WirePeer};
 use crate::emulators::addresses::taken;
 
-/// A TCP port of this computer; 0 selects a free one. A client that does not read its data is disconnected.
+/// Returns a TCP port of this computer; 0 selects a free one. A client that does not read its data is disconnected.
 pub(in crate::emulators) fn tcp(port: u16) -> Box<dyn WireEnd> {
     Box::new(Connections::new(ConnectionPort((Ipv4Addr::LOCALHOST, port).into()), false))
 }
 
-/// The same for one client at a time: the next client replaces it.
+/// Returns the same for one client at a time: the next client replaces it.
 pub(in crate::emulators) fn tcp_for_one(port: u16) -> Box<dyn WireEnd> {
     Box::new(Connections::new(ConnectionPort((Ipv4Addr::LOCALHOST, port).into()), true))
 }

@@ -10,7 +10,7 @@ use std::{
 use super::{WireArrival, WireEnd, WirePeer};
 use crate::emulators::addresses::taken;
 
-/// A UDP port of this computer; 0 selects a free one.
+/// Returns a UDP port of this computer; 0 selects a free one.
 pub(in crate::emulators) fn udp(port: u16) -> Box<dyn WireEnd> {
     Box::new(WireDatagrams { address: (Ipv4Addr::LOCALHOST, port).into(), socket: None })
 }

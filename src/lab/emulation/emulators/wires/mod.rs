@@ -65,7 +65,7 @@ pub trait WireEnd: Send {
     fn send(&mut self, to: WirePeer, bytes: &[u8]);
     /// Closes all connections.
     fn hang_up(&mut self) {}
-    /// The baud rate that the client of a serial port has set, bit/s.
+    /// Returns the baud rate that the client of a serial port has set, bit/s.
     fn baud(&self) -> Option<u32> {
         None
     }

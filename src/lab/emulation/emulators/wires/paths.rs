@@ -14,8 +14,8 @@ use crate::emulators::addresses::socket_path;
 
 type Listen = fn(&Path) -> io::Result<UnixListener>;
 
-/// A socket at `path`, opened by `listen`; without a path, at `name` in its own folder. Data that a client does not
-/// read are dropped.
+/// Returns a socket at `path`, opened by `listen`; without a path, at `name` in its own folder. Data that a client does
+/// not read are dropped.
 pub(in crate::emulators) fn socket(path: Option<&Path>, name: &str, listen: Listen) -> io::Result<Box<dyn WireEnd>> {
     let (path, folder) = socket_path(path, name)?;
     Ok(Box::new(Connections::new(SocketPath { path, _folder: folder, listen }, false)))

@@ -17,8 +17,8 @@ use crate::emulators::addresses::TerminalName;
 /// Interval between checks for settings that clients left on a terminal.
 const TIDY: Duration = Duration::from_millis(250);
 
-/// A terminal at `link`; without one, at `name` in its own folder. With a baud rate (bit/s) the terminal is set to it
-/// and outlives its clients; without one every client that opens it is reported.
+/// Returns a terminal at `link`; without one, at `name` in its own folder. With a baud rate (bit/s) the terminal is set
+/// to it and outlives its clients; without one every client that opens it is reported.
 pub(in crate::emulators) fn terminal(
     link: Option<&Path>,
     name: &str,

@@ -62,7 +62,7 @@ pub(super) fn chooser_ui(
     chosen.map(|chosen| RigEdit::Choose(part, chosen))
 }
 
-/// The devices of other parts of this kind, to swap with this one.
+/// Returns the devices of other parts of this kind, to swap with this one.
 fn others_ui(ui: &mut Ui, live: &LiveState, part: RigPart, refused: Option<&str>) -> Option<ChosenDevice> {
     let mut chosen = None;
     let mut any = false;

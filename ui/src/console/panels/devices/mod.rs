@@ -76,7 +76,7 @@ impl DevicesState {
         self.results.clear();
     }
 
-    /// Whether a test is running, which needs every block of data.
+    /// Returns whether a test is running, which needs every block of data.
     pub(in crate::console) const fn is_testing(&self) -> bool {
         self.test.is_some()
     }
@@ -132,7 +132,8 @@ pub(in crate::console) fn why_not_to_change(live: &LiveState, is_starting: bool)
     })
 }
 
-/// The panel; for a rig without devices it says that everything is simulated. Returns a requested change of the rig.
+/// Returns the panel; for a rig without devices it says that everything is simulated. Returns a requested change of the
+/// rig.
 pub fn devices_ui(ui: &mut Ui, live: &LiveState, state: &mut DevicesState) -> Option<RigEdit> {
     state.is_seen = true;
     if live.roster.is_empty() {

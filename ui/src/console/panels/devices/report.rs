@@ -97,7 +97,7 @@ fn span(one: &CheckupNumber, scale: f64) -> String {
     if low == high { low } else { format!("{low}\u{2026}{high}") }
 }
 
-/// A number with as many decimals as a person at the device can use.
+/// Returns a number with as many decimals as a person at the device can use.
 fn short(value: f64) -> String {
     let decimals = if value.abs() >= 10.0 { 1 } else { 2 };
     let words = format!("{value:.decimals$}");
@@ -113,7 +113,7 @@ fn reached_percent(one: &CheckupNumber) -> Option<f64> {
     Some(100.0 * (one.high - middle).max(middle - one.low) / half)
 }
 
-/// The axis nearest to this direction, the angle to it (degrees), and the length.
+/// Returns the axis nearest to this direction, the angle to it (degrees), and the length.
 fn nearest_axis(up: &Vector3<f64>) -> Option<(&'static str, f64, f64)> {
     let size = up.norm();
     if !size.is_finite() || size <= 0.0 {

@@ -19,7 +19,7 @@ const SIZE_PX: [usize; 2] = [256, 24];
 const PERIOD_NS: u64 = 33_333_333;
 const STOPS_S: f64 = 4.0;
 
-/// An image with this time (us) as code.
+/// Returns an image with this time (us) as code.
 fn pixels(time_us: u64) -> Vec<u8> {
     let mut rgb = vec![120; 3 * SIZE_PX[0] * SIZE_PX[1]];
     time_code::draw(time_us, SQUARE_PX, &mut rgb, SIZE_PX[0]);
@@ -31,7 +31,8 @@ fn code_of(image: &DecodedImage) -> u64 {
     time_code::read(SQUARE_PX, brightness).expect("a sound code")
 }
 
-/// The session with JPEGs as a camera would have sent them, up to 4 s, one of them damaged; returns its start, ns.
+/// Returns the session with JPEGs as a camera would have sent them, up to 4 s, one of them damaged; returns its start,
+/// ns.
 fn with_images(from: &Path, to: &Path, damaged: u64) -> u64 {
     with_messages(from, to, IMAGE_TOPIC, encoding::<CompressedImage>(), |number, time_ns| {
         let mut data = jpeg::encode(&pixels(time_ns / 1000), SIZE_PX, 90);
@@ -54,7 +55,7 @@ fn with_stream(from: &Path, to: &Path, mut coded: impl FnMut(u64, u64) -> Vec<u8
     })
 }
 
-/// The session with these image messages, by number and time; returns its start, ns.
+/// Returns the session with these image messages, by number and time; returns its start, ns.
 fn with_messages(
     from: &Path,
     to: &Path,
@@ -171,7 +172,7 @@ fn the_picture_of_a_moment_is_that_of_the_frame_before_it_also_while_it_is_playe
     assert!(shown(&mut past).is_none());
 }
 
-/// An open, read session of 4.5 s with a stream, and its start, ns.
+/// Returns an open, read session of 4.5 s with a stream, and its start, ns.
 fn streamed(folder: &Path, coded: impl FnMut(u64, u64) -> Vec<u8>) -> (Playback, u64) {
     let [path, filmed] = ["session.mcap", "filmed.mcap"].map(|name| folder.join(name));
     record(&path, "bimanual", 4.5, |_| None);

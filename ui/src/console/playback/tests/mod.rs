@@ -36,7 +36,7 @@ use crate::{
 
 const TIMEOUT: Duration = Duration::from_mins(3);
 
-/// A session of this scene, with a command after this many ticks of the right arm.
+/// Returns a session of this scene, with a command after this many ticks of the right arm.
 fn record(path: &Path, scene: &str, seconds: f64, command: impl Fn(u64) -> Option<Command>) {
     let rig = RigConfig::load("simulated").unwrap();
     let scene = Scene::load(scene).unwrap();
@@ -48,8 +48,8 @@ fn record(path: &Path, scene: &str, seconds: f64, command: impl Fn(u64) -> Optio
     recorder.finish().unwrap();
 }
 
-/// A session of a scene with a training task, and the objects that the screen received. Before each tick of the right arm, by
-/// its number, a command may be given.
+/// Returns a session of a scene with a training task, and the objects that the screen received. Before each tick of the
+/// right arm, by its number, a command may be given.
 fn record_task(scene: &str, path: &Path, seconds: f64, command: impl Fn(u64) -> Option<Command>) -> Vec<ObjectStates> {
     let mut rig = RigConfig::load("simulated").unwrap();
     let scene = Scene::load(scene).unwrap();

@@ -48,7 +48,7 @@ impl ChapterPace {
         self.seen_s += passed_s.min(PAUSE_S);
     }
 
-    /// Whether a chapter of this length (s) is over.
+    /// Returns whether a chapter of this length (s) is over.
     pub(super) fn is_over(&self, seconds: f64) -> bool {
         self.shown_s >= seconds && self.seen_s >= SEEN_MIN_S.min(seconds)
     }

@@ -37,7 +37,7 @@ impl LettingGo {
         self.from_m.is_some()
     }
 
-    /// Whether an idle loop is part of the show.
+    /// Returns whether an idle loop is part of the show.
     pub(super) fn explains_idle(&self, now_s: f64) -> bool {
         self.is_open() || self.returned_s.is_some_and(|at_s| now_s - at_s < RETURNS_S)
     }

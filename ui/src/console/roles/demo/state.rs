@@ -138,7 +138,8 @@ impl DemoState {
         }
     }
 
-    /// Whether something changes with time although the loop is idle: the hand comes back, or a fault is explained.
+    /// Returns whether something changes with time although the loop is idle: the hand comes back, or a fault is
+    /// explained.
     pub(in crate::console) const fn moves(&self) -> bool {
         self.letting_go.is_open() || self.recovery.is_some()
     }
@@ -181,22 +182,22 @@ impl DemoState {
     }
 }
 
-/// Whether the rig is simulated or emulated, so that no one can be hurt. An arm at another machine may be real.
+/// Returns whether the rig is simulated or emulated, so that no one can be hurt. An arm at another machine may be real.
 pub(super) fn may_play(live: &LiveState) -> bool {
     live.rig.is_harmless() && live.line.is_none()
 }
 
-/// Whether the hand is simulated and may therefore release the handle.
+/// Returns whether the hand is simulated and may therefore release the handle.
 fn may_let_go(live: &LiveState) -> bool {
     live.rig.has_simulated_hand()
 }
 
-/// Whether the demonstration may leave a fault and engage: the rig has no device, here or at another machine.
+/// Returns whether the demonstration may leave a fault and engage: the rig has no device, here or at another machine.
 fn may_recover(live: &LiveState) -> bool {
     may_play(live) && live.rig.devices.is_none() && live.rig.desk.is_none()
 }
 
-/// Whether this chapter can be shown on the rig.
+/// Returns whether this chapter can be shown on the rig.
 pub(super) fn may_show(live: &LiveState, step: &ScriptStep) -> bool {
     may_play(live) && (step.lets_go.is_none() || may_let_go(live))
 }

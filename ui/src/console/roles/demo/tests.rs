@@ -73,7 +73,7 @@ impl Show {
         (0..(seconds * self.rate_hz).round() as usize).flat_map(|_| self.frame()).collect()
     }
 
-    /// A loop that follows commands: its commands within this time, s.
+    /// Returns a loop that follows commands: its commands within this time, s.
     fn obeyed(&mut self, seconds: f64) -> Vec<(f64, Command)> {
         let began_s = self.tick.t_s;
         let mut asked = Vec::new();
@@ -117,7 +117,7 @@ impl Show {
     }
 }
 
-/// The commands that lead out of a latch or into an engagement.
+/// Returns the commands that lead out of a latch or into an engagement.
 fn resumes(commands: &[Command]) -> Vec<Command> {
     let is_way_back =
         |command: &&Command| matches!(command, Command::ReleaseStop | Command::Engage | Command::EngageOne(_));

@@ -128,7 +128,7 @@ impl Outcome {
         each!(self, report => &report.outliers)
     }
 
-    /// Whether there is a result.
+    /// Returns whether there is a result.
     pub(super) fn is_found(&self) -> bool {
         each!(self, report => report.found.is_some())
     }
@@ -192,7 +192,8 @@ impl<F: CalibrationResult> From<LoadedRecord<FrameRecord<F>>> for StoredFrame {
     }
 }
 
-/// The last saved calibration of this kind for a sensor and tool (`handle`: the handle's part of a view); `None` if there is none.
+/// Returns the last saved calibration of this kind for a sensor and tool (`handle`: the handle's part of a view);
+/// `None` if there is none.
 ///
 /// # Errors
 /// As [`Store::load`].

@@ -93,7 +93,7 @@ impl FrameKind {
         }
     }
 
-    /// A session without poses; `other_way`: by the tracker, or with the handle.
+    /// Returns a session without poses; `other_way`: by the tracker, or with the handle.
     pub(super) fn job(self, subject: &FrameSubject, other_way: bool) -> Option<Box<dyn FrameJob>> {
         let tip_m = subject.tip_in_flange_m();
         Some(match self {
@@ -115,7 +115,7 @@ impl FrameKind {
         })
     }
 
-    /// The sample as this calibration uses it.
+    /// Returns the sample as this calibration uses it.
     pub(super) fn seen(self, sample: &FrameSample, subject: &FrameSubject) -> FrameSample {
         match (self, sample.leader_from_handle, sample.base_from_flange) {
             // A hand never holds a handle without rotation; only the handle's position counts.

@@ -174,8 +174,8 @@ impl FrameWizard {
         }
     }
 
-    /// The requested pose of the list: the first gravity direction without a record nearby, or the next one if that gave
-    /// none, for example with a wrong sensor mount in the rig file.
+    /// Returns the requested pose of the list: the first gravity direction without a record nearby, or the next one if
+    /// that gave none, for example with a wrong sensor mount in the rig file.
     fn target(&self) -> PoseTarget {
         let (Some(job), Some(subject)) = (&self.job, &self.subject) else { return TARGETS[0] };
         let down = |sample: &FrameSample| {

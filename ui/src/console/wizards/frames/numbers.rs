@@ -41,7 +41,7 @@ impl FrameNumber {
         Self { key, unit, before: before.map(|before| before.as_slice().to_vec()), after: after.as_slice().to_vec() }
     }
 
-    /// Whether the value in the file changes.
+    /// Returns whether the value in the file changes.
     pub(super) fn changes(&self) -> bool {
         let before = self.before.as_ref().map(|before| Self { after: before.clone(), ..self.clone() }.toml());
         before.is_none_or(|before| before != self.toml())
@@ -85,14 +85,14 @@ impl FrameEffect {
         Some([by.translation.vector.norm(), by.rotation.angle().to_degrees()])
     }
 
-    /// Whether the change is smaller than the uncertainty of the result.
+    /// Returns whether the change is smaller than the uncertainty of the result.
     pub(super) fn is_within(&self, known_to: Sizes) -> bool {
         let within = |by: f64, max: Option<f64>| max.map_or(by <= 1e-9, |max| by <= max);
         self.change().is_some_and(|[m, deg]| within(m, known_to.place_m) && within(deg, known_to.angle_deg))
     }
 }
 
-/// The values that the result changes, and its effect; `None` without a result.
+/// Returns the values that the result changes, and its effect; `None` without a result.
 pub(super) fn of(
     outcome: &Outcome,
     subject: &FrameSubject,
@@ -234,7 +234,7 @@ fn view(
     (vec![number], FrameEffect::of_turns(from_roll_pitch_yaw_deg(&before_deg), after))
 }
 
-/// A mount that agrees stays: a design drawing gives an angle more accurately than a weight.
+/// Returns a mount that agrees stays: a design drawing gives an angle more accurately than a weight.
 fn mount(found: &SensorMountResult, subject: &FrameSubject) -> (Vec<FrameNumber>, FrameEffect) {
     let before = subject.arm.flange_from_s1;
     let after = found.flange_from_s1();

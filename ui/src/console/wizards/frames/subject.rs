@@ -35,7 +35,7 @@ fn pose(isometry: &IsometryMatrix3<f64>) -> Isometry3<f64> {
 }
 
 impl FrameSubject {
-    /// The arm of this side; `None` if the rig has none.
+    /// Returns the arm of this side; `None` if the rig has none.
     pub fn of(rig: &RigConfig, side: Side, roster: &Roster) -> Option<Self> {
         let devices = rig.devices.as_ref()?;
         let set = devices.arm(side)?.clone();
@@ -57,17 +57,17 @@ impl FrameSubject {
         Some(Self { side, set, teleoperation, endoscope, arm, serials })
     }
 
-    /// Whether the values are equal, whatever device measures them.
+    /// Returns whether the values are equal, whatever device measures them.
     pub(super) fn is_same_place(&self, other: &Self) -> bool {
         Self { serials: Serials::default(), ..self.clone() } == Self { serials: Serials::default(), ..other.clone() }
     }
 
-    /// The arm for the kinematics.
+    /// Returns the arm for the kinematics.
     pub(super) fn arm(&self) -> Option<Arm> {
         Arm::new(&self.set.mount).ok()
     }
 
-    /// The tip in the flange's frame, m.
+    /// Returns the tip in the flange's frame, m.
     pub(super) fn tip_in_flange_m(&self) -> Vector3<f64> {
         (self.arm.flange_from_s1 * Point3::new(0.0, 0.0, self.arm.shaft_m)).coords
     }
@@ -77,12 +77,12 @@ impl FrameSubject {
         self.arm.world_from_base.rotation.inverse() * Vector3::z()
     }
 
-    /// The marker in the wrist sensor's frame, if known.
+    /// Returns the marker in the wrist sensor's frame, if known.
     pub(super) fn s1_from_m(&self) -> Option<Isometry3<f64>> {
         from(self.set.s1_from_m_m?, self.set.s1_from_m_deg?)
     }
 
-    /// The tracker's camera in the frame of the base, if it is known.
+    /// Returns the tracker's camera in the frame of the base, if it is known.
     pub(super) fn base_from_c(&self) -> Option<Isometry3<f64>> {
         from(self.set.base_from_c_m?, self.set.base_from_c_deg?)
     }

@@ -89,7 +89,7 @@ impl Fixture {
     }
 }
 
-/// A rotation different from those of other numbers: tilts to all sides, and rotations about the shaft.
+/// Returns a rotation different from those of other numbers: tilts to all sides, and rotations about the shaft.
 fn turn(i: u32) -> UnitQuaternion<f64> {
     let i = f64::from(i);
     let tilt = Vector3::new(0.45 * (2.4 * i).sin(), 0.45 * (2.4 * i).cos(), 0.0);
@@ -100,7 +100,7 @@ fn at(place_m: Vector3<f64>, turn: UnitQuaternion<f64>) -> Isometry3<f64> {
     Isometry3::from_parts(place_m.into(), turn)
 }
 
-/// The flange with the tip in a dimple.
+/// Returns the flange with the tip in a dimple.
 fn pivoting(tip_m: Vector3<f64>, i: u32) -> FrameSample {
     let dimple_m = Vector3::new(0.3, -0.1, 0.05);
     let down = from_roll_pitch_yaw_deg(&Vector3::new(180.0, 0.0, 0.0));

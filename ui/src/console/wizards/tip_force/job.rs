@@ -43,7 +43,7 @@ impl<T: Send + 'static> TrainingJob<T> {
         Ok(Self { cancel, thread: Some(thread) })
     }
 
-    /// The result, once; `None` while the work continues.
+    /// Returns the result, once; `None` while the work continues.
     pub(super) fn take_result(&mut self) -> Option<Result<T, String>> {
         let thread = self.thread.take_if(|thread| thread.is_finished())?;
         Some(thread.join().unwrap_or_else(|_| Err(text::tip_force::JOB_FAILED.get().to_owned())))
@@ -56,7 +56,7 @@ impl<T> TrainingJob<T> {
         self.cancel.store(true, Ordering::Relaxed);
     }
 
-    /// Whether it was requested to stop.
+    /// Returns whether it was requested to stop.
     pub(super) fn is_cancelled(&self) -> bool {
         self.cancel.load(Ordering::Relaxed)
     }

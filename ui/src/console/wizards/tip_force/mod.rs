@@ -61,7 +61,8 @@ struct RecordedWith {
 }
 
 impl RecordedWith {
-    /// Whether it is the same rig, as far as known: a sensor that is lost briefly may come back as the same one.
+    /// Returns whether it is the same rig, as far as known: a sensor that is lost briefly may come back as the same
+    /// one.
     fn fits(&self, binding: &Binding) -> bool {
         if binding.sensor.is_empty() {
             return true;
@@ -154,12 +155,12 @@ impl TipForceWizard {
         self.recording.as_ref().is_some_and(|take| take.running)
     }
 
-    /// Whether a training is running.
+    /// Returns whether a training is running.
     const fn is_training(&self) -> bool {
         self.training.is_some()
     }
 
-    /// The first requirement that the recording does not meet.
+    /// Returns the first requirement that the recording does not meet.
     fn lacking(&self) -> Option<Goal> {
         self.recording.as_ref().and_then(|take| take.recorder.coverage().next())
     }

@@ -34,7 +34,7 @@ pub(super) fn sources(tick: &Tick) -> ReadySources {
 }
 
 impl TipForceWizard {
-    /// Whether the wrist sensor delivers and has reported its serial number.
+    /// Returns whether the wrist sensor delivers and has reported its serial number.
     pub(super) const fn has_sensor(&self, binding: &Binding) -> bool {
         self.sources[0] && !binding.sensor.is_empty()
     }

@@ -86,7 +86,7 @@ impl TipForceWizard {
         ui.label(text::tip_force::state(&take.phase_text()));
     }
 
-    /// The start button; returns true when it is pressed.
+    /// Returns the start button; returns true when it is pressed.
     fn start_ui(&self, ui: &mut Ui, running: bool, rows: usize, binding: &Binding) -> bool {
         let text = match (running, rows) {
             (true, _) => text::tip_force::PAUSE.get(),

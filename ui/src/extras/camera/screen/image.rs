@@ -27,7 +27,7 @@ impl DisplayedImage {
         self.size_px = Some(image.size_px);
     }
 
-    /// Whether an image was received.
+    /// Returns whether an image was received.
     pub(super) const fn has_come(&self) -> bool {
         self.size_px.is_some()
     }

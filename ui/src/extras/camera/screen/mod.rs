@@ -185,7 +185,7 @@ impl CameraWizard {
         self.endoscope.as_ref()?.camera.as_ref().map(lens_of)
     }
 
-    /// The lens used from here on.
+    /// Returns the lens used from here on.
     fn lens(&self) -> Option<Lens> {
         if self.keeps_lens {
             return self.rig_lens();
@@ -204,7 +204,7 @@ impl CameraWizard {
         }
     }
 
-    /// The outermost corners and one in the middle, in this order.
+    /// Returns the outermost corners and one in the middle, in this order.
     fn wanted(&self) -> Vec<[usize; 2]> {
         let Ok(board) = self.board() else { return Vec::new() };
         let [right, low] = board.corners().map(|side| side - 1);
@@ -245,7 +245,7 @@ impl CameraWizard {
         self.find_place();
     }
 
-    /// The pose to save: on the endoscope's marker, if the tracker saw it while the board was at rest.
+    /// Returns the pose to save: on the endoscope's marker, if the tracker saw it while the board was at rest.
     fn found_place(&self) -> Option<FoundPlace> {
         let placed = self.good_place()?;
         let world_from_camera = placed.world_from_camera;

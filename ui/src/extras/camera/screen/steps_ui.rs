@@ -222,7 +222,7 @@ fn lens_figures(ui: &mut Ui, report: &LensReport) {
     figure(ui, texts::BEND.get(), texts::bend(&lens.bend, &sd.bend), texts::BEND_HOVER.get());
 }
 
-/// Whether a lens can be used.
+/// Returns whether a lens can be used.
 pub(super) fn is_good(report: &LensReport) -> bool {
     report.verdict() == Verdict::Accepted
 }

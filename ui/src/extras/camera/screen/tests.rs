@@ -33,7 +33,7 @@ fn shown(wizard: &mut CameraWizard, camera_from_board: &Isometry3<f64>) {
     wizard.take(found(camera_from_board));
 }
 
-/// A wizard with a lens.
+/// Returns a wizard with a lens.
 fn with_lens() -> CameraWizard {
     let mut wizard = CameraWizard::default();
     wizard.go_to(VIEWS);

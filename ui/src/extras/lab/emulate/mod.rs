@@ -124,7 +124,7 @@ fn serve(
     Ok(())
 }
 
-/// Whether another process or a person at a terminal holds the other end of standard input.
+/// Returns whether another process or a person at a terminal holds the other end of standard input.
 #[cfg(unix)]
 fn input_is_held() -> bool {
     use std::os::{fd::AsFd as _, unix::fs::FileTypeExt as _};
@@ -133,13 +133,13 @@ fn input_is_held() -> bool {
     stdin.is_terminal() || kind.is_ok_and(|kind| kind.file_type().is_fifo() || kind.file_type().is_socket())
 }
 
-/// Whether another process or a person at a terminal holds the other end of standard input.
+/// Returns whether another process or a person at a terminal holds the other end of standard input.
 #[cfg(not(unix))]
 fn input_is_held() -> bool {
     true
 }
 
-/// A device name in normal form, for blanks written in any way.
+/// Returns a device name in normal form, for blanks written in any way.
 fn plain(name: &str) -> String {
     name.trim_matches(['"', '\'']).replace('-', " ")
 }

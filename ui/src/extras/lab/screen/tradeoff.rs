@@ -131,8 +131,8 @@ impl Tile for TradeoffPanel {
     }
 }
 
-/// The panel. Returns a rig if the operator applies a point that the running loop cannot change to: the loop must then
-/// be restarted with it.
+/// Returns the panel. Returns a rig if the operator applies a point that the running loop cannot change to: the loop
+/// must then be restarted with it.
 fn tradeoff_ui(ui: &mut Ui, live: &LiveState, state: &mut TradeoffPanel, outbox: &mut Outbox) -> Option<RigConfig> {
     state.take_in();
     measure_ui(ui, live, state);

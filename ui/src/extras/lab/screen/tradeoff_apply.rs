@@ -34,8 +34,8 @@ fn needs_restart(now: &Identification, mode: Mode, choice: &ParameterChoice) -> 
     (mode.has_degrees() && degree) || (mode.has_window() && window)
 }
 
-/// The rig with this choice and all settings that the operator has changed since the start; a gain above 1 is reset to
-/// 1.
+/// Returns the rig with this choice and all settings that the operator has changed since the start; a gain above 1 is
+/// reset to 1.
 fn rig_with(live: &LiveState, mode: Mode, choice: &ParameterChoice) -> RigConfig {
     let mut rig = live.rig.clone();
     rig.mode = mode;
@@ -75,7 +75,8 @@ mod tests {
     /// Number of passes, for a cost that other load hardly disturbs.
     const PASSES: usize = 5;
 
-    /// A rig whose settings are not the default ones and that compares all modes when the operator presses Apply.
+    /// Returns a rig whose settings are not the default ones and that compares all modes when the operator presses
+    /// Apply.
     fn live() -> LiveState {
         let mut rig = RigConfig::load("simulated").unwrap();
         rig.identification.compare = true;
@@ -95,7 +96,7 @@ mod tests {
         curves.flat_map(|curve| &curve.points).map(|&index| figures.points[index]).collect()
     }
 
-    /// The loop at the simulated peg transfer, engaged, 2 s after its start and after `apply`.
+    /// Returns the loop at the simulated peg transfer, engaged, 2 s after its start and after `apply`.
     fn loop_after(live: &LiveState, apply: &Apply) -> Loop {
         let (rig, commands) = match apply {
             Apply::AtOnce(commands) => (&live.rig, &commands[..]),

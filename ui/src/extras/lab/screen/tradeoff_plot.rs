@@ -141,7 +141,7 @@ fn marks(grid: &GridInput) -> Vec<GridMark> {
         .collect()
 }
 
-/// The number at a mark, whose position is in decades.
+/// Returns the number at a mark, whose position is in decades.
 fn plain(decade: f64) -> String {
     let value = 10f64.powf(decade);
     if (0.01..1e4).contains(&value) {

@@ -34,7 +34,7 @@ fn named(text: &str) -> Result<ClockName, String> {
 }
 
 impl StudyClocks {
-    /// The clocks, each once, in the order of the arguments.
+    /// Returns the clocks, each once, in the order of the arguments.
     pub(super) fn chosen(&self) -> Vec<VirtualClock> {
         let mut chosen: Vec<ClockProfile> = Vec::new();
         let named = self.clock.iter().flat_map(|named| match named {

@@ -33,7 +33,7 @@ pub(super) struct SourceArguments {
 }
 
 impl SourceArguments {
-    /// Whether neither a recording nor a scene is given.
+    /// Returns whether neither a recording nor a scene is given.
     pub(super) fn is_empty(&self) -> bool {
         self.recording.is_empty() && self.scene.is_empty()
     }
@@ -59,7 +59,7 @@ impl SourceArguments {
         self.recording.iter().map(read).collect()
     }
 
-    /// The given scenes, each for this duration (s), on each of these clocks.
+    /// Returns the given scenes, each for this duration (s), on each of these clocks.
     pub(super) fn scenes(&self, clocks: &[VirtualClock], seconds: f64) -> anyhow::Result<Vec<TradeoffSource>> {
         let load = |name: &String| Scene::load(name).with_context(|| format!("--scene {name}"));
         let scenes = self.scene.iter().map(load).collect::<anyhow::Result<Vec<_>>>()?;

@@ -75,7 +75,7 @@ fn group(x: f64, values: &[f64], colour: &str, down: impl Fn(f64) -> f64) -> Mar
     }
 }
 
-/// The mean of each participant under a condition.
+/// Returns the mean of each participant under a condition.
 fn means(table: &TrialTable, measure: &str, condition: &str) -> Vec<f64> {
     let Some(column) = table.measures.iter().position(|known| known == measure) else { return Vec::new() };
     let mut of: BTreeMap<&str, Vec<f64>> = BTreeMap::new();

@@ -181,7 +181,7 @@ fn definition(key: &str) -> Option<&'static CatalogueDefinition> {
     MEASURES.iter().find(is)
 }
 
-/// The tables and the plot of each measure that passes a filter.
+/// Returns the tables and the plot of each measure that passes a filter.
 fn compared(title: &str, study: &UserStudy, analysed: Option<&AnalysedTable>, filter: impl Fn(&str) -> bool) -> Markup {
     let Some(AnalysedTable { table, report, absent }) = analysed else {
         return section(title, &html! { p { "Nothing to compare yet." } });

@@ -60,7 +60,7 @@ pub(super) struct MeasureChoice {
 }
 
 impl ScenePlace {
-    /// The scene of this name, if it has a task or gets this one.
+    /// Returns the scene of this name, if it has a task or gets this one.
     fn of(name: &str, task: Option<TaskFile>) -> Option<Self> {
         let scene = Scene::load(name).ok()?;
         let kind = task.as_ref().map(|task| task.kind).or(scene.task.as_ref().map(|task| task.kind))?;
@@ -81,7 +81,7 @@ impl ScenePlace {
     }
 }
 
-/// The task in the scene of this study.
+/// Returns the task in the scene of this study.
 fn task_of(file: &StudyFile) -> Option<TaskFile> {
     TaskFile::of(study::scene_of(file).ok()?.task.as_ref()?).ok()
 }
@@ -123,7 +123,7 @@ impl Draft {
         })
     }
 
-    /// The study file in its current state.
+    /// Returns the study file in its current state.
     pub(super) fn file(&self) -> StudyFile {
         let name = |at: Option<usize>| Some(self.file.conditions.get(at?)?.name.clone());
         let practice = Practice { under: name(self.under), ..self.practice.clone() };
@@ -136,7 +136,7 @@ impl Draft {
         }
     }
 
-    /// The chosen scene.
+    /// Returns the chosen scene.
     pub(super) fn place_of_scene(&self) -> Option<&ScenePlace> {
         self.scenes.iter().find(|place| place.of == self.file.scene)
     }
@@ -196,7 +196,7 @@ impl Draft {
         self.reference = moved(self.reference);
     }
 
-    /// A folder for the study that does not exist yet.
+    /// Returns a folder for the study that does not exist yet.
     pub(super) fn place(&self, data: &Path) -> PathBuf {
         let letters = self.file.name.trim().to_lowercase().chars().take(40).collect::<String>();
         let words: Vec<&str> =

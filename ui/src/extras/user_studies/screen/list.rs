@@ -46,7 +46,7 @@ pub(super) fn folder_of(data: &Path) -> PathBuf {
     data.join(FOLDER)
 }
 
-/// Whether the list finds this folder automatically.
+/// Returns whether the list finds this folder automatically.
 pub(super) fn is_in(data: Option<&Path>, folder: &Path) -> bool {
     data.is_some_and(|data| folder.parent() == Some(&folder_of(data)))
 }

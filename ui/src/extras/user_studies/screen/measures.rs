@@ -168,7 +168,7 @@ const NO_LIMIT: &str = "...";
 const COMPARISONS: [MeasureComparison; 3] =
     [MeasureComparison::Above, MeasureComparison::Below, MeasureComparison::Missing];
 
-/// A list of values, by their texts.
+/// Draws a list of values, by their texts.
 fn choose_ui<T: PartialEq + Copy>(
     ui: &mut Ui,
     id: (&str, usize),
@@ -184,7 +184,7 @@ fn choose_ui<T: PartialEq + Copy>(
     combo.response
 }
 
-/// A list of the measures, which shows this one.
+/// Draws a list of the measures, which shows this one.
 fn measure_ui(
     ui: &mut Ui,
     id: (&str, usize),

@@ -214,7 +214,7 @@ impl Page for Studies {
     }
 }
 
-/// A column of this size that scrolls.
+/// Returns a column of this size that scrolls.
 fn column<R>(ui: &mut Ui, name: &str, size: egui::Vec2, content: impl FnOnce(&mut Ui) -> R) -> R {
     ui.allocate_ui_with_layout(size, Layout::top_down(Align::Min), |ui| {
         let area = ScrollArea::vertical().id_salt(name).auto_shrink(false).max_height(size.y);
@@ -227,7 +227,7 @@ fn column<R>(ui: &mut Ui, name: &str, size: egui::Vec2, content: impl FnOnce(&mu
     .inner
 }
 
-/// A field with its name above it.
+/// Draws a field with its name above it.
 fn field_ui(ui: &mut Ui, name: &str, value: &mut String) -> Response {
     let label = ui.label(crate::console::widgets::small(name));
     let field = TextEdit::singleline(value).char_limit(200);

@@ -34,7 +34,7 @@ pub(super) enum HandSource {
 }
 
 impl HandSource {
-    /// Whether no person takes part.
+    /// Returns whether no person takes part.
     pub(super) const fn is_simulated(self) -> bool {
         matches!(self, Self::Simulated | Self::Emulated)
     }

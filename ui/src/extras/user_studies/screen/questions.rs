@@ -66,7 +66,7 @@ impl QuestionnairePage {
         self.participant == participant && self.which == which && self.after == after
     }
 
-    /// The answers, or the missing items.
+    /// Returns the answers, or the missing items.
     fn answers(&self) -> Result<QuestionnaireAnswers, Vec<String>> {
         let missing = |names: &mut dyn Iterator<Item = String>| names.collect::<Vec<_>>();
         let unrated = || {

@@ -146,7 +146,7 @@ impl IgtlClient {
     }
 }
 
-/// Whether the connection is still open.
+/// Returns whether the connection is still open.
 const fn is_nothing_yet(error: ErrorKind) -> bool {
     matches!(error, ErrorKind::Interrupted | ErrorKind::WouldBlock | ErrorKind::TimedOut)
 }
@@ -171,7 +171,7 @@ pub(super) fn refusal(code: StatusCode, text: &str) -> Content {
     Content::Status(ContentStatus { code, subcode: 0, name: String::new(), text: text.to_owned() })
 }
 
-/// The supported message types.
+/// Returns the supported message types.
 fn capabilities() -> Vec<String> {
     let report = ContentKind::ALL.map(|kind| kind.name().to_owned());
     let asked = [Verb::Get, Verb::Start, Verb::Stop].into_iter().flat_map(|verb| {

@@ -36,7 +36,7 @@ impl Kinds {
         self.0 == 0
     }
 
-    /// The kinds that are part of a state.
+    /// Returns the kinds that are part of a state.
     pub(in super::super) fn of_moment(self) -> impl Iterator<Item = ContentKind> {
         let is_other =
             |kind: &ContentKind| matches!(kind, ContentKind::Image | ContentKind::Capability | ContentKind::Status);
@@ -95,7 +95,7 @@ impl Wants {
         asked
     }
 
-    /// Whether there is a one-time request for the loop's data.
+    /// Returns whether there is a one-time request for the loop's data.
     pub(in super::super) const fn asks(&self) -> bool {
         !self.once_of_loop().is_empty()
     }
@@ -106,12 +106,12 @@ impl Wants {
         asked
     }
 
-    /// Whether it wants status messages.
+    /// Returns whether it wants status messages.
     pub(in super::super) fn wants_states(&self) -> bool {
         self.streams.has(ContentKind::Status)
     }
 
-    /// Whether it wants an image.
+    /// Returns whether it wants an image.
     pub(in super::super) fn looks(&self) -> bool {
         self.streams.has(ContentKind::Image) || self.once.has(ContentKind::Image)
     }

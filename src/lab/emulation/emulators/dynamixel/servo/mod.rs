@@ -85,7 +85,7 @@ impl EmulatedServo {
         self.get(table::ID) as u8
     }
 
-    /// Whether it silently executes writes to this id.
+    /// Returns whether it silently executes writes to this id.
     pub(super) fn is_shadow_of(&self, id: u8) -> bool {
         let shadow = self.get(table::SHADOW_ID);
         shadow <= 252 && shadow == i64::from(id)
@@ -96,7 +96,7 @@ impl EmulatedServo {
         if self.get(table::HARDWARE_ERROR) == 0 { 0 } else { ALERT }
     }
 
-    /// Whether it receives; a servo that is starting does not.
+    /// Returns whether it receives; a servo that is starting does not.
     pub(super) fn is_up(&self, now_s: f64) -> bool {
         now_s >= self.booted_s + BOOT_S
     }

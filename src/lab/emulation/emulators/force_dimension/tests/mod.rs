@@ -28,7 +28,7 @@ thread_local! {
     static COPIES: RefCell<Vec<tempfile::TempDir>> = const { RefCell::new(Vec::new()) };
 }
 
-/// A separate copy of the stub library for each test, so that it sees only this test's devices.
+/// Returns a separate copy of the stub library for each test, so that it sees only this test's devices.
 pub(super) fn library() -> PathBuf {
     let built = stand_in().expect("cargo builds the stand-in library before the tests");
     let folder = tempfile::tempdir().unwrap();
@@ -68,7 +68,7 @@ impl Hand {
     }
 }
 
-/// An emulated device with a hand, and settings to connect to it.
+/// Returns an emulated device with a hand, and settings to connect to it.
 pub(super) fn rig(emulator: EmulatedForceDimension) -> (EmulatorThread, Hand, ForceDimensionSettings) {
     let hand = Hand::default();
     let serving = emulator.with(hand.body()).serve().unwrap();

@@ -32,7 +32,7 @@ fn same(one: &CapReading, other: &CapReading) -> bool {
         && one.buttons == other.buttons
 }
 
-/// A pedal whose switches follow a number.
+/// Returns a pedal whose switches follow a number.
 fn pedal(model: PedalModel) -> (EmulatorThread, Arc<AtomicU32>) {
     let pressed = Arc::new(AtomicU32::new(0));
     let foot = Arc::clone(&pressed);

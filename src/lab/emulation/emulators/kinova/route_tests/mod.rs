@@ -106,7 +106,7 @@ impl Client {
         self.read::<KinovaNumber>(0, topic, &()).value
     }
 
-    /// The next notification.
+    /// Returns the next notification.
     fn next_report<T: Message + Default>(&mut self, topic: Rpc, subscription: u32) -> T {
         if self.report.is_empty() {
             let frame = self.frame();

@@ -1,4 +1,5 @@
-//! Identification of all five degrees on three axes: our routine compared with what it replaces, in one run.
+//! Identification of all five degrees on three axes: our routine compared with the routines that it replaces, in one
+//! run.
 //!
 //! Prints a table with p50 and p99 per tick and the ratios, then runs the same routines under divan; with `--ratios` it
 //! prints only the ratios that `./dev bench` compares.
@@ -32,7 +33,8 @@ fn sample(k: usize) -> Sample {
     Sample { t_s: t, position_m: x, force_n: x.map(|x| 80.0 * x + 2000.0 * x * x + 0.1 * (400.0 * x).sin()) }
 }
 
-/// Rows of scaled features as the identifier forms them (here of analytic derivatives), right-hand side last.
+/// Returns rows of scaled features as the identifier computes them (here from analytic derivatives), with the
+/// right-hand side last.
 fn rows(count: usize) -> Vec<[Lanes; ROW]> {
     (0..count)
         .map(|k| {
@@ -113,7 +115,7 @@ fn normal_equations(rows: &[[Lanes; ROW]]) -> f64 {
     sum
 }
 
-/// One QR per axis and tick, computed from scratch (all five degrees follow from it).
+/// Computes one QR factorisation per axis and tick from scratch; all five degrees follow from it.
 fn fresh_qr(rows: &[[Lanes; ROW]]) -> f64 {
     (0..3).map(|lane| window_matrix(rows, lane, 0..ROW).qr().unpack_r()[(0, 0)]).sum()
 }
@@ -126,7 +128,7 @@ fn print(window: usize, name: &str, times: &[f64]) -> f64 {
 }
 
 /// Work of the slowest tick relative to the median. Every tick of three blocks is repeated and the minimum time of each
-/// is used, so that only its own work counts and not what interrupted it.
+/// is used, so that interruptions do not count.
 fn worst_to_median(window: usize, rows: &[[Lanes; ROW]]) -> f64 {
     let ticks = 3 * window / 2;
     let mut min = vec![f64::INFINITY; ticks];

@@ -7,7 +7,7 @@ pub(crate) fn alone() -> bool {
     std::env::args().any(|argument| argument == "--ratios")
 }
 
-/// Runs ours and theirs in turn, so that a disturbance affects both; prints the median of the rounds.
+/// Runs our version and theirs alternately, so that a disturbance affects both; prints the median of the rounds.
 pub(crate) fn report(name: &str, mut ours: impl FnMut(), mut theirs: impl FnMut()) {
     const ROUND_S: f64 = 0.02;
     const ROUNDS: usize = 25;
@@ -18,7 +18,7 @@ pub(crate) fn report(name: &str, mut ours: impl FnMut(), mut theirs: impl FnMut(
     println!("ratio {name} {:.4}", ratios[ROUNDS / 2]);
 }
 
-/// Returns how many calls fill this time, at least one. Warms the caches.
+/// Returns the number of calls that fit into this time, at least one. Warms the caches.
 fn calls(round_s: f64, work: &mut impl FnMut()) -> usize {
     let mut calls = 1;
     while time_s(calls, work) * (calls as f64) < round_s && calls < 1 << 20 {

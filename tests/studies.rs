@@ -22,7 +22,7 @@ pub fn study_file(head: &str, seconds: f64, conditions: &str) -> String {
     )
 }
 
-/// Names and bytes of all files under a folder.
+/// Returns the names and bytes of all files under a folder.
 ///
 /// # Panics
 /// If a file cannot be read.

@@ -1,4 +1,4 @@
-//! Arrays of numpy: read in place, and returned without a copy.
+//! Conversion of numpy arrays: read without a copy, and returned without a copy.
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use numpy::{
@@ -54,7 +54,7 @@ impl<'a> ArrayAxes<'a> {
         vector
     }
 
-    /// Checks that both have the same shape.
+    /// Checks that both arrays have the same shape.
     pub(crate) fn fits(&self, other: &Self) -> PyResult<()> {
         if (self.count(), self.rows()) == (other.count(), other.rows()) {
             return Ok(());
@@ -91,7 +91,7 @@ pub(crate) fn rising(times_s: &ArrayView1<'_, f64>) -> PyResult<()> {
     Ok(())
 }
 
-/// Checks a table with this many columns, all finite, and with `rows` rows if given.
+/// Checks that a table has this many columns, only finite values, and `rows` rows if given.
 pub(crate) fn table<'a>(
     name: &str,
     array: &'a PyReadonlyArray2<'_, f64>,

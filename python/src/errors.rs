@@ -17,7 +17,7 @@ pub(crate) fn value(error: impl Display) -> PyErr {
     PyValueError::new_err(one_line(&error))
 }
 
-/// Returns an error of a file: an `OSError` if it cannot be opened, otherwise about its contents.
+/// Converts an error of a file: an `OSError` if it cannot be opened, otherwise an error about its contents.
 pub(crate) fn of_file(path: &Path, error: impl Display) -> PyErr {
     let is_readable = File::open(path).is_ok() && path.is_file();
     if is_readable { value(error) } else { PyOSError::new_err(one_line(&error)) }

@@ -27,7 +27,7 @@ const NAME: &str = "of these arrays";
 /// Columns of the anchored model.
 const ANCHORED_COLUMNS: usize = 9;
 
-/// Returns every mode by its name.
+/// Returns all modes by name.
 #[pyfunction]
 pub(crate) fn modes() -> Vec<&'static str> {
     Mode::ALL.into_iter().chain(Mode::BASELINES).map(Mode::name).collect()

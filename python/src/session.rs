@@ -134,7 +134,7 @@ impl Session {
         self.begin_ns
     }
 
-    /// End of the session, s since its begin.
+    /// Returns the end of the session, in s since its start.
     #[getter]
     fn end_s(&self) -> f64 {
         self.seconds(self.reader.statistics().times_ns.1)

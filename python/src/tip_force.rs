@@ -31,19 +31,19 @@ impl TipForceModel {
         Ok(Self { model: guarded(load)? })
     }
 
-    /// Names of the inputs.
+    /// Returns the names of the inputs.
     #[getter]
     fn inputs(&self) -> Vec<String> {
         self.model.inputs.clone()
     }
 
-    /// Names of the outputs.
+    /// Returns the names of the outputs.
     #[getter]
     fn outputs(&self) -> Vec<String> {
         self.model.outputs.clone()
     }
 
-    /// Its origin, as JSON.
+    /// Returns the origin of the model, as JSON.
     #[getter]
     fn origin(&self) -> PyResult<String> {
         serde_json::to_string(&self.model.origin).map_err(value)

@@ -61,7 +61,7 @@ impl Axis {
         Self { title: title.into(), range: [from, to], logarithmic: false }
     }
 
-    /// Returns an axis that covers all `values` that it can show, with a small margin.
+    /// Returns an axis that covers all drawable `values`, with a small margin.
     pub fn around(title: &str, values: impl Iterator<Item = f64>, logarithmic: bool) -> Self {
         let map = |value: f64| if logarithmic { value.log10() } else { value };
         let mapped = values.map(map).filter(|value| value.is_finite());
@@ -72,7 +72,7 @@ impl Axis {
         Self { title: title.into(), range: [back(low - room), back(high + room)], logarithmic }
     }
 
-    /// Returns the position of `value` on the axis, 0 to 1; `None` if it cannot be shown.
+    /// Returns the position of `value` on the axis, 0 to 1; `None` if it cannot be drawn.
     fn place(&self, value: f64) -> Option<f64> {
         let map = |value: f64| if self.logarithmic { value.log10() } else { value };
         let [from, to] = self.range.map(map);

@@ -3,7 +3,7 @@
 
 use std::fmt;
 
-/// The values from `min` to `max`, both included. Shown as `0 to 1 s`.
+/// Range from `min` to `max`, both included. Shown as `0 to 1 s`.
 ///
 /// ```
 /// use nima_core::limits::DELAY_S;

@@ -26,7 +26,7 @@ impl Noise {
         self.rng.f64()
     }
 
-    /// Returns a standard normal number (Box-Muller, both values used).
+    /// Returns a standard normal random number (Box-Muller, using both values).
     pub fn gaussian(&mut self) -> f64 {
         if let Some(spare) = self.spare.take() {
             return spare;

@@ -17,11 +17,11 @@ pub enum Side {
 }
 
 impl Side {
-    /// Both sides, in the order of every array of sides.
+    /// Both sides, in the order of all arrays of sides.
     pub const ALL: [Self; SIDES] = [Self::Right, Self::Left];
 
-    /// Both sides as a table shows them. The physics processes the instruments in this order too: another order would
-    /// change the last bits of its sums.
+    /// Both sides in the order of tables. The physics processes the instruments in this order too, because another
+    /// order would change the last bits of its sums.
     pub const LEFT_TO_RIGHT: [Self; SIDES] = [Self::Left, Self::Right];
 
     pub const fn index(self) -> usize {

@@ -3,7 +3,7 @@
 use hdrhistogram::Histogram;
 use serde::Serialize;
 
-/// Longest duration that the histogram resolves, ns (10 s). Longer durations count as this one.
+/// Longest duration that the histogram resolves, ns (10 s). Longer durations are counted in this bin.
 const LONGEST_NS: u64 = 10_000_000_000;
 
 /// A histogram of durations with three significant digits.

@@ -7,7 +7,7 @@ use crate::Side;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum TaskKind {
-    /// Motion and force alone: no known objects, no camera image.
+    /// Only motion and force: no known objects, no camera image.
     Free,
     PegTransfer,
     Palpation,
@@ -25,7 +25,7 @@ pub struct TimedTaskEvent {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum TaskEvent {
-    /// The trial begins. Everything before it is discarded.
+    /// The trial starts. Everything before it is discarded.
     Begun,
     /// The task is complete: this is the end of the measured time.
     Ended,
@@ -52,7 +52,7 @@ pub enum TaskEvent {
         side: Side,
         peg: usize,
     },
-    /// The ring was lost: inside the camera's view, where it may be picked up again, or outside.
+    /// The ring was dropped: inside the camera's view, where it may be picked up again, or outside, where it is lost.
     RingDropped {
         ring: usize,
         side: Side,
@@ -63,7 +63,7 @@ pub enum TaskEvent {
         ring: usize,
         side: Option<Side>,
     },
-    /// The operator marked a point as a lump: this lump, or none (a false mark).
+    /// The operator marked a point as a lump: this lump, or none for a false mark.
     LumpMarked {
         side: Side,
         lump: Option<usize>,

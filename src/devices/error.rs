@@ -39,7 +39,7 @@ pub enum DeviceError {
     },
     #[error("the device connected as the {part} is the {other} ({serial}){}", since(.checked.as_deref()))]
     Exchanged {
-        /// Part at whose address the device answers: `right sensor`.
+        /// Part that is configured for the address at which the device answers: `right sensor`.
         part: &'static str,
         /// Part to which the device belongs: `left sensor`.
         other: &'static str,
@@ -54,12 +54,12 @@ pub enum DeviceError {
     Silent { place: String },
     #[error("no device program sends to {place}")]
     NobodySends { place: String },
-    /// The program sends, but its datagrams show that it receives no answer.
+    /// The program sends data, but its datagrams show that it receives no answers.
     #[error("the device program that sends to {place} receives no answers")]
     Unheard { place: String },
     #[error("{place} cannot be reached")]
     Unreachable { place: String },
-    /// The computer at the address answers, but no program listens on the port.
+    /// Address and port to which the device sends.
     #[error("no response from {place}")]
     NobodyListens {
         /// Address with port.

@@ -7,7 +7,8 @@ use std::{
 
 type Pull = Box<dyn FnMut() + Send>;
 
-/// A lever, shared by the thread that opens the device and the supervisor, which may pull it. The loop never uses it.
+/// Emergency release of a device, shared by the thread that opens the device and the supervisor, which may trigger it.
+/// The loop never uses it.
 #[derive(Clone, Default)]
 pub struct Lever(Arc<Mutex<Option<Pull>>>);
 

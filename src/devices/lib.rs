@@ -42,9 +42,9 @@ pub use slot::{DeviceSlot, SlotReport, SlotView};
 pub trait Device: Send {
     type Reading: Copy + Send;
 
-    /// Handles everything that has arrived until `now_s` (loop time) and returns the newest reading since the last
-    /// call, if any. Lost, damaged and refused data are counted in [`Device::health`]; a lost device stays lost until
-    /// it is reopened.
+    /// Handles all data that have arrived until `now_s` (loop time) and returns the newest reading since the last call,
+    /// if any. Lost, damaged and refused data are counted in [`Device::health`]; a lost device stays lost until it is
+    /// reopened.
     fn poll(&mut self, now_s: f64) -> Option<TimedReading<Self::Reading>>;
 
     fn about(&self) -> (&Health, &DeviceIdentity);

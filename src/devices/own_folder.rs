@@ -49,7 +49,7 @@ mod unix {
     }
 
     /// Creates a folder that only this user may enter, and its parents. An existing folder is accepted if it belongs to
-    /// this user or to the system and no other user can replace what is created in it.
+    /// this user or to the system and no other user can replace files created in it.
     ///
     /// # Errors
     /// I/O errors; [`ErrorKind::PermissionDenied`], with the reason and what to do, if another user could interfere.

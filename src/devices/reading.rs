@@ -5,8 +5,7 @@ use nima_core::frames::Wrench;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TimedReading<T> {
-    /// Time on the device's own clock, s, unwrapped across overflows of its counter; `None` if the device sends no
-    /// time.
+    /// Time on the device's own clock, s, unwrapped when its counter overflows; `None` if the device sends no time.
     pub device_s: Option<f64>,
     /// Time of arrival on the loop's clock, s.
     pub arrival_s: f64,
@@ -108,7 +107,7 @@ pub enum TrackedTool {
     },
     /// Defined, but not visible.
     Missing {
-        /// Whether the tool is outside the measurement volume; otherwise it is hidden.
+        /// Whether the tool is outside the measurement volume; otherwise it is hidden from view.
         out_of_volume: bool,
     },
     Disabled,

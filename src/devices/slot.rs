@@ -61,8 +61,8 @@ impl<D: Device + 'static> DeviceSlot<D> {
         Ok(Self { device: None, health, outages: Outages::default(), opened, lost, shared, thread: Some(thread) })
     }
 
-    /// Polls the device if it is open. Also accepts a device that was just opened, and returns a lost or unwanted one
-    /// to the thread.
+    /// Polls the device if it is open. Also accepts a device that was just opened, and returns a lost or unwanted
+    /// device to the thread.
     pub fn poll(&mut self, now_s: f64) -> Option<TimedReading<D::Reading>> {
         let reading = self.poll_device(now_s);
         self.outages.follow(&mut self.health, now_s);
@@ -278,7 +278,7 @@ mod tests {
         false
     }
 
-    /// A device whose closing waits until another one is being closed too.
+    /// A device that can be closed only while another one is being closed.
     struct Slow(Flaky, Arc<AtomicU64>, Arc<AtomicU64>);
 
     impl Device for Slow {

@@ -32,9 +32,9 @@ pub struct Endpoint {
     pub host: String,
     /// TCP port.
     pub port: u16,
-    /// Requested path with its query, beginning with a slash.
+    /// Requested path with its query, starting with a slash.
     pub path: String,
-    /// User and password, where the address has them.
+    /// User and password, if the address contains them.
     pub login: Option<Login>,
 }
 
@@ -53,7 +53,7 @@ impl fmt::Debug for Login {
     }
 }
 
-/// Settings of a camera of this computer. A setting that is omitted stays as the camera has it.
+/// Settings of a local camera. An omitted setting is left unchanged in the camera.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Capture {
     /// Width and height, px.
@@ -89,7 +89,7 @@ impl Pixels {
 #[error("\"{address}\" is not a valid image source: {why}")]
 pub struct AddressError {
     pub address: String,
-    /// The fault, and what is possible.
+    /// The invalid value, and the permitted values.
     pub why: &'static str,
 }
 
@@ -175,7 +175,7 @@ fn endpoint(rest: &str, usual_port: u16) -> Result<Endpoint, &'static str> {
     Ok(Endpoint { host: host.to_owned(), port, path, login })
 }
 
-/// `USER:PASSWORD`, with percent signs for what an address cannot contain.
+/// `USER:PASSWORD`, with percent-encoding for characters that an address cannot contain.
 fn login(text: &str) -> Result<Login, &'static str> {
     let (user, password) = text.split_once(':').unwrap_or((text, ""));
     let decoded = |text: &str| {

@@ -61,7 +61,7 @@ impl FromStr for BoardCorners {
 }
 
 impl Checkerboard {
-    /// Makes a board with these inner corners and this side of a square.
+    /// Creates a board with these inner corners and this side of a square.
     ///
     /// # Errors
     /// [`BoardError`] for a size out of range, or a board that looks the same upside down.
@@ -83,12 +83,12 @@ impl Checkerboard {
         self.corners
     }
 
-    /// Side of a square, m.
+    /// Returns the side of a square, m.
     pub const fn square_m(&self) -> f64 {
         self.square_m
     }
 
-    /// Number of inner corners.
+    /// Returns the number of inner corners.
     pub const fn count(&self) -> usize {
         self.corners[0] * self.corners[1]
     }
@@ -209,7 +209,7 @@ impl Portrait {
     }
 }
 
-/// Brightness of a pixel whose sides span these vectors on the board.
+/// Returns the brightness of a pixel whose sides are these vectors on the board.
 fn shade(board: &Checkerboard, middle: &Vector2<f64>, across: &Vector2<f64>, down: &Vector2<f64>) -> f64 {
     let reach = (across.abs() + down.abs()) * 0.5;
     let is_even = middle.iter().zip(&reach).all(|(at, reach)| (at - at.round()).abs() > *reach);

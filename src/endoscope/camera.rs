@@ -13,7 +13,7 @@ const STEPS: usize = 12;
 /// Tangent of the largest angle that a lens of this kind can see: 75 degrees from the axis.
 const TANGENT_MAX: f64 = 3.8;
 
-/// A lens with its image size.
+/// A lens and its image size.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lens {
     /// Width and height of the image, px.
@@ -25,7 +25,7 @@ pub struct Lens {
     pub bend: Bend,
 }
 
-/// Distortion: maps a direction to the one where it appears, both with z = 1.
+/// Distortion: maps a direction to the one at which it appears, both with z = 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Bend {
     /// Radial: the tangent of the angle from the axis, `t`, appears at `t (1 + k1 t^2 + k2 t^4)`. Negative for barrel
@@ -76,7 +76,7 @@ impl Bend {
         1.0 + square * (self.k1 + square * self.k2)
     }
 
-    /// Returns the tangent at which the image folds back on itself: directions beyond it are not seen.
+    /// Returns the tangent at which the image folds back on itself: directions beyond it are not visible.
     pub fn tangent_max(&self) -> f64 {
         // The first zero of 1 + 3 k1 t^2 + 5 k2 t^4.
         let half = 3.0 * self.k1;
@@ -89,7 +89,7 @@ impl Bend {
         turns.sqrt().min(TANGENT_MAX)
     }
 
-    /// Returns the direction that appears at `bent`; `None` if there is none.
+    /// Returns the direction that appears at `bent`; `None` if no direction does.
     fn straightened(&self, bent: &Vector2<f64>) -> Option<Vector2<f64>> {
         let far = bent.norm();
         if !far.is_finite() {
@@ -118,7 +118,7 @@ impl Bend {
 }
 
 impl Lens {
-    /// Makes a lens with square pixels whose axis meets the middle of the image.
+    /// Creates a lens with square pixels whose axis passes through the middle of the image.
     pub fn simple(size_px: [usize; 2], focal_px: f64, k1: f64) -> Self {
         let centre_px = Vector2::from(size_px.map(|side| 0.5 * side as f64));
         Self { size_px, focal_px: Vector2::repeat(focal_px), centre_px, bend: Bend::radial(k1) }
@@ -162,7 +162,7 @@ impl Camera {
         Some([self.world_from_camera.translation.vector, self.world_from_camera.rotation * direction])
     }
 
-    /// Returns the camera of a second, equal lens at this distance to the right (m).
+    /// Returns the camera of a second, identical lens at this distance to the right (m).
     #[must_use]
     pub fn beside(mut self, right_m: f64) -> Self {
         self.world_from_camera.translation.vector += self.right() * right_m;

@@ -1,4 +1,4 @@
-//! Why there is no image: each cause with its remedy.
+//! Reasons for a missing image, each with its remedy.
 
 use std::io::{self, ErrorKind};
 

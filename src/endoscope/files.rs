@@ -13,7 +13,7 @@ use crate::{CompressedFrame, EndoscopeError, Format, ImageSource, h264, jpeg::Jp
 
 /// Time from one image to the next.
 const PERIOD: Duration = Duration::from_nanos(33_333_333);
-/// Maximum time that a source blocks its caller.
+/// Maximum time for which a source blocks its caller.
 const PATIENCE: Duration = Duration::from_millis(100);
 /// Maximum size of a file with one image, and maximum number of files in a folder.
 const BYTES_MAX: u64 = 16 << 20;

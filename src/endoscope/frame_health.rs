@@ -17,13 +17,13 @@ const DAMAGE_REPORTED: Duration = Duration::from_millis(500);
 /// Period over which the rate is counted, and maximum number of arrivals stored.
 const RATE_OVER: Duration = Duration::from_secs(1);
 const ARRIVALS_MAX: usize = 512;
-/// The camera's clock may run slower than ours by this factor: 200 parts in a million.
+/// The camera's clock may be slower than ours by this factor: 200 parts in a million.
 const DRIFT: f64 = 2e-4;
 
 /// A fault of the images.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum FrameFault {
-    /// For this long, no image arrived, or always the same one.
+    /// For this long, no image has arrived, or always the same one.
     Frozen(Duration),
     /// The last image could not be shown.
     Damaged(Damage),
@@ -31,7 +31,7 @@ pub enum FrameFault {
     Size([usize; 2], [usize; 2]),
     /// The image is black.
     Black,
-    /// Its age on arrival.
+    /// Age on arrival.
     Late(Duration),
 }
 
@@ -46,7 +46,7 @@ pub enum FrameHealth {
     Still,
     /// Images are or were arriving, with a fault.
     Wrong(FrameFault),
-    /// No images: the reason, with its remedy.
+    /// There are no images: the reason, with its remedy.
     Lost(crate::EndoscopeError),
 }
 
@@ -107,7 +107,7 @@ impl FrameWatch {
         self.delay.take(compressed);
     }
 
-    /// Notes the hash of an image that arrived at this moment: equal for equal images. A stream, whose frames refer to
+    /// Stores the hash of an image that arrived now; equal images have equal hashes. A stream, whose frames refer to
     /// each other, never repeats its bytes.
     pub(crate) fn looks(&mut self, at: Instant, hash: u64) {
         if self.hash != Some(hash) {
@@ -116,7 +116,7 @@ impl FrameWatch {
         }
     }
 
-    /// Called when the image that arrived at this moment was decoded.
+    /// Called when the image that arrived at this time has been decoded.
     pub(crate) fn decoded(&mut self, at: Instant, decoded: Result<&DecodedImage, &Damage>) {
         match decoded {
             Ok(image) => {
@@ -133,7 +133,7 @@ impl FrameWatch {
         self.delay.late()
     }
 
-    /// Frames per second.
+    /// Returns the frames per second.
     pub(crate) fn rate_hz(&self, now: Instant) -> f64 {
         let begin = now.checked_sub(RATE_OVER);
         self.arrivals.iter().filter(|at| Some(**at) >= begin).count() as f64 / RATE_OVER.as_secs_f64()
@@ -166,7 +166,7 @@ impl FrameWatch {
     }
 }
 
-/// Of uncompressed pixels, only one run of this many bytes in several is hashed: sensor noise is everywhere.
+/// For uncompressed pixels, only one of several runs of this many bytes is hashed, because sensor noise is everywhere.
 const RUN_BYTES: usize = 256;
 const RUN_OF: usize = 16;
 
@@ -180,7 +180,7 @@ fn hash(compressed: &CompressedFrame) -> u64 {
     hasher.finish()
 }
 
-/// Delay of images from the camera's time stamps: the minimum difference between both clocks belongs to an image
+/// Delay of images from the camera's time stamps: the minimum difference between the two clocks is that of an image
 /// without delay.
 #[derive(Debug, Default)]
 struct Delay {

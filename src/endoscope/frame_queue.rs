@@ -1,4 +1,4 @@
-//! Images on their way into a recording: a bounded queue that never blocks.
+//! Queue of images to be recorded: bounded, and never blocks.
 
 use std::{
     collections::VecDeque,
@@ -24,7 +24,7 @@ pub struct FrameQueue(Arc<ReelShared>);
 #[derive(Clone, Debug)]
 pub struct LatestFrame(Arc<ReelShared>);
 
-/// Takes the images out. Dropping it closes the queue.
+/// Receiving end of the queue. Dropping it closes the queue.
 #[derive(Debug)]
 pub struct ReelEnd {
     shared: Arc<ReelShared>,
@@ -35,7 +35,7 @@ pub struct ReelEnd {
 struct ReelShared {
     waiting: Mutex<QueuedFrames>,
     dropped: AtomicU64,
-    /// Whether a glimpse is active, and the newest image since its last look.
+    /// Whether a temporary view is active, and the newest image since its last look.
     looked_at: AtomicBool,
     newest: Mutex<Option<CompressedFrame>>,
 }
@@ -82,7 +82,7 @@ impl QueuedFrames {
 }
 
 impl FrameQueue {
-    /// Returns the other end, for a new recording: it gets the images from now on, and an earlier end gets no more.
+    /// Returns the receiving end for a new recording: it gets the images from now on, and an earlier end gets none.
     pub fn end(&self) -> ReelEnd {
         let mut waiting = self.0.waiting();
         waiting.takers += 1;
@@ -93,7 +93,7 @@ impl FrameQueue {
         ReelEnd { shared: Arc::clone(&self.0), number: waiting.takers }
     }
 
-    /// Sets whether images are discarded for now, because no recording needs them.
+    /// Sets whether images are currently discarded, because no recording needs them.
     pub fn rest(&self, rests: bool) {
         let mut waiting = self.0.waiting();
         waiting.rests = rests;
@@ -110,7 +110,8 @@ impl FrameQueue {
         LatestFrame(Arc::clone(&self.0))
     }
 
-    /// Adds an image, unless there is no room, no taker, or it is not compressed. Never waits for the other end.
+    /// Adds an image, unless the queue is full, has no receiver, or the image is not compressed. Never waits for the
+    /// other end.
     pub(crate) fn put(&self, image: &CompressedFrame) {
         if self.0.looked_at.load(Ordering::Relaxed) && image.format == Format::Jpeg {
             *self.0.newest() = Some(image.clone());
@@ -150,7 +151,7 @@ impl ReelEnd {
         Some(image)
     }
 
-    /// Number of images dropped so far.
+    /// Returns the number of images dropped so far.
     pub fn dropped(&self) -> u64 {
         self.shared.dropped.load(Ordering::Relaxed)
     }

@@ -14,11 +14,11 @@ use crate::{Address, Damage, DecodedImage, EndoscopeError, RawLayout, files, htt
 #[derive(Clone, Debug)]
 pub struct CompressedFrame {
     pub format: Format,
-    /// As sent by the camera.
+    /// Bytes as sent by the camera.
     pub bytes: Vec<u8>,
     /// Arrival of its last byte.
     pub arrived: Instant,
-    /// The camera's time stamp, s, from an arbitrary origin; `None` if it sends none.
+    /// Time stamp of the camera, s, from an arbitrary origin; `None` if it sends none.
     pub stamp_s: Option<f64>,
     /// Time of exposure, if the camera uses this computer's clock.
     pub taken: Option<Instant>,
@@ -70,7 +70,7 @@ pub trait ImageSource: Send {
     /// Why no more images will arrive: the source is then reopened.
     fn next(&mut self) -> Result<Option<CompressedFrame>, EndoscopeError>;
 
-    /// Returns whether it has a single image, which is not a fault when it never changes.
+    /// Returns whether the source has only a single image, which may remain unchanged without a fault.
     fn is_still(&self) -> bool {
         false
     }

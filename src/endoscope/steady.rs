@@ -2,7 +2,7 @@
 
 use nalgebra::{Isometry3, Quaternion, UnitQuaternion, Vector3};
 
-/// Readings farther than this from the newest one, m and rad, date from before a motion.
+/// Readings farther than this from the newest one, m and rad, are from before a motion.
 const MOVED_M: f64 = 0.002;
 const MOVED_RAD: f64 = 0.012;
 

@@ -1,5 +1,5 @@
-//! Opening and reading regular files of a plausible size. Everything else is refused with a clear message, so that no
-//! call blocks for ever or fills the memory.
+//! Opening and reading regular files of a plausible size. All other files are rejected with a clear message, so that no
+//! call blocks forever or fills the memory.
 
 use std::{
     fs::{self, File, Metadata, OpenOptions},
@@ -17,7 +17,7 @@ pub const MODEL_MAX: u64 = 64 << 20;
 pub const CONFIG_MAX: u64 = 1 << 20;
 /// Maximum length of a line of a table, in bytes. A file without line breaks is not a table.
 const LINE_MAX: usize = 1 << 20;
-/// A pipe that stays silent for this long counts as abandoned by its writer.
+/// A pipe without data for this long counts as abandoned by its writer.
 const PIPE_TIMEOUT: Duration = Duration::from_secs(30);
 const NAP: Duration = Duration::from_millis(2);
 
@@ -164,7 +164,7 @@ pub(super) fn open(path: &Path, pipes: bool) -> io::Result<(File, Metadata)> {
     Ok((file, metadata))
 }
 
-/// Describes what is at the path if it is not a regular file.
+/// Describes the kind of the file at the path if it is not a regular file.
 pub(super) fn what_it_is(metadata: &Metadata) -> Option<&'static str> {
     if metadata.is_file() {
         None

@@ -16,7 +16,7 @@ use tempfile::NamedTempFile;
 
 use super::input::{open, refusal, what_it_is};
 
-/// How long another program may keep a file open before its replacement fails.
+/// Time for which another program may keep a file open before its replacement fails.
 #[cfg(windows)]
 const HELD_MAX: Duration = Duration::from_millis(500);
 
@@ -79,8 +79,8 @@ pub fn write_private(path: &Path, text: &str) -> io::Result<()> {
     file.persist_noclobber(path).map(drop).map_err(|error| error.error)
 }
 
-/// Checks whether [`write_atomically`] could replace `path` without destroying one of the `inputs`. Call it before the
-/// work whose result is to be written.
+/// Checks whether [`write_atomically`] could replace `path` without destroying one of the `inputs`. Call it before
+/// computing the result that is to be written.
 ///
 /// # Errors
 /// Everything that [`write_atomically`] refuses, a missing folder, and an input that is the same file, also under

@@ -7,7 +7,8 @@ pub const QUOTE: usize = 80;
 /// Maximum number of characters of longer text, such as a list of columns or a parser's message.
 pub const PASSAGE: usize = 300;
 
-/// Returns a text as a message may repeat it: at most [`QUOTE`] characters, control characters escaped.
+/// Returns a text in the form in which a message may repeat it: at most [`QUOTE`] characters, control characters
+/// escaped.
 pub fn quoted(text: &str) -> String {
     shortened(text, QUOTE)
 }

@@ -8,7 +8,7 @@ use toml::{
     de::{DeTable, DeValue, Deserializer, Error},
 };
 
-/// Why settings could not be parsed: the mistake and its position.
+/// Reason why settings could not be parsed: the mistake and its position.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Misfit {
     message: String,

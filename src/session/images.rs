@@ -90,7 +90,7 @@ pub trait RecordedImageSource: Send + Debug {
 pub struct ImageFigures {
     /// Number of earlier images in this session.
     pub number: u64,
-    /// Its size.
+    /// Size.
     pub bytes: u64,
     /// Images that were not recorded so far.
     pub dropped: u64,

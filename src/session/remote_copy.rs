@@ -36,7 +36,7 @@ pub enum FilePart {
 pub struct NamedValues {
     #[prost(string, tag = "1")]
     pub name: String,
-    /// Its values, by name.
+    /// Values, by name.
     #[prost(btree_map = "string, string", tag = "2")]
     pub entries: BTreeMap<String, String>,
 }
@@ -181,7 +181,7 @@ pub struct SessionHead {
 }
 
 impl SessionHead {
-    /// Makes the head at the beginning of a session.
+    /// Creates the head at the beginning of a session.
     pub fn new(session: u64, program: &str, started_ns: u64) -> Self {
         let program = program.to_owned();
         Self { version: VERSION, session, program, started_ns, first: 0, lacks: false, parts: Vec::new() }
@@ -283,7 +283,7 @@ impl Copy {
         Ok(self.writer.flush()?)
     }
 
-    /// Number of the expected bundle.
+    /// Returns the number of the expected bundle.
     pub const fn due(&self) -> u64 {
         self.due
     }

@@ -157,7 +157,7 @@ fn mark_of(session: &Path) -> PathBuf {
     session.with_extension(MARK)
 }
 
-/// Bytes on the disk. A session that is being written has free space that uses none.
+/// Returns the bytes on the disk. A session that is being written has free space that uses none.
 #[cfg(unix)]
 fn taken(about: &fs::Metadata) -> u64 {
     std::os::unix::fs::MetadataExt::blocks(about) * 512

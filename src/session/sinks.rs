@@ -66,7 +66,7 @@ pub(crate) struct FileChannel(usize);
 
 struct WrittenChannel {
     of_file: Option<ChannelId>,
-    /// Its number for viewers; `None` if they do not receive it.
+    /// Number for viewers; `None` if they do not receive it.
     of_audiences: Option<usize>,
 }
 

@@ -94,7 +94,7 @@ impl ForceResponse {
         self.pace
     }
 
-    /// How far the hand has yielded, m.
+    /// Returns how far the hand has yielded, m.
     pub(super) const fn offset_m(&self) -> Vector3<f64> {
         self.offset_m
     }

@@ -106,7 +106,7 @@ pub struct Hand {
     in_move_s: f64,
     /// The search that determines its task, in a palpation.
     search: Option<Box<PalpationTask>>,
-    /// Its response to the force; `None` if it has no force perception.
+    /// Response to the force; `None` if it has no force perception.
     feeling: Option<Box<ForceResponse>>,
     /// Pace of its own task, and the common pace of both hands if they share a task.
     pace: f64,
@@ -233,7 +233,7 @@ impl Hand {
         Intention { position_m: task.position_m + self.tremor_m(), ..task }
     }
 
-    /// Position of hand and handle, m.
+    /// Returns the position of hand and handle, m.
     pub const fn position_m(&self) -> Vector3<f64> {
         self.position_m
     }

@@ -45,7 +45,7 @@ impl Trocar {
         shaft(&self.position_m, tip_m)
     }
 
-    /// Force of the wall on the instrument after the last step, N (`world`); it acts at the wall.
+    /// Returns the force of the wall on the instrument after the last step, N (`world`); it acts at the wall.
     pub const fn force_n(&self) -> Vector3<f64> {
         self.force_n
     }
@@ -76,7 +76,7 @@ impl Trocar {
         sliding_n / presliding_m * self.stretch_along_m + viscous_n_s_m * speed_m_s
     }
 
-    /// Force across the shaft, N: the wall straightens a tilted shaft, and friction opposes its rotation.
+    /// Returns the force across the shaft, N: the wall straightens a tilted shaft, and friction opposes its rotation.
     fn across_n(&mut self, direction: &Vector3<f64>, turn: &Vector3<f64>, depth_m: f64) -> Vector3<f64> {
         let down = -Vector3::z();
         let tilt = direction - down * direction.dot(&down);
@@ -91,7 +91,7 @@ impl Trocar {
     }
 }
 
-/// Direction from the wall to the tip, and its distance, m. Straight down if the tip is in the wall itself.
+/// Returns the direction from the wall to the tip, and its distance, m. Straight down if the tip is in the wall itself.
 pub(super) fn shaft(wall_m: &Vector3<f64>, tip_m: &Vector3<f64>) -> (Vector3<f64>, f64) {
     let travel_m = tip_m - wall_m;
     let depth_m = travel_m.norm();

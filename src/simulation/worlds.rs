@@ -63,7 +63,7 @@ impl Worlds {
         (Self { arms, playing, period_s, ahead_s: 0.0, outputs: [Outputs::SAFE; SIDES] }, watched)
     }
 
-    /// Positions of the tips, m; `None` for a side that the scene does not have.
+    /// Returns the positions of the tips, m; `None` for a side that the scene does not have.
     pub fn tips_m(&self) -> [Option<Vector3<f64>>; SIDES] {
         self.arms.each_ref().map(|world| world.as_ref().map(World::tip_m))
     }

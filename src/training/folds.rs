@@ -21,7 +21,7 @@ pub(super) struct Folds {
 }
 
 impl Folds {
-    /// Makes five folds, or one per member if there are more members. They consist of whole trajectories (at most as
+    /// Creates five folds, or one per member if there are more members. They consist of whole trajectories (at most as
     /// many folds as trajectories), or of blocks if there are few trajectories.
     pub(super) fn of(data: &DataSet, members: usize, seed: u64) -> Self {
         let count = members.max(5);

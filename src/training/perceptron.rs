@@ -58,7 +58,7 @@ impl Perceptron {
         self.widths.len() - 1
     }
 
-    /// Ranges of a layer's weights and bias within the parameters.
+    /// Returns the ranges of a layer's weights and bias within the parameters.
     fn places(&self, layer: usize) -> [Range<usize>; 2] {
         let from: usize = self.widths.windows(2).take(layer).map(|pair| (pair[0] + 1) * pair[1]).sum();
         let bias = from + self.widths[layer] * self.widths[layer + 1];

@@ -42,7 +42,7 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
-/// Number of allocations, releases and resizes by this thread so far.
+/// Returns the number of allocations, releases and resizes by this thread so far.
 pub(crate) fn calls() -> u64 {
     CALLS.get()
 }

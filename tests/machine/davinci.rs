@@ -38,7 +38,8 @@ fn held_out(held: [&str; 2], settings: &TrainingSettings) -> Option<Evaluation> 
     Some(evaluate(&mut estimator, &data).unwrap())
 }
 
-/// Mean absolute error (Nm) of the network and of linear regression, and fraction of uncertain samples, per file.
+/// Returns the mean absolute error (Nm) of the network and of linear regression, and fraction of uncertain samples, per
+/// file.
 fn figures(evaluation: &Evaluation) -> Vec<[f64; 3]> {
     let mae = |file: &nima_training::EvaluationPart, method: usize| file.methods[method].outputs[0].unwrap().mae;
     evaluation.files.iter().map(|file| [mae(file, 0), mae(file, 2), file.doubt_fraction]).collect()

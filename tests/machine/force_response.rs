@@ -4,7 +4,8 @@ use nima_core::{impedance::Mode, task::TaskEvent};
 use nima_machine::{messages::LoopState, rig::Side, runtime};
 use nima_tests::plan;
 
-/// Force at the tip while it presses on the tissue, N: its peak, its mean; and the number of presses in half a minute.
+/// Returns the force at the tip while it presses on the tissue, N: its peak, its mean; and the number of presses in
+/// half a minute.
 fn pressed(gain: f64, intended_n: Option<f64>) -> (f64, f64, u32) {
     let mut plan = plan("peg_transfer");
     plan.rig.mode = Mode::Matched;

@@ -28,7 +28,7 @@ struct Script {
 /// From the middle of a ring to the middle of its tube, m.
 const RIM_M: f64 = 0.00725;
 
-/// Position of the tip at the outer rim of a ring with this middle, on the hand's own side.
+/// Returns the position of the tip at the outer rim of a ring with this middle, on the hand's own side.
 fn rim_m(side: Side, [x, y]: [f64; 2], height_m: f64) -> Vector3<f64> {
     let out_m = if side == Side::Left { -RIM_M } else { RIM_M };
     Vector3::new(x + out_m, y, height_m - 0.001)

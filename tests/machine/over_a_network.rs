@@ -132,7 +132,7 @@ impl Fixture {
         [self.leader.state(), self.follower.state()]
     }
 
-    /// Position of the tip.
+    /// Returns the position of the tip.
     fn tip_m(&self) -> Vector3<f64> {
         self.follower.rig.measured()[0].unwrap().tip_m
     }

@@ -127,7 +127,7 @@ fn without_an_accelerometer_the_arm_gives_the_orientation() {
     assert_eq!(session.report().unwrap().verdict, Verdict::Accepted, "{}", session.report().unwrap().reason);
 }
 
-/// Result of the drift check after `seconds` in this scene, with this instruction, idle or not.
+/// Returns the result of the drift check after `seconds` in this scene, with this instruction, idle or not.
 fn drift(session: &GravitySession, scene: &Scene, prompt: Prompt, idle: bool, seconds: f64) -> GravityDrift {
     let record = session.report().unwrap().record("S", "T", "2026-01-31T12:00:00Z").unwrap();
     let mut bench = Fixture::new(scene);
@@ -200,7 +200,7 @@ fn a_hand_taken_off_the_tool_takes_the_bad_verdict_back() {
     assert!(matches!(run(0.6, false, 4.0), GravityDrift::Fine { .. }), "one good verdict is enough for a start");
 }
 
-/// Root mean square per axis of the remaining force without contact, N.
+/// Returns the root mean square per axis of the remaining force without contact, N.
 fn left_n(model: GravityModel, time_constant_s: f64, samples: &[WristSample]) -> f64 {
     let mut compensator = Compensator::new(model, time_constant_s, 1e-3);
     let squares: f64 = samples.iter().map(|s| compensator.step(s).unwrap().force_n.norm_squared()).sum();

@@ -160,7 +160,8 @@ fn at_the_task(side: Side) -> Scene {
     Scene { wrist, trocar, tissue_sensor, person, ..scene }
 }
 
-/// Standard deviation per axis of the reported force without contact while the hand performs its task, N (`world`).
+/// Returns the standard deviation per axis of the reported force without contact while the hand performs its task, N
+/// (`world`).
 fn free_sd_n(mut path: ForcePath, scene: &Scene, seconds: f64) -> Vector3<f64> {
     let mut world = World::new(&Scene { person: None, ..scene.clone() }, 1000.0);
     let mut outputs = Outputs::SAFE;

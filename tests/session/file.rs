@@ -137,7 +137,7 @@ fn a_stretch_is_compared_alone_after_all_before_it_was_replayed() {
     assert_eq!(part, whole[2 * 2050..2 * 3217]);
 }
 
-/// Mean of the rendered force while engaged, N.
+/// Returns the mean of the rendered force while engaged, N.
 fn mean_rendered_n(file: &RecordedFile) -> f64 {
     let mut sum_n = 0.0;
     let mut count = 0;

@@ -99,7 +99,7 @@ impl Fixture {
         self.newest.map_or(LoopState::Idle, |tick| tick.state)
     }
 
-    /// Number of the loop's ticks.
+    /// Returns the number of the loop's ticks.
     fn index(&self) -> u64 {
         self.newest.map_or(0, |tick| tick.index)
     }

@@ -20,7 +20,7 @@ use nima_tests::emulated::{at_tip, started};
 const TIMEOUT: Duration = Duration::from_secs(40);
 const OWN: ReadyPoint = ReadyPoint::Own(Side::Right);
 
-/// Result of the item, with the markers swapped or not.
+/// Returns the result of the item, with the markers swapped or not.
 fn found(are_exchanged: bool) -> ReadyState {
     let folder = tempfile::tempdir().unwrap();
     let devices = at_tip(folder.path());

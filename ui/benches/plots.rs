@@ -50,7 +50,7 @@ fn fill(live: &mut LiveState, from_s: f64, to_s: f64) {
     }
 }
 
-/// Time of one frame of this content, triangles included, ms.
+/// Returns the time of one frame of this content, triangles included, ms.
 fn frame_ms(ctx: &Context, number: usize, content: &mut dyn FnMut(&mut Ui)) -> f64 {
     let input = RawInput {
         screen_rect: Some(Rect::from_min_size(Pos2::ZERO, SIZE)),
@@ -125,7 +125,7 @@ fn all_samples() -> impl FnMut() -> f64 {
     }
 }
 
-/// Times of some runs of this many frames, ms.
+/// Returns the times of some runs of this many frames, ms.
 fn runs(frames: usize, mut frame: impl FnMut() -> f64) -> Vec<Vec<f64>> {
     (0..RUNS).map(|_| (0..frames).map(|_| frame()).collect()).collect()
 }

@@ -91,7 +91,7 @@ impl Emulators {
         write(&self.input, &format!("truth {rate_hz}"));
     }
 
-    /// Lines reported since the last call.
+    /// Returns the lines reported since the last call.
     pub(crate) fn report(&self) -> impl Iterator<Item = String> {
         self.report.iter().flat_map(Receiver::try_iter)
     }

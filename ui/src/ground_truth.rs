@@ -8,7 +8,7 @@ use std::{
 
 use nima_machine::messages::Tick;
 
-/// Time of day, s since 1970.
+/// Returns the time of day, s since 1970.
 pub(crate) fn now_s() -> f64 {
     SystemTime::now().duration_since(UNIX_EPOCH).map_or(0.0, |since| since.as_secs_f64())
 }

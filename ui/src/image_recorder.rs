@@ -67,7 +67,7 @@ impl ImageRecorder {
         Some(Self { feed, refused })
     }
 
-    /// Reason why no images are recorded now.
+    /// Returns the reason why no images are recorded now.
     pub(crate) fn trouble(&self) -> Option<String> {
         let lost = || match self.feed.as_ref()?.standing(Instant::now()) {
             FrameHealth::Lost(trouble) => Some(format!("{trouble}: {}", trouble.cure())),

@@ -38,16 +38,16 @@ pub(crate) trait LineConnection: Debug + Send {
     /// Draws the state of the link, and the buttons that transfer control of the follower; `drives`: the arm is driven now.
     fn ui(&self, ui: &mut Ui, drives: bool);
 
-    /// Cause and remedy if no data pass.
+    /// Returns the cause and remedy if no data pass.
     fn trouble(&self) -> Option<[String; 2]>;
 
     /// Returns whether a message was received.
     fn has_delivered(&self) -> bool;
 
-    /// Cause and remedy of a request that waits for the operator.
+    /// Returns the cause and remedy of a request that waits for the operator.
     fn question(&self) -> Option<[&'static str; 2]>;
 
-    /// Names and values of the link statistics.
+    /// Returns the names and values of the link statistics.
     fn rows(&self) -> Vec<[String; 2]>;
 
     /// Returns the link statistics for JSON output.

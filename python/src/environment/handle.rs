@@ -8,7 +8,7 @@ use nima_simulation::{Worlds, scene::LeaderModel};
 /// Maximum speed at which a controller moves the handle, m/s: the loop treats faster motion as a jump.
 pub(super) const FASTEST_M_S: f64 = 1.0;
 
-/// Who controls the handle.
+/// Controller of the handle.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Holder {
     /// The simulated hand of the scene.
@@ -59,7 +59,7 @@ impl HandleWorlds {
         Self { worlds, side, holder, leader, mass_kg, period_s, motors_n, seen: None }
     }
 
-    /// Position of the handle, m, if a controller has it.
+    /// Returns the position of the handle, m, if a controller has set it.
     pub(super) const fn position_m(&self) -> Option<Vector3<f64>> {
         match self.holder {
             Holder::Scene => None,

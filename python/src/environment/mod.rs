@@ -59,7 +59,7 @@ const SUBSTEPS_MAX: u32 = 100_000;
 
 #[pymethods]
 impl Simulation {
-    /// Reads rig and scene, and checks them.
+    /// Reads the rig and the scene, and checks them.
     #[new]
     #[pyo3(signature = (scene, rig, mode, delay_s, control, substeps))]
     fn new(
@@ -111,13 +111,13 @@ impl Simulation {
         self.plan.rig.rate_hz
     }
 
-    /// Force limit of the gates, N.
+    /// Returns the force limit of the gates, N.
     #[getter]
     fn ceiling_n(&self) -> f64 {
         self.plan.rig.gates.ceiling_n
     }
 
-    /// Delay of the link, s.
+    /// Returns the delay of the link, s.
     #[getter]
     fn delay_s(&self) -> f64 {
         self.plan.rig.delay_s

@@ -18,7 +18,7 @@ use super::{
     link::OwnLink,
 };
 
-/// The side that a controller gets.
+/// Side that a controller can use.
 pub(super) const SIDE: Side = Side::Right;
 /// Maximum time until the pair is engaged, s.
 const ENGAGED_WITHIN_S: f64 = 5.0;

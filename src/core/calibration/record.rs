@@ -27,7 +27,7 @@ impl RecordHead {
 pub struct Judgement {
     pub verdict: Verdict,
     pub reason: String,
-    /// Name of the person who uses the calibration in spite of its verdict.
+    /// Name of the person who uses the calibration despite its verdict.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub override_by: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]

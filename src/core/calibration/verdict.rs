@@ -10,7 +10,7 @@ pub enum Verdict {
     Accepted,
     /// The data do not determine the result: too few, or too similar.
     InsufficientMotion,
-    /// The data determine a result, but it does not explain them.
+    /// The data determine a result, but the result does not explain the data.
     PoorData,
 }
 

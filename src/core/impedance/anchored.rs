@@ -21,13 +21,14 @@ use super::{
 };
 use crate::signal::{DelayLine, Lanes, settled};
 
-/// A correction may be at most this many times the recent change of force over the delay. This and the other constants
-/// were chosen by hand on the recordings of both rigs, and on simulated palpation, reaching, sudden contact and loss of contact.
+/// A correction may be at most this many times the recent change of force over the delay. This constant and the others
+/// were chosen by hand on the recordings of both rigs, and on simulated palpation, reaching, sudden contact and loss of
+/// contact.
 const BOUND: f64 = 1.5;
-/// An expert's prediction is evaluated after limiting it to this many times that change. Chosen as [`BOUND`].
+/// Each expert's prediction is limited to this many times that change before it is evaluated. Chosen like [`BOUND`].
 const EXPERT_BOUND: f64 = 2.0;
-/// Solves per second of every ridge (at most one per tick). The ridges are solved in turn, and each solution is active
-/// at once. Half as many cost 1 % of accuracy at 10 ms; more have no benefit.
+/// Solves per second of every ridge (at most one per tick). The ridges are solved in turn, and each solution is used at
+/// once. Half this number reduces the accuracy by 1 % at 10 ms; a higher number has no benefit.
 const SOLVE_HZ: f64 = 150.0;
 const EXPERTS: usize = RIDGES * NESTED;
 const UNKNOWN: Solutions = [[Lanes::ZERO; REGRESSORS]; NESTED];
@@ -74,24 +75,24 @@ impl LeaderEnd for AnchoredMethod {
 /// Parameters of anchored rendering: `f^(t) = f(t - D) + clip(...)`, all experts folded into one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AnchoredModel {
-    /// N per change of position (m), of its differences from four low-passes (m), of friction
-    /// (1), of square, cube and product of the position about the centre (m², m³, m²).
+    /// Force (N) per change of position (m), of its differences from four low-passes (m), of friction (1), of square,
+    /// cube and product of the position about the centre (m², m³, m²).
     pub motion: [Lanes; 9],
-    /// Change expected without any motion (N), known to the follower alone.
+    /// Change expected without any motion (N), which only the follower can compute.
     pub constant_n: Lanes,
     /// Slow mean of the follower's position (m).
     pub centre_m: Lanes,
-    /// Where friction saturates (m).
+    /// Motion at which friction saturates (m).
     pub knee: Lanes,
-    /// Minimum rendered force (N): forces beyond those seen are not invented.
+    /// Minimum rendered force (N): the mode does not render forces outside the observed range.
     pub low_n: Lanes,
     /// Maximum rendered force (N).
     pub high_n: Lanes,
     /// Largest correction (N, norm over the axes).
     pub bound_n: f64,
-    /// Highest power of the position in the model that most of the weight is on, 1 or 3; 0 without a correction.
+    /// Highest power of the position in the model with most of the weight, 1 or 3; 0 without a correction.
     pub degree: u8,
-    /// How much of a full correction this is, 0 (plain reflection) to 1, on the axis that is corrected most.
+    /// Degree of correction, from 0 (plain reflection) to 1, on the axis with the largest correction.
     pub gain: f64,
 }
 
@@ -109,8 +110,8 @@ impl AnchoredModel {
         gain: 0.0,
     };
 
-    /// Returns the force (N) for the motion now, from the force and the motion at the anchor. The force as it came
-    /// where nothing is corrected or the correction is not finite.
+    /// Returns the force (N) for the motion now, from the force and the motion at the anchor. Without a correction, or
+    /// if the correction is not finite, returns the received force.
     pub(super) fn force(&self, measured: Lanes, now: &Posture, then: &Posture) -> Lanes {
         if self.gain <= 0.0 {
             return measured;
@@ -258,7 +259,7 @@ impl Learner {
         ridge * self.every / RIDGES
     }
 
-    /// Returns how often a ridge was solved since `ticks` ticks ago, not counting this tick.
+    /// Returns how often a ridge was solved in the last `ticks` ticks, not counting this tick.
     const fn renewals(&self, ridge: usize, ticks: usize) -> usize {
         let ahead = self.every - self.phase(ridge) - 1;
         (self.tick + ahead) / self.every - (self.tick + 1 - ticks + ahead) / self.every

@@ -1,4 +1,5 @@
-//! The methods of others by their names, and what each of them sends. They are computed by the crate `nima-baselines`, one at most.
+//! Published methods of others, with their names and the data that each of them sends. The crate `nima-baselines`
+//! computes at most one of them.
 
 use serde::{Deserialize, Serialize};
 
@@ -11,9 +12,9 @@ use crate::signal::Lanes;
 pub enum Baseline {
     /// Model-mediated teleoperation: a Hunt-Crossley contact by recursive least squares.
     ModelMediated,
-    /// Wave variables, the way back.
+    /// Wave variables: the returning wave.
     Waves,
-    /// Time-domain passivity with the energy that the tissue returned, the way back.
+    /// Time-domain passivity: the energy returned by the tissue.
     Passivity,
     /// Extrapolation by a Kalman filter of force and its rate.
     Kalman,
@@ -41,7 +42,7 @@ impl Baseline {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[expect(clippy::large_enum_variant, reason = "it crosses the link by value, in a parcel of fixed size")]
 pub enum BaselineModel {
-    /// No baseline is computed, or it knows nothing yet.
+    /// No baseline is computed, or it has no data yet.
     Nothing,
     /// Model-mediated teleoperation: the contact.
     Contact(HuntCrossleyContact),
@@ -75,8 +76,8 @@ pub struct HuntCrossleyContact {
     pub reach_m: Lanes,
     /// `n`.
     pub exponent: Lanes,
-    /// For the side above and below the surface stiffness (N at the reach) and damping (N s/m at the reach); then the offset (N), the
-    /// instrument's damping (N s/m) and mass (kg).
+    /// For each side of the surface, stiffness (N at the reach) and damping (N s/m at the reach); then the offset (N),
+    /// the instrument's damping (N s/m) and mass (kg).
     pub parameters: [Lanes; 7],
     /// Minimum and maximum rendered force (N).
     pub bounds_n: [Lanes; 2],

@@ -1,4 +1,4 @@
-//! The better of anchored and matched rendering, by the recent errors of both where the force is felt.
+//! Mixture of anchored and matched rendering, weighted by the recent errors of both at the leader.
 //!
 //! The constants were chosen on four recordings of the first rig and on sequences of changing tissue.
 
@@ -13,8 +13,8 @@ use crate::signal::{DelayLine, Lanes};
 
 /// Memory of the errors (s by the clock).
 const MEMORY_S: f64 = 1.0;
-/// Matched rendering learns for longer than anchored, so its past errors are pessimistic: at first they are reduced by
-/// this fraction, and count fully once the memory is full.
+/// Matched rendering learns more slowly than anchored rendering, so its past errors are pessimistic. At first they are
+/// reduced by this fraction; they count fully once the memory is full.
 const LEARNING: f64 = 0.2;
 /// The smallest error of matched rendering over the last half to full period of this length (s), times this fraction,
 /// is a lower bound of its mean error.
@@ -23,7 +23,7 @@ const LASTING: f64 = 0.7;
 /// Memory in which the mixture itself is compared with anchored rendering (s by the clock): some touches. 1 to 8 s
 /// perform equally well.
 const TRIAL_S: f64 = 4.0;
-/// Errors below this count as equal (N): below it both weights would divide rounding by rounding.
+/// Errors below this count as equal (N), because the weights would otherwise divide one rounding error by another.
 const EQUAL_N: f64 = 1e-12;
 
 /// The mixture of anchored and matched rendering.
@@ -68,10 +68,10 @@ impl LeaderEnd for Best {
     }
 }
 
-/// A softmin, per axis, of the running errors of what the leader itself rendered, judged by the force that a parcel brings one
-/// delay later. The follower cannot judge this: it does not know the motion from which the leader makes the force, and matched
-/// rendering errs by the stiffness times what that motion is wrong. Holding needs no weight of its own: anchored rendering is
-/// holding wherever its correction does not help.
+/// A softmin, per axis, of the running errors of the forces that the leader rendered, compared with the force that a
+/// packet delivers one delay later. The follower cannot compute this, because it does not have the motion from which
+/// the leader makes the force, and matched rendering errs by the stiffness times what that motion is wrong. Holding
+/// needs no weight of its own: anchored rendering is holding wherever its correction does not help.
 ///
 /// On another tissue both err at first: anchored rendering for one delay, matched rendering until it has learned the
 /// tissue. Because the errors of both are known one delay late, both look bad for as long again. A lasting error of
@@ -156,20 +156,20 @@ impl Judge {
         }
     }
 
-    /// Returns the weight of anchored rendering, 0 to 1; matched rendering has the rest, and everything until the first
-    /// judgement.
+    /// Returns the weight of anchored rendering, 0 to 1. Matched rendering has the remaining weight, and the whole
+    /// weight before the first evaluation.
     const fn anchored(&self) -> Lanes {
         self.anchored
     }
 
-    /// Keeps what was rendered in this tick by each mode ([`Mode::index`]).
+    /// Stores the force rendered by each mode in this tick ([`Mode::index`]).
     fn say(&mut self, forces_n: &[Option<Lanes>], pace: f64) {
         let of = |mode: Mode| forces_n[mode.index()];
         let both = of(Mode::Anchored).zip(of(Mode::Matched)).zip(of(Mode::Best));
         self.said.push(Said { forces_n: both.map(|((anchored, matched), mixed)| [anchored, matched, mixed]), pace });
     }
 
-    /// Judges what was rendered `age` ticks ago by the force of that time, which has just come.
+    /// Evaluates the forces rendered `age` ticks ago against the force of that time, which has just arrived.
     fn receive(&mut self, parcel: &LinkPacket, age: usize) {
         if !parcel.modes.contains(Mode::Best) {
             self.forget();
@@ -240,7 +240,7 @@ mod tests {
 
     const DELAY: usize = 100;
 
-    /// A leader that hears of a force of `0` what `errors_n` (anchored, matched) said one delay before.
+    /// A leader that receives a force of `0` while the modes (anchored, matched) rendered `errors_n` one delay earlier.
     struct Fixture(Judge);
 
     impl Fixture {

@@ -1,4 +1,4 @@
-//! Anchored rendering compared with delayed reflection, on real recordings and in cases that must never make it worse.
+//! Anchored rendering compared with delayed reflection, on real recordings and in cases in which it must not be worse.
 
 use nalgebra::Vector3;
 use nima_testing::unjudged;
@@ -132,7 +132,7 @@ fn sudden_contact(t: f64) -> (f64, f64) {
     (z, 1000.0 * depth(z))
 }
 
-/// Palpating; every 4 s the tissue is gone for 1.5 s.
+/// Palpates; every 4 s the tissue disappears for 1.5 s.
 fn sudden_loss(t: f64) -> (f64, f64) {
     let z = -0.004 - 0.002 * (5.0 * t).sin();
     (z, if t % 4.0 < 2.5 { -600.0 * z } else { 0.0 })

@@ -3,16 +3,16 @@
 use super::{motion_clock::fraction, regressors::MotionState};
 use crate::signal::{Lanes, settled};
 
-/// Damping force of usual motion, as a fraction of the usual force. With 0.02 the mean power into the hand was still
-/// 0.5 mW in one of 60 cases (four tasks, tissue 0.4 to 2.5 times as stiff, 0 to 300 ms), with 0.03 in none; without
-/// damping it was up to 2.2 mW (`nima study passivity`).
+/// Damping force at the usual motion, as a fraction of the usual force. With 0.02 the mean power into the hand was
+/// still 0.5 mW in one of 60 cases (four tasks, tissue 0.4 to 2.5 times as stiff, 0 to 300 ms), with 0.03 in none;
+/// without damping it was up to 2.2 mW (`nima study passivity`).
 const FRACTION: f64 = 0.03;
 /// Memory of the usual motion and force (s by the clock).
 const USUAL_S: f64 = 20.0;
 
 /// Viscous damping in proportion to the usual force over the usual motion, which makes it independent of units.
 ///
-/// The force of a spring is held for a tick while the hand moves on, and its parameters change while it is pressed.
+/// The force of a spring is held for a tick while the hand keeps moving, and its parameters change while it is pressed.
 /// Both give energy to the hand, and more for a stiffer spring. To be passive, a sampled spring needs damping in
 /// proportion to its stiffness (Colgate and Schenkel 1994: more than half of stiffness times period).
 #[derive(Clone, Debug)]

@@ -1,4 +1,4 @@
-//! Direct force reflection: what every other mode is compared with.
+//! Direct force reflection, the reference for every other mode.
 
 use super::{
     method::{LeaderEnd, LeaderInput, RenderingMethod},
@@ -6,7 +6,7 @@ use super::{
 };
 use crate::signal::Lanes;
 
-/// The measured force, as late as the link delivers it.
+/// The measured force, delayed by the link.
 #[derive(Clone, Debug)]
 pub(super) struct Dfr;
 

@@ -1,4 +1,4 @@
-//! The range of recent forces: a rendered force stays near it.
+//! Range of recent forces; a rendered force stays close to it.
 
 use crate::signal::Lanes;
 
@@ -28,14 +28,15 @@ impl Envelope {
         self.edges_n = Some([leaked(low).zip(force_n, f64::min), leaked(high).zip(force_n, f64::max)]);
     }
 
-    /// Minimum and maximum force to render (N): the range and its margin; zero before any force was seen.
+    /// Returns the minimum and maximum force to render (N): the range with its margin; zero before any force was
+    /// measured.
     pub fn bounds_n(&self) -> [Lanes; 2] {
         let [low, high] = self.edges_n.unwrap_or_default();
         let margin = (high - low) * MARGIN;
         [low - margin, high + margin]
     }
 
-    /// Forgets everything.
+    /// Discards all stored data.
     pub fn reset(&mut self) {
         self.edges_n = None;
     }

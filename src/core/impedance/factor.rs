@@ -133,8 +133,8 @@ fn add_rows<const COUNT: usize>(mut targets: [&mut ImpedanceFactor; COUNT], rows
     }
 }
 
-/// Reflects row `k` of the columns `j..j + COUNT` of `above` together with those of `below` (the rest of its packed
-/// columns, from column `j` on); returns the remainder of `below`.
+/// Applies a reflection to row `k` of the columns `j..j + COUNT` of `above` and to those of `below` (the rest of its
+/// packed columns, from column `j` on); returns the remainder of `below`.
 #[inline]
 fn reflect_columns<'a, const COUNT: usize>(
     above: &mut [Lanes; MAX_ELEMENTS],

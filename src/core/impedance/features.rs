@@ -23,7 +23,7 @@ pub struct Scales {
     pub velocity_m_s: f64,
     /// Unit of acceleration in a row.
     pub acceleration_m_s2: f64,
-    /// Unit of force (N): the limit of absurd forces is a multiple of it; it does not enter the fit.
+    /// Unit of force (N): the limit for implausible forces is a multiple of it; it does not affect the fit.
     pub force_n: f64,
 }
 

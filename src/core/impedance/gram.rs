@@ -13,7 +13,7 @@ const ELEMENTS: usize = GRAM_ROW * (GRAM_ROW + 1) / 2;
 
 /// `[X; f] [X; f]^T`, one per lane: the upper triangle packed by columns, the force in the last one.
 ///
-/// The window updates it in blocks of sums; nothing is subtracted, so it does not drift.
+/// The window updates it in blocks of sums without subtraction, so it does not drift.
 #[derive(Clone, Debug)]
 pub struct Gram {
     columns: usize,

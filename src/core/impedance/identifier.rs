@@ -1,4 +1,4 @@
-//! The follower's end: computes a packet from samples, and a report of its expected accuracy.
+//! The follower's end: computes a packet from samples, and reports the expected accuracy.
 
 use nalgebra::Vector3;
 
@@ -61,7 +61,7 @@ pub struct Identifier {
     /// Ticks since the last informative sample.
     idle_ticks: usize,
     followers: Followers,
-    /// Those of a leader that makes the follower's own motion.
+    /// Leader parts that use the follower's own motion.
     leaders: Leaders,
     sent: DelayLine<(LinkPacket, Posture)>,
     forget: f64,
@@ -95,8 +95,8 @@ impl Identifier {
         })
     }
 
-    /// Computes only these modes from now on, as far as they are in the settings (and delayed reflection, which costs
-    /// nothing). A mode that is added restarts learning; a mode that is omitted costs nothing. Nothing is allocated.
+    /// From now on, computes only these modes, if they are in the settings (and delayed reflection, which costs
+    /// nothing). An added mode restarts learning; an omitted mode costs nothing. Nothing is allocated.
     pub fn compute(&mut self, modes: ModeSet) {
         let modes = modes.with(Mode::Dfr).and(self.settings.modes);
         let before = std::mem::replace(&mut self.computed, modes);

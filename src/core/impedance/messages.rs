@@ -31,7 +31,7 @@ pub struct Posture {
 impl Posture {
     pub(super) const BLANK: Self = Self { features: [Lanes::ZERO; MOTION_COLUMNS], stance: MotionState::BLANK };
 
-    /// Position (m), velocity (m/s) and acceleration (m/s^2).
+    /// Returns the position (m), velocity (m/s) and acceleration (m/s^2).
     pub fn motion(&self, scales: &Scales) -> Motion {
         Motion {
             x: self.stance.x,
@@ -66,7 +66,7 @@ pub struct LinkPacket {
     pub resting: bool,
     /// The computed modes; no force is rendered in the others.
     pub modes: ModeSet,
-    /// The parameters of each of them.
+    /// Parameters of each of these renderings.
     pub models: Models,
 }
 
@@ -81,7 +81,7 @@ impl LinkPacket {
     };
 }
 
-/// Forces rendered at the leader, not yet limited (the gates of `safety` follow).
+/// Forces rendered at the leader, before the gates of `safety`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RenderedForces {
     /// Force of every mode (N), by [`Mode::index`](super::Mode::index); zero if not valid.
@@ -118,7 +118,7 @@ pub struct IdentificationReport {
     pub learnt: u64,
     /// Force of each mode (N) for this time, computed from data up to `t - D` and the follower's motion at `t`.
     pub prediction_n: [Vector3<f64>; SLOTS],
-    /// Whether that prediction exists and is finite; it is zero otherwise.
+    /// Whether the prediction exists and is finite; otherwise it is zero.
     pub prediction_valid: [bool; SLOTS],
     /// Force minus `M X` (N) at the newest sample, for each literal degree fitted on the window that ends with it.
     pub reconstruction_n: [Vector3<f64>; MAX_DEGREE],

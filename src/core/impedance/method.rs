@@ -1,4 +1,4 @@
-//! Trait of the rendering methods: a part at each end of the link, and the parameters sent from one to the other.
+//! Trait of the rendering methods: one part at each end of the link, and the parameters sent between them.
 //!
 //! `mode` lists all methods; this file runs them.
 
@@ -25,15 +25,15 @@ pub trait RenderingMethod {
     const NAME: &'static str;
     /// Short description for tables.
     const ABOUT: &'static str;
-    /// Whether it uses a window of samples, whose length is then one of its settings.
+    /// Whether the method uses a window of samples; the length of the window is then one of its settings.
     const HAS_WINDOW: bool = false;
-    /// Whether it selects a polynomial degree, up to a maximum that is then one of its settings.
+    /// Whether the method selects a polynomial degree; the maximum degree is then one of its settings.
     const HAS_DEGREES: bool = false;
-    /// Whether its force is damped if the leader's motion is measured at the handle.
+    /// Whether the force of the method is damped if the leader's motion is measured at the handle.
     const IS_DAMPED: bool = false;
-    /// Modes whose forces it uses: computed with it, and earlier in the list.
+    /// Modes whose forces the method uses: they are computed with it, and precede it in the list.
     const PARTS: &'static [Mode] = &[];
-    /// Field of its parameters in a packet, if it sends any.
+    /// Field of the method's parameters in a packet, if it sends any.
     const PARAMETERS: Option<Place> = None;
 
     /// Returns the follower part; `None` if the measured force and the parameters of other modes are enough.
@@ -99,7 +99,7 @@ pub struct MethodInput<'a> {
     pub force_n: Lanes,
     /// The sample was measured, not interpolated.
     pub good: bool,
-    /// The filters that compute its features are settled.
+    /// Whether the filters that compute the features have settled.
     pub usable: bool,
     /// The method may learn from the sample.
     pub learn: bool,
@@ -204,8 +204,8 @@ impl Leaders {
         Self(modes.filter_map(|mode| Some((mode.entry()?.leader)(settings))).collect())
     }
 
-    /// Returns the force of every mode (N), by [`Mode::index`]. A measured force that is not finite gives none: a limit would turn it into
-    /// its own value.
+    /// Returns the force of every mode (N), by [`Mode::index`]. A non-finite measured force gives no forces, because
+    /// clamping would turn it into one of the limits.
     pub(super) fn render(
         &mut self,
         parcel: &LinkPacket,

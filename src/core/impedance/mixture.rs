@@ -7,12 +7,12 @@ use crate::signal::Lanes;
 const MEMORY_S: f64 = 1.0;
 /// Amount of evidence needed for full trust (s).
 const RAMP_S: f64 = 0.1;
-/// Errors below this count as equal (N): below it the weights would divide rounding by rounding.
+/// Errors below this count as equal (N), because the weights would otherwise divide one rounding error by another.
 const EQUAL_N: f64 = 1e-12;
 
-/// Weights, per axis, of `EXPERTS` predicted changes of force: the eighth power of the smallest running error over each
-/// expert's own. No change of force (plain reflection) is evaluated with them; its weight is the difference between one
-/// and their sum.
+/// Weights, per axis, of `EXPERTS` predicted changes of force: the eighth power of the ratio of the smallest running
+/// error to that of each expert. No change of force (plain reflection) is evaluated with them; its weight is the
+/// difference between one and their sum.
 #[derive(Clone, Debug)]
 pub(super) struct Mixture<const EXPERTS: usize> {
     rate_hz: f64,

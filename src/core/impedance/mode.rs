@@ -1,4 +1,4 @@
-//! The ways of turning measured force into rendered force, as one list.
+//! List of the rendering modes, which compute a rendered force from the measured force.
 
 use std::{fmt, str::FromStr, sync::OnceLock};
 
@@ -14,7 +14,7 @@ use super::{
     paper::{Linear, Literal, LiteralModel},
 };
 
-/// Declares the modes from one list, each with the [`RenderingMethod`](super::RenderingMethod) that it stands for.
+/// Declares the modes from one list, each with the [`RenderingMethod`](super::RenderingMethod) that implements it.
 macro_rules! modes {
     ($(#[$attribute:meta])* enum Mode { $($(#[$doc:meta])* $mode:ident: $method:ty,)* }) => {
         $(#[$attribute])*
@@ -33,7 +33,8 @@ macro_rules! modes {
 
             const ENTRIES: &'static [Entry; MODES] = &[$(Entry::of::<$method>()),*];
 
-            /// Its entry in tables of [`SLOTS`] modes: the position in [`Mode::ALL`], and the last one for whichever baseline is computed.
+            /// Returns its index in tables of [`SLOTS`] modes: the position in [`Mode::ALL`], or the last index for the
+            /// baseline that is computed.
             pub const fn index(self) -> usize {
                 enum Place { $($mode,)* Baseline }
                 let place = match self {
@@ -47,7 +48,7 @@ macro_rules! modes {
 }
 
 modes! {
-    /// How the force for the hand is made from the follower's measurements.
+    /// How the force for the hand is computed from the follower's measurements.
     ///
     /// ```
     /// use nima_core::impedance::{Baseline, Mode};
@@ -65,11 +66,12 @@ modes! {
         Literal: Literal,
         /// The paper's linear predecessor: the same with degree 1 only (IMA).
         Linear: Linear,
-        /// Direct force reflection: the measured force, as late as the link delivers it.
+        /// Direct force reflection: the measured force, delayed by the link.
         Dfr: Dfr,
         /// Anchored rendering: the last measured force, corrected by the identified impedance over the link's delay.
         Anchored: AnchoredMethod,
-        /// Matched rendering: parameters cross the link, the force is made of the hand's own motion (NIMA as it was meant).
+        /// Matched rendering: parameters cross the link, and the force is computed from the hand's own motion (the
+        /// intended form of NIMA).
         Matched: MatchedMethod,
         /// The paper's columns under the rules of matched rendering.
         Nima: Nima,
@@ -89,9 +91,9 @@ pub struct Models {
     pub anchored: AnchoredModel,
     /// Matched rendering's parameters.
     pub matched: MatchedModel,
-    /// The same in the paper's columns.
+    /// The same with the paper's columns.
     pub nima: MatchedModel,
-    /// What the baseline needs, where one is computed.
+    /// Data of the baseline, if one is computed.
     pub baseline: BaselineModel,
 }
 
@@ -107,13 +109,15 @@ impl Models {
     };
 }
 
-/// Entries of a table of modes: the program's own, and the one baseline that may be computed beside them.
+/// Number of entries in a table of modes: the program's own modes, and the single baseline that may be computed in
+/// addition.
 pub const SLOTS: usize = MODES + 1;
 
-/// Builds the methods of others, where the program has them.
+/// Constructors of the baselines, if the program includes them.
 static OTHERS: OnceLock<fn(Baseline) -> Entry> = OnceLock::new();
 
-/// Adds the methods of others to this process. Without them a mode of theirs is a [`SettingsError::Baseline`](super::SettingsError).
+/// Adds the baselines to this process. Without them, selecting one is a
+/// [`SettingsError::Baseline`](super::SettingsError).
 pub fn add_baselines(entry: fn(Baseline) -> Entry) {
     // A second call has no effect.
     OTHERS.set(entry).ok();
@@ -139,7 +143,7 @@ impl Mode {
         }
     }
 
-    /// Returns the method that it stands for; `None` for a baseline that this program does not have.
+    /// Returns the method that implements the mode; `None` for a baseline that this program does not include.
     pub(super) fn entry(self) -> Option<Entry> {
         match self {
             Self::Baseline(baseline) => OTHERS.get().map(|entry| entry(baseline)),
@@ -147,7 +151,7 @@ impl Mode {
         }
     }
 
-    /// Returns the modes whose forces it uses, which are computed with it.
+    /// Returns the modes whose forces this mode uses; they are computed with it.
     pub(super) const fn parts(self) -> &'static [Self] {
         match self.own() {
             Some(entry) => entry.parts,
@@ -155,13 +159,13 @@ impl Mode {
         }
     }
 
-    /// Returns whether the mode is fitted to a window of samples, whose length is then one of its settings. The others
-    /// forget with their own memories.
+    /// Returns whether the mode is fitted to a window of samples; the length of the window is then one of its settings.
+    /// The other modes forget with their own memories.
     pub const fn has_window(self) -> bool {
         matches!(self.own(), Some(Entry { has_window: true, .. }))
     }
 
-    /// Returns whether the mode chooses among polynomial degrees, the highest of which is then one of its settings.
+    /// Returns whether the mode chooses among polynomial degrees; the highest degree is then one of its settings.
     pub const fn has_degrees(self) -> bool {
         matches!(self.own(), Some(Entry { has_degrees: true, .. }))
     }
@@ -174,7 +178,7 @@ impl Mode {
         }
     }
 
-    /// Where its parameters are in a parcel; `None` if it has none of its own.
+    /// Returns the position of its parameters in a packet; `None` if it sends none.
     pub(super) const fn parameters(self) -> Option<Place> {
         match self.own() {
             Some(entry) => entry.parameters,
@@ -182,7 +186,7 @@ impl Mode {
         }
     }
 
-    /// Returns whether its force is damped where the leader's own motion is that of the handle.
+    /// Returns whether its force is damped if the leader's motion is measured at the handle.
     pub(super) const fn is_damped(self) -> bool {
         matches!(self.own(), Some(Entry { is_damped: true, .. }))
     }

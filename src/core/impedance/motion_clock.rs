@@ -9,10 +9,10 @@ const FULL: f64 = 0.1;
 const REST: f64 = 0.02;
 /// The pace decays with this time constant (s), so that a turning point does not stop the clock.
 const HOLD_S: f64 = 0.05;
-/// Memory of the mean size of the motion (s by this clock), half of which is where dry friction saturates.
+/// Memory of the mean magnitude of the motion (s by this clock); dry friction saturates at half of it.
 const KNEE_S: f64 = 2.0;
 
-/// Clock that weighs each sample: memories based on it forget nothing while the hand stands still.
+/// Clock that weights each sample, so that memories based on it forget nothing while the hand is at rest.
 #[derive(Clone, Debug)]
 pub(super) struct MotionClock {
     rate_hz: f64,
@@ -42,7 +42,7 @@ impl MotionClock {
         self.mean_m = (self.mean_m + (size_m - self.mean_m) * fraction).settled();
     }
 
-    /// Returns the pace of the newest tick, above 0 up to 1, by the axis that moves most.
+    /// Returns the pace of the newest tick, above 0 and up to 1, on the axis that moves most.
     pub(super) const fn pace(&self) -> f64 {
         self.pace
     }
@@ -62,8 +62,8 @@ pub(super) fn fraction(pace: f64, passed: f64, memory: f64) -> f64 {
     (pace / passed.max(1.0).min(memory)).min(1.0)
 }
 
-/// Returns the same weight, but twice that of a plain mean until the memory is full; for errors of a method that still
-/// learns, whose first errors are not representative.
+/// Returns the same weight, but twice that of a plain mean until the memory is full. For errors of a method that is
+/// still learning, because its first errors are not representative.
 pub(super) fn newest_fraction(pace: f64, passed: f64, memory: f64) -> f64 {
     fraction(2.0 * pace, passed, 2.0 * memory)
 }

@@ -9,7 +9,7 @@ use super::factor::column_start;
 use crate::signal::{Lanes, NOTHING, SimdLoop, SimdVector, widest};
 
 pub(super) const MAX: usize = 25;
-/// A pivot below this fraction of its column's square is rounding: the column is left out.
+/// A pivot below this fraction of its column's square is only rounding error, so the column is left out.
 const ROUNDING: f64 = 1e-12;
 /// Columns that are factorised together, because their sums do not depend on each other.
 const BLOCK: usize = 4;

@@ -19,7 +19,7 @@ pub struct ParameterPack {
     pub numbers: [f32; PACKED_MAX],
 }
 
-/// The parameters of one rendering, taken apart into numbers and put together again.
+/// Conversion of the parameters of one rendering to and from numbers.
 pub trait PackedNumbers: Sized {
     /// No parameters.
     const NONE: Self;
@@ -33,7 +33,7 @@ pub trait PackedNumbers: Sized {
 
 /// The parameters of one rendering in their place in a parcel.
 pub trait PackedParameters {
-    /// Appends them to a row.
+    /// Appends the parameters to a row.
     fn write(&self, row: &mut PackedWriter<'_>);
 
     /// Replaces the parameters; returns false, and changes nothing, if the new ones are invalid or not finite.
@@ -75,7 +75,7 @@ impl ParameterPack {
         self.numbers.get(..usize::from(self.len)).unwrap_or(&[])
     }
 
-    /// Returns how many renderings of this set have parameters to send.
+    /// Returns the number of renderings in this set that have parameters to send.
     pub fn turns(modes: ModeSet) -> usize {
         Self::renderings(modes).count()
     }
@@ -85,8 +85,7 @@ impl ParameterPack {
         modes.modes().filter(|mode| matches!(mode, Mode::Baseline(_)) || mode.parameters().is_some())
     }
 
-    /// Packs the parameters of the rendering whose turn it is among those in the packet; returns `None` if there are
-    /// none.
+    /// Packs the parameters of the rendering whose turn it is; returns `None` if no rendering in the packet has any.
     pub fn of(parcel: &LinkPacket, turn: usize) -> Option<Self> {
         let turn = turn.checked_rem(Self::turns(parcel.modes))?;
         let slot = Self::renderings(parcel.modes).nth(turn)?.index();
@@ -97,7 +96,7 @@ impl ParameterPack {
         Some(packed)
     }
 
-    /// Removes the parameters of this slot from the packet: they are too old to compute a force.
+    /// Removes the parameters of this slot from the packet, because they are too old to compute a force.
     pub fn forget(slot: u8, parcel: &mut LinkPacket) {
         if let Some(parameters) = parcel.parameters(usize::from(slot)) {
             parameters.forget();

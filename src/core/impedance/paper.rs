@@ -96,7 +96,7 @@ impl LiteralModel {
     /// No model.
     pub const NONE: Self = Self { degree: 0, constant_n: Lanes::ZERO, coefficients: [Lanes::ZERO; MOTION_COLUMNS] };
 
-    /// `M X` (N), `X` in SI units as the recipe reads it.
+    /// Returns `M X` (N), with `X` in SI units as defined by the recipe.
     #[inline]
     pub(super) fn product(&self, x: &ImpedanceFeatures) -> Lanes {
         let terms = self.coefficients.iter().zip(x).take(3 * usize::from(self.degree));
@@ -134,7 +134,7 @@ pub(super) struct PaperMethod {
 }
 
 impl PaperMethod {
-    /// Creates the model for the mode literal, or for linear alone, by the recipe of the settings.
+    /// Creates the model for the mode literal, or for linear alone, with the recipe in the settings.
     pub(super) fn new(mode: Mode, settings: &ImpedanceSettings) -> Self {
         let degree = if mode == Mode::Linear { 1 } else { settings.max_degree };
         let recipe = &settings.literal;
@@ -154,7 +154,7 @@ impl FollowerEnd for PaperMethod {
         modes.contains(self.mode) && (self.mode == Mode::Literal || !modes.contains(Mode::Literal))
     }
 
-    /// Literal and linear read the same window: it restarts when either begins, and when literal ends.
+    /// Literal and linear use the same window: it restarts when either begins, and when literal ends.
     fn begins(&self, before: ModeSet, now: ModeSet) -> bool {
         let begins = |mode: Mode| now.contains(mode) && !before.contains(mode);
         let ends = before.contains(Mode::Literal) && !now.contains(Mode::Literal);

@@ -1,4 +1,4 @@
-//! Interpretation of the paper where its text leaves a choice.
+//! Choices where the text of the paper is ambiguous.
 
 use serde::{Deserialize, Serialize};
 
@@ -62,8 +62,8 @@ impl Recipe {
     }
 }
 
-/// Chooses the degree that best predicted the data after its window: all degrees of a window are evaluated for 10 ms,
-/// then those of the window that ends there.
+/// Chooses the degree that best predicted the data after its window. All degrees of a window are evaluated for 10 ms,
+/// then those of the window that ends at that time.
 #[derive(Clone, Debug)]
 pub(super) struct NextDegree {
     ticks: usize,
@@ -86,7 +86,7 @@ impl NextDegree {
         }
     }
 
-    /// Adds the newest row (force in N), `None` if nothing was measured, and the fits of the window that ends with it.
+    /// Adds the newest row (force in N), `None` if it was not measured, and the fits of the window that ends with it.
     /// Returns the current degree, 0 before one is known.
     pub(super) fn step(&mut self, row: Option<(&ImpedanceFeatures, Lanes)>, newest: &LiteralSolver) -> usize {
         self.waited += 1;

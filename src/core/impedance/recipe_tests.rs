@@ -1,5 +1,5 @@
-//! The literal mode's recipe: the default to the bit, the effect of each key, and that no data are used before they
-//! arrive.
+//! Tests of the literal mode's recipe: the default bit for bit, the effect of each key, and that no data are used
+//! before they arrive.
 
 use nalgebra::Vector3;
 
@@ -28,7 +28,7 @@ fn uneven(state: &mut u64) -> f64 {
     (*state >> 11) as f64 / (1_u64 << 53) as f64
 }
 
-/// Presses and rests, without sines, whose last bits differ between computers.
+/// Presses and rests, without sines, because their last bits differ between computers.
 fn pressed(k: u32, state: &mut u64) -> Sample {
     let fraction = f64::from(k % 700).min(400.0) / 400.0;
     let depth_m = 0.01 * 4.0 * fraction * (1.0 - 0.5 * fraction);

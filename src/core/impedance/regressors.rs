@@ -7,8 +7,8 @@ use crate::signal::{BANK, LANES, Lanes, LowPassBank};
 const BANK_S: [f64; 2] = [0.005, 0.32];
 /// Memory of the slow means: the motion's centre, the force's level, the size of the speed (s).
 const SLOW_S: f64 = 2.0;
-/// Quantities that only the follower has are limited to this many times their own running RMS: an unprecedented jump is
-/// not extrapolated.
+/// Quantities that only the follower has are limited to this many times their running RMS, so that an unprecedented
+/// jump is not extrapolated.
 const USUAL: f64 = 6.0;
 
 pub(super) const REGRESSORS: usize = 22;
@@ -19,7 +19,7 @@ pub(super) const LINEAR_REGRESSORS: usize = 12;
 pub(super) mod at {
     /// Change of position, followed by the changes of its four differences from the low-passes.
     pub(in super::super) const MOTION: usize = 0;
-    /// The force above its low-passes at the anchor.
+    /// Force minus its low-passes at the anchor.
     pub(in super::super) const FORCE_TREND: usize = 5;
     /// Change of position times the force at the anchor: stiffness that grows with load (zero in free motion).
     pub(in super::super) const LOADED_POSITION: usize = 9;
@@ -29,9 +29,9 @@ pub(super) mod at {
     pub(in super::super) const FRICTION: usize = 11;
     /// Change of square, cube, and product with the second difference, of the position about its centre.
     pub(in super::super) const CURVATURE: usize = 12;
-    /// Position above its centre at the anchor.
+    /// Position minus its centre at the anchor.
     pub(in super::super) const POSITION_LEVEL: usize = 15;
-    /// Force above its level at the anchor, followed by a steady drift.
+    /// Force minus its level at the anchor, followed by a steady drift.
     pub(in super::super) const FORCE_LEVEL: usize = 16;
     /// The motion's differences from the low-passes at the anchor.
     pub(in super::super) const MOTION_TREND: usize = 18;
@@ -44,7 +44,7 @@ pub(super) type Regressors = [Lanes; REGRESSORS];
 pub(super) struct MotionState {
     pub(super) x: Lanes,
     pub(super) u: [Lanes; BANK],
-    /// The first difference's own difference from its low-pass: acceleration.
+    /// Difference of the first difference from its own low-pass: acceleration.
     pub(super) surge: Lanes,
     /// Motion at which dry friction saturates, and the pace of time, by this end's [`MotionClock`](super::motion_clock::MotionClock).
     pub(super) knee: Lanes,

@@ -33,7 +33,7 @@ pub struct Renderer {
     track: MotionTrack,
     postures: DelayLine<Posture>,
     leaders: Leaders,
-    /// What is rendered from the handle's own motion must not drive the hand.
+    /// Dampers for the modes that render from the handle's own motion, so that they do not drive the hand.
     dampers: Vec<(Mode, Damper)>,
     parcel_t_s: f64,
     waiting: usize,

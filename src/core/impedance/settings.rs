@@ -89,8 +89,8 @@ pub enum OwnMotion {
     /// The follower's current position, estimated from its commands and its lag: accurate.
     #[default]
     Follower,
-    /// The handle's position: the force belongs to the place that the follower will reach. Matched rendering then gives
-    /// the hand no power on average: the energy from its changing parameters is damped.
+    /// The handle's position: the force belongs to the position that the follower will reach. Matched rendering then
+    /// gives the hand no power on average: the energy from its changing parameters is damped.
     Handle,
 }
 
@@ -116,8 +116,8 @@ pub struct ImpedanceSettings {
     /// The identification rests while the measured force and the rendered forces are within this (N), because there is
     /// no contact and nothing to learn. 0: it never rests.
     pub rest_n: f64,
-    /// Whether the force on each axis may depend on the motion of the others (the full `M`) in matched rendering, and so in the best
-    /// of both.
+    /// Whether the force on each axis may depend on the motion of the other axes (the full `M`) in matched rendering,
+    /// and therefore also in `best`.
     pub cross_talk: bool,
     pub own_motion: OwnMotion,
     pub differentiator: DifferentiatorKind,
@@ -206,7 +206,7 @@ impl ImpedanceSettings {
         Ok(())
     }
 
-    /// Returns the rows in half a window (a window consists of two blocks, so its length is even).
+    /// Returns the number of rows in half a window (a window consists of two blocks, so its length is even).
     pub(super) fn block(&self) -> usize {
         ((self.window_s * self.rate_hz / 2.0).round() as usize).max(5)
     }
@@ -244,7 +244,7 @@ pub enum SettingsError {
     Rest { rest_n: f64 },
     #[error("the ridge parameter {ridge} is out of range: use {RIDGE}")]
     Ridge { ridge: f64 },
-    /// The methods of others are not in this program; see [`add_baselines`](super::add_baselines).
+    /// The baselines are not in this program; see [`add_baselines`](super::add_baselines).
     #[error("this program was built without the mode {name}; build it with the feature lab, or choose another mode")]
     Baseline { name: &'static str },
 }

@@ -105,8 +105,8 @@ impl ImpedanceSolution {
         self.squares[prefix.min(self.columns)]
     }
 
-    /// Returns the condition number (Frobenius: at most `prefix` times the spectral one) of the first `prefix` scaled
-    /// columns.
+    /// Returns the condition number (Frobenius norm: at most `prefix` times the spectral one) of the first `prefix`
+    /// scaled columns.
     pub fn condition(&self, prefix: usize) -> Lanes {
         self.condition[prefix.min(self.columns)]
     }

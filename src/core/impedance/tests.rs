@@ -108,8 +108,8 @@ fn the_leader_renders_what_the_follower_predicted() {
     }
 }
 
-/// A leader whose own motion is 20 ms ahead of the follower's: the error of matched rendering is the resulting change
-/// of force.
+/// The leader's motion is 20 ms ahead of the follower's, so the error of matched rendering is the resulting change of
+/// force.
 #[test]
 fn the_best_of_two_is_judged_by_what_the_leader_rendered() {
     let settings = ImpedanceSettings { delay_s: 0.01, ..settings() };

@@ -10,11 +10,11 @@ use super::{
 };
 use crate::signal::{DelayLine, Differentiator, Lanes, LowPassBank, Motion};
 
-/// Maximum time (s) over which a missing position is extrapolated at the last speed; after it the position is held.
+/// Maximum time (s) for which a missing position is extrapolated at the last speed; after that, the position is held.
 /// Chosen.
 const BRIDGE_S: f64 = 0.01;
 
-/// A position or a force of more than this many scales is absurd (1 km, 40 kN with the default scales) and is not
+/// A position or a force of more than this many scales is implausible (1 km, 40 kN with the default scales) and is not
 /// raised to powers.
 const ABSURD: f64 = 1e4;
 

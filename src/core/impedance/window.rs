@@ -95,8 +95,8 @@ impl<S: WindowSummary> SlidingWindow<S> {
         self.advance(row, true);
     }
 
-    /// Like [`SlidingWindow::push`], but updates [`SlidingWindow::current`] only if `wanted` (otherwise its value is
-    /// invalid).
+    /// Like [`SlidingWindow::push`], but updates [`SlidingWindow::current`] only if `wanted` is set; otherwise its
+    /// value is invalid.
     pub fn advance(&mut self, row: &S::Row, wanted: bool) {
         let b = self.block;
         let p = self.position;

@@ -63,7 +63,7 @@ const LINKS: [([f64; 3], LinkTurn); JOINTS + 1] = [
 pub struct JointChain {
     /// A point on each joint's axis, m.
     pub origin_m: [Vector3<f64>; JOINTS],
-    /// Each joint's axis, unit length; positive angles are right-handed about it.
+    /// Axis of each joint, unit length; positive angles are right-handed about it.
     pub axis: [Vector3<f64>; JOINTS],
     /// The flange (the manufacturer's tool frame); z points away from the arm.
     pub world_from_flange: IsometryMatrix3<f64>,

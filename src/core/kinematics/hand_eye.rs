@@ -112,7 +112,7 @@ impl MotionMapping {
     }
 }
 
-/// The hand's pose measured by its device, in the leader's frame.
+/// Pose of the hand measured by its device, in the leader's frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HandPose {
     /// Position in the leader's frame, m.
@@ -159,7 +159,8 @@ impl HandEyeCoupling {
         &self.mapping
     }
 
-    /// Changes the mapping (the endoscope moved, the scale changed); it applies to motion from now on.
+    /// Changes the mapping (for example, when the endoscope moved or the scale changed); it applies to motion from now
+    /// on.
     pub const fn set_mapping(&mut self, mapping: MotionMapping) {
         self.mapping = mapping;
     }
@@ -216,7 +217,7 @@ mod tests {
         }
     }
 
-    /// Returns the endoscope looks straight down; the right of its image is the base's -y.
+    /// Returns the orientation of an endoscope that looks straight down; the right of its image is the base's -y.
     fn looking_down() -> UnitQuaternion<f64> {
         let columns = [-Vector3::y(), -Vector3::x(), -Vector3::z()];
         UnitQuaternion::from_rotation_matrix(&Rotation3::from_basis_unchecked(&columns))

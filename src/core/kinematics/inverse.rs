@@ -29,15 +29,15 @@ pub(super) const TIP_SPEED_M_S: f64 = 0.5;
 pub(super) const TURN_SPEED_RAD_S: f64 = 1.74;
 /// Distance that joints keep from their limits, rad, so that an overshooting drive does not report a fault.
 pub const KEEP_OFF_RAD: f64 = 0.02;
-/// Near a limit, a joint's speed is at most this factor times its distance from the limit, 1/s. Chosen.
+/// Near a limit, the speed of a joint is at most this factor times its distance from the limit, 1/s. Chosen.
 const APPROACH_PER_S: f64 = 20.0;
 /// Fraction of the acceleration used for stopping at a target or a joint limit; the remainder is for the curvature of
 /// the path.
 const BRAKING_FRACTION: f64 = 0.5;
 /// Averaging time of the target's own motion, s, so that tremor and noise of the handle are not followed.
 const TARGET_MOTION_S: f64 = 0.005;
-/// Speed of the posture's optimisation along the gradient, rad/s, and the fraction of the joints' speed that it may
-/// use. Chosen.
+/// Speed of the posture optimisation along the gradient, rad/s, and the fraction of the joint speed that it may use.
+/// Chosen.
 const POSTURE_PER_S: f64 = 1.0;
 const POSTURE_FRACTION: f64 = 0.2;
 /// If the shaft misses the trocar by more than this at the start, m, the instrument is not in the trocar.
@@ -51,7 +51,7 @@ pub struct PoseQuality {
     pub tip_miss_m: f64,
     /// Smallest distance of a joint from its limit, rad.
     pub limit_margin_rad: f64,
-    /// How well the joints can move the shaft in its worst direction, m/rad (rotation is weighted with 0.3 m); 0 is a
+    /// Ability of the joints to move the shaft in its worst direction, m/rad (rotation is weighted with 0.3 m); 0 is a
     /// singular pose.
     pub dexterity: f64,
     /// Fraction of the planned motion that the limits allowed in this period, 0 to 1.
@@ -107,7 +107,7 @@ pub struct Inverse {
     moved_rad: Joints,
     /// Difference between command and measured angle, rad.
     ahead_rad: Joints,
-    /// The last target, and its motion per period: rotation times [`LENGTH_M`] and sliding inwards, m.
+    /// Last target, and its motion per period: rotation times [`LENGTH_M`] and sliding inwards, m.
     last_goal: Option<RcmShaft>,
     target_motion_m: Vector3<f64>,
 }
@@ -160,8 +160,8 @@ impl Inverse {
         Self { limits, change_rad: limits.acceleration_rad_s2 * (self.period_s * self.period_s), ..self }
     }
 
-    /// Updates the measured joint angles (rad, finite): a joint too far behind its command is not commanded further
-    /// away.
+    /// Updates the measured joint angles (rad, finite): a joint that is too far behind its command is not commanded
+    /// farther away.
     pub fn observe(&mut self, measured_rad: &Joints) {
         self.ahead_rad = self.joint_rad - measured_rad;
     }

@@ -24,7 +24,7 @@ pub struct JointLimits {
 }
 
 impl JointLimits {
-    /// Returns the arm's speed limits alone, for the search of poses.
+    /// Returns only the speed limits of the arm, for the search of poses.
     pub fn speed_only() -> Self {
         Self {
             speed_rad_s: Joints::from(SPEED_RAD_S),

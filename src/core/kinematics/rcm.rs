@@ -8,7 +8,7 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-/// The trocar and the permitted space beyond it.
+/// Settings of the trocar and of the permitted space beyond it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RcmSettings {
@@ -164,7 +164,7 @@ impl Rcm {
         Ok(RcmShaft { direction: travel_m / insertion_m, insertion_m })
     }
 
-    /// Returns the permitted shaft nearest to this tip (m, finite), and what had to be changed.
+    /// Returns the permitted shaft nearest to this tip (m, finite), and the required change.
     pub fn confine(&self, tip_m: &Vector3<f64>) -> (RcmShaft, RcmCorrection) {
         let RcmSettings { trocar_m, insertion_min_m, insertion_max_m, .. } = self.settings;
         let travel_m = tip_m - trocar_m;

@@ -107,7 +107,7 @@ pub fn find(arm: &Arm, rcm: &Rcm, tip_m: &Vector3<f64>) -> Result<Ready, ReadyEr
     best.ok_or(ReadyError::NoPose { best_miss_m: f64::INFINITY, starts: STARTS })
 }
 
-/// Returns the rank of a pose: first the reachable fraction, then how easily it is reached.
+/// Returns the rank of a pose: first by the reachable fraction, then by the ease of reaching it.
 fn worth(ready: &Ready) -> f64 {
     ready.reached + 0.1 * ease(ready.limit_margin_rad, ready.dexterity, ready.clearance_m)
 }
@@ -174,7 +174,7 @@ fn candidates(arm: &Arm, rcm: &Rcm, tip_m: &Vector3<f64>, shaft: &RcmShaft) -> R
     Ok(distinct)
 }
 
-/// Returns the largest difference of a joint, measured the shorter way round, without the last joint, which mainly
+/// Returns the largest difference of any joint along the shorter direction, excluding the last joint, which mainly
 /// rotates the shaft about its own axis.
 fn apart_rad(a: &Joints, b: &Joints) -> f64 {
     (a - b).iter().take(JOINTS - 1).map(|difference| wrapped(*difference).abs()).fold(0.0, f64::max)
@@ -205,7 +205,7 @@ fn dexterity(arm: &Arm, rcm: &Rcm, joint_rad: &Joints) -> f64 {
     task.solve(&MotionRequest::default(), &posture::freedom(joint_rad)).map_or(0.0, |parts| parts.dexterity)
 }
 
-/// Lets a pose settle, then moves from it to goals all over the permitted space and back.
+/// Lets a pose settle, then moves from it to goals in the whole permitted space and back.
 fn tried(arm: &Arm, rcm: &Rcm, tip_m: &Vector3<f64>, joint_rad: &Joints) -> Result<Ready, ArmStartError> {
     let mut settled = Inverse::new(*arm, *rcm, TRY_PERIOD_S, joint_rad)?;
     for _ in 0..TRY_PERIODS {
@@ -231,7 +231,7 @@ fn tried(arm: &Arm, rcm: &Rcm, tip_m: &Vector3<f64>, joint_rad: &Joints) -> Resu
     Ok(ready)
 }
 
-/// Moves to a goal and stores the worst values in `ready`. Returns whether it arrived.
+/// Moves to a goal and stores the worst values in `ready`. Returns whether the goal was reached.
 fn went(inverse: &mut Inverse, place_m: &Vector3<f64>, ready: &mut Ready) -> bool {
     for _ in 0..TRY_PERIODS {
         let PoseQuality { tip_miss_m, limit_margin_rad, dexterity, .. } = inverse.step(place_m).measures;

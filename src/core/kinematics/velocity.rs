@@ -60,7 +60,7 @@ pub(super) struct MotionRequest {
     pub at_trocar_m: Vector2<f64>,
     /// Rotation along `InstrumentPose::across` times [`LENGTH_M`], and sliding inwards, m.
     pub motion_m: Vector3<f64>,
-    /// The same for the target's own motion in this period.
+    /// The same for the motion of the target itself in this period.
     pub carried_m: Vector3<f64>,
     pub moved_rad: Joints,
     /// Change of the joints that improves the posture, rad.

@@ -11,7 +11,7 @@ pub struct WristJaws {
     pub roll_rad: f64,
     /// Rotation across the shaft.
     pub pitch_rad: f64,
-    /// Rotation across both axes.
+    /// Rotation perpendicular to both axes.
     pub yaw_rad: f64,
 }
 

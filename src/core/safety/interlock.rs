@@ -1,9 +1,9 @@
 //! The interlock: one explicit state machine per arm pair. Only this machine permits force and motion.
 //!
-//! In: the operator's requests ([`InterlockRequest`]), observations of the machine ([`InterlockInput`]), faults. Out: the [`InterlockState`], its
-//! permissions ([`Permits`]) and every [`StateChange`] with its reason. Time (s) is an argument. The types encode the legal
-//! transitions: each state is a value with methods for its legal successors only, so that an illegal transition does
-//! not compile.
+//! Input: the operator's requests ([`InterlockRequest`]), observations of the machine ([`InterlockInput`]), faults.
+//! Out: the [`InterlockState`], its permissions ([`Permits`]) and every [`StateChange`] with its reason. Time (s) is an
+//! argument. The types encode the legal transitions: each state is a value with methods for its legal successors only,
+//! so that an illegal transition does not compile.
 //!
 //! ```text
 //! Disconnected ⇄ Idle → Ready → Engaged ⇄ Clutched        from everywhere: Stopped
@@ -240,8 +240,8 @@ impl<F: Copy> Interlock<F> {
 
     /// Evaluates the observations of a tick.
     ///
-    /// The loss of a device while engaged is a fault that the caller reports with its cause by [`Interlock::fail`]; so
-    /// are drives that no longer respond.
+    /// The loss of a device while engaged is a fault that the caller reports with its cause through
+    /// [`Interlock::fail`]; the same applies to drives that no longer respond.
     pub fn step(&mut self, seen: &InterlockInput, now_s: f64) -> Option<StateChange<F>> {
         let in_time = now_s <= self.ready_until_s;
         let (next, why) = match self.at {

@@ -9,7 +9,7 @@ macro_rules! listed {
         }
 
         impl $name {
-            /// All of them, in this order.
+            /// All values, in this order.
             pub const ALL: [Self; [$(stringify!($value)),*].len()] = [$(Self::$value),*];
         }
     };
@@ -22,21 +22,21 @@ listed! {
     enum Gate {
         /// Whether the state machine allows force at all.
         Permission,
-        /// Whether there is a force, finite and plausible.
+        /// Whether the force is present, finite and plausible.
         Validity,
-        /// How old the data behind it are.
+        /// Age of the data.
         Age,
         /// Whether the hand moves.
         DeadBand,
         /// The operator's factor.
         Gain,
-        /// How fast the force changes.
+        /// Rate of change of the force.
         Slew,
-        /// How much more energy the hand gets back than it gave.
+        /// Energy that the hand receives beyond the energy that it gave.
         Energy,
-        /// How large the force is.
+        /// Size of the force.
         Ceiling,
-        /// Whether somebody carries the force.
+        /// Whether a hand carries the force.
         Governor,
     }
 }
@@ -45,7 +45,7 @@ listed! {
 pub const GATES: usize = Gate::ALL.len();
 
 impl Gate {
-    /// Position in [`Gate::ALL`], for tables with one entry per gate.
+    /// Returns the position in [`Gate::ALL`], for tables with one entry per gate.
     pub const fn index(self) -> usize {
         self as usize
     }
@@ -71,14 +71,14 @@ listed! {
     #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
     #[serde(rename_all = "snake_case")]
     enum Reason {
-        /// It did not: the force passed.
+        /// The gate did not act: the force passed.
         #[default]
         Open,
         /// The loop is not engaged.
         NotPermitted,
         /// The mode has nothing valid to render.
         NothingAsked,
-        /// The request is no finite number.
+        /// The gain is moving to the chosen value.
         NotFinite,
         /// The request is larger than any contact.
         Implausible,
@@ -96,17 +96,17 @@ listed! {
         GainRamping,
         /// The force would change too fast.
         ChangeTooFast,
-        /// The hand would get back more energy than it gave.
+        /// The hand would receive more energy than it gave.
         EnergySpent,
         /// The force is above the ceiling.
         AboveCeiling,
-        /// The force is above what the device can give.
+        /// The force is above the capability of the device.
         AboveDeviceLimit,
-        /// The handle moves along the force as a hand hardly moves it: the force fades, or returns after that.
+        /// The handle moves along the force in a way that a hand rarely does: the force fades, or returns afterwards.
         RunsAway,
-        /// The handle rests after a release, and there has been no sign of a hand since.
+        /// The handle is at rest after a release, and there has been no sign of a hand since.
         HandGone,
-        /// The hand has let go beyond doubt: no force but the brake's.
+        /// The hand has certainly released the handle: no force except the brake's.
         LetGo,
     }
 }
@@ -149,7 +149,7 @@ pub struct GateReport {
     /// Fraction of the force that the governor removed, 0 to 1.
     pub governed: f64,
     pub gain: f64,
-    /// Energy that the hand may still get back, J; negative if it got too much (computed unless the gate is off).
+    /// Energy that the hand may still receive, J; negative if it received too much (computed unless the gate is off).
     pub stored_j: f64,
     /// Counters since the chain was created, including this tick.
     pub counts: GateCounts,
@@ -161,7 +161,7 @@ impl GateReport {
         self.reasons[gate.index()] = reason;
     }
 
-    /// Returns the report with `gate` having acted for this reason; for tests of code that reads a report.
+    /// Returns the report with `gate` marked as acting for this reason; for tests of code that reads a report.
     #[must_use]
     pub const fn with(mut self, gate: Gate, reason: Reason) -> Self {
         self.note(gate, reason);

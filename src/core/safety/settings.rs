@@ -32,7 +32,8 @@ impl EnergyMode {
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct ChainSettings {
-    /// Feedback gain, 0 to 1 (a chain starts at most at 1; above 1 see [`SafetyChain::set_gain_above_one`](super::SafetyChain)).
+    /// Feedback gain, 0 to 1 (a chain starts with at most 1; above 1 see
+    /// [`SafetyChain::set_gain_above_one`](super::SafetyChain)).
     pub gain: f64,
     /// Maximum rate of change of the gain, 1/s: a jump of the slider becomes a ramp.
     pub gain_rate_per_s: f64,
@@ -43,7 +44,7 @@ pub struct ChainSettings {
     pub slew_n_per_s: f64,
     /// Age beyond the link's own delay at which the force begins to fade, s.
     pub fade_after_s: f64,
-    /// Age beyond the link's own delay at which it is zero, s.
+    /// Age beyond the link's own delay at which the force is zero, s.
     pub zero_after_s: f64,
     /// Speed below which no force is rendered, m/s.
     pub dead_band_m_s: f64,
@@ -51,7 +52,7 @@ pub struct ChainSettings {
     pub static_hold: bool,
     pub energy: EnergyMode,
     /// Apparent mass of the handle alone, kg, from which the governor recognises a released handle; 0 if unknown: the
-    /// governor then passes everything.
+    /// governor then passes every force.
     pub handle_kg: f64,
     /// Viscous friction of the handle's bearings and cables, N s/m.
     pub handle_n_s_m: f64,

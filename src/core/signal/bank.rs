@@ -1,10 +1,10 @@
-//! A bank of first-order low-pass filters with time constants like those of tissue contact.
+//! A bank of first-order low-pass filters, whose time constants match those of tissue contact.
 
 use super::Lanes;
 
 pub const BANK: usize = 4;
 
-/// The difference between a signal and its low-pass filtered past, for four time constants.
+/// Differences between a signal and its low-pass filtered past, for four time constants.
 ///
 /// `value - low_pass(value)` for time constants in geometric steps. The differences cover velocity and acceleration at
 /// four bandwidths and the relaxation of tissue, need no differentiator, and work the same from 20 Hz to 10 kHz.

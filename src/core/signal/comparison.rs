@@ -58,7 +58,7 @@ fn lag_ms(kind: DifferentiatorKind, hz: f64) -> [f64; 2] {
     [v[1].atan2(v[0]) * ms, a[0].atan2(-a[1]) * ms]
 }
 
-/// Motion of a hand: reaches of 40 mm at 0.5 Hz with a tremor of 0.1 mm at 9 Hz.
+/// Returns the motion of a hand: reaches of 40 mm at 0.5 Hz with a tremor of 0.1 mm at 9 Hz.
 fn hand(t: f64) -> [f64; 3] {
     let wave = |amplitude: f64, hz: f64| {
         let w = TAU * hz;

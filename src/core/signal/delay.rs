@@ -35,8 +35,8 @@ impl<T: Copy> DelayLine<T> {
         *self.push_slot() = value;
     }
 
-    /// Makes room for the newest value and returns a reference to it; it still contains an overwritten value (for
-    /// writing large values in place).
+    /// Makes room for the newest value and returns a reference to it, which still contains an overwritten value (so
+    /// that large values can be written in place).
     #[inline]
     pub fn push_slot(&mut self) -> &mut T {
         self.newest = if self.newest + 1 >= self.ring.len() { 0 } else { self.newest + 1 };

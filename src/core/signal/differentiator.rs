@@ -109,7 +109,7 @@ impl Differentiator {
 mod tests {
     use super::*;
 
-    /// Runs `motion(t)` through a differentiator and returns the largest errors of (v, a) after it has settled.
+    /// Applies a differentiator to `motion(t)` and returns the largest errors of (v, a) after settling.
     fn worst_errors(kind: DifferentiatorKind, rate_hz: f64, motion: impl Fn(f64) -> [f64; 3]) -> (f64, f64) {
         let mut differentiator = Differentiator::new(kind, rate_hz);
         let mut dv = 0.0_f64;

@@ -2,7 +2,7 @@
 
 use super::{DelayLine, LANES, Lanes, Motion};
 
-/// The slope of the longest straight line that passes all its samples within a noise band, per axis.
+/// Slope of the longest straight line that passes within a noise band of all its samples, per axis.
 ///
 /// Velocity is computed from positions, acceleration from those velocities in the same way. Windows are short in fast
 /// motion and long at rest, so a step of one encoder count at standstill gives no velocity spike.

@@ -25,7 +25,7 @@ pub fn settled(value: f64) -> f64 {
 /// Number of lanes in [`Lanes`]: x, y, z and a spare, so that one value fills one 256-bit register.
 pub const LANES: usize = 4;
 
-/// The same quantity of every axis: x, y, z, and a spare lane that stays zero.
+/// One quantity for every axis: x, y, z, and a spare lane that stays zero.
 ///
 /// Stored as an array and computed as one vector. Without this type the compiler vectorises across the loop instead of
 /// across the lanes, which needs shuffles (a Cholesky factorisation took twice as long). Products and sums are never

@@ -19,7 +19,7 @@ pub(crate) trait SimdVector: Copy {
     fn times(self, other: Self) -> Self;
 }
 
-/// A loop over [`SimdVector`]s; `run` and all that it calls must be `#[inline(always)]`.
+/// A loop over [`SimdVector`]s; `run` and every function that it calls must be `#[inline(always)]`.
 pub(crate) trait SimdLoop {
     type Output;
     fn run<V: SimdVector>(self) -> Self::Output;

@@ -16,7 +16,7 @@ use nalgebra::SVector;
 /// Permitted error, as a fraction and in m/s.
 const FRACTION: f64 = 0.1;
 const MIN_M_S: f64 = 0.1e-3;
-/// Every one of this many newest readings is examined; of the older ones, one in this many.
+/// Each of this many newest readings is examined; of the older ones, only one in this many.
 const NEAR: usize = 16;
 const STRIDE: usize = 4;
 /// Longest window, s: a step of 40 um.

@@ -13,7 +13,7 @@ struct BaselineRegression {
     constant: Vec<f32>,
 }
 
-/// The baselines of one model, stored in its file.
+/// The simpler models that are compared with one network, stored in its file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Baselines {

@@ -1,4 +1,4 @@
-//! How well a recording covers the conditions of use: tilt, force, travel, friction in both directions, slow and fast,
+//! Coverage of the conditions of use by a recording: tilt, force, travel, friction in both directions, slow and fast,
 //! with and without contact.
 //!
 //! Takes rows of [`super::DEFAULT_INPUTS`] with the force at the tip (N, `shaft`); returns maps to draw and, as text,
@@ -69,8 +69,8 @@ const DEPTH_SPAN_M: f32 = 0.015;
 const ACROSS_SPAN_N: f32 = 0.6;
 const ALONG_SPAN_N: f32 = 1.5;
 const TRAVEL_FRACTION: f64 = 0.12;
-/// Hands work faster during a task than during a careful recording: trained below 0.06 m/s, the network erred by 0.05 N
-/// at 0.10 m/s. This many rows, about three strokes, must be this fast, inwards and outwards.
+/// Hands work faster during a task than during a careful recording: when trained below 0.06 m/s, the network had an
+/// error of 0.05 N at 0.10 m/s. This many rows, about three strokes, must be this fast, inwards and outwards.
 const BRISK_M_S: f32 = 0.10;
 const BRISK_ROWS: usize = 60;
 const CONTACT_FRACTION: [f64; 2] = [0.15, 0.85];
@@ -124,8 +124,8 @@ impl GoalKind {
 pub struct TipForceCoverage {
     /// Direction of the shaft (`world`), x horizontal, y vertical, each from -[`TILT`] to [`TILT`].
     pub tilt: CoverageMap,
-    /// Force at the tip: across the shaft horizontal (0 to [`FORCE_N`]), along it vertical (-[`FORCE_N`] to
-    /// [`FORCE_N`]).
+    /// Force at the tip: horizontally the force across the shaft (0 to [`FORCE_N`]), vertically the force along it
+    /// (-[`FORCE_N`] to [`FORCE_N`]).
     pub force: CoverageMap,
     /// Depth horizontal ([`DEPTH_M`]), speed vertical (-[`SPEED_M_S`] to [`SPEED_M_S`]).
     pub travel: CoverageMap,
@@ -175,7 +175,7 @@ impl TipForceCoverage {
         self.rows += 1;
     }
 
-    /// Returns all requirements, in the order in which to meet them.
+    /// Returns all requirements, in the order in which they should be met.
     pub fn goals(&self) -> [Goal; 7] {
         let rows = self.rows.max(1) as f64;
         let part = |have: f32, want: f32| f64::from(have / want).clamp(0.0, 1.0);

@@ -24,7 +24,7 @@ const ROWS: usize = 20_000;
 /// Cluster centres, whitening, ranges and limits, for normalised features; only the first `width` features are used.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Doubt {
-    /// Number of features used: the measured ones, not their products.
+    /// Number of features used: the measured ones, without their products.
     pub width: usize,
     /// Whitening matrix, `width x width`, row by row: whitened = matrix times features.
     pub whitening: Vec<f32>,

@@ -24,8 +24,8 @@ pub struct FeatureSettings {
     /// Time constant of the low-pass on wrench and depth, s: less noise for some delay. It is the same for both,
     /// because a wrench delayed against its motion would look like friction of the wrong sign at every reversal.
     pub smoothing_s: f64,
-    /// Lengths over which a stuck seal stretches before it slides, m, shortest first (Dahl 1968): `dz = dx - |dx| z /
-    /// length`.
+    /// Lengths over which a sticking seal stretches before it slides, m, shortest first (Dahl 1968): `dz = dx - |dx| z
+    /// / length`.
     pub presliding_m: [f64; 2],
     /// Length of sliding after which the past sliding speed no longer matters, m (rate-and-state friction, Ruina 1983).
     pub slip_m: f64,
@@ -37,8 +37,8 @@ impl Default for FeatureSettings {
     }
 }
 
-/// A stretch counts as known once it has reached this fraction of its maximum length, because from then on it hardly
-/// depends on its initial value.
+/// A stretch counts as known once it has reached this fraction of its maximum, because it then hardly depends on its
+/// initial value.
 const KNOWN_FRACTION: f64 = 0.8;
 
 /// A gap between two samples longer than this, s, resets the state. Chosen.
@@ -54,9 +54,9 @@ pub enum NoRow {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FeatureRow {
-    /// In the order of [`DEFAULT_INPUTS`].
+    /// Inputs in the order of [`DEFAULT_INPUTS`].
     pub inputs: [f32; LIVE_INPUTS],
-    /// Rotation into the frame of the inputs and of the force at the tip that belongs to them.
+    /// Rotation into the frame of these inputs and of the corresponding force at the tip.
     pub shaft_from_s1: UnitQuaternion<f64>,
 }
 

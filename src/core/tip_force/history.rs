@@ -1,5 +1,5 @@
-//! Inputs computed from the history of other columns. Friction has a memory: a cable or seal carries different loads
-//! before and after a reversal, which a single row does not show.
+//! Inputs computed from the history of other columns, because friction has a memory: a cable or seal carries different
+//! loads before and after a reversal, which a single row does not show.
 //!
 //! Their names contain colons: `presliding:POSITION:WIDTH` and `midline:LOAD:POSITION:WIDTH`; WIDTH is in the unit of
 //! the position. Both depend only on the path, not on speed or sample rate, and are causal. Their state is reset with
@@ -28,8 +28,8 @@ pub struct DerivedMemory {
     /// The last position, and the distance travelled since the last reversal, limited to the width.
     last: Option<f32>,
     travel: f32,
-    /// The direction of the last sliding (1, -1, or 0 before the first), and its load, smoothed over twice the travel
-    /// of a reversal.
+    /// The direction of the last sliding motion (1, -1, or 0 before the first one), and its load, smoothed over twice
+    /// the travel of a reversal.
     side: f32,
     load: f32,
     swing: f32,

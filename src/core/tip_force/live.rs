@@ -1,4 +1,4 @@
-//! The tip force in the loop: from the network while it is reliable, else from a selectable fallback.
+//! The tip force in the loop: from the network while it is reliable, otherwise from a selectable fallback.
 //!
 //! Takes the gravity-free wrench (N, Nm, `s1`), the wrist sample and its time (s); returns the force at the tip (N,
 //! `s1`) and its source. Outside the training data the network's linear path answers alone; farther outside (a
@@ -142,7 +142,7 @@ impl LiveTipForce {
         }
     }
 
-    /// Returns the force for this sample. Must be called with every sample, in order.
+    /// Returns the force for this sample. Must be called for every sample, in order.
     pub fn step(&mut self, t_s: f64, gravity_free: &Wrench, sample: &WristSample) -> TipForceReport {
         let dt_s = self.last_t_s.map_or(0.0, |last| (t_s - last).clamp(0.0, HANDOVER_S));
         self.last_t_s = Some(t_s);
@@ -192,7 +192,7 @@ impl LiveTipForce {
     }
 }
 
-/// A condition on samples that becomes true after several of them and false when none has met it for a while.
+/// A condition on samples that becomes true after several of them meet it, and false if none has met it for a while.
 #[derive(Clone, Copy, Debug, Default)]
 struct LastingCondition {
     is: bool,

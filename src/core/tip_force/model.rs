@@ -1,6 +1,6 @@
 use super::{Baselines, Doubt, Expansion, ModelOrigin, Normalisation, TipForceNetwork};
 
-/// A trained network with all data that are needed to use it.
+/// A trained network with all data required to use it.
 #[derive(Clone, Debug)]
 pub struct ForceModel {
     pub inputs: Vec<String>,

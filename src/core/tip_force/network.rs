@@ -8,7 +8,7 @@
 
 use super::MAX_OUTPUTS;
 
-/// Numbers processed at once; rows of weights are padded with zeros to a multiple of it.
+/// Number of values processed at once; rows of weights are padded with zeros to a multiple of it.
 const LANE: usize = 8;
 
 /// A matrix with a bias: `outputs = inputs W + b`.
@@ -158,8 +158,8 @@ impl TipForceNetwork {
         self.members[0].shape()
     }
 
-    /// Evaluates all members on normalised inputs. `trust` (0 to 1) scales the nonlinear part: beyond the training data
-    /// that part is unreliable, and the linear path alone is the better estimate. Allocates nothing.
+    /// Evaluates all members on normalised inputs. `trust` (0 to 1) scales the nonlinear part: outside the training
+    /// data, that part is unreliable, and the linear path alone is a better estimate. Allocates nothing.
     pub fn answer(&mut self, inputs: &[f32], trust: f32) -> EnsembleOutput {
         let count = self.members.len() as f32;
         let (mut mean, mut low, mut high) =
@@ -192,7 +192,7 @@ mod tests {
         Member::new(layers, skip).unwrap()
     }
 
-    /// Returns the same function, written in the simplest way in f64.
+    /// Returns the same function, implemented in the simplest way in f64.
     fn reference(member: &Member, inputs: &[f64]) -> Vec<f64> {
         let times = |layer: &TipForceLayer, inputs: &[f64]| -> Vec<f64> {
             let (n, m) = layer.shape();

@@ -49,7 +49,7 @@ impl TrainingSettings {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MemberFigures {
-    /// Epoch whose weights were kept, from 1; 0 if the linear path alone was best.
+    /// Epoch whose weights were kept, starting at 1; 0 if the linear path alone was best.
     pub epoch: usize,
     pub epochs: usize,
     /// Mean square error on the training rows in that epoch, in units of the outputs' variance.

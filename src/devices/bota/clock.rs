@@ -6,7 +6,7 @@ pub struct BotaClock {
     period_us: f64,
     newest: Option<u32>,
     total_us: u64,
-    /// The newest gap, while a late reading may still fill it: the time before the gap, and the number of missing
+    /// The newest gap, as long as a late reading may fill it: the time before the gap, and the number of missing
     /// readings.
     gap: Option<(u32, u64)>,
 }
@@ -23,7 +23,7 @@ pub enum BotaClockStep {
     },
     /// A reading that was counted as missing.
     Late,
-    /// Not newer: a duplicate, or the clock stands still or was reset.
+    /// Not newer: a duplicate, or the clock is stopped or was reset.
     Stale,
 }
 

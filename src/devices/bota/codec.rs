@@ -32,7 +32,7 @@ pub struct BotaFrame {
     /// The sensor's clock, us; overflows after 2^32 us (71.6 min).
     pub timestamp_us: u32,
     pub temperature_c: f32,
-    /// The inertial unit, in frames that contain it.
+    /// Data of the inertial unit, in frames that contain it.
     pub inertial: Option<Inertial>,
 }
 

@@ -16,7 +16,7 @@ use crate::{
 };
 
 /// The sensor is lost if nothing usable has arrived for this time, s, at rates that give at least five readings in it;
-/// 2 ms remain of the 20 ms after which the loop takes the force away, so that the sensor is named as the cause.
+/// 2 ms remain of the 20 ms after which the loop removes the force, so that the sensor is named as the cause.
 const SILENCE_S: f64 = 0.018;
 /// At lower rates it is lost after this many periods, because a sensor at a low rate would otherwise be lost between
 /// two readings.
@@ -255,7 +255,7 @@ impl Judge {
         Some(TimedReading { device_s: Some(device_s), arrival_s: now_s, value: reading })
     }
 
-    /// Handles a clock that stands still or goes back, which is impossible.
+    /// Handles a clock that is stopped or goes back, which must not happen.
     const fn stale(&mut self) -> Option<TimedReading<ForceReading>> {
         self.health.out_of_order += 1;
         self.suspect = Loss::Implausible;

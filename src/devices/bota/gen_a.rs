@@ -89,7 +89,7 @@ pub fn answer(bytes: &[u8], letters: &[u8; 2]) -> Option<GenAAnswer> {
     begins.find_map(|(at, _)| whole(&bytes[at + head.len()..]))
 }
 
-/// Returns status and value up to the end of the line; `None` if there is anything else in between.
+/// Returns status and value up to the end of the line; `None` if anything else is in between.
 fn whole(bytes: &[u8]) -> Option<GenAAnswer> {
     let end = bytes.iter().position(|byte| *byte == b'\n')?;
     let line = std::str::from_utf8(&bytes[..end]).ok()?;

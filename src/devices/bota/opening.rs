@@ -32,7 +32,7 @@ pub(super) struct OpenSensor {
 /// TCP port for commands of a network sensor, to which the manufacturer's driver connects, too.
 pub const TCP_PORT: u16 = 23;
 /// Maximum number of restarts of a first-generation sensor that has not loaded its calibration, as in `RoboComp`'s
-/// `bota_force_sensor`: some sensors start with the calibration inactive now and then.
+/// `bota_force_sensor`: some sensors occasionally start with the calibration inactive.
 const RESTARTS: u32 = 5;
 const STOP_GEN_A: &[u8] = b"wh,1,2,1\n";
 const FIRST_GENERATION: &str = "first-generation Bota sensor";
@@ -80,7 +80,7 @@ fn open_gen0(settings: &BotaSettings, timeouts: BotaTimeouts) -> Result<OpenSens
     Err(fault_of(&settings.port, RAW_BIT))
 }
 
-/// Stops the stream. Any other answer shows what is wrong.
+/// Stops the stream. Any unexpected answer indicates the problem.
 fn enter_config_gen0(session: &mut BotaSession, settings: &BotaSettings) -> Result<(), DeviceError> {
     for _ in 0..session.timeouts.tries {
         match session.ask(gen0::CONFIG, |received| gen0::acknowledged(received, b'C'))? {
@@ -189,7 +189,7 @@ fn readings(destination: SocketAddr, here: Option<IpAddr>, sensor: SocketAddr) -
     Udp::listen(SocketAddr::new(at, destination.port()), sensor.ip())
 }
 
-/// Returns the trouble for missing readings: checks whether the sensor sends them to another computer.
+/// Returns the error for missing readings: checks whether the sensor sends them to another computer.
 fn sends_elsewhere(place: String, sensor: SocketAddr, to: SocketAddr) -> DeviceError {
     let route = UdpSocket::bind(("0.0.0.0", 0)).and_then(|socket| {
         socket.connect(sensor)?;

@@ -8,7 +8,7 @@ use crate::{ConnectionState, Device, DeviceError, Health, Loss};
 /// Conditions under which a device sends data.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DataTiming {
-    /// Continuously, at its own rate: silence is a fault.
+    /// Sends continuously, at its own rate, so silence is a fault.
     Always,
     /// Only changes: silence is normal.
     OnChange,

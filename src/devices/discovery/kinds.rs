@@ -42,7 +42,7 @@ pub const KINDS: &[ProbeKind] = &[
     ProbeKind { name: "external-sensor", usage: "external-sensor=ADDRESS:PORT[,FROM]", make: external_sensor },
 ];
 
-/// Returns the trouble for an invalid address on the command line.
+/// Returns the error for an invalid address on the command line.
 fn wrong(kind: &str, place: &str, allowed: &str) -> DeviceError {
     DeviceError::Setting { key: kind.to_owned(), value: place.to_owned(), allowed: allowed.to_owned() }
 }

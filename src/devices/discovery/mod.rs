@@ -119,7 +119,7 @@ pub fn diagnose(probes: Vec<Box<dyn Probe>>, timeout: Duration) -> Vec<Discovery
 type DiscoveryAnswer = (Result<FoundDevice, DeviceError>, Duration);
 
 fn start(mut probe: Box<dyn Probe>, timeout: Duration) -> (String, mpsc::Receiver<DiscoveryAnswer>) {
-    /// Subtracted from the time of each test, so that a test that uses all of its time can still report its result.
+    /// Subtracted from the time of each test, so that a test that uses up its time can still report its result.
     const RESERVE: Duration = Duration::from_millis(100);
     let name = probe.name().to_owned();
     let (give, answer) = mpsc::sync_channel(1);

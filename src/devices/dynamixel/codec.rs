@@ -46,7 +46,7 @@ impl OutgoingPackets {
         self.bytes.clear();
     }
 
-    /// Begins a packet after the existing ones.
+    /// Starts a packet after the existing ones.
     pub fn begin(&mut self, id: u8, instruction: u8) -> &mut Self {
         self.begin = self.bytes.len();
         self.bytes.extend_from_slice(&HEADER);
@@ -79,7 +79,7 @@ impl OutgoingPackets {
         self.seal();
     }
 
-    /// Begins the answer to a fast read; `block_bytes` is the total length of its blocks (errors, ids, data and
+    /// Starts the answer to a fast read; `block_bytes` is the total length of its blocks (errors, ids, data and
     /// checksums).
     pub fn begin_fast(&mut self, block_bytes: usize) -> &mut Self {
         self.begin(BROADCAST, STATUS);

@@ -1,4 +1,4 @@
-//! Instructions of Protocol 2.0 as types, both ways (e-manual, "Instruction Packet").
+//! Instructions of Protocol 2.0 as types, in both directions (e-manual, "Instruction Packet").
 
 use super::codec::{OutgoingPackets, STATUS};
 

@@ -99,10 +99,10 @@ pub struct DynamixelSettings {
     /// Line speed, bit/s, as supported by the servos.
     pub baud: u32,
     pub servos: [ServoSettings; SERVOS],
-    /// Requests one common answer from all servos; if a firmware refuses this, each answers separately.
+    /// Whether to request one common answer from all servos; if a firmware rejects this, each servo answers separately.
     #[serde(default = "yes")]
     pub fast_sync_read: bool,
-    /// Time after which a servo with torque on stops by itself if it receives nothing, s; 0.02 to 2.54.
+    /// Time after which a servo with torque on stops if it receives nothing, s; 0.02 to 2.54.
     #[serde(default = "watchdog_s")]
     pub bus_watchdog_s: f64,
     /// Time without a reading after which the servos count as lost, s; 0.005 to 1.

@@ -1,4 +1,4 @@
-//! Control table of the X series, as far as driver and emulator use it: addresses, units, models, hardware errors
+//! Control table of the X series, limited to what driver and emulator use: addresses, units, models, hardware errors
 //! (e-manual, X series).
 
 use std::f64::consts::TAU;
@@ -14,7 +14,7 @@ const fn register(address: u16, bytes: u16) -> DynamixelRegister {
     DynamixelRegister { address, bytes }
 }
 
-/// Model number (2 bytes; after it 4 bytes of model information and the firmware version).
+/// Address of the model number (2 bytes, followed by 4 bytes of model information and the firmware version).
 pub const MODEL: DynamixelRegister = register(0, 2);
 pub const FIRMWARE: DynamixelRegister = register(6, 1);
 pub const ID: DynamixelRegister = register(7, 1);
@@ -25,7 +25,7 @@ pub const RETURN_DELAY: DynamixelRegister = register(9, 1);
 /// Bit 0 reverses the direction, bit 2 selects time-based profiles, bit 3 switches the torque on with a goal.
 pub const DRIVE_MODE: DynamixelRegister = register(10, 1);
 pub const OPERATING_MODE: DynamixelRegister = register(11, 1);
-/// Secondary id; writes to it are carried out without an answer.
+/// Secondary id; the servo executes writes to it without an answer.
 pub const SHADOW_ID: DynamixelRegister = register(12, 1);
 /// Offset added to the encoder's position, ticks.
 pub const HOMING_OFFSET: DynamixelRegister = register(20, 4);
@@ -38,7 +38,7 @@ pub const VOLTAGE_MAX: DynamixelRegister = register(32, 2);
 pub const VOLTAGE_MIN: DynamixelRegister = register(34, 2);
 /// Maximum PWM; 885 is 100 %.
 pub const PWM_LIMIT: DynamixelRegister = register(36, 2);
-/// In the model's unit, see [`ServoModel::current_unit_a`].
+/// Limit of the current, in the model's unit; see [`ServoModel::current_unit_a`].
 pub const CURRENT_LIMIT: DynamixelRegister = register(38, 2);
 /// Units of 0.229 rpm.
 pub const VELOCITY_LIMIT: DynamixelRegister = register(44, 4);
@@ -86,7 +86,7 @@ pub const MOVING: DynamixelRegister = register(122, 1);
 /// Bit 0: in position; bit 1: a profile is running; bit 3: following error.
 pub const MOVING_STATUS: DynamixelRegister = register(123, 1);
 pub const PRESENT_PWM: DynamixelRegister = register(124, 2);
-/// In the model's unit.
+/// Measured current, in the model's unit.
 pub const PRESENT_CURRENT: DynamixelRegister = register(126, 2);
 /// Units of 0.229 rpm.
 pub const PRESENT_VELOCITY: DynamixelRegister = register(128, 4);
@@ -187,7 +187,7 @@ impl HardwareError {
     pub const TORQUE_GONE: u8 = 0x40;
     pub const OVERLOAD: u8 = 0x20;
 
-    /// Returns whether there is an error.
+    /// Returns whether an error is reported.
     pub const fn is_any(self) -> bool {
         self.0 != 0
     }

@@ -27,7 +27,7 @@ enum ArmMode {
     /// Servoing was requested; the arm has not reported it yet.
     Asked,
     Servoing,
-    /// Slows down before it is switched off.
+    /// The arm slows down before it is switched off.
     Braking,
 }
 
@@ -83,7 +83,7 @@ impl ExternalArm {
     }
 }
 
-/// Returns the reading in a datagram, if its numbers are possible; the driver sets whether it is servoing.
+/// Returns the reading in a datagram if its numbers are possible; the driver fills in whether the arm is servoing.
 fn reading(datagram: &Datagram) -> Option<ArmReading> {
     let of = |first: usize| -> [f64; ARM_JOINTS] { std::array::from_fn(|joint| datagram.numbers[first + joint]) };
     let value = ArmReading {

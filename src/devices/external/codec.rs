@@ -47,9 +47,9 @@ pub mod status {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ExternalMessage {
-    /// From the device.
+    /// A reading, sent by the device.
     Reading(ExternalKind),
-    /// To the device.
+    /// A command, sent to the device.
     Command(ExternalKind),
 }
 
@@ -117,7 +117,7 @@ pub struct Datagram {
     pub buttons: u32,
     /// Name of the device, padded with zeros; in readings only.
     pub product: [u8; PRODUCT_BYTES],
-    /// Its serial number, padded with zeros; in readings only.
+    /// Serial number, padded with zeros; only in readings.
     pub serial: [u8; SERIAL_BYTES],
     /// The values, see [`ExternalMessage::numbers`]; the others are 0.
     pub numbers: [f64; NUMBERS_MAX],

@@ -25,7 +25,7 @@ const UNIT_WITHIN: f64 = 0.01;
 
 pub struct ExternalHandle {
     line: ExternalLine,
-    /// Whether force is wanted; the lever clears it from another thread.
+    /// Whether force is requested; the emergency release clears it from another thread.
     wanted: Arc<AtomicBool>,
     /// Force state that the device has reported and the loop has not read yet.
     reported: Option<bool>,

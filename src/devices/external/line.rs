@@ -15,10 +15,10 @@ pub const READS_MAX: usize = 64;
 /// Number of consecutive damaged or impossible datagrams after which the device is lost: 10 ms at 1 kHz, so that a
 /// single one does no harm.
 const BAD_MAX: u32 = 10;
-/// Number of commands whose time is stored: at 10 kHz this covers an age of 25 ms.
+/// Number of commands whose send time is stored: at 10 kHz this covers an age of 25 ms.
 const SENT: usize = 256;
-/// Offset of the loop's time stamps after those of opening, us: opening counts from its own zero, and time stamps must
-/// not decrease.
+/// Offset between the time stamps during opening and those of the loop, us: opening counts from its own zero, and time
+/// stamps must not decrease.
 const OPENING_US: u64 = 1_000_000;
 
 /// Times at which the newest commands were sent, on our clock, us.
@@ -110,7 +110,7 @@ impl ExternalLine {
         matches!(self.health.standing, ConnectionState::Lost(_))
     }
 
-    /// Reads the data that have arrived and returns the newest fresh reading; `read` converts a datagram, or refuses
+    /// Reads the data that have arrived and returns the newest fresh reading; `read` converts a datagram, or rejects
     /// its numbers.
     pub(super) fn receive<R>(
         &mut self,

@@ -33,7 +33,7 @@ impl ExternalKind {
         }
     }
 
-    /// Returns whether the device moves or pushes, so that it needs its own watchdog.
+    /// Returns whether the device moves or exerts force, and therefore needs its own watchdog.
     pub(super) const fn is_driven(self) -> bool {
         matches!(self, Self::Handle | Self::Arm)
     }
@@ -57,7 +57,7 @@ pub struct ExternalSettings {
     /// Time without a fresh reading after which the device is lost, ms: 2 to 20.
     #[serde(default = "ExternalSettings::usual_time_ms")]
     pub silence_ms: f64,
-    /// Maximum age of a reading, by the age of the newest command that its sender had received, ms: 2 to 20.
+    /// Maximum age of a reading, given by the age of the newest command that its sender had received, ms: 2 to 20.
     #[serde(default = "ExternalSettings::usual_time_ms")]
     pub age_max_ms: f64,
     /// Handle and arm: maximum watchdog time of the device itself, ms: 2 to 100.

@@ -27,8 +27,8 @@ struct Fixture {
 }
 
 impl Fixture {
-    /// Creates the program, and the other end for the driver. Two datagrams are pending there; the second shows that an
-    /// answer was received.
+    /// Creates the program, and the other end for the driver. Two datagrams are pending there; the second one shows
+    /// that an answer was received.
     fn new(kind: ExternalKind) -> (Self, MemoryDatagrams) {
         let [wire, other] = MemoryDatagrams::pair();
         let next = Datagram {

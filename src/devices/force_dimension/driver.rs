@@ -49,14 +49,14 @@ pub enum HandleEvent {
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Counters {
-    /// Calls of the SDK that the device did not answer in time: by chance, or because this computer is busy.
+    /// Number of SDK calls that the device did not answer in time, by chance or because this computer is busy.
     pub timed_out_calls: u64,
     /// Calls of the SDK that failed for another reason.
     pub failed_calls: u64,
     /// Readings that repeated the last one (`DHD_TIMEGUARD`).
     pub time_guarded: u64,
     pub implausible: u64,
-    /// Forces that the device reduced to the capability of its motors.
+    /// Number of forces that the device reduced to the capability of its motors.
     pub saturated: u64,
     /// Cycles in which zero was applied because the newest force command was too old.
     pub stale_commands: u64,
@@ -178,8 +178,8 @@ impl ForceDimensionDriver {
         self.shared.force_wanted.store(false, Ordering::Release);
     }
 
-    /// For emergencies: returns a function for another thread that switches force off and brakes on within a cycle of
-    /// the device's thread.
+    /// For emergencies: returns a function for another thread that switches the force off and engages the brakes within
+    /// one cycle of the device's thread.
     pub fn lever(&self) -> impl FnMut() + Send + 'static {
         let shared = Arc::clone(&self.shared);
         move || shared.force_wanted.store(false, Ordering::Release)

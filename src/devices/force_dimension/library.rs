@@ -1,5 +1,5 @@
-//! Chooses the library for a handle. Real handle: the manufacturer's, at the path in its settings or the first one
-//! found where it may be installed. Emulated handle: the replacement library that the program provides
+//! Chooses the library for a handle. Real handle: the manufacturer's library, at the path in the settings or the first
+//! one found in the usual places. Emulated handle: the replacement library that the program provides
 //! ([`provide_stand_in`]).
 //!
 //! A real handle never uses a replacement library, wherever one may be installed, and an emulated handle never uses the
@@ -51,7 +51,7 @@ fn within_sdk() -> PathBuf {
     }
 }
 
-/// Returns the folders to search, the most specific first; `variable` reads the environment.
+/// Returns the folders to search, most specific first; `variable` reads the environment.
 fn folders(variable: impl Fn(&str) -> Option<PathBuf>) -> (Vec<PathBuf>, Vec<PathBuf>) {
     let sdk = ["FDSDK", "FORCEDIM_SDK"].into_iter().filter_map(&variable).map(|sdk| sdk.join(within_sdk())).collect();
     let mut system = Vec::new();

@@ -105,7 +105,7 @@ fn check(place: &str, status: &ForceDimensionStatus) -> Result<(), DeviceError> 
     status.loss().map_or(Ok(()), |loss| Err(lost_at_once(place, loss)))
 }
 
-/// Returns the trouble for a device that was lost before its first reading.
+/// Returns the error for a device that was lost before its first reading.
 pub(super) fn lost_at_once(place: &str, loss: Loss) -> DeviceError {
     let place = place.to_owned();
     match loss {
@@ -142,8 +142,8 @@ fn not_opened(sdk: &Sdk, place: &str, error: SdkError) -> DeviceError {
     }
 }
 
-/// Returns whether a device of this manufacturer is on USB. Linux lists all devices, even those that the user may not
-/// open. False on other systems.
+/// Returns whether a device of this manufacturer is connected by USB. Linux lists all devices, even those that the user
+/// may not open. Always false on other systems.
 fn is_on_usb() -> bool {
     let Ok(devices) = std::fs::read_dir("/sys/bus/usb/devices") else { return false };
     let vendor = |entry: std::fs::DirEntry| std::fs::read_to_string(entry.path().join("idVendor"));

@@ -19,20 +19,20 @@ pub enum IdleMode {
     /// The motors brake, so the handle stays in place.
     #[default]
     Brake,
-    /// No current: it moves freely and sinks under its weight.
+    /// Without current: the handle moves freely and sinks under its weight.
     Free,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct ForceDimensionSettings {
-    /// File of the library. If omitted, the manufacturer's library is searched for where the SDK installs it; an
-    /// emulated handle uses the replacement library within this program.
+    /// File of the library. If omitted, the manufacturer's library is searched in the places where the SDK installs it;
+    /// an emulated handle uses the replacement library within this program.
     pub library: Option<PathBuf>,
     /// Serial number of the device; any free device if omitted. Required if there are two devices.
     pub serial: Option<u16>,
-    /// Hand for which the device must be made, as reported by itself. If omitted: the hand of its side on a rig with
-    /// two handles, any hand on a rig with one.
+    /// Hand for which the device must be built, as reported by the device. If omitted: the hand of its side on a rig
+    /// with two handles, any hand on a rig with one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub hand: Option<Side>,
     /// Rate of the readings, Hz: 100 to 2000.

@@ -32,7 +32,7 @@ pub(super) const COMMAND_AGE_MAX: Duration = Duration::from_millis(10);
 const SILENCE_MAX: Duration = Duration::from_millis(14);
 /// Number of consecutive impossible readings after which the device is lost, so that a single one does no harm.
 const IMPLAUSIBLE_MAX: u32 = 10;
-/// If force is not on this long after it was requested, the device has refused it.
+/// If the force is not on this long after the request, the device has refused it.
 const ENABLE_MAX: Duration = Duration::from_millis(50);
 /// The status is read once in this many cycles, because it costs a call to the library, and none of its values changes
 /// within a millisecond.
@@ -80,7 +80,7 @@ pub(super) struct QueueEnds {
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum WorkerDrive {
     Off,
-    /// Requested, but not yet reported by the status.
+    /// Requested, but not yet confirmed by the status.
     Asked(Instant),
     On,
 }
@@ -219,7 +219,7 @@ impl ForceDimensionWorker {
         }
     }
 
-    /// Returns a new reading; `None` if there is none, or an impossible one.
+    /// Returns a new reading; `None` if there is none, or if it is impossible.
     fn read(&mut self) -> Option<HandleReading> {
         let read = self.device.pose().and_then(|pose| Ok((pose, self.device.gripper_rad()?)));
         let ((pose, success), gripper_rad) = match read {

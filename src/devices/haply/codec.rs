@@ -8,7 +8,7 @@ use crate::stream_buffer::Unread;
 
 /// Code of the request for the device's identity.
 pub const WAKE_UP: u8 = 0x0A;
-/// Code of its answer.
+/// Code of the response.
 pub const DEVICE: u8 = 0x0B;
 /// Code of the request with a force.
 pub const FORCE: u8 = 0x2A;

@@ -23,10 +23,10 @@ use crate::{
 /// Time without an answer after which the handle is lost, s: the limit of every device of the force path, so that no
 /// force is older.
 pub const SILENCE_S: f64 = 0.020;
-/// An answer that has not arrived after this time will not arrive any more, s: five periods at 1 kHz, so that a lost
-/// answer costs 5 ms and not the 20 ms of [`SILENCE_S`].
+/// An answer that has not arrived after this time counts as lost, s: five periods at 1 kHz, so that a lost answer costs
+/// 5 ms and not the 20 ms of [`SILENCE_S`].
 const ANSWER_MAX_S: f64 = 0.005;
-/// Maximum number of unanswered requests: one under way, and one that is late.
+/// Maximum number of unanswered requests: one in progress, and one that is late.
 const OPEN_MAX: u32 = 2;
 /// Number of consecutive impossible answers after which the handle is lost: 10 ms at 1 kHz, so that a single damaged
 /// answer does no harm.
@@ -51,8 +51,8 @@ pub struct HaplyDriver {
     force_max_n: f64,
     /// Whether force is wanted; the lever clears it from another thread.
     wanted: Arc<AtomicBool>,
-    /// Whether the newest request was made with force on. The device does not report its force state: with the answer
-    /// the force counts as on.
+    /// Whether the newest request had the force on. The device does not report its force state, so the force counts as
+    /// on when the answer arrives.
     asked_on: bool,
     /// Whether the device may still apply a non-zero force to the hand.
     pushes: bool,
@@ -140,8 +140,8 @@ impl HaplyDriver {
         }
     }
 
-    /// Marks the handle as lost. The loop sends it no more force, but it may still listen, so its last force is set to
-    /// zero.
+    /// Marks the handle as lost. The loop sends it no more force, but because it may still receive, its last force is
+    /// set to zero.
     fn lose(&mut self, loss: Loss) {
         self.health.lose(loss);
         self.line.send(&force_request([0.0; 3])).ok();
@@ -190,7 +190,7 @@ impl HaplyDriver {
         newest
     }
 
-    /// Gives up a missing answer and its partial data.
+    /// Gives up waiting for a missing answer and discards its partial data.
     fn give_up(&mut self) {
         if self.open > 0 && self.now_s - self.asked_s > ANSWER_MAX_S {
             self.health.lost += u64::from(std::mem::take(&mut self.open));

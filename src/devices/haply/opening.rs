@@ -27,7 +27,7 @@ impl DeviceInfo {
     }
 }
 
-/// Reads the data that arrive within the time of one answer, at most until `enough`.
+/// Reads the data that arrive within the time of one answer, until there are at least `enough` bytes.
 fn received(line: &mut dyn ByteStream, enough: usize) -> Result<Vec<u8>, Loss> {
     let begin = Instant::now();
     let mut received = Vec::new();

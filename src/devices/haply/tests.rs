@@ -22,7 +22,7 @@ struct Inner {
     state: HaplyState,
     waiting: VecDeque<u8>,
     forces_n: Vec<[f32; 3]>,
-    /// Whether it answers, and whether it is connected.
+    /// Whether the device answers, and whether it is connected.
     answers: bool,
     gone: bool,
     /// Sent instead of an answer.

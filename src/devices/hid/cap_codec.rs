@@ -35,7 +35,7 @@ pub enum CapReport {
     Buttons(u32),
     Battery {
         percent: u8,
-        /// Whether the cable charges it.
+        /// Whether the device is charging by cable.
         charging: bool,
     },
     Other,
@@ -104,8 +104,8 @@ impl CapReport {
         }
     }
 
-    /// Encodes the report; returns its length, 0 for [`CapReport::Other`]. Buttons take two bytes if they fit, as on
-    /// two-button models.
+    /// Encodes the report; returns its length, 0 for [`CapReport::Other`]. Buttons are encoded in two bytes if they
+    /// fit, as on two-button models.
     pub fn encode(&self, buffer: &mut [u8; LENGTH_MAX]) -> usize {
         let mut put = |id: u8, axes: &[i16]| {
             buffer[0] = id;
@@ -145,7 +145,7 @@ pub fn counts_of(reading: &CapReading) -> [i16; 6] {
     })
 }
 
-/// State of a cap: the newest translation and rotation, each released separately if it is not renewed.
+/// State of a cap: the newest translation and rotation, each of which counts as released if it is not renewed.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct CapState {
     halves: [CapHalf; 2],

@@ -12,11 +12,11 @@ use crate::{CapReading, Device, DeviceError, DeviceIdentity, Health, TimedReadin
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct CapSettings {
-    /// Source of its reports; see [`HidSource`].
+    /// Source of the reports; see [`HidSource`].
     pub source: String,
     /// Axes to invert: x, y, z, rotations about x, y, z (some models differ in the signs of the rotations).
     pub invert: [bool; 6],
-    /// Whether its light is on while it is connected.
+    /// Whether the cap's light is on while it is connected.
     pub light: bool,
 }
 

@@ -1,4 +1,4 @@
-//! Shared by both drivers: reads reports with bounded work, and determines when too many are damaged.
+//! Functions used by both drivers: reads reports with bounded work, and determines when too many are damaged.
 
 use super::cap_codec::BadReport;
 use crate::{ConnectionState, DeviceIdentity, Health, Loss, TimedReading, transport::TransportDatagrams};
@@ -75,8 +75,8 @@ impl HidLine {
     }
 }
 
-/// The value of a device that reports only changes: kept between its reports, and at rest while the device is not
-/// connected and until it has reported again.
+/// Value of a device that reports only changes: kept between its reports, and at rest while the device is not connected
+/// or has not yet reported again.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct HeldValue<T> {
     value: T,

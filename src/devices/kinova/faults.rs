@@ -19,9 +19,9 @@ pub const JOINT_FAULT: u32 = 0x10;
 pub const EMERGENCY_STOP: u32 = 0x80_0000;
 /// Actuator, bank A: the difference between command and measurement is too large.
 pub const FOLLOWING_ERROR: u32 = 1;
-/// Actuator, bank A: above its range.
+/// Bit of bank A of an actuator: above the joint's range.
 pub const JOINT_LIMIT_HIGH: u32 = 4;
-/// Actuator, bank A: below its range.
+/// Bit of bank A of an actuator: below the joint's range.
 pub const JOINT_LIMIT_LOW: u32 = 8;
 /// Actuator, bank A: torque too large.
 pub const MAXIMUM_TORQUE: u32 = 0x20;
@@ -115,8 +115,8 @@ impl KinovaFaults {
         *self != Self::default()
     }
 
-    /// Returns a single code: bank A of the first faulty joint (the likely cause), else bank A of the base, else 1 (a
-    /// fault without bits).
+    /// Returns a single code: bank A of the first faulty joint (the likely cause); otherwise bank A of the base;
+    /// otherwise 1 (a fault without bits).
     pub fn code(&self) -> u32 {
         let joint = self.actuators.iter().map(|bank| bank[0]).find(|bank| *bank != 0);
         joint.unwrap_or(if self.base[0] == 0 { 1 } else { self.base[0] })

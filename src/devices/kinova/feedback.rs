@@ -23,7 +23,7 @@ impl Banks {
         self.fault[0] | self.fault[1] != 0
     }
 
-    /// Stores field `k` of four consecutive ones: fault A, B, warning A, B.
+    /// Stores field `k` of four consecutive fields: fault A, B, warning A, B.
     fn take(&mut self, k: u32, value: Value<'_>) -> Result<(), DamagedMessage> {
         let bank = if k < 2 { &mut self.fault } else { &mut self.warning };
         bank[(k & 1) as usize] = value.fixed32()?;
@@ -33,7 +33,7 @@ impl Banks {
 
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Actuator {
-    /// Number of the last command that it accepted.
+    /// Number of the last command that the actuator accepted.
     pub command_id: u32,
     pub status: u32,
     /// Angle, degrees in [0, 360).

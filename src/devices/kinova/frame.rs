@@ -30,7 +30,7 @@ const VERSION: u32 = 1;
 pub const REQUEST: u8 = 1;
 /// An answer, with or without an error.
 pub const RESPONSE: u8 = 3;
-/// Sent by the base on its own.
+/// Sent by the base without a request.
 pub const NOTIFICATION: u8 = 5;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -50,7 +50,7 @@ pub struct KinovaHeader {
     pub function: u16,
 }
 
-/// The header as it is encoded.
+/// The header in its encoded form.
 #[derive(Clone, Copy, PartialEq, Message)]
 struct RawHeader {
     #[prost(fixed32, tag = "1")]
@@ -105,7 +105,7 @@ impl KinovaHeader {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct KinovaFrame<'a> {
     pub header: KinovaHeader,
-    /// Its payload; the call determines the type of message.
+    /// Payload; the call determines the type of the message.
     pub payload: &'a [u8],
 }
 

@@ -44,8 +44,8 @@ pub fn unwrapped(degrees: f32, near_rad: f64) -> f64 {
     angle_rad + std::f64::consts::TAU * ((near_rad - angle_rad) / std::f64::consts::TAU).round()
 }
 
-/// In any interval, commands may move as far as the speed limit allows in that time plus this, s. The ticks of the loop
-/// vary by fractions of a millisecond; the slowest loop that moves an arm has a period of 20 ms.
+/// In any interval, commands may move as far as the speed limit allows in the interval plus this time, s. The ticks of
+/// the loop vary by fractions of a millisecond; the slowest loop that moves an arm has a period of 20 ms.
 const AHEAD_OF_TIME_S: f64 = 0.025;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]

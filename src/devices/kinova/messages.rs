@@ -9,7 +9,7 @@ use prost::Message;
 pub struct Rpc {
     /// Service (`@PROXY_ID`).
     pub service: u16,
-    /// Function in it (`@RPC_ID`).
+    /// Function in the service (`@RPC_ID`).
     pub function: u16,
 }
 

@@ -28,7 +28,7 @@ const SESSION_INACTIVITY_MS: u32 = 10_000;
 /// High-level motion stops when its session has been silent for this time, ms; the shortest value in the manufacturer's
 /// examples.
 const CONNECTION_INACTIVITY_MS: u32 = 2_000;
-/// A datagram may be lost: while opening, requests are repeated after this time.
+/// Requests are repeated after this time during opening, because a datagram may be lost.
 const AGAIN: Duration = Duration::from_millis(200);
 const NAP: Duration = Duration::from_micros(200);
 
@@ -169,7 +169,7 @@ impl KinovaLines {
         Err(if dirty { KinovaFailure::Nonsense } else { KinovaFailure::Silent })
     }
 
-    /// Returns the failure for a peer with another protocol: it answers with unknown bytes and closes the connection.
+    /// Returns the error for a peer with another protocol, which answers with unknown bytes and closes the connection.
     const fn broken(&self, _: Loss, skipped: u64) -> KinovaFailure {
         if self.packets.skipped > skipped { KinovaFailure::Nonsense } else { KinovaFailure::Lost }
     }

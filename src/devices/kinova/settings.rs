@@ -13,7 +13,7 @@ pub struct KinovaSettings {
     pub tcp_port: u16,
     /// UDP port for the cycle.
     pub udp_port: u16,
-    /// Required serial number; any number if omitted. It detects arms whose cables are swapped.
+    /// Required serial number; any number if omitted. With it, swapped cables of two arms are detected.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub serial_number: Option<String>,
     pub user: String,

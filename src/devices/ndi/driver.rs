@@ -1,4 +1,5 @@
-//! The driver: requests a frame as soon as the last reply has arrived; one command under way at a time, never waiting.
+//! The driver: requests a frame as soon as the last reply has arrived, with one command in progress at a time, and
+//! never waits.
 //!
 //! Readings in m, camera frame `c`, orientation `c_from_tool`. A reading is new if its frame number is. Losses:
 //! [`Loss::Silent`] if no new frame arrived for [`SILENT_S`] and no byte for the current command; [`Loss::Corrupt`] if
@@ -142,8 +143,8 @@ impl NdiDriver {
         self.status
     }
 
-    /// Makes the unit beep 1 to 9 times, as soon as no other command is under way; between two beeps a frame is
-    /// requested.
+    /// Makes the unit beep 1 to 9 times as soon as no other command is in progress; a frame is requested between two
+    /// beeps.
     pub fn beep(&mut self, times: u8) {
         self.beeps = times.min(9);
     }

@@ -31,7 +31,7 @@ pub(super) struct NdiTimeouts {
 impl NdiTimeouts {
     /// The values of the manufacturer's guide.
     pub(super) const USUAL: Self = Self { quick: Duration::from_millis(500), slow: Duration::from_secs(5) };
-    /// For a diagnosis, which must finish within a second.
+    /// Timeout for a diagnosis, which must finish within a second.
     pub(super) const SHORT: Self = Self { quick: Duration::from_millis(200), slow: Duration::from_millis(400) };
 }
 

@@ -53,7 +53,7 @@ pub(super) enum NdiFailure {
     Refused(ErrorCode),
 }
 
-/// A damaged reply counts as finished after this time without bytes.
+/// A damaged reply counts as finished if no bytes arrive for this time.
 const QUIET: Duration = Duration::from_millis(50);
 const NAP: Duration = Duration::from_micros(500);
 
@@ -110,7 +110,7 @@ impl NdiSession {
         Err(if any { NdiFailure::Garbled } else { NdiFailure::Silent })
     }
 
-    /// Waits until something has arrived and the line is quiet again, or until `timeout`.
+    /// Waits until data have arrived and the line is quiet again, or until `timeout`.
     pub(super) fn let_pass(&mut self, timeout: Duration) {
         let begin = Instant::now();
         let mut received: Option<Instant> = None;

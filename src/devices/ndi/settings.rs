@@ -30,7 +30,7 @@ pub struct NdiSettings {
     pub baud: u32,
     /// Tool definitions (`.rom` files) of the wireless tools, in the order in which they are reported.
     pub tools: Vec<PathBuf>,
-    /// Whether plugged tools are used too, after the wireless ones.
+    /// Whether to use plugged-in tools as well, listed after the wireless ones.
     pub wired: bool,
     pub replies: Replies,
     /// Rate of the unit's frame counter, Hz, which determines its time. 60 for Polaris, 40 for Aurora.

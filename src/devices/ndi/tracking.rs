@@ -37,9 +37,9 @@ pub enum ToolVisibility {
 pub struct HandleFrame {
     pub handle: u8,
     pub sight: ToolVisibility,
-    /// Its status; 0 if it is disabled.
+    /// Status of the tool; 0 if it is disabled.
     pub status: PortStatus,
-    /// Frame number; 0 if it is disabled.
+    /// Frame number; 0 if the tool is disabled.
     pub frame: u32,
 }
 
@@ -275,7 +275,7 @@ impl<'a> ReplyCursor<'a> {
         rest.is_some()
     }
 
-    /// Skips to the next line. Further information may follow here, after `DISABLED` also the status.
+    /// Skips to the next line. The current line may contain further information, after `DISABLED` also the status.
     fn rest_of_line(&mut self) -> Result<(), MalformedReply> {
         let end = self.0.iter().position(|byte| *byte == b'\n').ok_or(MalformedReply)?;
         self.take(end + 1).map(|_| ())

@@ -8,7 +8,7 @@ use crate::{ARM_JOINTS, DeviceError};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, tag = "make", rename = "simulated")]
 pub struct SimulatedArmSettings {
-    /// Initial joint angles, rad; the instrument must be in its trocar there.
+    /// Initial joint angles, rad, at which the instrument must be in its trocar.
     pub start_rad: [f64; ARM_JOINTS],
     /// Bandwidth of the joints, Hz, above 0 to 100.
     #[serde(default = "SimulatedArmSettings::usual_bandwidth_hz")]

@@ -41,8 +41,8 @@ pub trait TransportDatagrams: Send {
     /// # Errors
     /// [`Loss::Disconnected`] if the peer is gone.
     fn send(&mut self, bytes: &[u8]) -> Result<(), Loss>;
-    /// From now on accepts datagrams only from the sender of the newest one. Has no effect if there is only one
-    /// possible sender.
+    /// From now on, accepts datagrams only from the sender of the newest one. Has no effect if only one sender is
+    /// possible.
     fn keep_to_sender(&mut self) {}
 }
 

@@ -54,11 +54,12 @@ pub struct RawLayout {
     pub colours: Colours,
     /// Width and height, px.
     pub size_px: [usize; 2],
-    /// Bytes from one row to the next. For I420 this is the brightness plane; the colour planes have half of it.
+    /// Bytes from one row to the next. For I420 this is the stride of the brightness plane; the colour planes have half
+    /// of it.
     pub stride: usize,
 }
 
-/// One plane: its bytes, and the bytes from one row to the next.
+/// One plane: its bytes, and the stride of its rows.
 #[derive(Clone, Copy, Debug)]
 pub struct ColourPlane<'a> {
     pub bytes: &'a [u8],
@@ -67,7 +68,8 @@ pub struct ColourPlane<'a> {
 }
 
 impl Colours {
-    /// Returns the default if the source does not specify it: like most decoders, by the height of the image.
+    /// Returns the default if the source does not specify the colours: like most decoders, it depends on the height of
+    /// the image.
     pub const fn usual(size_px: [usize; 2]) -> Self {
         let matrix = if size_px[1] >= 720 { ColourMatrix::Bt709 } else { ColourMatrix::Bt601 };
         Self { matrix, range: ValueRange::Limited }
@@ -175,7 +177,7 @@ pub fn of_planes(
     })
 }
 
-/// Returns the image that `paint` writes; `paint` gets the pixels, the bytes of a row, and the interpretation of the
+/// Returns the image that `paint` writes; `paint` receives the pixels, the bytes per row, and the interpretation of the
 /// colours.
 fn painted(
     colours: Colours,

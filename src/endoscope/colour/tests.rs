@@ -13,7 +13,7 @@ const EVERY: [Colours; 4] = [
 const LAYOUTS: [PixelLayout; 3] = [PixelLayout::Yuyv, PixelLayout::Nv12, PixelLayout::I420];
 const SIZE_PX: [usize; 2] = [320, 48];
 
-/// Colour bars of 100 % and 75 %, a ramp of grey and one of each colour.
+/// Returns the colour bars of 100 % and 75 %, a ramp of grey and one of each colour.
 fn bars() -> Vec<u8> {
     let colour = |x: usize, y: usize| -> [u8; 3] {
         let bar = 7 - x * 8 / SIZE_PX[0];

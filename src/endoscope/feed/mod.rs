@@ -21,7 +21,7 @@ use crate::{
 const RETRY: Duration = Duration::from_millis(400);
 /// Time to the first attempt after images have arrived.
 const RETRY_FIRST: Duration = Duration::from_millis(50);
-/// A display that has not taken an image for this long is not active. Then only some images are decoded, so that faults
+/// A display that has not taken an image for this long is inactive. Only some images are then decoded, so that faults
 /// are still detected.
 const LOOKED: Duration = Duration::from_millis(500);
 const UNSEEN: Duration = Duration::from_millis(500);
@@ -37,7 +37,7 @@ pub struct EndoscopeFeed {
 /// The state of the source at one moment.
 #[derive(Clone, Debug)]
 pub struct FeedSnapshot<T> {
-    /// The newest prepared image and its number; `None` before the first.
+    /// The newest prepared image and its number; `None` before the first one.
     pub image: Option<(u64, T)>,
     /// Status of the source.
     pub standing: FrameHealth,
@@ -67,7 +67,7 @@ struct FeedState {
     watch: FrameWatch,
     trouble: Option<EndoscopeError>,
     is_still: bool,
-    /// Whether it has been open before.
+    /// Whether the source has been open before.
     opened: bool,
     /// Format of the last image.
     format: Option<Format>,
@@ -149,7 +149,7 @@ impl EndoscopeFeed {
         locked(&self.shared.state).standing(now)
     }
 
-    /// Returns the newest image and the current status. If nothing calls this, only two images per second are decoded.
+    /// Returns the newest image and the current status. If it is not called, only two images per second are decoded.
     pub fn look(&self, now: Instant) -> FeedSnapshot<Arc<DecodedImage>> {
         let mut state = locked(&self.shared.state);
         state.looked = Some(now);
@@ -222,7 +222,7 @@ impl FeedShared {
         }
     }
 
-    /// Reads until something fails; `None` if images are no longer needed.
+    /// Reads until an error occurs; `None` if images are no longer needed.
     fn read_from(&self, mut source: Box<dyn ImageSource>) -> Option<EndoscopeError> {
         {
             let mut state = locked(&self.state);

@@ -1,4 +1,4 @@
-//! Replaces decoder and encoder in a program built without them.
+//! Substitutes for decoder and encoder in a program built without them.
 
 use std::io;
 

@@ -25,7 +25,7 @@ use crate::{
 const PARAMETERS: u8 = 7;
 /// One row of this many is hashed to detect a repeated image.
 const ROW_OF: usize = 4;
-/// A key frame every this many frames: a client that joins late or lost a frame waits no longer.
+/// Interval between key frames: a client that joins late or lost a frame waits no longer than this.
 const KEY_EVERY: u32 = 30;
 
 /// Decodes the frames of a stream in order.

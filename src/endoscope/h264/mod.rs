@@ -29,7 +29,7 @@ const ABSENT: &str =
 /// A decoded frame.
 #[derive(Debug)]
 pub struct H264Image {
-    /// Its pixels, if requested.
+    /// Pixels, if requested.
     pub image: Option<DecodedImage>,
     /// Equal for equal images.
     pub hash: u64,

@@ -6,7 +6,7 @@ use super::{chunked::ChunkedBody, head::HttpHead};
 
 /// Maximum size of an image, bytes.
 pub(super) const IMAGE_MAX: usize = 8 << 20;
-/// Number of images that are kept for a slow reader; older ones are dropped.
+/// Number of images kept for a slow reader; older images are dropped.
 const PARTS_MAX: usize = 8;
 
 /// One image with its headers, still encoded.
@@ -20,7 +20,7 @@ pub(super) struct ImagePart {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum HttpFault {
     Status(u16),
-    /// A password is needed: what the camera asks for.
+    /// A password is required: the camera's challenges.
     Locked(Vec<String>),
     Format(String),
     Unreadable(&'static str),
@@ -78,7 +78,7 @@ impl HttpAnswer {
         }
     }
 
-    /// Bytes in memory, for a test.
+    /// Returns the bytes in memory, for a test.
     #[cfg(test)]
     pub(super) fn held(&self) -> usize {
         self.held.capacity()

@@ -12,7 +12,7 @@ const LINE_END: u64 = 2;
 #[derive(Debug, Default)]
 pub(super) struct ChunkedBody {
     line: Vec<u8>,
-    /// Bytes of a chunk that are still to come, with the end of its line.
+    /// Bytes of the chunk still to come, including the end of its line.
     left: u64,
 }
 

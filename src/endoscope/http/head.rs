@@ -7,7 +7,7 @@ use super::answer::HttpFault;
 /// Longest head, in bytes and in lines.
 const HEAD_MAX: usize = 16 << 10;
 const LINES_MOST: usize = 64;
-/// A part has no status line of its own. It begins with the end of its boundary's line, which completes this one.
+/// A part has no status line. It starts with the end of the boundary line, which this text completes.
 const PART: &[u8] = b"HTTP/1.1 200 OK";
 
 /// Fields of a head; their names are case-insensitive.
@@ -18,12 +18,12 @@ pub(super) struct HttpHead {
     pub(super) length: Option<usize>,
     pub(super) is_chunked: bool,
     pub(super) stamp_s: Option<f64>,
-    /// How the camera wants to be given a password, as it says it.
+    /// Authentication methods requested by the camera, as sent.
     pub(super) challenges: Vec<String>,
 }
 
 impl HttpHead {
-    /// Returns the head of an answer and its length in bytes; `None` before all of it is there.
+    /// Returns the head of an answer and its length in bytes; `None` until it is complete.
     pub(super) fn read(bytes: &[u8]) -> Result<Option<(Self, usize)>, HttpFault> {
         let mut lines = [EMPTY_HEADER; LINES_MOST];
         let mut response = Response::new(&mut lines);

@@ -1,7 +1,8 @@
 //! Motion JPEG over HTTP/1.1, as sent by cameras: an endless response whose parts are images.
 //!
-//! A client of its own, because it needs so little: one request, or two where the camera asks for a password, no redirection, no encryption.
-//! Everything that the other end decides is limited: the length of heads and pictures, and how long they take.
+//! A separate client, because little is needed: one request, or two where the camera asks for a password, no
+//! redirection, no encryption. Everything that the other end decides is limited: the length of heads and pictures, and
+//! how long they take.
 
 mod answer;
 mod chunked;
@@ -22,9 +23,9 @@ use crate::{CompressedFrame, EndoscopeError, Endpoint, ImageSource};
 /// Time for connecting to one address of the camera, and maximum number of addresses tried.
 const CONNECT: Duration = Duration::from_millis(500);
 const ADDRESSES_MAX: usize = 4;
-/// After this time without data the connection is closed and opened again.
+/// After this time without data, the connection is closed and reopened.
 const SILENT: Duration = Duration::from_secs(2);
-/// Maximum time for a head or an image; a camera that sends byte after byte would otherwise block the screen for ever.
+/// Maximum time for a head or an image; otherwise a camera that sends single bytes would block the screen forever.
 const SLOW: Duration = Duration::from_secs(5);
 /// Interval at which the thread checks whether images are still needed.
 const PATIENCE: Duration = Duration::from_millis(100);
@@ -64,7 +65,8 @@ impl Http {
         })
     }
 
-    /// Asks again with user and password, once; false where the address has none, or the camera wants them in a way that is not known.
+    /// Repeats the request once with user and password; returns false if the address has none, or if the camera's
+    /// authentication method is not supported.
     fn log_in(&mut self, challenges: &[String]) -> Result<bool, EndoscopeError> {
         let Some(login) = self.endpoint.login.as_ref().filter(|_| !self.has_logged_in) else { return Ok(false) };
         let Ok(mut client) = PasswordClient::try_from(challenges.join(", ").as_str()) else { return Ok(false) };
@@ -116,7 +118,7 @@ impl Http {
     }
 }
 
-/// Connects to the camera and requests its pictures.
+/// Connects to the camera and requests its images.
 fn ask(endpoint: &Endpoint, authorization: Option<&str>) -> Result<TcpStream, EndoscopeError> {
     let mut stream = connect(endpoint)?;
     let place = endpoint.place();

@@ -176,7 +176,7 @@ fn endpoint(port: u16) -> Endpoint {
     Endpoint { host: "127.0.0.1".to_owned(), port, path: "/a?b".to_owned(), login: None }
 }
 
-/// Returns a camera that answers one client in this way.
+/// Starts a camera that answers one client in this way; returns its address.
 fn camera(act: impl FnOnce(TcpStream) + Send + 'static) -> u16 {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let port = listener.local_addr().unwrap().port();
@@ -195,7 +195,8 @@ fn asked(listener: &TcpListener) -> (TcpStream, String) {
     (stream, String::from_utf8(request[..count].to_vec()).unwrap())
 }
 
-/// What a client with this login comes to at a camera that demands a password so, and what it sent the second time.
+/// Returns the result of a client with this login at a camera that requests a password in this way, and the second
+/// request of the client.
 fn logged_in(
     challenges: &'static str,
     login: Option<Login>,

@@ -1,4 +1,4 @@
-//! A baseline JPEG encoder for emulators and tests: one quantisation and one pair of Huffman tables for all three
+//! A baseline JPEG encoder for emulators and tests: one quantisation table and one pair of Huffman tables for all three
 //! components, colours at half the resolution (4:2:0), as sent by cameras. ITU-T T.81 with the tables of its annex K.
 
 /// Quantisation of brightness, by rows (table K.1).
@@ -50,8 +50,8 @@ pub fn encode(rgb: &[u8], size_px: [usize; 2], quality: u8) -> Vec<u8> {
     JpegEncoder::new(size_px, quality).encode(rgb)
 }
 
-/// Encodes a sequence of images, each complete in itself. Unchanged areas cost little, which suits emulated cameras:
-/// they mostly show a still scene.
+/// Encodes a sequence of images, each complete in itself. Unchanged areas cost little, which suits emulated cameras,
+/// because they mostly show a still scene.
 #[derive(Debug)]
 pub struct JpegEncoder {
     size_px: [usize; 2],
@@ -65,7 +65,7 @@ pub struct JpegEncoder {
     blocks: Vec<CodedBlock>,
 }
 
-/// An encoded block, without the code of its mean, which depends on the previous block.
+/// An encoded block without the code of its mean, because that depends on the previous block.
 #[derive(Clone, Debug, Default)]
 struct CodedBlock {
     dc: i32,
@@ -74,7 +74,7 @@ struct CodedBlock {
 }
 
 impl JpegEncoder {
-    /// Makes an encoder for images of this size, at a quality of 1 to 100.
+    /// Creates an encoder for images of this size, at a quality of 1 to 100.
     ///
     /// # Panics
     /// If a side is 0 or above 65535.

@@ -17,9 +17,9 @@ enum SplitState {
     /// Before the beginning of an image.
     #[default]
     Before,
-    /// Between segments, whose lengths are known.
+    /// Between segments of known length.
     Segments,
-    /// In the coded image data, which end at a marker.
+    /// In the entropy-coded image data, which end at a marker.
     Coded,
 }
 

@@ -26,7 +26,7 @@ const OPENING: Duration = Duration::from_secs(3);
 /// After this time without data the connection is closed and opened again.
 const SILENT: Duration = Duration::from_secs(2);
 const PATIENCE: Duration = Duration::from_millis(100);
-/// From 1900, the epoch of the senders, to 1970, s.
+/// Time from 1900, the epoch of RTP senders, to 1970, s.
 const SINCE_1900_S: f64 = 2_208_988_800.0;
 
 /// A camera that is playing.
@@ -37,7 +37,7 @@ struct Rtsp {
     session: Option<Pin<Box<Demuxed>>>,
     is_jpeg: bool,
     received: Instant,
-    /// From the sender's first report: its own time, s since 1970, and the matching time stamp, s.
+    /// From the sender's first report: its time, s since 1970, and the corresponding time stamp, s.
     reported_s: Option<[f64; 2]>,
 }
 
@@ -57,8 +57,8 @@ pub(crate) fn open(endpoint: &Endpoint) -> Result<Box<dyn ImageSource>, Endoscop
     guarded(&endpoint.place(), || begin(endpoint))
 }
 
-/// Returns the client panics on some malformed responses, mostly in its parser of descriptions and in code that relies
-/// on it. Turns a panic into an error of the request, so that the thread survives.
+/// Converts a panic into an error of the request, so that the thread survives. The client panics on some malformed
+/// responses, mostly in its parser of descriptions and in code that relies on it.
 fn guarded<T>(place: &str, work: impl FnOnce() -> Result<T, EndoscopeError>) -> Result<T, EndoscopeError> {
     catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|_| {
         let reason = "a response that cannot be parsed".to_owned();
@@ -133,7 +133,7 @@ impl Rtsp {
         CompressedFrame { format, bytes: frame.into_data(), arrived, stamp_s: Some(stamp_s), taken: None }
     }
 
-    /// Only the first report of a connection counts: later ones might jump.
+    /// Stores the first report of a connection; later reports might jump.
     fn report(&mut self, packet: &ReceivedCompoundPacket) {
         let Some(stamp) = packet.rtp_timestamp().filter(|_| self.reported_s.is_none()) else { return };
         let mut reports = packet.pkts().filter_map(|packet| packet.as_sender_report().ok().flatten());

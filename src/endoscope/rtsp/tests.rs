@@ -163,7 +163,8 @@ fn a_description_whose_lines_are_out_of_order_is_told() {
     assert!(report.contains("cannot be"), "{report}");
 }
 
-/// Runs this many conversations with a camera whose responses are damaged at random; returns how many images arrived.
+/// Runs this many conversations with a camera whose responses are randomly damaged; returns the number of images that
+/// arrived.
 fn mutate(seed: u64, count: usize) -> usize {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let port = listener.local_addr().unwrap().port();

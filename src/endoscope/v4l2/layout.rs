@@ -126,7 +126,7 @@ impl LayoutBlock {
         self.0.get(at..).and_then(|bytes| bytes.first_chunk()).map_or(0, |bytes| i64::from_ne_bytes(*bytes))
     }
 
-    /// Text up to its terminating zero, usable in a message.
+    /// Returns the text up to its terminating zero, usable in a message.
     pub(super) fn text(&self, at: usize, length: usize) -> String {
         let bytes = self.0.get(at..at + length).unwrap_or_default();
         let end = bytes.iter().position(|byte| *byte == 0).unwrap_or(bytes.len());

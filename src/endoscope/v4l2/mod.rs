@@ -28,15 +28,15 @@ use crate::{
 /// Number of buffers requested, and minimum for a stream.
 const BUFFERS: u32 = 4;
 const BUFFERS_MIN: u32 = 2;
-/// After this time without images the camera is closed and reopened. Some cameras take more than a second for the first
-/// image.
+/// After this time without images, the camera is closed and reopened. Some cameras take more than a second for the
+/// first image.
 const SILENT: Duration = Duration::from_secs(4);
 const PATIENCE: Duration = Duration::from_millis(100);
 /// Pause after a wait that ended without an image.
 const NAP: Duration = Duration::from_millis(5);
 /// Maximum number of formats or sizes queried from a driver.
 const LISTED_MAX: u32 = 64;
-/// A time stamp that is older than this, or in the future, does not come from this clock.
+/// A time stamp that is older than this, or in the future, is not from this clock.
 const STAMP_MAX: Duration = Duration::from_secs(5);
 
 /// A camera that is streaming.
@@ -82,7 +82,7 @@ impl Pixels {
     }
 }
 
-/// In order of preference: motion JPEG allows the highest frame rate over USB.
+/// Formats in order of preference: motion JPEG allows the highest frame rate over USB.
 const PREFERRED: [Pixels; 3] = [Pixels::Mjpeg, Pixels::Nv12, Pixels::Yuyv];
 
 impl V4l2 {
@@ -221,7 +221,7 @@ impl CameraOpening<'_> {
         Ok(())
     }
 
-    /// Selects a format that both sides support.
+    /// Selects a format that the camera and this program support.
     fn choose(&mut self, wanted: Option<Pixels>) -> Result<(Pixels, u32), EndoscopeError> {
         let mut offered = Vec::new();
         for index in 0..LISTED_MAX {
@@ -277,7 +277,7 @@ impl CameraOpening<'_> {
         })
     }
 
-    /// Requests a rate. A camera without this setting has a fixed rate; others take the nearest one that they have. The
+    /// Requests a rate. A camera without this setting has a fixed rate; others use the nearest one available. The
     /// screen shows the actual rate.
     fn set_rate(&mut self, rate_hz: Option<u32>) {
         let Some(rate_hz) = rate_hz else { return };

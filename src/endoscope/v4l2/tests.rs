@@ -332,7 +332,7 @@ fn files_that_are_no_cameras_are_told_by_the_real_calls() {
     assert_eq!(report("/dev/null"), "/dev/null is not a camera");
 }
 
-/// Any responses of a driver with any bytes give an image, a damage or a trouble.
+/// Any response of a driver with any bytes results in an image, a damage report or an error.
 fn any_driver(seed: u64, count: usize) {
     let mut random = fastrand::Rng::with_seed(seed);
     for _ in 0..count {

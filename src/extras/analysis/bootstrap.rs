@@ -5,10 +5,10 @@ use crate::error::{AnalysisError, Result};
 use crate::interval::ConfidenceInterval;
 use crate::{check, summary};
 
-/// How the interval is computed from the bootstrap distribution.
+/// Method of computing the interval from the bootstrap distribution.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum BootstrapMethod {
-    /// Between its quantiles (Efron & Tibshirani, section 13.3). Too short with few values.
+    /// Quantiles of the distribution (Efron & Tibshirani, section 13.3). The interval is too short for few values.
     Percentile,
     /// `BCa`: corrected for bias and acceleration (Efron, Better bootstrap confidence intervals, JASA 82, 1987; Efron &
     /// Tibshirani, section 14.3). If resamples equal the estimate exactly, as medians often do, half of them count as
@@ -109,8 +109,8 @@ fn corrected(tail: f64, drawn: &[f64], sample: &[f64], statistic: impl Fn(&[f64]
     Ok([fraction(z), fraction(-z)])
 }
 
-/// From the jackknife: skewness of the statistic with one value left out; zero if the statistic does not depend on the
-/// omitted value.
+/// Returns the acceleration from the jackknife: skewness of the statistic with one value left out; zero if the
+/// statistic does not depend on the omitted value.
 fn acceleration(sample: &[f64], statistic: impl Fn(&[f64]) -> f64) -> Result<f64> {
     let mut rest = sample[1..].to_vec();
     let mut without = Vec::with_capacity(sample.len());

@@ -26,7 +26,8 @@ pub fn holm(p_values: &[f64]) -> Result<Vec<f64>> {
     Ok(corrected)
 }
 
-/// Bonferroni's p-values: each times their number, at most 1 (Dunn, Multiple comparisons among means, JASA 56, 1961).
+/// Returns Bonferroni's p-values: each multiplied by their number, at most 1 (Dunn, Multiple comparisons among means,
+/// JASA 56, 1961).
 pub fn bonferroni(p_values: &[f64]) -> Result<Vec<f64>> {
     probabilities(p_values)?;
     Ok(p_values.iter().map(|p| (p * p_values.len() as f64).min(1.0)).collect())

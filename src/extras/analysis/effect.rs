@@ -12,14 +12,14 @@ use statrs::function::gamma::ln_gamma;
 pub struct StandardisedEffect {
     /// Cohen's d (Statistical Power Analysis, 1988).
     pub d: f64,
-    /// The same without its bias in small samples: d times the exact factor of Hedges (Distribution theory for Glass's
+    /// The same without the bias of small samples: d times the exact factor of Hedges (Distribution theory for Glass's
     /// estimator of effect size, Journal of Educational Statistics 6, 1981).
     pub g: f64,
 }
 
-/// Matched-pairs rank-biserial correlation, -1 (all differences negative) to 1: the positive fraction of the rank sum
-/// minus the negative fraction (Kerby, The simple difference formula, Comprehensive Psychology 3, 2014). Zeros are
-/// dropped; at least one difference must not be zero.
+/// Returns the matched-pairs rank-biserial correlation, -1 (all differences negative) to 1: the positive fraction of
+/// the rank sum minus the negative fraction (Kerby, The simple difference formula, Comprehensive Psychology 3, 2014).
+/// Zeros are dropped; at least one difference must not be zero.
 pub fn rank_biserial(differences: &[f64]) -> Result<f64> {
     check::values("differences", differences, 1)?;
     let (ranks, positive) = signed_ranks(differences, Zeros::Wilcoxon);
@@ -31,7 +31,7 @@ pub fn rank_biserial(differences: &[f64]) -> Result<f64> {
     Ok(signed.sum::<f64>() / ranks.iter().sum::<usize>() as f64)
 }
 
-/// Cohen's d of paired values, `dz`: mean of the differences over their standard deviation; of at least three
+/// Returns Cohen's d of paired values, `dz`: mean of the differences over their standard deviation; of at least three
 /// differences that are not all equal. `g` has n - 1 degrees of freedom.
 pub fn cohens_dz(differences: &[f64]) -> Result<StandardisedEffect> {
     check::values("differences", differences, 3)?;
@@ -39,8 +39,8 @@ pub fn cohens_dz(differences: &[f64]) -> Result<StandardisedEffect> {
     standardised(summary::raw_mean(differences), sd, differences.len() - 1, "the differences")
 }
 
-/// Cohen's d of two groups, at least two values each: difference of the means, first minus second, over the pooled standard deviation. `g` has
-/// m + n - 2 degrees of freedom.
+/// Returns Cohen's d of two groups, at least two values each: difference of the means, first minus second, over the
+/// pooled standard deviation. `g` has m + n - 2 degrees of freedom.
 pub fn cohens_d(first: &[f64], second: &[f64]) -> Result<StandardisedEffect> {
     check::values("values of the first group", first, 2)?;
     check::values("values of the second group", second, 2)?;
@@ -80,7 +80,7 @@ fn standardised(mean: f64, sd: f64, df: usize, what: &'static str) -> Result<Sta
     }
 }
 
-/// Gamma(df / 2) / (sqrt(df / 2) Gamma((df - 1) / 2)), for at least two degrees of freedom.
+/// Returns Gamma(df / 2) / (sqrt(df / 2) Gamma((df - 1) / 2)), for at least two degrees of freedom.
 fn hedges_factor(df: f64) -> f64 {
     (ln_gamma(df / 2.0) - ln_gamma((df - 1.0) / 2.0) - (df / 2.0).ln() / 2.0).exp()
 }

@@ -1,6 +1,6 @@
 //! Reasons why an analysis is impossible.
 
-/// Input that cannot be used, or a question that it cannot answer. The text is one sentence for the user.
+/// Unusable input, or a question that the input cannot answer. The text is one sentence for the user.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum AnalysisError {
     #[error("{what}: {found} are too few; provide at least {needed}")]

@@ -1,4 +1,4 @@
-//! Friedman's test: several conditions, each participant under each of them once.
+//! Friedman's test: several conditions, with each participant under each condition once.
 
 use crate::distribution::{chi_square_above, f_above};
 use crate::error::{AnalysisError, Result};
@@ -29,8 +29,8 @@ pub struct Friedman {
     pub w: f64,
 }
 
-/// Tests one row per participant and one column per condition: at least two rows and two columns, and at least one row
-/// whose values are not all equal.
+/// Tests data with one row per participant and one column per condition: at least two rows and two columns, and at
+/// least one row whose values are not all equal.
 ///
 /// ```
 /// use nima_analysis::{friedman, AnalysisError};

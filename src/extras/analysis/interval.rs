@@ -8,9 +8,9 @@ use serde::Serialize;
 pub struct ConfidenceInterval {
     pub lower: f64,
     pub upper: f64,
-    /// Its confidence level, 0 to 1. For an exact interval, the attained level: the ranks of a small sample allow only
-    /// some values, so it is close to the requested level, usually above it, and below it if even the widest interval
-    /// of the sample has less.
+    /// Confidence level, 0 to 1. For an exact interval, the attained level: the ranks of a small sample allow only some
+    /// values, so it is close to the requested level, usually above it, and below it if even the widest interval of the
+    /// sample has less.
     pub confidence: f64,
 }
 

@@ -1,4 +1,4 @@
-//! Ranks, where equal values share the mean of theirs (midranks).
+//! Ranks in which equal values get the mean of their ranks (midranks).
 
 /// Twice the midrank of each value, so that shared ranks are whole numbers, with the tie term.
 pub(crate) struct Ranks {

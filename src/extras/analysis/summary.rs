@@ -4,7 +4,7 @@ use crate::check;
 use crate::error::{AnalysisError, Result};
 use serde::Serialize;
 
-/// Location and spread of one sample, all in its unit.
+/// Location and spread of one sample, in the unit of the sample.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct SampleSummary {
     pub n: usize,
@@ -73,7 +73,7 @@ pub(crate) fn sorted(sample: &[f64]) -> Vec<f64> {
     sorted
 }
 
-/// For at least one finite value, ascending.
+/// Returns the quantile of at least one finite value in ascending order.
 pub(crate) fn quantile_of_sorted(sorted: &[f64], fraction: f64) -> f64 {
     let at = (sorted.len() - 1) as f64 * fraction;
     let below = at as usize;
@@ -92,12 +92,12 @@ pub(crate) fn raw_mean(sample: &[f64]) -> f64 {
     mean + sample.iter().map(|value| value - mean).sum::<f64>() / sample.len() as f64
 }
 
-/// For at least two values.
+/// Returns the standard deviation of at least two values, without checks.
 pub(crate) fn raw_sd(sample: &[f64]) -> f64 {
     (squares(sample) / (sample.len() - 1) as f64).sqrt()
 }
 
-/// Sum of the squared deviations from the mean.
+/// Returns the sum of the squared deviations from the mean.
 pub(crate) fn squares(sample: &[f64]) -> f64 {
     let mean = raw_mean(sample);
     sample.iter().map(|value| (value - mean).powi(2)).sum()

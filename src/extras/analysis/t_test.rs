@@ -13,7 +13,7 @@ pub struct TTest {
     pub mean: f64,
     /// Confidence interval of `mean`.
     pub interval: ConfidenceInterval,
-    /// Mean over its standard error.
+    /// Mean divided by its standard error.
     pub t: f64,
     /// n - 1.
     pub df: f64,

@@ -1,5 +1,5 @@
-//! Bridges: report the state of a loop to other laboratory programs while it runs. They only send; received data never
-//! reach the loop.
+//! Bridges report the state of a running loop to other laboratory programs. They only send; received data never reach
+//! the loop.
 //!
 //! | module | holds |
 //! |---|---|

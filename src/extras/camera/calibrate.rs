@@ -27,7 +27,7 @@ const SPREAD_DEG: f64 = 6.0;
 const COVERAGE: f64 = 0.6;
 /// Maximum error on held-out views, in widths of the image: 0.64 px of 1280.
 const HELD_OUT: f64 = 0.0005;
-/// Maximum standard deviation of the focal length, relative to it, and of the centre, in widths of the image.
+/// Maximum standard deviations of the focal length, relative to it, and of the centre, in widths of the image.
 const FOCAL_FRACTION: f64 = 0.002;
 const CENTRE: f64 = 0.002;
 /// A view whose error exceeds this multiple of the median is an outlier if it also exceeds this error, px.
@@ -40,7 +40,7 @@ const BENDS: [f64; 3] = [-0.3, 0.0, 0.3];
 const FIRST_VIEWS: usize = 8;
 const FIRST_STEPS: usize = 12;
 const STEPS: usize = 60;
-/// A term is kept if it reduces the error on held-out views by this fraction.
+/// A term is kept only if it reduces the error on held-out views by this fraction.
 const PAYS: f64 = 0.01;
 
 /// Returns whether a view is too blurred for an image of this width, px.
@@ -220,7 +220,7 @@ fn max_angle_deg(normals: &[Vector3<f64>]) -> f64 {
     pairs.fold(0.0, f64::max).to_degrees()
 }
 
-/// Standard deviation of the tilt in the direction in which it varies least, degrees.
+/// Returns the standard deviation of the tilt in the direction in which it varies least, degrees.
 fn min_spread_deg(normals: &[Vector3<f64>]) -> f64 {
     let tilts: Vec<Vector2<f64>> =
         normals.iter().map(|normal| Vector2::new(normal.x.atan2(normal.z), normal.y.atan2(normal.z))).collect();

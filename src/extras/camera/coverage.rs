@@ -7,7 +7,7 @@ use crate::Grey;
 /// Columns and rows of cells into which the image is divided.
 pub const CELLS: [usize; 2] = [6, 4];
 const COUNT: usize = CELLS[0] * CELLS[1];
-/// A pixel is lit from this brightness on, of 255, and a cell if half of its pixels are: an endoscope leaves the
+/// A pixel counts as lit from this brightness (of 255), and a cell if half of its pixels are: an endoscope leaves the
 /// corners of the image black.
 const LIT: f32 = 20.0;
 /// One pixel of this many is checked.
@@ -62,7 +62,7 @@ impl CameraCoverage {
         }
     }
 
-    /// Fraction of the lit cells that have contained corners.
+    /// Returns the fraction of the lit cells that have contained corners.
     pub fn fraction(&self) -> f64 {
         let lit = (0..COUNT).filter(|at| self.is_wanted(*at)).count();
         let seen = self.corners.iter().filter(|count| **count > 0).count();

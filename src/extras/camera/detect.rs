@@ -10,7 +10,7 @@ use crate::{
     saddle::{Saddle, saddles},
 };
 
-/// The image is also searched at half and a quarter of its size, where a blurred board is sharp.
+/// The image is also searched at half and a quarter of its size, at which a blurred board is sharp.
 const SCALES: usize = 3;
 /// Smoothing before the search for saddles, and before locating corners, px.
 const SADDLES_PX: f32 = 1.5;
@@ -21,7 +21,7 @@ const NEAR: f64 = 0.3;
 /// A completely visible board.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BoardSight {
-    /// Its inner corners in the order of the board, px.
+    /// Inner corners in the order of the board, px.
     pub corners_px: Vec<Vector2<f64>>,
     /// Standard deviation of the blur at its edges, px; includes motion blur.
     pub blur_px: f64,
@@ -30,7 +30,7 @@ pub struct BoardSight {
 }
 
 impl BoardSight {
-    /// Mean distance of the corners from those of another sight, px.
+    /// Returns the mean distance of the corners from those of another detection, px.
     pub fn mean_move_px(&self, other: &Self) -> f64 {
         let moves = self.corners_px.iter().zip(&other.corners_px).map(|(a, b)| (a - b).norm());
         moves.sum::<f64>() / self.corners_px.len().max(1) as f64
@@ -42,7 +42,7 @@ impl BoardSight {
 pub enum DetectionFailure {
     /// The image contains nothing like a board.
     Nothing,
-    /// Only a part of it is visible.
+    /// Only a part of the board is visible.
     Part {
         /// Visible inner corners.
         seen: usize,
@@ -109,7 +109,7 @@ fn coarse(grey: &Grey, board: &Checkerboard) -> Result<Vec<Vector2<f64>>, Detect
 /// Position of a corner of the board in a grid with this many columns and rows.
 type GridTurn = fn([usize; 2], [usize; 2]) -> [usize; 2];
 
-/// Returns the saddles of a grid as the board's corners; `None` if it is not this board.
+/// Returns the saddle points of a grid as the board's corners; `None` if it is not this board.
 fn in_order(smooth: &Grey, saddles: &[Saddle], cells: &Cells, board: &Checkerboard) -> Option<Vec<Vector2<f64>>> {
     let [columns, rows] = size(cells);
     if cells.len() != board.count() {

@@ -12,7 +12,7 @@ type Outer = SMatrix<f64, 6, 6>;
 pub(crate) type FitParameters = SVector<f64, PARAMETERS>;
 type FitMotion = SVector<f64, 6>;
 
-/// The iteration ends when a step gains less than this fraction.
+/// The iteration ends when a step improves the fit by less than this fraction.
 const GAIN: f64 = 1e-9;
 const DAMPING: f64 = 1e-3;
 const DAMPING_MAX: f64 = 1e9;
@@ -31,7 +31,7 @@ impl Terms {
         [true, self.aspect, true, true, true, self.k2, self.tangential, self.tangential]
     }
 
-    /// Number of fitted parameters.
+    /// Returns the number of fitted parameters.
     pub fn count(self) -> usize {
         self.are_found().into_iter().filter(|found| *found).count()
     }
@@ -73,7 +73,8 @@ struct Equations {
     poses: Vec<(FitMixed, Outer, FitMotion)>,
 }
 
-/// Derivative of a corner's position by the lens, and by the pose (rotation, then translation, in the camera's frame).
+/// Returns the derivative of a corner's position by the lens, and by the pose (rotation, then translation, in the
+/// camera's frame).
 fn slopes(
     lens: &Lens,
     pose: &Isometry3<f64>,
@@ -143,7 +144,7 @@ impl CameraFit {
         views.iter().zip(&self.poses).map(|(view, pose)| view.square(&self.lens, pose)).sum()
     }
 
-    /// Root mean square of the distances of all corners, px.
+    /// Returns the root mean square of the distances of all corners, px.
     pub(crate) fn rms_px(&self, views: &[FitCorners]) -> Option<f64> {
         let count: usize = views.iter().map(|view| view.seen_px.len()).sum();
         Some((self.square(views)? / count.max(1) as f64).sqrt())
@@ -189,7 +190,7 @@ impl CameraFit {
         Self { lens, poses: poses.collect() }
     }
 
-    /// Standard deviations of the parameters; infinite if the views do not determine them.
+    /// Returns the standard deviations of the parameters; infinite if the views do not determine them.
     pub(crate) fn deviations(&self, views: &[FitCorners], terms: Terms) -> Option<FitParameters> {
         let count: usize = views.iter().map(|view| 2 * view.seen_px.len()).sum();
         let free = count.saturating_sub(terms.count() + 6 * views.len());

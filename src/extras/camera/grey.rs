@@ -28,7 +28,7 @@ impl Grey {
         Self::new(image.size_px, image.rgba.chunks_exact(4).map(|pixel| grey(&pixel[..3])).collect())
     }
 
-    /// Width and height, px.
+    /// Returns the width and height, px.
     pub const fn size_px(&self) -> [usize; 2] {
         self.size_px
     }

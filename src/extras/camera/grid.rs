@@ -1,6 +1,6 @@
-//! Arranges the saddles of a board into rows and columns. Two saddles are neighbours if one side of the line between
-//! them is light and the other dark: this holds only between neighbours, however the lens distorts the board. Since the
-//! light side alternates from square to square, it distinguishes rows from columns.
+//! Arranges the saddle points of a board into rows and columns. Two saddle points are neighbours if one side of the
+//! line between them is light and the other dark: this holds only between neighbours, however the lens distorts the
+//! board. Since the light side alternates from square to square, it distinguishes rows from columns.
 
 use std::collections::{BTreeMap, VecDeque};
 
@@ -10,12 +10,12 @@ use crate::{Grey, saddle::Saddle};
 
 /// Number of nearest saddles that are considered as neighbours.
 const NEAREST: usize = 12;
-/// Positions along the edge between two saddles at which both sides are compared, in lengths.
+/// Positions along the edge between two saddle points at which both sides are compared, as fractions of its length.
 const ALONG: [f64; 5] = [0.25, 0.37, 0.5, 0.63, 0.75];
 /// Distance of the compared points from the edge, in lengths, and minimum in px.
 const BESIDE: f64 = 0.15;
 const BESIDE_PX: f64 = 1.5;
-/// Minimum difference between both sides, relative to the contrast of the ends.
+/// Minimum difference between the two sides, relative to the contrast at the ends.
 const DIFFERENCE: f64 = 0.3;
 
 /// Maximum cosine of the angle between the edges to both neighbours in a row; and range of the ratio between successive
@@ -33,11 +33,11 @@ struct Edge {
 
 /// Saddles by column and row, each from zero.
 pub(crate) type Cells = BTreeMap<[usize; 2], usize>;
-/// The same while they grow to all sides.
+/// The same grid while it grows in all directions.
 type GrowingGrid = BTreeMap<[i32; 2], usize>;
 
-/// Whether the right-hand side of the line between two points is the light one (px; y is down); `None` if this is not
-/// uniform along the line.
+/// Returns whether the right-hand side of the line between two points is the light one (px; y is down); `None` if this
+/// is not uniform along the line.
 pub(crate) fn light_side(image: &Grey, [from, to]: [&Vector2<f64>; 2], contrast: f64) -> Option<bool> {
     let way = to - from;
     let length = way.norm();
@@ -167,8 +167,8 @@ fn pruned(mut cells: GrowingGrid) -> GrowingGrid {
     }
 }
 
-/// Removes incomplete rows and columns at the border, of which less than half exists: those of a board are complete,
-/// those of noise next to it are not.
+/// Removes rows and columns at the border of which less than half exist: those of a board are complete, those of noise
+/// next to it are not.
 fn trimmed(mut cells: GrowingGrid) -> GrowingGrid {
     loop {
         let before = cells.len();
@@ -201,7 +201,7 @@ fn from_zero(cells: &GrowingGrid) -> Cells {
         .collect()
 }
 
-/// Columns and rows of a grid.
+/// Returns the columns and rows of a grid.
 pub(crate) fn size(cells: &Cells) -> [usize; 2] {
     let max = |axis: usize| cells.keys().map(|cell| cell[axis] + 1).max().unwrap_or_default();
     [max(0), max(1)]

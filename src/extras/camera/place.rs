@@ -13,7 +13,7 @@ use crate::{
 
 /// Minimum number of touched corners.
 const TOUCHES: usize = 4;
-/// Minimum spread of the touched corners in their shorter direction, in squares, so that they span a plane.
+/// Minimum spread of the touched corners in their shorter direction, in squares; they must span a plane.
 const SPREAD: f64 = 1.0;
 /// Maximum distance between touched corners and a rigid board, m.
 const RIGID_M: f64 = 0.002;
@@ -42,7 +42,7 @@ pub enum PlaceError {
     },
     /// The touched corners are on one line.
     OneLine,
-    /// No pose of the board fits what the camera sees.
+    /// No pose of the board fits the corners in the image.
     NotSeen,
 }
 
@@ -53,10 +53,10 @@ pub enum PlaceLack {
     NotRigid {
         /// The corner that is farthest away.
         corner: [usize; 2],
-        /// Its distance, m.
+        /// Distance, m.
         by_m: f64,
     },
-    /// Touched points are too far from where the camera sees them.
+    /// Touched points are too far from their positions in the camera image.
     HeldOut {
         /// Root mean square, px.
         rms_px: f64,
@@ -76,12 +76,12 @@ pub struct CameraPlacement {
     pub held_out_px: f64,
     /// Maximum of these distances, px.
     pub held_out_max_px: f64,
-    /// Why it may not be used; `None` if it may.
+    /// The reason why the pose may not be used; `None` if it may.
     pub lack: Option<PlaceLack>,
 }
 
 impl CameraPlacement {
-    /// Whether it may be used.
+    /// Returns whether the pose may be used.
     pub const fn verdict(&self) -> Verdict {
         if self.lack.is_some() { Verdict::PoorData } else { Verdict::Accepted }
     }
@@ -158,7 +158,8 @@ pub fn place(
     })
 }
 
-/// Returns the rigid motion that takes points to others best (Kabsch 1976); points on one line do not determine it.
+/// Returns the rigid motion that best maps points to other points (Kabsch 1976); points on one line do not determine
+/// it.
 fn rigid(from: &[Vector3<f64>], to: &[Vector3<f64>]) -> Option<Isometry3<f64>> {
     let count = from.len().min(to.len()).max(1) as f64;
     let [a, b] = [from, to].map(|points| points.iter().sum::<Vector3<f64>>() / count);

@@ -4,7 +4,7 @@ use nalgebra::{Matrix2, Vector2};
 
 use crate::Grey;
 
-/// Half the side of the window around a corner, relative to the distance to the next corner, and its limits, px.
+/// Half the side length of the window around a corner, relative to the distance to the next corner, and its limits, px.
 const WINDOW: f64 = 0.35;
 const WINDOW_PX: std::ops::RangeInclusive<f64> = 3.0..=11.0;
 const STEPS: usize = 30;
@@ -64,8 +64,8 @@ fn towards(smooth: &Grey, place_px: &Vector2<f64>, reach_px: f64) -> Option<Vect
     step.iter().all(|part| part.is_finite()).then(|| place_px + step)
 }
 
-/// Standard deviation of the blur across the edge between two corners, px: difference of light and dark over the
-/// steepest slope.
+/// Returns the standard deviation of the blur across the edge between two corners, px: difference of light and dark
+/// over the steepest slope.
 pub(crate) fn blur_px(image: &Grey, [from, to]: [&Vector2<f64>; 2]) -> Option<f64> {
     let way = to - from;
     let length = way.norm();

@@ -20,7 +20,7 @@ pub enum LeftOut {
     Blurred,
     /// The board had been in this place before.
     Repeated,
-    /// Its corners do not fit the others: the board is not flat, or was misread.
+    /// Corners do not fit the others: the board is not flat, or was misread.
     Outlier,
 }
 
@@ -34,7 +34,7 @@ pub enum CameraCause {
         /// Required views.
         needed: usize,
     },
-    /// Too few remain, because most are blurred.
+    /// Too few views remain, because most are blurred.
     Blurred {
         /// Number of blurred views.
         blurred: usize,
@@ -53,7 +53,7 @@ pub enum CameraCause {
         /// Maximum angle between two views, degrees.
         max_deg: f64,
     },
-    /// It was tilted about one axis only.
+    /// The board was tilted about one axis only.
     OneWay {
         /// Spread of the tilt in the other direction, degrees.
         spread_deg: f64,
@@ -108,7 +108,7 @@ pub struct LensReport {
 #[derive(Clone, Copy, Debug)]
 pub struct CalibratedLens {
     pub lens: Lens,
-    /// Its terms; those that do not improve held-out views are left out.
+    /// Terms of the lens; terms that do not improve held-out views are omitted.
     pub terms: Terms,
     /// Uncertainty of each parameter.
     pub deviations: Deviations,

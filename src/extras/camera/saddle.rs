@@ -13,7 +13,7 @@ const WEAKEST: f32 = 0.002;
 /// Maximum number of candidates examined, and of saddles kept.
 const LOOKED_AT: usize = 3000;
 const KEPT: usize = 900;
-/// Number of samples of the ring around a candidate, and its radius, px.
+/// Number of samples on the ring around a candidate, and the radius of the ring, px.
 const RING: usize = 32;
 const RADIUS_PX: f64 = 5.0;
 /// Minimum difference of light and dark on the ring, of 255.

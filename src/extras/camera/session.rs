@@ -17,7 +17,7 @@ const FRACTION: f64 = 0.75;
 /// A tilt counts from the first angle on, degrees; below the second the board counts as flat.
 const TILTED_DEG: f64 = 15.0;
 const FLAT_DEG: f64 = 12.0;
-/// Focal length while it is unknown, in widths of the image.
+/// Assumed focal length while it is unknown, in widths of the image.
 const FOCAL: f64 = 0.8;
 
 /// The side of the board that is nearer to the lens.
@@ -34,7 +34,7 @@ pub enum LensSide {
 pub enum ViewRequest {
     /// Parallel to the lens.
     Flat,
-    /// With this side nearer.
+    /// Tilted with this side nearer.
     Tilted(LensSide),
     /// In this part of the image.
     There(Region),
@@ -51,7 +51,7 @@ pub enum ViewOutcome {
     Taken,
     /// The board is moving.
     Moving,
-    /// It is blurred.
+    /// The image is blurred.
     Blurred,
     /// The board had been in this place before.
     TakenHere,
@@ -76,7 +76,7 @@ impl CameraSession {
         &self.board
     }
 
-    /// Size of the images, px.
+    /// Returns the size of the images, px.
     pub const fn size_px(&self) -> [usize; 2] {
         self.size_px
     }
@@ -115,7 +115,7 @@ impl CameraSession {
         self.views.pop();
     }
 
-    /// Positions of corners so far.
+    /// Returns the positions of corners so far.
     pub fn coverage(&self) -> CameraCoverage {
         let mut all = CameraCoverage::default();
         for view in &self.views {

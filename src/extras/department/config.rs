@@ -83,7 +83,7 @@ pub(crate) fn watcher(own: &MachineIdentity, address: &str) -> Result<Config, De
 pub(crate) enum ScoutingMode {
     /// They answer.
     Answers,
-    /// Only their address reaches them.
+    /// The address is found, but nothing responds at it.
     Silent,
 }
 

@@ -26,7 +26,7 @@ pub enum DepartmentError {
     /// This machine has the wrong role.
     #[error("this machine joined as a {is}, but a {needed} is required; join with another certificate")]
     Role {
-        /// Its role.
+        /// Role.
         is: &'static str,
         /// The required role.
         needed: &'static str,
@@ -56,7 +56,7 @@ pub enum DepartmentError {
 }
 
 impl DepartmentError {
-    /// For errors of this file.
+    /// Returns a function that converts errors of this file.
     pub(crate) fn of_file(path: &std::path::Path) -> impl FnOnce(io::Error) -> Self {
         let path = path.to_owned();
         move |source| Self::File { path, source }

@@ -1,4 +1,4 @@
-//! Publishes a rig's recording: its session in bundles, and the content of its screen.
+//! Publishes a rig's recording: its session in batches, and the content of its screen.
 
 use std::{
     collections::BTreeMap,
@@ -23,13 +23,13 @@ use nima_session::{
     sinks::Audience,
 };
 
-/// Duration of a bundle of the session, ns; a remote file can lose at most this much.
+/// Duration of a batch of the session, ns; a remote file can lose at most this much.
 const BUNDLE_NS: u64 = 400_000_000;
 /// Maximum size of a bundle, bytes.
 const BUNDLE_BYTES: usize = 4 << 20;
 /// States sent together: 50 ms.
 const MOMENTS: u64 = 10;
-/// Interval at which persistent state is repeated, s: a late watcher waits at most this long.
+/// Interval at which persistent state is repeated, s: a late watcher waits for at most this long.
 const RECAP_S: f64 = 1.0;
 
 /// Input of the publishing thread.
@@ -37,7 +37,7 @@ const RECAP_S: f64 = 1.0;
 pub(crate) enum FeedMessage {
     /// A session begins.
     Begins(SessionHead),
-    /// A file that describes the running session: its name and its text.
+    /// A file that describes the running session: name and text.
     File(String, String),
     /// A part of the session.
     Bundle(Bundle),
@@ -154,7 +154,7 @@ impl Drop for DepartmentFeed {
     }
 }
 
-/// The events that still apply: a late screen needs them.
+/// The events that still apply, which a late monitor requires.
 #[derive(Debug, Default)]
 struct Recap {
     reported_s: Option<f64>,
@@ -183,7 +183,7 @@ impl Recap {
         }
     }
 
-    /// Returns all of them, once per second.
+    /// Returns all of these events, once per second.
     fn due(&mut self, t_s: f64) -> Option<Vec<Event>> {
         if self.reported_s.is_some_and(|reported_s| (0.0..RECAP_S).contains(&(t_s - reported_s))) {
             return None;

@@ -20,17 +20,17 @@ pub(crate) fn rig_of(presence: &str) -> Option<&str> {
     presence.strip_prefix("nima/rig/").filter(|name| !name.contains('/'))
 }
 
-/// Description of the rig and its running session.
+/// Returns the description of the rig and its running session.
 pub(crate) fn about(rig: &str) -> String {
     format!("nima/about/{rig}")
 }
 
-/// Current content of its screen.
+/// Returns the current content of its screen.
 pub(crate) fn moments(rig: &str) -> String {
     format!("nima/moments/{rig}")
 }
 
-/// Returns the beginning of its session that is no longer in the stored bundles.
+/// Returns the beginning of the session that is no longer in the stored batches.
 pub(crate) fn head(rig: &str) -> String {
     format!("nima/head/{rig}")
 }

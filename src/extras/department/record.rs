@@ -1,4 +1,4 @@
-//! Records a rig's session into a file on this machine while it runs.
+//! Records a remote rig's session into a file on this machine while it runs.
 
 use std::{
     path::{Path, PathBuf},
@@ -14,7 +14,7 @@ use zenoh::{Wait as _, pubsub::Subscriber};
 
 use crate::{DepartmentError, RemoteRig, keys};
 
-/// How long to wait for a bundle before it is requested.
+/// Time to wait for a batch before requesting it.
 const PATIENCE: Duration = Duration::from_secs(2);
 /// Timeout of a query for bundles.
 const ANSWER: Duration = Duration::from_secs(5);
@@ -27,10 +27,10 @@ pub enum RecordStep {
     /// A session is being written.
     Writes {
         file: PathBuf,
-        /// Bytes in it.
+        /// Bytes in the file.
         bytes: u64,
     },
-    /// A session has ended, and so has its file.
+    /// A session has ended, and its file is complete.
     Ended {
         file: PathBuf,
         /// Number of messages in it.
@@ -122,7 +122,7 @@ impl<'a> RigRecording<'a> {
         Ok(RecordStep::Ended { file: path, messages: copy.finish()? })
     }
 
-    /// Begins a file with the oldest bundle that the rig has, if it runs a session.
+    /// Starts a file with the oldest batch that the rig has, if it runs a session.
     fn begin(&mut self) -> Result<(), DepartmentError> {
         let Some(head) = self.rig.ask(&keys::head(&self.rig.name))? else { return Ok(()) };
         let Some(head) = keys::unpack(&head.to_bytes()).map(|bytes| SessionHead::read(&bytes)).transpose()? else {
@@ -160,8 +160,8 @@ impl<'a> RigRecording<'a> {
         if bundle.closes { self.end() } else { Ok(self.report()) }
     }
 
-    /// Requests the missing bundles until there are no more. Bundles that the rig no longer has are lost: the file ends
-    /// there, and another one begins.
+    /// Requests the missing batches until none are missing. Batches that the rig no longer has are lost: the file ends
+    /// there, and another one starts.
     fn catch_up(&mut self) -> Result<RecordStep, DepartmentError> {
         loop {
             let Some(open) = &self.file else { return Ok(RecordStep::Waits) };

@@ -29,7 +29,7 @@ impl RetainedSession {
         Self { head, bundles: VecDeque::new(), bytes: 0, max_bytes }
     }
 
-    /// Adds the next bundle; returns its compressed bytes.
+    /// Adds the next batch; returns its compressed bytes.
     pub(crate) fn add(&mut self, bundle: &Bundle) -> Arc<[u8]> {
         let packed: Arc<[u8]> = pack(&bundle.pack()).into();
         self.bytes += packed.len();
@@ -54,7 +54,7 @@ impl RetainedSession {
         self.head.session
     }
 
-    /// Returns the bundles from this one on, with their numbers: about this many bytes, but at least one bundle.
+    /// Returns the batches from this one on, with their numbers: about this many bytes, but at least one batch.
     pub(crate) fn from(&self, number: u64, max_bytes: usize) -> Vec<(u64, Arc<[u8]>)> {
         let Some(skipped) = number.checked_sub(self.head.first) else { return Vec::new() };
         let skipped = usize::try_from(skipped).unwrap_or(usize::MAX);

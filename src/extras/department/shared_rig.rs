@@ -38,7 +38,7 @@ const LOOK_EVERY: Duration = Duration::from_millis(100);
 /// Approximate bytes of bundles in one answer.
 const ANSWER_BYTES: usize = 512 << 10;
 
-/// A rig that is shared with its department until this is dropped, for one session after the other.
+/// A rig that is shared with its department until this is dropped, for successive sessions.
 pub struct SharedRig {
     to: Sender<FeedMessage>,
     dropped: Arc<AtomicU64>,
@@ -111,12 +111,12 @@ impl SharedRig {
         &self.name
     }
 
-    /// Number of connected watchers.
+    /// Returns the number of connected watchers.
     pub fn watchers(&self) -> usize {
         usize::try_from(self.watchers.load(Ordering::Relaxed)).unwrap_or(usize::MAX)
     }
 
-    /// Number of entries that could not be published in time.
+    /// Returns the number of entries that could not be published in time.
     pub fn dropped(&self) -> u64 {
         self.dropped.load(Ordering::Relaxed)
     }
@@ -181,7 +181,7 @@ fn offer(
     Ok(Offers { _presence: presence, _answers: answers, _watchers: watchers })
 }
 
-/// Answers on zenoh's thread for this watcher: a slow reader delays no other.
+/// Answers this watcher on zenoh's thread: a slow reader does not delay others.
 fn reply(query: &Query, key: String, payload: Vec<u8>) {
     let Ok(key) = KeyExpr::try_from(key) else { return };
     query.reply(key, payload).wait().ok();

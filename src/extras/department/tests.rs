@@ -1,4 +1,4 @@
-//! A rig and its watchers, over TLS on loopback.
+//! Tests of a rig and its watchers, over TLS on loopback.
 
 use std::{
     io::{Read as _, Write as _},
@@ -54,7 +54,7 @@ impl Department {
     }
 }
 
-/// A running loop that is recorded into a file and for these audiences.
+/// A running loop that is recorded into a file and sent to these audiences.
 struct Running {
     handle: Option<LoopHandle>,
     recorder: Option<SessionRecorder>,
@@ -280,8 +280,8 @@ fn a_screen_that_is_too_slow_makes_nobody_wait() {
     drop((of_slow, watching));
 }
 
-/// Lateness and work of the loop alone and with ten watchers, one of which reads 1 kB per second; in turns, because the
-/// load of the machine changes.
+/// Measures lateness and work of the loop alone and with ten watchers, one of which reads 1 kB per second; in turns,
+/// because the load of the machine changes.
 #[test]
 #[ignore = "a minute and a half; printed, not judged"]
 fn figures_of_ten_watchers() {

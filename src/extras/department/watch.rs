@@ -25,7 +25,7 @@ const ANSWER: Duration = Duration::from_secs(3);
 pub struct RigInfo {
     #[prost(string, tag = "1")]
     pub department: String,
-    /// Its name there.
+    /// Name there.
     #[prost(string, tag = "2")]
     pub name: String,
     /// Name and version of its program; empty before the first session.
@@ -37,10 +37,10 @@ pub struct RigInfo {
     /// Start of the session, ns since 1970 (UTC).
     #[prost(fixed64, tag = "5")]
     pub started_ns: u64,
-    /// Its rig file.
+    /// Rig file.
     #[prost(string, tag = "6")]
     pub rig: String,
-    /// Its scene file.
+    /// Scene file.
     #[prost(string, tag = "7")]
     pub scene: String,
 }
@@ -76,7 +76,7 @@ impl RigInfo {
 pub struct FoundRig {
     /// The first of its addresses that answered.
     pub address: String,
-    /// Its description.
+    /// Description.
     pub about: RigInfo,
     /// Number of its watchers.
     pub watchers: usize,

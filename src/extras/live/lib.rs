@@ -28,7 +28,7 @@ pub enum LiveError {
     Listen { address: SocketAddr, reason: String },
 }
 
-/// A server that runs until it is dropped, for one session after the other.
+/// A server that runs until it is dropped, for successive sessions.
 pub struct LiveServer {
     context: Arc<Context>,
     handle: Option<WebSocketServerHandle>,
@@ -59,7 +59,7 @@ impl LiveServer {
         self.address
     }
 
-    /// Number of connected viewers.
+    /// Returns the number of connected viewers.
     pub fn viewers(&self) -> usize {
         self.handle.as_ref().map_or(0, WebSocketServerHandle::client_count)
     }

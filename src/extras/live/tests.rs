@@ -76,7 +76,7 @@ fn at_any_port() -> LiveServer {
     LiveServer::start("127.0.0.1:0".parse().unwrap(), "nima test").unwrap()
 }
 
-/// Sends the message repeatedly until the viewer has it: a subscription takes a moment.
+/// Sends the message repeatedly until the viewer receives it, because a subscription takes a moment.
 fn seen(audience: &mut dyn Audience, channel: usize, viewer: &mut Viewer, time_ns: u64, data: &[u8]) -> u32 {
     for _ in 0..20 {
         audience.message(channel, time_ns, data);

@@ -1,10 +1,10 @@
 //! Estimates the other machine's clock from four time stamps.
 //!
-//! An [`ClockExchange`] gives the apparent delay of one datagram in each direction. The offset lies between the two bounds
-//! that they set, whatever the delays are: the middle is the estimate, half the round trip its bound (Mills, RFC 5905).
-//! For every 0.2 s only the minimum apparent delay of each direction is kept; a straight line through the last 20 s of
-//! them, weighted by the stability of the round trip, gives offset and skew. A step of either clock moves the two
-//! apparent delays in opposite directions and leaves the round trip unchanged; a longer route does not.
+//! A [`ClockExchange`] gives the apparent delay of one datagram in each direction. The offset is between the two bounds
+//! given by these delays, whatever the delays are: the middle is the estimate, half the round trip its bound (Mills,
+//! RFC 5905). For every 0.2 s only the minimum apparent delay of each direction is kept; a straight line through the
+//! last 20 s of them, weighted by the stability of the round trip, gives offset and skew. A step of either clock moves
+//! the two apparent delays in opposite directions and leaves the round trip unchanged; a longer route does not.
 
 /// Minimum length of a window, s, and minimum number of exchanges in it; a window ends in any case after
 /// [`WINDOW_MAX_S`].
@@ -17,15 +17,15 @@ const WINDOWS: usize = 100;
 const WINDOWS_MIN: usize = 4;
 /// Minimum step that is reported, s; the estimate of two windows must exceed half of it.
 pub const STEP_MIN_S: f64 = 5e-3;
-/// A window is compared with this many earlier ones.
+/// Number of earlier windows with which a window is compared.
 const REFERENCE: usize = 5;
-/// A step exceeds the usual deviation of a window by this factor.
+/// A step must exceed the usual deviation of a window by this factor.
 const STEP_DEVIATIONS: f64 = 6.0;
-/// Usual deviation of a crystal's rate, as a fraction, and of a window's estimate, s; they determine how far the skew
-/// is shrunk.
+/// Usual deviation of a crystal's rate, as a fraction, and of a window's estimate, s; they determine how much the skew
+/// estimate is shrunk.
 const SKEW_USUAL: f64 = 1e-4;
 const WINDOW_USUAL_S: f64 = 2e-4;
-/// A window whose round trip exceeds the minimum by this, s, counts half.
+/// A window whose round trip exceeds the minimum by this, s, has half the weight.
 const ROUND_TRIP_SCALE_S: f64 = 1e-4;
 
 /// Four time stamps, s.
@@ -33,11 +33,11 @@ const ROUND_TRIP_SCALE_S: f64 = 1e-4;
 pub struct ClockExchange {
     /// Sending of our datagram, by our clock.
     pub origin_s: f64,
-    /// Its arrival, by their clock.
+    /// Arrival, by their clock.
     pub received_s: f64,
     /// Sending of their datagram, by their clock.
     pub sent_s: f64,
-    /// Its arrival, by our clock.
+    /// Arrival, by our clock.
     pub arrived_s: f64,
 }
 
@@ -113,9 +113,9 @@ impl ClockLine {
 /// Classification of a window.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum WindowVerdict {
-    /// Like the previous windows.
+    /// Similar to the previous windows.
     Usual,
-    /// Unlike them; the next one shows why.
+    /// Different from them; the next window shows why.
     Suspect,
     /// The route has become longer or shorter in one direction.
     OtherWay,
@@ -135,7 +135,7 @@ pub struct NetworkClock {
     half_s: f64,
     /// The windows from this one on are compared with the next.
     reference_from: usize,
-    /// Deviation of the last window, offset and half round trip, s, if it looked like a step.
+    /// Deviations of offset and half round trip of the last window, s, if they looked like a step.
     suspect: Option<(f64, f64)>,
     step: Option<ClockStep>,
     steps: u32,
@@ -200,7 +200,7 @@ impl NetworkClock {
         self.step
     }
 
-    /// Number of detected steps.
+    /// Returns the number of detected steps.
     pub const fn steps(&self) -> u32 {
         self.steps
     }

@@ -2,7 +2,7 @@ use nima_core::noise::Noise;
 
 use super::*;
 
-/// Two clocks and the network between them, simulated.
+/// Simulation of two clocks and the network between them.
 struct World {
     noise: Noise,
     clock: NetworkClock,

@@ -1,5 +1,5 @@
-//! Control of a follower, and its transfer by consent: one byte in every report, and in the next datagram when it
-//! changes.
+//! Control of a follower, and its transfer by consent: one byte in every report, and in the next datagram after a
+//! change.
 //!
 //! The byte describes a state, not an event, so that a lost datagram changes nothing: a console repeats its request for
 //! as long as it wants, the follower forwards the request for as long as it is open, and the controller's answer
@@ -11,15 +11,15 @@ pub enum ControlState {
     /// Not received yet.
     #[default]
     Unknown,
-    /// It has control of the follower: its payloads count, and it gets the follower's.
+    /// The console controls the follower: its payloads count, and it gets the follower's payloads.
     Holds,
     /// Another console has control.
     Waits,
-    /// No console has control: the first one to ask gets it.
+    /// No console has control: the first one to request it gets it.
     Free,
 }
 
-/// In the byte of both directions: the sender ends the session.
+/// In the byte of either direction: the sender ends the session.
 const GOODBYE: u8 = 0x80;
 
 /// The byte of a follower.
@@ -61,7 +61,7 @@ impl FromFollower {
 pub(crate) struct FromConsole {
     /// Whether it requests control.
     pub(crate) asks: bool,
-    /// Its answer to the request with this number; 0 for none.
+    /// Answer to the request with this number; 0 for none.
     pub(crate) answers: u8,
     /// The answer.
     pub(crate) consents: bool,
@@ -78,12 +78,12 @@ impl FromConsole {
     }
 }
 
-/// Why a link carries no payloads, or carries them imperfectly.
+/// Reason why a link carries no payloads, or carries them imperfectly.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LinkCause {
     /// The other side has ended the session: its program was closed.
     PeerClosed,
-    /// No data for this long, s: the cable, the network, or a stalled machine.
+    /// No data for this long, s: a problem of the cable, the network, or a stalled machine.
     Silent {
         /// Since the last datagram, s.
         for_s: f64,
@@ -104,7 +104,7 @@ pub enum LinkCause {
 /// Why a session was refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SessionRefusal {
-    /// The other side uses this other version of the protocol. Install the same version on both machines.
+    /// The other side uses this different version of the protocol. Install the same version on both machines.
     Version(u8),
     /// The other side does not have this key, or has changed its own: pair the two machines.
     Key,

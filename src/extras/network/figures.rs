@@ -5,7 +5,7 @@ use crate::{
     playout::{Delays, PlayoutCounts},
 };
 
-/// Why there are fewer redundant copies than requested.
+/// Reason why there are fewer redundant copies than requested.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Limit {
     /// They are not limited.
@@ -22,9 +22,9 @@ pub enum Limit {
 pub struct Copies {
     /// Required for the measured loss.
     pub wanted: usize,
-    /// In the last datagram.
+    /// Number of copies in the last datagram.
     pub used: usize,
-    /// Why there are fewer.
+    /// Reason why there are fewer than requested.
     pub limit: Limit,
 }
 
@@ -62,7 +62,7 @@ impl Delays {
 /// Measurements of one session.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SessionMeasurements {
-    /// Their clock, with its bound and the minimum round trip.
+    /// Estimate of the other side's clock, with its bound and the minimum round trip.
     pub clock: Option<ClockEstimate>,
     /// Number of detected clock steps.
     pub steps: u32,
@@ -74,7 +74,7 @@ pub struct SessionMeasurements {
     pub playout_wanted_s: Option<f64>,
     /// Recent fraction of datagrams lost on the way to us.
     pub loss: f64,
-    /// The same on the way to them, as they report it.
+    /// The same in the other direction, as reported by the other side.
     pub loss_there: f64,
     /// Datagrams that should have arrived.
     pub datagrams_expected: u64,
@@ -122,7 +122,7 @@ pub struct DroppedCounts {
 }
 
 impl DroppedCounts {
-    /// Sum of all causes.
+    /// Returns the sum of all causes.
     pub const fn total(&self) -> u64 {
         self.forged
             + self.replayed

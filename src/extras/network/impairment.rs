@@ -15,7 +15,7 @@ pub enum ImpairmentJitter {
     /// None.
     #[default]
     None,
-    /// The absolute value of a normal number with this standard deviation.
+    /// Absolute value of a normal random number with this standard deviation.
     Normal { deviation_s: f64 },
     /// A Pareto (Lomax) number: rarely very large.
     Pareto {
@@ -38,7 +38,8 @@ pub enum LossModel {
         #[serde(rename = "share")]
         fraction: f64,
     },
-    /// In bursts: while the line is bad all are lost, while it is good none (E. N. Gilbert, 1960; E. O. Elliott, 1963).
+    /// In bursts: while the link is bad, all datagrams are lost, while it is good, none (E. N. Gilbert, 1960; E. O.
+    /// Elliott, 1963).
     Bursts {
         /// Fraction lost in the long run.
         #[serde(rename = "share")]
@@ -54,7 +55,7 @@ pub enum LossModel {
 pub struct Flap {
     /// Duration of an interruption, s.
     pub down_s: f64,
-    /// Period, s; the interruption is at its end.
+    /// Period, s; the interruption is at the end of each.
     pub every_s: f64,
 }
 
@@ -69,11 +70,12 @@ pub struct ImpairmentSettings {
     pub delay_s: f64,
     /// Additional delay.
     pub jitter: ImpairmentJitter,
-    /// Whether jitter lets datagrams overtake each other; otherwise a late one delays those behind it, as in a queue.
+    /// Whether jitter lets datagrams overtake each other; otherwise a late datagram delays those behind it, as in a
+    /// queue.
     pub overtakes: bool,
     /// Lost datagrams.
     pub loss: LossModel,
-    /// This fraction is delayed by a further `reorder_s`, and overtaken meanwhile.
+    /// This fraction is delayed by a further `reorder_s`, and is overtaken in the meantime.
     pub reorder: f64,
     /// See `reorder`, s.
     pub reorder_s: f64,
@@ -152,14 +154,14 @@ pub struct Impairment {
     /// Whether the line is bad, and the end of that state, s.
     is_bad: bool,
     until_s: f64,
-    /// Arrival of the last datagram that keeps its place in the queue, s.
+    /// Arrival of the last datagram in the queue, s.
     last_s: f64,
     /// Until when the rate limit is busy, s.
     busy_s: f64,
 }
 
 impl Impairment {
-    /// The same seed gives the same arrivals.
+    /// Creates an impairment; the same seed gives the same arrivals.
     pub fn new(settings: ImpairmentSettings, seed: u64) -> Self {
         let noise = Noise::new(seed);
         Self {
@@ -239,7 +241,7 @@ impl Impairment {
         }
     }
 
-    /// Returns when it has passed the rate limit; `None` if it would wait too long.
+    /// Returns the time at which it has passed the rate limit; `None` if it would wait too long.
     fn through_limit(&mut self, now_s: f64, len: usize) -> Option<f64> {
         if self.settings.rate_bit_s <= 0.0 {
             return Some(now_s);
@@ -256,7 +258,7 @@ impl Impairment {
 /// A datagram in transit.
 #[derive(Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct DatagramInFlight {
-    /// ns, so that it can be ordered.
+    /// Time in ns, so that it can be ordered.
     due_ns: i64,
     /// Order of sending, for datagrams that are due at the same time.
     number: u64,
@@ -280,7 +282,7 @@ pub struct ImpairedLine {
 const UNDER_WAY_MAX: usize = 1 << 17;
 
 impl ImpairedLine {
-    /// The same seed gives the same line.
+    /// Creates a line; the same seed gives the same behaviour.
     pub fn new(settings: ImpairmentSettings, seed: u64) -> Self {
         let impairment = Impairment::new(settings, seed);
         Self { impairment, under_way: BinaryHeap::new(), number: 0, sent: 0, lost: 0, headers: crate::wire::UDP_LEN }

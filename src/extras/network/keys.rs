@@ -37,7 +37,7 @@ pub enum KeyError {
     #[error("{}, line {line}: {what}", path.display())]
     Content {
         path: PathBuf,
-        /// From 1.
+        /// Line number, from 1.
         line: usize,
         /// The fault.
         what: &'static str,
@@ -127,8 +127,8 @@ impl NetworkKeys {
         Self::of(private).ok_or(KeyError::Random)
     }
 
-    /// Opens the key in this folder; creates it, with its file, on first use. Only its owner may be able to read the
-    /// file.
+    /// Opens the key in this folder; creates it, with its file, on first use. The file must be readable by its owner
+    /// only.
     ///
     /// # Errors
     /// [`KeyError`] with the file.
@@ -172,7 +172,7 @@ impl NetworkKeys {
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PairedMachine {
-    /// The name given by its user.
+    /// Name given by the user.
     pub name: String,
     pub key: PublicKey,
 }

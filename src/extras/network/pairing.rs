@@ -1,5 +1,4 @@
-//! Pairing: two machines exchange their keys, and two people verify by a code that there is no third party between
-//! them.
+//! Pairing: two machines exchange their keys, and two people verify with a code that no third party is between them.
 //!
 //! Each machine contributes its key and a secret that is used once. The console first sends a hash of its own part (a
 //! commitment), then receives the follower's part, then reveals its own: a third party would have to guess before the
@@ -36,7 +35,7 @@ const DIGITS: u32 = 6;
 /// A request is repeated after this time.
 const AGAIN: Duration = Duration::from_millis(200);
 const NAP: Duration = Duration::from_millis(5);
-/// The last answer is repeated for this long when its request is repeated, because it may have been lost.
+/// The last answer is repeated for this long if its request is repeated, because it may have been lost.
 const REPEATS: Duration = Duration::from_secs(1);
 /// Maximum number of commitments that a follower answers in one pairing; more indicate an attack.
 const TRIES_MAX: usize = 8;
@@ -218,11 +217,11 @@ fn next(socket: &Socket, buffer: &mut [u8; 2 * LEN]) -> Option<(usize, SocketAdd
 /// The inputs of a pairing, for either side.
 #[derive(Debug)]
 pub struct Pairing<'a> {
-    /// Its keys.
+    /// Keys.
     pub keys: &'a NetworkKeys,
     /// The wrong codes entered on it.
     pub attempts: &'a mut Attempts,
-    /// How long to wait for the other side.
+    /// Time to wait for the other side.
     pub wait: Duration,
     /// Set to cancel the pairing.
     pub called_off: &'a AtomicBool,
@@ -275,7 +274,7 @@ impl Pairing<'_> {
         Err(PairingError::Nobody)
     }
 
-    /// Returns the follower's side: listens at this address. The first console that reveals its commitment is accepted;
+    /// Starts the follower's side: listens at this address. The first console that reveals its commitment is accepted;
     /// others are then ignored.
     ///
     /// # Errors

@@ -1,5 +1,5 @@
-//! Playout: delivers each payload at a fixed delay after it was sent, which nearly every payload meets, and which never
-//! steps.
+//! Playout: delivers each payload at a fixed delay after it was sent. Nearly every payload arrives within this delay,
+//! which never changes in steps.
 //!
 //! The target delay is the 99.9th percentile of the one-way delays of the last 5 s, plus a margin. The current delay
 //! follows it by at most 1 ms/s. Payloads are delivered in order, each once. One that arrives after its time is
@@ -28,7 +28,8 @@ const AGAIN_COUNT: u32 = 500;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct PlayoutSettings {
-    /// Whether payloads wait for the playout delay; otherwise each is delivered on arrival, unless a newer one was.
+    /// Whether payloads wait for the playout delay; otherwise each is delivered on arrival, unless a newer one was
+    /// delivered.
     pub waits: bool,
     /// Added to the percentile, s.
     pub margin_s: f64,
@@ -47,13 +48,13 @@ impl Default for PlayoutSettings {
 /// A payload that is delivered.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DuePayload<'a> {
-    /// From 0.
+    /// Number of the payload, from 0.
     pub number: u64,
     /// Time of sending, by their clock, s.
     pub sent_s: f64,
     /// Time since sending, s; the bound of the clock's estimate limits its error.
     pub age_s: f64,
-    /// Whether it arrived after its time.
+    /// Whether the payload arrived too late.
     pub is_late: bool,
     pub bytes: &'a [u8],
 }
@@ -67,7 +68,7 @@ pub struct PlayoutCounts {
     pub late: u64,
     /// Not received before a newer one was delivered.
     pub lost: u64,
-    /// Received after a newer one had been delivered; they are among the lost.
+    /// Number of payloads received after a newer one had been delivered; they also count as lost.
     pub stale: u64,
     /// Received in a later datagram than their own.
     pub recovered: u64,
@@ -141,7 +142,7 @@ pub struct Playout {
 }
 
 impl Playout {
-    /// Empty, with room for payloads of this length (bytes). All memory is allocated here.
+    /// Creates an empty buffer with room for payloads of this length (bytes). All memory is allocated here.
     pub fn new(settings: PlayoutSettings, payload_max: usize) -> Self {
         let room = settings.room.clamp(16, 1 << 16);
         Self {
@@ -168,7 +169,7 @@ impl Playout {
         self.counts
     }
 
-    /// Current apparent delay, s; `None` before the first delivery, and if payloads do not wait.
+    /// Returns the current apparent delay, s; `None` before the first delivery, and if payloads do not wait.
     pub fn delay_s(&self) -> Option<f64> {
         self.delay_s.filter(|_| self.settings.waits)
     }
@@ -178,7 +179,7 @@ impl Playout {
         self.wanted_s
     }
 
-    /// Number of the last payload in order, plus one.
+    /// Returns the number of the last payload in order, plus one.
     pub const fn end(&self) -> u64 {
         self.end
     }
@@ -206,7 +207,7 @@ impl Playout {
         }
     }
 
-    /// Restarts with the next payload: earlier ones are not delivered.
+    /// Restarts with the next payload; earlier ones are not delivered.
     pub fn begin(&mut self) {
         self.next = self.end;
         self.parts = [EMPTY; PARTS];
@@ -257,7 +258,7 @@ impl Playout {
         self.parts[self.part].add(delay_s);
     }
 
-    /// Percentile of this many payloads, s: the largest delays of all parts, merged.
+    /// Returns the percentile of this many payloads, s: the largest delays of all parts, merged.
     fn percentile_s(&self, count: u32) -> Option<f64> {
         let rank = (f64::from(count) * LATE_FRACTION).floor() as usize;
         let mut taken = [0_usize; PARTS];
@@ -293,8 +294,8 @@ impl Playout {
         }
     }
 
-    /// Before the first delivery: excludes payloads sent before this time (s, their clock), which only served for
-    /// measuring.
+    /// Before the first delivery: excludes payloads sent before this time (s, their clock), which served only for
+    /// measurement.
     fn leave_out(&mut self, before_s: f64) {
         let room = self.slots.len() as u64;
         let is_wanted = |number: &u64| {

@@ -1,4 +1,4 @@
-//! Redundancy: every datagram carries the last n payloads, so that a lost payload arrives with the next datagram.
+//! Redundancy: every datagram contains the last n payloads, so that a lost payload arrives with the next datagram.
 //!
 //! The receiver measures the loss of datagrams, and how often two in a row are lost, and reports it to the sender. The
 //! sender uses the smallest n at which a payload is lost with all its copies less often than [`LEFT_OVER`], as far as
@@ -10,14 +10,15 @@ use crate::wire::{AGE_MAX_S, COPIES_MAX, PayloadRecord};
 pub const LEFT_OVER: f64 = 1e-4;
 /// A datagram counts as lost when this many later ones have arrived.
 const PATIENCE: u64 = 64;
-/// A run of this many lost datagrams is an outage, which copies cannot remedy, and does not count towards their number.
+/// A run of this many lost datagrams is an outage, which copies cannot remedy, so it does not affect their number.
 const OUTAGE: u32 = 64;
 /// Number of datagram numbers stored.
 const ROOM: u64 = 1024;
 /// Length of one part of the statistics, s, and number of parts.
 const PART_S: f64 = 0.5;
 const PARTS: usize = 10;
-/// Number of recent parts that alone can raise the loss, so that a deteriorating link is answered within a second.
+/// Number of recent parts that can raise the loss on their own, so that a deteriorating link gets a response within a
+/// second.
 const RECENT: usize = 2;
 
 /// Returns the required number of copies: `loss` is the fraction of datagrams lost, `again` the fraction lost after a
@@ -53,7 +54,7 @@ pub struct RedundancyHistory {
 }
 
 impl RedundancyHistory {
-    /// Empty, for payloads of this length (bytes). All memory is allocated here.
+    /// Creates an empty history for payloads of this length (bytes). All memory is allocated here.
     pub fn new(payload_max: usize) -> Self {
         Self { bytes: vec![0; payload_max * COPIES_MAX], sent: [(0, 0.0); COPIES_MAX], payload_max, count: 0 }
     }
@@ -62,7 +63,7 @@ impl RedundancyHistory {
         self.count
     }
 
-    /// Adds a payload; `false` if it is too long.
+    /// Adds a payload; returns `false` if it is too long.
     pub fn add(&mut self, bytes: &[u8], now_s: f64) -> bool {
         if bytes.len() > self.payload_max {
             return false;
@@ -75,7 +76,7 @@ impl RedundancyHistory {
         true
     }
 
-    /// Length of the longest recent payload, bytes.
+    /// Returns the length of the longest recent payload, bytes.
     pub fn longest(&self) -> usize {
         let known = (self.count as usize).min(COPIES_MAX);
         self.sent.iter().take(known).map(|(len, _)| *len).max().unwrap_or(0)
@@ -136,9 +137,9 @@ impl RedundancyHistory {
 pub struct DatagramContent {
     /// Length, bytes.
     pub bytes: usize,
-    /// Number of payloads in it, including those left out.
+    /// Number of payloads in the datagram, including those left out.
     pub records: usize,
-    /// Number of payloads that it carries.
+    /// Number of payloads that the datagram contains.
     pub carried: usize,
 }
 
@@ -155,15 +156,15 @@ struct RedundancyPart {
 /// Measures the loss of datagrams.
 #[derive(Clone, Debug)]
 pub struct Losses {
-    /// One bit per number: whether it arrived.
+    /// One bit per number: whether the datagram arrived.
     came: [u64; (ROOM / 64) as usize],
     /// One more than the highest number received.
     end: u64,
-    /// Lower numbers have been judged.
+    /// Lower numbers have been evaluated.
     judged: u64,
     /// Length of the run of lost datagrams that ends with the last judged one.
     run: u32,
-    /// How many of them the statistics contain.
+    /// Number of datagrams of this run that the statistics contain.
     added: u32,
     parts: [RedundancyPart; PARTS],
     part: usize,
@@ -273,7 +274,7 @@ impl Losses {
         (loss, again.max(loss).min(1.0))
     }
 
-    /// Fraction of datagrams of the last 5 s that arrived after a later one.
+    /// Returns the fraction of datagrams of the last 5 s that arrived after a later one.
     pub fn overtaken(&self) -> f64 {
         let (all, ..) = self.sum(PARTS);
         let overtaken: u32 = self.parts.iter().map(|part| part.overtaken).sum();

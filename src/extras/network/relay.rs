@@ -1,4 +1,4 @@
-//! A relay between two real ends that impairs the line between them: on any system, without special rights.
+//! A relay between two real ends that impairs the link between them, on any system, without special permissions.
 //!
 //! Consoles send to it instead of to the follower. Each console gets its own socket towards the follower, so that the
 //! follower can tell them apart. The relay handles encrypted datagrams only, and adds 0.1 to 0.2 ms of its own.
@@ -24,7 +24,7 @@ const CLIENTS_MAX: usize = 8;
 /// Polling interval while datagrams are in transit, and while idle.
 const BUSY: Duration = Duration::from_micros(100);
 const REST: Duration = Duration::from_millis(1);
-/// Time without a datagram after which it is idle, s.
+/// Time without a datagram after which the relay is idle, s.
 const REST_AFTER_S: f64 = 0.1;
 /// Datagrams read from a socket before the others have their turn.
 const TURN: usize = 64;
@@ -34,15 +34,15 @@ const BUFFER_LEN: usize = 2048;
 /// Addresses and impairments of a relay.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RelaySettings {
-    /// Its own address.
+    /// Own address.
     pub at: SocketAddr,
     /// The follower's address.
     pub to: SocketAddr,
     /// Towards the follower.
     pub there: ImpairmentSettings,
-    /// From the follower.
+    /// From the follower to the console.
     pub back: ImpairmentSettings,
-    /// The same seed loses the same datagrams.
+    /// Seed; the same seed loses the same datagrams.
     pub seed: u64,
 }
 
@@ -106,7 +106,7 @@ struct RelayWork {
     settings: RelaySettings,
     totals: Arc<[AtomicU64; 4]>,
     clients: Vec<RelayClient>,
-    /// Number of clients so far: each has its own seeds.
+    /// Number of clients so far, which determines the seeds of each.
     made: u64,
     /// When the last datagram arrived.
     busy_s: f64,

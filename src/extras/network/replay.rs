@@ -2,13 +2,13 @@
 
 /// Numbers in the window.
 pub const WINDOW: u64 = 2048;
-/// One more than its length needs, because it begins and ends within words.
+/// One word more than the length requires, because the window starts and ends within words.
 const WORDS: usize = (WINDOW / 64) as usize + 1;
 
 /// Why a number is refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ReplayRefusal {
-    /// It has been accepted before.
+    /// The number has been accepted before.
     Replayed,
     Old,
 }

@@ -16,15 +16,15 @@ const EXPEDITED: u32 = 0xb8;
 /// A received datagram.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct DatagramArrival {
-    /// Its length, bytes; more than the buffer's if it was truncated (on Linux; Windows drops such a datagram).
+    /// Length, bytes; more than the buffer's if it was truncated (on Linux; Windows drops such a datagram).
     pub(crate) len: usize,
     pub(crate) from: SocketAddr,
-    /// Its arrival at this machine, since 1970; `None` if the system does not report it.
+    /// Arrival at this machine, since 1970; `None` if the system does not report it.
     pub(crate) stamp: Option<Duration>,
 }
 
 impl DatagramArrival {
-    /// Returns its arrival, s, by the clock that showed `now_s` at `looked` (since 1970).
+    /// Returns the arrival time, s, by the clock that showed `now_s` at `looked` (since 1970).
     pub(crate) fn came_s(&self, now_s: f64, looked: Duration) -> f64 {
         let Some(stamp) = self.stamp else { return now_s };
         let age_s = looked.as_secs_f64() - stamp.as_secs_f64();
@@ -34,7 +34,7 @@ impl DatagramArrival {
     }
 }
 
-/// Time since 1970: the clock of the stamps.
+/// Returns the time since 1970: the clock of the stamps.
 pub(crate) fn system_time() -> Duration {
     SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default()
 }
@@ -94,7 +94,8 @@ impl Socket {
     }
 }
 
-/// The kernel stamps each datagram on arrival, so that its delay does not depend on when it is read.
+/// Time stamps from the kernel: each datagram is stamped on arrival, so that its delay does not depend on when it is
+/// read.
 #[cfg(target_os = "linux")]
 #[expect(unsafe_code, reason = "std receives no time stamps")]
 mod stamps {

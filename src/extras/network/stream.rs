@@ -21,9 +21,9 @@ use crate::{
 
 /// Maximum age of an echo that is used, s.
 const EXCHANGE_MAX_S: f64 = 30.0;
-/// One datagram of this many carries a report; the first datagrams all do. A report in every datagram does not improve
-/// the clock: at 20 ms of jitter its error scatters between 1 and 7 ms for a report in every first, second and fourth
-/// datagram.
+/// One in this many datagrams contains a report, and so do all of the first datagrams. A report in every datagram does
+/// not improve the clock: at 20 ms of jitter its error scatters between 1 and 7 ms for a report in every first, second
+/// and fourth datagram.
 const REPORT_EVERY: u64 = 2;
 
 /// Settings of a stream.
@@ -44,8 +44,8 @@ impl Default for StreamSettings {
 }
 
 impl StreamSettings {
-    /// For the messages of a console and a follower with this many arms: 2 Mbit/s for each, which redundancy uses up on
-    /// a bad line. A good line needs 1 Mbit/s.
+    /// Returns settings for the messages of a console and a follower with this many arms: 2 Mbit/s for each, which
+    /// redundancy uses up on a bad link. A good link needs 1 Mbit/s.
     pub fn of_arms(arms: usize) -> Self {
         Self { payload_max: PAYLOAD_MAX, rate_max_bit_s: 2e6 * arms as f64, ..Self::default() }
     }
@@ -56,7 +56,7 @@ impl StreamSettings {
 pub enum SendResult {
     /// A datagram of this length, bytes.
     Datagram(usize),
-    /// The rate limit leaves no room now: the payload goes with the next datagram.
+    /// The rate limit leaves no room now: the payload is sent with the next datagram.
     Held,
     /// The payload exceeds the maximum of the settings.
     TooLong,
@@ -65,7 +65,7 @@ pub enum SendResult {
 /// Why a datagram of a session was dropped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DropCause {
-    /// It is not encrypted with this session's keys.
+    /// The datagram is not encrypted with this session's keys.
     Forged,
     /// A duplicate.
     Replayed,
@@ -77,11 +77,11 @@ pub enum DropCause {
 /// The content of an accepted datagram, other than payloads.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AcceptedDatagram {
-    /// Whether it is newer than all earlier ones.
+    /// Whether the datagram is newer than all earlier ones.
     pub is_newest: bool,
-    /// Its control byte, if it has one.
+    /// Control byte, if there is one.
     pub(crate) control: Option<u8>,
-    /// A clock step that it proved.
+    /// Clock step that the datagram revealed.
     pub step: Option<ClockStep>,
 }
 
@@ -133,8 +133,8 @@ fn byte(fraction: f64) -> u8 {
 }
 
 impl NetworkStream {
-    /// Makes a stream with the keys of a handshake; `session` is its number at the other side. All memory is allocated
-    /// here.
+    /// Creates a stream with the keys of a handshake; `session` is its number at the other side. All memory is
+    /// allocated here.
     pub(crate) fn new(keys: StatelessTransportState, session: u32, settings: &StreamSettings) -> Self {
         let payload_max = settings.payload_max.min(PAYLOAD_MAX);
         Self {
@@ -316,8 +316,8 @@ impl NetworkStream {
         Ok(AcceptedDatagram { is_newest, control, step })
     }
 
-    /// Returns when a datagram was sent, µs: without a report it contains only the lower half, and the first one with a
-    /// report provides the rest.
+    /// Returns when a datagram was sent, µs. Without a report, a datagram contains only the lower half of the time; the
+    /// first datagram with a report provides the rest.
     fn when(&self, head: &DatagramHead, arrived_s: f64) -> Option<u64> {
         if head.report.is_some() {
             return Some(head.sent_us);
@@ -362,7 +362,7 @@ impl NetworkStream {
         self.playout.begin();
     }
 
-    /// Moves the playout delay; call it once per tick, before payloads are taken.
+    /// Adjusts the playout delay; call it once per tick, before payloads are taken.
     pub fn advance(&mut self, now_s: f64) {
         self.playout.advance(now_s);
     }

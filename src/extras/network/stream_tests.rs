@@ -4,7 +4,7 @@ use crate::impairment::{Flap, ImpairedLine, ImpairmentJitter, ImpairmentSettings
 /// Two streams with a line in each direction, on a virtual clock of 1 kHz.
 struct Link {
     ends: [Box<NetworkStream>; 2],
-    /// From each end to the other.
+    /// Lines from each end to the other.
     lines: [ImpairedLine; 2],
     /// Payloads received by each end: number and age (s).
     got: [Vec<(u64, f64)>; 2],
@@ -137,7 +137,7 @@ fn the_limit_of_the_rate_is_kept_and_named() {
     }
 }
 
-/// A follower's data: its force in every tick, parameters with every tenth.
+/// Data of a follower: its force in every tick, and parameters in every tenth.
 #[test]
 fn long_payloads_arrive_although_the_rate_has_no_room_for_their_copies() {
     let settings = ImpairmentSettings {
@@ -302,7 +302,7 @@ fn fuzz_datagrams() {
     nima_testing::fuzz::rounds(|seed| assert_eq!(attack(20_000, seed), 0));
 }
 
-/// What to expect of a line: prints the table of docs/results/stream.md.
+/// Prints the table of docs/results/stream.md: the performance to expect on various links.
 #[test]
 #[ignore = "ten seconds: ./dev figures"]
 fn figures_of_lines() {

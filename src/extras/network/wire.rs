@@ -1,10 +1,10 @@
 //! The format of a datagram.
 //!
-//! Every datagram begins with the version of the protocol and its kind. Those of a handshake continue with [`MAGIC`]
+//! Every datagram starts with the version of the protocol and its kind. Those of a handshake continue with [`MAGIC`]
 //! and a number chosen by their sender, so that an answer cannot be forged without seeing the request; these fourteen
 //! bytes and a refusal stay the same in every version. Those of a session continue with the number of the session at
-//! the receiver and the lower half of their own number; the rest is encrypted: a [`DatagramHead`] with the time stamps, then
-//! the payloads, newest first.
+//! the receiver and the lower half of their own number; the rest is encrypted: a [`DatagramHead`] with the time stamps,
+//! then the payloads, newest first.
 //!
 //! Numbers are little-endian.
 
@@ -31,7 +31,7 @@ pub const COPIES_MAX: usize = 32;
 /// An older payload is not sent again, s.
 pub const AGE_MAX_S: f64 = 0.65;
 
-/// In every datagram of a handshake, after version and kind.
+/// Present in every datagram of a handshake, after version and kind.
 pub const MAGIC: [u8; 4] = *b"nima";
 /// Offset of the number chosen by a handshake's sender.
 const TOKEN_AT: usize = 6;
@@ -56,7 +56,7 @@ pub enum DatagramKind {
     Initiation,
     /// The second message of the handshake.
     Response,
-    /// No session will be made, with the cause.
+    /// No session will be created, with the cause.
     Refusal,
     /// Part of a session.
     Data,
@@ -88,7 +88,7 @@ pub enum Unreadable {
     Malformed,
     /// A handshake of another version of this protocol.
     ForeignVersion(u8),
-    /// In length and kind like a session's datagram, but of another version. It is never answered.
+    /// Like a datagram of a session in length and kind, but of another version. It is never answered.
     ForeignData(u8),
 }
 
@@ -255,7 +255,8 @@ impl DatagramHead {
 /// Length value of a payload that is left out of the datagram.
 const LEFT_OUT: u16 = 0x7fff;
 
-/// Length of a number below 2^15, bytes: below 128 one byte, otherwise two, the first with its highest bit set.
+/// Returns the length of a number below 2^15, bytes: below 128 one byte, otherwise two, the first with its highest bit
+/// set.
 const fn number_len(number: u16) -> usize {
     if number < 0x80 { 1 } else { 2 }
 }
@@ -282,12 +283,12 @@ fn number(bytes: &[u8]) -> Option<(u16, &[u8])> {
 pub struct PayloadRecord<'a> {
     /// Time between its first sending and the datagram, s.
     pub age_s: f64,
-    /// Its content; `None` if it is left out here, because it was sent before and there is no room for it.
+    /// Content; `None` if it is left out, because it was sent before and there is no room for it.
     pub bytes: Option<&'a [u8]>,
 }
 
 impl PayloadRecord<'_> {
-    /// Length of a record with a payload of this length and age, bytes.
+    /// Returns the length of a record with a payload of this length and age, bytes.
     pub fn length(payload: usize, age_s: f64) -> usize {
         let len = u16::try_from(payload).unwrap_or(LEFT_OUT);
         number_len(len) + number_len(age(age_s)) + payload

@@ -1,4 +1,4 @@
-//! A thread next to the loop's, for as long as its owner exists.
+//! Thread that runs next to the loop's thread for as long as its owner exists.
 
 use std::{
     io,
@@ -10,7 +10,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// A thread that takes turns until this is dropped; dropping waits for the current turn.
+/// A thread that runs turns until this is dropped; dropping waits for the current turn.
 #[derive(Debug)]
 pub(crate) struct NetworkWorker {
     ends: Arc<AtomicBool>,

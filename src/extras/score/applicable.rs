@@ -25,7 +25,7 @@ const WITH_END: [&str; 3] = ["completion_time_s", "time_over_reference", "out_of
 const OF_BOTH: [&str; 4] = ["transfers", "force_share", "bimanual_dexterity", "both_move_share"];
 
 impl CatalogueDefinition {
-    /// Returns whether a trial of this kind can have this measure, done with one hand or with two.
+    /// Returns whether a trial of this kind, done with one hand or with two, can have this measure.
     pub fn is_of(&self, kind: TaskKind, two_hands: bool) -> bool {
         let of = |ids: &[&str]| ids.contains(&self.id);
         let fits = match kind {

@@ -9,11 +9,11 @@ pub struct CatalogueDefinition {
     pub words: &'static str,
     /// Unit in the SI; `1` for a ratio, `count` for a number of events.
     pub unit: &'static str,
-    /// How it is computed.
+    /// Method of computation.
     pub definition: &'static str,
     /// Origin of the definition; `docs/score.md` lists the papers.
     pub source: &'static str,
-    /// Whether it is measured for each hand.
+    /// Whether the measure is computed for each hand.
     pub per_hand: bool,
 }
 

@@ -8,8 +8,8 @@ use crate::{
 /// A shorter path, m, is noise.
 const MIN_PATH_M: f64 = 1e-3;
 
-/// Straight lines between the positions at these times (s from the beginning, in order) over the tip's path length;
-/// `None` if it is zero. A segment with a gap in it is left out.
+/// Returns the total length of straight lines between the positions at these times (s from the beginning, in order)
+/// over the tip's path length; `None` if it is zero. A segment with a gap in it is left out.
 pub(crate) fn path_economy(motion: &TipMotion<'_>, times_s: &[f64]) -> Option<f64> {
     let mut straight_m = 0.0;
     let mut travel_m = 0.0;

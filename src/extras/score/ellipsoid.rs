@@ -26,7 +26,7 @@ impl WeightedScatter {
         }
     }
 
-    /// Volume in the cube of the vectors' unit; zero for a cloud in a plane, `None` for none.
+    /// Returns the volume in the cube of the vectors' unit; zero for a cloud in a plane, `None` for none.
     pub(crate) fn volume(&self) -> Option<f64> {
         let covariance = (self.weight > 0.0).then(|| self.scatter / self.weight)?;
         // Rounding can make the determinant of a flat cloud slightly negative.

@@ -4,8 +4,7 @@ use std::collections::BTreeSet;
 
 use nima_core::{SIDES, Side, task::TaskEvent};
 
-/// Maximum number of times stored for the paths between them, and of lumps distinguished; more indicate a fault of the
-/// input.
+/// Maximum number of times stored for the paths between them, and of lumps distinguished; more indicate faulty input.
 const MAX: usize = 10_000;
 
 /// Counts of one trial; times in s from its beginning.
@@ -92,12 +91,12 @@ impl Events {
         }
     }
 
-    /// Number of different lumps that were marked.
+    /// Returns the number of different lumps that were marked.
     pub(crate) fn found(&self) -> usize {
         self.found.len()
     }
 
-    /// Returns when this hand grasped or released a ring, in order, s.
+    /// Returns the times at which this hand grasped or released a ring, in order, s.
     pub(crate) fn handled_s(&self, side: Side) -> Vec<f64> {
         let mut times_s = self.handled_s[side.index()].clone();
         times_s.sort_by(f64::total_cmp);

@@ -7,7 +7,7 @@ use crate::{ellipsoid::WeightedScatter, signal::RATE_HZ, task::TaskFile};
 /// An excursion over the threshold ends below this fraction of it, so that noise at the threshold counts once.
 const BACK: f64 = 0.9;
 
-/// Sums over the raw samples; each one counts for half of the time to its neighbours (trapezoid).
+/// Sums over the raw samples, each weighted with half of the time to its neighbours (trapezoid).
 #[derive(Clone, Debug)]
 pub(crate) struct Forces {
     contact_n: f64,
@@ -111,7 +111,7 @@ impl Forces {
         self.peak_n
     }
 
-    /// Maximum force from `from_s` to `to_s`, N.
+    /// Returns the maximum force from `from_s` to `to_s`, N.
     pub(crate) fn peak_between_n(&self, from_s: f64, to_s: f64) -> Option<f64> {
         let [from, to] = [from_s, to_s].map(|t_s| (t_s.max(0.0) * RATE_HZ) as usize);
         let to = (to + 1).min(self.peaks_n.len());

@@ -1,4 +1,4 @@
-//! Whether a trainee is shown the result of a trial: always, never, or less often with growing skill.
+//! Schedule for showing a trainee the result of a trial: always, never, or less often with growing skill.
 //!
 //! Results after every trial guide a beginner, but those who practise with fewer results learn more, because they do
 //! not come to depend on them (guidance hypothesis; Salmoni, Schmidt and Walter 1984, Psychol. Bull. 95:355-386). In
@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{Score, TaskCriterion};
 
-/// Number of trials by which skill is judged.
+/// Number of recent trials used to determine skill.
 const JUDGED: u32 = 4;
 /// Results per trial for a beginner and, halved, for a trainee who always meets the criterion, in units of `1 / (2 *
 /// JUDGED)`.
@@ -24,12 +24,12 @@ pub enum FeedbackSchedule {
     /// After every trial.
     #[default]
     Always,
-    /// After every trial at first, after half of them with full skill.
+    /// After every trial at first, and after half of the trials at full skill.
     Fades,
     Never,
 }
 
-/// Follows the trials of one person and decides after each whether its result is shown.
+/// Follows the trials of one person and decides after each trial whether its result is shown.
 ///
 /// With [`FeedbackSchedule::Fades`] results are shown after the fraction `1 - m / 8` of the trials, where `m` is how many of
 /// the last four (fewer at the beginning) met the criterion: all of them for a beginner, half of them for a trainee who
@@ -100,7 +100,7 @@ impl Guidance {
         }
     }
 
-    /// How many of the last trials met the criterion.
+    /// Returns how many of the last trials met the criterion.
     fn skill(&self) -> u32 {
         self.met.iter().filter(|met| **met).count() as u32
     }

@@ -46,7 +46,7 @@ pub struct LearningCurve {
     pub shape: CurveShape,
     /// The asymptotic time, s: the plateau.
     pub asymptote_s: f64,
-    /// How much slower the first trial is, s.
+    /// Additional time of the first trial, s.
     pub gain_s: f64,
     /// Exponential: trials in which the remainder falls to 1/e. Power: the exponent. Flat: 0.
     pub rate: f64,
@@ -120,8 +120,8 @@ fn best(shape: CurveShape, points: &Points, [min, max]: [f64; 2]) -> LearningCur
     linear(step).curve(shape, rate(step), points)
 }
 
-/// Least squares for the asymptote and the gain, neither below zero: performance does not get worse, and no time is
-/// negative.
+/// Least squares for the asymptote and the gain, neither below zero: performance is assumed not to get worse, and no
+/// time is negative.
 #[derive(Clone, Copy)]
 struct LearningLinear {
     asymptote: f64,

@@ -8,12 +8,12 @@ use crate::{Score, TaskCriterion};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum TrainingState {
-    /// Not yet `consecutive` trials in a row.
+    /// The trainee has not yet met the criterion in `consecutive` trials in a row.
     Practising {
         /// Number of successive trials that met the criterion, up to the newest.
         in_a_row: u32,
     },
-    /// They were reached; the additional ones follow.
+    /// The consecutive trials were reached; the additional ones follow.
     Confirming {
         /// Number of additional trials that met the criterion.
         additional: u32,
@@ -70,7 +70,7 @@ impl Proficiency {
         self.standing
     }
 
-    /// Number of trials so far, up to the deciding one.
+    /// Returns the number of trials so far, up to the deciding one.
     pub fn trials(&self) -> u32 {
         self.trials
     }

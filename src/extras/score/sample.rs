@@ -13,7 +13,7 @@ const LARGEST_N: f64 = 1e5;
 pub struct ScoreSample {
     /// Time, s, on any clock that runs forward; the same as the events'.
     pub t_s: f64,
-    /// Both, in the order of [`nima_core::Side::ALL`]; `None` while that side is unknown.
+    /// Both hands, in the order of [`nima_core::Side::ALL`]; `None` while that side is unknown.
     pub hands: [Option<HandSample>; SIDES],
 }
 

@@ -18,7 +18,7 @@ pub enum TrialOutcome {
     Unfinished,
 }
 
-/// One measure of a trial, of one hand if it has a side.
+/// One measure of a trial; of one hand if it has a side.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measure {
     /// Id, text, unit, definition and source.
@@ -31,7 +31,7 @@ pub struct Measure {
 }
 
 impl Measure {
-    /// Its key in JSON: the id, and the hand if it has one (`path_length_m_right`).
+    /// Returns the key in JSON: the id, and the hand if the measure has one (`path_length_m_right`).
     pub fn key(&self) -> String {
         match self.side {
             Some(side) => format!("{}_{}", self.definition.id, side.word()),

@@ -15,7 +15,7 @@ use crate::{
     two_hands::TwoHands,
 };
 
-/// Maximum plausible time, s: beyond it a clock is broken, and steps of 1 ms lose their precision.
+/// Maximum plausible time, s: beyond this, the clock is faulty, and steps of 1 ms lose their precision.
 const LATEST_S: f64 = 1e12;
 /// Period before a mark whose force belongs to the marked lump, s.
 const BEFORE_MARK_S: f64 = 2.0;
@@ -34,7 +34,7 @@ pub struct Scorer {
     /// Newest sample and newest event, s from the beginning.
     newest_s: Option<f64>,
     latest_s: f64,
-    /// The end, s from the beginning, and its kind.
+    /// End of the trial, s since its start, and the kind of ending.
     end: Option<(f64, TrialOutcome)>,
     samples: u64,
     samples_skipped: u64,
@@ -109,8 +109,8 @@ impl Scorer {
         }
     }
 
-    /// Ends the trial with the current data and returns its score. For a trial of 300 s this takes about 100 ms and 15
-    /// MB, for the spectra, so do not call it within the loop.
+    /// Ends the trial with the current data and returns its score. For a trial of 300 s, the spectra take about 100 ms
+    /// and 15 MB, so do not call this within the loop.
     pub fn finish(self) -> Score {
         let (end_s, outcome) = self.end.unwrap_or((self.latest_s, TrialOutcome::Unfinished));
         let mut score = Score::new(outcome);

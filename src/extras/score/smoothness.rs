@@ -8,12 +8,12 @@ const CUTOFF_HZ: f64 = 10.0;
 const THRESHOLD: f64 = 0.05;
 const PADDING: usize = 16;
 
-/// A hand that was never faster, m/s, made no movement to judge: its spectrum would be that of noise.
+/// If a hand was never faster than this, m/s, there is no movement to evaluate: its spectrum would be that of noise.
 const MOVED_M_PER_S: f64 = 0.005;
-/// Minimum number of points of a judged segment: 0.2 s.
+/// Minimum number of points of an evaluated segment: 0.2 s.
 const MIN_POINTS: usize = 21;
 
-/// Returns whether there is a movement to judge.
+/// Returns whether there is a movement to evaluate.
 fn judged(speed: &[f64]) -> bool {
     speed.len() >= MIN_POINTS && peak(std::iter::once(speed)).is_some_and(|peak| peak >= MOVED_M_PER_S)
 }
@@ -30,7 +30,7 @@ pub(crate) fn log_dimensionless_jerk(speed: &[f64], jerk: &[f64]) -> Option<f64>
     (dimensionless > 0.0).then(|| -libm::log(dimensionless))
 }
 
-/// Length of the normalised spectrum of the speed, negative: smoother is nearer to zero.
+/// Returns the length of the normalised spectrum of the speed, negative: smoother is nearer to zero.
 pub(crate) fn spectral_arc_length(speed: &[f64]) -> Option<f64> {
     if !judged(speed) {
         return None;

@@ -29,7 +29,7 @@ pub struct TaskFile {
     pub name: String,
     /// Kind of task.
     pub kind: TaskKind,
-    /// The trial ends after this time, s. 300 s in the peg transfer of FLS (Derossis et al. 1998).
+    /// Time limit of the trial, s. 300 s in the peg transfer of FLS (Derossis et al. 1998).
     #[serde(default = "time_limit_s")]
     pub time_limit_s: f64,
     /// Subtracted from the score for each drop out of view, s. FLS does not publish its value; 10 s is our choice.
@@ -44,7 +44,7 @@ pub struct TaskFile {
     /// Force at the tip above which the instrument is in contact, N: above the noise of the force.
     #[serde(default = "contact_n")]
     pub contact_n: f64,
-    /// Number of lumps that can be found. In a scene with lumps it is their number.
+    /// Number of lumps that can be found. In a scene with lumps, this is the number of lumps in the scene.
     #[serde(default)]
     pub lumps: Option<u32>,
     /// A mark finds a lump if it is on the lump, or at most this far from it, m.
@@ -55,8 +55,8 @@ pub struct TaskFile {
     pub proficiency: TaskCriterion,
 }
 
-/// When training is complete: by default the criterion for peg transfer in Ritter and Scott 2007 (Surg. Innov.
-/// 14:107-112) and its curriculum.
+/// Criterion for the end of training; the default is the criterion for peg transfer in Ritter and Scott 2007 (Surg.
+/// Innov. 14:107-112) and its curriculum.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct TaskCriterion {
@@ -87,8 +87,8 @@ impl Default for TaskCriterion {
 }
 
 impl TaskCriterion {
-    /// Returns whether a trial meets it: by its completion time (s; `None` if it was not completed) and its drops out
-    /// of view.
+    /// Returns whether a trial meets the criterion: by its completion time (s; `None` if it was not completed) and its
+    /// drops out of view.
     pub fn is_met(&self, completion_time_s: Option<f64>, drops_out_of_view: u32) -> bool {
         completion_time_s.is_some_and(|time_s| time_s <= self.time_s) && drops_out_of_view <= self.drops_out_of_view
     }

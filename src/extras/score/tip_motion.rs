@@ -12,7 +12,7 @@ use crate::{
 pub(crate) const IDLE_M_PER_S: f64 = 0.005;
 /// A peak of speed counts as a movement if the speed rises and falls by this much around it, m/s.
 const PEAK_M_PER_S: f64 = 0.010;
-/// Minimum number of steps of a movement whose smoothness is judged: 0.3 s.
+/// Minimum number of steps of a movement whose smoothness is evaluated: 0.3 s.
 const MOVEMENT_STEPS: usize = 30;
 
 /// A segment of the track without a gap.
@@ -47,7 +47,7 @@ impl<'a> TipMotion<'a> {
         self.sum(path_m)
     }
 
-    /// Path up and down, m.
+    /// Returns the path up and down, m.
     pub(crate) fn depth_m(&self) -> Option<f64> {
         self.sum(|points| points.windows(2).map(|two| (two[1].z - two[0].z).abs()).sum())
     }
@@ -123,7 +123,7 @@ impl<'a> TipMotion<'a> {
     }
 }
 
-/// Length of the path through the points, m.
+/// Returns the length of the path through the points, m.
 pub(crate) fn path_m(points: &[Vector3<f64>]) -> f64 {
     points.windows(2).map(|two| (two[1] - two[0]).norm()).sum()
 }
@@ -132,8 +132,8 @@ fn smoothness(speed: &[f64], jerk: &[f64]) -> [Option<f64>; 2] {
     [log_dimensionless_jerk(speed, jerk), spectral_arc_length(speed)]
 }
 
-/// Number of peaks of a speed that starts from rest: reversals of at least [`PEAK_M_PER_S`] after a rise of as much. A
-/// peak that is cut off by the end counts.
+/// Returns the number of peaks of a speed that starts from rest: reversals of at least [`PEAK_M_PER_S`] after a rise of
+/// as much. A peak that is cut off by the end counts.
 fn peaks(speed: &[f64]) -> usize {
     let mut count = 0;
     let mut rising = false;

@@ -9,7 +9,7 @@ use crate::{
 
 /// Minimum number of points with both hands known for a result: 1 s.
 const MIN_POINTS: usize = 100;
-/// A speed that varies less (standard deviation, m/s) has only the correlation of its noise.
+/// A speed that varies less than this (standard deviation, m/s) has only the correlation of its noise.
 const MIN_SD_M_PER_S: f64 = 1e-4;
 
 /// Speeds of both hands on the grid of the trial.
@@ -32,14 +32,14 @@ impl TwoHands {
         Self { speeds }
     }
 
-    /// Time in which no known hand moves, s.
+    /// Returns the time in which no known hand moves, s.
     pub(crate) fn idle_s(&self) -> Option<f64> {
         let known = self.speeds.iter().filter(|hands| hands.iter().flatten().next().is_some());
         let idle = known.clone().filter(|hands| hands.iter().flatten().all(|speed| *speed < IDLE_M_PER_S));
         (known.count() > 0).then_some(idle.count() as f64 * STEP_S)
     }
 
-    /// Fraction of the time with both hands known in which both move.
+    /// Returns the fraction of the time with both hands known in which both move.
     pub(crate) fn both_move(&self) -> Option<f64> {
         let count = self.pairs().count();
         let both = self.pairs().filter(|pair| pair.iter().all(|speed| *speed >= IDLE_M_PER_S)).count();

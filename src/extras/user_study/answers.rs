@@ -41,13 +41,13 @@ pub struct Ratings {
 }
 
 impl Ratings {
-    /// In the order of [`TLX_SCALES`].
+    /// Returns the values in the order of [`TLX_SCALES`].
     pub const fn all(self) -> [u8; 6] {
         let Self { mental, physical, temporal, performance, effort, frustration } = self;
         [mental, physical, temporal, performance, effort, frustration]
     }
 
-    /// From the order of [`TLX_SCALES`].
+    /// Creates the ratings from values in the order of [`TLX_SCALES`].
     pub const fn of([mental, physical, temporal, performance, effort, frustration]: [u8; 6]) -> Self {
         Self { mental, physical, temporal, performance, effort, frustration }
     }

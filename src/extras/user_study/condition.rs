@@ -11,13 +11,13 @@ use serde::{Deserialize, Serialize};
 /// Maximum length of a name, characters.
 const NAME_MAX: usize = 40;
 
-/// A condition: the feedback to the hand. Its `Debug` shows nothing, so that no log reveals it by accident.
+/// A condition: the feedback to the hand. Its `Debug` output is empty, so that no log reveals it by accident.
 #[derive(Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Condition {
-    /// Its name, for the report after the unblinding.
+    /// Name, for the report after the unblinding.
     pub name: String,
-    /// Whether the hand feels no force at all; then there is neither mode nor gain.
+    /// Whether the hand feels no force at all; there is then neither mode nor gain.
     #[serde(default)]
     pub no_force: bool,
     /// The rendering mode.
@@ -78,7 +78,7 @@ impl Condition {
         of(self) == of(other)
     }
 
-    /// Words that reveal it: its name, its mode, its delay.
+    /// Returns the texts that would reveal the condition: its name, its mode, its delay.
     pub(crate) fn tells(&self) -> Vec<String> {
         let delay = self.delay_ms.filter(|delay_ms| *delay_ms > 0.0).map(|delay_ms| format!("{delay_ms}"));
         let mode = self.mode.map(|mode| mode.name().to_owned());

@@ -35,11 +35,11 @@ pub struct TrialId {
     pub phase: TrialPhase,
     /// Number among the trials of its phase, from 1.
     pub number: u32,
-    /// From 1; more after interruptions.
+    /// Number of the attempt, from 1; higher after interruptions.
     pub attempt: u32,
 }
 
-/// How a trial with a result ended.
+/// Ending of a trial that has a result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum TrialEnding {
@@ -48,7 +48,7 @@ pub enum TrialEnding {
 }
 
 impl TrialEnding {
-    /// For a trial with a result; `None` if it was given up or interrupted.
+    /// Returns the ending of a trial with a result; `None` if it was given up or interrupted.
     pub const fn of(outcome: TrialOutcome) -> Option<Self> {
         match outcome {
             TrialOutcome::Completed => Some(Self::Completed),

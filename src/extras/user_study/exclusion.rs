@@ -9,7 +9,7 @@ use crate::{ParticipantProgress, StudyPlan, StudyState};
 pub struct ExclusionRule {
     /// The measure to which it applies.
     pub measure: String,
-    /// When it applies.
+    /// Comparison at which it applies.
     pub is: MeasureComparison,
     /// Limit of the measure, in its unit; not for `missing`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -21,15 +21,15 @@ pub struct ExclusionRule {
     pub times: u32,
 }
 
-/// How a measure is compared.
+/// Comparison of a measure with a limit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum MeasureComparison {
-    /// It is greater than the limit.
+    /// The measure is greater than the limit.
     Above,
-    /// It is less than the limit.
+    /// The measure is less than the limit.
     Below,
-    /// It has no value.
+    /// The measure has no value.
     Missing,
 }
 
@@ -37,7 +37,7 @@ pub enum MeasureComparison {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Excludes {
-    /// This trial.
+    /// Excludes this trial.
     Trial,
     /// All trials of the participant.
     Participant,
@@ -47,7 +47,7 @@ pub enum Excludes {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Exclusion {
     pub participant: String,
-    /// Number of the trial; `None` for all of them.
+    /// Number of the trial; `None` for all trials.
     pub trial: Option<u32>,
     /// The rule as text, or the reason given by a person.
     pub why: String,

@@ -21,7 +21,7 @@ const NAME_MAX: usize = 120;
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StudyFile {
-    /// Name for screen and report. In a blind study it must not name a condition.
+    /// Name for the screen and the report. In a blind study it must not name a condition.
     pub name: String,
     /// Built-in name or file.
     pub scene: String,
@@ -34,7 +34,8 @@ pub struct StudyFile {
     /// The scored task, instead of the scene's.
     #[serde(default)]
     pub task: Option<TaskFile>,
-    /// The measure that decides, chosen before the first trial: a key of `docs/reference/measures.md`, with the hand where it has one.
+    /// Primary measure, chosen before the first trial: a key of `docs/reference/measures.md`, with the hand if it has
+    /// one.
     pub primary: String,
     /// Further measures of the report.
     #[serde(default)]
@@ -46,17 +47,17 @@ pub struct StudyFile {
     /// Whether the conditions are hidden until the unblinding.
     #[serde(default = "yes")]
     pub blind: bool,
-    /// Makes orders and labels reproducible. With the seed and this file the labels can be found out: omit it in a real
-    /// study.
+    /// Makes orders and labels reproducible. With the seed and this file, the labels can be determined, so omit it in a
+    /// real study.
     #[serde(default)]
     pub seed: Option<u64>,
     /// Whether every trial is recorded as a session; in a blind study the session is encrypted when the trial is over.
     #[serde(default)]
     pub record: bool,
-    /// What to do after an interrupted trial.
+    /// Action after an interrupted trial.
     #[serde(default)]
     pub interrupted: InterruptionPolicy,
-    /// Maximum attempts at a trial; after that it has no result.
+    /// Maximum number of attempts at a trial; after that, it has no result.
     #[serde(default = "three")]
     pub attempts: u32,
     /// The compared conditions.
@@ -79,7 +80,7 @@ pub struct StudyFile {
     pub exclusion: Vec<ExclusionRule>,
 }
 
-/// What to do after a trial that was interrupted or given up.
+/// Action after a trial that was interrupted or given up.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum InterruptionPolicy {
@@ -96,14 +97,14 @@ pub struct Practice {
     /// Name of the condition for practice; by default each in turn, in the participant's order.
     #[serde(default)]
     pub under: Option<String>,
-    /// What to do if the criterion was not met in the maximum number of trials.
+    /// Action if the criterion was not met within the maximum number of trials.
     #[serde(default)]
     pub not_reached: NotReached,
     /// When practice is over.
     pub criterion: TaskCriterion,
 }
 
-/// What to do with a participant who did not meet the criterion.
+/// Action for a participant who did not meet the criterion.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum NotReached {
@@ -130,7 +131,7 @@ pub struct Breaks {
 pub struct Questionnaires {
     /// After the last trial under each condition.
     pub after_condition: Vec<Questionnaire>,
-    /// At the end.
+    /// Questionnaires at the end.
     pub at_end: Vec<Questionnaire>,
 }
 
@@ -161,7 +162,7 @@ const fn three() -> u32 {
     3
 }
 
-/// Returns whether there is such a measure: `completion_time_s`, `peak_force_n_right`.
+/// Returns whether this is the key of a measure: `completion_time_s`, `peak_force_n_right`.
 pub(crate) fn is_measure(key: &str) -> bool {
     measure_keys().any(|known| known == key)
 }
@@ -171,7 +172,7 @@ pub(crate) fn measure_keys() -> impl Iterator<Item = String> {
     MEASURES.iter().flat_map(|definition| keys_of(definition, &Side::LEFT_TO_RIGHT))
 }
 
-/// Returns the keys of a measure: one for each of these hands, if it is measured for each.
+/// Returns the keys of a measure: one for each of these hands, if it is measured per hand.
 pub fn keys_of(definition: &CatalogueDefinition, hands: &[Side]) -> Vec<String> {
     let of = |side: &Side| format!("{}_{}", definition.id, side.word());
     if definition.per_hand { hands.iter().map(of).collect() } else { vec![definition.id.to_owned()] }
@@ -287,7 +288,7 @@ impl StudyFile {
         }
     }
 
-    /// Returns the criterion by which skill is judged: that of practice, or that of the study's task.
+    /// Returns the criterion for skill: that of practice, or that of the study's task.
     pub(crate) fn skill(&self) -> Option<TaskCriterion> {
         let practised = self.practice.as_ref().map(|practice| practice.criterion);
         practised.or_else(|| self.task.as_ref().map(|task| task.proficiency))
@@ -332,7 +333,7 @@ impl StudyFile {
     }
 }
 
-/// Words and numbers of a text, in lower case.
+/// Returns the words and numbers of a text, in lower case.
 fn split(text: &str) -> Vec<String> {
     let parts = text.split(|letter: char| !letter.is_alphanumeric() && letter != '.');
     parts.filter(|part| !part.is_empty()).map(|part| part.trim_matches('.').to_lowercase()).collect()

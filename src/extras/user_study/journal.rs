@@ -120,7 +120,7 @@ fn lock(options: &OpenOptions, path: &Path) -> Result<File, TryLockError> {
     file.try_lock().map(|()| file)
 }
 
-/// A lock would keep others from reading; instead, no other program may open it for writing.
+/// Prevents other programs from opening the journal for writing. A lock would also keep them from reading it.
 #[cfg(windows)]
 fn lock(options: &mut OpenOptions, path: &Path) -> Result<File, TryLockError> {
     // Constants of the Windows API.

@@ -14,7 +14,7 @@ pub struct LearningModel {
     pub standing: Option<TrainingState>,
     /// Completion times of all trials in order, practice first, s; `None` for a trial that was not completed.
     pub times_s: Vec<Option<f64>>,
-    /// The curve through them, if there are enough.
+    /// Curve through these times, if there are enough.
     pub curve: Option<LearningCurve>,
 }
 

@@ -36,11 +36,11 @@ pub struct StudyPlan {
     /// Maximum attempts at a trial.
     pub attempts: u32,
     pub labels: Vec<Label>,
-    /// BLAKE2b-256 of the sealed assignment, in hexadecimal digits: proves later that it was not changed.
+    /// BLAKE2b-256 of the sealed assignment, in hexadecimal digits: proves later that the assignment was not changed.
     pub commitment: String,
     /// When practice is over.
     pub practice: Option<PracticePlan>,
-    /// After which trials the participant is shown the result, and the criterion by which skill is judged.
+    /// Rule for the trials after which the participant is shown the result, and the criterion for skill.
     #[serde(default)]
     pub feedback: ResultDisplay,
     pub breaks: Option<Breaks>,
@@ -62,7 +62,7 @@ pub struct PracticePlan {
 #[serde(deny_unknown_fields)]
 pub struct ResultDisplay {
     pub rule: FeedbackSchedule,
-    /// The criterion by which skill is judged.
+    /// Criterion for skill.
     pub criterion: TaskCriterion,
 }
 

@@ -26,16 +26,16 @@ pub struct CountedTrial {
     /// Measures that reveal the condition, encrypted.
     #[serde(skip)]
     pub withheld: Option<String>,
-    /// Whether it was done by a simulated person.
+    /// Whether the trial was done by a simulated person.
     pub simulated: bool,
-    /// Whether it was made after the unblinding of a blind study.
+    /// Whether the trial was done after the unblinding of a blind study.
     pub unblinded: bool,
 }
 
 /// Progress of one participant.
 #[derive(Clone, Debug, Default)]
 pub struct ParticipantProgress {
-    /// Whether the participant has begun.
+    /// Whether the participant has started.
     pub began: bool,
     /// Times of the practice trials, s; NaN for one that was not completed.
     pub practice_s: Vec<f64>,

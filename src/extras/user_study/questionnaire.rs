@@ -21,7 +21,7 @@ pub enum Questionnaire {
     NasaTlxWeighted,
     /// System usability scale.
     Sus,
-    /// How real it felt.
+    /// Perceived realism.
     Realism,
     /// Remarks.
     FreeText,
@@ -109,12 +109,12 @@ pub const SUS_ITEMS: [&str; 10] = [
 /// The question of [`Questionnaire::Realism`].
 pub const REALISM_ITEM: &str = "How real did touching and holding feel? (1 not at all, 7 like the real thing)";
 
-/// Mean of the six ratings, 0 to 100.
+/// Returns the mean of the six ratings, 0 to 100.
 pub fn raw_tlx(ratings: &[u8; 6]) -> f64 {
     ratings.iter().map(|rating| f64::from(*rating)).sum::<f64>() / 6.0
 }
 
-/// Sum of weight times rating over 15; the weight is how often the scale was `chosen` from the [`PAIRS`].
+/// Returns the sum of weight times rating over 15; the weight is how often the scale was `chosen` from the [`PAIRS`].
 ///
 /// ```
 /// use nima_user_study::{PAIRS, weighted_tlx};

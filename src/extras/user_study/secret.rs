@@ -6,11 +6,11 @@ use serde::{Deserialize, Serialize};
 
 use crate::{Condition, Label, StudyFile, order, seal};
 
-/// The assignment in the form that is sealed, committed to, and shown after the unblinding. Its `Debug` shows nothing
-/// of it.
+/// The assignment in the form that is sealed, committed to, and shown after the unblinding. Its `Debug` output reveals
+/// nothing.
 #[derive(Clone, PartialEq, Serialize, Deserialize)]
 pub struct Assignment {
-    /// Random, so that the few possible assignments cannot be found by hashing them all.
+    /// Random text, so that the few possible assignments cannot be found by hashing all of them.
     salt: String,
     /// The condition of each label, by name.
     labels: BTreeMap<Label, String>,

@@ -1,8 +1,9 @@
 //! Simulated people: skill, learning, fatigue and answers, reproducible with the same seed.
 //!
-//! They test the whole way from a study file to its report before the first person comes. They feel: what is more than the force that a person
-//! means to use slows the hand down, and it gives way (`docs/simulated.md`). They are no model of surgeons: the spread of skill and intended force is
-//! made up, and their answers do not depend on the condition.
+//! They test the whole procedure from a study file to its report before the first participant arrives. They feel: what
+//! is more than the force that a person means to use slows the hand down, and it gives way (`docs/simulated.md`). They
+//! are no model of surgeons: the spread of skill and intended force is made up, and their answers do not depend on the
+//! condition.
 
 use fastrand::Rng;
 
@@ -33,7 +34,8 @@ pub struct SimulatedHand {
     pub pace: f64,
     /// Amplitude of the tremor, m.
     pub tremor_m: f64,
-    /// The intended force, N: more slows it down, and it yields. `None` for a hand without force perception.
+    /// Intended force, N: a higher force slows the hand down, and the hand yields. `None` for a hand without force
+    /// perception.
     pub intended_n: Option<f64>,
     /// Seed of its random sequences.
     pub seed: u64,
@@ -66,8 +68,8 @@ impl SimulatedParticipant {
         }
     }
 
-    /// Returns the hand after this many trials, including practice, and this many since the last break; in this
-    /// attempt, from 1.
+    /// Returns the hand after this many trials, including practice, after this many since the last break, and in this
+    /// attempt (from 1).
     pub fn hand(&self, made: u32, since_break: u32, attempt: u32) -> SimulatedHand {
         let learning = 1.0 + self.slower * (-f64::from(made) / self.learns_in).exp();
         let fatigue = 1.0 + self.tires * f64::from(since_break);

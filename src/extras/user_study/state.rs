@@ -72,7 +72,7 @@ impl StudyState {
         !plan.blind || self.unblinding.is_some()
     }
 
-    /// Number of trials with a result.
+    /// Returns the number of trials with a result.
     pub fn results(&self) -> usize {
         self.participants.values().flat_map(|one| &one.trials).filter(|made| made.measures.is_some()).count()
     }

@@ -34,7 +34,7 @@ pub enum StudyStep {
         /// The condition to which it refers; `None` at the end.
         after: Option<Label>,
     },
-    /// A trial has begun and has not ended: it is running, or the program ended in the middle of it.
+    /// A trial has started and has not ended: it is running, or the program ended during it.
     Running { trial: TrialId },
     /// Nothing.
     Done {
@@ -43,7 +43,7 @@ pub enum StudyStep {
     },
 }
 
-/// Why there is nothing left to do.
+/// Reason why nothing is left to do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum EndReason {

@@ -35,7 +35,8 @@ fn shown(label: Label, opened: Option<&Assignment>) -> String {
     named.map_or_else(|| label.to_string(), |condition| condition.name.clone())
 }
 
-/// Returns the trials that count. `withheld` returns the measures that reveal the condition, if they may be shown.
+/// Returns the trials that count for the analysis. `withheld` returns the measures that reveal the condition, if they
+/// may be shown.
 pub(crate) fn trials(
     plan: &StudyPlan,
     state: &StudyState,
@@ -99,7 +100,7 @@ pub(crate) fn questionnaires(plan: &StudyPlan, state: &StudyState, opened: Optio
     StudyTable { csv: csv(&rows, &names), rows: rows.len(), excluded, missing: Vec::new() }
 }
 
-/// Columns in this order, then the others; only those with a value.
+/// Returns the table as CSV: columns in this order, then the others; only columns with a value.
 fn csv(rows: &[StudyTableRow<'_>], order: &[String]) -> String {
     let place = |key: &str| order.iter().position(|known| known == key).unwrap_or(order.len());
     let mut columns: Vec<&String> = rows.iter().flat_map(|row| row.values.keys()).collect();

@@ -1,6 +1,7 @@
 //! Measures that reveal the condition.
 
-/// Forces in the hand: zero for a condition without force. They are kept encrypted until the unblinding.
+/// Measures of the force in the hand, which is zero for a condition without force. They are kept encrypted until the
+/// unblinding.
 const TELLING: [&str; 2] = ["peak_rendered_n", "rms_rendered_n"];
 
 /// Returns whether the measure with this key reveals the condition.

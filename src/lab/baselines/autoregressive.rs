@@ -21,7 +21,7 @@ const SPACINGS: usize = 10;
 /// Memory (s) and ridge (s) of the regression.
 const MEMORY_S: f64 = 3.0;
 const RIDGE_S: f64 = 0.03;
-/// Solves per second (at most one a tick), because the parameters hardly change within 5 ms.
+/// Number of solutions per second (at most one per tick), because the parameters hardly change within 5 ms.
 const SOLVE_HZ: f64 = 200.0;
 
 /// A constant, the newest force, and the differences of the taps.
@@ -73,7 +73,7 @@ impl BaselineSender for Autoregressive {
         autoregressive
     }
 
-    /// Foretells another delay ahead; the model of the old one is forgotten.
+    /// Predicts over another delay from now on, and discards the model of the old delay.
     fn set_delay(&mut self, delay_ticks: usize) {
         self.delay_ticks = delay_ticks;
         self.spacing = spacing(delay_ticks);

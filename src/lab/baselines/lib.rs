@@ -1,4 +1,4 @@
-//! Methods of others, to compare with: each from its published form, as one more mode behind the same gates.
+//! Published methods of others for comparison: each in its published form, as one more mode behind the same gates.
 //!
 //! They are built into the loop through the trait that the program's own modes have, [`RenderingMethod`], by whoever calls [`provide`] first. At most
 //! one is computed, and only where it is asked for by name. Every axis is taken for a channel of its own, as in the publications, which
@@ -31,8 +31,8 @@ use crate::{
     waves::Waves,
 };
 
-/// Adds the methods of others to the modes of this process. Call it before a loop is made or a session replayed; a second call changes
-/// nothing.
+/// Adds the baselines to the modes of this process. Call it before a loop is created or a session replayed; a second
+/// call has no effect.
 pub fn provide() {
     add_baselines(|baseline| match baseline {
         Baseline::ModelMediated => Entry::of::<BaselineMethod<ModelMediated>>(),
@@ -43,23 +43,23 @@ pub fn provide() {
     });
 }
 
-/// What a method of others does at the follower.
+/// The part of a baseline on the follower.
 trait BaselineSender: Clone + Debug + Send + Sync + 'static {
-    /// Its name.
+    /// Name of the baseline.
     const BASELINE: Baseline;
 
     fn new(rate_hz: f64, delay_ticks: usize) -> Self;
 
-    /// Takes the follower's newest motion and force (N), `None` where either was not measured; returns what to send.
+    /// Takes the follower's newest motion and force (N; `None` if not measured); returns the data to send.
     fn step(&mut self, motion: &Motion, force_n: Option<Lanes>) -> BaselineModel;
 
-    /// Foretells another delay ahead from now on.
+    /// Predicts over another delay from now on.
     fn set_delay(&mut self, _delay_ticks: usize) {}
 
     fn reset(&mut self);
 }
 
-/// One of them as a mode.
+/// A baseline as a mode.
 struct BaselineMethod<S>(PhantomData<S>);
 
 impl<S: BaselineSender> RenderingMethod for BaselineMethod<S> {
@@ -87,7 +87,7 @@ struct BaselineFollower<S> {
 }
 
 impl<S: BaselineSender> FollowerEnd for BaselineFollower<S> {
-    /// There is memory for one of all baselines.
+    /// There is memory for only one of the baselines.
     fn serves(&self, modes: ModeSet) -> bool {
         modes.baseline().is_some()
     }
@@ -110,7 +110,7 @@ impl<S: BaselineSender> FollowerEnd for BaselineFollower<S> {
     }
 }
 
-/// The leader's part, the same for all of them: what came says what to make of it.
+/// The leader's part, the same for all baselines: the received data determine the computation.
 #[derive(Clone, Debug)]
 struct BaselineLeader {
     scales: Scales,
@@ -146,7 +146,7 @@ impl LeaderEnd for BaselineLeader {
     }
 }
 
-/// `exp(-1 / memory)`: what a memory of this length (s) keeps over one tick.
+/// Returns `exp(-1 / memory)`: the fraction that a memory of this length (s) keeps over one tick.
 fn kept(memory_s: f64, rate_hz: f64) -> f64 {
     libm::exp(-1.0 / (memory_s * rate_hz))
 }

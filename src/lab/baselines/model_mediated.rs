@@ -32,7 +32,7 @@ const PLACES: usize = 5;
 /// Exponents that are compared: a linear contact, a sphere, a cone.
 const EXPONENTS: [f64; 3] = [1.0, 1.5, 2.0];
 const CANDIDATES: usize = PLACES * EXPONENTS.len();
-/// The range is enlarged by this fraction at once, so that the sums are rarely converted to another range.
+/// The range is enlarged by this fraction at a time, so that the sums are rarely converted to another range.
 const ROOM: f64 = 0.05;
 
 /// Stiffness and damping on both sides, then an offset, and the instrument's own damping and mass.
@@ -103,7 +103,7 @@ pub(crate) struct ModelMediated {
 }
 
 impl ModelMediated {
-    /// Enlarges the range to where the follower is, and brings the surfaces to it.
+    /// Enlarges the range to include the follower's position, and adjusts the surfaces to it.
     fn visit(&mut self, motion: &Motion) {
         if self.tick == 0 {
             self.range_m = [motion.x; 2];

@@ -59,7 +59,7 @@ impl PassivityController {
         Self { period_s: rate_hz.recip(), came_j: Lanes::ZERO, store_j: Lanes::ZERO }
     }
 
-    /// Returns the force (N) for the hand: the one that came and what the controller adds to it.
+    /// Returns the force (N) for the hand: the received force and the controller's addition.
     pub(crate) fn step(&mut self, force_n: Lanes, came_j: Lanes, own: &Motion) -> Lanes {
         if !came_j.is_finite() {
             return force_n;

@@ -39,7 +39,7 @@ impl<const N: usize> Rls<N> {
         }
     }
 
-    /// Takes in the columns `q` of one sample and its target.
+    /// Adds the columns `q` of one sample and its target.
     pub(crate) fn learn(&mut self, q: &[Lanes; N], target: Lanes) {
         self.seen = (self.seen + 1.0).min(self.squares_ticks);
         let fraction = 1.0 / self.seen;
@@ -52,7 +52,7 @@ impl<const N: usize> Rls<N> {
         }
     }
 
-    /// The same samples in other units: column `j` becomes `factors[j]` times what it was.
+    /// Converts the samples to other units: column `j` is multiplied by `factors[j]`.
     pub(crate) fn rescale(&mut self, factors: &[Lanes; N]) {
         for (j, factor) in factors.iter().enumerate() {
             for (sum, other) in self.gram[j].iter_mut().zip(factors).take(j + 1) {
@@ -101,7 +101,7 @@ impl<const N: usize> Rls<N> {
     }
 }
 
-/// Sum of the products of the entries.
+/// Returns the sum of the products of the entries.
 pub(crate) fn dot(a: &[Lanes], b: &[Lanes]) -> Lanes {
     a.iter().zip(b).fold(Lanes::ZERO, |sum, (a, b)| sum + *a * *b)
 }

@@ -30,7 +30,7 @@ fn source(endpoint: &str) -> String {
     if endpoint.starts_with("emulated:") { endpoint.to_owned() } else { format!("emulated:{endpoint}") }
 }
 
-/// The rig `desk` in a scene, with a cap whose buttons are pressed by a test.
+/// The rig `desk` in a scene, with a cap whose buttons a test presses.
 struct Pressed {
     desk: InputDevices,
     watched: ObjectFeed,

@@ -1,7 +1,7 @@
 //! Emulation: an emulator for every device on its real interface, and all devices of a rig file around simulated
 //! worlds.
 //!
-//! [`emulators`] get the values to be measured from a closure, a test or a world. [`emulated`] connects one for every
+//! The measured values of [`emulators`] come from a closure, a test or a world. [`emulated`] connects one for every
 //! device of a rig file to the worlds of `nima_simulation`. The loop reaches them only through its drivers; no product
 //! code depends on this crate.
 

@@ -10,7 +10,7 @@ pub(crate) fn heading(profile: ClockProfile) -> String {
     format!("On the clock *{profile}*:\n\n")
 }
 
-/// Returns the clock of the trial with this number, shifted so that late ticks meet different moments of similar
+/// Returns the clock of the trial with this number, shifted so that late ticks occur at different moments in similar
 /// trials.
 pub(crate) const fn of_trial(clock: VirtualClock, number: u64) -> VirtualClock {
     VirtualClock { seed: clock.seed.wrapping_add(number), ..clock }

@@ -44,9 +44,9 @@ pub struct OfScene {
 pub struct SceneEffect {
     /// Name of the removed effect.
     pub effect: &'static str,
-    /// Its cost in a tick, us; near zero within the noise of the clock.
+    /// Cost in a tick, us; near zero within the noise of the clock.
     pub cost_us: f64,
-    /// Root mean square of the change of the measured force without it, N.
+    /// Root mean square of the change of the measured force without the effect, N.
     pub change_n: f64,
     /// Maximum change, N.
     pub change_max_n: f64,

@@ -1,7 +1,7 @@
 //! Experiments that measure the system and report results.
 //!
 //! Each is an [`Experiment`], a struct of its options; its result implements [`Findings`]. One writer in the console
-//! turns findings into files and into text on a terminal.
+//! converts findings into files and into text on a terminal.
 
 pub mod baselines;
 pub mod clocks;
@@ -29,14 +29,14 @@ use serde::Serialize;
 pub trait Experiment {
     /// Prefix of the names of its files: `release` gives `release.json` and `release.md`.
     const NAME: &'static str;
-    /// Endings of the files that it always writes in addition to the JSON. Before the experiment runs, the writer
-    /// checks that these files can be written.
+    /// Endings of the files that the experiment always writes in addition to the JSON. The writer checks before the
+    /// experiment that these files can be written.
     const FILES: &'static [&'static str] = &[".md"];
     type Findings: Findings;
-    /// Why it could not run.
+    /// Reason why it could not run.
     type Error: Error + Send + Sync + 'static;
 
-    /// Files that it reads; results must not overwrite them.
+    /// Returns the files that the experiment reads; results must not overwrite them.
     fn inputs(&self) -> Vec<PathBuf> {
         Vec::new()
     }
@@ -51,7 +51,7 @@ pub trait Experiment {
 
 /// The result of an [`Experiment`], serialised as its JSON.
 pub trait Findings: Serialize {
-    /// Text for a terminal; in Markdown if it is also written to a file.
+    /// Returns the text for a terminal; in Markdown if it is also written to a file.
     fn text(&self) -> String;
 
     /// Returns the files in addition to the JSON: the ending of each name (`.md`, `-errors.svg`), and its contents. By

@@ -34,19 +34,19 @@ const SUBSTEPS: u32 = 4;
 const ROUNDING_PERIODS: f64 = 1e-6;
 /// Speed at which Coulomb friction reaches nearly its full value, m/s.
 const RUBS_M_S: f64 = 0.002;
-/// As in the scenes: noise of the force sensor (N), resolution of the handle's position (m), natural frequency (Hz) and
-/// maximum speed (m/s) of the follower.
+/// Values of the scenes: noise of the force sensor (N), resolution of the handle's position (m), natural frequency (Hz)
+/// and maximum speed (m/s) of the follower.
 pub(super) const NOISE_N: f64 = 0.02;
 const RESOLUTION_M: f64 = 1e-5;
 const FOLLOWER_HZ: f64 = 12.0;
 const FOLLOWER_M_S: f64 = 0.3;
 
-/// The handle alone.
+/// The handle without a hand.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LoneHandle {
     /// Apparent mass at the grip, kg.
     pub(super) kg: f64,
-    /// Damping of its bearings and cables, N s/m, and their Coulomb friction, N.
+    /// Damping of the handle's bearings and cables, N s/m, and their Coulomb friction, N.
     pub(super) n_s_m: f64,
     pub(super) coulomb_n: f64,
 }
@@ -65,7 +65,7 @@ pub(super) struct PairGrip {
 }
 
 impl PairGrip {
-    /// As in the scenes.
+    /// The grip of the scenes.
     pub(super) const FIRM: Self = Self { kg: 0.35, n_m: 900.0, n_s_m: 18.0 };
 
     /// Creates a grip of this stiffness (N/m) with the same damping ratio.
@@ -129,7 +129,7 @@ pub(super) struct BenchPair {
 }
 
 impl BenchPair {
-    /// At rest at this position (m).
+    /// Creates a bench at rest at this position (m).
     pub(super) fn new(trial: &PairTrial, position_m: Vector3<f64>) -> Result<Self, SettingsError> {
         let settings = ImpedanceSettings {
             rate_hz: RATE_HZ,
@@ -174,7 +174,7 @@ impl BenchPair {
         })
     }
 
-    /// Time of the last tick, s; about 0 at the beginning.
+    /// Returns the time of the last tick, s; about 0 at the beginning.
     pub(super) const fn now_s(&self) -> f64 {
         self.now_s
     }
@@ -187,12 +187,12 @@ impl BenchPair {
         self.handle_m_s
     }
 
-    /// Force on the handle, N.
+    /// Returns the force on the handle, N.
     pub(super) const fn force_n(&self) -> Vector3<f64> {
         self.force_n
     }
 
-    /// Force of the tissue on the tip without the sensor's noise, N.
+    /// Returns the force of the tissue on the tip without the sensor's noise, N.
     pub(super) const fn tip_n(&self) -> Vector3<f64> {
         self.tip_n
     }

@@ -72,7 +72,7 @@ impl Reference {
         self.pivots.iter().take(prefix).flatten().count()
     }
 
-    /// Returns the exact solution with the first `prefix` columns, of minimum norm if there are several.
+    /// Returns the exact solution with the first `prefix` columns, with minimum norm if there are several.
     fn solution(&self, prefix: usize) -> Vec<Big> {
         let independent: Vec<usize> = (0..prefix).filter(|&k| self.pivots[k].is_some()).collect();
         // The rows of R = L' with a nonzero pivot: R m = right. With W = R R' : m = R' W^-1 right.

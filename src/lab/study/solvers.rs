@@ -171,7 +171,8 @@ impl SolverFit {
         self.coefficients.get(degree.wrapping_sub(1))?.as_deref()
     }
 
-    /// Force (N) predicted at `at` by every degree: `None` without a solution or if the prediction is not finite.
+    /// Returns the force (N) predicted at `at` by every degree: `None` without a solution or if the prediction is not
+    /// finite.
     pub fn predict(&self, at: &SolverRow) -> [Option<f64>; MAX_DEGREE] {
         let columns = self.solver.columns(at, MAX_DEGREE, &self.scales);
         std::array::from_fn(|i| {

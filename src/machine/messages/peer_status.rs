@@ -26,7 +26,7 @@ pub struct PeerStatus<'a> {
 /// screen shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FarStop {
-    /// Its operator stopped it.
+    /// Operator stopped it.
     Stopped,
     SourceSilent,
     LoopStalled,
@@ -37,7 +37,7 @@ pub enum FarStop {
     LinkSilent,
     ClockJumped,
     Implausible,
-    /// Its other arm has a fault, or the other machine of that arm does.
+    /// Other arm has a fault, or the other machine of that arm does.
     Other,
 }
 

@@ -270,7 +270,7 @@ pub enum ReadyState {
 #[derive(Clone, Debug)]
 pub struct ReadyArm {
     pub at_wrist: bool,
-    /// Its gravity calibration, and the limit of the force that remains at rest, N.
+    /// Gravity calibration, and the limit of the force that remains at rest, N.
     pub gravity: Option<(GravityModel, f64)>,
     /// A person is at the arm and can follow instructions.
     pub has_person: bool,

@@ -137,7 +137,7 @@ fn touch(into: &Sender<TapEntry>, out: &Receiver<TapEntry>) {
 }
 
 impl Tap {
-    /// Makes the loop wait while there is no room; for the virtual clock, on which nothing is late.
+    /// Creates the loop wait while there is no room; for the virtual clock, on which nothing is late.
     #[must_use]
     pub(super) fn waiting(self) -> Self {
         Self { waits: true, ..self }

@@ -56,10 +56,10 @@ pub struct CauseAndCure {
 #[derive(Clone, Debug, Serialize)]
 pub struct ArmEnd {
     pub side: Side,
-    /// Its state in the last tick, before the outputs were made safe.
+    /// State in the last tick, before the outputs were made safe.
     #[serde(serialize_with = "by_key")]
     pub final_state: LoopState,
-    /// Its fault, if any; filled in by [`RuntimeSummary::explain`].
+    /// Fault, if any; filled in by [`RuntimeSummary::explain`].
     pub fault: Option<CauseAndCure>,
     /// The device concerned by the fault.
     #[serde(skip)]

@@ -155,7 +155,7 @@ impl CsvRecording {
         Ok(Self { leader_m: has_leader.then_some(leader_m), ..recording })
     }
 
-    /// Makes a recording of samples whose times rise.
+    /// Creates a recording of samples whose times rise.
     ///
     /// # Errors
     /// [`RecordingError::TooShort`] for fewer than three.

@@ -11,7 +11,7 @@ use prost::{Message, bytes::BufMut};
 
 use crate::session::Encoding;
 
-/// How a reader is to understand a channel of these messages.
+/// Returns how a reader is to understand a channel of these messages.
 ///
 /// ```
 /// use nima_recording::messages::foxglove::{encoding, Log};

@@ -52,7 +52,7 @@ pub struct WrongLength {
 }
 
 impl JointStateEncoder {
-    /// Makes an encoder for values of these names, in the coordinates of `frame`.
+    /// Creates an encoder for values of these names, in the coordinates of `frame`.
     pub fn new(frame: &str, names: &[&str]) -> Self {
         let mut message = REPRESENTATION.to_vec();
         message.extend_from_slice(&[0; 8]);

@@ -316,7 +316,7 @@ impl SessionWriter {
         &self.layout
     }
 
-    /// Bytes of chunk indexes in memory.
+    /// Returns the bytes of chunk indexes in memory.
     #[cfg(test)]
     pub(super) fn held(&self) -> usize {
         self.summary.new_indexes().len()

@@ -17,7 +17,7 @@ pub const VALID_S: u64 = 12 * 3600;
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CheckedDevice {
-    /// Its name in the rig, such as `right sensor`.
+    /// Name in the rig, such as `right sensor`.
     pub name: String,
     pub driver: String,
     /// Empty if the device does not report one.

@@ -94,7 +94,7 @@ struct RestStatistics {
 }
 
 impl TipForceRecorder {
-    /// Makes an empty recording and allocates its memory.
+    /// Creates an empty recording and allocates its memory.
     pub fn new(correspondence: Correspondence) -> Self {
         Self {
             correspondence,

@@ -57,7 +57,7 @@ impl Keyframe {
         }
     }
 
-    /// Number of journal messages before it.
+    /// Returns the number of journal messages before it.
     pub const fn read(&self) -> u64 {
         self.read
     }
@@ -96,7 +96,7 @@ impl Default for TickOutput {
 /// One tick of a session.
 #[derive(Clone, Copy, Debug)]
 pub struct SessionMoment<'a> {
-    /// Its number in the journal, from 0.
+    /// Number in the journal, from 0.
     pub number: u64,
     /// The inputs of the loop.
     pub row: &'a TickRow,

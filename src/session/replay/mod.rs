@@ -48,9 +48,9 @@ pub enum ReplayError {
 /// The first tick that differs from the recording.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Differs {
-    /// Its number in the journal, from 0.
+    /// Number in the journal, from 0.
     pub tick: u64,
-    /// Its time on the loop's clock, s.
+    /// Time on the loop's clock, s.
     pub t_s: f64,
     /// The first stage of the tick that differs; `None` if an event differs.
     pub place: Option<(Side, TickStage)>,

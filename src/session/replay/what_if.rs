@@ -79,7 +79,7 @@ impl Difference {
         self.squares_n2 += (length_n * length_n - self.squares_n2) / self.count as f64;
     }
 
-    /// Root mean square, N.
+    /// Returns the root mean square, N.
     pub fn rms_n(&self) -> f64 {
         self.squares_n2.sqrt()
     }

@@ -59,7 +59,7 @@ pub struct IdentificationFigures {
 /// Uncertainty of the network while engaged.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct NetworkFigures {
-    /// Its mean weight in the force, 0 to 1.
+    /// Mean weight in the force, 0 to 1.
     #[serde(rename = "share")]
     pub fraction: f64,
     /// Fraction of the time outside its training data, 0 to 1.

@@ -33,7 +33,7 @@ impl ImageReport {
         self.dropped = dropped;
     }
 
-    /// Frames per second; `None` with fewer than two.
+    /// Returns the frames per second; `None` with fewer than two.
     pub fn rate_hz(&self) -> Option<f64> {
         let [first_s, last_s] = self.times_s;
         (last_s > first_s).then(|| (self.count - 1) as f64 / (last_s - first_s))

@@ -14,7 +14,7 @@ pub struct SignalTrace {
 }
 
 impl SignalTrace {
-    /// Makes an empty trace for a session of this length.
+    /// Creates an empty trace for a session of this length.
     pub(super) fn over(length_s: f64) -> Self {
         Self { step_s: length_s.max(1e-3) / BUCKETS as f64, buckets: vec![None; BUCKETS] }
     }

@@ -67,7 +67,7 @@ impl Ring {
         }
     }
 
-    /// Distance from its middle to its outermost point, m.
+    /// Returns the distance from its middle to its outermost point, m.
     pub(crate) fn reach_m(&self) -> f64 {
         self.circle.radius_m + self.tube_radius_m
     }

@@ -127,7 +127,7 @@ impl PhysicsTool {
         self.parts[SHAFT] = Segment { from_m: between(&self.from.trocar_m, &self.to.trocar_m), to_m: self.hinge_m };
     }
 
-    /// Height of the lowest point of a part, m.
+    /// Returns the height of the lowest point of a part, m.
     pub(crate) fn lowest_m(&self, part: usize) -> f64 {
         self.parts[part].from_m.z.min(self.parts[part].to_m.z) - self.radii_m[part]
     }
@@ -149,7 +149,7 @@ impl PhysicsTool {
         rigid + self.opens(part, point_m) * (0.5 * self.opening_rad_s)
     }
 
-    /// Rotation of a part about a direction, rad/s.
+    /// Returns the rotation of a part about a direction, rad/s.
     pub(crate) fn spin_about(&self, part: usize, direction: &Vector3<f64>) -> f64 {
         if part == SHAFT { 0.0 } else { self.turning_rad_s.dot(direction) }
     }
@@ -179,7 +179,7 @@ impl PhysicsTool {
         self.now_opening_n = 0.0;
     }
 
-    /// Means over the step.
+    /// Returns the means over the step.
     pub(crate) fn loads(&self, substeps: f64) -> InstrumentLoads {
         InstrumentLoads {
             tip_n: self.force_n / substeps,

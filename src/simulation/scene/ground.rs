@@ -56,7 +56,7 @@ pub struct Lump {
     /// Position of its middle, x and y, m.
     #[serde(rename = "at_m")]
     pub position_m: [f64; 2],
-    /// Its radius, m; its diameter is less than the tissue's thickness.
+    /// Radius, m; its diameter is less than the tissue's thickness.
     pub radius_m: f64,
     /// Stiffness as a multiple of the tissue's.
     pub times_stiffer: f64,
@@ -84,7 +84,7 @@ pub struct Relaxation {
     /// Fraction of the force that fades, below 1.
     #[serde(rename = "share")]
     pub fraction: f64,
-    /// Its time constant, s.
+    /// Time constant, s.
     pub time_s: f64,
 }
 

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 pub struct WristModel {
     /// Mass of the tool on the sensor, kg.
     pub tool_mass_kg: f64,
-    /// Its centre of mass, m (`s1`).
+    /// Centre of mass, m (`s1`).
     pub com_m: Vector3<f64>,
     /// From the sensor's origin along the shaft (z of `s1`) to the tip, m.
     pub shaft_m: f64,

@@ -112,29 +112,29 @@ impl Person {
         self.world_from_s1
     }
 
-    /// Position (m) and velocity (m/s) of the tip.
+    /// Returns the position (m) and velocity (m/s) of the tip.
     pub const fn tip(&self) -> (Vector3<f64>, Vector3<f64>) {
         (self.tip_m, self.velocity_m_s)
     }
 
-    /// Forces of the person's hands.
+    /// Returns the forces of the person's hands.
     pub fn touch(&self) -> HandForces {
         HandForces { tip: self.push_n(), tool: self.touch_n(), stand: self.stand_n() }
     }
 
-    /// Force on the tip from pushing, N (`world`).
+    /// Returns the force on the tip from pushing, N (`world`).
     fn push_n(&self) -> Vector3<f64> {
         self.push * pulse(self.in_push_s)
     }
 
-    /// Force on the tissue's stand that the tip does not feel, N (`world`).
+    /// Returns the force on the tissue's stand that the tip does not feel, N (`world`).
     fn stand_n(&self) -> Vector3<f64> {
         let working = matches!(self.prompt, Prompt::Work);
         let fraction = if working { pulse(PUSH_S[0] * self.in_reach_s / REACH_S[0]) } else { pulse(self.in_push_s) };
         self.stand * fraction
     }
 
-    /// Force of a hand on the tool, N (`world`).
+    /// Returns the force of a hand on the tool, N (`world`).
     fn touch_n(&self) -> Vector3<f64> {
         let holds = matches!(self.prompt, Prompt::Hold { .. } | Prompt::Wave);
         if self.flaw == Some(Flaw::Touches) && holds {
@@ -305,7 +305,7 @@ impl Person {
         HandMove { from_m: self.tip_m, to_m, seconds }
     }
 
-    /// Height of a press into the tissue, m.
+    /// Returns the height of a press into the tissue, m.
     fn pressed_m(&mut self) -> f64 {
         -self.between(self.workspace.press_m)
     }
@@ -320,7 +320,7 @@ impl Person {
     }
 }
 
-/// Force of a push over its duration: 0 to 1 to 0 (raised cosines).
+/// Returns the force of a push over its duration: 0 to 1 to 0 (raised cosines).
 fn pulse(t_s: f64) -> f64 {
     let [rise_s, hold_s, fall_s, _] = PUSH_S;
     let smooth = |s: f64| 0.5 - 0.5 * (std::f64::consts::PI * s).cos();

@@ -48,7 +48,7 @@ pub(super) fn factor(lumps: &Lumps, tip_m: &Vector3<f64>) -> f64 {
 }
 
 impl Lump {
-    /// Height by which the lump shortens the column at this position, m.
+    /// Returns the height by which the lump shortens the column at this position, m.
     fn times_softer(&self, tip_m: &Vector3<f64>) -> f64 {
         let [x_m, y_m] = self.position_m;
         let aside = (tip_m.x - x_m).hypot(tip_m.y - y_m);

@@ -38,7 +38,7 @@ impl TissueMembrane {
         0.0
     }
 
-    /// Number of tears.
+    /// Returns the number of tears.
     pub(super) const fn tears(&self) -> usize {
         self.torn
     }

@@ -55,7 +55,7 @@ impl Tissue {
         }
     }
 
-    /// Number of tears in the membrane.
+    /// Returns the number of tears in the membrane.
     pub fn tears(&self) -> usize {
         self.membrane.as_ref().map_or(0, TissueMembrane::tears)
     }
@@ -106,7 +106,7 @@ impl Tissue {
         Vector3::new(0.0, 0.0, normal_n) - held_m * shear_stiffness_n_m + membrane_n
     }
 
-    /// Force of the tissue that is compressed by this depth, before relaxation, N.
+    /// Returns the force of the tissue that is compressed by this depth, before relaxation, N.
     fn elastic_n(&self, depth_m: f64, tip_m: &Vector3<f64>) -> f64 {
         let TissueConfig { stiffness, exponent, .. } = self.config;
         let even_n = match self.layers.as_slice() {

@@ -5,8 +5,8 @@ use nalgebra::Vector3;
 use crate::scene::Wall;
 
 impl Wall {
-    /// Force on a tip at this position (m) and velocity (m/s), N: a spring and a damper that never pull (the virtual
-    /// wall of Colgate and Brown, IEEE ICRA 1994).
+    /// Returns the force on a tip at this position (m) and velocity (m/s), N: a spring and a damper that never pull
+    /// (the virtual wall of Colgate and Brown, IEEE ICRA 1994).
     pub(crate) fn contact_n(&self, tip_m: &Vector3<f64>, velocity_m_s: &Vector3<f64>) -> Vector3<f64> {
         let normal = Vector3::from(self.normal).normalize();
         let depth_m = normal.dot(&(Vector3::from(self.position_m) - tip_m));

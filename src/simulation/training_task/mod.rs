@@ -146,7 +146,7 @@ impl Rings {
 }
 
 impl TrainingTask {
-    /// Makes the game of this scene; `None` if it has no objects.
+    /// Creates the game of this scene; `None` if it has no objects.
     pub(super) fn of(scene: &Scene, period_s: f64, publisher: ObjectPublisher) -> Option<Self> {
         let game = Game::of(scene, period_s)?;
         Some(Self { game, acts: [Acts::NONE; SIDES], is_done: false, reported_s: f64::NEG_INFINITY, publisher })

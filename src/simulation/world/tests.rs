@@ -80,7 +80,8 @@ fn a_force_on_the_hand_moves_it_and_a_poisoned_one_does_not() {
     assert_eq!(poisoned, still);
 }
 
-/// Times of the loop in tenths of a millisecond: most ticks one period apart, some late, some soon after a late one.
+/// Returns the times of the loop in tenths of a millisecond: most ticks one period apart, some late, some soon after a
+/// late one.
 fn late_ticks() -> impl Iterator<Item = u32> {
     [10, 10, 14, 6, 32, 8, 45, 5, 10, 19, 1].into_iter().cycle().scan(0, |now, interval| {
         *now += interval;

@@ -19,7 +19,7 @@ pub(crate) fn line(text: &str) -> anyhow::Result<()> {
     }
 }
 
-/// Number as a table field, after its comma; empty for an unknown number.
+/// Returns the number as a table field, after its comma; empty for an unknown number.
 pub(crate) fn cell(number: f64) -> String {
     if number.is_finite() { format!(",{number}") } else { ",".to_owned() }
 }

@@ -87,7 +87,7 @@ impl Setup {
     }
 }
 
-/// Name or path of the default scene of a rig.
+/// Returns the name or path of the default scene of a rig.
 pub(crate) fn default_scene(rig: &str) -> &'static str {
     // A rig that cannot be loaded is rejected later.
     RigConfig::load(rig).map_or("peg_transfer", |rig| Scene::default_for(&rig))

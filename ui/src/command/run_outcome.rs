@@ -48,7 +48,8 @@ impl Reasons {
         }
     }
 
-    /// Reason why the run did not do its task; `None` if it did. `engages`: the rig was to engage automatically.
+    /// Returns the reason why the run did not do its task; `None` if it did. `engages`: the rig was to engage
+    /// automatically.
     pub(super) fn of(&self, summary: &RuntimeSummary, engages: bool) -> Option<String> {
         summary.arms.iter().find_map(|arm| self.of_arm(arm, summary, engages))
     }

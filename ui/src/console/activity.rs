@@ -109,7 +109,7 @@ impl Activity {
         self.lit_ones() != before
     }
 
-    /// Index of the value that lights this device now.
+    /// Returns the index of the value that lights this device now.
     pub(crate) fn lit(&self, place: usize) -> Option<usize> {
         let (at_s, channel) = self.devices.get(place)?.active?;
         (self.now_s - at_s <= LIT_S).then_some(channel)

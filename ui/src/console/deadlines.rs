@@ -35,7 +35,7 @@ impl Deadlines {
         }
     }
 
-    /// Age in seconds and number of missed periods, the newest first.
+    /// Returns the age in seconds and number of missed periods, the newest first.
     pub fn newest_first(&self) -> impl Iterator<Item = (usize, u64)> {
         self.counts.iter().rev().copied().enumerate()
     }

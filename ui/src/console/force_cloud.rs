@@ -87,7 +87,7 @@ impl ForceCloud {
 mod tests {
     use super::*;
 
-    /// Errors with this mean and these standard deviations, nearly normal (sum of twelve uniform numbers).
+    /// Returns the errors with this mean and these standard deviations, nearly normal (sum of twelve uniform numbers).
     fn cloud(mean_n: Vector3<f64>, deviations_n: Vector3<f64>) -> ForceCloud {
         let mut cloud = ForceCloud::default();
         let mut seed = 12_345_u64;

@@ -207,7 +207,7 @@ fn threads_s() -> BTreeMap<String, f64> {
     times_s
 }
 
-/// Name and processor time (s) from a line of `stat`. The name may contain spaces and parentheses.
+/// Returns the name and processor time (s) from a line of `stat`. The name may contain spaces and parentheses.
 fn thread_s(stat: &str) -> Option<(String, f64)> {
     let (head, rest) = stat.rsplit_once(") ")?;
     let name = head.split_once('(')?.1.to_owned();
@@ -216,7 +216,7 @@ fn thread_s(stat: &str) -> Option<(String, f64)> {
     Some((name, (ticks(11)? + ticks(12)?) / TICKS_PER_S))
 }
 
-/// Age of this process, s, accurate to 0.02 s.
+/// Returns the age of this process, s, accurate to 0.02 s.
 fn age_s() -> Option<f64> {
     let stat = fs::read_to_string("/proc/self/stat").ok()?;
     let began_ticks: f64 = stat.rsplit_once(") ")?.1.split(' ').nth(19)?.parse().ok()?;

@@ -149,12 +149,12 @@ impl SignalHistory {
         }
     }
 
-    /// Time of the newest sample, s.
+    /// Returns the time of the newest sample, s.
     pub const fn latest_s(&self) -> f64 {
         self.latest_s
     }
 
-    /// Time of the oldest stored sample, s.
+    /// Returns the time of the oldest stored sample, s.
     pub fn oldest_s(&self) -> f64 {
         let coarsest = &self.levels[SPANS_S.len() - 1];
         self.began_s.unwrap_or(0.0).max(coarsest.first as f64 * coarsest.span_s)

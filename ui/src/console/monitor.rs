@@ -158,7 +158,7 @@ impl Monitor {
         self.live.as_ref().and_then(|live| live.first_tick()).map_or(0.0, |tick| tick.t_s)
     }
 
-    /// Reason why the display is out of date.
+    /// Returns the reason why the display is out of date.
     fn stale(&self) -> Option<String> {
         let seconds = self.received.elapsed().as_secs_f64();
         let silent = self.live.is_some() && seconds > SILENT_S;

@@ -60,8 +60,8 @@ impl Outbox {
         self.waiting.contains(&Command::Stop)
     }
 
-    /// Number of stops requested by a person. Every stop of the window is a person's, and the loop ignores a stop under a
-    /// latched fault.
+    /// Returns the number of stops requested by a person. Every stop of the window is a person's, and the loop ignores
+    /// a stop under a latched fault.
     pub const fn stops(&self) -> u64 {
         self.stops
     }

@@ -14,7 +14,7 @@ use nima_simulation::{SimulationPlan, scene::Scene};
 use super::{app::StartedLoop, live::LiveState, outbox::Outbox, scene3d::SceneView, start::RigChoice};
 
 pub trait Page: Debug {
-    /// Name and purpose on the button that opens it.
+    /// Returns the name and purpose on the button that opens it.
     fn name(&self) -> [&'static str; 2];
 
     fn is_shown(&self) -> bool;
@@ -120,7 +120,7 @@ pub enum PageRequest {
 
 /// A run that is about to start.
 pub struct PreparedRun {
-    /// Its rig; `None` if the rig does not permit the run. The reason stays secret, because it could reveal the condition.
+    /// Rig; `None` if the rig does not permit the run. The reason stays secret, because it could reveal the condition.
     pub rig: Option<RigConfig>,
     pub scene: Scene,
     /// The instruments are moved from the screen.

@@ -74,7 +74,7 @@ impl GateActivity {
         self.governed.push(tick.gates.governed, dt_s, 0.15);
     }
 
-    /// Fraction of recent ticks in which this gate acted.
+    /// Returns the fraction of recent ticks in which this gate acted.
     pub fn fraction(&self, gate: Gate) -> f64 {
         self.acting[gate.index()].get()
     }

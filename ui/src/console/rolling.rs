@@ -30,13 +30,13 @@ impl DegreeFractions {
         }
     }
 
-    /// Fraction of each degree, 0 to 1; zeros before the first.
+    /// Returns the fraction of each degree, 0 to 1; zeros before the first.
     pub fn fractions(&self) -> [f64; DEGREES] {
         let total = self.chosen.len().max(1) as f64;
         self.counts.map(|count| f64::from(count) / total)
     }
 
-    /// Fraction of degrees 2 and above, 0 to 1.
+    /// Returns the fraction of degrees 2 and above, 0 to 1.
     pub fn nonlinear(&self) -> f64 {
         self.fractions().iter().skip(2).sum()
     }

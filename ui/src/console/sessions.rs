@@ -213,7 +213,7 @@ impl ConsoleSessions {
         }
     }
 
-    /// Reason why nothing is recorded although it should be, or a problem expected within a day.
+    /// Returns the reason why nothing is recorded although it should be, or a problem expected within a day.
     pub(crate) fn trouble(&self) -> Option<String> {
         let recorder = self.now.as_ref().map(|now| &now.recorder);
         let ended = recorder.and_then(SessionRecorder::trouble).map(|error| chain(error));

@@ -74,7 +74,7 @@ impl ImageSettings {
         Tone { brightness, contrast: fraction(self.contrast_percent), gamma: fraction(self.gamma_percent) }.limited()
     }
 
-    /// Parts cut off at the left, top, right and bottom, as fractions.
+    /// Returns the parts cut off at the left, top, right and bottom, as fractions.
     pub(super) fn crop(&self) -> [f32; 4] {
         self.crop_percent.map(|percent| f32::from(percent.min(CROP_MAX_PERCENT)) / 100.0)
     }
@@ -163,7 +163,7 @@ impl SettingsStore {
         self.folder.is_some() && !self.now.toured
     }
 
-    /// Error of the settings file, if there is one.
+    /// Returns the error of the settings file, if there is one.
     pub fn report(&self) -> Option<&str> {
         self.report.as_deref()
     }

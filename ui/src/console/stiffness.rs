@@ -69,7 +69,7 @@ impl ContactStiffness {
         }
     }
 
-    /// Stiffness of the current or last contact, N/m; `None` before the first.
+    /// Returns the stiffness of the current or last contact, N/m; `None` before the first.
     pub const fn n_m(&self) -> Option<f64> {
         self.n_m
     }

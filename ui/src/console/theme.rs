@@ -248,7 +248,7 @@ fn visuals(mut visuals: Visuals, palette: &ColourPalette) -> Visuals {
     visuals
 }
 
-/// Frame of a card.
+/// Returns the frame of a card.
 pub fn card() -> egui::Frame {
     egui::Frame::new().fill(now().card).corner_radius(CORNER).inner_margin(Margin::same(CARD_PADDING))
 }

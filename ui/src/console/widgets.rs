@@ -51,7 +51,8 @@ pub fn at_the_right<R>(ui: &mut Ui, content: impl FnOnce(&mut Ui) -> R) -> R {
     row.inner
 }
 
-/// Names a plot for screen readers, with a summary of its content; the summary is built only if a screen reader is active.
+/// Returns the names a plot for screen readers, with a summary of its content; the summary is built only if a screen
+/// reader is active.
 pub fn describe(ui: &Ui, plot: &Response, name: &str, summary: impl FnOnce() -> String) {
     plot.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Figure, true, name));
     ui.ctx().accesskit_node_builder(plot.id, |node| node.set_description(summary()));
@@ -60,7 +61,7 @@ pub fn describe(ui: &Ui, plot: &Response, name: &str, summary: impl FnOnce() -> 
 /// Minimum factor by which a font is reduced to fit its text.
 const MIN_SIZE: f32 = 0.6;
 
-/// Width of this text in one line.
+/// Returns the width of this text in one line.
 pub fn width_of(painter: &Painter, words: &str, font: FontId) -> f32 {
     painter.layout_no_wrap(words.to_owned(), font, Color32::PLACEHOLDER).size().x
 }

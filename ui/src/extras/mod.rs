@@ -165,7 +165,7 @@ pub(crate) fn given<C: Subcommand>(matches: &ArgMatches) -> Option<Result<C, cla
     C::has_subcommand(name).then(|| C::from_arg_matches(matches))
 }
 
-/// Error for a command that another build has and this command line has nowhere.
+/// Returns the error for a command that another build has and this command line has nowhere.
 pub(crate) fn absent_command(line: &clap::Command, name: &str) -> Option<anyhow::Error> {
     fn has(line: &clap::Command, name: &str) -> bool {
         line.get_subcommands().any(|command| command.get_name() == name || has(command, name))
@@ -174,7 +174,7 @@ pub(crate) fn absent_command(line: &clap::Command, name: &str) -> Option<anyhow:
     (!has(line, name)).then(|| not_built(&format!("command `{name}`"), feature))
 }
 
-/// Error for a part that another build has.
+/// Returns the error for a part that another build has.
 pub(crate) fn not_built(what: &str, feature: &str) -> anyhow::Error {
     anyhow::anyhow!(
         "this build has no {what}; build it with `cargo build --release --locked -p nima-console --features {feature}`"
@@ -195,7 +195,7 @@ mod tests {
 
     #[derive(Debug, Subcommand)]
     enum OwnCommand {
-        /// Its own help
+        /// Own help
         Calibrate,
     }
 

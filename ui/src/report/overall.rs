@@ -101,7 +101,7 @@ fn of_level(session: &SessionFigures, level: MarkLevel) -> impl Iterator<Item = 
     session.marks.iter().filter(move |mark| mark.level == level)
 }
 
-/// Number of events of each kind, for the objects of the scene; empty without events.
+/// Returns the number of events of each kind, for the objects of the scene; empty without events.
 pub(super) fn happenings(session: &SessionFigures) -> Markup {
     let Some(happenings) = &session.happenings else { return html! {} };
     let rows: Vec<_> = happenings.iter().map(|(kind, count)| vec![kind.replace('_', " "), count.to_string()]).collect();

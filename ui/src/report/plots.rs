@@ -100,7 +100,7 @@ pub(super) fn states(session: &SessionFigures, arm: &ArmFigures) -> Markup {
     drawing([WIDTH, bottom + 22.0], &format!("States of the {} arm over time", arm.side), &body)
 }
 
-/// Width of what lies between two places; never so little that it cannot be seen.
+/// Returns the width of what lies between two places; never so little that it cannot be seen.
 fn width(from: f64, to: f64) -> String {
     format!("{:.1}", (to - from).max(0.8))
 }
@@ -119,7 +119,7 @@ fn gaps(length_s: f64, states: &[StateSpan]) -> Vec<[f64; 2]> {
     gaps
 }
 
-/// Positions and texts of the mark numbers; close marks share one label, such as 1-3.
+/// Returns the positions and texts of the mark numbers; close marks share one label, such as 1-3.
 fn labels(places: &[f64]) -> Vec<(f64, String)> {
     // First and last index, then first and last position.
     let mut groups: Vec<(usize, usize, f64, f64)> = Vec::new();

@@ -18,7 +18,7 @@ use super::{
 };
 use crate::language::{Text, text_format, word};
 
-/// Cause and remedy of a failed point.
+/// Returns the cause and remedy of a failed point.
 pub(crate) fn cause_text(cause: &ReadyCause, roster: &Roster) -> [String; 2] {
     let words: [Text; 2] = match *cause {
         ReadyCause::Missing { place } => return missing(place, roster),

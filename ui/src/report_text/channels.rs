@@ -4,7 +4,7 @@ use nima_machine::rig::PartKind;
 
 use crate::language::{text_format, word};
 
-/// Name of a tracker's marker, by the index of its tool.
+/// Returns the name of a tracker's marker, by the index of its tool.
 pub(crate) fn marker(tool: usize) -> String {
     match tool {
         0 => word("right marker", "Marker rechts").to_owned(),
@@ -31,7 +31,8 @@ pub(crate) fn channel_name(kind: PartKind, channel: usize) -> String {
     }
 }
 
-/// Row of the test's table: name, display unit, and the factor from the reading's SI unit to the display unit.
+/// Returns the row of the test's table: name, display unit, and the factor from the reading's SI unit to the display
+/// unit.
 pub(crate) fn channel_group(kind: PartKind, channel: usize) -> Option<(&'static str, &'static str, f64)> {
     const DEGREES: f64 = 180.0 / std::f64::consts::PI;
     match (kind, channel) {

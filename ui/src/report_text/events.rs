@@ -53,7 +53,7 @@ pub(super) fn device(event: &DeviceEvent, devices: &[DeviceName]) -> String {
     format!("{}: {standing}", name_of(event.device, devices))
 }
 
-/// Name of a device by its index in the roster.
+/// Returns the name of a device by its index in the roster.
 fn name_of(device: u8, devices: &[DeviceName]) -> String {
     devices
         .get(usize::from(device))

@@ -74,7 +74,7 @@ impl ShortText for ViewMove {
     }
 }
 
-/// Reason for a verdict, with the remedy.
+/// Returns the reason for a verdict, with the remedy.
 pub(crate) fn cause(cause: &FrameCause) -> String {
     match cause {
         FrameCause::Proven => word("accurate on held-out data", "genau auf Testdaten").to_owned(),
@@ -209,7 +209,7 @@ fn mistake_text(mistake: Mistake) -> String {
     }
 }
 
-/// Names and signs of three axes: `-y, x, z`.
+/// Returns the names and signs of three axes: `-y, x, z`.
 pub(crate) fn axes_text(SignedAxes(axes): SignedAxes) -> String {
     let word = |axis: SignedAxis| match axis {
         SignedAxis::PlusX => "x",
@@ -222,7 +222,7 @@ pub(crate) fn axes_text(SignedAxes(axes): SignedAxes) -> String {
     axes.map(word).join(", ")
 }
 
-/// Text of the phase, with the fraction (0 to 1) of the required holding time.
+/// Returns the text of the phase, with the fraction (0 to 1) of the required holding time.
 pub(crate) fn phase(phase: &FramePhase) -> (f64, String) {
     match phase {
         FramePhase::Missing(Some(source)) => (0.0, source.words().to_owned()),

@@ -12,7 +12,7 @@ pub(crate) const OFFERED: [Mode; MODES] =
 pub(crate) const COMPARED: [Mode; MODES] =
     [Mode::Best, Mode::Matched, Mode::Anchored, Mode::Dfr, Mode::Nima, Mode::Linear, Mode::Literal];
 
-/// Name of a mode on a button.
+/// Returns the name of a mode on a button.
 pub(crate) fn mode_name(mode: Mode) -> &'static str {
     words(mode)[0]
 }
@@ -22,7 +22,7 @@ pub(crate) fn mode_meaning(mode: Mode) -> &'static str {
     words(mode)[1]
 }
 
-/// Name and explanation. Methods of other authors appear on the screen only if the rig file names one.
+/// Returns the name and explanation. Methods of other authors appear on the screen only if the rig file names one.
 fn words(mode: Mode) -> [&'static str; 2] {
     match mode {
         Mode::Literal => [

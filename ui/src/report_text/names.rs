@@ -9,7 +9,7 @@ use nima_machine::{
 
 use crate::language::{Language, current, text_format, word};
 
-/// Side within a sentence: before the noun in English, after it in German.
+/// Returns the side within a sentence: before the noun in English, after it in German.
 pub(crate) fn side_word(side: Side) -> &'static str {
     match side {
         Side::Right => word("right", "rechts"),
@@ -29,7 +29,7 @@ pub(crate) fn state_name(state: LoopState) -> &'static str {
     }
 }
 
-/// Name within a sentence: lower case in English; a German noun keeps its capital.
+/// Returns the name within a sentence: lower case in English; a German noun keeps its capital.
 pub(crate) fn within(name: &str) -> String {
     if current() == Language::German { name.to_owned() } else { name.to_lowercase() }
 }
@@ -97,7 +97,7 @@ pub(crate) fn exchange_text(exchange: SideSwap) -> &'static str {
     }
 }
 
-/// Reason why an arm cannot be engaged, with its remedy, a clause without a full stop.
+/// Returns the reason why an arm cannot be engaged, with its remedy, a clause without a full stop.
 pub(crate) fn obstacle_text(obstacle: &EngageBlocker) -> String {
     match obstacle {
         EngageBlocker::Start(start) => start_words(*start),
@@ -118,7 +118,7 @@ pub(crate) fn obstacle_text(obstacle: &EngageBlocker) -> String {
     }
 }
 
-/// Reason why an arm cannot start from its current position, with the remedy.
+/// Returns the reason why an arm cannot start from its current position, with the remedy.
 fn start_words(error: ArmStartError) -> String {
     match error {
         ArmStartError::Period { period_s } => text_format!(
@@ -184,7 +184,7 @@ pub(crate) fn scheduling_text(scheduling: Scheduling) -> Option<String> {
     Some(format!("{cause}: {cure}"))
 }
 
-/// Name of a goal of a tip-force recording, and the advice until it is met.
+/// Returns the name of a goal of a tip-force recording, and the advice until it is met.
 pub(crate) fn goal_text(what: GoalKind) -> [&'static str; 2] {
     match what {
         GoalKind::Tilt => [

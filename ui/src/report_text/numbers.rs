@@ -2,7 +2,7 @@
 
 use crate::language::word;
 
-/// Number with about three digits; large numbers in powers of ten.
+/// Returns the number with about three digits; large numbers in powers of ten.
 pub(crate) fn three_digits(value: f64) -> String {
     match value.abs() {
         x if !x.is_finite() => word("not finite", "nicht endlich").to_owned(),
@@ -17,12 +17,12 @@ pub(crate) fn three_digits(value: f64) -> String {
 /// Sign for an unknown number.
 const UNKNOWN: &str = "–";
 
-/// Force (N) with about three digits and its unit, or the sign for an unknown number.
+/// Returns the force (N) with about three digits and its unit, or the sign for an unknown number.
 pub(crate) fn newtons_in_three(force_n: Option<f64>) -> String {
     force_n.map_or_else(|| UNKNOWN.to_owned(), |force_n| format!("{} N", three_digits(force_n)))
 }
 
-/// Force (N) with this many decimals and its unit, or the sign for an unknown number.
+/// Returns the force (N) with this many decimals and its unit, or the sign for an unknown number.
 pub(crate) fn newtons(force_n: Option<f64>, decimals: usize) -> String {
     force_n.map_or_else(|| UNKNOWN.to_owned(), |force_n| format!("{force_n:.decimals$} N"))
 }

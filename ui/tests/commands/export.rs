@@ -28,7 +28,7 @@ pub(crate) fn record(path: &str, scene: &str, seconds: &str) {
     json(&["run", "--virtual", "--seconds", seconds, "--scene", scene, "--delay-ms", "40", "--record", path, "--json"]);
 }
 
-/// Content of an arm's topic at each time: values by their names.
+/// Returns the content of an arm's topic at each time: values by their names.
 pub(crate) fn values(reader: &SessionReader, topic: &str) -> BTreeMap<u64, BTreeMap<String, f64>> {
     let message = |message: nima_recording::session::SessionMessage| {
         let mut read = JointStateDecoder::default();

@@ -102,7 +102,7 @@ fn recording() -> String {
     text
 }
 
-/// Directions over the whole sphere.
+/// Returns the directions over the whole sphere.
 fn directions(count: i32) -> impl Iterator<Item = [f64; 3]> {
     (0..count).map(move |i| {
         let z = 1.0 - (2.0 * f64::from(i) + 1.0) / f64::from(count);

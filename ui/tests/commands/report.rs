@@ -9,7 +9,7 @@ fn done(arguments: &[&str]) {
     assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
 }
 
-/// Maximum and mean magnitude of a vector in an exported table.
+/// Returns the maximum and mean magnitude of a vector in an exported table.
 fn peak_and_mean(table: &str, columns: [&str; 3]) -> [f64; 2] {
     let text = std::fs::read_to_string(table).unwrap();
     let mut lines = text.lines();

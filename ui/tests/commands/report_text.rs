@@ -53,7 +53,8 @@ pub(crate) fn literals(source: &str) -> Vec<String> {
     literals
 }
 
-/// Lines with continued literals joined, without attributes, comment lines, escaped quotes and quote characters.
+/// Returns the lines with continued literals joined, without attributes, comment lines, escaped quotes and quote
+/// characters.
 fn joined(source: &str) -> Vec<String> {
     let plain = source.replace("'\"'", "").replace("\\\"", "");
     let mut lines: Vec<String> = Vec::new();
@@ -120,7 +121,7 @@ fn every_sentence_is_in_the_text_modules() {
     );
 }
 
-/// Name and texts, English and German, of every constant in `text/`.
+/// Returns the name and texts, English and German, of every constant in `text/`.
 fn constants() -> Vec<(String, [String; 2])> {
     let mut files = Vec::new();
     sources(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src/console/text"), &mut files);

@@ -145,7 +145,7 @@ fn everything_in_every_wizard_and_in_the_past_has_a_name() {
     report(&all);
 }
 
-/// Names and positions of the controls in the order of the Tab key from the first one.
+/// Returns the names and positions of the controls in the order of the Tab key from the first one.
 fn stops(console: &mut Console) -> Vec<(String, Rect)> {
     let focused = |console: &Console| {
         let node = console.query_all_by(|node| node.is_focused() && node.role() != Kind::Window).next()?;

@@ -66,7 +66,7 @@ fn on_emulated_rig(folder: &Path) -> (Harness<'static, ConsoleApp>, RigFile) {
     (harness, file)
 }
 
-/// Texts of the device rows.
+/// Returns the texts of the device rows.
 fn report(harness: &Harness<'_, ConsoleApp>) -> Vec<String> {
     let rows = harness.query_all_by_label_contains("per second").chain(harness.query_all_by_label_contains("connect"));
     rows.filter_map(|row| row.accesskit_node().value()).collect()

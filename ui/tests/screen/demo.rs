@@ -61,8 +61,8 @@ fn the_demonstration_goes_on_by_itself_and_stands_while_the_loop_is_stopped() {
     until(&mut harness, "the second chapter", |tick| tick.mode == Mode::Dfr);
 }
 
-/// Duration of the second chapter on the loop's clock, and longest time between two frames, s, for a window that rests for
-/// this time after each frame.
+/// Returns the duration of the second chapter on the loop's clock, and longest time between two frames, s, for a window
+/// that rests for this time after each frame.
 fn second_chapter_s(rest: Duration) -> [f64; 2] {
     let mut harness = shown_at(SPEED, &plan("peg_transfer"), SIZE, |app| app);
     press(&mut harness, "Demo");

@@ -240,7 +240,7 @@ fn without_an_endoscope_the_field_is_drawn_as_ever() {
     harness.get_by_label("Operating field");
 }
 
-/// Position of the image, including parts outside the view, and its displayed part.
+/// Returns the position of the image, including parts outside the view, and its displayed part.
 fn image(harness: &Console) -> Option<(Rect, Rect)> {
     harness.output().shapes.iter().find_map(|clipped| match &clipped.shape {
         Shape::Mesh(mesh)

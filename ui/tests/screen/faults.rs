@@ -81,7 +81,8 @@ pub(crate) fn faults_of_texts(
     faults
 }
 
-/// Rows of tabs that are longer than their group and scroll sideways: a tab cut there can be scrolled into view.
+/// Returns the rows of tabs that are longer than their group and scroll sideways: a tab cut there can be scrolled into
+/// view.
 fn scrolled_tabs<A>(harness: &Harness<'_, A>) -> Vec<Rect> {
     let is_arrow = |name: Option<String>| name.is_some_and(|name| name.starts_with("Scroll tabs"));
     harness.query_all_by(move |node| is_arrow(node.label())).map(|node| node.rect()).collect()
@@ -151,7 +152,7 @@ pub(crate) enum Page {
 }
 
 impl Page {
-    /// How a view is checked: the technician's panels scroll.
+    /// Returns how a view is checked: the technician's panels scroll.
     pub(crate) fn of_view(role: Role) -> Self {
         if role == Role::Technician { Self::Scrolls } else { Self::Whole }
     }
@@ -167,7 +168,7 @@ pub(crate) fn faults(harness: &mut Harness<'_, ConsoleApp>, size: [f32; 2], page
     faults
 }
 
-/// Content of a window of this size: its texts, the window, the operating field.
+/// Returns the content of a window of this size: its texts, the window, the operating field.
 fn seen(harness: &mut Harness<'_, ConsoleApp>, size: [f32; 2]) -> (Vec<Text>, Rect, Option<Rect>) {
     harness.set_size(size.into());
     // Sizes settle within a few frames.

@@ -32,7 +32,8 @@ const BAR: Color32 = Color32::GRAY;
 /// Longest time in which a busy computer finishes drawing.
 const SETTLING_TIME: Duration = Duration::from_secs(20);
 
-/// Difference of the window from its stored picture; `None` if there is none. `UPDATE_SNAPSHOTS=1` stores the new one.
+/// Returns the difference of the window from its stored picture; `None` if there is none. `UPDATE_SNAPSHOTS=1` stores
+/// the new one.
 pub(crate) fn differs<A>(window: &Harness<'_, A>, name: &str) -> Option<String> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/screen/stored").join(name).with_extension("png");
     let now = drawn(window);
@@ -70,7 +71,7 @@ pub(crate) fn same<A>(window: &Harness<'_, A>, name: &str) {
     }
 }
 
-/// Place and size of the largest difference.
+/// Returns the place and size of the largest difference.
 fn difference(stored: &GrayImage, now: &GrayImage) -> Option<String> {
     if stored.dimensions() != now.dimensions() {
         return Some(format!("{:?} pixels were {:?}", now.dimensions(), stored.dimensions()));
@@ -200,7 +201,7 @@ impl GreyImage {
         }
     }
 
-    /// Means of squares, in steps.
+    /// Returns the means of squares, in steps.
     fn shrunk(&self) -> GrayImage {
         let height = self.greys.len() / self.width;
         let mean = |x: u32, y: u32| {

@@ -220,7 +220,7 @@ fn the_past_and_the_list_of_sessions_fit() {
     none(&all);
 }
 
-/// Number of faults found in a window with one planted fault.
+/// Returns the number of faults found in a window with one planted fault.
 fn planted(draw: impl FnMut(&mut egui::Ui) + 'static) -> usize {
     let size = [400.0, 300.0];
     let mut harness = Harness::builder().with_size(size).with_context_setup(theme::apply).build_ui(draw);

@@ -266,7 +266,7 @@ fn tour_and_glossary_fit_and_leave_the_stop_alone() {
     assert!(again.query_by_label("Next step").is_none(), "the tour is for the first time");
 }
 
-/// Kind and name of every control, in keyboard order, without digits, because numbers change.
+/// Returns the kind and name of every control, in keyboard order, without digits, because numbers change.
 fn controls(harness: &Harness<'_, ConsoleApp>) -> String {
     let operated = |kind: accesskit::Role| {
         matches!(

@@ -11,7 +11,7 @@ use crate::server::{Xvfb, wait_until};
 
 pub(crate) struct Console<'a> {
     pub(crate) x: &'a Xvfb,
-    /// Its data folder.
+    /// Data folder.
     pub(crate) folder: tempfile::TempDir,
     process: Child,
 }

@@ -57,7 +57,7 @@ fn a_window_that_is_asked_to_end_writes_its_figures_and_closes() {
     }
 }
 
-/// Number of colours of an image, and fraction of the most common one.
+/// Returns the number of colours of an image, and fraction of the most common one.
 fn colours(path: &std::path::Path) -> (usize, f64) {
     let image = image::open(path).unwrap().to_rgb8();
     let mut counts: HashMap<[u8; 3], u32> = HashMap::new();

@@ -1,6 +1,6 @@
-//! The paper's solution: a search over roll, pitch and yaw, here with the simplex method of Nelder and Mead (Comput.
-//! J. 1965) from several starts. It shares only the residual with the closed-form solution, so it can detect an error in
-//! that solution.
+//! The paper's solution: a search over roll, pitch and yaw, here with the simplex method of Nelder and Mead (Comput. J.
+//! 1965) from several starts. It has only the residual in common with the closed-form solution, so it can detect an
+//! error in that solution.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 

@@ -10,9 +10,9 @@ use super::solver::PushRow;
 /// subsets without one fold of the pushes, so that no direction depends on a single push.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct CorrespondenceExcitation {
-    /// Second axis relative to the first: near zero if all pushes lie along one line.
+    /// Second axis relative to the first: near zero if all pushes are along one line.
     pub second: f64,
-    /// Third axis relative to the first: near zero if all pushes lie in one plane.
+    /// Third axis relative to the first: near zero if all pushes are in one plane.
     pub third: f64,
     /// Root mean square force along the weakest axis of the forces, N.
     pub weakest_n: f64,
@@ -64,7 +64,7 @@ impl Scatter {
         Self { vectors, sum }
     }
 
-    /// Returns the root mean squares along the principal axes, largest first, without these vectors.
+    /// Returns the root mean squares along the principal axes, largest first, with these vectors left out.
     fn without(&self, left_out: &[Vector3<f64>]) -> [f64; 3] {
         let sum = self.sum - left_out.iter().map(|v| v * v.transpose()).sum::<Matrix3<f64>>();
         let count = (self.vectors.len() - left_out.len()).max(1) as f64;

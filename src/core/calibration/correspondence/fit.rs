@@ -14,7 +14,7 @@ use crate::calibration::Verdict;
 
 /// Maximum plausible force, N; the squares of larger numbers would lose precision.
 const PLAUSIBLE_N: f64 = 1e4;
-/// Up to this number of pairs each is held out alone; above it, a tenth at a time.
+/// Up to this number of pairs, each is held out individually; above it, a tenth at a time.
 const ALONE: usize = 20;
 /// With fewer rows the residual of a rotation is meaningless.
 const MIN_SOLVABLE: usize = 3;

@@ -23,12 +23,12 @@ pub(super) struct BestInterval {
 
 /// Maximum number of samples in an interval (0.1 s at 10 kHz, with a margin); a faster source gets a shorter interval.
 const CAPACITY: usize = 2048;
-/// Minimum number of samples for a mean: with fewer, the error of the standard deviation would be above 22 %
-/// (`1 / sqrt(2 n)`), and rest is judged by it.
+/// Minimum number of samples for a mean: with fewer, the error of the standard deviation would exceed 22 % (`1 / sqrt(2
+/// n)`), and it is used to detect rest.
 const MIN_SAMPLES: usize = 10;
 /// An interval weaker than this fraction of the strongest one is not near the peak.
 const NEAR_PEAK: f64 = 0.8;
-/// Readings further apart than this belong to different intervals, s.
+/// Readings farther apart than this belong to different intervals, s.
 const LONGEST_GAP_S: f64 = 0.05;
 
 /// A sliding window with running sums, and the best interval so far.

@@ -1,6 +1,6 @@
 //! Correspondence: the rotation between the sensor under the tissue (`s2`) and the one at the wrist (`s1`).
 //!
-//! Takes pairs of gravity-free forces (N) that both sensors measured at the same time, and the known part of the chain
+//! Input: pairs of gravity-free forces (N) that both sensors measured at the same time, and the known part of the chain
 //! `s1_from_c` of each; finds the `R = c_from_s2` that minimises `sum |s1_from_c_i R f2_i - f1_i|^2`. Without a chain
 //! (`s1_from_c` all identity) the result is `s1_from_s2`. Both sensors must measure the force on the instrument; for a
 //! sensor that measures the force on the tissue set [`CorrespondenceOptions::flip_s2`].
@@ -44,7 +44,7 @@ pub struct PushPair {
     pub f1_n: Vector3<f64>,
     /// Force at the sensor under the tissue, N (`s2`).
     pub f2_n: Vector3<f64>,
-    /// The known part of the chain; identity if there is none.
+    /// The known part of the chain; identity if no part is known.
     pub s1_from_c: UnitQuaternion<f64>,
 }
 
@@ -109,10 +109,10 @@ pub struct CorrespondenceLimits {
     /// Minimum held-out coefficient of determination over all axes (the paper has 0.95).
     #[serde(rename = "least_r2")]
     pub min_r2: f64,
-    /// Maximum deviation of the ratio of both sensors' forces from one.
+    /// Maximum deviation of the ratio of the two sensors' forces from one.
     pub gain_error: f64,
     pub offset_n: f64,
-    /// Maximum angle between the results of both solvers, degrees.
+    /// Maximum angle between the results of the two solvers, degrees.
     pub cross_check_deg: f64,
 }
 

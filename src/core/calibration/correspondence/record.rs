@@ -15,7 +15,7 @@ pub enum CorrespondenceKind {
     Correspondence,
 }
 
-/// A fitted correspondence with the measures of its quality.
+/// A fitted correspondence and its quality.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CorrespondenceRecord {
@@ -25,7 +25,8 @@ pub struct CorrespondenceRecord {
     #[serde(flatten)]
     pub judgement: Judgement,
     pub target: FitTarget,
-    /// The sensor under the tissue measured the force on the tissue: its sign was inverted before the fit.
+    /// Whether the sensor under the tissue measured the force on the tissue, so that its sign was inverted before the
+    /// fit.
     pub flip_s2: bool,
     pub pairs: usize,
     /// The rotation (w, x, y, z).

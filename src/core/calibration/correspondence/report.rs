@@ -73,7 +73,7 @@ pub struct CorrespondenceSolution {
     /// The rotation as roll, pitch, yaw, degrees (`Rz Ry Rx`).
     pub roll_pitch_yaw_deg: [f64; 3],
     pub agreement: PushAgreement,
-    /// Noise of both sensors together per axis, N: standard deviation of the residuals.
+    /// Combined noise of both sensors per axis, N: standard deviation of the residuals.
     pub noise_n: f64,
     /// Expected angular error (root mean square), degrees, for noise that is independent from row to row.
     pub uncertainty_deg: f64,

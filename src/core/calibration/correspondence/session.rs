@@ -76,7 +76,7 @@ pub enum CorrespondencePhase {
     /// Waiting for both sensors to be at rest without contact, before the first push.
     Resting {
         fraction: f64,
-        /// Reading of the wrist sensor, N; it must be zeroed if this stays above the limit.
+        /// Reading of the wrist sensor, N; if it stays above the limit, the sensor must be zeroed.
         f1_n: f64,
         /// Reading of the sensor under the tissue, N.
         f2_n: f64,
@@ -125,7 +125,7 @@ const MAX_PUSHES: usize = 64;
 #[derive(Clone, Copy, Debug)]
 struct CorrespondencePush {
     pair: PushPair,
-    /// Its direction (unit, `world`); `None` without the arm's kinematics.
+    /// Direction of the push (unit, `world`); `None` without the arm's kinematics.
     towards_in_world: Option<Vector3<f64>>,
 }
 
@@ -299,7 +299,7 @@ impl CorrespondenceSession {
         there
     }
 
-    /// Removes the newest push; returns `false` if there are no pushes.
+    /// Removes the newest push; returns `false` if there is none.
     pub fn undo(&mut self) -> bool {
         self.pushes.pop().is_some()
     }

@@ -7,9 +7,9 @@ use super::PushPair;
 /// One push: the same force in `c` (from the wrist sensor and the chain) and in `s2`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PushRow {
-    /// From the wrist sensor, N (`c`).
+    /// Force of the wrist sensor, N (`c`).
     pub(super) c_n: Vector3<f64>,
-    /// From the sensor under the tissue, N (`s2`).
+    /// Force of the sensor under the tissue, N (`s2`).
     pub(super) s2_n: Vector3<f64>,
     /// Used for residuals in the wrist sensor's axes.
     pub(super) s1_from_c: UnitQuaternion<f64>,
@@ -32,8 +32,8 @@ impl PushRow {
     }
 }
 
-/// Returns the proper rotation of least squares: `U diag(1, 1, det U det V) V^T` of `sum c s2^T` (Markley, J.
-/// Astronaut. Sci. 1988). The noise in N is equal for all forces, so a stronger push has more weight, as it should.
+/// Returns the least-squares proper rotation: `U diag(1, 1, det U det V) V^T` of `sum c s2^T` (Markley, J. Astronaut.
+/// Sci. 1988). The noise in N is equal for all forces, so a stronger push has more weight, as it should.
 pub(super) fn wahba<'a>(rows: impl IntoIterator<Item = &'a PushRow>) -> Rotation3<f64> {
     let moment = rows.into_iter().fold(Matrix3::zeros(), |sum, row| sum + row.c_n * row.s2_n.transpose());
     let decomposed = moment.svd(true, true);
@@ -50,7 +50,7 @@ pub(super) struct Consensus {
     pub(super) median_n: f64,
 }
 
-/// Number of random hypotheses: with a third of outliers, the probability that each of them contains one is 1e-77.
+/// Number of random hypotheses: if a third are outliers, the probability that every hypothesis contains one is 1e-77.
 const DRAWS: usize = 300;
 /// Up to this number of rows all pairs are tried instead.
 const EXHAUSTIVE: usize = 24;
@@ -67,7 +67,7 @@ const FINEST_N: f64 = 0.01;
 /// rotation about their common line would be determined by noise.
 const MIN_SINE: f64 = 0.25;
 
-/// Finds the rows that agree with the rotation of smallest median residual, over hypotheses from two pushes each, and
+/// Finds the rows that agree with the rotation of smallest median residual among hypotheses from two pushes each, and
 /// refines them iteratively.
 pub(super) fn consensus(rows: &[PushRow]) -> Consensus {
     let mut lengths = Vec::with_capacity(rows.len());

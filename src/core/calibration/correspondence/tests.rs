@@ -251,7 +251,7 @@ fn held_out_errors_are_those_of_pushes_that_were_not_fitted() {
     assert!(solution.agreement.r2_held_out_overall > 0.99);
 }
 
-/// Corrupts one pair; the vector is random noise for it.
+/// Corrupts one pair; the vector provides random noise.
 type Edit<'a> = &'a dyn Fn(&mut PushPair, Vector3<f64>);
 
 #[test]

@@ -34,14 +34,14 @@ pub enum FrameCause {
         #[serde(rename = "least_deg")]
         min_deg: f64,
     },
-    /// The points or directions lie on one line: their spread along the second axis (m, or a fraction of one for
-    /// directions).
+    /// The points or directions are on one line: their spread along the second axis (m; for directions a fraction of
+    /// one).
     Collinear {
         spread: f64,
         #[serde(rename = "least")]
         min: f64,
     },
-    /// The directions lie in one plane: their spread along the third axis, as a fraction of one.
+    /// The directions are in one plane: their spread along the third axis, as a fraction of one.
     OnePlane {
         spread: f64,
         #[serde(rename = "least")]
@@ -52,13 +52,13 @@ pub enum FrameCause {
         #[serde(rename = "least_n")]
         min_n: f64,
     },
-    /// The data determine the position too weakly: half the length of its 95 % interval.
+    /// The data determine the position only weakly: half the length of its 95 % interval.
     UncertainPlace {
         by_m: f64,
         #[serde(rename = "most_m")]
         max_m: f64,
     },
-    /// The data determine the angle too weakly: half the length of its 95 % interval.
+    /// The data determine the angle only weakly: half the length of its 95 % interval.
     UncertainAngle {
         by_deg: f64,
         #[serde(rename = "most_deg")]
@@ -214,9 +214,9 @@ impl SignedAxis {
 pub struct SignedAxes(pub [SignedAxis; 3]);
 
 impl SignedAxes {
-    /// Every axis with its own name and sign.
+    /// Every axis with its own name and a positive sign.
     pub const SAME: Self = Self([SignedAxis::PlusX, SignedAxis::PlusY, SignedAxis::PlusZ]);
-    /// Beyond this angle two frames differ by more than names and signs of axes, degrees.
+    /// Above this angle, two frames differ by more than names and signs of axes, degrees.
     const NEAR_DEG: f64 = 20.0;
 
     /// Returns the nearest permutation with signs to an orthogonal matrix `measured_from_expected`; `None` if none is

@@ -22,10 +22,10 @@ pub(super) trait Problem {
     type Row: Copy;
     type Model;
     const HYPOTHESIS: usize;
-    /// Errors up to this belong to good rows: at least four standard deviations of the expected noise.
+    /// Errors up to this limit belong to good rows: at least four standard deviations of the expected noise.
     const FLOOR: RowMiss;
 
-    /// Returns the model of least squares; `None` if the rows do not determine a model.
+    /// Returns the least-squares model; `None` if the rows do not determine a model.
     fn solve(&self, rows: &[Self::Row]) -> Option<Self::Model>;
 
     /// Returns a fast model that is accurate enough to show which rows agree.
@@ -73,12 +73,12 @@ const DRAWS: usize = 40;
 /// Median length of a 3-D normal vector with a standard deviation of 1 per axis: the root of the median 2.366 of
 /// chi-squared with three degrees of freedom, so that the median error gives the standard deviation.
 const MEDIAN_OF_LENGTH: f64 = 1.538;
-/// A row beyond this many standard deviations is an outlier: one in 900 good rows is lost, because the length of a 3-D
-/// normal vector exceeds it so rarely.
+/// A row beyond this many standard deviations is an outlier. This loses one in 900 good rows, because the length of a
+/// 3-D normal vector rarely exceeds it.
 const CUT: f64 = 4.0;
 /// If the median error of the rows exceeds this many floors, they do not fit any model.
 const HOPELESS: f64 = 10.0;
-/// Up to this number of rows each is held out alone; above it, every tenth together.
+/// Up to this number of rows, each is held out individually; above it, every tenth row together.
 const LEAVE_ONE_OUT: usize = 20;
 
 /// Fits the rows that agree with each other; returns `None` if no model can be determined.
@@ -106,8 +106,8 @@ fn held_out<P: Problem>(problem: &P, rows: &[P::Row]) -> Option<Vec<RowMiss>> {
     Some(misses)
 }
 
-/// Returns the indices of the rows that agree: all of them if none misses by more than the floor; else those near the
-/// hypothesis of smallest median error (Rousseeuw 1984), refined until nothing changes.
+/// Returns the indices of the rows that agree: all of them if no error exceeds the floor; otherwise those near the
+/// hypothesis with the smallest median error (Rousseeuw 1984), refined until nothing changes.
 fn agreeing<P: Problem>(problem: &P, rows: &[P::Row]) -> Option<Vec<usize>> {
     let whole = problem.guess(rows)?;
     if rows.iter().all(|row| problem.size(&whole, row) <= 1.0) || rows.len() <= P::HYPOTHESIS {

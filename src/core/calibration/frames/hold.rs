@@ -5,21 +5,21 @@ use nalgebra::{Isometry3, Vector3};
 use super::FrameSample;
 use crate::{calibration::rotation_mean::RotationMean, frames::Wrench};
 
-/// A sample further than this from the mean of the pose ends it: six standard deviations of a tracker, m and rad.
+/// A sample farther than this from the mean of the pose ends the pose: six standard deviations of a tracker, m and rad.
 const SAMPLE_M: f64 = 1.5e-3;
 const SAMPLE_RAD: f64 = 0.004;
 /// Maximum difference between the means of the two halves: a slow motion hides in the noise of single samples, m and
 /// rad.
 const HALVES_M: f64 = 0.5e-3;
 const HALVES_RAD: f64 = 0.0014;
-/// A longer gap between samples ends a pose, s: the tool may have moved meanwhile, so that the mean would mix two
-/// poses.
+/// A longer gap between samples ends a pose, s, because the tool may have moved in the meantime, and the mean would mix
+/// two poses.
 const GAP_S: f64 = 0.2;
 const POSES: usize = 5;
 
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum HoldState {
-    /// The pose moved by this much since the hold began.
+    /// The pose moved by this much since the hold started.
     Moved { by_m: f64, by_rad: f64 },
     /// Not long enough yet: the fraction of the required time.
     Share(f64),

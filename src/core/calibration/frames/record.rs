@@ -1,4 +1,4 @@
-//! File content of a frame calibration: the result, the devices that it belongs to, and its quality.
+//! Content of a frame calibration file: the result, its devices, and its quality.
 
 use nalgebra::{Isometry3, Quaternion, UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
@@ -14,7 +14,7 @@ pub struct Serials {
     pub arm: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tracker: Option<String>,
-    /// Serial number of the marker, or the name of its definition.
+    /// Serial number of the marker, or the name of its definition file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub marker: Option<String>,
 }
@@ -50,7 +50,7 @@ pub struct FrameRecord<F> {
     /// Half the length of the 95 % interval.
     pub uncertainty: Sizes,
     pub found: F,
-    /// Changes that the calibration made in the rig file.
+    /// Changes by the calibration in the rig file.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub rig: Vec<RigChange>,
 }

@@ -35,7 +35,7 @@ impl Sizes {
         Self { place_m: Some(place_m), angle_deg: Some(angle_deg) }
     }
 
-    /// Returns the root mean square and the maximum of these misses, in the sizes that all of them have.
+    /// Returns the root mean square and the maximum of these errors, in the quantities that all of them have.
     pub(super) fn of(misses: &[RowMiss]) -> [Self; 2] {
         let sizes = |of: fn(f64, f64) -> f64, finish: &dyn Fn(f64) -> f64| {
             let fold = |part: fn(&RowMiss) -> Option<f64>| {
@@ -74,10 +74,10 @@ pub struct FrameReport<F> {
     /// others; outliers are not counted.
     pub held_out: Sizes,
     pub held_out_max: Sizes,
-    /// Half the length of the 95 % interval: for the position along the longest axis of its ellipsoid, for the angle
+    /// Half the length of the 95 % interval: of the position, along the longest axis of its ellipsoid; of the angle,
     /// about any axis.
     pub uncertainty: Sizes,
-    /// The result; `None` if the data do not determine one. Use it only with [`Verdict::Accepted`].
+    /// The result; `None` if the data do not determine it. Use it only with [`Verdict::Accepted`].
     pub found: Option<F>,
 }
 
@@ -170,7 +170,7 @@ fn above(value: Option<f64>, max: Option<f64>) -> Option<(f64, f64)> {
     max.map(|max| (value.unwrap_or(f64::INFINITY), max)).filter(|(value, max)| value.is_nan() || value > max)
 }
 
-/// A frame calibration: its settings, and how it is fitted. [`FrameSession`](super::FrameSession) records for it.
+/// A frame calibration: its settings, and the fit. [`FrameSession`](super::FrameSession) records its data.
 pub trait Calibration {
     type Solution: CalibrationResult;
 
@@ -193,7 +193,7 @@ pub trait Calibration {
     /// Fits the data as given; the samples have been checked.
     fn attempt(&self, samples: &[FrameSample]) -> FrameReport<Self::Solution>;
 
-    /// Returns the mistakes to look for, the likeliest first, and the carrier whose poses they concern.
+    /// Returns the mistakes to check, likeliest first, and the carrier whose poses they affect.
     fn mistakes(&self) -> Vec<(Mistake, Carrier)>;
 
     fn fault(&self) -> Option<&'static str> {
@@ -235,7 +235,7 @@ pub trait Calibration {
     }
 }
 
-/// A less likely mistake is reported if its error is below this fraction of a likelier one's.
+/// A less likely mistake is reported only if its error is below this fraction of the error of a likelier one.
 const CLEARLY: f64 = 0.7;
 
 pub(super) fn finite(vector: &Vector3<f64>) -> bool {

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::FrameError;
 use crate::{calibration::gravity, frames::Wrench};
 
-/// A position farther away than this does not belong to a rig, m: the numbers are probably millimetres.
+/// A position farther away than this cannot belong to a rig, m: the numbers are probably in millimetres.
 const FARTHEST_M: f64 = 10.0;
 
 /// Measurements of one moment, or the means over a still pose. Quantities that a rig does not measure are `None`.
@@ -28,7 +28,7 @@ pub struct FrameSample {
     pub wrench: Option<Wrench>,
 }
 
-/// The part that moves while a calibration is recorded, and the frame in which it is measured.
+/// The part that moves during the recording of a calibration, and the frame in which it is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Carrier {

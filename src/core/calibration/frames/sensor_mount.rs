@@ -1,4 +1,5 @@
-//! The mount of the wrist sensor: `flange_from_s1` from the weight of the tool in still poses of the arm.
+//! Orientation of the wrist sensor on the flange: `flange_from_s1` from the weight of the tool in still poses of the
+//! arm.
 //!
 //! In a still pose `f = m R u + f0` with the gravity vector `u` in the flange's frame, which follows from the joints.
 //! The least-squares `R = s1_from_flange`, mass `m` and bias `f0` have a closed form: differences from the means remove
@@ -18,8 +19,8 @@ use super::{
 };
 use crate::frames::GRAVITY_M_S2;
 
-/// Minimum turn of the flange relative to gravity between two poses, rad: 10 degrees, so that a person who hardly moves
-/// does not fill the session with equal poses. Chosen.
+/// Minimum rotation of the flange relative to gravity between two poses, rad: 10 degrees, so that a person who hardly
+/// moves does not fill the session with equal poses. Chosen.
 const APART_RAD: f64 = 0.17;
 /// Minimum root mean square of the directions of gravity from their mean along the third axis, 0 to 1; 0.58 for all
 /// directions.
@@ -43,7 +44,7 @@ pub struct SensorMount {
 
 impl SensorMount {
     /// Creates the settings for a comparison with this mount (`flange_from_s1`), on an arm with this upward direction
-    /// in its base's frame.
+    /// in its base frame.
     pub const fn new(active: UnitQuaternion<f64>, up_in_base: Vector3<f64>) -> Self {
         let limits =
             FrameLimits { min: 6, held_out: Sizes::angle(5.0), uncertainty: Sizes::angle(3.0), outliers: 0.25 };
@@ -70,8 +71,8 @@ pub struct SensorMountResult {
     /// Angle between this mount and the active one, degrees.
     #[serde(rename = "from_in_force_deg")]
     pub from_active_deg: f64,
-    /// Axes of the active mount that the measured x, y and z are, if the two mounts differ by names and signs of axes;
-    /// all equal if they agree. `None` if they differ in another way.
+    /// Axes of the active mount that correspond to the measured x, y and z, if the two mounts differ only in names and
+    /// signs of axes; unchanged if they agree. `None` if they differ in another way.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub axes: Option<SignedAxes>,
     pub mass_kg: f64,
@@ -266,7 +267,7 @@ impl SensorMount {
     }
 }
 
-/// Returns the covariance of the turn (rotation vector in `s1`, rad), estimated together with the bias.
+/// Returns the covariance of the rotation (rotation vector in `s1`, rad), estimated together with the bias.
 fn turn_covariance(rows: &[SensorMountRow], weighed: &WeightModel, variance_n2: f64) -> Option<Matrix3<f64>> {
     let slopes: Vec<Matrix3<f64>> =
         rows.iter().map(|row| -(weighed.turn * row.down * weighed.weight_n).cross_matrix()).collect();

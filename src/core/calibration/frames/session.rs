@@ -16,7 +16,7 @@ pub const MAX_POSES: usize = 400;
 pub enum FramePhase {
     /// A source is silent, or a number in the sample or the time is not finite.
     Missing(Option<CalibrationSource>),
-    /// The carrier moves, by this much since the hold began.
+    /// The carrier is moving; `by_m` and the angle since the hold started.
     Moving {
         by_m: f64,
         /// Still, but not different enough from the recorded poses.
@@ -49,9 +49,9 @@ pub enum MissingMotion {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrameCoverage {
-    /// 0 to 1; at 1 the data suffice, unless they are poor.
+    /// Fraction of the required data, 0 to 1; at 1 the data suffice, unless they are poor.
     pub fraction: f64,
-    /// The part that is missing most; `None` at 1.
+    /// Part that is missing most; `None` at 1.
     pub missing: Option<MissingMotion>,
 }
 
@@ -108,7 +108,7 @@ impl<C: Calibration> FrameSession<C> {
         }
     }
 
-    /// Returns whether the carrier, or the other one that may have been confused with it, is at a new pose.
+    /// Returns whether the carrier, or the other one with which it may have been confused, is at a new pose.
     fn differs(&self, sample: &FrameSample) -> bool {
         let carrier = self.calibration.carrier();
         let of_other = |sample: &FrameSample| {

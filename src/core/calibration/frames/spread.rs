@@ -16,8 +16,8 @@ pub(super) struct Turns {
 }
 
 impl Turns {
-    /// Computes the turns of these poses from the eigenvalues of [`lever_matrix`]. A turn about one axis leaves the
-    /// lever along that axis undetermined.
+    /// Computes the spread of the rotations of these poses from the eigenvalues of [`lever_matrix`]. A rotation about
+    /// one axis leaves the lever along that axis undetermined.
     pub(super) fn of<'a>(poses: impl Iterator<Item = &'a Isometry3<f64>>) -> Self {
         let values = lever_matrix(poses).map_or(Vector3::zeros(), |matrix| matrix.symmetric_eigenvalues());
         let degrees = |square: f64| square.max(0.0).sqrt().to_degrees();

@@ -1,6 +1,6 @@
 //! The table: origin and plane of the workspace from points touched with the tip.
 //!
-//! The first point is the origin, the second lies along +x, the third on the side of +y; further points may lie
+//! The first point is the origin, the second is along +x, and the third is on the side of +y; further points may be
 //! anywhere on the plane and verify it. The plane is the least-squares fit to all points.
 
 use nalgebra::{Isometry3, Matrix3, Point3, Rotation3, SymmetricEigen, UnitQuaternion, Vector3};
@@ -23,7 +23,7 @@ const APART_M: f64 = 0.02;
 const MIN_SPREAD_M: f64 = 0.015;
 const PLENTY_SPREAD_M: f64 = 0.03;
 const PLENTY: usize = 6;
-/// Noise of a touch per axis, m, and the degrees of freedom that this prior is worth, because few points do not
+/// Noise of a touch per axis, m, and the degrees of freedom of this prior, which is needed because few points do not
 /// determine their own noise.
 const NOISE_M: f64 = 0.35e-3;
 const NOISE_FREEDOM: usize = 8;
@@ -35,7 +35,7 @@ pub struct TableSettings {
     /// The tip in the frame of the marker or of the flange, m.
     pub tip_in_carrier_m: Vector3<f64>,
     /// Upward direction in the frame of the camera or of the base, if known. A table whose z axis points down is then
-    /// refused, because its x and y axes were swapped.
+    /// rejected, because its x and y axes must have been swapped.
     pub up: Option<Vector3<f64>>,
     pub limits: FrameLimits,
 }
@@ -113,7 +113,7 @@ impl Problem for Touches {
     }
 }
 
-/// Returns the mean of the points, and the mean of the outer products of their distances from it.
+/// Returns the mean of the points, and the mean outer product of their distances from it.
 fn scatter(points: &[Vector3<f64>]) -> (Vector3<f64>, Matrix3<f64>) {
     let fraction = 1.0 / points.len().max(1) as f64;
     let middle = points.iter().sum::<Vector3<f64>>() * fraction;
@@ -130,7 +130,7 @@ fn second_spread_m(points: &[Vector3<f64>]) -> f64 {
     principal(&from_middle)[1]
 }
 
-/// Returns the axes of the table from its plane and the three points that define them; `None` if these lie on one line.
+/// Returns the axes of the table from its plane and the three points that define them; `None` if these are on one line.
 fn axes(plane: &FittedPlane, [origin, along, beside]: [Vector3<f64>; 3]) -> Option<Isometry3<f64>> {
     let onto = |v: Vector3<f64>| v - plane.normal * v.dot(&plane.normal);
     let x = onto(along - origin).try_normalize(APART_M / 2.0)?;
@@ -216,8 +216,8 @@ impl Calibration for TableSettings {
     }
 }
 
-/// Returns the half lengths of the 95 % intervals of the origin and of the table's orientation (tilt of the plane, turn
-/// of x in it).
+/// Returns the half lengths of the 95 % intervals of the origin and of the table's orientation (tilt of the plane,
+/// rotation of x in it).
 fn uncertainty(points: &[Vector3<f64>], squares_m2: f64, x_m: f64) -> Sizes {
     let freedom = points.len().saturating_sub(3) + NOISE_FREEDOM;
     let variance_m2 = (squares_m2 + NOISE_FREEDOM as f64 * NOISE_M * NOISE_M) / freedom as f64;

@@ -17,11 +17,11 @@ use super::{
 };
 use crate::calibration::Verdict;
 
-/// Minimum turn between two poses, rad: 4 degrees, so that a person who hardly moves does not fill the session with
+/// Minimum rotation between two poses, rad: 4 degrees, so that a person who hardly moves does not fill the session with
 /// equal poses. Chosen.
 pub(super) const APART_RAD: f64 = 0.07;
-/// A session is complete with this number of poses, and with these turns in degrees. With 20 poses, 95 % of 200
-/// simulated calibrations by a tracker err by at most 0.40 mm (`docs/frames.md`).
+/// A session is complete with this number of poses, and with these rotations in degrees. With 20 poses, 95 % of 200
+/// simulated calibrations with a tracker have an error of at most 0.40 mm (`docs/frames.md`).
 const PLENTY: usize = 20;
 const PLENTY_DEG: f64 = 15.0;
 const PLENTY_SECOND_DEG: f64 = 10.0;

@@ -39,7 +39,7 @@ pub enum ViewMove {
 }
 
 impl ViewMove {
-    /// The moves in the order in which they are requested. They end where they began.
+    /// The moves in the order in which they are requested. The last one ends at the start of the first.
     pub const ALL: [Self; 6] = [Self::Right, Self::Up, Self::Deeper, Self::Left, Self::Down, Self::Back];
 
     /// Returns the direction in the frame `view`, unit length.

@@ -1,4 +1,4 @@
-//! Removes gravity from every sample while the tool moves.
+//! Removes gravity from every sample, even while the tool moves.
 //!
 //! An accelerometer at the sensor measures gravity and motion together, and so does the sensor: acceleration of the
 //! tool adds a force `m a` to its weight. The models with gain or mass remove both, as long as the accelerometer's

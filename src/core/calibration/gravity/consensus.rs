@@ -1,4 +1,5 @@
-//! Finds the poses that agree with each other, so that one or two touched poses do not spoil the fit.
+//! Finds the poses that agree with each other, so that one or two poses in which the tool was touched do not spoil the
+//! fit.
 //!
 //! The least quantile of residuals over small random sets (Rousseeuw 1984) gives a start that a minority of bad poses
 //! cannot affect. Then poses beyond a multiple of the agreeing poses' deviation are left out, until the set no longer
@@ -13,7 +14,8 @@ const AGREEING_FRACTION: f64 = 0.7;
 const SET: usize = 5;
 /// Number of random sets: with 30 % bad poses, all of them contain a bad pose once in 1700 cases.
 const SETS: usize = 40;
-/// With fewer poses it cannot be determined which of them is wrong: a random set of five must leave some to judge by.
+/// With fewer poses, it cannot be determined which of them is wrong: a random set of five must leave some for the
+/// evaluation.
 const MIN_POSES: usize = 8;
 /// Number of standard deviations beyond which a pose is an outlier: 1 in 900 by chance for three axes.
 const DEVIATIONS: f64 = 4.0;
@@ -23,8 +25,7 @@ const MEDIAN_LENGTH: f64 = 1.538;
 /// A fixed seed: the same poses give the same result.
 const SEED: u64 = 0x6772_6176;
 
-/// Returns the indices of the rows that agree, in increasing order. `floor_n`: a residual below it is never an outlier,
-/// N.
+/// Returns the indices of the rows that agree, in increasing order. A residual below `floor_n` (N) is never an outlier.
 pub(super) fn agreeing(rows: &[GravityRow], floor_n: f64) -> Vec<usize> {
     let all: Vec<usize> = (0..rows.len()).collect();
     if rows.len() < MIN_POSES {
@@ -49,7 +50,7 @@ pub(super) fn agreeing(rows: &[GravityRow], floor_n: f64) -> Vec<usize> {
     chosen
 }
 
-/// Returns the best `min` rows under the random set whose `min`-th residual is the smallest.
+/// Returns the `min` best rows of the random set whose `min`-th residual is the smallest.
 fn start(rows: &[GravityRow], min: usize) -> Option<Vec<usize>> {
     let mut rng = fastrand::Rng::with_seed(SEED);
     let mut best: Option<(f64, Vec<usize>)> = None;

@@ -1,4 +1,4 @@
-//! Checks after every start whether a saved calibration is still valid, by the force that remains at rest. A state
+//! Checks after every start whether a saved calibration is still valid, from the remaining force at rest. A state
 //! machine without a clock.
 //!
 //! Takes every sample of the wrist sensor with the time (s) and whether the loop is idle; returns a [`GravityDrift`]. It waits
@@ -14,12 +14,13 @@ use super::{
 };
 use crate::frames::WristSample;
 
-/// After a start, the filters of sensor and driver need this time to settle, s.
+/// Time that the filters of sensor and driver need to settle after a start, s.
 const SETTLE_S: f64 = 2.0;
-/// A bad verdict needs this many consecutive still intervals: a hand at the tool sways, and a bias does not
+/// A bad verdict needs this many consecutive still intervals: a hand on the tool sways, whereas a bias does not
 /// (`docs/calibration.md`).
 const STRETCHES_FOR_BAD: f64 = 3.0;
-/// Without a verdict after this time, the check reports why, s; a later still interval still decides.
+/// If there is no verdict after this time, the check reports the reason, s; a later still interval may still give a
+/// verdict.
 const TIMEOUT_S: f64 = 7.0;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -16,10 +16,10 @@ use crate::{
     frames::{GRAVITY_M_S2, Wrench},
 };
 
-/// Up to this number of poses each is held out alone; above it, every tenth together.
+/// Up to this number of poses, each is held out individually; above it, every tenth pose together.
 const LEAVE_ONE_OUT: usize = 20;
 /// The gain model is chosen automatically only with at least this many poses, because it has twelve unknowns for the
-/// force, and the physical model seven.
+/// force, the physical model only seven.
 const GAIN_POSES: usize = 12;
 /// The gain model is chosen automatically only if its held-out error is below this fraction of the physical model's.
 const GAIN_FRACTION: f64 = 0.75;
@@ -49,13 +49,13 @@ impl FitFrame {
     }
 }
 
-/// The rows, which of them agree, and the training rows of each fold.
+/// The rows, the subset that agrees, and the training rows of each fold.
 struct FitData {
     all: Vec<GravityRow>,
     inliers: Vec<usize>,
     kept: Vec<GravityRow>,
     trainings: Vec<Vec<GravityRow>>,
-    /// Change of the bias from the first pose to the last (N), if they disagree by a drift.
+    /// Change of the bias from the first pose to the last (N), if the poses disagree because of a drift.
     drift_n: Option<f64>,
 }
 

@@ -5,8 +5,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::frames::{GRAVITY_M_S2, Wrench, WristSample};
 
-/// Below this value, m/s^2, the accelerometer is defective or the arm is in free fall, and the orientation cannot be
-/// computed.
+/// If the accelerometer measures less than this, m/s^2, it is defective or the arm is in free fall, and the orientation
+/// cannot be computed.
 pub(super) const MIN_FIELD_M_S2: f64 = 1.0;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -75,14 +75,15 @@ pub enum GravityParameters {
     Paper { force_n: [[f64; 5]; 3], torque_nm: Option<[[f64; 5]; 3]> },
 }
 
-/// A gravity model and the source of orientation that it was fitted with.
+/// A gravity model and the source of orientation used for its fit.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct GravityModel {
     pub source: GravitySource,
-    /// +1 if the accelerometer points away from the ground at rest (as most do), -1 if it points towards it.
+    /// +1 if the accelerometer points away from the ground at rest (as most accelerometers do), -1 if it points towards
+    /// it.
     pub imu_sign: i8,
-    /// Fitted parameters; they depend on the type of the model.
+    /// Fitted parameters, which depend on the type of the model.
     pub parameters: GravityParameters,
 }
 
@@ -95,7 +96,7 @@ impl GravityModel {
         }
     }
 
-    /// Returns the fault of parameters that were read from a file; `None` if they are valid.
+    /// Returns the fault of parameters read from a file; `None` if they are valid.
     pub fn fault(&self) -> Option<&'static str> {
         let finite = |numbers: &[f64]| numbers.iter().all(|x| x.is_finite());
         let torque_fits = |torque: &Option<TorqueParameters>| {

@@ -1,5 +1,5 @@
-//! Checks before the first pose: does the sensor deliver data, at which rate, with how much noise, and is it still? A
-//! state machine without a clock.
+//! Checks before the first pose that the sensor delivers data, and evaluates its rate, noise and stillness. A state
+//! machine without a clock.
 //!
 //! Takes the newest sample of every tick with its time (s); the result is updated twice a second. If the sensor is
 //! silent, the loop continues with its last sample, so a sample that equals the previous one in every number does not
@@ -13,8 +13,8 @@ use crate::frames::{GRAVITY_M_S2, WristSample};
 
 /// Length of a measuring interval, s.
 const BLOCK_S: f64 = 0.5;
-/// If ticks are further apart than this, the screen has missed some ticks; that time does not count as silence of the
-/// sensor, s.
+/// If ticks are farther apart than this, the screen has missed some; that time does not count as silence of the sensor,
+/// s.
 const HOLE_S: f64 = 0.020;
 /// Minimum rate of samples as a fraction of the loop's rate: a lower rate would be felt as steps and lag.
 const RATE_FRACTION: f64 = 0.9;
@@ -27,8 +27,8 @@ const ACCELERATION_NOISE_M_S2: f64 = 0.12;
 /// Maximum relative deviation of the accelerometer's reading at rest from gravity: a larger deviation cannot be the
 /// local gravity, which varies by 0.5 % over the earth, and means a wrong unit or a damaged device.
 const GRAVITY_FRACTION: f64 = 0.05;
-/// Stillness is evaluated in steps of 20 ms, and its first sample is a tick late: a rest may be measured too short by
-/// this, s.
+/// Stillness is evaluated in steps of 20 ms, and the first sample is one tick late, so the measured rest may be too
+/// short by this time, s.
 const REST_ROUNDING_S: f64 = 0.045;
 /// A swinging tool is still for a moment at its turning points, but not for this long, s.
 const REST_S: f64 = 0.2;
@@ -106,7 +106,7 @@ impl PrecheckSpread {
         (self.squares / self.count.max(1.0) - mean.component_mul(&mean)).map(|variance| variance.max(0.0).sqrt())
     }
 
-    /// Returns the standard deviation of white noise with these differences between samples; slow motion does not
+    /// Returns the standard deviation of white noise from these differences between samples; slow motion does not
     /// affect it.
     fn roughness(&self) -> Vector3<f64> {
         (self.steps / (2.0 * (self.count - 1.0).max(1.0))).map(f64::sqrt)
@@ -179,7 +179,7 @@ impl PrecheckBlock {
 pub struct Precheck {
     settings: GravitySessionSettings,
     still: StillInterval,
-    /// Time for which the tool has been still, s; `None` while it moves or before this is known.
+    /// Time for which the tool has been still, s; `None` while it moves, or before this can be determined.
     rested_s: Option<f64>,
     newest: Option<WristSample>,
     last_s: f64,
@@ -195,7 +195,7 @@ impl Precheck {
         Self { settings, still, rested_s: None, newest: None, last_s: f64::NAN, block, measured: None }
     }
 
-    /// Adds the sample of one tick, `None` if there is none, at time `t_s` (s, increasing). Allocates nothing.
+    /// Adds the sample of one tick (`None` if it is missing) at time `t_s` (s, increasing). Allocates nothing.
     pub fn step(&mut self, sample: Option<&WristSample>, t_s: f64) {
         let step_s = t_s - self.last_s;
         self.last_s = t_s;

@@ -7,7 +7,8 @@ use crate::calibration::gravity::{GravitySessionSettings, tests::Tool};
 
 const RATE_HZ: f64 = 1000.0;
 
-/// Returns one and a half seconds of a still sensor, modified by `edit` (whose argument is the tick's number).
+/// Returns one and a half seconds of data from a still sensor, modified by `edit` (whose argument is the number of the
+/// tick).
 fn seen(
     settings: GravitySessionSettings,
     mut edit: impl FnMut(u32, &mut Tool, WristSample) -> Option<WristSample>,

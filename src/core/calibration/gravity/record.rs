@@ -1,4 +1,4 @@
-//! File content of a gravity calibration: the model, the devices that it belongs to, and its quality.
+//! Content of a gravity calibration file: the model, its devices, and its quality.
 
 use serde::{Deserialize, Deserializer, Serialize, de::Error as _};
 
@@ -33,14 +33,14 @@ pub struct GravityRecord {
     pub model: GravityModel,
     /// Errors of the force, N.
     pub residuals: Residuals,
-    /// Errors of the torque, Nm, if it was measured.
+    /// Errors of the torque, Nm, if the torque was measured.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub torque_residuals: Option<Residuals>,
 }
 
 /// A smaller change of bias cannot be distinguished from the temperature drift of a recently started sensor, N.
 const DRIFT_FLOOR_N: f64 = 0.10;
-/// Upper limit for any calibration, N, because a model that errs by more would otherwise excuse any bias.
+/// Upper limit for any calibration, N, because a model with a larger error would otherwise excuse any bias.
 const DRIFT_MAX_N: f64 = 0.50;
 
 impl GravityRecord {
@@ -64,7 +64,7 @@ impl CalibrationRecord for GravityRecord {
     }
 }
 
-/// Refuses a model from a file if it is not usable.
+/// Rejects a model read from a file if it is not usable.
 fn sound<'de, D: Deserializer<'de>>(deserializer: D) -> Result<GravityModel, D::Error> {
     let model = GravityModel::deserialize(deserializer)?;
     model.fault().map_or(Ok(model), |fault| Err(D::Error::custom(fault)))

@@ -34,7 +34,7 @@ pub struct GravityLimits {
     /// Minimum weight as a multiple of the poses' disagreement: a sensor that delivers no readings shows no weight.
     #[serde(rename = "least_signal")]
     pub min_signal: f64,
-    /// A pose whose force is within this of the model is never an outlier, N.
+    /// A pose whose force deviates from the model by less than this is never an outlier, N.
     pub outlier_floor_n: f64,
 }
 
@@ -87,7 +87,7 @@ pub struct GravityReport {
     pub verdict: Verdict,
     /// The reason for the verdict, one sentence for the operator.
     pub reason: String,
-    /// The chosen model; `None` if there are too few poses.
+    /// Selected model; `None` if there are too few poses.
     pub chosen: Option<ModelKind>,
     pub poses: usize,
     pub source: GravitySource,

@@ -28,9 +28,10 @@ const STEP_MAX_S: f64 = 0.1;
 pub struct GravitySessionSettings {
     pub fit: GravitySettings,
     pub still: StillSettings,
-    /// Use the orientation from the arm even if there is an accelerometer.
+    /// Whether to use the orientation from the arm even if there is an accelerometer.
     pub use_arm: bool,
-    /// A still pose whose force differs from the other poses' model by more than this was touched, N.
+    /// If the force of a still pose differs by more than this from the model of the other poses, the tool was touched,
+    /// N.
     pub touched_n: f64,
     /// Minimum rotation of the tool between two poses, rad.
     pub turn_rad: f64,
@@ -58,10 +59,10 @@ pub enum GravityPhase {
         fraction: f64,
     },
     Recorded {
-        /// Its index, from 0.
+        /// Index of the pose, from 0.
         index: usize,
     },
-    /// The tool does not turn, but the force is not constant: something touches it.
+    /// The tool does not rotate, but the force is not constant, so something touches it.
     Disturbed,
     /// Still where the last pose was recorded: turn the tool to the next one.
     TakenHere,
@@ -143,7 +144,7 @@ impl GravitySession {
         phase
     }
 
-    /// Returns the total time for which something touched the tool while it should have been still, s.
+    /// Returns the total time for which something touched the tool during poses, s.
     pub const fn touched_s(&self) -> f64 {
         self.touched_s
     }
@@ -250,8 +251,8 @@ impl GravitySession {
         arm_field_m_s2(&self.last?.world_from_s1?).try_normalize(1e-9)
     }
 
-    /// Returns the directions of gravity in `s1` of the recorded poses, for drawing: from the arm, else the requested
-    /// ones.
+    /// Returns the directions of gravity in `s1` of the recorded poses, for drawing: from the arm if available,
+    /// otherwise the requested ones.
     pub fn taken_down_s1(&self) -> Vec<Vector3<f64>> {
         let known = |place: &PosePlace| place.down_s1.or_else(|| Some(Vector3::from(TARGETS[place.target?].down_s1)));
         self.places.iter().filter_map(known).collect()

@@ -1,4 +1,4 @@
-//! The three least-squares solutions, all by singular value decomposition instead of normal equations.
+//! The three least-squares solutions, computed by singular value decomposition instead of normal equations.
 
 use nalgebra::{DMatrix, Matrix3, Rotation3, UnitQuaternion, Vector3};
 
@@ -9,7 +9,7 @@ use super::{
 use crate::frames::GRAVITY_M_S2;
 
 /// Singular values below this fraction of the largest are dropped as noise: far above the rounding of 64-bit numbers
-/// (1e-16), and far below what poses of any use have.
+/// (1e-16), and far below the values of any usable poses.
 const RANK_FRACTION: f64 = 1e-10;
 
 /// Fits one model to these rows; returns `None` if there are too few rows or the solution is not finite.

@@ -33,7 +33,7 @@ struct StillSums {
     count: f64,
     wrench: Wrench,
     field: Vector3<f64>,
-    /// Number of samples with an orientation from the arm, and the sum of those orientations.
+    /// Number of samples with an orientation from the arm, and the sum of these orientations.
     turned: f64,
     world_from_s1: RotationMean,
 }
@@ -104,7 +104,7 @@ impl StillInterval {
         self.moved.map(|moved| !moved)
     }
 
-    /// Returns whether the tool moves and, for the last half second, only its force has changed.
+    /// Returns whether the tool is being moved although, for the last half second, only its force has changed.
     pub(super) fn only_force_moved(&self) -> bool {
         self.moved == Some(true) && self.last_s.is_some_and(|last| last - self.field_moved_s > 0.5)
     }

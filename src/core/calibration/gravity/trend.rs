@@ -1,18 +1,18 @@
-//! A bias that drifts from the first pose to the last, like a sensor's while it warms up.
+//! A bias that drifts from the first pose to the last, as during the warm-up of a sensor.
 
 use nalgebra::{DMatrix, Matrix5x3};
 
 use super::pose::GravityRow;
 use crate::frames::GRAVITY_M_S2;
 
-/// With fewer poses a drift cannot be distinguished from chance.
+/// With fewer poses, a drift cannot be distinguished from chance.
 const MIN_POSES: usize = 12;
-/// A drift is reported if it leaves less than this fraction of the poses' disagreement; noise alone would leave almost
-/// all.
+/// A drift is reported if removing it leaves less than this fraction of the disagreement between poses; for pure noise,
+/// almost all would remain.
 const LEFT_FRACTION: f64 = 0.5;
 
 /// Returns the change of the bias over all poses, in the order of recording (N), if a steady drift explains the
-/// disagreement of the poses. A change below `floor_n` does not count.
+/// disagreement of the poses. A change below `floor_n` is ignored.
 ///
 /// Least squares of the force on gravity (a free 3x3 gain), a constant, and the position in the order.
 pub(super) fn drift_n(rows: &[GravityRow], floor_n: f64) -> Option<f64> {
@@ -45,7 +45,7 @@ mod tests {
     use super::super::{GravityPose, GravitySettings, fit, tests::Tool};
     use crate::calibration::{AxisStats, Verdict};
 
-    /// Returns poses of a sensor whose bias changes by this much while it warms up, mostly at first.
+    /// Returns poses of a sensor whose bias changes by this much during warm-up, mostly at the start.
     fn warming(seed: u64, count: usize, drift_n: f64) -> (Tool, Vec<GravityPose>) {
         let mut tool = Tool::new(seed, 0.3);
         let way = tool.vector(1.0).normalize() * drift_n;

@@ -5,8 +5,8 @@ use crate::signal::{DelayLine, Lanes};
 /// Memory of the learned fraction and of the mean and maximum force (s). Chosen as in `matched/mod.rs`.
 const FRACTION_S: f64 = 1.0;
 const FORCE_S: f64 = 2.0;
-/// Ridge of the fraction, and the part of the mean force that is added to an error before its weight is computed.
-/// Chosen as in `matched/mod.rs`.
+/// Ridge of the fit of the fraction, and the part of the mean force that is added to an error before its weight is
+/// computed. Chosen as in `matched/mod.rs`.
 const RIDGE: f64 = 0.02;
 const FLATTEN: f64 = 0.05;
 /// The offset may be at most this fraction of the recent maximum force, so that it does not become a reflected force.

@@ -1,4 +1,4 @@
-//! The columns of a model; a force is computed from them.
+//! Columns of a model, from which a force is computed.
 
 use super::{
     super::{
@@ -38,7 +38,7 @@ pub enum ModelForm {
 }
 
 impl ModelForm {
-    /// Returns the form for matched rendering: columns of other axes are useful only if there are other axes.
+    /// Returns the form for matched rendering: columns of other axes are included only if there are other axes.
     pub(in super::super) const fn of(settings: &ImpedanceSettings) -> Self {
         match settings.axes {
             1 => Self::Tissue,

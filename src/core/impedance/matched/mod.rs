@@ -1,5 +1,5 @@
-//! Matched rendering: parameters cross the link, and the force is computed from the hand's own motion, so no late force
-//! can kick.
+//! Matched rendering: parameters cross the link, and the force is computed from the hand's own motion, so a late force
+//! cannot push the hand.
 //!
 //! The follower fits the force at its tip, `f = theta phi(motion)`, on normal equations whose memory runs on a clock
 //! that motion drives; two ridges and nested sets of columns are its experts. The force that each expert would have
@@ -44,24 +44,24 @@ use super::{
 };
 use crate::signal::{DelayLine, Lanes};
 
-/// Memories of the fit (s by the clock). The longer one, for friction across the contact, covers the tissue of earlier
-/// touches. The paper's form uses its window instead.
+/// Memories of the fit (s of the motion clock). The longer one, for friction across the contact, includes the tissue of
+/// earlier touches. The paper's form uses its window instead.
 const MEMORIES_S: [f64; 2] = [1.0, 10.0];
 /// Ridges, in seconds of typical motion without force, each with its memory. The last is for forms with slip columns.
 const RIDGES: [Ridge; 3] =
     [Ridge { s: 0.0001, memory: 0 }, Ridge { s: 0.01, memory: 0 }, Ridge { s: 0.0001, memory: 1 }];
-/// Solves per second of every expert (at most one per tick); the paper's form, whose memory is short, uses the second
-/// value.
+/// Number of solutions per second for every expert (at most one per tick); the paper's form, whose memory is short,
+/// uses the second value.
 const SOLVE_HZ: [f64; 2] = [150.0, 200.0];
 /// Number of renewals of the other experts per renewal of an expert with the long memory: its parameters change more
-/// slowly, so that it needs less of the processor's time.
+/// slowly, so it needs less processor time.
 const LONG_RENEWALS: usize = 2;
 /// Memory of the experts' errors (s by the clock; the softmin's exponent is eight), and the error below which experts
 /// count as equal (N).
 const ERROR_S: f64 = 1.0;
 const EQUAL_N: f64 = 1e-12;
 
-/// Matched rendering. At the leader: the springs of its slip columns.
+/// Matched rendering; at the leader it has the springs of its slip columns.
 #[derive(Clone, Debug, Default)]
 pub(super) struct MatchedMethod {
     slip: Slip,
@@ -135,7 +135,7 @@ impl LeaderEnd for Nima {
     }
 }
 
-/// The follower's part of both.
+/// Follower part of both methods.
 #[derive(Clone, Debug)]
 struct Learner {
     form: ModelForm,
@@ -241,7 +241,7 @@ impl Learner {
         matches!(self.form, ModelForm::Paper(_))
     }
 
-    /// Ticks back to the parcel that the leader has now; without a delay the last one stands for it.
+    /// Returns the age in ticks of the packet that the leader has now; without a delay, the last packet is used.
     fn horizon(&self) -> usize {
         self.delay_ticks.max(1)
     }
@@ -266,8 +266,8 @@ impl Learner {
         &self.model
     }
 
-    /// Returns the leader's result for this motion: the model that it has then, its columns and its force before the
-    /// limits (N).
+    /// Returns the leader's result for this motion: the model that it has at that time, its columns and its force
+    /// before the limits (N).
     fn leader<'a>(
         &mut self,
         posture: &Posture,

@@ -1,4 +1,4 @@
-//! The model that crosses the link, and the force that the hand's own motion produces with it.
+//! The model that crosses the link, and the force that it gives for the hand's own motion.
 
 use super::{
     super::{
@@ -44,8 +44,8 @@ impl MatchedModel {
         offset_n: Lanes::ZERO,
     };
 
-    /// Returns the force (N) for a motion; `None` without a model or where it is not finite. `slip`: this end's
-    /// springs, which move on.
+    /// Returns the force (N) for a motion; `None` without a model, or if the force is not finite. Advances the springs
+    /// of this end (`slip`).
     pub(super) fn force(&self, now: &Posture, slip: &mut Slip) -> Option<Lanes> {
         if self.degree == 0 {
             return None;

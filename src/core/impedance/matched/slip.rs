@@ -10,7 +10,7 @@ use crate::signal::{Lanes, settled};
 /// Number of slip columns of an axis.
 pub(super) const SLIPS: usize = 2;
 /// Length at which each spring slips under the usual force, in usual motions (rms of the position above its 20 ms
-/// low-pass). Half or twice as much changes the error by less than 3 %, because the fit weighs the columns.
+/// low-pass). Halving or doubling it changes the error by less than 3 %, because the fit weighs the columns.
 const GIVES_IN_USUAL_MOTIONS: [f64; SLIPS] = [0.5, 2.0];
 /// Memory of the usual motion and load (s by the clock).
 const USUAL_S: f64 = 20.0;
@@ -19,7 +19,7 @@ const USUAL_S: f64 = 20.0;
 pub(super) type SlipLanes = [Lanes; SLIPS];
 
 /// Springs (m) that follow the tip and slip at a length in proportion to the force along the other axes: Maxwell slip
-/// under a changing load. Without a load they hold nothing, so they reset when contact ends.
+/// under a changing load. Without a load they hold no force, so they reset when contact ends.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct SlipSprings {
     held: SlipLanes,

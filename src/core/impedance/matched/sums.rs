@@ -13,8 +13,8 @@ use crate::signal::Lanes;
 /// Memory of the columns' mean squares, which make the ridge independent of units (s by the clock): longer than the
 /// memory of the fit, so that a pause in the motion does not change the ridge.
 const SQUARES_S: f64 = 20.0;
-/// Memory of the mean error that flattens the weight of small errors (s by the clock), and the fraction of it that is
-/// added.
+/// Memory of the mean error that flattens the weight of small errors (s of the motion clock), and the fraction of it
+/// that is added.
 const ERROR_S: f64 = 0.5;
 const FLATTEN: f64 = 0.5;
 
@@ -50,7 +50,8 @@ impl MatchedSums {
         }
     }
 
-    /// Adds a force (N) with its columns; `error_n`: its residual with the newest full model; `pace`: of the clock.
+    /// Adds a force (N) with its columns. `error_n` is its residual with the newest full model, and `pace` the rate of
+    /// the motion clock.
     pub(super) fn learn(&mut self, row: &FormRow, force_n: Lanes, error_n: Lanes, pace: f64) {
         self.seen += pace;
         let [of_squares, of_errors] =

@@ -10,7 +10,7 @@ use super::{super::track::MotionTrack, *};
 const FORMS: [ModelForm; 4] = [ModelForm::Tissue, ModelForm::Sliding, ModelForm::Coupled, ModelForm::Paper(5)];
 const MATCHED: [ModelForm; 3] = [ModelForm::Tissue, ModelForm::Sliding, ModelForm::Coupled];
 
-/// Both ends, and a link of `delay` ticks between them; the leader's own motion is an argument.
+/// Both ends with a link of `delay` ticks between them; the leader's own motion is an argument.
 struct Pair {
     follower_track: MotionTrack,
     follower: Learner,
@@ -57,7 +57,7 @@ impl Pair {
         model.force(&now, &mut self.leader_slip).map(Lanes::vector)
     }
 
-    /// Runs both ends at one place.
+    /// Runs both ends with the same motion.
     fn step(&mut self, position_m: Vector3<f64>, force_n: Vector3<f64>) -> Option<Vector3<f64>> {
         self.follower(position_m, Some(force_n));
         self.leader(position_m)
@@ -68,7 +68,7 @@ fn settings(delay_s: f64) -> ImpedanceSettings {
     ImpedanceSettings { delay_s, ..ImpedanceSettings::default() }
 }
 
-/// Position (m) of a hand that presses, slides and lifts.
+/// Returns the position (m) of a hand that presses, slides and lifts.
 fn hand_m(t_s: f64) -> Vector3<f64> {
     Vector3::new(
         0.004 * (TAU * 0.7 * t_s).sin() + 0.0004 * (TAU * 8.3 * t_s).sin(),
@@ -248,7 +248,8 @@ fn a_long_run_leaves_it_as_it_was() {
     assert!((error_n[1] / error_n[0] - 1.0).abs() < 1e-6, "{error_n:?}");
 }
 
-/// A tip that presses into a soft plane, drags along it and lifts, with Coulomb friction under the load (N).
+/// A tip that presses into a soft plane, drags along it and lifts off, with Coulomb friction in proportion to the load
+/// (N).
 struct Rubbing {
     held_m: Vector3<f64>,
     last_m: Vector3<f64>,

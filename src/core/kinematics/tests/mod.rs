@@ -41,7 +41,7 @@ struct Drive {
     step_us: [f64; 2],
 }
 
-/// Moves for `steps` periods like a hand, with jumps over the whole space, targets outside it, and NaN.
+/// Moves for `steps` periods like a hand, with jumps across the whole space, targets outside it, and NaN.
 fn drive(cone_deg: f64, steps: usize, seed: u64) -> Drive {
     let mut random = fastrand::Rng::with_seed(seed);
     let mut inverse = started(cone_deg);

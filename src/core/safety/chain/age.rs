@@ -1,4 +1,4 @@
-//! Second gate: the force fades with the age of its data. A silent source loses its force.
+//! Second gate: fades the force with the age of its data, so that a silent source loses its force.
 
 use super::Reason;
 
@@ -15,8 +15,8 @@ impl AgeGate {
         Self { fade_after_s, zero_after_s }
     }
 
-    /// Returns the fraction of the force that passes at this age (s), 0 to 1, and why it is reduced. A non-finite age
-    /// passes nothing.
+    /// Returns the fraction of the force that passes at this age (s), 0 to 1, and the reason for a reduction. At a
+    /// non-finite age, no force passes.
     pub fn fraction(&self, age_s: f64) -> (f64, Reason) {
         if !age_s.is_finite() || age_s >= self.zero_after_s {
             return (0.0, Reason::TooOld);

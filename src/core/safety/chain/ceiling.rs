@@ -30,7 +30,7 @@ impl Ceiling {
         self.ceiling_n.min(self.device_limit_n)
     }
 
-    /// Returns `force_n` (N), shortened to the limit along its own direction, and why.
+    /// Returns `force_n` (N), shortened to the limit along its own direction, and the reason.
     pub fn under<const D: usize>(&self, force_n: SVector<f64, D>) -> (SVector<f64, D>, Reason) {
         let norm = force_n.norm();
         let max_n = self.max_n();

@@ -15,8 +15,8 @@ const FAST: f64 = 8.0;
 pub struct DeadBand {
     /// Speed at which the gate begins to open, m/s (the paper's 1 mm/s). At zero the gate is always open.
     pub threshold_m_s: f64,
-    /// Recent speed, m/s: it rises at once and falls slowly, so that a trembling hand does not switch its force twenty
-    /// times a second.
+    /// Recent speed, m/s, which rises at once and falls slowly, so that a trembling hand does not switch its force
+    /// twenty times a second.
     lately_m_s: f64,
     counted_m_s: f64,
 }
@@ -53,7 +53,7 @@ mod tests {
 
     use super::*;
 
-    /// Returns the fraction that passes after a hand has moved at this speed for half a second.
+    /// Returns the fraction that passes once a hand has moved at this speed for half a second.
     fn settled(gate: &mut DeadBand, speed_m_s: f64) -> f64 {
         (0..500).map(|_| gate.step(speed_m_s, 1e-3)).last().unwrap()
     }

@@ -1,4 +1,4 @@
-//! Sixth gate: the hand gets back no more energy than it has put in, apart from a small allowance.
+//! Sixth gate: the hand cannot receive more energy than it has put in, apart from a small allowance.
 //!
 //! Time-domain passivity (Hannaford and Ryu, "Time-domain passivity control of haptic interfaces", 2002) at the hand's
 //! port, with all axes together. *Observer*: the force held over the last period times the hand's travel in that period
@@ -16,23 +16,23 @@ use nalgebra::SVector;
 
 use super::{EnergyMode, Reason};
 
-/// Energy that the hand may get without having put it in, J. It bounds what a free handle can get to 30 mJ and, with
-/// [`LEAK_S`], 15 mW: in 100 million adversarial requests the most in 2 s was 58 mJ, without gates 43 J
+/// Energy that the hand may receive without having put it in, J. It limits the energy of a free handle to 30 mJ and,
+/// with [`LEAK_S`], 15 mW: in 100 million adversarial requests the most in 2 s was 58 mJ, without gates 43 J
 /// (`docs/results/release.md`).
 pub const ALLOWANCE_J: f64 = 0.030;
 /// Maximum energy stored for the hand to get back, J.
 pub const MAX_J: f64 = 0.200;
-/// Time constant with which store and debt return to the allowance, s: without it, errors of integration would add up
-/// over a session.
+/// Time constant with which a surplus or a debt returns to the allowance, s. Without it, integration errors would
+/// accumulate over a session.
 pub const LEAK_S: f64 = 2.0;
 /// Below this level of the store the controller begins to remove force, J.
 const SOFT_J: f64 = 0.010;
 /// Smoothing of the direction of motion, s: a single encoder step is not a motion.
 const SMOOTHING_S: f64 = 0.004;
-/// A reading that moves faster than this, m/s, has jumped: no hand is as fast.
+/// A reading that moves faster than this, m/s, has jumped, because no hand is that fast.
 const JUMP_M_S: f64 = 5.0;
 
-/// The energy store and the state that is needed to update it.
+/// The energy store and the state required to update it.
 #[derive(Clone, Copy, Debug)]
 pub struct Energy<const D: usize> {
     mode: EnergyMode,
@@ -64,7 +64,7 @@ impl<const D: usize> Energy<D> {
         self.stored_j = self.stored_j.clamp(-MAX_J, MAX_J);
     }
 
-    /// Returns the part of `force_n` (N) that may pass now, and why it is reduced.
+    /// Returns the part of `force_n` (N) that may pass now, and the reason for a reduction.
     pub fn controlled(&self, force_n: SVector<f64, D>) -> (SVector<f64, D>, Reason) {
         let fraction = (self.stored_j / SOFT_J).clamp(0.0, 1.0);
         let speed_m_s = self.hand_m_s.norm();
@@ -77,13 +77,14 @@ impl<const D: usize> Energy<D> {
         (force_n - direction * ((1.0 - fraction) * force_n.dot(&direction)), Reason::EnergySpent)
     }
 
-    /// Returns the energy that the hand may still get, J; negative if it got too much. 0 while the gate is off.
+    /// Returns the energy that the hand may still receive, J; negative if it received too much. 0 while the gate is
+    /// off.
     pub fn stored_j(&self) -> f64 {
         if self.mode == EnergyMode::Off { 0.0 } else { self.stored_j }
     }
 
-    /// Restarts from rest. The remaining store is discarded, but a debt is kept: otherwise a toggling permission could
-    /// pump energy.
+    /// Restarts from rest. The remaining store is discarded, but a debt is kept: otherwise toggling the permission
+    /// could pump energy into the hand.
     pub fn reset(&mut self) {
         self.stored_j = self.stored_j.min(ALLOWANCE_J);
         self.hand_m = None;
@@ -99,7 +100,7 @@ mod tests {
     use super::*;
 
     /// Pushes a handle of 0.25 kg by `force(t, x, v)` (N) through the gate for `seconds`. Returns the energy that the
-    /// hand got, J, and the largest fraction of force removed while the hand itself pushed.
+    /// hand received, J, and the largest fraction of force removed while the hand itself pushed.
     fn pushed(mode: EnergyMode, seconds: f64, force: impl Fn(f64, f64, f64) -> f64) -> f64 {
         let mut gate = Energy::<1>::new(mode);
         let mut x = 0.0;

@@ -13,7 +13,7 @@ pub struct Gain {
 }
 
 impl Gain {
-    /// Starts at this gain (at most 1, because the second action is still missing), which changes by at most
+    /// Starts at this gain (at most 1, because a higher gain needs a second action); the gain changes by at most
     /// `rate_per_s` (1/s).
     pub const fn new(gain: f64, rate_per_s: f64) -> Self {
         let chosen = if gain.is_nan() { 0.0 } else { gain.clamp(GAIN.min, GAIN.max) };
@@ -43,8 +43,8 @@ impl Gain {
         self.chosen
     }
 
-    /// Returns the active gain `dt_s` (s) after the last call, and why it differs from the one that was set, or passes
-    /// no force.
+    /// Returns the active gain `dt_s` (s) after the last call, and the reason if it differs from the set gain or no
+    /// force passes.
     pub fn step(&mut self, dt_s: f64) -> (f64, Reason) {
         let step = self.rate_per_s * dt_s;
         self.now += (self.chosen - self.now).clamp(-step, step);

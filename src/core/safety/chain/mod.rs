@@ -30,7 +30,7 @@ pub struct ForceRequest<const D: usize = 3> {
     pub t_s: f64,
     /// The force that a mode requests, N; `None` if the mode has no valid force.
     pub force_n: Option<SVector<f64, D>>,
-    /// Age of its newest data beyond the link's own delay, s.
+    /// Age of the newest data beyond the link's own delay, s.
     pub age_s: f64,
     pub speed_m_s: f64,
     /// Position of the handle, m, on the axes of the force, as the device reports it (not scaled); `None` if unknown:

@@ -23,7 +23,7 @@ pub struct Slew<const D: usize> {
 }
 
 impl<const D: usize> Slew<D> {
-    /// Limits the change to `n_per_s` (N/s) in a loop of this nominal period (s), starting without force.
+    /// Limits the change to `n_per_s` (N/s) in a loop with this nominal period (s), starting without force.
     pub fn new(n_per_s: f64, period_s: f64) -> Self {
         Self { n_per_s, period_s, last_n: SVector::zeros() }
     }

@@ -4,7 +4,8 @@ use nalgebra::SVector;
 
 use super::Reason;
 
-/// A request beyond this on any axis is a computing error, not a contact, N (Nm for a torque): it is refused, not clipped.
+/// A request beyond this value on any axis is a computing error, not a contact, N (Nm for a torque): it is rejected,
+/// not clipped.
 pub const PLAUSIBLE_N: f64 = 1e3;
 
 /// Returns the requested force (N) unchanged.

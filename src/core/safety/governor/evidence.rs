@@ -1,4 +1,4 @@
-//! Decides whether a hand holds the handle, from limits of hands and signs of a released handle.
+//! Decides whether a hand holds the handle, from the limits of hands and the signs of a released handle.
 //!
 //! *Push*: the handle accelerates along the force faster than a hand moves. *Step*: the force that the hand carried vanishes
 //! faster than a hand changes its own. Both are certain beyond what a voluntary motion reaches, and likely beyond a
@@ -16,18 +16,19 @@ use super::{
 const HAND_M_S2: f64 = 6.0;
 /// Largest jerk of a hand, m/s^3: the same motion has 262 (60 d / T^3).
 const HAND_M_S3: f64 = 300.0;
-/// Fractions of these that are rare, chosen for less than one false alarm in an hour of the hands of `nima study hands`.
+/// Fractions of these limits that are rare, chosen for less than one false alarm per hour with the hands of `nima study
+/// hands`.
 const RARE_M_S2: f64 = 4.2;
 const RARE_STEP: f64 = 0.35;
-/// Weakest force that is judged, N: twice the friction.
+/// Weakest force that is evaluated, N: twice the friction.
 const WEAK_N: f64 = 0.3;
 /// Coulomb friction of a cable-driven handle, N (omega.7).
 pub(super) const COULOMB_N: f64 = 0.15;
 /// Error of the handle's mass, as a fraction.
 pub(super) const MASS_OFF: f64 = 0.25;
-/// A motion along the force is faster than this, m/s: it crosses an encoder step of 10 um in a tick.
+/// A motion along the force is faster than this, m/s: it crosses an encoder step of 10 um in one tick.
 pub(super) const OUT_M_S: f64 = 0.008;
-/// A grip of 400 N/m with 0.25 kg takes this time to answer a change of the force, s.
+/// Time that a grip of 400 N/m with 0.25 kg takes to respond to a change of the force, s.
 const ANSWER_S: f64 = 0.020;
 /// Fraction of the speed that the force gives a lone handle after a step.
 const DRIVEN: f64 = 0.5;
@@ -41,15 +42,15 @@ const STEPS_S: [[f64; 2]; 4] = [[0.008, 0.005], [0.008, 0.008], [0.010, 0.011], 
 const LONG_S: f64 = 0.014;
 /// Windows for judging the travel, s; the shortest usable one decides.
 const TRAVELS_S: [f64; 3] = [LONG_S, 2.0 * LONG_S, 4.0 * LONG_S];
-/// Largest scatter of a usable fit, as a fraction of the applied force. With 0.4, hands whose device reads on its own clock were mistaken
-/// for released handles (`nima study hands`).
+/// Largest scatter of a usable fit, as a fraction of the applied force. With 0.4, hands on a device with its own clock
+/// were mistaken for released handles (`nima study hands`).
 const SCATTER: f64 = 0.3;
-/// Travel under the force alone that is suspicious above the rare acceleration, and that is certain at any, m. No motion of the study
-/// goes more than 13 mm so.
+/// Travel caused by the force alone, m: the first value is suspicious if the acceleration is rare, the second is
+/// evidence at any acceleration. In the study, no hand moved more than 13 mm in this way.
 const PUSHED_M: f64 = 1e-3;
 const TRAVEL_M: f64 = 0.025;
 const TRAVEL_N: f64 = 0.4;
-/// The same for a handle that began at rest, m, for a force of this, N, and its speed at the beginning, m/s.
+/// The same for a handle that started at rest, m, for a force of this size, N, and its initial speed, m/s.
 const FROM_REST_M: f64 = 2e-3;
 const FROM_REST_N: f64 = 1.2;
 const REST_M_S: f64 = 0.02;
@@ -60,9 +61,9 @@ pub(super) enum EvidenceAnswer {
     /// A hand explains the motion.
     #[default]
     No,
-    /// A hand hardly moves so: the force alone explains the motion.
+    /// The force alone explains the motion; a hand hardly moves like that.
     Pushed,
-    /// A hand hardly lets go of a force so fast.
+    /// The held force vanished faster than a hand normally releases it.
     Dropped,
     /// No hand moves so.
     Certain,
@@ -74,12 +75,12 @@ pub(super) struct Evidence<const D: usize> {
     run: Option<ForceRun<D>>,
 }
 
-/// A motion that the force alone explains.
+/// A motion explained by the force alone.
 #[derive(Clone, Copy, Debug)]
 struct ForceRun<const D: usize> {
-    /// Where it began, m.
+    /// Start of the motion, m.
     from_m: SVector<f64, D>,
-    /// It began at rest, as a hand's motion never does: that needs a hand to begin.
+    /// Whether it started from rest: the motion of a hand never starts like this without a force from the hand.
     from_rest: bool,
 }
 
@@ -88,9 +89,9 @@ struct ForceRun<const D: usize> {
 struct MotionParts {
     /// Size of the applied force, N.
     size_n: f64,
-    /// Part of it that the hand carries, N.
+    /// Part of the force that the hand carries, N.
     carried_n: f64,
-    /// The hand's force beside it, N.
+    /// Force of the hand across that direction, N.
     aside_n: f64,
 }
 
@@ -102,12 +103,13 @@ impl MotionParts {
         Self { size_n, carried_n, aside_n: (hand_n + along * carried_n).norm() }
     }
 
-    /// Mass times acceleration along the force, at least, N.
+    /// Returns a lower bound of mass times acceleration along the force, N.
     fn pushed_n(&self, error_n: f64) -> f64 {
         self.size_n - self.carried_n - error_n
     }
 
-    /// A lone handle shows this hand force: an error of its mass, friction, and the error of the fit.
+    /// Returns whether a handle without a hand could show this hand force: from an error of its mass, friction, and the
+    /// error of the fit.
     fn is_free(&self, error_n: f64) -> bool {
         let mass_n = MASS_OFF * self.size_n + error_n;
         self.carried_n < mass_n + COULOMB_N && self.carried_n > -mass_n && self.aside_n < mass_n + COULOMB_N
@@ -170,7 +172,7 @@ impl<const D: usize> Evidence<D> {
     }
 }
 
-/// The handle moves along a force that is strong enough to be judged.
+/// Returns whether the handle moves along a force that is strong enough to be evaluated.
 fn moves_along<const D: usize>(now: &Parabola<D>) -> bool {
     let size_n = now.applied_n.norm();
     size_n >= WEAK_N && now.velocity_m_s.dot(&now.applied_n) >= OUT_M_S * size_n

@@ -21,9 +21,9 @@ const TOLERANCE_S: f64 = 1e-4;
 pub(super) struct Parabola<const D: usize> {
     /// Force of the hand on the handle, N.
     pub(super) hand_n: SVector<f64, D>,
-    /// Bound on its error, N.
+    /// Bound on the error of the force, N.
     pub(super) error_n: f64,
-    /// Part of it that steps of the reading do not explain, N.
+    /// Part of the error that the steps of the reading do not explain, N.
     pub(super) scatter_n: f64,
     /// Velocity at the newest sample, m/s.
     pub(super) velocity_m_s: SVector<f64, D>,
@@ -49,7 +49,7 @@ pub(super) struct Kink<const D: usize> {
     pub(super) applied_after_n: SVector<f64, D>,
     /// Velocity at the newest sample, m/s.
     pub(super) velocity_m_s: SVector<f64, D>,
-    /// Time since the step, and length of both windows together, s.
+    /// Time since the step, and total length of both windows, s.
     pub(super) after_s: f64,
     pub(super) span_s: f64,
 }
@@ -62,8 +62,8 @@ struct ErrorBound {
 }
 
 impl ErrorBound {
-    /// From the bound by steps, the residuals' deviation, the error of each sample by inexact times, and the parameter's deviation for
-    /// samples of deviation 1.
+    /// Computes the error from the bound by reading steps, the deviation of the residuals, the timing error of each
+    /// sample, and the deviation of the parameter for samples of deviation 1.
     fn of(steps: f64, residual: f64, off: f64, deviation: f64) -> Self {
         let left = DEVIATIONS * residual * deviation;
         let scatter = (off * deviation).max(if left > steps { left } else { 0.0 });
@@ -72,19 +72,19 @@ impl ErrorBound {
 }
 
 impl<const D: usize> ObserverHistory<D> {
-    /// Returns the sample that ends a window of `span_s` (s) and of at least [`MIN_SAMPLES`] that begins at `from`.
+    /// Returns the last sample of a window of at least `span_s` (s) and [`MIN_SAMPLES`] samples that starts at `from`.
     fn window(&self, from: usize, span_s: f64) -> Option<usize> {
         let at_least = from + MIN_SAMPLES - 1;
         let begin_s = *self.t_s.get(from)?;
         (at_least..self.count).find(|k| begin_s - self.t_s[*k] >= span_s - TOLERANCE_S)
     }
 
-    /// Mean force applied between two samples, N.
+    /// Returns the mean force applied between two samples, N.
     fn mean_n(&self, old: usize, new: usize) -> SVector<f64, D> {
         (self.impulse_n_s[old] - self.impulse_n_s[new]) / (self.t_s[new] - self.t_s[old])
     }
 
-    /// Error of each `y` by inexact times, at the root mean square of the speed from this sample on, kg m.
+    /// Returns the error of each `y` due to inexact times, at the root mean square speed from this sample on, kg m.
     fn off_kg_m(&self, old: usize) -> f64 {
         let between =
             |k: usize| (self.from_now_m[k] - self.from_now_m[k + 1]).norm_squared() / (self.t_s[k] - self.t_s[k + 1]);
@@ -124,7 +124,8 @@ impl<const D: usize> ObserverHistory<D> {
         fit.error_n.is_finite().then_some(fit)
     }
 
-    /// Fits a parabola whose curvature steps `after_s` (s) ago and that reaches `before_s` (s) farther back.
+    /// Fits a parabola whose curvature changed in a step `after_s` (s) ago and that reaches `before_s` (s) farther
+    /// back.
     pub(super) fn kink(&self, before_s: f64, after_s: f64) -> Option<Kink<D>> {
         let at = self.window(0, after_s)?;
         let end = self.window(at, before_s)?;

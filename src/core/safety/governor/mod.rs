@@ -38,26 +38,27 @@ use self::{
 };
 use super::{PLAUSIBLE_N, Reason};
 
-/// A brake sampled with this fraction of `m / T` or less does not shake the handle.
+/// A brake sampled with at most this fraction of `m / T` does not make the handle vibrate.
 const BRAKE_OF_MASS: f64 = 0.15;
 /// Below this speed nothing is braked, m/s.
 const STILL_M_S: f64 = 2e-3;
 /// Windows for judging the hand's force while no force is applied, s. The long one serves scattered readings, once enough time has passed.
 const JUDGED_S: f64 = 0.009;
 const JUDGED_LONG_S: f64 = 0.028;
-/// A soft grip (400 N/m, 8 N s/m) pulls a handle whose force has vanished by more than friction after this time, s.
+/// Time after which a soft grip (400 N/m, 8 N s/m) pulls a handle by more than friction when the force has vanished, s.
 const ANSWER_S: f64 = 0.020;
 /// Minimum duration of a finding, s: longer than the effect of one wrong reading.
 const COASTS_S: f64 = 0.0025;
 const PULLS_S: f64 = 0.005;
-/// The brake has stopped a handle after this time, s: seven times `m / b`. Until then an opening hand still touches it.
+/// Time after which the brake has stopped a handle, s: seven times `m / b`. Until then, an opening hand still touches
+/// it.
 const STOPPED_S: f64 = 0.060;
-/// Below this force before the fade, coasting is not told from a slow motion, N.
+/// If the force before the fade was below this, coasting cannot be distinguished from a slow motion, N.
 const COASTING_N: f64 = 0.8;
-/// A handle at rest that moves by this is moved by a hand, m: tremor has 50 um at 9 Hz.
+/// If a handle at rest moves by this distance, a hand moves it, m: tremor has 50 um at 9 Hz.
 const STIR_M: f64 = 60e-6;
 const RESTED_S: f64 = 0.020;
-/// Rest without any sign of a hand until it is gone, s: longer than a period of tremor.
+/// Rest without any sign of a hand after which the hand counts as gone, s: longer than a period of tremor.
 const GONE_AFTER_S: f64 = 0.150;
 /// Time in which the whole force returns, s: a tenth of a hand's slowest reaction.
 const RETURN_S: f64 = 0.040;
@@ -67,7 +68,7 @@ const FAR_M: f64 = 1e3;
 /// Reading of the handle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GovernorReading<const D: usize> {
-    /// When it was taken, s, on the clock of the ticks.
+    /// Time of the reading, s, on the clock of the ticks.
     pub t_s: f64,
     /// Position, m.
     pub position_m: SVector<f64, D>,
@@ -78,7 +79,7 @@ pub struct GovernorReading<const D: usize> {
 pub struct GovernorOutput<const D: usize> {
     /// Force for the hand, N.
     pub force_n: SVector<f64, D>,
-    /// Fraction of the asked force that was withheld, 0 to 1.
+    /// Fraction of the requested force that was withheld, 0 to 1.
     pub withheld: f64,
     /// Why.
     pub reason: Reason,
@@ -110,7 +111,7 @@ struct Since {
     rests_s: f64,
 }
 
-/// The gate and its memory.
+/// The governor: gate and memory.
 ///
 /// ```
 /// use nalgebra::Vector1;
@@ -150,8 +151,8 @@ pub struct Governor<const D: usize> {
 }
 
 impl<const D: usize> Governor<D> {
-    /// For this handle (of unknown mass: everything passes), a force that changes by at most `slew_n_per_s` (N/s), and a loop of
-    /// this nominal period (s).
+    /// Creates a governor for this handle (with unknown mass, every force passes), a force that changes by at most
+    /// `slew_n_per_s` (N/s), and a loop with this nominal period (s).
     pub fn new(handle: FreeHandle, slew_n_per_s: f64, period_s: f64) -> Self {
         Self {
             handle,
@@ -271,7 +272,7 @@ impl<const D: usize> Governor<D> {
         }
     }
 
-    /// Observes the handle without force; a pull counts only after it can be distinguished (`ripe`).
+    /// Observes the handle without force; a pull counts only once it can be distinguished (`ripe`).
     fn notice(&mut self, since: &mut Since, past: &ObserverHistory<D>, now: &Parabola<D>, dt_s: f64, ripe: bool) {
         // A long tick counts as one observation, not as many.
         let looked_s = dt_s.min(self.period_s);

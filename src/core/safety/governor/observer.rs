@@ -21,23 +21,25 @@ pub struct FreeHandle {
 
 /// Samples kept: the longest fit spans 30 ms, and a rate above 2.5 kHz is thinned out to [`SPACING_S`].
 pub(super) const ROOM: usize = 96;
-/// A reading closer to the last sample than this is not kept, s.
+/// A reading closer to the last sample than this is discarded, s.
 const SPACING_S: f64 = 0.4e-3;
-/// After a longer gap nothing is known of the force in it: a device takes its force off by itself when no command comes, s.
+/// After a longer gap, the force during it is unknown, s, because a device switches its force off if no command
+/// arrives.
 const GAP_S: f64 = 0.010;
-/// A handle that moved by this many steps of the reading moves on by at least one; a reading that repeats the one before is old.
+/// A handle that moved by this many reading steps moves on by at least one, so a reading that repeats the previous one
+/// is old.
 const MOVES_STEPS: f64 = 3.0;
 /// Shortest time between two readings in which such a motion must show, s, and longest time for which old readings are ignored.
 const SHOWS_S: f64 = 0.7e-3;
 const OLD_S: f64 = 5e-3;
-/// The times of readings are judged while the handle moves faster than this, m/s, and over spacings up to this, s.
+/// The times of readings are evaluated while the handle moves faster than this, m/s, and for spacings up to this, s.
 const MOVES_M_S: f64 = 0.01;
 const CLOSE_S: f64 = 6e-3;
 /// Largest acceleration of a hand, m/s^2, which bends the path between readings (see `HAND_M_S2`).
 const BENDS_M_S2: f64 = 6.0;
 /// Time constant for forgetting the largest error, s. Clocks of 1 kHz that differ by 100 ppm need 10 s to drift apart by one period.
 const REMEMBERED_S: f64 = 60.0;
-/// Smallest plausible mass, kg: a lighter handle moves farther in a tick than can be judged.
+/// Smallest plausible mass, kg: a lighter handle moves farther in one tick than can be evaluated.
 const MIN_KG: f64 = 0.01;
 
 #[derive(Clone, Copy, Debug)]
@@ -55,10 +57,10 @@ pub(super) struct Observer<const D: usize> {
     ring: [ObserverSample<D>; ROOM],
     newest: usize,
     count: usize,
-    /// Impulse of the force since the newest sample, N s, and the time in it, s.
+    /// Impulse of the force since the newest sample, N s, and its duration, s.
     impulse_n_s: SVector<f64, D>,
     over_s: f64,
-    /// How far the newest sample lies from the one before, m.
+    /// Distance of the newest sample from the previous one, m.
     moved_m: f64,
     /// Largest error of the times of readings, s, fading.
     inexact_s: f64,
@@ -116,13 +118,13 @@ impl<const D: usize> Observer<D> {
         self.judge_times();
     }
 
-    /// The handle moves, and the reading repeats the one before: the device has not read it again.
+    /// Returns whether the reading is old: the handle moves, but the reading repeats the previous one.
     fn is_old(&self, since_s: f64, position_m: &SVector<f64, D>) -> bool {
         let must_move = self.moved_m >= MOVES_STEPS * self.handle.step_m && (SHOWS_S..OLD_S).contains(&since_s);
         must_move && *position_m == self.ring[self.newest].position_m
     }
 
-    /// How far the last three readings are from lying on one path at their times.
+    /// Evaluates how far the last three readings are from a common path at their times.
     fn judge_times(&mut self) {
         if self.count < 3 {
             return;
@@ -203,7 +205,8 @@ impl<const D: usize> ObserverHistory<D> {
         }
     }
 
-    /// Largest force applied in the last `span_s` (s), N, and the smallest part of it along a unit vector, N.
+    /// Returns the largest force applied in the last `span_s` (s), N, and its smallest component along a unit vector,
+    /// N.
     pub(super) fn range(&self, span_s: f64, along: &SVector<f64, D>) -> ForceRange {
         let mut range = ForceRange { max_n: 0.0, min_along_n: f64::INFINITY };
         for k in 1..self.count {
@@ -225,7 +228,7 @@ pub(super) struct ForceRange {
 }
 
 impl ForceRange {
-    /// How much the force has changed, N.
+    /// Returns the change of the force, N.
     pub(super) fn change_n(&self) -> f64 {
         (self.max_n - self.min_along_n).max(0.0)
     }

@@ -14,7 +14,7 @@ const LIVELY_S: f64 = 3.0;
 /// connection.
 const RESTLESS_S: f64 = 0.025;
 /// Shortest rest that is a fault, s, and the minimum number of repetitions in it: 10 at 1 kHz, which leaves half of the
-/// 20 ms to the rest of the path.
+/// 20 ms for the rest of the path.
 pub(super) const FROZEN_S: f64 = 0.010;
 const REPEATED: u32 = 3;
 /// Factor by which a faulty rest exceeds the longest rest so far. If each of n readings repeats the one before with
@@ -24,21 +24,21 @@ const LONGER: f64 = 2.5;
 /// Time constant with which the longest rest is forgotten, s, so that one long rest does not hide faults for the rest
 /// of the day. Chosen.
 const FORGOTTEN_S: f64 = 60.0;
-/// A number has noise if it turns this often per second: tremor of 12 Hz turns 24 times, and a product of two such
-/// forces 48 times. White noise turns at two of three readings.
+/// A number counts as noisy if it changes direction this often per second: tremor of 12 Hz does so 24 times, and a
+/// product of two such forces 48 times. White noise does so in two of three readings.
 const NOISY_TURNS: f64 = 60.0;
-/// A number of a slow device has noise if it turns at this fraction of the readings. White noise turns at two of three.
-/// Chosen; no false alarm in 136 healthy minutes (`docs/faults.md`).
+/// A number of a slow device counts as noisy if it changes direction in this fraction of the readings. White noise does
+/// so in two of three. Chosen; no false alarm in 136 healthy minutes (`docs/faults.md`).
 const NOISY_FRACTION: f64 = 0.35;
-/// Longest rest of a number without noise that is fine enough to be judged, s. A coarser one cannot be distinguished
-/// from a frozen one within the 20 ms. Chosen.
+/// Longest rest of a noise-free number whose resolution is fine enough for a judgement, s. A coarser one cannot be
+/// distinguished from a frozen one within the 20 ms. Chosen.
 const FINE_S: f64 = 0.003;
 /// A number has stopped from speed if its last step was this many times its smallest step: a number that comes to rest
-/// by itself passes through small steps.
+/// on its own passes through small steps.
 const FROM_SPEED: f64 = 20.0;
-/// The arm keeps moving if its tip has travelled this far meanwhile, m: an arm that comes to rest travels less.
+/// The arm keeps moving if its tip has travelled this far in the meantime, m: an arm that comes to rest travels less.
 const STIRRED_M: f64 = 1e-6;
-/// A force changes over this travel, m: at the tip by 0.1 N on the softest tissue (100 N/m), at a wrist with the
+/// A force changes over this much travel, m: at the tip by 0.1 N on the softest tissue (100 N/m), at a wrist with the
 /// direction of the weight.
 const FAR_M: f64 = 1e-3;
 /// Learned properties are updated in periods of this length, s: at the end of each, from the last period but one.
@@ -48,20 +48,20 @@ const LEARNT_S: f64 = 1.0;
 /// in the worst case, s = 10, which is usually classified as [`COARSE`] first.
 const HITS: u32 = 8;
 const APART: u32 = 20;
-/// A number with few values produces this many hits; it is not judged for [`LIVELY_S`].
+/// A number with few distinct values reaches this many hits; it is not judged for [`LIVELY_S`].
 const COARSE: u32 = 3;
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Around {
     /// Travel of the tip so far, m.
     pub(super) travel_m: f64,
-    /// The number is a force or a torque: it changes with the travel of the tip even without noise.
+    /// Whether the number is a force or a torque: these change with the travel of the tip even without noise.
     pub(super) is_load: bool,
     /// Shortest rest that is a fault, s.
     pub(super) shortest_s: f64,
 }
 
-/// Fault of a number or a reading; the first cause comes first.
+/// Fault of a number or a reading; the order gives the priority of the causes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum ReadingFault {
     Frozen,
@@ -84,7 +84,7 @@ impl ChannelExtreme {
     }
 
     /// Adds the next value (for the lower extreme, its negative). Returns whether an extreme has ended that was hit too
-    /// often for a number with noise.
+    /// often for a noisy number.
     fn look(&mut self, value: f64) -> bool {
         if self.is_at(value) {
             self.hits += 1;
@@ -106,14 +106,14 @@ pub(super) struct PlausibilityChannel {
     last: f64,
     last_step: f64,
     min_step: f64,
-    /// Time and travel of the tip when the number took its current value.
+    /// Time, and travel of the tip, when the number took its current value.
     since_s: f64,
     since_m: f64,
     repeats: u32,
     /// Time since which the number has not rested for longer than [`RESTLESS_S`].
     lively_since_s: f64,
     longest_s: f64,
-    /// Observations of this period and the one before: the longest rest, and whether an extreme was hit too often for
+    /// Observations of this period and the previous one: the longest rest, and whether an extreme was hit too often for
     /// noise.
     seen: [(f64, bool); 2],
     learns_s: f64,
@@ -144,7 +144,7 @@ impl PlausibilityChannel {
         t_s: 0.0,
     };
 
-    /// Adds the number of a new reading at `t_s`; NaN stands for a missing number.
+    /// Adds the number of a new reading at `t_s`; NaN represents a missing number.
     pub(super) fn look(&mut self, now: f64, t_s: f64, around: &Around) -> Option<ReadingFault> {
         if now.is_nan() || self.last.is_nan() {
             let since_s = t_s;

@@ -68,7 +68,7 @@ impl<const D: usize> JumpDetector<D> {
         (*now, (far && fall != Fall::Over) || frequent)
     }
 
-    /// Handles a vector without a new reading: it changes only by its other inputs.
+    /// Handles a vector without a new reading: only its other inputs can change it.
     fn between(&mut self, now: &SVector<f64, D>, last: &SVector<f64, D>, far: bool) -> (SVector<f64, D>, bool) {
         let believed = if far || self.in_a_row > 0 { last } else { now };
         self.moved = believed - last;

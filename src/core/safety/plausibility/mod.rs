@@ -1,11 +1,11 @@
 //! Plausibility: detects numbers that are finite and in time but cannot be true.
 //!
-//! In: the measurements of one exchange ([`PlausibilityInput`]: m, N, workspace frame; time in s) and the readings from which
-//! they were computed ([`RawReadings`]: the devices' own frames, units and times). Out: the same measurements without
-//! single jumps ([`AdmittedReadings`]), and the quantity that cannot be true ([`Implausible`]). A reading that arrives twice is
-//! not a new reading: a device may be slower than the loop. Each check takes constant time and allocates nothing. The
-//! basis of each limit is given with it; all limits were tried against the ordinary scenes (`nima study faults`). The
-//! caller must remove non-finite numbers first.
+//! Input: the measurements of one exchange ([`PlausibilityInput`]: m, N, workspace frame; time in s) and the readings
+//! from which they were computed ([`RawReadings`]: the devices' own frames, units and times). Out: the same
+//! measurements without single jumps ([`AdmittedReadings`]), and the quantity that cannot be true ([`Implausible`]). A
+//! reading that arrives twice is not a new reading: a device may be slower than the loop. Each check takes constant
+//! time and allocates nothing. The basis of each limit is given with it; all limits were tried against the ordinary
+//! scenes (`nima study faults`). The caller must remove non-finite numbers first.
 //!
 //! No check can detect a bias that creeps, a gain that is wrong from the start, or axes that are swapped before the
 //! first contact. `docs/faults.md` lists how large those errors become.
@@ -46,29 +46,29 @@ const FORCE_SLACK_N: f64 = 0.5;
 const STIFFEST_N_M: f64 = 5e3;
 /// Time for which the filters behind a force settle after a start or a gap, s: until then the force may jump.
 const SETTLE_S: f64 = 0.05;
-/// Maximum speed of an arm's joints together, rad/s: three times the fastest of a Gen3. It applies to its wrist too
-/// (travel of the axes).
+/// Maximum combined speed of an arm's joints, rad/s: three times that of the fastest joint of a Gen3. It also applies
+/// to the wrist (travel of the axes).
 const TURN_MAX_RAD_S: f64 = 5.0;
 /// Difference of angles that has other causes than motion, rad.
 const TURN_SLACK_RAD: f64 = 0.1;
-/// The tip's travel between two readings of the arm is the largest of this many: arm and force sensor run on their own
-/// clocks.
+/// The tip's travel between two readings of the arm is the maximum over this many readings, because arm and force
+/// sensor run on their own clocks.
 const WAY_READINGS: usize = 4;
-/// A torque of the sensor divided by this length is compared with forces, m: a force at the tip acts on the lever of
-/// the shaft.
+/// A torque of the sensor is divided by this length before comparison with forces, m: a force at the tip acts on the
+/// lever of the shaft.
 const LEVER_M: f64 = 0.5;
 /// If the command moves this far while the tip's position stays identical to the last bit, the tip does not follow, m.
 /// Chosen; no false alarm in 136 healthy minutes (`docs/faults.md`).
 const STUCK_COMMAND_M: f64 = 0.5e-3;
 /// After a longer gap between two checks the possible travel is unknown, s.
 const GAP_S: f64 = 0.015;
-/// If the link repeats a force for this much longer than the sensor was late, the link is at fault, s. The silence of a
-/// sensor is reported after the longest time; the lateness is forgotten at this rate, which is slower than any delay of
-/// the link.
+/// If the link repeats a force for longer than the sensor's lateness plus this time, the link is at fault, s. The
+/// silence of a sensor is reported after the longest time; the lateness is forgotten at this rate, which is slower than
+/// any delay of the link.
 const LINK_S: f64 = 0.015;
 const LATE_MAX_S: f64 = 0.02;
 const FORGETS_LATE: f64 = 0.02;
-/// A tip this far from its command has lost it, m: an arm with a lag of 60 ms at the fastest command.
+/// If the tip is this far from its command, the arm has lost it, m: an arm with a lag of 60 ms at the fastest command.
 const ASTRAY_M: f64 = 0.02;
 /// Number of consecutive readings that must change like an earlier block: a force sensor's numbers are fine, and none
 /// of six occurs twice. Whole encoder counts recur; thirty of them recur by chance once in 2^30.
@@ -79,11 +79,11 @@ const ENCODER_BLOCK: u32 = 30;
 pub enum Implausible {
     /// A reading of the force sensor, or of its accelerometer, repeats to the last bit.
     ForceFrozen,
-    /// A number of the force sensor is cut off at the end of its range.
+    /// A number of the force sensor is stuck at the end of its range.
     ForceSaturated,
     /// The force sensor repeats an earlier block of readings.
     ForceRepeats,
-    /// The force jumped farther than a contact can change it, and not to zero as at the end of a contact.
+    /// The force changed by more than a contact can cause, and not to zero as at the end of a contact.
     ForceJumped,
     /// The force points along the motion into a contact.
     ForceAlong,
@@ -95,7 +95,7 @@ pub enum Implausible {
     HandleFrozen,
     /// The handle repeats an earlier block of readings.
     HandleRepeats,
-    /// The arm's tip or joints jumped farther than the arm can move them.
+    /// The tip or the joints jumped farther than the arm can move.
     TipJumped,
     /// The arm repeats an earlier block of readings.
     ArmRepeats,
@@ -115,15 +115,15 @@ pub struct PlausibilityInput {
     /// Orientation of the wrist from the arm, if known.
     pub world_from_s1: Option<UnitQuaternion<f64>>,
     pub tip_m: Vector3<f64>,
-    /// Position of the handle, m (its device's axes).
+    /// Position of the handle, m (in its device's axes).
     pub hand_m: Vector3<f64>,
     /// Commanded position of the tip one tick ago, m; `None` while the tip is at rest.
     pub command_m: Option<Vector3<f64>>,
     /// Commanded force on the hand one tick ago, N.
     pub hand_force_n: Vector3<f64>,
-    /// The handle is guided from the screen: it may then stand still under a force.
+    /// Whether the handle is guided from the screen: it may then be at rest under a force.
     pub guided: bool,
-    /// Age of the tip's data that came over a network, s; 0 for a device at this machine. After a gap the tip may have
+    /// Age of the tip's data received over a network, s; 0 for a device on this machine. After a gap, the tip may have
     /// moved farther.
     pub tip_silent_s: f64,
     /// Age of the handle's data, like `tip_silent_s`.
@@ -148,7 +148,7 @@ pub struct Plausibility {
     handle_stuck: HandleStuck,
     /// Travel of the tip so far, m.
     travel_m: f64,
-    /// Time of the force sensor's last new reading, s, and how late it was recently.
+    /// Time of the force sensor's last new reading, s, and its recent lateness.
     felt_s: f64,
     late_s: f64,
     last_t_s: f64,
@@ -171,7 +171,7 @@ struct PlausibilityMoves {
     unfelt_m: f64,
     /// Ages of the data of tip and handle at the last check, s.
     silent_s: [f64; 2],
-    /// Time of the first check, s; `None` before it.
+    /// Time of the first check, s; `None` before the check.
     began_s: Option<f64>,
 }
 
@@ -206,8 +206,8 @@ impl Plausibility {
         self.handle_stuck.engage();
     }
 
-    /// Declares that the force is known from now on, or computed in a new way: a difference from the previous force is
-    /// not a jump.
+    /// Declares that the force becomes known now, or is computed in a new way, so that a difference from the previous
+    /// force is not a jump.
     pub fn force_is_new(&mut self) {
         let moves = &mut self.moves;
         moves.force = JumpDetector::default();
@@ -216,7 +216,7 @@ impl Plausibility {
         moves.began_s = None;
     }
 
-    /// Checks the measurements of one exchange and returns those that may be used.
+    /// Checks the measurements of one exchange and returns the usable ones.
     pub fn step(&mut self, seen: &PlausibilityInput) -> AdmittedReadings {
         let dt_s = self.pass(seen.t_s);
         let (tip_m, tip_jumped) = self.admit_tip(seen, dt_s);
@@ -348,8 +348,8 @@ impl Plausibility {
 /// Number of channels of a force sensor that are forces or torques; the others are accelerations.
 const LOADS: usize = 6;
 
-/// Returns how long a device may have moved since its last reading, s; `None` if its reading is not new. For a device
-/// without raw readings each check counts as a reading, `since_s` after the previous one.
+/// Returns how long a device may have moved since its last reading, s; `None` if its reading is not new. If a device
+/// has no raw readings, each check counts as a reading, `since_s` after the previous one.
 fn news<const N: usize>(device: &mut DeviceMemory<N>, raw: Option<&RawReading<N>>, since_s: f64) -> Option<f64> {
     let Some(raw) = raw else { return Some(since_s) };
     let step = device.is_new(raw)?;

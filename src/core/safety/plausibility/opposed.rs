@@ -1,4 +1,4 @@
-//! Checks the sign of the force at each first touch: whatever is touched resists.
+//! Checks the sign of the force at the start of each touch: the touched object resists.
 //!
 //! From the moment that a free tip detects a force, the work of the force along the tip's path is compared with the
 //! work that it would do if it always pointed along the motion. A force that drives the tip into the touched object has
@@ -20,13 +20,13 @@ const ENOUGH_M: f64 = 0.3e-3;
 /// Fraction of the full work above which the force points along the motion. Chosen; no false alarm in 136 healthy
 /// minutes (`docs/faults.md`).
 const ALONG: f64 = 0.7;
-/// A touch that has not been judged within this time is not judged at all, s. Chosen; no false alarm in 136 healthy
+/// A touch that cannot be judged within this time is not judged at all, s. Chosen; no false alarm in 136 healthy
 /// minutes (`docs/faults.md`).
 const WITHIN_S: f64 = 0.3;
 /// Time constant against noise, s.
 const SMOOTHING_S: f64 = 0.002;
-/// The tip made the touch if it travelled this far before, m, within about this time, s: faster than 5 mm/s. A tremor
-/// of 0.15 mm per axis moves back and forth by half of that.
+/// The touch was caused by the tip if it travelled this far before, m, within about this time, s: faster than 5 mm/s. A
+/// tremor of 0.15 mm per axis moves back and forth by half of that.
 const MADE_M: f64 = 0.5e-3;
 const BEFORE_S: f64 = 0.1;
 

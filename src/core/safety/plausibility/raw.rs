@@ -1,4 +1,4 @@
-//! Unprocessed readings of the devices: each in its device's own frame and units, before any rotation or calibration.
+//! Raw readings of the devices, each in its device's own frame and units, before any rotation or calibration.
 //!
 //! A rotation of the arm changes every component of a force in the workspace, even for a sensor that has stopped
 //! measuring. The plausibility check therefore judges these readings, only new ones, at the times of the device.
@@ -58,17 +58,17 @@ impl RawReading<CHANNELS> {
 
 /// Number of readings over which the usual interval is averaged.
 const AVERAGED: f64 = 16.0;
-/// A longer interval counts as this many usual ones: the loop was late and missed the readings in between.
+/// A longer interval counts as this many nominal ones: the loop was late and missed the readings in between.
 const LONGEST_INTERVALS: f64 = 2.0;
-/// A device's clock may be ahead of the arrivals by this, s: connections delay readings by less.
+/// A device's clock may be ahead of the arrivals by this time, s, because connections delay readings by less.
 const HELD_BACK_S: f64 = 0.02;
-/// A reading whose time is earlier than the previous one by less than this arrived out of order, s; a clock that was
-/// set goes back further.
+/// If the time of a reading is earlier than the previous one by less than this, it arrived out of order, s; if a clock
+/// was set back, the difference is larger.
 const SWAPPED_S: f64 = 1.0;
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RawStep {
-    /// Sum of the intervals so far, s; each counts for at most [`LONGEST_INTERVALS`] usual intervals.
+    /// Sum of the intervals so far, s; each counts for at most [`LONGEST_INTERVALS`] nominal intervals.
     pub(super) t_s: f64,
     /// Time for which the device may have moved since the previous reading, s.
     pub(super) moved_s: f64,

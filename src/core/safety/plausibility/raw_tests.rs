@@ -1,5 +1,5 @@
-//! Raw readings of a rig with an arm: the loop receives a force that turns with the arm, but the sensor's own numbers
-//! are judged.
+//! Raw readings of a rig with an arm: the loop receives a force that rotates with the arm, but the sensor's own numbers
+//! are checked.
 
 use nalgebra::{UnitQuaternion, Vector3};
 
@@ -17,7 +17,7 @@ enum Fault {
     OneFrozen,
     /// All values are beyond the end of the range.
     Saturated,
-    /// About half of the values are beyond it.
+    /// About half of the values are beyond the end of the range.
     Hovers,
     Block(usize),
     Jump,
@@ -86,7 +86,8 @@ impl<const N: usize> Sampled<N> {
     }
 }
 
-/// The hand circles with a tremor, the tip follows and presses on tissue of 400 N/m, the wrist turns with it.
+/// Returns the position of the hand, which circles with a tremor; the tip follows and presses on tissue of 400 N/m, and
+/// the wrist rotates with it.
 fn hand_m(t_s: f64) -> Vector3<f64> {
     let tremor = Vector3::new((53.4 * t_s).sin(), (56.5 * t_s).sin(), (59.7 * t_s).sin()) * 5e-5;
     Vector3::new(0.01 * (1.9 * t_s).cos(), 0.01 * (1.9 * t_s).sin(), -0.006 + 0.003 * (1.1 * t_s).sin()) + tremor

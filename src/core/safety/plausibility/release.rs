@@ -1,14 +1,15 @@
 //! Recognises a contact that ends: the force falls to zero within a few samples, while the tip hardly moves.
 //!
-//! An object held under force snaps away as fast as its mass allows: a ring of 1.5 g on a contact of 4 kN/m takes about
-//! 3 ms. The force therefore falls over several samples, and a sensor's own filter spreads the fall further. A failing
-//! sensor steps from one sample to the next, or stops at a value other than zero. A growing force is never excused.
+//! An object that is held under force snaps away as fast as its mass allows: a ring of 1.5 g on a contact of 4 kN/m
+//! takes about 3 ms. The force therefore falls over several samples, and a sensor's own filter spreads the fall
+//! further. A failing sensor steps from one sample to the next, or stops at a value other than zero. A growing force is
+//! never excused.
 
 use nalgebra::Vector3;
 
 /// A force below this counts as zero, N: the noise of the noisiest sensor here.
 const GONE_N: f64 = 0.5;
-/// A fall decreases by at least this from one sample to the next, N; noise does not.
+/// A fall decreases by at least this amount from one sample to the next, N; noise does not.
 const FALLS_N: f64 = 0.1;
 /// A fall with more than this fraction in one sample is a step. Rings that snap away have 0.38 to 0.6 at 1 kHz
 /// (`docs/faults.md`); a sensor that steps has 1.
@@ -49,7 +50,7 @@ struct FallState {
 }
 
 impl ReleaseMemory {
-    /// Adds a sample (N); `far` says that it is too far from the last accepted one.
+    /// Adds a sample (N); `far` states that it is too far from the last accepted one.
     pub fn look(&mut self, believed_n: &Vector3<f64>, now_n: &Vector3<f64>, far: bool) -> Fall {
         if !far {
             self.fall = None;

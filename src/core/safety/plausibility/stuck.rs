@@ -1,5 +1,5 @@
-//! Detects a handle or an arm whose reading stays identical to the last bit while something else moves. Both may rest:
-//! a handle lies on the table in whole encoder counts, and an arm holds its angles. Only the cause of motion
+//! Detects a handle or an arm whose reading stays identical to the last bit although it should change. Both may be at
+//! rest: a handle on the table reports whole encoder counts, and an arm holds its angles. Only the cause of motion
 //! distinguishes rest from a fault.
 
 use nalgebra::Vector3;
@@ -7,16 +7,16 @@ use nalgebra::Vector3;
 /// A handle whose reading stays identical to the last bit while its force changes by this much is stuck, N: a gripping
 /// hand of 900 N/m yields by 0.8 mm.
 const STUCK_FORCE_N: f64 = 0.7;
-/// So is a handle that stands still for [`UNMOVED_S`] under this force, N: a gripping hand trembles, and a free handle
-/// yields.
+/// The same applies to a handle that is motionless for [`UNMOVED_S`] under this force, N: a gripping hand trembles, and
+/// a free handle yields.
 const UNMOVED_FORCE_N: f64 = 0.5;
 const UNMOVED_S: f64 = 0.1;
-/// The rule applies to a handle that has not stood still for [`RESTFUL_S`] within this time, s: a handle guided by a
-/// machine may stand still.
+/// The rule applies to a handle that was not motionless for [`RESTFUL_S`] within this time, s: a handle guided by a
+/// machine may be motionless.
 const TREMBLED_S: f64 = 10.0;
 const RESTFUL_S: f64 = 0.05;
-/// Shortest time after which something is stuck, s, and the minimum number of readings that repeat the first one.
-/// Chosen; no false alarm in 136 healthy minutes (`docs/faults.md`).
+/// Shortest time after which a position counts as stuck, s, and the minimum number of readings that repeat the first
+/// one. Chosen; no false alarm in 136 healthy minutes (`docs/faults.md`).
 const STUCK_S: f64 = 0.015;
 const REPEATED: u32 = 2;
 
@@ -27,7 +27,7 @@ pub(super) struct Stuck {
     is_stuck: bool,
 }
 
-/// Value of both quantities when the first one stopped, and the time of that.
+/// Value of both quantities when the first one stopped, and the time of the stop.
 #[derive(Clone, Copy, Debug)]
 struct StuckState {
     still: Vector3<f64>,
@@ -37,8 +37,8 @@ struct StuckState {
 }
 
 impl Stuck {
-    /// Adds a new reading: `still` is stuck when it has not changed for [`STUCK_S`] while `moving` changed by more than
-    /// `max`.
+    /// Adds a new reading: `still` counts as stuck if it has not changed for [`STUCK_S`] while `moving` changed by more
+    /// than `max`.
     pub(super) fn look(&mut self, still: &Vector3<f64>, moving: &Vector3<f64>, max: f64, t_s: f64) {
         let Some(at) = self.at.as_mut().filter(|at| at.still == *still) else {
             let at = StuckState { still: *still, moving: *moving, since_s: t_s, repeats: 0 };
@@ -56,7 +56,7 @@ impl Stuck {
     }
 }
 
-/// Detects a handle that does not yield to its force.
+/// Detects a handle that does not yield to the force on it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct HandleStuck {
     by_change: Stuck,
@@ -80,8 +80,8 @@ impl HandleStuck {
         self.by_change = Stuck::default();
     }
 
-    /// Adds a new reading of the handle, m, and the force on it, N; a handle that is `guided` from the screen may stand
-    /// still under a force.
+    /// Adds a new reading of the handle, m, and the force on it, N; a handle that is `guided` from the screen may be
+    /// motionless under a force.
     pub(super) fn look(&mut self, hand_m: &Vector3<f64>, force_n: &Vector3<f64>, guided: bool, t_s: f64) {
         self.by_change.look(hand_m, force_n, STUCK_FORCE_N, t_s);
         let pressed = !guided && force_n.norm() >= UNMOVED_FORCE_N;

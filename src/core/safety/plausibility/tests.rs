@@ -128,7 +128,7 @@ fn a_stiff_contact_is_no_jump() {
 }
 
 /// Returns the fault reported for a force with these values (N, one per sample) after a contact of 2.6 N, while the tip
-/// stands still; with `again` the values recur this many samples apart.
+/// is at rest; with `again`, the values recur this many samples apart.
 fn reported_change(sizes_n: &[f64], again: Option<u32>) -> Option<(u32, Implausible)> {
     let mut kept = None;
     after(|k, seen| {

@@ -55,7 +55,7 @@ impl<T: ByteStream> DynamixelDriver<T> {
         Ok(newest)
     }
 
-    /// Handles a status packet: as part of the expected answer, or counts the reason why it is not.
+    /// Handles a status packet: accepts it as part of the expected answer, or counts the reason for rejecting it.
     fn take(&mut self, id: u8, body: &[u8], now_s: f64) -> Result<Option<TimedReading<ServoReading>>, Loss> {
         let plain = body.len() == MOTION_BYTES + 1;
         let condition = body.len() == CONDITION_BYTES + 1;

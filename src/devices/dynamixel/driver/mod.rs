@@ -1,4 +1,4 @@
-//! Driver of four servos. There is one exchange under way at a time, as fast as bus and caller allow; it never waits.
+//! Driver of four servos. One exchange is in progress at a time, as fast as bus and caller allow; it never waits.
 //!
 //! An exchange is one `send`: a sync write of the goals (while the torque is on) and a sync read of clock, current,
 //! velocity and position of all four. At intervals it requests the condition of one servo instead (torque, hardware
@@ -59,7 +59,7 @@ pub struct ServoCondition {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GoalResult {
     AsAsked,
-    /// Accepted after limiting them to the range of the settings.
+    /// Accepted after clamping to the range in the settings.
     Limited,
     /// Refused: the torque is off, or a number is not finite.
     Refused,
@@ -71,7 +71,7 @@ struct ServoState {
     current_unit_a: f64,
     limits_ticks: (f64, f64),
     condition: Option<ServoCondition>,
-    /// Whether the torque has been reported as on since it was switched on.
+    /// Whether the torque has been reported as on since it was requested.
     driven: bool,
 }
 
@@ -347,8 +347,8 @@ impl<T: ByteStream> Device for DynamixelDriver<T> {
 }
 
 impl<T: ByteStream> Drop for DynamixelDriver<T> {
-    /// Switches the torque off, three times, each after the line is quiet, because a packet under way would collide
-    /// with the command.
+    /// Switches the torque off, three times, each time after the line is quiet, because a packet in transit would
+    /// collide with the command.
     fn drop(&mut self) {
         self.outgoing.clear();
         self.put_torque_off();

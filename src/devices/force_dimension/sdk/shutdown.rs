@@ -7,7 +7,7 @@ use std::{
 
 /// Number of devices that are open in this program.
 static OPEN_DEVICES: AtomicUsize = AtomicUsize::new(0);
-/// Set when the program ends: threads that own a device must close it.
+/// Set when the program ends: a thread that owns a device must then close it.
 static ENDING: AtomicBool = AtomicBool::new(false);
 /// Maximum time for which the end of the program waits for that.
 const END_MAX: Duration = Duration::from_millis(300);

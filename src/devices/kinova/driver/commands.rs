@@ -80,8 +80,8 @@ pub(super) struct Jog {
     sent_s: Option<f64>,
 }
 
-/// A twist that is not renewed ends after this time, s, because the arm's own limit is 2 s
-/// (`connection_inactivity_timeout`), which is too long for a moving tool.
+/// A twist that is not renewed ends after this time, s. The arm's own limit of 2 s (`connection_inactivity_timeout`) is
+/// too long for a moving tool.
 const TWIST_DEAD_MAN_S: f64 = 0.1;
 /// Interval between two twists, s: the base accepts about 40 per second.
 const TWIST_PERIOD_S: f64 = 0.025;

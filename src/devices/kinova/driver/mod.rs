@@ -41,7 +41,7 @@ const MODE_S: f64 = 1.0;
 /// requests in one cycle of the arm.
 const SPACING_S: f64 = 0.5e-3;
 
-/// Servoing mode of the arm, and changes under way.
+/// Servoing mode of the arm, including transitions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum KinovaMode {
     Single,

@@ -22,7 +22,7 @@ fn sums(ranks: &[usize], chosen: usize) -> Vec<f64> {
     masses.iter().map(|mass| mass / total).collect()
 }
 
-/// Sum of the `chosen` largest ranks.
+/// Returns the sum of the `chosen` largest ranks.
 fn largest(ranks: &[usize], chosen: usize) -> usize {
     let mut sorted = ranks.to_vec();
     sorted.sort_unstable();

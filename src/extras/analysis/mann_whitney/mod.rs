@@ -13,7 +13,7 @@ use crate::signed_rank::{Distribution, Location, MAX_EXACT};
 use crate::summary;
 use serde::Serialize;
 
-/// More differences between the groups are refused: they would fill the memory.
+/// More differences between the groups than this are rejected, because they would fill the memory.
 const MAX_DIFFERENCES: usize = 4_000_000;
 
 /// Result of the Mann-Whitney test.
@@ -22,7 +22,7 @@ pub struct MannWhitney {
     /// Number of pairs of a value of the first group and one of the second in which the first is greater, ties counting
     /// half; R's W.
     pub u: f64,
-    /// The same in which the second is greater.
+    /// Number of pairs in which the second value is greater.
     pub other_u: f64,
     /// Standardised statistic, corrected for ties and continuity, positive if the first group has the greater values.
     pub z: f64,

@@ -7,12 +7,12 @@ use nalgebra::{DMatrix, DVector};
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
-/// A column whose residual against the earlier columns is below this fraction of its length depends on them (the limit
-/// of R's `lm`).
+/// A column is considered dependent if its residual against the earlier columns is below this fraction of its length
+/// (the limit of R's `lm`).
 const DEPENDENT: f64 = 1e-7;
 
-/// The model as matrices. Its columns are made orthonormal (`X = Q R`), so that the size or mean of a covariate costs
-/// no digits; `y` is the residual of the response against `Q`.
+/// The model as matrices. Its columns are orthonormalised (`X = Q R`), so that the size or mean of a covariate costs no
+/// digits; `y` is the residual of the response against `Q`.
 pub(super) struct MixedDesign {
     /// Name of each column of X: the intercept, the conditions in alphabetical order without the reference, the
     /// covariates.
@@ -30,7 +30,7 @@ pub(super) struct MixedDesign {
     pub(super) r: DMatrix<f64>,
     /// `Q'` times the response.
     pub(super) projected: DVector<f64>,
-    /// The response without its projection.
+    /// Residual of the response after the projection.
     pub(super) y: DVector<f64>,
 }
 
@@ -63,7 +63,7 @@ impl MixedDesign {
         Ok(Self { names: column_names, reference, conditions, participants, of_row, sizes, q, r, projected, y })
     }
 
-    /// Sum over the rows of each participant.
+    /// Returns the sum over the rows of each participant.
     pub(super) fn sums(&self, column: impl Fn(usize) -> f64) -> DVector<f64> {
         let mut sums = DVector::zeros(self.sizes.len());
         for (row, &participant) in self.of_row.iter().enumerate() {
@@ -77,7 +77,7 @@ impl MixedDesign {
     }
 }
 
-/// Names and columns of X, and which columns are conditions.
+/// Returns the names and columns of X, and which columns are conditions.
 fn columns(model: &MixedModel) -> (Vec<String>, Vec<Vec<f64>>, Range<usize>) {
     let levels: BTreeSet<&String> = model.condition.iter().filter(|name| **name != model.reference).collect();
     let mut names = vec!["(intercept)".to_owned()];
@@ -150,7 +150,7 @@ impl DesignDegrees {
     }
 }
 
-/// Number of columns that do not depend on earlier ones.
+/// Returns the number of columns that do not depend on earlier ones.
 fn rank(mut columns: DMatrix<f64>) -> usize {
     let lengths: Vec<f64> = columns.column_iter().map(|column| column.norm()).collect();
     let mut rank = 0;

@@ -17,14 +17,14 @@ pub struct MixedFit {
     pub criterion: MixedCriterion,
     /// Intercept (the reference, where covariates are zero), conditions in alphabetical order, covariates.
     pub effects: Vec<FixedEffect>,
-    /// Whether the conditions differ at all; `None` if there is only one.
+    /// Test of whether the conditions differ at all; `None` if there is only one.
     pub conditions: Option<JointTest>,
     /// Variance of the participants' intercepts, unit of the response squared. Zero is the boundary: then the trials of
     /// one participant are no more alike than those of different ones, and the model equals one without participants.
     pub participant_variance: f64,
     /// Variance within participants, unit of the response squared.
     pub residual_variance: f64,
-    /// Intraclass correlation: the participants' fraction of the sum of both variances.
+    /// Intraclass correlation: the fraction of the total variance that is due to the participants.
     pub icc: f64,
     /// Logarithm of the (restricted) likelihood. With REML it only compares models with the same fixed effects.
     pub log_likelihood: f64,
@@ -41,7 +41,7 @@ pub struct MixedFit {
 pub struct FixedEffect {
     /// The condition, the covariate, or `(intercept)`.
     pub name: String,
-    /// In the unit of the response; for a covariate, per its unit.
+    /// Estimate in the unit of the response; for a covariate, per unit of it.
     pub estimate: f64,
     pub standard_error: f64,
     /// Estimate over standard error.
@@ -144,7 +144,8 @@ impl FitSolution {
         FixedEffect { name, estimate, standard_error, t, df, p: t_two_sided(t, df), interval }
     }
 
-    /// The effects are rotated until they are uncorrelated; each then has its t and its degrees of freedom.
+    /// Tests several effects jointly. The effects are rotated until they are uncorrelated; each then has its own t and
+    /// degrees of freedom.
     fn joint(&self, effects: std::ops::Range<usize>) -> Result<Option<JointTest>> {
         if effects.is_empty() {
             return Ok(None);
@@ -169,7 +170,8 @@ impl FitSolution {
     }
 }
 
-/// Degrees of freedom of the mean of squared t's: those of the F with the same expectation, 2 if that has none.
+/// Returns the degrees of freedom of the mean of squared t's: those of the F distribution with the same expectation; 2
+/// if there is none.
 fn together(dfs: &[f64]) -> f64 {
     let alike = dfs.windows(2).all(|two| (two[0] - two[1]).abs() < 1e-8 * two[0].abs());
     if alike {

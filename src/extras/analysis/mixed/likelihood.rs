@@ -4,9 +4,9 @@ use super::MixedCriterion;
 use super::design::MixedDesign;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
-/// Sums that every ratio needs. The covariance of the n trials of one participant is `s (1 + ratio 11')`, whose inverse
-/// is `(1 - 11'/n) / s` within the participant and `11' / (n (1 + n ratio)) / s` for the mean: summing the two parts
-/// separately loses no digits.
+/// Sums required for every ratio. The covariance of the n trials of one participant is `s (1 + ratio 11')`, whose
+/// inverse is `(1 - 11'/n) / s` within the participant and `11' / (n (1 + n ratio)) / s` for the mean: summing the two
+/// parts separately loses no digits.
 pub(super) struct LikelihoodProfile<'a> {
     design: &'a MixedDesign,
     criterion: MixedCriterion,
@@ -102,7 +102,7 @@ impl<'a> LikelihoodProfile<'a> {
         residual + participants + fixed
     }
 
-    /// Its derivative by the ratio.
+    /// Returns its derivative with respect to the ratio.
     pub(super) fn slope(&self, point: &LikelihoodPoint) -> f64 {
         let residual = self.degrees() * point.z.norm_squared() / point.squares;
         let own: f64 = self.design.sizes.iter().zip(point.inflation.iter()).map(|(n, by)| n / by).sum();
@@ -112,7 +112,8 @@ impl<'a> LikelihoodProfile<'a> {
         }
     }
 
-    /// Second derivatives of the deviance by the ratio and the residual variance, not yet at its best: ratio twice, both, variance twice.
+    /// Returns the second derivatives of the deviance with respect to the ratio and the residual variance, before
+    /// optimisation: ratio twice, both, variance twice.
     ///
     /// With `P = V^-1 - V^-1 X (X' V^-1 X)^-1 X' V^-1` and `dP = -P ZZ' P`; `m` is `Z' P Z`.
     pub(super) fn curvature(&self, point: &LikelihoodPoint) -> [f64; 3] {

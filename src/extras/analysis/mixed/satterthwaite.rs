@@ -13,7 +13,7 @@ pub(super) struct Precision {
     residual_variance: f64,
     /// `(X' V^-1 X)^-1 X' V^-1 Z`, effects by participants; determines the effect of the ratio on the covariance.
     by_ratio: DMatrix<f64>,
-    /// Covariance of ratio and residual variance: ratio twice, both, variance twice.
+    /// Variances and covariance of ratio and residual variance: ratio, both, variance.
     variances: [f64; 3],
 }
 
@@ -40,12 +40,13 @@ impl Precision {
         Ok(Self { covariance, residual_variance, by_ratio, variances })
     }
 
-    /// Variance of the combination of the fixed effects with these weights.
+    /// Returns the variance of the combination of fixed effects with these weights.
     pub(super) fn variance(&self, weights: &DVector<f64>) -> f64 {
         weights.dot(&(&self.covariance * weights))
     }
 
-    /// Degrees of freedom of that combination: 2 variance^2 / (variance of the variance, by its gradient).
+    /// Returns the degrees of freedom of that combination: 2 variance^2 / (variance of the variance, from its
+    /// gradient).
     pub(super) fn df(&self, weights: &DVector<f64>) -> f64 {
         let variance = self.variance(weights);
         let by_ratio = self.residual_variance * self.by_ratio.tr_mul(weights).norm_squared();

@@ -32,7 +32,7 @@ pub struct PowerSimulation {
     pub runs: usize,
     /// Seed of the first; the same seed gives the same studies.
     pub seed: u64,
-    /// Level of significance: a study counts when its p-value is at most this.
+    /// Significance level: a study counts as significant if its p-value is at most this.
     pub level: f64,
 }
 

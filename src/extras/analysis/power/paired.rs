@@ -8,11 +8,11 @@ use crate::{check, t_test};
 /// The distribution of future participants' differences, without the effect.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Population {
-    /// These deviations, drawn with replacement. [`Population::from_pilot`] computes them.
+    /// Deviations to be drawn with replacement. [`Population::from_pilot`] computes them.
     Deviations(Vec<f64>),
     /// A normal distribution with this standard deviation.
     Normal {
-        /// In the unit of the differences.
+        /// Standard deviation in the unit of the differences.
         sd: f64,
     },
 }

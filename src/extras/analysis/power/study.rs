@@ -8,7 +8,7 @@ use crate::mixed::{MixedCriterion, MixedFit, MixedModel};
 /// A study with repeated measures: every participant has the same number of trials under every condition.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MixedStudy {
-    /// Effect of each condition but the reference, in the unit of the response; at least one.
+    /// Effect of each condition except the reference, in the unit of the response; at least one.
     pub effects: Vec<f64>,
     /// Trials of each participant under each condition, at least one.
     pub trials: usize,
@@ -19,8 +19,8 @@ pub struct MixedStudy {
 }
 
 impl MixedStudy {
-    /// Uses the variances of a pilot and the given effects, preferably the smallest relevant ones rather than those
-    /// observed in the pilot.
+    /// Creates a study with the variances of a pilot and the given effects, preferably the smallest relevant ones
+    /// rather than those observed in the pilot.
     pub fn from_pilot(pilot: &MixedFit, effects: &[f64], trials: usize) -> Self {
         let participant_variance = pilot.participant_variance;
         let residual_variance = pilot.residual_variance;

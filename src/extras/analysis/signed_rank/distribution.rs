@@ -19,8 +19,8 @@ pub(super) fn masses(ranks: impl IntoIterator<Item = usize>) -> Vec<f64> {
     masses
 }
 
-/// Two-sided p-value of `lesser`, the smaller of the two sums of ranks. The distribution is symmetric, so both tails
-/// are equal.
+/// Returns the two-sided p-value of `lesser`, the smaller of the two rank sums. The distribution is symmetric, so both
+/// tails are equal.
 pub(super) fn two_sided(ranks: &[usize], lesser: usize) -> f64 {
     let tail: f64 = masses(ranks.iter().copied())[..=lesser].iter().sum();
     (2.0 * tail).min(1.0)

@@ -22,8 +22,8 @@ pub fn paired_location(first: &[f64], second: &[f64], confidence: f64) -> Result
     location(&check::differences(first, second)?, confidence)
 }
 
-/// Median of the averages of all pairs of differences, each also with itself (Hodges & Lehmann, Estimates of location
-/// based on rank tests, Annals of Mathematical Statistics 34, 1963), of 1 to 2000 differences.
+/// Returns the median of the averages of all pairs of differences, each also with itself (Hodges & Lehmann, Estimates
+/// of location based on rank tests, Annals of Mathematical Statistics 34, 1963), of 1 to 2000 differences.
 ///
 /// The interval inverts the signed-rank test (Tukey; Hollander & Wolfe, section 3.3): exact up to [`MAX_EXACT`]
 /// differences, like R's `wilcox.test` without ties and zeros. With ties or zeros R switches to the normal

@@ -1,4 +1,4 @@
-//! Wilcoxon's signed-rank test: two conditions, each participant under both.
+//! Wilcoxon's signed-rank test: two conditions, with each participant under both.
 //!
 //! Always two-sided. The exact p-value comes from the permutation distribution: all 2^n assignments of signs to the
 //! ranks, also with ties.
@@ -28,7 +28,7 @@ pub enum Zeros {
     Pratt,
 }
 
-/// How a p-value is computed.
+/// Method of computing a p-value.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub enum Distribution {
     /// Exact up to [`MAX_EXACT`] values, by the normal distribution above.
@@ -106,7 +106,7 @@ pub fn of_differences(differences: &[f64], options: &SignedRankOptions) -> Resul
     Ok(SignedRank { n: ranks.len(), zeros: differences.len() - ranks.len(), w_plus, w_minus, z, p, exact })
 }
 
-/// Returns twice the ranks of the differences that are not zero, and which of those are positive.
+/// Returns twice the ranks of the nonzero differences, and which of these differences are positive.
 pub(crate) fn signed_ranks(differences: &[f64], zeros: Zeros) -> (Vec<usize>, Vec<bool>) {
     let ranked = differences.iter().copied().filter(|difference| zeros == Zeros::Pratt || difference.abs() > 0.0);
     let ranked: Vec<f64> = ranked.collect();

@@ -192,7 +192,8 @@ fn the_mixed_model_gives_the_numbers_of_lmertest() {
     worst.report();
 }
 
-/// Not the standard errors, which it takes from another information matrix: the same for balanced trials only.
+/// The standard errors are not compared, because the peer computes them from another information matrix; they agree
+/// only for balanced trials.
 #[test]
 fn the_mixed_model_gives_the_estimates_of_statsmodels() {
     let peers = peers();

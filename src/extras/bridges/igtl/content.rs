@@ -39,7 +39,7 @@ impl ContentKind {
         Self::Capability,
     ];
 
-    /// Its message type.
+    /// Returns its message type.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Transform => "TRANSFORM",
@@ -54,7 +54,7 @@ impl ContentKind {
         }
     }
 
-    /// Its name in requests, whose names have at most 12 bytes too.
+    /// Returns the name in requests, which may also have at most 12 bytes.
     const fn short(self) -> &'static str {
         match self {
             Self::Transform => "TRANS",
@@ -102,7 +102,7 @@ pub struct ContentStream {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Position {
     pub place_mm: [f32; 3],
-    /// A quaternion, its scalar last; `None` if not given.
+    /// A quaternion with the scalar last; `None` if not given.
     pub turn: Option<[f32; 4]>,
 }
 
@@ -158,7 +158,7 @@ pub struct ContentStatus {
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TextContent {
-    /// The number of its character set in the list of IANA: 3 ASCII, 106 UTF-8.
+    /// Number of the character set in the IANA list: 3 ASCII, 106 UTF-8.
     pub encoding: u16,
     /// At most 65 535.
     pub bytes: Vec<u8>,
@@ -168,7 +168,7 @@ impl TextContent {
     const ASCII: u16 = 3;
     const UTF_8: u16 = 106;
 
-    /// Makes a text; a text that is too long is cut off.
+    /// Creates a text; a text that is too long is cut off.
     pub fn of(text: &str) -> Self {
         let mut end = text.len().min(usize::from(u16::MAX));
         while !text.is_char_boundary(end) {
@@ -206,7 +206,7 @@ const TYPE: usize = 12;
 const FRAME: usize = 32;
 
 impl Content {
-    /// Its type, as in the header.
+    /// Returns its type, as in the header.
     pub fn kind(&self) -> String {
         let known = match self {
             Self::Transform(_) => ContentKind::Transform,

@@ -61,7 +61,7 @@ pub struct IgtlMessage {
     pub device: String,
     /// ns since 1970 (UTC).
     pub time_ns: u64,
-    /// Its content.
+    /// Content.
     pub content: Content,
 }
 

@@ -45,7 +45,7 @@ pub enum IgtlFormatError {
     /// The checksum does not match the body.
     #[error("the checksum does not match: the message was damaged in transit")]
     Checksum,
-    /// The body's length does not match its own counts.
+    /// The length of the body does not match the counts in it.
     #[error("a message of type {kind} with {bytes} bytes does not match the counts in it")]
     Length { kind: String, bytes: usize },
     /// A number without a meaning.

@@ -1,4 +1,4 @@
-//! Poses, and bundles of them.
+//! Poses, and batches of them.
 
 use super::{
     IgtlFormatError,
@@ -71,7 +71,7 @@ pub struct QuaternionTool {
     /// The known part of its pose.
     pub kind: ToolKind,
     pub place_mm: [f32; 3],
-    /// Orientation: a quaternion, its scalar last.
+    /// Orientation: a quaternion with the scalar last.
     pub turn: [f32; 4],
 }
 

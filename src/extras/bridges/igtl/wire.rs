@@ -51,7 +51,7 @@ impl<'a> IgtlCursor<'a> {
     }
 }
 
-/// Appends a name in a field of this length. A longer name is cut between two characters.
+/// Appends a name in a field of this length. A name that is too long is cut between two characters.
 pub(super) fn put_name(bytes: &mut Vec<u8>, name: &str, length: usize) {
     let mut end = name.len().min(length);
     while !name.is_char_boundary(end) {

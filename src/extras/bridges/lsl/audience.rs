@@ -57,7 +57,7 @@ impl SessionMarks {
         Self { shared, trial, follower, clock, channels, started_ns: 0, last_s: None, early }
     }
 
-    /// Adds a marker at this time of the loop, s. The caller keeps the order of time.
+    /// Adds a marker at this time of the loop, s. The caller must keep the order of times.
     fn mark(&mut self, t_s: f64, what: String) {
         match self.clock.settled(t_s) {
             Some(at_s) => self.shared.mark(at_s, what),

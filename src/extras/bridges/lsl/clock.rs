@@ -3,20 +3,20 @@
 /// The loop's clock may run slower than LSL's by this factor.
 const DRIFT: f64 = 1e-3;
 
-/// The estimate is used after ticks have been seen for this long, s: the first ones are often late.
+/// The estimate is used after ticks have been received for this long, s, because the first ones are often late.
 const SETTLES_S: f64 = 0.2;
 
 /// Estimated from the arrival of ticks; the smallest delay counts.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct LslLoopClock {
-    /// LSL time minus the loop's time, s, and when it was last observed, s.
+    /// Offset of LSL time from the loop's time, s, and the time of its last observation, s.
     offset_s: Option<(f64, f64)>,
-    /// When it was first observed, s.
+    /// Time of the first observation, s.
     since_s: Option<f64>,
 }
 
 impl LslLoopClock {
-    /// Notes the arrival of a tick of this time (s) at this LSL time, s.
+    /// Notes that a tick of this time (s) arrived at this LSL time, s.
     pub(super) fn note(&mut self, t_s: f64, now_s: f64) {
         let offset_s = now_s - t_s;
         let min_s = self.offset_s.map_or(offset_s, |(min_s, at_s)| offset_s.min(min_s + DRIFT * (now_s - at_s)));

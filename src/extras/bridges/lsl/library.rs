@@ -35,7 +35,7 @@ const VARIABLE: &str = "PYLSL_LIB";
 
 macro_rules! library {
     ($($field:ident = $symbol:literal: fn($($argument:ty),*) $(-> $result:ty)?;)*) => {
-        /// The functions used here, with the types of its C header.
+        /// The functions of the library that are used, with the types of its C header.
         #[derive(Clone, Copy, Debug)]
         pub(super) struct Lsl {
             $($field: unsafe extern "C" fn($($argument),*) $(-> $result)?,)*
@@ -74,7 +74,7 @@ library! {
 pub(super) struct Info<'a> {
     pub(super) name: &'a str,
     pub(super) kind: &'a str,
-    /// The same after a restart, so that a listener recovers the stream.
+    /// Identifier that stays the same after a restart, so that a listener recovers the stream.
     pub(super) source: &'a str,
     pub(super) about: &'a [(&'a str, &'a str)],
 }
@@ -164,7 +164,7 @@ fn text(of: &str) -> CString {
     CString::new(of.split('\0').next().unwrap_or_default()).unwrap_or_default()
 }
 
-/// A stream. Dropping it ends it.
+/// A stream, which ends when it is dropped.
 #[derive(Debug)]
 pub(super) struct LslStream {
     lsl: Lsl,

@@ -33,7 +33,7 @@ use self::{
 pub const STREAM: &str = "NIMA";
 /// Type of the stream.
 pub const STREAM_TYPE: &str = "Markers";
-/// Force at the tip above which it is in contact, N, if the task does not set it.
+/// Force at the tip above which there is contact, N, unless the task sets it.
 pub const CONTACT_N: f64 = 0.2;
 
 /// Maximum number of markers that wait for the library.
@@ -41,7 +41,7 @@ const QUEUE: usize = 1024;
 /// Interval between checks for a listener.
 const LOOK_EVERY: Duration = Duration::from_millis(200);
 
-/// Why there are no markers.
+/// Reason why there are no markers.
 #[derive(Debug, thiserror::Error)]
 pub enum LslError {
     /// The library was not found.
@@ -62,12 +62,13 @@ pub enum LslError {
     Stream { reason: String },
 }
 
-/// Information about a session that its markers need.
+/// Information about a session required for its markers.
 #[derive(Clone, Debug)]
 pub struct MarkContext {
-    /// Force at the tip above which it is in contact, N.
+    /// Force at the tip above which there is contact, N.
     pub contact_n: f64,
-    /// Text of the markers at its begin and its end: `trial P03 4`; `None` for a session that is not a trial.
+    /// Text of the markers at the start and the end of the trial: `trial P03 4`; `None` for a session that is not a
+    /// trial.
     pub trial: Option<String>,
     /// Returns a sentence for a fault.
     pub words: fn(nima_machine::messages::Fault) -> &'static str,
@@ -104,8 +105,8 @@ impl LslShared {
 }
 
 impl MarkStream {
-    /// Creates the stream in this network. The library is this file, or by default the system's; `program` and
-    /// `machine` describe the source of the markers.
+    /// Creates the stream in this network. `library` is the library's file; by default, the system's library is used.
+    /// `program` and `machine` describe the source of the markers.
     ///
     /// # Errors
     /// [`LslError`] if there is no library, or it cannot create a stream.
@@ -135,7 +136,7 @@ impl MarkStream {
         self.shared.received.load(Ordering::Relaxed)
     }
 
-    /// Number of dropped markers.
+    /// Returns the number of dropped markers.
     pub fn dropped(&self) -> u64 {
         self.shared.dropped.load(Ordering::Relaxed)
     }

@@ -1,4 +1,5 @@
-//! Markers of a loop, without the library; with it where it is installed (`NIMA_LIBLSL` names its file).
+//! Tests of the markers of a loop, without the library, and with it where it is installed (`NIMA_LIBLSL` names its
+//! file).
 
 use std::path::Path;
 

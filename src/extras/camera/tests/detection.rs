@@ -1,7 +1,7 @@
 use super::*;
 use crate::DetectionFailure;
 
-/// Root mean square and maximum distance of the detected corners from the true ones, px.
+/// Returns the root mean square and maximum distance of the detected corners from the true ones, px.
 fn errors_px(sight: &BoardSight, real: &[Vector2<f64>]) -> [f64; 2] {
     let squares: Vec<f64> = sight.corners_px.iter().zip(real).map(|(a, b)| (a - b).norm_squared()).collect();
     let mean = squares.iter().sum::<f64>() / squares.len() as f64;

@@ -1,4 +1,4 @@
-//! Comparison with rendered boards, whose lens and poses are known.
+//! Tests with rendered boards, whose lens and poses are known.
 
 mod degenerate;
 mod detection;
@@ -43,8 +43,8 @@ fn pose(
     Isometry3::from_parts(Translation3::from(middle_m - rotation * board.middle_m()), rotation)
 }
 
-/// Typical poses of a person: over the whole image, some of them tilted in each direction. Every corner is within the
-/// image.
+/// Returns typical poses of a person: over the whole image, some of them tilted in each direction. Every corner is
+/// within the image.
 fn usual(rng: &mut Rng, lens: &Lens, board: &Checkerboard, count: usize) -> Vec<Isometry3<f64>> {
     let mut poses = Vec::new();
     let mut spread = |k: usize| {
@@ -84,7 +84,7 @@ fn corners_px(lens: &Lens, board: &Checkerboard, pose: &Isometry3<f64>) -> Optio
     board.places_m().iter().map(|place_m| lens.project(&(pose.rotation * place_m + pose.translation.vector))).collect()
 }
 
-/// Returns whether all corners are in the image, with some margin for a window around them.
+/// Returns whether all corners are in the image, with a margin for a window around them.
 fn is_whole(lens: &Lens, board: &Checkerboard, pose: &Isometry3<f64>) -> bool {
     let [width, height] = lens.size_px.map(|side| side as f64);
     let inside = |at: &Vector2<f64>| (14.0..width - 14.0).contains(&at.x) && (14.0..height - 14.0).contains(&at.y);
@@ -144,13 +144,13 @@ fn noisy(rng: &mut Rng, lens: &Lens, poses: &[Isometry3<f64>], noise_px: f64) ->
     poses.iter().map(view).collect()
 }
 
-/// Maximum error of focal lengths and centre, relative to the focal length.
+/// Returns the maximum error of focal lengths and centre, relative to the focal length.
 fn error(found: &Lens, real: &Lens) -> f64 {
     let focal = (found.focal_px - real.focal_px).abs().max();
     focal.max((found.centre_px - real.centre_px).abs().max()) / real.focal_px.x
 }
 
-/// Maximum distance in the image between the positions of the same direction, px.
+/// Returns the maximum distance in the image between the positions of the same direction, px.
 fn bend_px(found: &Lens, real: &Lens) -> f64 {
     let at = |column: usize, row: usize| Vector2::new(column as f64 * 128.0, row as f64 * 120.0);
     let places = (0..=10).flat_map(|column| (0..=6).map(move |row| at(column, row)));

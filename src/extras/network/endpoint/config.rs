@@ -13,7 +13,7 @@ use crate::{
 pub enum EndpointRole {
     /// The end with the arm.
     Follower {
-        /// Its address; by default [`PORT`](super::PORT) of loopback, which other machines cannot reach.
+        /// Address; by default [`PORT`](super::PORT) of loopback, which other machines cannot reach.
         at: Option<SocketAddr>,
         /// The consoles that it admits; one that is paired later is admitted when the endpoint is reopened.
         consoles: Peers,
@@ -34,12 +34,12 @@ pub struct EndpointConfig {
     pub stream: StreamSettings,
     /// Time without a datagram after which the link is silent, s.
     pub silent_after_s: f64,
-    /// A follower removes a console that is silent for this long, s, and is then free for others.
+    /// A follower removes a console that has been silent for this long, s, and is then free for others.
     pub forget_after_s: f64,
 }
 
 impl EndpointConfig {
-    /// Makes the default settings.
+    /// Creates the default settings.
     pub fn new(role: EndpointRole, keys: NetworkKeys) -> Self {
         Self { role, keys, stream: StreamSettings::default(), silent_after_s: 0.1, forget_after_s: 5.0 }
     }
@@ -71,9 +71,9 @@ pub enum LinkState {
 /// Result of sending a payload.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SendOutcome {
-    /// It has been sent.
+    /// It was sent.
     Sent,
-    /// It goes with the next datagram: the rate limit leaves no room.
+    /// It is sent with the next datagram, because the rate limit leaves no room.
     Held,
     /// There is no other side, or another console has control of the follower.
     NotOpen,
@@ -81,18 +81,19 @@ pub enum SendOutcome {
     TooLong,
 }
 
-/// A console's share in the control of the follower.
+/// Role of a console in the control of the follower.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ControlRole {
     /// Not connected.
     None,
-    /// It has control of the follower.
+    /// The console has control of the follower.
     Holds,
-    /// It has control of the follower, and another console requests it: [`Endpoint::answer`](super::Endpoint::answer).
+    /// The console has control of the follower, and another console requests it:
+    /// [`Endpoint::answer`](super::Endpoint::answer).
     HoldsAsked,
     /// Another console, or none, has control.
     Waits,
-    /// It waits for an answer.
+    /// The console waits for an answer.
     Asks,
     /// The controlling console has refused. It may ask again.
     Denied,
@@ -107,6 +108,6 @@ pub(super) enum ControlRequest {
     Asks,
     /// Control of the follower, while the follower still reports the earlier denial.
     AsksAgain,
-    /// It was denied.
+    /// The request of the console was denied.
     Denied,
 }

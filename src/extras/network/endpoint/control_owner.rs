@@ -1,4 +1,4 @@
-//! Control of a follower: one console at a time, and another only with its consent.
+//! Control of a follower: one console at a time, and another console only with its consent.
 
 use super::{Endpoint, SESSIONS};
 use crate::control::{ControlState, FromFollower};
@@ -7,7 +7,8 @@ use crate::control::{ControlState, FromFollower};
 #[derive(Clone, Copy, Debug)]
 struct ControlQuestion {
     by: usize,
-    /// 1 to 3, so that an answer to the previous request is not mistaken for one to this request.
+    /// Number of the request, 1 to 3, so that an answer to the previous request is not mistaken for an answer to this
+    /// one.
     number: u8,
 }
 
@@ -42,7 +43,7 @@ impl Endpoint {
         }
     }
 
-    /// Processes a datagram of the console at this index at a follower.
+    /// Processes a datagram from the console at this index (follower only).
     pub(super) fn received_console(&mut self, at: usize) {
         let Some(session) = self.sessions[at].as_mut() else { return };
         let is_new = !session.is_confirmed;

@@ -32,7 +32,7 @@ const SESSIONS: usize = 16;
 /// Polling interval while active, and while idle.
 const BUSY: Duration = Duration::from_millis(1);
 const REST: Duration = Duration::from_millis(10);
-/// How long it stays active.
+/// Time for which it stays active.
 const BUSY_S: f64 = 1.0;
 
 #[derive(Clone, Copy, Debug)]
@@ -114,7 +114,7 @@ impl HandshakeThread {
         self.news.try_recv().ok()
     }
 
-    /// Takes a session that has ended, to free it; returns it if too many wait.
+    /// Takes a session that has ended, to free it; returns the session if too many are waiting.
     pub(super) fn free(&self, session: Box<NetworkSession>) -> Option<Box<NetworkSession>> {
         self.ended.try_send(session).err().map(crossbeam_channel::TrySendError::into_inner)
     }

@@ -69,18 +69,18 @@ pub struct Endpoint {
     socket: Socket,
     clerk: HandshakeThread,
     sessions: [Option<Box<NetworkSession>>; SESSIONS],
-    /// The session whose payloads count: at a follower, the controlling console's; at a console, the follower's.
+    /// The session whose payloads count: on a follower, the controlling console's; on a console, the follower's.
     active: Option<usize>,
-    /// For a follower.
+    /// Only on a follower.
     holding: OpenQuestion,
-    /// For a console: its request for control, and its answer to the request with a number.
+    /// On a console: its request for control, and its answer to the request with a number.
     wish: ControlRequest,
     answer: Option<(u8, bool)>,
     dropped: DroppedCounts,
     /// The caller's time of the last poll, s, and the system's at that moment.
     now_s: f64,
     looked: Duration,
-    /// Last reception in the active session, s; kept after it has ended.
+    /// Last reception in the active session, s; kept after the session has ended.
     received_s: Option<f64>,
     is_closed: bool,
     jumped: Option<(f64, f64)>,
@@ -239,7 +239,7 @@ impl Endpoint {
         self.session().map(|session| session.peer)
     }
 
-    /// Requests control of the follower until it is granted or refused. No consent is needed while no console has
+    /// Requests control of the follower until it is granted or refused. No consent is required while no console has
     /// control.
     pub fn ask_for_control(&mut self) {
         let is_stale = self.session().is_some_and(|session| session.from_follower.is_denied);
@@ -311,7 +311,7 @@ impl Drop for Endpoint {
     }
 }
 
-/// Returns the address to which a socket for datagrams to this address is bound: a local address is not reached through
+/// Returns the address to which a socket for datagrams to this address is bound; a local address is not reached through
 /// the network.
 pub(crate) fn towards(to: &SocketAddr) -> SocketAddr {
     match to {

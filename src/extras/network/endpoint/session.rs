@@ -15,7 +15,7 @@ pub(super) struct NetworkSession {
     pub(super) peer: PublicKey,
     /// Destination of its datagrams: the origin of the newest authentic one.
     pub(super) at: SocketAddr,
-    /// Its number here.
+    /// Number here.
     pub(super) ours: u32,
     /// When the loop adopted it, s.
     pub(super) opened_s: f64,

@@ -59,7 +59,7 @@ impl Endpoint {
         }
     }
 
-    /// Ends a session; its memory goes back to the thread.
+    /// Ends a session; its memory is returned to the thread.
     pub(super) fn end(&mut self, at: usize) {
         if self.active == Some(at) {
             self.active = None;

@@ -73,7 +73,7 @@ impl Time {
         self.begin.elapsed().as_secs_f64()
     }
 
-    /// Runs ticks until `done`, for at most five seconds; returns whether it was done, and after how long, s.
+    /// Runs ticks until `done`, for at most five seconds; returns whether it succeeded, and after how long, s.
     fn until(&self, ends: &mut [&mut End], done: impl Fn(&[&mut End]) -> bool) -> Option<f64> {
         let from_s = self.now_s();
         while self.now_s() - from_s < 5.0 {

@@ -35,7 +35,7 @@ struct Hosts {
 }
 
 impl Hosts {
-    /// `None` where it is not permitted.
+    /// Creates the hosts; `None` if this is not permitted.
     fn new() -> Option<Self> {
         let names = ["a", "b"].map(|end| format!("nima-{}-{end}", id()));
         let this = Self { names };

@@ -1,4 +1,4 @@
-//! Cookies: proof that a sender receives at its address, without storing anything about the sender.
+//! Cookies: proof that a sender receives at its address, without storing any state about the sender.
 
 use std::net::{IpAddr, SocketAddr};
 

@@ -34,7 +34,7 @@ const AGAIN_MAX_S: f64 = 1.0;
 pub(crate) struct AgreedKeys {
     pub(crate) keys: StatelessTransportState,
     pub(crate) peer: PublicKey,
-    /// Its number of the session, and ours.
+    /// Numbers of the session at the other side and here.
     pub(crate) theirs: u32,
     pub(crate) ours: u32,
 }
@@ -44,7 +44,7 @@ pub(crate) struct AgreedKeys {
 pub struct HandshakeResult {
     /// Length of the answer, bytes; 0 for none.
     pub answer: usize,
-    /// Why it was rejected.
+    /// Reason for the rejection.
     pub trouble: Option<HandshakeError>,
     pub(crate) agreed: Option<Box<AgreedKeys>>,
 }
@@ -54,7 +54,7 @@ pub struct HandshakeResult {
 pub enum HandshakeError {
     /// Truncated, or unexpected.
     Malformed,
-    /// Of another version; the sender has been informed.
+    /// The datagram has another version; the sender has been informed.
     ForeignVersion,
     /// Beyond the rate limits.
     Flooded,
@@ -69,7 +69,7 @@ impl HandshakeResult {
         Self { answer: 0, trouble: Some(trouble), agreed: None }
     }
 
-    /// Returns whether a session was made.
+    /// Returns whether a session was created.
     pub const fn is_agreed(&self) -> bool {
         self.agreed.is_some()
     }
@@ -126,7 +126,7 @@ impl Reception {
         })
     }
 
-    /// Number of addresses about which it stores anything.
+    /// Returns the number of addresses about which it stores anything.
     pub fn remembered(&self) -> usize {
         self.addresses.len()
     }
@@ -235,7 +235,7 @@ enum Waits {
     Response { noise: Box<HandshakeState>, ours: u32, sent: Box<[u8; HANDSHAKE_MAX]>, len: usize },
 }
 
-/// The console's side: repeats attempts until a session is made.
+/// The console's side: repeats attempts until a session is created.
 #[derive(Debug)]
 pub struct Approach {
     keys: NetworkKeys,

@@ -1,4 +1,4 @@
-//! Setting up a session: a cookie first, then a handshake of the Noise protocol with keys that both sides know.
+//! Set-up of a session: first a cookie, then a handshake of the Noise protocol with keys that both sides already have.
 //!
 //! 1. The console says hello; the follower answers with a cookie that it can check later without having stored
 //!    anything.
@@ -22,7 +22,7 @@ use crate::{
     wire::HANDSHAKE_MAX,
 };
 
-/// Makes both ends of a session between two fictitious machines, without a network.
+/// Creates both ends of a session between two fictitious machines, without a network.
 pub(crate) fn both_ends() -> Result<[AgreedKeys; 2], KeyError> {
     let console = NetworkKeys::random()?;
     let follower = NetworkKeys::random()?;

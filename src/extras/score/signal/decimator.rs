@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 
 use super::TipTrack;
 
-/// A longer step, s, is a gap: nothing is said about the motion in it.
+/// A longer step, s, is a gap in which the motion is unknown.
 pub(crate) const LONGEST_GAP_S: f64 = 0.1;
 
 /// Step of the evenly spaced samples that are filtered, s.
@@ -104,7 +104,8 @@ impl Decimator {
         self.next_point += EVERY;
     }
 
-    /// Returns an even sample by its index from the first one of the segment, also beyond its ends.
+    /// Returns an even sample by its index relative to the first one of the segment; the index may be beyond either
+    /// end.
     fn continued(&self, first: u64, last: u64, place: i64) -> Vector3<f64> {
         let end = (last - first).cast_signed();
         let at = |place: i64| self.window[(first + place.cast_unsigned()) as usize % TAPS];

@@ -38,7 +38,7 @@ fn continued(points: &[Vector3<f64>], place: isize) -> Option<Vector3<f64>> {
     })
 }
 
-/// Mean over time (trapezoid) of evenly spaced segments; `None` if they have no duration.
+/// Returns the mean over time (trapezoid) of evenly spaced segments; `None` if they have no duration.
 pub(crate) fn mean<'a>(stretches: impl Iterator<Item = &'a [f64]>) -> Option<f64> {
     let mut sum = 0.0;
     let mut steps = 0.0;

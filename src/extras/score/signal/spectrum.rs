@@ -21,7 +21,7 @@ fn reversed(number: usize, bits: u32) -> usize {
     if bits == 0 { 0 } else { number.reverse_bits() >> (usize::BITS - bits) }
 }
 
-/// Cooley and Tukey 1965, in place, from bit-reversed order.
+/// Transforms in place, from bit-reversed order (Cooley and Tukey 1965).
 fn transform(values: &mut [Complex<f64>]) {
     let length = values.len();
     let turn = |k: usize| {

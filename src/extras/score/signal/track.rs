@@ -25,7 +25,7 @@ struct TrackRun {
 }
 
 impl TipTrack {
-    /// Allocates memory for this many seconds, so that a trial of this length needs no more.
+    /// Allocates memory for this many seconds, so that a trial of this length does not allocate more.
     pub(super) fn with_room(seconds: f64) -> Self {
         Self { points: Vec::with_capacity((seconds * RATE_HZ) as usize + 1), runs: Vec::with_capacity(64) }
     }

@@ -59,7 +59,7 @@ fn event() -> impl Strategy<Value = TaskEvent> {
     })
 }
 
-/// Time to the next one, s: usually a normal step.
+/// Returns the time to the next one, s: usually a normal step.
 fn step() -> impl Strategy<Value = f64> {
     prop_oneof![12 => 0.0..0.02, 3 => 0.0..0.3, 1 => number()]
 }

@@ -6,7 +6,7 @@ use nima_core::Side;
 use super::{near, task, tip, trial, value};
 use crate::Score;
 
-/// Both hands move along x at 50 mm/s plus a sine of 30 mm/s, shifted by `phase` for the left one.
+/// Moves both hands along x at 50 mm/s plus a sine of 30 mm/s, shifted by `phase` for the left one.
 fn both(phase: f64) -> Score {
     let way = |t_s: f64, phase: f64| 0.05 * t_s - 0.03 / PI * (PI * t_s + phase).cos();
     let hands = |t_s: f64| [0.0, phase].map(|phase| Some(tip(Vector3::new(way(t_s, phase), 0.0, 0.0))));

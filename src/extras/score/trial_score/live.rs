@@ -71,12 +71,12 @@ impl LiveTrial {
         sample.hands[side.index()] = Some(hand);
     }
 
-    /// Returns whether the task is done, or its time is over: later ticks do not count.
+    /// Returns whether the task is complete or its time is over: later ticks do not count.
     pub fn is_over(&self) -> bool {
         self.ended || self.elapsed_s() > self.limit_s
     }
 
-    /// Time since the first tick in which an arm was engaged, s.
+    /// Returns the time since the first tick in which an arm was engaged, s.
     pub fn elapsed_s(&self) -> f64 {
         self.begun_s.map_or(0.0, |begun_s| self.newest_s - begun_s)
     }
@@ -102,8 +102,8 @@ mod tests {
         LiveTrial::new(&TaskFile::from_toml(&task).unwrap())
     }
 
-    /// Both sides for some ticks from `from` (ms) on; the right hand is engaged and moves by a tenth of a millimetre in
-    /// each.
+    /// Returns both sides for some ticks from `from` (ms) on; the right hand is engaged and moves by a tenth of a
+    /// millimetre in each.
     fn ticks(live: &mut LiveTrial, millis: std::ops::Range<u32>) {
         for millis in millis {
             let t_s = f64::from(millis) * 1e-3;

@@ -38,7 +38,7 @@ impl RunningTrial {
         &self.condition
     }
 
-    /// Path of its recording, if it is recorded. Encrypted when the trial is over.
+    /// Returns the path of its recording, if it is recorded. Encrypted when the trial is over.
     pub fn session(&self) -> Option<&Path> {
         self.session.as_deref()
     }

@@ -40,7 +40,7 @@ pub struct UserStudy {
     /// The exact text that was committed to.
     secret_text: String,
     secret: Assignment,
-    /// `None` if it was opened for reading only.
+    /// `None` if the study was opened for reading only.
     journal: Option<StudyJournal>,
     state: StudyState,
 }
@@ -138,7 +138,7 @@ impl UserStudy {
         &self.scene
     }
 
-    /// Its current state.
+    /// Returns its current state.
     pub const fn state(&self) -> &StudyState {
         &self.state
     }

@@ -19,7 +19,7 @@ use crate::{StudyFile, StudyStep, TrialEnding, UserStudy};
 
 pub(super) const AT: &str = "2026-01-01T09:00:00Z";
 
-/// Two conditions whose words and numbers occur nowhere else.
+/// Two conditions whose names and numbers occur nowhere else.
 pub(super) const TWO: &str = "
 name = 'Touching'
 scene = 'rings'
@@ -81,7 +81,7 @@ pub(super) fn next(study: &UserStudy, participant: &str) -> String {
     study.next(participant).unwrap().to_string()
 }
 
-/// Number and attempt of the next trial.
+/// Returns the number and attempt of the next trial.
 pub(super) fn due(study: &UserStudy, participant: &str) -> (u32, u32) {
     match study.next(participant).unwrap() {
         StudyStep::Trial { number, attempt, .. } | StudyStep::Practice { number, attempt } => (number, attempt),

@@ -2,8 +2,8 @@ use std::collections::BTreeMap;
 
 use crate::order::{assignment, orders, williams};
 
-/// In each row each condition once, in each position each condition equally often, each ordered pair of neighbours
-/// equally often.
+/// Checks that each condition occurs once in each row and equally often in each position, and that each ordered pair of
+/// neighbours occurs equally often.
 #[test]
 fn a_design_is_balanced_for_place_and_for_carry_over() {
     for n in 2..=10 {

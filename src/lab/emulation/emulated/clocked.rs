@@ -23,7 +23,7 @@ pub enum Wiring {
 
 /// Clock of an external device when the world begins, s.
 const BEGAN_S: f64 = 1234.5;
-/// Period of an external sensor, s, and its start relative to the loop.
+/// Period of an external sensor, s, and its offset relative to the loop.
 const SENSOR_S: f64 = 2e-3;
 const SENSOR_FROM_S: f64 = 0.3e-3;
 
@@ -48,7 +48,7 @@ pub struct ClockedSide {
 }
 
 impl ClockedSide {
-    /// Makes the devices of this side of the rig, in this scene.
+    /// Creates the devices of this side of the rig, in this scene.
     ///
     /// # Errors
     /// [`EmulatedRigError`] if the rig has no such arm, or arm, trocar and scene do not fit together.

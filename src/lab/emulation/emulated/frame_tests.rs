@@ -108,7 +108,7 @@ impl Fixture {
     }
 }
 
-/// Calibrates tip, hand-eye and trocar at this arm and compares them with the truth.
+/// Calibrates tip, hand-eye and trocar on this arm and compares them with the true values.
 fn instrument(side: Side) {
     let mut bench = Fixture::new(side, None);
     let tip = bench.run(TipSettings::by_arm(), PersonTask::Tip, 150.0, |_| Prompt::PivotInDimple);
@@ -138,7 +138,7 @@ fn instrument(side: Side) {
 }
 
 impl Fixture {
-    /// Distance between the tracker's and the true position of the tip, in the current pose of the arm.
+    /// Returns the distance between the tracker's and the true position of the tip, in the current pose of the arm.
     fn hand_eye_misses(&mut self, flange_from_m: &Isometry3<f64>, base_from_c: &Isometry3<f64>) -> [f64; 2] {
         let truth = self.world.truth(self.t_s);
         let base = self.arm.world_from_base().inverse();

@@ -19,13 +19,14 @@ const DAMPING: f64 = 1e-4;
 const KEEP_OFF_RAD: f64 = 0.1;
 /// Fraction of the distance to the comfortable pose covered in one second.
 const COMFORT_PER_S: f64 = 0.5;
-/// The search: number of random starts, steps from each, maximum step, rad, and the miss at which it ends, m.
+/// Parameters of the search: number of random starts, steps from each, maximum step, rad, and the error at which it
+/// ends, m.
 const STARTS: usize = 40;
 const STEPS: usize = 150;
 const LONGEST_RAD: f64 = 0.25;
 const CLOSE_M: f64 = 1e-5;
 
-/// The way in which a person holds the tool.
+/// Way in which a person holds the tool.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum ToolHold {
     /// Gravity acts in this direction of the sensor (unit, `s1`); the position of the tool does not matter.
@@ -63,7 +64,7 @@ impl Guide {
         miss_m
     }
 
-    /// Returns the joint angles for this hold that are closest to `from_rad`; `None` if the arm cannot take it.
+    /// Returns the joint angles for this hold that are closest to `from_rad`; `None` if the arm cannot reach it.
     pub(super) fn find(&self, from_rad: &Joints, hold: &ToolHold) -> Option<Joints> {
         let mut noise = Noise::new(0x6a_1d);
         let mut random = || Joints::from_fn(|joint, _| (2.0 * noise.uniform() - 1.0) * LIMIT_RAD[joint].min(PI));
@@ -72,7 +73,7 @@ impl Guide {
         found.min_by(|a, b| (a - from_rad).amax().total_cmp(&(b - from_rad).amax()))
     }
 
-    /// Returns whether the arm can move to this hold from here without taking another pose first.
+    /// Returns whether the arm can move to this hold from its current pose without taking another pose first.
     pub(super) fn reaches(&self, from_rad: &Joints, hold: &ToolHold) -> bool {
         self.converged(*from_rad, hold).is_some()
     }
@@ -163,8 +164,8 @@ fn solve(rows: &GuidingRows, miss: &GuidingMiss, relaxed: &Joints, free: [bool; 
     square.cholesky().map_or_else(Joints::zeros, |c| relaxed + rows.transpose() * c.solve(&(miss - rows * relaxed)))
 }
 
-/// Rotation vector, rad, that rotates one unit vector into another; for opposite ones, half a turn about a horizontal
-/// axis.
+/// Returns the rotation vector, rad, that rotates one unit vector into another; for opposite vectors, half a turn about
+/// a horizontal axis.
 fn rotation(from: &Vector3<f64>, to: &Vector3<f64>) -> Vector3<f64> {
     let axis = from.cross(to);
     let cos = from.dot(to);

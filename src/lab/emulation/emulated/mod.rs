@@ -115,9 +115,9 @@ pub enum EmulatedRigError {
 /// An emulated device.
 #[derive(Debug)]
 pub struct EmulatedDevice {
-    /// Its name in the rig, such as `right sensor`.
+    /// Name of the device in the rig, such as `right sensor`.
     pub name: String,
-    /// Its endpoint and its faults.
+    /// Endpoint of the device, and its faults.
     pub serving: EmulatorThread,
 }
 
@@ -135,7 +135,7 @@ impl SharedWorld {
     }
 }
 
-/// All devices of a rig, emulated. Dropping it stops them all.
+/// All devices of a rig, emulated. Dropping it stops all of them.
 pub struct EmulatedRig {
     devices: Vec<EmulatedDevice>,
     sides: [Option<SharedWorld>; SIDES],
@@ -158,7 +158,7 @@ pub struct GroundTruth {
 }
 
 impl GroundTruth {
-    /// Returns the current true state of a side; `None` if the rig does not have it.
+    /// Returns the true current state of a side; `None` if the rig does not have that side.
     pub fn truth(&self, side: Side) -> Option<Truth> {
         self.sides[side.index()].as_ref().map(|shared| shared.with(SideWorld::truth))
     }
@@ -212,8 +212,8 @@ impl EmulatedRig {
         &self.devices
     }
 
-    /// Sets the fault of a device by its name, with blanks or dashes (`right-sensor`); false if there is no such
-    /// device.
+    /// Sets the fault of a device by its name, with spaces or dashes (`right-sensor`); returns false if there is no
+    /// such device.
     pub fn set_fault(&self, name: &str, fault: EmulatedFault) -> bool {
         let plain = name.replace('-', " ");
         let device = self.devices.iter().find(|device| device.name == plain);
@@ -247,7 +247,8 @@ impl EmulatedRig {
 
 type EmulationSides = [Option<SideWorld>; SIDES];
 
-/// Makes the worlds and searches for both arms' poses in parallel: each takes some hundred milliseconds.
+/// Creates the worlds and searches for the poses of both arms in parallel, because each search takes some hundred
+/// milliseconds.
 fn sides(devices: &RigSettings, scene: &Scene, hands: &[HandFrame; SIDES]) -> Result<EmulationSides, EmulatedRigError> {
     if Side::ALL.iter().all(|side| devices.arm(*side).is_none()) {
         return Err(EmulatedRigError::NoArm);

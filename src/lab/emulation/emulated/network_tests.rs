@@ -13,14 +13,15 @@ use nima_simulation::screen::PersonTask;
 
 use super::tests::{FLAWS, Fitted, Fixture, fitted, live};
 
-/// Rows required by the wizard, and rows of its check: in contact, then without.
+/// Rows required by the wizard, and rows of its check: with contact, then without.
 const ROWS: usize = 16_000;
 const CHECK: [usize; 2] = [5000, 2000];
-/// After this many rows in contact there are this many without.
+/// Number of rows with contact, and number of rows without contact that follow them.
 const SPELL: [usize; 2] = [3000, 900];
 const TICKS_MAX: usize = 300_000;
 
-/// Records until there are this many rows; `is_free` returns whether the technician is asked to avoid contact in a row.
+/// Records until there are this many rows; `is_free` returns whether the technician is instructed to avoid contact in a
+/// row.
 fn recorded(
     bench: &mut Fixture,
     fitted: &Fitted,

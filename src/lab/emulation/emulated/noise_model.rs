@@ -27,7 +27,7 @@ impl FlawedSide {
         Self { flaws, reported_rad: joint_rad, seen: VecDeque::new() }
     }
 
-    /// Returns the encoders' readings of these angles, rad: they follow once the play is used up.
+    /// Returns the encoder readings for these angles, rad: they follow once the play is used up.
     pub(super) fn encoders(&mut self, joint_rad: &[f64; ARM_JOINTS]) -> [f64; ARM_JOINTS] {
         let play_rad = 0.5 * self.flaws.backlash_deg.to_radians();
         for (report, rad) in self.reported_rad.iter_mut().zip(joint_rad) {

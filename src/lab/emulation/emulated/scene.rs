@@ -1,6 +1,6 @@
 //! Adapts a scene to one side of an emulated rig: the rig determines the equipment between arm and tissue.
 //!
-//! With `sensor_at = "tip"` a sensor measures only the tissue, whatever the scene has at the wrist. With `"wrist"` a
+//! With `sensor_at = "tip"`, a sensor measures only the tissue, whatever the scene has at the wrist. With `"wrist"` a
 //! scene without a wrist gets the paper's: sensor, tool, trocar with friction, and the sensor under the tissue, as in
 //! the scene `isolation`. No two sensors are alike: the left one has its own bias, gains and accelerometer.
 

@@ -1,4 +1,4 @@
-//! Starts the emulators, each fed by the world of its side.
+//! Starts the emulators, each with the world of its side as data source.
 
 use std::{
     net::{Ipv4Addr, SocketAddrV4},
@@ -203,7 +203,7 @@ fn tracker(
     served(name, emulator)
 }
 
-/// Returns the emulated unit accepts any tool definition; if the rig names a missing file, this creates it.
+/// Creates a tool definition if the rig names a missing file; the emulated unit accepts any definition.
 fn define(path: &Path) -> std::io::Result<()> {
     if path.exists() {
         return Ok(());

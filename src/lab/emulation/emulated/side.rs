@@ -22,7 +22,7 @@ use crate::emulators::{
 
 /// One step of the world, s.
 const STEP_S: f64 = 1e-3;
-/// Maximum number of steps made up after a pause of the whole process; earlier time is skipped.
+/// Maximum number of steps executed after a pause of the whole process; earlier time is skipped.
 const CATCH_UP_STEPS: u64 = 100;
 /// Natural rotation of the handle, rad, and its speed, rad/s: no hand is perfectly still.
 const HANDLE_WAVE: (f64, f64) = (0.05, 0.9);
@@ -36,7 +36,7 @@ const SENSOR_C: f64 = 31.0;
 pub struct Truth {
     /// Position of the tip, m.
     pub tip_m: Vector3<f64>,
-    /// Force of the tissue on it, N.
+    /// Force of the tissue on the tip, N.
     pub tip_n: Vector3<f64>,
     /// Position of the hand, m.
     pub hand_m: Vector3<f64>,
@@ -62,7 +62,7 @@ fn world_from_view(hand: &HandFrame) -> UnitQuaternion<f64> {
 pub(super) struct SideWorld {
     world: World,
     arm: Arm,
-    /// Natural angular frequency of the joints; `None` if they are always at their command.
+    /// Natural angular frequency of the joints; `None` if they are always at their commanded angles.
     omega: Option<f64>,
     body: BodyState,
     asked: BodyCommand,
@@ -79,9 +79,9 @@ pub(super) struct SideWorld {
     /// Position of the hand, as measured by its handle.
     hand_m: Vector3<f64>,
     sensed: SensedForce,
-    /// Number of due steps, by the common clock, that were made or skipped.
+    /// Number of due steps, by the common clock, that were executed or skipped.
     reached: u64,
-    /// Steps made.
+    /// Number of executed steps.
     made: u64,
 }
 
@@ -142,7 +142,7 @@ impl SideWorld {
         BodyState { joint_rad: self.flawed.encoders(&self.body.joint_rad), ..self.body }
     }
 
-    /// Sets the output of the handle's motors from now on; returns the handle's pose in its own frame.
+    /// Sets the output of the handle's motors from now on; returns the pose of the handle in its own frame.
     pub(super) fn hold(&mut self, now_s: f64, applied: &MotorOutput) -> HandState {
         self.advance(now_s);
         self.applied = *applied;

@@ -87,8 +87,8 @@ mod tests {
         });
     }
 
-    /// A manufacturer's library that is loaded later calls its own functions by these names. If the program exported
-    /// the stub's functions, the library would call those instead.
+    /// A manufacturer's library that is loaded later calls its own functions by name. If the program exported functions
+    /// of the same names, the library would call those instead.
     #[test]
     #[cfg(unix)]
     #[expect(unsafe_code, reason = "looking a symbol up")]

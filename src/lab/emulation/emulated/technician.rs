@@ -17,12 +17,12 @@ use nima_simulation::{
 
 use super::guiding::{Guide, ToolHold, nearest_turn};
 
-/// The shaft is in the trocar if its axis passes the trocar within this distance, m.
+/// The shaft counts as in the trocar if its axis passes the trocar within this distance, m.
 const IN_TROCAR_M: f64 = 1e-3;
-/// Carrying the arm: seconds per radian of the joint that rotates most, and the minimum.
+/// Time for carrying the arm: seconds per radian of the joint that rotates most, and the minimum.
 const CARRY_S_PER_RAD: f64 = 1.7;
 const CARRY_MIN_S: f64 = 0.8;
-/// A hold that is missed by this much, m at the tip's lever, ...
+/// If a hold is missed by this much, m at the tip's lever, ...
 const STUCK_M: f64 = 0.03;
 /// ... for this long, s, cannot be reached by rotating further: the arm must take another pose.
 const STUCK_S: f64 = 1.0;
@@ -51,7 +51,7 @@ pub(super) struct SideTechnician {
 
 #[derive(Clone, Debug)]
 enum TechnicianActivity {
-    /// Not at this arm, which is where it was left.
+    /// Not at this arm, which stays where it was left.
     Away,
     /// Called, about to take hold of the arm.
     Called,
@@ -191,7 +191,7 @@ impl SideTechnician {
         pose.insertion_m(trocar_m) > 0.0 && pose.axis_miss_m(trocar_m).norm() < IN_TROCAR_M
     }
 
-    /// Returns a person who begins this task at an arm with these angles, rad.
+    /// Returns a person who starts this task at an arm with these angles, rad.
     fn person(&mut self, joint_rad: &Joints) -> Person {
         self.visits += 1;
         let mut scene = self.scene.clone();

@@ -314,7 +314,7 @@ pub(super) const FLAWS: [(&str, Flaws); 10] = {
 /// A rig with flaws after gravity and correspondence.
 pub(super) struct Fitted {
     pub(super) gravity: GravityModel,
-    /// `None` unless it was accepted.
+    /// Report of the correspondence; `None` unless it was accepted.
     pub(super) correspondence: Option<Correspondence>,
     reported: CalibrationReport,
 }

@@ -31,7 +31,7 @@ pub(super) struct CameraMount {
 }
 
 impl CameraMount {
-    /// Makes the camera for a scene adapted to its side.
+    /// Creates the camera for a scene adapted to its side.
     pub(super) fn new(scene: &Scene, set: &ArmSet) -> Self {
         let camera_deg = scene.tissue_sensor.map_or(CAMERA_DEG, |sensor| sensor.world_from_c_deg);
         let marker_deg = set.s1_from_m_deg.unwrap_or_else(Vector3::zeros);

@@ -84,7 +84,8 @@ mod terminal {
 
     use super::{foreign, path_of, served};
 
-    /// A program that this process starts inherits the lock until it is loaded, even if the emulator has just ended.
+    /// A program started by this process inherits the lock until it has been loaded, even if the emulator has just
+    /// ended.
     const INHERITED: Duration = Duration::from_millis(500);
     /// Folder of the system's pseudo-terminals: only links into it are replaced.
     const TERMINALS: &str = "/dev/pts/";
@@ -94,9 +95,9 @@ mod terminal {
     #[derive(Debug)]
     pub(in crate::emulators) struct TerminalName {
         path: PathBuf,
-        /// Locked by this process: the system unlocks it when the process ends, however it ends.
+        /// Lock of this process: the system releases it when the process ends for any reason.
         _claim: File,
-        /// Its own folder, if no path was requested.
+        /// Temporary folder, if no path was requested.
         _folder: Option<tempfile::TempDir>,
     }
 

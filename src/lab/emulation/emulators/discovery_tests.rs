@@ -1,4 +1,4 @@
-//! Provokes every cause that can be provoked here; `diagnose` reports each with its own remedy.
+//! Tests every cause that can be provoked here; `diagnose` reports each with its own remedy.
 
 use std::{
     collections::BTreeSet,
@@ -299,7 +299,7 @@ fn settings_of_a_serial_probe_are_checked() {
     assert!(trouble.cure().contains("spacemouse") && trouble.cure().contains("serial=PORT@BAUD"));
 }
 
-/// Root may open everything. On Linux this thread, and those that it starts, then lose this right.
+/// Root may open every file. On Linux, this thread and the threads that it starts then lose this privilege.
 #[cfg(unix)]
 #[cfg_attr(target_os = "linux", expect(unsafe_code, reason = "std sets rights of whole processes only"))]
 fn without_roots_rights<T>(action: impl FnOnce() -> T) -> T {

@@ -21,7 +21,7 @@ pub enum EmulatedFault {
     Loss,
     /// All data are sent 50 ms late.
     Delay,
-    /// The same reading is repeated, and the device's clock stands still.
+    /// The same reading is repeated, and the device's clock is stopped.
     Freeze,
     /// Nothing is sent; the connection stays open.
     Silence,
@@ -33,7 +33,7 @@ pub enum EmulatedFault {
     WrongFrame,
     /// Neighbouring frames are swapped.
     Reorder,
-    /// The connection is closed; it reopens when the fault is removed.
+    /// The connection is closed; it is reopened when the fault is removed.
     Disconnect,
     /// The device's own fault bits are set.
     DeviceFault,
@@ -83,7 +83,7 @@ impl EmulatedFault {
     /// Faults of a force sensor whose connection and clock are intact.
     pub const OF_SENSORS: [Self; 4] = [Self::Repeat, Self::Block, Self::EndOfRange, Self::Jump];
 
-    /// Its name on the command line.
+    /// Returns its name on the command line.
     pub const fn name(self) -> &'static str {
         match self {
             Self::None => "none",
@@ -157,7 +157,7 @@ impl Default for FaultyLine {
 }
 
 impl FaultyLine {
-    /// Processes a frame made at `now_s`; `send` gets the frames to be sent now, in order.
+    /// Processes a frame created at `now_s`; `send` gets the frames to be sent now, in order.
     pub(super) fn pass(
         &mut self,
         now_s: f64,

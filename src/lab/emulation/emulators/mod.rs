@@ -1,10 +1,10 @@
 //! An emulator for every device, on its real interface.
 //!
-//! An [`Emulator`] is the behaviour of a device without I/O: it receives the time, the clients' data and the active
-//! fault, and returns the data to send. A simulated world or a test provides the values to be measured. `serve` is
-//! common to all of them: a thread with the connections, which ends when its [`EmulatorThread`] is dropped. Faults can be set
-//! at any time; transmission faults are applied by `serve`, and faults of the content (checksum, status bits, numbers)
-//! by the emulator itself.
+//! An [`Emulator`] implements the behaviour of a device without I/O: it receives the time, the clients' data and the
+//! active fault, and returns the data to send. A simulated world or a test provides the values to be measured. `serve`
+//! is common to all of them: a thread with the connections, which ends when its [`EmulatorThread`] is dropped. Faults
+//! can be set at any time; transmission faults are applied by `serve`, and faults of the content (checksum, status
+//! bits, numbers) by the emulator itself.
 
 mod addresses;
 pub mod bota;
@@ -55,18 +55,18 @@ pub trait Emulator: Send {
     /// Called when a client connected, or opened the serial port.
     fn meet(&mut self, _: WirePeer, _: &mut EmulatorTurn<'_>) {}
 
-    /// Called with data of a client; empty at first if it has only connected.
+    /// Called with data from a client; empty at first if the client has only connected.
     fn receive(&mut self, from: WirePeer, bytes: &[u8], turn: &mut EmulatorTurn<'_>);
 
-    /// Called when time has passed, at most 5 ms and not beyond [`due_s`](Self::due_s); also while the connection is
-    /// cut.
+    /// Called when time has passed, at most every 5 ms and not later than [`due_s`](Self::due_s); also while the
+    /// connection is cut.
     fn pass(&mut self, turn: &mut EmulatorTurn<'_>);
 
-    /// Returns when it next has something to send or to do, s; `None` if it can wait for two milliseconds.
+    /// Returns when the device next has something to send or to do, s; `None` if it can wait for two milliseconds.
     fn due_s(&self) -> Option<f64> {
         None
     }
 
-    /// Called when a client is gone; [`WirePeer::Everyone`] when the connection was cut.
+    /// Called when a client is gone; with [`WirePeer::Everyone`] when the connection was cut.
     fn lose(&mut self, _: WirePeer) {}
 }

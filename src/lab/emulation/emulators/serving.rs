@@ -29,7 +29,7 @@ const BUFFER_BYTES: usize = 65_507;
 /// A thread that serves an emulated device. Dropping it stops the thread.
 #[derive(Debug)]
 pub struct EmulatorThread {
-    /// Where clients find it: a port, an address, a path.
+    /// Address for clients: a port, an address, or a path.
     pub endpoint: String,
     pub faults: FaultSwitch,
     stop: Arc<AtomicBool>,
@@ -71,9 +71,9 @@ impl dyn Emulator {
     }
 }
 
-/// The arguments of an emulator's call, and its output.
+/// Arguments of an emulator's call, and its output.
 pub struct EmulatorTurn<'a> {
-    /// s since it began to serve.
+    /// Time since the emulator was started, s.
     pub now_s: f64,
     /// The active fault.
     pub fault: EmulatedFault,

@@ -38,7 +38,7 @@ impl EmulatorSettings {
         Ok(self.get(key)?.unwrap_or(usual))
     }
 
-    /// Returns one of two models by its name; by default the first.
+    /// Returns one of two models by name; the first by default.
     #[cfg(target_os = "linux")]
     pub(super) fn model<T: Default>(&self, names: [(&str, T); 2]) -> Result<T> {
         let Some(name) = self.get::<String>("model")? else { return Ok(T::default()) };

@@ -1,4 +1,4 @@
-//! The `drd` symbols that are implemented. Regulation is not emulated: nothing here ever moves the handle by itself.
+//! The implemented `drd` symbols. Regulation is not emulated: nothing here moves the handle on its own.
 
 use std::ffi::{c_char, c_int};
 
@@ -29,13 +29,13 @@ pub extern "C" fn drdGetDeviceID() -> c_int {
     dhd::dhdGetDeviceID()
 }
 
-/// An omega.7 is initialised as soon as it is on.
+/// Returns success: an omega.7 is initialised as soon as it is on.
 #[unsafe(no_mangle)]
 pub extern "C" fn drdIsInitialized(id: c_char) -> bool {
     dhd::dhdHasBase(id)
 }
 
-/// Error 22 would be "regulation is not running", which it never is here.
+/// Fails with error 22, "regulation is not running", because it never runs here.
 #[unsafe(no_mangle)]
 pub extern "C" fn drdWaitForTick(_id: c_char) {
     refused();

@@ -15,7 +15,7 @@ use crate::{
 
 /// Maximum number of open devices.
 const HANDLES: usize = 16;
-/// An exchange without an answer fails after this time. An emulator shares its processor with other programs.
+/// An exchange without an answer fails after this time, because an emulator shares its processor with other programs.
 const EXCHANGE: Duration = Duration::from_millis(2);
 /// Interval between two checks for an answer.
 const LOOK: Duration = Duration::from_micros(30);
@@ -57,7 +57,7 @@ fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Adds a device at an address given by the program; false if it is not an address.
+/// Adds a device at an address given by the program; returns false if it is not an address.
 pub(crate) fn report(address: &str) -> bool {
     let Ok(address) = address.trim().parse() else { return false };
     let mut registry = locked(&REGISTRY);
@@ -188,7 +188,7 @@ impl StandInHandle {
         Ok(if self.reply.flags & SATURATED == 0 { 0 } else { MOTOR_SATURATED })
     }
 
-    /// Calls per millisecond that set a force; 0 before it is known and after they end.
+    /// Returns the number of calls per millisecond that set a force; 0 before it is known and after they end.
     pub(crate) fn com_khz(&self) -> f64 {
         if self.rate.0.elapsed() > Duration::from_secs(1) { 0.0 } else { self.rate.2 }
     }
@@ -201,7 +201,7 @@ fn index(id: c_char) -> Option<usize> {
 /// The default device. C's char is signed on some processors only.
 pub(crate) const DEFAULT: c_char = c_char::from_ne_bytes([0xff]);
 
-/// Calls `work` with an open device; error 5 if there is none.
+/// Calls `work` with an open device; returns error 5 if there is none.
 pub(crate) fn with<T>(id: c_char, work: impl FnOnce(&mut StandInHandle) -> Result<T, c_int>) -> Result<T, c_int> {
     let place = index(id).and_then(|index| OPEN.get(index)).ok_or(NO_DEVICE)?;
     work(locked(place).as_mut().ok_or(NO_DEVICE)?)
@@ -217,7 +217,7 @@ pub(crate) const fn is_taken(reply: &DeviceReply) -> bool {
     reply.flags & TAKEN != 0
 }
 
-/// Opens the first free device that fits; returns its number.
+/// Opens the first free device that matches; returns its number.
 pub(crate) fn open(fits: impl Fn(usize, &DeviceReply) -> bool) -> Result<c_int, c_int> {
     let mut error = NO_DEVICE;
     for (number, address) in addresses().into_iter().enumerate() {

@@ -52,8 +52,8 @@ impl ReadingHistory {
     }
 }
 
-/// Angles of the emulated wrist, rad: its frame is a rotation about z, then y, then x of the device (`Rx(a) Ry(b)
-/// Rz(g)`).
+/// Returns the angles of the emulated wrist, rad: its frame is a rotation about z, then y, then x of the device (`Rx(a)
+/// Ry(b) Rz(g)`).
 pub(crate) fn wrist_rad(frame: &[f64; 9]) -> [f64; 3] {
     [(-frame[5]).atan2(frame[8]), frame[2].clamp(-1.0, 1.0).asin(), (-frame[1]).atan2(frame[0])]
 }

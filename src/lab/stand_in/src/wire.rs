@@ -35,7 +35,7 @@ pub enum ClientOrder {
     Brakes,
     /// Argument: 125 us steps without a force command until the device switches off; 0 is never.
     Watchdog,
-    /// Argument: speed at which force is cut, mm/s here (the real unit is the device's own); 0 is never.
+    /// Argument: speed at which the force is cut, mm/s here (the real unit is specific to the device); 0 means never.
     VelocityThreshold,
     /// Argument 1: the gripper counts as a button when closed.
     Button,
@@ -96,7 +96,7 @@ impl DeviceRequest {
 
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct DeviceReply {
-    /// From the request.
+    /// Client of the request.
     pub client: u64,
     /// From the request.
     pub sequence: u32,
@@ -126,7 +126,7 @@ pub struct DeviceReply {
 pub const FRESH: u32 = 1;
 /// [`DeviceReply::flags`]: the motors were saturated.
 pub const SATURATED: u32 = 2;
-/// [`DeviceReply::flags`]: another program has it open.
+/// Flag in [`DeviceReply::flags`]: another program has the device open.
 pub const TAKEN: u32 = 4;
 
 impl DeviceReply {

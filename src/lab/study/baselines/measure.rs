@@ -6,7 +6,7 @@ use nima_core::impedance::{Identifier, ImpedanceSettings, Mode, ModeSet};
 use super::{BaselineRow, BaselinesError, OWN, Split, modes};
 use crate::tradeoff::TradeoffSource;
 
-/// Measures every mode on this source at this delay.
+/// Returns the measures every mode on this source at this delay.
 pub(super) fn measure(
     source: &TradeoffSource,
     split: Split,

@@ -22,7 +22,8 @@ pub use statistics::MeanInterval;
 
 use crate::{Experiment, tradeoff::TradeoffSource};
 
-/// Prefixes of the recordings on which constants were chosen, both of the program's own modes and of the baselines.
+/// Prefixes of the names of recordings that were used to choose constants, both of the program's own modes and of the
+/// baselines.
 pub const CHOSEN_ON: [&str; 2] = ["m1_question1a_", "m1_question1b_"];
 
 /// The modes of the table, the best known last.
@@ -40,10 +41,10 @@ pub enum Split {
 }
 
 impl Split {
-    /// All parts, the most conclusive first.
+    /// All parts, most conclusive first.
     pub const ALL: [Self; 3] = [Self::HeldOut, Self::ChosenOn, Self::Scene];
 
-    /// Returns the part of a recording with this name (its file name without the ending).
+    /// Returns the part to which a recording with this name (its file name without the ending) belongs.
     pub fn of_recording(name: &str) -> Self {
         if CHOSEN_ON.iter().any(|chosen| name.starts_with(chosen)) { Self::ChosenOn } else { Self::HeldOut }
     }
@@ -84,7 +85,7 @@ pub struct BaselineRow {
     pub mode: Mode,
     /// Mean prediction error at the horizon, in the unit of the source.
     pub error: f64,
-    /// The same of delayed reflection.
+    /// The same for delayed reflection.
     pub held_error: f64,
     /// `error / held_error`.
     pub ratio: f64,

@@ -58,7 +58,7 @@ impl BaselineReport {
         names
     }
 
-    /// Returns every source alone.
+    /// Returns each source separately, as CSV.
     fn csv(&self) -> String {
         let mut text = "source,split,delay_ms,mode,error,held_error,ratio\n".to_owned();
         for BaselineRow { source, split, delay_ms, mode, error, held_error, ratio } in &self.rows {

@@ -1,5 +1,5 @@
-//! Corrupted calibrations and networks: in files, which loading must refuse, and in memory, where the loop must detect
-//! them.
+//! Corrupted calibrations and networks: in files, which must be rejected when loaded, and in memory, where the loop
+//! must detect them.
 
 use std::{fs, path::Path, sync::atomic::AtomicBool, time::SystemTime};
 

@@ -282,7 +282,7 @@ impl FaultBench {
         }
     }
 
-    /// Force that the machine commands now, N.
+    /// Returns the force that the machine commands now, N.
     pub(super) fn wanted_n(&self) -> Vector3<f64> {
         self.outputs[FAULTY].hand_force_n
     }
@@ -292,7 +292,7 @@ impl FaultBench {
     }
 }
 
-/// Difference between the force given to the loop and the measured one, N.
+/// Returns the difference between the force given to the loop and the measured one, N.
 fn force_apart_n(given: Option<&Inputs>, truth: Option<&Inputs>) -> f64 {
     let apart = |(given, truth): (&Inputs, &Inputs)| (force_of(&given.sensed) - force_of(&truth.sensed)).norm();
     given.zip(truth).map_or(0.0, apart)
@@ -318,7 +318,7 @@ fn differs(given: Option<&Inputs>, truth: Option<&Inputs>) -> bool {
     !near || turned || given.switches != truth.switches || given.powered != truth.powered || given.age_s > truth.age_s
 }
 
-/// Returns whether the rig's outputs differ from what the loop commanded.
+/// Returns whether the rig's outputs differ from the loop's commands.
 fn altered(wanted: &Outputs, applied: &Outputs) -> bool {
     let apart_m = match (wanted.tip_command_m, applied.tip_command_m) {
         (Some(wanted), Some(applied)) => (wanted - applied).norm(),

@@ -20,17 +20,17 @@ const LATER: u32 = 200;
 /// Ticks for which a machine is observed after it has latched.
 const AFTER_LATCH: u32 = 100;
 
-/// A state that differs from the twin's for this many ticks counts as reported.
+/// A state that differs from the twin's state for this many ticks counts as reported.
 const APART: u32 = 5;
-/// A fault that has been invisible for this many ticks counts as starting again when it becomes visible.
+/// If a fault has been invisible for this many ticks, it counts as new when it becomes visible.
 const PAUSE: u32 = 20;
-/// A force is compared with the twin's forces up to this many ticks earlier and later, because the age gate accepts
-/// data that are 5 ms late.
+/// A force is compared with the twin's forces up to this many ticks before and after, because the age gate accepts data
+/// that are 5 ms late.
 const SHIFT: usize = 5;
 
-/// The healthy machine predicts over a delay and so has an error too. A machine counts as no worse if its mean error,
-/// compared with the force at the tip, exceeds its twin's by no more than this, N, and its largest error by no more
-/// than [`HARMLESS_N`].
+/// The healthy machine predicts over a delay and therefore also has an error. A machine counts as no worse if its mean
+/// error, compared with the force at the tip, exceeds its twin's by no more than this, N, and its largest error by no
+/// more than [`HARMLESS_N`].
 const MEAN_N: f64 = 0.02;
 
 /// Errors relative to the current force at the tip, N.
@@ -92,7 +92,7 @@ struct CaseWatch {
     apart: u32,
 }
 
-/// Applies the fault on a bench that has been prepared for it.
+/// Applies the fault on a bench prepared for it.
 pub(super) fn tried(
     mut bench: FaultBench,
     kind: FaultKind,
@@ -241,7 +241,7 @@ impl CaseWatch {
     }
 }
 
-/// Returns what the machine reports in this tick and its twin does not.
+/// Returns the report of the machine in this tick, if its twin does not report the same.
 fn report(step: &BenchStep) -> Option<String> {
     let machine = &step.machine;
     let twin = &step.twin;

@@ -186,8 +186,8 @@ impl FaultKind {
     /// Readings of a repeated block.
     pub(super) const BLOCK: usize = 32;
 
-    /// Returns whether it is in the readings or the actions of a device: then it is also tested on rigs with an arm.
-    /// The others do not depend on the rig.
+    /// Returns whether the fault is in the readings or the actions of a device; it is then also tested on rigs with an
+    /// arm. The other faults do not depend on the rig.
     pub const fn is_of_devices(self) -> bool {
         match self.part() {
             FaultPart::Force => !matches!(self, K::ForceLateTold | K::ForceLost),
@@ -286,7 +286,7 @@ impl FaultKind {
         }
     }
 
-    /// If it is accepted as fresh data by design: the reason.
+    /// Returns the reason if the fault is accepted as fresh data by design.
     pub const fn passes_as_fresh(self) -> Option<&'static str> {
         match self {
             K::LinkJitter | K::LinkHalf | K::LinkSwaps | K::ForceDoubled | K::ForceReordered | K::ForceSpikes => {
@@ -296,7 +296,7 @@ impl FaultKind {
         }
     }
 
-    /// If it cannot be distinguished from normal operation: the reason. The error must then be bounded.
+    /// Returns the reason if the fault cannot be distinguished from normal operation. The error must then be bounded.
     pub const fn untellable(self) -> Option<&'static str> {
         Some(match self {
             K::ForceStep => "an instrument that moves 0.2 mm between two readings could have met something stiff",

@@ -24,7 +24,7 @@ pub(super) struct InjectSituation {
 }
 
 impl InjectSituation {
-    /// Returns these inputs in the situation; `None` if nothing is connected.
+    /// Returns these inputs in the situation; `None` if no device is connected.
     fn of(self, inputs: &Inputs) -> Option<Inputs> {
         let mut inputs = *inputs;
         inputs.powered &= self.powered;
@@ -33,16 +33,16 @@ impl InjectSituation {
     }
 }
 
-/// Ticks in which a force falls to its noise.
+/// Number of ticks in which a force falls to its noise.
 const FALLS_IN: f64 = 3.0;
 
-/// A rig with a fault between it and the loop.
+/// A rig with a fault inserted between it and the loop.
 #[derive(Clone, Debug)]
 pub(super) struct Faulty {
     rig: FaultSubject,
     pub(super) situation: InjectSituation,
     fault: Option<FaultKind>,
-    /// Ticks since the fault began.
+    /// Number of ticks since the fault began.
     age: u32,
     noise: Noise,
     first: Option<(Inputs, Outputs)>,
@@ -260,7 +260,7 @@ fn exchanged(v: Vector3<f64>) -> Vector3<f64> {
     Vector3::new(v.z, v.y, v.x)
 }
 
-/// Force read by the force sensor, N.
+/// Returns the force read by the force sensor, N.
 pub(super) fn force_of(sensed: &SensedForce) -> Vector3<f64> {
     match sensed {
         SensedForce::AtTip(force_n) | SensedForce::FarEnd(RemoteIdentification { force_n, .. }) => *force_n,

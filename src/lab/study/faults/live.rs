@@ -63,7 +63,7 @@ pub enum LiveFaultError {
 /// A rig that hangs once and records when its emergency release was called.
 struct HangingRig {
     rig: Worlds,
-    /// Loop time at which it hangs, s, and duration.
+    /// Loop time at which the rig hangs, s, and duration of the hang.
     at_s: f64,
     length: Duration,
     began: Arc<AtomicU64>,
@@ -93,7 +93,7 @@ impl Rig for HangingRig {
     }
 }
 
-/// Nanoseconds since `clock`, at least 1, because zero means "not yet".
+/// Returns the nanoseconds since `clock`, at least 1, because zero means "not yet".
 fn nanoseconds(clock: Instant) -> u64 {
     clock.elapsed().as_nanos() as u64 + 1
 }

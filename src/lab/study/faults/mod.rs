@@ -36,7 +36,7 @@ use crate::validation::ValidationError;
 /// A force in the hand that differs from the twin's by no more than this is harmless, N: the standard deviation of the
 /// tip force in the paper.
 pub const HARMLESS_N: f64 = 0.2;
-/// Tested modes: the default one, which stores the most, and the one that stores nothing.
+/// Tested modes: the default mode, which stores most data, and the mode that stores none.
 const MODES: [Mode; 2] = [Mode::Best, Mode::Dfr];
 
 /// Why the study could not run.
@@ -143,7 +143,7 @@ pub enum FaultVerdict {
     /// The force differs from the twin's within 5 ms by at most [`HARMLESS_N`], or is no further from the force at the
     /// tip than the twin's: its largest error by at most [`HARMLESS_N`], its mean error by at most 0.02 N.
     Harmless,
-    /// The machine reported something.
+    /// The machine reported the fault.
     Detected,
     /// Cannot be detected in principle; the largest error is given.
     Bounded,
@@ -166,8 +166,8 @@ pub struct CaseOutcome {
     /// The first report, if any.
     #[serde(rename = "told")]
     pub report: Option<String>,
-    /// Time to that report since the loop's inputs first differed from the truth (since the fault began, if it was
-    /// reported before), ms.
+    /// Time to that report since the loop's inputs first differed from the true values (or since the fault began, if it
+    /// was reported before that), ms.
     pub detection_ms: Option<f64>,
     /// Time until the force was removed, from the same instant, ms; `None` if there was no force.
     pub zero_ms: Option<f64>,
@@ -212,7 +212,7 @@ pub struct FaultSums {
     pub kinds: usize,
     /// Cases on the virtual clock.
     pub cases: usize,
-    /// Cases among them without force and motion.
+    /// Number of these cases without force and motion.
     pub no_force: usize,
     pub harmless: usize,
     pub detected: usize,

@@ -9,17 +9,17 @@ use super::{FaultKind, FaultPlace};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SensorAt {
-    /// At the tip, scene `peg_transfer`.
+    /// Sensor at the tip, scene `peg_transfer`.
     Tip,
-    /// At the wrist, scene `palpation`, gravity calibrated.
+    /// Sensor at the wrist, scene `palpation`, gravity calibrated.
     Wrist,
-    /// At the tip on rigs with a jointed arm, which rotates the sensor: the devices of the emulated rig.
+    /// Sensor at the tip of rigs with a jointed arm, which rotates the sensor: the devices of the emulated rig.
     ArmTip,
-    /// At the wrist on the same rigs.
+    /// Sensor at the wrist of the same rigs.
     ArmWrist,
-    /// At the tip with devices of a lab's own design, the sensor at half the loop's rate.
+    /// Sensor at the tip, with devices of a lab's own design; the sensor runs at half the loop's rate.
     ExternalTip,
-    /// At the wrist with the same devices.
+    /// Sensor at the wrist, with the same devices.
     ExternalWrist,
 }
 

@@ -72,7 +72,7 @@ impl FaultSubject {
         })))
     }
 
-    /// Returns whether its readings are altered before inputs are computed from them.
+    /// Returns whether the readings are altered before the inputs are computed from them.
     pub(super) const fn is_arm(&self) -> bool {
         matches!(self, Self::Arm(_))
     }

@@ -52,7 +52,7 @@ fn a_healthy_machine_is_its_twin() {
     assert!(outcome[0].verdict == FaultVerdict::Harmless && outcome[0].max_n > 0.5, "{outcome:?}");
 }
 
-/// A handle that trembles by itself runs ahead of the hand: whatever the governor does, the hand must not feel a step.
+/// A reading that trembles runs ahead of the hand: whatever the governor does, the hand must not feel a step.
 #[test]
 fn a_reading_that_trembles_makes_no_step_beyond_the_slew_limit() {
     for outcome in tried(SensorAt::Wrist, FaultPlace::Free, &[FaultKind::HandNoise]) {
@@ -60,7 +60,7 @@ fn a_reading_that_trembles_makes_no_step_beyond_the_slew_limit() {
     }
 }
 
-/// A sensor's own numbers are judged, even if the arm rotates the loop's inputs.
+/// The sensor's own numbers are checked, even if the arm rotates the loop's inputs.
 #[test]
 fn on_rigs_with_an_arm_what_a_sensor_repeats_takes_the_force_away_within_20_ms() {
     let kinds = [FaultKind::ForceFrozen, FaultKind::ForceAxisFrozen, FaultKind::ForceStep];

@@ -37,7 +37,7 @@ pub struct GateOptions {
 #[derive(Clone, Debug, Serialize)]
 pub struct GateActions {
     pub gate: Gate,
-    /// Number of requests that it changed.
+    /// Number of requests that the gate changed.
     pub requests: u64,
 }
 

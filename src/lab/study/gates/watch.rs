@@ -20,13 +20,13 @@ pub struct Breaches {
     /// A change between consecutive forces above the slew limit, except a fall to zero where a gate withdraws the force
     /// at once.
     pub slew: u64,
-    /// A gain that changed faster than its rate.
+    /// Gain changes faster than the permitted rate.
     pub gain_rate: u64,
     /// A gain outside 0 to 3, or one above 1 without the second confirmation.
     pub gain_range: u64,
     /// A force without permission, without a hand, or from an invalid request.
     pub uncalled: u64,
-    /// Stored energy above its limit.
+    /// Stored energies above the limit.
     pub energy: u64,
 }
 

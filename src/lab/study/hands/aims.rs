@@ -1,4 +1,4 @@
-//! What is aimed for, and what misses it.
+//! Targets of the study, and the cases that miss them.
 
 use std::fmt;
 
@@ -6,7 +6,8 @@ use nima_machine::runtime::ClockProfile;
 
 use super::{HandReport, present_hands::HeldTally, released::Releases};
 
-/// Hands that are there: alarms in a minute, withheld part (%), and reversed ticks and steps beyond the slew limit: none.
+/// For hands that hold the handle: alarms per minute, withheld fraction (%); reversed ticks and steps beyond the slew
+/// limit must not occur.
 pub(super) const ALARMS_PER_MIN: f64 = 0.02;
 /// See above.
 pub(super) const WITHHELD_PERCENT: f64 = 0.1;
@@ -14,16 +15,16 @@ pub(super) const WITHHELD_PERCENT: f64 = 0.1;
 const ROUNDING_N: f64 = 1e-9;
 /// Releases that have an aim, N.
 pub(super) const FROM_N: f64 = 1.0;
-/// Kinetic energy of a handle that was let go at once, mJ.
+/// Kinetic energy of a handle that was released at once, mJ.
 pub(super) const ENERGY_MJ: f64 = 2.0;
-/// Travel, mm, 95 % of the releases and the farthest: let go at once on a clock without late ticks.
+/// Travel, mm, 95 % of the releases and the maximum: released at once, on a clock without late ticks.
 pub(super) const AT_ONCE_MM: [f64; 2] = [2.0, 3.0];
-/// The farthest, mm: let go at once with up to 1 % of late ticks, and with more.
+/// Maximum travel, mm: released at once with up to 1 % of late ticks, and with more.
 pub(super) const AT_ONCE_LATE_MM: [f64; 2] = [4.0, 5.0];
 /// Travel, mm, 95 % of the releases and the farthest: fingers that open within 10 to 40 ms.
 pub(super) const OPENING_MM: [f64; 2] = [4.5, 6.0];
 
-/// Aims that were judged, and the missed ones.
+/// Number of evaluated targets, and the missed ones.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Aims {
     /// Number of aims.
@@ -65,7 +66,7 @@ impl Aims {
     }
 }
 
-/// Travel at 95 % and farthest that is aimed for, mm; none while the whole loop pauses.
+/// Returns the travel at 95 % and farthest that is aimed for, mm; none while the whole loop pauses.
 fn travel_aims_mm(clock: ClockProfile, opening_ms: f64) -> Option<[f64; 2]> {
     let at_once = match clock {
         ClockProfile::Stall { .. } => return None,
@@ -77,7 +78,8 @@ fn travel_aims_mm(clock: ClockProfile, opening_ms: f64) -> Option<[f64; 2]> {
 }
 
 impl HandReport {
-    /// Every aim, judged: of hands that are there for all kinds on a clock together, of modes and releases for every row.
+    /// Returns every target with its result: for hands that hold the handle, over all kinds on a clock together; for
+    /// modes and releases, over each row.
     pub fn aims(&self) -> Aims {
         let mut aims = Aims::default();
         for clock in self.clocks() {

@@ -10,12 +10,12 @@ pub(super) const STEP_S: f64 = 2e-5;
 /// Tremor: amplitude, m, and angular frequency, 1/s.
 const TREMOR_M: f64 = 50e-6;
 const TREMOR_PER_S: f64 = std::f64::consts::TAU * 9.0;
-/// Below this speed Coulomb friction holds what it can, m/s.
+/// Below this speed, Coulomb friction holds as far as it can, m/s.
 const STICKS_M_S: f64 = 1e-4;
 /// Steps that are kept: 0.41 s.
 const PAST: usize = 20_480;
 
-/// Where the hand intends to be.
+/// Intended position of the hand.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Intention<const D: usize> {
     /// Motions to random targets.
@@ -34,7 +34,7 @@ pub(super) struct StudyHand<const D: usize> {
     pub(super) velocity_m_s: SVector<f64, D>,
     /// Force that is applied to the handle, N.
     pub(super) force_n: SVector<f64, D>,
-    /// Force that the hand carries on purpose, N, besides what its grip gives.
+    /// Force that the hand carries intentionally, N, in addition to the force of its grip.
     pub(super) carried_n: SVector<f64, D>,
     /// Fraction of the hand that still holds the handle.
     pub(super) holds: f64,
@@ -46,7 +46,7 @@ pub(super) struct StudyHand<const D: usize> {
 }
 
 impl<const D: usize> StudyHand<D> {
-    /// At rest at the start of its person.
+    /// Creates a hand at rest at the start position of its person.
     pub(super) fn new(person: PersonParameters<D>, intention: Intention<D>, gripper: bool) -> Self {
         let position_m = person.start_m();
         let pair = |(sin, cos): (f64, f64)| [sin, cos];
@@ -66,18 +66,18 @@ impl<const D: usize> StudyHand<D> {
         }
     }
 
-    /// Time of the last step, s.
+    /// Returns the time of the last step, s.
     pub(super) fn now_s(&self) -> f64 {
         self.steps as f64 * STEP_S
     }
 
-    /// Position this time ago (s, up to 0.4), m.
+    /// Returns the position this time ago (s, up to 0.4), m.
     pub(super) fn before_m(&self, ago_s: f64) -> SVector<f64, D> {
         let ago = (ago_s / STEP_S).round() as usize;
         self.past_m[(self.steps + PAST - ago) % PAST]
     }
 
-    /// Moves everything by [`STEP_S`].
+    /// Advances everything by [`STEP_S`].
     pub(super) fn step(&mut self, noise: &mut Noise) {
         self.steps += 1;
         let (mut aim_m, mut aim_m_s) = self.aim(noise);

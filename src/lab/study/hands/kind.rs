@@ -2,39 +2,40 @@
 
 use serde::Serialize;
 
-/// Extent of the targets of a hand, and so its longest motion.
+/// Extent of the targets of a hand, and therefore of its longest motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub enum Targets {
-    /// To one side of where it began.
+    /// To one side of the start.
     Within35Mm,
-    /// To both sides.
+    /// To both sides of the start.
     Within70Mm,
 }
 
-/// What sets one kind apart. Every kind has grips of 400 to 2000 N/m and of 8 to 40 N s/m.
+/// Properties of one kind of hand. Every kind has grips of 400 to 2000 N/m and of 8 to 40 N s/m.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct HandKind {
     /// Name in the tables.
     pub name: &'static str,
-    /// Motion in space; otherwise on one axis.
+    /// Whether the motion is in space; otherwise it is on one axis.
     pub space: bool,
-    /// Two hands hold one piece of tissue between them.
+    /// Whether two hands hold one piece of tissue between them.
     pub two_hands: bool,
-    /// Where the hand goes.
+    /// Targets of the hand.
     pub targets: Targets,
-    /// A gripper opens and closes meanwhile and pushes the handle.
+    /// Whether a gripper opens and closes in the meantime and pushes the handle.
     pub gripper: bool,
-    /// Mass of the hand that moves with the handle, up to this, kg.
+    /// Maximum mass of the hand that moves with the handle, kg.
     pub hand_kg: f64,
     /// Step of the position reading, m.
     pub step_m: f64,
     /// Time by which a reading is older than its time stamp, s.
     pub late_s: f64,
-    /// Period at which the device reads on a clock of its own, s; 0: at the loop's request. A reading is then up to this much older.
+    /// Sampling period of a device with its own clock, s; 0: it reads at the loop's request. A reading is then up to
+    /// this much older.
     pub reads_every_s: f64,
-    /// Error of the handle's mass, as a fraction to both sides.
+    /// Error of the handle's mass, as a fraction in both directions.
     pub mass_error: f64,
-    /// Coulomb friction up to this, N, and viscous friction up to this, N s/m.
+    /// Maximum Coulomb friction, N, and maximum viscous friction, N s/m.
     pub coulomb_n: f64,
     /// See above.
     pub damping_n_s_m: f64,
@@ -91,7 +92,7 @@ impl HandKind {
         if self.two_hands { 2 } else { 1 }
     }
 
-    /// Returns whether a release of this kind differs from a usual one: it has one hand, which no longer reaches or
+    /// Returns whether a release of this kind differs from a usual one: there is one hand, which no longer reaches or
     /// grips.
     pub(super) fn lets_go_otherwise(&self) -> bool {
         let Self { name, two_hands, targets, gripper, .. } = Self::USUAL;

@@ -1,4 +1,5 @@
-//! Hands that are there, and hands that let go, in front of the last gate: [`Governor`](nima_core::safety::Governor).
+//! Hands that hold the handle, and hands that release it, with the last gate:
+//! [`Governor`](nima_core::safety::Governor).
 //!
 //! Takes the clocks of the loop, the number of hands and releases, and a seed; gives a [`HandReport`]: one [`HeldHands`] for every clock and
 //! [`HandKind`] of hand that stays, with the tissue's late force; one [`InMode`] for every clock and mode of the whole loop; and one
@@ -33,10 +34,10 @@ use crate::{
     release::{ReleaseError, pressed_tissue},
 };
 
-/// The usual hands let go on every clock; the other kinds on the first clock only, this many times less often.
+/// The usual hands release on every clock, the other kinds only on the first clock and this many times less often.
 const OTHERS: u64 = 3;
 
-/// Why the study could not be made.
+/// Reason why the study could not be run.
 #[derive(Debug, thiserror::Error)]
 pub enum HandsError {
     /// The tissue that is pressed in the modes cannot be had.
@@ -54,17 +55,17 @@ pub struct HeldHands {
     pub clock: ClockProfile,
     /// Name of the kind.
     pub kind: &'static str,
-    /// What happened.
+    /// Events and sums.
     #[serde(flatten)]
     pub tally: HeldTally,
 }
 
-/// What to do.
+/// Options of the study.
 #[derive(Clone, Debug)]
 pub struct HandOptions {
     /// Clocks of the loop, in the order of the tables.
     pub clocks: Vec<VirtualClock>,
-    /// Hands of each kind on each clock, and how long each is there, s.
+    /// Number of hands of each kind on each clock, and time for which each holds the handle, s.
     pub hands: u64,
     /// See above.
     pub seconds: f64,
@@ -77,11 +78,11 @@ pub struct HandOptions {
 /// The study's result.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct HandReport {
-    /// Hands that stayed, in front of the governor alone.
+    /// Hands that hold the handle, with the governor alone.
     pub held: Vec<HeldHands>,
     /// Hands that stayed, in the whole loop.
     pub modes: Vec<InMode>,
-    /// Hands that let go.
+    /// Hands that release the handle.
     pub releases: Vec<Releases>,
 }
 

@@ -1,4 +1,4 @@
-//! A moving hand that is there, in the whole loop: every mode of the program, with its own gates.
+//! A moving hand that holds the handle, in the whole loop: every mode of the program, with its own gates.
 
 use nalgebra::Vector3;
 use nima_core::{
@@ -25,7 +25,8 @@ use crate::{
 const DELAYS_MS: [f64; 2] = [10.0, 100.0];
 /// Stiffness of the grips, N/m.
 const GRIPS_N_M: [f64; 2] = [900.0, 2000.0];
-/// The hand at first and the middle of its targets, height above the tissue, and their farthest distance from it, m.
+/// Initial position of the hand and middle of its targets, height above the tissue, and maximum distance of the
+/// targets, m.
 const START_M: f64 = 0.005;
 const MIDDLE_M: f64 = -0.002;
 const RADIUS_M: f64 = 0.010;
@@ -39,12 +40,12 @@ pub struct InMode {
     pub clock: ClockProfile,
     /// Mode that rendered.
     pub mode: Mode,
-    /// What happened; reversed is a force of the brake.
+    /// Events and sums; reversed forces are those of the brake.
     #[serde(flatten)]
     pub tally: HeldTally,
 }
 
-/// Hands of random grips that touch the tissue in this mode, one for each delay.
+/// Runs hands with random grips that touch the tissue in this mode, one for each delay.
 pub(super) fn in_mode(
     mode: Mode,
     clock: VirtualClock,
@@ -101,8 +102,8 @@ fn touched(trial: &PairTrial, seconds: f64) -> Result<HeldTally, HandsError> {
     Ok(watch.tally)
 }
 
-/// Returns the force that the governor was asked for (N), from what it withheld. While it withholds all of it, the one
-/// before stays; a brake counts as against it.
+/// Returns the force that was requested from the governor (N), computed from the withheld fraction. While the whole
+/// force is withheld, the previous value is kept; a brake counts as opposed to it.
 fn before_the_governor(governed: &GovernorOutput<3>, last_n: &Vector3<f64>) -> Vector3<f64> {
     let GovernorOutput { force_n, withheld, reason } = *governed;
     if reason == Reason::LetGo && force_n.norm() > 0.0 {

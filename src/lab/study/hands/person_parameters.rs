@@ -34,11 +34,11 @@ pub(super) fn direction<const D: usize>(noise: &mut Noise) -> SVector<f64, D> {
     any / any.norm().max(1e-9)
 }
 
-/// What one person and one handle are.
+/// Properties of one person and one handle.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PersonParameters<const D: usize> {
     pub(super) handle_kg: f64,
-    /// Moves with the handle while it is held.
+    /// Mass that moves with the handle while it is held, kg.
     pub(super) hand_kg: f64,
     pub(super) damping_n_s_m: f64,
     pub(super) coulomb_n: f64,
@@ -52,12 +52,12 @@ pub(super) struct PersonParameters<const D: usize> {
     radius_m: f64,
 }
 
-/// Half-space of elastic tissue, whose force comes late.
+/// Half-space of elastic tissue, whose force arrives late.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ElasticTissue<const D: usize> {
     pub(super) n_m: f64,
     pub(super) delay_s: f64,
-    /// A point of its surface, and the direction into it.
+    /// A point on the surface, and the direction into the tissue.
     pub(super) surface_m: SVector<f64, D>,
     pub(super) inwards: SVector<f64, D>,
 }
@@ -92,7 +92,7 @@ impl<const D: usize> PersonParameters<D> {
         }
     }
 
-    /// Where the hand is at first, m: outside of the tissue.
+    /// Returns the initial position of the hand, m: outside the tissue.
     pub(super) fn start_m(&self) -> SVector<f64, D> {
         self.tissue.surface_m - self.tissue.inwards * OUTSIDE_M
     }
@@ -138,7 +138,7 @@ impl<const D: usize> PersonMotion<D> {
         Self { middle_m, radius_m, durations_s, pause_s, from_m, to_m: from_m, begin_s: 0.0, lasts_s: REST_S }
     }
 
-    /// Position (m) and velocity (m/s) at this time, s; call with rising times.
+    /// Returns position (m) and velocity (m/s) at this time, s; call it with increasing times.
     pub(super) fn at(&mut self, t_s: f64, noise: &mut Noise) -> (SVector<f64, D>, SVector<f64, D>) {
         if t_s > self.begin_s + self.lasts_s {
             self.from_m = self.to_m;

@@ -16,7 +16,7 @@ use crate::{Findings, clocks};
 const HELD: &str = "alarms (1/min) | reversed (ticks) | reversed (N) | beyond slew (N) | withheld (%) | hands with an alarm (%) | declared gone |\n|---|---|---|---|---|---|---|---|\n";
 
 impl Findings for HandReport {
-    /// Returns the aims and what misses them, all clocks in one table, and for each clock its tables.
+    /// Returns the targets and the cases that miss them for all clocks in one table, and the tables of each clock.
     fn text(&self) -> String {
         let mut text = self.aims_text();
         text.push_str("Hands that stay, all kinds together:\n\n| clock | ");
@@ -113,7 +113,7 @@ impl HandReport {
     }
 }
 
-/// A row of hands that stay; writing into a String cannot fail, here and above.
+/// Appends a row for hands that hold the handle; writing into a String cannot fail, here and above.
 fn line(text: &mut String, of: &str, tally: &HeldTally) {
     let HeldTally { hands, reversed_ticks, reversed_n, beyond_slew_n, hands_alarmed, hands_gone, .. } = *tally;
     let alarms = tally.alarms_per_min();

@@ -1,4 +1,4 @@
-//! Hands that are there, in tissue whose force comes late, in front of the last gate.
+//! Hands that hold the handle, in tissue whose force arrives late, with the last gate.
 
 use nalgebra::SVector;
 use nima_core::{
@@ -15,16 +15,17 @@ use super::{
 };
 use crate::pair::RATE_HZ;
 
-/// Nominal period, s, the slew limit, N/s, and the ceiling of the asked force, N: those of the chain as it comes.
+/// Nominal period, s, slew limit, N/s, and ceiling of the requested force, N: the defaults of the chain.
 pub(super) const PERIOD_S: f64 = 1.0 / RATE_HZ;
 pub(super) const SLEW_N_PER_S: f64 = 500.0;
 const CEILING_N: f64 = nima_core::limits::USUAL_CEILING_N;
-/// A withheld fraction above this begins an alarm, which ends when nothing is withheld.
+/// A withheld fraction above this starts an alarm, which ends when nothing is withheld.
 const ALARM: f64 = 0.02;
-/// A force that opposes the asked one by more than this is reversed, and a weaker asked force is not judged for its withheld part, N.
+/// A force that opposes the requested force by more than this counts as reversed; for weaker requested forces, the
+/// withheld part is not evaluated, N.
 const JUDGED_N: f64 = 0.05;
 
-/// The last gate, or what is tried in its place.
+/// The last gate, or an alternative to it under test.
 pub(super) trait LastGate<const D: usize> {
     fn step(&mut self, t_s: f64, reading: GovernorReading<D>, asked_n: SVector<f64, D>) -> GovernorOutput<D>;
 }
@@ -35,7 +36,7 @@ impl<const D: usize> LastGate<D> for Governor<D> {
     }
 }
 
-/// Returns the governor with the settings as they come, for readings of this kind.
+/// Returns the governor with default settings, for readings of this kind.
 pub(super) fn governor<const D: usize>(kind: &HandKind) -> Governor<D> {
     let handle = FreeHandle { mass_kg: HANDLE_KG, damping_n_s_m: 0.5, brake_n_s_m: 30.0, step_m: kind.step_m };
     Governor::new(handle, SLEW_N_PER_S, PERIOD_S)
@@ -44,30 +45,30 @@ pub(super) fn governor<const D: usize>(kind: &HandKind) -> Governor<D> {
 /// Sums and worst values over hands that were there.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct HeldTally {
-    /// Hands, and for how long all of them together were there, min.
+    /// Number of hands, and total time for which they held the handle, min.
     pub hands: u64,
     /// See above.
     pub minutes: f64,
-    /// How often the governor began to withhold more than 2 %.
+    /// Number of times that the governor began to withhold more than 2 %.
     pub alarms: u64,
-    /// Ticks in which the force opposed the asked one by more than 0.05 N.
+    /// Number of ticks in which the force opposed the requested force by more than 0.05 N.
     pub reversed_ticks: u64,
-    /// Largest force against the asked one, N.
+    /// Maximum force opposed to the requested force, N.
     pub reversed_n: f64,
     /// Largest change in one tick beyond the slew limit, N.
     pub beyond_slew_n: f64,
-    /// Integral of the asked force's size over time, and of the part of it that was withheld, N s; above 0.05 N.
+    /// Integral over time of the requested force, and of its withheld part, N s; above 0.05 N.
     pub asked_n_s: f64,
     /// See above.
     pub withheld_n_s: f64,
     /// Hands with an alarm.
     pub hands_alarmed: u64,
-    /// Hands that were declared gone.
+    /// Number of hands that were declared gone.
     pub hands_gone: u64,
 }
 
 impl HeldTally {
-    /// Adds what happened to other hands.
+    /// Adds the results of other hands.
     pub fn add(&mut self, other: &Self) {
         self.hands += other.hands;
         self.minutes += other.minutes;
@@ -86,13 +87,13 @@ impl HeldTally {
         self.alarms as f64 / self.minutes.max(1e-9)
     }
 
-    /// Part of the asked force that was withheld, %.
+    /// Returns the withheld part of the requested force, %.
     pub fn withheld_percent(&self) -> f64 {
         100.0 * self.withheld_n_s / self.asked_n_s.max(1e-9)
     }
 }
 
-/// What is counted for one hand while it is there.
+/// Counters for one hand while it holds the handle.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct HeldWatch {
     pub(super) tally: HeldTally,
@@ -100,7 +101,8 @@ pub(super) struct HeldWatch {
 }
 
 impl HeldWatch {
-    /// One tick, this long after the one before (s): the applied force before (N) and now, and the force that was asked.
+    /// Processes one tick, with the time since the previous one (s), the previous and the current applied force (N),
+    /// and the requested force.
     pub(super) fn tick<const D: usize>(
         &mut self,
         dt_s: f64,
@@ -143,12 +145,12 @@ struct HeldSide<const D: usize, G> {
     reader: Reader<D>,
     gate: G,
     asked_n: SVector<f64, D>,
-    /// Where the tissue was entered, m.
+    /// Position at which the tissue was entered, m.
     entry_m: Option<SVector<f64, D>>,
     watch: HeldWatch,
 }
 
-/// Hands of one kind for this time (s), each in front of a gate of its own.
+/// Simulates hands of one kind for this time (s), each with its own gate.
 pub(super) fn held<const D: usize, G: LastGate<D>>(
     kind: &HandKind,
     clock: VirtualClock,
@@ -215,7 +217,7 @@ fn sides<const D: usize, G: LastGate<D>>(
 }
 
 impl<const D: usize, G: LastGate<D>> HeldSide<D, G> {
-    /// Depth in the tissue as the leader has it, m; negative outside.
+    /// Returns the depth in the tissue according to the leader's data, m; negative outside.
     fn late_depth_m(&self) -> f64 {
         let tissue = &self.hand.person.tissue;
         tissue.depth_m(&self.hand.before_m(tissue.delay_s))
@@ -230,7 +232,8 @@ impl<const D: usize, G: LastGate<D>> HeldSide<D, G> {
         self.hand.force_n = governed.force_n;
     }
 
-    /// Late force of the tissue at this depth (m), N: an elastic half-space that also holds the tip sideways.
+    /// Returns the late force of the tissue at this depth (m), N: an elastic half-space that also holds the tip
+    /// sideways.
     fn pressed_n(&mut self, depth_m: f64) -> SVector<f64, D> {
         let tissue = self.hand.person.tissue;
         if depth_m <= 0.0 {
@@ -244,11 +247,11 @@ impl<const D: usize, G: LastGate<D>> HeldSide<D, G> {
     }
 }
 
-/// How likely the device pauses before its next reading, and for how long, s: a thread of ordinary priority.
+/// Probability of a pause before the device's next reading, and its length, s: a thread of ordinary priority.
 const PAUSES: f64 = 0.005;
 const PAUSE_S: [f64; 2] = [0.5e-3, 4e-3];
 
-/// The handle as its device reads it.
+/// The handle as read by its device.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Reader<const D: usize> {
     newest: Option<SVector<f64, D>>,
@@ -269,7 +272,7 @@ impl<const D: usize> Reader<D> {
         }
     }
 
-    /// Returns the newest position, with the time at which the loop believes it was read.
+    /// Returns the newest position, with the time at which it was read according to the loop.
     pub(super) fn reading(&self, now_s: f64, hand: &StudyHand<D>, kind: &HandKind) -> GovernorReading<D> {
         GovernorReading { t_s: now_s, position_m: self.newest.unwrap_or_else(|| position(hand, kind)) }
     }

@@ -1,4 +1,4 @@
-//! Hands that let go: at once, and as fingers open.
+//! Hands that release the handle: at once, or as the fingers open.
 
 use nalgebra::SVector;
 use nima_core::{noise::Noise, safety::Reason};
@@ -13,19 +13,19 @@ use super::{
 };
 use crate::{clocks, pair::RATE_HZ};
 
-/// Forces that are let go, N.
+/// Forces that are released, N.
 pub const FORCES_N: [f64; 7] = [0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 5.0];
 /// Times in which the fingers open, ms.
 pub const OPENINGS_MS: [f64; 4] = [0.0, 10.0, 20.0, 40.0];
-/// Of those, the times in which the fingers of other kinds than the usual one open, ms.
+/// Opening times of the fingers for kinds other than the usual one, ms.
 pub(super) const OPENINGS_OF_OTHERS_MS: [f64; 2] = [0.0, 20.0];
-/// Time in which the force rises, time of the release, and time that is watched after it, s.
+/// Time in which the force rises, time of the release, and observation time after it, s.
 const RISE_S: f64 = 0.1;
 const RELEASE_S: [f64; 2] = [0.3, 0.4];
 const WATCHED_S: f64 = 0.3;
-/// Fastest motion of the hand while it lets go, m/s; half of the hands are at rest.
+/// Maximum speed of the hand during the release, m/s; half of the hands are at rest.
 const DRIFT_M_S: f64 = 0.03;
-/// Fraction that is withheld from a hand that is there, from which on a release is not judged.
+/// If this fraction is withheld before a release although the hand holds the handle, the release is not evaluated.
 const WITHHELD: f64 = 0.02;
 
 /// Releases of one force on one clock.
@@ -41,7 +41,7 @@ pub struct Releases {
     pub force_n: f64,
     /// Releases.
     pub releases: u64,
-    /// Releases before which force was withheld although the hand was there.
+    /// Number of releases before which force was withheld although the hand held the handle.
     pub withheld_before: usize,
     /// Travel of the handle, 95 % of the releases and the farthest, mm.
     pub travel_p95_mm: f64,
@@ -49,7 +49,7 @@ pub struct Releases {
     pub travel_max_mm: f64,
     /// Largest kinetic energy of the handle, mJ.
     pub energy_max_mj: f64,
-    /// Time until the release was detected beyond doubt, median, ms; none where most releases were not.
+    /// Median time until the release was detected with certainty, ms; `None` if most releases were not.
     pub detected_ms: Option<f64>,
 }
 
@@ -62,7 +62,7 @@ pub(super) struct ReleaseResult {
     pub(super) withheld_before: bool,
 }
 
-/// Releases of hands of this kind: so many, of this force (N) within this time (ms).
+/// Runs this many releases by hands of this kind, of this force (N) within this time (ms).
 pub(super) fn releases(
     kind: &HandKind,
     clock: VirtualClock,

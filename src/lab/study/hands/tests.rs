@@ -1,4 +1,4 @@
-//! A slice of the study, and a gate that it must see through.
+//! Short version of the study, and a gate that it must detect as unsafe.
 
 use nalgebra::Vector1;
 use nima_core::safety::{GovernorOutput, GovernorReading, Reason};

@@ -38,7 +38,7 @@ pub struct StudyAim {
 }
 
 impl StudyAim {
-    /// Computes the result over the cells for which `of` returns a number; `None` if there is none.
+    /// Returns the target over the cells for which `of` returns a number; `None` if there is none.
     fn over<'a>(
         what: &str,
         limit: f64,
@@ -61,7 +61,7 @@ impl StudyAim {
 }
 
 /// Returns all targets on one clock. Limits of the gates and the behaviour after a stop apply to every mode, the
-/// quality of the force only to the judged one.
+/// quality of the force only to the evaluated one.
 pub(super) fn aims(rows: &[&NetworkRow], judged: Mode) -> Vec<StudyAim> {
     let all = || rows.iter();
     let ours = || rows.iter().filter(move |row| row.mode == judged);

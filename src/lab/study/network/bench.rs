@@ -1,5 +1,5 @@
 //! Two whole machines on one virtual clock: the console's with the hand, the follower's with arm and tissue, and an
-//! impaired line between them.
+//! impaired link between them.
 
 use std::collections::BTreeMap;
 
@@ -29,7 +29,7 @@ const SEEDS: [u64; 2] = [1, 2];
 /// Tolerance for the rounding of times, s.
 const ROUNDING_S: f64 = 1e-9;
 
-/// A simulated workplace. It runs in true time, whatever its machine's clock shows.
+/// A simulated workplace. It runs in true time, whatever the clock of its machine shows.
 #[derive(Debug)]
 pub(super) struct Workplace {
     pub(super) world: World,
@@ -58,7 +58,7 @@ impl Rig for Workplace {
 /// Tick times of one machine.
 struct BenchPace {
     times: TickTimes,
-    /// Period in which the next tick wakes up, and its time since the loop was started.
+    /// Period in which the next tick wakes up, and its time since the start of the loop.
     due: u64,
     time: TickTime,
 }
@@ -69,7 +69,7 @@ impl BenchPace {
         Self { times: clock.tick_times(RATE_HZ), due: 0, time: TickTime::default() }
     }
 
-    /// Returns how late the tick of this period wakes up, if there is one: the whole delay, and the delay within the
+    /// Returns the lateness of the tick of this period, if there is one: the total delay, and the delay within the
     /// period, s.
     fn tick_in(&mut self, period: u32) -> Option<(TickTime, f64)> {
         if self.due != u64::from(period) {
@@ -128,7 +128,7 @@ impl<R: Rig> BenchMachine<R> {
     }
 }
 
-/// Both machines and the line.
+/// Both machines and the link.
 pub(super) struct NetworkBench {
     console: BenchMachine<FarFollower<Workplace, NetworkEnd>>,
     follower: BenchMachine<FarLeader<Workplace, NetworkEnd>>,
@@ -200,7 +200,7 @@ impl NetworkBench {
         })
     }
 
-    /// Time since the line was opened, s.
+    /// Returns the time since the line was opened, s.
     pub(super) fn now_s(&self) -> f64 {
         f64::from(self.tick) / RATE_HZ
     }
@@ -294,7 +294,7 @@ impl NetworkBench {
     }
 }
 
-/// Runs one tick of the line alone, so that playout delay and redundancy adapt as on a line that has been open for a
+/// Runs one tick of the link alone, so that playout delay and redundancy adapt as on a link that has been open for a
 /// while.
 fn measure([console, follower]: &mut [NetworkEnd; 2], [there, back]: &mut [ImpairedLine; 2], tick: u32, ahead_s: f64) {
     let now_s = f64::from(tick) / RATE_HZ;

@@ -1,4 +1,4 @@
-//! One cell: a run of both machines over one line in one mode, and its results.
+//! One cell: a run of both machines over one link in one mode, and its results.
 
 use nalgebra::Vector3;
 use nima_core::impedance::{Mode, OwnMotion};
@@ -20,24 +20,25 @@ pub(super) struct Runs {
     pub(super) known_s: [f64; 2],
     /// Not engaged.
     pub(super) settle_s: f64,
-    /// Engaged, but not judged yet: the models learn.
+    /// Engaged, but not evaluated yet, while the models learn, s.
     pub(super) learn_s: f64,
-    /// Judged.
+    /// Evaluated, s.
     pub(super) task_s: f64,
     pub(super) own_motion: OwnMotion,
 }
 
-/// A stopped machine must be still after this time, s; after an engagement its tip is observed for this time, s.
+/// Time after which a stopped machine must be at rest, s; after an engagement, its tip is observed for this time, s.
 const HOLDS_AFTER_S: f64 = 0.1;
 const WATCHED_S: f64 = 0.1;
-/// The clock estimate is compared with the true clock every this many ticks.
+/// Interval, in ticks, at which the clock estimate is compared with the true clock.
 const CLOCK_EVERY: u32 = 50;
 
 /// Counters of a running cell.
 struct CellCounts {
     watch: GateWatch<3>,
     breaches: Breaches,
-    /// Ticks since the last payload was delivered to the console, and the maximum at which there was still force.
+    /// Number of ticks since the last payload was delivered to the console, and its maximum while there was still
+    /// force.
     silent: u32,
     force_after: u32,
     /// Ticks for which the follower has been stopped, and for which it has been engaged again since.
@@ -69,7 +70,7 @@ impl CellCounts {
         }
     }
 
-    /// Measures the largest step of a tip that was held, until it has followed again for a moment.
+    /// Measures the largest step of a tip that was held, until it has been following again for a moment.
     fn look_at_tip(&mut self, seen: &TickObservation) {
         let [_, follower] = seen.states;
         self.stopped = if follower.is_latched() { self.stopped + 1 } else { 0 };

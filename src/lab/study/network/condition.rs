@@ -3,7 +3,7 @@
 use nima_network::impairment::{Flap, ImpairmentJitter as LineJitter, ImpairmentSettings, LossModel, OUTAGES};
 use serde::{Serialize, Serializer};
 
-/// In each direction, ms.
+/// Delay in each direction, ms.
 pub const DELAYS_MS: [f64; 11] = [0.0, 5.0, 15.0, 36.0, 72.0, 100.0, 150.0, 300.0, 450.0, 600.0, 900.0];
 pub const JITTERS: [ConditionJitter; 5] = [
     ConditionJitter::None,
@@ -29,19 +29,19 @@ const CLOCK_DRIFT: f64 = 1e-4;
 /// Delay of the longer direction if they differ, ms.
 const LONG_WAY_MS: f64 = 100.0;
 
-/// Additional delay of a datagram. A late one delays those behind it.
+/// Additional delay of a datagram. A late datagram delays those behind it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ConditionJitter {
     /// None.
     None,
-    /// The absolute value of a normal number with this deviation, ms.
+    /// Absolute value of a normal random number with this standard deviation, ms.
     Normal(f64),
     /// A Pareto number with a mean of 5 ms: rarely very large.
     Pareto,
 }
 
 impl ConditionJitter {
-    /// For tables.
+    /// Returns the name in tables.
     pub fn word(self) -> String {
         match self {
             Self::None => "0".to_owned(),
@@ -120,7 +120,7 @@ impl LinkEvent {
 pub struct NetworkCondition {
     /// In each direction, ms.
     pub delay_ms: f64,
-    /// In addition to the delay.
+    /// Jitter in addition to the delay.
     pub jitter: ConditionJitter,
     /// Fraction of datagrams lost, %.
     pub loss_percent: f64,
@@ -142,7 +142,7 @@ impl NetworkCondition {
         }
     }
 
-    /// Returns whether there is nothing but a delay.
+    /// Returns whether the link has only a delay.
     pub fn is_clean(&self) -> bool {
         *self == Self::clean(self.delay_ms)
     }

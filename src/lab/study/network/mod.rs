@@ -63,14 +63,14 @@ pub struct NetworkRow {
     /// Mean error of the force in the hand, compared with the true force of the tissue at the time when the follower
     /// has the current command, N, while engaged.
     pub error_n: f64,
-    /// The same for the mode's requested force, before the gates.
+    /// The same error for the force requested by the mode, before the gates.
     pub asked_error_n: f64,
     /// Mean force of the tissue, N.
     pub tissue_n: f64,
     /// `error_n` as a ratio to the same delay without other impairments.
     pub over_clean: Option<f64>,
-    /// `error_n` as a ratio to a line without jitter and loss whose delay equals this line's playout delay; for the
-    /// judged line only.
+    /// Ratio of `error_n` to the error on a link without jitter and loss whose delay equals this link's playout delay;
+    /// for the evaluated link only.
     pub over_same_playout: Option<f64>,
     /// `error_n` as a ratio to delayed reflection over the same line.
     pub over_reflection: Option<f64>,
@@ -90,7 +90,7 @@ pub struct NetworkRow {
     pub without_force_ms: f64,
     /// Longest time with force after the last payload, ms.
     pub force_after_data_ms: f64,
-    /// Fraction of the judged time in which the console was engaged.
+    /// Fraction of the evaluated time in which the console was engaged.
     pub engaged: f64,
     /// Number of stops of the console by a fault.
     pub stops: u32,
@@ -103,7 +103,7 @@ pub struct NetworkRow {
     pub return_step_mm: Option<f64>,
     /// Mean time from sending to delivery, ms: the playout delay, and additional delay.
     pub under_way_ms: [f64; 2],
-    /// From a command to its answer, measured by the console's loop at the end, ms.
+    /// Time from a command to its answer, measured by the console's loop at the end, ms.
     pub round_trip_ms: f64,
     /// Payloads that arrived late, %.
     pub late_percent: [f64; 2],
@@ -115,9 +115,9 @@ pub struct NetworkRow {
     pub copies: [[usize; 2]; 2],
     /// Maximum error of the console's estimate of the other clock, ms; 0 where that clock is set.
     pub clock_error_ms: f64,
-    /// Its bound.
+    /// Bound of the clock estimate, ms.
     pub clock_bound_ms: f64,
-    /// Time until both had reported a clock step, ms.
+    /// Time until both machines had reported a clock step, ms.
     pub clock_step_named_ms: Option<f64>,
 }
 
@@ -125,13 +125,13 @@ pub struct NetworkRow {
 pub struct NetworkReport {
     /// Extent of the run.
     pub extent: PlanExtent,
-    /// Mode that is judged.
+    /// Evaluated mode.
     pub judged: Mode,
     /// Motion from which the console computes the force.
     pub own_motion: OwnMotion,
-    /// How long a line has been open before the run, s: with jitter, and without.
+    /// Time for which a link has been open before the run, s: with jitter, and without.
     pub known_s: [f64; 2],
-    /// Duration of a run, and of its judged part, s.
+    /// Duration of a run, and of its evaluated part, s.
     pub run_s: f64,
     pub judged_s: f64,
     /// Targets.

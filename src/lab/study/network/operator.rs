@@ -1,4 +1,4 @@
-//! The study's operator: engages once the line is measured, and after a stop releases it and engages again, by hand.
+//! The study's operator: engages once the link has been measured, and after a stop releases it and engages again.
 
 use nima_machine::messages::{Command, LoopState};
 

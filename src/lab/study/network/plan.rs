@@ -8,10 +8,10 @@ use super::{BURSTS_MS, ConditionJitter, DELAYS_MS, JITTERS, LOSSES_PERCENT, Link
 
 /// Delay of the point around which each factor is varied alone, ms.
 pub const BASE_MS: f64 = 36.0;
-/// On this line at most 10 % of additional error is allowed.
+/// On this link, at most 10 % of additional error is permitted.
 pub(super) const JUDGED_JITTER: ConditionJitter = ConditionJitter::Normal(20.0);
 pub(super) const JUDGED_LOSS_PERCENT: f64 = 30.0;
-/// Jitter at which the clock is judged.
+/// Jitter at which the clock is evaluated.
 pub(super) const CLOCK_JITTER: ConditionJitter = ConditionJitter::Normal(1.0);
 /// %.
 const BURST_LOSSES_PERCENT: [f64; 2] = [5.0, 20.0];
@@ -22,7 +22,7 @@ const BURST_LOSSES_PERCENT: [f64; 2] = [5.0, 20.0];
 pub enum PlanExtent {
     /// A few short cells.
     Quick,
-    /// Every mode over every delay; every other factor alone and loss with jitter at [`BASE_MS`], in three modes.
+    /// Every mode over every delay; every other factor alone, and loss with jitter, at [`BASE_MS`], in three modes.
     Usual,
     /// Every combination.
     Full,
@@ -34,8 +34,8 @@ pub struct NetworkOptions {
     pub extent: PlanExtent,
     /// Clocks of both loops, in the order of the tables.
     pub clocks: Vec<VirtualClock>,
-    /// The modes, the first of which is judged. If empty, all modes are run and the default one is judged. Delayed
-    /// reflection is always included, because the others are compared with it.
+    /// The modes, of which the first is evaluated. If empty, all modes are run and the default one is evaluated.
+    /// Delayed reflection is always included, because the others are compared with it.
     pub modes: Vec<Mode>,
     /// Motion from which the console computes the force.
     pub own_motion: OwnMotion,
@@ -102,7 +102,7 @@ fn of_one_clock(options: &NetworkOptions) -> Vec<(NetworkCondition, Mode)> {
     }
 }
 
-/// Returns the line that is judged, at this delay, ms.
+/// Returns the evaluated link at this delay, ms.
 pub(super) const fn judged_line(delay_ms: f64) -> NetworkCondition {
     NetworkCondition { jitter: JUDGED_JITTER, loss_percent: JUDGED_LOSS_PERCENT, ..NetworkCondition::clean(delay_ms) }
 }
@@ -112,7 +112,7 @@ fn quick() -> Vec<NetworkCondition> {
     vec![base, judged_line(BASE_MS), NetworkCondition { happening: LinkEvent::Outages, ..base }]
 }
 
-/// Loss with jitter, and every other factor alone.
+/// Returns loss with jitter, and every other factor alone.
 fn around() -> Vec<NetworkCondition> {
     let base = NetworkCondition::clean(BASE_MS);
     let crossed = JITTERS

@@ -27,7 +27,7 @@ impl NetworkCondition {
         format!("{}{}", self.loss_percent, burst.unwrap_or_default())
     }
 
-    /// Number of factors, other than the delay, that differ from their default.
+    /// Returns the number of factors, other than the delay, that differ from their default.
     fn factors(&self) -> usize {
         let jitters = self.jitter != ConditionJitter::None;
         let loses = self.loss_percent > 0.0;
@@ -346,7 +346,7 @@ impl NetworkReport {
     }
 }
 
-/// Returns the error of a row, with the engaged fraction of the time if it was below 100 %.
+/// Returns the error of a row, and the engaged fraction of the time if it was below 100 %.
 fn short(row: &NetworkRow) -> String {
     let all = row.engaged > 0.999;
     if all || row.error_n.is_nan() {

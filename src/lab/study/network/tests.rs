@@ -78,7 +78,7 @@ fn an_outage_is_a_latched_stop_with_its_cause_and_what_comes_back_moves_nothing(
     assert!(row.force_after_data_ms <= 20.0 && row.engaged < 0.8, "{row:?}");
 }
 
-/// Too short for a fault of the link; the tip keeps moving meanwhile, which is not a jump.
+/// The break is too short for a fault of the link; the tip keeps moving in the meantime, which is not a jump.
 #[test]
 fn a_break_of_50_ms_stops_nothing() {
     let row = quick(NetworkCondition { happening: LinkEvent::Flap, ..NetworkCondition::clean(36.0) }, Mode::Dfr);

@@ -6,12 +6,12 @@ use nalgebra::Vector3;
 
 use super::bench::RATE_HZ;
 
-/// In contact the tissue's force is above the first value, N; the hand feels nothing if its force is below the second,
-/// N.
+/// During contact, the force of the tissue is above the first value, N; the hand counts as feeling no force below the
+/// second value, N.
 const CONTACT_N: f64 = 0.5;
 const NOTHING_N: f64 = 0.05;
-/// A command that takes this much longer than the previous one was lost, ticks: the follower keeps executing the
-/// earlier one.
+/// A command whose response takes this much longer than the previous one was lost, ticks: the follower keeps executing
+/// the earlier command.
 const LOST_TICKS: usize = 20;
 /// Band of oscillations, Hz.
 const BAND_HZ: [f64; 2] = [2.0, 50.0];
@@ -55,12 +55,12 @@ pub(super) struct TraceForce {
     pub(super) tissue_oscillation_n: f64,
     /// Longest time in contact without force, ms.
     pub(super) without_force_ms: f64,
-    /// Fraction of the judged time.
+    /// Fraction of the evaluated time.
     pub(super) engaged: f64,
 }
 
 impl RunTrace {
-    /// Judged from this tick on.
+    /// Creates a trace that is evaluated from this tick on.
     pub(super) const fn new(judged_from: usize) -> Self {
         Self { samples: Vec::new(), judged_from }
     }
@@ -170,7 +170,8 @@ impl Band {
 mod tests {
     use super::*;
 
-    /// Returns a hand on a sine of 1 cm at this frequency over a spring of 300 N/m, felt this many ticks late.
+    /// Returns the trace of a hand on a sine of 1 cm at this frequency over a spring of 300 N/m, whose force is felt
+    /// this many ticks late.
     fn pressed(hz: f64, late: usize, travel: usize) -> TraceForce {
         let position_m = |tick: usize| Vector3::z() * 0.01 * (TAU * hz * tick as f64 / RATE_HZ).sin();
         let mut trace = RunTrace::new(1000);

@@ -1,5 +1,5 @@
-//! Does the loop give the hand more energy than it takes? Net power into the hand in four tasks, and whether a loose
-//! grip oscillates.
+//! Measures whether the loop gives the hand more energy than it takes: net power into the hand in four tasks, and
+//! oscillation of a loose grip.
 //!
 //! Takes the clocks of the loop; returns a [`PassivityReport`]: one [`PassivityRow`] for every clock, mode, motion from which the leader
 //! computes the force, task and delay. All gates have their defaults, except that the energy gate and the governor are
@@ -26,12 +26,12 @@ use super::{
 pub const DELAYS_MS: [f64; 5] = [0.0, 10.0, 50.0, 100.0, 300.0];
 /// Stiffnesses of loose grips, N/m, with a damping of 5 N s/m.
 pub const LOOSE_N_M: [f64; 3] = [150.0, 300.0, 600.0];
-/// A held handle that moves faster than this counts as oscillating, m/s.
+/// If a held handle moves faster than this, it counts as oscillating, m/s.
 pub const STILL_M_S: f64 = 0.01;
-/// Duration of a task, and time before it is judged, s.
+/// Duration of a task, and time before the evaluation starts, s.
 const TASK_S: f64 = 12.0;
 const FROM_S: f64 = 1.5;
-/// Duration of a hold with a loose grip, and of its judged last part, s.
+/// Duration of a hold with a loose grip, and of its evaluated last part, s.
 const HOLD_S: f64 = 6.0;
 const JUDGED_S: f64 = 1.0;
 const LOOSE_N_S_M: f64 = 5.0;
@@ -56,7 +56,7 @@ pub enum PassivityTask {
 impl PassivityTask {
     pub const ALL: [Self; 4] = [Self::PalpationSlow, Self::PalpationFast, Self::PegTransfer, Self::Withdrawal];
 
-    /// Time between two touches, s; the tip is outside the tissue at the beginning.
+    /// Returns the time between two touches, s; the tip is outside the tissue at the beginning.
     const fn period_s(self) -> f64 {
         match self {
             Self::PalpationSlow => 1.0,
@@ -90,7 +90,7 @@ impl PassivityTask {
     }
 }
 
-/// From 0 to 1 with continuous speed and acceleration.
+/// Returns a transition from 0 to 1 with continuous speed and acceleration.
 fn smooth(s: f64) -> f64 {
     let s = s.clamp(0.0, 1.0);
     s * s * s * (10.0 + s * (-15.0 + 6.0 * s))
@@ -146,8 +146,7 @@ pub struct PassivityReport {
     pub held: Vec<StillGrip>,
 }
 
-/// The modes of the study with the motions that make sense for them: a reflected force does not depend on the leader's
-/// motion.
+/// The modes of the study with the applicable leader motions: a reflected force does not depend on the leader's motion.
 pub const WAYS: [(Mode, OwnMotion); 7] = [
     (Mode::Dfr, OwnMotion::Follower),
     (Mode::Anchored, OwnMotion::Follower),

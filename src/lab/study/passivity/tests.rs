@@ -68,8 +68,8 @@ fn never_much_worse(delays_ms: &[f64]) {
     assert!(worst.0 <= 1.01, "{worst:?}");
 }
 
-/// Stiffness 0.5 to 2 times the usual, surface 2 mm up or down, changing at every touch; one sequence for every
-/// `begin`.
+/// Returns the stiffness 0.5 to 2 times the usual, surface 2 mm up or down, changing at every touch; one sequence for
+/// every `begin`.
 fn changing(plain: TissueModel, begin: f64) -> impl Fn(u32) -> TissueModel {
     move |touch| {
         let fraction = |step: f64| (f64::from(touch) * step + begin).fract() * 2.0 - 1.0;
@@ -92,7 +92,8 @@ fn over_tissue_that_changes_at_every_touch_the_best_of_two_is_better_than_reflec
     }
 }
 
-/// Before persistent errors counted at once, it was up to 19 % worse here, and more than 2 % in a fifth of all cases.
+/// Before persistent errors were taken into account at once, it was up to 19 % worse here, and more than 2 % worse in a
+/// fifth of all cases.
 #[test]
 fn over_tissue_that_changes_at_every_touch_the_best_of_two_is_hardly_worse_than_anchored() {
     hardly_worse(&[tissue()], &[0.55]);
@@ -104,7 +105,7 @@ fn over_tissue_that_changes_the_best_of_two_is_hardly_worse_than_anchored_in_the
     hardly_worse(&tissues(), &[0.3, 0.55, 0.82]);
 }
 
-/// Losses above 1.02 occur at the first change of a run, before it is known that the tissue changes.
+/// Ratios above 1.02 occur at the first change of a run, before there is evidence that the tissue changes.
 fn hardly_worse(tissues: &[TissueModel], begins: &[f64]) {
     let mut worse = Vec::new();
     for delay_ms in DELAYS_MS {

@@ -1,5 +1,5 @@
-//! Release: a hand presses the tissue with up to 5 N and opens, and the handle is alone with the force that the link
-//! still delivers.
+//! Release: a hand presses the tissue with up to 5 N and opens, and the released handle is exposed to the force that
+//! the link still delivers.
 //!
 //! Takes the clocks of the loop; returns a [`ReleaseReport`]: one [`ReleaseRow`] for every clock, mode and baseline, delay, force and
 //! situation (after holding for two seconds, and while still pressing), with and without the governor, with all other
@@ -24,7 +24,7 @@ use serde::Serialize;
 use super::pair::{BenchPair, LoneHandle, NOISE_N, PairGrip, PairTrial, RATE_HZ};
 
 pub const DELAYS_MS: [f64; 6] = [0.0, 10.0, 50.0, 100.0, 200.0, 300.0];
-/// Forces of the contact at the release, N: the strongest, and weak ones.
+/// Contact forces at the release, N: the strongest one, and weak ones.
 pub const CONTACTS_N: [f64; 4] = [5.0, 2.0, 1.0, 0.5];
 /// Up to this contact force a release counts as weak, N.
 pub const WEAK_N: f64 = 2.0;
@@ -41,7 +41,7 @@ pub const AIM_N: f64 = 0.2;
 pub const BRAKES_N_S_M: [f64; 3] = [5.0, 15.0, 30.0];
 /// Tested handles, by mass (kg) and Coulomb friction (N).
 const HANDLES: [(f64, f64); 6] = [(0.20, 0.0), (0.20, 0.15), (0.25, 0.0), (0.25, 0.15), (0.31, 0.0), (0.31, 0.15)];
-/// Observation time after the hand has opened, and time after which there should be no force, s.
+/// Observation time after the hand has opened, and time after which there must be no force, s.
 const AFTER_S: f64 = 1.0;
 const LATE_S: f64 = 0.1;
 /// Speed of pressing (m/s), height at the start (m), time of holding and its last part (s), timeout (s).
@@ -81,7 +81,7 @@ pub enum ReleaseError {
 pub enum ReleaseSituation {
     /// After two seconds at about the contact force, with the hand's tremor.
     Held,
-    /// At the moment when the contact force is reached, at 20 mm/s.
+    /// While pressing at 20 mm/s, when the contact force is reached.
     Pressing,
 }
 
@@ -108,8 +108,8 @@ pub struct ReleaseRow {
     pub shake_m_s: f64,
     /// Whether the governor withheld force at that moment although the hand held the handle.
     pub closed_before: bool,
-    /// Maximum distance from where the handle was released, or from where it would have swung by itself, whichever is
-    /// smaller, mm.
+    /// Maximum distance from the point of release, or from where the handle would have swung without the loop,
+    /// whichever is smaller, mm.
     pub travel_mm: f64,
     /// Maximum speed, m/s.
     pub peak_m_s: f64,
@@ -120,7 +120,7 @@ pub struct ReleaseRow {
 }
 
 impl ReleaseRow {
-    /// Returns whether the held force was large enough to be judged, by the governor's criterion.
+    /// Returns whether the held force was large enough to be evaluated, by the governor's criterion.
     pub fn counts(&self) -> bool {
         self.before_n > 0.5 * self.contact_n.min(4.0) && !self.closed_before
     }
@@ -144,7 +144,7 @@ pub struct Worst {
     pub brake_n_s_m: f64,
     /// True mass of the handle, kg; the governor assumes 0.25.
     pub handle_kg: f64,
-    /// Its Coulomb friction, N.
+    /// Coulomb friction, N.
     pub coulomb_n: f64,
     pub travel_mm: f64,
     pub peak_m_s: f64,

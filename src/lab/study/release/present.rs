@@ -60,8 +60,8 @@ impl ReleaseReport {
         text
     }
 
-    /// Writes the worst of all delays and both situations, for each mode and force; rows in which the hand held no
-    /// force are left out.
+    /// Writes the worst of all delays and both situations for each mode and force; rows without a held force are left
+    /// out.
     fn summary(&self, text: &mut String) {
         writeln!(
             text,

@@ -76,7 +76,7 @@ pub struct ReplayFigures {
     /// Fraction of compared samples with a degree above 1.
     #[serde(rename = "nonlinear_share")]
     pub nonlinear_fraction: f64,
-    /// Condition number of the scaled regression; 0 while there is no regression.
+    /// Condition number of the scaled regression; 0 if there is no regression.
     pub condition: FigureSpread,
     /// Compared samples for which the mode had no valid force and rendered zero.
     pub rejected: u64,

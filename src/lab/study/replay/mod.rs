@@ -42,7 +42,7 @@ pub enum RecordingReplayError {
     ShortDelay { path: String, delay_ms: f64, rate_hz: f64, min_ms: f64 },
 }
 
-/// A time step longer than this (s) and this many periods is a gap: nothing is learnt or rendered across it.
+/// A time step longer than this (s) and this many periods is a gap: nothing is learned or rendered across it.
 const HOLE_S: f64 = 0.05;
 const HOLE_PERIODS: f64 = 10.0;
 

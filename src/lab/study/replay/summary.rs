@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::ReplayFigures;
 
-/// Spread over the recordings of the ratio of both errors.
+/// Distribution over the recordings of the ratio of the two errors.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct RatioFigures {
     #[serde(rename = "least")]
@@ -17,7 +17,7 @@ pub struct RatioFigures {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ReplaySummary {
     pub recordings: usize,
-    /// Samples in all of them, and compared samples.
+    /// Number of samples in all recordings, and of compared samples.
     pub samples: usize,
     /// See `samples`.
     pub compared: usize,

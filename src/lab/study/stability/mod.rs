@@ -146,7 +146,8 @@ struct StabilityStream {
     used: Vec<bool>,
 }
 
-/// Motion of a case as the loop computes it, lengths multiplied by `unit`; with `guard`, after the identifier's checks.
+/// Returns the motion of a case as the loop computes it, lengths multiplied by `unit`; with `guard`, after the
+/// identifier's checks.
 fn stream(case: &StabilityCase, unit: f64, guard: bool) -> StabilityStream {
     let settings = ImpedanceSettings::default();
     let mut differentiator = Differentiator::new(settings.differentiator, case.rate_hz);
@@ -220,7 +221,7 @@ fn instants(case: &StabilityCase) -> impl Iterator<Item = usize> {
     [0, window / 2, window].into_iter().map(move |later| first + later)
 }
 
-/// Rows of columns with the force as last column, the format of the reference.
+/// Returns the rows of columns with the force as last column, the format of the reference.
 fn columns_of(
     solver: LeastSquaresSolver,
     stream: &StabilityStream,
@@ -305,7 +306,7 @@ impl StabilityWindow {
     }
 }
 
-/// Largest first; empty if an entry is not finite.
+/// Returns the largest first; empty if an entry is not finite.
 fn singular_values(rows: &[Vec<f64>], columns: usize) -> Vec<f64> {
     if !rows.iter().flatten().all(|entry| entry.is_finite()) {
         return Vec::new();

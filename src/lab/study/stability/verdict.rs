@@ -17,13 +17,13 @@ pub struct StabilityVerdict {
     pub ours_finite_fraction: f64,
     /// Whether the whole identifier stayed finite in every case.
     pub identifier_finite: bool,
-    /// Its worst relative error where the scaled condition number is below 1e6.
+    /// Worst relative error where the scaled condition number is below 1e6.
     pub ours_worst_error: f64,
-    /// Its worst relative error in any case.
+    /// Worst relative error in any case.
     pub ours_worst_error_anywhere: f64,
-    /// Its largest scaled condition number.
+    /// Largest scaled condition number.
     pub ours_worst_condition: f64,
-    /// Its worst difference between metres and millimetres where the scaled condition number is below 1e6.
+    /// Worst difference between metres and millimetres where the scaled condition number is below 1e6.
     pub ours_unit_difference: f64,
     /// The pseudo-inverse's worst difference between metres and millimetres.
     pub pseudo_inverse_unit_difference: f64,
@@ -42,11 +42,11 @@ pub struct RenderingVerdict {
     /// Fraction of its forces that are finite, in every case and in the long run.
     #[serde(rename = "finite_share")]
     pub finite_fraction: f64,
-    /// Its worst difference between metres and millimetres, and the case in which it occurs.
+    /// Worst difference between metres and millimetres, and the case in which it occurs.
     pub unit_difference: f64,
     /// See `unit_difference`.
     pub worst_case: String,
-    /// Its difference between a long run and a fresh one; `None` if the run was too short.
+    /// Difference between a long run and a fresh one; `None` if the run was too short.
     pub long_run_difference: Option<f64>,
 }
 

@@ -105,8 +105,8 @@ const fn index(mode: usize, delay: usize, stiffness: usize, gain: usize) -> usiz
     ((mode * DELAYS_S.len() + delay) * STIFFNESSES_N_M.len() + stiffness) * GAINS.len() + gain
 }
 
-/// Indices of the points of `grid` (rising) on both sides of `value`; the last index twice if `value` is beyond the end
-/// or NaN.
+/// Returns the indices of the points of `grid` (rising) on both sides of `value`; the last index twice if `value` is
+/// beyond the end or NaN.
 fn around(grid: &[f64], value: f64) -> [usize; 2] {
     let last = grid.len() - 1;
     let above = grid.iter().position(|point| value <= point * (1.0 + 1e-9)).unwrap_or(last);

@@ -156,7 +156,7 @@ impl TradeoffPlan {
         }
     }
 
-    /// Points and curves for `source`; each point once, even if several curves pass through it.
+    /// Returns the points and curves for `source`; each point once, even if several curves pass through it.
     pub(super) fn lay_out(&self, source: &TradeoffSource) -> (Vec<ParameterChoice>, Vec<PlanCurve>) {
         let mut layout = PlanLayout::default();
         for &mode in &self.modes {
@@ -240,7 +240,7 @@ impl TradeoffPlan {
         choice.method.mode().map(|mode| modes::identifier(&self.settings(choice, axes), mode)).transpose()
     }
 
-    /// Settings of an identifier for `choice`, for a source with this number of axes.
+    /// Returns the settings of an identifier for `choice`, for a source with this number of axes.
     pub(super) fn settings(&self, choice: &ParameterChoice, axes: usize) -> ImpedanceSettings {
         ImpedanceSettings {
             rate_hz: choice.rate_hz,

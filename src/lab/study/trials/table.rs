@@ -28,7 +28,7 @@ pub struct TableError {
 pub struct TableTrial {
     pub participant: String,
     pub condition: String,
-    /// Its number, if the table has it.
+    /// Number, if the table has it.
     pub number: Option<f64>,
     /// The measures, in the order of the table's; `None` for a missing value.
     pub values: Vec<Option<f64>>,

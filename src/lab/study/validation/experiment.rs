@@ -32,7 +32,7 @@ pub fn compensator(gravity: &GravityModel) -> Compensator {
 }
 
 impl SimulatedExperiment {
-    /// Makes the rig for a scene with a person and a wrist sensor; other scenes give no samples.
+    /// Creates the rig for a scene with a person and a wrist sensor; other scenes give no samples.
     pub fn new(scene: &Scene) -> Self {
         Self { world: World::new(scene, RATE_HZ), ticks: 0 }
     }

@@ -274,7 +274,7 @@ fn direction(data: &DataSet, row: usize) -> Vector3<f64> {
     UnitQuaternion::from_quaternion(Quaternion::new(w, x, y, z)) * Vector3::z()
 }
 
-/// Directions of the shaft in a session, thinned out.
+/// Returns the directions of the shaft in a session, thinned out.
 fn directions(data: &DataSet) -> Vec<Vector3<f64>> {
     (0..data.rows()).step_by(20).map(|row| direction(data, row)).collect()
 }

@@ -31,12 +31,12 @@ impl SessionMessage {
         self.head.sequence
     }
 
-    /// Time of its sample, ns.
+    /// Returns the time of its sample, ns.
     pub fn log_time_ns(&self) -> u64 {
         self.head.log_time_ns
     }
 
-    /// Time of its publication, ns: the same in our files.
+    /// Returns the time of its publication, ns: the same in our files.
     pub fn publish_time_ns(&self) -> u64 {
         self.head.publish_time_ns
     }

@@ -104,7 +104,8 @@ fn a_file_is_valid_at_every_moment() {
     assert!((2..=8).contains(&early_end), "{early_end} of {all}");
 }
 
-/// Power loss: every page written since the last sync has any of its versions, and so has the length of the file.
+/// Returns the power loss: every page written since the last sync has any of its versions, and so has the length of the
+/// file.
 fn without_power(log: &[(u64, Vec<u8>)], synced: usize, end: usize, random: &mut fastrand::Rng) -> Vec<u8> {
     let mut disk = Disk(Vec::new());
     for (at, bytes) in &log[..synced] {

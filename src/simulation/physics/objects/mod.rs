@@ -208,7 +208,7 @@ impl Objects {
         self.tools.each_ref().map(|tool| tool.as_ref().map(|tool| tool.opening_rad))
     }
 
-    /// Time between steps, s.
+    /// Returns the time between steps, s.
     pub const fn period_s(&self) -> f64 {
         self.period_s
     }
@@ -228,7 +228,7 @@ impl Objects {
         &mut self.rings[ring]
     }
 
-    /// Force of an instrument's fingers on a ring, N, for tests.
+    /// Returns the force of an instrument's fingers on a ring, N, for tests.
     #[cfg(test)]
     pub(crate) fn grip_n(&self, ring: usize, side: usize) -> f64 {
         0.5 * self.notes[ring].fingers_n[side].iter().map(Vector3::norm).sum::<f64>()

@@ -36,9 +36,9 @@ pub enum RingActivity {
 /// A ring at the end of a step. Workspace frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RingState {
-    /// Its middle, m.
+    /// Middle, m.
     pub centre_m: Vector3<f64>,
-    /// Its orientation; z is the axis through the hole.
+    /// Orientation; z is the axis through the hole.
     pub world_from_ring: UnitQuaternion<f64>,
     pub doing: RingActivity,
     /// The peg through it, whether it is held or not.

@@ -75,7 +75,7 @@ pub enum RingStart {
     /// At the foot of this peg, counted from 0, or on top of earlier rings there.
     #[serde(rename = "peg")]
     Peg(usize),
-    /// Its middle, m.
+    /// Middle, m.
     #[serde(rename = "at_m")]
     At([f64; 3]),
 }

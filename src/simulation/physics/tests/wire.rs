@@ -19,7 +19,7 @@ fn straight() -> WireSetting {
     WireSetting { points_m: vec![[-0.05, 0.0, 0.03], [0.05, 0.0, 0.03]], goal_point: 1, ..WireSetting::default() }
 }
 
-/// Distance that the middle of a loop can move from the middle of a straight wire, m.
+/// Returns the distance that the middle of a loop can move from the middle of a straight wire, m.
 fn room_m(setting: &WireSetting) -> f64 {
     setting.hoop.radius_m - setting.hoop.tube_radius_m - setting.radius_m
 }
@@ -85,7 +85,7 @@ fn sliding_along_the_wire_is_held_back_by_the_law_of_coulomb() {
     assert!((ratio - setting.contact.friction).abs() < 0.01, "{}", loads.tip_n);
 }
 
-/// Distance of the loop from the wire, by brute force.
+/// Returns the distance of the loop from the wire, by brute force.
 fn tried_m(wire: &Wire, setting: &WireSetting, centre_m: &Vector3<f64>) -> f64 {
     let points_m = wire.curve().points_m();
     let gap_m = |point_m: Vector3<f64>| {

@@ -68,7 +68,7 @@ impl RingWatch {
         self.waiting.pop_front()
     }
 
-    /// Number of events that were dropped because the queue was full.
+    /// Returns the number of events that were dropped because the queue was full.
     pub const fn missed(&self) -> u64 {
         self.missed
     }

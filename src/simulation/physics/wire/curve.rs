@@ -227,7 +227,7 @@ impl SmoothCurve {
     }
 }
 
-/// Height above the plane of a loop, m.
+/// Returns the height above the plane of a loop, m.
 fn height_m(circle: &Circle, point_m: &Vector3<f64>) -> f64 {
     circle.axis.dot(&(point_m - circle.centre_m))
 }

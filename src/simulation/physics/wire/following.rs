@@ -82,7 +82,7 @@ impl WireTask {
         self.is_done
     }
 
-    /// Number of contacts between loops and wire.
+    /// Returns the number of contacts between loops and wire.
     pub const fn touches(&self) -> u32 {
         self.touches
     }
@@ -112,7 +112,7 @@ impl WireFollower {
         false
     }
 
-    /// Distance covered from the free end, m.
+    /// Returns the distance covered from the free end, m.
     fn goes(&mut self, state: &WireState) -> f64 {
         match state.along_m {
             Some(along_m) => self.on_its_way |= along_m <= BEGINNING_M,

@@ -120,12 +120,12 @@ impl Wire {
         &self.curve
     }
 
-    /// State of each side's loop.
+    /// Returns the state of each side's loop.
     pub const fn states(&self) -> &[WireState; SIDES] {
         &self.states
     }
 
-    /// Time between steps, s.
+    /// Returns the time between steps, s.
     pub const fn period_s(&self) -> f64 {
         self.period_s
     }
@@ -258,7 +258,7 @@ impl TipLoop {
         self.velocity_m_s + self.turning_rad_s.cross(&(point_m - self.circle.centre_m))
     }
 
-    /// Distance of a point from the axis of the loop, m.
+    /// Returns the distance of a point from the axis of the loop, m.
     fn off_axis_m(&self, point_m: &Vector3<f64>) -> f64 {
         self.outwards(point_m).1
     }

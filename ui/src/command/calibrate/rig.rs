@@ -192,7 +192,7 @@ impl CalibrationBench {
         Ok(())
     }
 
-    /// Reason why a device is missing.
+    /// Returns the reason why a device is missing.
     fn missing(&self) -> Option<String> {
         let roster = self.handle.as_ref()?.roster();
         roster.iter().find_map(|entry| Some(format!("{}: {}", entry.name(), entry.view.report().trouble?)))

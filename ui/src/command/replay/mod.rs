@@ -190,7 +190,7 @@ fn as_text(report: &ReplayReport<'_>, stretch_s: &Range<f64>) -> String {
     text
 }
 
-/// Text of the first tick that differs.
+/// Returns the text of the first tick that differs.
 fn difference(Different { tick, t_s, side, stage }: &Different, recorded_by: &str) -> String {
     let whose = side.map_or_else(String::new, |side| format!(" of the {side} arm"));
     let versions = if recorded_by == PROGRAM {

@@ -151,7 +151,7 @@ impl RunRecording {
 }
 
 impl RecordingFigures {
-    /// Text for a terminal; starts with a line break.
+    /// Returns the text for a terminal; starts with a line break.
     pub(super) fn as_text(&self) -> String {
         let Self { file, ticks, lost, bytes, images, images_dropped } = self;
         let hole = match lost {

@@ -144,7 +144,7 @@ impl ActiveCalibrations {
         self.sides[tick.side.index()].watch(tick);
     }
 
-    /// Result of the bias check of the side that needs more attention; `None` if there is nothing to check.
+    /// Returns the result of the bias check of the side that needs more attention; `None` if there is nothing to check.
     pub fn drift(&self) -> Option<GravityDrift> {
         let attention = |drift: &GravityDrift| match drift {
             GravityDrift::Fine { .. } => 0,

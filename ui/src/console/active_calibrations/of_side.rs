@@ -156,7 +156,7 @@ impl SideCalibrations {
         ages.contains(&Some(CalibrationAge::Future))
     }
 
-    /// Names of the missing calibrations. The correspondence is needed only to train the network.
+    /// Returns the names of the missing calibrations. The correspondence is needed only to train the network.
     pub(super) fn lacks(&self) -> Vec<&'static str> {
         let correspondence = self.correspondence.is_some() || self.tip_force.is_some();
         let needed = [
@@ -204,7 +204,7 @@ impl SideCalibrations {
         }
     }
 
-    /// Result of the bias check; `None` if there is nothing to check.
+    /// Returns the result of the bias check; `None` if there is nothing to check.
     pub(super) fn drift(&self) -> Option<GravityDrift> {
         self.drift.as_ref().map(|(check, _)| check.drift())
     }

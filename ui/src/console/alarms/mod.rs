@@ -26,8 +26,8 @@ pub enum AlarmPriority {
 }
 
 impl AlarmPriority {
-    /// Colour at this time on the dark background of alarms; flashing dims it but never hides it. Acknowledged alarms
-    /// and those of low priority do not flash.
+    /// Returns the colour at this time on the dark background of alarms; flashing dims it but never hides it.
+    /// Acknowledged alarms and those of low priority do not flash.
     pub fn colour(self, time_s: f64, flashes: bool) -> Color32 {
         let colour = match self {
             Self::High => theme::DARK.alarm_high,
@@ -38,7 +38,7 @@ impl AlarmPriority {
         if dimmed { colour.gamma_multiply(0.35) } else { colour }
     }
 
-    /// How often it flashes, Hz; IEC 60601-1-8 allows 1.4 to 2.8 for high and 0.4 to 0.8 for medium priority.
+    /// Returns how often it flashes, Hz; IEC 60601-1-8 allows 1.4 to 2.8 for high and 0.4 to 0.8 for medium priority.
     pub const fn flash_hz(self) -> Option<f64> {
         match self {
             Self::High => Some(2.0),
@@ -47,7 +47,7 @@ impl AlarmPriority {
         }
     }
 
-    /// Time until the next change of the colour, s; `None` for a steady one.
+    /// Returns the time until the next change of the colour, s; `None` for a steady one.
     pub fn until_change_s(self, time_s: f64) -> Option<f64> {
         let half_s = 0.5 / self.flash_hz()?;
         Some(half_s - time_s.rem_euclid(half_s))
@@ -119,7 +119,7 @@ pub struct Alarm {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MissingDevice {
     pub place: usize,
-    /// Its name in the roster.
+    /// Name in the roster.
     pub name: String,
     /// Whether it delivered before.
     pub was_there: bool,
@@ -257,7 +257,7 @@ fn missing(device: &MissingDevice) -> Alarm {
     }
 }
 
-/// Cause of a fault, with the name of the device concerned.
+/// Returns the cause of a fault, with the name of the device concerned.
 fn cause_of(fault: Fault, signs: &Signs) -> String {
     let Fault::DeviceLost { device, .. } = fault else { return fault.cause().to_owned() };
     let name = signs.missing.iter().find(|missing| missing.place == usize::from(device)).map(|missing| &missing.name);

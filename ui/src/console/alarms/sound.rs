@@ -55,7 +55,7 @@ impl Sound {
         sound
     }
 
-    /// Reason why no sound can be played, for the menu; `None` if it can.
+    /// Returns the reason why no sound can be played, for the menu; `None` if it can.
     pub fn trouble(&mut self) -> Option<String> {
         self.look();
         match (&self.player, &self.failure) {
@@ -197,7 +197,7 @@ fn wav(samples: &[f64]) -> Vec<u8> {
 mod tests {
     use super::*;
 
-    /// Number of pulses in a burst: sound separated by at least 30 ms of silence.
+    /// Returns the number of pulses in a burst: sound separated by at least 30 ms of silence.
     fn pulses_received(samples: &[f64]) -> usize {
         let quiet = (0.03 * f64::from(RATE_HZ)) as usize;
         let mut received = 0;

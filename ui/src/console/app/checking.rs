@@ -48,7 +48,7 @@ impl CheckPage {
         self.run.as_mut()
     }
 
-    /// Current instruction of the check.
+    /// Returns the current instruction of the check.
     pub(super) fn ask(&self) -> Option<PersonRequest> {
         self.run.as_ref().map(|run| run.session.ask())
     }

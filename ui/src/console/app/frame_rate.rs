@@ -70,8 +70,8 @@ impl ConsoleApp {
         true
     }
 
-    /// Time until the next change in an idle window: the clocks, or a request of the command line. A flashing alarm requests
-    /// its own frames.
+    /// Returns the time until the next change in an idle window: the clocks, or a request of the command line. A
+    /// flashing alarm requests its own frames.
     fn until_change(&self) -> Duration {
         let open = self.opened.elapsed();
         let ConsoleOptions { exit_after, screenshot, .. } = &self.options;
@@ -80,7 +80,7 @@ impl ConsoleApp {
         wanted.fold(BEAT_AT_REST.saturating_sub(self.taken.elapsed()), Duration::min).max(MIN_REST)
     }
 
-    /// Time of the requested screenshot.
+    /// Returns the time of the requested screenshot.
     pub(super) fn image_at(&self) -> Duration {
         self.options.exit_after.map_or(SCREENSHOT_AT, |exit| exit.saturating_sub(SCREENSHOT_BEFORE_EXIT))
     }

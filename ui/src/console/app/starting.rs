@@ -42,7 +42,7 @@ pub(super) struct StartingRig {
 #[derive(Debug)]
 pub(super) struct Undo {
     pub(super) path: PathBuf,
-    /// Its text; `None` if it did not exist.
+    /// Text; `None` if it did not exist.
     pub(super) text: Option<String>,
 }
 

@@ -13,7 +13,7 @@ use egui::{
     epaint::{ClippedShape, ColorMode, PathStroke},
 };
 
-/// Hash of a shape and its clip rectangle.
+/// Returns the hash of a shape and its clip rectangle.
 pub(super) fn of(shape: &ClippedShape) -> u64 {
     let mut hash = DefaultHasher::new();
     rect(&mut hash, &shape.clip_rect);

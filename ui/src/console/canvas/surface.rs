@@ -52,7 +52,7 @@ struct PixelSink {
     colour: glow::Renderbuffer,
 }
 
-/// Name of the OpenGL renderer.
+/// Returns the name of the OpenGL renderer.
 pub fn renderer_of(gl: &glow::Context) -> String {
     // SAFETY: a query of eframe's current context.
     unsafe { gl.get_parameter_string(glow::RENDERER) }
@@ -75,7 +75,7 @@ impl Surface {
         frame > 0 && self.drawn.load(Ordering::Relaxed) == frame
     }
 
-    /// Fraction of the window that was redrawn in the last frame, 0 to 1.
+    /// Returns the fraction of the window that was redrawn in the last frame, 0 to 1.
     pub fn drawn_fraction(&self) -> f64 {
         if self.is_refused() { 1.0 } else { self.fraction.load(Ordering::Relaxed) as f64 * 1e-6 }
     }

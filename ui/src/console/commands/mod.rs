@@ -190,7 +190,7 @@ impl CommandEntry {
         table().iter().find(|entry| entry.action == action)
     }
 
-    /// Text of its keys; empty if it has none.
+    /// Returns the text of its keys; empty if it has none.
     pub fn keys_text(&self) -> String {
         self.keys.iter().map(|stroke| stroke.name()).collect::<Vec<_>>().join(", ")
     }

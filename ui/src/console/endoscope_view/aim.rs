@@ -28,8 +28,8 @@ impl ImageZoom {
         self.zoom > 1.001
     }
 
-    /// Position of the whole image, if it fits into the view as `whole` without zoom. It never leaves a gap that zoom 1 does
-    /// not have.
+    /// Returns the position of the whole image, if it fits into the view as `whole` without zoom. It never leaves a gap
+    /// that zoom 1 does not have.
     pub(super) fn full(&self, view: Rect, whole: Vec2) -> Rect {
         let size = whole * self.zoom;
         let along = |view: egui::Rangef, size: f32, middle: f32| {

@@ -181,7 +181,7 @@ impl EndoscopeView {
         }
     }
 
-    /// State of the image and remedy, for the list of devices; `None` without endoscope.
+    /// Returns the state of the image and remedy, for the list of devices; `None` without endoscope.
     pub(in crate::console) fn report(&self) -> Option<[String; 2]> {
         self.wanted.as_ref()?;
         Some(self.health_text(&self.feed.as_ref().map_or(FrameHealth::Opening, |feed| feed.standing(Instant::now()))))
@@ -303,7 +303,7 @@ impl EndoscopeView {
         }
     }
 
-    /// Distance between drawn forces and tips, px, if the error in the camera check was too large.
+    /// Returns the distance between drawn forces and tips, px, if the error in the camera check was too large.
     fn off_px(&self) -> Option<f64> {
         let camera = self.wanted.as_ref()?.camera?;
         camera.checked_px.filter(|off_px| *off_px > OFF * camera.size_px[0] as f64)
@@ -340,7 +340,7 @@ impl EndoscopeView {
     }
 }
 
-/// Position of a side's trocar, m.
+/// Returns the position of a side's trocar, m.
 fn trocar(live: &LiveState, side: Side) -> Option<Vector3<f64>> {
     let of_rig = live.rig.devices.as_ref().and_then(|devices| devices.arm(side)).map(|set| set.rcm.trocar_m);
     of_rig.or_else(|| live.scene.of_side(side).map(|scene| scene.trocar_m))
@@ -362,7 +362,7 @@ pub(in crate::console) fn fault_text(wrong: &FrameFault) -> [String; 2] {
     [words, cure.to_owned()]
 }
 
-/// Time until the text of the window changes without a new image.
+/// Returns the time until the text of the window changes without a new image.
 fn until_report(look: Option<&NewestFrame>, is_good: bool) -> Duration {
     let age = look.and_then(|look| look.age).unwrap_or_default();
     let frozen = FROZEN.saturating_sub(age) + Duration::from_millis(2);

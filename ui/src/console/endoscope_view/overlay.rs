@@ -226,7 +226,7 @@ impl OverlayImage<'_> {
     }
 }
 
-/// Colour of a part that may be behind the instrument.
+/// Returns the colour of a part that may be behind the instrument.
 fn seen_through(colour: Color32, hidden: bool) -> Color32 {
     if hidden { colour.gamma_multiply(HIDDEN) } else { colour }
 }

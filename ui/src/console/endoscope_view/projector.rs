@@ -115,7 +115,7 @@ impl ProjectedMoment {
         Self { asked_s, came_s, image, damage, poses: [None; SIDES], world_from_n: None, trouble: Some(why) }
     }
 
-    /// Result as from a feed at that moment; an error if there is no image.
+    /// Returns the result as from a feed at that moment; an error if there is no image.
     pub(super) fn look(&self) -> Result<FeedSnapshot<Arc<DecodedImage>>, Option<&str>> {
         let Some(came_s) = self.came_s.filter(|_| self.image.is_some() || self.damage.is_some()) else {
             return Err(self.trouble.as_deref());
@@ -227,13 +227,13 @@ impl Projection {
         None
     }
 
-    /// Pose of the endoscope's marker at that time.
+    /// Returns the pose of the endoscope's marker at that time.
     fn marker(&self, time_ns: u64) -> Option<Isometry3<f64>> {
         let times_ns = time_ns.saturating_sub((STEADY_S * 1e9) as u64)..time_ns.saturating_add(1);
         steadied(plot_channels::endoscope(self.images.reader(), times_ns).into_iter().rev())
     }
 
-    /// Poses of the tips at that time; none if they are not recorded or cannot be read.
+    /// Returns the poses of the tips at that time; none if they are not recorded or cannot be read.
     fn poses(&self, time_ns: u64) -> [Option<TipPose>; SIDES] {
         let reader = self.images.reader();
         let times_ns = time_ns.saturating_sub(TICK_NS)..time_ns.saturating_add(1);

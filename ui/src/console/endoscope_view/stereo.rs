@@ -11,7 +11,7 @@ use crate::console::text;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct LensHalf {
     pub(super) place: ImagePlacement,
-    /// Its camera, if known.
+    /// Camera, if known.
     pub(super) camera: Option<Camera>,
     /// Drawings for this half are clipped to this area.
     pub(super) within: Rect,
@@ -35,7 +35,7 @@ pub(super) const fn next(view: StereoView) -> StereoView {
     }
 }
 
-/// Size of the whole image of which a lens covers a part, px.
+/// Returns the size of the whole image of which a lens covers a part, px.
 pub(super) fn whole_px([width, height]: [usize; 2], endoscope: &EndoscopeConfig) -> [usize; 2] {
     if endoscope.view.is_some() { [2 * width, height] } else { [width, height] }
 }
@@ -74,7 +74,7 @@ pub(super) fn halves(
     }
 }
 
-/// Text about the displayed half and the key; empty for an image of one lens.
+/// Returns the text about the displayed half and the key; empty for an image of one lens.
 pub(super) fn report(view: Option<StereoView>, endoscope: &EndoscopeConfig) -> &'static str {
     match view {
         None => "",

@@ -76,7 +76,7 @@ pub enum ScreenSource {
 }
 
 impl ScreenSource {
-    /// Reason why controls that act on a machine are off.
+    /// Returns the reason why controls that act on a machine are off.
     pub(in crate::console) fn blocked(self) -> &'static str {
         match self {
             Self::Elsewhere => text::monitor::BLOCKED.get(),
@@ -247,7 +247,7 @@ impl LiveState {
         self.tick_at = self.tick_at.max(at);
     }
 
-    /// Minimum time between redraws of moving parts, s: on a slow computer every second frame.
+    /// Returns the minimum time between redraws of moving parts, s: on a slow computer every second frame.
     pub const fn min_step_s(&self) -> f64 {
         if self.rough_edges { 1.0 / 15.0 } else { 0.0 }
     }
@@ -268,7 +268,7 @@ impl LiveState {
         &self.work
     }
 
-    /// Time from the arrival of a measurement to the output of the force computed from it.
+    /// Returns the time from the arrival of a measurement to the output of the force computed from it.
     pub const fn sample_to_force(&self) -> &Percentiles {
         &self.sample_to_force
     }
@@ -300,7 +300,7 @@ impl LiveState {
         self.ticks[side.index()].as_ref()
     }
 
-    /// Newest tick of the right arm pair, for everything that both pairs share.
+    /// Returns the newest tick of the right arm pair, for everything that both pairs share.
     pub const fn first_tick(&self) -> Option<&Tick> {
         self.tick_of(Side::Right)
     }
@@ -318,7 +318,8 @@ impl LiveState {
         self.scene.left.is_some() || self.tick_of(Side::Left).is_some()
     }
 
-    /// Last state of the loop; with two arm pairs, the state that needs more attention; idle before the first tick.
+    /// Returns the last state of the loop; with two arm pairs, the state that needs more attention; idle before the
+    /// first tick.
     pub fn state(&self) -> LoopState {
         let states = self.ticks.iter().flatten().map(|tick| tick.state);
         states.max_by_key(|state| attention(*state)).unwrap_or(LoopState::Idle)
@@ -337,7 +338,7 @@ impl LiveState {
         self.first_tick().map_or(self.rig.gates.gain, |tick| tick.gates.gain)
     }
 
-    /// Current delay, s.
+    /// Returns the current delay, s.
     pub fn delay_s(&self) -> f64 {
         self.first_tick().map_or(self.rig.delay_s, |tick| tick.delay_s)
     }
@@ -350,7 +351,7 @@ impl LiveState {
         self.first_tick().map_or(self.rig.gates, |tick| tick.gate_settings)
     }
 
-    /// Stiffness of the stiffer current or last contact of both hands, N/m: the gain is common to both.
+    /// Returns the stiffness of the stiffer current or last contact of both hands, N/m: the gain is common to both.
     pub fn stiffness_n_m(&self) -> Option<f64> {
         self.stiffness.iter().filter_map(ContactStiffness::n_m).max_by(f64::total_cmp)
     }

@@ -57,7 +57,7 @@ impl OverviewLine {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct ArmOverview {
     pub(crate) side: Side,
-    /// Its sensor and tool; `None` until the sensor has reported its identity.
+    /// Sensor and tool; `None` until the sensor has reported its identity.
     pub(crate) wrist: Option<WristId>,
     pub(crate) lines: Vec<OverviewLine>,
 }
@@ -132,7 +132,7 @@ fn in_file(kept: &StoredFrame, file: Option<&RigFile>) -> String {
     if same { text::overview::IN_FILE.get() } else { text::overview::OTHER_IN_FILE.get() }.to_owned()
 }
 
-/// Result of the last ready check for this point, if it was run after the calibration of this date.
+/// Returns the result of the last ready check for this point, if it was run after the calibration of this date.
 pub(crate) fn found_since(last: Option<&ReadyRecord>, check: ReadyPoint, date: &str) -> Option<String> {
     // Dates in this format sort as text.
     let last = last.filter(|last| last.date.as_str() >= date)?;

@@ -70,7 +70,7 @@ fn answer(live: &LiveState, side: Side) -> String {
     })
 }
 
-/// Reason why this hand gets no force, or less than it should; `None` if there is no problem.
+/// Returns the reason why this hand gets no force, or less than it should; `None` if there is no problem.
 pub fn why_no_force(live: &LiveState, side: Side) -> Option<String> {
     let gates = &live.gates[side.index()];
     let hand = side.index();
@@ -106,7 +106,7 @@ pub fn why_no_force(live: &LiveState, side: Side) -> Option<String> {
     Some(words.to_owned())
 }
 
-/// Reason why no side is engaged: the first obstacle before pressing Engage.
+/// Returns the reason why no side is engaged: the first obstacle before pressing Engage.
 fn why_idle(live: &LiveState, source: ForceSource) -> String {
     if live.is_shown_only() {
         return text::gates::NONE_IDLE_THEN.get().to_owned();
@@ -129,7 +129,7 @@ pub(super) struct GateView {
 }
 
 impl GateView {
-    /// Its symbol and state.
+    /// Returns its symbol and state.
     pub(super) fn standing(&self) -> (Sign, &'static str) {
         let acting = self.fraction > if self.limits { 0.05 } else { 0.5 };
         match (acting, self.limits) {
@@ -155,7 +155,7 @@ pub(super) fn gates(live: &LiveState, side: Side) -> [GateView; GATES] {
     })
 }
 
-/// Text next to a gate: its setting, or its current effect.
+/// Returns the text next to a gate: its setting, or its current effect.
 fn note(live: &LiveState, side: Side, which: Which) -> String {
     let gates = &live.gates[side.index()];
     let chain = &live.rig.gates;
@@ -180,7 +180,7 @@ fn note(live: &LiveState, side: Side, which: Which) -> String {
     }
 }
 
-/// Energy that the hand can still get back.
+/// Returns the energy that the hand can still get back.
 fn stored(live: &LiveState, side: Side) -> String {
     if live.gate_settings().energy == EnergyMode::Off {
         return text::gates::ENERGY_OFF.get().to_owned();
@@ -188,7 +188,7 @@ fn stored(live: &LiveState, side: Side) -> String {
     live.tick_of(side).map_or_else(String::new, |tick| text::gates::energy_left(tick.gates.stored_j * 1e3))
 }
 
-/// How often the gate has acted since the loop was created, and the reason of the last time.
+/// Returns how often the gate has acted since the loop was created, and the reason of the last time.
 pub(super) fn history(live: &LiveState, side: Side, gate: Which) -> String {
     let Some(counts) = live.tick_of(side).map(|tick| tick.gates.counts) else { return String::new() };
     let acted = counts.acted[gate.index()];

@@ -37,7 +37,7 @@ pub fn horizon_ui(ui: &mut Ui, live: &LiveState, outbox: &mut Outbox) {
     trend_ui(ui, live);
 }
 
-/// Mean error of a mode over the last minutes, N; `None` if the force was never known.
+/// Returns the mean error of a mode over the last minutes, N; `None` if the force was never known.
 fn mean_n(live: &LiveState, mode: Mode) -> Option<f64> {
     let errors_n = live.trend_n.iter().map(|errors_n| errors_n[mode.index()]).filter(|error_n| error_n.is_finite());
     let (count, sum_n) = errors_n.fold((0.0, 0.0), |(count, sum_n), error_n| (count + 1.0, sum_n + error_n));

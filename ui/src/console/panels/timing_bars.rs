@@ -25,7 +25,7 @@ pub(super) struct TimingBar<'a> {
     pub(super) meaning: &'static str,
     pub(super) quantiles: Quantiles,
     pub(super) durations: &'a Percentiles,
-    /// Its deadline, us.
+    /// Deadline, us.
     pub(super) deadline_us: f64,
 }
 
@@ -60,7 +60,7 @@ fn percent(fraction: f64) -> String {
     }
 }
 
-/// Height of a bar, 0 to 1, on a logarithmic scale with `max` at 1. A single tick is visible.
+/// Returns the height of a bar, 0 to 1, on a logarithmic scale with `max` at 1. A single tick is visible.
 fn height(count: u64, max: u64) -> f32 {
     if count == 0 { 0.0 } else { ((1.0 + count as f64).ln() / (1.0 + max.max(1) as f64).ln()) as f32 }
 }
@@ -97,7 +97,7 @@ pub(super) fn bars_ui(ui: &mut Ui, timing: &TimingBar<'_>, bars: &[u64]) {
     }
 }
 
-/// Number of ticks after the deadline: those in bars that begin there or later.
+/// Returns the number of ticks after the deadline: those in bars that begin there or later.
 fn late(bars: &[u64]) -> u64 {
     let first = (BARS as f64 / REACH).round() as usize;
     bars.iter().skip(first).sum()

@@ -142,7 +142,7 @@ fn identity_ui(
     });
 }
 
-/// Duration of the recording, on the button that keeps it; returns true when pressed.
+/// Returns the duration of the recording, on the button that keeps it; returns true when pressed.
 fn recorded_ui(ui: &mut Ui, state: &TopBarState) -> bool {
     let Some(shown) = &state.recorded else { return false };
     let words = text::sessions::recorded_for(shown.seconds, shown.kept);
@@ -234,9 +234,9 @@ fn stop_button(ui: &mut Ui, button: Button<'_>, ink: egui::Color32) -> egui::Res
 /// State of the next step.
 #[derive(Clone, Copy)]
 struct TopBarStep {
-    /// Its button can be pressed.
+    /// Button can be pressed.
     ready: bool,
-    /// Its button stands out.
+    /// Button stands out.
     next: bool,
     /// The request from elsewhere.
     wanted: Option<Action>,

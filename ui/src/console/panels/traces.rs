@@ -140,7 +140,7 @@ fn header_ui(ui: &mut Ui, live: &mut LiveState, state: &mut TracesState) {
     });
 }
 
-/// Width of the row without its heading, in the language of the window.
+/// Returns the width of the row without its heading, in the language of the window.
 fn needed_width(ui: &Ui, live: &LiveState, state: &TracesState) -> f32 {
     let of = |words: &str, style: TextStyle| width_of(ui.painter(), words, style.resolve(ui.style()));
     let signs = [text::traces::MEASURED.get(), text::traces::RENDERED.get()];
@@ -276,7 +276,8 @@ fn interact(ui: &Ui, state: &mut TracesState, plot: &PlotResponse<()>) {
     }
 }
 
-/// Range of a plot: a round number that includes all values, and does not shrink at once when a peak leaves.
+/// Returns the range of a plot: a round number that includes all values, and does not shrink at once when a peak
+/// leaves.
 fn range_n(extent_n: Option<(f64, f64)>, (low_n, high_n): (f64, f64)) -> (f64, f64) {
     let (min, max) = extent_n.unwrap_or((0.0, 0.0));
     let wanted = (-round_up(-min), round_up(max));

@@ -86,7 +86,7 @@ impl TracesState {
         self.paused_at_s.is_some()
     }
 
-    /// Time at the cursor, s on the loop's clock.
+    /// Returns the time at the cursor, s on the loop's clock.
     pub fn cursor_at_s(&self, live: &LiveState) -> Option<f64> {
         self.cursor_s.map(|cursor_s| self.now_s(self.history(live)) + cursor_s)
     }

@@ -88,7 +88,7 @@ fn words_ui(ui: &mut Ui, past: &Playback, ink: Color32) {
     });
 }
 
-/// Text about the extent of the replay.
+/// Returns the text about the extent of the replay.
 fn extent(past: &Playback) -> &'static str {
     if past.is_whole() {
         text::playback::WHOLE.get()

@@ -240,7 +240,7 @@ impl Playback {
         self.wanted_s = self.shown_s();
     }
 
-    /// Time on the screen, s.
+    /// Returns the time on the screen, s.
     pub(crate) fn shown_s(&self) -> f64 {
         self.live.as_ref().map_or(self.wanted_s, |live| shown_s(live))
     }
@@ -255,7 +255,7 @@ impl Playback {
         self.extent == WorkerExtent::Whole
     }
 
-    /// Fraction of the session that was read, 0 to 1.
+    /// Returns the fraction of the session that was read, 0 to 1.
     fn read_share(&self) -> f64 {
         self.about.map_or(0.0, |about| if about.end_s > 0.0 { self.overview.read_s / about.end_s } else { 1.0 })
     }
@@ -283,7 +283,7 @@ impl Playback {
     }
 }
 
-/// Time of the newest tick, s.
+/// Returns the time of the newest tick, s.
 fn shown_s(live: &LiveState) -> f64 {
     live.ticks.iter().flatten().map(|tick| tick.t_s).fold(0.0, f64::max)
 }

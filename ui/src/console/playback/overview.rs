@@ -73,7 +73,7 @@ impl Overview {
         self.read_s = frame.t_s;
     }
 
-    /// State of this device at this time (s); closed before its first report.
+    /// Returns the state of this device at this time (s); closed before its first report.
     pub(super) fn standing(&self, device: usize, t_s: f64) -> ConnectionState {
         let of_device = |(at_s, which, _): &&(f64, usize, ConnectionState)| *which == device && *at_s <= t_s;
         self.devices.iter().rfind(of_device).map_or(ConnectionState::Closed, |(_, _, standing)| *standing)

@@ -199,7 +199,7 @@ impl<'a> SessionIndex<'a> {
         Ok(film)
     }
 
-    /// Time up to which the session was read, s.
+    /// Returns the time up to which the session was read, s.
     pub(super) const fn read_s(&self) -> f64 {
         self.read_s
     }
@@ -298,7 +298,7 @@ impl<'a> SessionIndex<'a> {
         })
     }
 
-    /// State of the window before this time, s: traces and events.
+    /// Returns the state of the window before this time, s: traces and events.
     fn live(&self, t_s: f64) -> LiveState {
         let mut live = LiveState::of_past(self.file.rig.clone(), self.file.scene.clone());
         live.replay(self.events.iter().take_while(|(at_s, _)| *at_s < t_s).map(|(_, event)| event), &[None; SIDES]);

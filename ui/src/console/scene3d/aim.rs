@@ -34,7 +34,7 @@ pub(super) fn paint_other(painter: &Painter, rect: Rect, camera: &SceneCamera, t
     }
 }
 
-/// Height of the surface below the instruments, m.
+/// Returns the height of the surface below the instruments, m.
 fn ground_m(scene: &Scene) -> Option<f32> {
     let tissue_m = scene.tissue.map(|tissue| tissue.surface_z_m as f32);
     training::board_of(scene).map(|board| board.z_m as f32).or(tissue_m)

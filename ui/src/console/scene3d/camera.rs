@@ -76,20 +76,20 @@ impl SceneCamera {
         }
     }
 
-    /// Position of the eye, m.
+    /// Returns the position of the eye, m.
     pub fn eye_m(&self) -> Vector3<f32> {
         let (sin_yaw, cos_yaw) = self.yaw.sin_cos();
         let (sin_pitch, cos_pitch) = self.pitch.sin_cos();
         self.target_m + self.distance_m * Vector3::new(sin_yaw * cos_pitch, -cos_yaw * cos_pitch, sin_pitch)
     }
 
-    /// Direction on the right of the screen, unit length.
+    /// Returns the direction on the right of the screen, unit length.
     pub fn right(&self) -> Vector3<f32> {
         let (sin_yaw, cos_yaw) = self.yaw.sin_cos();
         Vector3::new(cos_yaw, sin_yaw, 0.0)
     }
 
-    /// Direction that is up on the screen, unit length.
+    /// Returns the direction that is up on the screen, unit length.
     pub fn up(&self) -> Vector3<f32> {
         let (sin_yaw, cos_yaw) = self.yaw.sin_cos();
         let (sin_pitch, cos_pitch) = self.pitch.sin_cos();
@@ -122,7 +122,7 @@ impl SceneCamera {
         projection.to_homogeneous() * view
     }
 
-    /// Position of a point on the screen; `None` if it is behind the eye.
+    /// Returns the position of a point on the screen; `None` if it is behind the eye.
     pub fn project(&self, point_m: &Vector3<f32>, rect: Rect) -> Option<Pos2> {
         let clip = self.clip_from_workspace(rect.aspect_ratio()) * Vector4::new(point_m.x, point_m.y, point_m.z, 1.0);
         if clip.w <= 1e-4 {

@@ -78,7 +78,7 @@ pub(super) fn labels(
     }
 }
 
-/// Name of a hand.
+/// Returns the name of a hand.
 pub fn side_name(side: Side) -> &'static str {
     match side {
         Side::Right => text::common::RIGHT.get(),
@@ -98,7 +98,7 @@ pub(super) fn label(painter: &Painter, place: Pos2, align: Align2, text: &str, f
 const COLUMN: f32 = 226.0;
 const COLUMNS_APART: f32 = 112.0;
 
-/// Width of the readings with their distance from the left of the view, points.
+/// Returns the width of the readings with their distance from the left of the view, points.
 pub(super) fn readings_width(live: &LiveState) -> f32 {
     COLUMN + COLUMNS_APART * f32::from(u8::from(live.is_bimanual())) + 20.0
 }

@@ -14,7 +14,7 @@ use crate::report_text::side_word;
 /// Distance from the pointer within which an object is hit, points.
 const REACH: f32 = 12.0;
 
-/// Text of the frontmost object under the pointer; `None` if there is none.
+/// Returns the text of the frontmost object under the pointer; `None` if there is none.
 pub(super) fn pick(
     pointer: Pos2,
     rect: Rect,
@@ -69,7 +69,7 @@ fn place(position_m: &Vector3<f32>) -> String {
     text::field::place((position_m * 1e3).into())
 }
 
-/// Distance from a point to a line segment, points.
+/// Returns the distance from a point to a line segment, points.
 fn distance(point: Pos2, from: Pos2, to: Pos2) -> f32 {
     let way = to - from;
     let along = if way.length_sq() > 1e-6 { ((point - from).dot(way) / way.length_sq()).clamp(0.0, 1.0) } else { 0.0 };

@@ -81,7 +81,7 @@ impl Shadows {
     }
 }
 
-/// Position of a point's shadow on a plane of this height, m, and height of the point above it.
+/// Returns the position of a point's shadow on a plane of this height, m, and height of the point above it.
 fn fallen(point_m: &Vector3<f32>, plane_m: f32) -> Option<(Vector3<f32>, f32)> {
     let height_m = (point_m.z - plane_m).max(0.0);
     let position_m = point_m - LAMP * (height_m / LAMP.z);

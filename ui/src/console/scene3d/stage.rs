@@ -237,7 +237,7 @@ pub fn arrow_bases_m(pose: &StagePose, trocar_m: &Vector3<f32>, right: &Vector3<
     [0.0135, 0.0060].map(|away| pose.tip_m + right * (side * away) + Vector3::z() * 0.002)
 }
 
-/// Size and direction of an arrow; `None` for a force too small to be shown, or not finite.
+/// Returns the size and direction of an arrow; `None` for a force too small to be shown, or not finite.
 fn size_and_direction(force_n: &Vector3<f32>) -> Option<(f32, Vector3<f32>)> {
     let size_n = force_n.norm();
     // A force far above the force limit would otherwise fill the view.

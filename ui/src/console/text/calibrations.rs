@@ -64,7 +64,8 @@ pub(in crate::console) const ARM_TO_CALIBRATE: Text = Text::of(
     "Die Assistenten kalibrieren den Handgelenksensor dieses Arms",
 );
 
-/// Reason why no wizard, which sets the loop to idle, can be opened in this state, with the remedy; `None` if one can.
+/// Returns the reason why no wizard, which sets the loop to idle, can be opened in this state, with the remedy; `None`
+/// if one can.
 pub(crate) fn closed(state: LoopState) -> Option<&'static str> {
     match state {
         LoopState::Idle | LoopState::Engaged => None,

@@ -52,7 +52,7 @@ pub(in crate::console) fn rate(hz: f64, nominal_hz: Option<f64>) -> String {
     }
 }
 
-/// Median and 99th percentile of the ages, s.
+/// Returns the median and 99th percentile of the ages, s.
 pub(in crate::console) fn age([p50_s, p99_s]: [f64; 2]) -> String {
     text_format!("p50 {:.0} ms, p99 {:.0} ms", "p50 {:.0} ms, p99 {:.0} ms", p50_s * 1e3, p99_s * 1e3)
 }

@@ -7,7 +7,7 @@ pub(in crate::console) const LEFT: Text = Text::of("Left", "Links");
 pub(in crate::console) const MEASURED: Text = Text::of("Measured", "Gemessen");
 pub(in crate::console) const RENDERED: Text = Text::of("Rendered", "Dargestellt");
 
-/// Name of a hand, as in "Right hand".
+/// Returns the name of a hand, as in "Right hand".
 pub(in crate::console) fn hand(side: &str) -> String {
     let after = side.to_lowercase();
     text_format!("{side} hand", "Hand {after}")

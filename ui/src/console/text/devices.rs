@@ -157,7 +157,7 @@ pub(in crate::console) fn column(side: Option<nima_machine::rig::Side>) -> &'sta
     }
 }
 
-/// Kind of part, on the button that swaps the devices of that kind.
+/// Returns the kind of part, on the button that swaps the devices of that kind.
 pub(in crate::console) fn kind(kind: PartKind) -> &'static str {
     match kind {
         PartKind::Handle => word("Handles", "Handgeräte"),
@@ -182,7 +182,7 @@ pub(in crate::console) fn light(name: &str, motion: Option<&str>) -> String {
     }
 }
 
-/// Motion of the device that changes this channel.
+/// Returns the motion of the device that changes this channel.
 pub(in crate::console) fn motion(kind: PartKind, channel: usize) -> String {
     match (kind, channel) {
         (PartKind::Handle, 0..=2) => word("moved", "bewegt").to_owned(),

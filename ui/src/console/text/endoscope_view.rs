@@ -86,7 +86,7 @@ pub(in crate::console) fn damaged(why: &str) -> String {
     text_format!("Image is damaged: {why}", "Bild ist beschädigt: {why}")
 }
 
-/// Sizes in px.
+/// Returns the sizes in px.
 pub(in crate::console) fn size([width, height]: [usize; 2], [wanted_width, wanted_height]: [usize; 2]) -> String {
     text_format!(
         "Image is {width} x {height} pixels, not {wanted_width} x {wanted_height}",

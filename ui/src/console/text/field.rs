@@ -87,7 +87,7 @@ pub(in crate::console) fn of_hand(side: &str) -> String {
     text_format!(" of the {side} hand", " (Hand {side})")
 }
 
-/// Position in the base frame, mm.
+/// Returns the position in the base frame, mm.
 pub(in crate::console) fn place([x, y, z]: [f32; 3]) -> String {
     text_format!("x {x:.1}, y {y:.1}, z {z:.1} mm (world)", "x {x:.1}, y {y:.1}, z {z:.1} mm (Welt)")
 }

@@ -20,7 +20,7 @@ pub(in crate::console) fn ahead(delay_ms: f64) -> String {
     )
 }
 
-/// Mean errors of the two curves of the trend, with their unit.
+/// Returns the mean errors of the two curves of the trend, with their unit.
 pub(in crate::console) fn trend(seconds: usize, mode: &str, error: &str, dfr: &str) -> String {
     text_format!(
         "Last {seconds} s: {mode} {error}, delayed DFR {dfr}",

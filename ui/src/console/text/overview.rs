@@ -74,7 +74,8 @@ pub(in crate::console) fn checked(day: &str, found: &str) -> String {
     text_format!("ready check on {day}: {found}", "Startprüfung vom {day}: {found}")
 }
 
-/// Fractions of the time with force, 0 to 1, in which the network was outside its training data and not used.
+/// Returns the fractions of the time with force, 0 to 1, in which the network was outside its training data and not
+/// used.
 pub(in crate::console) fn in_use(outside: f64, without: f64) -> String {
     let fractions = text_format!(
         "outside its training {:.0} % of the time, not used {:.0} %",

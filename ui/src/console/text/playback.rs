@@ -125,7 +125,7 @@ pub(in crate::console) fn speed(factor: f64) -> String {
     format!("{factor}\u{d7}")
 }
 
-/// Time of a session, s, with milliseconds.
+/// Returns the time of a session, s, with milliseconds.
 pub(in crate::console) fn clock(t_s: f64) -> String {
     let hours = (t_s / 3600.0).floor();
     let minutes = (t_s / 60.0).floor() % 60.0;
@@ -133,12 +133,12 @@ pub(in crate::console) fn clock(t_s: f64) -> String {
     if hours > 0.0 { format!("{hours}:{minutes:02}:{seconds:06.3}") } else { format!("{minutes}:{seconds:06.3}") }
 }
 
-/// Time of a session, s, in whole seconds.
+/// Returns the time of a session, s, in whole seconds.
 pub(in crate::console) fn short_clock(t_s: f64) -> String {
     clock(t_s.floor()).trim_end_matches(".000").to_owned()
 }
 
-/// Time on the screen, and length of the session, s.
+/// Returns the time on the screen, and length of the session, s.
 pub(in crate::console) fn position(t_s: f64, end_s: f64) -> String {
     text_format!("{} of {}", "{} von {}", clock(t_s), short_clock(end_s))
 }

@@ -137,7 +137,7 @@ pub(in crate::console) const BARS_HOVER: Text = Text::of(
      die größte Kraft, die die Hand erreichen kann.",
 );
 
-/// Travel of the handle since its release, mm.
+/// Returns the travel of the handle since its release, mm.
 pub(in crate::console) fn handle_went(travel_mm: f64) -> String {
     if travel_mm < 10.0 {
         text_format!("The handle moved {travel_mm:.1} mm.", "Weg des Handgeräts: {travel_mm:.1} mm.")

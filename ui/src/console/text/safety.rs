@@ -43,12 +43,12 @@ pub(in crate::console) fn of_hand(side: &str) -> String {
     text_format!(", {side} hand", ", Hand {side}")
 }
 
-/// Time at which the state was entered, s on the loop's clock, and the cause.
+/// Returns the time at which the state was entered, s on the loop's clock, and the cause.
 pub(in crate::console) fn since(t_s: f64, why: &str) -> String {
     text_format!("since {t_s:.1} s: {why}", "seit {t_s:.1} s: {why}")
 }
 
-/// Title of the diagram; `whose` from [`of_hand`].
+/// Returns the title of the diagram; `whose` from [`of_hand`].
 pub(in crate::console) fn interlock(whose: &str, state: &str) -> String {
     text_format!("Interlock{whose}: {state}", "Verriegelung{whose}: {state}")
 }

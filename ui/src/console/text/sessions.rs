@@ -13,7 +13,7 @@ pub(in crate::console) const CURE: Text = Text::of(
     "Platz schaffen oder Ordner wechseln; ist die Aufzeichnung beendet, den Aufbau neu starten",
 );
 
-/// Label of the button that keeps a session.
+/// Returns the label of the button that keeps a session.
 pub(in crate::console) fn recorded_for(seconds: u64, kept: bool) -> String {
     let what = if kept { word("Kept", "Gesichert") } else { word("Rec", "Rec") };
     let hours = seconds / 3600;

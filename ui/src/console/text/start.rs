@@ -148,7 +148,7 @@ pub(in crate::console) const ENDOSCOPE_FORMS: Text = Text::of(
 pub(in crate::console) const NO_ENDOSCOPE: Text =
     Text::of("None: the Surgeon view draws the field", "Keins: die Ansicht Chirurg zeichnet das OP-Feld");
 
-/// Size of the image in px, and frame rate; `None` for a still image.
+/// Returns the size of the image in px, and frame rate; `None` for a still image.
 pub(in crate::console) fn endoscope_sends([width, height]: [usize; 2], rate_hz: Option<f64>) -> String {
     match rate_hz {
         Some(rate_hz) => text_format!(

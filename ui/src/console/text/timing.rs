@@ -102,7 +102,7 @@ pub(in crate::console) fn ticks_at(ticks: &str, rate_hz: f64) -> String {
     text_format!("{ticks} at {rate_hz:.0} Hz", "{ticks} mit {rate_hz:.0} Hz")
 }
 
-/// Time between two frames (median and 99th percentile) and work per frame, ms.
+/// Returns the time between two frames (median and 99th percentile) and work per frame, ms.
 pub(in crate::console) fn frame([p50_ms, p99_ms]: [f64; 2], work_ms: f64) -> String {
     text_format!(
         "p50 {p50_ms:.0}, p99 {p99_ms:.0}, work {work_ms:.0} ms",

@@ -39,7 +39,7 @@ pub(in crate::console) fn at_cursor(axis: &str, measured: &str, rendered: &str) 
     )
 }
 
-/// Name of the plot of an axis.
+/// Returns the name of the plot of an axis.
 pub(in crate::console) fn plot(axis: &str, side: &str) -> String {
     text_format!("Force along {axis}, {side} hand", "Kraft längs {axis}, Hand {side}")
 }

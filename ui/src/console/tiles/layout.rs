@@ -211,8 +211,8 @@ fn node(tiles: &Tiles<Panel>, id: TileId) -> Option<LayoutNode> {
     }
 }
 
-/// Settings on the left, figures on the right, the 3-D view above the traces in between; panels that do not fit are placed in
-/// tabs.
+/// Returns the settings on the left, figures on the right, the 3-D view above the traces in between; panels that do not
+/// fit are placed in tabs.
 fn default_for(size: Vec2) -> LayoutNode {
     let middle = (size.x - KNOBS - FIGURES).max(200.0);
     let height = size.y.max(200.0);

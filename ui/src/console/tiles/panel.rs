@@ -114,7 +114,7 @@ impl Panel {
         }
     }
 
-    /// Title on its tab and in the menu.
+    /// Returns the title on its tab and in the menu.
     pub fn title(self) -> &'static str {
         self.kind().title.get()
     }
@@ -128,7 +128,7 @@ impl Panel {
         self.kind().shows
     }
 
-    /// Minimum readable size, points; a smaller panel is scrolled.
+    /// Returns the minimum readable size, points; a smaller panel is scrolled.
     pub(super) const fn min_size(self) -> Vec2 {
         let [width, height] = self.kind().min;
         vec2(width, height)

@@ -199,7 +199,7 @@ pub(super) fn heat_map(ui: &mut Ui, width: f32, title: &str, map: &CoverageMap, 
     axis_text(&painter, field, across, up);
 }
 
-/// Colour of a cell, from dark to bright.
+/// Returns the colour of a cell, from dark to bright.
 fn heat(fraction: f32) -> Color32 {
     let [from, to] = [theme::now().selected, theme::now().measured].map(|colour| colour.to_array());
     let mix = |k: usize| lerp(f32::from(from[k])..=f32::from(to[k]), fraction) as u8;

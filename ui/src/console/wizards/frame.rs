@@ -74,13 +74,13 @@ impl WizardFrame {
 
 /// A wizard for one calibration. It draws its own steps except the last one (saving), which is common.
 pub(crate) trait Wizard: std::fmt::Debug {
-    /// Its steps; the last one saves.
+    /// Returns its steps; the last one saves.
     fn steps(&self) -> &'static [WizardStep];
     fn frame_mut(&mut self) -> &mut WizardFrame;
 
     /// Adds one tick of a loop of this rate (Hz).
     fn tick(&mut self, tick: &Tick, rate_hz: f64);
-    /// Current instruction to the person at the arm.
+    /// Returns the current instruction to the person at the arm.
     fn prompt(&self) -> Prompt;
     /// Whether the next step may start; otherwise the reason.
     fn may_go_on(&self, binding: &Binding) -> Result<(), &'static str>;
@@ -252,7 +252,7 @@ fn save_card(ui: &mut Ui, binding: Option<&Binding>, proof: Option<&str>, frame:
     })
 }
 
-/// Name and reason for an override; returns true when both are entered and confirmed.
+/// Returns the name and reason for an override; returns true when both are entered and confirmed.
 fn override_ui(ui: &mut Ui, by: [&mut String; 2]) -> bool {
     let mut named = true;
     for (label, text) in [text::wizards::YOUR_NAME.get(), text::wizards::REASON.get()].into_iter().zip(by) {

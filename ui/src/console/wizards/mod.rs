@@ -226,7 +226,7 @@ pub enum SaveRequest {
 }
 
 impl SaveRequest {
-    /// Its judgement; a network without a check has none.
+    /// Returns its judgement; a network without a check has none.
     fn judgement_mut(&mut self) -> Option<&mut Judgement> {
         match self {
             Self::Gravity(record) => Some(&mut record.judgement),
@@ -303,7 +303,7 @@ impl Wizards {
         }
     }
 
-    /// Current instruction to the person at the arm.
+    /// Returns the current instruction to the person at the arm.
     pub fn prompt(&self) -> Prompt {
         self.open.and_then(|which| self.the(which)).map_or(Prompt::Rest, Wizard::prompt)
     }

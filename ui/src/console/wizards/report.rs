@@ -11,7 +11,7 @@ use crate::{
 /// Result of a session, or the reason for a missing one; `None` with too few data.
 pub(super) type WizardReport<R> = Option<Result<R, String>>;
 
-/// Text of a verdict and its reason.
+/// Returns the text of a verdict and its reason.
 pub(super) fn verdict_text(verdict: Verdict, reason: &str) -> String {
     format!("{}: {reason}", verdict.words())
 }

@@ -5,7 +5,7 @@ use nima_machine::messages::LoopState;
 
 use crate::{language::word, report_text::Remedy as _};
 
-/// Cause and remedy, sent next to the state's code; empty if the state needs no action.
+/// Returns the cause and remedy, sent next to the state's code; empty if the state needs no action.
 pub(super) fn trouble_of(state: LoopState) -> String {
     match state {
         InterlockState::Faulted(fault) => format!("{}. {}", fault.cause(), fault.cure()),

@@ -115,7 +115,7 @@ fn marks_by(library: &Path) -> anyhow::Result<Box<dyn WatchServer>> {
     Ok(Box::new(marker))
 }
 
-/// Name of this computer, or a default if the system does not report one.
+/// Returns the name of this computer, or a default if the system does not report one.
 fn machine() -> String {
     let by_kernel = std::fs::read_to_string("/proc/sys/kernel/hostname").ok();
     let name = by_kernel.or_else(|| std::env::var("COMPUTERNAME").ok()).unwrap_or_default();

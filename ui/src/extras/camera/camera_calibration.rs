@@ -13,7 +13,7 @@ pub(super) struct FoundPlace {
     /// In the workspace, or in the frame of the endoscope's marker.
     pub(super) pose: Isometry3<f64>,
     pub(super) on_marker: bool,
-    /// Its error on held-out points, px.
+    /// Error on held-out points, px.
     pub(super) checked_px: f64,
 }
 

@@ -78,7 +78,7 @@ fn folder() -> anyhow::Result<PathBuf> {
     Ok(folder.join("department"))
 }
 
-/// Identity of this machine.
+/// Returns the identity of this machine.
 pub(super) fn own_identity() -> anyhow::Result<MachineIdentity> {
     Ok(MachineIdentity::load(&folder()?)?)
 }

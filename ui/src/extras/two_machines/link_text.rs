@@ -17,7 +17,7 @@ pub(super) fn state_text(state: LinkState) -> String {
     }
 }
 
-/// Cause and remedy of a broken link, clauses without a full stop; `None` if the link works.
+/// Returns the cause and remedy of a broken link, clauses without a full stop; `None` if the link works.
 pub(super) fn link_trouble(state: LinkState) -> Option<[String; 2]> {
     let cause = match state {
         LinkState::Open => return None,

@@ -229,7 +229,7 @@ pub(super) fn run_virtual(
 }
 
 impl TrialRun {
-    /// Text without the condition, and without the result unless it is to be shown.
+    /// Returns the text without the condition, and without the result unless it is to be shown.
     pub(super) fn as_text(&self, shows_result: bool) -> String {
         let Self { trial, ending, completion_time_s, why } = self;
         let what = if trial.phase == TrialPhase::Practice { "practice trial" } else { "trial" };
@@ -244,7 +244,7 @@ impl TrialRun {
     }
 }
 
-/// Text of the next step within a sentence.
+/// Returns the text of the next step within a sentence.
 pub(super) fn next_text(step: &StudyStep) -> String {
     format!("next: {step}")
 }

@@ -43,7 +43,7 @@ pub(super) fn close(console: &mut Console) {
     assert!(!is_open(console));
 }
 
-/// Names of the rows, and whether each can be chosen.
+/// Returns the names of the rows, and whether each can be chosen.
 pub(super) fn rows(console: &mut Console) -> Vec<(String, bool)> {
     open(console);
     let rows = console.query_all_by_role(Kind::MenuItem).map(|row| row.accesskit_node());

@@ -1,4 +1,4 @@
-//! Hand-eye calibration: finds the marker on the flange and the tracker next to the arm together.
+//! Hand-eye calibration: finds the poses of the marker on the flange and of the tracker next to the arm simultaneously.
 //!
 //! In every pose `base_from_flange * flange_from_m = base_from_c * c_from_m`, in short `A X = Y B`. A published solver
 //! gives the start ([`HandEyeSolver`]); a Gauss-Newton method on the rigid motions refines it, with the errors weighted by a
@@ -162,8 +162,8 @@ impl Calibration for HandEyeSettings {
         FrameReport::of(have, found, uncertainty, value).judged(&self.limits)
     }
 
-    /// If arm and marker belong to different sides, and both sides move, either could be the wrong one: the marker is
-    /// reported. While the other side rests, the swapped one is reported.
+    /// If arm and marker belong to different sides, and both sides move, either could be the wrong one; the marker is
+    /// reported. If the other side is at rest, the swapped part is reported.
     fn mistakes(&self) -> Vec<(Mistake, Carrier)> {
         let mut mistakes = vec![
             (Mistake::SwappedMarker, Carrier::Marker),
@@ -181,8 +181,8 @@ impl Calibration for HandEyeSettings {
     }
 }
 
-/// Both must turn: a turning flange with a marker that does not turn is not a hand-eye motion, but a swapped arm or
-/// marker.
+/// Returns the arm and marker must both turn: a turning flange with a marker that does not turn is not a hand-eye
+/// motion, but a swapped arm or marker.
 fn lacking(rows: &[HandEyeRow]) -> Option<FrameCause> {
     let flange = Turns::of(rows.iter().map(|row| &row.base_from_flange));
     let marker = Turns::of(rows.iter().map(|row| &row.c_from_m));

@@ -13,19 +13,19 @@ type Normal = SMatrix<f64, UNKNOWNS, UNKNOWNS>;
 type RefineStep = SVector<f64, UNKNOWNS>;
 type Slopes = SMatrix<f64, 3, UNKNOWNS>;
 
-/// Noise of a tracker; only the ratio of the two matters here. 0.25 mm and 0.02 degrees.
+/// Noise of a tracker (0.25 mm and 0.02 degrees); only the ratio of the two matters here.
 const NOISE_M: f64 = 0.25e-3;
 const NOISE_RAD: f64 = 3.5e-4;
 const STEPS: usize = 10;
-/// A step that lowers the sum of squares by a smaller fraction is the last one. From a solver's start this takes two or
-/// three steps.
+/// A step that reduces the sum of squares by a smaller fraction is the last one. From the start given by a solver, this
+/// takes two or three steps.
 const LAST_FRACTION: f64 = 1e-7;
 
 pub(super) struct RefinedFrames {
     pub(super) frames: HandEyeFrames,
     /// Covariance of a step: `x`, then `y`.
     pub(super) covariance: Normal,
-    /// Degrees of freedom of its variance.
+    /// Degrees of freedom of the variance.
     pub(super) freedom: usize,
 }
 
@@ -35,7 +35,7 @@ struct RefineLinear {
     squares: f64,
 }
 
-/// Returns the frames of smallest weighted squares near `start`; `None` if the poses do not determine them.
+/// Returns the frames with the smallest weighted squares near `start`; `None` if the poses do not determine them.
 pub(super) fn refined(rows: &[HandEyeRow], start: HandEyeFrames) -> Option<RefinedFrames> {
     let mut frames = start;
     let mut here = linear(rows, &frames);

@@ -7,7 +7,7 @@ use crate::calibration::frames::*;
 
 const SEEDS: u64 = 50;
 
-/// Returns the number of sample sets in which this mistake is reported. Undoing a mistake that is absent introduces it.
+/// Returns the number of sample sets in which this mistake is reported. Undoing an absent mistake introduces it.
 fn named<C: Calibration>(
     calibration: &C,
     made: Mistake,
@@ -84,7 +84,7 @@ fn a_table_names_swaps_and_exchanged_axes() {
     }
 }
 
-/// Lets the other arm and marker rest while one works.
+/// Keeps the other arm and marker at rest while one is used.
 fn resting(samples: &mut [FrameSample]) {
     let first = samples[0];
     for sample in samples {

@@ -37,8 +37,8 @@ pub(crate) fn base_from_c() -> Isometry3<f64> {
     pose([1.3, 0.7, 0.9], [-115.0, 10.0, 140.0])
 }
 
-/// Returns joint angles that put the tip here with the shaft in this direction; `None` if the arm does not reach it.
-/// Newton's method with damping.
+/// Returns joint angles with the tip here and the shaft in this direction; `None` if the arm cannot reach it. Newton's
+/// method with damping.
 fn reached(tip_m: &Vector3<f64>, direction: &Vector3<f64>) -> Option<Joints> {
     let arm = arm();
     let mut joints = Joints::from(READY_RAD);
@@ -113,7 +113,7 @@ impl Rig {
         Isometry3::from_parts(place_m.into(), pose.rotation * UnitQuaternion::from_scaled_axis(self.vector(NOISE_RAD)))
     }
 
-    /// Measures with this flange pose and the other arm at a different pose.
+    /// Returns the measures with this flange pose, and with the other arm at a different pose.
     pub(crate) fn sample(&mut self, base_from_flange: &Isometry3<f64>) -> FrameSample {
         let other = through_trocar()[(self.noise.uniform() * 300.0) as usize];
         let seen = |flange: &Isometry3<f64>| base_from_c().inverse() * flange * flange_from_m();

@@ -1,4 +1,4 @@
-//! Guided recording: still poses are recorded, moving ones are not, and the missing part is reported.
+//! Guided recording: still poses are recorded, poses in motion are not, and the missing part is reported.
 
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 
@@ -7,7 +7,7 @@ use crate::calibration::{CalibrationRecord, Judgement, RecordHead, Verdict, fram
 
 const RATE_HZ: f64 = 60.0;
 
-/// Holds the flange for a second while it drifts at this speed, m/s; returns the observed states.
+/// Holds the flange for a second, drifting at this speed, m/s; returns the observed states.
 fn hold<C: Calibration>(
     session: &mut FrameSession<C>,
     rig: &mut Rig,

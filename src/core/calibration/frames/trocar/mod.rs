@@ -1,4 +1,4 @@
-//! The trocar: the point about which the instrument pivots, from lines of its shaft; and a watch over it afterwards.
+//! The trocar: the point about which the instrument pivots, from lines of its shaft; and monitoring of it afterwards.
 //!
 //! The least-squares point `x` for all lines (point `p_i`, direction `d_i`) solves `sum (I - d_i d_i^T) (x - p_i) = 0`.
 
@@ -23,8 +23,8 @@ const MIN_TILT_DEG: f64 = 4.0;
 /// Minimum angle between two lines, rad: 2 degrees, so that a shaft that hardly moves does not fill the session with
 /// equal lines. Chosen.
 const APART_RAD: f64 = 0.035;
-/// A session is complete with this number of lines. With 40, 95 % of 200 simulated calibrations by a tracker err by at
-/// most 0.36 mm (`docs/frames.md`).
+/// A session is complete with this number of lines. With 40, 95 % of 200 simulated calibrations with a tracker have an
+/// error of at most 0.36 mm (`docs/frames.md`).
 const PLENTY: usize = 40;
 const PLENTY_TILT_DEG: f64 = 10.0;
 
@@ -32,7 +32,7 @@ const PLENTY_TILT_DEG: f64 = 10.0;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShaftLine {
     pub point_m: Vector3<f64>,
-    /// Its direction towards the tip, unit length.
+    /// Direction of the shaft towards the tip, unit length.
     pub direction: Vector3<f64>,
 }
 

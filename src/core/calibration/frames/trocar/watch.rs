@@ -7,20 +7,20 @@ use super::{ShaftLine, across};
 /// Time over which lines are averaged, s: at 60 Hz and 0.25 mm of noise 0.03 mm remain.
 const AVERAGE_S: f64 = 0.5;
 /// Fraction of a line's information above which a direction counts as observed: the information of lines tilted by 13
-/// degrees. Along the shaft nothing is observed until it pivots.
+/// degrees. Along the shaft, nothing can be observed until it pivots.
 const SEEN: f64 = 0.05;
-/// After a longer gap the watch restarts, s, because the lines before it may be of another place. Chosen.
+/// After a longer gap the watch restarts, s, because the lines before the gap may be from another place. Chosen.
 const GAP_S: f64 = 1.0;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum TrocarState {
     Waiting,
     Fine {
-        /// Distance from its calibrated position, m.
+        /// Distance from the calibrated position, m.
         by_m: f64,
     },
     Moved {
-        /// Displacement, m, in the trocar's frame. Along the shaft it is observed only as far as the shaft pivots.
+        /// Displacement in the trocar's frame, m. Along the shaft it is observed only as far as the shaft pivots.
         by_m: [f64; 3],
     },
 }
@@ -44,8 +44,8 @@ impl TrocarWatch {
     /// Default limit, m. Breathing of the patient or a less accurate arm requires a larger one.
     pub const LIMIT_M: f64 = 1.0e-3;
 
-    /// Creates a watch over this trocar, m, in the frame of the lines. The state is `Moved` when the trocar is more
-    /// than `limit_m` from its calibrated position, and `Fine` again below half of that.
+    /// Creates a watch for this trocar, m, in the frame of the lines. The state is `Moved` when the trocar is more than
+    /// `limit_m` from its calibrated position, and `Fine` again below half of that.
     pub fn new(trocar_m: Vector3<f64>, limit_m: f64) -> Self {
         Self {
             trocar_m,

@@ -1,4 +1,4 @@
-//! Requests made to pump energy into a handle that nobody holds, by one who sees the handle's motion.
+//! Adversarial requests that try to pump energy into a released handle, based on its observed motion.
 
 use nalgebra::Vector1;
 
@@ -8,10 +8,10 @@ use crate::{
 };
 
 const PERIOD_S: f64 = 1e-3;
-/// A handle is let alone for so long before it is taken back to rest, and so is the chain, s.
+/// Time for which a handle is left alone before handle and chain are reset to rest, s.
 pub(super) const EPISODE_S: f64 = 2.0;
 
-/// How the requests go on for a while.
+/// Pattern of the requests for some time.
 #[derive(Clone, Copy, Debug)]
 enum Pattern {
     Steady,
@@ -91,7 +91,7 @@ impl Plan {
     }
 }
 
-/// Most energy (J) that a lone handle was given in one episode by so many adversarial requests.
+/// Returns the maximum energy (J) that a released handle received in one episode, over this many adversarial requests.
 pub(super) fn max_given_j(requests: u64, seed: u64, settings: ChainSettings) -> f64 {
     let mut noise = Noise::new(seed);
     let mut max_j = 0.0_f64;

@@ -13,19 +13,19 @@ use crate::{
 
 pub(super) const PERIOD_S: f64 = 1e-3;
 const SUBSTEPS: u32 = 4;
-/// The follower: natural frequency (Hz), fastest command (m/s), and how late its leader takes it to be (ticks).
+/// The follower: natural frequency (Hz), maximum speed of commands (m/s), and the lag assumed by the leader (ticks).
 const FOLLOWER_HZ: f64 = 12.0;
 const FOLLOWER_M_S: f64 = 0.3;
 const LAG_TICKS: usize = 26;
 /// Longest delay, ticks.
 const PAST: usize = 512;
 
-/// Where the force comes from.
+/// Source of the force.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Render {
     /// The tissue's force, late.
     Reflection,
-    /// A model of the tissue at the follower as the leader knows it.
+    /// A model of the tissue, applied at the follower's position as estimated by the leader.
     Model,
     /// A spring at the handle itself.
     Spring,
@@ -34,12 +34,12 @@ pub(super) enum Render {
 /// A person and a handle.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Person {
-    /// Mass of the hand with the handle (kg), its grip (N/m, N s/m) and tremor (m).
+    /// Mass of hand and handle (kg), stiffness and damping of the grip (N/m, N s/m), and tremor (m).
     pub(super) mass_kg: f64,
     pub(super) grip_n_m: f64,
     pub(super) grip_n_s_m: f64,
     pub(super) tremor_m: f64,
-    /// The handle alone: mass, viscous and Coulomb friction, step of its reading.
+    /// The handle without a hand: mass, viscous and Coulomb friction, step of its reading.
     pub(super) handle_kg: f64,
     pub(super) handle_n_s_m: f64,
     pub(super) coulomb_n: f64,
@@ -82,13 +82,13 @@ pub(super) struct Fixture {
     speed: Speed<1>,
     pub(super) tip_n: f64,
     pub(super) force_n: f64,
-    /// What the gates before the governor let pass, but for the limit of change and the energy gate, N.
+    /// Force passed by the gates before the governor, without slew limit and energy gate, N.
     pub(super) passed_n: f64,
     pub(super) report: GateReport,
 }
 
 impl Fixture {
-    /// With the usual gates and a brake of this viscosity, N s/m.
+    /// Creates a chain with the usual gates and a brake of this viscosity, N s/m.
     pub(super) fn new(person: Person, render: Render, delay: usize, brake_n_s_m: f64, seed: u64) -> Self {
         Self::of(person, render, delay, ChainSettings { brake_n_s_m, ..ChainSettings::default() }, seed)
     }

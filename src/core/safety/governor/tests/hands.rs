@@ -1,4 +1,5 @@
-//! People of every kind, who are all there: light and heavy hands, loose and stiff grips that change, calm and trembling, up to 350 mm/s.
+//! Hands of every kind that hold the handle: light and heavy, with loose and stiff grips that change, calm and
+//! trembling, up to 350 mm/s.
 
 use crate::noise::Noise;
 

@@ -13,7 +13,7 @@ use crate::{
     safety::{ALLOWANCE_J, ChainSettings, EnergyMode, Gate, LEAK_S, Reason},
 };
 
-/// What came of a letting go.
+/// Result of a release.
 #[derive(Clone, Copy, Debug, Default)]
 struct LetGo {
     before_n: f64,
@@ -90,8 +90,8 @@ const ALL_KINDS: Kinds<'_> =
     Kinds { handles_kg: &[0.2, 0.25, 0.31], coulomb_n: &[0.0, 0.05, 0.15], counts_m: &[1e-5, 2e-5], seeds: 2 };
 const SOME_KINDS: Kinds<'_> = Kinds { coulomb_n: &[0.0, 0.15], counts_m: &[1e-5], seeds: 1, ..ALL_KINDS };
 
-/// Returns the worst of letting go of this force (N), held and pressing, in all modes and delays, with a brake of this
-/// viscosity (N s/m). A force that has not yet arrived at the hand is not let go.
+/// Returns the worst result of releasing this force (N), held and pressing, in all modes and delays, with a brake of
+/// this viscosity (N s/m). A force that has not yet arrived at the hand is not let go.
 fn worst(force_n: f64, brake_n_s_m: f64, kinds: Kinds<'_>) -> LetGo {
     let mut worst = LetGo::default();
     let late = [0, 10, 50, 100, 200, 300].map(|delay| (Render::Reflection, delay));
@@ -151,7 +151,7 @@ fn figures_of_letting_go() {
     }
 }
 
-/// What random hands that are there lose.
+/// Force withheld from random hands that hold the handle.
 #[derive(Clone, Copy, Debug, Default)]
 struct Lost {
     declared: u32,
@@ -223,7 +223,8 @@ fn fuzz_hands_that_are_there() {
     });
 }
 
-/// What a chain may give a handle that nobody holds, J: the energy gate's allowance, its leak, and one prediction of motion.
+/// Returns the maximum energy that a chain may give to a released handle, J: the energy gate's allowance, its leak, and
+/// one prediction of motion.
 fn bound_j() -> f64 {
     1.3 * ALLOWANCE_J + ALLOWANCE_J / LEAK_S * adversary::EPISODE_S
 }
@@ -253,8 +254,8 @@ fn fuzz_no_requests_give_a_lone_handle_more_than_the_bound() {
     });
 }
 
-/// How much (N) the governor adds to the mean error of the force in the hand, against the tissue's at the same instant, for a hand that
-/// leaves the tissue twelve times with this fastest speed (m/s).
+/// Returns how much (N) the governor adds to the mean error of the force in the hand, against the tissue's at the same
+/// instant, for a hand that leaves the tissue twelve times with this fastest speed (m/s).
 fn cost_of_withdrawal_n(render: Render, delay: usize, m_s: f64) -> f64 {
     let mut benches = [ChainSettings::default(), ChainSettings::default().without_governor()]
         .map(|settings| Fixture::of(Person::STANDARD, render, delay, settings, 3));

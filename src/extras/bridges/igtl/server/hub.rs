@@ -19,7 +19,7 @@ use super::{
 const LOOK_EVERY: Duration = Duration::from_millis(100);
 /// Every client gets the status of the loop at this interval.
 const STATUS_EVERY: Duration = Duration::from_secs(1);
-/// A loop that sends nothing for this long is not running, even though a client has requested data.
+/// A loop that sends nothing for this long is considered stopped if a client has requested data.
 const SILENT: Duration = Duration::from_secs(2);
 
 pub(super) struct Hub {

@@ -18,8 +18,8 @@ const LOOK_EVERY: Duration = Duration::from_millis(10);
 
 /// A source of images. Called on the server's own thread.
 pub trait ImageProvider: Send + Debug {
-    /// Returns the newest image, if it has not been taken yet, and its age. Without `is_wanted` the source need not
-    /// keep images.
+    /// Returns the newest image, if it has not been taken yet, and its age. Without `is_wanted`, the source does not
+    /// need to keep images.
     fn newest(&mut self, is_wanted: bool) -> Option<(Image, Duration)>;
 }
 

@@ -21,7 +21,7 @@ struct QueuedMail {
     report: VecDeque<Vec<u8>>,
     bundle: Option<Vec<u8>>,
     image: Option<Vec<u8>>,
-    /// Bundles and images replaced by newer ones, and dropped answers.
+    /// Number of batches and images replaced by newer ones, and of dropped answers.
     replaced: u64,
     ends: bool,
 }
@@ -61,7 +61,7 @@ impl Mailbox {
         self.mail().image.is_some()
     }
 
-    /// Number of replaced and dropped entries.
+    /// Returns the number of replaced and dropped entries.
     #[cfg(test)]
     pub(super) fn replaced(&self) -> u64 {
         self.mail().replaced

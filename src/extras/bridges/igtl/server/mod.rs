@@ -1,4 +1,4 @@
-//! A server that reports the state of a loop to clients. Nothing that a client sends reaches the loop.
+//! A server that reports the state of a loop to clients. Data sent by a client never reach the loop.
 //!
 //! | thread | does |
 //! |---|---|
@@ -51,7 +51,7 @@ const AFTER_CLIENT: Duration = Duration::from_millis(5);
 /// Returns a sentence for a state: fault and remedy, or an empty text.
 pub type StateText = fn(LoopState) -> String;
 
-/// Information about a loop before it begins.
+/// Information about a loop before it starts.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LoopOutline {
     /// The trocar of each side, m (`world`), through which its shaft passes; `None` if unknown.
@@ -71,7 +71,7 @@ pub enum IgtlError {
     Thread(#[source] io::Error),
 }
 
-/// A server that runs until it is dropped, for one loop after the other.
+/// A server that runs until it is dropped, for successive loops.
 pub struct IgtlServer {
     shared: Arc<IgtlShared>,
     address: SocketAddr,
@@ -82,7 +82,7 @@ pub struct IgtlServer {
 struct IgtlShared {
     report: Sender<HubMessage>,
     clients: Mutex<Vec<Arc<IgtlClient>>>,
-    /// The loop's time (s, as bits) at which a client's next data are due; infinite if there are none.
+    /// Loop time (s, as bits) at which the next data of a client are due; infinite if none are.
     due: AtomicU64,
     /// States that were dropped because the queue was full.
     dropped: AtomicU64,
@@ -160,12 +160,12 @@ impl IgtlServer {
         self.address
     }
 
-    /// Number of connected clients.
+    /// Returns the number of connected clients.
     pub fn clients(&self) -> usize {
         self.shared.clients().iter().filter(|client| !client.is_gone()).count()
     }
 
-    /// States that clients did not get because this computer was too busy.
+    /// Returns the number of states that clients did not get because this computer was too busy.
     pub fn dropped(&self) -> u64 {
         self.shared.dropped.load(Ordering::Relaxed)
     }
@@ -228,7 +228,7 @@ fn listen(listener: &TcpListener, shared: &Arc<IgtlShared>) {
     }
 }
 
-/// Serves a client, or closes its connection if that is impossible.
+/// Accepts a client, or closes its connection if that is impossible.
 fn take_in(stream: TcpStream, shared: &Arc<IgtlShared>, threads: &mut Vec<JoinHandle<()>>) {
     let mut clients = shared.clients();
     clients.retain(|client| !client.is_gone());

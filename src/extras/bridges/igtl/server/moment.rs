@@ -19,11 +19,11 @@ use super::{
 /// Input of the hub.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum HubMessage {
-    /// A loop begins; its clock started at this time (ns since 1970).
+    /// A loop starts; its clock started at this time (ns since 1970).
     Begins(u64, LoopOutline),
-    /// Its state.
+    /// State of the loop.
     Moment(LoopMoment),
-    /// It has ended.
+    /// The loop has ended.
     Ends,
 }
 
@@ -132,7 +132,7 @@ impl IgtlWriter<'_> {
         Side::ALL.into_iter().zip(&self.moment.arms).filter_map(|(side, arm)| Some((side, arm.as_ref()?)))
     }
 
-    /// Tip and leader of each arm, as far as they are known.
+    /// Returns the known tip and leader poses of each arm.
     fn poses(&self) -> impl Iterator<Item = KnownPose> {
         let there = self.arms().filter(|(_, arm)| arm.state != InterlockState::Disconnected);
         there
@@ -190,8 +190,8 @@ fn is_finite(of: &Vector3<f64>) -> bool {
     of.iter().all(|number| number.is_finite())
 }
 
-/// Columns of a rotation whose z axis is the shaft's, pointing out of the tip. The instrument's rotation about its
-/// shaft is unknown: the x axis is horizontal.
+/// Returns the columns of a rotation whose z axis is the shaft's, pointing out of the tip. The instrument's rotation
+/// about its shaft is unknown: the x axis is horizontal.
 fn along(shaft_m: &Vector3<f64>) -> Option<[[f32; 3]; 3]> {
     let z = shaft_m.try_normalize(SHORTEST_M).filter(is_finite)?;
     let x = z.cross(&Vector3::z()).try_normalize(1e-6).unwrap_or_else(Vector3::x);

@@ -22,12 +22,12 @@ enum OfTopic {
 
 pub struct Publisher {
     writers: BTreeMap<(ArmSide, Ros2Topic), OfTopic>,
-    /// Dropping it ends the publication.
+    /// Dropping the node ends the publication.
     _node: Node,
 }
 
-/// Reliable, so that it matches readers of either kind; only the newest sample is kept, so that no reader waits for old
-/// ones.
+/// Reliable, so that it matches readers of either kind; only the newest sample is kept, so that readers do not wait for
+/// old ones.
 fn usual() -> QosProfile {
     QosProfile::publisher_default().reliability_reliable(WhenFull::Fail).history(History::KeepLast { depth: 1 })
 }

@@ -93,7 +93,7 @@ impl Ros2Topic {
     pub const ALL: [Self; 5] =
         [Self::MeasuredCp, Self::SetpointCp, Self::MeasuredCf, Self::RenderedCf, Self::OperatingState];
 
-    /// Its name, following the arm's.
+    /// Returns the name of the topic, after the name of the arm.
     pub const fn name(self) -> &'static str {
         match self {
             Self::MeasuredCp => "measured_cp",
@@ -136,7 +136,8 @@ pub fn samples(message: &IgtlMessage) -> Vec<Ros2Sample> {
     }
 }
 
-/// States of both arms while they are unknown; otherwise a late reader would take the last states for current ones.
+/// Publishes the states of both arms as unknown; otherwise a late reader would mistake the last states for current
+/// ones.
 pub fn unknown(time_ns: u64) -> Vec<Ros2Sample> {
     let of = |side| {
         let header = Ros2Header::at(time_ns)?;

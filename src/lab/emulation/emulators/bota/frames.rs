@@ -1,4 +1,4 @@
-//! Frames of an emulated sensor at its own rate, with the faults of their content.
+//! Frames of an emulated sensor at its own rate, with faults of their content.
 
 use nalgebra::Vector3;
 use nima_devices::bota::codec::{BotaFrame, INERTIAL_BYTES, Inertial};
@@ -93,7 +93,7 @@ impl BotaFrames {
         frame
     }
 
-    /// Applies faults of the sensor itself: its clock keeps running.
+    /// Applies faults of the sensor itself; its clock keeps running.
     fn fail(&mut self, frame: &mut BotaFrame, fault: EmulatedFault) {
         if !EmulatedFault::OF_SENSORS.contains(&fault) {
             self.since.clear();

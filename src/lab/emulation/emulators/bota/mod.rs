@@ -1,5 +1,5 @@
 //! Emulated sensors on real interfaces: pseudo-terminals, TCP and UDP, so that the manufacturer's client accepts them
-//! as real ones.
+//! like real ones.
 //!
 //! The measured values come from a [`BotaBody`], a closure of the emulator's time. Opening the port of a first-generation
 //! sensor restarts it, as in reality. Baud rates are emulated: a client with a wrong one reads garbage and is not
@@ -41,13 +41,13 @@ pub struct EmulatedBota {
     pub baud: Option<u32>,
     /// First generation: time from opening the port to the start, s.
     pub boot_s: f64,
-    /// First generation: this many starts leave it without its calibration.
+    /// First generation: number of starts after which the calibration is not active.
     pub raw_starts: u32,
-    /// Its clock when the emulator begins, us.
+    /// Clock when the emulator begins, us.
     pub first_timestamp_us: u32,
     /// Status bits that are always set.
     pub status: u16,
-    /// Serial: the name of its port; by default in its own folder.
+    /// Serial interface: name of the port; by default in a temporary folder.
     pub link: Option<std::path::PathBuf>,
     /// Socket: TCP port for commands; 0 selects a free one.
     pub tcp_port: u16,
@@ -93,7 +93,7 @@ trait BotaWire: Send {
     fn receive(&mut self, bytes: &[u8], now_s: f64, answer: &mut Vec<u8>);
     /// Called when time has passed: completes a start, or a command without a terminator.
     fn tick(&mut self, now_s: f64, answer: &mut Vec<u8>);
-    /// Time between readings while it measures, s.
+    /// Returns the time between readings while it measures, s.
     fn period_s(&self) -> Option<f64>;
     /// Returns whether frames contain the inertial unit.
     fn is_inertial(&self) -> bool;

@@ -24,7 +24,7 @@ pub(super) struct EmulatedSensor {
     of: EmulatedBota,
     /// Whether a command of the client has been answered.
     known: bool,
-    /// Bytes of the client since its last answered command.
+    /// Number of bytes from the client since its last answered command.
     unanswered: usize,
 }
 
@@ -126,7 +126,7 @@ mod tests {
     use super::*;
     use crate::emulators::{EmulatorThread, bota::slow_motion};
 
-    /// An active client is answered within milliseconds; this allows for busy machines.
+    /// An active client is answered within milliseconds; this limit allows for busy machines.
     const LONG: Duration = Duration::from_secs(20);
 
     fn sensor() -> EmulatorThread {

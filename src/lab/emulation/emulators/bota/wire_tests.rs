@@ -14,7 +14,7 @@ use crate::emulators::{
     bota::{EmulatedBota, slow_motion},
 };
 
-/// Short, to keep tests short; the emulated sensors start within it.
+/// Short timeouts, to keep tests short; the emulated sensors start within them.
 const TIMEOUT: BotaTimeouts = BotaTimeouts {
     boot: Duration::from_millis(300),
     answer: Duration::from_millis(100),
@@ -86,7 +86,7 @@ fn sensors_on_real_wires_are_read_whole_and_without_loss() {
     });
 }
 
-/// Polls until `done`; `None` after 4 s, otherwise the time it took.
+/// Polls until `done`; returns the time it took, or `None` after 4 s.
 fn until(
     slot: &mut DeviceSlot<BotaDriver>,
     zero: Instant,
@@ -103,8 +103,8 @@ fn until(
     None
 }
 
-/// For every fault, checks that the sensor is lost with `loss` or that `counter` counts; after the fault is removed
-/// there must be readings again.
+/// For every fault, checks that the sensor is lost with `loss` or that `counter` increases, and that readings return
+/// after the fault is removed.
 fn faults(transport: Transport, faults: &[(EmulatedFault, Expected)]) {
     let (serving, settings) = serve(transport, emulated());
     let mut slot = DeviceSlot::start("bota", move || BotaDriver::open_within(&settings, TIMEOUT)).unwrap();

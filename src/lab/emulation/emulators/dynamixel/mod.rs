@@ -52,7 +52,7 @@ pub struct ServoSurroundings {
     pub temperature_c: f64,
 }
 
-/// The world: called with the time, s, the index of the servo, and its shaft.
+/// The world: called with the time, s, the index of the servo, and the state of its shaft.
 pub type DynamixelBody = Box<dyn FnMut(f64, usize, &ServoShaft) -> ServoSurroundings + Send>;
 
 #[derive(Clone, Debug)]
@@ -139,7 +139,7 @@ impl Bus {
         })
     }
 
-    /// Current baud rate of the servos, bit/s.
+    /// Returns the current baud rate of the servos, bit/s.
     pub fn baud(&self) -> u32 {
         let code = self.servos.first().map_or(1, |servo| servo.get(table::BAUD));
         BAUDS[code as usize % BAUDS.len()]
@@ -156,7 +156,7 @@ impl Bus {
         self.servos.get(index).map(EmulatedServo::shaft)
     }
 
-    /// Interrupts a servo's power for a moment; it restarts by itself.
+    /// Interrupts a servo's power for a moment; the servo then restarts.
     pub fn interrupt(&mut self, index: usize, now_s: f64) {
         if let Some(servo) = self.servos.get_mut(index) {
             servo.reboot(now_s);
@@ -300,7 +300,7 @@ impl Bus {
         }
     }
 
-    /// Executes an instruction on a servo; returns the status return level from which it answers, and the answer.
+    /// Executes an instruction on a servo; returns the minimum status return level for an answer, and the answer.
     fn one(
         servo: &mut EmulatedServo,
         instruction: &Instruction<'_>,
@@ -379,7 +379,7 @@ impl Bus {
         }
     }
 
-    /// Sends the packet in `out` when its time has come.
+    /// Sends the packet in `out` when it is due.
     fn enqueue(&mut self, index: usize) {
         let delay_s = self.servos[index].get(table::RETURN_DELAY) as f64 * 2e-6;
         let wire_s = self.out.bytes().len() as f64 * 10.0 / f64::from(self.baud());

@@ -5,7 +5,7 @@ use std::io;
 use super::Bus;
 use crate::emulators::{Emulator, EmulatorTurn, WireEnd, WirePeer, wires::terminal};
 
-/// A waiting thread wakes up this late, s; answers are punctual nevertheless.
+/// Delay with which a waiting thread wakes up, s; answers are punctual nevertheless.
 const WAKE_S: f64 = 50e-6;
 
 impl Emulator for Bus {

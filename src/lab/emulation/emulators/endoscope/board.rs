@@ -12,8 +12,8 @@ const WAY_S: f64 = 0.4;
 /// Fraction of the image width that the board covers, and margin around its corners, px.
 const WIDE: f64 = 0.4;
 const FREE_PX: f64 = 16.0;
-/// Barrel distortion compresses squares to nothing where it folds back: the board stays within this fraction of the
-/// tangent there.
+/// Barrel distortion compresses squares to nothing where it folds back, so the board stays within this fraction of the
+/// tangent at that point.
 const SQUEEZED: f64 = 0.8;
 /// Positions of the middle of the board in the image, -1 to 1 horizontally and vertically.
 const PLACES: [[f64; 2]; 9] = [
@@ -27,11 +27,12 @@ const PLACES: [[f64; 2]; 9] = [
     [0.0, 0.6],
     [-0.62, 0.0],
 ];
-/// Its tilt about the horizontal and the vertical axis, and its rotation, degrees.
+/// Tilt about the horizontal and the vertical axis, and its rotation, degrees.
 const TURNS_DEG: [[f64; 3]; 5] =
     [[0.0, 0.0, 4.0], [26.0, 0.0, -6.0], [-26.0, 0.0, 8.0], [0.0, 26.0, 0.0], [0.0, -26.0, -10.0]];
 const POSES: usize = 20;
-/// Noise of the sensor, of 255: without it every image of a still board would be equal, like that of a frozen camera.
+/// Noise of the sensor, of 255. Without noise, all images of a still board would be equal, like those of a frozen
+/// camera.
 const NOISE: f32 = 2.0;
 
 /// Returns a person who holds the board at one position after the other, over the whole image, and tilts it in every
@@ -46,7 +47,7 @@ pub fn held(board: Checkerboard, lens: &Lens) -> BoardHands {
     })
 }
 
-/// Returns a pose of the list, as close to its position as the whole board is visible.
+/// Returns a pose of the list, as close to its position as possible with the whole board visible.
 fn pose(board: &Checkerboard, lens: &Lens, k: usize) -> Isometry3<f64> {
     let [width, height] = lens.size_px.map(|side| side as f64);
     let side_m = board.corners()[0] as f64 * board.square_m();

@@ -27,12 +27,12 @@ const STEEL_M: f64 = 0.012;
 /// Width of the shadow under a tip, m, and height above the tissue at which it disappears, m.
 const SHADOW_M: f64 = 0.006;
 const SHADOW_HEIGHT_M: f64 = 0.03;
-/// Distance at which the light of the lens has its full strength, m.
+/// Distance at which the light of the lens has full strength, m.
 const LIT_M: f64 = 0.11;
 /// Length of the pieces in which a shaft is drawn, m, and length that is drawn, m.
 const PIECE_M: f64 = 0.002_5;
 const FOLLOWED_M: f64 = 0.25;
-/// A piece of a shaft extends a little beyond its ends, in lengths, so that bent ones leave no gap.
+/// A piece of a shaft extends slightly beyond its ends, as a fraction of its length, so that bent shafts have no gaps.
 const BESIDE: std::ops::RangeInclusive<f64> = -0.25..=1.25;
 /// Objects farther outside the image than this are not drawn, px.
 const OUTSIDE_PX: f64 = 300.0;
@@ -82,7 +82,7 @@ impl Painter {
         });
     }
 
-    /// From the far end to the tip, so that near parts cover far ones.
+    /// Draws a shaft from the far end to the tip, so that near parts cover far ones.
     fn shaft(&mut self, EndoscopeInstrument { tip_m, trocar_m }: &EndoscopeInstrument) {
         let Some(axis) = (trocar_m - tip_m).try_normalize(1e-6) else { return };
         let [width, height] = self.camera.lens.size_px.map(|side| side as f64);
@@ -114,7 +114,7 @@ impl Painter {
         self.near([middle_px; 2], radius_px, |pixel, _| *pixel = MARK);
     }
 
-    /// Position and radius of a ball in the image, px.
+    /// Returns the position and radius of a ball in the image, px.
     fn disc(&self, middle_m: &Vector3<f64>, radius_m: f64) -> Option<(Vector2<f64>, f64)> {
         let middle_px = self.camera.project(middle_m)?;
         let beside_px = self.camera.project(&(middle_m + self.camera.right() * radius_m))?;

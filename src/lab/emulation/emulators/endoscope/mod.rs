@@ -48,7 +48,7 @@ pub struct EmulatedEndoscope {
     pub port: u16,
     /// Frames per second.
     pub rate_hz: f64,
-    /// Its lens and its pose; for a stereo endoscope the left lens.
+    /// Lens and its pose; for a stereo endoscope the left lens.
     pub camera: Camera,
     /// Distance of a second lens to the right of the first, m; the two images are side by side. `None` for one lens.
     pub baseline_m: Option<f64>,
@@ -56,7 +56,7 @@ pub struct EmulatedEndoscope {
     pub square_px: usize,
     /// JPEG quality, 1 to 100.
     pub quality: u8,
-    /// File that also gets the images, one after the other: H.264 if it has that ending, else JPEGs.
+    /// File that also gets the images, one after the other: H.264 if it has that ending, otherwise JPEGs.
     pub pipe: Option<PathBuf>,
     /// Render at a low thread priority: next to emulators that serve a loop.
     pub gives_way: bool,
@@ -83,7 +83,7 @@ impl EmulatedEndoscope {
         Box::new(serve::EndoscopeServer::new(self, ShotSubject::Scene(Box::new(scene.clone())), seen))
     }
 
-    /// Makes the emulator with a calibration board in front of its single lens, and without a time code, which would
+    /// Creates the emulator with a calibration board in front of its single lens, and without a time code, which would
     /// cover the board.
     pub fn with_board(self, board: Checkerboard, mut hands: BoardHands) -> Box<dyn Emulator> {
         let seen = Box::new(move |now_s: f64| ShotState::Board(hands(now_s)));
@@ -96,8 +96,8 @@ impl EmulatedEndoscope {
 pub const SQUARE_PX: usize = 16;
 /// Distance of the lenses of the default stereo endoscope, m.
 pub const BASELINE_M: f64 = 0.004;
-/// Motion of the endoscope in the workspace by a push ([`EmulatedFault::Moved`](super::EmulatedFault)): it rotates in
-/// its own trocar, which yields.
+/// Returns the motion of the endoscope in the workspace by a push ([`EmulatedFault::Moved`](super::EmulatedFault)): it
+/// rotates in its own trocar, which yields.
 pub fn push() -> Isometry3<f64> {
     let trocar_m = Vector3::new(0.0, -0.15, 0.14);
     let turn = UnitQuaternion::from_euler_angles(0.03, -0.02, 0.06);

@@ -53,7 +53,7 @@ pub(super) fn check(path: &std::path::Path, rate_hz: f64) -> io::Result<()> {
 }
 
 impl Pipe {
-    /// Writes on its own thread, because opening a named pipe waits for its reader.
+    /// Writes on its own thread, because opening a named pipe blocks until there is a reader.
     pub(super) fn start(path: PathBuf, rate_hz: f64, quality: u8) -> io::Result<Self> {
         check(&path, rate_hz)?;
         let coding = PipeCoding::of(&path, rate_hz, quality);
@@ -73,7 +73,7 @@ impl Pipe {
     }
 }
 
-/// Writes until the reader closes (then it is tried again), or the emulator ends.
+/// Writes until the reader closes the pipe (which is then opened again), or the emulator ends.
 fn write(path: &std::path::Path, coding: PipeCoding, jobs: &Receiver<ImageJob>) -> io::Result<Option<()>> {
     let Ok(mut file) = OpenOptions::new().write(true).create(true).truncate(true).open(path) else {
         // If the folder does not exist yet, images that wait now will be outdated by then.

@@ -12,7 +12,7 @@ use crate::emulators::EmulatedFault;
 /// The objects in front of the lens.
 pub(super) enum ShotSubject {
     Scene(Box<Scene>),
-    /// For the calibration of one lens.
+    /// Scene for the calibration of one lens.
     Board(Checkerboard),
 }
 
@@ -25,7 +25,7 @@ pub(super) enum ShotState {
 
 /// The renderer of a subject.
 enum ScenePainter {
-    /// One painter for each lens; and the same for the pushed endoscope, once it has been pushed.
+    /// One painter for each lens, and the same for the pushed endoscope once it has been pushed.
     Scene {
         here: Vec<Painter>,
         moved: Option<Vec<Painter>>,
@@ -62,8 +62,8 @@ impl SceneRenderer {
         Self { emulated, easel, rgb: Vec::new(), size_px: [0; 2] }
     }
 
-    /// Renders the view of this time (since 1970), black or at half the size if that is the fault; a frozen camera
-    /// repeats the last image, if there was one.
+    /// Renders the view at this time (since 1970), black or at half the size if that is the fault; a frozen camera
+    /// repeats the last image, if there is one.
     pub(super) fn take(&mut self, since: Duration, seen: &ShotState, fault: EmulatedFault) -> Shot<'_> {
         if fault == EmulatedFault::Freeze && !self.rgb.is_empty() {
             return Shot { rgb: &self.rgb, size_px: self.size_px };

@@ -22,7 +22,7 @@ pub(super) const BOUNDARY: &str = "nima-endoscope";
 
 /// An image to be rendered.
 pub(super) struct RenderOrder {
-    /// Time in its time code, since 1970: nothing in the image is older.
+    /// Time in the image's time code, since 1970: nothing in the image is older.
     pub(super) since: Duration,
     pub(super) seen: ShotState,
     pub(super) fault: EmulatedFault,
@@ -30,7 +30,7 @@ pub(super) struct RenderOrder {
     pub(super) parts: bool,
     /// Whether a client watches over RTSP.
     pub(super) units: bool,
-    /// Whether a player begins with it.
+    /// Whether a player can start with this frame.
     pub(super) key: bool,
 }
 
@@ -84,8 +84,8 @@ impl RenderThread {
     }
 }
 
-/// An image takes milliseconds, and other devices need their threads a thousand times per second. This thread never
-/// takes a lock of theirs.
+/// Lowers the priority of this thread: rendering takes milliseconds, whereas the threads of other devices run a
+/// thousand times per second. This thread never takes one of their locks.
 fn give_way() {
     #[cfg(target_os = "linux")]
     #[expect(unsafe_code, reason = "std has no priorities")]
@@ -96,7 +96,7 @@ fn give_way() {
     }
 }
 
-/// Gets a third of the processor time of an ordinary thread when both compete.
+/// At this nice value, the thread gets a third of the processor time of an ordinary thread when both compete.
 #[cfg(target_os = "linux")]
 const NICE: libc::c_int = 5;
 
@@ -107,7 +107,7 @@ struct RenderState {
     coders: Coders,
 }
 
-/// For all clients; each is created for its first client.
+/// Encoders for all clients; each is created for its first client.
 struct Coders {
     quality: u8,
     jpeg: Option<([usize; 2], jpeg::JpegEncoder)>,

@@ -12,7 +12,7 @@ const PAYLOAD_MAX: usize = 1400;
 const CLOCK_HZ: f64 = 90_000.0;
 const PAYLOAD_TYPE: u8 = 96;
 const SOURCE: u32 = 0x4e49_4d41;
-/// From 1900, the epoch of the reports, to 1970, s.
+/// Time from 1900, the epoch of the reports, to 1970, s.
 const SINCE_1900_S: u64 = 2_208_988_800;
 const REPORT_EVERY: Duration = Duration::from_secs(1);
 /// Type of a NAL unit that is sent in pieces.
@@ -35,7 +35,7 @@ pub(super) struct RtspSession {
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct RtspReply {
     pub(super) text: String,
-    /// Whether it starts to play.
+    /// Whether the client starts to play.
     pub(super) begins: bool,
     pub(super) ends: bool,
 }

@@ -47,12 +47,12 @@ pub(super) struct Firmware {
 const THRESHOLD_MM_S: u32 = 2000;
 /// Time between two positions from which the hand's speed is computed, s.
 const SPEED_OVER_S: f64 = 0.004;
-/// A speed above this results from a jump of the position, m/s: the world has restarted.
+/// A speed above this results from a jump of the position, m/s, because the world was restarted.
 const JUMP_M_S: f64 = 50.0;
 const STEP_S: f64 = 125e-6;
 
 impl Firmware {
-    /// With this limit of the motors, N.
+    /// Creates the firmware with this limit of the motors, N.
     pub(super) fn new(motor_limit_n: f64) -> Self {
         Self {
             applied: MotorOutput::default(),

@@ -110,7 +110,7 @@ pub struct EmulatedForceDimension {
     pub kind: ForceDimensionKind,
     /// Force beyond which the motors are saturated, N.
     pub motor_limit_n: f64,
-    /// Whether it waits for its calibration.
+    /// Whether the device waits for its calibration.
     pub reset: bool,
     /// UDP port; 0 selects a free one.
     pub port: u16,
@@ -130,7 +130,7 @@ const FIRMWARE: f64 = 3.2;
 const GRIPPER_CLOSED_RAD: f64 = 0.02;
 
 impl EmulatedForceDimension {
-    /// Held by this hand. The endpoint is the address for `NIMA_EMULATED_HANDLE`.
+    /// Creates a device held by this hand. The endpoint is the address for `NIMA_EMULATED_HANDLE`.
     pub fn with(self, body: impl ForceDimensionBody) -> Box<dyn Emulator> {
         Box::new(ForceDimensionMachine::new(self, Box::new(body), None))
     }
@@ -143,7 +143,7 @@ struct ForceDimensionMachine {
     library: Option<PathBuf>,
     firmware: Firmware,
     state: HandState,
-    /// The state that clients see while it is frozen.
+    /// State that clients see while the device is frozen.
     frozen: Option<HandState>,
     client: Option<(u64, f64)>,
     pressed: bool,
@@ -244,7 +244,7 @@ impl Emulator for ForceDimensionMachine {
         }
     }
 
-    /// A real device has its own processor.
+    /// Runs at the priority of a real device, which has its own processor.
     fn begin(&mut self) {
         nima_devices::force_dimension::prepare_thread();
     }

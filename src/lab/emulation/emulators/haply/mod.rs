@@ -131,7 +131,7 @@ impl HaplyDevice {
         state
     }
 
-    /// Answers the first received request; false if it is incomplete.
+    /// Answers the first received request; returns false if it is incomplete.
     fn answer(&mut self, to: WirePeer, turn: &mut EmulatorTurn<'_>) -> bool {
         let Some(code) = self.received.first().copied() else { return false };
         let Some(length) = Self::length_of(code) else {

@@ -18,7 +18,7 @@ fn serving() -> (EmulatorThread, HapticForce) {
     (EmulatedHaply::default().with(felt.on_a_circle()).serve().unwrap(), felt)
 }
 
-/// Runs a loop with a tick every millisecond and this force, until `good` or for this long; returns whether `good` was
+/// Runs a loop with a tick every millisecond and this force until `good`, or for this long; returns whether `good` was
 /// reached.
 fn run(
     driver: &mut HaplyDriver,

@@ -37,9 +37,9 @@ use models::{CapSide, PedalSide, SpacenavdSide};
 trait WireSide: Send {
     /// Name of its socket in its own folder.
     const NAME: &'static str;
-    /// Time between two steps.
+    /// Returns the time between two steps.
     fn period(&self) -> Duration;
-    /// First packet for a new client; `None` for a stream, which has no greeting.
+    /// Returns the first packet for a new client; `None` for a stream, which has no greeting.
     fn hello(&self) -> Option<String>;
     /// Makes the frames of this step.
     fn step(&mut self, now_s: f64, fault: EmulatedFault, send: &mut dyn FnMut(&[u8]));

@@ -13,7 +13,7 @@ pub enum CapModel {
     /// `SpaceNavigator`: translation and rotation in turn, one report every 8 ms.
     #[default]
     Split,
-    /// `SpaceMouse Wireless` on its cable: both in one report every 16 ms.
+    /// `SpaceMouse Wireless` on its cable: both parts in one report every 16 ms.
     Combined,
 }
 
@@ -21,7 +21,7 @@ pub enum CapModel {
 pub struct CapBody {
     /// Returns the state of the cap at a time since the start, s.
     pub now: Box<dyn FnMut(f64) -> CapReading + Send>,
-    /// Called when its light is switched.
+    /// Called when the light is switched.
     pub light: Box<dyn FnMut(bool) + Send>,
 }
 
@@ -53,7 +53,7 @@ fn demonstration(now_s: f64) -> CapReading {
     }
 }
 
-/// Common to emulated caps: when they send, and the reading that a fault may freeze.
+/// Part common to all emulated caps: the times at which they send, and the reading that a fault may freeze.
 struct Mover {
     body: CapBody,
     reading: CapReading,
@@ -222,7 +222,8 @@ pub enum PedalModel {
 pub struct PedalBody(pub Box<dyn FnMut(f64) -> PedalReading + Send>);
 
 impl PedalBody {
-    /// The first switch is pressed for one second in three, the second switch after it for half a second.
+    /// A pedal on which the first switch is pressed for one second in three, and the second switch after it for half a
+    /// second.
     pub fn alone() -> Self {
         Self::pressed_by(|now_s| {
             let phase_s = now_s.rem_euclid(3.0);

@@ -61,7 +61,7 @@ pub(super) struct Player {
 }
 
 impl Player {
-    /// Answers calls about actions and sequences, except those that create and delete sequences.
+    /// Answers calls about actions and sequences, except those that create or delete sequences.
     pub(super) fn answer(
         &mut self,
         rpc: Rpc,
@@ -120,7 +120,7 @@ impl Player {
         Ok(())
     }
 
-    /// Reports what has ended, and continues a sequence. Returns true when nothing is in progress any more.
+    /// Reports actions that have ended, and continues a sequence. Returns true when nothing is in progress any more.
     pub(super) fn advance(&mut self, robot: &mut Robot, topics: &mut KinovaTopics) -> bool {
         let Some(ended) = robot.take_end() else { return false };
         match self.playing.take() {

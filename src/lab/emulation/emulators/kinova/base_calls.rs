@@ -83,7 +83,7 @@ impl Base {
         }
     }
 
-    /// Returns a Gen3 on a fixed base, with a spherical wrist and nothing at its end.
+    /// Returns the description of a Gen3 on a fixed base, with a spherical wrist and no end effector.
     fn product(&self) -> Product {
         Product {
             kin: self.arm.serial.clone(),

@@ -16,11 +16,11 @@ pub enum BodyCommand {
     /// None: brakes on, or a holding base.
     #[default]
     Rest,
-    /// These angles, rad, each in the turn nearest to the last one.
+    /// Joint angles, rad, each in the turn nearest to the last one.
     Joints([f64; ARM_JOINTS]),
-    /// This velocity of the tool.
+    /// Velocity of the tool.
     Twist {
-        /// In this frame.
+        /// Frame of the velocity.
         frame: TwistFrame,
         linear_m_s: Vector3<f64>,
         angular_rad_s: Vector3<f64>,
@@ -52,8 +52,8 @@ impl<F: FnMut(f64, &BodyCommand) -> BodyState + Send> KinovaBody for F {
     }
 }
 
-/// An arm without a world: joints follow with a lag and within the arm's speeds. Until the first command it may sway
-/// slowly, so that a client sees changing numbers.
+/// An arm without a world: its joints follow with a lag and within the arm's speeds. Until the first command it may
+/// sway slowly, so that a client receives changing numbers.
 #[derive(Clone, Debug)]
 pub struct StandIn {
     state: BodyState,
@@ -73,7 +73,7 @@ impl StandIn {
         Self { state: BodyState { joint_rad, ..BodyState::default() }, sways: false, time_s: 0.0 }
     }
 
-    /// At the manufacturer's home pose, swaying until it is commanded.
+    /// Creates an arm at the manufacturer's home pose, which sways until it is commanded.
     pub fn swaying() -> Self {
         let home_deg: [f64; ARM_JOINTS] = [0.0, 15.0, 180.0, -130.0, 0.0, 55.0, 90.0];
         Self { sways: true, ..Self::at(home_deg.map(f64::to_radians)) }

@@ -26,9 +26,9 @@ struct CallSession {
     number: u16,
     link: WirePeer,
     received_s: f64,
-    /// After this much silence it is closed, s.
+    /// Time without data after which the session is closed, s.
     closes_s: f64,
-    /// After this much silence its motion stops, s.
+    /// Time without data after which the session's motion stops, s.
     stops_s: f64,
 }
 
@@ -52,7 +52,7 @@ pub(super) struct Base {
     pub(super) topics: KinovaTopics,
     sessions: Vec<CallSession>,
     made: u16,
-    /// The session whose command moves the arm.
+    /// Session whose command moves the arm.
     driving: Option<u16>,
     /// Arm state and servoing mode of the last notification.
     report: (u32, ServoingMode),

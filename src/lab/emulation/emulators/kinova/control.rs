@@ -21,7 +21,7 @@ use super::{
 const LIMITED_MODES: [u32; 5] = [1, 2, 4, 5, 12];
 
 pub(super) struct KinovaControl {
-    /// Each with the event that reports its change (`ControlConfigurationEvent`).
+    /// Settings, each with the event that reports its change (`ControlConfigurationEvent`).
     settings: Vec<(KinovaSetting, u32)>,
     soft: Vec<KinematicLimits>,
     desired: DesiredSpeeds,
@@ -75,7 +75,7 @@ impl KinovaControl {
         }
     }
 
-    /// Speeds of the joystick, which the emulated arm does not have.
+    /// Returns the speeds of the joystick, which the emulated arm does not have.
     fn joystick(&mut self, function: u16, payload: &[u8]) -> Result<(Vec<u8>, Option<u32>), InterfaceError> {
         let max = hard(0);
         match function {

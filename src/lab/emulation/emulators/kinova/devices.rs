@@ -121,8 +121,8 @@ impl KinovaDevices {
     }
 }
 
-/// Settings of an actuator. The emulated joints follow positions in every control mode; in the manufacturer's example
-/// of torque control these are the measured positions.
+/// Returns the settings of an actuator. The emulated joints follow positions in every control mode; in the
+/// manufacturer's torque control example, these are the measured positions.
 fn actuator() -> Vec<KinovaSetting> {
     let number = |value| KinovaNumber { value };
     vec![

@@ -68,7 +68,7 @@ impl Ticking {
         self.reading.unwrap().value
     }
 
-    /// Runs ticks until `good`; at most `ticks`.
+    /// Runs ticks until `good`, at most `ticks` of them.
     pub(super) fn until(&mut self, ticks: u32, good: impl Fn(&Self) -> bool) -> bool {
         (0..ticks).any(|_| {
             self.tick();

@@ -49,7 +49,7 @@ impl EntityStore {
         Ok(handle)
     }
 
-    /// Returns all entities, as a message that repeats its field 1.
+    /// Returns all entities as a message that repeats its field 1.
     pub(super) fn all(&self) -> Vec<u8> {
         let mut list = Vec::new();
         self.entries().for_each(|bytes| append(1, bytes, &mut list));

@@ -1,4 +1,4 @@
-//! Every emulated fault: detected in time, and over when it is removed. Measures the cycle.
+//! Tests of every emulated fault: detected in time, and over when it is removed. Also measures the cycle.
 
 use std::{
     thread::sleep,

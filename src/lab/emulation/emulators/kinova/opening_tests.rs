@@ -1,4 +1,4 @@
-//! Faults while the driver connects: each has its own cause.
+//! Tests of faults while the driver connects: each has its own cause.
 
 use std::{
     io::{Read as _, Write as _},

@@ -23,11 +23,11 @@ use super::{
 };
 use crate::emulators::EmulatedFault;
 
-/// The hardware range exceeds the range of commands by this much, rad.
+/// The hardware range exceeds the command range by this much, rad.
 const HARDWARE_MARGIN_RAD: f64 = 0.1;
 /// Maximum step of the body, s.
 const STEP_S: f64 = 1e-3;
-/// Maximum steps in one call; a longer pause of this process is skipped.
+/// Maximum number of steps in one call; a longer pause of this process is skipped.
 const STEPS: usize = 100;
 /// Status bits of a working actuator: indexed, servoing.
 const STATUS_SERVOING: u32 = 0x20 | 0x800;
@@ -40,7 +40,7 @@ pub(super) struct Robot {
     state: BodyState,
     asked: BodyCommand,
     motion: Option<KinovaMotion>,
-    /// How the last path ended, until it is read: at its end, or stopped with this sub error.
+    /// Result of the last path, until it is read: at its end, or stopped with this sub error.
     ended: Option<ObeyResult>,
     mode: ServoingMode,
     base_fault: u32,
@@ -128,7 +128,7 @@ impl Robot {
         self.base_fault != 0 || self.emulated_fault
     }
 
-    /// Bank A of the base and of a joint; the emulated fault is a torque fault of joint 3 while it is active.
+    /// Returns bank A of the base and of a joint; the emulated fault is a torque fault of joint 3 while it is active.
     const fn banks(&self, j: usize) -> (u32, u32) {
         let base = self.base_fault;
         let joint = self.actuator_faults[j];
@@ -147,7 +147,7 @@ impl Robot {
         self.rest(sub::IN_FAULT);
     }
 
-    /// State in `GetArmState`.
+    /// Returns the state in `GetArmState`.
     pub(super) fn state(&self) -> u32 {
         if self.is_faulty() {
             ArmState::IN_FAULT.0

@@ -1,4 +1,4 @@
-//! A value that clients read, set and reset; stored as the bytes of its message.
+//! A value that clients can read, set and reset; stored as the bytes of its message.
 
 use prost::Message;
 

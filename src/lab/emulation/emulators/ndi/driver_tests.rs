@@ -1,4 +1,4 @@
-//! The driver against the emulator over TCP and a pseudo-terminal: readings, baud rates, every fault that can be
+//! Tests of the driver with the emulator over TCP and a pseudo-terminal: readings, baud rates, every fault that can be
 //! provoked here.
 
 use std::{
@@ -46,7 +46,7 @@ pub(super) fn profile(firmware: &str) -> NdiProfile {
 pub(super) const TEXT_FIRMWARE: &str = "Polaris Vega 008";
 pub(super) const BLOCK_FIRMWARE: &str = "Polaris Vega 014";
 
-/// Polls at about 1 kHz until `good`, at most `seconds`.
+/// Polls at about 1 kHz until `good`, for at most `seconds`.
 pub(super) fn until(
     begin: Instant,
     seconds: f64,
@@ -306,7 +306,7 @@ fn dropping_it_stops_tracking() {
     });
 }
 
-/// Returns a TCP server that sends `reply` to everything.
+/// Starts a TCP server that sends `reply` to every request; returns its address.
 fn stranger(reply: &'static [u8]) -> (String, std::thread::JoinHandle<()>) {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let address = listener.local_addr().unwrap().to_string();

@@ -1,4 +1,4 @@
-//! Every emulated fault, on the driver in its slot: its effect, and the tracker's recovery without a restart.
+//! Tests of every emulated fault with the driver in its slot: its effect, and the tracker's recovery without a restart.
 
 use std::time::Instant;
 

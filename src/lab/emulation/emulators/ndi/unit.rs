@@ -23,7 +23,7 @@ const FIRST_HANDLE: u8 = 0x0A;
 const HANDLES: usize = 12;
 /// Baud rate after power-up.
 pub(super) const FIRST_BAUD: u32 = 9600;
-/// In the form of real units; hosts that search for a unit expect at least 84 bytes.
+/// Text in the form of real units; hosts that search for a unit expect at least 84 bytes.
 const FIRMWARE_INFO: &str = "Features.Firmware.Version=007.000.012;3;1;0;12;;Current firmware revision number";
 /// Readable user parameters.
 const PARAMETERS: [(&str, &str); 4] = [
@@ -33,7 +33,7 @@ const PARAMETERS: [(&str, &str); 4] = [
     ("Info.Timeout.TSTART", "5"),
 ];
 
-/// A reply, and its consequence.
+/// A reply, and its effect.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct UnitAnswer {
     /// The bytes of the reply on the wire.

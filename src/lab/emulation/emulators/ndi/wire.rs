@@ -22,7 +22,7 @@ impl NdiProfile {
         Box::new(NdiNetwork { port, listening_unit })
     }
 
-    /// Serves such a unit on a pseudo-terminal: at `link`, or in its own folder.
+    /// Serves this unit on a pseudo-terminal: at `link`, or in a temporary folder.
     pub fn on_line(self, link: Option<PathBuf>, body: impl NdiBody + 'static) -> Box<dyn Emulator> {
         let listening_unit = ListeningUnit::new(self, false, Box::new(body));
         Box::new(NdiLine { link, listening_unit, baud: FIRST_BAUD, taken_s: 0.0, due: None, reset_s: None })
@@ -170,8 +170,8 @@ mod tests {
 
     use super::{super::wandering, *};
 
-    /// At the initial baud rate each reply to an empty command takes 15 ms: twenty thousand would keep the unit sending
-    /// for minutes.
+    /// At the initial baud rate, each reply to an empty command takes 15 ms, so twenty thousand would keep the unit
+    /// sending for minutes.
     #[test]
     fn a_flood_of_empty_commands_takes_the_line_for_no_longer_than_a_reply() {
         judged(|| {

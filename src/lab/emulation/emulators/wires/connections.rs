@@ -1,4 +1,4 @@
-//! Connections from any source; TCP on this computer's network.
+//! Connections from any source: TCP on this computer's network.
 
 #[cfg(unix)]
 use std::os::fd::{AsRawFd, RawFd};

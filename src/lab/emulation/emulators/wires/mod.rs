@@ -43,21 +43,21 @@ pub enum WirePeer {
 /// An event at an end. The number of bytes refers to the buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WireArrival {
-    /// A new client, and its first bytes.
+    /// A client connected, or sent this many bytes.
     Came(WirePeer, usize),
     /// Bytes.
     Heard(WirePeer, usize),
-    /// A client that is gone.
+    /// A client disconnected.
     Gone(WirePeer),
 }
 
-/// One end of a wire, at an endpoint that belongs to it for its lifetime. It never blocks.
+/// One end of a wire, at an endpoint that it owns for its lifetime. It never blocks.
 pub trait WireEnd: Send {
-    /// Where clients find it; known once it has been opened.
+    /// Returns the address for clients; known once the end has been opened.
     fn endpoint(&self) -> String;
-    /// Opens it if it is closed.
+    /// Opens the end if it is closed.
     fn open(&mut self) -> io::Result<()>;
-    /// Closes it, as when the cable is unplugged; returns whether it was open.
+    /// Closes the end, as when the cable is unplugged; returns whether it was open.
     fn cut(&mut self) -> bool;
     /// Returns the next event. New clients are accepted only if the emulator `admits` them.
     fn next(&mut self, buffer: &mut [u8], admits: bool) -> Option<WireArrival>;
@@ -77,7 +77,7 @@ pub trait WireEnd: Send {
 /// Maximum events from one end in one turn, so that the others, the time and the faults are handled soon.
 pub(super) const ARRIVALS: usize = 64;
 
-/// Waits until data arrive at one of the ends, at most this long.
+/// Waits until data arrive at one of the ends, for at most this long.
 #[cfg(unix)]
 #[expect(unsafe_code, reason = "std waits for one descriptor only")]
 pub(super) fn wait(ends: &[Box<dyn WireEnd>], longest: Duration, admits: bool) {
@@ -106,7 +106,7 @@ pub(super) fn wait(ends: &[Box<dyn WireEnd>], longest: Duration, admits: bool) {
 #[cfg(not(unix))]
 const LOOK: Duration = Duration::from_millis(1);
 
-/// Waits at most this long, because the ends are polled.
+/// Waits for at most this long, because the ends are polled.
 #[cfg(not(unix))]
 pub(super) fn wait(_: &[Box<dyn WireEnd>], longest: Duration, _: bool) {
     std::thread::sleep(longest.min(LOOK));

@@ -14,8 +14,8 @@ use crate::emulators::addresses::socket_path;
 
 type Listen = fn(&Path) -> io::Result<UnixListener>;
 
-/// Returns a socket at `path`, opened by `listen`; without a path, at `name` in its own folder. Data that a client does
-/// not read are dropped.
+/// Returns a socket at `path`, opened by `listen`; without a path, at `name` in a temporary folder. Data that a client
+/// does not read are dropped.
 pub(in crate::emulators) fn socket(path: Option<&Path>, name: &str, listen: Listen) -> io::Result<Box<dyn WireEnd>> {
     let (path, folder) = socket_path(path, name)?;
     Ok(Box::new(Connections::new(SocketPath { path, _folder: folder, listen }, false)))
@@ -23,7 +23,7 @@ pub(in crate::emulators) fn socket(path: Option<&Path>, name: &str, listen: List
 
 struct SocketPath {
     path: PathBuf,
-    /// Its own folder, if no path was requested.
+    /// Own folder, if no path was requested.
     _folder: Option<tempfile::TempDir>,
     listen: Listen,
 }

@@ -17,8 +17,8 @@ use crate::emulators::addresses::TerminalName;
 /// Interval between checks for settings that clients left on a terminal.
 const TIDY: Duration = Duration::from_millis(250);
 
-/// Returns a terminal at `link`; without one, at `name` in its own folder. With a baud rate (bit/s) the terminal is set
-/// to it and outlives its clients; without one every client that opens it is reported.
+/// Returns a terminal at `link`; without one, at `name` in its own folder. With a baud rate (bit/s), the terminal is
+/// set to this rate and outlives its clients; without one, every client that opens it is reported.
 pub(in crate::emulators) fn terminal(
     link: Option<&Path>,
     name: &str,
@@ -37,7 +37,7 @@ struct TerminalLine {
     near: TTYPort,
     bytes: File,
     far: Option<ClientEnd>,
-    /// Whether a client has the terminal open, or we keep it open for all.
+    /// Whether a client has the terminal open, or this process keeps it open for all clients.
     present: bool,
 }
 
@@ -49,8 +49,8 @@ struct ClientEnd {
 }
 
 impl ClientEnd {
-    /// A client that locked the terminal and has closed it leaves the lock. Removing it takes a shared lock, which
-    /// would keep the next client out.
+    /// Removes the lock left by a client that locked and closed the terminal. This takes a shared lock, which would
+    /// keep the next client out.
     fn tidy(&mut self) {
         if self.tidied.elapsed() > TIDY {
             self.port.set_exclusive(false).ok();

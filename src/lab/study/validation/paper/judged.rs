@@ -113,7 +113,7 @@ impl JudgedErrors {
         }
     }
 
-    /// Mean absolute error and standard deviation over all axes of this recording together.
+    /// Returns the mean absolute error and standard deviation over all axes of this recording together.
     fn figures(&self, recording: &CsvRecording) -> RenderingFigures {
         let count = recording.axes.len().max(1) as f64;
         let mean = |of: fn(&ErrorStats) -> f64| self.0[..recording.axes.len()].iter().map(of).sum::<f64>() / count;

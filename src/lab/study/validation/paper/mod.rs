@@ -40,7 +40,7 @@ pub struct PaperEntry {
     /// How the hand worked and the force was measured; absent for a recording.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub conditions: Option<Conditions>,
-    /// Its results, in N or in the recording's unit.
+    /// Results, in N or in the recording's unit.
     #[serde(flatten)]
     pub judged: JudgedRecording,
 }

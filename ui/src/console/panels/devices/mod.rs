@@ -120,7 +120,7 @@ impl DevicesState {
     }
 }
 
-/// Reason why the rig cannot be changed now.
+/// Returns the reason why the rig cannot be changed now.
 pub(in crate::console) fn why_not_to_change(live: &LiveState, is_starting: bool) -> Option<&'static str> {
     if is_starting {
         return Some(text::devices::STARTING.get());
@@ -185,7 +185,7 @@ fn image_ui(ui: &mut Ui, state: &DevicesState) {
 
 type DeviceColumn = (Option<Side>, Vec<usize>);
 
-/// Rows of columns: left and right side by side if there is room, shared devices in a separate column.
+/// Returns the rows of columns: left and right side by side if there is room, shared devices in a separate column.
 fn columns_of(roster: &Roster, width: f32) -> Vec<Vec<DeviceColumn>> {
     let of = |side: Option<Side>| {
         let is_of = |place: &usize| roster[*place].part.and_then(RigPart::side) == side;

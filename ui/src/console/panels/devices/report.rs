@@ -78,7 +78,7 @@ fn figures(checkup: &Checkup) -> Vec<ConsoleFigure> {
 
 type Group<'a> = (&'static str, &'static str, f64, Vec<&'a CheckupNumber>);
 
-/// Values of the readings, grouped by quantity.
+/// Returns the values of the readings, grouped by quantity.
 fn groups(checkup: &Checkup) -> Vec<Group<'_>> {
     let mut groups: Vec<Group<'_>> = Vec::new();
     for one in &checkup.measured {
@@ -105,7 +105,7 @@ fn short(value: f64) -> String {
     if words.trim_start_matches(['-', '0', '.']).is_empty() { words.trim_start_matches('-').to_owned() } else { words }
 }
 
-/// Maximum distance from the middle of the range, in percent of the possible distance.
+/// Returns the maximum distance from the middle of the range, in percent of the possible distance.
 fn reached_percent(one: &CheckupNumber) -> Option<f64> {
     let [low, high] = one.range?;
     let middle = f64::midpoint(low, high);

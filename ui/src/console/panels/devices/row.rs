@@ -49,7 +49,7 @@ pub(super) fn row_ui(
     change
 }
 
-/// Name and serial number; `None` if the device reports neither.
+/// Returns the name and serial number; `None` if the device reports neither.
 pub(super) fn identity_text(identity: &DeviceIdentity) -> Option<String> {
     let DeviceIdentity { product, serial, firmware } = identity;
     (!product.is_empty()).then(|| text::devices::identity(product, serial, firmware))

@@ -121,7 +121,7 @@ fn shown(past: &mut Playback) -> Option<Arc<DecodedImage>> {
     }
 }
 
-/// Time between the moment on the screen and the code in its image, s.
+/// Returns the time between the moment on the screen and the code in its image, s.
 fn behind_s(past: &mut Playback, begin_ns: u64) -> Option<f64> {
     let image = shown(past)?;
     Some(past.shown_s() - (code_of(&image) as f64 - begin_ns as f64 / 1e3) / 1e6)

@@ -63,7 +63,7 @@ impl ChapterPace {
 mod tests {
     use super::*;
 
-    /// Lengths of six chapters of 14 s, s, drawn at these times, s.
+    /// Returns the lengths of six chapters of 14 s, s, drawn at these times, s.
     fn lengths_s(drawn_s: impl Iterator<Item = f64>) -> Vec<f64> {
         let mut pace = ChapterPace::default();
         let mut began_s = 0.0;

@@ -83,7 +83,7 @@ impl Recovery {
         }
     }
 
-    /// Text about the cause and the next step.
+    /// Returns the text about the cause and the next step.
     pub(super) fn words(&self) -> String {
         let left_s = (EXPLAINED_S - self.explained_s).ceil();
         match self.trouble {

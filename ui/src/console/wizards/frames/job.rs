@@ -123,7 +123,7 @@ impl Outcome {
         })
     }
 
-    /// Indices of the poses that were left out.
+    /// Returns the indices of the poses that were left out.
     pub(super) fn outliers(&self) -> &[usize] {
         each!(self, report => &report.outliers)
     }
@@ -145,7 +145,7 @@ impl FrameCalibration {
         each!(self, record => &mut record.judgement)
     }
 
-    /// Its changes to the rig file.
+    /// Returns its changes to the rig file.
     pub fn rig_mut(&mut self) -> &mut Vec<RigChange> {
         each!(self, record => &mut record.rig)
     }
@@ -181,7 +181,7 @@ pub struct StoredFrame {
     pub judgement: Judgement,
     /// Root mean square error on held-out poses.
     pub held_out: Sizes,
-    /// Its changes to the rig file.
+    /// Changes to the rig file.
     pub rig: Vec<RigChange>,
 }
 

@@ -149,7 +149,7 @@ impl FrameKind {
         }
     }
 
-    /// Text of the current instruction to the person at the arm.
+    /// Returns the text of the current instruction to the person at the arm.
     pub(super) fn asks(prompt: &Prompt, target: &str) -> String {
         match prompt {
             Prompt::Hold { .. } => texts::hold(target),

@@ -143,7 +143,7 @@ impl FrameWizard {
         *self = Self { other_way, subject, job, clock_s, ..Self::new(kind) };
     }
 
-    /// Time of the session at this time of the loop, s.
+    /// Returns the time of the session at this time of the loop, s.
     fn session_s(&mut self, loop_s: f64) -> f64 {
         let (last_s, session_s) = self.clock_s;
         // When the loop restarts, leave a gap, which ends the current pose.

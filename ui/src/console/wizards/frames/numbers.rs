@@ -79,7 +79,7 @@ impl FrameEffect {
         Self { before: Some(turned(before)), after: turned(after) }
     }
 
-    /// Distance (m) and angle (degrees) between before and after.
+    /// Returns the distance (m) and angle (degrees) between before and after.
     pub(super) fn change(&self) -> Option<[f64; 2]> {
         let by = self.before?.inverse() * self.after;
         Some([by.translation.vector.norm(), by.rotation.angle().to_degrees()])

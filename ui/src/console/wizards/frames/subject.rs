@@ -11,7 +11,7 @@ use nima_machine::{
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrameSubject {
     pub side: Side,
-    /// Its devices, and their mounts.
+    /// Devices, and their mounts.
     pub set: ArmSet,
     /// The mapping from hand to tip.
     pub teleoperation: Teleoperation,
@@ -72,7 +72,7 @@ impl FrameSubject {
         (self.arm.flange_from_s1 * Point3::new(0.0, 0.0, self.arm.shaft_m)).coords
     }
 
-    /// Direction upwards in the frame of the base.
+    /// Returns the direction upwards in the frame of the base.
     pub(super) fn up_in_base(&self) -> Vector3<f64> {
         self.arm.world_from_base.rotation.inverse() * Vector3::z()
     }
@@ -87,12 +87,12 @@ impl FrameSubject {
         from(self.set.base_from_c_m?, self.set.base_from_c_deg?)
     }
 
-    /// Result of the hand-eye calibration: marker on the flange, and camera relative to the base.
+    /// Returns the result of the hand-eye calibration: marker on the flange, and camera relative to the base.
     pub(super) fn hand_eye(&self) -> Option<[Isometry3<f64>; 2]> {
         Some([self.arm.flange_from_s1 * self.s1_from_m()?, self.base_from_c()?])
     }
 
-    /// Key of a value of this arm pair in the rig file.
+    /// Returns the key of a value of this arm pair in the rig file.
     pub(super) fn key(&self, name: &str) -> String {
         format!("devices.{}.{name}", self.side.word())
     }

@@ -114,7 +114,7 @@ fn verdict_ui(ui: &mut Ui, checked: &CheckResult) {
     });
 }
 
-/// Mean absolute error of another method on an axis, N, as text.
+/// Returns the mean absolute error of another method on an axis, N, as text.
 fn mae_of(part: &EvaluationPart, method: &str, axis: usize) -> String {
     let figures = part.methods.iter().find(|figures| figures.method == method);
     let stats = figures.and_then(|figures| figures.outputs.get(axis).copied().flatten());

@@ -98,7 +98,7 @@ impl Curves {
         curve.fraction = if now.finished { 1.0 } else { now.epoch as f64 / now.epochs_max.max(1) as f64 };
     }
 
-    /// Fraction of the work that is done, 0 to 1.
+    /// Returns the fraction of the work that is done, 0 to 1.
     pub(super) fn fraction(&self) -> f64 {
         self.members.iter().map(|curve| curve.fraction).sum::<f64>() / self.members.len().max(1) as f64
     }
@@ -123,7 +123,7 @@ pub(super) struct TrainingOrder {
     pub(super) store: Store,
 }
 
-/// Path of a recording of this kind.
+/// Returns the path of a recording of this kind.
 pub(super) fn path_of(store: &Store, kind: &str, sensor: &str) -> Result<PathBuf, String> {
     store.path_of(kind, sensor, "csv").map_err(|error| error.to_string())
 }

@@ -142,7 +142,7 @@ pub struct TipForceWizard {
 }
 
 impl TipForceWizard {
-    /// Rows recorded for the training.
+    /// Returns the rows recorded for the training.
     pub fn rows(&self) -> usize {
         self.recording.as_ref().map_or(0, |take| take.recorder.rows())
     }

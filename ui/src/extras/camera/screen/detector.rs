@@ -56,7 +56,7 @@ impl Detector {
         }
     }
 
-    /// Results since the last call.
+    /// Returns the results since the last call.
     pub(super) fn take(&mut self) -> Option<BoardImage> {
         let found = self.found.try_recv().ok();
         self.busy &= found.is_none();

@@ -194,7 +194,7 @@ impl CameraWizard {
         report.lens.as_ref().map(|found| found.lens)
     }
 
-    /// State of the board in the newest image.
+    /// Returns the state of the board in the newest image.
     fn report(&self) -> String {
         match &self.last {
             None => texts::LOOKING.get().to_owned(),
@@ -211,7 +211,7 @@ impl CameraWizard {
         vec![[0, 0], [right, 0], [right, low], [0, low], [right / 2, low / 2]]
     }
 
-    /// Number of the next corner to touch.
+    /// Returns the number of the next corner to touch.
     fn next_corner(&self) -> Option<usize> {
         self.base.as_ref()?;
         let corner = *self.wanted().get(self.touches.len())?;

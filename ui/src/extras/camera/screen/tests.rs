@@ -11,7 +11,7 @@ fn lens() -> Lens {
     Lens { bend: Bend::radial(-0.25), ..Lens::simple([1280, 720], 740.0, 0.0) }
 }
 
-/// Result of the detector for a board at this pose, without an image.
+/// Returns the result of the detector for a board at this pose, without an image.
 fn found(camera_from_board: &Isometry3<f64>) -> BoardImage {
     let place = |place_m: &Vector3<f64>| lens().project(&(camera_from_board * nalgebra::Point3::from(*place_m)).coords);
     let corners_px: Option<Vec<_>> = board().places_m().iter().map(place).collect();

@@ -35,7 +35,7 @@ impl CameraTip {
         }
     }
 
-    /// Its position, m; `None` while it moves.
+    /// Returns its position, m; `None` while it moves.
     pub(super) fn still_m(&self) -> Option<Vector3<f64>> {
         let first = self.kept.front()?;
         let last = self.kept.back()?;
@@ -70,7 +70,7 @@ impl EndoscopeMarker {
         }
     }
 
-    /// Its mean without noise; `None` if it was not seen.
+    /// Returns its mean without noise; `None` if it was not seen.
     pub(super) fn world_from_n(&self) -> Option<Isometry3<f64>> {
         steadied(self.kept.iter().rev().map(|(_, pose)| *pose))
     }

@@ -221,7 +221,7 @@ fn apply_ui(
     None
 }
 
-/// Indices of the Pareto front at the source's own rate, fastest first.
+/// Returns the indices of the Pareto front at the source's own rate, fastest first.
 fn front(figures: &SourceFigures) -> Vec<usize> {
     let points = &figures.points;
     let mut front: Vec<usize> =
@@ -234,7 +234,7 @@ fn most_accurate(figures: &SourceFigures) -> Option<usize> {
     front(figures).into_iter().min_by(|&a, &b| figures.points[a].error.total_cmp(&figures.points[b].error))
 }
 
-/// Name of a point: mode, degree and window, as far as they apply.
+/// Returns the name of a point: mode, degree and window, as far as they apply.
 pub(super) fn name(point: &SweepPoint) -> String {
     let ParameterChoice { method, degree, window_ms, .. } = point.choice;
     match method {

@@ -146,7 +146,7 @@ mod tests {
         assert!(points.len() > 20 && restarts > 5 && restarts < points.len(), "{restarts} of {}", points.len());
     }
 
-    /// Median time of a tick, us: the lowest of all passes, as in the study.
+    /// Returns the median time of a tick, us: the lowest of all passes, as in the study.
     fn median_us(identifier: &Identifier, samples: &[Sample], from_s: f64) -> f64 {
         let pass = || {
             let mut identifier = identifier.clone();

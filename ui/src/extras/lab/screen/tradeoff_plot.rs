@@ -83,7 +83,7 @@ fn look(mode: Mode) -> (MarkerShape, Color32, f32) {
     look.map_or((MarkerShape::Cross, now.reference, 4.5), |(_, shape, colour, radius)| (shape, colour, radius))
 }
 
-/// Points at the source's own rate and with the default differentiator that can be drawn.
+/// Returns the points at the source's own rate and with the default differentiator that can be drawn.
 fn shown(points: &[SweepPoint]) -> Vec<usize> {
     let usual = points.first().map(|point| point.choice.differentiator);
     (0..points.len())
@@ -95,7 +95,7 @@ fn shown(points: &[SweepPoint]) -> Vec<usize> {
         .collect()
 }
 
-/// Position of a point: decades of time and of error.
+/// Returns the position of a point: decades of time and of error.
 fn place(point: &SweepPoint) -> [f64; 2] {
     [point.cost_us.p50.log10(), point.error.log10()]
 }

@@ -68,7 +68,7 @@ impl SourceArguments {
     }
 }
 
-/// Delays in seconds from `--delay-ms`, all within the range of the link.
+/// Returns the delays in seconds from `--delay-ms`, all within the range of the link.
 pub(super) fn delays_s(asked_ms: &[f64]) -> anyhow::Result<Vec<f64>> {
     let limits_ms = DELAY_S.per(1e-3, "ms");
     if let Some(delay_ms) = asked_ms.iter().find(|delay_ms| !limits_ms.contains(**delay_ms)) {

@@ -53,7 +53,7 @@ pub(super) fn write(study: &UserStudy, out: &Path, all: bool) -> anyhow::Result<
     Ok(out.join(PAGE))
 }
 
-/// Names of numeric columns that pass a filter.
+/// Returns the names of numeric columns that pass a filter.
 fn columns(csv: &str, filter: impl Fn(&str) -> bool) -> Vec<String> {
     let names = csv.lines().next().unwrap_or_default().split(',');
     names

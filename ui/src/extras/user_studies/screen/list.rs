@@ -153,7 +153,7 @@ impl StudyListRow {
     }
 }
 
-/// Number of finished or excluded participants.
+/// Returns the number of finished or excluded participants.
 pub(super) fn finished(study: &UserStudy) -> usize {
     let plan = study.plan();
     let state = study.state();

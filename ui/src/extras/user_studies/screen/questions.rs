@@ -222,7 +222,7 @@ impl QuestionnairePage {
     }
 }
 
-/// Position (0 to 100) of a tap whose press and release arrived in one frame, which a slider misses.
+/// Returns the position (0 to 100) of a tap whose press and release arrived in one frame, which a slider misses.
 fn tapped(slider: &Response) -> Option<f64> {
     let (is_tap, at) = slider.ctx.input(|input| {
         let pointer = &input.pointer;

@@ -221,7 +221,7 @@ impl PageRun for TrialScreen {
     }
 }
 
-/// Current instruction to the participant.
+/// Returns the current instruction to the participant.
 fn state_text(live: &LiveState) -> &'static str {
     match live.state() {
         _ if live.first_tick().is_none() => text::studies::STATE_STARTING.get(),

@@ -206,7 +206,7 @@ pub(in crate::extras::user_studies) fn next(step: &StudyStep, trials: u32) -> St
     }
 }
 
-/// Label of the button of the next step; `None` if the step has no button.
+/// Returns the label of the button of the next step; `None` if the step has no button.
 pub(in crate::extras::user_studies) fn begin(step: &StudyStep) -> Option<&'static str> {
     match step {
         StudyStep::Practice { .. } => Some(word("Start the practice trial", "Übungsversuch beginnen")),

@@ -114,7 +114,7 @@ pub(in crate::extras::user_studies) const MAKE_HOVER: Text = Text::of(
     "Zieht Reihenfolgen und Labels zufällig und versiegelt die Zuordnung der Labels zu Bedingungen",
 );
 
-/// Name and description of a template, by its name on the command line.
+/// Returns the name and description of a template, by its name on the command line.
 pub(in crate::extras::user_studies) fn ready(name: &str) -> [&'static str; 2] {
     match name {
         "paper" => [
@@ -139,7 +139,7 @@ pub(in crate::extras::user_studies) fn measure(key: &str, words: &str) -> String
     format!("{key}: {}", words.trim_end_matches('.'))
 }
 
-/// Label of the button that removes a secondary measure.
+/// Returns the label of the button that removes a secondary measure.
 pub(in crate::extras::user_studies) fn leave_off(key: &str) -> String {
     format!("{key} \u{00d7}")
 }

@@ -31,10 +31,10 @@ const PATIENCE: Duration = Duration::from_secs(2);
 /// Interval at which the reader checks whether the connection has ended: on Windows, closing it does not wake a waiting
 /// reader.
 const LOOK_EVERY: Duration = Duration::from_millis(250);
-/// Maximum bytes in transit: few, so that a slow client gets recent data.
+/// Maximum number of bytes in transit; small, so that a slow client gets recent data.
 const SEND_BUFFER: usize = 1 << 16;
-/// At most this much is read from a client in this time: 200 kB/s, more than 3000 requests per second. The rest waits
-/// on the client's side.
+/// Maximum amount read from a client in this interval: 200 kB/s, more than 3000 requests per second. The rest waits on
+/// the client's side.
 const CHUNK: usize = 1024;
 const READ_EVERY: Duration = Duration::from_millis(5);
 const WORLD: &str = "world";
@@ -157,7 +157,7 @@ impl fmt::Debug for IgtlClient {
     }
 }
 
-/// Closes a connection for which there is no room, with a message.
+/// Closes a connection for which there is no room, after sending a message.
 pub(super) fn refuse(mut stream: &TcpStream, max: usize) {
     let text = format!("{max} clients are already connected: disconnect one of them");
     let bytes = IgtlMessage::new(BUNDLE, now_ns(), refusal(StatusCode::BUSY, &text)).encode();

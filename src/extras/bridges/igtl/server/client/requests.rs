@@ -2,7 +2,7 @@
 
 use super::super::super::{IgtlFormatError, IgtlHeader, IgtlMessage};
 
-/// Maximum body that is parsed, bytes; a request has 36 bytes. Longer ones are skipped.
+/// Maximum length of a body that is parsed, bytes; a request has 36 bytes. Longer ones are skipped.
 const LONGEST: u64 = 4096;
 
 /// The message being received.

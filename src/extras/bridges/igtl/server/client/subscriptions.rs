@@ -8,7 +8,7 @@ use super::super::super::ContentKind;
 const USUAL_S: f64 = 1.0 / 60.0;
 const SHORTEST_S: f64 = 0.01;
 const LONGEST_S: f64 = 1.0;
-/// A tick that is early by up to this counts as the due one, s.
+/// A tick that is early by up to this time counts as the due one, s.
 pub(in super::super) const EARLY_S: f64 = 1e-4;
 
 /// A set of message kinds.
@@ -106,17 +106,17 @@ impl Wants {
         asked
     }
 
-    /// Returns whether it wants status messages.
+    /// Returns whether the client requests status messages.
     pub(in super::super) fn wants_states(&self) -> bool {
         self.streams.has(ContentKind::Status)
     }
 
-    /// Returns whether it wants an image.
+    /// Returns whether the client requests images.
     pub(in super::super) fn looks(&self) -> bool {
         self.streams.has(ContentKind::Image) || self.once.has(ContentKind::Image)
     }
 
-    /// Called when it has received an image.
+    /// Called when the client has received an image.
     pub(in super::super) fn has_seen(&mut self) {
         self.once.remove(ContentKind::Image);
     }

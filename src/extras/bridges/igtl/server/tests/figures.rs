@@ -62,7 +62,8 @@ fn run(server: &IgtlServer, seconds: u64) -> Histogram<u64> {
     late
 }
 
-/// Delay of bundles: arrival minus time stamp, minus the minimum of all (the recorder's estimate of the loop's start).
+/// Returns the delay of bundles: arrival minus time stamp, minus the minimum of all (the recorder's estimate of the
+/// loop's start).
 fn lateness(server: &IgtlServer, ends: &Arc<AtomicBool>) -> JoinHandle<(Histogram<u64>, Histogram<u64>)> {
     let mut peer = Peer::of(server);
     let ends = Arc::clone(ends);

@@ -1,4 +1,4 @@
-//! The server against clients over real sockets, fed by a loop in the way of a recorder.
+//! Tests of the server with clients over real sockets; a loop is simulated in the way of a recorder.
 
 mod figures;
 
@@ -59,7 +59,7 @@ impl Rig {
     }
 }
 
-/// A loop of about 1 kHz until it is dropped.
+/// Runs a loop of about 1 kHz until it is dropped.
 struct Runs {
     ends: Arc<AtomicBool>,
     thread: Option<JoinHandle<Vec<[Option<Tick>; SIDES]>>>,

@@ -229,7 +229,7 @@ impl EmulatedServo {
         self.write(address, &data, now_s)
     }
 
-    /// Restarts: the RAM has its factory values, the shutdown is over, the turns are forgotten.
+    /// Restarts: the RAM gets its factory values, the shutdown ends, and the turn count is lost.
     pub(super) fn reboot(&mut self, now_s: f64) {
         self.set_factory(|access| access != Access::Eeprom);
         self.set(table::GOAL_CURRENT, self.get(table::CURRENT_LIMIT));

@@ -18,7 +18,7 @@ fn running() -> (Fixture, DynamixelDriver<MemoryBytes>) {
     (bench, driver)
 }
 
-/// Polls at 1 kHz until it is lost; returns the loss, and the time since the last good reading.
+/// Polls at 1 kHz until the device is lost; returns the loss, and the time since the last good reading.
 fn until_lost(bench: &Fixture, driver: &mut DynamixelDriver<MemoryBytes>) -> Option<(Loss, f64)> {
     let begin_s = bench.now_s();
     while bench.now_s() - begin_s < 1.0 {

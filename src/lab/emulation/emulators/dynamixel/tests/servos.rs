@@ -29,7 +29,7 @@ impl Client {
         Self { emulator: Bus::new(&settings, Some(Box::new(still))).unwrap(), now_s: 0.0 }
     }
 
-    /// Returns everything received within 10 ms: id, error, parameters.
+    /// Returns all packets received within 10 ms: id, error, parameters.
     fn ask(&mut self, id: u8, instruction: &I<'_>) -> Vec<(u8, u8, Vec<u8>)> {
         let mut out = OutgoingPackets::new(512);
         instruction.encode(id, &mut out);

@@ -46,7 +46,7 @@ fn it_delivers_over_the_terminal_without_a_loss() {
     });
 }
 
-/// Measures only this machine: the results quoted in the documentation.
+/// Measures the performance on this machine; the documentation quotes the results.
 #[test]
 #[ignore = "prints rates, takes 20 s: `./dev figures` runs it"]
 fn measure_rate_and_losses() {

@@ -73,7 +73,7 @@ fn time_us(image: &DecodedImage) -> Option<u64> {
     time_code::read(SQUARE_PX, |x, y| image.rgba[4 * (image.size_px[0] * y + x) + 1])
 }
 
-/// Middle of the mark at a tip, px.
+/// Returns the middle of the mark at a tip, px.
 fn mark_px(image: &DecodedImage) -> Option<Vector2<f64>> {
     let [width, _] = image.size_px;
     let is_mark = |pixel: &[u8]| pixel.iter().zip(MARK).all(|(is, was)| is.abs_diff(was) < 70);
@@ -130,10 +130,10 @@ fn its_picture_arrives_with_the_time_at_which_it_was_made() {
     }
 }
 
-/// What a fault looks like.
+/// Visible effect of a fault.
 type Sign = fn(&FrameHealth) -> bool;
 
-/// Switches every fault on and off; `own` has the signs of those that look different on this way to a picture.
+/// Switches every fault on and off; `own` has the effects of those that look different with this kind of source.
 fn every_fault_is_told(serving: &EmulatorThread, feed: &EndoscopeFeed, own: impl Fn(EmulatedFault) -> Option<Sign>) {
     for fault in EmulatedFault::every() {
         let sign: Sign = match fault {

@@ -66,7 +66,7 @@ fn a_wrong_path_is_told() {
     until(&feed, "404", |look| matches!(look.standing, FrameHealth::Lost(EndoscopeError::Refused { status: 404, .. })));
 }
 
-/// Waits until a feed of this address is live with images of this size.
+/// Waits until a feed from this address is live with images of this size.
 fn plays(address: &str, size_px: [usize; 2]) {
     let feed = EndoscopeFeed::start(address.parse().unwrap(), Some(size_px), || {}).unwrap();
     let look = until(&feed, address, is_live);

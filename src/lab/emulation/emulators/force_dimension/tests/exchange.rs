@@ -1,4 +1,4 @@
-//! Round trips of the exchange's datagrams; only intact ones are accepted.
+//! Tests of encoding and decoding the datagrams of the exchange; only intact ones are accepted.
 
 use drd::wire::{ClientOrder, DeviceReply, DeviceRequest, FRESH, REPLY_BYTES, REQUEST_BYTES, SATURATED};
 
@@ -66,7 +66,7 @@ fn datagrams_come_back_as_they_went_in() {
     }
 }
 
-/// Random and mutated datagrams; returns how many were accepted although they had been changed.
+/// Sends random and mutated datagrams; returns how many were accepted although they had been changed.
 fn fuzz(rounds: u32, seed: u64) -> u32 {
     let mut random = fastrand::Rng::with_seed(seed);
     let mut wrong = 0;

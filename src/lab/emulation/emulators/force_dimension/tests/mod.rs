@@ -1,4 +1,4 @@
-//! The driver against the emulated device, through the stub library and its socket.
+//! Tests of the driver with the emulated device, through the stub library and its socket.
 
 mod exchange;
 mod faults;
@@ -149,7 +149,7 @@ fn it_connects_and_reads_what_the_hand_does_without_a_gap() {
     });
 }
 
-/// A round this late leaves the handle little of the half period for which it waits.
+/// If a round is this late, little remains of the half period for which the handle waits.
 const LATE: Duration = Duration::from_micros(200);
 
 /// Counts readings in this many rounds of a loop with a period of 1.2 ms, a fifth slower than the handle's own cycle.

@@ -1,4 +1,4 @@
-//! Everything that can go wrong when connecting to a device, and when the program exits.
+//! Tests of all errors that can occur when connecting to a device, and when the program exits.
 
 use std::process::{Command, Stdio};
 

@@ -52,7 +52,7 @@ fn pedal_settings(serving: &EmulatorThread) -> PedalSettings {
     PedalSettings { source: serving.endpoint.clone(), ..PedalSettings::default() }
 }
 
-/// Polls every millisecond until `done`, at most 3 s; returns the time it took, s.
+/// Polls every millisecond until `done`, for at most 3 s; returns the elapsed time, s.
 fn until<D: Device>(
     device: &mut D,
     mut done: impl FnMut(&mut D, Option<TimedReading<D::Reading>>) -> bool,

@@ -1,4 +1,4 @@
-//! A foot pedal over its emulated interface.
+//! Tests of a foot pedal over its emulated interface.
 
 use super::*;
 

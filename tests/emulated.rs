@@ -14,7 +14,7 @@ use nima_machine::{
 };
 use nima_simulation::scene::Scene;
 
-/// The devices of that rig, in its order. The paper's rig has no servos on the left.
+/// The devices of the emulated rig, in order. The paper's rig has no servos on the left.
 pub const DEVICES: [&str; 11] = [
     "right handle",
     "right arm",
@@ -105,12 +105,12 @@ pub fn at_tip(folder: &Path) -> RigSettings {
     devices
 }
 
-/// Only its right arm: handle, arm, sensor and servos.
+/// Returns only the right arm: handle, arm, sensor and servos.
 pub fn right_arm(folder: &Path) -> RigSettings {
     RigSettings { left: None, tissue_sensor: None, tracker: None, endoscope: None, pedal: None, ..at_tip(folder) }
 }
 
-/// Starts the emulated devices of that rig, in the scene of two arms, whose pegs are within reach of each arm.
+/// Starts the emulated devices of the rig, in the scene of two arms, whose pegs are within reach of each arm.
 pub fn started(devices: &RigSettings) -> EmulatedRig {
     started_in(&Scene::load("bimanual").unwrap(), devices)
 }

@@ -2,7 +2,7 @@
 
 use std::{fs, path::Path};
 
-/// Two conditions whose words and numbers occur nowhere else.
+/// Two conditions whose names and numbers occur nowhere else.
 pub const BLIND: &str = "
 [[conditions]]
 name = 'Zebra'

@@ -38,8 +38,8 @@ pub trait Follower: Device<Reading = ArmReading> {
     /// Returns the commanded joint angles, rad; valid only while servoing.
     fn command_rad(&self) -> [f64; ARM_JOINTS];
 
-    /// Commands joint angles, rad: the next point of a path within the arm's limits. Returns false if they are refused;
-    /// the arm then deviates from the path.
+    /// Returns the commands joint angles, rad: the next point of a path within the arm's limits. Returns false if they
+    /// are refused; the arm then deviates from the path.
     fn aim(&mut self, target_rad: &[f64; ARM_JOINTS]) -> bool;
 
     /// Connects `lever`, which ends servoing from another thread.

@@ -97,7 +97,7 @@ impl ImageSource for StillImage {
 trait ImageSeries: Send {
     fn next(&mut self) -> Result<Vec<u8>, EndoscopeError>;
 
-    /// Format of its images.
+    /// Returns the format of its images.
     fn format(&self, _: &[u8]) -> Format {
         Format::Jpeg
     }

@@ -1,4 +1,4 @@
-//! Writes a session without anything that reveals who recorded it, where or when.
+//! Writes a session without any data that reveal who recorded it, where or when.
 //!
 //! Nothing is copied. Messages of known topics are rebuilt from their numbers, under this program's own names and with
 //! times that begin in 1970; everything else is left out. Data that a later version adds to a session are therefore

@@ -18,7 +18,7 @@ pub enum TickStage {
     Identification,
     /// The forces computed at the leader.
     Rendering,
-    /// The gates, and the force that they let through.
+    /// The gates, and the force that passes them.
     Gates,
     /// State, motion, settings, events and the commands to the devices.
     State,

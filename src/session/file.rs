@@ -152,7 +152,7 @@ impl RecordedFile {
         Journal::open(ahead(Arc::clone(&self.0), 0, 0, FAR_AHEAD))
     }
 
-    /// Returns a loop at this keyframe of its journal, whose beginning is `start`. `begin_ns` is the session's begin.
+    /// Returns a loop at this keyframe of its journal, which begins with `start`. `begin_ns` is the session's begin.
     pub fn cursor(&self, start: &JournalStart, keyframe: Keyframe, begin_ns: u64) -> ReplayCursor<StepsMessages> {
         let from_ns = (begin_ns + (keyframe.t_s() * 1e9) as u64).saturating_sub(MARGIN_NS);
         let messages = ahead(Arc::clone(&self.0), from_ns, keyframe.read(), AHEAD);

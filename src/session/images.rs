@@ -40,9 +40,10 @@ const BACK_NS: u64 = 2_000_000_000;
 /// Images are read this far ahead, ns, so that playback does not search the session for every image.
 const AHEAD_NS: u64 = 500_000_000;
 
-/// How far back a decoder may have to begin, ns. Cameras send a key frame every second or two, some every ten.
+/// Maximum distance to a key frame before the requested frame, ns. Cameras send a key frame every second or two, some
+/// every ten.
 const LEAD_NS: u64 = 12_000_000_000;
-/// A decoder continues over at most this much, ns, rather than restart at a key frame.
+/// A decoder continues over at most this gap, ns, instead of restarting at a key frame.
 const GOES_ON_NS: u64 = 1_000_000_000;
 
 /// Compression of an image.
@@ -64,7 +65,7 @@ impl ImageCoding {
     }
 }
 
-/// An image on its way into a recording.
+/// An image to be recorded.
 #[derive(Clone, Debug)]
 pub struct PendingImage {
     /// Arrival of its last byte.

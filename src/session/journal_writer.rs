@@ -20,7 +20,7 @@ pub struct TimedMessage {
 
 /// Receives a journal and the other records of a session.
 pub trait Pages {
-    /// Why it cannot accept more.
+    /// Reason why it cannot accept more.
     type Error: From<JournalError>;
 
     /// Called for a message of the journal.

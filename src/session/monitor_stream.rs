@@ -17,9 +17,9 @@ use crate::{
     objects::{JawState, LumpMark, ObjectStates, TaskProgress, WireLoop},
 };
 
-/// Version of the bundles, whose values are coded as those of a journal are; another one is refused.
+/// Version of the batches, whose values are coded as in a journal; other versions are rejected.
 const VERSION: u8 = crate::journal::VERSION as u8;
-/// Time between two ticks of a bundle, s: what a trace on a screen can show.
+/// Time between two ticks of a batch, s: the resolution that a trace on a screen can show.
 const STEP_S: f64 = 0.005;
 /// Maximum number of moments of a bundle, and of events of a moment.
 const MAX: u64 = 1024;
@@ -27,14 +27,14 @@ const MAX: u64 = 1024;
 const RINGS_MAX: u64 = 64;
 const MARKS_MAX: u64 = 64;
 
-/// Everything up to a tick.
+/// All data up to a tick.
 #[derive(Clone, Debug)]
 pub struct MonitorMoment {
     /// Events of the loop since the previous moment, oldest first.
     pub events: Vec<Event>,
     /// State of each side.
     pub ticks: [Option<Tick>; SIDES],
-    /// The objects of the scene in the last moment of a bundle; `None` if there is nothing new.
+    /// Objects of the scene at the end of a batch; `None` if nothing has changed.
     pub objects: Option<ObjectStates>,
 }
 
@@ -91,7 +91,7 @@ impl MomentWriter {
         self.rows == 0
     }
 
-    /// Returns the bundle and empties it. Events whose moment is still to come stay for the next bundle.
+    /// Returns the batch and empties it. Events whose time has not been reached stay for the next batch.
     pub fn take(&mut self) -> Vec<u8> {
         let mut bytes = vec![VERSION];
         let report = self.events.partition_point(|(moment, _)| *moment < self.rows);
@@ -333,7 +333,7 @@ mod tests {
 
     type Shown = [Option<Tick>; SIDES];
 
-    /// Two seconds of a loop that is engaged and then stopped, in bundles of 50 ms; with every tick and event of it.
+    /// Returns two seconds of a loop that is engaged and then stopped, in batches of 50 ms, with every tick and event.
     fn report() -> (Vec<Vec<u8>>, Vec<Shown>, Vec<Event>) {
         let rig = RigConfig::load("simulated").unwrap();
         let mut control = Loop::new(&rig, &[Some(Calibrations::default()), None]).unwrap();
@@ -366,7 +366,7 @@ mod tests {
         (bundles, ticks, events)
     }
 
-    /// Two rings, one of them lost, one pair of jaws, two marks, and a loop on a wire.
+    /// Returns two rings, one of them lost, one pair of jaws, two marks, and a loop on a wire.
     fn objects(t_s: f64) -> ObjectStates {
         let turn = UnitQuaternion::from_euler_angles(t_s, 0.2, -t_s);
         let ring = Isometry3::from_parts(Translation3::new(t_s, 0.5, -0.25), turn);

@@ -1,8 +1,8 @@
 //! A session file that is written on another machine during the recording.
 //!
-//! The recorder's thread forwards everything that it writes, as [`FilePart`]s in numbered [`Bundle`]s. A receiver that has
-//! all bundles from the first one writes a file that replays like the original. A receiver that joins later begins with
-//! a [`SessionHead`], which holds the tables, files and channels of the bundles that are gone, and writes an excerpt: a
+//! The recorder's thread forwards all written data, as [`FilePart`]s in numbered [`Bundle`]s. A receiver that has all
+//! bundles from the first one writes a file that replays like the original. A receiver that joins later begins with a
+//! [`SessionHead`], which holds the tables, files and channels of the bundles that are gone, and writes an excerpt: a
 //! journal can be replayed only from its beginning.
 
 use std::{collections::BTreeMap, path::Path};
@@ -156,7 +156,7 @@ impl Bundle {
     }
 }
 
-/// Everything from earlier bundles that is needed to begin at a later one.
+/// All data from earlier batches that are needed to start at a later one.
 #[derive(Clone, PartialEq, prost::Message)]
 pub struct SessionHead {
     #[prost(uint32, tag = "1")]
@@ -187,7 +187,7 @@ impl SessionHead {
         Self { version: VERSION, session, program, started_ns, first: 0, lacks: false, parts: Vec::new() }
     }
 
-    /// Removes the oldest bundle but keeps everything of it that is not a message.
+    /// Removes the oldest batch but keeps its data except the messages.
     pub fn outlive(&mut self, oldest: Bundle) {
         self.first = oldest.number + 1;
         for slot in oldest.parts {

@@ -14,7 +14,7 @@ use nima_recording::session::is_being_written;
 
 /// Maximum bytes of the sessions that are not kept: ten hours of two arms.
 pub const MAX_BYTES: u64 = 20_000_000_000;
-/// Bytes of the disk that sessions which are not kept leave free for everything else.
+/// Disk space, in bytes, that sessions which are not kept leave free for other uses.
 pub const LEFT_BYTES: u64 = 2_000_000_000;
 /// A file written to this recently may be the session of another program that is running now.
 const IN_USE: Duration = Duration::from_mins(1);
@@ -138,7 +138,7 @@ impl SessionStore {
     }
 }
 
-/// Marks a session as kept, or removes the mark.
+/// Returns the marks a session as kept, or removes the mark.
 ///
 /// # Errors
 /// I/O errors.

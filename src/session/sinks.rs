@@ -36,7 +36,8 @@ impl<'a> Destination<'a> {
 /// A live viewer of a session: receives everything that its file receives. Called on the recorder's thread, which must
 /// not wait.
 pub trait Audience: Send + Debug {
-    /// Called when a session begins, recorded by this program; its loop's clock started at this time (ns since 1970).
+    /// Called when a session starts, recorded by this program; the clock of its loop started at this time (ns since
+    /// 1970).
     fn begins(&mut self, _program: &str, _started_ns: u64) {}
 
     fn metadata(&mut self, _name: &str, _entries: &BTreeMap<String, String>) {}
@@ -77,7 +78,7 @@ pub(crate) struct SessionSinks {
     audiences: Vec<Box<dyn Audience>>,
     /// Writes the file at this path to the disk; if absent, the caller gets the errors of the file.
     sync: Option<(PathBuf, Sync)>,
-    /// Why the file has ended, until it has been reported.
+    /// Reason why the file has ended, until it has been reported.
     trouble: Option<RecordError>,
 }
 
@@ -102,7 +103,7 @@ impl SessionSinks {
         Self { file: Some(file), channels: Vec::new(), audiences: Vec::new(), sync: None, trouble: None }
     }
 
-    /// Returns whether any destination receives what is written.
+    /// Returns whether any destination receives the data.
     pub(crate) const fn is_received(&self) -> bool {
         self.file.is_some() || !self.audiences.is_empty()
     }

@@ -18,7 +18,7 @@ const REACTION_S: f64 = 0.12;
 const JUDGED: f64 = 0.07;
 /// Speed at which the hand yields, per newton above the intended force, m/s.
 const YIELDS_M_S: f64 = 0.006;
-/// Maximum distance by which it yields, m.
+/// Maximum distance by which the hand yields, m.
 const YIELDS_MAX_M: f64 = 0.02;
 /// Below this fraction of the intended force the contact is over, and the hand returns to its target with this time
 /// constant, s.
@@ -67,13 +67,13 @@ impl ForceResponse {
         self.judged = (1.0 + JUDGED * self.lot.gaussian()).max(0.5);
     }
 
-    /// Called while the hand is led or waits, so that it resumes its task without an offset.
+    /// Called while the hand is guided or waits, so that it resumes its task without an offset.
     pub(super) fn rest(&mut self) {
         self.offset_m = Vector3::zeros();
         self.pace = 1.0;
     }
 
-    /// Processes this force of the handle (N) for `dt_s`, at most a step; returns the pace of the task.
+    /// Processes this force on the handle (N) for `dt_s`, at most a step; returns the pace of the task.
     pub(super) fn feel(&mut self, force_n: &Vector3<f64>, dt_s: f64) -> f64 {
         self.since_s += dt_s;
         if self.since_s > 0.5 * STEP_S {

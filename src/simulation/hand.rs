@@ -65,7 +65,7 @@ impl HandMove {
 }
 
 impl HandTaskPart {
-    /// Opening of the gripper after `t_s`, rad.
+    /// Returns the opening of the gripper after `t_s`, rad.
     fn grip_rad_at(&self, t_s: f64) -> f64 {
         let [from_rad, to_rad] = self.grip_rad;
         let fraction = if self.way.seconds > 0.0 { (t_s / self.way.seconds).clamp(0.0, 1.0) } else { 1.0 };
@@ -122,9 +122,9 @@ pub struct Hand {
     held_open_rad: Option<f64>,
     /// Position at which it waits while the task is paused.
     waits_m: Option<Vector3<f64>>,
-    /// What the hand intended last: its task, or where it is led.
+    /// What the hand intended last: its task, or where it is guided.
     intended: Intention,
-    /// The hand is led, or on its way back to the task.
+    /// The hand is guided, or on its way back to the task.
     is_led: bool,
     /// Whether it has released the handle, which then moves freely.
     open: bool,
@@ -168,7 +168,7 @@ impl Hand {
         }
     }
 
-    /// Creates the hand of `scene` with a task that depends on what is felt.
+    /// Creates the hand of `scene` with a task that depends on the forces that the hand feels.
     pub(super) fn searching(scene: &Scene, task: Vec<HandTaskPart>, search: Box<PalpationTask>) -> Self {
         Self { search: Some(search), ..Self::with_task(scene, task) }
     }
@@ -205,8 +205,8 @@ impl Hand {
         self.grip_rad
     }
 
-    /// Lets the hand wait at this position instead of its task; `None` resumes the task. The intended position is
-    /// continuous in both cases.
+    /// Makes the hand wait at this position instead of performing its task; `None` resumes the task. The intended
+    /// position is continuous in both cases.
     pub(super) fn wait(&mut self, waits_m: Option<Vector3<f64>>) {
         self.waits_m = waits_m;
         self.is_led |= waits_m.is_some();
@@ -217,7 +217,7 @@ impl Hand {
         self.guide_m.or(self.waits_m)
     }
 
-    /// Advances what the hand intends: its task, or where it is led.
+    /// Advances what the hand intends: its task, or where it is guided.
     fn intend(&mut self, dt_s: f64) -> Intention {
         let (task_m, task_m_s) = self.task[self.current].way.at(self.in_move_s);
         let offset_m = self.feeling.as_ref().map_or_else(Vector3::zeros, |feeling| feeling.offset_m());

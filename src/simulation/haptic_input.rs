@@ -1,5 +1,5 @@
-//! A haptic handle that leads the right hand of a simulated rig instead of the simulated hand, so that a person feels
-//! the simulated tissue.
+//! A haptic handle that controls the right hand of a simulated rig instead of the simulated hand, so that a person
+//! feels the simulated tissue.
 //!
 //! The loop gets position, orientation and gripper of the handle in the handle's own frame, as on a rig with devices,
 //! and its force goes to the handle in the same tick. Without a recent reading the side has no sample, and the loop
@@ -13,7 +13,7 @@ use nima_core::{
 use nima_devices::{ConnectionState, DeviceSlot, HandleReading, Health, Leader, Lever, TimedReading};
 use nima_machine::rig::{GUIDE_MAX_M, Inputs, LeaderSettings, Outputs, RigError, RosterEntry};
 
-/// A reading older than this counts as missing, s: the same as on a rig with devices.
+/// A reading older than this counts as missing, s, as on a rig with devices.
 const OLDEST_S: f64 = 0.020;
 
 /// The handle on the desk.
@@ -46,7 +46,7 @@ impl HapticInput {
         self.slot.health().standing == ConnectionState::Connected
     }
 
-    /// Reads new data; returns the handle's position, m, limited to what the simulated hand can follow.
+    /// Reads new data; returns the handle's position, m, limited to the range that the simulated hand can follow.
     pub(super) fn poll(&mut self, now_s: f64) -> Option<Vector3<f64>> {
         if let Some(reading) = self.slot.poll(now_s) {
             self.newest = Some(reading);

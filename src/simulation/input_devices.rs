@@ -39,8 +39,8 @@ pub struct InputDevices {
     acts: Acts,
     grip_rad: Option<f64>,
     is_down: bool,
-    /// Position to which the cap leads the hand, m (`None` until it is touched), and where the left hand waits
-    /// meanwhile.
+    /// Position to which the cap guides the hand, m (`None` until it is touched), and where the left hand waits in the
+    /// meantime.
     position_m: Option<Vector3<f64>>,
     left_m: Option<Vector3<f64>>,
     hands_m: [Vector3<f64>; SIDES],

@@ -62,7 +62,7 @@ pub struct Training {
 pub struct PlaceMark {
     /// On the tissue at rest, m.
     pub position_m: Vector3<f64>,
-    /// Whether there is a lump. Hidden from the operator during the trial.
+    /// Whether there is a lump at the mark. Hidden from the operator during the trial.
     pub is_true: bool,
 }
 
@@ -106,7 +106,7 @@ fn reader() -> ((Sender<ObjectMoment>, Sender<TimedTaskEvent>), ObjectFeed) {
 }
 
 impl ObjectFeed {
-    /// Returns another reader, which also receives everything; `None` if there are three already.
+    /// Returns another reader, which receives the same data; `None` if there are three already.
     pub fn another(&mut self) -> Option<Self> {
         self.others.pop()
     }

@@ -24,7 +24,7 @@ const SHIFTS_S: f64 = 0.4;
 const CARRY_M: f64 = 0.015;
 /// Minimum and maximum distance of the cells that count as surroundings, m: not above the same lump.
 const AROUND_M: [f64; 2] = [0.008, 0.015];
-/// Force above a lump as a multiple of the force around it.
+/// Minimum force above a lump as a multiple of the surrounding force.
 const MORE: f64 = 1.12;
 /// Cells within this distance of the maximum count as the same lump, m, when its middle is computed and when the next
 /// lump is searched for.
@@ -47,7 +47,7 @@ pub(super) struct PalpationTask {
     first_m: [f64; 2],
     /// Sum of the forces felt in each cell, N, and their number.
     felt_n: Vec<(f64, u32)>,
-    /// Force in each cell as a multiple of the force around it.
+    /// Force in each cell as a multiple of the surrounding force.
     more: Vec<f64>,
     /// Surrounding cells as offsets (lanes, cells).
     around: Vec<[isize; 2]>,

@@ -35,7 +35,7 @@ const REST_S: f64 = 0.3;
 
 /// The parts of both hands' tasks, which have equal durations.
 struct CarryingTask {
-    /// From the middle of a ring to the middle of its tube, and the height of a ring that lies on the board, m.
+    /// Distance from the middle of a ring to the middle of its tube, and the height of a ring on the board, m.
     rim_m: f64,
     lies_m: f64,
     peg_m: f64,
@@ -44,8 +44,8 @@ struct CarryingTask {
     grip_rad: [f64; SIDES],
 }
 
-/// Returns the task of each hand; only the right one's if there is no other. Empty without a ring on a peg that has an
-/// opposite peg.
+/// Returns the task of each hand; only the right hand's task if there is no other hand. Empty without a ring on a peg
+/// that has an opposite peg.
 pub(super) fn ways(setting: &ObjectSettings, two_hands: bool) -> [Vec<HandTaskPart>; SIDES] {
     let waits = [Side::Right, Side::Left].map(|side| outwards(side, ASIDE_M));
     let rim_m = setting.ring.major_radius_m;

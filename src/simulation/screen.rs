@@ -14,7 +14,7 @@ pub enum PersonTask {
     Surgery,
     /// Gravity: the instrument is out of the trocar, and nothing is near it.
     Gravity,
-    /// Correspondence: the tissue lies on its sensor, without the body wall.
+    /// Correspondence: the tissue is on its sensor, without the body wall.
     Correspondence,
     /// Tip force: through the trocar onto the tissue.
     TipForce,

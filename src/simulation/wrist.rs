@@ -92,8 +92,8 @@ impl Wrist {
     }
 }
 
-/// Orientation of the wrist for a shaft in this direction (`world`, unit length): z along it, x as close to the base's
-/// x as possible.
+/// Returns the orientation of the wrist for a shaft in this direction (`world`, unit length): z along it, x as close to
+/// the base's x as possible.
 pub(super) fn along_shaft(direction: &Vector3<f64>) -> UnitQuaternion<f64> {
     let side = if direction.x.abs() < 0.99 { Vector3::x() } else { Vector3::y() };
     let x = (side - direction * side.dot(direction)).normalize();

@@ -1,3 +1,3 @@
-//! Cargo builds build dependencies only if there is a build script.
+//! Does nothing: cargo builds build dependencies only if there is a build script.
 
 fn main() {}

@@ -1,6 +1,6 @@
 //! Contrast of two colours as WCAG 2 defines it.
 
-/// The least contrast of text at level AA.
+/// Minimum contrast of text at level AA.
 pub const MIN: f64 = 4.5;
 
 /// Returns the contrast of two colours in sRGB, 1 to 21.

@@ -1,5 +1,6 @@
-//! What the tests of every crate share: judging in real time, reports of tests that could not judge, seeds for random loops, contrast of colours, and one set of
-//! features of the libraries that several crates use (see `Cargo.toml` beside this file).
+//! Support for the tests of all crates: judging in real time, reports of tests that could not judge, seeds for random
+//! loops, contrast of colours, and one set of features of the libraries that several crates use (see `Cargo.toml`
+//! beside this file).
 
 pub mod contrast;
 pub mod fuzz;

@@ -13,7 +13,7 @@ use std::{
 use crate::unjudged;
 
 const ATTEMPTS: usize = 5;
-/// If a busy machine has delayed a test for this long, stop trying and judge it when nothing else runs.
+/// If a busy machine has delayed a test for this long, stop retrying, and judge the test when nothing else runs.
 const PATIENCE: Duration = Duration::from_mins(1);
 /// Limit for all tests of a program together; after that, each test has one attempt.
 const PATIENCE_OF_ALL: Duration = Duration::from_mins(2);
@@ -26,7 +26,8 @@ const NAP: Duration = Duration::from_millis(1);
 /// A quiet machine wakes a sleeping thread within this time, and never later than `PAUSE`.
 const LATE: Duration = Duration::from_millis(3);
 const PAUSE: Duration = Duration::from_millis(20);
-/// With a smaller idle fraction of processor time, threads other than the sleeping one may be delayed unnoticed.
+/// If the idle fraction of processor time is smaller than this, threads other than the sleeping one may be delayed
+/// unnoticed.
 const IDLE_FRACTION: f64 = 0.1;
 /// With a larger fraction of time taken by the virtual machine's host, threads are delayed in a way that no clock here
 /// shows.
@@ -97,7 +98,7 @@ struct ProcessorTime {
     all: f64,
 }
 
-/// `None` where the kernel does not report it.
+/// Returns the processor times; `None` if the kernel does not report them.
 fn spent() -> Option<ProcessorTime> {
     let text = std::fs::read_to_string("/proc/stat").ok()?;
     let times = text.lines().next()?.strip_prefix("cpu ")?.split_whitespace().take(8);

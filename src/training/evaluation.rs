@@ -58,7 +58,7 @@ pub struct Evaluation {
     pub outputs: Vec<String>,
     pub files: Vec<EvaluationPart>,
     pub overall: EvaluationPart,
-    /// The files among these that the model was trained on: their errors say nothing about new data.
+    /// Files that were used to train the model: their errors do not show the accuracy on new data.
     pub trained_on: Vec<String>,
     /// Time of one prediction, microseconds.
     pub inference_us: Quantiles,

@@ -12,7 +12,7 @@ use super::{
     perceptron::{Batch, Perceptron},
 };
 
-/// A member stops after this fraction of the maximum epochs without a lower validation loss.
+/// Training of a member stops after this fraction of the maximum epochs without a lower validation loss.
 const PATIENCE: f64 = 0.25;
 /// Number of rows evaluated at once in a validation pass.
 const CHUNK: usize = 1024;
@@ -22,7 +22,7 @@ pub(super) struct TrainingFit<'a> {
     pub(super) x: &'a [f32],
     pub(super) y: &'a [f32],
     pub(super) shape: (usize, usize),
-    /// The linear path, solved over all rows: with so few parameters it cannot overfit.
+    /// The linear path, solved over all rows, because with so few parameters it cannot overfit.
     pub(super) skip: &'a [f32],
     pub(super) settings: &'a TrainingSettings,
     pub(super) cancel: &'a AtomicBool,

@@ -1,4 +1,4 @@
-//! The driver of the servos allocates nothing while it runs on a real terminal.
+//! Test: the driver of the servos allocates nothing while it runs on a real terminal.
 #![cfg(unix)]
 
 use std::time::Instant;

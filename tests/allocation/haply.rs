@@ -1,4 +1,4 @@
-//! A force and its answer on a Haply handle's line allocate nothing.
+//! Test: a force and its answer on a Haply handle's line allocate nothing.
 
 use std::{
     collections::VecDeque,

@@ -1,4 +1,4 @@
-//! Polling a cap or a pedal allocates nothing, whatever arrives, and also when the device is lost.
+//! Test: polling a cap or a pedal allocates nothing, whatever data arrive, and also when the device is lost.
 #![cfg(target_os = "linux")]
 
 use std::time::{Duration, Instant};

@@ -1,4 +1,5 @@
-//! A tick of either of two machines allocates nothing: messages are packed, sent, received and unpacked in place.
+//! Test: a tick of either of two machines allocates nothing, because messages are packed, sent, received and unpacked
+//! in place.
 
 use std::sync::Mutex;
 

@@ -1,4 +1,4 @@
-//! The tip-force model allocates nothing, whatever its inputs, nor does the loop that contains it.
+//! Test: neither the tip-force model, whatever its inputs, nor the loop that contains it allocates.
 
 use std::sync::atomic::AtomicBool;
 

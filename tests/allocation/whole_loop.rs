@@ -32,7 +32,7 @@ fn sample(k: u32) -> Sample {
     sample
 }
 
-/// Three seconds of both ends: the delay changes, modes are disabled and enabled, everything is reset.
+/// Runs three seconds of both ends: the delay changes, modes are disabled and enabled, and everything is reset.
 #[expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 fn run_both_ends(settings: &ImpedanceSettings, words: &str) {
     let mut identifier = Identifier::new(settings).unwrap();

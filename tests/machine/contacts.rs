@@ -37,7 +37,7 @@ impl Rig for Measurements {
     }
 }
 
-/// How a run ended, and its measurements.
+/// End of a run, and its measurements.
 struct RunResult {
     seconds: f64,
     fault: Option<Fault>,
@@ -85,7 +85,7 @@ fn leaps(samples: &[Sample]) -> Vec<(usize, Vec<f64>)> {
     found
 }
 
-/// The left jaws press a ring until it snaps away, 80 s after the beginning: 2 N are gone within 4 ms.
+/// The left jaws press a ring until it snaps away, 80 s after the start: 2 N vanish within 4 ms.
 #[test]
 fn a_ring_that_snaps_out_of_the_jaws_is_no_fault() {
     let ran = run("rings", (Mode::Dfr, 0.4, 0.3), 3, 90.0);

@@ -21,12 +21,12 @@ const INPUTS: [&str; 5] = [
 /// Largest mean absolute error on each held-out file, Nm.
 const GOAL_NM: f64 = 2.5e-3;
 
-/// `None`, with a report, if they are missing.
+/// Returns the paths of the recordings; `None`, with a report, if they are missing.
 fn paths<'a>(files: impl Iterator<Item = &'a str>) -> Option<Vec<PathBuf>> {
     files.map(|file| unjudged::recording(&format!("mrd_davinci/maryland_r5_{file}.csv"))).collect()
 }
 
-/// Trained on the other four files, evaluated on these two; `None`, with a report, if the recordings are missing.
+/// Trains on the other four files and evaluates on these two; `None`, with a report, if the recordings are missing.
 fn held_out(held: [&str; 2], settings: &TrainingSettings) -> Option<Evaluation> {
     let names = |list: &[&str]| Some(list.iter().map(|name| (*name).to_owned()).collect());
     let selection = Selection { inputs: names(&INPUTS), outputs: names(&["jaw_torque_nm"]) };

@@ -21,7 +21,7 @@ use nima_tests::plan;
 /// Messages in transit in one direction, with their arrival times, s.
 type Direction = Arc<Mutex<VecDeque<(f64, Vec<u8>)>>>;
 
-/// A link with a constant delay; `ahead_s` is how far this end's clock is ahead of the other's.
+/// A link with a constant delay; `ahead_s` is the offset of this end's clock from the other's.
 struct Constant {
     out: Direction,
     back: Direction,
@@ -75,7 +75,7 @@ struct Fixture {
 }
 
 impl Fixture {
-    /// With this delay in each direction, s; the clocks are half an hour apart.
+    /// Creates both machines with this delay in each direction, s; their clocks differ by half an hour.
     fn new(delay_s: f64, mode: Mode) -> Self {
         let mut rig = RigConfig::load("simulated").unwrap();
         rig.mode = mode;
@@ -169,7 +169,7 @@ fn over_a_network(delay_s: f64, mode: Mode) -> [f64; 2] {
     [rms_n(&errors), tip_n.iter().map(Vector3::norm).fold(0.0, f64::max)]
 }
 
-/// The same with everything in one place and the whole delay in the return direction.
+/// The same on one machine, with the whole delay in the return direction.
 fn in_one_place(delay_s: f64, mode: Mode) -> f64 {
     let mut plan = plan("peg_transfer");
     plan.rig.mode = mode;

@@ -11,7 +11,7 @@ use nima_simulation::{
 };
 use nima_tests::plan;
 
-/// Samples of `scene` with this instruction for some seconds at 1 kHz, with the true force on the tip.
+/// Returns the samples of `scene` with this instruction for some seconds at 1 kHz, with the true force on the tip.
 fn samples(world: &mut World, from_s: f64, seconds: f64, prompt: Prompt) -> Vec<(WristSample, Vector3<f64>)> {
     let outputs = Outputs { prompt, ..Outputs::SAFE };
     (1..=(seconds * 1e3) as u32)

@@ -68,7 +68,7 @@ fn fault(from: &Ring, to: &Ring, readme: &str) -> Option<String> {
     }
 }
 
-/// Every crate of the workspace by its name: folder and manifest.
+/// Returns every crate of the workspace by its name: folder and manifest.
 fn crates() -> BTreeMap<String, (String, Table)> {
     let workspace = manifest(&root());
     let members = workspace["workspace"]["members"].as_array().unwrap();

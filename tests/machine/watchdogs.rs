@@ -1,4 +1,5 @@
-//! Every watchdog triggered on purpose: it raises its own fault in the usual way, without force, only while idle.
+//! Tests of every watchdog, triggered on purpose: it raises its own fault in the usual way, without force, and only
+//! while idle.
 use std::{
     sync::{
         Arc,

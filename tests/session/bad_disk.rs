@@ -63,7 +63,7 @@ fn wait_for(mut what: impl FnMut() -> bool) {
     }
 }
 
-/// Waits until the loop has made this many more ticks.
+/// Waits until the loop has executed this many more ticks.
 fn wait_for_ticks(handle: &LoopHandle, count: u64) {
     let mut first = None;
     let mut newest = 0;

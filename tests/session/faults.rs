@@ -29,7 +29,7 @@ use nima_tests::plan;
 
 use crate::bench::{JournalMessages, record, record_on, start_of};
 
-/// A world whose measurements are corrupted at times.
+/// A world whose measurements are occasionally corrupted.
 struct Spoilt<F> {
     worlds: Worlds,
     spoil: F,

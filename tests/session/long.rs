@@ -1,4 +1,4 @@
-//! A long session: its size on the disk and in memory.
+//! Tests of a long session: its size on the disk and in memory.
 
 use std::{fs, time::Instant};
 

@@ -1,4 +1,4 @@
-//! Objects of a scene in a session, from any source: recorded, read, cut out and made anonymous.
+//! Tests of a scene's objects in a session, from any source: recorded, read, trimmed and made anonymous.
 
 use std::{collections::VecDeque, path::Path, sync::atomic::AtomicBool};
 

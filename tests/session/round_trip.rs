@@ -31,7 +31,7 @@ fn every_scene_replays_bit_for_bit() {
     }
 }
 
-/// Commands of every kind at arbitrary times, including refused ones.
+/// Returns commands of every kind at arbitrary times, including refused ones.
 fn operator(tick: &Tick) -> Option<Command> {
     Some(match tick.index {
         700 => Command::SetMode(Mode::Dfr),

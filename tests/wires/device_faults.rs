@@ -28,7 +28,7 @@ const SLACK_MS: f64 = 15.0;
 /// Time limit for a device to recover after the end of its fault.
 const BACK_WITHIN: Duration = Duration::from_secs(6);
 
-/// Minimum force in the hand when a fault begins, N, and how long it must have been present.
+/// Minimum force in the hand when a fault begins, N, and the time for which it must have been present.
 const PRESSED_N: f64 = 0.4;
 const PRESSED: Duration = Duration::from_millis(100);
 /// Duration of a fault.
@@ -36,7 +36,7 @@ const FAULT: Duration = Duration::from_millis(450);
 /// Minimum number of the loop's ticks in that time, of 450; with fewer, the loop itself was delayed and misses the
 /// device's behaviour.
 const TICKS_MIN: u64 = 360;
-/// For this long after the fault the loop is left alone: it must not engage by itself.
+/// Time for which the loop is left alone after the fault; it must not engage by itself.
 const LEFT_ALONE: Duration = Duration::from_millis(300);
 /// The devices whose faults are tested together; the force does not come from those of the last set.
 const SETS: [&[&str]; 4] =

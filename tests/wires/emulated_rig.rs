@@ -95,8 +95,8 @@ fn a_second_rig_at_the_same_places_is_refused_and_a_new_one_comes_after_the_firs
 /// Depth to which the tip presses, m.
 const DEPTH_M: f64 = 0.005;
 
-/// Sensor readings (N, `world`) while the tip presses and after it has been raised; `None` if a device was lost
-/// meanwhile, or the arm does not servo.
+/// Returns the sensor readings (N, `world`) while the tip presses and after it has been raised; `None` if a device was
+/// lost in the meantime, or if the arm does not servo.
 fn pressed(rig: &EmulatedRig, set: &ArmSet) -> Option<[Vec<Vector3<f64>>; 2]> {
     let mut arm = kinova::open(set.arm.kinova().unwrap()).unwrap();
     let mut sensor = bota::BotaDriver::open(set.sensor.bota().unwrap()).unwrap();

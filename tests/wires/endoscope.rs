@@ -67,7 +67,7 @@ fn is_tip(pixel: &[u8]) -> bool {
     pixel[1] > 150 && pixel[0] < 90 && pixel[2] < 150
 }
 
-/// Returns the middle of the tip that is visible near here, px; `None` if there is none.
+/// Returns the middle of the visible tip near this point, px; `None` if there is none.
 fn tip_px(image: &DecodedImage, near_px: &Vector2<f64>) -> Option<Vector2<f64>> {
     let width = image.size_px[0];
     let places = image.rgba.chunks_exact(4).enumerate().filter(|(_, pixel)| is_tip(pixel));

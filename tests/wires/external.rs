@@ -55,14 +55,14 @@ fn free_ports() -> [u16; 3] {
     sockets.map(|socket| socket.local_addr().unwrap().port())
 }
 
-/// How the examples are run: compiled, or interpreted.
+/// Form of the examples: compiled or interpreted.
 enum Examples {
     C(PathBuf),
     Python,
 }
 
 impl Examples {
-    /// Compiled without warnings. `None` if there is no compiler.
+    /// Compiles the examples without warnings. `None` if there is no compiler.
     fn in_c(folder: &Path) -> Option<Self> {
         if Process::new("cc").arg("--version").output().is_err() {
             unjudged::left_out("no C compiler (cc) is installed");
@@ -91,7 +91,7 @@ impl Examples {
     }
 }
 
-/// A running example; killed when the test is done with it.
+/// A running example, killed when it is dropped.
 struct Running(Option<Child>);
 
 impl Running {

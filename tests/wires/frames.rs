@@ -19,7 +19,7 @@ use super::technician::Fixture;
 
 const SIDE: Side = Side::Right;
 
-/// Lets the technician work until nothing is missing; on a machine that is too busy the test is not judged.
+/// Lets the technician work until no data are missing; if the machine is too busy, the test is not judged.
 fn run<C: Calibration>(
     bench: &mut Fixture,
     calibration: C,

@@ -1,4 +1,4 @@
-//! The rig of a Haply handle: the handle is emulated on its port, and the hand feels the simulated tissue.
+//! Tests of the rig of a Haply handle: the handle is emulated on its port, and the hand feels the simulated tissue.
 #![cfg(target_os = "linux")]
 use std::time::{Duration, Instant};
 

@@ -33,9 +33,9 @@ use nima_simulation::{SimulationPlan, scene::Scene};
 use nima_testing::real_time::{alone, judged, too_busy};
 use nima_tests::emulated::{at_tip, started_in};
 
-/// Time limit for the force after a sensor has begun to repeat itself, s.
+/// Time limit for the force after a sensor has started to repeat itself, s.
 const GONE_S: f64 = 0.020;
-/// A block of 32 readings is detected when it is repeated, s.
+/// A block of 32 readings is detected when it recurs, s.
 const BLOCK_GONE_S: f64 = 0.060;
 /// Minimum force in the hand when a fault begins, N.
 const FELT_N: f64 = 0.3;
@@ -121,7 +121,7 @@ impl Fixture {
         assert!(self.within(WAIT, |bench| bench.rendered_n() > FELT_N), "no force: {:?}", self.state());
     }
 
-    /// Returns how long there is a force in the hand after `begin`, s, and the fault that is raised.
+    /// Returns for how long there is a force in the hand after `begin`, s, and the fault that is raised.
     fn after(&mut self, begin: impl FnOnce()) -> (f64, String) {
         self.look();
         let (at_s, missed) = self.newest.map(|tick| (tick.t_s, tick.missed)).unwrap();
@@ -194,11 +194,11 @@ fn an_emulated_sensor_that_repeats_itself_takes_the_force_away() {
     }
 }
 
-/// An example, killed when the test is done with it.
+/// An example, killed when it is dropped.
 struct Example(Child);
 
 impl Example {
-    /// Compiled into this folder, or interpreted if there is no compiler.
+    /// Starts the example, compiled into this folder, or interpreted if there is no compiler.
     fn start(name: &str, folder: &Path, ports: &[u16]) -> Self {
         let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("../assets/external").join(name);
         let program = folder.join(name);

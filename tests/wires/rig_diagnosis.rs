@@ -1,5 +1,5 @@
-//! Every device of an emulated rig is first diagnosed as in order; then each is made to fail, and the right cause and
-//! remedy must be reported in time.
+//! Tests: every device of an emulated rig is first diagnosed as working; then each is made to fail, and the correct
+//! cause and remedy must be reported in time.
 #![cfg(target_os = "linux")]
 use std::time::{Duration, Instant};
 

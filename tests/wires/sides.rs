@@ -33,12 +33,12 @@ struct Row {
     report: ReportSource,
 }
 
-/// How it is detected.
+/// Method of detection.
 enum ReportSource {
     /// The devices of these parts are rejected.
     Kept(&'static [&'static str]),
     Obstacle(SideSwap),
-    /// Not at all: the devices are found automatically, and each is where it belongs.
+    /// No detection needed: the devices are found automatically, and each is used correctly.
     Harmless,
 }
 
@@ -114,7 +114,7 @@ fn nameless_sensors(devices: &mut RigSettings) {
     devices.tissue_sensor.as_mut().unwrap().bota_mut().unwrap().serial_number = None;
 }
 
-/// As after a passed ready check with everything in its place.
+/// Returns the settings after a passed ready check with every device in its place.
 fn checked(devices: &mut RigSettings) {
     let serials = [
         ("right handle", "4711"),

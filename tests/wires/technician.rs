@@ -22,7 +22,7 @@ use nima_tests::emulated::{elsewhere, started};
 
 /// Number of poses at each arm.
 const POSES: usize = 3;
-/// An arm rests if its joints rotate no further than this, rad, in this time, s.
+/// An arm is at rest if its joints rotate by no more than this, rad, in this time, s.
 const STILL_RAD: f64 = 1e-4;
 const STILL_S: f64 = 0.3;
 
@@ -43,7 +43,7 @@ impl Fixture {
         Self { rig, handle, newest: [None; SIDES] }
     }
 
-    /// Reads every tick of a side until `good`; returns whether it came in time.
+    /// Reads every tick of a side until `good`; returns whether this happened in time.
     pub(super) fn until(&mut self, side: Side, within: Duration, mut good: impl FnMut(&Self, &Tick) -> bool) -> bool {
         let begin = Instant::now();
         while begin.elapsed() < within {

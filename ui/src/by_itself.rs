@@ -23,7 +23,7 @@ pub(crate) enum Starter {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum ArmLocation {
     Here,
-    /// At a `nima follower` on this machine, to try the two-machine setup.
+    /// A `nima follower` on this machine, to try out the two-machine setup.
     Loopback,
     Elsewhere,
 }

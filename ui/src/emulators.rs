@@ -16,7 +16,7 @@ use nima_machine::rig::{RigSettings, SIDES, Side};
 
 use crate::{console::reader::ScreenReader, extras};
 
-/// Before they serve, the emulators of arms search for a start pose.
+/// Time limit for the emulators, because those of arms search for a start pose first.
 const READY_WITHIN: Duration = Duration::from_mins(1);
 
 /// Process of the emulators; dropping this value ends it.
@@ -58,7 +58,7 @@ impl Emulators {
         Ok(Some(this))
     }
 
-    /// Each emulator prints its endpoint in one line when it serves.
+    /// Waits until the emulators serve; each prints its endpoint in one line.
     fn wait(&mut self, devices: usize) -> anyhow::Result<()> {
         let Some(report) = self.child.stdout.take() else { return Ok(()) };
         let (line, lines) = std::sync::mpsc::channel();

@@ -31,7 +31,7 @@ pub(crate) fn are_recorded(rig: &RigConfig) -> bool {
     rig.endoscope.as_ref().is_some_and(|endoscope| endoscope.record)
 }
 
-/// Lets the recording of a loop on this rig take the images of this queue, if they are to be recorded.
+/// Lets the recording of a loop on this rig take the images from this queue, if they are to be recorded.
 pub(crate) fn film(recorder: &SessionRecorder, rig: &RigConfig, reel: &FrameQueue) {
     if are_recorded(rig) {
         recorder.film(Box::new(OfEndoscope(reel.end())));

@@ -1,4 +1,4 @@
-//! The link to the machine with the arm, as the window and the commands use it. An extra implements it.
+//! The link to the machine with the arm, as used by the window and the commands. An extra implements it.
 
 use std::fmt::Debug;
 

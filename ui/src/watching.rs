@@ -44,7 +44,7 @@ pub(crate) enum Show {
 }
 
 impl Show {
-    /// Option that requests it, and feature that builds it.
+    /// Returns the option that requests it, and feature that builds it.
     const fn names(self) -> [&'static str; 2] {
         match self {
             Self::Live => ["`--live`", "live"],
@@ -64,10 +64,11 @@ fn marks_by(library: &Path) -> anyhow::Result<Box<dyn WatchServer>> {
 }
 
 pub(crate) trait WatchServer: std::fmt::Debug {
-    /// For the recorder of the next session, of this plan; its endoscope images come through this queue.
+    /// Returns the audience for the recorder of the next session, of this plan; its endoscope images arrive through
+    /// this queue.
     fn audience(&self, plan: &SimulationPlan, reel: &FrameQueue) -> Box<dyn Audience>;
-    /// For a trial of a blind study with this name, whose condition must stay hidden from viewers. `None`: the trial is not
-    /// shown.
+    /// Returns the audience for a trial of a blind study with this name, whose condition must stay hidden from viewers.
+    /// `None`: the trial is not shown.
     fn blind_audience(&self, _plan: &SimulationPlan, _trial: &str) -> Option<Box<dyn Audience>> {
         None
     }
@@ -104,7 +105,8 @@ impl Servers {
         self.0.iter().map(|server| server.audience(plan, reel)).collect()
     }
 
-    /// For the recorder of a trial of a blind study with this name: only servers that hide its condition.
+    /// Returns the audiences for the recorder of a trial of a blind study with this name: only servers that hide its
+    /// condition.
     pub(crate) fn blind_audiences(&self, plan: &SimulationPlan, trial: &str) -> Vec<Box<dyn Audience>> {
         self.0.iter().filter_map(|server| server.blind_audience(plan, trial)).collect()
     }

@@ -252,7 +252,7 @@ mod tests {
         }
     }
 
-    /// Condition number squared: the amplification of rounding errors in a solution of magnitude one.
+    /// Returns the condition number squared: the amplification of rounding errors in a solution of magnitude one.
     fn solution_size(factor: &ImpedanceFactor, lane: usize) -> f64 {
         let mut solution = ImpedanceSolution::new(factor.columns());
         solution.solve(factor);

@@ -101,7 +101,7 @@ impl Serial {
         }
     }
 
-    /// Changes the speed of the open line.
+    /// Returns the changes the speed of the open line.
     ///
     /// # Errors
     /// [`Loss::Disconnected`] if the port refuses the speed or is gone.

@@ -97,7 +97,7 @@ mod tests {
 
     use super::*;
 
-    /// Parameters and slices of some frames, with two slices each.
+    /// Returns the parameters and slices of some frames, with two slices each.
     fn stream(images: usize) -> Vec<Vec<u8>> {
         let image = |number: usize| {
             let mut unit = Vec::new();

@@ -41,7 +41,7 @@ impl Grey {
         &self.values[y * self.size_px[0]..][..self.size_px[0]]
     }
 
-    /// Brightness at a position (px), interpolated between pixels.
+    /// Returns the brightness at a position (px), interpolated between pixels.
     pub(crate) fn at(&self, place_px: &Vector2<f64>) -> f64 {
         let [width, height] = self.size_px;
         let within = |at: f64, side: usize| (at - 0.5).clamp(0.0, (side - 1) as f64);

@@ -174,7 +174,7 @@ impl Playout {
         self.delay_s.filter(|_| self.settings.waits)
     }
 
-    /// Target apparent delay, s.
+    /// Returns the target apparent delay, s.
     pub const fn wanted_s(&self) -> Option<f64> {
         self.wanted_s
     }

@@ -107,7 +107,7 @@ impl Events {
         &self.marked_s[side.index()]
     }
 
-    /// Contact time with the wire until the end of the trial, s.
+    /// Returns the contact time with the wire until the end of the trial, s.
     pub(crate) fn touched_s(&self, end_s: f64) -> f64 {
         let open = self.touching_since_s.iter().flatten().map(|since_s| (end_s - since_s).max(0.0));
         self.touched_s + open.sum::<f64>()

@@ -197,7 +197,7 @@ impl BenchPair {
         self.tip_n
     }
 
-    /// Effect of the gates in the last tick.
+    /// Returns the effect of the gates in the last tick.
     pub(super) const fn report(&self) -> &GateReport {
         &self.report
     }

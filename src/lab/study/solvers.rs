@@ -221,7 +221,7 @@ impl SlidingSolver {
         fit
     }
 
-    /// Condition number (Frobenius) of the scaled columns of `degree` with their ridge.
+    /// Returns the condition number (Frobenius) of the scaled columns of `degree` with their ridge.
     pub fn condition(&self, degree: usize) -> f64 {
         self.solution.condition(LeastSquaresSolver::Sliding.unknowns(degree))[0]
     }

@@ -32,7 +32,7 @@ pub struct EndoscopeConfig {
     /// Distance of the right lens to the right of the left one, m; without it no forces are drawn into the right half.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub baseline_m: Option<f64>,
-    /// The camera (of two lenses, the left one); without it no forces are drawn into the image.
+    /// The camera (for two lenses, the left one); without it, no forces are drawn into the image.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub camera: Option<EndoscopeCamera>,
 }
@@ -89,7 +89,7 @@ pub struct EndoscopeCamera {
     /// Vertical focal length, px, if the pixels are not square.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub focal_y_px: Option<f64>,
-    /// Intersection of the lens's axis with the image, px; by default its centre.
+    /// Intersection of the lens axis with the image, px; by default the image centre.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub centre_px: Option<[f64; 2]>,
     /// Radial distortion: the tangent `t` of the angle from the axis appears at `t (1 + k1 t^2)`.

@@ -112,7 +112,7 @@ pub(crate) fn parse_with<T: DeserializeOwned>(
 pub struct Ranges<'a> {
     /// `rig` or `scene`.
     pub kind: &'static str,
-    /// The file, as the user named it.
+    /// The file, as named by the user.
     pub name: &'a str,
 }
 

@@ -1,4 +1,4 @@
-//! Location of a changed rig file: a user's file is changed in place, a built-in rig is first copied into the user's
+//! Path of a changed rig file: a user's file is changed in place, a built-in rig is first copied into the user's
 //! folder.
 
 use std::path::{Path, PathBuf};

@@ -111,7 +111,7 @@ impl RigFile {
         value.map(|value| self.set(key, value)).is_ok()
     }
 
-    /// Removes a dotted key with everything below it.
+    /// Removes a dotted key and everything below it.
     pub fn remove(&mut self, key: &str) {
         let (tables, last) = key.rsplit_once('.').map_or(("", key), |(tables, last)| (tables, last));
         let mut table: &mut dyn toml_edit::TableLike = self.document.as_table_mut();
@@ -203,7 +203,7 @@ impl RigFile {
     }
 }
 
-/// Puts a table at the position of another table in the text; its content follows.
+/// Moves a table to the position of another table in the text; its content moves with it.
 fn set_position(item: &mut Item, position: Option<isize>) {
     match item {
         Item::Table(table) => {

@@ -40,7 +40,7 @@ pub enum LeaderMount {
     /// The leader's axes coincide with the image axes.
     #[default]
     Workspace,
-    /// An Omega below the screen, with its base towards the user.
+    /// An Omega below the screen, with its base facing the user.
     Omega,
 }
 

@@ -10,7 +10,7 @@ use nima_core::{
 /// bits.
 pub const UNKNOWN_N: Vector3<f64> = Vector3::new(f64::NAN, f64::NAN, f64::NAN);
 
-/// Source of the tip force of a tick, or the reason why it is unknown.
+/// Source of the tip force in a tick, or the reason why the force is unknown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ForceSource {
     AtTip,
@@ -20,7 +20,7 @@ pub enum ForceSource {
     Network,
     /// Like `Network`, but outside the training data: only the network's linear path contributes.
     Extrapolated,
-    /// The network is uncertain about this sample; the force of the fallback is used.
+    /// The network is uncertain about this sample, so the force of the fallback is used.
     InDoubt {
         unsure: Unsure,
         fallback: Fallback,

@@ -25,7 +25,7 @@ use crate::rig::{DeviceEvent, Prompt, Side, TaskAction, ViewOrientation};
 
 pub type LoopState = InterlockState<Fault>;
 
-/// Commands of a screen or a script to the loop. They are applied in order at the start of a tick, at most a few per
+/// Commands from a screen or a script to the loop. They are applied in order at the start of a tick, at most a few per
 /// tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Command {

@@ -26,7 +26,7 @@ pub struct PeerStatus<'a> {
 /// screen shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FarStop {
-    /// Operator stopped it.
+    /// The operator stopped the pair.
     Stopped,
     SourceSilent,
     LoopStalled,

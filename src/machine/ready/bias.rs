@@ -16,7 +16,7 @@ use crate::{
 pub(super) struct Bias {
     side: Side,
     check: Option<(DriftCheck, f64)>,
-    /// Unknown as long as it is `None`.
+    /// Whether the instrument is in the trocar; `None` while this is unknown.
     is_in_trocar: Option<bool>,
 }
 

@@ -12,14 +12,14 @@ use crate::messages::Tick;
 const TAKES_S: f64 = 2.0;
 /// More than one missed period in a hundred is felt as roughness.
 const MISSED_MAX: f64 = 0.01;
-/// Maximum difference of both clocks, s; ticks wait until they are read.
+/// Maximum difference between the two clocks, s; ticks wait until they are read.
 const APART_MAX_S: f64 = 0.25;
 
 #[derive(Debug)]
 pub(super) struct ReadyClocks {
     is_date_behind: bool,
     newest: Option<Tick>,
-    /// The first tick, and when it was read.
+    /// The first tick, and the time at which it was read.
     first: Option<(Tick, f64)>,
 }
 

@@ -34,10 +34,11 @@ pub(super) struct ReadyHandle {
     from_m: Option<Vector3<f64>>,
     /// Farthest displacement, m, in the image frame.
     far_m: Vector3<f64>,
-    /// Distance that it moved by itself, m.
+    /// Distance that the handle moved by itself, m.
     drifted_m: f64,
     force_n: f64,
-    /// Position of the other handle when this one was to be moved, and its farthest distance from it, m.
+    /// Position of the other handle at the time of the instruction to move this one, and its maximum distance from that
+    /// position, m.
     other: Option<(Vector3<f64>, f64)>,
 }
 

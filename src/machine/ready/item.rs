@@ -10,7 +10,7 @@ use crate::{
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum PointProgress {
-    /// In progress, and needs this.
+    /// In progress, waiting for this action.
     Asking(PersonRequest),
     Passed(ReadyFigure),
     Failed(ReadyCause),

@@ -45,11 +45,11 @@ use crate::{
 pub enum ReadyPoint {
     /// Every device of the rig file is connected and stays connected.
     Devices,
-    /// Each device delivers at its rate, without losses.
+    /// Each device delivers data at its rate, without losses.
     Rates,
-    /// The loop meets its deadlines, and the computer's date is possible.
+    /// The loop meets its deadlines, and the computer's date is plausible.
     Clocks,
-    /// When the instrument of this side is moved, its arm and its marker move, and the other side's do not.
+    /// If the instrument of this side is moved, its arm and its marker move, and those of the other side do not.
     Own(Side),
     /// The bias of the wrist sensor is unchanged since its calibration.
     Bias(Side),
@@ -149,10 +149,10 @@ pub struct ReadyFigure {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Lacks {
     Devices,
-    /// The force is measured at the tip: there is no weight and no calibrated bias.
+    /// The force is measured at the tip, so there is neither weight nor a calibrated bias.
     WristSensor,
     Person,
-    /// There is only one arm: nothing can be swapped.
+    /// There is only one arm, so nothing can be swapped.
     OtherArm,
 }
 
@@ -184,7 +184,7 @@ pub enum ReadyCause {
     Uncalibrated,
     /// The force at the tip is unknown, for this reason.
     ForceUnknown(ForceSource),
-    /// The bias has moved, or something rests on the tool.
+    /// The bias has drifted, or something rests on the tool.
     BiasMoved {
         /// Force that remains at rest, N.
         by_n: f64,
@@ -278,7 +278,7 @@ pub struct ReadyArm {
 
 #[derive(Clone, Debug)]
 pub struct CheckSubject {
-    /// The rig as the loop runs it.
+    /// The rig that the loop is running.
     pub rig: RigConfig,
     pub arms: [Option<ReadyArm>; SIDES],
     /// The parts of the rig, in the order of the roster.

@@ -21,8 +21,8 @@ use crate::{
     rig::{Gauges, Healths, Side},
 };
 
-/// A stop or a fault that is unrelated to a check must be released within this time, s, because the check cannot go on
-/// before, and a person may have to go to the device first. Chosen.
+/// A stop or a fault that is unrelated to a check must be released within this time, s, because the check cannot
+/// continue before that, and a person may have to walk to the device first. Chosen.
 const RELEASE_WITHIN_S: f64 = 60.0;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,7 +31,7 @@ pub struct ReadyEntry {
     pub state: ReadyState,
 }
 
-/// The list during its run. A failed check does not end the run: the others follow.
+/// The list of checks during a run. A failed check does not end the run.
 #[derive(Debug)]
 pub struct ReadySession {
     subject: CheckSubject,

@@ -26,14 +26,14 @@ const RESTS_S: f64 = 1.2;
 #[derive(Debug)]
 pub(super) struct ReadyTrocar {
     side: Side,
-    /// The shaft in the flange's frame, the base in the workspace, and the trocar there (m).
+    /// The shaft in the flange's frame, the base in the workspace, and the trocar in the workspace (m).
     arm: Option<(ShaftLine, Isometry3<f64>, Vector3<f64>)>,
     watch: Option<TrocarWatch>,
     /// Position at which the tip rests, m, and the time since which it rests, s on the loop's clock.
     rest: Option<(Vector3<f64>, f64)>,
     has_rested: bool,
     miss_m: f64,
-    /// From the rig's geometry.
+    /// Swap of the sides, according to the rig's geometry.
     exchange: Option<SideSwap>,
 }
 

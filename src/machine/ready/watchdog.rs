@@ -10,8 +10,8 @@ use crate::messages::{Command, LoopState, Refusal, Tick, Watchdog as Which};
 /// Maximum time until the fault, s on the loop's clock, beyond the link's own delay: the longest limit of a watchdog is
 /// 0.1 s, the rest is the command's path to the loop.
 const BITES_WITHIN_S: f64 = 0.4;
-/// Without a fault after this time the watchdog has not tripped, s: longer than [`BITES_WITHIN_S`] and the largest
-/// delay of the link (1 s), so that a late fault is still told as late.
+/// If there is no fault after this time, the watchdog has not tripped, s: longer than [`BITES_WITHIN_S`] and the
+/// largest delay of the link (1 s), so that a late fault is still told as late.
 const GIVEN_UP_S: f64 = 2.5;
 
 #[derive(Debug)]

@@ -1,4 +1,4 @@
-//! The operator's rig: the handle is here, the arm and its sensor at the other end of a network.
+//! The operator's rig: the handle is on this machine, the arm and its sensor are at the other end of a network.
 
 use nima_core::{
     calibration::frames::FrameSample,
@@ -33,7 +33,7 @@ pub struct FarFollower<R, W> {
 #[derive(Clone, Copy, Debug)]
 struct PeerState {
     message: FollowerMessage,
-    /// Time of its playout, s.
+    /// Playout time of the message, s.
     at_s: f64,
     delay: RoundTrip,
 }
@@ -48,7 +48,7 @@ struct SideStatus {
     outputs: Option<Outputs>,
 }
 
-/// The time from a command to its answer, in whole ticks. The playout keeps it constant except for slow changes.
+/// Time from a command to its answer, in whole ticks. The playout delay keeps it constant except for slow changes.
 #[derive(Clone, Copy, Debug)]
 struct RoundTrip {
     mean_s: f64,

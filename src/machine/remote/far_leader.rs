@@ -1,4 +1,4 @@
-//! The follower's rig: arm and sensor are here, the hand at the other end of a network.
+//! The follower's rig: arm and sensor are on this machine, the hand is at the other end of a network.
 
 use nalgebra::Vector3;
 use nima_core::{
@@ -28,8 +28,9 @@ const ERRORS_EVERY: u64 = 100;
 const ANSWERS_FOR_S: f64 = 1.0;
 /// Two messages come from one loop if their time difference equals the time that passed here, within this tolerance, s.
 const SAME_CLOCK_S: f64 = 0.2;
-/// The identification learns over the delay, and restarts when the delay changes. It keeps its delay while the true one
-/// differs by at most this fraction, or these ticks: a connection with jitter changes the delay by a tick every second.
+/// The identification learns for a specific delay, and restarts when the delay changes. It keeps its delay while the
+/// true delay differs by at most this fraction, or this number of ticks: a connection with jitter changes the delay by
+/// a tick every second.
 const SAME_DELAY: f64 = 0.05;
 const SAME_DELAY_TICKS: f64 = 2.0;
 /// Maximum number of commands from one message.

@@ -11,7 +11,7 @@ use crate::rig::{SIDES, Side};
 pub(super) enum Intent {
     #[default]
     Rest,
-    /// Drives on, at rest: an engagement has begun, or the clutch is pressed.
+    /// Drives are on, at rest: an engagement has started, or the clutch is pressed.
     Hold,
     Follow,
     /// Stopped, by the operator or by a fault.
@@ -36,7 +36,7 @@ pub(super) struct LeaderSide {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct LeaderMessage {
-    /// Time of its loop, s.
+    /// Time of the sender's loop, s.
     pub(super) t_s: f64,
     /// Time from a command to its answer, ticks of the loop.
     pub(super) delay_ticks: u16,

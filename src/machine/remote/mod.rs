@@ -52,7 +52,7 @@ pub trait RemoteWire: Send {
     /// Sends one message, created at `now_s` of this machine's loop.
     fn send(&mut self, now_s: f64, message: &[u8]);
 
-    /// Calls `take` with each message whose playout time has come, oldest first.
+    /// Calls `take` with each message whose playout time has arrived, oldest first.
     fn receive(&mut self, now_s: f64, take: &mut dyn FnMut(&[u8]));
 }
 
@@ -66,6 +66,6 @@ impl<W: RemoteWire + ?Sized> RemoteWire for Box<W> {
     }
 }
 
-/// The other machine is gone when no message has arrived for this long, s. The age gate removes the force long before,
-/// and an engaged pair has then failed with the link as its cause.
+/// The other machine counts as gone if no message has arrived for this long, s. The age gate removes the force long
+/// before that, and an engaged pair has then failed with the link as its cause.
 const GONE_AFTER_S: f64 = 0.5;

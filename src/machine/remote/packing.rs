@@ -31,7 +31,7 @@ pub(super) fn side_of_number(number: u8) -> Option<Side> {
     Side::ALL.into_iter().find(|side| number_of_side(*side) == number)
 }
 
-/// Writes a message. If something does not fit, the result is not a message ([`Packer::done`]).
+/// Writes a message. If a value does not fit, the result is not a message ([`Packer::done`]).
 pub(super) struct Packer<'a> {
     buffer: &'a mut [u8],
     len: usize,

@@ -2,15 +2,15 @@
 
 use nalgebra::Vector3;
 
-/// After a gap, the remaining displacement is made up at this speed at most, m/s, or at the hand's own speed if it is
-/// faster, so that a tip never moves faster than a hand.
+/// After a gap, the tip catches up at this speed at most, m/s, or at the hand's own speed if that is faster, so that a
+/// tip never moves faster than a hand.
 const CATCH_UP_M_S: f64 = 0.18;
 
 /// Moves by the commanded displacements, and only while they are to be followed, so that a restart is not a jump.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct FarHand {
     position_m: Vector3<f64>,
-    /// Displacement that was commanded but not made yet, m.
+    /// Commanded displacement that has not been executed yet, m.
     behind_m: Vector3<f64>,
     speed_m_s: f64,
 }

@@ -1,4 +1,4 @@
-//! The test of a device: its deliveries in about two seconds, and the findings.
+//! The test of a device: its data in about two seconds, and the findings.
 
 use nalgebra::Vector3;
 use nima_core::frames::GRAVITY_M_S2;
@@ -69,7 +69,7 @@ pub enum CheckupFinding {
     Gravity {
         size_m_s2: f64,
     },
-    /// Close to the end of its range.
+    /// The value is close to the end of its range.
     AtTheEnd {
         channel: usize,
         value: f64,
@@ -259,7 +259,7 @@ impl Checkup {
     }
 }
 
-/// Returns the number of a reading that moved most during the test, if one did.
+/// Returns the index of the value that moved most during the test, if any did.
 fn moved(kind: PartKind, gauges: &[&Gauge]) -> Option<usize> {
     let change = |channel: usize| {
         let mut means = GaugeSpread::NONE;

@@ -1,4 +1,4 @@
-//! Every flaw produces its finding, and a device in order produces none.
+//! Tests: every flaw produces its finding, and a flawless device produces none.
 
 use super::{AGES, DEVICES_MAX, Gauge, Gauges, RigPart, Side, checkup::*};
 use crate::config::RigConfig;

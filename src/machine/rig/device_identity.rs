@@ -31,7 +31,7 @@ impl CheckedDevices {
 #[derive(Clone, Debug, Default)]
 pub(super) struct DeviceIdentities {
     has_both_sides: bool,
-    /// From the rig file.
+    /// Serial numbers from the rig file.
     named: Vec<(RigPart, String)>,
     checked: CheckedDevices,
     /// The servos of each side, for the real-time thread: force and motion do not need them, but must not begin while

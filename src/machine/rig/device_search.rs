@@ -27,7 +27,7 @@ pub struct DeviceOffer {
 #[derive(Clone, Debug)]
 pub struct SearchResult {
     pub place: String,
-    /// The device there, or the reason why there is none.
+    /// The device at this address, or the reason why there is none.
     pub found: Result<DeviceOffer, DeviceError>,
 }
 

@@ -15,7 +15,7 @@ pub enum EngageBlocker {
     Waiting(AwaitedDevice),
     #[error("{}", .0.words())]
     Exchanged(SideSwap),
-    /// Something at the other end of a network, where the screen says what.
+    /// An obstacle at the other end of a network, where the screen shows what it is.
     #[error("the follower's machine refuses to engage; its screen shows the reason")]
     FarEnd,
 }

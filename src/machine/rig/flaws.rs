@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 pub struct Flaws {
     /// The bias of the wrist sensors drifts with their temperature, N per minute along each axis.
     pub drift_n_per_min: f64,
-    /// The cables of the instrument pull at the wrist sensor by at most this force, N, depending on the angle of its
+    /// Maximum force with which the cables of the instrument pull at the wrist sensor, N, depending on the angle of its
     /// last joint.
     pub cable_n: f64,
     /// Additional rotation of the accelerometers relative to the scene, degrees.

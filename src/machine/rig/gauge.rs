@@ -13,7 +13,7 @@ use super::DEVICES_MAX;
 
 /// Maximum number of values of a reading that are summed up: three for each of a tracker's tools.
 pub const CHANNELS: usize = 3 * TRACKED_TOOLS;
-/// Number of ages that are distinguished, in periods of the loop; the last one includes everything older.
+/// Number of distinguished ages, in periods of the loop; the last one includes everything older.
 pub const AGES: usize = 48;
 
 /// Count, mean, spread and range of one number.
@@ -146,7 +146,7 @@ pub struct Gauges {
     pub from_s: f64,
     /// End of the block, s on the loop's clock.
     pub to_s: f64,
-    /// In the order of the roster.
+    /// Gauges, in the order of the roster.
     pub devices: [Gauge; DEVICES_MAX],
 }
 

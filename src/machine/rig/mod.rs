@@ -61,7 +61,7 @@ pub enum SensedForce {
     AtTip(Vector3<f64>),
     /// At the wrist: includes weight, trocar friction and bias, which the calibrations remove.
     AtWrist(WristSample),
-    /// At the machine at the other end of a network, which identifies the force there.
+    /// Measured by another machine at the other end of a network, which also identifies the force.
     FarEnd(RemoteIdentification),
 }
 
@@ -348,7 +348,7 @@ pub const DEVICES_MAX: usize = 16;
 
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Healths {
-    /// In the order of the roster; entries beyond its end are `closed`.
+    /// Health of each device, in the order of the roster; entries beyond its end are `closed`.
     pub devices: [Health; DEVICES_MAX],
     /// Reason why an arm that delivers data cannot be engaged from its current position.
     pub obstacles: [Option<EngageBlocker>; SIDES],
@@ -361,7 +361,7 @@ pub struct DeviceEvent {
     /// Index into the roster.
     pub device: u8,
     pub standing: ConnectionState,
-    /// Sides whose force path needs the device.
+    /// Sides whose force path requires the device.
     pub of_side: [bool; SIDES],
 }
 

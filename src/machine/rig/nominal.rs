@@ -1,4 +1,4 @@
-//! Expected deliveries of a device, as far as they are known: the reference for its test.
+//! Expected data of a device, as far as they are specified: the reference for its test.
 
 use std::f64::consts::PI;
 

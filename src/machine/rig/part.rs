@@ -35,7 +35,7 @@ impl DeviceRole {
     }
 }
 
-/// A device by its role and its make. Displayed as `right handle (Force Dimension)`.
+/// A device, given by its role and its model. Displayed as `right handle (Force Dimension)`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DeviceName {
     pub role: DeviceRole,

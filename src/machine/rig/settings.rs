@@ -36,7 +36,7 @@ pub struct RigSettings {
     /// number. Not in the file.
     #[serde(skip)]
     pub checked: Option<CheckedDevices>,
-    /// The devices at this machine. Not in the file, which is the same at both ends of a network.
+    /// The devices on this machine. Not in the file, which is the same at both ends of a network.
     #[serde(skip)]
     pub ends: RigEnds,
 }
@@ -44,7 +44,7 @@ pub struct RigSettings {
 /// The devices of a rig file that are at this machine.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum RigEnds {
-    /// All of them.
+    /// All devices.
     #[default]
     Both,
     /// Handles and pedals.
@@ -167,7 +167,7 @@ impl DeskSettings {
 pub enum SensorPlace {
     #[default]
     Wrist,
-    /// At the tip, beyond the trocar: it measures only the tissue's force.
+    /// At the tip, beyond the trocar, where it measures only the force of the tissue.
     Tip,
 }
 
@@ -333,7 +333,7 @@ impl RigSettings {
     }
 }
 
-/// Prefixes the key of a trouble with its part of the rig file.
+/// Adds the part of the rig file as a prefix to the key of an error.
 fn below(part: &str, trouble: DeviceError) -> DeviceError {
     match trouble {
         DeviceError::Setting { key, value, allowed } => {

@@ -49,9 +49,9 @@ pub(super) const QUIET: JitterProfile = JitterProfile {
     ],
 };
 
-/// An ordinary thread while two busy processes share two cores with it. The quantiles are recorded; the frequency of
-/// the second state is chosen so that 5 % of the ticks are more than 0.5 ms late, the maximum observed with two busy
-/// processes alone.
+/// An ordinary thread on two cores with two busy processes. The quantiles are recorded; the frequency of the second
+/// state is chosen so that 5 % of the ticks are more than 0.5 ms late, the maximum observed with two busy processes
+/// alone.
 pub(super) const BUSY: JitterProfile = JitterProfile {
     states: [
         JitterState {

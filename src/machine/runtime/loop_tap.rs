@@ -1,4 +1,4 @@
-//! A tap in the loop: all input of the loop in its order, and all output.
+//! A tap in the loop: all inputs of the loop in order, and all outputs.
 //!
 //! Together with the loop's [`LoopOrigin`](crate::teleop::LoopOrigin) this is everything on which the loop depends, so that a
 //! session can be replayed to the bit. The loop's end of the tap neither waits nor allocates: ticks are copied into
@@ -26,7 +26,7 @@ use crate::{
 pub const TICKS_TAPPED_MAX: usize = 2048;
 /// Additional capacity for operations and events.
 const OTHERS_MAX: usize = 512;
-/// Polling period of the other end: a viewer over a network gets a tick that much later at most.
+/// Polling period of the other end: a viewer over a network gets a tick later by this time at most.
 const LOOK_EVERY: Duration = Duration::from_millis(3);
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -92,7 +92,7 @@ pub struct Tap {
     /// Boxes that have not been used yet. Circulating boxes are taken first, because they are still in the processor's
     /// caches.
     reserve: Vec<Box<TickRecord>>,
-    /// A box whose entry found no room: it is kept, because freeing it here would call the allocator.
+    /// A box whose entry did not fit: it is kept, because freeing it here would call the allocator.
     kept: Option<Box<TickRecord>>,
     offered: Arc<AtomicU64>,
     waits: bool,
@@ -137,7 +137,7 @@ fn touch(into: &Sender<TapEntry>, out: &Receiver<TapEntry>) {
 }
 
 impl Tap {
-    /// Creates the loop wait while there is no room; for the virtual clock, on which nothing is late.
+    /// Creates the loop wait while there is no room; for the virtual clock, on which a wait makes nothing late.
     #[must_use]
     pub(super) fn waiting(self) -> Self {
         Self { waits: true, ..self }

@@ -9,11 +9,11 @@
 const STRETCH: u64 = 1000;
 /// Size of a shift: a quarter of a period. Four shifts try every phase.
 const MOVES: u32 = 4;
-/// Ticks over which the late ones are counted: a second.
+/// Number of ticks over which late ones are counted: one second.
 const MEMORY: f64 = 1000.0;
 /// Number of late ticks among these that causes a shift: one in a hundred.
 const LATE_MAX: f64 = 10.0;
-/// Ticks at one phase without too many late ones after which the phase is good: 10 s.
+/// Number of ticks at one phase, without too many late ones, after which the phase counts as good: 10 s.
 const GOOD: u64 = 10_000;
 /// A device that sends less often than the loop reads is late at every phase; the search is then repeated after a
 /// minute.

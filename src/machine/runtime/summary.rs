@@ -56,7 +56,7 @@ pub struct CauseAndCure {
 #[derive(Clone, Debug, Serialize)]
 pub struct ArmEnd {
     pub side: Side,
-    /// State in the last tick, before the outputs were made safe.
+    /// State in the last tick, before the outputs were set to safe values.
     #[serde(serialize_with = "by_key")]
     pub final_state: LoopState,
     /// Fault, if any; filled in by [`RuntimeSummary::explain`].

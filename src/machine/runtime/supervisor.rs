@@ -28,7 +28,7 @@ const LOOK_EVERY: Duration = Duration::from_millis(2);
 pub(super) struct Pulse {
     beat_ns: AtomicU64,
     driven: AtomicBool,
-    /// Silence of the loop when the levers were pulled, ns; zero if they were not pulled.
+    /// Silence of the loop when the emergency releases were called, ns; zero if they were not called.
     pulled_ns: AtomicU64,
 }
 
@@ -39,8 +39,8 @@ impl Pulse {
         self.beat_ns.store(now_ns, Ordering::Release);
     }
 
-    /// Replaces a beat while this watchdog is tested: to the supervisor the loop appears to stand still with its drives
-    /// on.
+    /// Replaces a heartbeat while this watchdog is tested: to the supervisor, the loop appears to be hung with its
+    /// drives on.
     pub(super) fn withhold(&self) {
         self.driven.store(true, Ordering::Relaxed);
     }

@@ -41,8 +41,8 @@ const GAUGES_WAITING_MAX: usize = 40;
 /// Maximum number of device events (connected, lost) handled in one tick. A burst of events would otherwise make the
 /// tick late.
 const DEVICE_EVENTS_PER_TICK_MAX: usize = 4;
-/// Maximum number of commands carried out in one tick; further ones wait for the next tick. A burst of commands would
-/// otherwise make the tick late.
+/// Maximum number of commands executed in one tick; further ones wait for the next tick. Otherwise a burst of commands
+/// would make the tick late.
 const COMMANDS_PER_TICK_MAX: usize = 2;
 
 #[derive(Debug, thiserror::Error)]

@@ -106,7 +106,7 @@ impl Link for FarLink {
     }
 }
 
-/// One of two links: the pair's own, or the far link once a message has arrived over it.
+/// One of two links: the pair's own link, or the far link once a message has arrived over it.
 #[derive(Clone, Debug)]
 pub(super) struct PairLink<L> {
     pub(super) own: L,

@@ -47,7 +47,7 @@ impl ProgrammedLink {
 }
 
 impl Link for ProgrammedLink {
-    /// With a longer delay, packets that were already delivered are delivered again.
+    /// If the delay increases, packets that were already delivered are delivered again.
     fn set_delay(&mut self, delay_s: f64) {
         self.delay_s = delay_s;
         self.delivered = self.oldest_kept();

@@ -41,7 +41,7 @@ pub struct Loop<L: Link = ProgrammedLink> {
     refused: [Option<Event>; REFUSALS_PER_TICK_MAX],
 }
 
-/// Maximum number of refused commands reported in one tick: at most two commands are carried out per tick, each by both
+/// Maximum number of refused commands reported in one tick: at most two commands are executed per tick, each by both
 /// sides.
 const REFUSALS_PER_TICK_MAX: usize = 2 * SIDES;
 

@@ -4,14 +4,14 @@ use crate::rig::Inputs;
 
 /// If the rig delivers no sample for longer than this, s, that is a fault.
 pub(super) const SILENT_AFTER_S: f64 = 0.020;
-/// Number of missing samples that is a fault; each arriving sample compensates for [`FORGIVEN`] missing ones.
+/// Number of missing samples that counts as a fault; each arriving sample compensates for [`FORGIVEN`] missing ones.
 const TOO_MANY: f64 = 8.0;
 const FORGIVEN: f64 = 0.2;
 
 #[derive(Clone, Debug)]
 pub(super) struct Samples {
     pub(super) last: Option<Inputs>,
-    /// Time of its oldest part, s.
+    /// Time of the sample's oldest part, s.
     last_s: f64,
     /// Recent missing samples, and whether a sample arrived in this tick.
     missing: f64,

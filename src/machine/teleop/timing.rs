@@ -23,7 +23,7 @@ pub struct Timing {
 /// Relation of a tick's time to the previous tick's time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum TickSpacing {
-    /// Advanced by one period and the missed ones.
+    /// Advanced by one period plus the missed ones.
     Evenly,
     /// Advanced by another time.
     Unevenly,

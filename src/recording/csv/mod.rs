@@ -78,7 +78,7 @@ pub enum RecordingError {
 /// Motion and force over time at a nearly constant rate. Rows without a force are left out, because it is unknown.
 #[derive(Clone, Debug)]
 pub struct CsvRecording {
-    /// As given by the user.
+    /// Axes of the recording, as indices into [`AXIS_NAMES`]; lane `i` of a sample is axis `axes[i]`.
     pub path: PathBuf,
     /// Which axes it contains, as indices into [`AXIS_NAMES`]; lane `i` of a sample is axis `axes[i]`.
     pub axes: Vec<usize>,
@@ -166,7 +166,7 @@ impl CsvRecording {
     }
 }
 
-/// Returns what to do about a missing column that can be mapped.
+/// Returns the remedy for a missing column that can be mapped.
 fn cure(key: &str) -> String {
     format!("name another with --map {key}=COLUMN")
 }

@@ -117,7 +117,7 @@ pub(super) fn is_deleted(file: &File) -> io::Result<bool> {
     Ok(std::os::unix::fs::MetadataExt::nlink(&file.metadata()?) == 0)
 }
 
-/// On Windows the guard prevents it.
+/// Always false on Windows, where the guard prevents deletion.
 #[cfg(not(unix))]
 pub(super) fn is_deleted(_: &File) -> io::Result<bool> {
     Ok(false)

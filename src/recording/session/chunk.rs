@@ -25,7 +25,7 @@ pub(super) struct ClosedChunk {
     pub(super) bytes: Vec<u8>,
     compression: &'static str,
     chunk: usize,
-    /// Channel, offset of its index in `bytes`, number of messages.
+    /// Channel, offset of its index in `bytes`, and number of messages.
     pub(super) indexes: Vec<(u16, usize, u64)>,
     compressed: u64,
     uncompressed: u64,

@@ -5,7 +5,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// Why a session file could not be written. Everything written earlier stays readable.
+/// Reason why a session file could not be written. Everything written earlier remains readable.
 #[derive(Debug, thiserror::Error)]
 pub enum WriteError {
     #[error("cannot create session {path}: {reason}; {cure}")]

@@ -1,8 +1,7 @@
 //! A file that is valid at every moment, even if the process is killed in the middle of a write.
 //!
-//! Writes are not atomic: of the pages of a write, a killed process leaves any number behind (measured: 39 of 60 writes
-//! of 800 kB were torn). Bytes within one page arrive whole or not at all, and so does the file size that they set.
-//! Hence:
+//! Writes are not atomic: a killed process leaves any number behind (measured: 39 of 60 writes of 800 kB were torn).
+//! Bytes within one page arrive whole or not at all, and so does the file size that they set. Hence:
 //!
 //! ```text
 //! data | free room | end of data, summary | free room | footer, magic
@@ -35,7 +34,7 @@ const PAGE: u64 = 4096;
 const SPARE: u64 = 64 << 10;
 /// The file grows by at least this much; the hole uses no disk space.
 pub(super) const GROWTH: u64 = 16 << 20;
-/// And by at least this many summaries, because each growth writes two.
+/// ... and by at least this many summaries, because each growth writes two.
 const GROWTH_IN_SUMMARIES: u64 = 32;
 
 pub(super) struct RecordingLayout {
@@ -56,7 +55,7 @@ pub(super) struct RecordingLayout {
     pub(super) log: Vec<(u64, Vec<u8>)>,
 }
 
-/// Positions of the parts of a summary.
+/// The file grows by at least this much; a hole uses no disk space.
 #[derive(Clone, Copy, Default)]
 struct Tail {
     /// The indexes of chunks, with free space between some of them. They are stored only here.
@@ -309,8 +308,8 @@ impl RecordingLayout {
     }
 }
 
-/// Pads `bytes`, which start at `at`, so that the head of the record that follows them lies within one page. Returns
-/// the position of that record.
+/// Pads `bytes`, which start at `at`, so that the head of the following record is within one page. Returns the position
+/// of that record.
 fn keep_whole(bytes: &mut Vec<u8>, at: u64) -> u64 {
     if (at + bytes.len() as u64) % PAGE + HEAD as u64 > PAGE {
         bytes.extend_from_slice(&head(kind::ROOM, 0));

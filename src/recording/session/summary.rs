@@ -52,7 +52,7 @@ impl RecordingSummary {
         record
     }
 
-    /// Upper limit of the bytes of everything, including the record before it and padding.
+    /// Returns the upper limit of the bytes of everything, including the record before it and padding.
     pub(super) fn room(&self) -> u64 {
         let groups: usize = self.groups().iter().map(|(_, group)| group.len()).sum();
         (groups + self.statistics_record().len() + 64) as u64 + self.indexes()

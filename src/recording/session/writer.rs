@@ -362,8 +362,8 @@ impl SessionWriter {
     }
 }
 
-/// Whether a process is writing this session now. The writer holds a lock on the file (on Windows it prevents the
-/// file's deletion), which the system releases however the process ends.
+/// Returns whether a process is writing this session now. The writer holds a lock on the file (on Windows it prevents
+/// the file's deletion), which the system releases however the process ends.
 ///
 /// # Errors
 /// I/O errors.

@@ -19,7 +19,7 @@ use serde::{Deserialize, Serialize};
 
 pub use ready::{CheckedDevice, CheckedItem, KIND as READY_CHECK, PointOutcome, ReadyRecord, VALID_S};
 
-/// Identifies what a calibration is bound to: one wrist sensor with one tool.
+/// Device to which a calibration is bound: one wrist sensor with one tool.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct WristId {

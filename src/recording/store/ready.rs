@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{Store, StoreError, date, seconds};
 
-/// A check is valid for the engagements of the next twelve hours: a working day, whatever the time zone.
+/// A check is valid for engagements in the next twelve hours: a working day, whatever the time zone.
 pub const VALID_S: u64 = 12 * 3600;
 
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -50,7 +50,7 @@ pub struct CheckedItem {
     /// Unit of `value` and `limit`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unit: Option<String>,
-    /// Why it failed, or which part the rig lacks.
+    /// Reason for the failure, or the part that the rig lacks.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub cause: Option<String>,
     /// Remedy.
@@ -94,7 +94,7 @@ impl ReadyRecord {
         (made_s <= now_s + 60).then(|| now_s.saturating_sub(made_s))
     }
 
-    /// Returns whether it passed, is recent enough, and was made with these devices.
+    /// Returns whether the check passed, is recent enough, and was made with these devices.
     pub fn is_valid(&self, devices: &[CheckedDevice], now: SystemTime) -> bool {
         self.passed && self.devices == devices && self.age_s(now).is_some_and(|age_s| age_s <= VALID_S)
     }

@@ -24,7 +24,7 @@ pub const MAX_ROWS: usize = 120_000;
 pub const ROW_EVERY_S: f64 = 0.005;
 /// Duration of a trajectory, s: the unit in which rows are held out for judging a network.
 const TRAJECTORY_S: f64 = 5.0;
-/// Required rest of the sensor under the tissue at the start, s, and its maximum standard deviation meanwhile, N.
+/// Required rest of the sensor under the tissue at the start, s, and its maximum standard deviation during it, N.
 const REST_S: f64 = 0.5;
 const REST_SD_N: f64 = 0.15;
 /// Force above which the tip is in contact, N, and averaging time of that force, s.

@@ -66,7 +66,7 @@ choice!(TaskAction { 0 => Begin {}, 1 => Mark {}, 2 => End {} });
 choice!(Side { 0 => Right {}, 1 => Left {} });
 choice!(Watchdog { 0 => Loop {}, 1 => Source {}, 2 => Link {} });
 
-/// By its place in the list, so that another list is another version of the journal.
+/// Encoded by its position in the list, so that another list is another version of the journal.
 impl ToWords for Mode {
     const COLUMNS: usize = 1 + <Baseline as ToWords>::COLUMNS;
 

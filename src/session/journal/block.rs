@@ -25,7 +25,7 @@ const MAX: u64 = 4096;
 pub enum TickNote {
     /// An operation on the loop.
     Operation(Operation),
-    /// Entries were dropped here: everything after this cannot be replayed.
+    /// Entries were dropped here, so everything after this cannot be replayed.
     Hole {
         /// Number of dropped entries.
         lost: u64,
@@ -50,7 +50,7 @@ record!(TickRow { timing: Timing, inputs: [Option<Inputs>; SIDES], check: Digest
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct JournalBlock {
-    /// Number of its first tick among all ticks in the journal.
+    /// Number of the block's first tick among all ticks in the journal.
     pub first_tick: u64,
     /// The entries before each row, in order; an index beyond the last row means after it.
     pub noted: Vec<(usize, TickNote)>,

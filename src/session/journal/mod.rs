@@ -23,7 +23,7 @@ use parts::ByteWriter;
 
 /// Version of the journal that this program writes, and the only version that it reads.
 ///
-/// Version 5 holds the raw readings of the devices and the true time of each tick. It came with other plausibility
+/// Version 5 contains the raw readings of the devices and the true time of each tick. It came with other plausibility
 /// checks, another governor and unknown forces, so the replay of an older session would give other forces than the hand
 /// felt.
 pub const VERSION: u16 = 5;

@@ -149,7 +149,7 @@ pub(super) fn take_calibrations(from: &mut &[u8]) -> Result<Calibrations, Journa
 /// The end of a journal that was closed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct JournalEnd {
-    /// Number of ticks in it.
+    /// Number of ticks in the journal.
     pub ticks: u64,
     /// Number of dropped entries.
     pub lost: u64,

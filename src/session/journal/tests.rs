@@ -1,4 +1,4 @@
-//! Every possible input of the loop is read back to the bit; everything that is not a journal is refused.
+//! Tests: every possible input of the loop is read back bit for bit; all other data are rejected.
 
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion, UnitVector3, Vector3};
 use nima_core::{

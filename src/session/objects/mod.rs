@@ -36,7 +36,7 @@ pub struct JawState {
     pub opens_n: f64,
     /// Total force of all contacts on the instrument, N.
     pub force_n: Vector3<f64>,
-    /// Their torque about its tip, N m.
+    /// Torque of these forces about the tip, N m.
     pub torque_nm: Vector3<f64>,
     /// Contact with a ring, a peg, the board and another instrument.
     pub touched: [bool; 4],
@@ -47,7 +47,7 @@ pub struct JawState {
 pub struct LumpMark {
     /// On the tissue at rest, m.
     pub position_m: Vector3<f64>,
-    /// Whether there is a lump.
+    /// Whether there is a lump at the mark.
     pub is_true: bool,
 }
 

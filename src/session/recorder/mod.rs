@@ -46,7 +46,7 @@ pub const JOURNAL_TOPIC: &str = "nima/journal";
 /// Encoding of its messages.
 pub const JOURNAL_ENCODING: &str = "nima-journal";
 
-/// How long the thread waits for the loop before it checks whether it must end.
+/// Time for which the thread waits for the loop before it checks whether it must end.
 const LOOK_EVERY: Duration = Duration::from_millis(100);
 
 /// Information about a session, recorded in addition to its events.
@@ -238,7 +238,7 @@ struct OpenSession {
     file: SessionFile,
     noted: Receiver<(f64, LogNote)>,
     sources: Receiver<RecorderSource>,
-    /// The note whose time has not come yet.
+    /// The note whose time has not been reached yet.
     waiting: Option<(f64, LogNote)>,
     clock: ImageLoopClock,
 }

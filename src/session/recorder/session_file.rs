@@ -19,7 +19,8 @@ use crate::{
     topics::SessionTopics,
 };
 
-/// The chunk is closed after this many blocks of the journal: 0.4 s at 1 kHz, the most that a killed process can lose.
+/// The chunk is closed after this many blocks of the journal: 0.4 s at 1 kHz, the maximum that a killed process can
+/// lose.
 const BLOCKS_PER_CHUNK: u32 = 2;
 
 pub(super) struct SessionFile {

@@ -23,14 +23,14 @@ pub struct RecordingProgress {
     pub images: u64,
     /// ... and those that were dropped because this thread was too slow.
     pub images_dropped: u64,
-    /// How long the disk has not responded; after two seconds the loop drops entries.
+    /// Time for which the disk has not responded; after two seconds, the loop drops entries.
     pub waits: Duration,
 }
 
 #[derive(Debug)]
 pub(super) struct RecorderShared {
     began: Instant,
-    /// When the thread last checked for entries, ms since it began.
+    /// Time of the thread's last check for entries, ms since its start.
     looked_ms: AtomicU64,
     pub(super) ticks: AtomicU64,
     pub(super) lost: AtomicU64,

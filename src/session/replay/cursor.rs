@@ -44,7 +44,8 @@ impl Keyframe {
         Ok(Self { machine: ReplayMachine::new(&start.origin)?, read: 1, ticks: 0, t_s: 0.0 })
     }
 
-    /// Makes a cursor here, in a journal with this beginning; `messages` are those after the first [`Self::read`] ones.
+    /// Creates a cursor here, in a journal with this beginning; `messages` are those after the first [`Self::read`]
+    /// ones.
     pub fn cursor<I>(self, start: JournalStart, messages: I) -> ReplayCursor<I> {
         let Self { machine, read, ticks, t_s } = self;
         ReplayCursor {
@@ -72,7 +73,7 @@ impl Keyframe {
 #[derive(Debug)]
 pub enum CursorEvent<'a> {
     Tick(SessionMoment<'a>),
-    /// Entries are missing: everything after them cannot be replayed.
+    /// Entries are missing, so everything after them cannot be replayed.
     Hole(JournalGap),
     /// The recording was closed.
     Closed,
@@ -102,7 +103,7 @@ pub struct SessionMoment<'a> {
     pub row: &'a TickRow,
     /// Calibrations that became active before it: the side, and their number in the journal.
     pub active: &'a [(Side, u64)],
-    /// The events reported in it.
+    /// Events reported in the tick.
     pub events: &'a [Event],
     /// The commands of the loop.
     pub outputs: &'a [Outputs; SIDES],

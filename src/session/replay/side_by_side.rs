@@ -22,7 +22,7 @@ use crate::{
     journal::TickRow,
 };
 
-/// With fewer ticks the copies, each of 13 MB, cost more than they save.
+/// With fewer ticks, the copies, each of 13 MB, cost more time than they save.
 const MIN_TICKS: usize = 2000;
 
 /// Outputs of a run of ticks.
@@ -145,7 +145,7 @@ struct LonePair {
     lane: SideBySideLane,
     /// Copy from before the run.
     before: Box<Pair>,
-    /// It failed or recovered before the last tick, so the other pair must be stepped again.
+    /// The arm failed or recovered before the last tick, so the other pair must be stepped again.
     changes: bool,
 }
 

@@ -14,7 +14,7 @@ pub enum ReplayStep {
     Operation(Operation),
     /// Calibrations that become active later.
     Calibrations {
-        /// The number by which an operation names them.
+        /// Number used by operations to refer to it.
         number: u64,
         calibrations: Box<Calibrations>,
     },

@@ -14,7 +14,7 @@ use super::{
 
 /// Numbers of the states, as stored in the file, that affect the statistics.
 const ENGAGED: u8 = 3;
-/// From disconnected to faulted.
+/// Number of states, from disconnected to faulted.
 pub const STATES: usize = crate::topics::STATES.len();
 /// Samples farther apart than this are not contiguous, s: some are missing.
 const HOLE_S: f64 = 0.02;
@@ -88,7 +88,7 @@ pub struct ArmFigures {
     pub withheld_mean_n: f64,
     /// Maximum of that force, N.
     pub withheld_max_n: f64,
-    /// `None` if the file does not have it.
+    /// Name and result; `None` if the file does not contain it.
     pub identified: Option<IdentificationFigures>,
 }
 

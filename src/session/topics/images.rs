@@ -24,7 +24,7 @@ const FRAME: &str = "endoscope";
 #[derive(Debug)]
 pub(crate) struct ImageChannel {
     source: Box<dyn RecordedImageSource>,
-    /// The image whose time has not come yet.
+    /// The image whose time has not been reached yet.
     waiting: Option<PendingImage>,
     images: Option<FileChannel>,
     video: Option<FileChannel>,

@@ -61,7 +61,7 @@ pub(crate) const TASK: [&str; 12] = [
     "left.loop.touches",
     "left.loop.on_wire",
 ];
-/// An unchanged state is repeated after this time, s: less than the maximum age of displayed objects.
+/// An unchanged state is repeated after this time, s, which is less than the maximum age of displayed objects.
 const AGAIN_S: f64 = 0.1;
 /// Prefix of the frames of marks, followed by their number from 0: on a lump, and elsewhere.
 const MARK: &str = "mark.";

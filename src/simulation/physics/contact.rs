@@ -3,7 +3,7 @@
 
 use nalgebra::Vector3;
 
-/// Maximum force of one contact, N: an arm that was driven into or through a peg gets no more.
+/// Maximum force of one contact, N: an arm driven into or through a peg gets no more.
 const FORCE_MAX_N: f64 = 30.0;
 /// Stiffness of the friction spring relative to the normal one: 2/3 for rubber (Mindlin, J. Appl. Mech. 16, 1949).
 const TANGENTIAL: f64 = 2.0 / 3.0;

@@ -171,7 +171,7 @@ mod tests {
         [-0.02..0.02f64, -0.02..0.02f64, -0.02..0.02f64].prop_map(Vector3::from)
     }
 
-    /// The same cases in every run: in one of 50 000 the search stops up to 0.2 mm too far away.
+    /// Uses the same cases in every run, because in one of 50 000 the search stops up to 0.2 mm too far away.
     #[test]
     fn the_nearest_place_is_that_of_a_fine_search() {
         let mut runner = proptest::test_runner::TestRunner::deterministic();

@@ -1,5 +1,5 @@
 //! The objects of training scenes: rings on pegs, rigid bodies that the jaws of two instruments hold by friction; and a
-//! bent wire, along which a loop is led.
+//! bent wire, along which a loop is guided.
 //!
 //! [`Objects`] and [`Wire`] take where two [`Instrument`]s are and return what acts on them ([`InstrumentLoads`], N and N m), once for each tick of the
 //! control loop. [`RingWatch`] tells from the rings what happens, in the words of `nima_score`; [`PegTransfer`] whether the task is done;

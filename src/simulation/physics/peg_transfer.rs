@@ -9,7 +9,7 @@ use crate::physics::setting::{ObjectSettings, RingStart};
 enum RingStage {
     /// On the way to the other side.
     Outward,
-    /// It was there and has to return.
+    /// The ring was on the other side and has to return.
     Homeward,
     Home,
     /// Out of view and not recoverable.

@@ -24,7 +24,7 @@ pub(crate) struct Ring {
     pub centre_m: Vector3<f64>,
     pub world_from_ring: UnitQuaternion<f64>,
     pub velocity_m_s: Vector3<f64>,
-    /// Angular momentum, N m s: unlike the angular velocity it is constant while no torque acts.
+    /// Angular momentum, N m s, which unlike the angular velocity is constant while no torque acts.
     momentum: Vector3<f64>,
     pub turning_rad_s: Vector3<f64>,
     pub circle: Circle,
@@ -35,7 +35,7 @@ pub(crate) struct Ring {
     across_kg_m2: f64,
     pub force_n: Vector3<f64>,
     pub torque_nm: Vector3<f64>,
-    /// For how long it has been slow, s.
+    /// Time for which the ring has been slow, s.
     slow_s: f64,
     pub asleep: bool,
     /// Out of view, and no longer simulated.
@@ -141,7 +141,7 @@ impl Ring {
         self.slow_s >= REST_AFTER_S
     }
 
-    /// Stops its simulation until something touches it.
+    /// Stops the simulation of the ring until something touches it.
     pub(crate) fn sleep(&mut self) {
         self.asleep = true;
         self.stop();

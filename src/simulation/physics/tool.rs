@@ -43,7 +43,7 @@ pub(crate) struct PhysicsTool {
     force_n: Vector3<f64>,
     torque_nm: Vector3<f64>,
     opening_n: f64,
-    /// For the current sub-step alone.
+    /// The same for the current sub-step only.
     now_opening_n: f64,
     pub touching: InstrumentContacts,
 }
@@ -81,7 +81,7 @@ impl PhysicsTool {
         tool
     }
 
-    /// Begins a step at whose end the instrument has this pose.
+    /// Starts a step at whose end the instrument has this pose.
     pub(crate) fn aim(&mut self, at: &Instrument) {
         self.from = self.to;
         self.to = *at;

@@ -111,7 +111,7 @@ pub struct Wall {
     /// A point on it, m.
     #[serde(rename = "at_m")]
     pub position_m: [f64; 3],
-    /// The direction in which it pushes; of any length.
+    /// Direction in which the wall pushes; of any length.
     pub normal: [f64; 3],
     pub stiffness_n_m: f64,
     pub damping_n_s_m: f64,

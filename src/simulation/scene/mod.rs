@@ -63,7 +63,7 @@ pub struct Scene {
     pub follower: Option<FollowerModel>,
     /// Noise of the force sensor at the tip. Omitted if a wrist sensor measures instead.
     pub sensor: Option<SensorModel>,
-    /// Wrist sensor and tool; without it the force is measured at the tip.
+    /// Wrist sensor and tool; without them, the force is measured at the tip.
     pub wrist: Option<WristModel>,
     /// Friction where the instrument passes the body wall.
     pub trocar: Option<TrocarModel>,

@@ -16,7 +16,7 @@ pub struct SceneTask {
     /// A mark finds a lump if it is on the lump, or at most this far from it, m.
     #[serde(default = "mark_tolerance_m")]
     pub mark_tolerance_m: f64,
-    /// Number of lumps that can be found. In a scene with lumps it is their number.
+    /// Number of lumps that can be found. In a scene with lumps, this is the number of lumps in the scene.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lumps: Option<u32>,
     /// All other keys: the parameters of the score.

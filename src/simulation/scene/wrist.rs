@@ -113,9 +113,9 @@ pub enum Flaw {
     PushesOneLine,
     /// Pushes within one plane, whatever direction is requested.
     PushesOnePlane,
-    /// Works only straight under the trocar, whatever position is requested.
+    /// Works only straight below the trocar, whatever position is requested.
     WorksInOnePlace,
-    /// Leans on the tissue's stand at times: the two sensors then do not measure the same force.
+    /// Leans on the tissue's stand at times, so that the two sensors measure different forces.
     LeansOnTheStand,
 }
 

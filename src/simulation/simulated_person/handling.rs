@@ -26,7 +26,7 @@ const CLEAR_M: f64 = 0.004;
 /// Space of the poses for the hand-eye calibration: half widths, and heights, m.
 const ROOM_M: [f64; 2] = [0.04, 0.04];
 const ROOM_Z_M: [f64; 2] = [0.04, 0.10];
-/// Touched points of the table, m: the origin, along x, on the side of y, and further ones.
+/// Touched points of the table, m: the origin, a point along x, a point on the side of y, and further ones.
 const TABLE_M: [[f64; 2]; 6] = [[0.0, 0.0], [0.08, 0.0], [0.0, 0.06], [0.07, 0.06], [-0.05, -0.02], [0.05, -0.05]];
 /// The tip is lifted by this much between two points, m.
 const LIFT_M: f64 = 0.015;

@@ -40,7 +40,7 @@ const PEAK: f64 = 1.875;
 /// Time in which the tip is lifted off the tissue when work ends, s.
 const LIFT_S: f64 = 0.8;
 
-/// A person who holds the arm and follows each [`Prompt`].
+/// A person who guides the arm and follows each [`Prompt`].
 #[derive(Clone, Debug)]
 pub struct Person {
     flaw: Option<Flaw>,

@@ -1,11 +1,11 @@
-//! Where a person works with the instrument when recording for the tip force: in the space of the later task.
+//! Working space of a person who records data for the tip force: that of the later task.
 
 use crate::scene::Scene;
 
 /// The tip moves this far beyond the task's targets on every side, m: more than a drag, an overshoot, or the distance
 /// from the pose in which the arm was left.
 const MARGIN_M: f64 = 0.015;
-/// The person presses deeper than the task intends by this factor: a hand overshoots.
+/// The person presses deeper than the task intends by this factor, because a hand overshoots.
 const DEEPER: f64 = 1.2;
 /// Minimum depth of a press, m.
 const PRESS_MIN_M: f64 = 0.002;
@@ -13,7 +13,7 @@ const PRESS_MIN_M: f64 = 0.002;
 /// Working space of the tip.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Workspace {
-    /// From and to, in x and y, m.
+    /// Limits in x and y, m.
     pub across_m: [[f64; 2]; 2],
     /// Range of the depth to which the tip presses below the tissue's surface, m.
     pub press_m: [f64; 2],

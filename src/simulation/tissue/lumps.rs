@@ -5,7 +5,7 @@ use nima_core::noise::Noise;
 
 use crate::scene::{Lump, Lumps, RandomLumps};
 
-/// Number of draws for one lump before it is given up for lack of room.
+/// Number of attempts to place one lump before giving up for lack of room.
 const DRAWS_MAX: u32 = 2000;
 /// Makes the positions of lumps independent of the random sequences of tremor and noise.
 const LOT: u64 = 0x1_0b05;

@@ -1,4 +1,4 @@
-//! Tissue whose force fades while it is held.
+//! Tissue whose force fades under constant depth.
 
 use crate::scene::Relaxation;
 
@@ -21,7 +21,7 @@ pub(super) struct RelaxationState {
 }
 
 impl RelaxationState {
-    /// At rest, for steps of this length.
+    /// Creates the state at rest, for steps of this length.
     pub(super) fn new(config: Relaxation, step_s: f64) -> Self {
         let mut relaxing = Self { config, step_s: 0.0, decay: 1.0, ramp: 0.0, elastic_n: 0.0, relaxed_n: 0.0 };
         relaxing.set_step(step_s);

@@ -72,7 +72,7 @@ pub struct HandForces {
     /// On the tip, which is pushed onto a rigid object.
     pub tip: Vector3<f64>,
     pub tool: Vector3<f64>,
-    /// On the stand of the tissue; the tip does not feel it.
+    /// Force on the stand of the tissue, which the tip does not feel.
     pub stand: Vector3<f64>,
 }
 

@@ -1,4 +1,4 @@
-//! Outcome of a run, with the reason if it did not do its task.
+//! Outcome of a run, with the reason if it failed.
 
 use nima_core::safety::TransitionCause;
 use nima_devices::ConnectionState;

@@ -119,7 +119,7 @@ fn bar(hidden: bool) -> ProgressBar {
     ProgressBar::new(1).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
 }
 
-/// If a member stops early, its part of the bar is complete.
+/// Shows the progress; if a member stops early, its part of the bar is complete.
 fn show(bar: &ProgressBar, progress: &TrainingProgress) {
     bar.set_length((progress.epochs_max * progress.members) as u64);
     bar.inc(if progress.finished { (progress.epochs_max - progress.epoch + 1) as u64 } else { 1 });

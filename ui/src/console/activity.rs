@@ -30,7 +30,7 @@ struct UsualNumber {
 }
 
 impl UsualNumber {
-    /// Ratio of this block's change to the threshold; above 1 the change counts.
+    /// Returns the ratio of this block's change to the threshold; above 1, the change counts.
     fn follow(&mut self, block: &GaugeSpread, min: f64) -> f64 {
         if block.count == 0 {
             return 0.0;

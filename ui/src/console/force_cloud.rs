@@ -40,7 +40,7 @@ pub struct Ellipsoid {
     pub mean_n: Vector3<f64>,
     /// Half axes, N, as columns.
     pub half_axes_n: Matrix3<f64>,
-    /// Fraction of the differences inside it, 0 to 1.
+    /// Fraction of the differences inside the ellipsoid, 0 to 1.
     pub holds: f64,
 }
 

@@ -47,7 +47,7 @@ impl FrameSpread {
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Processor {
     pub process: f64,
-    /// All threads except those of the loop: the cost of the window.
+    /// Processor time of all threads except those of the loop: the cost of the window.
     pub window: f64,
     /// The loop and its supervisor.
     pub machine: f64,
@@ -72,7 +72,7 @@ pub struct FrameFigures {
     pub period_ms: FrameSpread,
     /// Work of a frame on the window's thread, without displaying it: layout, triangles, driver calls, ms.
     pub work_ms: FrameSpread,
-    /// The program's own part of it: panels and plots, without triangles and driver, ms.
+    /// The program's own part of this work: panels and plots, without triangles and driver, ms.
     pub layout_ms: FrameSpread,
     /// Fraction of the window that was redrawn, 0 to 1, mean over the frames.
     #[serde(rename = "drawn_share")]

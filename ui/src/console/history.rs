@@ -40,7 +40,7 @@ impl PlotTrace {
 struct HistoryBucket {
     low: [f32; CHANNELS],
     high: [f32; CHANNELS],
-    /// One bit per channel: the minimum came before the maximum.
+    /// One bit per channel, set if the minimum came before the maximum.
     low_first: u8,
 }
 
@@ -192,7 +192,7 @@ impl SignalHistory {
         }
     }
 
-    /// Lowest and highest value of the channels between two times.
+    /// Returns the lowest and highest value of the channels between two times.
     pub fn extent(&self, channels: &[usize], (from_s, to_s): (f64, f64)) -> Option<(f64, f64)> {
         let mut extent: Option<(f32, f32)> = None;
         for (_, bucket) in self.level(from_s, to_s, 1000).between(from_s, to_s) {

@@ -7,8 +7,8 @@ use super::{
     roles::Role,
 };
 
-/// Space and Escape stop, wherever the keyboard focus is; the key press is consumed, so that it triggers no button. In a text
-/// field, Space is a letter and only Escape stops.
+/// Returns the space and Escape stop, wherever the keyboard focus is; the key press is consumed, so that it triggers no
+/// button. In a text field, Space is a letter and only Escape stops.
 pub(super) fn stop_pressed(ctx: &Context) -> bool {
     let writing = ctx.text_edit_focused();
     ctx.input_mut(|input| {

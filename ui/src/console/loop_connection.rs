@@ -103,7 +103,7 @@ impl LoopConnection {
         Self { shared, keeper }
     }
 
-    /// Returns the loop, for everything but ticks and events.
+    /// Returns the loop's handle, for everything except ticks and events.
     pub fn handle(&self) -> &LoopHandle {
         &self.shared.handle
     }
@@ -224,7 +224,7 @@ impl DoorShared {
 #[derive(Clone, Copy, Debug)]
 struct VisibleState {
     last: Tick,
-    /// Gates that acted in most of them.
+    /// Gates that acted in most of these ticks.
     gates: [bool; GATES],
     measured_n: Vector3<f64>,
     rendered_n: Vector3<f64>,

@@ -15,7 +15,7 @@ use crate::language::{Language, Text};
 /// Size that every view needs, in points; a scale without room for it is not used.
 const NEEDED: egui::Vec2 = vec2(1100.0, 680.0);
 
-/// Size of a button next to its name: the menu must fit in the smallest window.
+/// Minimum size of a button next to its name: the menu must fit into the smallest window.
 const CHOICE: egui::Vec2 = vec2(84.0, 24.0);
 
 /// Returns the menu in the top bar; returns the chosen command. `can_undo`: whether undo and redo are possible.
@@ -105,7 +105,7 @@ fn switch_ui(ui: &mut Ui, mut on: bool, action: Action) -> Option<Action> {
     ui.checkbox(&mut on, entry.title.as_str()).on_hover_text(entry.does).changed().then_some(action)
 }
 
-/// Switch for alarm sounds, and the reason why they cannot be played.
+/// Draws the switch for alarm sounds, and the reason if they cannot be played.
 fn sound_ui(ui: &mut Ui, on: bool, alarms: &mut Alarms) -> Option<Action> {
     let wanted = switch_ui(ui, on, Action::Sound);
     if let Some(trouble) = alarms.sound.trouble() {
@@ -114,7 +114,7 @@ fn sound_ui(ui: &mut Ui, on: bool, alarms: &mut Alarms) -> Option<Action> {
     wanted
 }
 
-/// Display settings of the endoscope image, and whether it is recorded.
+/// Draws the display settings of the endoscope image, and whether it is recorded.
 fn image_ui(ui: &mut Ui, settings: &mut ConsoleSettings) -> Option<Action> {
     ui.label(text::menu::IMAGE.get());
     let image = &mut settings.image;

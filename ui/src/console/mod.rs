@@ -95,7 +95,7 @@ pub(crate) struct InitialRun {
     pub(crate) rig: RigConfig,
     pub(crate) scene: Scene,
     pub(crate) sessions: ConsoleSessions,
-    /// The link to the machine with the arm, if it is another machine, and the means to reopen it.
+    /// The link to the machine with the arm, if that is another machine, and the means to reopen the link.
     pub(crate) far: Option<(Box<dyn LineConnection>, Reopen)>,
 }
 

@@ -66,8 +66,8 @@ impl Outbox {
         self.stops
     }
 
-    /// Returns whether the loop's queue had no room for a stop, which the operator must be told. Not yet true in the
-    /// frame of the request.
+    /// Returns whether the loop's queue had no room for a stop, which must be shown to the operator. Not yet true in
+    /// the frame of the request.
     pub const fn stop_is_stuck(&self) -> bool {
         self.stop_refused
     }

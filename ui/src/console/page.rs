@@ -49,7 +49,7 @@ pub trait Page: Debug {
 
 /// A run of a page, with its own loop.
 pub trait PageRun {
-    /// Returns the person who moves the instruments.
+    /// Returns the participant who moves the instruments.
     fn participant(&self) -> &str;
 
     /// Returns the name that live viewers may see.

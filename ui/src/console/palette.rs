@@ -180,8 +180,8 @@ fn found(words: &str, rows: &[PaletteRow]) -> Vec<PaletteRow> {
     found.into_iter().map(|(_, row)| row).collect()
 }
 
-/// Quality of a match; 0 is best. A word can match a key, the start of a word in the name, a part of the name, or the start
-/// of a word in the meaning.
+/// Returns the quality of a match; 0 is best. A word can match a key, the start of a word in the name, a part of the
+/// name, or the start of a word in the meaning.
 fn rank(word: &str, entry: &CommandEntry) -> Option<usize> {
     let begins = |text: &str| {
         let text = text.to_lowercase();

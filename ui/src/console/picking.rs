@@ -1,4 +1,4 @@
-//! Lets the user choose a file anywhere, in the system's own dialog, while the window runs on.
+//! Lets the user choose a file anywhere, in the system's own dialog, while the window keeps running.
 
 use std::{
     path::{Path, PathBuf},
@@ -16,7 +16,7 @@ pub(crate) type Kind = [&'static str; 2];
 pub(crate) struct Picking(Receiver<PathBuf>);
 
 impl Picking {
-    /// Opens the dialog in this folder, on a thread of its own: it waits for the user.
+    /// Opens the dialog in this folder on its own thread, because it waits for the user.
     pub(crate) fn open(ctx: &Context, title: &str, kind: Kind, folder: Option<&Path>) -> Self {
         let [name, ending] = kind;
         let mut dialog = rfd::FileDialog::new().set_title(title).add_filter(name, &[ending]);
@@ -55,7 +55,7 @@ impl Picking {
 mod tests {
     use super::*;
 
-    /// What a dialog gives in which this is chosen.
+    /// Returns the result of a dialog in which this file is chosen.
     fn picked(path: Option<PathBuf>) -> Option<PathBuf> {
         let mut picking = Some(Picking::with(&Context::default(), || path));
         while picking.is_some() {

@@ -28,7 +28,7 @@ const SETTLED: Duration = Duration::from_millis(1200);
 const TIMEOUT: Duration = Duration::from_secs(6);
 /// Force of the contact at which a screenshot is taken, N.
 const CONTACT_N: f64 = 1.5;
-/// If the loop is not engaged for this time, no screenshots are taken.
+/// If the loop is not engaged within this time, no screenshots are taken.
 const GIVE_UP: Duration = Duration::from_secs(10);
 /// Time to save the last screenshot before the window closes.
 const LAST: Duration = Duration::from_millis(700);

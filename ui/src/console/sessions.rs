@@ -34,7 +34,7 @@ use crate::{
 /// A loop with fewer ticks than this is not a session, for example if no window could be opened or the rig was changed at
 /// once.
 const MIN_TICKS: u64 = 1000;
-/// Interval at which room is made while a session grows.
+/// Interval at which space is freed while a session grows.
 const ROOM_EVERY: Duration = Duration::from_secs(30);
 /// A disk that does not respond for this long is reported: after 2 s entries are lost.
 const SLOW: Duration = Duration::from_secs(1);
@@ -139,7 +139,7 @@ impl ConsoleSessions {
         self.servers.blind_audiences(plan, trial)
     }
 
-    /// Target of the endoscope images for the recording.
+    /// Returns the target of the endoscope images for the recording.
     pub(crate) const fn reel(&self) -> &FrameQueue {
         &self.reel
     }

@@ -1,4 +1,4 @@
-//! Small parts that several panels share.
+//! Small parts used by several panels.
 
 use egui::{
     Align, Button, Color32, FontId, Label, Layout, Painter, Pos2, Rect, Response, RichText, Sense, Stroke, TextStyle,
@@ -100,7 +100,7 @@ pub fn figure(ui: &mut Ui, name: &str, value: impl Into<String>, meaning: &str) 
     row.response
 }
 
-/// Returns a button that stands out if it is the `next` one to press; at most one on the screen does.
+/// Returns a button that is highlighted if it is the `next` one to press; at most one button on the screen is.
 pub fn next_button(name: impl Into<RichText>, next: bool) -> Button<'static> {
     let name = name.into();
     if next { Button::new(name.color(theme::DARK.text)).fill(theme::now().primary) } else { Button::new(name) }
@@ -157,7 +157,7 @@ pub fn sign_ui(ui: &mut Ui, what: Sign, radius: f32, colour: Color32) -> Respons
     response
 }
 
-/// The symbol of a force next to its name: a line with a cone, or a beaded line with a double cone.
+/// Draws the symbol of a force next to its name: a line with a cone, or a beaded line with a double cone.
 pub fn force_sign(painter: &Painter, palette: &theme::ColourPalette, rect: Rect, rendered: bool) {
     let colour = if rendered { palette.rendered } else { palette.measured };
     let y = rect.center().y;
@@ -180,7 +180,7 @@ pub fn force_sign(painter: &Painter, palette: &theme::ColourPalette, rect: Rect,
     cone(right);
 }
 
-/// A horizontal bar that fills this fraction of `rect` from the left.
+/// Draws a horizontal bar that fills this fraction of `rect` from the left.
 pub fn bar(painter: &Painter, rect: Rect, fraction: f64, colour: Color32) {
     painter.rect_filled(rect, 2.0, theme::now().groove);
     let fraction = if fraction.is_finite() { fraction.clamp(0.0, 1.0) as f32 } else { 1.0 };

@@ -48,7 +48,7 @@ pub(crate) fn table<Cell: Render>(heads: &[impl Render], rows: &[Vec<Cell>]) -> 
     }
 }
 
-/// Returns a table, or this sentence in place of one without rows.
+/// Returns a table, or this sentence instead of an empty one.
 pub(crate) fn table_or<Cell: Render>(heads: &[impl Render], rows: &[Vec<Cell>], nothing: &str) -> Markup {
     if rows.is_empty() {
         html! { p { (nothing) } }

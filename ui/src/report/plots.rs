@@ -20,7 +20,7 @@ const APART: f64 = 20.0;
 const GAP_S: f64 = 0.02;
 pub(super) const NOT_RECORDED: &str = "not recorded";
 
-/// Name, colour and whether it is hatched: no two states differ by colour alone.
+/// Name, colour, and whether it is hatched: no two states differ by colour alone.
 pub(super) const STATE: [(&str, &str, bool); STATES] = [
     ("no device", "#777777", true),
     ("idle", "#dddddd", false),
@@ -100,12 +100,13 @@ pub(super) fn states(session: &SessionFigures, arm: &ArmFigures) -> Markup {
     drawing([WIDTH, bottom + 22.0], &format!("States of the {} arm over time", arm.side), &body)
 }
 
-/// Returns the width of what lies between two places; never so little that it cannot be seen.
+/// Returns the width between two positions; never too small to be visible.
 fn width(from: f64, to: f64) -> String {
     format!("{:.1}", (to - from).max(0.8))
 }
 
-/// Beginning and end of each time in which nothing was recorded, so that nobody takes it for a state, s.
+/// Returns the beginning and end of each period in which nothing was recorded, s, so that it is not mistaken for a
+/// state.
 fn gaps(length_s: f64, states: &[StateSpan]) -> Vec<[f64; 2]> {
     let mut before_s = 0.0_f64;
     let mut gaps = Vec::new();
@@ -161,7 +162,7 @@ pub(super) fn forces(session: &SessionFigures, arm: &ArmFigures) -> Markup {
     drawing([WIDTH, 3.0 * PLOT + 20.0], &format!("Forces of the {} arm over time", arm.side), &body)
 }
 
-/// Returns a vertical line for each bucket of a trace, from its least to its largest force.
+/// Returns a vertical line for each bucket of a trace, from its minimum to its maximum force.
 fn path(trace: &SignalTrace, length_s: f64, up: impl Fn(f64) -> f64) -> String {
     let line = |(bucket, range): (usize, &Option<[f64; 2]>)| {
         let [min_n, max_n] = (*range)?;

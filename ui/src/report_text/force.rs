@@ -58,7 +58,7 @@ impl ShortText for ForceSource {
     }
 }
 
-/// Remedy for a tip force that is unknown, a clause without a full stop.
+/// Returns the remedy for a tip force that is unknown, a clause without a full stop.
 pub(super) fn cure_of_unknown(source: ForceSource) -> &'static str {
     match source {
         ForceSource::Uncalibrated => word(

@@ -42,7 +42,8 @@ pub(crate) use ready::{ask_text, check_name, figure_text, lacks_text, unit};
 pub(crate) use refusals::{cure_of_refusal, refused_because};
 pub(crate) use task_events::happening;
 
-/// Message of a library, which is English in every language: a whole sentence, in quotation marks within German text.
+/// Returns the message of a library, which is English in every language: a whole sentence, in quotation marks within
+/// German text.
 pub(crate) fn quoted(message: &impl std::fmt::Display) -> String {
     crate::language::text_format!("{message}", "„{message}“")
 }

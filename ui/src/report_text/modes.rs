@@ -4,11 +4,11 @@ use nima_core::impedance::{Baseline, MODES, Mode};
 
 use crate::language::word;
 
-/// The program's own modes as they are offered.
+/// The program's own modes, in the order in which they are offered.
 pub(crate) const OFFERED: [Mode; MODES] =
     [Mode::Anchored, Mode::Dfr, Mode::Matched, Mode::Best, Mode::Nima, Mode::Literal, Mode::Linear];
 
-/// The same as they are compared.
+/// The same modes, in the order in which they are compared.
 pub(crate) const COMPARED: [Mode; MODES] =
     [Mode::Best, Mode::Matched, Mode::Anchored, Mode::Dfr, Mode::Nima, Mode::Linear, Mode::Literal];
 

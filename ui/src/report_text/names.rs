@@ -34,7 +34,7 @@ pub(crate) fn within(name: &str) -> String {
     if current() == Language::German { name.to_owned() } else { name.to_lowercase() }
 }
 
-/// Device with its role and model: `right handle (Haply)`.
+/// Returns the device with its role and model: `right handle (Haply)`.
 pub(crate) fn device_name(name: DeviceName) -> String {
     let DeviceName { role, make } = name;
     role_name(role) + &make.map_or_else(String::new, |make| format!(" ({make})"))

@@ -39,7 +39,7 @@ pub(super) fn capital(word: &str) -> String {
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
-/// Instruction to the person; empty if there is none.
+/// Returns the instruction to the person; empty if there is none.
 pub(crate) fn ask_text(ask: &PersonRequest) -> String {
     match ask {
         PersonRequest::Nothing => String::new(),
@@ -102,7 +102,7 @@ fn way(direction: &nalgebra::Vector3<f64>) -> &'static str {
     }
 }
 
-/// Symbol of a unit; empty for a count.
+/// Returns the symbol of a unit; empty for a count.
 pub(crate) fn unit(unit: FigureUnit) -> &'static str {
     match unit {
         FigureUnit::Count => "",

@@ -154,7 +154,7 @@ mod tests {
 
     use super::*;
 
-    /// Refusals whose text depends on nothing else.
+    /// Refusals whose text depends on no other data.
     const REFUSALS: [Refusal; 15] = [
         Refusal::ForceUnknown(ForceSource::Uncalibrated),
         Refusal::ForceUnknown(ForceSource::NoOrientation),

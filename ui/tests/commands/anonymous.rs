@@ -33,7 +33,7 @@ const LOGIN: &str = "login-of-jane";
 /// A line of the session.
 const ENGAGED: &str = "right arm: from Ready to Engaged";
 
-/// Rig and scene with planted names, and a session of them.
+/// Returns a rig and a scene with planted names, and a session of them.
 fn recorded(folder: &Path) -> String {
     let [rig_name, tool, serial, _, scene_name, place, ..] = PLANTED;
     let folder = folder.join(place);
@@ -85,7 +85,7 @@ fn elsewhere(arguments: &[&str]) -> Command {
     command
 }
 
-/// The same session with names in every possible place of the file.
+/// Returns the same session with names in every possible place of the file.
 fn planted(session: &str, to: &Path) {
     let reader = SessionReader::open(Path::new(session)).unwrap();
     let all = PLANTED.join(" ");

@@ -23,7 +23,7 @@ fn lens() -> Lens {
     lens
 }
 
-/// A folder with images of a board at these poses of the emulator.
+/// Creates a folder with images of a board at these poses of the emulator.
 fn images(folder: &Path, poses: impl Iterator<Item = u32>) {
     let board = Checkerboard::new([9, 6], 0.01).unwrap();
     let portrait = Portrait::new(&lens());

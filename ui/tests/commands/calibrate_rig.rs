@@ -169,7 +169,7 @@ fn from_boxes_to_first_touch() {
     });
 }
 
-/// The ready check of the calibrated rig, with the technician at its arms.
+/// Runs the ready check of the calibrated rig, with the technician at its arms.
 fn is_ready(home: &Home) {
     judged(|| {
         let checked = home.nima(&["check", "rig", "--rig", "rig.toml"]);

@@ -78,7 +78,7 @@ fn the_site_has_every_page() {
     assert_eq!(found, pages);
 }
 
-/// Commands in the pages: lines of code blocks and pieces of code in a sentence that begin with `nima`.
+/// Returns the commands in the pages: lines of code blocks and pieces of code in a sentence that begin with `nima`.
 fn commands(text: &str) -> Vec<String> {
     let plain = text.replace("\\\n", " ");
     let lines = plain.lines().map(|line| line.split(" #").next().unwrap_or_default().trim());

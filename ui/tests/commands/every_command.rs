@@ -20,7 +20,7 @@ pub(crate) fn nima(arguments: &[&str]) -> Output {
         .unwrap()
 }
 
-/// Output of a command that must succeed.
+/// Returns the output of a command that must succeed.
 pub(crate) fn json(arguments: &[&str]) -> Value {
     let output = nima(arguments);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));

@@ -14,7 +14,7 @@ use std::{
 
 /// Long enough for a busy machine; a hang would last for ever.
 const HANGS: Duration = Duration::from_mins(2);
-/// An error line of ours, with a long path in it.
+/// Maximum length of an error line of ours with a long path in it.
 const LINE_MAX: usize = 2500;
 
 fn command(arguments: &[&str]) -> Command {

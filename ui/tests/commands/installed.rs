@@ -36,7 +36,7 @@ pub(crate) fn rig() -> String {
     text
 }
 
-/// Readings of both handles and both arms during a run of three seconds, and its output.
+/// Returns the readings of both handles and both arms during a run of three seconds, and its output.
 fn run(folder: &Path) -> (Vec<u64>, String) {
     fs::write(folder.join("rig.toml"), rig()).unwrap();
     let output = Command::new(folder.join("nima"))

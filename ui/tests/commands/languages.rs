@@ -128,7 +128,7 @@ fn both_languages_tell_the_same_values() {
     assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
-/// A text with only one language compiles if it is not in a pair.
+/// A text in only one language would compile if it were not in a pair.
 #[test]
 fn every_text_with_words_is_a_pair() {
     let mut wrong = Vec::new();

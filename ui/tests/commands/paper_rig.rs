@@ -69,7 +69,7 @@ fn a_run_names_the_first_device_and_ends_with_its_cause() {
     }
 }
 
-/// Changes this device of the rig to an address without a device; `None` for a name outside the list above.
+/// Returns the changes this device of the rig to an address without a device; `None` for a name outside the list above.
 fn take_away(file: &mut RigFile, device: &str, folder: &Path) -> Option<()> {
     let nowhere = folder.join("ttyACM-nothing-here").display().to_string();
     // Bind and close again, so that nothing listens on the port.

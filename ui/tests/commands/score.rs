@@ -1,4 +1,4 @@
-//! From recorded sessions to a table of trials, and from a table of trials to the answer.
+//! Tests: from recorded sessions to a table of trials, and from such a table to the answer.
 use std::{fmt::Write as _, path::Path};
 
 use serde_json::Value;

@@ -21,7 +21,7 @@ use crate::{
 const SECRET: [&str; 10] =
     ["zebra", "wildebeest", "anchored", "no_force", "137.5", "0.1375", "138 ms", "0.8125", "0.81", "rendered_n"];
 
-/// A window that records everything that could be read in it.
+/// A window that records all readable texts in it.
 struct Reader {
     window: Console,
     seen: BTreeSet<String>,
@@ -99,7 +99,7 @@ impl Reader {
         self.point_around();
     }
 
-    /// Holds the pointer over everything that can be pressed or read.
+    /// Moves the pointer over everything that can be pressed or read.
     fn point_around(&mut self) {
         let of = |role: Role| self.window.query_all_by_role(role).map(|node| node.rect().center());
         let places: Vec<egui::Pos2> = [Role::Button, Role::Label].into_iter().flat_map(of).collect();

@@ -33,7 +33,7 @@ fn console() -> Harness<'static, ConsoleApp> {
     harness
 }
 
-/// True when such a tick arrives within this loop time (one peg takes less than 3 s).
+/// Returns whether such a tick arrives within this loop time (one peg takes less than 3 s).
 fn ever(harness: &mut Harness<'_, ConsoleApp>, seconds: f64, good: impl Fn(&Tick) -> bool) -> bool {
     let t_s = |harness: &Harness<'_, ConsoleApp>| harness.state().tick().map_or(0.0, |tick| tick.t_s);
     let from_s = t_s(harness);

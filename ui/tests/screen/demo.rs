@@ -1,4 +1,4 @@
-//! The demonstration over a running loop: its chapters, its time, its faults, and the stop of a person.
+//! Tests of the demonstration over a running loop: its chapters, its timing, its faults, and a stop by a person.
 
 use std::{
     sync::{
@@ -127,7 +127,7 @@ fn of_silent(speed: f64) -> (Console, Arc<AtomicBool>) {
     (console, is_silent)
 }
 
-/// The loop faults, because its rig is silent for a moment.
+/// Makes the loop fault, because its rig is silent for a moment.
 fn fault(console: &mut Console, is_silent: &AtomicBool) {
     is_silent.store(true, Ordering::Relaxed);
     until(console, "a fault", |tick| matches!(tick.state, LoopState::Faulted(_)));

@@ -51,7 +51,7 @@ fn a_bias_that_did_not_move_is_fine_with_the_time_of_the_check() {
     assert!(can_press(&console, "Engage"));
 }
 
-/// Output of `nima run` about the bias, with calibrations in this folder.
+/// Returns the output of `nima run` about the bias check, with calibrations in this folder.
 fn run(store: &Path, step_n: f64) -> String {
     Store::open(store.join("calibrations")).save(&gravity()).unwrap();
     let (scene, _) = include_str!("../../../config/scenes/palpation.toml").split_once("[trocar]").unwrap();

@@ -1,4 +1,5 @@
-//! The endoscope image in the Surgeon view, from an emulated camera over TCP, and a text for each of its faults.
+//! Tests of the endoscope image in the Surgeon view, from an emulated camera over TCP, and of the text for each of its
+//! faults.
 
 use egui::{
     Event, Key, Modifiers, MouseWheelSource, MouseWheelUnit, PointerButton, Pos2, Rect, Shape, TouchPhase, pos2, vec2,
@@ -203,7 +204,7 @@ fn has_forces(harness: &Console, both: bool) -> bool {
     if both { places.iter().any(is_left) && !places.iter().all(is_left) } else { !places.is_empty() }
 }
 
-/// Start and end of the displayed parts of the image, as fractions of its width.
+/// Returns the start and end of the displayed parts of the image, as fractions of its width.
 fn halves(harness: &Console) -> Vec<[f32; 2]> {
     let fractions = |shape: &Shape| match shape {
         Shape::Mesh(mesh) if is_image(shape) => Some([mesh.vertices[0].uv.x, mesh.vertices[3].uv.x]),

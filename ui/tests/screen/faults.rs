@@ -93,7 +93,8 @@ fn is_among(rows: &[Rect], place: Rect) -> bool {
     rows.iter().any(|row| row.y_range().contains(place.center().y))
 }
 
-/// Controls that overlap, or that leave the window sideways. A control scrolled out of view is recognised by its text.
+/// Returns the controls that overlap, or that leave the window sideways. A control scrolled out of view is recognised
+/// by its text.
 pub(crate) fn faults_of_controls<A>(harness: &Harness<'_, A>, texts: &[Text], window: Rect) -> Vec<String> {
     let seen = |name: &str, place: Rect| {
         let words = texts.iter().find(|text| text.words.trim() == name && place.contains(text.place.center()));
@@ -138,7 +139,7 @@ pub(crate) fn too_wide<A>(harness: &Harness<'_, A>) -> Vec<String> {
     texts(harness).iter().filter_map(leaves).collect()
 }
 
-/// How a page is checked.
+/// Kind of check for a page.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) enum Page {
     /// Everything must be visible.
@@ -189,7 +190,7 @@ fn seen(harness: &mut Harness<'_, ConsoleApp>, size: [f32; 2]) -> (Vec<Text>, Re
     (texts, window, field)
 }
 
-/// Fails with the faults, if there are any.
+/// Panics with the list of faults, if there are any.
 pub(crate) fn none(faults: &[String]) {
     assert!(faults.is_empty(), "{} faults:\n{}", faults.len(), faults.join("\n"));
 }

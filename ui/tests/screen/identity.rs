@@ -34,7 +34,7 @@ fn controls(harness: &Harness<'_, ConsoleApp>) -> BTreeMap<String, NodeId> {
     named.into_iter().filter_map(|(name, ids)| (ids.len() == 1).then(|| (name, ids[0]))).collect()
 }
 
-/// Controls whose id has changed.
+/// Returns the controls whose id has changed.
 fn changed(before: &BTreeMap<String, NodeId>, harness: &Harness<'_, ConsoleApp>) -> Vec<String> {
     let now = controls(harness);
     before

@@ -144,8 +144,8 @@ struct GreyImage {
 type Plane = [f32; 3];
 
 impl GreyImage {
-    /// Fills the part of a triangle within `clip`. Pixels belong to a triangle by their centres, so that neighbours never
-    /// share one.
+    /// Fills the part of a triangle within `clip`. Pixels belong to the triangle that contains their centre, so that
+    /// neighbours never share one.
     fn fill(&mut self, corners: [&Vertex; 3], clip: Rect, letters: Option<&ColorImage>) {
         let [a, b, c] = corners.map(|corner| corner.pos);
         let doubled_area = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);

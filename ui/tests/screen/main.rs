@@ -1,4 +1,4 @@
-//! The console, driven by the names on its screen.
+//! Tests of the console, operated by the names on its screen.
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod access;

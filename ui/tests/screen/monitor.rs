@@ -26,7 +26,7 @@ fn window() -> (Harness<'static, Monitor>, MonitorSender) {
     (harness, publisher.recv().unwrap())
 }
 
-/// Data that the rig of this plan sends in its first seconds over the network; it is stopped after six.
+/// Returns the data that the rig of this plan sends in its first seconds over the network; it is stopped after six.
 fn sent(plan: &SimulationPlan) -> Vec<MonitorMoment> {
     let mut writer = MomentWriter::default();
     let mut moments = Vec::new();

@@ -173,7 +173,7 @@ fn the_past_looks_like_the_past_and_one_key_leaves_it() {
     assert!(harness.query_by_label("PLAYBACK").is_none() && harness.state().past().is_none());
 }
 
-/// Hover text of the time line at the place where it contains this text.
+/// Returns the hover text of the time line at the place where it contains this text.
 fn found_along_the_line(harness: &mut Harness<'_, ConsoleApp>, at: f64, words: &str) -> bool {
     let line = harness.get_by_label("Time of the session").rect();
     [0.0, -6.0, 6.0].into_iter().any(|aside| {

@@ -1,4 +1,4 @@
-//! The ready check on its page, driven by accessible names on the simulated rig.
+//! Tests of the ready check on its page, operated by accessible names on the simulated rig.
 
 use std::path::Path;
 

@@ -48,7 +48,7 @@ fn layout_of(harness: &mut Harness<'_, ConsoleApp>) -> PanelLayout {
     harness.state_mut().settings_mut().layout.clone()
 }
 
-/// Panels that share a group of tabs with this one.
+/// Returns the panels that share a group of tabs with this one.
 fn beside(node: &LayoutNode, panel: Panel) -> Option<Vec<Panel>> {
     match node {
         LayoutNode::Panel(_) => None,

@@ -108,7 +108,7 @@ fn bad_input_is_refused_in_one_line() {
     }
 }
 
-/// In free motion a mode with degrees is on the front (degree 1 costs little); in contact none is.
+/// Creates a console: in free motion a mode with degrees is on the front (degree 1 costs little); in contact none is.
 fn console() -> Console {
     let mut plan = plan("free_motion");
     plan.rig.identification.rest_n = 0.0;

@@ -22,7 +22,7 @@ use nima_machine::{
 use nima_recording::store::utc_now;
 use nima_simulation::{SimulationPlan, World, run_virtual, scene::Scene};
 
-/// Samples of a calibration scene, each under the next prompt of `session`; ends with `None`.
+/// Returns the samples of a calibration scene, each under the next prompt of `session`; ends with `None`.
 fn calibrate(scene: &Scene, mut session: impl FnMut(&nima_core::frames::WristSample, f64) -> Option<Prompt>) {
     let mut world = World::new(scene, 1000.0);
     let mut prompt = Prompt::Rest;

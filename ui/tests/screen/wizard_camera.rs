@@ -28,7 +28,7 @@ use crate::{
 /// A small image, so that a busy machine keeps up.
 const SIZE_PX: [usize; 2] = [640, 360];
 
-/// An emulated endoscope, the board in front of it, and the poses in which a person holds it.
+/// An emulated endoscope, the board in front of it, and the poses in which a person holds the board.
 struct Fixture {
     _serving: EmulatorThread,
     pose: Arc<Mutex<Isometry3<f64>>>,

@@ -1,4 +1,5 @@
-//! The correspondence wizard driven by accessible names on a real running loop, with a simulated person who pushes.
+//! Tests of the correspondence wizard, operated by accessible names on a running loop, with a simulated person who
+//! pushes.
 
 use std::{
     path::Path,

@@ -1,4 +1,5 @@
-//! The frame wizards, driven by accessible names over the interfaces of an emulated rig whose rig file is wrong.
+//! Tests of the frame wizards, operated by accessible names over the interfaces of an emulated rig whose rig file is
+//! wrong.
 #![cfg(target_os = "linux")]
 
 use std::path::Path;

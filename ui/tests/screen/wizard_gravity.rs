@@ -1,4 +1,4 @@
-//! The gravity wizard from its first to its last step by accessible names, with good data and with bad.
+//! Tests of the gravity wizard from its first to its last step by accessible names, with good and bad data.
 
 use std::{
     path::Path,

@@ -109,7 +109,7 @@ fn now_us() -> u64 {
 /// Observed images.
 #[derive(Debug, Default)]
 struct ImageObservations {
-    /// Age of each image when it was first seen, ms.
+    /// Age of each image when it was first visible, ms.
     ages_ms: Vec<f64>,
     stalls: usize,
     longest: Duration,

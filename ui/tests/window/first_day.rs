@@ -16,7 +16,7 @@ const EMULATED_RIG: (i32, i32) = (270, 268);
 const ENGAGE: (i32, i32) = (1380, 36);
 const NOTHING: (i32, i32) = (1300, 970);
 const WIDTH: usize = 1600;
-/// Colour of the button that stands out (`theme::Palette::primary`), and a number of pixels below that of any such button.
+/// Colour of the highlighted button (`theme::Palette::primary`), and a number of pixels below that of any such button.
 const NEXT: [u8; 3] = [0x24, 0x62, 0xc8];
 const PIXELS_MIN: usize = 600;
 const CHECKS_MAX: usize = 3;
@@ -41,7 +41,7 @@ impl<'a> Day<'a> {
         self.console.move_to(NOTHING);
     }
 
-    /// Returns the middle of the button that stands out.
+    /// Returns the middle of the highlighted button.
     fn next(&self) -> Option<(i32, i32)> {
         let mut import = self.console.x.command("import");
         let image = import.args(["-window", "root", "-depth", "8", "rgb:-"]).output().unwrap().stdout;
@@ -87,7 +87,7 @@ impl<'a> Day<'a> {
         self.checks().iter().any(|record| record.contains("passed = true"))
     }
 
-    /// Failed points of the newest check, except those that a busy machine fails.
+    /// Returns the failed points of the newest check, except those that fail on a busy machine.
     fn wrong(&self) -> Vec<String> {
         let newest = self.checks().pop().unwrap_or_default();
         let failed = newest.split("[[items]]").filter(|item| item.contains("outcome = \"failed\""));

@@ -46,7 +46,7 @@ fn all_six(x: &Xvfb, views: Views) {
     }
 }
 
-/// One ring is moved over and back, a second one is dropped over the board, a third one next to it.
+/// Moves one ring over and back, drops a second one over the board, and a third one next to it.
 fn one_and_two_drops(x: &Xvfb, views: Views) {
     let mut player = Player::begin(x, views);
     over_and_back(&mut player, &[3]);

@@ -68,7 +68,7 @@ pub(crate) struct Views {
     alarmed: Rect,
 }
 
-/// The same window without a screen gives the position of the field.
+/// Returns the position of the field from the same window without a screen.
 pub(crate) fn field() -> Views {
     let plan = nima_tests::plan("rings");
     let (handle, objects) = start_watched(&plan, 1.0).unwrap();
@@ -253,7 +253,7 @@ impl<'a> Player<'a> {
         }
     }
 
-    /// Returns a loop that this machine delays raises an alarm, whose strip moves the field.
+    /// Returns whether an alarm is shown: if this machine delays the loop, an alarm's strip moves the field.
     fn sees_alarm(&self) -> bool {
         let strip = Rect::from_min_size(pos2(0.0, 60.0), vec2(WINDOW[0], 70.0));
         self.image(strip).places(|pixel| ALARMS.contains(&pixel)).len() > ALARM_PIXELS
@@ -269,7 +269,7 @@ impl<'a> Player<'a> {
         self.view = if is_alarmed { self.views.alarmed } else { self.views.calm };
     }
 
-    /// If a tip is not at its drag position, the field has moved meanwhile: the tip is dragged once more.
+    /// Drags the tip once more if it is not at its drag position, because the field has moved in the meantime.
     fn look_again(&mut self) {
         self.find_field();
         let mark = self.image(self.view).mark();
@@ -281,7 +281,7 @@ impl<'a> Player<'a> {
         }
     }
 
-    /// For debugging: saves to the folder in `NIMA_PICTURES`.
+    /// For debugging: saves an image in the folder given by `NIMA_PICTURES`.
     pub(crate) fn keep_image(&self) {
         if let Some(folder) = std::env::var_os("NIMA_PICTURES") {
             let path = Path::new(&folder).join("playing.png");
@@ -341,7 +341,7 @@ impl<'a> Player<'a> {
         self.settle("lifted", true);
     }
 
-    /// The other hand waits in the middle with open jaws, and takes the ring that is brought there.
+    /// Passes a ring: the other hand waits in the middle with open jaws, and takes the ring that is brought there.
     fn hand_over(&mut self) {
         self.drag(Self::rim(self.led, [0.0, 0.0]));
         self.settle("in the middle", true);
@@ -368,7 +368,7 @@ impl<'a> Player<'a> {
         self.height(CARRIED_M);
     }
 
-    /// Both hands are above the middle, with open jaws; the one of this side is driven.
+    /// Moves both hands above the middle, with open jaws; the one of this side is driven.
     pub(crate) fn get_ready(&mut self, first: Side) {
         for side in [first.other(), first] {
             if self.led != side {

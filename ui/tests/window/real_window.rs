@@ -1,4 +1,4 @@
-//! The real window on a real X server without a screen: it opens, it draws, it closes.
+//! Tests of the real window on a real X server without a screen: it opens, draws and closes.
 #![cfg(target_os = "linux")]
 use std::{collections::HashMap, process::Stdio, thread, time::Duration};
 

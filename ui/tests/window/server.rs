@@ -18,12 +18,12 @@ pub(crate) struct Xvfb {
 }
 
 impl Xvfb {
-    /// `None`, with a message, if the tools are not installed, unless the environment requires them.
+    /// Starts the server; `None`, with a message, if the tools are not installed, unless the environment requires them.
     pub(crate) fn start() -> Option<Self> {
         Self::of("1600x1000", None)
     }
 
-    /// With a screen of this size (`1600x1000`), whose memory is a file in this folder.
+    /// Starts a server with a screen of this size (`1600x1000`), whose memory is a file in this folder.
     pub(crate) fn of(size: &str, memory: Option<&Path>) -> Option<Self> {
         let found = ["Xvfb", "xdotool", "import"].into_iter().all(which);
         if !found {

@@ -23,7 +23,8 @@ impl Picture {
         wanted.map(|(i, _)| place(i)).collect()
     }
 
-    /// Centre of the circle around the tip, and whether it is double: the jaws hold a ring.
+    /// Returns the centre of the circle around the tip, and whether the circle is double, which means that the jaws
+    /// hold a ring.
     pub(super) fn mark(&self) -> Option<(Pos2, bool)> {
         let places = self.places(|pixel| pixel == MARK);
         let around = around(&places).filter(|_| places.len() >= MARK_PIXELS)?;
@@ -36,7 +37,7 @@ pub(super) fn around(places: &[Pos2]) -> Option<Rect> {
     (!places.is_empty()).then(|| Rect::from_points(places))
 }
 
-/// A ring away from all jaws, however it is lit.
+/// Returns whether this is the colour of a ring away from all jaws, whatever its lighting.
 pub(super) fn is_of_ring([r, g, b]: [u8; 3]) -> bool {
     let [r, g, b] = [r, g, b].map(i32::from);
     r > g + 25 && g > b + 12

@@ -77,7 +77,7 @@ fn hand_m(t_s: f64) -> Vector3<f64> {
     )
 }
 
-/// Contact below the surface z = 0 and a little drag, N.
+/// Returns the contact below the surface z = 0 and a little drag, N.
 fn contact_n(position_m: Vector3<f64>) -> Vector3<f64> {
     let depth_m = (-position_m.z).max(0.0);
     Vector3::new(-20.0 * position_m.x, -15.0 * position_m.y, 500.0 * depth_m + 2e4 * depth_m * depth_m)

@@ -117,9 +117,9 @@ impl KinovaDriver {
         }
     }
 
-    /// Commands joint angles, rad, in the turns of the readings: the next point of a path within the
-    /// [limits](crate::kinova::KinovaSettings::joint_limits), starting at [`KinovaDriver::command_rad`]. A command beyond the
-    /// limits is refused and counted, and ends servoing, because its plan is wrong.
+    /// Returns the commands joint angles, rad, in the turns of the readings: the next point of a path within the
+    /// [limits](crate::kinova::KinovaSettings::joint_limits), starting at [`KinovaDriver::command_rad`]. A command
+    /// beyond the limits is refused and counted, and ends servoing, because its plan is wrong.
     ///
     /// # Errors
     /// [`KinovaRefusal`] if the arm is not servoing, a number is not finite, or a limit is exceeded.

@@ -138,7 +138,7 @@ fn low_pass() -> [f64; TAPS] {
 mod tests {
     use super::*;
 
-    /// Output amplitude of a sine, in the middle of 4 s.
+    /// Returns the output amplitude of a sine, in the middle of 4 s.
     fn passes(hz: f64, even: impl Fn(u32) -> f64) -> f64 {
         let mut decimator = Decimator::with_room(4.0);
         for k in 0..4000 {

@@ -171,7 +171,7 @@ const fn hand_of(tip_m: Vector3<f64>, force_n: Vector3<f64>, rendered_n: Vector3
     HandSample { tip_m, jaw_rad: None, force_n, rendered_n, engaged, in_view: true }
 }
 
-/// Both hands, tick by tick.
+/// Returns the both hands, tick by tick.
 fn samples(
     reader: &SessionReader,
     path: &Path,

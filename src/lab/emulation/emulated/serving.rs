@@ -133,7 +133,7 @@ fn sensor(
     served(name, emulated.with(body))
 }
 
-/// Both tips press on the same tissue.
+/// Returns the both tips press on the same tissue.
 fn under_the_tissue(sides: &ServingSides) -> emulators::bota::BotaBody {
     let worlds: Vec<SharedWorld> = sides.iter().flatten().cloned().collect();
     Box::new(move |_| {

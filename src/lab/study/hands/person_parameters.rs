@@ -109,7 +109,7 @@ impl<const D: usize> PersonParameters<D> {
 }
 
 impl<const D: usize> ElasticTissue<D> {
-    /// Depth of this position below the surface, m; negative outside.
+    /// Returns the depth of this position below the surface, m; negative outside.
     pub(super) fn depth_m(&self, position_m: &SVector<f64, D>) -> f64 {
         self.inwards.dot(&(position_m - self.surface_m))
     }

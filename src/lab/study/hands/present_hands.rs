@@ -82,7 +82,7 @@ impl HeldTally {
         self.hands_gone += other.hands_gone;
     }
 
-    /// Alarms in a minute.
+    /// Returns the alarms in a minute.
     pub fn alarms_per_min(&self) -> f64 {
         self.alarms as f64 / self.minutes.max(1e-9)
     }

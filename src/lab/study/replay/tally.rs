@@ -129,7 +129,7 @@ impl TallyErrors {
     }
 }
 
-/// Quantile of sorted values (nearest rank); 0 if there are none.
+/// Returns the quantile of sorted values (nearest rank); 0 if there are none.
 fn quantile(sorted: &[f64], q: f64) -> f64 {
     let rank = (q * sorted.len() as f64).ceil() as usize;
     sorted.get(rank.clamp(1, sorted.len().max(1)) - 1).copied().unwrap_or(0.0)

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-/// One sample of one axis as a device delivers it, valid or not.
+/// One sample of one axis as delivered by a device, valid or not.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RawSample {
     pub(super) t_s: f64,
@@ -25,7 +25,7 @@ pub(super) fn warm(rate_hz: f64, window: usize) -> usize {
     ((0.03 * rate_hz) as usize).max(5) + 2 * window
 }
 
-/// Ticks from the newest sample to the horizon: 50 ms, at most half a window.
+/// Returns the number of ticks from the newest sample to the horizon: 50 ms, at most half a window.
 pub(super) fn horizon(rate_hz: f64, window: usize) -> usize {
     ((0.05 * rate_hz).round() as usize).clamp(1, window / 2)
 }

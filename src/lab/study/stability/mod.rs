@@ -62,7 +62,7 @@ pub enum StabilityError {
     Settings(#[from] SettingsError),
 }
 
-/// One solver and degree in one case; the worst of its windows.
+/// One solver and degree in one case, with the worst result over its windows.
 #[derive(Clone, Debug, Serialize)]
 pub struct StabilityEntry {
     pub solver: LeastSquaresSolver,

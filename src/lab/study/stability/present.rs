@@ -181,8 +181,8 @@ impl Experiment for StabilityOptions {
 }
 
 impl Findings for StabilityReport {
-    /// Table of every solver's worst relative error over degrees 1 to 5 in every case, then the comparison with the
-    /// targets.
+    /// Returns the table of every solver's worst relative error over degrees 1 to 5 in every case, then the comparison
+    /// with the targets.
     fn text(&self) -> String {
         let mut out = format!("{:<10} {:<37}", "extreme", "");
         for solver in LeastSquaresSolver::ALL {

@@ -12,7 +12,7 @@ use super::{
 pub struct StabilityVerdict {
     /// Whether this project's solver and the mode *matched* reach all targets.
     pub reached: bool,
-    /// Fraction of its predictions that are finite.
+    /// Fraction of the solver's predictions that are finite.
     #[serde(rename = "ours_finite_share")]
     pub ours_finite_fraction: f64,
     /// Whether the whole identifier stayed finite in every case.

@@ -33,7 +33,7 @@ pub const GAINS: [f64; 8] = [0.25, 0.5, 0.75, 1.0, 1.5, 2.0, 2.5, 3.0];
 pub const DELAYS_S: [f64; 8] = [0.0, 0.01, 0.02, 0.05, 0.1, 0.15, 0.2, 0.3];
 /// Tissue stiffnesses of the map, N/m: from fat to a stiff wall.
 pub const STIFFNESSES_N_M: [f64; 8] = [12.0, 50.0, 100.0, 200.0, 400.0, 800.0, 2000.0, 6000.0];
-/// In the order of the map.
+/// Modes, in the order of the map.
 const MODES: [Mode; 7] =
     [Mode::Literal, Mode::Linear, Mode::Dfr, Mode::Anchored, Mode::Matched, Mode::Nima, Mode::Best];
 const POINTS: usize = MODES.len() * DELAYS_S.len() * STIFFNESSES_N_M.len() * GAINS.len();
@@ -57,7 +57,7 @@ pub struct StabilityMapOptions;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum StabilityMapVerdict {
-    /// Comes to rest.
+    /// The hand comes to rest.
     Stable,
     /// A motion of 0.1 to 0.5 mm remains.
     Marginal,
@@ -89,7 +89,7 @@ impl StabilityMapVerdict {
     "line {line} of the stability map does not consist of \"{expected}\" and eight letters S, M or U; create the map again with nima study stability-map"
 )]
 pub struct MapError {
-    /// From 1.
+    /// Line number, from 1.
     pub line: usize,
     /// Expected beginning of the line.
     pub expected: String,
@@ -257,7 +257,7 @@ impl Serialize for StabilityMap {
             mode: Mode,
             delay_s: f64,
             stiffness_n_m: f64,
-            /// In the order of the gains.
+            /// Verdicts, in the order of the gains.
             verdicts: [StabilityMapVerdict; GAINS.len()],
         }
         #[derive(Serialize)]
@@ -276,7 +276,7 @@ impl Serialize for StabilityMap {
     }
 }
 
-/// In the order of the verdicts: mode, delay (s), stiffness (N/m).
+/// Returns the points in the order of the verdicts: mode, delay (s), stiffness (N/m).
 fn points() -> impl Iterator<Item = (Mode, f64, f64)> {
     MODES.into_iter().flat_map(|mode| {
         DELAYS_S.into_iter().flat_map(move |delay_s| STIFFNESSES_N_M.into_iter().map(move |n_m| (mode, delay_s, n_m)))

@@ -35,7 +35,7 @@ impl SweepStudy {
         images
     }
 
-    /// Ratio of the error to that of delayed DFR along one parameter, a line for every source.
+    /// Returns the ratio of the error to that of delayed DFR along one parameter, a line for every source.
     fn along(&self, knob: Knob, mode: Mode, label: &'static str) -> Chart {
         let line = |figures: &SourceFigures| {
             let curve =

@@ -15,7 +15,7 @@ use crate::solvers::LeastSquaresSolver;
 pub enum PlanMethod {
     /// A mode, as run by the loop.
     Mode(Mode),
-    /// The plain model of a window, computed by this solver (in its precision).
+    /// The plain model of a window, computed by this solver (in its own precision).
     Solver(LeastSquaresSolver),
 }
 
@@ -195,7 +195,7 @@ impl TradeoffPlan {
         self.windows_s.iter().map(move |&s| ParameterChoice { window_ms: ms(s), ..base })
     }
 
-    /// Every mode with all of its degrees and windows.
+    /// Adds every mode with all of its degrees and windows.
     fn lay_out_grid(&self, source: &TradeoffSource, delay_ms: f64, layout: &mut PlanLayout) {
         for mode in Mode::ALL {
             let base = ParameterChoice { delay_ms, ..self.base_choice(source, mode) };

@@ -72,7 +72,7 @@ impl TradeoffSource {
         }
     }
 
-    /// Every `every`-th sample, as a slower device would have read them (without a filter).
+    /// Returns every `every`-th sample, as read by a slower device (without a filter).
     pub(super) fn slower(&self, every: usize) -> CsvRecording {
         let every = every.max(1);
         CsvRecording {

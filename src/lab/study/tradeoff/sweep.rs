@@ -26,7 +26,7 @@ pub enum SweepError {
     #[error("{name}: no point of the plan can be measured on it: {reason}; record longer, or at a higher rate")]
     Nothing {
         name: String,
-        /// Why its first point was left out.
+        /// Reason why its first point was left out.
         reason: String,
     },
     /// An invalid choice that the plan's checks did not find.

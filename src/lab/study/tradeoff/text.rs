@@ -26,7 +26,7 @@ impl Findings for SweepStudy {
     }
 }
 
-/// Writing to a String cannot fail, so its results are ignored.
+/// Writes the description of a source. Writing to a String cannot fail, so its results are ignored.
 fn source_text(figures: &SourceFigures, text: &mut String) {
     let SourceFigures { source, unit, rate_hz, samples, axes, judged_from_s, .. } = figures;
     writeln!(

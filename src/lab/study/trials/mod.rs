@@ -67,7 +67,7 @@ pub struct TrialReport {
     pub table: String,
     pub trials: usize,
     pub participants: usize,
-    /// In alphabetical order.
+    /// Conditions, in alphabetical order.
     pub conditions: Vec<String>,
     /// The condition with which the others are compared.
     pub reference: String,
@@ -85,7 +85,8 @@ pub struct OfMeasure {
     pub design: TrialDesign,
     /// Measurements under each condition.
     pub conditions: Vec<OfCondition>,
-    /// All conditions at once, for the participants who were under all of them; if there are three or more.
+    /// Test of all conditions at once, for the participants with data for every condition; if there are three or more
+    /// conditions.
     pub friedman: Option<Friedman>,
     /// Number of these participants.
     pub complete: usize,
@@ -114,7 +115,7 @@ pub struct OfCondition {
 #[derive(Clone, Debug, Serialize)]
 pub struct ConditionPair {
     pub first: String,
-    /// The reference, if it is one of the two.
+    /// The other condition: the reference, if it is one of the two.
     pub second: String,
     /// Participants under both, or in each group.
     pub participants: [usize; 2],
@@ -124,7 +125,7 @@ pub struct ConditionPair {
     pub p: f64,
     /// Whether `p` is exact.
     pub exact: bool,
-    /// The same after Holm, over the pairs of the measure.
+    /// The p-value after Holm's correction over the pairs of the measure.
     pub p_holm: f64,
     /// Within: matched-pairs rank-biserial correlation. Between: Cliff's delta. -1 to 1.
     pub rank_effect: f64,

@@ -37,7 +37,7 @@ pub struct TableTrial {
 #[derive(Clone, Debug, PartialEq)]
 pub struct TrialTable {
     pub measures: Vec<String>,
-    /// In the order of the file.
+    /// Trials, in the order of the file.
     pub trials: Vec<TableTrial>,
 }
 

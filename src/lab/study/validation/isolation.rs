@@ -138,11 +138,11 @@ pub struct NetworkErrors {
 /// Samples deliberately outside the range of the training data, and the fraction that is flagged.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Foreign {
-    /// How they differ from the training data.
+    /// Difference from the training data.
     pub what: &'static str,
     /// Number of samples.
     pub rows: usize,
-    /// Fraction of them that is flagged as uncertain.
+    /// Fraction of these samples that is flagged as uncertain.
     pub flagged: f64,
 }
 

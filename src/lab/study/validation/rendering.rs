@@ -35,7 +35,7 @@ pub struct ModeFigures {
 #[derive(Clone, Debug, Serialize)]
 pub struct ValidationRendering {
     pub clock: ClockProfile,
-    /// The paper's method, judged on the newest sample of the window that it was fitted to.
+    /// The paper's method, evaluated on the newest sample of the window used for the fit.
     pub in_window_nonlinear: RenderingFigures,
     /// The same with degree N = 1.
     pub in_window_linear: RenderingFigures,

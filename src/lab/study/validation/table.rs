@@ -22,7 +22,7 @@ pub struct ValidationRow {
     pub paper: Vec<f64>,
     /// This project's value or values.
     pub ours: Vec<f64>,
-    /// Why they differ.
+    /// Reason for the difference.
     pub why: &'static str,
 }
 

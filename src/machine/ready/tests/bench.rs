@@ -1,4 +1,4 @@
-//! A loop on synthetic measurements, a person who follows the instructions, and the ready check.
+//! A loop with synthetic measurements, a person who follows the instructions, and the ready check.
 
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 use nima_core::{

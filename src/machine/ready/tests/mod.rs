@@ -1,4 +1,4 @@
-//! The ready check, item by item: a rig in order passes, and each flaw fails its own check and no other.
+//! Tests of the ready check, item by item: a correct rig passes, and each flaw fails only its own check.
 
 mod bench;
 mod sides;

@@ -22,7 +22,7 @@ pub use measured::{DeliveringDevices, SideReadings};
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct SharedReadings {
     pub(super) tissue_n: Option<Vector3<f64>>,
-    /// The marker on this side's instrument, in the camera's frame.
+    /// Pose of the marker on this side's instrument, in the camera's frame.
     pub(super) c_from_m: Option<Isometry3<f64>>,
     /// Orientation of the endoscope in the camera's frame: `c_from_view`.
     pub(super) c_from_view: ViewOrientation,
@@ -169,7 +169,7 @@ impl ArmPair {
         Some(ArmAndMarker { mount, rcm, joints, base_from_s1, hand_eye, c_from_m })
     }
 
-    /// Records that a device has not reported its side yet, if there is no other obstacle.
+    /// Records that a device has not reported its side yet, unless there is another obstacle.
     pub(super) fn wait_for(&mut self, awaited: AwaitedDevice) {
         self.measured.obstacle.get_or_insert(EngageBlocker::Waiting(awaited));
     }

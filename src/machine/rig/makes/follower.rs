@@ -36,7 +36,7 @@ impl Serialize for FollowerSettings {
 impl FollowerSettings {
     /// Makes as named in a rig file, the default first.
     pub(super) const MAKES: &[&str] = &["kinova", "simulated", "external"];
-    /// The same on the screen.
+    /// Manufacturers, in the same order, for the screen.
     pub(crate) const MAKERS: &[&str] = &["Kinova", "simulated", "external"];
 
     /// Returns the settings if the arm is made by Kinova.
@@ -73,7 +73,7 @@ impl FollowerSettings {
         }
     }
 
-    /// Returns whether there is no hardware: such arms cannot be swapped.
+    /// Returns whether there is no hardware; such arms cannot be swapped.
     pub(in crate::rig) const fn is_simulated(&self) -> bool {
         matches!(self, Self::Simulated(_))
     }

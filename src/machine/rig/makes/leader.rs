@@ -128,8 +128,8 @@ impl LeaderSettings {
         }
     }
 
-    /// Returns these settings for the handle of a side: unless the file says otherwise, the handle must be made for
-    /// that hand.
+    /// Returns these settings for the handle of a side: unless the file specifies otherwise, the handle must be built
+    /// for that hand.
     #[must_use]
     pub(in crate::rig) fn for_hand_of(&self, side: Side) -> Self {
         let mut of_side = self.clone();
@@ -139,7 +139,7 @@ impl LeaderSettings {
         of_side
     }
 
-    /// Returns the hand for which the handle must be made, if the settings specify one.
+    /// Returns the hand for which the handle must be built, if the settings specify one.
     pub(in crate::rig) fn hand(&self) -> Option<Side> {
         self.force_dimension().and_then(|settings| settings.hand)
     }

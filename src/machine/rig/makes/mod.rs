@@ -43,7 +43,7 @@ fn not_emulated(make: &str, rig_is_emulated: bool) -> Result<(), DeviceError> {
     })
 }
 
-/// Position of a fault in a rig file, as bytes of its text, and the reason.
+/// Position of an error in a rig file, as a range of bytes in its text, and the reason.
 pub(crate) type Misread = (Range<usize>, String);
 
 /// Rewrites every part of a rig file as `arm = { kinova = { ... } }`, the form that serde reads as an enum. Each value

@@ -14,7 +14,7 @@ use crate::teleop::Timing;
 
 /// Lateness of a tick of [`ClockProfile::Late`], us: uniform in this range.
 const LATE_US: [f64; 2] = [500.0, 4000.0];
-/// Time from one pause of [`ClockProfile::Stall`] to the next, s: uniform in this range.
+/// Time from one pause of [`ClockProfile::Stall`] to the next, s; uniformly distributed in this range.
 const STALL_EVERY_S: [f64; 2] = [0.5, 1.5];
 /// Maximum fraction of late ticks, %, and maximum pause, ms, of a profile.
 const LATE_MAX_PERCENT: f64 = 50.0;
@@ -40,7 +40,7 @@ pub enum ClockProfile {
     Busy,
     /// This percentage of ticks is 0.5 to 4 ms late, independently of each other; all others wake at their deadline.
     Late { percent: f64 },
-    /// About once per second the loop pauses for this time, ms; all other ticks wake at their deadline.
+    /// About once per second, the loop pauses for this time, ms; all other ticks wake at their deadline.
     Stall { ms: u16 },
 }
 
@@ -224,7 +224,8 @@ impl TickTimes {
         }
     }
 
-    /// A pause begins anywhere in the period before the deadline at which it is detected.
+    /// Returns the position of a pause, which starts anywhere in the period before the deadline at which it is
+    /// detected.
     fn stalled_ns(&mut self, ms: u16) -> u64 {
         let deadline_s = self.deadline as f64 * self.period_s;
         if deadline_s < self.stall_s {

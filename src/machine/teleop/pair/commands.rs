@@ -89,7 +89,7 @@ impl<L: Link> Pair<L> {
         if self.state().is_latched() { Err(Refusal::State(self.state())) } else { Ok(()) }
     }
 
-    /// Idle only, because a person who handles the arm must be safe from its motion.
+    /// Refused unless idle, because a person who handles the arm must be safe from its motion.
     fn prompt(&mut self, prompt: Prompt) -> Result<(), Refusal> {
         if !prompt.is_finite() {
             return Err(Refusal::OutOfRange);

@@ -19,7 +19,7 @@ use crate::{
 
 /// Time of consecutive missed periods that is a fault while drives are on, s.
 const STALLED_AFTER_S: f64 = 0.050;
-/// A tip that moved more than this within a tick is not at rest, and the pair is not engaged, m.
+/// If a tip moved more than this within a tick, it is not at rest, and the pair is not engaged, m.
 const AT_REST_M: f64 = 0.2e-3;
 
 #[derive(Clone, Copy, Debug)]
@@ -77,8 +77,8 @@ impl<L: Link> Pair<L> {
         (outputs, tick)
     }
 
-    /// Raises a fault if the time does not advance by whole periods. If it stands still or goes back, the
-    /// identification is reset, because packets with a time in the future would never grow old.
+    /// Raises a fault if the time does not advance by whole periods. If it stops or goes back, the identification is
+    /// reset, because packets with a time in the future would never grow old.
     fn check_clock(&mut self, timing: &Timing) {
         let passed = self.ticks.pass(timing);
         if passed != TickSpacing::Evenly {

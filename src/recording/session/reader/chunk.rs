@@ -15,7 +15,7 @@ pub(super) struct ReaderChunk {
     pub(super) times_ns: (u64, u64),
 }
 
-/// An LZ4 byte expands to at most this many bytes; a chunk that claims more is rejected.
+/// One LZ4 byte expands to at most this many bytes; a chunk that claims more is rejected.
 const MAX_FOR_A_BYTE: u64 = 255;
 
 /// Reads the chunk at this position, or returns what is wrong with it.

@@ -107,8 +107,8 @@ impl ReaderContents {
         })
     }
 
-    /// Chunks whose times overlap are open at once: a chunk that is listed a thousand times would need a thousand times
-    /// its memory.
+    /// Returns whether chunks overlap. Chunks whose times overlap are open at once: a chunk that is listed a thousand
+    /// times would need a thousand times its memory.
     fn has_overlaps(&mut self) -> bool {
         self.messages.sort_by_key(|one| one.at);
         self.messages.windows(2).any(|pair| pair[0].at.saturating_add(pair[0].length) > pair[1].at)

@@ -41,7 +41,7 @@ impl SessionMessage {
         self.head.publish_time_ns
     }
 
-    /// Encoded as its channel says.
+    /// Data, encoded as specified by the channel.
     pub fn data(&self) -> &[u8] {
         &self.records[self.data.clone()]
     }
@@ -61,7 +61,7 @@ pub struct ReaderMessages<'a> {
     open: BinaryHeap<Reverse<InOrder>>,
 }
 
-/// Time, position of the chunk, position in it.
+/// Time, position of the chunk, and position in it.
 struct InOrder((u64, u64, usize), SessionMessage);
 
 impl PartialEq for InOrder {

@@ -1,7 +1,8 @@
 //! Reads a session, written by this or another program.
 //!
-//! Not with the indexed reader of the crate `mcap` (0.26), which checks no checksum of a chunk and believes the length that it claims: of 17 112 bits of
-//! a chunk, flipped one by one, 15 704 went unnoticed, 1355 made it panic, and 53 ended the reading.
+//! Does not use the indexed reader of the crate `mcap` (0.26), which checks no checksum of a chunk and trusts the
+//! length that it claims: of 17 112 bits of a chunk, flipped one by one, 15 704 went unnoticed, 1355 made it panic, and
+//! 53 ended the reading.
 
 mod chunk;
 mod contents;

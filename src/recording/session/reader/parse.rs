@@ -162,7 +162,7 @@ pub(super) fn chunk_index(content: &[u8]) -> Option<ChunkIndex> {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Attachment {
     pub name: String,
-    /// Media type, such as `text/plain`.
+    /// `None` if the file does not state it.
     pub media_type: String,
     /// Time of its recording, ns.
     pub log_time_ns: u64,

@@ -177,7 +177,7 @@ fn a_chunk_that_is_named_twice_is_read_once() {
     assert_eq!(ours(&reader).len(), 30);
 }
 
-/// Calls everything that a reader offers.
+/// Calls every function of a reader.
 fn ask(bytes: Vec<u8>) -> usize {
     let size = bytes.len() as u64;
     let Ok(reader) = SessionReader::of_bytes("mutated", bytes) else { return 0 };

@@ -1,4 +1,4 @@
-//! What is written can be read back, by our reader and by the crate `mcap`; disks that refuse writes.
+//! Tests: written data can be read back by our reader and by the crate `mcap`; disks that refuse writes.
 
 use std::fs;
 

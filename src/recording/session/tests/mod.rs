@@ -30,7 +30,7 @@ fn values() -> BTreeMap<String, String> {
     [("rig", "emulated"), ("scene", "foam")].map(|(key, value)| (key.to_owned(), value.to_owned())).into()
 }
 
-/// Returns everything that our reader returns, checked against its own statistics.
+/// Returns everything that our reader finds, checked against its own statistics.
 fn ours(reader: &SessionReader) -> peer::PeerMessage {
     let report: Result<peer::PeerMessage, ReadError> = reader
         .messages(&[], 0..u64::MAX)

@@ -28,7 +28,7 @@ struct Moments {
     early_end: usize,
 }
 
-/// Returns the writes of a session with everything that changes the file: chunks, channels, attachments, growth.
+/// Returns the writes of a session with every kind of change to the file: chunks, channels, attachments, growth.
 fn script() -> Vec<(u64, Vec<u8>)> {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("session.mcap");

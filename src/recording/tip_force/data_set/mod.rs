@@ -22,7 +22,7 @@ use nima_files::{PASSAGE, quoted, shortened};
 use self::hashed::{FNV_START, HashingReader};
 use crate::tip_force::TipForceError;
 
-/// Which columns to use; `None` selects the default ones.
+/// Columns to use; `None` selects the default ones.
 #[derive(Clone, Debug, Default)]
 pub struct Selection {
     /// Names of the inputs, columns or [`DerivedInput`]; by default the [`DEFAULT_INPUTS`] that the first file has.

@@ -71,7 +71,7 @@ struct Laws {
     instrument: Law,
     jaw_ring: Law,
     ring_peg: Law,
-    /// For each contact of a ring.
+    /// Contact law for each contact of a ring.
     ring_board: Law,
     ring_ring: Law,
 }

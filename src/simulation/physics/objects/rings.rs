@@ -178,7 +178,7 @@ fn capsule_on_ring(
     true
 }
 
-/// Contact of one part of an instrument with a ring: its pressure, N towards the ring, if it touches.
+/// Returns the contact of one part of an instrument with a ring: its pressure, N towards the ring, if it touches.
 fn tool_on_ring(
     ring: &mut Ring,
     tool: &mut PhysicsTool,

@@ -20,7 +20,7 @@ const UPRIGHT: f64 = 0.2;
 pub enum RingActivity {
     /// On a peg, counted from 0, and not held by jaws.
     OnPeg(usize),
-    /// Both fingers of an instrument, or of both, press it from opposite sides.
+    /// Both fingers of one instrument, or of both, press the ring from opposite sides.
     Held {
         /// The instruments that hold it.
         by: [bool; SIDES],
@@ -29,7 +29,7 @@ pub enum RingActivity {
     Lying,
     /// Touched by nothing, or by an instrument only.
     Falling,
-    /// Lost out of view: it stays where it was.
+    /// Lost out of view: the ring stays where it was.
     OutOfView,
 }
 
@@ -41,7 +41,7 @@ pub struct RingState {
     /// Orientation; z is the axis through the hole.
     pub world_from_ring: UnitQuaternion<f64>,
     pub doing: RingActivity,
-    /// The peg through it, whether it is held or not.
+    /// The peg through the ring, whether the ring is held or not.
     pub around: Option<usize>,
     /// Whether board, a peg or another ring touches it.
     pub supported: bool,

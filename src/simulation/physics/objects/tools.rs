@@ -64,7 +64,7 @@ impl Objects {
     }
 }
 
-/// Contact of two spheres at these positions: position and geometry; the normal points to the first.
+/// Returns the contact of two spheres at these positions: position and geometry; the normal points to the first.
 fn between(
     ours_m: &Vector3<f64>,
     our_radius_m: f64,

@@ -72,7 +72,7 @@ pub struct RingShape {
 /// Start position of a ring: `{ peg = 3 }` or `{ position_m = [x, y, z] }`, flat in both cases.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum RingStart {
-    /// At the foot of this peg, counted from 0, or on top of earlier rings there.
+    /// At the foot of this peg (counted from 0), or on top of earlier rings there.
     #[serde(rename = "peg")]
     Peg(usize),
     /// Middle, m.
@@ -106,7 +106,7 @@ pub struct ContactSettings {
     pub stiffness_n_m: f64,
     /// Damping of the same, N s/m.
     pub damping_n_s_m: f64,
-    /// Rings on everything, N/m. Their damping is chosen so that they do not bounce.
+    /// Contact stiffness of rings with all objects, N/m. The damping is chosen so that they do not bounce.
     pub ring_stiffness_n_m: f64,
 }
 

@@ -1,4 +1,4 @@
-//! Whatever the input, everything stays finite, and every ring is within range or lost.
+//! Tests: whatever the input, all values stay finite, and every ring is within range or lost.
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use proptest::prelude::*;

@@ -44,7 +44,7 @@ pub(crate) struct Scene {
     pub hands: [Option<Instrument>; SIDES],
     pub loads: [InstrumentLoads; SIDES],
     pub events: Vec<TaskEvent>,
-    /// Realistic hands: tremor, an error of aim of this size, m, and jaws in line with the shaft.
+    /// Realistic hands: tremor, an aiming error of this size, m, and jaws in line with the shaft.
     pub unsure_m: f64,
     ticks: u32,
     watch: RingWatch,

@@ -1,4 +1,4 @@
-//! The same calls give the same bits.
+//! Tests: the same calls give bit-identical results.
 
 use super::{LEFT, RIGHT, Scene, at, instrument};
 use crate::physics::{ObjectSettings, Objects};

@@ -136,7 +136,7 @@ fn the_curve_goes_through_its_points_and_is_as_long_as_an_arc_is() {
     assert!(max_m < 1e-4, "{max_m} m from the arc");
 }
 
-/// A mass that hangs on nothing but the loop, thrown inside it, bounces from side to side for ten minutes.
+/// A mass attached only to the loop, thrown inside it, bounces from side to side for ten minutes.
 #[test]
 fn energy_of_a_loop_that_bounces_around_the_wire_does_not_grow() {
     const MASS_KG: f64 = 0.3;
@@ -170,7 +170,7 @@ fn energy_of_a_loop_that_bounces_around_the_wire_does_not_grow() {
     }
 }
 
-/// Ten seconds in which two loops move along the wire, and outside it.
+/// Returns a digest of ten seconds in which two loops move along the wire, and outside it.
 fn digest() -> u64 {
     let setting = WireSetting::default();
     let mut wire = Wire::new(&setting, PERIOD_S);

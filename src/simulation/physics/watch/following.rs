@@ -12,7 +12,7 @@ const LET_GO_AFTER_S: f64 = 0.05;
 /// A ring has left a peg, or is on one, after this time, s.
 const OFF_PEG_AFTER_S: f64 = 0.05;
 const ON_PEG_AFTER_S: f64 = 0.1;
-/// A ring that is not held was knocked off its peg after this time, s.
+/// A ring that is not held counts as knocked off its peg after this time, s.
 const KNOCKED_AFTER_S: f64 = 0.1;
 /// A released ring has landed after this time at rest, or after this time in total, s; until then it may still roll out
 /// of view.
@@ -31,7 +31,7 @@ enum FollowingStage {
         side: Side,
         peg: Option<usize>,
     },
-    /// Released, with an undecided outcome. `landed` if something has supported it since.
+    /// Released, with an undecided outcome. `landed` if it has been supported since.
     LetGo {
         side: Side,
         peg: Option<usize>,
@@ -44,10 +44,10 @@ enum FollowingStage {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RingFollower {
     stage: FollowingStage,
-    /// For how long each side has held it, and has not, s.
+    /// Time for which each side has held the ring, and has not held it, s.
     held_s: [f64; SIDES],
     loose_s: [f64; SIDES],
-    /// For how long it has been around the current peg, off the peg of its stage, and at rest, s.
+    /// Time for which the ring has been around the current peg, off the peg of its stage, and at rest, s.
     on_s: f64,
     on: Option<usize>,
     off_s: f64,

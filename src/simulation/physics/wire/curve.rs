@@ -59,7 +59,7 @@ pub(super) struct CurveReach {
 }
 
 impl SmoothCurve {
-    /// Through these points: at least two, each apart from the next.
+    /// Creates a curve through these points: at least two, all different from their neighbours.
     pub(super) fn through(given_m: &[[f64; 3]]) -> Self {
         let given: Vec<Vector3<f64>> = given_m.iter().map(|position_m| Vector3::from(*position_m)).collect();
         let mut curve =

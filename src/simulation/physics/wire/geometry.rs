@@ -31,7 +31,7 @@ const APART_M: f64 = 1e-3;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct WireSetting {
-    /// Points through which the middle of the wire goes, m, from its free end on.
+    /// Points on the centre line of the wire, m, starting at its free end.
     pub points_m: Vec<[f64; 3]>,
     /// The goal: the point that the loop has to reach, counted from 0.
     pub goal_point: usize,
@@ -104,7 +104,7 @@ impl Default for LoopGeometry {
 }
 
 impl Default for WireContact {
-    /// As hard as the contacts of [`Contact`](crate::physics::ContactSettings); steel on steel, a little oily.
+    /// As hard as the contacts of [`Contact`](crate::physics::ContactSettings): steel on steel, slightly oily.
     fn default() -> Self {
         Self { stiffness_n_m: 1000.0, damping_n_s_m: 3.0, friction: 0.15 }
     }

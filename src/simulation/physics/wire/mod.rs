@@ -1,4 +1,4 @@
-//! A loop that is led along a bent wire: contact points and forces.
+//! A loop that is guided along a bent wire: contact points and forces.
 //!
 //! Wire and board are fixed and each loop has the pose of its instrument, so a step evaluates the contact law at its
 //! end, without integration. A penalty force alone would let a loop be pulled through the wire. Therefore each loop
@@ -27,12 +27,12 @@ const PLACES: usize = 3;
 const MOVED_M: f64 = 2e-3;
 /// Range along the wire in which the crossing of a loop is searched from one step to the next, m.
 const SEARCH_M: f64 = 0.015;
-/// A wire that is this far outside its loop has been torn off, m.
+/// If the wire is this far outside its loop, it has been torn off, m.
 const TORN_OFF_M: f64 = 0.012;
 /// Maximum distance, m along the wire, between the closest point of a wire outside its loop and its crossing of the
 /// loop's plane.
 const AROUND_M: f64 = 0.006;
-/// Beyond this distance between two steps an instrument was placed again, m.
+/// Beyond this distance between two steps, an instrument counts as placed again, m.
 const JUMP_M: f64 = 0.03;
 
 /// A wire, the board under it, and a loop at the tip of each of two instruments.
@@ -268,8 +268,8 @@ impl TipLoop {
         unit_or(&(offset_m - self.circle.axis * self.circle.axis.dot(&offset_m)), &self.circle.across[0])
     }
 
-    /// Contact of a point of the wire with the loop's tube from inside: position along the wire, position in space, and
-    /// geometry.
+    /// Returns the contact of a point of the wire with the loop's tube from inside: position along the wire, position
+    /// in space, and geometry.
     fn inside(&self, place: &NearestPlace, both_m: f64) -> (f64, Vector3<f64>, ContactTouch) {
         let (outwards, _) = self.outwards(&place.wire_m);
         let (normal, distance_m) = unit_or(&(place.loop_m - place.wire_m), &outwards);

@@ -258,7 +258,7 @@ struct RunStart {
 }
 
 impl RunStart {
-    /// Reports objects to the recording, and to the score if there is a task.
+    /// Passes the scene's objects to the recording, and to the score if there is a task.
     fn watch_objects(
         &mut self,
         plan: &SimulationPlan,

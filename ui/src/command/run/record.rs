@@ -41,7 +41,7 @@ pub(super) struct RunRecording {
 /// Remaining time for the second warning of a full disk.
 const WARN_AGAIN: Duration = Duration::from_hours(1);
 
-/// A disk that does not respond for this long is reported: after 2 s entries are lost.
+/// A disk that does not respond for this long is reported, because entries are lost after 2 s.
 const SLOW: Duration = Duration::from_secs(1);
 
 /// Results of a recording.
@@ -51,7 +51,7 @@ pub(super) struct RecordingFigures {
     ticks: u64,
     lost: u64,
     bytes: u64,
-    /// Recorded endoscope images, followed by the number of missing ones.
+    /// Number of recorded endoscope images, followed by the number of missing ones.
     #[serde(skip_serializing_if = "is_none")]
     #[serde(rename = "pictures")]
     images: u64,

@@ -1,4 +1,4 @@
-//! Performance of a tip-force network in use: the only sign that it no longer fits the work.
+//! Performance of a tip-force network in use: the only sign that it no longer suits the work.
 
 use nima_core::tip_force::Unsure;
 use nima_machine::messages::{ForceSource, LoopState, Tick};

@@ -42,7 +42,7 @@ pub struct ActiveCalibrations {
     /// The arm that the wizards calibrate.
     side: Side,
     report: Option<String>,
-    /// Those of a recorded session, one line each.
+    /// Calibrations of a recorded session, one line each.
     past: Vec<String>,
 }
 
@@ -123,7 +123,7 @@ impl ActiveCalibrations {
         self.sides.iter().find_map(SideCalibrations::without_gravity)
     }
 
-    /// Missing calibrations of each side whose sensor is known: sensor, tool and names.
+    /// Returns the missing calibrations of each side whose sensor is known: sensor, tool and names.
     pub fn lacking(&self) -> Vec<(&WristId, Vec<&'static str>)> {
         self.sides
             .iter()
@@ -187,7 +187,7 @@ impl ActiveCalibrations {
         self.sides[side.index()].bound != SideBinding::Nothing
     }
 
-    /// Sensor and tool of a side, once known.
+    /// Returns the sensor and tool of a side, once known.
     pub const fn wrist(&self, side: Side) -> Option<&WristId> {
         self.sides[side.index()].wrist()
     }
@@ -207,7 +207,7 @@ impl ActiveCalibrations {
         self.store.as_ref()
     }
 
-    /// Sensor and tool for which a new calibration would be saved.
+    /// Returns the sensor and tool for which a new calibration would be saved.
     pub fn binding(&self) -> Binding {
         let of_side = &self.sides[self.side.index()];
         let (sensor, tool) =
@@ -248,7 +248,7 @@ impl ActiveCalibrations {
         Ok((rig, path, words))
     }
 
-    /// Changes the rig file of this name, or a copy in `folder` if the rig is built in.
+    /// Returns the changes the rig file of this name, or a copy in `folder` if the rig is built in.
     ///
     /// # Errors Returns one line for the screen.
     pub fn change_rig(

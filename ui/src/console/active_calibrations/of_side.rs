@@ -33,7 +33,7 @@ use crate::console::{
 /// The sensor and tool whose calibrations are used on a side.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) enum SideBinding {
-    /// None: the force is measured at the tip, or there is no such arm.
+    /// No calibration is used: the force is measured at the tip, or there is no such arm.
     #[default]
     Nothing,
     /// The sensor has not reported its identity yet.
@@ -48,12 +48,12 @@ pub(super) enum SideBinding {
 #[derive(Debug, Default)]
 pub(super) struct SideCalibrations {
     pub(super) bound: SideBinding,
-    /// The change of the sensor's connection up to which this is valid.
+    /// State of the sensor's connection for which these are valid.
     pub(super) since: Option<WristChange>,
     /// Last known sensor and tool.
     pub(super) last: Option<WristId>,
     pub(super) correspondence: Option<LoadedRecord<CorrespondenceRecord>>,
-    /// Calibrations whose files cannot be used, and why.
+    /// Calibrations whose files cannot be used, with the reason.
     unusable: Vec<(WizardKind, String)>,
     /// Other sensors with a calibration for the same tool.
     others: Vec<String>,
@@ -91,7 +91,7 @@ impl SideCalibrations {
         }
     }
 
-    /// Sensor and tool, if they are known and have no gravity calibration.
+    /// Returns the sensor and tool, if they are known and have no gravity calibration.
     pub(super) fn without_gravity(&self) -> Option<&WristId> {
         self.wrist().filter(|_| self.gravity.is_none())
     }
@@ -238,7 +238,7 @@ impl SideCalibrations {
         Ok(path)
     }
 
-    /// One line for each calibration that this side needs; with its name if there are two sides.
+    /// Returns one line for each calibration that this side requires, with the side's name if there are two sides.
     pub(super) fn lines(&self, side: Option<&str>) -> Vec<String> {
         let of_side = |words: String| side.map_or_else(|| words.clone(), |side| format!("{side}: {words}"));
         let wrist = match &self.bound {
@@ -333,7 +333,7 @@ fn day_of(date: &str) -> &str {
     date.split('T').next().unwrap_or_default()
 }
 
-/// Warnings about a record; empty if there are none.
+/// Returns the warnings about a record; empty if there are none.
 fn remarks(age: CalibrationAge, override_by: Option<&str>) -> String {
     let age = match age {
         CalibrationAge::Fresh => String::new(),

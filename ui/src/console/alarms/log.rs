@@ -11,7 +11,7 @@ use super::{Alarm, AlarmKind, AlarmPriority};
 
 /// Number of alarms stored.
 pub const KEPT: usize = 50;
-/// A cause that returns within this time is the same alarm, s on the window's clock.
+/// If a cause returns within this time, it is the same alarm, s on the window's clock.
 const SAME_S: f64 = 5.0;
 
 /// A time on three clocks.
@@ -35,9 +35,9 @@ impl AlarmMoment {
 #[derive(Clone, Debug, PartialEq)]
 pub struct AlarmEntry {
     pub alarm: Alarm,
-    /// Time at which its cause appeared.
+    /// Time at which the cause appeared.
     pub began: AlarmMoment,
-    /// Time at which its cause ended; `None` while it is active.
+    /// Time at which the cause ended; `None` while it is active.
     pub ended: Option<AlarmMoment>,
     pub acknowledged: bool,
 }
@@ -79,7 +79,7 @@ impl AlarmLog {
         }
     }
 
-    /// Active alarms: the most urgent first; of the same urgency, the earliest first.
+    /// Returns the active alarms, most urgent first; of the same urgency, earliest first.
     pub fn live(&self) -> Vec<&AlarmEntry> {
         let mut live: Vec<&AlarmEntry> = self.entries.iter().filter(|entry| entry.ended.is_none()).collect();
         live.sort_by_key(|entry| entry.alarm.priority);

@@ -63,7 +63,7 @@ impl AlarmPriority {
     }
 }
 
-/// Kind of an alarm: an alarm whose figures change keeps its kind.
+/// Kind of an alarm: if the values in an alarm change, its kind stays the same.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AlarmKind {
     /// A stop did not reach the loop.
@@ -82,7 +82,7 @@ pub enum AlarmKind {
     Scheduling,
     /// No ready check has passed today.
     Unchecked,
-    /// A user at another machine requests something.
+    /// A user on another machine requests something.
     Question,
     /// The session is not recorded, or soon will not be.
     Unrecorded,
@@ -123,7 +123,7 @@ pub struct MissingDevice {
     pub name: String,
     /// Whether it delivered before.
     pub was_there: bool,
-    /// Reason why it does not deliver.
+    /// Reason why the device delivers no data.
     pub cause: String,
     /// Remedy.
     pub cure: String,

@@ -15,7 +15,7 @@ use tempfile::TempDir;
 
 use super::AlarmPriority;
 
-/// Programs that play the file that their last argument names, the most common first.
+/// Programs that play the file named by their last argument, the most common first.
 const PLAYERS: &[&str] = if cfg!(windows) {
     &["powershell.exe"]
 } else if cfg!(target_os = "macos") {
@@ -23,7 +23,7 @@ const PLAYERS: &[&str] = if cfg!(windows) {
 } else {
     &["pw-play", "paplay", "aplay"]
 };
-/// What stands before the file.
+/// Arguments before the file.
 const ARGUMENTS: &[&str] = if cfg!(windows) {
     &["-NoProfile", "-Command", "& { (New-Object Media.SoundPlayer $args[0]).PlaySync() }"]
 } else {
@@ -138,7 +138,7 @@ const fn file_of(priority: AlarmPriority) -> &'static str {
     }
 }
 
-/// Start of each pulse of a burst, and its duration, s.
+/// Returns the start of each pulse of a burst, and its duration, s.
 fn pulses(priority: AlarmPriority) -> (Vec<f64>, f64) {
     match priority {
         AlarmPriority::High => {
@@ -149,7 +149,7 @@ fn pulses(priority: AlarmPriority) -> (Vec<f64>, f64) {
     }
 }
 
-/// Samples of a burst, -1 to 1: a tone with four harmonics, which is easier to locate than a pure tone.
+/// Returns the samples of a burst, -1 to 1: a tone with four harmonics, which is easier to locate than a pure tone.
 fn burst(priority: AlarmPriority) -> Vec<f64> {
     let tone_hz = if priority == AlarmPriority::High { 660.0 } else { 440.0 };
     let (starts_s, length_s) = pulses(priority);

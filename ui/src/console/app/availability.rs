@@ -129,7 +129,7 @@ impl ConsoleApp {
         Availability::unless(why)
     }
 
-    /// As on the Calibration panel, which is in the Technician view and next to the wizards.
+    /// Returns the availability as on the Calibration panel, which is in the Technician view and next to the wizards.
     fn may_calibrate(&self, action: Action) -> Availability {
         let page = self.page();
         let is_beside = matches!(page, ActivePage::Check | ActivePage::Listing | ActivePage::Wizard);
@@ -174,7 +174,7 @@ impl ConsoleApp {
         Availability::unless(why).only_if(is_here)
     }
 
-    /// As the part of the window reads its keys.
+    /// Returns the availability as in the part of the window that reads its keys.
     fn may_in_part(&self, action: Action) -> Availability {
         if matches!(action, Action::HideForces | Action::Lens) {
             let eyes = self.panels_in_view().map(|panels| &panels.eyes);

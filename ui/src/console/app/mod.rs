@@ -93,7 +93,7 @@ pub struct ConsoleApp {
     reopen: Option<Reopen>,
     /// Source of a simulated rig's objects.
     objects: Option<ObjectFeed>,
-    /// The program that starts emulators: this one, except in a test.
+    /// Program that starts emulators: this program, except in a test.
     program: Option<PathBuf>,
     /// Wakes the window from another thread.
     ctx: egui::Context,
@@ -117,7 +117,7 @@ pub struct ConsoleApp {
     active: ActiveCalibrations,
     diary: RunLog,
     sessions: ConsoleSessions,
-    /// The scene that was shown before a wizard changed it.
+    /// Scene that was shown before a wizard changed it.
     watched: Option<Scene>,
     /// The last screen that the emulated rig's technician has read.
     read: Option<Screen>,

@@ -1,6 +1,7 @@
 //! The console while a page of an extra is open: its rig runs idle between the runs, and each run has its own loop.
 //!
-//! The console's own recorder pauses meanwhile, because a session contains the mode. The page saves its own data.
+//! The console's own recorder is paused during this time, because a session contains the mode. The page saves its own
+//! data.
 
 use egui::Ui;
 use nima_machine::{config::RigConfig, messages::LoopState};

@@ -89,7 +89,7 @@ impl ConsoleApp {
         }
     }
 
-    /// The same views as for the machine, in a frame with its own colour.
+    /// Draws the same views as for the machine, in a frame with its own colour.
     pub(super) fn past_layout(&mut self, ui: &mut Ui) {
         let Some(past) = &mut self.past else { return };
         let room = ui.available_rect_before_wrap();

@@ -38,7 +38,7 @@ pub(super) struct StartingRig {
     undo: Option<Undo>,
 }
 
-/// A rig file before its change.
+/// A rig file before a change.
 #[derive(Debug)]
 pub(super) struct Undo {
     pub(super) path: PathBuf,
@@ -79,7 +79,7 @@ impl ConsoleApp {
         self
     }
 
-    /// From now on these emulators serve the loop, and their technician follows the screen.
+    /// From now on, these emulators serve the loop, and their technician follows the screen.
     fn serve(&mut self, emulators: Option<Emulators>) {
         self.reader = emulators.as_ref().map(Emulators::technician);
         self.read = None;
@@ -91,7 +91,7 @@ impl ConsoleApp {
         &self.running
     }
 
-    /// Over a view, lets a newcomer choose the running rig, the demonstration, or their own rig.
+    /// Shows a window over a view in which a new user can choose the running rig, the demonstration, or their own rig.
     pub(super) fn welcome(&mut self, ctx: &egui::Context, room: egui::Rect) {
         let covers = self.start.is_open || self.list.is_open || self.past.is_some() || self.is_held();
         if covers || self.wizards.open.is_some() || self.checking.is_open() {

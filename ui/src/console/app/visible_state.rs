@@ -43,7 +43,7 @@ impl ConsoleApp {
         self.panels.scene.extras
     }
 
-    /// Interval of the traces, s, counted back from now.
+    /// Returns the interval of the traces, s, counted back from now.
     pub const fn traces_s(&self) -> (f64, f64) {
         self.panels.forces.view().view_s
     }
@@ -53,7 +53,7 @@ impl ConsoleApp {
         self.panels.forces.show_last(seconds);
     }
 
-    /// Marks set by the operator, s on the loop's clock.
+    /// Returns the marks set by the operator, s on the loop's clock.
     pub fn marks_s(&self) -> impl Iterator<Item = f64> {
         self.live.marks_s.iter().copied()
     }

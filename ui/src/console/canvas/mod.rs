@@ -17,10 +17,10 @@ pub use surface::{Surface, renderer_of};
 
 /// A shape may extend beyond its bounds by the width of its antialiased edge, points.
 const EDGE: f32 = 2.0;
-/// Maximum number of rectangles; more would cost more than they save.
+/// Maximum number of rectangles; more would take more time than they save.
 const RECTANGLES_MAX: usize = 24;
 
-/// Every this many frames the whole window is drawn, so that the display never depends on comparisons alone.
+/// The whole window is drawn once in this many frames, so that the display never depends on comparisons alone.
 const WHOLE_EVERY: u64 = 150;
 
 /// Compares each frame with the previous one.
@@ -120,7 +120,8 @@ fn bounds(shape: &ClippedShape) -> Rect {
     (shape.transform_after_tessellation * own).expand(EDGE).intersect(shape.clip_rect)
 }
 
-/// Bounds of the shapes that are in only one of two frames; `None` if the common ones are not in the same order.
+/// Returns the bounds of the shapes that are in only one of two frames; `None` if the common shapes are not in the same
+/// order.
 fn differences(before: (&[ClippedShape], &[u64]), now: (&[ClippedShape], &[u64])) -> Option<Vec<Rect>> {
     let mut counts: HashMap<u64, [u32; 2]> = HashMap::with_capacity(now.1.len());
     for (which, prints) in [before.1, now.1].into_iter().enumerate() {
@@ -166,7 +167,7 @@ fn apart(mut rects: Vec<Rect>, shapes: &[ClippedShape]) -> Vec<Rect> {
     rects
 }
 
-/// One pass of merging each rectangle with those that it overlaps.
+/// Merges each rectangle with those that it overlaps, in one pass.
 fn joined(rects: Vec<Rect>) -> Vec<Rect> {
     let mut apart: Vec<Rect> = Vec::new();
     for mut rect in rects {

@@ -29,7 +29,7 @@ pub struct Surface {
     inner: Mutex<SurfaceInner>,
     /// Number of the frame that is in the window.
     drawn: AtomicU64,
-    /// Fraction of the window that was redrawn in it, in millionths.
+    /// Fraction of the window that was redrawn in the last frame, in millionths.
     fraction: AtomicU64,
     refused: AtomicBool,
 }
@@ -59,7 +59,7 @@ pub fn renderer_of(gl: &glow::Context) -> String {
 }
 
 impl Surface {
-    /// A surface if a software renderer is used; with a GPU it would gain nothing.
+    /// Returns a surface if a software renderer is used; with a GPU it would have no benefit.
     pub fn where_it_pays(gl: &glow::Context) -> Option<Arc<Self>> {
         let name = renderer_of(gl).to_lowercase();
         SOFTWARE.iter().any(|word| name.contains(word)).then(Arc::default)

@@ -18,7 +18,7 @@ pub use self::{
 /// Sizes in the menu, percent.
 pub const SIZES_PERCENT: [u16; 5] = [100, 125, 150, 175, 200];
 
-/// What a command does.
+/// Action of a command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Action {
     Stop,
@@ -178,7 +178,7 @@ impl CommandPlace {
 pub struct CommandEntry {
     pub action: Action,
     pub title: String,
-    /// English name, by which it is found in every language, because the docs use it.
+    /// English name, which finds the command in every language, because the documentation uses it.
     pub english: String,
     pub does: &'static str,
     pub keys: &'static [Stroke],
@@ -215,7 +215,7 @@ pub enum Availability {
 }
 
 impl Availability {
-    /// Not possible for this reason, if there is one.
+    /// Returns unavailable with this reason, if there is one.
     pub(in crate::console) const fn unless(reason: Option<&'static str>) -> Self {
         match reason {
             Some(reason) => Self::Cannot(reason),

@@ -23,7 +23,7 @@ pub(super) fn wrong_ui(painter: &Painter, over: Rect, tips: &[egui::Pos2], [repo
     plate(painter, &places, tips, &[(report, WRONG_SIZE, colour), (cure, CURE_SIZE, theme::DARK.text)]);
 }
 
-/// Text on a dark ground, readable over any tissue, at the first of these places that covers no tip.
+/// Draws text on a dark ground, readable over any tissue, at the first of these places that covers no tip.
 pub(super) fn plate(
     painter: &Painter,
     places: &[(egui::Pos2, Align2)],

@@ -50,7 +50,7 @@ const OFF: f64 = 10.0 / 1280.0;
 const DOUBTFUL: f32 = 0.35;
 /// Frame interval while a text shows a clock and no image wakes the window.
 const CLOCK: Duration = Duration::from_millis(100);
-/// From this rate on, images wake the window often enough.
+/// From this rate on, images wake the window often enough for other motion.
 const WAKES_HZ: f64 = 24.0;
 /// Tint of an image that is not current.
 const PAST: Color32 = Color32::from_gray(110);
@@ -60,7 +60,7 @@ type NewestFrame = FeedSnapshot<Arc<DecodedImage>>;
 /// State of the image in a frame.
 struct ImageState {
     look: Option<NewestFrame>,
-    /// Reason for a missing image and remedy, if its state does not give them.
+    /// Reason for a missing image, and remedy, unless its state gives them.
     nothing: Option<[String; 2]>,
     /// Tip poses at the time of a recorded image.
     poses: Option<[Option<TipPose>; SIDES]>,
@@ -164,12 +164,12 @@ impl EndoscopeView {
         self.view.is_some()
     }
 
-    /// Images wake the window often enough for everything else that moves.
+    /// Returns whether images wake the window often enough for everything else that moves.
     pub(in crate::console) fn wakes(&self) -> bool {
         self.rate_hz >= WAKES_HZ
     }
 
-    /// The newest image and its number, for other uses.
+    /// Returns the newest image and its number, for other uses.
     pub(in crate::console) fn newest(&self) -> Option<(u64, Arc<DecodedImage>)> {
         self.feed.as_ref()?.look(Instant::now()).image
     }

@@ -18,7 +18,7 @@ pub(super) enum Mount {
 }
 
 impl Mount {
-    /// From the rig file; `None` if it has no camera pose.
+    /// Creates the mount from the rig file; `None` if the file has no camera pose.
     pub(super) fn of(settings: &EndoscopeCamera) -> Option<Self> {
         if let Some((position_m, turn_deg)) = settings.n_from_camera_m.zip(settings.n_from_camera_deg) {
             let n_from_camera = Isometry3::from_parts(position_m.into(), from_roll_pitch_yaw_deg(&turn_deg));

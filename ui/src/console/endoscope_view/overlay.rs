@@ -101,7 +101,7 @@ impl OverlayImage<'_> {
         self.label(at - out * 6.0, align, &text::endoscope_view::tip(side_name(side)), 15.0, theme::DARK.text);
     }
 
-    /// Alignment of a text on this side of its position.
+    /// Returns the alignment of a text on this side of its position.
     fn aligned(towards: f32) -> Align {
         if towards > 0.4 {
             Align::Min

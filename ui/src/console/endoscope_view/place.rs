@@ -78,7 +78,7 @@ impl ImagePlacement {
     }
 }
 
-/// Remaining part of an image. Edges that would leave nothing along a side are not cropped there.
+/// Returns the remaining part of an image. Edges that would leave nothing along a side are not cropped there.
 fn part(size_px: [usize; 2], crop_px: [usize; 4], crop: [f32; 4]) -> Rect {
     let along = |low: usize, side: usize| {
         let edge = |edge: usize| {

@@ -14,12 +14,12 @@ use nima_machine::{
 
 use super::mount::STEADY_S;
 
-/// A marker that was last seen before this time may be anywhere, s: some frames of a tracker.
+/// If a marker was last seen before this time, it may be anywhere, s: some frames of a tracker.
 const UNSEEN_S: f64 = 0.2;
-/// Time between two stored poses, s, and how long they are stored, s.
+/// Time between two stored poses, s, and time for which they are stored, s.
 const STEP_S: f64 = 0.005;
 const KEPT_S: f64 = 1.5;
-/// The loop's clock may run this much slower than the window's.
+/// The loop's clock may be slower than the window's clock by this factor.
 const DRIFT: f64 = 1e-3;
 
 /// A tip and the force on it, if known, in the workspace.

@@ -213,7 +213,7 @@ impl Projection {
         ProjectedMoment { asked_s: t_s, came_s: Some(came_s), image, damage, poses, world_from_n, trouble: None }
     }
 
-    /// As during the recording, the last whole image is shown instead of a damaged one.
+    /// Shows the last intact image instead of a damaged one, as during the recording.
     fn whole_before(&mut self, time_ns: u64) -> Option<DecodedImage> {
         let mut before_ns = time_ns;
         for _ in 0..TRIED_MAX {

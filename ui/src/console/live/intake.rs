@@ -22,7 +22,7 @@ use crate::console::{
 };
 
 impl LiveState {
-    /// Reads everything that the loop has sent; `each` is called with all of it.
+    /// Reads all data that the loop has sent; `each` is called with all of it.
     pub fn take_in(&mut self, door: &LoopConnection, mut each: impl FnMut(&LoopMessage<'_>)) {
         let handle = door.handle();
         if self.roster.len() != handle.roster().len() {
@@ -117,7 +117,7 @@ impl LiveState {
         }
     }
 
-    /// Updates what is common to both sides: timing, and the identification of the first.
+    /// Updates the state common to both sides: timing, and the identification of the first.
     fn follow_loop(&mut self, tick: &Tick, before: Option<&Tick>) {
         let dt_s = before.map_or(0.0, |before| (tick.t_s - before.t_s).max(0.0));
         let missed = before.map_or(0, |before| tick.missed.saturating_sub(before.missed));
@@ -151,7 +151,7 @@ impl LiveState {
         self.ticks_counted += 1;
     }
 
-    /// Updates what is stored for each side: forces and trail of the tip.
+    /// Updates the state of each side: forces and trail of the tip.
     fn follow(&mut self, tick: &Tick, before: Option<&Tick>) {
         let side = tick.side.index();
         let dt_s = before.map_or(0.0, |before| (tick.t_s - before.t_s).max(0.0));
@@ -204,7 +204,7 @@ impl LiveState {
         })
     }
 
-    /// All other figures; the ticks since the last time covered this time, s.
+    /// Updates all other values; the ticks since the last update covered this time, s.
     fn refresh_others(&mut self, seconds: f64) {
         self.figures = DisplayFigures {
             horizon_n: self.horizon.map(FadingMean::known),

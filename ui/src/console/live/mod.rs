@@ -54,7 +54,7 @@ const FIGURES_EVERY: Duration = Duration::from_millis(250);
 const READINGS_EVERY: Duration = Duration::from_millis(100);
 /// Number of stored blocks of device readings, 0.1 s each.
 const BLOCKS_KEPT: usize = 40;
-/// How long a refused command is displayed.
+/// Time for which a refused command is displayed.
 const REFUSAL_SHOWN: Duration = Duration::from_secs(6);
 
 /// Returns a link without data as a missing device, after the last one of the roster.
@@ -130,7 +130,7 @@ pub struct LiveState {
     pub deadlines: Deadlines,
     /// Real-time privileges that the operating system granted.
     pub scheduling: Option<Scheduling>,
-    /// Antialiasing in 3-D was switched off because this computer draws too slowly.
+    /// Whether antialiasing in 3-D was switched off because this computer draws too slowly.
     pub rough_edges: bool,
     /// Change of the wrist sensor's bias since its calibration, N; `None` if it has not changed.
     pub bias_moved_n: Option<f64>,
@@ -225,12 +225,12 @@ impl LiveState {
         }
     }
 
-    /// State of a recorded session before its first tick.
+    /// Creates the state of a recorded session before its first tick.
     pub fn of_past(rig: RigConfig, scene: Scene) -> Self {
         Self { of: ScreenSource::Past, ..Self::new(rig, scene) }
     }
 
-    /// State of a loop at another machine before its first tick, without control.
+    /// Creates the state of a loop on another machine before its first tick, without control.
     pub fn of_elsewhere(rig: RigConfig, scene: Scene) -> Self {
         let devices = rig.device_names();
         let devices_then = devices.into_iter().map(|name| (name, ConnectionState::Opening)).collect();
@@ -258,7 +258,7 @@ impl LiveState {
         self.frame_work.push(work_s.unwrap_or(0.0) * 1e3, period_s, 1.0);
     }
 
-    /// Lateness of every wake-up of the loop since the window opened.
+    /// Returns the lateness of every wake-up of the loop since the window opened.
     pub const fn wake(&self) -> &Percentiles {
         &self.wake
     }
@@ -300,7 +300,7 @@ impl LiveState {
         self.ticks[side.index()].as_ref()
     }
 
-    /// Returns the newest tick of the right arm pair, for everything that both pairs share.
+    /// Returns the newest tick of the right arm pair, for data that both pairs share.
     pub const fn first_tick(&self) -> Option<&Tick> {
         self.tick_of(Side::Right)
     }

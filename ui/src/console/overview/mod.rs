@@ -39,7 +39,7 @@ pub(crate) struct CalibrationEntry {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct OverviewLine {
     pub(crate) wanted: CalibrationTarget,
-    /// `None` if it was never calibrated, an error if its file cannot be used.
+    /// The saved calibration: `None` if it was never calibrated, an error if its file cannot be used.
     pub(crate) kept: Result<Option<CalibrationEntry>, String>,
     /// Changes since the calibration.
     pub(crate) since: String,

@@ -1,4 +1,4 @@
-//! The list of calibrations: saved ones with age and verdict, missing ones, and unusable ones.
+//! Tests of the list of calibrations: saved ones with age and verdict, missing ones, and unusable ones.
 
 use nima_core::calibration::{RecordHead, Verdict, gravity::GravityRecord};
 use nima_machine::{config::RigConfig, ready::ReadyPoint, rig::Side};

@@ -6,8 +6,8 @@ use egui_plot::{GridInput, GridMark};
 
 use crate::report_text::newtons;
 
-/// Marks at round values over the range of an axis, at least `apart` points apart, so that the numbers are readable however
-/// small the plot is.
+/// Returns the marks at round values over the range of an axis, at least `apart` points apart, so that the numbers are
+/// readable however small the plot is.
 pub(super) fn marks(grid: &GridInput, apart: f64) -> Vec<GridMark> {
     let (low, high) = grid.bounds;
     // egui_plot's base step is 8 points long.

@@ -90,8 +90,8 @@ pub fn calibrations_ui(
     wish
 }
 
-/// Controls for the whole rig: the ready check and the list of all calibrations. On a rig with devices, the one required
-/// before engaging stands out.
+/// Draws the controls for the whole rig: the ready check and the list of all calibrations. On a rig with devices, the
+/// required one is highlighted before engaging.
 fn rig_ui(ui: &mut Ui, live: &LiveState, open: Option<CalibrationPage>) -> Option<CalibrationWish> {
     let mut wish = None;
     let closed = text::calibrations::closed(live.state());

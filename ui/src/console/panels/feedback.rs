@@ -89,7 +89,7 @@ struct FeedbackSetting<'a> {
     meaning: &'a str,
     suffix: &'static str,
     decimals: u8,
-    /// Send the value to the loop while the slider moves, not only when it is released.
+    /// Whether to send the value to the loop while the slider moves, not only when it is released.
     at_once: bool,
 }
 

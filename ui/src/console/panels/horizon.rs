@@ -16,7 +16,7 @@ use crate::report_text::{COMPARED, mode_meaning, mode_name, newtons_in_three, th
 const LONGEST: f64 = 2.5;
 /// Height of the trend plot.
 const TREND_HEIGHT: f32 = 46.0;
-/// A smaller error is noise, and its ratio has no meaning, N.
+/// A smaller error is noise, and its ratio is meaningless, N.
 const MIN_N: f64 = 1e-4;
 
 pub fn horizon_ui(ui: &mut Ui, live: &LiveState, outbox: &mut Outbox) {

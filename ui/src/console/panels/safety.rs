@@ -18,7 +18,7 @@ use crate::report_text::{side_word, state_name, within};
 
 const NODE: egui::Vec2 = vec2(82.0, 28.0);
 const DIAGRAM_HEIGHT: f32 = 118.0;
-/// With less width the states would overlap, so the diagrams are placed one above the other.
+/// With less width the states would overlap, so the diagrams are placed below one another.
 const DIAGRAM_WIDTH: f32 = 440.0;
 const GATE_HEIGHT: f32 = 82.0;
 
@@ -217,7 +217,7 @@ fn end_ui(ui: &mut Ui, width: f32, name: &str, force_n: f64) {
     painter.text(rect.center() + vec2(0.0, 9.0), Align2::CENTER_CENTER, number, theme::strong(16.0), theme::now().text);
 }
 
-/// One gate: indicator, effect, and how often it acted.
+/// Draws one gate: indicator, effect, and how often it acted.
 fn gate_ui(ui: &mut Ui, live: &LiveState, side: Side, gate: &GateView, width: f32) {
     let (rect, response) = ui.allocate_exact_size(vec2(width, GATE_HEIGHT), Sense::hover());
     let (what, word) = gate.standing();

@@ -106,7 +106,8 @@ fn table_ui(ui: &mut Ui, timings: &[TimingBar<'_>]) {
     });
 }
 
-/// Microseconds, in six characters at most: from 10 000 us on with a larger unit, which the heading of the table does not name.
+/// Returns microseconds in six characters at most; from 10 000 us on with a larger unit, which the heading of the table
+/// does not name.
 fn short(us: f64) -> String {
     match us {
         us if us < 9_999.5 => format!("{us:.0}"),

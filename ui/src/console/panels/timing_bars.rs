@@ -39,7 +39,7 @@ impl TimingBar<'_> {
         REACH * self.deadline_us / BARS as f64
     }
 
-    /// Hover text of one bar.
+    /// Returns the hover text of one bar.
     fn words(&self, bars: &[u64], bar: usize) -> String {
         let total = bars.iter().sum::<u64>().max(1);
         let count = bars.get(bar).copied().unwrap_or_default();

@@ -39,7 +39,7 @@ pub struct TopBarState {
     seen: Option<(LoopState, f64)>,
     /// Current and past alarms; their strip is below the bar.
     pub alarms: Alarms,
-    /// Instruction of the ready check that concerns a button of the bar, which then stands out.
+    /// Instruction of the ready check that concerns a button of the bar, which is then highlighted.
     pub(in crate::console) asked: Option<PersonRequest>,
     /// The session that is being recorded.
     pub(in crate::console) recorded: Option<DisplayState>,
@@ -236,11 +236,11 @@ fn stop_button(ui: &mut Ui, button: Button<'_>, ink: egui::Color32) -> egui::Res
 struct TopBarStep {
     /// Button can be pressed.
     ready: bool,
-    /// Button stands out.
+    /// Whether the button is highlighted.
     next: bool,
     /// The request from elsewhere.
     wanted: Option<Action>,
-    /// Reason why it cannot be pressed.
+    /// Reason why the button cannot be pressed.
     closed: Option<&'static str>,
 }
 

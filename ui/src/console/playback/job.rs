@@ -42,7 +42,7 @@ impl Drop for SessionJob {
 }
 
 impl SessionJob {
-    /// The work or its result; true when it is over.
+    /// Updates the work; returns true when it is over.
     pub(super) fn message(&self) -> (String, bool) {
         match self.message.try_recv() {
             Ok(words) => (words, true),

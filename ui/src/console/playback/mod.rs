@@ -34,7 +34,7 @@ pub(crate) use compare::both_ui;
 
 /// Playback speeds.
 const SPEEDS: [f64; 6] = [0.1, 0.25, 0.5, 1.0, 2.0, 4.0];
-/// The screen is at most this much ahead of the ticks that it waits for, or one frame, s.
+/// Maximum time by which the screen may be ahead of the ticks that it waits for, or one frame, s.
 const AHEAD_S: f64 = 0.3;
 /// Maximum playback time per frame, s: longer pauses between frames are not played.
 const PAUSE_S: f64 = 1.0;
@@ -62,7 +62,7 @@ pub(crate) struct Playback {
     stretch_s: [Option<f64>; 2],
     /// Another session on the same clock: equal times since the start of each.
     pub(super) beside: Option<Box<Self>>,
-    /// The operator wants to choose a session for comparison.
+    /// Whether the operator is choosing a session for comparison.
     pub(super) wants_beside: bool,
     job: Option<SessionJob>,
     report: OperatorLines,
@@ -89,7 +89,7 @@ struct Play {
 struct OperatorLines {
     /// Reason why the session cannot be shown.
     refused: Option<String>,
-    /// Reason why a part comes only from the recorded plots.
+    /// Reason why a part is available only from the recorded plots.
     limited: Option<String>,
     /// Result of the last report or excerpt.
     job: Option<String>,
@@ -124,7 +124,8 @@ impl Playback {
         }
     }
 
-    /// Receives answers about the session, and plays it by `dt_s`; `driven`: a machine is being driven meanwhile.
+    /// Receives answers about the session, and plays it by `dt_s`; `driven`: a machine is being driven at the same
+    /// time.
     pub(crate) fn step(&mut self, dt_s: f64, driven: bool) {
         self.worker.go_gently(driven);
         while let Some(answer) = self.worker.answer() {

@@ -17,7 +17,7 @@ pub(super) const BUCKET_S: f64 = 0.5;
 /// Maximum forces, and the state that needs most attention, in a short time.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct OverviewBucket {
-    /// `None` if it was never known.
+    /// `None` if the force was never known.
     pub(super) measured_n: Option<f32>,
     pub(super) rendered_n: f32,
     pub(super) state: Option<LoopState>,

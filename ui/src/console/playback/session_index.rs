@@ -36,7 +36,7 @@ use crate::console::{
 };
 use crate::recording::WORDS;
 
-/// A moment is replayed from this time before it, s, so that traces and figures have their history.
+/// Length of the replay before a moment, s, so that traces and values have their history.
 const LEAD_S: f64 = 10.0;
 /// Traces reach back to this time before it, s.
 const TRACES_S: f64 = 120.0;
@@ -48,7 +48,7 @@ const KEYFRAMES: usize = 40;
 const SAMPLE_S: f64 = 0.1;
 /// Length of a column of the traces, s.
 const COLUMN_S: f64 = 0.016;
-/// The log is read in segments of this length, s, because each reading searches all chunks of its time.
+/// The log is read in segments of this length, s, because each read searches all chunks of its time range.
 const LOG_S: f64 = 4.0;
 /// A moment without a tick uses the next tick within this time, s.
 const NEXT_S: f64 = 0.05;
@@ -155,7 +155,7 @@ pub(super) struct SessionIndex<'a> {
     read_s: f64,
     /// The replay matches the recording up to this time, s.
     exact_s: f64,
-    /// Reason why the rest comes only from the recorded plots.
+    /// Reason why the rest is available only from the recorded plots.
     pub(super) why: Option<String>,
 }
 
@@ -209,7 +209,7 @@ impl<'a> SessionIndex<'a> {
         t_s <= self.exact_s
     }
 
-    /// Reads for a short time; false at the end. `each` receives everything that was read.
+    /// Reads for a short time; returns false at the end. `each` receives all data read.
     pub(super) fn read(&mut self, mut each: impl FnMut(&TickFrame)) -> bool {
         let Some(mut reading) = self.reading.take() else { return false };
         let mut frames = Vec::new();
@@ -239,7 +239,7 @@ impl<'a> SessionIndex<'a> {
         self.reading.is_some()
     }
 
-    /// Log entries of the segments read so far, once there are enough of them.
+    /// Returns the log entries of the segments read so far, once there are enough of them.
     pub(super) fn notes(&mut self) -> Vec<EventNote> {
         if self.reading.is_some() && self.read_s < self.log_s + LOG_S {
             return Vec::new();

@@ -60,12 +60,12 @@ pub(super) enum WorkerAnswer {
     Opened(Box<SessionOverview>),
     /// The session cannot be shown, for this reason.
     Refused(String),
-    /// More of it was read.
+    /// More of the session was read.
     Read(Overview),
-    /// The rest after the part that was read comes only from the recorded plots, for this reason.
+    /// The rest is available only from the recorded plots, for this reason.
     Limited(String),
     Shown(Box<LiveState>, WorkerExtent, f64),
-    /// The moment continued by these ticks; `None` at the end of the session.
+    /// The moment, continued by these ticks; `None` at the end of the session.
     WentOn(Option<Vec<TickFrame>>),
 }
 
@@ -227,7 +227,7 @@ impl FirstReading {
 struct DisplayedMoment {
     view: Option<PlaybackPosition>,
     chase: Option<(Chase, f64)>,
-    /// A time that was shown before it was read, s.
+    /// A time that was shown before it had been read, s.
     early_s: Option<f64>,
 }
 

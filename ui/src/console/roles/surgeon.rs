@@ -51,7 +51,7 @@ pub(super) fn surgeon_ui(ui: &mut Ui, live: &mut LiveState, panels: &mut Panels,
     });
 }
 
-/// Returns the reason why a hand gets less force than it should, with the hand; otherwise the mode.
+/// Returns the reason why a hand gets less force than requested, with the hand; otherwise the mode.
 fn report(live: &LiveState) -> String {
     let whys: Vec<(Side, String)> =
         live.sides().filter_map(|side| why_no_force(live, side).map(|why| (side, why))).collect();

@@ -53,7 +53,7 @@ impl SceneAim<'_> {
         }
     }
 
-    /// Start and end of the line, and the shape at its end. `None` without a surface below.
+    /// Returns the start and end of the line, and the shape at its end. `None` without a surface below.
     fn below(&self, rect: Rect, camera: &SceneCamera) -> Option<(Pos2, Pos2, Vec<Pos2>)> {
         let ground_m = ground_m(self.scene)?;
         let from_m = self.ring_m.unwrap_or(self.tip_m);

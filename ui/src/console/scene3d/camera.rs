@@ -69,7 +69,7 @@ impl SceneCamera {
         self.pitch = (self.pitch + drag.y * 0.006).clamp(*PITCH.start(), *PITCH.end());
     }
 
-    /// Comes nearer (factor above 1) or moves away.
+    /// Moves nearer (factor above 1) or farther away.
     pub fn zoom(&mut self, factor: f32) {
         if factor.is_finite() && factor > 0.0 {
             self.distance_m = (self.distance_m / factor).clamp(*DISTANCE_M.start(), *DISTANCE_M.end());
@@ -114,7 +114,7 @@ impl SceneCamera {
         Vector3::new(-sin_yaw, cos_yaw, 0.0)
     }
 
-    /// Transformation from workspace to OpenGL clip space for a view of this aspect ratio (width / height).
+    /// Returns the transformation from workspace to OpenGL clip space for a view of this aspect ratio (width / height).
     pub fn clip_from_workspace(&self, aspect: f32) -> Matrix4<f32> {
         let aspect = if aspect.is_finite() { aspect.max(0.01) } else { 1.0 };
         let projection = Perspective3::new(aspect, self.field_of_view, 0.01, 3.0);
@@ -133,7 +133,8 @@ impl SceneCamera {
         Some(rect.center() + Vec2::new(0.5 * x * rect.width(), -0.5 * y * rect.height()))
     }
 
-    /// Intersection of the ray through a screen position with this height, m; `None` without one, or at too flat an angle.
+    /// Returns the intersection of the ray through a screen position with this height, m; `None` without one, or at too
+    /// flat an angle.
     pub fn on_level(&self, place: Pos2, rect: Rect, height_m: f32) -> Option<Vector3<f32>> {
         let from_centre = place - rect.center();
         let x = 2.0 * from_centre.x / rect.width();

@@ -21,7 +21,7 @@ pub struct GlFrame {
     pub clip_from_workspace: Matrix4<f32>,
     /// Position of the eye, m.
     pub eye_m: Vector3<f32>,
-    /// Tip and top of each instrument's shaft, m, for their shadows. At most two shafts are used.
+    /// Tip and top of each instrument's shaft, m, for the shadows. At most two shafts are used.
     pub shafts_m: Vec<[Vector3<f32>; 2]>,
     /// Loss of brightness per metre, and the distance from which it starts, m.
     pub dims: [f32; 2],
@@ -58,7 +58,7 @@ pub struct GlRenderer {
 enum TargetState {
     None,
     Made(RenderTarget),
-    /// The driver does not support it: no antialiasing.
+    /// The driver does not support it, so there is no antialiasing.
     Refused,
 }
 

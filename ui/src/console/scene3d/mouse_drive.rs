@@ -16,7 +16,7 @@ use crate::console::{text, theme};
 
 /// Motion per press of an arrow key, m.
 const STEP_M: f32 = 0.001;
-/// Opening angle of the jaws by key, rad; jaws closed below this fraction of it hold a ring.
+/// Opening angle of the jaws when a key is pressed, rad; jaws closed below this fraction of it hold a ring.
 const OPEN_RAD: f64 = 0.6;
 const OPEN_FRACTION: f64 = 0.8;
 /// Change of height per point of the wheel, m: 4 mm per notch.
@@ -77,7 +77,7 @@ impl MouseDrive {
         *self = Self { side: self.side, is_held: self.is_held, ..Self::default() };
     }
 
-    /// Starts: every instrument stays where its hand is, and one of them is driven.
+    /// Starts mouse control: every instrument stays where its hand is, and one of them is driven.
     fn take(&mut self, live: &LiveState, outbox: &mut Outbox) {
         let board_m = training::board_of(&live.scene).map(|board| board.z_m as f32 - INTO_BOARD_M);
         self.lowest_m = board_m.unwrap_or(*HEIGHT_M.start());
@@ -93,7 +93,8 @@ impl MouseDrive {
         }
     }
 
-    /// A simulated hand must not move the jaws of a participant: they are open until the participant closes them.
+    /// Opens the jaws of a participant: the simulated hand must not move them, so they stay open until the participant
+    /// closes them.
     fn open_jaws_of_participant(&mut self, live: &LiveState, outbox: &mut Outbox) {
         if !self.is_held || live.scene.objects.is_none() {
             return;

@@ -63,7 +63,7 @@ impl DisplayedObjects {
         })
     }
 
-    /// Centre of the ring in the jaws of the driven instrument, m.
+    /// Returns the centre of the ring in the jaws of the driven instrument, m.
     pub(super) fn held_m(&self) -> Option<Vector3<f32>> {
         let held = self.reach.filter(|reach| matches!(reach, JawReach::Held(_)))?;
         self.rings.get(held.ring()).map(|(middle_m, _)| *middle_m)
@@ -105,7 +105,7 @@ pub(super) fn ground(mesh: &mut Mesh, scene: &Scene, shown: &DisplayedObjects, s
     }
 }
 
-/// Both fingers, held upright by the wrist; returns the end of the shaft. `None` if they are unknown.
+/// Draws both fingers, held upright by the wrist; returns the end of the shaft. `None` if they are unknown.
 pub(super) fn jaws(
     mesh: &mut Mesh,
     scene: &Scene,

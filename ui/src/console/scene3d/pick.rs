@@ -76,7 +76,7 @@ fn distance(point: Pos2, from: Pos2, to: Pos2) -> f32 {
     point.distance(from + way * along)
 }
 
-/// Intersection of the ray through the pointer with the tissue's surface at rest, m.
+/// Returns the intersection of the ray through the pointer with the tissue's surface at rest, m.
 fn on_tissue(pointer: Pos2, rect: Rect, camera: &SceneCamera, scene: &Scene) -> Option<Vector3<f32>> {
     let tissue = scene.tissue?;
     let place_m = camera.on_level(pointer, rect, tissue.surface_z_m as f32)?;

@@ -7,7 +7,7 @@ use nima_simulation::physics::ObjectSettings;
 /// Relation of a ring to the jaws.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum JawReach {
-    /// The open jaws are above it: moved straight down, they enclose its rim.
+    /// The open jaws are above the ring: if moved straight down, they enclose its rim.
     Above(usize),
     /// Between the open jaws.
     Between(usize),
@@ -35,7 +35,7 @@ impl JawReach {
         }
     }
 
-    /// For jaws at this tip (m, `world`), which open along x, among these rings.
+    /// Returns the reach of jaws at this tip (m, `world`), which open along x, among these rings.
     pub(super) fn of(
         setting: &ObjectSettings,
         rings: &[(Vector3<f32>, UnitQuaternion<f32>)],

@@ -35,7 +35,7 @@ pub(super) struct Shadows {
 }
 
 impl Shadows {
-    /// Without a board there are none.
+    /// Returns the shadows on a board; none without a board.
     pub(super) fn on(board: Option<&nima_simulation::physics::BoardSettings>) -> Self {
         Self { board: board.copied(), edges: Mesh::default(), cores: Mesh::default() }
     }

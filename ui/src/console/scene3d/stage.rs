@@ -15,7 +15,7 @@ use crate::console::theme;
 
 /// Length of a force arrow, m per N.
 pub const ARROW_M_PER_N: f32 = 0.017;
-/// A smaller force has no arrow, because it would show noise, N.
+/// A smaller force is drawn without an arrow, because that would show noise, N.
 const ARROW_MIN_N: f32 = 0.06;
 /// Force at which an arrow reaches its maximum length, N.
 const ARROW_MAX_N: f32 = 8.0;
@@ -43,7 +43,7 @@ const TRAIL: Paint = Paint(Color32::from_rgb(0xc8, 0xcf, 0xd8), Material::Plain)
 pub struct StagePose {
     /// Tip of the instrument, m.
     pub tip_m: Vector3<f32>,
-    /// Force measured at it, N; `None` while it is unknown.
+    /// Force measured at the tip, N; `None` while it is unknown.
     pub measured_n: Option<Vector3<f32>>,
     /// Force rendered to the hand, N.
     pub rendered_n: Vector3<f32>,
@@ -110,7 +110,7 @@ pub struct StageArm {
     /// Positions of its targets, m.
     pub targets_m: Vec<Vector3<f32>>,
     pub pose: StagePose,
-    /// Recent positions of its tip, m, oldest first.
+    /// Recent positions of the tip, m, oldest first.
     pub trail_m: Vec<Vector3<f32>>,
 }
 
@@ -211,14 +211,14 @@ fn mottled(x: f32, y: f32) -> Color32 {
     TISSUE_DARK.lerp_to_gamma(TISSUE_PALE, fraction)
 }
 
-/// Shaft through the trocar, with a blunt tip; its lowest point is the tip position.
+/// Draws the shaft through the trocar, with a blunt tip; its lowest point is the tip position.
 fn instrument(mesh: &mut Mesh, trocar_m: &Vector3<f32>, tip_m: &Vector3<f32>) {
     let knob = tip_m + Vector3::z() * SHAFT_RADIUS_M;
     mesh.sphere(knob, SHAFT_RADIUS_M, 12, STEEL);
     shaft(mesh, trocar_m, &knob);
 }
 
-/// From the end of the instrument through its trocar.
+/// Draws the shaft from the end of the instrument through its trocar.
 fn shaft(mesh: &mut Mesh, trocar_m: &Vector3<f32>, knob: &Vector3<f32>) {
     let Some(axis) = (trocar_m - knob).try_normalize(1e-4) else { return };
     mesh.tube([*knob, knob + axis * 0.012], [SHAFT_RADIUS_M * 0.8; 2], 20, STEEL);
@@ -259,7 +259,7 @@ fn measured_arrow(mesh: &mut Mesh, base: Vector3<f32>, force_n: &Vector3<f32>) {
     mesh.tube([base + along * (length - head), base + along * length], [0.0030, 0.0], 18, paint);
 }
 
-/// A beaded shaft with a double cone: its shape alone distinguishes it from the other arrow.
+/// Draws a beaded shaft with a double cone: the shape alone distinguishes it from the other arrow.
 fn rendered_arrow(mesh: &mut Mesh, base: Vector3<f32>, force_n: &Vector3<f32>) {
     const BEAD_M: f32 = 0.0055;
     let paint = Paint(theme::DARK.rendered, Material::Plain);

@@ -35,7 +35,7 @@ const POINTS: usize = 3;
 const PIN_M: f32 = 0.007;
 const HEAD_M: f32 = 0.0015;
 
-/// Wire and its board, with the goal.
+/// Draws the wire and its board, with the goal.
 pub(super) fn wire(mesh: &mut Mesh, scene: &Scene, shadows: &mut Shadows) {
     let Some(setting) = &scene.wire else { return };
     let curve = setting.curve();

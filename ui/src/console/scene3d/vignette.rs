@@ -10,7 +10,7 @@ const RADIUS: f32 = 0.60;
 const RIM: f32 = 0.05;
 const SIDES: u32 = 96;
 
-/// Radius of the undimmed part, and of the visible part, points.
+/// Returns the radius of the undimmed part, and of the visible part, points.
 fn radii(rect: Rect) -> [f32; 2] {
     // In a view that is higher than wide, the disc is as wide as the view.
     let radius = (RADIUS * rect.height()).min(RADIUS * rect.width());
@@ -27,7 +27,7 @@ pub(super) fn part_of(rect: Rect) -> Rect {
     Rect::from_x_y_ranges(left.max(rect.left())..=right.min(rect.right()), rect.y_range())
 }
 
-/// From the clip space of a view to that of a part of its width.
+/// Returns the transformation from the clip space of a view to that of a part of its width.
 pub(super) fn part_from_whole(part: Rect, whole: Rect) -> Matrix4<f32> {
     let wider = whole.width() / part.width().max(1.0);
     let aside = 2.0 * (whole.center().x - part.center().x) / part.width().max(1.0);

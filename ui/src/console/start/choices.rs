@@ -62,7 +62,7 @@ pub(super) struct ChoiceEntry {
     pub(super) name: String,
     pub(super) about: String,
     pub(super) usable: bool,
-    /// In the user's folder.
+    /// Whether it is in the user's folder.
     pub(super) own: bool,
 }
 

@@ -41,7 +41,7 @@ pub struct StartPage {
     chosen: RigChoice,
     folder: Option<PathBuf>,
     lists: Lists,
-    /// The chosen rig, as long as its file is unchanged since then.
+    /// The chosen rig, as long as its file has not changed.
     rig: Option<RigConfig>,
     new_name: String,
     report: Option<String>,
@@ -261,7 +261,8 @@ impl StartPage {
         self.endoscope.close();
     }
 
-    /// For the running rig, its list of devices shows missing ones; devices of another rig are opened briefly.
+    /// Draws the missing devices: for the running rig, from its list of devices; devices of another rig are opened
+    /// briefly.
     fn missing_ui(&mut self, ui: &mut Ui, now: &StartInputs<'_>) {
         let Some(rig) = self.rig.as_ref().filter(|rig| rig.devices.is_some() || rig.has_real_hand()) else {
             ui.label(text::start::SIMULATED.get());

@@ -56,7 +56,7 @@ pub(in crate::console) const DEVICE_MISSING_CURE: Text = Text::of(
     "Die Konsole verbindet es von selbst wieder; Kabel und Stromversorgung prüfen",
 );
 
-/// Fault with the time of its first report, s on the loop's clock.
+/// Returns the fault with the time of its first report, s on the loop's clock.
 pub(in crate::console) fn fault(cause: &str, t_s: f64) -> String {
     text_format!("{cause} (at {t_s:.1} s)", "{cause} (bei {t_s:.1} s)")
 }

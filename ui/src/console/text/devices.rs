@@ -113,7 +113,7 @@ pub(in crate::console) fn identity(product: &str, serial: &str, firmware: &str) 
     format!("{product}{serial}{firmware}")
 }
 
-/// Accessible name of the button that clears a device's faults.
+/// Returns the accessible name of the button that clears a device's faults.
 pub(in crate::console) fn clear_faults_of(name: &str) -> String {
     text_format!("Clear faults of the {name}", "Störungen zurücksetzen: {name}")
 }
@@ -144,7 +144,7 @@ pub(in crate::console) fn lost(cause: &str, delivery: &str) -> String {
     text_format!("lost: {cause}; {delivery}", "ausgefallen: {cause}; {delivery}")
 }
 
-/// Accessible name of a button of one device.
+/// Returns the accessible name of a button of one device.
 pub(in crate::console) fn of(what: &str, name: &str) -> String {
     format!("{what} {name}")
 }
@@ -169,12 +169,12 @@ pub(in crate::console) fn kind(kind: PartKind) -> &'static str {
     }
 }
 
-/// Accessible name of that button.
+/// Returns the accessible name of that button.
 pub(in crate::console) fn exchange(of: PartKind) -> String {
     text_format!("Swap {}", "{} tauschen", within(kind(of)))
 }
 
-/// Accessible name of the light next to a device.
+/// Returns the accessible name of the light next to a device.
 pub(in crate::console) fn light(name: &str, motion: Option<&str>) -> String {
     match motion {
         Some(motion) => text_format!("Light of the {name}: {motion}", "Lampe {name}: {motion}"),

@@ -4,7 +4,7 @@ use nima_core::limits::{self, GAIN_ABOVE_ONE, Limits, SLIDER_DEAD_BAND_M_S, SLID
 
 use crate::language::{Text, text_format};
 
-/// Hover text of the gain, with its maximum rate of change, 1/s.
+/// Returns the hover text of the gain, with its maximum rate of change, 1/s.
 pub(in crate::console) fn gain_hover(rate_per_s: f64) -> String {
     let Limits { min, max, .. } = limits::GAIN;
     let highest = GAIN_ABOVE_ONE.max;
@@ -70,7 +70,7 @@ pub(in crate::console) fn gain_in_use(gain: f64) -> String {
     text_format!("in use {gain:.2}", "wirksam {gain:.2}")
 }
 
-/// Hover text of a button that changes a value by 0.1.
+/// Returns the hover text of a button that changes a value by 0.1.
 pub(in crate::console) fn by_a_tenth(name: &str) -> String {
     text_format!("{name} by 0.1", "{name} um 0.1")
 }

@@ -96,7 +96,7 @@ pub(in crate::console) fn tissue(place: &str) -> String {
     text_format!("Tissue at {place}", "Gewebe bei {place}")
 }
 
-/// Hover text of an arrow; the force in N, `whose` from [`of_hand`].
+/// Returns the hover text of an arrow; the force in N, `whose` from [`of_hand`].
 pub(in crate::console) fn arrow(name: &str, whose: &str, size_n: f32, [x, y, z]: [f32; 3]) -> String {
     text_format!(
         "{name}{whose}: {size_n:.2} N\nx {x:+.2}, y {y:+.2}, z {z:+.2} N (world)",
@@ -108,7 +108,7 @@ pub(in crate::console) fn depth(depth_mm: f32) -> String {
     text_format!("\n{depth_mm:.1} mm below the surface at rest", "\n{depth_mm:.1} mm unter der Ruheoberfläche")
 }
 
-/// Hover text of the tip; `depth` from [`depth`].
+/// Returns the hover text of the tip; `depth` from [`depth`].
 pub(in crate::console) fn tip(whose: &str, place: &str, depth: &str) -> String {
     text_format!("Tip{whose} at {place}{depth}", "Spitze{whose} bei {place}{depth}")
 }

@@ -15,7 +15,7 @@ pub(in crate::console) const HOVER: Text = Text::of(
      Doppelklick setzt zurück.",
 );
 
-/// Accessible name of the plot.
+/// Returns the accessible name of the plot.
 pub(in crate::console) fn canvas(words: &str) -> String {
     text_format!("Force space. {words}", "Kraftraum. {words}")
 }

@@ -39,7 +39,7 @@ pub(in crate::console) fn trend_meaning(trend: &str) -> String {
     )
 }
 
-/// Accessible name of a bar.
+/// Returns the accessible name of a bar.
 pub(in crate::console) fn error(words: &str) -> String {
     text_format!("Error {words}", "Fehler {words}")
 }

@@ -30,7 +30,7 @@ pub(in crate::console) const UNCHECKED: Text = Text::of("trained but not checked
 pub(in crate::console) const HANDLE: Text = Text::of("View, handle", "Bildlage, Handgerät");
 pub(in crate::console) const FUTURE: Text = Text::of("in the future", "in der Zukunft");
 
-/// Accessible name of a button that starts a calibration.
+/// Returns the accessible name of a button that starts a calibration.
 pub(in crate::console) fn button(verb: &str, arm: &str, calibration: &str) -> String {
     let after = arm.to_lowercase();
     text_format!("{verb} {arm} arm, {calibration}", "{verb}: Arm {after}, {calibration}")

@@ -143,7 +143,7 @@ pub(in crate::console) fn position(t_s: f64, end_s: f64) -> String {
     text_format!("{} of {}", "{} von {}", clock(t_s), short_clock(end_s))
 }
 
-/// Date and time, from ns since 1970.
+/// Returns the date and time, from ns since 1970.
 pub(in crate::console) fn when(time_ns: u64) -> String {
     let utc = utc_of(UNIX_EPOCH + Duration::from_nanos(time_ns)).replace('T', "  ");
     format!("{}.{} UTC", utc.trim_end_matches('Z'), time_ns / 100_000_000 % 10)

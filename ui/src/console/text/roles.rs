@@ -183,12 +183,12 @@ pub(in crate::console) fn fault_waits(cause: &str, stopped: bool) -> String {
     }
 }
 
-/// Hover text of a view, with its key.
+/// Returns the hover text of a view, with its key.
 pub(in crate::console) fn meaning_and_key(meaning: &str, key: &str) -> String {
     text_format!("{meaning}\nKey {key}", "{meaning}\nTaste {key}")
 }
 
-/// Replaces a bar whose force is unknown.
+/// Shown instead of a bar whose force is unknown.
 pub(in crate::console) const UNKNOWN: Text = Text::of("unknown", "unbekannt");
 
 /// `measured` has its unit, or is "unknown".

@@ -48,12 +48,12 @@ pub(in crate::console) fn since(t_s: f64, why: &str) -> String {
     text_format!("since {t_s:.1} s: {why}", "seit {t_s:.1} s: {why}")
 }
 
-/// Returns the title of the diagram; `whose` from [`of_hand`].
+/// Returns the title of the diagram; `whose` is from [`of_hand`].
 pub(in crate::console) fn interlock(whose: &str, state: &str) -> String {
     text_format!("Interlock{whose}: {state}", "Verriegelung{whose}: {state}")
 }
 
-/// Gate in one sentence; `whose` from [`of_hand`].
+/// Returns a gate in one sentence; `whose` is from [`of_hand`].
 pub(in crate::console) fn gate(name: &str, whose: &str, standing: &str, ticks: u64) -> String {
     text_format!(
         "Gate {name}{whose}: {standing}, acted in {ticks} ticks",

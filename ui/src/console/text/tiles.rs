@@ -86,12 +86,12 @@ pub(in crate::console) const ALL_CLOSED: Text = Text::of(
 pub(in crate::console) const DRAG_HOVER: Text =
     Text::of("Drag the title to move the panel", "Am Titel ziehen verschiebt das Panel");
 
-/// Accessible name of the button that closes a panel.
+/// Returns the accessible name of the button that closes a panel.
 pub(in crate::console) fn close(panel: &str) -> String {
     text_format!("Close {panel}", "{panel} schließen")
 }
 
-/// Hover text of that button; `close` from [`close`].
+/// Returns the hover text of that button; `close` from [`close`].
 pub(in crate::console) fn close_meaning(close: &str) -> String {
     text_format!("{close}; the View menu reopens it.", "{close}; das Menü Ansicht öffnet es wieder.")
 }

@@ -64,7 +64,7 @@ pub(in crate::console) fn from_to(from_us: f64, to_us: f64) -> String {
     text_format!("{from_us:.0} to {to_us:.0} µs", "{from_us:.0} bis {to_us:.0} µs")
 }
 
-/// Hover text of a bar.
+/// Returns the hover text of a bar.
 pub(in crate::console) fn bar(name: &str, range: &str, ticks: &str, fraction: &str) -> String {
     text_format!("{name}: {range}\n{ticks} ticks, {fraction}", "{name}: {range}\n{ticks} Takte, {fraction}")
 }
@@ -88,12 +88,12 @@ pub(in crate::console) fn missed(minutes: usize, count: &str) -> String {
     text_format!("Missed in the last {minutes} min: {count}", "Versäumt in den letzten {minutes} min: {count}")
 }
 
-/// Accessible name of the strip.
+/// Returns the accessible name of the strip.
 pub(in crate::console) fn missed_periods(words: &str) -> String {
     text_format!("{words} periods", "{words} Takte")
 }
 
-/// Hover text of a bar of the strip.
+/// Returns the hover text of a bar of the strip.
 pub(in crate::console) fn missed_at(age_s: usize, count: &str) -> String {
     text_format!("{age_s} s ago: {count} periods missed", "vor {age_s} s: {count} Takte versäumt")
 }

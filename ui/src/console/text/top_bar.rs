@@ -68,7 +68,7 @@ pub(in crate::console) fn scene_and_rig(scene: &str, rig: &str) -> String {
     text_format!("Scene: {scene}\nRig: {rig}", "Szene: {scene}\nAufbau: {rig}")
 }
 
-/// Hover text of the state.
+/// Returns the hover text of the state.
 pub(in crate::console) fn state_meaning(meaning: &str) -> String {
     text_format!("State of the control loop\n{meaning}", "Zustand der Regelung\n{meaning}")
 }
@@ -77,7 +77,7 @@ pub(in crate::console) fn state_of_side(side: &str, state: &str) -> String {
     format!("{side}: {state}")
 }
 
-/// Accessible name of the state.
+/// Returns the accessible name of the state.
 pub(in crate::console) fn state(state: &str) -> String {
     text_format!("Loop state: {state}", "Regelung: {state}")
 }

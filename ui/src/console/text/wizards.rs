@@ -1,4 +1,4 @@
-//! Texts that all calibration wizards share.
+//! Texts shared by all calibration wizards.
 
 use std::path::Path;
 

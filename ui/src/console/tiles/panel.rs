@@ -39,7 +39,7 @@ impl Kind {
         Self { title, meaning, min: [least_width, 60.0], fills: false, shows: None }
     }
 
-    /// It shows what the loop tells, and nothing else.
+    /// Returns whether the panel only shows data from the loop.
     const fn shows(self, draw: fn(&mut Ui, &LiveState)) -> Self {
         Self { shows: Some(draw), ..self }
     }
@@ -54,7 +54,7 @@ macro_rules! panels {
         }
 
         impl Panel {
-            /// All of them, in the order of the menu.
+            /// All panels, in the order of the menu.
             pub const ALL: [Self; [$(stringify!($panel)),*].len()] = [$(Self::$panel),*];
 
             const fn kind(self) -> Kind {
@@ -81,7 +81,7 @@ panels! {
         Safety: Kind::filling(&text::SAFETY, &text::SAFETY_HOVER, [560.0, 120.0]).shows(safety_ui),
         /// Mode, gain, delay, dead band.
         Feedback: Kind::list(&text::FEEDBACK, &text::FEEDBACK_HOVER, KNOBS),
-        /// Why there is no force.
+        /// Reasons for a missing force.
         Gates: Kind::list(&text::GATES, &text::GATES_HOVER, KNOBS),
         /// Calibrations in force, and buttons for the wizards.
         Calibrations: Kind::list(&text::CALIBRATION, &text::CALIBRATION_HOVER, KNOBS),
@@ -101,7 +101,7 @@ panels! {
 }
 
 impl Panel {
-    /// Those that this build has.
+    /// Returns the panels in this build.
     pub fn built() -> impl Iterator<Item = Self> {
         Self::ALL.into_iter().filter(|panel| panel.is_built())
     }
@@ -123,7 +123,7 @@ impl Panel {
         self.kind().meaning.get()
     }
 
-    /// Draws it, if it shows what the loop tells and nothing else.
+    /// Draws the panel, if it only shows data from the loop.
     pub const fn shows(self) -> Option<fn(&mut Ui, &LiveState)> {
         self.kind().shows
     }

@@ -20,7 +20,7 @@ pub(super) fn on_paper(centre: Pos2, scale: f32, point: &Vector3<f64>) -> (Pos2,
     (pos2(centre.x + right as f32 * scale, centre.y - up as f32 * scale), depth)
 }
 
-/// The tool in its current orientation (solid) and in the requested one (outline), with the angle between them.
+/// Draws the tool in its current orientation (solid) and in the requested one (outline), with the angle between them.
 pub(super) fn pose_image(ui: &mut Ui, target: Option<&UnitQuaternion<f64>>, held: Option<&UnitQuaternion<f64>>) {
     let size = vec2(ui.available_width().min(320.0), 250.0);
     let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
@@ -63,7 +63,7 @@ fn ground(painter: &Painter, centre: Pos2, scale: f32) {
     painter.extend(Shape::dashed_line(&[top, bottom], Stroke::new(1.0, theme::now().line), 5.0, 5.0));
 }
 
-/// Sensor (a disc with its x axis marked), shaft along z, and a jaw at the end.
+/// Draws the sensor (a disc with its x axis marked), the shaft along z, and a jaw at the end.
 fn tool(painter: &Painter, centre: Pos2, scale: f32, world_from_s1: &UnitQuaternion<f64>, solid: bool) {
     let at = |x: f64, y: f64, z: f64| on_paper(centre, scale, &(world_from_s1 * Vector3::new(x, y, z))).0;
     let (colour, width) = if solid { (theme::now().measured, 3.0) } else { (theme::now().rendered, 1.5) };
@@ -87,7 +87,7 @@ fn tool(painter: &Painter, centre: Pos2, scale: f32, world_from_s1: &UnitQuatern
     painter.line_segment([at(0.28, 0.0, 0.0), at(0.46, 0.0, 0.0)], stroke);
 }
 
-/// Directions on a sphere: requested ones as rings, recorded ones as discs; hollow on the far side.
+/// Draws directions on a sphere: requested ones as rings, recorded ones as discs; hollow on the far side.
 pub(super) fn sphere_image(
     ui: &mut Ui,
     name: &str,
@@ -175,7 +175,7 @@ const LEFT: f32 = 34.0;
 /// Texts of an axis of a map: lowest value, name with unit, highest value.
 pub(super) type AxisText = [&'static str; 3];
 
-/// A map of numbers of rows: dark where there are none, brighter with their number (logarithmic).
+/// Draws a map of numbers of rows: dark where there are none, brighter with their number (logarithmic).
 pub(super) fn heat_map(ui: &mut Ui, width: f32, title: &str, map: &CoverageMap, [across, up]: [AxisText; 2]) {
     let (rect, response) = ui.allocate_exact_size(vec2(width, width - LEFT + BELOW + 20.0), Sense::hover());
     let words = text::wizards::fields_filled(title, map.filled(), MAP * MAP);

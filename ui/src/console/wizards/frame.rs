@@ -86,7 +86,7 @@ pub(crate) trait Wizard: std::fmt::Debug {
     fn may_go_on(&self, binding: &Binding) -> Result<(), &'static str>;
     /// Draws a step before the last.
     fn step_ui(&mut self, ui: &mut Ui, binding: &Binding) -> Option<WizardRequest>;
-    /// Evidence that the result is good, as text; `None` if it can only be saved with an override.
+    /// Returns the evidence that the result is good, as text; `None` if it can only be saved with an override.
     fn proof(&self) -> Option<String>;
     /// Returns the record to save, if there is one, with its verdict before any override.
     fn made(&self, binding: &Binding) -> Option<SaveRequest>;

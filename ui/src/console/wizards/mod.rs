@@ -106,7 +106,7 @@ impl ValueEnum for WizardKind {
 }
 
 impl WizardKind {
-    /// All wizards, in the order of use: the frames rotate the forces measured at the wrist, so they come first.
+    /// All wizards, in the order of use; the frames come first because they rotate the forces measured at the wrist.
     pub const ALL: [Self; 10] = [
         Self::Frame(FrameKind::Mount),
         Self::Frame(FrameKind::Tip),
@@ -156,8 +156,8 @@ impl WizardKind {
         }
     }
 
-    /// Returns whether this scene has a person who guides the arm, and everything else that the wizard needs, so that
-    /// it need not be changed.
+    /// Returns whether this scene has a person who guides the arm, and everything else that the wizard requires, so
+    /// that it need not be changed.
     pub const fn suits(self, scene: &Scene) -> bool {
         let guided = scene.person.is_some() && scene.wrist.is_some();
         match self {
@@ -173,7 +173,7 @@ impl WizardKind {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CalibrationTarget {
     pub side: Side,
-    /// The wizard for it.
+    /// Wizard for it.
     pub which: WizardKind,
     /// The handle's part of a view.
     pub by_handle: bool,

@@ -17,8 +17,8 @@ pub(super) struct FoundPlace {
     pub(super) checked_px: f64,
 }
 
-/// Changes that write this lens to a rig file. The camera pose was found with another lens and is removed, unless a new one
-/// is given.
+/// Returns the changes that write this lens to a rig file. The camera pose was found with another lens and is removed,
+/// unless a new one is given.
 pub(super) fn changes(file: &RigFile, lens: &Lens, place: Option<FoundPlace>) -> Vec<RigChange> {
     let [width, height] = lens.size_px;
     let Bend { k1, k2, p1, p2 } = lens.bend;
@@ -58,7 +58,7 @@ pub(super) fn changes(file: &RigFile, lens: &Lens, place: Option<FoundPlace>) ->
     values.into_iter().map(change).filter(|change| change.before != change.after).collect()
 }
 
-/// Changes that undo these. A camera that did not exist before is removed again, without an empty table.
+/// Returns the changes that undo these. A camera that did not exist before is removed again, without an empty table.
 pub(super) fn undone(changes: &[RigChange]) -> Vec<RigChange> {
     let size = format!("{CAMERA}.size_px");
     if changes.iter().any(|change| change.key == size && change.before.is_none()) {

@@ -22,7 +22,7 @@ use crate::{command::output, report_text::ShortText as _, shutdown::Leave, stder
 const IMAGES: usize = 500;
 /// Maximum size of an image, bytes.
 const BYTES: u64 = 16 << 20;
-/// A camera is watched until no new view was captured for this time.
+/// A camera is observed until no new view has been captured for this time.
 const PATIENCE: Duration = Duration::from_mins(2);
 const NAP: Duration = Duration::from_millis(20);
 

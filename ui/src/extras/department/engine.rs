@@ -1,4 +1,4 @@
-//! The commands, in a build that has them.
+//! The commands of the department, in a build that has them.
 
 use std::{
     net::{Ipv6Addr, SocketAddr},
@@ -33,7 +33,7 @@ use crate::{
 const PORT: u16 = 7447;
 /// Time for rigs on the local network to respond.
 const ANSWER: Duration = Duration::from_millis(1500);
-/// A rig that is silent or missing is searched for again after this time.
+/// Time after which a silent or missing rig is searched for again.
 const AGAIN: Duration = Duration::from_secs(2);
 
 pub(super) fn run(command: &DepartmentCommand) -> anyhow::Result<()> {

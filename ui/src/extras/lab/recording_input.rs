@@ -10,7 +10,8 @@ use nima_session::plot_channels;
 /// First bytes of a session.
 const MAGIC: [u8; 5] = *b"\x89MCAP";
 
-/// `map` is for tables, `arm` for sessions. The leader's own motion is rejected, because callers do not use it.
+/// Reads a recording; `map` applies to tables, `arm` to sessions. The leader's own motion is rejected, because callers
+/// do not use it.
 pub(super) fn read(path: &Path, map: &[String], arm: Option<Side>) -> anyhow::Result<CsvRecording> {
     if ColumnMapping::parse(map)?.names_leader() {
         bail!("--map selects the leader's own motion, which only nima identify uses: omit it");
@@ -18,7 +19,7 @@ pub(super) fn read(path: &Path, map: &[String], arm: Option<Side>) -> anyhow::Re
     read_with_leader(path, map, arm)
 }
 
-/// Like [`read`], with the leader's own motion, if it is mapped.
+/// Like [`read`], with the leader's own motion if it is mapped.
 pub(super) fn read_with_leader(path: &Path, map: &[String], arm: Option<Side>) -> anyhow::Result<CsvRecording> {
     let mapping = ColumnMapping::parse(map)?;
     if !is_session(path) {

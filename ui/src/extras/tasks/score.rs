@@ -86,7 +86,7 @@ fn task_of(path: &Path) -> anyhow::Result<TaskFile> {
     TaskFile::from_toml(&text).with_context(|| path.display().to_string())
 }
 
-/// Returns the task of the session's scene. Without recorded events there is nothing to count: then it is free motion.
+/// Returns the task of the session's scene. Without recorded events there is nothing to count, so it is free motion.
 fn recorded_task(session: &Path, reader: &SessionReader) -> anyhow::Result<TaskFile> {
     let scene = reader.attachments().iter().find(|one| one.name == SCENE).filter(|_| objects::are_reported(reader));
     let Some(scene) = scene else { return Ok(TaskFile::from_toml(FREE)?) };

@@ -1,4 +1,4 @@
-//! `nima follower`: the arm and its sensor at this machine, for a console at another one.
+//! `nima follower`: the arm and its sensor on this machine, for a console on another one.
 
 use std::path::PathBuf;
 

@@ -55,7 +55,7 @@ pub(super) fn listen(rig: &mut RigConfig, scene: &Scene, at: SocketAddr) -> anyh
     open(arms(rig, scene), EndpointRole::Follower { at: Some(at), consoles }, keys, RigEnds::Follower)
 }
 
-/// The tools of a follower belong to its own simulated hand, which would do the task by itself.
+/// Removes the objects: a follower's tools belong to its own simulated hand, which would perform the task by itself.
 fn without_objects(scene: &Scene) -> anyhow::Result<()> {
     anyhow::ensure!(
         !scene.is_played(),
@@ -81,7 +81,7 @@ fn open(arms: usize, role: EndpointRole, keys: NetworkKeys, ends: RigEnds) -> an
     Ok(Box::new(NetworkLine::new(endpoint, ends)))
 }
 
-/// Folder of this machine's key and of the paired machines.
+/// Returns the folder of this machine's key and of the paired machines.
 pub(super) fn folder() -> anyhow::Result<std::path::PathBuf> {
     let store = nima_recording::store::Store::of_user()?;
     let folder = store.folder().parent().context("no data folder was found; set NIMA_DATA_DIR")?;
@@ -116,7 +116,7 @@ pub(crate) fn address(host: &str) -> anyhow::Result<SocketAddr> {
     found.next().with_context(|| format!("the machine \"{host}\" has no address"))
 }
 
-/// Listening address of a follower, with the default port if it has none; loopback without an address.
+/// Returns the listening address of a follower, with the default port if it has none; loopback without an address.
 pub(super) fn listening(at: Option<&str>) -> anyhow::Result<SocketAddr> {
     at.map_or_else(|| Ok((Ipv4Addr::LOCALHOST, PORT).into()), address)
 }

@@ -96,7 +96,7 @@ mod tests {
     struct Three {
         _folder: tempfile::TempDir,
         ends: [NetworkLine; 3],
-        /// Number of running ones: the first controls the follower.
+        /// Number of running consoles: the first one controls the follower.
         running: usize,
         begun: Instant,
     }
@@ -127,7 +127,7 @@ mod tests {
             Self { _folder: folder, ends, running: 2, begun: Instant::now() }
         }
 
-        /// Drives the running ones until this console's report matches, and shows it in the panel.
+        /// Drives the running consoles until this console's report matches, and shows it in the panel.
         fn until(&mut self, window: &mut Harness<'_, NetworkDoor>, control: ControlRole) {
             while window.state().newest().is_none_or(|report| report.control != control) {
                 assert!(self.begun.elapsed() < Duration::from_mins(1), "never {control:?}: {:?}", window.state());

@@ -81,7 +81,7 @@ pub(super) fn by_key(console: &mut Console, action: Action) {
     console.run_steps(4);
 }
 
-/// From the same state, the palette has the same effect as the key or the button.
+/// Checks that, from the same state, the palette has the same effect as the key or the button.
 pub(super) fn alike(
     console: &mut Console,
     action: Action,

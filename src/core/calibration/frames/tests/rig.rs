@@ -127,7 +127,7 @@ impl Rig {
         }
     }
 
-    /// Samples of this many poses from a pool.
+    /// Returns the samples of this many poses from a pool.
     pub(crate) fn samples(&mut self, pool: &[Isometry3<f64>], count: usize) -> Vec<FrameSample> {
         let any = |rig: &mut Self| pool[(rig.noise.uniform() * pool.len() as f64) as usize];
         (0..count).map(|_| any(self)).collect::<Vec<_>>().iter().map(|at| self.sample(at)).collect()

@@ -65,7 +65,7 @@ impl Firmware {
         }
     }
 
-    /// Output of the motors.
+    /// Returns the output of the motors.
     pub(super) const fn applied(&self) -> &MotorOutput {
         &self.applied
     }

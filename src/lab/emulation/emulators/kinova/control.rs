@@ -120,7 +120,7 @@ impl KinovaControl {
     }
 }
 
-/// Upper bounds of all limits: the arm's own limits.
+/// Returns the upper bounds of all limits: the arm's own limits.
 fn hard(mode: u32) -> KinematicLimits {
     KinematicLimits {
         mode,

@@ -93,7 +93,7 @@ impl Ticking {
     }
 }
 
-/// Sessions without a driver, for calls that the driver never makes.
+/// Returns the sessions without a driver, for calls that the driver never makes.
 fn raw(settings: &KinovaSettings) -> KinovaLines {
     let mut lines = KinovaLines::connect(settings).unwrap();
     lines.log_in(settings).unwrap();

@@ -185,7 +185,7 @@ pub(super) fn horizon(
     Ok(AtHorizon { name, recipe, delay_s, literal, dfr, stiffness_p99_n_m })
 }
 
-/// Fraction of windows with a degree above 1, among those with a chosen degree.
+/// Fraction of windows with a degree above 1, among those with a selected degree.
 #[derive(Default)]
 struct NonlinearFraction {
     yes: u32,

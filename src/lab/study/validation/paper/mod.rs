@@ -37,7 +37,7 @@ pub struct PaperOptions {
 pub struct PaperEntry {
     /// Name of the condition or recording.
     pub name: String,
-    /// How the hand worked and the force was measured; absent for a recording.
+    /// Conditions of hand and measurement; absent for a recording.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub conditions: Option<Conditions>,
     /// Results, in N or in the recording's unit.

@@ -100,7 +100,7 @@ fn pair(figures: &RenderingFigures) -> String {
     format!("{} +- {}", number(figures.mae_n), number(figures.sd_n))
 }
 
-/// Three digits where they are readable, otherwise an exponent.
+/// Formats a number with three digits if they are readable, otherwise with an exponent.
 fn number(value: f64) -> String {
     match value {
         large if large >= 1e3 => format!("{large:.0e}"),

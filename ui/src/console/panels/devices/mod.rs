@@ -45,7 +45,7 @@ pub enum RigEdit {
 struct Test {
     /// Indices in the roster.
     places: Vec<usize>,
-    /// Number of its first block.
+    /// Number of the first block.
     from: u64,
     began: std::time::Instant,
 }
@@ -69,7 +69,7 @@ impl DevicesState {
         self.report = Some(report);
     }
 
-    /// Discards everything known about the previous devices.
+    /// Discards all data about the previous devices.
     pub(in crate::console) fn begin_anew(&mut self) {
         self.test = None;
         self.chooser = None;

@@ -91,7 +91,7 @@ fn groups(checkup: &Checkup) -> Vec<Group<'_>> {
     groups
 }
 
-/// Lowest and highest reading; one number if they hardly differ.
+/// Returns the lowest and highest reading; one number if they hardly differ.
 fn span(one: &CheckupNumber, scale: f64) -> String {
     let [low, high] = [one.low, one.high].map(|value| short(value * scale));
     if low == high { low } else { format!("{low}\u{2026}{high}") }

@@ -9,12 +9,12 @@ use nima_machine::{
 
 use crate::console::{live::LiveState, outbox::Outbox};
 
-/// The hand releases the handle when it presses at least this hard, N, and grips it again after this time, s.
+/// The hand releases the handle when it presses with at least this force, N, and grips it again after this time, s.
 const LET_GO_N: f64 = 1.5;
 const OPEN_S: f64 = 2.5;
 /// Time until the next release, s.
 const CLOSED_S: f64 = 2.5;
-/// Maximum time of the engagement after that, s; it fails after [`nima_core::safety::READY_WITHIN_S`].
+/// Maximum time until the engagement after that, s; it fails after [`nima_core::safety::READY_WITHIN_S`].
 const RETURNS_S: f64 = 2.5;
 
 /// The hand, and the travel of its handle.

@@ -62,7 +62,7 @@ pub(super) struct Recovery {
     trouble: EngagementEnd,
     /// Time for which the cause has been explained to a viewer, s; a pause between frames does not count.
     explained_s: f64,
-    /// The last requested command, and the time of its next repetition, s of that time.
+    /// Last requested command, and the time of its next repetition, s.
     asked: Option<(Command, f64)>,
 }
 
@@ -98,7 +98,7 @@ impl Recovery {
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct PersonsStop {
     counted: Option<u64>,
-    /// Time at which it was pressed, s on the loop's clock.
+    /// Time at which the stop was pressed, s on the loop's clock.
     at_s: Option<f64>,
 }
 

@@ -23,7 +23,7 @@ pub(super) struct ScriptStep {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum GovernorAction {
     Watches,
-    /// Off, to show its purpose.
+    /// Switched off, to show its purpose.
     LeftOut,
 }
 

@@ -51,7 +51,7 @@ impl DemoState {
         }
     }
 
-    /// Another loop is running, with its own settings.
+    /// Restarts for another loop, with its own settings.
     pub fn begin_anew(&mut self) {
         *self = Self { step: self.step, held: self.held, ..Self::default() };
     }

@@ -1,4 +1,4 @@
-//! The demonstration on synthetic ticks: its time, its faults, and who may end a stop.
+//! Tests of the demonstration on synthetic ticks: its timing, its faults, and who may end a stop.
 
 use nima_core::safety::TransitionCause;
 use nima_machine::{
@@ -60,7 +60,7 @@ impl Show {
         self.live.replay(raised.iter().chain([&changed]), &[Some(self.tick), None]);
     }
 
-    /// Commands sent in one frame.
+    /// Returns the commands sent in one frame.
     fn frame(&mut self) -> Vec<Command> {
         self.tick.t_s += 1.0 / self.rate_hz;
         self.live.replay([].iter(), &[Some(self.tick), None]);
@@ -68,7 +68,7 @@ impl Show {
         self.outbox.sent()
     }
 
-    /// Commands sent in this time, s.
+    /// Returns the commands sent in this time, s.
     fn frames(&mut self, seconds: f64) -> Vec<Command> {
         (0..(seconds * self.rate_hz).round() as usize).flat_map(|_| self.frame()).collect()
     }
@@ -124,7 +124,7 @@ fn resumes(commands: &[Command]) -> Vec<Command> {
     commands.iter().filter(is_way_back).copied().collect()
 }
 
-/// Start of each chapter of a whole round.
+/// Returns the start of each chapter of a whole round.
 fn began_s(rate_hz: f64) -> Vec<f64> {
     let mut show = Show { rate_hz, ..Show::of("simulated") };
     let mut began_s = Vec::new();

@@ -225,7 +225,8 @@ pub fn frame_kept(
     }
 }
 
-/// Changes of the last saved calibration of this kind to the rig file; empty if there is none for this sensor and tool.
+/// Returns the changes of the last saved calibration of this kind to the rig file; empty if there is none for this
+/// sensor and tool.
 pub(super) fn last_changes(store: &Store, kind: FrameKind, handle: bool, wrist: [&str; 2]) -> Vec<RigChange> {
     frame_kept(store, kind, handle, wrist).ok().flatten().map(|kept| kept.rig).unwrap_or_default()
 }

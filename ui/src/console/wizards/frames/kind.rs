@@ -38,7 +38,7 @@ pub(super) struct Texts {
     pub(super) task: &'static str,
     /// Name of the recorded items.
     pub(super) units: &'static str,
-    /// The alternative method, and its meaning.
+    /// Alternative method, and its meaning.
     pub(super) other_way: Option<[&'static str; 2]>,
 }
 
@@ -135,7 +135,7 @@ impl FrameKind {
         }
     }
 
-    /// Instruction after `taken` records; `target` is the next pose of the list.
+    /// Returns the instruction after `taken` records; `target` is the next pose of the list.
     pub(super) fn prompt(self, other_way: bool, taken: usize, target: impl Fn() -> PoseTarget) -> Prompt {
         let asked = ViewSettings::by_arm(Vector3::zeros()).asked(taken);
         match self {

@@ -87,7 +87,7 @@ pub struct FrameWizard {
     /// Loop time, which starts at zero with each start of the loop, and session time, which continues, s.
     clock_s: (f64, f64),
     report: WizardReport<Outcome>,
-    /// Changes of the last saved calibration, if the rig file still has these values.
+    /// A gravity direction this close to a listed one replaces it, rad.
     undoable: Vec<RigChange>,
 }
 

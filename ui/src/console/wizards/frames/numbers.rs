@@ -27,7 +27,7 @@ pub(super) enum NumberUnit {
 pub(super) struct FrameNumber {
     pub(super) key: String,
     pub(super) unit: NumberUnit,
-    /// Value in the rig file; `None` if it has none.
+    /// Value in the rig file; `None` if the file has none.
     pub(super) before: Option<Vec<f64>>,
     pub(super) after: Vec<f64>,
 }
@@ -181,7 +181,8 @@ fn trocar(found: &TrocarResult, subject: &FrameSubject) -> Option<(Vec<FrameNumb
     Some((vec![number], FrameEffect::of_points(before_m, after_m)))
 }
 
-/// The table's frame is the workspace: the base gets its pose in it, and the trocar, which has not moved, is transformed too.
+/// Returns the new pose of the base: the table's frame is the workspace, and the trocar, which has not moved, is
+/// transformed too.
 fn table(found: &TableResult, subject: &FrameSubject) -> (Vec<FrameNumber>, FrameEffect) {
     let before = subject.arm.world_from_base;
     let after = found.from_table.pose().inverse();

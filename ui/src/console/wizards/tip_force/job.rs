@@ -23,7 +23,7 @@ use nima_training::{Evaluation, EvaluationPart, TrainingProgress, check, train_m
 use crate::console::text;
 use crate::language::{self, Language};
 
-/// A background thread. Dropping this requests it to stop; it then ends on its own, and its result is discarded.
+/// A background thread. Dropping this asks it to stop; the thread then ends on its own, and its result is discarded.
 #[derive(Debug)]
 pub(super) struct TrainingJob<T> {
     cancel: Arc<AtomicBool>,
@@ -169,7 +169,7 @@ pub(super) struct CheckResult {
 }
 
 /// Evaluates a model on a new recording, which is saved next to the data set. If the training data were incomplete
-/// (`narrow`), the model is not accepted, whatever its errors.
+/// (`narrow`), the model is not accepted, however small its errors are.
 pub(super) fn judge(
     recorder: &TipForceRecorder,
     model: ForceModel,

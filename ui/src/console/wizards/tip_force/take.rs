@@ -6,7 +6,7 @@ use nima_recording::tip_force::{MAX_ROWS, RecorderPhase, TipForceRecorder};
 
 use crate::{console::text, report_text::ShortText as _};
 
-/// A gap in the ticks longer than this, s, means that the rig was not observed meanwhile.
+/// A gap in the ticks longer than this, s, means that the rig was not observed during the gap.
 const HOLE_S: f64 = 1.0;
 
 /// A continuous clock: the loop's clock starts at zero with each start.

@@ -145,7 +145,7 @@ fn curves_ui(ui: &mut Ui, curves: &Curves) {
     response.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, described.clone()));
 }
 
-/// Marks at 1, 2 and 5 in each decade; values are in decades.
+/// Returns the marks at 1, 2 and 5 in each decade; values are in decades.
 fn whole_decades(grid: &GridInput) -> Vec<GridMark> {
     let low = grid.bounds.0.max(-12.0);
     let high = grid.bounds.1.min(12.0);

@@ -72,7 +72,7 @@ pub(super) fn image_ui(
     }
 }
 
-/// Draws the covered area: bright cells have corners, dark ones do not; nothing where the image is black.
+/// Draws the covered area: bright cells have corners, dark cells have none; nothing is drawn where the image is black.
 pub(super) fn coverage_ui(ui: &mut Ui, coverage: &CameraCoverage, size_px: [usize; 2]) {
     let height = MAP_WIDTH * size_px[1] as f32 / size_px[0].max(1) as f32;
     let (rect, response) = ui.allocate_exact_size(vec2(MAP_WIDTH, height + 20.0), Sense::hover());

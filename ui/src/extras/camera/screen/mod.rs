@@ -76,7 +76,7 @@ pub(super) struct CameraWizard {
     tip: CameraTip,
     /// The endoscope's marker while the board is at rest, if its pose is known.
     marker: EndoscopeMarker,
-    /// The board at rest while it is touched, and the previous sight, which must be the same.
+    /// The board at rest while it is touched, and the previous detection, which must be the same.
     base: Option<BoardSight>,
     lying: Option<BoardSight>,
     moved: bool,

@@ -1,4 +1,4 @@
-//! The instrument's tip while it is held still on a corner of the board, and the endoscope's marker meanwhile.
+//! The instrument's tip while it is held still on a corner of the board, and the endoscope's marker at that time.
 
 use std::collections::VecDeque;
 

@@ -34,7 +34,7 @@ pub(in crate::extras::lab) struct TradeoffPanel {
     message: String,
 }
 
-/// A background sweep. Dropping it requests its end.
+/// A background sweep. Dropping it asks the sweep to end.
 #[derive(Debug)]
 struct SweepJob {
     cancel: Arc<AtomicBool>,
@@ -249,7 +249,7 @@ fn figures_of(point: &SweepPoint) -> String {
     format!("{} µs, {} N", three_digits(point.cost_us.p50), three_digits(point.error))
 }
 
-/// Hover text of a point.
+/// Returns the hover text of a point.
 pub(super) fn words(point: &SweepPoint) -> String {
     let front = if point.pareto { text::ON_FRONT.get() } else { "" };
     let [median_us, p99_us, error_n, ratio] =

@@ -9,12 +9,12 @@ use nima_study::tradeoff::ParameterChoice;
 
 use crate::console::live::LiveState;
 
-/// How the loop changes to a choice.
+/// Method by which the loop changes to a choice.
 #[derive(Clone, Debug)]
 pub(super) enum Apply {
     /// By commands to the running loop.
     AtOnce([Command; 3]),
-    /// By a restart with this rig: degree and window cannot change while the loop runs.
+    /// By a restart with this rig, because degree and window cannot change while the loop runs.
     Restart(Box<RigConfig>),
 }
 
@@ -90,7 +90,7 @@ mod tests {
         sweep(std::slice::from_ref(source), plan, &AtomicBool::new(false), |_, _| {}).unwrap().sources.remove(0)
     }
 
-    /// Every point that can be on the front. Measured times decide which of them are.
+    /// Returns every point that can be on the front. The measured times decide which of them are.
     fn grid(figures: &SourceFigures) -> Vec<SweepPoint> {
         let curves = figures.curves.iter().filter(|curve| curve.knob == Knob::Grid);
         curves.flat_map(|curve| &curve.points).map(|&index| figures.points[index]).collect()

@@ -124,7 +124,7 @@ fn nearest(points: &[SweepPoint], shown: &[usize], (low, high): &PlotRange, at: 
     shown.iter().copied().min_by(|&a, &b| distance(a).total_cmp(&distance(b))).filter(|&i| distance(i) < NEAR)
 }
 
-/// Marks at 1, 2 and 5 of every decade, or only at decades if there are many.
+/// Returns the marks at 1, 2 and 5 of every decade, or only at decades if there are many.
 fn marks(grid: &GridInput) -> Vec<GridMark> {
     let (low, high) = grid.bounds;
     if !(low.is_finite() && high.is_finite()) || high - low > 60.0 {

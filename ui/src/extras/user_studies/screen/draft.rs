@@ -141,7 +141,8 @@ impl Draft {
         self.scenes.iter().find(|place| place.of == self.file.scene)
     }
 
-    /// Chooses another scene, with its task. Measures that are not available there are removed, with the rules that use them.
+    /// Selects another scene, with its task. Measures that are not available there are removed, with the rules that use
+    /// them.
     pub(super) fn choose(&mut self, at: usize) {
         let Some(place) = self.scenes.get(at).filter(|place| place.of != self.file.scene).cloned() else { return };
         self.measures = place.measures();
@@ -188,7 +189,7 @@ impl Draft {
         });
     }
 
-    /// Removes a condition; references to it are cleared.
+    /// Adds a condition that does not yet differ from the others.
     pub(super) fn remove(&mut self, gone: usize) {
         self.file.conditions.remove(gone);
         let moved = |at: Option<usize>| at.filter(|at| *at != gone).map(|at| at - usize::from(at > gone));

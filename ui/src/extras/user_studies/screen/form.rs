@@ -332,7 +332,7 @@ pub(super) fn seconds_ui(ui: &mut Ui, name: &str, value_s: &mut f64, range_s: Ra
     ui.end_row();
 }
 
-/// One of these conditions, or none of them.
+/// Draws a choice of one of these conditions, or none.
 fn choice_ui(ui: &mut Ui, name: &str, chosen: &mut Option<usize>, names: &[String], none: &str) {
     let label = ui.label(weak(name));
     let shown = chosen.and_then(|at| names.get(at)).map_or(none, String::as_str);

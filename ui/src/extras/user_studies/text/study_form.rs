@@ -148,7 +148,7 @@ pub(in crate::extras::user_studies) fn leave_off_hover(meaning: &str) -> String 
     text_format!("{meaning} Click to remove it.", "{meaning} Klick entfernt sie.")
 }
 
-/// Accessible name of the control of a rule.
+/// Returns the accessible name of the control of a rule.
 pub(in crate::extras::user_studies) fn of_rule(what: &str, number: usize) -> String {
     text_format!("Rule {number}: {what}", "Regel {number}: {what}")
 }
@@ -195,7 +195,7 @@ pub(in crate::extras::user_studies) fn made(folder: &Path) -> String {
     )
 }
 
-/// Accessible name of the control of a condition.
+/// Returns the accessible name of the control of a condition.
 pub(in crate::extras::user_studies) fn of_condition(what: &str, number: usize) -> String {
     format!("{what} {number}")
 }

@@ -135,7 +135,7 @@ impl Mode {
         modes
     };
 
-    /// One of the program's own modes in the list.
+    /// Returns the entry in the list if this is one of the program's own modes.
     const fn own(self) -> Option<&'static Entry> {
         match self {
             Self::Baseline(_) => None,

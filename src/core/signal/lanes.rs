@@ -57,7 +57,7 @@ impl Lanes {
         Self([f(a0, b0), f(a1, b1), f(a2, b2), f(a3, b3)])
     }
 
-    /// Each lane kept between two bounds.
+    /// Returns each lane, limited to two bounds.
     #[must_use]
     #[inline(always)]
     pub fn within(self, low: Self, high: Self) -> Self {

@@ -220,7 +220,7 @@ pub struct ForceDimensionStatus {
     pub force_off: ForceOffCause,
     /// The locks are closed (the value -1, unknown, counts as false).
     pub locks: bool,
-    /// The axes have been checked.
+    /// Whether the axes have been checked.
     pub axis_checked: bool,
 }
 

@@ -40,7 +40,7 @@ pub(crate) fn bundle(rig: &str, number: u64) -> String {
     format!("nima/session/{rig}/{number}")
 }
 
-/// All bundles; see [`bundle`].
+/// Returns the key that matches all bundles; see [`bundle`].
 pub(crate) fn bundles(rig: &str) -> String {
     format!("nima/session/{rig}/*")
 }
@@ -50,7 +50,7 @@ pub(crate) fn watcher(rig: &str, watcher: &str) -> String {
     format!("nima/watcher/{rig}/{watcher}")
 }
 
-/// All watchers; see [`watcher`].
+/// Returns the key that matches all watchers; see [`watcher`].
 pub(crate) fn watchers(rig: &str) -> String {
     format!("nima/watcher/{rig}/*")
 }

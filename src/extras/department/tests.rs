@@ -273,7 +273,7 @@ fn a_screen_that_is_too_slow_makes_nobody_wait() {
     wait("three seconds", || times.lock().unwrap().len() >= 60);
     let times = times.lock().unwrap();
     let took = times[59].duration_since(times[0]);
-    // 59 bundles of 50 ms.
+    // The 60 bundles, one every 50 ms, should take about 3 s.
     assert!(took < Duration::from_secs(30), "{took:?}: as slow as the slow one");
     assert_eq!(share.dropped(), 0, "the recorder was never kept waiting");
     running.end();

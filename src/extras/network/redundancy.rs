@@ -281,7 +281,7 @@ impl Losses {
         if all < 100.0 { 0.0 } else { (f64::from(overtaken) / all).min(1.0) }
     }
 
-    /// All datagrams that should have arrived, and those that did not.
+    /// Returns the numbers of datagrams that should have arrived and of those that did not.
     pub const fn totals(&self) -> (u64, u64) {
         (self.all, self.lost)
     }

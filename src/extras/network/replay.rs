@@ -32,7 +32,7 @@ const fn place(number: u64) -> (usize, u64) {
 }
 
 impl ReplayWindow {
-    /// One more than the highest accepted number; 0 before the first.
+    /// Returns one more than the highest accepted number; 0 before the first.
     pub const fn next(&self) -> u64 {
         self.next
     }

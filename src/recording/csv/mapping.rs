@@ -30,7 +30,7 @@ impl ColumnSource {
         &self.column
     }
 
-    /// Factor to SI units.
+    /// Returns the factor to SI units.
     pub const fn scale(&self) -> f64 {
         self.scale
     }

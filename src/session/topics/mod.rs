@@ -117,7 +117,8 @@ const POSES: [&str; 6] = ["tip.x_m", "tip.y_m", "tip.z_m", "leader.x_m", "leader
 /// In addition to one column for each gate: 1 while it acted.
 pub(crate) const OF_GATES: [&str; 5] = ["gain_value", "stored_j", "withheld_n", "governed", "state"];
 
-/// Every topic of named numbers of this program: its name, the names of its numbers, and whether they are forces.
+/// Returns every topic of named numbers of this program: its name, the names of its numbers, and whether they are
+/// forces.
 pub(crate) fn plots() -> Vec<(String, Vec<String>, bool)> {
     let of_side = |side: Side| {
         let parts = [

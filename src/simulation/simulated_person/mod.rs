@@ -255,7 +255,7 @@ impl Person {
         self.stand = Vector3::from_fn(|_, _| leans_n * self.noise.gaussian());
     }
 
-    /// A random direction in the lower half of the x-z plane.
+    /// Returns a random direction in the lower half of the x-z plane.
     fn somewhere_down(&mut self) -> Vector3<f64> {
         let angle = self.between([0.0, std::f64::consts::PI]);
         Vector3::new(angle.cos(), 0.0, -angle.sin())

@@ -28,7 +28,7 @@ pub struct PlotTrace {
 }
 
 impl PlotTrace {
-    /// The runs, oldest first, each without a gap.
+    /// Returns the runs, oldest first, each without a gap.
     pub fn runs(&self) -> impl Iterator<Item = &[PlotPoint]> {
         let begins = std::iter::once(0).chain(self.breaks.iter().copied());
         let ends = self.breaks.iter().copied().chain(std::iter::once(self.points.len()));

@@ -170,7 +170,7 @@ pub(super) fn timing(session: &SessionFigures) -> Markup {
     section("Timing", &body)
 }
 
-/// One column per session.
+/// Returns the comparison table, with one column per session.
 pub(super) fn comparison(sessions: &[SessionFigures]) -> Markup {
     let heads: Vec<String> = std::iter::once(String::new()).chain(sessions.iter().map(name)).collect();
     let about = |key: &'static str| {

@@ -154,7 +154,7 @@ fn moved(kind: PartKind, channel: usize) -> [String; 2] {
     ]
 }
 
-/// Returns the both values have their unit.
+/// `is` and `max` include their unit.
 fn noisy(kind: PartKind, channel: usize, is: &str, max: &str) -> [String; 2] {
     let cure = match kind {
         PartKind::Sensor => word(
@@ -195,7 +195,7 @@ fn gravity(size_m_s2: f64) -> [String; 2] {
     ]
 }
 
-/// Returns the both values have their unit.
+/// `is` and `range` include their unit.
 fn at_the_end(kind: PartKind, channel: usize, is: &str, range: &str) -> [String; 2] {
     let cure = match kind {
         PartKind::Servos => word(

@@ -50,7 +50,7 @@ pub(crate) fn quoted(message: &impl std::fmt::Display) -> String {
 
 /// A value with texts for its cause and its remedy.
 pub(crate) trait Remedy {
-    /// One sentence.
+    /// Returns one sentence.
     fn cause(self) -> &'static str;
     fn cure(self) -> &'static str;
 }

@@ -162,7 +162,7 @@ fn planted(session: &str, to: &Path) {
     writer.finish().unwrap();
 }
 
-/// All bytes of a session: the raw file, and its decompressed content.
+/// Returns all bytes of a session: the raw file, and its decompressed content.
 fn all_bytes(path: &Path) -> Vec<u8> {
     let reader = SessionReader::open(path).unwrap();
     let mut bytes = std::fs::read(path).unwrap();

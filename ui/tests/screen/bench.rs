@@ -105,7 +105,7 @@ pub(crate) fn shows<A>(window: &Harness<'_, A>, words: &str) -> bool {
     window.query_all_by_label_contains(words).next().is_some()
 }
 
-/// All visible texts, for failure messages.
+/// Returns all visible texts, for failure messages.
 pub(crate) fn texts<A>(window: &Harness<'_, A>) -> Vec<String> {
     let words = |node: Node<'_>| node.accesskit_node().value().or_else(|| node.accesskit_node().label());
     window.query_all_by_label_contains("").filter_map(words).collect()

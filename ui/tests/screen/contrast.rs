@@ -26,7 +26,7 @@ struct Painted {
     ground: Color32,
 }
 
-/// All texts of the frame, over the filled rectangles painted before.
+/// Returns all texts of the frame, over the filled rectangles painted before.
 fn painted(console: &Console) -> Vec<Painted> {
     fn add(shape: &Shape, clip: Rect, grounds: &mut Vec<(Rect, Color32)>, texts: &mut Vec<Painted>) {
         match shape {

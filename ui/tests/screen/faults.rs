@@ -24,7 +24,7 @@ pub(crate) struct Text {
     cut: bool,
 }
 
-/// All texts of the last frame.
+/// Returns all texts of the last frame.
 pub(crate) fn texts<A>(harness: &Harness<'_, A>) -> Vec<Text> {
     fn add(shape: &Shape, clip: Rect, texts: &mut Vec<Text>) {
         match shape {

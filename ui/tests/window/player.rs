@@ -397,7 +397,7 @@ impl<'a> Player<'a> {
         self.settle("back in the middle", false);
     }
 
-    /// The score of the recorded session, after the window was closed.
+    /// Closes the window and returns the score of the recorded session.
     pub(crate) fn end(mut self) -> serde_json::Value {
         thread::sleep(Duration::from_millis(1200));
         let summary = self.console.end();

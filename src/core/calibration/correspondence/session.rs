@@ -51,7 +51,7 @@ pub enum MissingInput {
     /// The gravity-free force at the wrist: the sensor is silent or gravity is not calibrated.
     WristForce,
     TissueForce,
-    /// A rotation of the chain, from arm or tracker.
+    /// A rotation in the chain between the frames, which the arm or the tracker measures.
     Chain,
     /// A number is not finite, or the time does not increase.
     Sense,

@@ -220,7 +220,8 @@ impl Calibration for ViewSettings {
         let turn = Rotation3::from_matrix_unchecked(found.model);
         let from_view_wxyz = wxyz(&UnitQuaternion::from_rotation_matrix(&turn));
         let value = ViewResult { carrier: self.carrier, from_view_wxyz };
-        // Each direction determines two rotation angles; n directions spread over all axes provide 2 n / 3 for each.
+        // Each direction determines two of the three rotation angles, so n directions spread over all axes determine each
+        // angle 2 n / 3 times.
         let kept = found.kept.len();
         let freedom = (2 * kept).saturating_sub(3).max(1);
         let variance = found.squares_rad2() / freedom as f64 * 1.5 / kept as f64;

@@ -112,7 +112,7 @@ impl Sdk {
     pub(super) fn version(&self) -> [c_int; 4] {
         let mut numbers = [0; 4];
         let [major, minor, release, revision] = &mut numbers;
-        // SAFETY: four ints that live through the call.
+        // SAFETY: four ints that outlive the call.
         unsafe { (self.functions.sdk_version)(major, minor, release, revision) };
         numbers
     }
@@ -125,7 +125,7 @@ impl Sdk {
             .emulate_handle
             .ok_or_else(|| refuse("it is not the replacement library that an emulated handle needs"))?;
         let text = CString::new(address).map_err(|_| refuse("the emulated handle's address contains a zero byte"))?;
-        // SAFETY: a C string that lives through the call.
+        // SAFETY: a C string that outlives the call.
         if unsafe { function(text.as_ptr()) } == 0 {
             Ok(())
         } else {
@@ -182,7 +182,7 @@ impl OpenDevice {
 
     pub(super) fn serial(&self) -> Result<u16, SdkError> {
         let mut serial = 0;
-        // SAFETY: one unsigned short that lives through the call.
+        // SAFETY: one unsigned short that outlives the call.
         self.checked(unsafe { (self.sdk.functions.serial)(&raw mut serial, self.id) })?;
         Ok(serial)
     }
@@ -203,7 +203,7 @@ impl OpenDevice {
 
     pub(super) fn firmware(&self) -> Result<f64, SdkError> {
         let mut version = 0.0;
-        // SAFETY: one double that lives through the call.
+        // SAFETY: one double that outlives the call.
         self.checked(unsafe { (self.sdk.functions.firmware)(&raw mut version, self.id) })?;
         Ok(version)
     }
@@ -211,7 +211,7 @@ impl OpenDevice {
     pub(super) fn status(&self) -> Result<ForceDimensionStatus, SdkError> {
         // Longer than the array of any version of the SDK.
         let mut entries = [0; 4 * ENTRIES];
-        // SAFETY: an array of ints, longer than what the library writes, that lives through the call.
+        // SAFETY: an array of ints, longer than what the library writes, that outlives the call.
         self.checked(unsafe { (self.sdk.functions.status)(entries.as_mut_ptr(), self.id) })?;
         Ok(entries.first_chunk().map(ForceDimensionStatus::decode).unwrap_or_default())
     }
@@ -254,7 +254,7 @@ impl OpenDevice {
     /// Returns the velocity threshold, in the device's own unit.
     pub(super) fn velocity_threshold(&self) -> Result<u32, SdkError> {
         let mut threshold = 0;
-        // SAFETY: one unsigned int that lives through the call.
+        // SAFETY: one unsigned int that outlives the call.
         self.checked(unsafe { (self.sdk.functions.velocity_threshold)(&raw mut threshold, self.id) })?;
         Ok(threshold)
     }
@@ -264,14 +264,14 @@ impl OpenDevice {
         let [mut x, mut y, mut z] = [0.0; 3];
         let mut frame = [0.0; 9];
         let places = (&raw mut x, &raw mut y, &raw mut z, frame.as_mut_ptr());
-        // SAFETY: three doubles and an array of three by three that live through the call.
+        // SAFETY: three doubles and an array of three by three that outlive the call.
         let code = unsafe { (self.sdk.functions.pose)(places.0, places.1, places.2, places.3, self.id) };
         self.checked(code).map(|success| (([x, y, z], frame), success))
     }
 
     pub(super) fn gripper_rad(&self) -> Result<f64, SdkError> {
         let mut angle = 0.0;
-        // SAFETY: one double that lives through the call.
+        // SAFETY: one double that outlives the call.
         self.checked(unsafe { (self.sdk.functions.gripper)(&raw mut angle, self.id) })?;
         Ok(angle)
     }
@@ -279,7 +279,7 @@ impl OpenDevice {
     /// Returns the velocity, m/s; an error until two positions were read within its averaging window.
     pub(super) fn velocity_m_s(&self) -> Result<[f64; 3], SdkError> {
         let [mut x, mut y, mut z] = [0.0; 3];
-        // SAFETY: three doubles that live through the call.
+        // SAFETY: three doubles that outlive the call.
         let code = unsafe { (self.sdk.functions.velocity)(&raw mut x, &raw mut y, &raw mut z, self.id) };
         self.checked(code)?;
         Ok([x, y, z])

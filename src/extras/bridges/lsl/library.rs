@@ -124,7 +124,7 @@ impl Lsl {
     /// Creates a stream of texts.
     pub(super) fn stream(&self, info: &Info<'_>) -> Result<LslStream, LslError> {
         let [name, kind, source] = [info.name, info.kind, info.source].map(text);
-        // SAFETY: C strings that live through the call, which copies them.
+        // SAFETY: C strings that outlive the call, which copies them.
         let described =
             unsafe { (self.create_streaminfo)(name.as_ptr(), kind.as_ptr(), 1, IRREGULAR, STRINGS, source.as_ptr()) };
         if described.is_null() {
@@ -132,7 +132,7 @@ impl Lsl {
         }
         for (name, value) in info.about {
             let [name, value] = [name, value].map(|of| text(of));
-            // SAFETY: the description is valid until it is destroyed below; the strings live through the call.
+            // SAFETY: the description is valid until it is destroyed below; the strings outlive the call.
             unsafe { (self.append_child_value)((self.get_desc)(described), name.as_ptr(), value.as_ptr()) };
         }
         // SAFETY: the description is valid; the outlet keeps a copy of it.
@@ -179,7 +179,7 @@ impl LslStream {
     pub(super) fn push(&self, what: &str, at_s: f64) {
         let what = text(what);
         let sample = [what.as_ptr()];
-        // SAFETY: the outlet is valid; the C string for its only channel lives through the call, which copies it. The
+        // SAFETY: the outlet is valid; the C string for its only channel outlives the call, which copies it. The
         // call fails only for a wrong number of channels.
         unsafe { (self.lsl.push_sample_strtp)(self.outlet.as_ptr(), sample.as_ptr(), at_s, PUSH_THROUGH) };
     }

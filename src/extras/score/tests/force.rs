@@ -14,7 +14,7 @@ fn pressed(force_n: impl Fn(f64) -> Vector3<f64>, end_s: f64, more: &str) -> Sco
     trial(&task(more), end_s, hands, &[])
 }
 
-/// A force of 4 N, once per second, for 10 s, with the threshold at half of it.
+/// Returns a force of 4 N, once per second, for 10 s, with the threshold at half of it.
 fn sine() -> Score {
     pressed(
         |t_s| Vector3::new(0.0, 0.0, 4.0 * (2.0 * PI * t_s).sin()),

@@ -81,7 +81,7 @@ fn a_circle_has_the_known_speed_acceleration_and_jerk() {
     near("circle: path_length_m", of(&score, "path_length_m"), radius * turn * end_s, 1e-4);
     near("circle: mean_speed_m_per_s", of(&score, "mean_speed_m_per_s"), radius * turn, 1e-3);
     near("circle: mean_acceleration_m_per_s2", of(&score, "mean_acceleration_m_per_s2"), radius * turn * turn, 1e-2);
-    // The motion starts and ends accelerated, where the jerk is overestimated; this matters less in a longer trial.
+    // The motion is accelerated at its start and end, where the jerk is overestimated; this matters less in a longer trial.
     near("circle: mean_jerk_m_per_s3", of(&score, "mean_jerk_m_per_s3"), radius * turn.powi(3), 0.15);
     let long = trial(&task(""), 120.0, way, &[]);
     near("long circle: mean_jerk_m_per_s3", of(&long, "mean_jerk_m_per_s3"), radius * turn.powi(3), 0.015);

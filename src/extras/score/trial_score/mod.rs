@@ -123,8 +123,8 @@ impl ScoredTrial {
     }
 }
 
-/// Converts a time of the loop (s) to a session's form, in whole ns, so that a running loop has the same results as its
-/// recording.
+/// Converts a time of the loop (s) to its form in a session, which has whole ns, so that a running loop has the same
+/// results as its recording.
 fn as_recorded(t_s: f64) -> f64 {
     (t_s.max(0.0) * 1e9).round() / 1e9
 }
@@ -171,7 +171,7 @@ const fn hand_of(tip_m: Vector3<f64>, force_n: Vector3<f64>, rendered_n: Vector3
     HandSample { tip_m, jaw_rad: None, force_n, rendered_n, engaged, in_view: true }
 }
 
-/// Returns the both hands, tick by tick.
+/// Returns both hands, tick by tick.
 fn samples(
     reader: &SessionReader,
     path: &Path,

@@ -3,7 +3,7 @@ use std::{fs, path::Path};
 use super::{AT, TWO, again, file, made, score, trial};
 use crate::{StudyError, TrialEnding, UserStudy, order, seal};
 
-/// All names and bytes under a folder.
+/// Returns all names and bytes under a folder.
 fn everything(folder: &Path) -> Vec<u8> {
     let mut all = Vec::new();
     for entry in fs::read_dir(folder).unwrap() {

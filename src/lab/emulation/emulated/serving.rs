@@ -133,7 +133,7 @@ fn sensor(
     served(name, emulated.with(body))
 }
 
-/// Returns the both tips press on the same tissue.
+/// Returns a sensor under the tissue: both tips press on the same tissue.
 fn under_the_tissue(sides: &ServingSides) -> emulators::bota::BotaBody {
     let worlds: Vec<SharedWorld> = sides.iter().flatten().cloned().collect();
     Box::new(move |_| {

@@ -173,7 +173,7 @@ fn all_calibrations(side: Side) {
     for _ in 0..60_000 {
         let (sample, wrench) = bench.felt(&mut gravity, PersonTask::TipForce, prompt);
         recorder.step(bench.t_s, Some(&wrench), &sample);
-        // In the first second the tip covers the last millimetres into the trocar.
+        // Skip the first second (200 rows), in which the tip travels the last millimetres into the trocar.
         if recorder.rows() > 200 {
             beside_m = beside_m.max(bench.beside_trocar_m());
         }

@@ -111,7 +111,7 @@ impl EmulatedFault {
         }
     }
 
-    /// Every fault of every device, without `None`.
+    /// Returns every fault of every device, without `None`.
     pub fn every() -> impl Iterator<Item = Self> {
         Self::ALL.into_iter().chain(Self::OF_IMAGES).chain(Self::OF_SENSORS)
     }

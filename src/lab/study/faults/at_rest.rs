@@ -33,7 +33,7 @@ use crate::{
     },
 };
 
-/// Every fault of a file or of loaded data.
+/// Returns every fault of a file or of loaded data.
 pub(super) fn all() -> Result<Vec<Special>, FaultsError> {
     let folder = tempfile::tempdir().map_err(LiveFaultError::Scratch)?;
     let gravity = experiment::gravity(1)?;

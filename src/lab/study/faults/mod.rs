@@ -93,7 +93,7 @@ impl FaultPlace {
         Self::Faulted,
     ];
 
-    /// One word for tables.
+    /// Returns one word for tables.
     pub const fn word(self) -> &'static str {
         match self {
             Self::Disconnected => "no device",

@@ -215,7 +215,7 @@ impl NetworkBench {
         self.condition.ahead_s(f64::from(self.ticks()) / RATE_HZ)
     }
 
-    /// The ends of the stream: the console's and the follower's.
+    /// Returns the ends of the stream: the console's and the follower's.
     pub(super) const fn ends(&self) -> [&NetworkEnd; 2] {
         [self.console.rig.wire(), self.follower.rig.wire()]
     }

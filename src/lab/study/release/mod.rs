@@ -181,7 +181,7 @@ pub struct ReleaseStyle {
     pub contact_n: f64,
 }
 
-/// Every mode, the program's own first.
+/// Returns every mode, the program's own first.
 fn methods() -> impl Iterator<Item = Mode> {
     nima_baselines::provide();
     Mode::ALL.into_iter().chain(Mode::BASELINES)

@@ -114,7 +114,7 @@ pub struct TradeoffPlan {
 }
 
 impl TradeoffPlan {
-    /// All points of the full study.
+    /// Creates the plan with all points of the full study.
     pub fn full(base: ImpedanceSettings) -> Self {
         Self {
             base,

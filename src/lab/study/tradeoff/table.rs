@@ -10,7 +10,7 @@ const HEADER: &str = "source,unit,method,degree,window_ms,rate_hz,delay_ms,diffe
                       error,error_p50,error_p95,dfr_error,ratio,not_rendered,judged,pareto,knobs\n";
 
 impl SweepStudy {
-    /// All points of all sources as CSV. The column `knobs` names the curves that pass through the point.
+    /// Returns all points of all sources as CSV. The column `knobs` names the curves that pass through the point.
     pub fn csv(&self) -> String {
         let mut text = HEADER.to_owned();
         for figures in &self.sources {

@@ -84,7 +84,7 @@ fn of_condition(means: &Means<'_>, condition: &str, confidence: f64) -> Result<O
     let SampleSummary { n, mean, sd, median, .. } = SampleSummary::of(&values)?;
     let trials = means.iter().filter(|((_, of), _)| *of == condition).map(|(_, (_, count))| count).sum();
     let bootstrap = Bootstrap { confidence, ..Bootstrap::default() };
-    // Too few values, or all equal ones, have no interval.
+    // There is no interval for too few values, or if all are equal.
     let interval = bootstrap.median(&values).ok();
     Ok(OfCondition { condition: condition.to_owned(), participants: n, trials, median, interval, mean, sd })
 }

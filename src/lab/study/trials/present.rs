@@ -160,7 +160,7 @@ impl ConditionPair {
 }
 
 impl TrialReport {
-    /// One row per measure and pair.
+    /// Returns the table as CSV, with one row per measure and pair.
     fn csv(&self) -> String {
         let mut text = "measure,first,second,participants_first,participants_second,difference,lower,upper,p,exact,p_holm,rank_effect,hedges_g\n".to_owned();
         for measure in &self.measures {

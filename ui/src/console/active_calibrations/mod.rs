@@ -293,7 +293,7 @@ impl ActiveCalibrations {
         self.report.clone().into_iter().chain(of_sides.into_iter().flatten()).collect()
     }
 
-    /// One line for each calibration that this rig needs.
+    /// Returns one line for each calibration that this rig needs.
     pub fn lines(&self) -> Vec<String> {
         if !self.past.is_empty() {
             return self.past.clone();

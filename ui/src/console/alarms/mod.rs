@@ -163,7 +163,7 @@ const SILENCE_MAX: Duration = Duration::from_millis(500);
 /// A hand feels more than one missed period in a hundred as roughness.
 const MISSED_FRACTION_MAX: f64 = 0.01;
 
-/// All alarms, most urgent first.
+/// Returns all alarms, most urgent first.
 pub fn judge(signs: &Signs) -> Vec<Alarm> {
     let mut alarms = Vec::new();
     if signs.stop_is_stuck {

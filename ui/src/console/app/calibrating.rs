@@ -163,7 +163,7 @@ impl ConsoleApp {
         self.active.binding_of(&self.running.rig, &self.live.rig, roster)
     }
 
-    /// The Technician view with one wizard, the active calibrations, and the button to return.
+    /// Lays out the Technician view with one wizard, the active calibrations, and the button to return.
     pub(super) fn wizard_layout(&mut self, ui: &mut Ui) {
         let side = Frame::new().fill(theme::now().panel).inner_margin(Margin::same(8));
         let mut wish = None;

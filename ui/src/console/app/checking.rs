@@ -153,7 +153,7 @@ impl ConsoleApp {
         }
     }
 
-    /// The page next to the active calibrations.
+    /// Lays out the page next to the active calibrations.
     pub(super) fn check_layout(&mut self, ui: &mut Ui) {
         let side = Frame::new().fill(theme::now().panel).inner_margin(Margin::same(8));
         let mut wish = None;

@@ -39,7 +39,7 @@ impl ConsoleApp {
         self.listing.0 = Some((arms, Instant::now()));
     }
 
-    /// The page next to the active calibrations.
+    /// Lays out the page next to the active calibrations.
     pub(super) fn listing_layout(&mut self, ui: &mut Ui) {
         if self.listing.0.as_ref().is_some_and(|(_, at)| at.elapsed() > AGAIN_EVERY) {
             self.open_listing();

@@ -169,7 +169,7 @@ impl ConsoleApp {
         }
     }
 
-    /// The participant's screen, below the top bar.
+    /// Lays out the participant's screen, below the top bar.
     pub(super) fn trial_layout(&mut self, ui: &mut Ui) {
         if let Some(run) = self.page.as_mut().and_then(|page| page.run_mut()) {
             run.ui(ui, &self.live, &mut self.panels.scene, &mut self.outbox);

@@ -34,7 +34,7 @@ impl ConsoleApp {
         Some((beside.path.as_path(), beside.shown_s()))
     }
 
-    /// The recorded ticks on the screen, once all figures are replayed.
+    /// Returns the recorded ticks on the screen, once all figures are replayed.
     pub fn past_ticks(&self) -> Option<&[Option<nima_machine::messages::Tick>]> {
         let past = self.past.as_ref().filter(|past| past.is_whole())?;
         past.live.as_ref().map(|live| live.ticks.as_slice())

@@ -23,7 +23,7 @@ impl ConsoleApp {
         self.live.first_tick()
     }
 
-    /// The last report of the simulation about the objects of its scene.
+    /// Returns the last report of the simulation about the objects of its scene.
     pub const fn objects(&self) -> Option<&ObjectStates> {
         self.live.objects.as_ref()
     }

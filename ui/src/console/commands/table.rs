@@ -19,7 +19,7 @@ macro_rules! key {
     };
 }
 
-/// Every command, in the order of the palette.
+/// Returns every command, in the order of the palette.
 pub fn table() -> &'static [CommandEntry] {
     static ENGLISH: LazyLock<Vec<CommandEntry>> = LazyLock::new(|| made(Language::English));
     static GERMAN: LazyLock<Vec<CommandEntry>> = LazyLock::new(|| made(Language::German));

@@ -11,7 +11,7 @@ const CURE_SIZE: f32 = 16.0;
 pub(super) const MARGIN: f32 = 16.0;
 const CLEAR: f32 = 24.0;
 
-/// The problem, large, and the remedy.
+/// Draws the problem, large, and the remedy.
 pub(super) fn wrong_ui(painter: &Painter, over: Rect, tips: &[egui::Pos2], [report, cure]: [&str; 2], colour: Color32) {
     let inner = over.shrink(MARGIN);
     let places = [

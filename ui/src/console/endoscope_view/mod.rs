@@ -270,7 +270,7 @@ impl EndoscopeView {
         }
     }
 
-    /// The recorded image of this moment (s), once it was searched for.
+    /// Returns the recorded image of this moment (s), once it was searched for.
     #[cfg(test)]
     pub(in crate::console) fn projected(&self, t_s: f64) -> Option<RecordedMoment> {
         let found = self.projector.as_ref()?.found().filter(|found| found.asked_s.to_bits() == t_s.to_bits())?;

@@ -68,7 +68,7 @@ fn following_ui(ui: &mut Ui, arms: &[ArmOverview], closed: Option<&str>) -> Opti
     button.on_disabled_hover_text(closed.unwrap_or_default()).clicked().then_some(wanted)
 }
 
-/// One line; returns whether to recalibrate.
+/// Draws one line; returns whether to recalibrate.
 fn line_ui(ui: &mut Ui, line: &OverviewLine, arm: &str, closed: Option<&str>) -> bool {
     let (what, colour) = if line.is_in_order() {
         (Sign::Disc, theme::now().engaged)

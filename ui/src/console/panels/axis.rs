@@ -30,7 +30,7 @@ pub(super) fn near_end(value: f64, shown: &RangeInclusive<f64>) -> bool {
     value < shown.start() + margin || value > shown.end() - margin
 }
 
-/// Two decimals with a sign; zero has none.
+/// Formats a number with two decimals and its sign; zero has no sign.
 pub(super) fn signed(value: f64) -> String {
     let text = format!("{value:+.2}");
     if text == "-0.00" || text == "+0.00" { "0.00".to_owned() } else { text }

@@ -132,8 +132,8 @@ fn rig_ui(ui: &mut Ui, live: &LiveState, open: Option<CalibrationPage>) -> Optio
     wish
 }
 
-/// The page to complete before an idle rig can be engaged: a missing calibration, then the ready check. If the force is
-/// unknown for another reason, neither helps.
+/// Returns the page to complete before an idle rig can be engaged: a missing calibration, then the ready check. If the
+/// force is unknown for another reason, neither helps.
 fn next_page(live: &LiveState) -> Option<CalibrationPage> {
     let is_idle = live.state() == LoopState::Idle;
     let mut sources = live.ticks.iter().flatten().filter(|_| is_idle).map(|tick| tick.force.source);

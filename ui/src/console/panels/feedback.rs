@@ -166,7 +166,7 @@ fn gain_ui(ui: &mut Ui, live: &LiveState, state: &mut FeedbackState, outbox: &mu
     });
 }
 
-/// The gain alone, large: one number, one slider, two buttons for steps of 0.1. Never above [`GAIN`].
+/// Draws the gain alone, large: one number, one slider, two buttons for steps of 0.1. Never above [`GAIN`].
 pub fn calm_gain_ui(ui: &mut Ui, live: &LiveState, state: &mut FeedbackState, outbox: &mut Outbox) {
     let time_s = ui.input(|input| input.time);
     let shown = state.gain.shown(live.gain(), time_s);

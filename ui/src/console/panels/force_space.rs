@@ -200,7 +200,7 @@ fn ceiling(painter: &Painter, view: &ForceProjection, ceiling_n: f32) {
     )));
 }
 
-/// The ellipsoid, drawn as its three sections through two half axes each.
+/// Draws the ellipsoid as its three sections through two half axes each.
 fn rings(painter: &Painter, view: &ForceProjection, around_n: &Vector3<f32>, ellipsoid: &Ellipsoid) {
     let half_n = ellipsoid.half_axes_n.cast::<f32>();
     let centre_n = around_n + ellipsoid.mean_n.cast::<f32>();

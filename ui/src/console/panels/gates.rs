@@ -140,7 +140,7 @@ impl GateView {
     }
 }
 
-/// All gates, in the order of the chain.
+/// Returns all gates, in the order of the chain.
 pub(super) fn gates(live: &LiveState, side: Side) -> [GateView; GATES] {
     let gates = &live.gates[side.index()];
     Which::ALL.map(|which| {

@@ -247,7 +247,7 @@ fn gate_ui(ui: &mut Ui, live: &LiveState, side: Side, gate: &GateView, width: f3
     }
 }
 
-/// A count in a short form that fits below a gate.
+/// Returns a count in a short form that fits below a gate.
 fn compact(count: u64) -> String {
     match count {
         0 => text::safety::NEVER.get().to_owned(),

@@ -55,7 +55,7 @@ pub struct TopBarState {
     pub(in crate::console) participant: Option<String>,
 }
 
-/// The bar, with role switch and menu. While a person guides the arm (`calibrating`), it cannot be engaged.
+/// Draws the bar, with role switch and menu. While a person guides the arm (`calibrating`), it cannot be engaged.
 pub fn top_bar_ui(
     ui: &mut Ui,
     live: &LiveState,
@@ -154,8 +154,8 @@ fn recorded_ui(ui: &mut Ui, state: &TopBarState) -> bool {
     response.on_hover_text(text::sessions::hover(shown)).clicked()
 }
 
-/// The state of the arm that needs more attention. If the states differ, both, one below the other: an idle arm must not hide
-/// that the other hand feels a force.
+/// Draws the state of the arm that needs more attention. If the states differ, draws both in a column: an idle arm
+/// must not hide that the other hand feels a force.
 pub(in crate::console) fn state_ui(ui: &mut Ui, live: &LiveState, state: LoopState) {
     let (what, colour, meaning) = match state {
         LoopState::Disconnected => (Sign::Ring, theme::now().text_weak, text::top_bar::DISCONNECTED_MEANING.get()),
@@ -244,7 +244,7 @@ struct TopBarStep {
     closed: Option<&'static str>,
 }
 
-/// The button for the next step, next to the stop button and never below it.
+/// Draws the button for the next step, next to the stop button and never below it.
 fn step_ui(ui: &mut Ui, state: LoopState, TopBarStep { ready, next, wanted, closed }: TopBarStep, outbox: &mut Outbox) {
     let (action, command, meaning) = match state {
         LoopState::Idle => (Action::Engage, Command::Engage, text::top_bar::ENGAGE_HOVER.get()),
@@ -268,7 +268,7 @@ fn step_ui(ui: &mut Ui, state: LoopState, TopBarStep { ready, next, wanted, clos
     }
 }
 
-/// The last refused command, for some seconds.
+/// Draws the last refused command, for some seconds.
 fn refusal_ui(ui: &mut Ui, live: &LiveState) {
     let Some(RefusedCommand { side, command, why }) = live.refusal() else { return };
     let what = match command {

@@ -30,7 +30,7 @@ const TIME_AXIS_ROWS: f32 = 2.25;
 /// Width from which the header shows a heading.
 const HEADING_FROM: f32 = 800.0;
 
-/// The panel, with plots of these axes (0 is x) below one another.
+/// Draws the panel, with plots of these axes (0 is x) below one another.
 pub fn force_traces_ui(ui: &mut Ui, live: &mut LiveState, state: &mut TracesState, axes: &[usize]) {
     header_ui(ui, live, state);
     twist_ui(ui, live, state.side);
@@ -105,7 +105,7 @@ fn read_at(ui: &Ui, history: &SignalHistory, axis: usize, (now_s, at_s): (f64, f
     }
 }
 
-/// The torque about the shaft, if known: it is not rendered, so it is not among the traces.
+/// Draws the torque about the shaft, if known: it is not rendered, so it is not among the traces.
 fn twist_ui(ui: &mut Ui, live: &LiveState, side: Side) {
     let ShaftTwist { jaws_nm, wrist_nm } = live.figures.twist[side.index()];
     if jaws_nm.is_some() || wrist_nm.is_some() {

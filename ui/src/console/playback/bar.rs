@@ -57,7 +57,7 @@ pub(crate) fn head_ui(ui: &mut Ui, past: &Playback) -> bool {
     live_again
 }
 
-/// The part of the screen that is not recorded.
+/// Draws the part of the screen that is not recorded.
 fn machine_ui(ui: &mut Ui, ink: Color32) {
     let words = RichText::new(text::playback::MACHINE.get()).font(theme::strong(13.0)).color(ink);
     ui.label(words).on_hover_text(text::playback::PAST_HOVER.get());
@@ -99,7 +99,7 @@ fn extent(past: &Playback) -> &'static str {
     }
 }
 
-/// The time line and its buttons.
+/// Draws the time line and its buttons.
 pub(crate) fn bar_ui(ui: &mut Ui, past: &mut Playback) {
     let frame = Frame::new().fill(theme::now().panel).inner_margin(Margin::symmetric(14, 6));
     Panel::bottom("timeline").exact_size(BAR).resizable(false).frame(frame).show(ui, |ui| {
@@ -246,7 +246,7 @@ fn mark(painter: &egui::Painter, strip: Rect, x: f32, kind: LineKind) {
     painter.vline(x, strip.top()..=foot, Stroke::new(2.0, colour));
 }
 
-/// The maximum forces and the states, one column per point of the strip.
+/// Draws the maximum forces and the states, one column per point of the strip.
 fn forces(painter: &egui::Painter, strip: Rect, overview: &Overview, end_s: f64) {
     let largest = |max: f32, one: &OverviewBucket| max.max(one.measured_n.unwrap_or_default()).max(one.rendered_n);
     let largest_n = overview.buckets.iter().fold(0.5, largest);

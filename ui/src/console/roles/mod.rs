@@ -147,7 +147,7 @@ fn acts<R>(ui: &mut Ui, past: bool, controls: impl FnOnce(&mut Ui) -> R) -> R {
     ui.add_enabled_ui(!past, controls).inner
 }
 
-/// One button for each of these roles.
+/// Draws one button for each of these roles.
 pub fn switch_ui(ui: &mut Ui, roles: &[Role], now: &mut Role, allowed: bool) {
     ui.spacing_mut().item_spacing.x = 4.0;
     for &role in roles {

@@ -78,7 +78,7 @@ fn reported_ui(ui: &Ui, live: &LiveState, place: Rect) {
     }
 }
 
-/// Both forces of a hand as numbers and as bars with the ceiling.
+/// Draws both forces of a hand as numbers and as bars with the ceiling.
 fn hand_ui(ui: &mut Ui, live: &LiveState, side: Side, place: Rect) {
     let ceiling_n = live.gate_settings().ceiling_n;
     let measured_n = live.figures.measured_n[side.index()];

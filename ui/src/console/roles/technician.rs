@@ -57,7 +57,7 @@ pub(super) fn technician_ui(
     wishes
 }
 
-/// The devices of a recorded session or of another machine, and a note on data that are missing here.
+/// Draws the devices of a recorded session or of another machine, and a note on data that are missing here.
 fn devices_then_ui(ui: &mut Ui, live: &LiveState) {
     let elsewhere = live.of == ScreenSource::Elsewhere;
     Frame::new().inner_margin(Margin::same(8)).show(ui, |ui| {
@@ -76,7 +76,7 @@ fn devices_then_ui(ui: &mut Ui, live: &LiveState) {
     });
 }
 
-/// The traces, with space for the last number of the time axis, half of which is outside the plot.
+/// Draws the traces, with space for the last number of the time axis, half of which is outside the plot.
 fn traces_ui(ui: &mut Ui, live: &mut LiveState, panels: &mut Panels) {
     Frame::new().inner_margin(Margin { left: 8, right: 18, top: 6, bottom: 6 }).show(ui, |ui| {
         force_traces_ui(ui, live, &mut panels.forces, &[0, 1, 2]);

@@ -106,7 +106,7 @@ impl Extras {
         }
     }
 
-    /// The menu, next to the switch for mouse control.
+    /// Draws the menu, next to the switch for mouse control.
     pub(super) fn ui(&mut self, ui: &mut Ui, rect: Rect) {
         let place = Rect::from_min_size(rect.right_bottom() - vec2(330.0, 46.0), vec2(72.0, 34.0)).intersect(rect);
         ui.scope_builder(UiBuilder::new().max_rect(place), |ui| {
@@ -170,7 +170,7 @@ fn ceiling(painter: &Painter, rect: Rect, camera: &SceneCamera, arm: &StageArm, 
     );
 }
 
-/// All frames of a scene.
+/// Returns all frames of a scene.
 fn frames(scene: &Scene, arms: &[StageArm]) -> Vec<FrameAxes> {
     let base = [Vector3::x(), Vector3::y(), Vector3::z()];
     let endoscope = SceneCamera::endoscope(scene);

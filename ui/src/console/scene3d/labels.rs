@@ -103,7 +103,8 @@ pub(super) fn readings_width(live: &LiveState) -> f32 {
     COLUMN + COLUMNS_APART * f32::from(u8::from(live.is_bimanual())) + 20.0
 }
 
-/// The forces in large figures, one column for each hand in their order on the screen, and gauges of both with the ceiling.
+/// Draws the forces in large figures, one column for each hand in their order on the screen, and gauges of both with
+/// the ceiling.
 pub(super) fn readings(painter: &Painter, rect: Rect, live: &LiveState) {
     let mut sides: Vec<Side> = live.sides().collect();
     sides.reverse();
@@ -149,7 +150,8 @@ pub(super) fn readings(painter: &Painter, rect: Rect, live: &LiveState) {
     label(painter, at, Align2::RIGHT_CENTER, &words, theme::regular(12.5), theme::DARK.text_weak);
 }
 
-/// A vertical gauge of measured and rendered force and the ceiling, in `rect`; an unknown force has the sign for it.
+/// Draws a vertical gauge of measured and rendered force and the ceiling, in `rect`; an unknown force has the sign for
+/// it.
 fn gauge(painter: &Painter, rect: Rect, forces_n: [Option<f64>; 2], ceiling_n: f64) {
     painter.rect_filled(rect, 3.0, Color32::from_black_alpha(120));
     let top_n = ceiling_n * 1.25;

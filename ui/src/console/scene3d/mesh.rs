@@ -78,7 +78,7 @@ impl Mesh {
         }
     }
 
-    /// A tube or cone from one radius to another, closed at both ends.
+    /// Adds a tube or cone from one radius to another, closed at both ends.
     pub fn tube(&mut self, ends: [Vector3<f32>; 2], radii: [f32; 2], sides: u32, paint: Paint) {
         let axis = ends[1] - ends[0];
         let length = axis.norm();
@@ -101,7 +101,7 @@ impl Mesh {
         }
     }
 
-    /// A tube of even thickness along points, open at both ends.
+    /// Adds a tube of even thickness along points, open at both ends.
     pub fn pipe(&mut self, points: &[Vector3<f32>], radius: f32, sides: u32, paint: Paint) {
         let way = |i: usize| points[(i + 1).min(points.len() - 1)] - points[i.saturating_sub(1)];
         if points.len() < 2 || (0..points.len()).any(|i| way(i).norm() < 1e-7) {
@@ -169,7 +169,8 @@ impl Mesh {
         self.sheet(first, AROUND, ACROSS);
     }
 
-    /// A torus about its own z axis, rotated: distance from its centre to the centre of its tube, and radius of the tube.
+    /// Adds a torus about its own z axis, rotated: distance from its centre to the centre of its tube, and radius of
+    /// the tube.
     pub fn torus(&mut self, centre: Vector3<f32>, turn: &UnitQuaternion<f32>, [major, tube]: [f32; 2], paint: Paint) {
         const AROUND: u32 = 28;
         const ACROSS: u32 = 12;
@@ -184,7 +185,7 @@ impl Mesh {
         self.sheet(first, AROUND, ACROSS);
     }
 
-    /// A box from its lowest to its highest corner.
+    /// Adds a box from its lowest to its highest corner.
     pub fn cuboid(&mut self, low: Vector3<f32>, high: Vector3<f32>, paint: Paint) {
         let centre = (low + high) * 0.5;
         let half = (high - low) * 0.5;
@@ -231,7 +232,7 @@ impl Mesh {
     }
 }
 
-/// Two unit directions that make a right-handed frame with `along`.
+/// Returns two unit vectors that make a right-handed frame with `along`.
 fn across(along: &Vector3<f32>) -> (Vector3<f32>, Vector3<f32>) {
     let helper = if along.z.abs() < 0.9 { Vector3::z() } else { Vector3::x() };
     let u = helper.cross(along).try_normalize(1e-9).unwrap_or_else(Vector3::x);

@@ -122,7 +122,7 @@ impl MouseDrive {
         outbox.push(Command::Grip(self.side, Some(if was_open { 0.0 } else { OPEN_RAD })));
     }
 
-    /// The switch in the view, and the handling of mouse and keys while it is on. Returns true while it is on.
+    /// Draws the switch in the view, and handles mouse and keys while it is on. Returns true while it is on.
     pub(super) fn ui(
         &mut self,
         ui: &mut Ui,

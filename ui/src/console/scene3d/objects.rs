@@ -78,7 +78,7 @@ impl DisplayedObjects {
     }
 }
 
-/// A board with its surface at this height, m.
+/// Adds a board with its surface at this height, m.
 pub(super) fn board(mesh: &mut Mesh, board: &nima_simulation::physics::BoardSettings) {
     let [x_m, y_m] = board.size_m.map(|m| 0.5 * m as f32);
     let top_m = board.z_m as f32;

@@ -123,7 +123,7 @@ fn band(
     }
 }
 
-/// A flat disc, cut off at the edges of the board: the round end of a band.
+/// Adds a flat disc, cut off at the edges of the board: the round end of a band.
 fn cap(mesh: &mut Mesh, position_m: &Vector3<f32>, half_m: [f32; 2], lift_m: f32, radius_m: f32, paint: Paint) {
     let mut corner = |out: Vector3<f32>| {
         let corner_m = position_m + out * radius_m;

@@ -249,7 +249,7 @@ pub fn has_arrow(force_n: &Vector3<f32>) -> bool {
     size_and_direction(force_n).is_some()
 }
 
-/// A plain shaft with one cone.
+/// Adds a plain shaft with one cone.
 fn measured_arrow(mesh: &mut Mesh, base: Vector3<f32>, force_n: &Vector3<f32>) {
     let paint = Paint(theme::DARK.measured, Material::Plain);
     let Some((size_n, along)) = size_and_direction(force_n) else { return };

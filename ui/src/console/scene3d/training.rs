@@ -101,7 +101,7 @@ pub(super) fn marks(mesh: &mut Mesh, scene: &Scene, shown: &DisplayedObjects, li
     }
 }
 
-/// The board under the wire, or under the pegs.
+/// Adds the board under the wire, or under the pegs.
 pub(super) fn board(mesh: &mut Mesh, scene: &Scene) {
     if let Some(board) = board_of(scene) {
         objects::board(mesh, board);
@@ -153,7 +153,7 @@ fn name_of(reach: JawReach) -> &'static str {
     }
 }
 
-/// The line at the top of the view; `readings` is the width of the readings at its left, if figures are shown.
+/// Draws the line at the top of the view; `readings` is the width of the readings at its left, if figures are shown.
 pub(super) fn line_ui(ui: &mut Ui, rect: Rect, words: Option<String>, readings: f32, figures: bool) {
     let Some(words) = words else { return };
     // Place it between the readings and the gauges, if they are shown.

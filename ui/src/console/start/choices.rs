@@ -96,7 +96,7 @@ fn is_emulated(rig: &str) -> bool {
     RigConfig::load(rig).is_ok_and(|rig| rig.devices.is_some_and(|devices| devices.emulated))
 }
 
-/// The keys of one list, each with whether it belongs to the user.
+/// Returns the keys of one list, each with whether it belongs to the user.
 fn keys<'a>(
     built_in: impl Iterator<Item = &'static str>,
     folder: Option<&Path>,

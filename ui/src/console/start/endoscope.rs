@@ -145,7 +145,7 @@ impl EndoscopeCard {
         self.preview_ui(ui, &look, width);
     }
 
-    /// A small preview of the image.
+    /// Draws a small preview of the image.
     fn preview_ui(&mut self, ui: &mut Ui, look: &FeedSnapshot<Arc<DecodedImage>>, width: f32) {
         let Some((number, image)) = &look.image else { return };
         if self.preview.id().is_none() || self.number != *number {

@@ -31,7 +31,7 @@ pub(in crate::console) const LAST_TEN_SECONDS_HOVER: Text =
     Text::of("Shows the last ten seconds again", "Zeigt wieder die letzten zehn Sekunden");
 pub(in crate::console) const TIME_AXIS: Text = Text::of("Time before now (s)", "Zeit vor jetzt (s)");
 
-/// Returns the both forces of an axis (signed, with their unit) at the cursor of another plot.
+/// Returns both forces of an axis (signed, with their unit) at the cursor of another plot.
 pub(in crate::console) fn at_cursor(axis: &str, measured: &str, rendered: &str) -> String {
     text_format!(
         "At the cursor, {axis}: measured {measured}, rendered {rendered}",
@@ -56,7 +56,7 @@ pub(in crate::console) fn forces_of(side: &str) -> String {
     text_format!("Shows the forces of the {side} hand", "Zeigt die Kräfte der Hand {side}")
 }
 
-/// Returns the both forces of an axis (signed, with their unit) this many seconds ago.
+/// Returns both forces of an axis (signed, with their unit) this many seconds ago.
 pub(in crate::console) fn before_now(ago_s: f64, axis: &str, measured: &str, rendered: &str) -> String {
     text_format!(
         "{ago_s:.2} s before now\nmeasured {axis} {measured}\nrendered {axis} {rendered}",

@@ -200,7 +200,7 @@ impl Behavior<Panel> for DeskContents<'_> {
 }
 
 impl DeskContents<'_> {
-    /// The close button of a panel, in the tab bar.
+    /// Draws the close button of a panel, in the tab bar.
     fn close_ui(&mut self, ui: &mut Ui, place: Rect, panel: Panel) {
         let mut bar = ui.new_child(UiBuilder::new().max_rect(place).id_salt("close"));
         bar.set_clip_rect(place);

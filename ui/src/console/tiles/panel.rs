@@ -34,7 +34,7 @@ impl Kind {
         Self { title, meaning, min, fills: true, shows: None }
     }
 
-    /// One of a fixed length.
+    /// Creates a panel of a fixed length.
     const fn list(title: &'static Text, meaning: &'static Text, least_width: f32) -> Self {
         Self { title, meaning, min: [least_width, 60.0], fills: false, shows: None }
     }

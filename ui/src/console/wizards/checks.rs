@@ -9,7 +9,7 @@ use crate::console::{
     widgets::{Sign, sign_ui},
 };
 
-/// One check with its measured value, or with cause and remedy.
+/// Draws one check with its measured value, or with cause and remedy.
 pub(super) fn check_ui(ui: &mut Ui, check: &PrecheckResult) {
     let (what, colour, words) = match &check.state {
         CheckState::Good if check.measured.is_empty() => {
@@ -22,7 +22,7 @@ pub(super) fn check_ui(ui: &mut Ui, check: &PrecheckResult) {
     line_ui(ui, what, colour, &format!("{}: {words}", sentence(check.name)));
 }
 
-/// A passed check, or the instruction.
+/// Draws a passed check, or the instruction.
 pub(crate) fn check_line(ui: &mut Ui, name: &str, met: bool, otherwise: &str) {
     let (what, colour, words) = if met {
         (Sign::Disc, theme::now().engaged, text::wizards::FINE.get())
@@ -32,7 +32,7 @@ pub(crate) fn check_line(ui: &mut Ui, name: &str, met: bool, otherwise: &str) {
     line_ui(ui, what, colour, &format!("{name}: {words}"));
 }
 
-/// A check that waits for an earlier one.
+/// Draws a check that waits for an earlier one.
 pub(super) fn waiting_line(ui: &mut Ui, name: &str) {
     line_ui(ui, Sign::Ring, theme::now().at_rest, &format!("{name}: {}", text::wizards::WAITING.get()));
 }

@@ -366,7 +366,7 @@ fn frame_text(frame: OffsetFrame) -> &'static str {
     }
 }
 
-/// The paper's Validation I: agreement of the rotated force under the tissue with that at the wrist.
+/// Draws the paper's Validation I: agreement of the rotated force under the tissue with that at the wrist.
 fn agreement_ui(ui: &mut Ui, agreement: &PushAgreement) {
     let meaning = text::correspondence::AGREEMENT_HOVER.get();
     card(ui, text::correspondence::AGREEMENT_TITLE.get(), meaning, |ui| {

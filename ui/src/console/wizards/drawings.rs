@@ -53,7 +53,7 @@ fn caption_below(painter: &Painter, rect: Rect, words: &str) {
     painter.text(place, Align2::CENTER_BOTTOM, words, font, theme::now().text_weak);
 }
 
-/// A square on the floor and a vertical line, to show the orientation.
+/// Draws a square on the floor and a vertical line, to show the orientation.
 fn ground(painter: &Painter, centre: Pos2, scale: f32) {
     let corner = |x: f64, y: f64| on_paper(centre, scale, &Vector3::new(x, y, -1.15)).0;
     let corners = vec![corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)];
@@ -152,7 +152,7 @@ fn dot(
     }
 }
 
-/// A progress bar with a text inside.
+/// Draws a progress bar with a text inside.
 pub(crate) fn progress(ui: &mut Ui, name: &str, fraction: f64, words: &str) {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 24.0), Sense::hover());
     let label = format!("{name}: {words}");

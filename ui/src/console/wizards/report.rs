@@ -16,12 +16,12 @@ pub(super) fn verdict_text(verdict: Verdict, reason: &str) -> String {
     format!("{}: {reason}", verdict.words())
 }
 
-/// The same text as a line of a card.
+/// Draws the same text as a line of a card.
 pub(crate) fn verdict_line(ui: &mut Ui, verdict: Verdict, reason: &str) {
     ui.label(RichText::new(verdict_text(verdict, reason)).font(theme::strong(14.0)));
 }
 
-/// The step that shows the result: the report, the error, or that there are too few data.
+/// Draws the step that shows the result: the report, the error, or that there are too few data.
 pub(super) fn result_ui<R>(
     ui: &mut Ui,
     report: Option<&Result<R, String>>,

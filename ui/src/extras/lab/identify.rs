@@ -176,7 +176,7 @@ fn ratio_of(figures: &ReplayFigures) -> Option<f64> {
     (figures.hold.mae > 0.0).then(|| figures.error.mae / figures.hold.mae)
 }
 
-/// One line per recording, and one for all.
+/// Returns one line per recording, and one line for all.
 fn many_as_text(all: &[(String, ReplayFigures)], summary: &ReplaySummary) -> String {
     let row = |name: &str, compared: usize, error: f64, hold: f64, ratio: Option<f64>| {
         format!("{compared:>9}  {error:>9.5}  {hold:>9.5}  {:>7}  {name}\n", ratio_text(ratio))

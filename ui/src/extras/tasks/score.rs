@@ -144,7 +144,7 @@ fn four_digits(value: f64) -> String {
     format!("{value:.*}", places as usize)
 }
 
-/// One row per session, one column per available measure.
+/// Returns one row per session, one column per available measure.
 fn table(scored: &[ScoredSession], participant: &str) -> String {
     let has =
         |place: &usize| scored.iter().any(|one| one.score.measures().nth(*place).is_some_and(|m| m.value.is_some()));

@@ -157,7 +157,7 @@ impl NetworkLine {
             figures: endpoint.figures(),
             dropped: endpoint.dropped(),
         };
-        // The receiver may be missing, so only the four newest reports are kept.
+        // If the reports are not read, the queue is full after four, and further reports are dropped.
         reported.try_send(report).ok();
     }
 }

@@ -32,7 +32,7 @@ pub(super) fn link_ui(ui: &mut Ui, door: &NetworkDoor, drives: bool) {
     }
 }
 
-/// The console in control of the follower, and the buttons that transfer control.
+/// Draws the console in control of the follower, and the buttons that transfer control.
 fn control_ui(ui: &mut Ui, report: &LineReport, drives: bool, door: &NetworkDoor) {
     let words = match report.control {
         ControlRole::None => return,

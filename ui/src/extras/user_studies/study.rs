@@ -55,7 +55,7 @@ pub(super) fn study_file(name: &str) -> anyhow::Result<StudyFile> {
     StudyFile::from_toml(&text).with_context(|| path.display().to_string())
 }
 
-/// All errors of a study: its file, its scene, and conditions that its rig does not permit.
+/// Returns all errors of a study: its file, its scene, and conditions that its rig does not permit.
 pub(super) fn mistakes(file: &StudyFile) -> Vec<String> {
     let mut wrong = file.check().err().map_or_else(Vec::new, |Mistakes(wrong)| wrong);
     wrong.extend(scene_of(file).err().map(|error| format!("{error:#}")));

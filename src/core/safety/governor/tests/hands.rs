@@ -68,7 +68,7 @@ pub(super) fn reach(fraction: f64) -> f64 {
     s.powi(3) * (10.0 + s * (-15.0 + 6.0 * s))
 }
 
-/// Factor on the grip's stiffness in each tick: now tighter, now looser, each change within 30 to 300 ms.
+/// Returns a factor on the grip's stiffness in each tick: now tighter, now looser, each change within 30 to 300 ms.
 pub(super) fn grip(noise: &mut Noise, ticks: usize) -> Vec<f64> {
     let mut grip = Vec::with_capacity(ticks);
     let mut now = 1.0;

@@ -33,7 +33,8 @@ fn usual() -> QosProfile {
 }
 
 impl Publisher {
-    /// Publishes in this domain and namespace; announced only in the networks of these addresses, or in all of them.
+    /// Publishes in this domain and namespace. The topics are announced only in the networks of these addresses; the
+    /// unspecified address stands for all networks.
     pub fn new(domain: u16, networks: &[Ipv4Addr], namespace: &str) -> Result<Self, String> {
         let mut builder = DomainParticipantBuilder::new(domain);
         if !networks.iter().any(Ipv4Addr::is_unspecified) {

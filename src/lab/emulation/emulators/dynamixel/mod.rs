@@ -188,7 +188,7 @@ impl Bus {
         }
     }
 
-    /// Sends the data due by `now_s`; applies the faults of the content.
+    /// Sends the data due by `now_s`, changed by `fault` if that is a fault of the content.
     pub fn send(&mut self, now_s: f64, fault: EmulatedFault, send: &mut dyn FnMut(&[u8])) {
         if fault == EmulatedFault::DeviceFault && self.fault != fault {
             self.fail(0, HardwareError(HardwareError::OVERLOAD));

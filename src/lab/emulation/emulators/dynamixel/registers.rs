@@ -140,7 +140,7 @@ pub(super) fn rule_at(model: &ServoModel, address: u16) -> Option<Rule> {
     None
 }
 
-/// All rules of a model.
+/// Returns all rules of a model.
 pub(super) fn rules(model: &'static ServoModel) -> impl Iterator<Item = Rule> {
     (0..TABLE_BYTES as u16).filter_map(|address| rule_at(model, address))
 }

@@ -109,7 +109,7 @@ impl SceneRenderer {
     }
 }
 
-/// One for each lens.
+/// Creates one painter for each lens.
 fn painters(camera: Camera, baseline_m: Option<f64>, scene: &Scene) -> Vec<Painter> {
     let second = baseline_m.map(|baseline_m| camera.beside(baseline_m));
     [Some(camera), second].into_iter().flatten().map(|camera| Painter::new(camera, scene)).collect()

@@ -222,8 +222,8 @@ pub enum PedalModel {
 pub struct PedalBody(pub Box<dyn FnMut(f64) -> PedalReading + Send>);
 
 impl PedalBody {
-    /// A pedal on which the first switch is pressed for one second in three, and the second switch after it for half a
-    /// second.
+    /// Returns a pedal on which the first switch is pressed for one second in three, and the second switch after it for
+    /// half a second.
     pub fn alone() -> Self {
         Self::pressed_by(|now_s| {
             let phase_s = now_s.rem_euclid(3.0);

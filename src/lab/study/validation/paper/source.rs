@@ -46,7 +46,7 @@ impl Conditions {
         Self { tremor_m: 0.0, ..Self::SCENE },
     ];
 
-    /// One line for a table.
+    /// Returns one line for a table.
     pub fn name(&self) -> String {
         let Self { hold_s, noise_n, tremor_m, feels } = *self;
         let tremor = if tremor_m > 0.0 { "" } else { ", no tremor" };

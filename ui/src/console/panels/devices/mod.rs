@@ -172,7 +172,7 @@ pub fn devices_ui(ui: &mut Ui, live: &LiveState, state: &mut DevicesState) -> Op
     change
 }
 
-/// The endoscope, which the loop does not use.
+/// Draws the endoscope, which the loop does not use.
 fn image_ui(ui: &mut Ui, state: &DevicesState) {
     let Some([report, cure]) = &state.image else { return };
     ui.add_space(6.0);

@@ -55,7 +55,7 @@ pub(super) fn identity_text(identity: &DeviceIdentity) -> Option<String> {
     (!product.is_empty()).then(|| text::devices::identity(product, serial, firmware))
 }
 
-/// The light that shows which device is being moved.
+/// Draws the light that shows which device is being moved.
 fn light_ui(ui: &mut Ui, live: &LiveState, entry: &RosterEntry, place: usize) {
     let Some(part) = entry.part else { return };
     let motion = live.activity.lit(place).map(|channel| text::devices::motion(part.kind(), channel));

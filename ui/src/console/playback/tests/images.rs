@@ -91,7 +91,7 @@ fn with_messages(
     begin_ns
 }
 
-/// All texts in one frame of the image.
+/// Returns all texts in one frame of the image.
 fn drawn(past: &mut Playback) -> String {
     let context = Context::default();
     theme::apply(&context);

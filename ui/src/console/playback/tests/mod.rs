@@ -69,7 +69,7 @@ fn record_task(scene: &str, path: &Path, seconds: f64, command: impl Fn(u64) -> 
     report
 }
 
-/// All ticks of the right arm, and of the left.
+/// Returns all ticks of the right arm, and of the left.
 fn replayed(path: &Path) -> Vec<[Option<Tick>; 2]> {
     let mut all = Vec::new();
     let outcome =

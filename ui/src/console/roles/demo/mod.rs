@@ -64,7 +64,7 @@ pub(super) fn demo_ui(ui: &mut Ui, live: &mut LiveState, panels: &mut Panels, ou
     });
 }
 
-/// The steps, the current text, and the progress.
+/// Draws the steps, the current text, and the progress.
 fn caption_ui(ui: &mut Ui, live: &LiveState, demo: &mut DemoState) {
     let plays = may_play(live);
     ui.horizontal_wrapped(|ui| {

@@ -60,7 +60,7 @@ impl TipForceWizard {
         wish
     }
 
-    /// The person's task in large type, then the state of the recording.
+    /// Draws the person's task in large type, then the state of the recording.
     fn now_ui(&self, ui: &mut Ui) {
         let Some(take) = &self.recording else {
             ui.label(RichText::new(words(self.prompt())).font(theme::strong(19.0)));
@@ -86,7 +86,7 @@ impl TipForceWizard {
         ui.label(text::tip_force::state(&take.phase_text()));
     }
 
-    /// Returns the start button; returns true when it is pressed.
+    /// Draws the start button; returns true when it is pressed.
     fn start_ui(&self, ui: &mut Ui, running: bool, rows: usize, binding: &Binding) -> bool {
         let text = match (running, rows) {
             (true, _) => text::tip_force::PAUSE.get(),

@@ -180,7 +180,7 @@ impl CameraWizard {
         }
     }
 
-    /// The image with the detected corners.
+    /// Draws the image with the detected corners.
     pub(super) fn live_ui(&self, ui: &mut Ui, marked: Option<usize>) {
         let width = (ui.available_width() - MAP_WIDTH - 16.0).clamp(160.0, IMAGE);
         // While the board is at rest, its corners keep their positions, whatever hides them.

@@ -178,7 +178,7 @@ fn measure_ui(ui: &mut Ui, live: &LiveState, state: &mut TradeoffPanel) {
     });
 }
 
-/// The points of the Pareto front, fastest first, each a button.
+/// Draws the points of the Pareto front, fastest first, each a button.
 fn front_ui(ui: &mut Ui, figures: &SourceFigures, selected: &mut Option<usize>) {
     ui.label(small(text::FRONT.get())).on_hover_text(text::FRONT_HOVER.get());
     for index in front(figures) {

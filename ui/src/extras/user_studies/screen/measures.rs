@@ -55,7 +55,7 @@ pub(super) fn task_ui(ui: &mut Ui, draft: &mut Draft) {
     });
 }
 
-/// The primary measure, and the others of the report.
+/// Draws the primary measure, and the others of the report.
 pub(super) fn measures_ui(ui: &mut Ui, draft: &mut Draft) {
     let Draft { file, measures, .. } = draft;
     card(ui, text::study_form::MEASURES.get(), text::study_form::MEASURES_HOVER.get(), |ui| {

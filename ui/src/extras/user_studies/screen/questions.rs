@@ -234,7 +234,7 @@ fn tapped(slider: &Response) -> Option<f64> {
     Some(f64::from(100.0 * ((at.x - line.min) / line.span()).clamp(0.0, 1.0)))
 }
 
-/// A question that is answered by a number from 1 on.
+/// Draws a question that is answered by a number from 1 on.
 fn scale_ui(ui: &mut Ui, question: &str, answer: &mut Option<u8>, max: u8) {
     numbered_ui(ui, question, answer, max, 1, ["", ""]);
 }

@@ -115,7 +115,7 @@ impl SidePanel {
     }
 }
 
-/// The last written report.
+/// Returns the last written report.
 fn written_before(study: &UserStudy) -> Option<PathBuf> {
     let page = study.folder().join(REPORT).join(report::PAGE);
     page.is_file().then_some(page)

@@ -116,7 +116,7 @@ impl Session {
         self.reader.library()
     }
 
-    /// Faults of the file, one line each.
+    /// Returns the faults of the file, one line each.
     #[getter]
     fn notes(&self) -> Vec<String> {
         self.reader.notes().to_vec()
@@ -128,7 +128,7 @@ impl Session {
         plot_channels::arms(&self.reader).into_iter().map(Side::word).collect()
     }
 
-    /// Begin of the session, ns since 1970 (UTC).
+    /// Returns the start of the session, ns since 1970 (UTC).
     #[getter]
     fn begin_ns(&self) -> u64 {
         self.begin_ns
@@ -140,7 +140,7 @@ impl Session {
         self.seconds(self.reader.statistics().times_ns.1)
     }
 
-    /// Topic, schema, and number of messages if the file states it.
+    /// Returns topic, schema, and number of messages (if the file states it) of each channel.
     #[getter]
     fn channels(&self) -> Vec<(String, String, Option<u64>)> {
         let of = |channel: &nima_recording::session::ReaderChannel| {
@@ -149,7 +149,7 @@ impl Session {
         self.reader.channels().iter().map(of).collect()
     }
 
-    /// Name, media type and size in bytes.
+    /// Returns name, media type and size (bytes) of each attachment.
     #[getter]
     fn attachments(&self) -> Vec<(String, String, u64)> {
         let of = |one: &Attachment| (one.name.clone(), one.media_type.clone(), one.size);

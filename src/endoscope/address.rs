@@ -188,7 +188,7 @@ fn login(text: &str) -> Result<Login, &'static str> {
 }
 
 impl Endpoint {
-    /// Host and port, as in a request and in messages: `HOST:PORT`.
+    /// Returns host and port, as in a request and in messages: `HOST:PORT`.
     pub(crate) fn place(&self) -> String {
         let (open, close) = if self.host.contains(':') { ("[", "]") } else { ("", "") };
         format!("{open}{}{close}:{}", self.host, self.port)

@@ -78,7 +78,7 @@ impl Checkerboard {
         Ok(Self { corners, square_m })
     }
 
-    /// Inner corners along x and y.
+    /// Returns the numbers of inner corners along x and y.
     pub const fn corners(&self) -> [usize; 2] {
         self.corners
     }

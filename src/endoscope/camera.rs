@@ -40,7 +40,7 @@ pub struct Bend {
 }
 
 impl Bend {
-    /// Radial distortion with one coefficient.
+    /// Creates a lens with radial distortion of one coefficient.
     pub const fn radial(k1: f64) -> Self {
         Self { k1, k2: 0.0, p1: 0.0, p2: 0.0 }
     }

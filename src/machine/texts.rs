@@ -4,7 +4,7 @@
 use nima_files::quoted;
 use toml::de::{DeTable, DeValue};
 
-/// Maximum length of a text, characters: names, addresses, ports, paths. Chosen.
+/// Maximum length of a text, characters: names, addresses, ports, paths. Design choice.
 const MAX: usize = 512;
 
 /// Returns key and fault of the first text that cannot be displayed.

@@ -62,9 +62,9 @@ pub struct SessionInfo {
     pub started: Option<String>,
     /// Name of the rig.
     pub rig: Option<String>,
-    /// End, s since the session's begin.
+    /// End, s since the start of the session.
     pub seconds: f64,
-    /// Begin of an excerpt, s since the session's begin; `None` for a whole session.
+    /// Start of an excerpt, s since the start of the session; `None` for a whole session.
     pub stretch_from_s: Option<f64>,
 }
 
@@ -152,7 +152,8 @@ impl RecordedFile {
         Journal::open(ahead(Arc::clone(&self.0), 0, 0, FAR_AHEAD))
     }
 
-    /// Returns a loop at this keyframe of its journal, which begins with `start`. `begin_ns` is the session's begin.
+    /// Returns a loop at this keyframe of its journal, which begins with `start`. `begin_ns` is the start of the
+    /// session.
     pub fn cursor(&self, start: &JournalStart, keyframe: Keyframe, begin_ns: u64) -> ReplayCursor<StepsMessages> {
         let from_ns = (begin_ns + (keyframe.t_s() * 1e9) as u64).saturating_sub(MARGIN_NS);
         let messages = ahead(Arc::clone(&self.0), from_ns, keyframe.read(), AHEAD);

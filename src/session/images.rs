@@ -178,7 +178,7 @@ impl SessionImages {
         Ok(Some(Self { reader, begin_ns, video, kept: Vec::new(), times_ns: 0..0 }))
     }
 
-    /// Begin of the session, ns.
+    /// Returns the start of the session, ns.
     pub const fn begin_ns(&self) -> u64 {
         self.begin_ns
     }
@@ -187,7 +187,7 @@ impl SessionImages {
         &self.reader
     }
 
-    /// Returns the newest image at this time (s since the session's begin), if it is at most two seconds old.
+    /// Returns the newest image at this time (s since the start of the session), if it is at most two seconds old.
     ///
     /// # Errors
     /// [`ReadError`] if it cannot be read. Later images can be requested all the same.

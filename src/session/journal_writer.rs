@@ -98,7 +98,7 @@ impl JournalWriter {
         Ok((scribe, TimedMessage { t_s: 0.0, bytes }))
     }
 
-    /// Ticks so far.
+    /// Returns the number of ticks so far.
     pub const fn ticks(&self) -> u64 {
         self.ticks
     }
@@ -108,7 +108,7 @@ impl JournalWriter {
         self.lost
     }
 
-    /// Loop time of the last tick, s.
+    /// Returns the loop time of the last tick, s.
     pub const fn t_s(&self) -> f64 {
         self.t_s
     }

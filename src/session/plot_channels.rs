@@ -43,7 +43,7 @@ pub enum PlottedError {
 pub struct PlottedTick {
     /// Time of its messages, ns since 1970 (UTC).
     pub time_ns: u64,
-    /// s since the session's begin.
+    /// s since the start of the session.
     pub t_s: f64,
     pub tip_m: Vector3<f64>,
     pub leader_m: Vector3<f64>,
@@ -57,7 +57,7 @@ pub struct PlottedTick {
     pub state: LoopState,
 }
 
-/// Returns the session's begin, ns; for an excerpt, the begin of its session.
+/// Returns the start of the session, ns; for an excerpt, the start of its session.
 ///
 /// # Errors
 /// [`ReadError`] if the tables of the file cannot be read.

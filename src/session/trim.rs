@@ -17,7 +17,7 @@ use crate::{plot_channels, recorder::JOURNAL_TOPIC};
 
 /// The table with the origin of an excerpt.
 pub(crate) const TABLE: &str = "cut";
-/// Key in that table: begin of the session, ns, so that times remain those of the whole session.
+/// Key in that table: start of the session, ns, so that times remain those of the whole session.
 pub(crate) const BEGINNING: &str = "session_begins_ns";
 /// Key in that table: name of the session.
 pub(crate) const SESSION: &str = "session";

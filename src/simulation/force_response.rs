@@ -99,7 +99,7 @@ impl ForceResponse {
         self.offset_m
     }
 
-    /// Pace of the task; 1 if nothing slows it.
+    /// Returns the pace of the task; 1 if nothing slows it.
     pub(super) const fn pace(&self) -> f64 {
         self.pace
     }

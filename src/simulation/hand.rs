@@ -51,7 +51,7 @@ pub(super) struct HandTaskPart {
 }
 
 impl HandMove {
-    /// Intended position (m) and velocity (m/s) after `t_s` of the move (Flash and Hogan 1985).
+    /// Returns the intended position (m) and velocity (m/s) after `t_s` of the move (Flash and Hogan 1985).
     pub(super) fn at(&self, t_s: f64) -> (Vector3<f64>, Vector3<f64>) {
         if self.seconds <= 0.0 {
             return (self.to_m, Vector3::zeros());

@@ -26,7 +26,7 @@ pub struct Worlds {
     outputs: [Outputs; SIDES],
 }
 
-/// Activity of each hand in a scene with objects; `None` in other scenes.
+/// Returns the activity of each hand in a scene with objects; `None` in other scenes.
 fn doing(scene: &Scene) -> [Option<HandActivity>; SIDES] {
     if let Some(setting) = &scene.objects {
         return ring_task::ways(setting, scene.left.is_some()).map(|task| Some(HandActivity::Carrying(task)));

@@ -51,7 +51,7 @@ fn scene(seed: u64) -> Scene {
     SimulatedExperiment::scene("isolation", seed).unwrap()
 }
 
-/// Another tool, for which the network was not trained.
+/// Returns a scene with another tool, for which the network was not trained.
 fn heavier(seed: u64) -> Scene {
     heavier_by(0.5, seed)
 }

@@ -14,7 +14,7 @@ use nima_tests::plan;
 
 use crate::file::{about, recorded};
 
-/// Memory of this process, MB; `None` if the system does not report it.
+/// Returns the memory of this process, MB; `None` if the system does not report it.
 fn memory_mb() -> Option<f64> {
     let status = fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find(|line| line.starts_with("VmRSS:"))?;

@@ -58,7 +58,7 @@ fn moment(number: u32) -> ObjectStates {
     objects
 }
 
-/// Events of every possible scene.
+/// Returns the events of every possible scene.
 fn events() -> Vec<TimedTaskEvent> {
     let side = Side::Left;
     let events = [

@@ -50,7 +50,7 @@ fn every_device_of_the_embedded_rig_delivers_at_its_place() {
     let rig = started(&devices);
     let names: Vec<_> = rig.servings().iter().map(|device| device.name.as_str()).collect();
     assert_eq!(names, DEVICES);
-    // Delays by a busy machine look like damage.
+    // Delays caused by a busy machine look like damage.
     judged(|| {
         std::thread::scope(|scope| {
             for side in Side::ALL {

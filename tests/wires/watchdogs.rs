@@ -49,7 +49,7 @@ fn every_watchdog_bites_in_idle_twice_and_the_arm_engages_afterwards() {
             assert!(handle.send(Command::TestWatchdog(watchdog)));
             let bitten = |tick: &Tick| matches!(tick.state, LoopState::Faulted(fault) if watchdog.raises(fault));
             until(&handle, "its fault", bitten);
-            // Data flow again.
+            // The data arrive again.
             std::thread::sleep(Duration::from_millis(50));
             assert!(handle.send(Command::ReleaseStop));
             until(&handle, "released", is(LoopState::Idle));

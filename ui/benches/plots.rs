@@ -29,7 +29,7 @@ const RUNS: usize = 5;
 const FRAMES: usize = 60;
 const SIZE: egui::Vec2 = vec2(1600.0, 1000.0);
 
-/// Contacts of one second with tremor and sensor noise, N.
+/// Returns the force of contacts with tremor and sensor noise over one second, N.
 fn force_n(t_s: f64, channel: usize) -> f64 {
     let contact = (2.5 * (t_s * 1.3 + channel as f64).sin()).max(0.0);
     let noise = ((t_s * 7919.0 + channel as f64 * 31.0).sin() * 43_758.547).fract();

@@ -18,7 +18,7 @@ pub(crate) trait ArmLink: Sync {
 
 /// One end of a link, before the loop drives it.
 pub(crate) trait RemoteLine {
-    /// Devices at this end.
+    /// Returns the devices at this end.
     fn here(&self) -> RigEnds;
 
     /// Returns the handle for other threads.

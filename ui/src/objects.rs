@@ -51,7 +51,7 @@ pub(crate) fn objects(moment: &ObjectMoment, has_jaws: [bool; SIDES]) -> ObjectS
     ObjectStates { t_s: *t_s, rings: rings.collect(), jaws, task: Some(standing(training)) }
 }
 
-/// Progress of a task, as a session stores it.
+/// Returns the progress of a task, as a session stores it.
 fn standing(training: &Training) -> TaskProgress {
     let Training { ended, marks, marked, found, loops, touches, fraction, passed, placed, dropped } = *training;
     let seen = |LoopObservation { touches, on_wire }| WireLoop { touches, on_wire };
@@ -60,7 +60,7 @@ fn standing(training: &Training) -> TaskProgress {
     TaskProgress { ended, fraction, marked, found, touches, passed, placed, dropped, loops: loops.map(seen), marks }
 }
 
-/// Progress of a task, as the screen shows it.
+/// Returns the progress of a task, as the screen shows it.
 pub(crate) fn training(standing: &TaskProgress) -> Training {
     let TaskProgress { ended, fraction, marked, found, touches, passed, placed, dropped, loops, ref marks } = *standing;
     let mut all = [None; MARKS_MAX];

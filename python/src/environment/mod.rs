@@ -105,7 +105,7 @@ impl Simulation {
         Ok(Self { plan, control, substeps, has_jaws, running: None })
     }
 
-    /// Ticks per second.
+    /// Returns the number of ticks per second.
     #[getter]
     fn rate_hz(&self) -> f64 {
         self.plan.rig.rate_hz
@@ -156,7 +156,7 @@ impl Simulation {
         Ok((observation(py, &known)?, info(py, &known)?))
     }
 
-    /// One step: observation, additional information, and whether the loop is still running.
+    /// Runs one step; returns the observation, additional information, and whether the loop is still running.
     fn step<'py>(
         &mut self,
         py: Python<'py>,
@@ -221,7 +221,7 @@ fn observation<'py>(py: Python<'py>, known: &StepObservation) -> PyResult<Bound<
     Ok(all)
 }
 
-/// Additional information.
+/// Returns additional information.
 fn info<'py>(py: Python<'py>, known: &StepObservation) -> PyResult<Bound<'py, PyDict>> {
     let tick = &known.tick;
     let all = PyDict::new(py);

@@ -94,7 +94,7 @@ impl SimulationRun {
         Err(format!("the scene cannot be engaged: after {ENGAGED_WITHIN_S} s its right arm is still in {state}"))
     }
 
-    /// One step of this many ticks.
+    /// Runs one step of this many ticks.
     pub(super) fn step(
         &mut self,
         action: ControllerAction,

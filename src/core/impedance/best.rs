@@ -226,7 +226,7 @@ fn odds(error_n: Lanes, other_n: Lanes) -> Lanes {
     eighth_power((error_n + floor_n) / (other_n + floor_n))
 }
 
-/// Returns the power that the softmin takes.
+/// Returns the eighth power, which the softmin uses.
 pub(super) fn eighth_power(value: Lanes) -> Lanes {
     let square = value * value;
     let fourth = square * square;

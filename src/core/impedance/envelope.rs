@@ -14,7 +14,7 @@ pub struct Envelope {
 }
 
 impl Envelope {
-    /// Nothing was seen, at this rate, Hz.
+    /// Creates an envelope at this rate (Hz) that has no samples yet.
     pub const fn new(rate_hz: f64) -> Self {
         Self { leak: 1.0 / (MEMORY_S * rate_hz), edges_n: None }
     }

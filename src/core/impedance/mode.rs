@@ -191,7 +191,7 @@ impl Mode {
         matches!(self.own(), Some(Entry { is_damped: true, .. }))
     }
 
-    /// Short description for tables.
+    /// Returns a short description for tables.
     pub const fn about(self) -> &'static str {
         match self.own() {
             Some(entry) => entry.about,

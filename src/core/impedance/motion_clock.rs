@@ -2,7 +2,7 @@
 
 use crate::signal::Lanes;
 
-/// Memory of the recent maximum motion (s by this clock). Chosen.
+/// Memory of the recent maximum motion (s by this clock). Design choice.
 const LARGEST_S: f64 = 20.0;
 /// Fraction of the maximum motion above which time runs at full pace, and the pace at rest.
 const FULL: f64 = 0.1;

@@ -11,7 +11,7 @@ use super::{
 use crate::signal::{DelayLine, Differentiator, Lanes, LowPassBank, Motion};
 
 /// Maximum time (s) for which a missing position is extrapolated at the last speed; after that, the position is held.
-/// Chosen.
+/// Design choice.
 const BRIDGE_S: f64 = 0.01;
 
 /// A position or a force of more than this many scales is implausible (1 km, 40 kN with the default scales) and is not

@@ -29,7 +29,7 @@ pub(super) const TIP_SPEED_M_S: f64 = 0.5;
 pub(super) const TURN_SPEED_RAD_S: f64 = 1.74;
 /// Distance that joints keep from their limits, rad, so that an overshooting drive does not report a fault.
 pub const KEEP_OFF_RAD: f64 = 0.02;
-/// Near a limit, the speed of a joint is at most this factor times its distance from the limit, 1/s. Chosen.
+/// Near a limit, the speed of a joint is at most this factor times its distance from the limit, 1/s. Design choice.
 const APPROACH_PER_S: f64 = 20.0;
 /// Fraction of the acceleration used for stopping at a target or a joint limit; the remainder is for the curvature of
 /// the path.
@@ -37,7 +37,7 @@ const BRAKING_FRACTION: f64 = 0.5;
 /// Averaging time of the target's own motion, s, so that tremor and noise of the handle are not followed.
 const TARGET_MOTION_S: f64 = 0.005;
 /// Speed of the posture optimisation along the gradient, rad/s, and the fraction of the joint speed that it may use.
-/// Chosen.
+/// Design choice.
 const POSTURE_PER_S: f64 = 1.0;
 const POSTURE_FRACTION: f64 = 0.2;
 /// If the shaft misses the trocar by more than this at the start, m, the instrument is not in the trocar.

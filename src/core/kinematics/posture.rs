@@ -11,12 +11,12 @@ use super::{
     velocity::VelocityTask,
 };
 
-/// Distance from a limit at which the cost of a joint begins, rad. Chosen.
+/// Distance from a limit at which the cost of a joint begins, rad. Design choice.
 pub(super) const SOFT_RAD: f64 = 0.35;
 /// Height above the trocar below which elbow and wrist are pushed up, m: half the thickness of a link, plus a drape and
 /// a margin.
 pub(super) const CLEARANCE_M: f64 = 0.12;
-/// Weights of the other two terms relative to the limit term. Chosen.
+/// Weights of the other two terms relative to the limit term. Design choice.
 const MANIPULABILITY_WEIGHT: f64 = 0.2;
 const CLEARANCE_WEIGHT: f64 = 0.5;
 /// Smallest value of the squared manipulability ((m/rad)^10): keeps the logarithm finite.

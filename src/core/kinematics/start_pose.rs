@@ -27,7 +27,7 @@ const STEPS: usize = 80;
 /// Number of poses that are tested over the permitted space, because each test moves the arm over the whole space,
 /// which takes most of the time.
 const CANDIDATES: usize = 8;
-/// A pose below these values is not tested: distance from a joint limit (rad), dexterity (m/rad). Chosen.
+/// A pose below these values is not tested: distance from a joint limit (rad), dexterity (m/rad). Design choice.
 const MIN_MARGIN_RAD: f64 = 0.1;
 /// See [`MIN_MARGIN_RAD`].
 const MIN_DEXTERITY: f64 = 0.05;

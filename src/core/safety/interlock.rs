@@ -14,7 +14,7 @@
 //! a fault requires a release and a new engagement. The clutch is the only exception, because the operator's own foot
 //! controls it.
 
-/// Maximum time for the drives to respond, s, before `Ready` gives up. Chosen.
+/// Maximum time for the drives to respond, s, before `Ready` gives up. Design choice.
 pub const READY_WITHIN_S: f64 = 2.0;
 
 /// State of an arm pair; `F` is the cause of a fault.

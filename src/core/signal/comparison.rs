@@ -11,7 +11,7 @@ fn quantised(x: f64) -> f64 {
     (x / COUNT_M).round() * COUNT_M
 }
 
-/// Pseudo-random numbers from -0.5 to 0.5.
+/// Returns pseudo-random numbers from -0.5 to 0.5.
 fn jitter(k: usize) -> f64 {
     (k as f64 * 0.754_877_666_246_692_8).fract() - 0.5
 }

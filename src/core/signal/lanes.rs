@@ -64,7 +64,7 @@ impl Lanes {
         self.zip(low, f64::max).zip(high, f64::min)
     }
 
-    /// Square roots.
+    /// Returns the square roots.
     #[must_use]
     #[inline(always)]
     pub fn sqrt(self) -> Self {

@@ -51,7 +51,7 @@ pub struct Expansion {
     loads: Vec<usize>,
 }
 
-/// `v0` as a fraction of the root mean square of the column. Chosen.
+/// `v0` as a fraction of the root mean square of the column. Design choice.
 const SOFT_FRACTION: f32 = 0.1;
 
 impl Expansion {

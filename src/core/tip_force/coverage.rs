@@ -62,7 +62,7 @@ pub const DEPTH_M: [f32; 2] = [0.0, 0.3];
 /// Largest speed on a map, m/s, in both directions.
 pub const SPEED_M_S: f32 = 0.16;
 
-/// Requirements on a recording before it may be used for training. Chosen.
+/// Requirements on a recording before it may be used for training. Design choice.
 const ROWS: usize = 6000;
 const TILT_SPAN: f32 = 0.25;
 const DEPTH_SPAN_M: f32 = 0.015;

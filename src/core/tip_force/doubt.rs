@@ -9,7 +9,7 @@
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 /// Fraction of the samples of unseen trajectories that a limit may flag: fewer would let the limit depend on a few
-/// samples, more would render the fallback too often. Chosen.
+/// samples, more would render the fallback too often. Design choice.
 pub const FALSE_ALARMS: f64 = 0.01;
 /// Margin beyond the calibrated limits if the folds are parts of one session, because another session covers a wider
 /// range: in simulation, the 99th percentile of three unseen sessions was 2 to 14 % beyond the limits.

@@ -41,7 +41,7 @@ impl Default for FeatureSettings {
 /// initial value.
 const KNOWN_FRACTION: f64 = 0.8;
 
-/// A gap between two samples longer than this, s, resets the state. Chosen.
+/// A gap between two samples longer than this, s, resets the state. Design choice.
 const HOLE_S: f64 = 0.020;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

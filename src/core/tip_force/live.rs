@@ -63,12 +63,12 @@ pub(super) const FAR_OUTSIDE: f32 = 2.0;
 /// reliable force.
 const DOUBTFUL_OF_FIVE: u32 = 3;
 /// Time without an uncertain sample after which the network is used again, s: otherwise the force would alternate
-/// between network and fallback at the limit of doubt. Chosen.
+/// between network and fallback at the limit of doubt. Design choice.
 const SURE_AFTER_S: f64 = 0.050;
-/// Duration of the cross-fade, s; too long to be felt as a step. Chosen.
+/// Duration of the cross-fade, s; too long to be felt as a step. Design choice.
 const HANDOVER_S: f64 = 0.050;
 /// Time in which a held force fades to zero, s: long enough for a short spell of doubt, and too slow to be felt as a
-/// step. Chosen.
+/// step. Design choice.
 const HOLD_S: f64 = 0.300;
 
 #[derive(Clone, Debug)]

@@ -34,9 +34,9 @@ pub enum ColourMatrix {
 /// Values of black and white.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum ValueRange {
-    /// 0 and 255.
+    /// Black is 0, and white 255.
     Full,
-    /// 16 and 235; colours up to 240.
+    /// Black is 16, and white 235; colour differences reach 240.
     Limited,
 }
 

@@ -188,7 +188,7 @@ impl HttpAnswer {
         Ok(AnswerStep::Give(ImagePart { body, stamp_s: head.stamp_s }))
     }
 
-    /// Returns the begin of the next boundary, with its two dashes. Searches each byte only once.
+    /// Returns the start of the next boundary, with its two dashes. Searches each byte only once.
     fn find_boundary(&mut self) -> Option<usize> {
         let length = 2 + self.boundary.len();
         let is_boundary = |window: &[u8]| window.starts_with(b"--") && window[2..] == self.boundary;

@@ -121,7 +121,7 @@ impl LayoutBlock {
         self.0.get(at..).and_then(|bytes| bytes.first_chunk()).map_or(0, |bytes| u32::from_ne_bytes(*bytes))
     }
 
-    /// Eight bytes with a sign.
+    /// Reads eight bytes as a signed number.
     pub(super) fn long(&self, at: usize) -> i64 {
         self.0.get(at..).and_then(|bytes| bytes.first_chunk()).map_or(0, |bytes| i64::from_ne_bytes(*bytes))
     }

@@ -83,7 +83,7 @@ pub(crate) fn nearest_rotation(matrix: &Matrix3<f64>) -> Option<UnitQuaternion<f
         .then(|| UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(rotation)))
 }
 
-/// Singular values of positions about their mean, the largest first; m.
+/// Returns the singular values of positions about their mean, the largest first; m.
 pub(crate) fn spread(places: &[Vector3<f64>]) -> [f64; 3] {
     let middle = places.iter().sum::<Vector3<f64>>() / places.len().max(1) as f64;
     let columns: Vec<Vector3<f64>> = places.iter().map(|place| place - middle).collect();

@@ -104,7 +104,7 @@ pub struct LensReport {
     pub cause: Option<CameraCause>,
 }
 
-/// A computed lens.
+/// Lens determined by a calibration.
 #[derive(Clone, Copy, Debug)]
 pub struct CalibratedLens {
     pub lens: Lens,

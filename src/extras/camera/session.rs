@@ -149,7 +149,7 @@ impl CameraSession {
         }
     }
 
-    /// Completed fraction, 0 to 1.
+    /// Returns the completed fraction, 0 to 1.
     pub fn fraction(&self) -> f64 {
         if self.asks() == ViewRequest::Complete {
             return 1.0;

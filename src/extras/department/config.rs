@@ -96,7 +96,7 @@ impl ScoutingMode {
     }
 }
 
-/// Configuration for finding rigs.
+/// Returns the configuration for finding rigs.
 pub(crate) fn scout() -> Result<Config, DepartmentError> {
     config(
         &json!({ "mode": "client", "scouting": { "multicast": { "enabled": true }, "gossip": { "enabled": false } } }),

@@ -7,7 +7,7 @@ pub(crate) const ALL: &str = "nima/**";
 /// Maximum size of a message that is unpacked, bytes.
 const MAX_BYTES: usize = 64 << 20;
 
-/// Presence of the rig.
+/// Returns the key that announces the presence of the rig.
 pub(crate) fn presence(rig: &str) -> String {
     format!("nima/rig/{rig}")
 }
@@ -45,7 +45,7 @@ pub(crate) fn bundles(rig: &str) -> String {
     format!("nima/session/{rig}/*")
 }
 
-/// Presence of a watcher.
+/// Returns the key that announces the presence of a watcher.
 pub(crate) fn watcher(rig: &str, watcher: &str) -> String {
     format!("nima/watcher/{rig}/{watcher}")
 }

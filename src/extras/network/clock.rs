@@ -263,7 +263,7 @@ impl NetworkClock {
         if longer_s.abs() < 0.4 * by_s.abs() { WindowVerdict::Step(by_s) } else { WindowVerdict::OtherWay }
     }
 
-    /// Usual deviation of a window, s, from the differences of consecutive windows.
+    /// Returns the usual deviation of a window, s, from the differences of consecutive windows.
     fn deviation_s(&self) -> f64 {
         let differences = self.last(WINDOWS).zip(self.last(WINDOWS).skip(1));
         let (sum_s, count) =

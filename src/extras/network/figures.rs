@@ -92,7 +92,7 @@ pub struct SessionMeasurements {
 }
 
 impl SessionMeasurements {
-    /// 99.9th percentile minus the minimum of the one-way delays, s.
+    /// Returns the difference between the 99.9th percentile and the minimum of the one-way delays, s.
     pub fn jitter_s(&self) -> Option<f64> {
         self.one_way.map(|delays| delays.p999_s - delays.min_s)
     }

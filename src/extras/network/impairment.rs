@@ -309,12 +309,12 @@ impl ImpairedLine {
         self.under_way.pop().map(|Reverse(datagram)| (due_s, datagram.bytes))
     }
 
-    /// Arrival of the next datagram, s.
+    /// Returns the arrival of the next datagram, s.
     pub fn due_s(&self) -> Option<f64> {
         self.under_way.peek().map(|Reverse(next)| next.due_ns as f64 * 1e-9)
     }
 
-    /// Datagrams sent, and datagrams lost.
+    /// Returns the numbers of datagrams sent and lost.
     pub const fn totals(&self) -> (u64, u64) {
         (self.sent, self.lost)
     }

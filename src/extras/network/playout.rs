@@ -184,7 +184,7 @@ impl Playout {
         self.end
     }
 
-    /// One-way delays of the last 5 s.
+    /// Returns the one-way delays of the last 5 s.
     pub fn delays(&self) -> Option<Delays> {
         let count: u32 = self.parts.iter().map(|part| part.count).sum();
         let sum_s: f64 = self.parts.iter().map(|part| part.sum_s).sum();

@@ -373,7 +373,7 @@ impl NetworkStream {
         self.playout.take(now_s, offset_s)
     }
 
-    /// Arrival of the newest datagram, s.
+    /// Returns the arrival of the newest datagram, s.
     pub fn received_s(&self) -> Option<f64> {
         self.newest.map(|(_, came_s)| came_s)
     }

@@ -191,7 +191,7 @@ const REPORTS: u8 = 0x80;
 const ECHOES: u8 = 0x40;
 
 impl DatagramHead {
-    /// Bytes.
+    /// Returns the length in bytes.
     pub fn length(&self) -> usize {
         let echo = |report: &WireReport| if report.echo.is_some() { 8 } else { 0 };
         HEAD_MIN + self.report.as_ref().map_or(0, |report| 6 + echo(report))

@@ -46,7 +46,7 @@ impl TwoHands {
         (count >= MIN_POINTS).then(|| both as f64 / count as f64)
     }
 
-    /// Pearson's correlation of the two speeds.
+    /// Returns Pearson's correlation of the two speeds.
     pub(crate) fn correlation(&self) -> Option<f64> {
         let count = self.pairs().count();
         if count < MIN_POINTS {

@@ -138,7 +138,7 @@ impl StudyPlan {
         found.ok_or_else(|| StudyError::Participant { name: nima_files::quoted(name), known: known() })
     }
 
-    /// Trials of each participant, without practice.
+    /// Returns the number of trials of each participant, without practice.
     pub fn trials_of_each(&self) -> u32 {
         self.trials * self.labels.len() as u32
     }

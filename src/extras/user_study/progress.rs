@@ -84,7 +84,7 @@ impl ParticipantProgress {
         self.guidance.as_ref().is_none_or(Guidance::is_shown)
     }
 
-    /// Trials made since the last break, including practice.
+    /// Returns the number of trials made since the last break, including practice.
     pub const fn since_break(&self) -> u32 {
         self.since_break
     }

@@ -24,7 +24,7 @@ use crate::{
 const TRAVEL_M: Vector3<f64> = Vector3::new(0.005, 0.003, 0.004);
 const SPEED_M_S: f64 = 0.02;
 
-/// Handle, sensor, and the rig file of the emulated rig with a simulated arm.
+/// Returns the handle, the sensor, and the rig file of the emulated rig with a simulated arm.
 fn devices(folder: &std::path::Path) -> (RigSettings, [EmulatorThread; 2]) {
     provide_handles();
     let port = folder.join("sensor");

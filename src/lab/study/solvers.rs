@@ -226,8 +226,8 @@ impl SlidingSolver {
         self.solution.condition(LeastSquaresSolver::Sliding.unknowns(degree))[0]
     }
 
-    /// Numerical rank of `degree`: columns, including the constant, whose part orthogonal to the previous columns is
-    /// larger than the ridge.
+    /// Returns the numerical rank of `degree`: columns, including the constant, whose part orthogonal to the previous
+    /// columns is larger than the ridge.
     pub fn rank(&self, degree: usize, ridge: f64) -> usize {
         let ridge = ridge * self.window.len() as f64;
         let factor = self.window.current();

@@ -8,7 +8,7 @@ use super::{
 };
 use crate::rig::Healths;
 
-/// A device counts as steady after this time, s. Chosen.
+/// A device counts as steady after this time, s. Design choice.
 const STEADY_S: f64 = 1.0;
 
 #[derive(Debug)]

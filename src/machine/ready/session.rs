@@ -22,7 +22,7 @@ use crate::{
 };
 
 /// A stop or a fault that is unrelated to a check must be released within this time, s, because the check cannot
-/// continue before that, and a person may have to walk to the device first. Chosen.
+/// continue before that, and a person may have to walk to the device first. Design choice.
 const RELEASE_WITHIN_S: f64 = 60.0;
 
 #[derive(Clone, Copy, Debug, PartialEq)]

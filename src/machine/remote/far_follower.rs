@@ -56,7 +56,7 @@ struct RoundTrip {
 }
 
 impl RoundTrip {
-    /// Averaging, in messages. Chosen.
+    /// Averaging, in messages. Design choice.
     const MEMORY: f64 = 200.0;
 
     fn first(seconds: f64, rate_hz: f64) -> Self {

@@ -9,9 +9,9 @@ use crate::config::RigConfig;
 /// Number of 0.1 s blocks in a test; the counters of the first block are the starting values.
 pub const BLOCKS: usize = 21;
 /// Maximum deviation of the rate from the nominal one, as a fraction, because devices differ from their nominal rate by
-/// a clock's tolerance only, and a wrong setting differs by far more. Chosen.
+/// a clock's tolerance only, and a wrong setting differs by far more. Design choice.
 pub const RATE_OFF: f64 = 0.05;
-/// Maximum fraction of lost readings: ten of the 2000 readings at 1 kHz. Chosen.
+/// Maximum fraction of lost readings: ten of the 2000 readings at 1 kHz. Design choice.
 const LOST_MAX: f64 = 0.005;
 /// Maximum fraction of damaged frames: one late call in 2 s on a busy computer is not a finding, because the device is
 /// in order.

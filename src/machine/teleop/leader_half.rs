@@ -20,7 +20,7 @@ use crate::{
 
 /// Distance from the gripper's hinge to the finger, m (omega.7).
 const GRIPPER_ARM_M: f64 = 0.048;
-/// Duration of the force ramp after each engagement, s: a force must not begin as a step in the hand. Chosen.
+/// Duration of the force ramp after each engagement, s: a force must not begin as a step in the hand. Design choice.
 const RAMP_S: f64 = 0.2;
 
 #[derive(Clone, Debug)]

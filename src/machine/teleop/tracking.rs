@@ -15,10 +15,10 @@ const CANDIDATES: usize = 64;
 /// Maximum lag that can be found, s.
 const LAG_MAX_S: f64 = 0.128;
 /// Averaging time of the comparison, s of motion: long enough for some changes of direction, which a lag shows in.
-/// Chosen.
+/// Design choice.
 const MEMORY_S: f64 = 2.0;
 /// Speed below which the shifts cannot be distinguished, m/s, because the noise of the tip's position would decide.
-/// Chosen.
+/// Design choice.
 const MOVING_M_S: f64 = 0.005;
 
 #[derive(Clone, Debug)]

@@ -253,7 +253,7 @@ impl RecordingTables {
     }
 }
 
-/// Processor time of this thread so far.
+/// Returns the processor time of this thread so far.
 fn processor_time() -> Result<Duration, Box<dyn Error>> {
     let report = fs::read_to_string("/proc/thread-self/schedstat")?;
     Ok(Duration::from_nanos(report.split(' ').next().unwrap_or_default().parse()?))

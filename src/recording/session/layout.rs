@@ -40,7 +40,7 @@ const GROWTH_IN_SUMMARIES: u64 = 32;
 pub(super) struct RecordingLayout {
     file: File,
     growth: u64,
-    /// End of the data and begin of the free space.
+    /// End of the data and start of the free space.
     data_end: u64,
     /// End of the free space: the record that ends the data.
     room_end: u64,

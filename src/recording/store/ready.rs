@@ -157,7 +157,7 @@ fn stem(name: &str) -> &str {
     name.strip_suffix(".toml").unwrap_or(name)
 }
 
-/// Prefix of the names of a rig's checks: `ready_check-Emulated_rig-`.
+/// Returns the prefix of the names of a rig's checks: `ready_check-Emulated_rig-`.
 fn prefix(rig: &str) -> String {
     let plain = |letter: char| if letter.is_ascii_alphanumeric() { letter } else { '_' };
     format!("{KIND}-{}-", rig.chars().take(48).map(plain).collect::<String>())

@@ -28,7 +28,7 @@ use super::{
 };
 use crate::digest::{DigestCheck, STAGES};
 
-/// Numbers that a working or faulty device may return. Compared by their bits.
+/// Generates numbers that a working or faulty device may return. Compared by their bits.
 fn number() -> impl Strategy<Value = f64> {
     prop_oneof![4 => -10.0..10.0_f64, 1 => any::<u64>().prop_map(f64::from_bits), 1 => Just(0.0), 1 => Just(-0.0)]
 }

@@ -125,7 +125,7 @@ fn has(reader: &SessionReader, topic: &str) -> bool {
     reader.channels().iter().any(|channel| channel.topic == topic)
 }
 
-/// Returns the events between these times (ns since 1970), with their seconds since the session's begin. Kinds of
+/// Returns the events between these times (ns since 1970), with their seconds since the start of the session. Kinds of
 /// events that a later version adds are left out.
 ///
 /// # Errors
@@ -141,7 +141,8 @@ pub fn happenings(reader: &SessionReader, times_ns: Range<u64>) -> Result<Vec<Ti
     Ok(all)
 }
 
-/// Returns the opening of this side's jaws between these times (ns since 1970): seconds since the session's begin, rad.
+/// Returns the opening of this side's jaws between these times (ns since 1970): seconds since the start of the session,
+/// rad.
 ///
 /// # Errors
 /// [`ReadError`] if the session cannot be read.

@@ -63,7 +63,7 @@ impl Keyframe {
         self.read
     }
 
-    /// Loop time of its last tick, s.
+    /// Returns the loop time of its last tick, s.
     pub const fn t_s(&self) -> f64 {
         self.t_s
     }

@@ -84,7 +84,7 @@ impl<I: Iterator<Item = Result<NumberedMessage, ReplayError>>> Journal<I> {
         })
     }
 
-    /// Origin of the loop.
+    /// Returns the origin of the loop.
     pub const fn start(&self) -> &JournalStart {
         &self.start
     }

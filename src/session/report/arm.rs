@@ -26,7 +26,7 @@ pub const DEGREE_COLUMNS: [&str; 4] = ["anchored", "matched", "nima", "paper"];
 pub struct StateSpan {
     /// 0 disconnected, 1 idle, 2 ready, 3 engaged, 4 clutched, 5 stopped, 6 faulted.
     pub state: u8,
-    /// Begin, s since the session's begin.
+    /// Start, s since the start of the session.
     pub from_s: f64,
     /// End, s.
     pub to_s: f64,
@@ -62,10 +62,10 @@ pub struct NetworkFigures {
     /// Mean weight in the force, 0 to 1.
     #[serde(rename = "share")]
     pub fraction: f64,
-    /// Fraction of the time outside its training data, 0 to 1.
+    /// Fraction of the time outside the training data, 0 to 1.
     #[serde(rename = "outside_share")]
     pub outside_fraction: f64,
-    /// Maximum distance from its training data, 1 at its limit.
+    /// Maximum distance from the training data, relative to the permitted distance.
     pub doubt_max: f64,
 }
 

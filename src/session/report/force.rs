@@ -10,7 +10,7 @@ pub struct ForceFigures {
     pub samples: u64,
     /// Maximum length, N.
     pub peak_n: f64,
-    /// Time of the maximum, s since the session's begin.
+    /// Time of the maximum, s since the start of the session.
     pub peak_at_s: f64,
     pub mean_n: f64,
     /// Integral of the length over time, N s.

@@ -14,7 +14,7 @@ pub struct ImageReport {
     pub bytes: u64,
     /// Number of images that are missing because the disk was too slow.
     pub dropped: u64,
-    /// Arrival of the first and the last image, s since the session's begin.
+    /// Arrival of the first and the last image, s since the start of the session.
     pub times_s: [f64; 2],
     /// Maximum time between two images, s.
     pub longest_gap_s: f64,

@@ -81,7 +81,7 @@ pub struct SessionFigures {
 /// A gap in the journal.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct MissingTicks {
-    /// End of the block with the gap, s since the session's begin.
+    /// End of the block with the gap, s since the start of the session.
     pub until_s: f64,
     /// Number of missing entries.
     pub lost: u64,
@@ -90,7 +90,7 @@ pub struct MissingTicks {
 /// A single event.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct EventMark {
-    /// s since the session's begin.
+    /// s since the start of the session.
     pub t_s: f64,
     /// Severity or kind.
     pub level: MarkLevel,

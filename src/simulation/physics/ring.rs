@@ -164,7 +164,7 @@ impl Ring {
         self.clear_forces();
     }
 
-    /// Kinetic and potential energy, J.
+    /// Returns the kinetic and potential energy, J.
     #[cfg(test)]
     pub(crate) fn energy_j(&self) -> f64 {
         0.5 * self.mass_kg * self.velocity_m_s.norm_squared()

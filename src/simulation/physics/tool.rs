@@ -132,12 +132,12 @@ impl PhysicsTool {
         self.parts[part].from_m.z.min(self.parts[part].to_m.z) - self.radii_m[part]
     }
 
-    /// Velocity of a point of a finger per rate of its half of the opening, m/rad.
+    /// Returns the velocity of a point of a finger per rate of its half of the opening, m/rad.
     fn opens(&self, finger: usize, point_m: &Vector3<f64>) -> Vector3<f64> {
         self.about.cross(&(point_m - self.hinge_m)) * side_of(finger)
     }
 
-    /// Velocity of a point of a part, m/s.
+    /// Returns the velocity of a point of a part, m/s.
     pub(crate) fn velocity_at(&self, part: usize, point_m: &Vector3<f64>) -> Vector3<f64> {
         if part == SHAFT {
             // The trocar does not move.

@@ -162,7 +162,8 @@ impl World {
         &self.hand
     }
 
-    /// True force on the tip at the last measurement, without sensor errors, N (`world`); known only in a simulation.
+    /// Returns the true force on the tip at the last measurement, without sensor errors, N (`world`); known only in a
+    /// simulation.
     pub const fn true_tip_n(&self) -> Vector3<f64> {
         self.true_tip_n
     }

@@ -48,7 +48,7 @@ impl Setup {
         self.scene.as_deref().unwrap_or_else(|| default_scene(&self.rig))
     }
 
-    /// Rig and scene as the console remembers them: files by their absolute paths.
+    /// Returns rig and scene as the console remembers them: files by their absolute paths.
     pub(super) fn choice(&self) -> RigChoice {
         let whole = |name: &str| {
             let path = std::fs::canonicalize(name).ok().filter(|path| path.is_file());

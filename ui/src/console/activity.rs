@@ -144,8 +144,8 @@ mod tests {
             this
         }
 
-        /// One block of every device: noise, plus the offset of `moved` at a time (s). Returns the lit devices with their
-        /// channels.
+        /// Creates one block of every device: noise, plus the offset of `moved` at a time (s). Returns the lit devices
+        /// with their channels.
         fn block(&mut self, moved: impl Fn(usize, usize, f64) -> f64) -> Vec<(usize, usize)> {
             let from_s = f64::from(self.block) * 0.1;
             self.block += 1;

@@ -194,7 +194,7 @@ impl Processor {
     }
 }
 
-/// Processor time of each thread since it began, s, by name.
+/// Returns the processor time of each thread since it began, s, by name.
 fn threads_s() -> BTreeMap<String, f64> {
     let mut times_s = BTreeMap::new();
     for task in fs::read_dir("/proc/self/task").into_iter().flatten().flatten() {
@@ -227,7 +227,7 @@ fn first_number(path: &str) -> Option<f64> {
     fs::read_to_string(path).ok()?.split_whitespace().next()?.parse().ok()
 }
 
-/// Resident memory of this process, MB; zero if not available.
+/// Returns the resident memory of this process, MB; zero if not available.
 fn resident_mb() -> f64 {
     let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"));

@@ -108,7 +108,7 @@ impl HistoryLevel {
         self.number(t_s) >= self.first
     }
 
-    /// Stored buckets that overlap `from_s..=to_s`, with the start time of each.
+    /// Returns the stored buckets that overlap `from_s..=to_s`, with the start time of each.
     fn between(&self, from_s: f64, to_s: f64) -> impl Iterator<Item = (f64, &HistoryBucket)> {
         let from = self.number(from_s).saturating_sub(self.first).min(self.buckets.len() as u64) as usize;
         let to = (self.number(to_s) + 1).saturating_sub(self.first).min(self.buckets.len() as u64) as usize;

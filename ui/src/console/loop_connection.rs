@@ -129,7 +129,7 @@ impl LoopConnection {
         self.shared.lock().woken
     }
 
-    /// Arrival time of the last tick, as of the last check.
+    /// Returns the arrival time of the last tick, as of the last check.
     pub fn last_came(&self) -> Instant {
         self.shared.lock().came
     }

@@ -18,7 +18,7 @@ const NEEDED: egui::Vec2 = vec2(1100.0, 680.0);
 /// Minimum size of a button next to its name: the menu must fit into the smallest window.
 const CHOICE: egui::Vec2 = vec2(84.0, 24.0);
 
-/// Returns the menu in the top bar; returns the chosen command. `can_undo`: whether undo and redo are possible.
+/// Draws the menu in the top bar; returns the chosen command. `can_undo`: whether undo and redo are possible.
 pub(super) fn menu_ui(
     ui: &mut Ui,
     settings: &mut ConsoleSettings,
@@ -77,14 +77,14 @@ pub(super) fn menu_ui(
     wanted
 }
 
-/// Returns a command with its keys, on a button of at least this width; returns the command when pressed.
+/// Draws a command with its keys, on a button of at least this width; returns the command when pressed.
 fn entry_ui(ui: &mut Ui, action: Action, width: f32) -> Option<Action> {
     let entry = CommandEntry::of(action)?;
     let button = ui.add(Button::new(entry.with_keys()).min_size(vec2(width, 30.0)));
     button.on_hover_text(entry.does).clicked().then_some(action)
 }
 
-/// Returns the languages by their own names; returns the command of the pressed one.
+/// Draws the languages by their own names; returns the command of the pressed one.
 fn languages_ui(ui: &mut Ui, now: Language) -> Option<Action> {
     let mut wanted = None;
     ui.horizontal(|ui| {
@@ -99,7 +99,7 @@ fn languages_ui(ui: &mut Ui, now: Language) -> Option<Action> {
     wanted
 }
 
-/// Returns a switch in its current state; returns its command when pressed.
+/// Draws a switch in its current state; returns its command when pressed.
 fn switch_ui(ui: &mut Ui, mut on: bool, action: Action) -> Option<Action> {
     let entry = CommandEntry::of(action)?;
     ui.checkbox(&mut on, entry.title.as_str()).on_hover_text(entry.does).changed().then_some(action)

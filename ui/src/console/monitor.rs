@@ -193,7 +193,7 @@ impl Monitor {
         });
     }
 
-    /// Reason why the display is out of date, otherwise the alarm at the rig.
+    /// Draws the reason why the display is out of date, otherwise the alarm at the rig.
     fn words_ui(&self, ui: &mut Ui, stale: Option<String>) {
         let alarm = || {
             let alarm = judge(&self.live.as_ref()?.signs(false, None)).into_iter().next()?;

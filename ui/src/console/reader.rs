@@ -31,7 +31,7 @@ impl std::fmt::Debug for ScreenReader {
     }
 }
 
-/// Task of an open wizard for the person at the arm.
+/// Returns the task of an open wizard for the person at the arm.
 pub const fn task_of(open: Option<WizardKind>) -> PersonTask {
     match open {
         // The emulators' technician has no board.

@@ -23,7 +23,7 @@ pub fn still(plot: Plot<'_>) -> Plot<'_> {
         .grid_color(theme::now().line)
 }
 
-/// Returns a card with a heading; `meaning` is its hover text.
+/// Draws a card with a heading; `meaning` is its hover text.
 pub fn card<R>(ui: &mut Ui, title: &str, meaning: &str, content: impl FnOnce(&mut Ui) -> R) -> R {
     let inner = theme::card().show(ui, |ui| {
         ui.set_width(ui.available_width());
@@ -106,12 +106,12 @@ pub fn next_button(name: impl Into<RichText>, next: bool) -> Button<'static> {
     if next { Button::new(name.color(theme::DARK.text)).fill(theme::now().primary) } else { Button::new(name) }
 }
 
-/// Explanatory text.
+/// Returns explanatory text.
 pub fn weak(text: impl Into<String>) -> RichText {
     RichText::new(text).color(theme::now().text_weak)
 }
 
-/// Small explanatory text.
+/// Returns small explanatory text.
 pub fn small(text: impl Into<String>) -> RichText {
     weak(text).text_style(egui::TextStyle::Small)
 }

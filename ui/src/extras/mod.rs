@@ -97,7 +97,7 @@ pub(crate) trait Extra: Sync {
         None
     }
 
-    /// Connection to a machine with the arm.
+    /// Returns the connection to a machine with the arm.
     fn way(&self) -> Option<&'static dyn ArmLink> {
         None
     }
@@ -195,7 +195,7 @@ mod tests {
 
     #[derive(Debug, Subcommand)]
     enum OwnCommand {
-        /// Own help
+        /// Its own help
         Calibrate,
     }
 

@@ -145,7 +145,7 @@ pub(super) fn calibrations(session: &SessionFigures) -> Markup {
     section("Calibrations in use", &body)
 }
 
-/// Missed periods, and percentiles.
+/// Returns missed periods, and percentiles.
 pub(super) fn timing(session: &SessionFigures) -> Markup {
     let Some(timing) = &session.timing else { return html! {} };
     let names = ["wake-up delay (us)", "work per tick (us)", "sample to force (us)"];

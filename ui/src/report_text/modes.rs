@@ -17,7 +17,7 @@ pub(crate) fn mode_name(mode: Mode) -> &'static str {
     words(mode)[0]
 }
 
-/// Explanation of a mode, one sentence.
+/// Returns the explanation of a mode, one sentence.
 pub(crate) fn mode_meaning(mode: Mode) -> &'static str {
     words(mode)[1]
 }

@@ -69,7 +69,7 @@ pub(crate) fn loss_text(loss: Loss) -> &'static str {
     }
 }
 
-/// Swapped parts, a clause without a full stop.
+/// Returns the swapped parts, a clause without a full stop.
 pub(crate) fn exchange_text(exchange: SideSwap) -> &'static str {
     match exchange {
         SideSwap::Handles => {
@@ -151,7 +151,7 @@ fn start_words(error: ArmStartError) -> String {
     }
 }
 
-/// Real-time property that the loop lacks, and the remedy.
+/// Returns the real-time property that the loop lacks, and the remedy.
 pub(crate) fn lack_text(lack: SchedulingLack) -> [&'static str; 2] {
     match lack {
         SchedulingLack::Priority => [

@@ -89,7 +89,7 @@ pub(crate) fn ask_text(ask: &PersonRequest) -> String {
     }
 }
 
-/// Workspace axis nearest to a direction.
+/// Returns the workspace axis nearest to a direction.
 fn way(direction: &nalgebra::Vector3<f64>) -> &'static str {
     let axis = direction.iamax();
     match (axis, direction[axis] < 0.0) {

@@ -8,7 +8,7 @@ use nima_machine::{
 use super::{Remedy as _, ShortText as _, exchange_text, force::cure_of_unknown, obstacle_text};
 use crate::language::{text_format, word};
 
-/// Reason, a clause without a full stop.
+/// Returns the reason, a clause without a full stop.
 pub(crate) fn refused_because(why: Refusal) -> String {
     match why {
         Refusal::State(state) => in_state(state).to_owned(),
@@ -68,7 +68,7 @@ pub(crate) fn refused_because(why: Refusal) -> String {
     }
 }
 
-/// Remedy, a clause without a full stop.
+/// Returns the remedy, a clause without a full stop.
 pub(crate) fn cure_of_refusal(why: Refusal) -> &'static str {
     match why {
         Refusal::State(LoopState::Stopped) => word("press Release stop first", "erst Halt lösen drücken"),

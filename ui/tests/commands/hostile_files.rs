@@ -112,7 +112,7 @@ fn directions(count: i32) -> impl Iterator<Item = [f64; 3]> {
     })
 }
 
-/// Still poses of a tool of this mass.
+/// Returns still poses of a tool of this mass.
 fn poses(mass_kg: f64) -> String {
     let mut text = "fx_n,fy_n,fz_n,ax,ay,az\n".to_owned();
     for down in directions(12) {

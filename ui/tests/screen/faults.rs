@@ -45,7 +45,7 @@ pub(crate) fn texts<A>(harness: &Harness<'_, A>) -> Vec<Text> {
     texts
 }
 
-/// Faults of the texts in this frame; `field` is the operating field, where labels move with objects.
+/// Returns the faults of the texts in this frame; `field` is the operating field, where labels move with objects.
 pub(crate) fn faults_of_texts(
     texts: &[Text],
     window: Rect,
@@ -125,7 +125,7 @@ pub(crate) fn faults_of_controls<A>(harness: &Harness<'_, A>, texts: &[Text], wi
     faults
 }
 
-/// Buttons that are narrower than their text.
+/// Returns the buttons that are narrower than their text.
 pub(crate) fn too_wide<A>(harness: &Harness<'_, A>) -> Vec<String> {
     let buttons = harness.query_all_by(|node| node.role() == accesskit::Role::Button);
     let buttons: Vec<(String, Rect)> =

@@ -23,7 +23,7 @@ const SHRUNK: usize = 4;
 const GREY_STEP: f32 = 16.0;
 /// Side of the squares that are compared, pixels: 16 points, the height of a line of text.
 const SQUARE: u32 = 4;
-/// Mean difference of grey in a square, of 255, from which on the pictures differ. The steps of grey are 4 on average,
+/// Mean difference of grey in a square, of 255, from which on the images differ. The steps of grey are 4 on average,
 /// another antialiasing of the same letters 3; a word that is missing or has moved by half a letter is 25.
 const TOLERANCE: f32 = 12.0;
 /// Colour of the bars instead of texts with a digit.
@@ -32,7 +32,7 @@ const BAR: Color32 = Color32::GRAY;
 /// Longest time in which a busy computer finishes drawing.
 const SETTLING_TIME: Duration = Duration::from_secs(20);
 
-/// Returns the difference of the window from its stored picture; `None` if there is none. `UPDATE_SNAPSHOTS=1` stores
+/// Returns the difference of the window from its stored image; `None` if there is none. `UPDATE_SNAPSHOTS=1` stores
 /// the new one.
 pub(crate) fn differs<A>(window: &Harness<'_, A>, name: &str) -> Option<String> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/screen/stored").join(name).with_extension("png");
@@ -64,7 +64,7 @@ pub(crate) fn still_differs<A>(window: &mut Harness<'_, A>, name: &str) -> Optio
     differs(window, name)
 }
 
-/// Checks that the window looks as in its stored picture.
+/// Checks that the window looks like its stored image.
 pub(crate) fn same<A>(window: &Harness<'_, A>, name: &str) {
     if let Some(difference) = differs(window, name) {
         panic!("{difference}");
@@ -94,7 +94,7 @@ fn difference(stored: &GrayImage, now: &GrayImage) -> Option<String> {
     Some(format!("{} squares of 16 points, most at {at:?} points, by {by:.0} of 255", differing.len()))
 }
 
-/// Picture of the window.
+/// Returns an image of the window.
 fn drawn<A>(window: &Harness<'_, A>) -> GrayImage {
     let Vec2 { x, y } = window.ctx.content_rect().size();
     assert!((window.ctx.pixels_per_point() - 1.0).abs() < 1e-6, "a pixel is a point");

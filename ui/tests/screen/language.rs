@@ -23,7 +23,7 @@ use crate::{
 const SIZES: [[f32; 2]; 4] = [[1100.0, 680.0], [1280.0, 720.0], [1600.0, 1000.0], [1920.0, 1080.0]];
 const LANGUAGES: [Language; 2] = [Language::German, Language::Pseudo];
 
-/// Faults of this page in every language at every size.
+/// Returns the faults of this page in every language at every size.
 fn look_at(console: &mut Console, page: &str, kind: Page) -> Vec<String> {
     let before = console.ctx.content_rect().size();
     let mut all = Vec::new();
@@ -70,7 +70,7 @@ fn begin(scene: &str, folder: &Path) -> Console {
     console
 }
 
-/// Faults in each view.
+/// Returns the faults in each view.
 fn views(console: &mut Console, what: &str) -> Vec<String> {
     let mut all = Vec::new();
     for (role, front) in VIEWS {

@@ -1,4 +1,4 @@
-//! Every role, panel, page and first page of a wizard looks as in its stored picture. Tests that go through the wizards
+//! Every role, panel, page and first page of a wizard looks like its stored image. Tests that go through the wizards
 //! compare their later pages.
 
 use std::{path::Path, time::Duration};

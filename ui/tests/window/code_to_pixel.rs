@@ -190,7 +190,7 @@ fn report(figures: &serde_json::Value) -> String {
     format!("loop: {ticks} ticks, {missed} missed, wake-up us {}", figures["wake_us"])
 }
 
-/// Seconds of each run: `NIMA_SECONDS`, or 20.
+/// Returns the duration of each run in seconds: `NIMA_SECONDS`, or 20.
 fn seconds() -> Duration {
     let report = std::env::var("NIMA_SECONDS").ok().and_then(|text| text.parse().ok());
     Duration::from_secs(report.unwrap_or(20))

@@ -14,15 +14,15 @@ const FARTHEST_M: f64 = 10.0;
 /// The poses of the other side are not used for a fit. They reveal whether two markers or two arms were confused.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FrameSample {
-    /// The arm's flange in the frame of the arm's base, m, from the joints ([`crate::kinematics::JointChain`]).
+    /// Pose of the arm's flange in the frame of the arm's base, m, from the joints ([`crate::kinematics::JointChain`]).
     pub base_from_flange: Option<Isometry3<f64>>,
     /// Pose of the other arm's flange, in that arm's own base frame.
     pub other_base_from_flange: Option<Isometry3<f64>>,
-    /// The instrument's marker in the tracker camera's frame, m.
+    /// Pose of the instrument's marker in the tracker camera's frame, m.
     pub c_from_m: Option<Isometry3<f64>>,
-    /// The marker of the other instrument in the same camera's frame.
+    /// Pose of the other instrument's marker in the same frame.
     pub c_from_other_m: Option<Isometry3<f64>>,
-    /// The haptic handle in the leader's frame, m.
+    /// Pose of the haptic handle in the leader's frame, m.
     pub leader_from_handle: Option<Isometry3<f64>>,
     /// Unprocessed wrench on the wrist sensor (`s1`), N and Nm.
     pub wrench: Option<Wrench>,

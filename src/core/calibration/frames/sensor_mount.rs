@@ -20,7 +20,7 @@ use super::{
 use crate::frames::GRAVITY_M_S2;
 
 /// Minimum rotation of the flange relative to gravity between two poses, rad: 10 degrees, so that a person who hardly
-/// moves does not fill the session with equal poses. Chosen.
+/// moves does not fill the session with equal poses. Design choice.
 const APART_RAD: f64 = 0.17;
 /// Minimum root mean square of the directions of gravity from their mean along the third axis, 0 to 1; 0.58 for all
 /// directions.

@@ -17,7 +17,7 @@ use super::{
 use crate::calibration::Verdict;
 
 /// Minimum distance between two points, m, so that a tip that rests does not fill the session with equal points.
-/// Chosen.
+/// Design choice.
 const APART_M: f64 = 0.02;
 /// Minimum root mean square spread of the points along the second axis of their plane, m; and of a complete session.
 const MIN_SPREAD_M: f64 = 0.015;

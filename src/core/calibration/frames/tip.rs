@@ -18,7 +18,7 @@ use super::{
 use crate::calibration::Verdict;
 
 /// Minimum rotation between two poses, rad: 4 degrees, so that a person who hardly moves does not fill the session with
-/// equal poses. Chosen.
+/// equal poses. Design choice.
 pub(super) const APART_RAD: f64 = 0.07;
 /// A session is complete with this number of poses, and with these rotations in degrees. With 20 poses, 95 % of 200
 /// simulated calibrations with a tracker have an error of at most 0.40 mm (`docs/frames.md`).

@@ -1,7 +1,7 @@
 //! Third gate: the paper's rule that no force is rendered below 1 mm/s, with a smooth edge and hysteresis to prevent
 //! chatter.
 
-/// Time constant with which the effective speed falls, s. Chosen.
+/// Time constant with which the effective speed falls, s. Design choice.
 const FALL_S: f64 = 0.040;
 /// Upper limit of the effective speed, in thresholds: even a fast hand that stops closes the gate within 0.1 s.
 const FAST: f64 = 8.0;

@@ -7,8 +7,8 @@
 //! arm keeps moving. The properties of a number are updated with a delay of one second, so that a fault does not become
 //! normal behaviour.
 
-/// Time for which a number must have changed before its rest is a fault, s. Chosen; no false alarm in 136 healthy
-/// minutes (`docs/faults.md`).
+/// Time for which a number must have changed before its rest is a fault, s. Design choice, with no false alarm in 136
+/// healthy minutes (`docs/faults.md`).
 const LIVELY_S: f64 = 3.0;
 /// A number that rests for longer does not change continuously, s: data of 40 Hz, repeated at the rate of the
 /// connection.
@@ -22,16 +22,16 @@ const REPEATED: u32 = 3;
 /// probability of n^-2.5 per reading: 2e-9 after 3 s at 1 kHz.
 const LONGER: f64 = 2.5;
 /// Time constant with which the longest rest is forgotten, s, so that one long rest does not hide faults for the rest
-/// of the day. Chosen.
+/// of the day. Design choice.
 const FORGOTTEN_S: f64 = 60.0;
 /// A number counts as noisy if it changes direction this often per second: tremor of 12 Hz does so 24 times, and a
 /// product of two such forces 48 times. White noise does so in two of three readings.
 const NOISY_TURNS: f64 = 60.0;
 /// A number of a slow device counts as noisy if it changes direction in this fraction of the readings. White noise does
-/// so in two of three. Chosen; no false alarm in 136 healthy minutes (`docs/faults.md`).
+/// so in two of three. Design choice, with no false alarm in 136 healthy minutes (`docs/faults.md`).
 const NOISY_FRACTION: f64 = 0.35;
 /// Longest rest of a noise-free number whose resolution is fine enough for a judgement, s. A coarser one cannot be
-/// distinguished from a frozen one within the 20 ms. Chosen.
+/// distinguished from a frozen one within the 20 ms. Design choice.
 const FINE_S: f64 = 0.003;
 /// A number has stopped from speed if its last step was this many times its smallest step: a number that comes to rest
 /// on its own passes through small steps.

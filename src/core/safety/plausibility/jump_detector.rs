@@ -9,7 +9,7 @@ const BRIDGED: u32 = 2;
 /// This many bridged samples, minus one for each [`CALM`] good samples, are no longer treated as spikes: the fourth
 /// spike in a hundred samples is a fault (`docs/faults.md`).
 const FREQUENT: f64 = 4.0;
-/// Number of good samples that compensate a bridged sample. Chosen; no false alarm in 136 healthy minutes
+/// Number of good samples that compensate a bridged sample. Design choice, with no false alarm in 136 healthy minutes
 /// (`docs/faults.md`).
 const CALM: f64 = 25.0;
 

@@ -58,7 +58,7 @@ const WAY_READINGS: usize = 4;
 /// lever of the shaft.
 const LEVER_M: f64 = 0.5;
 /// If the command moves this far while the tip's position stays identical to the last bit, the tip does not follow, m.
-/// Chosen; no false alarm in 136 healthy minutes (`docs/faults.md`).
+/// Design choice, with no false alarm in 136 healthy minutes (`docs/faults.md`).
 const STUCK_COMMAND_M: f64 = 0.5e-3;
 /// After a longer gap between two checks the possible travel is unknown, s.
 const GAP_S: f64 = 0.015;

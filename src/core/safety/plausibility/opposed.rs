@@ -9,19 +9,19 @@
 
 use nalgebra::Vector3;
 
-/// Time for which the tip must have been free before a touch is judged, s. Chosen; tested on the healthy minutes of
-/// `docs/faults.md`.
+/// Time for which the tip must have been free before a touch is judged, s. Design choice, tested on the healthy minutes
+/// of `docs/faults.md`.
 const FREE_S: f64 = 0.05;
-/// Work that suffices for a judgement, as the travel under the smallest force, m. Chosen; no false alarm in 136 healthy
-/// minutes (`docs/faults.md`).
+/// Work that suffices for a judgement, as the travel under the smallest force, m. Design choice, with no false alarm in
+/// 136 healthy minutes (`docs/faults.md`).
 const ENOUGH_AT_MIN_M: f64 = 1e-3;
 /// Travel that suffices for a judgement, m.
 const ENOUGH_M: f64 = 0.3e-3;
-/// Fraction of the full work above which the force points along the motion. Chosen; no false alarm in 136 healthy
-/// minutes (`docs/faults.md`).
+/// Fraction of the full work above which the force points along the motion. Design choice, with no false alarm in 136
+/// healthy minutes (`docs/faults.md`).
 const ALONG: f64 = 0.7;
-/// A touch that cannot be judged within this time is not judged at all, s. Chosen; no false alarm in 136 healthy
-/// minutes (`docs/faults.md`).
+/// A touch that cannot be judged within this time is not judged at all, s. Design choice, with no false alarm in 136
+/// healthy minutes (`docs/faults.md`).
 const WITHIN_S: f64 = 0.3;
 /// Time constant against noise, s.
 const SMOOTHING_S: f64 = 0.002;

@@ -16,7 +16,7 @@ const UNMOVED_S: f64 = 0.1;
 const TREMBLED_S: f64 = 10.0;
 const RESTFUL_S: f64 = 0.05;
 /// Shortest time after which a position counts as stuck, s, and the minimum number of readings that repeat the first
-/// one. Chosen; no false alarm in 136 healthy minutes (`docs/faults.md`).
+/// one. Design choice, with no false alarm in 136 healthy minutes (`docs/faults.md`).
 const STUCK_S: f64 = 0.015;
 const REPEATED: u32 = 2;
 

@@ -31,7 +31,7 @@ const CONDITION_BYTES: usize = (TEMPERATURE.address + 1 - CONDITION_FROM) as usi
 /// Longest answer: a condition with the largest possible byte stuffing.
 const LONGEST: usize = OVERHEAD + (CONDITION_BYTES + 1) * 4 / 3;
 /// Interval between two condition reads, s: temperature, voltage and errors of each of the four servos are then read
-/// five times per second, and the exchange of positions hardly loses time. Chosen.
+/// five times per second, and the exchange of positions hardly loses time. Design choice.
 const CONDITION_EVERY_S: f64 = 0.050;
 /// Allowance for adapter, operating system and servo in addition to the transmission time, as a fraction of the time
 /// until the servos count as silent; three attempts fit in.

@@ -258,7 +258,7 @@ impl Drop for KinovaDriver {
     }
 }
 
-/// Converts three numbers of the protocol for [`ToolReading`].
+/// Converts three numbers of the protocol to a vector of [`ToolReading`], multiplied by `scale`.
 fn vector(numbers: &[f32], scale: f64) -> Vector3<f64> {
     Vector3::new(f64::from(numbers[0]), f64::from(numbers[1]), f64::from(numbers[2])) * scale
 }

@@ -45,7 +45,7 @@ fn a_balanced_mixed_model_is_the_analysis_of_variance() {
     near(between.estimate, column(2) - column(1), 1e-12);
     near(between.standard_error, effect.standard_error, 1e-12);
     assert_eq!(fit.between("2", "0").unwrap().estimate.to_bits(), effect.estimate.to_bits());
-    // The prediction for a participant: the mean, shrunk.
+    // The predicted intercept of a participant is the deviation of its mean from the grand mean, shrunk.
     let shrink = 3.0 * fit.participant_variance / (3.0 * fit.participant_variance + residual);
     fit.intercepts.iter().zip(rows).for_each(|((_, intercept), row)| near(*intercept, shrink * (row - grand), 1e-11));
 }

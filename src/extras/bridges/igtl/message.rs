@@ -143,7 +143,7 @@ fn metadata(region: &[u8], index: usize, values: usize) -> Result<(), IgtlFormat
     if index == 2 + 8 * count && report == values as u64 { Ok(()) } else { Err(IgtlFormatError::Short) }
 }
 
-/// Seconds in the upper half, their fraction in the lower.
+/// Returns a time stamp with the seconds in the upper half and their fraction in the lower half.
 fn stamp(time_ns: u64) -> u64 {
     let seconds = time_ns / 1_000_000_000;
     let rest_ns = time_ns % 1_000_000_000;

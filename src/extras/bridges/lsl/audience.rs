@@ -1,4 +1,4 @@
-//! The part on the recorder's thread: converts events into markers with time stamps.
+//! Part that runs on the recorder's thread: converts events into markers with time stamps.
 
 use std::sync::Arc;
 

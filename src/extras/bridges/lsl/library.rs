@@ -115,7 +115,7 @@ impl Lsl {
         Ok(lsl)
     }
 
-    /// LSL time, s.
+    /// Returns the LSL time, s.
     pub(super) fn local_clock(&self) -> f64 {
         // SAFETY: no arguments.
         unsafe { (self.local_clock)() }

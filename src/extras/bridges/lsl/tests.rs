@@ -19,7 +19,7 @@ use super::{
 
 const WORDS: fn(Fault) -> &'static str = |_| "something is wrong";
 
-/// Ticks of one arm that is engaged from 0.005 s, touches from 0.5 to 1 s, and is stopped from 1.5 to 1.6 s.
+/// Returns ticks of one arm that is engaged from 0.005 s, touches from 0.5 to 1 s, and is stopped from 1.5 to 1.6 s.
 fn ticks() -> Vec<[Option<Tick>; SIDES]> {
     let rig = RigConfig::load("simulated").unwrap();
     let mut control = Loop::new(&rig, &[Some(Calibrations::default()), None]).unwrap();

@@ -19,7 +19,7 @@ fn every_degenerate_set_is_refused_with_its_cause() {
         let few = cause(&noisy(&mut rng, &lens, &good[..5], 0.1));
         assert_eq!(few, CameraCause::TooFew { used: 5, needed: 8 });
         assert_eq!(cause(&[]), CameraCause::TooFew { used: 0, needed: 8 });
-        // The same pose repeatedly.
+        // The same pose again and again.
         let same = cause(&noisy(&mut rng, &lens, &vec![good[1]; 14], 0.1));
         assert_eq!(same, CameraCause::Repeated { repeated: 13, of: 14 });
         // Blurred.

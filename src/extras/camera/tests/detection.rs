@@ -69,7 +69,7 @@ fn what_is_not_the_whole_board_is_refused_and_told() {
     image = Grey::new(SIZE_PX, values.collect()).unwrap();
     let report = find(&image, &board).unwrap_err();
     assert!(matches!(report, DetectionFailure::Part { seen: 30..=53, of: 54 }), "{report:?}");
-    // Half outside the image.
+    // The board is half outside the image.
     let beside = pose(&lens, &board, [0.95, 0.0], 0.1, [0.0, 0.0, 0.0]);
     let report = find(&Sensor::USUAL.image(&mut rng, &portrait, &board, &beside), &board).unwrap_err();
     assert!(matches!(report, DetectionFailure::Part { seen: 10..=45, of: 54 }), "{report:?}");

@@ -216,7 +216,7 @@ impl Endpoint {
         self.session().map_or_else(SessionMeasurements::default, |session| session.stream.figures(self.now_s))
     }
 
-    /// Datagrams that were dropped since the endpoint was opened.
+    /// Returns the number of datagrams that were dropped since the endpoint was opened.
     pub fn dropped(&self) -> DroppedCounts {
         let shared = &self.clerk.shared;
         let own = self.dropped;
@@ -229,7 +229,7 @@ impl Endpoint {
         }
     }
 
-    /// Datagrams of handshakes that this end has sent.
+    /// Returns the number of handshake datagrams that this end has sent.
     pub fn handshake_datagrams(&self) -> u64 {
         self.clerk.shared.sent.load(Relaxed)
     }

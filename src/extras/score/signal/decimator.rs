@@ -119,7 +119,7 @@ impl Decimator {
     }
 }
 
-/// Windowed sinc of unit sum.
+/// Returns a windowed sinc of unit sum.
 fn low_pass() -> [f64; TAPS] {
     let mut taps = std::array::from_fn(|tap| {
         let from_middle = tap as f64 - REACH as f64;

@@ -11,9 +11,9 @@ pub(crate) enum DerivativeOrder {
     Third,
 }
 
-/// Magnitude of the derivative at each point. Central differences over five points (errors of the fourth order in the
-/// step; the third derivative: second order). Beyond the ends the segment is continued by point reflection, as in the
-/// filter.
+/// Returns the magnitude of the derivative at each point. Central differences over five points (errors of the fourth
+/// order in the step; the third derivative: second order). Beyond the ends the segment is continued by point
+/// reflection, as in the filter.
 pub(crate) fn magnitudes(points: &[Vector3<f64>], order: DerivativeOrder) -> Vec<f64> {
     let (weights, per_step): ([f64; 5], f64) = match order {
         DerivativeOrder::First => ([1.0, -8.0, 0.0, 8.0, -1.0], 12.0 * STEP_S),
@@ -49,7 +49,7 @@ pub(crate) fn mean<'a>(stretches: impl Iterator<Item = &'a [f64]>) -> Option<f64
     (steps > 0.0).then(|| sum / steps)
 }
 
-/// Maximum; `None` without a value.
+/// Returns the maximum; `None` without a value.
 pub(crate) fn peak<'a>(stretches: impl Iterator<Item = &'a [f64]>) -> Option<f64> {
     stretches.flatten().copied().reduce(f64::max)
 }

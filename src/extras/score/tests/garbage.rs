@@ -8,7 +8,7 @@ use proptest::prelude::*;
 use super::task;
 use crate::{HandSample, Score, ScoreSample, Scorer};
 
-/// Any number, often a problematic one.
+/// Generates any number, often a problematic one.
 fn number() -> impl Strategy<Value = f64> {
     let odd = prop_oneof![
         Just(f64::NAN),

@@ -63,7 +63,7 @@ fn right(tip_m: Vector3<f64>) -> Hands {
     Side::Right.alone(tip(tip_m))
 }
 
-/// Position, from 0 to 1, of a minimum-jerk reach that takes 1 s (Flash and Hogan 1985).
+/// Returns the position, from 0 to 1, of a minimum-jerk reach that takes 1 s (Flash and Hogan 1985).
 fn minimum_jerk(s: f64) -> f64 {
     let s = s.clamp(0.0, 1.0);
     s * s * s * (10.0 - 15.0 * s + 6.0 * s * s)

@@ -47,9 +47,9 @@ pub struct Truth {
     pub applied: MotorOutput,
     /// Whether the arm follows commands; otherwise it holds.
     pub servoing: bool,
-    /// The marker in the wrist sensor's frame.
+    /// Pose of the marker in the wrist sensor's frame.
     pub s1_from_m: Isometry3<f64>,
-    /// The tracker's camera in the workspace.
+    /// Pose of the tracker's camera in the workspace.
     pub world_from_c: Isometry3<f64>,
 }
 

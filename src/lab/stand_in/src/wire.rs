@@ -24,10 +24,10 @@ const REPLY_KIND: u32 = 0x524d_494e; // "NIMR"
 pub enum ClientOrder {
     /// Identifies the device. Changes nothing; allowed for every client.
     Hello = 0,
-    /// Take possession.
+    /// Takes control of the device.
     Open,
     Read,
-    /// Set force (first three values) and gripper force (fourth); read all.
+    /// Sets the force (first three values) and the gripper force (fourth), and reads everything.
     Force,
     /// Argument 1: force on. 0: force off.
     EnableForce,
@@ -39,7 +39,7 @@ pub enum ClientOrder {
     VelocityThreshold,
     /// Argument 1: the gripper counts as a button when closed.
     Button,
-    /// Release the device, which then brakes.
+    /// Releases the device, which then brakes.
     Close,
 }
 

@@ -162,7 +162,7 @@ impl FaultBench {
         }
     }
 
-    /// One tick of world, machine and twin; `None` only if the rig has no right arm pair.
+    /// Runs one tick of world, machine and twin; `None` only if the rig has no right arm pair.
     pub(super) fn step(&mut self) -> Option<BenchStep> {
         let now_s = f64::from(self.tick) * PERIOD_S;
         let timing = self.timing(now_s);

@@ -124,7 +124,7 @@ impl FaultPlace {
         }
     }
 
-    /// Ticks for which the fault is observed.
+    /// Returns the number of ticks for which the fault is observed.
     const fn ticks(self) -> u32 {
         match self {
             Self::Ready | Self::Free | Self::Contact => 2500,
@@ -220,11 +220,11 @@ pub struct FaultSums {
     pub silent: usize,
     /// Detected cases on the force path while engaged.
     pub on_force_path: usize,
-    /// Median time to detection of these, ms.
+    /// Median time to detection of the cases in `on_force_path`, ms.
     pub detection_p50_ms: f64,
-    /// 99th percentile, ms.
+    /// 99th percentile of that time, ms.
     pub detection_p99_ms: f64,
-    /// Maximum, ms.
+    /// Maximum of that time, ms.
     pub detection_max_ms: f64,
     /// Maximum error of a bounded case, N.
     pub bounded_error_n: f64,

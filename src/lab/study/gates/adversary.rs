@@ -55,7 +55,7 @@ pub(super) struct Adversary<'a, const D: usize> {
     permitted: bool,
 }
 
-/// Random settings, most of them valid, some invalid.
+/// Returns random settings, most of them valid, some invalid.
 pub(super) fn settings(rng: &mut Rng) -> ChainSettings {
     let fade_after_s = 0.02 * rng.f64();
     ChainSettings {
@@ -76,7 +76,7 @@ pub(super) fn settings(rng: &mut Rng) -> ChainSettings {
     }
 }
 
-/// Usually a number from 0 to `max`; sometimes one outside that range, or NaN.
+/// Usually returns a number from 0 to `max`; sometimes one outside that range, or NaN.
 fn odd(rng: &mut Rng, max: f64) -> f64 {
     match rng.u32(..16) {
         0 => f64::NAN,

@@ -87,7 +87,7 @@ impl HandKind {
         },
     ];
 
-    /// Hands of one trial.
+    /// Returns the number of hands of one trial.
     pub(super) const fn hands(&self) -> usize {
         if self.two_hands { 2 } else { 1 }
     }

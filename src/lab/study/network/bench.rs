@@ -205,7 +205,7 @@ impl NetworkBench {
         f64::from(self.tick) / RATE_HZ
     }
 
-    /// Ticks since the loops were started.
+    /// Returns the number of ticks since the loops were started.
     pub(super) const fn ticks(&self) -> u32 {
         self.tick - self.begun
     }
@@ -220,7 +220,7 @@ impl NetworkBench {
         [self.console.rig.wire(), self.follower.rig.wire()]
     }
 
-    /// Faults raised by the console and the follower.
+    /// Returns the faults raised by the console and the follower.
     pub(super) const fn faults(&self) -> [&BTreeMap<String, u32>; 2] {
         [&self.console.faults, &self.follower.faults]
     }

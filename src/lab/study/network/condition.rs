@@ -94,7 +94,7 @@ impl LinkEvent {
         Self::Asymmetric,
     ];
 
-    /// For tables.
+    /// Returns the word for tables.
     pub const fn word(self) -> &'static str {
         match self {
             Self::Nothing => "-",

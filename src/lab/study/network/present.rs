@@ -21,7 +21,7 @@ const CSV_HEADER: &str = "clock,mode,delay_ms,jitter_ms,loss_percent,burst_ms,ha
 const CELLS_HEADER: &str = "| mode | delay (ms) | jitter (ms) | loss (%) | other | error (N) | of clean | of dfr | energy (mJ) | tissue's (mJ) | 2-50 Hz (N) | tissue's (N) | no force (ms) | after data (ms) | stops | step (mm) | there, back (ms) | late (%) | lost (%) | recovered (%) |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
 
 impl NetworkCondition {
-    /// Loss for tables.
+    /// Returns the loss for tables.
     fn loss_word(&self) -> String {
         let burst = self.burst_ms.map(|burst_ms| format!(" in {burst_ms} ms"));
         format!("{}{}", self.loss_percent, burst.unwrap_or_default())

@@ -66,7 +66,7 @@ impl PassivityTask {
         }
     }
 
-    /// Intended position of the hand (m) at this time (s).
+    /// Returns the intended position of the hand (m) at this time (s).
     fn intended_m(self, t_s: f64) -> Vector3<f64> {
         let span_m = ABOVE_M + DEPTH_M;
         let way = |t_s: f64, from_s: f64, for_s: f64| smooth((t_s - from_s) / for_s);
@@ -222,7 +222,7 @@ pub fn tasked(
     tasked_over(clock, way, task, delay_ms, |_| tissue)
 }
 
-/// One task over a tissue that may change at every touch.
+/// Runs one task over a tissue that may change at every touch.
 ///
 /// # Errors
 /// [`SettingsError`] if the loop's settings are invalid.

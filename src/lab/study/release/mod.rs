@@ -226,7 +226,7 @@ fn worst_of(
     Ok(worst)
 }
 
-/// One release of a handle with the mass that the governor assumes.
+/// Simulates one release of a handle with the mass that the governor assumes.
 pub fn let_go(way: &ReleaseStyle, tissue: TissueModel) -> Result<ReleaseRow, ReleaseError> {
     let gates = ChainSettings::default();
     let gates = if way.governor { gates } else { gates.without_governor() };

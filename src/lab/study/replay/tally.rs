@@ -95,7 +95,7 @@ impl ReplayTally {
     }
 }
 
-/// Seconds to milliseconds, rounded to remove the error of the division.
+/// Converts seconds to milliseconds, rounded to remove the error of the division.
 fn tidy_ms(seconds: f64) -> f64 {
     (seconds * 1e9).round() * 1e-6
 }

@@ -20,7 +20,7 @@ pub(super) struct StabilityCase {
     pub(super) samples: Vec<RawSample>,
 }
 
-/// Ticks until the differentiator has settled and both the paper's `u` and the window are filled.
+/// Returns the number of ticks until the differentiator has settled and both the paper's `u` and the window are filled.
 pub(super) fn warm(rate_hz: f64, window: usize) -> usize {
     ((0.03 * rate_hz) as usize).max(5) + 2 * window
 }

@@ -214,7 +214,7 @@ fn fits(
     found
 }
 
-/// Ticks at which the window is evaluated.
+/// Returns the ticks at which the window is evaluated.
 fn instants(case: &StabilityCase) -> impl Iterator<Item = usize> {
     let first = warm(case.rate_hz, case.window);
     let window = case.window;

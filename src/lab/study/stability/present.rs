@@ -94,7 +94,7 @@ impl StabilityReport {
         out
     }
 
-    /// Plots of error over condition for every case and degree, and of error over amplitude at degree 5.
+    /// Draws plots of error over condition for every case and degree, and of error over amplitude at degree 5.
     pub fn svg(&self) -> String {
         svg(&[self.by_condition(), self.by_amplitude()])
     }
@@ -147,7 +147,7 @@ impl StabilityReport {
     }
 }
 
-/// Vertical position of an error; the upper edge if there is no answer.
+/// Returns the vertical position of an error; the upper edge if there is no answer.
 fn height(entry: &StabilityEntry) -> f64 {
     if entry.finite < entry.asked { f64::MAX } else { entry.error.unwrap_or(f64::MAX) }
 }

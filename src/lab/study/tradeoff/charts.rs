@@ -7,7 +7,7 @@ use super::{Knob, PlanMethod, SourceFigures, SweepPoint, SweepStudy};
 use crate::solvers::LeastSquaresSolver;
 
 impl SweepStudy {
-    /// Returns the pictures by name: error over cost for every source (under the source's name), then one for every
+    /// Returns the images by name: error over cost for every source (under the source's name), then one for every
     /// parameter.
     pub fn images(&self) -> Vec<(String, String)> {
         let mut images: Vec<(String, String)> = Vec::new();
@@ -62,7 +62,7 @@ impl SweepStudy {
     }
 }
 
-/// All points of the modes at the base's delay and rate, and the Pareto front through them.
+/// Returns the chart with all points of the modes at the base's delay and rate, and the Pareto front through them.
 fn cost_against_error(figures: &SourceFigures) -> Chart {
     let base_ms = figures
         .curves
@@ -123,7 +123,7 @@ fn solver_curves(figures: &SourceFigures) -> impl Iterator<Item = (LeastSquaresS
     })
 }
 
-/// One value of every solver over the length of the window.
+/// Returns the chart with one value of every solver over the length of the window.
 fn solvers(figures: &SourceFigures, label: &'static str, figure: impl Fn(&SweepPoint) -> f64) -> Chart {
     let line = |(solver, points): (LeastSquaresSolver, &[usize])| {
         let places = points.iter().map(|&i| &figures.points[i]);

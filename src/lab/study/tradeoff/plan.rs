@@ -274,7 +274,7 @@ impl PlanLayout {
     }
 }
 
-/// Seconds to milliseconds, rounded, so that equal choices compare equal.
+/// Converts seconds to milliseconds, rounded, so that equal choices compare equal.
 fn ms(seconds: f64) -> f64 {
     (seconds * 1e9).round() / 1e6
 }

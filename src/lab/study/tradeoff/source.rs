@@ -64,7 +64,7 @@ impl TradeoffSource {
         Self { name, unit: unit.to_owned(), recording }
     }
 
-    /// Duration, s.
+    /// Returns the duration, s.
     pub fn seconds(&self) -> f64 {
         match &*self.recording.samples {
             [first, .., last] => last.t_s - first.t_s,

@@ -110,7 +110,7 @@ impl TrialTable {
         Ok(Self { measures: measures.into_iter().map(|at| names[at].clone()).collect(), trials })
     }
 
-    /// In alphabetical order.
+    /// Returns the conditions in alphabetical order.
     pub fn conditions(&self) -> Vec<String> {
         let all: BTreeSet<&String> = self.trials.iter().map(|trial| &trial.condition).collect();
         all.into_iter().cloned().collect()

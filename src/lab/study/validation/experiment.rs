@@ -56,7 +56,7 @@ impl SimulatedExperiment {
         self.world.exchange(self.t_s(), &outputs)?.sensed.wrist().copied()
     }
 
-    /// True force on the tip in that sample, N (`s1`).
+    /// Returns the true force on the tip in that sample, N (`s1`).
     pub fn true_tip_s1_n(&self, sample: &WristSample) -> Vector3<f64> {
         sample.world_from_s1.map_or_else(Vector3::zeros, |turn| turn.inverse() * self.world.true_tip_n())
     }

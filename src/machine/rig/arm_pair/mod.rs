@@ -26,7 +26,7 @@ pub(super) struct SharedReadings {
     pub(super) c_from_m: Option<Isometry3<f64>>,
     /// Orientation of the endoscope in the camera's frame: `c_from_view`.
     pub(super) c_from_view: ViewOrientation,
-    /// The endoscope's marker, in the camera's frame.
+    /// Pose of the endoscope's marker in the camera's frame.
     pub(super) c_from_n: Option<Isometry3<f64>>,
 }
 

@@ -26,7 +26,7 @@ impl SessionMessage {
         ChannelId(self.head.channel)
     }
 
-    /// From 0, within its channel.
+    /// Returns the number of the message, from 0, within its channel.
     pub fn sequence(&self) -> u32 {
         self.head.sequence
     }
@@ -41,7 +41,7 @@ impl SessionMessage {
         self.head.publish_time_ns
     }
 
-    /// Data, encoded as specified by the channel.
+    /// Returns the data, encoded as specified by the channel.
     pub fn data(&self) -> &[u8] {
         &self.records[self.data.clone()]
     }

@@ -129,7 +129,7 @@ impl SessionReader {
         &self.contents.notes
     }
 
-    /// Sorted by number.
+    /// Returns the channels, sorted by number.
     pub fn channels(&self) -> &[ReaderChannel] {
         &self.channels
     }

@@ -7,7 +7,7 @@ use prost::Message as _;
 use super::*;
 use crate::messages::foxglove::{CompressedImage, encoding};
 
-/// Noise in the place of compressed image data.
+/// Returns noise in the place of compressed image data.
 fn image(number: u64) -> Vec<u8> {
     let mut random = fastrand::Rng::with_seed(number);
     let data = (0..20_000).map(|_| random.u8(..)).collect();

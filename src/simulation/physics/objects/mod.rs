@@ -234,7 +234,7 @@ impl Objects {
         0.5 * self.notes[ring].fingers_n[side].iter().map(Vector3::norm).sum::<f64>()
     }
 
-    /// Kinetic and potential energy, J, for tests.
+    /// Returns the kinetic and potential energy, J, for tests.
     #[cfg(test)]
     pub(crate) fn energy_j(&self) -> f64 {
         self.rings.iter().map(Ring::energy_j).sum()

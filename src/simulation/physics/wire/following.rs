@@ -87,7 +87,7 @@ impl WireTask {
         self.touches
     }
 
-    /// Completed fraction of the path to the goal.
+    /// Returns the completed fraction of the path to the goal.
     pub fn fraction(&self) -> f64 {
         let farthest_m = self.loops.iter().map(|following| following.farthest_m).fold(0.0, f64::max);
         (farthest_m / self.goal_m.max(1e-9)).clamp(0.0, 1.0)

@@ -288,7 +288,7 @@ impl RunStart {
         }
     }
 
-    /// Missing calibration of an emulated rig with its remedy, if it has not been reported yet.
+    /// Returns the missing calibration of an emulated rig with its remedy, if it has not been reported yet.
     fn newly_lacking(&mut self, rig: &str) -> Option<String> {
         self.emulators.as_ref().filter(|_| !self.active.is_waiting())?;
         let lacking = self.active.lacking();

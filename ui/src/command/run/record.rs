@@ -103,7 +103,7 @@ impl RunRecording {
         self.recorder.as_ref().is_some_and(|(recorder, _)| recorder.trouble().is_some())
     }
 
-    /// New problems, each reported once. The run continues.
+    /// Returns new problems, each reported once. The run continues.
     pub(super) fn news(&mut self) -> Vec<String> {
         let Some((recorder, _)) = &self.recorder else { return Vec::new() };
         let progress = recorder.progress();

@@ -155,7 +155,7 @@ impl ActiveCalibrations {
         self.sides.iter().filter_map(SideCalibrations::drift).max_by_key(attention)
     }
 
-    /// Change of the bias since the calibration, N; `None` if there is none.
+    /// Returns the change of the bias since the calibration, N; `None` if there is none.
     pub fn bias_moved_n(&self) -> Option<f64> {
         let moved = |of_side: &SideCalibrations| match of_side.drift() {
             Some(GravityDrift::Moved { by_n }) => Some(by_n),

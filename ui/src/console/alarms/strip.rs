@@ -101,7 +101,7 @@ impl Alarms {
     }
 }
 
-/// Returns the alarm in the strip; returns true if it was clicked.
+/// Draws the alarm in the strip; returns true if it was clicked.
 fn words_ui(ui: &mut Ui, first: &AlarmEntry, others: usize, colour: Color32) -> bool {
     let (rect, _) = ui.allocate_exact_size(vec2(24.0, 30.0), Sense::hover());
     sign(ui.painter(), Sign::Triangle, rect.center(), 9.0, colour);

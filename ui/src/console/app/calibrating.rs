@@ -156,7 +156,7 @@ impl ConsoleApp {
         }
     }
 
-    /// Sensor, tool and arm for a new calibration.
+    /// Returns sensor, tool and arm for a new calibration.
     fn binding(&self) -> Binding {
         let none = Roster::new();
         let roster = self.door.as_ref().map_or(&none, |door| door.handle().roster());

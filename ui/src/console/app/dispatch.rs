@@ -141,7 +141,7 @@ impl ConsoleApp {
         }
     }
 
-    /// Layout and display settings, which can be undone.
+    /// Returns the layout and display settings, which can be undone.
     fn look(&self) -> ScreenLook {
         let ConsoleSettings { layout, light, language, scale_percent, image, .. } = &self.settings.now;
         let light = *light;

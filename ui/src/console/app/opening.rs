@@ -82,7 +82,7 @@ impl ConsoleApp {
         self
     }
 
-    /// Source of the simulated rig's objects.
+    /// Adds the source of the simulated rig's objects.
     #[must_use]
     pub fn with_objects(mut self, objects: Option<ObjectFeed>) -> Self {
         self.objects = objects;

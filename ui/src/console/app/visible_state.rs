@@ -38,7 +38,7 @@ impl ConsoleApp {
         self.panels.tradeoff.as_ref().is_some_and(|tradeoff| tradeoff.is_measured())
     }
 
-    /// Optional objects in the 3-D view.
+    /// Returns the optional objects in the 3-D view.
     pub const fn extras(&self) -> Extras {
         self.panels.scene.extras
     }

@@ -195,7 +195,7 @@ impl CommandEntry {
         self.keys.iter().map(|stroke| stroke.name()).collect::<Vec<_>>().join(", ")
     }
 
-    /// Name, with its keys in brackets if it has any.
+    /// Returns the name, with its keys in brackets if it has any.
     pub(in crate::console) fn with_keys(&self) -> String {
         match self.keys {
             [] => self.title.clone(),
@@ -223,7 +223,7 @@ impl Availability {
         }
     }
 
-    /// Absent unless `holds`.
+    /// Removes the entry unless `holds`.
     pub(in crate::console) const fn only_if(self, holds: bool) -> Self {
         if holds { self } else { Self::Absent }
     }

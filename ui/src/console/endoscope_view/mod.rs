@@ -187,7 +187,7 @@ impl EndoscopeView {
         Some(self.health_text(&self.feed.as_ref().map_or(FrameHealth::Opening, |feed| feed.standing(Instant::now()))))
     }
 
-    /// Problem and remedy; the state and an empty text if there is no problem.
+    /// Returns problem and remedy; the state and an empty text if there is no problem.
     fn health_text(&self, standing: &FrameHealth) -> [String; 2] {
         if let Some(refused) = &self.refused {
             return [refused.clone(), text::endoscope_view::REFUSED_CURE.get().to_owned()];

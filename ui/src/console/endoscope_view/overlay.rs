@@ -81,7 +81,7 @@ impl OverlayImage<'_> {
         tips
     }
 
-    /// Screen position of a point in the workspace.
+    /// Returns the screen position of a point in the workspace.
     pub(super) fn at(&self, point_m: &Vector3<f64>) -> Option<Pos2> {
         self.camera.project(point_m).map(|place_px| self.place.at(&place_px))
     }

@@ -51,7 +51,7 @@ impl ImagePlacement {
         Self { fraction, ..self }
     }
 
-    /// Screen position of an image pixel.
+    /// Returns the screen position of an image pixel.
     pub(super) fn at(&self, place_px: &Vector2<f64>) -> Pos2 {
         let [width, height] = self.size_px.map(|side| side as f64);
         self.turned(pos2((place_px.x / width) as f32, (place_px.y / height) as f32))

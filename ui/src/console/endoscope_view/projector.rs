@@ -39,7 +39,7 @@ pub(super) struct ProjectedMoment {
     damage: Option<Damage>,
     /// Tips and forces at the time of the image.
     pub(super) poses: [Option<TipPose>; SIDES],
-    /// The endoscope's marker at the time of the image, if known.
+    /// Pose of the endoscope's marker at the time of the image, if known.
     pub(super) world_from_n: Option<Isometry3<f64>>,
     /// Reason why the session cannot be read there.
     trouble: Option<String>,

@@ -263,7 +263,7 @@ impl LiveState {
         &self.wake
     }
 
-    /// Work of every tick since the window opened.
+    /// Returns the work of every tick since the window opened.
     pub const fn work(&self) -> &Percentiles {
         &self.work
     }
@@ -356,7 +356,8 @@ impl LiveState {
         self.stiffness.iter().filter_map(ContactStiffness::n_m).max_by(f64::total_cmp)
     }
 
-    /// Required parts that do not deliver: the link to the other machine, then devices in the order of the roster.
+    /// Returns the required parts that do not deliver: the link to the other machine, then devices in the order of the
+    /// roster.
     pub fn missing(&self) -> impl Iterator<Item = MissingDevice> {
         self.line.as_deref().and_then(missing_line).into_iter().chain(self.missing_devices())
     }
@@ -380,7 +381,7 @@ impl LiveState {
         })
     }
 
-    /// Input of the alarms.
+    /// Returns the input of the alarms.
     pub fn signs(&self, stop_is_stuck: bool, unrecorded: Option<String>) -> Signs {
         Signs {
             missing: self.missing().collect(),

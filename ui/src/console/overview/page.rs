@@ -57,7 +57,7 @@ pub(crate) fn overview_ui(ui: &mut Ui, arms: &[ArmOverview], closed: Option<&str
     wish
 }
 
-/// Returns the button that opens the next calibration.
+/// Draws the button that opens the next calibration.
 fn following_ui(ui: &mut Ui, arms: &[ArmOverview], closed: Option<&str>) -> Option<CalibrationTarget> {
     let wanted = following(arms, None)?;
     let name = RichText::new(GoOn::Calibrate(wanted).words()).font(theme::strong(15.0));

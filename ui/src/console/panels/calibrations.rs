@@ -41,7 +41,7 @@ pub enum CalibrationPage {
     All,
 }
 
-/// Returns the panel; `open` is the page next to it.
+/// Draws the panel; `open` is the page next to it.
 pub fn calibrations_ui(
     ui: &mut Ui,
     live: &LiveState,
@@ -145,7 +145,7 @@ fn next_page(live: &LiveState) -> Option<CalibrationPage> {
     }
 }
 
-/// Selection of the arm to calibrate.
+/// Draws the selection of the arm to calibrate; returns the selected arm.
 fn side_ui(ui: &mut Ui, now: Side) -> Option<CalibrationWish> {
     let mut wish = None;
     ui.horizontal(|ui| {

@@ -73,7 +73,7 @@ fn key_ui(ui: &mut Ui, colour: egui::Color32, name: &str, meaning: &str) {
     ui.label(small(name)).on_hover_text(meaning);
 }
 
-/// Six pairs of bars, degrees 0 to 5, with their percentages above.
+/// Draws six pairs of bars, degrees 0 to 5, with their percentages above.
 fn chart_ui(ui: &mut Ui, live: &LiveState, compares: bool) {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), CHART_HEIGHT + 20.0), Sense::hover());
     let ours = live.degrees.fractions();

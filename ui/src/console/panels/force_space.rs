@@ -144,7 +144,7 @@ fn view(state: &ForceSpaceState, place: Rect) -> ForceProjection {
     }
 }
 
-/// Three axes with a mark at every newton, or every half newton if the radius is small.
+/// Draws three axes with a mark at every newton, or every half newton if the radius is small.
 fn axes(painter: &Painter, view: &ForceProjection, reach_n: f32) {
     let stroke = Stroke::new(1.0, theme::now().line.lerp_to_gamma(theme::now().text_weak, 0.4));
     let step_n = if reach_n > 4.0 {
@@ -189,7 +189,7 @@ fn ring(at: impl Fn(f32, f32) -> Pos2) -> Vec<Pos2> {
         .collect()
 }
 
-/// Outline of the sphere of the force ceiling.
+/// Draws the outline of the sphere of the force ceiling.
 fn ceiling(painter: &Painter, view: &ForceProjection, ceiling_n: f32) {
     let points = ring(|cos, sin| view.place(&(ceiling_n * (view.right * cos + view.up * sin))));
     painter.add(egui::Shape::Vec(egui::Shape::dashed_line(

@@ -43,7 +43,7 @@ pub fn safety_ui(ui: &mut Ui, live: &LiveState) {
     });
 }
 
-/// Suffix that names the side of a rig with two arms.
+/// Returns the suffix that names the side of a rig with two arms.
 fn of_side(live: &LiveState, side: Side) -> String {
     if live.is_bimanual() { text::safety::of_hand(side_word(side)) } else { String::new() }
 }
@@ -200,7 +200,7 @@ fn gates_row_ui(ui: &mut Ui, live: &LiveState, side: Side) {
     });
 }
 
-/// Start or end of the row of gates: a force.
+/// Draws the start or end of the row of gates: a force.
 fn end_ui(ui: &mut Ui, width: f32, name: &str, force_n: f64) {
     let (rect, response) = ui.allocate_exact_size(vec2(width, GATE_HEIGHT), Sense::hover());
     let number = if force_n < 1e3 { format!("{force_n:.1} N") } else { "> 1 kN".to_owned() };

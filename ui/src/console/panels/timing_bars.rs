@@ -119,7 +119,7 @@ fn axis(painter: &Painter, ground: Rect, deadline_us: f64, max: u64) {
     painter.text(pos2(x(1.0) - 6.0, ground.top() + 1.0), Align2::RIGHT_TOP, scale, font, ink);
 }
 
-/// Missed periods of the last two minutes, one bar per second.
+/// Draws the missed periods of the last two minutes, one bar per second.
 pub(super) fn missed_ui(ui: &mut Ui, deadlines: &Deadlines) {
     let total = deadlines.total();
     let words = text::timing::missed(SECONDS / 60, &grouped(total));

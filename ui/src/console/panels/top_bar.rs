@@ -98,7 +98,7 @@ pub fn top_bar_ui(
     });
 }
 
-/// Name of the program, and below it the role switch, the button of the start page, and the menu.
+/// Draws the name of the program, and below it the role switch, the button of the start page, and the menu.
 fn identity_ui(
     ui: &mut Ui,
     live: &LiveState,
@@ -142,7 +142,7 @@ fn identity_ui(
     });
 }
 
-/// Returns the duration of the recording, on the button that keeps it; returns true when pressed.
+/// Draws the duration of the recording on the button that keeps it; returns true when pressed.
 fn recorded_ui(ui: &mut Ui, state: &TopBarState) -> bool {
     let Some(shown) = &state.recorded else { return false };
     let words = text::sessions::recorded_for(shown.seconds, shown.kept);

@@ -33,7 +33,7 @@ const NEAR: f32 = 5.0;
 /// Width of the frame.
 pub(crate) const FRAME: f32 = 4.0;
 
-/// Returns the header. Returns true when the operator returns to the machine.
+/// Draws the header; returns true when the operator returns to the machine.
 pub(crate) fn head_ui(ui: &mut Ui, past: &Playback) -> bool {
     let mut live_again = false;
     let colours = theme::now();
@@ -66,7 +66,7 @@ fn machine_ui(ui: &mut Ui, ink: Color32) {
     ui.painter().add(egui::Shape::convex_polygon(points.to_vec(), ink, Stroke::NONE));
 }
 
-/// Time of the moment, the extent of its replay, and its alarm.
+/// Draws the time of the moment, the extent of its replay, and its alarm.
 fn words_ui(ui: &mut Ui, past: &Playback, ink: Color32) {
     ui.vertical(|ui| {
         ui.add_space(6.0);

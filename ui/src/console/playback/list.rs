@@ -224,7 +224,7 @@ fn row_ui(ui: &mut Ui, row: &SessionListRow, is_asked: bool, free: bool) -> Opti
     wish
 }
 
-/// Date, duration and rig.
+/// Draws date, duration and rig.
 fn about_ui(ui: &mut Ui, SessionListRow { shelved, about }: &SessionListRow) {
     let StoredSession { path, bytes, writing, .. } = shelved;
     let strong = |words: String| RichText::new(words).font(theme::strong(14.0));

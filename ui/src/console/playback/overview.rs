@@ -79,7 +79,7 @@ impl Overview {
         self.devices.iter().rfind(of_device).map_or(ConnectionState::Closed, |(_, _, standing)| *standing)
     }
 
-    /// Active calibrations of this side at this time (s): start and number; `None`: those of the start.
+    /// Returns the active calibrations of this side at this time (s): start and number; `None`: those of the start.
     pub(super) fn calibrations(&self, side: Side, t_s: f64) -> Option<(f64, u64)> {
         let of_side = |(at_s, of, _): &&(f64, Side, u64)| *of == side && *at_s <= t_s;
         self.active.iter().rfind(of_side).map(|(at_s, _, number)| (*at_s, *number))

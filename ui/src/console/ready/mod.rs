@@ -21,7 +21,7 @@ pub(crate) use record::{devices_of, record};
 
 use super::{active_calibrations::ActiveCalibrations, loop_connection::LoopMessage};
 
-/// Subject of the check: the rig of this name (built-in, or path of its file) with these devices.
+/// Returns the subject of the check: the rig of this name (built-in, or path of its file) with these devices.
 pub(crate) fn subject(
     name: &str,
     rig: &RigConfig,
@@ -79,7 +79,7 @@ impl ReadyRun {
         command
     }
 
-    /// Screen shown to the technician of an emulated rig.
+    /// Returns the screen shown to the technician of an emulated rig.
     pub(crate) fn screen(&self) -> Screen {
         let ask = self.session.ask();
         // Outside the trocar, the technician follows instructions as in the gravity calibration.
@@ -95,7 +95,7 @@ impl ReadyRun {
         differs.then_some(Command::Prompt(tick.side, wanted))
     }
 
-    /// Action of the person at the screen; `None` for instructions at the arms.
+    /// Returns the action of the person at the screen; `None` for instructions at the arms.
     pub(crate) fn answer(&self) -> Option<Command> {
         match self.session.ask() {
             PersonRequest::PressStop => Some(Command::Stop),

@@ -42,8 +42,8 @@ impl Default for SceneCamera {
 }
 
 impl SceneCamera {
-    /// Default camera of a scene. Two instruments, and a wire, are seen from the operator's side, so that the right
-    /// instrument and the end of the wire are on the right.
+    /// Returns the default camera of a scene. Two instruments, and a wire, are seen from the operator's side, so that
+    /// the right instrument and the end of the wire are on the right.
     pub fn of(scene: &Scene) -> Self {
         if scene.left.is_none() && scene.wire.is_none() {
             return Self::default();
@@ -51,7 +51,7 @@ impl SceneCamera {
         Self { target_m: Vector3::new(0.0, -0.012, 0.042), distance_m: 0.30, yaw: 0.16, pitch: 0.58, ..Self::default() }
     }
 
-    /// Camera of the endoscope: between two instruments, or next to a single one.
+    /// Returns the camera of the endoscope: between two instruments, or next to a single one.
     pub fn endoscope(scene: &Scene) -> Self {
         if scene.objects.is_some() || scene.wire.is_some() {
             // Rings are passed between hands high above the board, where the hands also start.
@@ -96,7 +96,8 @@ impl SceneCamera {
         Vector3::new(-sin_yaw * sin_pitch, cos_yaw * sin_pitch, cos_pitch)
     }
 
-    /// Metres per point of the screen at the distance of the target, for a view of this height (points).
+    /// Returns the number of metres per point of the screen at the distance of the target, for a view of this height
+    /// (points).
     pub fn metres_per_point(&self, height: f32) -> f32 {
         2.0 * self.distance_m * (0.5 * self.field_of_view).tan() / height.max(1.0)
     }
@@ -108,7 +109,7 @@ impl SceneCamera {
         [0.75 / distance_m, 0.88 * distance_m]
     }
 
-    /// Horizontal direction away from the eye, unit length.
+    /// Returns the horizontal direction away from the eye, unit length.
     pub fn away(&self) -> Vector3<f32> {
         let (sin_yaw, cos_yaw) = self.yaw.sin_cos();
         Vector3::new(-sin_yaw, cos_yaw, 0.0)

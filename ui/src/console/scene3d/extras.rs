@@ -147,7 +147,7 @@ impl Extras {
     }
 }
 
-/// Outline of the sphere that represents the force ceiling, around this tip.
+/// Draws the outline of the sphere that represents the force ceiling, around this tip.
 fn ceiling(painter: &Painter, rect: Rect, camera: &SceneCamera, arm: &StageArm, ceiling_n: f32) {
     let radius_m = ceiling_n * stage::ARROW_M_PER_N;
     let outline = (0..=RING).filter_map(|i| {

@@ -86,7 +86,7 @@ pub fn side_name(side: Side) -> &'static str {
     }
 }
 
-/// Text with a dark outline, readable on any background.
+/// Draws text with a dark outline, readable on any background.
 pub(super) fn label(painter: &Painter, place: Pos2, align: Align2, text: &str, font: FontId, colour: Color32) {
     for shift in [vec2(1.0, 1.0), vec2(-1.0, 1.0), vec2(0.0, -1.0)] {
         painter.text(place + shift, align, text, font.clone(), theme::VEIL);
@@ -184,7 +184,7 @@ pub(super) fn axes(painter: &Painter, rect: Rect, camera: &SceneCamera) {
     }
 }
 
-/// Hint at the bottom: possible actions, or the reason why nothing is drawn.
+/// Draws the hint at the bottom: possible actions, or the reason why nothing is drawn.
 pub(super) fn hint(painter: &Painter, rect: Rect, live: &LiveState, view: &SceneView) {
     let (words, colour) = match &view.problem {
         Some(problem) => (text::field::not_drawn(problem), theme::DARK.text),

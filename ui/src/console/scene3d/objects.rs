@@ -86,7 +86,7 @@ pub(super) fn board(mesh: &mut Mesh, board: &nima_simulation::physics::BoardSett
     mesh.cuboid(low, Vector3::new(x_m, y_m, top_m), BOARD);
 }
 
-/// Board, pegs and rings.
+/// Adds board, pegs and rings.
 pub(super) fn ground(mesh: &mut Mesh, scene: &Scene, shown: &DisplayedObjects, shadows: &mut Shadows) {
     let Some(setting) = &scene.objects else { return };
     let [tube_m, major_m] = [setting.ring.tube_radius_m, setting.ring.major_radius_m].map(|m| m as f32);

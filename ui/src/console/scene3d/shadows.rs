@@ -93,7 +93,7 @@ fn shaded(colour: Color32, fraction: f32) -> Color32 {
     Color32::from_rgb(r, g, b)
 }
 
-/// Returns a flat band along points, with the width that `width_m` gives for each height, cut off at the edges of the
+/// Adds a flat band along points, with the width that `width_m` gives for each height, cut off at the edges of the
 /// board.
 fn band(
     mesh: &mut Mesh,

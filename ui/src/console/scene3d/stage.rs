@@ -69,8 +69,8 @@ impl Dent {
         Self { position_m: [tip_m.x, tip_m.y], depth_m }
     }
 
-    /// Change of height at a position, m: down under the tip, with a slight bulge around it, as in a soft body of
-    /// constant volume.
+    /// Returns the change of height at a position, m: down under the tip, with a slight bulge around it, as in a soft
+    /// body of constant volume.
     pub fn lift_m(&self, x: f32, y: f32) -> f32 {
         let q = ((x - self.position_m[0]).powi(2) + (y - self.position_m[1]).powi(2)) / (DENT_M * DENT_M);
         // Farther away, the change is below a micrometre.
@@ -86,14 +86,14 @@ impl Dent {
 pub struct Dents(pub [Dent; SIDES]);
 
 impl Dents {
-    /// Change of height at a position, m. Where two dents overlap the deeper one counts: tissue is never below the lowest
-    /// tip.
+    /// Returns the change of height at a position, m. Where two dents overlap the deeper one counts: tissue is never
+    /// below the lowest tip.
     pub fn lift_m(&self, x: f32, y: f32) -> f32 {
         let [one, other] = self.0.each_ref().map(|dent| dent.lift_m(x, y));
         if one < 0.0 && other < 0.0 { one.min(other) } else { one + other }
     }
 
-    /// Upward normal of the deformed surface.
+    /// Returns the upward normal of the deformed surface.
     fn normal(&self, x: f32, y: f32) -> Vector3<f32> {
         const STEP: f32 = 2e-4;
         let slope = |dx, dy| (self.lift_m(x + dx, y + dy) - self.lift_m(x - dx, y - dy)) / (2.0 * STEP);
@@ -230,8 +230,8 @@ fn shaft(mesh: &mut Mesh, trocar_m: &Vector3<f32>, knob: &Vector3<f32>) {
 
 const SHAFT: Paint = Paint(Color32::from_rgb(0x6d, 0x76, 0x82), Material::Metal);
 
-/// Starting points of both arrows: next to the tip, on the side that the shaft does not cover in the operator's view, the
-/// measured force further out, so that equal forces do not overlap.
+/// Returns the starting points of both arrows: next to the tip, on the side that the shaft does not cover in the
+/// operator's view, the measured force further out, so that equal forces do not overlap.
 pub fn arrow_bases_m(pose: &StagePose, trocar_m: &Vector3<f32>, right: &Vector3<f32>) -> [Vector3<f32>; 2] {
     let side = if (trocar_m - pose.tip_m).dot(right) > 0.0 { -1.0 } else { 1.0 };
     [0.0135, 0.0060].map(|away| pose.tip_m + right * (side * away) + Vector3::z() * 0.002)

@@ -59,7 +59,7 @@ pub(super) fn wire(mesh: &mut Mesh, scene: &Scene, shadows: &mut Shadows) {
     shadows.line(points_m, radius_m);
 }
 
-/// Returns the loop of an instrument; returns the end of the shaft. `None` in a scene without a wire.
+/// Adds the loop of an instrument; returns the end of the shaft. `None` in a scene without a wire.
 pub(super) fn hoop(
     mesh: &mut Mesh,
     scene: &Scene,
@@ -114,7 +114,8 @@ pub(super) fn board_of(scene: &Scene) -> Option<&nima_simulation::physics::Board
     under_pegs.or_else(|| scene.wire.as_ref().map(|setting| &setting.board))
 }
 
-/// Progress of the trial as text, and the ring in reach of the driven instrument; `None` in a scene where it is unknown.
+/// Returns the progress of the trial as text, and the ring in reach of the driven instrument; `None` in a scene where
+/// it is unknown.
 pub(super) fn report(live: &LiveState, led: Option<Side>, reach: Option<JawReach>) -> Option<String> {
     let training = live.training.as_ref()?;
     let is_led = led.is_some();

@@ -173,7 +173,7 @@ impl EndoscopeCard {
     }
 }
 
-/// Problem and remedy; only a state if there is no problem.
+/// Draws problem and remedy; only a state if there is no problem.
 fn outcome_ui(ui: &mut Ui, report: &str, cure: &str) {
     if cure.is_empty() {
         answer_ui(ui, true, report);

@@ -85,7 +85,7 @@ pub(crate) fn closed(state: LoopState) -> Option<&'static str> {
     }
 }
 
-/// Button that opens a wizard; the wizard's name is in lower case.
+/// Returns the button that opens a wizard; the wizard's name is in lower case.
 pub(in crate::console) fn calibrate(wizard: &str) -> String {
     text_format!("Calibrate {wizard}…", "{wizard} kalibrieren…")
 }

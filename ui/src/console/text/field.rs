@@ -82,7 +82,7 @@ pub(in crate::console) fn ceiling_mark(ceiling_n: f64) -> String {
     text_format!("ceiling\n{ceiling_n:.0} N", "max.\n{ceiling_n:.0} N")
 }
 
-/// Suffix that names the side of a rig with two arms.
+/// Returns the suffix that names the side of a rig with two arms.
 pub(in crate::console) fn of_hand(side: &str) -> String {
     text_format!(" of the {side} hand", " (Hand {side})")
 }

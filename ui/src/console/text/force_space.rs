@@ -20,7 +20,7 @@ pub(in crate::console) fn canvas(words: &str) -> String {
     text_format!("Force space. {words}", "Kraftraum. {words}")
 }
 
-/// Two lines, separated by a semicolon.
+/// Returns two lines, separated by a semicolon.
 pub(in crate::console) fn unknown(seconds: f64) -> String {
     text_format!(
         "Last {seconds:.0} s; the measured force is currently unknown",
@@ -28,7 +28,7 @@ pub(in crate::console) fn unknown(seconds: f64) -> String {
     )
 }
 
-/// Two lines, separated by a semicolon.
+/// Returns two lines, separated by a semicolon.
 pub(in crate::console) fn too_short(seconds: f64) -> String {
     text_format!(
         "Last {seconds:.0} s; the error ellipsoid needs one second of data",

@@ -38,7 +38,7 @@ pub(in crate::console) const ASKED: Text = Text::of("requested", "Soll");
 pub(in crate::console) const HAND: Text = Text::of("hand", "Hand");
 pub(in crate::console) const NEVER: Text = Text::of("never", "nie");
 
-/// Suffix that names the side of a rig with two arms.
+/// Returns the suffix that names the side of a rig with two arms.
 pub(in crate::console) fn of_hand(side: &str) -> String {
     text_format!(", {side} hand", ", Hand {side}")
 }

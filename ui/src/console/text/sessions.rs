@@ -103,7 +103,7 @@ pub(in crate::console) fn cause(why: &str) -> String {
     text_format!("Recording: {why}", "Aufzeichnung: {why}")
 }
 
-/// Entry of the session log.
+/// Returns the entry of the session log.
 pub(in crate::console) fn mark(number: usize) -> String {
     text_format!("mark {number}", "Marke {number}")
 }

@@ -54,7 +54,7 @@ pub(in crate::console) const NOT_ENGAGED: Text = Text::of("Not engaged", "Nicht 
 pub(in crate::console) const NOT_RELEASED: Text = Text::of("Not released", "Nicht gelöst");
 pub(in crate::console) const NOT_SET: Text = Text::of("Not set", "Nicht gesetzt");
 
-/// Refused command; `arm` is empty for a rig with one arm.
+/// Returns the refused command; `arm` is empty for a rig with one arm.
 pub(in crate::console) fn refused(what: &str, arm: &str, cause: &str, cure: &str) -> String {
     let arm = if arm.is_empty() { String::new() } else { text_format!(" ({arm} arm)", " (Arm {arm})") };
     format!("{what}{arm}: {cause}; {cure}")

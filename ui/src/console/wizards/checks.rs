@@ -44,7 +44,7 @@ fn line_ui(ui: &mut Ui, what: Sign, colour: egui::Color32, words: &str) {
     });
 }
 
-/// Returns a switch that describes the rig; returns its new state when pressed.
+/// Draws a switch that describes the rig; returns its new state when pressed.
 pub(crate) fn switch_ui(ui: &mut Ui, free: bool, on: bool, name: &str, meaning: &str) -> Option<bool> {
     let mut wanted = on;
     let switch = ui.add_enabled(free, Checkbox::new(&mut wanted, name));

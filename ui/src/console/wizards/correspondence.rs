@@ -68,7 +68,7 @@ impl Default for CorrespondenceWizard {
 }
 
 impl CorrespondenceWizard {
-    /// Without data, for a rig with these settings.
+    /// Creates the state without data, for a rig with these settings.
     fn of(settings: CorrespondenceSessionSettings) -> Self {
         Self {
             session: CorrespondenceSession::new(settings),
@@ -307,7 +307,7 @@ impl Wizard for CorrespondenceWizard {
     }
 }
 
-/// Progress of the push, and the instruction.
+/// Returns the progress of the push, and the instruction.
 fn phase_text(phase: &CorrespondencePhase) -> (f64, String) {
     match phase {
         CorrespondencePhase::Missing(missing) => (0.0, missing.words().to_owned()),

@@ -118,7 +118,7 @@ pub(super) fn sphere_image(
     caption_below(&painter, rect, &caption);
 }
 
-/// Equator and two meridians; only their front parts.
+/// Draws the equator and two meridians; only their front parts.
 fn graticule(painter: &Painter, centre: Pos2, scale: f32) {
     let circles: [fn(f64) -> Vector3<f64>; 3] = [
         |a| Vector3::new(a.cos(), a.sin(), 0.0),

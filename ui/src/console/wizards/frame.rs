@@ -174,7 +174,7 @@ struct GoingOn {
     following: Option<GoOn>,
 }
 
-/// Returns the row of steps with buttons for back, next and reset. Going back loses no data.
+/// Draws the row of steps with buttons for back, next and reset. Going back loses no data.
 fn steps_ui(ui: &mut Ui, steps: &[WizardStep], now: usize, going_on: &GoingOn) -> Option<WizardRequest> {
     let mut wish = None;
     ui.horizontal_wrapped(|ui| {
@@ -221,7 +221,7 @@ fn steps_ui(ui: &mut Ui, steps: &[WizardStep], now: usize, going_on: &GoingOn) -
     wish
 }
 
-/// Returns the last step of every wizard: sensor and tool of the record, if it is bound to them, and the save button;
+/// Draws the last step of every wizard: sensor and tool of the record, if it is bound to them, and the save button;
 /// returns true when pressed. Without `proof` a name and a reason are required.
 fn save_card(ui: &mut Ui, binding: Option<&Binding>, proof: Option<&str>, frame: &mut WizardFrame) -> bool {
     let meaning =
@@ -252,7 +252,7 @@ fn save_card(ui: &mut Ui, binding: Option<&Binding>, proof: Option<&str>, frame:
     })
 }
 
-/// Returns the name and reason for an override; returns true when both are entered and confirmed.
+/// Draws the name and reason for an override; returns true when both are entered and confirmed.
 fn override_ui(ui: &mut Ui, by: [&mut String; 2]) -> bool {
     let mut named = true;
     for (label, text) in [text::wizards::YOUR_NAME.get(), text::wizards::REASON.get()].into_iter().zip(by) {

@@ -70,7 +70,7 @@ impl Default for GravityWizard {
 }
 
 impl GravityWizard {
-    /// Without data, for a rig with these settings.
+    /// Creates the state without data, for a rig with these settings.
     fn of(settings: GravitySessionSettings) -> Self {
         Self {
             session: GravitySession::new(settings),
@@ -380,7 +380,7 @@ fn verdict_ui(ui: &mut Ui, report: &GravityReport) {
     });
 }
 
-/// Table of the models' errors on the poses of the fit and on held-out ones.
+/// Draws the table of the models' errors on the poses of the fit and on held-out ones.
 fn models_ui(ui: &mut Ui, report: &GravityReport) {
     card(ui, text::gravity::MODELS_TITLE.get(), text::gravity::MODELS_HOVER.get(), |ui| {
         Grid::new("gravity_models").num_columns(5).spacing(vec2(22.0, 6.0)).show(ui, |ui| {

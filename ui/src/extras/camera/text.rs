@@ -203,7 +203,7 @@ pub(super) fn with_deviation(value: f64, sd: f64) -> String {
     text_format!("{value:.1} ± {sd:.1} px", "{value:.1} ± {sd:.1} px")
 }
 
-/// Distortion, with the standard deviation of its first term.
+/// Returns the distortion, with the standard deviation of its first term.
 pub(super) fn bend(bend: &Bend, sd: &Bend) -> String {
     let Bend { k1, k2, p1, p2 } = bend;
     format!("k1 {k1:.4} ± {:.4}, k2 {k2:.4}, p1 {p1:.4}, p2 {p2:.4}", sd.k1)

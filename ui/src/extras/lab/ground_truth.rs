@@ -134,7 +134,7 @@ mod tests {
     use super::*;
     use crate::console::active_calibrations::ActiveCalibrations;
 
-    /// Ticks of an engaged run on the simulated rig.
+    /// Returns the ticks of an engaged run on the simulated rig.
     fn ticks() -> Vec<Tick> {
         let rig = RigConfig::load("simulated").unwrap();
         let scene = Scene::load("palpation").unwrap();

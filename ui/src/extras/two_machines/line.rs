@@ -124,7 +124,7 @@ pub(super) struct LineReport {
 }
 
 impl NetworkLine {
-    /// Over this endpoint, with these devices at this end.
+    /// Creates a line over this endpoint, with these devices at this end.
     pub(super) fn new(endpoint: Endpoint, here: RigEnds) -> Self {
         let (reported, reports) = bounded(WAITING);
         let (wish, wishes) = bounded(WAITING);

@@ -9,7 +9,7 @@ use nima_network::{
 use super::line::LineReport;
 use crate::language::{text_format, word};
 
-/// State, a clause without a full stop.
+/// Returns the state, a clause without a full stop.
 pub(super) fn state_text(state: LinkState) -> String {
     match link_trouble(state) {
         None => word("connected to the other machine", "mit der Gegenstelle verbunden").to_owned(),

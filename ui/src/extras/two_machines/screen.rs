@@ -14,7 +14,7 @@ use crate::console::{
     widgets::{figure, small},
 };
 
-/// State of a link. It sends requests to the link; control of a follower does not concern the loop.
+/// Draws the state of a link. It sends requests to the link; control of a follower does not concern the loop.
 pub(super) fn link_ui(ui: &mut Ui, door: &NetworkDoor, drives: bool) {
     let Some(report) = door.newest() else {
         ui.label(text::NOTHING_YET.get());

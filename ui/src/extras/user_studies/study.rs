@@ -123,7 +123,7 @@ pub(super) fn plain_hand(study: &UserStudy, participant: &str) -> anyhow::Result
     Ok(SimulatedHand { pace, tremor_m, intended_n, seed })
 }
 
-/// Numbers of trials of a participant, practice included: in total, and since the last break.
+/// Returns the numbers of trials of a participant, practice included: in total, and since the last break.
 pub(super) fn made(study: &UserStudy, participant: &str) -> (u32, u32) {
     let progress = study.state().progress(participant);
     progress.map_or((0, 0), |one| ((one.practice_s.len() + one.trials.len()) as u32, one.since_break()))
@@ -172,7 +172,7 @@ pub(super) fn close(
     }
 }
 
-/// Journal entry for a trial aborted by a fault.
+/// Returns the journal entry for a trial aborted by a fault.
 pub(super) fn ended_by(fault: Fault) -> String {
     format!("the loop ended in a fault: {}", fault.cause())
 }

@@ -21,7 +21,7 @@ pub use watch::{TrocarState, TrocarWatch};
 /// Minimum root mean square tilt of the lines from their mean, degrees.
 const MIN_TILT_DEG: f64 = 4.0;
 /// Minimum angle between two lines, rad: 2 degrees, so that a shaft that hardly moves does not fill the session with
-/// equal lines. Chosen.
+/// equal lines. Design choice.
 const APART_RAD: f64 = 0.035;
 /// A session is complete with this number of lines. With 40, 95 % of 200 simulated calibrations with a tracker have an
 /// error of at most 0.36 mm (`docs/frames.md`).

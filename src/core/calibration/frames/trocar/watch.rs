@@ -9,7 +9,7 @@ const AVERAGE_S: f64 = 0.5;
 /// Fraction of a line's information above which a direction counts as observed: the information of lines tilted by 13
 /// degrees. Along the shaft, nothing can be observed until it pivots.
 const SEEN: f64 = 0.05;
-/// After a longer gap the watch restarts, s, because the lines before the gap may be from another place. Chosen.
+/// After a longer gap the watch restarts, s, because the lines before the gap may be from another place. Design choice.
 const GAP_S: f64 = 1.0;
 
 #[derive(Clone, Copy, Debug, PartialEq)]

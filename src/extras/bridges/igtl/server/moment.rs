@@ -171,7 +171,7 @@ impl IgtlWriter<'_> {
     }
 }
 
-/// Status of an arm.
+/// Returns the status of an arm.
 pub(super) fn status(state: LoopState, text: String) -> ContentStatus {
     let (code, subcode) = match state {
         InterlockState::Disconnected => (StatusCode::ABSENT, 0),

@@ -51,7 +51,7 @@ pub struct EmulatedBota {
     pub link: Option<std::path::PathBuf>,
     /// Socket: TCP port for commands; 0 selects a free one.
     pub tcp_port: u16,
-    /// Socket: destination of the readings.
+    /// Socket: address to which readings are sent.
     pub destination: std::net::SocketAddrV4,
 }
 

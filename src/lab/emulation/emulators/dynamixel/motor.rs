@@ -176,7 +176,8 @@ impl Motor {
         let before = self.wanted_rad_s;
         let mut speed = fastest.min(rest.abs() / STEP_S);
         if acceleration > 0.0 {
-            // Limit the speed so that the motor can still stop in time; half a step is reserved for the step length.
+            // Limit the speed so that the motor can still stop in time, with a reserve of half a step for the discrete
+            // time.
             speed = speed.min((2.0 * acceleration * (rest.abs() - 0.5 * STEP_S * before.abs()).max(0.0)).sqrt());
             let max = acceleration * STEP_S;
             let target = speed.copysign(rest);

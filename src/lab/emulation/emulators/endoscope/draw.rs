@@ -194,7 +194,7 @@ impl DrawGround {
     }
 }
 
-/// Slow and fine variations, as of blood below a surface.
+/// Returns slow and fine variations, as of blood below a surface.
 fn mottled(x: f64, y: f64) -> Colour {
     let wave = (x * 97.0 + 2.1 * (y * 61.0).sin()).sin() + (y * 83.0 - 2.3 * (x * 53.0).sin() + 1.0).sin();
     let fine = ((x + 0.7 * y) * 671.0 + (y * 490.0).sin()).sin();

@@ -161,7 +161,7 @@ impl RtspSession {
         framed(out, self.channel, &[&[&head[..]], payload].concat());
     }
 
-    /// Sender report (RFC 3550, 6.4.1), with the sender's name, which a complete report needs.
+    /// Returns a sender report (RFC 3550, 6.4.1), with the sender's name, which a complete report needs.
     fn report(&self, stamp: u32, since: Duration) -> Vec<u8> {
         let mut report = vec![0x80, 200, 0, 6];
         let fraction = (u64::from(since.subsec_nanos()) << 32) / 1_000_000_000;

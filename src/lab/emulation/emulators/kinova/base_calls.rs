@@ -110,13 +110,13 @@ fn pose(joint_rad: &KinovaJoints) -> KinovaPose {
     KinovaPose { x: place.x, y: place.y, z: place.z, theta_x: theta[0], theta_y: theta[1], theta_z: theta[2] }
 }
 
-/// Joint angles of a client, in order.
+/// Returns the joint angles of a client, in order.
 fn given(angles: &JointAngles) -> Result<KinovaJoints, InterfaceError> {
     let degrees: Vec<f32> = angles.angles.iter().map(|angle| angle.value_deg).collect();
     goal(&degrees, &[0.0; ARM_JOINTS])
 }
 
-/// Joint speeds of a client, rad/s, by the numbers of the joints.
+/// Returns the joint speeds of a client, rad/s, by the numbers of the joints.
 fn speeds(asked: &JointSpeeds) -> Result<KinovaJoints, InterfaceError> {
     if asked.speeds.len() != ARM_JOINTS {
         return Err(JOINT_COUNT);

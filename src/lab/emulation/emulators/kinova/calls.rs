@@ -250,7 +250,7 @@ impl Base {
     }
 }
 
-/// Topics of notifications.
+/// Returns whether this call is about topics of notifications.
 const fn is_topic(rpc: Rpc) -> bool {
     matches!(
         rpc,

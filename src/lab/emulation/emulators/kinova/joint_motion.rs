@@ -94,7 +94,7 @@ impl Leg {
     }
 }
 
-/// Joint angles of a client, in the turn nearest to `near_rad`, within the joints' ranges.
+/// Returns the joint angles of a client, in the turn nearest to `near_rad`, within the joints' ranges.
 pub(super) fn goal(degrees: &[f32], near_rad: &KinovaJoints) -> Result<KinovaJoints, InterfaceError> {
     let degrees: [f32; ARM_JOINTS] = degrees.try_into().map_err(|_| JOINT_COUNT)?;
     if !degrees.iter().all(|angle| angle.is_finite()) {

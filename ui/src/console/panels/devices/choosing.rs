@@ -62,7 +62,7 @@ pub(super) fn chooser_ui(
     chosen.map(|chosen| RigEdit::Choose(part, chosen))
 }
 
-/// Returns the devices of other parts of this kind, to swap with this one.
+/// Draws the devices of other parts of this kind, to swap with this one.
 fn others_ui(ui: &mut Ui, live: &LiveState, part: RigPart, refused: Option<&str>) -> Option<ChosenDevice> {
     let mut chosen = None;
     let mut any = false;

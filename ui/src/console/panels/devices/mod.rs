@@ -132,7 +132,7 @@ pub(in crate::console) fn why_not_to_change(live: &LiveState, is_starting: bool)
     })
 }
 
-/// Returns the panel; for a rig without devices it says that everything is simulated. Returns a requested change of the
+/// Draws the panel; for a rig without devices it says that everything is simulated. Returns a requested change of the
 /// rig.
 pub fn devices_ui(ui: &mut Ui, live: &LiveState, state: &mut DevicesState) -> Option<RigEdit> {
     state.is_seen = true;
@@ -200,7 +200,7 @@ fn columns_of(roster: &Roster, width: f32) -> Vec<Vec<DeviceColumn>> {
     columns.chunks(side_by_side).map(<[DeviceColumn]>::to_vec).collect()
 }
 
-/// Above the devices: explanation of the lights, the test of all devices, the swaps.
+/// Draws what is above the devices: explanation of the lights, the test of all devices, the swaps.
 fn head_ui(ui: &mut Ui, live: &LiveState, state: &mut DevicesState, refused: Option<&str>) -> Option<RigEdit> {
     ui.add(Label::new(weak(text::devices::WHICH.get())).wrap());
     let mut change = None;

@@ -88,7 +88,7 @@ fn trouble_ui(ui: &mut Ui, entry: &RosterEntry, trouble: &DeviceError) {
     }
 }
 
-/// Returns a small button of one device, named after it.
+/// Draws a small button of one device, named after it.
 fn button_ui(ui: &mut Ui, entry: &RosterEntry, words: &str, hover: &str, enabled: bool) -> bool {
     let button = ui.add_enabled(enabled, Button::new(small(words)).min_size(BUTTON));
     button.widget_info(|| {

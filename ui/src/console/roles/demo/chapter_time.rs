@@ -53,7 +53,7 @@ impl ChapterPace {
         self.shown_s >= seconds && self.seen_s >= SEEN_MIN_S.min(seconds)
     }
 
-    /// Progress of a chapter of this length (s), 0 to 1.
+    /// Returns the progress of a chapter of this length (s), 0 to 1.
     pub(super) const fn progress(&self, seconds: f64) -> f64 {
         (self.shown_s / seconds).min(1.0)
     }

@@ -150,12 +150,12 @@ impl DemoState {
         self.pace.begin();
     }
 
-    /// Progress of the chapter, 0 to 1.
+    /// Returns the progress of the chapter, 0 to 1.
     pub(super) const fn progress(&self) -> f64 {
         self.pace.progress(SCRIPT[self.step].seconds)
     }
 
-    /// Explanation of the chapter, or the reason why the demonstration waits, with the remedy.
+    /// Returns the explanation of the chapter, or the reason why the demonstration waits, with the remedy.
     pub(super) fn caption(&self, live: &LiveState) -> String {
         let chapter = || SCRIPT[self.step].words.get().to_owned();
         if !may_play(live) {

@@ -44,7 +44,7 @@ pub(super) fn effect_image(ui: &mut Ui, effect: &FrameEffect) {
     painter.text(below, Align2::CENTER_BOTTOM, words, font, theme::now().text_weak);
 }
 
-/// Three axes of a frame: dashed before, solid after.
+/// Draws three axes of a frame: dashed before, solid after.
 fn axes(painter: &Painter, at: Pos2, length: f64, frame: &Isometry3<f64>, before: bool) {
     let colour: Color32 = if before { theme::now().reference } else { theme::now().measured };
     for (name, axis) in [("x", Vector3::x()), ("y", Vector3::y()), ("z", Vector3::z())] {

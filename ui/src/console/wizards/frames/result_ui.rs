@@ -122,7 +122,7 @@ fn rounded(x: f64, digits: usize) -> f64 {
     (x * scale).round() / scale + 0.0
 }
 
-/// Scale, digits and name of a unit on the screen.
+/// Returns scale, digits and name of a unit on the screen.
 const fn of_unit(unit: NumberUnit) -> (f64, usize, &'static str) {
     match unit {
         NumberUnit::Metres => (1e3, 2, " mm"),

@@ -28,7 +28,7 @@ const PAPER_SD_N: f64 = 0.20;
 const HEIGHT: f32 = 228.0;
 
 impl TipForceWizard {
-    /// Returns the request to go back and record more.
+    /// Draws the step; returns the request to go back and record more.
     pub(super) fn check_ui(&mut self, ui: &mut Ui, binding: &Binding) -> Option<WizardRequest> {
         let mut wish = None;
         card(ui, text::tip_force::CHECK_TITLE.get(), text::tip_force::CHECK_HOVER.get(), |ui| {

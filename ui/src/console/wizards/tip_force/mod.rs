@@ -261,7 +261,7 @@ impl TipForceWizard {
         }
     }
 
-    /// Progress of the training, 0 to 1, and its duration so far, s.
+    /// Returns the progress of the training, 0 to 1, and its duration so far, s.
     fn progress(&self) -> (f64, f64) {
         let curves = look(&self.curves);
         (curves.fraction(), curves.elapsed_s)

@@ -24,7 +24,7 @@ use crate::report_text::{goal_text, within};
 const PAPER_ROWS: usize = 30_000;
 
 impl TipForceWizard {
-    /// Returns the request to train although not all requirements are met.
+    /// Draws the step; returns the request to train although not all requirements are met.
     pub(super) fn record_ui(&mut self, ui: &mut Ui, binding: &Binding) -> Option<WizardRequest> {
         let running = self.is_recording();
         let rows = self.rows();

@@ -74,7 +74,7 @@ impl SweepJob {
     }
 }
 
-/// Plan of the measurement: the current rig, at the current delay.
+/// Returns the plan of the measurement: the current rig, at the current delay.
 pub(super) fn plan(live: &LiveState) -> TradeoffPlan {
     let mut rig = live.rig.clone();
     rig.delay_s = live.delay_s();
@@ -131,8 +131,8 @@ impl Tile for TradeoffPanel {
     }
 }
 
-/// Returns the panel. Returns a rig if the operator applies a point that the running loop cannot change to: the loop
-/// must then be restarted with it.
+/// Draws the panel. Returns a rig if the operator applies a point that the running loop cannot change to: the loop must
+/// then be restarted with it.
 fn tradeoff_ui(ui: &mut Ui, live: &LiveState, state: &mut TradeoffPanel, outbox: &mut Outbox) -> Option<RigConfig> {
     state.take_in();
     measure_ui(ui, live, state);

@@ -67,7 +67,7 @@ pub(super) fn plot_ui(ui: &mut Ui, figures: &SourceFigures, selected: Option<usi
     near(response.transform.value_from_position(clicked))
 }
 
-/// Shape, colour and size of a mode's markers.
+/// Returns shape, colour and size of a mode's markers.
 fn look(mode: Mode) -> (MarkerShape, Color32, f32) {
     let now = theme::now();
     let looks = [

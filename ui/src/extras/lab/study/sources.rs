@@ -38,7 +38,7 @@ impl SourceArguments {
         self.recording.is_empty() && self.scene.is_empty()
     }
 
-    /// Files that are read; results must not overwrite them.
+    /// Returns the files that are read; results must not overwrite them.
     pub(super) fn inputs(&self) -> Vec<PathBuf> {
         self.recording.iter().cloned().chain(self.scene.iter().map(PathBuf::from)).collect()
     }

@@ -19,7 +19,7 @@ const HALF_BOX: f64 = 28.0;
 /// Maximum length of the whiskers, in box heights (Tukey 1977, Exploratory Data Analysis).
 const REACH: f64 = 1.5;
 
-/// The means of the participants under each condition, in this order; empty without values.
+/// Draws the means of the participants under each condition, in this order; empty without values.
 pub(super) fn svg(table: &TrialTable, measure: &str, order: &[String], axis: &str) -> Markup {
     let groups: Vec<(&String, Vec<f64>)> =
         order.iter().map(|name| (name, means(table, measure, name))).filter(|(_, values)| !values.is_empty()).collect();

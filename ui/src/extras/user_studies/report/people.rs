@@ -72,7 +72,7 @@ pub(super) fn remarks(study: &UserStudy) -> Markup {
     }
 }
 
-/// Proficiency and learning curves.
+/// Returns proficiency and learning curves.
 pub(super) fn learning(study: &UserStudy) -> Markup {
     let all = study.learning();
     // A task without an end, such as touching for a given time, has no completion times.
@@ -118,7 +118,7 @@ fn curve_text(curve: &LearningCurve) -> String {
     format!("{shape}, plateau {} s, {plateau}", digits(curve.asymptote_s))
 }
 
-/// Completion times over the trials, of the first participants.
+/// Returns a plot of completion times over the trials, of the first participants.
 fn times(all: &[LearningModel]) -> Markup {
     let known = |of: &&LearningModel| of.times_s.iter().flatten().count() > 1;
     let drawn: Vec<&LearningModel> = all.iter().filter(known).take(DRAWN).collect();

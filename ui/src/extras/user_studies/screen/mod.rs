@@ -214,7 +214,7 @@ impl Page for Studies {
     }
 }
 
-/// Returns a column of this size that scrolls.
+/// Draws a column of this size that scrolls.
 fn column<R>(ui: &mut Ui, name: &str, size: egui::Vec2, content: impl FnOnce(&mut Ui) -> R) -> R {
     ui.allocate_ui_with_layout(size, Layout::top_down(Align::Min), |ui| {
         let area = ScrollArea::vertical().id_salt(name).auto_shrink(false).max_height(size.y);

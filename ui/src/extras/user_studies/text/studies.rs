@@ -339,7 +339,7 @@ pub(in crate::extras::user_studies) fn report_failed(why: &str) -> String {
     text_format!("Not written: {why}", "Nicht geschrieben: {why}")
 }
 
-/// Entry of the journal.
+/// Returns the journal entry.
 pub(in crate::extras::user_studies) fn note_lost(trial: TrialId, lost: u64) -> String {
     text_format!(
         "trial {}: {lost} ticks of the loop are missing from the score",

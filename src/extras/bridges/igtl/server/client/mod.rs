@@ -181,7 +181,7 @@ fn capabilities() -> Vec<String> {
     report.into_iter().chain(asked).collect()
 }
 
-/// ns since 1970.
+/// Returns the current time, ns since 1970.
 pub(super) fn now_ns() -> u64 {
     SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_nanos() as u64)
 }

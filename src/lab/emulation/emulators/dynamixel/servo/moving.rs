@@ -18,7 +18,7 @@ const CATCH_UP_STEPS: usize = 200;
 const IMPOSSIBLE_TICKS: i64 = 0x7FFF_FFFF;
 
 impl EmulatedServo {
-    /// Sign and offset between the shaft's ticks and the register's.
+    /// Returns the sign and offset between the shaft's ticks and the register's.
     fn frame(&self) -> (f64, f64) {
         let homing = self.get(table::HOMING_OFFSET);
         let ignored = self.get(table::OPERATING_MODE) == 3 && homing.abs() > 1024;

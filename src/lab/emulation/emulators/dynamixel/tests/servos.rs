@@ -183,7 +183,7 @@ fn the_watchdog_stops_a_servo_and_locks_its_goals() {
     assert_eq!(client.write(104, &100_i32.to_le_bytes()), 0);
 }
 
-/// Settling time within 1 % of a move of 1000 ticks, and the maximum overshoot, ticks.
+/// Returns the settling time within 1 % of a move of 1000 ticks, and the maximum overshoot, ticks.
 fn response(registers: &[(u16, i32, usize)]) -> (f64, f64) {
     let mut client = Client::new();
     for (address, value, bytes) in registers {

@@ -151,7 +151,7 @@ fn every_fault_is_told(serving: &EmulatorThread, feed: &EndoscopeFeed, own: impl
             }
             fault => match own(fault) {
                 Some(sign) => sign,
-                // These occasionally remove an image, or do not apply to a camera.
+                // These faults occasionally remove an image, or do not apply to a camera.
                 None => continue,
             },
         };

@@ -41,9 +41,10 @@ validation-paper: validation --paper'
 
 # Writes docs/results/NAME.md for each experiment, or for the named ones. A missed aim is a result, not a failure.
 studies() {
-  local nima=${CARGO_TARGET_DIR:-target}/debug/nima folder name command arguments
+  local nima=${CARGO_TARGET_DIR:-target}/release/nima folder name command arguments
   folder=$(mktemp -d)
-  timed cargo build --locked -p nima-console
+  # Built as for users: with the wrapper of the tests, everything would be built again.
+  timed env -u RUSTC_WORKSPACE_WRAPPER -u CLIPPY_ARGS cargo build --release --locked -p nima-console
   while IFS=: read -r name command; do
     [ $# -eq 0 ] || [[ " $* " == *" $name "* ]] || continue
     read -ra arguments <<<"$command"
@@ -51,7 +52,7 @@ studies() {
     {
       printf '# Results: %s\n\n' "$name"
       # shellcheck disable=SC2016
-      printf -- '- Command: `nima study%s`, by `./dev figures %s` (development build)\n' "$command" "$name"
+      printf -- '- Command: `nima study%s`, by `./dev figures %s` (release build)\n' "$command" "$name"
       printf -- '- Commit: %s\n- Machine: %s processors, %s\n' "$(git describe --always --dirty)" "$(nproc)" "$(uname -srm)"
       printf -- '- Date: %s\n\n' "$(date +%F)"
       cat "$folder/$name"/*.md 2>/dev/null || sed -e '1i ```text' -e '$a ```' "$folder/$name.txt"

@@ -26,6 +26,14 @@ impl Help {
         self.tour = Some(0);
     }
 
+    pub(super) const fn is_touring(&self) -> bool {
+        self.tour.is_some()
+    }
+
+    pub(super) const fn end_tour(&mut self) {
+        self.tour = None;
+    }
+
     /// Draws the open windows into `room`, the tour only over a view (`on_view`); returns true in the frame in which it ends.
     pub(super) fn ui(&mut self, ctx: &Context, room: Rect, on_view: bool) -> bool {
         self.glossary_ui(ctx, room);

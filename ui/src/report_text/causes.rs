@@ -246,10 +246,10 @@ fn missing(place: usize, roster: &Roster) -> [String; 2] {
     match trouble {
         Some(trouble) => {
             let why = quoted(&trouble);
-            [text_format!("The {name} is missing: {why}", "{name} fehlt: {why}"), trouble.cure()]
+            [text_format!("No connection to the {name}: {why}", "{name} fehlt: {why}"), trouble.cure()]
         }
         None => with(
-            text_format!("The {name} is missing, or drops out", "{name} fehlt oder fällt aus"),
+            text_format!("No connection to the {name}, or an interrupted one", "{name} fehlt oder fällt aus"),
             word("Check plug, cable and power; see Devices", "Stecker, Kabel und Strom prüfen; siehe Geräte"),
         ),
     }

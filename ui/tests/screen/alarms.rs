@@ -29,6 +29,20 @@ fn of_a_dead_loop() -> Harness<'static, ConsoleApp> {
     harness
 }
 
+#[test]
+fn an_alarm_moves_no_control_under_the_pointer() {
+    let mut harness = console_of("free_motion", SIZE, |app| app);
+    until(&mut harness, "engaged", |tick| tick.state == LoopState::Engaged);
+    let places = |harness: &Harness<'_, ConsoleApp>| {
+        ["Matched", "Compare all modes", "Pause"].map(|label| harness.get_by_label(label).rect())
+    };
+    let before = places(&harness);
+    assert_eq!(reads(&harness, "No active alarms"), 1);
+    harness.state_mut().on_exit(None);
+    read(&mut harness, SILENT);
+    assert_eq!(places(&harness), before);
+}
+
 fn can_acknowledge(harness: &Harness<'_, ConsoleApp>) -> bool {
     !harness.get_by_role_and_label(Role::Button, "Acknowledge (A)").accesskit_node().is_disabled()
 }
@@ -125,6 +139,14 @@ fn the_stop_is_hit_by_a_click_and_by_both_keys_whatever_is_open() {
             });
             until(&mut harness, "engaged", |tick| tick.state == LoopState::Engaged);
             open(&mut harness, overlay);
+            if overlay == "tour" && key == Some(Key::Escape) {
+                // Without devices, the first press only closes the window.
+                assert_eq!(reads(&harness, "Continue with the simulated rig"), 1);
+                harness.key_press(Key::Escape);
+                harness.run_steps(3);
+                assert_eq!(reads(&harness, "Continue with the simulated rig"), 0);
+                assert_eq!(harness.state().tick().unwrap().state, LoopState::Engaged, "closed, not stopped");
+            }
             stop_by(&mut harness, key, overlay);
         }
     }
@@ -197,13 +219,13 @@ fn a_device_that_is_missing_is_pinned_with_its_cause_and_its_cure() {
         .with_size(SIZE)
         .with_step_dt(1.0 / 30.0)
         .build_eframe(move |cc| ConsoleApp::new(cc, handle, rig, scene));
-    read(&mut harness, " is missing: ");
+    read(&mut harness, "No connection to the ");
     read(&mut harness, "more)");
     harness.run_steps(30);
-    assert_eq!(reads(&harness, " is missing: "), 1, "the first is pinned, the others are folded under it");
-    assert_eq!(reads(&harness, "Warning: The "), 1);
+    assert_eq!(reads(&harness, "No connection to the "), 1, "the first is pinned, the others are folded under it");
+    assert_eq!(reads(&harness, "Warning: No connection"), 1);
     harness.key_press(Key::F5);
-    read(&mut harness, "The right arm is missing: no response from 127.0.0.1:52800");
+    read(&mut harness, "No connection to the right arm: no response from 127.0.0.1:52800");
     read(&mut harness, "Correct the port number in the rig file");
 }
 

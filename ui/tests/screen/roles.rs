@@ -2,7 +2,7 @@
 
 use egui::{Key, accesskit};
 use egui_kittest::kittest::Queryable as _;
-use nima_console::console::{roles::Role, settings::SettingsStore};
+use nima_console::console::{ConsoleOptions, roles::Role, settings::SettingsStore};
 use nima_machine::messages::LoopState;
 
 use crate::bench::{console_of, press, until};
@@ -47,6 +47,56 @@ fn the_surgeon_sees_both_hands_and_sets_the_gain_and_nothing_can_raise_it_above_
     harness.get_by_role_and_label(accesskit::Role::Slider, "Gain").set_value_accesskit(0.4);
     harness.step();
     until(&mut harness, "gain 0.4", |tick| (tick.gates.gain - 0.4).abs() < 1e-6);
+}
+
+/// Without a haptic device, the surgeon drives by mouse and keys too, also after a stop.
+#[test]
+fn the_instrument_is_driven_in_the_surgeon_view_again_after_a_stop() {
+    let mut harness = console_of("peg_transfer", SIZE, |app| app);
+    until(&mut harness, "engaged", |tick| tick.state == LoopState::Engaged);
+    harness.key_press(Key::F1);
+    harness.run_steps(2);
+    for _ in 0..2 {
+        harness.key_press(Key::M);
+        harness.step();
+        until(&mut harness, "driven", |tick| tick.guide_m.is_some());
+        press(&mut harness, "Stop");
+        until(&mut harness, "stopped", |tick| tick.state == LoopState::Stopped && tick.guide_m.is_none());
+        press(&mut harness, "Release stop");
+        press(&mut harness, "Engage");
+        until(&mut harness, "engaged", |tick| tick.state == LoopState::Engaged);
+    }
+}
+
+#[test]
+fn an_open_menu_closes_when_another_view_is_chosen() {
+    let mut harness = console_of("free_motion", SIZE, |app| app);
+    press(&mut harness, "View");
+    harness.run_steps(3);
+    let is_open = |harness: &egui_kittest::Harness<'_, nima_console::console::ConsoleApp>| {
+        harness.query_by_label("Colours").is_some()
+    };
+    assert!(is_open(&harness));
+    harness.key_press(Key::F1);
+    harness.run_steps(3);
+    assert!(!is_open(&harness));
+}
+
+#[test]
+fn a_new_user_is_welcomed_once_and_never_over_a_view_that_was_asked_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let begin = |role: Option<Role>| {
+        let path = folder.path().to_path_buf();
+        let options = ConsoleOptions { role, ..ConsoleOptions::default() };
+        let mut harness = console_of("free_motion", SIZE, move |app| {
+            app.with_settings(SettingsStore::open(&path)).with_options(options)
+        });
+        harness.run_steps(3);
+        harness.query_by_label("Continue with the simulated rig").is_some()
+    };
+    assert!(!begin(Some(Role::Demo)));
+    assert!(begin(None));
+    assert!(!begin(None), "the second start");
 }
 
 #[test]

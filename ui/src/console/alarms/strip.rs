@@ -1,12 +1,13 @@
-//! Display of alarms: a strip below the top bar while any alarm is active, and the list of recent alarms.
+//! Display of alarms: a strip below the top bar, and the list of recent alarms.
 //!
 //! The strip shows the most urgent alarm (the first if several are equal) with time, cause and remedy, and the number of the
-//! others. It is as high as its text requires, so that nothing is cut off.
+//! others. Without an alarm it shows the next step. Its height never changes: otherwise an alarm would move every control
+//! under the pointer.
 
 use crate::console::text;
 use egui::{
-    Button, Color32, Context, Frame, Label, Margin, Panel, Rect, RichText, ScrollArea, Sense, Stroke, TextStyle, Ui,
-    Window, vec2,
+    Button, Color32, Context, FontId, Frame, Label, Margin, Panel, Rect, RichText, ScrollArea, Sense, Stroke,
+    TextStyle, Ui, Window, vec2,
 };
 
 use super::{
@@ -16,12 +17,14 @@ use super::{
 };
 use crate::console::{
     theme,
-    widgets::{Sign, at_the_right, fitting_style, sign, small, weak},
+    widgets::{Sign, at_the_right, fitting, fitting_style, sign, small, weak},
 };
 
+/// Height of the strip: two lines of text.
+const HEIGHT: f32 = 40.0;
 /// Width of the strip's buttons.
 const BUTTONS: f32 = 270.0;
-const BUTTON: egui::Vec2 = vec2(124.0, 32.0);
+const BUTTON: egui::Vec2 = vec2(124.0, 30.0);
 
 /// The log of alarms, and the open parts of their display.
 #[derive(Debug, Default)]
@@ -33,45 +36,47 @@ pub struct Alarms {
 }
 
 impl Alarms {
-    /// Updates the alarms, plays their sound if enabled, and shows the strip; `loop_s` is the time on the loop's clock.
-    pub fn strip_ui(&mut self, ui: &mut Ui, signs: &Signs, loop_s: Option<f64>, sounds: bool) {
+    /// Updates the alarms, plays their sound if enabled, and shows the strip; `loop_s` is the time on the loop's clock, and
+    /// `next` the next step of the operator.
+    pub fn strip_ui(&mut self, ui: &mut Ui, signs: &Signs, loop_s: Option<f64>, sounds: bool, next: &str) {
         let time_s = ui.input(|input| input.time);
         self.log.update(&judge(signs), &AlarmMoment::now(loop_s, time_s));
         let calls = self.log.calls();
         self.sound.step(calls.filter(|_| sounds), time_s);
         let live = self.log.live();
-        let Some(&first) = live.first() else { return };
+        let first = live.first().map(|&first| first.clone());
         if let Some(change_s) = calls.and_then(|priority| priority.until_change_s(time_s)) {
             // Slightly later than the change, so that the colour has changed by then.
             ui.ctx().request_repaint_after(std::time::Duration::from_secs_f64(change_s + 2e-3));
         }
-        let colour = calls.unwrap_or(first.alarm.priority).colour(time_s, calls.is_some());
+        let colour = first.as_ref().map(|first| calls.unwrap_or(first.alarm.priority).colour(time_s, calls.is_some()));
         let unseen = self.log.has_unseen();
-        let others = live.len() - 1;
-        let first = first.clone();
+        let others = live.len().saturating_sub(1);
         let frame = Frame::new()
-            .fill(theme::DARK.card)
-            .stroke(Stroke::new(2.0, colour))
-            .inner_margin(Margin::symmetric(14, 5))
+            .fill(if colour.is_some() { theme::DARK.card } else { theme::now().panel })
+            .stroke(colour.map_or(Stroke::NONE, |colour| Stroke::new(2.0, colour)))
+            .inner_margin(Margin::symmetric(14, 1))
             .outer_margin(Margin { left: 1, right: 1, top: 0, bottom: 1 });
         let mut acknowledged = false;
         let mut opened = false;
-        Panel::top("alarms").resizable(false).frame(frame).show(ui, |ui| {
-            ui.horizontal(|ui| {
-                opened |= words_ui(ui, &first, others, colour);
+        Panel::top("alarms").exact_size(HEIGHT).resizable(false).frame(frame).show(ui, |ui| {
+            ui.horizontal_centered(|ui| {
+                match (&first, colour) {
+                    (Some(first), Some(colour)) => opened |= words_ui(ui, first, others, colour),
+                    _ => quiet_ui(ui, next),
+                }
                 at_the_right(ui, |ui| {
-                    let name = |ui: &Ui, words: &'static str| {
-                        let room = BUTTON.x - 2.0 * ui.spacing().button_padding.x;
-                        RichText::new(words).font(fitting_style(ui, words, &TextStyle::Button, room))
-                    };
-                    let acknowledge = Button::new(name(ui, text::alarms::ACKNOWLEDGE.get())).min_size(BUTTON);
-                    let seen = ui.add_enabled(unseen, acknowledge);
-                    let seen = seen
-                        .on_hover_text(text::alarms::ACKNOWLEDGE_HOVER.get())
-                        .on_disabled_hover_text(text::alarms::ACKNOWLEDGED_HOVER.get());
-                    acknowledged = seen.clicked();
-                    let all = Button::new(name(ui, text::alarms::SHOW_ALL.get())).min_size(BUTTON);
-                    opened |= ui.add(all).on_hover_text(text::alarms::SHOW_ALL_HOVER.get()).clicked();
+                    if first.is_some() {
+                        let seen = ui.add_enabled(unseen, button(ui, text::alarms::ACKNOWLEDGE.get()));
+                        let seen = seen
+                            .on_hover_text(text::alarms::ACKNOWLEDGE_HOVER.get())
+                            .on_disabled_hover_text(text::alarms::ACKNOWLEDGED_HOVER.get());
+                        acknowledged = seen.clicked();
+                    } else {
+                        ui.add_space(BUTTON.x + ui.spacing().item_spacing.x);
+                    }
+                    let all = ui.add(button(ui, text::alarms::SHOW_ALL.get()));
+                    opened |= all.on_hover_text(text::alarms::SHOW_ALL_HOVER.get()).clicked();
                 });
             });
         });
@@ -101,6 +106,30 @@ impl Alarms {
     }
 }
 
+/// Returns a button of the strip, with letters that fit into it.
+fn button(ui: &Ui, words: &'static str) -> Button<'static> {
+    let room = BUTTON.x - 2.0 * ui.spacing().button_padding.x;
+    Button::new(RichText::new(words).font(fitting_style(ui, words, &TextStyle::Button, room))).min_size(BUTTON)
+}
+
+/// Draws the strip without an alarm.
+fn quiet_ui(ui: &mut Ui, next: &str) {
+    let (rect, _) = ui.allocate_exact_size(vec2(24.0, 30.0), Sense::hover());
+    sign(ui.painter(), Sign::Ring, rect.center(), 6.0, theme::now().text_weak);
+    let room = (ui.available_width() - BUTTONS).max(240.0);
+    ui.vertical(|ui| {
+        ui.set_width(room);
+        ui.spacing_mut().item_spacing.y = 0.0;
+        ui.spacing_mut().interact_size.y = 0.0;
+        ui.horizontal(|ui| {
+            ui.label(RichText::new(text::top_bar::NIMA_CONSOLE.get()).font(theme::strong(15.0)));
+            ui.label(small(text::top_bar::RESEARCH_ONLY.get()));
+        });
+        let font = fitting(ui.painter(), next, theme::regular(13.0), room);
+        ui.add(Label::new(RichText::new(next).font(font).color(theme::now().text_weak)).truncate());
+    });
+}
+
 /// Draws the alarm in the strip; returns true if it was clicked.
 fn words_ui(ui: &mut Ui, first: &AlarmEntry, others: usize, colour: Color32) -> bool {
     let (rect, _) = ui.allocate_exact_size(vec2(24.0, 30.0), Sense::hover());
@@ -114,8 +143,13 @@ fn words_ui(ui: &mut Ui, first: &AlarmEntry, others: usize, colour: Color32) -> 
         let alarm = &first.alarm;
         let cause =
             text::alarms::pinned(alarm.priority.word(), &alarm.cause, &first.began.utc, &(seen.to_owned() + &more));
-        ui.add(Label::new(RichText::new(cause).font(theme::strong(14.0)).color(theme::DARK.text)).wrap());
-        ui.add(Label::new(RichText::new(&alarm.cure).font(theme::regular(13.0)).color(theme::DARK.text_weak)).wrap());
+        // The pointer on a text that is still too long shows all of it.
+        let line = |ui: &mut Ui, words: &str, font: FontId, colour: Color32| {
+            let font = fitting(ui.painter(), words, font, width);
+            ui.add(Label::new(RichText::new(words).font(font).color(colour)).truncate());
+        };
+        line(ui, &cause, theme::strong(14.0), theme::DARK.text);
+        line(ui, &alarm.cure, theme::regular(13.0), theme::DARK.text_weak);
     });
     // Not in the Tab order, because the button next to it does the same.
     ui.interact(words.response.rect, ui.scope_id().with("alarm"), Sense::CLICK).clicked()

@@ -202,7 +202,9 @@ impl ConsoleApp {
         };
         let is_here = match self.page() {
             ActivePage::Trial => true,
-            ActivePage::Monitor => self.role() != Role::Surgeon || view.is_led() && view.is_seen,
+            ActivePage::Monitor => {
+                self.role() != Role::Surgeon || view.is_seen && (view.is_led() || self.live.rig.devices.is_none())
+            }
             _ => false,
         };
         Availability::unless(why).only_if(is_offered && is_here)

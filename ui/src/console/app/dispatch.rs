@@ -49,7 +49,7 @@ impl ConsoleApp {
             Action::Stop => self.outbox.push(Command::Stop),
             // Leave it to the button, which waits a moment after every change of state.
             Action::Engage | Action::Release => self.top_bar.wants_step = Some(action),
-            Action::View(role) => self.show_view(role),
+            Action::View(role) => self.show_view(role, ctx),
             Action::Rig if self.start.is_open => self.close_pages(),
             Action::Rig => self.open_start(),
             Action::Sessions => self.toggle_list(),
@@ -69,8 +69,10 @@ impl ConsoleApp {
         }
     }
 
-    fn show_view(&mut self, role: Role) {
+    fn show_view(&mut self, role: Role, ctx: &Context) {
         self.settings.now.role = role;
+        // A menu belongs to the view over which it was opened.
+        egui::Popup::close_all(ctx);
         if self.starting.is_none() {
             self.close_pages();
         }

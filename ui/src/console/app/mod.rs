@@ -319,7 +319,7 @@ impl ConsoleApp {
 
     fn layout(&mut self, ui: &mut Ui) {
         let bar = Frame::new().fill(theme::now().panel).inner_margin(Margin::symmetric(14, 0));
-        Panel::top("top_bar").exact_size(72.0).resizable(false).frame(bar).show(ui, |ui| {
+        Panel::top("top_bar").exact_size(56.0).resizable(false).frame(bar).show(ui, |ui| {
             let calibrating = self.is_calibrating();
             let before = self.role();
             self.live.engage_closed = match self.may(Action::Engage) {
@@ -343,7 +343,8 @@ impl ConsoleApp {
         });
         let signs = self.live.signs(self.outbox.stop_is_stuck(), self.sessions.trouble());
         let loop_s = self.live.first_tick().map(|tick| tick.t_s);
-        self.top_bar.alarms.strip_ui(ui, &signs, loop_s, self.settings.now.sound);
+        let next = text::alarms::next_step(self.live.state(), self.live.engage_closed);
+        self.top_bar.alarms.strip_ui(ui, &signs, loop_s, self.settings.now.sound, &next);
         let written = || judge(&self.live.signs(self.outbox.stop_is_stuck(), self.sessions.trouble()));
         let written = language::with(Language::English, written);
         self.sessions.notify(&self.live.marks_s, &self.top_bar.alarms.log, &written, loop_s);
@@ -385,6 +386,7 @@ impl eframe::App for ConsoleApp {
         self.panels.eyes.serve(self.live.rig.endoscope.as_ref(), self.sessions.reel(), &ctx);
         self.panels.devices.image = self.panels.eyes.report();
         menu::apply(&ctx, &self.settings.now);
+        self.close_welcome_by_key(&ctx);
         if keys::stop_pressed(&ctx) {
             self.outbox.push(Command::Stop);
             self.palette.close();

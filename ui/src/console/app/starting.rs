@@ -7,7 +7,7 @@ use std::{
     thread,
 };
 
-use egui::Ui;
+use egui::{Key, Modifiers, Ui};
 use nima_machine::config::RigConfig;
 use nima_simulation::scene::Scene;
 
@@ -97,14 +97,33 @@ impl ConsoleApp {
         if covers || self.wizards.open.is_some() || self.checking.is_open() {
             return;
         }
+        // A user who asks for a view knows the program.
+        if self.options.role.is_some() {
+            self.start.welcome.close();
+        }
+        // Shown once; the tour stays in the View menu.
+        self.settings.now.toured |= self.start.welcome.is_open();
         match self.start.welcome.ui(ctx, room) {
-            None => return,
-            Some(WelcomeChoice::Simulated) => return self.help.begin_tour(),
+            None => {}
+            Some(WelcomeChoice::Simulated) => self.help.begin_tour(),
             Some(WelcomeChoice::Demo) => self.settings.now.role = Role::Demo,
             Some(WelcomeChoice::Own) => self.open_start(),
         }
-        // The tour is in the View menu.
+    }
+
+    /// Closes the welcome or the tour by Escape. Without devices there is nothing to stop, so that key press only closes;
+    /// otherwise it also stops, as everywhere.
+    pub(super) fn close_welcome_by_key(&mut self, ctx: &egui::Context) {
+        let is_shown = self.start.welcome.is_open() || self.help.is_touring();
+        if !is_shown || !ctx.input(|input| input.key_pressed(Key::Escape)) {
+            return;
+        }
+        self.start.welcome.close();
+        self.help.end_tour();
         self.settings.now.toured = true;
+        if self.live.rig.devices.is_none() {
+            ctx.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape));
+        }
     }
 
     pub(super) fn open_start(&mut self) {

@@ -123,10 +123,13 @@ impl LiveState {
         let missed = before.map_or(0, |before| tick.missed.saturating_sub(before.missed));
         self.deadlines.push(tick.t_s, missed);
         self.missed_fraction.push(missed as f64 / (missed as f64 + 1.0), dt_s, 3.0);
+        let is_engaged = tick.state == LoopState::Engaged;
         let of_matched = matches!(tick.mode, Mode::Matched | Mode::Nima | Mode::Best);
         let identification = &tick.identification;
-        self.degrees.push(if of_matched { identification.degree_of(tick.mode) } else { identification.degree });
-        if identification.modes.contains(Mode::Literal) {
+        if is_engaged {
+            self.degrees.push(if of_matched { identification.degree_of(tick.mode) } else { identification.degree });
+        }
+        if is_engaged && identification.modes.contains(Mode::Literal) {
             self.paper_degrees.push(identification.paper_degree);
         }
         // Without a measured force there is no error.
@@ -235,9 +238,27 @@ pub(in crate::console) fn forces_of(tick: &Tick) -> [f32; CHANNELS] {
 mod tests {
     use nima_devices::Loss;
     use nima_machine::config::RigConfig;
-    use nima_simulation::scene::Scene;
+    use nima_simulation::{SimulationPlan, run_virtual, scene::Scene};
 
     use super::*;
+
+    #[test]
+    fn degrees_are_counted_only_while_engaged() {
+        for engage in [false, true] {
+            let rig = RigConfig::load("simulated").unwrap();
+            let scene = Scene::load("peg_transfer").unwrap();
+            let plan =
+                SimulationPlan { rig: rig.clone(), scene: scene.clone(), calibrations: Default::default(), engage };
+            let mut live = LiveState::new(rig, scene);
+            run_virtual(&plan, 1.0, |tick| {
+                live.replay([].iter(), &[Some(*tick), None]);
+                None
+            })
+            .unwrap();
+            let counted: f64 = live.degrees.fractions().iter().sum();
+            assert_eq!(counted > 0.0, engage);
+        }
+    }
 
     #[test]
     fn the_fault_that_is_told_is_the_cause_and_not_what_it_did_to_the_other_arm() {

@@ -98,7 +98,7 @@ pub fn top_bar_ui(
     });
 }
 
-/// Draws the name of the program, and below it the role switch, the button of the start page, and the menu.
+/// Draws the role switch, the button of the start page, and the menu.
 fn identity_ui(
     ui: &mut Ui,
     live: &LiveState,
@@ -106,40 +106,30 @@ fn identity_ui(
     state: &mut TopBarState,
     calibrating: bool,
 ) {
-    ui.vertical(|ui| {
-        ui.add_space(8.0);
-        ui.spacing_mut().item_spacing.y = 4.0;
-        ui.horizontal(|ui| {
-            ui.label(RichText::new(text::top_bar::NIMA_CONSOLE.get()).font(theme::strong(19.0)));
-            ui.label(small(text::top_bar::RESEARCH_ONLY.get()));
-        });
-        if let Some(participant) = &state.participant {
-            ui.label(RichText::new(participant).font(theme::strong(17.0)));
-            return;
-        }
-        ui.horizontal(|ui| {
-            switch_ui(ui, &Role::ALL, &mut settings.role, !calibrating);
-            let start = Button::new(text::start::OPEN.get()).min_size(vec2(44.0, 30.0));
-            let why = if state.past { text::playback::BLOCKED.get() } else { text::start::OPEN_DISABLED_HOVER.get() };
-            let free = !calibrating && !state.past;
-            let start = ui.add_enabled(free, start).on_hover_text(text::start::OPEN_HOVER.get());
-            let wants_start = start.on_disabled_hover_text(why).clicked();
-            let of_menu = menu_ui(ui, settings, &mut state.alarms, state.can_undo);
-            let sessions = Button::new(text::playback::SESSIONS.get()).min_size(vec2(72.0, 30.0));
-            let sessions = ui.add_enabled(free, sessions).on_hover_text(text::playback::SESSIONS_HOVER.get());
-            let wants_sessions = sessions.on_disabled_hover_text(why).clicked();
-            let keeps = recorded_ui(ui, state);
-            state.wanted = of_menu
-                .or(wants_start.then_some(Action::Rig))
-                .or(wants_sessions.then_some(Action::Sessions))
-                .or(keeps.then_some(Action::Keep));
-            if ui.ctx().content_rect().width() >= SCENE_FROM {
-                ui.add_space(4.0);
-                ui.label(weak(&live.scene.name))
-                    .on_hover_text(text::top_bar::scene_and_rig(&live.scene.description, &live.rig.name));
-            }
-        });
-    });
+    if let Some(participant) = &state.participant {
+        ui.label(RichText::new(participant).font(theme::strong(17.0)));
+        return;
+    }
+    switch_ui(ui, &Role::ALL, &mut settings.role, !calibrating);
+    let start = Button::new(text::start::OPEN.get()).min_size(vec2(44.0, 30.0));
+    let why = if state.past { text::playback::BLOCKED.get() } else { text::start::OPEN_DISABLED_HOVER.get() };
+    let free = !calibrating && !state.past;
+    let start = ui.add_enabled(free, start).on_hover_text(text::start::OPEN_HOVER.get());
+    let wants_start = start.on_disabled_hover_text(why).clicked();
+    let of_menu = menu_ui(ui, settings, &mut state.alarms, state.can_undo);
+    let sessions = Button::new(text::playback::SESSIONS.get()).min_size(vec2(72.0, 30.0));
+    let sessions = ui.add_enabled(free, sessions).on_hover_text(text::playback::SESSIONS_HOVER.get());
+    let wants_sessions = sessions.on_disabled_hover_text(why).clicked();
+    let keeps = recorded_ui(ui, state);
+    state.wanted = of_menu
+        .or(wants_start.then_some(Action::Rig))
+        .or(wants_sessions.then_some(Action::Sessions))
+        .or(keeps.then_some(Action::Keep));
+    if ui.ctx().content_rect().width() >= SCENE_FROM {
+        ui.add_space(4.0);
+        ui.label(weak(&live.scene.name))
+            .on_hover_text(text::top_bar::scene_and_rig(&live.scene.description, &live.rig.name));
+    }
 }
 
 /// Draws the duration of the recording on the button that keeps it; returns true when pressed.

@@ -162,8 +162,8 @@ pub fn scene_ui(ui: &mut Ui, live: &LiveState, view: &mut SceneView, outbox: &mu
     // Reserve a place below the view's buttons, because the triangles are known only later.
     let ground = ui.painter_at(rect).add(egui::Shape::Noop);
     let camera = view.camera(&live.scene);
-    // Not offered in the Surgeon view, because the surgeon uses the handle.
-    let offered = view.figures || view.lead.is_on() || view.lead.is_held;
+    // Without devices the simulated hand can be driven in every view; with them, the surgeon uses the handle.
+    let offered = view.figures || live.rig.devices.is_none() || view.lead.is_on() || view.lead.is_held;
     if view.figures {
         view.extras.ui(ui, rect);
     }

@@ -128,9 +128,9 @@ impl StartPage {
     /// Draws the page; returns the choice to start.
     pub(super) fn ui(&mut self, ui: &mut Ui, now: &StartInputs<'_>) -> Option<RigChoice> {
         let mut start = None;
-        let frame = Frame::new().inner_margin(Margin::symmetric(14, 12));
+        let frame = Frame::new().inner_margin(Margin::symmetric(14, 8));
         CentralPanel::default().frame(frame).show(ui, |ui| {
-            let height = ui.available_height() - 76.0;
+            let height = ui.available_height() - 66.0;
             ui.horizontal_top(|ui| {
                 let width = (ui.available_width() - 2.0 * theme::GAP) / 3.0;
                 ui.spacing_mut().item_spacing.x = theme::GAP;
@@ -144,10 +144,16 @@ impl StartPage {
         start
     }
 
-    fn elsewhere_ui(&mut self, ui: &mut Ui) {
-        // Place it at the right edge, below the shortest column.
+    fn elsewhere_ui(&mut self, ui: &mut Ui, now: &StartInputs<'_>) {
+        // Place the buttons at the right edge, below the shortest column.
         let corner = ui.max_rect().right_top() - vec2(theme::STOP_SIZE.x, 0.0);
         let place = egui::Rect::from_min_size(corner, theme::STOP_SIZE);
+        if let Some([name, meaning]) = now.page {
+            let place = place.translate(vec2(-theme::STOP_SIZE.x - theme::GAP, 0.0));
+            let page = Button::new(name).wrap();
+            let page = ui.add_enabled_ui(!now.is_starting, |ui| ui.put(place, page)).inner;
+            self.wants_page |= page.on_hover_text(meaning).clicked();
+        }
         let button = Button::new(text::start::ELSEWHERE.get());
         let button = ui.add_enabled_ui(self.picking.is_none(), |ui| ui.put(place, button)).inner;
         if button.on_hover_text(text::start::ELSEWHERE_HOVER.get()).clicked() {
@@ -200,10 +206,6 @@ impl StartPage {
                 self.make(now);
             }
         });
-        if let Some([name, meaning]) = now.page {
-            let page = Button::new(name).min_size(vec2(ui.available_width(), 36.0));
-            self.wants_page |= ui.add_enabled(!now.is_starting, page).on_hover_text(meaning).clicked();
-        }
     }
 
     fn make(&mut self, now: &StartInputs<'_>) {
@@ -332,7 +334,7 @@ impl StartPage {
                     ui.add(Label::new(report).wrap());
                 }
             });
-            self.elsewhere_ui(ui);
+            self.elsewhere_ui(ui, now);
         });
         start
     }

@@ -28,6 +28,14 @@ impl Welcome {
         self.is_open = true;
     }
 
+    pub(in crate::console) const fn is_open(&self) -> bool {
+        self.is_open
+    }
+
+    pub(in crate::console) const fn close(&mut self) {
+        self.is_open = false;
+    }
+
     /// Draws it into `room`, which does not cover the stop button; returns the chosen way and closes.
     pub(in crate::console) fn ui(&mut self, ctx: &Context, room: Rect) -> Option<WelcomeChoice> {
         if !self.is_open {

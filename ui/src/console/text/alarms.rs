@@ -1,5 +1,7 @@
 //! Alarms: their causes and remedies, the alarm strip, and the list of recent alarms.
 
+use nima_machine::messages::LoopState;
+
 use crate::language::{Text, text_format};
 
 pub(in crate::console) const ALARM: Text = Text::of("Alarm", "Alarm");
@@ -61,12 +63,32 @@ pub(in crate::console) fn fault(cause: &str, t_s: f64) -> String {
     text_format!("{cause} (at {t_s:.1} s)", "{cause} (bei {t_s:.1} s)")
 }
 
+/// Returns the next step of the operator while there is no alarm; `closed`: reason why the loop cannot be engaged.
+pub(in crate::console) fn next_step(state: LoopState, closed: Option<&str>) -> String {
+    match (state, closed) {
+        (LoopState::Idle, None) => {
+            text_format!(
+                "No active alarms. Press Engage to move the arm.",
+                "Keine Alarme. Zum Bewegen des Arms koppeln."
+            )
+        }
+        (LoopState::Idle, Some(why)) => {
+            text_format!("No active alarms. Not engaged: {why}", "Keine Alarme. Nicht gekoppelt: {why}")
+        }
+        (LoopState::Stopped, _) => text_format!(
+            "No active alarms. Stopped: press Release stop, then Engage.",
+            "Keine Alarme. Angehalten: Halt lösen, dann koppeln."
+        ),
+        _ => text_format!("No active alarms", "Keine Alarme"),
+    }
+}
+
 pub(in crate::console) fn device(name: &str, cause: &str) -> String {
-    text_format!("The {name} is missing: {cause}", "{name} fehlt: {cause}")
+    text_format!("No connection to the {name}: {cause}", "{name} fehlt: {cause}")
 }
 
 pub(in crate::console) fn device_lost(name: &str, cause: &str) -> String {
-    text_format!("The {name} is lost: {cause}", "{name} ausgefallen: {cause}")
+    text_format!("Lost connection to the {name}: {cause}", "{name} ausgefallen: {cause}")
 }
 
 pub(in crate::console) fn fault_of(name: &str, cause: &str) -> String {

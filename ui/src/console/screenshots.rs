@@ -1,4 +1,4 @@
-//! Screenshots for the README and the documents: every view in turn, each during a contact.
+//! Screenshots for the README and the documents: every view and every panel in turn, each during a contact.
 
 use std::{
     path::{Path, PathBuf},
@@ -34,9 +34,12 @@ const GIVE_UP: Duration = Duration::from_secs(10);
 const LAST: Duration = Duration::from_millis(700);
 
 /// File name, role, panel to bring to the front, light palette.
-const SHOTS: [(&str, Role, Option<Panel>, bool); 5] = [
+const SHOTS: [(&str, Role, Option<Panel>, bool); 8] = [
     ("console", Role::Technician, None, false),
     ("safety", Role::Technician, Some(Panel::Safety), false),
+    ("devices", Role::Technician, Some(Panel::Devices), false),
+    ("tradeoff", Role::Technician, Some(Panel::Tradeoff), false),
+    ("link", Role::Technician, Some(Panel::Link), false),
     ("light", Role::Technician, None, true),
     ("surgeon", Role::Surgeon, None, false),
     ("demo", Role::Demo, None, false),

@@ -21,6 +21,12 @@ use crate::console::{
     rolling::FadingMean,
 };
 
+/// Displayed forces are smoothed with this time constant, s, which calms the last digit.
+const SMOOTHING_S: f64 = 0.05;
+/// A change larger than this (N) is shown at once: the digits must not contradict the arrow and the bar beside them. About
+/// ten times the noise of the sensors.
+const JUMP_N: f64 = 0.2;
+
 impl LiveState {
     /// Reads all data that the loop has sent; `each` is called with all of it.
     pub fn take_in(&mut self, door: &LoopConnection, mut each: impl FnMut(&LoopMessage<'_>)) {
@@ -162,10 +168,10 @@ impl LiveState {
         let r = tick.rendered_n;
         self.history[side].push(tick.t_s, &forces_of(tick));
         match tick.known_n() {
-            Some(force_n) => self.measured[side].push(force_n.norm(), dt_s, 0.05),
+            Some(force_n) => follow_force(&mut self.measured[side], force_n.norm(), dt_s),
             None => self.measured[side] = FadingMean::default(),
         }
-        self.rendered[side].push(r.norm(), dt_s, 0.05);
+        follow_force(&mut self.rendered[side], r.norm(), dt_s);
         self.gates[side].push(tick, dt_s);
         self.clouds[side].push(tick.t_s, m, r);
         self.stiffness[side].push(tick.t_s, &tick.tip_m, &m);
@@ -179,7 +185,12 @@ impl LiveState {
     }
 
     fn refresh_figures(&mut self) {
-        if self.readings_at.elapsed() >= READINGS_EVERY {
+        let shown = [self.figures.measured_n, self.figures.rendered_n.map(Some)];
+        let now = [self.measured, self.rendered].map(|means| means.map(FadingMean::known));
+        let jumps = shown.iter().flatten().zip(now.iter().flatten()).any(|(shown_n, now_n)| {
+            shown_n.is_some() != now_n.is_some() || shown_n.zip(*now_n).is_some_and(|(a, b)| (a - b).abs() > JUMP_N)
+        });
+        if jumps || self.readings_at.elapsed() >= READINGS_EVERY {
             self.refresh_readings();
         }
         let since = self.figures_at.elapsed();
@@ -227,6 +238,14 @@ impl LiveState {
     }
 }
 
+/// Smooths the noise of a displayed force, but follows a jump at once.
+fn follow_force(mean: &mut FadingMean, force_n: f64, dt_s: f64) {
+    if mean.known().is_some_and(|mean_n| (mean_n - force_n).abs() > JUMP_N) {
+        *mean = FadingMean::default();
+    }
+    mean.push(force_n, dt_s, SMOOTHING_S);
+}
+
 /// Returns the forces of a tick, N, in the order of their channels; NaN if unknown.
 pub(in crate::console) fn forces_of(tick: &Tick) -> [f32; CHANNELS] {
     let m = tick.measured_n;
@@ -241,6 +260,25 @@ mod tests {
     use nima_simulation::{SimulationPlan, run_virtual, scene::Scene};
 
     use super::*;
+
+    #[test]
+    fn the_digits_follow_a_jump_of_the_force_at_once() {
+        let rig = RigConfig::load("simulated").unwrap();
+        let scene = Scene::load("peg_transfer").unwrap();
+        let plan =
+            SimulationPlan { rig: rig.clone(), scene: scene.clone(), calibrations: Default::default(), engage: true };
+        let mut live = LiveState::new(rig, scene);
+        let mut farthest_n = 0.0_f64;
+        run_virtual(&plan, 2.0, |tick| {
+            live.replay([].iter(), &[Some(*tick), None]);
+            live.refresh_figures();
+            let shown_n = live.figures.measured_n[Side::Right.index()];
+            farthest_n = farthest_n.max((shown_n? - tick.known_n()?.norm()).abs());
+            None
+        })
+        .unwrap();
+        assert!((0.01..2.0 * JUMP_N).contains(&farthest_n), "{farthest_n} N");
+    }
 
     #[test]
     fn degrees_are_counted_only_while_engaged() {

@@ -161,6 +161,7 @@ pub fn scene_ui(ui: &mut Ui, live: &LiveState, view: &mut SceneView, outbox: &mu
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, text::field::OPERATING_FIELD.get()));
     // Reserve a place below the view's buttons, because the triangles are known only later.
     let ground = ui.painter_at(rect).add(egui::Shape::Noop);
+    let rim = vignette::reserve(&ui.painter_at(rect));
     let camera = view.camera(&live.scene);
     // Without devices the simulated hand can be driven in every view; with them, the surgeon uses the handle.
     let offered = view.figures || live.rig.devices.is_none() || view.lead.is_on() || view.lead.is_held;
@@ -191,7 +192,7 @@ pub fn scene_ui(ui: &mut Ui, live: &LiveState, view: &mut SceneView, outbox: &mu
         painter.set(ground, callback);
     }
     if view.look == CameraLook::Endoscope && view.extras.round {
-        vignette::paint(&painter, rect);
+        vignette::paint(&painter, rect, rim);
     }
     if view.figures {
         view.extras.paint(&painter, rect, &camera, &live.scene, &arms, live.gate_settings().ceiling_n);

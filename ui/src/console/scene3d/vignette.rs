@@ -1,6 +1,6 @@
 //! The round image of an endoscope: black outside a disc with a soft rim.
 
-use egui::{Color32, Mesh, Painter, Pos2, Rect, Shape, pos2};
+use egui::{Color32, Mesh, Painter, Pos2, Rect, Shape, layers::ShapeIdx, pos2};
 use nalgebra::Matrix4;
 
 /// Radius of the disc, in heights of the view: the disc is slightly cut off above and below, as on the monitors of an
@@ -44,16 +44,20 @@ pub(super) fn shows(rect: Rect, place: Pos2, room: f32) -> bool {
     rect.shrink(room).contains(place) && (place - rect.center()).length() + room <= clear
 }
 
-/// Covers the area outside the disc.
-pub(super) fn paint(painter: &Painter, rect: Rect) {
+/// Reserves the place of the vignette, below everything that is painted after this call.
+pub(super) fn reserve(painter: &Painter) -> [ShapeIdx; 2] {
+    [painter.add(Shape::Noop), painter.add(Shape::Noop)]
+}
+
+/// Covers the area outside the disc, in the reserved place.
+pub(super) fn paint(painter: &Painter, rect: Rect, [at_sides, at_rim]: [ShapeIdx; 2]) {
     let [clear, dark] = radii(rect);
     let part = part_of(rect);
-    for beside in [
-        Rect::from_x_y_ranges(rect.left()..=part.left(), rect.y_range()),
-        Rect::from_x_y_ranges(part.right()..=rect.right(), rect.y_range()),
-    ] {
-        painter.rect_filled(beside, 0.0, Color32::BLACK);
-    }
+    let sides = [rect.left()..=part.left(), part.right()..=rect.right()];
+    let black = |x: std::ops::RangeInclusive<f32>| {
+        Shape::rect_filled(Rect::from_x_y_ranges(x, rect.y_range()), 0.0, Color32::BLACK)
+    };
+    painter.set(at_sides, Shape::Vec(sides.map(black).into()));
     let beyond = part.size().length().max(dark + 1.0);
     let mut mesh = Mesh::default();
     let rings = [(clear, Color32::TRANSPARENT), (dark, Color32::BLACK), (beyond, Color32::BLACK)];
@@ -71,7 +75,7 @@ pub(super) fn paint(painter: &Painter, rect: Rect) {
             mesh.add_triangle(a + 1, b, b + 1);
         }
     }
-    painter.with_clip_rect(part).add(Shape::mesh(mesh));
+    painter.with_clip_rect(part).set(at_rim, Shape::mesh(mesh));
 }
 
 #[cfg(test)]

@@ -112,8 +112,15 @@ pub(in crate::console) fn following(arm: &str, calibration: &str) -> String {
     text_format!("Next: {arm} arm, {}", "Weiter: Arm {after}, {}", within(calibration))
 }
 
-pub(in crate::console) fn title(wizard: &str) -> String {
-    text_format!("{wizard} calibration", "Kalibrierung: {wizard}")
+pub(in crate::console) fn title(wizard: &str, arm: Option<&str>) -> String {
+    match arm {
+        Some(arm) => text_format!("{wizard} calibration, {arm} arm", "Kalibrierung: {wizard}, Arm {arm}"),
+        None => text_format!("{wizard} calibration", "Kalibrierung: {wizard}"),
+    }
+}
+
+pub(in crate::console) fn step_of(step: usize, steps: usize, meaning: &str) -> String {
+    text_format!("Step {step} of {steps}: {meaning}", "Schritt {step} von {steps}: {meaning}")
 }
 
 pub(in crate::console) fn recorded(name: &str, count: usize) -> String {

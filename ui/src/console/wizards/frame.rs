@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use egui::{Button, RichText, TextEdit, Ui, vec2};
+use egui::{Button, RichText, Sense, TextEdit, Ui, vec2};
 use nima_core::calibration::Judgement;
 use nima_endoscope::DecodedImage;
 use nima_machine::{messages::Tick, rig::Prompt};
@@ -10,7 +10,7 @@ use nima_machine::{messages::Tick, rig::Prompt};
 use super::{Binding, GoOn, SaveRequest, WizardPageRequest};
 use crate::console::{
     text, theme,
-    widgets::{card, figure, next_button, small, weak},
+    widgets::{Sign, card, figure, next_button, sign, small, weak},
 };
 use crate::language::Text;
 
@@ -184,13 +184,17 @@ fn steps_ui(ui: &mut Ui, steps: &[WizardStep], now: usize, going_on: &GoingOn) -
             } else {
                 (theme::regular(14.0), theme::now().text_weak)
             };
+            if i < now {
+                let (rect, _) = ui.allocate_exact_size(vec2(14.0, 18.0), Sense::hover());
+                sign(ui.painter(), Sign::Disc, rect.center(), 5.0, theme::now().engaged);
+            }
             let mark = if i < now { text::wizards::DONE.get() } else { "" };
             let words = format!("{}. {} {mark}", i + 1, step.name);
             ui.label(RichText::new(words.trim_end()).font(font).color(colour)).on_hover_text(step.meaning.get());
             ui.add_space(10.0);
         }
     });
-    ui.label(small(steps[now].meaning.get()));
+    ui.label(small(text::wizards::step_of(now + 1, steps.len(), steps[now].meaning.get())));
     ui.horizontal_wrapped(|ui| {
         let size = vec2(96.0, 34.0);
         if ui.add_enabled(now > 0, Button::new(text::wizards::BACK.get()).min_size(size)).clicked() {
@@ -232,7 +236,7 @@ fn save_card(ui: &mut Ui, binding: Option<&Binding>, proof: Option<&str>, frame:
             figure(ui, text::wizards::TOOL.get(), &binding.tool, text::wizards::TOOL_HOVER.get());
         }
         let wanted = if let Some(proof) = proof {
-            ui.label(proof);
+            judged_line(ui, true, proof);
             let known = binding.is_none_or(|binding| !binding.sensor.is_empty());
             let next = !frame.is_saved();
             let save =

@@ -49,6 +49,7 @@ use super::{scene3d::side_name, theme, widgets::small};
 use crate::{
     console::text,
     extras::{self, Extra},
+    report_text::side_word,
 };
 
 /// Sensor, tool and existing data for a new calibration.
@@ -333,7 +334,8 @@ impl Wizards {
     /// Draws the open wizard; returns its request.
     pub fn ui(&mut self, ui: &mut Ui, binding: &Binding) -> Option<WizardPageRequest> {
         let which = self.open?;
-        ui.label(RichText::new(text::wizards::title(which.name())).font(theme::strong(22.0)));
+        let arm = binding.subject.as_ref().map(|subject| side_word(subject.side));
+        ui.label(RichText::new(text::wizards::title(which.name(), arm)).font(theme::strong(22.0)));
         ui.label(small(which.meaning()));
         ui.add_space(theme::GAP);
         let asked = wizard_ui(self.the_mut(which)?, ui, binding)?;

@@ -1,10 +1,13 @@
 //! Display of a session's report, or of the reason for a missing one.
 
-use egui::{RichText, Ui};
+use egui::{Label, RichText, Sense, Ui, vec2};
 use nima_core::calibration::Verdict;
 
 use crate::{
-    console::{text, theme, widgets::card},
+    console::{
+        text, theme,
+        widgets::{Sign, card, sign},
+    },
     report_text::ShortText as _,
 };
 
@@ -18,7 +21,18 @@ pub(super) fn verdict_text(verdict: Verdict, reason: &str) -> String {
 
 /// Draws the same text as a line of a card.
 pub(crate) fn verdict_line(ui: &mut Ui, verdict: Verdict, reason: &str) {
-    ui.label(RichText::new(verdict_text(verdict, reason)).font(theme::strong(14.0)));
+    judged_line(ui, verdict == Verdict::Accepted, &verdict_text(verdict, reason));
+}
+
+/// Draws a result with a sign and a colour that say whether it is good.
+pub(super) fn judged_line(ui: &mut Ui, good: bool, words: &str) {
+    let (what, colour) =
+        if good { (Sign::Disc, theme::now().engaged) } else { (Sign::Triangle, theme::now().alarm_medium) };
+    ui.horizontal(|ui| {
+        let (rect, _) = ui.allocate_exact_size(vec2(16.0, 18.0), Sense::hover());
+        sign(ui.painter(), what, rect.center(), 5.5, colour);
+        ui.add(Label::new(RichText::new(words).font(theme::strong(14.0)).color(colour)).wrap());
+    });
 }
 
 /// Draws the step that shows the result: the report, the error, or that there are too few data.

@@ -66,15 +66,16 @@ impl Alarms {
                     _ => quiet_ui(ui, next),
                 }
                 at_the_right(ui, |ui| {
-                    if first.is_some() {
+                    // Invisible without an alarm, so that its neighbour keeps its place and its identity.
+                    let mut of_alarm = UiBuilder::new();
+                    of_alarm.invisible = first.is_none();
+                    ui.scope_builder(of_alarm, |ui| {
                         let seen = ui.add_enabled(unseen, button(ui, text::alarms::ACKNOWLEDGE.get()));
                         let seen = seen
                             .on_hover_text(text::alarms::ACKNOWLEDGE_HOVER.get())
                             .on_disabled_hover_text(text::alarms::ACKNOWLEDGED_HOVER.get());
                         acknowledged = seen.clicked();
-                    } else {
-                        ui.add_space(BUTTON.x + ui.spacing().item_spacing.x);
-                    }
+                    });
                     let all = ui.add(button(ui, text::alarms::SHOW_ALL.get()));
                     opened |= all.on_hover_text(text::alarms::SHOW_ALL_HOVER.get()).clicked();
                 });

@@ -26,9 +26,8 @@ fn every_role_finds_what_it_can_reach_and_nothing_else() {
         matches!(entry.action, Action::Panel(_) | Action::ResetLayout | Action::Check | Action::Calibrations)
             || matches!(entry.action, Action::Calibrate(which) if which.scene().is_some())
     };
-    let with_traces = |entry: &CommandEntry| {
-        matches!(entry.action, Action::Pause | Action::LastTenSeconds | Action::Draws(_) | Action::Drive)
-    };
+    let with_traces =
+        |entry: &CommandEntry| matches!(entry.action, Action::Pause | Action::LastTenSeconds | Action::Draws(_));
     // Unavailable here: in this scene, with one hand, without an endoscope, live.
     let nowhere = |entry: &CommandEntry| {
         use Action::{

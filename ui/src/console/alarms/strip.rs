@@ -7,7 +7,7 @@
 use crate::console::text;
 use egui::{
     Button, Color32, Context, FontId, Frame, Label, Margin, Panel, Rect, RichText, ScrollArea, Sense, Stroke,
-    TextStyle, Ui, Window, vec2,
+    TextStyle, Ui, UiBuilder, Window, vec2,
 };
 
 use super::{

@@ -2,15 +2,15 @@
 
 use std::sync::Arc;
 
-use egui::{Button, RichText, Sense, TextEdit, Ui, vec2};
+use egui::{Button, RichText, TextEdit, Ui, vec2};
 use nima_core::calibration::Judgement;
 use nima_endoscope::DecodedImage;
 use nima_machine::{messages::Tick, rig::Prompt};
 
-use super::{Binding, GoOn, SaveRequest, WizardPageRequest};
+use super::{Binding, GoOn, SaveRequest, WizardPageRequest, report::judged_line};
 use crate::console::{
     text, theme,
-    widgets::{Sign, card, figure, next_button, sign, small, weak},
+    widgets::{card, figure, next_button, small, weak},
 };
 use crate::language::Text;
 
@@ -184,10 +184,6 @@ fn steps_ui(ui: &mut Ui, steps: &[WizardStep], now: usize, going_on: &GoingOn) -
             } else {
                 (theme::regular(14.0), theme::now().text_weak)
             };
-            if i < now {
-                let (rect, _) = ui.allocate_exact_size(vec2(14.0, 18.0), Sense::hover());
-                sign(ui.painter(), Sign::Disc, rect.center(), 5.0, theme::now().engaged);
-            }
             let mark = if i < now { text::wizards::DONE.get() } else { "" };
             let words = format!("{}. {} {mark}", i + 1, step.name);
             ui.label(RichText::new(words.trim_end()).font(font).color(colour)).on_hover_text(step.meaning.get());

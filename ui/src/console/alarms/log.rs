@@ -90,6 +90,12 @@ impl AlarmLog {
         self.entries.iter().rev()
     }
 
+    /// Returns the active alarms first, then those that have ended; each newest first.
+    pub fn active_first(&self) -> impl Iterator<Item = &AlarmEntry> {
+        let active = |entry: &&AlarmEntry| entry.ended.is_none();
+        self.newest_first().filter(active).chain(self.newest_first().filter(move |entry| !active(entry)))
+    }
+
     pub fn acknowledge(&mut self) {
         self.entries.iter_mut().filter(|entry| entry.ended.is_none()).for_each(|entry| entry.acknowledged = true);
     }
@@ -191,6 +197,17 @@ mod tests {
         log.update(&[], &at(4.0));
         log.update(&[missed], &at(20.0));
         assert_eq!((log.calls(), log.newest_first().count()), (Some(AlarmPriority::Medium), 2));
+    }
+
+    #[test]
+    fn an_active_alarm_is_listed_before_newer_ones_that_have_ended() {
+        let mut log = AlarmLog::default();
+        let missed = alarm(AlarmKind::Missed, AlarmPriority::Medium);
+        log.update(&[fault()], &at(0.0));
+        log.update(&[fault(), missed], &at(30.0));
+        log.update(&[fault()], &at(60.0));
+        let ended: Vec<bool> = log.active_first().map(|entry| entry.ended.is_some()).collect();
+        assert_eq!(ended, [false, true]);
     }
 
     #[test]

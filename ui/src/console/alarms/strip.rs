@@ -99,7 +99,7 @@ impl Alarms {
                 if self.log.newest_first().next().is_none() {
                     ui.label(weak(text::alarms::LIST_EMPTY.get()));
                 }
-                for entry in self.log.newest_first() {
+                for entry in self.log.active_first() {
                     entry_ui(ui, entry);
                 }
             });

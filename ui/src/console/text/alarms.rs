@@ -38,8 +38,8 @@ pub(in crate::console) const ACKNOWLEDGE: Text = Text::of("Acknowledge (A)", "Qu
 pub(in crate::console) const ACKNOWLEDGED_HOVER: Text =
     Text::of("Acknowledged; the cause is still present", "Quittiert; die Ursache besteht noch");
 pub(in crate::console) const LIST_NOTE: Text = Text::of(
-    "The last 50 alarms, newest first. Times are UTC, with the loop's own clock in brackets, as in the traces.",
-    "Die letzten 50 Alarme, neueste zuerst. Zeiten in UTC, in Klammern die Uhr der Regelung wie in den Verläufen.",
+    "The last 50 alarms, active ones first, then newest first. Times are UTC, with the loop's own clock in brackets, as in the traces.",
+    "Die letzten 50 Alarme, aktive zuerst, dann neueste. Zeiten in UTC, in Klammern die Uhr der Regelung wie in den Verläufen.",
 );
 pub(in crate::console) const LIST_EMPTY: Text = Text::of("No alarms so far", "Bisher keine Alarme");
 pub(in crate::console) const ACKNOWLEDGE_HOVER: Text = Text::of(

@@ -377,7 +377,10 @@ impl eframe::App for ConsoleApp {
         self.use_language();
         self.measure(&ctx, frame);
         // Do not switch it on again, because a view that keeps changing its look would be worse.
-        let slow = self.opened.elapsed() > WARM_UP && self.live.figures.frame_ms[0] > SLOW_MS;
+        // In simulated time (in tests), the period of the frames says nothing about the renderer.
+        let slow = self.simulated_speed.is_none()
+            && self.opened.elapsed() > WARM_UP
+            && self.live.figures.frame_ms[0] > SLOW_MS;
         // Screenshots for the documentation are always antialiased, however long that takes.
         self.live.rough_edges = self.photographer.is_none() && (self.live.rough_edges || slow);
         self.panels.scene.smooth = !self.live.rough_edges;

@@ -111,8 +111,8 @@ impl ConsoleApp {
         }
     }
 
-    /// Closes the welcome or the tour by Escape. Without devices there is nothing to stop, so that key press only closes;
-    /// otherwise it also stops, as everywhere.
+    /// Closes the welcome or the tour by Escape. If everything is simulated there is nothing to stop, so that key press only
+    /// closes; otherwise (a device, a handle on the desk, an arm on another machine) it also stops, as everywhere.
     pub(super) fn close_welcome_by_key(&mut self, ctx: &egui::Context) {
         let is_shown = self.start.welcome.is_open() || self.help.is_touring();
         if !is_shown || !ctx.input(|input| input.key_pressed(Key::Escape)) {
@@ -121,7 +121,8 @@ impl ConsoleApp {
         self.start.welcome.close();
         self.help.end_tour();
         self.settings.now.toured = true;
-        if self.live.rig.devices.is_none() {
+        let rig = &self.live.rig;
+        if rig.devices.is_none() && rig.desk.is_none() && self.live.line.is_none() {
             ctx.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape));
         }
     }

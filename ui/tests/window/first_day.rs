@@ -12,7 +12,7 @@ use std::{
 use crate::{console::Console, server::Xvfb};
 
 /// Positions in a window of 1600 x 1000.
-const EMULATED_RIG: (i32, i32) = (270, 268);
+const EMULATED_RIG: (i32, i32) = (270, 344);
 const ENGAGE: (i32, i32) = (1380, 36);
 const NOTHING: (i32, i32) = (1300, 970);
 const WIDTH: usize = 1600;

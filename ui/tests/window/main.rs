@@ -8,6 +8,7 @@ mod peg_transfer;
 mod playback;
 mod player;
 mod real_window;
+mod same_window;
 mod server;
 mod sessions;
 mod sight;

@@ -5,10 +5,7 @@ use std::time::{Duration, Instant};
 
 use nima_machine::rig::Side;
 
-use crate::{
-    player::{Player, Views, field},
-    server::Xvfb,
-};
+use crate::{player::Player, server::Xvfb};
 
 fn counts(score: &serde_json::Value) -> [Option<f64>; 4] {
     ["transfers", "rings_placed", "drops_in_view", "drops_out_of_view"].map(|key| score[key].as_f64())
@@ -32,9 +29,9 @@ fn over_and_back(player: &mut Player<'_>, rings: &[usize]) {
     }
 }
 
-fn all_six(x: &Xvfb, views: Views) {
+fn all_six(x: &Xvfb) {
     let began = Instant::now();
-    let mut player = Player::begin(x, views);
+    let mut player = Player::begin(x);
     over_and_back(&mut player, &[0, 1, 2, 3, 4, 5]);
     println!("six rings over and back, by mouse and keys: {:.0} s in all", began.elapsed().as_secs_f64());
     player.keep_image();
@@ -47,8 +44,8 @@ fn all_six(x: &Xvfb, views: Views) {
 }
 
 /// Moves one ring over and back, drops a second one over the board, and a third one next to it.
-fn one_and_two_drops(x: &Xvfb, views: Views) {
-    let mut player = Player::begin(x, views);
+fn one_and_two_drops(x: &Xvfb) {
+    let mut player = Player::begin(x);
     over_and_back(&mut player, &[3]);
     player.get_ready(Side::Left);
     player.take(Side::Left, 1);
@@ -71,8 +68,7 @@ fn one_and_two_drops(x: &Xvfb, views: Views) {
 fn a_person_carries_a_ring_over_and_back_and_what_is_dropped_counts() {
     let _alone = nima_testing::real_time::alone();
     let Some(x) = Xvfb::start() else { return };
-    let views = field();
-    nima_testing::real_time::judged(|| one_and_two_drops(&x, views));
+    nima_testing::real_time::judged(|| one_and_two_drops(&x));
 }
 
 #[test]
@@ -80,6 +76,5 @@ fn a_person_carries_a_ring_over_and_back_and_what_is_dropped_counts() {
 fn a_person_carries_six_rings_over_and_back() {
     let _alone = nima_testing::real_time::alone();
     let Some(x) = Xvfb::start() else { return };
-    let views = field();
-    nima_testing::real_time::judged(|| all_six(&x, views));
+    nima_testing::real_time::judged(|| all_six(&x));
 }

@@ -3,13 +3,9 @@
 
 use std::{path::Path, process::Command, thread, time::Duration};
 
-use crate::{console::Console, server::Xvfb};
+use egui::accesskit::Role;
 
-/// Positions in a window of 1600 x 1000 during playback.
-const MODE_DFR: (i32, i32) = (235, 177);
-const LOWER_THE_GAIN: (i32, i32) = (100, 300);
-const STEP: (i32, i32) = (1380, 36);
-const MIDDLE: (i32, i32) = (800, 950);
+use crate::{console::Console, same_window::SameWindow, server::Xvfb};
 
 fn record(path: &Path) {
     let arguments = ["run", "--virtual", "--seconds", "20", "--record"];
@@ -25,10 +21,16 @@ fn only_a_stop_reaches_the_machine_while_the_past_is_shown() {
     std::fs::write(folder.path().join("console.json"), r#"{"toured":true}"#).unwrap();
     let session = folder.path().join("session.mcap");
     record(&session);
+    let shown = session.clone();
+    let mut same = SameWindow::open("peg_transfer", "technician", move |app| app.with_session(&shown));
+    let mode = same.button("Direct (DFR)");
+    let [gain, timeline] = ["Gain", "Time of the session"].map(|label| same.control(Role::Slider, label));
+    let release = same.next_step();
+    drop(same);
     let session = session.to_str().unwrap().to_owned();
     let mut console = Console::begin(&x, folder, &["--role", "technician", "--at-rest", "--session", &session]);
     thread::sleep(Duration::from_secs(1));
-    for place in [MIDDLE, MODE_DFR, LOWER_THE_GAIN, STEP] {
+    for place in [timeline, mode, gain, release] {
         console.click(place);
     }
     console.key("p");
@@ -36,7 +38,7 @@ fn only_a_stop_reaches_the_machine_while_the_past_is_shown() {
     console.key("p");
     console.key("space");
     thread::sleep(Duration::from_millis(800));
-    console.click(STEP);
+    console.click(release);
     console.key("l");
     thread::sleep(Duration::from_millis(1500));
     let screen = console.end()["screen"].clone();

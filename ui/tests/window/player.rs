@@ -10,25 +10,19 @@ use std::{
     time::{Duration, Instant},
 };
 
-use eframe::App as _;
 use egui::{Pos2, Rect, Vec2, pos2, vec2};
-use egui_kittest::{Harness, kittest::Queryable as _};
 use nalgebra::Vector3;
-use nima_console::console::{ConsoleApp, scene3d::SceneCamera};
+use nima_console::console::scene3d::SceneCamera;
 use nima_machine::rig::{SIDES, Side};
-use nima_simulation::{scene::Scene, start_watched};
+use nima_simulation::scene::Scene;
 
 use crate::{
     console::{Console, read},
+    same_window::{SameWindow, WINDOW},
     server::Xvfb,
     sight::{Picture, around, is_green, is_of_ring},
 };
 
-const WINDOW: [f32; 2] = [1600.0, 1000.0];
-const ENGAGE: (i32, i32) = (1380, 36);
-/// Colours of alarms (`theme::Palette`), and a number of pixels below that of the frame of an alarm.
-const ALARMS: [[u8; 3]; 3] = [[0xff, 0x4d, 0x4d], [0xff, 0xd7, 0x3d], [0x41, 0xd6, 0xe0]];
-const ALARM_PIXELS: usize = 800;
 /// Distance from its target within which the tip has arrived, points, and timeout of a player who waits for it.
 const NEAR: f32 = 3.0;
 const PATIENCE: Duration = Duration::from_secs(12);
@@ -50,8 +44,7 @@ pub(crate) struct Player<'a> {
     console: Console<'a>,
     scene: Scene,
     camera: SceneCamera,
-    views: Views,
-    /// The one that is on the screen.
+    /// The operating field in the window.
     view: Rect,
     led: Side,
     /// Target positions of the tips, m, and the last drag positions.
@@ -61,38 +54,12 @@ pub(crate) struct Player<'a> {
     steps: Vec<String>,
 }
 
-/// Position of the operating field in the window, without and with the strip of an alarm above it.
-#[derive(Clone, Copy)]
-pub(crate) struct Views {
-    calm: Rect,
-    alarmed: Rect,
-}
-
-/// Returns the position of the field from the same window without a screen.
-pub(crate) fn field() -> Views {
-    let plan = nima_tests::plan("rings");
-    let (handle, objects) = start_watched(&plan, 1.0).unwrap();
-    let mut window: Harness<'_, ConsoleApp> = Harness::builder()
-        .with_size(WINDOW)
-        .build_eframe(move |cc| ConsoleApp::new(cc, handle, plan.rig, plan.scene).with_objects(objects));
-    window.run_steps(4);
-    let calm = window.get_by_label("Operating field").rect();
-    window.state_mut().on_exit(None);
-    // If the loop is no longer running, that is an alarm.
-    let began = Instant::now();
-    loop {
-        window.run_steps(2);
-        let alarmed = window.get_by_label("Operating field").rect();
-        if alarmed != calm {
-            return Views { calm, alarmed };
-        }
-        assert!(began.elapsed() < PATIENCE, "no strip moves the field");
-        thread::sleep(Duration::from_millis(50));
-    }
-}
-
 impl<'a> Player<'a> {
-    pub(crate) fn begin(x: &'a Xvfb, views: Views) -> Self {
+    pub(crate) fn begin(x: &'a Xvfb) -> Self {
+        let mut same = SameWindow::open("rings", "technician", |app| app);
+        let view = same.rect("Operating field");
+        let engage = same.next_step();
+        drop(same);
         let folder = tempfile::tempdir().unwrap();
         std::fs::write(folder.path().join("console.json"), r#"{"toured":true}"#).unwrap();
         let rig = include_str!("../../../config/rigs/simulated.toml").replace("\"best\"", "\"matched\"");
@@ -102,16 +69,15 @@ impl<'a> Player<'a> {
         let console = Console::begin(x, folder, &options);
         let scene = Scene::load("rings").unwrap();
         let camera = SceneCamera::of(&scene);
-        let view = views.calm;
         let position_m = [Vector3::zeros(); SIDES];
         let goal = [None; SIDES];
         let led = Side::Right;
         let steps = Vec::new();
-        let mut player = Self { console, scene, camera, views, view, led, position_m, goal, steps };
+        let mut player = Self { console, scene, camera, view, led, position_m, goal, steps };
         player.keys("m", 1);
         player.perform();
         thread::sleep(Duration::from_millis(300));
-        player.console.click(ENGAGE);
+        player.console.click(engage);
         for _ in Side::ALL {
             player.find_tip();
             player.change();
@@ -253,25 +219,8 @@ impl<'a> Player<'a> {
         }
     }
 
-    /// Returns whether an alarm is shown: if this machine delays the loop, an alarm's strip moves the field.
-    fn sees_alarm(&self) -> bool {
-        let strip = Rect::from_min_size(pos2(0.0, 60.0), vec2(WINDOW[0], 70.0));
-        self.image(strip).places(|pixel| ALARMS.contains(&pixel)).len() > ALARM_PIXELS
-    }
-
-    /// Finds the field again.
-    fn find_field(&mut self) {
-        // The alarm strip may flash, so look several times.
-        let is_alarmed = (0..4).any(|_| {
-            thread::sleep(Duration::from_millis(150));
-            self.sees_alarm()
-        });
-        self.view = if is_alarmed { self.views.alarmed } else { self.views.calm };
-    }
-
-    /// Drags the tip once more if it is not at its drag position, because the field has moved in the meantime.
+    /// Drags the tip once more if it is not at its drag position.
     fn look_again(&mut self) {
-        self.find_field();
         let mark = self.image(self.view).mark();
         let goal = self.goal[self.led.index()];
         if let Some(((tip, _), goal)) = mark.zip(goal) {
@@ -304,7 +253,7 @@ impl<'a> Player<'a> {
             if let Some(ring) = self.sees_ring(peg) {
                 return ring;
             }
-            self.find_field();
+            thread::sleep(Duration::from_millis(600));
         }
         self.keep_image();
         panic!("no ring lies around the peg at {peg:?} m");
@@ -326,9 +275,6 @@ impl<'a> Player<'a> {
     pub(crate) fn take(&mut self, side: Side, peg: usize) {
         assert_eq!(self.led, side);
         self.perform();
-        if self.sees_alarm() != (self.view == self.views.alarmed) {
-            self.find_field();
-        }
         let ring = self.ring_around(self.peg(peg));
         self.height(CARRIED_M);
         self.drag(Self::rim(side, ring));

@@ -9,18 +9,12 @@ use prost::Message as _;
 
 use crate::{
     console::{Console, read},
+    same_window::SameWindow,
     server::Xvfb,
 };
 
-/// Positions in a window of 1600 x 1000.
-const STOP: (i32, i32) = (1519, 36);
-const STEP: (i32, i32) = (1380, 36);
-const LOWER_THE_GAIN: (i32, i32) = (873, 868);
-const CALIBRATE_GRAVITY: (i32, i32) = (150, 641);
-const BACK_TO_THE_MONITOR: (i32, i32) = (150, 322);
-const TIMING: (i32, i32) = (1283, 691);
-const BESIDE_TRADEOFF: (i32, i32) = (1430, 377);
-const PAUSE: (i32, i32) = (888, 614);
+/// The scene of a console that is started without one.
+const SCENE: &str = "peg_transfer";
 
 fn begin<'a>(x: &'a Xvfb, role: &str) -> Console<'a> {
     let folder = tempfile::tempdir().unwrap();
@@ -58,13 +52,17 @@ fn states(summary: &serde_json::Value) -> Vec<&str> {
 }
 
 fn surgeon(x: &Xvfb) {
+    let mut same = SameWindow::open(SCENE, "surgeon", |app| app);
+    let [lower_gain, stop] = ["Lower the gain", "Stop"].map(|label| same.button(label));
+    let release = same.next_step();
+    drop(same);
     let session = begin(x, "surgeon");
-    session.click(LOWER_THE_GAIN);
-    session.click(LOWER_THE_GAIN);
+    session.click(lower_gain);
+    session.click(lower_gain);
     thread::sleep(Duration::from_millis(700));
-    session.click(STOP);
+    session.click(stop);
     thread::sleep(Duration::from_millis(1200));
-    session.click(STEP);
+    session.click(release);
     let [summary, settings, _] = end(session);
     assert!(states(&summary).ends_with(&["Engaged", "Stopped", "Idle"]), "{:?}", states(&summary));
     assert!((summary["screen"]["gain"].as_f64().unwrap() - 0.8).abs() < 1e-6, "{}", summary["screen"]);
@@ -72,15 +70,21 @@ fn surgeon(x: &Xvfb) {
 }
 
 fn technician(x: &Xvfb) {
+    let mut same = SameWindow::open(SCENE, "technician", |app| app);
+    let [gravity, timing, pause] = ["Calibrate gravity…", "Timing", "Pause"].map(|label| same.button(label));
+    let (x_beside, y_beside) = same.button("Trade-off");
+    same.press("Calibrate gravity…");
+    let back = same.button("Back to the monitor");
+    drop(same);
     let session = begin(x, "technician");
-    session.click(CALIBRATE_GRAVITY);
+    session.click(gravity);
     thread::sleep(Duration::from_millis(800));
-    session.click(BACK_TO_THE_MONITOR);
+    session.click(back);
     thread::sleep(Duration::from_millis(800));
-    session.drag(TIMING, BESIDE_TRADEOFF);
+    session.drag(timing, (x_beside + 100, y_beside));
     session.key("e");
     session.key("e");
-    session.click(PAUSE);
+    session.click(pause);
     let [summary, settings, marks] = end(session);
     let screen = &summary["screen"];
     assert_eq!(states(&summary).last(), Some(&"Idle"), "the wizard set the loop to idle, and nothing engages it again");

@@ -34,7 +34,7 @@ const SETTLING_TIME: Duration = Duration::from_secs(10);
 
 /// Returns the difference of the window from its stored image; `None` if there is none. `UPDATE_SNAPSHOTS=1` stores
 /// the new one.
-pub(crate) fn differs<A>(window: &Harness<'_, A>, name: &str) -> Option<String> {
+fn differs_now<A>(window: &Harness<'_, A>, name: &str) -> Option<String> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/screen/stored").join(name).with_extension("png");
     let now = drawn(window);
     let stored = image::open(&path).map(image::DynamicImage::into_luma8);
@@ -58,15 +58,15 @@ pub(crate) fn differs<A>(window: &Harness<'_, A>, name: &str) -> Option<String> 
     (!is_meant).then_some(report)
 }
 
-/// The same for a window that may still be drawing: the difference that remains after a while.
-pub(crate) fn still_differs<A>(window: &mut Harness<'_, A>, name: &str) -> Option<String> {
+/// Returns the difference that remains after a while: the window may still be drawing, or the loop catching up.
+pub(crate) fn differs<A>(window: &mut Harness<'_, A>, name: &str) -> Option<String> {
     let stores = env::var_os("UPDATE_SNAPSHOTS").is_some();
-    comes(window, SETTLING_TIME, |window| !stores && differs(window, name).is_none());
-    differs(window, name)
+    comes(window, SETTLING_TIME, |window| !stores && differs_now(window, name).is_none());
+    differs_now(window, name)
 }
 
-/// Checks that the window looks like its stored image.
-pub(crate) fn same<A>(window: &Harness<'_, A>, name: &str) {
+/// Checks that the window comes to look like its stored image.
+pub(crate) fn same<A>(window: &mut Harness<'_, A>, name: &str) {
     if let Some(difference) = differs(window, name) {
         panic!("{difference}");
     }

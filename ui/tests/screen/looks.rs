@@ -50,7 +50,7 @@ fn every_role_and_panel_looks_as_stored() {
             let name = format!("{role:?}{}{}", panels.concat(), if light { "-light" } else { "" });
             // One image in light colours is enough for a role.
             if !light || front.is_empty() {
-                all.extend(image::still_differs(&mut console, &name.to_lowercase()));
+                all.extend(image::differs(&mut console, &name.to_lowercase()));
             }
         }
     }
@@ -69,7 +69,7 @@ fn the_first_page_of_every_wizard_looks_as_stored() {
         until(&mut console, "a second", |tick| tick.t_s > 1.0);
         console.run_steps(4);
         let name = format!("wizard-{which:?}").replace(['(', ')'], "-").to_lowercase();
-        all.extend(image::differs(&console, name.trim_end_matches('-')));
+        all.extend(image::differs(&mut console, name.trim_end_matches('-')));
     }
     none(&all);
 }
@@ -100,7 +100,7 @@ fn every_page_and_list_looks_as_stored() {
         if name == "sessions" {
             read(&mut console, "No session has been recorded yet");
         }
-        all.extend(image::differs(&console, name));
+        all.extend(image::differs(&mut console, name));
         console.key_press_modifiers(modifiers, key);
         console.run_steps(2);
     }
@@ -112,12 +112,12 @@ fn every_page_and_list_looks_as_stored() {
             read(&mut console, "the wrist sensor is not calibrated");
         }
         console.run_steps(4);
-        all.extend(image::differs(&console, name));
+        all.extend(image::differs(&mut console, name));
         pick(&mut console, "Back to the monitor");
     }
     press(&mut console, "Rig");
     console.run_steps(4);
-    all.extend(image::differs(&console, "start"));
+    all.extend(image::differs(&mut console, "start"));
     none(&all);
 }
 
@@ -130,5 +130,5 @@ fn the_first_page_looks_as_stored() {
     let mut console =
         shown(&plan, SIZE, move |app| app.with_settings(SettingsStore::open(&path)).with_options(options));
     until(&mut console, "a second", |tick| tick.t_s > 1.0);
-    image::same(&console, "welcome");
+    image::same(&mut console, "welcome");
 }

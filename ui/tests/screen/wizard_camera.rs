@@ -101,7 +101,7 @@ fn a_technician_finds_the_lens_from_live_views_saves_it_and_undoes_it() {
     pick(&mut console, "Next");
     read(&mut console, "Accepted: it predicts held-out views");
     language::fits(&mut console, "lens");
-    image::same(&console, "wizard-camera-lens");
+    image::same(&mut console, "wizard-camera-lens");
     pick(&mut console, "Next");
     // The board is at rest, but the tip does not move between corners, so no pose results.
     for touched in 0..4 {
@@ -117,7 +117,7 @@ fn a_technician_finds_the_lens_from_live_views_saves_it_and_undoes_it() {
     pick(&mut console, "Next");
     read(&mut console, "position unknown");
     language::fits(&mut console, "save");
-    image::same(&console, "wizard-camera-save");
+    image::same(&mut console, "wizard-camera-save");
     assert!(
         RigConfig::load(&rig).unwrap().endoscope.unwrap().camera.is_none(),
         "nothing is changed before it is saved"

@@ -65,7 +65,7 @@ fn nine_pushes_as_asked_end_in_a_saved_correspondence_and_more_may_follow() {
     read(&mut harness, "held out: MAE");
     harness.check_accessibility();
     language::fits(&mut harness, "result");
-    image::same(&harness, "wizard-correspondence-result");
+    image::same(&mut harness, "wizard-correspondence-result");
     pick(&mut harness, "Next");
     language::fits(&mut harness, "save");
     assert!(saved(&store).is_none(), "nothing is kept without being asked");

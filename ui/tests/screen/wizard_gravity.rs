@@ -75,13 +75,13 @@ fn a_technician_walks_from_an_uncalibrated_wrist_to_a_force_that_is_known() {
     wait(&mut console, "a verdict", |c| shows(c, "Accepted"));
     assert!(shows(&console, "Paper") && shows(&console, "Physical"), "the models side by side");
     language::fits(&mut console, "result");
-    image::same(&console, "wizard-gravity-result");
+    image::same(&mut console, "wizard-gravity-result");
     pick(&mut console, "Next");
     wait(&mut console, "the proof", |c| shows(c, "Passed: free motion reads near zero"));
     language::fits(&mut console, "free motion");
     pick(&mut console, "Next");
     language::fits(&mut console, "save");
-    image::same(&console, "wizard-gravity-save");
+    image::same(&mut console, "wizard-gravity-save");
     pick(&mut console, "Save and use");
     wait(&mut console, "saved", |c| shows(c, "Saved and in use"));
     assert_eq!(files(folder.path()), 1);

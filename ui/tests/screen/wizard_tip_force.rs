@@ -187,7 +187,7 @@ fn from_an_empty_recording_to_a_network_that_answers_in_the_loop() {
     console.record(12_000);
     console.read("All goals are met");
     language::fits_alone(&mut console.window, "record");
-    image::same(&console.window, "wizard-tipforce-record");
+    image::same(&mut console.window, "wizard-tipforce-record");
     console.press("Next");
     console.press("Small (16)");
     console.press("Start training");
@@ -198,7 +198,7 @@ fn from_an_empty_recording_to_a_network_that_answers_in_the_loop() {
     console.read("networks on");
     assert!(rows_of(folder.path(), "tip-force-data").unwrap() >= 6000, "the data set is on disk for the command line");
     language::fits_alone(&mut console.window, "train");
-    image::same(&console.window, "wizard-tipforce-train");
+    image::same(&mut console.window, "wizard-tipforce-train");
     console.press("Next");
     console.press("Start the check");
     console.read("without touching the tissue");
@@ -209,7 +209,7 @@ fn from_an_empty_recording_to_a_network_that_answers_in_the_loop() {
     language::fits_alone(&mut console.window, "check");
     console.press("Next");
     language::fits_alone(&mut console.window, "save");
-    image::same(&console.window, "wizard-tipforce-save");
+    image::same(&mut console.window, "wizard-tipforce-save");
     assert!(!model_path(folder.path()).exists(), "nothing is kept without being asked");
     let wizards = std::mem::take(&mut console.window.state_mut().wizards);
     let mut real = real_console(wizards, folder.path());

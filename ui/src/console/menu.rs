@@ -1,14 +1,18 @@
 //! The View menu: appearance of the console, saved between sessions.
 
 use crate::console::text;
-use egui::{Button, Context, DragValue, Slider, Ui, vec2};
+use egui::{
+    Button, Context, DragValue, Id, PopupCloseBehavior, ScrollArea, Slider, TextEdit, Ui, WidgetInfo,
+    containers::menu::{MenuButton, MenuConfig},
+    vec2,
+};
 
 use super::{
     alarms::strip::Alarms,
     commands::{Action, CommandEntry, SIZES_PERCENT},
     roles::Role,
     settings::{CROP_MAX_PERCENT, ConsoleSettings, ImageSettings},
-    tiles::{Panel, PanelLayout},
+    tiles::{Arrangement, Panel, PanelLayout},
 };
 use crate::language::{Language, Text};
 
@@ -27,53 +31,69 @@ pub(super) fn menu_ui(
 ) -> Option<Action> {
     let mut wanted = None;
     let button = Button::new(text::menu::VIEW.get()).min_size(vec2(52.0, 30.0));
-    let menu = egui::containers::menu::MenuButton::from_button(button);
+    // A click into the name of a layout must not close the menu; a command closes it.
+    let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
+    let menu = MenuButton::from_button(button).config(config);
+    // A small window has no room for the whole menu.
+    let height = ui.ctx().content_rect().height() - 32.0;
     let (response, _) = menu.ui(ui, |ui| {
-        ui.set_width(300.0);
-        ui.horizontal(|ui| {
-            ui.label(text::menu::PALETTE.get());
-            for (name, light) in [(text::menu::DARK.get(), false), (text::menu::LIGHT.get(), true)] {
-                let button = Button::selectable(settings.light == light, name).frame_when_inactive(true);
-                if ui.add(button.min_size(CHOICE)).clicked() {
-                    wanted = Some(Action::Light(light));
-                }
-            }
+        ScrollArea::vertical().max_height(height).show(ui, |ui| {
+            wanted = content_ui(ui, settings, alarms, can_undo);
         });
-        wanted = wanted.or(languages_ui(ui, settings.language));
-        ui.add_space(4.0);
-        ui.label(text::menu::SIZE.get());
-        ui.horizontal(|ui| {
-            for percent in SIZES_PERCENT {
-                let chosen = settings.scale_percent == percent;
-                if ui.add(Button::selectable(chosen, format!("{percent} %")).frame_when_inactive(true)).clicked() {
-                    wanted = Some(Action::Size(percent));
-                }
-            }
-        });
-        ui.label(super::widgets::small(text::menu::SIZE_NOTE.get()));
-        ui.add_space(6.0);
-        if settings.role == Role::Technician {
-            wanted = wanted.or(panels_ui(ui, &settings.layout));
-            ui.add_space(6.0);
+        if wanted.is_some() {
+            ui.close();
         }
-        wanted = wanted.or(sound_ui(ui, settings.sound, alarms));
-        ui.add_space(6.0);
-        wanted = wanted.or(image_ui(ui, settings));
-        ui.add_space(6.0);
-        ui.horizontal(|ui| {
-            for action in [Action::Alarms, Action::Glossary, Action::Tour] {
-                wanted = wanted.or(entry_ui(ui, action, 0.0));
-            }
-        });
-        wanted = wanted.or(entry_ui(ui, Action::Palette, 300.0));
-        ui.horizontal(|ui| {
-            for (action, can) in [Action::Undo, Action::Redo].into_iter().zip(can_undo) {
-                wanted = wanted.or(ui.add_enabled_ui(can, |ui| entry_ui(ui, action, 0.0)).inner);
-            }
-        });
-        wanted = wanted.or(entry_ui(ui, Action::Mark, 300.0));
     });
     response.on_hover_text(text::menu::VIEW_HOVER.get());
+    wanted
+}
+
+fn content_ui(ui: &mut Ui, settings: &mut ConsoleSettings, alarms: &mut Alarms, can_undo: [bool; 2]) -> Option<Action> {
+    let mut wanted = None;
+    ui.set_width(300.0);
+    ui.horizontal(|ui| {
+        ui.label(text::menu::PALETTE.get());
+        for (name, light) in [(text::menu::DARK.get(), false), (text::menu::LIGHT.get(), true)] {
+            let button = Button::selectable(settings.light == light, name).frame_when_inactive(true);
+            if ui.add(button.min_size(CHOICE)).clicked() {
+                wanted = Some(Action::Light(light));
+            }
+        }
+    });
+    wanted = wanted.or(languages_ui(ui, settings.language));
+    ui.add_space(4.0);
+    ui.label(text::menu::SIZE.get());
+    ui.horizontal(|ui| {
+        for percent in SIZES_PERCENT {
+            let chosen = settings.scale_percent == percent;
+            if ui.add(Button::selectable(chosen, format!("{percent} %")).frame_when_inactive(true)).clicked() {
+                wanted = Some(Action::Size(percent));
+            }
+        }
+    });
+    ui.label(super::widgets::small(text::menu::SIZE_NOTE.get()));
+    ui.add_space(6.0);
+    if settings.role == Role::Technician {
+        wanted = wanted.or(layouts_ui(ui, settings));
+        wanted = wanted.or(panels_ui(ui, &settings.layout));
+        ui.add_space(6.0);
+    }
+    wanted = wanted.or(sound_ui(ui, settings.sound, alarms));
+    ui.add_space(6.0);
+    wanted = wanted.or(image_ui(ui, settings));
+    ui.add_space(6.0);
+    ui.horizontal(|ui| {
+        for action in [Action::Alarms, Action::Glossary, Action::Tour] {
+            wanted = wanted.or(entry_ui(ui, action, 0.0));
+        }
+    });
+    wanted = wanted.or(entry_ui(ui, Action::Palette, 300.0));
+    ui.horizontal(|ui| {
+        for (action, can) in [Action::Undo, Action::Redo].into_iter().zip(can_undo) {
+            wanted = wanted.or(ui.add_enabled_ui(can, |ui| entry_ui(ui, action, 0.0)).inner);
+        }
+    });
+    wanted = wanted.or(entry_ui(ui, Action::Mark, 300.0));
     wanted
 }
 
@@ -141,6 +161,70 @@ fn image_ui(ui: &mut Ui, settings: &mut ConsoleSettings) -> Option<Action> {
     let is_plain = *image == plain;
     let plain = ui.add_enabled_ui(!is_plain, |ui| entry_ui(ui, Action::PlainPicture, 300.0)).inner;
     forces.or(plain).or(switch_ui(ui, settings.records_image, Action::RecordsPicture))
+}
+
+/// Draws the built-in layouts and the user's own ones; returns the command of the pressed one.
+fn layouts_ui(ui: &mut Ui, settings: &mut ConsoleSettings) -> Option<Action> {
+    let mut wanted = None;
+    ui.label(text::menu::LAYOUT.get()).on_hover_text(text::menu::LAYOUT_HOVER.get());
+    ui.horizontal(|ui| {
+        for one in Arrangement::ALL {
+            let chosen = settings.layout.looks_like(&PanelLayout::built_in(one));
+            let button = Button::selectable(chosen, one.name()).frame_when_inactive(true);
+            let response = ui.add(button.min_size(CHOICE));
+            // A panel may have the same name.
+            let name = text::commands::layout(one.name());
+            response.widget_info(|| WidgetInfo::selected(egui::Role::Button, true, chosen, name.as_str()));
+            if response.on_hover_text(one.meaning()).clicked() {
+                wanted = Some(Action::Arrange(one));
+            }
+        }
+    });
+    own_layouts_ui(ui, settings);
+    save_layout_ui(ui, settings);
+    wanted
+}
+
+fn own_layouts_ui(ui: &mut Ui, settings: &mut ConsoleSettings) {
+    let mut removed = None;
+    for saved in &settings.layouts {
+        ui.horizontal(|ui| {
+            let chosen = settings.layout.looks_like(&saved.layout);
+            let button = Button::selectable(chosen, saved.name.as_str()).frame_when_inactive(true).truncate();
+            if ui.add(button.min_size(vec2(264.0, 26.0))).clicked() {
+                settings.layout = saved.layout.clone();
+                ui.close();
+            }
+            let name = text::menu::remove_layout(&saved.name);
+            let remove = ui.add(Button::new("\u{d7}").min_size(vec2(26.0, 26.0)));
+            remove.widget_info(|| WidgetInfo::labeled(egui::Role::Button, true, name.as_str()));
+            if remove.on_hover_text(name.as_str()).clicked() {
+                removed = Some(saved.name.clone());
+            }
+        });
+    }
+    if let Some(name) = removed {
+        settings.layouts.retain(|saved| saved.name != name);
+    }
+}
+
+/// Draws the name under which the present layout is saved.
+fn save_layout_ui(ui: &mut Ui, settings: &mut ConsoleSettings) {
+    let id = Id::unique("layout_name");
+    let mut name: String = ui.data(|data| data.get_temp(id)).unwrap_or_default();
+    ui.horizontal(|ui| {
+        let hint = text::menu::LAYOUT_NAME.get();
+        let field = ui.add(TextEdit::singleline(&mut name).hint_text(hint).char_limit(40).desired_width(196.0));
+        field.widget_info(|| WidgetInfo::labeled(egui::Role::TextInput, true, hint));
+        let named = !name.trim().is_empty();
+        let save = ui.add_enabled(named, Button::new(text::menu::SAVE_LAYOUT.get()).min_size(vec2(76.0, 26.0)));
+        let save = save.on_hover_text(text::menu::SAVE_LAYOUT_HOVER.get());
+        if save.on_disabled_hover_text(text::menu::NAME_LAYOUT_FIRST.get()).clicked() {
+            settings.save_layout(name.trim());
+            name.clear();
+        }
+    });
+    ui.data_mut(|data| data.insert_temp(id, name));
 }
 
 /// Switches for the panels.

@@ -11,9 +11,13 @@ use std::{
 use nima_endoscope::Tone;
 use nima_files::{PASSAGE, shortened, write_atomically};
 use nima_recording::store::Store;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Serialize, de::DeserializeOwned};
 
-use super::{roles::Role, start::RigChoice, tiles::PanelLayout};
+use super::{
+    roles::Role,
+    start::RigChoice,
+    tiles::{Arrangement, PanelLayout},
+};
 use crate::console::text;
 use crate::language::Language;
 
@@ -26,6 +30,8 @@ const SET_ASIDE: &str = "console.corrupted.json";
 pub struct ConsoleSettings {
     pub role: Role,
     pub layout: PanelLayout,
+    /// The user's own layouts.
+    pub layouts: Vec<NamedLayout>,
     pub sound: bool,
     pub light: bool,
     /// Whether sessions include the endoscope image.
@@ -41,6 +47,13 @@ pub struct ConsoleSettings {
     pub recent: Vec<RigChoice>,
     /// Folders of user studies outside the user's data.
     pub studies: Vec<PathBuf>,
+}
+
+/// A layout that the user has saved.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct NamedLayout {
+    pub name: String,
+    pub layout: PanelLayout,
 }
 
 /// Display settings of the endoscope image.
@@ -89,6 +102,17 @@ pub const SCALES: std::ops::RangeInclusive<u16> = 100..=200;
 const STEP_PERCENT: i16 = 25;
 
 impl ConsoleSettings {
+    /// Returns the settings of a person who has never used the console.
+    fn of_newcomer() -> Self {
+        Self { layout: PanelLayout::built_in(Arrangement::Simple), ..Self::default() }
+    }
+
+    /// Saves the present layout under this name, in place of an earlier one of the same name.
+    pub(super) fn save_layout(&mut self, name: &str) {
+        self.layouts.retain(|saved| saved.name != name);
+        self.layouts.push(NamedLayout { name: name.to_owned(), layout: self.layout.clone() });
+    }
+
     pub(super) fn scale_by(&mut self, steps: i16) {
         let wanted = self.scale_percent.saturating_add_signed(STEP_PERCENT * steps);
         self.scale_percent = wanted.clamp(*SCALES.start(), *SCALES.end());
@@ -100,6 +124,7 @@ impl Default for ConsoleSettings {
         Self {
             role: Role::default(),
             layout: PanelLayout::default(),
+            layouts: Vec::new(),
             sound: false,
             light: false,
             records_image: true,
@@ -129,10 +154,10 @@ impl SettingsStore {
         folder.map_or_else(Self::default, |folder| Self::open(&folder))
     }
 
-    /// Creates the settings in this folder; the defaults if there are none or they cannot be read.
+    /// Creates the settings in this folder; those of a newcomer if there are none, the defaults if they cannot be read.
     pub fn open(folder: &Path) -> Self {
         let (now, report) = match nima_files::read_text(&folder.join(FILE), nima_files::CONFIG_MAX) {
-            Err(error) if error.kind() == io::ErrorKind::NotFound => (ConsoleSettings::default(), None),
+            Err(error) if error.kind() == io::ErrorKind::NotFound => (ConsoleSettings::of_newcomer(), None),
             Err(error) => (ConsoleSettings::default(), Some(text::settings::not_read(&error))),
             Ok(text) => {
                 read(&text).unwrap_or_else(|error| (ConsoleSettings::default(), Some(set_aside(folder, &error))))
@@ -169,19 +194,26 @@ impl SettingsStore {
     }
 }
 
-/// Parses settings; returns them with a message about problems. If only the layout cannot be read, the other settings are
+/// Parses settings; returns them with a message about problems. If only a layout cannot be read, the other settings are
 /// still used. Unknown fields, written by a newer version, are ignored.
 fn read(text: &str) -> Result<(ConsoleSettings, Option<String>), serde_json::Error> {
     let mut value: serde_json::Value = serde_json::from_str(text)?;
-    let layout = value.as_object_mut().and_then(|fields| fields.remove("layout"));
+    let mut taken = |name: &str| value.as_object_mut().and_then(|fields| fields.remove(name));
+    let layout = taken("layout");
+    let layouts = taken("layouts");
     let mut settings: ConsoleSettings = serde_json::from_value(value)?;
-    let Some(layout) = layout else { return Ok((settings, None)) };
-    match serde_json::from_value(layout) {
+    let trouble = put(layout, &mut settings.layout).or(put(layouts, &mut settings.layouts));
+    Ok((settings, trouble))
+}
+
+/// Parses a layout, or several, into its place; returns a message if it cannot be read.
+fn put<T: DeserializeOwned>(read: Option<serde_json::Value>, place: &mut T) -> Option<String> {
+    match serde_json::from_value(read?) {
         Ok(layout) => {
-            settings.layout = layout;
-            Ok((settings, None))
+            *place = layout;
+            None
         }
-        Err(error) => Ok((settings, Some(text::settings::layout_lost(&shortened(&error.to_string(), PASSAGE))))),
+        Err(error) => Some(text::settings::layout_lost(&shortened(&error.to_string(), PASSAGE))),
     }
 }
 
@@ -202,11 +234,36 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let folder = folder.path().join("new");
         let mut kept = SettingsStore::open(&folder);
-        assert_eq!((kept.now.clone(), kept.report()), (ConsoleSettings::default(), None));
+        assert_eq!((kept.now.clone(), kept.report()), (ConsoleSettings::of_newcomer(), None));
         kept.now.role = Role::Surgeon;
+        kept.now.save_layout("Mine");
         kept.save();
         let again = SettingsStore::open(&folder);
         assert_eq!((again.now.role, again.report()), (Role::Surgeon, None));
+        let names: Vec<&str> = again.now.layouts.iter().map(|saved| saved.name.as_str()).collect();
+        assert_eq!((names, again.now.layout), (vec!["Mine"], PanelLayout::built_in(Arrangement::Simple)));
+    }
+
+    #[test]
+    fn a_layout_of_a_name_replaces_the_one_before_it() {
+        let mut settings = ConsoleSettings::default();
+        for arrangement in [Arrangement::Simple, Arrangement::Calibration] {
+            settings.layout = PanelLayout::built_in(arrangement);
+            settings.save_layout("Mine");
+        }
+        let saved: Vec<Arrangement> = settings.layouts.iter().map(|saved| saved.layout.arrangement).collect();
+        assert_eq!(saved, [Arrangement::Calibration]);
+    }
+
+    #[test]
+    fn only_a_first_start_is_simple_and_a_user_of_an_earlier_version_sees_every_panel() {
+        let folder = tempfile::tempdir().unwrap();
+        let arrangement = || SettingsStore::open(folder.path()).now.layout.arrangement;
+        assert_eq!(arrangement(), Arrangement::Simple);
+        for before in [r#"{"toured":true}"#, r#"{"layout":{"places":null,"closed":["traces"],"front":[]}}"#] {
+            std::fs::write(folder.path().join(FILE), before).unwrap();
+            assert_eq!(arrangement(), Arrangement::Research, "{before}");
+        }
     }
 
     #[test]
@@ -233,6 +290,9 @@ mod tests {
             let kept = SettingsStore::open(folder.path());
             assert_eq!((kept.now.role, &kept.now.layout), (Role::Surgeon, &PanelLayout::default()));
             assert!(kept.report().unwrap().starts_with(text::settings::LAYOUT_LOST.get()));
+            let own = format!("{{\"role\":\"surgeon\",\"layouts\":[{{\"name\":\"a\",\"layout\":{layout}}}]}}");
+            let (settings, trouble) = read(&own).unwrap();
+            assert!(settings.role == Role::Surgeon && settings.layouts.is_empty() && trouble.is_some());
             assert!(folder.path().join(FILE).exists());
         }
     }

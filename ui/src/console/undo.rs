@@ -39,8 +39,7 @@ impl ScreenLook {
     /// matter.
     fn change(&self, other: &Self) -> Option<LookChange> {
         let Self { layout, light, language, scale_percent, image, extras, traces } = self;
-        let at_once = layout.places != other.layout.places
-            || layout.closed != other.layout.closed
+        let at_once = !layout.looks_like(&other.layout)
             || *light != other.light
             || *language != other.language
             || *scale_percent != other.scale_percent

@@ -32,7 +32,7 @@ pub(crate) use events::event;
 pub(crate) use findings::finding_text;
 pub(crate) use frames::{axes_text, cause, phase};
 pub(crate) use gates::gate_text;
-pub(crate) use modes::{COMPARED, OFFERED, mode_meaning, mode_name};
+pub(crate) use modes::{COMPARED, EVERYDAY, OF_RESEARCH, mode_line, mode_meaning, mode_name};
 pub(crate) use names::{
     device_name, exchange_text, goal_text, lack_text, loss_text, obstacle_text, part_name, role_name, scheduling_text,
     side_word, state_name, within,

@@ -4,11 +4,14 @@ use nima_core::impedance::{Baseline, MODES, Mode};
 
 use crate::language::word;
 
-/// The program's own modes, in the order in which they are offered.
-pub(crate) const OFFERED: [Mode; MODES] =
-    [Mode::Anchored, Mode::Dfr, Mode::Matched, Mode::Best, Mode::Nima, Mode::Literal, Mode::Linear];
+/// The modes for everyone, in the order in which they are offered: the default, and the two to compare it with.
+pub(crate) const EVERYDAY: [Mode; 3] = [Mode::Best, Mode::Matched, Mode::Dfr];
 
-/// The same modes, in the order in which they are compared.
+/// The program's other modes, in the order in which they are offered.
+pub(crate) const OF_RESEARCH: [Mode; MODES - EVERYDAY.len()] =
+    [Mode::Anchored, Mode::Nima, Mode::Literal, Mode::Linear];
+
+/// All of these modes, in the order in which they are compared.
 pub(crate) const COMPARED: [Mode; MODES] =
     [Mode::Best, Mode::Matched, Mode::Anchored, Mode::Dfr, Mode::Nima, Mode::Linear, Mode::Literal];
 
@@ -20,6 +23,20 @@ pub(crate) fn mode_name(mode: Mode) -> &'static str {
 /// Returns the explanation of a mode, one sentence.
 pub(crate) fn mode_meaning(mode: Mode) -> &'static str {
     words(mode)[1]
+}
+
+/// Returns the meaning of a mode in one short line.
+pub(crate) fn mode_line(mode: Mode) -> &'static str {
+    match mode {
+        Mode::Best => word("Predicts the force; recommended", "Sagt die Kraft voraus; empfohlen"),
+        Mode::Matched => word("The force of a tissue model", "Die Kraft eines Gewebemodells"),
+        Mode::Dfr => word("The measured force, late by the delay", "Die gemessene Kraft, verzögert"),
+        Mode::Anchored => word("The last force, corrected for the motion", "Letzte Kraft, um die Bewegung korrigiert"),
+        Mode::Nima => word("The paper's polynomials, predictive", "Polynome des Artikels, vorausschauend"),
+        Mode::Literal => word("Exactly as in the paper", "Genau wie im Artikel"),
+        Mode::Linear => word("As Literal, always of degree 1", "Wie Wörtlich, immer Grad 1"),
+        Mode::Baseline(_) => word("For comparison, named in the rig file", "Zum Vergleich, in der Aufbaudatei genannt"),
+    }
 }
 
 /// Returns the name and explanation. Methods of other authors appear on the screen only if the rig file names one.

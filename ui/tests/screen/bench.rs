@@ -10,7 +10,11 @@ use egui_kittest::{
     Harness, Node,
     kittest::{NodeT as _, Queryable as _},
 };
-use nima_console::console::{ConsoleApp, settings::SettingsStore};
+use nima_console::console::{
+    ConsoleApp,
+    settings::SettingsStore,
+    tiles::{Arrangement, PanelLayout},
+};
 use nima_machine::messages::Tick;
 use nima_simulation::{SimulationPlan, start_watched};
 use nima_tests::plan;
@@ -23,10 +27,13 @@ pub(crate) const WIZARD_SPEED: f64 = 4.0;
 /// A window with the console.
 pub(crate) type Console = Harness<'static, ConsoleApp>;
 
-/// Returns the settings in this folder, for a user who has seen the tour.
+/// Returns the settings in this folder, for a user who has seen the tour; if there are none, with every panel in sight.
 pub(crate) fn toured(folder: &Path) -> SettingsStore {
     let mut kept = SettingsStore::open(folder);
     kept.now.toured = true;
+    if kept.now.layout == PanelLayout::built_in(Arrangement::Simple) {
+        kept.now.layout = PanelLayout::default();
+    }
     kept
 }
 

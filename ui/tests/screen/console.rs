@@ -110,6 +110,9 @@ fn a_console_that_was_not_engaged_begins_idle_and_without_force() {
 #[test]
 fn every_mode_can_be_chosen_and_comes_back() {
     let mut harness = console();
+    assert!(harness.query_by_role_and_label(Role::Button, "Linear").is_none(), "modes for comparison are folded away");
+    harness.get_by_label("Research modes").click();
+    harness.run_steps(12);
     for (label, mode) in [
         ("Direct (DFR)", Mode::Dfr),
         ("Linear", Mode::Linear),

@@ -33,7 +33,7 @@ fn another_scene_and_another_rig_start_idle_and_are_offered_again() {
     harness.key_press(Key::F6);
     harness.step();
     // Picked by name: the list of connected devices appears a moment later and moves the page under the pointer.
-    pick(&mut harness, "Bimanual peg transfer");
+    pick(&mut harness, "Two hands on soft tissue");
     pick(&mut harness, "Start");
     until_runs(&mut harness, "simulated", "bimanual");
     until(&mut harness, "idle: only the operator engages", |tick| tick.state == LoopState::Idle);
@@ -47,7 +47,7 @@ fn another_scene_and_another_rig_start_idle_and_are_offered_again() {
     until_runs(&mut harness, "desk", "free_motion");
     assert_eq!(harness.state().rig().name, "Desk rig");
     press(&mut harness, "Rig");
-    pick(&mut harness, "Simulated rig, Bimanual peg transfer");
+    pick(&mut harness, "Simulated rig, Two hands on soft tissue");
     pick(&mut harness, "Start");
     until_runs(&mut harness, "simulated", "bimanual");
 

@@ -14,10 +14,11 @@ use egui_kittest::{
 };
 use nima_console::console::{
     ConsoleApp,
-    tiles::{LayoutNode, Panel, PanelLayout},
+    settings::SettingsStore,
+    tiles::{Arrangement, LayoutNode, Panel, PanelLayout},
 };
 
-use crate::bench::{console_of, press, toured, until};
+use crate::bench::{console_of, press, toured, until, write_into};
 
 const SIZE: [f32; 2] = [1600.0, 1000.0];
 
@@ -150,6 +151,57 @@ fn a_tab_is_brought_to_the_front_by_the_keyboard_and_the_default_still_goes_by_t
     let safety = tab(&harness, Panel::Safety);
     let space = tab(&harness, Panel::ForceSpace);
     assert!((safety.center().y - space.center().y).abs() < 1.0, "no room beside the traces: a tab");
+}
+
+#[test]
+fn a_newcomer_sees_few_panels_and_reaches_every_other_by_one_click() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut settings = SettingsStore::open(folder.path());
+    settings.now.toured = true;
+    let mut harness = console_of("peg_transfer", SIZE, move |app| app.with_settings(settings));
+    until(&mut harness, "any tick", |_| true);
+    for size in [vec2(1280.0, 720.0), vec2(1600.0, 1000.0)] {
+        harness.set_size(size);
+        harness.run_steps(4);
+        let closes = harness.query_all_by_role(Role::Button).filter_map(|button| button.accesskit_node().label());
+        let mut shown: Vec<String> = closes.filter(|label| label.starts_with("Close ")).collect();
+        shown.sort_unstable();
+        assert_eq!(shown, ["Close Feedback", "Close Field", "Close Traces"], "{size:?}");
+        for label in ["Gain", "Link delay", "Operating field"] {
+            assert!(harness.query_all_by_label(label).next().is_some(), "{label} {size:?}");
+        }
+        for panel in Panel::ALL {
+            let tab = tab(&harness, panel);
+            assert!(tab.right() <= size.x && tab.width() > 20.0, "{panel:?} {size:?} {tab:?}");
+        }
+    }
+    harness.get_by_role_and_label(Role::Button, Panel::Degrees.title()).click();
+    harness.run_steps(3);
+    assert!(harness.query_by_role_and_label(Role::Button, "Close Degrees").is_some());
+}
+
+#[test]
+fn an_own_layout_is_saved_by_name_and_comes_back_the_next_day() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = console(folder.path());
+    press(&mut harness, "Close Timing");
+    press(&mut harness, "View");
+    let save = harness.get_by_role_and_label(Role::Button, "Save").accesskit_node().is_disabled();
+    assert!(save, "it has no name yet");
+    write_into(&mut harness, "Name of this layout", "Evening");
+    press(&mut harness, "Save");
+    let mine = layout_of(&mut harness);
+    press(&mut harness, "Layout: Simple");
+    harness.run_steps(2);
+    assert_eq!(layout_of(&mut harness), PanelLayout::built_in(Arrangement::Simple));
+    drop(harness);
+    let mut again = console(folder.path());
+    press(&mut again, "View");
+    press(&mut again, "Evening");
+    assert!(layout_of(&mut again).looks_like(&mine));
+    press(&mut again, "View");
+    press(&mut again, "Remove layout Evening");
+    assert!(again.state_mut().settings_mut().layouts.is_empty());
 }
 
 #[test]

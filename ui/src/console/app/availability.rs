@@ -82,7 +82,9 @@ impl ConsoleApp {
             Action::PlainPicture => {
                 Availability::unless(self.shows_image_plain().then_some(text::commands::IS_PLAIN.get()))
             }
-            Action::Panel(_) | Action::ResetLayout => Availability::Can.only_if(self.role() == Role::Technician),
+            Action::Panel(_) | Action::Arrange(_) | Action::ResetLayout => {
+                Availability::Can.only_if(self.role() == Role::Technician)
+            }
             Action::Check | Action::Calibrations | Action::Calibrate(_) | Action::CloseWizard => {
                 self.may_calibrate(action)
             }

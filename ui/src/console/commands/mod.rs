@@ -6,7 +6,13 @@
 mod keys;
 mod table;
 
-use super::{roles::Role, scene3d::extras::MenuSwitch, text, tiles::Panel, wizards::WizardKind};
+use super::{
+    roles::Role,
+    scene3d::extras::MenuSwitch,
+    text,
+    tiles::{Arrangement, Panel},
+    wizards::WizardKind,
+};
 use crate::language::Language;
 
 pub(in crate::console) use self::keys::{SIZE, UNDO};
@@ -63,6 +69,8 @@ pub enum Action {
     RecordsPicture,
     /// Opens or closes a panel.
     Panel(Panel),
+    /// Chooses a built-in layout.
+    Arrange(Arrangement),
     ResetLayout,
     Check,
     Calibrations,

@@ -4,7 +4,12 @@ use egui::Key;
 
 use super::{Action, CommandEntry, CommandPlace, KeyModifiers, SIZE, SIZES_PERCENT, Stroke, UNDO};
 use crate::console::{
-    roles::Role, scene3d::extras::MenuSwitch, text, text::commands as names, tiles::Panel, wizards::WizardKind,
+    roles::Role,
+    scene3d::extras::MenuSwitch,
+    text,
+    text::commands as names,
+    tiles::{Arrangement, Panel},
+    wizards::WizardKind,
 };
 use crate::extras::{self, Extra};
 use crate::language::{self, Language, Text};
@@ -106,6 +111,9 @@ fn screen() -> Vec<CommandEntry> {
     entries.extend(
         Panel::built()
             .map(|panel| named(Action::Panel(panel), names::panel(panel.title()), panel.meaning(), &[], menu)),
+    );
+    entries.extend(
+        Arrangement::ALL.map(|one| named(Action::Arrange(one), names::layout(one.name()), one.meaning(), &[], menu)),
     );
     entries.extend([
         entry(Action::ResetLayout, (names::RESET_LAYOUT, text::menu::RESET_LAYOUT_HOVER), &[], menu),

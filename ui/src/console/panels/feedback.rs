@@ -4,12 +4,10 @@
 //! requested value.
 
 use egui::{Button, DragValue, RichText, Slider, SliderClamping, Ui, vec2};
-use nima_core::{
-    impedance::{MODES, Mode},
-    limits::{GAIN, GAIN_ABOVE_ONE, Limits, SLIDER_DEAD_BAND_M_S, SLIDER_DELAY_S},
-};
+use nima_core::limits::{GAIN, GAIN_ABOVE_ONE, Limits, SLIDER_DEAD_BAND_M_S, SLIDER_DELAY_S};
 use nima_machine::messages::Command;
 
+use super::modes::modes_ui;
 use crate::{
     console::{
         live::LiveState,
@@ -18,7 +16,6 @@ use crate::{
         widgets::{at_the_right, small},
     },
     extras::{self, Extra},
-    report_text::{OFFERED, mode_meaning, mode_name},
 };
 
 /// How long a control shows the requested value before it shows the active value again, s: the gain ramps at 2 per second.
@@ -50,37 +47,14 @@ pub struct FeedbackState {
 }
 
 pub fn feedback_ui(ui: &mut Ui, live: &mut LiveState, state: &mut FeedbackState, outbox: &mut Outbox) {
-    mode_ui(ui, live, outbox);
+    ui.spacing_mut().item_spacing = vec2(6.0, 4.0);
+    modes_ui(ui, live, outbox);
     ui.add_space(4.0);
     gain_ui(ui, live, state, outbox);
     ui.add_space(4.0);
     delay_ui(ui, live, state, outbox);
     ui.add_space(4.0);
     standstill_ui(ui, live, state, outbox);
-}
-
-fn mode_ui(ui: &mut Ui, live: &LiveState, outbox: &mut Outbox) {
-    ui.spacing_mut().item_spacing = vec2(6.0, 4.0);
-    // Two per row; if the number is odd, three in the last row.
-    let (pairs, last) = OFFERED.split_at(MODES - 3 * (MODES % 2));
-    // A baseline method is computed, and offered, only if the rig file names it.
-    let baseline: &[Mode] = match &live.rig.mode {
-        baseline @ Mode::Baseline(_) => std::slice::from_ref(baseline),
-        _ => &[],
-    };
-    for row in pairs.chunks(2).chain([last, baseline]).filter(|row| !row.is_empty()) {
-        let between = ui.spacing().item_spacing.x * (row.len() - 1) as f32;
-        let size = vec2((ui.available_width() - between) / row.len() as f32, 20.0);
-        ui.horizontal(|ui| {
-            for &mode in row {
-                let button =
-                    Button::selectable(live.mode() == mode, mode_name(mode)).frame_when_inactive(true).min_size(size);
-                if ui.add(button).on_hover_text(mode_meaning(mode)).clicked() {
-                    outbox.push(Command::SetMode(mode));
-                }
-            }
-        });
-    }
 }
 
 /// One setting: its name, its value and a slider over its range.

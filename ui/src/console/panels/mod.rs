@@ -10,6 +10,7 @@ pub mod force_space;
 pub mod gates;
 pub mod horizon;
 pub mod link;
+mod modes;
 pub mod safety;
 pub mod timing;
 mod timing_bars;

@@ -21,6 +21,7 @@ use crate::{
         scene3d::side_name,
         sessions::DisplayState,
         settings::ConsoleSettings,
+        start::has_real_arm,
         text, theme,
         widgets::{Sign, next_button, sign, small, weak},
     },
@@ -127,8 +128,8 @@ fn identity_ui(
         .or(keeps.then_some(Action::Keep));
     if ui.ctx().content_rect().width() >= SCENE_FROM {
         ui.add_space(4.0);
-        ui.label(weak(&live.scene.name))
-            .on_hover_text(text::top_bar::scene_and_rig(&live.scene.description, &live.rig.name));
+        let name = if has_real_arm(&live.rig) { &live.rig.name } else { &live.scene.name };
+        ui.label(weak(name)).on_hover_text(text::top_bar::scene_and_rig(&live.scene.description, &live.rig.name));
     }
 }
 

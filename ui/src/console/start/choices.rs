@@ -38,11 +38,13 @@ pub(crate) fn drawn_anew(scene: Scene) -> Scene {
 const RECENT_MAX: usize = 5;
 
 impl RigChoice {
-    /// Selects another rig. The scene stays, unless it was specific to the previous rig.
+    /// Selects another rig. The scene stays, unless it was specific to the previous rig, or the new one has a real arm, for
+    /// which no scene is chosen.
     pub(super) fn with_rig(&self, rig: &str) -> Self {
         let default = |rig: &str| RigConfig::load(rig).map(|rig| Scene::default_for(&rig)).ok();
         let untouched = default(&self.rig) == Some(self.scene.as_str());
-        let scene = default(rig).filter(|_| untouched).map_or_else(|| self.scene.clone(), str::to_owned);
+        let own = untouched || RigConfig::load(rig).is_ok_and(|rig| has_real_arm(&rig));
+        let scene = default(rig).filter(|_| own).map_or_else(|| self.scene.clone(), str::to_owned);
         Self { rig: rig.to_owned(), scene }
     }
 
@@ -64,6 +66,8 @@ pub(super) struct ChoiceEntry {
     pub(super) usable: bool,
     /// Whether it is in the user's folder.
     pub(super) own: bool,
+    /// A rig whose arm is real: it works on its own field, whatever scene is drawn.
+    pub(super) real_arm: bool,
 }
 
 /// Both lists, as last read.
@@ -123,22 +127,30 @@ fn rig((key, own): (String, bool)) -> ChoiceEntry {
                 || if rig.has_real_hand() { text::start::LED.get() } else { text::start::SIMULATED.get() }.to_owned(),
                 |devices| text::start::of_devices(rig.probes().len(), devices.emulated),
             );
-            ChoiceEntry { key, name: rig.name, about, usable: true, own }
+            let real_arm = has_real_arm(&rig);
+            ChoiceEntry { key, name: rig.name, about, usable: true, own, real_arm }
         }
         Err(error) => unusable(key, &error, own),
     }
 }
 
+/// Returns whether the arm is real: then the instrument works on a real field, not in a scene.
+pub(in crate::console) fn has_real_arm(rig: &RigConfig) -> bool {
+    rig.devices.as_ref().is_some_and(|devices| !devices.emulated)
+}
+
 fn scene((key, own): (String, bool)) -> ChoiceEntry {
     match Scene::load(&key) {
-        Ok(scene) => ChoiceEntry { key, name: scene.name, about: scene.description, usable: true, own },
+        Ok(scene) => {
+            ChoiceEntry { key, name: scene.name, about: scene.description, usable: true, own, real_arm: false }
+        }
         Err(error) => unusable(key, &error, own),
     }
 }
 
 fn unusable(key: String, error: &dyn std::error::Error, own: bool) -> ChoiceEntry {
     let about = text::start::unusable(&crate::console::chain(error));
-    ChoiceEntry { name: key.clone(), key, about, usable: false, own }
+    ChoiceEntry { name: key.clone(), key, about, usable: false, own, real_arm: false }
 }
 
 #[cfg(test)]
@@ -168,6 +180,7 @@ mod tests {
         assert_eq!(two_arms.with_rig("simulated"), first);
         let chosen = RigChoice { scene: "palpation".to_owned(), ..first };
         assert_eq!(chosen.with_rig("emulated").scene, "palpation");
+        assert_eq!(chosen.with_rig("paper").scene, "bimanual", "no scene is chosen for a real arm");
     }
 
     #[test]

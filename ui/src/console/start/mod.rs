@@ -14,6 +14,7 @@ use nima_machine::{config::RigConfig, messages::LoopState};
 
 pub use choices::RigChoice;
 pub(crate) use choices::drawn_anew;
+pub(in crate::console) use choices::has_real_arm;
 use choices::{ChoiceEntry, Lists};
 use endoscope::EndoscopeCard;
 pub(crate) use looking::BackgroundQuery;
@@ -171,8 +172,7 @@ impl StartPage {
                 ui.label(small(text::start::RECENT.get()));
             }
             for choice in others {
-                let rig = name_in(&self.lists.rigs, &choice.rig);
-                let words = format!("{rig}, {}", name_in(&self.lists.scenes, &choice.scene));
+                let words = self.words_of(choice);
                 if row_ui(ui, self.chosen == *choice, true, &words, "").clicked() {
                     chosen = Some(choice.clone());
                 }
@@ -220,8 +220,25 @@ impl StartPage {
         }
     }
 
+    /// Returns rig and scene in words; a real arm has no scene.
+    fn words_of(&self, choice: &RigChoice) -> String {
+        let rig = name_in(&self.lists.rigs, &choice.rig);
+        if self.has_real_arm(choice) {
+            return rig.to_owned();
+        }
+        format!("{rig}, {}", name_in(&self.lists.scenes, &choice.scene))
+    }
+
+    fn has_real_arm(&self, choice: &RigChoice) -> bool {
+        self.lists.rigs.iter().any(|entry| entry.key == choice.rig && entry.real_arm)
+    }
+
     fn scenes_ui(&mut self, ui: &mut Ui) {
         card(ui, text::start::SCENES.get(), text::start::SCENES_HOVER.get(), |ui| {
+            if self.has_real_arm(&self.chosen) {
+                ui.add(Label::new(text::start::NO_SCENE.get()).wrap());
+                return;
+            }
             for entry in &self.lists.scenes {
                 if entry_ui(ui, entry, self.chosen.scene == entry.key, false) {
                     self.chosen.scene.clone_from(&entry.key);
@@ -324,9 +341,7 @@ impl StartPage {
                 self.is_open = false;
             }
             ui.vertical(|ui| {
-                let [rig, scene] = [(&self.lists.rigs, &self.chosen.rig), (&self.lists.scenes, &self.chosen.scene)]
-                    .map(|(list, key)| name_in(list, key));
-                ui.label(RichText::new(format!("{rig}, {scene}")).font(theme::strong(15.0)));
+                ui.label(RichText::new(self.words_of(&self.chosen)).font(theme::strong(15.0)));
                 if now.is_starting {
                     ui.label(weak(text::start::STARTING.get()));
                 }

@@ -263,6 +263,10 @@ pub(in crate::console) fn panel(name: &str) -> String {
     text_format!("Panel: {name}", "Panel: {name}")
 }
 
+pub(in crate::console) fn layout(name: &str) -> String {
+    text_format!("Layout: {name}", "Layout: {name}")
+}
+
 pub(in crate::console) fn language(name: &str) -> String {
     text_format!("Language: {name}", "Sprache: {name}")
 }

@@ -46,6 +46,11 @@ pub(in crate::console) const HOLD_HOVER: Text = Text::of(
     "Ein: die Kraft bleibt, wenn die Hand anhält; ein stetiger Druck ist spürbar. Aus: sie blendet im Totband aus wie \
      im Artikel, und „Warum keine Kraft?“ zeigt, wie viel nicht dargestellt wird (N).",
 );
+pub(in crate::console) const RESEARCH_MODES: Text = Text::of("Research modes", "Modi der Forschung");
+pub(in crate::console) const RESEARCH_MODES_HOVER: Text = Text::of(
+    "Modes for comparison: parts of the default, and the paper's rules",
+    "Modi zum Vergleich: Teile der Vorgabe und die Regeln des Artikels",
+);
 pub(in crate::console) const GAIN: Text = Text::of("Gain", "Verstärkung");
 pub(in crate::console) fn allow_above_1_hover() -> String {
     let highest = GAIN_ABOVE_ONE.max;

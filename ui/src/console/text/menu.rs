@@ -1,6 +1,6 @@
 //! The View menu.
 
-use crate::language::Text;
+use crate::language::{Text, text_format};
 
 pub(in crate::console) const VIEW: Text = Text::of("View", "Ansicht");
 pub(in crate::console) const PALETTE: Text = Text::of("Colours", "Farben");
@@ -53,6 +53,18 @@ pub(in crate::console) const RECORDS_IMAGE_HOVER: Text = Text::of(
     "In sessions, as the camera sends it: about 60 to 200 MB more per minute",
     "In Sitzungen, so wie die Kamera es sendet: etwa 60 bis 200 MB mehr pro Minute",
 );
+pub(in crate::console) const LAYOUT: Text = Text::of("Layout", "Layout");
+pub(in crate::console) const LAYOUT_HOVER: Text = Text::of(
+    "Positions of the panels: built in, or your own, saved by name",
+    "Anordnung der Panels: eingebaut oder eigene, unter einem Namen gesichert",
+);
+pub(in crate::console) const LAYOUT_NAME: Text = Text::of("Name of this layout", "Name dieses Layouts");
+pub(in crate::console) const SAVE_LAYOUT: Text = Text::of("Save", "Sichern");
+pub(in crate::console) const SAVE_LAYOUT_HOVER: Text = Text::of(
+    "Saves the present positions of the panels under this name",
+    "Sichert die jetzige Anordnung der Panels unter diesem Namen",
+);
+pub(in crate::console) const NAME_LAYOUT_FIRST: Text = Text::of("Enter a name first", "Erst einen Namen eingeben");
 pub(in crate::console) const PANELS: Text = Text::of("Panels", "Panels");
 pub(in crate::console) const PANELS_HOVER: Text = Text::of(
     "Drag a panel's title to move it, drag an edge to resize it",
@@ -61,5 +73,12 @@ pub(in crate::console) const PANELS_HOVER: Text = Text::of(
 pub(in crate::console) const PANEL_OPEN_HOVER: Text = Text::of("Open: click to close it", "Offen: Klick schließt es");
 pub(in crate::console) const PANEL_CLOSED_HOVER: Text =
     Text::of("Closed: click to open it where it was", "Geschlossen: Klick öffnet es am alten Platz");
-pub(in crate::console) const RESET_LAYOUT_HOVER: Text =
-    Text::of("Opens all panels in their original positions", "Öffnet alle Panels am ursprünglichen Platz");
+pub(in crate::console) const RESET_LAYOUT_HOVER: Text = Text::of(
+    "Opens all panels in the original positions of this layout",
+    "Öffnet alle Panels am ursprünglichen Platz dieses Layouts",
+);
+
+/// Returns the accessible name of the button that removes a saved layout.
+pub(in crate::console) fn remove_layout(name: &str) -> String {
+    text_format!("Remove layout {name}", "Layout {name} entfernen")
+}

@@ -19,9 +19,12 @@ pub(in crate::console) const RIGS_HOVER: Text = Text::of(
 );
 pub(in crate::console) const SCENES: Text = Text::of("2. Choose a scene", "2. Szene wählen");
 pub(in crate::console) const SCENES_HOVER: Text = Text::of(
-    "The operating field on which a simulated or emulated rig works. A real rig only shows it in the 3-D view.",
-    "Das Feld, an dem ein simulierter oder emulierter Aufbau arbeitet. Ein echter zeigt es nur in der \
-     3-D-Ansicht.",
+    "The operating field on which a simulated or emulated rig works",
+    "Das Feld, an dem ein simulierter oder emulierter Aufbau arbeitet",
+);
+pub(in crate::console) const NO_SCENE: Text = Text::of(
+    "This rig has a real arm, which works on its real field: no scene is needed",
+    "Dieser Aufbau hat einen echten Arm, der an seinem echten Feld arbeitet: keine Szene nötig",
 );
 pub(in crate::console) const MISSING: Text = Text::of("Devices of this rig", "Geräte dieses Aufbaus");
 pub(in crate::console) const MISSING_HOVER: Text = Text::of(

@@ -86,6 +86,22 @@ pub(in crate::console) const ALL_CLOSED: Text = Text::of(
 pub(in crate::console) const DRAG_HOVER: Text =
     Text::of("Drag the title to move the panel", "Am Titel ziehen verschiebt das Panel");
 
+pub(in crate::console) const SIMPLE: Text = Text::of("Simple", "Einfach");
+pub(in crate::console) const SIMPLE_HOVER: Text = Text::of(
+    "Layout for the first hour: the field, the forces over time, and the feedback settings; the other panels are tabs",
+    "Layout für die erste Stunde: Feld, Kräfte über der Zeit und Rückkopplung; die übrigen Panels sind Reiter",
+);
+pub(in crate::console) const CALIBRATION_LAYOUT: Text = Text::of("Calibration", "Kalibrierung");
+pub(in crate::console) const CALIBRATION_LAYOUT_HOVER: Text = Text::of(
+    "Layout for setting up a rig: calibrations, devices, and the forces over time",
+    "Layout für das Einrichten: Kalibrierungen, Geräte und Kräfte über der Zeit",
+);
+pub(in crate::console) const RESEARCH: Text = Text::of("Research", "Forschung");
+pub(in crate::console) const RESEARCH_HOVER: Text = Text::of(
+    "Layout with every panel: prediction error, degrees, timing and gates are in sight too",
+    "Layout mit allen Panels: auch Vorhersagefehler, Grade, Timing und Sperren sind im Blick",
+);
+
 /// Returns the accessible name of the button that closes a panel.
 pub(in crate::console) fn close(panel: &str) -> String {
     text_format!("Close {panel}", "{panel} schließen")

@@ -1,4 +1,4 @@
-//! Layout of the panels as saved in the settings, and the default layout.
+//! Layout of the panels as saved in the settings.
 //!
 //! The format is simple: rows, columns and tabs of panels, with their parts of the space. Whatever a file contains, every
 //! panel appears exactly once: a panel that is missing in the file is added as a tab, and a repeated one stays at its first
@@ -8,34 +8,19 @@ use egui::{Id, Vec2};
 use egui_tiles::{Container, Linear, LinearDir, Tile, TileId, Tiles, Tree};
 use serde::{Deserialize, Serialize};
 
-use super::Panel;
+use super::{Arrangement, Panel};
 
 /// Sum of the parts of a row or column, see [`LayoutPart`].
-const WHOLE: f32 = 10_000.0;
+pub(super) const WHOLE: f32 = 10_000.0;
 /// Smallest part of a panel, relative to [`WHOLE`], so that its edge can still be dragged.
 const MIN_FRACTION: f32 = 300.0;
-
-/// Width of the column of settings and of the column of figures.
-const KNOBS: f32 = 316.0;
-const FIGURES: f32 = 348.0;
-/// Width of the force-space panel next to the traces, and the width between the columns from which it is placed there.
-const FORCE_SPACE: f32 = 300.0;
-const FORCE_SPACE_FROM: f32 = 720.0;
-/// Width of the traces.
-const TRACES: f32 = 560.0;
-/// Height of the desk from which calibrations and gates, and degrees and timing, are placed below one another instead
-/// of in tabs.
-const TALL_FROM: f32 = 860.0;
-/// Heights of panels that should not need scrolling.
-const FEEDBACK: f32 = 430.0;
-const CALIBRATIONS: f32 = 246.0;
-const HORIZON: f32 = 288.0;
-const DEGREES: f32 = 312.0;
 
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct PanelLayout {
-    /// Rows, columns and tabs; `None` is the default layout, which depends on the size of the window.
+    /// The built-in layout that was chosen last.
+    pub arrangement: Arrangement,
+    /// Rows, columns and tabs; `None` is the built-in layout, which depends on the size of the window.
     pub places: Option<LayoutNode>,
     /// Closed panels; they keep their places.
     pub closed: Vec<Panel>,
@@ -65,6 +50,15 @@ pub struct LayoutPart {
 }
 
 impl PanelLayout {
+    pub fn built_in(arrangement: Arrangement) -> Self {
+        Self { arrangement, ..Self::default() }
+    }
+
+    /// Returns whether panels are open and placed as in the other layout, whichever tabs are in front.
+    pub fn looks_like(&self, other: &Self) -> bool {
+        (self.arrangement, &self.places, &self.closed) == (other.arrangement, &other.places, &other.closed)
+    }
+
     pub fn is_open(&self, panel: Panel) -> bool {
         !self.closed.contains(&panel)
     }
@@ -85,7 +79,7 @@ impl PanelLayout {
     pub(super) fn tree(&self, size: Vec2) -> Tree<Panel> {
         let mut tiles = Tiles::default();
         let mut placed = Vec::new();
-        let fallback = self.places.is_none().then(|| default_for(size));
+        let fallback = self.places.is_none().then(|| self.arrangement.places(size));
         let root = self.places.as_ref().or(fallback.as_ref()).and_then(|node| insert(&mut tiles, node, &mut placed));
         let missing: Vec<TileId> =
             Panel::built().filter(|panel| !placed.contains(panel)).map(|panel| tiles.insert_pane(panel)).collect();
@@ -116,7 +110,7 @@ impl PanelLayout {
         let mut front = in_front(tree);
         front.retain(|panel| !seen.contains(panel));
         front.extend(before.front.iter().filter(|panel| !front.contains(panel)).copied().collect::<Vec<_>>());
-        Self { places, closed: before.closed.clone(), front }
+        Self { arrangement: before.arrangement, places, closed: before.closed.clone(), front }
     }
 }
 
@@ -211,86 +205,6 @@ fn node(tiles: &Tiles<Panel>, id: TileId) -> Option<LayoutNode> {
     }
 }
 
-/// Returns the settings on the left, figures on the right, the 3-D view above the traces in between; panels that do not
-/// fit are placed in tabs.
-fn default_for(size: Vec2) -> LayoutNode {
-    let middle = (size.x - KNOBS - FIGURES).max(200.0);
-    let height = size.y.max(200.0);
-    let traces = (0.47 * height).clamp(250.0, 492.0);
-    if middle < TRACES {
-        return narrow(size.x.max(KNOBS + FIGURES + 200.0), height, traces);
-    }
-    let [left, right] = if height >= TALL_FROM { tall_sides(height) } else { short_sides(height) };
-    let under = if middle > FORCE_SPACE_FROM {
-        row(vec![
-            (middle - FORCE_SPACE, tabs(&[Panel::Traces, Panel::Safety])),
-            (FORCE_SPACE, tabs(&[Panel::ForceSpace])),
-        ])
-    } else {
-        tabs(&[Panel::Traces, Panel::Safety, Panel::ForceSpace])
-    };
-    let between = column(vec![(height - traces, tabs(&[Panel::Field, Panel::Devices])), (traces, under)]);
-    row(vec![(KNOBS, left), (middle, between), (FIGURES, right)])
-}
-
-/// For windows too narrow for the traces between two columns: the figures next to the 3-D view, and the traces below both.
-fn narrow(width: f32, height: f32, traces: f32) -> LayoutNode {
-    let [left, _] = short_sides(height);
-    let above = row(vec![
-        (width - KNOBS - FIGURES, tabs(&[Panel::Field, Panel::Devices])),
-        (FIGURES, tabs(&[Panel::Horizon, Panel::Degrees, Panel::Timing, Panel::Tradeoff])),
-    ]);
-    let under = tabs(&[Panel::Traces, Panel::Safety, Panel::ForceSpace, Panel::Link]);
-    row(vec![(KNOBS, left), (width - KNOBS, column(vec![(height - traces, above), (traces, under)]))])
-}
-
-fn tall_sides(height: f32) -> [LayoutNode; 2] {
-    [
-        column(vec![
-            (FEEDBACK, tabs(&[Panel::Feedback])),
-            (CALIBRATIONS, tabs(&[Panel::Calibrations])),
-            (height - FEEDBACK - CALIBRATIONS, tabs(&[Panel::Gates])),
-        ]),
-        column(vec![
-            (HORIZON, tabs(&[Panel::Horizon])),
-            (DEGREES, tabs(&[Panel::Degrees, Panel::Tradeoff])),
-            (height - HORIZON - DEGREES, tabs(&[Panel::Timing, Panel::Link])),
-        ]),
-    ]
-}
-
-fn short_sides(height: f32) -> [LayoutNode; 2] {
-    let feedback = (height - 150.0).min(FEEDBACK);
-    let horizon = (height - 150.0).min(HORIZON);
-    [
-        column(vec![
-            (feedback, tabs(&[Panel::Feedback])),
-            (height - feedback, tabs(&[Panel::Gates, Panel::Calibrations])),
-        ]),
-        column(vec![
-            (horizon, tabs(&[Panel::Horizon])),
-            (height - horizon, tabs(&[Panel::Degrees, Panel::Timing, Panel::Link, Panel::Tradeoff])),
-        ]),
-    ]
-}
-
-fn tabs(panels: &[Panel]) -> LayoutNode {
-    LayoutNode::Tabs(panels.iter().map(|panel| LayoutNode::Panel(*panel)).collect())
-}
-
-fn parts(of: Vec<(f32, LayoutNode)>) -> Vec<LayoutPart> {
-    let whole: f32 = of.iter().map(|(points, _)| points).sum();
-    of.into_iter().map(|(points, of)| LayoutPart { fraction: (points / whole * WHOLE).round() as u16, of }).collect()
-}
-
-fn row(of: Vec<(f32, LayoutNode)>) -> LayoutNode {
-    LayoutNode::Row(parts(of))
-}
-
-fn column(of: Vec<(f32, LayoutNode)>) -> LayoutNode {
-    LayoutNode::Column(parts(of))
-}
-
 #[cfg(test)]
 mod tests {
     use egui::vec2;
@@ -323,9 +237,12 @@ mod tests {
     }
 
     #[test]
-    fn every_size_of_the_default_holds_every_panel_once() {
-        for size in SIZES {
-            assert_eq!(panels_of(&PanelLayout::default().tree(size.into())), all(), "{size:?}");
+    fn every_size_of_every_built_in_layout_holds_every_panel_once() {
+        for arrangement in Arrangement::ALL {
+            for size in SIZES {
+                let tree = PanelLayout::built_in(arrangement).tree(size.into());
+                assert_eq!(panels_of(&tree), all(), "{arrangement:?} {size:?}");
+            }
         }
     }
 

@@ -4,6 +4,7 @@
 //!
 //! The tiles are limited to the space below the top bar, so that stop button, state and alarms stay visible.
 
+mod arrangement;
 mod layout;
 mod panel;
 
@@ -16,6 +17,7 @@ use egui_tiles::{
     Behavior, EditAction, ResizeState, SimplificationOptions, TabState, Tabs, TileId, Tiles, Tree, UiResponse,
 };
 
+pub use arrangement::Arrangement;
 pub use layout::{LayoutNode, LayoutPart, PanelLayout};
 pub use panel::Panel;
 

@@ -8,7 +8,7 @@ use nima_console::{
         roles::Role,
         scene3d::extras::{Extras, MenuSwitch, SHOW},
         settings::{ConsoleSettings, ImageSettings},
-        tiles::{Panel, PanelLayout},
+        tiles::{Arrangement, Panel, PanelLayout},
     },
     language::Language,
 };
@@ -79,6 +79,12 @@ fn what_the_view_menu_and_the_keys_of_the_screen_do() {
         let other = of_menu(Kind::Button, panel.title());
         let seen = |console: &mut Console| format!("{:?}", console.state_mut().settings_mut().layout.closed);
         done.push(alike(&mut console, Action::Panel(panel), reset, other, seen));
+    }
+    for arrangement in Arrangement::ALL {
+        let before = if arrangement == Arrangement::Simple { Arrangement::Research } else { Arrangement::Simple };
+        let reset = set(|settings| settings.layout = PanelLayout::built_in(before));
+        let other = of_menu(Kind::Button, &entry(Action::Arrange(arrangement)).title);
+        done.push(alike(&mut console, Action::Arrange(arrangement), reset, other, settings));
     }
     let reset = set(|settings| settings.layout = PanelLayout { closed: vec![Panel::Link], ..PanelLayout::default() });
     done.push(alike(&mut console, Action::ResetLayout, reset, of_menu(Kind::Button, "Reset layout"), settings));

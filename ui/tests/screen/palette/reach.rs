@@ -23,8 +23,10 @@ fn every_role_finds_what_it_can_reach_and_nothing_else() {
         titles(console)
     };
     let of_technician = |entry: &CommandEntry| {
-        matches!(entry.action, Action::Panel(_) | Action::ResetLayout | Action::Check | Action::Calibrations)
-            || matches!(entry.action, Action::Calibrate(which) if which.scene().is_some())
+        matches!(
+            entry.action,
+            Action::Panel(_) | Action::Arrange(_) | Action::ResetLayout | Action::Check | Action::Calibrations
+        ) || matches!(entry.action, Action::Calibrate(which) if which.scene().is_some())
     };
     let with_traces =
         |entry: &CommandEntry| matches!(entry.action, Action::Pause | Action::LastTenSeconds | Action::Draws(_));

@@ -132,7 +132,7 @@ fn everything_in_every_wizard_and_in_the_past_has_a_name() {
         look(&mut console, &format!("{which:?}"), &mut all);
     }
     let mut console = begin("peg_transfer", folder.path());
-    for page in ["Ready check…", "All calibrations…"] {
+    for page in ["Ready check…", "Set-up…"] {
         pick(&mut console, page);
         look(&mut console, page, &mut all);
         pick(&mut console, "Back to the monitor");

@@ -134,7 +134,7 @@ fn every_page_list_and_menu_fits() {
     }
     console.state_mut().settings_mut().role = Role::Technician;
     console.run_steps(2);
-    for page in ["Ready check\u{2026}", "All calibrations\u{2026}"] {
+    for page in ["Ready check\u{2026}", "Set-up\u{2026}"] {
         pick(&mut console, page);
         all.extend(look_at(&mut console, page, Page::Scrolls));
         pick(&mut console, "Back to the monitor");

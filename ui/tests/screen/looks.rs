@@ -106,7 +106,7 @@ fn every_page_and_list_looks_as_stored() {
     }
     console.state_mut().settings_mut().role = Role::Technician;
     console.run_steps(2);
-    for (page, name) in [("Ready check\u{2026}", "ready-check"), ("All calibrations\u{2026}", "calibrations")] {
+    for (page, name) in [("Ready check\u{2026}", "ready-check"), ("Set-up\u{2026}", "calibrations")] {
         pick(&mut console, page);
         if name == "ready-check" {
             read(&mut console, "the wrist sensor is not calibrated");

@@ -56,16 +56,26 @@ fn all_calibrations_stand_on_one_page_and_each_is_repeated_by_its_button() {
     let folder = tempfile::tempdir().unwrap();
     let mut console = console(&folder.path().join("calibrations"));
     until(&mut console, "a tick", |tick| tick.state == LoopState::Idle);
-    pick(&mut console, "All calibrations…");
+    pick(&mut console, "Set-up…");
     read(&mut console, "Right arm: sensor SIM-S1-0001, Simulated grasper");
     assert!(shows(&console, "Accepted, held-out error 0.0") && shows(&console, ", less than a day old"));
     assert!(shows(&console, "not calibrated"), "the correspondence is missing");
     // The result of the bias check appears without a click.
     read(&mut console, "N without contact, passed");
+    assert!(shows(&console, "never run"), "the ready check");
     pick(&mut console, "Recalibrate Right arm, gravity");
     read(&mut console, "release it: nothing may touch the tool");
-    pick(&mut console, "All calibrations…");
-    read(&mut console, "Since then");
+    pick(&mut console, "Back to the set-up");
+    read(&mut console, "never run");
+    pick(&mut console, "Run Right arm, ready check");
+    read(&mut console, "Checked by");
+    pick(&mut console, "Back to the set-up");
+    read(&mut console, "never run");
+    pick(&mut console, "Show Right arm, devices");
+    read(&mut console, "This rig is simulated: it has no devices");
+    assert!(!shows(&console, "never run"));
+    pick(&mut console, "Calibrate gravity");
+    read(&mut console, "release it: nothing may touch the tool");
     pick(&mut console, "Back to the monitor");
-    assert!(!shows(&console, "Since then"));
+    assert!(!shows(&console, "never run"), "a wizard of the panel returns to the panel");
 }

@@ -137,16 +137,16 @@ fn a_panel_is_closed_and_opened_from_the_menu_and_its_neighbours_take_the_room()
 fn a_tab_is_brought_to_the_front_by_the_keyboard_and_the_default_still_goes_by_the_window() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = console(folder.path());
-    harness.get_by_role_and_label(Role::Button, Panel::Safety.title()).focus();
+    harness.get_by_role_and_label(Role::Button, Panel::ForceSpace.title()).focus();
     harness.step();
     harness.key_press(egui::Key::Enter);
     harness.run_steps(3);
-    harness.get_by_label_contains("Interlock: ");
+    harness.get_by_role_and_label(Role::Button, "Close Force space");
     let layout = layout_of(&mut harness);
-    assert!(layout.front.contains(&Panel::Safety) && layout.places.is_none());
+    assert!(layout.front.contains(&Panel::ForceSpace) && layout.places.is_none());
     harness.set_size(vec2(1280.0, 720.0));
     harness.run_steps(4);
-    harness.get_by_label_contains("Interlock: ");
+    harness.get_by_role_and_label(Role::Button, "Close Force space");
     harness.get_by_role_and_label(Role::Button, Panel::Safety.title());
     let safety = tab(&harness, Panel::Safety);
     let space = tab(&harness, Panel::ForceSpace);
@@ -216,7 +216,7 @@ fn the_histograms_tell_how_many_ticks_are_later_than_the_deadline() {
 }
 
 #[test]
-fn the_gates_of_the_selected_hand_are_shown() {
+fn the_gates_of_the_selected_hand_are_shown_and_do_not_move_when_the_answer_gets_longer() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().to_path_buf();
     let mut harness = console_of("bimanual", SIZE, move |app| app.with_settings(toured(&path)));
@@ -227,8 +227,15 @@ fn the_gates_of_the_selected_hand_are_shown() {
         let chosen = harness.get_by_role_and_label(Role::Button, hand).accesskit_node().toggled();
         assert_eq!(chosen, Some(Toggled::True), "{hand}");
     }
-    press(&mut harness, "Stop");
     press(&mut harness, "Left hand");
+    let places = |harness: &Harness<'_, ConsoleApp>| {
+        let gates = harness.query_all_by_label_contains("Gate ");
+        gates.map(|gate| gate.rect()).collect::<Vec<_>>()
+    };
+    let before = places(&harness);
+    assert_eq!(before.len(), nima_core::safety::GATES);
+    press(&mut harness, "Stop");
     harness.run_steps(10);
     harness.get_by_label_contains("No force: stopped by the operator");
+    assert_eq!(places(&harness), before);
 }

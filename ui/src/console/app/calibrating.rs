@@ -58,11 +58,19 @@ impl ConsoleApp {
         Ok(())
     }
 
-    /// Returns to the previous scene; the wizards keep their data.
+    /// Returns to the set-up page if the wizard was started there, and to the previous scene; the wizards keep their data.
     pub(super) fn close_wizard(&mut self) {
+        let returns = self.listing.leave();
         self.wizards.open = None;
         self.close_check();
-        self.listing.close();
+        self.leave_scene();
+        if returns {
+            self.open_listing();
+        }
+    }
+
+    /// Ends what a wizard asks of the person at the arm, and returns to the scene before it.
+    fn leave_scene(&mut self) {
         let Some(scene) = self.watched.take() else {
             self.outbox.push(Command::Prompt(self.active.side(), Prompt::Rest));
             return;
@@ -170,7 +178,8 @@ impl ConsoleApp {
         Panel::left("calibrations").exact_size(316.0).resizable(false).frame(side).show(ui, |ui| {
             let panel = Tile::Calibrations;
             wish = card(ui, panel.title(), panel.meaning(), |ui| {
-                calibrations_ui(ui, &self.live, &self.active, self.wizards.open.map(CalibrationPage::Wizard))
+                let open = self.wizards.open.map(CalibrationPage::Wizard);
+                calibrations_ui(ui, &self.live, &self.active, open, self.listing.way_back())
             });
         });
         let binding = self.binding();

@@ -160,7 +160,7 @@ impl ConsoleApp {
         Panel::left("calibrations").exact_size(316.0).resizable(false).frame(side).show(ui, |ui| {
             let panel = Tile::Calibrations;
             wish = card(ui, panel.title(), panel.meaning(), |ui| {
-                calibrations_ui(ui, &self.live, &self.active, Some(CalibrationPage::Check))
+                calibrations_ui(ui, &self.live, &self.active, Some(CalibrationPage::Check), self.listing.way_back())
             });
         });
         let mut wanted = None;

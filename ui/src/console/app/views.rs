@@ -27,6 +27,7 @@ impl ConsoleApp {
     fn monitor_layout(&mut self, ui: &mut Ui) {
         self.panels.devices.is_seen = false;
         self.panels.devices.is_starting = self.starting.is_some();
+        self.panels.devices.sample(&self.live);
         let Wishes { restart, calibration, devices } =
             role_ui(ui, &mut self.settings.now, &mut self.live, &mut self.panels, &self.active, &mut self.outbox);
         // At the end of the frame, when everything has been drawn with the old loop. A stop requested in the same frame

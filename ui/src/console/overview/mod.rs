@@ -1,8 +1,10 @@
-//! All calibrations of a rig in one list: for every arm with its sensor, the age of each, its verdict, and later changes.
+//! The set-up of a rig: for every arm with its sensor the devices, each calibration with its age, its verdict and later
+//! changes, and the ready check.
 
 mod page;
 #[cfg(test)]
 mod tests;
+mod tiles;
 
 use std::time::SystemTime;
 
@@ -15,6 +17,7 @@ use nima_machine::{
 use nima_recording::store::{CalibrationAge, PointOutcome, ReadyRecord, Store, WristId, days_since};
 
 pub(crate) use page::overview_ui;
+pub(crate) use tiles::SetupStep;
 
 use super::{
     active_calibrations::ActiveCalibrations,

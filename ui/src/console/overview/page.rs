@@ -1,21 +1,36 @@
-//! The page of all calibrations.
+//! The set-up page: tiles per arm, each with its state and reason, from which every wizard starts.
 
-use egui::{Button, Grid, Label, RichText, Ui, WidgetInfo, vec2};
+use egui::{Align, Button, Color32, Label, Layout, Rect, Response, RichText, Stroke, Ui, UiBuilder, WidgetInfo, vec2};
 
-use super::{ArmOverview, OverviewLine, following, made_text, verdict_text};
+use nima_machine::rig::Side;
+use nima_recording::store::ReadyRecord;
+
+use super::{
+    ArmOverview, following,
+    tiles::{SetupStep, SetupTile, StepState, tiles},
+};
 use crate::console::{
+    live::LiveState,
     scene3d::side_name,
     text, theme,
-    widgets::{Sign, next_button, sign_ui, small},
-    wizards::{CalibrationTarget, GoOn},
+    widgets::{Sign, next_button, sign, small},
+    wizards::GoOn,
 };
 use crate::report_text::within;
 
-/// Widths of the text columns.
-const WIDTHS: [f32; 3] = [150.0, 260.0, 260.0];
+/// Smallest width of a tile, and its height.
+const TILE: egui::Vec2 = vec2(216.0, 92.0);
+/// Width of the coloured edge of a tile.
+const EDGE: f32 = 5.0;
 
-/// Draws the page; returns the calibration to start. With a reason in `closed` none can be started.
-pub(crate) fn overview_ui(ui: &mut Ui, arms: &[ArmOverview], closed: Option<&str>) -> Option<CalibrationTarget> {
+/// Draws the page; returns the step to open. `closed`: the reason why no calibration of this arm can be started.
+pub(crate) fn overview_ui(
+    ui: &mut Ui,
+    arms: &[ArmOverview],
+    live: &LiveState,
+    check: Option<&ReadyRecord>,
+    closed: &dyn Fn(Side) -> Option<&'static str>,
+) -> Option<SetupStep> {
     ui.label(RichText::new(text::overview::TITLE.get()).font(theme::strong(22.0)));
     ui.label(small(text::overview::MEANING.get()));
     ui.add_space(theme::GAP);
@@ -29,69 +44,100 @@ pub(crate) fn overview_ui(ui: &mut Ui, arms: &[ArmOverview], closed: Option<&str
             || text::overview::of_unknown(name, text::calibrations::SENSOR_NOT_CONNECTED.get()),
             |wrist| text::overview::of_arm(name, &wrist.serial_number, &wrist.tool),
         );
-        ui.label(RichText::new(head).font(theme::strong(15.0)));
-        if arm.lines.is_empty() {
-            continue;
-        }
-        Grid::new(("overview", name)).num_columns(6).spacing(vec2(14.0, 6.0)).show(ui, |ui| {
-            ui.label("");
-            let [calibration, made, verdict, since] = [
-                text::overview::CALIBRATION.get(),
-                text::overview::MADE.get(),
-                text::overview::VERDICT.get(),
-                text::overview::SINCE.get(),
-            ];
-            for words in [calibration, made, verdict, since] {
-                ui.label(small(words));
-            }
-            ui.end_row();
-            for line in &arm.lines {
-                if line_ui(ui, line, name, closed) {
-                    wish = Some(line.wanted);
-                }
-                ui.end_row();
-            }
-        });
+        ui.label(RichText::new(head).font(theme::strong(16.0)));
+        wish = tiles_ui(ui, name, &tiles(arm, live, check), closed(arm.side)).or(wish);
         ui.add_space(theme::GAP);
     }
     wish
 }
 
 /// Draws the button that opens the next calibration.
-fn following_ui(ui: &mut Ui, arms: &[ArmOverview], closed: Option<&str>) -> Option<CalibrationTarget> {
+fn following_ui(ui: &mut Ui, arms: &[ArmOverview], closed: &dyn Fn(Side) -> Option<&'static str>) -> Option<SetupStep> {
     let wanted = following(arms, None)?;
+    let closed = closed(wanted.side);
     let name = RichText::new(GoOn::Calibrate(wanted).words()).font(theme::strong(15.0));
     let free = closed.is_none();
     let button = ui.add_enabled(free, next_button(name, free).min_size(vec2(300.0, 34.0)));
     ui.label(small(closed.unwrap_or(text::calibrations::SETS_IDLE.get())));
     ui.add_space(theme::GAP);
-    button.on_disabled_hover_text(closed.unwrap_or_default()).clicked().then_some(wanted)
+    button.on_disabled_hover_text(closed.unwrap_or_default()).clicked().then_some(SetupStep::Calibrate(wanted))
 }
 
-/// Draws one line; returns whether to recalibrate.
-fn line_ui(ui: &mut Ui, line: &OverviewLine, arm: &str, closed: Option<&str>) -> bool {
-    let (what, colour) = if line.is_in_order() {
-        (Sign::Disc, theme::now().engaged)
-    } else {
-        (Sign::Triangle, theme::now().alarm_medium)
-    };
-    sign_ui(ui, what, 5.0, colour);
-    ui.label(line.wanted.name());
-    let words = match &line.kept {
-        Ok(Some(kept)) => [made_text(kept), verdict_text(kept), line.since.clone()],
-        Ok(None) => [text::overview::NEVER.get().to_owned(), String::new(), String::new()],
-        Err(why) => [String::new(), why.clone(), String::new()],
-    };
-    for (words, width) in words.into_iter().zip(WIDTHS) {
-        ui.scope(|ui| {
-            ui.set_max_width(width);
-            ui.add(Label::new(words).wrap());
+/// Draws the tiles of an arm in rows of equal width; returns the step of the pressed one.
+fn tiles_ui(ui: &mut Ui, arm: &str, tiles: &[SetupTile], closed: Option<&str>) -> Option<SetupStep> {
+    let gap = theme::GAP;
+    ui.spacing_mut().item_spacing = vec2(gap, gap);
+    let columns = (((ui.available_width() + gap) / (TILE.x + gap)) as usize).max(1);
+    let width = (ui.available_width() + gap) / columns as f32 - gap;
+    let mut wish = None;
+    for row in tiles.chunks(columns) {
+        ui.horizontal(|ui| {
+            for tile in row {
+                if tile_ui(ui, arm, tile, width, closed) {
+                    wish = Some(tile.step);
+                }
+            }
         });
     }
-    let verb = if line.kept == Ok(None) { text::overview::MAKE.get() } else { text::overview::REDO.get() };
+    wish
+}
+
+/// Draws a tile as one button; returns whether it was pressed.
+fn tile_ui(ui: &mut Ui, arm: &str, tile: &SetupTile, width: f32, closed: Option<&str>) -> bool {
+    // The devices can be looked at in every state of the loop.
+    let closed = closed.filter(|_| tile.step != SetupStep::Devices);
     let free = closed.is_none();
-    let button = ui.add_enabled(free, Button::new(verb).min_size(vec2(84.0, 24.0)));
-    let name = text::overview::button(verb, arm, &within(line.wanted.name()));
-    button.widget_info(|| WidgetInfo::labeled(egui::Role::Button, free, name.clone()));
-    button.on_disabled_hover_text(closed.unwrap_or_default()).clicked()
+    let button = Button::new("").min_size(vec2(width, TILE.y)).fill(theme::now().card);
+    let response = ui.add_enabled(free, button);
+    let verb = verb(tile);
+    let name = text::overview::button(verb, arm, &within(tile.name));
+    response.widget_info(|| WidgetInfo::labeled(egui::Role::Button, free, name.as_str()));
+    content_ui(ui, tile, verb, &response);
+    let hover = format!("{}\n{}", tile.name, tile.why);
+    response.on_hover_text(hover).on_disabled_hover_text(closed.unwrap_or_default()).clicked()
+}
+
+fn verb(tile: &SetupTile) -> &'static str {
+    match tile.step {
+        SetupStep::Devices => text::overview::SHOW.get(),
+        SetupStep::Check => text::overview::RUN.get(),
+        SetupStep::Calibrate(_) if tile.why == text::overview::NEVER.get() => text::overview::MAKE.get(),
+        SetupStep::Calibrate(_) => text::overview::REDO.get(),
+    }
+}
+
+/// Draws name, reason and verb over the button.
+fn content_ui(ui: &mut Ui, tile: &SetupTile, verb: &str, button: &Response) {
+    let (what, colour) = look(tile.state);
+    let rect = button.rect;
+    let edge = Rect::from_min_size(rect.min, vec2(EDGE, rect.height()));
+    ui.painter().rect_filled(edge, theme::CORNER, colour);
+    if button.hovered() {
+        let stroke = Stroke::new(1.0, theme::now().text_weak);
+        ui.painter().rect_stroke(rect, theme::CORNER, stroke, egui::StrokeKind::Inside);
+    }
+    let title = rect.left_top() + vec2(EDGE + 14.0, 16.0);
+    sign(ui.painter(), what, title, 6.0, colour);
+    let inside = Rect::from_min_max(rect.min + vec2(EDGE + 26.0, 6.0), rect.max - vec2(8.0, 6.0));
+    let mut place = ui.new_child(UiBuilder::new().max_rect(inside).layout(Layout::top_down(Align::Min)));
+    place.set_clip_rect(inside.intersect(ui.clip_rect()));
+    place.spacing_mut().item_spacing.y = 2.0;
+    place.add(Label::new(RichText::new(tile.name).font(theme::strong(14.0))).truncate());
+    let lines: Vec<&str> = tile.why.lines().collect();
+    for line in &lines {
+        // A short reason has room for two lines; of a long one each line is cut, and the hover text has the rest.
+        let label = Label::new(small(*line));
+        place.add(if lines.len() < 3 { label.wrap() } else { label.truncate() });
+    }
+    let ink = if button.enabled() { theme::now().text } else { theme::now().text_weak };
+    ui.painter().text(inside.right_bottom(), egui::Align2::RIGHT_BOTTOM, verb, theme::strong(12.5), ink);
+}
+
+fn look(state: StepState) -> (Sign, Color32) {
+    let palette = theme::now();
+    match state {
+        StepState::Done => (Sign::Disc, palette.engaged),
+        StepState::Doubtful => (Sign::Triangle, palette.alarm_medium),
+        StepState::Missing => (Sign::Octagon, palette.alarm_high),
+    }
 }

@@ -7,6 +7,7 @@ use nima_machine::{
     rig::Side,
 };
 
+use crate::language::Text;
 use crate::report_text::within;
 use crate::{
     console::{
@@ -41,12 +42,13 @@ pub enum CalibrationPage {
     All,
 }
 
-/// Draws the panel; `open` is the page next to it.
+/// Draws the panel; `open` is the page next to it, and `back` names the way back from it.
 pub fn calibrations_ui(
     ui: &mut Ui,
     live: &LiveState,
     active: &ActiveCalibrations,
     open: Option<CalibrationPage>,
+    back: Text,
 ) -> Option<CalibrationWish> {
     let closed = text::calibrations::closed(live.state());
     let mut wish = rig_ui(ui, live, open);
@@ -77,7 +79,7 @@ pub fn calibrations_ui(
         }
     }
     if open.is_some() {
-        let back = Button::new(text::calibrations::CLOSE_WIZARD.get()).min_size(vec2(ui.available_width(), 32.0));
+        let back = Button::new(back.get()).min_size(vec2(ui.available_width(), 32.0));
         if ui.add(back).on_hover_text(text::calibrations::CLOSE_WIZARD_HOVER.get()).clicked() {
             wish = Some(CalibrationWish::Close);
         }

@@ -1,65 +1,22 @@
-//! The panel "Why no force?": the gates between model and hand in order, with their current effects.
+//! The gates between model and hand in order, with their current effects, and the reason for a missing force.
 
-use egui::{Button, Color32, Label, RichText, TextStyle, Ui, vec2};
 use nima_core::safety::{EnergyMode, GATES, Gate as Which, Reason};
 use nima_machine::{
     messages::{Fault, ForceSource, LoopState},
     rig::Side,
 };
 
-use crate::report_text::{side_word, state_name, within};
+use crate::report_text::{state_name, within};
 use crate::{
-    console::{
-        live::LiveState,
-        scene3d::side_name,
-        text, theme,
-        widgets::{Sign, fitting_style, sign_ui, small},
-    },
+    console::{live::LiveState, text, widgets::Sign},
     report_text::{ShortText as _, gate_text},
 };
 
 /// A smaller force is not considered a contact, N.
 const CONTACT_N: f64 = 0.1;
 
-/// State of the panel: the selected side.
-#[derive(Clone, Copy, Debug)]
-pub struct GatesState {
-    side: Side,
-}
-
-impl Default for GatesState {
-    fn default() -> Self {
-        Self { side: Side::Right }
-    }
-}
-
-pub fn gates_ui(ui: &mut Ui, live: &LiveState, state: &mut GatesState) {
-    if live.is_bimanual() {
-        ui.horizontal(|ui| {
-            for side in Side::LEFT_TO_RIGHT {
-                let name = text::common::hand(side_name(side));
-                let button = Button::selectable(state.side == side, name).frame_when_inactive(true);
-                let meaning = text::gates::gates_of(side_word(side));
-                if ui.add(button.min_size(vec2(104.0, 26.0))).on_hover_text(meaning).clicked() {
-                    state.side = side;
-                }
-            }
-        });
-    } else {
-        state.side = Side::Right;
-    }
-    ui.add(Label::new(RichText::new(answer(live, state.side)).font(theme::strong(14.0))).wrap());
-    ui.add_space(2.0);
-    // Use little spacing, so that all nine rows fit.
-    ui.spacing_mut().item_spacing.y = 1.0;
-    ui.spacing_mut().interact_size.y = 20.0;
-    for gate in gates(live, state.side) {
-        gate_ui(ui, live, state.side, &gate);
-    }
-}
-
 /// Returns the summary: the first closed gate, or that there is no problem.
-fn answer(live: &LiveState, side: Side) -> String {
+pub(super) fn answer(live: &LiveState, side: Side) -> String {
     let is_free = live.figures.measured_n[side.index()].is_none_or(|measured_n| measured_n < CONTACT_N);
     why_no_force(live, side).unwrap_or_else(|| {
         if is_free {
@@ -198,22 +155,6 @@ pub(super) fn history(live: &LiveState, side: Side, gate: Which) -> String {
         Reason::Open => text::gates::NEVER_ACTED.get().to_owned(),
         last => text::gates::acted(acted, 100.0 * fraction, last.words()),
     }
-}
-
-fn gate_ui(ui: &mut Ui, live: &LiveState, side: Side, gate: &GateView) {
-    let (what, word) = gate.standing();
-    let acting = what != Sign::Disc;
-    let colour = if acting { theme::now().text } else { theme::now().engaged.gamma_multiply(0.75) };
-    let row = ui.horizontal(|ui| {
-        ui.set_height(20.0);
-        sign_ui(ui, what, 5.0, colour);
-        let ink: Color32 = if acting { theme::now().text } else { theme::now().text_weak };
-        ui.label(RichText::new(gate.name).color(ink));
-        ui.label(RichText::new(word).color(ink));
-        let font = fitting_style(ui, &gate.note, &TextStyle::Small, ui.available_width());
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| ui.label(small(&gate.note).font(font)));
-    });
-    row.response.on_hover_text(format!("{}\n{}", gate.meaning, history(live, side, gate.which)));
 }
 
 #[cfg(test)]

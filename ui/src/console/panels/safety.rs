@@ -1,11 +1,14 @@
-//! The interlock of each arm pair as a state diagram with the current state highlighted, and the gates in the order in which
-//! a force passes them, with the number and reason of their actions.
+//! The safety functions between the model and the hand: why there is no force, the gates in the order in which a force passes
+//! them, and the interlock of each arm pair as a state diagram with the current state highlighted.
 
-use egui::{Align2, Color32, Painter, Pos2, Rect, ScrollArea, Sense, Stroke, Ui, pos2, vec2};
+use egui::{Align2, Button, Color32, Label, Painter, Pos2, Rect, RichText, Sense, Stroke, Ui, UiBuilder, pos2, vec2};
 use nima_core::safety::TransitionCause;
-use nima_machine::{messages::LoopState, rig::Side};
+use nima_machine::{
+    messages::LoopState,
+    rig::{SIDES, Side},
+};
 
-use super::gates::{GateView, gates, history};
+use super::gates::{GateView, answer, gates, history};
 use crate::console::{
     live::LiveState,
     readings::StateEntry,
@@ -18,29 +21,85 @@ use crate::report_text::{side_word, state_name, within};
 
 const NODE: egui::Vec2 = vec2(82.0, 28.0);
 const DIAGRAM_HEIGHT: f32 = 118.0;
-/// With less width the states would overlap, so the diagrams are placed below one another.
-const DIAGRAM_WIDTH: f32 = 440.0;
-const GATE_HEIGHT: f32 = 82.0;
+/// Width from which two columns have room.
+const TWO_COLUMNS: f32 = 600.0;
+/// Height of a gate's row, and of a line of the answer.
+const LINE: f32 = 20.0;
+/// Distance of a gate's name from the left edge, behind its sign.
+const NAME: f32 = 20.0;
 
-pub fn safety_ui(ui: &mut Ui, live: &LiveState) {
-    ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-        let mut sides: Vec<Side> = live.sides().collect();
-        sides.reverse();
-        if ui.available_width() < DIAGRAM_WIDTH * sides.len() as f32 {
-            for side in &sides {
-                interlock_ui(ui, live, *side);
-            }
-        } else {
-            ui.columns(sides.len(), |columns| {
-                for (ui, side) in columns.iter_mut().zip(&sides) {
-                    interlock_ui(ui, live, *side);
-                }
+/// State of the panel: the arm that is shown where there is no room for two.
+#[derive(Clone, Copy, Debug)]
+pub struct SafetyState {
+    side: Side,
+}
+
+impl Default for SafetyState {
+    fn default() -> Self {
+        Self { side: Side::Right }
+    }
+}
+
+pub fn safety_ui(ui: &mut Ui, live: &LiveState, state: &mut SafetyState) {
+    let is_wide = ui.available_width() >= TWO_COLUMNS;
+    if !live.is_bimanual() {
+        state.side = Side::Right;
+        answer_ui(ui, live, Side::Right);
+        if is_wide {
+            ui.columns(2, |columns| {
+                gates_ui(&mut columns[0], live, Side::Right);
+                interlock_ui(&mut columns[1], live, Side::Right);
             });
+            return;
         }
-        for side in sides {
-            gates_row_ui(ui, live, side);
+    } else if is_wide {
+        ui.columns(SIDES, |columns| {
+            for (ui, side) in columns.iter_mut().zip(Side::LEFT_TO_RIGHT) {
+                ui.label(RichText::new(text::common::hand(side_name(side))).font(theme::strong(15.0)));
+                answer_ui(ui, live, side);
+                gates_ui(ui, live, side);
+                interlock_ui(ui, live, side);
+            }
+        });
+        return;
+    } else {
+        side_ui(ui, &mut state.side);
+        answer_ui(ui, live, state.side);
+    }
+    gates_ui(ui, live, state.side);
+    interlock_ui(ui, live, state.side);
+}
+
+fn side_ui(ui: &mut Ui, now: &mut Side) {
+    ui.horizontal(|ui| {
+        for side in Side::LEFT_TO_RIGHT {
+            let button = Button::selectable(*now == side, text::common::hand(side_name(side)));
+            let button = button.frame_when_inactive(true).min_size(vec2(104.0, 26.0));
+            if ui.add(button).on_hover_text(text::gates::gates_of(side_word(side))).clicked() {
+                *now = side;
+            }
         }
     });
+}
+
+/// Draws the reason for a missing force in the space of two lines, so that the gates below never move.
+fn answer_ui(ui: &mut Ui, live: &LiveState, side: Side) {
+    let words = answer(live, side);
+    let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), 2.0 * LINE), Sense::hover());
+    let mut place = ui.new_child(UiBuilder::new().max_rect(rect));
+    let label = Label::new(RichText::new(&words).font(theme::strong(14.0))).wrap();
+    place.add(label).on_hover_text(&words);
+}
+
+fn gates_ui(ui: &mut Ui, live: &LiveState, side: Side) {
+    ui.spacing_mut().item_spacing.y = 1.0;
+    let tick = live.tick_of(side);
+    end_ui(ui, text::safety::ASKED.get(), tick.map(|tick| tick.asked_n[tick.mode.index()].norm()));
+    for gate in &gates(live, side) {
+        gate_ui(ui, live, side, gate);
+    }
+    end_ui(ui, text::safety::HAND.get(), tick.map(|_| live.figures.rendered_n[side.index()]));
+    ui.add_space(6.0);
 }
 
 /// Returns the suffix that names the side of a rig with two arms.
@@ -183,67 +242,50 @@ fn arrow(painter: &Painter, from: Pos2, to: Pos2, stroke: Stroke) {
     painter.add(egui::Shape::convex_polygon(vec![to, base + side, base - side], stroke.color, Stroke::NONE));
 }
 
-fn gates_row_ui(ui: &mut Ui, live: &LiveState, side: Side) {
-    let Some(tick) = live.tick_of(side) else { return };
-    let asked_n = tick.asked_n[tick.mode.index()].norm();
-    ui.add_space(6.0);
-    ui.horizontal_wrapped(|ui| {
-        ui.spacing_mut().item_spacing = vec2(5.0, 5.0);
-        let ends = 66.0;
-        let gates = gates(live, side);
-        let width = ((ui.available_width() - 2.0 * ends) / gates.len() as f32 - 5.6).max(72.0);
-        end_ui(ui, ends, if live.is_bimanual() { side_name(side) } else { text::safety::ASKED.get() }, asked_n);
-        for gate in &gates {
-            gate_ui(ui, live, side, gate, width);
-        }
-        end_ui(ui, ends, text::safety::HAND.get(), live.figures.rendered_n[side.index()]);
-    });
-}
-
-/// Draws the start or end of the row of gates: a force.
-fn end_ui(ui: &mut Ui, width: f32, name: &str, force_n: f64) {
-    let (rect, response) = ui.allocate_exact_size(vec2(width, GATE_HEIGHT), Sense::hover());
-    let number = if force_n < 1e3 { format!("{force_n:.1} N") } else { "> 1 kN".to_owned() };
+/// Draws the force before or after all gates.
+fn end_ui(ui: &mut Ui, name: &str, force_n: Option<f64>) {
+    let number = match force_n.filter(|force_n| force_n.is_finite()) {
+        Some(force_n) if force_n < 1e3 => format!("{force_n:.1} N"),
+        Some(_) => "> 1 kN".to_owned(),
+        None => "\u{2013}".to_owned(),
+    };
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), LINE), Sense::hover());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, format!("{name}: {number}")));
     response.on_hover_text(text::safety::FORCE_HOVER.get());
     let painter = ui.painter_at(rect);
-    painter.text(
-        rect.center() - vec2(0.0, 10.0),
-        Align2::CENTER_CENTER,
-        name,
-        fitting(&painter, name, theme::regular(12.5), rect.width() - 4.0),
-        theme::now().text_weak,
-    );
-    painter.text(rect.center() + vec2(0.0, 9.0), Align2::CENTER_CENTER, number, theme::strong(16.0), theme::now().text);
+    let left = rect.left_center() + vec2(NAME, 0.0);
+    painter.text(left, Align2::LEFT_CENTER, name, theme::strong(13.0), theme::now().text);
+    painter.text(rect.right_center(), Align2::RIGHT_CENTER, number, theme::strong(14.0), theme::now().text);
 }
 
-/// Draws one gate: indicator, effect, and how often it acted.
-fn gate_ui(ui: &mut Ui, live: &LiveState, side: Side, gate: &GateView, width: f32) {
-    let (rect, response) = ui.allocate_exact_size(vec2(width, GATE_HEIGHT), Sense::hover());
+/// Draws one gate in fixed columns: sign, name, state, setting or present effect, and how often it acted.
+fn gate_ui(ui: &mut Ui, live: &LiveState, side: Side, gate: &GateView) {
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), LINE), Sense::hover());
     let (what, word) = gate.standing();
-    let acted = live.tick_of(side).map_or(0, |tick| tick.gates.counts.acted[gate.which.index()]);
-    let words = text::safety::gate(gate.name, &of_side(live, side), word, acted);
+    let acted = live.tick_of(side).map(|tick| tick.gates.counts.acted[gate.which.index()]);
+    let words = text::safety::gate(gate.name, &of_side(live, side), word, acted.unwrap_or_default());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, &words));
-    response.on_hover_text(format!("{}\n{}\n{}", gate.meaning, gate.note, history(live, side, gate.which)));
-    let open = what == Sign::Disc;
-    let line: Color32 = if open { theme::now().line } else { theme::now().text };
+    response.on_hover_text(format!("{}\n{}", gate.meaning, history(live, side, gate.which)));
+    let is_open = what == Sign::Disc;
+    let palette = theme::now();
     let painter = ui.painter_at(rect);
-    painter.rect(
-        rect,
-        theme::CORNER,
-        theme::now().card,
-        Stroke::new(if open { 1.0 } else { 2.0 }, line),
-        egui::StrokeKind::Inside,
-    );
-    let colour = if open { theme::now().engaged.gamma_multiply(0.75) } else { theme::now().text };
-    sign(&painter, what, rect.center_top() + vec2(0.0, 15.0), 6.0, colour);
-    for (y, text, font, ink) in [
-        (34.0, gate.name.to_owned(), theme::strong(13.0), theme::now().text),
-        (51.0, word.to_owned(), theme::regular(12.5), if open { theme::now().text_weak } else { theme::now().text }),
-        (69.0, compact(acted), theme::regular(12.5), theme::now().text_weak),
+    let colour = if is_open { palette.engaged.gamma_multiply(0.75) } else { palette.text };
+    sign(&painter, what, rect.left_center() + vec2(8.0, 0.0), 5.0, colour);
+    let ink: Color32 = if is_open { palette.text_weak } else { palette.text };
+    let room = rect.width() - NAME;
+    let name_font = if is_open { theme::regular(13.0) } else { theme::strong(13.0) };
+    let counted = acted.map_or_else(|| "\u{2013}".to_owned(), compact);
+    for (from, to, words, font, align) in [
+        (0.0, 0.29, gate.name, name_font, Align2::LEFT_CENTER),
+        (0.30, 0.51, word, theme::regular(13.0), Align2::LEFT_CENTER),
+        (0.52, 0.82, gate.note.as_str(), theme::regular(12.5), Align2::RIGHT_CENTER),
+        (0.83, 1.0, counted.as_str(), theme::regular(12.5), Align2::RIGHT_CENTER),
     ] {
-        let font = fitting(&painter, &text, font, rect.width() - 8.0);
-        painter.text(rect.center_top() + vec2(0.0, y), Align2::CENTER_CENTER, text, font, ink);
+        let left = rect.left() + NAME + from * room;
+        let right = rect.left() + NAME + to * room;
+        let x = if align == Align2::LEFT_CENTER { left } else { right };
+        let font = fitting(&painter, words, font, right - left);
+        painter.text(pos2(x, rect.center().y), align, words, font, ink);
     }
 }
 

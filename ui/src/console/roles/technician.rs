@@ -8,8 +8,8 @@ use crate::console::{
     live::{LiveState, ScreenSource},
     outbox::Outbox,
     panels::{
-        calibrations_ui, devices_ui, feedback_ui, force_space_ui, force_traces_ui, gates_ui, horizon_ui, link_ui,
-        timing_ui,
+        calibrations_ui, degrees_ui, devices_ui, feedback_ui, force_space_ui, force_traces_ui, horizon_ui, link_ui,
+        safety_ui, timing_ui,
     },
     scene3d::scene_ui,
     text,
@@ -38,8 +38,11 @@ pub(super) fn technician_ui(
         Panel::Feedback => acts(ui, past, |ui| feedback_ui(ui, live, &mut panels.feedback, outbox)),
         Panel::Devices if past => devices_then_ui(ui, live),
         Panel::Devices => wishes.devices = devices_ui(ui, live, &mut panels.devices),
-        Panel::Calibrations => wishes.calibration = acts(ui, past, |ui| calibrations_ui(ui, live, active, None)),
-        Panel::Gates => gates_ui(ui, live, &mut panels.gates),
+        Panel::Calibrations => {
+            let back = text::calibrations::CLOSE_WIZARD;
+            wishes.calibration = acts(ui, past, |ui| calibrations_ui(ui, live, active, None, back));
+        }
+        Panel::Safety => safety_ui(ui, live, &mut panels.safety),
         Panel::Horizon => horizon_ui(ui, live, outbox),
         Panel::Timing => timing_ui(ui, live, &mut panels.timing),
         Panel::Link if past => {
@@ -51,7 +54,7 @@ pub(super) fn technician_ui(
             let tradeoff = panels.tradeoff.as_mut();
             wishes.restart = acts(ui, past, |ui| tradeoff.and_then(|panel| panel.ui(ui, live, outbox)));
         }
-        shown => shown.shows().into_iter().for_each(|draw| draw(ui, live)),
+        Panel::Degrees => degrees_ui(ui, live),
     });
     panels.desk = desk;
     wishes

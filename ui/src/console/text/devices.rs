@@ -24,6 +24,20 @@ pub(in crate::console) const CLEAR_FAULTS_HOVER: Text = Text::of(
     "First make sure that no one is near the arm and that the cause is gone: afterwards the arm can move again",
     "Sicherstellen, dass niemand am Arm und die Ursache behoben ist: danach kann sich der Arm wieder bewegen",
 );
+pub(in crate::console) const DEVICE: Text = Text::of("Device", "Gerät");
+pub(in crate::console) const STATE: Text = Text::of("State", "Zustand");
+pub(in crate::console) const READINGS: Text = Text::of("Readings/s", "Messwerte/s");
+pub(in crate::console) const ADDRESS: Text = Text::of("Address and identity", "Adresse und Kennung");
+pub(in crate::console) const RATES_HOVER: Text =
+    Text::of("Readings per second during the last minute", "Messwerte pro Sekunde in der letzten Minute");
+pub(in crate::console) const COPY: Text = Text::of("Copy", "Kopieren");
+pub(in crate::console) const COPY_HOVER: Text = Text::of(
+    "Copies address, identity, state, figures, cause and remedy, for example for an e-mail",
+    "Kopiert Adresse, Kennung, Zustand, Zahlen, Grund und Abhilfe, etwa für eine E-Mail",
+);
+pub(in crate::console) const TEST_RUNS: Text = Text::of("A test is running", "Ein Test läuft");
+pub(in crate::console) const CONNECTED: Text = Text::of("connected", "verbunden");
+pub(in crate::console) const LOST: Text = Text::of("lost", "ausgefallen");
 pub(in crate::console) const OPENING: Text = Text::of("connecting", "wird verbunden");
 pub(in crate::console) const DISCONNECTED: Text = Text::of("disconnected", "getrennt");
 
@@ -147,14 +161,6 @@ pub(in crate::console) fn lost(cause: &str, delivery: &str) -> String {
 /// Returns the accessible name of a button of one device.
 pub(in crate::console) fn of(what: &str, name: &str) -> String {
     format!("{what} {name}")
-}
-
-pub(in crate::console) fn column(side: Option<nima_machine::rig::Side>) -> &'static str {
-    match side {
-        Some(nima_machine::rig::Side::Left) => word("Left", "Links"),
-        Some(nima_machine::rig::Side::Right) => word("Right", "Rechts"),
-        None => word("Both sides", "Beide Seiten"),
-    }
 }
 
 /// Returns the kind of part, on the button that swaps the devices of that kind.

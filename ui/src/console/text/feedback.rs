@@ -42,9 +42,9 @@ pub(in crate::console) fn dead_band_hover() -> String {
 }
 pub(in crate::console) const HOLD_HOVER: Text = Text::of(
     "On: the force stays when the hand stops, so that you feel a steady push. Off: it fades out in the dead \
-     band, as in the paper, and \"Why no force?\" shows how much is not rendered (N).",
+     band, as in the paper, and the Safety panel shows how much is not rendered (N).",
     "Ein: die Kraft bleibt, wenn die Hand anhält; ein stetiger Druck ist spürbar. Aus: sie blendet im Totband aus wie \
-     im Artikel, und „Warum keine Kraft?“ zeigt, wie viel nicht dargestellt wird (N).",
+     im Artikel, und das Panel Sicherheit zeigt, wie viel nicht dargestellt wird (N).",
 );
 pub(in crate::console) const RESEARCH_MODES: Text = Text::of("Research modes", "Modi der Forschung");
 pub(in crate::console) const RESEARCH_MODES_HOVER: Text = Text::of(

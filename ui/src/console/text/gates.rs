@@ -1,4 +1,4 @@
-//! The panel "Why no force?": each gate, and the summary above them.
+//! The gates, and the reason for a missing force above them.
 
 use crate::language::{Text, text_format};
 

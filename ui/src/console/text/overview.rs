@@ -1,17 +1,19 @@
-//! The page that lists all calibrations of the rig.
+//! The set-up page: devices, calibrations and ready check of each arm.
 
 use crate::language::{Text, text_format, word};
 
-pub(in crate::console) const TITLE: Text = Text::of("All calibrations", "Alle Kalibrierungen");
+pub(in crate::console) const TITLE: Text = Text::of("Set-up", "Einrichtung");
 pub(in crate::console) const MEANING: Text = Text::of(
-    "For every arm: date, verdict and later changes of each calibration, and a button to calibrate",
-    "Für jeden Arm: Datum, Urteil, Änderungen seither und eine Schaltfläche zum Kalibrieren",
+    "For every arm: devices, calibrations and ready check, with their state and its reason. Press a tile to go there",
+    "Für jeden Arm: Geräte, Kalibrierungen und Startprüfung, mit Zustand und Grund. Eine Kachel drücken führt dorthin",
 );
-pub(in crate::console) const OPEN: Text = Text::of("All calibrations…", "Alle Kalibrierungen…");
-pub(in crate::console) const CALIBRATION: Text = Text::of("Calibration", "Kalibrierung");
-pub(in crate::console) const MADE: Text = Text::of("Created", "Erstellt");
-pub(in crate::console) const VERDICT: Text = Text::of("Verdict", "Urteil");
-pub(in crate::console) const SINCE: Text = Text::of("Since then", "Seither");
+pub(in crate::console) const OPEN: Text = Text::of("Set-up…", "Einrichtung…");
+pub(in crate::console) const BACK: Text = Text::of("Back to the set-up", "Zurück zur Einrichtung");
+pub(in crate::console) const SHOW: Text = Text::of("Show", "Zeigen");
+pub(in crate::console) const RUN: Text = Text::of("Run", "Ausführen");
+pub(in crate::console) const SIMULATED: Text = Text::of("Simulated", "Simuliert");
+pub(in crate::console) const READY_TILE: Text = Text::of("Ready check", "Startprüfung");
+pub(in crate::console) const NEVER_CHECKED: Text = Text::of("never run", "nie durchgeführt");
 pub(in crate::console) const MAKE: Text = Text::of("Calibrate", "Kalibrieren");
 pub(in crate::console) const REDO: Text = Text::of("Recalibrate", "Neu kalibrieren");
 pub(in crate::console) const NEVER: Text = Text::of("not calibrated", "nicht kalibriert");
@@ -30,7 +32,27 @@ pub(in crate::console) const UNCHECKED: Text = Text::of("trained but not checked
 pub(in crate::console) const HANDLE: Text = Text::of("View, handle", "Bildlage, Handgerät");
 pub(in crate::console) const FUTURE: Text = Text::of("in the future", "in der Zukunft");
 
-/// Returns the accessible name of a button that starts a calibration.
+pub(in crate::console) fn all_connected(devices: usize) -> String {
+    text_format!("all {devices} connected", "alle {devices} verbunden")
+}
+
+pub(in crate::console) fn check_passed(day: &str) -> String {
+    text_format!("passed on {day}", "bestanden am {day}")
+}
+
+pub(in crate::console) fn check_failed(day: &str) -> String {
+    text_format!("not passed on {day}", "nicht bestanden am {day}")
+}
+
+/// A check of another day, or of other devices.
+pub(in crate::console) fn check_outdated(day: &str) -> String {
+    text_format!(
+        "passed on {day}, but not today with these devices",
+        "bestanden am {day}, aber nicht heute mit diesen Geräten"
+    )
+}
+
+/// Returns the accessible name of a tile.
 pub(in crate::console) fn button(verb: &str, arm: &str, calibration: &str) -> String {
     let after = arm.to_lowercase();
     text_format!("{verb} {arm} arm, {calibration}", "{verb}: Arm {after}, {calibration}")

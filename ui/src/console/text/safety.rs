@@ -34,8 +34,8 @@ pub(in crate::console) const FORCE_HOVER: Text = Text::of(
 );
 pub(in crate::console) const NO_DEVICE: Text = Text::of("No device", "Kein Gerät");
 pub(in crate::console) const WHY_FAULT: Text = Text::of("a fault", "eine Störung");
-pub(in crate::console) const ASKED: Text = Text::of("requested", "Soll");
-pub(in crate::console) const HAND: Text = Text::of("hand", "Hand");
+pub(in crate::console) const ASKED: Text = Text::of("Requested", "Soll");
+pub(in crate::console) const HAND: Text = Text::of("In the hand", "In der Hand");
 pub(in crate::console) const NEVER: Text = Text::of("never", "nie");
 
 /// Returns the suffix that names the side of a rig with two arms.

@@ -8,7 +8,6 @@ pub(in crate::console) const FORCE_SPACE: Text = Text::of("Force space", "Kraftr
 pub(in crate::console) const FEEDBACK: Text = Text::of("Feedback", "Rückkopplung");
 pub(in crate::console) const DEVICES: Text = Text::of("Devices", "Geräte");
 pub(in crate::console) const CALIBRATION: Text = Text::of("Calibration", "Kalibrierung");
-pub(in crate::console) const GATES: Text = Text::of("Why no force?", "Warum keine Kraft?");
 pub(in crate::console) const SAFETY: Text = Text::of("Safety", "Sicherheit");
 pub(in crate::console) const HORIZON: Text = Text::of("Prediction error", "Vorhersagefehler");
 pub(in crate::console) const DEGREES: Text = Text::of("Degrees", "Grade");
@@ -37,15 +36,11 @@ pub(in crate::console) const CALIBRATION_HOVER: Text = Text::of(
     "Shows how the force at the tip is obtained, and opens the calibrations that it needs",
     "Zeigt, wie die Kraft an der Spitze bestimmt wird, und öffnet die nötigen Kalibrierungen",
 );
-pub(in crate::console) const GATES_HOVER: Text = Text::of(
-    "Shows why there is no force. A force passes these gates in this order: a closed gate stops it, a \
-    limiting gate reduces it.",
-    "Zeigt, warum keine Kraft da ist. Eine Kraft durchläuft diese Sperren der Reihe nach: eine geschlossene hält sie \
-     auf, eine begrenzende verringert sie.",
-);
 pub(in crate::console) const SAFETY_HOVER: Text = Text::of(
-    "The safety functions between the model and the hand: the interlock and the gates of each arm",
-    "Sicherheitsfunktionen zwischen Modell und Hand: Verriegelung und Sperren jedes Arms",
+    "Why there is no force: a force passes these gates in this order; a closed gate stops it, a limiting gate reduces \
+     it. Below: the states of the interlock",
+    "Warum keine Kraft da ist: eine Kraft durchläuft diese Sperren der Reihe nach; eine geschlossene hält sie auf, eine \
+     begrenzende verringert sie. Darunter: die Zustände der Verriegelung",
 );
 pub(in crate::console) const HORIZON_HOVER: Text = Text::of(
     "Difference between the force that each mode would render now, before the gates, and the force measured now \

@@ -14,12 +14,11 @@ const FORCE_SPACE: f32 = 300.0;
 const FORCE_SPACE_FROM: f32 = 720.0;
 /// Width of the traces.
 const TRACES: f32 = 560.0;
-/// Height of the desk from which calibrations and gates, and degrees and timing, are placed below one another instead
+/// Height of the desk from which degrees and timing are placed below one another instead
 /// of in tabs.
 const TALL_FROM: f32 = 860.0;
 /// Heights of panels that should not need scrolling.
 const FEEDBACK: f32 = 494.0;
-const CALIBRATIONS: f32 = 246.0;
 const HORIZON: f32 = 288.0;
 const DEGREES: f32 = 312.0;
 
@@ -101,8 +100,8 @@ fn research(size: Vec2) -> LayoutNode {
     let [left, right] = if height >= TALL_FROM { tall_sides(height) } else { short_sides(height) };
     let under = if middle > FORCE_SPACE_FROM {
         row(vec![
-            (middle - FORCE_SPACE, tabs(&[Panel::Traces, Panel::Safety])),
-            (FORCE_SPACE, tabs(&[Panel::ForceSpace])),
+            (middle - FORCE_SPACE, tabs(&[Panel::Traces])),
+            (FORCE_SPACE, tabs(&[Panel::Safety, Panel::ForceSpace])),
         ])
     } else {
         tabs(&[Panel::Traces, Panel::Safety, Panel::ForceSpace])
@@ -124,11 +123,7 @@ fn narrow(width: f32, height: f32, traces: f32) -> LayoutNode {
 
 fn tall_sides(height: f32) -> [LayoutNode; 2] {
     [
-        column(vec![
-            (FEEDBACK, tabs(&[Panel::Feedback])),
-            (CALIBRATIONS, tabs(&[Panel::Calibrations])),
-            (height - FEEDBACK - CALIBRATIONS, tabs(&[Panel::Gates])),
-        ]),
+        column(vec![(FEEDBACK, tabs(&[Panel::Feedback])), (height - FEEDBACK, tabs(&[Panel::Calibrations]))]),
         column(vec![
             (HORIZON, tabs(&[Panel::Horizon])),
             (DEGREES, tabs(&[Panel::Degrees, Panel::Tradeoff])),
@@ -140,7 +135,7 @@ fn tall_sides(height: f32) -> [LayoutNode; 2] {
 fn short_sides(height: f32) -> [LayoutNode; 2] {
     let horizon = (height - 150.0).min(HORIZON);
     [
-        tabs(&[Panel::Feedback, Panel::Gates, Panel::Calibrations]),
+        tabs(&[Panel::Feedback, Panel::Calibrations]),
         column(vec![
             (horizon, tabs(&[Panel::Horizon])),
             (height - horizon, tabs(&[Panel::Degrees, Panel::Timing, Panel::Link, Panel::Tradeoff])),

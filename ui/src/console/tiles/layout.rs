@@ -69,10 +69,15 @@ impl PanelLayout {
             self.closed.push(panel);
             self.closed.sort_unstable();
         } else {
-            self.closed.retain(|&closed| closed != panel);
-            self.front.retain(|&front| front != panel);
-            self.front.insert(0, panel);
+            self.show(panel);
         }
+    }
+
+    /// Opens the panel, in front.
+    pub fn show(&mut self, panel: Panel) {
+        self.closed.retain(|&closed| closed != panel);
+        self.front.retain(|&front| front != panel);
+        self.front.insert(0, panel);
     }
 
     /// Returns the tiles of this layout for a desk of this size.
@@ -262,6 +267,8 @@ mod tests {
         for text in [
             r#"{"places":{"panel":"field"}}"#,
             r#"{"places":{"tabs":[]}}"#,
+            // A panel of an earlier version, now part of another one.
+            r#"{"places":{"tabs":[{"panel":"gates"},{"panel":"safety"}]},"front":["gates"]}"#,
             r#"{"places":{"row":[{"share":0,"of":{"tabs":[{"panel":"timing"},{"panel":"timing"}]}}]}}"#,
             r#"{"places":{"column":[{"share":65535,"of":{"row":[]}},{"share":0,"of":{"panel":"traces"}}]}}"#,
         ] {

@@ -1,14 +1,10 @@
 //! Panels of the Technician view: names, purposes, and minimum sizes.
 
-use egui::{Ui, Vec2, vec2};
+use egui::{Vec2, vec2};
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    console::{
-        live::LiveState,
-        panels::{degrees_ui, safety_ui},
-        text::tiles as text,
-    },
+    console::text::tiles as text,
     extras::{self, Extra},
     language::Text,
 };
@@ -16,6 +12,8 @@ use crate::{
 /// Smallest width of a panel of settings, and of one of figures, points.
 const KNOBS: f32 = 276.0;
 const FIGURES: f32 = 308.0;
+/// Smallest width of the table of devices.
+const DEVICES: f32 = 590.0;
 
 /// A kind of panel.
 #[derive(Clone, Copy)]
@@ -25,32 +23,26 @@ struct Kind {
     /// Width and height, points.
     min: [f32; 2],
     fills: bool,
-    shows: Option<fn(&mut Ui, &LiveState)>,
 }
 
 impl Kind {
     /// One that fills the available space.
     const fn filling(title: &'static Text, meaning: &'static Text, min: [f32; 2]) -> Self {
-        Self { title, meaning, min, fills: true, shows: None }
+        Self { title, meaning, min, fills: true }
     }
 
     /// Creates a panel of a fixed length.
     const fn list(title: &'static Text, meaning: &'static Text, least_width: f32) -> Self {
-        Self { title, meaning, min: [least_width, 60.0], fills: false, shows: None }
-    }
-
-    /// Returns whether the panel only shows data from the loop.
-    const fn shows(self, draw: fn(&mut Ui, &LiveState)) -> Self {
-        Self { shows: Some(draw), ..self }
+        Self { title, meaning, min: [least_width, 60.0], fills: false }
     }
 }
 
 /// Declares the panels from one list, in the order of the menu.
 macro_rules! panels {
-    ($(#[$attribute:meta])* enum Panel { $($(#[$doc:meta])* $panel:ident: $kind:expr,)* }) => {
+    ($(#[$attribute:meta])* enum Panel { $($(#[$of_panel:meta])* $panel:ident: $kind:expr,)* }) => {
         $(#[$attribute])*
         pub enum Panel {
-            $($(#[$doc])* $panel,)*
+            $($(#[$of_panel])* $panel,)*
         }
 
         impl Panel {
@@ -77,20 +69,19 @@ panels! {
         Traces: Kind::filling(&text::TRACES, &text::TRACES_HOVER, [480.0, 250.0]),
         /// Measured against rendered force in three dimensions.
         ForceSpace: Kind::filling(&text::FORCE_SPACE, &text::FORCE_SPACE_HOVER, [200.0, 180.0]),
-        /// Interlock and gates of each arm.
-        Safety: Kind::filling(&text::SAFETY, &text::SAFETY_HOVER, [560.0, 120.0]).shows(safety_ui),
+        /// Interlock and gates of each arm, and the reason for a missing force.
+        #[serde(alias = "gates")]
+        Safety: Kind::list(&text::SAFETY, &text::SAFETY_HOVER, KNOBS),
         /// Mode, gain, delay, dead band.
         Feedback: Kind::list(&text::FEEDBACK, &text::FEEDBACK_HOVER, KNOBS),
-        /// Reasons for a missing force.
-        Gates: Kind::list(&text::GATES, &text::GATES_HOVER, KNOBS),
         /// Calibrations in force, and buttons for the wizards.
         Calibrations: Kind::list(&text::CALIBRATION, &text::CALIBRATION_HOVER, KNOBS),
         /// The devices of the rig.
-        Devices: Kind::list(&text::DEVICES, &text::DEVICES_HOVER, KNOBS),
+        Devices: Kind::list(&text::DEVICES, &text::DEVICES_HOVER, DEVICES),
         /// Error of each mode at the horizon.
         Horizon: Kind::list(&text::HORIZON, &text::HORIZON_HOVER, FIGURES),
         /// Chosen polynomial degrees.
-        Degrees: Kind::list(&text::DEGREES, &text::DEGREES_HOVER, FIGURES).shows(degrees_ui),
+        Degrees: Kind::list(&text::DEGREES, &text::DEGREES_HOVER, FIGURES),
         /// Timing of the loop.
         Timing: Kind::list(&text::TIMING, &text::TIMING_HOVER, FIGURES),
         /// The link to the follower's machine.
@@ -121,11 +112,6 @@ impl Panel {
 
     pub fn meaning(self) -> &'static str {
         self.kind().meaning.get()
-    }
-
-    /// Draws the panel, if it only shows data from the loop.
-    pub const fn shows(self) -> Option<fn(&mut Ui, &LiveState)> {
-        self.kind().shows
     }
 
     /// Returns the minimum readable size, points; a smaller panel is scrolled.

@@ -1,18 +1,22 @@
 //! The devices of the rig: identification, connection, test, and assignment to parts.
 //!
-//! Left and right are side by side if there is room. The window carries out a [`RigEdit`] of the rig: it writes the rig file
-//! and restarts the machine.
+//! A table with one line per device, broken ones first. The window carries out a [`RigEdit`] of the rig: it writes the rig
+//! file and restarts the machine.
 
 mod choosing;
+mod rates;
 mod report;
 mod row;
 
-use egui::{Align, Button, Label, Layout, RichText, Ui, vec2};
+use std::time::Instant;
+
+use egui::{Button, Label, RichText, Ui, vec2};
+use nima_devices::Health;
 use nima_machine::{
     config::ChosenDevice,
     messages::LoopState,
     rig::{
-        Gauges, PartKind, RigPart, Roster, SIDES, Side,
+        Gauges, PartKind, RigPart, Side,
         checkup::{BLOCKS, Checkup, TestSubject},
     },
 };
@@ -24,10 +28,9 @@ use crate::console::{
 };
 use crate::report_text::{obstacle_text, side_word};
 use choosing::Chooser;
-use row::row_ui;
+use rates::RateHistory;
+use row::{headings_ui, row_ui, urgency};
 
-/// Width from which left and right are side by side.
-const TWO_COLUMNS: f32 = 600.0;
 /// A test without data for this time is aborted.
 const TEST_MAX: std::time::Duration = std::time::Duration::from_secs(6);
 
@@ -56,6 +59,9 @@ pub struct DevicesState {
     results: Vec<(usize, Checkup)>,
     chooser: Option<Chooser>,
     report: Option<String>,
+    rates: RateHistory,
+    /// Indices in the roster, in the order of the rows.
+    order: Vec<usize>,
     /// State of the endoscope and remedy; `None` for a rig without one.
     pub(in crate::console) image: Option<[String; 2]>,
     pub(in crate::console) is_starting: bool,
@@ -74,6 +80,21 @@ impl DevicesState {
         self.test = None;
         self.chooser = None;
         self.results.clear();
+        self.order.clear();
+    }
+
+    /// Records the rates of the devices; call it in every frame.
+    pub(in crate::console) fn sample(&mut self, live: &LiveState) {
+        self.rates.sample(&live.healths.devices, Instant::now());
+    }
+
+    /// Puts broken devices first. While the pointer is on the rows they stay: none may move under it.
+    fn sort(&mut self, healths: &[Health], is_pointed_at: bool) {
+        if self.order.len() == healths.len() && is_pointed_at {
+            return;
+        }
+        self.order = (0..healths.len()).collect();
+        self.order.sort_by_key(|place| urgency(healths[*place].standing));
     }
 
     /// Returns whether a test is running, which needs every block of data.
@@ -149,20 +170,12 @@ pub fn devices_ui(ui: &mut Ui, live: &LiveState, state: &mut DevicesState) -> Op
         ui.add(Label::new(report).wrap());
     }
     ui.add_space(4.0);
-    let columns = columns_of(&live.roster, ui.available_width());
-    ui.columns(columns[0].len(), |columns_ui| {
-        for row in &columns {
-            for (ui, (side, places)) in columns_ui.iter_mut().zip(row) {
-                // Columns justify their text, but ragged lines are easier to read in a narrow column.
-                ui.with_layout(Layout::top_down(Align::Min), |ui| {
-                    ui.label(small(text::devices::column(*side)));
-                    for place in places {
-                        change = row_ui(ui, live, state, *place, refused).or(change.take());
-                    }
-                });
-            }
-        }
-    });
+    let is_pointed_at = ui.ui_contains_pointer();
+    state.sort(&live.healths.devices, is_pointed_at);
+    headings_ui(ui);
+    for place in state.order.clone() {
+        change = row_ui(ui, live, state, place, refused).or(change);
+    }
     for (side, obstacle) in Side::ALL.into_iter().zip(&live.healths.obstacles) {
         if let Some(obstacle) = obstacle {
             ui.add(Label::new(text::devices::not_to_be_engaged(side_word(side), &obstacle_text(obstacle))).wrap());
@@ -181,23 +194,6 @@ fn image_ui(ui: &mut Ui, state: &DevicesState) {
     if !cure.is_empty() {
         ui.add(Label::new(weak(cure)).wrap());
     }
-}
-
-type DeviceColumn = (Option<Side>, Vec<usize>);
-
-/// Returns the rows of columns: left and right side by side if there is room, shared devices in a separate column.
-fn columns_of(roster: &Roster, width: f32) -> Vec<Vec<DeviceColumn>> {
-    let of = |side: Option<Side>| {
-        let is_of = |place: &usize| roster[*place].part.and_then(RigPart::side) == side;
-        (side, (0..roster.len()).filter(is_of).collect::<Vec<_>>())
-    };
-    let columns = [of(Some(Side::Left)), of(Some(Side::Right)), of(None)];
-    let columns: Vec<DeviceColumn> = columns.into_iter().filter(|(_, places)| !places.is_empty()).collect();
-    let side_by_side = ((width / TWO_COLUMNS * SIDES as f32) as usize).clamp(1, columns.len().max(1));
-    if side_by_side == 1 {
-        return columns.into_iter().map(|column| vec![column]).collect();
-    }
-    columns.chunks(side_by_side).map(<[DeviceColumn]>::to_vec).collect()
 }
 
 /// Draws what is above the devices: explanation of the lights, the test of all devices, the swaps.
@@ -236,4 +232,29 @@ fn head_ui(ui: &mut Ui, live: &LiveState, state: &mut DevicesState, refused: Opt
         ui.add(Label::new(RichText::new(text::devices::not_changeable(refused)).color(theme::now().text_weak)).wrap());
     }
     change
+}
+
+#[cfg(test)]
+mod tests {
+    use nima_devices::{ConnectionState, Loss};
+
+    use super::*;
+
+    #[test]
+    fn broken_devices_are_first_and_no_row_moves_under_the_pointer() {
+        let health = |standing| {
+            let mut health = Health::opening();
+            health.standing = standing;
+            health
+        };
+        let connected = health(ConnectionState::Connected);
+        let lost = health(ConnectionState::Lost(Loss::Silent));
+        let mut state = DevicesState::default();
+        state.sort(&[connected, health(ConnectionState::Closed), connected, lost], true);
+        assert_eq!(state.order, [3, 1, 0, 2]);
+        state.sort(&[lost, connected, connected, connected], true);
+        assert_eq!(state.order, [3, 1, 0, 2], "a person may be about to press a button");
+        state.sort(&[lost, connected, connected, connected], false);
+        assert_eq!(state.order, [0, 1, 2, 3]);
+    }
 }

@@ -8,7 +8,6 @@ use std::{
 
 use anyhow::anyhow;
 use clap::{Args, Subcommand};
-use indicatif::{ProgressBar, ProgressStyle};
 use nima_core::tip_force::{ForceModel, TrainingSettings};
 use nima_recording::tip_force::{DataSet, Selection, TipForceError, save_model};
 use nima_training::{TrainingProgress, train_model};
@@ -90,11 +89,17 @@ pub(super) fn run(command: &TrainCommand) -> anyhow::Result<()> {
         ..TrainingSettings::default()
     };
     let leave = Leave::on_signals()?;
-    let bar = bar(arguments.json);
+    let shows = !arguments.json && io::stderr().is_terminal();
     let start = std::time::Instant::now();
     let names = [arguments.sensor.clone(), arguments.tool.clone()];
-    let model = train_model(&data, &settings, names, leave.flag(), &|progress| show(&bar, progress));
-    bar.finish_and_clear();
+    let model = train_model(&data, &settings, names, leave.flag(), &|progress| {
+        if shows {
+            show(progress);
+        }
+    });
+    if shows {
+        eprint!("{CLEAR_LINE}");
+    }
     let model = model?;
     save_model(&model, &arguments.out)?;
     let seconds = start.elapsed().as_secs_f64();
@@ -111,19 +116,16 @@ pub(super) fn run(command: &TrainCommand) -> anyhow::Result<()> {
     output::line(&as_text(&model, arguments, seconds))
 }
 
-fn bar(hidden: bool) -> ProgressBar {
-    if hidden || !io::stderr().is_terminal() {
-        return ProgressBar::hidden();
-    }
-    let style = ProgressStyle::with_template("{elapsed} {wide_bar} {pos}/{len} epochs  {msg}");
-    ProgressBar::new(1).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
-}
+/// Returns to the start of the line of a terminal, and clears it.
+const CLEAR_LINE: &str = "\r\x1b[2K";
 
-/// Shows the progress; if a member stops early, its part of the bar is complete.
-fn show(bar: &ProgressBar, progress: &TrainingProgress) {
-    bar.set_length((progress.epochs_max * progress.members) as u64);
-    bar.inc(if progress.finished { (progress.epochs_max - progress.epoch + 1) as u64 } else { 1 });
-    bar.set_message(format!("network {}: held-out loss {:.4}", progress.member + 1, progress.best));
+/// Shows the progress in one line of the terminal.
+fn show(progress: &TrainingProgress) {
+    let TrainingProgress { member, members, epoch, epochs_max, best, .. } = progress;
+    eprint!(
+        "{CLEAR_LINE}network {} of {members}: epoch {epoch} of at most {epochs_max}, held-out loss {best:.4}",
+        member + 1
+    );
 }
 
 /// Writing to a String cannot fail.

@@ -53,8 +53,8 @@ impl<L: Link> Pair<L> {
 
         // The follower's half: readings, tip force, identification, packets into the link.
         let inputs = inputs.map(|inputs| self.take_in(inputs, timing));
-        if inputs.is_none() && self.link.far().is_none() {
-            self.follower.miss(timing);
+        if inputs.is_none() {
+            self.link.miss(&mut self.follower, timing);
         }
 
         // The permissions of the interlock.
@@ -115,10 +115,7 @@ impl<L: Link> Pair<L> {
         self.leader.gates.move_hand(inputs.hand_s(now_s), inputs.hand.position_m);
         // A sample with an unusable force counts as missing: no packet is sent for it.
         let sends = is_usable && !self.withholds(Watchdog::Link);
-        match self.link.far_mut() {
-            Some(far) => far.admit(&self.follower.force),
-            None => self.follower.identify(&inputs.tip_m, timing, sends.then_some(&mut self.link)),
-        }
+        self.link.identify(&mut self.follower, &inputs.tip_m, timing, sends);
         self.samples.keep(&inputs, now_s);
         inputs
     }
@@ -127,7 +124,7 @@ impl<L: Link> Pair<L> {
     fn observed(&self, inputs: &Inputs, now_s: f64) -> PlausibilityInput {
         let force = &self.follower.force;
         let silent_s = inputs.silent_s;
-        let is_far = self.link.far().is_some();
+        let is_far = self.link.is_far();
         PlausibilityInput {
             t_s: now_s,
             raw: inputs.raw,
@@ -202,9 +199,7 @@ impl<L: Link> Pair<L> {
             return;
         }
         self.follower.force = NO_FORCE;
-        if let Some(far) = self.link.far_mut() {
-            far.mute();
-        }
+        self.link.mute();
     }
 
     /// Receives the current packet, checks it, and raises a fault if it is too old.
@@ -265,7 +260,7 @@ impl<L: Link> Pair<L> {
     /// that machine evaluates the modes.
     fn judge_modes(&mut self, came: bool, rendered: &RenderedForces) {
         let force = &self.follower.force;
-        if came && force.source.is_known() && self.link.far().is_none() {
+        if came && force.source.is_known() && !self.link.is_far() {
             self.accuracy.add(rendered, self.follower.identifier.report().modes, &force.tip_n);
         }
     }
@@ -318,7 +313,7 @@ impl<L: Link> Pair<L> {
             rendered_n: felt.rendered_n,
             gates: felt.gates,
             gate_settings: *self.leader.gates.chain.settings(),
-            identification: *self.link.far().map_or_else(|| self.follower.identifier.report(), |far| far.report()),
+            identification: *self.link.report(&self.follower),
             wake_s: timing.wake_s,
             work_s: timing.work_s,
             sample_to_force_s: timing.sample_to_force_s,

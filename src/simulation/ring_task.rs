@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 use nima_machine::rig::{SIDES, Side};
 
 use crate::{
-    hand::{HandMove, HandTaskPart},
+    hand_task::{HandMove, HandTaskPart},
     physics::{ObjectSettings, RingStart},
 };
 

@@ -13,7 +13,7 @@ use self::{
     handling::{PoseMotion, is_handling},
     workspace::Workspace,
 };
-use super::{hand::HandMove, trocar::shaft, world::HandForces, wrist::along_shaft};
+use super::{hand_task::HandMove, trocar::shaft, world::HandForces, wrist::along_shaft};
 use crate::scene::{Flaw, PersonModel as PersonConfig, Scene};
 
 /// Speed at which the tool is rotated, rad/s, and minimum duration of a rotation, s.

@@ -103,6 +103,12 @@ impl DriftCheck {
         }
         self.newest = sample.copied();
         self.fresh_s = t_s;
+        self.examine(sample, since_s, t_s);
+        self.drift
+    }
+
+    /// Examines a new sample, this long after the check began (s).
+    fn examine(&mut self, sample: Option<&WristSample>, since_s: f64, t_s: f64) {
         let field = sample.filter(|sample| sample.is_finite()).and_then(|sample| self.model.field_m_s2(sample));
         let late = since_s > TIMEOUT_S;
         match (sample, field) {
@@ -124,7 +130,6 @@ impl DriftCheck {
                 }
             }
         }
-        self.drift
     }
 
     /// Evaluates an interval of this multiple of the still time.

@@ -112,7 +112,7 @@ impl<L: Link> PairLink<L> {
         self.delay_s
     }
 
-    /// Returns whether the follower's half runs at another machine. Its delay is then measured, and it judges the modes.
+    /// Returns whether the follower's half runs at another machine, which then judges the modes; the delay is measured.
     pub(super) const fn is_far(&self) -> bool {
         self.is_far
     }

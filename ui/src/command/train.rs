@@ -1,10 +1,6 @@
 //! `nima train`: trains models from data.
 
-use std::{
-    fmt::Write as _,
-    io::{self, IsTerminal as _},
-    path::PathBuf,
-};
+use std::{fmt::Write as _, path::PathBuf};
 
 use anyhow::anyhow;
 use clap::{Args, Subcommand};
@@ -14,7 +10,7 @@ use nima_training::{TrainingProgress, train_model};
 use serde::Serialize;
 
 use super::output;
-use crate::shutdown::Leave;
+use crate::{shutdown::Leave, stderr::show_progress};
 
 #[derive(Debug, Subcommand)]
 pub(super) enum TrainCommand {
@@ -89,17 +85,14 @@ pub(super) fn run(command: &TrainCommand) -> anyhow::Result<()> {
         ..TrainingSettings::default()
     };
     let leave = Leave::on_signals()?;
-    let shows = !arguments.json && io::stderr().is_terminal();
     let start = std::time::Instant::now();
     let names = [arguments.sensor.clone(), arguments.tool.clone()];
     let model = train_model(&data, &settings, names, leave.flag(), &|progress| {
-        if shows {
-            show(progress);
+        if !arguments.json {
+            show_progress(Some(&progress_text(progress)));
         }
     });
-    if shows {
-        eprint!("{CLEAR_LINE}");
-    }
+    show_progress(None);
     let model = model?;
     save_model(&model, &arguments.out)?;
     let seconds = start.elapsed().as_secs_f64();
@@ -116,16 +109,9 @@ pub(super) fn run(command: &TrainCommand) -> anyhow::Result<()> {
     output::line(&as_text(&model, arguments, seconds))
 }
 
-/// Returns to the start of the line of a terminal, and clears it.
-const CLEAR_LINE: &str = "\r\x1b[2K";
-
-/// Shows the progress in one line of the terminal.
-fn show(progress: &TrainingProgress) {
+fn progress_text(progress: &TrainingProgress) -> String {
     let TrainingProgress { member, members, epoch, epochs_max, best, .. } = progress;
-    eprint!(
-        "{CLEAR_LINE}network {} of {members}: epoch {epoch} of at most {epochs_max}, held-out loss {best:.4}",
-        member + 1
-    );
+    format!("network {} of {members}: epoch {epoch} of at most {epochs_max}, held-out loss {best:.4}", member + 1)
 }
 
 /// Writing to a String cannot fail.

@@ -61,6 +61,7 @@ impl RoundTrip {
     fn step(&mut self, seconds: f64, rate_hz: f64) {
         self.mean_s += (seconds - self.mean_s) / Self::MEMORY;
         let ticks = self.mean_s * rate_hz;
+        // Half a tick would be the nearest one, but jitter would then switch between two values.
         if (ticks - f64::from(self.ticks)).abs() > 0.75 {
             self.ticks = ticks.round() as u16;
         }
@@ -97,6 +98,7 @@ impl FollowerThere {
             view: ViewOrientation::Fixed,
             frames: FrameSample { leader_from_handle: here.frames.leader_from_handle, ..FrameSample::default() },
             switches: here.switches,
+            // Both ends may switch drives off: the handle here and the arm there.
             powered: here.powered && far.powered,
             obstacle: far.is_obstructed.then_some(EngageBlocker::FarEnd),
             age_s: here.age_s,
@@ -123,6 +125,7 @@ impl HalfThere for FollowerThere {
         wire.receive(now_s, &mut |bytes| {
             let Some(mut message) = FollowerMessage::unpack(bytes) else { return };
             let round_trip_s = now_s - message.t_s;
+            // An echo of a command that was not sent yet: it answers an earlier run of this console.
             if round_trip_s < 0.0 {
                 return;
             }
@@ -130,6 +133,7 @@ impl HalfThere for FollowerThere {
                 *received = Some(PeerState { message, at_s: now_s, delay: RoundTrip::first(round_trip_s, rate_hz) });
                 return;
             };
+            // Datagrams may overtake each other; the older state must not return.
             if message.t_s <= last.message.t_s {
                 return;
             }
@@ -188,6 +192,7 @@ impl SideStatus {
     fn report(&mut self, bulletin: &PeerStatus<'_>, far: Option<&FollowerSide>) -> LeaderSide {
         let was_driven = self.state.is_some_and(|state| state.permits().drives);
         if bulletin.state.permits().drives && !was_driven {
+            // A count instead of a flag: a message that is lost or repeated then neither loses nor repeats the command.
             self.engagements = self.engagements.wrapping_add(1);
         }
         self.state = Some(bulletin.state);

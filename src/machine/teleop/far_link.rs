@@ -10,7 +10,8 @@ use crate::{
 };
 
 /// If no new packet arrives from the link for longer than this beyond its delay, s, that is a fault. The age gate has
-/// removed the force long before.
+/// removed the force long before. Longer than the pauses of an ordinary network, so that engagements do not end with
+/// every lost burst.
 pub(super) const LINK_SILENT_AFTER_S: f64 = 0.1;
 /// Parameters that were not renewed for this long are not used for a force, s: a matched model remembers some seconds,
 /// and a renewal arrives every 20 ms.
@@ -180,6 +181,7 @@ impl<L: Link> PairLink<L> {
 
     /// Records the age of the delivered packet, s; `None` without a packet.
     pub(super) fn note_age(&mut self, age_s: Option<f64>) {
+        // Over a network the age is judged by the silence of the messages instead.
         self.age_s = age_s.filter(|_| !self.is_far).unwrap_or(0.0);
     }
 

@@ -120,7 +120,7 @@ impl KinovaDriver {
         }
     }
 
-    /// Returns the commands joint angles, rad, in the turns of the readings: the next point of a path within the
+    /// Commands joint angles, rad, in the turns of the readings: the next point of a path within the
     /// [limits](crate::kinova::KinovaSettings::joint_limits), starting at [`KinovaDriver::command_rad`]. A command
     /// beyond the limits is refused and counted, and ends servoing, because its plan is wrong.
     ///

@@ -40,7 +40,7 @@ impl ConsoleApp {
         let opened = if here && self.wizards.open.is_none() {
             Ok(())
         } else {
-            let scene = Scene::load(scene).map_err(|error| error.to_string());
+            let scene = Scene::load(scene).map_err(|error| crate::report_text::quoted(&error));
             let scene = scene.map(|scene| if side == Side::Left { scene.with_left_hand() } else { scene });
             scene.and_then(|scene| self.restart_in(scene))
         };

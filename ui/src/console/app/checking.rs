@@ -74,7 +74,9 @@ impl ConsoleApp {
         let rig = self.live.rig.clone();
         let scene = self.live.scene.clone();
         let opened = if self.live.rig.devices.is_none() && scene.person.is_none() {
-            Scene::load(SCENE).map_err(|error| error.to_string()).and_then(|scene| self.restart_in(scene))
+            Scene::load(SCENE)
+                .map_err(|error| crate::report_text::quoted(&error))
+                .and_then(|scene| self.restart_in(scene))
         } else if rests {
             Ok(())
         } else {
@@ -133,7 +135,7 @@ impl ConsoleApp {
         let saved = self.active.store().map(|store| store.save_check(&record));
         self.checking.saved = Some(match saved {
             Some(Ok(path)) => text::ready::saved(&path),
-            Some(Err(error)) => text::ready::not_saved(&chain(&error)),
+            Some(Err(error)) => text::ready::not_saved(&crate::report_text::quoted(&chain(&error))),
             None => text::ready::not_saved(text::calibrations::NO_FOLDER.get()),
         });
         self.checking.valid = None;

@@ -257,7 +257,7 @@ impl ConsoleApp {
 
     /// Ends the loop and restarts it idle: only the operator engages it. Not possible in a stop or a fault.
     fn restart(&mut self, rig: RigConfig, scene: Scene) -> Result<(), String> {
-        rig.validate().and_then(|()| scene.validate()).map_err(|error| error.to_string())?;
+        rig.validate().and_then(|()| scene.validate()).map_err(|error| crate::report_text::quoted(&error))?;
         self.take_in();
         if let Some(why) = text::calibrations::closed(self.live.state()) {
             return Err(why.to_owned());
@@ -288,8 +288,12 @@ impl ConsoleApp {
                 let audiences = self.sessions.blind_audiences(&plan, &run.name());
                 run.start(&plan, speed, (self.sessions.reel(), audiences))
             }
-            (None, Some(speed)) => nima_simulation::start_watched(&plan, speed).map_err(|error| error.to_string()),
-            (None, None) => start_recorded(&plan, &mut self.sessions, line).map_err(|error| error.to_string()),
+            (None, Some(speed)) => {
+                nima_simulation::start_watched(&plan, speed).map_err(|error| crate::report_text::quoted(&error))
+            }
+            (None, None) => {
+                start_recorded(&plan, &mut self.sessions, line).map_err(|error| crate::report_text::quoted(&error))
+            }
         };
         let started = started.map_err(|error| text::calibrations::not_started_again(&error));
         let rough_edges = self.live.rough_edges;

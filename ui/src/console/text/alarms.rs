@@ -63,7 +63,8 @@ pub(in crate::console) fn fault(cause: &str, t_s: f64) -> String {
     text_format!("{cause} (at {t_s:.1} s)", "{cause} (bei {t_s:.1} s)")
 }
 
-/// Returns the next step of the operator while there is no alarm; `closed`: reason why the loop cannot be engaged.
+/// Returns the next step of the operator while there is no alarm; `closed`: reason why the loop cannot be engaged, a sentence
+/// without a full stop.
 pub(in crate::console) fn next_step(state: LoopState, closed: Option<&str>) -> String {
     match (state, closed) {
         (LoopState::Idle, None) => {
@@ -73,7 +74,7 @@ pub(in crate::console) fn next_step(state: LoopState, closed: Option<&str>) -> S
             )
         }
         (LoopState::Idle, Some(why)) => {
-            text_format!("No active alarms. Not engaged: {why}", "Keine Alarme. Nicht gekoppelt: {why}")
+            text_format!("No active alarms; not engaged. {why}.", "Keine Alarme; nicht gekoppelt. {why}.")
         }
         (LoopState::Stopped, _) => text_format!(
             "No active alarms. Stopped: press Release stop, then Engage.",
@@ -130,7 +131,7 @@ pub(in crate::console) fn player_failed(status: &impl std::fmt::Display) -> Stri
 }
 
 pub(in crate::console) fn player_not_started(error: &impl std::fmt::Display) -> String {
-    text_format!("The alarm sound could not be played: {error}", "Alarmton nicht abspielbar: {error}")
+    text_format!("The alarm sound could not be played: {error}", "Alarmton nicht abspielbar: „{error}“")
 }
 
 /// Returns the alarm in the strip; `remarks` mention further alarms and the acknowledgement.
@@ -147,4 +148,16 @@ pub(in crate::console) fn others(count: usize) -> String {
 
 pub(in crate::console) fn entry(began: &str, until: &str, priority: &str, standing: &str) -> String {
     text_format!("{began} to {until}: {priority}, {standing}", "{began} bis {until}: {priority}, {standing}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The reason is a sentence of its own: after a colon its capital letter would look wrong.
+    #[test]
+    fn the_reason_why_the_loop_is_not_engaged_is_a_separate_sentence() {
+        let next = next_step(LoopState::Idle, Some("Close the calibration wizard first"));
+        assert_eq!(next, "No active alarms; not engaged. Close the calibration wizard first.");
+    }
 }

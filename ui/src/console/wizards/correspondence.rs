@@ -81,7 +81,7 @@ impl CorrespondenceWizard {
 
     fn fit(&mut self) {
         let enough = self.session.pushes() >= PUSHES_MIN;
-        self.report = enough.then(|| self.session.report().map_err(|error| error.to_string()));
+        self.report = enough.then(|| self.session.report().map_err(|error| crate::report_text::quoted(&error)));
         self.frame.saved = None;
     }
 

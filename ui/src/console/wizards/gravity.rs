@@ -95,8 +95,8 @@ impl GravityWizard {
 
     /// Results from other poses are no longer valid.
     fn fit(&mut self) {
-        self.report =
-            (self.session.poses().len() >= POSES_MIN).then(|| self.session.report().map_err(|error| error.to_string()));
+        self.report = (self.session.poses().len() >= POSES_MIN)
+            .then(|| self.session.report().map_err(|error| crate::report_text::quoted(&error)));
         self.pass = None;
         self.frame.saved = None;
     }
@@ -307,7 +307,7 @@ impl Wizard for GravityWizard {
     fn go_to(&mut self, step: usize) {
         self.frame.step = step;
         if step == RESULT && self.report.is_none() {
-            self.report = Some(self.session.report().map_err(|error| error.to_string()));
+            self.report = Some(self.session.report().map_err(|error| crate::report_text::quoted(&error)));
         }
         if step == FREE_MOTION && self.pass.is_none() {
             let model = self.good_report().and_then(GravityReport::chosen_fit).map(|fit| fit.model);

@@ -10,7 +10,7 @@ use crate::console::{
     text, theme,
     widgets::{Sign, sign, sign_ui, small},
 };
-use crate::report_text::{loss_text, role_name};
+use crate::report_text::{loss_text, quoted, role_name};
 
 const BUTTON: Vec2 = vec2(62.0, 22.0);
 /// Radius of the light.
@@ -75,7 +75,7 @@ fn light_ui(ui: &mut Ui, live: &LiveState, entry: &RosterEntry, place: usize) {
 }
 
 fn trouble_ui(ui: &mut Ui, entry: &RosterEntry, trouble: &DeviceError) {
-    ui.add(Label::new(trouble.to_string()).wrap());
+    ui.add(Label::new(quoted(trouble)).wrap());
     ui.add(Label::new(small(trouble.cure())).wrap());
     if let (DeviceError::DeviceFault { .. }, Some(clear)) = (trouble, &entry.clear_faults) {
         let button = ui.add(Button::new(small(text::devices::CLEAR_FAULTS.get())).min_size(vec2(84.0, 22.0)));

@@ -190,7 +190,7 @@ impl FrameWizard {
     }
 
     fn fit(&mut self) {
-        self.report = self.job.as_ref().map(|job| job.report().map_err(|error| error.to_string()));
+        self.report = self.job.as_ref().map(|job| job.report().map_err(|error| crate::report_text::quoted(&error)));
     }
 
     fn outcome(&self) -> Option<&Outcome> {

@@ -336,7 +336,7 @@ pub(in crate::extras::user_studies) fn report_written(page: &Path) -> String {
 }
 
 pub(in crate::extras::user_studies) fn report_failed(why: &str) -> String {
-    text_format!("Not written: {why}", "Nicht geschrieben: {why}")
+    text_format!("Not written: {why}", "Nicht geschrieben: „{why}“")
 }
 
 /// Returns the journal entry.

@@ -188,8 +188,8 @@ fn hash(compressed: &CompressedFrame) -> u64 {
     hasher.finish()
 }
 
-/// Delay of images from the camera's time stamps: the minimum difference between the two clocks is that of an image
-/// without delay.
+/// Delay of images from the camera's time stamps: an image without delay has the minimum difference between the two
+/// clocks.
 #[derive(Debug, Default)]
 struct Delay {
     begin: Option<Instant>,

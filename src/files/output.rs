@@ -80,7 +80,7 @@ pub fn write_private(path: &Path, text: &str) -> io::Result<()> {
 }
 
 /// Checks whether [`write_atomically`] could replace `path` without destroying one of the `inputs`. Call it before
-/// computing the result that is to be written.
+/// computing the result for the file.
 ///
 /// # Errors
 /// Everything that [`write_atomically`] refuses, a missing folder, and an input that is the same file, also under

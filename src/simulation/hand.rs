@@ -17,9 +17,9 @@ const TREMOR_HZ: [f64; 3] = [8.3, 9.7, 11.6];
 
 /// Maximum speed at which fingers open or close a gripper, rad/s.
 const GRIP_RAD_S: f64 = 4.0;
-/// Maximum speed, m/s, and acceleration, m/s^2, at which a hand is led from the screen. A hand that moves by itself reaches
-/// 4.3 m/s^2 over 30 mm in 0.2 s. Without the limit, a hand that starts in the direction of the force would look like a
-/// handle that nobody holds.
+/// Maximum speed, m/s, and acceleration, m/s^2, at which a hand is led from the screen. A hand that moves by itself
+/// reaches 4.3 m/s^2 over 30 mm in 0.2 s. Without the limit, a hand that starts in the direction of the force would
+/// look like a handle without a hand.
 const GUIDE_M_S: f64 = 0.15;
 const GUIDE_M_S2: f64 = 2.0;
 /// Time constant with which a led hand ends its motion, s.
@@ -81,7 +81,7 @@ pub struct Hand {
     held_open_rad: Option<f64>,
     /// Position at which it waits while the task is paused.
     waits_m: Option<Vector3<f64>>,
-    /// What the hand intended last: its task, or where it is guided.
+    /// Last intention of the hand: its task, or where it is guided.
     intended: Intention,
     /// The hand is guided, or on its way back to the task.
     is_led: bool,
@@ -308,7 +308,7 @@ mod tests {
         assert!(!hand.is_led, "it has taken up its task");
     }
 
-    /// With 8 m/s^2 and more, such a hand would look to the governor like a handle that nobody holds.
+    /// With 8 m/s^2 and more, such a hand would look to the governor like a handle without a hand.
     #[test]
     fn a_hand_that_presses_does_not_yield_when_it_begins_to_be_led() {
         for (aim_m, guided) in [(0.04, true), (-0.04, true), (0.0, false)] {

@@ -122,7 +122,7 @@ impl MotionTrack {
 /// Returns the position if it is usable: finite and not absurd.
 pub(super) fn usable_position(position: Lanes, scales: &Scales) -> Option<Lanes> {
     let limit = ABSURD * scales.position_m;
-    // NaN fails this comparison, too, so it needs no test of its own.
+    // NaN fails this comparison, too, so it needs no separate test.
     position.0.iter().all(|x| x.abs() <= limit).then_some(position)
 }
 

@@ -345,7 +345,7 @@ impl CameraOpening<'_> {
             Err(error) if error.raw_os_error() == Some(libc::ENOSPC) => {
                 Err(EndoscopeError::NoBandwidth { path: self.place.to_owned() })
             }
-            // Any other error has no remedy of its own.
+            // No other error has a specific remedy.
             answer => answer.map_err(|error| report(self.place, &error, "starting the stream")),
         }
     }

@@ -14,7 +14,7 @@ const MOVES: u32 = 4;
 const MEMORY: f64 = 1000.0;
 /// Number of late ticks among these that causes a shift: one in a hundred.
 const LATE_MAX: f64 = 10.0;
-/// Number of ticks at one phase, without too many late ones, after which the phase counts as good: 10 s.
+/// Number of ticks at one phase, without too many late ones, until the phase counts as good: 10 s.
 const GOOD: u64 = 10_000;
 /// A device that sends less often than the loop reads is late at every phase; the search is then repeated after a
 /// minute.

@@ -249,7 +249,7 @@ impl Person {
         self.turn(dt_s);
     }
 
-    /// Leans on the stand in about every other push; the others are correct.
+    /// Supports itself on the tissue's frame in about every other push; the others are correct.
     fn lean(&mut self) {
         let leans_n = if self.noise.uniform() < 0.5 { 1.2 } else { 0.0 };
         self.stand = Vector3::from_fn(|_, _| leans_n * self.noise.gaussian());

@@ -1,7 +1,8 @@
 //! Last gate: brakes a released handle instead of pushing it.
 //!
-//! Input: the time of the tick (s), the handle's reading (m) with its time (s), and the force that all other gates pass (`F_d`, N).
-//! Output: the force for the hand (N), the withheld fraction and the reason. The only model is that of the handle: [`FreeHandle`].
+//! Input: the time of the tick (s), the handle's reading (m) with its time (s), and the force that all other gates pass
+//! (`F_d`, N). Output: the force for the hand (N), the withheld fraction and the reason. The handle is the only model:
+//! [`FreeHandle`].
 //!
 //! The force of the hand on the handle follows from the readings and the applied force at true times ([`observer`], [`fit`]).
 //! [`evidence`] compares this force with the limits of a hand. There are four states:
@@ -261,8 +262,8 @@ impl<const D: usize> Governor<D> {
             // No brake while in doubt: a hand that is present must never be braked.
             GripState::Doubtful { mut since, force_n, ripe_s } => {
                 let ripe = since.faded_s > ripe_s;
-                // The handle moves along the former force, which was strong enough to tell this from a slow motion of
-                // the hand.
+                // The handle moves along the former force, which was strong enough to distinguish this from a slow
+                // motion of the hand.
                 let coasting = now.velocity_m_s.dot(&force_n) > OUT_M_S * force_n.norm() && force_n.norm() > COASTING_N;
                 self.notice(&mut since, &past, &now, dt_s, ripe);
                 since.coasts_s = if coasting { since.coasts_s } else { 0.0 };
@@ -354,7 +355,7 @@ impl<const D: usize> Governor<D> {
 impl Since {
     /// Returns the grip that this shows, if any.
     fn verdict<const D: usize>(&self) -> Option<GripState<D>> {
-        // A pull is examined first: if the findings contradict each other, the hand is there.
+        // A pull is examined first: if the findings contradict each other, a hand is assumed.
         if self.pulls_s >= PULLS_S {
             Some(GripState::Held)
         } else if self.rests_s > GONE_AFTER_S {

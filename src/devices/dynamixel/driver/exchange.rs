@@ -61,8 +61,8 @@ impl<T: ByteStream> DynamixelDriver<T> {
     fn take(&mut self, id: u8, body: &[u8], now_s: f64) -> Result<Option<TimedReading<ServoReading>>, Loss> {
         let plain = body.len() == MOTION_BYTES + 1;
         let condition = body.len() == CONDITION_BYTES + 1;
-        // Each block of a fast answer has an error, an id and two bytes of CRC in addition to its data; the CRC of the
-        // last block is that of the packet, which the decoder has removed.
+        // Each block of a fast answer has an error, an id and two bytes of CRC in addition to its data; the decoder has
+        // already removed the CRC of the last block, which is also the packet's.
         let fast = id == BROADCAST && body.len() + 2 == SERVOS * (MOTION_BYTES + 4);
         if !(plain || condition || fast || body.len() == 1) {
             self.wrong += 1;

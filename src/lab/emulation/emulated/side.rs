@@ -1,8 +1,8 @@
 //! World of one side, with a jointed arm in it: the data source of every emulator of the side.
 //!
-//! Time is that of the common clock (s). Whenever an emulator reads the world, the world advances to that time in fixed
-//! steps of 1 ms. Positions in m, forces in N, in `world` unless the name says otherwise. The joints follow the arm's commands
-//! like the simulated follower or, while its drives are off, the hands of the technician.
+//! Times are on the common clock (s). Whenever an emulator reads the world, the world advances to that time in fixed
+//! steps of 1 ms. Positions in m, forces in N, in `world` unless the name says otherwise. The joints follow the arm's
+//! commands like the simulated follower or, while its drives are off, the hands of the technician.
 
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 use nima_core::{

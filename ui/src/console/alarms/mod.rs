@@ -192,8 +192,8 @@ pub fn judge(signs: &Signs) -> Vec<Alarm> {
     }
     alarms.extend(signs.missing.iter().map(missing));
     if signs.missed_fraction > MISSED_FRACTION_MAX {
-        // While no side is driven, nobody can feel missed periods, so they rank below the reasons why the arm cannot be
-        // engaged.
+        // While no side is driven, no hand can feel missed periods, so they rank below the reasons why the arm cannot
+        // be engaged.
         let driven = signs.state.is_none_or(|state| state.permits().drives);
         alarms.push(Alarm {
             kind: AlarmKind::Missed,

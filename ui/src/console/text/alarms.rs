@@ -154,7 +154,7 @@ pub(in crate::console) fn entry(began: &str, until: &str, priority: &str, standi
 mod tests {
     use super::*;
 
-    /// The reason is a sentence of its own: after a colon its capital letter would look wrong.
+    /// The reason is a separate sentence: after a colon its capital letter would look wrong.
     #[test]
     fn the_reason_why_the_loop_is_not_engaged_is_a_separate_sentence() {
         let next = next_step(LoopState::Idle, Some("Close the calibration wizard first"));

@@ -83,7 +83,7 @@ panels! {
         Feedback: Kind::list(&text::FEEDBACK, &text::FEEDBACK_HOVER, KNOBS),
         /// Reasons for a missing force.
         Gates: Kind::list(&text::GATES, &text::GATES_HOVER, KNOBS),
-        /// Calibrations in force, and buttons for the wizards.
+        /// Active calibrations, and buttons for the wizards.
         Calibrations: Kind::list(&text::CALIBRATION, &text::CALIBRATION_HOVER, KNOBS),
         /// The devices of the rig.
         Devices: Kind::list(&text::DEVICES, &text::DEVICES_HOVER, KNOBS),

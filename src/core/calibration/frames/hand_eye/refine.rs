@@ -1,8 +1,8 @@
 //! Refinement of both frames: the Gauss-Newton method, damped after Levenberg and Marquardt, over two rigid motions.
 //!
-//! Compared with the tracker the joints are exact, so the errors are those of `B` relative to `Y^-1 A X`, position and
-//! angle each divided by its noise, as in Strobl and Hirzinger (IROS 2006). A step changes `X` to `X exp(x)` and `Y` to
-//! `Y exp(y)` (position, then rotation vector).
+//! Compared with the tracker the joints are exact, so the errors are in `B` relative to `Y^-1 A X`, position and angle
+//! each divided by its noise, as in Strobl and Hirzinger (IROS 2006). A step changes `X` to `X exp(x)` and `Y` to `Y
+//! exp(y)` (position, then rotation vector).
 
 use nalgebra::{Isometry3, Matrix3, SMatrix, SVector, UnitQuaternion, Vector3};
 

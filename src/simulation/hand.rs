@@ -67,7 +67,7 @@ pub struct Hand {
     search: Option<Box<PalpationTask>>,
     /// Response to the force; `None` if it has no force perception.
     feeling: Option<Box<ForceResponse>>,
-    /// Pace of its own task, and the common pace of both hands if they share a task.
+    /// Pace of its task, and the common pace of both hands if they share a task.
     pace: f64,
     shared_pace: Option<f64>,
     acts: Acts,
@@ -308,7 +308,7 @@ mod tests {
         assert!(!hand.is_led, "it has taken up its task");
     }
 
-    /// With 8 m/s^2 and more, such a hand would look to the governor like a handle without a hand.
+    /// With 8 m/s^2 and more, the governor would take such a hand for a released handle.
     #[test]
     fn a_hand_that_presses_does_not_yield_when_it_begins_to_be_led() {
         for (aim_m, guided) in [(0.04, true), (-0.04, true), (0.0, false)] {

@@ -49,7 +49,7 @@ pub(super) struct RecordingLayout {
     footer_at: u64,
     /// Bytes written so far.
     written: u64,
-    /// The last switch failed, so it is unknown which version of the file readers see.
+    /// The last switch failed, so it is unknown which version of the file a reader gets.
     failed: bool,
     #[cfg(test)]
     pub(super) log: Vec<(u64, Vec<u8>)>,

@@ -128,6 +128,6 @@ mod tests {
         assert_eq!(cloud.pairs().count(), 1);
         assert!(cloud.ellipsoid().is_none());
         cloud.push(0.0, Vector3::zeros(), Vector3::zeros());
-        assert_eq!(cloud.pairs().count(), 1, "a new loop begins anew");
+        assert_eq!(cloud.pairs().count(), 1, "a new loop starts from zero");
     }
 }

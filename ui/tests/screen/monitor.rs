@@ -89,7 +89,7 @@ fn a_rig_elsewhere_is_shown_in_every_view_and_nothing_acts_on_it() {
     assert!(shows(&window, "WATCHING") && shows(&window, "theatre-1, "), "{:?}", texts(&window));
     let live = window.state().live().unwrap();
     assert!((live.first_tick().unwrap().t_s - 5.0).abs() < 0.02);
-    assert!(live.history[0].latest_s() > 4.9, "the traces are there");
+    assert!(live.history[0].latest_s() > 4.9, "the traces are shown");
 
     for key in [Key::F1, Key::F2] {
         window.key_press(key);

@@ -53,7 +53,7 @@ fn nine_pushes_as_asked_end_in_a_saved_correspondence_and_more_may_follow() {
     read(&mut harness, "Pushes: 2 recorded, at least 9 needed");
     pick(&mut harness, "Remove the last push");
     read(&mut harness, "Pushes: 1 recorded, at least 9 needed");
-    assert!(!can_press(&harness, "Next"), "one push is no calibration");
+    assert!(!can_press(&harness, "Next"), "one push does not make a calibration");
     language::fits(&mut harness, "pushes");
     read(&mut harness, "recorded, at least 9 needed");
     pick(&mut harness, "Start over");

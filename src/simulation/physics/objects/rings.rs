@@ -15,7 +15,7 @@ use crate::physics::{
 /// would keep a stack of rings awake for ever.
 const WAKES_M_S: f64 = 5e-3;
 /// A ring this far below the surface of the board counts as next to the board, m. Without this limit a ring that fell
-/// over the edge would be shot upwards as soon as it comes under the board.
+/// over the edge would be shot upwards as soon as it is under the board.
 const BESIDE_M: f64 = 0.004;
 
 impl Objects {

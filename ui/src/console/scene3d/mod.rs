@@ -47,7 +47,7 @@ pub enum CameraLook {
 
 /// Camera and GPU objects of the view.
 #[derive(Debug)]
-#[expect(clippy::struct_excessive_bools, reason = "each is a switch of its own")]
+#[expect(clippy::struct_excessive_bools, reason = "each is a separate switch")]
 pub struct SceneView {
     pub smooth: bool,
     pub look: CameraLook,

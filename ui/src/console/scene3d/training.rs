@@ -209,7 +209,7 @@ mod tests {
         assert_eq!(report(&during, led, None), report(&wrong, led, None));
         assert!(vertices(&after) > vertices(&during) + 1000, "the lumps");
         assert_eq!(report(&after, None, None).unwrap(), "Lumps found: 1 of 5, false marks: 2");
-        assert_eq!(report(&live("lumps", &marked(true)), None, None), None, "nobody looks for them");
+        assert_eq!(report(&live("lumps", &marked(true)), None, None), None, "they are not searched");
     }
 
     #[test]

@@ -37,7 +37,7 @@ impl Pulse {
     /// Reports that the loop is alive; `driven` is true while the drives are on.
     pub(super) fn beat(&self, now_ns: u64, driven: bool) {
         self.driven.store(driven, Ordering::Relaxed);
-        // The beat last, so that a reader of the new beat also has the state of the drives that belongs to it.
+        // The beat is stored last, so that a reader of the new beat also has the state of the drives that belongs to it.
         self.beat_ns.store(now_ns, Ordering::Release);
     }
 

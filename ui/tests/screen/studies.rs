@@ -417,7 +417,7 @@ fn the_learning_of_the_chosen_participant_is_drawn_by_practice_and_trials() {
     drop(study);
     let mut window = console(folder.path(), ConsoleOptions::default());
     open(&mut window);
-    read(&mut window, "Learning of P01: 2 practice trials, 3 trials completed");
+    read(&mut window, "Learning progress of P01: 2 practice trials, 3 trials completed");
     pick(&mut window, "P02");
     read(&mut window, "No trial completed yet");
 }

@@ -188,7 +188,7 @@ impl<T: ByteStream> DynamixelDriver<T> {
     fn expire(&mut self, now_s: f64) {
         let Some(exchange) = self.exchange.filter(|exchange| now_s >= exchange.until_s) else { return };
         self.exchange = None;
-        // Otherwise the next answer could complete the half of this one.
+        // Otherwise the bytes of the next answer could complete a half packet of this one.
         self.incoming.reset();
         if matches!(exchange.question, ServoQuestion::Motion { .. }) {
             self.health.lost += 1;

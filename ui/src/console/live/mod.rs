@@ -71,7 +71,7 @@ pub enum ScreenSource {
     Now,
     /// A moment of a recorded session: nothing may act on the machine.
     Past,
-    /// A loop at another machine, without control.
+    /// A loop at another machine, which this console only shows.
     Elsewhere,
 }
 

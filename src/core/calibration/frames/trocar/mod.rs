@@ -215,7 +215,7 @@ impl Calibration for TrocarSettings {
         let Some(found) = examined(&ShaftLines, &rows) else {
             return FrameReport::nothing(have, FrameCause::NearlyParallel { tilt_deg: 0.0, min_deg: MIN_TILT_DEG });
         };
-        // Again after the outliers are gone, because they may have been the only tilted lines.
+        // Tested again without the outliers, because they may have been the only tilted lines.
         if let Some(cause) = parallel(&mut found.kept.iter().map(|&i| rows[i])) {
             return FrameReport::nothing(have, cause);
         }

@@ -47,7 +47,7 @@ impl CameraWizard {
             });
             match self.board() {
                 Ok(_) => ui.label(small(texts::PRINT.get())),
-                Err(error) => ui.label(texts::no_board(&crate::report_text::quoted(error))),
+                Err(error) => ui.label(texts::no_board(&crate::report_text::quoted(&error))),
             };
             let keeps = switch_ui(
                 ui,

@@ -181,7 +181,7 @@ fn temporary(folder: &Path, like: Option<&Metadata>) -> io::Result<NamedTempFile
     tempfile::Builder::new().permissions(fs::Permissions::from_mode(mode)).tempfile_in(folder)
 }
 
-/// Returns the changes the owner first: a change of owner clears bits of the mode.
+/// Changes the owner first: a change of owner clears bits of the mode.
 #[cfg(unix)]
 fn keep(file: &File, like: &Metadata) -> io::Result<()> {
     use std::os::unix::fs::{MetadataExt as _, PermissionsExt as _, fchown};

@@ -232,7 +232,7 @@ impl RecordingLayout {
         at.ok_or_else(|| io::Error::other("there is no room for the summary"))
     }
 
-    /// Returns the points the footer and the free space at another summary.
+    /// Points the footer and the free space at another summary.
     fn lead_to(&mut self, at: u64, tail: Tail, summary: &mut RecordingSummary) -> io::Result<()> {
         let start = (at + DATA_END as u64).to_le_bytes();
         self.switch(&start, self.footer_at + HEAD as u64)?;

@@ -76,6 +76,7 @@ impl WordSink for Vec<u64> {
 
 impl WordSource for std::vec::IntoIter<u64> {
     fn word(&mut self) -> Result<u64, CodecError> {
+        // Never a default: a value that is invented would replay to a different force.
         self.next().ok_or(CodecError::Short)
     }
 

@@ -51,7 +51,7 @@ pub fn at_the_right<R>(ui: &mut Ui, content: impl FnOnce(&mut Ui) -> R) -> R {
     row.inner
 }
 
-/// Returns the names a plot for screen readers, with a summary of its content; the summary is built only if a screen
+/// Names a plot for screen readers, with a summary of its content; the summary is built only if a screen
 /// reader is active.
 pub fn describe(ui: &Ui, plot: &Response, name: &str, summary: impl FnOnce() -> String) {
     plot.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Figure, true, name));

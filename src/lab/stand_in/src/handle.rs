@@ -148,7 +148,7 @@ impl StandInHandle {
         }
     }
 
-    /// Returns the changes a setting of the device.
+    /// Changes a setting of the device.
     pub(crate) fn order(&mut self, order: ClientOrder, argument: u32) -> Result<c_int, c_int> {
         self.exchange(order, argument, [0.0; 4], EXCHANGE).map(|()| 0)
     }

@@ -248,7 +248,7 @@ impl ActiveCalibrations {
         Ok((rig, path, words))
     }
 
-    /// Returns the changes the rig file of this name, or a copy in `folder` if the rig is built in.
+    /// Changes the rig file of this name, or a copy in `folder` if the rig is built in.
     ///
     /// # Errors Returns one line for the screen.
     pub fn change_rig(

@@ -1,6 +1,9 @@
 //! The top bar: state, stop, engage, refusals.
 
-use crate::language::{Text, text_format};
+use crate::{
+    console::alarms::sentence,
+    language::{Text, text_format},
+};
 
 pub(in crate::console) const NIMA_CONSOLE: Text = Text::of("NIMA Console", "NIMA-Konsole");
 pub(in crate::console) const RESEARCH_ONLY: Text =
@@ -54,10 +57,11 @@ pub(in crate::console) const NOT_ENGAGED: Text = Text::of("Not engaged", "Nicht 
 pub(in crate::console) const NOT_RELEASED: Text = Text::of("Not released", "Nicht gelöst");
 pub(in crate::console) const NOT_SET: Text = Text::of("Not set", "Nicht gesetzt");
 
-/// Returns the refused command; `arm` is empty for a rig with one arm.
+/// Returns the refused command; `arm` is empty for a rig with one arm. The remedy is a separate sentence, because the
+/// remedies of devices begin with a capital.
 pub(in crate::console) fn refused(what: &str, arm: &str, cause: &str, cure: &str) -> String {
     let arm = if arm.is_empty() { String::new() } else { text_format!(" ({arm} arm)", " (Arm {arm})") };
-    format!("{what}{arm}: {cause}; {cure}")
+    format!("{what}{arm}: {cause}. {}", sentence(cure))
 }
 
 pub(in crate::console) fn device(name: &str, cause: &str) -> String {

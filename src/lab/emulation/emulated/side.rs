@@ -22,7 +22,8 @@ use crate::emulators::{
 
 /// One step of the world, s.
 const STEP_S: f64 = 1e-3;
-/// Maximum number of steps executed after a pause of the whole process; earlier time is skipped.
+/// Maximum number of steps executed after a pause of the whole process; earlier time is skipped. Without a limit a
+/// pause of the process would be made up for longer than it lasted.
 const CATCH_UP_STEPS: u64 = 100;
 /// Natural rotation of the handle, rad, and its speed, rad/s: no hand is perfectly still.
 const HANDLE_WAVE: (f64, f64) = (0.05, 0.9);

@@ -26,9 +26,11 @@ const CARRY_MIN_S: f64 = 0.8;
 const STUCK_M: f64 = 0.03;
 /// ... for this long, s, cannot be reached by rotating further: the arm must take another pose.
 const STUCK_S: f64 = 1.0;
-/// Number of poses considered before choosing one that the arm may not reach.
+/// Number of poses considered before choosing one that the arm may not reach. The first one that the arm reaches is
+/// taken, so that a session does not wait for a pose that is out of reach.
 const CHOICES: usize = 10;
-/// Height of the tip before poses in free space, touches and moves, m.
+/// Height of the tip before poses in free space, touches and moves, m. High enough that neither the tissue nor the wall
+/// is touched, because a touched pose is refused.
 const ABOVE_M: f64 = 0.05;
 
 /// The technician as seen by this side.

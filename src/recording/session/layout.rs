@@ -34,7 +34,7 @@ const PAGE: u64 = 4096;
 const SPARE: u64 = 64 << 10;
 /// The file grows by at least this much; the hole uses no disk space.
 pub(super) const GROWTH: u64 = 16 << 20;
-/// ... and by at least this many summaries, because each growth writes two.
+/// The file also grows by at least this many summaries, because each growth writes two.
 const GROWTH_IN_SUMMARIES: u64 = 32;
 
 pub(super) struct RecordingLayout {

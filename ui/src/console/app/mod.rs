@@ -72,9 +72,9 @@ use listing::Listing;
 use starting::StartingRig;
 
 /// Antialiasing in 3-D is switched off if the median time between frames is longer than this (fewer than 26 frames per
-/// second), ...
+/// second) after [`WARM_UP`].
 const SLOW_MS: f64 = 38.0;
-/// ... after the window has had this time to warm up.
+/// Time after which the window has warmed up, so that its frame rate can be judged.
 const WARM_UP: Duration = Duration::from_secs(4);
 
 #[derive(Debug)]

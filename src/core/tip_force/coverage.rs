@@ -8,6 +8,7 @@ use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 use super::LIVE_INPUTS;
 
+/// Coarse, so that a recording of half a minute can fill the cells.
 pub const MAP: usize = 16;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -27,9 +27,11 @@ use crate::{
     teleop::{Calibrations, Loop, Timing},
 };
 
-/// Capacity of the queue of ticks for the screen; further ticks are dropped. 8 s at 1 kHz.
+/// Capacity of the queue of ticks for the screen; further ticks are dropped. 8 s at 1 kHz. A window may be blocked for
+/// seconds, for example by a dialog of the system, and the loop must not wait for it.
 pub const TICKS_WAITING_MAX: usize = 8192;
-/// Capacity of the queue of commands to the loop.
+/// Capacity of the queue of commands to the loop. A person cannot give more within a tick, so a full queue means that
+/// the loop has ended.
 const COMMANDS_WAITING_MAX: usize = 64;
 /// Capacity of the queue of events for the screen.
 const EVENTS_WAITING_MAX: usize = 256;

@@ -14,7 +14,8 @@ use super::{
 };
 use crate::frames::WristSample;
 
-/// Time that the filters of sensor and driver need to settle after a start, s.
+/// Time that the filters of sensor and driver need to settle after a start, s. Otherwise every start would report the
+/// filters' transient as a drift.
 const SETTLE_S: f64 = 2.0;
 /// A bad verdict needs this many consecutive still intervals: a hand on the tool sways, whereas a bias does not
 /// (`docs/calibration.md`).

@@ -8,6 +8,7 @@ use nalgebra::{Isometry3, Matrix3, SMatrix, SVector, UnitQuaternion, Vector3};
 
 use super::{HandEyeFrames, HandEyeRow};
 
+/// Two rigid motions with six unknowns each, because both frames are refined together.
 const UNKNOWNS: usize = 12;
 type Normal = SMatrix<f64, UNKNOWNS, UNKNOWNS>;
 type RefineStep = SVector<f64, UNKNOWNS>;
@@ -16,6 +17,7 @@ type Slopes = SMatrix<f64, 3, UNKNOWNS>;
 /// Noise of a tracker (0.25 mm and 0.02 degrees); only the ratio of the two matters here.
 const NOISE_M: f64 = 0.25e-3;
 const NOISE_RAD: f64 = 3.5e-4;
+/// Several times what is needed, so that only data without a solution reach it.
 const STEPS: usize = 10;
 /// A step that reduces the sum of squares by a smaller fraction is the last one. From the start given by a solver, this
 /// takes two or three steps.

@@ -40,7 +40,7 @@ pub fn everything(folder: &Path) -> String {
     all
 }
 
-/// Returns the set of words of a text, in lower case.
+/// Returns all words in a text, in lower case.
 pub fn found_in<'a>(text: &str, words: &[&'a str]) -> Vec<&'a str> {
     let text = text.to_lowercase();
     words.iter().copied().filter(|word| text.contains(word)).collect()

@@ -65,7 +65,7 @@ impl ByteStream for Tcp {
 
     fn send(&mut self, bytes: &[u8]) -> Result<(), Loss> {
         match self.stream.write(bytes) {
-            // As for a serial line: half a message would spoil the next one.
+            // Half a message would spoil the next one, as on a serial line.
             Ok(count) if count == bytes.len() => Ok(()),
             _ => Err(Loss::Disconnected),
         }

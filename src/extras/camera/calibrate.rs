@@ -14,8 +14,8 @@ use crate::{
 
 pub type BoardView = BoardSight;
 
-/// Minimum number of usable views. Each view adds six unknowns of its own, and a few views leave focal length and
-/// distance undetermined together.
+/// Minimum number of usable views. Each view adds six unknowns, and a few views leave focal length and distance
+/// undetermined together.
 pub(crate) const VIEWS: usize = 8;
 /// Maximum blur of a sharp view, in widths of the image: 3.2 px of 1280. As a fraction of the width, so that one limit
 /// serves every camera.

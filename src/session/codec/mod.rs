@@ -36,7 +36,7 @@ pub(crate) trait WordSource {
 /// Why words cannot be decoded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum CodecError {
-    /// Words are missing.
+    /// Not enough words.
     #[error("it is shorter than it states")]
     Short,
     /// Words are left over.

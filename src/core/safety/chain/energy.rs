@@ -55,7 +55,7 @@ impl<const D: usize> Energy<D> {
             (Some(now_m), Some(then_m)) => now_m - then_m,
             _ => SVector::zeros(),
         };
-        // Also when it is unknown, so that the travel of a gap is not taken for the travel of one period.
+        // Also when it is unknown, so that the travel of a gap does not count as the travel of one period.
         self.hand_m = hand_m;
         // The comparison is also false for the infinite difference of two finite positions.
         let travel_m = if travel_m.norm() <= JUMP_M_S * dt_s { travel_m } else { SVector::zeros() };

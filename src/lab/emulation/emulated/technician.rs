@@ -24,7 +24,7 @@ const CARRY_S_PER_RAD: f64 = 1.7;
 const CARRY_MIN_S: f64 = 0.8;
 /// If a hold is missed by this much, m at the tip's lever, for longer than [`STUCK_S`], another pose is tried.
 const STUCK_M: f64 = 0.03;
-/// Time of such a miss, s, after which the pose cannot be reached by rotating further.
+/// If such a miss lasts this long, s, the pose cannot be reached by rotating further.
 const STUCK_S: f64 = 1.0;
 /// Number of poses considered before choosing one that the arm may not reach. The first one that the arm reaches is
 /// taken, so that a session does not wait for a pose that is out of reach.

@@ -1,10 +1,11 @@
 //! The page of all calibrations.
 
-use egui::{Button, Grid, Label, RichText, Ui, WidgetInfo, vec2};
+use egui::{Button, Grid, Id, Label, RichText, Ui, WidgetInfo, vec2};
 
 use super::{ArmOverview, OverviewLine, following, made_text, verdict_text};
 use crate::console::{
     scene3d::side_name,
+    steady_button::{PATIENT_S, SteadyButton},
     text, theme,
     widgets::{Sign, next_button, sign_ui, small},
     wizards::{CalibrationTarget, GoOn},
@@ -60,12 +61,15 @@ pub(crate) fn overview_ui(ui: &mut Ui, arms: &[ArmOverview], closed: Option<&str
 /// Draws the button that opens the next calibration.
 fn following_ui(ui: &mut Ui, arms: &[ArmOverview], closed: Option<&str>) -> Option<CalibrationTarget> {
     let wanted = following(arms, None)?;
-    let name = RichText::new(GoOn::Calibrate(wanted).words()).font(theme::strong(15.0));
-    let free = closed.is_none();
-    let button = ui.add_enabled(free, next_button(name, free).min_size(vec2(300.0, 34.0)));
+    let label = GoOn::Calibrate(wanted).words();
+    let may = closed.map_or(Ok(()), Err);
+    let button = SteadyButton { id: Id::unique("following"), label: &label, meaning: "", may, waits_s: PATIENT_S };
+    let wants = button.ui(ui, |name, enabled| {
+        next_button(RichText::new(name).font(theme::strong(15.0)), enabled).min_size(vec2(300.0, 34.0))
+    });
     ui.label(small(closed.unwrap_or(text::calibrations::SETS_IDLE.get())));
     ui.add_space(theme::GAP);
-    button.on_disabled_hover_text(closed.unwrap_or_default()).clicked().then_some(wanted)
+    wants.then_some(wanted)
 }
 
 /// Draws one line; returns whether to recalibrate.
@@ -89,9 +93,11 @@ fn line_ui(ui: &mut Ui, line: &OverviewLine, arm: &str, closed: Option<&str>) ->
         });
     }
     let verb = if line.kept == Ok(None) { text::overview::MAKE.get() } else { text::overview::REDO.get() };
-    let free = closed.is_none();
-    let button = ui.add_enabled(free, Button::new(verb).min_size(vec2(84.0, 24.0)));
     let name = text::overview::button(verb, arm, &within(line.wanted.name()));
-    button.widget_info(|| WidgetInfo::labeled(egui::Role::Button, free, name.clone()));
-    button.on_disabled_hover_text(closed.unwrap_or_default()).clicked()
+    let may = closed.map_or(Ok(()), Err);
+    let id = Id::unique(("calibrate", &name));
+    let button = SteadyButton { id, label: verb, meaning: "", may, waits_s: PATIENT_S };
+    let (button, wants) = button.show(ui, |verb, _| Button::new(verb).min_size(vec2(84.0, 24.0)));
+    button.widget_info(|| WidgetInfo::labeled(egui::Role::Button, button.enabled(), name.clone()));
+    wants
 }

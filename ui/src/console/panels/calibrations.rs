@@ -1,7 +1,7 @@
 //! The Calibration panel: active calibrations between wrist sensor and tip force, shown in every view, and buttons that open
 //! the wizards.
 
-use egui::{Button, Label, RichText, TextStyle, Ui, vec2};
+use egui::{Button, Id, Label, RichText, TextStyle, Ui, vec2};
 use nima_machine::{
     messages::{ForceSource, LoopState},
     rig::Side,
@@ -14,6 +14,7 @@ use crate::{
         alarms::sentence,
         live::LiveState,
         scene3d::side_name,
+        steady_button::{PATIENT_S, SteadyButton},
         text, theme,
         widgets::{Sign, fitting_style, next_button, sign_ui, small, weak},
         wizards::WizardKind,
@@ -68,11 +69,12 @@ pub fn calibrations_ui(
     for which in WizardKind::built().filter(offered) {
         let text = text::calibrations::calibrate(&within(which.name()));
         let is_open = open == Some(CalibrationPage::Wizard(which));
-        let button =
-            Button::selectable(is_open, text).frame_when_inactive(true).min_size(vec2(ui.available_width(), 28.0));
-        let response = ui.add_enabled(closed.is_none() && !is_open, button);
-        let response = response.on_hover_text(text::calibrations::opens(which.meaning()));
-        if response.on_disabled_hover_text(closed.unwrap_or(text::calibrations::IS_OPEN.get())).clicked() {
+        let size = vec2(ui.available_width(), 28.0);
+        let may = closed.or(is_open.then_some(text::calibrations::IS_OPEN.get())).map_or(Ok(()), Err);
+        let meaning = text::calibrations::opens(which.meaning());
+        let id = Id::unique(("calibrate", which.name()));
+        let button = SteadyButton { id, label: &text, meaning: &meaning, may, waits_s: PATIENT_S };
+        if button.ui(ui, |text, _| Button::selectable(is_open, text).frame_when_inactive(true).min_size(size)) {
             wish = Some(CalibrationWish::Open(which));
         }
     }
@@ -115,12 +117,21 @@ fn rig_ui(ui: &mut Ui, live: &LiveState, open: Option<CalibrationPage>) -> Optio
             let is_open = open == Some(page);
             let next = next == Some(page);
             let room = width - 2.0 * ui.spacing().button_padding.x;
-            let name = RichText::new(name).font(fitting_style(ui, name, &TextStyle::Button, room));
-            let button =
-                next_button(name, next).selected(is_open).frame_when_inactive(true).min_size(vec2(width, 28.0));
-            let can_open = closed.is_none() || page == CalibrationPage::All;
-            let button = ui.add_enabled(can_open && !is_open, button).on_hover_text(meaning);
-            if button.on_disabled_hover_text(closed.unwrap_or(text::calibrations::IS_OPEN.get())).clicked() {
+            let font = fitting_style(ui, name, &TextStyle::Button, room);
+            let closed = closed.filter(|_| page == CalibrationPage::Check);
+            let may = closed.or(is_open.then_some(text::calibrations::IS_OPEN.get())).map_or(Ok(()), Err);
+            let button = SteadyButton {
+                id: Id::unique(("page", name)),
+                label: name,
+                meaning: &meaning,
+                may,
+                waits_s: PATIENT_S,
+            };
+            let look = |name: String, _: bool| {
+                let name = RichText::new(name).font(font);
+                next_button(name, next).selected(is_open).frame_when_inactive(true).min_size(vec2(width, 28.0))
+            };
+            if button.ui(ui, look) {
                 wish = Some(opens);
             }
         }

@@ -36,6 +36,8 @@ pub(in crate::console) const FAULT_MEANING: Text = Text::of(
     "Stopped by a fault: no force, no motion. The loop stays stopped until you press Release stop.",
     "Durch eine Störung angehalten: keine Kraft, keine Bewegung. Bleibt so, bis der Halt gelöst wird.",
 );
+pub(in crate::console) const JUST_CHANGED: Text =
+    Text::of("The state has just changed: press again", "Der Zustand hat gerade gewechselt: noch einmal drücken");
 pub(in crate::console) const STOP: Text = Text::of("Stop", "Halt");
 pub(in crate::console) const STOP_HOVER: Text = Text::of(
     "Sets the force to zero and stops the follower at once. Space or Escape does the same.",

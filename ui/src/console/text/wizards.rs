@@ -6,6 +6,8 @@ use crate::language::{Text, text_format};
 use crate::report_text::within;
 
 pub(crate) const LAST_STEP: Text = Text::of("This is the last step", "Das ist der letzte Schritt");
+pub(crate) const FIRST_STEP: Text = Text::of("This is the first step", "Das ist der erste Schritt");
+pub(crate) const NOTHING_RECORDED: Text = Text::of("Nothing is recorded yet", "Noch nichts aufgezeichnet");
 pub(crate) const NEEDS_CHECKS: Text = Text::of(
     "A check has not passed yet",
     "Eine Prüfung ist noch nicht \

@@ -200,7 +200,8 @@ impl CorrespondenceWizard {
                     ui.label(small(text::correspondence::SO_FAR_EMPTY.get()));
                 }
             }
-            if ui.add_enabled(count > 0, Button::new(text::correspondence::REMOVE_LAST.get())).clicked() {
+            let remove = ui.add_enabled(count > 0, Button::new(text::correspondence::REMOVE_LAST.get()));
+            if remove.on_disabled_hover_text(text::wizards::NOTHING_RECORDED.get()).clicked() {
                 self.session.undo();
                 self.fit();
             }

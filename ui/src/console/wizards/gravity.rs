@@ -167,7 +167,8 @@ impl GravityWizard {
                 ui.label(small(text::gravity::SO_FAR_EMPTY.get()));
             }
             self.touched_ui(ui);
-            if ui.add_enabled(count > 0, Button::new(text::gravity::REMOVE_LAST.get())).clicked() {
+            let remove = ui.add_enabled(count > 0, Button::new(text::gravity::REMOVE_LAST.get()));
+            if remove.on_disabled_hover_text(text::wizards::NOTHING_RECORDED.get()).clicked() {
                 self.session.undo();
                 self.fit();
             }

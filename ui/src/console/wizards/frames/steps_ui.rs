@@ -6,7 +6,7 @@ use nima_core::calibration::frames::CalibrationSource;
 use super::{FrameKind, FrameWizard, kind::Texts};
 use crate::{
     console::{
-        text::frames as texts,
+        text::{self, frames as texts},
         theme,
         widgets::{card, small},
         wizards::{
@@ -75,10 +75,12 @@ impl FrameWizard {
             ui.add_space(6.0);
             ui.horizontal(|ui| {
                 let pause = if self.paused { texts::GO_ON.get() } else { texts::PAUSE.get() };
-                if ui.add_enabled(!complete, Button::new(pause)).on_hover_text(texts::PAUSE_HOVER.get()).clicked() {
+                let pause = ui.add_enabled(!complete, Button::new(pause)).on_hover_text(texts::PAUSE_HOVER.get());
+                if pause.on_disabled_hover_text(texts::ALL_RECORDED.get()).clicked() {
                     self.paused = !self.paused;
                 }
-                if ui.add_enabled(self.taken() > 0, Button::new(texts::REMOVE_LAST.get())).clicked() {
+                let remove = ui.add_enabled(self.taken() > 0, Button::new(texts::REMOVE_LAST.get()));
+                if remove.on_disabled_hover_text(text::wizards::NOTHING_RECORDED.get()).clicked() {
                     self.job.iter_mut().for_each(|job| job.undo());
                     self.report = None;
                     self.frame.saved = None;

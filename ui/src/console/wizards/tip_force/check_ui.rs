@@ -1,6 +1,6 @@
 //! The check: a new guided recording, then the network's errors compared with the paper's and with simpler methods.
 
-use egui::{Button, Grid, RichText, TextStyle, Ui, vec2};
+use egui::{Button, Grid, Id, RichText, TextStyle, Ui, vec2};
 use egui_plot::{AxisHints, Bar, BarChart, Corner, Legend, Line, LineStyle, MarkerShape, Plot, PlotPoints, Points};
 use nima_core::calibration::Verdict;
 use nima_core::tip_force::{FRICTION, NO_MODEL};
@@ -84,18 +84,24 @@ impl TipForceWizard {
             None if self.checked.is_some() => text::tip_force::CHECK_AGAIN.get(),
             None => text::tip_force::CHECK_START.get(),
         };
-        let may =
-            if self.judging.is_some() { Err(text::tip_force::CHECK_WAIT.get()) } else { self.may_record(binding) };
-        let next = !running && self.checked.is_none() && may.is_ok();
-        let button = next_button(RichText::new(text).font(theme::strong(16.0)), next).min_size(vec2(220.0, 40.0));
-        let response = ui.add_enabled(running || may.is_ok(), button);
-        if response.on_disabled_hover_text(may.err().unwrap_or_default()).clicked() {
+        let may = match running {
+            true => Ok(()),
+            false if self.judging.is_some() => Err(text::tip_force::CHECK_WAIT.get()),
+            false => self.may_record(binding),
+        };
+        let next = !running && self.checked.is_none();
+        let check = SteadyButton { id: Id::unique("check"), label: text, meaning: "", may, waits_s: PATIENT_S };
+        let wanted = check.ui(ui, |text, enabled| {
+            let label = RichText::new(text).font(theme::strong(16.0));
+            next_button(label, next && enabled).min_size(vec2(220.0, 40.0))
+        });
+        if wanted {
             match &mut self.proof {
                 Some(take) if running => take.running = false,
                 _ => self.start_check(binding),
             }
         }
-        if let (Err(reason), false) = (may, running) {
+        if let Err(reason) = may {
             ui.label(small(reason));
         }
     }

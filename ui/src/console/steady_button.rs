@@ -59,7 +59,9 @@ impl SteadyButton<'_> {
             state.met_s = Some(now_s);
         }
         let is_recent = |since_s: Option<f64>, within_s: f64| since_s.is_some_and(|at_s| now_s - at_s < within_s);
-        let enabled = state.pressed.is_some() || is_recent(state.met_s, STEADY_S);
+        // A button that moves the machine shows at once that it cannot act.
+        let steady_s = STEADY_S.min(waits_s);
+        let enabled = state.pressed.is_some() || may.is_ok() || is_recent(state.met_s, steady_s);
         let shown = state.pressed.take().unwrap_or_else(|| label.to_owned());
         let response = ui.add_enabled(enabled, look(shown.clone(), enabled));
         let pressed_in_vain =
@@ -104,6 +106,7 @@ mod tests {
     use egui_kittest::{Harness, kittest::Queryable as _};
 
     use super::*;
+    use crate::console::theme;
 
     /// A button whose condition and label a test changes, and how often it acted.
     struct Shown {
@@ -116,8 +119,11 @@ mod tests {
     fn window(waits_s: f64) -> Harness<'static, Shown> {
         let shown = Shown { may: Ok(()), label: "Next", waits_s, acted: 0 };
         let draw = |ui: &mut Ui, shown: &mut Shown| {
+            if !theme::is_applied(ui.ctx()) {
+                return;
+            }
             let Shown { may, label, waits_s, .. } = *shown;
-            let button = SteadyButton { id: Id::new("next"), label, meaning: "", may, waits_s };
+            let button = SteadyButton { id: Id::unique("next"), label, meaning: "", may, waits_s };
             shown.acted += usize::from(button.ui(ui, |label, _| Button::new(label)));
         };
         let mut window =

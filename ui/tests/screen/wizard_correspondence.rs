@@ -113,7 +113,7 @@ fn pushes_along_one_line_are_kept_only_under_a_name() {
         console(scene.clone(), folder.path(), Calibrations { gravity: Some(record.model), ..Calibrations::default() });
     pick(&mut harness, "Calibrate correspondence…");
     pick(&mut harness, "Next");
-    pick(&mut harness, "Next");
+    pick(&mut harness, "Continue with less");
     read(&mut harness, "Insufficient motion");
     read(&mut harness, "along one line");
     pick(&mut harness, "Next");

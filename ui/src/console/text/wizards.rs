@@ -88,7 +88,14 @@ pub(in crate::console) const FINE: Text = Text::of("passed", "OK");
 pub(in crate::console) const WAITING: Text = Text::of("waiting", "wartet");
 pub(in crate::console) const NO_RESULT: Text = Text::of("No result", "Kein Ergebnis");
 pub(in crate::console) const FOLLOWING_CHECK: Text = Text::of("Next: ready check", "Weiter: Startprüfung");
-pub(in crate::console) const DONE: Text = Text::of("(done)", "(fertig)");
+pub(in crate::console) const DONE: Text = Text::of("done", "fertig");
+pub(in crate::console) const NEEDS_GOAL: Text =
+    Text::of("The goal of this step is not met yet", "Das Ziel dieses Schritts ist noch nicht erreicht");
+pub(in crate::console) const ANYWAY: Text = Text::of("Continue with less", "Mit weniger fortfahren");
+pub(in crate::console) const ANYWAY_HOVER: Text = Text::of(
+    "Continues with what is recorded so far; the result may be less accurate, or not accepted",
+    "Geht mit dem bisher Aufgezeichneten weiter; das Ergebnis kann ungenauer sein oder nicht angenommen werden",
+);
 
 pub(in crate::console) fn tilt_off(tilt_deg: f64) -> String {
     text_format!(

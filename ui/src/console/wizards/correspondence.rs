@@ -17,7 +17,8 @@ use super::{
     checks::{check_line, switch_ui, waiting_line},
     drawings::{progress, sphere_image},
     frame::{Wizard, WizardFrame, WizardRequest, WizardStep},
-    report::{WizardReport, result_ui, verdict_line},
+    guide::beside,
+    report::{WizardReport, result_ui, verdict_card, verdict_line},
 };
 use crate::{
     console::{
@@ -90,6 +91,10 @@ impl CorrespondenceWizard {
         self.session.target().unwrap_or(TARGETS[self.session.pushes() % TARGETS.len()])
     }
 
+    fn push(&self) -> Prompt {
+        Prompt::Push { direction: UnitVector3::new_normalize(self.wanted().push_in_world) }
+    }
+
     fn good_report(&self) -> Option<&CorrespondenceReport> {
         self.report.as_ref().and_then(|report| report.as_ref().ok())
     }
@@ -159,23 +164,25 @@ impl CorrespondenceWizard {
         let count = self.session.pushes();
         let wanted = self.wanted();
         card(ui, text::correspondence::PUSH_TITLE.get(), text::correspondence::PUSH_HOVER.get(), |ui| {
-            ui.label(RichText::new(sentence(wanted.name)).font(theme::strong(19.0)));
-            let (fraction, words) = if self.sources.is_some() {
-                phase_text(&self.session.phase())
-            } else {
-                (0.0, text::correspondence::PHASE_WRIST_SILENT.get().to_owned())
-            };
-            progress(ui, text::correspondence::PUSH_PROGRESS.get(), fraction, &words);
-            ui.add_space(6.0);
-            let directions = TARGETS.map(|target| target.push_in_world);
-            let taken = self.session.taken_in_world();
-            sphere_image(
-                ui,
-                text::correspondence::DIRECTIONS_IMAGE.get(),
-                &directions,
-                &taken,
-                Some(wanted.push_in_world),
-            );
+            beside(ui, &self.push(), None, |ui| {
+                ui.label(RichText::new(sentence(wanted.name)).font(theme::strong(19.0)));
+                let (fraction, words) = if self.sources.is_some() {
+                    phase_text(&self.session.phase())
+                } else {
+                    (0.0, text::correspondence::PHASE_WRIST_SILENT.get().to_owned())
+                };
+                progress(ui, text::correspondence::PUSH_PROGRESS.get(), fraction, &words);
+                ui.add_space(6.0);
+                let directions = TARGETS.map(|target| target.push_in_world);
+                let taken = self.session.taken_in_world();
+                sphere_image(
+                    ui,
+                    text::correspondence::DIRECTIONS_IMAGE.get(),
+                    &directions,
+                    &taken,
+                    Some(wanted.push_in_world),
+                );
+            });
             let fraction = count as f64 / PUSHES_ASKED as f64;
             progress(
                 ui,
@@ -262,7 +269,7 @@ impl Wizard for CorrespondenceWizard {
 
     fn prompt(&self) -> Prompt {
         if self.frame.step == PUSHES {
-            return Prompt::Push { direction: UnitVector3::new_normalize(self.wanted().push_in_world) };
+            return self.push();
         }
         Prompt::Rest
     }
@@ -324,7 +331,7 @@ fn phase_text(phase: &CorrespondencePhase) -> (f64, String) {
 }
 
 fn verdict_ui(ui: &mut Ui, report: &CorrespondenceReport) {
-    card(ui, report.verdict.words(), text::correspondence::VERDICT_HOVER.get(), |ui| {
+    verdict_card(ui, report.verdict, text::correspondence::VERDICT_HOVER.get(), |ui| {
         ui.label(&report.reason);
         ui.add_space(4.0);
         let left_out = report.outliers.len();

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use egui::{Button, Id, RichText, TextEdit, Ui, vec2};
+use egui::{Button, Id, RichText, TextEdit, Ui, WidgetInfo, vec2};
 use nima_core::calibration::Judgement;
 use nima_endoscope::DecodedImage;
 use nima_machine::{messages::Tick, rig::Prompt};
@@ -11,7 +11,7 @@ use super::{Binding, GoOn, SaveRequest, WizardPageRequest, report::judged_line};
 use crate::console::{
     steady_button::{PATIENT_S, SteadyButton},
     text, theme,
-    widgets::{card, figure, next_button, small, weak},
+    widgets::{Sign, card, figure, next_button, sign_ui, small, weak},
 };
 use crate::language::Text;
 
@@ -101,7 +101,7 @@ pub(crate) trait Wizard: std::fmt::Debug {
     fn is_of_a_sensor(&self) -> bool {
         true
     }
-    /// Returns whether this step is complete.
+    /// Returns whether the goal of this step is met; only then the next step is offered.
     fn is_done(&self) -> bool {
         true
     }
@@ -180,14 +180,17 @@ fn steps_ui(ui: &mut Ui, steps: &[WizardStep], now: usize, going_on: &GoingOn) -
     let mut wish = None;
     ui.horizontal_wrapped(|ui| {
         for (i, step) in steps.iter().enumerate() {
+            if i < now {
+                let done = sign_ui(ui, Sign::Tick, 6.0, theme::now().engaged);
+                done.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, text::wizards::DONE.get()));
+            }
             let (font, colour) = if i == now {
                 (theme::strong(15.0), theme::now().text)
             } else {
                 (theme::regular(14.0), theme::now().text_weak)
             };
-            let mark = if i < now { text::wizards::DONE.get() } else { "" };
-            let words = format!("{}. {} {mark}", i + 1, step.name);
-            ui.label(RichText::new(words.trim_end()).font(font).color(colour)).on_hover_text(step.meaning.get());
+            let words = format!("{}. {}", i + 1, step.name);
+            ui.label(RichText::new(words).font(font).color(colour)).on_hover_text(step.meaning.get());
             ui.add_space(10.0);
         }
     });
@@ -204,10 +207,11 @@ fn steps_ui(ui: &mut Ui, steps: &[WizardStep], now: usize, going_on: &GoingOn) -
         let may = match (following, last) {
             (Some(_), _) => Ok(()),
             (None, true) => Err(text::wizards::LAST_STEP.get()),
-            (None, false) => going_on.may,
+            (None, false) if going_on.is_done => going_on.may,
+            (None, false) => going_on.may.and(Err(text::wizards::NEEDS_GOAL.get())),
         };
         let next = SteadyButton { id: Id::unique(("next", now)), label: &name, meaning: "", may, waits_s: PATIENT_S };
-        if next.ui(ui, |name, enabled| next_button(name, enabled && going_on.is_done).min_size(size)) {
+        if next.ui(ui, |name, enabled| next_button(name, enabled).min_size(size)) {
             wish = Some(following.map_or(WizardRequest::GoTo(now + 1), WizardRequest::GoOn));
         }
         if let (Err(reason), false) = (may, last) {
@@ -216,6 +220,13 @@ fn steps_ui(ui: &mut Ui, steps: &[WizardStep], now: usize, going_on: &GoingOn) -
         ui.add_space(24.0);
         if ui.button(text::wizards::START_OVER.get()).on_hover_text(text::wizards::START_OVER_HOVER.get()).clicked() {
             wish = Some(WizardRequest::StartOver);
+        }
+        // At the end of the row, so that nothing moves when it comes.
+        if !last && !going_on.is_done && going_on.may.is_ok() {
+            let anyway = ui.button(text::wizards::ANYWAY.get()).on_hover_text(text::wizards::ANYWAY_HOVER.get());
+            if anyway.clicked() {
+                wish = Some(WizardRequest::GoTo(now + 1));
+            }
         }
     });
     wish
@@ -300,7 +311,7 @@ mod tests {
             Prompt::Rest
         }
         fn may_go_on(&self, _: &Binding) -> Result<(), &'static str> {
-            if self.frame.step == 0 && self.drawn % 4 == 0 { Ok(()) } else { Err("a device is missing") }
+            if self.frame.step == 0 && self.drawn.is_multiple_of(4) { Ok(()) } else { Err("a device is missing") }
         }
         fn step_ui(&mut self, _: &mut Ui, _: &Binding) -> Option<WizardRequest> {
             None
@@ -320,7 +331,11 @@ mod tests {
     #[test]
     fn one_click_leads_to_the_next_step_whatever_frame_it_falls_into() {
         for late in 0..4 {
-            let draw = |ui: &mut Ui, wizard: &mut Flickering| drop(wizard_ui(wizard, ui, &Binding::default()));
+            let draw = |ui: &mut Ui, wizard: &mut Flickering| {
+                if theme::is_applied(ui.ctx()) {
+                    wizard_ui(wizard, ui, &Binding::default());
+                }
+            };
             let mut window = Harness::builder().with_step_dt(0.03).build_ui_state(draw, Flickering::default());
             window.run_steps(4 + late);
             window.get_by_label("Next").click();

@@ -122,6 +122,11 @@ impl FrameWizard {
         self.other_way
     }
 
+    /// Returns whether this step is before the result.
+    pub(super) const fn records(&self) -> bool {
+        self.frame.step < RESULT
+    }
+
     fn texts(&self) -> Texts {
         self.kind.texts(self.other_way)
     }

@@ -4,21 +4,20 @@ use egui::{Button, Grid, Id, RichText, TextStyle, Ui, vec2};
 use egui_plot::{AxisHints, Bar, BarChart, Corner, Legend, Line, LineStyle, MarkerShape, Plot, PlotPoints, Points};
 use nima_core::calibration::Verdict;
 use nima_core::tip_force::{FRICTION, NO_MODEL};
+use nima_machine::rig::Prompt;
 use nima_recording::tip_force::ROW_EVERY_S;
 use nima_training::EvaluationPart;
 
 use super::{
-    super::{drawings::progress, frame::WizardRequest},
+    super::{drawings::progress, frame::WizardRequest, guide::beside, report::verdict_card},
     Binding, CHECK_ROWS, CHECK_WORK, RECORD, TipForceWizard,
     job::{BIN_N, BINS, CheckResult},
-    take::words,
+    take::{drawn, words},
 };
-use crate::{
-    console::{
-        text, theme,
-        widgets::{card, figure, fitting_style, next_button, small, weak},
-    },
-    report_text::ShortText as _,
+use crate::console::{
+    steady_button::{PATIENT_S, SteadyButton},
+    text, theme,
+    widgets::{card, figure, fitting_style, next_button, small, weak},
 };
 
 const AXES: [&str; 3] = ["x", "y", "z"];
@@ -34,10 +33,13 @@ impl TipForceWizard {
         card(ui, text::tip_force::CHECK_TITLE.get(), text::tip_force::CHECK_HOVER.get(), |ui| {
             let work_s = CHECK_WORK as f64 * ROW_EVERY_S;
             let free_s = (CHECK_ROWS - CHECK_WORK) as f64 * ROW_EVERY_S;
-            ui.label(RichText::new(self.task(work_s, free_s)).font(theme::strong(18.0)));
-            if let Some(take) = &self.proof {
-                ui.label(text::tip_force::state(&take.phase_text()));
-            }
+            let drawn = if self.checked.is_some() { Prompt::Rest } else { drawn(self.proof.as_ref()) };
+            beside(ui, &drawn, None, |ui| {
+                ui.label(RichText::new(self.task(work_s, free_s)).font(theme::strong(18.0)));
+                if let Some(take) = &self.proof {
+                    ui.label(text::tip_force::state(&take.phase_text()));
+                }
+            });
             ui.horizontal(|ui| {
                 self.check_button_ui(ui, binding);
                 if ui
@@ -109,7 +111,7 @@ impl TipForceWizard {
 
 fn verdict_ui(ui: &mut Ui, checked: &CheckResult) {
     let check = &checked.check;
-    card(ui, check.judgement.verdict.words(), text::tip_force::VERDICT_HOVER.get(), |ui| {
+    verdict_card(ui, check.judgement.verdict, text::tip_force::VERDICT_HOVER.get(), |ui| {
         let words = text::tip_force::verdict(&check.judgement.reason);
         ui.label(RichText::new(words).font(theme::strong(14.0)));
         if check.judgement.verdict != Verdict::Accepted {

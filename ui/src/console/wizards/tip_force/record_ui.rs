@@ -10,9 +10,10 @@ use super::{
     super::{
         drawings::{AxisText, heat_map, progress},
         frame::{Wizard as _, WizardRequest},
+        guide::beside,
     },
     Binding, TRAIN, TipForceWizard,
-    take::words,
+    take::{drawn, words},
 };
 use crate::console::{
     steady_button::{PATIENT_S, SteadyButton},
@@ -32,7 +33,7 @@ impl TipForceWizard {
         let mut wish = None;
         let meaning = text::tip_force::RECORD_HOVER.get();
         card(ui, text::tip_force::RECORD_TITLE.get(), meaning, |ui| {
-            self.now_ui(ui);
+            beside(ui, &drawn(self.recording.as_ref()), None, |ui| self.now_ui(ui));
             ui.add_space(4.0);
             ui.horizontal(|ui| {
                 if self.start_ui(ui, running, rows, binding) {

@@ -88,6 +88,11 @@ impl TipForceRecording {
     }
 }
 
+/// Returns the instruction whose drawing is shown, also before and between the recordings.
+pub(super) fn drawn(take: Option<&TipForceRecording>) -> Prompt {
+    take.map(|take| take.asked).filter(|asked| *asked != Prompt::Rest).unwrap_or(Prompt::Work)
+}
+
 pub(super) fn words(prompt: Prompt) -> &'static str {
     match prompt {
         Prompt::Work => text::tip_force::TASK_WORK.get(),

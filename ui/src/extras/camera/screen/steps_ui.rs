@@ -21,6 +21,7 @@ use crate::{
         },
     },
     extras::camera::{report_text, text as texts},
+    language::Text,
 };
 
 /// Maximum image width, points: with the map next to it and the instruction above it, it fits a window of 1280 x 720.
@@ -125,7 +126,7 @@ impl CameraWizard {
             ui.horizontal(|ui| {
                 let can = self.base.is_some() && marked.is_some() && still && !self.moved;
                 let may = if can { Ok(()) } else { Err(texts::TOUCHED_DISABLED.get()) };
-                let [label, meaning] = [texts::TOUCHED, texts::TOUCHED_HOVER].map(|text| text.get());
+                let [label, meaning] = [texts::TOUCHED, texts::TOUCHED_HOVER].map(Text::get);
                 let take = SteadyButton { id: Id::unique("touched"), label, meaning, may, waits_s: PATIENT_S };
                 if take.ui(ui, |label, _| Button::new(label).min_size(egui::vec2(150.0, 34.0))) {
                     self.take_touch();

@@ -47,7 +47,7 @@ fn the_list_is_gone_through_by_the_person_at_the_screen_and_the_one_at_the_arm()
     read(&mut console, "Saved in ");
     let record = Store::open(folder.path().join("calibrations")).last_check("Simulated rig").unwrap();
     assert!(record.passed && record.items.iter().all(|item| item.outcome != PointOutcome::Failed), "{record:?}");
-    press(&mut console, "Continue to the monitor");
+    press(&mut console, "Continue to Engage");
     assert!(!shows(&console, "Checked by"));
 }
 

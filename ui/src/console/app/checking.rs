@@ -4,8 +4,8 @@ use std::time::{Duration, Instant, SystemTime};
 
 use egui::{CentralPanel, Frame, Margin, Panel, ScrollArea, Ui};
 use nima_machine::{
-    messages::{Command, LoopState},
-    ready::PersonRequest,
+    messages::{Command, LoopState, Watchdog},
+    ready::{PersonRequest, ReadyEntry, ReadyPoint, ReadyState},
     rig::Roster,
 };
 use nima_simulation::scene::Scene;
@@ -51,6 +51,15 @@ impl CheckPage {
     /// Returns the current instruction of the check.
     pub(super) fn ask(&self) -> Option<PersonRequest> {
         self.run.as_ref().map(|run| run.session.ask())
+    }
+
+    /// Returns the watchdog that the check is testing.
+    pub(super) fn tested(&self) -> Option<Watchdog> {
+        let tested = |entry: &ReadyEntry| match (entry.check, &entry.state) {
+            (ReadyPoint::Watchdog(watchdog), ReadyState::Asking(_)) => Some(watchdog),
+            _ => None,
+        };
+        self.run.as_ref()?.session.list().iter().find_map(tested)
     }
 
     /// Discards the results, because they belong to the previous loop.
@@ -182,7 +191,10 @@ impl ConsoleApp {
                 }
             }
             Some(ReadyRequest::Whole) => self.checking.begin_anew(),
-            Some(ReadyRequest::Close) => wish = Some(CalibrationWish::Close),
+            Some(ReadyRequest::Close) => {
+                self.top_bar.leads_to_engage = true;
+                wish = Some(CalibrationWish::Close);
+            }
             None => {}
         }
         self.obey_calibrations(wish);

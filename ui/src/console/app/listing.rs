@@ -52,11 +52,11 @@ impl ConsoleApp {
                 calibrations_ui(ui, &self.live, &self.active, Some(CalibrationPage::All))
             });
         });
-        let closed = text::calibrations::closed(self.live.state());
+        let closed = |side| text::calibrations::closed(self.live.state_for(side));
         let mut wanted = None;
         CentralPanel::default().frame(Frame::new().inner_margin(Margin::symmetric(18, 14))).show(ui, |ui| {
             ScrollArea::both().auto_shrink(false).show(ui, |ui| {
-                wanted = self.listing.0.as_ref().and_then(|(arms, _)| overview_ui(ui, arms, closed));
+                wanted = self.listing.0.as_ref().and_then(|(arms, _)| overview_ui(ui, arms, &closed));
             });
         });
         match wanted {

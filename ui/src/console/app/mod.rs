@@ -252,7 +252,8 @@ impl ConsoleApp {
         if active.meet(door.handle(), &self.live.rig)[calibrated.index()] {
             self.forget_what_was_taken();
         }
-        self.live.bias_moved_n = self.active.bias_moved_n();
+        (self.live.bias_side, self.live.bias_moved_n) = self.active.bias_moved().unzip();
+        self.live.tested = self.checking.tested();
     }
 
     /// Ends the loop and restarts it idle: only the operator engages it. Not possible in a stop or a fault.

@@ -2,6 +2,8 @@
 
 use egui::{Button, Grid, Id, Label, RichText, Ui, WidgetInfo, vec2};
 
+use nima_machine::rig::Side;
+
 use super::{ArmOverview, OverviewLine, following, made_text, verdict_text};
 use crate::console::{
     scene3d::side_name,
@@ -15,8 +17,12 @@ use crate::report_text::within;
 /// Widths of the text columns.
 const WIDTHS: [f32; 3] = [150.0, 260.0, 260.0];
 
-/// Draws the page; returns the calibration to start. With a reason in `closed` none can be started.
-pub(crate) fn overview_ui(ui: &mut Ui, arms: &[ArmOverview], closed: Option<&str>) -> Option<CalibrationTarget> {
+/// Draws the page; returns the calibration to start. `closed`: the reason why none of this arm can be started.
+pub(crate) fn overview_ui(
+    ui: &mut Ui,
+    arms: &[ArmOverview],
+    closed: &dyn Fn(Side) -> Option<&'static str>,
+) -> Option<CalibrationTarget> {
     ui.label(RichText::new(text::overview::TITLE.get()).font(theme::strong(22.0)));
     ui.label(small(text::overview::MEANING.get()));
     ui.add_space(theme::GAP);
@@ -47,7 +53,7 @@ pub(crate) fn overview_ui(ui: &mut Ui, arms: &[ArmOverview], closed: Option<&str
             }
             ui.end_row();
             for line in &arm.lines {
-                if line_ui(ui, line, name, closed) {
+                if line_ui(ui, line, name, closed(arm.side)) {
                     wish = Some(line.wanted);
                 }
                 ui.end_row();
@@ -59,8 +65,13 @@ pub(crate) fn overview_ui(ui: &mut Ui, arms: &[ArmOverview], closed: Option<&str
 }
 
 /// Draws the button that opens the next calibration.
-fn following_ui(ui: &mut Ui, arms: &[ArmOverview], closed: Option<&str>) -> Option<CalibrationTarget> {
+fn following_ui(
+    ui: &mut Ui,
+    arms: &[ArmOverview],
+    closed: &dyn Fn(Side) -> Option<&'static str>,
+) -> Option<CalibrationTarget> {
     let wanted = following(arms, None)?;
+    let closed = closed(wanted.side);
     let label = GoOn::Calibrate(wanted).words();
     let may = closed.map_or(Ok(()), Err);
     let button = SteadyButton { id: Id::unique("following"), label: &label, meaning: "", may, waits_s: PATIENT_S };

@@ -42,6 +42,8 @@ pub struct TopBarState {
     pub alarms: Alarms,
     /// Instruction of the ready check that concerns a button of the bar, which is then highlighted.
     pub(in crate::console) asked: Option<PersonRequest>,
+    /// The ready check has passed: Engage is the next button.
+    pub(in crate::console) leads_to_engage: bool,
     /// The session that is being recorded.
     pub(in crate::console) recorded: Option<DisplayState>,
     /// The command of the pressed button or menu entry.
@@ -92,7 +94,8 @@ pub fn top_bar_ui(
                 LoopState::Disconnected => of_past.or(text::calibrations::closed(now)),
                 _ => of_past,
             };
-            let next = state.asked == Some(PersonRequest::Release);
+            state.leads_to_engage &= matches!(now, LoopState::Idle | LoopState::Disconnected);
+            let next = state.asked == Some(PersonRequest::Release) || state.leads_to_engage && closed.is_none();
             let ready = since_s >= STEP_WAITS_S;
             step_ui(ui, now, TopBarStep { ready, next, wanted: wants_step, closed }, outbox);
             // Drawn after the step button to its left, so that keyboard focus follows the reading order.
@@ -242,10 +245,11 @@ struct TopBarStep {
 /// Draws the button for the next step, next to the stop button and never below it.
 fn step_ui(ui: &mut Ui, state: LoopState, TopBarStep { ready, next, wanted, closed }: TopBarStep, outbox: &mut Outbox) {
     let (action, command, meaning) = match state {
-        LoopState::Idle => (Action::Engage, Command::Engage, text::top_bar::ENGAGE_HOVER.get()),
+        LoopState::Idle | LoopState::Disconnected => {
+            (Action::Engage, Command::Engage, text::top_bar::ENGAGE_HOVER.get())
+        }
         LoopState::Stopped => (Action::Release, Command::ReleaseStop, text::top_bar::RELEASE_STOP_HOVER.get()),
         LoopState::Faulted(_) => (Action::Release, Command::ReleaseStop, text::top_bar::RELEASE_FAULT_HOVER.get()),
-        LoopState::Disconnected => (Action::Engage, Command::Engage, text::top_bar::ENGAGE_HOVER.get()),
         LoopState::Engaged | LoopState::Ready | LoopState::Clutched => {
             ui.add_space(theme::STOP_SIZE.x + 8.0);
             return;

@@ -22,8 +22,8 @@ pub(in crate::console) const LOOP_SILENT_CURE: Text = Text::of(
     "Not-Halt am Arm drücken, dann Konsole neu starten",
 );
 pub(in crate::console) const PERIODS_MISSED_CURE: Text = Text::of(
-    "Close other programs, or grant real-time priority (see Timing)",
-    "Andere Programme schließen oder Echtzeit-Priorität erteilen (siehe Timing)",
+    "Close other programs, or grant real-time priority (see the Timing panel, F2)",
+    "Andere Programme schließen oder Echtzeit-Priorität erteilen (siehe Panel Timing, F2)",
 );
 pub(in crate::console) const BIAS_MOVED_CURE: Text = Text::of(
     "Make sure nothing touches the tool; if the alarm stays, calibrate gravity again",
@@ -38,8 +38,13 @@ pub(in crate::console) const ACKNOWLEDGE: Text = Text::of("Acknowledge (A)", "Qu
 pub(in crate::console) const ACKNOWLEDGED_HOVER: Text =
     Text::of("Acknowledged; the cause is still present", "Quittiert; die Ursache besteht noch");
 pub(in crate::console) const LIST_NOTE: Text = Text::of(
-    "The last 50 alarms, active ones first, then newest first. Times are UTC, with the loop's own clock in brackets, as in the traces.",
-    "Die letzten 50 Alarme, aktive zuerst, dann neueste. Zeiten in UTC, in Klammern die Uhr der Regelung wie in den Verläufen.",
+    "The last 50 alarms, active ones first, then newest first. In brackets the time on the loop's own clock, as in the traces.",
+    "Die letzten 50 Alarme, aktive zuerst, dann neueste. In Klammern die Zeit auf der Uhr der Regelung wie in den Verläufen.",
+);
+pub(in crate::console) const COPY: Text = Text::of("Copy list", "Liste kopieren");
+pub(in crate::console) const COPY_HOVER: Text = Text::of(
+    "Copies all alarms with times and remedies as text",
+    "Kopiert alle Alarme mit Zeiten und Abhilfen als Text",
 );
 pub(in crate::console) const LIST_EMPTY: Text = Text::of("No alarms so far", "Bisher keine Alarme");
 pub(in crate::console) const ACKNOWLEDGE_HOVER: Text = Text::of(
@@ -92,6 +97,17 @@ pub(in crate::console) fn device_lost(name: &str, cause: &str) -> String {
     text_format!("Lost connection to the {name}: {cause}", "{name} ausgefallen: {cause}")
 }
 
+/// Returns the text about a watchdog that the ready check trips on purpose.
+pub(in crate::console) fn tested(cause: &str) -> String {
+    text_format!(
+        "Ready check: the watchdog tripped as intended ({cause})",
+        "Startprüfung: der Watchdog hat wie gewollt ausgelöst ({cause})"
+    )
+}
+
+pub(in crate::console) const TESTED_CURE: Text =
+    Text::of("Not a fault: press Release stop to continue", "Keine Störung: mit Halt lösen geht es weiter");
+
 pub(in crate::console) fn fault_of(name: &str, cause: &str) -> String {
     format!("{cause} ({name})")
 }
@@ -122,8 +138,8 @@ pub(in crate::console) const UNCHECKED_CAUSE: Text = Text::of(
     "Keine bestandene Startprüfung mit diesen Geräten in den letzten 12 Stunden",
 );
 pub(in crate::console) const UNCHECKED_CURE: Text = Text::of(
-    "Press Ready check in the Calibration panel before you engage",
-    "Vor dem Koppeln im Panel Kalibrierung Startprüfung drücken",
+    "Press Ready check in the Calibration panel (F2) before you engage",
+    "Vor dem Koppeln im Panel Kalibrierung (F2) Startprüfung drücken",
 );
 
 pub(in crate::console) fn player_failed(status: &impl std::fmt::Display) -> String {
@@ -135,11 +151,8 @@ pub(in crate::console) fn player_not_started(error: &impl std::fmt::Display) -> 
 }
 
 /// Returns the alarm in the strip; `remarks` mention further alarms and the acknowledgement.
-pub(in crate::console) fn pinned(priority: &str, cause: &str, began_utc: &str, remarks: &str) -> String {
-    text_format!(
-        "{priority}: {cause}, since {began_utc} UTC{remarks}",
-        "{priority}: {cause}, seit {began_utc} UTC{remarks}"
-    )
+pub(in crate::console) fn pinned(priority: &str, cause: &str, began: &str, remarks: &str) -> String {
+    text_format!("{priority}: {cause}, since {began}{remarks}", "{priority}: {cause}, seit {began}{remarks}")
 }
 
 pub(in crate::console) fn others(count: usize) -> String {

@@ -65,7 +65,7 @@ fn rings_and_jaws_of_a_rig_elsewhere_are_shown() {
     publisher.notify(MonitorMessage::Shows(read(&writer.take()).unwrap()));
     window.run_steps(3);
     assert_eq!(window.state().live().unwrap().objects.as_ref(), Some(&objects));
-    reads(&mut window, "Rings: passed 3, placed 2, dropped 0");
+    reads(&mut window, "passed 3, placed 2, dropped 0");
     // The next batch contains no objects that are new.
     publisher.notify(MonitorMessage::Shows(sent(&plan).drain(..20).collect()));
     window.run_steps(3);

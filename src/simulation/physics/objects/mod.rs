@@ -108,6 +108,18 @@ struct RingNote {
 }
 
 impl Objects {
+    /// Puts every ring where it is in `start`, at rest, without allocating; the instruments stay where they are.
+    pub fn begin_as(&mut self, start: &Self) {
+        let Memories { ring_board, ring_pegs, ring_tools, ring_rings, .. } = &start.memories;
+        self.rings.clone_from(&start.rings);
+        self.memories.ring_board.clone_from(ring_board);
+        self.memories.ring_pegs.clone_from(ring_pegs);
+        self.memories.ring_tools.clone_from(ring_tools);
+        self.memories.ring_rings.clone_from(ring_rings);
+        self.notes.clone_from(&start.notes);
+        self.states.clone_from(&start.states);
+    }
+
     /// Creates the objects of a setting with a step every `period_s`. The setting must have been validated.
     pub fn new(setting: &ObjectSettings, period_s: f64) -> Self {
         let period_s = if period_s > 0.0 { period_s.min(PERIOD_MAX_S) } else { SUBSTEP_MAX_S };

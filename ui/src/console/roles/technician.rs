@@ -40,7 +40,7 @@ pub(super) fn technician_ui(
         Panel::Devices => wishes.devices = devices_ui(ui, live, &mut panels.devices),
         Panel::Calibrations => wishes.calibration = acts(ui, past, |ui| calibrations_ui(ui, live, active, None)),
         Panel::Gates => gates_ui(ui, live, &mut panels.gates),
-        Panel::Horizon => horizon_ui(ui, live, outbox),
+        Panel::Horizon => horizon_ui(ui, live, outbox, false),
         Panel::Timing => timing_ui(ui, live, &mut panels.timing),
         Panel::Link if past => {
             let elsewhere = live.of == ScreenSource::Elsewhere;

@@ -17,6 +17,46 @@ const CLOSED_S: f64 = 2.5;
 /// Maximum time until the engagement after that, s; it fails after [`nima_core::safety::READY_WITHIN_S`].
 const RETURNS_S: f64 = 2.5;
 
+/// Distance between two points of a trail, m, and their largest number.
+const TRAIL_STEP_M: f64 = 0.5e-3;
+const TRAIL_POINTS: usize = 128;
+
+/// The way of a released handle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::console) struct ReleaseTrail {
+    points_m: [Vector3<f64>; TRAIL_POINTS],
+    count: usize,
+}
+
+impl Default for ReleaseTrail {
+    fn default() -> Self {
+        Self { points_m: [Vector3::zeros(); TRAIL_POINTS], count: 0 }
+    }
+}
+
+impl ReleaseTrail {
+    /// Returns the points of the trail, m, from the release on.
+    pub(in crate::console) fn points_m(&self) -> &[Vector3<f64>] {
+        &self.points_m[..self.count]
+    }
+
+    /// Returns the largest distance from the place of the release, m.
+    pub(in crate::console) fn travel_m(&self) -> f64 {
+        let points_m = self.points_m();
+        points_m.iter().map(|point_m| (point_m - points_m[0]).norm()).fold(0.0, f64::max)
+    }
+
+    fn add(&mut self, point_m: Vector3<f64>) {
+        let is_apart = |last_m: &Vector3<f64>| (last_m - point_m).norm() >= TRAIL_STEP_M;
+        if self.points_m().last().is_none_or(is_apart)
+            && let Some(place) = self.points_m.get_mut(self.count)
+        {
+            *place = point_m;
+            self.count += 1;
+        }
+    }
+}
+
 /// The hand, and the travel of its handle.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct LettingGo {
@@ -30,6 +70,8 @@ pub(super) struct LettingGo {
     returned_s: Option<f64>,
     /// Travel of the handle after the last release, m.
     pub(super) travel_m: Option<f64>,
+    /// Its way.
+    pub(super) trail: ReleaseTrail,
 }
 
 impl LettingGo {
@@ -55,6 +97,7 @@ impl LettingGo {
                     travel_m: Some(0.0),
                     ..Self::default()
                 };
+                self.trail.add(tick.leader_m);
                 outbox.push(Command::LetGo(true));
             }
             return;
@@ -62,6 +105,7 @@ impl LettingGo {
         if tick.state == LoopState::Engaged {
             // After the engagement has ended, the hand's position is on another scale.
             self.travel_m = self.travel_m.map(|max_m| max_m.max((tick.leader_m - from_m).norm()));
+            self.trail.add(tick.leader_m);
         }
         // If the engagement ended for another reason, do not restart it.
         let ended = live.changes[Side::Right.index()].is_some_and(|change| change.why == TransitionCause::Absent);
@@ -80,6 +124,24 @@ impl LettingGo {
                 self.returned_s = Some(now_s);
             }
         }
-        *self = Self { travel_m: self.travel_m, returned_s: self.returned_s, ..Self::default() };
+        *self = Self { travel_m: self.travel_m, trail: self.trail, returned_s: self.returned_s, ..Self::default() };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_trail_keeps_the_way_of_a_release_and_its_length() {
+        let mut trail = ReleaseTrail::default();
+        assert!(trail.points_m().is_empty() && trail.travel_m() == 0.0);
+        for step in 0..=300 {
+            trail.add(Vector3::new(0.0, 0.0, f64::from(step) * 1e-4));
+        }
+        assert!((trail.travel_m() - 0.030).abs() < 1e-3, "{}", trail.travel_m());
+        assert!((50..=TRAIL_POINTS).contains(&trail.points_m().len()), "{}", trail.points_m().len());
+        (0..1000).for_each(|step| trail.add(Vector3::x() * f64::from(step)));
+        assert_eq!(trail.points_m().len(), TRAIL_POINTS, "never more than its room");
     }
 }

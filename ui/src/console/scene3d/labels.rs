@@ -8,7 +8,7 @@ use super::{CameraLook, SceneCamera, SceneView, stage, stage::StageArm, training
 use crate::{
     console::{
         live::LiveState,
-        roles::demo::ReleaseTrail,
+        scene3d::release_trail::ReleaseTrail,
         text, theme,
         widgets::{fitting, force_sign, width_of},
     },

@@ -12,6 +12,7 @@ mod mouse_drive;
 mod objects;
 mod pick;
 mod reach;
+pub(in crate::console) mod release_trail;
 mod shadows;
 pub mod stage;
 mod training;
@@ -36,10 +37,11 @@ use self::{
     labels::{axes, hint, labels, readings, readings_width, release},
     mouse_drive::MouseDrive,
     objects::DisplayedObjects,
+    release_trail::ReleaseTrail,
     stage::{StageArm, StagePose},
     training::TrialClock,
 };
-use super::{live::LiveState, outbox::Outbox, roles::demo::ReleaseTrail, theme};
+use super::{live::LiveState, outbox::Outbox, theme};
 use crate::console::text;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

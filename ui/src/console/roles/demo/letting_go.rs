@@ -7,7 +7,7 @@ use nima_machine::{
     rig::Side,
 };
 
-use crate::console::{live::LiveState, outbox::Outbox};
+use crate::console::{live::LiveState, outbox::Outbox, scene3d::release_trail::ReleaseTrail};
 
 /// The hand releases the handle when it presses with at least this force, N, and grips it again after this time, s.
 const LET_GO_N: f64 = 1.5;
@@ -16,46 +16,6 @@ const OPEN_S: f64 = 2.5;
 const CLOSED_S: f64 = 2.5;
 /// Maximum time until the engagement after that, s; it fails after [`nima_core::safety::READY_WITHIN_S`].
 const RETURNS_S: f64 = 2.5;
-
-/// Distance between two points of a trail, m, and their largest number.
-const TRAIL_STEP_M: f64 = 0.5e-3;
-const TRAIL_POINTS: usize = 128;
-
-/// The way of a released handle.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::console) struct ReleaseTrail {
-    points_m: [Vector3<f64>; TRAIL_POINTS],
-    count: usize,
-}
-
-impl Default for ReleaseTrail {
-    fn default() -> Self {
-        Self { points_m: [Vector3::zeros(); TRAIL_POINTS], count: 0 }
-    }
-}
-
-impl ReleaseTrail {
-    /// Returns the points of the trail, m, from the release on.
-    pub(in crate::console) fn points_m(&self) -> &[Vector3<f64>] {
-        &self.points_m[..self.count]
-    }
-
-    /// Returns the largest distance from the place of the release, m.
-    pub(in crate::console) fn travel_m(&self) -> f64 {
-        let points_m = self.points_m();
-        points_m.iter().map(|point_m| (point_m - points_m[0]).norm()).fold(0.0, f64::max)
-    }
-
-    fn add(&mut self, point_m: Vector3<f64>) {
-        let is_apart = |last_m: &Vector3<f64>| (last_m - point_m).norm() >= TRAIL_STEP_M;
-        if self.points_m().last().is_none_or(is_apart)
-            && let Some(place) = self.points_m.get_mut(self.count)
-        {
-            *place = point_m;
-            self.count += 1;
-        }
-    }
-}
 
 /// The hand, and the travel of its handle.
 #[derive(Clone, Copy, Debug, Default)]
@@ -125,23 +85,5 @@ impl LettingGo {
             }
         }
         *self = Self { travel_m: self.travel_m, trail: self.trail, returned_s: self.returned_s, ..Self::default() };
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_trail_keeps_the_way_of_a_release_and_its_length() {
-        let mut trail = ReleaseTrail::default();
-        assert!(trail.points_m().is_empty() && trail.travel_m() == 0.0);
-        for step in 0..=300 {
-            trail.add(Vector3::new(0.0, 0.0, f64::from(step) * 1e-4));
-        }
-        assert!((trail.travel_m() - 0.030).abs() < 1e-3, "{}", trail.travel_m());
-        assert!((50..=TRAIL_POINTS).contains(&trail.points_m().len()), "{}", trail.points_m().len());
-        (0..1000).for_each(|step| trail.add(Vector3::x() * f64::from(step)));
-        assert_eq!(trail.points_m().len(), TRAIL_POINTS, "never more than its room");
     }
 }

@@ -26,7 +26,6 @@ use crate::console::{
     widgets::{bar, card, figure, small},
 };
 
-pub(in crate::console) use self::letting_go::ReleaseTrail;
 pub use self::state::DemoState;
 
 /// Below this width the chapters need two rows.

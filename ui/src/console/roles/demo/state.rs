@@ -5,12 +5,12 @@ use nima_machine::messages::{Command, LoopState};
 
 use super::{
     chapter_time::ChapterPace,
-    letting_go::{LettingGo, ReleaseTrail},
+    letting_go::LettingGo,
     recovery::{PersonsStop, Recovery},
     script::{GovernorAction, SCRIPT, ScriptStep},
 };
 use crate::{
-    console::{live::LiveState, outbox::Outbox, text},
+    console::{live::LiveState, outbox::Outbox, scene3d::release_trail::ReleaseTrail, text},
     report_text::Remedy as _,
 };
 

@@ -1,8 +1,8 @@
 //! Identification of all five degrees on three axes: our routine compared with the routines that it replaces, in one
 //! run.
 //!
-//! Prints a table with p50 and p99 per tick and the ratios, then runs the same routines under divan; with `--ratios` it
-//! prints only the ratios that `./dev bench` compares.
+//! Prints a table with p50 and p99 per tick and the ratios; with `--ratios` it prints only the ratios that `./dev bench`
+//! compares.
 
 #![expect(clippy::expect_used, reason = "a benchmark may stop at a setting out of range")]
 
@@ -226,37 +226,5 @@ fn main() {
     println!("{:>6}  {:<44} {:>10} {:>10} {:>10}", "rows", "per tick, 3 axes, N = 1..5", "p50 us", "p99 us", "max us");
     let short = table(300);
     let long = table(3000);
-    println!("3000 rows cost {:.2} times 300 rows\n", long / short);
-    divan::main();
-}
-
-#[divan::bench(args = [300, 3000])]
-fn ours(bencher: divan::Bencher, window: usize) {
-    let rows = rows(3 * window);
-    let (mut slide, mut solution) = sliding(window / 2);
-    for row in &rows {
-        slide.push(row);
-    }
-    let mut next = rows.iter().cycle();
-    bencher.bench_local(|| {
-        next.next().into_iter().for_each(|row| slide.push(row));
-        solution.solve(slide.current());
-    });
-}
-
-#[divan::bench(args = [300, 3000])]
-fn all_modes(bencher: divan::Bencher, window: usize) {
-    let mut identifier = identifier(window, ModeSet::ALL);
-    (0..4 * window).for_each(|k| identifier.step(&sample(k)));
-    let mut k = 4 * window;
-    bencher.bench_local(|| {
-        identifier.step(&sample(k));
-        k += 1;
-    });
-}
-
-#[divan::bench(args = [300], sample_count = 20)]
-fn five_svd_pseudo_inverses(bencher: divan::Bencher, window: usize) {
-    let rows = rows(window);
-    bencher.bench_local(|| svd(&rows));
+    println!("3000 rows cost {:.2} times 300 rows", long / short);
 }

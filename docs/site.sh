@@ -3,8 +3,8 @@
 
 mdbook_version=0.5.4
 
-# The pages as a site, in target/site. What stands outside of docs/ (README, architecture, ...) becomes a page of it, and every link of the
-# finished pages must lead somewhere.
+# Builds the pages as a site, in target/site. README, ARCHITECTURE and the other files outside docs/ become pages of it. Every link of the
+# finished pages must lead to a file and a heading.
 docs() {
   need_cargo
   need "${build_packages[@]}" python3 || exit 1
@@ -16,17 +16,17 @@ docs() {
   }
   rm -rf "$book" && mkdir -p "$book/src/reference"
   cp docs/book.toml "$book/"
-  cp docs/*.md docs/*.png docs/*.svg "$book/src/"
+  cp docs/*.md docs/*.png "$book/src/"
   cp docs/reference/*.md "$book/src/reference/"
   for page in README ARCHITECTURE CONTRIBUTING CHANGELOG; do
     sed -E 's#\]\(docs/#](#g' "$page.md" >"$book/src/${page,,}.md"
   done
-  # An old entry of the changelog names a page of its time.
+  # Old entries of the changelog name pages that no longer exist.
   sed -E -i 's#\[([^]]*)\]\([a-z-]+\.md[^)]*\)#\1#g' "$book/src/changelog.md"
-  # mdBook would make an index of a page called README.
+  # mdBook would turn a page called README into an index.
   mv "$book/src/readme.md" "$book/src/first-minute.md"
   sed -E -i 's#\]\((\.\./)?README\.md#](first-minute.md#g; s#\]\((\.\./)?(ARCHITECTURE|CONTRIBUTING|CHANGELOG)\.md#](\L\2.md#g' "$book"/src/*.md
-  # Files of the source, results and decisions are named, not shown.
+  # Files of the source, results and decisions are not part of the site: their names remain, without a link.
   sed -E -i 's#\[([^]]*)\]\((\.\./)?(config|src|ui|tests|assets|python|results|decisions)/[^)]*\)#\1#g' "$book"/src/*.md
   "$tool" build "$book" --dest-dir "$PWD/$folder/site"
   python3 tests/site_links.py "$folder/site"

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Every link and picture of a finished site must lead to a file, and to a place in it: site_links.py FOLDER."""
+"""Checks that every link and image of a finished site leads to a file and to a heading in it: site_links.py FOLDER."""
 import html.parser
 import pathlib
 import sys
@@ -21,7 +21,7 @@ class Page(html.parser.HTMLParser):
 
 
 folder = pathlib.Path(sys.argv[1]).resolve()
-# This one shows the others once more, on one page.
+# These repeat the content of all other pages.
 pages = {path: Page(path) for path in sorted(folder.glob("**/*.html")) if path.name not in ("print.html", "toc.html")}
 wrong, seen = [], 0
 for path, page in pages.items():
@@ -36,5 +36,5 @@ for path, page in pages.items():
             wrong.append(f"{path.relative_to(folder)}: {link}")
 for line in sorted(set(wrong)):
     print(line)
-print(f"{len(pages)} pages, {seen} links, {len(set(wrong))} of them to nowhere")
+print(f"{len(pages)} pages, {seen} links, {len(set(wrong))} of them broken")
 sys.exit(bool(wrong) or seen < 100)

@@ -40,7 +40,7 @@ pub fn everything(folder: &Path) -> String {
     all
 }
 
-/// Returns the words, in lower case, that occur in a text.
+/// Returns all words in a text, in lower case.
 pub fn found_in<'a>(text: &str, words: &[&'a str]) -> Vec<&'a str> {
     let text = text.to_lowercase();
     words.iter().copied().filter(|word| text.contains(word)).collect()

@@ -3,7 +3,8 @@
 use hdrhistogram::Histogram;
 use serde::Serialize;
 
-/// Longest duration that the histogram resolves, ns (10 s). Longer durations are counted in this bin.
+/// Longest duration that the histogram resolves, ns (10 s). Longer durations are counted in this bin. A longer pause is
+/// a stopped program, whose exact length does not matter, so the memory can be fixed.
 const LONGEST_NS: u64 = 10_000_000_000;
 
 /// A histogram of durations with three significant digits.

@@ -94,7 +94,7 @@ impl Health {
         self.standing = ConnectionState::Connected;
     }
 
-    /// Returns the marks the device as lost; the first cause is kept. Returns true if it was not lost before.
+    /// Marks the device as lost; the first cause is kept. Returns true if it was not lost before.
     pub const fn lose(&mut self, loss: Loss) -> bool {
         let newly = !matches!(self.standing, ConnectionState::Lost(_));
         if newly {

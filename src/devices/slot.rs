@@ -31,7 +31,8 @@ pub struct SlotReport {
 
 /// Time between two attempts to open the device, so that a device that is absent does not keep the bus busy.
 const RETRY: Duration = Duration::from_millis(500);
-/// Polling interval of the thread for closing, opening and ending; the loop determines the time of a wake-up.
+/// Polling interval of the thread for closing, opening and ending; the loop determines the time of a wake-up. Hardly
+/// noticeable for a person, but long enough that the slots of a whole rig cost nothing.
 const NAP: Duration = Duration::from_millis(20);
 
 /// The slot of one device. Dropping it closes the device and ends its thread.
@@ -51,6 +52,7 @@ impl<D: Device + 'static> DeviceSlot<D> {
     /// # Errors
     /// If the operating system cannot create the thread.
     pub fn start(name: &str, open: impl FnMut() -> Result<D, DeviceError> + Send + 'static) -> std::io::Result<Self> {
+        // Room for one device: there is never more than one, and a full queue cannot block the real-time thread.
         let (give, opened) = bounded(1);
         let (lost, take) = bounded(1);
         let shared = SlotShared::default();
@@ -133,6 +135,7 @@ impl<D: Device> DeviceSlot<D> {
         }
         self.shared.stop.store(true, Ordering::Release);
         if let Some(thread) = &self.thread {
+            // Otherwise ending would wait for the rest of the pause.
             thread.thread().unpark();
         }
     }
@@ -202,6 +205,7 @@ impl<D: Device> SlotWorker<D> {
                         report.trouble = None;
                         report.opened += 1;
                     });
+                    // If the slot has ended in the meantime, the device is closed here.
                     out = self.give.try_send(device).is_ok();
                 }
                 Err(trouble) => {
@@ -215,6 +219,7 @@ impl<D: Device> SlotWorker<D> {
                 }
             }
         }
+        // A device that was lost in the last moment is closed on this thread, too.
         self.take.try_iter().for_each(drop);
     }
 

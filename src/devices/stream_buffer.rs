@@ -51,7 +51,7 @@ impl Unread {
         self.bytes().len() == self.memory.len()
     }
 
-    /// Returns the marks the first `count` bytes as read and returns them.
+    /// Marks the first `count` bytes as read and returns them.
     pub(crate) fn pass(&mut self, count: usize) -> &[u8] {
         let from = self.begin;
         self.begin = from.saturating_add(count).min(self.end);

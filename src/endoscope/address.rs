@@ -151,7 +151,7 @@ fn camera(text: &str) -> Result<Address, &'static str> {
     Ok(Address::Camera { path: path.into(), capture })
 }
 
-/// `USER:PASSWORD@HOST:PORT/PATH`, of which only the host is required.
+/// `USER:PASSWORD@HOST:PORT/PATH`; only the host is required.
 fn endpoint(rest: &str, usual_port: u16) -> Result<Endpoint, &'static str> {
     let (authority, path) = rest.find(['/', '?']).map_or((rest, "/"), |at| rest.split_at(at));
     let (login, authority) = match authority.rsplit_once('@') {

@@ -8,16 +8,20 @@ use std::{
 
 use crate::{CompressedFrame, Damage, DecodedImage, Format};
 
-/// An image that does not change for this long is frozen.
+/// An image that does not change for this long is frozen. Six images at 30 Hz: longer than a network pauses, and short
+/// enough that an operator has not moved far on an old image.
 pub const FROZEN: Duration = Duration::from_millis(200);
 /// An image that is this old on arrival is late.
 pub const LATE: Duration = Duration::from_millis(200);
-/// A damaged image is reported for this long.
+/// A damaged image is reported for this long. A single damaged image would otherwise vanish from the screen before it
+/// can be read.
 const DAMAGE_REPORTED: Duration = Duration::from_millis(500);
 /// Period over which the rate is counted, and maximum number of arrivals stored.
 const RATE_OVER: Duration = Duration::from_secs(1);
+/// More than a second of the fastest camera, so that only a fault reaches it.
 const ARRIVALS_MAX: usize = 512;
-/// The camera's clock may be slower than ours by this factor: 200 parts in a million.
+/// The camera's clock may be slower than ours by this factor: 200 parts in a million. Crystals differ by at most 100
+/// parts in a million each; without this allowance a slow clock would be reported as a growing delay.
 const DRIFT: f64 = 2e-4;
 
 /// A fault of the images.
@@ -89,6 +93,7 @@ impl FrameWatch {
     /// Called when the source was opened, for the first time or again.
     pub(crate) fn opened(&mut self, is_still: bool) {
         self.is_still = is_still;
+        // A camera that was restarted counts from another zero.
         self.delay = Delay::default();
         self.damage = None;
     }
@@ -96,6 +101,7 @@ impl FrameWatch {
     /// Called for an image that has arrived and is not decoded yet.
     pub(crate) fn arrived(&mut self, compressed: &CompressedFrame) {
         let at = compressed.arrived;
+        // Only for images without reference to others: a stream that repeats a still view sends different bytes.
         if compressed.stands_alone() {
             self.looks(at, hash(compressed));
         }
@@ -141,6 +147,7 @@ impl FrameWatch {
 
     /// Returns the current fault; the one that hides most of the image comes first.
     pub(crate) fn wrong(&self, now: Instant) -> Option<FrameFault> {
+        // A single image cannot freeze, be late or stop.
         if self.is_still {
             return self.damage.as_ref().map(|(_, damage)| FrameFault::Damaged(damage.clone()));
         }
@@ -174,14 +181,15 @@ const RUN_OF: usize = 16;
 fn hash(compressed: &CompressedFrame) -> u64 {
     let mut hasher = DefaultHasher::new();
     match compressed.format {
+        // In compressed data one changed pixel may change few bytes, so all of them are hashed.
         Format::Jpeg | Format::H264 { .. } => compressed.bytes.hash(&mut hasher),
         Format::Raw(_) => compressed.bytes.chunks(RUN_BYTES).step_by(RUN_OF).for_each(|run| run.hash(&mut hasher)),
     }
     hasher.finish()
 }
 
-/// Delay of images from the camera's time stamps: the minimum difference between the two clocks is that of an image
-/// without delay.
+/// Delay of images from the camera's time stamps: an image without delay has the minimum difference between the two
+/// clocks.
 #[derive(Debug, Default)]
 struct Delay {
     begin: Option<Instant>,

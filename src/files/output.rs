@@ -80,7 +80,7 @@ pub fn write_private(path: &Path, text: &str) -> io::Result<()> {
 }
 
 /// Checks whether [`write_atomically`] could replace `path` without destroying one of the `inputs`. Call it before
-/// computing the result that is to be written.
+/// computing the result for the file.
 ///
 /// # Errors
 /// Everything that [`write_atomically`] refuses, a missing folder, and an input that is the same file, also under
@@ -181,7 +181,7 @@ fn temporary(folder: &Path, like: Option<&Metadata>) -> io::Result<NamedTempFile
     tempfile::Builder::new().permissions(fs::Permissions::from_mode(mode)).tempfile_in(folder)
 }
 
-/// Returns the changes the owner first: a change of owner clears bits of the mode.
+/// Changes the owner first: a change of owner clears bits of the mode.
 #[cfg(unix)]
 fn keep(file: &File, like: &Metadata) -> io::Result<()> {
     use std::os::unix::fs::{MetadataExt as _, PermissionsExt as _, fchown};

@@ -4,7 +4,8 @@
 use nima_files::quoted;
 use toml::de::{DeTable, DeValue};
 
-/// Maximum length of a text, characters: names, addresses, ports, paths. Design choice.
+/// Maximum length of a text, characters: names, addresses, ports, paths. Design choice. The text may come from a file
+/// of another program, so it must not fill a page or the memory.
 const MAX: usize = 512;
 
 /// Returns key and fault of the first text that cannot be displayed.

@@ -8,9 +8,9 @@ use nima_recording::tip_force::model_to_bytes;
 
 use crate::digest::digest_of_bytes;
 
-/// Entries whose values are one of [`verdicts`], ...
+/// Entries whose values are one of [`verdicts`].
 pub(crate) const VERDICTS: [&str; 2] = ["gravity_verdict", "network_verdict"];
-/// ... and entries whose values are numbers. None of them reveals a person, place or date.
+/// Entries whose values are numbers. None of them reveals a person, place or date.
 pub(crate) const FIGURES: [&str; 5] =
     ["gravity_error_n", "gravity_poses", "network_error_n", "network_rows", "network_doubt_share"];
 const UNCHECKED: &str = "never checked on new data";

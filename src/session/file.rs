@@ -21,9 +21,9 @@ use crate::{
 
 pub struct RecordedFile(Arc<SessionReader>);
 
-/// Number of journal messages read ahead of the loop: one second of the session when starting from a keyframe, ...
+/// Number of journal messages read ahead of the loop when starting from a keyframe: one second of the session.
 const AHEAD: usize = 5;
-/// ... and as many as are stepped at once when starting from the beginning.
+/// Number of journal messages read ahead when starting from the beginning: as many as are stepped at once.
 const FAR_AHEAD: usize = 80;
 
 /// The chunk of a keyframe's last block is found by its time; the margin allows for rounding.

@@ -118,6 +118,7 @@ impl JournalWriter {
     /// # Errors
     /// The errors of `pages`, or [`JournalError::Part`] for calibrations that cannot be written.
     pub fn take<P: Pages>(&mut self, entry: TapEntry, tap: &TapEnd, pages: &mut P) -> Result<(), P::Error> {
+        // A gap is visible only in the numbers, because a full queue drops entries silently.
         self.missed_until(entry.number);
         self.next = entry.number + 1;
         match entry.passed {
@@ -134,6 +135,7 @@ impl JournalWriter {
                 self.t_s = stepped.timing.now_s;
                 self.block.tick(&row);
                 self.ticks += 1;
+                // Reported only after the buffer has been returned: an error must not take it out of circulation.
                 let report = pages.tick(&stepped, &self.events);
                 self.events.clear();
                 tap.give_back(stepped);
@@ -148,6 +150,7 @@ impl JournalWriter {
     /// # Errors
     /// The errors of `pages`.
     pub fn end<P: Pages>(mut self, tap: &TapEnd, pages: &mut P) -> Result<JournalEnd, P::Error> {
+        // Entries that were dropped at the very end have no successor that would show the gap.
         self.missed_until(tap.offered());
         if !self.block.is_empty() {
             pages.write(&self.block())?;
@@ -178,6 +181,7 @@ impl JournalWriter {
         self.filed = self.filed.split_off(&number);
         let Some(calibrations) = self.filed.remove(&number) else { return Ok(()) };
         let bytes = self.encoder.calibrations(number, &calibrations)?;
+        // Written before the operation that names them, so that a replay has them when it needs them.
         pages.calibrations(number, &calibrations)?;
         pages.write(&TimedMessage { t_s: self.t_s, bytes })
     }

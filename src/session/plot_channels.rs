@@ -88,7 +88,7 @@ pub fn arm(reader: &SessionReader, path: &Path, asked: Option<Side>) -> Result<S
     }
 }
 
-/// Returns the poses of the endoscope's marker in these times (ns), the newest last; empty if no tracker saw it or the
+/// Returns the poses of the endoscope's marker in this time range (ns), the newest last; empty if no tracker saw it or the
 /// file has no frames.
 pub fn endoscope(reader: &SessionReader, times_ns: Range<u64>) -> Vec<Isometry3<f64>> {
     let messages = reader.messages(&[FRAMES_TOPIC], times_ns);

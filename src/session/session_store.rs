@@ -138,7 +138,7 @@ impl SessionStore {
     }
 }
 
-/// Returns the marks a session as kept, or removes the mark.
+/// Marks a session as kept, or removes the mark.
 ///
 /// # Errors
 /// I/O errors.

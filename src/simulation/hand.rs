@@ -4,23 +4,22 @@ use std::f64::consts::TAU;
 
 use nalgebra::Vector3;
 use nima_core::noise::Noise;
-use nima_machine::rig::{Acts, TaskAction};
+use nima_machine::rig::Acts;
 
 use crate::{
     force_response::ForceResponse,
+    hand_task::{HandTaskPart, repeated_task},
     palpation_task::PalpationTask,
     scene::{Scene, SceneHand as HandConfig},
 };
 
-/// Height above the targets at which the hand moves between them, m.
-const CARRY_HEIGHT_M: f64 = 0.015;
 const TREMOR_HZ: [f64; 3] = [8.3, 9.7, 11.6];
 
 /// Maximum speed at which fingers open or close a gripper, rad/s.
 const GRIP_RAD_S: f64 = 4.0;
-/// Maximum speed, m/s, and acceleration, m/s^2, at which a hand is led from the screen. A hand that moves by itself reaches
-/// 4.3 m/s^2 over 30 mm in 0.2 s. Without the limit, a hand that starts in the direction of the force would look like a
-/// handle that nobody holds.
+/// Maximum speed, m/s, and acceleration, m/s^2, at which a hand is led from the screen. A hand that moves by itself
+/// reaches 4.3 m/s^2 over 30 mm in 0.2 s. Without the limit, a hand that starts in the direction of the force would
+/// look like a handle without a hand.
 const GUIDE_M_S: f64 = 0.15;
 const GUIDE_M_S2: f64 = 2.0;
 /// Time constant with which a led hand ends its motion, s.
@@ -32,46 +31,6 @@ const HANDLE_N_S_M: f64 = 0.5;
 const HANDLE_STOP_M: f64 = 0.08;
 /// Distance from the task's path at which a released hand resumes the task, m.
 const CAUGHT_UP_M: f64 = 1e-4;
-
-/// One movement of the task: minimum jerk from one point to another in a given time.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct HandMove {
-    pub(super) from_m: Vector3<f64>,
-    pub(super) to_m: Vector3<f64>,
-    pub(super) seconds: f64,
-}
-
-/// One part of a hand's task.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct HandTaskPart {
-    pub(super) way: HandMove,
-    /// Opening of the gripper at its beginning and at its end, rad.
-    pub(super) grip_rad: [f64; 2],
-    pub(super) then: Option<TaskAction>,
-}
-
-impl HandMove {
-    /// Returns the intended position (m) and velocity (m/s) after `t_s` of the move (Flash and Hogan 1985).
-    pub(super) fn at(&self, t_s: f64) -> (Vector3<f64>, Vector3<f64>) {
-        if self.seconds <= 0.0 {
-            return (self.to_m, Vector3::zeros());
-        }
-        let s = (t_s / self.seconds).clamp(0.0, 1.0);
-        let way = self.to_m - self.from_m;
-        let fraction = s * s * s * (10.0 + s * (-15.0 + 6.0 * s));
-        let speed = 30.0 * s * s * (1.0 - s) * (1.0 - s) / self.seconds;
-        (self.from_m + way * fraction, way * speed)
-    }
-}
-
-impl HandTaskPart {
-    /// Returns the opening of the gripper after `t_s`, rad.
-    fn grip_rad_at(&self, t_s: f64) -> f64 {
-        let [from_rad, to_rad] = self.grip_rad;
-        let fraction = if self.way.seconds > 0.0 { (t_s / self.way.seconds).clamp(0.0, 1.0) } else { 1.0 };
-        from_rad + (to_rad - from_rad) * fraction
-    }
-}
 
 /// An intended position and its velocity.
 #[derive(Clone, Copy, Debug)]
@@ -108,7 +67,7 @@ pub struct Hand {
     search: Option<Box<PalpationTask>>,
     /// Response to the force; `None` if it has no force perception.
     feeling: Option<Box<ForceResponse>>,
-    /// Pace of its own task, and the common pace of both hands if they share a task.
+    /// Pace of its task, and the common pace of both hands if they share a task.
     pace: f64,
     shared_pace: Option<f64>,
     acts: Acts,
@@ -122,7 +81,7 @@ pub struct Hand {
     held_open_rad: Option<f64>,
     /// Position at which it waits while the task is paused.
     waits_m: Option<Vector3<f64>>,
-    /// What the hand intended last: its task, or where it is guided.
+    /// Last intention of the hand: its task, or where it is guided.
     intended: Intention,
     /// The hand is guided, or on its way back to the task.
     is_led: bool,
@@ -133,7 +92,7 @@ pub struct Hand {
 impl Hand {
     /// Creates the hand of `scene`, at rest above its first target.
     pub fn new(scene: &Scene) -> Self {
-        Self::with_task(scene, task(&scene.hand, &scene.targets_m))
+        Self::with_task(scene, repeated_task(&scene.hand, &scene.targets_m))
     }
 
     /// Creates the hand of `scene` with this task, which it repeats.
@@ -327,42 +286,10 @@ impl Hand {
     }
 }
 
-/// Returns the repeated task: above each target move down, press, drag a little, hold, lift, and move on to the next.
-fn task(hand: &HandConfig, targets_m: &[Vector3<f64>]) -> Vec<HandTaskPart> {
-    let lift = Vector3::new(0.0, 0.0, CARRY_HEIGHT_M);
-    let press = Vector3::new(0.0, 0.0, -hand.press_depth_m);
-    let drag = Vector3::new(hand.drag_m, -0.5 * hand.drag_m, 0.0);
-    let mut parts = Vec::with_capacity(targets_m.len() * 5);
-    for (i, &target) in targets_m.iter().enumerate() {
-        let next = targets_m[(i + 1) % targets_m.len()];
-        let stations =
-            [target + lift, target + press, target + press + drag, target + press + drag, target + lift, next + lift];
-        let seconds = [hand.press_s, hand.hold_s, hand.hold_s, hand.press_s, hand.reach_s];
-        parts.extend(stations.windows(2).zip(seconds).map(|(pair, seconds)| HandTaskPart {
-            way: HandMove { from_m: pair[0], to_m: pair[1], seconds },
-            grip_rad: [0.0; 2],
-            then: None,
-        }));
-    }
-    parts
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_minimum_jerk_move_starts_and_ends_at_rest() {
-        let way = HandMove { from_m: Vector3::zeros(), to_m: Vector3::x(), seconds: 2.0 };
-        assert_eq!(way.at(0.0), (Vector3::zeros(), Vector3::zeros()));
-        let (end, speed) = way.at(2.0);
-        assert!((end - Vector3::x()).norm() < 1e-12 && speed.norm() < 1e-12);
-        let (middle, peak) = way.at(1.0);
-        assert!(
-            (middle.x - 0.5).abs() < 1e-12 && (peak.x - 1.875 / 2.0).abs() < 1e-12,
-            "peak speed is 1.875 of the mean"
-        );
-    }
+    use crate::hand_task::CARRY_HEIGHT_M;
 
     #[test]
     fn a_led_hand_goes_where_it_is_led_and_back_to_its_task_without_a_jump() {
@@ -381,7 +308,7 @@ mod tests {
         assert!(!hand.is_led, "it has taken up its task");
     }
 
-    /// With 8 m/s^2 and more, such a hand would look to the governor like a handle that nobody holds.
+    /// With 8 m/s^2 and more, the governor would take such a hand for a released handle.
     #[test]
     fn a_hand_that_presses_does_not_yield_when_it_begins_to_be_led() {
         for (aim_m, guided) in [(0.04, true), (-0.04, true), (0.0, false)] {

@@ -6,6 +6,7 @@
 pub mod camera;
 mod force_response;
 mod hand;
+mod hand_task;
 mod haptic_input;
 mod input_devices;
 mod object_feed;

@@ -8,7 +8,7 @@ use nalgebra::Vector3;
 use nima_machine::rig::TaskAction;
 
 use crate::{
-    hand::{HandMove, HandTaskPart},
+    hand_task::{HandMove, HandTaskPart},
     scene::{Scene, SceneHand},
 };
 

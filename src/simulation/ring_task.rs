@@ -1,13 +1,13 @@
 //! The task of hands that carry rings from peg to peg: to the other side, and back.
 //!
 //! With two hands each ring changes hands in the middle, as in FLS: one hand takes it from its peg, the other takes it
-//! in mid-air and puts it on a peg of its own side. A single hand carries it all the way.
+//! in mid-air and puts it on a peg of its side. A single hand carries it all the way.
 
 use nalgebra::Vector3;
 use nima_machine::rig::{SIDES, Side};
 
 use crate::{
-    hand::{HandMove, HandTaskPart},
+    hand_task::{HandMove, HandTaskPart},
     physics::{ObjectSettings, RingStart},
 };
 

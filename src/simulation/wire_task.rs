@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 use nima_core::noise::Noise;
 
 use crate::{
-    hand::{HandMove, HandTaskPart},
+    hand_task::{HandMove, HandTaskPart},
     physics::{SmoothCurve, WireSetting},
     scene::SceneHand,
 };

@@ -6,7 +6,7 @@ use std::sync::Mutex;
 use nima_machine::{
     config::RigConfig,
     messages::{Command, LoopState},
-    remote::{FarFollower, FarLeader, MESSAGE_MAX, RemoteWire, at_follower},
+    remote::{FollowerRig, MESSAGE_MAX, OperatorRig, RemoteWire, at_follower},
     rig::Rig,
     runtime::tick,
     teleop::{Calibrations, Loop},
@@ -58,8 +58,8 @@ fn a_tick_of_two_machines_allocates_nothing() {
     let both = [Some(Calibrations::default()), Some(Calibrations::default())];
     let mut here = Loop::new(&rig, &both).unwrap();
     let mut there = Loop::new(&at_follower(&rig), &both).unwrap();
-    let mut leader = FarFollower::new(worlds(), InPlace(0), rig.rate_hz);
-    let mut follower = FarLeader::new(worlds(), InPlace(1), rig.rate_hz);
+    let mut leader = OperatorRig::new(worlds(), InPlace(0), rig.rate_hz);
+    let mut follower = FollowerRig::new(worlds(), InPlace(1), rig.rate_hz);
     let before = calls();
     let mut states = [LoopState::Idle; 2];
     for tick in 0..4000 {

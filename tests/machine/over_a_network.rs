@@ -10,7 +10,7 @@ use nima_core::{impedance::Mode, safety::Implausible};
 use nima_machine::{
     config::RigConfig,
     messages::{Command, Event, FarStop, Fault, ForceSource, LoopState, Refusal, Tick},
-    remote::{FarFollower, FarLeader, RemoteWire, at_follower},
+    remote::{FollowerRig, OperatorRig, RemoteWire, at_follower},
     rig::Rig,
     runtime::tick,
     teleop::{Calibrations, Loop},
@@ -68,8 +68,8 @@ impl<R: Rig> Machine<R> {
 }
 
 struct Fixture {
-    leader: Machine<FarFollower<Worlds, Constant>>,
-    follower: Machine<FarLeader<Worlds, Constant>>,
+    leader: Machine<OperatorRig<Worlds, Constant>>,
+    follower: Machine<FollowerRig<Worlds, Constant>>,
     is_cut: Arc<Mutex<bool>>,
     ticks: u64,
 }
@@ -91,8 +91,8 @@ impl Fixture {
             is_cut: is_cut.clone(),
         };
         let control = |rig: &RigConfig| Loop::new(rig, &[Some(Calibrations::default()), None]).unwrap();
-        let leader = FarFollower::new(worlds(), wire(&there, &back, 0.0), rig.rate_hz);
-        let follower = FarLeader::new(worlds(), wire(&back, &there, 1800.0), rig.rate_hz);
+        let leader = OperatorRig::new(worlds(), wire(&there, &back, 0.0), rig.rate_hz);
+        let follower = FollowerRig::new(worlds(), wire(&back, &there, 1800.0), rig.rate_hz);
         Self {
             leader: Machine { control: control(&rig), rig: leader, tick: None, ahead_s: 0.0, events: Vec::new() },
             follower: Machine {

@@ -62,7 +62,7 @@ fn all_well(found: &[DiscoveryDiagnosis]) -> bool {
     found.iter().all(|one| match &one.outcome {
         TestOutcome::Trouble { .. } => false,
         TestOutcome::Connected(connected) => {
-            // Devices that are polled, or that report only changes, have no rate of their own.
+            // Devices that are polled, or that report only changes, have no fixed rate.
             let usual_hz = match one.name.as_str() {
                 "tracker" => Some(60.0),
                 "tissue sensor" => Some(800.0),

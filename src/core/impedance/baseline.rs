@@ -40,7 +40,7 @@ impl Baseline {
 
 /// Parameters of a baseline in a packet: plain numbers of fixed size.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[expect(clippy::large_enum_variant, reason = "it crosses the link by value, in a parcel of fixed size")]
+#[expect(clippy::large_enum_variant, reason = "it crosses the link by value, in a packet of fixed size")]
 pub enum BaselineModel {
     /// No baseline is computed, or it has no data yet.
     Nothing,

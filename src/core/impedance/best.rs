@@ -71,7 +71,7 @@ impl LeaderEnd for Best {
 /// A softmin, per axis, of the running errors of the forces that the leader rendered, compared with the force that a
 /// packet delivers one delay later. The follower cannot compute this, because it does not have the motion from which
 /// the leader makes the force, and matched rendering errs by the stiffness times what that motion is wrong. Holding
-/// needs no weight of its own: anchored rendering is holding wherever its correction does not help.
+/// needs no separate weight: anchored rendering is holding wherever its correction does not help.
 ///
 /// On another tissue both err at first: anchored rendering for one delay, matched rendering until it has learned the
 /// tissue. Because the errors of both are known one delay late, both look bad for as long again. A lasting error of

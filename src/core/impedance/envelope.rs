@@ -2,7 +2,8 @@
 
 use crate::signal::Lanes;
 
-/// Memory of the range (s), and how far a rendered force may exceed the range, as a fraction of its width. Chosen as in `anchored.rs`.
+/// Memory of the range (s), and how far a rendered force may exceed the range, as a fraction of its width. Chosen as in
+/// `anchored.rs`.
 const MEMORY_S: f64 = 5.0;
 const MARGIN: f64 = 0.1;
 

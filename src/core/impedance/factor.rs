@@ -40,6 +40,7 @@ impl ImpedanceFactor {
     /// diagonal, i.e. `weight * |M|^2` is added to the sum of squares.
     pub fn with_ridge(columns: usize, weight: f64) -> Self {
         let mut factor = Self::new(columns);
+        // The constant stays free: pulling it towards zero would bias the force itself.
         for j in 1..factor.columns {
             factor.elements[column_start(j) + j] = Lanes::splat(weight.sqrt());
         }
@@ -81,7 +82,8 @@ impl WindowSummary for ImpedanceFactor {
             let squares = v.iter().fold(Lanes::ZERO, |sum, v| sum + *v * *v);
             let a = self.elements[start + k];
             let norm = norm_of(a * a + squares);
-            // u = (a + sign(a) norm, v); the reflection I - tau u u' maps (a, v) to (-sign(a) norm, 0).
+            // u = (a + sign(a) norm, v); the reflection I - tau u u' maps (a, v) to (-sign(a) norm, 0). With the sign
+            // of `a` the sum below cannot cancel, so the reflection stays orthogonal.
             let signed_norm = norm.zip(a, f64::copysign);
             let head = a + signed_norm;
             let tau = (signed_norm * head).recip_or_zero();

@@ -12,8 +12,10 @@ use crate::signal::{DelayLine, Lanes, settled};
 /// Time constant of the running errors (s). Chosen as in `anchored.rs`.
 const MEMORY_S: f64 = 0.5;
 /// A correction may be at most this many times the recent change of force over the delay. Chosen as in `anchored.rs`.
+/// Without a bound, an extrapolation that is wrong once would be felt as a blow.
 const BOUND: f64 = 1.5;
-/// A candidate must achieve less than this fraction of the plain reflection's error.
+/// A candidate must achieve less than this fraction of the plain reflection's error. A tie is decided for the plain
+/// reflection, because a correction that does not help can only do harm.
 const MARGIN: f64 = 0.98;
 /// Renewals of the solutions per second (at most one per tick): they are large, and hardly change in 5 ms.
 const RENEW_HZ: f64 = 200.0;
@@ -45,6 +47,7 @@ impl Horizon {
     pub(super) fn new(settings: &ImpedanceSettings, delay_ticks: usize) -> Self {
         let ImpedanceSettings { rate_hz, max_degree, .. } = *settings;
         let blank = HorizonHistory { features: [Lanes::ZERO; MOTION_COLUMNS], force_n: Lanes::ZERO, bound_n: 0.0 };
+        // For the longest delay that the link accepts, because nothing may be allocated when the delay changes later.
         let max_delay = (MAX_DELAY_S * rate_hz).ceil() as usize;
         let every = ((rate_hz / RENEW_HZ).round() as usize).max(1);
         let forget = 1.0 - libm::exp(-1.0 / (MEMORY_S * rate_hz));
@@ -65,6 +68,8 @@ impl Horizon {
     /// Advances without evaluating: only the data for later evaluations are stored.
     pub(super) fn rest(&mut self, features: &ImpedanceFeatures, force_n: Lanes) {
         self.keep(features, force_n);
+        // The solution is stored again although nothing was learnt: one entry for each period keeps the index a
+        // function of the tick.
         if self.tick.is_multiple_of(self.every)
             && let Some(solution) = self.solutions.get(0).copied()
         {
@@ -86,6 +91,7 @@ impl Horizon {
         force_n: Lanes,
         good: bool,
     ) -> usize {
+        // Without a delay the reflected force is exact, and there is nothing to choose.
         if good && self.delay_ticks > 0 {
             self.judge(features, force_n);
         }
@@ -103,6 +109,8 @@ impl Horizon {
         let age = (self.tick - 1) / self.every - (self.tick - self.delay_ticks) / self.every;
         let Some(solution) = self.solutions.get(age) else { return };
         let change = force_n - then.force_n;
+        // The bound rises at once and falls slowly, so that the first contact after a pause is not clipped by the calm
+        // before it.
         let decayed = settled(self.largest_change_n * (1.0 - self.forget));
         self.largest_change_n = decayed.max(change.norm());
         let mut moved = *features;
@@ -111,6 +119,8 @@ impl Horizon {
         }
         let mut foretold = Lanes::ZERO;
         for (columns, mean) in self.errors_n.iter_mut().enumerate().take(self.candidates + 1) {
+            // The candidates are nested: each adds one column to the prediction of the previous one, so all of them
+            // cost as much as the largest.
             foretold +=
                 part(solution, columns).iter().zip(&moved).fold(Lanes::ZERO, |sum, (m, moved)| sum + *m * *moved);
             let error_n = (change - clip(foretold, then.bound_n)).norm();

@@ -138,6 +138,7 @@ impl Identifier {
         if advancing {
             self.last_t_s = sample.t_s;
         }
+        // A missing force is replaced by the last one so that every history keeps one entry per tick; `fresh` marks it.
         self.last_force_n = force.unwrap_or(self.last_force_n);
         self.report.t_s = self.last_t_s;
         self.report.rejected += u64::from(!good);
@@ -160,6 +161,7 @@ impl Identifier {
             good,
             usable,
             learn,
+            // This tick's packet is stored afterwards, so the one of `delay_ticks` ago is one place nearer.
             sent: self.sent.get(self.delay_ticks.max(1) - 1).map(|(parcel, _)| parcel),
         };
         for follower in self.followers.each().filter(|follower| follower.serves(self.computed)) {

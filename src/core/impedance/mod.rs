@@ -13,15 +13,15 @@
 //! | `track`, `features` | the motion of one end; its features `u, u', u'', ..., u^N, u'^N, u''^N` and their scales |
 //! | `window`, `factor`, `solution` | sliding window at a constant cost; triangular factor; all its nested solutions |
 //! | `gram`, `literal` | the paper's normal equations, all degrees, in-window choice |
-//! | `recipe` | how the paper is read where it leaves a choice; the choice by what comes after the window |
+//! | `recipe` | how the paper is read where it leaves a choice; the choice by the data after the window |
 //! | `degrees`, `horizon` | the nested solution that predicts force best at the true delay, where modes are compared |
-//! | `mode`, `method` | the list of the ways to render; what each of them consists of |
+//! | `mode`, `method` | the list of the ways to render; the parts of each |
 //! | `paper`, `dfr`, `anchored`, `matched`, `best` | the program's own ways to render |
 //! | `baseline` | the names of the methods of others, to compare with; at most one is computed |
 //! | `regressors`, `regression`, `mixture` | experts of anchored rendering and their trust |
 //! | `damper` | the damping that keeps a force of the handle's own motion from driving the hand |
 //! | `motion_clock`, `envelope` | a clock that motion drives; the range of forces seen |
-//! | `identifier`, `information`, `renderer`, `messages` | the two ends of the link, and what goes between them |
+//! | `identifier`, `information`, `renderer`, `messages` | the two ends of the link, and the messages between them |
 
 mod anchored;
 mod baseline;

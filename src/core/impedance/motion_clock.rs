@@ -4,7 +4,8 @@ use crate::signal::Lanes;
 
 /// Memory of the recent maximum motion (s by this clock). Design choice.
 const LARGEST_S: f64 = 20.0;
-/// Fraction of the maximum motion above which time runs at full pace, and the pace at rest.
+/// Fraction of the maximum motion above which time runs at full pace, and the pace at rest. Time stands nearly still at
+/// rest, so that a pause does not make the regression forget what the last motion showed.
 const FULL: f64 = 0.1;
 const REST: f64 = 0.02;
 /// The pace decays with this time constant (s), so that a turning point does not stop the clock.

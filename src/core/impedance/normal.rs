@@ -8,6 +8,7 @@
 use super::factor::column_start;
 use crate::signal::{Lanes, NOTHING, SimdLoop, SimdVector, widest};
 
+/// The largest model (matched rendering), because all solvers share this fixed memory.
 pub(super) const MAX: usize = 25;
 /// A pivot below this fraction of its column's square is only rounding error, so the column is left out.
 const ROUNDING: f64 = 1e-12;

@@ -31,7 +31,7 @@ pub trait PackedNumbers: Sized {
     fn read(row: &mut PackedReader<'_>) -> Option<Self>;
 }
 
-/// The parameters of one rendering in their place in a parcel.
+/// The parameters of one rendering in their place in a packet.
 pub trait PackedParameters {
     /// Appends the parameters to a row.
     fn write(&self, row: &mut PackedWriter<'_>);
@@ -181,7 +181,7 @@ mod tests {
         Baseline, BaselineModel, HuntCrossleyContact, Identifier, ImpedanceSettings, Models, SLOTS, Sample, Wave,
     };
 
-    /// Returns the last parcel of two seconds of pressing, with all modes and the model of one baseline.
+    /// Returns the last packet of two seconds of pressing, with all modes and the model of one baseline.
     fn parcel(baseline: &BaselineModel) -> LinkPacket {
         let mut identifier =
             Identifier::new(&ImpedanceSettings { delay_s: 0.05, ..ImpedanceSettings::default() }).unwrap();

@@ -5,7 +5,8 @@ use crate::signal::{BANK, LANES, Lanes, LowPassBank};
 
 /// Shortest and longest time constants of the filter bank (s). Chosen as in `anchored.rs`.
 const BANK_S: [f64; 2] = [0.005, 0.32];
-/// Memory of the slow means: the motion's centre, the force's level, the size of the speed (s).
+/// Memory of the slow means: the motion's centre, the force's level, the size of the speed (s). Longer than
+/// the longest delay (1 s), so that the level at the anchor still describes the contact when the packet is rendered.
 const SLOW_S: f64 = 2.0;
 /// Quantities that only the follower has are limited to this many times their running RMS, so that an unprecedented
 /// jump is not extrapolated.
@@ -76,12 +77,14 @@ pub(super) fn position_bank(settings: &ImpedanceSettings) -> LowPassBank {
 
 /// Returns the fraction of a change that the low-pass with the bank's shortest time constant follows in one sample.
 pub(super) fn shortest_fraction(settings: &ImpedanceSettings) -> f64 {
+    // `expm1`, because `1 - exp(x)` loses digits for the small `x` of a high rate.
     -libm::expm1(-1.0 / (BANK_S[0] * settings.rate_hz).max(1.0))
 }
 
 /// Returns `u / (|u| + knee)`: the sign of the motion, smoothed.
 #[inline]
 pub(super) fn saturated(u: Lanes, knee: Lanes) -> Lanes {
+    // Smooth instead of a sign function, because the noise of a hand at rest would switch a sign in every sample.
     let size = u.map(f64::abs) + knee;
     u * size.recip_or_zero()
 }
@@ -114,6 +117,7 @@ impl Background {
         let [m0, m1, m2, m3] = self.motion_trend;
         let position = self.position_level;
         let force = self.force_level;
+        // The fourth lane is padding and must stay zero, because sums over all lanes enter the errors.
         let drift = Lanes([1.0, 1.0, 1.0, 0.0]);
         let stiffening = self.force_n * dx;
         let damping = self.force_n * u1;
@@ -150,6 +154,7 @@ impl BackgroundBuilder {
     /// Returns the background of this tick. `usual`: mean squares of the regressors so far, `None` while there are too
     /// few samples.
     pub(super) fn step(&mut self, stance: &MotionState, force_n: Lanes, usual: Option<&Regressors>) -> Background {
+        // Starting the means at zero would look like a large force and motion for the first seconds.
         if !self.started {
             self.centre = stance.x;
             self.force_level = force_n;

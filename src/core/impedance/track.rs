@@ -49,6 +49,7 @@ impl MotionTrack {
             reading: settings.literal.reading,
             degree: settings.max_degree,
             posture: Posture::BLANK,
+            // A window is two blocks long; the increments reach back over all of it.
             history: DelayLine::new(2 * settings.block(), Motion::default()),
             last: Motion::default(),
             period_s: settings.rate_hz.recip(),
@@ -67,6 +68,7 @@ impl MotionTrack {
             return self.posture;
         } else {
             self.missing += 1;
+            // A short gap is bridged with the speed, because a stop would look like an impact to the second derivative.
             let moving = self.missing <= self.bridge_ticks;
             if moving { self.last.x + self.last.v * self.period_s } else { self.last.x }
         };
@@ -120,6 +122,7 @@ impl MotionTrack {
 /// Returns the position if it is usable: finite and not absurd.
 pub(super) fn usable_position(position: Lanes, scales: &Scales) -> Option<Lanes> {
     let limit = ABSURD * scales.position_m;
+    // NaN fails this comparison, too, so it needs no separate test.
     position.0.iter().all(|x| x.abs() <= limit).then_some(position)
 }
 

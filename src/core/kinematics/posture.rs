@@ -21,7 +21,8 @@ const MANIPULABILITY_WEIGHT: f64 = 0.2;
 const CLEARANCE_WEIGHT: f64 = 0.5;
 /// Smallest value of the squared manipulability ((m/rad)^10): keeps the logarithm finite.
 const LOST: f64 = 1e-14;
-/// Step of the numerical gradient, rad.
+/// Step of the numerical gradient, rad. Between rounding, which grows for smaller steps, and curvature, which spoils
+/// larger ones.
 const STEP_RAD: f64 = 1e-6;
 
 /// Joints whose positions (elbow, wrist) must stay above the patient.

@@ -94,7 +94,8 @@ pub struct Rcm {
     cone_rad: f64,
 }
 
-/// A position closer to the trocar than this defines no direction, m.
+/// A position closer to the trocar than this defines no direction, m. Below it only rounding would decide the
+/// direction.
 const POINT_M: f64 = 1e-9;
 
 impl Rcm {

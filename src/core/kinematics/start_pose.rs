@@ -20,7 +20,8 @@ use super::{
     velocity::{MotionRequest, VelocityTask, towards},
 };
 
-/// Random starts of the search.
+/// Random starts of the search. Many, because an arm with seven joints has many poses for one tip, and Newton's method
+/// finds the nearest of them only.
 const STARTS: usize = 600;
 /// Newton steps from each start.
 const STEPS: usize = 80;

@@ -27,9 +27,11 @@ impl DifferentiatorKind {
     }
 }
 
-/// Length of the finite windows (s).
+/// Length of the finite windows (s). Longer windows delay the speed, and shorter ones amplify the noise of the encoder,
+/// because both scale with the window.
 const SPAN_S: f64 = 0.02;
-/// Minimum number of samples in a finite window, used at low rates.
+/// Minimum number of samples in a finite window, used at low rates. A parabola through fewer samples has no residual,
+/// so noise would pass unfiltered.
 const MIN_SAMPLES: usize = 5;
 /// Longest adaptive window, in samples: its cost increases with the square of its length.
 const MAX_FOAW_SAMPLES: usize = 32;

@@ -13,13 +13,14 @@ use std::collections::VecDeque;
 
 use nalgebra::SVector;
 
-/// Permitted error, as a fraction and in m/s.
+/// Permitted error, as a fraction and in m/s. A gate that compares the speed with a threshold does not need more, so
+/// the window can stay short.
 const FRACTION: f64 = 0.1;
 const MIN_M_S: f64 = 0.1e-3;
 /// Each of this many newest readings is examined; of the older ones, only one in this many.
 const NEAR: usize = 16;
 const STRIDE: usize = 4;
-/// Longest window, s: a step of 40 um.
+/// Longest window, s: a step of 40 um. Otherwise a hand at rest would keep the last motion for seconds.
 const LONGEST_S: f64 = 0.4;
 /// Tolerance for rounding in the last digit of a step: readings are stored in 32 bits by some devices, so that equal
 /// steps differ in their last digit.

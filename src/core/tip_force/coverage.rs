@@ -8,6 +8,7 @@ use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 use super::LIVE_INPUTS;
 
+/// Coarse, so that a recording of half a minute can fill the cells.
 pub const MAP: usize = 16;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -182,11 +183,16 @@ impl TipForceCoverage {
         let goal = |what, fraction: f64| Goal { what, fraction };
         let tilt = self.tilt_span.iter().map(|span| part(span.width(), TILT_SPAN)).fold(1.0, f64::min);
         let [x, y, z] = self.force_span.map(|span| span.width());
+        // The weaker of the two directions across the shaft counts, because a network cannot learn a direction that was
+        // never loaded.
         let force = part(x.min(y), ACROSS_SPAN_N).min(part(z, ALONG_SPAN_N));
         let way = self.inwards.min(self.outwards) as f64 / rows;
+        // Both directions are required, because friction acts against the motion: a network that saw one of them does
+        // not know the other.
         let brisk = self.brisk[0].min(self.brisk[1]) as f64 / BRISK_ROWS as f64;
         let contact = self.contact as f64 / rows;
         let [min, max] = CONTACT_FRACTION;
+        // Too little contact leaves the force unknown, too much of it leaves the offset of the free instrument unknown.
         let mixed = (contact / min).min((1.0 - contact) / (1.0 - max));
         [
             goal(GoalKind::Tilt, tilt),

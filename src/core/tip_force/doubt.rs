@@ -14,6 +14,7 @@ pub const FALSE_ALARMS: f64 = 0.01;
 /// Margin beyond the calibrated limits if the folds are parts of one session, because another session covers a wider
 /// range: in simulation, the 99th percentile of three unseen sessions was 2 to 14 % beyond the limits.
 const ROOM: f32 = 1.15;
+/// Their distances are computed in every tick, so their number is limited by the time of a tick.
 const CENTRES: usize = 96;
 const ROUNDS: usize = 8;
 /// Minimum variance in the whitening, as a fraction of the feature's variance: below it the direction is only noise.

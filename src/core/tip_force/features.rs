@@ -78,6 +78,12 @@ struct LastValues {
     known: bool,
 }
 
+impl LastValues {
+    const fn unknown(t_s: f64, wrench: &Wrench, insertion_m: f64) -> Self {
+        Self { t_s, wrench: *wrench, insertion_m, speed_m_s: 0.0, stretch_m: [0.0; 2], slip_m_s: 0.0, known: false }
+    }
+}
+
 impl TipForceFeatures {
     pub const fn new(settings: FeatureSettings) -> Self {
         Self { settings, last: None }
@@ -101,15 +107,7 @@ impl TipForceFeatures {
             Some(last) if t_s > last.t_s && t_s - last.t_s <= HOLE_S => {
                 self.advance(&last, t_s, gravity_free, insertion_m)
             }
-            _ => LastValues {
-                t_s,
-                wrench: *gravity_free,
-                insertion_m,
-                speed_m_s: 0.0,
-                stretch_m: [0.0; 2],
-                slip_m_s: 0.0,
-                known: false,
-            },
+            _ => LastValues::unknown(t_s, gravity_free, insertion_m),
         };
         self.last = Some(now);
         if !now.known {

@@ -8,7 +8,8 @@
 
 use super::MAX_OUTPUTS;
 
-/// Number of values processed at once; rows of weights are padded with zeros to a multiple of it.
+/// Number of values processed at once; rows of weights are padded with zeros to a multiple of it. The width of AVX2 for
+/// 32-bit numbers, because that is the widest unit that most computers have.
 const LANE: usize = 8;
 
 /// A matrix with a bias: `outputs = inputs W + b`.

@@ -129,11 +129,6 @@ impl BotaDriver {
         status_of(self.judge.status)
     }
 
-    /// Returns the time without a usable reading after which the sensor is lost, s.
-    pub const fn silence_limit_s(&self) -> f64 {
-        self.silence_s
-    }
-
     pub fn close(self) {}
 
     /// Handles the data that have arrived; damage is counted from the first reading on.

@@ -69,6 +69,7 @@ fn open_gen0(settings: &BotaSettings, timeouts: BotaTimeouts) -> Result<OpenSens
         let place = session.place.clone();
         let mut link = BotaLink::new(session.into_line(), None);
         match first_readings(&mut link, &place, rate_hz, settings, timeouts) {
+            // The only fault that a restart may clear; every other one needs a person.
             Err(DeviceError::DeviceFault { words, .. }) if words == RAW => {
                 session = BotaSession::new(link.into_lines().0, &place, timeouts);
                 restart_gen0(&mut session, settings)?;
@@ -89,6 +90,7 @@ fn enter_config_gen0(session: &mut BotaSession, settings: &BotaSettings) -> Resu
             None => {}
         }
     }
+    // No answer to its own protocol: ask in the other one, so that a swapped setting is named instead of a silent line.
     if session.ask(gen_a::read(gen_a::SERIAL).as_bytes(), |received| gen_a::answer(received, b"rh"))?.is_some() {
         return Err(wrong_generation(session, FIRST_GENERATION, SECOND_GENERATION));
     }
@@ -115,6 +117,7 @@ fn configure_gen0(session: &mut BotaSession, settings: &BotaSettings) -> Result<
     let baud_index = gen0::BAUDS.iter().position(|baud| *baud == settings.baud).unwrap_or_default();
     let communication = gen0::communication(baud_index);
     let filter = gen0::filter(settings.sinc);
+    // The measurement starts last: otherwise the answers would be hidden between frames.
     for command in [communication.as_bytes(), filter.as_bytes(), gen0::NO_OFFSET, gen0::RUN] {
         let name = String::from_utf8_lossy(command);
         match session.ask(command, |received| gen0::acknowledged(received, command[0]))? {
@@ -212,6 +215,7 @@ fn enter_config_gen_a(session: &mut BotaSession, baud: Option<u32>) -> Result<()
             None => {}
         }
     }
+    // Not over a network, where the first generation does not exist.
     if baud.is_some() && session.ask(gen0::CONFIG, |received| gen0::acknowledged(received, b'C'))?.is_some() {
         return Err(wrong_generation(session, SECOND_GENERATION, FIRST_GENERATION));
     }
@@ -238,12 +242,14 @@ fn configure_gen_a(session: &mut BotaSession, settings: &BotaSettings) -> Result
         (gen_a::SUBMODE, settings.submode().unwrap_or_default()),
         (gen_a::OUTPUT_RATE, 0),
     ];
+    // An offset stored by another program would shift every force, and our own calibration determines the bias.
     let zero = 0_f32.to_bits();
     writes.extend((0..6).map(|part| ((gen_a::OFFSET.0, gen_a::OFFSET.1 + part), zero)));
     for (parameter, value) in writes {
         good(session, &gen_a::write(parameter, value))?;
     }
     let reported_hz = number(session, gen_a::RATE)?;
+    // 1 Hz may be rounding; with a larger difference the sensor has kept another rate.
     if reported_hz.abs_diff(settings.rate_hz) > 1 {
         let command = format!("{} Hz", settings.rate_hz);
         return Err(refused(session, &command, &format!("its rate is {reported_hz} Hz")));
@@ -324,11 +330,13 @@ fn first_readings(
         let command = format!("mode {}", settings.mode);
         return Err(DeviceError::Refused { place, command, answer: "frames in a different format".to_owned() });
     }
+    // Throttled frames are usable: the sensor skipped some, but those that arrive are right.
     if newest.status & STATUS_BITS & !THROTTLED_BIT != 0 {
         return Err(fault_of(&place, newest.status));
     }
     let mut steps_us: Vec<u32> =
         frames.windows(2).map(|pair| pair[1].timestamp_us.wrapping_sub(pair[0].timestamp_us)).collect();
+    // The median, because one frame lost on the line would double a mean of so few.
     steps_us.sort_unstable();
     let measured_hz = 1e6 / f64::from(steps_us[steps_us.len() / 2].max(1));
     if measured_hz > rate_hz * RATE_FACTOR || measured_hz < rate_hz / RATE_FACTOR {

@@ -151,6 +151,7 @@ impl<'a, T: ByteStream, P: WaitClock> DynamixelSession<'a, T, P> {
         }
         if firmware == [None; SERVOS] {
             let place = self.place.to_owned();
+            // A wrong id in the settings is the usual cause, and the ids that do answer are its remedy.
             let others = self.everybody()?;
             if others.is_empty() {
                 return Err(DeviceError::Silent { place });
@@ -209,9 +210,11 @@ impl<'a, T: ByteStream, P: WaitClock> DynamixelSession<'a, T, P> {
     /// Switches torque and watchdog off, then writes all settings.
     fn prepare(&mut self, servo: &ServoSettings, model: &ServoModel) -> Result<(), DeviceError> {
         let id = servo.id;
-        // A servo whose status return level is below 2 does not answer this write either.
+        // A servo whose status return level is below 2 does not answer this write either. Therefore not by `write`,
+        // which would fail without an answer.
         let level = [2];
         self.ask(id, &Instruction::Write { address: table::STATUS_RETURN_LEVEL.address, data: &level })?;
+        // The EEPROM is locked while the torque is on (ROBOTIS e-manual, "Control table").
         self.write(id, (table::TORQUE_ENABLE, 0))?;
         self.write(id, (table::BUS_WATCHDOG, 0))?;
         let drive_mode = self.read(id, table::DRIVE_MODE)? as u8;
@@ -230,6 +233,7 @@ impl<'a, T: ByteStream, P: WaitClock> DynamixelSession<'a, T, P> {
     fn reboot(&mut self, id: u8) -> Result<(), DeviceError> {
         self.send(id, &Instruction::Reboot)?;
         let begin_s = self.pace.now_s();
+        // The servo is silent while it restarts, so the first answer to a ping shows that it is back.
         while self.pace.now_s() - begin_s < REBOOT_S {
             self.wait(self.timeouts.answer_s);
             if self.once(id, &Instruction::Ping)?.is_some() {
@@ -277,6 +281,7 @@ impl<'a, T: ByteStream, P: WaitClock> DynamixelSession<'a, T, P> {
         let write = Instruction::Write { address: register.address, data: &bytes[..usize::from(register.bytes)] };
         let answer = self.ask(id, &write)?.ok_or_else(|| self.refused(id, command(), "no answer".to_owned()))?;
         self.accept(id, &answer, command)?;
+        // An answer without an error does not prove that the value was stored.
         let kept = self.read(id, register)?;
         if kept == value { Ok(()) } else { Err(self.refused(id, command(), format!("it remains {kept}"))) }
     }
@@ -331,6 +336,7 @@ impl<'a, T: ByteStream, P: WaitClock> DynamixelSession<'a, T, P> {
             let Some(answer) = answer else { return Ok(servos) };
             let number = answer.data.first_chunk().map_or(0, |bytes| u16::from_le_bytes(*bytes));
             let model = ServoModel::numbered(number).map_or("unknown servo", |model| model.name);
+            // More answers than there are ids: a line that repeats itself must not fill the memory.
             if servos.len() > usize::from(BROADCAST) {
                 return Ok(servos);
             }

@@ -46,6 +46,7 @@ const HELLO: &str = "nima-hid";
 impl HidIdentity {
     /// Returns the emulator's first packet.
     pub fn hello(&self) -> String {
+        // A word must not be empty, because the parts are separated by spaces.
         let serial = if self.serial.is_empty() { "-" } else { &self.serial };
         format!("{HELLO} {:04x}:{:04x} {serial} {}", self.vendor, self.product, self.name)
     }
@@ -53,6 +54,7 @@ impl HidIdentity {
     #[cfg(any(target_os = "linux", test))]
     pub(super) fn of_hello(packet: &[u8]) -> Option<Self> {
         let text = std::str::from_utf8(packet).ok()?;
+        // The name is last, because it may contain spaces.
         let mut words = text.splitn(4, ' ');
         let (Some(HELLO), Some(ids), Some(serial), Some(name)) =
             (words.next(), words.next(), words.next(), words.next())
@@ -69,6 +71,7 @@ impl HidIdentity {
     pub fn kind(&self) -> Option<HidKind> {
         match known(self.vendor, self.product) {
             Some(model) => Some(model.kind),
+            // Models newer than this program use the same reports.
             None if self.vendor == 0x256f => Some(HidKind::Cap),
             None => None,
         }
@@ -135,6 +138,8 @@ impl HidSource {
         let opened = match self {
             Self::Any => raw::open_first(&format!("any {what}"), fits),
             Self::Ids { vendor, product, serial } => {
+                // Without the check below: ids in a rig file are the operator's decision, also for a model that is not
+                // listed.
                 return raw::open_first(&format!("{what} {self}"), |identity| {
                     (identity.vendor, identity.product) == (*vendor, *product)
                         && serial.as_ref().is_none_or(|serial| *serial == identity.serial)

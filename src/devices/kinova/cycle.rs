@@ -10,7 +10,7 @@ enum CycleResult {
     Lost,
 }
 
-/// Number of stored requests; a quarter of a second at 1 kHz.
+/// Number of stored requests; a quarter of a second at 1 kHz. An answer that is later than that counts as lost anyway.
 const REMEMBERED: usize = 256;
 
 /// The latest cyclic requests. Calls share their numbering.
@@ -30,6 +30,7 @@ impl Cycle {
     /// Records that a request with this number was sent.
     pub(super) fn asked(&mut self, number: u16, health: &mut Health) {
         let place = &mut self.fates[usize::from(number) % REMEMBERED];
+        // The place is needed again, so its request will not be answered any more.
         if place.1 == CycleResult::Waiting {
             health.lost += 1;
         }
@@ -61,10 +62,12 @@ impl Cycle {
 
     /// Counts requests older than the newest answer that have no answer yet as lost.
     fn overtake(&mut self, number: u16, health: &mut Health) {
+        // The numbers wrap at 65 535, after about a minute.
         let behind = self.newest.map_or(0, |newest| number.wrapping_sub(newest));
         for back in 1..usize::from(behind).min(REMEMBERED) {
             let passed = number.wrapping_sub(back as u16);
             let place = &mut self.fates[usize::from(passed) % REMEMBERED];
+            // The place may belong to a call, which shares the numbers but is answered on the other connection.
             if *place == (passed, CycleResult::Waiting) {
                 place.1 = CycleResult::Lost;
                 health.lost += 1;

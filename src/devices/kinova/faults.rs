@@ -7,10 +7,7 @@
 
 use std::fmt::{self, Display, Formatter};
 
-use super::{
-    feedback::{Banks, KinovaFeedback},
-    messages::ArmState,
-};
+use super::{feedback::KinovaFeedback, messages::ArmState};
 use crate::ARM_JOINTS;
 
 /// Base, bank A: a joint has a fault.
@@ -147,12 +144,5 @@ impl Display for KinovaFaults {
             return Ok(());
         }
         f.write_str(if self.in_fault { "an unnamed fault" } else { "none" })
-    }
-}
-
-impl Banks {
-    /// Creates banks with these faults in bank A.
-    pub const fn with_fault(bits: u32) -> Self {
-        Self { fault: [bits, 0], warning: [0; 2] }
     }
 }

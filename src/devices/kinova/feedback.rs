@@ -92,6 +92,7 @@ impl KinovaFeedback {
                 (2, value) => feedback.take_base(value.bytes()?)?,
                 (3, value) => {
                     let actuator = actuator(value.bytes()?)?;
+                    // An arm with more joints must be refused with its count, not with an index out of range.
                     if let Some(place) = feedback.actuators.get_mut(feedback.count) {
                         *place = actuator;
                     }

@@ -86,6 +86,7 @@ impl KinovaHeader {
 
     fn of(raw: &RawHeader) -> Result<Self, DamagedMessage> {
         let bits = |value: u32, width: u32, shift: u32| (value >> shift) & ((1 << width) - 1);
+        // The version is the only constant in a frame without a checksum, so it also detects damage.
         if bits(raw.frame, 4, 28) != VERSION || bits(raw.service, 4, 28) != VERSION {
             return Err(DamagedMessage);
         }
@@ -198,6 +199,7 @@ const PREFIX: usize = MARK.len() + LENGTH_BYTES;
 
 impl Default for PacketReader {
     fn default() -> Self {
+        // Two packets: the rest of one and the whole next one.
         Self { unread: Unread::with_room(2 * PACKET_MAX), skipped: 0, damaged: 0 }
     }
 }
@@ -227,6 +229,7 @@ impl PacketReader {
             let waiting = self.unread.bytes();
             let length = waiting.get(MARK.len()..PREFIX)?;
             let length = u32::from_be_bytes(length.try_into().ok()?) as usize;
+            // Otherwise a damaged length would wait for bytes that never arrive.
             if length <= PACKET_MAX - PREFIX {
                 let frame = waiting.get(PREFIX..PREFIX + length)?;
                 if KinovaFrame::decode(frame).is_ok() {
@@ -244,6 +247,7 @@ impl PacketReader {
         let waiting = self.unread.bytes();
         let begins = |at: &usize| {
             let tail = &waiting[*at..];
+            // A mark may be cut by the end of a read, so its beginning is kept.
             let length = tail.len().min(MARK.len());
             tail[..length] == MARK[..length]
         };

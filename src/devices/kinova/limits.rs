@@ -137,6 +137,7 @@ impl Guard {
         if elapsed_s <= 0.0 {
             return &self.command_rad;
         }
+        // Capped, so that a pause does not save up time for a jump.
         self.allowed_s = (self.allowed_s + elapsed_s).min(AHEAD_OF_TIME_S);
         if let Some(target_rad) = self.target_rad {
             let speed = |j: usize| (target_rad[j] - self.command_rad[j]) / elapsed_s;
@@ -147,6 +148,8 @@ impl Guard {
         } else {
             let step_s = elapsed_s.min(STEP_MAX_S);
             let acceleration = &self.limits.acceleration_rad_s2;
+            // The joint that needs longest decides for all, so that they stop together and the path stays a straight
+            // line.
             let left_s = (0..ARM_JOINTS).map(|j| self.speed_rad_s[j].abs() / acceleration[j]).fold(0.0, f64::max);
             let fraction = if left_s > step_s { 1.0 - step_s / left_s } else { 0.0 };
             for j in 0..ARM_JOINTS {

@@ -71,8 +71,6 @@ pub struct ArmState(pub u32);
 impl ArmState {
     pub const IN_FAULT: Self = Self(4);
     pub const SERVOING_LOW_LEVEL: Self = Self(6);
-    /// Ready for high-level commands.
-    pub const SERVOING_READY: Self = Self(7);
 
     /// Returns the text for a message.
     pub const fn words(self) -> &'static str {

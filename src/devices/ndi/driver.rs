@@ -32,7 +32,8 @@ pub const SILENT_S: f64 = 0.100;
 /// Number of consecutive damaged replies after which the unit counts as lost, so that a disturbance on a serial line
 /// does not end the tracking.
 pub const DAMAGED_MAX: u32 = 5;
-/// Code of [`Loss::Device`] for a unit that was switched off and on while tracking.
+/// Code of [`Loss::Device`] for a unit that was switched off and on while tracking. Above [`SYSTEM_FAULT`] and all of
+/// its bits, so that the codes stay distinct.
 pub const RESTARTED: u32 = 0x2_0000;
 /// Code of [`Loss::Device`] for fault bits of the unit, which are in the lower bits.
 pub const SYSTEM_FAULT: u32 = 0x1_0000;
@@ -161,6 +162,7 @@ impl NdiDriver {
     fn event_of(arrival: NdiArrival<'_>, beep: bool) -> ArrivalMeaning {
         let frames = match arrival {
             NdiArrival::Damaged => return ArrivalMeaning::Damaged,
+            // Sent without a request after power-on: the tools are no longer initialised, so tracking cannot continue.
             NdiArrival::Line(line) if line == b"RESET" => return ArrivalMeaning::Fault(RESTARTED),
             NdiArrival::Line(line) if line.starts_with(b"ERROR") => {
                 return read_hex(&line[5..]).map_or(ArrivalMeaning::Damaged, ArrivalMeaning::Fault);
@@ -248,11 +250,13 @@ impl NdiDriver {
 
     /// Counts a frame; returns true if it is later than the last one.
     fn is_new(&mut self, frame: u32, now_s: f64) -> bool {
+        // The signed difference, because the counter wraps around.
         let ahead = self.frame.map_or(1, |last| frame.wrapping_sub(last).cast_signed());
         if ahead <= 0 {
             self.health.out_of_order += u64::from(ahead < 0);
             return false;
         }
+        // The first number counts the frames before this session, which belong to the unit's clock.
         let since = if self.frame.is_some() { u64::from(ahead.unsigned_abs()) } else { u64::from(frame) };
         self.frames_since_open += since;
         self.health.lost += u64::from(ahead.unsigned_abs()) - 1;
@@ -267,6 +271,8 @@ impl NdiDriver {
             if now_s - at_s >= SILENT_S {
                 return Err(if self.received_s.is_some() { Loss::Corrupt } else { Loss::Silent });
             }
+            // Only after the line is quiet: the rest of a damaged reply would be read as the answer to the next
+            // command.
             if self.spoilt && self.received_s.is_none_or(|received_s| now_s - received_s >= QUIET_S) {
                 self.session.inbox.clear();
                 self.spoilt = false;
@@ -281,6 +287,7 @@ impl NdiDriver {
         if now_s < due_s {
             return Ok(());
         }
+        // Never two in a row, because the readings would pause for longer than the loop accepts.
         let beep = self.beeps > 0 && !self.beeped;
         self.beeped = beep;
         let command = if beep { NdiCommand::Beep(self.beeps) } else { NdiCommand::Track(self.form, OPTIONS) };
@@ -332,6 +339,7 @@ impl Drop for NdiDriver {
     /// session.
     fn drop(&mut self) {
         const TIMEOUT: Duration = Duration::from_millis(100);
+        // Without a line every command would only wait for its timeout.
         if self.health.standing == ConnectionState::Lost(Loss::Disconnected) {
             return;
         }

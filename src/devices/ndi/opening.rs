@@ -182,6 +182,7 @@ impl NdiOpening {
         if frames.system.faults() == 0 {
             return Ok(());
         }
+        // Whether the unit stops or not, its fault is what the operator must know.
         self.session.ask(&NdiCommand::Stop, self.timeouts.quick).ok();
         Err(DeviceError::DeviceFault {
             place: self.place.clone(),

@@ -101,7 +101,7 @@ impl Serial {
         }
     }
 
-    /// Returns the changes the speed of the open line.
+    /// Changes the speed of the open line.
     ///
     /// # Errors
     /// [`Loss::Disconnected`] if the port refuses the speed or is gone.
@@ -130,6 +130,7 @@ impl Serial {
     fn trouble(port: &str, error: &serialport::Error) -> DeviceError {
         let place = port.to_owned();
         match error.kind() {
+            // The library reports a port that another program holds like a missing one.
             serialport::ErrorKind::NoDevice if Path::new(port).exists() => DeviceError::Busy { place },
             serialport::ErrorKind::NoDevice => DeviceError::Absent { place },
             serialport::ErrorKind::Io(kind) => {
@@ -164,12 +165,15 @@ impl ByteStream for Serial {
             {
                 Ok(0)
             }
+            // An unplugged adapter gives different errors on each system; all of them mean that the line is gone.
             Err(_) => Err(Loss::Disconnected),
         }
     }
 
     fn send(&mut self, bytes: &[u8]) -> Result<(), Loss> {
         match self.stream().write(bytes) {
+            // A message that was sent in part would be completed by the next one, and the device would read both
+            // wrongly.
             Ok(count) if count == bytes.len() => Ok(()),
             _ => Err(Loss::Disconnected),
         }

@@ -24,6 +24,7 @@ impl Tcp {
         let resolved = address.to_socket_addrs().map_err(trouble)?.next();
         let resolved = resolved.ok_or_else(|| DeviceError::Unreachable { place: address.to_owned() })?;
         let stream = TcpStream::connect_timeout(&resolved, timeout).map_err(trouble)?;
+        // Nagle's algorithm would hold back a short command until the previous one is acknowledged.
         stream.set_nodelay(true).map_err(trouble)?;
         Self::of(stream).map_err(trouble)
     }
@@ -54,6 +55,7 @@ impl Tcp {
 impl ByteStream for Tcp {
     fn receive(&mut self, buffer: &mut [u8]) -> Result<usize, Loss> {
         match self.stream.read(buffer) {
+            // A read of 0 bytes is the end of the stream, unless the buffer has no room.
             Ok(0) if !buffer.is_empty() => Err(Loss::Disconnected),
             Ok(count) => Ok(count),
             Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::Interrupted) => Ok(0),
@@ -63,6 +65,7 @@ impl ByteStream for Tcp {
 
     fn send(&mut self, bytes: &[u8]) -> Result<(), Loss> {
         match self.stream.write(bytes) {
+            // Half a message would spoil the next one, as on a serial line.
             Ok(count) if count == bytes.len() => Ok(()),
             _ => Err(Loss::Disconnected),
         }

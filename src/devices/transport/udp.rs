@@ -40,6 +40,7 @@ impl Udp {
     /// [`DeviceError`] if the socket cannot be created or connected.
     pub fn connect(to: SocketAddr) -> Result<Self, DeviceError> {
         let trouble = |error| DeviceError::of_address(&to.to_string(), &error);
+        // Unspecified, so that the system chooses a free port and the right interface.
         let socket = UdpSocket::bind(("0.0.0.0", 0)).map_err(trouble)?;
         socket.connect(to).map_err(trouble)?;
         Self::of(socket, to.ip()).map_err(trouble)
@@ -58,6 +59,8 @@ impl Udp {
 
 impl Udp {
     fn is_received(&self, sender: SocketAddr) -> bool {
+        // Before the first good datagram only the address is known, because the program of a device may choose its
+        // port.
         if self.kept { self.sender == Some(sender) } else { sender.ip() == self.from }
     }
 }
@@ -68,7 +71,8 @@ fn is_too_long(error: &std::io::Error) -> bool {
     cfg!(windows) && error.raw_os_error() == Some(10040)
 }
 
-/// Maximum number of datagrams skipped in one call because of another sender or their length.
+/// Maximum number of datagrams skipped in one call because of another sender or their length. A flood of datagrams must
+/// not hold up the loop; the rest waits for the next call.
 const STRANGERS_MAX: usize = 16;
 
 impl TransportDatagrams for Udp {

@@ -144,7 +144,7 @@ impl RawLayout {
     }
 }
 
-/// Returns the image of three planes, of which the last two have one value for each square of four pixels.
+/// Returns the image of three planes; the last two have one value for each square of four pixels.
 ///
 /// # Errors
 /// If bytes are missing, or the image is larger than that of any camera.

@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use super::{chunked::ChunkedBody, head::HttpHead};
 
-/// Maximum size of an image, bytes.
+/// Maximum size of an image, bytes. Far larger than an image of any camera; a wrong length must not fill the memory.
 pub(super) const IMAGE_MAX: usize = 8 << 20;
 /// Number of images kept for a slow reader; older images are dropped.
 const PARTS_MAX: usize = 8;
@@ -102,6 +102,7 @@ impl HttpAnswer {
         match head.status {
             200 => {}
             401 => return Err(HttpFault::Locked(head.challenges)),
+            // Redirections are not followed, because a camera that was typed in must not lead to another host.
             status => return Err(HttpFault::Status(status)),
         }
         let kind = head.kind();
@@ -111,6 +112,7 @@ impl HttpAnswer {
             (kind, _) if kind.starts_with("multipart/") => {
                 return Err(HttpFault::Unreadable("a multipart response without a boundary"));
             }
+            // A snapshot address instead of the stream: it would show one image and freeze.
             ("image/jpeg", _) => return Err(HttpFault::Format("a single image".to_owned())),
             (kind, _) => return Err(HttpFault::Format(short(kind))),
         };
@@ -148,6 +150,7 @@ impl HttpAnswer {
             return Err(HttpFault::Unreadable("an image that is too large"));
         }
         match head.kind().as_str() {
+            // Some cameras omit the type of a part, and some misspell it.
             "" | "image/jpeg" | "image/jpg" => Ok(self.to(AnswerState::Body(head), begins)),
             kind => Err(HttpFault::Format(short(kind))),
         }
@@ -194,6 +197,7 @@ impl HttpAnswer {
         let is_boundary = |window: &[u8]| window.starts_with(b"--") && window[2..] == self.boundary;
         let found = self.held[self.searched..].windows(length).position(is_boundary);
         if found.is_none() {
+            // A boundary may be split between two reads, so the last bytes are searched again.
             self.searched = (self.held.len() + 1).saturating_sub(length);
         }
         found.map(|at| self.searched + at)

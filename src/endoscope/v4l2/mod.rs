@@ -25,8 +25,10 @@ use crate::{
     colour::{ColourMatrix, ValueRange},
 };
 
-/// Number of buffers requested, and minimum for a stream.
+/// Number of buffers requested, and minimum for a stream. One is filled while another is copied, and two are spare for
+/// a slow reader; more would only delay the image.
 const BUFFERS: u32 = 4;
+/// With a single one the driver has nothing to fill while we copy.
 const BUFFERS_MIN: u32 = 2;
 /// After this time without images, the camera is closed and reopened. Some cameras take more than a second for the
 /// first image.
@@ -36,7 +38,8 @@ const PATIENCE: Duration = Duration::from_millis(100);
 const NAP: Duration = Duration::from_millis(5);
 /// Maximum number of formats or sizes queried from a driver.
 const LISTED_MAX: u32 = 64;
-/// A time stamp that is older than this, or in the future, is not from this clock.
+/// A time stamp that is older than this, or in the future, is not from this clock. Some drivers count from their own
+/// start although they report the monotonic clock.
 const STAMP_MAX: Duration = Duration::from_secs(5);
 
 /// A camera that is streaming.
@@ -61,6 +64,7 @@ fn report(place: &str, error: &Error, doing: &str) -> EndoscopeError {
         Some(libc::ENOENT | libc::ENXIO | libc::ENODEV) => EndoscopeError::NoCamera { path },
         Some(libc::EBUSY) => EndoscopeError::Busy { path },
         Some(libc::EACCES | libc::EPERM) => EndoscopeError::NoPermission { path },
+        // A file or folder that exists but is not a device answers like this.
         Some(libc::ENOTTY | libc::ENOTDIR | libc::EISDIR) => EndoscopeError::NotCamera { path },
         _ => EndoscopeError::Camera { path, reason: format!("{doing} failed: {error}") },
     }
@@ -125,6 +129,7 @@ impl V4l2 {
         while let Some(buffer) = self.take()? {
             // Any data count as a sign of life, even an image that cannot be shown.
             self.received = Instant::now();
+            // A driver marks buffers of a disturbed transfer; an empty one has no image.
             let is_whole = buffer.get(at::BUF_FLAGS) & DAMAGED == 0 && buffer.get(at::BUF_USED) > 0;
             let older = if is_whole { newest.replace(buffer) } else { Some(buffer) };
             if let Some(older) = older {
@@ -132,6 +137,7 @@ impl V4l2 {
             }
         }
         let Some(buffer) = newest else { return Ok(None) };
+        // Copied before the buffer is returned, because the driver may fill it again at once.
         let mut bytes = self.kernel.copy(buffer.get(0) as usize, buffer.get(at::BUF_USED) as usize);
         if self.format == Format::Jpeg {
             // Some drivers pad the buffer.
@@ -166,6 +172,7 @@ impl ImageSource for V4l2 {
         if newest.is_none() && self.received.elapsed() > SILENT {
             return Err(EndoscopeError::NoPictures { path: self.place.clone() });
         }
+        // A driver that reports data and delivers none would otherwise keep a processor busy.
         if newest.is_none() && begin.elapsed() < NAP {
             std::thread::sleep(NAP);
         }
@@ -175,6 +182,7 @@ impl ImageSource for V4l2 {
 
 impl Drop for V4l2 {
     fn drop(&mut self) {
+        // An unplugged camera cannot answer, and nothing remains to be done for it.
         self.kernel.ioctl(STREAMOFF, &mut CAPTURE.to_ne_bytes()).ok();
     }
 }
@@ -205,8 +213,11 @@ impl CameraOpening<'_> {
             answer => answer.map_err(|error| report(self.place, &error, "querying its capabilities"))?,
         }
         let all = about.get(at::CAP_ALL);
+        // The first field describes the whole hardware; only the second one, where it exists, describes this device
+        // file.
         let able = if all & HAS_OWN == 0 { all } else { about.get(at::CAP_OWN) };
         let card = about.text(at::CAP_CARD, 32);
+        // Tested first, so that such a camera is not reported as something that is not a camera.
         if able & CAN_CAPTURE == 0 && able & CAN_CAPTURE_PLANES != 0 {
             let reason = format!("{card} sends its images in several planes, which is not supported");
             return Err(EndoscopeError::Camera { path: path(), reason });
@@ -254,10 +265,12 @@ impl CameraOpening<'_> {
         self.ask(S_FMT, &mut block, "setting its format")?;
         let size_px = [block.get(at::FMT_WIDTH), block.get(at::FMT_HEIGHT)].map(|side| side as usize);
         let path = || self.place.to_owned();
+        // A driver may change a format that it does not support instead of refusing it.
         if block.get(at::FMT_PIXELS) != code {
             let offered = name_of(block.get(at::FMT_PIXELS));
             return Err(EndoscopeError::NoSuchFormat { path: path(), wanted: name_of(code), offered });
         }
+        // The same applies to the size, and a lens calibrated for one size does not fit another.
         if wanted.size_px.is_some_and(|wanted| wanted != size_px) {
             let path = path();
             return Err(EndoscopeError::NoSuchSize { path, wanted: [width, height], offered: self.sizes(code) });
@@ -272,6 +285,7 @@ impl CameraOpening<'_> {
         let stride = block.get(at::FMT_STRIDE) as usize;
         Ok(match pixels {
             Pixels::Mjpeg => Format::Jpeg,
+            // Some drivers leave the length of a row at zero; it is at least the pixels themselves.
             Pixels::Yuyv => Format::Raw(raw(PixelLayout::Yuyv, stride.max(2 * size_px[0]))),
             Pixels::Nv12 => Format::Raw(raw(PixelLayout::Nv12, stride.max(size_px[0]))),
         })
@@ -310,6 +324,7 @@ impl CameraOpening<'_> {
         let block = LayoutBlock::of(REQBUFS).with(0, BUFFERS).with(at::REQ_TYPE, CAPTURE);
         let mut block = block.with(at::REQ_MEMORY, MEMORY_MMAP);
         self.ask(REQBUFS, &mut block, "requesting buffers")?;
+        // The driver may grant fewer buffers than requested, or more.
         let count = block.get(0);
         if !(BUFFERS_MIN..=32).contains(&count) {
             let reason = format!("the driver provides {count} buffers");
@@ -330,6 +345,7 @@ impl CameraOpening<'_> {
             Err(error) if error.raw_os_error() == Some(libc::ENOSPC) => {
                 Err(EndoscopeError::NoBandwidth { path: self.place.to_owned() })
             }
+            // No other error has a specific remedy.
             answer => answer.map_err(|error| report(self.place, &error, "starting the stream")),
         }
     }

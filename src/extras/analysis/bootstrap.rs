@@ -54,11 +54,6 @@ impl Bootstrap {
         self.interval(sample, median)
     }
 
-    /// Returns the interval of the median of `first - second`, pair by pair; pairs are resampled as a whole.
-    pub fn paired_median(&self, first: &[f64], second: &[f64]) -> Result<ConfidenceInterval> {
-        self.median(&check::differences(first, second)?)
-    }
-
     /// Returns the interval of any statistic of at least two values. The statistic must be finite for every possible
     /// resample, including one value repeated n times.
     pub fn interval(&self, sample: &[f64], statistic: impl Fn(&[f64]) -> f64) -> Result<ConfidenceInterval> {

@@ -52,7 +52,7 @@ pub fn cohens_d(first: &[f64], second: &[f64]) -> Result<StandardisedEffect> {
 
 /// Vargha & Delaney's A (A critique and improvement of the CL common language effect size statistics, Journal of
 /// Educational and Behavioral Statistics 25, 2000): probability that a value of the first group is greater than a value
-/// of the second, ties counting half; 0 to 1, 0.5 is no effect.
+/// of the second, ties counting half; 0 to 1, 0.5 means no effect.
 pub fn vargha_delaney(first: &[f64], second: &[f64]) -> Result<f64> {
     Ok(f64::midpoint(cliffs_delta(first, second)?, 1.0))
 }

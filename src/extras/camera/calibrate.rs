@@ -14,33 +14,41 @@ use crate::{
 
 pub type BoardView = BoardSight;
 
-/// Minimum number of usable views.
+/// Minimum number of usable views. Each view adds six unknowns, and a few views leave focal length and distance
+/// undetermined together.
 pub(crate) const VIEWS: usize = 8;
-/// Maximum blur of a sharp view, in widths of the image: 3.2 px of 1280.
+/// Maximum blur of a sharp view, in widths of the image: 3.2 px of 1280. As a fraction of the width, so that one limit
+/// serves every camera.
 const BLUR: f64 = 0.0025;
-/// Mean motion below which a board counts as being in the same place, in widths of the image.
+/// Mean motion below which a board counts as being in the same place, in widths of the image. Two views from one place
+/// add no information but count twice.
 const SAME: f64 = 0.006;
-/// Minimum angle between the boards of two views, and minimum spread of the tilt in any direction, degrees.
+/// Minimum angle between the boards of two views, and minimum spread of the tilt in any direction, degrees. Boards that
+/// are parallel to each other cannot separate focal length and distance (Zhang 2000).
 const TILT_DEG: f64 = 25.0;
 const SPREAD_DEG: f64 = 6.0;
-/// Minimum fraction of the image with corners.
+/// Minimum fraction of the image with corners. The distortion is largest at the edges, where a fit without corners
+/// extrapolates.
 const COVERAGE: f64 = 0.6;
 /// Maximum error on held-out views, in widths of the image: 0.64 px of 1280.
 const HELD_OUT: f64 = 0.0005;
 /// Maximum standard deviations of the focal length, relative to it, and of the centre, in widths of the image.
 const FOCAL_FRACTION: f64 = 0.002;
 const CENTRE: f64 = 0.002;
-/// A view whose error exceeds this multiple of the median is an outlier if it also exceeds this error, px.
+/// A view whose error exceeds this multiple of the median is an outlier if it also exceeds this error, px. The second
+/// condition keeps good views of a sharp camera, whose median error is tiny.
 const OUTLIER: f64 = 3.0;
 const OUTLIER_PX: f64 = 0.4;
-/// Initial focal lengths, in widths of the image, and distortions.
+/// Initial focal lengths, in widths of the image, and distortions. From a wide to a narrow lens: the fit converges from
+/// the nearest of them.
 const FOCALS: [f64; 5] = [0.5, 0.75, 1.1, 1.6, 2.4];
 const BENDS: [f64; 3] = [-0.3, 0.0, 0.3];
 /// Number of views and steps of a first try, and steps of a whole fit.
 const FIRST_VIEWS: usize = 8;
 const FIRST_STEPS: usize = 12;
 const STEPS: usize = 60;
-/// A term is kept only if it reduces the error on held-out views by this fraction.
+/// A term is kept only if it reduces the error on held-out views by this fraction. A term that does not help on other
+/// views fits the noise of these.
 const PAYS: f64 = 0.01;
 
 /// Returns whether a view is too blurred for an image of this width, px.

@@ -10,7 +10,7 @@ const COUNT: usize = CELLS[0] * CELLS[1];
 /// A pixel counts as lit from this brightness (of 255), and a cell if half of its pixels are: an endoscope leaves the
 /// corners of the image black.
 const LIT: f32 = 20.0;
-/// One pixel of this many is checked.
+/// One pixel of this many is checked. A prime, so that the samples do not follow the columns of a regular pattern.
 const STEP: usize = 7;
 
 /// Cells of the image, row by row.

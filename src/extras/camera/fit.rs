@@ -15,6 +15,7 @@ type FitMotion = SVector<f64, 6>;
 /// The iteration ends when a step improves the fit by less than this fraction.
 const GAIN: f64 = 1e-9;
 const DAMPING: f64 = 1e-3;
+/// At that damping a step is too small to change anything, so the fit has failed.
 const DAMPING_MAX: f64 = 1e9;
 
 /// The terms of a lens that are fitted; the others stay constant.

@@ -8,18 +8,21 @@ use nalgebra::Vector2;
 
 use crate::{Grey, saddle::Saddle};
 
-/// Number of nearest saddles that are considered as neighbours.
+/// Number of nearest saddles that are considered as neighbours. A corner has four neighbours and four diagonal ones;
+/// the rest allows for false saddles between them.
 const NEAREST: usize = 12;
 /// Positions along the edge between two saddle points at which both sides are compared, as fractions of its length.
+/// Away from both ends, where the squares of the other row begin.
 const ALONG: [f64; 5] = [0.25, 0.37, 0.5, 0.63, 0.75];
 /// Distance of the compared points from the edge, in lengths, and minimum in px.
 const BESIDE: f64 = 0.15;
 const BESIDE_PX: f64 = 1.5;
-/// Minimum difference between the two sides, relative to the contrast at the ends.
+/// Minimum difference between the two sides, relative to the contrast at the ends. An edge of the board separates light
+/// and dark; a line between two unrelated saddles does not.
 const DIFFERENCE: f64 = 0.3;
 
 /// Maximum cosine of the angle between the edges to both neighbours in a row; and range of the ratio between successive
-/// edges.
+/// edges. Perspective and distortion bend a row only a little from one corner to the next.
 const OPPOSITE: f64 = -0.7;
 const ALIKE: std::ops::RangeInclusive<f64> = 0.5..=2.0;
 

@@ -7,7 +7,8 @@ use crate::{
     plane,
 };
 
-/// Number of parts into which the views are divided; each is held out once.
+/// Number of parts into which the views are divided; each is held out once. With the eight views of the minimum, six
+/// remain for each fit.
 const FOLDS: usize = 4;
 const STEPS: usize = 12;
 

@@ -11,11 +11,13 @@ use crate::{
     plane,
 };
 
-/// Minimum number of touched corners.
+/// Minimum number of touched corners. Three points determine the pose; the fourth shows whether they agree.
 const TOUCHES: usize = 4;
-/// Minimum spread of the touched corners in their shorter direction, in squares; they must span a plane.
+/// Minimum spread of the touched corners in their shorter direction, in squares; they must span a plane. Points close
+/// to one line leave the rotation about that line undetermined.
 const SPREAD: f64 = 1.0;
-/// Maximum distance between touched corners and a rigid board, m.
+/// Maximum distance between touched corners and a rigid board, m. The error of a touch with the tip; a larger one is a
+/// bent board or a wrong size of its squares.
 const RIGID_M: f64 = 0.002;
 /// Maximum error of held-out corners, in widths of the image: 10 px of 1280.
 const HELD_OUT: f64 = 10.0 / 1280.0;

@@ -5,10 +5,11 @@ use nalgebra::{Matrix2, Vector2};
 use crate::Grey;
 
 /// Half the side length of the window around a corner, relative to the distance to the next corner, and its limits, px.
+/// Less than half, so that the window does not reach the next corner.
 const WINDOW: f64 = 0.35;
 const WINDOW_PX: std::ops::RangeInclusive<f64> = 3.0..=11.0;
 const STEPS: usize = 30;
-/// The iteration ends at a smaller step, px.
+/// The iteration ends at a smaller step, px. Far below the noise of a corner (some hundredths of a pixel).
 const STILL_PX: f64 = 1e-3;
 /// Positions along an edge over which its profile is averaged, in lengths.
 const ALONG: [f64; 5] = [0.3, 0.4, 0.5, 0.6, 0.7];

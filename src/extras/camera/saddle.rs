@@ -10,15 +10,17 @@ use crate::Grey;
 const APART: usize = 4;
 /// Minimum strength of a saddle relative to the strongest; uneven light causes a factor of 25, blur some more.
 const WEAKEST: f32 = 0.002;
-/// Maximum number of candidates examined, and of saddles kept.
+/// Maximum number of candidates examined, and of saddles kept. A texture has thousands of saddles, and the time for one
+/// image must stay bounded.
 const LOOKED_AT: usize = 3000;
 const KEPT: usize = 900;
 /// Number of samples on the ring around a candidate, and the radius of the ring, px.
 const RING: usize = 32;
 const RADIUS_PX: f64 = 5.0;
-/// Minimum difference of light and dark on the ring, of 255.
+/// Minimum difference of light and dark on the ring, of 255. Above the noise of a dark endoscope image.
 const CONTRAST: f64 = 14.0;
-/// Minimum length of a quarter of the ring, samples; the four together are 32.
+/// Minimum length of a quarter of the ring, samples; the four together are 32. At a corner all four quarters are
+/// visible, even if the board is seen at an angle.
 const QUARTER: usize = 3;
 
 /// A point where light and dark meet crosswise.

@@ -9,12 +9,14 @@ use crate::{
     plane,
 };
 
-/// A board that has moved less between two images is held still, in widths of the image: 1 px of 1280.
+/// A board that has moved less between two images is held still, in widths of the image: 1 px of 1280. A moving board
+/// is blurred, and with a rolling shutter it is bent.
 const STILL: f64 = 0.0008;
 /// Number of views requested, and fraction of the image with corners.
 const WANTED: usize = VIEWS + 4;
 const FRACTION: f64 = 0.75;
-/// A tilt counts from the first angle on, degrees; below the second the board counts as flat.
+/// A tilt counts from the first angle on, degrees; below the second the board counts as flat. Two limits, so that the
+/// request does not change back and forth while the board is held near one of them.
 const TILTED_DEG: f64 = 15.0;
 const FLAT_DEG: f64 = 12.0;
 /// Assumed focal length while it is unknown, in widths of the image.

@@ -8,7 +8,8 @@ use crate::{DepartmentError, MachineIdentity, keys};
 
 /// Maximum number of connected watchers.
 const WATCHERS_MAX: usize = 64;
-/// A watcher that is silent for this long is disconnected, ms.
+/// A watcher that is silent for this long is disconnected, ms. Longer than a short outage of a wireless network, after
+/// which a watcher need not connect again.
 const LEASE_MS: u64 = 5000;
 
 /// Returns the configuration of a rig. It accepts connections and only sends. Data of a watcher other than its

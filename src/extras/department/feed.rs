@@ -23,13 +23,15 @@ use nima_session::{
     sinks::Audience,
 };
 
-/// Duration of a batch of the session, ns; a remote file can lose at most this much.
+/// Duration of a batch of the session, ns; a remote file can lose at most this much. Shorter ones would compress worse
+/// and cost more messages.
 const BUNDLE_NS: u64 = 400_000_000;
 /// Maximum size of a bundle, bytes.
 const BUNDLE_BYTES: usize = 4 << 20;
 /// States sent together: 50 ms.
 const MOMENTS: u64 = 10;
-/// Interval at which persistent state is repeated, s: a late watcher waits for at most this long.
+/// Interval at which persistent state is repeated, s: a late watcher waits for at most this long. Only changes are sent
+/// otherwise, so a watcher that joins later has no other way to get it.
 const RECAP_S: f64 = 1.0;
 
 /// Input of the publishing thread.

@@ -4,7 +4,7 @@ use crate::DepartmentError;
 
 /// All keys.
 pub(crate) const ALL: &str = "nima/**";
-/// Maximum size of a message that is unpacked, bytes.
+/// Maximum size of a message that is unpacked, bytes. A small compressed message could otherwise unpack to any size.
 const MAX_BYTES: usize = 64 << 20;
 
 /// Returns the key that announces the presence of the rig.

@@ -14,7 +14,8 @@ use zenoh::{Wait as _, pubsub::Subscriber};
 
 use crate::{DepartmentError, RemoteRig, keys};
 
-/// Time to wait for a batch before requesting it.
+/// Time to wait for a batch before requesting it. Batches may overtake each other; a request for one that is under way
+/// would send it twice.
 const PATIENCE: Duration = Duration::from_secs(2);
 /// Timeout of a query for bundles.
 const ANSWER: Duration = Duration::from_secs(5);

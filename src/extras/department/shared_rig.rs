@@ -35,7 +35,7 @@ use crate::{
 const BACKLOG: usize = 256;
 /// Interval at which the thread checks whether to end.
 const LOOK_EVERY: Duration = Duration::from_millis(100);
-/// Approximate bytes of bundles in one answer.
+/// Approximate bytes of bundles in one answer. Small enough that current data are not delayed behind old ones.
 const ANSWER_BYTES: usize = 512 << 10;
 
 /// A rig that is shared with its department until this is dropped, for successive sessions.

@@ -53,7 +53,7 @@ impl RigInfo {
     pub(crate) fn begins(&mut self, head: &SessionHead) {
         let SessionHead { session, program, started_ns, .. } = head;
         self.session = *session;
-        self.program = program.clone();
+        self.program.clone_from(program);
         self.started_ns = *started_ns;
         self.rig = String::new();
         self.scene = String::new();

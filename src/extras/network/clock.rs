@@ -117,7 +117,7 @@ enum WindowVerdict {
     Usual,
     /// Different from them; the next window shows why.
     Suspect,
-    /// The route has become longer or shorter in one direction.
+    /// The route is now longer or shorter in one direction.
     OtherWay,
     /// A clock was set.
     Step(f64),

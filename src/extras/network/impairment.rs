@@ -226,7 +226,7 @@ impl Impairment {
                     self.is_bad = !self.is_bad;
                 }
                 let good_s = burst_s * (1.0 / fraction - 1.0);
-                // Few changes occur, because each state lasts as long as the mean of its kind.
+                // Skip the states that ended before now. The limit only prevents an endless loop: on average each state lasts as long as the mean of its kind.
                 for _ in 0..1000 {
                     let mean_s = if self.is_bad { burst_s } else { good_s };
                     self.until_s += -mean_s * libm::log(1.0 - self.noise.uniform());

@@ -1,6 +1,6 @@
 //! Pairing: two machines exchange their keys, and two people verify with a code that no third party is between them.
 //!
-//! Each machine contributes its key and a secret that is used once. The console first sends a hash of its own part (a
+//! Each machine contributes its key and a secret that is used once. The console first sends a hash of its part (a
 //! commitment), then receives the follower's part, then reveals its own: a third party would have to guess before the
 //! inputs of the code are known, with a chance of one in a million. Each screen shows a code, computed from both keys
 //! and both secrets, and each person enters the code of the other screen. A wrong code is refused, and after three of
@@ -76,7 +76,7 @@ pub enum PairingError {
     Keys(#[from] KeyError),
 }
 
-/// The displayed code: six digits, different on each machine, so that entering the code of one's own screen is
+/// The displayed code: six digits, different on each machine, so that entering the code from the same screen is
 /// detected.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub struct Code(u32);

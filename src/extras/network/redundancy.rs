@@ -243,7 +243,7 @@ impl Losses {
             part.lost = part.lost.saturating_add(u32::from(is_lost));
             part.again = part.again.saturating_add(u32::from(run > 1));
         } else {
-            // Undo what this run has added, once; a run across two parts leaves a remainder.
+            // An outage is not a loss that copies could repair, so remove what this run has added so far. Only this part is corrected: a run that began in the previous one leaves a remainder there.
             let added = std::mem::take(&mut self.added);
             part.lost = part.lost.saturating_sub(added);
             part.again = part.again.saturating_sub(added.saturating_sub(1));

@@ -1,7 +1,7 @@
 //! A relay between two real ends that impairs the link between them, on any system, without special permissions.
 //!
 //! Consoles send to it instead of to the follower. Each console gets its own socket towards the follower, so that the
-//! follower can tell them apart. The relay handles encrypted datagrams only, and adds 0.1 to 0.2 ms of its own.
+//! follower can tell them apart. The relay handles encrypted datagrams only, and adds 0.1 to 0.2 ms.
 
 use std::{
     io,

@@ -14,8 +14,7 @@ use crate::{
     replay::{ReplayRefusal, ReplayWindow},
     secure,
     wire::{
-        self, DATAGRAM_MAX, DatagramHead, HEAD_MAX, HEAD_MIN, OUTER_LEN, PAYLOAD_MAX, PayloadRecord, RECORD_MAX,
-        TAG_LEN, UDP_LEN, WireReport,
+        self, DATAGRAM_MAX, DatagramHead, HEAD_MIN, OUTER_LEN, PAYLOAD_MAX, RECORD_MAX, TAG_LEN, UDP_LEN, WireReport,
     },
 };
 
@@ -211,7 +210,7 @@ impl NetworkStream {
         let allowed = self.bucket.level(now_s) as usize;
         let Some(room) = allowed.checked_sub(UDP_LEN + frame) else { return self.hold(payload) };
         let is_limited = room < DATAGRAM_MAX - frame;
-        // Held payloads have not been sent at all.
+        // At least all held payloads are sent, because they have not been sent at all.
         let (loss, again) = self.reported_loss;
         let overtaken = self.reported_overtaken;
         let wanted = copies_for(loss + overtaken, f64::max(again, loss + overtaken)).max(self.waiting);
@@ -409,28 +408,6 @@ impl NetworkStream {
             received: self.received,
         }
     }
-}
-
-/// Returns the maximum payload that can be sent with this many copies at this rate of payloads (1/s) within a limit
-/// (bit/s), bytes; `None` if there is none.
-///
-/// ```
-/// use nima_network::stream::payload_room;
-///
-/// assert_eq!(payload_room(1, 1000.0, 1e6), Some(54));
-/// assert_eq!(payload_room(8, 1000.0, 1e6), Some(4));
-/// assert_eq!(payload_room(8, 1000.0, 4e6), Some(51));
-/// assert_eq!(payload_room(8, 2000.0, 1e6), None);
-/// ```
-pub fn payload_room(copies: usize, payloads_per_s: f64, rate_max_bit_s: f64) -> Option<usize> {
-    let datagram = ((rate_max_bit_s / 8.0 / payloads_per_s) as usize).min(DATAGRAM_MAX + UDP_LEN);
-    // One header in every few is a long one.
-    let head = HEAD_MIN + (HEAD_MAX - HEAD_MIN).div_ceil(REPORT_EVERY as usize);
-    let room = datagram.checked_sub(UDP_LEN + OUTER_LEN + head + TAG_LEN)?;
-    let all = |len: usize| {
-        (0..copies.max(1)).map(|back| PayloadRecord::length(len, back as f64 / payloads_per_s)).sum::<usize>()
-    };
-    (0..=PAYLOAD_MAX).rev().find(|&len| all(len) <= room)
 }
 
 #[cfg(test)]

@@ -1,9 +1,11 @@
 //! The score of a trial of a training task: peg transfer, palpation, wire loop.
 //!
-//! Takes [`ScoreSample`]s of motion (m) and force (N) of both hands at about 1 kHz, and [`Happening`](nima_core::task::TimedTaskEvent)s (a ring placed, a wire touched); returns a
-//! [`Score`] of named measures, each with unit, definition and source. [`Proficiency`] and [`LearningCurve`] judge a sequence of
-//! trials, [`Guidance`] says after which of them the trainee is told the result. [`trial_score`] scores the ticks of a loop, or a recorded
-//! session; everything else knows no loop, device, file, thread or clock. `docs/reference/measures.md` lists the measures.
+//! Takes [`ScoreSample`]s of motion (m) and force (N) of both hands at about 1 kHz, and
+//! [`Happening`](nima_core::task::TimedTaskEvent)s (a ring placed, a wire touched); returns a [`Score`] of named
+//! measures, each with unit, definition and source. [`Proficiency`] and [`LearningCurve`] judge a sequence of trials,
+//! [`Guidance`] says after which of them the trainee sees the result. [`trial_score`] scores the ticks of a loop, or a
+//! recorded session; everything else knows no loop, device, file, thread or clock. `docs/reference/measures.md` lists
+//! the measures.
 //!
 //! ```
 //! use nalgebra::Vector3;

@@ -31,7 +31,7 @@ pub struct StudyPlan {
     pub blind: bool,
     /// Whether trials are recorded.
     pub record: bool,
-    /// What to do after an interrupted trial.
+    /// Action after an interrupted trial.
     pub interrupted: InterruptionPolicy,
     /// Maximum attempts at a trial.
     pub attempts: u32,

@@ -27,9 +27,11 @@ const RIDGE_S: f64 = 0.01;
 const ERROR_S: f64 = 1.0;
 /// Solves per second (at most one a tick), because the parameters hardly change within 5 ms.
 const SOLVE_HZ: f64 = 200.0;
-/// Number of candidate surfaces, evenly spaced over the visited range.
+/// Number of candidate surfaces, evenly spaced over the visited range. Each has its own regression, so more of them
+/// would cost more time in every tick.
 const PLACES: usize = 5;
-/// Exponents that are compared: a linear contact, a sphere, a cone.
+/// Exponents that are compared: a linear contact, a sphere, a cone. Hertz's equations give 1.5 for a sphere and
+/// Sneddon's 2 for a cone; 1 is a layer of constant stiffness.
 const EXPONENTS: [f64; 3] = [1.0, 1.5, 2.0];
 const CANDIDATES: usize = PLACES * EXPONENTS.len();
 /// The range is enlarged by this fraction at a time, so that the sums are rarely converted to another range.

@@ -84,7 +84,7 @@ fn an_autoregressive_model_predicts_an_oscillation() {
 fn a_wave_is_decoded_to_the_force_and_the_change_of_speed() {
     let mut waves = Waves::new(RATE_HZ, 0);
     let mut back = wave(&waves.step(&motion(0.0, 0.0), Some(force(0.7))));
-    assert!((waves::decoded(&back, &motion(0.0, 0.0))[0] - 0.7).abs() < 1e-9, "no motion: the force as it came");
+    assert!((waves::decoded(&back, &motion(0.0, 0.0))[0] - 0.7).abs() < 1e-9, "no motion: the unmodified force");
     for k in 0..1000 {
         let t = f64::from(k) * 1e-3;
         back = wave(&waves.step(&motion(0.0, 0.1 * (7.0 * t).sin()), Some(force(2.0 * (7.0 * t).sin()))));

@@ -5,7 +5,7 @@
 //! forwards and `w = (b v - F) / sqrt(2 b)` backwards. The follower sends `w`; the leader, whose hand imposes the
 //! velocity, decodes `F = b v - sqrt(2 b) w`. Forces here act from the tissue on the instrument, `f = -F`.
 //!
-//! The wave `u`, by which the follower would yield to the force, is omitted, because the motion reaches the follower
+//! The wave `u`, which would make the follower yield to the force, is omitted, because the motion reaches the follower
 //! without delay in this loop and the follower tracks a position. This version is therefore not passive by
 //! construction.
 

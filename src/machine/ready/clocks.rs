@@ -12,7 +12,8 @@ use crate::messages::Tick;
 const TAKES_S: f64 = 2.0;
 /// More than one missed period in a hundred is felt as roughness.
 const MISSED_MAX: f64 = 0.01;
-/// Maximum difference between the two clocks, s; ticks wait until they are read.
+/// Maximum difference between the two clocks, s; ticks wait until they are read. Otherwise the queue to the screen
+/// would already look like two clocks.
 const APART_MAX_S: f64 = 0.25;
 
 #[derive(Debug)]

@@ -16,7 +16,8 @@ pub(super) enum PointProgress {
     Failed(ReadyCause),
 }
 
-/// Time for a person to do what is requested, s.
+/// Time for a person to do what is requested, s. Without a limit, a check that was left alone would keep the loop idle
+/// for ever.
 const PATIENCE_S: f64 = 30.0;
 
 /// A check while it runs. Times are the session's, s.

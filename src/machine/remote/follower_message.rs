@@ -42,6 +42,7 @@ pub(super) struct FollowerMessage {
 }
 
 const UNSURE: [Unsure; 3] = [Unsure::OutsideTraining, Unsure::NotMoved, Unsure::Missing];
+/// The order belongs to the message format: append new sources, and never reorder.
 const PLAIN: [ForceSource; 9] = [
     ForceSource::AtTip,
     ForceSource::Wrist,
@@ -66,6 +67,7 @@ fn source_of(number: u8) -> Option<ForceSource> {
     let number = usize::from(number);
     PLAIN.get(number).copied().or_else(|| {
         let doubt = number - PLAIN.len();
+        // As in [`number_of_source`]: two numbers for each reason, one for each fallback.
         let fallback = if doubt.is_multiple_of(2) { Fallback::WristForce } else { Fallback::HoldAndFade };
         Some(ForceSource::InDoubt { unsure: *UNSURE.get(doubt / 2)?, fallback })
     })
@@ -77,6 +79,7 @@ fn bits_of(set: ModeSet) -> u16 {
 
 fn set_of(bits: u16) -> ModeSet {
     let asked = modes().filter(|mode| bits >> number_of(*mode) & 1 == 1);
+    // Delayed reflection is always in a set; a bit for it would be redundant.
     asked.fold(ModeSet::only(Mode::Dfr), ModeSet::with)
 }
 
@@ -171,6 +174,7 @@ fn errors_of(from: &mut Unpacker<'_>) -> Option<[f32; SLOTS]> {
 
 fn packed_of(from: &mut Unpacker<'_>) -> Option<ParameterPack> {
     let mut packed = ParameterPack { slot: from.byte()?, len: from.byte()?, ..ParameterPack::NONE };
+    // The length comes from the network; without this check it would decide how far to read.
     if usize::from(packed.len) > PACKED_MAX {
         return None;
     }

@@ -59,6 +59,7 @@ impl LeaderMessage {
         let mut to = Packer::new(buffer);
         to.time(self.t_s);
         to.short(self.delay_ticks);
+        // There are far fewer than 128 modes, so the highest bit is free.
         to.byte(number_of(self.mode) | u8::from(self.compares) << 7);
         for side in Side::ALL {
             let Some(report) = &self.sides[side.index()] else { continue };
@@ -84,7 +85,9 @@ impl LeaderMessage {
         let mut report = Self { t_s, delay_ticks, mode, compares: first >> 7 == 1, sides: [None; SIDES] };
         while !from.is_empty() {
             let first = from.byte()?;
+            // Two bits, although one would name the side: a number without a side invalidates a damaged message.
             let place = &mut report.sides[side_of_number(first & 3)?.index()];
+            // A side that occurs twice is ambiguous, and a wrong command is worse than none.
             if place.is_some() {
                 return None;
             }

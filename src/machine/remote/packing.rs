@@ -18,7 +18,8 @@ pub(super) const PER_RAD: f64 = 2e6;
 /// Steps of a quaternion component other than the largest, from 0 to 1 / sqrt(2): 20 bits with its sign.
 const TURN_STEPS: f64 = 524_287.0;
 
-/// Returns the number of a side in a message.
+/// Returns the number of a side in a message. The numbers belong to the message format, so they must not depend on the
+/// order of the enum.
 pub(super) const fn number_of_side(side: Side) -> u8 {
     match side {
         Side::Right => 0,
@@ -68,6 +69,7 @@ impl<'a> Packer<'a> {
     /// Writes a non-negative time, s.
     pub(super) fn time(&mut self, time_s: f64) {
         let units = (time_s * TIME_PER_S).round();
+        // 2^48. NaN is in no range, so it invalidates the message too.
         self.fits &= (0.0..281_474_976_710_656.0).contains(&units);
         self.bytes(&(units as u64).to_le_bytes()[..6]);
     }
@@ -75,6 +77,7 @@ impl<'a> Packer<'a> {
     /// Writes a number in 24 bits, with this many steps per unit. A number beyond that range invalidates the message.
     pub(super) fn scaled(&mut self, number: f64, per_unit: f64) {
         let steps = (number * per_unit).round();
+        // 2^23; a conversion without this check would saturate, and the receiver would use a wrong number.
         self.fits &= (-8_388_608.0..8_388_608.0).contains(&steps);
         self.bytes(&(steps as i32).to_le_bytes()[..3]);
     }
@@ -88,6 +91,7 @@ impl<'a> Packer<'a> {
     pub(super) fn turn(&mut self, turn: &UnitQuaternion<f64>) {
         let coords = turn.coords;
         let largest = coords.iamax();
+        // A quaternion and its negative are the same rotation, so the sign of one component can be chosen.
         let sign = if coords[largest] < 0.0 { -1.0 } else { 1.0 };
         let mut bits = largest as u64;
         for at in (0..4).filter(|at| *at != largest) {
@@ -134,6 +138,7 @@ impl<'a> Unpacker<'a> {
     }
 
     pub(super) fn single(&mut self) -> Option<f32> {
+        // The only numbers that can be NaN on the line: all others are whole numbers.
         self.take().map(f32::from_le_bytes).filter(|number| number.is_finite())
     }
 
@@ -144,6 +149,7 @@ impl<'a> Unpacker<'a> {
 
     pub(super) fn scaled(&mut self, per_unit: f64) -> Option<f64> {
         let [b0, b1, b2] = self.take()?;
+        // In the upper three bytes, so that the shift extends the sign.
         Some(f64::from(i32::from_le_bytes([0, b0, b1, b2]) >> 8) / per_unit)
     }
 
@@ -160,6 +166,7 @@ impl<'a> Unpacker<'a> {
             return None;
         }
         for (place, at) in (0..4).filter(|at| *at != largest).enumerate() {
+            // Shifted to the top first, so that the shift back extends the sign of the 20 bits.
             let steps = (bits << (4 + 20 * place)).cast_signed() >> 44;
             coords[at] = steps as f64 / TURN_STEPS * FRAC_1_SQRT_2;
             squares += coords[at] * coords[at];

@@ -3,9 +3,9 @@ use nima_core::impedance::{Mode, ModeSet, ParameterPack, SLOTS};
 
 use super::{
     MESSAGE_MAX,
-    far_leader::is_same_delay,
     follower_message::{FollowerMessage, FollowerSide},
     leader_message::{Intent, LeaderMessage, LeaderSide},
+    leader_there::is_same_delay,
 };
 use crate::{
     messages::{FarStop, ForceSource},

@@ -72,6 +72,7 @@ impl PartKind {
             Self::Arm => Some(RigPart::Arm(side)),
             Self::Sensor => Some(RigPart::Sensor(side)),
             Self::Servos => Some(RigPart::Servos(side)),
+            // Both sides share one, so the side alone does not identify it.
             Self::Tracker | Self::Pedal => None,
         }
     }

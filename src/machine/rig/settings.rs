@@ -187,6 +187,7 @@ impl RigSettings {
             return self;
         }
         let place = |path: &mut String| {
+            // An empty path is refused by the check; joined with a folder it would look like a valid one.
             if !path.trim().is_empty() {
                 *path = folder.join(&*path).display().to_string();
             }
@@ -270,6 +271,8 @@ impl RigSettings {
             }
         };
         for (place, part) in RigPart::ALL.into_iter().enumerate() {
+            // Two programs cannot listen at one address: the second one would fail to open, without a hint at the
+            // cause.
             let Some(own) = address(part) else { continue };
             if let Some(other) = RigPart::ALL[..place].iter().find(|other| address(**other) == Some(own)) {
                 return Err(DeviceError::Setting {
@@ -310,6 +313,7 @@ impl RigSettings {
             value,
             allowed: allowed.to_owned(),
         };
+        // Without a tracker the marker would never be seen, and the mapping would silently stay fixed.
         if self.tracker.is_none() {
             return Err(refuse("tracker", "not given".to_owned(), "the tracker that detects the endoscope's marker"));
         }

@@ -22,11 +22,13 @@ use crate::{
     teleop::{Calibrations, Timing},
 };
 
-/// Capacity in ticks between the loop and the reader of the tap; 2 s at 1 kHz.
+/// Capacity in ticks between the loop and the reader of the tap; 2 s at 1 kHz. A disk that pauses for longer loses
+/// ticks, because the loop must never wait for it.
 pub const TICKS_TAPPED_MAX: usize = 2048;
 /// Additional capacity for operations and events.
 const OTHERS_MAX: usize = 512;
-/// Polling period of the other end: a viewer over a network gets a tick later by this time at most.
+/// Polling period of the other end: a viewer over a network gets a tick later by this time at most. Polled, because
+/// waking a waiting thread would cost the loop more than the rest of the tap.
 const LOOK_EVERY: Duration = Duration::from_millis(3);
 
 #[derive(Clone, Copy, Debug, PartialEq)]

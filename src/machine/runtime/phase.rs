@@ -5,7 +5,8 @@
 //! until no device sends at that moment. It shifts by making periods a thousandth longer, which the filters do not
 //! notice.
 
-/// Extension of a period while the loop shifts, as one part in this many.
+/// Extension of a period while the loop shifts, as one part in this many. A shift then takes a quarter of a second at 1
+/// kHz; a jump by a quarter of a period would be a fault of the clock (`teleop::timing`).
 const STRETCH: u64 = 1000;
 /// Size of a shift: a quarter of a period. Four shifts try every phase.
 const MOVES: u32 = 4;
@@ -13,7 +14,7 @@ const MOVES: u32 = 4;
 const MEMORY: f64 = 1000.0;
 /// Number of late ticks among these that causes a shift: one in a hundred.
 const LATE_MAX: f64 = 10.0;
-/// Number of ticks at one phase, without too many late ones, after which the phase counts as good: 10 s.
+/// Number of ticks at one phase, without too many late ones, until the phase counts as good: 10 s.
 const GOOD: u64 = 10_000;
 /// A device that sends less often than the loop reads is late at every phase; the search is then repeated after a
 /// minute.
@@ -46,6 +47,7 @@ impl LoopPhase {
             return stretch_ns;
         }
         self.stood += 1;
+        // A leaky count instead of a window: it needs no history.
         self.late += f64::from(u8::from(is_late)) - self.late / MEMORY;
         if self.stood > GOOD && self.late < LATE_MAX {
             self.moves = 0;

@@ -207,6 +207,7 @@ impl Meters {
             }
         };
         let arms: Vec<ArmEnd> = of.pairs().map(ArmEnd::of).collect();
+        // The state that needs more attention, because a script reads only this one.
         let worst = arms.iter().max_by_key(|arm| attention(arm.final_state));
         let computed = |pair: &Pair, mode: &Mode| pair.accuracy().of(*mode).count > 0;
         let modes = |pair: &Pair| Mode::ALL.into_iter().chain(pair.baseline().map(Mode::Baseline));
@@ -221,6 +222,7 @@ impl Meters {
             missed: of.pairs().map(Pair::missed).max().unwrap_or_default(),
             dropped: self.dropped,
             seconds,
+            // A run that ends at once must not divide by zero: JSON has no infinity.
             speed: seconds / wall_s.max(1e-9),
             wake_us: self.wake.quantiles(),
             work_us: self.work.quantiles(),

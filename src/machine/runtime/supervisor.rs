@@ -22,6 +22,7 @@ use super::os;
 /// Maximum time without a beat while drives are on, s: the age beyond which a sample is a fault too
 /// (`teleop::samples`), because a force that is not renewed for longer is old.
 pub const STALL_MAX_S: f64 = 0.020;
+/// A tenth of the limit: it delays the release by this time at most, and costs next to nothing.
 const LOOK_EVERY: Duration = Duration::from_millis(2);
 
 #[derive(Debug, Default)]
@@ -36,6 +37,7 @@ impl Pulse {
     /// Reports that the loop is alive; `driven` is true while the drives are on.
     pub(super) fn beat(&self, now_ns: u64, driven: bool) {
         self.driven.store(driven, Ordering::Relaxed);
+        // The beat is stored last, so that a reader of the new beat also has the state of the drives that belongs to it.
         self.beat_ns.store(now_ns, Ordering::Release);
     }
 
@@ -74,7 +76,10 @@ impl Supervisor {
             while !flag.load(Ordering::Acquire) {
                 std::thread::sleep(LOOK_EVERY);
                 let silent_ns = os::monotonic_ns().saturating_sub(pulse.beat_ns.load(Ordering::Acquire));
+                // A stall without drives is harmless, and may be a rig that is being opened.
                 let stalled = pulse.driven.load(Ordering::Relaxed) && silent_ns > limit_ns;
+                // Once for each stall: the emergency release of some devices closes a connection, and a second call
+                // would find it closed.
                 if stalled && !pulled {
                     levers.iter().for_each(Lever::pull);
                     pulse.pulled_ns.store(silent_ns, Ordering::Release);

@@ -27,9 +27,11 @@ use crate::{
     teleop::{Calibrations, Loop, Timing},
 };
 
-/// Capacity of the queue of ticks for the screen; further ticks are dropped. 8 s at 1 kHz.
+/// Capacity of the queue of ticks for the screen; further ticks are dropped. 8 s at 1 kHz. A window may be blocked for
+/// seconds, for example by a dialog of the system, and the loop must not wait for it.
 pub const TICKS_WAITING_MAX: usize = 8192;
-/// Capacity of the queue of commands to the loop.
+/// Capacity of the queue of commands to the loop. A person cannot give more within a tick, so a full queue means that
+/// the loop has ended.
 const COMMANDS_WAITING_MAX: usize = 64;
 /// Capacity of the queue of events for the screen.
 const EVENTS_WAITING_MAX: usize = 256;
@@ -98,10 +100,7 @@ pub fn start(assembly: Assembly) -> Result<LoopHandle, LoopStartError> {
         is_late: false,
         clock,
         commands: commands_in,
-        ticks: ticks_out,
-        events: events_out,
-        healths: healths_out,
-        gauges: gauges_out,
+        out: LoopSenders { ticks: ticks_out, events: events_out, healths: healths_out, gauges: gauges_out },
         meters: Meters::default(),
         pulse: Arc::clone(&pulse),
         tap,
@@ -216,6 +215,14 @@ impl Drop for LoopHandle {
     }
 }
 
+/// Queues from the real-time thread to the others.
+struct LoopSenders {
+    ticks: Sender<Tick>,
+    events: Sender<Event>,
+    healths: Sender<Healths>,
+    gauges: Sender<Gauges>,
+}
+
 struct Realtime {
     control: Loop,
     rig: Box<dyn Rig>,
@@ -229,10 +236,7 @@ struct Realtime {
     is_late: bool,
     clock: RuntimeClock,
     commands: Receiver<Command>,
-    ticks: Sender<Tick>,
-    events: Sender<Event>,
-    healths: Sender<Healths>,
-    gauges: Sender<Gauges>,
+    out: LoopSenders,
     meters: Meters,
     pulse: Arc<Pulse>,
     tap: Option<Tap>,
@@ -242,7 +246,7 @@ impl Realtime {
     fn run(mut self) -> RuntimeSummary {
         let scheduling = os::prepare_thread(self.scheduling, self.period_ns);
         if self.clock == RuntimeClock::Real {
-            self.events.try_send(Event::Scheduling(scheduling)).ok();
+            self.out.events.try_send(Event::Scheduling(scheduling)).ok();
         }
         let cpu_s = os::cpu_s();
         let start_ns = os::monotonic_ns();
@@ -331,7 +335,7 @@ impl Realtime {
             report(&mut self.tap, Operation::Device(event));
             self.control.notice(&event);
             self.wrists.notice(&event, &mut self.control, &mut self.tap);
-            self.events.try_send(Event::Device(event)).ok();
+            self.out.events.try_send(Event::Device(event)).ok();
         }
         self.wrists.activate(&mut self.control, &mut self.tap);
         for _ in 0..COMMANDS_PER_TICK_MAX {
@@ -370,17 +374,17 @@ impl Realtime {
         }
         self.meters.ticks += 1;
         for event in self.control.events() {
-            self.events.try_send(*event).ok();
+            self.out.events.try_send(*event).ok();
         }
         if self.meters.ticks.is_multiple_of(HEALTH_EVERY) {
-            self.healths.try_send(self.rig.health()).ok();
+            self.out.healths.try_send(self.rig.health()).ok();
             if let Some(gauges) = self.rig.gauges(timing.now_s) {
-                self.gauges.try_send(gauges).ok();
+                self.out.gauges.try_send(gauges).ok();
             }
         }
         for mut tick in ticks.into_iter().flatten() {
             tick.dropped = self.meters.dropped;
-            if self.ticks.try_send(tick).is_err() {
+            if self.out.ticks.try_send(tick).is_err() {
                 self.meters.dropped += 1;
             }
         }

@@ -1,15 +1,17 @@
 //! The link of a pair: within this process, or from the machine that runs the follower's half.
 
+use nalgebra::Vector3;
 use nima_core::impedance::{IdentificationReport, ImpedanceSettings, LinkPacket, ParameterPack, SLOTS};
 
-use super::Link;
+use super::{Link, Timing, follower_half::FollowerHalf};
 use crate::{
     messages::{FarStop, ForceReport, ForceSource},
     rig::RemoteIdentification,
 };
 
 /// If no new packet arrives from the link for longer than this beyond its delay, s, that is a fault. The age gate has
-/// removed the force long before.
+/// removed the force long before. Longer than the pauses of an ordinary network, so that engagements do not end with
+/// every lost burst.
 pub(super) const LINK_SILENT_AFTER_S: f64 = 0.1;
 /// Parameters that were not renewed for this long are not used for a force, s: a matched model remembers some seconds,
 /// and a renewal arrives every 20 ms.
@@ -41,23 +43,6 @@ impl FarLink {
         source: ForceSource::NoSample,
         is_usable: false,
     };
-
-    /// Returns the report of the identification at the other machine.
-    pub(super) const fn report(&self) -> &IdentificationReport {
-        &self.report
-    }
-
-    /// Writes the force that the plausibility check admits into the packet.
-    pub(super) const fn admit(&mut self, force: &ForceReport) {
-        if self.is_usable {
-            self.parcel.force_n = force.tip_n;
-        }
-    }
-
-    /// Marks the last sample as too old to be rendered.
-    pub(super) const fn mute(&mut self) {
-        self.is_usable = false;
-    }
 
     fn take(&mut self, identified: &RemoteIdentification) {
         self.stop = identified.stop;
@@ -128,14 +113,37 @@ impl<L: Link> PairLink<L> {
         self.delay_s
     }
 
-    /// Returns the far link, if the follower's half is at another machine.
-    pub(super) fn far(&self) -> Option<&FarLink> {
-        self.is_far.then_some(&*self.far)
+    /// Returns whether the follower's half runs at another machine, which then judges the modes; the delay is measured.
+    pub(super) const fn is_far(&self) -> bool {
+        self.is_far
     }
 
-    /// Returns the far link, if the follower's half is at another machine.
-    pub(super) fn far_mut(&mut self) -> Option<&mut FarLink> {
-        self.is_far.then_some(&mut *self.far)
+    /// Identifies a sample with the follower's half here, and sends the packets if permitted. The other machine has
+    /// identified its samples already: of those, only the force that the plausibility check admits is written into the
+    /// packet.
+    pub(super) fn identify(&mut self, follower: &mut FollowerHalf, tip_m: &Vector3<f64>, timing: &Timing, sends: bool) {
+        if !self.is_far {
+            follower.identify(tip_m, timing, sends.then_some(&mut self.own));
+        } else if self.far.is_usable {
+            self.far.parcel.force_n = follower.force.tip_n;
+        }
+    }
+
+    /// Handles a tick without a sample.
+    pub(super) fn miss(&self, follower: &mut FollowerHalf, timing: &Timing) {
+        if !self.is_far {
+            follower.miss(timing);
+        }
+    }
+
+    /// Returns the report of the identification, at whichever machine it runs.
+    pub(super) fn report<'a>(&'a self, follower: &'a FollowerHalf) -> &'a IdentificationReport {
+        if self.is_far { &self.far.report } else { follower.identifier.report() }
+    }
+
+    /// Marks the last sample of another machine as too old to be rendered.
+    pub(super) fn mute(&mut self) {
+        self.far.is_usable = false;
     }
 
     /// Returns the reason why the other machine is stopped.
@@ -173,6 +181,7 @@ impl<L: Link> PairLink<L> {
 
     /// Records the age of the delivered packet, s; `None` without a packet.
     pub(super) fn note_age(&mut self, age_s: Option<f64>) {
+        // Over a network the age is judged by the silence of the messages instead.
         self.age_s = age_s.filter(|_| !self.is_far).unwrap_or(0.0);
     }
 

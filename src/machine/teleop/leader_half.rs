@@ -86,6 +86,7 @@ impl LeaderHalf {
         let from_m = self.command_m.unwrap_or(seen.tip_m);
         let path_m = target.tip_m - from_m;
         let length_m = path_m.norm();
+        // Shortened along the path, not per axis, so that the tip keeps the direction of the hand.
         let fraction = if length_m > self.step_max_m { self.step_max_m / length_m } else { 1.0 };
         self.command_m = Some(from_m + path_m * fraction);
         TipLead { target, tip_m: self.command_m }
@@ -93,6 +94,7 @@ impl LeaderHalf {
 
     /// Returns the command that was active when the tip was measured, m; `None` without a current measurement.
     pub(super) fn command_behind_m(&self, behind: usize, silent_s: f64) -> Option<Vector3<f64>> {
+        // One missing message is normal jitter; beyond that the command and the tip no longer belong together.
         if silent_s * self.rate_hz > 1.5 {
             return None;
         }
@@ -121,6 +123,7 @@ impl LeaderHalf {
                 let follower_m = self.tracking.step(&command_m, &tip_m, behind);
                 self.motion_m(follower_m, handle_m)
             } else {
+                // Without a command there is nothing to lag behind.
                 self.tracking.interrupt();
                 tip_m
             };
@@ -178,6 +181,7 @@ impl Modes {
 
     pub(super) fn choose(&mut self, mode: Mode) {
         let last = std::mem::replace(&mut self.mode, mode);
+        // Selecting the current mode again must not restart it.
         if last != mode {
             self.before = Some(last);
         }
@@ -211,6 +215,7 @@ impl HandGates {
         let period_s = 1.0 / rig.rate_hz;
         Self {
             chain: SafetyChain::new(rig.gates, period_s),
+            // The governor models a hand on the handle; the finger on a gripper has other limits.
             gripper_chain: GripperChain::new(rig.gates.without_governor(), period_s),
             speed: Speed::new(rig.gates.handle_step_m, rig.rate_hz),
             hand_speed_m_s: 0.0,
@@ -233,9 +238,12 @@ impl HandGates {
     /// Returns the force on the handle, N, on the axes of the request: the requested force is ramped up after each
     /// engagement.
     pub(super) fn step(&mut self, request: ForceRequest) -> (Vector3<f64>, GateReport) {
+        // Before the gates, so that the energy and the slew of the ramp are limited like every other force.
         let ramp = ((request.t_s - self.engaged_s) / RAMP_S).clamp(0.0, 1.0);
         let force_n = request.force_n.map(|force_n| force_n * ramp);
         let (rendered_n, report) = self.chain.step(&ForceRequest { force_n, ..request });
+        // Latched until the pair is at rest: a handle that is caught and pushed again must not regain its force by
+        // itself.
         self.hand_is_gone |= report.reason(Gate::Governor) == Reason::HandGone;
         (rendered_n, report)
     }

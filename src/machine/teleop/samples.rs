@@ -2,7 +2,8 @@
 
 use crate::rig::Inputs;
 
-/// If the rig delivers no sample for longer than this, s, that is a fault.
+/// If the rig delivers no sample for longer than this, s, that is a fault. As long as the supervisor waits for the loop
+/// itself (`STALL_MAX_S`): a force may not be older for either reason.
 pub(super) const SILENT_AFTER_S: f64 = 0.020;
 /// Number of missing samples that counts as a fault; each arriving sample compensates for [`FORGIVEN`] missing ones.
 const TOO_MANY: f64 = 8.0;
@@ -40,6 +41,7 @@ impl Samples {
     }
 
     pub(super) fn are_silent(&self, now_s: f64) -> bool {
+        // Half a period earlier, because a tick that wakes a little early must not decide one period later.
         now_s - self.last_s > SILENT_AFTER_S - 0.5 / self.rate_hz
     }
 

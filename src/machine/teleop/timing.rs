@@ -54,6 +54,7 @@ impl Ticks {
     pub(super) fn pass(&mut self, timing: &Timing) -> TickSpacing {
         self.missed += timing.missed_now;
         let Some(last_s) = self.last_s.replace(timing.now_s) else { return TickSpacing::Evenly };
+        // NaN is tested by name, because every comparison with it is false.
         if timing.now_s.is_nan() || timing.now_s <= last_s {
             return TickSpacing::Backwards;
         }
@@ -61,6 +62,7 @@ impl Ticks {
         self.late = (self.late + surplus - MOVES_PHASE).max(0.0);
         self.early = (self.early - surplus - MOVES_PHASE).max(0.0);
         let drifts = self.late.max(self.early) > DRIFT_MAX;
+        // Restart the sums: one fault for one drift, not one in every tick that follows.
         if drifts {
             self.late = 0.0;
             self.early = 0.0;

@@ -12,7 +12,8 @@ use nima_core::impedance::MAX_DELAY_S;
 /// Number of time shifts compared: with [`LAG_MAX_S`], steps of 2 ms at 1 kHz. Comparing all 128 ticks would cost twice
 /// as much.
 const CANDIDATES: usize = 64;
-/// Maximum lag that can be found, s.
+/// Maximum lag that can be found, s. Twice the 60 ms that are assumed for the slowest arm (`ASTRAY_M` in the
+/// plausibility check).
 const LAG_MAX_S: f64 = 0.128;
 /// Averaging time of the comparison, s of motion: long enough for some changes of direction, which a lag shows in.
 /// Design choice.
@@ -49,6 +50,7 @@ impl TrackingLag {
             step_min_m: MOVING_M_S / rate_hz,
             cost_m2: [0.0; CANDIDATES],
             moving_ticks: 0,
+            // A quarter of a second of motion: before that, the smallest cost is decided by a single stroke.
             warm_up_ticks: (0.25 * rate_hz) as u64,
             lag_samples: 0.0,
         }
@@ -80,6 +82,7 @@ impl TrackingLag {
         self.newest = (self.newest + 1) % self.ring.len();
         self.ring[self.newest] = *command_m;
         self.filled = (self.filled + 1).min(self.ring.len());
+        // Over several ticks, because the noise of one tick is faster than a slow hand.
         let span = self.stride * 4;
         let moving = (command_m - self.back(span)).norm() > self.step_min_m * span as f64;
         if moving && self.filled > behind + self.stride * CANDIDATES {
@@ -93,7 +96,8 @@ impl TrackingLag {
 
     fn compare(&mut self, tip_m: &Vector3<f64>, behind: usize) {
         self.moving_ticks += 1;
-        // A plain mean until the averaging time is reached, then an exponentially weighted one.
+        // A plain mean until the averaging time is reached, then an exponentially weighted one. Otherwise the costs,
+        // which start at zero, would favour whatever was seen first.
         let weight = self.forget.max(1.0 / self.moving_ticks as f64);
         let mut best = 0;
         for candidate in 0..CANDIDATES {
@@ -116,6 +120,7 @@ impl TrackingLag {
         }
         let [before, lowest, after] = [self.cost_m2[best - 1], self.cost_m2[best], self.cost_m2[best + 1]];
         let curvature = before - 2.0 * lowest + after;
+        // Equal costs have no minimum: a flat parabola would give an infinite vertex.
         if curvature <= 0.0 { 0.0 } else { (0.5 * (before - after) / curvature).clamp(-0.5, 0.5) }
     }
 }

@@ -1,6 +1,7 @@
 //! Messages that Foxglove knows by name, as Protocol Buffers: frames, text, arrows, pictures.
 //!
-//! They are those of Foxglove's own library. [`encoding`] gives their description, with which a reader without knowledge of Foxglove decodes them.
+//! They are from Foxglove's own library. [`encoding`] gives their description, with which a reader without knowledge of
+//! Foxglove decodes them.
 
 pub use ::foxglove::messages::{
     ArrowPrimitive, Color, CompressedImage, CompressedVideo, FrameTransform, FrameTransforms, Pose, Quaternion,

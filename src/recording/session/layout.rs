@@ -34,7 +34,7 @@ const PAGE: u64 = 4096;
 const SPARE: u64 = 64 << 10;
 /// The file grows by at least this much; the hole uses no disk space.
 pub(super) const GROWTH: u64 = 16 << 20;
-/// ... and by at least this many summaries, because each growth writes two.
+/// The file also grows by at least this many summaries, because each growth writes two.
 const GROWTH_IN_SUMMARIES: u64 = 32;
 
 pub(super) struct RecordingLayout {
@@ -49,7 +49,7 @@ pub(super) struct RecordingLayout {
     footer_at: u64,
     /// Bytes written so far.
     written: u64,
-    /// The last switch failed, so it is unknown which version of the file readers see.
+    /// The last switch failed, so it is unknown which version of the file a reader gets.
     failed: bool,
     #[cfg(test)]
     pub(super) log: Vec<(u64, Vec<u8>)>,
@@ -232,7 +232,7 @@ impl RecordingLayout {
         at.ok_or_else(|| io::Error::other("there is no room for the summary"))
     }
 
-    /// Returns the points the footer and the free space at another summary.
+    /// Points the footer and the free space at another summary.
     fn lead_to(&mut self, at: u64, tail: Tail, summary: &mut RecordingSummary) -> io::Result<()> {
         let start = (at + DATA_END as u64).to_le_bytes();
         self.switch(&start, self.footer_at + HEAD as u64)?;

@@ -36,7 +36,7 @@ pub(crate) trait WordSource {
 /// Why words cannot be decoded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum CodecError {
-    /// Words are missing.
+    /// Not enough words.
     #[error("it is shorter than it states")]
     Short,
     /// Words are left over.
@@ -76,6 +76,7 @@ impl WordSink for Vec<u64> {
 
 impl WordSource for std::vec::IntoIter<u64> {
     fn word(&mut self) -> Result<u64, CodecError> {
+        // Never a default: a value that is invented would replay to a different force.
         self.next().ok_or(CodecError::Short)
     }
 

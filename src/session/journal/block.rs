@@ -15,9 +15,10 @@ use crate::{
     digest::DigestCheck,
 };
 
-/// Ticks of a full block: 0.2 s at 1 kHz.
+/// Ticks of a full block: 0.2 s at 1 kHz. Short, because a crash loses the block that has not been written yet.
 pub const BLOCK_TICKS: usize = 200;
-/// Maximum number of ticks, and of operations, of a block that is read.
+/// Maximum number of ticks, and of operations, of a block that is read. Twenty times a full block: the counts come from
+/// the file, and a damaged one must not reserve gigabytes.
 const MAX: u64 = 4096;
 
 /// An entry before a tick.
@@ -134,6 +135,7 @@ impl BlockWriter {
 
     /// Returns whether the block must be written.
     pub const fn is_full(&self) -> bool {
+        // Entries count too, so that many operations in a row cannot exceed the maximum of a block that is read.
         self.rows >= BLOCK_TICKS || self.noted.len() >= BLOCK_TICKS
     }
 

@@ -23,9 +23,9 @@ use parts::ByteWriter;
 
 /// Version of the journal that this program writes, and the only version that it reads.
 ///
-/// Version 5 contains the raw readings of the devices and the true time of each tick. It came with other plausibility
-/// checks, another governor and unknown forces, so the replay of an older session would give other forces than the hand
-/// felt.
+/// Version 5 contains the raw readings of the devices and the true time of each tick. It was introduced with other
+/// plausibility checks, another governor and unknown forces, so the replay of an older session would give other forces
+/// than the hand felt.
 pub const VERSION: u16 = 5;
 
 // A tick has a column for each mode and gate, and a number for each reason, so the journal's format depends on these

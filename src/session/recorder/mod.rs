@@ -46,7 +46,8 @@ pub const JOURNAL_TOPIC: &str = "nima/journal";
 /// Encoding of its messages.
 pub const JOURNAL_ENCODING: &str = "nima-journal";
 
-/// Time for which the thread waits for the loop before it checks whether it must end.
+/// Time for which the thread waits for the loop before it checks whether it must end. A tenth of a second is hardly
+/// noticed when a session is ended, and an idle loop costs next to nothing.
 const LOOK_EVERY: Duration = Duration::from_millis(100);
 
 /// Information about a session, recorded in addition to its events.
@@ -258,6 +259,8 @@ impl OpenSession {
         let (scribe, first) = JournalWriter::new(&JournalStart { program: about.program.clone(), origin })?;
         let mut file = SessionFile::create(to, about, &known, sides, devices)?;
         file.write(&first)?;
+        // A file without a loop's origin cannot be replayed, so the beginning must be on the disk before the first
+        // tick.
         file.out.flush()?;
         Ok(Self { scribe, file, noted, sources, waiting: None, clock: ImageLoopClock::default() })
     }
@@ -291,6 +294,7 @@ impl OpenSession {
             self.notes(self.scribe.t_s())?;
             self.file.out.look();
             report(&mut self.file.out, shared);
+            // Neither file nor viewer is left, so recording further would only use the processor.
             if !self.file.out.is_received() {
                 return Ok(());
             }

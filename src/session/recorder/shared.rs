@@ -19,9 +19,9 @@ pub struct RecordingProgress {
     pub lost: u64,
     /// Bytes in the file.
     pub bytes: u64,
-    /// Endoscope images that were written, ...
+    /// Endoscope images that were written.
     pub images: u64,
-    /// ... and those that were dropped because this thread was too slow.
+    /// Endoscope images that were dropped because this thread was too slow.
     pub images_dropped: u64,
     /// Time for which the disk has not responded; after two seconds, the loop drops entries.
     pub waits: Duration,

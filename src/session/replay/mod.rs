@@ -56,7 +56,7 @@ pub struct Differs {
     pub place: Option<(Side, TickStage)>,
 }
 
-/// A gap in the journal, after which nothing can be replayed.
+/// A gap in the journal: nothing after it can be replayed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct JournalGap {
     /// Number of ticks before it.

@@ -4,9 +4,9 @@ use nima_recording::messages::JointStateDecoder;
 
 use super::plots;
 
-/// Sessions of an earlier version had two columns of this name. The second one, the gain itself, ...
+/// A column of this name occurs twice in sessions of an earlier version. The second one is the gain itself.
 const BEFORE: &str = ".gain";
-/// ... has this name now.
+/// Name that the gain's column has now.
 const NOW: &str = ".gain_value";
 
 #[derive(Debug)]

@@ -68,13 +68,13 @@ impl SentenceChannel {
 }
 
 pub(crate) const LOG_TOPIC: &str = "log";
-/// Names of the log's lines: from the loop, ...
+/// Name of the log's lines from the loop.
 pub(crate) const LINE: &str = "nima";
-/// ... a moment that the operator marked, ...
+/// Name of the line for a moment that the operator marked.
 pub(crate) const MARK_LINE: &str = "mark";
-/// ... an alarm of the screen, ...
+/// Name of the line for an alarm of the screen.
 pub(crate) const ALARM_LINE: &str = "alarm";
-/// ... and an event of the scene's objects.
+/// Name of the line for an event of the scene's objects.
 pub(crate) const HAPPENING_LINE: &str = "happening";
 
 #[derive(Debug)]

@@ -1,9 +1,10 @@
 //! The objects of training scenes: rings on pegs, rigid bodies that the jaws of two instruments hold by friction; and a
 //! bent wire, along which a loop is guided.
 //!
-//! [`Objects`] and [`Wire`] take where two [`Instrument`]s are and return what acts on them ([`InstrumentLoads`], N and N m), once for each tick of the
-//! control loop. [`RingWatch`] tells from the rings what happens, in the words of `nima_score`; [`PegTransfer`] whether the task is done;
-//! [`WireTask`] both of a wire. This crate knows no loop, device, file, thread or clock. `docs/scenes.md` has the scenes, `docs/simulated.md` the laws.
+//! [`Objects`] and [`Wire`] take where two [`Instrument`]s are and return what acts on them ([`InstrumentLoads`], N and
+//! N m), once for each tick of the control loop. [`RingWatch`] derives events from the rings, in the terms of
+//! `nima_score`; [`PegTransfer`] whether the task is done; [`WireTask`] both of a wire. This crate uses no loop,
+//! device, file, thread or clock. `docs/scenes.md` has the scenes, `docs/simulated.md` the laws.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 mod contact;

@@ -26,7 +26,7 @@ enum RingStage {
 /// let mut task = PegTransfer::new(&ObjectSettings { rings: vec![RingStart::Peg(0)], ..ObjectSettings::default() });
 /// assert_eq!(task.goal(0), Some(Side::Right), "peg 0 is on the left");
 /// task.take(TaskEvent::RingPlaced { ring: 0, side: Side::Right, peg: 7 });
-/// assert_eq!((task.goal(0), task.is_done()), (Some(Side::Left), false));
+/// assert_eq!((task.goal(0), task.is_done(), task.fraction()), (Some(Side::Left), false, 0.5));
 /// task.take(TaskEvent::RingPlaced { ring: 0, side: Side::Left, peg: 1 });
 /// assert_eq!((task.goal(0), task.is_done()), (None, true));
 /// ```
@@ -50,6 +50,22 @@ impl PegTransfer {
         };
         let rings = setting.rings.iter().map(|start| (home(start), RingStage::Outward)).collect();
         Self { pegs, rings }
+    }
+
+    /// Returns to the beginning.
+    pub fn begin(&mut self) {
+        self.rings.iter_mut().for_each(|(_, stage)| *stage = RingStage::Outward);
+    }
+
+    /// Returns the fraction of the ways that are done, 0 to 1: each ring goes to the other side and back.
+    pub fn fraction(&self) -> f64 {
+        let ways_left = |(_, stage): &(Side, RingStage)| match stage {
+            RingStage::Outward => 2.0,
+            RingStage::Homeward => 1.0,
+            RingStage::Home | RingStage::Lost => 0.0,
+        };
+        let left: f64 = self.rings.iter().map(ways_left).sum();
+        1.0 - left / (2.0 * self.rings.len().max(1) as f64)
     }
 
     /// Processes an event.

@@ -8,7 +8,7 @@ use nima_core::{calibration::frames::ViewMove as Way, noise::Noise};
 use nima_machine::rig::Prompt;
 
 use super::{Person, REACH_S, TURN_RAD_S};
-use crate::{hand::HandMove, scene::Flaw, trocar::shaft};
+use crate::{hand_task::HandMove, scene::Flaw, trocar::shaft};
 
 /// Duration of holding a pose, s: longer than a session requires.
 const HELD_S: f64 = 1.0;

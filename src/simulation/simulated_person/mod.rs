@@ -13,7 +13,7 @@ use self::{
     handling::{PoseMotion, is_handling},
     workspace::Workspace,
 };
-use super::{hand::HandMove, trocar::shaft, world::HandForces, wrist::along_shaft};
+use super::{hand_task::HandMove, trocar::shaft, world::HandForces, wrist::along_shaft};
 use crate::scene::{Flaw, PersonModel as PersonConfig, Scene};
 
 /// Speed at which the tool is rotated, rad/s, and minimum duration of a rotation, s.
@@ -249,7 +249,7 @@ impl Person {
         self.turn(dt_s);
     }
 
-    /// Leans on the stand in about every other push; the others are correct.
+    /// Supports itself on the tissue's frame in about every other push; the others are correct.
     fn lean(&mut self) {
         let leans_n = if self.noise.uniform() < 0.5 { 1.2 } else { 0.0 };
         self.stand = Vector3::from_fn(|_, _| leans_n * self.noise.gaussian());

@@ -40,6 +40,8 @@ enum Game {
 #[derive(Clone, Debug)]
 struct Rings {
     objects: Objects,
+    /// The objects at the beginning of a trial.
+    start: Objects,
     watch: RingWatch,
     task: PegTransfer,
     /// Progress for the screen.
@@ -52,7 +54,8 @@ impl Game {
             let objects = Objects::new(setting, period_s);
             let watch = RingWatch::new(&objects);
             let task = PegTransfer::new(setting);
-            Self::Rings(Box::new(Rings { objects, watch, task, counted: Training::default() }))
+            let start = objects.clone();
+            Self::Rings(Box::new(Rings { objects, start, watch, task, counted: Training::default() }))
         };
         let wire = |setting: &WireSetting| Self::Wire(Box::new((Wire::new(setting, period_s), WireTask::new(setting))));
         let lumps = || Palpation::of(scene).map(|palpation| Self::Lumps(Box::new(palpation)));
@@ -93,14 +96,18 @@ impl Game {
                 both.1.begin();
                 report(0.0, TaskEvent::Begun);
             }
-            // Rings cannot be marked; on a wire there is nothing to mark, and reaching the goal ends the trial.
-            (Self::Rings(_), _) | (Self::Wire(_), TaskAction::Mark | TaskAction::End) => {}
+            (Self::Rings(rings), TaskAction::Begin) => {
+                rings.begin();
+                report(0.0, TaskEvent::Begun);
+            }
+            // Rings and wires cannot be marked, and reaching the goal ends the trial.
+            (Self::Rings(_) | Self::Wire(_), TaskAction::Mark | TaskAction::End) => {}
         }
     }
 
     fn training(&self) -> Training {
         match self {
-            Self::Rings(rings) => rings.counted,
+            Self::Rings(rings) => Training { fraction: rings.task.fraction(), ..rings.counted },
             Self::Lumps(palpation) => palpation.training(),
             Self::Wire(both) => {
                 let (wire, task) = both.as_ref();
@@ -132,6 +139,13 @@ impl Rings {
             report(0.0, TaskEvent::Ended);
         }
         loads
+    }
+
+    fn begin(&mut self) {
+        self.objects.begin_as(&self.start);
+        self.watch.begin(&self.objects);
+        self.task.begin();
+        self.counted = Training::default();
     }
 
     fn count(&mut self, event: TaskEvent) {
@@ -197,5 +211,39 @@ impl TrainingTask {
         }
         let training = Training { ended: self.is_done, ..self.game.training() };
         ObjectMoment { t_s, rings, opening_rad, loads, training }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{UnitQuaternion, Vector3};
+
+    use super::*;
+
+    #[test]
+    fn a_trial_with_rings_begins_again_where_they_were() {
+        let scene = Scene::load("rings").unwrap();
+        let mut game = Game::of(&scene, 1e-3).unwrap();
+        let Game::Rings(rings) = &mut game else { panic!("the scene has rings") };
+        let start_m: Vec<_> = rings.objects.rings().iter().map(|ring| ring.centre_m).collect();
+        rings.start = rings.objects.clone();
+        let mut events = Vec::new();
+        for _ in 0..500 {
+            game.step(&[None; SIDES], &mut |_, event| events.push(event));
+        }
+        let Game::Rings(rings) = &mut game else { unreachable!() };
+        rings.count(TaskEvent::RingPlaced { ring: 0, side: Side::Right, peg: 7 });
+        assert_eq!(game.training().placed, 1);
+        let at = Instrument {
+            tip_m: Vector3::zeros(),
+            world_from_jaws: UnitQuaternion::identity(),
+            trocar_m: 0.15 * Vector3::z(),
+            opening_rad: 0.0,
+        };
+        game.act(TaskAction::Begin, Side::Right, &at, &mut |_, event| events.push(event));
+        assert_eq!(events.last(), Some(&TaskEvent::Begun));
+        let Game::Rings(rings) = &game else { unreachable!() };
+        let now_m: Vec<_> = rings.objects.rings().iter().map(|ring| ring.centre_m).collect();
+        assert_eq!((now_m, game.training().placed), (start_m, 0));
     }
 }

@@ -12,7 +12,7 @@ use nima_machine::rig::{Inputs, Outputs, Prompt};
 
 use crate::{
     Hand, Tissue, Trocar,
-    hand::HandTaskPart,
+    hand_task::HandTaskPart,
     palpation_task::PalpationTask,
     physics::Instrument,
     scene::{FollowerModel, LeaderModel, Scene, Wall},

@@ -1,21 +1,16 @@
 //! `nima train`: trains models from data.
 
-use std::{
-    fmt::Write as _,
-    io::{self, IsTerminal as _},
-    path::PathBuf,
-};
+use std::{fmt::Write as _, path::PathBuf};
 
 use anyhow::anyhow;
 use clap::{Args, Subcommand};
-use indicatif::{ProgressBar, ProgressStyle};
 use nima_core::tip_force::{ForceModel, TrainingSettings};
 use nima_recording::tip_force::{DataSet, Selection, TipForceError, save_model};
 use nima_training::{TrainingProgress, train_model};
 use serde::Serialize;
 
 use super::output;
-use crate::shutdown::Leave;
+use crate::{shutdown::Leave, stderr::show_progress};
 
 #[derive(Debug, Subcommand)]
 pub(super) enum TrainCommand {
@@ -90,11 +85,14 @@ pub(super) fn run(command: &TrainCommand) -> anyhow::Result<()> {
         ..TrainingSettings::default()
     };
     let leave = Leave::on_signals()?;
-    let bar = bar(arguments.json);
     let start = std::time::Instant::now();
     let names = [arguments.sensor.clone(), arguments.tool.clone()];
-    let model = train_model(&data, &settings, names, leave.flag(), &|progress| show(&bar, progress));
-    bar.finish_and_clear();
+    let model = train_model(&data, &settings, names, leave.flag(), &|progress| {
+        if !arguments.json {
+            show_progress(Some(&progress_text(progress)));
+        }
+    });
+    show_progress(None);
     let model = model?;
     save_model(&model, &arguments.out)?;
     let seconds = start.elapsed().as_secs_f64();
@@ -111,19 +109,9 @@ pub(super) fn run(command: &TrainCommand) -> anyhow::Result<()> {
     output::line(&as_text(&model, arguments, seconds))
 }
 
-fn bar(hidden: bool) -> ProgressBar {
-    if hidden || !io::stderr().is_terminal() {
-        return ProgressBar::hidden();
-    }
-    let style = ProgressStyle::with_template("{elapsed} {wide_bar} {pos}/{len} epochs  {msg}");
-    ProgressBar::new(1).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
-}
-
-/// Shows the progress; if a member stops early, its part of the bar is complete.
-fn show(bar: &ProgressBar, progress: &TrainingProgress) {
-    bar.set_length((progress.epochs_max * progress.members) as u64);
-    bar.inc(if progress.finished { (progress.epochs_max - progress.epoch + 1) as u64 } else { 1 });
-    bar.set_message(format!("network {}: held-out loss {:.4}", progress.member + 1, progress.best));
+fn progress_text(progress: &TrainingProgress) -> String {
+    let TrainingProgress { member, members, epoch, epochs_max, best, .. } = progress;
+    format!("network {} of {members}: epoch {epoch} of at most {epochs_max}, held-out loss {best:.4}", member + 1)
 }
 
 /// Writing to a String cannot fail.

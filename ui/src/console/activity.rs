@@ -139,7 +139,7 @@ mod tests {
             let activity = Activity::of_kinds(|place| KINDS.get(place).copied());
             let mut this = Self { activity, samples: 0, block: 0 };
             for _ in 0..20 {
-                assert!(this.block(|_, _, _| 0.0).is_empty(), "its own noise is no change");
+                assert!(this.block(|_, _, _| 0.0).is_empty(), "its own noise does not count as a change");
             }
             this
         }
@@ -190,7 +190,7 @@ mod tests {
         let pushed = |place, channel, _| if (place, channel) == (3, 2) { 2.0 } else { 0.0 };
         assert_eq!(bench.block(pushed), [(3, 2)]);
         let still: Vec<_> = (0..20).map(|_| bench.block(pushed).len()).collect();
-        assert_eq!(still[19], 0, "a load that rests is no change: {still:?}");
+        assert_eq!(still[19], 0, "a load that rests does not count as a change: {still:?}");
         let mut bench = Fixture::new();
         // 3 N per second.
         let rising = |place, channel, t_s: f64| if (place, channel) == (2, 0) { 3.0 * (t_s - 2.0) } else { 0.0 };

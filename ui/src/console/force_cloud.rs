@@ -1,7 +1,8 @@
 //! Measured and rendered force over the last seconds, and the ellipsoid that contains 95 % of their differences.
 //!
-//! Forces in N, workspace frame. The ellipsoid is that of a normal distribution with the same mean and covariance. The actual
-//! fraction of differences inside it is counted, because contact is not normally distributed. Non-finite samples are ignored.
+//! Forces in N, workspace frame. The ellipsoid belongs to a normal distribution with the same mean and covariance. The
+//! actual fraction of differences inside it is counted, because contact is not normally distributed. Non-finite samples
+//! are ignored.
 
 use std::collections::VecDeque;
 
@@ -127,6 +128,6 @@ mod tests {
         assert_eq!(cloud.pairs().count(), 1);
         assert!(cloud.ellipsoid().is_none());
         cloud.push(0.0, Vector3::zeros(), Vector3::zeros());
-        assert_eq!(cloud.pairs().count(), 1, "a new loop begins anew");
+        assert_eq!(cloud.pairs().count(), 1, "a new loop starts from zero");
     }
 }

@@ -289,7 +289,7 @@ mod tests {
         assert_eq!(history.value_at(0, 1.0), Some(2.0));
         assert_eq!(history.extent(&[0, 5], (0.0, 2.0)), Some((1.0, 2.0)));
         history.push(1e5, &[3.0; CHANNELS]);
-        assert_eq!(history.extent(&[0], (0.0, 1e6)), Some((3.0, 3.0)), "a jump beyond what is kept begins anew");
+        assert_eq!(history.extent(&[0], (0.0, 1e6)), Some((3.0, 3.0)), "a jump beyond the stored range starts again");
     }
 
     #[test]

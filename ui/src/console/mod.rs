@@ -42,6 +42,7 @@ pub mod screenshots;
 pub(crate) mod sessions;
 pub mod settings;
 pub mod start;
+pub mod steady_button;
 pub mod stiffness;
 pub mod text;
 pub mod theme;

@@ -1,6 +1,7 @@
 //! A window that only shows a rig at another machine, for example on the surgeon's second screen or a teacher's screen.
 //!
-//! The views are those of the console, with data from the rig. Their commands are discarded: there is no connection back.
+//! The views are the same as in the console, with data from the rig. Their commands are discarded: there is no
+//! connection back.
 
 use std::{
     path::PathBuf,

@@ -163,7 +163,7 @@ impl ConsoleSessions {
             // It does not matter if the deletion fails.
             Ok(progress) if progress.ticks < MIN_TICKS && !kept => drop(std::fs::remove_file(path)),
             Ok(_) => {}
-            Err(error) => self.trouble = Some(chain(&error)),
+            Err(error) => self.trouble = Some(report_text::quoted(&chain(&error))),
         }
     }
 

@@ -282,6 +282,15 @@ mod tests {
     }
 
     #[test]
+    fn the_english_message_of_a_library_is_quoted_in_german() {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join(FILE), "[]x").unwrap();
+        let german = || SettingsStore::open(folder.path()).report().unwrap().to_owned();
+        let report = crate::language::with(crate::language::Language::German, german);
+        assert!(report.starts_with("Die Einstellungsdatei war beschädigt („") && report.contains("“)"), "{report}");
+    }
+
+    #[test]
     fn a_layout_that_cannot_be_read_is_told_and_costs_nothing_else() {
         let folder = tempfile::tempdir().unwrap();
         for layout in ["1", "{\"places\":{\"spiral\":[]}}", "{\"closed\":[\"tea_kitchen\"]}"] {

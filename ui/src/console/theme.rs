@@ -6,8 +6,8 @@
 use std::{cell::Cell, sync::Arc};
 
 use egui::{
-    Color32, CornerRadius, FontData, FontDefinitions, FontFamily, FontId, Margin, Stroke, Style, TextStyle, Visuals,
-    epaint::Shadow, vec2,
+    Color32, CornerRadius, FontData, FontDefinitions, FontFamily, FontId, FontTweak, Margin, Stroke, Style, TextStyle,
+    Visuals, epaint::Shadow, vec2,
 };
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -169,6 +169,18 @@ pub fn apply(ctx: &egui::Context) {
     choose(ctx, false);
 }
 
+/// Applies fonts and style in a test of a part; returns whether they are active, which is from the second pass on.
+#[cfg(test)]
+pub(crate) fn is_applied(ctx: &egui::Context) -> bool {
+    let id = egui::Id::unique("applied");
+    let is_active = ctx.data(|data| data.get_temp(id)).unwrap_or(false);
+    if !is_active {
+        apply(ctx);
+        ctx.data_mut(|data| data.insert_temp(id, true));
+    }
+    is_active
+}
+
 /// Selects the light or the dark palette; call at the start of a frame.
 pub fn choose(ctx: &egui::Context, light: bool) {
     NOW.set(if light { &LIGHT } else { &DARK });
@@ -178,8 +190,10 @@ pub fn choose(ctx: &egui::Context, light: bool) {
 /// Roboto only: it has every character of the screen, and one font looks the same on every computer.
 fn fonts() -> FontDefinitions {
     let mut fonts = FontDefinitions::empty();
-    let regular = FontData::from_static(include_bytes!("../../../assets/fonts/Roboto-Regular.ttf"));
-    let medium = FontData::from_static(include_bytes!("../../../assets/fonts/Roboto-Medium.ttf"));
+    // Hinting moves the dot of an "i" onto its stem at the sizes of the window.
+    let unhinted = |data: FontData| data.tweak(FontTweak { hinting: Some(false), ..FontTweak::default() });
+    let regular = unhinted(FontData::from_static(include_bytes!("../../../assets/fonts/Roboto-Regular.ttf")));
+    let medium = unhinted(FontData::from_static(include_bytes!("../../../assets/fonts/Roboto-Medium.ttf")));
     for (family, name, font) in [
         (FontFamily::Proportional, "roboto", regular.clone()),
         (FontFamily::Monospace, "roboto", regular),
@@ -287,6 +301,29 @@ mod tests {
                 ctx.fonts_mut(|fonts| shown.iter().filter(|one| !fonts.has_glyph(&font, **one)).copied().collect());
             assert!(lacks.is_empty(), "{font:?} {lacks:?}");
             assert!(!ctx.fonts_mut(|fonts| fonts.has_glyph(&font, '\u{529b}')), "a glyph that no font has");
+        }
+    }
+
+    #[test]
+    fn the_dot_of_an_i_is_apart_from_its_stem() {
+        let ctx = egui::Context::default();
+        apply(&ctx);
+        ctx.run_ui(egui::RawInput::default(), |_| {}).textures_delta.clear();
+        for font in [regular(12.5), regular(13.0), regular(14.0), strong(13.0), strong(14.0), strong(15.0)] {
+            let darkest = ctx.fonts_mut(|fonts| {
+                let galley = fonts.layout_no_wrap("i".to_owned(), font.clone(), Color32::WHITE);
+                let place = galley.rows[0].glyphs[0].uv_rect;
+                let image = fonts.image();
+                let row = |y: u16| {
+                    let pixel = |x: u16| image[(usize::from(x), usize::from(y))].a();
+                    (place.min[0]..place.max[0]).map(pixel).max().unwrap_or(0)
+                };
+                let rows: Vec<u8> = (place.min[1]..place.max[1]).map(row).filter(|ink| *ink > 0).collect();
+                // Between the dot at the top and the stem.
+                let upper = &rows[1..rows.len() / 2];
+                (*upper.iter().min().unwrap(), *rows.iter().max().unwrap())
+            });
+            assert!(2 * u32::from(darkest.0) < u32::from(darkest.1), "{font:?}: {darkest:?}");
         }
     }
 

@@ -150,7 +150,7 @@ mod tests {
         );
         assert_eq!(history.redo(), Some(looks[1].clone()));
         history.watch(looks[1].clone(), 9.0, false);
-        assert!(history.can_undo() && history.can_redo(), "what was made again is no new step");
+        assert!(history.can_undo() && history.can_redo(), "redoing does not add a step");
         history.watch(ScreenLook { light: true, ..looks[1].clone() }, 10.0, false);
         assert!(!history.can_redo());
         assert_eq!(history.undo(), Some(looks[1].clone()));

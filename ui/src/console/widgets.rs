@@ -51,7 +51,7 @@ pub fn at_the_right<R>(ui: &mut Ui, content: impl FnOnce(&mut Ui) -> R) -> R {
     row.inner
 }
 
-/// Returns the names a plot for screen readers, with a summary of its content; the summary is built only if a screen
+/// Names a plot for screen readers, with a summary of its content; the summary is built only if a screen
 /// reader is active.
 pub fn describe(ui: &Ui, plot: &Response, name: &str, summary: impl FnOnce() -> String) {
     plot.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Figure, true, name));
@@ -123,6 +123,8 @@ pub enum Sign {
     Square,
     Triangle,
     Octagon,
+    /// Done.
+    Tick,
 }
 
 pub fn sign(painter: &Painter, sign: Sign, centre: Pos2, radius: f32, colour: Color32) {
@@ -139,6 +141,10 @@ pub fn sign(painter: &Painter, sign: Sign, centre: Pos2, radius: f32, colour: Co
         Sign::Triangle => {
             let points = [vec2(0.0, -1.05), vec2(1.1, 0.85), vec2(-1.1, 0.85)].map(|p| centre + p * radius);
             painter.add(egui::Shape::convex_polygon(points.to_vec(), colour, Stroke::NONE));
+        }
+        Sign::Tick => {
+            let points = [vec2(-0.9, 0.0), vec2(-0.25, 0.7), vec2(0.95, -0.75)].map(|p| centre + p * radius);
+            painter.add(egui::Shape::line(points.to_vec(), Stroke::new(radius * 0.4, colour)));
         }
         Sign::Octagon => {
             let points = (0..8).map(|i| {

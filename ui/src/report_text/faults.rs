@@ -106,8 +106,8 @@ impl Remedy for Fault {
                 "Andere Programme schließen oder Echtzeitpriorität gewähren, dann Halt lösen und neu koppeln",
             ),
             Self::ForceUnknown { source: ForceSource::Uncalibrated | ForceSource::Poisoned } => word(
-                "Calibrate gravity (Calibration panel), then release the stop and engage again",
-                "Schwerkraft kalibrieren (Panel Kalibrierung), dann Halt lösen und neu koppeln",
+                "Calibrate gravity (Calibration panel, F2), then release the stop and engage again",
+                "Schwerkraft kalibrieren (Panel Kalibrierung, F2), dann Halt lösen und neu koppeln",
             ),
             Self::ForceUnknown { .. } => word(
                 "Check the wrist sensor and the arm in Devices, then release the stop and engage again",

@@ -83,8 +83,8 @@ pub(super) fn cure_of_unknown(source: ForceSource) -> &'static str {
         | ForceSource::Network
         | ForceSource::Extrapolated
         | ForceSource::InDoubt { .. } => word(
-            "see the Devices panel for the device that sends no data and the cause",
-            "siehe Panel Geräte: welches Gerät nichts sendet und warum",
+            "see the Devices panel (F2) for the device that sends no data and the cause",
+            "siehe Panel Geräte (F2): welches Gerät nichts sendet und warum",
         ),
     }
 }

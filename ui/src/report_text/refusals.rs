@@ -77,8 +77,8 @@ pub(crate) fn cure_of_refusal(why: Refusal) -> &'static str {
             "Ursache der Störung beseitigen, dann Halt lösen drücken",
         ),
         Refusal::State(LoopState::Disconnected) => word(
-            "see the Devices panel for the missing device and the cause",
-            "siehe Panel Geräte: welches Gerät fehlt und warum",
+            "see the Devices panel (F2) for the missing device and the cause",
+            "siehe Panel Geräte (F2): welches Gerät fehlt und warum",
         ),
         Refusal::State(_) => word("see the state of the loop", "siehe Zustand der Regelung"),
         Refusal::StillPresent(Fault::FarEnd { .. }) => word(
@@ -116,12 +116,13 @@ pub(crate) fn cure_of_refusal(why: Refusal) -> &'static str {
         Refusal::HandAbsent => word("hold the handle, then engage again", "Handgerät halten, dann neu koppeln"),
         Refusal::ClutchPressed => word("release the clutch, then engage again", "Kupplung loslassen, dann neu koppeln"),
         Refusal::NotChecked => {
-            word("press Ready check in the Calibration panel", "im Panel Kalibrierung Startprüfung drücken")
+            word("press Ready check in the Calibration panel (F2)", "im Panel Kalibrierung (F2) Startprüfung drücken")
         }
         Refusal::OutOfRange => word("choose a value within the range", "einen Wert im Bereich wählen"),
-        Refusal::DelayIsMeasured => {
-            word("see the Link panel for the network delay", "siehe Panel Verbindung: Verzögerung des Netzwerks")
-        }
+        Refusal::DelayIsMeasured => word(
+            "see the Link panel (F2) for the network delay",
+            "siehe Panel Verbindung (F2): Verzögerung des Netzwerks",
+        ),
         Refusal::SimulatedOnly => word("choose a simulated rig", "einen simulierten Aufbau wählen"),
         Refusal::NoSuchArm => word("choose another arm", "einen anderen Arm wählen"),
     }

@@ -11,21 +11,21 @@ use crate::language::{text_format, word};
 pub(super) fn exchanged(exchange: SideSwap) -> [String; 2] {
     let cure = match exchange {
         SideSwap::Handles => word(
-            "Press Swap handles in the Devices panel, or put each handle in its place",
-            "Im Panel Geräte Handgeräte tauschen drücken, oder jedes Handgerät an seinen Platz stellen",
+            "Press Swap handles in the Devices panel (F2), or put each handle in its place",
+            "Im Panel Geräte (F2) Handgeräte tauschen drücken, oder jedes Handgerät an seinen Platz stellen",
         ),
         SideSwap::Arms => word(
-            "Swap the arms' cables, or press Swap arms in the Devices panel; see the mounts in the rig file",
-            "Kabel der Arme tauschen, oder im Panel Geräte Arme tauschen drücken; siehe Montage in der \
+            "Swap the arms' cables, or press Swap arms in the Devices panel (F2); see the mounts in the rig file",
+            "Kabel der Arme tauschen, oder im Panel Geräte (F2) Arme tauschen drücken; siehe Montage in der \
              Aufbaudatei",
         ),
         SideSwap::Sensors => word(
-            "Swap the sensors' cables, or press Swap sensors in the Devices panel, then calibrate",
-            "Kabel der Sensoren tauschen, oder im Panel Geräte Sensoren tauschen drücken, dann kalibrieren",
+            "Swap the sensors' cables, or press Swap sensors in the Devices panel (F2), then calibrate",
+            "Kabel der Sensoren tauschen, oder im Panel Geräte (F2) Sensoren tauschen drücken, dann kalibrieren",
         ),
         SideSwap::Servos => word(
-            "Swap the servos' cables, or press Swap servos in the Devices panel",
-            "Kabel der Servos tauschen, oder im Panel Geräte Servos tauschen drücken",
+            "Swap the servos' cables, or press Swap servos in the Devices panel (F2)",
+            "Kabel der Servos tauschen, oder im Panel Geräte (F2) Servos tauschen drücken",
         ),
         SideSwap::Markers => word(
             "Put each marker on its instrument, or swap the first two tools of [devices.tracker] in the rig file",
@@ -51,8 +51,8 @@ pub(super) fn arm_stuck(by_m: f64) -> [String; 2] {
         ),
         word(
             "Move the requested instrument and keep the other one at rest; if the arm does not follow, see the \
-             Devices panel",
-            "Das verlangte Instrument bewegen, das andere ruhen lassen; folgt der Arm nicht, siehe Panel Geräte",
+             Devices panel (F2)",
+            "Das verlangte Instrument bewegen, das andere ruhen lassen; folgt der Arm nicht, siehe Panel Geräte (F2)",
         ),
     )
 }

@@ -297,5 +297,5 @@ fn an_anonymous_session_has_a_report_and_a_table_and_can_be_cut_again() {
     let page = String::from_utf8(page).unwrap();
     assert!(page.contains("Anonymous session") && page.contains("Forces of the left arm over time"));
     let path = folder.path().display().to_string();
-    assert!(!page.contains(&path), "the page tells no folder");
+    assert!(!page.contains(&path), "the page contains no folder");
 }

@@ -79,7 +79,7 @@ fn a_rig_that_is_not_ready_fails_in_one_line_and_its_record_says_why_and_what_to
     assert!(
         drift.cause.as_ref().unwrap().starts_with("0.6") && drift.cure.as_ref().unwrap().contains("calibrate gravity")
     );
-    assert_eq!(of(&record, "Stop").outcome, PointOutcome::Passed, "the rest is looked at too");
+    assert_eq!(of(&record, "Stop").outcome, PointOutcome::Passed, "the rest is checked too");
 }
 
 #[test]

@@ -263,7 +263,7 @@ fn an_export_that_is_ended_leaves_nothing_behind() {
 fn a_timing_study_that_is_killed_leaves_no_loop_behind() {
     let mut study = Running(nima(&["study", "timing", "--seconds", "50"]).spawn().unwrap());
     let pid = study.0.id();
-    until("a loop of its own", || children(pid).first().is_some_and(|child| catches(*child, 15)));
+    until("a separate loop", || children(pid).first().is_some_and(|child| catches(*child, 15)));
     let child = children(pid)[0];
     study.0.kill().unwrap();
     study.ended();

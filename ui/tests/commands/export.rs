@@ -224,7 +224,7 @@ fn a_stretch_is_a_session_with_all_that_was_in_it() {
         assert_eq!(report("session_begins_ns"), begin_ns.to_string());
         assert_eq!(report("session"), "s.mcap");
     }
-    // Times in an excerpt are those of the session.
+    // Times in an excerpt are the times of the session.
     let a = at("a.csv");
     let b = at("b.csv");
     done(&["export", &inner, "--out", &a]);

@@ -48,7 +48,7 @@ pub(crate) fn pairs(source: &str) -> Vec<[String; 2]> {
             let rest = &source[at + beginning.len()..];
             if let (false, Some((english, rest))) = (is_within_a_name, literal(rest)) {
                 let rest = rest.trim_start().strip_prefix(',').unwrap_or_default();
-                let (german, _) = literal(rest).unwrap_or_else(|| panic!("no German beside \"{english}\""));
+                let (german, _) = literal(rest).unwrap_or_else(|| panic!("no German for \"{english}\""));
                 pairs.push([english, german]);
             }
         }

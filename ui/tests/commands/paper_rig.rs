@@ -47,7 +47,7 @@ fn every_device_that_is_not_there_has_its_cause_and_its_cure() {
         assert!(lines[at].contains("problem: "), "{}", lines[at]);
         assert!(
             lines[at + 1].starts_with("      ") && lines[at + 1].trim().len() > 20,
-            "{device} has no cure:\n{report}"
+            "{device} has no remedy:\n{report}"
         );
     }
     let cause = |device: &str| lines.iter().find(|line| line.trim_start().starts_with(device)).unwrap();

@@ -49,7 +49,7 @@ fn pair(follower: &Path, console: &Path, address: &str, enter: fn(&str) -> Strin
     let mut of_here = BufReader::new(here.stdout.take().unwrap()).lines();
     let shown_there = code(&mut of_there);
     let shown_here = code(&mut of_here);
-    assert_ne!(shown_there, shown_here, "nobody can enter the code of his own screen");
+    assert_ne!(shown_there, shown_here, "the code of the same screen is refused");
     assert_eq!(shown_here.chars().filter(char::is_ascii_digit).count(), 6, "{shown_here}");
     writeln!(here.stdin.take().unwrap(), "{}", enter(&shown_there)).unwrap();
     writeln!(there.stdin.take().unwrap(), "{shown_here}").unwrap();

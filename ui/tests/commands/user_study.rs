@@ -85,7 +85,7 @@ fn a_blind_study_tells_its_conditions_nowhere_until_it_is_opened() {
     assert_eq!(secrets_in(&opened), ["zebra", "wildebeest"]);
     assert!(opened.contains("not all participants have finished"), "{opened}");
     report(&["study-report", study]);
-    assert_eq!(secrets_in(&everything(&place)), SECRET, "the control: now they are there");
+    assert_eq!(secrets_in(&everything(&place)), SECRET, "the control: now they are present");
     assert_eq!((sessions(".mcap"), sessions(".mcap.sealed")), (2, 0));
     report(&["user-study", "table", study, "--out", &csv]);
     let table = fs::read_to_string(&csv).unwrap();
@@ -250,7 +250,7 @@ fn bad_studies_and_steps_are_one_line() {
     assert!(new(&with("participants = 0\ntrials = 0", BLIND)).contains("2 errors"));
     assert!(new(&with("participants = 2\ntrials = 1\nrings = 2", BLIND)).contains("has none"));
     assert!(new(&with("participants = 2\ntrials = 1\nrig = 'desktop'", BLIND)).contains("desktop"));
-    assert!(!place.exists(), "nothing is made of a file with mistakes");
+    assert!(!place.exists(), "a file with mistakes creates nothing");
     report(&["user-study", "new", &with("participants = 2\ntrials = 1", BLIND), "--out", study]);
     assert!(new("short").contains("already exists"));
     let next = |more: &[&str]| refused(&[&["user-study", "next", study, "--participant"], more].concat());

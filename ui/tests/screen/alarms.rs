@@ -236,6 +236,6 @@ fn a_refused_engagement_says_why() {
     press(&mut harness, "Engage");
     read(
         &mut harness,
-        "Not engaged: the force at the tip is unknown: the wrist sensor is not calibrated; calibrate gravity for this sensor and tool",
+        "Not engaged: the force at the tip is unknown: the wrist sensor is not calibrated. Calibrate gravity for this sensor and tool",
     );
 }

@@ -180,13 +180,13 @@ fn a_blind_study_tells_its_conditions_on_no_page_and_in_no_file_until_it_is_open
         .map(|entry| entry.unwrap().file_name().into_string().unwrap())
         .collect();
     assert!(names.len() == 3 && names.iter().all(|name| name.ends_with(".mcap.sealed")), "{names:?}");
-    assert!(!folder.path().join("sessions").exists(), "the console recorded nothing of its own");
+    assert!(!folder.path().join("sessions").exists(), "the console itself recorded nothing");
 
     reader.write_into("Your name", "A. Person");
     reader.write_into("Reason for unblinding", "end");
     reader.pick("Unblind the study");
     reader.read("Unblinded by");
     let seen = reader.seen.iter().cloned().collect::<String>();
-    assert_eq!(secrets_in(&seen), ["zebra", "wildebeest"], "the control: now they are there");
+    assert_eq!(secrets_in(&seen), ["zebra", "wildebeest"], "the control: now they are present");
     assert!(secrets_in_files(&everything(&place)).len() > 5, "and in the files");
 }

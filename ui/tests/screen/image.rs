@@ -23,7 +23,7 @@ const SHRUNK: usize = 4;
 const GREY_STEP: f32 = 16.0;
 /// Side of the squares that are compared, pixels: 16 points, the height of a line of text.
 const SQUARE: u32 = 4;
-/// Mean difference of grey in a square, of 255, from which on the images differ. The steps of grey are 4 on average,
+/// Mean difference of grey in a square, of 255, above which the images differ. The steps of grey are 4 on average,
 /// another antialiasing of the same letters 3; a word that is missing or has moved by half a letter is 25.
 const TOLERANCE: f32 = 12.0;
 /// Colour of the bars instead of texts with a digit.

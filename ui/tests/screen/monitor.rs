@@ -65,7 +65,7 @@ fn rings_and_jaws_of_a_rig_elsewhere_are_shown() {
     publisher.notify(MonitorMessage::Shows(read(&writer.take()).unwrap()));
     window.run_steps(3);
     assert_eq!(window.state().live().unwrap().objects.as_ref(), Some(&objects));
-    reads(&mut window, "Rings: passed 3, placed 2, dropped 0");
+    reads(&mut window, "passed 3, placed 2, dropped 0");
     // The next batch contains no objects that are new.
     publisher.notify(MonitorMessage::Shows(sent(&plan).drain(..20).collect()));
     window.run_steps(3);
@@ -89,7 +89,7 @@ fn a_rig_elsewhere_is_shown_in_every_view_and_nothing_acts_on_it() {
     assert!(shows(&window, "WATCHING") && shows(&window, "theatre-1, "), "{:?}", texts(&window));
     let live = window.state().live().unwrap();
     assert!((live.first_tick().unwrap().t_s - 5.0).abs() < 0.02);
-    assert!(live.history[0].latest_s() > 4.9, "the traces are there");
+    assert!(live.history[0].latest_s() > 4.9, "the traces are shown");
 
     for key in [Key::F1, Key::F2] {
         window.key_press(key);

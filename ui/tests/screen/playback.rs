@@ -131,7 +131,7 @@ fn nothing_in_the_past_reaches_the_machine_but_a_stop() {
     assert_eq!(*commands.lock().unwrap(), [Command::Stop]);
     harness.run_steps(30);
     let release = harness.get_by_role_and_label(Kind::Button, "Release stop");
-    assert!(release.accesskit_node().is_disabled(), "not while the past is shown");
+    assert!(release.accesskit_node().is_disabled(), "not during playback");
     harness.key_press(Key::L);
     harness.step();
     assert!(harness.state().past().is_none());
@@ -244,7 +244,7 @@ fn sessions_are_listed_kept_deleted_and_opened() {
     press(&mut harness, "Kept 1.mcap");
     press(&mut harness, "Keep 1.mcap");
     press(&mut harness, "Delete 2.mcap");
-    assert!(other.exists(), "it is asked once");
+    assert!(other.exists(), "one confirmation is requested");
     press(&mut harness, "Delete it? 2.mcap");
     // The rows below have moved up.
     wait(&mut harness, "it is not listed any more", |harness| {

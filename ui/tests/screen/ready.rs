@@ -32,7 +32,7 @@ fn the_list_is_gone_through_by_the_person_at_the_screen_and_the_one_at_the_arm()
     // The simulated person obeys the instructions at the arm; the stop is pressed here.
     read(&mut console, "Press Stop");
     assert!(shows(&console, "Right arm: direction of the force: "), "the push was made");
-    assert!(!can_press(&console, "Engage"), "nobody engages during the check");
+    assert!(!can_press(&console, "Engage"), "no engagement during the check");
     press(&mut console, "Stop");
     until(&mut console, "stopped", |tick| tick.state == LoopState::Stopped);
     press(&mut console, "Release stop");
@@ -47,7 +47,7 @@ fn the_list_is_gone_through_by_the_person_at_the_screen_and_the_one_at_the_arm()
     read(&mut console, "Saved in ");
     let record = Store::open(folder.path().join("calibrations")).last_check("Simulated rig").unwrap();
     assert!(record.passed && record.items.iter().all(|item| item.outcome != PointOutcome::Failed), "{record:?}");
-    press(&mut console, "Continue to the monitor");
+    press(&mut console, "Continue to Engage");
     assert!(!shows(&console, "Checked by"));
 }
 

@@ -193,7 +193,7 @@ fn the_first_page_says_what_this_is_and_leads_three_ways() {
         press(&mut harness, way);
         read(&mut harness, shown);
         assert!(harness.query_by_label(way).is_none(), "{way}: the first page is closed");
-        until(&mut harness, "what runs goes on", |tick| tick.state == LoopState::Engaged);
+        until(&mut harness, "the running loop continues", |tick| tick.state == LoopState::Engaged);
     }
 }
 

@@ -100,9 +100,9 @@ fn from_a_ready_study_to_the_end_of_its_first_trial_by_clicks() {
     set(&mut window, "Trials per condition", 0.0);
     pick(&mut window, "Create study");
     for mistake in ["participants = 0", "trials = 0"] {
-        assert!(shows(&window, mistake), "all are told at once: {:?}", texts(&window));
+        assert!(shows(&window, mistake), "all are reported at once: {:?}", texts(&window));
     }
-    assert!(!folder.path().join("studies").exists(), "nothing is made of a study with mistakes");
+    assert!(!folder.path().join("studies").exists(), "a study with mistakes creates nothing");
     set(&mut window, "Participants", 4.0);
     set(&mut window, "Trials per condition", 2.0);
     pick(&mut window, "Create study");
@@ -236,7 +236,7 @@ fn scene_task_measures_and_rules_are_made_in_the_form_and_both_tips_are_seen_fro
     wait(&mut window, "a trial", |window| window.state().in_trial());
     for _ in 0..3 {
         let found = circles(&window);
-        assert_eq!(found.len(), 2, "one around each tip, in the first picture and in those after it");
+        assert_eq!(found.len(), 2, "one around each tip, in the first frame and in the following ones");
         assert!(found.iter().all(|at| is_in_image(&window, *at)), "{found:?}");
         until(&mut window, "idle", |tick| tick.state == LoopState::Idle);
     }
@@ -417,7 +417,7 @@ fn the_learning_of_the_chosen_participant_is_drawn_by_practice_and_trials() {
     drop(study);
     let mut window = console(folder.path(), ConsoleOptions::default());
     open(&mut window);
-    read(&mut window, "Learning of P01: 2 practice trials, 3 trials completed");
+    read(&mut window, "Learning progress of P01: 2 practice trials, 3 trials completed");
     pick(&mut window, "P02");
     read(&mut window, "No trial completed yet");
 }

@@ -150,7 +150,7 @@ fn a_tab_is_brought_to_the_front_by_the_keyboard_and_the_default_still_goes_by_t
     harness.get_by_role_and_label(Role::Button, Panel::Safety.title());
     let safety = tab(&harness, Panel::Safety);
     let space = tab(&harness, Panel::ForceSpace);
-    assert!((safety.center().y - space.center().y).abs() < 1.0, "no room beside the traces: a tab");
+    assert!((safety.center().y - space.center().y).abs() < 1.0, "no room next to the traces: a tab");
 }
 
 #[test]

@@ -131,7 +131,7 @@ fn a_measurement_can_be_cancelled() {
     assert!(stopped, "it did not stop");
     assert!(!harness.state().is_tradeoff_measured());
     harness.get_by_role_and_label(Role::Button, "Measure on this machine…");
-    assert_eq!(harness.state().tick().unwrap().state, LoopState::Engaged, "the loop went on");
+    assert_eq!(harness.state().tick().unwrap().state, LoopState::Engaged, "the loop kept running");
 }
 
 /// Clicks a point with a degree that the running loop cannot change to, and returns its degree. Measured times decide which

@@ -65,7 +65,7 @@ fn one_person_leads_both_instruments_one_at_a_time() {
     plan.rig.mode = Mode::Matched;
     let mut harness = shown(&plan, SIZE, |app| app);
     until(&mut harness, "engaged", |tick| tick.state == LoopState::Engaged);
-    read(&mut harness, "Rings: passed 0, placed 0, dropped 0");
+    read(&mut harness, "passed 0, placed 0, dropped 0");
     press(&mut harness, "Drive by mouse (M)");
     until(&mut harness, "led", |tick| tick.guide_m.is_some());
     read(&mut harness, "Right instrument");

@@ -53,7 +53,7 @@ fn nine_pushes_as_asked_end_in_a_saved_correspondence_and_more_may_follow() {
     read(&mut harness, "Pushes: 2 recorded, at least 9 needed");
     pick(&mut harness, "Remove the last push");
     read(&mut harness, "Pushes: 1 recorded, at least 9 needed");
-    assert!(!can_press(&harness, "Next"), "one push is no calibration");
+    assert!(!can_press(&harness, "Next"), "one push does not make a calibration");
     language::fits(&mut harness, "pushes");
     read(&mut harness, "recorded, at least 9 needed");
     pick(&mut harness, "Start over");
@@ -113,7 +113,7 @@ fn pushes_along_one_line_are_kept_only_under_a_name() {
         console(scene.clone(), folder.path(), Calibrations { gravity: Some(record.model), ..Calibrations::default() });
     pick(&mut harness, "Calibrate correspondence…");
     pick(&mut harness, "Next");
-    pick(&mut harness, "Next");
+    pick(&mut harness, "Continue with less");
     read(&mut harness, "Insufficient motion");
     read(&mut harness, "along one line");
     pick(&mut harness, "Next");

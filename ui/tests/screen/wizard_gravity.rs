@@ -31,8 +31,7 @@ fn gravity_scene(flaw: Option<Flaw>) -> Scene {
     scene
 }
 
-/// Continues from the checks to the poses. On a busy computer a check may fail again between the test of the button and the
-/// click, which then does nothing.
+/// Continues from the checks to the poses. On a busy computer a check may fail again for longer than a click waits.
 fn leave_the_checks(console: &mut Console) {
     let began = Instant::now();
     while !shows(console, "of 12 recorded") {
@@ -57,7 +56,7 @@ fn a_technician_walks_from_an_uncalibrated_wrist_to_a_force_that_is_known() {
     wait(&mut console, "an unknown force", |c| shows(c, "the wrist sensor is not calibrated"));
     pick(&mut console, "Calibrate gravity…");
     wait(&mut console, "the first step", |c| shows(c, "release it: nothing may touch the tool"));
-    assert!(!can_press(&console, "Engage"), "nobody engages an arm that is being guided by hand");
+    assert!(!can_press(&console, "Engage"), "an arm that is being guided by hand cannot be engaged");
     language::fits(&mut console, "checks before the poses");
     leave_the_checks(&mut console);
     wait(&mut console, "some poses", |c| shows(c, "4 of 12 recorded"));
@@ -89,7 +88,7 @@ fn a_technician_walks_from_an_uncalibrated_wrist_to_a_force_that_is_known() {
     wait(&mut console, "a known force", |c| {
         c.state().tick().is_some_and(|tick| tick.force.source == ForceSource::Wrist && tick.t_s > 0.1)
     });
-    assert!(shows(&console, "held-out error"), "what is in force is on the monitor");
+    assert!(shows(&console, "held-out error"), "the active calibration is on the monitor");
 }
 
 #[test]
@@ -140,10 +139,7 @@ fn a_wrong_sign_is_named_and_an_override_is_written_into_the_file() {
         let by_arm = console.query_all_by_label_contains("Take the orientation from the arm").next().unwrap();
         assert!(by_arm.accesskit_node().is_disabled(), "what is in the poses cannot be changed");
         console.query_all_by_label_contains("points down at rest").next().unwrap().click();
-        // The sensor is checked again: from the second frame on, the next step is disabled until the check is done.
-        console.step();
-        console.step();
-        assert!(!can_press(&console, "Next"));
+        console.run_steps(2);
         leave_the_checks(&mut console);
         pick(&mut console, "Next");
         wait(&mut console, verdict, |c| shows(c, verdict));
@@ -201,9 +197,9 @@ fn the_left_arm_is_calibrated_by_itself_and_keeps_nothing_of_the_right_one() {
     wait(&mut console, "the left sensor", |c| shows(c, "Left: Sensor SIM-S1-0002"));
     leave_the_checks(&mut console);
     wait(&mut console, "a pose of the left arm", |c| shows(c, "1 of 12 recorded"));
-    assert_eq!(console.state().tick().map(|tick| tick.prompt), Some(Prompt::Rest), "nobody asks at the right arm");
+    assert_eq!(console.state().tick().map(|tick| tick.prompt), Some(Prompt::Rest), "no request at the right arm");
     pick(&mut console, "Right arm");
-    wait(&mut console, "the first step anew", |c| shows(c, "release it: nothing may touch the tool"));
+    wait(&mut console, "the first step again", |c| shows(c, "release it: nothing may touch the tool"));
     leave_the_checks(&mut console);
     assert!(shows(&console, "0 of 12 recorded"), "poses of the left arm");
     wait(&mut console, "a pose of the right arm", |c| shows(c, "1 of 12 recorded"));

@@ -365,8 +365,8 @@ fn a_cancelled_training_and_steps_back_keep_the_recording() {
     console.record(rows + 300);
     let rows = console.rows();
     console.look_away();
-    assert_eq!(console.rows(), rows, "nobody watched, and nothing is lost");
-    assert!(console.shows("Paused: press"), "what happened meanwhile is not known: it goes on when asked to");
+    assert_eq!(console.rows(), rows, "the page was hidden, and nothing is lost");
+    assert!(console.shows("Paused: press"), "the time in between is unknown: it continues on request");
     console.press("Resume recording");
     console.read("setting the sensor under the tissue to zero");
     console.record(rows + 300);

@@ -1,5 +1,5 @@
 //! The first day of the paper's rig, emulated, in the real window: from an empty data folder to both arms engaged with active
-//! networks. Mouse and keyboard events follow the one button that stands out.
+//! networks. Mouse and keyboard events follow the one highlighted button.
 #![cfg(target_os = "linux")]
 use std::{
     cell::{Cell, RefCell},
@@ -64,7 +64,7 @@ impl<'a> Day<'a> {
                 last = Instant::now();
             }
             if last.elapsed() > PATIENCE {
-                println!("{what}: nothing stands out any more; there are {:?}", self.files("calibrations"));
+                println!("{what}: no button is highlighted any more; there are {:?}", self.files("calibrations"));
                 nima_testing::real_time::too_busy();
             }
             thread::sleep(Duration::from_millis(300));

@@ -34,7 +34,7 @@ impl SameWindow {
         Self { window, _folder: folder }
     }
 
-    /// Returns the rectangle of what is called so.
+    /// Returns the rectangle of the control with this name.
     pub(crate) fn rect(&self, label: &str) -> Rect {
         self.window.get_by_label(label).rect()
     }
@@ -44,7 +44,7 @@ impl SameWindow {
         self.control(Role::Button, label)
     }
 
-    /// Returns the middle of a control, waiting until it is there.
+    /// Returns the middle of a control, waiting until it is shown.
     pub(crate) fn control(&mut self, role: Role, label: &str) -> (i32, i32) {
         let began = Instant::now();
         while self.window.query_by_role_and_label(role, label).is_none() {

@@ -17,8 +17,10 @@ const STARTS: [[f64; 3]; 6] = [
     [FRAC_PI_2, 0.6, -FRAC_PI_2],
     [-FRAC_PI_2, -0.6, FRAC_PI_2],
 ];
+/// Several times what a simplex in three angles needs, so that only a flat cost reaches it.
 const MAX_STEPS: usize = 400;
-/// Size of a converged simplex, rad.
+/// Size of a converged simplex, rad. Far below any calibration's accuracy, because the result is compared with the
+/// closed form.
 const FINE: f64 = 1e-9;
 
 type EulerVertex = (Vector3<f64>, f64);

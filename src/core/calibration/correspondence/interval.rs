@@ -26,9 +26,11 @@ const CAPACITY: usize = 2048;
 /// Minimum number of samples for a mean: with fewer, the error of the standard deviation would exceed 22 % (`1 / sqrt(2
 /// n)`), and it is used to detect rest.
 const MIN_SAMPLES: usize = 10;
-/// An interval weaker than this fraction of the strongest one is not near the peak.
+/// An interval weaker than this fraction of the strongest one is not near the peak. The force of a push rises and
+/// falls, and the two sensors differ most while it changes, so only the top is used.
 const NEAR_PEAK: f64 = 0.8;
-/// Readings farther apart than this belong to different intervals, s.
+/// Readings farther apart than this belong to different intervals, s. Longer than a lost reading, because one gap must
+/// not cut a push in two.
 const LONGEST_GAP_S: f64 = 0.05;
 
 /// A sliding window with running sums, and the best interval so far.

@@ -118,8 +118,10 @@ pub const TARGETS: [PushTarget; 9] = [
     target("down and towards the base", -S, 0.0, -S),
 ];
 
-/// Cosine of the angle within which a push counts for a target: 30 degrees.
+/// Cosine of the angle within which a push counts for a target: 30 degrees. A person cannot push more precisely than
+/// that, and twelve targets cover all directions even so.
 const NEAR_TARGET: f64 = 0.866;
+/// More would hardly improve the result, and the session keeps every push in memory.
 const MAX_PUSHES: usize = 64;
 
 #[derive(Clone, Copy, Debug)]

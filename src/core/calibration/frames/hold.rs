@@ -7,6 +7,7 @@ use crate::{calibration::rotation_mean::RotationMean, frames::Wrench};
 
 /// A sample farther than this from the mean of the pose ends the pose: six standard deviations of a tracker, m and rad.
 const SAMPLE_M: f64 = 1.5e-3;
+/// Both limits are required, because a marker on a long lever moves while the tool turns in place.
 const SAMPLE_RAD: f64 = 0.004;
 /// Maximum difference between the means of the two halves: a slow motion hides in the noise of single samples, m and
 /// rad.

@@ -29,6 +29,7 @@ const PLENTY_SPREAD: f64 = 0.35;
 const PLENTY: usize = 12;
 /// Minimum weight, N, and as a multiple of the noise.
 const MIN_WEIGHT_N: f64 = 0.3;
+/// With less, noise turns the estimated direction by more than 10 degrees (1/5 rad).
 const MIN_SIGNAL: f64 = 5.0;
 /// A mirror explains the forces if its error is below this fraction of the rotation's.
 const MIRROR_FRACTION: f64 = 0.5;
@@ -128,6 +129,7 @@ impl WeightModel {
 
     /// Returns the least-squares solution with this sign of the determinant: 1 for a rotation, -1 for a reflection.
     fn of(rows: &[SensorMountRow], sign: f64) -> Option<Self> {
+        // `max` keeps the means finite without rows; the solution is then refused for its rank.
         let fraction = 1.0 / rows.len().max(1) as f64;
         let down = rows.iter().map(|row| row.down).sum::<Vector3<f64>>() * fraction;
         let force_n = rows.iter().map(|row| row.force_n).sum::<Vector3<f64>>() * fraction;

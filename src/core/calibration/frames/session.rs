@@ -10,6 +10,7 @@ use super::{
     hold::{HoldState, PoseHold},
 };
 
+/// Twenty times the poses of a good session, so that a forgotten session cannot fill the memory.
 pub const MAX_POSES: usize = 400;
 
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -20,6 +20,7 @@ use crate::calibration::Verdict;
 /// Design choice.
 const APART_M: f64 = 0.02;
 /// Minimum root mean square spread of the points along the second axis of their plane, m; and of a complete session.
+/// Points on one line do not determine the plane: it could turn about that line, because only rounding would hold it.
 const MIN_SPREAD_M: f64 = 0.015;
 const PLENTY_SPREAD_M: f64 = 0.03;
 const PLENTY: usize = 6;
@@ -96,6 +97,7 @@ struct Touches;
 impl Problem for Touches {
     type Row = Vector3<f64>;
     type Model = FittedPlane;
+    /// Three points determine a plane.
     const HYPOTHESIS: usize = 3;
     const FLOOR: RowMiss = RowMiss::of_place(2.0e-3);
 

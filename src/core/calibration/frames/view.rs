@@ -22,6 +22,7 @@ use super::{
 /// degrees.
 const MIN_M: f64 = 0.015;
 /// Minimum root mean square of the moves' directions along the second and third axis of all; 0.58 for orthogonal moves.
+/// Below half of that, hardly any move went along the axis.
 const MIN_SECOND: f64 = 0.3;
 const MIN_THIRD: f64 = 0.2;
 /// A mirror explains the moves if its error is below this fraction of the rotation's.
@@ -211,6 +212,7 @@ impl Calibration for ViewSettings {
         if below(third, MIN_THIRD) {
             return FrameReport::nothing(have, FrameCause::OnePlane { spread: third, min: MIN_THIRD });
         }
+        // Before the fit: a rotation through mirrored moves exists, but is wrong by up to 180 degrees.
         if is_mirrored(&rows) {
             return FrameReport::nothing(have, FrameCause::Mistake { mistake: Mistake::Mirrored });
         }
@@ -223,6 +225,7 @@ impl Calibration for ViewSettings {
         // Each direction determines two of the three rotation angles, so n directions spread over all axes determine each
         // angle 2 n / 3 times.
         let kept = found.kept.len();
+        // At least one, because a session without freedom must give a wide region and not a division by zero.
         let freedom = (2 * kept).saturating_sub(3).max(1);
         let variance = found.squares_rad2() / freedom as f64 * 1.5 / kept as f64;
         let angle_deg = radius_95(&Matrix3::from_diagonal_element(variance), freedom).to_degrees();

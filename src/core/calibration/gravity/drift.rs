@@ -14,7 +14,8 @@ use super::{
 };
 use crate::frames::WristSample;
 
-/// Time that the filters of sensor and driver need to settle after a start, s.
+/// Time that the filters of sensor and driver need to settle after a start, s. Otherwise every start would report the
+/// filters' transient as a drift.
 const SETTLE_S: f64 = 2.0;
 /// A bad verdict needs this many consecutive still intervals: a hand on the tool sways, whereas a bias does not
 /// (`docs/calibration.md`).
@@ -103,6 +104,12 @@ impl DriftCheck {
         }
         self.newest = sample.copied();
         self.fresh_s = t_s;
+        self.examine(sample, since_s, t_s);
+        self.drift
+    }
+
+    /// Examines a new sample, this long after the check began (s).
+    fn examine(&mut self, sample: Option<&WristSample>, since_s: f64, t_s: f64) {
         let field = sample.filter(|sample| sample.is_finite()).and_then(|sample| self.model.field_m_s2(sample));
         let late = since_s > TIMEOUT_S;
         match (sample, field) {
@@ -124,7 +131,6 @@ impl DriftCheck {
                 }
             }
         }
-        self.drift
     }
 
     /// Evaluates an interval of this multiple of the still time.

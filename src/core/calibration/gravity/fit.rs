@@ -21,7 +21,8 @@ const LEAVE_ONE_OUT: usize = 20;
 /// The gain model is chosen automatically only with at least this many poses, because it has twelve unknowns for the
 /// force, the physical model only seven.
 const GAIN_POSES: usize = 12;
-/// The gain model is chosen automatically only if its held-out error is below this fraction of the physical model's.
+/// The gain model is chosen automatically only if its held-out error is below this fraction of the physical model's. A
+/// model with more unknowns always fits somewhat better, so a small gain would not justify it.
 const GAIN_FRACTION: f64 = 0.75;
 /// Errors below this are rounding and give no information, N.
 const ROUNDING_N: f64 = 1e-9;

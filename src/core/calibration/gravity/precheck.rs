@@ -11,7 +11,8 @@ use nalgebra::Vector3;
 use super::{GravitySessionSettings, session::field_of, still::StillInterval};
 use crate::frames::{GRAVITY_M_S2, WristSample};
 
-/// Length of a measuring interval, s.
+/// Length of a measuring interval, s. A compromise, because a longer one delays the verdict and a shorter one does not
+/// contain slow noise.
 const BLOCK_S: f64 = 0.5;
 /// If ticks are farther apart than this, the screen has missed some; that time does not count as silence of the sensor,
 /// s.

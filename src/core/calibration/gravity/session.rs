@@ -21,7 +21,8 @@ const COMPARE_FROM: usize = 6;
 /// Maximum angle between the directions of gravity of a pose and of its target, rad, because a person reaches a target
 /// only roughly, and the fit needs only that the poses differ.
 const REACH_RAD: f64 = 25.0 * std::f64::consts::PI / 180.0;
-/// Longest step that counts as time between two samples, s: after a longer gap no pose was being recorded.
+/// Longest step that counts as time between two samples, s: after a longer gap no pose was being recorded. Otherwise a
+/// pause of the program would count as a pose that was held still.
 const STEP_MAX_S: f64 = 0.1;
 
 #[derive(Clone, Copy, Debug, PartialEq)]

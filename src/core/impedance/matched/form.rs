@@ -1,4 +1,4 @@
-//! Columns of a model, from which a force is computed.
+//! Columns of a model; a force is computed from them.
 
 use super::{
     super::{

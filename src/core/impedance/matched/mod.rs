@@ -17,6 +17,7 @@
 
 mod drift;
 mod form;
+mod methods;
 mod model;
 mod slip;
 mod sums;
@@ -25,20 +26,21 @@ mod tests;
 
 pub(super) use form::COLUMNS;
 pub use form::ModelForm;
+pub(super) use methods::{MatchedMethod, Nima};
 pub use model::MatchedModel;
 
 use self::{
     drift::ResidualDrift,
     form::{FormRow, product},
-    slip::{SLIPS, Slip, SlipLanes, SlipSprings, UsualSizes},
+    slip::{FollowerSlip, SlipLanes},
     sums::MatchedSums,
 };
 use super::{
-    Mode, Models,
+    Mode,
     best::eighth_power,
     envelope::Envelope,
     messages::{IdentificationReport, LinkPacket, Posture},
-    method::{FollowerEnd, LeaderEnd, LeaderInput, MethodInput, Place, RenderingMethod},
+    method::{FollowerEnd, MethodInput},
     motion_clock::newest_fraction,
     settings::{ImpedanceSettings, MAX_DELAY_S, ModeSet},
 };
@@ -61,80 +63,6 @@ const LONG_RENEWALS: usize = 2;
 const ERROR_S: f64 = 1.0;
 const EQUAL_N: f64 = 1e-12;
 
-/// Matched rendering; at the leader it has the springs of its slip columns.
-#[derive(Clone, Debug, Default)]
-pub(super) struct MatchedMethod {
-    slip: Slip,
-}
-
-impl RenderingMethod for MatchedMethod {
-    const NAME: &'static str = "matched";
-    const ABOUT: &'static str = "parameters alone, the force from the hand's own motion";
-    const IS_DAMPED: bool = true;
-    const PARAMETERS: Option<Place> = Some(|models| &mut models.matched);
-
-    fn follower(settings: &ImpedanceSettings, delay_ticks: usize) -> Option<Box<dyn FollowerEnd>> {
-        Some(Box::new(Learner::new(ModelForm::of(settings), settings, delay_ticks)))
-    }
-
-    fn leader(_settings: &ImpedanceSettings) -> Box<dyn LeaderEnd> {
-        Box::new(Self::default())
-    }
-
-    fn degree(report: &IdentificationReport) -> u8 {
-        report.matched_degree
-    }
-
-    fn note(models: &Models, report: &mut IdentificationReport) {
-        report.matched_degree = models.matched.degree;
-    }
-}
-
-impl LeaderEnd for MatchedMethod {
-    fn render(&mut self, moment: &LeaderInput<'_>) -> Option<Lanes> {
-        moment.parcel.models.matched.force(moment.now, &mut self.slip)
-    }
-
-    fn reset(&mut self) {
-        self.slip = Slip::default();
-    }
-}
-
-/// Matched rendering in the paper's columns, none of which slips.
-#[derive(Clone, Debug)]
-pub(super) struct Nima;
-
-impl RenderingMethod for Nima {
-    const NAME: &'static str = "nima";
-    const ABOUT: &'static str = "the paper's columns with a constant, a kept origin and a ridge";
-    const HAS_WINDOW: bool = true;
-    const HAS_DEGREES: bool = true;
-    const IS_DAMPED: bool = true;
-    const PARAMETERS: Option<Place> = Some(|models| &mut models.nima);
-
-    fn follower(settings: &ImpedanceSettings, delay_ticks: usize) -> Option<Box<dyn FollowerEnd>> {
-        Some(Box::new(Learner::new(ModelForm::Paper(settings.max_degree as u8), settings, delay_ticks)))
-    }
-
-    fn leader(_settings: &ImpedanceSettings) -> Box<dyn LeaderEnd> {
-        Box::new(Self)
-    }
-
-    fn degree(report: &IdentificationReport) -> u8 {
-        report.nima_degree
-    }
-
-    fn note(models: &Models, report: &mut IdentificationReport) {
-        report.nima_degree = models.nima.degree;
-    }
-}
-
-impl LeaderEnd for Nima {
-    fn render(&mut self, moment: &LeaderInput<'_>) -> Option<Lanes> {
-        moment.parcel.models.nima.force(moment.now, &mut Slip::default())
-    }
-}
-
 /// Follower part of both methods.
 #[derive(Clone, Debug)]
 struct Learner {
@@ -145,19 +73,14 @@ struct Learner {
     tick: usize,
     one: Lanes,
     sums: Vec<MatchedSums>,
-    ridges: &'static [Ridge],
     experts: Vec<Expert>,
     envelope: Envelope,
     drift: ResidualDrift,
-    origin: Lanes,
-    started: bool,
+    /// Origin of the positions: the first one.
+    origin: Option<Lanes>,
     /// The newest columns, with springs loaded by the measured force.
     row: FormRow,
-    stretch: SlipSprings,
-    usual: UsualSizes,
-    gives: [f64; SLIPS],
-    /// The leader's springs, one delay ahead of their current state at the leader.
-    twin: Slip,
+    slip: FollowerSlip,
     /// Number of evaluated ticks, by the clock.
     judged: f64,
     model: MatchedModel,
@@ -167,6 +90,11 @@ struct Learner {
 struct Ridge {
     s: f64,
     memory: usize,
+}
+
+/// Returns the ridges of a form.
+fn ridges_of(form: ModelForm) -> &'static [Ridge] {
+    if form.slips() { &RIDGES } else { &RIDGES[..2] }
 }
 
 #[derive(Clone, Debug)]
@@ -185,7 +113,6 @@ impl Learner {
         let solve_hz = SOLVE_HZ[usize::from(matches!(form, ModelForm::Paper(_)))];
         let every = ((rate_hz / solve_hz).round() as usize).max(1);
         let max_delay = (MAX_DELAY_S * rate_hz).ceil() as usize;
-        let ridges = if form.slips() { &RIDGES[..] } else { &RIDGES[..2] };
         let memories_s = match form {
             ModelForm::Paper(_) => &[settings.window_s][..],
             ModelForm::Sliding | ModelForm::Coupled => &MEMORIES_S,
@@ -204,7 +131,7 @@ impl Learner {
             error_n: Lanes::ZERO,
             weight: Lanes::ZERO,
         };
-        let experts = ridges.iter().enumerate().flat_map(|(ridge, Ridge { memory, .. })| {
+        let experts = ridges_of(form).iter().enumerate().flat_map(|(ridge, Ridge { memory, .. })| {
             // Memory of earlier touches helps only if the columns can distinguish contact from free motion, which
             // requires all of them.
             let min = if *memory == 0 { 0 } else { form.columns() };
@@ -218,17 +145,12 @@ impl Learner {
             tick: 0,
             one: super::messages::active(&nalgebra::Vector3::repeat(1.0), settings.axes),
             sums,
-            ridges,
             experts: experts.collect(),
             envelope: Envelope::new(rate_hz),
             drift: ResidualDrift::new(rate_hz, max_delay),
-            origin: Lanes::ZERO,
-            started: false,
+            origin: None,
             row: [Lanes::ZERO; COLUMNS],
-            stretch: SlipSprings::default(),
-            usual: UsualSizes::default(),
-            gives: [0.0; SLIPS],
-            twin: Slip::default(),
+            slip: FollowerSlip::default(),
             judged: 0.0,
             model: MatchedModel::NONE,
         };
@@ -274,14 +196,14 @@ impl Learner {
         sent: Option<&'a MatchedModel>,
     ) -> Option<(&'a MatchedModel, (FormRow, Lanes))> {
         let sent = sent.filter(|sent| sent.degree > 0)?;
-        Some((sent, self.twin.step(sent, posture)))
+        Some((sent, self.slip.twin.step(sent, posture)))
     }
 
     /// Continues without learning: the learnt parameters stay active.
     fn rest(&mut self, posture: &Posture, sent: Option<&MatchedModel>) {
         self.leader(posture, sent);
         let phase = self.tick % self.every;
-        for ridge in 0..self.ridges.len() {
+        for ridge in 0..ridges_of(self.form).len() {
             if phase != self.phase(ridge) {
                 continue;
             }
@@ -294,22 +216,15 @@ impl Learner {
     }
 
     fn learn(&mut self, posture: &Posture, force_n: Lanes) {
-        if !self.started {
-            self.started = true;
-            self.origin = self.form.position(posture);
-        }
+        let origin = *self.origin.get_or_insert_with(|| self.form.position(posture));
         let pace = posture.stance.pace;
-        let held = if self.form.slips() {
-            self.gives = self.usual.step(posture.stance.u[1], force_n, pace, self.rate_hz);
-            *self.stretch.step(posture.stance.x, force_n, &self.gives)
-        } else {
-            SlipLanes::default()
-        };
-        let row = self.form.row(posture, self.one, self.origin, &held);
+        let held =
+            if self.form.slips() { *self.slip.step(posture, force_n, self.rate_hz) } else { SlipLanes::default() };
+        let row = self.form.row(posture, self.one, origin, &held);
         // A long memory loses nothing by adding only one sample per renewal.
         let memories = if self.tick.is_multiple_of(self.every) { self.sums.len() } else { 1 };
         for (memory, sums) in self.sums.iter_mut().enumerate().take(memories) {
-            let full = self.experts.iter().rfind(|expert| self.ridges[expert.ridge].memory == memory);
+            let full = self.experts.iter().rfind(|expert| ridges_of(self.form)[expert.ridge].memory == memory);
             let error_n = full.map_or(force_n, |full| force_n - product(&full.parameters, &row, full.columns));
             sums.learn(&row, force_n, error_n, pace);
         }
@@ -320,7 +235,7 @@ impl Learner {
     /// Computes one factorisation per ridge, spread over the ticks between two renewals.
     fn solve(&mut self) {
         let phase = self.tick % self.every;
-        for (ridge, Ridge { s, memory }) in self.ridges.iter().enumerate() {
+        for (ridge, Ridge { s, memory }) in ridges_of(self.form).iter().enumerate() {
             // On the first tick solve all of them, because an expert without a prediction cannot be evaluated.
             if phase != self.phase(ridge) && self.tick > 0 {
                 continue;
@@ -341,12 +256,12 @@ impl Learner {
         }
     }
 
-    const fn phase(&self, ridge: usize) -> usize {
-        ridge * self.every / self.ridges.len()
+    fn phase(&self, ridge: usize) -> usize {
+        ridge * self.every / ridges_of(self.form).len()
     }
 
     /// Returns how many renewals ago the parameters that were active `ticks` ago were found.
-    const fn renewals(&self, ridge: usize, ticks: usize) -> usize {
+    fn renewals(&self, ridge: usize, ticks: usize) -> usize {
         let ahead = self.every - self.phase(ridge);
         (self.tick + ahead) / self.every - (self.tick.saturating_sub(ticks) + ahead) / self.every
     }
@@ -358,7 +273,7 @@ impl Learner {
         let mut min_n = Lanes::splat(f64::INFINITY);
         let horizon = self.horizon();
         let mut ages = [0; RIDGES.len()];
-        for (ridge, age) in ages.iter_mut().enumerate().take(self.ridges.len()) {
+        for (ridge, age) in ages.iter_mut().enumerate().take(ridges_of(self.form).len()) {
             *age = self.renewals(ridge, horizon);
         }
         for expert in &mut self.experts {
@@ -397,8 +312,8 @@ impl Learner {
             degree: self.form.degree(heaviest.1),
             one: self.one,
             parameters,
-            origin: self.origin,
-            gives: self.gives,
+            origin: self.origin.unwrap_or(Lanes::ZERO),
+            gives: self.slip.gives,
             bounds_n: self.envelope.bounds_n(),
             offset_n: Lanes::ZERO,
         };
@@ -445,13 +360,9 @@ impl FollowerEnd for Learner {
         }
         self.envelope.reset();
         self.drift.reset();
-        self.started = false;
-        self.origin = Lanes::ZERO;
+        self.origin = None;
         self.judged = 0.0;
-        self.stretch = SlipSprings::default();
-        self.usual = UsualSizes::default();
-        self.twin = Slip::default();
-        self.gives = [0.0; SLIPS];
+        self.slip = FollowerSlip::default();
         self.model = MatchedModel::NONE;
     }
 }

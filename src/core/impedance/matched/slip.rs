@@ -89,6 +89,26 @@ fn load(force_n: Lanes) -> Lanes {
     (next * next + last * last).sqrt()
 }
 
+/// The springs at the follower, where the force is measured.
+#[derive(Clone, Debug, Default)]
+pub(super) struct FollowerSlip {
+    stretch: SlipSprings,
+    usual: UsualSizes,
+    /// Lengths per force at which the springs slip, m/N.
+    pub(super) gives: [f64; SLIPS],
+    /// The leader's springs, one delay ahead of their current state at the leader.
+    pub(super) twin: Slip,
+}
+
+impl FollowerSlip {
+    /// Loads the springs with the measured force (N).
+    pub(super) fn step(&mut self, posture: &Posture, force_n: Lanes, rate_hz: f64) -> &SlipLanes {
+        let stance = &posture.stance;
+        self.gives = self.usual.step(stance.u[1], force_n, stance.pace, rate_hz);
+        self.stretch.step(stance.x, force_n, &self.gives)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::Vector3;
 
-use super::{super::track::MotionTrack, *};
+use super::{super::track::MotionTrack, slip::Slip, *};
 
 const FORMS: [ModelForm; 4] = [ModelForm::Tissue, ModelForm::Sliding, ModelForm::Coupled, ModelForm::Paper(5)];
 const MATCHED: [ModelForm; 3] = [ModelForm::Tissue, ModelForm::Sliding, ModelForm::Coupled];

@@ -18,6 +18,7 @@ impl AgeGate {
     /// Returns the fraction of the force that passes at this age (s), 0 to 1, and the reason for a reduction. At a
     /// non-finite age, no force passes.
     pub fn fraction(&self, age_s: f64) -> (f64, Reason) {
+        // NaN would fail both comparisons below and give a NaN force, so it is tested here.
         if !age_s.is_finite() || age_s >= self.zero_after_s {
             return (0.0, Reason::TooOld);
         }

@@ -38,6 +38,7 @@ impl Ceiling {
             return (force_n, Reason::Open);
         }
         let reason = if self.device_limit_n < self.ceiling_n { Reason::AboveDeviceLimit } else { Reason::AboveCeiling };
+        // Shortened as a vector: limiting each axis would turn the force towards another direction.
         (force_n * (max_n / norm), reason)
     }
 }

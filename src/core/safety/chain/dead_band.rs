@@ -34,6 +34,7 @@ impl DeadBand {
             return 1.0;
         }
         if !speed_m_s.is_finite() {
+            // The memory is cleared too; otherwise NaN would stay in the average for ever.
             self.lately_m_s = 0.0;
             self.counted_m_s = 0.0;
             return 0.0;
@@ -43,6 +44,7 @@ impl DeadBand {
         let play_m_s = 0.5 * self.threshold_m_s;
         self.counted_m_s = self.counted_m_s.clamp(self.lately_m_s, self.lately_m_s + play_m_s);
         let s = (self.counted_m_s / self.threshold_m_s - 1.0).clamp(0.0, 1.0);
+        // A smooth step, so that the force has no kink at either end.
         s * s * (3.0 - 2.0 * s)
     }
 }

@@ -25,7 +25,8 @@ pub const MAX_J: f64 = 0.200;
 /// Time constant with which a surplus or a debt returns to the allowance, s. Without it, integration errors would
 /// accumulate over a session.
 pub const LEAK_S: f64 = 2.0;
-/// Below this level of the store the controller begins to remove force, J.
+/// Below this level of the store the controller begins to remove force, J. A third of the allowance: below it the force
+/// fades over some millimetres instead of ending at once.
 const SOFT_J: f64 = 0.010;
 /// Smoothing of the direction of motion, s: a single encoder step is not a motion.
 const SMOOTHING_S: f64 = 0.004;
@@ -54,6 +55,7 @@ impl<const D: usize> Energy<D> {
             (Some(now_m), Some(then_m)) => now_m - then_m,
             _ => SVector::zeros(),
         };
+        // Also when it is unknown, so that the travel of a gap does not count as the travel of one period.
         self.hand_m = hand_m;
         // The comparison is also false for the infinite difference of two finite positions.
         let travel_m = if travel_m.norm() <= JUMP_M_S * dt_s { travel_m } else { SVector::zeros() };
@@ -61,6 +63,7 @@ impl<const D: usize> Energy<D> {
         self.hand_m_s += (travel_m - self.hand_m_s * dt_s) / (SMOOTHING_S + dt_s);
         let leak = (dt_s / LEAK_S).min(1.0);
         self.stored_j += (ALLOWANCE_J - self.stored_j) * leak - held_n.dot(&travel_m);
+        // A debt is limited like a credit: otherwise a long error could close the gate for the rest of a session.
         self.stored_j = self.stored_j.clamp(-MAX_J, MAX_J);
     }
 

@@ -26,6 +26,7 @@ impl Gain {
         if gain.is_nan() {
             return;
         }
+        // Returning above 1 then needs the second action again.
         self.above_one = self.above_one && gain > 1.0;
         self.chosen = gain.clamp(GAIN.min, if self.above_one { GAIN_ABOVE_ONE.max } else { GAIN.max });
     }
@@ -46,10 +47,12 @@ impl Gain {
     /// Returns the active gain `dt_s` (s) after the last call, and the reason if it differs from the set gain or no
     /// force passes.
     pub fn step(&mut self, dt_s: f64) -> (f64, Reason) {
+        // Ramped also downwards, because a sudden loss of force lets a pressing hand jump forward.
         let step = self.rate_per_s * dt_s;
         self.now += (self.chosen - self.now).clamp(-step, step);
         let reason = if self.now <= 0.0 {
             Reason::GainZero
+        // Not `!=`: the last step of the ramp may end one rounding error away.
         } else if (self.now - self.chosen).abs() > 1e-12 {
             Reason::GainRamping
         } else {

@@ -94,6 +94,7 @@ impl<const D: usize> SafetyChain<D> {
             slew: Slew::new(settings.slew_n_per_s, period_s),
             energy: Energy::new(settings.energy),
             ceiling: Ceiling::new(settings.ceiling_n, settings.device_limit_n),
+            // With the same slew limit as the gate before it, because it changes the force after that gate.
             governor: Governor::new(settings.handle(), settings.slew_n_per_s, period_s),
             last_s: None,
             applied_n: SVector::zeros(),
@@ -189,6 +190,8 @@ impl<const D: usize> SafetyChain<D> {
         let mut report = GateReport::default();
         let dt_s = self.since_last_s(request.t_s);
         if self.settings.energy != EnergyMode::Off {
+            // The force that was really held, after the governor: the energy of a requested force never reached the
+            // hand.
             self.energy.observe(request.hand_m, &self.applied_n, dt_s);
         }
         self.applied_n = self.through(request, dt_s, &mut report);

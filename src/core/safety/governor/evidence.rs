@@ -119,6 +119,7 @@ impl MotionParts {
 impl<const D: usize> Evidence<D> {
     pub(super) fn look(&mut self, past: &ObserverHistory<D>) -> EvidenceAnswer {
         let pushed = self.pushes(past);
+        // A certain answer needs no second sign, and the search for a step is the more expensive one.
         if pushed == EvidenceAnswer::Certain { pushed } else { pushed.max(steps(past)) }
     }
 
@@ -132,6 +133,8 @@ impl<const D: usize> Evidence<D> {
             let parts = MotionParts::of(&now.hand_n, &now.applied_n);
             let lost = parts.carried_n < LOST * size_n + now.error_n
                 && parts.aside_n < MASS_OFF * size_n + COULOMB_N + now.error_n;
+            // A hand needs [`ANSWER_S`] to respond: a change of the force within that time accelerates a held handle
+            // too.
             let pushed_n = parts.pushed_n(now.error_n) - range.change_n();
             if lost && range.min_along_n > 0.0 && pushed_n > past.handle.mass_kg * HAND_M_S2 {
                 return EvidenceAnswer::Certain;

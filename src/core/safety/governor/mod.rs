@@ -1,7 +1,8 @@
 //! Last gate: brakes a released handle instead of pushing it.
 //!
-//! Input: the time of the tick (s), the handle's reading (m) with its time (s), and the force that all other gates pass (`F_d`, N).
-//! Output: the force for the hand (N), the withheld fraction and the reason. The only model is that of the handle: [`FreeHandle`].
+//! Input: the time of the tick (s), the handle's reading (m) with its time (s), and the force that all other gates pass
+//! (`F_d`, N). Output: the force for the hand (N), the withheld fraction and the reason. The handle is the only model:
+//! [`FreeHandle`].
 //!
 //! The force of the hand on the handle follows from the readings and the applied force at true times ([`observer`], [`fit`]).
 //! [`evidence`] compares this force with the limits of a hand. There are four states:
@@ -40,7 +41,8 @@ use super::{PLAUSIBLE_N, Reason};
 
 /// A brake sampled with at most this fraction of `m / T` does not make the handle vibrate.
 const BRAKE_OF_MASS: f64 = 0.15;
-/// Below this speed nothing is braked, m/s.
+/// Below this speed nothing is braked, m/s. The estimated velocity of a handle at rest has noise of this size, and a
+/// brake on noise is felt as vibration.
 const STILL_M_S: f64 = 2e-3;
 /// Windows for judging the hand's force while no force is applied, s. The long one serves scattered readings, once enough time has passed.
 const JUDGED_S: f64 = 0.009;
@@ -62,7 +64,8 @@ const RESTED_S: f64 = 0.020;
 const GONE_AFTER_S: f64 = 0.150;
 /// Time in which the whole force returns, s: a tenth of a hand's slowest reaction.
 const RETURN_S: f64 = 0.040;
-/// A reading farther away is none, m.
+/// A reading farther away is none, m. It is a computing error or a wrong unit, and its square would spoil every fit
+/// that contains it.
 const FAR_M: f64 = 1e3;
 
 /// Reading of the handle.
@@ -156,6 +159,8 @@ impl<const D: usize> Governor<D> {
     pub fn new(handle: FreeHandle, slew_n_per_s: f64, period_s: f64) -> Self {
         Self {
             handle,
+            // The smaller of the limits of the device and of the sampling; a stiffer brake would excite the handle
+            // instead of stopping it.
             brake_n_s_m: handle.brake_n_s_m.min(BRAKE_OF_MASS * handle.mass_kg / period_s),
             slew_n_per_s,
             period_s,
@@ -233,6 +238,7 @@ impl<const D: usize> Governor<D> {
         self.observer.held(&self.applied_n, dt_s);
         let Some(reading) = reading else { return SVector::zeros() };
         self.observer.read(reading.t_s, reading.position_m);
+        // A force below the friction cannot move a released handle, so there is nothing to find, and the cost is saved.
         if self.grip == GripState::Gone || (self.grip == GripState::Held && self.applied_n.norm() < COULOMB_N) {
             self.evidence = Evidence::default();
             return SVector::zeros();
@@ -253,10 +259,11 @@ impl<const D: usize> Governor<D> {
         let Some(now) = past.parabola(JUDGED_S) else { return SVector::zeros() };
         match self.grip {
             GripState::Held | GripState::Gone => SVector::zeros(),
+            // No brake while in doubt: a hand that is present must never be braked.
             GripState::Doubtful { mut since, force_n, ripe_s } => {
                 let ripe = since.faded_s > ripe_s;
-                // The handle moves along the former force, which was strong enough to tell this from a slow motion of
-                // the hand.
+                // The handle moves along the former force, which was strong enough to distinguish this from a slow
+                // motion of the hand.
                 let coasting = now.velocity_m_s.dot(&force_n) > OUT_M_S * force_n.norm() && force_n.norm() > COASTING_N;
                 self.notice(&mut since, &past, &now, dt_s, ripe);
                 since.coasts_s = if coasting { since.coasts_s } else { 0.0 };
@@ -286,6 +293,7 @@ impl<const D: usize> Governor<D> {
         let pulls = by_hand(now) || longer.is_some_and(|longer| by_hand(&longer));
         since.lasted_s += dt_s;
         since.faded_s = if self.withheld >= 1.0 { since.faded_s + dt_s } else { 0.0 };
+        // Decays twice as fast as it grows, so that noise around the threshold never adds up to a pull.
         since.pulls_s =
             if pulls && ripe { since.pulls_s + looked_s } else { (since.pulls_s - 2.0 * looked_s).max(0.0) };
         since.coasts_s = if !pulls && ripe { since.coasts_s + looked_s } else { 0.0 };
@@ -293,6 +301,7 @@ impl<const D: usize> Governor<D> {
         let moved_m = (past.position_m - self.rest_m).norm();
         if !quiet || moved_m > STIR_M + 2.0 * self.handle.step_m {
             if quiet && since.rests_s > RESTED_S {
+                // A handle at rest without force that moves again is moved by a hand, so no further evidence is needed.
                 since.pulls_s = PULLS_S;
             }
             self.rest_m = past.position_m;
@@ -332,6 +341,7 @@ impl<const D: usize> Governor<D> {
                 // A change of the request uses up part of the slew limit; fading gets the rest.
                 let kept_n = asked_n * (1.0 - self.withheld);
                 let room_n = (step_n - (kept_n - self.applied_n).norm()).max(0.0);
+                // The small number only prevents a division by zero: without a request there is nothing to fade.
                 let change = (room_n / asked_n.norm().max(1e-9)).min(1.0);
                 let fades = self.grip != GripState::Held;
                 let back = change.min(dt_s / RETURN_S);
@@ -345,6 +355,7 @@ impl<const D: usize> Governor<D> {
 impl Since {
     /// Returns the grip that this shows, if any.
     fn verdict<const D: usize>(&self) -> Option<GripState<D>> {
+        // A pull is examined first: if the findings contradict each other, a hand is assumed.
         if self.pulls_s >= PULLS_S {
             Some(GripState::Held)
         } else if self.rests_s > GONE_AFTER_S {

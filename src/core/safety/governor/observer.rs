@@ -100,6 +100,7 @@ impl<const D: usize> Observer<D> {
     pub(super) fn read(&mut self, t_s: f64, position_m: SVector<f64, D>) {
         if self.count > 0 {
             let since_s = t_s - self.ring[self.newest].t_s;
+            // A clock that was set back by more than a gap would otherwise block every later reading as old.
             if !(-GAP_S..=GAP_S).contains(&since_s) {
                 self.forget();
             } else if since_s < SPACING_S || self.is_old(since_s, &position_m) {

@@ -30,6 +30,7 @@ impl<const N: usize> DeviceMemory<N> {
             RawOutcome::Old => None,
             RawOutcome::First => {
                 let max = self.repeats.max();
+                // After a gap nothing that was learnt applies: it may be another device.
                 self.channels = [PlausibilityChannel::NONE; N];
                 self.repeats = Repeats::new(max);
                 self.wrong = None;

@@ -45,6 +45,7 @@ impl<const D: usize> JumpDetector<D> {
         is_new: bool,
         falls: impl FnOnce(&SVector<f64, D>, &SVector<f64, D>, bool) -> Fall,
     ) -> (SVector<f64, D>, bool) {
+        // The first vector has nothing to be compared with.
         let last = self.last.unwrap_or(*now);
         let far = (now - last).norm() > max;
         if !is_new {
@@ -56,7 +57,10 @@ impl<const D: usize> JumpDetector<D> {
             (true, Fall::No) => self.level + 1.0,
             (true, Fall::Going | Fall::Over) => self.level,
         };
+        // Bridging hides spikes from everything that follows, so a device that makes many of them must be reported.
         let frequent = self.level >= FREQUENT;
+        // Bridged with the last vector instead of an extrapolation, because an extrapolation could itself be far from
+        // the next vector.
         if far && (self.in_a_row < BRIDGED || fall == Fall::Going) {
             self.in_a_row += 1;
             self.moved = SVector::zeros();

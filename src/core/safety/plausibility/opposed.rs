@@ -51,6 +51,7 @@ impl TouchMemory {
     /// Adds the force (N) and the displacement of the tip (m) since the last check `dt_s` ago; a force below `min_n`
     /// counts as zero; `led` says that the tip is commanded. Returns whether the force drives the tip into the object.
     pub fn look(&mut self, dt_s: f64, force_n: &Vector3<f64>, min_n: f64, travel_m: &Vector3<f64>, led: bool) -> bool {
+        // Depends on the elapsed time and not on the number of ticks, so that a late tick smooths as much as several.
         self.force_n += (force_n - self.force_n) * -libm::expm1(-dt_s / SMOOTHING_S);
         self.went_m = self.went_m * libm::exp(-dt_s / BEFORE_S) + travel_m;
         let felt_n = self.force_n.norm();
@@ -62,6 +63,7 @@ impl TouchMemory {
         if self.free_s >= FREE_S && self.went_m.norm() >= MADE_M {
             self.touch = Some(OpposedTouch::default());
         }
+        // A touch that is not judged does not become one later.
         self.free_s = 0.0;
         let Some(touch) = &mut self.touch else { return false };
         touch.seconds += dt_s;
@@ -69,6 +71,7 @@ impl TouchMemory {
         touch.work_j += self.force_n.dot(travel_m);
         touch.max_j += felt_n * travel_m.norm();
         let OpposedTouch { seconds, travel_m, work_j, max_j } = *touch;
+        // Both are required, because a strong force reaches the work within the noise of the position.
         if max_j > min_n * ENOUGH_AT_MIN_M && travel_m > ENOUGH_M {
             self.touch = None;
             return work_j > ALONG * max_j;

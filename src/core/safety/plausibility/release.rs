@@ -70,6 +70,8 @@ impl ReleaseMemory {
 impl ReleaseMemory {
     fn begin(&self, believed_n: &Vector3<f64>) -> FallState {
         let larger = |a: Vector3<f64>, b: &Vector3<f64>| if b.norm() > a.norm() { *b } else { a };
+        // The largest of the last samples, because a slow sensor begins to fall before the first sample is too far
+        // away.
         let from_n = self.before_n.iter().fold(*believed_n, larger);
         let steps_n = self.before_n.windows(2).map(|pair| pair[1].norm() - pair[0].norm());
         let sharpest_n = steps_n.fold(0.0, f64::max);

@@ -3,7 +3,8 @@
 
 /// Number of stored readings: the longest block that can be found.
 const KEPT: usize = 256;
-/// Minimum number of consecutive readings that must equal an earlier block.
+/// Minimum number of consecutive readings that must equal an earlier block. Shorter runs occur by chance in a device
+/// with few distinct values.
 const RUN: u32 = 10;
 /// Maximum number of readings of a block that a late loop missed the first time.
 const MISSED_MAX: u32 = 2;

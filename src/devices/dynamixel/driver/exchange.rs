@@ -27,12 +27,14 @@ impl<T: ByteStream> DynamixelDriver<T> {
     fn listen(&mut self, now_s: f64) -> Result<Option<TimedReading<ServoReading>>, Loss> {
         let mut newest = None;
         let mut buffer = [0; 256];
+        // A line that sends without pause must not hold up the loop.
         for _ in 0..4 {
             let count = self.line.receive(&mut buffer)?;
             let mut taken = 0;
             while taken < count {
                 taken += self.incoming.feed(&buffer[taken..count]);
                 while let Some(packet) = self.incoming.next() {
+                    // A copy, because the packet borrows the decoder, which belongs to `self`.
                     let mut copy = [0; LONGEST];
                     let body = &mut copy[..packet.body.len()];
                     body.copy_from_slice(packet.body);
@@ -59,6 +61,8 @@ impl<T: ByteStream> DynamixelDriver<T> {
     fn take(&mut self, id: u8, body: &[u8], now_s: f64) -> Result<Option<TimedReading<ServoReading>>, Loss> {
         let plain = body.len() == MOTION_BYTES + 1;
         let condition = body.len() == CONDITION_BYTES + 1;
+        // Each block of a fast answer has an error, an id and two bytes of CRC in addition to its data; the decoder has
+        // already removed the CRC of the last block, which is also the packet's.
         let fast = id == BROADCAST && body.len() + 2 == SERVOS * (MOTION_BYTES + 4);
         if !(plain || condition || fast || body.len() == 1) {
             self.wrong += 1;
@@ -184,6 +188,7 @@ impl<T: ByteStream> DynamixelDriver<T> {
     fn expire(&mut self, now_s: f64) {
         let Some(exchange) = self.exchange.filter(|exchange| now_s >= exchange.until_s) else { return };
         self.exchange = None;
+        // Otherwise the bytes of the next answer could complete a half packet of this one.
         self.incoming.reset();
         if matches!(exchange.question, ServoQuestion::Motion { .. }) {
             self.health.lost += 1;
@@ -223,11 +228,14 @@ impl<T: ByteStream> DynamixelDriver<T> {
     fn put_commands(&mut self) {
         match self.torque {
             Torque::Wanted if self.health.standing == ConnectionState::Connected => {
+                // The goal is the present position, so that switching on the torque does not move the instrument.
                 let here = std::array::from_fn(|index| {
                     let (low, high) = self.servos[index].limits_ticks;
                     f64::from(self.motions[index].position).clamp(low, high) as i32
                 });
                 self.goals = Some(here);
+                // An expired watchdog makes the goals read-only until it is cleared with 0 (ROBOTIS e-manual, "Bus
+                // Watchdog").
                 self.put_all(table::BUS_WATCHDOG.address, [[0]; SERVOS]);
                 self.put_all(table::GOAL_POSITION.address, here.map(i32::to_le_bytes));
                 self.put_all(table::BUS_WATCHDOG.address, [[self.watchdog]; SERVOS]);
@@ -249,6 +257,7 @@ impl<T: ByteStream> DynamixelDriver<T> {
     }
 
     pub(super) fn put_torque_off(&mut self) {
+        // The torque first: if the second packet is lost, the servos are off nevertheless.
         self.put_all(table::TORQUE_ENABLE.address, [[0]; SERVOS]);
         self.put_all(table::BUS_WATCHDOG.address, [[0]; SERVOS]);
     }
@@ -265,6 +274,7 @@ impl<T: ByteStream> DynamixelDriver<T> {
         if self.quiet.length_s < self.silence_s {
             return Ok(());
         }
+        // All three look like silence to the loop, but each has a different remedy.
         Err(if self.health.damaged > self.quiet.damaged_before {
             Loss::Corrupt
         } else if self.health.refused > self.quiet.refused_before {
@@ -279,6 +289,7 @@ impl Quiet {
     fn pass(&mut self, now_s: f64, silence_s: f64) {
         let step_s = self.polled_s.map_or(0.0, |polled_s| now_s - polled_s);
         self.polled_s = Some(now_s);
+        // A poll that is late itself says nothing about the servos: it counts as a quarter of the limit at most.
         self.length_s += step_s.clamp(0.0, silence_s / 4.0);
     }
 

@@ -62,6 +62,8 @@ impl ToolTwist {
     }
 
     fn limited(&self, linear_m_s: f64, angular_rad_s: f64) -> Self {
+        // Clamped before its length is computed, because the square of a huge number is infinite and would make the
+        // result NaN.
         let cut = |vector: &Vector3<f64>, max: f64| vector.map(|x| x.clamp(-1e3, 1e3)).cap_magnitude(max);
         Self {
             frame: self.frame,
@@ -111,13 +113,14 @@ impl KinovaDriver {
             KinovaMode::Single | KinovaMode::Braking | KinovaMode::Leaving { .. } => {}
             KinovaMode::Entering { .. } => self.ask_single_level(self.now_s),
             KinovaMode::Low => {
+                // First brake, then leave: the base must not take over a moving arm.
                 self.guard.brake();
                 self.mode = KinovaMode::Braking;
             }
         }
     }
 
-    /// Returns the commands joint angles, rad, in the turns of the readings: the next point of a path within the
+    /// Commands joint angles, rad, in the turns of the readings: the next point of a path within the
     /// [limits](crate::kinova::KinovaSettings::joint_limits), starting at [`KinovaDriver::command_rad`]. A command
     /// beyond the limits is refused and counted, and ends servoing, because its plan is wrong.
     ///
@@ -132,6 +135,7 @@ impl KinovaDriver {
             return Err(KinovaRefusal::NotServoing);
         }
         self.guard.aim(target_rad, &self.joint_rad).map_err(|(joint, beyond)| {
+            // Counted in addition to the error, because a program may ignore the error but not the state of the device.
             self.health.refused += 1;
             self.leave_low_level();
             KinovaRefusal::Beyond { joint, beyond }
@@ -159,6 +163,7 @@ impl KinovaDriver {
         if self.mode != KinovaMode::Single {
             return Err(KinovaRefusal::NotSingleLevel);
         }
+        // Not sent as a twist, because it would have to be renewed for ever.
         if twist.is_zero() {
             if self.twist.active {
                 self.release_twist();
@@ -178,6 +183,7 @@ impl KinovaDriver {
     /// If the operating system cannot duplicate the connection.
     pub fn lever(&self) -> std::io::Result<impl FnMut() + Send + 'static> {
         let single = KinovaNumber { value: ServoingMode::Single as u32 };
+        // Encoded now, so that the emergency path neither allocates nor waits for a lock.
         let (mut tcp, words) = self.lines.last_text(Rpc::SET_SERVOING_MODE, &single)?;
         // If the connection is broken, the arm's own watchdog has already acted.
         Ok(move || {
@@ -256,6 +262,7 @@ impl KinovaDriver {
         let zero = ToolTwist { frame: self.twist.twist.frame, ..ToolTwist::default() };
         self.twist = Jog { twist: zero, ..Jog::default() };
         self.call(Rpc::SEND_TWIST, &twist_message(&zero));
+        // Both, because `Stop` also ends a motion that is not a twist.
         self.call(Rpc::STOP, &());
     }
 }

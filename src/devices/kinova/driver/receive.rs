@@ -15,12 +15,15 @@ use crate::{
 
 /// Malformed frames in a row after which the arm is lost: 10 ms at 1 kHz, so that a single one does no harm.
 const DAMAGED_MAX: u32 = 10;
+/// Fewer than damaged ones, because an answer that passes the length checks and is still impossible rarely comes from
+/// the line.
 const IMPOSSIBLE_MAX: u32 = 5;
 /// Maximum number of datagrams handled in one poll, so that a sender that floods the port cannot hold up the loop.
 const DATAGRAMS: usize = 64;
 /// Maximum number of reads of the stream in one poll, so that a flood of notifications cannot hold up the loop.
 const READS: usize = 4;
-/// Maximum plausible speed of a joint, rad/s; with [`JUMP_RAD`] it bounds the change between two readings.
+/// Maximum plausible speed of a joint, rad/s; with [`JUMP_RAD`] it bounds the change between two readings. About seven
+/// times the fastest joint of a Gen3 (1.4 rad/s).
 const JUMP_RAD_S: f64 = 10.0;
 const JUMP_RAD: f64 = 0.2;
 
@@ -70,12 +73,14 @@ impl KinovaDriver {
                 return false;
             }
             RESPONSE if cyclic => {}
+            // Answers to other services on this connection carry no reading, but they are not damaged.
             RESPONSE if header.service == Rpc::KEEP_ALIVE.service => return false,
             NOTIFICATION => return false,
             _ => return self.damaged(),
         }
         let Some(feedback) = feedback else { return self.damaged() };
         self.damaged_in_row = 0;
+        // After the checks of the format, so that a damaged frame cannot mark a request as answered.
         if !self.cycle.answered(header.message, &mut self.health) {
             return false;
         }
@@ -86,6 +91,7 @@ impl KinovaDriver {
             self.health.lose(Loss::Device { code: faults.code() });
             return false;
         }
+        // The protocol reports angles from 0 to 360 degrees; a continuous joint would jump by a turn at its end.
         let joint_rad = std::array::from_fn(|j| unwrapped(feedback.actuators[j].position_deg, self.joint_rad[j]));
         if !self.is_possible(feedback, &joint_rad, now_s) {
             self.health.refused += 1;
@@ -121,6 +127,7 @@ impl KinovaDriver {
             self.health.refused += 1;
         }
         match header.sub_error {
+            // The arm has forgotten us, as after a restart: only a new login helps.
             sub::INVALID_SESSION => {
                 self.health.lose(Loss::Disconnected);
             }
@@ -147,6 +154,7 @@ impl KinovaDriver {
             joint_rad_s: std::array::from_fn(|j| f64::from(actuators[j].velocity_deg_s).to_radians()),
             // The arm reports measured torques with the opposite sign to commanded torques.
             joint_nm: std::array::from_fn(|j| -f64::from(actuators[j].torque_nm)),
+            // Both must agree: our mode is what was requested, the arm's state is what it does.
             servoing: self.mode == KinovaMode::Low && self.feedback.state == ArmState::SERVOING_LOW_LEVEL,
         }
     }
@@ -182,6 +190,7 @@ impl KinovaDriver {
         match self.mode {
             KinovaMode::Entering { number, .. } if number == header.message => {
                 self.mode = if good { KinovaMode::Low } else { KinovaMode::Single };
+                // Also after a refusal, so that a command of the previous servoing can never be sent.
                 self.guard.seed(&self.joint_rad);
             }
             KinovaMode::Leaving { number, .. } if number == header.message && good => self.mode = KinovaMode::Single,

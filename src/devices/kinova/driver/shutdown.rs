@@ -19,11 +19,13 @@ use crate::{
 
 /// Maximum time to brake and leave low-level servoing; from full speed braking takes 0.3 s.
 const LEAVE: Duration = Duration::from_millis(800);
+/// Short, because the arm's own watchdog ends a session that is not closed.
 const ANSWER: Duration = Duration::from_millis(200);
 const TICK: Duration = Duration::from_millis(1);
 
 impl KinovaDriver {
     pub(super) fn leave(&mut self) {
+        // The twist first: it belongs to single-level servoing, in which there is nothing to brake.
         if self.twist.active {
             self.release_twist();
         }
@@ -45,6 +47,7 @@ impl KinovaDriver {
 
 pub(in crate::kinova) fn close_sessions(lines: &mut KinovaLines) {
     let (_, bytes) = lines.cyclic.request(Rpc::CLOSE_SESSION, &());
+    // Without waiting for an answer: if the datagram is lost, the session ends by its timeout.
     lines.udp.send(bytes).ok();
     lines.ask_within(Rpc::CLOSE_SESSION, &(), ANSWER).ok();
 }

@@ -91,7 +91,7 @@ impl<'a> LikelihoodProfile<'a> {
         let residual = self.degrees() * (1.0 + (std::f64::consts::TAU * variance).ln());
         let participants: f64 = point.inflation.iter().map(|by| by.ln()).sum();
         let fixed = match self.criterion {
-            // The determinant is that of X, not of Q, so that of R is included.
+            // The determinant of X is used, not of Q, because X includes R.
             MixedCriterion::Reml => {
                 let r = (0..self.design.r.ncols()).map(|at| self.design.r[(at, at)].abs().ln()).sum::<f64>();
                 let l = point.information.l_dirty();

@@ -122,7 +122,7 @@ pub struct SensorContent {
 pub struct StatusCode(pub u16);
 
 impl StatusCode {
-    /// All is well.
+    /// All is well. The code numbers are from the specification of the protocol, STATUS message.
     pub const OK: Self = Self(1);
     /// Stopped in an emergency.
     pub const PANIC: Self = Self(3);
@@ -165,6 +165,7 @@ pub struct TextContent {
 }
 
 impl TextContent {
+    /// Character sets by their IANA numbers, as the specification of the protocol requires.
     const ASCII: u16 = 3;
     const UTF_8: u16 = 106;
 
@@ -201,6 +202,7 @@ pub enum Content {
     Other(String),
 }
 
+/// Lengths of the fields of a STATUS message (specification of the protocol).
 const NAME: usize = 20;
 const TYPE: usize = 12;
 const FRAME: usize = 32;

@@ -16,7 +16,7 @@ pub struct Image {
     pub pixels: Vec<u8>,
 }
 
-/// Bytes before the pixels.
+/// Bytes before the pixels. Given by the specification of the protocol, IMAGE message.
 const HEAD: usize = 72;
 /// Version of the image's own header, unsigned bytes, and right-anterior-superior.
 const VERSION: u16 = 1;

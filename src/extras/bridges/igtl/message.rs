@@ -24,15 +24,18 @@ pub struct IgtlHeader {
     pub crc: u64,
 }
 
+/// The specification of the protocol prescribes ECMA-182 over the body.
 pub(super) const CRC: Crc<u64> = Crc::<u64>::new(&CRC_64_ECMA_182);
 
+/// Lengths of text fields in the header, padded with zeros (specification of the protocol).
 const TYPE: usize = 12;
 const DEVICE: usize = 20;
 /// Size of the extended header, which version 3 puts before the content.
 const EXTENDED: usize = 12;
 
 impl IgtlHeader {
-    /// Size of a header.
+    /// Size of a header. Version, type, device, time stamp, size and checksum: 2 + 12 + 20 + 8 + 8 + 8 (specification
+    /// of the protocol).
     pub const BYTES: usize = 58;
 
     /// Parses a header.

@@ -29,7 +29,8 @@ enum AudienceTopic {
     Other,
 }
 
-/// Maximum number of markers that wait until the clock is known.
+/// Maximum number of markers that wait until the clock is known. If the clock never becomes known, the queue must not
+/// grow for ever.
 const MAX_EARLY: usize = 1024;
 
 /// Makes the markers of one session.

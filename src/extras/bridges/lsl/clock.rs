@@ -1,6 +1,7 @@
 //! Converts the loop's time to LSL time.
 
-/// The loop's clock may run slower than LSL's by this factor.
+/// The loop's clock may run slower than LSL's by this factor. Far more than any crystal, because too small a value
+/// would let the offset lag behind for ever.
 const DRIFT: f64 = 1e-3;
 
 /// The estimate is used after ticks have been received for this long, s, because the first ones are often late.

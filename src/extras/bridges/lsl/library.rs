@@ -16,10 +16,11 @@ use super::LslError;
 
 /// The oldest version (100 times the major number plus the minor one) with the required functions and protocol.
 const VERSION_MIN: i32 = 113;
-/// The value of C's `cft_string`, and the rate of an irregular stream.
+/// The value of C's `cft_string`, and the rate of an irregular stream. Both are from the library's C header, which is
+/// not needed to build this program, because the library is loaded at run time.
 const STRINGS: i32 = 3;
 const IRREGULAR: f64 = 0.0;
-/// Seconds buffered for a listener that was disconnected.
+/// Seconds buffered for a listener that was disconnected. The default of liblsl.
 const BUFFER_S: i32 = 360;
 const PUSH_THROUGH: i32 = 1;
 

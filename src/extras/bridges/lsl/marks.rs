@@ -10,7 +10,8 @@ use nima_machine::{
 };
 use serde_json::{Map, Value};
 
-/// Contact ends below this fraction of the force at which it begins.
+/// Contact ends below this fraction of the force at which it begins. Hysteresis, because the noise of a light touch
+/// would otherwise start and end it many times.
 const CONTACT_ENDS: f64 = 0.5;
 /// The fields of an event that come first in its marker.
 const EVENT: &str = "event";

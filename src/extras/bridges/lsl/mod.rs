@@ -33,7 +33,8 @@ use self::{
 pub const STREAM: &str = "NIMA";
 /// Type of the stream.
 pub const STREAM_TYPE: &str = "Markers";
-/// Force at the tip above which there is contact, N, unless the task sets it.
+/// Force at the tip above which there is contact, N, unless the task sets it. Several times the noise of the sensors,
+/// and below the lightest touch that a hand feels.
 pub const CONTACT_N: f64 = 0.2;
 
 /// Maximum number of markers that wait for the library.

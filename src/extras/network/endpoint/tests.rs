@@ -229,7 +229,7 @@ fn one_console_holds_and_another_gets_control_only_by_consent() {
         for _ in 0..2 {
             ends[2].endpoint.ask_for_control();
             time.until(&mut ends, all([ControlRole::HoldsAsked, ControlRole::Asks]))
-                .expect("the first is asked for control");
+                .expect("the first gets the request for control");
             ends[1].endpoint.answer(false);
             time.until(&mut ends, all([ControlRole::Holds, ControlRole::Denied])).expect("it refuses");
         }

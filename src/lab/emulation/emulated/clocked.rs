@@ -21,9 +21,11 @@ pub enum Wiring {
     External,
 }
 
-/// Clock of an external device when the world begins, s.
+/// Clock of an external device when the world begins, s. Far from zero, so that a driver that confuses the two clocks
+/// is noticed at once.
 const BEGAN_S: f64 = 1234.5;
-/// Period of an external sensor, s, and its offset relative to the loop.
+/// Period of an external sensor, s, and its offset relative to the loop. Half the rate of the loop, so that every
+/// second tick has no new reading.
 const SENSOR_S: f64 = 2e-3;
 const SENSOR_FROM_S: f64 = 0.3e-3;
 

@@ -8,8 +8,6 @@ use nima_machine::{
 };
 use serde::Serialize;
 
-use super::Truth;
-
 /// Name of the force that the loop uses.
 pub const IN_USE: &str = "tip force";
 /// The compared methods: the force that the loop uses, and the force without the later calibrations.
@@ -130,11 +128,6 @@ impl TipErrors {
             Some(Unsure::Missing) => doubt.missing += 1.0,
             None => {}
         }
-    }
-
-    /// Adds the true state at the time of a tick.
-    pub fn add_truth(&mut self, tick: &Tick, truth: &Truth) {
-        self.add(tick, &truth.tip_n);
     }
 
     /// Returns the results; none for a side without samples.

@@ -12,15 +12,18 @@ use nima_core::{
     noise::Noise,
 };
 
-/// Length that makes a rotation comparable with a displacement, m.
+/// Length that makes a rotation comparable with a displacement, m. About the length of an instrument outside the body,
+/// because the tip should count as much as the hand.
 const LENGTH_M: f64 = 0.3;
+/// Keeps the step finite near a singular pose, where the exact solution would turn a joint by any angle.
 const DAMPING: f64 = 1e-4;
-/// A person stays this far from a joint's limit, rad.
+/// A person stays this far from a joint's limit, rad. A person feels the end stop coming, and the calibration would
+/// refuse a pose at the limit.
 const KEEP_OFF_RAD: f64 = 0.1;
 /// Fraction of the distance to the comfortable pose covered in one second.
 const COMFORT_PER_S: f64 = 0.5;
 /// Parameters of the search: number of random starts, steps from each, maximum step, rad, and the error at which it
-/// ends, m.
+/// ends, m. Several starts, because the search ends in the nearest minimum, which may be out of reach.
 const STARTS: usize = 40;
 const STEPS: usize = 150;
 const LONGEST_RAD: f64 = 0.25;

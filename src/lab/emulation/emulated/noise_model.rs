@@ -7,7 +7,8 @@ use nima_core::frames::Wrench;
 use nima_devices::{ARM_JOINTS, TrackedTool};
 use nima_machine::rig::Flaws;
 
-/// Duration for which a marker is hidden each time, s.
+/// Duration for which a marker is hidden each time, s. Longer than the 0.1 s after which the loop treats a marker as
+/// missing.
 const HIDDEN_S: f64 = 0.25;
 /// Number of stored marker readings for a late tracker: more than its frames in the maximum delay.
 const KEPT: usize = 256;

@@ -26,7 +26,8 @@ type ServedDevices = Result<EmulatedDevice, EmulatedRigError>;
 /// magnitude.
 const CABLES_NM_PER_RAD: f64 = 0.3;
 const CABLES_REST_RAD: f64 = 0.3;
-/// Start-up time of a first-generation sensor, s: short, but with all of its steps visible.
+/// Start-up time of a first-generation sensor, s: short, because every test of an opening waits for it, but with all of
+/// its steps visible.
 const BOOT_S: f64 = 0.2;
 /// The sensor under the tissue is at room temperature, degrees Celsius.
 const ROOM_C: f64 = 24.0;

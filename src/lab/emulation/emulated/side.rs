@@ -1,8 +1,8 @@
 //! World of one side, with a jointed arm in it: the data source of every emulator of the side.
 //!
-//! Time is that of the common clock (s). Whenever an emulator reads the world, the world advances to that time in fixed
-//! steps of 1 ms. Positions in m, forces in N, in `world` unless the name says otherwise. The joints follow the arm's commands
-//! like the simulated follower or, while its drives are off, the hands of the technician.
+//! Times are on the common clock (s). Whenever an emulator reads the world, the world advances to that time in fixed
+//! steps of 1 ms. Positions in m, forces in N, in `world` unless the name says otherwise. The joints follow the arm's
+//! commands like the simulated follower or, while its drives are off, the hands of the technician.
 
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 use nima_core::{
@@ -22,7 +22,8 @@ use crate::emulators::{
 
 /// One step of the world, s.
 const STEP_S: f64 = 1e-3;
-/// Maximum number of steps executed after a pause of the whole process; earlier time is skipped.
+/// Maximum number of steps executed after a pause of the whole process; earlier time is skipped. Without a limit a
+/// pause of the process would be made up for longer than it lasted.
 const CATCH_UP_STEPS: u64 = 100;
 /// Natural rotation of the handle, rad, and its speed, rad/s: no hand is perfectly still.
 const HANDLE_WAVE: (f64, f64) = (0.05, 0.9);

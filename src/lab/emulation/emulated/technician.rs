@@ -22,13 +22,15 @@ const IN_TROCAR_M: f64 = 1e-3;
 /// Time for carrying the arm: seconds per radian of the joint that rotates most, and the minimum.
 const CARRY_S_PER_RAD: f64 = 1.7;
 const CARRY_MIN_S: f64 = 0.8;
-/// If a hold is missed by this much, m at the tip's lever, ...
+/// If a hold is missed by this much, m at the tip's lever, for longer than [`STUCK_S`], another pose is tried.
 const STUCK_M: f64 = 0.03;
-/// ... for this long, s, cannot be reached by rotating further: the arm must take another pose.
+/// If such a miss lasts this long, s, the pose cannot be reached by rotating further.
 const STUCK_S: f64 = 1.0;
-/// Number of poses considered before choosing one that the arm may not reach.
+/// Number of poses considered before choosing one that the arm may not reach. The first one that the arm reaches is
+/// taken, so that a session does not wait for a pose that is out of reach.
 const CHOICES: usize = 10;
-/// Height of the tip before poses in free space, touches and moves, m.
+/// Height of the tip before poses in free space, touches and moves, m. High enough that neither the tissue nor the wall
+/// is touched, because a touched pose is refused.
 const ABOVE_M: f64 = 0.05;
 
 /// The technician as seen by this side.

@@ -8,7 +8,8 @@ use nima_simulation::scene::Scene;
 
 use crate::emulators::endoscope::push;
 
-/// Distance of the camera from the workspace's middle, m.
+/// Distance of the camera from the workspace's middle, m. Well within the measurement volume of a Polaris Vega, which
+/// cannot see markers closer than about 0.95 m (data sheet).
 const CAMERA_M: f64 = 1.5;
 /// Viewing direction if the scene does not set it: horizontal along the workspace's y (roll, pitch, yaw of
 /// `world_from_c`, degrees).
@@ -17,7 +18,8 @@ const CAMERA_DEG: Vector3<f64> = Vector3::new(90.0, 0.0, 0.0);
 const MARKER_M: f64 = 0.08;
 /// Position of the endoscope's marker before the endoscope is pushed: on its shaft outside the patient, m.
 const ENDOSCOPE_M: Vector3<f64> = Vector3::new(0.0, -0.25, 0.26);
-/// Noise of a marker's position per axis, m.
+/// Noise of a marker's position per axis, m. Twice the 0.12 mm RMS that the data sheet of a Polaris Vega states,
+/// because its own markers are not the ones used here.
 const MARKER_NOISE_M: f64 = 0.000_25;
 /// Residual of a marker in good view, m.
 const MARKER_ERROR_M: f64 = 0.000_15;

@@ -26,10 +26,35 @@ mod discovery_tests;
 
 use std::io;
 
+use nima_devices::bota::Transport;
+
 pub use faults::{EmulatedFault, FaultSwitch};
 pub use serving::{EmulatorThread, EmulatorTurn};
-pub use standalone::{ALONE, EmulatorSettings};
+pub use standalone::EmulatorSettings;
 pub use wires::{WireEnd, WirePeer};
+
+/// Makes an emulator from settings.
+type StandaloneMaker = fn(&EmulatorSettings) -> io::Result<Box<dyn Emulator>>;
+
+/// All emulators that run alone, by name.
+pub const ALONE: &[(&str, StandaloneMaker)] = &[
+    ("bota-gen0", |settings| bota::standalone::sensor(Transport::Gen0, settings)),
+    ("bota-gen-a", |settings| bota::standalone::sensor(Transport::GenA, settings)),
+    ("bota-socket", |settings| bota::standalone::sensor(Transport::Socket, settings)),
+    ("dynamixel", dynamixel::standalone::bus),
+    ("endoscope", endoscope::standalone::endoscope),
+    ("force-dimension", force_dimension::standalone::handle),
+    ("haply", haply::standalone::handle),
+    ("kinova", kinova::standalone::arm),
+    ("ndi", ndi::standalone::network),
+    ("ndi-serial", ndi::standalone::line),
+    #[cfg(target_os = "linux")]
+    ("pedal", hid::standalone::pedal),
+    #[cfg(target_os = "linux")]
+    ("spacemouse", hid::standalone::cap),
+    #[cfg(target_os = "linux")]
+    ("spacenavd", hid::standalone::spacenavd),
+];
 
 /// An emulated device. All calls come from one thread.
 pub trait Emulator: Send {

@@ -17,11 +17,13 @@ use super::{
     wires::{ARRIVALS, WireArrival, WireEnd, WirePeer, wait},
 };
 
-/// Maximum interval between calls of an emulator that does not report when it is due, ...
+/// Maximum interval between calls of an emulator that does not report when it is due.
 const TICK: Duration = Duration::from_millis(2);
-/// ... of one that does, so that faults and the end are handled soon, ...
+/// Maximum interval between calls of an emulator that reports when it is due, so that faults and the end are handled
+/// soon.
 const IDLE_TICK: Duration = Duration::from_millis(5);
-/// ... and while a fault is active. Every unnecessary wake-up takes time from the loop under test.
+/// Maximum interval while a fault is active. Not always used, because every unnecessary wake-up takes time from the
+/// loop under test.
 const FAULTY_TICK: Duration = Duration::from_millis(1);
 /// Maximum read at once: the longest datagram.
 const BUFFER_BYTES: usize = 65_507;

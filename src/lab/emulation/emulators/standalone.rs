@@ -1,14 +1,9 @@
-//! Every emulator by name, standalone: without a rig, fed by a simple substitute for the world, with settings by name
-//! (`nima emulate`).
+//! Settings of an emulator that runs alone (`nima emulate`): without a rig, fed by a simple substitute for the world.
 
 use std::{
     io::{Error, ErrorKind, Result},
     str::FromStr,
 };
-
-use nima_devices::bota::Transport;
-
-use super::Emulator;
 
 /// Settings `KEY=VALUE`; devices ignore keys that they do not have.
 #[derive(Debug, Default)]
@@ -51,26 +46,3 @@ impl EmulatorSettings {
 pub(super) fn unusable(key: &str, value: impl std::fmt::Display, why: &str) -> Error {
     Error::new(ErrorKind::InvalidInput, format!("--set {key}={value}: {why}"))
 }
-
-/// Makes an emulator from settings.
-pub(super) type StandaloneMaker = fn(&EmulatorSettings) -> Result<Box<dyn Emulator>>;
-
-/// All emulators, by name.
-pub const ALONE: &[(&str, StandaloneMaker)] = &[
-    ("bota-gen0", |settings| super::bota::standalone::sensor(Transport::Gen0, settings)),
-    ("bota-gen-a", |settings| super::bota::standalone::sensor(Transport::GenA, settings)),
-    ("bota-socket", |settings| super::bota::standalone::sensor(Transport::Socket, settings)),
-    ("dynamixel", super::dynamixel::standalone::bus),
-    ("endoscope", super::endoscope::standalone::endoscope),
-    ("force-dimension", super::force_dimension::standalone::handle),
-    ("haply", super::haply::standalone::handle),
-    ("kinova", super::kinova::standalone::arm),
-    ("ndi", super::ndi::standalone::network),
-    ("ndi-serial", super::ndi::standalone::line),
-    #[cfg(target_os = "linux")]
-    ("pedal", super::hid::standalone::pedal),
-    #[cfg(target_os = "linux")]
-    ("spacemouse", super::hid::standalone::cap),
-    #[cfg(target_os = "linux")]
-    ("spacenavd", super::hid::standalone::spacenavd),
-];

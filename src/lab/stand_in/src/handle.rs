@@ -148,7 +148,7 @@ impl StandInHandle {
         }
     }
 
-    /// Returns the changes a setting of the device.
+    /// Changes a setting of the device.
     pub(crate) fn order(&mut self, order: ClientOrder, argument: u32) -> Result<c_int, c_int> {
         self.exchange(order, argument, [0.0; 4], EXCHANGE).map(|()| 0)
     }
@@ -229,7 +229,7 @@ pub(crate) fn open(fits: impl Fn(usize, &DeviceReply) -> bool) -> Result<c_int, 
             error = refused;
             continue;
         }
-        // Whoever opened the device owns it: no other entry of the table can hold it.
+        // The thread that opened the device owns it: no other entry of the table can hold it.
         for (id, place) in OPEN.iter().enumerate() {
             let mut place = locked(place);
             if place.is_none() {

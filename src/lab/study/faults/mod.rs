@@ -140,7 +140,7 @@ impl FaultPlace {
 pub enum FaultVerdict {
     /// Neither force nor motion at any time.
     NoForce,
-    /// The force differs from the twin's within 5 ms by at most [`HARMLESS_N`], or is no further from the force at the
+    /// The force differs from the twin's within 5 ms by at most [`HARMLESS_N`], or is not further from the force at the
     /// tip than the twin's: its largest error by at most [`HARMLESS_N`], its mean error by at most 0.02 N.
     Harmless,
     /// The machine reported the fault.

@@ -40,7 +40,7 @@ pub struct InMode {
     pub clock: ClockProfile,
     /// Mode that rendered.
     pub mode: Mode,
-    /// Events and sums; reversed forces are those of the brake.
+    /// Events and sums; reversed forces are from the brake.
     #[serde(flatten)]
     pub tally: HeldTally,
 }

@@ -42,7 +42,7 @@ pub(super) fn governor<const D: usize>(kind: &HandKind) -> Governor<D> {
     Governor::new(handle, SLEW_N_PER_S, PERIOD_S)
 }
 
-/// Sums and worst values over hands that were there.
+/// Sums and worst values over hands that were present.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct HeldTally {
     /// Number of hands, and total time for which they held the handle, min.

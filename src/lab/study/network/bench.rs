@@ -8,7 +8,7 @@ use nima_core::impedance::{Mode, OwnMotion};
 use nima_machine::{
     config::RigConfig,
     messages::{Command, Event, LoopState, Tick},
-    remote::{FarFollower, FarLeader, RemoteWire as _, at_follower},
+    remote::{FollowerRig, OperatorRig, RemoteWire as _, at_follower},
     rig::{Inputs, Outputs, Rig, SIDES, Side},
     runtime::{TickTime, TickTimes, VirtualClock, VirtualSupervisor},
     teleop::{Calibrations, Loop, Timing},
@@ -130,8 +130,8 @@ impl<R: Rig> BenchMachine<R> {
 
 /// Both machines and the link.
 pub(super) struct NetworkBench {
-    console: BenchMachine<FarFollower<Workplace, NetworkEnd>>,
-    follower: BenchMachine<FarLeader<Workplace, NetworkEnd>>,
+    console: BenchMachine<OperatorRig<Workplace, NetworkEnd>>,
+    follower: BenchMachine<FollowerRig<Workplace, NetworkEnd>>,
     /// From the console to the follower, and back.
     lines: [ImpairedLine; 2],
     condition: NetworkCondition,
@@ -185,8 +185,8 @@ impl NetworkBench {
             measure(&mut ends, &mut lines, tick, condition.ahead_s(0.0));
         }
         let [one, other] = ends;
-        let console = FarFollower::new(Workplace::new(&scene), one, RATE_HZ);
-        let follower = FarLeader::new(Workplace::new(&scene), other, RATE_HZ);
+        let console = OperatorRig::new(Workplace::new(&scene), one, RATE_HZ);
+        let follower = FollowerRig::new(Workplace::new(&scene), other, RATE_HZ);
         Ok(Self {
             console: BenchMachine::new(&rig, console, clock)?,
             follower: BenchMachine::new(&at_follower(&rig), follower, clocks::of_trial(clock, 1))?,

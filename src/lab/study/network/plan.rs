@@ -34,8 +34,8 @@ pub struct NetworkOptions {
     pub extent: PlanExtent,
     /// Clocks of both loops, in the order of the tables.
     pub clocks: Vec<VirtualClock>,
-    /// The modes, of which the first is evaluated. If empty, all modes are run and the default one is evaluated.
-    /// Delayed reflection is always included, because the others are compared with it.
+    /// The modes; the first is evaluated. If empty, all modes are run and the default one is evaluated. Delayed
+    /// reflection is always included, because the others are compared with it.
     pub modes: Vec<Mode>,
     /// Motion from which the console computes the force.
     pub own_motion: OwnMotion,

@@ -204,7 +204,7 @@ impl NetworkReport {
             PlanExtent::Full => "every combination (--full)",
         };
         format!(
-            "{} cells: {extent}. Runs of {} s on the virtual clock, of which the last {} s are judged; before each run the line has been open for {} s ({} s with jitter). Scene peg_transfer, delay in each direction, one seed. ETVO (Kroep and others, 2021) is not computed.\n\n",
+            "{} cells: {extent}. Runs of {} s on the virtual clock; the last {} s are judged; before each run the line has been open for {} s ({} s with jitter). Scene peg_transfer, delay in each direction, one seed. ETVO (Kroep and others, 2021) is not computed.\n\n",
             self.rows.len(),
             self.run_s,
             self.judged_s,

@@ -3,7 +3,7 @@
 //!
 //! For every sample at time t the force is rendered from data up to t - D and the motion at t, exactly like a leader
 //! behind a link of delay D, and compared with the force measured at t and with the delayed force f(t - D) (delayed
-//! DFR). Units are those of the recording (N and m, or Nm and rad).
+//! DFR). Units as in the recording (N and m, or Nm and rad).
 //!
 //! If the leader's motion was recorded too, the force is computed from it, as the loop does with the handle's motion.
 

@@ -1,4 +1,4 @@
-//! Sums over a replay, from which its results are computed.
+//! Sums over a replay; its results are computed from them.
 
 use nalgebra::Vector3;
 use nima_core::{

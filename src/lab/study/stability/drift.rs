@@ -27,8 +27,7 @@ pub struct StabilityDrift {
     pub ours_early: f64,
     /// This project's solver after all ticks, at the same phase of the motion.
     pub ours_late: f64,
-    /// For comparison: running sums of the normal equations, from which each leaving row is subtracted, after 1000
-    /// ticks.
+    /// For comparison: running sums of the normal equations, with each leaving row subtracted, after 1000 ticks.
     pub running_sums_early: f64,
     /// The same after all ticks; `None` if there was no finite answer.
     pub running_sums_late: Option<f64>,

@@ -1,12 +1,12 @@
-//! Numerical stability in extreme cases: every solver compared with the exact solution of its own problem.
+//! Numerical stability in extreme cases: every solver compared with the exact solution of the same problem.
 //!
 //! Takes the number of ticks of the long run; the cases are generated here. Returns a [`StabilityReport`] with table, CSV, JSON
 //! and plots.
 //!
 //! The paper's solvers and the plain QR get the samples unchanged. This project's solver gets them through the
 //! identifier's checks (a sample that is not finite, out of range, or whose time does not advance occupies its time in
-//! the window without data). Each is compared with the arbitrary-precision solution of its own problem: same rows, same
-//! constant, same ridge, minimum norm if the rows do not determine the solution. The error is the error of the
+//! the window without data). Each is compared with the arbitrary-precision solution of the same problem: same rows,
+//! same constant, same ridge, minimum norm if the rows do not determine the solution. The error is the error of the
 //! predicted force, at the newest sample and 50 ms later, relative to the force or to its root mean square in the
 //! window, whichever is larger.
 

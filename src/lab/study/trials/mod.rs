@@ -3,7 +3,7 @@
 //! Each measure is compared separately. If every participant was under several conditions: Wilcoxon's signed-rank test
 //! of each pair with the Hodges-Lehmann difference, and Friedman's test of all of them; if the groups are different
 //! people: the Mann-Whitney test. In both cases the pairs' p-values are corrected after Holm, and a mixed model with a
-//! random intercept per participant uses every trial. The statistics are those of `nima_analysis`, which are checked
+//! random intercept per participant uses every trial. The statistics are from `nima_analysis`, which are checked
 //! against R and `SciPy`.
 
 mod compare;

@@ -79,6 +79,7 @@ impl ArmPair {
         let measured = SideReadings::new(side, set, period_s, at_wrist)?;
         let levers = [Lever::default(), Lever::default()];
         let [of_handle, of_arm] = levers.clone();
+        // With one handle there is nothing to confuse, and any device of the model may be used.
         let leader = if known.has_both_sides() { set.handle.for_hand_of(side) } else { set.handle.clone() };
         let handle = ends.have_leader().then(|| {
             start(RigPart::Handle(side), leader.opener(), known, roster, move |handle| handle.attach(&of_handle))
@@ -112,6 +113,7 @@ impl ArmPair {
     pub(super) fn poll(&mut self, now_s: f64) {
         let [of_handle, of_arm, of_sensor, of_servos] = &mut self.gauges;
         if let Some(reading) = self.handle.as_mut().and_then(|slot| slot.poll(now_s)) {
+            // Relative to the first reading, because the zero of a handle differs from device to device.
             let from = self.held_from.get_or_insert(reading.value.orientation.unwrap_or_default());
             of_handle.handle(&reading.value, from);
             self.measured.take_handle(reading);
@@ -141,9 +143,11 @@ impl ArmPair {
             of_servos.tick(slot.health(), now_s, self.period_s);
         }
         if let Some(slot) = &mut self.handle {
+            // The device reports only changes, so the last state is kept while it is connected.
             let changed = slot.device().and_then(|handle| handle.force_change());
             self.measured.force_is_on = changed.unwrap_or(self.measured.force_is_on && is_there(slot));
         }
+        // Only while the drives are off, because the reason concerns the next engagement.
         if !self.driven {
             let begin = |joints: TimedReading<ArmReading>| self.measured.begin(&joints.value.joint_rad.into()).err();
             let of_servos = self.servos.as_ref().and_then(|_| self.servos_known.obstacle());
@@ -180,6 +184,7 @@ impl ArmPair {
     }
 
     pub(super) fn write(&mut self, now_s: f64, outputs: &Outputs) {
+        // Only on a change: a drive that has switched itself off must not be switched on again by the next tick.
         if outputs.drives != self.driven {
             self.driven = outputs.drives;
             self.switch_drives(outputs.drives);
@@ -243,6 +248,7 @@ impl ArmPair {
                 self.inverse = None;
             }
         }
+        // Not before the arm is at rest, because outside servoing it leaves the planned path through the trocar.
         if !self.driven && self.inverse.is_none() {
             arm.leave_servoing();
         }

@@ -31,7 +31,7 @@ impl<L: Link> Pair<L> {
             Command::SetGainAboveOne(gain) => {
                 self.leader.gates.chain.set_gain_above_one(within(&GAIN_ABOVE_ONE, gain)?);
             }
-            Command::SetDelay(_) if self.link.far().is_some() => return Err(Refusal::DelayIsMeasured),
+            Command::SetDelay(_) if self.link.is_far() => return Err(Refusal::DelayIsMeasured),
             Command::SetDelay(delay_s) => self.set_delay(within(&DELAY_S, delay_s)?),
             Command::SetDeadBand(speed_m_s) => {
                 self.leader.gates.chain.set_dead_band(within(&DEAD_BAND_M_S, speed_m_s)?);

@@ -192,6 +192,7 @@ impl<L: Link> Pair<L> {
 
     /// Returns whether this pair itself has a fault, which disengages the other pair in the next tick.
     pub fn has_failed(&self) -> bool {
+        // Otherwise each pair would keep the other one failed, and neither could be released.
         matches!(self.state(), LoopState::Faulted(fault) if fault != Fault::OtherArm)
     }
 

@@ -43,6 +43,7 @@ impl<L: Link> Pair<L> {
     /// information about the other pair is whether it had failed after the previous tick.
     pub fn step(&mut self, other_has_failed: bool, inputs: Option<Inputs>, timing: &Timing) -> (Outputs, Tick) {
         let now_s = timing.now_s;
+        // Before anything else: an operator who lost one hand must not pull with the other.
         if other_has_failed {
             self.fail_if_driven(Fault::OtherArm, now_s);
         }
@@ -53,8 +54,9 @@ impl<L: Link> Pair<L> {
 
         // The follower's half: readings, tip force, identification, packets into the link.
         let inputs = inputs.map(|inputs| self.take_in(inputs, timing));
-        if inputs.is_none() && self.link.far().is_none() {
-            self.follower.miss(timing);
+        // The clock of the identification continues without a sample; over a network it runs at the other machine.
+        if inputs.is_none() {
+            self.link.miss(&mut self.follower, timing);
         }
 
         // The permissions of the interlock.
@@ -102,11 +104,14 @@ impl<L: Link> Pair<L> {
             sensed => self.follower.force_path.step(now_s, sensed),
         };
         let is_usable = self.follower.force.source.is_usable();
+        // The last force is from before the gap: compared with it, the new one would look like a jump.
         if is_usable && !was_usable {
             self.plausibility.force_is_new();
         }
         let observed = self.observed(&inputs, now_s);
         let admitted = self.plausibility.step(&observed);
+        // From here on only admitted values are used, so that a spike that is bridged reaches neither the link nor the
+        // hand.
         inputs.tip_m = admitted.tip_m;
         inputs.hand.position_m = admitted.hand_m;
         if is_usable {
@@ -115,10 +120,7 @@ impl<L: Link> Pair<L> {
         self.leader.gates.move_hand(inputs.hand_s(now_s), inputs.hand.position_m);
         // A sample with an unusable force counts as missing: no packet is sent for it.
         let sends = is_usable && !self.withholds(Watchdog::Link);
-        match self.link.far_mut() {
-            Some(far) => far.admit(&self.follower.force),
-            None => self.follower.identify(&inputs.tip_m, timing, sends.then_some(&mut self.link)),
-        }
+        self.link.identify(&mut self.follower, &inputs.tip_m, timing, sends);
         self.samples.keep(&inputs, now_s);
         inputs
     }
@@ -127,7 +129,7 @@ impl<L: Link> Pair<L> {
     fn observed(&self, inputs: &Inputs, now_s: f64) -> PlausibilityInput {
         let force = &self.follower.force;
         let silent_s = inputs.silent_s;
-        let is_far = self.link.far().is_some();
+        let is_far = self.link.is_far();
         PlausibilityInput {
             t_s: now_s,
             raw: inputs.raw,
@@ -150,9 +152,11 @@ impl<L: Link> Pair<L> {
         if timing.missed_now as f64 / self.settings.rate_hz > STALLED_AFTER_S {
             self.fail_if_driven(Fault::LoopStalled { periods: timing.missed_now }, now_s);
         }
+        // The order is the order of causes: only the first fault is reported, and the later ones follow from it.
         if self.samples.are_silent(now_s) {
             self.fail_if_driven(Fault::SourceSilent, now_s);
         }
+        // In `Ready` the drives are still starting, and neither power nor force is required yet.
         let coupled = matches!(self.state(), LoopState::Engaged | LoopState::Clutched);
         if self.samples.count(inputs.is_some()) {
             self.fail_if_driven(Fault::SamplesLost, now_s);
@@ -184,6 +188,7 @@ impl<L: Link> Pair<L> {
                 && self.follower.force.source.is_usable()
                 && !self.link.is_old()
                 && moved_m <= AT_REST_M,
+            // A handle without a presence sensor cannot report a hand; the governor then decides from the motion.
             present: switches.presence.unwrap_or(true) && !self.leader.gates.hand_is_gone,
             clutch: switches.clutch,
         };
@@ -202,9 +207,8 @@ impl<L: Link> Pair<L> {
             return;
         }
         self.follower.force = NO_FORCE;
-        if let Some(far) = self.link.far_mut() {
-            far.mute();
-        }
+        // The other machine repeats nothing, but its last force would otherwise remain the current one.
+        self.link.mute();
     }
 
     /// Receives the current packet, checks it, and raises a fault if it is too old.
@@ -216,7 +220,8 @@ impl<L: Link> Pair<L> {
             return Delivery { age_s: f64::INFINITY, delayed_n: UNKNOWN_N };
         };
         self.plausibility.delivered(&parcel.force_n, parcel.t_s);
-        // Over a network a packet may be younger than its delay; its force still ends when the connection does.
+        // Over a network a packet may be younger than its delay; its force still ends when the connection does. `max`,
+        // not a sum: the silence is already contained in the age of the newest packet.
         let age_s = (now_s - parcel.t_s - delay_s + seen.age_s).max(seen.silent_s);
         let is_known = parcel.fresh && age_s < self.leader.gates.chain.settings().zero_after_s;
         let delayed_n = if is_known { parcel.force_n } else { UNKNOWN_N };
@@ -240,6 +245,8 @@ impl<L: Link> Pair<L> {
     ) -> HandForce {
         let permitted = self.state().permits().coupled && self.follower.force.source.is_usable();
         let force_n = self.leader.modes.force_n(rendered);
+        // After a change of mode both modes are computed until the new one is ready; only then is the old one no longer
+        // needed.
         if self.leader.modes.settle(rendered) {
             self.compute();
         }
@@ -265,7 +272,7 @@ impl<L: Link> Pair<L> {
     /// that machine evaluates the modes.
     fn judge_modes(&mut self, came: bool, rendered: &RenderedForces) {
         let force = &self.follower.force;
-        if came && force.source.is_known() && self.link.far().is_none() {
+        if came && force.source.is_known() && !self.link.is_far() {
             self.accuracy.add(rendered, self.follower.identifier.report().modes, &force.tip_n);
         }
     }
@@ -318,7 +325,7 @@ impl<L: Link> Pair<L> {
             rendered_n: felt.rendered_n,
             gates: felt.gates,
             gate_settings: *self.leader.gates.chain.settings(),
-            identification: *self.link.far().map_or_else(|| self.follower.identifier.report(), |far| far.report()),
+            identification: *self.link.report(&self.follower),
             wake_s: timing.wake_s,
             work_s: timing.work_s,
             sample_to_force_s: timing.sample_to_force_s,

@@ -17,9 +17,10 @@ use crate::physics::{
 };
 pub use state::{RingActivity, RingState};
 
-/// Maximum sub-step, s.
+/// Maximum sub-step, s. The loops run at 1 kHz, so one step for each of their ticks is enough where no ring vibrates.
 const SUBSTEP_MAX_S: f64 = 1e-3;
-/// Maximum period of a step, s.
+/// Maximum period of a step, s. A longer one is probably in a wrong unit, and would need thousands of sub-steps in one
+/// call.
 const PERIOD_MAX_S: f64 = 0.1;
 /// Maximum sub-step, relative to the fastest vibration of a ring between four fingers (12 contact stiffnesses on its
 /// mass, as the effective mass at the rim is a third of the whole). Semi-implicit Euler is stable below 2, less with
@@ -107,17 +108,32 @@ struct RingNote {
 }
 
 impl Objects {
+    /// Puts every ring where it is in `start`, at rest, without allocating; the instruments stay where they are.
+    pub fn begin_as(&mut self, start: &Self) {
+        let Memories { ring_board, ring_pegs, ring_tools, ring_rings, .. } = &start.memories;
+        self.rings.clone_from(&start.rings);
+        self.memories.ring_board.clone_from(ring_board);
+        self.memories.ring_pegs.clone_from(ring_pegs);
+        self.memories.ring_tools.clone_from(ring_tools);
+        self.memories.ring_rings.clone_from(ring_rings);
+        self.notes.clone_from(&start.notes);
+        self.states.clone_from(&start.states);
+    }
+
     /// Creates the objects of a setting with a step every `period_s`. The setting must have been validated.
     pub fn new(setting: &ObjectSettings, period_s: f64) -> Self {
         let period_s = if period_s > 0.0 { period_s.min(PERIOD_MAX_S) } else { SUBSTEP_MAX_S };
         let BoardSettings { z_m, .. } = setting.board;
         let peg = |[x, y]: &[f64; 2]| Segment {
             from_m: Vector3::new(*x, *y, z_m),
+            // A peg ends in a half sphere, so its line ends one radius below its top.
             to_m: Vector3::new(*x, *y, z_m + setting.pegs.height_m - setting.pegs.radius_m),
         };
         let directions = directions();
         let mut rings: Vec<Ring> = Vec::with_capacity(setting.rings.len());
         for (i, start) in setting.rings.iter().enumerate() {
+            // Rings that start on the same peg are stacked, because overlapping rings would be thrown apart in the
+            // first step.
             let below = setting.rings.iter().take(i).filter(|other| *other == start).count() as f64;
             let tube_m = setting.ring.tube_radius_m;
             let centre_m = match start {
@@ -179,6 +195,8 @@ impl Objects {
         for substep in 1..=self.substeps {
             let fraction = f64::from(substep) / f64::from(self.substeps);
             self.tools.iter_mut().flatten().for_each(|tool| tool.place(fraction));
+            // The rings before the instruments: both use the poses of the same moment, and the reactions on an
+            // instrument must be complete before its fingers are driven.
             self.touch_rings(step_s);
             self.touch_tools(step_s);
             self.tools.iter_mut().flatten().for_each(|tool| tool.drive(step_s));
@@ -188,6 +206,7 @@ impl Objects {
                 if ring.moves() {
                     ring.advance(step_s, &self.directions);
                 } else {
+                    // A sleeping ring does not use up its forces; they would add up until it wakes.
                     ring.clear_forces();
                 }
             }
@@ -249,6 +268,7 @@ fn substeps(setting: &ObjectSettings, period_s: f64) -> u32 {
     let longest_s = if setting.rings.is_empty() {
         SUBSTEP_MAX_S
     } else {
+        // Twelve stiffnesses on the mass of the ring, because of [`SUBSTEP_OF_VIBRATION`].
         let fastest_rad_s = (12.0 * setting.contact.ring_stiffness_n_m / setting.ring.mass_kg).sqrt();
         (SUBSTEP_OF_VIBRATION / fastest_rad_s).min(SUBSTEP_MAX_S)
     };

@@ -11,9 +11,11 @@ use crate::physics::{
     tool::{PARTS, PhysicsTool, SHAFT},
 };
 
-/// An impact faster than this wakes a ring, m/s.
+/// An impact faster than this wakes a ring, m/s. A slower one does not move a resting ring visibly, and waking for it
+/// would keep a stack of rings awake for ever.
 const WAKES_M_S: f64 = 5e-3;
-/// A ring this far below the surface of the board counts as next to the board, m.
+/// A ring this far below the surface of the board counts as next to the board, m. Without this limit a ring that fell
+/// over the edge would be shot upwards as soon as it is under the board.
 const BESIDE_M: f64 = 0.004;
 
 impl Objects {
@@ -60,6 +62,7 @@ impl Objects {
         let ring = &mut self.rings[i];
         let memories = &mut self.memories.ring_board[i];
         let board = &self.setting.board;
+        // Too high to touch, whatever its tilt; this test saves most of the work for a carried ring.
         if ring.centre_m.z > board.z_m + ring.reach_m() {
             return;
         }
@@ -106,6 +109,7 @@ impl Objects {
 
     fn ring_on_ring(&mut self, i: usize, other: usize, step_s: f64) {
         let pair = &mut self.memories.ring_rings[i * self.notes.len() + other];
+        // Two mutable borrows of one list: it must be split between them.
         let (before, after) = self.rings.split_at_mut(other);
         let a = &mut before[i];
         let b = &mut after[0];
@@ -163,6 +167,8 @@ fn capsule_on_ring(
     }
     let ring_from_world = ring.world_from_ring.inverse();
     let on_ring_m = nearest.map(|nearest| nearest.map(|[ours_m, _]| ring_from_world * (ours_m - ring.centre_m)));
+    // The contacts are identified by their place on the ring and not by their order, because the order changes while a
+    // ring rolls.
     let mut memories = pair.of(on_ring_m);
     pair.forget();
     for (place, nearest) in nearest.iter().enumerate() {
@@ -202,6 +208,7 @@ fn tool_on_ring(
         tool.push(part, position_m, &push.reverse());
         push
     });
+    // An instrument wakes at any speed: a ring that ignores a slow finger would look glued to the board.
     if touched && ring.asleep {
         ring.wake();
     }

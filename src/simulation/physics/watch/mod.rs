@@ -42,6 +42,15 @@ impl RingWatch {
         }
     }
 
+    /// Begins again, without allocating.
+    pub fn begin(&mut self, objects: &Objects) {
+        for (following, state) in self.rings.iter_mut().zip(objects.rings()) {
+            *following = RingFollower::new(state);
+        }
+        self.waiting.clear();
+        self.last = None;
+    }
+
     /// Examines the rings after a step; call it once for each step.
     pub fn look(&mut self, objects: &Objects) {
         for (ring, (following, state)) in self.rings.iter_mut().zip(objects.rings()).enumerate() {

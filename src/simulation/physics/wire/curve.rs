@@ -16,7 +16,7 @@ const PIECES_MIN: usize = 8;
 const NARROWINGS: usize = 20;
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
-/// A smooth curve through points: cubic pieces whose slopes are those of the parabola through three neighbours.
+/// A smooth curve through points: cubic pieces with the slopes of the parabola through three neighbours.
 ///
 /// ```
 /// use nima_simulation::physics::WireSetting;

@@ -25,14 +25,16 @@ pub use geometry::{LoopGeometry, WireContact, WireSetting};
 const PLACES: usize = 3;
 /// A contact that is farther than this along the wire from its last position is a different one, m.
 const MOVED_M: f64 = 2e-3;
-/// Range along the wire in which the crossing of a loop is searched from one step to the next, m.
+/// Range along the wire in which the crossing of a loop is searched from one step to the next, m. Longer than a hand
+/// moves in one step, but short, so that the crossing cannot switch to another part of the wire.
 const SEARCH_M: f64 = 0.015;
 /// If the wire is this far outside its loop, it has been torn off, m.
 const TORN_OFF_M: f64 = 0.012;
 /// Maximum distance, m along the wire, between the closest point of a wire outside its loop and its crossing of the
 /// loop's plane.
 const AROUND_M: f64 = 0.006;
-/// Beyond this distance between two steps, an instrument counts as placed again, m.
+/// Beyond this distance between two steps, an instrument counts as placed again, m. At 1 kHz that would be 30 m/s,
+/// which no hand reaches; a speed from it would throw the instrument away.
 const JUMP_M: f64 = 0.03;
 
 /// A wire, the board under it, and a loop at the tip of each of two instruments.
@@ -199,6 +201,7 @@ impl Wire {
         let Circle { centre_m, axis, radius_m, .. } = held.circle;
         let board = &self.setting.board;
         let down = -Vector3::z() + axis * axis.z;
+        // A loop that lies flat has no lowest point; its centre is then used.
         let (lowest, _) = unit_or(&down, &Vector3::zeros());
         let position_m = centre_m + lowest * radius_m - Vector3::z() * self.setting.hoop.tube_radius_m;
         let depth_m = board.z_m - position_m.z;
@@ -248,6 +251,7 @@ impl TipLoop {
     fn moved(self, circle: Circle, period_s: f64) -> Self {
         Self {
             velocity_m_s: (circle.centre_m - self.circle.centre_m) / period_s,
+            // The cross product is the sine of the angle; for the turn of one step both are the same.
             turning_rad_s: self.circle.axis.cross(&circle.axis) / period_s,
             circle,
             ..self
@@ -303,6 +307,7 @@ impl TipLoop {
         let near = |place: &&mut Option<(f64, ContactMemory)>| {
             place.is_some_and(|(before_m, _)| (before_m - along_m).abs() < MOVED_M)
         };
+        // Taken, so that two contacts cannot continue the friction of the same one.
         before.iter_mut().find(near).and_then(Option::take).map_or_else(ContactMemory::default, |(_, memory)| memory)
     }
 }

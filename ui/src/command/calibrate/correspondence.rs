@@ -114,7 +114,7 @@ fn describe(text: &mut String, solution: &CorrespondenceSolution) {
     if let Some(diagnosis) = &solution.diagnosis {
         write!(
             text,
-            "sensor 1 / sensor 2 {:.3} +- {:.3}   constant {:.3} N +- {:.3} N",
+            "sensor 1 / sensor 2 {:.3} ± {:.3}   constant {:.3} N ± {:.3} N",
             diagnosis.gain,
             diagnosis.gain_se,
             diagnosis.offset_norm_n(),

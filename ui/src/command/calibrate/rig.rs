@@ -1,8 +1,8 @@
 //! `nima calibrate rig`: all calibrations of an emulated rig without a screen.
 //!
-//! The wizards and their order of steps are those of the console: gravity of both arms, correspondence, tip force. The
-//! simulated technician at the arms follows their instructions; the wizards receive data only through the drivers. The
-//! results are saved as in the console, for the sensors and tools of the rig.
+//! The wizards and their order of steps are the same as in the console: gravity of both arms, correspondence, tip
+//! force. The simulated technician at the arms follows their instructions; the wizards receive data only through the
+//! drivers. The results are saved as in the console, for the sensors and tools of the rig.
 
 use std::{
     thread,

@@ -25,6 +25,7 @@ use crate::{
     command::{output, rig_args::Setup},
     console::{
         active_calibrations::ActiveCalibrations,
+        alarms::sentence,
         reader::ScreenReader,
         ready::{ReadyRun, record, subject},
     },
@@ -109,7 +110,7 @@ fn line(entry: &ReadyEntry, roster: &Roster) -> String {
         ReadyState::Passed(figure) => format!("{name}: passed ({})", figure_text(figure)),
         ReadyState::Failed(cause) => {
             let [cause, cure] = cause_text(cause, roster);
-            format!("{name}: FAILED: {cause}; {cure}")
+            format!("{name}: FAILED. {}. {}", sentence(&cause), sentence(&cure))
         }
         ReadyState::LeftOut(lacks) => format!("{name}: skipped, {}", lacks_text(*lacks)),
     }

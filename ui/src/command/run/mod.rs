@@ -221,7 +221,7 @@ pub(crate) fn run_with(
         output::line(&(as_text(&plan, &summary, is_measured) + &tip_error + &bias + &link + &kept))?;
     }
     recorded?;
-    // Without its calibrations, an emulated rig runs as far as it can; what is missing has already been reported.
+    // Without its calibrations, an emulated rig runs as far as it can; the missing parts have already been reported.
     let was_to_engage = by_itself && start.active.uncalibrated().is_none();
     start.reasons.of(&summary, was_to_engage).map_or(Ok(()), |why| Err(anyhow::anyhow!(why)))
 }

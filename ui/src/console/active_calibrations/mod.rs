@@ -155,13 +155,13 @@ impl ActiveCalibrations {
         self.sides.iter().filter_map(SideCalibrations::drift).max_by_key(attention)
     }
 
-    /// Returns the change of the bias since the calibration, N; `None` if there is none.
-    pub fn bias_moved_n(&self) -> Option<f64> {
-        let moved = |of_side: &SideCalibrations| match of_side.drift() {
-            Some(GravityDrift::Moved { by_n }) => Some(by_n),
+    /// Returns the largest change of a bias since its calibration, N, and its arm; `None` if there is none.
+    pub fn bias_moved(&self) -> Option<(Side, f64)> {
+        let moved = |(side, of_side): (Side, &SideCalibrations)| match of_side.drift() {
+            Some(GravityDrift::Moved { by_n }) => Some((side, by_n)),
             _ => None,
         };
-        self.sides.iter().filter_map(moved).max_by(f64::total_cmp)
+        Side::ALL.into_iter().zip(&self.sides).filter_map(moved).max_by(|(_, one), (_, other)| one.total_cmp(other))
     }
 
     /// Returns the rig for a loop that is about to start, with the devices of its last passed ready check.
@@ -248,7 +248,7 @@ impl ActiveCalibrations {
         Ok((rig, path, words))
     }
 
-    /// Returns the changes the rig file of this name, or a copy in `folder` if the rig is built in.
+    /// Changes the rig file of this name, or a copy in `folder` if the rig is built in.
     ///
     /// # Errors Returns one line for the screen.
     pub fn change_rig(

@@ -221,11 +221,11 @@ fn a_calibration_comes_into_force_with_its_sensor_and_leaves_with_it() {
     bench.active.save(SaveRequest::Gravity(Box::new(record("SN004242", "Right grasper")))).unwrap();
     drop(bench);
     let mut bench = Fixture::new(store.path(), &port);
-    bench.until("the calibration is in force", |bench| bench.source == Some(ForceSource::Wrist));
+    bench.until("the calibration is active", |bench| bench.source == Some(ForceSource::Wrist));
     assert_eq!(bench.active.uncalibrated(), None);
     // Another sensor at the same address.
     drop(first);
-    bench.until("it is out of force", |bench| bench.source == Some(ForceSource::Unidentified));
+    bench.until("it is inactive", |bench| bench.source == Some(ForceSource::Unidentified));
     let second = sensor("4243", &port);
     bench.until("the other one is known", |bench| bench.is_bound_to("SN004243"));
     let report = bench.active.report();
@@ -239,7 +239,7 @@ fn a_calibration_comes_into_force_with_its_sensor_and_leaves_with_it() {
     // The first sensor again.
     drop(second);
     let _again = sensor("4242", &port);
-    bench.until("it is in force again", |bench| bench.source == Some(ForceSource::Wrist));
+    bench.until("it is active again", |bench| bench.source == Some(ForceSource::Wrist));
     // Another tool on the same sensor.
     drop(bench);
     let mut bench = Fixture::new(store.path(), &port);

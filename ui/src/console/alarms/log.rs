@@ -5,7 +5,7 @@
 
 use std::collections::VecDeque;
 
-use nima_recording::store::utc_now;
+use jiff::{Timestamp, tz::TimeZone};
 
 use super::{Alarm, AlarmKind, AlarmPriority};
 
@@ -17,8 +17,8 @@ const SAME_S: f64 = 5.0;
 /// A time on three clocks.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AlarmMoment {
-    /// Hours, minutes and seconds, UTC.
-    pub utc: String,
+    /// Hours, minutes and seconds of this computer's clock.
+    pub time: String,
     /// Time on the loop's clock, s; `None` before the loop has sent anything.
     pub loop_s: Option<f64>,
     /// Time on the window's clock, s.
@@ -27,8 +27,16 @@ pub struct AlarmMoment {
 
 impl AlarmMoment {
     pub fn now(loop_s: Option<f64>, window_s: f64) -> Self {
-        let utc = utc_now().get(11..19).unwrap_or_default().to_owned();
-        Self { utc, loop_s, window_s }
+        Self { time: time_of_day(Timestamp::now(), TimeZone::try_system().ok()), loop_s, window_s }
+    }
+}
+
+/// Returns the local time of day; UTC, with its name, if the time zone is unknown.
+fn time_of_day(now: Timestamp, zone: Option<TimeZone>) -> String {
+    let format = "%H:%M:%S";
+    match zone {
+        Some(zone) => now.to_zoned(zone).strftime(format).to_string(),
+        None => format!("{} UTC", now.strftime(format)),
     }
 }
 
@@ -126,11 +134,18 @@ mod tests {
     }
 
     fn at(window_s: f64) -> AlarmMoment {
-        AlarmMoment { utc: "12:00:00".to_owned(), loop_s: Some(window_s), window_s }
+        AlarmMoment { time: "12:00:00".to_owned(), loop_s: Some(window_s), window_s }
     }
 
     fn fault() -> Alarm {
         alarm(AlarmKind::Fault(Fault::SourceSilent), AlarmPriority::High)
+    }
+
+    #[test]
+    fn the_time_of_an_alarm_is_local_or_says_that_it_is_not() {
+        let zone = TimeZone::fixed(jiff::tz::offset(2));
+        assert_eq!(time_of_day(Timestamp::UNIX_EPOCH, Some(zone)), "02:00:00");
+        assert_eq!(time_of_day(Timestamp::UNIX_EPOCH, None), "00:00:00 UTC");
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! Alarms in order of urgency, each with cause and remedy. They are determined again in each frame, so an alarm ends exactly
 //! when its cause ends; [`log`] stores the recent ones, [`strip`] shows them, [`sound`] plays their sound.
 
+mod fault;
 pub mod log;
 pub mod sound;
 pub mod strip;
@@ -8,11 +9,15 @@ pub mod strip;
 use std::time::Duration;
 
 use egui::Color32;
-use nima_machine::messages::{Fault, LoopState, Scheduling};
+use nima_machine::{
+    messages::{Fault, LoopState, Scheduling, Watchdog},
+    rig::Side,
+};
 
+use self::fault::{fault_alarm, of_arm};
 use super::theme;
+use crate::console::text;
 use crate::report_text::lack_text;
-use crate::{console::text, report_text::Remedy as _};
 
 /// Urgency by IEC 60601-1-8.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -70,6 +75,8 @@ pub enum AlarmKind {
     StopStuck,
     /// A fault stopped the loop.
     Fault(Fault),
+    /// The ready check tripped a watchdog.
+    Tested,
     /// The loop sends no ticks.
     Silence,
     /// The device with this index in the roster is missing.
@@ -95,6 +102,7 @@ impl AlarmKind {
             Self::Device(_) | Self::Unrecorded => true,
             Self::StopStuck
             | Self::Fault(_)
+            | Self::Tested
             | Self::Silence
             | Self::Missed
             | Self::BiasMoved
@@ -138,6 +146,10 @@ pub struct Signs {
     pub state: Option<LoopState>,
     /// The first fault since the last release, and its time (s on the loop's clock).
     pub first_fault: Option<(f64, Fault)>,
+    /// The arm of that fault, on a rig with two.
+    pub fault_side: Option<Side>,
+    /// The watchdog that the ready check is testing.
+    pub tested: Option<Watchdog>,
     /// Whether the loop's thread is running.
     pub running: bool,
     /// Time since the last tick.
@@ -150,6 +162,8 @@ pub struct Signs {
     pub stop_is_stuck: bool,
     /// Change of the wrist sensor's bias since its calibration, N; `None` if it has not changed.
     pub bias_moved_n: Option<f64>,
+    /// The arm of that sensor, on a rig with two.
+    pub bias_side: Option<Side>,
     /// No ready check has passed on this rig today.
     pub is_unchecked: bool,
     /// Cause and remedy of a request over the link to another machine.
@@ -175,12 +189,7 @@ pub fn judge(signs: &Signs) -> Vec<Alarm> {
         });
     }
     if let (Some(LoopState::Faulted(_)), Some((t_s, fault))) = (signs.state, signs.first_fault) {
-        alarms.push(Alarm {
-            kind: AlarmKind::Fault(fault),
-            priority: AlarmPriority::High,
-            cause: text::alarms::fault(&cause_of(fault, signs), t_s),
-            cure: fault.cure().to_owned(),
-        });
+        alarms.push(fault_alarm(t_s, fault, signs));
     }
     if !signs.running || (signs.state.is_some() && signs.silence > SILENCE_MAX) {
         alarms.push(Alarm {
@@ -192,8 +201,8 @@ pub fn judge(signs: &Signs) -> Vec<Alarm> {
     }
     alarms.extend(signs.missing.iter().map(missing));
     if signs.missed_fraction > MISSED_FRACTION_MAX {
-        // While no side is driven, nobody can feel missed periods, so they rank below the reasons why the arm cannot be
-        // engaged.
+        // While no side is driven, no hand can feel missed periods, so they rank below the reasons why the arm cannot
+        // be engaged.
         let driven = signs.state.is_none_or(|state| state.permits().drives);
         alarms.push(Alarm {
             kind: AlarmKind::Missed,
@@ -206,7 +215,7 @@ pub fn judge(signs: &Signs) -> Vec<Alarm> {
         alarms.push(Alarm {
             kind: AlarmKind::BiasMoved,
             priority: AlarmPriority::Medium,
-            cause: text::alarms::bias_moved(by_n),
+            cause: of_arm(&text::alarms::bias_moved(by_n), signs.bias_side),
             cure: text::alarms::BIAS_MOVED_CURE.get().to_owned(),
         });
     }
@@ -257,13 +266,6 @@ fn missing(device: &MissingDevice) -> Alarm {
     }
 }
 
-/// Returns the cause of a fault, with the name of the device concerned.
-fn cause_of(fault: Fault, signs: &Signs) -> String {
-    let Fault::DeviceLost { device, .. } = fault else { return fault.cause().to_owned() };
-    let name = signs.missing.iter().find(|missing| missing.place == usize::from(device)).map(|missing| &missing.name);
-    name.map_or_else(|| fault.cause().to_owned(), |name| text::alarms::fault_of(name, fault.cause()))
-}
-
 /// Returns the text with an upper-case first letter.
 pub fn sentence(words: &str) -> String {
     let mut letters = words.chars();
@@ -273,6 +275,7 @@ pub fn sentence(words: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::report_text::Remedy as _;
 
     fn healthy() -> Signs {
         Signs { state: Some(LoopState::Engaged), running: true, ..Signs::default() }
@@ -299,6 +302,26 @@ mod tests {
         assert!(alarms.iter().all(|alarm| !alarm.cure.is_empty()), "{alarms:?}");
         assert!(alarms.iter().any(|alarm| alarm.priority == AlarmPriority::Medium && alarm.cause.contains("0.41 N")));
         assert_eq!(alarms.len(), 4);
+    }
+
+    #[test]
+    fn an_alarm_of_an_arm_names_it_and_a_tested_watchdog_is_no_alarm() {
+        let fault = Fault::SourceSilent;
+        let faulted = Signs {
+            state: Some(LoopState::Faulted(fault)),
+            first_fault: Some((12.34, fault)),
+            fault_side: Some(Side::Left),
+            bias_moved_n: Some(0.41),
+            bias_side: Some(Side::Right),
+            ..healthy()
+        };
+        let alarms = judge(&faulted);
+        assert!(alarms[0].cause.contains("left arm") && alarms[1].cause.contains("right arm"), "{alarms:?}");
+        let tested = |tested| judge(&Signs { tested: Some(tested), bias_moved_n: None, ..faulted.clone() });
+        let own = tested(Watchdog::Source);
+        assert_eq!((own[0].kind, own[0].priority), (AlarmKind::Tested, AlarmPriority::Low));
+        assert!(own[0].cause.contains("Ready check"), "{own:?}");
+        assert_eq!(tested(Watchdog::Link)[0].priority, AlarmPriority::High, "another fault is real");
     }
 
     #[test]

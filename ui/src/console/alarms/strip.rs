@@ -94,6 +94,12 @@ impl Alarms {
         let size = vec2(560.0, (room.height() - 90.0).min(460.0));
         window.default_pos(room.center_top() + vec2(-280.0, 16.0)).fixed_size(size).show(ctx, |ui| {
             ui.label(small(text::alarms::LIST_NOTE.get()));
+            let any = self.log.newest_first().next().is_some();
+            let copy = ui.add_enabled(any, Button::new(text::alarms::COPY.get()));
+            let copy = copy.on_hover_text(text::alarms::COPY_HOVER.get());
+            if copy.on_disabled_hover_text(text::alarms::LIST_EMPTY.get()).clicked() {
+                ui.copy_text(self.log.active_first().map(entry_text).collect());
+            }
             ui.add_space(4.0);
             ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
                 if self.log.newest_first().next().is_none() {
@@ -143,7 +149,7 @@ fn words_ui(ui: &mut Ui, first: &AlarmEntry, others: usize, colour: Color32) -> 
         let seen = if first.acknowledged { text::alarms::ACKNOWLEDGED_REMARK.get() } else { "" };
         let alarm = &first.alarm;
         let cause =
-            text::alarms::pinned(alarm.priority.word(), &alarm.cause, &first.began.utc, &(seen.to_owned() + &more));
+            text::alarms::pinned(alarm.priority.word(), &alarm.cause, &first.began.time, &(seen.to_owned() + &more));
         // The pointer on a text that is still too long shows all of it.
         let line = |ui: &mut Ui, words: &str, font: FontId, colour: Color32| {
             let font = fitting(ui.painter(), words, font, width);
@@ -157,19 +163,28 @@ fn words_ui(ui: &mut Ui, first: &AlarmEntry, others: usize, colour: Color32) -> 
 }
 
 fn entry_ui(ui: &mut Ui, entry: &AlarmEntry) {
+    let ink = if entry.ended.is_none() { theme::now().text } else { theme::now().text_weak };
+    ui.add(Label::new(small(heading(entry))).wrap());
+    ui.add(Label::new(RichText::new(&entry.alarm.cause).font(theme::strong(14.0)).color(ink)).wrap());
+    ui.add(Label::new(weak(&entry.alarm.cure)).wrap());
+    ui.add_space(6.0);
+}
+
+/// Returns an alarm as text for the clipboard.
+fn entry_text(entry: &AlarmEntry) -> String {
+    format!("{}\n{}\n{}\n\n", heading(entry), entry.alarm.cause, entry.alarm.cure)
+}
+
+/// Returns the times of an alarm, its priority and its state.
+fn heading(entry: &AlarmEntry) -> String {
     let AlarmEntry { alarm, began, ended, acknowledged } = entry;
-    let ink = if ended.is_none() { theme::now().text } else { theme::now().text_weak };
     let at = |moment: &AlarmMoment| {
-        moment.loop_s.map_or_else(|| moment.utc.clone(), |loop_s| format!("{} ({loop_s:.1} s)", moment.utc))
+        moment.loop_s.map_or_else(|| moment.time.clone(), |loop_s| format!("{} ({loop_s:.1} s)", moment.time))
     };
     let until = ended.as_ref().map_or_else(|| text::alarms::NOW.get().to_owned(), &at);
     let mut standing = if ended.is_some() { text::alarms::ENDED.get() } else { text::alarms::PRESENT.get() }.to_owned();
     if *acknowledged {
         standing.push_str(text::alarms::ACKNOWLEDGED_REMARK.get());
     }
-    let heading = text::alarms::entry(&at(began), &until, alarm.priority.word(), &standing);
-    ui.add(Label::new(small(heading)).wrap());
-    ui.add(Label::new(RichText::new(&alarm.cause).font(theme::strong(14.0)).color(ink)).wrap());
-    ui.add(Label::new(weak(&alarm.cure)).wrap());
-    ui.add_space(6.0);
+    text::alarms::entry(&at(began), &until, alarm.priority.word(), &standing)
 }

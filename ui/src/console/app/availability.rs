@@ -152,7 +152,11 @@ impl ConsoleApp {
             }
             _ => (false, false),
         };
-        let closed = text::calibrations::closed(self.live.state()).filter(|_| action != Action::Calibrations);
+        let closed = match action {
+            Action::Calibrations => None,
+            Action::Calibrate(_) => text::calibrations::closed(self.live.state_for(self.active.side())),
+            _ => text::calibrations::closed(self.live.state()),
+        };
         let why = is_open.then_some(text::calibrations::IS_OPEN.get()).or(closed);
         let why = self.past.is_some().then_some(text::playback::BLOCKED.get()).or(why);
         let of_technician = self.role() == Role::Technician && matches!(page, ActivePage::Monitor | ActivePage::Past);
@@ -191,7 +195,7 @@ impl ConsoleApp {
             Action::OtherHand => self.live.is_bimanual(),
             Action::Jaws => scene.objects.is_some(),
             Action::MarkPlace | Action::EndTrial => is_searched,
-            Action::BeginTrial => is_searched || scene.wire.is_some(),
+            Action::BeginTrial => is_searched || scene.wire.is_some() || scene.objects.is_some(),
             _ => true,
         };
         let runs = matches!(self.live.state(), LoopState::Idle | LoopState::Engaged);

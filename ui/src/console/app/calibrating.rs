@@ -19,6 +19,10 @@ use crate::console::{
     wizards::{Binding, CalibrationTarget, GoOn, SaveRequest, WizardKind, WizardPageRequest, Wizards},
 };
 
+/// Least width of a wizard beside the endoscope image, and the range of the image's width.
+const WIZARD_MIN: f32 = 560.0;
+const IMAGE: (f32, f32) = (340.0, 760.0);
+
 impl ConsoleApp {
     /// Opens a wizard. A simulated rig changes to the wizard's scene, in which a simulated person guides the arm; the arm of
     /// a rig with devices has a technician.
@@ -26,7 +30,7 @@ impl ConsoleApp {
         let side = self.active.side();
         let Some(scene) = which.scene().filter(|_| self.live.rig.devices.is_none()) else {
             // A simulated rig has no arm with joints: the wizard reports it.
-            let rests = matches!(self.live.state(), LoopState::Idle | LoopState::Disconnected)
+            let rests = matches!(self.live.state_for(side), LoopState::Idle | LoopState::Disconnected)
                 || self.live.rig.devices.is_none();
             let rig = self.live.rig.clone();
             let scene = self.live.scene.clone();
@@ -40,7 +44,7 @@ impl ConsoleApp {
         let opened = if here && self.wizards.open.is_none() {
             Ok(())
         } else {
-            let scene = Scene::load(scene).map_err(|error| error.to_string());
+            let scene = Scene::load(scene).map_err(|error| crate::report_text::quoted(&error));
             let scene = scene.map(|scene| if side == Side::Left { scene.with_left_hand() } else { scene });
             scene.and_then(|scene| self.restart_in(scene))
         };
@@ -182,6 +186,12 @@ impl ConsoleApp {
                 calibrations_ui(ui, &self.live, &self.active, open, self.listing.way_back())
             });
         });
+        if self.wizards.looks_at_image() && self.panels.eyes.is_on() {
+            let width = (ui.available_width() - WIZARD_MIN).clamp(IMAGE.0, IMAGE.1);
+            Panel::right("image").exact_size(width).resizable(false).frame(side).show(ui, |ui| {
+                self.panels.eyes.ui(ui, &self.live);
+            });
+        }
         let binding = self.binding();
         self.wizards.see(|| self.panels.eyes.newest(), ui.ctx());
         let mut asked = None;

@@ -4,8 +4,8 @@ use std::time::{Duration, Instant, SystemTime};
 
 use egui::{CentralPanel, Frame, Margin, Panel, ScrollArea, Ui};
 use nima_machine::{
-    messages::{Command, LoopState},
-    ready::PersonRequest,
+    messages::{Command, LoopState, Watchdog},
+    ready::{PersonRequest, ReadyEntry, ReadyPoint, ReadyState},
     rig::Roster,
 };
 use nima_simulation::scene::Scene;
@@ -53,6 +53,15 @@ impl CheckPage {
         self.run.as_ref().map(|run| run.session.ask())
     }
 
+    /// Returns the watchdog that the check is testing.
+    pub(super) fn tested(&self) -> Option<Watchdog> {
+        let tested = |entry: &ReadyEntry| match (entry.check, &entry.state) {
+            (ReadyPoint::Watchdog(watchdog), ReadyState::Asking(_)) => Some(watchdog),
+            _ => None,
+        };
+        self.run.as_ref()?.session.list().iter().find_map(tested)
+    }
+
     /// Discards the results, because they belong to the previous loop.
     pub(super) fn forget(&mut self) {
         self.begin_anew();
@@ -74,7 +83,9 @@ impl ConsoleApp {
         let rig = self.live.rig.clone();
         let scene = self.live.scene.clone();
         let opened = if self.live.rig.devices.is_none() && scene.person.is_none() {
-            Scene::load(SCENE).map_err(|error| error.to_string()).and_then(|scene| self.restart_in(scene))
+            Scene::load(SCENE)
+                .map_err(|error| crate::report_text::quoted(&error))
+                .and_then(|scene| self.restart_in(scene))
         } else if rests {
             Ok(())
         } else {
@@ -133,7 +144,7 @@ impl ConsoleApp {
         let saved = self.active.store().map(|store| store.save_check(&record));
         self.checking.saved = Some(match saved {
             Some(Ok(path)) => text::ready::saved(&path),
-            Some(Err(error)) => text::ready::not_saved(&chain(&error)),
+            Some(Err(error)) => text::ready::not_saved(&crate::report_text::quoted(&chain(&error))),
             None => text::ready::not_saved(text::calibrations::NO_FOLDER.get()),
         });
         self.checking.valid = None;
@@ -180,7 +191,10 @@ impl ConsoleApp {
                 }
             }
             Some(ReadyRequest::Whole) => self.checking.begin_anew(),
-            Some(ReadyRequest::Close) => wish = Some(CalibrationWish::Close),
+            Some(ReadyRequest::Close) => {
+                self.top_bar.leads_to_engage = true;
+                wish = Some(CalibrationWish::Close);
+            }
             None => {}
         }
         self.obey_calibrations(wish);

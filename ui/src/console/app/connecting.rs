@@ -100,7 +100,7 @@ mod tests {
         again.undo.take_back();
         assert_eq!(devices(&first.path).tissue_sensor, was.tissue_sensor);
         first.undo.take_back();
-        assert!(!first.path.exists(), "what was not there before is not there again");
+        assert!(!first.path.exists(), "a missing device is missing again");
     }
 
     #[test]

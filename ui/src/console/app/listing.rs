@@ -3,7 +3,6 @@
 use std::time::{Duration, Instant};
 
 use egui::{CentralPanel, Frame, Margin, Panel, ScrollArea, Ui};
-use nima_machine::rig::Side;
 use nima_recording::store::ReadyRecord;
 
 use super::ConsoleApp;
@@ -83,7 +82,7 @@ impl ConsoleApp {
                 calibrations_ui(ui, &self.live, &self.active, Some(CalibrationPage::All), back)
             });
         });
-        let closed = |_: Side| text::calibrations::closed(self.live.state());
+        let closed = |side| text::calibrations::closed(self.live.state_for(side));
         let mut step = None;
         CentralPanel::default().frame(Frame::new().inner_margin(Margin::symmetric(18, 14))).show(ui, |ui| {
             ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {

@@ -72,9 +72,9 @@ use listing::Listing;
 use starting::StartingRig;
 
 /// Antialiasing in 3-D is switched off if the median time between frames is longer than this (fewer than 26 frames per
-/// second), ...
+/// second) after [`WARM_UP`].
 const SLOW_MS: f64 = 38.0;
-/// ... after the window has had this time to warm up.
+/// Time after which the window has warmed up, so that its frame rate can be judged.
 const WARM_UP: Duration = Duration::from_secs(4);
 
 #[derive(Debug)]
@@ -252,12 +252,13 @@ impl ConsoleApp {
         if active.meet(door.handle(), &self.live.rig)[calibrated.index()] {
             self.forget_what_was_taken();
         }
-        self.live.bias_moved_n = self.active.bias_moved_n();
+        (self.live.bias_side, self.live.bias_moved_n) = self.active.bias_moved().unzip();
+        self.live.tested = self.checking.tested();
     }
 
     /// Ends the loop and restarts it idle: only the operator engages it. Not possible in a stop or a fault.
     fn restart(&mut self, rig: RigConfig, scene: Scene) -> Result<(), String> {
-        rig.validate().and_then(|()| scene.validate()).map_err(|error| error.to_string())?;
+        rig.validate().and_then(|()| scene.validate()).map_err(|error| crate::report_text::quoted(&error))?;
         self.take_in();
         if let Some(why) = text::calibrations::closed(self.live.state()) {
             return Err(why.to_owned());
@@ -288,8 +289,12 @@ impl ConsoleApp {
                 let audiences = self.sessions.blind_audiences(&plan, &run.name());
                 run.start(&plan, speed, (self.sessions.reel(), audiences))
             }
-            (None, Some(speed)) => nima_simulation::start_watched(&plan, speed).map_err(|error| error.to_string()),
-            (None, None) => start_recorded(&plan, &mut self.sessions, line).map_err(|error| error.to_string()),
+            (None, Some(speed)) => {
+                nima_simulation::start_watched(&plan, speed).map_err(|error| crate::report_text::quoted(&error))
+            }
+            (None, None) => {
+                start_recorded(&plan, &mut self.sessions, line).map_err(|error| crate::report_text::quoted(&error))
+            }
         };
         let started = started.map_err(|error| text::calibrations::not_started_again(&error));
         let rough_edges = self.live.rough_edges;

@@ -179,7 +179,11 @@ impl ConsoleApp {
         });
         let (rig, scene) = match loaded {
             Ok(loaded) => loaded,
-            Err(error) => return self.start.notify(Some(text::start::not_started(&chain(&error), None))),
+            Err(error) => {
+                return self
+                    .start
+                    .notify(Some(text::start::not_started(&crate::report_text::quoted(&chain(&error)), None)));
+            }
         };
         // End the old loop first: a rig must have only one controller, and two sets of emulators cannot use the same
         // addresses.

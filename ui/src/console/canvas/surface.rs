@@ -115,7 +115,7 @@ impl Surface {
         })
     }
 
-    /// Called after the shapes. From now on the window shows `frame`, of which `fraction` was redrawn.
+    /// Called after the shapes. From now on the window shows `frame`; `fraction` of it was redrawn.
     pub(super) fn end(self: &Arc<Self>, ctx: &Context, frame: u64, fraction: f64, background: Color32) -> CallbackFn {
         let surface = Arc::clone(self);
         let ctx = ctx.clone();

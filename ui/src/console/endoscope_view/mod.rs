@@ -43,7 +43,7 @@ use self::{
     projector::Projector,
     stereo::{ImageChoice, LensHalf},
 };
-use super::{double_buffer::DoubleBuffer, live::LiveState, settings::ImageSettings, text, theme};
+use super::{double_buffer::DoubleBuffer, live::LiveState, scene3d::tip_bars, settings::ImageSettings, text, theme};
 
 /// Forces of a camera with a larger error in its check are drawn with this opacity; in image widths: 10 px of 1280.
 const OFF: f64 = 10.0 / 1280.0;
@@ -245,7 +245,13 @@ impl EndoscopeView {
                 None => self.poses.at(side, now, age),
             };
             let instrument = |side| Some(OverlayInstrument { side, pose: pose(side)?, trocar_m: trocar(live, side) });
-            tips.extend(seen.draw(live.sides().filter_map(instrument), self.hides_forces));
+            let drawn = seen.draw(live.sides().filter_map(instrument), self.hides_forces);
+            if !self.hides_forces {
+                for (side, tip) in &drawn {
+                    tip_bars(&painter, live, *side, *tip);
+                }
+            }
+            tips.extend(drawn.into_iter().map(|(_, tip)| tip));
         }
         // If there are two halves, use the one under the pointer.
         let pointed = response.hover_pos().and_then(|at| halves.iter().find(|half| half.within.contains(at)));

@@ -25,8 +25,8 @@ const PIECES: usize = 24;
 const RING_PIECES: usize = 48;
 /// Free space around a tip, points: the image is never covered there.
 const FREE: f32 = 7.0;
-const ARROW: f32 = 3.0;
-const HEAD: f32 = 12.0;
+const ARROW: f32 = 2.0;
+const HEAD: f32 = 10.0;
 const RING: f32 = 1.5;
 /// Opacity of a line behind the instrument.
 const HIDDEN: f32 = 0.35;
@@ -62,9 +62,9 @@ struct OverlaySegment {
 }
 
 impl OverlayImage<'_> {
-    /// Draws the forces unless they are hidden; returns the positions of the tips. A tip outside the view is marked at the
+    /// Draws the forces unless they are hidden; returns the tips with their positions. A tip outside the view is marked at the
     /// edge.
-    pub(super) fn draw(&self, instruments: impl Iterator<Item = OverlayInstrument>, hidden: bool) -> Vec<Pos2> {
+    pub(super) fn draw(&self, instruments: impl Iterator<Item = OverlayInstrument>, hidden: bool) -> Vec<(Side, Pos2)> {
         let mut tips = Vec::new();
         for instrument in instruments {
             let Some(tip) = self.at(&instrument.pose.tip_m) else { continue };
@@ -72,7 +72,7 @@ impl OverlayImage<'_> {
                 self.beyond(instrument.side, tip);
                 continue;
             }
-            tips.push(tip);
+            tips.push((instrument.side, tip));
             if !hidden {
                 self.ring(&instrument);
                 self.arrow(&instrument, tip);

@@ -78,11 +78,11 @@ impl LiveState {
 
     fn event(&mut self, event: &Event) {
         match *event {
-            Event::FaultRaised { t_s, fault, .. } => {
+            Event::FaultRaised { t_s, side, fault } => {
                 // Both arms may report in the same tick, and the one that only follows the other may come first.
                 match self.first_fault {
                     Some((_, first)) if first != Fault::OtherArm || fault == Fault::OtherArm => {}
-                    _ => self.first_fault = Some((t_s, fault)),
+                    _ => (self.first_fault, self.fault_side) = (Some((t_s, fault)), side),
                 }
             }
             Event::StateChanged { t_s, side, from, to, why } => {
@@ -307,7 +307,8 @@ mod tests {
         for order in [[follows, fails, follows], [fails, follows, follows], [follows, follows, fails]] {
             let mut live = LiveState::new(RigConfig::load("simulated").unwrap(), Scene::load("bimanual").unwrap());
             live.replay(order.map(raised).iter(), &[None; SIDES]);
-            assert_eq!(live.signs(false, None).first_fault, Some((2.7, cause)));
+            let signs = live.signs(false, None);
+            assert_eq!((signs.first_fault, signs.fault_side), (Some((2.7, cause)), Some(Side::Left)));
         }
         let mut live = LiveState::new(RigConfig::load("simulated").unwrap(), Scene::load("bimanual").unwrap());
         live.replay([raised(follows)].iter(), &[None; SIDES]);

@@ -1,5 +1,6 @@
 //! The window's copy of the loop's state: updated from ticks and events, read by every panel, changed by none.
 
+mod arms;
 mod intake;
 
 pub(in crate::console) use intake::forces_of;
@@ -18,7 +19,7 @@ use nima_core::{
 use nima_devices::ConnectionState;
 use nima_machine::{
     config::RigConfig,
-    messages::{Command, Fault, LoopState, Refusal, Scheduling, Tick, attention},
+    messages::{Command, Fault, LoopState, Refusal, Scheduling, Tick, Watchdog, attention},
     rig::{DEVICES_MAX, DeviceName, Gauges, Healths, Roster, SIDES, Side},
 };
 use nima_session::objects::ObjectStates;
@@ -71,7 +72,7 @@ pub enum ScreenSource {
     Now,
     /// A moment of a recorded session: nothing may act on the machine.
     Past,
-    /// A loop at another machine, without control.
+    /// A loop at another machine, which this console only shows.
     Elsewhere,
 }
 
@@ -134,6 +135,10 @@ pub struct LiveState {
     pub rough_edges: bool,
     /// Change of the wrist sensor's bias since its calibration, N; `None` if it has not changed.
     pub bias_moved_n: Option<f64>,
+    /// The arm of that sensor.
+    pub bias_side: Option<Side>,
+    /// The watchdog that the ready check is testing.
+    pub tested: Option<Watchdog>,
     /// No ready check has passed on this rig today.
     pub is_unchecked: bool,
     /// Reason why the loop cannot be engaged now, for the hover text of the button; `None` if it can.
@@ -152,6 +157,8 @@ pub struct LiveState {
     pub blocks_counted: u64,
     pub(crate) activity: Activity,
     first_fault: Option<(f64, Fault)>,
+    /// The arm of that fault.
+    fault_side: Side,
     refusal: Option<(Instant, RefusedCommand)>,
     horizon: [FadingMean; SLOTS],
     measured: [FadingMean; SIDES],
@@ -195,6 +202,8 @@ impl LiveState {
             scheduling: None,
             rough_edges: false,
             bias_moved_n: None,
+            bias_side: None,
+            tested: None,
             is_unchecked: false,
             engage_closed: None,
             roster: Roster::new(),
@@ -205,6 +214,7 @@ impl LiveState {
             blocks_counted: 0,
             activity: Activity::of(&[]),
             first_fault: None,
+            fault_side: Side::Right,
             refusal: None,
             trend_n: VecDeque::with_capacity(TREND_S + 1),
             horizon: [FadingMean::default(); SLOTS],
@@ -310,14 +320,6 @@ impl LiveState {
         self.first_tick().is_some_and(|tick| Mode::ALL.into_iter().all(|mode| tick.identification.modes.contains(mode)))
     }
 
-    pub fn sides(&self) -> impl Iterator<Item = Side> {
-        Side::ALL.into_iter().filter(|&side| side == Side::Right || self.is_bimanual())
-    }
-
-    pub const fn is_bimanual(&self) -> bool {
-        self.scene.left.is_some() || self.tick_of(Side::Left).is_some()
-    }
-
     /// Returns the last state of the loop; with two arm pairs, the state that needs more attention; idle before the
     /// first tick.
     pub fn state(&self) -> LoopState {
@@ -351,11 +353,6 @@ impl LiveState {
         self.first_tick().map_or(self.rig.gates, |tick| tick.gate_settings)
     }
 
-    /// Returns the stiffness of the stiffer current or last contact of both hands, N/m: the gain is common to both.
-    pub fn stiffness_n_m(&self) -> Option<f64> {
-        self.stiffness.iter().filter_map(ContactStiffness::n_m).max_by(f64::total_cmp)
-    }
-
     /// Returns the required parts that do not deliver: the link to the other machine, then devices in the order of the
     /// roster.
     pub fn missing(&self) -> impl Iterator<Item = MissingDevice> {
@@ -387,12 +384,15 @@ impl LiveState {
             missing: self.missing().collect(),
             state: self.first_tick().map(|_| self.state()),
             first_fault: self.first_fault,
+            fault_side: self.is_bimanual().then_some(self.fault_side),
+            tested: self.tested,
             running: self.running,
             silence: if self.is_shown_only() { Duration::ZERO } else { self.tick_at.elapsed() },
             missed_fraction: self.missed_fraction.get(),
             scheduling: self.scheduling,
             stop_is_stuck,
             bias_moved_n: self.bias_moved_n,
+            bias_side: self.bias_side.filter(|_| self.is_bimanual()),
             is_unchecked: self.is_unchecked,
             question: self.line.as_ref().and_then(|line| line.question()),
             unrecorded,

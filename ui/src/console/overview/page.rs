@@ -1,6 +1,8 @@
 //! The set-up page: tiles per arm, each with its state and reason, from which every wizard starts.
 
-use egui::{Align, Button, Color32, Label, Layout, Rect, Response, RichText, Stroke, Ui, UiBuilder, WidgetInfo, vec2};
+use egui::{
+    Align, Button, Color32, Id, Label, Layout, Rect, Response, RichText, Stroke, Ui, UiBuilder, WidgetInfo, vec2,
+};
 
 use nima_machine::rig::Side;
 use nima_recording::store::ReadyRecord;
@@ -12,6 +14,7 @@ use super::{
 use crate::console::{
     live::LiveState,
     scene3d::side_name,
+    steady_button::{PATIENT_S, SteadyButton},
     text, theme,
     widgets::{Sign, next_button, sign, small},
     wizards::GoOn,
@@ -55,12 +58,15 @@ pub(crate) fn overview_ui(
 fn following_ui(ui: &mut Ui, arms: &[ArmOverview], closed: &dyn Fn(Side) -> Option<&'static str>) -> Option<SetupStep> {
     let wanted = following(arms, None)?;
     let closed = closed(wanted.side);
-    let name = RichText::new(GoOn::Calibrate(wanted).words()).font(theme::strong(15.0));
-    let free = closed.is_none();
-    let button = ui.add_enabled(free, next_button(name, free).min_size(vec2(300.0, 34.0)));
+    let label = GoOn::Calibrate(wanted).words();
+    let may = closed.map_or(Ok(()), Err);
+    let button = SteadyButton { id: Id::unique("following"), label: &label, meaning: "", may, waits_s: PATIENT_S };
+    let wants = button.ui(ui, |name, enabled| {
+        next_button(RichText::new(name).font(theme::strong(15.0)), enabled).min_size(vec2(300.0, 34.0))
+    });
     ui.label(small(closed.unwrap_or(text::calibrations::SETS_IDLE.get())));
     ui.add_space(theme::GAP);
-    button.on_disabled_hover_text(closed.unwrap_or_default()).clicked().then_some(SetupStep::Calibrate(wanted))
+    wants.then_some(SetupStep::Calibrate(wanted))
 }
 
 /// Draws the tiles of an arm in rows of equal width; returns the step of the pressed one.
@@ -86,15 +92,17 @@ fn tiles_ui(ui: &mut Ui, arm: &str, tiles: &[SetupTile], closed: Option<&str>) -
 fn tile_ui(ui: &mut Ui, arm: &str, tile: &SetupTile, width: f32, closed: Option<&str>) -> bool {
     // The devices can be looked at in every state of the loop.
     let closed = closed.filter(|_| tile.step != SetupStep::Devices);
-    let free = closed.is_none();
-    let button = Button::new("").min_size(vec2(width, TILE.y)).fill(theme::now().card);
-    let response = ui.add_enabled(free, button);
     let verb = verb(tile);
     let name = text::overview::button(verb, arm, &within(tile.name));
-    response.widget_info(|| WidgetInfo::labeled(egui::Role::Button, free, name.as_str()));
-    content_ui(ui, tile, verb, &response);
-    let hover = format!("{}\n{}", tile.name, tile.why);
-    response.on_hover_text(hover).on_disabled_hover_text(closed.unwrap_or_default()).clicked()
+    let may = closed.map_or(Ok(()), Err);
+    let id = Id::unique(("tile", &name));
+    let meaning = format!("{}\n{}", tile.name, tile.why);
+    let button = SteadyButton { id, label: verb, meaning: &meaning, may, waits_s: PATIENT_S };
+    let look = |_, _| Button::new("").min_size(vec2(width, TILE.y)).fill(theme::now().card);
+    let (button, wants) = button.show(ui, look);
+    button.widget_info(|| WidgetInfo::labeled(egui::Role::Button, button.enabled(), name.as_str()));
+    content_ui(ui, tile, verb, &button);
+    wants
 }
 
 fn verb(tile: &SetupTile) -> &'static str {

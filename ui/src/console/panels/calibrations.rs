@@ -1,7 +1,7 @@
 //! The Calibration panel: active calibrations between wrist sensor and tip force, shown in every view, and buttons that open
 //! the wizards.
 
-use egui::{Button, Label, RichText, TextStyle, Ui, vec2};
+use egui::{Button, Id, Label, RichText, TextStyle, Ui, vec2};
 use nima_machine::{
     messages::{ForceSource, LoopState},
     rig::Side,
@@ -15,6 +15,7 @@ use crate::{
         alarms::sentence,
         live::LiveState,
         scene3d::side_name,
+        steady_button::{PATIENT_S, SteadyButton},
         text, theme,
         widgets::{Sign, fitting_style, next_button, sign_ui, small, weak},
         wizards::WizardKind,
@@ -50,8 +51,8 @@ pub fn calibrations_ui(
     open: Option<CalibrationPage>,
     back: Text,
 ) -> Option<CalibrationWish> {
-    let closed = text::calibrations::closed(live.state());
-    let mut wish = rig_ui(ui, live, open);
+    let closed = text::calibrations::closed(live.state_for(active.side()));
+    let mut wish = rig_ui(ui, live, closed, open);
     ui.add_space(2.0);
     source_ui(ui, live);
     for report in active.report() {
@@ -70,11 +71,15 @@ pub fn calibrations_ui(
     for which in WizardKind::built().filter(offered) {
         let text = text::calibrations::calibrate(&within(which.name()));
         let is_open = open == Some(CalibrationPage::Wizard(which));
-        let button =
-            Button::selectable(is_open, text).frame_when_inactive(true).min_size(vec2(ui.available_width(), 28.0));
-        let response = ui.add_enabled(closed.is_none() && !is_open, button);
-        let response = response.on_hover_text(text::calibrations::opens(which.meaning()));
-        if response.on_disabled_hover_text(closed.unwrap_or(text::calibrations::IS_OPEN.get())).clicked() {
+        let size = vec2(ui.available_width(), 28.0);
+        let meaning = text::calibrations::opens(which.meaning());
+        let id = Id::unique(("calibrate", which.name()));
+        let may = closed.map_or(Ok(()), Err);
+        let button = SteadyButton { id, label: &text, meaning: &meaning, may, waits_s: PATIENT_S };
+        let look = |text: String| Button::selectable(is_open, text).frame_when_inactive(true).min_size(size);
+        if is_open {
+            ui.add_enabled(false, look(text.clone())).on_disabled_hover_text(text::calibrations::IS_OPEN.get());
+        } else if button.ui(ui, |text, _| look(text)) {
             wish = Some(CalibrationWish::Open(which));
         }
     }
@@ -93,10 +98,15 @@ pub fn calibrations_ui(
 }
 
 /// Draws the controls for the whole rig: the ready check and the list of all calibrations. On a rig with devices, the
-/// required one is highlighted before engaging.
-fn rig_ui(ui: &mut Ui, live: &LiveState, open: Option<CalibrationPage>) -> Option<CalibrationWish> {
+/// required one is highlighted before engaging. `closed`: the reason why no wizard of the selected arm can be opened.
+fn rig_ui(
+    ui: &mut Ui,
+    live: &LiveState,
+    closed: Option<&str>,
+    open: Option<CalibrationPage>,
+) -> Option<CalibrationWish> {
     let mut wish = None;
-    let closed = text::calibrations::closed(live.state());
+    let check_closed = text::calibrations::closed(live.state());
     let next = next_page(live).filter(|_| live.rig.devices.is_some() && open.is_none());
     let width = (ui.available_width() - ui.spacing().item_spacing.x) / 2.0;
     ui.horizontal(|ui| {
@@ -117,12 +127,19 @@ fn rig_ui(ui: &mut Ui, live: &LiveState, open: Option<CalibrationPage>) -> Optio
             let is_open = open == Some(page);
             let next = next == Some(page);
             let room = width - 2.0 * ui.spacing().button_padding.x;
-            let name = RichText::new(name).font(fitting_style(ui, name, &TextStyle::Button, room));
-            let button =
-                next_button(name, next).selected(is_open).frame_when_inactive(true).min_size(vec2(width, 28.0));
-            let can_open = closed.is_none() || page == CalibrationPage::All;
-            let button = ui.add_enabled(can_open && !is_open, button).on_hover_text(meaning);
-            if button.on_disabled_hover_text(closed.unwrap_or(text::calibrations::IS_OPEN.get())).clicked() {
+            let font = fitting_style(ui, name, &TextStyle::Button, room);
+            let look = |name: String| {
+                let name = RichText::new(name).font(font);
+                next_button(name, next).selected(is_open).frame_when_inactive(true).min_size(vec2(width, 28.0))
+            };
+            if is_open {
+                ui.add_enabled(false, look(name.to_owned())).on_disabled_hover_text(text::calibrations::IS_OPEN.get());
+                continue;
+            }
+            let may = check_closed.filter(|_| page == CalibrationPage::Check).map_or(Ok(()), Err);
+            let id = Id::unique(("page", name));
+            let button = SteadyButton { id, label: name, meaning: &meaning, may, waits_s: PATIENT_S };
+            if button.ui(ui, |name, _| look(name)) {
                 wish = Some(opens);
             }
         }
@@ -165,7 +182,7 @@ fn side_ui(ui: &mut Ui, now: Side) -> Option<CalibrationWish> {
 
 fn source_ui(ui: &mut Ui, live: &LiveState) {
     let source = live.first_tick().map_or(ForceSource::NoSample, |tick| tick.force.source);
-    let sure = source.is_known() && source.doubt().is_none();
+    let sure = matches!(source, ForceSource::AtTip | ForceSource::Network);
     let (what, colour) = if sure { (Sign::Disc, theme::now().engaged) } else { (Sign::Triangle, theme::now().text) };
     ui.horizontal(|ui| {
         sign_ui(ui, what, 5.0, colour);
@@ -183,6 +200,25 @@ mod tests {
     use nima_simulation::{SimulationPlan, run_virtual, scene::Scene};
 
     use super::*;
+
+    #[test]
+    fn a_device_lost_at_one_arm_does_not_close_the_wizards_of_the_other() {
+        let rig = RigConfig::load("simulated").unwrap();
+        let scene = Scene::load("bimanual").unwrap();
+        let plan =
+            SimulationPlan { rig: rig.clone(), scene: scene.clone(), calibrations: Default::default(), engage: false };
+        let mut live = LiveState::new(rig, scene);
+        run_virtual(&plan, 0.1, |tick| {
+            live.ticks[tick.side.index()] = Some(*tick);
+            None
+        })
+        .unwrap();
+        live.ticks[Side::Left.index()].as_mut().unwrap().state = LoopState::Disconnected;
+        let closed = |side| text::calibrations::closed(live.state_for(side));
+        assert_eq!(live.state(), LoopState::Disconnected);
+        assert_eq!(closed(Side::Right), None);
+        assert!(closed(Side::Left).is_some());
+    }
 
     #[test]
     fn a_button_leads_to_the_calibrations_only_where_one_is_missing() {

@@ -3,7 +3,7 @@
 //! Controls show the active values reported by the loop. While a control is being moved, and for a moment after, it shows the
 //! requested value.
 
-use egui::{Button, DragValue, RichText, Slider, SliderClamping, Ui, vec2};
+use egui::{Button, DragValue, Response, RichText, Slider, SliderClamping, Ui, vec2};
 use nima_core::limits::{GAIN, GAIN_ABOVE_ONE, Limits, SLIDER_DEAD_BAND_M_S, SLIDER_DELAY_S};
 use nima_machine::messages::Command;
 
@@ -93,12 +93,12 @@ fn setting_ui(
             .with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| ui.add(number))
             .inner
             .labelled_by(label.id);
-        (label.id, number.on_hover_text(setting.meaning))
+        (label.id, hover(number, setting.meaning))
     });
     let (label, number) = row.inner;
     ui.spacing_mut().slider_width = ui.available_width();
     let slider = Slider::new(&mut value, limits.min..=limits.max).show_value(false).clamping(SliderClamping::Edits);
-    let slider = ui.add(slider).labelled_by(label).on_hover_text(setting.meaning);
+    let slider = hover(ui.add(slider).labelled_by(label), setting.meaning);
     let rail = slider.rect;
     let both = slider.union(number);
     if both.changed() || both.dragged() {
@@ -107,6 +107,12 @@ fn setting_ui(
     let wanted =
         if setting.at_once { both.changed() } else { both.drag_stopped() || (both.changed() && !both.dragged()) };
     (wanted.then_some(whole(value)), rail)
+}
+
+/// Adds a hover text, which must not cover the value while it is dragged.
+fn hover(response: Response, meaning: &str) -> Response {
+    let still = !response.is_pointer_button_down_on() && !response.drag_stopped();
+    if still { response.on_hover_text(meaning) } else { response }
 }
 
 fn gain_ui(ui: &mut Ui, live: &LiveState, state: &mut FeedbackState, outbox: &mut Outbox) {
@@ -167,7 +173,7 @@ pub fn calm_gain_ui(ui: &mut Ui, live: &LiveState, state: &mut FeedbackState, ou
     ui.spacing_mut().slider_width = ui.available_width();
     let slider = ui.add(Slider::new(&mut value, GAIN.min..=GAIN.max).show_value(false).clamping(SliderClamping::Edits));
     slider.widget_info(|| egui::WidgetInfo::slider(true, value, text::feedback::GAIN.get()));
-    if slider.on_hover_text(meaning).changed() {
+    if hover(slider, meaning).changed() {
         wanted = Some(value);
     }
     if let Some(gain) = wanted.map(|gain| gain.clamp(GAIN.min, GAIN.max)) {
@@ -221,7 +227,35 @@ fn standstill_ui(ui: &mut Ui, live: &LiveState, state: &mut FeedbackState, outbo
 
 #[cfg(test)]
 mod tests {
+    use egui_kittest::{Harness, kittest::Queryable as _};
+    use nima_machine::config::RigConfig;
+    use nima_simulation::scene::Scene;
+
     use super::*;
+
+    #[test]
+    fn the_hover_text_never_covers_a_gain_that_is_dragged() {
+        let live = LiveState::new(RigConfig::load("simulated").unwrap(), Scene::load("peg_transfer").unwrap());
+        let draw = move |ui: &mut Ui, (state, outbox): &mut (FeedbackState, Outbox)| {
+            if theme::is_applied(ui.ctx()) {
+                calm_gain_ui(ui, &live, state, outbox);
+            }
+        };
+        let size = vec2(330.0, 400.0);
+        let mut window = Harness::builder().with_size(size).with_step_dt(0.1).build_ui_state(draw, Default::default());
+        window.run_steps(3);
+        let place = window.get_by_role_and_label(egui::Role::Slider, "Gain").rect().center();
+        let texts = |window: &Harness<'_, (FeedbackState, Outbox)>| window.query_all_by_label_contains("force").count();
+        window.hover_at(place);
+        window.run_steps(10);
+        assert!(texts(&window) > 0, "the pointer explains the gain");
+        window.drag_at(place);
+        for step in 0..10_u8 {
+            window.hover_at(place + vec2(f32::from(step), 0.0));
+            window.step();
+        }
+        assert_eq!(texts(&window), 0);
+    }
 
     #[test]
     fn a_control_shows_what_was_asked_for_a_moment_and_then_the_truth() {

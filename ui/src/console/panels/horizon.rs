@@ -8,9 +8,9 @@ use crate::console::{
     live::{LiveState, TREND_S},
     outbox::Outbox,
     text, theme,
-    widgets::{Sign, bar, sign, small},
+    widgets::{Sign, bar, sign, small, width_of},
 };
-use crate::report_text::{COMPARED, mode_meaning, mode_name, newtons_in_three, three_digits};
+use crate::report_text::{COMPARED, mode_meaning, mode_name, newtons, newtons_in_three, three_digits};
 
 /// Upper end of the bars, as a multiple of the error of delayed DFR.
 const LONGEST: f64 = 2.5;
@@ -19,10 +19,15 @@ const TREND_HEIGHT: f32 = 46.0;
 /// A smaller error is noise, and its ratio is meaningless, N.
 const MIN_N: f64 = 1e-4;
 
-pub fn horizon_ui(ui: &mut Ui, live: &LiveState, outbox: &mut Outbox) {
+/// Largest ratio and error that are shown to an audience, as a multiple of the error of delayed DFR.
+const PLAIN_MAX: f64 = 10.0;
+
+/// Draws the panel; `plain`: for an audience, without abbreviations and huge numbers.
+pub fn horizon_ui(ui: &mut Ui, live: &LiveState, outbox: &mut Outbox, plain: bool) {
     let computed = live.first_tick().map_or(ModeSet::only(Mode::Dfr), |tick| tick.identification.modes);
     let dfr_n = live.figures.horizon_n[Mode::Dfr.index()];
-    ui.label(small(text::horizon::ahead(live.delay_s() * 1e3)));
+    let ahead = if plain { text::horizon::ahead_plain } else { text::horizon::ahead };
+    ui.label(small(ahead(live.delay_s() * 1e3)));
     let mut compares = live.compares();
     let compare = egui::Checkbox::new(&mut compares, text::horizon::COMPARE.get());
     let compare = ui.add_enabled(!live.is_shown_only(), compare).on_hover_text(text::horizon::COMPARE_HOVER.get());
@@ -32,9 +37,10 @@ pub fn horizon_ui(ui: &mut Ui, live: &LiveState, outbox: &mut Outbox) {
     ui.add_space(2.0);
     let modes = COMPARED.into_iter().chain(computed.baseline().map(Mode::Baseline));
     for mode in modes.filter(|mode| computed.contains(*mode)) {
-        mode_ui(ui, mode, live.figures.horizon_n[mode.index()], dfr_n, live.mode() == mode);
+        let error = ModeError { mode, error_n: live.figures.horizon_n[mode.index()], dfr_n, plain };
+        mode_ui(ui, &error, live.mode() == mode);
     }
-    trend_ui(ui, live);
+    trend_ui(ui, live, plain);
 }
 
 /// Returns the mean error of a mode over the last minutes, N; `None` if the force was never known.
@@ -45,22 +51,29 @@ fn mean_n(live: &LiveState, mode: Mode) -> Option<f64> {
 }
 
 /// Errors of the active mode and of delayed DFR over the last minutes, one point per second.
-fn trend_ui(ui: &mut Ui, live: &LiveState) {
+fn trend_ui(ui: &mut Ui, live: &LiveState, plain: bool) {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), TREND_HEIGHT), Sense::hover());
     let [ours, dfr] = [live.mode(), Mode::Dfr].map(|mode| newtons_in_three(mean_n(live, mode)));
-    let words = text::horizon::trend(live.trend_n.len(), mode_name(live.mode()), &ours, &dfr);
+    let reference = if plain { text::horizon::DIRECT.get() } else { text::horizon::DELAYED_DFR.get() };
+    let words = text::horizon::trend(live.trend_n.len(), name_of(live.mode(), plain), &ours, reference, &dfr);
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, text::horizon::trend_name(&words)));
     response.on_hover_text(text::horizon::trend_meaning(&words));
     let painter = ui.painter();
     painter.rect_filled(rect, 3.0, theme::now().groove);
     let highest_n = 1.1 * live.trend_n.iter().map(|errors_n| errors_n[Mode::Dfr.index()]).fold(MIN_N, f64::max);
+    // The labels have their own column: lines over them would make both unreadable.
+    let highest = format!("{} N", three_digits(highest_n));
+    let font = theme::regular(11.0);
+    let labels = [highest.as_str(), text::horizon::LAST_3_MIN.get()];
+    let width = labels.map(|label| width_of(painter, label, font.clone())).into_iter().fold(0.0, f32::max);
+    let lines = rect.with_min_x(rect.left() + width + 10.0);
     for (mode, colour) in [(Mode::Dfr, theme::now().reference), (live.mode(), theme::now().rendered)] {
         let points = live.trend_n.iter().rev().enumerate().map(|(age_s, errors_n)| {
             let along = 1.0 - age_s as f32 / (TREND_S - 1) as f32;
             let error_n = Some(errors_n[mode.index()]).filter(|error_n| error_n.is_finite())?;
             let up = (error_n / highest_n).min(1.0) as f32;
-            let x = rect.left() + along * rect.width();
-            let y = rect.bottom() - 2.0 - up * (rect.height() - 4.0);
+            let x = lines.left() + along * lines.width();
+            let y = lines.bottom() - 2.0 - up * (lines.height() - 4.0);
             Some(egui::pos2(x, y))
         });
         let points: Vec<_> = points.collect();
@@ -68,36 +81,56 @@ fn trend_ui(ui: &mut Ui, live: &LiveState) {
             painter.line(run.iter().flatten().copied().collect(), egui::Stroke::new(1.5, colour));
         }
     }
-    let note = format!("{} N", three_digits(highest_n));
-    painter.text(
-        rect.left_top() + vec2(4.0, 3.0),
-        Align2::LEFT_TOP,
-        note,
-        theme::regular(11.0),
-        theme::now().text_weak,
-    );
-    let note = text::horizon::LAST_3_MIN.get();
-    painter.text(
-        rect.left_bottom() + vec2(4.0, -3.0),
-        Align2::LEFT_BOTTOM,
-        note,
-        theme::regular(11.0),
-        theme::now().text_weak,
-    );
+    let [above, below] = labels;
+    let ink = theme::now().text_weak;
+    painter.text(rect.left_top() + vec2(4.0, 3.0), Align2::LEFT_TOP, above, font.clone(), ink);
+    painter.text(rect.left_bottom() + vec2(4.0, -3.0), Align2::LEFT_BOTTOM, below, font, ink);
 }
 
-fn mode_ui(ui: &mut Ui, mode: Mode, error_n: Option<f64>, dfr_n: Option<f64>, active: bool) {
+/// Returns the name of a mode, without an abbreviation for an audience.
+fn name_of(mode: Mode, plain: bool) -> &'static str {
+    if plain && mode == Mode::Dfr { text::horizon::DIRECT.get() } else { mode_name(mode) }
+}
+
+/// Error of a mode, compared with delayed DFR.
+struct ModeError {
+    mode: Mode,
+    error_n: Option<f64>,
+    dfr_n: Option<f64>,
+    plain: bool,
+}
+
+impl ModeError {
+    /// Returns the ratio to the error of delayed DFR; NaN if it is unknown.
+    fn ratio(&self) -> f64 {
+        let dfr_n = self.dfr_n.filter(|dfr_n| *dfr_n > MIN_N);
+        self.error_n.zip(dfr_n).map_or(f64::NAN, |(error_n, dfr_n)| error_n / dfr_n)
+    }
+
+    /// Returns the error and the ratio as text.
+    fn words(&self) -> [String; 2] {
+        let ratio = self.ratio();
+        if let (true, true, Some(dfr_n)) = (self.plain, ratio > PLAIN_MAX, self.dfr_n) {
+            let error = format!("> {}", newtons(Some(PLAIN_MAX * dfr_n), 1));
+            return [error, text::horizon::times_direct(&format!("> {PLAIN_MAX:.0}"))];
+        }
+        let ratio = match ratio {
+            _ if self.mode == Mode::Dfr => text::horizon::REFERENCE.get().to_owned(),
+            ratio if !ratio.is_finite() => String::new(),
+            ratio if self.plain => text::horizon::times_direct(&three_digits(ratio)),
+            ratio => format!("{} x DFR", three_digits(ratio)),
+        };
+        [newtons_in_three(self.error_n), ratio]
+    }
+}
+
+fn mode_ui(ui: &mut Ui, error: &ModeError, active: bool) {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 38.0), Sense::hover());
-    let dfr_n = dfr_n.filter(|dfr_n| *dfr_n > MIN_N);
-    let ratio = error_n.zip(dfr_n).map_or(f64::NAN, |(error_n, dfr_n)| error_n / dfr_n);
-    let ratio_text = if mode == Mode::Dfr {
-        text::horizon::REFERENCE.get().to_owned()
-    } else if ratio.is_finite() {
-        format!("{} x DFR", three_digits(ratio))
-    } else {
-        String::new()
-    };
-    let words = format!("{}: {}, {ratio_text}", mode_name(mode), newtons_in_three(error_n));
+    let mode = error.mode;
+    let ratio = error.ratio();
+    let [number, ratio_text] = error.words();
+    let name = name_of(mode, error.plain);
+    let words = format!("{name}: {number}, {ratio_text}");
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, text::horizon::error(&words)));
     response.on_hover_text(format!(
         "{words}{}\n{}",
@@ -111,8 +144,7 @@ fn mode_ui(ui: &mut Ui, mode: Mode, error_n: Option<f64>, dfr_n: Option<f64>, ac
         sign(painter, Sign::Disc, egui::pos2(rect.left() + 4.0, top), 4.0, theme::now().rendered);
     }
     let font = if active { theme::strong(14.0) } else { theme::regular(14.0) };
-    painter.text(egui::pos2(rect.left() + 14.0, top), Align2::LEFT_CENTER, mode_name(mode), font.clone(), ink);
-    let number = newtons_in_three(error_n);
+    painter.text(egui::pos2(rect.left() + 14.0, top), Align2::LEFT_CENTER, name, font.clone(), ink);
     painter.text(egui::pos2(rect.left() + 200.0, top), Align2::RIGHT_CENTER, number, font, ink);
     painter.text(
         egui::pos2(rect.right(), top),
@@ -131,5 +163,20 @@ fn mode_ui(ui: &mut Ui, mode: Mode, error_n: Option<f64>, dfr_n: Option<f64>, ac
         let middle = groove.right_center();
         let tip = vec![middle + vec2(0.0, -6.0), middle + vec2(7.0, 0.0), middle + vec2(0.0, 6.0)];
         painter.add(egui::Shape::convex_polygon(tip, colour, egui::Stroke::NONE));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_audience_reads_no_abbreviation_and_no_huge_number() {
+        let error = |mode, error_n, plain| ModeError { mode, error_n: Some(error_n), dfr_n: Some(0.5), plain }.words();
+        assert_eq!(error(Mode::Literal, 2.2e27, true), ["> 5.0 N", "> 10x direct"]);
+        assert_eq!(error(Mode::Literal, f64::INFINITY, true)[1], "> 10x direct");
+        assert_eq!(error(Mode::Linear, 0.25, true), ["0.250 N", "0.500x direct"]);
+        assert_eq!(error(Mode::Linear, 0.25, false)[1], "0.500 x DFR");
+        assert!(!name_of(Mode::Dfr, true).contains("DFR"));
     }
 }

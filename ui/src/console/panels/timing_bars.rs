@@ -187,7 +187,7 @@ mod tests {
         harness.hover_at(rect.left_top() + vec2(0.07 * rect.width(), 20.0));
         harness.run_steps(40);
         let read = harness.query_all_by_label_contains("75 to 100 µs").count();
-        assert!(read > 0, "the hint stands beside the pointer");
+        assert!(read > 0, "the hint is next to the pointer");
     }
 
     #[test]

@@ -22,6 +22,7 @@ use crate::{
         sessions::DisplayState,
         settings::ConsoleSettings,
         start::has_real_arm,
+        steady_button::SteadyButton,
         text, theme,
         widgets::{Sign, next_button, sign, small, weak},
     },
@@ -42,6 +43,8 @@ pub struct TopBarState {
     pub alarms: Alarms,
     /// Instruction of the ready check that concerns a button of the bar, which is then highlighted.
     pub(in crate::console) asked: Option<PersonRequest>,
+    /// The ready check has passed: Engage is the next button.
+    pub(in crate::console) leads_to_engage: bool,
     /// The session that is being recorded.
     pub(in crate::console) recorded: Option<DisplayState>,
     /// The command of the pressed button or menu entry.
@@ -87,9 +90,14 @@ pub fn top_bar_ui(
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let (place, _) = ui.allocate_exact_size(theme::STOP_SIZE, Sense::hover());
             let of_past = state.past.then_some(text::playback::BLOCKED.get());
-            let closed = if now == LoopState::Idle { of_past.or(live.engage_closed) } else { of_past };
-            let next = state.asked == Some(PersonRequest::Release);
-            let ready = since_s >= STEP_WAITS_S && closed.is_none();
+            let closed = match now {
+                LoopState::Idle => of_past.or(live.engage_closed),
+                LoopState::Disconnected => of_past.or(text::calibrations::closed(now)),
+                _ => of_past,
+            };
+            state.leads_to_engage &= matches!(now, LoopState::Idle | LoopState::Disconnected);
+            let next = state.asked == Some(PersonRequest::Release) || state.leads_to_engage && closed.is_none();
+            let ready = since_s >= STEP_WAITS_S;
             step_ui(ui, now, TopBarStep { ready, next, wanted: wants_step, closed }, outbox);
             // Drawn after the step button to its left, so that keyboard focus follows the reading order.
             stop_ui(ui, place, now, state.asked == Some(PersonRequest::PressStop), outbox);
@@ -225,7 +233,7 @@ fn stop_button(ui: &mut Ui, button: Button<'_>, ink: egui::Color32) -> egui::Res
 /// State of the next step.
 #[derive(Clone, Copy)]
 struct TopBarStep {
-    /// Button can be pressed.
+    /// The state has lasted long enough for a next step.
     ready: bool,
     /// Whether the button is highlighted.
     next: bool,
@@ -238,23 +246,26 @@ struct TopBarStep {
 /// Draws the button for the next step, next to the stop button and never below it.
 fn step_ui(ui: &mut Ui, state: LoopState, TopBarStep { ready, next, wanted, closed }: TopBarStep, outbox: &mut Outbox) {
     let (action, command, meaning) = match state {
-        LoopState::Idle => (Action::Engage, Command::Engage, text::top_bar::ENGAGE_HOVER.get()),
+        LoopState::Idle | LoopState::Disconnected => {
+            (Action::Engage, Command::Engage, text::top_bar::ENGAGE_HOVER.get())
+        }
         LoopState::Stopped => (Action::Release, Command::ReleaseStop, text::top_bar::RELEASE_STOP_HOVER.get()),
         LoopState::Faulted(_) => (Action::Release, Command::ReleaseStop, text::top_bar::RELEASE_FAULT_HOVER.get()),
-        LoopState::Engaged | LoopState::Ready | LoopState::Clutched | LoopState::Disconnected => {
+        LoopState::Engaged | LoopState::Ready | LoopState::Clutched => {
             ui.add_space(theme::STOP_SIZE.x + 8.0);
             return;
         }
     };
     let name = CommandEntry::of(action).map_or("", |entry| entry.title.as_str());
-    let text = RichText::new(name).font(theme::strong(17.0));
-    let button = next_button(text, next).min_size(theme::STOP_SIZE).corner_radius(theme::CORNER);
-    let response = ui.add_enabled(ready, button).on_hover_text(meaning);
-    let response = match closed {
-        Some(why) => response.on_disabled_hover_text(why),
-        None => response,
-    };
-    if response.clicked() || ready && wanted == Some(action) {
+    let waits = (!ready).then_some(text::top_bar::JUST_CHANGED.get());
+    let may = closed.or(waits).map_or(Ok(()), Err);
+    // A click never waits: the machine moves at once or not at all.
+    let button = SteadyButton { id: Id::unique("step"), label: name, meaning, may, waits_s: 0.0 };
+    let pressed = button.ui(ui, |name, _| {
+        let name = RichText::new(name).font(theme::strong(17.0));
+        next_button(name, next).min_size(theme::STOP_SIZE).corner_radius(theme::CORNER)
+    });
+    if pressed || ready && closed.is_none() && wanted == Some(action) {
         outbox.push(command);
     }
 }

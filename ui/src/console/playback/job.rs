@@ -16,7 +16,10 @@ use nima_recording::session::SessionReader;
 use nima_session::{plot_channels, session_store::keep, trim};
 
 use crate::console::{chain, opener, text};
-use crate::language::{self, Language};
+use crate::{
+    language::{self, Language},
+    report_text::quoted,
+};
 
 /// Folder of the reports, next to the sessions.
 const REPORTS: &str = "reports";
@@ -108,7 +111,7 @@ fn save(session: &Path, times_s: &Range<f64>, left: &AtomicBool) -> Result<PathB
     }
     let part = to.with_extension("part");
     let written = cut_out(session, times_s, &part, left)
-        .and_then(|()| std::fs::rename(&part, &to).and_then(|()| keep(&to, true)).map_err(|error| error.to_string()));
+        .and_then(|()| std::fs::rename(&part, &to).and_then(|()| keep(&to, true)).map_err(|error| quoted(&error)));
     if written.is_err() {
         std::fs::remove_file(&part).ok();
     }
@@ -116,11 +119,11 @@ fn save(session: &Path, times_s: &Range<f64>, left: &AtomicBool) -> Result<PathB
 }
 
 fn cut_out(session: &Path, times_s: &Range<f64>, part: &Path, left: &AtomicBool) -> Result<(), String> {
-    let reader = SessionReader::open(session).map_err(|error| chain(&error))?;
-    let begin_ns = plot_channels::beginning_ns(&reader).map_err(|error| chain(&error))?;
+    let reader = SessionReader::open(session).map_err(|error| quoted(&chain(&error)))?;
+    let begin_ns = plot_channels::beginning_ns(&reader).map_err(|error| quoted(&chain(&error)))?;
     let time_ns = |seconds: f64| begin_ns + (seconds * 1e9).round() as u64;
     let name = session.file_name().unwrap_or_default().to_string_lossy();
     let times_ns = time_ns(times_s.start)..time_ns(times_s.end);
-    trim::write(&reader, &name, &times_ns, part, left).map_err(|error| chain(&error))?;
+    trim::write(&reader, &name, &times_ns, part, left).map_err(|error| quoted(&chain(&error)))?;
     Ok(())
 }

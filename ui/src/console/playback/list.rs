@@ -19,7 +19,7 @@ use crate::console::{
     text, theme,
     widgets::{small, weak},
 };
-use crate::language;
+use crate::{language, report_text::quoted};
 
 const BUTTON: egui::Vec2 = vec2(74.0, 28.0);
 
@@ -167,7 +167,8 @@ impl SessionList {
 fn read(folder: &Path) -> Result<Vec<SessionListRow>, String> {
     let shelf = SessionStore::new(folder, MAX_BYTES);
     let sessions = shelf.sessions().map_err(|error| text::sessions::no_folder(folder, &error))?;
-    let about = |path: &Path| RecordedFile::open(path).and_then(|file| file.about()).map_err(|error| chain(&error));
+    let about =
+        |path: &Path| RecordedFile::open(path).and_then(|file| file.about()).map_err(|error| quoted(&chain(&error)));
     Ok(sessions.into_iter().rev().map(|shelved| SessionListRow { about: about(&shelved.path), shelved }).collect())
 }
 

@@ -34,7 +34,7 @@ use crate::console::{
     live::{LiveState, forces_of},
     text,
 };
-use crate::recording::WORDS;
+use crate::{recording::WORDS, report_text::quoted};
 
 /// Length of the replay before a moment, s, so that traces and values have their history.
 const LEAD_S: f64 = 10.0;
@@ -74,10 +74,10 @@ pub(super) struct PlaybackFile {
 impl PlaybackFile {
     /// Returns one line as error if the session cannot be shown at all.
     pub(super) fn open(path: &Path) -> Result<Self, String> {
-        let recorded = RecordedFile::open(path).map_err(|error| chain(&error))?;
-        let begin_ns = plot_channels::beginning_ns(recorded.reader()).map_err(|error| chain(&error))?;
-        let end_s = recorded.about().map_err(|error| chain(&error))?.seconds;
-        let start = recorded.journal().map(|journal| journal.start().clone()).map_err(|error| chain(&error));
+        let recorded = RecordedFile::open(path).map_err(|error| quoted(&chain(&error)))?;
+        let begin_ns = plot_channels::beginning_ns(recorded.reader()).map_err(|error| quoted(&chain(&error)))?;
+        let end_s = recorded.about().map_err(|error| quoted(&chain(&error)))?.seconds;
+        let start = recorded.journal().map(|journal| journal.start().clone()).map_err(|error| quoted(&chain(&error)));
         let rig = match &start {
             Ok(start) => start.origin.rig.clone(),
             Err(_) => attached(&recorded, "rig.toml")?,
@@ -114,7 +114,7 @@ impl PlaybackFile {
     /// Returns a tick of each arm with unknown values only.
     fn blank(&self) -> Result<[Option<Tick>; SIDES], String> {
         let known = Side::ALL.map(|side| self.arms.contains(&side).then(Calibrations::default));
-        let mut control = Loop::new(&self.rig, &known).map_err(|error| chain(&error))?;
+        let mut control = Loop::new(&self.rig, &known).map_err(|error| quoted(&chain(&error)))?;
         Ok(control.step([None; SIDES], &Timing::default()).1)
     }
 }
@@ -124,7 +124,7 @@ fn attached<T: serde::de::DeserializeOwned>(recorded: &RecordedFile, name: &str)
     let reader = recorded.reader();
     let place =
         reader.attachments().iter().find(|one| one.name == name).ok_or_else(|| text::playback::without(name))?;
-    let bytes = reader.attachment(place).map_err(|error| chain(&error))?;
+    let bytes = reader.attachment(place).map_err(|error| quoted(&chain(&error)))?;
     nima_files::from_toml(&String::from_utf8_lossy(&bytes))
         .map_err(|misfit| text::playback::unusable(name, misfit.message()))
 }
@@ -186,7 +186,7 @@ impl<'a> SessionIndex<'a> {
             why: None,
         };
         let first = file.start.as_ref().map_err(Clone::clone).and_then(|start| {
-            let first = Keyframe::first(start).map_err(|error| chain(&error))?;
+            let first = Keyframe::first(start).map_err(|error| quoted(&chain(&error)))?;
             Ok((start, first))
         });
         match first {

@@ -1,8 +1,9 @@
 //! The Surgeon view: the endoscope image, or a drawing of the field for a rig without endoscope; below it both forces with
 //! the ceiling for each hand, and the gain in between. At most six numbers: two forces of each hand, the gain, the ceiling.
 
-use egui::{Align2, CentralPanel, Frame, Margin, Panel, Rect, Sense, Ui, pos2, vec2};
-use nima_machine::rig::Side;
+use egui::{Align2, Button, CentralPanel, Frame, Margin, Panel, Rect, RichText, Sense, TextStyle, Ui, pos2, vec2};
+use nima_core::impedance::Mode;
+use nima_machine::{messages::Command, rig::Side};
 
 use super::{Panels, acts};
 use crate::console::{
@@ -11,11 +12,11 @@ use crate::console::{
     panels::{calm_gain_ui, why_no_force},
     scene3d::{scene_ui, side_name},
     text, theme,
-    widgets::{bar, fitting, force_sign, small},
+    widgets::{bar, fitting, fitting_style, force_sign, small},
 };
-use crate::report_text::{mode_name, newtons, newtons_read};
+use crate::report_text::{mode_meaning, mode_name, newtons, newtons_read};
 
-const STRIP: f32 = 176.0;
+const STRIP: f32 = 206.0;
 const GAIN_WIDTH: f32 = 330.0;
 /// Upper end of a bar, as a multiple of the ceiling.
 const BEYOND_CEILING: f64 = 1.25;
@@ -37,7 +38,10 @@ pub(super) fn surgeon_ui(ui: &mut Ui, live: &mut LiveState, panels: &mut Panels,
         ui.scope_builder(egui::UiBuilder::new().max_rect(gain), |ui| {
             theme::card().show(ui, |ui| {
                 ui.set_min_size(ui.available_size());
-                acts(ui, past, |ui| calm_gain_ui(ui, live, &mut panels.feedback, outbox));
+                acts(ui, past, |ui| {
+                    calm_gain_ui(ui, live, &mut panels.feedback, outbox);
+                    modes_ui(ui, live, outbox);
+                });
                 ui.add(egui::Label::new(small(report(live))).wrap());
             });
         });
@@ -47,6 +51,25 @@ pub(super) fn surgeon_ui(ui: &mut Ui, live: &mut LiveState, panels: &mut Panels,
             panels.eyes.ui(ui, live);
         } else {
             scene_ui(ui, live, &mut panels.scene, outbox);
+        }
+    });
+}
+
+/// Modes that a surgeon may choose: those whose force does not grow with the delay of the link.
+const MODES: [Mode; 3] = [Mode::Best, Mode::Matched, Mode::Anchored];
+
+fn modes_ui(ui: &mut Ui, live: &LiveState, outbox: &mut Outbox) {
+    ui.spacing_mut().item_spacing.x = 6.0;
+    let width = (ui.available_width() - 6.0 * (MODES.len() - 1) as f32) / MODES.len() as f32;
+    ui.horizontal(|ui| {
+        for mode in MODES {
+            let name = mode_name(mode);
+            let font = fitting_style(ui, name, &TextStyle::Button, width - 2.0 * ui.spacing().button_padding.x);
+            let button = Button::selectable(live.mode() == mode, RichText::new(name).font(font));
+            let button = ui.add(button.frame_when_inactive(true).min_size(vec2(width, 28.0)));
+            if button.on_hover_text(mode_meaning(mode)).clicked() {
+                outbox.push(Command::SetMode(mode));
+            }
         }
     });
 }
@@ -110,14 +133,13 @@ fn hand_ui(ui: &mut Ui, live: &LiveState, side: Side, place: Rect) {
         painter.text(at, Align2::RIGHT_CENTER, newtons(force_n, 1), theme::strong(38.0), colour);
         let groove = Rect::from_center_size(pos2(bars.center().x, y), vec2(bars.width(), 26.0));
         bar(&painter, groove, force_n.map_or(0.0, |force_n| force_n / (BEYOND_CEILING * ceiling_n)), colour);
-        if force_n.is_none() {
-            let unknown = text::roles::UNKNOWN.get();
-            painter.text(groove.center(), Align2::CENTER_CENTER, unknown, theme::regular(15.0), theme::now().text);
-        }
     }
-    painter.vline(mark, bars.top()..=bars.bottom(), egui::Stroke::new(2.5, theme::now().text));
-    let words = text::roles::ceiling(ceiling_n);
+    let acts = live.is_limited(side);
+    let ink = if acts { theme::now().alarm_medium } else { theme::now().text };
+    painter.vline(mark, bars.top()..=bars.bottom(), egui::Stroke::new(2.5, ink));
+    let words = if acts { text::roles::limited(ceiling_n) } else { text::roles::ceiling(ceiling_n) };
     let at = pos2(mark, inner.top() + 2.0);
-    let font = fitting(&painter, &words, theme::regular(14.0), 2.0 * (inner.right() - mark));
-    painter.text(at, Align2::CENTER_TOP, words, font, theme::now().text_weak);
+    let font = if acts { theme::strong(14.0) } else { theme::regular(14.0) };
+    let font = fitting(&painter, &words, font, 2.0 * (inner.right() - mark));
+    painter.text(at, Align2::CENTER_TOP, words, font, if acts { ink } else { theme::now().text_weak });
 }

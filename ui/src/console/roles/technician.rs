@@ -43,7 +43,7 @@ pub(super) fn technician_ui(
             wishes.calibration = acts(ui, past, |ui| calibrations_ui(ui, live, active, None, back));
         }
         Panel::Safety => safety_ui(ui, live, &mut panels.safety),
-        Panel::Horizon => horizon_ui(ui, live, outbox),
+        Panel::Horizon => horizon_ui(ui, live, outbox, false),
         Panel::Timing => timing_ui(ui, live, &mut panels.timing),
         Panel::Link if past => {
             let elsewhere = live.of == ScreenSource::Elsewhere;

@@ -34,7 +34,7 @@ pub const ROUND: Text = text::field::ROUND;
 
 /// Optional objects, and the look of the view.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[expect(clippy::struct_excessive_bools, reason = "each is a switch of its own")]
+#[expect(clippy::struct_excessive_bools, reason = "each is a separate switch")]
 pub struct Extras {
     pub ceiling: bool,
     pub frames: bool,

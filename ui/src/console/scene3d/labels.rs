@@ -1,12 +1,17 @@
 //! Texts on the view: names and numbers next to the objects, the forces in large figures with their gauges, axes, and a hint.
 
-use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, pos2, vec2};
+use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Vec2, pos2, vec2};
 use nalgebra::Vector3;
 use nima_machine::{messages::Tick, rig::Side};
 
 use super::{CameraLook, SceneCamera, SceneView, stage, stage::StageArm, training};
 use crate::{
-    console::{live::LiveState, text, theme, widgets::force_sign},
+    console::{
+        live::LiveState,
+        scene3d::release_trail::ReleaseTrail,
+        text, theme,
+        widgets::{fitting, force_sign, width_of},
+    },
     report_text::newtons,
 };
 
@@ -54,6 +59,13 @@ pub(super) fn labels(
         let name = side_name(*side);
         let words = if view.lead.side() == Some(*side) { text::field::led(name) } else { name.to_owned() };
         label(painter, place + shift, align, &words, theme::strong(15.0), theme::DARK.text);
+    }
+    // Not for a participant of a study, to whom a force would reveal the condition.
+    if !figures
+        && view.arrows
+        && let Some(tip) = at(pose.tip_m)
+    {
+        tip_bars(painter, live, *side, tip);
     }
     let right = camera.right();
     let [measured, rendered] = stage::arrow_bases_m(pose, trocar_m, &right);
@@ -136,7 +148,7 @@ pub(super) fn readings(painter: &Painter, rect: Rect, live: &LiveState) {
         let place = gauges.translate(vec2(38.0 * k as f32, 0.0));
         let measured_n = live.tick_of(*side).and_then(Tick::known_n).map(|force_n| force_n.norm());
         let rendered_n = live.tick_of(*side).map_or(0.0, |tick| tick.rendered_n.norm());
-        gauge(painter, place, [measured_n, Some(rendered_n)], ceiling_n);
+        gauge(painter, place, [measured_n, Some(rendered_n)], ceiling_n, live.is_limited(*side));
         if both {
             let over = pos2(column(k), corner.y - 13.0);
             painter.text(over, Align2::RIGHT_CENTER, side_name(*side), theme::regular(15.0), theme::DARK.text_weak);
@@ -151,8 +163,8 @@ pub(super) fn readings(painter: &Painter, rect: Rect, live: &LiveState) {
 }
 
 /// Draws a vertical gauge of measured and rendered force and the ceiling, in `rect`; an unknown force has the sign for
-/// it.
-fn gauge(painter: &Painter, rect: Rect, forces_n: [Option<f64>; 2], ceiling_n: f64) {
+/// it. The mark of a ceiling that acts is coloured.
+fn gauge(painter: &Painter, rect: Rect, forces_n: [Option<f64>; 2], ceiling_n: f64, acts: bool) {
     painter.rect_filled(rect, 3.0, Color32::from_black_alpha(120));
     let top_n = ceiling_n * 1.25;
     let y = |force_n: f64| rect.bottom() - rect.height() * (force_n / top_n).clamp(0.0, 1.0) as f32;
@@ -167,7 +179,42 @@ fn gauge(painter: &Painter, rect: Rect, forces_n: [Option<f64>; 2], ceiling_n: f
         let filled = Rect::from_min_max(pos2(left + 2.0, y(force_n)), pos2(left + half - 2.0, rect.bottom() - 2.0));
         painter.rect_filled(filled, 1.0, colour);
     }
-    painter.hline(rect.x_range(), y(ceiling_n), egui::Stroke::new(2.0, theme::DARK.text));
+    let mark = if acts { theme::DARK.alarm_medium } else { theme::DARK.text };
+    painter.hline(rect.x_range(), y(ceiling_n), egui::Stroke::new(2.0, mark));
+}
+
+/// Size of the bars beside a tip, and their distance from it, points.
+const BARS: Vec2 = vec2(20.0, 56.0);
+const BARS_AWAY: f32 = 34.0;
+
+/// Draws the forces of a hand as bars beside its tip, on its own side, and names a ceiling that acts.
+pub(in crate::console) fn tip_bars(painter: &Painter, live: &LiveState, side: Side, tip: Pos2) {
+    let away = BARS_AWAY + 0.5 * BARS.x;
+    let outside = if side == Side::Right { away } else { -away };
+    let rect = Rect::from_center_size(tip + vec2(outside, 0.0), BARS);
+    let hand = side.index();
+    let forces_n = [live.figures.measured_n[hand], Some(live.figures.rendered_n[hand])];
+    let ceiling_n = live.gate_settings().ceiling_n;
+    let acts = live.is_limited(side);
+    gauge(painter, rect, forces_n, ceiling_n, acts);
+    if acts {
+        let (words, below) = (text::roles::limited(ceiling_n), rect.center_bottom() + vec2(0.0, 4.0));
+        label(painter, below, Align2::CENTER_TOP, &words, theme::strong(14.0), theme::DARK.alarm_medium);
+    }
+}
+
+/// Draws the way of a released handle with its length.
+pub(super) fn release(painter: &Painter, rect: Rect, camera: &SceneCamera, trail: &ReleaseTrail) {
+    let points: Vec<Pos2> =
+        trail.points_m().iter().filter_map(|point_m| camera.project(&point_m.cast(), rect)).collect();
+    let (Some(&from), Some(&to)) = (points.first(), points.last()) else { return };
+    for (width, colour) in [(6.0, theme::VEIL), (3.0, theme::DARK.watching)] {
+        painter.line(points.clone(), egui::Stroke::new(width, colour));
+    }
+    painter.circle_stroke(from, 6.0, egui::Stroke::new(2.0, theme::DARK.watching));
+    painter.circle_filled(to, 4.0, theme::DARK.watching);
+    let words = text::roles::travel(1e3 * trail.travel_m());
+    label(painter, to + vec2(12.0, 0.0), Align2::LEFT_CENTER, &words, theme::strong(20.0), theme::DARK.watching);
 }
 
 /// Directions of the traces' x, y and z, in the lower right corner.
@@ -184,6 +231,9 @@ pub(super) fn axes(painter: &Painter, rect: Rect, camera: &SceneCamera) {
     }
 }
 
+/// Width of the buttons at the lower right, with the margins of the hint.
+const BUTTONS: f32 = 360.0;
+
 /// Draws the hint at the bottom: possible actions, or the reason why nothing is drawn.
 pub(super) fn hint(painter: &Painter, rect: Rect, live: &LiveState, view: &SceneView) {
     let (words, colour) = match &view.problem {
@@ -198,5 +248,10 @@ pub(super) fn hint(painter: &Painter, rect: Rect, live: &LiveState, view: &Scene
         None if view.look == CameraLook::Endoscope => (text::field::RESET_VIEW.get().to_owned(), theme::DARK.text_weak),
         None => (text::field::VIEW_HOVER.get().to_owned(), theme::DARK.text_weak),
     };
-    label(painter, rect.left_bottom() + vec2(16.0, -12.0), Align2::LEFT_BOTTOM, &words, theme::regular(12.5), colour);
+    let font = theme::regular(12.5);
+    // A hint that would reach the buttons is drawn above them.
+    let reaches = width_of(painter, &words, font.clone()) > rect.width() - BUTTONS;
+    let up = if reaches { 54.0 } else { 12.0 };
+    let font = fitting(painter, &words, font, rect.width() - 32.0);
+    label(painter, rect.left_bottom() + vec2(16.0, -up), Align2::LEFT_BOTTOM, &words, font, colour);
 }

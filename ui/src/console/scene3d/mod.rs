@@ -2,6 +2,7 @@
 //! labels by egui's painter over them. Without a GPU (in tests) everything except the triangles is drawn.
 
 mod aim;
+mod arrows;
 pub mod camera;
 pub mod extras;
 pub mod gl;
@@ -11,6 +12,7 @@ mod mouse_drive;
 mod objects;
 mod pick;
 mod reach;
+pub(in crate::console) mod release_trail;
 mod shadows;
 pub mod stage;
 mod training;
@@ -26,14 +28,18 @@ use nima_simulation::{Worlds, scene::Scene};
 
 pub use self::{camera::SceneCamera, labels::side_name};
 
+pub(in crate::console) use self::labels::tip_bars;
+
 use self::{
     aim::SceneAim,
     extras::Extras,
     gl::GlRenderer,
-    labels::{axes, hint, labels, readings, readings_width},
+    labels::{axes, hint, labels, readings, readings_width, release},
     mouse_drive::MouseDrive,
     objects::DisplayedObjects,
+    release_trail::ReleaseTrail,
     stage::{StageArm, StagePose},
+    training::TrialClock,
 };
 use super::{live::LiveState, outbox::Outbox, theme};
 use crate::console::text;
@@ -47,7 +53,7 @@ pub enum CameraLook {
 
 /// Camera and GPU objects of the view.
 #[derive(Debug)]
-#[expect(clippy::struct_excessive_bools, reason = "each is a switch of its own")]
+#[expect(clippy::struct_excessive_bools, reason = "each is a separate switch")]
 pub struct SceneView {
     pub smooth: bool,
     pub look: CameraLook,
@@ -56,6 +62,8 @@ pub struct SceneView {
     /// Draw the forces as arrows.
     pub arrows: bool,
     pub extras: Extras,
+    /// The trail of a released handle, in the demonstration.
+    pub(in crate::console) release: Option<ReleaseTrail>,
     /// Drawn in this frame.
     pub(in crate::console) is_seen: bool,
     camera: SceneCamera,
@@ -64,6 +72,7 @@ pub struct SceneView {
     /// Tip positions before the first tick.
     starts_m: [Option<Vector3<f64>>; SIDES],
     lead: MouseDrive,
+    trial: TrialClock,
     renderer: Option<Arc<GlRenderer>>,
     /// The last drawn scene; if nothing has changed, no new triangles are built, and a software renderer does not draw.
     drawn: Option<(SceneInputs, egui::PaintCallback)>,
@@ -90,11 +99,13 @@ impl Default for SceneView {
             figures: true,
             arrows: true,
             extras: Extras::default(),
+            release: None,
             is_seen: false,
             camera: SceneCamera::default(),
             set_for: None,
             starts_m: [None; SIDES],
             lead: MouseDrive::default(),
+            trial: TrialClock::default(),
             renderer: None,
             drawn: None,
             problem: None,
@@ -200,6 +211,9 @@ pub fn scene_ui(ui: &mut Ui, live: &LiveState, view: &mut SceneView, outbox: &mu
     for arm in &arms {
         labels(&painter, rect, live, &camera, arm, view);
     }
+    if let Some(trail) = &view.release {
+        release(&painter, rect, &camera, trail);
+    }
     if view.figures {
         readings(&painter, rect, live);
     }
@@ -209,7 +223,16 @@ pub fn scene_ui(ui: &mut Ui, live: &LiveState, view: &mut SceneView, outbox: &mu
     hint(&painter, rect, live, view);
     // The keys of a study trial are shown next to it, except those for the jaws.
     let reported_led = led.filter(|_| !view.lead.is_held || live.scene.objects.is_some());
-    training::line_ui(ui, rect, training::report(live, reported_led, reach), readings_width(live), view.figures);
+    let begins = view.lead.takes_begin();
+    let mut words = training::report(live, reported_led, reach);
+    // A recording does not say when its trial began, and a participant of a study reads the time beside the view.
+    if let (Some(words), Some(tick), false, false) =
+        (&mut words, live.first_tick(), live.is_shown_only(), view.lead.is_held)
+    {
+        let ended = live.training.as_ref().is_some_and(|training| training.ended);
+        *words = text::training::timed(view.trial.seconds(tick.t_s, begins, ended), words);
+    }
+    training::line_ui(ui, rect, words, readings_width(live), view.figures);
     // No hover texts in the Surgeon view or over the driven instrument.
     let pointed_at = response.hover_pos().filter(|_| view.figures && !response.dragged() && !leading);
     if let Some(words) = pointed_at.and_then(|pointer| pick::pick(pointer, rect, &camera, &live.scene, &arms)) {

@@ -4,7 +4,7 @@
 //! instruments, one is driven and the other one stays where it was left, including its jaws, until a key swaps them. Driving
 //! ends when the loop stops.
 
-use egui::{Button, Event, Key, PointerButton, Pos2, Rect, Response, RichText, Ui, Vec2, vec2};
+use egui::{Button, Event, Id, Key, PointerButton, Pos2, Rect, Response, RichText, Ui, UiBuilder, Vec2, vec2};
 use nalgebra::Vector3;
 use nima_machine::{
     messages::{Command, LoopState},
@@ -12,7 +12,7 @@ use nima_machine::{
 };
 
 use super::{LiveState, Outbox, SceneCamera, training};
-use crate::console::{text, theme};
+use crate::console::{steady_button::SteadyButton, text, theme};
 
 /// Motion per press of an arrow key, m.
 const STEP_M: f32 = 0.001;
@@ -42,6 +42,8 @@ pub(super) struct MouseDrive {
     lowest_m: f32,
     /// Always driven, without an end: the hand of a study's participant.
     pub(super) is_held: bool,
+    /// The trial was restarted in this frame.
+    begins: bool,
 }
 
 impl MouseDrive {
@@ -57,6 +59,11 @@ impl MouseDrive {
     /// Returns the instrument whose tip is marked, even before the first tick of a participant's trial.
     pub(super) fn marked(self) -> Option<Side> {
         (self.is_on() || self.is_held).then_some(self.side)
+    }
+
+    /// Returns whether the trial was restarted since the last call.
+    pub(super) const fn takes_begin(&mut self) -> bool {
+        std::mem::replace(&mut self.begins, false)
     }
 
     /// Ends mouse control.
@@ -138,12 +145,18 @@ impl MouseDrive {
         }
         let place = Rect::from_min_size(rect.right_bottom() - vec2(250.0, 46.0), vec2(150.0, 34.0));
         let text = if self.is_on() { text::field::LEAD_END.get() } else { text::field::LEAD.get() };
-        let button =
-            Button::selectable(self.is_on(), RichText::new(text).font(theme::strong(14.0))).frame_when_inactive(true);
+        let is_on = self.is_on();
+        let look = |text: String, _: bool| {
+            let text = RichText::new(text).font(theme::strong(14.0));
+            Button::selectable(is_on, text).frame_when_inactive(true).min_size(place.size())
+        };
         let asked = if self.is_held {
             !self.is_on() && live.first_tick().is_some()
         } else {
-            let clicked = ui.add_enabled_ui(runs, |ui| ui.put(rect.intersect(place), button).clicked()).inner;
+            let may = if runs { Ok(()) } else { Err(text::commands::NOT_NOW.get()) };
+            let button = SteadyButton { id: Id::unique("drive"), label: text, meaning: "", may, waits_s: 0.0 };
+            let room = UiBuilder::new().max_rect(rect.intersect(place));
+            let clicked = ui.scope_builder(room, |ui| button.ui(ui, look)).inner;
             clicked || !ui.ctx().text_edit_focused() && ui.input(|input| input.key_pressed(Key::M))
         };
         if runs && asked {
@@ -214,7 +227,8 @@ impl MouseDrive {
             Key::G if live.scene.objects.is_some() => self.jaws(live, outbox),
             Key::X if is_searched => outbox.push(Command::Task(self.side, TaskAction::Mark)),
             Key::D if is_searched => outbox.push(Command::Task(self.side, TaskAction::End)),
-            Key::N if (is_searched || on_wire) && !self.is_held => {
+            Key::N if (is_searched || on_wire || live.scene.objects.is_some()) && !self.is_held => {
+                self.begins = true;
                 outbox.push(Command::Task(self.side, TaskAction::Begin));
             }
             _ => {}

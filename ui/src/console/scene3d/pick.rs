@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use nima_simulation::scene::Scene;
 
 use super::{
-    SceneCamera,
+    SceneCamera, arrows,
     stage::{self, StageArm},
 };
 use crate::console::text;
@@ -47,7 +47,7 @@ fn of_arm(
     ] {
         let Some(force_n) = force_n else { continue };
         let ends = [at(&base_m), at(&(base_m + force_n * stage::ARROW_M_PER_N))];
-        if let ([Some(from), Some(to)], true) = (ends, stage::has_arrow(&force_n))
+        if let ([Some(from), Some(to)], true) = (ends, arrows::has_arrow(&force_n))
             && distance(pointer, from, to) < 0.6 * REACH
         {
             return Some(text::field::arrow(name, &whose, force_n.norm(), force_n.into()));

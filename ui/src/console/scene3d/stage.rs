@@ -6,19 +6,15 @@ use nima_machine::rig::{SIDES, Side};
 use nima_simulation::scene::Scene;
 
 use super::{
+    arrows::{ClearTip, measured_arrow, rendered_arrow},
     mesh::{Material, Mesh, Paint},
     objects::{self, DisplayedObjects},
     shadows::Shadows,
     training,
 };
-use crate::console::theme;
 
 /// Length of a force arrow, m per N.
 pub const ARROW_M_PER_N: f32 = 0.017;
-/// A smaller force is drawn without an arrow, because that would show noise, N.
-const ARROW_MIN_N: f32 = 0.06;
-/// Force at which an arrow reaches its maximum length, N.
-const ARROW_MAX_N: f32 = 8.0;
 /// Radius of the instrument's shaft, m (a 5 mm instrument).
 pub const SHAFT_RADIUS_M: f32 = 0.0025;
 /// Width of the dent under a tip, m.
@@ -134,8 +130,9 @@ pub fn build(scene: &Scene, arms: &[StageArm], shown: Option<&DisplayedObjects>,
     // Draw front objects first, so that hidden pixels are not shaded.
     for StageArm { side, trocar_m, pose, .. } in arms {
         let [measured, rendered] = arrow_bases_m(pose, trocar_m, right);
-        pose.measured_n.iter().for_each(|force_n| measured_arrow(&mut mesh, measured, force_n));
-        rendered_arrow(&mut mesh, rendered, &pose.rendered_n);
+        let clear = ClearTip { tip_m: &pose.tip_m, eye_m };
+        pose.measured_n.iter().for_each(|force_n| measured_arrow(&mut mesh, measured, force_n, clear));
+        rendered_arrow(&mut mesh, rendered, &pose.rendered_n, clear);
         let tool = shown.and_then(|shown| {
             let jaws = objects::jaws(&mut mesh, scene, shown, *side, &pose.tip_m, &mut shadows);
             jaws.or_else(|| training::hoop(&mut mesh, scene, shown, (*side, &pose.tip_m, trocar_m), &mut shadows))
@@ -235,48 +232,6 @@ const SHAFT: Paint = Paint(Color32::from_rgb(0x6d, 0x76, 0x82), Material::Metal)
 pub fn arrow_bases_m(pose: &StagePose, trocar_m: &Vector3<f32>, right: &Vector3<f32>) -> [Vector3<f32>; 2] {
     let side = if (trocar_m - pose.tip_m).dot(right) > 0.0 { -1.0 } else { 1.0 };
     [0.0135, 0.0060].map(|away| pose.tip_m + right * (side * away) + Vector3::z() * 0.002)
-}
-
-/// Returns the size and direction of an arrow; `None` for a force too small to be shown, or not finite.
-fn size_and_direction(force_n: &Vector3<f32>) -> Option<(f32, Vector3<f32>)> {
-    let size_n = force_n.norm();
-    // A force far above the force limit would otherwise fill the view.
-    (size_n.is_finite() && size_n >= ARROW_MIN_N).then(|| (size_n.min(ARROW_MAX_N), force_n / size_n))
-}
-
-/// Returns whether the force is large enough for an arrow.
-pub fn has_arrow(force_n: &Vector3<f32>) -> bool {
-    size_and_direction(force_n).is_some()
-}
-
-/// Adds a plain shaft with one cone.
-fn measured_arrow(mesh: &mut Mesh, base: Vector3<f32>, force_n: &Vector3<f32>) {
-    let paint = Paint(theme::DARK.measured, Material::Plain);
-    let Some((size_n, along)) = size_and_direction(force_n) else { return };
-    let length = size_n * ARROW_M_PER_N;
-    let head = 0.007_f32.min(length * 0.6);
-    mesh.tube([base, base + along * (length - head)], [0.0011; 2], 14, paint);
-    mesh.tube([base + along * (length - head), base + along * length], [0.0030, 0.0], 18, paint);
-}
-
-/// Draws a beaded shaft with a double cone: the shape alone distinguishes it from the other arrow.
-fn rendered_arrow(mesh: &mut Mesh, base: Vector3<f32>, force_n: &Vector3<f32>) {
-    const BEAD_M: f32 = 0.0055;
-    let paint = Paint(theme::DARK.rendered, Material::Plain);
-    let Some((size_n, along)) = size_and_direction(force_n) else { return };
-    let length = size_n * ARROW_M_PER_N;
-    let head = 0.009_f32.min(length * 0.6);
-    let shaft = length - head;
-    let beads = (shaft / BEAD_M).ceil().max(1.0) as u32;
-    for bead in 0..beads {
-        let from = bead as f32 * shaft / beads as f32;
-        let to = from + 0.62 * shaft / beads as f32;
-        mesh.tube([base + along * from, base + along * to], [0.0016; 2], 14, paint);
-    }
-    for half in [0.0, 0.45] {
-        let from = shaft + head * half;
-        mesh.tube([base + along * from, base + along * (from + head * 0.55)], [0.0030, 0.0], 18, paint);
-    }
 }
 
 #[cfg(test)]

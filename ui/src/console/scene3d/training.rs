@@ -114,6 +114,24 @@ pub(super) fn board_of(scene: &Scene) -> Option<&nima_simulation::physics::Board
     under_pegs.or_else(|| scene.wire.as_ref().map(|setting| &setting.board))
 }
 
+/// Duration of a trial, on the loop's clock. It begins with the loop or with a restart, and ends with the task.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct TrialClock {
+    began_s: f64,
+    ended_s: Option<f64>,
+}
+
+impl TrialClock {
+    /// Returns the duration at this time, s; `begins`: the trial has just been restarted.
+    pub(super) fn seconds(&mut self, now_s: f64, begins: bool, ended: bool) -> f64 {
+        if begins || now_s < self.began_s {
+            *self = Self { began_s: if begins { now_s } else { 0.0 }, ended_s: None };
+        }
+        self.ended_s = ended.then(|| self.ended_s.unwrap_or(now_s));
+        self.ended_s.unwrap_or(now_s) - self.began_s
+    }
+}
+
 /// Returns the progress of the trial as text, and the ring in reach of the driven instrument; `None` in a scene where
 /// it is unknown.
 pub(super) fn report(live: &LiveState, led: Option<Side>, reach: Option<JawReach>) -> Option<String> {
@@ -121,8 +139,11 @@ pub(super) fn report(live: &LiveState, led: Option<Side>, reach: Option<JawReach
     let is_led = led.is_some();
     if live.scene.objects.is_some() {
         let jaws = led.map(|side| text::training::jaws(side_name(side), reach.map(name_of)));
-        let Training { passed, placed, dropped, .. } = training;
-        return Some(text::training::rings(jaws.as_deref(), [*passed, *placed, *dropped], training.ended));
+        let Training { passed, placed, dropped, fraction, .. } = training;
+        let rings = live.scene.objects.as_ref().map_or(0, |setting| setting.rings.len());
+        // Each ring goes to the other side and back.
+        let left = (2.0 * rings as f64 * (1.0 - fraction)).round() as u32;
+        return Some(text::training::rings(jaws.as_deref(), [left, *passed, *placed, *dropped], training.ended));
     }
     if live.scene.wire.is_some() {
         return Some(text::training::wire(training.touches, training.fraction, training.ended, is_led));
@@ -197,6 +218,15 @@ mod tests {
     }
 
     #[test]
+    fn the_clock_of_a_trial_stops_at_its_end_and_begins_again() {
+        let mut clock = TrialClock::default();
+        assert_eq!(clock.seconds(12.0, false, false), 12.0);
+        assert_eq!(clock.seconds(20.0, true, false), 0.0);
+        assert_eq!([clock.seconds(25.0, false, true), clock.seconds(30.0, false, true)], [5.0, 5.0]);
+        assert_eq!(clock.seconds(1.0, false, false), 1.0, "another loop");
+    }
+
+    #[test]
     fn neither_picture_nor_words_tell_of_lumps_before_the_trial_is_over() {
         let during = live("find_lumps", &marked(false));
         let after = live("find_lumps", &marked(true));
@@ -209,20 +239,29 @@ mod tests {
         assert_eq!(report(&during, led, None), report(&wrong, led, None));
         assert!(vertices(&after) > vertices(&during) + 1000, "the lumps");
         assert_eq!(report(&after, None, None).unwrap(), "Lumps found: 1 of 5, false marks: 2");
-        assert_eq!(report(&live("lumps", &marked(true)), None, None), None, "nobody looks for them");
+        assert_eq!(report(&live("lumps", &marked(true)), None, None), None, "they are not searched");
     }
 
     #[test]
     fn what_jaws_hold_is_told_with_what_was_counted() {
         let training = Training { passed: 3, placed: 2, dropped: 1, ..Training::default() };
         let report = |training: &Training, led, reach| report(&live("rings", training), led, reach).unwrap();
-        let counted = "passed 3, placed 2, dropped 1";
+        let counted = "12 to go, passed 3, placed 2, dropped 1";
         assert_eq!(report(&training, None, None), format!("Rings: {counted}"));
         let left = |reach| report(&training, Some(Side::Left), reach);
-        assert_eq!(left(None), format!("Left instrument. Rings: {counted}"));
-        assert_eq!(left(Some(JawReach::Held(4))), format!("Left instrument holds a ring. Rings: {counted}"));
-        assert_eq!(left(Some(JawReach::Above(4))), format!("Left instrument above a ring. Rings: {counted}"));
-        assert_eq!(left(Some(JawReach::Between(4))), format!("Left instrument around a ring. Rings: {counted}"));
+        assert_eq!(left(None), format!("Left instrument. Rings: {counted} (N restarts)"));
+        assert_eq!(
+            left(Some(JawReach::Held(4))),
+            format!("Left instrument holds a ring. Rings: {counted} (N restarts)")
+        );
+        assert_eq!(
+            left(Some(JawReach::Above(4))),
+            format!("Left instrument above a ring. Rings: {counted} (N restarts)")
+        );
+        assert_eq!(
+            left(Some(JawReach::Between(4))),
+            format!("Left instrument around a ring. Rings: {counted} (N restarts)")
+        );
         let done = Training { passed: 12, placed: 12, ended: true, ..Training::default() };
         assert_eq!(report(&done, None, None), "Task done. Rings: passed 12, placed 12, dropped 0");
     }

@@ -22,8 +22,8 @@ pub(in crate::console) const LOOP_SILENT_CURE: Text = Text::of(
     "Not-Halt am Arm drücken, dann Konsole neu starten",
 );
 pub(in crate::console) const PERIODS_MISSED_CURE: Text = Text::of(
-    "Close other programs, or grant real-time priority (see Timing)",
-    "Andere Programme schließen oder Echtzeit-Priorität erteilen (siehe Timing)",
+    "Close other programs, or grant real-time priority (see the Timing panel, F2)",
+    "Andere Programme schließen oder Echtzeit-Priorität erteilen (siehe Panel Timing, F2)",
 );
 pub(in crate::console) const BIAS_MOVED_CURE: Text = Text::of(
     "Make sure nothing touches the tool; if the alarm stays, calibrate gravity again",
@@ -38,8 +38,13 @@ pub(in crate::console) const ACKNOWLEDGE: Text = Text::of("Acknowledge (A)", "Qu
 pub(in crate::console) const ACKNOWLEDGED_HOVER: Text =
     Text::of("Acknowledged; the cause is still present", "Quittiert; die Ursache besteht noch");
 pub(in crate::console) const LIST_NOTE: Text = Text::of(
-    "The last 50 alarms, active ones first, then newest first. Times are UTC, with the loop's own clock in brackets, as in the traces.",
-    "Die letzten 50 Alarme, aktive zuerst, dann neueste. Zeiten in UTC, in Klammern die Uhr der Regelung wie in den Verläufen.",
+    "The last 50 alarms, active ones first, then newest first. In brackets the time on the loop's own clock, as in the traces.",
+    "Die letzten 50 Alarme, aktive zuerst, dann neueste. In Klammern die Zeit auf der Uhr der Regelung wie in den Verläufen.",
+);
+pub(in crate::console) const COPY: Text = Text::of("Copy list", "Liste kopieren");
+pub(in crate::console) const COPY_HOVER: Text = Text::of(
+    "Copies all alarms with times and remedies as text",
+    "Kopiert alle Alarme mit Zeiten und Abhilfen als Text",
 );
 pub(in crate::console) const LIST_EMPTY: Text = Text::of("No alarms so far", "Bisher keine Alarme");
 pub(in crate::console) const ACKNOWLEDGE_HOVER: Text = Text::of(
@@ -63,7 +68,8 @@ pub(in crate::console) fn fault(cause: &str, t_s: f64) -> String {
     text_format!("{cause} (at {t_s:.1} s)", "{cause} (bei {t_s:.1} s)")
 }
 
-/// Returns the next step of the operator while there is no alarm; `closed`: reason why the loop cannot be engaged.
+/// Returns the next step of the operator while there is no alarm; `closed`: reason why the loop cannot be engaged, a sentence
+/// without a full stop.
 pub(in crate::console) fn next_step(state: LoopState, closed: Option<&str>) -> String {
     match (state, closed) {
         (LoopState::Idle, None) => {
@@ -73,7 +79,7 @@ pub(in crate::console) fn next_step(state: LoopState, closed: Option<&str>) -> S
             )
         }
         (LoopState::Idle, Some(why)) => {
-            text_format!("No active alarms. Not engaged: {why}", "Keine Alarme. Nicht gekoppelt: {why}")
+            text_format!("No active alarms; not engaged. {why}.", "Keine Alarme; nicht gekoppelt. {why}.")
         }
         (LoopState::Stopped, _) => text_format!(
             "No active alarms. Stopped: press Release stop, then Engage.",
@@ -90,6 +96,17 @@ pub(in crate::console) fn device(name: &str, cause: &str) -> String {
 pub(in crate::console) fn device_lost(name: &str, cause: &str) -> String {
     text_format!("Lost connection to the {name}: {cause}", "{name} ausgefallen: {cause}")
 }
+
+/// Returns the text about a watchdog that the ready check trips on purpose.
+pub(in crate::console) fn tested(cause: &str) -> String {
+    text_format!(
+        "Ready check: the watchdog tripped as intended ({cause})",
+        "Startprüfung: der Watchdog hat wie gewollt ausgelöst ({cause})"
+    )
+}
+
+pub(in crate::console) const TESTED_CURE: Text =
+    Text::of("Not a fault: press Release stop to continue", "Keine Störung: mit Halt lösen geht es weiter");
 
 pub(in crate::console) fn fault_of(name: &str, cause: &str) -> String {
     format!("{cause} ({name})")
@@ -121,8 +138,8 @@ pub(in crate::console) const UNCHECKED_CAUSE: Text = Text::of(
     "Keine bestandene Startprüfung mit diesen Geräten in den letzten 12 Stunden",
 );
 pub(in crate::console) const UNCHECKED_CURE: Text = Text::of(
-    "Press Ready check in the Calibration panel before you engage",
-    "Vor dem Koppeln im Panel Kalibrierung Startprüfung drücken",
+    "Press Ready check in the Calibration panel (F2) before you engage",
+    "Vor dem Koppeln im Panel Kalibrierung (F2) Startprüfung drücken",
 );
 
 pub(in crate::console) fn player_failed(status: &impl std::fmt::Display) -> String {
@@ -130,15 +147,12 @@ pub(in crate::console) fn player_failed(status: &impl std::fmt::Display) -> Stri
 }
 
 pub(in crate::console) fn player_not_started(error: &impl std::fmt::Display) -> String {
-    text_format!("The alarm sound could not be played: {error}", "Alarmton nicht abspielbar: {error}")
+    text_format!("The alarm sound could not be played: {error}", "Alarmton nicht abspielbar: „{error}“")
 }
 
 /// Returns the alarm in the strip; `remarks` mention further alarms and the acknowledgement.
-pub(in crate::console) fn pinned(priority: &str, cause: &str, began_utc: &str, remarks: &str) -> String {
-    text_format!(
-        "{priority}: {cause}, since {began_utc} UTC{remarks}",
-        "{priority}: {cause}, seit {began_utc} UTC{remarks}"
-    )
+pub(in crate::console) fn pinned(priority: &str, cause: &str, began: &str, remarks: &str) -> String {
+    text_format!("{priority}: {cause}, since {began}{remarks}", "{priority}: {cause}, seit {began}{remarks}")
 }
 
 pub(in crate::console) fn others(count: usize) -> String {
@@ -147,4 +161,16 @@ pub(in crate::console) fn others(count: usize) -> String {
 
 pub(in crate::console) fn entry(began: &str, until: &str, priority: &str, standing: &str) -> String {
     text_format!("{began} to {until}: {priority}, {standing}", "{began} bis {until}: {priority}, {standing}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The reason is a separate sentence: after a colon its capital letter would look wrong.
+    #[test]
+    fn the_reason_why_the_loop_is_not_engaged_is_a_separate_sentence() {
+        let next = next_step(LoopState::Idle, Some("Close the calibration wizard first"));
+        assert_eq!(next, "No active alarms; not engaged. Close the calibration wizard first.");
+    }
 }

@@ -73,7 +73,7 @@ pub(crate) fn closed(state: LoopState) -> Option<&'static str> {
             Some(word("The loop is stopped: press Release stop", "Die Regelung ist angehalten: Halt lösen drücken"))
         }
         LoopState::Disconnected => {
-            Some(word("A device is missing: see the Devices panel", "Ein Gerät fehlt: siehe Panel Geräte"))
+            Some(word("A device is missing: see the Devices panel (F2)", "Ein Gerät fehlt: siehe Panel Geräte (F2)"))
         }
         LoopState::Ready => Some(word(
             "About to engage: align hand and tip, or press Stop",
@@ -119,9 +119,9 @@ pub(in crate::console) fn other_sensors_are_calibrated(sensor: &str, tool: &str,
 pub(in crate::console) fn sensors_are_exchanged(right: &WristId, left: &WristId) -> String {
     text_format!(
         "The right and left sensors, or their tools in the rig file, are swapped: {} is calibrated with {}, and \
-         {} with {}. Swap the cables, or press Swap sensors in the Devices panel.",
+         {} with {}. Swap the cables, or press Swap sensors in the Devices panel (F2).",
         "Rechter und linker Sensor oder ihre Instrumente in der Aufbaudatei sind vertauscht: {} ist mit {} kalibriert \
-         und {} mit {}: Kabel tauschen, oder im Panel Geräte Sensoren tauschen.",
+         und {} mit {}: Kabel tauschen, oder im Panel Geräte (F2) Sensoren tauschen.",
         right.serial_number,
         left.tool,
         left.serial_number,

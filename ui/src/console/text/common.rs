@@ -12,3 +12,11 @@ pub(in crate::console) fn hand(side: &str) -> String {
     let after = side.to_lowercase();
     text_format!("{side} hand", "Hand {after}")
 }
+
+/// Returns the reason why a click on a button with another label did not act.
+pub(in crate::console) fn has_become(label: &str) -> String {
+    text_format!(
+        "The button has become \u{201c}{label}\u{201d} meanwhile: press it again if you mean that",
+        "Die Schaltfläche heißt inzwischen „{label}“: bei Bedarf noch einmal drücken"
+    )
+}

@@ -123,7 +123,7 @@ pub(in crate::console) fn none_then(why: Option<&str>) -> String {
             word("No image in the two seconds before this time", "Kein Bild in den zwei Sekunden vor diesem Moment")
                 .to_owned()
         },
-        |why| text_format!("The image at this time cannot be read: {why}", "Bild dieses Moments nicht lesbar: {why}"),
+        |why| text_format!("The image at this time cannot be read: {why}", "Bild dieses Moments nicht lesbar: „{why}“"),
     )
 }
 

@@ -70,7 +70,7 @@ pub(in crate::console) fn led(side: &str) -> String {
 pub(in crate::console) fn not_drawn(problem: &str) -> String {
     text_format!(
         "This graphics driver cannot draw the 3-D view: {problem}",
-        "Dieser Grafiktreiber kann die 3-D-Ansicht nicht zeichnen: {problem}"
+        "Dieser Grafiktreiber kann die 3-D-Ansicht nicht zeichnen: „{problem}“"
     )
 }
 

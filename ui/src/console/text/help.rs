@@ -168,7 +168,7 @@ pub(in crate::console) const GLOSSARY: [(Text, Text); 25] = [
     (
         Text::of("Interlock", "Verriegelung"),
         Text::of(
-            "The state machine that permits force and motion, and the only part that does.",
+            "The only part that permits force and motion: a state machine.",
             "Der Zustandsautomat, der als einziger Kraft und Bewegung freigibt.",
         ),
     ),

@@ -20,13 +20,31 @@ pub(in crate::console) fn ahead(delay_ms: f64) -> String {
     )
 }
 
-/// Returns the mean errors of the two curves of the trend, with their unit.
-pub(in crate::console) fn trend(seconds: usize, mode: &str, error: &str, dfr: &str) -> String {
+/// Like [`ahead`], for an audience.
+pub(in crate::console) fn ahead_plain(delay_ms: f64) -> String {
     text_format!(
-        "Last {seconds} s: {mode} {error}, delayed DFR {dfr}",
-        "Letzte {seconds} s: {mode} {error}, verzögerte DFR {dfr}"
+        "Mean error {delay_ms:.0} ms ahead; line: direct reflection",
+        "Mittlerer Fehler {delay_ms:.0} ms voraus; Linie: direkte Reflexion"
     )
 }
+
+/// Name of direct force reflection, for an audience.
+pub(in crate::console) const DIRECT: Text = Text::of("Direct reflection", "Direkte Reflexion");
+
+/// Returns how many times the error of direct reflection an error is, for an audience.
+pub(in crate::console) fn times_direct(times: &str) -> String {
+    text_format!("{times}x direct", "{times}x direkt")
+}
+
+/// Returns the mean errors of the two curves of the trend, with their unit.
+pub(in crate::console) fn trend(seconds: usize, mode: &str, error: &str, reference: &str, dfr: &str) -> String {
+    text_format!(
+        "Last {seconds} s: {mode} {error}, {reference} {dfr}",
+        "Letzte {seconds} s: {mode} {error}, {reference} {dfr}"
+    )
+}
+
+pub(in crate::console) const DELAYED_DFR: Text = Text::of("delayed DFR", "verzögerte DFR");
 
 pub(in crate::console) fn trend_name(trend: &str) -> String {
     text_format!("Error over the last minutes. {trend}", "Fehler der letzten Minuten. {trend}")

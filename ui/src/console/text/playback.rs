@@ -276,7 +276,7 @@ pub(in crate::console) fn reported(path: &Path) -> String {
 }
 
 pub(in crate::console) fn not_reported(why: &str) -> String {
-    text_format!("No report: {why}", "Kein Bericht: {why}")
+    text_format!("No report: {why}", "Kein Bericht: „{why}“")
 }
 
 pub(in crate::console) fn saved(path: &Path) -> String {
@@ -292,5 +292,5 @@ pub(in crate::console) fn taken(path: &Path) -> String {
 }
 
 pub(in crate::console) fn not_deleted(path: &Path, error: &io::Error) -> String {
-    text_format!("{} was not deleted: {error}", "{} wurde nicht gelöscht: {error}", path.display())
+    text_format!("{} was not deleted: {error}", "{} wurde nicht gelöscht: „{error}“", path.display())
 }

@@ -18,9 +18,9 @@ pub(in crate::console) const BY_ITSELF: Text =
 pub(in crate::console) const PASSED: Text = Text::of("Ready: all points passed", "Bereit: alle Punkte bestanden");
 pub(in crate::console) const FAILED: Text =
     Text::of("Not ready: see the points that failed", "Nicht bereit: siehe fehlerhafte Punkte");
-pub(in crate::console) const CLOSE: Text = Text::of("Continue to the monitor", "Weiter zum Monitor");
+pub(in crate::console) const CLOSE: Text = Text::of("Continue to Engage", "Weiter zum Koppeln");
 pub(in crate::console) const CLOSE_HOVER: Text =
-    Text::of("Returns to the page on which you engage the rig", "Zurück zur Seite, auf der der Aufbau gekoppelt wird");
+    Text::of("Returns to the monitor, where Engage is highlighted", "Zurück zum Monitor, wo Koppeln hervorgehoben ist");
 pub(in crate::console) const AGAIN: Text = Text::of("Repeat failed points", "Fehlerhafte Punkte wiederholen");
 pub(in crate::console) const AGAIN_HOVER: Text =
     Text::of("Passed points keep their results", "Bestandene Punkte behalten ihr Ergebnis");

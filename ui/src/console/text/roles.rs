@@ -39,18 +39,18 @@ pub(in crate::console) const DEMO_DIRECT_CAPTION: Text = Text::of(
 pub(in crate::console) const DEMO_LINEAR: Text = Text::of("Linear impedance", "Lineare Impedanz");
 pub(in crate::console) const DEMO_LINEAR_CAPTION: Text = Text::of(
     "The link now carries the tissue's impedance instead of the force: stiffness, damping and mass of the last \
-     300 ms. The force is computed without delay from the hand's own motion (IMA). It is wrong if the impedance \
+     300 ms. The force is computed without delay from the hand's own motion. It is wrong if the impedance \
      has changed since.",
     "Statt der Kraft überträgt die Verbindung jetzt die Impedanz des Gewebes: Steifigkeit, Dämpfung und Masse der \
-     letzten 300 ms. Die Kraft folgt ohne Verzögerung aus der Bewegung der Hand selbst (IMA). Sie ist falsch, wo sich \
+     letzten 300 ms. Die Kraft folgt ohne Verzögerung aus der Bewegung der Hand selbst. Sie ist falsch, wo sich \
      die Impedanz seither geändert hat.",
 );
 pub(in crate::console) const DEMO_LITERAL: Text = Text::of("Nonlinear, as in the paper", "Nichtlinear, wie im Artikel");
 pub(in crate::console) const DEMO_LITERAL_CAPTION: Text = Text::of(
-    "The paper's method: a polynomial of degree 1 to 5 (NIMA). It fits past data so closely that it predicts \
+    "The paper's method: a polynomial of degree 1 to 5. It fits past data so closely that it predicts \
      poorly, and it renders no force while the hand is at rest. The gates keep its excessive forces from the \
      hand.",
-    "Die Methode des Artikels: ein Polynom vom Grad 1 bis 5 (NIMA). Es passt sich vergangenen Daten so genau an, \
+    "Die Methode des Artikels: ein Polynom vom Grad 1 bis 5. Es passt sich vergangenen Daten so genau an, \
      dass es schlecht vorhersagt, und in Ruhe der Hand stellt es keine Kraft dar. Die Sperren halten überhöhte \
      Kräfte von der Hand fern.",
 );
@@ -137,6 +137,24 @@ pub(in crate::console) const BARS_HOVER: Text = Text::of(
      die größte Kraft, die die Hand erreichen kann.",
 );
 
+pub(in crate::console) const FIGURES: Text = Text::of("Gain and degree", "Verstärkung und Grad");
+pub(in crate::console) const FIGURES_HOVER: Text = Text::of(
+    "How much of the force reaches the hand, and how often each degree of the polynomial was identified in the last \
+     minutes",
+    "Wie viel der Kraft die Hand erreicht, und wie oft in den letzten Minuten jeder Grad des Polynoms identifiziert wurde",
+);
+pub(in crate::console) const DEGREE: Text = Text::of("Degree of the polynomial", "Grad des Polynoms");
+
+/// Returns the accessible name of the bars of the degrees.
+pub(in crate::console) fn degrees(percents: &str) -> String {
+    text_format!("Degrees 1 to 5 in the last minutes: {percents}", "Grade 1 bis 5 der letzten Minuten: {percents}")
+}
+
+/// Returns the travel of a released handle, at the end of its drawn trail.
+pub(in crate::console) fn travel(travel_mm: f64) -> String {
+    format!("{travel_mm:.0} mm")
+}
+
 /// Returns the travel of the handle since its release, mm.
 pub(in crate::console) fn handle_went(travel_mm: f64) -> String {
     if travel_mm < 10.0 {
@@ -188,9 +206,6 @@ pub(in crate::console) fn meaning_and_key(meaning: &str, key: &str) -> String {
     text_format!("{meaning}\nKey {key}", "{meaning}\nTaste {key}")
 }
 
-/// Shown instead of a bar whose force is unknown.
-pub(in crate::console) const UNKNOWN: Text = Text::of("unknown", "unbekannt");
-
 /// `measured` has its unit, or is "unknown".
 pub(in crate::console) fn hand(name: &str, measured: &str, rendered_n: f64, ceiling_n: f64) -> String {
     text_format!(
@@ -201,4 +216,9 @@ pub(in crate::console) fn hand(name: &str, measured: &str, rendered_n: f64, ceil
 
 pub(in crate::console) fn ceiling(ceiling_n: f64) -> String {
     text_format!("ceiling {ceiling_n:.0} N", "Höchstkraft {ceiling_n:.0} N")
+}
+
+/// Returns the text for a ceiling that acts.
+pub(in crate::console) fn limited(ceiling_n: f64) -> String {
+    text_format!("limited to {ceiling_n:.0} N", "auf {ceiling_n:.0} N begrenzt")
 }

@@ -66,13 +66,17 @@ pub(in crate::console) fn hover(shown: &DisplayState) -> String {
 }
 
 pub(in crate::console) fn no_folder(folder: &Path, error: &io::Error) -> String {
-    text_format!("the folder {} cannot be used: {error}", "der Ordner {} ist nicht nutzbar: {error}", folder.display())
+    text_format!(
+        "the folder {} cannot be used: {error}",
+        "der Ordner {} ist nicht nutzbar: „{error}“",
+        folder.display()
+    )
 }
 
 pub(in crate::console) fn not_kept(path: &Path, error: &io::Error) -> String {
     text_format!(
         "cannot change whether {} is kept: {error}",
-        "die Sicherung von {} lässt sich nicht ändern: {error}",
+        "die Sicherung von {} lässt sich nicht ändern: „{error}“",
         path.display()
     )
 }

@@ -8,27 +8,27 @@ pub(in crate::console) const LAYOUT_LOST: Text = Text::of(
 );
 
 pub(in crate::console) fn not_read(error: &impl std::fmt::Display) -> String {
-    text_format!("The settings cannot be read: {error}", "Einstellungen nicht lesbar: {error}")
+    text_format!("The settings cannot be read: {error}", "Einstellungen nicht lesbar: „{error}“")
 }
 
 pub(in crate::console) fn not_kept(error: &impl std::fmt::Display) -> String {
-    text_format!("The settings cannot be saved: {error}", "Einstellungen nicht speicherbar: {error}")
+    text_format!("The settings cannot be saved: {error}", "Einstellungen nicht speicherbar: „{error}“")
 }
 
 pub(in crate::console) fn layout_lost(error: &impl std::fmt::Display) -> String {
-    format!("{LAYOUT_LOST} ({error})")
+    text_format!("{LAYOUT_LOST} ({error})", "{LAYOUT_LOST} („{error}“)")
 }
 
 pub(in crate::console) fn set_aside(error: &impl std::fmt::Display, name: &str) -> String {
     text_format!(
         "The settings file was damaged ({error}); it was renamed to {name}, and the defaults are used",
-        "Die Einstellungsdatei war beschädigt ({error}); sie heißt jetzt {name}, es gelten die Standardwerte"
+        "Die Einstellungsdatei war beschädigt („{error}“); sie heißt jetzt {name}, es gelten die Standardwerte"
     )
 }
 
 pub(in crate::console) fn damaged(error: &impl std::fmt::Display) -> String {
     text_format!(
         "The settings file is damaged ({error}); the defaults are used",
-        "Die Einstellungsdatei ist beschädigt ({error}); es gelten die Standardwerte"
+        "Die Einstellungsdatei ist beschädigt („{error}“); es gelten die Standardwerte"
     )
 }

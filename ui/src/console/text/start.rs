@@ -179,7 +179,7 @@ pub(in crate::console) fn of_devices(count: usize, emulated: bool) -> String {
 }
 
 pub(in crate::console) fn unusable(cause: &str) -> String {
-    text_format!("Cannot be used: {cause}", "Nicht nutzbar: {cause}")
+    text_format!("Cannot be used: {cause}", "Nicht nutzbar: „{cause}“")
 }
 
 pub(in crate::console) fn taken(path: &std::path::Path) -> String {

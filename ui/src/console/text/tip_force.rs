@@ -303,13 +303,13 @@ pub(in crate::console) fn doubt(percent: f64, rows: usize) -> String {
 }
 
 pub(in crate::console) fn no_thread(error: &impl std::fmt::Display) -> String {
-    text_format!("The background task could not be started: {error}", "Hintergrundaufgabe nicht gestartet: {error}")
+    text_format!("The background task could not be started: {error}", "Hintergrundaufgabe nicht gestartet: „{error}“")
 }
 
 pub(in crate::console) fn not_written(path: &std::path::Path, error: &impl std::fmt::Display) -> String {
     text_format!(
         "The recording could not be written to {}: {error}",
-        "Die Aufzeichnung ließ sich nicht nach {} schreiben: {error}",
+        "Die Aufzeichnung ließ sich nicht nach {} schreiben: „{error}“",
         path.display()
     )
 }

@@ -1,6 +1,9 @@
 //! The top bar: state, stop, engage, refusals.
 
-use crate::language::{Text, text_format};
+use crate::{
+    console::alarms::sentence,
+    language::{Text, text_format},
+};
 
 pub(in crate::console) const NIMA_CONSOLE: Text = Text::of("NIMA Console", "NIMA-Konsole");
 pub(in crate::console) const RESEARCH_ONLY: Text =
@@ -33,6 +36,8 @@ pub(in crate::console) const FAULT_MEANING: Text = Text::of(
     "Stopped by a fault: no force, no motion. The loop stays stopped until you press Release stop.",
     "Durch eine Störung angehalten: keine Kraft, keine Bewegung. Bleibt so, bis der Halt gelöst wird.",
 );
+pub(in crate::console) const JUST_CHANGED: Text =
+    Text::of("The state has just changed: press again", "Der Zustand hat gerade gewechselt: noch einmal drücken");
 pub(in crate::console) const STOP: Text = Text::of("Stop", "Halt");
 pub(in crate::console) const STOP_HOVER: Text = Text::of(
     "Sets the force to zero and stops the follower at once. Space or Escape does the same.",
@@ -54,10 +59,11 @@ pub(in crate::console) const NOT_ENGAGED: Text = Text::of("Not engaged", "Nicht 
 pub(in crate::console) const NOT_RELEASED: Text = Text::of("Not released", "Nicht gelöst");
 pub(in crate::console) const NOT_SET: Text = Text::of("Not set", "Nicht gesetzt");
 
-/// Returns the refused command; `arm` is empty for a rig with one arm.
+/// Returns the refused command; `arm` is empty for a rig with one arm. The remedy is a separate sentence, because the
+/// remedies of devices begin with a capital.
 pub(in crate::console) fn refused(what: &str, arm: &str, cause: &str, cure: &str) -> String {
     let arm = if arm.is_empty() { String::new() } else { text_format!(" ({arm} arm)", " (Arm {arm})") };
-    format!("{what}{arm}: {cause}; {cure}")
+    format!("{what}{arm}: {cause}. {}", sentence(cure))
 }
 
 pub(in crate::console) fn device(name: &str, cause: &str) -> String {

@@ -40,14 +40,27 @@ pub(in crate::console) fn jaws(side: &str, with_ring: Option<&str>) -> String {
     text_format!("{side} instrument{with_ring}", "Instrument {after}{with_ring}")
 }
 
-/// Peg transfer; `led` from [`jaws`]. Counts of rings passed in mid-air, placed on pegs and dropped.
-pub(in crate::console) fn rings(led: Option<&str>, [passed, placed, dropped]: [u32; 3], ended: bool) -> String {
-    let done = if ended { word("Task done. ", "Fertig. ") } else { "" };
+/// Peg transfer; `led` from [`jaws`]. Ways that rings still have to go (there and back), and counts of rings passed in
+/// mid-air, placed on pegs and dropped.
+pub(in crate::console) fn rings(led: Option<&str>, [left, passed, placed, dropped]: [u32; 4], ended: bool) -> String {
+    let keys = if led.is_some() { word(" (N restarts)", " (N startet neu)") } else { "" };
     let led = led.map(|words| format!("{words}. ")).unwrap_or_default();
+    if ended {
+        return text_format!(
+            "Task done. {led}Rings: passed {passed}, placed {placed}, dropped {dropped}{keys}",
+            "Fertig. {led}Ringe: übergeben {passed}, gesetzt {placed}, gefallen {dropped}{keys}"
+        );
+    }
     text_format!(
-        "{done}{led}Rings: passed {passed}, placed {placed}, dropped {dropped}",
-        "{done}{led}Ringe: übergeben {passed}, gesetzt {placed}, gefallen {dropped}"
+        "{led}Rings: {left} to go, passed {passed}, placed {placed}, dropped {dropped}{keys}",
+        "{led}Ringe: noch {left}, übergeben {passed}, gesetzt {placed}, gefallen {dropped}{keys}"
     )
+}
+
+/// Returns the line of a trial with its time, minutes and seconds.
+pub(in crate::console) fn timed(seconds: f64, words: &str) -> String {
+    let seconds = seconds.max(0.0) as u64;
+    format!("{}:{:02}   {words}", seconds / 60, seconds % 60)
 }
 
 pub(in crate::console) const CHOOSE_MATCHED: Text = Text::of(

@@ -6,6 +6,8 @@ use crate::language::{Text, text_format};
 use crate::report_text::within;
 
 pub(crate) const LAST_STEP: Text = Text::of("This is the last step", "Das ist der letzte Schritt");
+pub(crate) const FIRST_STEP: Text = Text::of("This is the first step", "Das ist der erste Schritt");
+pub(crate) const NOTHING_RECORDED: Text = Text::of("Nothing is recorded yet", "Noch nichts aufgezeichnet");
 pub(crate) const NEEDS_CHECKS: Text = Text::of(
     "A check has not passed yet",
     "Eine Prüfung ist noch nicht \
@@ -86,7 +88,14 @@ pub(in crate::console) const FINE: Text = Text::of("passed", "OK");
 pub(in crate::console) const WAITING: Text = Text::of("waiting", "wartet");
 pub(in crate::console) const NO_RESULT: Text = Text::of("No result", "Kein Ergebnis");
 pub(in crate::console) const FOLLOWING_CHECK: Text = Text::of("Next: ready check", "Weiter: Startprüfung");
-pub(in crate::console) const DONE: Text = Text::of("(done)", "(fertig)");
+pub(in crate::console) const DONE: Text = Text::of("done", "fertig");
+pub(in crate::console) const NEEDS_GOAL: Text =
+    Text::of("The goal of this step is not met yet", "Das Ziel dieses Schritts ist noch nicht erreicht");
+pub(in crate::console) const ANYWAY: Text = Text::of("Continue with less", "Mit weniger fortfahren");
+pub(in crate::console) const ANYWAY_HOVER: Text = Text::of(
+    "Continues with what is recorded so far; the result may be less accurate, or not accepted",
+    "Geht mit dem bisher Aufgezeichneten weiter; das Ergebnis kann ungenauer sein oder nicht angenommen werden",
+);
 
 pub(in crate::console) fn tilt_off(tilt_deg: f64) -> String {
     text_format!(

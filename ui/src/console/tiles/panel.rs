@@ -74,7 +74,7 @@ panels! {
         Safety: Kind::list(&text::SAFETY, &text::SAFETY_HOVER, KNOBS),
         /// Mode, gain, delay, dead band.
         Feedback: Kind::list(&text::FEEDBACK, &text::FEEDBACK_HOVER, KNOBS),
-        /// Calibrations in force, and buttons for the wizards.
+        /// Active calibrations, and buttons for the wizards.
         Calibrations: Kind::list(&text::CALIBRATION, &text::CALIBRATION_HOVER, KNOBS),
         /// The devices of the rig.
         Devices: Kind::list(&text::DEVICES, &text::DEVICES_HOVER, DEVICES),

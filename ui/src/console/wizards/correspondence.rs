@@ -17,7 +17,8 @@ use super::{
     checks::{check_line, switch_ui, waiting_line},
     drawings::{progress, sphere_image},
     frame::{Wizard, WizardFrame, WizardRequest, WizardStep},
-    report::{WizardReport, result_ui, verdict_line},
+    guide::beside,
+    report::{WizardReport, result_ui, verdict_card, verdict_line},
 };
 use crate::{
     console::{
@@ -81,13 +82,17 @@ impl CorrespondenceWizard {
 
     fn fit(&mut self) {
         let enough = self.session.pushes() >= PUSHES_MIN;
-        self.report = enough.then(|| self.session.report().map_err(|error| error.to_string()));
+        self.report = enough.then(|| self.session.report().map_err(|error| crate::report_text::quoted(&error)));
         self.frame.saved = None;
     }
 
     /// Returns the next direction to request: first those without a push, then all in turn.
     fn wanted(&self) -> PushTarget {
         self.session.target().unwrap_or(TARGETS[self.session.pushes() % TARGETS.len()])
+    }
+
+    fn push(&self) -> Prompt {
+        Prompt::Push { direction: UnitVector3::new_normalize(self.wanted().push_in_world) }
     }
 
     fn good_report(&self) -> Option<&CorrespondenceReport> {
@@ -159,23 +164,25 @@ impl CorrespondenceWizard {
         let count = self.session.pushes();
         let wanted = self.wanted();
         card(ui, text::correspondence::PUSH_TITLE.get(), text::correspondence::PUSH_HOVER.get(), |ui| {
-            ui.label(RichText::new(sentence(wanted.name)).font(theme::strong(19.0)));
-            let (fraction, words) = if self.sources.is_some() {
-                phase_text(&self.session.phase())
-            } else {
-                (0.0, text::correspondence::PHASE_WRIST_SILENT.get().to_owned())
-            };
-            progress(ui, text::correspondence::PUSH_PROGRESS.get(), fraction, &words);
-            ui.add_space(6.0);
-            let directions = TARGETS.map(|target| target.push_in_world);
-            let taken = self.session.taken_in_world();
-            sphere_image(
-                ui,
-                text::correspondence::DIRECTIONS_IMAGE.get(),
-                &directions,
-                &taken,
-                Some(wanted.push_in_world),
-            );
+            beside(ui, &self.push(), None, |ui| {
+                ui.label(RichText::new(sentence(wanted.name)).font(theme::strong(19.0)));
+                let (fraction, words) = if self.sources.is_some() {
+                    phase_text(&self.session.phase())
+                } else {
+                    (0.0, text::correspondence::PHASE_WRIST_SILENT.get().to_owned())
+                };
+                progress(ui, text::correspondence::PUSH_PROGRESS.get(), fraction, &words);
+                ui.add_space(6.0);
+                let directions = TARGETS.map(|target| target.push_in_world);
+                let taken = self.session.taken_in_world();
+                sphere_image(
+                    ui,
+                    text::correspondence::DIRECTIONS_IMAGE.get(),
+                    &directions,
+                    &taken,
+                    Some(wanted.push_in_world),
+                );
+            });
             let fraction = count as f64 / PUSHES_ASKED as f64;
             progress(
                 ui,
@@ -200,7 +207,8 @@ impl CorrespondenceWizard {
                     ui.label(small(text::correspondence::SO_FAR_EMPTY.get()));
                 }
             }
-            if ui.add_enabled(count > 0, Button::new(text::correspondence::REMOVE_LAST.get())).clicked() {
+            let remove = ui.add_enabled(count > 0, Button::new(text::correspondence::REMOVE_LAST.get()));
+            if remove.on_disabled_hover_text(text::wizards::NOTHING_RECORDED.get()).clicked() {
                 self.session.undo();
                 self.fit();
             }
@@ -261,7 +269,7 @@ impl Wizard for CorrespondenceWizard {
 
     fn prompt(&self) -> Prompt {
         if self.frame.step == PUSHES {
-            return Prompt::Push { direction: UnitVector3::new_normalize(self.wanted().push_in_world) };
+            return self.push();
         }
         Prompt::Rest
     }
@@ -323,7 +331,7 @@ fn phase_text(phase: &CorrespondencePhase) -> (f64, String) {
 }
 
 fn verdict_ui(ui: &mut Ui, report: &CorrespondenceReport) {
-    card(ui, report.verdict.words(), text::correspondence::VERDICT_HOVER.get(), |ui| {
+    verdict_card(ui, report.verdict, text::correspondence::VERDICT_HOVER.get(), |ui| {
         ui.label(&report.reason);
         ui.add_space(4.0);
         let left_out = report.outliers.len();

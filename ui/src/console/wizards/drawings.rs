@@ -83,8 +83,14 @@ fn tool(painter: &Painter, centre: Pos2, scale: f32, world_from_s1: &UnitQuatern
     for side in [-0.08, 0.08] {
         painter.line_segment([at(0.0, 0.0, 0.95), at(side, 0.0, 1.12)], stroke);
     }
-    // The sensor's x axis, which shows rotation about the shaft.
+    // The sensor's x axis, which shows rotation about the shaft; the required pose has the names of the sides.
     painter.line_segment([at(0.28, 0.0, 0.0), at(0.46, 0.0, 0.0)], stroke);
+    if !solid {
+        painter.line_segment([at(0.0, 0.28, 0.0), at(0.0, 0.46, 0.0)], stroke);
+        for (place, name) in [(at(0.62, 0.0, 0.0), "+x"), (at(0.0, 0.62, 0.0), "+y")] {
+            painter.text(place, Align2::CENTER_CENTER, name, theme::strong(14.0), colour);
+        }
+    }
 }
 
 /// Draws directions on a sphere: requested ones as rings, recorded ones as discs; hollow on the far side.

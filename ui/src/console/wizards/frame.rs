@@ -2,15 +2,16 @@
 
 use std::sync::Arc;
 
-use egui::{Button, RichText, TextEdit, Ui, vec2};
+use egui::{Button, Id, RichText, TextEdit, Ui, WidgetInfo, vec2};
 use nima_core::calibration::Judgement;
 use nima_endoscope::DecodedImage;
 use nima_machine::{messages::Tick, rig::Prompt};
 
 use super::{Binding, GoOn, SaveRequest, WizardPageRequest, report::judged_line};
 use crate::console::{
+    steady_button::{PATIENT_S, SteadyButton},
     text, theme,
-    widgets::{card, figure, next_button, small, weak},
+    widgets::{Sign, card, figure, next_button, sign_ui, small, weak},
 };
 use crate::language::Text;
 
@@ -100,7 +101,7 @@ pub(crate) trait Wizard: std::fmt::Debug {
     fn is_of_a_sensor(&self) -> bool {
         true
     }
-    /// Returns whether this step is complete.
+    /// Returns whether the goal of this step is met; only then the next step is offered.
     fn is_done(&self) -> bool {
         true
     }
@@ -179,43 +180,53 @@ fn steps_ui(ui: &mut Ui, steps: &[WizardStep], now: usize, going_on: &GoingOn) -
     let mut wish = None;
     ui.horizontal_wrapped(|ui| {
         for (i, step) in steps.iter().enumerate() {
+            if i < now {
+                let done = sign_ui(ui, Sign::Tick, 6.0, theme::now().engaged);
+                done.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, text::wizards::DONE.get()));
+            }
             let (font, colour) = if i == now {
                 (theme::strong(15.0), theme::now().text)
             } else {
                 (theme::regular(14.0), theme::now().text_weak)
             };
-            let mark = if i < now { text::wizards::DONE.get() } else { "" };
-            let words = format!("{}. {} {mark}", i + 1, step.name);
-            ui.label(RichText::new(words.trim_end()).font(font).color(colour)).on_hover_text(step.meaning.get());
+            let words = format!("{}. {}", i + 1, step.name);
+            ui.label(RichText::new(words).font(font).color(colour)).on_hover_text(step.meaning.get());
             ui.add_space(10.0);
         }
     });
     ui.label(small(text::wizards::step_of(now + 1, steps.len(), steps[now].meaning.get())));
     ui.horizontal_wrapped(|ui| {
         let size = vec2(96.0, 34.0);
-        if ui.add_enabled(now > 0, Button::new(text::wizards::BACK.get()).min_size(size)).clicked() {
+        let back = ui.add_enabled(now > 0, Button::new(text::wizards::BACK.get()).min_size(size));
+        if back.on_disabled_hover_text(text::wizards::FIRST_STEP.get()).clicked() {
             wish = Some(WizardRequest::GoTo(now - 1));
         }
         let last = now + 1 == steps.len();
-        let (name, goes_to) = match going_on.following.filter(|_| last) {
-            Some(following) => (following.words(), Some(WizardRequest::GoOn(following))),
-            None => (
-                text::wizards::NEXT.get().to_owned(),
-                (!last && going_on.may.is_ok()).then_some(WizardRequest::GoTo(now + 1)),
-            ),
+        let following = going_on.following.filter(|_| last);
+        let name = following.map_or_else(|| text::wizards::NEXT.get().to_owned(), GoOn::words);
+        let may = match (following, last) {
+            (Some(_), _) => Ok(()),
+            (None, true) => Err(text::wizards::LAST_STEP.get()),
+            (None, false) if going_on.is_done => going_on.may,
+            (None, false) => going_on.may.and(Err(text::wizards::NEEDS_GOAL.get())),
         };
-        let next = next_button(name, goes_to.is_some() && going_on.is_done).min_size(size);
-        let next = ui.add_enabled(goes_to.is_some(), next);
-        if next.clicked() {
-            wish = goes_to;
+        let next = SteadyButton { id: Id::unique(("next", now)), label: &name, meaning: "", may, waits_s: PATIENT_S };
+        if next.ui(ui, |name, enabled| next_button(name, enabled).min_size(size)) {
+            wish = Some(following.map_or(WizardRequest::GoTo(now + 1), WizardRequest::GoOn));
         }
-        if let (Err(reason), false) = (going_on.may, last) {
-            next.on_disabled_hover_text(reason);
+        if let (Err(reason), false) = (may, last) {
             ui.label(small(reason));
         }
         ui.add_space(24.0);
         if ui.button(text::wizards::START_OVER.get()).on_hover_text(text::wizards::START_OVER_HOVER.get()).clicked() {
             wish = Some(WizardRequest::StartOver);
+        }
+        // At the end of the row, so that nothing moves when it comes.
+        if !last && !going_on.is_done && going_on.may.is_ok() {
+            let anyway = ui.button(text::wizards::ANYWAY.get()).on_hover_text(text::wizards::ANYWAY_HOVER.get());
+            if anyway.clicked() {
+                wish = Some(WizardRequest::GoTo(now + 1));
+            }
         }
     });
     wish
@@ -235,12 +246,14 @@ fn save_card(ui: &mut Ui, binding: Option<&Binding>, proof: Option<&str>, frame:
             judged_line(ui, true, proof);
             let known = binding.is_none_or(|binding| !binding.sensor.is_empty());
             let next = !frame.is_saved();
-            let save =
-                ui.add_enabled(known, next_button(text::wizards::SAVE_AND_USE.get(), next).min_size(vec2(180.0, 36.0)));
-            if !known {
-                ui.label(small(text::calibrations::SENSOR_NOT_CONNECTED.get()));
+            let may = if known { Ok(()) } else { Err(text::calibrations::SENSOR_NOT_CONNECTED.get()) };
+            let label = text::wizards::SAVE_AND_USE.get();
+            let save = SteadyButton { id: Id::unique("save"), label, meaning: "", may, waits_s: PATIENT_S };
+            let wanted = save.ui(ui, |label, _| next_button(label, next).min_size(vec2(180.0, 36.0)));
+            if let Err(why) = may {
+                ui.label(small(why));
             }
-            save.clicked()
+            wanted
         } else {
             ui.label(weak(text::wizards::NOT_PROVEN.get()));
             override_ui(ui, [&mut frame.name, &mut frame.why])
@@ -265,4 +278,69 @@ fn override_ui(ui: &mut Ui, by: [&mut String; 2]) -> bool {
     ui.add_enabled(named, Button::new(text::wizards::SAVE_ANYWAY.get()).min_size(vec2(220.0, 36.0)))
         .on_disabled_hover_text(text::wizards::SAVE_ANYWAY_DISABLED_HOVER.get())
         .clicked()
+}
+
+#[cfg(test)]
+mod tests {
+    use egui_kittest::{Harness, kittest::Queryable as _};
+
+    use super::*;
+
+    const STEPS: [WizardStep; 3] = [
+        WizardStep { name: text::wizards::STEP_CHECK, meaning: text::wizards::STEP_CHECK },
+        WizardStep { name: text::wizards::STEP_RESULT, meaning: text::wizards::STEP_RESULT },
+        WizardStep { name: text::wizards::STEP_SAVE, meaning: text::wizards::STEP_SAVE },
+    ];
+
+    /// A wizard whose device is lost in three of four frames.
+    #[derive(Debug, Default)]
+    struct Flickering {
+        frame: WizardFrame,
+        drawn: usize,
+    }
+
+    impl Wizard for Flickering {
+        fn steps(&self) -> &'static [WizardStep] {
+            &STEPS
+        }
+        fn frame_mut(&mut self) -> &mut WizardFrame {
+            &mut self.frame
+        }
+        fn tick(&mut self, _: &Tick, _: f64) {}
+        fn prompt(&self) -> Prompt {
+            Prompt::Rest
+        }
+        fn may_go_on(&self, _: &Binding) -> Result<(), &'static str> {
+            if self.frame.step == 0 && self.drawn.is_multiple_of(4) { Ok(()) } else { Err("a device is missing") }
+        }
+        fn step_ui(&mut self, _: &mut Ui, _: &Binding) -> Option<WizardRequest> {
+            None
+        }
+        fn proof(&self) -> Option<String> {
+            None
+        }
+        fn made(&self, _: &Binding) -> Option<SaveRequest> {
+            None
+        }
+        fn start_over(&mut self) {}
+        fn refresh(&mut self, _: &Binding) {
+            self.drawn += 1;
+        }
+    }
+
+    #[test]
+    fn one_click_leads_to_the_next_step_whatever_frame_it_falls_into() {
+        for late in 0..4 {
+            let draw = |ui: &mut Ui, wizard: &mut Flickering| {
+                if theme::is_applied(ui.ctx()) {
+                    wizard_ui(wizard, ui, &Binding::default());
+                }
+            };
+            let mut window = Harness::builder().with_step_dt(0.03).build_ui_state(draw, Flickering::default());
+            window.run_steps(4 + late);
+            window.get_by_label("Next").click();
+            window.run_steps(8);
+            assert_eq!(window.state().frame.step, 1, "{late} frames later");
+        }
+    }
 }

@@ -20,14 +20,15 @@ use super::{
     checks::{check_ui, switch_ui},
     drawings::{pose_image, progress, sphere_image},
     frame::{Wizard, WizardFrame, WizardRequest, WizardStep},
-    report::{WizardReport, result_ui, verdict_line},
+    guide::beside,
+    report::{WizardReport, judged_line, result_ui, verdict_card, verdict_line},
 };
 use crate::{
     console::{
         text, theme,
         widgets::{card, figure, small},
     },
-    report_text::{ShortText as _, three_digits},
+    report_text::three_digits,
 };
 
 /// Limit of the 95th percentile of the force in free motion, N; includes the noise of a sample.
@@ -95,8 +96,8 @@ impl GravityWizard {
 
     /// Results from other poses are no longer valid.
     fn fit(&mut self) {
-        self.report =
-            (self.session.poses().len() >= POSES_MIN).then(|| self.session.report().map_err(|error| error.to_string()));
+        self.report = (self.session.poses().len() >= POSES_MIN)
+            .then(|| self.session.report().map_err(|error| crate::report_text::quoted(&error)));
         self.pass = None;
         self.frame.saved = None;
     }
@@ -167,7 +168,8 @@ impl GravityWizard {
                 ui.label(small(text::gravity::SO_FAR_EMPTY.get()));
             }
             self.touched_ui(ui);
-            if ui.add_enabled(count > 0, Button::new(text::gravity::REMOVE_LAST.get())).clicked() {
+            let remove = ui.add_enabled(count > 0, Button::new(text::gravity::REMOVE_LAST.get()));
+            if remove.on_disabled_hover_text(text::wizards::NOTHING_RECORDED.get()).clicked() {
                 self.session.undo();
                 self.fit();
             }
@@ -194,11 +196,13 @@ impl GravityWizard {
 
     fn free_motion_ui(&mut self, ui: &mut Ui) {
         card(ui, text::gravity::FREE_MOTION_TITLE.get(), text::gravity::FREE_MOTION_HOVER.get(), |ui| {
-            ui.label(text::gravity::FREE_MOTION_TASK.get());
-            ui.add_space(4.0);
-            let left =
-                self.left_n.map_or(text::gravity::NO_READING.get().to_owned(), |left_n| format!("{left_n:.2} N"));
-            ui.label(RichText::new(left).font(theme::strong(34.0)));
+            beside(ui, &Prompt::Wave, None, |ui| {
+                ui.label(RichText::new(text::gravity::FREE_MOTION_TASK.get()).font(theme::strong(19.0)));
+                ui.add_space(4.0);
+                let left =
+                    self.left_n.map_or(text::gravity::NO_READING.get().to_owned(), |left_n| format!("{left_n:.2} N"));
+                ui.label(RichText::new(left).font(theme::strong(34.0)));
+            });
             let Some(result) = self.pass_result() else { return };
             figure(ui, text::gravity::MEAN.get(), format!("{:.3} N", result.mean_n), text::gravity::MEAN_HOVER.get());
             figure(
@@ -214,7 +218,7 @@ impl GravityWizard {
                 text::gravity::TILT_HOVER.get(),
             );
             let words = if result.passed { text::gravity::PASSED.get() } else { text::gravity::NOT_PASSED.get() };
-            ui.label(RichText::new(format!("{words}: {}", result.reason)).font(theme::strong(15.0)));
+            judged_line(ui, result.passed, &format!("{words}: {}", result.reason));
             if ui.button(text::gravity::MEASURE_AGAIN.get()).clicked() {
                 self.pass = None;
                 self.go_to(FREE_MOTION);
@@ -307,7 +311,7 @@ impl Wizard for GravityWizard {
     fn go_to(&mut self, step: usize) {
         self.frame.step = step;
         if step == RESULT && self.report.is_none() {
-            self.report = Some(self.session.report().map_err(|error| error.to_string()));
+            self.report = Some(self.session.report().map_err(|error| crate::report_text::quoted(&error)));
         }
         if step == FREE_MOTION && self.pass.is_none() {
             let model = self.good_report().and_then(GravityReport::chosen_fit).map(|fit| fit.model);
@@ -346,7 +350,7 @@ fn report_figures(ui: &mut Ui, report: &GravityReport) {
 }
 
 fn verdict_ui(ui: &mut Ui, report: &GravityReport) {
-    card(ui, report.verdict.words(), text::gravity::VERDICT_HOVER.get(), |ui| {
+    verdict_card(ui, report.verdict, text::gravity::VERDICT_HOVER.get(), |ui| {
         ui.label(&report.reason);
         ui.add_space(4.0);
         figure(ui, text::gravity::STEP_POSES.get(), report.poses.to_string(), text::gravity::POSES_USED_HOVER.get());

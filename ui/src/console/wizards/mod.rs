@@ -10,6 +10,7 @@ pub(crate) mod drawings;
 pub(crate) mod frame;
 mod frames;
 mod gravity;
+mod guide;
 pub(crate) mod report;
 mod tip_force;
 
@@ -302,6 +303,11 @@ impl Wizards {
         if let Some(wizard) = self.camera.as_mut().filter(|_| self.open == Some(WizardKind::Camera)) {
             wizard.see(newest(), ctx);
         }
+    }
+
+    /// Returns whether the open wizard is followed by looking at the endoscope image.
+    pub fn looks_at_image(&self) -> bool {
+        self.open == Some(WizardKind::Frame(FrameKind::View)) && self.frames[FrameKind::View as usize].records()
     }
 
     /// Returns the current instruction to the person at the arm.

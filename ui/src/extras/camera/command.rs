@@ -210,7 +210,7 @@ fn as_text(report: &LensReport, taken: &NamedViews) -> String {
     let sd = &found.deviations;
     writeln!(
         text,
-        "focal length {:.2} +- {:.2} px horizontal, {:.2} px vertical   centre {:.2} +- {:.2}, {:.2} +- {:.2} px",
+        "focal length {:.2} ± {:.2} px horizontal, {:.2} px vertical   centre {:.2} ± {:.2}, {:.2} ± {:.2} px",
         lens.focal_px.x,
         sd.focal_px.x,
         lens.focal_px.y,
@@ -222,7 +222,7 @@ fn as_text(report: &LensReport, taken: &NamedViews) -> String {
     .ok();
     writeln!(
         text,
-        "k1 {:.5} +- {:.5}   k2 {:.5}   p1 {:.5}   p2 {:.5}",
+        "k1 {:.5} ± {:.5}   k2 {:.5}   p1 {:.5}   p2 {:.5}",
         lens.bend.k1, sd.bend.k1, lens.bend.k2, lens.bend.p1, lens.bend.p2
     )
     .ok();

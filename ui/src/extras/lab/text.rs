@@ -75,7 +75,7 @@ pub(super) const STABLE_GAIN_HOVER: Text = Text::of(
 );
 
 pub(super) fn not_started(error: &impl std::fmt::Display) -> String {
-    text_format!("The measurement could not be started: {error}", "Messung nicht gestartet: {error}")
+    text_format!("The measurement could not be started: {error}", "Messung nicht gestartet: „{error}“")
 }
 
 pub(super) fn measured(percent: f32) -> String {

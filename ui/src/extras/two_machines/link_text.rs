@@ -60,13 +60,13 @@ pub(super) fn link_trouble(state: LinkState) -> Option<[String; 2]> {
         LinkCause::HeldByAnother => [
             word("another console controls the follower", "eine andere Konsole steuert den Folgearm"),
             word(
-                "request control in the Link panel, or wait until the follower is free",
-                "Steuerung im Panel Verbindung anfragen oder warten, bis er frei ist",
+                "request control in the Link panel (F2), or wait until the follower is free",
+                "Steuerung im Panel Verbindung (F2) anfragen oder warten, bis er frei ist",
             ),
         ],
         LinkCause::NotAsked => [
             word("no console controls the follower", "keine Konsole steuert den Folgearm"),
-            word("request control in the Link panel", "Steuerung im Panel Verbindung anfragen"),
+            word("request control in the Link panel (F2)", "Steuerung im Panel Verbindung (F2) anfragen"),
         ],
         LinkCause::Refused(SessionRefusal::Full) => [
             word(

@@ -45,4 +45,5 @@ pub(super) const CONTROL_ASKED_CAUSE: Text = Text::of(
     "Eine andere Konsole fragt die Steuerung des \
      Folgearms an",
 );
-pub(super) const CONTROL_ASKED_CURE: Text = Text::of("Answer in the Link panel", "Im Panel Verbindung antworten");
+pub(super) const CONTROL_ASKED_CURE: Text =
+    Text::of("Answer in the Link panel (F2)", "Im Panel Verbindung (F2) antworten");

@@ -66,7 +66,7 @@ pub(super) fn choose(console: &mut Console, action: Action) {
     console.key_press(Key::Enter);
     console.run_steps(2);
     if action.leads_to_force() {
-        assert!(is_open(console), "{title} is asked once more");
+        assert!(is_open(console), "{title} asks for confirmation");
         console.key_press(Key::Enter);
         console.run_steps(2);
     }

@@ -90,8 +90,10 @@ impl Problem for HandEyeSettings {
     type Row = HandEyeRow;
     type Model = HandEyeFrames;
     const HYPOTHESIS: usize = 4;
+    /// Rows within this distance fit, whatever the median says: noise of tracker and arm together, at the tip.
     const FLOOR: RowMiss = RowMiss { place_m: Some(2.0e-3), angle_rad: Some(0.006) };
 
+    /// The cheaper solver, because a random hypothesis only has to separate good rows from bad ones.
     fn guess(&self, rows: &[HandEyeRow]) -> Option<HandEyeFrames> {
         solvers::park_martin(rows)
     }
@@ -181,8 +183,8 @@ impl Calibration for HandEyeSettings {
     }
 }
 
-/// Returns the arm and marker must both turn: a turning flange with a marker that does not turn is not a hand-eye
-/// motion, but a swapped arm or marker.
+/// Returns the missing motion, if any. Arm and marker must both turn: a turning flange with a marker that does not turn
+/// is not a hand-eye motion, but a swapped arm or marker.
 fn lacking(rows: &[HandEyeRow]) -> Option<FrameCause> {
     let flange = Turns::of(rows.iter().map(|row| &row.base_from_flange));
     let marker = Turns::of(rows.iter().map(|row| &row.c_from_m));

@@ -1,13 +1,14 @@
 //! Refinement of both frames: the Gauss-Newton method, damped after Levenberg and Marquardt, over two rigid motions.
 //!
-//! Compared with the tracker the joints are exact, so the errors are those of `B` relative to `Y^-1 A X`, position and
-//! angle each divided by its noise, as in Strobl and Hirzinger (IROS 2006). A step changes `X` to `X exp(x)` and `Y` to
-//! `Y exp(y)` (position, then rotation vector).
+//! Compared with the tracker the joints are exact, so the errors are in `B` relative to `Y^-1 A X`, position and angle
+//! each divided by its noise, as in Strobl and Hirzinger (IROS 2006). A step changes `X` to `X exp(x)` and `Y` to `Y
+//! exp(y)` (position, then rotation vector).
 
 use nalgebra::{Isometry3, Matrix3, SMatrix, SVector, UnitQuaternion, Vector3};
 
 use super::{HandEyeFrames, HandEyeRow};
 
+/// Two rigid motions with six unknowns each, because both frames are refined together.
 const UNKNOWNS: usize = 12;
 type Normal = SMatrix<f64, UNKNOWNS, UNKNOWNS>;
 type RefineStep = SVector<f64, UNKNOWNS>;
@@ -16,6 +17,7 @@ type Slopes = SMatrix<f64, 3, UNKNOWNS>;
 /// Noise of a tracker (0.25 mm and 0.02 degrees); only the ratio of the two matters here.
 const NOISE_M: f64 = 0.25e-3;
 const NOISE_RAD: f64 = 3.5e-4;
+/// Several times what is needed, so that only data without a solution reach it.
 const STEPS: usize = 10;
 /// A step that reduces the sum of squares by a smaller fraction is the last one. From the start given by a solver, this
 /// takes two or three steps.

@@ -5,7 +5,8 @@ use std::{
     sync::{Condvar, Mutex, MutexGuard, PoisonError},
 };
 
-/// Maximum number of waiting answers and states; beyond it the oldest is dropped.
+/// Maximum number of waiting answers and states; beyond it the oldest is dropped. A slow client gets the newest state
+/// instead of a growing backlog.
 const MAX_MESSAGES: usize = 64;
 
 /// Between the hub and a client's writer. Neither waits for the other: the lock is held only for adding or removing an

@@ -36,11 +36,11 @@ use tracing::{info, warn};
 pub use self::image::ImageProvider;
 use self::{audience::LoopWatcher, client::IgtlClient, hub::Hub, moment::HubMessage};
 
-/// The protocol's usual port.
+/// The protocol's usual port. 3D Slicer and PLUS use it by default.
 pub const PORT: u16 = 18_944;
 /// Device name of the endoscope images.
 pub const IMAGE_DEVICE: &str = "endoscope";
-/// Maximum number of clients.
+/// Maximum number of clients. More clients than a laboratory has programs are a fault or an attack.
 const MAX_CLIENTS: usize = 8;
 /// Maximum number of entries waiting for the hub: far more than arrive during a short delay.
 const QUEUE: usize = 256;

@@ -60,7 +60,7 @@ const RENDERED: &str = "rendered";
 const STATE: &str = "state";
 /// The device of the bundles, and of the text.
 pub(super) const BUNDLE: &str = "nima";
-/// Shafts shorter than this have no direction, m.
+/// Shafts shorter than this have no direction, m. A direction computed from less is mostly noise.
 const SHORTEST_M: f64 = 1e-3;
 
 pub(super) fn name(side: Side, what: &str) -> String {

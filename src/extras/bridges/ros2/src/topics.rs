@@ -181,7 +181,7 @@ fn wrench(header: Ros2Header, sensor: &SensorContent) -> Option<TopicData> {
     }))
 }
 
-/// Returns the states of CRTK; the subcodes are those of docs/bridges.md.
+/// Returns the states of CRTK; docs/bridges.md lists the subcodes.
 fn state(header: Ros2Header, status: &ContentStatus) -> TopicData {
     let state = match status.subcode {
         3 => "ENABLED",

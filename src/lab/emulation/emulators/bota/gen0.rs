@@ -40,7 +40,8 @@ pub(super) struct Gen0 {
     firmware: String,
 }
 
-/// A command with parameters has no terminator; it is complete after this much silence, s.
+/// A command with parameters has no terminator; it is complete after this much silence, s. Longer than the gap between
+/// two bytes at the slowest line speed, so that a command is not cut in two.
 const IDLE_S: f64 = 0.020;
 /// Raw gauge value per newton without the calibration, approximately.
 const RAW_PER_UNIT: f32 = 4321.0;

@@ -15,7 +15,8 @@ use crate::emulators::{
     wires::{tcp_for_one, terminal, udp},
 };
 
-/// Data without a command in this many bytes are garbage.
+/// Data without a command in this many bytes are garbage. A client at the wrong line speed sends bytes that never form
+/// a command; they must not fill the memory.
 const GARBAGE_BYTES: usize = 4096;
 
 pub(super) struct EmulatedSensor {

@@ -30,7 +30,8 @@ use crate::emulators::{EmulatedFault, Emulator};
 const LONGEST: usize = 2048;
 /// Interval between updates of the world while no instruction arrives, s.
 const ADVANCE_S: f64 = 0.001;
-/// A packet that pauses for longer is discarded, s.
+/// A packet that pauses for longer is discarded, s. Otherwise the beginning of a packet that was cut off would swallow
+/// the next one.
 const PAUSE_S: f64 = 0.050;
 
 /// A servo's shaft as seen by the world: before offset and sign.

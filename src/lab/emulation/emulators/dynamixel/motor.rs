@@ -11,7 +11,7 @@ use nima_devices::dynamixel::table::{
 
 /// Step of the control loop and of the integration, s.
 pub(super) const STEP_S: f64 = 1e-3;
-/// Full PWM.
+/// Full PWM. 100 % in the unit of the control table (ROBOTIS e-manual, "PWM Limit").
 const PWM_FULL: f64 = 885.0;
 
 #[derive(Clone, Copy, Debug)]

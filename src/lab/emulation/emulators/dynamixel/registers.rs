@@ -35,8 +35,11 @@ const fn at(address: u16, bytes: u16) -> DynamixelRegister {
 const U16: (i64, i64) = (0, 0xFFFF);
 const I16: (i64, i64) = (-0x8000, 0x7FFF);
 const I32: (i64, i64) = (-0x8000_0000, 0x7FFF_FFFF);
+/// From the ROBOTIS e-manual, "Homing Offset".
 const TURNS: (i64, i64) = (-1_044_479, 1_044_479);
+/// From the ROBOTIS e-manual, "Position PID Gain".
 const GAIN: (i64, i64) = (0, 16_383);
+/// From the ROBOTIS e-manual, "Profile Velocity".
 const PROFILE: (i64, i64) = (0, 32_767);
 
 use Access::{Eeprom, Ram, Read};

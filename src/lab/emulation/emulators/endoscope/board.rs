@@ -6,7 +6,8 @@ use nima_endoscope::{Checkerboard, Lens, board::Portrait};
 /// Returns the pose of the board in front of the lens at a time, s since the emulator began.
 pub type BoardHands = Box<dyn FnMut(f64) -> Isometry3<f64> + Send>;
 
-/// Duration of holding a pose, and of the movement to the next one, s.
+/// Duration of holding a pose, and of the movement to the next one, s. Long enough for the console to notice that the
+/// board is held still and to capture it.
 const HELD_S: f64 = 1.8;
 const WAY_S: f64 = 0.4;
 /// Fraction of the image width that the board covers, and margin around its corners, px.

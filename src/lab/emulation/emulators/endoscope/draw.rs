@@ -16,7 +16,7 @@ const AROUND: Colour = [52.0, 30.0, 32.0];
 const BEYOND_THE_LENS: [u8; 3] = [4, 4, 5];
 const STEEL: Colour = [176.0, 184.0, 194.0];
 const SHAFT: Colour = [98.0, 106.0, 118.0];
-/// The mark at the tip, in a colour that tissue never has.
+/// The mark at the tip, in a colour that tissue never has. Tests find the tip in an image by it.
 pub(super) const MARK: [u8; 3] = [0, 230, 70];
 /// Radius of the mark, of the shaft, and of a target's ring, m.
 const MARK_M: f64 = 0.001_2;
@@ -34,7 +34,8 @@ const PIECE_M: f64 = 0.002_5;
 const FOLLOWED_M: f64 = 0.25;
 /// A piece of a shaft extends slightly beyond its ends, as a fraction of its length, so that bent shafts have no gaps.
 const BESIDE: std::ops::RangeInclusive<f64> = -0.25..=1.25;
-/// Objects farther outside the image than this are not drawn, px.
+/// Objects farther outside the image than this are not drawn, px. A margin is needed because lens distortion moves
+/// points near the edge.
 const OUTSIDE_PX: f64 = 300.0;
 
 /// Draws images with three bytes per pixel.

@@ -7,15 +7,19 @@ use nima_endoscope::h264;
 
 /// Maximum request, bytes.
 const REQUEST_MAX: usize = 8 << 10;
-/// Maximum payload of a packet, bytes: fits into an Ethernet frame, as sent by cameras.
+/// Maximum payload of a packet, bytes: fits into an Ethernet frame, as sent by cameras. Larger ones would be split by
+/// the network, and one lost piece loses the packet.
 const PAYLOAD_MAX: usize = 1400;
+/// RFC 6184 prescribes 90 kHz for H.264.
 const CLOCK_HZ: f64 = 90_000.0;
+/// The first of the dynamic types (RFC 3551).
 const PAYLOAD_TYPE: u8 = 96;
+/// The letters "NIMA"; a receiver accepts any number (RFC 3550, SSRC).
 const SOURCE: u32 = 0x4e49_4d41;
-/// Time from 1900, the epoch of the reports, to 1970, s.
+/// Time from 1900, the epoch of the reports, to 1970, s. Seventy years with seventeen leap days (RFC 868).
 const SINCE_1900_S: u64 = 2_208_988_800;
 const REPORT_EVERY: Duration = Duration::from_secs(1);
-/// Type of a NAL unit that is sent in pieces.
+/// Type of a NAL unit that is sent in pieces. FU-A in RFC 6184.
 const FRAGMENTS: u8 = 28;
 
 /// A connection that speaks RTSP.

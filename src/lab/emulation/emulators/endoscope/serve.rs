@@ -20,7 +20,7 @@ use crate::emulators::{
     wires::{WireEnd, tcp},
 };
 
-/// Maximum request, bytes.
+/// Maximum request, bytes. A client must not fill the memory by a request that never ends.
 const REQUEST_MAX: usize = 8 << 10;
 /// Delay of a late image, s.
 const LATE_S: f64 = 0.4;

@@ -25,6 +25,7 @@ const PORT: u16 = 47_150;
 const SQUARE_MM: f64 = 10.0;
 /// Step of the hands, s, and maximum time made up after a pause.
 const STEP_S: f64 = 1e-3;
+/// Otherwise a paused process would move the hands at many times their speed.
 const CATCH_UP_S: f64 = 0.5;
 const SIDES_PX: std::ops::RangeInclusive<usize> = 64..=4096;
 

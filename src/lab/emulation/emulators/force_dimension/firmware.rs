@@ -49,6 +49,7 @@ const THRESHOLD_MM_S: u32 = 2000;
 const SPEED_OVER_S: f64 = 0.004;
 /// A speed above this results from a jump of the position, m/s, because the world was restarted.
 const JUMP_M_S: f64 = 50.0;
+/// Unit of the watchdog's duration, s: 125 us (`dhdSetWatchdog` in the manual of the SDK).
 const STEP_S: f64 = 125e-6;
 
 impl Firmware {

@@ -7,7 +7,7 @@
 mod firmware;
 pub(super) mod standalone;
 #[cfg(test)]
-#[expect(clippy::float_cmp, reason = "forces and positions arrive as they were sent, to the last bit")]
+#[expect(clippy::float_cmp, reason = "forces and positions arrive unchanged, to the last bit")]
 mod tests;
 
 use std::{io, path::PathBuf};

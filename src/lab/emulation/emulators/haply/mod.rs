@@ -33,7 +33,8 @@ const ANGLES: u8 = 0x1C;
 const POSITION: u8 = 0x2C;
 /// Code of the joints' answer.
 const JOINTS: u8 = 0x1B;
-/// An incomplete request is dropped after this time, s.
+/// An incomplete request is dropped after this time, s. Otherwise its rest would look like the beginning of the next
+/// one.
 const PAUSE_S: f64 = 0.02;
 
 /// Properties of an emulated handle.

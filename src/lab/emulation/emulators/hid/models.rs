@@ -5,7 +5,8 @@ use super::{
     WireSide, cap_codec, counts_of, pedal_codec,
 };
 
-/// Zero reports before a cap falls silent at rest.
+/// Zero reports before a cap falls silent at rest. Real caps send a few, so that a lost report does not leave the
+/// motion running.
 const ZEROS: u32 = 3;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -51,7 +51,7 @@ pub struct NdiProfile {
     /// Product, as in the first line of its version text.
     pub product: String,
     pub serial: String,
-    /// Freeze tag, by which hosts choose between `TX` and `BX`.
+    /// Freeze tag: hosts use it to choose between `TX` and `BX`.
     pub firmware: String,
 }
 

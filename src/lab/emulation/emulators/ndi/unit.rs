@@ -71,10 +71,6 @@ impl NdiUnit {
         Self { profile, network, ports, initialised: false, tracking: false, zero_s: 0.0, frozen_s: None, asked: 0 }
     }
 
-    pub const fn is_tracking(&self) -> bool {
-        self.tracking
-    }
-
     /// Returns the bytes written as the definition of this tool, by its number.
     pub fn definition(&self, number: usize) -> Option<&[u8]> {
         self.ports.iter().find(|port| port.number == number && port.written).map(|port| &port.definition[..])

@@ -103,7 +103,7 @@ mod tests {
     use super::*;
     use crate::release::ReleaseSituation;
 
-    /// The paper's values (0.01 +- 0.02 N, 0.2 +- 0.4 N, 64 %), to its digits.
+    /// The paper's values (0.01 ± 0.02 N, 0.2 ± 0.4 N, 64 %), to its digits.
     #[test]
     fn the_papers_figures_come_out_under_its_conditions_and_stop_with_longer_holds() {
         let recorded = Conditions::PAPER.record(1, 20.0).unwrap();

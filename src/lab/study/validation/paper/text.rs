@@ -25,7 +25,7 @@ impl PaperReport {
             "Inside the window, newest sample, all axes (N; recordings in their own unit), and windows for which a degree above 1 is chosen:\n\n\
              | | nonlinear | linear | less | above 1, choice = window | choice = next | nonlinear, reading = displacement |\n\
              |---|---|---|---|---|---|---|\n\
-             | the paper | 0.01 +- 0.02 | 0.2 +- 0.4 | 95 % | 64 % | | |\n",
+             | the paper | 0.01 ± 0.02 | 0.2 +- 0.4 | 95 % | 64 % | | |\n",
         );
         for PaperEntry { name, judged, .. } in &self.entries {
             let inside = &judged.in_window;
@@ -97,7 +97,7 @@ fn line(text: &mut String, name: &str, recipe: &str, errors_n: impl Iterator<Ite
 }
 
 fn pair(figures: &RenderingFigures) -> String {
-    format!("{} +- {}", number(figures.mae_n), number(figures.sd_n))
+    format!("{} ± {}", number(figures.mae_n), number(figures.sd_n))
 }
 
 /// Formats a number with three digits if they are readable, otherwise with an exponent.

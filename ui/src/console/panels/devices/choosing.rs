@@ -50,7 +50,7 @@ pub(super) fn chooser_ui(
                     }
                 }
                 Err(trouble) => {
-                    let words = text::devices::not_there(&sought.place, &trouble.to_string());
+                    let words = text::devices::not_there(&sought.place, &crate::report_text::quoted(trouble));
                     ui.add(Label::new(small(words)).wrap());
                 }
             }

@@ -10,7 +10,7 @@ use crate::console::{
     text, theme,
     widgets::{Sign, fitting_style, sign, sign_ui, small, weak},
 };
-use crate::report_text::{loss_text, role_name};
+use crate::report_text::{loss_text, quoted, role_name};
 
 /// Height of a line.
 const HEIGHT: f32 = 24.0;
@@ -163,7 +163,7 @@ fn rate_ui(ui: &mut Ui, health: &Health) {
 }
 
 fn trouble_ui(ui: &mut Ui, entry: &RosterEntry, trouble: &DeviceError) {
-    ui.add(Label::new(trouble.to_string()).wrap());
+    ui.add(Label::new(quoted(trouble)).wrap());
     ui.add(Label::new(small(trouble.cure())).wrap());
     if let (DeviceError::DeviceFault { .. }, Some(clear)) = (trouble, &entry.clear_faults) {
         let button = ui.add(Button::new(small(text::devices::CLEAR_FAULTS.get())).min_size(vec2(84.0, 22.0)));

@@ -196,7 +196,7 @@ fn a_window_that_draws_rarely_plays_as_fast_as_another() {
     past.play.speed = 1.0;
     past.toggle();
     past.step(60.0, false);
-    assert!((past.wanted_s - 2.0).abs() < 0.01, "{} s: what nobody saw is not skipped", past.wanted_s);
+    assert!((past.wanted_s - 2.0).abs() < 0.01, "{} s: data that were not shown are not skipped", past.wanted_s);
 }
 
 #[test]

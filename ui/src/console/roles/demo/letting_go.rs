@@ -7,7 +7,7 @@ use nima_machine::{
     rig::Side,
 };
 
-use crate::console::{live::LiveState, outbox::Outbox};
+use crate::console::{live::LiveState, outbox::Outbox, scene3d::release_trail::ReleaseTrail};
 
 /// The hand releases the handle when it presses with at least this force, N, and grips it again after this time, s.
 const LET_GO_N: f64 = 1.5;
@@ -30,6 +30,8 @@ pub(super) struct LettingGo {
     returned_s: Option<f64>,
     /// Travel of the handle after the last release, m.
     pub(super) travel_m: Option<f64>,
+    /// Its way.
+    pub(super) trail: ReleaseTrail,
 }
 
 impl LettingGo {
@@ -55,6 +57,7 @@ impl LettingGo {
                     travel_m: Some(0.0),
                     ..Self::default()
                 };
+                self.trail.add(tick.leader_m);
                 outbox.push(Command::LetGo(true));
             }
             return;
@@ -62,6 +65,7 @@ impl LettingGo {
         if tick.state == LoopState::Engaged {
             // After the engagement has ended, the hand's position is on another scale.
             self.travel_m = self.travel_m.map(|max_m| max_m.max((tick.leader_m - from_m).norm()));
+            self.trail.add(tick.leader_m);
         }
         // If the engagement ended for another reason, do not restart it.
         let ended = live.changes[Side::Right.index()].is_some_and(|change| change.why == TransitionCause::Absent);
@@ -80,6 +84,6 @@ impl LettingGo {
                 self.returned_s = Some(now_s);
             }
         }
-        *self = Self { travel_m: self.travel_m, returned_s: self.returned_s, ..Self::default() };
+        *self = Self { travel_m: self.travel_m, trail: self.trail, returned_s: self.returned_s, ..Self::default() };
     }
 }

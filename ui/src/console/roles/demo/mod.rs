@@ -9,7 +9,7 @@ mod state;
 #[cfg(test)]
 mod tests;
 
-use egui::{Button, CentralPanel, Frame, Label, Margin, Panel, RichText, Ui, vec2};
+use egui::{Align2, Button, CentralPanel, Frame, Label, Margin, Panel, Rect, RichText, Sense, Ui, WidgetInfo, vec2};
 use nima_machine::messages::LoopState;
 
 use self::{
@@ -23,13 +23,15 @@ use crate::console::{
     panels::{force_space_ui, force_traces_ui, horizon_ui},
     scene3d::scene_ui,
     text, theme, tiles,
-    widgets::{bar, card, small},
+    widgets::{bar, card, figure, small},
 };
 
 pub use self::state::DemoState;
 
 /// Below this width the chapters need two rows.
 const ONE_ROW: f32 = 1310.0;
+/// Height of the bars of the degrees.
+const DEGREES_HEIGHT: f32 = 20.0;
 /// Below this height the force-space plot is left out.
 const MIN_SPACE: f32 = 190.0;
 
@@ -46,8 +48,9 @@ pub(super) fn demo_ui(ui: &mut Ui, live: &mut LiveState, panels: &mut Panels, ou
         caption.show(ui, |ui| caption_ui(ui, live, &mut panels.demo));
     }
     Panel::right("figures").exact_size(348.0).resizable(false).frame(side).show(ui, |ui| {
+        card(ui, text::roles::FIGURES.get(), text::roles::FIGURES_HOVER.get(), |ui| figures_ui(ui, live));
         let panel = tiles::Panel::Horizon;
-        card(ui, panel.title(), panel.meaning(), |ui| horizon_ui(ui, live, outbox));
+        card(ui, panel.title(), panel.meaning(), |ui| horizon_ui(ui, live, outbox, true));
         let Panels { forces, space, .. } = panels;
         let room = vec2(ui.available_width(), ui.available_height().min(380.0));
         if room.y < MIN_SPACE {
@@ -60,8 +63,32 @@ pub(super) fn demo_ui(ui: &mut Ui, live: &mut LiveState, panels: &mut Panels, ou
         Panel::bottom("trace").exact_size(200.0).resizable(false).frame(frame).show(ui, |ui| {
             force_traces_ui(ui, live, &mut panels.forces, &[2]);
         });
+        panels.scene.release = Some(panels.demo.trail()).filter(|_| !live.is_shown_only());
         scene_ui(ui, live, &mut panels.scene, outbox);
+        panels.scene.release = None;
     });
+}
+
+/// Draws the gain, and how often each degree was identified.
+fn figures_ui(ui: &mut Ui, live: &LiveState) {
+    let meaning = text::roles::FIGURES_HOVER.get();
+    figure(ui, text::feedback::GAIN.get(), format!("{:.2}", live.gain()), meaning);
+    let fractions = live.degrees.fractions();
+    let any = fractions.iter().sum::<f64>() > 0.0;
+    let identified = live.first_tick().filter(|_| any).map(|tick| tick.identification.degree.to_string());
+    figure(ui, text::roles::DEGREE.get(), identified.unwrap_or_else(|| "–".to_owned()), meaning);
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), DEGREES_HEIGHT), Sense::hover());
+    let percents: Vec<String> = fractions.iter().skip(1).map(|fraction| format!("{:.0} %", 100.0 * fraction)).collect();
+    let words = text::roles::degrees(&percents.join(", "));
+    response.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, &words));
+    response.on_hover_text(&words);
+    let width = rect.width() / percents.len().max(1) as f32;
+    for (i, fraction) in fractions.iter().skip(1).enumerate() {
+        let column = Rect::from_min_size(rect.min + vec2(i as f32 * width, 0.0), vec2(width - 4.0, rect.height()));
+        bar(ui.painter(), column, *fraction, theme::now().selected);
+        let degree = (i + 1).to_string();
+        ui.painter().text(column.center(), Align2::CENTER_CENTER, degree, theme::regular(13.0), theme::now().text);
+    }
 }
 
 /// Draws the steps, the current text, and the progress.

@@ -10,7 +10,7 @@ use super::{
     script::{GovernorAction, SCRIPT, ScriptStep},
 };
 use crate::{
-    console::{live::LiveState, outbox::Outbox, text},
+    console::{live::LiveState, outbox::Outbox, scene3d::release_trail::ReleaseTrail, text},
     report_text::Remedy as _,
 };
 
@@ -102,6 +102,7 @@ impl DemoState {
         let ScriptStep { mode, delay_s, lets_go, .. } = SCRIPT[self.step];
         self.letting_go.close(live.first_tick().map_or(0.0, |tick| tick.t_s), outbox);
         self.letting_go.travel_m = None;
+        self.letting_go.trail = ReleaseTrail::default();
         // The previous chapter switched the governor off, or the next one needs it.
         if may_let_go(live) {
             outbox.push(Command::SetGovernor(lets_go != Some(GovernorAction::LeftOut)));
@@ -153,6 +154,11 @@ impl DemoState {
     /// Returns the progress of the chapter, 0 to 1.
     pub(super) const fn progress(&self) -> f64 {
         self.pace.progress(SCRIPT[self.step].seconds)
+    }
+
+    /// Returns the trail of the last released handle in this chapter.
+    pub(super) const fn trail(&self) -> ReleaseTrail {
+        self.letting_go.trail
     }
 
     /// Returns the explanation of the chapter, or the reason why the demonstration waits, with the remedy.

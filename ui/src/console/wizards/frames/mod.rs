@@ -122,6 +122,11 @@ impl FrameWizard {
         self.other_way
     }
 
+    /// Returns whether this step is before the result.
+    pub(super) const fn records(&self) -> bool {
+        self.frame.step < RESULT
+    }
+
     fn texts(&self) -> Texts {
         self.kind.texts(self.other_way)
     }
@@ -190,7 +195,7 @@ impl FrameWizard {
     }
 
     fn fit(&mut self) {
-        self.report = self.job.as_ref().map(|job| job.report().map_err(|error| error.to_string()));
+        self.report = self.job.as_ref().map(|job| job.report().map_err(|error| crate::report_text::quoted(&error)));
     }
 
     fn outcome(&self) -> Option<&Outcome> {

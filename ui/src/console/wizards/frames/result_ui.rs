@@ -15,8 +15,9 @@ use crate::{
         alarms::sentence,
         text::frames as texts,
         widgets::{card, figure, small},
+        wizards::report::verdict_card,
     },
-    report_text::{self, ShortText as _},
+    report_text,
 };
 
 /// Draws the result; `units` is the name of the recorded items.
@@ -28,7 +29,7 @@ pub(super) fn outcome_ui(
     units: &str,
 ) {
     let quality = outcome.quality();
-    card(ui, quality.verdict.words(), texts::VERDICT_HOVER.get(), |ui| {
+    verdict_card(ui, quality.verdict, texts::VERDICT_HOVER.get(), |ui| {
         ui.label(sentence(&report_text::cause(&quality.cause)));
         ui.add_space(4.0);
         figures_ui(ui, &quality, outcome.outliers(), units);

@@ -28,7 +28,7 @@ impl Fixture {
     fn new(kind: FrameKind) -> Self {
         let folder = tempfile::tempdir().unwrap();
         let simulated = RigConfig::load("simulated").unwrap();
-        // Records are bound to the simulated rig's sensor; the arm is that of the emulated rig.
+        // Records are bound to the simulated rig's sensor, on the emulated rig's arm.
         let active = ActiveCalibrations::load(Some(folder.path()), &simulated, &Scene::load("palpation").unwrap());
         let mut control = Loop::new(&simulated, &[Some(Calibrations::default()), None]).unwrap();
         let (_, [tick, _]) = control.step([None; SIDES], &Timing::default());
@@ -126,7 +126,7 @@ fn a_tip_is_recorded_judged_written_into_the_rig_file_and_undone() {
         assert_eq!(bench.wizard.taken(), i as usize + 1, "{:?}", bench.wizard.phase);
     }
     assert!(bench.wizard.is_complete());
-    assert_eq!(bench.wizard.prompt(), Prompt::Rest, "nothing more is asked for");
+    assert_eq!(bench.wizard.prompt(), Prompt::Rest, "nothing more is requested");
     bench.hold(&pivoting(tip_m + Vector3::repeat(0.05), 99), 1.0);
     assert_eq!(bench.wizard.taken(), 20, "what happens afterwards is not recorded");
     bench.next();
@@ -249,7 +249,7 @@ fn a_pause_and_a_new_start_of_the_loop_record_nothing_wrong() {
     bench.hold(&pivoting(tip_m, 0), 0.3);
     bench.tick.t_s = 0.0;
     bench.hold(&pivoting(tip_m, 0), 0.4);
-    assert_eq!(bench.wizard.taken(), 0, "a pose does not go on over a new start of the loop");
+    assert_eq!(bench.wizard.taken(), 0, "a pose does not continue after a restart of the loop");
     bench.hold(&pivoting(tip_m, 0), 0.2);
     assert_eq!(bench.wizard.taken(), 1);
     bench.wizard.paused = true;

@@ -1,24 +1,23 @@
 //! The check: a new guided recording, then the network's errors compared with the paper's and with simpler methods.
 
-use egui::{Button, Grid, RichText, TextStyle, Ui, vec2};
+use egui::{Button, Grid, Id, RichText, TextStyle, Ui, vec2};
 use egui_plot::{AxisHints, Bar, BarChart, Corner, Legend, Line, LineStyle, MarkerShape, Plot, PlotPoints, Points};
 use nima_core::calibration::Verdict;
 use nima_core::tip_force::{FRICTION, NO_MODEL};
+use nima_machine::rig::Prompt;
 use nima_recording::tip_force::ROW_EVERY_S;
 use nima_training::EvaluationPart;
 
 use super::{
-    super::{drawings::progress, frame::WizardRequest},
+    super::{drawings::progress, frame::WizardRequest, guide::beside, report::verdict_card},
     Binding, CHECK_ROWS, CHECK_WORK, RECORD, TipForceWizard,
     job::{BIN_N, BINS, CheckResult},
-    take::words,
+    take::{drawn, words},
 };
-use crate::{
-    console::{
-        text, theme,
-        widgets::{card, figure, fitting_style, next_button, small, weak},
-    },
-    report_text::ShortText as _,
+use crate::console::{
+    steady_button::{PATIENT_S, SteadyButton},
+    text, theme,
+    widgets::{card, figure, fitting_style, next_button, small, weak},
 };
 
 const AXES: [&str; 3] = ["x", "y", "z"];
@@ -34,10 +33,13 @@ impl TipForceWizard {
         card(ui, text::tip_force::CHECK_TITLE.get(), text::tip_force::CHECK_HOVER.get(), |ui| {
             let work_s = CHECK_WORK as f64 * ROW_EVERY_S;
             let free_s = (CHECK_ROWS - CHECK_WORK) as f64 * ROW_EVERY_S;
-            ui.label(RichText::new(self.task(work_s, free_s)).font(theme::strong(18.0)));
-            if let Some(take) = &self.proof {
-                ui.label(text::tip_force::state(&take.phase_text()));
-            }
+            let drawn = if self.checked.is_some() { Prompt::Rest } else { drawn(self.proof.as_ref()) };
+            beside(ui, &drawn, None, |ui| {
+                ui.label(RichText::new(self.task(work_s, free_s)).font(theme::strong(18.0)));
+                if let Some(take) = &self.proof {
+                    ui.label(text::tip_force::state(&take.phase_text()));
+                }
+            });
             ui.horizontal(|ui| {
                 self.check_button_ui(ui, binding);
                 if ui
@@ -84,18 +86,24 @@ impl TipForceWizard {
             None if self.checked.is_some() => text::tip_force::CHECK_AGAIN.get(),
             None => text::tip_force::CHECK_START.get(),
         };
-        let may =
-            if self.judging.is_some() { Err(text::tip_force::CHECK_WAIT.get()) } else { self.may_record(binding) };
-        let next = !running && self.checked.is_none() && may.is_ok();
-        let button = next_button(RichText::new(text).font(theme::strong(16.0)), next).min_size(vec2(220.0, 40.0));
-        let response = ui.add_enabled(running || may.is_ok(), button);
-        if response.on_disabled_hover_text(may.err().unwrap_or_default()).clicked() {
+        let may = match running {
+            true => Ok(()),
+            false if self.judging.is_some() => Err(text::tip_force::CHECK_WAIT.get()),
+            false => self.may_record(binding),
+        };
+        let next = !running && self.checked.is_none();
+        let check = SteadyButton { id: Id::unique("check"), label: text, meaning: "", may, waits_s: PATIENT_S };
+        let wanted = check.ui(ui, |text, enabled| {
+            let label = RichText::new(text).font(theme::strong(16.0));
+            next_button(label, next && enabled).min_size(vec2(220.0, 40.0))
+        });
+        if wanted {
             match &mut self.proof {
                 Some(take) if running => take.running = false,
                 _ => self.start_check(binding),
             }
         }
-        if let (Err(reason), false) = (may, running) {
+        if let Err(reason) = may {
             ui.label(small(reason));
         }
     }
@@ -103,7 +111,7 @@ impl TipForceWizard {
 
 fn verdict_ui(ui: &mut Ui, checked: &CheckResult) {
     let check = &checked.check;
-    card(ui, check.judgement.verdict.words(), text::tip_force::VERDICT_HOVER.get(), |ui| {
+    verdict_card(ui, check.judgement.verdict, text::tip_force::VERDICT_HOVER.get(), |ui| {
         let words = text::tip_force::verdict(&check.judgement.reason);
         ui.label(RichText::new(words).font(theme::strong(14.0)));
         if check.judgement.verdict != Verdict::Accepted {

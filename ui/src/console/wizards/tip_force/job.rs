@@ -125,7 +125,7 @@ pub(super) struct TrainingOrder {
 
 /// Returns the path of a recording of this kind.
 pub(super) fn path_of(store: &Store, kind: &str, sensor: &str) -> Result<PathBuf, String> {
-    store.path_of(kind, sensor, "csv").map_err(|error| error.to_string())
+    store.path_of(kind, sensor, "csv").map_err(|error| crate::report_text::quoted(&error))
 }
 
 fn write(recorder: &TipForceRecorder, path: &Path, keeps: bool) -> Result<(), String> {
@@ -143,9 +143,10 @@ pub(super) fn train(order: TrainingOrder, curves: &Mutex<Curves>, cancel: &Atomi
     let path = path_of(&store, "tip-force-data", &sensor)?;
     write(&recorder, &path, keep_previous)?;
     drop(recorder);
-    let data = DataSet::read(&[path], &Selection::default()).map_err(|error| error.to_string())?;
+    let data = DataSet::read(&[path], &Selection::default()).map_err(|error| crate::report_text::quoted(&error))?;
     let report = |now: &TrainingProgress| look(curves).add(now);
-    train_model(&data, &settings, [Some(sensor), Some(tool)], cancel, &report).map_err(|error| error.to_string())
+    train_model(&data, &settings, [Some(sensor), Some(tool)], cancel, &report)
+        .map_err(|error| crate::report_text::quoted(&error))
 }
 
 /// Bins of the histogram of predictions without contact, and their width, N.
@@ -179,8 +180,9 @@ pub(super) fn judge(
     let path = path_of(store, "tip-force-check", sensor)?;
     write(recorder, &path, true)?;
     let mut estimator = Estimator::new(model);
-    let data = DataSet::read(&[path], &Selection::of(estimator.model())).map_err(|error| error.to_string())?;
-    let (mut check, evaluation) = check(&mut estimator, &data).map_err(|error| error.to_string())?;
+    let data = DataSet::read(&[path], &Selection::of(estimator.model()))
+        .map_err(|error| crate::report_text::quoted(&error))?;
+    let (mut check, evaluation) = check(&mut estimator, &data).map_err(|error| crate::report_text::quoted(&error))?;
     if let (Some(goal), Verdict::Accepted) = (narrow, check.judgement.verdict) {
         check.judgement.verdict = Verdict::InsufficientMotion;
         // The reason is stored in the file, hence in English.

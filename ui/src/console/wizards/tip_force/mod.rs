@@ -330,7 +330,7 @@ impl Wizard for TipForceWizard {
 
     fn is_done(&self) -> bool {
         match self.frame.step {
-            RECORD => self.rows() >= ENOUGH_ROWS && self.lacking().is_none(),
+            RECORD => self.rows() > 0 && self.lacking().is_none(),
             TRAIN => self.trained.is_some(),
             CHECK => self.checked.is_some(),
             _ => true,
@@ -338,7 +338,8 @@ impl Wizard for TipForceWizard {
     }
 
     fn attend(&mut self, binding: &Binding) -> bool {
-        let done = self.is_done();
+        let enough = self.frame.step != RECORD || self.rows() >= ENOUGH_ROWS;
+        let done = self.is_done() && enough;
         match self.frame.step {
             _ if done => {}
             RECORD if !self.is_recording() && self.may_record(binding).is_ok() => self.start_recording(binding),

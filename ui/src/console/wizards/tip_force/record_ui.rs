@@ -1,6 +1,6 @@
 //! The recording page: the task, the number of rows, missing goals, and three maps of the coverage.
 
-use egui::{Align, Button, Layout, RichText, Ui, vec2};
+use egui::{Align, Button, Id, Layout, RichText, Ui, vec2};
 use nima_core::tip_force::TipForceCoverage;
 use nima_machine::rig::Prompt;
 use nima_recording::tip_force::ROW_EVERY_S;
@@ -10,11 +10,13 @@ use super::{
     super::{
         drawings::{AxisText, heat_map, progress},
         frame::{Wizard as _, WizardRequest},
+        guide::beside,
     },
     Binding, TRAIN, TipForceWizard,
-    take::words,
+    take::{drawn, words},
 };
 use crate::console::{
+    steady_button::{PATIENT_S, SteadyButton},
     text, theme,
     widgets::{card, next_button, small},
 };
@@ -31,7 +33,7 @@ impl TipForceWizard {
         let mut wish = None;
         let meaning = text::tip_force::RECORD_HOVER.get();
         card(ui, text::tip_force::RECORD_TITLE.get(), meaning, |ui| {
-            self.now_ui(ui);
+            beside(ui, &drawn(self.recording.as_ref()), None, |ui| self.now_ui(ui));
             ui.add_space(4.0);
             ui.horizontal(|ui| {
                 if self.start_ui(ui, running, rows, binding) {
@@ -93,15 +95,17 @@ impl TipForceWizard {
             (false, 0) => text::tip_force::RECORD_START.get(),
             (false, _) => text::tip_force::RECORD_GO_ON.get(),
         };
-        let may = self.may_record(binding);
-        let next = !running && !self.is_done() && may.is_ok();
-        let button = next_button(RichText::new(text).font(theme::strong(17.0)), next).min_size(vec2(220.0, 48.0));
-        let response = ui.add_enabled(running || may.is_ok(), button);
-        let reason = may.err().unwrap_or_default();
-        if !running && !reason.is_empty() {
+        let may = if running { Ok(()) } else { self.may_record(binding) };
+        let next = !running && !self.is_done();
+        let start = SteadyButton { id: Id::unique("record"), label: text, meaning: "", may, waits_s: PATIENT_S };
+        let wanted = start.ui(ui, |text, enabled| {
+            let label = RichText::new(text).font(theme::strong(17.0));
+            next_button(label, next && enabled).min_size(vec2(220.0, 48.0))
+        });
+        if let Err(reason) = may {
             ui.label(small(reason));
         }
-        response.on_disabled_hover_text(reason).clicked()
+        wanted
     }
 
     fn toggle(&mut self, running: bool, binding: &Binding) {

@@ -88,6 +88,11 @@ impl TipForceRecording {
     }
 }
 
+/// Returns the instruction whose drawing is shown, also before and between the recordings.
+pub(super) fn drawn(take: Option<&TipForceRecording>) -> Prompt {
+    take.map(|take| take.asked).filter(|asked| *asked != Prompt::Rest).unwrap_or(Prompt::Work)
+}
+
 pub(super) fn words(prompt: Prompt) -> &'static str {
     match prompt {
         Prompt::Work => text::tip_force::TASK_WORK.get(),
@@ -105,9 +110,9 @@ mod tests {
         let mut clock = RecordingClock::default();
         assert_eq!(clock.at(5.0), (5.0, false));
         assert_eq!(clock.at(5.001), (5.001, false));
-        assert_eq!(clock.at(9.0), (9.0, true), "nobody watched for four seconds");
+        assert_eq!(clock.at(9.0), (9.0, true), "the page was hidden for four seconds");
         let (now_s, broken) = clock.at(0.001);
-        assert!(broken && now_s > 9.0, "the loop was started anew");
+        assert!(broken && now_s > 9.0, "the loop was restarted");
         let (next_s, broken) = clock.at(0.002);
         assert!(!broken && (next_s - now_s - 0.001).abs() < 1e-9);
     }

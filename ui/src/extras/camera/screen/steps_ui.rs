@@ -1,6 +1,6 @@
 //! Content of each step.
 
-use egui::{Button, DragValue, RichText, TextEdit, Ui};
+use egui::{Button, DragValue, Id, RichText, TextEdit, Ui};
 use nima_camera::{LensReport, PlaceLack, ViewRequest};
 use nima_core::calibration::Verdict;
 use nima_endoscope::board::SQUARE_M;
@@ -11,7 +11,8 @@ use super::{
 };
 use crate::{
     console::{
-        theme,
+        steady_button::{PATIENT_S, SteadyButton},
+        text, theme,
         widgets::{card, figure, small},
         wizards::{
             checks::{check_line, switch_ui},
@@ -20,6 +21,7 @@ use crate::{
         },
     },
     extras::camera::{report_text, text as texts},
+    language::Text,
 };
 
 /// Maximum image width, points: with the map next to it and the instruction above it, it fits a window of 1280 x 720.
@@ -47,7 +49,7 @@ impl CameraWizard {
             });
             match self.board() {
                 Ok(_) => ui.label(small(texts::PRINT.get())),
-                Err(error) => ui.label(texts::no_board(&error.to_string())),
+                Err(error) => ui.label(texts::no_board(&crate::report_text::quoted(&error))),
             };
             let keeps = switch_ui(
                 ui,
@@ -85,7 +87,8 @@ impl CameraWizard {
                 ui.vertical(|ui| coverage_ui(ui, &coverage, size_px));
             });
             ui.add_space(4.0);
-            if ui.add_enabled(views > 0, Button::new(texts::REMOVE_LAST.get())).clicked() {
+            let remove = ui.add_enabled(views > 0, Button::new(texts::REMOVE_LAST.get()));
+            if remove.on_disabled_hover_text(text::wizards::NOTHING_RECORDED.get()).clicked() {
                 self.session.iter_mut().for_each(nima_camera::CameraSession::undo);
                 self.report = None;
             }
@@ -122,15 +125,14 @@ impl CameraWizard {
             }
             ui.horizontal(|ui| {
                 let can = self.base.is_some() && marked.is_some() && still && !self.moved;
-                let take = ui.add_enabled(can, Button::new(texts::TOUCHED.get()).min_size(egui::vec2(150.0, 34.0)));
-                if take
-                    .on_hover_text(texts::TOUCHED_HOVER.get())
-                    .on_disabled_hover_text(texts::TOUCHED_DISABLED.get())
-                    .clicked()
-                {
+                let may = if can { Ok(()) } else { Err(texts::TOUCHED_DISABLED.get()) };
+                let [label, meaning] = [texts::TOUCHED, texts::TOUCHED_HOVER].map(Text::get);
+                let take = SteadyButton { id: Id::unique("touched"), label, meaning, may, waits_s: PATIENT_S };
+                if take.ui(ui, |label, _| Button::new(label).min_size(egui::vec2(150.0, 34.0))) {
                     self.take_touch();
                 }
-                if ui.add_enabled(!self.touches.is_empty(), Button::new(texts::REMOVE_TOUCH.get())).clicked() {
+                let remove = ui.add_enabled(!self.touches.is_empty(), Button::new(texts::REMOVE_TOUCH.get()));
+                if remove.on_disabled_hover_text(text::wizards::NOTHING_RECORDED.get()).clicked() {
                     self.touches.pop();
                     self.find_place();
                 }

@@ -19,15 +19,12 @@ mod tradeoff;
 mod trials;
 mod validation;
 
-use std::{
-    io::{self, IsTerminal as _, Write as _},
-    path::{Path, PathBuf},
-};
+use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
 use nima_study::{Experiment, Findings as _};
 
-use crate::command::output;
+use crate::{command::output, stderr::show_progress};
 
 /// Arguments that describe the experiment.
 pub(super) trait ExperimentArguments: Args {
@@ -137,17 +134,6 @@ fn name<E: Experiment>(end: &str) -> String {
     format!("{}{end}", E::NAME)
 }
 
-/// Shows progress in one line of the terminal, which is rewritten in place and cleared at the end.
 fn progress(done: usize, of: usize, what: &str) {
-    let mut stderr = io::stderr().lock();
-    if !stderr.is_terminal() {
-        return;
-    }
-    // Ignore errors, because a closed terminal must not stop a study.
-    if done < of {
-        write!(stderr, "\r\x1b[K{}/{of} {what}", done + 1).ok();
-    } else {
-        write!(stderr, "\r\x1b[K").ok();
-    }
-    stderr.flush().ok();
+    show_progress((done < of).then(|| format!("{}/{of} {what}", done + 1)).as_deref());
 }

@@ -19,11 +19,11 @@ pub(in crate::extras::lab) struct TrialsArguments {
     #[arg(long, value_name = "CONDITION")]
     reference: Option<String>,
     /// Confidence level of the intervals, as a fraction
-    #[arg(long, value_name = "SHARE", value_parser = fraction, default_value = "0.95")]
+    #[arg(long, value_name = "FRACTION", value_parser = fraction, default_value = "0.95")]
     confidence: f64,
     /// Print the number of participants needed for this power (a fraction), if the true differences are those in the
     /// table
-    #[arg(long, value_name = "SHARE", value_parser = fraction)]
+    #[arg(long, value_name = "FRACTION", value_parser = fraction)]
     power: Option<f64>,
 }
 

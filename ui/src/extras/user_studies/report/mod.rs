@@ -1,6 +1,6 @@
 //! The report of a user study: one self-contained page, the tables behind it, and scripts for R.
 //!
-//! The statistics are those of `nima study trials`, on the same tables.
+//! The statistics are the same as in `nima study trials`, on the same tables.
 
 mod boxes;
 mod markdown;

@@ -271,8 +271,8 @@ pub(in crate::extras::user_studies) fn time_of(seconds: f64, limit_s: f64) -> St
 
 pub(in crate::extras::user_studies) fn curve(participant: &str, practice: usize, trials: usize) -> String {
     text_format!(
-        "Learning of {participant}: {practice} practice trials, {trials} trials completed",
-        "Lernen von {participant}: {practice} Übungsversuche, {trials} Versuche abgeschlossen"
+        "Learning progress of {participant}: {practice} practice trials, {trials} trials completed",
+        "Lernfortschritt von {participant}: {practice} Übungsversuche, {trials} Versuche abgeschlossen"
     )
 }
 
@@ -336,7 +336,7 @@ pub(in crate::extras::user_studies) fn report_written(page: &Path) -> String {
 }
 
 pub(in crate::extras::user_studies) fn report_failed(why: &str) -> String {
-    text_format!("Not written: {why}", "Nicht geschrieben: {why}")
+    text_format!("Not written: {why}", "Nicht geschrieben: „{why}“")
 }
 
 /// Returns the journal entry.

@@ -26,7 +26,8 @@ use super::{
     moment::BUNDLE,
 };
 
-/// A client that accepts no data for this long is disconnected.
+/// A client that accepts no data for this long is disconnected. Longer than a viewer pauses to draw; a client that
+/// hangs would otherwise keep its queue and one of the few places.
 const PATIENCE: Duration = Duration::from_secs(2);
 /// Interval at which the reader checks whether the connection has ended: on Windows, closing it does not wake a waiting
 /// reader.

@@ -2,7 +2,8 @@
 
 use super::super::super::{IgtlFormatError, IgtlHeader, IgtlMessage};
 
-/// Maximum length of a body that is parsed, bytes; a request has 36 bytes. Longer ones are skipped.
+/// Maximum length of a body that is parsed, bytes; a request has 36 bytes. Longer ones are skipped. The size comes from
+/// the network, so it must not decide how much memory is reserved.
 const LONGEST: u64 = 4096;
 
 /// The message being received.

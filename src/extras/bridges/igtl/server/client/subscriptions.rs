@@ -4,11 +4,13 @@ use std::time::Instant;
 
 use super::super::super::ContentKind;
 
-/// Interval between two bundles, s: the default, the minimum, and the maximum.
+/// Interval between two bundles, s: the default, the minimum, and the maximum. 60 Hz is the rate of a screen; above 100
+/// Hz a client would only fill its own queue.
 const USUAL_S: f64 = 1.0 / 60.0;
 const SHORTEST_S: f64 = 0.01;
 const LONGEST_S: f64 = 1.0;
-/// A tick that is early by up to this time counts as the due one, s.
+/// A tick that is early by up to this time counts as the due one, s. Otherwise rounding of the times would skip a tick
+/// and halve the rate.
 pub(in super::super) const EARLY_S: f64 = 1e-4;
 
 /// A set of message kinds.

@@ -12,7 +12,8 @@ use super::{
 
 /// Full drive at standstill for this long counts as an overload, s.
 const OVERLOAD_S: f64 = 1.0;
-/// Maximum number of motor steps made up at a time.
+/// Maximum number of motor steps made up at a time. Without a limit, a paused process would integrate for longer than
+/// the pause.
 const CATCH_UP_STEPS: usize = 200;
 /// An impossible reading, for the corresponding fault.
 const IMPOSSIBLE_TICKS: i64 = 0x7FFF_FFFF;

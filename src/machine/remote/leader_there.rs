@@ -1,4 +1,5 @@
-//! The follower's rig: arm and sensor are on this machine, the hand is at the other end of a network.
+//! The leader's half at another machine, as the follower's machine knows it: a hand that moves as commanded, and the
+//! operator's commands.
 
 use nalgebra::Vector3;
 use nima_core::{
@@ -8,15 +9,15 @@ use nima_core::{
 };
 
 use super::{
-    GONE_AFTER_S, MESSAGE_MAX, RemoteWire,
+    GONE_AFTER_S, HalfThere, RemoteWire,
+    commanded_hand::CommandedHand,
     follower_message::{FollowerMessage, FollowerSide},
     leader_message::{Intent, LeaderMessage, LeaderSide},
-    remote_hand::FarHand,
 };
 use crate::{
     config::{RigConfig, Teleoperation},
     messages::{Command, FarStop, LoopState, PeerStatus},
-    rig::{Inputs, Outputs, Rig, SIDES, Side, Switches, ViewOrientation, devices_of},
+    rig::{Inputs, Outputs, SIDES, Side, Switches, ViewOrientation},
 };
 
 /// The parameters of one rendering are sent once per this many ticks, in turn if several are computed. Fits are renewed
@@ -44,22 +45,16 @@ pub fn at_follower(rig: &RigConfig) -> RigConfig {
     RigConfig { teleoperation: Teleoperation::default(), gates, ..rig.clone() }
 }
 
-/// Joins a rig's arms with hands at another machine. The rig's own measurements of handles are not used, and the
-/// handles get no force.
 #[derive(Debug)]
-pub struct FarLeader<R, W> {
-    local: R,
-    wire: W,
+pub struct LeaderThere {
     rate_hz: f64,
     received: Option<OperatorState>,
-    hands: [FarHand; SIDES],
+    hands: [CommandedHand; SIDES],
     states: [Option<LoopState>; SIDES],
-    inputs: [Option<Inputs>; SIDES],
     commands: [Option<Command>; COMMANDS_MAX],
     /// Delay over which the identification here learns, ticks.
     learnt_ticks: Option<u16>,
     ticks: u64,
-    buffer: [u8; MESSAGE_MAX],
 }
 
 /// The last message of the operator's machine.
@@ -70,68 +65,16 @@ struct OperatorState {
     at_s: f64,
 }
 
-impl<R: Rig, W: RemoteWire> FarLeader<R, W> {
-    /// Joins the arms of `local` with the hands behind `wire`, for a loop of this rate (Hz) created from
-    /// [`at_follower`].
-    pub fn new(local: R, wire: W, rate_hz: f64) -> Self {
+impl LeaderThere {
+    pub(super) fn new(rate_hz: f64) -> Self {
         Self {
-            local,
-            wire,
             rate_hz,
             received: None,
-            hands: [FarHand::default(); SIDES],
+            hands: [CommandedHand::default(); SIDES],
             states: [None; SIDES],
-            inputs: [None; SIDES],
             commands: [None; COMMANDS_MAX],
             learnt_ticks: None,
             ticks: 0,
-            buffer: [0; MESSAGE_MAX],
-        }
-    }
-
-    /// Returns the last measurements of the rig here, without the remote hands.
-    pub const fn measured(&self) -> &[Option<Inputs>; SIDES] {
-        &self.inputs
-    }
-
-    pub const fn local(&self) -> &R {
-        &self.local
-    }
-
-    pub const fn local_mut(&mut self) -> &mut R {
-        &mut self.local
-    }
-
-    pub const fn wire(&self) -> &W {
-        &self.wire
-    }
-
-    pub const fn wire_mut(&mut self) -> &mut W {
-        &mut self.wire
-    }
-
-    fn receive(&mut self, now_s: f64) {
-        let before = self.received.filter(|received| now_s - received.at_s <= ANSWERS_FOR_S);
-        let mut newest = before;
-        self.wire.receive(now_s, &mut |bytes| {
-            let Some(message) = LeaderMessage::unpack(bytes) else { return };
-            if newest.is_none_or(|received| message.t_s > received.message.t_s) {
-                newest = Some(OperatorState { message, at_s: now_s });
-            }
-        });
-        self.received = newest;
-        self.commands = [None; COMMANDS_MAX];
-        if let Some(received) = newest.filter(|received| received.at_s >= now_s) {
-            // A different or restarted console has a different clock and different counters; in that case no command
-            // was given in between.
-            let goes_on = |before: &OperatorState| {
-                let reported_s = received.message.t_s - before.message.t_s;
-                let passed_s = received.at_s - before.at_s;
-                (reported_s - passed_s).abs() < SAME_CLOCK_S
-            };
-            let before = before.filter(goes_on).map(|before| before.message);
-            self.move_hands(&received.message, before.as_ref());
-            self.follow(&received.message, before.as_ref());
         }
     }
 
@@ -193,17 +136,40 @@ impl<R: Rig, W: RemoteWire> FarLeader<R, W> {
     }
 }
 
-impl<R: Rig, W: RemoteWire> Rig for FarLeader<R, W> {
-    fn read(&mut self, now_s: f64) -> [Option<Inputs>; SIDES] {
-        self.inputs = self.local.read(now_s);
-        self.receive(now_s);
+impl HalfThere for LeaderThere {
+    fn receive(&mut self, now_s: f64, wire: &mut dyn RemoteWire) {
+        let before = self.received.filter(|received| now_s - received.at_s <= ANSWERS_FOR_S);
+        let mut newest = before;
+        wire.receive(now_s, &mut |bytes| {
+            let Some(message) = LeaderMessage::unpack(bytes) else { return };
+            if newest.is_none_or(|received| message.t_s > received.message.t_s) {
+                newest = Some(OperatorState { message, at_s: now_s });
+            }
+        });
+        self.received = newest;
+        self.commands = [None; COMMANDS_MAX];
+        if let Some(received) = newest.filter(|received| received.at_s >= now_s) {
+            // A different or restarted console has a different clock and different counters; in that case no command
+            // was given in between.
+            let goes_on = |before: &OperatorState| {
+                let reported_s = received.message.t_s - before.message.t_s;
+                let passed_s = received.at_s - before.at_s;
+                (reported_s - passed_s).abs() < SAME_CLOCK_S
+            };
+            let before = before.filter(goes_on).map(|before| before.message);
+            self.move_hands(&received.message, before.as_ref());
+            self.follow(&received.message, before.as_ref());
+        }
+    }
+
+    fn join(&mut self, here: &[Option<Inputs>; SIDES], now_s: f64) -> [Option<Inputs>; SIDES] {
         let received = self.received.filter(|received| now_s - received.at_s <= GONE_AFTER_S);
         let mut inputs = [None; SIDES];
         for side in Side::ALL.map(Side::index) {
             let report = received.and_then(|received| received.message.sides[side]);
             self.hands[side].advance(1.0 / self.rate_hz);
             let hand_m = self.hands[side].position_m();
-            inputs[side] = self.inputs[side].zip(report).map(|(here, report)| join(&here, &report, hand_m));
+            inputs[side] = here[side].zip(report).map(|(here, report)| join_side(&here, &report, hand_m));
             if let (Some(inputs), Some(received)) = (&mut inputs[side], received) {
                 inputs.silent_s = now_s - received.at_s;
             }
@@ -215,17 +181,22 @@ impl<R: Rig, W: RemoteWire> Rig for FarLeader<R, W> {
         self.commands.iter_mut().find_map(Option::take)
     }
 
-    fn write(&mut self, now_s: f64, outputs: &[Outputs; SIDES]) {
-        let without_force = |outputs: &Outputs| Outputs { hand_force_n: Vector3::zeros(), gripper_n: 0.0, ..*outputs };
-        self.local.write(now_s, &outputs.each_ref().map(without_force));
+    fn outputs(&mut self, outputs: &[Outputs; SIDES]) -> [Outputs; SIDES] {
+        outputs.each_ref().map(|outputs| Outputs { hand_force_n: Vector3::zeros(), gripper_n: 0.0, ..*outputs })
     }
 
-    fn receive_status(&mut self, now_s: f64, bulletins: &[Option<PeerStatus<'_>>; SIDES]) {
+    fn report<'a>(
+        &mut self,
+        now_s: f64,
+        here: &[Option<Inputs>; SIDES],
+        bulletins: &[Option<PeerStatus<'_>>; SIDES],
+        buffer: &'a mut [u8],
+    ) -> Option<&'a [u8]> {
         for (state, bulletin) in self.states.iter_mut().zip(bulletins) {
             *state = bulletin.as_ref().map(|bulletin| bulletin.state);
         }
         self.ticks += 1;
-        let Some(received) = self.received.filter(|received| now_s - received.at_s <= ANSWERS_FOR_S) else { return };
+        let received = self.received.filter(|received| now_s - received.at_s <= ANSWERS_FOR_S)?;
         let turn = (self.ticks.is_multiple_of(PARAMETERS_EVERY)).then_some(self.ticks / PARAMETERS_EVERY);
         let sends_errors = self.ticks % ERRORS_EVERY == 1;
         // Add the time that has passed here since the command arrived.
@@ -233,14 +204,10 @@ impl<R: Rig, W: RemoteWire> Rig for FarLeader<R, W> {
         let mut message = FollowerMessage { t_s, sides: [None; SIDES] };
         for bulletin in bulletins.iter().flatten() {
             let side = bulletin.side.index();
-            message.sides[side] = self.inputs[side].map(|inputs| answer(&inputs, bulletin, turn, sends_errors));
+            message.sides[side] = here[side].map(|inputs| answer(&inputs, bulletin, turn, sends_errors));
         }
-        if let Some(bytes) = message.pack(&mut self.buffer) {
-            self.wire.send(now_s, bytes);
-        }
+        message.pack(buffer)
     }
-
-    devices_of!(self, self.local);
 }
 
 pub(super) fn is_same_delay(learnt_ticks: u16, now_ticks: u16) -> bool {
@@ -248,7 +215,7 @@ pub(super) fn is_same_delay(learnt_ticks: u16, now_ticks: u16) -> bool {
     (f64::from(now_ticks) - learnt).abs() <= SAME_DELAY_TICKS.max(SAME_DELAY * learnt)
 }
 
-fn join(here: &Inputs, report: &LeaderSide, position_m: Vector3<f64>) -> Inputs {
+fn join_side(here: &Inputs, report: &LeaderSide, position_m: Vector3<f64>) -> Inputs {
     Inputs {
         hand: HandPose { position_m, orientation: report.world_from_jaws },
         gripper_rad: report.gripper_rad,

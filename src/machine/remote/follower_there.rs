@@ -1,4 +1,4 @@
-//! The operator's rig: the handle is on this machine, the arm and its sensor are at the other end of a network.
+//! The follower's half at another machine, as the operator's machine knows it.
 
 use nima_core::{
     calibration::frames::FrameSample,
@@ -7,27 +7,20 @@ use nima_core::{
 };
 
 use super::{
-    GONE_AFTER_S, MESSAGE_MAX, RemoteWire,
+    GONE_AFTER_S, HalfThere, RemoteWire,
     follower_message::{FollowerMessage, FollowerSide},
     leader_message::{Intent, LeaderMessage, LeaderSide},
 };
 use crate::{
     messages::{LoopState, PeerStatus},
-    rig::{
-        EngageBlocker, Inputs, Outputs, RemoteIdentification, Rig, SIDES, SensedForce, Side, ViewOrientation,
-        devices_of,
-    },
+    rig::{EngageBlocker, Inputs, Outputs, RemoteIdentification, SIDES, SensedForce, Side, ViewOrientation},
 };
 
-/// Joins a rig's handles with arms at another machine. The rig's own measurements of arms and sensors are not used.
 #[derive(Debug)]
-pub struct FarFollower<R, W> {
-    local: R,
-    wire: W,
+pub struct FollowerThere {
     rate_hz: f64,
     received: Option<PeerState>,
     sides: [SideStatus; SIDES],
-    buffer: [u8; MESSAGE_MAX],
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -68,60 +61,19 @@ impl RoundTrip {
     fn step(&mut self, seconds: f64, rate_hz: f64) {
         self.mean_s += (seconds - self.mean_s) / Self::MEMORY;
         let ticks = self.mean_s * rate_hz;
+        // Half a tick would be the nearest one, but jitter would then switch between two values.
         if (ticks - f64::from(self.ticks)).abs() > 0.75 {
             self.ticks = ticks.round() as u16;
         }
     }
 }
 
-impl<R: Rig, W: RemoteWire> FarFollower<R, W> {
-    /// Joins the handles of `local` with the arms behind `wire`, for a loop of this rate (Hz).
-    pub fn new(local: R, wire: W, rate_hz: f64) -> Self {
-        Self { local, wire, rate_hz, received: None, sides: [SideStatus::default(); SIDES], buffer: [0; MESSAGE_MAX] }
+impl FollowerThere {
+    pub(super) fn new(rate_hz: f64) -> Self {
+        Self { rate_hz, received: None, sides: [SideStatus::default(); SIDES] }
     }
 
-    pub const fn local(&self) -> &R {
-        &self.local
-    }
-
-    pub const fn wire(&self) -> &W {
-        &self.wire
-    }
-
-    pub const fn wire_mut(&mut self) -> &mut W {
-        &mut self.wire
-    }
-
-    fn receive(&mut self, now_s: f64) {
-        let received = &mut self.received;
-        let rate_hz = self.rate_hz;
-        self.wire.receive(now_s, &mut |bytes| {
-            let Some(mut message) = FollowerMessage::unpack(bytes) else { return };
-            let round_trip_s = now_s - message.t_s;
-            if round_trip_s < 0.0 {
-                return;
-            }
-            let Some(last) = received else {
-                *received = Some(PeerState { message, at_s: now_s, delay: RoundTrip::first(round_trip_s, rate_hz) });
-                return;
-            };
-            if message.t_s <= last.message.t_s {
-                return;
-            }
-            // Two messages may arrive in one tick: keep the parameters of the first.
-            if last.at_s >= now_s {
-                keep_parameters(&mut message.sides, &last.message.sides);
-            }
-            last.message = message;
-            last.at_s = now_s;
-            last.delay.step(round_trip_s, rate_hz);
-        });
-        if self.received.is_some_and(|received| now_s - received.at_s > GONE_AFTER_S) {
-            self.received = None;
-        }
-    }
-
-    fn join(&self, side: Side, here: &Inputs, now_s: f64) -> Option<Inputs> {
+    fn join_side(&self, side: Side, here: &Inputs, now_s: f64) -> Option<Inputs> {
         let received = self.received.as_ref()?;
         let far = received.message.sides[side.index()]?;
         let identified = RemoteIdentification {
@@ -146,6 +98,7 @@ impl<R: Rig, W: RemoteWire> FarFollower<R, W> {
             view: ViewOrientation::Fixed,
             frames: FrameSample { leader_from_handle: here.frames.leader_from_handle, ..FrameSample::default() },
             switches: here.switches,
+            // Both ends may switch drives off: the handle here and the arm there.
             powered: here.powered && far.powered,
             obstacle: far.is_obstructed.then_some(EngageBlocker::FarEnd),
             age_s: here.age_s,
@@ -165,27 +118,62 @@ fn keep_parameters(now: &mut [Option<FollowerSide>; SIDES], before: &[Option<Fol
     }
 }
 
-impl<R: Rig, W: RemoteWire> Rig for FarFollower<R, W> {
-    fn read(&mut self, now_s: f64) -> [Option<Inputs>; SIDES] {
-        let here = self.local.read(now_s);
-        self.receive(now_s);
+impl HalfThere for FollowerThere {
+    fn receive(&mut self, now_s: f64, wire: &mut dyn RemoteWire) {
+        let received = &mut self.received;
+        let rate_hz = self.rate_hz;
+        wire.receive(now_s, &mut |bytes| {
+            let Some(mut message) = FollowerMessage::unpack(bytes) else { return };
+            let round_trip_s = now_s - message.t_s;
+            // An echo of a command that was not sent yet: it answers an earlier run of this console.
+            if round_trip_s < 0.0 {
+                return;
+            }
+            let Some(last) = received else {
+                *received = Some(PeerState { message, at_s: now_s, delay: RoundTrip::first(round_trip_s, rate_hz) });
+                return;
+            };
+            // Datagrams may overtake each other; the older state must not return.
+            if message.t_s <= last.message.t_s {
+                return;
+            }
+            // Two messages may arrive in one tick: keep the parameters of the first.
+            if last.at_s >= now_s {
+                keep_parameters(&mut message.sides, &last.message.sides);
+            }
+            last.message = message;
+            last.at_s = now_s;
+            last.delay.step(round_trip_s, rate_hz);
+        });
+        if self.received.is_some_and(|received| now_s - received.at_s > GONE_AFTER_S) {
+            self.received = None;
+        }
+    }
+
+    fn join(&mut self, here: &[Option<Inputs>; SIDES], now_s: f64) -> [Option<Inputs>; SIDES] {
         let mut inputs = [None; SIDES];
         for side in Side::ALL {
             let Some(here) = &here[side.index()] else { continue };
             self.sides[side.index()].gripper_rad = here.gripper_rad;
-            inputs[side.index()] = self.join(side, here, now_s);
+            inputs[side.index()] = self.join_side(side, here, now_s);
         }
         inputs
     }
 
-    fn write(&mut self, now_s: f64, outputs: &[Outputs; SIDES]) {
-        self.local.write(now_s, outputs);
+    fn outputs(&mut self, outputs: &[Outputs; SIDES]) -> [Outputs; SIDES] {
         for (report, outputs) in self.sides.iter_mut().zip(outputs) {
             report.outputs = Some(*outputs);
         }
+        *outputs
     }
 
-    fn receive_status(&mut self, now_s: f64, bulletins: &[Option<PeerStatus<'_>>; SIDES]) {
+    fn report<'a>(
+        &mut self,
+        now_s: f64,
+        _here: &[Option<Inputs>; SIDES],
+        bulletins: &[Option<PeerStatus<'_>>; SIDES],
+        buffer: &'a mut [u8],
+    ) -> Option<&'a [u8]> {
         let mut message =
             LeaderMessage { t_s: now_s, delay_ticks: 0, mode: Mode::Dfr, compares: false, sides: [None; SIDES] };
         message.delay_ticks = self.received.map_or(0, |received| received.delay.ticks);
@@ -196,18 +184,15 @@ impl<R: Rig, W: RemoteWire> Rig for FarFollower<R, W> {
             let far = self.received.and_then(|received| received.message.sides[side]);
             message.sides[side] = Some(self.sides[side].report(bulletin, far.as_ref()));
         }
-        if let Some(bytes) = message.pack(&mut self.buffer) {
-            self.wire.send(now_s, bytes);
-        }
+        message.pack(buffer)
     }
-
-    devices_of!(self, self.local);
 }
 
 impl SideStatus {
     fn report(&mut self, bulletin: &PeerStatus<'_>, far: Option<&FollowerSide>) -> LeaderSide {
         let was_driven = self.state.is_some_and(|state| state.permits().drives);
         if bulletin.state.permits().drives && !was_driven {
+            // A count instead of a flag: a message that is lost or repeated then neither loses nor repeats the command.
             self.engagements = self.engagements.wrapping_add(1);
         }
         self.state = Some(bulletin.state);

@@ -8,14 +8,14 @@ const CATCH_UP_M_S: f64 = 0.18;
 
 /// Moves by the commanded displacements, and only while they are to be followed, so that a restart is not a jump.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct FarHand {
+pub(super) struct CommandedHand {
     position_m: Vector3<f64>,
     /// Commanded displacement that has not been executed yet, m.
     behind_m: Vector3<f64>,
     speed_m_s: f64,
 }
 
-impl FarHand {
+impl CommandedHand {
     pub(super) const fn position_m(&self) -> Vector3<f64> {
         self.position_m
     }
@@ -50,7 +50,7 @@ mod tests {
 
     #[test]
     fn a_hand_that_is_told_of_in_every_tick_is_where_it_is_told_to_be() {
-        let mut hand = FarHand::default();
+        let mut hand = CommandedHand::default();
         for tick in 1..500 {
             hand.report(&Vector3::new(0.8e-3, 0.0, 0.0), PERIOD_S);
             hand.advance(PERIOD_S);
@@ -60,7 +60,7 @@ mod tests {
 
     #[test]
     fn what_was_missed_in_a_gap_is_made_up_for_without_a_step() {
-        let mut hand = FarHand::default();
+        let mut hand = CommandedHand::default();
         let mut reported_m = 0.0;
         let mut before_m = 0.0;
         for tick in 0..400 {
@@ -80,7 +80,7 @@ mod tests {
 
     #[test]
     fn what_is_not_followed_any_more_is_forgotten() {
-        let mut hand = FarHand::default();
+        let mut hand = CommandedHand::default();
         hand.report(&Vector3::new(0.01, 0.0, 0.0), 0.05);
         hand.advance(PERIOD_S);
         let position_m = hand.position_m();

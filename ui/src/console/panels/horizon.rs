@@ -28,11 +28,11 @@ pub fn horizon_ui(ui: &mut Ui, live: &LiveState, outbox: &mut Outbox, plain: boo
     let dfr_n = live.figures.horizon_n[Mode::Dfr.index()];
     let ahead = if plain { text::horizon::ahead_plain } else { text::horizon::ahead };
     ui.label(small(ahead(live.delay_s() * 1e3)));
-    let mut compares = live.compares();
-    let compare = egui::Checkbox::new(&mut compares, text::horizon::COMPARE.get());
-    let compare = ui.add_enabled(!live.is_shown_only(), compare).on_hover_text(text::horizon::COMPARE_HOVER.get());
-    if compare.on_disabled_hover_text(live.of.blocked()).changed() {
-        outbox.push(Command::Compare(compares));
+    if plain {
+        // The demonstration compares all modes, and its rows must fit into a low window.
+        ui.spacing_mut().item_spacing.y = 2.0;
+    } else {
+        compare_ui(ui, live, outbox);
     }
     ui.add_space(2.0);
     let modes = COMPARED.into_iter().chain(computed.baseline().map(Mode::Baseline));
@@ -40,7 +40,18 @@ pub fn horizon_ui(ui: &mut Ui, live: &LiveState, outbox: &mut Outbox, plain: boo
         let error = ModeError { mode, error_n: live.figures.horizon_n[mode.index()], dfr_n, plain };
         mode_ui(ui, &error, live.mode() == mode);
     }
-    trend_ui(ui, live, plain);
+    if !plain || ui.available_height() > TREND_HEIGHT {
+        trend_ui(ui, live, plain);
+    }
+}
+
+fn compare_ui(ui: &mut Ui, live: &LiveState, outbox: &mut Outbox) {
+    let mut compares = live.compares();
+    let compare = egui::Checkbox::new(&mut compares, text::horizon::COMPARE.get());
+    let compare = ui.add_enabled(!live.is_shown_only(), compare).on_hover_text(text::horizon::COMPARE_HOVER.get());
+    if compare.on_disabled_hover_text(live.of.blocked()).changed() {
+        outbox.push(Command::Compare(compares));
+    }
 }
 
 /// Returns the mean error of a mode over the last minutes, N; `None` if the force was never known.

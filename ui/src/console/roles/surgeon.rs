@@ -79,6 +79,8 @@ fn report(live: &LiveState) -> String {
     let whys: Vec<(Side, String)> =
         live.sides().filter_map(|side| why_no_force(live, side).map(|why| (side, why))).collect();
     match whys.as_slice() {
+        // The buttons above already name it.
+        [] if MODES.contains(&live.mode()) => String::new(),
         [] => mode_name(live.mode()).to_owned(),
         [(_, one), (_, other)] if one == other => one.clone(),
         [(side, why), ..] if live.is_bimanual() => format!("{}: {why}", side_name(*side)),

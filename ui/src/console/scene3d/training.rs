@@ -220,10 +220,11 @@ mod tests {
     #[test]
     fn the_clock_of_a_trial_stops_at_its_end_and_begins_again() {
         let mut clock = TrialClock::default();
-        assert_eq!(clock.seconds(12.0, false, false), 12.0);
-        assert_eq!(clock.seconds(20.0, true, false), 0.0);
-        assert_eq!([clock.seconds(25.0, false, true), clock.seconds(30.0, false, true)], [5.0, 5.0]);
-        assert_eq!(clock.seconds(1.0, false, false), 1.0, "another loop");
+        let mut seconds = |now_s, begins, ended| clock.seconds(now_s, begins, ended).round() as i32;
+        assert_eq!(seconds(12.0, false, false), 12);
+        assert_eq!(seconds(20.0, true, false), 0);
+        assert_eq!([seconds(25.0, false, true), seconds(30.0, false, true)], [5, 5]);
+        assert_eq!(seconds(1.0, false, false), 1, "another loop");
     }
 
     #[test]

@@ -137,13 +137,16 @@ pub(in crate::console) const BARS_HOVER: Text = Text::of(
      die größte Kraft, die die Hand erreichen kann.",
 );
 
-pub(in crate::console) const FIGURES: Text = Text::of("Gain and degree", "Verstärkung und Grad");
 pub(in crate::console) const FIGURES_HOVER: Text = Text::of(
     "How much of the force reaches the hand, and how often each degree of the polynomial was identified in the last \
      minutes",
     "Wie viel der Kraft die Hand erreicht, und wie oft in den letzten Minuten jeder Grad des Polynoms identifiziert wurde",
 );
-pub(in crate::console) const DEGREE: Text = Text::of("Degree of the polynomial", "Grad des Polynoms");
+
+/// Returns the gain, and the name of the degree beside it.
+pub(in crate::console) fn gain_and_degree(gain: f64) -> String {
+    text_format!("Gain {gain:.2}; degree of the polynomial", "Verstärkung {gain:.2}; Grad des Polynoms")
+}
 
 /// Returns the accessible name of the bars of the degrees.
 pub(in crate::console) fn degrees(percents: &str) -> String {

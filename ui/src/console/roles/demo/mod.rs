@@ -48,7 +48,8 @@ pub(super) fn demo_ui(ui: &mut Ui, live: &mut LiveState, panels: &mut Panels, ou
         caption.show(ui, |ui| caption_ui(ui, live, &mut panels.demo));
     }
     Panel::right("figures").exact_size(348.0).resizable(false).frame(side).show(ui, |ui| {
-        card(ui, text::roles::FIGURES.get(), text::roles::FIGURES_HOVER.get(), |ui| figures_ui(ui, live));
+        theme::card().show(ui, |ui| figures_ui(ui, live));
+        ui.add_space(theme::GAP);
         let panel = tiles::Panel::Horizon;
         card(ui, panel.title(), panel.meaning(), |ui| horizon_ui(ui, live, outbox, true));
         let Panels { forces, space, .. } = panels;
@@ -71,12 +72,14 @@ pub(super) fn demo_ui(ui: &mut Ui, live: &mut LiveState, panels: &mut Panels, ou
 
 /// Draws the gain, and how often each degree was identified.
 fn figures_ui(ui: &mut Ui, live: &LiveState) {
-    let meaning = text::roles::FIGURES_HOVER.get();
-    figure(ui, text::feedback::GAIN.get(), format!("{:.2}", live.gain()), meaning);
+    ui.set_width(ui.available_width());
+    ui.spacing_mut().item_spacing.y = 4.0;
     let fractions = live.degrees.fractions();
     let any = fractions.iter().sum::<f64>() > 0.0;
     let identified = live.first_tick().filter(|_| any).map(|tick| tick.identification.degree.to_string());
-    figure(ui, text::roles::DEGREE.get(), identified.unwrap_or_else(|| "–".to_owned()), meaning);
+    let degree = identified.unwrap_or_else(|| "–".to_owned());
+    let name = text::roles::gain_and_degree(live.gain());
+    figure(ui, &name, degree, text::roles::FIGURES_HOVER.get());
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), DEGREES_HEIGHT), Sense::hover());
     let percents: Vec<String> = fractions.iter().skip(1).map(|fraction| format!("{:.0} %", 100.0 * fraction)).collect();
     let words = text::roles::degrees(&percents.join(", "));

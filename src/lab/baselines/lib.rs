@@ -1,8 +1,8 @@
 //! Published methods of others for comparison: each in its published form, as one more mode behind the same gates.
 //!
-//! They are built into the loop through the trait that the program's own modes have, [`RenderingMethod`], by whoever calls [`provide`] first. At most
-//! one is computed, and only where it is asked for by name. Every axis is taken for a channel of its own, as in the publications, which
-//! have one degree of freedom. Sources, constants, figures, and what was left out: docs/modes.md.
+//! They implement the trait of the program's own modes, [`RenderingMethod`]; a program that calls [`provide`] first builds
+//! them into its loop. At most one is computed, and only if it is requested by name. Every axis is a separate channel, as
+//! in the publications, which have one degree of freedom. Sources, constants, figures and omissions: docs/modes.md.
 
 mod autoregressive;
 mod kalman;

@@ -82,7 +82,8 @@ fn raised(_: u8) -> bool {
 #[cfg(target_os = "linux")]
 const BUDGET: f64 = 0.8;
 
-/// The calling thread, for `sched_setattr(2)`. The library hands its argument to the kernel as it is, which expects no handle of the C library here.
+/// The calling thread, for `sched_setattr(2)`. The library passes its argument to the kernel unchanged, and the kernel
+/// expects a thread number here, not a handle of the C library.
 #[cfg(target_os = "linux")]
 const THIS_THREAD: thread_priority::ThreadId = 0;
 

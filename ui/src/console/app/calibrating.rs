@@ -19,7 +19,7 @@ use crate::console::{
     wizards::{Binding, CalibrationTarget, GoOn, SaveRequest, WizardKind, WizardPageRequest, Wizards},
 };
 
-/// Least width of a wizard beside the endoscope image, and the range of the image's width.
+/// Minimum width of a wizard next to the endoscope image, and the range of the image's width.
 const WIZARD_MIN: f32 = 560.0;
 const IMAGE: (f32, f32) = (340.0, 760.0);
 

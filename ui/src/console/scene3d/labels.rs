@@ -183,11 +183,11 @@ fn gauge(painter: &Painter, rect: Rect, forces_n: [Option<f64>; 2], ceiling_n: f
     painter.hline(rect.x_range(), y(ceiling_n), egui::Stroke::new(2.0, mark));
 }
 
-/// Size of the bars beside a tip, and their distance from it, points.
+/// Size of the bars next to a tip, and their distance from it, points.
 const BARS: Vec2 = vec2(20.0, 56.0);
 const BARS_AWAY: f32 = 34.0;
 
-/// Draws the forces of a hand as bars beside its tip, on its own side, and names a ceiling that acts.
+/// Draws the forces of a hand as bars next to its tip, on its own side, and names a ceiling that acts.
 pub(in crate::console) fn tip_bars(painter: &Painter, live: &LiveState, side: Side, tip: Pos2) {
     let away = BARS_AWAY + 0.5 * BARS.x;
     let outside = if side == Side::Right { away } else { -away };

@@ -225,7 +225,7 @@ pub fn scene_ui(ui: &mut Ui, live: &LiveState, view: &mut SceneView, outbox: &mu
     let reported_led = led.filter(|_| !view.lead.is_held || live.scene.objects.is_some());
     let begins = view.lead.takes_begin();
     let mut words = training::report(live, reported_led, reach);
-    // A recording does not say when its trial began, and a participant of a study reads the time beside the view.
+    // A recording does not say when its trial began, and a participant of a study reads the time next to the view.
     if let (Some(words), Some(tick), false, false) =
         (&mut words, live.first_tick(), live.is_shown_only(), view.lead.is_held)
     {

@@ -1,4 +1,4 @@
-//! A drawing beside each instruction to the person at the arm: the tool, what it touches, and how it moves.
+//! A drawing next to each instruction to the person at the arm: the tool, its contact, and its motion.
 
 use std::f32::consts::{FRAC_PI_2, TAU};
 

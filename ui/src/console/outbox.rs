@@ -2,6 +2,8 @@
 
 use nima_machine::{messages::Command, runtime::LoopHandle};
 
+use super::live::LiveState;
+
 /// Queue of commands; a stop overtakes all others.
 #[derive(Debug, Default)]
 pub struct Outbox {
@@ -10,18 +12,46 @@ pub struct Outbox {
     stops: u64,
     /// A stop did not fit into the loop's queue.
     stop_refused: bool,
+    /// The operator's choice whether all modes are compared, while a panel needs all of them.
+    compares: Option<bool>,
 }
 
 impl Outbox {
     /// Adds a command. A newer value of a setting replaces a waiting one, so that dragging a slider does not fill the loop's
     /// queue. A stop removes all waiting commands.
     pub fn push(&mut self, command: Command) {
+        if let (Command::Compare(compares), Some(choice)) = (command, &mut self.compares) {
+            *choice = compares;
+            return;
+        }
         if command == Command::Stop {
             self.waiting.clear();
             self.stops += 1;
         }
         self.waiting.retain(|old| !is_outdated(old, command));
         self.waiting.push(command);
+    }
+
+    /// Returns whether the operator compares all modes, whatever a panel needs.
+    pub fn compares(&self, live: &LiveState) -> bool {
+        self.compares.unwrap_or_else(|| live.compares())
+    }
+
+    /// Makes the loop compute all modes while a panel on the screen shows them; afterwards the operator's choice applies
+    /// again. Call once per frame.
+    pub fn show_all_modes(&mut self, shows: bool, live: &LiveState) {
+        if shows == self.compares.is_some() {
+            return;
+        }
+        let waiting = self.waiting.iter().find_map(|command| match command {
+            Command::Compare(compares) => Some(*compares),
+            _ => None,
+        });
+        let choice = self.compares.take().or(waiting).unwrap_or_else(|| live.compares());
+        if !choice {
+            self.push(Command::Compare(shows));
+        }
+        self.compares = shows.then_some(choice);
     }
 
     /// Sends commands while the loop's queue has room; the others wait for the next frame. Without a loop nothing is sent.
@@ -106,6 +136,27 @@ mod tests {
         let of = |side| [Command::Guide(side, None), Command::Grip(side, Some(0.0))];
         let wanted: Vec<Command> = [mark].into_iter().chain(of(right)).chain(of(left)).chain([mark]).collect();
         assert_eq!(outbox.waiting, wanted);
+    }
+
+    #[test]
+    fn a_panel_that_shows_all_modes_leaves_the_operators_choice() {
+        let plan = nima_tests::plan("peg_transfer");
+        let live = LiveState::new(plan.rig, plan.scene);
+        let [all, one] = [true, false].map(Command::Compare);
+        let mut outbox = Outbox::default();
+        outbox.show_all_modes(true, &live);
+        outbox.show_all_modes(true, &live);
+        assert_eq!((outbox.sent(), outbox.compares(&live)), (vec![all], false));
+        outbox.show_all_modes(false, &live);
+        assert_eq!(outbox.sent(), [one]);
+        outbox.push(all);
+        outbox.show_all_modes(true, &live);
+        assert_eq!((outbox.sent(), outbox.compares(&live)), (vec![all], true));
+        outbox.push(one);
+        assert_eq!((outbox.sent(), outbox.compares(&live)), (vec![], false), "the panel still needs all");
+        outbox.push(all);
+        outbox.show_all_modes(false, &live);
+        assert_eq!(outbox.sent(), [], "the operator compares now");
     }
 
     #[test]

@@ -36,6 +36,10 @@ impl DegreeFractions {
         self.counts.map(|count| f64::from(count) / total)
     }
 
+    pub fn is_empty(&self) -> bool {
+        self.chosen.is_empty()
+    }
+
     /// Returns the fraction of degrees 2 and above, 0 to 1.
     pub fn nonlinear(&self) -> f64 {
         self.fractions().iter().skip(2).sum()

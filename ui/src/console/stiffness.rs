@@ -7,7 +7,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 /// A smaller force is not considered a contact, N.
-const CONTACT_N: f64 = 0.3;
+pub const CONTACT_N: f64 = 0.3;
 /// Averaging time, s.
 const MEMORY_S: f64 = 0.5;
 /// After a pause of this length a contact counts as new, s.

@@ -37,7 +37,7 @@ pub(crate) use names::{
     device_name, exchange_text, goal_text, lack_text, loss_text, obstacle_text, part_name, role_name, scheduling_text,
     side_word, state_name, within,
 };
-pub(crate) use numbers::{newtons, newtons_in_three, newtons_read, three_digits};
+pub(crate) use numbers::{UNKNOWN, newtons, newtons_in_three, newtons_read, three_digits};
 pub(crate) use ready::{ask_text, check_name, figure_text, lacks_text, unit};
 pub(crate) use refusals::{cure_of_refusal, refused_because};
 pub(crate) use task_events::happening;

@@ -15,7 +15,7 @@ pub(crate) fn three_digits(value: f64) -> String {
 }
 
 /// Sign for an unknown number.
-const UNKNOWN: &str = "–";
+pub(crate) const UNKNOWN: &str = "–";
 
 /// Returns the force (N) with about three digits and its unit, or the sign for an unknown number.
 pub(crate) fn newtons_in_three(force_n: Option<f64>) -> String {

@@ -286,6 +286,7 @@ fn the_jaws_are_opened_and_closed_by_a_key_while_the_instrument_is_led() {
 #[test]
 fn all_modes_are_computed_only_while_they_are_compared() {
     let mut harness = console();
+    press(&mut harness, "Close Degrees");
     let all = |tick: &Tick| Mode::ALL.into_iter().all(|mode| tick.identification.modes.contains(mode));
     assert!(!harness.state().tick().is_some_and(all));
     assert!(harness.query_by_label_contains("Error Literal").is_none());

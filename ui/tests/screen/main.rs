@@ -8,6 +8,7 @@ mod blind;
 mod connecting;
 mod console;
 mod contrast;
+mod degrees;
 mod demo;
 mod drift;
 mod endoscope_view;

@@ -408,6 +408,7 @@ impl eframe::App for ConsoleApp {
         }
         self.remember_look(&ctx);
         self.settings.save();
+        self.compute_shown();
         if self.past.is_some() {
             self.outbox.only_stop();
         }

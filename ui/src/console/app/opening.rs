@@ -8,7 +8,7 @@ use super::{ConsoleApp, WARM_UP};
 use crate::language;
 use crate::{
     console::{
-        ConsoleOptions, active_calibrations::ActiveCalibrations, frames::FrameMeter, screenshot,
+        ConsoleOptions, active_calibrations::ActiveCalibrations, exports, frames::FrameMeter, screenshot,
         screenshots::ScreenshotRun, sessions::ConsoleSessions, settings::SettingsStore, wizards::Wizards,
     },
     link::{LineConnection, Reopen},
@@ -70,6 +70,7 @@ impl ConsoleApp {
             }
         }
         self.start.set_folder(settings.folder());
+        exports::set_folder(&self.ctx, settings.folder());
         self.settings = settings;
         self.running.remember(&mut self.settings.now.recent);
         self

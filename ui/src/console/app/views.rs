@@ -24,6 +24,17 @@ impl ConsoleApp {
         }
     }
 
+    /// Makes the loop compute what a panel shows, once the work without it is measured.
+    pub(super) fn compute_shown(&mut self) {
+        let is_seen = std::mem::take(&mut self.panels.degrees.is_seen);
+        // During playback, or with a stop, the command would be dropped.
+        if self.past.is_none() && !self.outbox.holds_stop() {
+            let runs = self.live.state().permits().drives;
+            let shows = is_seen && runs && self.live.compare_cost.has_waited();
+            self.outbox.show_all_modes(shows, &self.live);
+        }
+    }
+
     fn monitor_layout(&mut self, ui: &mut Ui) {
         self.panels.devices.is_seen = false;
         self.panels.devices.is_starting = self.starting.is_some();

@@ -2,11 +2,7 @@
 
 use std::time::Instant;
 
-use nima_core::{
-    frames::WristSample,
-    impedance::{Mode, SLOTS},
-    statistics::Quantiles,
-};
+use nima_core::{frames::WristSample, impedance::SLOTS, statistics::Quantiles};
 use nima_machine::{
     messages::{Event, Fault, LoopState, Tick},
     rig::{Gauges, SIDES, Side},
@@ -129,17 +125,11 @@ impl LiveState {
         let missed = before.map_or(0, |before| tick.missed.saturating_sub(before.missed));
         self.deadlines.push(tick.t_s, missed);
         self.missed_fraction.push(missed as f64 / (missed as f64 + 1.0), dt_s, 3.0);
-        let is_engaged = tick.state == LoopState::Engaged;
-        let of_matched = matches!(tick.mode, Mode::Matched | Mode::Nima | Mode::Best);
-        let identification = &tick.identification;
-        if is_engaged {
-            self.degrees.push(if of_matched { identification.degree_of(tick.mode) } else { identification.degree });
-        }
-        if is_engaged && identification.modes.contains(Mode::Literal) {
-            self.paper_degrees.push(identification.paper_degree);
-        }
+        self.degrees.push(tick, dt_s);
+        let compares = self.compares();
+        self.compare_cost.push(tick, compares);
         // Without a measured force there is no error.
-        let errors_n = tick.known_n().map(|_| identification.horizon_error_n);
+        let errors_n = tick.known_n().map(|_| tick.identification.horizon_error_n);
         if before.is_some_and(|before| before.t_s.floor() < tick.t_s.floor()) {
             self.trend_n.push_back(errors_n.unwrap_or([f64::NAN; SLOTS]));
             if self.trend_n.len() > TREND_S {
@@ -260,6 +250,7 @@ mod tests {
     use nima_simulation::{SimulationPlan, run_virtual, scene::Scene};
 
     use super::*;
+    use crate::console::degree_record::DegreeRule;
 
     #[test]
     fn the_digits_follow_a_jump_of_the_force_at_once() {
@@ -293,8 +284,7 @@ mod tests {
                 None
             })
             .unwrap();
-            let counted: f64 = live.degrees.fractions().iter().sum();
-            assert_eq!(counted > 0.0, engage);
+            assert_eq!(live.degrees.fractions(DegreeRule::Console, false).is_some(), engage);
         }
     }
 

@@ -30,18 +30,18 @@ use crate::{link::LineConnection, objects::training};
 use super::{
     activity::Activity,
     alarms::{MissingDevice, Signs},
+    compare_cost::CompareCost,
     deadlines::Deadlines,
+    degree_record::DegreeRecord,
     force_cloud::ForceCloud,
     history::SignalHistory,
     readings::{DisplayFigures, GateActivity, StateEntry},
-    rolling::{DegreeFractions, FadingMean},
+    rolling::FadingMean,
     stiffness::ContactStiffness,
     text,
 };
 use crate::report_text::{loss_text, quoted, role_name};
 
-/// Period of the degree histograms, s.
-pub const DEGREES_S: f64 = 120.0;
 /// Period of the trend of errors, s; one point per second.
 pub const TREND_S: usize = 180;
 /// Number of marks stored.
@@ -111,10 +111,9 @@ pub struct LiveState {
     pub clouds: [ForceCloud; SIDES],
     /// Marks set by the operator, s on the loop's clock, oldest first.
     pub marks_s: VecDeque<f64>,
-    /// Polynomial degrees chosen by the identification.
-    pub degrees: DegreeFractions,
-    /// Degrees that the paper's in-window rule would choose.
-    pub paper_degrees: DegreeFractions,
+    /// Polynomial degrees of the last minutes.
+    pub degrees: DegreeRecord,
+    pub compare_cost: CompareCost,
     /// Prediction error of each mode, N, one value per second, oldest first; NaN while the force was unknown.
     pub trend_n: VecDeque<[f64; SLOTS]>,
     /// Recent activity of each side's gates.
@@ -179,9 +178,10 @@ pub struct LiveState {
 
 impl LiveState {
     pub fn new(rig: RigConfig, scene: Scene) -> Self {
-        let ticks = (DEGREES_S * rig.rate_hz) as usize;
         let now = Instant::now();
         Self {
+            degrees: DegreeRecord::new(rig.rate_hz),
+            compare_cost: CompareCost::default(),
             rig,
             scene,
             of: ScreenSource::Now,
@@ -191,8 +191,6 @@ impl LiveState {
             history: Default::default(),
             clouds: Default::default(),
             marks_s: VecDeque::new(),
-            degrees: DegreeFractions::new(ticks),
-            paper_degrees: DegreeFractions::new(ticks),
             gates: Default::default(),
             changes: [None; SIDES],
             stiffness: Default::default(),

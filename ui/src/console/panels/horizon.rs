@@ -26,17 +26,20 @@ const PLAIN_MAX: f64 = 10.0;
 pub fn horizon_ui(ui: &mut Ui, live: &LiveState, outbox: &mut Outbox, plain: bool) {
     let computed = live.first_tick().map_or(ModeSet::only(Mode::Dfr), |tick| tick.identification.modes);
     let dfr_n = live.figures.horizon_n[Mode::Dfr.index()];
+    let compares = outbox.compares(live);
     let ahead = if plain { text::horizon::ahead_plain } else { text::horizon::ahead };
     ui.label(small(ahead(live.delay_s() * 1e3)));
     if plain {
         // The demonstration compares all modes, and its rows must fit into a low window.
         ui.spacing_mut().item_spacing.y = 2.0;
     } else {
-        compare_ui(ui, live, outbox);
+        compare_ui(ui, live, compares, outbox);
     }
     ui.add_space(2.0);
     let modes = COMPARED.into_iter().chain(computed.baseline().map(Mode::Baseline));
-    for mode in modes.filter(|mode| computed.contains(*mode)) {
+    // Another panel may have all modes computed; they are listed here only by the operator's choice.
+    let is_listed = |mode: &Mode| compares || [Mode::Dfr, live.mode()].contains(mode);
+    for mode in modes.filter(|mode| computed.contains(*mode) && is_listed(mode)) {
         let error = ModeError { mode, error_n: live.figures.horizon_n[mode.index()], dfr_n, plain };
         mode_ui(ui, &error, live.mode() == mode);
     }
@@ -45,8 +48,7 @@ pub fn horizon_ui(ui: &mut Ui, live: &LiveState, outbox: &mut Outbox, plain: boo
     }
 }
 
-fn compare_ui(ui: &mut Ui, live: &LiveState, outbox: &mut Outbox) {
-    let mut compares = live.compares();
+fn compare_ui(ui: &mut Ui, live: &LiveState, mut compares: bool, outbox: &mut Outbox) {
     let compare = egui::Checkbox::new(&mut compares, text::horizon::COMPARE.get());
     let compare = ui.add_enabled(!live.is_shown_only(), compare).on_hover_text(text::horizon::COMPARE_HOVER.get());
     if compare.on_disabled_hover_text(live.of.blocked()).changed() {

@@ -19,7 +19,7 @@ pub mod traces;
 mod traces_state;
 
 pub use calibrations::{CalibrationPage, CalibrationWish, calibrations_ui};
-pub use degrees::degrees_ui;
+pub use degrees::{DegreesState, degrees_ui};
 pub use devices::{DevicesState, devices_ui};
 pub use feedback::{FeedbackState, calm_gain_ui, feedback_ui};
 pub use force_space::{ForceSpaceState, force_space_ui};

@@ -44,6 +44,7 @@ pub(super) fn technician_ui(
         }
         Panel::Safety => safety_ui(ui, live, &mut panels.safety),
         Panel::Horizon => horizon_ui(ui, live, outbox, false),
+        Panel::Degrees => degrees_ui(ui, live, &mut panels.degrees),
         Panel::Timing => timing_ui(ui, live, &mut panels.timing),
         Panel::Link if past => {
             let elsewhere = live.of == ScreenSource::Elsewhere;
@@ -54,7 +55,6 @@ pub(super) fn technician_ui(
             let tradeoff = panels.tradeoff.as_mut();
             wishes.restart = acts(ui, past, |ui| tradeoff.and_then(|panel| panel.ui(ui, live, outbox)));
         }
-        Panel::Degrees => degrees_ui(ui, live),
     });
     panels.desk = desk;
     wishes

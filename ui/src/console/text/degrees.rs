@@ -22,38 +22,83 @@ pub(in crate::console) const NONLINEAR_PAPER: Text =
 pub(in crate::console) const NONLINEAR_PAPER_HOVER: Text = Text::of(
     "Fraction of ticks in which degree 2 or higher had the smallest error inside the window. A higher degree \
      always fits the window at least as well, so this is near 100 % for any tissue. It is not evidence of \
-     nonlinearity. Computed only while all modes are compared.",
+     nonlinearity.",
     "Anteil der Takte, in denen Grad 2 oder höher den kleinsten Fehler im Fenster hatte. Ein höherer Grad passt immer \
-     mindestens so gut ins Fenster, daher nahe 100 % für jedes Gewebe. Kein Beleg für Nichtlinearität. Nur berechnet, \
-     solange alle Modi verglichen werden.",
+     mindestens so gut ins Fenster, daher nahe 100 % für jedes Gewebe. Kein Beleg für Nichtlinearität.",
 );
 pub(in crate::console) const CONDITION: Text = Text::of("Condition", "Kondition");
 pub(in crate::console) const CONDITION_HOVER: Text = Text::of(
     "Condition number of the scaled columns that predict best from the window, worst axis, no unit. 1 is \
-     perfect; above 10 000 the columns can hardly be distinguished. Computed only while all modes are compared.",
+     perfect; above 10 000 the columns can hardly be distinguished.",
     "Konditionszahl der skalierten Spalten, die aus dem Fenster am besten vorhersagen, schlechteste Achse, ohne \
-     Einheit. 1 ist perfekt; über 10 000 sind die Spalten kaum zu unterscheiden. Nur berechnet, solange alle Modi \
-     verglichen werden.",
+     Einheit. 1 ist perfekt; über 10 000 sind die Spalten kaum zu unterscheiden.",
 );
 pub(in crate::console) const RANK: Text = Text::of("Rank", "Rang");
 pub(in crate::console) const RANK_HOVER: Text = Text::of(
     "Number of motion columns that vary enough in the window to be identified, out of all columns (three per \
      degree: position, velocity, acceleration). The ridge regularization gives the others no weight. Used: \
-     columns that predict best now. Computed only while all modes are compared.",
+     columns that predict best now.",
     "Zahl der Bewegungsspalten, die im Fenster genug variieren, um identifiziert zu werden, von allen Spalten (drei je \
      Grad: Position, Geschwindigkeit, Beschleunigung). Die Ridge-Regularisierung gibt den übrigen kein Gewicht. \
-     Verwendet: Spalten, die jetzt am besten vorhersagen. Nur berechnet, solange alle Modi verglichen werden.",
+     Verwendet: Spalten, die jetzt am besten vorhersagen.",
 );
 pub(in crate::console) const EXCITATION: Text = Text::of("Excitation", "Anregung");
 pub(in crate::console) const EXCITATION_HOVER: Text = Text::of(
     "How much the motion varies within the window: standard deviation of position (mm) and of velocity \
-    (mm/s), all axes. Without motion nothing can be identified. Computed only while \
-    all modes are compared.",
+    (mm/s), all axes. Without motion nothing can be identified.",
     "Wie stark die Bewegung im Fenster variiert: Standardabweichung von Position (mm) und Geschwindigkeit (mm/s), alle \
-     Achsen. Ohne Bewegung ist nichts identifizierbar. Nur berechnet, solange alle Modi verglichen werden.",
+     Achsen. Ohne Bewegung ist nichts identifizierbar.",
 );
-pub(in crate::console) const NOT_COMPUTED: Text = Text::of("not computed", "nicht berechnet");
 pub(in crate::console) const NONE: Text = Text::of("none", "keiner");
+
+pub(in crate::console) const NONLINEAR_AXES: Text = Text::of("Nonlinear, x / y / z", "Nichtlinear, x / y / z");
+pub(in crate::console) const NONLINEAR_AXES_HOVER: Text = Text::of(
+    "The paper's rule along each axis: fraction of ticks in which degree 2 or higher reproduced the force of the last \
+     0.1 s best",
+    "Regel des Artikels längs jeder Achse: Anteil der Takte, in denen Grad 2 oder höher die Kraft der letzten 0,1 s am \
+     besten wiedergab",
+);
+pub(in crate::console) const COST: Text = Text::of("Cost per tick", "Kosten je Takt");
+pub(in crate::console) const COST_HOVER: Text = Text::of(
+    "While this panel is on the screen and the loop is engaged, the loop computes every mode. Shown: the time that \
+     this adds to a tick, and the whole work of a tick (medians of the last ticks in contact). The force in the hand \
+     does not change.",
+    "Solange dieses Panel zu sehen und gekoppelt ist, berechnet die Regelung jeden Modus. Gezeigt: die Zeit, um die das \
+     einen Takt verlängert, und die ganze Rechenzeit eines Takts (Mediane der letzten Takte mit Kontakt). Die Kraft in \
+     der Hand ändert sich nicht.",
+);
+pub(in crate::console) const ALL_AXES: Text = Text::of("All", "Alle");
+pub(in crate::console) const ALL_AXES_HOVER: Text =
+    Text::of("Shows the degree chosen for all axes together", "Zeigt den für alle Achsen gemeinsam gewählten Grad");
+pub(in crate::console) const CONTACT: Text = Text::of("in contact", "im Kontakt");
+pub(in crate::console) const CONTACT_HOVER: Text = Text::of(
+    "Counts only ticks with a measured force of 0.3 N or more",
+    "Zählt nur Takte mit einer gemessenen Kraft ab 0,3 N",
+);
+pub(in crate::console) const EXPORT: Text = Text::of("CSV", "CSV");
+pub(in crate::console) const EXPORT_HOVER: Text = Text::of(
+    "Saves the fractions and the course over time as tables in the folder plots of the user's data",
+    "Speichert die Anteile und den Verlauf als Tabellen im Ordner plots der Nutzerdaten",
+);
+pub(in crate::console) const WAITS: Text =
+    Text::of("Computed while the loop is engaged", "Berechnet, solange gekoppelt ist");
+
+/// Returns what comparing adds to a tick and the whole work of a tick, us, as text.
+pub(in crate::console) fn cost(added: &str, whole: &str) -> String {
+    text_format!("{added} of {whole} µs", "{added} von {whole} µs")
+}
+
+pub(in crate::console) fn axis_hover(axis: &str) -> String {
+    text_format!(
+        "Shows the degree along {axis}, by the paper's rule",
+        "Zeigt den Grad längs {axis}, Regel des Artikels"
+    )
+}
+
+/// Returns the accessible name of the plot of the mean degree over time.
+pub(in crate::console) fn over_time(now: &str) -> String {
+    text_format!("Degree over time. Last half second: {now}", "Grad über der Zeit. Letzte halbe Sekunde: {now}")
+}
 
 pub(in crate::console) fn last_minutes(minutes: f64) -> String {
     text_format!("last {minutes:.0} min", "letzte {minutes:.0} min")
@@ -65,8 +110,4 @@ pub(in crate::console) fn columns(rank: u8, of: usize, used: u8) -> String {
 
 pub(in crate::console) fn chosen(fractions: &str) -> String {
     text_format!("Degrees chosen: {fractions}", "Gewählte Grade: {fractions}")
-}
-
-pub(in crate::console) fn both(ours: &str, papers: &str) -> String {
-    text_format!("This console  {ours}\nPaper's rule  {papers}", "Diese Konsole  {ours}\nRegel des Artikels  {papers}")
 }

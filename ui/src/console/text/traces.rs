@@ -1,5 +1,7 @@
 //! The Traces panel: force over time.
 
+use std::{fmt::Display, io};
+
 use crate::language::{Text, text_format, word};
 
 pub(in crate::console) const HOVER: Text = Text::of(
@@ -29,6 +31,15 @@ pub(in crate::console) const MARK_HOVER: Text = Text::of(
 pub(in crate::console) const LAST_TEN_SECONDS: Text = Text::of("Last 10 s", "Letzte 10 s");
 pub(in crate::console) const LAST_TEN_SECONDS_HOVER: Text =
     Text::of("Shows the last ten seconds again", "Zeigt wieder die letzten zehn Sekunden");
+/// Reports an export.
+pub(in crate::console) fn saved(path: &impl Display) -> String {
+    text_format!("Saved as {path}", "Gespeichert als {path}")
+}
+
+pub(in crate::console) fn not_saved(path: &impl Display, error: &io::Error) -> String {
+    text_format!("{path} could not be saved: {error}", "{path} ließ sich nicht speichern: {error}")
+}
+
 pub(in crate::console) const TIME_AXIS: Text = Text::of("Time before now (s)", "Zeit vor jetzt (s)");
 
 /// Returns both forces of an axis (signed, with their unit) at the cursor of another plot.

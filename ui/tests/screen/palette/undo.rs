@@ -2,7 +2,7 @@
 
 use egui::accesskit::Role as Kind;
 use egui_kittest::kittest::Queryable as _;
-use nima_console::console::{ConsoleApp, commands::Action, scene3d::extras::MenuSwitch};
+use nima_console::console::{ConsoleApp, commands::Action, scene3d::extras::MenuSwitch, tiles::Panel};
 use nima_machine::messages::LoopState;
 use nima_tests::plan;
 
@@ -20,10 +20,13 @@ type Does<'a> = &'a dyn Fn(&mut Console);
 fn nothing_that_went_to_the_machine_is_undone() {
     let plan = plan("peg_transfer");
     let (handle, commands) = playback::watched(&plan);
-    let mut console = egui_kittest::Harness::builder()
-        .with_size(SIZE)
-        .with_step_dt(1.0 / 30.0)
-        .build_eframe(move |cc| ConsoleApp::new(cc, handle, plan.rig, plan.scene).with_simulated_time(1.0));
+    let mut console =
+        egui_kittest::Harness::builder().with_size(SIZE).with_step_dt(1.0 / 30.0).build_eframe(move |cc| {
+            let mut console = ConsoleApp::new(cc, handle, plan.rig, plan.scene).with_simulated_time(1.0);
+            // The panel sends its own command, which makes the loop compute all modes.
+            console.settings_mut().layout.toggle(Panel::Degrees);
+            console
+        });
     until(&mut console, "engaged", |tick| tick.state == LoopState::Engaged);
     choose(&mut console, Action::Light(true));
     let slide = |console: &mut Console, label: &str, value: f64| {

@@ -91,9 +91,10 @@ impl DemoState {
     /// Starts the demonstration, if it has not started; returns the previous settings.
     fn enter(&mut self, live: &LiveState, outbox: &mut Outbox) -> PreviousSettings {
         *self.before.get_or_insert_with(|| {
+            let compares = outbox.compares(live);
             outbox.push(Command::Compare(true));
             let static_hold = live.gate_settings().static_hold;
-            PreviousSettings { mode: live.mode(), delay_s: live.delay_s(), compares: live.compares(), static_hold }
+            PreviousSettings { mode: live.mode(), delay_s: live.delay_s(), compares, static_hold }
         })
     }
 

@@ -84,7 +84,7 @@ fn ours() -> impl FnMut() -> f64 {
         frame_ms(&ctx, numbers.next().unwrap(), &mut |ui| {
             ui.columns(2, |columns| {
                 for (ui, state) in columns.iter_mut().zip(&mut states) {
-                    ui.push_id(state.side().word(), |ui| force_traces_ui(ui, &mut live, state, &[0, 1, 2]));
+                    ui.push_id(state.side().word(), |ui| force_traces_ui(ui, &mut live, state, None));
                 }
             });
         })

@@ -1,4 +1,4 @@
-//! Files with what a plot shows, in the folder `plots` of the user's data.
+//! Exports of a plot as CSV and PNG, in the folder `plots` of the user's data.
 
 use std::{
     path::{Path, PathBuf},
@@ -6,11 +6,11 @@ use std::{
     time::{Duration, Instant, SystemTime},
 };
 
-use egui::{Context, Id, Ui};
+use egui::{Context, Id, Pos2, Rect, Ui};
 use nima_files::write_atomically;
 use nima_recording::store::utc_of;
 
-use super::{text, widgets::small};
+use super::{screenshot, text, widgets::small};
 
 /// Time for which the outcome is displayed.
 const SHOWN: Duration = Duration::from_secs(8);
@@ -60,6 +60,22 @@ pub(super) fn save_csv(ctx: &Context, plot: &str, table: &str) {
         written.map_err(|error| text::traces::not_saved(&path.display(), &error)).map(|()| path)
     });
     exports.notify(written);
+}
+
+/// Writes this part of the next frame.
+pub(super) fn save_png(ctx: &Context, plot: &str, part: Rect) {
+    let exports = exports(ctx);
+    let points = ctx.pixels_per_point();
+    let plot = plot.to_owned();
+    ctx.request_screenshot(move |image| {
+        let window = Rect::from_min_size(Pos2::ZERO, image.size.map(|side| side as f32 / points).into());
+        let part = part.intersect(window);
+        let written = exports.place(&plot, "png").and_then(|path| {
+            let image = image.region(&part, Some(points));
+            screenshot::save(&path, &image).map_err(|error| format!("{error:#}")).map(|()| path)
+        });
+        exports.notify(written);
+    });
 }
 
 /// Shows the outcome of the last export for a short time.

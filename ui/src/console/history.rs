@@ -1,15 +1,13 @@
 //! Data of the traces: minima and maxima per time bucket, updated with every sample, at three resolutions.
 //!
 //! A frame reads at most a few thousand buckets and no raw samples, so drawing costs the same after an hour as after a
-//! minute, and memory is constant. Times are seconds on the loop's clock; the values here are newtons, but nothing depends on
-//! the unit.
+//! minute, and memory is constant. Times are seconds on the loop's clock; nothing depends on the unit of a value.
 
 use std::collections::VecDeque;
 
 use egui_plot::PlotPoint;
 
-/// Number of values per sample: measured x, y, z and rendered x, y, z.
-pub const CHANNELS: usize = 6;
+pub use super::signals::CHANNELS;
 
 /// Number of buckets per level.
 const CAPACITY: usize = 8192;
@@ -19,20 +17,51 @@ const SPANS_S: [f64; 3] = [0.004, 0.016, 0.064];
 /// A longer interval without samples is drawn as a gap, s; shorter ones are bridged.
 const GAP_S: f64 = 0.05;
 
-/// A signal to be drawn: points with rising x, in runs separated by gaps.
+/// A signal to be drawn: columns with rising x, in runs separated by gaps.
 #[derive(Clone, Debug, Default)]
 pub struct PlotTrace {
+    /// Middle of each column.
     points: Vec<PlotPoint>,
-    /// Index of the first point of each run except the first.
+    x: Vec<f64>,
+    low: Vec<f64>,
+    high: Vec<f64>,
+    /// Index of the first column of each run except the first.
     breaks: Vec<usize>,
 }
 
+/// Lowest and highest sample of a channel in a column; `None` without a known sample.
+pub type SampleExtent = Option<(f32, f32)>;
+
+/// Columns without a gap.
+#[derive(Clone, Copy, Debug)]
+pub struct TraceRun<'a> {
+    /// Middle of each column.
+    pub points: &'a [PlotPoint],
+    pub x: &'a [f64],
+    pub low: &'a [f64],
+    pub high: &'a [f64],
+}
+
 impl PlotTrace {
-    /// Returns the runs, oldest first, each without a gap.
-    pub fn runs(&self) -> impl Iterator<Item = &[PlotPoint]> {
+    fn clear(&mut self) {
+        self.points.clear();
+        self.breaks.clear();
+        for values in [&mut self.x, &mut self.low, &mut self.high] {
+            values.clear();
+        }
+    }
+
+    /// Returns the runs, oldest first.
+    pub fn runs(&self) -> impl Iterator<Item = TraceRun<'_>> {
         let begins = std::iter::once(0).chain(self.breaks.iter().copied());
         let ends = self.breaks.iter().copied().chain(std::iter::once(self.points.len()));
-        begins.zip(ends).map(|(begin, end)| &self.points[begin..end]).filter(|run| !run.is_empty())
+        let run = |(begin, end): (usize, usize)| TraceRun {
+            points: &self.points[begin..end],
+            x: &self.x[begin..end],
+            low: &self.low[begin..end],
+            high: &self.high[begin..end],
+        };
+        begins.zip(ends).filter(|(begin, end)| begin < end).map(run)
     }
 }
 
@@ -40,24 +69,16 @@ impl PlotTrace {
 struct HistoryBucket {
     low: [f32; CHANNELS],
     high: [f32; CHANNELS],
-    /// One bit per channel, set if the minimum came before the maximum.
-    low_first: u8,
 }
 
 impl HistoryBucket {
-    const EMPTY: Self = Self { low: [f32::INFINITY; CHANNELS], high: [f32::NEG_INFINITY; CHANNELS], low_first: 0 };
+    const EMPTY: Self = Self { low: [f32::INFINITY; CHANNELS], high: [f32::NEG_INFINITY; CHANNELS] };
 
     fn add(&mut self, values: &[f32; CHANNELS]) {
         for (channel, &value) in values.iter().enumerate() {
-            // Comparisons with NaN are false, so NaN does not change the bucket.
-            if value < self.low[channel] {
-                self.low[channel] = value;
-                self.low_first &= !(1 << channel);
-            }
-            if value > self.high[channel] {
-                self.high[channel] = value;
-                self.low_first |= 1 << channel;
-            }
+            // `min` and `max` ignore NaN.
+            self.low[channel] = self.low[channel].min(value);
+            self.high[channel] = self.high[channel].max(value);
         }
     }
 
@@ -168,11 +189,10 @@ impl SignalHistory {
         self.levels.iter().find(fits).unwrap_or(&self.levels[SPANS_S.len() - 1])
     }
 
-    /// Replaces `trace` by the signal between two times, two points per bucket, x relative to `origin_s`. The newest
-    /// bucket is included when it is full.
+    /// Replaces `trace` by the signal between two times, a column per bucket, x relative to `origin_s`. The newest bucket is
+    /// included when it is full.
     pub fn trace(&self, channel: usize, (from_s, to_s): (f64, f64), origin_s: f64, max: usize, trace: &mut PlotTrace) {
-        trace.points.clear();
-        trace.breaks.clear();
+        trace.clear();
         let level = self.level(from_s, to_s, max);
         let mut last_s = f64::INFINITY;
         for (begin_s, bucket) in level.between(from_s, to_s) {
@@ -185,11 +205,22 @@ impl SignalHistory {
                 trace.breaks.push(trace.points.len());
             }
             last_s = begin_s;
-            let (one, two) = if bucket.low_first & (1 << channel) == 0 { (high, low) } else { (low, high) };
-            let t_s = begin_s - origin_s;
-            trace.points.push(PlotPoint::new(t_s + 0.25 * level.span_s, f64::from(one)));
-            trace.points.push(PlotPoint::new(t_s + 0.75 * level.span_s, f64::from(two)));
+            let [low, high] = [low, high].map(f64::from);
+            let x_s = begin_s - origin_s + 0.5 * level.span_s;
+            trace.points.push(PlotPoint::new(x_s, f64::midpoint(low, high)));
+            trace.x.push(x_s);
+            trace.low.push(low);
+            trace.high.push(high);
         }
+    }
+
+    /// Returns the times (s), lowest and highest values of these channels between two times, for a table: as fine as the
+    /// traces drawn with the same `max`.
+    pub fn table(&self, channels: &[usize], (from_s, to_s): (f64, f64), max: usize) -> Vec<(f64, Vec<SampleExtent>)> {
+        let level = self.level(from_s, to_s, max);
+        let full = level.between(from_s, to_s).filter(|(begin_s, _)| begin_s + level.span_s <= self.latest_s);
+        full.map(|(begin_s, bucket)| (begin_s, channels.iter().map(|channel| bucket.ends(*channel)).collect()))
+            .collect()
     }
 
     /// Returns the lowest and highest value of the channels between two times.
@@ -224,9 +255,9 @@ mod tests {
         history
     }
 
-    fn one_run(trace: &PlotTrace) -> &[PlotPoint] {
+    fn one_run(trace: &PlotTrace) -> TraceRun<'_> {
         assert_eq!(trace.breaks, [0; 0]);
-        &trace.points
+        trace.runs().next().unwrap()
     }
 
     #[test]
@@ -239,7 +270,7 @@ mod tests {
         for max in [10_000, 20] {
             history.trace(0, (0.0, 1.0), 0.0, max, &mut trace);
             assert_eq!(trace.runs().count(), 2);
-            assert!(trace.runs().all(|run| run.is_sorted_by(|a, b| a.x <= b.x)));
+            assert!(trace.runs().all(|run| run.x.is_sorted()));
         }
     }
 
@@ -249,9 +280,9 @@ mod tests {
         let mut line = PlotTrace::default();
         for (from_s, max) in [(99.9, 10_000), (90.0, 2000), (0.0, 2000), (0.0, 10)] {
             history.trace(0, (from_s, 120.0), 120.0, max, &mut line);
-            let points = one_run(&line);
-            assert!(points.iter().any(|p| (p.y - 3.0).abs() < 1e-9), "lost from {from_s}");
-            assert!(points.is_sorted_by(|a, b| a.x <= b.x), "x must rise, or plotting falls off its fast path");
+            let run = one_run(&line);
+            assert!(run.high.iter().any(|high| (high - 3.0).abs() < 1e-9), "lost from {from_s}");
+            assert!(run.x.is_sorted(), "x must rise, or plotting falls off its fast path");
         }
     }
 
@@ -260,22 +291,23 @@ mod tests {
         let history = filled(700.0, 1000.0, |t_s| t_s as f32);
         let mut line = PlotTrace::default();
         history.trace(0, (0.0, 700.0), 700.0, 1000, &mut line);
-        assert!(one_run(&line).len() <= 2 * CAPACITY);
+        assert!(one_run(&line).points.len() <= CAPACITY);
         history.trace(0, (690.0, 700.0), 700.0, 1000, &mut line);
-        assert!((600..=2002).contains(&one_run(&line).len()), "{}", one_run(&line).len());
+        assert!((300..=1001).contains(&one_run(&line).points.len()), "{}", one_run(&line).points.len());
         assert!(history.oldest_s() > 170.0 && history.oldest_s() < 180.0, "{}", history.oldest_s());
     }
 
     #[test]
-    fn order_inside_a_bucket_is_kept() {
+    fn samples_of_one_column_are_a_band_around_their_middle() {
         let mut history = SignalHistory::default();
         history.push(0.000, &[1.0; CHANNELS]);
-        history.push(0.001, &[-1.0; CHANNELS]);
+        history.push(0.001, &[-2.0; CHANNELS]);
         history.push(0.004, &[-9.0; CHANNELS]);
         let mut line = PlotTrace::default();
         history.trace(2, (0.0, 0.003), 0.0, 100, &mut line);
-        let ys: Vec<f64> = one_run(&line).iter().map(|p| p.y).collect();
-        assert_eq!(ys, [1.0, -1.0]);
+        let run = one_run(&line);
+        assert_eq!((run.low, run.high, run.points[0].y), (&[-2.0][..], &[1.0][..], -0.5));
+        assert_eq!(history.table(&[2], (0.0, 0.003), 100), [(0.0, vec![Some((-2.0, 1.0))])]);
     }
 
     #[test]
@@ -295,7 +327,7 @@ mod tests {
     #[test]
     fn nothing_is_drawn_from_nothing() {
         let history = SignalHistory::default();
-        let mut line = PlotTrace { points: vec![PlotPoint::new(0.0, 0.0)], breaks: vec![1] };
+        let mut line = PlotTrace { points: vec![PlotPoint::new(0.0, 0.0)], ..PlotTrace::default() };
         history.trace(0, (-10.0, 0.0), 0.0, 100, &mut line);
         assert_eq!(line.runs().count(), 0);
         assert_eq!(history.extent(&[0], (-10.0, 0.0)), None);

@@ -44,6 +44,7 @@ pub mod screenshot;
 pub mod screenshots;
 pub(crate) mod sessions;
 pub mod settings;
+pub mod signals;
 pub mod start;
 pub mod steady_button;
 pub mod stiffness;

@@ -44,7 +44,7 @@ impl ScreenLook {
             || *language != other.language
             || *scale_percent != other.scale_percent
             || *extras != other.extras
-            || traces.side != other.traces.side;
+            || ForcesView { view_s: other.traces.view_s, ..*traces } != other.traces;
         match (at_once, *image != other.image, *traces != other.traces) {
             (false, false, false) => None,
             (false, true, false) => Some(LookChange::Picture),

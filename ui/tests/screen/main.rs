@@ -26,6 +26,7 @@ mod roles;
 mod starting;
 mod studies;
 mod tiles;
+mod traces;
 mod tradeoff;
 mod training;
 mod view;

@@ -45,7 +45,7 @@ use super::{
     outbox::Outbox,
     page::Page,
     palette::CommandPalette,
-    panels::{TopBarState, TracesState, top_bar_ui},
+    panels::{TopBarState, top_bar_ui},
     playback::{Playback, list::SessionList},
     reader::ScreenReader,
     roles::Panels,
@@ -301,7 +301,7 @@ impl ConsoleApp {
         self.live = LiveState::new(rig, scene);
         self.live.rough_edges = rough_edges;
         self.live.line = door;
-        self.panels.forces = TracesState::default();
+        self.panels.forces.begin_anew();
         self.history.adopt();
         self.panels.devices.begin_anew();
         self.panels.demo.begin_anew();

@@ -11,10 +11,10 @@ use nima_machine::{
 use super::{BLOCKS_KEPT, FIGURES_EVERY, LiveState, READINGS_EVERY, RefusedCommand, TRAIL_S, TRAIL_STEP_S, TREND_S};
 use crate::console::{
     activity::Activity,
-    history::CHANNELS,
     loop_connection::{LoopConnection, LoopMessage},
     readings::{DisplayFigures, ShaftTwist, StateEntry},
     rolling::FadingMean,
+    signals::signals_of,
 };
 
 /// Displayed forces are smoothed with this time constant, s, which calms the last digit.
@@ -156,7 +156,7 @@ impl LiveState {
         let dt_s = before.map_or(0.0, |before| (tick.t_s - before.t_s).max(0.0));
         let m = tick.measured_n;
         let r = tick.rendered_n;
-        self.history[side].push(tick.t_s, &forces_of(tick));
+        self.history[side].push(tick.t_s, &signals_of(tick, before.map(|before| (before.t_s, before.tip_m))));
         match tick.known_n() {
             Some(force_n) => follow_force(&mut self.measured[side], force_n.norm(), dt_s),
             None => self.measured[side] = FadingMean::default(),
@@ -234,13 +234,6 @@ fn follow_force(mean: &mut FadingMean, force_n: f64, dt_s: f64) {
         *mean = FadingMean::default();
     }
     mean.push(force_n, dt_s, SMOOTHING_S);
-}
-
-/// Returns the forces of a tick, N, in the order of their channels; NaN if unknown.
-pub(in crate::console) fn forces_of(tick: &Tick) -> [f32; CHANNELS] {
-    let m = tick.measured_n;
-    let r = tick.rendered_n;
-    [m.x, m.y, m.z, r.x, r.y, r.z].map(|x| x as f32)
 }
 
 #[cfg(test)]

@@ -3,8 +3,6 @@
 mod arms;
 mod intake;
 
-pub(in crate::console) use intake::forces_of;
-
 use std::{
     collections::VecDeque,
     time::{Duration, Instant},

@@ -4,8 +4,6 @@ use std::ops::RangeInclusive;
 
 use egui_plot::{GridInput, GridMark};
 
-use crate::report_text::newtons;
-
 /// Returns the marks at round values over the range of an axis, at least `apart` points apart, so that the numbers are
 /// readable however small the plot is.
 pub(super) fn marks(grid: &GridInput, apart: f64) -> Vec<GridMark> {
@@ -34,11 +32,6 @@ pub(super) fn near_end(value: f64, shown: &RangeInclusive<f64>) -> bool {
 pub(super) fn signed(value: f64) -> String {
     let text = format!("{value:+.2}");
     if text == "-0.00" || text == "+0.00" { "0.00".to_owned() } else { text }
-}
-
-/// Like [`signed`], with the unit, or the sign for an unknown force.
-pub(super) fn signed_n(force_n: Option<f64>) -> String {
-    force_n.map_or_else(|| newtons(None, 2), |force_n| format!("{} N", signed(force_n)))
 }
 
 /// Returns a number without trailing zeros.

@@ -3,7 +3,7 @@
 
 use std::f32::consts::TAU;
 
-use egui::{Align2, Color32, Painter, Pos2, Rect, Sense, Stroke, Ui, Vec2, pos2, vec2};
+use egui::{Align2, Button, Color32, Painter, Pos2, Rect, RichText, Sense, Stroke, TextWrapMode, Ui, Vec2, pos2, vec2};
 use nalgebra::Vector3;
 use nima_machine::rig::Side;
 
@@ -14,6 +14,7 @@ use crate::console::{
     text, theme,
     widgets::fitting,
 };
+use crate::report_text::newtons;
 
 /// Height of the caption.
 const CAPTION: f32 = 40.0;
@@ -30,11 +31,20 @@ pub struct ForceSpaceState {
     /// The error ellipsoid, with the number and the end time (s) of the samples from which it was computed: older samples may
     /// be added later.
     ellipsoid: (usize, f64, Option<Ellipsoid>),
+    /// Whether the measured and the rendered force are hidden.
+    hidden: [bool; 2],
 }
 
 impl Default for ForceSpaceState {
     fn default() -> Self {
-        Self { yaw: 0.6, pitch: 0.35, reach_n: MIN_N, ellipsoid: (0, f64::NEG_INFINITY, None) }
+        Self { yaw: 0.6, pitch: 0.35, reach_n: MIN_N, ellipsoid: (0, f64::NEG_INFINITY, None), hidden: [false; 2] }
+    }
+}
+
+impl ForceSpaceState {
+    /// Looks from the first direction again, at both forces.
+    fn reset(&mut self) {
+        *self = Self::default();
     }
 }
 
@@ -78,7 +88,7 @@ pub fn force_space_ui(ui: &mut Ui, live: &LiveState, side: Side, state: &mut For
         state.pitch = (state.pitch + response.drag_delta().y * 0.01).clamp(-1.5, 1.5);
     }
     if response.double_clicked() {
-        *state = ForceSpaceState::default();
+        state.reset();
     }
     response.on_hover_text(text::force_space::HOVER.get());
     let painter = ui.painter_at(rect);
@@ -89,20 +99,7 @@ pub fn force_space_ui(ui: &mut Ui, live: &LiveState, side: Side, state: &mut For
     let view = view(state, place);
     axes(&painter, &view, state.reach_n);
     ceiling(&painter.with_clip_rect(place), &view, live.gate_settings().ceiling_n as f32);
-    for (colour, width, rendered) in [(theme::now().measured, 2.2, false), (theme::now().rendered, 1.6, true)] {
-        let force_n = |pair: &ForcePair| if rendered { pair.rendered_n } else { pair.measured_n };
-        // Draw one line for each interval in which the measured force was known.
-        for run in pairs.chunk_by(|before, after| after.t_s - before.t_s < GAP_S) {
-            let points = run.iter().map(|pair| view.place(&force_n(pair).cast())).collect();
-            painter.line(points, Stroke::new(width, colour.gamma_multiply(0.75)));
-        }
-        // The newest sample, or the sample at the cursor of a trace, if the force was known then.
-        let at_s = cursor_s.unwrap_or(now_s);
-        let pointed_at = pairs.iter().min_by(|a, b| (a.t_s - at_s).abs().total_cmp(&(b.t_s - at_s).abs()));
-        if let Some(pair) = pointed_at.filter(|pair| (pair.t_s - at_s).abs() < GAP_S) {
-            painter.circle_filled(view.place(&force_n(pair).cast()), 4.5, colour);
-        }
-    }
+    let magnitudes_n = curves(&painter, &view, &pairs, state.hidden, cursor_s.unwrap_or(now_s));
     if let (Some(ellipsoid), Some(pair)) = (ellipsoid, pairs.last()) {
         rings(&painter.with_clip_rect(place), &view, &pair.measured_n.cast(), &ellipsoid);
     }
@@ -111,6 +108,63 @@ pub fn force_space_ui(ui: &mut Ui, live: &LiveState, side: Side, state: &mut For
         let at = at + vec2(0.0, 16.0 * i as f32);
         let font = fitting(&painter, line, theme::regular(12.5), rect.right() - at.x - 4.0);
         painter.text(at, Align2::LEFT_TOP, line, font, theme::now().text_weak);
+    }
+    legend_ui(ui, state, rect, magnitudes_n);
+}
+
+/// Draws the curves that are not hidden, and a dot at this time, s; returns the magnitudes of the measured and of the rendered
+/// force at the dots, N.
+fn curves(
+    painter: &Painter,
+    view: &ForceProjection,
+    pairs: &[&ForcePair],
+    hidden: [bool; 2],
+    at_s: f64,
+) -> [Option<f64>; 2] {
+    let mut magnitudes_n = [None; 2];
+    // The measured force is drawn over the rendered one.
+    for (colour, width, rendered) in [(theme::now().rendered, 1.6, true), (theme::now().measured, 2.2, false)] {
+        if hidden[usize::from(rendered)] {
+            continue;
+        }
+        let force_n = |pair: &ForcePair| if rendered { pair.rendered_n } else { pair.measured_n };
+        // Draw one line for each interval in which the measured force was known.
+        for run in pairs.chunk_by(|before, after| after.t_s - before.t_s < GAP_S) {
+            let points = run.iter().map(|pair| view.place(&force_n(pair).cast())).collect();
+            painter.line(points, Stroke::new(width, colour.gamma_multiply(0.75)));
+        }
+        // The newest sample, or the sample at the cursor of a trace, if the force was known then.
+        let pointed_at = pairs.iter().min_by(|a, b| (a.t_s - at_s).abs().total_cmp(&(b.t_s - at_s).abs()));
+        if let Some(pair) = pointed_at.filter(|pair| (pair.t_s - at_s).abs() < GAP_S) {
+            painter.circle_filled(view.place(&force_n(pair).cast()), 4.5, colour);
+            magnitudes_n[usize::from(rendered)] = Some(force_n(pair).norm());
+        }
+    }
+    magnitudes_n
+}
+
+/// Draws the names of both forces with their magnitudes at the dots, and the button that resets the view. A click on a name
+/// hides or shows its curve.
+fn legend_ui(ui: &mut Ui, state: &mut ForceSpaceState, rect: Rect, magnitudes_n: [Option<f64>; 2]) {
+    let names = [(&text::traces::MEASURED, theme::now().measured), (&text::traces::RENDERED, theme::now().rendered)];
+    for (row, ((name, colour), force_n)) in names.into_iter().zip(magnitudes_n).enumerate() {
+        let is_hidden = state.hidden[row];
+        let words = text::force_space::magnitude(name.get(), &newtons(force_n, 2));
+        let words = RichText::new(words).font(theme::strong(12.5));
+        let words = if is_hidden { words.strikethrough().color(theme::now().text_weak) } else { words.color(colour) };
+        let place = Rect::from_min_size(rect.left_top() + vec2(6.0, 4.0 + 20.0 * row as f32), vec2(0.0, 18.0));
+        let button = Button::new(words).frame_when_inactive(false).small().wrap_mode(TextWrapMode::Extend);
+        let response = ui.put(place, button);
+        response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, !is_hidden, name.get()));
+        if response.on_hover_text(text::traces::LEGEND_HOVER.get()).clicked() {
+            state.hidden[row] ^= true;
+        }
+    }
+    let size = vec2(64.0, 22.0);
+    let place = Rect::from_min_size(rect.right_top() + vec2(-size.x - 6.0, 6.0), size);
+    let reset = ui.put(place, Button::new(text::force_space::RESET.get()).small().min_size(size));
+    if reset.on_hover_text(text::force_space::RESET_HOVER.get()).clicked() {
+        state.reset();
     }
 }
 

@@ -16,6 +16,8 @@ pub mod timing;
 mod timing_bars;
 pub mod top_bar;
 pub mod traces;
+mod traces_menu;
+mod traces_plot;
 mod traces_state;
 
 pub use calibrations::{CalibrationPage, CalibrationWish, calibrations_ui};

@@ -30,6 +30,8 @@ const MARKS: f32 = 10.0;
 const BUTTON: f32 = 30.0;
 /// A mark is under the pointer within this distance, points.
 const NEAR: f32 = 5.0;
+/// Width that a time on the ruler needs.
+const LABEL: f32 = 90.0;
 /// Width of the frame.
 pub(crate) const FRAME: f32 = 4.0;
 
@@ -197,14 +199,23 @@ fn strip_ui(ui: &mut Ui, past: &mut Playback) {
     let x = x_of(shown_s);
     painter.vline(x, strip.y_range(), Stroke::new(2.5, theme::now().text));
     sign(&painter, Sign::Disc, pos2(x, strip.top()), 5.0, theme::now().text);
-    for part in 0..=4 {
-        let t_s = end_s * f64::from(part) / 4.0;
-        let align = [egui::Align2::LEFT_TOP, egui::Align2::CENTER_TOP, egui::Align2::RIGHT_TOP]
-            [usize::from(part > 0) + usize::from(part == 4)];
+    for t_s in round_times(end_s, f64::from(strip.width() / LABEL)) {
+        let align = if t_s > 0.0 { egui::Align2::CENTER_TOP } else { egui::Align2::LEFT_TOP };
         let place = pos2(x_of(t_s), strip.bottom() + 2.0);
         painter.text(place, align, text::playback::short_clock(t_s), theme::regular(12.0), theme::now().text_weak);
+        painter.vline(x_of(t_s), strip.bottom() - 4.0..=strip.bottom(), Stroke::new(1.0, theme::now().text_weak));
     }
     point(past, response, strip, end_s);
+}
+
+/// Returns the round times of the ruler, s: at most this many, and none so close to the end that its number would be cut.
+fn round_times(end_s: f64, most: f64) -> Vec<f64> {
+    const STEPS_S: [f64; 14] =
+        [1.0, 2.0, 5.0, 10.0, 15.0, 30.0, 60.0, 120.0, 300.0, 600.0, 900.0, 1800.0, 3600.0, 7200.0];
+    let fits = |step_s: &f64| end_s / step_s <= most;
+    let step_s = STEPS_S.into_iter().find(fits).unwrap_or((end_s / most / 7200.0).ceil() * 7200.0);
+    let last = ((end_s - 0.35 * end_s / most) / step_s).max(0.0) as u32;
+    (0..=last).map(|number| f64::from(number) * step_s).collect()
 }
 
 /// Shows the moment under a pressed pointer, and the text of a mark under a hovering one.
@@ -284,5 +295,21 @@ fn colour_of(state: LoopState) -> Color32 {
         LoopState::Disconnected => theme::now().line,
         LoopState::Stopped => theme::now().stop,
         LoopState::Faulted(_) => theme::now().alarm_high,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::round_times;
+
+    #[test]
+    fn the_ruler_has_round_times_with_room_for_each() {
+        for (end_s, most, step_s, count) in [(7.3, 8.0, 1.0, 7), (75.0, 8.0, 10.0, 8), (4000.0, 10.0, 600.0, 7)] {
+            let times_s = round_times(end_s, most);
+            assert_eq!(times_s.len(), count, "{end_s} {times_s:?}");
+            assert!(times_s.iter().enumerate().all(|(number, t_s)| (t_s - number as f64 * step_s).abs() < 1e-9));
+        }
+        assert!(round_times(1e6, 5.0).len() <= 6);
+        assert_eq!(round_times(0.4, 8.0).len(), 1);
     }
 }

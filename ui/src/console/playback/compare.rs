@@ -47,7 +47,7 @@ fn half_ui(ui: &mut Ui, past: &mut Playback, smooth: bool) {
     let traces = Frame::new().inner_margin(Margin { left: 8, right: 18, top: 6, bottom: 6 });
     let height = TRACES * ui.available_height();
     Panel::bottom(below).exact_size(height).resizable(false).frame(traces).show(ui, |ui| {
-        force_traces_ui(ui, live, &mut past.panels.forces, &[0, 1, 2]);
+        force_traces_ui(ui, live, &mut past.panels.forces, None);
     });
     CentralPanel::no_frame().show(ui, |ui| scene_ui(ui, live, &mut past.panels.scene, &mut past.outbox));
     past.outbox.forget();

@@ -31,7 +31,8 @@ use super::{
 use crate::console::{
     chain,
     history::CHANNELS,
-    live::{LiveState, forces_of},
+    live::LiveState,
+    signals::{TipThen, signals_of},
     text,
 };
 use crate::{recording::WORDS, report_text::quoted};
@@ -129,7 +130,7 @@ fn attached<T: serde::de::DeserializeOwned>(recorded: &RecordedFile, name: &str)
         .map_err(|misfit| text::playback::unusable(name, misfit.message()))
 }
 
-/// Extremes of the forces in a short time.
+/// Extremes of the signals in a short time.
 #[derive(Clone, Copy, Debug)]
 struct ForceColumn {
     number: u64,
@@ -146,6 +147,8 @@ pub(super) struct SessionIndex<'a> {
     keyframe_s: f64,
     samples: [Vec<Tick>; SIDES],
     columns: [Vec<ForceColumn>; SIDES],
+    /// Tip at the last tick of each arm.
+    tips: [Option<TipThen>; SIDES],
     events: Vec<(f64, Event)>,
     /// Operator marks, s.
     marks_s: Vec<f64>,
@@ -178,6 +181,7 @@ impl<'a> SessionIndex<'a> {
             keyframe_s: KEYFRAME_S,
             samples: Default::default(),
             columns: Default::default(),
+            tips: Default::default(),
             events: Vec::new(),
             marks_s: Vec::new(),
             log_s: 0.0,
@@ -271,7 +275,8 @@ impl<'a> SessionIndex<'a> {
             if self.samples[side].last().is_none_or(|last| *t_s >= last.t_s + SAMPLE_S) {
                 self.samples[side].push(*tick);
             }
-            add(&mut self.columns[side], *t_s, &forces_of(tick));
+            let before = self.tips[side].replace((tick.t_s, tick.tip_m));
+            add(&mut self.columns[side], *t_s, &signals_of(tick, before));
         }
     }
 

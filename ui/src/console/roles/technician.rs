@@ -82,6 +82,6 @@ fn devices_then_ui(ui: &mut Ui, live: &LiveState) {
 /// Draws the traces, with space for the last number of the time axis, half of which is outside the plot.
 fn traces_ui(ui: &mut Ui, live: &mut LiveState, panels: &mut Panels) {
     Frame::new().inner_margin(Margin { left: 8, right: 18, top: 6, bottom: 6 }).show(ui, |ui| {
-        force_traces_ui(ui, live, &mut panels.forces, &[0, 1, 2]);
+        force_traces_ui(ui, live, &mut panels.forces, None);
     });
 }

@@ -15,6 +15,15 @@ pub(in crate::console) const HOVER: Text = Text::of(
      Doppelklick setzt zurück.",
 );
 
+pub(in crate::console) const RESET: Text = Text::of("Reset", "Zurück");
+pub(in crate::console) const RESET_HOVER: Text =
+    Text::of("Shows both forces from the first direction again", "Zeigt wieder beide Kräfte aus der ersten Richtung");
+
+/// Returns the name of a force with its magnitude.
+pub(in crate::console) fn magnitude(name: &str, force: &str) -> String {
+    format!("{name} |f| {force}")
+}
+
 /// Returns the accessible name of the plot.
 pub(in crate::console) fn canvas(words: &str) -> String {
     text_format!("Force space. {words}", "Kraftraum. {words}")

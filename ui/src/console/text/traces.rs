@@ -5,13 +5,68 @@ use std::{fmt::Display, io};
 use crate::language::{Text, text_format, word};
 
 pub(in crate::console) const HOVER: Text = Text::of(
-    "Force in N along the world axes x, y and z as drawn in the view, z up. Measured: at the instrument, \
-    now. Rendered: to the hand, after all gates. Drag to pan, wheel to zoom, double-click to show the \
-    last 10 s. E marks a moment.",
+    "Force in N along the world axes x, y and z as drawn in the view, z up. Measured: at the instrument, now. Rendered: \
+     to the hand, after all gates. The band spans the lowest and the highest sample of each column. Drag to pan, wheel to \
+     zoom, Shift and wheel to zoom the vertical axis, click and Shift click to set two cursors, right click for more, \
+     double-click to reset. E marks a moment.",
     "Kraft in N längs der Weltachsen x, y und z wie in der Ansicht, z nach oben. Gemessen: am Instrument, jetzt. \
-     Dargestellt: in der Hand, nach allen Sperren. Ziehen verschiebt, Mausrad zoomt, Doppelklick zeigt die letzten 10 \
-     s. E markiert einen Moment.",
+     Dargestellt: in der Hand, nach allen Sperren. Das Band reicht vom kleinsten bis zum größten Messwert jeder Spalte. \
+     Ziehen verschiebt, Mausrad zoomt, mit Umschalt die senkrechte Achse; Klick und Umschalt-Klick setzen zwei Marken zum \
+     Messen, Rechtsklick öffnet ein Menü, Doppelklick setzt zurück. E markiert einen Moment.",
 );
+pub(in crate::console) const SIGNALS: Text = Text::of("Signals", "Signale");
+pub(in crate::console) const SIGNALS_HOVER: Text = Text::of("Chooses the plots", "Wählt die Kurven aus");
+pub(in crate::console) const NO_PLOT: Text =
+    Text::of("No signal is chosen: choose some under Signals", "Kein Signal gewählt: unter Signale auswählen");
+pub(in crate::console) const LEGEND_HOVER: Text = Text::of("Click to hide or show", "Klick blendet aus oder ein");
+pub(in crate::console) const PLOT_X: Text = Text::of("Force along x", "Kraft längs x");
+pub(in crate::console) const PLOT_Y: Text = Text::of("Force along y", "Kraft längs y");
+pub(in crate::console) const PLOT_Z: Text = Text::of("Force along z", "Kraft längs z");
+pub(in crate::console) const PLOT_MAGNITUDE: Text = Text::of("Magnitude of the force |f|", "Betrag der Kraft |f|");
+pub(in crate::console) const PLOT_ERROR: Text =
+    Text::of("Error: rendered minus measured", "Fehler: dargestellt minus gemessen");
+pub(in crate::console) const PLOT_POSITION: Text = Text::of("Position of the tip", "Position der Spitze");
+pub(in crate::console) const PLOT_SPEED: Text = Text::of("Speed of the tip", "Tempo der Spitze");
+pub(in crate::console) const PLOT_GATES: Text = Text::of("Gates: gain and governor", "Sperren: Verstärkung und Bremse");
+pub(in crate::console) const PLOT_DEGREE: Text = Text::of("Degree N", "Grad N");
+pub(in crate::console) const PLOT_TORQUE: Text = Text::of("Torque at the wrist sensor", "Moment am Handgelenksensor");
+pub(in crate::console) const ERROR: Text = Text::of("error", "Fehler");
+pub(in crate::console) const X: Text = Text::of("x", "x");
+pub(in crate::console) const Y: Text = Text::of("y", "y");
+pub(in crate::console) const Z: Text = Text::of("z", "z");
+pub(in crate::console) const SPEED: Text = Text::of("speed", "Tempo");
+pub(in crate::console) const GAIN: Text = Text::of("gain", "Verstärkung");
+pub(in crate::console) const GOVERNED: Text = Text::of("removed by the governor", "von der Bremse entfernt");
+pub(in crate::console) const TORQUE: Text = Text::of("torque", "Moment");
+pub(in crate::console) const CURSOR_1_HERE: Text = Text::of("Set cursor 1 here", "Marke 1 hier setzen");
+pub(in crate::console) const CURSOR_2_HERE: Text = Text::of("Set cursor 2 here", "Marke 2 hier setzen");
+pub(in crate::console) const COPY: Text = Text::of("Copy values", "Werte kopieren");
+pub(in crate::console) const SAVE_CSV: Text = Text::of("Save as CSV", "Als CSV speichern");
+pub(in crate::console) const SAVE_PNG: Text = Text::of("Save as PNG", "Als PNG speichern");
+pub(in crate::console) const RESET: Text = Text::of("Reset zoom, remove cursors", "Zoom zurück, Marken entfernen");
+pub(in crate::console) const TIME: Text = Text::of("time", "Zeit");
+
+/// Returns a choice of the signals, with its unit.
+pub(in crate::console) fn plot_entry(name: &str, unit: &str) -> String {
+    if unit.is_empty() { name.to_owned() } else { format!("{name} ({unit})") }
+}
+
+/// Returns the name of a cursor at its line.
+pub(in crate::console) fn cursor(number: usize) -> String {
+    format!("[{number}]")
+}
+
+/// Returns the time from the first to the second cursor, s.
+pub(in crate::console) fn between(seconds: f64) -> String {
+    let rate = if seconds.abs() > 1e-6 { format!(" ({:.2} Hz)", 1.0 / seconds.abs()) } else { String::new() };
+    text_format!("[2] − [1]:  {seconds:+.3} s{rate}", "[2] − [1]:  {seconds:+.3} s{rate}")
+}
+
+/// Returns the accessible name of the differences between the cursors in a plot.
+pub(in crate::console) fn difference(plot: &str, values: &str) -> String {
+    text_format!("Between the cursors, {plot}: {values}", "Zwischen den Marken, {plot}: {values}")
+}
+
 pub(in crate::console) const HEADING: Text =
     Text::of("Force at the tip and in the hand", "Kraft an der Spitze und in der Hand");
 pub(in crate::console) const MEASURED: Text = Text::of("measured", "gemessen");
@@ -42,37 +97,31 @@ pub(in crate::console) fn not_saved(path: &impl Display, error: &io::Error) -> S
 
 pub(in crate::console) const TIME_AXIS: Text = Text::of("Time before now (s)", "Zeit vor jetzt (s)");
 
-/// Returns both forces of an axis (signed, with their unit) at the cursor of another plot.
-pub(in crate::console) fn at_cursor(axis: &str, measured: &str, rendered: &str) -> String {
+/// Returns the values of a plot at the cursor of another plot.
+pub(in crate::console) fn at_cursor(plot: &str, values: &str) -> String {
+    text_format!("At the cursor, {plot}: {values}", "Am Zeiger, {plot}: {values}")
+}
+
+/// Returns the accessible name of a plot.
+pub(in crate::console) fn plot(name: &str, side: &str) -> String {
+    text_format!("{name}, {side} hand", "{name}, Hand {side}")
+}
+
+/// Returns the current value of a line (signed) and its maximum over `seconds`, both with their unit.
+pub(in crate::console) fn summary(line: &str, [now, max]: [String; 2], seconds: f64) -> String {
     text_format!(
-        "At the cursor, {axis}: measured {measured}, rendered {rendered}",
-        "Am Zeiger, {axis}: gemessen {measured}, dargestellt {rendered}"
+        "{line} {now} now, maximum {max} in {seconds:.0} s",
+        "{line} {now} jetzt, Maximum {max} in {seconds:.0} s"
     )
-}
-
-/// Returns the name of the plot of an axis.
-pub(in crate::console) fn plot(axis: &str, side: &str) -> String {
-    text_format!("Force along {axis}, {side} hand", "Kraft längs {axis}, Hand {side}")
-}
-
-/// For measured and rendered force: the current value (signed) and the maximum over `seconds`, both with their unit.
-pub(in crate::console) fn summary([measured, rendered]: [[String; 2]; 2], seconds: f64) -> String {
-    let report = |[now, max]: [String; 2]| {
-        text_format!("{now} now, maximum {max} in {seconds:.0} s", "{now} jetzt, Maximum {max} in {seconds:.0} s")
-    };
-    text_format!("Measured {}; rendered {}", "Gemessen {}; dargestellt {}", report(measured), report(rendered))
 }
 
 pub(in crate::console) fn forces_of(side: &str) -> String {
     text_format!("Shows the forces of the {side} hand", "Zeigt die Kräfte der Hand {side}")
 }
 
-/// Returns both forces of an axis (signed, with their unit) this many seconds ago.
-pub(in crate::console) fn before_now(ago_s: f64, axis: &str, measured: &str, rendered: &str) -> String {
-    text_format!(
-        "{ago_s:.2} s before now\nmeasured {axis} {measured}\nrendered {axis} {rendered}",
-        "{ago_s:.2} s vor jetzt\ngemessen {axis} {measured}\ndargestellt {axis} {rendered}"
-    )
+/// Returns these lines of values, which were valid this many seconds ago.
+pub(in crate::console) fn before_now(ago_s: f64, values: &str) -> String {
+    text_format!("{ago_s:.2} s before now\n{values}", "{ago_s:.2} s vor jetzt\n{values}")
 }
 
 pub(in crate::console) const TWIST_HOVER: Text = Text::of(

@@ -66,7 +66,7 @@ panels! {
         /// The operating field in three dimensions.
         Field: Kind::filling(&text::FIELD, &text::FIELD_HOVER, [160.0, 120.0]),
         /// Forces over time.
-        Traces: Kind::filling(&text::TRACES, &text::TRACES_HOVER, [480.0, 250.0]),
+        Traces: Kind::filling(&text::TRACES, &text::TRACES_HOVER, [220.0, 200.0]),
         /// Measured against rendered force in three dimensions.
         ForceSpace: Kind::filling(&text::FORCE_SPACE, &text::FORCE_SPACE_HOVER, [200.0, 180.0]),
         /// Interlock and gates of each arm, and the reason for a missing force.

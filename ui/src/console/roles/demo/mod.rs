@@ -22,6 +22,7 @@ use crate::console::{
     outbox::Outbox,
     panels::{force_space_ui, force_traces_ui, horizon_ui},
     scene3d::scene_ui,
+    signals::TracePlot,
     text, theme, tiles,
     widgets::{bar, card, figure, small},
 };
@@ -62,7 +63,7 @@ pub(super) fn demo_ui(ui: &mut Ui, live: &mut LiveState, panels: &mut Panels, ou
     CentralPanel::no_frame().show(ui, |ui| {
         let frame = Frame::new().inner_margin(Margin::symmetric(12, 8));
         Panel::bottom("trace").exact_size(200.0).resizable(false).frame(frame).show(ui, |ui| {
-            force_traces_ui(ui, live, &mut panels.forces, &[2]);
+            force_traces_ui(ui, live, &mut panels.forces, Some(TracePlot::ForceZ));
         });
         panels.scene.release = Some(panels.demo.trail()).filter(|_| !live.is_shown_only());
         scene_ui(ui, live, &mut panels.scene, outbox);

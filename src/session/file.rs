@@ -15,7 +15,7 @@ use crate::{
     plot_channels,
     recorder::JOURNAL_TOPIC,
     replay::{Journal, Keyframe, ReplayCursor, ReplayError, StepsMessages, decoded},
-    topics::{HAPPENING_LINE, MARK_LINE},
+    topics::{ALARM_LINE, HAPPENING_LINE, MARK_LINE},
     trim,
 };
 
@@ -62,6 +62,10 @@ pub struct SessionInfo {
     pub started: Option<String>,
     /// Name of the rig.
     pub rig: Option<String>,
+    /// Name of the scene.
+    pub scene: Option<String>,
+    /// Mode at the start.
+    pub mode: Option<String>,
     /// End, s since the start of the session.
     pub seconds: f64,
     /// Start of an excerpt, s since the start of the session; `None` for a whole session.
@@ -98,7 +102,8 @@ impl RecordedFile {
         let [first_s, seconds] =
             <[u64; 2]>::from(self.0.statistics().times_ns).map(|time_ns| time_ns.saturating_sub(begin_ns) as f64 / 1e9);
         let stretch_from_s = table(trim::TABLE).map(|_| first_s);
-        Ok(SessionInfo { started: report("started"), rig: report("rig"), seconds, stretch_from_s })
+        let [started, rig, scene, mode] = ["started", "rig", "scene", "mode"].map(report);
+        Ok(SessionInfo { started, rig, scene, mode, seconds, stretch_from_s })
     }
 
     /// Whether the recording was closed. If not, it is still running, the program was killed, or the file was cut.
@@ -130,6 +135,20 @@ impl RecordedFile {
             Ok(Some(LogLine { time_ns: message.log_time_ns(), kind, words: line.message, value }))
         };
         self.0.messages(&["log"], times_ns).map(line).filter_map(Result::transpose).collect()
+    }
+
+    /// Returns the number of faults and urgent alarms in the log.
+    ///
+    /// # Errors
+    /// [`ReadError`] if the log cannot be read.
+    pub fn alarms(&self) -> Result<usize, ReadError> {
+        let mut alarms = 0;
+        for message in self.0.messages(&["log"], 0..u64::MAX) {
+            let Ok(line) = Log::decode(message?.data()) else { continue };
+            let is_alarm = line.level() == Level::Warning && line.name == ALARM_LINE;
+            alarms += usize::from(is_alarm || line.level() >= Level::Error);
+        }
+        Ok(alarms)
     }
 
     /// Returns time (ns) and text of the last error in the log.

@@ -20,6 +20,9 @@ pub const LEFT_BYTES: u64 = 2_000_000_000;
 const IN_USE: Duration = Duration::from_mins(1);
 const EXTENSION: &str = "mcap";
 const MARK: &str = "mcap.kept";
+const NOTE: &str = "mcap.note";
+/// Longest note that is read, bytes.
+const NOTE_MAX: u64 = 4096;
 /// Maximum length of a rig's name within a file's name, bytes.
 const NAME_MAX: usize = 40;
 
@@ -128,7 +131,7 @@ impl SessionStore {
         let mut left = 0;
         for session in sessions.iter().filter(may_go) {
             if loose > max {
-                fs::remove_file(&session.path)?;
+                remove(&session.path)?;
                 loose -= session.bytes;
             } else {
                 left += session.bytes;
@@ -151,6 +154,41 @@ pub fn keep(session: &Path, kept: bool) -> io::Result<()> {
         Err(error) if error.kind() != io::ErrorKind::NotFound => Err(error),
         _ => Ok(()),
     }
+}
+
+/// Returns the note of a session; empty if there is none.
+pub fn note_of(session: &Path) -> String {
+    use std::io::Read as _;
+
+    let mut note = String::new();
+    let read =
+        fs::File::open(session.with_extension(NOTE)).and_then(|file| file.take(NOTE_MAX).read_to_string(&mut note));
+    if read.is_ok() { note } else { String::new() }
+}
+
+/// Saves a note of a session in a file next to it, so that this is possible while it is being written; an empty note
+/// removes the file.
+///
+/// # Errors
+/// I/O errors.
+pub fn set_note(session: &Path, note: &str) -> io::Result<()> {
+    let path = session.with_extension(NOTE);
+    if !note.is_empty() {
+        return fs::write(path, note);
+    }
+    match fs::remove_file(path) {
+        Err(error) if error.kind() != io::ErrorKind::NotFound => Err(error),
+        _ => Ok(()),
+    }
+}
+
+/// Deletes a session and its note.
+///
+/// # Errors
+/// I/O errors.
+pub fn remove(session: &Path) -> io::Result<()> {
+    fs::remove_file(session)?;
+    set_note(session, "")
 }
 
 fn mark_of(session: &Path) -> PathBuf {
@@ -206,6 +244,21 @@ pub const fn free_bytes(_: &Path) -> Option<u64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_note_stays_with_its_session_and_goes_with_it() {
+        let folder = tempfile::tempdir().unwrap();
+        let shelf = SessionStore::new(folder.path(), MAX_BYTES);
+        let path = session(&shelf, "1.mcap", Duration::ZERO);
+        assert_eq!(note_of(&path), "");
+        set_note(&path, "third try").unwrap();
+        assert_eq!((note_of(&path), shelf.sessions().unwrap().len()), ("third try".to_owned(), 1));
+        set_note(&path, "").unwrap();
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1, "no empty note is left");
+        set_note(&path, "last").unwrap();
+        remove(&path).unwrap();
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+    }
 
     fn session(shelf: &SessionStore, name: &str, age: Duration) -> PathBuf {
         let path = shelf.folder().join(name);

@@ -16,7 +16,7 @@ use nima_session::{
     disk_forecast::{DiskForecast, WARN_BEFORE},
     objects::ObjectSource,
     recorder::{LogNote, NoteKind, SessionRecorder},
-    session_store::{MAX_BYTES, SessionStore, keep},
+    session_store::{MAX_BYTES, SessionStore, free_bytes, keep},
     sinks::{Audience, Destination},
 };
 use nima_simulation::SimulationPlan;
@@ -51,6 +51,8 @@ pub(crate) struct ConsoleSessions {
     looked: Option<Instant>,
     /// Time until the disk is full at the current rate.
     full_in: Option<Duration>,
+    /// Free bytes on the disk.
+    free_bytes: Option<u64>,
     /// Loops that start now are not recorded.
     rests: bool,
     /// Source of the endoscope images.
@@ -84,6 +86,8 @@ pub(crate) struct DisplayState {
     pub(crate) kept: bool,
     pub(crate) path: PathBuf,
     pub(crate) bytes: u64,
+    /// Free bytes on the disk; `None` if the system does not report them.
+    pub(crate) free_bytes: Option<u64>,
     /// Entries lost because the disk was slower than the loop.
     pub(crate) lost: u64,
     /// Number of endoscope images.
@@ -102,7 +106,9 @@ impl ConsoleSessions {
         let trouble = None;
         let looked = None;
         let full_in = None;
-        Self { shelf, servers, now, trouble, looked, full_in, rests: false, reel: FrameQueue::default() }
+        let free_bytes = None;
+        let reel = FrameQueue::default();
+        Self { shelf, servers, now, trouble, looked, full_in, free_bytes, rests: false, reel }
     }
 
     /// Starts to record a loop of this plan; the tap is for the loop. `None` if nothing is recorded.
@@ -234,6 +240,7 @@ impl ConsoleSessions {
             kept: now.kept,
             path: now.path.clone(),
             bytes: progress.bytes,
+            free_bytes: self.free_bytes,
             lost: progress.lost,
             images: progress.images,
             marks: now.report.marks,
@@ -255,6 +262,7 @@ impl ConsoleSessions {
                 0
             }
         };
+        self.free_bytes = free_bytes(shelf.folder());
         self.full_in = now.outlook.full_in(now.recorder.progress().bytes, others, Instant::now());
     }
 }

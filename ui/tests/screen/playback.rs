@@ -26,7 +26,7 @@ use nima_session::objects;
 use nima_simulation::SimulationPlan;
 use nima_tests::plan;
 
-use crate::bench::{TIMEOUT, console_of, press, shows, toured, until, wait};
+use crate::bench::{TIMEOUT, console_of, press, read, shows, toured, until, wait, write_into, write_over};
 
 const SIZE: [f32; 2] = [1600.0, 1000.0];
 
@@ -240,6 +240,21 @@ fn sessions_are_listed_kept_deleted_and_opened() {
     std::fs::write(&bad, "no session").unwrap();
     let mut harness = listed(folder.path());
     until_listed(&mut harness, "1.mcap");
+    assert!(shows(&harness, "Six points on soft tissue") && shows(&harness, "best"), "scene and mode");
+    write_into(&mut harness, "Note of 1.mcap", "third try");
+    harness.key_press(Key::Enter);
+    harness.run_steps(2);
+    assert_eq!(std::fs::read_to_string(sessions.join("1.mcap.note")).unwrap(), "third try");
+    // The longest is first, and what cannot be read is last.
+    press(&mut harness, "Sort by Length");
+    let tops = ["1.mcap", "2.mcap", "3.mcap"]
+        .map(|name| harness.get_by_role_and_label(Kind::Button, &format!("Open {name}")).rect().top());
+    assert!(tops[0] < tops[1] && tops[1] < tops[2], "{tops:?}");
+    write_into(&mut harness, "Search sessions", "THIRD six");
+    assert!(harness.query_by_role_and_label(Kind::Button, "Open 2.mcap").is_none());
+    write_over(&mut harness, "Search sessions", "nowhere");
+    read(&mut harness, "No session matches the search");
+    write_over(&mut harness, "Search sessions", " ");
     press(&mut harness, "Keep 1.mcap");
     press(&mut harness, "Kept 1.mcap");
     press(&mut harness, "Keep 1.mcap");

@@ -84,7 +84,8 @@ impl ConsoleApp {
     }
 
     pub(super) fn list_layout(&mut self, ui: &mut Ui) {
-        if let Some(session) = self.list.ui(ui) {
+        let recorded = self.sessions.shown();
+        if let Some(session) = self.list.ui(ui, recorded.as_ref()) {
             self.open_past(&session);
         }
     }
@@ -99,7 +100,8 @@ impl ConsoleApp {
         let smooth = self.panels.scene.smooth;
         CentralPanel::no_frame().show(ui, |ui| {
             if self.list.is_open {
-                if let Some(session) = self.list.ui(ui) {
+                let recorded = self.sessions.shown();
+                if let Some(session) = self.list.ui(ui, recorded.as_ref()) {
                     past.set_beside(Playback::open(&session, &self.ctx, self.panels.scene.twin()));
                 }
                 return;

@@ -144,10 +144,13 @@ fn identity_ui(
 /// Draws the duration of the recording on the button that keeps it; returns true when pressed.
 fn recorded_ui(ui: &mut Ui, state: &TopBarState) -> bool {
     let Some(shown) = &state.recorded else { return false };
-    let words = text::sessions::recorded_for(shown.seconds, shown.kept);
+    // Room for the dot.
+    let words = format!("   {}", text::sessions::recorded_for(shown.seconds, shown.kept));
     let button = Button::selectable(shown.kept, words).frame_when_inactive(true);
     // Wide enough for hours, so that its neighbour never moves.
-    let response = ui.add(button.min_size(vec2(104.0, 30.0)));
+    let response = ui.add(button.min_size(vec2(118.0, 30.0)));
+    let dot = response.rect.left_center() + vec2(11.0, 0.0);
+    sign(ui.painter(), Sign::Disc, dot, 4.0, theme::now().alarm_high);
     let name = if shown.kept { text::sessions::NAME_KEPT.get() } else { text::sessions::NAME_KEEP.get() };
     response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, shown.kept, name));
     response.on_hover_text(text::sessions::hover(shown)).clicked()

@@ -6,22 +6,21 @@ use std::{
     thread,
 };
 
-use egui::{Button, CentralPanel, Context, Frame, Grid, Label, Margin, RichText, ScrollArea, Ui, vec2};
-use nima_session::{
-    file::{RecordedFile, SessionInfo},
-    session_store::{MAX_BYTES, SessionStore, StoredSession, keep},
-};
+use egui::{Button, CentralPanel, Context, Frame, Grid, Label, Margin, RichText, ScrollArea, TextEdit, Ui, vec2};
+use nima_session::session_store::{keep, remove, set_note};
 
-use super::job::SessionJob;
+use super::{
+    job::SessionJob,
+    list_row::{SessionListRow, SessionRequest, SortBy, alarms_in, read, row_ui},
+};
 use crate::console::{
-    chain,
+    opener,
     picking::Picking,
+    sessions::DisplayState,
     text, theme,
-    widgets::{small, weak},
+    widgets::{Sign, sign_ui, small, weak},
 };
-use crate::{language, report_text::quoted};
-
-const BUTTON: egui::Vec2 = vec2(74.0, 28.0);
+use crate::language;
 
 #[derive(Debug, Default)]
 pub(crate) struct SessionList {
@@ -30,7 +29,11 @@ pub(crate) struct SessionList {
     pub(crate) for_beside: bool,
     folder: Option<PathBuf>,
     rows: Vec<SessionListRow>,
-    reading: Option<Receiver<Result<Vec<SessionListRow>, String>>>,
+    reading: Option<Receiver<ReadStep>>,
+    /// The rows are those of the folder.
+    is_read: bool,
+    search: String,
+    sort: SortBy,
     /// The session that the next press deletes.
     asked: Option<PathBuf>,
     job: Option<SessionJob>,
@@ -38,18 +41,13 @@ pub(crate) struct SessionList {
     picking: Option<Picking>,
 }
 
+/// What the thread that reads the folder has found.
 #[derive(Debug)]
-struct SessionListRow {
-    shelved: StoredSession,
-    about: Result<SessionInfo, String>,
-}
-
-enum SessionRequest {
-    Open(PathBuf),
-    Keep(PathBuf, bool),
-    Ask(PathBuf),
-    Delete(PathBuf),
-    Report(PathBuf),
+enum ReadStep {
+    Rows(Vec<SessionListRow>),
+    /// Alarms of a session.
+    Alarms(PathBuf, usize),
+    Failed(String),
 }
 
 impl SessionList {
@@ -68,20 +66,44 @@ impl SessionList {
         let (give, rows) = channel();
         let ctx = ctx.clone();
         let work = move || {
-            give.send(read(&folder)).ok();
-            ctx.request_repaint();
+            let rows = read(&folder);
+            let files: Vec<_> =
+                rows.iter().flatten().map(|row| (row.shelved.path.clone(), row.shelved.bytes)).collect();
+            let first = rows.map_or_else(ReadStep::Failed, ReadStep::Rows);
+            // The logs take longer than the headers; the receiver is gone when the list is read again.
+            let alarms = files.into_iter().filter_map(|(path, bytes)| {
+                let alarms = alarms_in(&path, bytes)?;
+                Some(ReadStep::Alarms(path, alarms))
+            });
+            for step in std::iter::once(first).chain(alarms) {
+                if give.send(step).is_err() {
+                    return;
+                }
+                ctx.request_repaint();
+            }
         };
         // If no thread can be created, the list stays unchanged.
         thread::Builder::new().name("sessions".to_owned()).spawn(language::carried(work)).ok();
         self.reading = Some(rows);
+        self.is_read = false;
     }
 
     fn take_in(&mut self) {
-        if let Some(read) = self.reading.as_ref().and_then(|reading| reading.try_recv().ok()) {
-            self.reading = None;
-            match read {
-                Ok(rows) => self.rows = rows,
-                Err(why) => self.report = Some(why),
+        while let Some(step) = self.reading.as_ref().and_then(|reading| reading.try_recv().ok()) {
+            match step {
+                ReadStep::Rows(rows) => {
+                    self.is_read = true;
+                    self.rows = rows;
+                }
+                ReadStep::Failed(why) => {
+                    self.is_read = true;
+                    self.report = Some(why);
+                }
+                ReadStep::Alarms(path, alarms) => {
+                    if let Some(row) = self.rows.iter_mut().find(|row| row.shelved.path == path) {
+                        row.alarms = Some(alarms);
+                    }
+                }
             }
         }
         if let Some((words, over)) = self.job.as_ref().map(SessionJob::message) {
@@ -92,8 +114,8 @@ impl SessionList {
         }
     }
 
-    /// Draws the page; returns the session to open.
-    pub(crate) fn ui(&mut self, ui: &mut Ui) -> Option<PathBuf> {
+    /// Draws the page, with the session that is being recorded; returns the session to open.
+    pub(crate) fn ui(&mut self, ui: &mut Ui, recorded: Option<&DisplayState>) -> Option<PathBuf> {
         self.take_in();
         let mut wish = Picking::take(&mut self.picking).map(SessionRequest::Open);
         let frame = Frame::new().inner_margin(Margin::symmetric(18, 14));
@@ -123,23 +145,73 @@ impl SessionList {
             });
             // A separate line, so that the content below never moves.
             ui.label(weak(self.report.clone().unwrap_or_default()));
+            self.tools_ui(ui, recorded);
             ui.add_space(4.0);
             if self.rows.is_empty() && self.folder.is_some() {
-                let words =
-                    if self.reading.is_some() { text::playback::LOOKING.get() } else { text::playback::EMPTY.get() };
+                let words = if self.is_read { text::playback::EMPTY.get() } else { text::playback::LOOKING.get() };
                 ui.label(weak(words));
             }
-            ScrollArea::both().auto_shrink(false).show(ui, |ui| {
-                Grid::new("sessions").spacing(vec2(16.0, 6.0)).striped(true).show(ui, |ui| {
-                    for row in &self.rows {
-                        let is_asked = self.asked.as_ref() == Some(&row.shelved.path);
-                        wish = row_ui(ui, row, is_asked, self.job.is_none()).or(wish.take());
-                        ui.end_row();
-                    }
-                });
-            });
+            let asked = self.rows_ui(ui);
+            wish = wish.take().or(asked);
         });
         self.obey(ui.ctx(), wish?)
+    }
+
+    /// Draws search, the folder's button, and the recording that is running.
+    fn tools_ui(&mut self, ui: &mut Ui, recorded: Option<&DisplayState>) {
+        ui.horizontal(|ui| {
+            let hint = text::playback::SEARCH.get();
+            let field = ui.add(TextEdit::singleline(&mut self.search).hint_text(hint).desired_width(300.0));
+            field.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, hint));
+            let folder = self.folder.clone().filter(|folder| folder.exists());
+            let open = Button::new(text::playback::OPEN_FOLDER.get()).min_size(vec2(130.0, 28.0));
+            let open = ui.add_enabled(folder.is_some(), open);
+            let pressed = open.on_disabled_hover_text(text::playback::EMPTY.get()).clicked();
+            if let (true, Some(folder)) = (pressed, folder) {
+                // The program may run for long. If no thread can be created, nothing opens.
+                thread::Builder::new().name("folder".to_owned()).spawn(move || opener::open(&folder)).ok();
+            }
+            if let Some(recorded) = recorded {
+                ui.add_space(8.0);
+                sign_ui(ui, Sign::Disc, 6.0, theme::now().alarm_high);
+                ui.label(text::sessions::recording(recorded.seconds, recorded.free_bytes));
+            }
+        });
+    }
+
+    /// Draws the table; returns what is asked of a session.
+    fn rows_ui(&mut self, ui: &mut Ui) -> Option<SessionRequest> {
+        let mut wish = None;
+        if self.rows.is_empty() {
+            return None;
+        }
+        let mut shown: Vec<&mut SessionListRow> = self.rows.iter_mut().filter(|row| row.has(&self.search)).collect();
+        self.sort.sort(&mut shown);
+        if shown.is_empty() {
+            ui.label(weak(text::playback::NOT_FOUND.get()));
+        }
+        ScrollArea::both().auto_shrink(false).show(ui, |ui| {
+            Grid::new("sessions").spacing(vec2(16.0, 6.0)).striped(true).show(ui, |ui| {
+                for by in SortBy::ALL {
+                    let words = RichText::new(by.name()).text_style(egui::TextStyle::Small);
+                    let heading = Button::selectable(self.sort == by, words);
+                    let heading = ui.add(heading).on_hover_text(text::playback::SORT_HOVER.get());
+                    let name = text::playback::sort_by(by.name());
+                    let chosen = self.sort == by;
+                    heading.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, chosen, &name));
+                    if heading.clicked() {
+                        self.sort = by;
+                    }
+                }
+                ui.end_row();
+                for row in shown {
+                    let is_asked = self.asked.as_ref() == Some(&row.shelved.path);
+                    wish = row_ui(ui, row, is_asked, self.job.is_none()).or(wish.take());
+                    ui.end_row();
+                }
+            });
+        });
+        wish
     }
 
     fn obey(&mut self, ctx: &Context, wish: SessionRequest) -> Option<PathBuf> {
@@ -149,103 +221,19 @@ impl SessionList {
                 return Some(path);
             }
             SessionRequest::Ask(path) => self.asked = Some(path),
+            SessionRequest::Note(path, note) => {
+                self.report = set_note(&path, &note).err().map(|error| text::playback::note_not_saved(&error));
+            }
             SessionRequest::Report(path) => self.job = Some(SessionJob::report(ctx, &path)),
             SessionRequest::Keep(path, kept) => {
                 self.report = keep(&path, kept).err().map(|error| text::sessions::not_kept(&path, &error));
                 self.read(ctx);
             }
             SessionRequest::Delete(path) => {
-                self.report = std::fs::remove_file(&path).err().map(|error| text::playback::not_deleted(&path, &error));
+                self.report = remove(&path).err().map(|error| text::playback::not_deleted(&path, &error));
                 self.read(ctx);
             }
         }
         None
     }
-}
-
-/// Returns the sessions of this folder, newest first.
-fn read(folder: &Path) -> Result<Vec<SessionListRow>, String> {
-    let shelf = SessionStore::new(folder, MAX_BYTES);
-    let sessions = shelf.sessions().map_err(|error| text::sessions::no_folder(folder, &error))?;
-    let about =
-        |path: &Path| RecordedFile::open(path).and_then(|file| file.about()).map_err(|error| quoted(&chain(&error)));
-    Ok(sessions.into_iter().rev().map(|shelved| SessionListRow { about: about(&shelved.path), shelved }).collect())
-}
-
-fn row_ui(ui: &mut Ui, row: &SessionListRow, is_asked: bool, free: bool) -> Option<SessionRequest> {
-    let SessionListRow { shelved: StoredSession { path, kept, writing, .. }, about } = row;
-    about_ui(ui, row);
-    let mut wish = None;
-    let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    let mut button =
-        |ui: &mut Ui, words: &str, enabled: bool, selected: bool, hover: [&str; 2], then: SessionRequest| {
-            let button = Button::selectable(selected, words).frame_when_inactive(true).min_size(BUTTON);
-            let response = ui.add_enabled(enabled, button).on_hover_text(hover[0]).on_disabled_hover_text(hover[1]);
-            let of = format!("{words} {name}");
-            response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, enabled, selected, &of));
-            if response.clicked() {
-                wish = Some(then);
-            }
-        };
-    ui.horizontal(|ui| {
-        ui.spacing_mut().item_spacing.x = 4.0;
-        let usable = about.is_ok();
-        button(
-            ui,
-            text::playback::OPEN.get(),
-            usable,
-            false,
-            [text::playback::OPEN_HOVER.get(); 2],
-            SessionRequest::Open(path.clone()),
-        );
-        let keep = if *kept { text::playback::KEPT.get() } else { text::playback::KEEP.get() };
-        button(ui, keep, true, *kept, [text::playback::KEEP_HOVER.get(); 2], SessionRequest::Keep(path.clone(), !kept));
-        let report = SessionRequest::Report(path.clone());
-        button(
-            ui,
-            text::playback::REPORT.get(),
-            usable && free,
-            false,
-            [text::playback::REPORT_HOVER.get(); 2],
-            report,
-        );
-        let why =
-            if *writing { text::playback::DELETE_RUNNING_HOVER.get() } else { text::playback::DELETE_KEPT_HOVER.get() };
-        let (words, hover, then) = if is_asked {
-            (
-                text::playback::DELETE_NOW.get(),
-                text::playback::DELETE_NOW_HOVER.get(),
-                SessionRequest::Delete(path.clone()),
-            )
-        } else {
-            (text::playback::DELETE.get(), text::playback::DELETE_HOVER.get(), SessionRequest::Ask(path.clone()))
-        };
-        button(ui, words, !kept && !writing, is_asked, [hover, why], then);
-    });
-    wish
-}
-
-/// Draws date, duration and rig.
-fn about_ui(ui: &mut Ui, SessionListRow { shelved, about }: &SessionListRow) {
-    let StoredSession { path, bytes, writing, .. } = shelved;
-    let strong = |words: String| RichText::new(words).font(theme::strong(14.0));
-    match about {
-        Ok(about @ SessionInfo { started, rig, .. }) => {
-            ui.label(strong(text::playback::began(started.as_deref()))).on_hover_text(path.display().to_string());
-            ui.label(text::playback::short_clock(about.length_s()));
-            ui.label(rig.as_deref().unwrap_or_default());
-        }
-        Err(why) => {
-            ui.label(strong(path.file_name().unwrap_or_default().to_string_lossy().into_owned()));
-            ui.label("");
-            ui.label(small(why));
-        }
-    }
-    ui.label(weak(text::playback::megabytes(*bytes)));
-    let stretch_from_s = about.as_ref().ok().and_then(|about| about.stretch_from_s);
-    ui.label(weak(match stretch_from_s {
-        _ if *writing => text::playback::RECORDING.get().to_owned(),
-        Some(from_s) => text::playback::stretch(from_s),
-        None => String::new(),
-    }));
 }

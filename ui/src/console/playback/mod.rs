@@ -8,6 +8,7 @@ mod compare;
 mod feed;
 mod job;
 pub(crate) mod list;
+mod list_row;
 mod overview;
 mod session_index;
 #[cfg(test)]

@@ -7,6 +7,7 @@ use std::{
     time::{Duration, UNIX_EPOCH},
 };
 
+use jiff::{Timestamp, tz::TimeZone};
 use nima_devices::ConnectionState;
 use nima_machine::rig::DeviceName;
 use nima_recording::store::utc_of;
@@ -52,6 +53,23 @@ pub(in crate::console) const DELETE_RUNNING_HOVER: Text =
 pub(in crate::console) const DELETE_NOW: Text = Text::of("Delete it?", "Löschen?");
 pub(in crate::console) const DELETE_NOW_HOVER: Text =
     Text::of("Deletes the file permanently", "Löscht die Datei endgültig");
+pub(in crate::console) const TIME: Text = Text::of("Time", "Zeit");
+pub(in crate::console) const SCENE: Text = Text::of("Scene", "Szene");
+pub(in crate::console) const MODE: Text = Text::of("Mode", "Modus");
+pub(in crate::console) const LENGTH: Text = Text::of("Length", "Dauer");
+pub(in crate::console) const SIZE: Text = Text::of("Size", "Größe");
+pub(in crate::console) const ALARMS: Text = Text::of("Alarms", "Alarme");
+pub(in crate::console) const NOTE: Text = Text::of("Note", "Notiz");
+pub(in crate::console) const NOTE_HOVER: Text = Text::of(
+    "A note of this session, saved in a file next to it",
+    "Notiz zu dieser Sitzung, gesichert in einer Datei daneben",
+);
+pub(in crate::console) const SORT_HOVER: Text =
+    Text::of("Sorts the list by this column", "Sortiert nach dieser Spalte");
+pub(in crate::console) const SEARCH: Text = Text::of("Search sessions", "Sitzungen suchen");
+pub(in crate::console) const NOT_FOUND: Text =
+    Text::of("No session matches the search", "Keine Sitzung passt zur Suche");
+pub(in crate::console) const OPEN_FOLDER: Text = Text::of("Open folder", "Ordner öffnen");
 pub(in crate::console) const BACK: Text = Text::of("Back to the view", "Zurück zur Ansicht");
 pub(in crate::console) const ELSEWHERE: Text = Text::of("Open file…", "Datei öffnen…");
 pub(in crate::console) const ELSEWHERE_HOVER: Text = Text::of(
@@ -153,11 +171,26 @@ pub(in crate::console) fn of_session(when: &str, name: &str) -> String {
     format!("{when}  \u{b7}  {name}")
 }
 
+/// Returns date and time on this computer's clock, from a time in UTC (ISO 8601).
 pub(in crate::console) fn began(utc: Option<&str>) -> String {
-    utc.map_or_else(
-        || word("unknown date", "Datum unbekannt").to_owned(),
-        |utc| utc.replace('T', "  ").replace('Z', word(" UTC", " UTC")),
-    )
+    let unknown = || word("unknown date", "Datum unbekannt").to_owned();
+    let Some(utc) = utc else { return unknown() };
+    let local = |begin: Timestamp| begin.to_zoned(TimeZone::system()).strftime("%Y-%m-%d  %H:%M:%S").to_string();
+    utc.parse().map_or_else(|_| unknown(), local)
+}
+
+/// Returns the accessible name of the note of a session.
+pub(in crate::console) fn note_of(session: &str) -> String {
+    text_format!("Note of {session}", "Notiz zu {session}")
+}
+
+/// Returns the accessible name of a heading.
+pub(in crate::console) fn sort_by(column: &str) -> String {
+    text_format!("Sort by {column}", "Sortieren nach {column}")
+}
+
+pub(in crate::console) fn note_not_saved(error: &io::Error) -> String {
+    text_format!("The note cannot be saved: {error}", "Die Notiz lässt sich nicht sichern: {error}")
 }
 
 pub(in crate::console) fn stretch(from_s: f64) -> String {

@@ -26,6 +26,20 @@ pub(in crate::console) fn recorded_for(seconds: u64, kept: bool) -> String {
     }
 }
 
+/// Returns the duration of the running recording and the room on the disk, if it is known.
+pub(in crate::console) fn recording(seconds: u64, free_bytes: Option<u64>) -> String {
+    let clock = recorded_for(seconds, false);
+    match free_bytes {
+        Some(free_bytes) => format!("{clock}, {}", disk_left(free_bytes)),
+        None => clock,
+    }
+}
+
+fn disk_left(free_bytes: u64) -> String {
+    let gigabytes = free_bytes as f64 * 1e-9;
+    text_format!("{gigabytes:.0} GB left on the disk", "{gigabytes:.0} GB frei auf der Platte")
+}
+
 pub(in crate::console) fn hover(shown: &DisplayState) -> String {
     let what = if shown.kept {
         word(
@@ -51,6 +65,7 @@ pub(in crate::console) fn hover(shown: &DisplayState) -> String {
     let watched = shown.watched.iter().fold(String::new(), |words, one| {
         words + &text_format!("\nShared at {}: {} watching", "\nZuschauer über {}: jetzt {}", one.at, one.watchers)
     });
+    let disk = shown.free_bytes.map_or_else(String::new, |free_bytes| format!("\n{}", disk_left(free_bytes)));
     let path = shown.path.display();
     let megabytes = shown.bytes as f64 * 1e-6;
     let images = if shown.images > 0 {
@@ -59,8 +74,8 @@ pub(in crate::console) fn hover(shown: &DisplayState) -> String {
         String::new()
     };
     text_format!(
-        "{what}\n{path}\n{megabytes:.1} MB, marks: {} (key E sets one){images}{lost}{watched}",
-        "{what}\n{path}\n{megabytes:.1} MB, Marken: {} (Taste E setzt eine){images}{lost}{watched}",
+        "{what}\n{path}\n{megabytes:.1} MB, marks: {} (key E sets one){images}{disk}{lost}{watched}",
+        "{what}\n{path}\n{megabytes:.1} MB, Marken: {} (Taste E setzt eine){images}{disk}{lost}{watched}",
         shown.marks
     )
 }

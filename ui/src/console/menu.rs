@@ -2,10 +2,12 @@
 
 use crate::console::text;
 use egui::{
-    Button, Context, DragValue, Id, PopupCloseBehavior, ScrollArea, Slider, TextEdit, Ui, WidgetInfo,
+    Button, Context, DragValue, Id, PopupCloseBehavior, ScrollArea, Slider, TextEdit, TextStyle, Ui, WidgetInfo,
     containers::menu::{MenuButton, MenuConfig},
     vec2,
 };
+
+use egui_material_icons::icons;
 
 use super::{
     alarms::strip::Alarms,
@@ -13,6 +15,7 @@ use super::{
     roles::Role,
     settings::{CROP_MAX_PERCENT, ConsoleSettings, ImageSettings},
     tiles::{Arrangement, Panel, PanelLayout},
+    widgets::with_icon,
 };
 use crate::language::{Language, Text};
 
@@ -30,7 +33,9 @@ pub(super) fn menu_ui(
     can_undo: [bool; 2],
 ) -> Option<Action> {
     let mut wanted = None;
-    let button = Button::new(text::menu::VIEW.get()).min_size(vec2(52.0, 30.0));
+    let font = TextStyle::Button.resolve(ui.style());
+    let words = with_icon(ui, icons::ICON_DASHBOARD_CUSTOMIZE, text::menu::VIEW.get(), font);
+    let button = Button::new(words).min_size(vec2(52.0, 30.0));
     // A click into the name of a layout must not close the menu; a command closes it.
     let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
     let menu = MenuButton::from_button(button).config(config);
@@ -44,6 +49,7 @@ pub(super) fn menu_ui(
             ui.close();
         }
     });
+    response.widget_info(|| WidgetInfo::labeled(egui::Role::Button, true, text::menu::VIEW.get()));
     response.on_hover_text(text::menu::VIEW_HOVER.get());
     wanted
 }
@@ -60,6 +66,7 @@ fn content_ui(ui: &mut Ui, settings: &mut ConsoleSettings, alarms: &mut Alarms, 
             }
         }
     });
+    wanted = wanted.or(switch_ui(ui, settings.colour_blind, Action::ColourBlind));
     wanted = wanted.or(languages_ui(ui, settings.language));
     ui.add_space(4.0);
     ui.label(text::menu::SIZE.get());
@@ -72,6 +79,7 @@ fn content_ui(ui: &mut Ui, settings: &mut ConsoleSettings, alarms: &mut Alarms, 
         }
     });
     ui.label(super::widgets::small(text::menu::SIZE_NOTE.get()));
+    wanted = wanted.or(switch_ui(ui, settings.touch, Action::Touch));
     ui.add_space(6.0);
     if settings.role == Role::Technician {
         wanted = wanted.or(layouts_ui(ui, settings));
@@ -250,7 +258,7 @@ fn panels_ui(ui: &mut Ui, layout: &PanelLayout) -> Option<Action> {
 
 /// Applies the settings; call at the start of a frame.
 pub(super) fn apply(ctx: &Context, settings: &ConsoleSettings) {
-    super::theme::choose(ctx, settings.light);
+    super::theme::choose(ctx, settings.look());
     ctx.options_mut(|options| options.zoom_with_keyboard = false);
     let window = ctx.content_rect().size() * ctx.zoom_factor();
     let room = (window / NEEDED).min_elem().max(1.0);

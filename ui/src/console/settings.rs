@@ -16,6 +16,7 @@ use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use super::{
     roles::Role,
     start::RigChoice,
+    theme::Look,
     tiles::{Arrangement, PanelLayout},
 };
 use crate::console::text;
@@ -34,6 +35,10 @@ pub struct ConsoleSettings {
     pub layouts: Vec<NamedLayout>,
     pub sound: bool,
     pub light: bool,
+    /// Colours for colour-blind users.
+    pub colour_blind: bool,
+    /// Controls large enough for a finger.
+    pub touch: bool,
     /// Whether sessions include the endoscope image.
     #[serde(rename = "records_picture")]
     pub records_image: bool,
@@ -107,6 +112,10 @@ impl ConsoleSettings {
         Self { layout: PanelLayout::built_in(Arrangement::Simple), ..Self::default() }
     }
 
+    pub(super) const fn look(&self) -> Look {
+        Look { light: self.light, colour_blind: self.colour_blind, touch: self.touch }
+    }
+
     /// Saves the present layout under this name, in place of an earlier one of the same name.
     pub(super) fn save_layout(&mut self, name: &str) {
         self.layouts.retain(|saved| saved.name != name);
@@ -127,6 +136,8 @@ impl Default for ConsoleSettings {
             layouts: Vec::new(),
             sound: false,
             light: false,
+            colour_blind: false,
+            touch: false,
             records_image: true,
             image: ImageSettings::default(),
             language: Language::default(),

@@ -122,6 +122,23 @@ pub const LIGHT: ColourPalette = ColourPalette {
     alarm_low: rgb(0x00_7280),
 };
 
+/// For colour-blind users: green, which looks like red to many of them, is blue or orange here.
+const fn safe(of: &ColourPalette, engaged: u32, series: [u32; 2]) -> ColourPalette {
+    let [third, fourth] = series;
+    ColourPalette { engaged: rgb(engaged), series: [of.series[0], of.series[1], rgb(third), rgb(fourth)], ..*of }
+}
+
+pub const DARK_SAFE: ColourPalette = safe(&DARK, 0x56_b4e9, [0xe6_9f00, 0xd7_8fb5]);
+pub const LIGHT_SAFE: ColourPalette = safe(&LIGHT, 0x00_5a9c, [0x8a_5200, 0x92_2d6c]);
+
+/// Colours and size of the controls.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Look {
+    pub light: bool,
+    pub colour_blind: bool,
+    pub touch: bool,
+}
+
 thread_local! {
     // Thread-local: a window uses one thread, whereas tests have many windows on many threads.
     static NOW: Cell<&'static ColourPalette> = const { Cell::new(&DARK) };
@@ -149,6 +166,11 @@ pub const STOP_SIZE: egui::Vec2 = vec2(132.0, 52.0);
 /// Corner radius of cards and controls.
 pub const CORNER: CornerRadius = CornerRadius::same(6);
 
+/// Title of a page.
+pub const TITLE: f32 = 22.0;
+/// Heading of a part of a page.
+pub const HEADING: f32 = 16.0;
+
 const STRONG: &str = "strong";
 
 /// Returns the bold font, for figures and headings.
@@ -166,7 +188,7 @@ pub fn apply(ctx: &egui::Context) {
     ctx.set_fonts(fonts());
     ctx.style_mut_of(egui::Theme::Dark, |style| set_style(style, Visuals::dark(), &DARK));
     ctx.style_mut_of(egui::Theme::Light, |style| set_style(style, Visuals::light(), &LIGHT));
-    choose(ctx, false);
+    choose(ctx, Look::default());
 }
 
 /// Applies fonts and style in a test of a part; returns whether they are active, which is from the second pass on.
@@ -181,13 +203,46 @@ pub(crate) fn is_applied(ctx: &egui::Context) -> bool {
     is_active
 }
 
-/// Selects the light or the dark palette; call at the start of a frame.
-pub fn choose(ctx: &egui::Context, light: bool) {
-    NOW.set(if light { &LIGHT } else { &DARK });
-    ctx.set_theme(if light { egui::Theme::Light } else { egui::Theme::Dark });
+/// Selects palette and size; call at the start of a frame.
+pub fn choose(ctx: &egui::Context, look: Look) {
+    NOW.set(match (look.light, look.colour_blind) {
+        (false, false) => &DARK,
+        (false, true) => &DARK_SAFE,
+        (true, false) => &LIGHT,
+        (true, true) => &LIGHT_SAFE,
+    });
+    ctx.set_theme(if look.light { egui::Theme::Light } else { egui::Theme::Dark });
+    let height = if look.touch { TOUCH } else { CONTROL };
+    if (ctx.global_style().spacing.interact_size.y - height).abs() > 0.5 {
+        ctx.all_styles_mut(|style| set_size(style, look.touch));
+    }
 }
 
-/// Roboto only: it has every character of the screen, and one font looks the same on every computer.
+/// Height of a control for a mouse, and for a finger.
+const CONTROL: f32 = 26.0;
+const TOUCH: f32 = 40.0;
+
+fn set_size(style: &mut Style, touch: bool) {
+    let spacing = &mut style.spacing;
+    spacing.button_padding = if touch { vec2(12.0, 10.0) } else { vec2(10.0, 5.0) };
+    spacing.interact_size = vec2(40.0, if touch { TOUCH } else { CONTROL });
+    spacing.slider_rail_height = if touch { 12.0 } else { 6.0 };
+    spacing.icon_width = if touch { 26.0 } else { 18.0 };
+    spacing.icon_width_inner = if touch { 15.0 } else { 10.0 };
+    spacing.scroll.bar_width = if touch { 22.0 } else { egui::style::ScrollStyle::default().bar_width };
+}
+
+/// An icon of the font of icons.
+pub use egui_material_icons::MaterialIcon as Icon;
+
+/// Returns the font of the icons.
+pub fn icons(size: f32) -> FontId {
+    FontId::new(size, FontFamily::Name(ICONS.into()))
+}
+
+const ICONS: &str = egui_material_icons::FONT_FAMILY_OUTLINED;
+
+/// Roboto, and a font of icons. Roboto has every character of the screen, and one font looks the same on every computer.
 fn fonts() -> FontDefinitions {
     let mut fonts = FontDefinitions::empty();
     // Hinting moves the dot of an "i" onto its stem at the sizes of the window.
@@ -202,6 +257,9 @@ fn fonts() -> FontDefinitions {
         fonts.font_data.insert(name.to_owned(), Arc::new(font));
         fonts.families.insert(family, vec![name.to_owned()]);
     }
+    // Only by its own name: no text may fall back to an icon.
+    fonts.font_data.insert(ICONS.to_owned(), Arc::new(egui_material_icons::font_insert().data));
+    fonts.families.insert(FontFamily::Name(ICONS.into()), vec![ICONS.to_owned()]);
     fonts
 }
 
@@ -215,12 +273,8 @@ fn set_style(style: &mut Style, base: Visuals, palette: &ColourPalette) {
     ]
     .into();
     style.spacing.item_spacing = vec2(8.0, 6.0);
-    style.spacing.button_padding = vec2(10.0, 5.0);
-    style.spacing.interact_size = vec2(40.0, 26.0);
-    style.spacing.slider_rail_height = 6.0;
+    set_size(style, false);
     style.spacing.tooltip_width = 340.0;
-    style.spacing.icon_width = 18.0;
-    style.spacing.icon_width_inner = 10.0;
     style.spacing.menu_margin = Margin::same(10);
     style.interaction.selectable_labels = false;
     style.interaction.tooltip_delay = 0.35;
@@ -355,7 +409,9 @@ mod tests {
     #[test]
     fn every_colour_is_read_on_every_ground_of_both_palettes() {
         let mut wrong = Vec::new();
-        for (name, palette) in [("dark", &DARK), ("light", &LIGHT)] {
+        for (name, palette) in
+            [("dark", &DARK), ("light", &LIGHT), ("dark safe", &DARK_SAFE), ("light safe", &LIGHT_SAFE)]
+        {
             let grounds = [palette.background, palette.panel, palette.card, palette.popup, palette.groove];
             for (ink, colour) in inks(palette) {
                 let min = grounds.map(|ground| contrast(colour, ground)).into_iter().fold(f64::INFINITY, f64::min);
@@ -367,9 +423,39 @@ mod tests {
         assert!(wrong.is_empty(), "{wrong:?}");
     }
 
+    /// Returns the colour as a person without red or green cones sees it (Machado et al. 2009, IEEE TVCG 15(6)).
+    fn seen(colour: Color32, matrix: &[[f64; 3]; 3]) -> [f64; 3] {
+        let linear = [colour.r(), colour.g(), colour.b()].map(|value| (f64::from(value) / 255.0).powf(2.2));
+        let row = |row: &[f64; 3]| row.iter().zip(linear).map(|(weight, value)| weight * value).sum::<f64>();
+        [0, 1, 2].map(|i| row(&matrix[i]).clamp(0.0, 1.0).powf(1.0 / 2.2))
+    }
+
+    #[test]
+    fn the_safe_palettes_keep_engaged_and_alarms_apart_for_colour_blind_eyes() {
+        const PROTANOPIA: [[f64; 3]; 3] = [
+            [0.152_286, 1.052_583, -0.204_868],
+            [0.114_503, 0.786_281, 0.099_216],
+            [-0.003_882, -0.048_116, 1.051_998],
+        ];
+        const DEUTERANOPIA: [[f64; 3]; 3] =
+            [[0.367_322, 0.860_646, -0.227_968], [0.280_085, 0.672_501, 0.047_413], [-0.011_820, 0.042_940, 0.968_881]];
+        let apart = |palette: &ColourPalette| {
+            let alarms = [palette.alarm_high, palette.alarm_medium];
+            let pairs = [PROTANOPIA, DEUTERANOPIA].into_iter().flat_map(|eye| alarms.map(|alarm| (eye, alarm)));
+            let distances = pairs.map(|(eye, alarm)| {
+                let [one, other] = [palette.engaged, alarm].map(|colour| seen(colour, &eye));
+                one.iter().zip(other).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
+            });
+            distances.fold(f64::INFINITY, f64::min)
+        };
+        for (safe, usual) in [(&DARK_SAFE, &DARK), (&LIGHT_SAFE, &LIGHT)] {
+            assert!(apart(safe) > 0.35 && apart(safe) > 1.5 * apart(usual), "{} {}", apart(safe), apart(usual));
+        }
+    }
+
     #[test]
     fn words_on_controls_and_signs_are_read_too() {
-        for palette in [&DARK, &LIGHT] {
+        for palette in [&DARK, &LIGHT, &DARK_SAFE, &LIGHT_SAFE] {
             for control in [palette.control, palette.control_hover] {
                 assert!(contrast(palette.text, control) > 7.0 && contrast(palette.text_weak, control) > MIN);
             }

@@ -4,7 +4,7 @@
 //! engaging, stopping) are excluded, as are the role, whose demonstration sets modes, the alarm sound, and recording. The
 //! history ends with the window.
 
-use super::{panels::ForcesView, scene3d::extras::Extras, settings::ImageSettings, tiles::PanelLayout};
+use super::{panels::ForcesView, scene3d::extras::Extras, settings::ImageSettings, theme::Look, tiles::PanelLayout};
 use crate::language::Language;
 
 /// Maximum number of undo steps.
@@ -16,7 +16,7 @@ const SAME_STEP_S: f64 = 0.6;
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct ScreenLook {
     pub(super) layout: PanelLayout,
-    pub(super) light: bool,
+    pub(super) look: Look,
     pub(super) language: Language,
     pub(super) scale_percent: u16,
     pub(super) image: ImageSettings,
@@ -38,9 +38,9 @@ impl ScreenLook {
     /// Returns the difference between two looks. The front tab does not count: undoing it would hide the changes that
     /// matter.
     fn change(&self, other: &Self) -> Option<LookChange> {
-        let Self { layout, light, language, scale_percent, image, extras, traces } = self;
+        let Self { layout, look, language, scale_percent, image, extras, traces } = self;
         let at_once = !layout.looks_like(&other.layout)
-            || *light != other.light
+            || *look != other.look
             || *language != other.language
             || *scale_percent != other.scale_percent
             || *extras != other.extras
@@ -127,7 +127,7 @@ mod tests {
     fn plain() -> ScreenLook {
         ScreenLook {
             layout: PanelLayout::default(),
-            light: false,
+            look: Look::default(),
             language: Language::English,
             scale_percent: 100,
             image: ImageSettings::default(),
@@ -151,7 +151,7 @@ mod tests {
         assert_eq!(history.redo(), Some(looks[1].clone()));
         history.watch(looks[1].clone(), 9.0, false);
         assert!(history.can_undo() && history.can_redo(), "redoing does not add a step");
-        history.watch(ScreenLook { light: true, ..looks[1].clone() }, 10.0, false);
+        history.watch(ScreenLook { look: Look { light: true, ..Look::default() }, ..looks[1].clone() }, 10.0, false);
         assert!(!history.can_redo());
         assert_eq!(history.undo(), Some(looks[1].clone()));
     }
@@ -180,7 +180,7 @@ mod tests {
             ScreenLook { layout: PanelLayout { front: vec![Panel::Link], ..PanelLayout::default() }, ..plain() };
         history.watch(front.clone(), 1.0, false);
         assert!(!history.can_undo());
-        history.watch(ScreenLook { light: true, ..front.clone() }, 2.0, false);
+        history.watch(ScreenLook { look: Look { light: true, ..Look::default() }, ..front.clone() }, 2.0, false);
         assert_eq!(history.undo(), Some(front));
     }
 
@@ -188,13 +188,17 @@ mod tests {
     fn the_history_is_bounded_and_what_nobody_did_is_no_step() {
         let mut history = LookHistory::default();
         for step in 0..3 * STEPS {
-            history.watch(ScreenLook { light: step % 2 == 0, ..plain() }, step as f64, false);
+            history.watch(
+                ScreenLook { look: Look { light: step % 2 == 0, ..Look::default() }, ..plain() },
+                step as f64,
+                false,
+            );
         }
         assert_eq!(std::iter::from_fn(|| history.undo()).count(), STEPS);
         let mut history = LookHistory::default();
         history.watch(plain(), 0.0, false);
         history.adopt();
-        history.watch(ScreenLook { light: true, ..plain() }, 1.0, false);
+        history.watch(ScreenLook { look: Look { light: true, ..Look::default() }, ..plain() }, 1.0, false);
         assert!(!history.can_undo());
     }
 }

@@ -2,7 +2,9 @@
 
 use egui::{
     Align, Button, Color32, FontId, Label, Layout, Painter, Pos2, Rect, Response, RichText, Sense, Stroke, TextStyle,
-    Ui, Vec2, Vec2b, pos2, vec2,
+    Ui, Vec2, Vec2b, pos2,
+    text::{LayoutJob, TextFormat},
+    vec2,
 };
 
 use egui_plot::Plot;
@@ -98,6 +100,24 @@ pub fn figure(ui: &mut Ui, name: &str, value: impl Into<String>, meaning: &str) 
         });
     });
     row.response
+}
+
+/// Width of the window from which the main buttons have icons.
+const ICONS_FROM: f32 = 1280.0;
+
+/// Returns the words of a main button, with an icon before them if the window has room. A button with such words needs
+/// their plain text as its accessible name.
+pub fn with_icon(ui: &Ui, icon: theme::Icon, words: &str, font: FontId) -> LayoutJob {
+    let mut job = LayoutJob::default();
+    // The button chooses the colour.
+    let format = |font_id, valign| TextFormat { font_id, valign, color: Color32::PLACEHOLDER, ..Default::default() };
+    if ui.ctx().content_rect().width() >= ICONS_FROM {
+        job.append(icon.codepoint, 0.0, format(theme::icons(font.size + 3.0), Align::Center));
+        job.append(words, 5.0, format(font, Align::Center));
+    } else {
+        job.append(words, 0.0, format(font, Align::Center));
+    }
+    job
 }
 
 /// Returns a button that is highlighted if it is the `next` one to press; at most one button on the screen is.

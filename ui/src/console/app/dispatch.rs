@@ -108,6 +108,8 @@ impl ConsoleApp {
             Action::Tour => self.help.begin_tour(),
             Action::Palette => self.palette.toggle(),
             Action::Light(light) => settings.light = light,
+            Action::ColourBlind => settings.colour_blind ^= true,
+            Action::Touch => settings.touch ^= true,
             Action::Language(language) => settings.language = language,
             Action::Larger => settings.scale_by(1),
             Action::Smaller => settings.scale_by(-1),
@@ -146,22 +148,24 @@ impl ConsoleApp {
 
     /// Returns the layout and display settings, which can be undone.
     fn look(&self) -> ScreenLook {
-        let ConsoleSettings { layout, light, language, scale_percent, image, .. } = &self.settings.now;
-        let light = *light;
+        let ConsoleSettings { layout, language, scale_percent, image, .. } = &self.settings.now;
+        let look = self.settings.now.look();
         let language = *language;
         let scale_percent = *scale_percent;
         let image = *image;
         let extras = self.panels.scene.extras;
         let traces = self.panels.forces.view();
-        ScreenLook { layout: layout.clone(), light, language, scale_percent, image, extras, traces }
+        ScreenLook { layout: layout.clone(), look, language, scale_percent, image, extras, traces }
     }
 
     fn show_as(&mut self, look: Option<ScreenLook>) {
         let Some(look) = look else { return };
-        let ScreenLook { layout, light, language, scale_percent, image, extras, traces } = look;
+        let ScreenLook { layout, look, language, scale_percent, image, extras, traces } = look;
         let settings = &mut self.settings.now;
         settings.layout = layout;
-        settings.light = light;
+        settings.light = look.light;
+        settings.colour_blind = look.colour_blind;
+        settings.touch = look.touch;
         settings.scale_percent = scale_percent;
         settings.image = image;
         settings.language = language;

@@ -54,6 +54,10 @@ pub enum Action {
     Redo,
     /// Chooses the light or the dark palette.
     Light(bool),
+    /// Switches the colours for colour-blind users.
+    ColourBlind,
+    /// Switches the controls for touch.
+    Touch,
     Language(Language),
     Larger,
     Smaller,

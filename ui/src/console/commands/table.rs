@@ -100,6 +100,8 @@ fn screen() -> Vec<CommandEntry> {
         entry(Action::Redo, names::REDO, redo, menu),
         entry(Action::Light(false), names::DARK, &[], menu),
         entry(Action::Light(true), names::LIGHT, &[], menu),
+        entry(Action::ColourBlind, (text::menu::COLOUR_BLIND, text::menu::COLOUR_BLIND_HOVER), &[], menu),
+        entry(Action::Touch, (text::menu::TOUCH, text::menu::TOUCH_HOVER), &[], menu),
         entry(Action::Larger, names::LARGER, larger, CommandPlace::Keys),
         entry(Action::Smaller, names::SMALLER, smaller, CommandPlace::Keys),
     ];

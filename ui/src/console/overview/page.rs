@@ -34,7 +34,7 @@ pub(crate) fn overview_ui(
     check: Option<&ReadyRecord>,
     closed: &dyn Fn(Side) -> Option<&'static str>,
 ) -> Option<SetupStep> {
-    ui.label(RichText::new(text::overview::TITLE.get()).font(theme::strong(22.0)));
+    ui.label(RichText::new(text::overview::TITLE.get()).font(theme::strong(theme::TITLE)));
     ui.label(small(text::overview::MEANING.get()));
     ui.add_space(theme::GAP);
     if arms.is_empty() {
@@ -47,7 +47,7 @@ pub(crate) fn overview_ui(
             || text::overview::of_unknown(name, text::calibrations::SENSOR_NOT_CONNECTED.get()),
             |wrist| text::overview::of_arm(name, &wrist.serial_number, &wrist.tool),
         );
-        ui.label(RichText::new(head).font(theme::strong(16.0)));
+        ui.label(RichText::new(head).font(theme::strong(theme::HEADING)));
         wish = tiles_ui(ui, name, &tiles(arm, live, check), closed(arm.side)).or(wish);
         ui.add_space(theme::GAP);
     }

@@ -2,7 +2,11 @@
 
 use std::mem::discriminant;
 
-use egui::{Align, Align2, Area, Button, Id, Label, Layout, Order, Rect, RichText, Sense, Stroke, Ui, vec2};
+use egui::{
+    Align, Align2, Area, Button, Id, Label, Layout, Order, Rect, RichText, Sense, Stroke, TextStyle, Ui, WidgetInfo,
+    vec2,
+};
+use egui_material_icons::icons;
 use nima_machine::{
     messages::{Command, LoopState, Refusal},
     ready::PersonRequest,
@@ -24,7 +28,7 @@ use crate::{
         start::has_real_arm,
         steady_button::SteadyButton,
         text, theme,
-        widgets::{Sign, next_button, sign, small, weak},
+        widgets::{Sign, next_button, sign, small, weak, with_icon},
     },
     report_text::{cure_of_refusal, refused_because},
 };
@@ -120,14 +124,20 @@ fn identity_ui(
         return;
     }
     switch_ui(ui, &Role::ALL, &mut settings.role, !calibrating);
-    let start = Button::new(text::start::OPEN.get()).min_size(vec2(44.0, 30.0));
+    let font = TextStyle::Button.resolve(ui.style());
+    let words = with_icon(ui, icons::ICON_PRECISION_MANUFACTURING, text::start::OPEN.get(), font.clone());
+    let start = Button::new(words).min_size(vec2(44.0, 30.0));
     let why = if state.past { text::playback::BLOCKED.get() } else { text::start::OPEN_DISABLED_HOVER.get() };
     let free = !calibrating && !state.past;
-    let start = ui.add_enabled(free, start).on_hover_text(text::start::OPEN_HOVER.get());
+    let start = ui.add_enabled(free, start);
+    start.widget_info(|| WidgetInfo::labeled(egui::Role::Button, free, text::start::OPEN.get()));
+    let start = start.on_hover_text(text::start::OPEN_HOVER.get());
     let wants_start = start.on_disabled_hover_text(why).clicked();
     let of_menu = menu_ui(ui, settings, &mut state.alarms, state.can_undo);
-    let sessions = Button::new(text::playback::SESSIONS.get()).min_size(vec2(72.0, 30.0));
-    let sessions = ui.add_enabled(free, sessions).on_hover_text(text::playback::SESSIONS_HOVER.get());
+    let words = with_icon(ui, icons::ICON_VIDEO_LIBRARY, text::playback::SESSIONS.get(), font);
+    let sessions = ui.add_enabled(free, Button::new(words).min_size(vec2(72.0, 30.0)));
+    sessions.widget_info(|| WidgetInfo::labeled(egui::Role::Button, free, text::playback::SESSIONS.get()));
+    let sessions = sessions.on_hover_text(text::playback::SESSIONS_HOVER.get());
     let wants_sessions = sessions.on_disabled_hover_text(why).clicked();
     let keeps = recorded_ui(ui, state);
     state.wanted = of_menu

@@ -137,7 +137,7 @@ impl SessionList {
                 }
                 ui.add_space(8.0);
                 let heading = if self.for_beside { text::playback::BESIDE.get() } else { text::playback::LIST.get() };
-                ui.label(RichText::new(heading).font(theme::strong(19.0)));
+                ui.label(RichText::new(heading).font(theme::strong(theme::TITLE)));
                 let folder = self.folder.as_ref().map(|folder| folder.display().to_string());
                 ui.add(
                     Label::new(small(folder.unwrap_or_else(|| text::playback::NO_SHELF.get().to_owned()))).truncate(),

@@ -6,7 +6,8 @@ pub mod demo;
 mod surgeon;
 mod technician;
 
-use egui::{Button, Key, Ui, vec2};
+use egui::{Button, Key, TextStyle, Ui, WidgetInfo, vec2};
+use egui_material_icons::icons;
 use nima_machine::config::RigConfig;
 use serde::{Deserialize, Serialize};
 
@@ -24,7 +25,9 @@ use super::{
     },
     scene3d::{CameraLook, SceneView},
     settings::ConsoleSettings,
+    theme::Icon,
     tiles::PanelTiles,
+    widgets::with_icon,
 };
 use crate::{
     console::text,
@@ -60,6 +63,14 @@ impl Role {
             Self::Surgeon => Key::F1,
             Self::Technician => Key::F2,
             Self::Demo => Key::F3,
+        }
+    }
+
+    const fn icon(self) -> Icon {
+        match self {
+            Self::Surgeon => icons::ICON_MEDICAL_SERVICES,
+            Self::Technician => icons::ICON_BUILD,
+            Self::Demo => icons::ICON_SLIDESHOW,
         }
     }
 
@@ -154,8 +165,11 @@ fn acts<R>(ui: &mut Ui, past: bool, controls: impl FnOnce(&mut Ui) -> R) -> R {
 pub fn switch_ui(ui: &mut Ui, roles: &[Role], now: &mut Role, allowed: bool) {
     ui.spacing_mut().item_spacing.x = 4.0;
     for &role in roles {
-        let button = Button::selectable(*now == role, role.name()).frame_when_inactive(true).min_size(vec2(62.0, 30.0));
+        let words = with_icon(ui, role.icon(), role.name(), TextStyle::Button.resolve(ui.style()));
+        let button = Button::selectable(*now == role, words).frame_when_inactive(true).min_size(vec2(62.0, 30.0));
         let response = ui.add_enabled(allowed, button);
+        let chosen = *now == role;
+        response.widget_info(|| WidgetInfo::selected(egui::Role::Button, allowed, chosen, role.name()));
         let response = response.on_hover_text(text::roles::meaning_and_key(role.meaning(), role.key().name()));
         if response.on_disabled_hover_text(text::roles::SWITCH_DISABLED_HOVER.get()).clicked() {
             *now = role;

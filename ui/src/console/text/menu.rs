@@ -6,6 +6,16 @@ pub(in crate::console) const VIEW: Text = Text::of("View", "Ansicht");
 pub(in crate::console) const PALETTE: Text = Text::of("Colours", "Farben");
 pub(in crate::console) const DARK: Text = Text::of("Dark", "Dunkel");
 pub(in crate::console) const LIGHT: Text = Text::of("Light", "Hell");
+pub(in crate::console) const COLOUR_BLIND: Text = Text::of("Colours for colour-blind users", "Farben für Farbenblinde");
+pub(in crate::console) const COLOUR_BLIND_HOVER: Text = Text::of(
+    "Blue and orange instead of green, which many people cannot tell from red",
+    "Blau und Orange statt Grün, das viele nicht von Rot unterscheiden",
+);
+pub(in crate::console) const TOUCH: Text = Text::of("Large controls for touch", "Große Elemente für Finger");
+pub(in crate::console) const TOUCH_HOVER: Text = Text::of(
+    "Buttons, sliders and scroll bars that a finger can hit; the text keeps its size",
+    "Schaltflächen, Regler und Rollbalken, die ein Finger trifft; der Text behält seine Größe",
+);
 pub(in crate::console) const LANGUAGE: Text = Text::of("Language", "Sprache");
 pub(in crate::console) const SIZE: Text =
     Text::of("Text and control size (Ctrl + and Ctrl -)", "Größe von Text und Elementen (Ctrl + und Ctrl -)");

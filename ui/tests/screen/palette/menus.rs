@@ -88,7 +88,7 @@ fn what_the_view_menu_and_the_keys_of_the_screen_do() {
     }
     let reset = set(|settings| settings.layout = PanelLayout { closed: vec![Panel::Link], ..PanelLayout::default() });
     done.push(alike(&mut console, Action::ResetLayout, reset, of_menu(Kind::Button, "Reset layout"), settings));
-    for action in [Action::Sound, Action::ForcesOfNow, Action::RecordsPicture] {
+    for action in [Action::ColourBlind, Action::Touch, Action::Sound, Action::ForcesOfNow, Action::RecordsPicture] {
         done.push(alike(&mut console, action, set(|_| {}), of_menu(Kind::CheckBox, &entry(action).title), settings));
     }
     let reset = set(|settings| {

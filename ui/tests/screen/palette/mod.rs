@@ -128,6 +128,8 @@ const fn tried_in(action: Action) -> &'static str {
     match action {
         Action::View(_)
         | Action::Light(_)
+        | Action::ColourBlind
+        | Action::Touch
         | Action::Language(_)
         | Action::Larger
         | Action::Smaller

@@ -5,7 +5,7 @@
 
 use std::collections::VecDeque;
 
-use jiff::{Timestamp, ZonedDateTime, tz::TimeZone};
+use jiff::{Timestamp, Zoned, tz::TimeZone};
 
 use super::{Alarm, AlarmKind, AlarmPriority};
 
@@ -35,7 +35,7 @@ impl AlarmMoment {
 fn time_of_day(now: Timestamp, zone: Option<TimeZone>) -> String {
     let format = "%H:%M:%S";
     match zone {
-        Some(zone) => ZonedDateTime::new(now, zone).strftime(format).to_string(),
+        Some(zone) => Zoned::new(now, zone).strftime(format).to_string(),
         None => format!("{} UTC", now.strftime(format)),
     }
 }

@@ -152,9 +152,9 @@ fn legend_ui(ui: &mut Ui, state: &mut ForceSpaceState, rect: Rect, magnitudes_n:
         let words = text::force_space::magnitude(name.get(), &newtons(force_n, 2));
         let words = RichText::new(words).font(theme::strong(12.5));
         let words = if is_hidden { words.strikethrough().color(theme::now().text_weak) } else { words.color(colour) };
-        let place = Rect::from_min_size(rect.left_top() + vec2(6.0, 4.0 + 20.0 * row as f32), vec2(0.0, 18.0));
+        let place = Rect::from_min_size(rect.left_top() + vec2(6.0, 4.0 + 20.0 * row as f32), vec2(rect.width(), 18.0));
         let button = Button::new(words).frame_when_inactive(false).small().wrap_mode(TextWrapMode::Extend);
-        let response = ui.put(place, button);
+        let response = ui.new_child(UiBuilder::new().max_rect(place).id_salt(row)).add(button);
         response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, !is_hidden, name.get()));
         if response.on_hover_text(text::traces::LEGEND_HOVER.get()).clicked() {
             state.hidden[row] ^= true;

@@ -1,6 +1,6 @@
 //! One plot of the traces: its lines, axes, marks and cursors.
 
-use egui::{Align2, Button, Color32, Rect, RichText, Sense, Ui, pos2, vec2};
+use egui::{Align2, Button, Color32, Rect, RichText, Sense, Ui, UiBuilder, pos2, vec2};
 use egui_plot::{
     AxisHints, FilledArea, HoverPosition, Line, LineStyle, Plot, PlotBounds, PlotPoint, PlotPoints, PlotResponse,
     PlotUi, Text, VLine,
@@ -199,8 +199,9 @@ fn legend_ui(ui: &mut Ui, state: &mut TracesState, plot: TracePlot, rect: Rect) 
         let is_hidden = state.is_hidden(line.channel);
         let words = RichText::new(line.name.get()).font(theme::strong(12.0)).color(colour(line.ink)());
         let button = Button::new(if is_hidden { small(line.name.get()).strikethrough() } else { words });
-        let place = Rect::from_min_size(pos2(left, rect.top() + 2.0), vec2(0.0, 18.0));
-        let response = ui.put(place, button.frame_when_inactive(false).small().wrap_mode(egui::TextWrapMode::Extend));
+        let place = Rect::from_min_size(pos2(left, rect.top() + 2.0), vec2(rect.width(), 18.0));
+        let mut corner = ui.new_child(UiBuilder::new().max_rect(place).id_salt(("legend", line.channel)));
+        let response = corner.add(button.frame_when_inactive(false).small().wrap_mode(egui::TextWrapMode::Extend));
         response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, !is_hidden, line.name.get()));
         left = response.rect.right() + 4.0;
         if response.on_hover_text(text::traces::LEGEND_HOVER.get()).clicked() {

@@ -18,9 +18,11 @@ use self::{
 };
 use super::Panels;
 use crate::console::{
+    degree_record::DegreeRule,
     live::LiveState,
     outbox::Outbox,
     panels::{force_space_ui, force_traces_ui, horizon_ui},
+    rolling::DegreeFractions,
     scene3d::scene_ui,
     signals::TracePlot,
     text, theme, tiles,
@@ -75,9 +77,10 @@ pub(super) fn demo_ui(ui: &mut Ui, live: &mut LiveState, panels: &mut Panels, ou
 fn figures_ui(ui: &mut Ui, live: &LiveState) {
     ui.set_width(ui.available_width());
     ui.spacing_mut().item_spacing.y = 4.0;
-    let fractions = live.degrees.fractions();
-    let any = fractions.iter().sum::<f64>() > 0.0;
-    let identified = live.first_tick().filter(|_| any).map(|tick| tick.identification.degree.to_string());
+    let of_degrees = live.degrees.fractions(DegreeRule::Console, false);
+    let fractions = of_degrees.map(DegreeFractions::fractions).unwrap_or_default();
+    let is_known = of_degrees.is_some();
+    let identified = live.first_tick().filter(|_| is_known).map(|tick| tick.identification.degree.to_string());
     let degree = identified.unwrap_or_else(|| "–".to_owned());
     let name = text::roles::gain_and_degree(live.gain());
     figure(ui, &name, degree, text::roles::FIGURES_HOVER.get());

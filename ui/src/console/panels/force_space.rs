@@ -3,7 +3,10 @@
 
 use std::f32::consts::TAU;
 
-use egui::{Align2, Button, Color32, Painter, Pos2, Rect, RichText, Sense, Stroke, TextWrapMode, Ui, Vec2, pos2, vec2};
+use egui::{
+    Align2, Button, Color32, Painter, Pos2, Rect, RichText, Sense, Stroke, TextWrapMode, Ui, UiBuilder, Vec2, pos2,
+    vec2,
+};
 use nalgebra::Vector3;
 use nima_machine::rig::Side;
 

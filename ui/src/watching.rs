@@ -10,7 +10,7 @@ use nima_endoscope::FrameQueue;
 use nima_session::sinks::Audience;
 use nima_simulation::SimulationPlan;
 
-use crate::extras;
+use crate::{console::current_session::WatchStatus, extras};
 
 /// Selects the installed library instead of a file.
 pub(crate) const INSTALLED: &str = "liblsl";
@@ -76,14 +76,6 @@ pub(crate) trait WatchServer: std::fmt::Debug {
         false
     }
     fn shown(&self) -> WatchStatus;
-}
-
-/// Address and number of viewers.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct WatchStatus {
-    /// The address that a viewer enters.
-    pub(crate) at: String,
-    pub(crate) watchers: usize,
 }
 
 /// Servers for live viewers, for all sessions of this process.

@@ -11,6 +11,7 @@ pub mod app;
 pub mod canvas;
 pub mod commands;
 pub mod compare_cost;
+pub(crate) mod current_session;
 pub mod deadlines;
 pub mod degree_record;
 pub(crate) mod double_buffer;

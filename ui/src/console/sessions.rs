@@ -23,13 +23,12 @@ use nima_simulation::SimulationPlan;
 
 use super::{
     alarms::{Alarm, AlarmKind, AlarmPriority, log::AlarmLog},
-    chain, text,
+    chain,
+    current_session::DisplayState,
+    text,
 };
 use crate::language::{self, Language};
-use crate::{
-    image_recorder, recording, report_text,
-    watching::{self, Servers},
-};
+use crate::{image_recorder, recording, report_text, watching::Servers};
 
 /// A loop with fewer ticks than this is not a session, for example if no window could be opened or the rig was changed at
 /// once.
@@ -77,25 +76,6 @@ struct LoggedState {
     last_mark_s: Option<f64>,
     /// Alarms whose causes are present.
     alarms: Vec<Alarm>,
-}
-
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct DisplayState {
-    /// Duration of the recording.
-    pub(crate) seconds: u64,
-    pub(crate) kept: bool,
-    pub(crate) path: PathBuf,
-    pub(crate) bytes: u64,
-    /// Free bytes on the disk; `None` if the system does not report them.
-    pub(crate) free_bytes: Option<u64>,
-    /// Entries lost because the disk was slower than the loop.
-    pub(crate) lost: u64,
-    /// Number of endoscope images.
-    pub(crate) images: u64,
-    /// Number of marks.
-    pub(crate) marks: usize,
-    /// Addresses and numbers of live viewers.
-    pub(crate) watched: Vec<watching::WatchStatus>,
 }
 
 impl ConsoleSessions {

@@ -8,9 +8,10 @@ use nima_simulation::SimulationPlan;
 
 use super::Extra;
 use crate::{
+    console::current_session::WatchStatus,
     recording::PROGRAM,
     stderr::print_line,
-    watching::{Show, WatchServer, WatchStatus},
+    watching::{Show, WatchServer},
 };
 
 pub(super) struct LiveExtra;

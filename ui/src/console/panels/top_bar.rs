@@ -18,12 +18,12 @@ use crate::{
     console::{
         alarms::{MissingDevice, strip::Alarms},
         commands::{Action, CommandEntry},
+        current_session::DisplayState,
         live::{LiveState, RefusedCommand},
         menu::menu_ui,
         outbox::Outbox,
         roles::{Role, switch_ui},
         scene3d::side_name,
-        sessions::DisplayState,
         settings::ConsoleSettings,
         start::has_real_arm,
         steady_button::SteadyButton,
@@ -163,7 +163,7 @@ fn recorded_ui(ui: &mut Ui, state: &TopBarState) -> bool {
     sign(ui.painter(), Sign::Disc, dot, 4.0, theme::now().alarm_high);
     let name = if shown.kept { text::sessions::NAME_KEPT.get() } else { text::sessions::NAME_KEEP.get() };
     response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, shown.kept, name));
-    response.on_hover_text(text::sessions::hover(shown)).clicked()
+    response.on_hover_text(shown.explained()).clicked()
 }
 
 /// Draws the state of the arm that needs more attention. If the states differ, draws both in a column: an idle arm

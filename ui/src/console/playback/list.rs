@@ -14,9 +14,9 @@ use super::{
     list_row::{SessionListRow, SessionRequest, SortBy, alarms_in, read, row_ui},
 };
 use crate::console::{
+    current_session::DisplayState,
     opener,
     picking::Picking,
-    sessions::DisplayState,
     text, theme,
     widgets::{Sign, sign_ui, small, weak},
 };

@@ -2,8 +2,6 @@
 
 use std::{io, path::Path, time::Duration};
 
-use crate::console::sessions::DisplayState;
-
 use crate::language::{Text, text_format, word};
 
 pub(in crate::console) const NAME_KEEP: Text = Text::of("Keep this session", "Diese Sitzung sichern");
@@ -35,49 +33,9 @@ pub(in crate::console) fn recording(seconds: u64, free_bytes: Option<u64>) -> St
     }
 }
 
-fn disk_left(free_bytes: u64) -> String {
+pub(in crate::console) fn disk_left(free_bytes: u64) -> String {
     let gigabytes = free_bytes as f64 * 1e-9;
     text_format!("{gigabytes:.0} GB left on the disk", "{gigabytes:.0} GB frei auf der Platte")
-}
-
-pub(in crate::console) fn hover(shown: &DisplayState) -> String {
-    let what = if shown.kept {
-        word(
-            "This session is kept. Press to allow its deletion when space is needed (key K)",
-            "Diese Sitzung ist gesichert. Drücken gibt sie zum Löschen bei Platzmangel frei (Taste K)",
-        )
-    } else {
-        word(
-            "Every session is recorded, and the oldest are deleted to make room. Press to keep this one (key K)",
-            "Jede Sitzung wird aufgezeichnet, die ältesten werden bei Platzmangel gelöscht. Drücken sichert \
-             diese (Taste K)",
-        )
-    };
-    let lost = if shown.lost > 0 {
-        text_format!(
-            "\n{} entries lost: the disk is too slow",
-            "\n{} Einträge verloren: die Platte ist zu langsam",
-            shown.lost
-        )
-    } else {
-        String::new()
-    };
-    let watched = shown.watched.iter().fold(String::new(), |words, one| {
-        words + &text_format!("\nShared at {}: {} watching", "\nZuschauer über {}: jetzt {}", one.at, one.watchers)
-    });
-    let disk = shown.free_bytes.map_or_else(String::new, |free_bytes| format!("\n{}", disk_left(free_bytes)));
-    let path = shown.path.display();
-    let megabytes = shown.bytes as f64 * 1e-6;
-    let images = if shown.images > 0 {
-        text_format!("\n{} endoscope images", "\n{} Endoskopbilder", shown.images)
-    } else {
-        String::new()
-    };
-    text_format!(
-        "{what}\n{path}\n{megabytes:.1} MB, marks: {} (key E sets one){images}{disk}{lost}{watched}",
-        "{what}\n{path}\n{megabytes:.1} MB, Marken: {} (Taste E setzt eine){images}{disk}{lost}{watched}",
-        shown.marks
-    )
 }
 
 pub(in crate::console) fn no_folder(folder: &Path, error: &io::Error) -> String {

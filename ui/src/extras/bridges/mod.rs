@@ -16,10 +16,11 @@ use nima_simulation::SimulationPlan;
 
 use super::Extra;
 use crate::{
+    console::current_session::WatchStatus,
     recording::PROGRAM,
     report_text::Remedy as _,
     stderr::print_line,
-    watching::{INSTALLED, Show, WatchServer, WatchStatus},
+    watching::{INSTALLED, Show, WatchServer},
 };
 use bridge_text::trouble_of;
 

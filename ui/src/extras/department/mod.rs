@@ -11,8 +11,9 @@ use nima_simulation::SimulationPlan;
 use super::Extra;
 use crate::{
     command::department::DepartmentCommand,
+    console::current_session::WatchStatus,
     stderr::print_line,
-    watching::{Show, WatchServer, WatchStatus},
+    watching::{Show, WatchServer},
 };
 
 pub(super) struct Department;

@@ -116,7 +116,7 @@ impl ConsoleSettings {
         Look { light: self.light, colour_blind: self.colour_blind, touch: self.touch }
     }
 
-    /// Saves the present layout under this name, in place of an earlier one of the same name.
+    /// Saves the present layout under this name; replaces an earlier one of the same name.
     pub(super) fn save_layout(&mut self, name: &str) {
         self.layouts.retain(|saved| saved.name != name);
         self.layouts.push(NamedLayout { name: name.to_owned(), layout: self.layout.clone() });

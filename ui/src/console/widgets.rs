@@ -105,7 +105,7 @@ pub fn figure(ui: &mut Ui, name: &str, value: impl Into<String>, meaning: &str) 
 /// Width of the window from which the main buttons have icons.
 const ICONS_FROM: f32 = 1280.0;
 
-/// Returns the words of a main button, with an icon before them if the window has room. A button with such words needs
+/// Returns the text of a main button, with an icon before them if the window has room. A button with such words needs
 /// their plain text as its accessible name.
 pub fn with_icon(ui: &Ui, icon: theme::Icon, words: &str, font: FontId) -> LayoutJob {
     let mut job = LayoutJob::default();

@@ -90,7 +90,7 @@ fn tiles_ui(ui: &mut Ui, arm: &str, tiles: &[SetupTile], closed: Option<&str>) -
 
 /// Draws a tile as one button; returns whether it was pressed.
 fn tile_ui(ui: &mut Ui, arm: &str, tile: &SetupTile, width: f32, closed: Option<&str>) -> bool {
-    // The devices can be looked at in every state of the loop.
+    // The devices can be inspected in every state of the loop.
     let closed = closed.filter(|_| tile.step != SetupStep::Devices);
     let verb = verb(tile);
     let name = text::overview::button(verb, arm, &within(tile.name));

@@ -11,7 +11,7 @@ use crate::console::{live::LiveState, text, wizards::CalibrationTarget};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum StepState {
     Done,
-    /// It works, but should be looked at.
+    /// It works, but should be checked.
     Doubtful,
     /// It is missing, or cannot be used.
     Missing,

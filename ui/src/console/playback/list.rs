@@ -30,7 +30,7 @@ pub(crate) struct SessionList {
     folder: Option<PathBuf>,
     rows: Vec<SessionListRow>,
     reading: Option<Receiver<ReadStep>>,
-    /// The rows are those of the folder.
+    /// The rows are up to date with the folder.
     is_read: bool,
     search: String,
     sort: SortBy,
@@ -41,7 +41,7 @@ pub(crate) struct SessionList {
     picking: Option<Picking>,
 }
 
-/// What the thread that reads the folder has found.
+/// Result of the thread that reads the folder.
 #[derive(Debug)]
 enum ReadStep {
     Rows(Vec<SessionListRow>),
@@ -179,7 +179,7 @@ impl SessionList {
         });
     }
 
-    /// Draws the table; returns what is asked of a session.
+    /// Draws the table; returns the requested action on a session.
     fn rows_ui(&mut self, ui: &mut Ui) -> Option<SessionRequest> {
         let mut wish = None;
         if self.rows.is_empty() {

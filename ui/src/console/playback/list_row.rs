@@ -1,4 +1,4 @@
-//! One session of the list: what is known of it, and its buttons.
+//! One session of the list: its data, and its buttons.
 
 use std::path::{Path, PathBuf};
 

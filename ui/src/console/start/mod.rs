@@ -220,7 +220,7 @@ impl StartPage {
         }
     }
 
-    /// Returns rig and scene in words; a real arm has no scene.
+    /// Returns the text for rig and scene; a real arm has no scene.
     fn words_of(&self, choice: &RigChoice) -> String {
         let rig = name_in(&self.lists.rigs, &choice.rig);
         if self.has_real_arm(choice) {

@@ -251,7 +251,7 @@ fn state_word(standing: ConnectionState) -> &'static str {
     }
 }
 
-/// Returns the rate, the losses and the outages in words, with the cause of a loss.
+/// Returns the text for the rate, the losses and the outages, with the cause of a loss.
 fn figures(health: &Health) -> String {
     let Health { rate_hz, lost, damaged, refused, outages, longest_outage_s, .. } = *health;
     let delivery = text::devices::delivery(rate_hz, lost, damaged, refused);

@@ -372,8 +372,8 @@ mod tests {
                     let pixel = |x: u16| image[(usize::from(x), usize::from(y))].a();
                     (place.min[0]..place.max[0]).map(pixel).max().unwrap_or(0)
                 };
-                let rows: Vec<u8> = (place.min[1]..place.max[1]).map(row).filter(|ink| *ink > 0).collect();
-                // Between the dot at the top and the stem.
+                // From the dot at the top on; the gap is in the upper half.
+                let rows: Vec<u8> = (place.min[1]..place.max[1]).map(row).skip_while(|ink| *ink == 0).collect();
                 let upper = &rows[1..rows.len() / 2];
                 (*upper.iter().min().unwrap(), *rows.iter().max().unwrap())
             });

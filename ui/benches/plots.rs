@@ -13,13 +13,9 @@ use std::{hint::black_box, time::Instant};
 
 use egui::{Context, Pos2, RawInput, Rect, Ui, vec2};
 use egui_plot::{Line, Plot, PlotPoint, PlotPoints};
-use nima_console::console::{
-    history::CHANNELS,
-    live::LiveState,
-    panels::{TracesState, force_traces_ui},
-    theme,
-};
 use nima_machine::{config::RigConfig, rig::Side};
+use nima_panels::{TracesState, force_traces_ui};
+use nima_screen::{history::CHANNELS, live::LiveState, theme};
 use nima_simulation::scene::Scene;
 
 const RATE_HZ: f64 = 2000.0;

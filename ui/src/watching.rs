@@ -7,10 +7,11 @@ use std::{
 
 use clap::Args;
 use nima_endoscope::FrameQueue;
+use nima_screen::current_session::WatchStatus;
 use nima_session::sinks::Audience;
 use nima_simulation::SimulationPlan;
 
-use crate::{console::current_session::WatchStatus, extras};
+use crate::extras;
 
 /// Selects the installed library instead of a file.
 pub(crate) const INSTALLED: &str = "liblsl";

@@ -5,8 +5,9 @@ use std::path::{Path, PathBuf};
 use anyhow::Context as _;
 use clap::{Args, Command};
 use clap_complete::Shell;
+use nima_report::output;
 
-use super::{command_line, output};
+use super::command_line;
 
 const NAME: &str = "nima";
 

@@ -8,20 +8,21 @@ use std::{
 use anyhow::Context as _;
 use clap::Args;
 use nima_machine::config::SchedulingClass;
+use nima_panels::roles::Role;
+use nima_report::output;
+use nima_screen::{link::Reopen, stderr::print_line};
 use nima_simulation::SimulationPlan;
+use nima_wizards::{WizardKind, active_calibrations::ActiveCalibrations};
+use nima_words::language::Language;
 
-use super::{output, remote_follower::ToFollower, rig_args::Setup};
-use crate::language::Language;
+use super::{remote_follower::ToFollower, rig_args::Setup};
 use crate::{
     by_itself::{self, Starter},
     console::{
-        self, ConsoleOptions, InitialRun, active_calibrations::ActiveCalibrations, app::start_recorded, roles::Role,
-        screenshots::ScreenshotFolder, sessions::ConsoleSessions, wizards::WizardKind,
+        self, ConsoleOptions, InitialRun, app::start_recorded, screenshots::ScreenshotFolder, sessions::ConsoleSessions,
     },
     emulators::Emulators,
     extras::{self, Extra},
-    link::Reopen,
-    stderr::print_line,
     watching::WatchArguments,
 };
 

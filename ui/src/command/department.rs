@@ -3,9 +3,11 @@
 use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
+use nima_panels::roles::Role;
+use nima_words::language::Language;
 
 use super::run::positive_seconds;
-use crate::{console::roles::Role, extras, language::Language};
+use crate::extras;
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum DepartmentCommand {

@@ -11,9 +11,8 @@ use nima_devices::{
     },
 };
 use nima_machine::config::RigConfig;
+use nima_report::output;
 use serde::Serialize;
-
-use super::output;
 
 #[derive(Debug, Args)]
 pub(super) struct DevicesArguments {

@@ -9,9 +9,8 @@ use clap::{Args, Subcommand};
 use nima_charts::{Axis, Chart, Series, SeriesStyle, svg};
 use nima_core::tip_force::Estimator;
 use nima_recording::tip_force::{DataSet, Selection, load_model};
+use nima_report::output;
 use nima_training::{Evaluation, EvaluationPart, evaluate};
-
-use super::output;
 
 #[derive(Debug, Subcommand)]
 pub(super) enum EvaluateCommand {

@@ -15,6 +15,11 @@ use nima_machine::{
     rig::{DeviceName, Side},
 };
 use nima_recording::session::SessionReader;
+use nima_report::output;
+use nima_screen::{
+    recording::{PROGRAM, RIG, SCENE, WORDS, toml_file},
+    stderr::print_line,
+};
 use nima_session::{
     anonymous::{self, SessionFacts},
     layouts,
@@ -24,12 +29,8 @@ use nima_session::{
 };
 use nima_simulation::scene::Scene;
 
-use super::{output, rig_args::side, time_range::TimeRange};
-use crate::{
-    recording::{PROGRAM, RIG, SCENE, WORDS, toml_file},
-    shutdown::Leave,
-    stderr::print_line,
-};
+use super::{rig_args::side, time_range::TimeRange};
+use crate::shutdown::Leave;
 
 const HEADER: &str = "t_s,time_ns,x_m,y_m,z_m,fx_n,fy_n,fz_n,leader_x_m,leader_y_m,leader_z_m,\
 delayed_x_n,delayed_y_n,delayed_z_n,asked_x_n,asked_y_n,asked_z_n,rendered_x_n,rendered_y_n,rendered_z_n,state";

@@ -9,7 +9,6 @@ pub(crate) mod department;
 mod devices;
 mod evaluate;
 mod export;
-pub(crate) mod output;
 mod remote_follower;
 mod replay;
 mod report;
@@ -28,12 +27,12 @@ use clap::{
     error::{ContextKind, ContextValue},
 };
 use nima_files::shortened;
+use nima_screen::stderr::print_line;
 use tracing::level_filters::LevelFilter;
 
 use crate::{
     extras,
     logging::{self, LEVELS},
-    stderr::print_line,
 };
 
 /// Exit code if no window can be opened (`EX_UNAVAILABLE`): the start script then runs `nima run`.

@@ -2,12 +2,12 @@
 
 use clap::Args;
 use nima_machine::config::RigConfig;
+use nima_screen::link::RemoteLine;
 use nima_simulation::scene::Scene;
 
 use crate::{
     by_itself::ArmLocation,
     extras::{self, Extra},
-    link::RemoteLine,
 };
 
 #[derive(Clone, Debug, Default, Args)]

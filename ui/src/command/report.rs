@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 
 use clap::Args;
-
-use super::output;
-use crate::{report, stderr::print_line};
+use nima_report as report;
+use nima_report::output;
+use nima_screen::stderr::print_line;
 
 #[derive(Debug, Args)]
 pub(super) struct ReportArguments {

@@ -5,12 +5,10 @@ use nima_machine::{
     config::{ConfigError, Ranges, RigConfig},
     rig::Side,
 };
+use nima_panels::rig_choice::RigChoice;
 use nima_simulation::scene::Scene;
 
-use crate::{
-    console::start::{RigChoice, drawn_anew},
-    shutdown::Leave,
-};
+use crate::{console::start::drawn_anew, shutdown::Leave};
 
 #[derive(Debug, Args)]
 pub(crate) struct Setup {

@@ -7,8 +7,7 @@ use nima_machine::{
     rig::{SIDES, Side},
     runtime::{ArmEnd, CauseAndCure, RuntimeSummary},
 };
-
-use crate::report_text::{cure_of_refusal, refused_because};
+use nima_words::report_text::{cure_of_refusal, refused_because};
 
 #[derive(Debug, Default)]
 pub(super) struct Reasons {

@@ -6,14 +6,13 @@ use anyhow::{Context as _, bail};
 use clap::Args;
 use nima_files::quoted;
 use nima_recording::{session::ReadError, store::Store};
+use nima_report::output;
 use nima_session::{
     file::{self, RecordedFile},
     plot_channels,
     session_store::{MAX_BYTES, SessionStore, StoredSession, keep},
 };
 use serde::Serialize;
-
-use super::output;
 
 #[derive(Debug, Args)]
 pub(super) struct SessionsArguments {

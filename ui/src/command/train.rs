@@ -6,11 +6,12 @@ use anyhow::anyhow;
 use clap::{Args, Subcommand};
 use nima_core::tip_force::{ForceModel, TrainingSettings};
 use nima_recording::tip_force::{DataSet, Selection, TipForceError, save_model};
+use nima_report::output;
+use nima_screen::stderr::show_progress;
 use nima_training::{TrainingProgress, train_model};
 use serde::Serialize;
 
-use super::output;
-use crate::{shutdown::Leave, stderr::show_progress};
+use crate::shutdown::Leave;
 
 #[derive(Debug, Subcommand)]
 pub(super) enum TrainCommand {

@@ -2,16 +2,16 @@
 //! never covered, and the loop continues while they are open.
 
 use egui::{Align, Align2, Button, Context, Label, Rect, RichText, ScrollArea, Ui, Window, vec2};
-
-use super::{
-    commands::table,
-    text::commands::{BY_HAND, key_meaning},
-    text::help::{
+use nima_screen::theme;
+use nima_words::text::{
+    commands::{BY_HAND, key_meaning},
+    help::{
         BEGIN, GLOSSARY, GLOSSARY_WINDOW, KEYS_HEADING, NEXT_STEP, SKIP_THE_TOUR, STEP_BACK, TOUR, TOUR_WINDOW,
         WORDS_HEADING, step_of,
     },
-    theme,
 };
+
+use crate::console::commands::table;
 
 /// Open help windows.
 #[derive(Clone, Copy, Debug, Default)]
@@ -46,13 +46,13 @@ impl Help {
             ui.label(RichText::new(words.get()).font(theme::regular(15.0)));
             ui.add_space(6.0);
             ui.horizontal(|ui| {
-                ui.label(super::widgets::small(step_of(step + 1, TOUR.len())));
+                ui.label(nima_screen::widgets::small(step_of(step + 1, TOUR.len())));
                 let size = vec2(96.0, 32.0);
                 if ui.add_enabled(step > 0, Button::new(STEP_BACK.get()).min_size(size)).clicked() {
                     self.tour = Some(step - 1);
                 }
                 let last = step + 1 == TOUR.len();
-                let next = super::widgets::next_button(if last { BEGIN.get() } else { NEXT_STEP.get() }, true);
+                let next = nima_screen::widgets::next_button(if last { BEGIN.get() } else { NEXT_STEP.get() }, true);
                 if ui.add(next.min_size(size)).clicked() {
                     self.tour = if last { None } else { Some(step + 1) };
                 }
@@ -80,7 +80,7 @@ impl Help {
                 ui.label(RichText::new(WORDS_HEADING.get()).font(theme::strong(16.0)));
                 for (word, meaning) in terms() {
                     ui.label(RichText::new(word).font(theme::strong(14.0)));
-                    ui.label(super::widgets::weak(meaning));
+                    ui.label(nima_screen::widgets::weak(meaning));
                     ui.add_space(4.0);
                 }
             });
@@ -99,14 +99,14 @@ fn key_ui(ui: &mut Ui, key: &str, meaning: &str) {
     ui.horizontal(|ui| {
         let key = Label::new(RichText::new(key).font(theme::strong(14.0))).halign(Align::Min);
         ui.add_sized(vec2(150.0, 18.0), key);
-        ui.add(Label::new(super::widgets::weak(meaning)).wrap());
+        ui.add(Label::new(nima_screen::widgets::weak(meaning)).wrap());
     });
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::language::{self, Language};
+    use nima_words::language::{self, Language};
 
     #[test]
     fn the_glossary_is_in_order_and_every_meaning_is_a_sentence() {

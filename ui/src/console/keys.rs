@@ -1,11 +1,9 @@
 //! Keys with the same function in every view. The table of commands lists their functions.
 
 use egui::{Context, Event, Key};
+use nima_panels::roles::Role;
 
-use super::{
-    commands::{Action, CommandEntry, table},
-    roles::Role,
-};
+use crate::console::commands::{Action, CommandEntry, table};
 
 /// Returns the space and Escape stop, wherever the keyboard focus is; the key press is consumed, so that it triggers no
 /// button. In a text field, Space is a letter and only Escape stops.

@@ -1,23 +1,24 @@
 //! The View menu: appearance of the console, saved between sessions.
 
-use crate::console::text;
 use egui::{
     Button, Context, DragValue, Id, PopupCloseBehavior, ScrollArea, Slider, TextEdit, TextStyle, Ui, WidgetInfo,
     containers::menu::{MenuButton, MenuConfig},
     vec2,
 };
-
-use egui_material_icons::icons;
-
-use super::{
-    alarms::strip::Alarms,
-    commands::{Action, CommandEntry, SIZES_PERCENT},
+use nima_panels::{
     roles::Role,
     settings::{CROP_MAX_PERCENT, ConsoleSettings, ImageSettings},
     tiles::{Arrangement, Panel, PanelLayout},
-    widgets::with_icon,
 };
-use crate::language::{Language, Text};
+use nima_screen::{alarms::strip::Alarms, widgets::with_icon};
+use nima_words::{
+    language::{Language, Text},
+    text,
+};
+
+use egui_material_icons::icons;
+
+use crate::console::commands::{Action, CommandEntry, SIZES_PERCENT};
 
 /// Size that every view needs, in points; a scale without room for it is not used.
 const NEEDED: egui::Vec2 = vec2(1100.0, 680.0);
@@ -78,7 +79,7 @@ fn content_ui(ui: &mut Ui, settings: &mut ConsoleSettings, alarms: &mut Alarms, 
             }
         }
     });
-    ui.label(super::widgets::small(text::menu::SIZE_NOTE.get()));
+    ui.label(nima_screen::widgets::small(text::menu::SIZE_NOTE.get()));
     wanted = wanted.or(switch_ui(ui, settings.touch, Action::Touch));
     ui.add_space(6.0);
     if settings.role == Role::Technician {
@@ -137,7 +138,7 @@ fn switch_ui(ui: &mut Ui, mut on: bool, action: Action) -> Option<Action> {
 fn sound_ui(ui: &mut Ui, on: bool, alarms: &mut Alarms) -> Option<Action> {
     let wanted = switch_ui(ui, on, Action::Sound);
     if let Some(trouble) = alarms.sound.trouble() {
-        ui.add(egui::Label::new(super::widgets::small(trouble)).wrap());
+        ui.add(egui::Label::new(nima_screen::widgets::small(trouble)).wrap());
     }
     wanted
 }
@@ -258,7 +259,7 @@ fn panels_ui(ui: &mut Ui, layout: &PanelLayout) -> Option<Action> {
 
 /// Applies the settings; call at the start of a frame.
 pub(super) fn apply(ctx: &Context, settings: &ConsoleSettings) {
-    super::theme::choose(ctx, settings.look());
+    nima_screen::theme::choose(ctx, settings.look());
     ctx.options_mut(|options| options.zoom_with_keyboard = false);
     let window = ctx.content_rect().size() * ctx.zoom_factor();
     let room = (window / NEEDED).min_elem().max(1.0);

@@ -4,71 +4,33 @@
 //! change the loop directly; they show the content of the ticks and put the operator's commands into an outbox. All panels
 //! are plain functions of [`live::LiveState`], so they can be tested without a screen. Only `scene3d/gl.rs` uses the GPU.
 
-pub mod active_calibrations;
-mod activity;
-pub mod alarms;
 pub mod app;
-pub mod canvas;
 pub mod commands;
-pub mod compare_cost;
-pub(crate) mod current_session;
-pub mod deadlines;
-pub mod degree_record;
-pub(crate) mod double_buffer;
-pub mod endoscope_view;
-mod exports;
-pub mod force_cloud;
-pub mod frames;
 pub mod help;
-pub mod history;
 mod keys;
-pub mod live;
-pub mod loop_connection;
 mod menu;
 pub mod monitor;
-pub(crate) mod opener;
-pub mod outbox;
-pub(crate) mod overview;
 pub mod page;
 mod palette;
-pub mod panels;
-pub(crate) mod picking;
-pub(crate) mod playback;
 pub mod reader;
-pub mod readings;
-pub(crate) mod ready;
-pub mod roles;
-pub mod rolling;
-pub mod run_log;
-pub mod scene3d;
-pub mod screenshot;
 pub mod screenshots;
 pub(crate) mod sessions;
-pub mod settings;
-pub mod signals;
 pub mod start;
-pub mod steady_button;
-pub mod stiffness;
-pub mod text;
-pub mod theme;
-pub mod tiles;
+mod top_bar;
 mod undo;
-pub mod widgets;
-pub mod wizards;
 
 use std::{path::PathBuf, time::Duration};
 
 use app::StartedLoop;
 use nima_machine::config::RigConfig;
+use nima_panels::{rig_choice::RigChoice, settings::SettingsStore};
+use nima_screen::link::{LineConnection, Reopen};
 use nima_simulation::scene::Scene;
+use nima_words::language::{self, Language};
 use sessions::ConsoleSessions;
-use settings::SettingsStore;
-use start::RigChoice;
 
 pub use app::ConsoleApp;
 
-use crate::language::{self, Language};
-use crate::link::{LineConnection, Reopen};
 use crate::{emulators::Emulators, shutdown::Leave};
 
 /// Options of the window, for screenshots and tests. By default it stays open until it is closed.
@@ -79,10 +41,10 @@ pub struct ConsoleOptions {
     pub screenshot: Option<PathBuf>,
     /// Take screenshots of every view, then close.
     pub images: Option<screenshots::ScreenshotFolder>,
-    pub role: Option<roles::Role>,
+    pub role: Option<nima_panels::roles::Role>,
     pub language: Option<Language>,
     pub session: Option<PathBuf>,
-    pub wizard: Option<wizards::WizardKind>,
+    pub wizard: Option<nima_wizards::WizardKind>,
     pub summary: Option<PathBuf>,
     pub frames: Option<PathBuf>,
     /// Initial length of the traces, s.
@@ -108,7 +70,7 @@ pub(crate) struct InitialRun {
 /// Opens the console for a running loop; returns when the window is closed and the loop has ended.
 pub(crate) fn run(begun: InitialRun, options: ConsoleOptions) -> anyhow::Result<()> {
     let create: eframe::AppCreator<'_> = Box::new(move |cc| Ok(Box::new(console(cc, begun, options))));
-    let ended = open_window(text::top_bar::NIMA_CONSOLE.get(), create);
+    let ended = open_window(nima_words::text::top_bar::NIMA_CONSOLE.get(), create);
     // From here on, messages go to the terminal, in English.
     language::set(Language::English);
     ended
@@ -143,17 +105,6 @@ fn console(cc: &eframe::CreationContext<'_>, begun: InitialRun, options: Console
     app.with_settings(settings).with_options(options)
 }
 
-/// Returns an error with its causes, in one line.
-pub(crate) fn chain(error: &dyn std::error::Error) -> String {
-    let mut words = error.to_string();
-    let mut source = error.source();
-    while let Some(cause) = source {
-        words = format!("{words}: {cause}");
-        source = cause.source();
-    }
-    words
-}
-
 /// No window could be opened: no display, or no usable OpenGL.
 #[derive(Debug, thiserror::Error)]
 #[error("{reason}")]
@@ -172,7 +123,7 @@ impl NoWindow {
 
 #[cfg(test)]
 mod tests {
-    use super::NoWindow;
+    use crate::console::NoWindow;
 
     #[test]
     fn a_place_in_someone_elses_source_is_left_out() {

@@ -12,25 +12,23 @@ use crossbeam_channel::{Receiver, Sender, unbounded};
 use eframe::glow;
 use egui::{Align, CentralPanel, Frame, Label, Layout, Margin, Panel, RichText, Stroke, StrokeKind, Ui};
 use nima_machine::config::RigConfig;
-use nima_session::monitor_stream::MonitorMoment;
-use nima_simulation::scene::Scene;
-
-use super::{
-    active_calibrations::ActiveCalibrations,
-    alarms::judge,
-    keys,
-    live::LiveState,
-    outbox::Outbox,
-    panels::state_ui,
+use nima_panels::{
     roles::{Panels, Role, role_ui, switch_ui},
-    scene3d::SceneView,
-    screenshot,
     settings::ConsoleSettings,
-    text, theme,
+};
+use nima_screen::{
+    alarms::judge, live::LiveState, outbox::Outbox, scene3d::SceneView, screenshot, stderr::print_line, theme,
     widgets::weak,
 };
-use crate::language::{self, Language};
-use crate::stderr::print_line;
+use nima_session::monitor_stream::MonitorMoment;
+use nima_simulation::scene::Scene;
+use nima_wizards::active_calibrations::ActiveCalibrations;
+use nima_words::{
+    language::{self, Language},
+    text,
+};
+
+use crate::console::{keys, top_bar::state_ui};
 
 const HEAD: f32 = 72.0;
 /// A demonstration drives its rig, which a monitor cannot.
@@ -279,7 +277,7 @@ pub fn open(rig: &str, options: MonitorOptions, begin: impl FnOnce(MonitorSender
         begin(publisher);
         Ok(Box::new(monitor))
     });
-    let ended = super::open_window(&title, create);
+    let ended = crate::console::open_window(&title, create);
     language::set(Language::English);
     ended
 }

@@ -8,10 +8,12 @@ use std::{
 use egui::Ui;
 use nima_endoscope::FrameQueue;
 use nima_machine::{config::RigConfig, messages::Tick};
+use nima_panels::rig_choice::RigChoice;
+use nima_screen::{live::LiveState, outbox::Outbox, scene3d::SceneView};
 use nima_session::sinks::Audience;
 use nima_simulation::{SimulationPlan, scene::Scene};
 
-use super::{app::StartedLoop, live::LiveState, outbox::Outbox, scene3d::SceneView, start::RigChoice};
+use crate::console::app::StartedLoop;
 
 pub trait Page: Debug {
     /// Returns the name and purpose on the button that opens it.

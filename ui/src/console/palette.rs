@@ -6,13 +6,13 @@
 use egui::{
     Align, Align2, Button, Context, Id, Key, Label, Order, Rect, RichText, ScrollArea, TextEdit, Ui, Window, vec2,
 };
-
-use super::{
-    commands::{Action, Availability, CommandEntry},
-    text::commands::{FOOT, NONE_FOUND, ONCE_MORE, PALETTE, SEARCH, hover},
+use nima_screen::{
     theme,
     widgets::{small, weak},
 };
+use nima_words::text::commands::{FOOT, NONE_FOUND, ONCE_MORE, PALETTE, SEARCH, hover};
+
+use crate::console::commands::{Action, Availability, CommandEntry};
 
 const WIDTH: f32 = 560.0;
 const ROW: f32 = 28.0;
@@ -196,10 +196,9 @@ fn rank(word: &str, entry: &CommandEntry) -> Option<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{
-        console::{commands::table, roles::Role},
-        language::{self, Language},
-    };
+    use crate::console::commands::table;
+    use nima_panels::roles::Role;
+    use nima_words::language::{self, Language};
 
     fn all() -> Vec<PaletteRow> {
         table().iter().map(|entry| (entry, Availability::Can)).collect()

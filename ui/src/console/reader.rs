@@ -3,8 +3,7 @@
 use std::sync::Arc;
 
 use nima_simulation::screen::{PersonTask, Screen};
-
-use super::wizards::{FrameKind, WizardKind};
+use nima_wizards::{FrameKind, WizardKind};
 
 /// Receives the content of the screen. Clones are the same reader.
 #[derive(Clone)]

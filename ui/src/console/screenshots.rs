@@ -10,15 +10,12 @@ use std::{
 };
 
 use nima_machine::messages::{LoopState, Tick};
-
-use super::{
-    live::LiveState,
+use nima_panels::{
     roles::Role,
-    screenshot,
     settings::ConsoleSettings,
     tiles::{Panel, PanelLayout},
 };
-use crate::stderr::print_line;
+use nima_screen::{live::LiveState, screenshot, stderr::print_line};
 
 /// Time after which the traces are full.
 const FILLED: Duration = Duration::from_secs(11);

@@ -12,6 +12,11 @@ use std::{
 use nima_endoscope::FrameQueue;
 use nima_machine::runtime::Tap;
 use nima_recording::store::utc_now;
+use nima_screen::{
+    alarms::{Alarm, AlarmKind, AlarmPriority, log::AlarmLog},
+    current_session::DisplayState,
+    image_recorder, recording,
+};
 use nima_session::{
     disk_forecast::{DiskForecast, WARN_BEFORE},
     objects::ObjectSource,
@@ -20,15 +25,13 @@ use nima_session::{
     sinks::{Audience, Destination},
 };
 use nima_simulation::SimulationPlan;
-
-use super::{
-    alarms::{Alarm, AlarmKind, AlarmPriority, log::AlarmLog},
-    chain,
-    current_session::DisplayState,
+use nima_words::{
+    language::{self, Language},
+    report_text::{self, chain},
     text,
 };
-use crate::language::{self, Language};
-use crate::{image_recorder, recording, report_text, watching::Servers};
+
+use crate::watching::Servers;
 
 /// A loop with fewer ticks than this is not a session, for example if no window could be opened or the rig was changed at
 /// once.
@@ -266,7 +269,7 @@ mod tests {
     };
     use nima_simulation::scene::Scene;
 
-    use crate::console::alarms::{Signs, judge, log::AlarmMoment};
+    use nima_screen::alarms::{Signs, judge, log::AlarmMoment};
 
     use super::*;
 

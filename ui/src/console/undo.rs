@@ -4,8 +4,9 @@
 //! engaging, stopping) are excluded, as are the role, whose demonstration sets modes, the alarm sound, and recording. The
 //! history ends with the window.
 
-use super::{panels::ForcesView, scene3d::extras::Extras, settings::ImageSettings, theme::Look, tiles::PanelLayout};
-use crate::language::Language;
+use nima_panels::{ForcesView, settings::ImageSettings, tiles::PanelLayout};
+use nima_screen::{scene3d::extras::Extras, theme::Look};
+use nima_words::language::Language;
 
 /// Maximum number of undo steps.
 const STEPS: usize = 100;
@@ -122,7 +123,7 @@ impl LookHistory {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::console::{panels::TracesState, tiles::Panel};
+    use nima_panels::{TracesState, tiles::Panel};
 
     fn plain() -> ScreenLook {
         ScreenLook {

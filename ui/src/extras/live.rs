@@ -3,16 +3,12 @@
 use std::net::SocketAddr;
 
 use nima_endoscope::FrameQueue;
+use nima_screen::{current_session::WatchStatus, recording::PROGRAM, stderr::print_line};
 use nima_session::sinks::Audience;
 use nima_simulation::SimulationPlan;
 
 use super::Extra;
-use crate::{
-    console::current_session::WatchStatus,
-    recording::PROGRAM,
-    stderr::print_line,
-    watching::{Show, WatchServer},
-};
+use crate::watching::{Show, WatchServer};
 
 pub(super) struct LiveExtra;
 

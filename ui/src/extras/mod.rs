@@ -23,17 +23,15 @@ mod user_studies;
 use std::{net::SocketAddr, path::Path};
 
 use clap::{ArgMatches, Subcommand};
+use nima_panels::{PanelExtras, StripUi, Tile};
+use nima_screen::link::ArmLink;
 use nima_simulation::{ObjectFeed, SimulationPlan};
+use nima_wizards::{Wizard, offer_camera};
 
 use crate::{
     command::department::DepartmentCommand,
-    console::{
-        page::Page,
-        panels::{StripUi, Tile},
-        wizards::Wizard,
-    },
+    console::page::Page,
     ground_truth::TruthComparison,
-    link::ArmLink,
     scoring::RunScorer,
     watching::{Show, WatchServer},
 };
@@ -149,7 +147,18 @@ pub(crate) fn emulates() -> bool {
     part(Extra::comparison).is_some()
 }
 
+/// Gives the window the parts of extras.
+pub(crate) fn offer() {
+    if let Some(wizard) = part(Extra::camera_wizard) {
+        offer_camera(wizard);
+    }
+    let has_link = part(Extra::way).is_some();
+    let extras = PanelExtras { tradeoff: part(Extra::tradeoff), stable_gain: part(Extra::stable_gain), has_link };
+    extras.offer();
+}
+
 pub(crate) fn begin() {
+    offer();
     for extra in BUILT {
         extra.begin();
     }

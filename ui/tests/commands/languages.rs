@@ -72,9 +72,9 @@ fn literal(source: &str) -> Option<(String, &str)> {
 
 /// Returns the modules of texts, without their tests.
 fn modules() -> Vec<(PathBuf, String)> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("words/src");
     let mut files: Vec<PathBuf> = Vec::new();
-    for folder in ["console/text", "report_text"] {
+    for folder in ["text", "report_text"] {
         sources(&root.join(folder), &mut files);
     }
     for path in ["text", "report_text", "bridge_text", "link_text"].into_iter().flat_map(of_extras) {

@@ -3,13 +3,13 @@
 
 use egui::{Key, Modifiers, Rect, accesskit::Role as Kind};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use nima_console::console::{
-    ConsoleOptions,
+use nima_console::console::ConsoleOptions;
+use nima_machine::messages::LoopState;
+use nima_panels::{
     roles::Role,
     tiles::{Panel, PanelLayout},
-    wizards::WizardKind,
 };
-use nima_machine::messages::LoopState;
+use nima_wizards::WizardKind;
 
 use crate::{
     bench::{Console, console_of, pick, press, toured, until, wait},

@@ -6,9 +6,11 @@ use egui_kittest::{
     Harness,
     kittest::{NodeT as _, Queryable as _},
 };
-use nima_console::console::{ConsoleApp, ConsoleOptions, settings::SettingsStore, wizards::WizardKind};
+use nima_console::console::{ConsoleApp, ConsoleOptions};
 use nima_machine::{config::RigConfig, messages::LoopState};
+use nima_panels::settings::SettingsStore;
 use nima_simulation::{SimulationPlan, scene::Scene, start};
+use nima_wizards::WizardKind;
 
 use crate::bench::{console_of, press, read, until};
 

@@ -10,12 +10,12 @@ use egui_kittest::{
     Harness, Node,
     kittest::{NodeT as _, Queryable as _},
 };
-use nima_console::console::{
-    ConsoleApp,
+use nima_console::console::ConsoleApp;
+use nima_machine::messages::Tick;
+use nima_panels::{
     settings::SettingsStore,
     tiles::{Arrangement, PanelLayout},
 };
-use nima_machine::messages::Tick;
 use nima_simulation::{SimulationPlan, start_watched};
 use nima_tests::plan;
 

@@ -8,15 +8,13 @@ use egui_kittest::{
     Harness,
     kittest::{NodeT as _, Queryable as _},
 };
-use nima_console::console::{
-    ConsoleApp,
-    tiles::{Panel, PanelLayout},
-};
+use nima_console::console::ConsoleApp;
 use nima_machine::{
     config::{RigConfig, RigFile},
     messages::LoopState,
     rig::{RigSettings, Side},
 };
+use nima_panels::tiles::{Panel, PanelLayout};
 use nima_simulation::start_simulated;
 use nima_testing::real_time::{alone, judged, too_busy};
 use nima_tests::{

@@ -2,8 +2,11 @@
 
 use egui::{Color32, Key, Modifiers, Pos2, Rect, Shape, accesskit::Role as Kind};
 use egui_kittest::kittest::Queryable as _;
-use nima_console::console::{ConsoleOptions, theme, tiles::PanelLayout, wizards::WizardKind};
+use nima_console::console::ConsoleOptions;
+use nima_panels::tiles::PanelLayout;
+use nima_screen::theme;
 use nima_testing::contrast::MIN;
+use nima_wizards::WizardKind;
 
 use crate::{
     bench::{self, Console, console_of, toured, until},

@@ -2,9 +2,9 @@
 
 use egui::accesskit::{Role, Toggled};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use nima_console::console::tiles::Panel;
 use nima_core::impedance::Mode;
 use nima_machine::messages::Tick;
+use nima_panels::tiles::Panel;
 
 use crate::bench::{Console, console_of, press, read, shows, texts, toured, until, wait};
 

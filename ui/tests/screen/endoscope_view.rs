@@ -5,7 +5,6 @@ use egui::{
     Event, Key, Modifiers, MouseWheelSource, MouseWheelUnit, PointerButton, Pos2, Rect, Shape, TouchPhase, pos2, vec2,
 };
 use egui_kittest::kittest::Queryable as _;
-use nima_console::console::tiles::{Panel, PanelLayout};
 use nima_emulation::emulators::{
     EmulatedFault, EmulatorThread,
     endoscope::{EmulatedEndoscope, EndoscopeInstrument},
@@ -14,6 +13,7 @@ use nima_machine::{
     config::{EndoscopeConfig, StereoView},
     messages::LoopState,
 };
+use nima_panels::tiles::{Panel, PanelLayout};
 use nima_simulation::{
     SimulationPlan,
     camera::{camera_of, usual},

@@ -6,10 +6,9 @@ use egui_kittest::{
     Harness,
     kittest::{NodeT as _, Queryable as _},
 };
-use nima_console::{
-    console::{ConsoleApp, roles::Role},
-    language::{Language, pseudo},
-};
+use nima_console::console::ConsoleApp;
+use nima_panels::roles::Role;
+use nima_words::language::{Language, pseudo};
 
 /// Tolerance for rounding, points.
 const SLACK: f32 = 1.5;

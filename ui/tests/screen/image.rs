@@ -13,7 +13,7 @@ use egui::{
 };
 use egui_kittest::{Harness, kittest::Queryable as _};
 use image::GrayImage;
-use nima_console::console::theme;
+use nima_screen::theme;
 
 use crate::bench::comes;
 

@@ -6,11 +6,12 @@ use std::{fs, path::Path};
 
 use egui::{Key, Modifiers, Rect, vec2};
 use egui_kittest::Harness;
-use nima_console::{
-    console::{ConsoleOptions, roles::Role, settings::SettingsStore, theme, tiles::PanelLayout, wizards::WizardKind},
-    language::{self, Language, pseudo},
-};
+use nima_console::console::ConsoleOptions;
 use nima_machine::messages::LoopState;
+use nima_panels::{roles::Role, settings::SettingsStore, tiles::PanelLayout};
+use nima_screen::theme;
+use nima_wizards::WizardKind;
+use nima_words::language::{self, Language, pseudo};
 
 use crate::{
     bench::{self, Console, console_of, pick, press, read, shows, toured, until},

@@ -4,11 +4,11 @@
 use std::{path::Path, time::Duration};
 
 use egui::{Key, Modifiers};
-use nima_console::console::{
-    ConsoleOptions, roles::Role, settings::SettingsStore, tiles::PanelLayout, wizards::WizardKind,
-};
+use nima_console::console::ConsoleOptions;
+use nima_panels::{roles::Role, settings::SettingsStore, tiles::PanelLayout};
 use nima_simulation::SimulationPlan;
 use nima_tests::plan;
+use nima_wizards::WizardKind;
 
 use crate::{
     bench::{Console, comes, console_of, pick, press, read, shown, shows, toured, until, wait},

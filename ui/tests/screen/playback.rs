@@ -13,7 +13,7 @@ use egui_kittest::{
     Harness,
     kittest::{NodeT as _, Queryable as _},
 };
-use nima_console::console::{ConsoleApp, roles::Role};
+use nima_console::console::ConsoleApp;
 use nima_core::task::TaskEvent;
 use nima_machine::{
     config::SchedulingClass,
@@ -21,6 +21,7 @@ use nima_machine::{
     rig::Side,
     runtime::{self, Assembly, Operation, RuntimeClock, TapEnd, TapItem, TapPayload, tap},
 };
+use nima_panels::roles::Role;
 use nima_recording::session::SessionReader;
 use nima_session::objects;
 use nima_simulation::SimulationPlan;

@@ -2,8 +2,9 @@
 
 use egui::{Key, accesskit};
 use egui_kittest::kittest::Queryable as _;
-use nima_console::console::{ConsoleOptions, roles::Role, settings::SettingsStore};
+use nima_console::console::ConsoleOptions;
 use nima_machine::messages::LoopState;
+use nima_panels::{roles::Role, settings::SettingsStore};
 
 use crate::bench::{console_of, press, until};
 

@@ -4,8 +4,9 @@ use std::path::Path;
 
 use egui::{Key, accesskit::Role};
 use egui_kittest::{Harness, kittest::Queryable as _};
-use nima_console::console::{ConsoleApp, settings::SettingsStore, start::RigChoice};
+use nima_console::console::ConsoleApp;
 use nima_machine::messages::LoopState;
+use nima_panels::{rig_choice::RigChoice, settings::SettingsStore};
 
 use crate::{
     bench::{console_of, pick, press, read, toured, until, wait, write_into},

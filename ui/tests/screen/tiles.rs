@@ -12,8 +12,8 @@ use egui_kittest::{
     Harness,
     kittest::{NodeT as _, Queryable as _},
 };
-use nima_console::console::{
-    ConsoleApp,
+use nima_console::console::ConsoleApp;
+use nima_panels::{
     settings::SettingsStore,
     tiles::{Arrangement, LayoutNode, Panel, PanelLayout},
 };

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use egui::{Modifiers, PointerButton, Pos2, accesskit::Role, vec2};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use nima_console::console::tiles::{LayoutNode, LayoutPart, Panel, PanelLayout};
+use nima_panels::tiles::{LayoutNode, LayoutPart, Panel, PanelLayout};
 
 use crate::bench::{Console, console_of, press, read, shows, toured, until};
 

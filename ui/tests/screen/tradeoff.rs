@@ -8,8 +8,8 @@ use std::{
 
 use egui::accesskit::Role;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use nima_console::console::tiles::Panel;
 use nima_machine::messages::LoopState;
+use nima_panels::tiles::Panel;
 use nima_tests::plan;
 use serde_json::Value;
 

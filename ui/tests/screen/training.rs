@@ -2,15 +2,13 @@
 
 use egui::Key;
 use egui_kittest::{Harness, kittest::Queryable as _};
-use nima_console::console::{
-    ConsoleApp,
-    scene3d::extras::{DEPTH, Extras, ROUND, SHADOWS, SHOW},
-};
+use nima_console::console::ConsoleApp;
 use nima_core::impedance::Mode;
 use nima_machine::{
     messages::LoopState,
     rig::{SIDES, Side},
 };
+use nima_screen::scene3d::extras::{DEPTH, Extras, ROUND, SHADOWS, SHOW};
 
 use crate::bench::{console_of, press, read, shown, shown_at, shows, texts, until, wait};
 

@@ -4,11 +4,9 @@ use std::time::{Duration, Instant};
 
 use egui::{Event, Pos2, ViewportId, pos2};
 use egui_kittest::{Harness, kittest::Queryable as _};
-use nima_console::console::{
-    ConsoleApp,
-    scene3d::extras::{CEILING, Extras, FRAMES, SHOW},
-};
+use nima_console::console::ConsoleApp;
 use nima_machine::messages::LoopState;
+use nima_screen::scene3d::extras::{CEILING, Extras, FRAMES, SHOW};
 use nima_testing::real_time::judged;
 
 use crate::bench::{console_of, press, until};

@@ -9,14 +9,14 @@ use egui_kittest::{
     Harness,
     kittest::{NodeT as _, Queryable as _},
 };
-use nima_console::console::{
-    ConsoleApp, ConsoleOptions,
+use nima_console::console::{ConsoleApp, ConsoleOptions};
+use nima_machine::messages::LoopState;
+use nima_panels::{
     roles::Role,
     settings::SettingsStore,
     tiles::{Panel, PanelLayout},
-    wizards::WizardKind,
 };
-use nima_machine::messages::LoopState;
+use nima_wizards::WizardKind;
 
 use crate::{
     bench::{self, console_of, toured, until},

@@ -6,7 +6,7 @@ use std::{
 };
 
 use nalgebra::Isometry3;
-use nima_console::console::{ConsoleOptions, wizards::WizardKind};
+use nima_console::console::ConsoleOptions;
 use nima_emulation::emulators::{
     EmulatorThread,
     endoscope::{BoardHands, EmulatedEndoscope, held},
@@ -19,6 +19,7 @@ use nima_simulation::{
     scene::Scene,
 };
 use nima_tests::plan;
+use nima_wizards::WizardKind;
 
 use crate::{
     bench::{Console, can_press, pick, read, shown, shows, toured, until, wait},

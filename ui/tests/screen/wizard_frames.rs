@@ -135,10 +135,8 @@ fn a_technician_finds_the_tip_sees_the_change_saves_it_and_undoes_it() {
 
 #[test]
 fn a_rig_without_an_arm_of_joints_says_what_to_do() {
-    use nima_console::console::{
-        ConsoleOptions,
-        wizards::{FrameKind, WizardKind},
-    };
+    use nima_console::console::ConsoleOptions;
+    use nima_wizards::{FrameKind, WizardKind};
     for which in FrameKind::ALL.map(WizardKind::Frame) {
         let options = ConsoleOptions { wizard: Some(which), ..ConsoleOptions::default() };
         let mut console = console_of("peg_transfer", SIZE, move |app| app.with_options(options));

@@ -11,12 +11,7 @@ use egui_kittest::{
     Harness,
     kittest::{NodeT as _, Queryable as _},
 };
-use nima_console::console::{
-    ConsoleApp,
-    active_calibrations::ActiveCalibrations,
-    theme,
-    wizards::{Binding, SaveRequest, WizardKind, WizardPageRequest, Wizards},
-};
+use nima_console::console::ConsoleApp;
 use nima_core::calibration::Verdict;
 use nima_machine::{
     config::RigConfig,
@@ -28,9 +23,13 @@ use nima_recording::{
     store::{Store, utc_now},
     tip_force::{DataSet, Selection, kept_model},
 };
+use nima_screen::theme;
 use nima_simulation::{
     SimulationPlan, run_virtual,
     scene::{Flaw, Scene},
+};
+use nima_wizards::{
+    Binding, SaveRequest, WizardKind, WizardPageRequest, Wizards, active_calibrations::ActiveCalibrations,
 };
 
 use crate::{

@@ -12,8 +12,8 @@ use std::{
 
 use egui::{Pos2, Rect, Vec2, pos2, vec2};
 use nalgebra::Vector3;
-use nima_console::console::scene3d::SceneCamera;
 use nima_machine::rig::{SIDES, Side};
+use nima_screen::scene3d::SceneCamera;
 use nima_simulation::scene::Scene;
 
 use crate::{

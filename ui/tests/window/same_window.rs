@@ -6,7 +6,8 @@ use std::time::{Duration, Instant};
 use eframe::App as _;
 use egui::{Rect, accesskit::Role};
 use egui_kittest::{Harness, kittest::Queryable as _};
-use nima_console::console::{ConsoleApp, settings::SettingsStore};
+use nima_console::console::ConsoleApp;
+use nima_panels::settings::SettingsStore;
 use nima_simulation::start_watched;
 
 /// The real window fills the screen of [`crate::server::Xvfb::start`].

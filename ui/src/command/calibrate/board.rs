@@ -5,8 +5,7 @@ use std::path::PathBuf;
 use anyhow::Context as _;
 use clap::Args;
 use nima_endoscope::{Checkerboard, board::BoardCorners};
-
-use crate::command::output;
+use nima_report::output;
 
 #[derive(Debug, Args)]
 pub(in crate::command) struct CalibrateBoardArguments {

@@ -12,8 +12,8 @@ use nima_recording::{
     csv::read_pairs,
     store::{self, utc_now},
 };
-
-use crate::{command::output, report_text::ShortText as _};
+use nima_report::output;
+use nima_words::report_text::ShortText as _;
 
 #[derive(Debug, Args)]
 pub(in crate::command) struct CorrespondenceArguments {

@@ -9,8 +9,8 @@ use nima_core::calibration::{
     gravity::{GravityReport, GravitySettings, ModelKind, fit},
 };
 use nima_recording::{csv::read_poses, store};
-
-use crate::{command::output, report_text::ShortText as _};
+use nima_report::output;
+use nima_words::report_text::ShortText as _;
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum GravityModelChoice {

@@ -9,8 +9,7 @@ use std::path::Path;
 
 use clap::Subcommand;
 use nima_recording::store;
-
-use super::output;
+use nima_report::output;
 
 #[derive(Debug, Subcommand)]
 pub(super) enum CalibrateCommand {

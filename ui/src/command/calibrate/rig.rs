@@ -17,21 +17,18 @@ use nima_machine::{
     runtime::LoopHandle,
 };
 use nima_recording::store::Store;
+use nima_screen::stderr::print_line;
 use nima_simulation::{
     SimulationPlan,
     screen::{PersonTask, Screen},
 };
+use nima_wizards::{Binding, SaveRequest, WizardKind, WizardOutcome, Wizards, active_calibrations::ActiveCalibrations};
 
 use crate::{
     command::rig_args::{Setup, side},
-    console::{
-        active_calibrations::ActiveCalibrations,
-        reader::{ScreenReader, task_of},
-        wizards::{Binding, SaveRequest, WizardKind, WizardOutcome, Wizards},
-    },
+    console::reader::{ScreenReader, task_of},
     emulators::Emulators,
     shutdown::Leave,
-    stderr::print_line,
 };
 
 /// Timeout of a step.

@@ -19,21 +19,16 @@ use nima_machine::{
     runtime::LoopHandle,
 };
 use nima_recording::store::Store;
+use nima_report::output;
+use nima_screen::stderr::print_line;
 use nima_simulation::{SimulationPlan, scene::Scene, screen::Screen};
-
-use crate::{
-    command::{output, rig_args::Setup},
-    console::{
-        active_calibrations::ActiveCalibrations,
-        alarms::sentence,
-        reader::ScreenReader,
-        ready::{ReadyRun, record, subject},
-    },
-    emulators::Emulators,
-    report_text::{ask_text, cause_text, check_name, figure_text, lacks_text},
-    shutdown::Leave,
-    stderr::print_line,
+use nima_wizards::{
+    active_calibrations::ActiveCalibrations,
+    ready::{ReadyRun, record, subject},
 };
+use nima_words::report_text::{ask_text, cause_text, check_name, figure_text, lacks_text, sentence};
+
+use crate::{command::rig_args::Setup, console::reader::ScreenReader, emulators::Emulators, shutdown::Leave};
 
 /// Timeout for the serial numbers of the force sensors.
 const SENSORS_WITHIN: Duration = Duration::from_secs(15);

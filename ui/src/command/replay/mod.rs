@@ -14,14 +14,15 @@ use nima_core::{
     impedance::Mode,
     limits::{DELAY_S, GAIN, Limits},
 };
+use nima_report::output;
+use nima_screen::{recording::PROGRAM, stderr::print_line};
 use nima_session::{
     file::RecordedFile,
     replay::{Differs, Journal, JournalGap, ReplayError, ReplayOutcome, StepsMessages, WhatIfChange, verify},
 };
 use serde::Serialize;
 
-use super::{output, time_range::TimeRange};
-use crate::{recording::PROGRAM, stderr::print_line};
+use super::time_range::TimeRange;
 
 #[derive(Debug, Args)]
 pub(super) struct ReplayArguments {

@@ -22,8 +22,16 @@ use nima_machine::{
     runtime::{self, Assembly, ClockProfile, RuntimeSummary, Tap, VirtualClock},
 };
 use nima_recording::store::WristId;
+use nima_report::output;
+use nima_screen::{
+    link::{LineConnection, RemoteLine},
+    objects::OfSimulation,
+    stderr::print_line,
+};
 use nima_session::sinks::Destination;
 use nima_simulation::{ObjectFeed, SimulationPlan, scene::Scene};
+use nima_wizards::active_calibrations::ActiveCalibrations;
+use nima_words::report_text::{Remedy as _, drift as drift_text};
 use serde::Serialize;
 use serde_json::Value;
 
@@ -33,19 +41,14 @@ use self::{
     status::{StatusLine, Troubles},
     text::as_text,
 };
-use super::{output, remote_follower::ToFollower, rig_args::Setup, run_outcome::Reasons};
+use super::{remote_follower::ToFollower, rig_args::Setup, run_outcome::Reasons};
 use crate::{
     by_itself::{self, ArmLocation, Starter},
-    console::active_calibrations::ActiveCalibrations,
     emulators::Emulators,
     extras::{self, Extra},
     ground_truth::{self, TruthComparison},
-    link::{LineConnection, RemoteLine},
-    objects::OfSimulation,
-    report_text::{Remedy as _, drift as drift_text},
     scoring::RunScorer,
     shutdown::Leave,
-    stderr::print_line,
     watching::WatchArguments,
 };
 

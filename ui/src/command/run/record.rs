@@ -9,6 +9,10 @@ use std::{
 use anyhow::Context as _;
 use nima_endoscope::FrameQueue;
 use nima_machine::runtime::{Tap, VirtualClock};
+use nima_screen::{
+    image_recorder::{ImageRecorder, are_recorded},
+    recording::begin,
+};
 use nima_session::{
     disk_forecast::{DiskForecast, WARN_BEFORE},
     objects::ObjectSource,
@@ -16,13 +20,8 @@ use nima_session::{
     sinks::Destination,
 };
 use nima_simulation::SimulationPlan;
+use nima_words::report_text::disk_full_in;
 use serde::Serialize;
-
-use crate::{
-    image_recorder::{ImageRecorder, are_recorded},
-    recording::begin,
-    report_text::disk_full_in,
-};
 
 /// A recording, if requested; without a file it has only viewers.
 #[derive(Default)]

@@ -10,8 +10,8 @@ use nima_machine::{
     messages::{LoopState, Tick},
     runtime::LoopHandle,
 };
-
-use crate::{report_text::newtons, stderr::print_line};
+use nima_screen::stderr::print_line;
+use nima_words::report_text::newtons;
 
 /// Reports why a device cannot be opened, once per cause.
 #[derive(Default)]

@@ -1,16 +1,16 @@
 //! Availability of each command for the person at this screen, with the reason if it is not available.
 
 use nima_machine::messages::LoopState;
-
-use super::ConsoleApp;
-use crate::console::{
-    commands::{Action, Availability},
+use nima_panels::{
     roles::{Panels, Role},
     settings::ImageSettings,
-    text,
     tiles::Panel,
-    wizards::WizardKind,
 };
+use nima_wizards::WizardKind;
+use nima_words::text;
+
+use super::ConsoleApp;
+use crate::console::commands::{Action, Availability};
 
 /// Content below the top bar.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

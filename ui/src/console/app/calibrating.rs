@@ -6,18 +6,17 @@ use nima_machine::{
     messages::{Command, LoopState},
     rig::{Prompt, Roster, Side},
 };
+use nima_panels::{CalibrationPage, CalibrationWish, calibrations_ui, tiles::Panel as Tile};
+use nima_screen::{theme, widgets::card};
 use nima_simulation::{scene::Scene, screen::Screen};
+use nima_wizards::{
+    Binding, CalibrationTarget, GoOn, SaveRequest, WizardKind, WizardPageRequest, Wizards,
+    overview::{following, overview},
+};
+use nima_words::text;
 
 use super::ConsoleApp;
-use crate::console::{
-    overview::{following, overview},
-    panels::{CalibrationPage, CalibrationWish, calibrations_ui},
-    reader::task_of,
-    text, theme,
-    tiles::Panel as Tile,
-    widgets::card,
-    wizards::{Binding, CalibrationTarget, GoOn, SaveRequest, WizardKind, WizardPageRequest, Wizards},
-};
+use crate::console::reader::task_of;
 
 /// Minimum width of a wizard next to the endoscope image, and the range of the image's width.
 const WIZARD_MIN: f32 = 560.0;
@@ -44,7 +43,7 @@ impl ConsoleApp {
         let opened = if here && self.wizards.open.is_none() {
             Ok(())
         } else {
-            let scene = Scene::load(scene).map_err(|error| crate::report_text::quoted(&error));
+            let scene = Scene::load(scene).map_err(|error| nima_words::report_text::quoted(&error));
             let scene = scene.map(|scene| if side == Side::Left { scene.with_left_hand() } else { scene });
             scene.and_then(|scene| self.restart_in(scene))
         };

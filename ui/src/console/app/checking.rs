@@ -8,17 +8,13 @@ use nima_machine::{
     ready::{PersonRequest, ReadyEntry, ReadyPoint, ReadyState},
     rig::Roster,
 };
+use nima_panels::{CalibrationPage, CalibrationWish, calibrations_ui, tiles::Panel as Tile};
+use nima_screen::{theme, widgets::card};
 use nima_simulation::scene::Scene;
+use nima_wizards::ready::{ReadyRequest, ReadyRun, devices_of, ready_ui, record, subject};
+use nima_words::{report_text::chain, text};
 
 use super::ConsoleApp;
-use crate::console::{
-    chain,
-    panels::{CalibrationPage, CalibrationWish, calibrations_ui},
-    ready::{ReadyRequest, ReadyRun, devices_of, ready_ui, record, subject},
-    text, theme,
-    tiles::Panel as Tile,
-    widgets::card,
-};
 
 /// The scene with a simulated person at the arm.
 const SCENE: &str = "correspondence";
@@ -84,7 +80,7 @@ impl ConsoleApp {
         let scene = self.live.scene.clone();
         let opened = if self.live.rig.devices.is_none() && scene.person.is_none() {
             Scene::load(SCENE)
-                .map_err(|error| crate::report_text::quoted(&error))
+                .map_err(|error| nima_words::report_text::quoted(&error))
                 .and_then(|scene| self.restart_in(scene))
         } else if rests {
             Ok(())
@@ -144,7 +140,7 @@ impl ConsoleApp {
         let saved = self.active.store().map(|store| store.save_check(&record));
         self.checking.saved = Some(match saved {
             Some(Ok(path)) => text::ready::saved(&path),
-            Some(Err(error)) => text::ready::not_saved(&crate::report_text::quoted(&chain(&error))),
+            Some(Err(error)) => text::ready::not_saved(&nima_words::report_text::quoted(&chain(&error))),
             None => text::ready::not_saved(text::calibrations::NO_FOLDER.get()),
         });
         self.checking.valid = None;

@@ -3,14 +3,13 @@
 use std::path::{Path, PathBuf};
 
 use nima_machine::config::{RigConfig, RigFile, own_copy};
+use nima_panels::{
+    devices::{RigEdit, why_not_to_change},
+    rig_choice::RigChoice,
+};
+use nima_words::{report_text::chain, text};
 
 use super::{ConsoleApp, starting::Undo};
-use crate::console::{
-    chain,
-    panels::devices::{RigEdit, why_not_to_change},
-    start::RigChoice,
-    text,
-};
 
 impl ConsoleApp {
     /// Changes the rig file and restarts the machine; shows the result or the reason for a refusal on the panel.

@@ -2,16 +2,18 @@
 
 use egui::{Context, Event, Rect};
 use nima_machine::messages::Command;
+use nima_panels::{
+    CalibrationWish,
+    roles::Role,
+    settings::{ConsoleSettings, ImageSettings},
+    tiles::PanelLayout,
+};
 
 use super::ConsoleApp;
 use crate::console::{
     commands::{Action, Availability, CommandEntry, table},
     help::Help,
     keys,
-    panels::CalibrationWish,
-    roles::Role,
-    settings::{ConsoleSettings, ImageSettings},
-    tiles::PanelLayout,
     undo::ScreenLook,
 };
 

@@ -7,15 +7,12 @@ use std::{
 
 use nima_files::write_atomically;
 use nima_machine::messages::LoopState;
+use nima_panels::roles::Role;
+use nima_playback::Playback;
+use nima_screen::{frames::FrameMeasurement, loop_connection::LoopConnection, run_log::WithScreen, stderr::print_line};
 
 use super::ConsoleApp;
-use crate::{
-    console::{
-        ConsoleOptions, frames::FrameMeasurement, loop_connection::LoopConnection, playback::Playback, roles::Role,
-        run_log::WithScreen,
-    },
-    stderr::print_line,
-};
+use crate::console::ConsoleOptions;
 
 /// Interval between frames while data arrive: about thirty per second.
 const FRAME: Duration = Duration::from_millis(31);

@@ -3,17 +3,13 @@
 use std::time::{Duration, Instant};
 
 use egui::{CentralPanel, Frame, Margin, Panel, ScrollArea, Ui};
+use nima_panels::{CalibrationPage, CalibrationWish, calibrations_ui, tiles::Panel as Tile};
 use nima_recording::store::ReadyRecord;
+use nima_screen::{theme, widgets::card};
+use nima_wizards::overview::{ArmOverview, SetupStep, overview, overview_ui};
+use nima_words::{language::Text, text};
 
 use super::ConsoleApp;
-use crate::console::{
-    overview::{ArmOverview, SetupStep, overview, overview_ui},
-    panels::{CalibrationPage, CalibrationWish, calibrations_ui},
-    text, theme,
-    tiles::Panel as Tile,
-    widgets::card,
-};
-use crate::language::Text;
 
 /// Update interval of the page: a calibration may be saved, or a sensor may connect.
 const AGAIN_EVERY: Duration = Duration::from_secs(2);

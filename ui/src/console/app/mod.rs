@@ -28,44 +28,45 @@ use nima_machine::{
     rig::Side,
     runtime::{self, Assembly, LoopHandle, LoopStartError},
 };
-use nima_simulation::{ObjectFeed, SimulationPlan, scene::Scene, screen::Screen};
-
-use super::{
-    ConsoleOptions,
-    active_calibrations::ActiveCalibrations,
+use nima_panels::{rig_choice::RigChoice, roles::Panels, settings::SettingsStore};
+use nima_playback::{Playback, list::SessionList};
+use nima_screen::{
     alarms::judge,
     canvas::{Canvas, Surface, renderer_of},
-    commands::{Action, Availability},
     frames::FrameMeter,
-    help::Help,
-    keys,
+    link::{RemoteLine, Reopen},
     live::LiveState,
     loop_connection::{LoopConnection, LoopMessage},
-    menu,
+    objects::{self, OfSimulation},
     outbox::Outbox,
-    page::Page,
-    palette::CommandPalette,
-    panels::{TopBarState, top_bar_ui},
-    playback::{Playback, list::SessionList},
-    reader::ScreenReader,
-    roles::Panels,
     run_log::RunLog,
     scene3d::SceneView,
+    theme,
+};
+use nima_simulation::{ObjectFeed, SimulationPlan, scene::Scene, screen::Screen};
+use nima_wizards::{Wizards, active_calibrations::ActiveCalibrations};
+use nima_words::{
+    language::{self, Language},
+    text,
+};
+
+use crate::console::{
+    ConsoleOptions,
+    commands::{Action, Availability},
+    help::Help,
+    keys, menu,
+    page::Page,
+    palette::CommandPalette,
+    reader::ScreenReader,
     screenshots::ScreenshotRun,
     sessions::ConsoleSessions,
-    settings::SettingsStore,
-    start::{RigChoice, StartPage},
-    theme,
+    start::StartPage,
+    top_bar::{TopBarState, top_bar_ui},
     undo::LookHistory,
-    wizards::Wizards,
 };
-use crate::language::{self, Language};
 use crate::{
-    console::text,
     emulators::Emulators,
     extras::{self, Extra},
-    link::{RemoteLine, Reopen},
-    objects::{self, OfSimulation},
 };
 use checking::CheckPage;
 use listing::Listing;
@@ -160,6 +161,7 @@ pub(crate) type StartedLoop = (LoopHandle, Option<ObjectFeed>);
 impl ConsoleApp {
     /// Creates the console for a running loop. Sets fonts and style of the context; draws in 3-D if OpenGL is available.
     pub fn new(cc: &eframe::CreationContext<'_>, handle: LoopHandle, rig: RigConfig, scene: Scene) -> Self {
+        extras::offer();
         theme::apply(&cc.egui_ctx);
         let now = Instant::now();
         let surface = cc.gl.as_deref().and_then(Surface::where_it_pays);
@@ -258,7 +260,7 @@ impl ConsoleApp {
 
     /// Ends the loop and restarts it idle: only the operator engages it. Not possible in a stop or a fault.
     fn restart(&mut self, rig: RigConfig, scene: Scene) -> Result<(), String> {
-        rig.validate().and_then(|()| scene.validate()).map_err(|error| crate::report_text::quoted(&error))?;
+        rig.validate().and_then(|()| scene.validate()).map_err(|error| nima_words::report_text::quoted(&error))?;
         self.take_in();
         if let Some(why) = text::calibrations::closed(self.live.state()) {
             return Err(why.to_owned());
@@ -284,18 +286,17 @@ impl ConsoleApp {
         let rig = self.active.with_checked(rig);
         let plan = SimulationPlan { rig: rig.clone(), scene: scene.clone(), calibrations, engage: false };
         let run = self.page.as_mut().and_then(|page| page.run_mut());
-        let started = match (run, self.simulated_speed) {
-            (Some(run), speed) => {
-                let audiences = self.sessions.blind_audiences(&plan, &run.name());
-                run.start(&plan, speed, (self.sessions.reel(), audiences))
-            }
-            (None, Some(speed)) => {
-                nima_simulation::start_watched(&plan, speed).map_err(|error| crate::report_text::quoted(&error))
-            }
-            (None, None) => {
-                start_recorded(&plan, &mut self.sessions, line).map_err(|error| crate::report_text::quoted(&error))
-            }
-        };
+        let started =
+            match (run, self.simulated_speed) {
+                (Some(run), speed) => {
+                    let audiences = self.sessions.blind_audiences(&plan, &run.name());
+                    run.start(&plan, speed, (self.sessions.reel(), audiences))
+                }
+                (None, Some(speed)) => nima_simulation::start_watched(&plan, speed)
+                    .map_err(|error| nima_words::report_text::quoted(&error)),
+                (None, None) => start_recorded(&plan, &mut self.sessions, line)
+                    .map_err(|error| nima_words::report_text::quoted(&error)),
+            };
         let started = started.map_err(|error| text::calibrations::not_started_again(&error));
         let rough_edges = self.live.rough_edges;
         self.live = LiveState::new(rig, scene);

@@ -2,18 +2,20 @@
 
 use std::path::Path;
 
-use nima_simulation::ObjectFeed;
-
-use super::{ConsoleApp, WARM_UP};
-use crate::language;
-use crate::{
-    console::{
-        ConsoleOptions, active_calibrations::ActiveCalibrations, exports, frames::FrameMeter, screenshot,
-        screenshots::ScreenshotRun, sessions::ConsoleSessions, settings::SettingsStore, wizards::Wizards,
-    },
+use nima_panels::settings::SettingsStore;
+use nima_screen::{
+    exports,
+    frames::FrameMeter,
     link::{LineConnection, Reopen},
+    screenshot,
     stderr::print_line,
 };
+use nima_simulation::ObjectFeed;
+use nima_wizards::{Wizards, active_calibrations::ActiveCalibrations};
+use nima_words::language;
+
+use super::{ConsoleApp, WARM_UP};
+use crate::console::{ConsoleOptions, screenshots::ScreenshotRun, sessions::ConsoleSessions};
 
 impl ConsoleApp {
     /// Applies the options of the command line.

@@ -6,13 +6,12 @@
 use egui::Ui;
 use nima_machine::{config::RigConfig, messages::LoopState};
 use nima_simulation::scene::Scene;
+use nima_words::{report_text::chain, text};
 
 use super::ConsoleApp;
 use crate::console::{
-    chain,
     page::{ClosedRun, PageContext, PageRequest, PageRun, PreparedRun, Room, RunBreak},
     start::is_real,
-    text,
 };
 
 impl ConsoleApp {

@@ -5,15 +5,12 @@
 use std::path::Path;
 
 use egui::{CentralPanel, Stroke, StrokeKind, Ui};
+use nima_panels::roles::role_ui;
+use nima_playback::{FRAME, Playback, bar_ui, both_ui, head_ui};
+use nima_screen::{loop_connection::LoopConnection, theme, widgets::weak};
+use nima_words::text;
 
 use super::ConsoleApp;
-use crate::console::{
-    loop_connection::LoopConnection,
-    playback::{FRAME, Playback, bar_ui, both_ui, head_ui},
-    roles::role_ui,
-    text, theme,
-    widgets::weak,
-};
 
 impl ConsoleApp {
     /// Shows this session; the machine keeps running.

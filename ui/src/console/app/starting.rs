@@ -9,16 +9,15 @@ use std::{
 
 use egui::{Key, Modifiers, Ui};
 use nima_machine::config::RigConfig;
+use nima_panels::{rig_choice::RigChoice, roles::Role};
 use nima_simulation::scene::Scene;
+use nima_words::{report_text::chain, text};
 
 use super::ConsoleApp;
 use crate::{
     console::{
-        chain,
         reader::ScreenReader,
-        roles::Role,
-        start::{RigChoice, StartInputs, WelcomeChoice, drawn_anew},
-        text,
+        start::{StartInputs, WelcomeChoice, drawn_anew},
     },
     emulators::Emulators,
 };
@@ -182,7 +181,7 @@ impl ConsoleApp {
             Err(error) => {
                 return self
                     .start
-                    .notify(Some(text::start::not_started(&crate::report_text::quoted(&chain(&error)), None)));
+                    .notify(Some(text::start::not_started(&nima_words::report_text::quoted(&chain(&error)), None)));
             }
         };
         // End the old loop first: a rig must have only one controller, and two sets of emulators cannot use the same

@@ -1,9 +1,9 @@
 //! Content below the top bar: an open page, a recorded session, or the views of the machine.
 
 use egui::Ui;
+use nima_panels::roles::{Wishes, role_ui};
 
 use super::{ConsoleApp, availability::ActivePage};
-use crate::console::roles::{Wishes, role_ui};
 
 impl ConsoleApp {
     pub(super) fn page_layout(&mut self, ui: &mut Ui) {

@@ -1,12 +1,12 @@
 //! State of the window, for tests and callers.
 
 use nima_machine::{config::RigConfig, messages::Tick};
+use nima_panels::{roles::Role, settings::ConsoleSettings};
+use nima_screen::scene3d::extras::Extras;
 use nima_session::objects::ObjectStates;
+use nima_wizards::active_calibrations::ActiveCalibrations;
 
 use super::ConsoleApp;
-use crate::console::{
-    active_calibrations::ActiveCalibrations, roles::Role, scene3d::extras::Extras, settings::ConsoleSettings,
-};
 
 impl ConsoleApp {
     /// Returns the settings that are saved between sessions, for tests.

@@ -1,8 +1,7 @@
 //! Keys of the commands.
 
 use egui::{Key, Modifiers};
-
-use super::super::text;
+use nima_words::text;
 
 /// Modifiers of a key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

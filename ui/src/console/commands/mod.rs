@@ -6,14 +6,13 @@
 mod keys;
 mod table;
 
-use super::{
+use nima_panels::{
     roles::Role,
-    scene3d::extras::MenuSwitch,
-    text,
     tiles::{Arrangement, Panel},
-    wizards::WizardKind,
 };
-use crate::language::Language;
+use nima_screen::scene3d::extras::MenuSwitch;
+use nima_wizards::WizardKind;
+use nima_words::{language::Language, text};
 
 pub(in crate::console) use self::keys::{SIZE, UNDO};
 pub use self::{

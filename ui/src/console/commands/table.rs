@@ -1,19 +1,20 @@
 use std::sync::LazyLock;
 
 use egui::Key;
+use nima_panels::{
+    roles::Role,
+    tiles::{Arrangement, Panel},
+};
+use nima_screen::scene3d::extras::MenuSwitch;
+use nima_wizards::WizardKind;
+use nima_words::{
+    language::{self, Language, Text},
+    report_text::within,
+    text::{self, commands as names},
+};
 
 use super::{Action, CommandEntry, CommandPlace, KeyModifiers, SIZE, SIZES_PERCENT, Stroke, UNDO};
-use crate::console::{
-    roles::Role,
-    scene3d::extras::MenuSwitch,
-    text,
-    text::commands as names,
-    tiles::{Arrangement, Panel},
-    wizards::WizardKind,
-};
 use crate::extras::{self, Extra};
-use crate::language::{self, Language, Text};
-use crate::report_text::within;
 
 type CommandKeys = &'static [Stroke];
 

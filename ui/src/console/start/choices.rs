@@ -6,25 +6,11 @@ use std::{
 };
 
 use nima_machine::config::RigConfig;
+use nima_panels::rig_choice::{RigChoice, has_real_arm};
 use nima_simulation::scene::Scene;
-use serde::{Deserialize, Serialize};
+use nima_words::text;
 
-use crate::{console::text, extras};
-
-/// A rig and a scene, by name or path.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct RigChoice {
-    /// Name of an embedded rig, or the path of a file.
-    pub rig: String,
-    /// Name of a built-in scene, or the path of a file.
-    pub scene: String,
-}
-
-impl Default for RigChoice {
-    fn default() -> Self {
-        Self { rig: "simulated".to_owned(), scene: "peg_transfer".to_owned() }
-    }
-}
+use crate::extras;
 
 /// Returns the scene with its hidden parts at new places, so that a trainee cannot learn them.
 pub(crate) fn drawn_anew(scene: Scene) -> Scene {
@@ -32,28 +18,6 @@ pub(crate) fn drawn_anew(scene: Scene) -> Scene {
     let lot = since.as_secs().wrapping_mul(1_000_003).wrapping_add(u64::from(since.subsec_nanos()));
     // Six digits, so that a person can write the seed down.
     scene.drawn_anew(lot % 1_000_000)
-}
-
-/// Number of choices that are remembered.
-const RECENT_MAX: usize = 5;
-
-impl RigChoice {
-    /// Selects another rig. The scene stays, unless it was specific to the previous rig, or the new one has a real arm, for
-    /// which no scene is chosen.
-    pub(super) fn with_rig(&self, rig: &str) -> Self {
-        let default = |rig: &str| RigConfig::load(rig).map(|rig| Scene::default_for(&rig)).ok();
-        let untouched = default(&self.rig) == Some(self.scene.as_str());
-        let own = untouched || RigConfig::load(rig).is_ok_and(|rig| has_real_arm(&rig));
-        let scene = default(rig).filter(|_| own).map_or_else(|| self.scene.clone(), str::to_owned);
-        Self { rig: rig.to_owned(), scene }
-    }
-
-    /// Puts this choice in front of earlier ones.
-    pub(in crate::console) fn remember(&self, recent: &mut Vec<Self>) {
-        recent.retain(|choice| choice != self);
-        recent.insert(0, self.clone());
-        recent.truncate(RECENT_MAX);
-    }
 }
 
 /// One entry of a list.
@@ -134,11 +98,6 @@ fn rig((key, own): (String, bool)) -> ChoiceEntry {
     }
 }
 
-/// Returns whether the arm is real: then the instrument works on a real field, not in a scene.
-pub(in crate::console) fn has_real_arm(rig: &RigConfig) -> bool {
-    rig.devices.as_ref().is_some_and(|devices| !devices.emulated)
-}
-
 fn scene((key, own): (String, bool)) -> ChoiceEntry {
     match Scene::load(&key) {
         Ok(scene) => {
@@ -149,7 +108,7 @@ fn scene((key, own): (String, bool)) -> ChoiceEntry {
 }
 
 fn unusable(key: String, error: &dyn std::error::Error, own: bool) -> ChoiceEntry {
-    let about = text::start::unusable(&crate::console::chain(error));
+    let about = text::start::unusable(&nima_words::report_text::chain(error));
     ChoiceEntry { name: key.clone(), key, about, usable: false, own, real_arm: false }
 }
 

@@ -10,9 +10,11 @@ use egui::{Button, Context, Label, TextEdit, Ui, vec2};
 use nima_core::calibration::frames::RigChange;
 use nima_endoscope::{Address, DecodedImage, EndoscopeFeed, FeedSnapshot, FrameHealth};
 use nima_machine::config::{EndoscopeConfig, RigConfig, change_rig};
+use nima_panels::endoscope_view::fault_text;
+use nima_screen::{double_buffer::DoubleBuffer, widgets::small};
+use nima_words::{report_text::chain, text};
 
 use super::{answer_ui, trouble_ui};
-use crate::console::{chain, double_buffer::DoubleBuffer, endoscope_view::fault_text, text, widgets::small};
 
 /// Delay between the last key press and the test of an address.
 const TYPED: Duration = Duration::from_millis(500);

@@ -3,8 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use nima_machine::config::RigFile;
-
-use crate::console::{chain, text};
+use nima_words::{report_text::chain, text};
 
 /// Writes a copy of the rig `from` under a new name; returns its path.
 pub(super) fn make(folder: Option<&Path>, from: &str, name: &str) -> Result<PathBuf, String> {

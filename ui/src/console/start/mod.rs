@@ -11,23 +11,21 @@ use std::path::{Path, PathBuf};
 use egui::{Align, Button, CentralPanel, Frame, Label, Layout, Margin, RichText, ScrollArea, TextEdit, Ui, vec2};
 use nima_devices::discovery::{DiscoveryDiagnosis, FoundDevice, PluggedDevices, TestOutcome};
 use nima_machine::{config::RigConfig, messages::LoopState};
+use nima_panels::rig_choice::RigChoice;
+use nima_screen::{
+    live::LiveState,
+    picking::Picking,
+    theme,
+    widgets::{Sign, card, next_button, sign_ui, small, weak},
+};
+use nima_words::text;
 
-pub use choices::RigChoice;
 pub(crate) use choices::drawn_anew;
-pub(in crate::console) use choices::has_real_arm;
 use choices::{ChoiceEntry, Lists};
 use endoscope::EndoscopeCard;
-pub(crate) use looking::BackgroundQuery;
 use looking::{DeviceAnswers, PluggedIn};
 use welcome::Welcome;
 pub(in crate::console) use welcome::WelcomeChoice;
-
-use super::{
-    live::LiveState,
-    picking::Picking,
-    text, theme,
-    widgets::{Sign, card, next_button, sign_ui, small, weak},
-};
 
 /// Height of a button that takes a whole row.
 const ROW: f32 = 40.0;
@@ -306,7 +304,7 @@ impl StartPage {
         let button = ui.add_enabled(!checking, button.min_size(vec2(ui.available_width(), 32.0)));
         if button.on_hover_text(text::start::CHECK_HOVER.get()).clicked() {
             let ctx = ui.ctx().clone();
-            self.answers.check(&ctx, rig);
+            looking::check(&mut self.answers, &ctx, rig);
         }
         for DiscoveryDiagnosis { name, outcome, .. } in self.answers.found().into_iter().flatten() {
             match outcome {

@@ -1,12 +1,11 @@
 //! The page for newcomers: purpose, restrictions, and three ways to continue. The running rig is visible around it.
 
 use egui::{Align2, Button, Context, Label, Rect, RichText, Window, vec2};
-
-use crate::console::{
-    text::start as words,
+use nima_screen::{
     theme,
     widgets::{next_button, small},
 };
+use nima_words::text::start as words;
 
 /// Ways to continue.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -2,8 +2,7 @@
 
 use nima_core::safety::InterlockState;
 use nima_machine::messages::LoopState;
-
-use crate::{language::word, report_text::Remedy as _};
+use nima_words::{language::word, report_text::Remedy as _};
 
 /// Returns the cause and remedy, sent next to the state's code; empty if the state needs no action.
 pub(super) fn trouble_of(state: LoopState) -> String {

@@ -11,17 +11,13 @@ use nima_bridges::{
 use nima_endoscope::{CompressedFrame, FrameQueue, LatestFrame, jpeg};
 use nima_machine::{messages::Fault, rig::Side};
 use nima_score::TaskFile;
+use nima_screen::{current_session::WatchStatus, recording::PROGRAM, stderr::print_line};
 use nima_session::sinks::Audience;
 use nima_simulation::SimulationPlan;
+use nima_words::report_text::Remedy as _;
 
 use super::Extra;
-use crate::{
-    console::current_session::WatchStatus,
-    recording::PROGRAM,
-    report_text::Remedy as _,
-    stderr::print_line,
-    watching::{INSTALLED, Show, WatchServer},
-};
+use crate::watching::{INSTALLED, Show, WatchServer};
 use bridge_text::trouble_of;
 
 pub(super) struct Bridges;

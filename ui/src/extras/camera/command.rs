@@ -13,10 +13,13 @@ use nima_camera::{BoardSight, CameraSession, Grey, LensReport, Terms, ViewOutcom
 use nima_core::calibration::Verdict;
 use nima_endoscope::{Address, Checkerboard, EndoscopeFeed, FrameFault, FrameHealth, board::BoardCorners, jpeg};
 use nima_machine::config::{RigFile, change_rig};
+use nima_report::output;
+use nima_screen::stderr::print_line;
+use nima_words::report_text::ShortText as _;
 use serde_json::json;
 
 use super::{camera_calibration::changes, report_text as camera};
-use crate::{command::output, report_text::ShortText as _, shutdown::Leave, stderr::print_line};
+use crate::shutdown::Leave;
 
 /// Maximum number of images in a folder.
 const IMAGES: usize = 500;

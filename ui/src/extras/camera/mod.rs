@@ -7,9 +7,9 @@ mod screen;
 mod text;
 
 use clap::{ArgMatches, Subcommand};
+use nima_wizards::Wizard;
 
 use super::{Extra, given};
-use crate::console::wizards::Wizard;
 use screen::CameraWizard;
 
 pub(super) struct CameraExtra;

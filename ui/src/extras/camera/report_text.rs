@@ -3,8 +3,7 @@
 use nima_camera::{
     CameraCause, DetectionFailure, LeftOut, LensSide, PlaceError, PlaceLack, Region, ViewOutcome, ViewRequest,
 };
-
-use crate::language::{text_format, word};
+use nima_words::language::{text_format, word};
 
 pub(super) fn camera_cause(cause: &CameraCause) -> String {
     match cause {

@@ -1,8 +1,7 @@
 //! The Camera wizard.
 
 use nima_endoscope::Bend;
-
-use crate::language::{Text, text_format, word};
+use nima_words::language::{Text, text_format, word};
 
 pub(super) const STEP_CHECK_HOVER: Text =
     Text::of("Checks the endoscope image and the board", "Prüft Endoskopbild und Tafel");

@@ -12,21 +12,17 @@ use nima_department::{
     Authority, FoundRig, MachineIdentity, MachineRole, RecordStep, RemoteRig, RigRecording, find, find_at,
 };
 use nima_machine::config::RigConfig;
+use nima_panels::settings::SettingsStore;
 use nima_recording::store::{Store, utc_of};
+use nima_report::output;
+use nima_screen::stderr::print_line;
 use nima_simulation::scene::Scene;
 use serde::Serialize;
 
 use crate::{
-    command::{
-        department::{DepartmentCommand, MonitorArguments, RecordArguments, RigSelection, RigsArguments},
-        output,
-    },
-    console::{
-        monitor::{self, MonitorMessage, MonitorOptions, MonitorSender},
-        settings::SettingsStore,
-    },
+    command::department::{DepartmentCommand, MonitorArguments, RecordArguments, RigSelection, RigsArguments},
+    console::monitor::{self, MonitorMessage, MonitorOptions, MonitorSender},
     shutdown::Leave,
-    stderr::print_line,
 };
 
 /// Default port of a shared rig.

@@ -5,14 +5,13 @@ mod engine;
 use std::net::SocketAddr;
 
 use nima_endoscope::FrameQueue;
+use nima_screen::{current_session::WatchStatus, stderr::print_line};
 use nima_session::sinks::Audience;
 use nima_simulation::SimulationPlan;
 
 use super::Extra;
 use crate::{
     command::department::DepartmentCommand,
-    console::current_session::WatchStatus,
-    stderr::print_line,
     watching::{Show, WatchServer},
 };
 

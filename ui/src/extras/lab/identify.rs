@@ -12,6 +12,7 @@ use nima_core::impedance::{DegreeChoice, IncrementReading, MAX_DEGREE, Mode, Own
 use nima_files::write_atomically;
 use nima_machine::rig::Side;
 use nima_recording::csv::{AXIS_NAMES, CsvRecording};
+use nima_report::output;
 use nima_study::replay::{ReplayFigures, ReplayOptions, ReplayRow, ReplaySummary, replay};
 use serde::{
     Serialize,
@@ -19,7 +20,7 @@ use serde::{
 };
 
 use super::recording_input;
-use crate::command::{output, rig_args::side};
+use crate::command::rig_args::side;
 
 #[derive(Debug, Args)]
 pub(super) struct IdentifyArguments {

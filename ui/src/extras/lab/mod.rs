@@ -9,12 +9,10 @@ mod study;
 mod text;
 
 use clap::{ArgMatches, Subcommand};
+use nima_panels::{StripUi, Tile};
 
 use super::{Extra, given};
-use crate::{
-    console::panels::{StripUi, Tile},
-    ground_truth::TruthComparison,
-};
+use crate::ground_truth::TruthComparison;
 
 pub(super) struct Lab;
 

@@ -1,8 +1,7 @@
 //! The Trade-off panel (computing time versus accuracy), and the strip below the gain slider.
 
 use nima_study::stability_map::StabilityMapVerdict;
-
-use crate::language::{Text, text_format, word};
+use nima_words::language::{Text, text_format, word};
 
 pub(super) const CANCELLED: Text =
     Text::of("Cancelled. The earlier results were kept.", "Abgebrochen. Die früheren Ergebnisse bleiben.");

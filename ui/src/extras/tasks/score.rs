@@ -10,15 +10,14 @@ use anyhow::{Context as _, bail};
 use clap::Args;
 use nima_files::{csv_cell, write_atomically};
 use nima_recording::session::SessionReader;
+use nima_report::output;
 use nima_score::{MEASURES, Measure, Score, TaskFile, trial_score};
+use nima_screen::recording::SCENE;
 use nima_session::{objects, plot_channels};
 use nima_simulation::scene::Scene;
 use serde::Serialize;
 
-use crate::{
-    command::{output, time_range::TimeRange},
-    recording::SCENE,
-};
+use crate::command::time_range::TimeRange;
 
 /// The task of a session without recorded objects.
 const FREE: &str = "name = 'Free'\nkind = 'free'\ntime_limit_s = 1200.0";

@@ -4,11 +4,11 @@ use std::path::PathBuf;
 
 use clap::Args;
 use nima_machine::config::SchedulingClass;
+use nima_screen::stderr::print_line;
 
 use super::network;
 use crate::{
     command::{rig_args::Setup, run},
-    stderr::print_line,
     watching::WatchArguments,
 };
 

@@ -11,6 +11,7 @@ use nima_network::{
     endpoint::{ControlRole, Endpoint, LinkState},
     figures::{DroppedCounts, SessionMeasurements},
 };
+use nima_screen::link::{LineConnection, RemoteLine};
 use serde::Serialize;
 
 use super::{
@@ -18,7 +19,6 @@ use super::{
     screen::link_ui,
     text,
 };
-use crate::link::{LineConnection, RemoteLine};
 
 /// Interval of the reports, s.
 const REPORT_EVERY_S: f64 = 0.1;

@@ -5,9 +5,9 @@ use nima_network::{
     endpoint::LinkState,
     figures::SessionMeasurements,
 };
+use nima_words::language::{text_format, word};
 
 use super::line::LineReport;
-use crate::language::{text_format, word};
 
 /// Returns the state, a clause without a full stop.
 pub(super) fn state_text(state: LinkState) -> String {

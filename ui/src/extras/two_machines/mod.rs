@@ -9,9 +9,9 @@ mod screen;
 mod text;
 
 use clap::{ArgMatches, Subcommand};
+use nima_screen::link::ArmLink;
 
 use super::{Extra, given};
-use crate::link::ArmLink;
 
 pub(super) struct TwoMachines;
 

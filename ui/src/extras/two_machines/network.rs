@@ -13,10 +13,10 @@ use nima_network::{
     keys::{NetworkKeys, Peers, PublicKey},
     stream::StreamSettings,
 };
+use nima_screen::link::{ArmLink, RemoteLine};
 use nima_simulation::scene::Scene;
 
 use super::line::NetworkLine;
-use crate::link::{ArmLink, RemoteLine};
 
 /// The connection to a machine where `nima follower` runs.
 pub(super) struct FollowerNetwork;

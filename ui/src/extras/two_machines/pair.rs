@@ -10,12 +10,10 @@ use std::{
 use anyhow::Context as _;
 use clap::Args;
 use nima_network::pairing::{Attempts, Pairing};
+use nima_report::output;
 
 use super::network;
-use crate::{
-    command::{output, run::positive_seconds},
-    shutdown::Leave,
-};
+use crate::{command::run::positive_seconds, shutdown::Leave};
 
 #[derive(Debug, Args)]
 pub(super) struct PairArguments {

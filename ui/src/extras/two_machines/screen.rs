@@ -2,16 +2,16 @@
 
 use egui::{Button, RichText, Ui, vec2};
 use nima_network::endpoint::ControlRole;
+use nima_screen::{
+    theme,
+    widgets::{figure, small},
+};
+use nima_words::report_text::sentence;
 
 use super::{
     line::{LineReport, LineWish, NetworkDoor},
     link_text::{link_rows, link_trouble},
     text,
-};
-use crate::console::{
-    alarms::sentence,
-    theme,
-    widgets::{figure, small},
 };
 
 /// Draws the state of a link. It sends requests to the link; control of a follower does not concern the loop.
@@ -90,7 +90,8 @@ mod tests {
     };
 
     use super::*;
-    use crate::{extras::two_machines::line::NetworkLine, link::LineConnection as _};
+    use crate::extras::two_machines::line::NetworkLine;
+    use nima_screen::link::LineConnection as _;
 
     /// A follower and two consoles over loopback.
     struct Three {

@@ -1,6 +1,6 @@
 //! The Link panel.
 
-use crate::language::Text;
+use nima_words::language::Text;
 
 pub(super) const NOTHING_YET: Text =
     Text::of("The link has not reported yet", "Die Verbindung hat noch nichts gemeldet");

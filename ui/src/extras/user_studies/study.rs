@@ -12,16 +12,16 @@ use nima_machine::{
 };
 use nima_recording::store::utc_now;
 use nima_score::TaskFile;
+use nima_screen::{objects::OfSimulation, recording};
 use nima_session::sinks::Destination;
 use nima_simulation::{ObjectFeed, SimulationPlan, scene::Scene};
 use nima_user_study::{
     Condition, Mistakes, RunningTrial, StudyError, StudyFile, StudyStep, TrialEnding, TrialId, TrialPhase, UserStudy,
     simulated::SimulatedHand,
 };
+use nima_words::report_text::Remedy as _;
 
-use crate::{
-    extras::tasks::scoring::LiveScorer, objects::OfSimulation, recording, report_text::Remedy as _, shutdown::Leave,
-};
+use crate::{extras::tasks::scoring::LiveScorer, shutdown::Leave};
 
 /// Names of the templates.
 pub(super) const READY: [&str; 2] = ["paper", "short"];

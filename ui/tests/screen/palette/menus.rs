@@ -2,16 +2,14 @@
 
 use egui::{Key, accesskit::Role as Kind};
 use egui_kittest::kittest::Queryable as _;
-use nima_console::{
-    console::{
-        commands::{Action, SIZES_PERCENT},
-        roles::Role,
-        scene3d::extras::{Extras, MenuSwitch, SHOW},
-        settings::{ConsoleSettings, ImageSettings},
-        tiles::{Arrangement, Panel, PanelLayout},
-    },
-    language::Language,
+use nima_console::console::commands::{Action, SIZES_PERCENT};
+use nima_panels::{
+    roles::Role,
+    settings::{ConsoleSettings, ImageSettings},
+    tiles::{Arrangement, Panel, PanelLayout},
 };
+use nima_screen::scene3d::extras::{Extras, MenuSwitch, SHOW};
+use nima_words::language::Language;
 
 use super::{alike, begin, by_key, choose, entry, expect, rows};
 use crate::bench::{Console, pick, press, shows};

@@ -12,11 +12,9 @@ use std::path::Path;
 
 use egui::{Key, Modifiers, accesskit::Role as Kind};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use nima_console::console::{
-    commands::{Action, CommandEntry, table},
-    roles::Role,
-};
+use nima_console::console::commands::{Action, CommandEntry, table};
 use nima_machine::messages::LoopState;
+use nima_panels::roles::Role;
 
 use crate::bench::{Console, console_of, press, shows, texts, toured, until, write_into};
 

@@ -1,8 +1,9 @@
 //! Commands of a part of the window: the endoscope image, a recorded session.
 
 use egui::Key;
-use nima_console::console::{commands::Action, wizards::WizardKind};
+use nima_console::console::commands::Action;
 use nima_machine::config::{EndoscopeConfig, StereoView};
+use nima_wizards::WizardKind;
 
 use super::{
     SIZE, alike, by_key, choose, entry, rows,

@@ -3,9 +3,9 @@
 use nima_console::console::{
     ConsoleOptions,
     commands::{Action, CommandEntry, table},
-    roles::Role,
 };
 use nima_machine::messages::LoopState;
+use nima_panels::roles::Role;
 
 use super::{begin, choose, entry, rows, titles};
 use crate::{

@@ -2,8 +2,10 @@
 
 use egui::accesskit::Role as Kind;
 use egui_kittest::kittest::Queryable as _;
-use nima_console::console::{ConsoleApp, commands::Action, scene3d::extras::MenuSwitch, tiles::Panel};
+use nima_console::console::{ConsoleApp, commands::Action};
 use nima_machine::messages::LoopState;
+use nima_panels::tiles::Panel;
+use nima_screen::scene3d::extras::MenuSwitch;
 use nima_tests::plan;
 
 use super::{SIZE, begin, by_key, choose, rows};

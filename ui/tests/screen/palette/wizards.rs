@@ -2,9 +2,10 @@
 
 use egui::accesskit::Role as Kind;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use nima_console::console::{commands::Action, wizards::WizardKind};
+use nima_console::console::commands::Action;
 use nima_machine::messages::LoopState;
 use nima_testing::real_time::{alone, judged};
+use nima_wizards::WizardKind;
 
 use super::{alike, begin, choose, entry, expect, rows};
 use crate::bench::{Console, pick, shows, until};

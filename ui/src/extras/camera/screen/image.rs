@@ -3,11 +3,9 @@
 use egui::{Align2, Color32, Pos2, Rect, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2};
 use nima_camera::{BoardSight, CELLS, CameraCoverage};
 use nima_endoscope::{Checkerboard, DecodedImage};
+use nima_screen::{double_buffer::DoubleBuffer, theme, widgets::fitting};
 
-use crate::{
-    console::{double_buffer::DoubleBuffer, theme, widgets::fitting},
-    extras::camera::text as texts,
-};
+use crate::extras::camera::text as texts;
 
 /// Width of the map, points.
 pub(super) const MAP_WIDTH: f32 = 190.0;

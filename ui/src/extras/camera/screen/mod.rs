@@ -21,7 +21,13 @@ use nima_machine::{
     messages::Tick,
     rig::Prompt,
 };
+use nima_screen::widgets::card;
 use nima_simulation::camera::lens_of;
+use nima_wizards::{
+    Binding, SaveRequest, Wizard,
+    frame::{WizardFrame, WizardRequest, WizardStep},
+};
+use nima_words::text;
 
 use self::{
     detector::{BoardImage, Detector},
@@ -32,14 +38,6 @@ use self::{
 use super::{
     camera_calibration::{FoundPlace, changes, undone},
     report_text, text as texts,
-};
-use crate::console::{
-    text,
-    widgets::card,
-    wizards::{
-        Binding, SaveRequest, Wizard,
-        frame::{WizardFrame, WizardRequest, WizardStep},
-    },
 };
 
 const STEPS: [WizardStep; 5] = [

@@ -4,25 +4,23 @@ use egui::{Button, DragValue, Id, RichText, TextEdit, Ui};
 use nima_camera::{LensReport, PlaceLack, ViewRequest};
 use nima_core::calibration::Verdict;
 use nima_endoscope::board::SQUARE_M;
+use nima_screen::{
+    steady_button::{PATIENT_S, SteadyButton},
+    theme,
+    widgets::{card, figure, small},
+};
+use nima_wizards::{
+    checks::{check_line, switch_ui},
+    drawings::progress,
+    report::verdict_line,
+};
+use nima_words::{language::Text, text};
 
 use super::{
     CameraWizard,
     image::{MAP_WIDTH, coverage_ui, image_ui},
 };
-use crate::{
-    console::{
-        steady_button::{PATIENT_S, SteadyButton},
-        text, theme,
-        widgets::{card, figure, small},
-        wizards::{
-            checks::{check_line, switch_ui},
-            drawings::progress,
-            report::verdict_line,
-        },
-    },
-    extras::camera::{report_text, text as texts},
-    language::Text,
-};
+use crate::extras::camera::{report_text, text as texts};
 
 /// Maximum image width, points: with the map next to it and the instruction above it, it fits a window of 1280 x 720.
 const IMAGE: f32 = 500.0;
@@ -49,7 +47,7 @@ impl CameraWizard {
             });
             match self.board() {
                 Ok(_) => ui.label(small(texts::PRINT.get())),
-                Err(error) => ui.label(texts::no_board(&crate::report_text::quoted(&error))),
+                Err(error) => ui.label(texts::no_board(&nima_words::report_text::quoted(&error))),
             };
             let keeps = switch_ui(
                 ui,

@@ -10,10 +10,11 @@ use nima_network::{
     impairment,
     relay::{Relay, RelaySettings},
 };
+use nima_report::output;
 use serde::Deserialize;
 
 use super::EmulatorEndpoint;
-use crate::{command::output, extras::two_machines::network::address, shutdown::Leave};
+use crate::{extras::two_machines::network::address, shutdown::Leave};
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields, default)]

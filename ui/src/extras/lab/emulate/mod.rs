@@ -17,11 +17,13 @@ use std::{io::BufRead as _, sync::mpsc::RecvTimeoutError, time::Duration};
 use anyhow::{Context as _, bail};
 use clap::Args;
 use nima_emulation::emulators::{ALONE, EmulatedFault, EmulatorSettings, EmulatorThread};
+use nima_report::output;
+use nima_screen::stderr::print_line;
 use serde::Serialize;
 
 #[cfg(unix)]
 use crate::command::rig_args::default_scene;
-use crate::{command::output, shutdown::Leave, stderr::print_line};
+use crate::shutdown::Leave;
 
 #[derive(Debug, Args)]
 pub(super) struct EmulateArguments {

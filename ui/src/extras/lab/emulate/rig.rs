@@ -8,9 +8,11 @@ use std::time::Duration;
 use anyhow::{Context as _, bail};
 use nima_emulation::emulated::{EmulatedRig, GroundTruth, HandFrame};
 use nima_machine::{config::RigConfig, rig::Side};
+use nima_report::output;
+use nima_screen::stderr::print_line;
 use nima_simulation::{scene::Scene, screen::Screen};
 
-use crate::{command::output, extras::lab::ground_truth::TrueForce, ground_truth::now_s, stderr::print_line};
+use crate::{extras::lab::ground_truth::TrueForce, ground_truth::now_s};
 
 pub(super) fn run(rig: &str, scene: &str, until_input_ends: bool) -> anyhow::Result<()> {
     let rig = RigConfig::load(rig)?;

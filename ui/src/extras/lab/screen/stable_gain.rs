@@ -2,12 +2,10 @@
 //! is not, for the current mode, delay and contact stiffness.
 
 use egui::{Rect, Sense, Stroke, Ui, pos2, vec2};
+use nima_screen::{live::LiveState, theme, widgets::small};
 use nima_study::stability_map::{StabilityMap, StabilityMapVerdict};
 
-use crate::{
-    console::{live::LiveState, theme, widgets::small},
-    extras::lab::text,
-};
+use crate::extras::lab::text;
 
 const HEIGHT: f32 = 8.0;
 /// Number of segments of the strip.

@@ -11,16 +11,18 @@ use std::{
 
 use egui::{Button, ProgressBar, Ui, vec2};
 use nima_machine::config::RigConfig;
+use nima_panels::Tile;
+use nima_screen::{live::LiveState, outbox::Outbox, widgets::small};
 use nima_study::tradeoff::{
     ParameterChoice, PlanMethod, SourceFigures, SweepError, SweepPoint, SweepStudy, TradeoffPlan, TradeoffSource, sweep,
 };
+use nima_words::{
+    report_text::{mode_meaning, mode_name, three_digits},
+    text::calibrations,
+};
 
 use super::{tradeoff_apply::Apply, tradeoff_plot::plot_ui};
-use crate::{
-    console::{live::LiveState, outbox::Outbox, panels::Tile, text::calibrations, widgets::small},
-    extras::lab::text,
-    report_text::{mode_meaning, mode_name, three_digits},
-};
+use crate::extras::lab::text;
 
 /// Duration of the scene on which it is measured, s.
 const SCENE_S: f64 = 6.0;

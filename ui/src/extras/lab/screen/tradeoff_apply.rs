@@ -5,9 +5,8 @@ use nima_machine::{
     config::{Identification, RigConfig},
     messages::Command,
 };
+use nima_screen::live::LiveState;
 use nima_study::tradeoff::ParameterChoice;
-
-use crate::console::live::LiveState;
 
 /// Method by which the loop changes to a choice.
 #[derive(Clone, Debug)]

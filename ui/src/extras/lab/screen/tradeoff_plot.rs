@@ -5,14 +5,12 @@ use egui_plot::{
     AxisHints, GridInput, GridMark, HoverPosition, Line, MarkerShape, Plot, PlotPoint, PlotPoints, Points,
 };
 use nima_core::impedance::Mode;
+use nima_screen::{theme, widgets::still};
 use nima_study::tradeoff::{SourceFigures, SweepPoint};
+use nima_words::report_text::{mode_name, three_digits};
 
 use super::tradeoff::words;
-use crate::{
-    console::{theme, widgets::still},
-    extras::lab::text,
-    report_text::{mode_name, three_digits},
-};
+use crate::extras::lab::text;
 
 const HEIGHT: f32 = 230.0;
 /// A point is selected if the pointer is closer to it than this fraction of the plot.

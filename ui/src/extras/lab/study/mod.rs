@@ -22,9 +22,9 @@ mod validation;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
+use nima_report::output;
+use nima_screen::stderr::show_progress;
 use nima_study::{Experiment, Findings as _};
-
-use crate::{command::output, stderr::show_progress};
 
 /// Arguments that describe the experiment.
 pub(super) trait ExperimentArguments: Args {

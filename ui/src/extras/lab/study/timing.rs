@@ -18,11 +18,12 @@ use std::{
 use anyhow::Context as _;
 use clap::Args;
 use nima_machine::config::SchedulingClass;
+use nima_screen::stderr::print_line;
 use nima_study::{Experiment, Findings};
 use serde::{Deserialize, Serialize};
 
 use super::ExperimentArguments;
-use crate::{command::run::positive_seconds, stderr::print_line};
+use crate::command::run::positive_seconds;
 
 #[derive(Clone, Debug, Args)]
 pub(in crate::extras::lab) struct TimingArguments {

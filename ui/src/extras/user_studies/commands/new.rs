@@ -3,12 +3,10 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use nima_report::output;
 use serde_json::json;
 
-use crate::{
-    command::output,
-    extras::user_studies::study::{create, study_file},
-};
+use crate::extras::user_studies::study::{create, study_file};
 
 #[derive(Debug, Args)]
 pub(in crate::extras::user_studies) struct NewStudyArguments {

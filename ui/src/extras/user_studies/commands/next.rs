@@ -5,11 +5,11 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context as _, bail};
 use clap::Args;
 use nima_recording::store::utc_now;
+use nima_report::output;
 use nima_user_study::{ParticipantProgress, Questionnaire, QuestionnaireAnswers, StudyStep, UserStudy};
 use serde_json::json;
 
 use crate::{
-    command::output,
     extras::user_studies::study::{next_text, plain_hand, run_virtual},
     shutdown::Leave,
 };

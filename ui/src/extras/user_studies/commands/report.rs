@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use nima_report::output;
 use nima_user_study::UserStudy;
 
-use crate::command::output;
 use crate::extras::user_studies::report;
 
 #[derive(Debug, Args)]

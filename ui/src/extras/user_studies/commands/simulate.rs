@@ -5,10 +5,10 @@ use std::path::PathBuf;
 use anyhow::bail;
 use clap::Args;
 use nima_recording::store::utc_now;
+use nima_report::output;
 use nima_user_study::{StudyStep, UserStudy, simulated::SimulatedParticipant};
 
 use crate::{
-    command::output,
     extras::user_studies::study::{made, run_virtual},
     shutdown::Leave,
 };

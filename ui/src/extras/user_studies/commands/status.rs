@@ -3,10 +3,9 @@
 use std::{fmt::Write as _, path::PathBuf};
 
 use clap::Args;
+use nima_report::output;
 use nima_user_study::{Label, StudyStep, UserStudy};
 use serde::Serialize;
-
-use crate::command::output;
 
 #[derive(Debug, Args)]
 pub(in crate::extras::user_studies) struct StudyStatusArguments {

@@ -5,9 +5,8 @@ use std::path::PathBuf;
 use anyhow::Context as _;
 use clap::Args;
 use nima_files::write_atomically;
+use nima_report::output;
 use nima_user_study::{StudyTable, UserStudy};
-
-use crate::command::output;
 
 #[derive(Debug, Args)]
 pub(in crate::extras::user_studies) struct StudyTableArguments {

@@ -4,10 +4,10 @@ use std::path::PathBuf;
 
 use clap::Args;
 use nima_recording::store::utc_now;
+use nima_report::output;
+use nima_screen::stderr::print_line;
 use nima_user_study::UserStudy;
 use serde_json::json;
-
-use crate::{command::output, stderr::print_line};
 
 #[derive(Debug, Args)]
 pub(in crate::extras::user_studies) struct UnblindArguments {

@@ -5,9 +5,8 @@ use std::collections::BTreeMap;
 use maud::{Markup, html};
 use nima_analysis::SampleSummary;
 use nima_charts::COLOURS;
+use nima_report::{html::drawing, plots::step};
 use nima_study::trials::TrialTable;
-
-use crate::report::{html::drawing, plots::step};
 
 const WIDTH: f64 = 640.0;
 const HEIGHT: f64 = 260.0;

@@ -1,8 +1,7 @@
 //! Converts tables and sentences of a report from Markdown to HTML; supports only the Markdown that those reports use.
 
 use maud::{Markup, html};
-
-use crate::report::html::table;
+use nima_report::html::table;
 
 /// Blocks between empty lines: a table, or sentences.
 pub(super) fn markup(text: &str) -> Markup {

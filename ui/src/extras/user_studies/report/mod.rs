@@ -14,17 +14,16 @@ use std::{
 use anyhow::Context as _;
 use maud::{Markup, html};
 use nima_core::Side;
+use nima_report::{
+    html::{self, section, table},
+    output,
+};
 use nima_score::{CatalogueDefinition, MEASURES};
 use nima_study::{
     Experiment as _, Findings as _,
     trials::{TrialReport, TrialTable, Trials},
 };
 use nima_user_study::{Label, UserStudy};
-
-use crate::{
-    command::output,
-    report::html::{self, section, table},
-};
 
 pub(super) const PAGE: &str = "report.html";
 const TRIALS: &str = "trials.csv";

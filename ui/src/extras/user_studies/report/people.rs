@@ -2,10 +2,9 @@
 
 use maud::{Markup, PreEscaped, html};
 use nima_charts::{Axis, Chart, Series, SeriesStyle, svg};
+use nima_report::html::{digits, section, table, table_or};
 use nima_score::{CurveShape, LearningCurve, TrainingState};
 use nima_user_study::{Exclusion, LearningModel, QuestionnaireAnswers, StudyTable, UserStudy};
-
-use crate::report::html::{digits, section, table, table_or};
 
 /// Maximum number of participants whose times are drawn: more lines would be indistinguishable.
 const DRAWN: usize = 7;

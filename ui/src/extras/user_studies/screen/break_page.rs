@@ -3,14 +3,12 @@
 use std::time::{Duration, Instant};
 
 use egui::{Align, Button, Layout, RichText, Ui, vec2};
-
-use crate::{
-    console::{
-        theme,
-        widgets::{next_button, small, weak},
-    },
-    extras::user_studies::text,
+use nima_screen::{
+    theme,
+    widgets::{next_button, small, weak},
 };
+
+use crate::extras::user_studies::text;
 
 /// Update interval of the clock.
 const AGAIN: Duration = Duration::from_millis(250);

@@ -2,15 +2,13 @@
 
 use egui::{Label, Ui};
 use egui_plot::{AxisHints, Line, MarkerShape, Plot, PlotBounds, PlotPoints, Points};
+use nima_screen::{
+    theme,
+    widgets::{small, still, weak},
+};
 use nima_user_study::LearningModel;
 
-use crate::{
-    console::{
-        theme,
-        widgets::{small, still, weak},
-    },
-    extras::user_studies::text,
-};
+use crate::extras::user_studies::text;
 
 const HEIGHT: f32 = 190.0;
 

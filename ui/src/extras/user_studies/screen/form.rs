@@ -8,10 +8,15 @@ use nima_core::{
     limits::{DELAY_S, GAIN},
 };
 use nima_score::LONGEST_TRIAL_S;
+use nima_screen::{
+    theme,
+    widgets::{card, next_button, small, weak},
+};
 use nima_user_study::{
     ATTEMPTS_MAX, BREAK_AFTER_MAX, BREAK_MAX_S, Condition, InterruptionPolicy, NotReached, PARTICIPANTS_MAX,
     PRACTICE_MAX, Questionnaire, TRIALS_MAX, UserStudy, order,
 };
+use nima_words::report_text::{mode_meaning, mode_name};
 
 use super::{
     column,
@@ -19,16 +24,9 @@ use super::{
     field_ui,
     measures::{exclusion_ui, measures_ui, task_ui},
 };
-use crate::{
-    console::{
-        theme,
-        widgets::{card, next_button, small, weak},
-    },
-    extras::user_studies::{
-        study::{self, READY},
-        text,
-    },
-    report_text::{mode_meaning, mode_name},
+use crate::extras::user_studies::{
+    study::{self, READY},
+    text,
 };
 
 /// Height of the footer with buttons and errors.

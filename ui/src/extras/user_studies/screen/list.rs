@@ -4,16 +4,14 @@ use std::path::{Path, PathBuf};
 
 use egui::{Button, Label, RichText, Ui, vec2};
 use nima_recording::store::utc_now;
+use nima_screen::{
+    theme,
+    widgets::{card, next_button, small, weak},
+};
 use nima_user_study::{StudyStep, UserStudy};
 
 use super::{column, field_ui};
-use crate::{
-    console::{
-        theme,
-        widgets::{card, next_button, small, weak},
-    },
-    extras::user_studies::text,
-};
+use crate::extras::user_studies::text;
 
 /// Folder of studies within the user's data.
 const FOLDER: &str = "studies";

@@ -2,16 +2,14 @@
 
 use egui::{Button, ComboBox, DragValue, Grid, Label, Ui, vec2};
 use nima_score::LONGEST_TRIAL_S;
+use nima_screen::widgets::{card, small, weak};
 use nima_user_study::{Excludes, ExclusionRule, MeasureComparison};
 
 use super::{
     draft::{Draft, MeasureChoice},
     form::{seconds_ui, whole_ui},
 };
-use crate::{
-    console::widgets::{card, small, weak},
-    extras::user_studies::text,
-};
+use crate::extras::user_studies::text;
 
 /// Width of the open lists of measures, points.
 const LIST: f32 = 460.0;

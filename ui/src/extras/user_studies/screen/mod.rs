@@ -20,15 +20,13 @@ use std::path::Path;
 
 use egui::{Align, CentralPanel, Frame, Layout, Margin, Response, ScrollArea, TextEdit, Ui, vec2};
 use nima_machine::config::RigConfig;
+use nima_panels::rig_choice::RigChoice;
 use nima_recording::store::utc_now;
 use nima_user_study::UserStudy;
+use nima_words::report_text::chain;
 
 use crate::{
-    console::{
-        chain,
-        page::{ClosedRun, Page, PageContext, PageRequest, PageRun, PreparedRun, Room, RunBreak},
-        start::RigChoice,
-    },
+    console::page::{ClosedRun, Page, PageContext, PageRequest, PageRun, PreparedRun, Room, RunBreak},
     extras::user_studies::{study, text},
 };
 use open_study::{HandSource, OpenStudy};
@@ -229,7 +227,7 @@ fn column<R>(ui: &mut Ui, name: &str, size: egui::Vec2, content: impl FnOnce(&mu
 
 /// Draws a field with its name above it.
 fn field_ui(ui: &mut Ui, name: &str, value: &mut String) -> Response {
-    let label = ui.label(crate::console::widgets::small(name));
+    let label = ui.label(nima_screen::widgets::small(name));
     let field = TextEdit::singleline(value).char_limit(200);
     ui.add_sized(vec2(ui.available_width(), 26.0), field).labelled_by(label.id)
 }

@@ -3,18 +3,16 @@
 use egui::{Button, Label, RichText, Ui, vec2};
 use nima_machine::config::RigConfig;
 use nima_recording::store::utc_now;
+use nima_screen::{
+    theme,
+    widgets::{card, next_button, small, weak},
+};
 use nima_user_study::{StudyError, StudyStep, UserStudy};
 
 use super::{
     Leaves, break_page, column, curve::curve_ui, field_ui, questions, side_panel::SidePanel, trial::TrialScreen,
 };
-use crate::{
-    console::{
-        theme,
-        widgets::{card, next_button, small, weak},
-    },
-    extras::user_studies::text,
-};
+use crate::extras::user_studies::text;
 
 /// Widths of the columns of participants and of the study.
 const WHO: f32 = 250.0;

@@ -1,19 +1,16 @@
 //! Questionnaires for a participant. Missing answers are shown, and submitting requires complete answers.
 
 use egui::{Button, Label, Response, RichText, ScrollArea, Slider, TextEdit, Ui, vec2};
+use nima_screen::{
+    theme,
+    widgets::{next_button, small, weak},
+};
 use nima_user_study::{
     Label as Letter, PAIRS, Questionnaire, QuestionnaireAnswers, REALISM_ITEM, Ratings, SUS_ITEMS, TLX_SCALES, TlxScale,
 };
+use nima_words::{language::Text, report_text::sentence};
 
-use crate::{
-    console::{
-        alarms::sentence,
-        theme,
-        widgets::{next_button, small, weak},
-    },
-    extras::user_studies::text,
-    language::Text,
-};
+use crate::extras::user_studies::text;
 
 /// Width of a rating line.
 const SLIDER: f32 = 420.0;

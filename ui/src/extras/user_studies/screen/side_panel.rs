@@ -4,21 +4,18 @@ use std::path::PathBuf;
 
 use egui::{Button, Label, RichText, Ui, vec2};
 use nima_recording::store::utc_now;
+use nima_screen::{
+    background::BackgroundQuery,
+    opener, theme,
+    widgets::{card, small},
+};
 use nima_user_study::UserStudy;
 
 use super::{
     field_ui,
     list::{blindness, finished},
 };
-use crate::{
-    console::{
-        opener,
-        start::BackgroundQuery,
-        theme,
-        widgets::{card, small},
-    },
-    extras::user_studies::{report, text},
-};
+use crate::extras::user_studies::{report, text};
 
 /// Folder of the report within that of the study.
 const REPORT: &str = "report";

@@ -10,34 +10,34 @@ use nima_machine::{
     runtime::{self, Assembly, RuntimeClock},
 };
 use nima_score::TaskFile;
+use nima_screen::{
+    image_recorder,
+    live::LiveState,
+    objects::OfSimulation,
+    outbox::Outbox,
+    recording,
+    scene3d::{CameraLook, SceneView, scene_ui},
+    theme,
+    widgets::weak,
+};
 use nima_session::{
     recorder::SessionRecorder,
     sinks::{Audience, Destination},
 };
 use nima_simulation::{ObjectFeed, SimulationPlan};
 use nima_user_study::{ParticipantProgress, RunningTrial, TrialId, TrialPhase, UserStudy};
+use nima_words::{report_text::chain, text::top_bar};
 
 use super::open_study::HandSource;
 use crate::{
     console::{
-        alarms,
         app::StartedLoop,
-        chain,
-        live::LiveState,
-        outbox::Outbox,
         page::{PageRun, RunBreak},
-        scene3d::{CameraLook, SceneView, scene_ui},
-        text::top_bar,
-        theme,
-        widgets::weak,
     },
     extras::{
         tasks::scoring::LiveScorer,
         user_studies::{study, text},
     },
-    image_recorder,
-    objects::OfSimulation,
-    recording,
 };
 
 /// Height of the line above the field.
@@ -118,7 +118,8 @@ impl TrialScreen {
         };
         let closed = study::close(study, running, why, scoring);
         let shows = study.state().progress(&participant).is_none_or(ParticipantProgress::shows_result);
-        let words = closed.map_or_else(|error| error.to_string(), |ran| alarms::sentence(&ran.as_text(shows)));
+        let words =
+            closed.map_or_else(|error| error.to_string(), |ran| nima_words::report_text::sentence(&ran.as_text(shows)));
         (words, notes)
     }
 

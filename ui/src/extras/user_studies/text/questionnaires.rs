@@ -1,8 +1,7 @@
 //! Questionnaires of a study.
 
 use nima_user_study::{Label, Questionnaire};
-
-use crate::language::{Text, text_format, word};
+use nima_words::language::{Text, text_format, word};
 
 pub(in crate::extras::user_studies) const SUBMIT: Text = Text::of("Submit", "Absenden");
 pub(in crate::extras::user_studies) const SUBMITTED: Text = Text::of("Answers saved", "Antworten gespeichert");

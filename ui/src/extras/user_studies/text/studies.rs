@@ -4,9 +4,9 @@ use std::path::Path;
 
 use nima_score::{CurveShape, LearningCurve, MIN_TRIALS};
 use nima_user_study::{EndReason, Label, StudyStep, TrialId, TrialPhase};
+use nima_words::language::{Text, text_format, word};
 
 use super::questionnaires::questionnaire;
-use crate::language::{Text, text_format, word};
 
 pub(in crate::extras::user_studies) const OPEN: Text = Text::of("User studies", "Nutzerstudien");
 pub(in crate::extras::user_studies) const OPEN_HOVER: Text =

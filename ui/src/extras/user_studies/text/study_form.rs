@@ -3,8 +3,7 @@
 use std::path::Path;
 
 use nima_user_study::{Excludes, MeasureComparison};
-
-use crate::language::{Text, text_format, word};
+use nima_words::language::{Text, text_format, word};
 
 pub(in crate::extras::user_studies) const READY: Text = Text::of("Start from a template", "Mit einer Vorlage beginnen");
 pub(in crate::extras::user_studies) const READY_HOVER: Text = Text::of(

@@ -1,0 +1,35 @@
+//! The link to the machine with the arm.
+
+use egui::Ui;
+use nima_screen::{live::LiveState, widgets::weak};
+use nima_words::text;
+
+pub fn link_ui(ui: &mut Ui, live: &LiveState) {
+    if let Some(line) = &live.line {
+        return line.ui(ui, live.state().permits().drives);
+    }
+    ui.label(text::link::ONE_MACHINE.get());
+    ui.add_space(4.0);
+    ui.label(weak(text::link::HOW_TWO.get()));
+}
+
+#[cfg(test)]
+mod tests {
+    use egui_kittest::{Harness, kittest::Queryable as _};
+    use nima_machine::config::RigConfig;
+    use nima_simulation::scene::Scene;
+
+    use super::*;
+    use nima_screen::theme;
+
+    #[test]
+    fn without_another_machine_the_panel_says_how_there_can_be_one() {
+        let live = LiveState::new(RigConfig::load("simulated").unwrap(), Scene::load("peg_transfer").unwrap());
+        let panel = |ui: &mut Ui, live: &mut LiveState| {
+            theme::apply(ui.ctx());
+            link_ui(ui, live);
+        };
+        let window = Harness::builder().with_size([330.0, 600.0]).build_ui_state(panel, live);
+        window.get_by_label(text::link::ONE_MACHINE.get());
+    }
+}

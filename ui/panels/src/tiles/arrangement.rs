@@ -1,0 +1,161 @@
+//! The built-in layouts: few panels for a newcomer, those of a calibration, and all of them.
+
+use egui::Vec2;
+use nima_words::text::tiles as text;
+use serde::{Deserialize, Serialize};
+
+use super::{LayoutNode, LayoutPart, Panel, layout::WHOLE};
+
+/// Width of the column of settings and of the column of figures.
+const KNOBS: f32 = 316.0;
+const FIGURES: f32 = 348.0;
+/// Width of the force-space panel next to the traces, and the width between the columns from which it is placed there.
+const FORCE_SPACE: f32 = 300.0;
+const FORCE_SPACE_FROM: f32 = 720.0;
+/// Width of the traces.
+const TRACES: f32 = 560.0;
+/// Height of the desk from which degrees and timing are placed below one another instead
+/// of in tabs.
+const TALL_FROM: f32 = 860.0;
+/// Heights of panels that should not need scrolling.
+const FEEDBACK: f32 = 494.0;
+const HORIZON: f32 = 288.0;
+const DEGREES: f32 = 360.0;
+
+/// A built-in layout. In each, every panel is at most one click away: those that are not shown are tabs.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Arrangement {
+    /// Field, forces and settings; the layout of a first start.
+    Simple,
+    /// Calibrations, devices and forces.
+    Calibration,
+    /// Every panel that fits; also the layout of settings that were saved before there was a choice.
+    #[default]
+    Research,
+}
+
+impl Arrangement {
+    pub const ALL: [Self; 3] = [Self::Simple, Self::Calibration, Self::Research];
+
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Simple => text::SIMPLE.get(),
+            Self::Calibration => text::CALIBRATION_LAYOUT.get(),
+            Self::Research => text::RESEARCH.get(),
+        }
+    }
+
+    pub fn meaning(self) -> &'static str {
+        match self {
+            Self::Simple => text::SIMPLE_HOVER.get(),
+            Self::Calibration => text::CALIBRATION_LAYOUT_HOVER.get(),
+            Self::Research => text::RESEARCH_HOVER.get(),
+        }
+    }
+
+    /// Returns the places of the panels in a window of this size.
+    pub(super) fn places(self, size: Vec2) -> LayoutNode {
+        match self {
+            Self::Simple => simple(size),
+            Self::Calibration => calibration(size),
+            Self::Research => research(size),
+        }
+    }
+}
+
+/// Returns the settings on the left, the 3-D view above the traces; everything else in tabs behind them.
+fn simple(size: Vec2) -> LayoutNode {
+    let width = size.x.max(KNOBS + TRACES);
+    let height = size.y.max(200.0);
+    let traces = (0.42 * height).clamp(250.0, 420.0);
+    let above = tabs(&[Panel::Field, Panel::Devices, Panel::Safety, Panel::Link]);
+    let under =
+        tabs(&[Panel::Traces, Panel::ForceSpace, Panel::Horizon, Panel::Degrees, Panel::Timing, Panel::Tradeoff]);
+    let right = column(vec![(height - traces, above), (traces, under)]);
+    row(vec![(KNOBS, tabs(&[Panel::Feedback, Panel::Calibrations])), (width - KNOBS, right)])
+}
+
+/// Returns the calibrations on the left, the devices above the traces, and the 3-D view behind the devices.
+fn calibration(size: Vec2) -> LayoutNode {
+    let width = size.x.max(KNOBS + TRACES);
+    let height = size.y.max(200.0);
+    let traces = (0.42 * height).clamp(250.0, 420.0);
+    let above = tabs(&[Panel::Devices, Panel::Field, Panel::Safety, Panel::Link]);
+    let under =
+        tabs(&[Panel::Traces, Panel::ForceSpace, Panel::Horizon, Panel::Degrees, Panel::Timing, Panel::Tradeoff]);
+    let right = column(vec![(height - traces, above), (traces, under)]);
+    row(vec![(KNOBS, tabs(&[Panel::Calibrations, Panel::Feedback])), (width - KNOBS, right)])
+}
+
+/// Returns the settings on the left, figures on the right, the 3-D view above the traces in between; panels that do not
+/// fit are placed in tabs.
+fn research(size: Vec2) -> LayoutNode {
+    let middle = (size.x - KNOBS - FIGURES).max(200.0);
+    let height = size.y.max(200.0);
+    let traces = (0.47 * height).clamp(250.0, 492.0);
+    if middle < TRACES {
+        return narrow(size.x.max(KNOBS + FIGURES + 200.0), height, traces);
+    }
+    let [left, right] = if height >= TALL_FROM { tall_sides(height) } else { short_sides(height) };
+    let under = if middle > FORCE_SPACE_FROM {
+        row(vec![
+            (middle - FORCE_SPACE, tabs(&[Panel::Traces])),
+            (FORCE_SPACE, tabs(&[Panel::Safety, Panel::ForceSpace])),
+        ])
+    } else {
+        tabs(&[Panel::Traces, Panel::Safety, Panel::ForceSpace])
+    };
+    let between = column(vec![(height - traces, tabs(&[Panel::Field, Panel::Devices])), (traces, under)]);
+    row(vec![(KNOBS, left), (middle, between), (FIGURES, right)])
+}
+
+/// For windows too narrow for the traces between two columns: the figures next to the 3-D view, and the traces below both.
+fn narrow(width: f32, height: f32, traces: f32) -> LayoutNode {
+    let [left, _] = short_sides(height);
+    let above = row(vec![
+        (width - KNOBS - FIGURES, tabs(&[Panel::Field, Panel::Devices])),
+        (FIGURES, tabs(&[Panel::Horizon, Panel::Degrees, Panel::Timing, Panel::Tradeoff])),
+    ]);
+    let under = tabs(&[Panel::Traces, Panel::Safety, Panel::ForceSpace, Panel::Link]);
+    row(vec![(KNOBS, left), (width - KNOBS, column(vec![(height - traces, above), (traces, under)]))])
+}
+
+fn tall_sides(height: f32) -> [LayoutNode; 2] {
+    [
+        column(vec![(FEEDBACK, tabs(&[Panel::Feedback])), (height - FEEDBACK, tabs(&[Panel::Calibrations]))]),
+        column(vec![
+            (HORIZON, tabs(&[Panel::Horizon])),
+            (DEGREES, tabs(&[Panel::Degrees, Panel::Tradeoff])),
+            (height - HORIZON - DEGREES, tabs(&[Panel::Timing, Panel::Link])),
+        ]),
+    ]
+}
+
+fn short_sides(height: f32) -> [LayoutNode; 2] {
+    let horizon = (height - 150.0).min(HORIZON);
+    [
+        tabs(&[Panel::Feedback, Panel::Calibrations]),
+        column(vec![
+            (horizon, tabs(&[Panel::Horizon])),
+            (height - horizon, tabs(&[Panel::Degrees, Panel::Timing, Panel::Link, Panel::Tradeoff])),
+        ]),
+    ]
+}
+
+fn tabs(panels: &[Panel]) -> LayoutNode {
+    LayoutNode::Tabs(panels.iter().map(|panel| LayoutNode::Panel(*panel)).collect())
+}
+
+fn parts(of: Vec<(f32, LayoutNode)>) -> Vec<LayoutPart> {
+    let whole: f32 = of.iter().map(|(points, _)| points).sum();
+    of.into_iter().map(|(points, of)| LayoutPart { fraction: (points / whole * WHOLE).round() as u16, of }).collect()
+}
+
+fn row(of: Vec<(f32, LayoutNode)>) -> LayoutNode {
+    LayoutNode::Row(parts(of))
+}
+
+fn column(of: Vec<(f32, LayoutNode)>) -> LayoutNode {
+    LayoutNode::Column(parts(of))
+}

@@ -1,0 +1,230 @@
+//! The layout of the Technician view: every panel is a tile with a title that can be dragged into tabs, rows and columns,
+//! resized, closed and reopened. The layout is saved in the settings ([`PanelLayout`]); the tiles themselves are kept here between
+//! frames.
+//!
+//! The tiles are limited to the space below the top bar, so that stop button, state and alarms stay visible.
+
+mod arrangement;
+mod layout;
+mod panel;
+
+use egui::{
+    Align, Button, Color32, Context, Frame, Layout as Flow, Margin, Rect, Response, RichText, ScrollArea, Stroke, Ui,
+    UiBuilder, Vec2, Visuals, WidgetInfo, WidgetText, vec2,
+};
+use egui_tiles::{
+    Behavior, EditAction, ResizeState, SimplificationOptions, TabState, Tabs, TileId, Tiles, Tree, UiResponse,
+};
+use nima_screen::{theme, widgets::weak};
+use nima_words::text;
+
+pub use arrangement::Arrangement;
+pub use layout::{LayoutNode, LayoutPart, PanelLayout};
+pub use panel::Panel;
+
+const TAB_BAR: f32 = 28.0;
+const GAP: f32 = 6.0;
+/// Space between a panel's edge and its content.
+const PADDING: i8 = 10;
+const TITLE: f32 = 13.5;
+/// Size of the button that closes a panel.
+const CLOSE: Vec2 = vec2(30.0, 26.0);
+
+#[derive(Debug, Default)]
+pub struct PanelTiles {
+    /// The tiles, and their source: the layout, and the available size if the layout depends on it.
+    shown: Option<(Tree<Panel>, PanelLayout, Option<Vec2>)>,
+    /// Tiles were moved or resized, or tabs selected, since the layout was last saved.
+    moved: bool,
+    turned: bool,
+    /// Panels that were in front when the layout was last saved.
+    seen: Vec<Panel>,
+}
+
+impl PanelTiles {
+    /// Shows the layout with these contents, and updates it when the operator changes it.
+    pub fn ui(&mut self, ui: &mut Ui, layout: &mut PanelLayout, contents: &mut dyn FnMut(&mut Ui, Panel)) {
+        let size = layout.places.is_none().then(|| ui.available_size());
+        if !self.shown.as_ref().is_some_and(|(_, shown, at)| shown == layout && *at == size) {
+            let tree = layout.tree(ui.available_size());
+            self.seen = layout::in_front(&tree);
+            self.shown = Some((tree, layout.clone(), size));
+        }
+        let Some((tree, shown, at)) = &mut self.shown else { return };
+        if tree.active_tiles().is_empty() {
+            ui.centered_and_justified(|ui| ui.label(weak(text::tiles::ALL_CLOSED.get())));
+            return;
+        }
+        let mut tiles = DeskContents {
+            draw: contents,
+            closed: None,
+            button: None,
+            moved: &mut self.moved,
+            turned: &mut self.turned,
+        };
+        tree.ui(&mut tiles, ui);
+        if let Some(panel) = tiles.closed {
+            layout.toggle(panel);
+            return;
+        }
+        // While a mouse button is down, the tiles are still being moved.
+        if (self.moved || self.turned) && !ui.input(|input| input.pointer.any_down()) {
+            *layout = PanelLayout::of(tree, self.moved, &self.seen, layout);
+            self.seen = layout::in_front(tree);
+            shown.clone_from(layout);
+            if self.moved {
+                *at = None;
+            }
+            self.moved = false;
+            self.turned = false;
+        }
+    }
+}
+
+struct DeskContents<'a> {
+    draw: &'a mut dyn FnMut(&mut Ui, Panel),
+    closed: Option<Panel>,
+    /// Place of the close button, which is drawn after the panel's title so that the keyboard reaches it.
+    button: Option<(Rect, Panel)>,
+    moved: &'a mut bool,
+    turned: &'a mut bool,
+}
+
+impl Behavior<Panel> for DeskContents<'_> {
+    fn pane_ui(&mut self, ui: &mut Ui, _tile: TileId, panel: &mut Panel) -> UiResponse {
+        if let Some((place, _)) = self.button.take_if(|(_, of)| *of == *panel) {
+            self.close_ui(ui, place, *panel);
+        }
+        let rect = ui.available_rect_before_wrap();
+        let min = panel.min_size();
+        if panel.fills() {
+            let roomy = rect.width() >= min.x && rect.height() >= min.y;
+            if roomy {
+                (self.draw)(ui, *panel);
+            } else {
+                scrolled(ui, rect.size().max(min), |ui| (self.draw)(ui, *panel));
+            }
+        } else {
+            ui.painter().rect_filled(rect, 0.0, theme::now().card);
+            let frame = Frame::new().inner_margin(Margin::same(PADDING));
+            let width = (rect.width() - 2.0 * f32::from(PADDING)).max(min.x);
+            ScrollArea::both().id_salt(*panel).auto_shrink(false).show(ui, |ui| {
+                frame.show(ui, |ui| {
+                    ui.set_width(width);
+                    ui.spacing_mut().item_spacing.y = 4.0;
+                    (self.draw)(ui, *panel);
+                });
+            });
+        }
+        UiResponse::None
+    }
+
+    fn tab_title_for_pane(&mut self, panel: &Panel) -> WidgetText {
+        RichText::new(panel.title()).font(theme::strong(TITLE)).into()
+    }
+
+    fn on_tab_button(&mut self, tiles: &mut Tiles<Panel>, tile: TileId, tab: Response) -> Response {
+        if tab.has_focus() {
+            focus_ring(&tab.ctx, &tab);
+        }
+        let Some(panel) = tiles.get_pane(&tile) else { return tab };
+        tab.on_hover_text(format!("{}\n{}", panel.meaning(), text::tiles::DRAG_HOVER.get()))
+    }
+
+    fn top_bar_right_ui(&mut self, tiles: &Tiles<Panel>, ui: &mut Ui, _tile: TileId, tabs: &Tabs, _scroll: &mut f32) {
+        let Some(panel) = tabs.active.and_then(|active| tiles.get_pane(&active)) else { return };
+        let (place, _) = ui.allocate_exact_size(CLOSE, egui::Sense::hover());
+        self.button = Some((place, *panel));
+    }
+
+    fn tab_bar_height(&self, _style: &egui::Style) -> f32 {
+        TAB_BAR
+    }
+
+    fn gap_width(&self, _style: &egui::Style) -> f32 {
+        GAP
+    }
+
+    fn min_size(&self) -> f32 {
+        60.0
+    }
+
+    fn resize_stroke(&self, _style: &egui::Style, state: ResizeState) -> Stroke {
+        match state {
+            ResizeState::Idle => Stroke::NONE,
+            ResizeState::Hovering => Stroke::new(2.0, theme::now().text_weak),
+            ResizeState::Dragging => Stroke::new(3.0, theme::now().text),
+        }
+    }
+
+    fn tab_bar_color(&self, _visuals: &Visuals) -> Color32 {
+        theme::now().panel
+    }
+
+    fn tab_bg_color(&self, _visuals: &Visuals, _tiles: &Tiles<Panel>, _tile: TileId, state: &TabState) -> Color32 {
+        if state.active { theme::now().card } else { Color32::TRANSPARENT }
+    }
+
+    fn tab_outline_stroke(
+        &self,
+        _visuals: &Visuals,
+        _tiles: &Tiles<Panel>,
+        _tile: TileId,
+        _state: &TabState,
+    ) -> Stroke {
+        Stroke::NONE
+    }
+
+    fn tab_text_color(&self, _visuals: &Visuals, _tiles: &Tiles<Panel>, _tile: TileId, state: &TabState) -> Color32 {
+        if state.active { theme::now().text } else { theme::now().text_weak }
+    }
+
+    fn drag_preview_stroke(&self, _visuals: &Visuals) -> Stroke {
+        Stroke::new(2.0, theme::now().text)
+    }
+
+    fn drag_preview_color(&self, _visuals: &Visuals) -> Color32 {
+        theme::now().selected.gamma_multiply(0.5)
+    }
+
+    fn simplification_options(&self) -> SimplificationOptions {
+        SimplificationOptions { all_panes_must_have_tabs: true, ..SimplificationOptions::default() }
+    }
+
+    fn on_edit(&mut self, action: EditAction) {
+        match action {
+            EditAction::TileResized | EditAction::TileDropped => *self.moved = true,
+            EditAction::TabSelected => *self.turned = true,
+            EditAction::TileDragged => {}
+        }
+    }
+}
+
+impl DeskContents<'_> {
+    /// Draws the close button of a panel, in the tab bar.
+    fn close_ui(&mut self, ui: &mut Ui, place: Rect, panel: Panel) {
+        let mut bar = ui.new_child(UiBuilder::new().max_rect(place).id_salt("close"));
+        bar.set_clip_rect(place);
+        let button = Button::new(RichText::new("\u{d7}").font(theme::regular(16.0))).frame_when_inactive(false);
+        let button = bar.add(button.min_size(CLOSE));
+        let name = text::tiles::close(panel.title());
+        button.widget_info(|| WidgetInfo::labeled(egui::Role::Button, true, &name));
+        if button.on_hover_text(text::tiles::close_meaning(&name)).clicked() {
+            self.closed = Some(panel);
+        }
+    }
+}
+
+/// Shows a panel that is larger than its tile with scroll bars.
+fn scrolled(ui: &mut Ui, size: Vec2, content: impl FnOnce(&mut Ui)) {
+    ScrollArea::both().auto_shrink(false).show(ui, |ui| {
+        let (rect, _) = ui.allocate_exact_size(size, egui::Sense::hover());
+        ui.scope_builder(UiBuilder::new().max_rect(rect).layout(Flow::top_down(Align::Min)), content);
+    });
+}
+
+/// Shows which tab has the keyboard focus.
+fn focus_ring(ctx: &Context, tab: &Response) {
+    let painter = ctx.layer_painter(tab.layer_id);
+    painter.rect_stroke(tab.rect.shrink(1.0), 2.0, Stroke::new(2.0, theme::now().text), egui::StrokeKind::Inside);
+}

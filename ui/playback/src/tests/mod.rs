@@ -1,0 +1,428 @@
+use std::{
+    ops::Range,
+    path::Path,
+    sync::atomic::AtomicBool,
+    thread,
+    time::{Duration, Instant},
+};
+
+use egui::Context;
+use nima_core::impedance::Mode;
+use nima_machine::{
+    config::RigConfig,
+    messages::{Command, Tick},
+    rig::{SIDES, Side, TaskAction},
+    runtime::{self, Assembly, VirtualClock},
+};
+use nima_recording::session::SessionReader;
+use nima_screen::{
+    objects::{OfSimulation, objects},
+    recording,
+    scene3d::SceneView,
+};
+use nima_session::{
+    file::{LineKind, RecordedFile},
+    objects::ObjectStates,
+    plot_channels,
+    replay::replay,
+    sinks::Destination,
+    trim,
+};
+use nima_simulation::{SimulationPlan, Training, scene::Scene};
+
+mod images;
+
+use super::Playback;
+
+const TIMEOUT: Duration = Duration::from_mins(3);
+
+/// Returns a session of this scene, with a command after this many ticks of the right arm.
+fn record(path: &Path, scene: &str, seconds: f64, command: impl Fn(u64) -> Option<Command>) {
+    let rig = RigConfig::load("simulated").unwrap();
+    let scene = Scene::load(scene).unwrap();
+    let plan = SimulationPlan { rig, scene, calibrations: Default::default(), engage: true };
+    let (tap, recorder) = recording::begin(Destination::file(path), &plan, Some(VirtualClock::PERFECT)).unwrap();
+    runtime::run_virtual(Assembly { tap: Some(tap), ..plan.simulated().unwrap() }, seconds, |tick| {
+        (tick.side.index() == 0).then(|| command(tick.index)).flatten()
+    });
+    recorder.finish().unwrap();
+}
+
+/// Returns a session of a scene with a training task, and the objects that the screen received. Before each tick of the
+/// right arm, by its number, a command may be given.
+fn record_task(scene: &str, path: &Path, seconds: f64, command: impl Fn(u64) -> Option<Command>) -> Vec<ObjectStates> {
+    let mut rig = RigConfig::load("simulated").unwrap();
+    let scene = Scene::load(scene).unwrap();
+    let has_jaws = [scene.objects.is_some(); SIDES];
+    rig.mode = Mode::Matched;
+    let plan = SimulationPlan { rig, scene, calibrations: Default::default(), engage: true };
+    let (tap, recorder) = recording::begin(Destination::file(path), &plan, Some(VirtualClock::PERFECT)).unwrap();
+    let (assembly, watched) = plan.watched().unwrap();
+    let mut watched = watched.unwrap();
+    recorder.watch(OfSimulation::source(&plan, watched.another().unwrap()));
+    let mut report = Vec::new();
+    runtime::run_virtual(Assembly { tap: Some(tap), ..assembly }, seconds, |tick| {
+        report.extend(watched.moments().map(|moment| objects(&moment, has_jaws)));
+        (tick.side == Side::Right).then(|| command(tick.index)).flatten()
+    });
+    recorder.finish().unwrap();
+    report
+}
+
+/// Returns all ticks of the right arm, and of the left.
+fn replayed(path: &Path) -> Vec<[Option<Tick>; 2]> {
+    let mut all = Vec::new();
+    let outcome =
+        replay(RecordedFile::open(path).unwrap().journal().unwrap(), |moment| all.push(*moment.ticks)).unwrap();
+    assert!(outcome.closed && outcome.differs.is_none());
+    all
+}
+
+fn open(path: &Path) -> Playback {
+    Playback::open(path, &Context::default(), SceneView::default())
+}
+
+fn until(past: &mut Playback, what: &str, good: impl Fn(&Playback) -> bool) {
+    let began = Instant::now();
+    while !good(past) {
+        assert!(began.elapsed() < TIMEOUT, "never: {what}, {:?}", past.report);
+        thread::sleep(Duration::from_millis(2));
+        past.step(0.0, false);
+    }
+}
+
+/// Shows a moment until every value is replayed.
+fn settled(past: &mut Playback, t_s: f64) {
+    past.show(t_s);
+    past.extent = super::WorkerExtent::Plotted;
+    until(past, "replayed", |past| past.is_whole() && (past.shown_s() - past.wanted_s).abs() < 0.01);
+}
+
+fn same(shown: &[Option<Tick>; 2], replayed: &[Option<Tick>; 2]) -> bool {
+    // NaN must match too.
+    format!("{shown:?}") == format!("{replayed:?}")
+}
+
+#[test]
+fn a_moment_on_the_screen_is_the_tick_of_the_replay() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("session.mcap");
+    record(&path, "bimanual", 14.0, |tick| (tick == 6000).then_some(Command::SetGain(0.5)));
+    let ticks = replayed(&path);
+    let mut past = open(&path);
+    until(&mut past, "read", |past| past.read_share() > 0.999);
+    for number in [0, 1, 13_999].into_iter().chain((1..12).map(|turn| turn * 5471 % ticks.len())) {
+        settled(&mut past, number as f64 * 1e-3);
+        let live = past.live.as_ref().unwrap();
+        assert!(same(&live.ticks, &ticks[number]), "tick {number}");
+        let latest_s = live.history[0].latest_s();
+        assert!((latest_s - number as f64 * 1e-3).abs() < 1e-9, "the traces end at {latest_s} s");
+    }
+    assert!(past.report.limited.is_none(), "{:?}", past.report);
+}
+
+#[test]
+fn what_is_shown_at_once_has_the_forces_and_places_of_that_tick() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("session.mcap");
+    record(&path, "peg_transfer", 8.0, |_| None);
+    let ticks = replayed(&path);
+    let mut past = open(&path);
+    until(&mut past, "read", |past| past.read_share() > 0.999);
+    for number in [3210, 7777, 42] {
+        past.show(number as f64 * 1e-3);
+        past.live = None;
+        until(&mut past, "shown", |past| past.live.is_some());
+        let shown = past.live.as_ref().unwrap().ticks[0].unwrap();
+        let was = ticks[number][0].unwrap();
+        assert_eq!((shown.measured_n, shown.rendered_n, shown.tip_m), (was.measured_n, was.rendered_n, was.tip_m));
+        assert_eq!((shown.leader_m, shown.state), (was.leader_m, was.state));
+        // Compared bit by bit: the link is still filling at the start, and NaN does not equal itself.
+        assert_eq!(shown.delayed_n.map(f64::to_bits), was.delayed_n.map(f64::to_bits));
+    }
+}
+
+#[test]
+fn a_session_is_played_tick_by_tick() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("session.mcap");
+    record(&path, "peg_transfer", 6.0, |_| None);
+    let ticks = replayed(&path);
+    let mut past = open(&path);
+    until(&mut past, "read", |past| past.read_share() > 0.999);
+    settled(&mut past, 1.0);
+    past.toggle();
+    for frame in 0..40 {
+        let before = past.shown_s();
+        past.step(0.02, false);
+        until(&mut past, "went on", |past| past.shown_s() > before);
+        let live = past.live.as_ref().unwrap();
+        let number = (live.ticks[0].unwrap().t_s * 1e3).round() as usize;
+        assert!(same(&live.ticks, &ticks[number]), "tick {number} in frame {frame}");
+    }
+    assert!((past.shown_s() - 1.8).abs() < 0.05, "{} s", past.shown_s());
+    past.toggle();
+    past.step(1.0, true);
+    assert!(!past.moves());
+    settled(&mut past, 5.9);
+    past.toggle();
+    for _ in 0..200 {
+        past.step(0.01, false);
+        thread::sleep(Duration::from_millis(2));
+    }
+    assert!(!past.moves(), "it ends with the session");
+}
+
+#[test]
+fn a_window_that_draws_rarely_plays_as_fast_as_another() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("session.mcap");
+    record(&path, "peg_transfer", 10.0, |_| None);
+    let mut past = open(&path);
+    until(&mut past, "read", |past| past.read_share() > 0.999);
+    for (speed, frame_s) in [(1.0, 0.05), (1.0, 0.5), (4.0, 0.1), (4.0, 0.5)] {
+        settled(&mut past, 1.0);
+        past.play.speed = speed;
+        past.toggle();
+        for _ in 0..(2.0 / (speed * frame_s)).round() as usize {
+            let before_s = past.shown_s();
+            past.step(frame_s, false);
+            until(&mut past, "went on", |past| past.shown_s() >= before_s + speed * frame_s - 2e-3);
+        }
+        past.toggle();
+        assert!((past.shown_s() - 3.0).abs() < 0.05, "{} s at {speed}, {frame_s} s a frame", past.shown_s());
+    }
+    settled(&mut past, 1.0);
+    past.play.speed = 1.0;
+    past.toggle();
+    past.step(60.0, false);
+    assert!((past.wanted_s - 2.0).abs() < 0.01, "{} s: data that were not shown are not skipped", past.wanted_s);
+}
+
+#[test]
+fn what_happened_is_marked_along_the_time() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("session.mcap");
+    record(&path, "peg_transfer", 5.0, |tick| match tick {
+        2000 => Some(Command::Stop),
+        3000 => Some(Command::SetGain(9.0)),
+        _ => None,
+    });
+    let mut past = open(&path);
+    until(&mut past, "read", |past| past.read_share() > 0.999);
+    let at = |kind: LineKind, t_s: f64| {
+        past.overview.notes.iter().any(|note| note.kind == kind && (note.t_s - t_s).abs() < 0.01)
+    };
+    assert!(at(LineKind::Told, 2.0) && at(LineKind::Warning, 3.0), "{:?}", past.overview.notes);
+    assert_eq!(past.overview.buckets.len(), 10);
+    let max_n = replayed(&path).iter().map(|ticks| ticks[0].unwrap().measured_n.norm()).fold(0.0, f64::max);
+    let shown_n =
+        past.overview.buckets.iter().filter_map(|bucket| bucket.measured_n.map(f64::from)).fold(0.0, f64::max);
+    assert!((max_n - shown_n).abs() < 1e-4, "{shown_n} N of {max_n} N");
+}
+
+#[test]
+fn rings_and_jaws_are_shown_as_they_were_and_move_while_it_is_played() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("session.mcap");
+    let report = record_task("rings", &path, 6.0, |_| None);
+    assert_eq!(report.len(), 600);
+    let mut past = open(&path);
+    until(&mut past, "read", |past| past.read_share() > 0.999);
+    // Objects on the screen are at most 0.01 s old.
+    let then = |t_s: f64| report.iter().rfind(|objects| objects.t_s < t_s + 1e-7).unwrap();
+    let shown = |past: &Playback| past.live.as_ref().and_then(|live| live.objects.clone());
+    let same = |past: &Playback| {
+        let mut objects = shown(past)?;
+        let expected = then(past.shown_s());
+        assert!((objects.t_s - expected.t_s).abs() < 1e-8, "{} s, not {} s", objects.t_s, expected.t_s);
+        objects.t_s = expected.t_s;
+        Some(objects == *expected)
+    };
+    for t_s in [0.005, 1.234, 4.0, 5.99] {
+        settled(&mut past, t_s);
+        assert_eq!(same(&past), Some(true), "at {t_s} s");
+    }
+    past.show(3.0);
+    past.live = None;
+    until(&mut past, "shown at once", |past| past.live.is_some());
+    assert_eq!(same(&past), Some(true));
+    // The left instrument's jaws close on the first ring at 2 s.
+    settled(&mut past, 1.4);
+    past.toggle();
+    let openings = (0..60).map(|_| {
+        let before = past.shown_s();
+        past.step(0.05, false);
+        until(&mut past, "went on", |past| past.shown_s() > before);
+        assert_eq!(same(&past), Some(true), "at {} s", past.shown_s());
+        shown(&past).unwrap().jaws[1].unwrap().opening_rad
+    });
+    let openings: Vec<f64> = openings.collect();
+    assert!(openings.iter().any(|rad| *rad > 0.5) && openings.iter().any(|rad| *rad < 0.3), "{openings:?}");
+    let grasped = past.overview.notes.iter().find(|note| note.kind == LineKind::Happening);
+    assert!(grasped.is_some_and(|note| note.words.contains("grasped by the left instrument")), "{grasped:?}");
+}
+
+#[test]
+fn pins_and_the_loop_on_the_wire_are_shown_as_they_were() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("lumps.mcap");
+    let act = |tick: u64, at: u64, act| (tick == at).then_some(Command::Task(Side::Right, act));
+    let report = record_task("find_lumps", &path, 3.0, |tick| {
+        let marks = act(tick, 900, TaskAction::Mark).or_else(|| act(tick, 1800, TaskAction::Mark));
+        marks.or_else(|| act(tick, 2400, TaskAction::End))
+    });
+    let shown_of = |path: &Path, report: &[ObjectStates], times_s: &[f64]| -> Vec<Training> {
+        let mut past = open(path);
+        until(&mut past, "read", |past| past.read_share() > 0.999);
+        let shown = times_s.iter().map(|t_s| {
+            settled(&mut past, *t_s);
+            let live = past.live.as_ref().unwrap();
+            let expected = report.iter().rfind(|objects| objects.t_s < past.shown_s() + 1e-7).unwrap();
+            assert_eq!(live.objects.as_ref().unwrap().task, expected.task, "at {t_s} s");
+            live.training.unwrap()
+        });
+        shown.collect()
+    };
+    let shown = shown_of(&path, &report, &[0.5, 1.5, 2.2, 2.9]);
+    let marks = |training: &Training| training.marks.iter().flatten().count();
+    assert_eq!(shown.iter().map(marks).collect::<Vec<_>>(), [0, 1, 2, 2]);
+    assert_eq!(shown.iter().map(|training| training.ended).collect::<Vec<_>>(), [false, false, false, true]);
+    let path = folder.path().join("wire.mcap");
+    let report = record_task("wire", &path, 8.0, |_| None);
+    let touches_s = report.iter().find(|objects| objects.task.as_ref().is_some_and(|task| task.loops[0].touches));
+    let touches_s = touches_s.unwrap().t_s;
+    let shown = shown_of(&path, &report, &[0.2, touches_s + 1e-4, 7.9]);
+    assert!(!shown[0].loops[0].touches && shown[1].loops[0].touches && shown[1].loops[0].on_wire, "{shown:?}");
+    assert!(shown[2].fraction > 0.1 && shown[2].touches >= 1, "{shown:?}");
+}
+
+fn stretch(from: &Path, to: &Path, seconds: Range<f64>) {
+    let reader = SessionReader::open(from).unwrap();
+    let begin_ns = plot_channels::beginning_ns(&reader).unwrap();
+    let at = |seconds: f64| begin_ns + (seconds * 1e9) as u64;
+    trim::write(&reader, "session", &(at(seconds.start)..at(seconds.end)), to, &AtomicBool::new(false)).unwrap();
+}
+
+#[test]
+fn a_stretch_without_a_journal_is_shown_as_far_as_it_is_plotted() {
+    let folder = tempfile::tempdir().unwrap();
+    let [path, part] = ["session.mcap", "part.mcap"].map(|name| folder.path().join(name));
+    record(&path, "bimanual", 5.0, |_| None);
+    stretch(&path, &part, 2.0..4.0);
+    let ticks = replayed(&path);
+    let mut past = open(&part);
+    until(&mut past, "read", |past| past.read_share() > 0.999);
+    assert!(past.report.limited.as_ref().is_some_and(|why| why.contains("journal")), "{:?}", past.report);
+    past.show(3.5);
+    past.live = None;
+    until(&mut past, "shown", |past| past.live.as_ref().is_some_and(|live| live.ticks[1].is_some()));
+    let shown = past.live.as_ref().unwrap().ticks[1].unwrap();
+    assert_eq!((shown.t_s, shown.rendered_n), (3.5, ticks[3500][1].unwrap().rendered_n));
+    assert!(!past.is_whole());
+}
+
+#[test]
+fn a_stretch_is_saved_beside_its_session_and_kept() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("session.mcap");
+    record(&path, "peg_transfer", 4.0, |_| None);
+    let mut past = open(&path);
+    until(&mut past, "shown", |past| past.live.is_some());
+    past.stretch_s = [Some(0.0), Some(2.5)];
+    for expected in ["Saved", "already"] {
+        past.save(&Context::default());
+        until(&mut past, "saved", |past| past.job.is_none());
+        assert!(past.report.job.as_ref().is_some_and(|words| words.contains(expected)), "{:?}", past.report);
+    }
+    let saved = folder.path().join("session-0.0-2.5.mcap");
+    assert!(folder.path().join("session-0.0-2.5.mcap.kept").exists());
+    let outcome = replay(RecordedFile::open(&saved).unwrap().journal().unwrap(), |_| ()).unwrap();
+    assert!(outcome.ticks >= 2200 && outcome.differs.is_none(), "{outcome:?}");
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 3, "no half a file is left");
+}
+
+#[test]
+fn damage_costs_what_is_damaged_and_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("session.mcap");
+    record(&path, "peg_transfer", 10.0, |_| None);
+    let ticks = replayed(&path);
+    let mut bytes = std::fs::read(&path).unwrap();
+    let middle = bytes.len() * 6 / 10;
+    bytes[middle..middle + 64].fill(0xa5);
+    std::fs::write(&path, bytes).unwrap();
+    let mut past = open(&path);
+    until(&mut past, "read", |past| past.read_share() > 0.999);
+    assert!(past.report.limited.is_some() && past.refused().is_none(), "{:?}", past.report);
+    settled(&mut past, 2.0);
+    assert!(same(&past.live.as_ref().unwrap().ticks, &ticks[2000]));
+    past.show(9.0);
+    past.live = None;
+    until(&mut past, "shown behind the damage", |past| past.live.is_some());
+    let shown = past.live.as_ref().unwrap().ticks[0].unwrap();
+    assert_eq!((shown.t_s, shown.measured_n), (9.0, ticks[9000][0].unwrap().measured_n));
+}
+
+#[test]
+fn what_is_no_session_is_refused_in_one_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("session.mcap");
+    for content in ["", "not a session at all"] {
+        std::fs::write(&path, content).unwrap();
+        let mut past = open(&path);
+        until(&mut past, "refused", |past| past.refused().is_some());
+        assert!(!past.refused().unwrap().contains('\n') && past.live.is_none());
+    }
+}
+
+#[test]
+fn a_window_that_is_closed_while_a_stretch_is_saved_leaves_no_half_of_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("session.mcap");
+    record(&path, "bimanual", 20.0, |_| None);
+    let mut past = open(&path);
+    until(&mut past, "open", |past| past.about.is_some());
+    past.stretch_s = [Some(0.0), Some(19.5)];
+    past.save(&Context::default());
+    let named = |ending: &str| {
+        let names = std::fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().file_name());
+        names.filter(|name| name.to_string_lossy().ends_with(ending)).count()
+    };
+    let began = Instant::now();
+    while named(".part") == 0 && named(".mcap") == 1 && began.elapsed() < TIMEOUT {
+        thread::yield_now();
+    }
+    drop(past);
+    assert_eq!(named(".part"), 0, "{} sessions", named(".mcap"));
+}
+
+/// Prints the time until a random moment is on the screen, and until every value is replayed.
+#[test]
+#[ignore = "needs a long session: NIMA_SESSION=FILE"]
+fn figures_of_scrubbing() {
+    let path = std::env::var_os("NIMA_SESSION").unwrap();
+    let mut past = open(Path::new(&path));
+    let began = Instant::now();
+    until(&mut past, "read", |past| past.read_share() > 0.999);
+    let end_s = past.about.unwrap().end_s;
+    eprintln!("{end_s:.0} s read in {:.1} s", began.elapsed().as_secs_f64());
+    let [mut shown, mut whole] = [Vec::new(), Vec::new()];
+    for turn in 0..200 {
+        let began = Instant::now();
+        past.show((f64::from(turn) * 0.618_034).fract() * end_s);
+        past.live = None;
+        past.extent = super::WorkerExtent::Plotted;
+        until(&mut past, "shown", |past| past.live.is_some());
+        shown.push(began.elapsed().as_secs_f64() * 1e3);
+        if turn % 4 == 0 {
+            until(&mut past, "replayed", Playback::is_whole);
+            whole.push(began.elapsed().as_secs_f64() * 1e3);
+        }
+    }
+    for (what, all) in [("shown", &mut shown), ("whole", &mut whole)] {
+        all.sort_by(f64::total_cmp);
+        let [median, late, worst] = [0.5, 0.95, 1.0].map(|fraction| all[((all.len() - 1) as f64 * fraction) as usize]);
+        eprintln!("{what}: median {median:.1} ms, 95 % {late:.1} ms, worst {worst:.1} ms of {}", all.len());
+    }
+}

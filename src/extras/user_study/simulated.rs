@@ -2,7 +2,7 @@
 //!
 //! They test the whole procedure from a study file to its report before the first participant arrives. They feel: what
 //! is more than the force that a person means to use slows the hand down, and it gives way (`docs/simulated.md`). They
-//! are no model of surgeons: the spread of skill and intended force is made up, and their answers do not depend on the
+//! are not a model of surgeons: the spread of skill and intended force is made up, and their answers do not depend on the
 //! condition.
 
 use fastrand::Rng;

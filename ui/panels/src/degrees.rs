@@ -49,8 +49,8 @@ pub fn degrees_ui(ui: &mut Ui, live: &LiveState, state: &mut DegreesState) {
             let [name, meaning] = key(rule);
             key_ui(ui, colour, name, meaning);
         }
-        ui.label(small(text::degrees::last_minutes(DEGREES_S / 60.0)));
     });
+    ui.label(small(text::degrees::last_minutes(DEGREES_S / 60.0)));
     switches_ui(ui, live, state);
     chart_ui(ui, live, *state);
     course_ui(ui, live, *state);
@@ -90,7 +90,7 @@ fn key(rule: DegreeRule) -> [&'static str; 2] {
 
 /// Draws the choice of axis and ticks, and the export.
 fn switches_ui(ui: &mut Ui, live: &LiveState, state: &mut DegreesState) {
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 3.0;
         let all = (None, text::degrees::ALL_AXES.get(), text::degrees::ALL_AXES_HOVER.get().to_owned());
         let axes = (0..).zip(AXES).map(|(axis, name)| (Some(axis), name, text::degrees::axis_hover(name)));

@@ -21,6 +21,8 @@ use super::traces_state::stepped;
 
 /// Height of the caption.
 const CAPTION: f32 = 40.0;
+/// Room of the legend at the upper left, in which no number of an axis is drawn.
+const LEGEND: Vec2 = vec2(190.0, 50.0);
 /// Smallest radius of the view, N.
 const MIN_N: f32 = 0.75;
 const RING: u32 = 48;
@@ -219,7 +221,8 @@ fn axes(painter: &Painter, view: &ForceProjection, reach_n: f32) {
             let force_n = i as f32 * step_n;
             let at = view.place(&(axis * force_n));
             painter.circle_filled(at, 1.6, theme::now().text_weak);
-            if i != 0 && name == "z" {
+            let legend = Rect::from_min_size(painter.clip_rect().min, LEGEND);
+            if i != 0 && name == "z" && !legend.contains(at) {
                 let words = format!("{force_n} N");
                 painter.text(
                     at - vec2(7.0, 0.0),

@@ -7,7 +7,7 @@ use nima_screen::{
     live::{LiveState, TREND_S},
     outbox::Outbox,
     theme,
-    widgets::{Sign, bar, sign, small, width_of},
+    widgets::{Sign, bar, fitting, sign, small, width_of},
 };
 use nima_words::{
     report_text::{COMPARED, mode_meaning, mode_name, newtons, newtons_in_three, three_digits},
@@ -21,6 +21,8 @@ const TREND_HEIGHT: f32 = 46.0;
 /// A smaller error is noise, and its ratio is meaningless, N.
 const MIN_N: f64 = 1e-4;
 
+/// Right end of a mode's error, from the left edge.
+const NUMBER_RIGHT: f32 = 200.0;
 /// Largest ratio and error that are shown to an audience, as a multiple of the error of delayed DFR.
 const PLAIN_MAX: f64 = 10.0;
 
@@ -159,8 +161,10 @@ fn mode_ui(ui: &mut Ui, error: &ModeError, active: bool) {
         sign(painter, Sign::Disc, egui::pos2(rect.left() + 4.0, top), 4.0, theme::now().rendered);
     }
     let font = if active { theme::strong(14.0) } else { theme::regular(14.0) };
-    painter.text(egui::pos2(rect.left() + 14.0, top), Align2::LEFT_CENTER, name, font.clone(), ink);
-    painter.text(egui::pos2(rect.left() + 200.0, top), Align2::RIGHT_CENTER, number, font, ink);
+    let room = NUMBER_RIGHT - 14.0 - width_of(painter, &number, font.clone()) - 8.0;
+    let name_font = fitting(painter, name, font.clone(), room);
+    painter.text(egui::pos2(rect.left() + 14.0, top), Align2::LEFT_CENTER, name, name_font, ink);
+    painter.text(egui::pos2(rect.left() + NUMBER_RIGHT, top), Align2::RIGHT_CENTER, number, font, ink);
     painter.text(
         egui::pos2(rect.right(), top),
         Align2::RIGHT_CENTER,

@@ -24,6 +24,8 @@ use super::gates::{GateView, answer, gates, history};
 
 const NODE: egui::Vec2 = vec2(82.0, 28.0);
 const DIAGRAM_HEIGHT: f32 = 118.0;
+/// Height of the title above the diagram, with the reason in up to two lines.
+const TITLE_HEIGHT: f32 = 56.0;
 /// Width from which two columns have room.
 const TWO_COLUMNS: f32 = 600.0;
 /// Height of a gate's row, and of a line of the answer.
@@ -149,7 +151,8 @@ fn why_text(why: TransitionCause) -> &'static str {
 }
 
 fn interlock_ui(ui: &mut Ui, live: &LiveState, side: Side) {
-    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), DIAGRAM_HEIGHT + 40.0), Sense::hover());
+    let (rect, response) =
+        ui.allocate_exact_size(vec2(ui.available_width(), DIAGRAM_HEIGHT + TITLE_HEIGHT), Sense::hover());
     let state = live.tick_of(side).map_or(LoopState::Idle, |tick| tick.state);
     let change = live.changes[side.index()];
     let since = change.map_or_else(
@@ -160,15 +163,12 @@ fn interlock_ui(ui: &mut Ui, live: &LiveState, side: Side) {
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, format!("{title}, {since}")));
     response.on_hover_text(text::safety::INTERLOCK_HOVER.get());
     let painter = ui.painter_at(rect);
-    painter.text(rect.left_top() + vec2(4.0, 2.0), Align2::LEFT_TOP, title, theme::strong(15.0), theme::now().text);
-    painter.text(
-        rect.left_top() + vec2(4.0, 22.0),
-        Align2::LEFT_TOP,
-        since,
-        theme::regular(12.5),
-        theme::now().text_weak,
-    );
-    let diagram = Rect::from_min_max(rect.min + vec2(0.0, 40.0), rect.max);
+    let width = rect.width() - 8.0;
+    let font = fitting(&painter, &title, theme::strong(15.0), width);
+    painter.text(rect.left_top() + vec2(4.0, 2.0), Align2::LEFT_TOP, title, font, theme::now().text);
+    let since = painter.layout(since, theme::regular(12.5), theme::now().text_weak, width);
+    painter.galley(rect.left_top() + vec2(4.0, 22.0), since, theme::now().text_weak);
+    let diagram = Rect::from_min_max(rect.min + vec2(0.0, TITLE_HEIGHT), rect.max);
     let node = vec2(NODE.x.min(0.172 * diagram.width()), NODE.y);
     let at = |i: usize| {
         let (_, x, y) = PLACES[i];

@@ -13,7 +13,7 @@ const BAND: f64 = 26.0;
 const PLOT: f64 = 130.0;
 /// Maximum number of marks in a band: more would hide it.
 const MARKS: usize = 200;
-/// Height of the row of mark numbers above the triangles; marks closer together than this share a label.
+/// Height of the row of mark numbers above the triangles; marks closer together than this have one label.
 const NUMBERS: f64 = 14.0;
 const APART: f64 = 20.0;
 /// Ticks further apart than this are not consecutive, s.

@@ -1,4 +1,4 @@
-//! What every part of the window draws with: theme and widgets, the state of the running loop ([`live`]), alarms, the
+//! The common parts of the window: theme and widgets, the state of the running loop ([`live`]), alarms, the
 //! operating field in 3-D ([`scene3d`]) and the outbox for the operator's commands.
 // These macros panic if stderr or stdout is closed.
 #![cfg_attr(not(test), deny(clippy::print_stderr, clippy::print_stdout))]

@@ -129,7 +129,8 @@ fn without_numbers(shape: &Shape) -> Shape {
         Shape::Vec(shapes) => Shape::Vec(shapes.iter().map(without_numbers).collect()),
         Shape::Text(text) if text.galley.text().starts_with(&*env::temp_dir().to_string_lossy()) => Shape::Noop,
         Shape::Text(text) if text.galley.text().contains(|letter: char| letter.is_ascii_digit()) => {
-            Shape::rect_filled(text.visual_bounding_rect(), 0.0, BAR)
+            // The room of the digits, not their ink: each has another margin.
+            Shape::rect_filled(text.galley.rect.translate(text.pos.to_vec2()), 0.0, BAR)
         }
         _ => shape.clone(),
     }

@@ -8,16 +8,18 @@ use egui_kittest::{
 };
 use nima_machine::messages::LoopState;
 
-use crate::bench::{console_of, press, until};
+use crate::bench::{console_of, pick, press, until};
 
 const SIZE: [f32; 2] = [1600.0, 1000.0];
+const HANDS: [(&str, &str); 2] = [("Left hand", "left"), ("Right hand", "right")];
 
 #[test]
 fn the_interlock_of_each_hand_shows_its_state_and_the_reason() {
     let mut harness = console_of("bimanual", SIZE, |app| app);
     until(&mut harness, "engaged", |tick| tick.state == LoopState::Engaged);
     press(&mut harness, "Safety");
-    for side in ["left", "right"] {
+    for (hand, side) in HANDS {
+        press(&mut harness, hand);
         harness.get_by_label_contains(&format!("Interlock, {side} hand: engaged, since"));
     }
     press(&mut harness, "Stop");
@@ -26,7 +28,8 @@ fn the_interlock_of_each_hand_shows_its_state_and_the_reason() {
     // A lamp follows its gate with a delay of some tenths of a second, so that it can be read.
     until(&mut harness, "a moment later", |tick| tick.t_s > stopped_s + 0.5);
     harness.step();
-    for side in ["left", "right"] {
+    for (hand, side) in HANDS {
+        press(&mut harness, hand);
         let begins = format!("Interlock, {side} hand: stopped, since");
         let report = harness.get_by_label_contains(&begins);
         assert!(report.accesskit_node().value().unwrap().ends_with("requested by the operator"));
@@ -66,7 +69,7 @@ fn one_key_marks_a_moment_also_while_the_traces_are_paused() {
     press(&mut harness, "Mark (E)");
     until(&mut harness, "later still", |tick| tick.t_s > 0.7);
     press(&mut harness, "View");
-    press(&mut harness, "Mark this moment (E)");
+    pick(&mut harness, "Mark this moment (E)");
     harness.step();
     let marks_s: Vec<f64> = harness.state().marks_s().collect();
     assert_eq!(marks_s.len(), 3);

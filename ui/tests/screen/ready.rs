@@ -74,7 +74,7 @@ fn all_calibrations_stand_on_one_page_and_each_is_repeated_by_its_button() {
     pick(&mut console, "Show Right arm, devices");
     read(&mut console, "This rig is simulated: it has no devices");
     assert!(!shows(&console, "never run"));
-    pick(&mut console, "Calibrate gravity");
+    pick(&mut console, "Calibrate gravity…");
     read(&mut console, "release it: nothing may touch the tool");
     pick(&mut console, "Back to the monitor");
     assert!(!shows(&console, "never run"), "a wizard of the panel returns to the panel");

@@ -18,7 +18,7 @@ use nima_panels::{
     tiles::{Arrangement, LayoutNode, Panel, PanelLayout},
 };
 
-use crate::bench::{console_of, press, toured, until, write_into};
+use crate::bench::{console_of, pick, press, toured, until, write_into};
 
 const SIZE: [f32; 2] = [1600.0, 1000.0];
 
@@ -49,7 +49,7 @@ fn layout_of(harness: &mut Harness<'_, ConsoleApp>) -> PanelLayout {
     harness.state_mut().settings_mut().layout.clone()
 }
 
-/// Returns the panels that share a group of tabs with this one.
+/// Returns the panels in the same group of tabs as this one.
 fn beside(node: &LayoutNode, panel: Panel) -> Option<Vec<Panel>> {
     match node {
         LayoutNode::Panel(_) => None,
@@ -94,7 +94,7 @@ fn an_edge_is_dragged_and_the_default_comes_back() {
     assert!((after.left() - before.left() - 120.0).abs() < 4.0, "{before:?} {after:?}");
     assert!(layout_of(&mut harness).places.is_some());
     press(&mut harness, "View");
-    press(&mut harness, "Reset layout");
+    pick(&mut harness, "Reset layout");
     harness.run_steps(2);
     assert_eq!(layout_of(&mut harness).places, None);
     assert!((field(&harness).left() - before.left()).abs() < 1.0);
@@ -106,8 +106,8 @@ fn a_panel_is_closed_and_opened_from_the_menu_and_its_neighbours_take_the_room()
     let mut harness = console(folder.path());
     let before = harness.get_by_label("Operating field").rect();
     press(&mut harness, "Close Traces");
-    press(&mut harness, "Close Safety");
     press(&mut harness, "Close Force space");
+    press(&mut harness, "Close Safety");
     harness.run_steps(2);
     let after = harness.get_by_label("Operating field").rect();
     assert!(after.height() > 1.5 * before.height(), "{before:?} {after:?}");
@@ -137,17 +137,17 @@ fn a_panel_is_closed_and_opened_from_the_menu_and_its_neighbours_take_the_room()
 fn a_tab_is_brought_to_the_front_by_the_keyboard_and_the_default_still_goes_by_the_window() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = console(folder.path());
-    harness.get_by_role_and_label(Role::Button, Panel::ForceSpace.title()).focus();
+    harness.get_by_role_and_label(Role::Button, Panel::Safety.title()).focus();
     harness.step();
     harness.key_press(egui::Key::Enter);
     harness.run_steps(3);
-    harness.get_by_role_and_label(Role::Button, "Close Force space");
+    harness.get_by_role_and_label(Role::Button, "Close Safety");
     let layout = layout_of(&mut harness);
-    assert!(layout.front.contains(&Panel::ForceSpace) && layout.places.is_none());
+    assert!(layout.front.contains(&Panel::Safety) && layout.places.is_none());
     harness.set_size(vec2(1280.0, 720.0));
     harness.run_steps(4);
-    harness.get_by_role_and_label(Role::Button, "Close Force space");
-    harness.get_by_role_and_label(Role::Button, Panel::Safety.title());
+    harness.get_by_role_and_label(Role::Button, "Close Safety");
+    harness.get_by_role_and_label(Role::Button, Panel::ForceSpace.title());
     let safety = tab(&harness, Panel::Safety);
     let space = tab(&harness, Panel::ForceSpace);
     assert!((safety.center().y - space.center().y).abs() < 1.0, "no room next to the traces: a tab");
@@ -222,6 +222,7 @@ fn the_gates_of_the_selected_hand_are_shown_and_do_not_move_when_the_answer_gets
     let mut harness = console_of("bimanual", SIZE, move |app| app.with_settings(toured(&path)));
     until(&mut harness, "engaged", |tick| tick.state == nima_machine::messages::LoopState::Engaged);
     harness.run_steps(3);
+    press(&mut harness, "Safety");
     for hand in ["Left hand", "Right hand"] {
         press(&mut harness, hand);
         let chosen = harness.get_by_role_and_label(Role::Button, hand).accesskit_node().toggled();

@@ -156,13 +156,22 @@ pub fn why_not_to_change(live: &LiveState, is_starting: bool) -> Option<&'static
     })
 }
 
+/// Lets lines wrap at the visible width: the table of devices is wider than a narrow window and scrolls.
+pub fn wrap_to_visible(ui: &mut Ui) {
+    let visible = ui.clip_rect().right() - ui.min_rect().left();
+    ui.set_max_width(ui.available_width().min(visible - 16.0));
+}
+
 /// Draws the panel; for a rig without devices it says that everything is simulated. Returns a requested change of the
 /// rig.
 pub fn devices_ui(ui: &mut Ui, live: &LiveState, state: &mut DevicesState) -> Option<RigEdit> {
     state.is_seen = true;
     if live.roster.is_empty() {
-        ui.label(weak(text::devices::NONE.get()));
-        ui.add(Label::new(small(text::devices::NONE_TO_CONNECT.get())).wrap());
+        ui.scope(|ui| {
+            wrap_to_visible(ui);
+            ui.label(weak(text::devices::NONE.get()));
+            ui.add(Label::new(small(text::devices::NONE_TO_CONNECT.get())).wrap());
+        });
         image_ui(ui, state);
         return None;
     }

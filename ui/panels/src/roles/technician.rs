@@ -12,8 +12,8 @@ use nima_words::text;
 
 use super::{Panels, Wishes, acts};
 use crate::{
-    calibrations_ui, degrees_ui, devices_ui, feedback_ui, force_space_ui, force_traces_ui, horizon_ui, link_ui,
-    safety_ui,
+    calibrations_ui, degrees_ui, devices, devices_ui, feedback_ui, force_space_ui, force_traces_ui, horizon_ui,
+    link_ui, safety_ui,
     tiles::{Panel, PanelLayout},
     timing_ui,
 };
@@ -65,6 +65,7 @@ pub(super) fn technician_ui(
 fn devices_then_ui(ui: &mut Ui, live: &LiveState) {
     let elsewhere = live.of == ScreenSource::Elsewhere;
     Frame::new().inner_margin(Margin::same(8)).show(ui, |ui| {
+        devices::wrap_to_visible(ui);
         if live.devices_then.is_empty() {
             ui.label(if elsewhere { text::monitor::SIMULATED.get() } else { text::playback::SIMULATED.get() });
         }

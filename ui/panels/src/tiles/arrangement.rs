@@ -101,10 +101,10 @@ fn research(size: Vec2) -> LayoutNode {
     let under = if middle > FORCE_SPACE_FROM {
         row(vec![
             (middle - FORCE_SPACE, tabs(&[Panel::Traces])),
-            (FORCE_SPACE, tabs(&[Panel::Safety, Panel::ForceSpace])),
+            (FORCE_SPACE, tabs(&[Panel::ForceSpace, Panel::Safety])),
         ])
     } else {
-        tabs(&[Panel::Traces, Panel::Safety, Panel::ForceSpace])
+        tabs(&[Panel::Traces, Panel::ForceSpace, Panel::Safety])
     };
     let between = column(vec![(height - traces, tabs(&[Panel::Field, Panel::Devices])), (traces, under)]);
     row(vec![(KNOBS, left), (middle, between), (FIGURES, right)])
@@ -117,7 +117,7 @@ fn narrow(width: f32, height: f32, traces: f32) -> LayoutNode {
         (width - KNOBS - FIGURES, tabs(&[Panel::Field, Panel::Devices])),
         (FIGURES, tabs(&[Panel::Horizon, Panel::Degrees, Panel::Timing, Panel::Tradeoff])),
     ]);
-    let under = tabs(&[Panel::Traces, Panel::Safety, Panel::ForceSpace, Panel::Link]);
+    let under = tabs(&[Panel::Traces, Panel::ForceSpace, Panel::Safety, Panel::Link]);
     row(vec![(KNOBS, left), (width - KNOBS, column(vec![(height - traces, above), (traces, under)]))])
 }
 

@@ -19,7 +19,7 @@ use crate::{
 
 /// Displayed forces are smoothed with this time constant, s, which calms the last digit.
 const SMOOTHING_S: f64 = 0.05;
-/// A change larger than this (N) is shown at once: the digits must not contradict the arrow and the bar beside them. About
+/// A change larger than this (N) is shown at once: the digits must not contradict the arrow and the bar next to them. About
 /// ten times the noise of the sensors.
 const JUMP_N: f64 = 0.2;
 

@@ -8,7 +8,7 @@ pub const DARK: Text = Text::of("Dark", "Dunkel");
 pub const LIGHT: Text = Text::of("Light", "Hell");
 pub const COLOUR_BLIND: Text = Text::of("Colours for colour-blind users", "Farben für Farbenblinde");
 pub const COLOUR_BLIND_HOVER: Text = Text::of(
-    "Blue and orange instead of green, which many people cannot tell from red",
+    "Blue and orange instead of green, which many people cannot distinguish from red",
     "Blau und Orange statt Grün, das viele nicht von Rot unterscheiden",
 );
 pub const TOUCH: Text = Text::of("Large controls for touch", "Große Elemente für Finger");

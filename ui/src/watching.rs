@@ -7,9 +7,9 @@ use std::{
 
 use clap::Args;
 use nima_endoscope::FrameQueue;
-use nima_screen::current_session::WatchStatus;
 use nima_session::sinks::Audience;
 use nima_simulation::SimulationPlan;
+use nima_words::text::current_session::WatchStatus;
 
 use crate::extras;
 

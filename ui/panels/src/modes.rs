@@ -19,7 +19,7 @@ pub(super) fn modes_ui(ui: &mut Ui, live: &LiveState, outbox: &mut Outbox) {
     let is_of_research = !EVERYDAY.contains(&live.mode());
     let heading = RichText::new(text::feedback::RESEARCH_MODES.get()).text_style(egui::TextStyle::Small);
     // The mode in use is never out of sight.
-    let list = CollapsingHeader::new(heading).id_salt("research modes").open(is_of_research.then_some(true));
+    let list = CollapsingHeader::new(heading).id_salt("research_modes").open(is_of_research.then_some(true));
     let list = list.show(ui, |ui| {
         for mode in OF_RESEARCH {
             mode_ui(ui, live, mode, outbox);

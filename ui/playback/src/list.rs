@@ -8,13 +8,13 @@ use std::{
 
 use egui::{Button, CentralPanel, Context, Frame, Grid, Label, Margin, RichText, ScrollArea, TextEdit, Ui, vec2};
 use nima_screen::{
-    current_session::DisplayState,
     opener,
     picking::Picking,
     theme,
     widgets::{Sign, sign_ui, small, weak},
 };
 use nima_session::session_store::{keep, remove, set_note};
+use nima_words::text::current_session::DisplayState;
 use nima_words::{language, text};
 
 use super::{

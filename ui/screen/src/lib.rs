@@ -8,7 +8,6 @@ pub mod alarms;
 pub mod background;
 pub mod canvas;
 pub mod compare_cost;
-pub mod current_session;
 pub mod deadlines;
 pub mod degree_record;
 pub mod double_buffer;

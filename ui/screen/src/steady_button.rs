@@ -177,7 +177,7 @@ mod tests {
         pointer(&mut window, false);
         window.run_steps(2);
         assert_eq!(window.state().acted, 0, "the person pressed Next");
-        assert!(window.query_by_label_contains("has become").is_some());
+        assert!(window.query_by_label_contains("now reads").is_some());
         assert!(window.query_by_label("Start again").is_some());
     }
 }

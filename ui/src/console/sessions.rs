@@ -14,7 +14,6 @@ use nima_machine::runtime::Tap;
 use nima_recording::store::utc_now;
 use nima_screen::{
     alarms::{Alarm, AlarmKind, AlarmPriority, log::AlarmLog},
-    current_session::DisplayState,
     image_recorder, recording,
 };
 use nima_session::{
@@ -25,6 +24,7 @@ use nima_session::{
     sinks::{Audience, Destination},
 };
 use nima_simulation::SimulationPlan;
+use nima_words::text::current_session::DisplayState;
 use nima_words::{
     language::{self, Language},
     report_text::{self, chain},

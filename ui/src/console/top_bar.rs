@@ -19,7 +19,6 @@ use nima_panels::{
 };
 use nima_screen::{
     alarms::{MissingDevice, strip::Alarms},
-    current_session::DisplayState,
     live::{LiveState, RefusedCommand},
     outbox::Outbox,
     scene3d::side_name,
@@ -27,6 +26,7 @@ use nima_screen::{
     theme,
     widgets::{Sign, next_button, sign, small, weak, with_icon},
 };
+use nima_words::text::current_session::DisplayState;
 use nima_words::{
     report_text::{cure_of_refusal, refused_because, side_word, state_name},
     text,

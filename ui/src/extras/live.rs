@@ -3,9 +3,10 @@
 use std::net::SocketAddr;
 
 use nima_endoscope::FrameQueue;
-use nima_screen::{current_session::WatchStatus, recording::PROGRAM, stderr::print_line};
+use nima_screen::{recording::PROGRAM, stderr::print_line};
 use nima_session::sinks::Audience;
 use nima_simulation::SimulationPlan;
+use nima_words::text::current_session::WatchStatus;
 
 use super::Extra;
 use crate::watching::{Show, WatchServer};

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use crate::report_text::{has_text, literals, of_extras, sources};
 
 /// Texts that are the same in both languages: names, abbreviations, terms that German engineers use as they are.
-const SAME: [&str; 27] = [
+const SAME: [&str; 29] = [
     "Alarm",
     "Ctrl ",
     "Ctrl Shift ",
@@ -18,6 +18,8 @@ const SAME: [&str; 27] = [
     "IMA, NIMA",
     "Jitter",
     "Kalman",
+    "Layout",
+    "Layout: {name}",
     "Linear",
     "Name",
     "Offset",

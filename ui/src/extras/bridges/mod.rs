@@ -11,10 +11,11 @@ use nima_bridges::{
 use nima_endoscope::{CompressedFrame, FrameQueue, LatestFrame, jpeg};
 use nima_machine::{messages::Fault, rig::Side};
 use nima_score::TaskFile;
-use nima_screen::{current_session::WatchStatus, recording::PROGRAM, stderr::print_line};
+use nima_screen::{recording::PROGRAM, stderr::print_line};
 use nima_session::sinks::Audience;
 use nima_simulation::SimulationPlan;
 use nima_words::report_text::Remedy as _;
+use nima_words::text::current_session::WatchStatus;
 
 use super::Extra;
 use crate::watching::{INSTALLED, Show, WatchServer};

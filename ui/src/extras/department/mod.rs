@@ -5,9 +5,10 @@ mod engine;
 use std::net::SocketAddr;
 
 use nima_endoscope::FrameQueue;
-use nima_screen::{current_session::WatchStatus, stderr::print_line};
+use nima_screen::stderr::print_line;
 use nima_session::sinks::Audience;
 use nima_simulation::SimulationPlan;
+use nima_words::text::current_session::WatchStatus;
 
 use super::Extra;
 use crate::{

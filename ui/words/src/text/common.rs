@@ -16,7 +16,7 @@ pub fn hand(side: &str) -> String {
 /// Returns the reason why a click on a button with another label did not act.
 pub fn has_become(label: &str) -> String {
     text_format!(
-        "The button now reads \u{201c}{label}\u{201d}: press it again if you mean that",
+        "The button now reads “{label}”: press it again if you mean that",
         "Die Schaltfläche heißt inzwischen „{label}“: bei Bedarf noch einmal drücken"
     )
 }

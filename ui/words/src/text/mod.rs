@@ -14,6 +14,7 @@ pub mod checkup;
 pub mod commands;
 pub mod common;
 pub mod correspondence;
+pub mod current_session;
 pub mod degrees;
 pub mod devices;
 pub mod endoscope_view;

@@ -168,7 +168,7 @@ pub fn of_session(when: &str, name: &str) -> String {
 pub fn began(utc: Option<&str>) -> String {
     let unknown = || word("unknown date", "Datum unbekannt").to_owned();
     let Some(utc) = utc else { return unknown() };
-    let local = |begin: Timestamp| begin.to_zoned(TimeZone::system()).strftime("%Y-%m-%d  %H:%M:%S").to_string();
+    let local = |begin: Timestamp| begin.to_zoned(TimeZone::system()).strftime("%F  %T").to_string();
     utc.parse().map_or_else(|_| unknown(), local)
 }
 

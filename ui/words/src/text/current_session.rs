@@ -2,10 +2,8 @@
 
 use std::path::PathBuf;
 
-use nima_words::{
-    language::{text_format, word},
-    text,
-};
+use super::sessions::disk_left;
+use crate::language::{text_format, word};
 
 /// Address and number of viewers.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -61,9 +59,7 @@ impl DisplayState {
         let watched = self.watched.iter().fold(String::new(), |words, one| {
             words + &text_format!("\nShared at {}: {} watching", "\nZuschauer über {}: jetzt {}", one.at, one.watchers)
         });
-        let disk = self
-            .free_bytes
-            .map_or_else(String::new, |free_bytes| format!("\n{}", text::sessions::disk_left(free_bytes)));
+        let disk = self.free_bytes.map_or_else(String::new, |free_bytes| format!("\n{}", disk_left(free_bytes)));
         let path = self.path.display();
         let megabytes = self.bytes as f64 * 1e-6;
         let images = if self.images > 0 {

@@ -105,6 +105,11 @@ pub trait Wizard: std::fmt::Debug {
     fn is_done(&self) -> bool {
         true
     }
+    /// Returns whether the next step is also offered before the goal is met: its result names what is wrong with the data,
+    /// which may be the reason why the goal cannot be met.
+    fn may_go_early(&self) -> bool {
+        false
+    }
     /// Acts as a technician without a screen in this step; returns whether it is complete.
     fn attend(&mut self, _binding: &Binding) -> bool {
         self.is_done()
@@ -135,7 +140,12 @@ pub(super) fn wizard_ui(wizard: &mut dyn Wizard, ui: &mut Ui, binding: &Binding)
     let steps = wizard.steps();
     let now = wizard.frame_mut().step;
     let following = wizard.frame_mut().following();
-    let going_on = GoingOn { may: wizard.may_go_on(binding), is_done: wizard.is_done(), following };
+    let going_on = GoingOn {
+        may: wizard.may_go_on(binding),
+        is_done: wizard.is_done(),
+        may_go_early: wizard.may_go_early(),
+        following,
+    };
     let mut wish = steps_ui(ui, steps, now, &going_on);
     ui.add_space(theme::GAP);
     if let Some(notice) = wizard.notice() {
@@ -171,6 +181,7 @@ struct GoingOn {
     may: Result<(), &'static str>,
     /// The current step is complete.
     is_done: bool,
+    may_go_early: bool,
     /// The step after the last one.
     following: Option<GoOn>,
 }
@@ -207,11 +218,12 @@ fn steps_ui(ui: &mut Ui, steps: &[WizardStep], now: usize, going_on: &GoingOn) -
         let may = match (following, last) {
             (Some(_), _) => Ok(()),
             (None, true) => Err(text::wizards::LAST_STEP.get()),
-            (None, false) if going_on.is_done => going_on.may,
+            (None, false) if going_on.is_done || going_on.may_go_early => going_on.may,
             (None, false) => going_on.may.and(Err(text::wizards::NEEDS_GOAL.get())),
         };
+        let is_offered = following.is_some() || going_on.is_done;
         let next = SteadyButton { id: Id::unique(("next", now)), label: &name, meaning: "", may, waits_s: PATIENT_S };
-        if next.ui(ui, |name, enabled| next_button(name, enabled).min_size(size)) {
+        if next.ui(ui, |name, enabled| next_button(name, enabled && is_offered).min_size(size)) {
             wish = Some(following.map_or(WizardRequest::GoTo(now + 1), WizardRequest::GoOn));
         }
         if let (Err(reason), false) = (may, last) {

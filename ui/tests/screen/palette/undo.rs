@@ -79,7 +79,7 @@ fn panels_and_plots_are_put_back() {
     let mut states = vec![state(&mut console)];
     let steps: [Does<'_>; 5] = [
         &|console| press(console, "Close Traces"),
-        &|console| press(console, "Close Safety"),
+        &|console| press(console, "Close Force space"),
         &|console| choose(console, Action::Light(true)),
         &|console| choose(console, Action::Draws(MenuSwitch::Ceiling)),
         &|console| choose(console, Action::Larger),

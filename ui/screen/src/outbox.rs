@@ -59,7 +59,6 @@ impl Outbox {
         self.flush_into(|command| handle.is_some_and(|handle| handle.send(command)));
     }
 
-    /// Returns the waiting commands as sent.
     /// Takes the waiting commands without sending them.
     pub fn sent(&mut self) -> Vec<Command> {
         std::mem::take(&mut self.waiting)

@@ -7,6 +7,7 @@ mod connecting;
 mod dispatch;
 mod frame_rate;
 mod listing;
+mod loop_start;
 mod opening;
 mod paging;
 mod playback_mode;
@@ -22,28 +23,23 @@ use std::{
 
 use eframe::glow;
 use egui::{Frame, Id, Margin, Panel, Ui, UiBuilder};
-use nima_machine::{
-    config::RigConfig,
-    messages::Command,
-    rig::Side,
-    runtime::{self, Assembly, LoopHandle, LoopStartError},
-};
+use nima_machine::{config::RigConfig, messages::Command, rig::Side, runtime::LoopHandle};
 use nima_panels::{rig_choice::RigChoice, roles::Panels, settings::SettingsStore};
 use nima_playback::{Playback, list::SessionList};
 use nima_screen::{
     alarms::judge,
     canvas::{Canvas, Surface, renderer_of},
     frames::FrameMeter,
-    link::{RemoteLine, Reopen},
+    link::Reopen,
     live::LiveState,
     loop_connection::{LoopConnection, LoopMessage},
-    objects::{self, OfSimulation},
+    objects,
     outbox::Outbox,
     run_log::RunLog,
     scene3d::SceneView,
     theme,
 };
-use nima_simulation::{ObjectFeed, SimulationPlan, scene::Scene, screen::Screen};
+use nima_simulation::{ObjectFeed, scene::Scene, screen::Screen};
 use nima_wizards::{Wizards, active_calibrations::ActiveCalibrations};
 use nima_words::{
     language::{self, Language},
@@ -70,6 +66,8 @@ use crate::{
 };
 use checking::CheckPage;
 use listing::Listing;
+use loop_start::door_of;
+pub(crate) use loop_start::{StartedLoop, start_recorded};
 use starting::StartingRig;
 
 /// Antialiasing in 3-D is switched off if the median time between frames is longer than this (fewer than 26 frames per
@@ -136,27 +134,6 @@ pub struct ConsoleApp {
     /// Few frames are drawn, because nothing is engaged.
     calm: bool,
 }
-
-/// Starts the loop of a plan, recorded if sessions are recorded.
-pub(crate) fn start_recorded(
-    plan: &SimulationPlan,
-    sessions: &mut ConsoleSessions,
-    line: Option<Box<dyn RemoteLine>>,
-) -> Result<StartedLoop, LoopStartError> {
-    let (assembly, mut watched) = plan.watched_assembly()?;
-    let assembly = Assembly { tap: sessions.begin(plan), ..assembly };
-    if let Some(watched) = watched.as_mut().and_then(ObjectFeed::another) {
-        sessions.watch(OfSimulation::source(plan, watched));
-    }
-    let handle = runtime::start(match line {
-        Some(line) => line.join(assembly),
-        None => assembly,
-    })?;
-    Ok((handle, watched))
-}
-
-/// A running loop, and the source of a simulated rig's objects.
-pub(crate) type StartedLoop = (LoopHandle, Option<ObjectFeed>);
 
 impl ConsoleApp {
     /// Creates the console for a running loop. Sets fonts and style of the context; draws in 3-D if OpenGL is available.
@@ -256,71 +233,6 @@ impl ConsoleApp {
         }
         (self.live.bias_side, self.live.bias_moved_n) = self.active.bias_moved().unzip();
         self.live.tested = self.checking.tested();
-    }
-
-    /// Ends the loop and restarts it idle: only the operator engages it. Not possible in a stop or a fault.
-    fn restart(&mut self, rig: RigConfig, scene: Scene) -> Result<(), String> {
-        rig.validate().and_then(|()| scene.validate()).map_err(|error| nima_words::report_text::quoted(&error))?;
-        self.take_in();
-        if let Some(why) = text::calibrations::closed(self.live.state()) {
-            return Err(why.to_owned());
-        }
-        // End the old loop first: a rig must have only one controller.
-        drop(self.door.take());
-        self.sessions.end();
-        self.start_loop(rig, scene)
-    }
-
-    /// Starts the loop of this rig, idle, after the old one has ended.
-    fn start_loop(&mut self, mut rig: RigConfig, scene: Scene) -> Result<(), String> {
-        let line = match &self.reopen {
-            Some(reopen) => reopen.open(&mut rig, &scene).map_err(|error| {
-                let cause = format!("{error:#}");
-                text::calibrations::not_started_again(&cause)
-            })?,
-            None => None,
-        };
-        let door = line.as_ref().map(|line| line.door());
-        self.active.bind(&rig, &scene);
-        let calibrations = self.active.calibrations(&rig);
-        let rig = self.active.with_checked(rig);
-        let plan = SimulationPlan { rig: rig.clone(), scene: scene.clone(), calibrations, engage: false };
-        let run = self.page.as_mut().and_then(|page| page.run_mut());
-        let started =
-            match (run, self.simulated_speed) {
-                (Some(run), speed) => {
-                    let audiences = self.sessions.blind_audiences(&plan, &run.name());
-                    run.start(&plan, speed, (self.sessions.reel(), audiences))
-                }
-                (None, Some(speed)) => nima_simulation::start_watched(&plan, speed)
-                    .map_err(|error| nima_words::report_text::quoted(&error)),
-                (None, None) => start_recorded(&plan, &mut self.sessions, line)
-                    .map_err(|error| nima_words::report_text::quoted(&error)),
-            };
-        let started = started.map_err(|error| text::calibrations::not_started_again(&error));
-        let rough_edges = self.live.rough_edges;
-        self.live = LiveState::new(rig, scene);
-        self.live.rough_edges = rough_edges;
-        self.live.line = door;
-        self.panels.forces.begin_anew();
-        self.history.adopt();
-        self.panels.devices.begin_anew();
-        self.panels.demo.begin_anew();
-        self.checking.forget();
-        self.outbox = Outbox::default();
-        let (handle, watched) = started?;
-        self.door = Some(door_of(handle, &self.ctx));
-        self.objects = watched;
-        self.leave_when_asked();
-        Ok(())
-    }
-
-    /// Applies the choice of the Trade-off panel.
-    fn apply_tradeoff(&mut self, rig: RigConfig) {
-        let outcome = self.restart(rig, self.live.scene.clone());
-        if let Some(tradeoff) = &mut self.panels.tradeoff {
-            tradeoff.restarted(outcome);
-        }
     }
 
     fn layout(&mut self, ui: &mut Ui) {
@@ -442,11 +354,4 @@ impl eframe::App for ConsoleApp {
             surface.destroy(gl);
         }
     }
-}
-
-/// Connects to a loop that wakes the window of this context.
-fn door_of(handle: LoopHandle, ctx: &egui::Context) -> LoopConnection {
-    let ctx = ctx.clone();
-    // Wait briefly, because egui would otherwise draw two frames.
-    LoopConnection::new(handle, move || ctx.request_repaint_after(Duration::from_millis(1)))
 }

@@ -12,7 +12,11 @@ use nima_screen::{
     theme,
     widgets::{small, still},
 };
-use nima_words::{language::word, report_text::UNKNOWN, text};
+use nima_words::{
+    language::word,
+    report_text::{UNKNOWN, sentence},
+    text,
+};
 
 use super::{
     axis::{marks, near_end, plain, signed},
@@ -49,9 +53,7 @@ pub(super) fn summary(history: &SignalHistory, plot: TracePlot, (from_s, to_s): 
         };
         text::traces::summary(line.name.get(), [now, max].map(read), to_s - from_s)
     });
-    let words = lines.collect::<Vec<_>>().join("; ");
-    let mut letters = words.chars();
-    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+    sentence(&lines.collect::<Vec<_>>().join("; "))
 }
 
 /// Draws the values at the cursor of another plot, in the corner of this one.

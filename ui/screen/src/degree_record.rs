@@ -82,6 +82,15 @@ impl DegreeCourse {
     }
 }
 
+/// Returns the degree by this console's rule: of the mode in use, or of the identification for a mode without its own.
+pub fn chosen_degree(tick: &Tick) -> u8 {
+    let report = &tick.identification;
+    match tick.mode {
+        mode @ (Mode::Matched | Mode::Nima | Mode::Best) => report.degree_of(mode),
+        _ => report.degree,
+    }
+}
+
 /// Degrees of the engaged ticks of the last minutes: of all, and of those in contact.
 #[derive(Clone, Debug)]
 pub struct DegreeRecord {
@@ -102,9 +111,8 @@ impl DegreeRecord {
         if tick.state != LoopState::Engaged {
             return;
         }
-        let of_matched = matches!(tick.mode, Mode::Matched | Mode::Nima | Mode::Best);
         let report = &tick.identification;
-        let console = if of_matched { report.degree_of(tick.mode) } else { report.degree };
+        let console = chosen_degree(tick);
         let is_compared = report.modes.contains(Mode::Literal);
         let mut degrees = [None; RULES];
         degrees[DegreeRule::Console.index()] = Some(console);

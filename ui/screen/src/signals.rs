@@ -5,6 +5,8 @@ use nima_core::impedance::Mode;
 use nima_machine::messages::Tick;
 use nima_words::{language::Text, text};
 
+use crate::degree_record::chosen_degree;
+
 /// Number of values per tick.
 pub const CHANNELS: usize = 18;
 
@@ -25,8 +27,6 @@ pub fn signals_of(tick: &Tick, before: Option<TipThen>) -> [f32; CHANNELS] {
     });
     let report = &tick.identification;
     let is_compared = report.modes.contains(Mode::Literal);
-    let of_matched = matches!(tick.mode, Mode::Matched | Mode::Nima | Mode::Best);
-    let degree = if of_matched { report.degree_of(tick.mode) } else { report.degree };
     [
         m.x,
         m.y,
@@ -43,7 +43,7 @@ pub fn signals_of(tick: &Tick, before: Option<TipThen>) -> [f32; CHANNELS] {
         speed_mm_s.unwrap_or(f64::NAN),
         tick.gates.gain,
         tick.gates.governed,
-        f64::from(degree),
+        f64::from(chosen_degree(tick)),
         if is_compared { f64::from(report.paper_degree) } else { f64::NAN },
         tick.wrist.map_or(f64::NAN, |wrist| wrist.raw.torque_nm.norm() * 1e3),
     ]

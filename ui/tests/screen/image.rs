@@ -29,6 +29,9 @@ const TOLERANCE: f32 = 12.0;
 /// Colour of the bars instead of texts with a digit.
 const BAR: Color32 = Color32::GRAY;
 
+/// Smallest width of a bar: that of "100 s".
+const BAR_WIDTH_MIN: f32 = 36.0;
+
 /// Longest time in which a busy computer finishes drawing.
 const SETTLING_TIME: Duration = Duration::from_secs(10);
 
@@ -129,8 +132,10 @@ fn without_numbers(shape: &Shape) -> Shape {
         Shape::Vec(shapes) => Shape::Vec(shapes.iter().map(without_numbers).collect()),
         Shape::Text(text) if text.galley.text().starts_with(&*env::temp_dir().to_string_lossy()) => Shape::Noop,
         Shape::Text(text) if text.galley.text().contains(|letter: char| letter.is_ascii_digit()) => {
-            // The room of the digits, not their ink: each has another margin.
-            Shape::rect_filled(text.galley.rect.translate(text.pos.to_vec2()), 0.0, BAR)
+            // The room of the digits, not their ink: each has another margin. A count that loses a digit keeps its room.
+            let mut room = text.galley.rect.translate(text.pos.to_vec2());
+            room.set_width(room.width().max(BAR_WIDTH_MIN));
+            Shape::rect_filled(room, 0.0, BAR)
         }
         _ => shape.clone(),
     }

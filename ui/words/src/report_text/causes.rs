@@ -12,8 +12,8 @@ use super::{
     findings::finding_text,
     names::role_name,
     quoted,
-    ready::{capital, with},
-    refused_because, side_word,
+    ready::with,
+    refused_because, sentence, side_word,
     sides::{arm_stuck, exchanged, handle_askew, handle_pulls, handle_stuck, marker_stuck, no_push, trocar_moved},
 };
 use crate::language::{Text, text_format, word};
@@ -124,7 +124,7 @@ fn other_fault(fault: Fault) -> [String; 2] {
 fn refused(why: Refusal) -> [String; 2] {
     [
         text_format!("The loop refused the test: {}", "Die Regelung lehnte den Test ab: {}", refused_because(why)),
-        capital(cure_of_refusal(why)),
+        sentence(cure_of_refusal(why)),
     ]
 }
 
@@ -223,7 +223,7 @@ fn not_released(why: Option<Refusal>) -> [String; 2] {
     };
     [
         text_format!("The release was refused: {}", "Das Lösen wurde abgelehnt: {}", refused_because(why)),
-        capital(cure_of_refusal(why)),
+        sentence(cure_of_refusal(why)),
     ]
 }
 
@@ -264,7 +264,7 @@ fn found(place: usize, finding: &nima_machine::rig::checkup::CheckupFinding, ros
         );
     };
     let [cause, cure] = finding_text(kind, finding);
-    [format!("{}: {cause}", capital(&name(place, roster))), cure]
+    [format!("{}: {cause}", sentence(&name(place, roster))), cure]
 }
 
 fn bias_unseen(why: NotChecked) -> [String; 2] {

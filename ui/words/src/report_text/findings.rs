@@ -5,7 +5,7 @@ use nima_machine::rig::{PartKind, checkup::CheckupFinding};
 use super::{
     channels::{channel_group, channel_name, marker},
     numbers::three_digits,
-    ready::capital,
+    sentence,
 };
 use crate::language::{Text, text_format, word};
 
@@ -208,7 +208,7 @@ fn at_the_end(kind: PartKind, channel: usize, is: &str, range: &str) -> [String;
         text_format!(
             "{} is at {is}, close to the end of its range ({range})",
             "{} ist bei {is}, nahe am Ende des Bereichs ({range})",
-            capital(&channel_name(kind, channel))
+            sentence(&channel_name(kind, channel))
         ),
         cure.to_owned(),
     ]

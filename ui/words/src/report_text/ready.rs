@@ -6,11 +6,11 @@ use nima_machine::{
     rig::Side,
 };
 
-use super::{ShortText as _, side_word};
+use super::{ShortText as _, sentence, side_word};
 use crate::language::{text_format, word};
 
 pub fn check_name(check: ReadyPoint) -> String {
-    let of_arm = |side: Side, words: &str| text_format!("{} arm: {words}", "{}: {words}", capital(side_word(side)));
+    let of_arm = |side: Side, words: &str| text_format!("{} arm: {words}", "{}: {words}", sentence(side_word(side)));
     match check {
         ReadyPoint::Devices => word("Devices present and steady", "Geräte vorhanden und stabil").to_owned(),
         ReadyPoint::Rates => word("Rates and losses of the devices", "Raten und Verluste der Geräte").to_owned(),
@@ -32,11 +32,6 @@ pub fn check_name(check: ReadyPoint) -> String {
         }
         ReadyPoint::Watchdog(Watchdog::Link) => word("Watchdog of the link", "Watchdog der Verbindung").to_owned(),
     }
-}
-
-pub(super) fn capital(word: &str) -> String {
-    let mut letters = word.chars();
-    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
 /// Returns the instruction to the person; empty if there is none.

@@ -2,10 +2,7 @@
 
 use nima_machine::rig::SideSwap;
 
-use super::{
-    exchange_text,
-    ready::{capital, with},
-};
+use super::{exchange_text, ready::with, sentence};
 use crate::language::{text_format, word};
 
 pub(super) fn exchanged(exchange: SideSwap) -> [String; 2] {
@@ -39,7 +36,7 @@ pub(super) fn exchanged(exchange: SideSwap) -> [String; 2] {
              tauschen",
         ),
     };
-    with(capital(exchange_text(exchange)), cure)
+    with(sentence(exchange_text(exchange)), cure)
 }
 
 pub(super) fn arm_stuck(by_m: f64) -> [String; 2] {

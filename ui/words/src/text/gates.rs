@@ -76,7 +76,7 @@ pub fn withheld_by_dead_band(withheld_n: f64) -> String {
 }
 
 pub fn withheld(withheld_n: f64) -> String {
-    text_format!("{withheld_n:.1} N not rendered", "{withheld_n:.1} N nicht dargestellt")
+    text_format!("{withheld_n:.1} N withheld", "{withheld_n:.1} N zurückgehalten")
 }
 
 pub fn on_its_way(delay_ms: f64) -> String {

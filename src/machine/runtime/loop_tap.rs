@@ -9,15 +9,17 @@ use std::{
     sync::{
         Arc,
         atomic::{AtomicU64, Ordering},
+        mpsc::{Receiver, Sender, channel},
     },
     thread,
     time::{Duration, Instant},
 };
 
-use crossbeam_channel::{Receiver, Sender, TryRecvError, bounded, unbounded};
+use rtrb::{Consumer, Producer, PushError};
 
 use crate::{
     messages::{Command, Event, Tick},
+    hand_over::{FromLoop, ToLoop, from_loop, to_loop},
     rig::{DeviceEvent, Inputs, Outputs, SIDES, Side},
     teleop::{Calibrations, Timing},
 };
@@ -31,6 +33,8 @@ const OTHERS_MAX: usize = 512;
 /// waking a waiting thread would cost the loop more than the rest of the tap.
 const LOOK_EVERY: Duration = Duration::from_millis(3);
 
+/// Time after which a loop on the virtual clock looks again for room.
+const WAIT: Duration = Duration::from_micros(200);
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Operation {
     /// [`Loop::obey`](crate::teleop::Loop::obey).
@@ -89,8 +93,8 @@ pub struct TapEntry {
 
 #[derive(Debug)]
 pub struct Tap {
-    entries: Sender<TapEntry>,
-    spare: Receiver<Box<TickRecord>>,
+    entries: Producer<TapEntry>,
+    spare: Consumer<Box<TickRecord>>,
     /// Boxes that have not been used yet. Circulating boxes are taken first, because they are still in the processor's
     /// caches.
     reserve: Vec<Box<TickRecord>>,
@@ -110,17 +114,17 @@ pub(super) struct CalibrationFiler {
 
 #[derive(Debug)]
 pub struct TapEnd {
-    pub entries: Receiver<TapEntry>,
+    pub entries: FromLoop<TapEntry>,
     calibrations: Receiver<(u64, Calibrations)>,
-    spare: Sender<Box<TickRecord>>,
+    spare: ToLoop<Box<TickRecord>>,
     offered: Arc<AtomicU64>,
 }
 
 /// Creates both ends of a tap. All memory is allocated and touched here.
 pub fn tap() -> (Tap, TapEnd) {
-    let (entries, entries_out) = bounded(TICKS_TAPPED_MAX + OTHERS_MAX);
+    let (mut entries, entries_out) = from_loop(TICKS_TAPPED_MAX + OTHERS_MAX);
     // One more than in the queue, because the loop may hold one.
-    let (spare, spare_out) = bounded(TICKS_TAPPED_MAX + 1);
+    let (spare, spare_out) = to_loop(TICKS_TAPPED_MAX + 1);
     let reserve = (0..TICKS_TAPPED_MAX).map(|_| Box::new(TickRecord::NOTHING)).collect();
     touch(&entries, &entries_out);
     let offered = Arc::<AtomicU64>::default();
@@ -132,9 +136,9 @@ pub fn tap() -> (Tap, TapEnd) {
 }
 
 /// Writes once to every slot of the queue, so that no tick causes a page fault.
-fn touch(into: &Sender<TapEntry>, out: &Receiver<TapEntry>) {
+fn touch(into: &mut Producer<TapEntry>, out: &FromLoop<TapEntry>) {
     let nothing = || Operation::Suspend(Side::Right);
-    while into.try_send(TapEntry { number: 0, passed: TapPayload::Operation(nothing()) }).is_ok() {}
+    while into.push(TapEntry { number: 0, passed: TapPayload::Operation(nothing()) }).is_ok() {}
     out.try_iter().for_each(drop);
 }
 
@@ -177,8 +181,13 @@ impl Tap {
     }
 
     fn spare(&mut self) -> Option<Box<TickRecord>> {
-        let spare = self.kept.take().or_else(|| self.spare.try_recv().ok()).or_else(|| self.reserve.pop());
-        spare.or_else(|| if self.waits { self.spare.recv().ok() } else { None })
+        loop {
+            let spare = self.kept.take().or_else(|| self.spare.pop().ok()).or_else(|| self.reserve.pop());
+            if spare.is_some() || !self.waits || self.spare.is_abandoned() {
+                return spare;
+            }
+            thread::sleep(WAIT);
+        }
     }
 
     fn number(&self) -> u64 {
@@ -187,14 +196,17 @@ impl Tap {
     }
 
     fn offer(&mut self, passed: TapPayload) {
-        let entry = TapEntry { number: self.number(), passed };
-        let back = if self.waits {
-            self.entries.send(entry).err().map(|error| error.0)
-        } else {
-            self.entries.try_send(entry).err().map(crossbeam_channel::TrySendError::into_inner)
-        };
-        if let Some(TapEntry { passed: TapPayload::Stepped(stepped), .. }) = back {
-            self.kept = Some(stepped);
+        let number = self.number();
+        let mut entry = TapEntry { number, passed };
+        while let Err(PushError::Full(back)) = self.entries.push(entry) {
+            if !self.waits || self.entries.is_abandoned() {
+                if let TapPayload::Stepped(stepped) = back.passed {
+                    self.kept = Some(stepped);
+                }
+                return;
+            }
+            thread::sleep(WAIT);
+            entry = back;
         }
     }
 }
@@ -225,10 +237,10 @@ impl TapEnd {
         let begin = Instant::now();
         loop {
             match self.entries.try_recv() {
-                Ok(entry) => return TapItem::Entry(entry),
-                Err(TryRecvError::Disconnected) => return TapItem::End,
-                Err(TryRecvError::Empty) if begin.elapsed() >= patience => return TapItem::Nothing,
-                Err(TryRecvError::Empty) => thread::sleep(LOOK_EVERY),
+                Some(entry) => return TapItem::Entry(entry),
+                None if self.entries.has_ended() => return TapItem::End,
+                None if begin.elapsed() >= patience => return TapItem::Nothing,
+                None => thread::sleep(LOOK_EVERY),
             }
         }
     }

@@ -9,6 +9,7 @@ pub(crate) mod department;
 mod devices;
 mod evaluate;
 mod export;
+pub(crate) mod missing;
 mod remote_follower;
 mod replay;
 mod report;

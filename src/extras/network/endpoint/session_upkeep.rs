@@ -87,6 +87,7 @@ impl Endpoint {
         }
         if self.is_follower {
             self.hand_over();
+            self.replace_silent();
             let connected = self.sessions.iter().flatten().filter(|session| session.is_confirmed).count();
             self.clerk.shared.is_full.store(connected >= CONSOLES_MAX, Relaxed);
         }

@@ -17,9 +17,10 @@ use std::{
 
 use rtrb::{Consumer, Producer, PushError};
 
+use super::os;
 use crate::{
-    messages::{Command, Event, Tick},
     hand_over::{FromLoop, ToLoop, from_loop, to_loop},
+    messages::{Command, Event, Tick},
     rig::{DeviceEvent, Inputs, Outputs, SIDES, Side},
     teleop::{Calibrations, Timing},
 };
@@ -32,9 +33,9 @@ const OTHERS_MAX: usize = 512;
 /// Polling period of the other end: a viewer over a network gets a tick later by this time at most. Polled, because
 /// waking a waiting thread would cost the loop more than the rest of the tap.
 const LOOK_EVERY: Duration = Duration::from_millis(3);
-
 /// Time after which a loop on the virtual clock looks again for room.
 const WAIT: Duration = Duration::from_micros(200);
+
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Operation {
     /// [`Loop::obey`](crate::teleop::Loop::obey).
@@ -101,6 +102,8 @@ pub struct Tap {
     /// A box whose entry did not fit: it is kept, because freeing it here would call the allocator.
     kept: Option<Box<TickRecord>>,
     offered: Arc<AtomicU64>,
+    /// Start of the loop on the monotonic clock, ns; zero before it, and on a virtual clock.
+    begun_ns: Arc<AtomicU64>,
     waits: bool,
     filing: CalibrationFiler,
 }
@@ -118,6 +121,7 @@ pub struct TapEnd {
     calibrations: Receiver<(u64, Calibrations)>,
     spare: ToLoop<Box<TickRecord>>,
     offered: Arc<AtomicU64>,
+    begun_ns: Arc<AtomicU64>,
 }
 
 /// Creates both ends of a tap. All memory is allocated and touched here.
@@ -126,13 +130,21 @@ pub fn tap() -> (Tap, TapEnd) {
     // One more than in the queue, because the loop may hold one.
     let (spare, spare_out) = to_loop(TICKS_TAPPED_MAX + 1);
     let reserve = (0..TICKS_TAPPED_MAX).map(|_| Box::new(TickRecord::NOTHING)).collect();
-    touch(&entries, &entries_out);
-    let offered = Arc::<AtomicU64>::default();
-    let (file, filed) = unbounded();
+    touch(&mut entries, &entries_out);
+    let [offered, begun_ns] = [(); 2].map(|()| Arc::<AtomicU64>::default());
+    let (file, filed) = channel();
     let filing = CalibrationFiler { next: Arc::default(), calibrations: file };
-    let tap =
-        Tap { entries, spare: spare_out, reserve, kept: None, offered: Arc::clone(&offered), waits: false, filing };
-    (tap, TapEnd { entries: entries_out, calibrations: filed, spare, offered })
+    let tap = Tap {
+        entries,
+        spare: spare_out,
+        reserve,
+        kept: None,
+        offered: Arc::clone(&offered),
+        begun_ns: Arc::clone(&begun_ns),
+        waits: false,
+        filing,
+    };
+    (tap, TapEnd { entries: entries_out, calibrations: filed, spare, offered, begun_ns })
 }
 
 /// Writes once to every slot of the queue, so that no tick causes a page fault.
@@ -147,6 +159,11 @@ impl Tap {
     #[must_use]
     pub(super) fn waiting(self) -> Self {
         Self { waits: true, ..self }
+    }
+
+    /// Called before the first tick of a loop in real time, with the start of its clock.
+    pub(super) fn begin(&self, start_ns: u64) {
+        self.begun_ns.store(start_ns, Ordering::Release);
     }
 
     pub(super) fn filing(&self) -> CalibrationFiler {
@@ -253,6 +270,15 @@ impl TapEnd {
     /// refers arrive before it.
     pub fn calibrations(&self) -> impl Iterator<Item = (u64, Calibrations)> {
         self.calibrations.try_iter()
+    }
+
+    /// Returns the time 0 of the loop, ns since 1970 (UTC), as the two clocks relate now: the system's clock may have been
+    /// set in the meantime. `None` before the loop has started, and on a virtual clock.
+    pub fn utc_start_ns(&self) -> Option<u64> {
+        match self.begun_ns.load(Ordering::Acquire) {
+            0 => None,
+            begun_ns => begun_ns.checked_add_signed(os::utc_offset_ns()?),
+        }
     }
 
     /// Returns the number of entries that the loop has offered so far, including dropped ones.

@@ -259,6 +259,9 @@ impl Realtime {
         }
         let cpu_s = os::cpu_s();
         let start_ns = os::monotonic_ns();
+        if let Some(tap) = &self.tap {
+            tap.begin(start_ns);
+        }
         let mut timing = Timing::default();
         match self.clock {
             RuntimeClock::Real => self.run_in_real_time(start_ns, &mut timing),

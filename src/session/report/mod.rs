@@ -28,6 +28,7 @@ use crate::{
     images::{IMAGE_FIGURES_TOPIC, IMAGE_TOPIC, VIDEO_TOPIC},
     journal::{MessageOutline, outline},
     objects::{self, kind},
+    plot_channels,
     recorder::JOURNAL_TOPIC,
     topics::{
         HAPPENING_LINE, HAPPENINGS_TOPIC, LOG_TOPIC, MARK_LINE, MARKS_TOPIC, RINGS_TOPIC, TASK_TOPIC, TIMES,
@@ -171,6 +172,7 @@ impl SessionFigures {
         if sides.iter().any(|side| !has(&topic(*side, "identification"))) || !has(TIMING_TOPIC) {
             let note =
                 "an older version recorded it: errors of the modes, degrees, doubt and timing are not in the file";
+        let first_ns = if figures.stretch { first_ns } else { plot_channels::beginning_ns(reader).unwrap_or(first_ns) };
             figures.notes.push(note.to_owned());
         }
         Ok(figures)

@@ -20,6 +20,8 @@ use nima_words::{
     text,
 };
 
+use crate::panel::{Panel, PanelContext, PanelSize};
+
 /// A request of the technician.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CalibrationWish {
@@ -38,6 +40,20 @@ pub enum CalibrationPage {
     Wizard(WizardKind),
     Check,
     All,
+}
+
+#[derive(Debug, Default)]
+pub struct CalibrationsPanel;
+
+impl Panel for CalibrationsPanel {
+    const NAME: Text = text::calibrations::NAME;
+    const MEANING: Text = text::calibrations::MEANING;
+    const SIZE: PanelSize = PanelSize::KNOBS;
+    const ACTS: bool = true;
+
+    fn ui(&mut self, ui: &mut Ui, at: &mut PanelContext<'_>) {
+        at.wishes.calibration = calibrations_ui(ui, at.live, at.active, None, text::calibrations::CLOSE_WIZARD);
+    }
 }
 
 /// Draws the panel; `open` is the page next to it, and `back` names the way back from it.

@@ -10,12 +10,15 @@ use nima_screen::{
     live::LiveState,
     rolling::DEGREES,
     theme,
-    widgets::{figure, small},
+    widgets::{at_the_right, figure, small},
 };
 use nima_words::{
+    language::Text,
     report_text::{UNKNOWN, three_digits},
     text,
 };
+
+use crate::panel::{Panel, PanelContext, PanelSize};
 
 const CHART_HEIGHT: f32 = 80.0;
 const COURSE_HEIGHT: f32 = 44.0;
@@ -41,6 +44,19 @@ impl DegreesState {
     }
 }
 
+#[derive(Debug, Default)]
+pub struct DegreesPanel;
+
+impl Panel for DegreesPanel {
+    const NAME: Text = text::degrees::NAME;
+    const MEANING: Text = text::degrees::MEANING;
+    const SIZE: PanelSize = PanelSize::FIGURES;
+
+    fn ui(&mut self, ui: &mut Ui, at: &mut PanelContext<'_>) {
+        degrees_ui(ui, at.live, &mut at.panels.degrees);
+    }
+}
+
 pub fn degrees_ui(ui: &mut Ui, live: &LiveState, state: &mut DegreesState) {
     state.is_seen = true;
     let compares = live.first_tick().is_some_and(|tick| tick.identification.modes.contains(Mode::Literal));
@@ -49,8 +65,8 @@ pub fn degrees_ui(ui: &mut Ui, live: &LiveState, state: &mut DegreesState) {
             let [name, meaning] = key(rule);
             key_ui(ui, colour, name, meaning);
         }
+        at_the_right(ui, |ui| ui.label(small(text::degrees::last_minutes(DEGREES_S / 60.0))));
     });
-    ui.label(small(text::degrees::last_minutes(DEGREES_S / 60.0)));
     switches_ui(ui, live, state);
     chart_ui(ui, live, *state);
     course_ui(ui, live, *state);

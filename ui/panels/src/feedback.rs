@@ -12,7 +12,9 @@ use nima_screen::{
     theme,
     widgets::{at_the_right, small},
 };
-use nima_words::text;
+use nima_words::{language::Text, text};
+
+use crate::panel::{Panel, PanelContext, PanelSize};
 
 use super::modes::modes_ui;
 
@@ -42,6 +44,20 @@ pub struct FeedbackState {
     gain: RequestedValue,
     delay_ms: RequestedValue,
     dead_band_mm_s: RequestedValue,
+}
+
+#[derive(Debug, Default)]
+pub struct FeedbackPanel;
+
+impl Panel for FeedbackPanel {
+    const NAME: Text = text::feedback::NAME;
+    const MEANING: Text = text::feedback::MEANING;
+    const SIZE: PanelSize = PanelSize::KNOBS;
+    const ACTS: bool = true;
+
+    fn ui(&mut self, ui: &mut Ui, at: &mut PanelContext<'_>) {
+        feedback_ui(ui, at.live, &mut at.panels.feedback, at.outbox);
+    }
 }
 
 pub fn feedback_ui(ui: &mut Ui, live: &mut LiveState, state: &mut FeedbackState, outbox: &mut Outbox) {

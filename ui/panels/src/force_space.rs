@@ -15,7 +15,12 @@ use nima_screen::{
     theme,
     widgets::fitting,
 };
-use nima_words::{report_text::newtons, text};
+use nima_words::{language::Text, report_text::newtons, text};
+
+use crate::{
+    panel::{Panel, PanelContext, PanelSize},
+    roles::Panels,
+};
 
 use super::traces_state::stepped;
 
@@ -67,6 +72,20 @@ impl ForceProjection {
     fn place(&self, force_n: &Vector3<f32>) -> Pos2 {
         let from_middle = force_n - self.middle_n;
         self.centre + self.points_per_n * vec2(from_middle.dot(&self.right), -from_middle.dot(&self.up))
+    }
+}
+
+#[derive(Debug, Default)]
+pub struct ForceSpacePanel;
+
+impl Panel for ForceSpacePanel {
+    const NAME: Text = text::force_space::NAME;
+    const MEANING: Text = text::force_space::MEANING;
+    const SIZE: PanelSize = PanelSize::filling([200.0, 180.0]);
+
+    fn ui(&mut self, ui: &mut Ui, at: &mut PanelContext<'_>) {
+        let Panels { forces, space, .. } = &mut *at.panels;
+        force_space_ui(ui, at.live, forces.side(), space, forces.cursor_at_s(at.live));
     }
 }
 

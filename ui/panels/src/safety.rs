@@ -20,6 +20,8 @@ use nima_words::{
     text,
 };
 
+use crate::panel::{Panel, PanelContext, PanelSize};
+
 use super::gates::{GateView, answer, gates, history};
 
 const NODE: egui::Vec2 = vec2(82.0, 28.0);
@@ -45,7 +47,17 @@ impl Default for SafetyState {
     }
 }
 
-pub fn safety_ui(ui: &mut Ui, live: &LiveState, state: &mut SafetyState) {
+impl Panel for SafetyState {
+    const NAME: Text = text::safety::NAME;
+    const MEANING: Text = text::safety::MEANING;
+    const SIZE: PanelSize = PanelSize::KNOBS;
+
+    fn ui(&mut self, ui: &mut Ui, at: &mut PanelContext<'_>) {
+        safety_ui(ui, at.live, self);
+    }
+}
+
+fn safety_ui(ui: &mut Ui, live: &LiveState, state: &mut SafetyState) {
     let is_wide = ui.available_width() >= TWO_COLUMNS;
     if !live.is_bimanual() {
         state.side = Side::Right;

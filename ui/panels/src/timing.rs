@@ -8,9 +8,12 @@ use nima_screen::{
     widgets::{figure, small, weak},
 };
 use nima_words::{
+    language::Text,
     report_text::{scheduling_text, sentence},
     text,
 };
+
+use crate::panel::{Panel, PanelContext, PanelSize};
 
 use super::timing_bars::{TimingBar, bars_ui, missed_ui};
 
@@ -53,7 +56,17 @@ fn timings(live: &LiveState) -> Vec<TimingBar<'_>> {
     ]
 }
 
-pub fn timing_ui(ui: &mut Ui, live: &LiveState, state: &mut TimingState) {
+impl Panel for TimingState {
+    const NAME: Text = text::timing::NAME;
+    const MEANING: Text = text::timing::MEANING;
+    const SIZE: PanelSize = PanelSize::FIGURES;
+
+    fn ui(&mut self, ui: &mut Ui, at: &mut PanelContext<'_>) {
+        timing_ui(ui, at.live, self);
+    }
+}
+
+fn timing_ui(ui: &mut Ui, live: &LiveState, state: &mut TimingState) {
     let timings = timings(live);
     table_ui(ui, &timings);
     ui.add_space(2.0);

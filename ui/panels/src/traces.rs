@@ -4,8 +4,8 @@
 //! zoom, double-click to reset, even while data arrive.
 
 use egui::{
-    Button, Label, RichText, ScrollArea, Sense, TextStyle, Ui, containers::menu::MenuButton, scroll_area::ScrollSource,
-    vec2,
+    Button, Frame, Label, Margin, RichText, ScrollArea, Sense, TextStyle, Ui, containers::menu::MenuButton,
+    scroll_area::ScrollSource, vec2,
 };
 use nima_machine::rig::Side;
 use nima_screen::{
@@ -15,9 +15,12 @@ use nima_screen::{
     scene3d::side_name,
     signals::TracePlot,
     theme,
+    units::PlotUnits,
     widgets::{at_the_right, describe, force_sign, small, weak, width_of},
 };
-use nima_words::{report_text::side_word, text};
+use nima_words::{language::Text, report_text::side_word, text};
+
+use crate::panel::{Panel, PanelContext, PanelSize};
 
 use super::{
     traces_menu::signals_ui,
@@ -28,7 +31,7 @@ use super::{
 /// Height of the time axis in rows of text: its numbers, and its title with the gap that `egui_plot` leaves under it.
 const TIME_AXIS_ROWS: f32 = 2.25;
 /// Smallest height of a plot; if more are chosen than fit, they are scrolled.
-const MIN_PLOT: f32 = 48.0;
+const MIN_PLOT: f32 = 44.0;
 /// Smallest height if a plot of another signal is shown: its axis has a longer title.
 const MIN_OTHER: f32 = 72.0;
 const GAP: f32 = 4.0;
@@ -37,6 +40,22 @@ const GAP: f32 = 4.0;
 const HEADING_FROM: f32 = 800.0;
 /// Channels of the measured and of the rendered force: x, y, z and magnitude.
 const OF_FORCES: [[usize; 4]; 2] = [[0, 1, 2, 6], [3, 4, 5, 7]];
+
+#[derive(Debug, Default)]
+pub struct TracesPanel;
+
+impl Panel for TracesPanel {
+    const NAME: Text = text::traces::NAME;
+    const MEANING: Text = text::traces::MEANING;
+    const SIZE: PanelSize = PanelSize::filling([220.0, 200.0]);
+
+    fn ui(&mut self, ui: &mut Ui, at: &mut PanelContext<'_>) {
+        // Space for the last number of the time axis, half of which is outside the plot.
+        Frame::new().inner_margin(Margin { left: 8, right: 18, top: 6, bottom: 6 }).show(ui, |ui| {
+            force_traces_ui(ui, at.live, &mut at.panels.forces, None);
+        });
+    }
+}
 
 /// Draws the panel with the chosen plots below one another, or with this one only.
 pub fn force_traces_ui(ui: &mut Ui, live: &mut LiveState, state: &mut TracesState, only: Option<TracePlot>) {
@@ -83,7 +102,8 @@ fn plots_ui(ui: &mut Ui, live: &LiveState, state: &mut TracesState, plots: &[Tra
         let height = if is_last { height + time_axis_height(ui) } else { height };
         let response = plot_ui(ui, live, state, plot, [is_first, is_last], height, cursor_s);
         let name = text::traces::plot(plot.name().get(), side_word(state.side));
-        describe(ui, &response.response, &name, || summary(history, plot, shown_s));
+        let unit = PlotUnits::of(ui.ctx()).of_plot(plot);
+        describe(ui, &response.response, &name, || summary(history, plot, unit, shown_s));
         if is_last {
             let point_s = response.transform.dvalue_dpos()[0] / f64::from(ui.pixels_per_point());
             state.step_s = if point_s.is_finite() { point_s.max(live.min_step_s()) } else { 0.0 };

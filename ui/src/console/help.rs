@@ -40,7 +40,7 @@ impl Help {
         let Some(step) = self.tour.filter(|_| on_view) else { return false };
         let (heading, words) = TOUR[step];
         let window = Window::new(TOUR_WINDOW.get()).title_bar(false).resizable(false).movable(false).constrain_to(room);
-        let window = window.anchor(Align2::CENTER_TOP, vec2(0.0, room.top() + 12.0)).fixed_size(vec2(440.0, 0.0));
+        let window = window.anchor(Align2::CENTER_TOP, vec2(0.0, 12.0)).fixed_size(vec2(440.0, 0.0));
         window.show(ctx, |ui| {
             ui.label(RichText::new(heading.get()).font(theme::strong(18.0)));
             ui.label(RichText::new(words.get()).font(theme::regular(15.0)));

@@ -1,14 +1,15 @@
 //! The View menu: appearance of the console, saved between sessions.
 
 use egui::{
-    Button, Context, DragValue, Id, PopupCloseBehavior, ScrollArea, Slider, TextEdit, TextStyle, Ui, WidgetInfo,
+    Button, Context, DragValue, Id, PopupCloseBehavior, RichText, ScrollArea, Slider, TextEdit, TextStyle, Ui,
+    WidgetInfo,
     containers::menu::{MenuButton, MenuConfig},
     vec2,
 };
 use nima_panels::{
     roles::Role,
     settings::{CROP_MAX_PERCENT, ConsoleSettings, ImageSettings},
-    tiles::{Arrangement, Panel, PanelLayout},
+    tiles::{Arrangement, PanelId, PanelLayout},
 };
 use nima_screen::{alarms::strip::Alarms, widgets::with_icon};
 use nima_words::{
@@ -43,7 +44,8 @@ pub(super) fn menu_ui(
     // A small window has no room for the whole menu.
     let height = ui.ctx().content_rect().height() - 32.0;
     let (response, _) = menu.ui(ui, |ui| {
-        ScrollArea::vertical().max_height(height).show(ui, |ui| {
+        // Without a minimum, a menu shows less than the window has room for.
+        ScrollArea::vertical().max_height(height).min_scrolled_height(height).show(ui, |ui| {
             wanted = content_ui(ui, settings, alarms, can_undo);
         });
         if wanted.is_some() {
@@ -240,21 +242,33 @@ fn save_layout_ui(ui: &mut Ui, settings: &mut ConsoleSettings) {
 fn panels_ui(ui: &mut Ui, layout: &PanelLayout) -> Option<Action> {
     let mut wanted = None;
     ui.label(text::menu::PANELS.get()).on_hover_text(text::menu::PANELS_HOVER.get());
-    for pair in Panel::built().collect::<Vec<_>>().chunks(2) {
+    for pair in PanelId::built().collect::<Vec<_>>().chunks(2) {
         ui.horizontal(|ui| {
             for panel in pair {
-                let open = layout.is_open(*panel);
-                let button = Button::selectable(open, panel.title()).frame_when_inactive(true);
-                let response = ui.add(button.min_size(vec2(146.0, 26.0)));
-                let meaning =
-                    if open { text::menu::PANEL_OPEN_HOVER.get() } else { text::menu::PANEL_CLOSED_HOVER.get() };
-                if response.on_hover_text(format!("{}\n{meaning}", panel.meaning())).clicked() {
-                    wanted = Some(Action::Panel(*panel));
-                }
+                wanted = wanted.or(panel_ui(ui, layout, *panel));
             }
         });
     }
     wanted.or(entry_ui(ui, Action::ResetLayout, 300.0))
+}
+
+/// Draws the switches of a panel: whether it is open, and whether it is in a window of its own.
+fn panel_ui(ui: &mut Ui, layout: &PanelLayout, panel: PanelId) -> Option<Action> {
+    ui.spacing_mut().item_spacing.x = 3.0;
+    let open = layout.is_open(panel);
+    let button = Button::selectable(open, panel.title()).frame_when_inactive(true).truncate();
+    let response = ui.add_sized(vec2(118.0, 26.0), button);
+    let meaning = if open { text::menu::PANEL_OPEN_HOVER.get() } else { text::menu::PANEL_CLOSED_HOVER.get() };
+    if response.on_hover_text(format!("{}\n{meaning}", panel.meaning())).clicked() {
+        return Some(Action::Panel(panel));
+    }
+    let in_window = layout.is_window(panel);
+    let icon = RichText::new(icons::ICON_OPEN_IN_NEW.codepoint).font(nima_screen::theme::icons(16.0));
+    let window = ui.add(Button::selectable(in_window, icon).frame_when_inactive(true).min_size(vec2(26.0, 26.0)));
+    let name = text::commands::window(panel.title());
+    window.widget_info(|| WidgetInfo::selected(egui::Role::Button, true, in_window, name.as_str()));
+    let meaning = format!("{name}\n{}", text::tiles::OPEN_WINDOW_HOVER.get());
+    window.on_hover_text(meaning).clicked().then_some(Action::Window(panel))
 }
 
 /// Applies the settings; call at the start of a frame.

@@ -213,6 +213,16 @@ fn state_lines(live: &LiveState, state: LoopState) -> Vec<String> {
 
 /// Always in the same place, above every window, menu and tooltip, and always enabled: pressing it twice does no harm.
 fn stop_ui(ui: &Ui, place: Rect, state: LoopState, next: bool, outbox: &mut Outbox) {
+    let area = Area::new(Id::unique("stop")).order(Order::TOP).fixed_pos(place.min).default_size(place.size());
+    let pressed =
+        area.movable(false).constrain(false).fade_in(false).show(ui.ctx(), |ui| stop_button_ui(ui, state, next)).inner;
+    if pressed {
+        outbox.push(Command::Stop);
+    }
+}
+
+/// Draws the stop button, highlighted as the `next` one; returns true when pressed.
+pub(in crate::console) fn stop_button_ui(ui: &mut Ui, state: LoopState, next: bool) -> bool {
     let latched = matches!(state, LoopState::Stopped | LoopState::Faulted(_));
     let (fill, ink) = if latched {
         (theme::now().control, theme::now().text_weak)
@@ -223,15 +233,6 @@ fn stop_ui(ui: &Ui, place: Rect, state: LoopState, next: bool, outbox: &mut Outb
     if next {
         button = button.stroke(Stroke::new(6.0, theme::now().primary));
     }
-    let area = Area::new(Id::unique("stop")).order(Order::TOP).fixed_pos(place.min).default_size(place.size());
-    let response =
-        area.movable(false).constrain(false).fade_in(false).show(ui.ctx(), |ui| stop_button(ui, button, ink)).inner;
-    if response.clicked() {
-        outbox.push(Command::Stop);
-    }
-}
-
-fn stop_button(ui: &mut Ui, button: Button<'_>, ink: egui::Color32) -> egui::Response {
     let response = ui.add(button);
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, text::top_bar::STOP.get()));
     let response = response.on_hover_text(text::top_bar::STOP_HOVER.get());
@@ -244,7 +245,7 @@ fn stop_button(ui: &mut Ui, button: Button<'_>, ink: egui::Color32) -> egui::Res
         theme::strong(21.0),
         ink,
     );
-    response
+    response.clicked()
 }
 
 /// State of the next step.

@@ -14,7 +14,7 @@ use nima_machine::messages::LoopState;
 use nima_panels::{
     roles::Role,
     settings::SettingsStore,
-    tiles::{Panel, PanelLayout},
+    tiles::{PanelId, PanelLayout},
 };
 use nima_wizards::WizardKind;
 
@@ -30,9 +30,9 @@ const SIZES: [[f32; 2]; 4] = [[1100.0, 680.0], [1280.0, 720.0], [1920.0, 1080.0]
 pub(crate) const VIEWS: [(Role, &[Panel]); 6] = [
     (Role::Surgeon, &[]),
     (Role::Technician, &[]),
-    (Role::Technician, &[Panel::Safety, Panel::Calibrations, Panel::Timing]),
-    (Role::Technician, &[Panel::ForceSpace, Panel::Devices, Panel::Tradeoff]),
-    (Role::Technician, &[Panel::Link, Panel::Degrees]),
+    (Role::Technician, &[PanelId::Safety, PanelId::Calibrations, PanelId::Timing]),
+    (Role::Technician, &[PanelId::ForceSpace, PanelId::Devices, PanelId::Tradeoff]),
+    (Role::Technician, &[PanelId::Link, PanelId::Degrees]),
     (Role::Demo, &[]),
 ];
 

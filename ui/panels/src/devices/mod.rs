@@ -10,7 +10,7 @@ mod row;
 
 use std::time::Instant;
 
-use egui::{Button, Label, RichText, Ui, vec2};
+use egui::{Button, Frame, Label, Margin, RichText, Ui, vec2};
 use nima_devices::Health;
 use nima_machine::{
     config::ChosenDevice,
@@ -21,14 +21,17 @@ use nima_machine::{
     },
 };
 use nima_screen::{
-    live::LiveState,
+    live::{LiveState, ScreenSource},
     theme,
     widgets::{small, weak},
 };
 use nima_words::{
+    language::Text,
     report_text::{obstacle_text, side_word},
     text,
 };
+
+use crate::panel::{Panel, PanelContext, PanelSize};
 
 use choosing::Chooser;
 use rates::RateHistory;
@@ -164,6 +167,43 @@ pub fn wrap_to_visible(ui: &mut Ui) {
 
 /// Draws the panel; for a rig without devices it says that everything is simulated. Returns a requested change of the
 /// rig.
+#[derive(Debug, Default)]
+pub struct DevicesPanel;
+
+impl Panel for DevicesPanel {
+    const NAME: Text = text::devices::NAME;
+    const MEANING: Text = text::devices::MEANING;
+    const SIZE: PanelSize = PanelSize::list(590.0);
+
+    fn ui(&mut self, ui: &mut Ui, at: &mut PanelContext<'_>) {
+        if at.live.is_shown_only() {
+            devices_then_ui(ui, at.live);
+        } else {
+            ui.add_enabled_ui(!at.is_locked, |ui| at.wishes.devices = devices_ui(ui, at.live, &mut at.panels.devices));
+        }
+    }
+}
+
+/// Draws the devices of a recorded session or of another machine, and a note on data that are missing here.
+fn devices_then_ui(ui: &mut Ui, live: &LiveState) {
+    let elsewhere = live.of == ScreenSource::Elsewhere;
+    Frame::new().inner_margin(Margin::same(8)).show(ui, |ui| {
+        wrap_to_visible(ui);
+        if live.devices_then.is_empty() {
+            ui.label(if elsewhere { text::monitor::SIMULATED.get() } else { text::playback::SIMULATED.get() });
+        }
+        for (name, standing) in &live.devices_then {
+            ui.label(text::playback::device(*name, *standing));
+        }
+        ui.add_space(6.0);
+        ui.label(weak(if elsewhere {
+            text::monitor::NOT_OF_DEVICES.get()
+        } else {
+            text::playback::NOT_OF_DEVICES.get()
+        }));
+    });
+}
+
 pub fn devices_ui(ui: &mut Ui, live: &LiveState, state: &mut DevicesState) -> Option<RigEdit> {
     state.is_seen = true;
     if live.roster.is_empty() {

@@ -59,7 +59,7 @@ fn devices(side: Side, live: &LiveState) -> SetupTile {
         (None, 0) => (StepState::Done, text::overview::SIMULATED.get().to_owned()),
         (None, count) => (StepState::Done, text::overview::all_connected(count)),
     };
-    SetupTile { name: text::tiles::DEVICES.get(), state, why, step: SetupStep::Devices }
+    SetupTile { name: text::devices::NAME.get(), state, why, step: SetupStep::Devices }
 }
 
 fn calibration(line: &OverviewLine) -> SetupTile {

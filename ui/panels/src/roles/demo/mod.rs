@@ -54,7 +54,7 @@ pub(super) fn demo_ui(ui: &mut Ui, live: &mut LiveState, panels: &mut Panels, ou
     Panel::right("figures").exact_size(348.0).resizable(false).frame(side).show(ui, |ui| {
         theme::card().show(ui, |ui| figures_ui(ui, live));
         ui.add_space(theme::GAP);
-        let panel = tiles::Panel::Horizon;
+        let panel = tiles::PanelId::Horizon;
         card(ui, panel.title(), panel.meaning(), |ui| horizon_ui(ui, live, outbox, true));
         let Panels { forces, space, .. } = panels;
         let room = vec2(ui.available_width(), ui.available_height().min(380.0));

@@ -105,7 +105,7 @@ fn signals_are_chosen_hidden_and_saved_as_shown() {
 fn a_narrow_panel_shows_the_newest_second() {
     let folder = tempfile::tempdir().unwrap();
     let mut console = console(folder.path());
-    let tabs = |panels: &[Panel]| LayoutNode::Tabs(panels.iter().map(|panel| LayoutNode::Panel(*panel)).collect());
+    let tabs = |panels: &[PanelId]| LayoutNode::Tabs(panels.iter().map(|panel| LayoutNode::Panel(*panel)).collect());
     let others: Vec<PanelId> = PanelId::ALL.into_iter().filter(|panel| *panel != PanelId::Traces).collect();
     let parts = vec![
         LayoutPart { fraction: 8000, of: tabs(&others) },

@@ -27,7 +27,7 @@ use crate::{
 /// Points: the smallest window, the sizes of common screens, and with them those screens at a scale of 150 or 200 %.
 const SIZES: [[f32; 2]; 4] = [[1100.0, 680.0], [1280.0, 720.0], [1920.0, 1080.0], [3840.0, 2160.0]];
 /// A role, and the panels that are brought to the front: every panel is seen once.
-pub(crate) const VIEWS: [(Role, &[Panel]); 6] = [
+pub(crate) const VIEWS: [(Role, &[PanelId]); 6] = [
     (Role::Surgeon, &[]),
     (Role::Technician, &[]),
     (Role::Technician, &[PanelId::Safety, PanelId::Calibrations, PanelId::Timing]),

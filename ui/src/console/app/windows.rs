@@ -1,17 +1,13 @@
 //! The panels in windows of their own: the same panels as in the main window, each with the state of the machine and Stop.
 
-use egui::{Button, Context, Frame, Margin, Panel, Ui, vec2};
+use egui::{Align, Button, Context, Frame, Layout, Margin, Panel, Ui, vec2};
 use nima_machine::messages::Command;
 use nima_panels::{
     panel::PanelContext,
     roles::{Role, Wishes},
     tiles::{PanelId, content_ui, window_ui},
 };
-use nima_screen::{
-    live::LiveState,
-    theme,
-    widgets::{at_the_right, weak},
-};
+use nima_screen::{live::LiveState, theme, widgets::weak};
 use nima_words::text;
 
 use super::{ConsoleApp, availability::ActivePage};
@@ -55,11 +51,11 @@ impl ConsoleApp {
         let page = self.page();
         let is_locked = !matches!(page, ActivePage::Monitor | ActivePage::Past);
         if is_locked {
-            ui.label(weak(text::tiles::LOCKED.get()));
+            ui.label(weak(text::tiles::LOCKED));
         }
         // A view and the window would share one camera.
         if panel == PanelId::Field && page == ActivePage::Monitor && self.role() != Role::Technician {
-            ui.label(weak(text::tiles::FIELD_IN_VIEW.get()));
+            ui.label(weak(text::tiles::FIELD_IN_VIEW));
             return;
         }
         let (live, panels, active, outbox) = match &mut self.past {
@@ -85,9 +81,11 @@ fn head_ui(ui: &mut Ui, live: &LiveState, head: &mut WindowHead) {
     Panel::top("head").exact_size(56.0).resizable(false).frame(frame).show(ui, |ui| {
         ui.horizontal_centered(|ui| {
             state_ui(ui, live, live.state());
-            let back = Button::new(text::tiles::CLOSE_WINDOW.get()).min_size(vec2(44.0, 30.0));
-            head.closes |= ui.add(back).on_hover_text(text::tiles::CLOSE_WINDOW_HOVER.get()).clicked();
-            at_the_right(ui, |ui| head.stops |= stop_button_ui(ui, live.state(), false));
+            let back = Button::new(text::tiles::CLOSE_WINDOW).min_size(vec2(44.0, 30.0));
+            head.closes |= ui.add(back).on_hover_text(text::tiles::CLOSE_WINDOW_HOVER).clicked();
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                head.stops |= stop_button_ui(ui, live.state(), false);
+            });
         });
     });
 }

@@ -78,6 +78,11 @@ fn what_the_view_menu_and_the_keys_of_the_screen_do() {
         let seen = |console: &mut Console| format!("{:?}", console.state_mut().settings_mut().layout.closed);
         done.push(alike(&mut console, Action::Panel(panel), reset, other, seen));
     }
+    for panel in PanelId::ALL {
+        let other = of_menu(Kind::Button, &entry(Action::Window(panel)).title);
+        let seen = |console: &mut Console| format!("{:?}", console.state_mut().settings_mut().layout.windows);
+        done.push(alike(&mut console, Action::Window(panel), set(|_| {}), other, seen));
+    }
     for arrangement in Arrangement::ALL {
         let before = if arrangement == Arrangement::Simple { Arrangement::Research } else { Arrangement::Simple };
         let reset = set(|settings| settings.layout = PanelLayout::built_in(before));

@@ -163,18 +163,21 @@ fn acts<R>(ui: &mut Ui, past: bool, controls: impl FnOnce(&mut Ui) -> R) -> R {
     ui.add_enabled_ui(!past, controls).inner
 }
 
-/// Draws one button for each of these roles.
-pub fn switch_ui(ui: &mut Ui, roles: &[Role], now: &mut Role, allowed: bool) {
+/// Draws one button for each of these roles; returns the pressed one, also if it is the present one: it then leads back to
+/// its view.
+pub fn switch_ui(ui: &mut Ui, roles: &[Role], now: Role, allowed: bool) -> Option<Role> {
+    let mut pressed = None;
     ui.spacing_mut().item_spacing.x = 4.0;
     for &role in roles {
         let words = with_icon(ui, role.icon(), role.name(), TextStyle::Button.resolve(ui.style()));
-        let button = Button::selectable(*now == role, words).frame_when_inactive(true).min_size(vec2(62.0, 30.0));
+        let button = Button::selectable(now == role, words).frame_when_inactive(true).min_size(vec2(62.0, 30.0));
         let response = ui.add_enabled(allowed, button);
-        let chosen = *now == role;
+        let chosen = now == role;
         response.widget_info(|| WidgetInfo::selected(egui::Role::Button, allowed, chosen, role.name()));
         let response = response.on_hover_text(text::roles::meaning_and_key(role.meaning(), role.key().name()));
-        if response.on_disabled_hover_text(text::roles::SWITCH_DISABLED_HOVER.get()).clicked() {
-            *now = role;
+        if response.on_disabled_hover_text(text::roles::SWITCH_DISABLED_HOVER).clicked() {
+            pressed = Some(role);
         }
     }
+    pressed
 }

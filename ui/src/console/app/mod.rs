@@ -245,7 +245,6 @@ impl ConsoleApp {
         let bar = Frame::new().fill(theme::now().panel).inner_margin(Margin::symmetric(14, 0));
         Panel::top("top_bar").exact_size(56.0).resizable(false).frame(bar).show(ui, |ui| {
             let calibrating = self.is_calibrating();
-            let before = self.role();
             self.live.engage_closed = match self.may(Action::Engage) {
                 Availability::Cannot(why) => Some(why),
                 Availability::Can | Availability::Absent => None,
@@ -260,8 +259,7 @@ impl ConsoleApp {
             let bar = &mut self.top_bar;
             let settings = &mut self.settings.now;
             top_bar_ui(ui, live, bar, &mut self.outbox, settings, calibrating);
-            let chosen = (self.role() != before).then_some(Action::View(self.role()));
-            if let Some(action) = self.top_bar.wanted.take().or(chosen) {
+            if let Some(action) = self.top_bar.wanted.take() {
                 self.act(action, ui.ctx());
             }
         });

@@ -69,8 +69,8 @@ pub fn horizon_ui(ui: &mut Ui, live: &LiveState, outbox: &mut Outbox, plain: boo
 }
 
 fn compare_ui(ui: &mut Ui, live: &LiveState, mut compares: bool, outbox: &mut Outbox) {
-    let compare = egui::Checkbox::new(&mut compares, text::horizon::COMPARE.get());
-    let compare = ui.add_enabled(!live.is_shown_only(), compare).on_hover_text(text::horizon::COMPARE_HOVER.get());
+    let compare = egui::Checkbox::new(&mut compares, text::horizon::COMPARE);
+    let compare = ui.add_enabled(!live.is_shown_only(), compare).on_hover_text(text::horizon::COMPARE_HOVER);
     if compare.on_disabled_hover_text(live.of.blocked()).changed() {
         outbox.push(Command::Compare(compares));
     }

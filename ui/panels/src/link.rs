@@ -27,8 +27,8 @@ impl Panel for LinkPanel {
     fn ui(&mut self, ui: &mut Ui, at: &mut PanelContext<'_>) {
         match at.live.of {
             ScreenSource::Now => link_ui(ui, at.live),
-            ScreenSource::Past => drop(ui.label(weak(text::link::NOT_IN_SESSIONS.get()))),
-            ScreenSource::Elsewhere => drop(ui.label(weak(text::monitor::NO_LINK.get()))),
+            ScreenSource::Past => drop(ui.label(weak(text::link::NOT_IN_SESSIONS))),
+            ScreenSource::Elsewhere => drop(ui.label(weak(text::monitor::NO_LINK))),
         }
     }
 }
@@ -37,9 +37,9 @@ fn link_ui(ui: &mut Ui, live: &LiveState) {
     if let Some(line) = &live.line {
         return line.ui(ui, live.state().permits().drives);
     }
-    ui.label(text::link::ONE_MACHINE.get());
+    ui.label(text::link::ONE_MACHINE);
     ui.add_space(4.0);
-    ui.label(weak(text::link::HOW_TWO.get()));
+    ui.label(weak(text::link::HOW_TWO));
 }
 
 #[cfg(test)]

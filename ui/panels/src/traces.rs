@@ -31,7 +31,7 @@ use super::{
 /// Height of the time axis in rows of text: its numbers, and its title with the gap that `egui_plot` leaves under it.
 const TIME_AXIS_ROWS: f32 = 2.25;
 /// Smallest height of a plot; if more are chosen than fit, they are scrolled.
-const MIN_PLOT: f32 = 44.0;
+const MIN_PLOT: f32 = 39.0;
 /// Smallest height if a plot of another signal is shown: its axis has a longer title.
 const MIN_OTHER: f32 = 72.0;
 const GAP: f32 = 4.0;
@@ -67,7 +67,7 @@ pub fn force_traces_ui(ui: &mut Ui, live: &mut LiveState, state: &mut TracesStat
     ui.add_space(2.0);
     let plots: Vec<TracePlot> = only.map_or_else(|| state.plots.plots().collect(), |one| vec![one]);
     if plots.is_empty() {
-        ui.add(Label::new(weak(text::traces::NO_PLOT.get())).wrap());
+        ui.add(Label::new(weak(text::traces::NO_PLOT)).wrap());
         return;
     }
     ui.spacing_mut().item_spacing.y = GAP;
@@ -134,7 +134,7 @@ fn twist_ui(ui: &mut Ui, live: &LiveState, side: Side) {
     let ShaftTwist { jaws_nm, wrist_nm } = live.figures.twist[side.index()];
     if jaws_nm.is_some() || wrist_nm.is_some() {
         let words = text::traces::twist([jaws_nm, wrist_nm].map(|nm| nm.map(|nm| 1e3 * nm)));
-        ui.add(Label::new(small(&words)).truncate()).on_hover_text(text::traces::TWIST_HOVER.get());
+        ui.add(Label::new(small(&words)).truncate()).on_hover_text(text::traces::TWIST_HOVER);
     }
 }
 
@@ -152,7 +152,7 @@ fn header_ui(ui: &mut Ui, live: &mut LiveState, state: &mut TracesState, chooses
         let style = TextStyle::Heading.resolve(ui.style());
         let with_heading = needed + width_of(ui.painter(), heading, style) + 36.0;
         if ui.available_width() > with_heading.max(HEADING_FROM) {
-            ui.label(RichText::new(heading).text_style(TextStyle::Heading)).on_hover_text(text::traces::HOVER.get());
+            ui.label(RichText::new(heading).text_style(TextStyle::Heading)).on_hover_text(text::traces::HOVER);
             ui.add_space(12.0);
         }
         if ui.available_width() < needed {
@@ -209,14 +209,14 @@ fn needed_width(ui: &Ui, live: &LiveState, state: &TracesState, chooses: bool) -
 fn switches_ui(ui: &mut Ui, live: &mut LiveState, state: &mut TracesState, chooses: bool) {
     let size = vec2(60.0, 26.0);
     if chooses {
-        let button = Button::new(text::traces::SIGNALS.get()).min_size(size);
+        let button = Button::new(text::traces::SIGNALS).min_size(size);
         let close =
             egui::containers::menu::MenuConfig::new().close_behavior(egui::PopupCloseBehavior::CloseOnClickOutside);
         let (signals, _) = MenuButton::from_button(button).config(close).ui(ui, |ui| signals_ui(ui, state));
-        signals.on_hover_text(text::traces::SIGNALS_HOVER.get());
+        signals.on_hover_text(text::traces::SIGNALS_HOVER);
     }
-    let reset = ui.add(Button::new(text::traces::LAST_TEN_SECONDS.get()).min_size(size));
-    if reset.on_hover_text(text::traces::LAST_TEN_SECONDS_HOVER.get()).clicked() {
+    let reset = ui.add(Button::new(text::traces::LAST_TEN_SECONDS).min_size(size));
+    if reset.on_hover_text(text::traces::LAST_TEN_SECONDS_HOVER).clicked() {
         state.show_last_ten();
     }
     if live.is_bimanual() {
@@ -229,8 +229,8 @@ fn switches_ui(ui: &mut Ui, live: &mut LiveState, state: &mut TracesState, choos
             }
         }
     }
-    let mark = ui.add_enabled(!live.is_shown_only(), Button::new(text::traces::MARK.get()).min_size(size));
-    if mark.on_hover_text(text::traces::MARK_HOVER.get()).clicked() {
+    let mark = ui.add_enabled(!live.is_shown_only(), Button::new(text::traces::MARK).min_size(size));
+    if mark.on_hover_text(text::traces::MARK_HOVER).clicked() {
         live.mark();
     }
     let paused = state.is_paused();

@@ -31,7 +31,7 @@ pub(super) fn signals_ui(ui: &mut Ui, state: &mut TracesState) {
 fn units_ui(ui: &mut Ui) {
     let before = PlotUnits::of(ui.ctx());
     let mut units = before;
-    ui.label(text::traces::UNITS.get()).on_hover_text(text::traces::UNITS_HOVER.get());
+    ui.label(text::traces::UNITS).on_hover_text(text::traces::UNITS_HOVER);
     ui.horizontal(|ui| {
         for force in ForceUnit::ALL {
             ui.selectable_value(&mut units.force, force, force.name());

@@ -214,7 +214,7 @@ fn legend_ui(ui: &mut Ui, state: &mut TracesState, plot: TracePlot, rect: Rect) 
         let response = corner.add(button.frame_when_inactive(false).small().wrap_mode(egui::TextWrapMode::Extend));
         response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, !is_hidden, line.name.get()));
         left = response.rect.right() + 4.0;
-        if response.on_hover_text(text::traces::LEGEND_HOVER.get()).clicked() {
+        if response.on_hover_text(text::traces::LEGEND_HOVER).clicked() {
             state.toggle(&[line.channel]);
         }
     }

@@ -41,8 +41,8 @@ pub(super) fn menu_ui(
     // A click into the name of a layout must not close the menu; a command closes it.
     let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
     let menu = MenuButton::from_button(button).config(config);
-    // A small window has no room for the whole menu.
-    let height = ui.ctx().content_rect().height() - 32.0;
+    // A small window has no room for the whole menu, which must leave the bar free.
+    let height = ui.ctx().content_rect().height() - 80.0;
     let (response, _) = menu.ui(ui, |ui| {
         // Without a minimum, a menu shows less than the window has room for.
         ScrollArea::vertical().max_height(height).min_scrolled_height(height).show(ui, |ui| {
@@ -53,7 +53,7 @@ pub(super) fn menu_ui(
         }
     });
     response.widget_info(|| WidgetInfo::labeled(egui::Role::Button, true, text::menu::VIEW.get()));
-    response.on_hover_text(text::menu::VIEW_HOVER.get());
+    response.on_hover_text(text::menu::VIEW_HOVER);
     wanted
 }
 
@@ -61,7 +61,7 @@ fn content_ui(ui: &mut Ui, settings: &mut ConsoleSettings, alarms: &mut Alarms, 
     let mut wanted = None;
     ui.set_width(300.0);
     ui.horizontal(|ui| {
-        ui.label(text::menu::PALETTE.get());
+        ui.label(text::menu::PALETTE);
         for (name, light) in [(text::menu::DARK.get(), false), (text::menu::LIGHT.get(), true)] {
             let button = Button::selectable(settings.light == light, name).frame_when_inactive(true);
             if ui.add(button.min_size(CHOICE)).clicked() {
@@ -72,7 +72,7 @@ fn content_ui(ui: &mut Ui, settings: &mut ConsoleSettings, alarms: &mut Alarms, 
     wanted = wanted.or(switch_ui(ui, settings.colour_blind, Action::ColourBlind));
     wanted = wanted.or(languages_ui(ui, settings.language));
     ui.add_space(4.0);
-    ui.label(text::menu::SIZE.get());
+    ui.label(text::menu::SIZE);
     ui.horizontal(|ui| {
         for percent in SIZES_PERCENT {
             let chosen = settings.scale_percent == percent;
@@ -119,7 +119,7 @@ fn entry_ui(ui: &mut Ui, action: Action, width: f32) -> Option<Action> {
 fn languages_ui(ui: &mut Ui, now: Language) -> Option<Action> {
     let mut wanted = None;
     ui.horizontal(|ui| {
-        ui.label(text::menu::LANGUAGE.get()).on_hover_text(text::commands::LANGUAGE_DOES.get());
+        ui.label(text::menu::LANGUAGE).on_hover_text(text::commands::LANGUAGE_DOES);
         for language in Language::CHOICES {
             let button = Button::selectable(now == language, language.name()).frame_when_inactive(true);
             if ui.add(button.min_size(CHOICE)).clicked() {
@@ -147,7 +147,7 @@ fn sound_ui(ui: &mut Ui, on: bool, alarms: &mut Alarms) -> Option<Action> {
 
 /// Draws the display settings of the endoscope image, and whether it is recorded.
 fn image_ui(ui: &mut Ui, settings: &mut ConsoleSettings) -> Option<Action> {
-    ui.label(text::menu::IMAGE.get());
+    ui.label(text::menu::IMAGE);
     let image = &mut settings.image;
     ui.add(Slider::new(&mut image.brightness_percent, -50..=50).text(text::menu::BRIGHTNESS.get()).suffix(" %"));
     ui.add(
@@ -160,7 +160,7 @@ fn image_ui(ui: &mut Ui, settings: &mut ConsoleSettings) -> Option<Action> {
         Slider::new(&mut image.gamma_percent, 25..=400).logarithmic(true).text(text::menu::GAMMA.get()).suffix(" %"),
     );
     ui.horizontal(|ui| {
-        ui.label(text::menu::CROP.get()).on_hover_text(text::menu::CROP_HOVER.get());
+        ui.label(text::menu::CROP).on_hover_text(text::menu::CROP_HOVER);
         for (percent, edge) in image.crop_percent.iter_mut().zip(text::menu::EDGES.map(Text::get)) {
             let value = DragValue::new(percent).range(0..=CROP_MAX_PERCENT).suffix(" %");
             let response = ui.add(value).on_hover_text(edge);
@@ -177,7 +177,7 @@ fn image_ui(ui: &mut Ui, settings: &mut ConsoleSettings) -> Option<Action> {
 /// Draws the built-in layouts and the user's own ones; returns the command of the pressed one.
 fn layouts_ui(ui: &mut Ui, settings: &mut ConsoleSettings) -> Option<Action> {
     let mut wanted = None;
-    ui.label(text::menu::LAYOUT.get()).on_hover_text(text::menu::LAYOUT_HOVER.get());
+    ui.label(text::menu::LAYOUT).on_hover_text(text::menu::LAYOUT_HOVER);
     ui.horizontal(|ui| {
         for one in Arrangement::ALL {
             let chosen = settings.layout.looks_like(&PanelLayout::built_in(one));
@@ -228,9 +228,9 @@ fn save_layout_ui(ui: &mut Ui, settings: &mut ConsoleSettings) {
         let field = ui.add(TextEdit::singleline(&mut name).hint_text(hint).char_limit(40).desired_width(196.0));
         field.widget_info(|| WidgetInfo::labeled(egui::Role::TextInput, true, hint));
         let named = !name.trim().is_empty();
-        let save = ui.add_enabled(named, Button::new(text::menu::SAVE_LAYOUT.get()).min_size(vec2(76.0, 26.0)));
-        let save = save.on_hover_text(text::menu::SAVE_LAYOUT_HOVER.get());
-        if save.on_disabled_hover_text(text::menu::NAME_LAYOUT_FIRST.get()).clicked() {
+        let save = ui.add_enabled(named, Button::new(text::menu::SAVE_LAYOUT).min_size(vec2(76.0, 26.0)));
+        let save = save.on_hover_text(text::menu::SAVE_LAYOUT_HOVER);
+        if save.on_disabled_hover_text(text::menu::NAME_LAYOUT_FIRST).clicked() {
             settings.save_layout(name.trim());
             name.clear();
         }
@@ -241,7 +241,7 @@ fn save_layout_ui(ui: &mut Ui, settings: &mut ConsoleSettings) {
 /// Switches for the panels.
 fn panels_ui(ui: &mut Ui, layout: &PanelLayout) -> Option<Action> {
     let mut wanted = None;
-    ui.label(text::menu::PANELS.get()).on_hover_text(text::menu::PANELS_HOVER.get());
+    ui.label(text::menu::PANELS).on_hover_text(text::menu::PANELS_HOVER);
     for pair in PanelId::built().collect::<Vec<_>>().chunks(2) {
         ui.horizontal(|ui| {
             for panel in pair {

@@ -126,7 +126,7 @@ fn hand_ui(ui: &mut Ui, live: &LiveState, side: Side, place: Rect) {
     let name = text::common::hand(side_name(side));
     let words = text::roles::hand(&name, &newtons_read(measured_n, 1), rendered_n, ceiling_n);
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, &words));
-    response.on_hover_text(text::roles::BARS_HOVER.get());
+    response.on_hover_text(text::roles::BARS_HOVER);
     let painter = ui.painter_at(place);
     painter.rect_filled(place, theme::CORNER, theme::now().card);
     let inner = place.shrink2(vec2(16.0, 12.0));

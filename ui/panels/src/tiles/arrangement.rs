@@ -20,7 +20,7 @@ const TALL_FROM: f32 = 860.0;
 /// Heights of panels that should not need scrolling.
 const FEEDBACK: f32 = 494.0;
 const HORIZON: f32 = 240.0;
-const DEGREES: f32 = 446.0;
+const DEGREES: f32 = 424.0;
 
 /// A built-in layout. In each, every panel is at most one click away: those that are not shown are tabs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]

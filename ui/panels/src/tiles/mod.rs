@@ -62,7 +62,7 @@ impl PanelTiles {
         }
         let Some((tree, shown, at)) = &mut self.shown else { return };
         if tree.active_tiles().is_empty() {
-            ui.centered_and_justified(|ui| ui.label(weak(text::tiles::ALL_CLOSED.get())));
+            ui.centered_and_justified(|ui| ui.label(weak(text::tiles::ALL_CLOSED)));
             return;
         }
         let mut tiles = DeskContents {

@@ -121,8 +121,8 @@ impl CorrespondenceWizard {
     }
 
     fn check_ui(&mut self, ui: &mut Ui) {
-        card(ui, text::correspondence::CHECKS_TITLE.get(), text::correspondence::CHECKS_HOVER.get(), |ui| {
-            ui.label(text::correspondence::CHECKS_TASK.get());
+        card(ui, text::correspondence::CHECKS_TITLE, text::correspondence::CHECKS_HOVER, |ui| {
+            ui.label(text::correspondence::CHECKS_TASK);
             ui.add_space(6.0);
             let tracker = if self.session.settings().chain {
                 text::correspondence::CHECK_TRACKER.get()
@@ -146,7 +146,7 @@ impl CorrespondenceWizard {
             check_line(ui, names[1], chain || !self.session.settings().chain, MissingInput::Chain.words());
             check_line(ui, names[2], rests, &words);
         });
-        card(ui, text::wizards::OPTIONS_TITLE.get(), text::wizards::OPTIONS_HOVER.get(), |ui| {
+        card(ui, text::wizards::OPTIONS_TITLE, text::wizards::OPTIONS_HOVER, |ui| {
             let CorrespondenceSessionSettings { chain, options, .. } = *self.session.settings();
             let flip = text::correspondence::OPTION_FLIP.get();
             let meaning = text::correspondence::OPTION_FLIP_HOVER.get();
@@ -165,7 +165,7 @@ impl CorrespondenceWizard {
     fn pushes_ui(&mut self, ui: &mut Ui) {
         let count = self.session.pushes();
         let wanted = self.wanted();
-        card(ui, text::correspondence::PUSH_TITLE.get(), text::correspondence::PUSH_HOVER.get(), |ui| {
+        card(ui, text::correspondence::PUSH_TITLE, text::correspondence::PUSH_HOVER, |ui| {
             beside(ui, &self.push(), None, |ui| {
                 ui.label(RichText::new(sentence(wanted.name)).font(theme::strong(19.0)));
                 let (fraction, words) = if self.sources.is_some() {
@@ -193,12 +193,12 @@ impl CorrespondenceWizard {
                 &text::correspondence::taken_of(count, PUSHES_ASKED),
             );
         });
-        card(ui, text::wizards::SO_FAR.get(), text::correspondence::SO_FAR_HOVER.get(), |ui| {
+        card(ui, text::wizards::SO_FAR, text::correspondence::SO_FAR_HOVER, |ui| {
             figure(
                 ui,
-                text::correspondence::RECORDED.get(),
+                text::correspondence::RECORDED,
                 text::correspondence::pushes(count),
-                text::correspondence::RECORDED_HOVER.get(),
+                text::correspondence::RECORDED_HOVER,
             );
             match &self.report {
                 Some(Ok(report)) => verdict_line(ui, report.verdict, &report.reason),
@@ -206,11 +206,11 @@ impl CorrespondenceWizard {
                     ui.label(error);
                 }
                 None => {
-                    ui.label(small(text::correspondence::SO_FAR_EMPTY.get()));
+                    ui.label(small(text::correspondence::SO_FAR_EMPTY));
                 }
             }
-            let remove = ui.add_enabled(count > 0, Button::new(text::correspondence::REMOVE_LAST.get()));
-            if remove.on_disabled_hover_text(text::wizards::NOTHING_RECORDED.get()).clicked() {
+            let remove = ui.add_enabled(count > 0, Button::new(text::correspondence::REMOVE_LAST));
+            if remove.on_disabled_hover_text(text::wizards::NOTHING_RECORDED).clicked() {
                 self.session.undo();
                 self.fit();
             }

@@ -14,30 +14,30 @@ pub(super) fn verdict_ui(ui: &mut Ui, report: &CorrespondenceReport) {
         let left_out = report.outliers.len();
         let weak = report.weak.len();
         let pushes = text::correspondence::used(report.pairs, left_out, weak);
-        figure(ui, text::correspondence::STEP_PUSHES.get(), pushes, text::correspondence::PUSHES_HOVER.get());
+        figure(ui, text::correspondence::STEP_PUSHES, pushes, text::correspondence::PUSHES_HOVER);
         let spread = format!("{:.2}, {:.2}", report.excitation.second, report.excitation.third);
-        figure(ui, text::correspondence::SPREAD.get(), spread, text::correspondence::SPREAD_HOVER.get());
+        figure(ui, text::correspondence::SPREAD, spread, text::correspondence::SPREAD_HOVER);
         let Some(solution) = &report.solution else { return };
         let [roll, pitch, yaw] = solution.roll_pitch_yaw_deg;
         let name = text::correspondence::rotation(solution.target.name());
-        figure(ui, &name, format!("{roll:.2}, {pitch:.2}, {yaw:.2} deg"), text::correspondence::ROTATION_HOVER.get());
+        figure(ui, &name, format!("{roll:.2}, {pitch:.2}, {yaw:.2} deg"), text::correspondence::ROTATION_HOVER);
         figure(
             ui,
-            text::correspondence::UNCERTAINTY.get(),
+            text::correspondence::UNCERTAINTY,
             format!("{:.2} deg", solution.uncertainty_deg),
-            text::correspondence::UNCERTAINTY_HOVER.get(),
+            text::correspondence::UNCERTAINTY_HOVER,
         );
         let check = format!("{:.3} deg", solution.cross_check_deg);
-        figure(ui, text::correspondence::CROSS_CHECK.get(), check, text::correspondence::CROSS_CHECK_HOVER.get());
+        figure(ui, text::correspondence::CROSS_CHECK, check, text::correspondence::CROSS_CHECK_HOVER);
         if let Some(diagnosis) = &solution.diagnosis {
             let gain = format!("{:.3} ± {:.3}", diagnosis.gain, diagnosis.gain_se);
-            figure(ui, text::correspondence::GAIN.get(), gain, text::correspondence::GAIN_HOVER.get());
+            figure(ui, text::correspondence::GAIN, gain, text::correspondence::GAIN_HOVER);
             let offset = format!("{:.3} ± {:.3} N", diagnosis.offset_norm_n(), diagnosis.offset_se_n);
             figure(
                 ui,
-                text::correspondence::OFFSET.get(),
+                text::correspondence::OFFSET,
                 format!("{offset} ({})", frame_text(diagnosis.offset_frame)),
-                text::correspondence::OFFSET_HOVER.get(),
+                text::correspondence::OFFSET_HOVER,
             );
         }
     });
@@ -54,7 +54,7 @@ fn frame_text(frame: OffsetFrame) -> &'static str {
 /// Draws the paper's Validation I: agreement of the rotated force under the tissue with that at the wrist.
 pub(super) fn agreement_ui(ui: &mut Ui, agreement: &PushAgreement) {
     let meaning = text::correspondence::AGREEMENT_HOVER.get();
-    card(ui, text::correspondence::AGREEMENT_TITLE.get(), meaning, |ui| {
+    card(ui, text::correspondence::AGREEMENT_TITLE, meaning, |ui| {
         Grid::new("agreement").num_columns(7).spacing(vec2(22.0, 6.0)).show(ui, |ui| {
             for head in [
                 text::correspondence::AXIS.get(),
@@ -86,9 +86,9 @@ pub(super) fn agreement_ui(ui: &mut Ui, agreement: &PushAgreement) {
         let held_out = agreement.r2_held_out_overall;
         figure(
             ui,
-            text::correspondence::R2_OVERALL.get(),
+            text::correspondence::R2_OVERALL,
             text::correspondence::agreement(fitted, held_out),
-            text::correspondence::R2_OVERALL_HOVER.get(),
+            text::correspondence::R2_OVERALL_HOVER,
         );
     });
 }

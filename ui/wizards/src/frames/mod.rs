@@ -334,9 +334,7 @@ impl Wizard for FrameWizard {
         if self.undoable.is_empty() {
             return None;
         }
-        let wanted = card(ui, texts::UNDO_TITLE.get(), texts::UNDO_CARD_HOVER.get(), |ui| {
-            ui.button(texts::UNDO.get()).clicked()
-        });
+        let wanted = card(ui, texts::UNDO_TITLE, texts::UNDO_CARD_HOVER, |ui| ui.button(texts::UNDO).clicked());
         wanted.then(|| SaveRequest::Undo(self.undoable.iter().cloned().map(RigChange::undone).collect()))
     }
 

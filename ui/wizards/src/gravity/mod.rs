@@ -112,14 +112,14 @@ impl GravityWizard {
     }
 
     fn check_ui(&mut self, ui: &mut Ui) {
-        card(ui, text::gravity::CHECKS_TITLE.get(), text::gravity::CHECKS_HOVER.get(), |ui| {
-            ui.label(text::gravity::CHECKS_TASK.get());
+        card(ui, text::gravity::CHECKS_TITLE, text::gravity::CHECKS_HOVER, |ui| {
+            ui.label(text::gravity::CHECKS_TASK);
             ui.add_space(6.0);
             for check in self.precheck.checks(self.rate_hz) {
                 check_ui(ui, &check);
             }
         });
-        card(ui, text::wizards::OPTIONS_TITLE.get(), text::wizards::OPTIONS_HOVER.get(), |ui| {
+        card(ui, text::wizards::OPTIONS_TITLE, text::wizards::OPTIONS_HOVER, |ui| {
             let GravitySessionSettings { use_arm, fit, .. } = *self.session.settings();
             let none_taken = self.session.poses().is_empty();
             let by_arm = text::gravity::OPTION_BY_ARM.get();
@@ -141,7 +141,7 @@ impl GravityWizard {
         let count = self.session.poses().len();
         let met = self.session.targets_met();
         let target = self.session.target();
-        card(ui, text::gravity::POSE_TITLE.get(), text::gravity::POSE_HOVER.get(), |ui| {
+        card(ui, text::gravity::POSE_TITLE, text::gravity::POSE_HOVER, |ui| {
             let name = target.map_or(text::gravity::POSES_COMPLETE.get(), |target| target.name);
             ui.label(RichText::new(nima_words::report_text::sentence(name)).font(theme::strong(19.0)));
             let (fraction, words) = phase_text(&self.phase);
@@ -161,16 +161,16 @@ impl GravityWizard {
                 &text::gravity::recorded_of(met, TARGETS.len()),
             );
         });
-        card(ui, text::wizards::SO_FAR.get(), text::gravity::SO_FAR_HOVER.get(), |ui| {
-            figure(ui, text::gravity::STEP_POSES.get(), count.to_string(), text::gravity::POSES_HOVER.get());
+        card(ui, text::wizards::SO_FAR, text::gravity::SO_FAR_HOVER, |ui| {
+            figure(ui, text::gravity::STEP_POSES, count.to_string(), text::gravity::POSES_HOVER);
             if let Some(report) = self.good_report() {
                 report_figures(ui, report);
             } else {
-                ui.label(small(text::gravity::SO_FAR_EMPTY.get()));
+                ui.label(small(text::gravity::SO_FAR_EMPTY));
             }
             self.touched_ui(ui);
-            let remove = ui.add_enabled(count > 0, Button::new(text::gravity::REMOVE_LAST.get()));
-            if remove.on_disabled_hover_text(text::wizards::NOTHING_RECORDED.get()).clicked() {
+            let remove = ui.add_enabled(count > 0, Button::new(text::gravity::REMOVE_LAST));
+            if remove.on_disabled_hover_text(text::wizards::NOTHING_RECORDED).clicked() {
                 self.session.undo();
                 self.fit();
             }
@@ -182,7 +182,7 @@ impl GravityWizard {
         let touched_s = self.session.touched_s();
         let is_bad = self.good_report().is_some_and(|report| report.verdict != Verdict::Accepted);
         if touched_s >= TOUCHED_S || is_bad && touched_s > 0.0 {
-            ui.label(text::gravity::was_touched(touched_s)).on_hover_text(text::gravity::WAS_TOUCHED_HOVER.get());
+            ui.label(text::gravity::was_touched(touched_s)).on_hover_text(text::gravity::WAS_TOUCHED_HOVER);
         }
     }
 
@@ -196,31 +196,31 @@ impl GravityWizard {
     }
 
     fn free_motion_ui(&mut self, ui: &mut Ui) {
-        card(ui, text::gravity::FREE_MOTION_TITLE.get(), text::gravity::FREE_MOTION_HOVER.get(), |ui| {
+        card(ui, text::gravity::FREE_MOTION_TITLE, text::gravity::FREE_MOTION_HOVER, |ui| {
             beside(ui, &Prompt::Wave, None, |ui| {
-                ui.label(RichText::new(text::gravity::FREE_MOTION_TASK.get()).font(theme::strong(19.0)));
+                ui.label(RichText::new(text::gravity::FREE_MOTION_TASK).font(theme::strong(19.0)));
                 ui.add_space(4.0);
                 let left =
                     self.left_n.map_or(text::gravity::NO_READING.get().to_owned(), |left_n| format!("{left_n:.2} N"));
                 ui.label(RichText::new(left).font(theme::strong(34.0)));
             });
             let Some(result) = self.pass_result() else { return };
-            figure(ui, text::gravity::MEAN.get(), format!("{:.3} N", result.mean_n), text::gravity::MEAN_HOVER.get());
+            figure(ui, text::gravity::MEAN, format!("{:.3} N", result.mean_n), text::gravity::MEAN_HOVER);
             figure(
                 ui,
-                text::gravity::P95.get(),
+                text::gravity::P95,
                 text::gravity::of_allowed(result.p95_n, FREE_MOTION_LIMIT_N),
-                text::gravity::P95_HOVER.get(),
+                text::gravity::P95_HOVER,
             );
             figure(
                 ui,
-                text::gravity::TILT.get(),
+                text::gravity::TILT,
                 format!("{:.0} deg", result.tilt_rad.to_degrees()),
-                text::gravity::TILT_HOVER.get(),
+                text::gravity::TILT_HOVER,
             );
             let words = if result.passed { text::gravity::PASSED.get() } else { text::gravity::NOT_PASSED.get() };
             judged_line(ui, result.passed, &format!("{words}: {}", result.reason));
-            if ui.button(text::gravity::MEASURE_AGAIN.get()).clicked() {
+            if ui.button(text::gravity::MEASURE_AGAIN).clicked() {
                 self.pass = None;
                 self.go_to(FREE_MOTION);
             }

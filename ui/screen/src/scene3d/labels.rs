@@ -3,7 +3,10 @@
 use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Vec2, pos2, vec2};
 use nalgebra::Vector3;
 use nima_machine::{messages::Tick, rig::Side};
-use nima_words::{report_text::newtons, text};
+use nima_words::{
+    report_text::{newtons, side_name},
+    text,
+};
 
 use super::{CameraLook, SceneCamera, SceneView, stage, stage::StageArm, training};
 use crate::{
@@ -87,14 +90,6 @@ pub(super) fn labels(
         if let Some(place) = at(base + force_n.unwrap_or_default() * stage::ARROW_M_PER_N) {
             label(painter, place + shift, align, &newtons(size_n, 1), theme::strong(15.0), colour);
         }
-    }
-}
-
-/// Returns the name of a hand.
-pub fn side_name(side: Side) -> &'static str {
-    match side {
-        Side::Right => text::common::RIGHT.get(),
-        Side::Left => text::common::LEFT.get(),
     }
 }
 

@@ -27,7 +27,8 @@ use nima_machine::rig::{SIDES, Side};
 use nima_simulation::{Worlds, scene::Scene};
 use nima_words::text;
 
-pub use self::{camera::SceneCamera, labels::side_name};
+pub use self::camera::SceneCamera;
+pub use nima_words::report_text::side_name;
 
 pub use self::labels::tip_bars;
 

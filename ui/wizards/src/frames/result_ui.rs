@@ -2,19 +2,21 @@
 
 use egui::{Grid, Ui, vec2};
 use nalgebra::UnitQuaternion;
-use nima_core::calibration::frames::{SignedAxes, Sizes};
+use nima_core::calibration::frames::SignedAxes;
 use nima_screen::widgets::{card, figure, small};
 use nima_words::{
     report_text::{self, sentence},
     text::frames as texts,
 };
 
-use super::{
+use nima_calibrations::frames::{
     FrameSubject,
-    effect::effect_image,
     job::{Outcome, Quality},
     numbers::{self, FrameNumber, NumberUnit},
+    sizes_text,
 };
+
+use super::effect::effect_image;
 use crate::report::verdict_card;
 
 /// Draws the result; `units` is the name of the recorded items.
@@ -74,13 +76,6 @@ fn figures_ui(ui: &mut Ui, quality: &Quality, outliers: &[usize], units: &str) {
             figure(ui, name, words, meaning);
         }
     }
-}
-
-pub fn sizes_text(sizes: Sizes) -> Option<String> {
-    let place = sizes.place_m.map(|m| format!("{:.2} mm", m * 1e3));
-    let angle = sizes.angle_deg.map(|deg| format!("{deg:.2} deg"));
-    let words: Vec<_> = place.into_iter().chain(angle).collect();
-    (!words.is_empty()).then(|| words.join(", "))
 }
 
 fn numbers_ui(ui: &mut Ui, numbers: &[FrameNumber]) {

@@ -13,7 +13,9 @@ use nima_words::{
     text::{self, frames as texts},
 };
 
-use super::{FrameKind, FrameWizard, kind::Texts};
+use nima_calibrations::frames::{FrameKind, kind::Texts};
+
+use super::FrameWizard;
 use crate::{
     checks::{check_line, switch_ui},
     drawings::progress,

@@ -6,8 +6,10 @@ use nima_recording::store::{CalibrationAge, ReadyRecord};
 use nima_screen::live::LiveState;
 use nima_words::text;
 
-use super::{ArmOverview, CalibrationEntry, OverviewLine, day, made_text, verdict_text};
-use crate::CalibrationTarget;
+use nima_calibrations::{
+    CalibrationTarget,
+    overview::{ArmOverview, CalibrationEntry, OverviewLine, day, made_text, verdict_text},
+};
 
 /// State of a step of the set-up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

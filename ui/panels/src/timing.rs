@@ -8,7 +8,7 @@ use nima_screen::{
     widgets::{figure, small, weak},
 };
 use nima_words::{
-    report_text::{scheduling_text, sentence},
+    report_text::{UNKNOWN, scheduling_text, sentence},
     text,
 };
 
@@ -94,14 +94,15 @@ fn table_ui(ui: &mut Ui, timings: &[TimingBar<'_>]) {
             right(ui, small(head));
         }
         ui.end_row();
-        for TimingBar { name, meaning, quantiles, .. } in timings {
+        for TimingBar { name, meaning, quantiles, durations, .. } in timings {
             ui.scope(|ui| {
                 ui.set_max_width(room);
                 ui.add(egui::Label::new(weak(*name)).wrap()).on_hover_text(*meaning);
             });
             let Quantiles { p50, p99, p999, max } = *quantiles;
             for value in [p50, p99, p999, max] {
-                right(ui, RichText::new(short(value)).font(theme::strong(14.0)));
+                let words = if durations.count() == 0 { UNKNOWN.to_owned() } else { short(value) };
+                right(ui, RichText::new(words).font(theme::strong(14.0)));
             }
             ui.end_row();
         }

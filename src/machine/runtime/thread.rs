@@ -383,7 +383,7 @@ impl Realtime {
             }
         }
         for mut tick in ticks.into_iter().flatten() {
-            tick.dropped = self.meters.dropped;
+            tick.timing.dropped = self.meters.dropped;
             if self.out.ticks.try_send(tick).is_err() {
                 self.meters.dropped += 1;
             }

@@ -70,9 +70,9 @@ pub fn timing_ui(ui: &mut Ui, live: &LiveState, state: &mut TimingState) {
     let tick = live.first_tick();
     let rate = text::timing::ticks_at(&grouped(tick.map_or(0, |tick| tick.index + 1)), live.figures.rate_hz);
     figure(ui, text::timing::TICKS.get(), rate, text::timing::TICKS_HOVER.get());
-    let missed = grouped(tick.map_or(0, |tick| tick.missed));
+    let missed = grouped(tick.map_or(0, |tick| tick.timing.missed));
     figure(ui, text::timing::MISSED.get(), missed, text::timing::MISSED_HOVER.get());
-    let dropped = grouped(tick.map_or(0, |tick| tick.dropped));
+    let dropped = grouped(tick.map_or(0, |tick| tick.timing.dropped));
     figure(ui, text::timing::DROPPED.get(), dropped, text::timing::DROPPED_HOVER.get());
     scheduling_ui(ui, live);
     let [p50, p99] = live.figures.frame_ms;

@@ -266,7 +266,7 @@ impl Realtime {
         let healths = self.rig.health();
         let devices = self.names.iter().zip(healths.devices);
         RuntimeSummary {
-            cpu: CpuFraction { realtime, process },
+            cpu: Some(CpuFraction { realtime, process }),
             devices: devices
                 .map(|(name, health)| DeviceFigures { name: name.clone(), health, trouble: None })
                 .collect(),

@@ -11,7 +11,7 @@ use nima_screen::{
 };
 use nima_words::{
     language::Text,
-    report_text::{COMPARED, mode_meaning, mode_name, newtons, newtons_in_three, three_digits},
+    report_text::{COMPARED, UNKNOWN, mode_meaning, mode_name, newtons, newtons_in_three, three_digits},
     text,
 };
 
@@ -95,7 +95,8 @@ fn trend_ui(ui: &mut Ui, live: &LiveState, plain: bool) {
     painter.rect_filled(rect, 3.0, theme::now().groove);
     let highest_n = 1.1 * live.trend_n.iter().map(|errors_n| errors_n[Mode::Dfr.index()]).fold(MIN_N, f64::max);
     // The labels have their own column: lines over them would make both unreadable.
-    let highest = format!("{} N", three_digits(highest_n));
+    let is_known = live.trend_n.iter().flatten().any(|error_n| error_n.is_finite());
+    let highest = format!("{} N", if is_known { three_digits(highest_n) } else { UNKNOWN.to_owned() });
     let font = theme::regular(11.0);
     let labels = [highest.as_str(), text::horizon::LAST_3_MIN.get()];
     let width = labels.map(|label| width_of(painter, label, font.clone())).into_iter().fold(0.0, f32::max);

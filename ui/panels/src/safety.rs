@@ -111,7 +111,7 @@ fn answer_ui(ui: &mut Ui, live: &LiveState, side: Side) {
 fn gates_ui(ui: &mut Ui, live: &LiveState, side: Side) {
     ui.spacing_mut().item_spacing.y = 1.0;
     let tick = live.tick_of(side);
-    end_ui(ui, text::safety::ASKED.get(), tick.map(|tick| tick.asked_n[tick.mode.index()].norm()));
+    end_ui(ui, text::safety::ASKED.get(), tick.map(|tick| tick.rendering.asked_n[tick.mode.index()].norm()));
     for gate in &gates(live, side) {
         gate_ui(ui, live, side, gate);
     }

@@ -9,7 +9,7 @@ use nima_screen::{
 };
 use nima_words::{
     language::Text,
-    report_text::{scheduling_text, sentence},
+    report_text::{UNKNOWN, scheduling_text, sentence},
     text,
 };
 
@@ -83,9 +83,9 @@ fn timing_ui(ui: &mut Ui, live: &LiveState, state: &mut TimingState) {
     let tick = live.first_tick();
     let rate = text::timing::ticks_at(&grouped(tick.map_or(0, |tick| tick.index + 1)), live.figures.rate_hz);
     figure(ui, text::timing::TICKS, rate, text::timing::TICKS_HOVER);
-    let missed = grouped(tick.map_or(0, |tick| tick.missed));
+    let missed = grouped(tick.map_or(0, |tick| tick.timing.missed));
     figure(ui, text::timing::MISSED, missed, text::timing::MISSED_HOVER);
-    let dropped = grouped(tick.map_or(0, |tick| tick.dropped));
+    let dropped = grouped(tick.map_or(0, |tick| tick.timing.dropped));
     figure(ui, text::timing::DROPPED, dropped, text::timing::DROPPED_HOVER);
     scheduling_ui(ui, live);
     let [p50, p99] = live.figures.frame_ms;
@@ -107,14 +107,15 @@ fn table_ui(ui: &mut Ui, timings: &[TimingBar<'_>]) {
             right(ui, small(head));
         }
         ui.end_row();
-        for TimingBar { name, meaning, quantiles, .. } in timings {
+        for TimingBar { name, meaning, quantiles, durations, .. } in timings {
             ui.scope(|ui| {
                 ui.set_max_width(room);
                 ui.add(egui::Label::new(weak(*name)).wrap()).on_hover_text(*meaning);
             });
             let Quantiles { p50, p99, p999, max } = *quantiles;
             for value in [p50, p99, p999, max] {
-                right(ui, RichText::new(short(value)).font(theme::strong(14.0)));
+                let words = if durations.count() == 0 { UNKNOWN.to_owned() } else { short(value) };
+                right(ui, RichText::new(words).font(theme::strong(14.0)));
             }
             ui.end_row();
         }

@@ -84,8 +84,9 @@ impl ScreenshotRun {
         let min = if self.next == 0 { FILLED } else { SETTLED };
         let shown = self.since.elapsed();
         let engaged = live.state() == LoopState::Engaged;
-        let touches =
-            |tick: &Tick| tick.known_n().is_some_and(|force_n| force_n.norm().min(tick.rendered_n.norm()) > CONTACT_N);
+        let touches = |tick: &Tick| {
+            tick.known_n().is_some_and(|force_n| force_n.norm().min(tick.rendering.rendered_n.norm()) > CONTACT_N)
+        };
         let touching = live.first_tick().is_some_and(touches);
         // Taken at the start of the contact, because the screenshot follows a frame or two later.
         let before = std::mem::replace(&mut self.touching, touching);

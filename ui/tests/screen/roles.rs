@@ -69,9 +69,9 @@ fn the_instrument_is_driven_in_the_surgeon_view_again_after_a_stop() {
     for _ in 0..2 {
         harness.key_press(Key::M);
         harness.step();
-        until(&mut harness, "driven", |tick| tick.guide_m.is_some());
+        until(&mut harness, "driven", |tick| tick.guidance.guide_m.is_some());
         press(&mut harness, "Stop");
-        until(&mut harness, "stopped", |tick| tick.state == LoopState::Stopped && tick.guide_m.is_none());
+        until(&mut harness, "stopped", |tick| tick.state == LoopState::Stopped && tick.guidance.guide_m.is_none());
         press(&mut harness, "Release stop");
         press(&mut harness, "Engage");
         until(&mut harness, "engaged", |tick| tick.state == LoopState::Engaged);

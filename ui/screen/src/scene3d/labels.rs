@@ -145,7 +145,7 @@ pub(super) fn readings(painter: &Painter, rect: Rect, live: &LiveState) {
     for (k, side) in sides.iter().enumerate() {
         let place = gauges.translate(vec2(38.0 * k as f32, 0.0));
         let measured_n = live.tick_of(*side).and_then(Tick::known_n).map(|force_n| force_n.norm());
-        let rendered_n = live.tick_of(*side).map_or(0.0, |tick| tick.rendered_n.norm());
+        let rendered_n = live.tick_of(*side).map_or(0.0, |tick| tick.rendering.rendered_n.norm());
         gauge(painter, place, [measured_n, Some(rendered_n)], ceiling_n, live.is_limited(*side));
         if both {
             let over = pos2(column(k), corner.y - 13.0);

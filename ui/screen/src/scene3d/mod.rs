@@ -267,10 +267,10 @@ fn arm(live: &LiveState, side: Side, view: &SceneView) -> Option<StageArm> {
     let finite = |v: Vector3<f64>| v.iter().all(|x| x.is_finite());
     let start_m = view.starts_m[side.index()].unwrap_or_default();
     let rest = StagePose { tip_m: start_m.cast(), measured_n: None, rendered_n: Vector3::zeros() };
-    let pose = live.tick_of(side).filter(|tick| finite(tick.tip_m)).map_or(rest, |tick| StagePose {
-        tip_m: tick.tip_m.cast(),
+    let pose = live.tick_of(side).filter(|tick| finite(tick.positions.tip_m)).map_or(rest, |tick| StagePose {
+        tip_m: tick.positions.tip_m.cast(),
         measured_n: tick.known_n().map(nalgebra::Matrix::cast),
-        rendered_n: tick.rendered_n.cast(),
+        rendered_n: tick.rendering.rendered_n.cast(),
     });
     // Hidden forces must not reveal anything, not even whether they are known.
     let hidden = StagePose { measured_n: Some(Vector3::zeros()), rendered_n: Vector3::zeros(), ..pose };

@@ -90,7 +90,7 @@ impl MouseDrive {
         let board_m = training::board_of(&live.scene).map(|board| board.z_m as f32 - INTO_BOARD_M);
         self.lowest_m = board_m.unwrap_or(*HEIGHT_M.start());
         for side in live.sides() {
-            let position_m = live.tick_of(side).map(|tick| tick.leader_m.cast());
+            let position_m = live.tick_of(side).map(|tick| tick.positions.leader_m.cast());
             self.position_m[side.index()] = position_m;
             if let Some(position_m) = position_m {
                 outbox.push(Command::Guide(side, Some(position_m.cast())));

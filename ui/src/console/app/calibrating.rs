@@ -161,7 +161,7 @@ impl ConsoleApp {
             reader.show(Screen { side, task: task_of(self.wizards.open), prompt: wanted }, &mut self.read);
         }
         let tick = self.live.tick_of(side);
-        let asked = tick.is_some_and(|tick| tick.state == LoopState::Idle && tick.prompt != wanted);
+        let asked = tick.is_some_and(|tick| tick.state == LoopState::Idle && tick.guidance.prompt != wanted);
         if self.wizards.open.is_some() && asked {
             self.outbox.push(Command::Prompt(side, wanted));
         }

@@ -238,7 +238,7 @@ impl Wizard for CorrespondenceWizard {
     }
 
     fn tick(&mut self, tick: &Tick, _: f64) {
-        let Some(sample) = &tick.wrist else {
+        let Some(sample) = &tick.calibration.wrist else {
             self.sources = None;
             return;
         };

@@ -252,8 +252,8 @@ impl Wizard for FrameWizard {
         if (0.0..EVERY_S).contains(&since_s) {
             return;
         }
-        self.seen = tick.frames;
-        if let ViewOrientation::Seen(world_from_view) = tick.view
+        self.seen = tick.calibration.frames;
+        if let ViewOrientation::Seen(world_from_view) = tick.calibration.view
             && self.frame.step == RECORD
         {
             self.seen_view = Some(world_from_view);

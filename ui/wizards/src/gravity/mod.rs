@@ -246,9 +246,9 @@ impl Wizard for GravityWizard {
     fn tick(&mut self, tick: &Tick, rate_hz: f64) {
         self.rate_hz = rate_hz;
         if self.frame.step == CHECK {
-            self.precheck.step(tick.wrist.as_ref(), tick.t_s);
+            self.precheck.step(tick.calibration.wrist.as_ref(), tick.t_s);
         }
-        let Some(sample) = &tick.wrist else {
+        let Some(sample) = &tick.calibration.wrist else {
             self.phase = GravityPhase::NoSample;
             return;
         };

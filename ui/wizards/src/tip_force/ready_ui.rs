@@ -27,7 +27,7 @@ const SOURCES: [(Text, Text); 5] = [
 
 /// Sources that delivered in this tick.
 pub(super) fn sources(tick: &Tick) -> ReadySources {
-    tick.wrist.as_ref().map_or_else(ReadySources::default, |sample| {
+    tick.calibration.wrist.as_ref().map_or_else(ReadySources::default, |sample| {
         let gravity = tick.force.gravity_free.is_some();
         [true, gravity, sample.tissue_n.is_some(), sample.s1_from_c().is_some(), sample.insertion_m.is_some()]
     })

@@ -299,9 +299,9 @@ impl Wizard for CameraWizard {
     }
 
     fn tick(&mut self, tick: &Tick, _: f64) {
-        self.tip.note(tick.t_s, tick.tip_m);
+        self.tip.note(tick.t_s, tick.positions.tip_m);
         if self.frame.step == TOUCH && self.base.is_some() {
-            self.marker.note(tick.t_s, tick.view.world_from_n());
+            self.marker.note(tick.t_s, tick.calibration.view.world_from_n());
         }
     }
 

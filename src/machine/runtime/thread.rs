@@ -278,7 +278,7 @@ impl Realtime {
         let healths = self.rig.health();
         let devices = self.names.iter().zip(healths.devices);
         RuntimeSummary {
-            cpu: CpuFraction { realtime, process },
+            cpu: Some(CpuFraction { realtime, process }),
             devices: devices
                 .map(|(name, health)| DeviceFigures { name: name.clone(), health, trouble: None })
                 .collect(),
@@ -398,7 +398,7 @@ impl Realtime {
             }
         }
         for mut tick in ticks.into_iter().flatten() {
-            tick.dropped = self.meters.dropped;
+            tick.timing.dropped = self.meters.dropped;
             if self.out.ticks.push(tick).is_err() {
                 self.meters.dropped += 1;
             }

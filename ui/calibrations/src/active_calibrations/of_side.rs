@@ -195,13 +195,13 @@ impl SideCalibrations {
         self.in_use.watch(tick);
         let Some((check, found_at)) = &mut self.drift else { return };
         let idle = match tick.state {
-            LoopState::Idle if tick.prompt == Prompt::Rest => true,
+            LoopState::Idle if tick.guidance.prompt == Prompt::Rest => true,
             LoopState::Engaged => false,
             // A person is guiding the arm, or the sample is not new.
             _ => return,
         };
         let before = check.drift();
-        if check.step(tick.wrist.as_ref(), idle, tick.t_s) != before {
+        if check.step(tick.calibration.wrist.as_ref(), idle, tick.t_s) != before {
             utc_now().get(11..16).unwrap_or_default().clone_into(found_at);
         }
     }

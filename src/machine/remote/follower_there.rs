@@ -1,4 +1,4 @@
-//! The follower's half at another machine, as the operator's machine knows it.
+//! The follower's half at another machine, as the operator's machine represents it.
 
 use nima_core::{
     calibration::frames::FrameSample,

@@ -1,4 +1,4 @@
-//! The leader's half at another machine, as the follower's machine knows it: a hand that moves as commanded, and the
+//! The leader's half at another machine, as the follower's machine represents it: a hand that moves as commanded, and the
 //! operator's commands.
 
 use nalgebra::Vector3;

@@ -164,7 +164,7 @@ impl PhysicsTool {
         }
     }
 
-    /// Advances the jaws by `step_s`: a spring towards the command, limited in force, and the opening forces, against a
+    /// Advances the jaws by `step_s`: a spring of limited force towards the command, and the opening forces, against a
     /// damper.
     pub(crate) fn drive(&mut self, step_s: f64) {
         let JawSettings { finger_length_m, stiffness_n_m, force_max_n, .. } = self.jaws;

@@ -119,7 +119,7 @@ pub const TARGETS: [PushTarget; 9] = [
 ];
 
 /// Cosine of the angle within which a push counts for a target: 30 degrees. A person cannot push more precisely than
-/// that, and twelve targets cover all directions even so.
+/// that, and nine targets cover all directions of a push even so.
 const NEAR_TARGET: f64 = 0.866;
 /// More would hardly improve the result, and the session keeps every push in memory.
 const MAX_PUSHES: usize = 64;
@@ -156,7 +156,7 @@ impl CorrespondenceSession {
         }
     }
 
-    /// Adds one sample; returns the state of the session. `Recorded` and `InvalidRequest` last until the next push begins.
+    /// Adds one sample; returns the state of the session. `Recorded` and `Refused` last until the next push begins.
     pub fn step(&mut self, f1_n: Option<Vector3<f64>>, sample: &WristSample, t_s: f64) -> CorrespondencePhase {
         let reading = match self.reading(f1_n, sample, t_s) {
             Ok(reading) => reading,

@@ -18,7 +18,7 @@ use crate::frames::WristSample;
 /// filters' transient as a drift.
 const SETTLE_S: f64 = 2.0;
 /// A bad verdict needs this many consecutive still intervals: a hand on the tool sways, whereas a bias does not
-/// (`docs/calibration.md`).
+/// (`docs/results/calibration.md`).
 const STRETCHES_FOR_BAD: f64 = 3.0;
 /// If there is no verdict after this time, the check reports the reason, s; a later still interval may still give a
 /// verdict.

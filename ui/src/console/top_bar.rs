@@ -127,7 +127,7 @@ fn identity_ui(
         ui.label(RichText::new(participant).font(theme::strong(17.0)));
         return;
     }
-    switch_ui(ui, &Role::ALL, &mut settings.role, !calibrating);
+    let view = switch_ui(ui, &Role::ALL, settings.role, !calibrating);
     let font = TextStyle::Button.resolve(ui.style());
     let words = with_icon(ui, icons::ICON_PRECISION_MANUFACTURING, text::start::OPEN.get(), font.clone());
     let start = Button::new(words).min_size(vec2(44.0, 30.0));
@@ -135,16 +135,17 @@ fn identity_ui(
     let free = !calibrating && !state.past;
     let start = ui.add_enabled(free, start);
     start.widget_info(|| WidgetInfo::labeled(egui::Role::Button, free, text::start::OPEN.get()));
-    let start = start.on_hover_text(text::start::OPEN_HOVER.get());
+    let start = start.on_hover_text(text::start::OPEN_HOVER);
     let wants_start = start.on_disabled_hover_text(why).clicked();
     let of_menu = menu_ui(ui, settings, &mut state.alarms, state.can_undo);
     let words = with_icon(ui, icons::ICON_VIDEO_LIBRARY, text::playback::SESSIONS.get(), font);
     let sessions = ui.add_enabled(free, Button::new(words).min_size(vec2(72.0, 30.0)));
     sessions.widget_info(|| WidgetInfo::labeled(egui::Role::Button, free, text::playback::SESSIONS.get()));
-    let sessions = sessions.on_hover_text(text::playback::SESSIONS_HOVER.get());
+    let sessions = sessions.on_hover_text(text::playback::SESSIONS_HOVER);
     let wants_sessions = sessions.on_disabled_hover_text(why).clicked();
     let keeps = recorded_ui(ui, state);
     state.wanted = of_menu
+        .or(view.map(Action::View))
         .or(wants_start.then_some(Action::Rig))
         .or(wants_sessions.then_some(Action::Sessions))
         .or(keeps.then_some(Action::Keep));
@@ -213,6 +214,16 @@ fn state_lines(live: &LiveState, state: LoopState) -> Vec<String> {
 
 /// Always in the same place, above every window, menu and tooltip, and always enabled: pressing it twice does no harm.
 fn stop_ui(ui: &Ui, place: Rect, state: LoopState, next: bool, outbox: &mut Outbox) {
+    let area = Area::new(Id::unique("stop")).order(Order::TOP).fixed_pos(place.min).default_size(place.size());
+    let pressed =
+        area.movable(false).constrain(false).fade_in(false).show(ui.ctx(), |ui| stop_button_ui(ui, state, next)).inner;
+    if pressed {
+        outbox.push(Command::Stop);
+    }
+}
+
+/// Draws the stop button, highlighted as the `next` one; returns true when pressed.
+pub(in crate::console) fn stop_button_ui(ui: &mut Ui, state: LoopState, next: bool) -> bool {
     let latched = matches!(state, LoopState::Stopped | LoopState::Faulted(_));
     let (fill, ink) = if latched {
         (theme::now().control, theme::now().text_weak)
@@ -223,18 +234,9 @@ fn stop_ui(ui: &Ui, place: Rect, state: LoopState, next: bool, outbox: &mut Outb
     if next {
         button = button.stroke(Stroke::new(6.0, theme::now().primary));
     }
-    let area = Area::new(Id::unique("stop")).order(Order::TOP).fixed_pos(place.min).default_size(place.size());
-    let response =
-        area.movable(false).constrain(false).fade_in(false).show(ui.ctx(), |ui| stop_button(ui, button, ink)).inner;
-    if response.clicked() {
-        outbox.push(Command::Stop);
-    }
-}
-
-fn stop_button(ui: &mut Ui, button: Button<'_>, ink: egui::Color32) -> egui::Response {
     let response = ui.add(button);
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, text::top_bar::STOP.get()));
-    let response = response.on_hover_text(text::top_bar::STOP_HOVER.get());
+    let response = response.on_hover_text(text::top_bar::STOP_HOVER);
     let middle = response.rect.center();
     sign(ui.painter(), Sign::Octagon, middle - vec2(34.0, 0.0), 11.0, ink);
     ui.painter().text(
@@ -244,7 +246,7 @@ fn stop_button(ui: &mut Ui, button: Button<'_>, ink: egui::Color32) -> egui::Res
         theme::strong(21.0),
         ink,
     );
-    response
+    response.clicked()
 }
 
 /// State of the next step.

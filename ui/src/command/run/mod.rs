@@ -13,6 +13,7 @@ use std::{
 
 use anyhow::{Context as _, bail};
 use clap::Args;
+use nima_calibrations::active_calibrations::ActiveCalibrations;
 use nima_core::{calibration::gravity::GravityDrift, impedance::Mode};
 use nima_endoscope::FrameQueue;
 use nima_machine::{
@@ -30,7 +31,6 @@ use nima_screen::{
 };
 use nima_session::sinks::Destination;
 use nima_simulation::{ObjectFeed, SimulationPlan, scene::Scene};
-use nima_wizards::active_calibrations::ActiveCalibrations;
 use nima_words::report_text::{Remedy as _, drift as drift_text};
 use serde::Serialize;
 use serde_json::Value;

@@ -138,7 +138,7 @@ impl TrialScreen {
                 let words = if self.is_asked { text::studies::GIVE_UP_NOW.get() } else { text::studies::GIVE_UP.get() };
                 let button = Button::selectable(self.is_asked, words).frame_when_inactive(true);
                 let button = ui.add_enabled(self.over.is_none(), button.min_size(vec2(150.0, 36.0)));
-                if button.on_hover_text(text::studies::GIVE_UP_HOVER.get()).clicked() {
+                if button.on_hover_text(text::studies::GIVE_UP_HOVER).clicked() {
                     if self.is_asked {
                         self.break_off_because(study::GIVEN_UP);
                     }

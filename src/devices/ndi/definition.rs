@@ -8,6 +8,7 @@ use crate::DeviceError;
 
 /// Length of a definition as sent, padded with zeros, as `ndicapi` does.
 pub const DEFINITION: usize = 1024;
+// Every tool definition (`.rom`) begins with these bytes; another file is refused before it is sent.
 const BEGIN: &[u8] = b"NDI\0";
 
 /// A tool definition in the form in which it is sent.

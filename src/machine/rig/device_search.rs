@@ -12,7 +12,7 @@ use nima_devices::{
 };
 use toml_edit::Value;
 
-use super::{PartKind, RigPart, RigSettings};
+use super::{PartKind, RigPart, RigSettings, places::same_file};
 
 /// A device that was found, and the settings with which a rig file can use it.
 #[derive(Clone, Debug)]
@@ -127,10 +127,6 @@ fn used_ports(devices: &RigSettings) -> Vec<PathBuf> {
     used.extend(devices.tissue_sensor.as_ref().and_then(|sensor| sensor.bota()).map(|sensor| sensor.port.clone()));
     used.extend(devices.tracker.as_ref().and_then(|tracker| tracker.port.clone()));
     used.into_iter().map(PathBuf::from).collect()
-}
-
-fn same_file(one: &Path, other: &Path) -> bool {
-    one == other || matches!((one.canonicalize(), other.canonicalize()), (Ok(one), Ok(other)) if one == other)
 }
 
 /// Returns a port name that contains the device's serial number and stays valid when devices are plugged in a different

@@ -1,5 +1,3 @@
-use std::net::SocketAddr;
-
 use nima_devices::{
     DeviceError, ForceSensor, bota,
     discovery::{Probe, probes},
@@ -8,6 +6,7 @@ use nima_devices::{
 use serde::{Deserialize, Serialize, Serializer};
 
 use super::Opener;
+use crate::rig::places::{NamedPlace, Place};
 
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -74,11 +73,14 @@ impl SensorSettings {
         }
     }
 
-    /// Returns the local address for an external sensor.
-    pub(in crate::rig) const fn listens_at(&self) -> Option<SocketAddr> {
+    /// Returns the places at which the sensor is reached.
+    pub(in crate::rig) fn places(&self) -> Vec<NamedPlace> {
         match self {
-            Self::Bota(_) => None,
-            Self::External(settings) => Some(settings.listen),
+            Self::Bota(settings) if settings.transport == bota::Transport::Socket => {
+                vec![("port", Place::tcp_at(&settings.port, bota::TCP_PORT))]
+            }
+            Self::Bota(settings) => vec![("port", Place::file(&settings.port))],
+            Self::External(settings) => vec![("listen", Place::listens(settings.listen))],
         }
     }
 

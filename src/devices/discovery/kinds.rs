@@ -202,6 +202,10 @@ impl Probe for NamedKind {
         &self.name
     }
 
+    fn extra(&self) -> Duration {
+        self.probe.extra()
+    }
+
     fn probe(&mut self, timeout: Duration) -> Result<FoundDevice, DeviceError> {
         self.probe.probe(timeout)
     }

@@ -188,8 +188,11 @@ impl DynamixelSettings {
     }
 }
 
+/// First word of the identity of servos, which have no serial number.
+pub(crate) const IDS: &str = "ids";
+
 pub(super) fn ids_text(ids: impl Iterator<Item = u8>) -> String {
-    ids.fold("ids".to_owned(), |words, id| format!("{words} {id}"))
+    ids.fold(IDS.to_owned(), |words, id| format!("{words} {id}"))
 }
 
 fn impossible(key: &str, value: &dyn std::fmt::Display, allowed: String) -> DeviceError {

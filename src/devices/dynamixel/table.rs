@@ -3,6 +3,8 @@
 
 use std::f64::consts::TAU;
 
+use crate::DeviceError;
+
 /// A register: address and length in bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DynamixelRegister {
@@ -163,6 +165,16 @@ impl ServoModel {
     /// Returns whether the model has the factory values of the small series for 5 V.
     pub const fn is_small(&self) -> bool {
         matches!(self.number, 1190 | 1200)
+    }
+}
+
+/// Returns the error for a servo of another model.
+pub fn unsupported(place: String, number: u16) -> DeviceError {
+    let known: Vec<_> = MODELS.iter().map(|model| model.name).collect();
+    DeviceError::Unsupported {
+        place,
+        found: format!("servo with model number {number}"),
+        cure: format!("Use a servo of these models: {}.", known.join(", ")),
     }
 }
 

@@ -166,6 +166,7 @@ fn device_text(found: &FoundDevice) -> String {
     if found.readings > 0 || found.lost + found.damaged > 0 {
         words.push(format!("{} readings, {} lost, {} damaged", found.readings, found.lost, found.damaged));
     }
+    words.extend(found.note.map(str::to_owned));
     words.extend(found.latency_s.map(|latency_s| format!("answers in {:.1} ms", latency_s * 1e3)));
     words.join(", ")
 }

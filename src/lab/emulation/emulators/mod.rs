@@ -23,6 +23,8 @@ mod wires;
 
 #[cfg(test)]
 mod discovery_tests;
+#[cfg(all(test, target_os = "linux"))]
+mod probe_sweep_tests;
 
 use std::io;
 

@@ -1,7 +1,7 @@
 //! Prepares a connected unit for tracking: line speed, reset, freeing old handles, tool definitions, start (reference
 //! 1.3).
 
-use std::time::Duration;
+use std::{path::PathBuf, time::Duration};
 
 use super::{
     command::{Filter, NdiCommand, NdiPriority, OUTSIDE_TOO, ReplyForm, TRANSFORMS, WIRELESS},
@@ -45,6 +45,7 @@ pub(super) fn open(settings: &NdiSettings) -> Result<OpenTracker, DeviceError> {
     let key = |k: usize| format!("tools[{k}]");
     let load = |(k, path): (usize, &std::path::PathBuf)| NdiDefinition::load(&key(k), path);
     let definitions = settings.tools.iter().enumerate().map(load).collect::<Result<Vec<_>, _>>()?;
+    check_distinct(&settings.tools, &definitions)?;
     let place = settings.place();
     let baud = settings.port.is_some().then_some(settings.baud);
     let session = match baud {
@@ -52,6 +53,20 @@ pub(super) fn open(settings: &NdiSettings) -> Result<OpenTracker, DeviceError> {
         Some(baud) => over_line(&place, baud),
     }?;
     NdiOpening { session, place, baud }.start(settings, &definitions)
+}
+
+/// Refuses two tools with one definition: the unit could not tell their markers apart.
+fn check_distinct(paths: &[PathBuf], definitions: &[NdiDefinition]) -> Result<(), DeviceError> {
+    for (k, definition) in definitions.iter().enumerate() {
+        if let Some(same) = definitions[..k].iter().position(|other| other == definition) {
+            return Err(DeviceError::File {
+                key: format!("tools[{k}]"),
+                path: paths[k].display().to_string(),
+                reason: format!("it is the same definition as tools[{same}], but each tool needs its own"),
+            });
+        }
+    }
+    Ok(())
 }
 
 fn over_network(place: &str) -> Result<NdiSession, DeviceError> {

@@ -18,6 +18,7 @@ mod identified;
 mod jaws;
 #[cfg(test)]
 mod joint_limits_tests;
+mod lengths;
 mod makes;
 mod nominal;
 mod part;

@@ -235,6 +235,11 @@ impl RigSettings {
             set.sensor.check().map_err(of("sensor"))?;
             set.sensor.check_emulated(self.emulated).map_err(of("sensor"))?;
             set.servos.as_ref().map_or(Ok(()), dynamixel::DynamixelSettings::check).map_err(of("servos"))?;
+            set.check_lengths().map_err(|(key, value, allowed)| DeviceError::Setting {
+                key: format!("devices.{}.{key}", side.word()),
+                value,
+                allowed,
+            })?;
         }
         if let (Some(right), Some(left)) = (&self.right, &self.left) {
             right.handle.check_beside(&left.handle).map_err(|trouble| below("right.handle", trouble))?;

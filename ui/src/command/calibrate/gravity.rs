@@ -33,6 +33,9 @@ pub(in crate::command) struct GravityArguments {
     /// Name of the tool on the sensor
     #[arg(long, default_value = "unknown")]
     tool: String,
+    /// Mass of the tool as weighed, kg; the fitted mass must agree with it, which reveals forces in other units
+    #[arg(long, value_name = "KG")]
+    mass_kg: Option<f64>,
     /// The accelerometer's vector points down at rest, not up
     #[arg(long)]
     flip_imu: bool,
@@ -60,8 +63,11 @@ pub(in crate::command) fn run(arguments: &GravityArguments) -> anyhow::Result<()
         GravityModelChoice::Gain => ModelKind::Gain,
         GravityModelChoice::Paper => ModelKind::Paper,
     });
-    let settings =
-        GravitySettings { model, imu_sign: if arguments.flip_imu { -1 } else { 1 }, ..GravitySettings::default() };
+    if let Some(mass_kg) = arguments.mass_kg.filter(|mass_kg| !(*mass_kg > 0.0 && *mass_kg <= 10.0)) {
+        bail!("--mass-kg {mass_kg} is outside its range: enter the mass in kg, above 0 and at most 10");
+    }
+    let imu_sign = if arguments.flip_imu { -1 } else { 1 };
+    let settings = GravitySettings { model, imu_sign, weighed_kg: arguments.mass_kg, ..GravitySettings::default() };
     let report = fit(&poses, &settings).with_context(|| format!("poses {}", arguments.poses.display()))?;
     let accepted = report.verdict == Verdict::Accepted;
     if accepted || arguments.override_by.is_some() {

@@ -23,7 +23,7 @@ mod wires;
 
 #[cfg(test)]
 mod discovery_tests;
-#[cfg(all(test, target_os = "linux"))]
+#[cfg(test)]
 mod probe_sweep_tests;
 
 use std::io;

@@ -64,6 +64,9 @@ pub enum DeviceError {
     #[error("{place} cannot be reached")]
     Unreachable { place: String },
     /// Address and port to which the device sends.
+    /// An address for documentation, to which nothing is sent.
+    #[error("{place} is only an example of an address")]
+    Example { place: String },
     #[error("no response from {place}")]
     NobodyListens {
         /// Address with port.
@@ -151,6 +154,9 @@ impl DeviceError {
             }
             Self::Unreachable { .. } => {
                 "Check the cable and that this computer has an address in the device's network.".to_owned()
+            }
+            Self::Example { .. } => {
+                "Enter the address of your device in the rig file, or type it in the Devices panel (Choose).".to_owned()
             }
             Self::NobodyListens { .. } => {
                 "Correct the port number in the rig file, or wait until the device has started.".to_owned()

@@ -30,7 +30,7 @@ pub const KINDS: &[ProbeKind] = &[
     ProbeKind { name: "bota-socket", usage: "bota-socket=HOST[:PORT]", make: socket },
     ProbeKind { name: "dynamixel", usage: "dynamixel=PORT[@BAUD]", make: dynamixel },
     ProbeKind { name: "ndi", usage: "ndi=HOST[:PORT]|DEVICE FILE[@BAUD]", make: ndi },
-    ProbeKind { name: "kinova", usage: "kinova[=HOST[ tcp=P][ udp=P]]", make: kinova },
+    ProbeKind { name: "kinova", usage: "kinova=HOST[ tcp=P][ udp=P]", make: kinova },
     ProbeKind {
         name: "force-dimension",
         usage: "force-dimension[=SERIAL|emulated:ADDRESS:PORT]",
@@ -128,10 +128,9 @@ fn ndi(place: &str) -> Result<Box<dyn Probe>, DeviceError> {
 }
 
 fn kinova(place: &str) -> Result<Box<dyn Probe>, DeviceError> {
-    let usual = kinova::KinovaSettings::default();
-    let place = if place.is_empty() { &usual.host } else { place };
     let settings = kinova::KinovaSettings::at(place);
-    let settings = settings.ok_or_else(|| wrong("kinova", place, "HOST, or HOST tcp=PORT udp=PORT"))?;
+    let allowed = "HOST, or HOST tcp=PORT udp=PORT; a Gen3 leaves the factory with 192.168.1.10";
+    let settings = settings.ok_or_else(|| wrong("kinova", place, allowed))?;
     Ok(super::probes::arm("kinova", settings))
 }
 

@@ -201,6 +201,11 @@ impl RigConfig {
         self.devices.as_ref().map(rig::rig_probes).into_iter().flatten().chain(handle).collect()
     }
 
+    /// Returns the parts whose network address is only an example, with the key of the address in the rig file.
+    pub fn example_addresses(&self) -> Vec<(RigPart, String)> {
+        self.devices.as_ref().map(rig::RigSettings::example_addresses).unwrap_or_default()
+    }
+
     /// Returns whether the rig cannot hurt a person: no real device renders a force or moves. Only such a rig may
     /// engage automatically.
     pub fn is_harmless(&self) -> bool {

@@ -175,21 +175,12 @@ fn pedals(devices: &RigSettings, plugged: &PluggedDevices) -> Vec<SearchResult> 
     sought
 }
 
-/// Tries the address that the user named, otherwise the manufacturer's default address.
+/// Tries the address that the user named. The factory's address may belong to another device in the user's network.
 fn arms(part: RigPart, devices: &RigSettings, place: &str) -> Vec<SearchScope> {
     let now =
         part.side().and_then(|side| devices.arm(side)).and_then(|set| set.arm.kinova()).cloned().unwrap_or_default();
     let usual = kinova::KinovaSettings::default();
-    let place = if place.is_empty() { usual.host.as_str() } else { place };
     let Some(at) = kinova::KinovaSettings::at(place) else { return Vec::new() };
-    if place == usual.host
-        && [&devices.right, &devices.left]
-            .into_iter()
-            .flatten()
-            .any(|set| set.arm.kinova().is_some_and(|arm| arm.host == place))
-    {
-        return Vec::new();
-    }
     let mut changes = vec![("host", Value::from(at.host.as_str())), (SERIAL_NUMBER, "".into())];
     if (at.tcp_port, at.udp_port) != (usual.tcp_port, usual.udp_port) {
         changes.push(("tcp_port", i64::from(at.tcp_port).into()));

@@ -7,7 +7,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use nima_devices::{DeviceError, hid, ndi, same_serial};
+use nima_devices::{DeviceError, hid, ndi, same_serial, transport};
 
 use super::{PartKind, RigPart, RigSettings};
 
@@ -124,6 +124,19 @@ impl RigSettings {
                 .map(|pedal| of_hid(&pedal.source).into_iter().map(|place| ("source", place)).collect()),
         }
         .unwrap_or_default()
+    }
+
+    /// Returns the parts whose network address is only an example, with the key of the address.
+    pub(crate) fn example_addresses(&self) -> Vec<(RigPart, String)> {
+        let example = |part: RigPart| {
+            let is_example = |(_, place): &NamedPlace| match place {
+                Place::Port { host, .. } => transport::is_example(host),
+                Place::File(_) => false,
+            };
+            let (key, _) = self.places(part).into_iter().find(is_example)?;
+            Some((part, format!("{}.{key}", part.key())))
+        };
+        RigPart::ALL.into_iter().filter_map(example).collect()
     }
 
     /// Checks that no two parts have one address, one port or one serial number.

@@ -8,6 +8,7 @@ mod identification;
 mod mounted;
 mod own_copy;
 mod rig_file;
+mod secrets;
 mod teleoperation;
 
 use std::path::Path;

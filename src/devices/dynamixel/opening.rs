@@ -149,17 +149,7 @@ impl<'a, T: ByteStream, P: WaitClock> DynamixelSession<'a, T, P> {
             }
             _ => {}
         }
-        if servo.current_limit_a > f64::from(model.current_max) * model.current_unit_a {
-            return Err(DeviceError::Setting {
-                key: "current_limit_a".to_owned(),
-                value: servo.current_limit_a.to_string(),
-                allowed: format!(
-                    "a {} takes at most {:.3} A",
-                    model.name,
-                    f64::from(model.current_max) * model.current_unit_a
-                ),
-            });
-        }
+        servo.check_current(model)?;
         Ok(model)
     }
 

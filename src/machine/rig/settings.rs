@@ -235,6 +235,7 @@ impl RigSettings {
             set.sensor.check().map_err(of("sensor"))?;
             set.sensor.check_emulated(self.emulated).map_err(of("sensor"))?;
             set.servos.as_ref().map_or(Ok(()), dynamixel::DynamixelSettings::check).map_err(of("servos"))?;
+            set.jaws.check(set.servos.as_ref()).map_err(of("jaws"))?;
             set.check_lengths().map_err(|(key, value, allowed)| DeviceError::Setting {
                 key: format!("devices.{}.{key}", side.word()),
                 value,

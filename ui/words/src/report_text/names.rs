@@ -187,6 +187,22 @@ pub fn lack_text(lack: SchedulingLack) -> [&'static str; 2] {
                  realtime beitreten und neu anmelden",
             ),
         ],
+        SchedulingLack::PriorityInContainer => [
+            word("no real-time priority in this container", "keine Echtzeitpriorität in diesem Container"),
+            word(
+                "start it with --cap-add=sys_nice --ulimit rtprio=95; if its control group has no real-time budget, \
+                 also with --cpu-rt-runtime=950000",
+                "ihn mit --cap-add=sys_nice --ulimit rtprio=95 starten; hat seine Kontrollgruppe kein Echtzeitbudget, \
+                 auch mit --cpu-rt-runtime=950000",
+            ),
+        ],
+        SchedulingLack::MemoryInContainer => [
+            word("memory is not locked in this container", "Speicher ist in diesem Container nicht gesperrt"),
+            word(
+                "start it with --cap-add=ipc_lock --ulimit memlock=-1",
+                "ihn mit --cap-add=ipc_lock --ulimit memlock=-1 starten",
+            ),
+        ],
         SchedulingLack::NotLinux => [
             word("real-time scheduling is available on Linux only", "Echtzeitpriorität gibt es nur unter Linux"),
             word("expect more missed ticks here", "hier sind mehr versäumte Takte zu erwarten"),

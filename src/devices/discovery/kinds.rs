@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use super::{DataTiming, DeviceProbe, FoundDevice, Probe, SerialProbe, TcpProbe};
 use crate::{
-    DeviceError,
+    DeviceError, ati,
     bota::{self, Transport},
     external, force_dimension, haply,
     hid::{CapDriver, CapSettings, PedalDriver, PedalSettings},
@@ -28,6 +28,7 @@ pub const KINDS: &[ProbeKind] = &[
     ProbeKind { name: "bota-gen0", usage: "bota-gen0=PORT[@BAUD]", make: gen0 },
     ProbeKind { name: "bota-gen-a", usage: "bota-gen-a=PORT[@BAUD]", make: gen_a },
     ProbeKind { name: "bota-socket", usage: "bota-socket=HOST[:PORT]", make: socket },
+    ProbeKind { name: "ati", usage: "ati=HOST[ rdt=P][ http=P]", make: ati },
     ProbeKind { name: "dynamixel", usage: "dynamixel=PORT[@BAUD]", make: dynamixel },
     ProbeKind { name: "ndi", usage: "ndi=HOST[:PORT]|DEVICE FILE[@BAUD]", make: ndi },
     ProbeKind { name: "kinova", usage: "kinova=HOST[ tcp=P][ udp=P]", make: kinova },
@@ -104,6 +105,13 @@ fn bota(kind: &str, transport: Transport, place: &str) -> Result<Box<dyn Probe>,
     let settings = bota::BotaSettings { port: port.to_owned(), baud, ..usual };
     settings.check()?;
     Ok(super::probes::sensor(kind, settings))
+}
+
+fn ati(place: &str) -> Result<Box<dyn Probe>, DeviceError> {
+    let refused = || wrong("ati", place, "HOST, or HOST rdt=PORT http=PORT; it leaves the factory with 192.168.1.1");
+    let settings = ati::AtiSettings::at(place).ok_or_else(refused)?;
+    settings.check()?;
+    Ok(super::probes::ati("ati", settings))
 }
 
 /// Creates a probe that lists the servos on the bus without configuring them, because their settings are unknown.

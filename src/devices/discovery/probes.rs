@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use super::{DataTiming, DeviceProbe, Probe};
-use crate::{bota, dynamixel, external, force_dimension, haply, hid, kinova, ndi};
+use crate::{ati, bota, dynamixel, external, force_dimension, haply, hid, kinova, ndi};
 
 /// A first-generation sensor restarts whenever its line is opened, which takes up to this time.
 const START: Duration = Duration::from_secs(3);
@@ -32,6 +32,11 @@ pub fn sensor(name: &str, settings: bota::BotaSettings) -> Box<dyn Probe> {
     let place = settings.port.clone();
     let probe = DeviceProbe::new(name, place, DataTiming::Always, move || bota::BotaDriver::open(&settings));
     Box::new(probe.with_extra(extra))
+}
+
+pub fn ati(name: &str, settings: ati::AtiSettings) -> Box<dyn Probe> {
+    let probe = DeviceProbe::new(name, settings.place(), DataTiming::Always, move || ati::AtiDriver::open(&settings));
+    Box::new(probe.with_extra(COMMAND))
 }
 
 pub fn servos(name: &str, settings: dynamixel::DynamixelSettings) -> Box<dyn Probe> {

@@ -17,7 +17,7 @@ use serde::Serialize;
 #[derive(Debug, Args)]
 pub(super) struct DevicesArguments {
     /// Test this device; may be repeated: `spacemouse`, `pedal`, `force-dimension`, `haply`, `kinova`, `ndi`, `dynamixel`,
-    /// `bota-gen0`, `bota-gen-a`, `bota-socket`, `external-handle`, `external-arm`, `external-sensor`, each with `=PLACE`;
+    /// `bota-gen0`, `bota-gen-a`, `bota-socket`, `ati`, `external-handle`, `external-arm`, `external-sensor`, each with `=PLACE`;
     /// `serial=PORT@BAUD[,HEADER][,quiet]`, `tcp=HOST:PORT`
     #[arg(long, value_name = "KIND[=PLACE]")]
     probe: Vec<String>,

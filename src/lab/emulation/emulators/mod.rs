@@ -7,6 +7,7 @@
 //! bits, numbers) by the emulator itself.
 
 mod addresses;
+pub mod ati;
 pub mod bota;
 pub mod dynamixel;
 pub mod endoscope;
@@ -40,6 +41,7 @@ type StandaloneMaker = fn(&EmulatorSettings) -> io::Result<Box<dyn Emulator>>;
 
 /// All emulators that run alone, by name.
 pub const ALONE: &[(&str, StandaloneMaker)] = &[
+    ("ati", ati::standalone::sensor),
     ("bota-gen0", |settings| bota::standalone::sensor(Transport::Gen0, settings)),
     ("bota-gen-a", |settings| bota::standalone::sensor(Transport::GenA, settings)),
     ("bota-socket", |settings| bota::standalone::sensor(Transport::Socket, settings)),

@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 
 use nima_devices::{
     Device, DeviceError,
+    ati::{AtiDriver, AtiSettings},
     bota::{BotaDriver, BotaSettings, Transport},
     discovery::{TIMEOUT, TestOutcome, diagnose, probe_named},
     haply::{HaplyDriver, HaplySettings},
@@ -45,7 +46,8 @@ fn ndi(settings: NdiSettings) -> bool {
 /// Name of the emulator, name of the probe, and what a rig makes of the device at a place.
 type Kind = (&'static str, &'static str, fn(&str) -> bool);
 
-const KINDS: [Kind; 9] = [
+const KINDS: [Kind; 10] = [
+    ("ati", "ati", |place| works(AtiDriver::open(&AtiSettings::at(place).unwrap()), true)),
     ("bota-gen0", "bota-gen0", |place| bota(Transport::Gen0, place)),
     ("bota-gen-a", "bota-gen-a", |place| bota(Transport::GenA, place)),
     ("bota-socket", "bota-socket", |place| bota(Transport::Socket, place)),

@@ -71,6 +71,11 @@ impl Percentiles {
         Quantiles { p50: at(0.5), p99: at(0.99), p999: at(0.999), max: self.histogram.max() as f64 * 1e-3 }
     }
 
+    /// Returns the quantiles; `None` if nothing was recorded.
+    pub fn known_quantiles(&self) -> Option<Quantiles> {
+        (self.count() > 0).then(|| self.quantiles())
+    }
+
     /// Returns the counts in bars that double in width, from 1 us to the largest duration; empty if nothing was
     /// recorded.
     pub fn histogram(&self) -> Vec<Bar> {

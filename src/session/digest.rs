@@ -3,7 +3,7 @@
 //! Our own digest, because it is stored in files and must be the same in every build and every version.
 
 use nima_machine::{
-    messages::{Event, Tick},
+    messages::{CalibrationReadings, Event, Guidance, Tick, TickForces, TickPositions, TickTiming},
     rig::{Outputs, SIDES, Side},
 };
 
@@ -101,32 +101,21 @@ pub(crate) fn of_side(outputs: &Outputs, tick: Option<&Tick>) -> [u64; STAGES] {
             state,
             mode,
             delay_s,
-            leader_m,
-            tip_m,
+            positions: TickPositions { leader_m, tip_m },
             measured_n,
             force,
-            wrist,
-            frames,
-            view,
-            prompt,
-            guide_m,
-            delayed_n,
-            asked_n,
-            rendered_n,
+            calibration: CalibrationReadings { wrist, frames, view },
+            guidance: Guidance { prompt, guide_m },
+            rendering: TickForces { delayed_n, asked_n, rendered_n },
             gates,
-            gate_settings,
             identification,
-            wake_s,
-            work_s,
-            sample_to_force_s,
-            missed,
-            // Counted by the queue to the screen, not computed by the loop.
-            dropped: _,
+            // The queue to the screen counts what it drops; the loop does not compute it.
+            timing: TickTiming { wake_s, work_s, sample_to_force_s, missed, dropped: _ },
         } = tick;
         put_all!(force_path: force, measured_n);
         put_all!(identifies: identification);
         put_all!(renders: delayed_n, asked_n);
-        put_all!(gated: gates, gate_settings, rendered_n);
+        put_all!(gated: gates, rendered_n);
         put_all!(stated: index, side, t_s, state, mode, delay_s, leader_m, tip_m, wrist, frames, view, prompt, guide_m);
         put_all!(stated: wake_s, work_s, sample_to_force_s, missed);
     }

@@ -184,7 +184,7 @@ pub fn start_watched(plan: &SimulationPlan, speed: f64) -> Result<(LoopHandle, O
 /// };
 /// let mut largest_n = 0.0_f64;
 /// let summary = run_virtual(&plan, 4.0, |tick| {
-///     largest_n = largest_n.max(tick.rendered_n.norm());
+///     largest_n = largest_n.max(tick.rendering.rendered_n.norm());
 ///     None
 /// })?;
 /// assert_eq!((summary.final_state, summary.missed), (LoopState::Engaged, 0));
@@ -258,7 +258,7 @@ mod tests {
         assert!(wait_for(&handle, |tick| tick.mode == Mode::Dfr).is_some());
         assert!(handle.send(Command::Stop));
         let stopped = wait_for(&handle, |tick| tick.state == LoopState::Stopped).unwrap();
-        assert!(stopped.rendered_n.norm() < f64::EPSILON);
+        assert!(stopped.rendering.rendered_n.norm() < f64::EPSILON);
         assert!(handle.send(Command::Engage));
         assert!(handle.send(Command::ReleaseStop));
         assert!(wait_for(&handle, |tick| tick.state == LoopState::Idle).is_some(), "engaging out of a stop is refused");

@@ -86,8 +86,8 @@ fn each_hand_works_on_its_own_pegs_and_both_feel() {
     let mut felt_n = [0.0_f64; SIDES];
     run_virtual(&plan("bimanual"), 10.0, |tick| {
         let felt = &mut felt_n[tick.side.index()];
-        *felt = felt.max(tick.rendered_n.norm());
-        let beyond_m = if tick.side == Side::Right { -tick.tip_m.x } else { tick.tip_m.x };
+        *felt = felt.max(tick.rendering.rendered_n.norm());
+        let beyond_m = if tick.side == Side::Right { -tick.positions.tip_m.x } else { tick.positions.tip_m.x };
         assert!(beyond_m < 0.0, "{:?} is on the other side", tick.side);
         None
     })
@@ -214,7 +214,7 @@ fn the_clutch_frees_the_hand_and_coupling_again_never_moves_the_tip() {
         Some(inputs)
     };
     // The first command is the tip's position; the following ones advance at the follower's speed limit.
-    let mut last_m = bench.ticks.each_ref().map(|tick| tick.tip_m);
+    let mut last_m = bench.ticks.each_ref().map(|tick| tick.positions.tip_m);
     for _ in 0..50 {
         bench.step(moved);
         for side in Side::ALL {
@@ -241,14 +241,14 @@ fn engaging_begins_where_the_tip_is_and_the_force_rises_over_a_fifth_of_a_second
     bench.step(pressed);
     assert_eq!(bench.states(), [LoopState::Engaged; SIDES]);
     for side in Side::ALL {
-        let step_m = bench.outputs[side.index()].tip_command_m.unwrap() - bench.ticks[side.index()].tip_m;
+        let step_m = bench.outputs[side.index()].tip_command_m.unwrap() - bench.ticks[side.index()].positions.tip_m;
         assert!(step_m.norm() <= 0.2e-3, "{step_m}");
     }
     bench.run(99, pressed);
-    let halfway_n = bench.ticks[0].rendered_n.z;
+    let halfway_n = bench.ticks[0].rendering.rendered_n.z;
     assert!((halfway_n - 1.5).abs() < 0.05, "{halfway_n}");
     bench.run(101, pressed);
-    assert!((bench.ticks[0].rendered_n.z - 3.0).abs() < 1e-6, "{}", bench.ticks[0].rendered_n);
+    assert!((bench.ticks[0].rendering.rendered_n.z - 3.0).abs() < 1e-6, "{}", bench.ticks[0].rendering.rendered_n);
 }
 
 #[test]
@@ -304,7 +304,7 @@ fn an_endoscope_that_is_tracked_turns_the_mapping_and_one_that_is_not_seen_keeps
             }
             by_side(side, inputs)
         });
-        let leader_m = bench.ticks[0].leader_m;
+        let leader_m = bench.ticks[0].positions.leader_m;
         if let Some((hand_before_m, leader_before_m)) = before {
             let [hand_m, leader_m] = [hand_m.get() - hand_before_m, leader_m - leader_before_m];
             assert!((leader_m - world_from_view * hand_m).norm() < 1e-9, "{hand_m} {leader_m}");
@@ -337,7 +337,7 @@ fn a_handle_that_is_let_go_is_an_absent_hand_and_nothing_resumes() {
             Some(inputs)
         });
         let moved_m = (hand_m.get()[0] - hand_m.get()[19]).norm();
-        pressed = if bench.ticks[0].rendered_n.norm() > 2.5 && moved_m < 2e-4 { pressed + 1 } else { 0 };
+        pressed = if bench.ticks[0].rendering.rendered_n.norm() > 2.5 && moved_m < 2e-4 { pressed + 1 } else { 0 };
         assert!(bench.tick < 20_000, "the scene presses and holds");
     }
     // From here on the handle is released: 0.25 kg and 0.5 N s/m, read in steps of 10 um.

@@ -101,7 +101,7 @@ fn played(script: &Script, while_s: [f64; 2]) -> (Vec<TaskEvent>, f64) {
         events.extend(watched.happenings().map(|happening| happening.event));
         if tick.side == Side::Left {
             if (while_s[0]..while_s[1]).contains(&tick.t_s) {
-                went_m = went_m.max((tick.tip_m - *held_m.get_or_insert(tick.tip_m)).norm());
+                went_m = went_m.max((tick.positions.tip_m - *held_m.get_or_insert(tick.positions.tip_m)).norm());
             }
             return None;
         }

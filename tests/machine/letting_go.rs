@@ -27,8 +27,8 @@ fn let_go(governor: bool) -> (f64, Vec<LoopState>) {
             return Some(Command::SetGovernor(governor));
         }
         let Some((at_s, from_m)) = opened else {
-            if tick.t_s > 3.0 && tick.rendered_n.z > 1.5 {
-                opened = Some((tick.t_s, tick.leader_m));
+            if tick.t_s > 3.0 && tick.rendering.rendered_n.z > 1.5 {
+                opened = Some((tick.t_s, tick.positions.leader_m));
                 return Some(Command::LetGo(true));
             }
             return None;
@@ -38,7 +38,7 @@ fn let_go(governor: bool) -> (f64, Vec<LoopState>) {
         }
         let since_s = tick.t_s - at_s;
         if tick.state == LoopState::Engaged && since_s < 2.5 {
-            far_m = far_m.max((tick.leader_m - from_m).norm());
+            far_m = far_m.max((tick.positions.leader_m - from_m).norm());
         }
         let now = |after_s: f64| (since_s - after_s).abs() < 0.5e-3;
         if now(2.5) { Some(Command::LetGo(false)) } else { now(2.6).then_some(Command::Engage) }

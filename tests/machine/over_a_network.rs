@@ -159,9 +159,9 @@ fn over_a_network(delay_s: f64, mode: Mode) -> [f64; 2] {
     let mut hand_n = 0.0_f64;
     for _ in 0..20_000 {
         bench.run(1);
-        felt_n.push(bench.leader.tick.unwrap().asked_n[mode.index()]);
+        felt_n.push(bench.leader.tick.unwrap().rendering.asked_n[mode.index()]);
         tip_n.push(bench.follower.tick.unwrap().measured_n);
-        hand_n = hand_n.max(bench.leader.tick.unwrap().rendered_n.norm());
+        hand_n = hand_n.max(bench.leader.tick.unwrap().rendering.rendered_n.norm());
     }
     let ahead = (delay_s * 1e3).round() as usize;
     let errors: Vec<f64> = felt_n.iter().zip(&tip_n[ahead..]).skip(FROM_MS).map(|(a, b)| (a - b).norm()).collect();
@@ -177,7 +177,7 @@ fn in_one_place(delay_s: f64, mode: Mode) -> f64 {
     let errors = RefCell::new(Vec::new());
     run_virtual(&plan, 20.5, |tick| {
         if tick.t_s > 0.5 + FROM_MS as f64 * 1e-3 {
-            errors.borrow_mut().push((tick.asked_n[mode.index()] - tick.measured_n).norm());
+            errors.borrow_mut().push((tick.rendering.asked_n[mode.index()] - tick.measured_n).norm());
         }
         None
     })
@@ -204,7 +204,7 @@ fn a_force_that_the_line_no_longer_brings_is_unknown_before_the_line_is_a_fault(
     bench.run(40);
     let tick = bench.leader.tick.unwrap();
     assert_eq!((tick.state, tick.force.source), (LoopState::Engaged, ForceSource::NoSample));
-    assert!(tick.measured_n.iter().chain(&tick.delayed_n).all(|x| x.is_nan()), "{tick:?}");
+    assert!(tick.measured_n.iter().chain(&tick.rendering.delayed_n).all(|x| x.is_nan()), "{tick:?}");
     bench.cut(false);
     bench.run(20);
     assert!(bench.leader.tick.unwrap().known_n().is_some());
@@ -285,7 +285,7 @@ fn another_console_that_has_released_more_stops_releases_none_here() {
 fn a_cut_takes_the_force_within_20_ms_and_what_comes_back_resumes_nothing() {
     let mut bench = Fixture::engaged(0.02, Mode::Best);
     let mut waited = 0;
-    while bench.leader.tick.unwrap().rendered_n.norm() < 0.3 && waited < 20_000 {
+    while bench.leader.tick.unwrap().rendering.rendered_n.norm() < 0.3 && waited < 20_000 {
         bench.run(1);
         waited += 1;
     }
@@ -294,7 +294,11 @@ fn a_cut_takes_the_force_within_20_ms_and_what_comes_back_resumes_nothing() {
     bench.run(20);
     let before_m = bench.tip_m();
     bench.run(21);
-    assert!(bench.leader.tick.unwrap().rendered_n.norm() < 1e-9, "{:?}", bench.leader.tick.unwrap().rendered_n);
+    assert!(
+        bench.leader.tick.unwrap().rendering.rendered_n.norm() < 1e-9,
+        "{:?}",
+        bench.leader.tick.unwrap().rendering.rendered_n
+    );
     bench.run(200);
     assert_eq!(bench.states(), [LoopState::Faulted(Fault::LinkSilent); 2]);
     let held_m = bench.tip_m();
@@ -307,7 +311,7 @@ fn a_cut_takes_the_force_within_20_ms_and_what_comes_back_resumes_nothing() {
         let position_m = bench.tip_m();
         bench.run(1);
         step_m = step_m.max((bench.tip_m() - position_m).norm());
-        assert!(bench.leader.tick.unwrap().rendered_n.norm() < 1e-9);
+        assert!(bench.leader.tick.unwrap().rendering.rendered_n.norm() < 1e-9);
     }
     assert!(bench.states().iter().all(|state| state.is_latched()), "{:?}", bench.states());
     assert!(step_m < 0.2e-3, "{step_m} m");

@@ -45,7 +45,7 @@ fn the_same_scene_gives_the_same_forces_to_the_last_bit() {
         let mut bits = Vec::new();
         let plan = matched();
         nima_simulation::run_virtual(&plan, 8.0, |tick| {
-            bits.extend(tick.measured_n.iter().chain(&tick.tip_m).map(|x| x.to_bits()));
+            bits.extend(tick.measured_n.iter().chain(&tick.positions.tip_m).map(|x| x.to_bits()));
             None
         })
         .unwrap();

@@ -120,7 +120,7 @@ fn a_prompt_reaches_the_arm_in_idle_only() {
     for (engage, expected) in [(false, Prompt::Wave), (true, Prompt::Rest)] {
         let mut last = Prompt::Rest;
         run_virtual(&SimulationPlan { engage, ..plan("peg_transfer") }, 0.1, |tick| {
-            last = tick.prompt;
+            last = tick.guidance.prompt;
             (tick.index == 10).then_some(Command::Prompt(Side::Right, Prompt::Wave))
         })
         .unwrap();
@@ -133,7 +133,7 @@ fn an_uncalibrated_wrist_gives_no_force_and_cannot_be_engaged() {
     run_virtual(&SimulationPlan { engage: false, ..plan("palpation") }, 2.0, |tick| {
         assert_eq!(tick.force.source, ForceSource::Uncalibrated);
         assert_eq!(tick.state, LoopState::Idle);
-        assert!(tick.rendered_n.norm() < 1e-12 && tick.measured_n.iter().all(|x| x.is_nan()));
+        assert!(tick.rendering.rendered_n.norm() < 1e-12 && tick.measured_n.iter().all(|x| x.is_nan()));
         (tick.index == 500).then_some(Command::Engage)
     })
     .unwrap();

@@ -28,7 +28,7 @@ fn played(plan: &SimulationPlan, seconds: f64, commands: &[(f64, Command)]) -> (
     let mut given = 0;
     let summary = runtime::run_virtual(assembly, seconds, |tick| {
         happenings.extend(watched.happenings());
-        bits.extend(tick.measured_n.iter().chain(&tick.tip_m).map(|x| x.to_bits()));
+        bits.extend(tick.measured_n.iter().chain(&tick.positions.tip_m).map(|x| x.to_bits()));
         let (at_s, command) = commands.get(given)?;
         (tick.t_s >= *at_s).then(|| {
             given += 1;

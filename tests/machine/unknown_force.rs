@@ -30,7 +30,7 @@ impl Fixture {
             let inputs = sensed(now_s).map(|sensed| Inputs { sensed, powered: true, ..Inputs::NOTHING });
             [last, _] = self.control.step([inputs, None], &Timing { now_s, ..Timing::default() }).1;
             let tick = last.unwrap();
-            assert!(tick.rendered_n.iter().all(|x| x.is_finite()), "what the hand gets is known: {tick:?}");
+            assert!(tick.rendering.rendered_n.iter().all(|x| x.is_finite()), "what the hand gets is known: {tick:?}");
             assert_eq!(tick.known_n().is_some(), tick.force.source.is_known());
         }
         last.unwrap()
@@ -68,36 +68,39 @@ fn before_the_first_sample_and_after_a_silence_no_force_is_known() {
     let mut bench = Fixture::new();
     let tick = bench.run(1, |_| None);
     assert_eq!(tick.force.source, ForceSource::NoSample);
-    assert!(is_unknown(tick.measured_n) && is_unknown(tick.delayed_n));
+    assert!(is_unknown(tick.measured_n) && is_unknown(tick.rendering.delayed_n));
     let tick = bench.run(10, at_tip);
-    assert!(tick.measured_n == force_n(tick.t_s) && is_unknown(tick.delayed_n), "the link is still filling: {tick:?}");
+    assert!(
+        tick.measured_n == force_n(tick.t_s) && is_unknown(tick.rendering.delayed_n),
+        "the link is still filling: {tick:?}"
+    );
     let tick = bench.run(DELAY_MS, at_tip);
-    assert!((tick.delayed_n - force_n(tick.t_s - 0.05)).norm() < 1e-9, "{}", tick.delayed_n);
+    assert!((tick.rendering.delayed_n - force_n(tick.t_s - 0.05)).norm() < 1e-9, "{}", tick.rendering.delayed_n);
 
     let judged = bench.judged();
     let tick = bench.run(10, |_| None);
     assert!(tick.known_n().is_some(), "a few lost samples do not count as silence");
     let tick = bench.run(15, |_| None);
     assert_eq!((tick.force.source, tick.state), (ForceSource::NoSample, LoopState::Disconnected));
-    assert!(is_unknown(tick.measured_n) && !is_unknown(tick.delayed_n), "what is under way still arrives");
+    assert!(is_unknown(tick.measured_n) && !is_unknown(tick.rendering.delayed_n), "what is under way still arrives");
     let tick = bench.run(DELAY_MS, |_| None);
-    assert!(is_unknown(tick.measured_n) && is_unknown(tick.delayed_n));
+    assert!(is_unknown(tick.measured_n) && is_unknown(tick.rendering.delayed_n));
     assert_eq!(bench.judged(), judged, "nothing errs from a force that is not known");
 
     let tick = bench.run(10, at_tip);
     assert!(
-        tick.measured_n == force_n(tick.t_s) && is_unknown(tick.delayed_n),
+        tick.measured_n == force_n(tick.t_s) && is_unknown(tick.rendering.delayed_n),
         "not the value from before the silence"
     );
     let tick = bench.run(DELAY_MS, at_tip);
-    assert!((tick.delayed_n - force_n(tick.t_s - 0.05)).norm() < 1e-9, "{}", tick.delayed_n);
+    assert!((tick.rendering.delayed_n - force_n(tick.t_s - 0.05)).norm() < 1e-9, "{}", tick.rendering.delayed_n);
 }
 
 #[test]
 fn the_readings_of_a_silent_wrist_sensor_are_not_repeated() {
     let mut bench = Fixture::new();
-    assert!(bench.run(50, at_wrist).wrist.is_some());
-    assert!(bench.run(25, |_| None).wrist.is_none());
+    assert!(bench.run(50, at_wrist).calibration.wrist.is_some());
+    assert!(bench.run(25, |_| None).calibration.wrist.is_none());
 }
 
 #[test]
@@ -105,8 +108,8 @@ fn without_a_calibration_nothing_is_known_learnt_or_judged() {
     let mut bench = Fixture::new();
     let tick = bench.run(1000, at_wrist);
     assert_eq!((tick.force.source, tick.state), (ForceSource::Uncalibrated, LoopState::Idle));
-    assert!(is_unknown(tick.measured_n) && is_unknown(tick.delayed_n) && is_unknown(tick.force.tip_n));
-    assert!(tick.wrist.is_some(), "the sensor itself is read");
+    assert!(is_unknown(tick.measured_n) && is_unknown(tick.rendering.delayed_n) && is_unknown(tick.force.tip_n));
+    assert!(tick.calibration.wrist.is_some(), "the sensor itself is read");
     assert_eq!((tick.identification.learnt, bench.judged()), (0, 0));
 }
 
@@ -120,5 +123,5 @@ fn an_arm_is_engaged_once_its_force_is_known_and_feels_what_the_link_brings() {
     assert_eq!(tick.state, LoopState::Engaged);
     let tick = bench.run(2 * DELAY_MS, at_tip);
     assert_eq!(tick.state, LoopState::Engaged, "{tick:?}");
-    assert!(tick.asked_n[tick.mode.index()].norm() > 0.9, "{:?}", tick.asked_n);
+    assert!(tick.rendering.asked_n[tick.mode.index()].norm() > 0.9, "{:?}", tick.rendering.asked_n);
 }

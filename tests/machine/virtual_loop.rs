@@ -42,7 +42,7 @@ fn a_change_of_mode_takes_no_force_from_the_hand_and_leaves_one_mode_computed() 
     let mut min_n = f64::INFINITY;
     let mut computed = Vec::new();
     run_virtual(&plan, 20.0, |tick: &Tick| {
-        let felt_n = tick.rendered_n.norm();
+        let felt_n = tick.rendering.rendered_n.norm();
         match changed_s {
             None if tick.t_s > 5.0 && felt_n > 1.5 => {
                 changed_s = Some(tick.t_s);
@@ -84,7 +84,7 @@ fn every_baseline_runs_behind_the_gates() {
         plan.rig.delay_s = 0.1;
         let mut largest_n = 0.0_f64;
         let summary = run_virtual(&plan, 6.0, |tick| {
-            largest_n = largest_n.max(tick.rendered_n.norm());
+            largest_n = largest_n.max(tick.rendering.rendered_n.norm());
             None
         })
         .unwrap();
@@ -122,7 +122,7 @@ fn the_same_plan_gives_the_same_run() {
     let run = || {
         let mut forces = Vec::new();
         run_virtual(&plan("peg_transfer"), 3.0, |tick| {
-            forces.push(tick.rendered_n);
+            forces.push(tick.rendering.rendered_n);
             None
         })
         .unwrap();
@@ -137,13 +137,13 @@ fn the_hand_never_feels_more_than_the_ceiling_and_nothing_when_stopped() {
     plan.rig.mode = Mode::Dfr;
     let mut felt = 0.0_f64;
     run_virtual(&plan, 20.0, |tick: &Tick| {
-        assert!(tick.rendered_n.norm() <= 4.0 + 1e-9);
-        felt = felt.max(tick.rendered_n.norm());
+        assert!(tick.rendering.rendered_n.norm() <= 4.0 + 1e-9);
+        felt = felt.max(tick.rendering.rendered_n.norm());
         match tick.index {
             15_000 => Some(Command::Stop),
             15_001.. => {
                 assert_eq!(tick.state, LoopState::Stopped);
-                assert!(tick.rendered_n.norm() < f64::EPSILON);
+                assert!(tick.rendering.rendered_n.norm() < f64::EPSILON);
                 Some(Command::Engage)
             }
             _ => None,
@@ -200,7 +200,7 @@ impl Fixture {
     fn until_contact(mode: Mode) -> Self {
         let mut bench = Self::engaged(mode);
         for _ in 0..20_000 {
-            if bench.step(Some).rendered_n.norm() > 1.0 {
+            if bench.step(Some).rendering.rendered_n.norm() > 1.0 {
                 return bench;
             }
         }
@@ -216,9 +216,9 @@ fn a_silent_or_poisoned_source_takes_the_force_away_within_20_ms_and_latches() {
             let mut bench = Fixture::until_contact(mode);
             let after: Vec<Tick> = (0..40).map(|_| bench.step(edit)).collect();
             assert!(
-                after[20].rendered_n.norm() < f64::EPSILON,
+                after[20].rendering.rendered_n.norm() < f64::EPSILON,
                 "{mode}: {} N after 20 ms",
-                after[20].rendered_n.norm()
+                after[20].rendering.rendered_n.norm()
             );
             assert_eq!(after[39].state, LoopState::Faulted(Fault::SourceSilent));
             assert_eq!(
@@ -228,7 +228,7 @@ fn a_silent_or_poisoned_source_takes_the_force_away_within_20_ms_and_latches() {
             );
             let again: Vec<Tick> = (0..1000).map(|_| bench.step(Some)).collect();
             assert!(
-                again.iter().all(|tick| tick.rendered_n.norm() < f64::EPSILON),
+                again.iter().all(|tick| tick.rendering.rendered_n.norm() < f64::EPSILON),
                 "{mode}: force came back by itself"
             );
         }
@@ -318,11 +318,49 @@ fn a_stall_is_a_fault_with_zero_force() {
 }
 
 #[test]
+fn a_short_stall_is_left_by_one_step_and_a_long_one_by_two() {
+    for (missed, leaves) in [(500, true), (1001, false)] {
+        let mut bench = Fixture::until_contact(Mode::Dfr);
+        let stall_s = missed as f64 * 1e-3;
+        let inputs = bench.world.exchange(bench.tick as f64 * 1e-3, &bench.outputs);
+        let mut now_s = bench.tick as f64 * 1e-3 + stall_s;
+        let timing = Timing { now_s, missed_now: missed, ..Timing::default() };
+        let (mut outputs, tick) = bench.control.step(false, inputs, &timing);
+        assert_eq!(tick.state, LoopState::Faulted(Fault::LoopStalled { periods: missed }));
+        let mut tick_with = |now_s: f64, command: Option<Command>, has_data: bool| {
+            let obeyed = command.map(|command| bench.control.obey(command, now_s));
+            let inputs = bench.world.exchange(now_s, &outputs).filter(|_| has_data);
+            let report = bench.control.step(false, inputs, &Timing { now_s, ..Timing::default() });
+            outputs = report.0;
+            (obeyed, report.1.state)
+        };
+        let faulted = LoopState::Faulted(Fault::LoopStalled { periods: missed });
+        // Nothing resumes by itself, and while the devices are silent the fault remains.
+        for step in 0..100 {
+            now_s += 1e-3;
+            assert_eq!(tick_with(now_s, None, step < 50).1, faulted);
+        }
+        let (obeyed, state) = tick_with(now_s + 1e-3, Some(Command::Engage), false);
+        assert!(obeyed.unwrap().is_err() && state == faulted, "{obeyed:?}");
+        for step in 2..200 {
+            tick_with(now_s + f64::from(step) * 1e-3, None, true);
+        }
+        let (obeyed, _) = tick_with(now_s + 0.2, Some(Command::Engage), true);
+        assert_eq!(obeyed.unwrap().is_ok(), leaves, "{obeyed:?}");
+        let mut state = faulted;
+        for step in 201..1000 {
+            state = tick_with(now_s + f64::from(step) * 1e-3, None, true).1;
+        }
+        assert_eq!(state, if leaves { LoopState::Engaged } else { faulted });
+    }
+}
+
+#[test]
 fn a_stall_while_no_drives_are_on_harms_nobody_and_is_no_fault() {
     let SimulationPlan { rig, scene, .. } = plan("peg_transfer");
     let mut control = Pair::new(&rig, Side::Right, &Calibrations::default()).unwrap();
     let inputs = World::new(&scene, rig.rate_hz).exchange(0.1, &Outputs::SAFE);
     let (outputs, tick) = control.step(false, inputs, &Timing { now_s: 0.1, missed_now: 100, ..Timing::default() });
     assert_eq!((tick.state, outputs), (LoopState::Idle, Outputs::SAFE));
-    assert_eq!(tick.missed, 100, "it is counted");
+    assert_eq!(tick.timing.missed, 100, "it is counted");
 }

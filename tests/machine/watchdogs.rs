@@ -35,7 +35,12 @@ fn states(watchdog: Watchdog) -> [Vec<LoopState>; SIDES] {
             of_side.push(tick.state);
         }
         if tick.state != LoopState::Engaged {
-            assert!(tick.rendered_n.norm() == 0.0, "{watchdog:?}: {} N at {} s", tick.rendered_n, tick.t_s);
+            assert!(
+                tick.rendering.rendered_n.norm() == 0.0,
+                "{watchdog:?}: {} N at {} s",
+                tick.rendering.rendered_n,
+                tick.t_s
+            );
         }
         if !asked && tick.t_s > 0.3 {
             asked = true;

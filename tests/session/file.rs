@@ -127,7 +127,7 @@ fn a_stretch_is_compared_alone_after_all_before_it_was_replayed() {
     let forces_n = |stretch_s: &Range<f64>| {
         let mut forces_n = Vec::new();
         let report = compare(&mut file.journal().unwrap(), &change, stretch_s, |was, would| {
-            forces_n.push((was.rendered_n, would.rendered_n));
+            forces_n.push((was.rendering.rendered_n, would.rendering.rendered_n));
         });
         (report.unwrap().1, forces_n)
     };
@@ -144,7 +144,7 @@ fn mean_rendered_n(file: &RecordedFile) -> f64 {
     replay(file.journal().unwrap(), |replayed| {
         let tick = replayed.ticks[0].as_ref().unwrap();
         if tick.state == nima_machine::messages::LoopState::Engaged {
-            sum_n += tick.rendered_n.norm();
+            sum_n += tick.rendering.rendered_n.norm();
             count += 1;
         }
     })

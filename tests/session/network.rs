@@ -70,7 +70,10 @@ fn a_network_in_force_replays_to_the_bit_and_tells_no_name_of_a_person() {
             let is_known = tick.force.source.is_known();
             unknown_s = if is_known { 0.0 } else { unknown_s + 1e-3 };
             assert_eq!(tick.known_n().is_some(), is_known);
-            assert!(unknown_s <= tick.delay_s + 2e-3 || tick.delayed_n.iter().all(|x| x.is_nan()), "{tick:?}");
+            assert!(
+                unknown_s <= tick.delay_s + 2e-3 || tick.rendering.delayed_n.iter().all(|x| x.is_nan()),
+                "{tick:?}"
+            );
             by_network += u32::from(tick.force.source == ForceSource::Network);
             by_fallback += u32::from(matches!(tick.force.source, ForceSource::InDoubt { .. }));
             match tick.index {

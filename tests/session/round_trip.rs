@@ -90,7 +90,12 @@ fn rings_and_a_wire_replay_bit_for_bit_and_are_the_same_when_they_are_done_again
         let mut plan = plan(scene);
         plan.rig.mode = Mode::Matched;
         let bits = |tick: &Tick| {
-            let felt = tick.measured_n.iter().chain(&tick.tip_m).chain(&tick.rendered_n).map(|x| x.to_bits());
+            let felt = tick
+                .measured_n
+                .iter()
+                .chain(&tick.positions.tip_m)
+                .chain(&tick.rendering.rendered_n)
+                .map(|x| x.to_bits());
             felt.collect::<Vec<u64>>()
         };
         let done = || {

@@ -105,7 +105,7 @@ impl Fixture {
     }
 
     fn rendered_n(&self) -> f64 {
-        self.newest.map_or(0.0, |tick| tick.rendered_n.norm())
+        self.newest.map_or(0.0, |tick| tick.rendering.rendered_n.norm())
     }
 
     fn place(&self, name: &str) -> usize {

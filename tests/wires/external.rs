@@ -179,7 +179,7 @@ impl Fixture {
     }
 
     fn rendered_n(&self) -> f64 {
-        self.newest.map_or(0.0, |tick| tick.rendered_n.norm())
+        self.newest.map_or(0.0, |tick| tick.rendering.rendered_n.norm())
     }
 
     fn is_faulted(&self) -> bool {
@@ -214,7 +214,8 @@ impl Fixture {
         act();
         self.until("a fault", Self::is_faulted);
         self.until("a loss", |bench| bench.lost.iter().any(|(device, _)| devices.contains(device)));
-        let last = self.ticks.iter().filter(|tick| tick.rendered_n.norm() > 0.0).map(|tick| tick.t_s).next_back();
+        let last =
+            self.ticks.iter().filter(|tick| tick.rendering.rendered_n.norm() > 0.0).map(|tick| tick.t_s).next_back();
         let gone_s = last.unwrap_or(at_s) - at_s;
         let (_, loss) = self.lost.iter().find(|(device, _)| devices.contains(device)).unwrap();
         (*loss, gone_s)
@@ -358,7 +359,7 @@ fn minute(examples: &Examples, seconds: u64) {
     }
     let last = bench.newest.unwrap();
     let after = bench.healths;
-    let mut ages_s: Vec<f64> = bench.ticks.iter().filter_map(|tick| tick.sample_to_force_s).collect();
+    let mut ages_s: Vec<f64> = bench.ticks.iter().filter_map(|tick| tick.timing.sample_to_force_s).collect();
     ages_s.sort_by(f64::total_cmp);
     let at = |fraction: f64| ages_s[((ages_s.len() - 1) as f64 * fraction) as usize] * 1e3;
     println!(
@@ -366,7 +367,7 @@ fn minute(examples: &Examples, seconds: u64) {
         last.t_s - first.t_s,
         bench.state(),
         bench.ticks.len(),
-        last.missed - first.missed
+        last.timing.missed - first.timing.missed
     );
     println!(
         "oldest reading to force: p50 {:.3} ms, p99 {:.3} ms, p99.9 {:.3} ms, max {:.3} ms",

@@ -33,7 +33,7 @@ fn run<C: Calibration>(
     bench.show(SIDE, task, prompt);
     let complete = bench.until(SIDE, Duration::from_secs(150), |_, tick| {
         if tick.index % 4 == 0 {
-            session.step(&tick.frames, tick.t_s);
+            session.step(&tick.calibration.frames, tick.t_s);
         }
         session.coverage().fraction >= 1.0
     });

@@ -57,7 +57,7 @@ impl Fixture {
             assert!(
                 begin.elapsed() < WAIT,
                 "never came: {what}; {:?}",
-                self.newest.map(|tick| (tick.state, tick.tip_m))
+                self.newest.map(|tick| (tick.state, tick.positions.tip_m))
             );
             std::thread::sleep(Duration::from_millis(1));
             let newest = &mut self.newest;
@@ -113,7 +113,7 @@ fn a_haply_handle_feels_the_simulated_tissue_and_a_silent_one_takes_the_force_aw
         begins.store(true, std::sync::atomic::Ordering::Relaxed);
         bench.until("a force", |_| felt.force_n().z > 0.3);
         // The hand feels the output of the gates.
-        let rendered_n = bench.newest.unwrap().rendered_n;
+        let rendered_n = bench.newest.unwrap().rendering.rendered_n;
         assert!((rendered_n - felt.force_n()).norm() < 0.5, "{rendered_n} and {}", felt.force_n());
         serving.faults.set(EmulatedFault::Silence);
         bench.until("a fault", |bench| matches!(bench.newest.unwrap().state, LoopState::Faulted(_)));

@@ -84,7 +84,7 @@ impl Fixture {
     }
 
     fn rendered_n(&self) -> f64 {
-        self.newest.map_or(0.0, |tick| tick.rendered_n.norm())
+        self.newest.map_or(0.0, |tick| tick.rendering.rendered_n.norm())
     }
 
     fn within(&mut self, wait: Duration, good: impl Fn(&Self) -> bool) -> bool {
@@ -124,14 +124,15 @@ impl Fixture {
     /// Returns for how long there is a force in the hand after `begin`, s, and the fault that is raised.
     fn after(&mut self, begin: impl FnOnce()) -> (f64, String) {
         self.look();
-        let (at_s, missed) = self.newest.map(|tick| (tick.t_s, tick.missed)).unwrap();
+        let (at_s, missed) = self.newest.map(|tick| (tick.t_s, tick.timing.missed)).unwrap();
         self.ticks.clear();
         self.raised.clear();
         begin();
         self.within(Duration::from_secs(2), |bench| bench.state() != LoopState::Engaged);
         self.within(Duration::from_millis(30), |_| false);
-        let last = self.ticks.iter().filter(|tick| tick.rendered_n.norm() > 0.0).map(|tick| tick.t_s).next_back();
-        if self.newest.unwrap().missed > missed + MISSED_MAX {
+        let last =
+            self.ticks.iter().filter(|tick| tick.rendering.rendered_n.norm() > 0.0).map(|tick| tick.t_s).next_back();
+        if self.newest.unwrap().timing.missed > missed + MISSED_MAX {
             too_busy();
         }
         (last.unwrap_or(at_s) - at_s, self.raised.first().cloned().unwrap_or_default())

@@ -277,7 +277,7 @@ impl Machine {
         handle.drain_ticks(|tick| {
             latched |= tick.state.is_latched();
             *engaged |= tick.state == LoopState::Engaged;
-            *max_n = max_n.max(tick.rendered_n.norm());
+            *max_n = max_n.max(tick.rendering.rendered_n.norm());
             *tick_count += 1;
         });
         handle.drain_events(|event| {

@@ -41,7 +41,7 @@ fn found(are_exchanged: bool) -> ReadyState {
     loop {
         std::thread::sleep(Duration::from_millis(5));
         handle.drain_ticks(|tick| {
-            assert!(tick.rendered_n.norm() == 0.0 && tick.state != LoopState::Engaged);
+            assert!(tick.rendering.rendered_n.norm() == 0.0 && tick.state != LoopState::Engaged);
             session.tick(tick);
         });
         handle.gauges().for_each(|gauges| session.gauges(&gauges));

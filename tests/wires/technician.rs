@@ -82,7 +82,7 @@ impl Fixture {
 
     /// Returns whether the loop's state has the instrument through its trocar.
     fn is_in_trocar(tick: &Tick) -> bool {
-        tick.wrist.as_ref().is_some_and(|sample| sample.insertion_m.is_some_and(|depth_m| depth_m > 0.0))
+        tick.calibration.wrist.as_ref().is_some_and(|sample| sample.insertion_m.is_some_and(|depth_m| depth_m > 0.0))
     }
 }
 
@@ -100,7 +100,7 @@ fn the_technician_takes_poses_at_the_arm_that_is_calibrated_and_puts_the_instrum
             let taken = bench.until(side, Duration::from_secs(40), |bench, tick| {
                 let target = session.target().unwrap();
                 bench.show(side, PersonTask::Gravity, Prompt::Hold { world_from_s1: target.world_from_s1() });
-                if let Some(sample) = &tick.wrist {
+                if let Some(sample) = &tick.calibration.wrist {
                     session.step(sample, tick.t_s);
                 }
                 session.poses().len() == POSES

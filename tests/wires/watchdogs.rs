@@ -23,7 +23,11 @@ fn until(handle: &LoopHandle, what: &str, good: impl Fn(&Tick) -> bool) {
         }
         handle.drain_ticks(|tick| {
             let driven = tick.state.permits().drives;
-            assert!(driven || tick.rendered_n.norm() == 0.0, "{what}: {} N", tick.rendered_n.norm());
+            assert!(
+                driven || tick.rendering.rendered_n.norm() == 0.0,
+                "{what}: {} N",
+                tick.rendering.rendered_n.norm()
+            );
             newest = Some(*tick);
         });
         handle.drain_events(|_| {});

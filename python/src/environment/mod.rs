@@ -210,10 +210,10 @@ fn observation<'py>(py: Python<'py>, known: &StepObservation) -> PyResult<Bound<
     let vectors = [
         ("handle_m", &known.handle_m),
         ("handle_m_s", &known.handle_m_s),
-        ("command_m", &known.tick.leader_m),
+        ("command_m", &known.tick.positions.leader_m),
         ("delayed_tip_m", &known.delayed_tip_m),
         ("delayed_n", &known.delayed_n),
-        ("rendered_n", &known.tick.rendered_n),
+        ("rendered_n", &known.tick.rendering.rendered_n),
     ];
     for (name, vector) in vectors {
         all.set_item(name, array(py, vector))?;
@@ -230,9 +230,9 @@ fn info<'py>(py: Python<'py>, known: &StepObservation) -> PyResult<Bound<'py, Py
     let fault = if let LoopState::Faulted(fault) = tick.state { Some(format!("{fault:?}")) } else { None };
     all.set_item("fault", fault)?;
     all.set_item("mode", tick.mode.name())?;
-    all.set_item("tip_m", array(py, &tick.tip_m))?;
+    all.set_item("tip_m", array(py, &tick.positions.tip_m))?;
     all.set_item("measured_n", array(py, &tick.measured_n))?;
-    all.set_item("asked_n", array(py, &tick.asked_n[tick.mode.index()]))?;
+    all.set_item("asked_n", array(py, &tick.rendering.asked_n[tick.mode.index()]))?;
     all.set_item("gate", tick.gates.first_closed())?;
     all.set_item("has_force", known.has_force)?;
     let Some(training) = &known.training else {

@@ -145,9 +145,9 @@ impl SimulationRun {
         self.ticks += 1;
         self.score(&ticks);
         let tick = ticks[SIDE.index()]?;
-        let handle_m = self.rig.seen.map_or(tick.leader_m, |seen| seen.hand.position_m);
+        let handle_m = self.rig.seen.map_or(tick.positions.leader_m, |seen| seen.hand.position_m);
         let before_m = self.handle_before_m.replace(handle_m).unwrap_or(handle_m);
-        self.tips_m.push_back(tick.tip_m);
+        self.tips_m.push_back(tick.positions.tip_m);
         while self.tips_m.len() > (tick.delay_s / self.period_s).round() as usize + 1 {
             self.tips_m.pop_front();
         }
@@ -156,7 +156,7 @@ impl SimulationRun {
             tick,
             handle_m,
             handle_m_s: (handle_m - before_m) / self.period_s,
-            delayed_tip_m: self.tips_m.front().copied().unwrap_or(tick.tip_m),
+            delayed_tip_m: self.tips_m.front().copied().unwrap_or(tick.positions.tip_m),
             // An observation contains no NaN.
             has_force: delivered_n.is_some(),
             delayed_n: delivered_n.unwrap_or_else(Vector3::zeros),

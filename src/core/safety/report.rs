@@ -1,5 +1,7 @@
 //! Report of the gates: which acted in a tick, why, and how often so far.
 
+use super::ChainSettings;
+
 /// Declares an enum together with the list of its values.
 macro_rules! listed {
     ($(#[$attribute:meta])* enum $name:ident { $($(#[$doc:meta])* $value:ident,)* }) => {
@@ -153,6 +155,8 @@ pub struct GateReport {
     pub stored_j: f64,
     /// Counters since the chain was created, including this tick.
     pub counts: GateCounts,
+    /// Settings of the chain (`gain` is the operator's setting; the ramped gain is the report's own).
+    pub settings: ChainSettings,
 }
 
 impl GateReport {

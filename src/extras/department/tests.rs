@@ -167,7 +167,7 @@ fn a_screen_elsewhere_sees_the_loop_and_a_file_elsewhere_replays_to_the_bit() {
     assert!(steps.iter().all(|step| *step > 0.0), "in order");
     let moved = ticks
         .iter()
-        .map(|tick| tick.tip_m.norm())
+        .map(|tick| tick.positions.tip_m.norm())
         .fold([f64::INFINITY, 0.0], |[low, high], x| [low.min(x), high.max(x)]);
     assert!(moved[1] - moved[0] > 1e-4, "{moved:?} m: the tip moves");
 

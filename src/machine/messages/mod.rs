@@ -11,7 +11,7 @@ use nima_core::{
     calibration::frames::FrameSample,
     frames::WristSample,
     impedance::{Mode, SLOTS},
-    safety::{ChainSettings, GateReport, Implausible, InterlockState, TransitionCause},
+    safety::{GateReport, Implausible, InterlockState, TransitionCause},
 };
 use nima_devices::Loss;
 
@@ -119,23 +119,56 @@ pub struct Tick {
     pub mode: Mode,
     /// Active delay of the link, seconds.
     pub delay_s: f64,
-    /// Commanded tip position of the hand, m (workspace); while not engaged, the position of the tip.
-    pub leader_m: Vector3<f64>,
-    pub tip_m: Vector3<f64>,
+    pub positions: TickPositions,
     /// Current tip force measured at the follower, N (on the instrument); [`UNKNOWN_N`] while it is unknown.
     pub measured_n: Vector3<f64>,
     /// Source and processing of the tip force.
     pub force: ForceReport,
-    /// Readings of the wrist sensor and of the sensors used for calibration, if the rig has them and they are not too old.
+    pub calibration: CalibrationReadings,
+    pub guidance: Guidance,
+    pub rendering: TickForces,
+    pub gates: GateReport,
+    /// Result of the identification in this tick.
+    pub identification: nima_core::impedance::IdentificationReport,
+    pub timing: TickTiming,
+}
+
+impl Tick {
+    /// Returns the tip force measured at the follower, N; `None` while it is unknown.
+    pub fn known_n(&self) -> Option<Vector3<f64>> {
+        Some(self.measured_n).filter(|force_n| force_n.iter().all(|x| x.is_finite()))
+    }
+}
+
+/// Positions of both ends of a pair, m (workspace).
+#[derive(Clone, Copy, Debug)]
+pub struct TickPositions {
+    /// Commanded tip position of the hand; while not engaged, the position of the tip.
+    pub leader_m: Vector3<f64>,
+    pub tip_m: Vector3<f64>,
+}
+
+/// Readings of the wrist sensor and of the sensors used for calibration, if the rig has them and they are not too old.
+#[derive(Clone, Copy, Debug)]
+pub struct CalibrationReadings {
     pub wrist: Option<WristSample>,
     /// Input of the frame calibrations; empty without a new measurement.
     pub frames: FrameSample,
     /// Orientation of the endoscope, from the tracker's measurement of its marker.
     pub view: ViewOrientation,
-    /// Instruction to the person at the arm.
+}
+
+/// What the screen asks of the person at the arm.
+#[derive(Clone, Copy, Debug)]
+pub struct Guidance {
     pub prompt: Prompt,
     /// Position to which the screen guides the handle, m.
     pub guide_m: Option<Vector3<f64>>,
+}
+
+/// The forces from the link to the hand.
+#[derive(Clone, Copy, Debug)]
+pub struct TickForces {
     /// Tip force that the link delivers now: delayed DFR, N; [`UNKNOWN_N`] before the first delivery, and when the
     /// force is too old.
     pub delayed_n: Vector3<f64>,
@@ -143,11 +176,11 @@ pub struct Tick {
     pub asked_n: [Vector3<f64>; SLOTS],
     /// Force commanded to the hand after all gates, N.
     pub rendered_n: Vector3<f64>,
-    pub gates: GateReport,
-    /// Settings of the gates (`gain` is the operator's setting; the ramped gain is in `gates`).
-    pub gate_settings: ChainSettings,
-    /// Result of the identification in this tick.
-    pub identification: nima_core::impedance::IdentificationReport,
+}
+
+/// Whether the loop keeps its time.
+#[derive(Clone, Copy, Debug)]
+pub struct TickTiming {
     /// Delay of the wake-up of this tick after its deadline, s (0 on the virtual clock).
     pub wake_s: f64,
     /// Duration of the work of the previous tick, s.
@@ -158,13 +191,6 @@ pub struct Tick {
     pub missed: u64,
     /// Ticks dropped so far because the queue to the screen was full.
     pub dropped: u64,
-}
-
-impl Tick {
-    /// Returns the tip force measured at the follower, N; `None` while it is unknown.
-    pub fn known_n(&self) -> Option<Vector3<f64>> {
-        Some(self.measured_n).filter(|force_n| force_n.iter().all(|x| x.is_finite()))
-    }
 }
 
 /// A fault: the force is zero, and the screen shows cause and remedy. The first fault is kept until it is released.
@@ -199,6 +225,17 @@ pub enum Fault {
     Implausible { what: Implausible },
     /// The machine at the other end of the network is stopped.
     FarEnd { stop: FarStop },
+}
+
+/// Longest stall of the loop that is left by one step, s: a computer that sleeps this long, for example a virtual machine,
+/// is not a fault of the rig. Longer ones need both steps, because a person may have touched the rig in the meantime.
+pub const SHORT_STALL_MAX_S: f64 = 1.0;
+
+impl Fault {
+    /// Returns whether this is a stall of a loop with this rate after which a person may engage directly.
+    pub fn is_short_stall(self, rate_hz: f64) -> bool {
+        matches!(self, Self::LoopStalled { periods } if periods as f64 <= SHORT_STALL_MAX_S * rate_hz)
+    }
 }
 
 /// Returns the priority of a state for display: of two arm pairs the one with the larger number is shown first.

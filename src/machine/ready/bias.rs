@@ -35,9 +35,10 @@ impl Item for Bias {
             return;
         }
         let Some((check, _)) = &mut self.check else { return };
-        let is_in_trocar = tick.wrist.as_ref().is_some_and(|sample| sample.insertion_m.is_some_and(|m| m > 0.0));
+        let is_in_trocar =
+            tick.calibration.wrist.as_ref().is_some_and(|sample| sample.insertion_m.is_some_and(|m| m > 0.0));
         self.is_in_trocar = Some(is_in_trocar);
-        check.step(tick.wrist.as_ref(), true, tick.t_s);
+        check.step(tick.calibration.wrist.as_ref(), true, tick.t_s);
     }
 
     fn look(&mut self, _now_s: f64) -> PointProgress {

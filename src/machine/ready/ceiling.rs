@@ -36,7 +36,7 @@ impl Item for ReadyCeiling {
         };
         let Some(ticks) = self.arms.ticks() else { return PointProgress::Asking(PersonRequest::Nothing) };
         let differs = |in_force_n: &f64| (in_force_n - in_file_n).abs().max(0.0) > 1e-9 || in_force_n.is_nan();
-        match ticks.iter().map(|tick| max_n(&tick.gate_settings)).find(differs) {
+        match ticks.iter().map(|tick| max_n(&tick.gates.settings)).find(differs) {
             Some(in_force_n) => PointProgress::Failed(ReadyCause::OtherCeiling { in_force_n, in_file_n }),
             None => PointProgress::Passed(ReadyFigure { value: in_file_n, limit: in_file_n, unit: FigureUnit::Newton }),
         }

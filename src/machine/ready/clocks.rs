@@ -53,7 +53,7 @@ impl Item for ReadyClocks {
         if by_s.is_nan() || by_s > APART_MAX_S {
             return PointProgress::Failed(ReadyCause::LoopClock { by_s });
         }
-        let missed = newest.missed.saturating_sub(first.missed);
+        let missed = newest.timing.missed.saturating_sub(first.timing.missed);
         let made = newest.index.saturating_sub(first.index);
         let fraction = missed as f64 / (missed + made).max(1) as f64;
         if fraction > MISSED_MAX {

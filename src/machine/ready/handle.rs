@@ -60,15 +60,17 @@ impl ReadyHandle {
 impl Item for ReadyHandle {
     fn tick(&mut self, tick: &Tick) {
         if tick.side != self.side {
-            if let (Some(pose), Some(_)) = (tick.frames.leader_from_handle, self.from_m) {
+            if let (Some(pose), Some(_)) = (tick.calibration.frames.leader_from_handle, self.from_m) {
                 let position_m = pose.translation.vector;
                 let (from_m, far_m) = self.other.get_or_insert((position_m, 0.0));
                 *far_m = far_m.max((position_m - *from_m).norm());
             }
             return;
         }
-        self.force_n = self.force_n.max(tick.rendered_n.norm());
-        let Some(position_m) = tick.frames.leader_from_handle.map(|pose| pose.translation.vector) else { return };
+        self.force_n = self.force_n.max(tick.rendering.rendered_n.norm());
+        let Some(position_m) = tick.calibration.frames.leader_from_handle.map(|pose| pose.translation.vector) else {
+            return;
+        };
         if let Some(from_m) = self.from_m {
             let travel_m = self.view_from_leader * (position_m - from_m);
             if travel_m.norm() > self.far_m.norm() {

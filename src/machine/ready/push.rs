@@ -62,7 +62,7 @@ impl ReadyPush {
 /// Returns the force of the surroundings on the tip, N (`world`), without the network, which is valid only in the
 /// trocar.
 fn force_n(tick: &Tick) -> Option<Vector3<f64>> {
-    match (&tick.force.gravity_free, tick.wrist.as_ref().and_then(|sample| sample.world_from_s1)) {
+    match (&tick.force.gravity_free, tick.calibration.wrist.as_ref().and_then(|sample| sample.world_from_s1)) {
         (Some(wrench), Some(world_from_s1)) => Some(world_from_s1 * wrench.force_n),
         _ => tick.known_n(),
     }
@@ -71,7 +71,8 @@ fn force_n(tick: &Tick) -> Option<Vector3<f64>> {
 impl ReadyPush {
     /// Monitors the other sensor: its instrument is at rest, so a changed force is a force on that instrument.
     fn other(&mut self, tick: &Tick) {
-        let Some(force_n) = tick.wrist.as_ref().map(|sample| sample.raw.force_n).or_else(|| tick.known_n()) else {
+        let Some(force_n) = tick.calibration.wrist.as_ref().map(|sample| sample.raw.force_n).or_else(|| tick.known_n())
+        else {
             self.other_felt_s = None;
             return;
         };

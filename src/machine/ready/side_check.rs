@@ -58,8 +58,8 @@ impl Own {
 
 impl Item for Own {
     fn tick(&mut self, tick: &Tick) {
-        self.flanges[tick.side.index()].add(tick.frames.base_from_flange.as_ref());
-        self.markers[tick.side.index()].add(tick.frames.c_from_m.as_ref());
+        self.flanges[tick.side.index()].add(tick.calibration.frames.base_from_flange.as_ref());
+        self.markers[tick.side.index()].add(tick.calibration.frames.c_from_m.as_ref());
     }
 
     fn look(&mut self, _now_s: f64) -> PointProgress {

@@ -34,7 +34,7 @@ impl Item for Stop {
         self.arms.tick(tick);
         if is_stopped(tick.state) {
             self.first_s.get_or_insert(tick.t_s);
-            self.force_n = self.force_n.max(tick.rendered_n.norm());
+            self.force_n = self.force_n.max(tick.rendering.rendered_n.norm());
         }
         if self.arms.all(is_stopped) {
             self.last_s.get_or_insert(tick.t_s);

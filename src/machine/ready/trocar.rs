@@ -52,9 +52,9 @@ impl ReadyTrocar {
 
     /// Records whether the tip rests.
     fn follow(&mut self, tick: &Tick) {
-        let (rest_m, since_s) = *self.rest.get_or_insert((tick.tip_m, tick.t_s));
+        let (rest_m, since_s) = *self.rest.get_or_insert((tick.positions.tip_m, tick.t_s));
         self.has_rested = tick.t_s - since_s >= RESTS_S;
-        if (tick.tip_m - rest_m).norm() > RESTS_M {
+        if (tick.positions.tip_m - rest_m).norm() > RESTS_M {
             self.rest = None;
             self.watch = None;
             self.has_rested = false;
@@ -65,10 +65,10 @@ impl ReadyTrocar {
 impl Item for ReadyTrocar {
     fn tick(&mut self, tick: &Tick) {
         let Some((shaft, world_from_base, trocar_m)) = self.arm.filter(|_| tick.side == self.side) else { return };
-        let Some(base_from_flange) = &tick.frames.base_from_flange else { return };
+        let Some(base_from_flange) = &tick.calibration.frames.base_from_flange else { return };
         self.follow(tick);
         let line = shaft.in_frame(&(world_from_base * base_from_flange));
-        let is_through = (tick.tip_m - trocar_m).dot(&line.direction) > 0.0;
+        let is_through = (tick.positions.tip_m - trocar_m).dot(&line.direction) > 0.0;
         self.miss_m = if is_through { line.miss_m(&trocar_m).norm() } else { f64::INFINITY };
         let watch = self.watch.get_or_insert_with(|| TrocarWatch::new(trocar_m, TrocarWatch::LIMIT_M));
         watch.step(&line, tick.t_s);

@@ -42,8 +42,8 @@ impl Item for ReadyWatchdog {
         if !self.is_sent {
             return;
         }
-        if tick.rendered_n.norm() > 0.0 {
-            self.cause.get_or_insert(ReadyCause::Force { force_n: tick.rendered_n.norm() });
+        if tick.rendering.rendered_n.norm() > 0.0 {
+            self.cause.get_or_insert(ReadyCause::Force { force_n: tick.rendering.rendered_n.norm() });
         }
         if let LoopState::Faulted(fault) = tick.state
             && !self.which.raises(fault)

@@ -116,12 +116,12 @@ pub struct RuntimeSummary {
     /// Time spent reading from and writing to the rig (devices or simulation), us.
     pub rig_us: Quantiles,
     /// Time from the arrival of the oldest measurement until the force computed from it was sent to the device, us. In
-    /// a simulation only the loop's own part.
-    pub sample_to_force_us: Quantiles,
+    /// a simulation only the loop's own part; `None` on the virtual clock.
+    pub sample_to_force_us: Option<Quantiles>,
     /// The four durations above as histograms.
     pub histograms: Histograms,
-    /// Processor time; zero on the virtual clock.
-    pub cpu: CpuFraction,
+    /// Processor time; `None` on the virtual clock.
+    pub cpu: Option<CpuFraction>,
     /// Real-time privileges that the operating system granted.
     pub scheduling: Scheduling,
     /// State at the end; with two arm pairs the state with the higher priority.
@@ -227,14 +227,14 @@ impl Meters {
             wake_us: self.wake.quantiles(),
             work_us: self.work.quantiles(),
             rig_us: self.rig.quantiles(),
-            sample_to_force_us: self.sample_to_force.quantiles(),
+            sample_to_force_us: self.sample_to_force.known_quantiles(),
             histograms: Histograms {
                 wake: self.wake.histogram(),
                 work: self.work.histogram(),
                 rig: self.rig.histogram(),
                 sample_to_force: self.sample_to_force.histogram(),
             },
-            cpu: CpuFraction::default(),
+            cpu: None,
             final_state: worst.map_or(LoopState::Idle, |arm| arm.final_state),
             fault: worst.and_then(|arm| arm.fault.clone()),
             arms,

@@ -12,7 +12,10 @@ use nima_core::{
 };
 use nima_devices::Loss;
 use nima_machine::{
-    messages::{Command, Event, FarStop, Fault, ForceReport, ForceSource, Refusal, Scheduling, Tick},
+    messages::{
+        CalibrationReadings, Command, Event, FarStop, Fault, ForceReport, ForceSource, Guidance, Refusal, Scheduling,
+        Tick, TickForces, TickPositions, TickTiming,
+    },
     rig::{Acts, DeviceEvent, EngageBlocker, Outputs, Prompt, Side, ViewOrientation},
 };
 
@@ -40,27 +43,26 @@ record!(Tick {
     state: InterlockState<Fault>,
     mode: Mode,
     delay_s: f64,
-    leader_m: Vector3<f64>,
-    tip_m: Vector3<f64>,
+    positions: TickPositions,
     measured_n: Vector3<f64>,
     force: ForceReport,
-    wrist: Option<WristSample>,
-    frames: FrameSample,
-    view: ViewOrientation,
-    prompt: Prompt,
-    guide_m: Option<Vector3<f64>>,
-    delayed_n: Vector3<f64>,
-    asked_n: [Vector3<f64>; SLOTS],
-    rendered_n: Vector3<f64>,
+    calibration: CalibrationReadings,
+    guidance: Guidance,
+    rendering: TickForces,
     gates: GateReport,
-    gate_settings: ChainSettings,
     identification: IdentificationReport,
-    wake_s: f64,
-    work_s: f64,
-    sample_to_force_s: Option<f64>,
-    missed: u64,
-    dropped: u64,
+    timing: TickTiming,
 });
+
+record!(TickPositions { leader_m: Vector3<f64>, tip_m: Vector3<f64> });
+
+record!(CalibrationReadings { wrist: Option<WristSample>, frames: FrameSample, view: ViewOrientation });
+
+record!(Guidance { prompt: Prompt, guide_m: Option<Vector3<f64>> });
+
+record!(TickForces { delayed_n: Vector3<f64>, asked_n: [Vector3<f64>; SLOTS], rendered_n: Vector3<f64> });
+
+record!(TickTiming { wake_s: f64, work_s: f64, sample_to_force_s: Option<f64>, missed: u64, dropped: u64 });
 
 record!(ForceReport {
     source: ForceSource,
@@ -147,6 +149,7 @@ record!(GateReport {
     gain: f64,
     stored_j: f64,
     counts: GateCounts,
+    settings: ChainSettings,
 });
 
 record!(GateCounts { ticks: u64, acted: [u64; GATES], last: [Reason; GATES] });

@@ -170,9 +170,9 @@ fn add(compared: &mut ComparedSide, was: &Tick, would: &Tick) {
     match engaged {
         [true, true] => {
             compared.engaged += 1;
-            compared.rendered.add(&(would.rendered_n - was.rendered_n));
-            compared.recorded_error.add(&(was.rendered_n - was.measured_n));
-            compared.changed_error.add(&(would.rendered_n - would.measured_n));
+            compared.rendered.add(&(would.rendering.rendered_n - was.rendering.rendered_n));
+            compared.recorded_error.add(&(was.rendering.rendered_n - was.measured_n));
+            compared.changed_error.add(&(would.rendering.rendered_n - would.measured_n));
         }
         [false, false] => {}
         _ => compared.apart += 1,

@@ -284,10 +284,10 @@ pub(crate) fn line(time_ns: u64, level: Level, name: &str, message: String, valu
 
 impl SideTopics {
     fn tick(&mut self, out: &mut SessionSinks, time_ns: u64, tick: &Tick) -> Result<(), WriteError> {
-        let asked_n = tick.asked_n[tick.mode.index()];
-        let forces = [tick.measured_n, tick.delayed_n, asked_n, tick.rendered_n];
+        let asked_n = tick.rendering.asked_n[tick.mode.index()];
+        let forces = [tick.measured_n, tick.rendering.delayed_n, asked_n, tick.rendering.rendered_n];
         self.forces.values.extend(forces.iter().flatten());
-        self.poses.values.extend([tick.tip_m, tick.leader_m].iter().flatten());
+        self.poses.values.extend([tick.positions.tip_m, tick.positions.leader_m].iter().flatten());
         let acted = Gate::ALL.map(|gate| f64::from(u8::from(tick.gates.acted(gate))));
         let gates = &tick.gates;
         self.gates.values.extend(acted);

@@ -72,7 +72,7 @@ impl SceneChannels {
         let mut frames = FrameTransforms::default();
         let mut scene = SceneUpdate::default();
         for tick in ticks {
-            if let Some(world_from_n) = tick.view.world_from_n().filter(|_| !has_endoscope(&frames)) {
+            if let Some(world_from_n) = tick.calibration.view.world_from_n().filter(|_| !has_endoscope(&frames)) {
                 frames.transforms.push(FrameTransform {
                     timestamp,
                     parent_frame_id: WORLD.to_owned(),
@@ -81,7 +81,7 @@ impl SceneChannels {
                     rotation: Some(quaternion(&world_from_n.rotation)),
                 });
             }
-            for (name, position_m) in DRAWN.into_iter().zip([tick.tip_m, tick.leader_m]) {
+            for (name, position_m) in DRAWN.into_iter().zip([tick.positions.tip_m, tick.positions.leader_m]) {
                 frames.transforms.push(FrameTransform {
                     timestamp,
                     parent_frame_id: WORLD.to_owned(),
@@ -90,12 +90,15 @@ impl SceneChannels {
                     rotation: Some(quaternion(&UnitQuaternion::identity())),
                 });
             }
-            let arrows = [(tick.measured_n, MEASURED), (tick.rendered_n, RENDERED)];
+            let arrows = [(tick.measured_n, MEASURED), (tick.rendering.rendered_n, RENDERED)];
             scene.entities.push(SceneEntity {
                 timestamp,
                 frame_id: WORLD.to_owned(),
                 id: name_of_arrows(tick.side),
-                arrows: arrows.iter().filter_map(|(force_n, color)| arrow(&tick.tip_m, force_n, *color)).collect(),
+                arrows: arrows
+                    .iter()
+                    .filter_map(|(force_n, color)| arrow(&tick.positions.tip_m, force_n, *color))
+                    .collect(),
                 ..SceneEntity::default()
             });
         }

@@ -58,9 +58,5 @@ impl TimingChannel {
 
 /// NaN where nothing was timed.
 fn values(percentiles: &Percentiles) -> [f64; 4] {
-    if percentiles.count() == 0 {
-        return [f64::NAN; 4];
-    }
-    let Quantiles { p50, p99, p999, max } = percentiles.quantiles();
-    [p50, p99, p999, max]
+    percentiles.known_quantiles().map_or([f64::NAN; 4], |Quantiles { p50, p99, p999, max }| [p50, p99, p999, max])
 }

@@ -10,9 +10,12 @@ use nima_screen::{
     widgets::{Sign, bar, fitting, sign, small, width_of},
 };
 use nima_words::{
-    report_text::{COMPARED, mode_meaning, mode_name, newtons, newtons_in_three, three_digits},
+    language::Text,
+    report_text::{COMPARED, UNKNOWN, mode_meaning, mode_name, newtons, newtons_in_three, three_digits},
     text,
 };
+
+use crate::panel::{Panel, PanelContext, PanelSize};
 
 /// Upper end of the bars, as a multiple of the error of delayed DFR.
 const LONGEST: f64 = 2.5;
@@ -25,6 +28,19 @@ const MIN_N: f64 = 1e-4;
 const NUMBER_RIGHT: f32 = 200.0;
 /// Largest ratio and error that are shown to an audience, as a multiple of the error of delayed DFR.
 const PLAIN_MAX: f64 = 10.0;
+
+#[derive(Debug, Default)]
+pub struct HorizonPanel;
+
+impl Panel for HorizonPanel {
+    const NAME: Text = text::horizon::NAME;
+    const MEANING: Text = text::horizon::MEANING;
+    const SIZE: PanelSize = PanelSize::FIGURES;
+
+    fn ui(&mut self, ui: &mut Ui, at: &mut PanelContext<'_>) {
+        horizon_ui(ui, at.live, at.outbox, false);
+    }
+}
 
 /// Draws the panel; `plain`: for an audience, without abbreviations and huge numbers.
 pub fn horizon_ui(ui: &mut Ui, live: &LiveState, outbox: &mut Outbox, plain: bool) {
@@ -53,8 +69,8 @@ pub fn horizon_ui(ui: &mut Ui, live: &LiveState, outbox: &mut Outbox, plain: boo
 }
 
 fn compare_ui(ui: &mut Ui, live: &LiveState, mut compares: bool, outbox: &mut Outbox) {
-    let compare = egui::Checkbox::new(&mut compares, text::horizon::COMPARE.get());
-    let compare = ui.add_enabled(!live.is_shown_only(), compare).on_hover_text(text::horizon::COMPARE_HOVER.get());
+    let compare = egui::Checkbox::new(&mut compares, text::horizon::COMPARE);
+    let compare = ui.add_enabled(!live.is_shown_only(), compare).on_hover_text(text::horizon::COMPARE_HOVER);
     if compare.on_disabled_hover_text(live.of.blocked()).changed() {
         outbox.push(Command::Compare(compares));
     }
@@ -79,7 +95,8 @@ fn trend_ui(ui: &mut Ui, live: &LiveState, plain: bool) {
     painter.rect_filled(rect, 3.0, theme::now().groove);
     let highest_n = 1.1 * live.trend_n.iter().map(|errors_n| errors_n[Mode::Dfr.index()]).fold(MIN_N, f64::max);
     // The labels have their own column: lines over them would make both unreadable.
-    let highest = format!("{} N", three_digits(highest_n));
+    let is_known = live.trend_n.iter().flatten().any(|error_n| error_n.is_finite());
+    let highest = format!("{} N", if is_known { three_digits(highest_n) } else { UNKNOWN.to_owned() });
     let font = theme::regular(11.0);
     let labels = [highest.as_str(), text::horizon::LAST_3_MIN.get()];
     let width = labels.map(|label| width_of(painter, label, font.clone())).into_iter().fold(0.0, f32::max);

@@ -3,7 +3,7 @@
 use std::{collections::BTreeMap, mem::discriminant};
 
 use nima_machine::{
-    messages::{Event, Tick},
+    messages::{Event, Tick, TickPositions},
     rig::{SIDES, Side},
 };
 use nima_session::{
@@ -156,13 +156,12 @@ fn tick(like: &Tick, side: Side, plotted: &PlottedTick) -> Tick {
         side,
         state,
         t_s: *t_s,
-        tip_m: *tip_m,
-        leader_m: *leader_m,
+        positions: TickPositions { tip_m: *tip_m, leader_m: *leader_m },
         measured_n: *measured_n,
-        delayed_n: *delayed_n,
-        rendered_n: *rendered_n,
         ..*like
     };
-    tick.asked_n[tick.mode.index()] = *asked_n;
+    tick.rendering.delayed_n = *delayed_n;
+    tick.rendering.rendered_n = *rendered_n;
+    tick.rendering.asked_n[tick.mode.index()] = *asked_n;
     tick
 }

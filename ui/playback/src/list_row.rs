@@ -209,6 +209,6 @@ fn note_ui(ui: &mut Ui, row: &mut SessionListRow) -> Option<SessionRequest> {
     let field = ui.add(TextEdit::singleline(&mut row.note).char_limit(200).desired_width(NOTE));
     field.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, &name));
     let is_done = field.lost_focus();
-    field.on_hover_text(text::playback::NOTE_HOVER.get());
+    field.on_hover_text(text::playback::NOTE_HOVER);
     is_done.then(|| SessionRequest::Note(row.shelved.path.clone(), row.note.trim().to_owned()))
 }

@@ -62,7 +62,7 @@ impl Overview {
         for tick in frame.ticks.iter().flatten() {
             let state = Some(tick.state);
             let measured_n = tick.known_n().map(|force_n| force_n.norm() as f32);
-            let rendered_n = tick.rendered_n.norm() as f32;
+            let rendered_n = tick.rendering.rendered_n.norm() as f32;
             self.buckets[place].merge(&OverviewBucket { measured_n, rendered_n, state });
         }
         self.active.extend(frame.active.iter().map(|(side, number)| (frame.t_s, *side, *number)));

@@ -277,7 +277,7 @@ impl<'a> SessionIndex<'a> {
             if self.samples[side].last().is_none_or(|last| *t_s >= last.t_s + SAMPLE_S) {
                 self.samples[side].push(*tick);
             }
-            let before = self.tips[side].replace((tick.t_s, tick.tip_m));
+            let before = self.tips[side].replace((tick.t_s, tick.positions.tip_m));
             add(&mut self.columns[side], *t_s, &signals_of(tick, before));
         }
     }

@@ -31,11 +31,11 @@ impl CompareCost {
             return;
         }
         self.waited += u64::from(!compares);
-        if tick.identification.resting || !tick.work_s.is_finite() {
+        if tick.identification.resting || !tick.timing.work_s.is_finite() {
             return;
         }
         let of = if compares { &mut self.compared_s } else { &mut self.alone_s };
-        of.push_back(tick.work_s as f32);
+        of.push_back(tick.timing.work_s as f32);
         if of.len() > TICKS {
             of.pop_front();
         }
@@ -84,9 +84,9 @@ mod tests {
         assert_eq!((cost.us(), cost.has_waited()), ([None; 2], false));
         for number in 0..2 * ENOUGH {
             // One tick in ten was interrupted for a millisecond.
-            tick.work_s = if number % 10 == 0 { 1e-3 } else { 10e-6 };
+            tick.timing.work_s = if number % 10 == 0 { 1e-3 } else { 10e-6 };
             cost.push(&tick, false);
-            tick.work_s += 15e-6;
+            tick.timing.work_s += 15e-6;
             cost.push(&tick, true);
         }
         assert!(cost.has_waited());

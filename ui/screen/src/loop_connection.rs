@@ -242,8 +242,8 @@ impl VisibleState {
             last,
             gates: Gate::ALL.map(|gate| 2 * ticks().filter(|tick| tick.gates.acted(gate)).count() > count),
             measured_n: mean(|tick| tick.measured_n),
-            rendered_n: mean(|tick| tick.rendered_n),
-            tip_m: mean(|tick| tick.tip_m),
+            rendered_n: mean(|tick| tick.rendering.rendered_n),
+            tip_m: mean(|tick| tick.positions.tip_m),
         })
     }
 
@@ -256,7 +256,7 @@ impl VisibleState {
         };
         self.last.state != now.last.state
             || self.last.mode != now.last.mode
-            || self.last.prompt != now.last.prompt
+            || self.last.guidance.prompt != now.last.guidance.prompt
             || self.gates != now.gates
             || moved(&self.measured_n, &now.measured_n, SEEN_N)
             || moved(&self.rendered_n, &now.rendered_n, SEEN_N)
@@ -341,7 +341,7 @@ mod tests {
             .map(|i| {
                 let mut noisy = tick;
                 noisy.index = tick.index + i;
-                noisy.wake_s = 1e-3;
+                noisy.timing.wake_s = 1e-3;
                 noisy.measured_n = tick.measured_n.add_scalar(if i % 2 == 0 { 0.2 } else { -0.2 });
                 noisy
             })
@@ -350,7 +350,8 @@ mod tests {
         let unknown = glance(&[Tick { measured_n: Vector3::repeat(f64::NAN), ..tick }]);
         assert!(shown.differs(&unknown) && !unknown.differs(&unknown));
         let pushed = Tick { measured_n: tick.measured_n.add_scalar(0.1), ..tick };
-        let moved = Tick { tip_m: tick.tip_m.add_scalar(1e-3), ..tick };
+        let mut moved = tick;
+        moved.positions.tip_m.x += 1e-3;
         let stopped = Tick { state: LoopState::Stopped, ..tick };
         assert!([pushed, moved, stopped].iter().all(|now| shown.differs(&glance(&[*now]))));
         assert!(VisibleState::of(&[], tick.side).is_none());

@@ -38,7 +38,7 @@ impl RunLog {
         follow(&mut self.states, tick.state.word());
         follow(&mut self.modes, tick.mode);
         self.gain = tick.gates.gain;
-        self.led_ticks += u64::from(tick.guide_m.is_some());
+        self.led_ticks += u64::from(tick.guidance.guide_m.is_some());
     }
 }
 

@@ -19,11 +19,11 @@ pub type TipThen = (f64, Vector3<f64>);
 /// Returns the signals of a tick in the order of their channels; NaN if unknown.
 pub fn signals_of(tick: &Tick, before: Option<TipThen>) -> [f32; CHANNELS] {
     let m = tick.measured_n;
-    let r = tick.rendered_n;
-    let tip_mm = tick.tip_m * 1e3;
+    let r = tick.rendering.rendered_n;
+    let tip_mm = tick.positions.tip_m * 1e3;
     let speed_mm_s = before.and_then(|(then_s, tip_m)| {
         let dt_s = tick.t_s - then_s;
-        (dt_s > 0.0 && dt_s < NEXT_TICK_S).then(|| (tick.tip_m - tip_m).norm() / dt_s * 1e3)
+        (dt_s > 0.0 && dt_s < NEXT_TICK_S).then(|| (tick.positions.tip_m - tip_m).norm() / dt_s * 1e3)
     });
     let report = &tick.identification;
     let is_compared = report.modes.contains(Mode::Literal);
@@ -45,7 +45,7 @@ pub fn signals_of(tick: &Tick, before: Option<TipThen>) -> [f32; CHANNELS] {
         tick.gates.governed,
         f64::from(chosen_degree(tick)),
         if is_compared { f64::from(report.paper_degree) } else { f64::NAN },
-        tick.wrist.map_or(f64::NAN, |wrist| wrist.raw.torque_nm.norm() * 1e3),
+        tick.calibration.wrist.map_or(f64::NAN, |wrist| wrist.raw.torque_nm.norm() * 1e3),
     ]
     .map(|x| x as f32)
 }

@@ -70,7 +70,7 @@ fn stop_release_and_engage_are_three_deliberate_steps() {
     harness.get_by_label("Loop state: Engaged");
     assert!(harness.query_by_label("Engage").is_none() && harness.query_by_label("Release stop").is_none());
     press(&mut harness, "Stop");
-    until(&mut harness, "stopped", |tick| tick.state == LoopState::Stopped && tick.rendered_n.norm() < 1e-12);
+    until(&mut harness, "stopped", |tick| tick.state == LoopState::Stopped && tick.rendering.rendered_n.norm() < 1e-12);
     harness.step();
     harness.get_by_label("Loop state: Stopped");
     let release = harness.get_by_role_and_label(Role::Button, "Release stop");
@@ -100,7 +100,7 @@ fn space_and_escape_stop_even_when_another_button_has_the_focus() {
 #[test]
 fn a_console_that_was_not_engaged_begins_idle_and_without_force() {
     let mut harness = console_of("peg_transfer", [1600.0, 1000.0], false);
-    until(&mut harness, "idle", |tick| tick.state == LoopState::Idle && tick.rendered_n.norm() < 1e-12);
+    until(&mut harness, "idle", |tick| tick.state == LoopState::Idle && tick.rendering.rendered_n.norm() < 1e-12);
     harness.step();
     harness.get_by_label("Loop state: Idle");
     press(&mut harness, "Engage");
@@ -235,7 +235,7 @@ fn closing_the_window_ends_the_loop() {
 fn the_instrument_is_led_by_mouse_and_keys_and_a_stop_lets_it_go() {
     let mut harness = console();
     press(&mut harness, "Drive by mouse (M)");
-    until(&mut harness, "led", |tick| tick.guide_m.is_some());
+    until(&mut harness, "led", |tick| tick.guidance.guide_m.is_some());
     for _ in 0..5 {
         harness.key_press(Key::PageUp);
         harness.step();
@@ -247,14 +247,18 @@ fn the_instrument_is_led_by_mouse_and_keys_and_a_stop_lets_it_go() {
     harness.step();
     harness.drop_at(view.center() + egui::vec2(60.0, 0.0));
     harness.step();
-    let aim_m = harness.state().tick().unwrap().guide_m.unwrap();
-    until(&mut harness, "where it is led", |tick| (tick.leader_m - tick.guide_m.unwrap_or_default()).norm() < 3e-3);
+    let aim_m = harness.state().tick().unwrap().guidance.guide_m.unwrap();
+    until(&mut harness, "where it is led", |tick| {
+        (tick.positions.leader_m - tick.guidance.guide_m.unwrap_or_default()).norm() < 3e-3
+    });
     press(&mut harness, "Stop driving (M)");
-    until(&mut harness, "let go", |tick| tick.guide_m.is_none());
+    until(&mut harness, "let go", |tick| tick.guidance.guide_m.is_none());
     harness.key_press(Key::M);
-    until(&mut harness, "led again", |tick| tick.guide_m.is_some_and(|position_m| position_m != aim_m));
+    until(&mut harness, "led again", |tick| tick.guidance.guide_m.is_some_and(|position_m| position_m != aim_m));
     press(&mut harness, "Stop");
-    until(&mut harness, "stopped and let go", |tick| tick.state == LoopState::Stopped && tick.guide_m.is_none());
+    until(&mut harness, "stopped and let go", |tick| {
+        tick.state == LoopState::Stopped && tick.guidance.guide_m.is_none()
+    });
 }
 
 #[test]
@@ -273,7 +277,7 @@ fn the_jaws_are_opened_and_closed_by_a_key_while_the_instrument_is_led() {
     harness.run_steps(5);
     assert!(opening(&harness).is_none_or(|rad| rad < 0.1), "only while it is led");
     press(&mut harness, "Drive by mouse (M)");
-    until(&mut harness, "led", |tick| tick.guide_m.is_some());
+    until(&mut harness, "led", |tick| tick.guidance.guide_m.is_some());
     for open in [true, false, true] {
         harness.key_press(Key::G);
         harness.step();

@@ -198,16 +198,16 @@ fn a_stop_that_is_pressed_under_a_fault_stays() {
 fn the_demonstration_lets_go_with_and_without_the_governor_and_leaves_everything_as_it_was() {
     let mut harness = console_of("peg_transfer", SIZE, |app| app);
     until(&mut harness, "engaged", |tick| tick.state == LoopState::Engaged);
-    let (before, mode) = harness.state().tick().map(|tick| (tick.gate_settings, tick.mode)).unwrap();
+    let (before, mode) = harness.state().tick().map(|tick| (tick.gates.settings, tick.mode)).unwrap();
     press(&mut harness, "Demo");
     press(&mut harness, "7. Letting go");
-    until(&mut harness, "without a governor", |tick| tick.gate_settings.handle_kg == 0.0);
+    until(&mut harness, "without a governor", |tick| tick.gates.settings.handle_kg == 0.0);
     press(&mut harness, "Pause demo");
-    until(&mut harness, "the handle flies to where its mechanism ends", |tick| tick.leader_m.z > 0.07);
+    until(&mut harness, "the handle flies to where its mechanism ends", |tick| tick.positions.leader_m.z > 0.07);
     harness.get_by_label_contains("The handle moved");
     assert_eq!(harness.state().tick().unwrap().state, LoopState::Engaged, "nothing ends it");
     press(&mut harness, "8. The governor");
-    until(&mut harness, "with the governor", |tick| tick.gate_settings == before_with_hold(before));
+    until(&mut harness, "with the governor", |tick| tick.gates.settings == before_with_hold(before));
     until(&mut harness, "no hand holds the handle", |tick| tick.state == LoopState::Idle);
     let went = harness.get_by_label_contains("The handle moved").value().unwrap_or_default();
     // The pressing force at which the hand releases the handle differs between runs, and so does the travel: 0.9 to 2.1
@@ -217,7 +217,7 @@ fn the_demonstration_lets_go_with_and_without_the_governor_and_leaves_everything
     until(&mut harness, "engaged again", |tick| tick.state == LoopState::Engaged);
     harness.key_press(Key::F2);
     harness.step();
-    until(&mut harness, "as before", |tick| tick.gate_settings == before && tick.mode == mode);
+    until(&mut harness, "as before", |tick| tick.gates.settings == before && tick.mode == mode);
 }
 
 /// Returns a force that fades at standstill would leave nothing to release.

@@ -38,7 +38,7 @@ fn the_list_is_gone_through_by_the_person_at_the_screen_and_the_one_at_the_arm()
     press(&mut console, "Release stop");
     for watchdog in ["Watchdog of the loop", "Watchdog of the measurements", "Watchdog of the link"] {
         until(&mut console, watchdog, |tick| {
-            matches!(tick.state, LoopState::Faulted(_)) && tick.rendered_n.norm() == 0.0
+            matches!(tick.state, LoopState::Faulted(_)) && tick.rendering.rendered_n.norm() == 0.0
         });
         press(&mut console, "Release stop");
         read(&mut console, &format!("{watchdog}: 0."));

@@ -112,16 +112,18 @@ fn from_a_ready_study_to_the_end_of_its_first_trial_by_clicks() {
 
     begin(&mut window, "Start the trial");
     assert!(shows(&window, "Trial 1 of 4, condition "), "{:?}", texts(&window));
-    until(&mut window, "the participant's hand holds the instrument", |tick| tick.guide_m.is_some());
-    let before_m = window.state().tick().unwrap().guide_m.unwrap();
+    until(&mut window, "the participant's hand holds the instrument", |tick| tick.guidance.guide_m.is_some());
+    let before_m = window.state().tick().unwrap().guidance.guide_m.unwrap();
     for _ in 0..10 {
         window.key_press(Key::ArrowRight);
         window.step();
     }
-    until(&mut window, "led", |tick| tick.guide_m.is_some_and(|position_m| (position_m - before_m).norm() > 0.005));
+    until(&mut window, "led", |tick| {
+        tick.guidance.guide_m.is_some_and(|position_m| (position_m - before_m).norm() > 0.005)
+    });
     window.key_press(Key::M);
     window.run_steps(5);
-    assert!(window.state().tick().unwrap().guide_m.is_some(), "it cannot be let go");
+    assert!(window.state().tick().unwrap().guidance.guide_m.is_some(), "it cannot be let go");
     wait(&mut window, "the end", |window| !window.state().in_trial());
     // A task without an end has no completion time.
     read(&mut window, "Trial 1: the time limit is reached");

@@ -21,7 +21,7 @@ fn lumps_are_marked_by_a_key_while_the_instrument_is_led_and_told_at_the_end() {
     read(&mut harness, "Places marked: 0");
     harness.key_press(Key::X);
     press(&mut harness, "Drive by mouse (M)");
-    until(&mut harness, "led", |tick| tick.guide_m.is_some());
+    until(&mut harness, "led", |tick| tick.guidance.guide_m.is_some());
     read(&mut harness, "Places marked: 0 (X marks, D ends the trial, N restarts it)");
     for marked in 1..=2 {
         harness.key_press(Key::X);
@@ -33,6 +33,9 @@ fn lumps_are_marked_by_a_key_while_the_instrument_is_led_and_told_at_the_end() {
     read(&mut harness, "Places marked: 1");
     harness.key_press(Key::D);
     read(&mut harness, "of 5, false marks: ");
+    press(&mut harness, "Stop driving (M)");
+    harness.key_press(Key::N);
+    read(&mut harness, "Places marked: 0");
 }
 
 #[test]
@@ -65,9 +68,9 @@ fn one_person_leads_both_instruments_one_at_a_time() {
     until(&mut harness, "engaged", |tick| tick.state == LoopState::Engaged);
     read(&mut harness, "passed 0, placed 0, dropped 0");
     press(&mut harness, "Drive by mouse (M)");
-    until(&mut harness, "led", |tick| tick.guide_m.is_some());
+    until(&mut harness, "led", |tick| tick.guidance.guide_m.is_some());
     read(&mut harness, "Right instrument");
-    let right_m = |harness: &Window<'_>| harness.state().tick().unwrap().guide_m.unwrap();
+    let right_m = |harness: &Window<'_>| harness.state().tick().unwrap().guidance.guide_m.unwrap();
     let before_m = right_m(&harness);
     // All within one frame: they are applied in order.
     for key in [Key::PageDown, Key::PageDown, Key::H, Key::PageUp, Key::G] {
@@ -76,7 +79,7 @@ fn one_person_leads_both_instruments_one_at_a_time() {
     read(&mut harness, "Left instrument");
     wait(&mut harness, "the left jaws alone are open", |harness| open(harness) == [false, true]);
     until(&mut harness, "the right one is two steps lower", |tick| {
-        tick.guide_m.is_some_and(|position_m| (position_m.z - before_m.z + 0.002).abs() < 1e-6)
+        tick.guidance.guide_m.is_some_and(|position_m| (position_m.z - before_m.z + 0.002).abs() < 1e-6)
     });
     let held_m = right_m(&harness);
     harness.run_steps(5);
@@ -84,7 +87,7 @@ fn one_person_leads_both_instruments_one_at_a_time() {
     harness.key_press(Key::H);
     read(&mut harness, "Right instrument");
     harness.key_press(Key::M);
-    until(&mut harness, "let go", |tick| tick.guide_m.is_none());
+    until(&mut harness, "let go", |tick| tick.guidance.guide_m.is_none());
 }
 
 /// Returns the displayed torque about the shaft at the jaws, mNm.

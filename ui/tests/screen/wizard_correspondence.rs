@@ -98,7 +98,7 @@ fn without_gravity_no_push_is_asked_for() {
         harness.step();
         assert!(!can_press(&harness, "Next"));
     }
-    assert_eq!(harness.state().tick().map(|tick| tick.prompt), Some(Prompt::Rest));
+    assert_eq!(harness.state().tick().map(|tick| tick.guidance.prompt), Some(Prompt::Rest));
 }
 
 #[test]

@@ -197,7 +197,11 @@ fn the_left_arm_is_calibrated_by_itself_and_keeps_nothing_of_the_right_one() {
     wait(&mut console, "the left sensor", |c| shows(c, "Left: Sensor SIM-S1-0002"));
     leave_the_checks(&mut console);
     wait(&mut console, "a pose of the left arm", |c| shows(c, "1 of 12 recorded"));
-    assert_eq!(console.state().tick().map(|tick| tick.prompt), Some(Prompt::Rest), "no request at the right arm");
+    assert_eq!(
+        console.state().tick().map(|tick| tick.guidance.prompt),
+        Some(Prompt::Rest),
+        "no request at the right arm"
+    );
     pick(&mut console, "Right arm");
     wait(&mut console, "the first step again", |c| shows(c, "release it: nothing may touch the tool"));
     leave_the_checks(&mut console);

@@ -237,7 +237,7 @@ fn answers_in_the_loop(folder: &Path) {
     let correspondence = records().1.correspondence();
     run_virtual(&plan, 15.0, |tick| {
         if tick.force.source == ForceSource::Network {
-            let sample = tick.wrist.unwrap();
+            let sample = tick.calibration.wrist.unwrap();
             let true_n = correspondence.tip_force_s1(&sample, &sample.tissue_n.unwrap()).unwrap();
             by_network += (tick.force.tip_force.unwrap().force_s1_n - true_n).norm();
             by_wrist += (tick.force.gravity_free.unwrap().force_n - true_n).norm();

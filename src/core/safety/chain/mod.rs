@@ -187,7 +187,7 @@ impl<const D: usize> SafetyChain<D> {
     /// assert_eq!(chain.step(&request).0, Vector3::zeros());
     /// ```
     pub fn step(&mut self, request: &ForceRequest<D>) -> (SVector<f64, D>, GateReport) {
-        let mut report = GateReport::default();
+        let mut report = GateReport { settings: self.settings, ..GateReport::default() };
         let dt_s = self.since_last_s(request.t_s);
         if self.settings.energy != EnergyMode::Off {
             // The force that was really held, after the governor: the energy of a requested force never reached the

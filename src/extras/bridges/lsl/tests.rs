@@ -76,9 +76,9 @@ fn marks_tell_no_condition() {
     let other = report(&|tick| {
         tick.mode = nima_core::impedance::Mode::Literal;
         tick.delay_s = 0.3;
-        tick.rendered_n = Vector3::repeat(9.0);
-        tick.asked_n = [Vector3::repeat(7.0); nima_core::impedance::SLOTS];
-        tick.gate_settings.gain = 0.0;
+        tick.rendering.rendered_n = Vector3::repeat(9.0);
+        tick.rendering.asked_n = [Vector3::repeat(7.0); nima_core::impedance::SLOTS];
+        tick.gates.settings.gain = 0.0;
     });
     assert_eq!(plain, other);
     assert!(plain.iter().all(|(_, what)| !what.contains(|c: char| c.is_ascii_digit())), "{plain:?}");

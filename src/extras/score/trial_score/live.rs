@@ -56,7 +56,11 @@ impl LiveTrial {
     /// Adds the next tick of a side.
     pub fn tick(&mut self, tick: &Tick) {
         let engaged = tick.state == LoopState::Engaged;
-        self.hand(tick.side, tick.t_s, hand_of(tick.tip_m, tick.measured_n, tick.rendered_n, engaged));
+        self.hand(
+            tick.side,
+            tick.t_s,
+            hand_of(tick.positions.tip_m, tick.measured_n, tick.rendering.rendered_n, engaged),
+        );
     }
 
     fn hand(&mut self, side: Side, t_s: f64, hand: HandSample) {

@@ -105,7 +105,7 @@ pub struct TipErrors {
 impl TipErrors {
     /// Adds the true force (N, `world`) at the time of a tick; only engaged ticks count.
     pub fn add(&mut self, tick: &Tick, true_n: &Vector3<f64>) {
-        let Some(sample) = tick.wrist.as_ref().filter(|_| tick.state.permits().coupled) else { return };
+        let Some(sample) = tick.calibration.wrist.as_ref().filter(|_| tick.state.permits().coupled) else { return };
         let (Some(world_from_s1), Some(gravity_free)) = (sample.world_from_s1, tick.force.gravity_free) else { return };
         let side = tick.side.index();
         let reported_n = [tick.force.tip_n, world_from_s1 * gravity_free.force_n, world_from_s1 * sample.raw.force_n];

@@ -251,7 +251,7 @@ fn report(step: &BenchStep) -> Option<String> {
     if step.device_lost {
         return Some("device lost".to_owned());
     }
-    if machine.missed > twin.missed {
+    if machine.timing.missed > twin.timing.missed {
         return Some("missed periods counted".to_owned());
     }
     if step.refused {

@@ -56,10 +56,10 @@ impl CellCounts {
     fn look(&mut self, seen: &TickObservation, is_judged: bool) {
         let tick = &seen.console;
         if seen.is_new {
-            self.watch.look(tick.t_s, &tick.rendered_n, &tick.gates, 1.0, &mut self.breaches);
+            self.watch.look(tick.t_s, &tick.rendering.rendered_n, &tick.gates, 1.0, &mut self.breaches);
         }
         self.silent = if seen.under_way[1].1 > 0 { 0 } else { self.silent + 1 };
-        if tick.rendered_n.norm() > 0.0 {
+        if tick.rendering.rendered_n.norm() > 0.0 {
             self.force_after = self.force_after.max(self.silent);
         }
         self.look_at_tip(seen);
@@ -141,8 +141,8 @@ pub(super) fn measured(
         trace.push(TraceSample {
             hand_m: seen.hand_m,
             tip_n: seen.tip_n,
-            rendered_n: seen.console.rendered_n,
-            asked_n: seen.console.asked_n[mode.index()],
+            rendered_n: seen.console.rendering.rendered_n,
+            asked_n: seen.console.rendering.asked_n[mode.index()],
             is_engaged: seen.states[0] == LoopState::Engaged,
             newest: seen.newest,
         });

@@ -91,7 +91,7 @@ pub fn study(clock: VirtualClock, seed: u64, delay_s: f64) -> Result<ValidationR
             linear.add(&report.reconstruction_n[0]);
         }
         for mode in Mode::ALL {
-            at_horizon[mode.index()].add(&(tick.asked_n[mode.index()] - tick.measured_n));
+            at_horizon[mode.index()].add(&(tick.rendering.asked_n[mode.index()] - tick.measured_n));
         }
         None
     })?;

@@ -52,14 +52,14 @@ fn ends(item: &mut impl Item, [right, left]: [SideMotion; 2]) -> PointProgress {
 fn tick(template: &Tick, side: Side, t_s: f64, shows: &SideMotion) -> Tick {
     let at = |x_m: f64| Some(Isometry3::translation(x_m, 0.0, 0.0));
     let mut tick = Tick { side, t_s, ..*template };
-    tick.frames.base_from_flange = at(shows.arm_m);
-    tick.frames.c_from_m = at(shows.marker_m);
-    tick.frames.leader_from_handle = at(shows.handle_m);
+    tick.calibration.frames.base_from_flange = at(shows.arm_m);
+    tick.calibration.frames.c_from_m = at(shows.marker_m);
+    tick.calibration.frames.leader_from_handle = at(shows.handle_m);
     let push_n = Vector3::new(-shows.push_n, 0.0, 0.0);
     tick.force.gravity_free =
         tick.force.gravity_free.map(|wrench| nima_core::frames::Wrench { force_n: push_n, ..wrench });
     assert!(tick.force.gravity_free.is_some(), "the push is felt by a calibrated sensor");
-    tick.wrist.as_mut().unwrap().raw.force_n = Vector3::new(0.0, 0.0, -4.0) + push_n;
+    tick.calibration.wrist.as_mut().unwrap().raw.force_n = Vector3::new(0.0, 0.0, -4.0) + push_n;
     tick
 }
 

@@ -9,7 +9,10 @@ use nima_core::{
 
 use super::Pair;
 use crate::{
-    messages::{Command, Event, Fault, ForceReport, LoopState, Tick, UNKNOWN_N, Watchdog},
+    messages::{
+        CalibrationReadings, Command, Event, Fault, ForceReport, Guidance, LoopState, Tick, TickForces, TickPositions,
+        TickTiming, UNKNOWN_N, Watchdog,
+    },
     rig::{Inputs, Outputs, SensedForce, Switches, ViewOrientation},
     teleop::{
         Link, Timing, far_link::LINK_SILENT_AFTER_S, follower_half::NO_FORCE, leader_half::TipLead,
@@ -310,27 +313,33 @@ impl<L: Link> Pair<L> {
             state: self.state(),
             mode: self.leader.modes.mode,
             delay_s: self.link.delay_s(),
-            leader_m: if lead.tip_m.is_some() { lead.target.tip_m } else { seen.tip_m },
-            tip_m: seen.tip_m,
+            positions: TickPositions {
+                leader_m: if lead.tip_m.is_some() { lead.target.tip_m } else { seen.tip_m },
+                tip_m: seen.tip_m,
+            },
             measured_n: force.measured_n(),
             force,
-            wrist: recent.and_then(|seen| seen.sensed.wrist()).copied(),
-            // A repeated pose would look like one that is held still.
-            frames: if self.samples.came { seen.frames } else { FrameSample::default() },
-            view: seen.view,
-            prompt: self.screen.prompt,
-            guide_m: self.screen.guide_m,
-            delayed_n: delivery.delayed_n,
-            asked_n: rendered.force_n,
-            rendered_n: felt.rendered_n,
+            calibration: CalibrationReadings {
+                wrist: recent.and_then(|seen| seen.sensed.wrist()).copied(),
+                // A repeated pose would look like one that is held still.
+                frames: if self.samples.came { seen.frames } else { FrameSample::default() },
+                view: seen.view,
+            },
+            guidance: Guidance { prompt: self.screen.prompt, guide_m: self.screen.guide_m },
+            rendering: TickForces {
+                delayed_n: delivery.delayed_n,
+                asked_n: rendered.force_n,
+                rendered_n: felt.rendered_n,
+            },
             gates: felt.gates,
-            gate_settings: *self.leader.gates.chain.settings(),
             identification: *self.link.report(&self.follower),
-            wake_s: timing.wake_s,
-            work_s: timing.work_s,
-            sample_to_force_s: timing.sample_to_force_s,
-            missed: self.ticks.missed,
-            dropped: 0,
+            timing: TickTiming {
+                wake_s: timing.wake_s,
+                work_s: timing.work_s,
+                sample_to_force_s: timing.sample_to_force_s,
+                missed: self.ticks.missed,
+                dropped: 0,
+            },
         }
     }
 

@@ -42,10 +42,10 @@ pub(super) struct Poses {
 
 impl Poses {
     pub(super) fn note(&mut self, tick: &Tick, now: Instant) {
-        let pose = TipPose { tip_m: tick.tip_m, measured_n: tick.known_n() };
+        let pose = TipPose { tip_m: tick.positions.tip_m, measured_n: tick.known_n() };
         let begin = *self.begin.get_or_insert(now);
         self.take(tick.side, tick.t_s, pose, now.duration_since(begin).as_secs_f64());
-        if let Some(world_from_n) = tick.view.world_from_n() {
+        if let Some(world_from_n) = tick.calibration.view.world_from_n() {
             self.take_marker(tick.t_s, *world_from_n);
         }
     }

@@ -135,10 +135,13 @@ fn what_is_shown_at_once_has_the_forces_and_places_of_that_tick() {
         until(&mut past, "shown", |past| past.live.is_some());
         let shown = past.live.as_ref().unwrap().ticks[0].unwrap();
         let was = ticks[number][0].unwrap();
-        assert_eq!((shown.measured_n, shown.rendered_n, shown.tip_m), (was.measured_n, was.rendered_n, was.tip_m));
-        assert_eq!((shown.leader_m, shown.state), (was.leader_m, was.state));
+        assert_eq!(
+            (shown.measured_n, shown.rendering.rendered_n, shown.positions.tip_m),
+            (was.measured_n, was.rendering.rendered_n, was.positions.tip_m)
+        );
+        assert_eq!((shown.positions.leader_m, shown.state), (was.positions.leader_m, was.state));
         // Compared bit by bit: the link is still filling at the start, and NaN does not equal itself.
-        assert_eq!(shown.delayed_n.map(f64::to_bits), was.delayed_n.map(f64::to_bits));
+        assert_eq!(shown.rendering.delayed_n.map(f64::to_bits), was.rendering.delayed_n.map(f64::to_bits));
     }
 }
 
@@ -318,7 +321,7 @@ fn a_stretch_without_a_journal_is_shown_as_far_as_it_is_plotted() {
     past.live = None;
     until(&mut past, "shown", |past| past.live.as_ref().is_some_and(|live| live.ticks[1].is_some()));
     let shown = past.live.as_ref().unwrap().ticks[1].unwrap();
-    assert_eq!((shown.t_s, shown.rendered_n), (3.5, ticks[3500][1].unwrap().rendered_n));
+    assert_eq!((shown.t_s, shown.rendering.rendered_n), (3.5, ticks[3500][1].unwrap().rendering.rendered_n));
     assert!(!past.is_whole());
 }
 

@@ -118,7 +118,7 @@ impl LiveState {
     /// Updates the state common to both sides: timing, and the identification of the first.
     fn follow_loop(&mut self, tick: &Tick, before: Option<&Tick>) {
         let dt_s = before.map_or(0.0, |before| (tick.t_s - before.t_s).max(0.0));
-        let missed = before.map_or(0, |before| tick.missed.saturating_sub(before.missed));
+        let missed = before.map_or(0, |before| tick.timing.missed.saturating_sub(before.timing.missed));
         self.deadlines.push(tick.t_s, missed);
         self.missed_fraction.push(missed as f64 / (missed as f64 + 1.0), dt_s, 3.0);
         self.degrees.push(tick, dt_s);
@@ -138,9 +138,9 @@ impl LiveState {
         for (mean, error_n) in self.horizon.iter_mut().zip(errors_n.into_iter().flatten()) {
             mean.push(error_n, dt_s, 4.0);
         }
-        self.wake.record(tick.wake_s);
-        self.work.record(tick.work_s);
-        if let Some(seconds) = tick.sample_to_force_s {
+        self.wake.record(tick.timing.wake_s);
+        self.work.record(tick.timing.work_s);
+        if let Some(seconds) = tick.timing.sample_to_force_s {
             self.sample_to_force.record(seconds);
         }
         self.ticks_counted += 1;
@@ -151,8 +151,8 @@ impl LiveState {
         let side = tick.side.index();
         let dt_s = before.map_or(0.0, |before| (tick.t_s - before.t_s).max(0.0));
         let m = tick.measured_n;
-        let r = tick.rendered_n;
-        self.history[side].push(tick.t_s, &signals_of(tick, before.map(|before| (before.t_s, before.tip_m))));
+        let r = tick.rendering.rendered_n;
+        self.history[side].push(tick.t_s, &signals_of(tick, before.map(|before| (before.t_s, before.positions.tip_m))));
         match tick.known_n() {
             Some(force_n) => follow_force(&mut self.measured[side], force_n.norm(), dt_s),
             None => self.measured[side] = FadingMean::default(),
@@ -160,10 +160,10 @@ impl LiveState {
         follow_force(&mut self.rendered[side], r.norm(), dt_s);
         self.gates[side].push(tick, dt_s);
         self.clouds[side].push(tick.t_s, m, r);
-        self.stiffness[side].push(tick.t_s, &tick.tip_m, &m);
-        if tick.t_s - self.trail_s[side] >= TRAIL_STEP_S && tick.tip_m.iter().all(|x| x.is_finite()) {
+        self.stiffness[side].push(tick.t_s, &tick.positions.tip_m, &m);
+        if tick.t_s - self.trail_s[side] >= TRAIL_STEP_S && tick.positions.tip_m.iter().all(|x| x.is_finite()) {
             self.trail_s[side] = tick.t_s;
-            self.trails[side].push_back(tick.tip_m.cast());
+            self.trails[side].push_back(tick.positions.tip_m.cast());
             if self.trails[side].len() > (TRAIL_S / TRAIL_STEP_S) as usize {
                 self.trails[side].pop_front();
             }
@@ -195,12 +195,12 @@ impl LiveState {
     fn twist(&self, side: Side) -> Option<ShaftTwist> {
         let tick = self.tick_of(side)?;
         let trocar_m = self.scene.of_side(side)?.trocar_m;
-        let out = (trocar_m - tick.tip_m).try_normalize(1e-6)?;
+        let out = (trocar_m - tick.positions.tip_m).try_normalize(1e-6)?;
         let jaws = self.objects.as_ref().and_then(|objects| objects.jaws[side.index()]);
         let wrist_nm = |sample: &WristSample| Some((sample.world_from_s1? * sample.raw.torque_nm).dot(&out));
         Some(ShaftTwist {
             jaws_nm: jaws.map(|jaws| jaws.torque_nm.dot(&out)),
-            wrist_nm: tick.wrist.as_ref().and_then(wrist_nm),
+            wrist_nm: tick.calibration.wrist.as_ref().and_then(wrist_nm),
         })
     }
 

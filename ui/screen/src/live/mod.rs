@@ -348,7 +348,7 @@ impl LiveState {
     }
 
     pub fn gate_settings(&self) -> ChainSettings {
-        self.first_tick().map_or(self.rig.gates, |tick| tick.gate_settings)
+        self.first_tick().map_or(self.rig.gates, |tick| tick.gates.settings)
     }
 
     /// Returns the required parts that do not deliver: the link to the other machine, then devices in the order of the

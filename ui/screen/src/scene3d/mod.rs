@@ -27,7 +27,8 @@ use nima_machine::rig::{SIDES, Side};
 use nima_simulation::{Worlds, scene::Scene};
 use nima_words::text;
 
-pub use self::{camera::SceneCamera, labels::side_name};
+pub use self::camera::SceneCamera;
+pub use nima_words::report_text::side_name;
 
 pub use self::labels::tip_bars;
 
@@ -43,6 +44,9 @@ use self::{
     training::TrialClock,
 };
 use crate::{live::LiveState, outbox::Outbox, theme};
+
+/// Height of a view from which its axes are drawn: in a lower one they would cover the gauges.
+const AXES_FROM: f32 = 200.0;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum CameraLook {
@@ -180,6 +184,7 @@ pub fn scene_ui(ui: &mut Ui, live: &LiveState, view: &mut SceneView, outbox: &mu
     if view.figures {
         view.extras.ui(ui, rect);
     }
+    view.lead.restart_by_key(ui, live, outbox);
     let leading = offered && view.lead.ui(ui, rect, &response, live, &camera, outbox);
     if view.look == CameraLook::Free {
         turn(ui, live, view, &response, leading);
@@ -218,7 +223,7 @@ pub fn scene_ui(ui: &mut Ui, live: &LiveState, view: &mut SceneView, outbox: &mu
     if view.figures {
         readings(&painter, rect, live);
     }
-    if view.look == CameraLook::Free {
+    if view.look == CameraLook::Free && rect.height() > AXES_FROM {
         axes(&painter, rect, &camera);
     }
     hint(&painter, rect, live, view);
@@ -262,10 +267,10 @@ fn arm(live: &LiveState, side: Side, view: &SceneView) -> Option<StageArm> {
     let finite = |v: Vector3<f64>| v.iter().all(|x| x.is_finite());
     let start_m = view.starts_m[side.index()].unwrap_or_default();
     let rest = StagePose { tip_m: start_m.cast(), measured_n: None, rendered_n: Vector3::zeros() };
-    let pose = live.tick_of(side).filter(|tick| finite(tick.tip_m)).map_or(rest, |tick| StagePose {
-        tip_m: tick.tip_m.cast(),
+    let pose = live.tick_of(side).filter(|tick| finite(tick.positions.tip_m)).map_or(rest, |tick| StagePose {
+        tip_m: tick.positions.tip_m.cast(),
         measured_n: tick.known_n().map(nalgebra::Matrix::cast),
-        rendered_n: tick.rendered_n.cast(),
+        rendered_n: tick.rendering.rendered_n.cast(),
     });
     // Hidden forces must not reveal anything, not even whether they are known.
     let hidden = StagePose { measured_n: Some(Vector3::zeros()), rendered_n: Vector3::zeros(), ..pose };

@@ -90,7 +90,7 @@ impl MouseDrive {
         let board_m = training::board_of(&live.scene).map(|board| board.z_m as f32 - INTO_BOARD_M);
         self.lowest_m = board_m.unwrap_or(*HEIGHT_M.start());
         for side in live.sides() {
-            let position_m = live.tick_of(side).map(|tick| tick.leader_m.cast());
+            let position_m = live.tick_of(side).map(|tick| tick.positions.leader_m.cast());
             self.position_m[side.index()] = position_m;
             if let Some(position_m) = position_m {
                 outbox.push(Command::Guide(side, Some(position_m.cast())));
@@ -174,6 +174,25 @@ impl MouseDrive {
         self.is_on()
     }
 
+    /// Restarts the trial by its key, whoever drives the instruments; a participant of a study cannot.
+    pub(super) fn restart_by_key(&mut self, ui: &Ui, live: &LiveState, outbox: &mut Outbox) {
+        let runs = matches!(live.state(), LoopState::Idle | LoopState::Engaged);
+        if !self.restarts(live) || !runs || ui.ctx().text_edit_focused() {
+            return;
+        }
+        if ui.input(|input| input.modifiers.is_none() && input.key_pressed(Key::N)) {
+            self.begins = true;
+            outbox.push(Command::Task(self.side, TaskAction::Begin));
+        }
+    }
+
+    /// Returns whether the scene has a trial that the operator can restart.
+    pub(super) fn restarts(self, live: &LiveState) -> bool {
+        let scene = &live.scene;
+        let has_trial = scene.is_searched() || scene.wire.is_some() || scene.objects.is_some();
+        has_trial && !self.is_held && !live.is_shown_only()
+    }
+
     /// Applies mouse and keys in their order: at a low frame rate many of them arrive at once.
     fn steer(
         &mut self,
@@ -215,7 +234,6 @@ impl MouseDrive {
 
     fn key(&mut self, key: Key, repeat: bool, live: &LiveState, camera: &SceneCamera, outbox: &mut Outbox) {
         let is_searched = live.scene.is_searched();
-        let on_wire = live.scene.wire.is_some();
         match key {
             Key::ArrowLeft => self.step(-camera.right() * STEP_M),
             Key::ArrowRight => self.step(camera.right() * STEP_M),
@@ -228,10 +246,6 @@ impl MouseDrive {
             Key::G if live.scene.objects.is_some() => self.jaws(live, outbox),
             Key::X if is_searched => outbox.push(Command::Task(self.side, TaskAction::Mark)),
             Key::D if is_searched => outbox.push(Command::Task(self.side, TaskAction::End)),
-            Key::N if (is_searched || on_wire || live.scene.objects.is_some()) && !self.is_held => {
-                self.begins = true;
-                outbox.push(Command::Task(self.side, TaskAction::Begin));
-            }
             _ => {}
         }
     }

@@ -51,7 +51,7 @@ impl DisplayedObjects {
         let reach = led.and_then(|side| {
             let tick = live.tick_of(side)?;
             let jaws = jaws[side.index()].as_ref()?;
-            JawReach::of(live.scene.objects.as_ref()?, &rings, &tick.tip_m, jaws)
+            JawReach::of(live.scene.objects.as_ref()?, &rings, &tick.positions.tip_m, jaws)
         });
         Some(Self {
             rings,

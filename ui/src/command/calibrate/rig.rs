@@ -214,7 +214,7 @@ impl CalibrationBench {
         let prompt = self.wizards.prompt();
         self.reader.show(Screen { side, task: task_of(self.wizards.open), prompt }, &mut self.read);
         let tick = self.ticks[side.index()];
-        if tick.is_some_and(|tick| tick.state == LoopState::Idle && tick.prompt != prompt) {
+        if tick.is_some_and(|tick| tick.state == LoopState::Idle && tick.guidance.prompt != prompt) {
             handle.send(Command::Prompt(side, prompt));
         }
         Ok(())

@@ -131,7 +131,7 @@ fn with_forces(
 
 fn row(was: &Tick, would: &Tick) -> String {
     let mut row = format!("{},{},{},{}", was.t_s, was.side.word(), was.state.word(), would.state.word());
-    for force_n in [&was.rendered_n, &would.rendered_n, &was.measured_n] {
+    for force_n in [&was.rendering.rendered_n, &would.rendering.rendered_n, &was.measured_n] {
         for axis in force_n {
             row += &output::cell(*axis);
         }

@@ -79,9 +79,9 @@ impl StatusLine {
             tick.state.word(),
             tick.mode,
             newtons(tick.known_n().map(|force_n| force_n.norm()), 2),
-            tick.rendered_n.norm(),
+            tick.rendering.rendered_n.norm(),
             tick.identification.degree,
-            tick.missed,
+            tick.timing.missed,
         );
         self.write(&text);
     }

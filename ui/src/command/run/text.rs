@@ -2,7 +2,7 @@
 
 use nima_core::statistics::Quantiles;
 use nima_devices::{ConnectionState, Health};
-use nima_machine::runtime::{ArmEnd, CauseAndCure, DeviceFigures, RuntimeSummary};
+use nima_machine::runtime::{ArmEnd, CauseAndCure, CpuFraction, DeviceFigures, RuntimeSummary};
 use nima_simulation::SimulationPlan;
 
 pub(super) fn as_text(plan: &SimulationPlan, summary: &RuntimeSummary, is_measured: bool) -> String {
@@ -13,9 +13,7 @@ pub(super) fn as_text(plan: &SimulationPlan, summary: &RuntimeSummary, is_measur
          {}, mode {}\n\
          wake-up us  {}\n\
          work us     {}\n\
-         rig us      {}\n\
-         sample to force us {}\n\
-         processor   {:.1} % of a core in the loop's thread, {:.1} % in the whole program{}{}",
+         rig us      {}{}{}{}{}",
         plan.scene.name,
         plan.rig.name,
         summary.clock,
@@ -33,9 +31,8 @@ pub(super) fn as_text(plan: &SimulationPlan, summary: &RuntimeSummary, is_measur
         times(&summary.wake_us),
         times(&summary.work_us),
         times(&summary.rig_us),
-        times(&summary.sample_to_force_us),
-        summary.cpu.realtime * 100.0,
-        summary.cpu.process * 100.0,
+        summary.sample_to_force_us.map_or_else(String::new, |us| format!("\nsample to force us {}", times(&us))),
+        summary.cpu.map_or_else(String::new, processor_text),
         devices_text(summary),
         ends_text(summary),
     );
@@ -59,6 +56,11 @@ pub(super) fn as_text(plan: &SimulationPlan, summary: &RuntimeSummary, is_measur
         text.push_str(&advice);
     }
     text
+}
+
+fn processor_text(CpuFraction { realtime, process }: CpuFraction) -> String {
+    let [realtime, process] = [realtime, process].map(|fraction| fraction * 100.0);
+    format!("\nprocessor   {realtime:.1} % of a core in the loop's thread, {process:.1} % in the whole program")
 }
 
 fn devices_text(summary: &RuntimeSummary) -> String {

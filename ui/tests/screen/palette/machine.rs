@@ -74,7 +74,7 @@ fn the_instrument_is_driven_from_the_palette_too() {
     plan.rig.mode = Mode::Matched;
     let mut console = shown(&SimulationPlan { engage: true, ..plan }, SIZE, |app| app);
     until(&mut console, "engaged", |tick| tick.state == LoopState::Engaged);
-    let led = |tick: &nima_machine::messages::Tick| tick.guide_m.is_some();
+    let led = |tick: &nima_machine::messages::Tick| tick.guidance.guide_m.is_some();
     let greyed = rows(&mut console);
     assert!(greyed.contains(&(entry(Action::Jaws).title.clone(), false)), "not before it is driven: {greyed:?}");
     choose(&mut console, Action::Drive);

@@ -5,7 +5,8 @@ use nalgebra::{Isometry3, Vector3};
 use nima_screen::{theme, widgets::fitting};
 use nima_words::text::frames as texts;
 
-use super::numbers::FrameEffect;
+use nima_calibrations::frames::numbers::FrameEffect;
+
 use crate::drawings::on_paper;
 
 const HEIGHT: f32 = 250.0;

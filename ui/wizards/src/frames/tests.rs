@@ -51,7 +51,7 @@ impl Fixture {
     fn hold(&mut self, frames: &FrameSample, seconds: f64) {
         for _ in 0..(seconds / EVERY_S) as usize {
             self.tick.t_s += 1.01 * EVERY_S;
-            self.tick.frames = *frames;
+            self.tick.calibration.frames = *frames;
             self.wizard.tick(&self.tick, 1000.0);
         }
     }

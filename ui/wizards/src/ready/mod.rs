@@ -92,7 +92,7 @@ impl ReadyRun {
     pub fn prompt_for(&self, tick: &Tick) -> Option<Command> {
         let wanted =
             if self.session.ask().side() == Some(tick.side) { self.session.ask().prompt() } else { Prompt::Rest };
-        let differs = tick.state == LoopState::Idle && tick.prompt != wanted;
+        let differs = tick.state == LoopState::Idle && tick.guidance.prompt != wanted;
         differs.then_some(Command::Prompt(tick.side, wanted))
     }
 

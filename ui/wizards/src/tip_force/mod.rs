@@ -367,7 +367,7 @@ impl Wizard for TipForceWizard {
 
     fn before_saving(&self, ui: &mut Ui) -> bool {
         let (Some(_), Some(checked)) = (&self.trained, &self.checked) else {
-            ui.label(text::tip_force::NETWORK_UNCHECKED.get());
+            ui.label(text::tip_force::NETWORK_UNCHECKED);
             return false;
         };
         if self.proof().is_none() {

@@ -27,7 +27,7 @@ const SOURCES: [(Text, Text); 5] = [
 
 /// Sources that delivered in this tick.
 pub(super) fn sources(tick: &Tick) -> ReadySources {
-    tick.wrist.as_ref().map_or_else(ReadySources::default, |sample| {
+    tick.calibration.wrist.as_ref().map_or_else(ReadySources::default, |sample| {
         let gravity = tick.force.gravity_free.is_some();
         [true, gravity, sample.tissue_n.is_some(), sample.s1_from_c().is_some(), sample.insertion_m.is_some()]
     })
@@ -51,8 +51,8 @@ impl TipForceWizard {
     }
 
     pub(super) fn ready_ui(&self, ui: &mut Ui, binding: &Binding) {
-        card(ui, text::tip_force::CHECKS_TITLE.get(), text::tip_force::CHECKS_HOVER.get(), |ui| {
-            ui.label(text::tip_force::CHECKS_TASK.get());
+        card(ui, text::tip_force::CHECKS_TITLE, text::tip_force::CHECKS_HOVER, |ui| {
+            ui.label(text::tip_force::CHECKS_TASK);
             ui.add_space(6.0);
             let known = binding.correspondence.is_some();
             let correspondence = (text::tip_force::SOURCE_CORRESPONDENCE, text::tip_force::SOURCE_NO_CORRESPONDENCE);

@@ -50,8 +50,8 @@ impl TipForceRecording {
 
     /// Adds one tick; `work` is the instruction after the rest period.
     pub(super) fn step(&mut self, now_s: f64, tick: &Tick, work: Prompt) {
-        self.silent = tick.wrist.is_none();
-        let (Some(sample), true) = (&tick.wrist, self.running) else { return };
+        self.silent = tick.calibration.wrist.is_none();
+        let (Some(sample), true) = (&tick.calibration.wrist, self.running) else { return };
         match self.recorder.step(now_s, tick.force.gravity_free.as_ref(), sample) {
             RecorderPhase::Resting { .. } => self.asked = Prompt::Rest,
             RecorderPhase::NotMoved | RecorderPhase::Recording => self.asked = work,

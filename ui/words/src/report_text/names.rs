@@ -7,7 +7,18 @@ use nima_machine::{
     rig::{AwaitedDevice, DeviceName, DeviceRole, EngageBlocker, RigPart, Side, SideSwap},
 };
 
-use crate::language::{Language, current, text_format, word};
+use crate::{
+    language::{Language, current, text_format, word},
+    text::common,
+};
+
+/// Returns the side as a name, for example of a hand.
+pub fn side_name(side: Side) -> &'static str {
+    match side {
+        Side::Right => common::RIGHT.get(),
+        Side::Left => common::LEFT.get(),
+    }
+}
 
 /// Returns the side within a sentence: before the noun in English, after it in German.
 pub fn side_word(side: Side) -> &'static str {

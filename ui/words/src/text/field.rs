@@ -2,6 +2,10 @@
 
 use crate::language::{Text, text_format, word};
 
+pub const NAME: Text = Text::of("Field", "Feld");
+pub const MEANING: Text =
+    Text::of("The operating field in 3-D, with the forces drawn as arrows", "Das OP-Feld in 3-D, Kräfte als Pfeile");
+
 pub const OPERATING_FIELD: Text = Text::of("Operating field", "OP-Feld");
 pub const SHOW: Text = Text::of("Show", "Zeigen");
 pub const SHOW_HOVER: Text = Text::of("Choose what else is drawn in the view", "Wählen, was außerdem gezeichnet wird");
@@ -55,10 +59,16 @@ pub fn lead_hover(has_jaws: bool, is_bimanual: bool) -> String {
         (true, true) => word(". H: the other instrument", ". H: anderes Instrument"),
         (true, false) => word("\nH: the other instrument", "\nH: anderes Instrument"),
     };
+    let again = if has_jaws { word(". N: start again", ". N: neu starten") } else { "" };
     text_format!(
-        "Drag: move the instrument. Wheel, Page Up, Page Down: height. Arrow keys: small steps{jaws}{other}",
-        "Ziehen: Instrument bewegen. Mausrad, Bild auf, Bild ab: Höhe. Pfeiltasten: kleine Schritte{jaws}{other}"
+        "Drag: move the instrument. Wheel, Page Up, Page Down: height. Arrow keys: small steps{jaws}{other}{again}",
+        "Ziehen: Instrument bewegen. Mausrad, Bild auf, Bild ab: Höhe. Pfeiltasten: kleine Schritte{jaws}{other}{again}"
     )
+}
+
+/// Returns the hint of a view with a trial, after its hint about the camera.
+pub fn with_restart(camera: &str) -> String {
+    text_format!("{camera}. N: start the trial again", "{camera}. N: Versuch neu starten")
 }
 
 pub fn led(side: &str) -> String {

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 use nima_core::safety::InterlockState;
 use nima_machine::{
-    messages::{Fault, LoopState, Tick},
+    messages::{Fault, LoopState, Tick, TickPositions},
     rig::{SIDES, Side},
 };
 use serde_json::{Map, Value, json};
@@ -21,6 +21,8 @@ use super::{
 pub(super) enum HubMessage {
     /// A loop starts; its clock started at this time (ns since 1970).
     Begins(u64, LoopOutline),
+    /// Its clock started at this time, as its clock and UTC relate now.
+    Clock(u64),
     /// State of the loop.
     Moment(LoopMoment),
     /// The loop has ended.
@@ -47,8 +49,8 @@ pub(super) struct IgtlArm {
 
 impl IgtlArm {
     pub(super) const fn of(tick: &Tick) -> Self {
-        let Tick { state, tip_m, leader_m, measured_n, rendered_n, .. } = *tick;
-        Self { state, tip_m, leader_m, measured_n, rendered_n }
+        let Tick { state, positions: TickPositions { tip_m, leader_m }, measured_n, rendering, .. } = *tick;
+        Self { state, tip_m, leader_m, measured_n, rendered_n: rendering.rendered_n }
     }
 }
 

@@ -72,7 +72,7 @@ impl Conditions {
         let plan = SimulationPlan { rig, scene, calibrations: Default::default(), engage: true };
         let mut samples = Vec::with_capacity((seconds * RATE_HZ) as usize + 1);
         run_virtual(&plan, seconds, |tick| {
-            samples.push(Sample { t_s: tick.t_s, position_m: tick.tip_m, force_n: tick.measured_n });
+            samples.push(Sample { t_s: tick.t_s, position_m: tick.positions.tip_m, force_n: tick.measured_n });
             None
         })?;
         Ok(CsvRecording { path: SCENE.into(), axes: (0..AXES).collect(), rate_hz: RATE_HZ, samples, leader_m: None })

@@ -48,23 +48,23 @@ impl LettingGo {
         let Some(tick) = live.first_tick() else { return };
         let for_s = tick.t_s - *self.since_s.get_or_insert(tick.t_s);
         let Some(from_m) = self.from_m else {
-            let presses = tick.state == LoopState::Engaged && tick.rendered_n.z > LET_GO_N;
+            let presses = tick.state == LoopState::Engaged && tick.rendering.rendered_n.z > LET_GO_N;
             if presses && for_s > CLOSED_S {
                 *self = Self {
-                    from_m: Some(tick.leader_m),
+                    from_m: Some(tick.positions.leader_m),
                     since_s: Some(tick.t_s),
                     travel_m: Some(0.0),
                     ..Self::default()
                 };
-                self.trail.add(tick.leader_m);
+                self.trail.add(tick.positions.leader_m);
                 outbox.push(Command::LetGo(true));
             }
             return;
         };
         if tick.state == LoopState::Engaged {
             // After the engagement has ended, the hand's position is on another scale.
-            self.travel_m = self.travel_m.map(|max_m| max_m.max((tick.leader_m - from_m).norm()));
-            self.trail.add(tick.leader_m);
+            self.travel_m = self.travel_m.map(|max_m| max_m.max((tick.positions.leader_m - from_m).norm()));
+            self.trail.add(tick.positions.leader_m);
         }
         // If the engagement ended for another reason, do not restart it.
         let ended = live.changes[Side::Right.index()].is_some_and(|change| change.why == TransitionCause::Absent);

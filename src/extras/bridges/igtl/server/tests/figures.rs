@@ -54,7 +54,7 @@ fn run(server: &IgtlServer, seconds: u64) -> Histogram<u64> {
     let mut late = histogram();
     while begin.elapsed() < Duration::from_secs(seconds) {
         sleep(Duration::from_millis(20));
-        handle.drain_ticks(|tick| late.saturating_record((tick.wake_s * 1e6) as u64));
+        handle.drain_ticks(|tick| late.saturating_record((tick.timing.wake_s * 1e6) as u64));
         handle.drain_events(|_| {});
     }
     handle.stop_and_join().unwrap();

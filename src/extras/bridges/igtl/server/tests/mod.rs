@@ -200,15 +200,15 @@ fn a_client_gets_tips_handles_forces_and_states_of_the_same_tick_without_asking(
     let tick = ticks[number][0].unwrap();
     let millimetres = |of: Vector3<f64>| <[f32; 3]>::from((of * 1e3).cast::<f32>());
     let Content::Transform(tip) = tip.content else { unreachable!() };
-    assert_eq!((tip.0[3], leader.0[3]), (millimetres(tick.tip_m), millimetres(tick.leader_m)));
+    assert_eq!((tip.0[3], leader.0[3]), (millimetres(tick.positions.tip_m), millimetres(tick.positions.leader_m)));
     let axis = Vector3::from(tip.0[2]).cast::<f64>();
-    assert!((axis - (tick.tip_m - TROCAR_M).normalize()).norm() < 1e-6, "out of the shaft: {axis}");
+    assert!((axis - (tick.positions.tip_m - TROCAR_M).normalize()).norm() < 1e-6, "out of the shaft: {axis}");
     assert_eq!(leader.0[..3], PoseMatrix::at([0.0; 3]).0[..3]);
     let tool = |name: &str, kind, pose| TrackingTool { name: name.to_owned(), kind, pose };
     let tools = vec![tool("right.tip", ToolKind::FiveD, tip), tool("right.leader", ToolKind::ThreeD, leader)];
     assert_eq!(bundle.content, Content::Tracking(tools));
     let newton = |of: Vector3<f64>| SensorContent { status: 0, unit: IgtlUnit::NEWTON, values: of.as_slice().to_vec() };
-    assert_eq!((measured, rendered), (newton(tick.measured_n), newton(tick.rendered_n)));
+    assert_eq!((measured, rendered), (newton(tick.measured_n), newton(tick.rendering.rendered_n)));
     let report: serde_json::Value = serde_json::from_slice(&text.bytes).unwrap();
     assert_eq!(report["right"]["state"], "Engaged");
     let near = |report: &serde_json::Value, meant: f64| (report.as_f64().unwrap() - meant).abs() < 1e-9;

@@ -12,8 +12,8 @@ use crate::{
 impl<L: Link> Pair<L> {
     /// Returns the current objection to engaging; the interlock checks the state.
     pub(super) fn may_engage(&self) -> Result<(), Refusal> {
-        // Not idle: the interlock itself refuses, with the state as its reason.
-        if self.state() != LoopState::Idle {
+        // Neither idle nor after a short stall: the interlock itself refuses, with the state as its reason.
+        if self.state() != LoopState::Idle && !self.has_short_stall() {
             return Ok(());
         }
         if self.checked == Some(false) {
@@ -34,6 +34,11 @@ impl<L: Link> Pair<L> {
             Some(obstacle) => Err(Refusal::Obstacle(obstacle)),
             None => Ok(()),
         }
+    }
+
+    /// Returns whether the only fault is a stall that was so short that a person may engage directly.
+    pub(super) fn has_short_stall(&self) -> bool {
+        matches!(self.state(), LoopState::Faulted(fault) if fault.is_short_stall(self.settings.rate_hz))
     }
 
     /// Returns the local fault that follows from the other machine's stop.

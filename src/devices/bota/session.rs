@@ -31,17 +31,6 @@ impl Default for BotaTimeouts {
     }
 }
 
-impl BotaTimeouts {
-    /// For a diagnosis: one second in total, and another second for the start of a first-generation sensor.
-    pub(super) const SHORT: Self = Self {
-        boot: Duration::from_secs(1),
-        answer: Duration::from_millis(150),
-        tries: 2,
-        init: Duration::from_millis(100),
-        stream: Duration::from_millis(200),
-    };
-}
-
 /// Size of the buffer of received bytes in which answers are searched.
 const RECEIVED_MAX: usize = 8192;
 const NAP: Duration = Duration::from_millis(1);

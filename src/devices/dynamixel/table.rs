@@ -3,6 +3,8 @@
 
 use std::f64::consts::TAU;
 
+use crate::DeviceError;
+
 /// A register: address and length in bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DynamixelRegister {
@@ -134,9 +136,9 @@ pub struct ServoModel {
     /// Model number in the answer to a ping.
     pub number: u16,
     pub name: &'static str,
-    /// One unit of current, A.
+    /// One unit of current, A; not a number if the model does not measure its current.
     pub current_unit_a: f64,
-    /// Highest current limit, units.
+    /// Highest current limit, units; 0 if the model does not measure its current.
     pub current_max: u16,
 }
 
@@ -144,7 +146,12 @@ const fn model(number: u16, name: &'static str, current_unit_a: f64, current_max
     ServoModel { number, name, current_unit_a, current_max }
 }
 
-pub const MODELS: [ServoModel; 8] = [
+/// A model that reports its load instead of its current, and has no limit of the current.
+const fn without_current(number: u16, name: &'static str) -> ServoModel {
+    model(number, name, f64::NAN, 0)
+}
+
+pub const MODELS: [ServoModel; 13] = [
     model(1000, "XH430-W350", 2.69e-3, 648),
     model(1010, "XH430-W210", 2.69e-3, 648),
     model(1020, "XM430-W350", 2.69e-3, 1193),
@@ -153,6 +160,11 @@ pub const MODELS: [ServoModel; 8] = [
     model(1130, "XM540-W150", 2.69e-3, 2047),
     model(1190, "XL330-M077", 1e-3, 1750),
     model(1200, "XL330-M288", 1e-3, 1750),
+    without_current(1060, "XL430-W250"),
+    without_current(1070, "XC430-W150"),
+    without_current(1080, "XC430-W240"),
+    without_current(1090, "2XL430-W250"),
+    without_current(1160, "2XC430-W250"),
 ];
 
 impl ServoModel {
@@ -160,9 +172,23 @@ impl ServoModel {
         MODELS.iter().find(|model| model.number == number)
     }
 
+    pub const fn measures_current(&self) -> bool {
+        self.current_max > 0
+    }
+
     /// Returns whether the model has the factory values of the small series for 5 V.
     pub const fn is_small(&self) -> bool {
         matches!(self.number, 1190 | 1200)
+    }
+}
+
+/// Returns the error for a servo of another model.
+pub fn unsupported(place: String, number: u16) -> DeviceError {
+    let known: Vec<_> = MODELS.iter().map(|model| model.name).collect();
+    DeviceError::Unsupported {
+        place,
+        found: format!("servo with model number {number}"),
+        cure: format!("Use a servo of these models: {}.", known.join(", ")),
     }
 }
 

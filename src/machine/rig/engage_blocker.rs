@@ -15,6 +15,13 @@ pub enum EngageBlocker {
     Waiting(AwaitedDevice),
     #[error("{}", .0.words())]
     Exchanged(SideSwap),
+    /// The handles of both sides report one serial number.
+    #[error("the right and left handles are one device: both report the same serial number")]
+    OneHandle,
+    #[error("the right and left arms are one device: both report the same serial number")]
+    OneArm,
+    #[error("two of the sensors are one device: both report the same serial number")]
+    OneSensor,
     /// An obstacle at the other end of a network, where the screen shows what it is.
     #[error("the follower's machine refuses to engage; its screen shows the reason")]
     FarEnd,

@@ -106,7 +106,8 @@ pub(crate) fn top_bar_ui(
             state.leads_to_engage &= matches!(now, LoopState::Idle | LoopState::Disconnected);
             let next = state.asked == Some(PersonRequest::Release) || state.leads_to_engage && closed.is_none();
             let ready = since_s >= STEP_WAITS_S;
-            step_ui(ui, now, TopBarStep { ready, next, wanted: wants_step, closed }, outbox);
+            let short_stall = matches!(now, LoopState::Faulted(fault) if fault.is_short_stall(live.rig.rate_hz));
+            step_ui(ui, now, TopBarStep { ready, next, wanted: wants_step, closed, short_stall }, outbox);
             // Drawn after the step button to its left, so that keyboard focus follows the reading order.
             stop_ui(ui, place, now, state.asked == Some(PersonRequest::PressStop), outbox);
             ui.add_space(6.0);
@@ -260,11 +261,17 @@ struct TopBarStep {
     wanted: Option<Action>,
     /// Reason why the button cannot be pressed.
     closed: Option<&'static str>,
+    /// The fault is left by engaging directly.
+    short_stall: bool,
 }
 
 /// Draws the button for the next step, next to the stop button and never below it.
-fn step_ui(ui: &mut Ui, state: LoopState, TopBarStep { ready, next, wanted, closed }: TopBarStep, outbox: &mut Outbox) {
+fn step_ui(ui: &mut Ui, state: LoopState, step: TopBarStep, outbox: &mut Outbox) {
+    let TopBarStep { ready, next, wanted, closed, short_stall } = step;
     let (action, command, meaning) = match state {
+        LoopState::Faulted(_) if short_stall => {
+            (Action::Engage, Command::Engage, text::top_bar::ENGAGE_AFTER_STALL_HOVER.get())
+        }
         LoopState::Idle | LoopState::Disconnected => {
             (Action::Engage, Command::Engage, text::top_bar::ENGAGE_HOVER.get())
         }

@@ -10,7 +10,7 @@ use super::{
     report::parts,
     solver::{PushRow, consensus, wahba},
 };
-use crate::calibration::Verdict;
+use crate::{calibration::Verdict, units};
 
 /// Maximum plausible force, N; the squares of larger numbers would lose precision.
 const PLAUSIBLE_N: f64 = 1e4;
@@ -250,6 +250,14 @@ fn disagreement(
 }
 
 fn gain_text(gain: f64) -> String {
+    let units = [(gain, "1"), (1.0 / gain, "2")];
+    if let Some((unit, sensor)) =
+        units.into_iter().find_map(|(ratio, sensor)| Some((units::force_unit(ratio)?, sensor)))
+    {
+        return format!(
+            "sensor 1 reads {gain:.3} times the force of sensor 2; sensor {sensor} is probably in {unit}: convert it to N"
+        );
+    }
     if gain < 1.0 {
         format!(
             "sensor 2 reads {:.0} % more than sensor 1; check units and calibration of both",

@@ -7,6 +7,7 @@ use super::{
     ModelFit, ModelKind,
     consensus::agreeing,
     coverage::{condition, coverage},
+    plausible::implausible,
     pose::{GravityPose, GravityRow, OrientationReading, checked, rows},
     solve::solve,
     trend::drift_n,
@@ -216,7 +217,10 @@ fn judge(
     }
     match report.chosen_fit() {
         None => (Verdict::InsufficientMotion, "the poses do not determine a model; record more poses".to_owned()),
-        Some(fit) => match weightless(report, limits).or_else(|| poor(report, fit, limits)) {
+        Some(fit) => match weightless(report, limits)
+            .or_else(|| poor(report, fit, limits))
+            .or_else(|| implausible(report, settings.weighed_kg))
+        {
             Some(reason) => (Verdict::PoorData, drift_n.map_or(reason, drifted)),
             None => (Verdict::Accepted, accepted(report, fit)),
         },

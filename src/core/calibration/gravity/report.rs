@@ -63,12 +63,14 @@ pub struct GravitySettings {
     pub model: Option<ModelKind>,
     /// +1 if the accelerometer points away from the ground at rest, -1 if it points towards it.
     pub imu_sign: i8,
+    /// Mass of the tool as weighed, kg, with which the fitted mass must agree.
+    pub weighed_kg: Option<f64>,
     pub limits: GravityLimits,
 }
 
 impl Default for GravitySettings {
     fn default() -> Self {
-        Self { model: None, imu_sign: 1, limits: GravityLimits::default() }
+        Self { model: None, imu_sign: 1, weighed_kg: None, limits: GravityLimits::default() }
     }
 }
 

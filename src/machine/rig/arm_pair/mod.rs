@@ -178,7 +178,7 @@ impl ArmPair {
         self.measured.obstacle.get_or_insert(EngageBlocker::Waiting(awaited));
     }
 
-    /// Records that right and left are swapped, which takes precedence over any other reason.
+    /// Records that a device is at the wrong part, which takes precedence over any other reason.
     pub(super) const fn object(&mut self, obstacle: EngageBlocker) {
         self.measured.obstacle = Some(obstacle);
     }

@@ -69,6 +69,10 @@ impl<L: Link> Pair<L> {
             }
             Command::Engage | Command::EngageOne(_) => {
                 self.may_engage()?;
+                if self.has_short_stall() {
+                    // One deliberate step. If a condition of either half is not met, the fault remains.
+                    self.release(t_s)?;
+                }
                 return self.ask(InterlockRequest::Engage, t_s);
             }
             Command::Rest => return self.ask(InterlockRequest::Rest, t_s),

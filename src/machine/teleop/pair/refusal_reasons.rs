@@ -12,7 +12,7 @@ use crate::{
 impl<L: Link> Pair<L> {
     /// Returns the current objection to engaging; the interlock checks the state.
     pub(super) fn may_engage(&self) -> Result<(), Refusal> {
-        if self.state() != LoopState::Idle {
+        if self.state() != LoopState::Idle && !self.has_short_stall() {
             return Ok(());
         }
         if self.checked == Some(false) {
@@ -32,6 +32,11 @@ impl<L: Link> Pair<L> {
             Some(obstacle) => Err(Refusal::Obstacle(obstacle)),
             None => Ok(()),
         }
+    }
+
+    /// Returns whether the only fault is a stall that was so short that a person may engage directly.
+    pub(super) fn has_short_stall(&self) -> bool {
+        matches!(self.state(), LoopState::Faulted(fault) if fault.is_short_stall(self.settings.rate_hz))
     }
 
     /// Returns the local fault that follows from the other machine's stop.

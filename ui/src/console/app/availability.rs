@@ -102,9 +102,10 @@ impl ConsoleApp {
     fn may_step(&self, action: Action) -> Availability {
         let state = self.live.state();
         let latched = state.is_latched();
+        let short_stall = matches!(state, LoopState::Faulted(fault) if fault.is_short_stall(self.live.rig.rate_hz));
         let why = match (action, state) {
             (Action::Release, _) if !latched => Some(text::commands::NOT_STOPPED.get()),
-            (Action::Engage, _) if latched => Some(text::commands::RELEASE_FIRST.get()),
+            (Action::Engage, _) if latched && !short_stall => Some(text::commands::RELEASE_FIRST.get()),
             (Action::Engage, LoopState::Disconnected) => text::calibrations::closed(state),
             (Action::Engage, LoopState::Engaged | LoopState::Ready | LoopState::Clutched) => {
                 Some(text::commands::IS_ENGAGED.get())

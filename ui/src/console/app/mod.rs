@@ -81,6 +81,8 @@ const WARM_UP: Duration = Duration::from_secs(4);
 #[derive(Debug)]
 pub struct ConsoleApp {
     door: Option<LoopConnection>,
+    /// Only in tests: the window shows the same state in every frame.
+    frozen: bool,
     /// The emulators of an emulated rig; they end after the loop.
     emulators: Option<Emulators>,
     /// The emulators' technician, who follows the wizards' instructions.
@@ -154,6 +156,7 @@ impl ConsoleApp {
             renderer: cc.gl.as_deref().map(renderer_of).unwrap_or_default(),
             meter: None,
             door: Some(door_of(handle, &cc.egui_ctx)),
+            frozen: false,
             emulators: None,
             reader: None,
             running: RigChoice::default(),
@@ -201,6 +204,9 @@ impl ConsoleApp {
 
     /// Reads all data that the loop has sent.
     fn take_in(&mut self) {
+        if self.frozen {
+            return;
+        }
         if let Some(moment) = self.objects.as_ref().and_then(ObjectFeed::newest) {
             let scene = &self.live.scene;
             let has_jaws = Side::ALL.map(|side| scene.objects.is_some() && scene.has(&self.live.rig, side));

@@ -43,6 +43,7 @@ pub(super) struct DeviceIdentities {
 }
 
 /// The servos have not been opened yet; are connected or missing; or belong to the other side.
+/// Numbers of an atomic: the driver's thread stores them, the loop reads them.
 const UNASKED: u8 = 0;
 const ASKED: u8 = 1;
 const EXCHANGED: u8 = 2;
@@ -133,6 +134,7 @@ impl DeviceIdentities {
             Ok(device) => device.about().1.serial.clone(),
             Err(DeviceError::OtherSerial { found, .. }) => found.clone(),
             Err(_) => return opened,
+            // The device's own number is the most certain name; the last check only counts for a part without one.
         };
         match self.whose(part, &serial) {
             None => opened,

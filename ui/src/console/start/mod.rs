@@ -1,5 +1,6 @@
 //! The start page: choose or create a rig, choose a scene, see connected and missing devices.
 
+mod addresses;
 mod choices;
 mod endoscope;
 mod looking;
@@ -20,6 +21,7 @@ use nima_screen::{
 };
 use nima_words::text;
 
+use addresses::ExampleAddresses;
 pub(crate) use choices::drawn_anew;
 use choices::{ChoiceEntry, Lists};
 use endoscope::EndoscopeCard;
@@ -46,6 +48,7 @@ pub struct StartPage {
     report: Option<String>,
     plugged: PluggedIn,
     answers: DeviceAnswers,
+    addresses: ExampleAddresses,
     endoscope: EndoscopeCard,
     /// The chosen rig's file may have changed.
     is_stale: bool,
@@ -80,6 +83,7 @@ impl StartPage {
             report: None,
             plugged: PluggedIn::default(),
             answers: DeviceAnswers::default(),
+            addresses: ExampleAddresses::default(),
             endoscope: EndoscopeCard::default(),
             is_stale: true,
             picking: None,
@@ -298,6 +302,10 @@ impl StartPage {
         if rig.is_harmless() {
             ui.label(text::start::EMULATED);
             return;
+        }
+        if self.addresses.ui(ui, &self.chosen.rig, rig) {
+            self.is_stale = true;
+            return self.choose(self.chosen.clone());
         }
         let checking = self.answers.is_running();
         let button = Button::new(if checking { text::start::CHECKING.get() } else { text::start::CHECK.get() });

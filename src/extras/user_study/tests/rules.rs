@@ -1,5 +1,5 @@
 use super::{AT, TWO, again, due, made, next, trial};
-use crate::{EndReason, Label, QuestionnaireAnswers, StudyStep, UserStudy};
+use crate::{EndReason, Label, QuestionnaireAnswers, StudyStep, UserStudy, seal};
 
 fn abort(study: &mut UserStudy, participant: &str) {
     let running = study.begin_trial(participant, true, AT).unwrap();
@@ -274,11 +274,22 @@ fn results_are_shown_always_or_never_or_less_often_as_skill_comes() {
 fn a_study_of_an_older_program_shows_every_result() {
     let folder = tempfile::tempdir().unwrap();
     drop(made(folder.path(), TWO));
-    let path = folder.path().join("study/study.toml");
-    let mut plan: toml::Table = toml::from_str(&std::fs::read_to_string(&path).unwrap()).unwrap();
+    let place = |name: &str| folder.path().join("study").join(name);
+    let text = |name: &str| std::fs::read_to_string(place(name)).unwrap();
+    let mut plan: toml::Table = toml::from_str(&text("study.toml")).unwrap();
     plan.insert("version".to_owned(), 1.into());
     assert!(plan.remove("feedback").is_some());
-    std::fs::write(&path, toml::to_string(&plan).unwrap()).unwrap();
+    // Its commitment covered the assignment only.
+    let key = seal::Key::from_hex(&text("study.key")).unwrap();
+    let sealed = key.open("conditions", &text("conditions.sealed")).unwrap();
+    let mut secret: serde_json::Value = serde_json::from_slice(&sealed).unwrap();
+    assert!(secret.as_object_mut().unwrap().remove("rules").is_some());
+    let secret = serde_json::to_vec(&secret).unwrap();
+    std::fs::write(place("conditions.sealed"), key.seal("conditions", &secret).unwrap()).unwrap();
+    let before = plan.insert("commitment".to_owned(), seal::hash(&secret).into()).unwrap();
+    let journal = text("journal.jsonl").replace(before.as_str().unwrap(), &seal::hash(&secret));
+    std::fs::write(place("journal.jsonl"), journal).unwrap();
+    std::fs::write(place("study.toml"), toml::to_string(&plan).unwrap()).unwrap();
     let mut study = again(folder.path());
     trial(&mut study, "P01", 20);
     assert!(study.state().progress("P01").unwrap().shows_result());

@@ -13,6 +13,7 @@ pub const BYTES_MAX: usize = HEADER_BYTES + NAMES_BYTES + 8 * NUMBERS_MAX + CRC_
 /// Maximum number of values in a datagram: angle, speed and torque of seven joints.
 pub const NUMBERS_MAX: usize = 21;
 
+// Lengths of the parts of a datagram (`docs/external-device.md`); changing one makes a new version of the protocol.
 const HEADER_BYTES: usize = 48;
 const PRODUCT_BYTES: usize = 24;
 const SERIAL_BYTES: usize = 16;
@@ -54,6 +55,7 @@ pub enum ExternalMessage {
 }
 
 impl ExternalMessage {
+    // The highest bit distinguishes the datagrams to a device from those of the device.
     const COMMAND: u8 = 0x80;
 
     const fn code(self) -> u8 {

@@ -7,7 +7,7 @@ use csv::{ReaderBuilder, StringRecord, Trim};
 
 /// Beginning of a file in which the dialect is recognised, bytes.
 const HEAD: u64 = 1 << 16;
-/// Rows in which decimal commas are looked for.
+/// Number of rows that are searched for decimal commas.
 const ROWS: usize = 50;
 /// Separators with their names. A comma comes first, because it is the default; a space comes last, because it also
 /// follows other separators.

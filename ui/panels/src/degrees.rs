@@ -10,7 +10,7 @@ use nima_screen::{
     live::LiveState,
     rolling::DEGREES,
     theme,
-    widgets::{at_the_right, figure, small},
+    widgets::{figure, small},
 };
 use nima_words::{
     language::Text,
@@ -60,12 +60,12 @@ impl Panel for DegreesPanel {
 pub fn degrees_ui(ui: &mut Ui, live: &LiveState, state: &mut DegreesState) {
     state.is_seen = true;
     let compares = live.first_tick().is_some_and(|tick| tick.identification.modes.contains(Mode::Literal));
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
         for (rule, colour) in state.rules() {
             let [name, meaning] = key(rule);
             key_ui(ui, colour, name, meaning);
         }
-        at_the_right(ui, |ui| ui.label(small(text::degrees::last_minutes(DEGREES_S / 60.0))));
+        ui.label(small(text::degrees::last_minutes(DEGREES_S / 60.0)));
     });
     switches_ui(ui, live, state);
     chart_ui(ui, live, *state);

@@ -5,7 +5,7 @@
 use std::fmt::Debug;
 
 use egui::{Ui, Vec2, vec2};
-use nima_screen::{live::LiveState, outbox::Outbox};
+use nima_screen::{live::LiveState, outbox::Outbox, widgets::small};
 use nima_wizards::active_calibrations::ActiveCalibrations;
 use nima_words::language::Text;
 use serde::{Deserialize, Serialize};
@@ -135,7 +135,11 @@ panels! {
 }
 
 fn show<P: Panel>(ui: &mut Ui, panel: &mut P, at: &mut PanelContext<'_>) {
-    let is_closed = P::ACTS && (at.is_locked || at.live.is_shown_only());
+    let is_past = P::ACTS && at.live.is_shown_only();
+    if is_past {
+        ui.label(small(at.live.of.blocked()));
+    }
+    let is_closed = is_past || P::ACTS && at.is_locked;
     ui.add_enabled_ui(!is_closed, |ui| panel.ui(ui, at));
 }
 

@@ -191,7 +191,7 @@ impl SessionList {
             ui.label(weak(text::playback::NOT_FOUND));
         }
         ScrollArea::both().auto_shrink(false).show(ui, |ui| {
-            Grid::new("sessions").spacing(vec2(16.0, 6.0)).striped(true).show(ui, |ui| {
+            Grid::new("sessions").spacing(vec2(8.0, 6.0)).striped(true).show(ui, |ui| {
                 for by in SortBy::ALL {
                     let words = RichText::new(by.name()).text_style(egui::TextStyle::Small);
                     let heading = Button::selectable(self.sort == by, words);

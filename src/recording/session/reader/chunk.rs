@@ -36,6 +36,7 @@ pub(super) fn read(source: &ReaderSource, at: u64, length: u64) -> io::Result<Re
         return Ok(Err("it is not a complete chunk".into()));
     };
     Ok(decompress(&head, compressed).and_then(|records| {
+        // A checksum of 0 stands for none (MCAP specification).
         if head.crc == 0 || crc32fast::hash(&records) == head.crc {
             Ok(ReaderChunk { records, times_ns: head.times_ns })
         } else {
@@ -60,6 +61,7 @@ fn decompress(head: &parse::ChunkHead, compressed: &[u8]) -> Result<Vec<u8>, Str
     // Allocate only for a likely compression ratio at first, whatever the chunk claims.
     let likely = head.uncompressed.min(8 * compressed.len() as u64);
     let mut records = Vec::with_capacity(likely as usize);
+    // One byte more than stated, so that longer data are noticed.
     let failed = |error: &dyn std::fmt::Display| format!("it cannot be decompressed: {error}");
     let read = match head.compression.as_str() {
         "" => {

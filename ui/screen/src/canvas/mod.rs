@@ -57,6 +57,14 @@ impl Canvas {
     pub fn new(surface: Arc<Surface>, background: fn() -> Color32) -> Self {
         Self { surface, windows: HashMap::new(), ends: (ViewportId::ROOT, Rect::NOTHING), background }
     }
+
+    /// Returns the image in the window whose frame ends.
+    fn window(&mut self) -> &mut WindowCanvas {
+        let (id, _) = self.ends;
+        let main = &self.surface;
+        let surface = || if id == ViewportId::ROOT { Arc::clone(main) } else { main.of_another_window() };
+        self.windows.entry(id).or_insert_with(|| WindowCanvas::new(surface()))
+    }
 }
 
 impl WindowCanvas {
@@ -98,13 +106,10 @@ impl egui::Plugin for Canvas {
     }
 
     fn output_hook(&mut self, ctx: &Context, output: &mut FullOutput) {
-        let (id, rect) = self.ends;
-        let main = &self.surface;
-        let surface = || if id == ViewportId::ROOT { Arc::clone(main) } else { main.of_another_window() };
-        let window = self.windows.entry(id).or_insert_with(|| WindowCanvas::new(surface()));
+        let (_, rect) = self.ends;
         let ground = CanvasGround { rect, pixels_per_point: output.pixels_per_point, background: (self.background)() };
         let shapes = std::mem::take(&mut output.shapes);
-        output.shapes = window.frame(ctx, shapes, ground);
+        output.shapes = self.window().frame(ctx, shapes, ground);
     }
 }
 
@@ -222,6 +227,23 @@ mod tests {
     fn found(before: &[ClippedShape], now: &[ClippedShape]) -> Option<Vec<Rect>> {
         let prints = |shapes: &[ClippedShape]| shapes.iter().map(print::of).collect::<Vec<_>>();
         differences((before, &prints(before)), (now, &prints(now)))
+    }
+
+    #[test]
+    fn a_window_is_not_compared_with_another_one() {
+        let rect = Rect::from_min_size(pos2(0.0, 0.0), vec2(1000.0, 1000.0));
+        let ground = CanvasGround { rect, pixels_per_point: 1.0, background: Color32::BLACK };
+        let mut canvas = Canvas::new(Arc::default(), || Color32::BLACK);
+        let [main, other] = [ViewportId::ROOT, ViewportId::from_hash_of("other")];
+        for (id, colour) in [(main, Color32::RED), (other, Color32::BLUE), (main, Color32::RED)] {
+            canvas.ends = (id, rect);
+            drop(canvas.window().frame(&Context::default(), vec![square(0.0, 0.0, colour)], ground));
+        }
+        let prints = |id| canvas.windows[&id].prints.clone();
+        assert_eq!(prints(main), [print::of(&square(0.0, 0.0, Color32::RED))]);
+        assert_eq!(prints(other), [print::of(&square(0.0, 0.0, Color32::BLUE))]);
+        assert_eq!([main, other].map(|id| canvas.windows[&id].frame), [2, 1]);
+        assert!(!Arc::ptr_eq(&canvas.windows[&main].surface, &canvas.windows[&other].surface));
     }
 
     #[test]

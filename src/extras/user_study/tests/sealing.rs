@@ -287,6 +287,7 @@ fn the_commitment_covers_the_rules_of_the_study() {
     for (name, from, to) in [
         ("study.toml", "primary = \"completion_time_s\"", "primary = \"trial_time_s\""),
         ("study.toml", "attempts = 3", "attempts = 4"),
+        ("study.toml", "version = 3", "version = 2"),
         ("scene.toml", "scene", "arena"),
     ] {
         let whole = fs::read_to_string(place(name)).unwrap();

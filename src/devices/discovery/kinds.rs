@@ -2,6 +2,8 @@
 
 use std::time::Duration;
 
+use nima_core::kinematics::ArmModel;
+
 use super::{DataTiming, DeviceProbe, FoundDevice, Probe, SerialProbe, TcpProbe};
 use crate::{
     DeviceError,
@@ -132,7 +134,7 @@ fn kinova(place: &str) -> Result<Box<dyn Probe>, DeviceError> {
     let place = if place.is_empty() { &usual.host } else { place };
     let settings = kinova::KinovaSettings::at(place);
     let settings = settings.ok_or_else(|| wrong("kinova", place, "HOST, or HOST tcp=PORT udp=PORT"))?;
-    Ok(super::probes::arm("kinova", settings))
+    Ok(super::probes::arm("kinova", settings, ArmModel::GEN3))
 }
 
 fn force_dimension(place: &str) -> Result<Box<dyn Probe>, DeviceError> {

@@ -2,6 +2,8 @@
 
 use std::time::Duration;
 
+use nima_core::kinematics::ArmModel;
+
 use super::{DataTiming, DeviceProbe, Probe};
 use crate::{bota, dynamixel, external, force_dimension, haply, hid, kinova, ndi};
 
@@ -15,10 +17,11 @@ pub fn handle(name: &str, settings: force_dimension::ForceDimensionSettings) -> 
     Box::new(DeviceProbe::new(name, place, DataTiming::Always, move || force_dimension::open(&settings)))
 }
 
-pub fn arm(name: &str, settings: kinova::KinovaSettings) -> Box<dyn Probe> {
+pub fn arm(name: &str, settings: kinova::KinovaSettings, model: ArmModel) -> Box<dyn Probe> {
     let settings = kinova::KinovaSettings { timeout_s: settings.timeout_s.min(ARM_S), ..settings };
     let place = format!("{}:{}", settings.host, settings.tcp_port);
-    Box::new(DeviceProbe::new(name, place, DataTiming::Always, move || kinova::open(&settings)))
+    let open = move || kinova::open_clearing(&settings, &model, &kinova::FaultClearing::default());
+    Box::new(DeviceProbe::new(name, place, DataTiming::Always, open))
 }
 
 pub fn sensor(name: &str, settings: bota::BotaSettings) -> Box<dyn Probe> {
@@ -53,11 +56,15 @@ pub fn external(name: &str, kind: external::ExternalKind, settings: external::Ex
         external::ExternalKind::Handle => Box::new(DeviceProbe::new(name, place, DataTiming::Always, move || {
             external::ExternalHandle::open(&settings)
         })),
-        external::ExternalKind::Arm => {
-            Box::new(DeviceProbe::new(name, place, DataTiming::Always, move || external::ExternalArm::open(&settings)))
-        }
+        external::ExternalKind::Arm => external_arm(name, settings, ArmModel::GEN3),
         external::ExternalKind::Sensor => Box::new(DeviceProbe::new(name, place, DataTiming::Always, move || {
             external::ExternalSensor::open(&settings)
         })),
     }
+}
+
+pub fn external_arm(name: &str, settings: external::ExternalSettings, model: ArmModel) -> Box<dyn Probe> {
+    let place = settings.place();
+    let open = move || external::ExternalArm::open(&settings, &model);
+    Box::new(DeviceProbe::new(name, place, DataTiming::Always, open))
 }

@@ -48,7 +48,7 @@ lanes() {
 wires() {
   local failed=0
   timed cargo test --locked --workspace --no-fail-fast --bins --test wires || failed=1
-  timed cargo test --locked --workspace --lib -- --ignored bota::wire_tests ndi::driver_tests endpoint::tests endpoint::two_hosts_tests || failed=1
+  timed cargo test --locked --workspace --lib -- --ignored bota::wire_tests ndi::driver_tests probe_sweep_tests endpoint::tests endpoint::two_hosts_tests || failed=1
   # Third-party clients have their own time limits: a client that gives up while the other lanes run is tested again alone.
   peers || touch "$told/peers-again"
   return $failed

@@ -8,7 +8,7 @@ walk() {
   need_cargo
   as_the_tests_build
   NIMA_REQUIRE_WINDOW=1 timed cargo test --locked --workspace --no-fail-fast --test window --test commands --test screen --test wires -- --ignored --nocapture \
-    first_day:: a_person_carries_six_rings frames:: sides_ready:: from_boxes_to_first_touch the_one_device_that_is_missing technician:: every_fault_of_every_device
+    one_core:: first_day:: a_person_carries_six_rings frames:: sides_ready:: from_boxes_to_first_touch the_one_device_that_is_missing technician:: every_fault_of_every_device
   live
 }
 

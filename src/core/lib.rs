@@ -17,5 +17,6 @@ pub mod signal;
 pub mod statistics;
 pub mod task;
 pub mod tip_force;
+pub mod units;
 
 pub use side::{SIDES, Side};

@@ -23,6 +23,8 @@ pub enum DeviceError {
     },
     #[error("{place} is a {found}, not a {expected}")]
     WrongProduct { place: String, expected: String, found: String },
+    #[error("{place} is a {found}, which is not supported")]
+    Unsupported { place: String, found: String, cure: String },
     #[error("{place} has the serial number {found}, not {expected}")]
     OtherSerial {
         place: String,
@@ -47,6 +49,8 @@ pub enum DeviceError {
         /// Date of the ready check that found it there; `None` if the rig file assigns it.
         checked: Option<Box<str>>,
     },
+    #[error("{place} and {other} are one device: both report the serial number {serial}")]
+    OneDevice { place: String, other: String, serial: String },
     /// Bytes arrive that are not valid frames, as with a wrong line speed.
     #[error("{place} sends unreadable data at {baud} baud")]
     WrongBaud { place: String, baud: u32 },
@@ -60,6 +64,9 @@ pub enum DeviceError {
     #[error("{place} cannot be reached")]
     Unreachable { place: String },
     /// Address and port to which the device sends.
+    /// An address for documentation, to which nothing is sent.
+    #[error("{place} is only an example of an address")]
+    Example { place: String },
     #[error("no response from {place}")]
     NobodyListens {
         /// Address with port.
@@ -133,6 +140,9 @@ impl DeviceError {
                     Some(_) => cure + " If this is intended, assign each its serial number in the rig file (Choose).",
                 }
             }
+            Self::OneDevice { .. } => {
+                "Both addresses lead to one device: give each device its own address, and correct the rig file.".to_owned()
+            }
             Self::WrongBaud { .. } => "Enter the device's speed as `baud` in the rig file.".to_owned(),
             Self::Silent { .. } => "Switch the device on, and check its cable and that it is configured to send.".to_owned(),
             Self::NobodySends { .. } => {
@@ -144,6 +154,9 @@ impl DeviceError {
             }
             Self::Unreachable { .. } => {
                 "Check the cable and that this computer has an address in the device's network.".to_owned()
+            }
+            Self::Example { .. } => {
+                "Enter the address of your device in the rig file, or type it in the Devices panel (Choose).".to_owned()
             }
             Self::NobodyListens { .. } => {
                 "Correct the port number in the rig file, or wait until the device has started.".to_owned()
@@ -158,7 +171,7 @@ impl DeviceError {
                 format!("Install the manufacturer's package, or set its folder; searched in {searched}.")
             }
             Self::SdkUnusable { .. } => "Install the version named in the documentation.".to_owned(),
-            Self::NotReady { cure, .. } | Self::DeviceFault { cure, .. } => cure.clone(),
+            Self::NotReady { cure, .. } | Self::DeviceFault { cure, .. } | Self::Unsupported { cure, .. } => cure.clone(),
             Self::Refused { .. } => "Check that the firmware is supported, then reconnect.".to_owned(),
             Self::Setting { allowed, .. } => format!("Correct the rig file: {allowed}."),
             Self::File { .. } => "Put the file in place, or correct its path in the rig file.".to_owned(),

@@ -4,6 +4,7 @@
 //! neither waits nor allocates. Readings are in SI units in the device's own frame, with their time of arrival. This
 //! crate does not depend on the rig to which a device belongs.
 
+pub mod ati;
 pub mod bota;
 pub mod discovery;
 pub mod dynamixel;

@@ -27,6 +27,13 @@ pub fn bytes_of(port: &impl AsRawFd) -> io::Result<File> {
     }
 }
 
+/// Makes a write beyond the size that `ulimit -f` permits fail with an error. By default, the system would end the
+/// process, with an arm engaged.
+pub fn survive_file_size_limit() {
+    // SAFETY: a plain system call; ignoring a signal runs no code.
+    unsafe { libc::signal(libc::SIGXFSZ, libc::SIG_IGN) };
+}
+
 pub fn user_id() -> u32 {
     // SAFETY: no arguments, and it cannot fail.
     unsafe { libc::geteuid() }

@@ -68,7 +68,7 @@ pub struct ServoReading {
     /// Angles, rad; zero is the middle of the servo's range.
     pub position_rad: [f64; SERVOS],
     pub velocity_rad_s: [f64; SERVOS],
-    /// Motor currents, A.
+    /// Motor currents, A; not a number for a servo that does not measure its current.
     pub current_a: [f64; SERVOS],
 }
 

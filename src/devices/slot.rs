@@ -13,7 +13,7 @@ use std::{
     time::Duration,
 };
 
-use crossbeam_channel::{Receiver, Sender, bounded};
+use rtrb::{Consumer, Producer, PushError, RingBuffer};
 use tracing::{info, warn};
 
 use super::{ConnectionState, Device, DeviceError, DeviceIdentity, Health, TimedReading, health::Outages};
@@ -40,8 +40,8 @@ pub struct DeviceSlot<D: Device> {
     device: Option<D>,
     health: Health,
     outages: Outages,
-    opened: Receiver<D>,
-    lost: Sender<D>,
+    opened: Consumer<D>,
+    lost: Producer<D>,
     shared: SlotShared,
     thread: Option<JoinHandle<()>>,
 }
@@ -53,8 +53,8 @@ impl<D: Device + 'static> DeviceSlot<D> {
     /// If the operating system cannot create the thread.
     pub fn start(name: &str, open: impl FnMut() -> Result<D, DeviceError> + Send + 'static) -> std::io::Result<Self> {
         // Room for one device: there is never more than one, and a full queue cannot block the real-time thread.
-        let (give, opened) = bounded(1);
-        let (lost, take) = bounded(1);
+        let (give, opened) = RingBuffer::new(1);
+        let (lost, take) = RingBuffer::new(1);
         let shared = SlotShared::default();
         shared.wanted.store(true, Ordering::Release);
         let keeper = SlotWorker { name: name.to_owned(), give, take, shared: shared.clone() };
@@ -73,7 +73,7 @@ impl<D: Device + 'static> DeviceSlot<D> {
 
     fn poll_device(&mut self, now_s: f64) -> Option<TimedReading<D::Reading>> {
         if self.device.is_none() {
-            self.device = self.opened.try_recv().ok();
+            self.device = self.opened.pop().ok();
         }
         let wanted = self.shared.wanted.load(Ordering::Acquire);
         let Some(device) = self.device.as_mut() else {
@@ -88,9 +88,9 @@ impl<D: Device + 'static> DeviceSlot<D> {
         let reading = device.poll(now_s);
         self.health = *device.health();
         if !wanted || matches!(self.health.standing, ConnectionState::Lost(_)) {
-            if let Some(Err(full)) = self.device.take().map(|device| self.lost.try_send(device)) {
+            if let Some(Err(PushError::Full(device))) = self.device.take().map(|device| self.lost.push(device)) {
                 // The thread has not taken the previous device yet; try again in the next poll.
-                self.device = Some(full.into_inner());
+                self.device = Some(device);
             }
             if !wanted {
                 self.health.standing = ConnectionState::Closed;
@@ -131,7 +131,7 @@ impl<D: Device> DeviceSlot<D> {
     pub fn retire(&mut self) {
         if let Some(device) = self.device.take() {
             // While an older device is still being closed, close this one here.
-            self.lost.try_send(device).ok();
+            self.lost.push(device).ok();
         }
         self.shared.stop.store(true, Ordering::Release);
         if let Some(thread) = &self.thread {
@@ -176,17 +176,17 @@ impl SlotView {
 
 struct SlotWorker<D> {
     name: String,
-    give: Sender<D>,
-    take: Receiver<D>,
+    give: Producer<D>,
+    take: Consumer<D>,
     shared: SlotShared,
 }
 
 impl<D: Device> SlotWorker<D> {
-    fn run(self, mut open: impl FnMut() -> Result<D, DeviceError>) {
+    fn run(mut self, mut open: impl FnMut() -> Result<D, DeviceError>) {
         let mut out = false;
         let mut report = None;
         while !self.shared.stop.load(Ordering::Acquire) {
-            if let Ok(lost) = self.take.try_recv() {
+            if let Ok(lost) = self.take.pop() {
                 warn!(device = self.name, standing = ?lost.health().standing, "closed");
                 drop(lost);
                 out = false;
@@ -206,7 +206,7 @@ impl<D: Device> SlotWorker<D> {
                         report.opened += 1;
                     });
                     // If the slot has ended in the meantime, the device is closed here.
-                    out = self.give.try_send(device).is_ok();
+                    out = self.give.push(device).is_ok();
                 }
                 Err(trouble) => {
                     // Log the same error, which recurs twice a second, only once.
@@ -220,7 +220,9 @@ impl<D: Device> SlotWorker<D> {
             }
         }
         // A device that was lost in the last moment is closed on this thread, too.
-        self.take.try_iter().for_each(drop);
+        while let Ok(lost) = self.take.pop() {
+            drop(lost);
+        }
     }
 
     fn report(&self, change: impl FnOnce(&mut SlotReport)) {

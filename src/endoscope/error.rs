@@ -12,6 +12,8 @@ pub enum EndoscopeError {
     NoSuchName { place: String },
     #[error("{place} responds with status {status}")]
     Refused { place: String, status: u16 },
+    #[error("{place} redirects to {to}")]
+    Redirected { place: String, to: String },
     #[error("{place} sends {found}, not {wanted}")]
     OtherFormat { place: String, found: String, wanted: &'static str },
     /// The response is not HTTP or exceeds a limit.
@@ -66,6 +68,9 @@ impl EndoscopeError {
             }
             Self::Refused { status: 404, .. } => "Correct the path in the rig file: the camera has no such page.",
             Self::Refused { .. } => "Correct the address in the rig file, or restart the camera.",
+            Self::Redirected { .. } => {
+                "Enter the address of the image itself in the rig file: only redirects within a camera and without encryption are followed."
+            }
             Self::OtherFormat { wanted: "H.264", .. } => {
                 "Set the camera to H.264, or correct the path in the rig file."
             }

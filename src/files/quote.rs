@@ -31,14 +31,24 @@ pub fn shortened(text: &str, max: usize) -> String {
     short
 }
 
-/// Returns a CSV cell, quoted if necessary.
+/// Returns a CSV cell, quoted if necessary. A text that a spreadsheet would execute as a formula begins with an
+/// apostrophe.
 pub fn csv_cell(text: &str) -> String {
+    if text.starts_with(['=', '+', '-', '@', '\t', '\r']) {
+        return csv_cell(&format!("'{text}"));
+    }
     if text.contains([',', '"', '\n', '\r']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.to_owned() }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_cell_is_quoted_and_never_a_formula() {
+        assert_eq!(["a", "a,b", "a\"b"].map(csv_cell), ["a", "\"a,b\"", "\"a\"\"b\""]);
+        assert_eq!(["=1+1", "@x", "-2", "+3", "=A,B"].map(csv_cell), ["'=1+1", "'@x", "'-2", "'+3", "\"'=A,B\""]);
+    }
 
     #[test]
     fn what_fits_is_left_as_it_is_and_what_does_not_is_cut() {

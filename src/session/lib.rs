@@ -25,6 +25,7 @@
 pub mod anonymous;
 mod calibration_metadata;
 mod codec;
+pub mod completeness;
 pub mod digest;
 pub mod disk_forecast;
 pub mod file;

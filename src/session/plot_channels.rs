@@ -15,7 +15,7 @@ use nima_recording::{
 
 use crate::{
     topics::{FRAMES_TOPIC, STATES, columns::TopicColumns, endoscope_of},
-    trim::BEGINNING,
+    trim::{BEGINNING, CLOCK_TABLE},
 };
 
 #[derive(Debug, thiserror::Error)]
@@ -63,7 +63,9 @@ pub struct PlottedTick {
 /// [`ReadError`] if the tables of the file cannot be read.
 pub fn beginning_ns(reader: &SessionReader) -> Result<u64, ReadError> {
     let tables = reader.metadata()?;
-    let report = tables.iter().find_map(|(_, table)| table.get(BEGINNING)?.parse().ok());
+    // An excerpt that was copied from another machine may state the beginning of the file only.
+    let clock = tables.iter().filter(|(name, _)| name == CLOCK_TABLE).chain(&tables);
+    let report = clock.into_iter().find_map(|(_, table)| table.get(BEGINNING)?.parse().ok());
     Ok(report.unwrap_or(reader.statistics().times_ns.0))
 }
 

@@ -40,6 +40,10 @@ pub trait Audience: Send + Debug {
     /// 1970).
     fn begins(&mut self, _program: &str, _started_ns: u64) {}
 
+    /// Called when the loop has started, and once a second: its clock started at this time (ns since 1970), as its clock
+    /// and UTC relate now. The times of the messages refer to the first of these.
+    fn clock(&mut self, _started_ns: u64) {}
+
     fn metadata(&mut self, _name: &str, _entries: &BTreeMap<String, String>) {}
 
     /// Called for a whole file.
@@ -101,6 +105,11 @@ impl SessionSinks {
     /// Creates a file that was begun earlier, without viewers.
     pub(crate) const fn of(file: SessionWriter) -> Self {
         Self { file: Some(file), channels: Vec::new(), audiences: Vec::new(), sync: None, trouble: None }
+    }
+
+    /// Passes on the start of the loop's clock.
+    pub(crate) fn clock(&mut self, started_ns: u64) {
+        self.audiences.iter_mut().for_each(|audience| audience.clock(started_ns));
     }
 
     /// Returns whether any destination receives the data.

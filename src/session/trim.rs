@@ -17,9 +17,11 @@ use crate::{plot_channels, recorder::JOURNAL_TOPIC};
 
 /// The table with the origin of an excerpt.
 pub(crate) const TABLE: &str = "cut";
-/// Key in that table: start of the session, ns, so that times remain those of the whole session.
+/// The table with the start of the loop's clock, which is later than the beginning of the file.
+pub(crate) const CLOCK_TABLE: &str = "clock";
+/// Key in both tables: start of the session, ns, so that times remain those of the whole session.
 pub(crate) const BEGINNING: &str = "session_begins_ns";
-/// Key in that table: name of the session.
+/// Key in the table of an excerpt: name of the session.
 pub(crate) const SESSION: &str = "session";
 
 #[derive(Debug, thiserror::Error)]

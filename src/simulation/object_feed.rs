@@ -1,9 +1,12 @@
 //! Read access to moving objects: their states and their events.
 
-use crossbeam_channel::{Receiver, Sender, bounded};
 use nalgebra::Vector3;
 use nima_core::task::TimedTaskEvent;
-use nima_machine::rig::SIDES;
+use nima_machine::{
+    hand_over::{FromLoop, from_loop},
+    rig::SIDES,
+};
+use rtrb::Producer;
 
 pub use crate::physics::RINGS_MAX;
 use crate::physics::{InstrumentLoads, RingState};
@@ -77,15 +80,22 @@ pub struct LoopObservation {
 /// Receives states and events of a simulation without blocking it. Each reader has its own, from [`ObjectFeed::another`].
 #[derive(Debug)]
 pub struct ObjectFeed {
-    moments: Receiver<ObjectMoment>,
-    happenings: Receiver<TimedTaskEvent>,
+    moments: FromLoop<ObjectMoment>,
+    happenings: FromLoop<TimedTaskEvent>,
     others: Vec<Self>,
 }
 
 /// The other end, in the simulation.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(super) struct ObjectPublisher {
-    readers: Vec<(Sender<ObjectMoment>, Sender<TimedTaskEvent>)>,
+    readers: Vec<(Producer<ObjectMoment>, Producer<TimedTaskEvent>)>,
+}
+
+/// A copy of a simulation has no readers: those of the original belong to it.
+impl Clone for ObjectPublisher {
+    fn clone(&self) -> Self {
+        Self { readers: Vec::new() }
+    }
 }
 
 pub(super) fn ends() -> (ObjectPublisher, ObjectFeed) {
@@ -99,9 +109,9 @@ pub(super) fn ends() -> (ObjectPublisher, ObjectFeed) {
     (ObjectPublisher { readers }, watched)
 }
 
-fn reader() -> ((Sender<ObjectMoment>, Sender<TimedTaskEvent>), ObjectFeed) {
-    let (moments, shown) = bounded(MOMENTS);
-    let (happenings, report) = bounded(HAPPENINGS);
+fn reader() -> ((Producer<ObjectMoment>, Producer<TimedTaskEvent>), ObjectFeed) {
+    let (moments, shown) = from_loop(MOMENTS);
+    let (happenings, report) = from_loop(HAPPENINGS);
     ((moments, happenings), ObjectFeed { moments: shown, happenings: report, others: Vec::new() })
 }
 
@@ -128,15 +138,15 @@ impl ObjectFeed {
 }
 
 impl ObjectPublisher {
-    pub(super) fn moment(&self, moment: &ObjectMoment) {
-        for (moments, _) in &self.readers {
-            moments.try_send(*moment).ok();
+    pub(super) fn moment(&mut self, moment: &ObjectMoment) {
+        for (moments, _) in &mut self.readers {
+            moments.push(*moment).ok();
         }
     }
 
-    pub(super) fn happening(&self, happening: TimedTaskEvent) {
-        for (_, happenings) in &self.readers {
-            happenings.try_send(happening).ok();
+    pub(super) fn happening(&mut self, happening: TimedTaskEvent) {
+        for (_, happenings) in &mut self.readers {
+            happenings.push(happening).ok();
         }
     }
 }
@@ -149,7 +159,7 @@ mod tests {
 
     #[test]
     fn every_reader_is_told_everything_and_one_who_does_not_read_stops_nobody() {
-        let (publisher, mut first) = ends();
+        let (mut publisher, mut first) = ends();
         let second = first.another().unwrap();
         let third = first.another().unwrap();
         assert!(first.another().is_none());

@@ -113,7 +113,7 @@ fn a_wrong_file_is_refused_in_one_line_and_never_read_as_a_model() {
         bytes[at..at + to.len()].copy_from_slice(to.as_bytes());
         bytes
     };
-    assert!(refused(&swapped("nima tip force 2", "nima tip force 9")).contains("this version reads"));
+    assert!(refused(&swapped("nima tip force 3", "nima tip force 9")).contains("this version reads"));
     assert!(refused(&swapped("doubt.centres", "doubt.central")).contains("doubt.centres is missing"));
     assert!(refused(&swapped("\"nima\"", "\"nina\"")).contains("metadata"));
     // A misspelled optional key must not be ignored.
@@ -122,6 +122,13 @@ fn a_wrong_file_is_refused_in_one_line_and_never_read_as_a_model() {
     let end = poisoned.len();
     poisoned[end - 4..].copy_from_slice(&f32::NAN.to_le_bytes());
     assert!(refused(&poisoned).contains("non-finite"));
+    // A file in which a single bit was flipped is never read as another model.
+    let mut generator = fastrand::Rng::with_seed(9);
+    for _ in 0..300 {
+        let mut flipped = good.clone();
+        flipped[generator.usize(..good.len())] ^= 1 << generator.u8(..8);
+        refused(&flipped);
+    }
 }
 
 #[test]

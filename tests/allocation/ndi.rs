@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use nima_devices::{
     Device as _,
-    ndi::{NdiDriver, NdiSettings},
+    ndi::{NdiDefinition, NdiDriver, NdiSettings},
 };
 use nima_emulation::emulators::ndi::{NdiProfile, wandering};
 use nima_testing::real_time::{alone, judged};
@@ -36,7 +36,7 @@ fn polling_allocates_nothing() {
     judged(|| {
         let folder = tempfile::tempdir().unwrap();
         let tool = folder.path().join("tool.rom");
-        std::fs::write(&tool, [&b"NDI\0"[..], &[0; 748]].concat()).unwrap();
+        std::fs::write(&tool, NdiDefinition::emulated("tool").bytes()).unwrap();
         let settings = NdiSettings { tools: vec![tool], ..NdiSettings::default() };
         for firmware in ["Polaris Vega 014", "Polaris Vega 008"] {
             let profile = NdiProfile { firmware: firmware.to_owned(), ..NdiProfile::default() };

@@ -125,7 +125,7 @@ fn a_tick_of_the_whole_loop_and_of_the_simulation_allocates_nothing() {
         tap.tick(control.events(), &timing, &inputs, &outputs, &ticks);
         if k == 9000 {
             let end = end.take().unwrap();
-            assert!(end.entries.len() >= TICKS_TAPPED_MAX, "it was full");
+            assert!(end.entries.waiting() >= TICKS_TAPPED_MAX, "it was full");
             assert!(end.offered() > 9000, "{} were offered", end.offered());
             let freed = calls();
             drop(end);
@@ -140,4 +140,55 @@ fn a_tick_of_the_whole_loop_and_of_the_simulation_allocates_nothing() {
         }
     }
     assert_eq!(calls() - before, 0);
+}
+
+/// Returns how often the calling thread has given up its processor by itself: it waited, slept or found a lock taken.
+#[cfg(target_os = "linux")]
+fn waits() -> u64 {
+    let status = std::fs::read_to_string("/proc/thread-self/status").unwrap();
+    let count = status.lines().find_map(|line| line.strip_prefix("voluntary_ctxt_switches:")).unwrap();
+    count.trim().parse().unwrap()
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_tick_of_the_whole_loop_never_waits() {
+    let _alone = alone();
+    let rig = RigConfig::load("simulated").unwrap();
+    let mut control = Loop::new(&rig, &[Some(Calibrations::default()), Some(Calibrations::default())]).unwrap();
+    let mut world = Worlds::new(&Scene::load("bimanual").unwrap(), rig.rate_hz);
+    let (mut tap, end) = tap();
+    // The other end reads at the same time, and disturbs the loop as much as it can.
+    let reader = std::thread::spawn(move || {
+        loop {
+            match end.entries.try_recv() {
+                Some(entry) => {
+                    if let TapPayload::Stepped(stepped) = entry.passed {
+                        end.give_back(stepped);
+                    }
+                }
+                None if end.entries.has_ended() => return,
+                None => std::thread::yield_now(),
+            }
+        }
+    });
+    control.obey(Command::Engage, 0.0);
+    let mut waited = 0;
+    for k in 0..5000_u32 {
+        let now_s = f64::from(k) * 1e-3;
+        let before = waits();
+        control.clear_events();
+        let inputs = world.read(now_s);
+        let timing = Timing { now_s, ..Timing::default() };
+        let (outputs, ticks) = control.step(inputs, &timing);
+        world.write(now_s, &outputs);
+        tap.tick(control.events(), &timing, &inputs, &outputs, &ticks);
+        waited += waits() - before;
+    }
+    assert_eq!(waited, 0);
+    let before = waits();
+    std::thread::sleep(std::time::Duration::from_millis(1));
+    assert!(waits() > before, "the counter counts");
+    drop(tap);
+    reader.join().unwrap();
 }

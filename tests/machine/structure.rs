@@ -122,3 +122,15 @@ fn what_it_must_not_know_is_found() {
     assert_eq!(Ring::of("src/lab/study"), Ring::Lab);
     assert_eq!(Ring::of("src/extras/score"), score);
 }
+
+/// Crates whose code runs in a tick of the loop, or in a real-time thread of a device.
+const REAL_TIME: [&str; 4] = ["src/devices", "src/machine", "src/simulation", "src/extras/network"];
+
+#[test]
+fn no_crate_of_the_loop_has_a_queue_on_which_a_thread_spins_for_another() {
+    for (name, (folder, manifest)) in crates() {
+        if REAL_TIME.contains(&folder.as_str()) {
+            assert!(!named(&manifest).iter().any(|one| one == "crossbeam-channel"), "{name}: use `hand_over`");
+        }
+    }
+}

@@ -318,6 +318,44 @@ fn a_stall_is_a_fault_with_zero_force() {
 }
 
 #[test]
+fn a_short_stall_is_left_by_one_step_and_a_long_one_by_two() {
+    for (missed, leaves) in [(500, true), (1001, false)] {
+        let mut bench = Fixture::until_contact(Mode::Dfr);
+        let stall_s = missed as f64 * 1e-3;
+        let inputs = bench.world.exchange(bench.tick as f64 * 1e-3, &bench.outputs);
+        let mut now_s = bench.tick as f64 * 1e-3 + stall_s;
+        let timing = Timing { now_s, missed_now: missed, ..Timing::default() };
+        let (mut outputs, tick) = bench.control.step(false, inputs, &timing);
+        assert_eq!(tick.state, LoopState::Faulted(Fault::LoopStalled { periods: missed }));
+        let mut tick_with = |now_s: f64, command: Option<Command>, has_data: bool| {
+            let obeyed = command.map(|command| bench.control.obey(command, now_s));
+            let inputs = bench.world.exchange(now_s, &outputs).filter(|_| has_data);
+            let report = bench.control.step(false, inputs, &Timing { now_s, ..Timing::default() });
+            outputs = report.0;
+            (obeyed, report.1.state)
+        };
+        let faulted = LoopState::Faulted(Fault::LoopStalled { periods: missed });
+        // Nothing resumes by itself, and while the devices are silent the fault remains.
+        for step in 0..100 {
+            now_s += 1e-3;
+            assert_eq!(tick_with(now_s, None, step < 50).1, faulted);
+        }
+        let (obeyed, state) = tick_with(now_s + 1e-3, Some(Command::Engage), false);
+        assert!(obeyed.unwrap().is_err() && state == faulted, "{obeyed:?}");
+        for step in 2..200 {
+            tick_with(now_s + f64::from(step) * 1e-3, None, true);
+        }
+        let (obeyed, _) = tick_with(now_s + 0.2, Some(Command::Engage), true);
+        assert_eq!(obeyed.unwrap().is_ok(), leaves, "{obeyed:?}");
+        let mut state = faulted;
+        for step in 201..1000 {
+            state = tick_with(now_s + f64::from(step) * 1e-3, None, true).1;
+        }
+        assert_eq!(state, if leaves { LoopState::Engaged } else { faulted });
+    }
+}
+
+#[test]
 fn a_stall_while_no_drives_are_on_harms_nobody_and_is_no_fault() {
     let SimulationPlan { rig, scene, .. } = plan("peg_transfer");
     let mut control = Pair::new(&rig, Side::Right, &Calibrations::default()).unwrap();

@@ -5,6 +5,7 @@ mod another_build;
 #[cfg(target_os = "linux")]
 mod bad_disk;
 mod bench;
+mod clocks;
 mod faults;
 mod file;
 mod images;

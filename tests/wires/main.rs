@@ -10,6 +10,7 @@ mod external;
 mod frames;
 mod haply;
 mod killed;
+mod one_core;
 mod other_arm;
 mod raw_readings;
 mod rig_diagnosis;

@@ -11,7 +11,7 @@ use super::{
     arm_model::{ArmModel, ArmModelError},
     joint_chain::{JointChain, Joints},
 };
-use crate::frames::from_roll_pitch_yaw_deg;
+use crate::{frames::from_roll_pitch_yaw_deg, units};
 
 /// Mounting of the arm and geometry of its instrument. All values are measured on the rig, so there are no defaults.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -31,13 +31,22 @@ pub struct ArmSettings {
     pub shaft_m: f64,
 }
 
+/// Maximum distance of an arm's base from the origin of the workspace, m: far more than a room needs.
+const BASE_MAX_M: f64 = 10.0;
+/// Maximum distance of the sensor from the flange, m.
+const SENSOR_MAX_M: f64 = 0.5;
+const SHAFT_MAX_M: f64 = 1.0;
+
 /// Reason why the settings of an arm are invalid.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum ArmError {
     #[error("the arm's {field} is not a finite number: measure it and enter it in the rig file")]
     NotFinite { field: &'static str },
+    #[error("the arm's {field} is {distance_m} m long: {}", units::length_remedy(*.distance_m, *.max_m))]
+    TooFar { field: &'static str, distance_m: f64, max_m: f64 },
     #[error(
-        "the shaft length of {shaft_m} m is out of range: use more than 0 and at most 1 m, from the sensor to the tip"
+        "the shaft length of {shaft_m} m is out of range: it is the distance from the sensor to the tip, above 0; {}",
+        units::length_remedy(*.shaft_m, SHAFT_MAX_M)
     )]
     ShaftLength { shaft_m: f64 },
     #[error("the joints of the arm are not known: load the rig from its file")]
@@ -72,7 +81,7 @@ impl Arm {
     /// Creates a Gen3 with seven joints from checked settings.
     ///
     /// # Errors
-    /// [`ArmError`] if a number is not finite or the shaft's length is not in (0, 1] m.
+    /// [`ArmError`] if a number is not finite, or no plausible length in m.
     pub fn new(settings: &ArmSettings) -> Result<Self, ArmError> {
         let ArmSettings { base_m, base_deg, sensor_m, sensor_deg, shaft_m } = settings;
         let vectors = [("base_m", base_m), ("base_deg", base_deg), ("sensor_m", sensor_m), ("sensor_deg", sensor_deg)];
@@ -81,8 +90,14 @@ impl Arm {
                 return Err(ArmError::NotFinite { field });
             }
         }
+        for (field, vector, max_m) in [("base_m", base_m, BASE_MAX_M), ("sensor_m", sensor_m, SENSOR_MAX_M)] {
+            let distance_m = vector.norm();
+            if distance_m > max_m {
+                return Err(ArmError::TooFar { field, distance_m, max_m });
+            }
+        }
         // Written so that NaN is rejected too.
-        if !(*shaft_m > 0.0 && *shaft_m <= 1.0) {
+        if !(*shaft_m > 0.0 && *shaft_m <= SHAFT_MAX_M) {
             return Err(ArmError::ShaftLength { shaft_m: *shaft_m });
         }
         Ok(Self {

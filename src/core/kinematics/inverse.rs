@@ -31,17 +31,22 @@ pub(super) const TURN_SPEED_RAD_S: f64 = 1.74;
 /// Distance that joints keep from their limits, rad, so that an overshooting drive does not report a fault.
 pub const KEEP_OFF_RAD: f64 = 0.02;
 /// Near a limit, the speed of a joint is at most this factor times its distance from the limit, 1/s. Design choice.
+/// 20 per second: the last 0.07 rad before a limit are slowed down (1.4 rad/s over 20/s).
 const APPROACH_PER_S: f64 = 20.0;
 /// Fraction of the acceleration used for stopping at a target or a joint limit; the remainder is for the curvature of
 /// the path.
+/// Larger values leave the curvature of the path without acceleration, smaller ones start to brake earlier.
 const BRAKING_FRACTION: f64 = 0.5;
 /// Averaging time of the target's own motion, s, so that tremor and noise of the handle are not followed.
+/// Longer averages make the tip lag behind a moving target, shorter ones follow the steps of the handle's encoder.
 const TARGET_MOTION_S: f64 = 0.005;
 /// Speed of the posture optimisation along the gradient, rad/s, and the fraction of the joint speed that it may use.
 /// Design choice.
+/// Larger values move the elbow visibly while the tip rests; smaller ones leave a posture near a limit for longer.
 const POSTURE_PER_S: f64 = 1.0;
 const POSTURE_FRACTION: f64 = 0.2;
 /// If the shaft misses the trocar by more than this at the start, m, the instrument is not in the trocar.
+/// A larger miss is a wrong trocar or a wrong calibration, which the correction must not pull straight.
 pub const START_MISS_M: f64 = 5e-3;
 
 #[derive(Clone, Copy, Debug, PartialEq)]

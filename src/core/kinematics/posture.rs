@@ -13,9 +13,11 @@ use super::{
 };
 
 /// Distance from a limit at which the cost of a joint begins, rad. Design choice.
+/// About 20 degrees: a larger value restricts the posture far from any limit.
 pub(super) const SOFT_RAD: f64 = 0.35;
 /// Height above the trocar below which elbow and wrist are pushed up, m: half the thickness of a link, plus a drape and
 /// a margin.
+/// A smaller value lets the elbow touch the patient, a larger one refuses poses that an arm needs near its base.
 pub(super) const CLEARANCE_M: f64 = 0.12;
 /// Weights of the other two terms relative to the limit term. Design choice.
 const MANIPULABILITY_WEIGHT: f64 = 0.2;

@@ -8,6 +8,8 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
+use crate::units;
+
 /// Settings of the trocar and of the permitted space beyond it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -29,6 +31,8 @@ pub struct RcmSettings {
 pub enum RcmError {
     #[error("{what} is not a finite number: enter it in metres in the frame of the arm's base")]
     NotFinite { what: &'static str },
+    #[error("the trocar's {setting} is {value_m} m: {}", units::length_remedy(*.value_m, *.max_m))]
+    TooFar { setting: &'static str, value_m: f64, max_m: f64 },
     #[error("the trocar's {setting} is {value}: {wanted}")]
     Setting { setting: &'static str, value: f64, wanted: &'static str },
     #[error("the tip is {insertion_m:.4} m beyond the trocar (minimum {min_m} m): push the instrument in")]
@@ -96,7 +100,13 @@ pub struct Rcm {
 
 /// A position closer to the trocar than this defines no direction, m. Below it only rounding would decide the
 /// direction.
+/// A nanometre: far below what any encoder resolves.
 const POINT_M: f64 = 1e-9;
+
+/// Maximum distance of a trocar from the origin of the workspace, m.
+const TROCAR_MAX_M: f64 = 10.0;
+/// Maximum insertion beyond the trocar, m: the longest shaft.
+const INSERTION_MAX_M: f64 = 1.0;
 
 impl Rcm {
     /// Creates a trocar from checked settings.
@@ -109,6 +119,14 @@ impl Rcm {
             if !vector.iter().all(|x| x.is_finite()) {
                 return Err(RcmError::NotFinite { what });
             }
+        }
+        let lengths = [
+            ("trocar_m", trocar_m.norm(), TROCAR_MAX_M),
+            ("insertion_min_m", insertion_min_m, INSERTION_MAX_M),
+            ("insertion_max_m", insertion_max_m, INSERTION_MAX_M),
+        ];
+        if let Some((setting, value_m, max_m)) = lengths.into_iter().find(|(_, value_m, max_m)| value_m > max_m) {
+            return Err(RcmError::TooFar { setting, value_m, max_m });
         }
         let refuse = |setting, value, wanted| Err(RcmError::Setting { setting, value, wanted });
         if inward.norm() < POINT_M {

@@ -22,20 +22,25 @@ use super::{
 
 /// Random starts of the search. Many, because an arm with seven joints has many poses for one tip, and Newton's method
 /// finds the nearest of them only.
+/// Runs once, when a rig is set up, so its time matters less than a missed pose.
 const STARTS: usize = 600;
 /// Newton steps from each start.
+/// A start that has not converged by then is given up; others follow.
 const STEPS: usize = 80;
 /// Number of poses that are tested over the permitted space, because each test moves the arm over the whole space,
 /// which takes most of the time.
+/// Sorted by `ease` before, so that the best poses are among the tested ones.
 const CANDIDATES: usize = 8;
 /// A pose below these values is not tested: distance from a joint limit (rad), dexterity (m/rad). Design choice.
 const MIN_MARGIN_RAD: f64 = 0.1;
 /// See [`MIN_MARGIN_RAD`].
+/// The threshold of damping in the loop (`DAMPED_BELOW`): beyond it the loop follows exactly.
 const MIN_DEXTERITY: f64 = 0.05;
 /// Period of the test motions, s: longer than the loop's period to save time, still short enough to keep the shaft in
 /// the trocar.
 const TRY_PERIOD_S: f64 = 0.004;
 /// Distance from the goal at which the tip has arrived, m.
+/// A tenth of a millimetre: below the calibration errors of an arm, above the rest of a numerical approach.
 const ARRIVED_M: f64 = 1e-4;
 /// Time limit for one goal of the test, periods: 6 s at [`TRY_PERIOD_S`], enough to cross the permitted space several
 /// times at the speed limit of the tip.

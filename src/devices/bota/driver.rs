@@ -94,11 +94,6 @@ impl BotaDriver {
         Self::open_within(settings, BotaTimeouts::default())
     }
 
-    /// Opens for a diagnosis: a failure is reported within a second, unless the sensor restarts.
-    pub(crate) fn try_open(settings: &BotaSettings) -> Result<Self, DeviceError> {
-        Self::open_within(settings, BotaTimeouts::SHORT)
-    }
-
     /// Opens the sensor with these timeouts.
     ///
     /// # Errors

@@ -22,12 +22,21 @@ impl Probe for BusProbe {
         &self.port
     }
 
+    fn extra(&self) -> Duration {
+        super::probes::SERVOS
+    }
+
     fn probe(&mut self, _: Duration) -> Result<FoundDevice, DeviceError> {
         let begin = Instant::now();
         let servos = dynamixel::who_is_there(&self.port, self.baud)?;
+        let model = |(id, number): &(u8, u16)| {
+            let known = dynamixel::table::ServoModel::numbered(*number).map(|model| model.name.to_owned());
+            known.ok_or_else(|| dynamixel::table::unsupported(format!("servo {id} on {}", self.port), *number))
+        };
+        let models = servos.iter().map(model).collect::<Result<Vec<_>, _>>()?;
         let list = |words: Vec<String>| words.join(" ");
         let identity = DeviceIdentity {
-            product: list(servos.iter().map(|(_, model)| (*model).to_owned()).collect()),
+            product: list(models),
             serial: format!("ids {}", list(servos.iter().map(|(id, _)| id.to_string()).collect())),
             firmware: String::new(),
         };

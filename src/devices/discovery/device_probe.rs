@@ -12,6 +12,8 @@ pub enum DataTiming {
     Always,
     /// Only changes: silence is normal.
     OnChange,
+    /// Answers always, but measures only with a tool.
+    WithTool,
 }
 
 pub struct DeviceProbe<F> {
@@ -24,6 +26,7 @@ pub struct DeviceProbe<F> {
 
 /// Listening time, unless the timeout is shorter.
 const LISTEN: Duration = Duration::from_millis(400);
+// Half a period of a 1 kHz device, so that no reading waits for another.
 const NAP: Duration = Duration::from_micros(500);
 
 impl<F> DeviceProbe<F> {
@@ -51,7 +54,8 @@ impl<F> DeviceProbe<F> {
                 cure: "Look up the code in the device's manual, remove the cause, then switch the device off and on."
                     .to_owned(),
             }),
-            _ if self.speaks == DataTiming::OnChange || health.readings > 0 => Ok(()),
+            // A driver reports a tracker that does not answer as lost.
+            _ if self.speaks != DataTiming::Always || health.readings > 0 => Ok(()),
             _ if health.damaged > 0 => other(Loss::Corrupt.cause()),
             _ if health.refused > 0 => other(Loss::Implausible.cause()),
             _ => Err(DeviceError::Silent { place }),
@@ -93,10 +97,11 @@ where
             identity: device.identity().clone(),
             standing: health.standing,
             readings: health.readings,
-            rate_hz: span_s.map(rate).filter(|_| self.speaks == DataTiming::Always),
+            rate_hz: span_s.map(rate).filter(|_| self.speaks != DataTiming::OnChange),
             lost: health.lost,
             damaged: health.damaged + health.refused,
             latency_s: first.map(|first| (first - begin).as_secs_f64()),
+            note: (self.speaks == DataTiming::WithTool && health.readings == 0).then_some("no tool is loaded"),
         })
     }
 }

@@ -6,7 +6,7 @@ use nima_core::kinematics::ArmModel;
 
 use super::{DataTiming, DeviceProbe, FoundDevice, Probe, SerialProbe, TcpProbe};
 use crate::{
-    DeviceError,
+    DeviceError, ati,
     bota::{self, Transport},
     external, force_dimension, haply,
     hid::{CapDriver, CapSettings, PedalDriver, PedalSettings},
@@ -30,9 +30,10 @@ pub const KINDS: &[ProbeKind] = &[
     ProbeKind { name: "bota-gen0", usage: "bota-gen0=PORT[@BAUD]", make: gen0 },
     ProbeKind { name: "bota-gen-a", usage: "bota-gen-a=PORT[@BAUD]", make: gen_a },
     ProbeKind { name: "bota-socket", usage: "bota-socket=HOST[:PORT]", make: socket },
+    ProbeKind { name: "ati", usage: "ati=HOST[ rdt=P][ http=P]", make: ati },
     ProbeKind { name: "dynamixel", usage: "dynamixel=PORT[@BAUD]", make: dynamixel },
     ProbeKind { name: "ndi", usage: "ndi=HOST[:PORT]|DEVICE FILE[@BAUD]", make: ndi },
-    ProbeKind { name: "kinova", usage: "kinova[=HOST[ tcp=P][ udp=P]]", make: kinova },
+    ProbeKind { name: "kinova", usage: "kinova=HOST[ tcp=P][ udp=P]", make: kinova },
     ProbeKind {
         name: "force-dimension",
         usage: "force-dimension[=SERIAL|emulated:ADDRESS:PORT]",
@@ -108,6 +109,13 @@ fn bota(kind: &str, transport: Transport, place: &str) -> Result<Box<dyn Probe>,
     Ok(super::probes::sensor(kind, settings))
 }
 
+fn ati(place: &str) -> Result<Box<dyn Probe>, DeviceError> {
+    let refused = || wrong("ati", place, "HOST, or HOST rdt=PORT http=PORT; it leaves the factory with 192.168.1.1");
+    let settings = ati::AtiSettings::at(place).ok_or_else(refused)?;
+    settings.check()?;
+    Ok(super::probes::ati("ati", settings))
+}
+
 /// Creates a probe that lists the servos on the bus without configuring them, because their settings are unknown.
 fn dynamixel(place: &str) -> Result<Box<dyn Probe>, DeviceError> {
     let (port, baud) = line("dynamixel", place, 1_000_000)?;
@@ -130,10 +138,9 @@ fn ndi(place: &str) -> Result<Box<dyn Probe>, DeviceError> {
 }
 
 fn kinova(place: &str) -> Result<Box<dyn Probe>, DeviceError> {
-    let usual = kinova::KinovaSettings::default();
-    let place = if place.is_empty() { &usual.host } else { place };
     let settings = kinova::KinovaSettings::at(place);
-    let settings = settings.ok_or_else(|| wrong("kinova", place, "HOST, or HOST tcp=PORT udp=PORT"))?;
+    let allowed = "HOST, or HOST tcp=PORT udp=PORT; a Gen3 leaves the factory with 192.168.1.10";
+    let settings = settings.ok_or_else(|| wrong("kinova", place, allowed))?;
     Ok(super::probes::arm("kinova", settings, ArmModel::GEN3))
 }
 
@@ -202,6 +209,10 @@ struct NamedKind {
 impl Probe for NamedKind {
     fn name(&self) -> &str {
         &self.name
+    }
+
+    fn extra(&self) -> Duration {
+        self.probe.extra()
     }
 
     fn probe(&mut self, timeout: Duration) -> Result<FoundDevice, DeviceError> {

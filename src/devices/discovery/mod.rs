@@ -21,7 +21,7 @@ use std::{
 
 use serde::Serialize;
 
-use super::{ConnectionState, DeviceError, DeviceIdentity};
+use super::{ConnectionState, DeviceError, DeviceIdentity, dynamixel::IDS, same_serial};
 
 pub use device_probe::{DataTiming, DeviceProbe};
 pub use kinds::{KINDS, ProbeKind, probe_named};
@@ -46,6 +46,9 @@ pub struct FoundDevice {
     pub damaged: u64,
     /// Response time, s: from opening to the first reading, or the round trip of a connection.
     pub latency_s: Option<f64>,
+    /// Reason why a device that works sends no readings.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub note: Option<&'static str>,
 }
 
 pub trait Probe: Send {
@@ -100,7 +103,7 @@ pub fn diagnose(probes: Vec<Box<dyn Probe>>, timeout: Duration) -> Vec<Discovery
         (start(probe, timeout), timeout)
     };
     let running: Vec<_> = probes.into_iter().map(started).collect();
-    running
+    let mut diagnoses: Vec<_> = running
         .into_iter()
         .map(|((name, answer), timeout)| {
             let answer = answer.recv_timeout((begin + timeout).saturating_duration_since(Instant::now()));
@@ -113,7 +116,34 @@ pub fn diagnose(probes: Vec<Box<dyn Probe>>, timeout: Duration) -> Vec<Discovery
             });
             DiscoveryDiagnosis { name, took_s: took.as_secs_f64(), outcome: result.into() }
         })
-        .collect()
+        .collect();
+    refuse_doubles(&mut diagnoses);
+    diagnoses
+}
+
+/// Refuses two devices that report one serial number: two addresses lead to one device, and each would be mistaken for
+/// the other.
+fn refuse_doubles(diagnoses: &mut [DiscoveryDiagnosis]) {
+    let is_one = |one: &DiscoveryDiagnosis, other: &DiscoveryDiagnosis| match (&one.outcome, &other.outcome) {
+        // Servos identify themselves only by their ids, which may be the same on two lines.
+        (TestOutcome::Connected(one), TestOutcome::Connected(other)) => {
+            one.identity.product == other.identity.product
+                && !one.identity.serial.starts_with(IDS)
+                && same_serial(&one.identity.serial, &other.identity.serial)
+        }
+        _ => false,
+    };
+    let twin = |one: usize| {
+        let found = diagnoses.iter().enumerate().find(|(k, other)| *k != one && is_one(&diagnoses[one], other))?;
+        Some(found.1.name.clone())
+    };
+    let twins: Vec<_> = (0..diagnoses.len()).map(twin).collect();
+    for (diagnosis, twin) in diagnoses.iter_mut().zip(twins) {
+        if let (Some(other), TestOutcome::Connected(found)) = (twin, &diagnosis.outcome) {
+            let serial = found.identity.serial.clone();
+            diagnosis.outcome = Err(DeviceError::OneDevice { place: diagnosis.name.clone(), other, serial }).into();
+        }
+    }
 }
 
 type DiscoveryAnswer = (Result<FoundDevice, DeviceError>, Duration);
@@ -133,4 +163,42 @@ fn start(mut probe: Box<dyn Probe>, timeout: Duration) -> (String, mpsc::Receive
     // If no thread can be created, `give` is dropped, and the receiver reports that.
     Builder::new().name(format!("probe {name}")).spawn(work).ok();
     (name, answer)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn found(name: &str, product: &str, serial: &str) -> DiscoveryDiagnosis {
+        let identity =
+            DeviceIdentity { product: product.to_owned(), serial: serial.to_owned(), firmware: String::new() };
+        let found = FoundDevice { identity, standing: ConnectionState::Connected, ..FoundDevice::default() };
+        DiscoveryDiagnosis { name: name.to_owned(), took_s: 0.0, outcome: TestOutcome::Connected(found) }
+    }
+
+    #[test]
+    fn one_device_at_two_addresses_is_no_two_devices() {
+        let mut tested = [
+            found("right arm", "Gen3", "PJ1"),
+            found("left arm", "Gen3", "PJ1"),
+            found("right sensor", "SensONE", "PJ1"),
+            found("right servos", "XM430", "ids 1 2 3 4"),
+            found("left servos", "XM430", "ids 1 2 3 4"),
+            found("right handle", "omega.7", ""),
+            found("left handle", "omega.7", ""),
+        ];
+        refuse_doubles(&mut tested);
+        let troubles: Vec<_> = tested
+            .iter()
+            .filter_map(|tested| match &tested.outcome {
+                TestOutcome::Trouble { cause, .. } => Some(cause.as_str()),
+                TestOutcome::Connected(_) => None,
+            })
+            .collect();
+        let expected = [
+            "right arm and left arm are one device: both report the serial number PJ1",
+            "left arm and right arm are one device: both report the serial number PJ1",
+        ];
+        assert_eq!(troubles, expected);
+    }
 }

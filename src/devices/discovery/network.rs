@@ -6,7 +6,10 @@ use std::{
 };
 
 use super::{FoundDevice, Probe};
-use crate::{ConnectionState, DeviceError, DeviceIdentity, transport::Tcp};
+use crate::{
+    ConnectionState, DeviceError, DeviceIdentity,
+    transport::{Tcp, check_no_example},
+};
 
 /// A probe of a TCP address; connects and disconnects.
 #[derive(Debug)]
@@ -36,6 +39,7 @@ impl Probe for TcpProbe {
     }
 
     fn probe(&mut self, timeout: Duration) -> Result<FoundDevice, DeviceError> {
+        check_no_example(&self.address)?;
         let unknown = |_| setting(&self.address, "a host name that exists in this network");
         let resolved = self.address.to_socket_addrs().map_err(unknown)?.next();
         let resolved = resolved.ok_or_else(|| DeviceError::Unreachable { place: self.address.clone() })?;

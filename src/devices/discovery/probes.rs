@@ -1,16 +1,20 @@
-//! A probe for each driver: opens the device like a rig, with shorter timeouts.
+//! A probe for each driver: opens the device like a rig and waits for it as long.
 
 use std::time::Duration;
 
 use nima_core::kinematics::ArmModel;
 
 use super::{DataTiming, DeviceProbe, Probe};
-use crate::{bota, dynamixel, external, force_dimension, haply, hid, kinova, ndi};
+use crate::{ati, bota, dynamixel, external, force_dimension, haply, hid, kinova, ndi};
 
-/// A first-generation sensor restarts whenever its line is opened.
-const START: Duration = Duration::from_secs(1);
-/// Timeout for one answer of an arm, s.
-const ARM_S: f64 = 0.4;
+/// A first-generation sensor restarts whenever its line is opened, which takes up to this time.
+const START: Duration = Duration::from_secs(3);
+/// Three attempts at a command, of one second each.
+const COMMAND: Duration = Duration::from_secs(3);
+/// Three attempts for each of four servos, then every line speed.
+pub(super) const SERVOS: Duration = Duration::from_secs(4);
+/// A tracker answers its first commands within seconds.
+const TRACKER: Duration = Duration::from_secs(6);
 
 pub fn handle(name: &str, settings: force_dimension::ForceDimensionSettings) -> Box<dyn Probe> {
     let place = settings.serial.map_or_else(|| "omega.7".to_owned(), |serial| format!("omega.7 {serial}"));
@@ -18,26 +22,34 @@ pub fn handle(name: &str, settings: force_dimension::ForceDimensionSettings) -> 
 }
 
 pub fn arm(name: &str, settings: kinova::KinovaSettings, model: ArmModel) -> Box<dyn Probe> {
-    let settings = kinova::KinovaSettings { timeout_s: settings.timeout_s.min(ARM_S), ..settings };
     let place = format!("{}:{}", settings.host, settings.tcp_port);
+    // As long as the rig would wait; an address without an answer is reported after one such time.
+    let extra = Duration::try_from_secs_f64(settings.timeout_s).unwrap_or_default();
     let open = move || kinova::open_clearing(&settings, &model, &kinova::FaultClearing::default());
-    Box::new(DeviceProbe::new(name, place, DataTiming::Always, open))
+    Box::new(DeviceProbe::new(name, place, DataTiming::Always, open).with_extra(extra))
 }
 
 pub fn sensor(name: &str, settings: bota::BotaSettings) -> Box<dyn Probe> {
-    let extra = if settings.transport == bota::Transport::Gen0 { START } else { Duration::ZERO };
+    let extra = if settings.transport == bota::Transport::Gen0 { START + COMMAND } else { COMMAND };
     let place = settings.port.clone();
-    let probe = DeviceProbe::new(name, place, DataTiming::Always, move || bota::BotaDriver::try_open(&settings));
+    let probe = DeviceProbe::new(name, place, DataTiming::Always, move || bota::BotaDriver::open(&settings));
     Box::new(probe.with_extra(extra))
+}
+
+pub fn ati(name: &str, settings: ati::AtiSettings) -> Box<dyn Probe> {
+    let probe = DeviceProbe::new(name, settings.place(), DataTiming::Always, move || ati::AtiDriver::open(&settings));
+    Box::new(probe.with_extra(COMMAND))
 }
 
 pub fn servos(name: &str, settings: dynamixel::DynamixelSettings) -> Box<dyn Probe> {
     let place = settings.port.clone();
-    Box::new(DeviceProbe::new(name, place, DataTiming::Always, move || dynamixel::try_open(&settings)))
+    let probe = DeviceProbe::new(name, place, DataTiming::Always, move || dynamixel::open(&settings));
+    Box::new(probe.with_extra(SERVOS))
 }
 
 pub fn tracker(name: &str, settings: ndi::NdiSettings) -> Box<dyn Probe> {
-    Box::new(DeviceProbe::new(name, settings.place(), DataTiming::Always, move || ndi::NdiDriver::try_open(&settings)))
+    let probe = DeviceProbe::new(name, settings.place(), DataTiming::WithTool, move || ndi::NdiDriver::open(&settings));
+    Box::new(probe.with_extra(TRACKER))
 }
 
 pub fn pedal(name: &str, settings: hid::PedalSettings) -> Box<dyn Probe> {

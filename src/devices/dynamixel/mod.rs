@@ -18,13 +18,17 @@ pub mod codec;
 mod driver;
 pub mod message;
 mod opening;
+mod protocol_1;
+mod reboots;
 mod settings;
 pub mod table;
 #[cfg(test)]
 mod tests;
 
 pub use driver::{DynamixelDriver, GoalResult, ServoCondition, open, open_with};
-pub use driver::{open_over, try_open, who_is_there};
-pub use opening::{Reboots, WaitClock};
+pub use driver::{open_over, who_is_there};
+pub use opening::WaitClock;
+pub use reboots::Reboots;
+pub(crate) use settings::IDS;
 pub use settings::{DynamixelSettings, Gains, OperatingMode, ServoSettings};
 pub use table::{HardwareError, ServoFault};

@@ -1,14 +1,11 @@
 //! Finds and configures four servos on an open serial line, with the torque off. Blocks and allocates; runs on the
 //! thread that opens the device.
 //!
-//! Waits 0.1 s for every answer, up to three times; less in a diagnosis. The EEPROM, which wears out, is read first and
+//! Waits 0.1 s for every answer, up to three times. The EEPROM, which wears out, is read first and
 //! written only where it differs. Every written value is read back.
 
 use std::{
-    sync::{
-        Arc,
-        atomic::{AtomicU32, Ordering},
-    },
+    ops::Range,
     time::{Duration, Instant},
 };
 
@@ -16,25 +13,16 @@ use super::{
     codec::{self, BROADCAST, IncomingPackets, OutgoingPackets, Packet, STATUS},
     driver::MOTION_BYTES,
     message::{Instruction, ServoRefusal},
+    reboots::Reboots,
     settings::{DynamixelSettings, RegisterGoal, ServoSettings, ids_text},
     table::{self, DynamixelRegister, HardwareError, ServoFault, ServoModel},
 };
 use crate::{DeviceError, DeviceIdentity, SERVOS, transport::ByteStream};
 
-/// Time limit for answers, and number of attempts.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct DynamixelTimeouts {
-    answer_s: f64,
-    tries: usize,
-}
-
-impl DynamixelTimeouts {
-    /// Much longer than a servo takes, to allow for a busy computer.
-    pub(super) const USUAL: Self = Self { answer_s: 0.1, tries: 3 };
-    /// Enough for an adapter that holds bytes back for 16 ms, and short enough to try all line speeds within the second
-    /// of a diagnosis.
-    pub(super) const SHORT: Self = Self { answer_s: 0.04, tries: 2 };
-}
+/// Time limit for an answer, s: much longer than a servo takes, to allow for a busy computer.
+pub(super) const ANSWER_S: f64 = 0.1;
+/// Number of attempts.
+const TRIES: usize = 3;
 
 /// Maximum number of reads to discard old bytes, so that a line that sends without pause cannot hold up the opening.
 pub(super) const REST_READS: usize = 64;
@@ -42,27 +30,6 @@ pub(super) const REST_READS: usize = 64;
 const REBOOT_S: f64 = 2.0;
 /// Longest packet while opening: the whole EEPROM, stuffed.
 const LONGEST: usize = 256;
-
-/// Servos to restart, which is the only way to clear a shutdown. Requests come from any thread and are carried out when
-/// the servos are next opened: a running driver that finds a request switches the torque off and reports itself lost,
-/// so that it is reopened.
-#[derive(Clone, Debug, Default)]
-pub struct Reboots(Arc<AtomicU32>);
-
-impl Reboots {
-    /// Requests a restart of the servo with this index (0 to 3) in the settings.
-    pub fn ask(&self, index: usize) {
-        self.0.fetch_or(1 << index.min(SERVOS - 1), Ordering::AcqRel);
-    }
-
-    pub fn is_any(&self) -> bool {
-        self.0.load(Ordering::Acquire) != 0
-    }
-
-    fn take(&self, index: usize) -> bool {
-        self.0.fetch_and(!(1 << index), Ordering::AcqRel) & 1 << index != 0
-    }
-}
 
 /// Clock for waiting: the system's, or a simulated one in tests.
 pub trait WaitClock {
@@ -97,8 +64,10 @@ pub(super) struct DynamixelSession<'a, T, P> {
     place: &'a str,
     incoming: IncomingPackets,
     outgoing: OutgoingPackets,
+    /// The newest bytes, and the part of them that has not been decoded: one read may contain several packets.
+    arrived: [u8; LONGEST],
+    undecoded: Range<usize>,
     received: usize,
-    timeouts: DynamixelTimeouts,
 }
 
 struct DynamixelAnswer {
@@ -107,10 +76,11 @@ struct DynamixelAnswer {
 }
 
 impl<'a, T: ByteStream, P: WaitClock> DynamixelSession<'a, T, P> {
-    pub(super) fn new(line: &'a mut T, pace: &'a mut P, place: &'a str, timeouts: DynamixelTimeouts) -> Self {
+    pub(super) fn new(line: &'a mut T, pace: &'a mut P, place: &'a str) -> Self {
         let incoming = IncomingPackets::new(LONGEST);
         let outgoing = OutgoingPackets::new(LONGEST);
-        Self { line, pace, place, incoming, outgoing, received: 0, timeouts }
+        let arrived = [0; LONGEST];
+        Self { line, pace, place, incoming, outgoing, arrived, undecoded: 0..0, received: 0 }
     }
 
     pub(super) const fn received_anything(&self) -> bool {
@@ -169,29 +139,17 @@ impl<'a, T: ByteStream, P: WaitClock> DynamixelSession<'a, T, P> {
 
     fn model_of(&mut self, servo: &ServoSettings) -> Result<&'static ServoModel, DeviceError> {
         let number = self.read(servo.id, table::MODEL)? as u16;
-        let wrong = |expected: &str, found: String| DeviceError::WrongProduct {
-            place: self.name(servo.id),
-            expected: expected.to_owned(),
-            found,
-        };
         let Some(model) = ServoModel::numbered(number) else {
-            return Err(wrong("servo that measures its current", format!("servo with model number {number}")));
+            return Err(table::unsupported(self.name(servo.id), number));
         };
         match &servo.model {
-            Some(name) if name != model.name => return Err(wrong(name, model.name.to_owned())),
+            Some(name) if name != model.name => {
+                let place = self.name(servo.id);
+                return Err(DeviceError::WrongProduct { place, expected: name.clone(), found: model.name.to_owned() });
+            }
             _ => {}
         }
-        if servo.current_limit_a > f64::from(model.current_max) * model.current_unit_a {
-            return Err(DeviceError::Setting {
-                key: "current_limit_a".to_owned(),
-                value: servo.current_limit_a.to_string(),
-                allowed: format!(
-                    "a {} takes at most {:.3} A",
-                    model.name,
-                    f64::from(model.current_max) * model.current_unit_a
-                ),
-            });
-        }
+        servo.check_current(model)?;
         Ok(model)
     }
 
@@ -235,7 +193,7 @@ impl<'a, T: ByteStream, P: WaitClock> DynamixelSession<'a, T, P> {
         let begin_s = self.pace.now_s();
         // The servo is silent while it restarts, so the first answer to a ping shows that it is back.
         while self.pace.now_s() - begin_s < REBOOT_S {
-            self.wait(self.timeouts.answer_s);
+            self.wait(ANSWER_S);
             if self.once(id, &Instruction::Ping)?.is_some() {
                 return Ok(());
             }
@@ -248,7 +206,7 @@ impl<'a, T: ByteStream, P: WaitClock> DynamixelSession<'a, T, P> {
         let ids = settings.servos.each_ref().map(|servo| servo.id);
         let address = table::TICK.address;
         let count = MOTION_BYTES as u16;
-        for _ in 0..self.timeouts.tries {
+        for _ in 0..TRIES {
             self.send(BROADCAST, &Instruction::SyncRead { address, count, ids: &ids, fast: true })?;
             let whole = |packet: &Packet<'_>| packet.id == BROADCAST && packet.instruction == STATUS;
             let answer = self.receive(whole)?;
@@ -304,7 +262,7 @@ impl<'a, T: ByteStream, P: WaitClock> DynamixelSession<'a, T, P> {
 
     /// Sends the instruction several times until there is an answer.
     fn ask(&mut self, id: u8, instruction: &Instruction<'_>) -> Result<Option<DynamixelAnswer>, DeviceError> {
-        for _ in 0..self.timeouts.tries {
+        for _ in 0..TRIES {
             let answer = self.once(id, instruction)?;
             if answer.is_some() {
                 return Ok(answer);
@@ -323,9 +281,9 @@ impl<'a, T: ByteStream, P: WaitClock> DynamixelSession<'a, T, P> {
         Ok(self.once(BROADCAST, &Instruction::Ping)?.is_some())
     }
 
-    /// Returns id and model of all servos that answer a broadcast ping.
-    pub(super) fn everybody(&mut self) -> Result<Vec<(u8, &'static str)>, DeviceError> {
-        let mut servos: Vec<(u8, &'static str)> = Vec::new();
+    /// Returns id and model number of all servos that answer a broadcast ping.
+    pub(super) fn everybody(&mut self) -> Result<Vec<(u8, u16)>, DeviceError> {
+        let mut servos: Vec<(u8, u16)> = Vec::new();
         self.send(BROADCAST, &Instruction::Ping)?;
         loop {
             let mut id = 0;
@@ -335,12 +293,11 @@ impl<'a, T: ByteStream, P: WaitClock> DynamixelSession<'a, T, P> {
             })?;
             let Some(answer) = answer else { return Ok(servos) };
             let number = answer.data.first_chunk().map_or(0, |bytes| u16::from_le_bytes(*bytes));
-            let model = ServoModel::numbered(number).map_or("unknown servo", |model| model.name);
             // More answers than there are ids: a line that repeats itself must not fill the memory.
             if servos.len() > usize::from(BROADCAST) {
                 return Ok(servos);
             }
-            servos.push((id, model));
+            servos.push((id, number));
         }
     }
 
@@ -353,6 +310,7 @@ impl<'a, T: ByteStream, P: WaitClock> DynamixelSession<'a, T, P> {
             }
         }
         self.incoming.reset();
+        self.undecoded = 0..0;
         self.outgoing.clear();
         instruction.encode(id, &mut self.outgoing);
         self.line.send(self.outgoing.bytes()).map_err(|_| self.gone())
@@ -360,25 +318,34 @@ impl<'a, T: ByteStream, P: WaitClock> DynamixelSession<'a, T, P> {
 
     fn receive(&mut self, mut fits: impl FnMut(&Packet<'_>) -> bool) -> Result<Option<DynamixelAnswer>, DeviceError> {
         let begin_s = self.pace.now_s();
-        let mut buffer = [0; LONGEST];
         loop {
-            let count = self.line.receive(&mut buffer).map_err(|_| self.gone())?;
-            self.received += count;
-            let mut taken = 0;
-            while taken < count {
-                taken += self.incoming.feed(&buffer[taken..count]);
-                while let Some(packet) = self.incoming.next() {
-                    if let Some((error, data)) = packet.body.split_first().filter(|_| fits(&packet)) {
-                        return Ok(Some(DynamixelAnswer { error: *error, data: data.to_vec() }));
-                    }
-                }
+            if let Some(answer) = self.decoded(&mut fits) {
+                return Ok(Some(answer));
             }
-            if self.pace.now_s() - begin_s > self.timeouts.answer_s {
+            if self.pace.now_s() - begin_s > ANSWER_S {
                 return Ok(None);
             }
+            let count = self.line.receive(&mut self.arrived).map_err(|_| self.gone())?;
+            self.received += count;
+            self.undecoded = 0..count;
             if count == 0 {
                 self.pace.nap();
             }
+        }
+    }
+
+    /// Returns the next fitting packet among the bytes that have arrived.
+    fn decoded(&mut self, fits: &mut impl FnMut(&Packet<'_>) -> bool) -> Option<DynamixelAnswer> {
+        loop {
+            while let Some(packet) = self.incoming.next() {
+                if let Some((error, data)) = packet.body.split_first().filter(|_| fits(&packet)) {
+                    return Some(DynamixelAnswer { error: *error, data: data.to_vec() });
+                }
+            }
+            if self.undecoded.is_empty() {
+                return None;
+            }
+            self.undecoded.start += self.incoming.feed(&self.arrived[self.undecoded.clone()]);
         }
     }
 

@@ -76,7 +76,8 @@ pub struct ServoSettings {
     pub operating_mode: OperatingMode,
     pub position_min_rad: f64,
     pub position_max_rad: f64,
-    /// Current limit, A (stored in the servo).
+    /// Current limit, A (stored in the servo); omitted for a servo that does not measure its current.
+    #[serde(default)]
     pub current_limit_a: f64,
     /// Current for holding the goal in current-based position mode, A; the current limit if omitted.
     #[serde(default)]
@@ -126,6 +127,7 @@ const fn silence_s() -> f64 {
 const ID_MAX: u8 = 252;
 /// Highest profile velocity and acceleration, units (ROBOTIS e-manual, X series).
 const PROFILE_MAX: f64 = 32_767.0;
+// Fourteen bits (ROBOTIS e-manual, X series).
 const GAIN_MAX: u16 = 16_383;
 /// Maximum turns of an extended position in each direction (ROBOTIS e-manual, X series: -256 to 256 revolutions); one
 /// turn is kept, so that the homing offset fits too.
@@ -188,8 +190,11 @@ impl DynamixelSettings {
     }
 }
 
+/// First word of the identity of servos, which have no serial number.
+pub(crate) const IDS: &str = "ids";
+
 pub(super) fn ids_text(ids: impl Iterator<Item = u8>) -> String {
-    ids.fold("ids".to_owned(), |words, id| format!("{words} {id}"))
+    ids.fold(IDS.to_owned(), |words, id| format!("{words} {id}"))
 }
 
 fn impossible(key: &str, value: &dyn std::fmt::Display, allowed: String) -> DeviceError {
@@ -263,8 +268,10 @@ impl ServoSettings {
             (table::DRIVE_MODE, drive_mode),
             (table::OPERATING_MODE, self.operating_mode as u32),
             (table::HOMING_OFFSET, homing.cast_unsigned()),
-            (table::CURRENT_LIMIT, (self.current_limit_a / model.current_unit_a).round() as u32),
         ];
+        if model.measures_current() {
+            wanted.push((table::CURRENT_LIMIT, (self.current_limit_a / model.current_unit_a).round() as u32));
+        }
         if self.operating_mode == OperatingMode::Position {
             let (low, high) = self.limits_ticks();
             wanted.extend([(table::POSITION_MIN, low as u32), (table::POSITION_MAX, high as u32)]);
@@ -278,7 +285,8 @@ impl ServoSettings {
         // Only 0 means "no limit", so a small value must not be rounded to 0.
         let profile = |value: f64, unit: f64| if value > 0.0 { (value / unit).round().max(1.0) as u32 } else { 0 };
         let goal_a = self.goal_current_a.unwrap_or(self.current_limit_a);
-        vec![
+        let goal_current = (table::GOAL_CURRENT, (goal_a / model.current_unit_a).round() as u32);
+        let mut wanted = vec![
             (table::VELOCITY_I, gains.velocity_i.into()),
             (table::VELOCITY_P, gains.velocity_p.into()),
             (table::POSITION_D, gains.position_d.into()),
@@ -286,9 +294,34 @@ impl ServoSettings {
             (table::POSITION_P, gains.position_p.into()),
             (table::FEEDFORWARD_2, gains.feedforward_2.into()),
             (table::FEEDFORWARD_1, gains.feedforward_1.into()),
-            (table::GOAL_CURRENT, (goal_a / model.current_unit_a).round() as u32),
             (table::PROFILE_ACCELERATION, profile(self.profile_acceleration_rad_s2, ACCELERATION_UNIT_RAD_S2)),
             (table::PROFILE_VELOCITY, profile(self.profile_velocity_rad_s, VELOCITY_UNIT_RAD_S)),
-        ]
+        ];
+        wanted.extend(model.measures_current().then_some(goal_current));
+        wanted
+    }
+
+    /// Checks that the settings of the current fit the model.
+    pub(super) fn check_current(&self, model: &ServoModel) -> Result<(), DeviceError> {
+        let max_a = f64::from(model.current_max) * model.current_unit_a;
+        if !model.measures_current() {
+            let uses = self.current_limit_a > 0.0
+                || self.goal_current_a.is_some()
+                || self.operating_mode == OperatingMode::CurrentBasedPosition;
+            let allowed = format!(
+                "a {} does not measure its current: omit current_limit_a and goal_current_a, and use the mode position or extended_position",
+                model.name
+            );
+            return if uses { Err(impossible("current_limit_a", &self.current_limit_a, allowed)) } else { Ok(()) };
+        }
+        if self.current_limit_a <= 0.0 {
+            let allowed = format!("above 0: a {} measures its current and needs a limit", model.name);
+            return Err(impossible("current_limit_a", &self.current_limit_a, allowed));
+        }
+        if self.current_limit_a > max_a {
+            let allowed = format!("a {} takes at most {max_a:.3} A", model.name);
+            return Err(impossible("current_limit_a", &self.current_limit_a, allowed));
+        }
+        Ok(())
     }
 }

@@ -20,7 +20,9 @@ use crate::{
 
 /// Numbers of an arm beyond these limits are impossible: rad, rad/s, Nm.
 const ANGLE_MAX_RAD: f64 = 100.0;
+// Far above any arm; such a number can only be a wrong unit or a damaged datagram.
 const SPEED_MAX_RAD_S: f64 = 50.0;
+// Far above any arm, as for the speed.
 const TORQUE_MAX_NM: f64 = 1e4;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

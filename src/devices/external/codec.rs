@@ -16,6 +16,7 @@ pub const NUMBERS_MAX: usize = 3 * ARM_JOINTS;
 /// Numbers of joints that an arm may have; the length of its datagrams shows which.
 const JOINTS: [usize; 2] = [ARM_JOINTS, ARM_JOINTS - 1];
 
+// Lengths of the parts of a datagram (`docs/external-device.md`); changing one makes a new version of the protocol.
 const HEADER_BYTES: usize = 48;
 const PRODUCT_BYTES: usize = 24;
 const SERIAL_BYTES: usize = 16;
@@ -57,6 +58,7 @@ pub enum ExternalMessage {
 }
 
 impl ExternalMessage {
+    // The highest bit distinguishes the datagrams to a device from those of the device.
     const COMMAND: u8 = 0x80;
 
     const fn code(self) -> u8 {

@@ -17,7 +17,9 @@ use crate::{ARM_JOINTS, Device, DeviceError, DeviceIdentity, HandleReading, Heal
 
 /// Numbers of a handle beyond these limits are impossible: m, m/s, rad.
 const POSITION_MAX_M: f64 = 2.0;
+// Far above a hand (3 m/s); such a number can only be a wrong unit.
 const SPEED_MAX_M_S: f64 = 20.0;
+// Just above half a turn.
 const GRIPPER_MAX_RAD: f64 = 3.2;
 /// Maximum deviation of a quaternion's length from 1: rounding, even to 32 bits, gives 1e-7, so that a larger deviation
 /// is a mistake in the user's program.

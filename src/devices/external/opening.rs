@@ -18,6 +18,7 @@ use crate::{
 /// Time limit for the first datagram, and then for one that shows that our answer was received.
 const FIRST_MAX: Duration = Duration::from_millis(300);
 const ANSWER_MAX: Duration = Duration::from_millis(200);
+// Half a period of a 1 kHz device.
 const NAP: Duration = Duration::from_micros(500);
 
 /// Listens at the address of the rig file; `joints` counts only for an arm. May take half a second.

@@ -1,16 +1,17 @@
 //! Opens an omega.7 and exchanges readings and forces with it from the real-time loop.
 //!
-//! The loop's side neither waits nor allocates: readings, events and force commands go through bounded queues to and
-//! from the thread that owns the device ([`super::worker`]).
+//! The loop's side neither waits nor allocates: readings, events and force commands go through wait-free queues to and
+//! from the thread that owns the device ([`super::worker`]). That thread has a higher priority than the loop, so a queue
+//! on which one of them spins for the other would stop both on a single processor.
 
 use std::{
-    sync::{Arc, atomic::Ordering},
+    sync::{Arc, atomic::Ordering, mpsc},
     thread::{Builder, JoinHandle},
     time::{Duration, Instant},
 };
 
-use crossbeam_channel::{Receiver, Sender, bounded};
 use nalgebra::Vector3;
+use rtrb::{Consumer, PopError, Producer, RingBuffer};
 use serde::Serialize;
 
 use super::{
@@ -26,6 +27,7 @@ pub const SILENCE_S: f64 = 0.020;
 /// Capacity of the queues of reports and commands: 32 ms at the highest rate (2 kHz), so that a late loop loses no
 /// report before the device counts as lost.
 pub(super) const QUEUE: usize = 64;
+// Reports of the device (lost, refused): few, and the loop takes them in every tick.
 const EVENTS: usize = 32;
 /// Time limit for the first reading while opening.
 const FIRST_READING_MAX: Duration = Duration::from_secs(1);
@@ -86,9 +88,9 @@ pub struct ForceDimensionDriver {
     cycle: Option<u64>,
     first_poll_s: Option<f64>,
     failing: Option<Loss>,
-    reports: Receiver<WorkerReport>,
-    events: Receiver<HandleEvent>,
-    commands: Sender<ForceCommand>,
+    reports: Consumer<WorkerReport>,
+    events: Consumer<HandleEvent>,
+    commands: Producer<ForceCommand>,
     shared: Arc<WorkerShared>,
     thread: Option<JoinHandle<()>>,
 }
@@ -108,10 +110,10 @@ struct OpeningReport {
 pub fn open(settings: &ForceDimensionSettings) -> Result<ForceDimensionDriver, DeviceError> {
     settings.check()?;
     let sdk = super::library::of(settings)?;
-    let (give_reports, reports) = bounded(QUEUE);
-    let (give_events, events) = bounded(EVENTS);
-    let (commands, take_commands) = bounded(QUEUE);
-    let (answer, answered) = bounded(1);
+    let (give_reports, reports) = RingBuffer::new(QUEUE);
+    let (give_events, events) = RingBuffer::new(EVENTS);
+    let (commands, take_commands) = RingBuffer::new(QUEUE);
+    let (answer, answered) = mpsc::sync_channel(1);
     let shared = Arc::new(WorkerShared::default());
     let ends =
         QueueEnds { reports: give_reports, events: give_events, commands: take_commands, shared: Arc::clone(&shared) };
@@ -134,7 +136,7 @@ pub fn open(settings: &ForceDimensionSettings) -> Result<ForceDimensionDriver, D
         Ok(opened) => opened?,
         Err(_) => return Err(failed("the SDK's thread ended while opening".to_owned())),
     };
-    let driver = ForceDimensionDriver {
+    let mut driver = ForceDimensionDriver {
         identity: opened.identity,
         health: Health::opening(),
         status: ForceDimensionStatus::default(),
@@ -155,14 +157,15 @@ pub fn open(settings: &ForceDimensionSettings) -> Result<ForceDimensionDriver, D
 }
 
 impl ForceDimensionDriver {
-    fn wait_for_first_reading(&self, place: &str) -> Result<(), DeviceError> {
+    fn wait_for_first_reading(&mut self, place: &str) -> Result<(), DeviceError> {
         let begin = Instant::now();
         while begin.elapsed() < FIRST_READING_MAX {
-            match self.reports.recv_timeout(FIRST_READING_MAX) {
+            match self.reports.pop() {
                 Ok(WorkerReport { reading: Some(_), .. }) => return Ok(()),
                 Ok(WorkerReport { loss: Some(loss), .. }) => return Err(super::opening::lost_at_once(place, loss)),
                 Ok(_) => {}
-                Err(_) => break,
+                Err(PopError::Empty) if self.reports.is_abandoned() => break,
+                Err(PopError::Empty) => std::thread::sleep(Duration::from_millis(1)),
             }
         }
         Err(DeviceError::Silent { place: place.to_owned() })
@@ -211,18 +214,18 @@ impl ForceDimensionDriver {
             answer = ForceAnswer::Clamped;
         }
         let command = ForceCommand { force_n: bounded_n.into(), gripper_n: bounded_gripper_n, given: Instant::now() };
-        if self.commands.try_send(command).is_err() {
+        if self.commands.push(command).is_err() {
             return ForceAnswer::Full;
         }
-        // `unpark` does not lock; a channel with a waiting receiver would.
+        // `unpark` does not lock.
         if let Some(thread) = &self.thread {
             thread.thread().unpark();
         }
         answer
     }
 
-    pub fn take_event(&self) -> Option<HandleEvent> {
-        self.events.try_recv().ok()
+    pub fn take_event(&mut self) -> Option<HandleEvent> {
+        self.events.pop().ok()
     }
 
     pub const fn status(&self) -> &ForceDimensionStatus {
@@ -267,13 +270,15 @@ impl Device for ForceDimensionDriver {
         let first_s = *self.first_poll_s.get_or_insert(now_s);
         let mut newest = None;
         for _ in 0..QUEUE {
-            match self.reports.try_recv() {
+            // Read before the queue, which then has every report of a thread that has ended.
+            let is_over = self.reports.is_abandoned();
+            match self.reports.pop() {
                 Ok(report) => newest = self.take(&report, now_s).or(newest),
-                Err(crossbeam_channel::TryRecvError::Empty) => break,
-                Err(crossbeam_channel::TryRecvError::Disconnected) => {
+                Err(PopError::Empty) if is_over => {
                     self.health.lose(Loss::Disconnected);
                     break;
                 }
+                Err(PopError::Empty) => break,
             }
         }
         if now_s - self.health.newest_s.unwrap_or(first_s) > SILENCE_S {

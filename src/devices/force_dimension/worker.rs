@@ -15,8 +15,8 @@ use std::{
     time::{Duration, Instant},
 };
 
-use crossbeam_channel::{Receiver, Sender, TrySendError};
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
+use rtrb::{Consumer, Producer};
 
 use super::{
     Counters, HandleEvent, IdleMode,
@@ -71,9 +71,9 @@ pub(super) struct WorkerShared {
 }
 
 pub(super) struct QueueEnds {
-    pub(super) reports: Sender<WorkerReport>,
-    pub(super) events: Sender<HandleEvent>,
-    pub(super) commands: Receiver<ForceCommand>,
+    pub(super) reports: Producer<WorkerReport>,
+    pub(super) events: Producer<HandleEvent>,
+    pub(super) commands: Consumer<ForceCommand>,
     pub(super) shared: Arc<WorkerShared>,
 }
 
@@ -144,10 +144,10 @@ impl ForceDimensionWorker {
         }
         // A full queue must not hide the loss of the device.
         while self.loss.is_some() && !self.ends.shared.stop.load(Ordering::Acquire) && !is_ending() {
-            match self.ends.reports.try_send(self.report(None)) {
-                Err(TrySendError::Full(_)) => std::thread::sleep(self.period),
-                _ => return,
+            if self.ends.reports.push(self.report(None)).is_ok() || self.ends.reports.is_abandoned() {
+                return;
             }
+            std::thread::sleep(self.period);
         }
     }
 
@@ -190,9 +190,8 @@ impl ForceDimensionWorker {
         }
         let reading = self.read();
         self.judge_silence();
-        if self.ends.reports.try_send(self.report(reading)).is_err() {
-            // The loop counts missing reports by the cycle numbers.
-        }
+        // The loop counts missing reports by the cycle numbers.
+        self.ends.reports.push(self.report(reading)).ok();
     }
 
     const fn report(&self, reading: Option<HandleReading>) -> WorkerReport {
@@ -290,9 +289,9 @@ impl ForceDimensionWorker {
         self.rest();
     }
 
-    fn send_event(&self, event: HandleEvent) {
+    fn send_event(&mut self, event: HandleEvent) {
         // If the events are not read, the status still shows the loss.
-        self.ends.events.try_send(event).ok();
+        self.ends.events.push(event).ok();
     }
 
     /// Removes the force: brakes on, or a free handle.
@@ -311,7 +310,8 @@ impl ForceDimensionWorker {
     /// Follows the loop's request for force, and applies the newest command.
     fn drive(&mut self) {
         // At most as many as the queue can hold.
-        let newest = self.ends.commands.try_iter().take(super::driver::QUEUE).last();
+        let commands = std::iter::from_fn(|| self.ends.commands.pop().ok());
+        let newest = commands.take(super::driver::QUEUE).last();
         let wanted = self.ends.shared.force_wanted.load(Ordering::Acquire);
         match (self.drive, wanted) {
             (WorkerDrive::Off, false) => return,

@@ -9,7 +9,11 @@ use super::cap_codec::BadReport;
 
 /// Number of keys that can be distinguished.
 pub const KEYS_MAX: usize = 8;
+/// A boot keyboard's report: modifiers, a reserved byte, six keys (HID 1.11, appendix B.1).
 pub const LENGTH_MAX: usize = 8;
+
+/// Maximum place of a switch in a report: byte and bit.
+pub const PLACE_MAX: [u8; 2] = [LENGTH_MAX as u8 - 1, 7];
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PedalLayout {
@@ -20,11 +24,15 @@ pub enum PedalLayout {
     },
     /// One bit per switch.
     Switches,
+    /// One bit per switch, at places that the rig file names: byte and bit, or `None` for no switch.
+    Bits { places: [Option<[u8; 2]>; KEYS_MAX] },
 }
 
 /// Bits of the switches of a [`PedalLayout::Switches`] pedal.
 const SWITCHES: u8 = 0b111;
+/// See [`LENGTH_MAX`].
 const KEYBOARD_LENGTH: usize = 8;
+/// One byte of switches and one unused (VEC Infinity IN-USB-2).
 const SWITCHES_LENGTH: usize = 2;
 /// Codes 1 to 3 are error codes of a keyboard that cannot determine which keys are pressed.
 const FIRST_KEY: u8 = 4;
@@ -47,6 +55,15 @@ impl PedalLayout {
                 let down = |key: &u8| *key != 0 && codes.contains(key);
                 Ok(keys.iter().enumerate().filter(|(_, key)| down(key)).fold(0, |bits, (i, _)| bits | 1 << i))
             }
+            Self::Bits { places } => {
+                let mut pressed = 0;
+                for (switch, place) in places.iter().enumerate() {
+                    let Some([byte, bit]) = *place else { continue };
+                    let byte = report.get(usize::from(byte)).ok_or(BadReport::Shape)?;
+                    pressed |= u32::from(byte >> bit & 1) << switch;
+                }
+                Ok(pressed)
+            }
             Self::Switches => match report {
                 [bits, _] if bits & !SWITCHES == 0 => Ok(u32::from(*bits)),
                 [_, _] => Err(BadReport::Content),
@@ -63,6 +80,15 @@ impl PedalLayout {
                 let down = keys.iter().enumerate().filter(|(i, key)| **key != 0 && pressed >> i & 1 == 1);
                 buffer[2..].iter_mut().zip(down).for_each(|(code, (_, key))| *code = *key);
                 KEYBOARD_LENGTH
+            }
+            Self::Bits { places } => {
+                let mut length = 0;
+                for (switch, [byte, bit]) in places.iter().enumerate().filter_map(|(i, place)| Some((i, (*place)?))) {
+                    let at = usize::from(byte).min(LENGTH_MAX - 1);
+                    buffer[at] |= ((pressed >> switch & 1) as u8) << bit;
+                    length = length.max(at + 1);
+                }
+                length
             }
             Self::Switches => {
                 buffer[0] = pressed as u8 & SWITCHES;

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::{
     driver::HidLine,
     models::HidKind,
-    pedal_codec::{KEYS_MAX, PedalLayout},
+    pedal_codec::{KEYS_MAX, PLACE_MAX, PedalLayout},
     source::{HidIdentity, HidSource},
 };
 use crate::{Device, DeviceError, DeviceIdentity, Health, PedalReading, TimedReading, transport::TransportDatagrams};
@@ -19,6 +19,10 @@ pub struct PedalSettings {
     /// settings are `b` (5) for single pedals and `a`, `b`, `c` (4, 5, 6) for triple ones, so by default switch 0 is
     /// `b`, 1 is `a`, 2 is `c`.
     pub keys: Vec<u8>,
+    /// For a pedal with other reports, which `source` names by its USB ids: byte and bit of every switch in a report,
+    /// both from 0.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub bits: Vec<[u8; 2]>,
     /// Index of the clutch switch, from 0; while pressed, the hand moves without moving the tip.
     pub clutch: u32,
     /// Index of the presence switch; `None` if the pedal has none.
@@ -27,7 +31,7 @@ pub struct PedalSettings {
 
 impl Default for PedalSettings {
     fn default() -> Self {
-        Self { source: "any".to_owned(), keys: vec![5, 4, 6], clutch: 0, presence: None }
+        Self { source: "any".to_owned(), keys: vec![5, 4, 6], bits: Vec::new(), clutch: 0, presence: None }
     }
 }
 
@@ -62,6 +66,11 @@ impl PedalSettings {
         if self.keys.is_empty() || self.keys.len() > KEYS_MAX || self.keys.iter().any(|key| *key < 4) {
             return Err(setting("keys", format!("{:?}", self.keys), "one to eight key codes, each at least 4"));
         }
+        let is_place = |[byte, bit]: &[u8; 2]| *byte <= PLACE_MAX[0] && *bit <= PLACE_MAX[1];
+        if self.bits.len() > KEYS_MAX || !self.bits.iter().all(is_place) {
+            let allowed = "at most eight pairs of a byte from 0 to 7 and a bit from 0 to 7";
+            return Err(setting("bits", format!("{:?}", self.bits), allowed));
+        }
         for (key, switch) in [("clutch", Some(self.clutch)), ("presence", self.presence)] {
             if let Some(switch) = switch.filter(|switch| *switch >= KEYS_MAX as u32) {
                 return Err(setting(key, switch.to_string(), "a switch from 0 to 7"));
@@ -83,6 +92,11 @@ impl PedalSettings {
     }
 
     fn layout(&self, kind: HidKind) -> PedalLayout {
+        if !self.bits.is_empty() {
+            let mut places = [None; KEYS_MAX];
+            places.iter_mut().zip(&self.bits).for_each(|(to, from)| *to = Some(*from));
+            return PedalLayout::Bits { places };
+        }
         if kind == HidKind::SwitchPedal {
             return PedalLayout::Switches;
         }
@@ -109,7 +123,10 @@ impl PedalDriver {
     pub fn open(settings: &PedalSettings) -> Result<Self, DeviceError> {
         settings.roles()?;
         let source: HidSource = settings.source.parse()?;
-        let (datagrams, identity) = source.open(&[HidKind::KeyboardPedal, HidKind::SwitchPedal])?;
+        // With the places of its switches in the rig file, any device can be a pedal.
+        let kinds = [HidKind::KeyboardPedal, HidKind::SwitchPedal];
+        let (datagrams, identity) =
+            if settings.bits.is_empty() { source.open(&kinds) } else { source.open_any(&kinds) }?;
         Self::over(datagrams, &identity, settings)
     }
 

@@ -133,18 +133,29 @@ impl fmt::Display for HidSource {
 impl HidSource {
     /// Opens the source and checks that the device is one of `kinds`; ids given in the rig file are not checked.
     pub(super) fn open(&self, kinds: &[HidKind]) -> Result<(Box<dyn TransportDatagrams>, HidIdentity), DeviceError> {
+        let opened = self.open_any(kinds)?;
+        let is_chosen = matches!(self, Self::Ids { .. });
+        if is_chosen || opened.1.kind().is_some_and(|kind| kinds.contains(&kind)) {
+            return Ok(opened);
+        }
+        let what = kinds.first().map_or("device", |kind| kind.words());
+        Err(DeviceError::WrongProduct { place: self.to_string(), expected: what.to_owned(), found: opened.1.words() })
+    }
+
+    /// Opens the source; a path may lead to any device.
+    pub(super) fn open_any(
+        &self,
+        kinds: &[HidKind],
+    ) -> Result<(Box<dyn TransportDatagrams>, HidIdentity), DeviceError> {
         let what = kinds.first().map_or("device", |kind| kind.words());
         let fits = |identity: &HidIdentity| identity.kind().is_some_and(|kind| kinds.contains(&kind));
-        let opened = match self {
+        match self {
             Self::Any => raw::open_first(&format!("any {what}"), fits),
-            Self::Ids { vendor, product, serial } => {
-                // Without the check below: ids in a rig file are the operator's decision, also for a model that is not
-                // listed.
-                return raw::open_first(&format!("{what} {self}"), |identity| {
-                    (identity.vendor, identity.product) == (*vendor, *product)
-                        && serial.as_ref().is_none_or(|serial| *serial == identity.serial)
-                });
-            }
+            // Ids in a rig file are the operator's decision, also for a model that is not listed.
+            Self::Ids { vendor, product, serial } => raw::open_first(&format!("{what} {self}"), |identity| {
+                (identity.vendor, identity.product) == (*vendor, *product)
+                    && serial.as_ref().is_none_or(|serial| *serial == identity.serial)
+            }),
             Self::Path(path) => raw::open_path(path),
             Self::Emulated(path) => emulated(path),
             Self::Spacenavd(_) => Err(DeviceError::Setting {
@@ -152,11 +163,7 @@ impl HidSource {
                 value: self.to_string(),
                 allowed: "spacenavd supports caps only".to_owned(),
             }),
-        }?;
-        if fits(&opened.1) {
-            return Ok(opened);
         }
-        Err(DeviceError::WrongProduct { place: self.to_string(), expected: what.to_owned(), found: opened.1.words() })
     }
 }
 

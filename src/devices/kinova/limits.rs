@@ -33,6 +33,7 @@ pub const STEP_MAX_S: f64 = 0.002;
 
 /// Returns an angle in the format of the protocol: degrees in [0, 360).
 pub fn wire_degrees(angle_rad: f64) -> f32 {
+    // The arm expects 0 to 360 degrees (`ros2_kortex` wraps commands in the same way).
     let degrees = angle_rad.to_degrees().rem_euclid(360.0) as f32;
     // An angle just below 360 can round up to 360.
     if degrees >= 360.0 { 0.0 } else { degrees }
@@ -107,12 +108,14 @@ impl Guard {
             if (at - measured_rad[j]).abs() > speed_rad_s.mul_add(braking_s, self.limits.lead_rad) {
                 return Err((j + 1, ExceededLimit::Lead));
             }
+            // The joint that needs longest at its speed limit decides.
             let time_s = (at - last_rad[j]).abs() / speed_rad_s;
             if time_s > self.allowed_s {
                 return Err((j + 1, ExceededLimit::Speed));
             }
             needed_s = needed_s.max(time_s);
         }
+        // Only after all joints have been checked: a refused target costs nothing.
         self.allowed_s -= needed_s;
         self.target_rad = Some(*target_rad);
         Ok(())
@@ -134,6 +137,7 @@ impl Guard {
 
     /// Returns the commands to send, `elapsed_s` after the previous ones.
     pub fn step(&mut self, elapsed_s: f64) -> &[f64; ARM_JOINTS] {
+        // The clock did not advance, so no motion is permitted.
         if elapsed_s <= 0.0 {
             return &self.command_rad;
         }
@@ -157,6 +161,7 @@ impl Guard {
                 let low_rad = self.limits.low_rad[j];
                 let high_rad = self.limits.high_rad[j];
                 let at = self.command_rad[j];
+                // An arm that was pushed beyond its range may stop there.
                 self.command_rad[j] = (at + self.speed_rad_s[j] * step_s).clamp(low_rad.min(at), high_rad.max(at));
             }
         }

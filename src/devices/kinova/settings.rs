@@ -33,7 +33,8 @@ pub struct KinovaSettings {
 impl Default for KinovaSettings {
     fn default() -> Self {
         Self {
-            host: "192.168.1.10".to_owned(),
+            // Without the factory's address: a rig or a test must not reach an arm that nobody named.
+            host: String::new(),
             tcp_port: 10_000,
             udp_port: 10_001,
             serial_number: None,
@@ -90,6 +91,14 @@ impl KinovaSettings {
             let allowed = format!("above {low} and at most {high}");
             Err(DeviceError::Setting { key: key.to_owned(), value: value.to_string(), allowed })
         };
+        if self.host.trim().is_empty() {
+            let allowed = "the arm's address or host name; a Gen3 leaves the factory with 192.168.1.10";
+            return Err(DeviceError::Setting {
+                key: "host".to_owned(),
+                value: "\"\"".to_owned(),
+                allowed: allowed.to_owned(),
+            });
+        }
         within("speed_fraction", self.speed_fraction, 0.0, 1.0)?;
         within("lead_rad", self.lead_rad, 0.0, 0.2)?;
         within("twist_m_s", self.twist_m_s, 0.0, TWIST_MAX.0)?;

@@ -96,16 +96,7 @@ impl NdiDriver {
     /// [`DeviceError`] if a setting is invalid, the unit cannot be reached or reports a fault, or a tool definition is not
     /// accepted.
     pub fn open(settings: &NdiSettings) -> Result<Self, DeviceError> {
-        Self::open_within(settings, opening::NdiTimeouts::USUAL)
-    }
-
-    /// Opens for a diagnosis: a unit that does not answer is reported within a second.
-    pub(crate) fn try_open(settings: &NdiSettings) -> Result<Self, DeviceError> {
-        Self::open_within(settings, opening::NdiTimeouts::SHORT)
-    }
-
-    fn open_within(settings: &NdiSettings, timeouts: opening::NdiTimeouts) -> Result<Self, DeviceError> {
-        let OpenTracker { session, identity, form, handles } = opening::open(settings, timeouts)?;
+        let OpenTracker { session, identity, form, handles } = opening::open(settings)?;
         let mut health = Health::opening();
         health.standing = ConnectionState::Connected;
         Ok(Self {
@@ -225,6 +216,11 @@ impl NdiDriver {
             self.health.refused += 1;
             return Err(Loss::Device { code: SYSTEM_FAULT + u32::from(faults) });
         }
+        if self.handles == [None; TRACKED_TOOLS] {
+            // The unit works, but there is nothing to track yet. A new tool is prepared when the unit is opened again.
+            self.fresh_s = Some(now_s);
+            return if frames.system.0 & SystemStatus::TOOL_CAME == 0 { Ok(None) } else { Err(Loss::Silent) };
+        }
         let mut reading = TrackerReading::default();
         let mut newest: Option<u32> = None;
         for (k, handle) in self.handles.iter().enumerate() {
@@ -338,6 +334,7 @@ impl Drop for NdiDriver {
     /// Waits for the current reply to pass, stops tracking, and resets the line to its initial speed for the next
     /// session.
     fn drop(&mut self) {
+        // A reply at 60 Hz takes at most 17 ms; the program must still end promptly if the unit is gone.
         const TIMEOUT: Duration = Duration::from_millis(100);
         // Without a line every command would only wait for its timeout.
         if self.health.standing == ConnectionState::Lost(Loss::Disconnected) {

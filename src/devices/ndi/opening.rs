@@ -1,7 +1,7 @@
 //! Prepares a connected unit for tracking: line speed, reset, freeing old handles, tool definitions, start (reference
 //! 1.3).
 
-use std::time::Duration;
+use std::{path::PathBuf, time::Duration};
 
 use super::{
     command::{Filter, NdiCommand, NdiPriority, OUTSIDE_TOO, ReplyForm, TRANSFORMS, WIRELESS},
@@ -22,22 +22,16 @@ use crate::{
 pub(super) const OPTIONS: u16 = TRANSFORMS | OUTSIDE_TOO;
 /// Line speed after power-on and after a reset.
 pub(super) const FIRST_BAUD: u32 = 9600;
-#[derive(Clone, Copy, Debug)]
-pub(super) struct NdiTimeouts {
-    quick: Duration,
-    slow: Duration,
-}
 
-impl NdiTimeouts {
-    /// The values of the manufacturer's guide.
-    pub(super) const USUAL: Self = Self { quick: Duration::from_millis(500), slow: Duration::from_secs(5) };
-    /// Timeout for a diagnosis, which must finish within a second.
-    pub(super) const SHORT: Self = Self { quick: Duration::from_millis(200), slow: Duration::from_millis(400) };
-}
-
+/// Time for a reply, from the manufacturer's guide.
+const QUICK: Duration = Duration::from_millis(500);
+/// Time for the reply to a command that makes the unit work.
+const SLOW: Duration = Duration::from_secs(5);
 /// Wait after `INIT` and after a change of speed, as the guide requires.
 const SETTLE: Duration = Duration::from_millis(100);
+// A connection in the same network takes milliseconds; longer waits only delay the message that nothing answers.
 const CONNECT: Duration = Duration::from_secs(2);
+// Long enough for a break at the slowest line speed (9600 bit/s: a character takes 1 ms).
 const BREAK: Duration = Duration::from_millis(250);
 
 #[derive(Debug)]
@@ -48,30 +42,45 @@ pub(super) struct OpenTracker {
     pub(super) handles: [Option<u8>; TRACKED_TOOLS],
 }
 
-pub(super) fn open(settings: &NdiSettings, timeouts: NdiTimeouts) -> Result<OpenTracker, DeviceError> {
+pub(super) fn open(settings: &NdiSettings) -> Result<OpenTracker, DeviceError> {
     settings.check()?;
     let key = |k: usize| format!("tools[{k}]");
     let load = |(k, path): (usize, &std::path::PathBuf)| NdiDefinition::load(&key(k), path);
     let definitions = settings.tools.iter().enumerate().map(load).collect::<Result<Vec<_>, _>>()?;
+    check_distinct(&settings.tools, &definitions)?;
     let place = settings.place();
     let baud = settings.port.is_some().then_some(settings.baud);
     let session = match baud {
-        None => over_network(&place, timeouts),
-        Some(baud) => over_line(&place, baud, timeouts),
+        None => over_network(&place),
+        Some(baud) => over_line(&place, baud),
     }?;
-    NdiOpening { session, place, baud, timeouts }.start(settings, &definitions)
+    NdiOpening { session, place, baud }.start(settings, &definitions)
 }
 
-fn over_network(place: &str, timeouts: NdiTimeouts) -> Result<NdiSession, DeviceError> {
-    let mut session = NdiSession::new(NdiWire::Tcp(Tcp::open(place, timeouts.slow.min(CONNECT))?));
-    session.ask(&NdiCommand::Init, timeouts.slow).map_err(|failure| trouble(place, None, "INIT", failure))?;
+/// Refuses two tools with one definition: the unit could not tell their markers apart.
+fn check_distinct(paths: &[PathBuf], definitions: &[NdiDefinition]) -> Result<(), DeviceError> {
+    for (k, definition) in definitions.iter().enumerate() {
+        if let Some(same) = definitions[..k].iter().position(|other| other == definition) {
+            return Err(DeviceError::File {
+                key: format!("tools[{k}]"),
+                path: paths[k].display().to_string(),
+                reason: format!("it is the same definition as tools[{same}], but each tool needs its own"),
+            });
+        }
+    }
+    Ok(())
+}
+
+fn over_network(place: &str) -> Result<NdiSession, DeviceError> {
+    let mut session = NdiSession::new(NdiWire::Tcp(Tcp::open(place, SLOW.min(CONNECT))?));
+    session.ask(&NdiCommand::Init, SLOW).map_err(|failure| trouble(place, None, "INIT", failure))?;
     std::thread::sleep(SETTLE);
     Ok(session)
 }
 
 /// Finds the line speed: the speed of the last session, the speed after power-on, or the speed after a reset by a
 /// break.
-fn over_line(place: &str, baud: u32, timeouts: NdiTimeouts) -> Result<NdiSession, DeviceError> {
+fn over_line(place: &str, baud: u32) -> Result<NdiSession, DeviceError> {
     let line = Serial::open(&SerialSettings { port: place.to_owned(), baud })?;
     let mut session = NdiSession::new(NdiWire::Serial(line));
     let report = |command, failure| trouble(place, Some(baud), command, failure);
@@ -79,11 +88,11 @@ fn over_line(place: &str, baud: u32, timeouts: NdiTimeouts) -> Result<NdiSession
     let mut found = false;
     for speed in [baud, FIRST_BAUD] {
         set_baud(&mut session, speed).map_err(|failure| report("INIT", failure))?;
-        let mut answered = session.ask_again(&NdiCommand::Init, timeouts.quick / 2);
+        let mut answered = session.ask_again(&NdiCommand::Init, QUICK / 2);
         if answered.as_deref() == Ok("RESET") {
             // Bytes at a low speed look like a break to a unit at a higher speed.
             std::thread::sleep(SETTLE);
-            answered = session.ask_again(&NdiCommand::Init, timeouts.slow);
+            answered = session.ask_again(&NdiCommand::Init, SLOW);
         }
         if answered == Err(NdiFailure::Gone) {
             return Err(report("INIT", NdiFailure::Gone));
@@ -94,11 +103,11 @@ fn over_line(place: &str, baud: u32, timeouts: NdiTimeouts) -> Result<NdiSession
         }
     }
     if !found {
-        reset(&mut session, timeouts).map_err(|failure| report("a reset", failure))?;
-        session.ask_again(&NdiCommand::Init, timeouts.slow).map_err(|failure| report("INIT", failure))?;
+        reset(&mut session).map_err(|failure| report("a reset", failure))?;
+        session.ask_again(&NdiCommand::Init, SLOW).map_err(|failure| report("INIT", failure))?;
     }
     std::thread::sleep(SETTLE);
-    session.ask(&NdiCommand::Comm { baud }, timeouts.quick).map_err(|failure| report("COMM", failure))?;
+    session.ask(&NdiCommand::Comm { baud }, QUICK).map_err(|failure| report("COMM", failure))?;
     std::thread::sleep(SETTLE);
     set_baud(&mut session, baud).map_err(|failure| report("COMM", failure))?;
     Ok(session)
@@ -112,13 +121,13 @@ fn set_baud(session: &mut NdiSession, baud: u32) -> Result<(), NdiFailure> {
 }
 
 /// Sends a break at the initial speed; the unit replies `RESET`.
-fn reset(session: &mut NdiSession, timeouts: NdiTimeouts) -> Result<(), NdiFailure> {
+fn reset(session: &mut NdiSession) -> Result<(), NdiFailure> {
     set_baud(session, FIRST_BAUD)?;
     session.drain()?;
     if let NdiWire::Serial(serial) = &mut session.wire {
         serial.send_break(BREAK).map_err(|_| NdiFailure::Gone)?;
     }
-    session.wait(timeouts.slow)?;
+    session.wait(SLOW)?;
     std::thread::sleep(SETTLE);
     Ok(())
 }
@@ -144,7 +153,6 @@ struct NdiOpening {
     session: NdiSession,
     place: String,
     baud: Option<u32>,
-    timeouts: NdiTimeouts,
 }
 
 impl NdiOpening {
@@ -183,7 +191,7 @@ impl NdiOpening {
             return Ok(());
         }
         // Whether the unit stops or not, its fault is what the operator must know.
-        self.session.ask(&NdiCommand::Stop, self.timeouts.quick).ok();
+        self.session.ask(&NdiCommand::Stop, QUICK).ok();
         Err(DeviceError::DeviceFault {
             place: self.place.clone(),
             words: format!("{} (system status {:04X})", frames.system.words(), frames.system.0),
@@ -224,11 +232,11 @@ impl NdiOpening {
     }
 
     fn quick(&mut self, command: &NdiCommand<'_>) -> Result<String, DeviceError> {
-        self.session.ask_again(command, self.timeouts.quick).map_err(|failure| self.trouble(command.name(), failure))
+        self.session.ask_again(command, QUICK).map_err(|failure| self.trouble(command.name(), failure))
     }
 
     fn slow(&mut self, command: &NdiCommand<'_>, name: &str) -> Result<String, DeviceError> {
-        self.session.ask(command, self.timeouts.slow).map_err(|failure| self.trouble(name, failure))
+        self.session.ask(command, SLOW).map_err(|failure| self.trouble(name, failure))
     }
 
     fn trouble(&self, command: &str, failure: NdiFailure) -> DeviceError {

@@ -71,6 +71,12 @@ impl NdiSettings {
         if self.tools.len() > TRACKED_TOOLS {
             return Err(refuse("tools", format!("{} tools", self.tools.len()), "at most four"));
         }
+        let double = |k: &usize| self.tools[..*k].contains(&self.tools[*k]);
+        if let Some(k) = (1..self.tools.len()).find(double) {
+            let allowed =
+                "a different definition for each tool: the unit cannot tell two tools with one definition apart";
+            return Err(refuse(&format!("tools[{k}]"), self.tools[k].display().to_string(), allowed));
+        }
         if self.tools.is_empty() && !self.wired {
             return Err(refuse("tools", "[]", "at least one definition, or wired = true"));
         }

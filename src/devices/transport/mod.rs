@@ -4,11 +4,13 @@
 //! Reading returns the data that have arrived (`Ok(0)` if none); an error means that the connection is closed. Opening
 //! may block and must run on another thread; reading and writing allocate nothing.
 
+mod example;
 mod memory;
 mod serial;
 mod tcp;
 mod udp;
 
+pub use example::{check_no_example, is_example};
 pub use memory::{MemoryBytes, MemoryDatagrams};
 pub use serial::{Serial, SerialSettings};
 pub use tcp::Tcp;

@@ -6,7 +6,7 @@ use std::{
     time::Duration,
 };
 
-use super::ByteStream;
+use super::{ByteStream, check_no_example};
 use crate::{DeviceError, Loss};
 
 #[derive(Debug)]
@@ -20,6 +20,7 @@ impl Tcp {
     /// # Errors
     /// [`DeviceError`] if the address cannot be resolved or connected to in time.
     pub fn open(address: &str, timeout: Duration) -> Result<Self, DeviceError> {
+        check_no_example(address)?;
         let trouble = |error| DeviceError::of_address(address, &error);
         let resolved = address.to_socket_addrs().map_err(trouble)?.next();
         let resolved = resolved.ok_or_else(|| DeviceError::Unreachable { place: address.to_owned() })?;

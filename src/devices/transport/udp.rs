@@ -5,7 +5,7 @@ use std::{
     net::{IpAddr, SocketAddr, UdpSocket},
 };
 
-use super::TransportDatagrams;
+use super::{TransportDatagrams, check_no_example};
 use crate::{DeviceError, Loss};
 
 #[derive(Debug)]
@@ -39,6 +39,7 @@ impl Udp {
     /// # Errors
     /// [`DeviceError`] if the socket cannot be created or connected.
     pub fn connect(to: SocketAddr) -> Result<Self, DeviceError> {
+        check_no_example(&to.to_string())?;
         let trouble = |error| DeviceError::of_address(&to.to_string(), &error);
         // Unspecified, so that the system chooses a free port and the right interface.
         let socket = UdpSocket::bind(("0.0.0.0", 0)).map_err(trouble)?;

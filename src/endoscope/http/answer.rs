@@ -22,6 +22,8 @@ pub(super) enum HttpFault {
     Status(u16),
     /// A password is required: the camera's challenges.
     Locked(Vec<String>),
+    /// The images are at another address.
+    Moved(String),
     Format(String),
     Unreadable(&'static str),
     Ended,
@@ -102,7 +104,9 @@ impl HttpAnswer {
         match head.status {
             200 => {}
             401 => return Err(HttpFault::Locked(head.challenges)),
-            // Redirections are not followed, because a camera that was typed in must not lead to another host.
+            status @ (301 | 302 | 303 | 307 | 308) => {
+                return Err(head.location.map_or(HttpFault::Status(status), HttpFault::Moved));
+            }
             status => return Err(HttpFault::Status(status)),
         }
         let kind = head.kind();

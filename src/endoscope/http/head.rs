@@ -20,6 +20,8 @@ pub(super) struct HttpHead {
     pub(super) stamp_s: Option<f64>,
     /// Authentication methods requested by the camera, as sent.
     pub(super) challenges: Vec<String>,
+    /// Address to which the camera redirects.
+    pub(super) location: Option<String>,
 }
 
 impl HttpHead {
@@ -70,6 +72,7 @@ impl HttpHead {
                 },
                 // Seconds, as sent by mjpg-streamer and others.
                 "x-timestamp" => head.stamp_s = value.parse().ok().filter(|stamp_s: &f64| stamp_s.is_finite()),
+                "location" => head.location = Some(value.to_owned()),
                 "www-authenticate" => head.challenges.push(value.to_owned()),
                 _ => {}
             }

@@ -1,7 +1,7 @@
 //! Motion JPEG over HTTP/1.1, as sent by cameras: an endless response whose parts are images.
 //!
-//! A separate client, because little is needed: one request, or two where the camera asks for a password, no
-//! redirection, no encryption. Everything that the other end decides is limited: the length of heads and pictures, and
+//! A separate client, because little is needed: one request, more where the camera asks for a password or redirects
+//! within itself, no encryption. Everything that the other end decides is limited: the length of heads and pictures, and
 //! how long they take.
 
 mod answer;
@@ -18,7 +18,7 @@ use std::{
 use http_auth::{PasswordClient, PasswordParams};
 
 use self::answer::{HttpAnswer, HttpFault, ImagePart};
-use crate::{CompressedFrame, EndoscopeError, Endpoint, ImageSource};
+use crate::{Address, CompressedFrame, EndoscopeError, Endpoint, ImageSource};
 
 /// Time for connecting to one address of the camera, and maximum number of addresses tried.
 const CONNECT: Duration = Duration::from_millis(500);
@@ -29,6 +29,8 @@ const SILENT: Duration = Duration::from_secs(2);
 const SLOW: Duration = Duration::from_secs(5);
 /// Interval at which the thread checks whether images are still needed.
 const PATIENCE: Duration = Duration::from_millis(100);
+/// Maximum number of redirects, as in a loop.
+const REDIRECTS_MAX: usize = 3;
 const READ_BYTES: usize = 64 << 10;
 
 /// A camera that is sending.
@@ -37,6 +39,8 @@ pub(crate) struct Http {
     place: String,
     stream: TcpStream,
     has_logged_in: bool,
+    /// Number of redirects that were followed.
+    redirects: usize,
     answer: HttpAnswer,
     parts: VecDeque<ImagePart>,
     buffer: Vec<u8>,
@@ -56,6 +60,7 @@ impl Http {
             place: endpoint.place(),
             stream,
             has_logged_in: false,
+            redirects: 0,
             answer: HttpAnswer::default(),
             parts: VecDeque::new(),
             buffer,
@@ -84,11 +89,27 @@ impl Http {
         Ok(true)
     }
 
+    /// Requests the images at another address of the same camera. A camera that was typed in must not lead to another
+    /// host, which would also receive the password.
+    fn follow(&mut self, location: &str) -> Result<bool, EndoscopeError> {
+        let refused = || EndoscopeError::Redirected { place: self.place.clone(), to: shown(location) };
+        let target = redirected(&self.endpoint, location).filter(|_| self.redirects < REDIRECTS_MAX);
+        let target = target.ok_or_else(refused)?;
+        self.stream = ask(&target, None)?;
+        self.place = target.place();
+        self.endpoint = target;
+        self.answer = HttpAnswer::default();
+        self.has_logged_in = false;
+        self.redirects += 1;
+        Ok(true)
+    }
+
     fn trouble(&self, wrong: HttpFault) -> EndoscopeError {
         let place = self.place.clone();
         match wrong {
             HttpFault::Status(status) => EndoscopeError::Refused { place, status },
             HttpFault::Locked(_) => EndoscopeError::Refused { place, status: 401 },
+            HttpFault::Moved(location) => EndoscopeError::Redirected { place, to: shown(&location) },
             HttpFault::Format(found) => EndoscopeError::OtherFormat { place, found, wanted: "motion JPEG" },
             HttpFault::Unreadable(reason) => EndoscopeError::Unreadable { place, reason: reason.to_owned() },
             HttpFault::Ended => EndoscopeError::Closed { place },
@@ -105,6 +126,7 @@ impl Http {
                 match self.answer.take(&self.buffer[..count], &mut self.parts) {
                     Ok(()) => Ok(true),
                     Err(HttpFault::Locked(challenges)) if self.log_in(&challenges)? => Ok(true),
+                    Err(HttpFault::Moved(location)) => self.follow(&location),
                     Err(wrong) => Err(self.trouble(wrong)),
                 }
             }
@@ -116,6 +138,34 @@ impl Http {
             Err(error) => Err(EndoscopeError::of_network(&self.place, &error)),
         }
     }
+}
+
+/// Returns the endpoint to which a camera redirects; `None` if it is another host, encrypted or not an address.
+fn redirected(from: &Endpoint, location: &str) -> Option<Endpoint> {
+    let location = location.split('#').next().unwrap_or_default();
+    let sound = location.len() <= 2000 && location.chars().all(|letter| letter.is_ascii_graphic());
+    if !sound || location.is_empty() {
+        return None;
+    }
+    if location.contains("://") || location.starts_with("//") {
+        let whole = if location.starts_with("//") { format!("http:{location}") } else { location.to_owned() };
+        let Ok(Address::Http(target)) = whole.parse() else { return None };
+        let is_same = target.host.eq_ignore_ascii_case(&from.host) && target.login.is_none();
+        return is_same.then(|| Endpoint { login: from.login.clone(), ..target });
+    }
+    let folder = from.path.split('?').next().and_then(|path| path.rsplit_once('/')).map_or("", |(folder, _)| folder);
+    let path = if location.starts_with('/') { location.to_owned() } else { format!("{folder}/{location}") };
+    Some(Endpoint { path, ..from.clone() })
+}
+
+/// Returns an address from the other end for a message: short, and without its query, which may contain a password.
+fn shown(location: &str) -> String {
+    let open = location.split(['?', '#']).next().unwrap_or_default();
+    let open = match open.split_once("://") {
+        Some((scheme, rest)) => format!("{scheme}://{}", rest.rsplit_once('@').map_or(rest, |(_, host)| host)),
+        None => open.to_owned(),
+    };
+    open.chars().filter(char::is_ascii_graphic).take(100).collect()
 }
 
 /// Connects to the camera and requests its images.

@@ -287,3 +287,57 @@ fn who_does_not_listen_or_does_not_speak_http_is_told_with_a_cure() {
     let report = std::iter::repeat_with(|| source.next()).find_map(Result::err).unwrap();
     assert!(report.to_string().contains("not HTTP") && report.cure().contains("another program"), "{report}");
 }
+
+/// Returns the outcome of a client at a camera that first redirects to this location; `PORT` stands for its port.
+fn redirected_to(location: &str, login: Option<Login>) -> (Result<CompressedFrame, EndoscopeError>, Vec<String>) {
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let port = listener.local_addr().unwrap().port();
+    let location = location.replace("PORT", &port.to_string());
+    let (give, requests) = std::sync::mpsc::channel();
+    thread::spawn(move || {
+        for count in 0..8 {
+            let Ok((mut stream, _)) = listener.accept() else { return };
+            let mut request = [0; 1000];
+            let length = stream.read(&mut request).unwrap();
+            let request = String::from_utf8(request[..length].to_vec()).unwrap();
+            let answer = if count == 0 || request.starts_with("GET /loop ") {
+                format!("HTTP/1.1 302 Found\r\nLocation: {location}\r\nContent-Length: 0\r\n\r\n").into_bytes()
+            } else {
+                [HEAD.as_bytes(), &parts(true)].concat()
+            };
+            give.send(request).ok();
+            stream.write_all(&answer).ok();
+        }
+    });
+    let mut source = Http::open(&Endpoint { login, ..endpoint(port) }).unwrap();
+    let first = std::iter::repeat_with(|| source.next()).find_map(Result::transpose).unwrap();
+    (first, requests.try_iter().collect())
+}
+
+#[test]
+fn a_redirect_within_the_camera_is_followed_and_none_to_another_host() {
+    for (location, path) in [
+        ("/other?x=1", "/other?x=1"),
+        ("http://127.0.0.1:PORT/other", "/other"),
+        ("//127.0.0.1:PORT/other", "/other"),
+        ("other", "/other"),
+    ] {
+        let (image, requests) = redirected_to(location, None);
+        assert_eq!(image.unwrap().bytes, body(0), "{location}");
+        assert!(requests[1].starts_with(&format!("GET {path} HTTP/1.1")), "{requests:?}");
+    }
+    let login = || Some(Login { user: "eva".to_owned(), password: "secret".to_owned() });
+    for location in [
+        "http://192.0.2.1/other?pwd=secret",
+        "https://127.0.0.1:PORT/other",
+        "http://eva:secret@127.0.0.1:PORT/other",
+        "/loop",
+        "",
+    ] {
+        let (report, requests) = redirected_to(location, login());
+        let report = report.err().unwrap();
+        assert!(matches!(report, EndoscopeError::Redirected { .. } | EndoscopeError::Refused { .. }), "{report}");
+        assert!(!report.to_string().contains("secret"), "{report}");
+        assert!(requests.iter().all(|request| !request.contains("Authorization")));
+    }
+}

@@ -103,6 +103,12 @@ pub fn decode(jpeg: &[u8]) -> Result<DecodedImage, Damage> {
     let info = decoder.info().ok_or(Damage::NotJpeg)?;
     let size_px = [usize::from(info.width), usize::from(info.height)];
     check_size(size_px)?;
+    // The library writes four colours as stripes.
+    if !matches!(info.components, 1 | 3) {
+        let reason =
+            format!("it has {} colour components (CMYK); set the camera to colour (YCbCr) or grey", info.components);
+        return Err(Damage::Undecodable { reason });
+    }
     let mut rgba = vec![255; 4 * size_px[0] * size_px[1]];
     if decoder.output_buffer_size() != Some(rgba.len()) {
         return Err(Damage::Undecodable { reason: "its colour format is not supported".to_owned() });
@@ -188,6 +194,25 @@ pub(crate) mod tests {
         }
         assert!(bare.len() < whole.len() - 200);
         assert_eq!(decode(&bare), decode(&whole));
+    }
+
+    #[test]
+    fn four_colours_are_refused_with_their_name() {
+        let mut jpeg = encode(&pattern([32, 32]), [32, 32], 85);
+        let frame = jpeg.windows(2).position(|two| two == [0xff, 0xc0]).unwrap();
+        // Another component, with the tables of the third one, in the frame and in the scan.
+        let length = u16::from_be_bytes([jpeg[frame + 2], jpeg[frame + 3]]);
+        let end = frame + 2 + usize::from(length);
+        jpeg.splice(end..end, [4, 0x11, jpeg[end - 1]]);
+        jpeg[frame + 2..frame + 4].copy_from_slice(&(length + 3).to_be_bytes());
+        jpeg[frame + 9] = 4;
+        let scan = jpeg.windows(2).position(|two| two == [0xff, 0xda]).unwrap();
+        let tables = jpeg[scan + 10];
+        jpeg.splice(scan + 11..scan + 11, [4, tables]);
+        jpeg[scan + 3] += 2;
+        jpeg[scan + 4] = 4;
+        let refused = decode(&jpeg).unwrap_err().to_string();
+        assert!(refused.contains("4 colour components (CMYK)"), "{refused}");
     }
 
     #[test]

@@ -206,15 +206,7 @@ impl Peers {
     /// # Errors
     /// [`KeyError`] with the file.
     pub fn save(&self, folder: &Path) -> Result<(), KeyError> {
-        let path = folder.join(PEERS_FILE);
-        if read(&path)?.is_none() {
-            // Created with its mode, which is kept when the file is replaced.
-            write_new(&path, "")?;
-        }
-        let written = nima_files::write_atomically(&path, |file| {
-            self.list.iter().try_for_each(|peer| writeln!(file, "{} {}", peer.key, peer.name))
-        });
-        written.map_err(|source| KeyError::File { path, source })
+        replace(&folder.join(PEERS_FILE), self.list.iter().map(|peer| format!("{} {}", peer.key, peer.name)))
     }
 
     /// Adds a machine, or renames the one with this key.
@@ -250,7 +242,7 @@ impl Peers {
 }
 
 /// Returns the content of a file that only its owner can read; `None` if there is none.
-fn read(path: &Path) -> Result<Option<String>, KeyError> {
+pub(crate) fn read(path: &Path) -> Result<Option<String>, KeyError> {
     let error = |source| KeyError::File { path: path.into(), source };
     let metadata = match fs::metadata(path) {
         Err(source) if source.kind() == ErrorKind::NotFound => return Ok(None),
@@ -275,6 +267,16 @@ fn mode_for_others(metadata: &fs::Metadata) -> Option<u32> {
 #[cfg(not(unix))]
 const fn mode_for_others(_: &fs::Metadata) -> Option<u32> {
     None
+}
+
+/// Writes these lines into a file that only its owner can read, or replaces it.
+pub(crate) fn replace(path: &Path, mut lines: impl Iterator<Item = String>) -> Result<(), KeyError> {
+    if read(path)?.is_none() {
+        // Created with its mode, which is kept when the file is replaced.
+        write_new(path, "")?;
+    }
+    let written = nima_files::write_atomically(path, |file| lines.try_for_each(|line| writeln!(file, "{line}")));
+    written.map_err(|source| KeyError::File { path: path.into(), source })
 }
 
 fn write_new(path: &Path, text: &str) -> Result<(), KeyError> {

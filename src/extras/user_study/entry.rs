@@ -85,7 +85,7 @@ pub enum StudyEvent {
         trial: TrialId,
         ending: TrialEnding,
         measures: TrialMeasures,
-        /// Measures that reveal the condition, encrypted; only in a blind study.
+        /// Measures that reveal the condition, encrypted; in every trial of a blind study, also if there are none.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         withheld: Option<String>,
         /// The recording, in the folder of the study.
@@ -98,6 +98,9 @@ pub enum StudyEvent {
         #[serde(flatten)]
         trial: TrialId,
         why: String,
+        /// Details that may reveal the condition, encrypted; in every such entry of a blind study.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        withheld: Option<String>,
     },
     /// The program ended in the middle of the trial: detected when the study was opened again.
     TrialInterrupted {

@@ -8,8 +8,12 @@ use crate::{
     order, seal,
 };
 
-/// Version of the file's format: version 1 had no feedback.
-const VERSION: u32 = 2;
+/// Version of the file's format: version 1 had no feedback; version 2 had a commitment to the assignment only, a journal
+/// without hashes, and sealed texts that were not bound to their trials.
+const VERSION: u32 = 3;
+const BOUND: u32 = 3;
+/// Start of the line with the commitment.
+const COMMITMENT: &str = "commitment = ";
 const OLDEST: u32 = 1;
 
 /// A study without its conditions. The next step follows from it and the journal.
@@ -36,7 +40,8 @@ pub struct StudyPlan {
     /// Maximum attempts at a trial.
     pub attempts: u32,
     pub labels: Vec<Label>,
-    /// BLAKE2b-256 of the sealed assignment, in hexadecimal digits: proves later that the assignment was not changed.
+    /// BLAKE2b-256 of the sealed assignment, in hexadecimal digits: proves later that neither the assignment nor the
+    /// rules of the study were changed.
     pub commitment: String,
     /// When practice is over.
     pub practice: Option<PracticePlan>,
@@ -123,6 +128,18 @@ impl StudyPlan {
                 "it has version {other}, but this program supports versions {OLDEST} to {VERSION}: use a newer program"
             )),
         }
+    }
+
+    /// Returns the hash of the file without the commitment, which the commitment covers.
+    pub(crate) fn hash_of(text: &str) -> String {
+        let covered: String = text.split_inclusive('\n').filter(|line| !line.starts_with(COMMITMENT)).collect();
+        seal::hash(covered.as_bytes())
+    }
+
+    /// Returns whether the commitment covers this file, the journal is chained, and sealed texts are bound to their
+    /// trials.
+    pub(crate) const fn is_bound(&self) -> bool {
+        self.version >= BOUND
     }
 
     /// Returns the participant of this name.

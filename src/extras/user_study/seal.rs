@@ -2,7 +2,8 @@
 //!
 //! ChaCha20-Poly1305 in pieces of 64 KiB: each sealed text has its own key, derived from the study's key, a random salt
 //! and the purpose, and its pieces are numbered, with the last one marked. A piece that was changed, swapped, or cut
-//! off is refused. (The construction is STREAM: Hoang, Reyhanitabar, Rogaway and Vizár 2015, Online
+//! off is refused. The purpose names the trial, so a text that was moved to another trial is refused too. Everything
+//! that depends on the condition is padded, so that no length shows it. (The construction is STREAM: Hoang, Reyhanitabar, Rogaway and Vizár 2015, Online
 //! authenticated-encryption and its nonce-reuse misuse-resistance.)
 
 use std::io::{self, Read, Write};
@@ -14,6 +15,8 @@ const MAGIC: &[u8; 8] = b"NIMASEA1";
 const SALT: usize = 16;
 const PIECE: usize = 64 * 1024;
 const TAG: usize = 16;
+/// Length of a padded text, bytes: more than the measures that reveal the condition, or a reason, ever need.
+const PADDED: usize = 1024;
 
 /// The key of a study. Its `Debug` shows nothing.
 #[derive(Clone)]
@@ -117,6 +120,13 @@ impl Key {
             }
         }
         to.flush()
+    }
+
+    /// Encrypts a text that is padded with blanks to a length that is the same for all texts of this kind.
+    pub(crate) fn seal_padded(&self, purpose: &str, plain: &[u8]) -> io::Result<String> {
+        let mut padded = plain.to_vec();
+        padded.resize(plain.len().next_multiple_of(PADDED), b' ');
+        self.seal(purpose, &padded)
     }
 
     pub(crate) fn seal(&self, purpose: &str, plain: &[u8]) -> io::Result<String> {

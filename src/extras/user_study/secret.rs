@@ -18,6 +18,21 @@ pub struct Assignment {
     reference: Option<String>,
     practice: Option<String>,
     seed: Option<u64>,
+    /// Hashes of `study.toml` (without the commitment) and of the scene; absent in older studies.
+    #[serde(default)]
+    rules: Option<RuleHashes>,
+}
+
+/// Hashes of the files that the commitment covers too.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct RuleHashes {
+    pub(crate) study: String,
+    pub(crate) scene: String,
+}
+
+impl RuleHashes {
+    /// Fits no file.
+    pub(crate) const NONE: Self = Self { study: String::new(), scene: String::new() };
 }
 
 impl std::fmt::Debug for Assignment {
@@ -43,7 +58,17 @@ impl Assignment {
             reference: file.reference.clone(),
             practice: file.practice.as_ref().and_then(|practice| practice.under.clone()),
             seed: file.seed,
+            rules: None,
         })
+    }
+
+    /// Commits to these files too.
+    pub(crate) fn with_rules(self, rules: RuleHashes) -> Self {
+        Self { rules: Some(rules), ..self }
+    }
+
+    pub(crate) const fn rules(&self) -> Option<&RuleHashes> {
+        self.rules.as_ref()
     }
 
     /// Returns the condition of a label.

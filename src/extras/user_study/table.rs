@@ -3,8 +3,11 @@
 
 use std::{collections::BTreeMap, fmt::Write as _};
 
+use nima_files::csv_cell;
+
 use crate::{
-    Assignment, Exclusion, Label, StudyPlan, StudyState, TrialMeasures, exclusion::exclusions, file::measure_keys,
+    Assignment, CountedTrial, Exclusion, Label, StudyPlan, StudyState, TrialMeasures, exclusion::exclusions,
+    file::measure_keys,
 };
 
 /// A table, with its exclusions.
@@ -41,7 +44,7 @@ pub(crate) fn trials(
     plan: &StudyPlan,
     state: &StudyState,
     opened: Option<&Assignment>,
-    withheld: impl Fn(&str) -> Option<TrialMeasures>,
+    withheld: impl Fn(&str, &CountedTrial) -> Option<TrialMeasures>,
 ) -> StudyTable {
     let excluded = exclusions(plan, state);
     let mut rows = Vec::new();
@@ -58,8 +61,7 @@ pub(crate) fn trials(
                 continue;
             }
             let mut values = measures.clone();
-            values
-                .extend(made.withheld.as_deref().filter(|_| opened.is_some()).and_then(&withheld).unwrap_or_default());
+            values.extend(opened.and_then(|_| withheld(participant, made)).unwrap_or_default());
             let condition = shown(made.label, opened);
             let number = Some(made.number);
             rows.push(StudyTableRow { participant, condition, number, simulated: made.simulated, values });
@@ -115,7 +117,7 @@ fn csv(rows: &[StudyTableRow<'_>], order: &[String]) -> String {
     }
     text.push('\n');
     for row in rows {
-        write!(text, "{},{}", row.participant, row.condition).ok();
+        write!(text, "{},{}", csv_cell(row.participant), csv_cell(&row.condition)).ok();
         if numbered {
             text.push(',');
             row.number.map(|number| write!(text, "{number}").ok());

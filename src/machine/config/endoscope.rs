@@ -1,7 +1,10 @@
 //! The endoscope image on the surgeon's monitor. It has no effect on the loop.
 
 use nalgebra::Vector3;
-use nima_core::limits::{BASELINE_M, DISTORTION};
+use nima_core::{
+    limits::{BASELINE_M, DISTORTION},
+    units,
+};
 use serde::{Deserialize, Serialize};
 
 use super::{ConfigError, Ranges};
@@ -208,6 +211,12 @@ impl EndoscopeCamera {
             for (key, part) in parts {
                 ranges.finite(key, &part.unwrap_or_default())?;
             }
+        }
+        for (key, place_m, max_m) in
+            [(in_world[0].0, self.position_m, 5.0), (on_marker[0].0, self.n_from_camera_m, 1.0)]
+        {
+            let distance_m = place_m.unwrap_or_default().norm();
+            ranges.check(key, distance_m, distance_m <= max_m, units::length_remedy(distance_m, max_m))?;
         }
         let places = [in_world, on_marker].iter().filter(|parts| parts[0].1.is_some()).count();
         let one = "1: in the workspace, or on the endoscope's marker";

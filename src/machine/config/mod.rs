@@ -3,10 +3,12 @@
 mod anonymous;
 mod endoscope;
 mod files;
+mod gates;
 mod identification;
 mod mounted;
 mod own_copy;
 mod rig_file;
+mod secrets;
 mod teleoperation;
 pub mod urdf;
 
@@ -14,7 +16,7 @@ use std::path::Path;
 
 use nima_core::{
     impedance::{ImpedanceSettings, MAX_DEGREE, Mode, ModeSet},
-    limits::{self, GAIN, MAX_CEILING_N, WINDOW_SAMPLES},
+    limits::{self, WINDOW_SAMPLES},
     safety::ChainSettings,
     tip_force::Fallback,
 };
@@ -203,6 +205,11 @@ impl RigConfig {
         self.devices.as_ref().map(rig::rig_probes).into_iter().flatten().chain(handle).collect()
     }
 
+    /// Returns the parts whose network address is only an example, with the key of the address in the rig file.
+    pub fn example_addresses(&self) -> Vec<(RigPart, String)> {
+        self.devices.as_ref().map(rig::RigSettings::example_addresses).unwrap_or_default()
+    }
+
     /// Returns whether the rig cannot hurt a person: no real device renders a force or moves. Only such a rig may
     /// engage automatically.
     pub fn is_harmless(&self) -> bool {
@@ -253,7 +260,10 @@ impl RigConfig {
         let ranges = Ranges { kind: "rig", name: &self.name };
         ranges.within("rate_hz", self.rate_hz, &limits::RATE_HZ)?;
         ranges.within("delay_s", self.delay_s, &limits::DELAY_S)?;
-        ranges.positive("follower_speed_max_m_s", self.follower_speed_max_m_s)?;
+        // Hand and instrument move at up to 0.5 m/s; a larger number is in mm/s.
+        let speed_m_s = self.follower_speed_max_m_s;
+        let allowed = "above 0, at most 1 m/s; check the unit";
+        ranges.check("follower_speed_max_m_s", speed_m_s, speed_m_s > 0.0 && speed_m_s <= 1.0, allowed)?;
         if let Some(desk) = &self.desk {
             let speed = desk.speed_m_s;
             ranges.check("desk.speed_m_s", speed, speed > 0.0 && speed <= 0.15, "above 0, at most 0.15 m/s")?;
@@ -287,28 +297,7 @@ impl RigConfig {
         )?;
         ranges.within("identification.rest_n", self.identification.rest_n, &limits::REST_N)?;
         ranges.within("identification.literal.ridge", self.identification.literal.ridge, &limits::RIDGE)?;
-        let gates = &self.gates;
-        ranges.check(
-            "gates.gain",
-            gates.gain,
-            GAIN.contains(gates.gain),
-            format!("{GAIN} (only the operator can set more)"),
-        )?;
-        ranges.check(
-            "gates.ceiling_n",
-            gates.ceiling_n,
-            gates.ceiling_n > 0.0 && gates.ceiling_n <= MAX_CEILING_N,
-            format!("above 0, at most {MAX_CEILING_N} N"),
-        )?;
-        ranges.positive("gates.slew_n_per_s", gates.slew_n_per_s)?;
-        ranges.positive("gates.gain_rate_per_s", gates.gain_rate_per_s)?;
-        ranges.not_negative("gates.dead_band_m_s", gates.dead_band_m_s)?;
-        ranges.not_negative("gates.handle_kg", gates.handle_kg)?;
-        ranges.not_negative("gates.handle_n_s_m", gates.handle_n_s_m)?;
-        ranges.positive("gates.handle_step_m", gates.handle_step_m)?;
-        ranges.not_negative("gates.brake_n_s_m", gates.brake_n_s_m)?;
-        let ages = gates.fade_after_s >= 0.0 && gates.zero_after_s > gates.fade_after_s;
-        ranges.check("gates.zero_after_s", gates.zero_after_s, ages, "later than fade_after_s")?;
+        gates::check(&self.gates, &ranges)?;
         self.endoscope.as_ref().map_or(Ok(()), |endoscope| endoscope.check(&ranges))?;
         let camera = self.endoscope.as_ref().and_then(|endoscope| endoscope.camera);
         if camera.is_some_and(|camera| camera.n_from_camera_m.is_some()) {

@@ -158,7 +158,7 @@ pub struct CalibrationReadings {
     pub view: ViewOrientation,
 }
 
-/// What the screen asks of the person at the arm.
+/// Instruction of the screen to the person at the arm.
 #[derive(Clone, Copy, Debug)]
 pub struct Guidance {
     pub prompt: Prompt,
@@ -225,6 +225,17 @@ pub enum Fault {
     Implausible { what: Implausible },
     /// The machine at the other end of the network is stopped.
     FarEnd { stop: FarStop },
+}
+
+/// Longest stall of the loop that is left by one step, s: a computer that sleeps this long, for example a virtual machine,
+/// is not a fault of the rig. Longer ones need both steps, because a person may have touched the rig in the meantime.
+pub const SHORT_STALL_MAX_S: f64 = 1.0;
+
+impl Fault {
+    /// Returns whether this is a stall of a loop with this rate after which a person may engage directly.
+    pub fn is_short_stall(self, rate_hz: f64) -> bool {
+        matches!(self, Self::LoopStalled { periods } if periods as f64 <= SHORT_STALL_MAX_S * rate_hz)
+    }
 }
 
 /// Returns the priority of a state for display: of two arm pairs the one with the larger number is shown first.

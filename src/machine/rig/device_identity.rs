@@ -10,7 +10,9 @@ use std::sync::{
 use nima_devices::{Device, DeviceError, same_serial};
 use nima_recording::store::ReadyRecord;
 
-use super::{AwaitedDevice, EngageBlocker, PartKind, RigPart, RigSettings, SIDES, Side, SideSwap};
+use super::{
+    AwaitedDevice, EngageBlocker, PartKind, RigPart, RigSettings, SIDES, Side, SideSwap, doubles::ReportedSerials,
+};
 
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct CheckedDevices {
@@ -37,9 +39,11 @@ pub(super) struct DeviceIdentities {
     /// The servos of each side, for the real-time thread: force and motion do not need them, but must not begin while
     /// they belong to the other side.
     servos: [Arc<AtomicU8>; SIDES],
+    reported: ReportedSerials,
 }
 
 /// The servos have not been opened yet; are connected or missing; or belong to the other side.
+/// Numbers of an atomic: the driver's thread stores them, the loop reads them.
 const UNASKED: u8 = 0;
 const ASKED: u8 = 1;
 const EXCHANGED: u8 = 2;
@@ -71,6 +75,7 @@ impl DeviceIdentities {
             named: RigPart::ALL.into_iter().filter_map(named).collect(),
             checked: settings.checked.clone().unwrap_or_default(),
             servos: Default::default(),
+            reported: ReportedSerials::default(),
         }
     }
 
@@ -101,10 +106,22 @@ impl DeviceIdentities {
         Some((other, Some(&self.checked.date)))
     }
 
-    /// Accepts the device that was opened as this part, unless it belongs to another part; reports that part also if
-    /// the driver has refused the serial number.
-    pub(super) fn admit<D: Device>(&self, part: RigPart, opened: Result<D, DeviceError>) -> Result<D, DeviceError> {
-        let admitted = self.identified(part, opened);
+    pub(super) const fn reported(&self) -> &ReportedSerials {
+        &self.reported
+    }
+
+    /// Opens the device of this part and accepts it unless it belongs to another part; reports that part also if the
+    /// driver has refused the serial number.
+    pub(super) fn admit<D: Device>(
+        &self,
+        part: RigPart,
+        open: impl FnOnce() -> Result<D, DeviceError>,
+    ) -> Result<D, DeviceError> {
+        self.reported.forget(part);
+        let admitted = self.identified(part, open());
+        if let Ok(device) = &admitted {
+            self.reported.report(part, &device.identity().serial);
+        }
         if let RigPart::Servos(side) = part {
             let known = if matches!(admitted, Err(DeviceError::Exchanged { .. })) { EXCHANGED } else { ASKED };
             self.servos[side.index()].store(known, Ordering::Release);
@@ -117,6 +134,7 @@ impl DeviceIdentities {
             Ok(device) => device.about().1.serial.clone(),
             Err(DeviceError::OtherSerial { found, .. }) => found.clone(),
             Err(_) => return opened,
+            // The device's own number is the most certain name; the last check only counts for a part without one.
         };
         match self.whose(part, &serial) {
             None => opened,
@@ -146,7 +164,7 @@ impl RigSettings {
     }
 
     /// Returns the serial number of a part in the rig file, or the ids of servos.
-    fn serial(&self, part: RigPart) -> Option<String> {
+    pub(super) fn serial(&self, part: RigPart) -> Option<String> {
         let set = part.side().and_then(|side| self.arm(side));
         match part {
             RigPart::Handle(_) => set?.handle.serial(),
@@ -236,5 +254,34 @@ mod tests {
             !RigConfig::load("emulated").unwrap().requires_check()
                 && !RigConfig::load("simulated").unwrap().requires_check()
         );
+    }
+
+    /// An open device with a serial number.
+    struct Numbered(nima_devices::DeviceIdentity, nima_devices::Health);
+
+    impl Device for Numbered {
+        type Reading = ();
+
+        fn poll(&mut self, _: f64) -> Option<nima_devices::TimedReading<()>> {
+            None
+        }
+
+        fn about(&self) -> (&nima_devices::Health, &nima_devices::DeviceIdentity) {
+            (&self.1, &self.0)
+        }
+    }
+
+    #[test]
+    fn two_arms_that_report_one_number_object_to_an_engagement() {
+        let known = known(|_| ());
+        let open = |serial: &str| {
+            let identity = nima_devices::DeviceIdentity { serial: serial.to_owned(), ..Default::default() };
+            Ok(Numbered(identity, nima_devices::Health::default()))
+        };
+        let [right, left] = Side::ALL.map(RigPart::Arm);
+        assert!(known.admit(right, || open("PJ1")).is_ok() && known.admit(left, || open("PJ1")).is_ok());
+        assert_eq!(known.reported().obstacle(), Some(EngageBlocker::OneArm));
+        assert!(known.admit(left, || open("PJ2")).is_ok());
+        assert_eq!(known.reported().obstacle(), None, "its address was corrected");
     }
 }

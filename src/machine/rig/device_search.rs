@@ -13,7 +13,7 @@ use nima_devices::{
 };
 use toml_edit::Value;
 
-use super::{PartKind, RigPart, RigSettings};
+use super::{PartKind, RigPart, RigSettings, places::same_file};
 
 /// A device that was found, and the settings with which a rig file can use it.
 #[derive(Clone, Debug)]
@@ -130,10 +130,6 @@ fn used_ports(devices: &RigSettings) -> Vec<PathBuf> {
     used.into_iter().map(PathBuf::from).collect()
 }
 
-fn same_file(one: &Path, other: &Path) -> bool {
-    one == other || matches!((one.canonicalize(), other.canonicalize()), (Ok(one), Ok(other)) if one == other)
-}
-
 /// Returns a port name that contains the device's serial number and stays valid when devices are plugged in a different
 /// order.
 fn lasting_name(port: &Path) -> PathBuf {
@@ -180,22 +176,13 @@ fn pedals(devices: &RigSettings, plugged: &PluggedDevices) -> Vec<SearchResult> 
     sought
 }
 
-/// Tries the address that the user named, otherwise the manufacturer's default address.
+/// Tries the address that the user named. The factory's address may belong to another device in the user's network.
 fn arms(part: RigPart, devices: &RigSettings, place: &str) -> Vec<SearchScope> {
     let set = part.side().and_then(|side| devices.arm(side));
     let model = set.and_then(|set| set.model().ok()).unwrap_or(ArmModel::GEN3);
     let now = set.and_then(|set| set.arm.kinova()).cloned().unwrap_or_default();
     let usual = kinova::KinovaSettings::default();
-    let place = if place.is_empty() { usual.host.as_str() } else { place };
     let Some(at) = kinova::KinovaSettings::at(place) else { return Vec::new() };
-    if place == usual.host
-        && [&devices.right, &devices.left]
-            .into_iter()
-            .flatten()
-            .any(|set| set.arm.kinova().is_some_and(|arm| arm.host == place))
-    {
-        return Vec::new();
-    }
     let mut changes = vec![("host", Value::from(at.host.as_str())), (SERIAL_NUMBER, "".into())];
     if (at.tcp_port, at.udp_port) != (usual.tcp_port, usual.udp_port) {
         changes.push(("tcp_port", i64::from(at.tcp_port).into()));

@@ -20,10 +20,11 @@ use nima_devices::{
 use super::{
     ArmPair, AwaitedDevice, DEVICES_MAX, DeviceEvent, DeviceWatch, EndoscopeSettings, EngageBlocker, Gauge, Gauges,
     Healths, Inputs, Outputs, Rig, RigPart, RigSettings, Roster, RosterEntry, SIDES, Side, Switches, ViewOrientation,
-    arm_pair::SharedReadings, device_identity::DeviceIdentities, makes::Opener,
+    arm_pair::SharedReadings, device_identity::DeviceIdentities, doubles::ReportedSerials, makes::Opener,
 };
 
 /// A reading older than this counts as missing, s.
+/// The same age as `SILENT_AFTER_S` of the loop: a force may not be older for either reason.
 pub(super) const OLDEST_S: f64 = 0.020;
 
 /// All devices of a rig. Owned by the real-time thread.
@@ -35,6 +36,7 @@ pub struct DeviceRig {
     tracker: Option<DeviceSlot<Box<dyn Tracker>>>,
     endoscope: Option<EndoscopeSettings>,
     tracked: Option<TimedReading<TrackerReading>>,
+    reported: ReportedSerials,
     /// The markers of both instruments have been compared with their expected poses.
     has_seen_markers: bool,
     pedal: Option<Pedal>,
@@ -106,7 +108,7 @@ impl DeviceRig {
             let Opener { driver, mut open, .. } = sensor.opener();
             let known = known.clone();
             let slot =
-                DeviceSlot::start(RigPart::TissueSensor.name(), move || known.admit(RigPart::TissueSensor, open()))?;
+                DeviceSlot::start(RigPart::TissueSensor.name(), move || known.admit(RigPart::TissueSensor, &mut open))?;
             enrol(&mut roster, RigPart::TissueSensor, driver, &slot);
             Ok::<_, io::Error>(slot)
         });
@@ -133,6 +135,7 @@ impl DeviceRig {
             tracker: tracker.transpose()?,
             endoscope: settings.endoscope,
             tracked: None,
+            reported: known.reported().clone(),
             has_seen_markers: false,
             pedal: pedal.transpose()?,
             watch: DeviceWatch::default(),
@@ -237,6 +240,9 @@ impl Rig for DeviceRig {
         let shared = Side::ALL.map(|side| self.shared(side, now_s));
         self.pairs.iter_mut().flatten().for_each(|pair| pair.poll(now_s));
         self.look_for_exchanges(&shared);
+        if let Some(obstacle) = self.reported.obstacle() {
+            self.pairs.iter_mut().flatten().for_each(|pair| pair.object(obstacle));
+        }
         let mut inputs = [None; SIDES];
         for ((pair, shared), inputs) in self.pairs.iter().zip(&shared).zip(&mut inputs) {
             *inputs = pair.as_ref().and_then(|pair| pair.inputs(now_s, shared));

@@ -15,6 +15,13 @@ pub enum EngageBlocker {
     Waiting(AwaitedDevice),
     #[error("{}", .0.words())]
     Exchanged(SideSwap),
+    /// The handles of both sides report one serial number.
+    #[error("the right and left handles are one device: both report the same serial number")]
+    OneHandle,
+    #[error("the right and left arms are one device: both report the same serial number")]
+    OneArm,
+    #[error("two of the sensors are one device: both report the same serial number")]
+    OneSensor,
     /// An obstacle at the other end of a network, where the screen shows what it is.
     #[error("the follower's machine refuses to engage; its screen shows the reason")]
     FarEnd,
@@ -84,8 +91,10 @@ pub(super) struct ArmAndMarker {
 }
 
 /// A marker is at its expected pose within this distance (m, rad).
+/// Above the errors of a calibrated marker (millimetres, a degree), below the distance of two instruments.
 const NEAR: (f64, f64) = (0.020, 0.15);
 /// A marker beyond this distance (m, rad) is certainly not at its expected pose.
+/// Between [`NEAR`] and this the marker may simply have slipped, which is not a swap.
 const FAR: (f64, f64) = (0.050, 0.35);
 
 impl ArmAndMarker {

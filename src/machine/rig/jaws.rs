@@ -5,7 +5,7 @@ use nima_core::{
     kinematics::WristJaws,
     signal::{Pid, PidGains},
 };
-use nima_devices::{SERVOS, ServoReading};
+use nima_devices::{DeviceError, SERVOS, ServoReading, dynamixel::DynamixelSettings};
 use serde::{Deserialize, Serialize};
 
 /// Transmission from the servos to the instrument's wrist. Order: roll, pitch, yaw, grip.
@@ -26,6 +26,21 @@ impl Default for JawsSettings {
     fn default() -> Self {
         let pid = PidGains { proportional: 0.15, integral_per_s: 4.0, derivative_s: 0.002, integral_max: 0.15 };
         Self { ratio: [1.0; SERVOS], grip_per_gripper: 1.0, grip_n_per_a: 0.0, pid }
+    }
+}
+
+impl JawsSettings {
+    /// Refuses grip force from a servo that does not measure its current.
+    pub(super) fn check(&self, servos: Option<&DynamixelSettings>) -> Result<(), DeviceError> {
+        let Some(closing) = servos.map(|servos| &servos.servos[SERVOS - 1]) else { return Ok(()) };
+        if self.grip_n_per_a > 0.0 && closing.current_limit_a <= 0.0 {
+            return Err(DeviceError::Setting {
+                key: "grip_n_per_a".to_owned(),
+                value: self.grip_n_per_a.to_string(),
+                allowed: "0 for a closing servo that does not measure its current (without current_limit_a)".to_owned(),
+            });
+        }
+        Ok(())
     }
 }
 
@@ -51,11 +66,12 @@ impl JawsControl {
         WristJaws { roll_rad, pitch_rad, yaw_rad }
     }
 
-    /// Returns the force that opens the jaws, N at the finger: the load on the closing servo.
+    /// Returns the force that opens the jaws, N at the finger: the load on the closing servo; `None` if it is not
+    /// measured.
     pub(super) fn grip_n(&self, reading: &ServoReading) -> Option<f64> {
         let Self { settings: JawsSettings { grip_n_per_a, ratio, .. }, .. } = self;
         let closing_a = -reading.current_a[SERVOS - 1] * ratio[SERVOS - 1].signum();
-        (*grip_n_per_a > 0.0).then(|| (closing_a * grip_n_per_a).max(0.0))
+        (*grip_n_per_a > 0.0 && closing_a.is_finite()).then(|| (closing_a * grip_n_per_a).max(0.0))
     }
 
     fn angles(&self, reading: &ServoReading) -> [f64; SERVOS] {
@@ -90,5 +106,30 @@ impl JawsControl {
         self.asked = None;
         self.last_s = None;
         self.pids.iter_mut().for_each(Pid::reset);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::config::RigConfig;
+
+    #[test]
+    fn a_servo_without_current_gives_no_grip_force_instead_of_zero() {
+        let control = JawsControl::new(JawsSettings { grip_n_per_a: 10.0, ..JawsSettings::default() }, 1e-3);
+        let reading =
+            |closing_a: f64| ServoReading { current_a: [0.0, 0.0, 0.0, -closing_a], ..ServoReading::default() };
+        assert_eq!(control.grip_n(&reading(0.5)), Some(5.0));
+        assert_eq!(control.grip_n(&reading(f64::NAN)), None);
+        let mut rig = RigConfig::load("paper").unwrap();
+        let right = rig.devices.as_mut().unwrap().right.as_mut().unwrap();
+        right.jaws.grip_n_per_a = 10.0;
+        for servo in &mut right.servos.as_mut().unwrap().servos {
+            servo.current_limit_a = 0.0;
+        }
+        let refused = rig.validate().expect_err("no current").to_string();
+        let source = std::error::Error::source(&rig.validate().unwrap_err()).map(ToString::to_string);
+        let words = format!("{refused} {}", source.unwrap_or_default());
+        assert!(words.contains("devices.right.jaws.grip_n_per_a"), "{words}");
     }
 }

@@ -11,7 +11,7 @@ use nima_devices::{DeviceError, TRACKED_TOOLS, dynamixel, hid, ndi};
 use serde::{Deserialize, Serialize};
 
 use super::{
-    ArmModelSettings, CheckedDevices, Flaws, FollowerSettings, JawsSettings, LeaderSettings, RigPart, SensorSettings,
+    ArmModelSettings, CheckedDevices, Flaws, FollowerSettings, JawsSettings, LeaderSettings, SensorSettings, places,
 };
 use crate::rig::{SIDES, Side};
 
@@ -151,11 +151,21 @@ impl DeskSettings {
         self.cap.as_ref().filter(|_| self.handle.is_none())
     }
 
-    /// Checks the handle.
+    /// Checks the handle, and that cap and pedal are two devices.
     ///
     /// # Errors
     /// [`DeviceError::Setting`] for the first invalid value, with its full key.
     pub fn check(&self) -> Result<(), DeviceError> {
+        let cap = self.leading_cap().and_then(|cap| places::of_hid(&cap.source));
+        if let (Some(cap), Some(pedal)) = (cap, self.pedal.as_ref().and_then(|pedal| places::of_hid(&pedal.source)))
+            && cap.is_also(&pedal)
+        {
+            return Err(DeviceError::Setting {
+                key: "desk.pedal.source".to_owned(),
+                value: pedal.to_string(),
+                allowed: "give the pedal a different source than the cap (desk.cap.source)".to_owned(),
+            });
+        }
         let Some(handle) = &self.handle else { return Ok(()) };
         // An emulated handle must not be mistaken for a real one, nor may both control the loop.
         handle.check().and_then(|()| handle.check_emulated(false)).map_err(|trouble| match trouble {
@@ -230,6 +240,12 @@ impl RigSettings {
             set.sensor.check().map_err(of("sensor"))?;
             set.sensor.check_emulated(self.emulated).map_err(of("sensor"))?;
             set.servos.as_ref().map_or(Ok(()), dynamixel::DynamixelSettings::check).map_err(of("servos"))?;
+            set.jaws.check(set.servos.as_ref()).map_err(of("jaws"))?;
+            set.check_lengths().map_err(|(key, value, allowed)| DeviceError::Setting {
+                key: format!("devices.{}.{key}", side.word()),
+                value,
+                allowed,
+            })?;
         }
         if let (Some(right), Some(left)) = (&self.right, &self.left) {
             right.handle.check_beside(&left.handle).map_err(|trouble| below("right.handle", trouble))?;
@@ -244,7 +260,7 @@ impl RigSettings {
                 });
             }
         }
-        self.check_addresses()?;
+        self.check_unique()?;
         self.check_hand_eye()?;
         self.check_endoscope()?;
         self.flaws.check(self.emulated).map_err(|trouble| match trouble {
@@ -263,33 +279,6 @@ impl RigSettings {
 }
 
 impl RigSettings {
-    /// Checks that every external device has a separate address.
-    fn check_addresses(&self) -> Result<(), DeviceError> {
-        let address = |part: RigPart| {
-            let set = part.side().and_then(|side| self.arm(side));
-            match part {
-                RigPart::Handle(_) => set?.handle.listens_at(),
-                RigPart::Arm(_) => set?.arm.listens_at(),
-                RigPart::Sensor(_) => set?.sensor.listens_at(),
-                RigPart::TissueSensor => self.tissue_sensor.as_ref()?.listens_at(),
-                RigPart::Servos(_) | RigPart::Tracker | RigPart::Pedal => None,
-            }
-        };
-        for (place, part) in RigPart::ALL.into_iter().enumerate() {
-            // Two programs cannot listen at one address: the second one would fail to open, without a hint at the
-            // cause.
-            let Some(own) = address(part) else { continue };
-            if let Some(other) = RigPart::ALL[..place].iter().find(|other| address(**other) == Some(own)) {
-                return Err(DeviceError::Setting {
-                    key: format!("{}.listen", part.key()),
-                    value: own.to_string(),
-                    allowed: format!("a different port than that of the {}", other.name()),
-                });
-            }
-        }
-        Ok(())
-    }
-
     fn check_hand_eye(&self) -> Result<(), DeviceError> {
         for side in Side::ALL {
             let Some(set) = self.arm(side) else { continue };

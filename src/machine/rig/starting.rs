@@ -17,7 +17,7 @@ where
 {
     let Opener { driver, mut open, clear_faults } = opener;
     let known = known.clone();
-    let slot = DeviceSlot::start(part.name(), move || known.admit(part, open()).inspect(&attach))?;
+    let slot = DeviceSlot::start(part.name(), move || known.admit(part, &mut open).inspect(&attach))?;
     enrol(roster, part, driver, &slot);
     if let Some(entry) = roster.last_mut() {
         entry.clear_faults = clear_faults;

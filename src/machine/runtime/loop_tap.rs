@@ -9,14 +9,17 @@ use std::{
     sync::{
         Arc,
         atomic::{AtomicU64, Ordering},
+        mpsc::{Receiver, Sender, channel},
     },
     thread,
     time::{Duration, Instant},
 };
 
-use crossbeam_channel::{Receiver, Sender, TryRecvError, bounded, unbounded};
+use rtrb::{Consumer, Producer, PushError};
 
+use super::os;
 use crate::{
+    hand_over::{FromLoop, ToLoop, from_loop, to_loop},
     messages::{Command, Event, Tick},
     rig::{DeviceEvent, Inputs, Outputs, SIDES, Side},
     teleop::{Calibrations, Timing},
@@ -30,6 +33,8 @@ const OTHERS_MAX: usize = 512;
 /// Polling period of the other end: a viewer over a network gets a tick later by this time at most. Polled, because
 /// waking a waiting thread would cost the loop more than the rest of the tap.
 const LOOK_EVERY: Duration = Duration::from_millis(3);
+/// Time after which a loop on the virtual clock looks again for room.
+const WAIT: Duration = Duration::from_micros(200);
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Operation {
@@ -89,14 +94,16 @@ pub struct TapEntry {
 
 #[derive(Debug)]
 pub struct Tap {
-    entries: Sender<TapEntry>,
-    spare: Receiver<Box<TickRecord>>,
+    entries: Producer<TapEntry>,
+    spare: Consumer<Box<TickRecord>>,
     /// Boxes that have not been used yet. Circulating boxes are taken first, because they are still in the processor's
     /// caches.
     reserve: Vec<Box<TickRecord>>,
     /// A box whose entry did not fit: it is kept, because freeing it here would call the allocator.
     kept: Option<Box<TickRecord>>,
     offered: Arc<AtomicU64>,
+    /// Start of the loop on the monotonic clock, ns; zero before it, and on a virtual clock.
+    begun_ns: Arc<AtomicU64>,
     waits: bool,
     filing: CalibrationFiler,
 }
@@ -110,31 +117,40 @@ pub(super) struct CalibrationFiler {
 
 #[derive(Debug)]
 pub struct TapEnd {
-    pub entries: Receiver<TapEntry>,
+    pub entries: FromLoop<TapEntry>,
     calibrations: Receiver<(u64, Calibrations)>,
-    spare: Sender<Box<TickRecord>>,
+    spare: ToLoop<Box<TickRecord>>,
     offered: Arc<AtomicU64>,
+    begun_ns: Arc<AtomicU64>,
 }
 
 /// Creates both ends of a tap. All memory is allocated and touched here.
 pub fn tap() -> (Tap, TapEnd) {
-    let (entries, entries_out) = bounded(TICKS_TAPPED_MAX + OTHERS_MAX);
+    let (mut entries, entries_out) = from_loop(TICKS_TAPPED_MAX + OTHERS_MAX);
     // One more than in the queue, because the loop may hold one.
-    let (spare, spare_out) = bounded(TICKS_TAPPED_MAX + 1);
+    let (spare, spare_out) = to_loop(TICKS_TAPPED_MAX + 1);
     let reserve = (0..TICKS_TAPPED_MAX).map(|_| Box::new(TickRecord::NOTHING)).collect();
-    touch(&entries, &entries_out);
-    let offered = Arc::<AtomicU64>::default();
-    let (file, filed) = unbounded();
+    touch(&mut entries, &entries_out);
+    let [offered, begun_ns] = [(); 2].map(|()| Arc::<AtomicU64>::default());
+    let (file, filed) = channel();
     let filing = CalibrationFiler { next: Arc::default(), calibrations: file };
-    let tap =
-        Tap { entries, spare: spare_out, reserve, kept: None, offered: Arc::clone(&offered), waits: false, filing };
-    (tap, TapEnd { entries: entries_out, calibrations: filed, spare, offered })
+    let tap = Tap {
+        entries,
+        spare: spare_out,
+        reserve,
+        kept: None,
+        offered: Arc::clone(&offered),
+        begun_ns: Arc::clone(&begun_ns),
+        waits: false,
+        filing,
+    };
+    (tap, TapEnd { entries: entries_out, calibrations: filed, spare, offered, begun_ns })
 }
 
 /// Writes once to every slot of the queue, so that no tick causes a page fault.
-fn touch(into: &Sender<TapEntry>, out: &Receiver<TapEntry>) {
+fn touch(into: &mut Producer<TapEntry>, out: &FromLoop<TapEntry>) {
     let nothing = || Operation::Suspend(Side::Right);
-    while into.try_send(TapEntry { number: 0, passed: TapPayload::Operation(nothing()) }).is_ok() {}
+    while into.push(TapEntry { number: 0, passed: TapPayload::Operation(nothing()) }).is_ok() {}
     out.try_iter().for_each(drop);
 }
 
@@ -143,6 +159,11 @@ impl Tap {
     #[must_use]
     pub(super) fn waiting(self) -> Self {
         Self { waits: true, ..self }
+    }
+
+    /// Called before the first tick of a loop in real time, with the start of its clock.
+    pub(super) fn begin(&self, start_ns: u64) {
+        self.begun_ns.store(start_ns, Ordering::Release);
     }
 
     pub(super) fn filing(&self) -> CalibrationFiler {
@@ -177,8 +198,13 @@ impl Tap {
     }
 
     fn spare(&mut self) -> Option<Box<TickRecord>> {
-        let spare = self.kept.take().or_else(|| self.spare.try_recv().ok()).or_else(|| self.reserve.pop());
-        spare.or_else(|| if self.waits { self.spare.recv().ok() } else { None })
+        loop {
+            let spare = self.kept.take().or_else(|| self.spare.pop().ok()).or_else(|| self.reserve.pop());
+            if spare.is_some() || !self.waits || self.spare.is_abandoned() {
+                return spare;
+            }
+            thread::sleep(WAIT);
+        }
     }
 
     fn number(&self) -> u64 {
@@ -187,14 +213,17 @@ impl Tap {
     }
 
     fn offer(&mut self, passed: TapPayload) {
-        let entry = TapEntry { number: self.number(), passed };
-        let back = if self.waits {
-            self.entries.send(entry).err().map(|error| error.0)
-        } else {
-            self.entries.try_send(entry).err().map(crossbeam_channel::TrySendError::into_inner)
-        };
-        if let Some(TapEntry { passed: TapPayload::Stepped(stepped), .. }) = back {
-            self.kept = Some(stepped);
+        let number = self.number();
+        let mut entry = TapEntry { number, passed };
+        while let Err(PushError::Full(back)) = self.entries.push(entry) {
+            if !self.waits || self.entries.is_abandoned() {
+                if let TapPayload::Stepped(stepped) = back.passed {
+                    self.kept = Some(stepped);
+                }
+                return;
+            }
+            thread::sleep(WAIT);
+            entry = back;
         }
     }
 }
@@ -225,10 +254,10 @@ impl TapEnd {
         let begin = Instant::now();
         loop {
             match self.entries.try_recv() {
-                Ok(entry) => return TapItem::Entry(entry),
-                Err(TryRecvError::Disconnected) => return TapItem::End,
-                Err(TryRecvError::Empty) if begin.elapsed() >= patience => return TapItem::Nothing,
-                Err(TryRecvError::Empty) => thread::sleep(LOOK_EVERY),
+                Some(entry) => return TapItem::Entry(entry),
+                None if self.entries.has_ended() => return TapItem::End,
+                None if begin.elapsed() >= patience => return TapItem::Nothing,
+                None => thread::sleep(LOOK_EVERY),
             }
         }
     }
@@ -241,6 +270,15 @@ impl TapEnd {
     /// refers arrive before it.
     pub fn calibrations(&self) -> impl Iterator<Item = (u64, Calibrations)> {
         self.calibrations.try_iter()
+    }
+
+    /// Returns the time 0 of the loop, ns since 1970 (UTC), as the two clocks relate now: the system's clock may have been
+    /// set in the meantime. `None` before the loop has started, and on a virtual clock.
+    pub fn utc_start_ns(&self) -> Option<u64> {
+        match self.begun_ns.load(Ordering::Acquire) {
+            0 => None,
+            begun_ns => begun_ns.checked_add_signed(os::utc_offset_ns()?),
+        }
     }
 
     /// Returns the number of entries that the loop has offered so far, including dropped ones.

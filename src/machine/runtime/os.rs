@@ -6,6 +6,7 @@
 
 #[cfg(target_os = "linux")]
 use std::time::Duration;
+use std::time::{SystemTime, UNIX_EPOCH};
 
 #[cfg(target_os = "linux")]
 use thread_priority::{
@@ -139,6 +140,22 @@ pub(super) fn monotonic_ns() -> u64 {
     use std::{sync::OnceLock, time::Instant};
     static START: OnceLock<Instant> = OnceLock::new();
     START.get_or_init(Instant::now).elapsed().as_nanos() as u64
+}
+
+/// Number of measurements of the difference between two clocks.
+const MEASUREMENTS: usize = 5;
+
+/// Returns the difference of the system's clock (UTC) from the monotonic clock, ns: the measurement, of several, that was
+/// interrupted least. `None` if the system's clock is before 1970.
+pub(super) fn utc_offset_ns() -> Option<i64> {
+    let measure = |_| {
+        let before_ns = monotonic_ns();
+        let utc = SystemTime::now().duration_since(UNIX_EPOCH).ok()?;
+        let took_ns = monotonic_ns().saturating_sub(before_ns);
+        let middle_ns = i64::try_from(before_ns + took_ns / 2).ok()?;
+        Some((took_ns, i64::try_from(utc.as_nanos()).ok()? - middle_ns))
+    };
+    (0..MEASUREMENTS).filter_map(measure).min().map(|(_, offset_ns)| offset_ns)
 }
 
 /// Sleeps until this instant of the monotonic clock, ns.

@@ -2,13 +2,16 @@
 
 use std::{
     io,
-    sync::Arc,
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+    },
     thread::{Builder, JoinHandle},
 };
 
-use crossbeam_channel::{Receiver, Sender, TryRecvError, bounded};
 use nima_core::impedance::SettingsError;
 use nima_devices::DeviceIdentity;
+use rtrb::{Consumer, Producer};
 
 use super::{
     Assembly, RuntimeClock, RuntimeSummary,
@@ -22,6 +25,7 @@ use super::{
 };
 use crate::{
     config::SchedulingClass,
+    hand_over::{FromLoop, ToLoop, from_loop, to_loop},
     messages::{Command, Event, Tick},
     rig::{Gauges, Healths, Outputs, Rig, RigError, Roster, SIDES, Side},
     teleop::{Calibrations, Loop, Timing},
@@ -62,11 +66,12 @@ pub enum LoopStartError {
 /// A running loop. Dropping it ends the loop.
 #[derive(Debug)]
 pub struct LoopHandle {
-    commands: Sender<Command>,
-    ticks: Receiver<Tick>,
-    events: Receiver<Event>,
-    healths: Receiver<Healths>,
-    gauges: Receiver<Gauges>,
+    commands: ToLoop<Command>,
+    ends: Arc<AtomicBool>,
+    ticks: FromLoop<Tick>,
+    events: FromLoop<Event>,
+    healths: FromLoop<Healths>,
+    gauges: FromLoop<Gauges>,
     roster: Roster,
     wrists: WristConnection,
     thread: Option<JoinHandle<RuntimeSummary>>,
@@ -83,11 +88,12 @@ pub fn start(assembly: Assembly) -> Result<LoopHandle, LoopStartError> {
     let Assembly { control, rig, roster, rate_hz, clock, scheduling, engage, tap } = assembly;
     let pulse = Arc::new(Pulse::default());
     let levers = rig.levers();
-    let (commands, commands_in) = bounded(COMMANDS_WAITING_MAX);
-    let (ticks_out, ticks) = bounded(TICKS_WAITING_MAX);
-    let (events_out, events) = bounded(EVENTS_WAITING_MAX);
-    let (healths_out, healths) = bounded(1);
-    let (gauges_out, gauges) = bounded(if roster.is_empty() { 1 } else { GAUGES_WAITING_MAX });
+    let ends = Arc::new(AtomicBool::new(false));
+    let (commands, commands_in) = to_loop(COMMANDS_WAITING_MAX);
+    let (ticks_out, ticks) = from_loop(TICKS_WAITING_MAX);
+    let (events_out, events) = from_loop(EVENTS_WAITING_MAX);
+    let (healths_out, healths) = from_loop(1);
+    let (gauges_out, gauges) = from_loop(if roster.is_empty() { 1 } else { GAUGES_WAITING_MAX });
     let (wrists, wrist_door) = wrists::ends(&roster, 1.0 / rate_hz, tap.as_ref().map(Tap::filing));
     let realtime = Realtime {
         control,
@@ -100,6 +106,7 @@ pub fn start(assembly: Assembly) -> Result<LoopHandle, LoopStartError> {
         is_late: false,
         clock,
         commands: commands_in,
+        ends: Arc::clone(&ends),
         out: LoopSenders { ticks: ticks_out, events: events_out, healths: healths_out, gauges: gauges_out },
         meters: Meters::default(),
         pulse: Arc::clone(&pulse),
@@ -110,6 +117,7 @@ pub fn start(assembly: Assembly) -> Result<LoopHandle, LoopStartError> {
     let wrists = wrist_door;
     Ok(LoopHandle {
         commands,
+        ends,
         ticks,
         events,
         healths,
@@ -124,7 +132,7 @@ pub fn start(assembly: Assembly) -> Result<LoopHandle, LoopStartError> {
 impl LoopHandle {
     /// Sends a command; returns false if the queue is full or the loop has ended.
     pub fn send(&self, command: Command) -> bool {
-        self.commands.try_send(command).is_ok()
+        !self.ends.load(Ordering::Acquire) && !self.commands.is_abandoned() && self.commands.try_send(command).is_ok()
     }
 
     /// Calls `each` for every pending tick, oldest first, without blocking.
@@ -164,7 +172,7 @@ impl LoopHandle {
 
     /// Returns the health of the devices; `None` if it has not changed since the last call.
     pub fn healths(&self) -> Option<Healths> {
-        self.healths.try_recv().ok()
+        self.healths.try_recv()
     }
 
     /// Returns the deliveries of the devices, in blocks of time, oldest first. Blocks that are not read in time are
@@ -175,7 +183,7 @@ impl LoopHandle {
 
     /// Returns an object that can end this loop from any thread.
     pub fn ender(&self) -> Ender {
-        Ender(self.commands.clone())
+        Ender(Arc::clone(&self.ends))
     }
 
     pub fn is_running(&self) -> bool {
@@ -189,8 +197,7 @@ impl LoopHandle {
 
     fn end(&mut self) -> Option<RuntimeSummary> {
         let thread = self.thread.take()?;
-        // Block until the queue has room, because a full queue must not keep the loop alive.
-        self.commands.send(Command::Shutdown).ok();
+        self.ender().end();
         let mut summary = thread.join().ok()?;
         summary.report_devices(&self.roster);
         Some(summary)
@@ -200,12 +207,12 @@ impl LoopHandle {
 /// Ends a loop from any thread: zero force, drives off, arm at rest. The results of the run stay available in the
 /// [`LoopHandle`].
 #[derive(Clone, Debug)]
-pub struct Ender(Sender<Command>);
+pub struct Ender(Arc<AtomicBool>);
 
 impl Ender {
     pub fn end(&self) {
-        // May block while the queue is full; the loop empties it. The send fails only if the loop has already ended.
-        self.0.send(Command::Shutdown).ok();
+        // Not a command, because a full queue must not keep the loop alive.
+        self.0.store(true, Ordering::Release);
     }
 }
 
@@ -217,10 +224,10 @@ impl Drop for LoopHandle {
 
 /// Queues from the real-time thread to the others.
 struct LoopSenders {
-    ticks: Sender<Tick>,
-    events: Sender<Event>,
-    healths: Sender<Healths>,
-    gauges: Sender<Gauges>,
+    ticks: Producer<Tick>,
+    events: Producer<Event>,
+    healths: Producer<Healths>,
+    gauges: Producer<Gauges>,
 }
 
 struct Realtime {
@@ -235,7 +242,9 @@ struct Realtime {
     /// Whether a device had no new reading in the last tick.
     is_late: bool,
     clock: RuntimeClock,
-    commands: Receiver<Command>,
+    commands: Consumer<Command>,
+    /// Set by an [`Ender`]; the loop then ends after the commands that were sent before.
+    ends: Arc<AtomicBool>,
     out: LoopSenders,
     meters: Meters,
     pulse: Arc<Pulse>,
@@ -246,10 +255,13 @@ impl Realtime {
     fn run(mut self) -> RuntimeSummary {
         let scheduling = os::prepare_thread(self.scheduling, self.period_ns);
         if self.clock == RuntimeClock::Real {
-            self.out.events.try_send(Event::Scheduling(scheduling)).ok();
+            self.out.events.push(Event::Scheduling(scheduling)).ok();
         }
         let cpu_s = os::cpu_s();
         let start_ns = os::monotonic_ns();
+        if let Some(tap) = &self.tap {
+            tap.begin(start_ns);
+        }
         let mut timing = Timing::default();
         match self.clock {
             RuntimeClock::Real => self.run_in_real_time(start_ns, &mut timing),
@@ -309,10 +321,13 @@ impl Realtime {
     fn obey_commands(&mut self, now_s: f64) -> bool {
         self.control.clear_events();
         for _ in 0..COMMANDS_PER_TICK_MAX {
-            match self.commands.try_recv() {
-                Ok(Command::Shutdown) | Err(TryRecvError::Disconnected) => return false,
+            // Read before the queue: a command that was sent before the end is then in it.
+            let ends = self.ends.load(Ordering::Acquire);
+            match self.commands.pop() {
+                Ok(Command::Shutdown) => return false,
                 Ok(command) => self.obey(command, now_s),
-                Err(TryRecvError::Empty) => break,
+                Err(_) if ends => return false,
+                Err(_) => break,
             }
         }
         true
@@ -335,7 +350,7 @@ impl Realtime {
             report(&mut self.tap, Operation::Device(event));
             self.control.notice(&event);
             self.wrists.notice(&event, &mut self.control, &mut self.tap);
-            self.out.events.try_send(Event::Device(event)).ok();
+            self.out.events.push(Event::Device(event)).ok();
         }
         self.wrists.activate(&mut self.control, &mut self.tap);
         for _ in 0..COMMANDS_PER_TICK_MAX {
@@ -374,17 +389,17 @@ impl Realtime {
         }
         self.meters.ticks += 1;
         for event in self.control.events() {
-            self.out.events.try_send(*event).ok();
+            self.out.events.push(*event).ok();
         }
         if self.meters.ticks.is_multiple_of(HEALTH_EVERY) {
-            self.out.healths.try_send(self.rig.health()).ok();
+            self.out.healths.push(self.rig.health()).ok();
             if let Some(gauges) = self.rig.gauges(timing.now_s) {
-                self.out.gauges.try_send(gauges).ok();
+                self.out.gauges.push(gauges).ok();
             }
         }
         for mut tick in ticks.into_iter().flatten() {
             tick.timing.dropped = self.meters.dropped;
-            if self.out.ticks.try_send(tick).is_err() {
+            if self.out.ticks.push(tick).is_err() {
                 self.meters.dropped += 1;
             }
         }

@@ -9,14 +9,15 @@ use std::sync::{
     atomic::{AtomicU64, Ordering},
 };
 
-use crossbeam_channel::{Receiver, Sender, bounded};
 use nima_devices::ConnectionState;
+use rtrb::{Consumer, Producer};
 
 use super::{
     loop_tap::{CalibrationFiler, Operation, Tap},
     thread::report,
 };
 use crate::{
+    hand_over::{FromLoop, ToLoop, from_loop, to_loop},
     rig::{DEVICES_MAX, DeviceEvent, RosterEntry, SIDES, Side},
     teleop::{Calibrations, ForcePath, Loop},
 };
@@ -58,16 +59,16 @@ type WristsCounts = Arc<[AtomicU64; SIDES]>;
 pub(super) struct Wrists {
     counts: WristsCounts,
     of_device: [Option<Side>; DEVICES_MAX],
-    prepared: Receiver<PreparedWrist>,
-    spent: Sender<PreparedWrist>,
+    prepared: Consumer<PreparedWrist>,
+    spent: Producer<PreparedWrist>,
 }
 
 /// The part of other threads.
 #[derive(Debug)]
 pub(super) struct WristConnection {
     counts: WristsCounts,
-    prepared: Sender<PreparedWrist>,
-    spent: Receiver<PreparedWrist>,
+    prepared: ToLoop<PreparedWrist>,
+    spent: FromLoop<PreparedWrist>,
     period_s: f64,
     filing: Option<CalibrationFiler>,
 }
@@ -79,9 +80,9 @@ pub(super) fn ends(
     filing: Option<CalibrationFiler>,
 ) -> (Wrists, WristConnection) {
     let counts = WristsCounts::default();
-    let (prepare, prepared) = bounded(WAITING_MAX);
+    let (prepare, prepared) = to_loop(WAITING_MAX);
     // The other end empties this queue before it sends, so it never holds more than twice as many.
-    let (spend, spent) = bounded(2 * WAITING_MAX);
+    let (spend, spent) = from_loop(2 * WAITING_MAX);
     let of_device = std::array::from_fn(|device| roster.get(device).and_then(RosterEntry::force_sensor_of));
     let wrists = Wrists { counts: Arc::clone(&counts), of_device, prepared, spent: spend };
     (wrists, WristConnection { counts, prepared: prepare, spent, period_s, filing })
@@ -97,8 +98,8 @@ impl Wrists {
     }
 
     /// Activates the calibrations that were prepared for the connected sensor.
-    pub(super) fn activate(&self, control: &mut Loop, tap: &mut Option<Tap>) {
-        let Ok(mut prepared) = self.prepared.try_recv() else { return };
+    pub(super) fn activate(&mut self, control: &mut Loop, tap: &mut Option<Tap>) {
+        let Ok(mut prepared) = self.prepared.pop() else { return };
         let WristChange { side, count } = prepared.change;
         let now = self.counts[side.index()].load(Ordering::Acquire);
         if let (true, Some(number)) = (now == count, prepared.number) {
@@ -109,7 +110,7 @@ impl Wrists {
             // active and that it must retry.
             self.count_on(side, prepared.change.is_there());
         }
-        self.spent.try_send(prepared).ok();
+        self.spent.push(prepared).ok();
     }
 
     /// Only the loop changes the count.

@@ -6,12 +6,10 @@ use std::collections::BTreeMap;
 pub enum ColumnMappingError {
     #[error("--map {text}: not of the form NAME=COLUMN or NAME=COLUMN*SCALE; write for example x=px_mm*0.001")]
     Form { text: String },
-    #[error(
-        "--map {text}: there is no quantity \"{name}\"; use t, x, y, z, fx, fy, fz, lx, ly or lz (the leader's motion), or xyz, fxyz or lxyz with three columns"
-    )]
-    Name { text: String, name: String },
-    #[error("--map {text}: \"{name}\" takes three columns, not {found}; write for example {name}=A,B,C*0.001")]
-    Three { text: String, name: String, found: usize },
+    #[error("--map {text}: there is no quantity \"{name}\"; use one of {known}")]
+    Name { text: String, name: String, known: String },
+    #[error("--map {text}: \"{name}\" takes {wanted} columns, not {found}; write for example {name}=A,B,C*0.001")]
+    Several { text: String, name: String, wanted: usize, found: usize },
     #[error("--map {text}: the scale \"{scale}\" is not a number other than zero; write for example 0.001")]
     Scale { text: String, scale: String },
     #[error("--map {text}: \"{name}\" is mapped twice; map each quantity once")]
@@ -26,6 +24,10 @@ pub struct ColumnSource {
 }
 
 impl ColumnSource {
+    pub(super) fn plain(column: &str) -> Self {
+        Self { column: column.to_owned(), scale: 1.0 }
+    }
+
     pub fn column(&self) -> &str {
         &self.column
     }
@@ -43,36 +45,121 @@ pub struct ColumnMapping {
     sources: BTreeMap<&'static str, ColumnSource>,
 }
 
-/// Short and full name of every quantity; names with `l` are the leader's motion.
-const QUANTITIES: [(&str, &str); 10] = [
-    ("t", "t_s"),
-    ("x", "x_m"),
-    ("y", "y_m"),
-    ("z", "z_m"),
-    ("fx", "fx_n"),
-    ("fy", "fy_n"),
-    ("fz", "fz_n"),
-    ("lx", "lx_m"),
-    ("ly", "ly_m"),
-    ("lz", "lz_m"),
-];
-/// Names of three quantities together.
-const TRIPLES: [(&str, [&str; 3]); 3] =
-    [("xyz", ["x_m", "y_m", "z_m"]), ("fxyz", ["fx_n", "fy_n", "fz_n"]), ("lxyz", ["lx_m", "ly_m", "lz_m"])];
+/// The quantities of a kind of file.
+#[derive(Debug)]
+pub struct Quantities {
+    /// Short and full name of each.
+    each: &'static [(&'static str, &'static str)],
+    /// Names of several together.
+    groups: &'static [(&'static str, &'static [&'static str])],
+}
 
-/// Returns the full names of the quantities that a name on the command line selects; empty for an unknown name.
-fn quantities(name: &str) -> Vec<&'static str> {
-    let one = QUANTITIES.iter().find(|(short, full)| *short == name || *full == name).map(|(_, full)| vec![*full]);
-    let three = || TRIPLES.iter().find(|(triple, _)| *triple == name).map(|(_, all)| all.to_vec());
-    one.or_else(three).unwrap_or_default()
+/// Motion and force over time; names with `l` are the leader's motion.
+pub(super) const MOTION: Quantities = Quantities {
+    each: &[
+        ("t", "t_s"),
+        ("x", "x_m"),
+        ("y", "y_m"),
+        ("z", "z_m"),
+        ("fx", "fx_n"),
+        ("fy", "fy_n"),
+        ("fz", "fz_n"),
+        ("lx", "lx_m"),
+        ("ly", "ly_m"),
+        ("lz", "lz_m"),
+    ],
+    groups: &[
+        ("xyz", &["x_m", "y_m", "z_m"]),
+        ("fxyz", &["fx_n", "fy_n", "fz_n"]),
+        ("lxyz", &["lx_m", "ly_m", "lz_m"]),
+    ],
+};
+
+/// Still poses of a tool.
+pub const POSES: Quantities = Quantities {
+    each: &[
+        ("fx", "fx_n"),
+        ("fy", "fy_n"),
+        ("fz", "fz_n"),
+        ("tx", "tx_nm"),
+        ("ty", "ty_nm"),
+        ("tz", "tz_nm"),
+        ("ax", "ax"),
+        ("ay", "ay"),
+        ("az", "az"),
+        ("qw", "qw"),
+        ("qx", "qx"),
+        ("qy", "qy"),
+        ("qz", "qz"),
+        ("roll", "roll_deg"),
+        ("pitch", "pitch_deg"),
+        ("yaw", "yaw_deg"),
+        ("rx", "rx_rad"),
+        ("ry", "ry_rad"),
+        ("rz", "rz_rad"),
+    ],
+    groups: &[
+        ("fxyz", &["fx_n", "fy_n", "fz_n"]),
+        ("txyz", &["tx_nm", "ty_nm", "tz_nm"]),
+        ("axyz", &["ax", "ay", "az"]),
+        ("qwxyz", &["qw", "qx", "qy", "qz"]),
+        ("qxyzw", &["qx", "qy", "qz", "qw"]),
+        ("rpy", &["roll_deg", "pitch_deg", "yaw_deg"]),
+        ("rxyz", &["rx_rad", "ry_rad", "rz_rad"]),
+    ],
+};
+
+/// Pairs of forces.
+pub const PAIRS: Quantities = Quantities {
+    each: &[
+        ("f1x", "f1x_n"),
+        ("f1y", "f1y_n"),
+        ("f1z", "f1z_n"),
+        ("f2x", "f2x_n"),
+        ("f2y", "f2y_n"),
+        ("f2z", "f2z_n"),
+        ("qw", "qw"),
+        ("qx", "qx"),
+        ("qy", "qy"),
+        ("qz", "qz"),
+        ("roll", "roll_deg"),
+        ("pitch", "pitch_deg"),
+        ("yaw", "yaw_deg"),
+        ("rx", "rx_rad"),
+        ("ry", "ry_rad"),
+        ("rz", "rz_rad"),
+    ],
+    groups: &[
+        ("f1xyz", &["f1x_n", "f1y_n", "f1z_n"]),
+        ("f2xyz", &["f2x_n", "f2y_n", "f2z_n"]),
+        ("qwxyz", &["qw", "qx", "qy", "qz"]),
+        ("qxyzw", &["qx", "qy", "qz", "qw"]),
+        ("rpy", &["roll_deg", "pitch_deg", "yaw_deg"]),
+        ("rxyz", &["rx_rad", "ry_rad", "rz_rad"]),
+    ],
+};
+
+impl Quantities {
+    /// Returns the full names of the quantities that a name on the command line selects; empty for an unknown name.
+    fn of(&self, name: &str) -> Vec<&'static str> {
+        let one = self.each.iter().find(|(short, full)| *short == name || *full == name).map(|(_, full)| vec![*full]);
+        let several = || self.groups.iter().find(|(group, _)| *group == name).map(|(_, all)| all.to_vec());
+        one.or_else(several).unwrap_or_default()
+    }
+
+    /// Returns the names for a message.
+    fn words(&self) -> String {
+        let names = self.each.iter().map(|(short, _)| *short);
+        let groups = self.groups.iter().map(|(group, _)| *group);
+        names.chain(groups).collect::<Vec<_>>().join(", ")
+    }
 }
 
 impl ColumnMapping {
-    /// Parses any number of texts `NAME=COLUMN[*SCALE]`, or `xyz=A,B,C[*SCALE]` with one scale for all three.
+    /// Parses texts for a recording of motion and force; see [`parse_for`](Self::parse_for).
     ///
     /// # Errors
-    /// [`ColumnMappingError`] for a text of another form, a quantity that does not exist or is mapped twice, a number of
-    /// columns other than three where three are needed, or a scale that is zero or not finite.
+    /// The errors of [`parse_for`](Self::parse_for).
     ///
     /// ```
     /// use nima_recording::csv::ColumnMapping;
@@ -84,15 +171,24 @@ impl ColumnMapping {
     /// # Ok::<(), nima_recording::csv::ColumnMappingError>(())
     /// ```
     pub fn parse(texts: &[impl AsRef<str>]) -> Result<Self, ColumnMappingError> {
+        Self::parse_for(&MOTION, texts)
+    }
+
+    /// Parses any number of texts `NAME=COLUMN[*SCALE]`, or `xyz=A,B,C[*SCALE]` with one scale for all three.
+    ///
+    /// # Errors
+    /// [`ColumnMappingError`] for a text of another form, a quantity that does not exist or is mapped twice, another
+    /// number of columns than needed, or a scale that is zero or not finite.
+    pub fn parse_for(known: &Quantities, texts: &[impl AsRef<str>]) -> Result<Self, ColumnMappingError> {
         let mut sources = BTreeMap::new();
         for text in texts.iter().map(AsRef::as_ref) {
             let owned = || text.to_owned();
             let (name, source) = text.split_once('=').ok_or_else(|| ColumnMappingError::Form { text: owned() })?;
             let name = name.trim();
             let source = source.trim();
-            let names = quantities(name);
+            let names = known.of(name);
             if names.is_empty() {
-                return Err(ColumnMappingError::Name { text: owned(), name: name.to_owned() });
+                return Err(ColumnMappingError::Name { text: owned(), name: name.to_owned(), known: known.words() });
             }
             let (columns, scale) = match source.rsplit_once('*') {
                 None => (source, 1.0),
@@ -108,7 +204,8 @@ impl ColumnMapping {
             let columns: Vec<&str> =
                 if names.len() == 1 { vec![columns] } else { columns.split(',').map(str::trim).collect() };
             if columns.len() != names.len() {
-                return Err(ColumnMappingError::Three { text: owned(), name: name.to_owned(), found: columns.len() });
+                let (wanted, found) = (names.len(), columns.len());
+                return Err(ColumnMappingError::Several { text: owned(), name: name.to_owned(), wanted, found });
             }
             if columns.iter().any(|column| column.is_empty()) {
                 return Err(ColumnMappingError::Form { text: owned() });
@@ -136,7 +233,7 @@ impl ColumnMapping {
     }
 
     pub fn source(&self, quantity: &str) -> ColumnSource {
-        self.sources.get(quantity).cloned().unwrap_or_else(|| ColumnSource { column: quantity.to_owned(), scale: 1.0 })
+        self.sources.get(quantity).cloned().unwrap_or_else(|| ColumnSource::plain(quantity))
     }
 }
 
@@ -159,8 +256,8 @@ mod tests {
         assert_eq!(mapping.source("fz_n"), ColumnSource { column: "c".into(), scale: 1.0 });
         assert!(mapping.names_leader() && !ColumnMapping::parse(&["x=a"]).unwrap().names_leader());
         let error = |texts: &[&str]| ColumnMapping::parse(texts).unwrap_err();
-        assert!(matches!(error(&["xyz=a,b"]), ColumnMappingError::Three { found: 2, .. }));
-        assert!(matches!(error(&["lxyz=a,b,c,d"]), ColumnMappingError::Three { found: 4, .. }));
+        assert!(matches!(error(&["xyz=a,b"]), ColumnMappingError::Several { found: 2, .. }));
+        assert!(matches!(error(&["lxyz=a,b,c,d"]), ColumnMappingError::Several { found: 4, .. }));
         assert!(matches!(error(&["xyz=a,,c"]), ColumnMappingError::Form { .. }));
         assert!(matches!(error(&["xyz=a,b,c", "y=d"]), ColumnMappingError::Twice { .. }));
     }

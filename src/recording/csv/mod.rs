@@ -1,25 +1,30 @@
 //! Reading recordings of motion and force (CSV).
 //!
 //! Columns: `t_s`; `x_m, y_m, z_m` with `fx_n, fy_n, fz_n`, one to three axes. Other names can be mapped to these, and
-//! the leader's motion can be mapped as well. SI units, or any consistent ones (rad and Nm of a lever). A missing
+//! the leader's motion can be mapped as well. Separators, decimal commas and times in other forms are recognised. SI units, or any consistent ones (rad and Nm of a lever). A missing
 //! column, a field that is not a number and a time that does not increase are errors that state their position. A row
 //! whose force fields are all empty is left out, because its force is unknown. A file is read as a stream, so it may
 //! be a pipe, up to [`nima_files::TABLE_MAX`] bytes.
 
+mod dialect;
 mod mapping;
 mod pairs;
 mod poses;
+mod rotation;
 mod table;
+mod time;
 
 use std::path::{Path, PathBuf};
 
 use nalgebra::Vector3;
 use nima_core::impedance::{AXES, Sample};
 use table::CsvTable;
+use time::{TimeColumn, Times};
 
-pub use mapping::{ColumnMapping, ColumnMappingError, ColumnSource};
-pub use pairs::read_pairs;
-pub use poses::read_poses;
+pub use dialect::{Comments, CsvDialect, TableText, recognise};
+pub use mapping::{ColumnMapping, ColumnMappingError, ColumnSource, PAIRS, POSES, Quantities};
+pub use pairs::{read_mapped_pairs, read_pairs};
+pub use poses::{read_mapped_poses, read_poses};
 
 pub const AXIS_NAMES: [&str; AXES] = ["x", "y", "z"];
 
@@ -62,14 +67,56 @@ pub enum RecordingError {
         field: String,
     },
     #[error(
-        "recording {path}, line {line}: time does not increase ({before_s} s, then {now_s} s); sort the rows and remove duplicates"
+        "recording {path}, line {line}, column \"{column}\": \"{field}\" is not a time; give seconds, a date and time such as 2026-11-28T07:25:56.125, or two columns with --map t=date+time"
     )]
-    Clock {
+    NotATime {
+        path: PathBuf,
+        /// From 1.
+        line: u64,
+        column: String,
+        field: String,
+    },
+    #[error(
+        "recording {path}, line {line}: the time steps back by {back_s} s (from {before_s} s to {now_s} s), as when the clock of the computer is set; split the file before this line and use the parts separately"
+    )]
+    ClockSet {
         path: PathBuf,
         /// From 1.
         line: u64,
         before_s: f64,
         now_s: f64,
+        back_s: f64,
+    },
+    #[error("recording {path}, line {line}: the time {now_s} s occurs twice; remove one of the two rows")]
+    SameTime {
+        path: PathBuf,
+        /// From 1.
+        line: u64,
+        now_s: f64,
+    },
+    #[error(
+        "recording {path}, column \"{column}\": the times look like {unit} since 1970, but this gives a rate of {rate_hz} Hz; give the unit with --map t=COLUMN*SCALE (1e-9 for ns)"
+    )]
+    TimeUnit { path: PathBuf, column: String, unit: &'static str, rate_hz: f64 },
+    #[error(
+        "recording {path}: two columns have the name \"{column}\" (columns {first} and {second}); rename one of them"
+    )]
+    Double {
+        path: PathBuf,
+        column: String,
+        /// From 1.
+        first: usize,
+        /// From 1.
+        second: usize,
+    },
+    #[error("recording {path}, line {line}: {what} is {value}; {cure}")]
+    Implausible {
+        path: PathBuf,
+        /// From 1.
+        line: u64,
+        what: &'static str,
+        value: f64,
+        cure: &'static str,
     },
     #[error("recording {path} has {found} samples, {needed} are needed; record longer or choose a shorter window")]
     TooShort { path: PathBuf, found: usize, needed: usize },
@@ -112,7 +159,8 @@ impl CsvRecording {
     /// ```
     pub fn read(path: &Path, mapping: &ColumnMapping) -> Result<Self, RecordingError> {
         let mut table = CsvTable::open(path)?;
-        let time = table.column(&mapping.source("t_s"), "time", &cure("t"))?;
+        let time = TimeColumn::find(&table, &mapping.source("t_s"), &cure("t"))?;
+        let mut times = Times::default();
         let axes = axes(&table, mapping);
         let has_leader = mapping.names_leader();
         let mut columns = Vec::with_capacity(axes.len());
@@ -129,12 +177,7 @@ impl CsvRecording {
         let mut samples = Vec::new();
         let mut leader_m = Vec::new();
         while table.advance()? {
-            let t_s = table.number(&time)?;
-            if let Some(&Sample { t_s: before_s, .. }) = samples.last()
-                && t_s <= before_s
-            {
-                return Err(RecordingError::Clock { path: path.to_owned(), line: table.line(), before_s, now_s: t_s });
-            }
+            times.read(&table, &time)?;
             let [mut position_m, mut force_n, mut handle_m] = [Vector3::zeros(); 3];
             if columns.iter().all(|(_, force, _)| table.is_empty(force)) {
                 continue;
@@ -146,11 +189,12 @@ impl CsvRecording {
                     handle_m[lane] = table.number(leader)?;
                 }
             }
-            samples.push(Sample { t_s, position_m, force_n });
+            samples.push(Sample { t_s: times.last_s(), position_m, force_n });
             if has_leader {
                 leader_m.push(handle_m);
             }
         }
+        times.check(&table, &time)?;
         let recording = Self::of_samples(path, axes, samples)?;
         Ok(Self { leader_m: has_leader.then_some(leader_m), ..recording })
     }
@@ -253,9 +297,86 @@ mod tests {
         assert!(message("t_s,a,b\n0,1,2\n", &["x=a", "fx=c"]).contains("its columns are t_s, a, b"));
         assert!(message("t_s,x_m,fx_n\n0,1,2\n1,nan,2\n", &[]).contains("line 3, column \"x_m\""));
         assert!(message("t_s,x_m,fx_n\n0,1,2\n1,,2\n", &[]).contains("line 3"));
-        assert!(message("t_s,x_m,fx_n\n0,1,2\n1,1,2\n1,1,2\n", &[]).contains("line 4: time does not increase"));
+        assert!(message("t_s,x_m,fx_n\n0,1,2\n1,1,2\n1,1,2\n", &[]).contains("line 4: the time 1 s occurs twice"));
         assert!(message("t_s,x_m,fx_n\n0,1,2\n1,1\n", &[]).contains("line"));
         assert!(message("t_s,x_m,fx_n\n0,1,2\n", &[]).contains("1 samples"));
         assert!(message("", &[]).contains("t_s"));
+    }
+
+    #[test]
+    fn times_in_many_forms_give_the_same_recording() {
+        let read = |header: &str, times: [&str; 4], maps: &[&str]| {
+            let rows = times.map(|time| format!("{time},1,2\n")).concat();
+            read(&format!("{header},x_m,fx_n\n{rows}"), maps)
+        };
+        for (header, times, maps) in [
+            ("t_s", ["0", "0.25", "0.5", "0.75"], &[][..]),
+            ("t_s", ["1764314756000", "1764314756250", "1764314756500", "1764314756750"], &[]),
+            ("t_s", ["1764314756000000", "1764314756250000", "1764314756500000", "1764314756750000"], &[]),
+            ("t_s", ["1764314756000000000", "1764314756250000000", "1764314756500000000", "1764314756750000000"], &[]),
+            (
+                "stamp",
+                [
+                    "2026-11-28T07:25:56Z",
+                    "2026-11-28T07:25:56.25Z",
+                    "2026-11-28T07:25:56.5Z",
+                    "2026-11-28T07:25:56.75Z",
+                ],
+                &["t=stamp"],
+            ),
+            (
+                "stamp",
+                ["2026-11-28 07:25:56", "2026-11-28 07:25:56.25", "2026-11-28 07:25:56.5", "2026-11-28 07:25:56.75"],
+                &["t=stamp"],
+            ),
+            ("time", ["23:59:59.5", "23:59:59.75", "00:00:00", "00:00:00.25"], &["t=time"]),
+            (
+                "date,time",
+                ["2026-11-28,07:25:56", "2026-11-28,07:25:56.25", "2026-11-28,07:25:56.5", "2026-11-28,07:25:56.75"],
+                &["t=date+time"],
+            ),
+            (
+                "date,time",
+                ["28.11.2026,23:59:59.5", "28.11.2026,23:59:59.75", "29.11.2026,00:00:00", "29.11.2026,00:00:00.25"],
+                &["t=date+time"],
+            ),
+            (
+                "sec,nanosec",
+                ["1764314756,500000000", "1764314756,750000000", "1764314757,0", "1764314757,250000000"],
+                &["t=sec+nanosec"],
+            ),
+        ] {
+            let recording = read(header, times, maps).unwrap();
+            assert!((recording.rate_hz - 4.0).abs() < 1e-9, "{times:?}: {}", recording.rate_hz);
+            let first_s = recording.samples[0].t_s;
+            assert_eq!(
+                recording.samples.iter().map(|sample| sample.t_s - first_s).collect::<Vec<_>>(),
+                [0.0, 0.25, 0.5, 0.75]
+            );
+        }
+        let kept = read("t_s", ["1764314756.0", "1764314756.25", "1764314756.5", "1764314756.75"], &[]).unwrap();
+        assert!((kept.samples[1].t_s - 1_764_314_756.25).abs() < 1e-6, "seconds stay as they are");
+        let unknown = read("t_s", ["1764314756000", "1764324756000", "1764334756000", "1764344756000"], &[]);
+        assert!(unknown.is_err());
+        let slash = read("date,time", ["11/28/2026,07:25:56", "", "", ""], &["t=date+time"]).unwrap_err().to_string();
+        assert!(slash.contains("line 2") && slash.contains("11/28/2026"), "{slash}");
+    }
+
+    #[test]
+    fn a_clock_that_was_set_is_named_and_sorting_is_not_advised() {
+        let text = "t_s,x_m,fx_n\n0.5,1,2\n1.0,1,2\n0.25,1,2\n0.5,1,2\n";
+        let words = read(text, &[]).unwrap_err().to_string();
+        assert!(words.contains("line 4: the time steps back by 0.75 s") && words.contains("split the file"), "{words}");
+        assert!(!words.contains("sort"), "{words}");
+    }
+
+    #[test]
+    fn a_name_that_stands_twice_is_refused_with_both_places() {
+        let words = read("t_s,x_m,x_m,fx_n\n0,1,1,2\n", &[]).unwrap_err().to_string();
+        assert!(words.contains("\"x_m\" (columns 2 and 3)"), "{words}");
+        assert!(
+            read("t_s,x_m,fx_n,note,note\n0,1,2,a,b\n1,1,2,a,b\n2,1,2,a,b\n", &[]).is_ok(),
+            "not a column that is read"
+        );
     }
 }

@@ -4,10 +4,10 @@ use std::path::Path;
 
 use nima_core::calibration::correspondence::PushPair;
 
-use super::{RecordingError, table::CsvTable};
+use super::{ColumnMapping, RecordingError, rotation::RotationColumns, table::CsvTable};
 
 /// Remedy for a missing column.
-const CURE: &str = "name the column so";
+const CURE: &str = "name the column so, or name another with --map f1xyz=A,B,C";
 
 /// Reads `f1x_n, f1y_n, f1z_n, f2x_n, f2y_n, f2z_n` (N) and, if the columns exist, `qw, qx, qy, qz` (`s1_from_c`). The
 /// quaternion is normalised, and refused if it is more than 1 % from unit length. Other columns are ignored. Returns
@@ -30,16 +30,23 @@ const CURE: &str = "name the column so";
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn read_pairs(path: &Path) -> Result<Vec<PushPair>, RecordingError> {
+    read_mapped_pairs(path, &ColumnMapping::default())
+}
+
+/// Reads pairs with this mapping of columns ([`PAIRS`](super::PAIRS)). The rotation may also be `roll_deg, pitch_deg,
+/// yaw_deg` or the rotation vector `rx_rad, ry_rad, rz_rad`.
+///
+/// # Errors
+/// The errors of [`read_pairs`], and a rotation in another unit.
+pub fn read_mapped_pairs(path: &Path, mapping: &ColumnMapping) -> Result<Vec<PushPair>, RecordingError> {
     let mut table = CsvTable::open(path)?;
-    let f1 = table.columns(["f1x_n", "f1y_n", "f1z_n"], "force", CURE)?;
-    let f2 = table.columns(["f2x_n", "f2y_n", "f2z_n"], "force", CURE)?;
-    let parts = ["qw", "qx", "qy", "qz"];
-    let turned = parts.iter().any(|name| table.has(name));
-    let rotation = if turned { Some(table.columns(parts, "rotation s1_from_c", CURE)?) } else { None };
+    let f1 = table.columns(["f1x_n", "f1y_n", "f1z_n"], mapping, "force", CURE)?;
+    let f2 = table.columns(["f2x_n", "f2y_n", "f2z_n"], mapping, "force", CURE)?;
+    let rotation = RotationColumns::find(&table, mapping, "rotation s1_from_c", CURE)?;
     table.rows(|row| {
         let mut pair = PushPair::plain(row.vector(&f1)?, row.vector(&f2)?);
         if let Some(rotation) = &rotation {
-            pair.s1_from_c = row.rotation(rotation)?;
+            pair.s1_from_c = rotation.read(row)?;
         }
         Ok(pair)
     })
@@ -71,7 +78,7 @@ mod tests {
     fn what_is_missing_or_wrong_is_named_with_its_place() {
         let message = |text: &str| read(text).unwrap_err().to_string();
         let missing = message("f1x_n,f1y_n,f1z_n,f2x_n,f2y_n\n");
-        assert!(missing.contains("no column \"f2z_n\"") && !missing.contains("--map"), "{missing}");
+        assert!(missing.contains("no column \"f2z_n\"") && missing.contains("--map"), "{missing}");
         let head = "f1x_n,f1y_n,f1z_n,f2x_n,f2y_n,f2z_n";
         assert!(message(&format!("{head},qw,qx\n")).contains("no column \"qy\""));
         assert!(message(&format!("{head}\n1,2,3,4,5,6\n1,2,3,4,inf,6\n")).contains("line 3, column \"f2y_n\""));

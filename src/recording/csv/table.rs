@@ -2,11 +2,15 @@
 
 use std::path::{Path, PathBuf};
 
-use csv::{Reader, ReaderBuilder, StringRecord, Trim};
+use csv::{Reader, StringRecord};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use nima_files::{self, Input, PASSAGE, quoted, shortened};
 
-use super::{ColumnMapping, RecordingError, mapping::ColumnSource};
+use super::{
+    ColumnMapping, RecordingError,
+    dialect::{Comments, CsvDialect, TableText, recognise},
+    mapping::ColumnSource,
+};
 
 /// Largest deviation of a quaternion from unit length that counts as rounding.
 const UNIT_TOLERANCE: f64 = 0.01;
@@ -15,7 +19,8 @@ const UNIT_TOLERANCE: f64 = 0.01;
 pub(super) struct CsvTable {
     path: PathBuf,
     header: StringRecord,
-    reader: Reader<Input>,
+    dialect: CsvDialect,
+    reader: Reader<TableText<Input>>,
     row: StringRecord,
 }
 
@@ -25,13 +30,19 @@ pub(super) struct CsvColumn {
     scale: f64,
 }
 
+impl CsvColumn {
+    pub(super) fn name(&self) -> &str {
+        &self.name
+    }
+}
+
 impl CsvTable {
     pub(super) fn open(path: &Path) -> Result<Self, RecordingError> {
         let refused = |reason: String| RecordingError::Open { path: path.to_owned(), reason };
         let input = nima_files::open_table(path).map_err(|error| refused(error.to_string()))?;
-        let mut reader = ReaderBuilder::new().trim(Trim::All).comment(Some(b'#')).from_reader(input);
-        let header = reader.headers().map_err(|error| refused(error.to_string()))?.clone();
-        Ok(Self { path: path.to_owned(), header, reader, row: StringRecord::new() })
+        let (dialect, text) = recognise(input, Comments::Skipped).map_err(refused)?;
+        let (reader, header) = dialect.reader(text).map_err(refused)?;
+        Ok(Self { path: path.to_owned(), header, dialect, reader, row: StringRecord::new() })
     }
 
     /// Reads the next row; `false` at the end.
@@ -52,7 +63,7 @@ impl CsvTable {
     }
 
     pub(super) fn line(&self) -> u64 {
-        self.row.position().map_or(0, csv::Position::line)
+        self.dialect.line(self.row.position().map_or(0, csv::Position::line))
     }
 
     pub(super) fn has(&self, column: &str) -> bool {
@@ -67,7 +78,17 @@ impl CsvTable {
         cure: &str,
     ) -> Result<CsvColumn, RecordingError> {
         let name = source.column().to_owned();
-        match self.header.iter().position(|found| found == name) {
+        let mut places = self.header.iter().enumerate().filter(|(_, found)| *found == name).map(|(place, _)| place);
+        let found = places.next();
+        if let (Some(first), Some(second)) = (found, places.next()) {
+            return Err(RecordingError::Double {
+                path: self.path.clone(),
+                column: quoted(&name),
+                first: first + 1,
+                second: second + 1,
+            });
+        }
+        match found {
             Some(index) => Ok(CsvColumn { index, name, scale: source.scale() }),
             None => Err(RecordingError::NoColumn {
                 path: self.path.clone(),
@@ -79,14 +100,14 @@ impl CsvTable {
         }
     }
 
-    /// Finds columns of fixed names.
+    /// Finds the columns of these quantities.
     pub(super) fn columns<const N: usize>(
         &self,
         names: [&str; N],
+        mapping: &ColumnMapping,
         purpose: &'static str,
         cure: &str,
     ) -> Result<[CsvColumn; N], RecordingError> {
-        let mapping = ColumnMapping::default();
         let found: Result<Vec<CsvColumn>, _> =
             names.iter().map(|name| self.column(&mapping.source(name), purpose, cure)).collect();
         found?.try_into().map_err(|_| unreachable!("as many columns as names"))
@@ -99,7 +120,7 @@ impl CsvTable {
 
     /// Returns the rotation in four columns `w, x, y, z`, normalised. A quaternion more than 1 % from unit length is
     /// refused.
-    pub(super) fn rotation(&self, [w, x, y, z]: &[CsvColumn; 4]) -> Result<UnitQuaternion<f64>, RecordingError> {
+    pub(super) fn quaternion(&self, [w, x, y, z]: &[CsvColumn; 4]) -> Result<UnitQuaternion<f64>, RecordingError> {
         let number = |column| self.number(column);
         let quaternion = Quaternion::new(number(w)?, number(x)?, number(y)?, number(z)?);
         let length = quaternion.norm();
@@ -109,20 +130,48 @@ impl CsvTable {
         Ok(UnitQuaternion::from_quaternion(quaternion))
     }
 
+    pub(super) fn implausible(&self, what: &'static str, value: f64, cure: &'static str) -> RecordingError {
+        RecordingError::Implausible { path: self.path.clone(), line: self.line(), what, value, cure }
+    }
+
     pub(super) fn is_empty(&self, column: &CsvColumn) -> bool {
         self.row.get(column.index).is_none_or(str::is_empty)
     }
 
     pub(super) fn number(&self, column: &CsvColumn) -> Result<f64, RecordingError> {
-        let field = self.row.get(column.index).unwrap_or_default();
-        match field.parse::<f64>() {
-            Ok(value) if (value * column.scale).is_finite() => Ok(value * column.scale),
-            _ => Err(RecordingError::NotANumber {
-                path: self.path.clone(),
-                line: self.line(),
-                column: quoted(&column.name),
-                field: quoted(field),
-            }),
+        let value = self.parsed(self.field(column)).map(|value| value * column.scale);
+        value.filter(|value| value.is_finite()).ok_or_else(|| self.not_a_number(column))
+    }
+
+    pub(super) fn field(&self, column: &CsvColumn) -> &str {
+        self.row.get(column.index).unwrap_or_default()
+    }
+
+    /// Parses a finite number.
+    pub(super) fn parsed(&self, field: &str) -> Option<f64> {
+        self.dialect.number(field).filter(|value| value.is_finite())
+    }
+
+    fn not_a_number(&self, column: &CsvColumn) -> RecordingError {
+        let (path, line) = (self.path.clone(), self.line());
+        RecordingError::NotANumber { path, line, column: quoted(&column.name), field: quoted(self.field(column)) }
+    }
+
+    pub(super) fn not_a_time(&self, column: &CsvColumn) -> RecordingError {
+        let (path, line) = (self.path.clone(), self.line());
+        RecordingError::NotATime { path, line, column: quoted(&column.name), field: quoted(self.field(column)) }
+    }
+
+    /// Returns the error for a time that does not increase.
+    pub(super) fn clock(&self, before_s: f64, now_s: f64, step_s: f64) -> RecordingError {
+        let (path, line) = (self.path.clone(), self.line());
+        if step_s == 0.0 {
+            return RecordingError::SameTime { path, line, now_s };
         }
+        RecordingError::ClockSet { path, line, before_s, now_s, back_s: -step_s }
+    }
+
+    pub(super) fn unknown_unit(&self, column: &CsvColumn, unit: &'static str, rate_hz: f64) -> RecordingError {
+        RecordingError::TimeUnit { path: self.path.clone(), column: quoted(&column.name), unit, rate_hz }
     }
 }

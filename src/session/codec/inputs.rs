@@ -148,6 +148,10 @@ choice!(EngageBlocker {
     1 => Waiting { 0: awaited: AwaitedDevice },
     2 => Exchanged { 0: exchange: SideSwap },
     3 => FarEnd {},
+    // Without fields, so that a tick has as many columns as in older journals.
+    4 => OneHandle {},
+    5 => OneArm {},
+    6 => OneSensor {},
 });
 
 choice!(AwaitedDevice { 0 => Servos {}, 1 => Markers {} });

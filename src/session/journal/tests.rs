@@ -105,6 +105,9 @@ fn obstacle() -> BoxedStrategy<EngageBlocker> {
         prop_oneof![Just(AwaitedDevice::Servos), Just(AwaitedDevice::Markers)].prop_map(EngageBlocker::Waiting),
         proptest::sample::select(exchanged.to_vec()).prop_map(EngageBlocker::Exchanged),
         Just(EngageBlocker::FarEnd),
+        Just(EngageBlocker::OneHandle),
+        Just(EngageBlocker::OneArm),
+        Just(EngageBlocker::OneSensor),
     ]
     .boxed()
 }

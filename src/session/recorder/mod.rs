@@ -6,6 +6,7 @@
 mod session_file;
 mod shared;
 mod sync;
+mod utc_clock;
 
 use std::{
     collections::BTreeMap,
@@ -30,6 +31,7 @@ pub(crate) use self::sync::Sync;
 use self::{
     session_file::{SessionFile, log_time_ns},
     shared::RecorderShared,
+    utc_clock::UtcClock,
 };
 use crate::{
     calibration_metadata::described,
@@ -242,6 +244,7 @@ struct OpenSession {
     /// The note whose time has not been reached yet.
     waiting: Option<(f64, LogNote)>,
     clock: ImageLoopClock,
+    utc: UtcClock,
 }
 
 impl OpenSession {
@@ -262,7 +265,15 @@ impl OpenSession {
         // A file without a loop's origin cannot be replayed, so the beginning must be on the disk before the first
         // tick.
         file.out.flush()?;
-        Ok(Self { scribe, file, noted, sources, waiting: None, clock: ImageLoopClock::default() })
+        Ok(Self {
+            scribe,
+            file,
+            noted,
+            sources,
+            waiting: None,
+            clock: ImageLoopClock::default(),
+            utc: UtcClock::default(),
+        })
     }
 
     fn run(&mut self, tap: &TapEnd, shared: &RecorderShared) -> Result<(), RecordError> {
@@ -277,6 +288,7 @@ impl OpenSession {
             }
             match next {
                 TapItem::Entry(entry) => {
+                    self.follow_clock(tap)?;
                     let before = self.scribe.ticks();
                     self.scribe.take(entry, tap, &mut self.file)?;
                     if self.scribe.ticks() > before {
@@ -304,6 +316,23 @@ impl OpenSession {
             }
             shared.bytes.store(self.file.out.bytes(), Ordering::Relaxed);
         }
+    }
+
+    /// Relates the times of the loop to UTC. The times of the messages refer to the relation at the start of the loop, so
+    /// that they are equally spaced; viewers also get the current one.
+    fn follow_clock(&mut self, tap: &TapEnd) -> Result<(), RecordError> {
+        let Some(change) = self.utc.look(Instant::now(), || tap.utc_start_ns()) else { return Ok(()) };
+        if change.is_first {
+            self.file.started(change.started_ns)?;
+        }
+        self.file.out.clock(change.started_ns);
+        if let Some(jump_s) = change.jump_s {
+            let words = format!("the clock of this computer was set by {:+.1} ms", 1e3 * jump_s);
+            let note = LogNote { kind: NoteKind::Alarm, warns: true, words, names: false };
+            let time_ns = self.file.log_time_ns(self.scribe.t_s());
+            self.file.topics.note(&mut self.file.out, time_ns, note)?;
+        }
+        Ok(())
     }
 
     /// Writes the images up to the last tick.

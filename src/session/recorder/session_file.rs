@@ -17,6 +17,7 @@ use crate::{
     layouts::layouts,
     sinks::{Destination, SessionSinks, SinkChannel},
     topics::SessionTopics,
+    trim::{BEGINNING, CLOCK_TABLE},
 };
 
 /// The chunk is closed after this many blocks of the journal: 0.4 s at 1 kHz, the maximum that a killed process can
@@ -54,6 +55,14 @@ impl SessionFile {
         let journal = out.channel(JOURNAL_TOPIC, encoding)?;
         let topics = SessionTopics::new(&mut out, sides, words, devices)?;
         Ok(Self { out, journal, topics, started_ns, blocks: 0 })
+    }
+
+    /// Sets the start of the loop's clock, before the first tick is written. The file is older, because it was created
+    /// before the loop.
+    pub(super) fn started(&mut self, started_ns: u64) -> Result<(), RecordError> {
+        self.started_ns = started_ns;
+        let table = BTreeMap::from([(BEGINNING.to_owned(), started_ns.to_string())]);
+        Ok(self.out.metadata(CLOCK_TABLE, &table)?)
     }
 
     pub(super) fn log_time_ns(&self, t_s: f64) -> u64 {

@@ -9,7 +9,7 @@ mod trace;
 
 use std::{collections::BTreeMap, path::Path};
 
-use nima_machine::rig::Side;
+use nima_machine::{rig::Side, runtime::STALL_MAX_S};
 use nima_recording::{
     messages::foxglove::{Level, Log},
     session::{ReadError, SessionMessage, SessionReader},
@@ -28,6 +28,7 @@ use crate::{
     images::{IMAGE_FIGURES_TOPIC, IMAGE_TOPIC, VIDEO_TOPIC},
     journal::{MessageOutline, outline},
     objects::{self, kind},
+    plot_channels,
     recorder::JOURNAL_TOPIC,
     topics::{
         HAPPENING_LINE, HAPPENINGS_TOPIC, LOG_TOPIC, MARK_LINE, MARKS_TOPIC, RINGS_TOPIC, TASK_TOPIC, TIMES,
@@ -37,6 +38,8 @@ use crate::{
 };
 use arm::ArmCollector;
 
+/// A shorter time without ticks is lateness, not a stall, periods.
+const STALL_MIN_PERIODS: f64 = 2.5;
 /// Maximum number of notes on damage that are kept; the rest are only counted.
 const NOTES: usize = 20;
 
@@ -66,6 +69,8 @@ pub struct SessionFigures {
     pub stretch: bool,
     /// Gaps in the journal.
     pub holes: Vec<MissingTicks>,
+    /// Stalls of the computer.
+    pub stalls: Vec<Stall>,
     pub arms: Vec<ArmFigures>,
     /// Events in order.
     pub marks: Vec<EventMark>,
@@ -76,6 +81,15 @@ pub struct SessionFigures {
     pub images: Option<ImageReport>,
     /// The timing of the loop, if the file has it.
     pub timing: Option<LoopTimes>,
+}
+
+/// A time without ticks that is long enough to switch the drives off.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Stall {
+    /// Last tick before it, s since the start of the session.
+    pub from_s: f64,
+    /// How long the loop was silent, s.
+    pub length_s: f64,
 }
 
 /// A gap in the journal.
@@ -158,6 +172,7 @@ impl SessionFigures {
         let mut figures = Self { file: file.to_owned(), notes: reader.notes().to_vec(), ..Self::default() };
         figures.tables(reader);
         let (first_ns, last_ns) = reader.times_ns().unwrap_or_default();
+        let first_ns = if figures.stretch { first_ns } else { plot_channels::beginning_ns(reader).unwrap_or(first_ns) };
         figures.length_s = last_ns.saturating_sub(first_ns) as f64 * 1e-9;
         figures.closed = has(JOURNAL_TOPIC).then_some(false);
         figures.happenings = has(HAPPENINGS_TOPIC).then(BTreeMap::new);
@@ -225,6 +240,10 @@ struct FilePass<'a> {
     channels: Vec<ReportChannel>,
     arms: Vec<(Side, ArmCollector)>,
     damaged: usize,
+    /// Last tick of the first arm, s.
+    last_s: Option<f64>,
+    /// A longer time without ticks is a stall, s.
+    stall_min_s: f64,
 }
 
 impl<'a> FilePass<'a> {
@@ -247,7 +266,9 @@ impl<'a> FilePass<'a> {
         };
         let channels = reader.channels().iter().filter_map(of).collect();
         let arms = sides.iter().map(|&side| (side, ArmCollector::new(side.word(), length_s, period_s))).collect();
-        Self { reader, first_ns, channels, arms, damaged: 0 }
+        // A slow loop has long periods.
+        let stall_min_s = STALL_MAX_S.max(STALL_MIN_PERIODS * period_s);
+        Self { reader, first_ns, channels, arms, damaged: 0, last_s: None, stall_min_s }
     }
 
     fn all(&mut self, figures: &mut SessionFigures) {
@@ -292,7 +313,14 @@ impl<'a> FilePass<'a> {
         let Some(values) = channel.columns.as_mut().and_then(|columns| columns.read(data)) else { return };
         match channel.kind {
             MessageKind::Timing => timing(t_s, values, figures),
-            MessageKind::Forces(arm) => self.arms[arm].1.forces(t_s, values),
+            MessageKind::Forces(arm) => {
+                self.arms[arm].1.forces(t_s, values);
+                if let Some(from_s) = (arm == 0).then(|| self.last_s.replace(t_s)).flatten()
+                    && t_s - from_s > self.stall_min_s
+                {
+                    figures.stalls.push(Stall { from_s, length_s: t_s - from_s });
+                }
+            }
             MessageKind::Gates(arm) => self.arms[arm].1.gates(t_s, values),
             MessageKind::Identification(arm) => self.arms[arm].1.identified(values),
             MessageKind::Journal | MessageKind::Log | MessageKind::Happening | MessageKind::Picture => {}

@@ -20,6 +20,11 @@ use crate::{
 /// The frame of the images: its axes are the image axes.
 const FRAME: &str = "endoscope";
 
+/// Maximum rate of recorded images, and how many may come at once: more than an endoscope sends, and few enough that a
+/// wrong setting of a camera does not fill the disk.
+const RATE_MAX_HZ: f64 = 120.0;
+const AT_ONCE_MAX: f64 = 12.0;
+
 /// Writes the images of a source as soon as the loop's tick of their time has passed.
 #[derive(Debug)]
 pub(crate) struct ImageChannel {
@@ -31,16 +36,29 @@ pub(crate) struct ImageChannel {
     figures: Option<SinkChannel>,
     number: u64,
     last_s: f64,
+    /// Images that may be written now, and that were left out because too many came.
+    room: f64,
+    left_out: u64,
 }
 
 impl ImageChannel {
     pub(crate) fn new(source: Box<dyn RecordedImageSource>) -> Self {
-        Self { source, waiting: None, images: None, video: None, figures: None, number: 0, last_s: 0.0 }
+        Self {
+            source,
+            waiting: None,
+            images: None,
+            video: None,
+            figures: None,
+            number: 0,
+            last_s: 0.0,
+            room: AT_ONCE_MAX,
+            left_out: 0,
+        }
     }
 
     /// Returns the numbers of written and dropped images.
     pub(crate) fn counts(&self) -> [u64; 2] {
-        [self.number, self.source.dropped()]
+        [self.number, self.source.dropped() + self.left_out]
     }
 
     /// Writes the images that arrived up to this time of the loop, s; `t_s_of` computes the time of an image, and
@@ -60,7 +78,15 @@ impl ImageChannel {
                 return Ok(());
             }
             // The estimated clock may be corrected slightly backwards.
+            let before_s = self.last_s;
             self.last_s = self.last_s.max(at_s);
+            self.room = (self.room + (self.last_s - before_s) * RATE_MAX_HZ).min(AT_ONCE_MAX);
+            // The frames of a video refer to each other, so none is left out.
+            if self.room < 1.0 && taken.coding == ImageCoding::Jpeg {
+                self.left_out += 1;
+                continue;
+            }
+            self.room -= 1.0;
             self.write(out, time_ns(self.last_s), taken)?;
         }
         Ok(())

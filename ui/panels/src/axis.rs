@@ -28,16 +28,17 @@ pub(super) fn near_end(value: f64, shown: &RangeInclusive<f64>) -> bool {
     value < shown.start() + margin || value > shown.end() - margin
 }
 
-/// Formats a number with two decimals and its sign; zero has no sign.
-pub(super) fn signed(value: f64) -> String {
-    let text = format!("{value:+.2}");
-    if text == "-0.00" || text == "+0.00" { "0.00".to_owned() } else { text }
+/// Formats a number with this many decimals and its sign; zero has no sign.
+pub(super) fn signed(value: f64, decimals: usize) -> String {
+    let text = format!("{value:+.decimals$}");
+    let is_zero = text.chars().all(|letter| matches!(letter, '+' | '-' | '0' | '.'));
+    if is_zero { text[1..].to_owned() } else { text }
 }
 
-/// Returns a number without trailing zeros.
-pub(super) fn plain(value: f64) -> String {
-    let text = format!("{value:.2}");
-    let text = text.trim_end_matches('0').trim_end_matches('.');
+/// Returns a number with this many decimals, without trailing zeros.
+pub(super) fn plain(value: f64, decimals: usize) -> String {
+    let text = format!("{value:.decimals$}");
+    let text = if decimals > 0 { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
     if text == "-0" { "0".to_owned() } else { text.to_owned() }
 }
 
@@ -61,11 +62,13 @@ mod tests {
 
     #[test]
     fn a_sign_stands_where_there_is_something() {
-        assert_eq!([-0.004, 0.004, 1.0, -0.126].map(signed), ["0.00", "0.00", "+1.00", "-0.13"]);
+        assert_eq!([-0.004, 0.004, 1.0, -0.126].map(|value| signed(value, 2)), ["0.00", "0.00", "+1.00", "-0.13"]);
+        assert_eq!([-0.4, 250.4].map(|value| signed(value, 0)), ["0", "+250"]);
     }
 
     #[test]
     fn axis_numbers_are_plain() {
-        assert_eq!([0.0, -0.001, 2.5, -10.0, 0.25].map(plain), ["0", "0", "2.5", "-10", "0.25"]);
+        assert_eq!([0.0, -0.001, 2.5, -10.0, 0.25].map(|value| plain(value, 2)), ["0", "0", "2.5", "-10", "0.25"]);
+        assert_eq!([500.0, 0.0].map(|value| plain(value, 0)), ["500", "0"]);
     }
 }

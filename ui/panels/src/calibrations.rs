@@ -20,6 +20,8 @@ use nima_words::{
     text,
 };
 
+use crate::panel::{Panel, PanelContext, PanelSize};
+
 /// A request of the technician.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CalibrationWish {
@@ -38,6 +40,20 @@ pub enum CalibrationPage {
     Wizard(WizardKind),
     Check,
     All,
+}
+
+#[derive(Debug, Default)]
+pub struct CalibrationsPanel;
+
+impl Panel for CalibrationsPanel {
+    const NAME: Text = text::calibrations::NAME;
+    const MEANING: Text = text::calibrations::MEANING;
+    const SIZE: PanelSize = PanelSize::KNOBS;
+    const ACTS: bool = true;
+
+    fn ui(&mut self, ui: &mut Ui, at: &mut PanelContext<'_>) {
+        at.wishes.calibration = calibrations_ui(ui, at.live, at.active, None, text::calibrations::CLOSE_WIZARD);
+    }
 }
 
 /// Draws the panel; `open` is the page next to it, and `back` names the way back from it.
@@ -75,14 +91,14 @@ pub fn calibrations_ui(
         let button = SteadyButton { id, label: &text, meaning: &meaning, may, waits_s: PATIENT_S };
         let look = |text: String| Button::selectable(is_open, text).frame_when_inactive(true).min_size(size);
         if is_open {
-            ui.add_enabled(false, look(text.clone())).on_disabled_hover_text(text::calibrations::IS_OPEN.get());
+            ui.add_enabled(false, look(text.clone())).on_disabled_hover_text(text::calibrations::IS_OPEN);
         } else if button.ui(ui, |text, _| look(text)) {
             wish = Some(CalibrationWish::Open(which));
         }
     }
     if open.is_some() {
         let back = Button::new(back.get()).min_size(vec2(ui.available_width(), 32.0));
-        if ui.add(back).on_hover_text(text::calibrations::CLOSE_WIZARD_HOVER.get()).clicked() {
+        if ui.add(back).on_hover_text(text::calibrations::CLOSE_WIZARD_HOVER).clicked() {
             wish = Some(CalibrationWish::Close);
         }
     }
@@ -130,7 +146,7 @@ fn rig_ui(
                 next_button(name, next).selected(is_open).frame_when_inactive(true).min_size(vec2(width, 28.0))
             };
             if is_open {
-                ui.add_enabled(false, look(name.to_owned())).on_disabled_hover_text(text::calibrations::IS_OPEN.get());
+                ui.add_enabled(false, look(name.to_owned())).on_disabled_hover_text(text::calibrations::IS_OPEN);
                 continue;
             }
             let may = check_closed.filter(|_| page == CalibrationPage::Check).map_or(Ok(()), Err);
@@ -168,7 +184,7 @@ fn side_ui(ui: &mut Ui, now: Side) -> Option<CalibrationWish> {
         for side in Side::LEFT_TO_RIGHT {
             let name = text::calibrations::arm(side_name(side));
             let button = Button::selectable(now == side, name).frame_when_inactive(true).min_size(vec2(104.0, 26.0));
-            let chosen = ui.add(button).on_hover_text(text::calibrations::ARM_TO_CALIBRATE.get()).clicked();
+            let chosen = ui.add(button).on_hover_text(text::calibrations::ARM_TO_CALIBRATE).clicked();
             if chosen && now != side {
                 wish = Some(CalibrationWish::Choose(side));
             }

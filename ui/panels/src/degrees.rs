@@ -13,9 +13,12 @@ use nima_screen::{
     widgets::{figure, small},
 };
 use nima_words::{
+    language::Text,
     report_text::{UNKNOWN, three_digits},
     text,
 };
+
+use crate::panel::{Panel, PanelContext, PanelSize};
 
 const CHART_HEIGHT: f32 = 80.0;
 const COURSE_HEIGHT: f32 = 44.0;
@@ -41,21 +44,34 @@ impl DegreesState {
     }
 }
 
+#[derive(Debug, Default)]
+pub struct DegreesPanel;
+
+impl Panel for DegreesPanel {
+    const NAME: Text = text::degrees::NAME;
+    const MEANING: Text = text::degrees::MEANING;
+    const SIZE: PanelSize = PanelSize::FIGURES;
+
+    fn ui(&mut self, ui: &mut Ui, at: &mut PanelContext<'_>) {
+        degrees_ui(ui, at.live, &mut at.panels.degrees);
+    }
+}
+
 pub fn degrees_ui(ui: &mut Ui, live: &LiveState, state: &mut DegreesState) {
     state.is_seen = true;
     let compares = live.first_tick().is_some_and(|tick| tick.identification.modes.contains(Mode::Literal));
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
         for (rule, colour) in state.rules() {
             let [name, meaning] = key(rule);
             key_ui(ui, colour, name, meaning);
         }
+        ui.label(small(text::degrees::last_minutes(DEGREES_S / 60.0)));
     });
-    ui.label(small(text::degrees::last_minutes(DEGREES_S / 60.0)));
     switches_ui(ui, live, state);
     chart_ui(ui, live, *state);
     course_ui(ui, live, *state);
     if !compares && !live.is_shown_only() && live.state() != LoopState::Engaged {
-        ui.label(small(text::degrees::WAITS.get()));
+        ui.label(small(text::degrees::WAITS));
     }
     exports::report_ui(ui);
     if !live.is_shown_only() {
@@ -101,10 +117,10 @@ fn switches_ui(ui: &mut Ui, live: &LiveState, state: &mut DegreesState) {
             }
         }
         ui.add_space(4.0);
-        let contact = ui.checkbox(&mut state.in_contact, text::degrees::CONTACT.get());
-        contact.on_hover_text(text::degrees::CONTACT_HOVER.get());
-        let export = ui.add(Button::new(text::degrees::EXPORT.get()).min_size(vec2(40.0, 24.0)));
-        if export.on_hover_text(text::degrees::EXPORT_HOVER.get()).clicked() {
+        let contact = ui.checkbox(&mut state.in_contact, text::degrees::CONTACT);
+        contact.on_hover_text(text::degrees::CONTACT_HOVER);
+        let export = ui.add(Button::new(text::degrees::EXPORT).min_size(vec2(40.0, 24.0)));
+        if export.on_hover_text(text::degrees::EXPORT_HOVER).clicked() {
             for (name, table) in tables(live, *state) {
                 exports::save_csv(ui.ctx(), name, &table);
             }
@@ -161,7 +177,7 @@ fn cost_ui(ui: &mut Ui, live: &LiveState) {
     let [whole, added] = live.compare_cost.us();
     let added = added.map_or_else(|| UNKNOWN.to_owned(), |us| format!("{us:+.1}"));
     let whole = whole.map_or_else(|| UNKNOWN.to_owned(), |us| format!("{us:.1}"));
-    figure(ui, text::degrees::COST.get(), text::degrees::cost(&added, &whole), text::degrees::COST_HOVER.get());
+    figure(ui, text::degrees::COST, text::degrees::cost(&added, &whole), text::degrees::COST_HOVER);
 }
 
 fn key_ui(ui: &mut Ui, colour: egui::Color32, name: &str, meaning: &str) {

@@ -12,7 +12,9 @@ use nima_screen::{
     theme,
     widgets::{at_the_right, small},
 };
-use nima_words::text;
+use nima_words::{language::Text, text};
+
+use crate::panel::{Panel, PanelContext, PanelSize};
 
 use super::modes::modes_ui;
 
@@ -42,6 +44,20 @@ pub struct FeedbackState {
     gain: RequestedValue,
     delay_ms: RequestedValue,
     dead_band_mm_s: RequestedValue,
+}
+
+#[derive(Debug, Default)]
+pub struct FeedbackPanel;
+
+impl Panel for FeedbackPanel {
+    const NAME: Text = text::feedback::NAME;
+    const MEANING: Text = text::feedback::MEANING;
+    const SIZE: PanelSize = PanelSize::KNOBS;
+    const ACTS: bool = true;
+
+    fn ui(&mut self, ui: &mut Ui, at: &mut PanelContext<'_>) {
+        feedback_ui(ui, at.live, &mut at.panels.feedback, at.outbox);
+    }
 }
 
 pub fn feedback_ui(ui: &mut Ui, live: &mut LiveState, state: &mut FeedbackState, outbox: &mut Outbox) {
@@ -131,15 +147,13 @@ fn gain_ui(ui: &mut Ui, live: &LiveState, state: &mut FeedbackState, outbox: &mu
     }
     ui.horizontal(|ui| {
         let meaning = text::feedback::allow_above_1_hover();
-        let unlock =
-            ui.checkbox(&mut state.allow_above_one, text::feedback::ALLOW_ABOVE_1.get()).on_hover_text(meaning);
+        let unlock = ui.checkbox(&mut state.allow_above_one, text::feedback::ALLOW_ABOVE_1).on_hover_text(meaning);
         if unlock.changed() && !state.allow_above_one && live.gain() > GAIN.max {
             outbox.push(Command::SetGain(GAIN.max));
             state.gain = RequestedValue::default();
         }
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            ui.label(small(text::feedback::gain_in_use(live.gain())))
-                .on_hover_text(text::feedback::GAIN_IN_USE_HOVER.get());
+            ui.label(small(text::feedback::gain_in_use(live.gain()))).on_hover_text(text::feedback::GAIN_IN_USE_HOVER);
         });
     });
 }
@@ -151,7 +165,7 @@ pub fn calm_gain_ui(ui: &mut Ui, live: &LiveState, state: &mut FeedbackState, ou
     let mut wanted = None;
     let meaning = &text::feedback::gain_hover(live.gate_settings().gain_rate_per_s);
     ui.horizontal(|ui| {
-        ui.label(RichText::new(text::feedback::GAIN.get()).font(theme::strong(17.0))).on_hover_text(meaning);
+        ui.label(RichText::new(text::feedback::GAIN).font(theme::strong(17.0))).on_hover_text(meaning);
         at_the_right(ui, |ui| {
             ui.label(RichText::new(format!("{shown:.2}")).font(theme::strong(38.0))).on_hover_text(meaning);
             ui.add_space(8.0);
@@ -197,7 +211,7 @@ fn delay_ui(ui: &mut Ui, live: &LiveState, state: &mut FeedbackState, outbox: &m
         }
     })
     .response
-    .on_disabled_hover_text(text::link::DELAY_IS_MEASURED.get());
+    .on_disabled_hover_text(text::link::DELAY_IS_MEASURED);
 }
 
 fn standstill_ui(ui: &mut Ui, live: &LiveState, state: &mut FeedbackState, outbox: &mut Outbox) {
@@ -214,11 +228,7 @@ fn standstill_ui(ui: &mut Ui, live: &LiveState, state: &mut FeedbackState, outbo
         outbox.push(Command::SetDeadBand(mm_s * 1e-3));
     }
     let mut hold = live.gate_settings().static_hold;
-    if ui
-        .checkbox(&mut hold, RichText::new(text::feedback::HOLD.get()))
-        .on_hover_text(text::feedback::HOLD_HOVER.get())
-        .changed()
-    {
+    if ui.checkbox(&mut hold, RichText::new(text::feedback::HOLD)).on_hover_text(text::feedback::HOLD_HOVER).changed() {
         outbox.push(Command::SetStaticHold(hold));
     }
 }

@@ -4,8 +4,8 @@
 use std::f32::consts::TAU;
 
 use egui::{
-    Align2, Button, Color32, Painter, Pos2, Rect, RichText, Sense, Stroke, TextWrapMode, Ui, UiBuilder, Vec2, pos2,
-    vec2,
+    Align2, Button, Color32, Painter, Pos2, Rect, RichText, Sense, Shape, Stroke, TextWrapMode, Ui, UiBuilder, Vec2,
+    pos2, vec2,
 };
 use nalgebra::Vector3;
 use nima_machine::rig::Side;
@@ -15,7 +15,12 @@ use nima_screen::{
     theme,
     widgets::fitting,
 };
-use nima_words::{report_text::newtons, text};
+use nima_words::{language::Text, report_text::newtons, text};
+
+use crate::{
+    panel::{Panel, PanelContext, PanelSize},
+    roles::Panels,
+};
 
 use super::traces_state::stepped;
 
@@ -70,6 +75,20 @@ impl ForceProjection {
     }
 }
 
+#[derive(Debug, Default)]
+pub struct ForceSpacePanel;
+
+impl Panel for ForceSpacePanel {
+    const NAME: Text = text::force_space::NAME;
+    const MEANING: Text = text::force_space::MEANING;
+    const SIZE: PanelSize = PanelSize::filling([200.0, 180.0]);
+
+    fn ui(&mut self, ui: &mut Ui, at: &mut PanelContext<'_>) {
+        let Panels { forces, space, .. } = &mut *at.panels;
+        force_space_ui(ui, at.live, forces.side(), space, forces.cursor_at_s(at.live));
+    }
+}
+
 /// Draws the plot over the available space; `cursor_s` is the time at the cursor of a trace, s on the loop's clock.
 pub fn force_space_ui(ui: &mut Ui, live: &LiveState, side: Side, state: &mut ForceSpaceState, cursor_s: Option<f64>) {
     let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
@@ -95,7 +114,7 @@ pub fn force_space_ui(ui: &mut Ui, live: &LiveState, side: Side, state: &mut For
     if response.double_clicked() {
         state.reset();
     }
-    response.on_hover_text(text::force_space::HOVER.get());
+    response.on_hover_text(text::force_space::HOVER);
     let painter = ui.painter_at(rect);
     painter.rect_filled(rect, theme::CORNER, theme::now().groove);
     let max_n = pairs.iter().map(|pair| pair.measured_n.amax().max(pair.rendered_n.amax())).fold(0.0, f64::max);
@@ -159,16 +178,19 @@ fn legend_ui(ui: &mut Ui, state: &mut ForceSpaceState, rect: Rect, magnitudes_n:
         let words = if is_hidden { words.strikethrough().color(theme::now().text_weak) } else { words.color(colour) };
         let place = Rect::from_min_size(rect.left_top() + vec2(6.0, 4.0 + 20.0 * row as f32), vec2(rect.width(), 18.0));
         let button = Button::new(words).frame_when_inactive(false).small().wrap_mode(TextWrapMode::Extend);
+        // The circle of the ceiling may pass behind the name.
+        let ground = ui.painter().add(Shape::Noop);
         let response = ui.new_child(UiBuilder::new().max_rect(place).id_salt(row)).add(button);
+        ui.painter().set(ground, Shape::rect_filled(response.rect, 0.0, theme::now().groove));
         response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, !is_hidden, name.get()));
-        if response.on_hover_text(text::traces::LEGEND_HOVER.get()).clicked() {
+        if response.on_hover_text(text::traces::LEGEND_HOVER).clicked() {
             state.hidden[row] ^= true;
         }
     }
     let size = vec2(64.0, 22.0);
     let place = Rect::from_min_size(rect.right_top() + vec2(-size.x - 6.0, 6.0), size);
-    let reset = ui.put(place, Button::new(text::force_space::RESET.get()).small().min_size(size));
-    if reset.on_hover_text(text::force_space::RESET_HOVER.get()).clicked() {
+    let reset = ui.put(place, Button::new(text::force_space::RESET).small().min_size(size));
+    if reset.on_hover_text(text::force_space::RESET_HOVER).clicked() {
         state.reset();
     }
 }

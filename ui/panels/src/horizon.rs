@@ -10,9 +10,12 @@ use nima_screen::{
     widgets::{Sign, bar, fitting, sign, small, width_of},
 };
 use nima_words::{
+    language::Text,
     report_text::{COMPARED, UNKNOWN, mode_meaning, mode_name, newtons, newtons_in_three, three_digits},
     text,
 };
+
+use crate::panel::{Panel, PanelContext, PanelSize};
 
 /// Upper end of the bars, as a multiple of the error of delayed DFR.
 const LONGEST: f64 = 2.5;
@@ -25,6 +28,19 @@ const MIN_N: f64 = 1e-4;
 const NUMBER_RIGHT: f32 = 200.0;
 /// Largest ratio and error that are shown to an audience, as a multiple of the error of delayed DFR.
 const PLAIN_MAX: f64 = 10.0;
+
+#[derive(Debug, Default)]
+pub struct HorizonPanel;
+
+impl Panel for HorizonPanel {
+    const NAME: Text = text::horizon::NAME;
+    const MEANING: Text = text::horizon::MEANING;
+    const SIZE: PanelSize = PanelSize::FIGURES;
+
+    fn ui(&mut self, ui: &mut Ui, at: &mut PanelContext<'_>) {
+        horizon_ui(ui, at.live, at.outbox, false);
+    }
+}
 
 /// Draws the panel; `plain`: for an audience, without abbreviations and huge numbers.
 pub fn horizon_ui(ui: &mut Ui, live: &LiveState, outbox: &mut Outbox, plain: bool) {
@@ -53,8 +69,8 @@ pub fn horizon_ui(ui: &mut Ui, live: &LiveState, outbox: &mut Outbox, plain: boo
 }
 
 fn compare_ui(ui: &mut Ui, live: &LiveState, mut compares: bool, outbox: &mut Outbox) {
-    let compare = egui::Checkbox::new(&mut compares, text::horizon::COMPARE.get());
-    let compare = ui.add_enabled(!live.is_shown_only(), compare).on_hover_text(text::horizon::COMPARE_HOVER.get());
+    let compare = egui::Checkbox::new(&mut compares, text::horizon::COMPARE);
+    let compare = ui.add_enabled(!live.is_shown_only(), compare).on_hover_text(text::horizon::COMPARE_HOVER);
     if compare.on_disabled_hover_text(live.of.blocked()).changed() {
         outbox.push(Command::Compare(compares));
     }

@@ -1,5 +1,4 @@
-//! One file per panel. Each panel is a function that shows [`nima_screen::live::LiveState`] and puts the operator's commands into the
-//! outbox.
+//! One file per panel. Each [`panel::Panel`] shows [`nima_screen::live::LiveState`] and puts the operator's commands into the outbox.
 // These macros panic if stderr or stdout is closed.
 #![cfg_attr(not(test), deny(clippy::print_stderr, clippy::print_stdout))]
 
@@ -9,11 +8,13 @@ pub mod degrees;
 pub mod devices;
 pub mod endoscope_view;
 pub mod feedback;
+mod field;
 pub mod force_space;
 pub mod gates;
 pub mod horizon;
 pub mod link;
 mod modes;
+pub mod panel;
 pub mod rig_choice;
 pub mod roles;
 pub mod safety;
@@ -25,17 +26,15 @@ pub mod traces;
 mod traces_menu;
 mod traces_plot;
 mod traces_state;
+mod tradeoff;
 
 pub use calibrations::{CalibrationPage, CalibrationWish, calibrations_ui};
 pub use degrees::{DegreesState, degrees_ui};
-pub use devices::{DevicesState, devices_ui};
-pub use feedback::{FeedbackState, calm_gain_ui, feedback_ui};
+pub use devices::DevicesState;
+pub use feedback::{FeedbackState, calm_gain_ui};
 pub use force_space::{ForceSpaceState, force_space_ui};
 pub use gates::why_no_force;
 pub use horizon::horizon_ui;
-pub use link::link_ui;
-pub use safety::{SafetyState, safety_ui};
-pub use timing::{TimingState, timing_ui};
 pub use traces::force_traces_ui;
 pub use traces_state::ForcesView;
 pub use traces_state::TracesState;

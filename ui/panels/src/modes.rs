@@ -17,7 +17,7 @@ pub(super) fn modes_ui(ui: &mut Ui, live: &LiveState, outbox: &mut Outbox) {
         mode_ui(ui, live, mode, outbox);
     }
     let is_of_research = !EVERYDAY.contains(&live.mode());
-    let heading = RichText::new(text::feedback::RESEARCH_MODES.get()).text_style(egui::TextStyle::Small);
+    let heading = RichText::new(text::feedback::RESEARCH_MODES).text_style(egui::TextStyle::Small);
     // The mode in use is never out of sight.
     let list = CollapsingHeader::new(heading).id_salt("research_modes").open(is_of_research.then_some(true));
     let list = list.show(ui, |ui| {
@@ -29,7 +29,7 @@ pub(super) fn modes_ui(ui: &mut Ui, live: &LiveState, outbox: &mut Outbox) {
             mode_ui(ui, live, mode, outbox);
         }
     });
-    list.header_response.on_hover_text(text::feedback::RESEARCH_MODES_HOVER.get());
+    list.header_response.on_hover_text(text::feedback::RESEARCH_MODES_HOVER);
 }
 
 fn mode_ui(ui: &mut Ui, live: &LiveState, mode: Mode, outbox: &mut Outbox) {

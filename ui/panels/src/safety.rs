@@ -20,6 +20,8 @@ use nima_words::{
     text,
 };
 
+use crate::panel::{Panel, PanelContext, PanelSize};
+
 use super::gates::{GateView, answer, gates, history};
 
 const NODE: egui::Vec2 = vec2(82.0, 28.0);
@@ -45,7 +47,17 @@ impl Default for SafetyState {
     }
 }
 
-pub fn safety_ui(ui: &mut Ui, live: &LiveState, state: &mut SafetyState) {
+impl Panel for SafetyState {
+    const NAME: Text = text::safety::NAME;
+    const MEANING: Text = text::safety::MEANING;
+    const SIZE: PanelSize = PanelSize::KNOBS;
+
+    fn ui(&mut self, ui: &mut Ui, at: &mut PanelContext<'_>) {
+        safety_ui(ui, at.live, self);
+    }
+}
+
+fn safety_ui(ui: &mut Ui, live: &LiveState, state: &mut SafetyState) {
     let is_wide = ui.available_width() >= TWO_COLUMNS;
     if !live.is_bimanual() {
         state.side = Side::Right;
@@ -161,7 +173,7 @@ fn interlock_ui(ui: &mut Ui, live: &LiveState, side: Side) {
     );
     let title = text::safety::interlock(&of_side(live, side), &within(state_name(state)));
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, format!("{title}, {since}")));
-    response.on_hover_text(text::safety::INTERLOCK_HOVER.get());
+    response.on_hover_text(text::safety::INTERLOCK_HOVER);
     let painter = ui.painter_at(rect);
     let width = rect.width() - 8.0;
     let font = fitting(&painter, &title, theme::strong(15.0), width);
@@ -254,7 +266,7 @@ fn end_ui(ui: &mut Ui, name: &str, force_n: Option<f64>) {
     };
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), LINE), Sense::hover());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, format!("{name}: {number}")));
-    response.on_hover_text(text::safety::FORCE_HOVER.get());
+    response.on_hover_text(text::safety::FORCE_HOVER);
     let painter = ui.painter_at(rect);
     let left = rect.left_center() + vec2(NAME, 0.0);
     painter.text(left, Align2::LEFT_CENTER, name, theme::strong(13.0), theme::now().text);

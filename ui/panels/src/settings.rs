@@ -11,7 +11,7 @@ use std::{
 use nima_endoscope::Tone;
 use nima_files::{PASSAGE, shortened, write_atomically};
 use nima_recording::store::Store;
-use nima_screen::theme::Look;
+use nima_screen::{theme::Look, units::PlotUnits};
 use nima_words::{language::Language, text};
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 
@@ -44,6 +44,8 @@ pub struct ConsoleSettings {
     #[serde(rename = "picture")]
     pub image: ImageSettings,
     pub language: Language,
+    /// Units of the plots.
+    pub units: PlotUnits,
     pub toured: bool,
     /// Scale of the user interface, percent; [`SCALES`].
     pub scale_percent: u16,
@@ -140,6 +142,7 @@ impl Default for ConsoleSettings {
             records_image: true,
             image: ImageSettings::default(),
             language: Language::default(),
+            units: PlotUnits::default(),
             toured: false,
             scale_percent: 100,
             recent: Vec::new(),

@@ -8,9 +8,12 @@ use nima_screen::{
     widgets::{figure, small, weak},
 };
 use nima_words::{
+    language::Text,
     report_text::{UNKNOWN, scheduling_text, sentence},
     text,
 };
+
+use crate::panel::{Panel, PanelContext, PanelSize};
 
 use super::timing_bars::{TimingBar, bars_ui, missed_ui};
 
@@ -53,7 +56,17 @@ fn timings(live: &LiveState) -> Vec<TimingBar<'_>> {
     ]
 }
 
-pub fn timing_ui(ui: &mut Ui, live: &LiveState, state: &mut TimingState) {
+impl Panel for TimingState {
+    const NAME: Text = text::timing::NAME;
+    const MEANING: Text = text::timing::MEANING;
+    const SIZE: PanelSize = PanelSize::FIGURES;
+
+    fn ui(&mut self, ui: &mut Ui, at: &mut PanelContext<'_>) {
+        timing_ui(ui, at.live, self);
+    }
+}
+
+fn timing_ui(ui: &mut Ui, live: &LiveState, state: &mut TimingState) {
     let timings = timings(live);
     table_ui(ui, &timings);
     ui.add_space(2.0);
@@ -69,17 +82,17 @@ pub fn timing_ui(ui: &mut Ui, live: &LiveState, state: &mut TimingState) {
     ui.add_space(4.0);
     let tick = live.first_tick();
     let rate = text::timing::ticks_at(&grouped(tick.map_or(0, |tick| tick.index + 1)), live.figures.rate_hz);
-    figure(ui, text::timing::TICKS.get(), rate, text::timing::TICKS_HOVER.get());
+    figure(ui, text::timing::TICKS, rate, text::timing::TICKS_HOVER);
     let missed = grouped(tick.map_or(0, |tick| tick.timing.missed));
-    figure(ui, text::timing::MISSED.get(), missed, text::timing::MISSED_HOVER.get());
+    figure(ui, text::timing::MISSED, missed, text::timing::MISSED_HOVER);
     let dropped = grouped(tick.map_or(0, |tick| tick.timing.dropped));
-    figure(ui, text::timing::DROPPED.get(), dropped, text::timing::DROPPED_HOVER.get());
+    figure(ui, text::timing::DROPPED, dropped, text::timing::DROPPED_HOVER);
     scheduling_ui(ui, live);
     let [p50, p99] = live.figures.frame_ms;
     let frame = text::timing::frame([p50, p99], live.figures.frame_work_ms);
     figure(
         ui,
-        text::timing::CONSOLE_FRAME.get(),
+        text::timing::CONSOLE_FRAME,
         frame,
         if live.rough_edges { text::timing::FRAME_HOVER_ROUGH.get() } else { text::timing::FRAME_HOVER.get() },
     );
@@ -127,8 +140,8 @@ fn scheduling_ui(ui: &mut Ui, live: &LiveState) {
     let Some(scheduling) = live.scheduling else { return };
     let yes_no = |granted| if granted { text::timing::GRANTED.get() } else { text::timing::REFUSED.get() };
     let meaning = text::timing::SCHEDULING_HOVER.get();
-    figure(ui, text::timing::REAL_TIME_PRIORITY.get(), yes_no(scheduling.fifo), meaning);
-    figure(ui, text::timing::LOCKED_MEMORY.get(), yes_no(scheduling.memory_locked), meaning);
+    figure(ui, text::timing::REAL_TIME_PRIORITY, yes_no(scheduling.fifo), meaning);
+    figure(ui, text::timing::LOCKED_MEMORY, yes_no(scheduling.memory_locked), meaning);
     if let Some(advice) = scheduling_text(scheduling) {
         ui.label(small(sentence(&advice)));
     }

@@ -124,7 +124,7 @@ fn axis(painter: &Painter, ground: Rect, deadline_us: f64, max: u64) {
 pub(super) fn missed_ui(ui: &mut Ui, deadlines: &Deadlines) {
     let total = deadlines.total();
     let words = text::timing::missed(SECONDS / 60, &grouped(total));
-    ui.label(small(&words)).on_hover_text(text::timing::MISSED.get());
+    ui.label(small(&words)).on_hover_text(text::timing::MISSED);
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), STRIP), Sense::hover());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, text::timing::missed_periods(&words)));
     let painter = ui.painter();

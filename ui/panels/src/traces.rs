@@ -4,8 +4,8 @@
 //! zoom, double-click to reset, even while data arrive.
 
 use egui::{
-    Button, Label, RichText, ScrollArea, Sense, TextStyle, Ui, containers::menu::MenuButton, scroll_area::ScrollSource,
-    vec2,
+    Button, Frame, Label, Margin, RichText, ScrollArea, Sense, TextStyle, Ui, containers::menu::MenuButton,
+    scroll_area::ScrollSource, vec2,
 };
 use nima_machine::rig::Side;
 use nima_screen::{
@@ -15,9 +15,12 @@ use nima_screen::{
     scene3d::side_name,
     signals::TracePlot,
     theme,
+    units::PlotUnits,
     widgets::{at_the_right, describe, force_sign, small, weak, width_of},
 };
-use nima_words::{report_text::side_word, text};
+use nima_words::{language::Text, report_text::side_word, text};
+
+use crate::panel::{Panel, PanelContext, PanelSize};
 
 use super::{
     traces_menu::signals_ui,
@@ -28,7 +31,7 @@ use super::{
 /// Height of the time axis in rows of text: its numbers, and its title with the gap that `egui_plot` leaves under it.
 const TIME_AXIS_ROWS: f32 = 2.25;
 /// Smallest height of a plot; if more are chosen than fit, they are scrolled.
-const MIN_PLOT: f32 = 48.0;
+const MIN_PLOT: f32 = 39.0;
 /// Smallest height if a plot of another signal is shown: its axis has a longer title.
 const MIN_OTHER: f32 = 72.0;
 const GAP: f32 = 4.0;
@@ -37,6 +40,22 @@ const GAP: f32 = 4.0;
 const HEADING_FROM: f32 = 800.0;
 /// Channels of the measured and of the rendered force: x, y, z and magnitude.
 const OF_FORCES: [[usize; 4]; 2] = [[0, 1, 2, 6], [3, 4, 5, 7]];
+
+#[derive(Debug, Default)]
+pub struct TracesPanel;
+
+impl Panel for TracesPanel {
+    const NAME: Text = text::traces::NAME;
+    const MEANING: Text = text::traces::MEANING;
+    const SIZE: PanelSize = PanelSize::filling([220.0, 200.0]);
+
+    fn ui(&mut self, ui: &mut Ui, at: &mut PanelContext<'_>) {
+        // Space for the last number of the time axis, half of which is outside the plot.
+        Frame::new().inner_margin(Margin { left: 8, right: 18, top: 6, bottom: 6 }).show(ui, |ui| {
+            force_traces_ui(ui, at.live, &mut at.panels.forces, None);
+        });
+    }
+}
 
 /// Draws the panel with the chosen plots below one another, or with this one only.
 pub fn force_traces_ui(ui: &mut Ui, live: &mut LiveState, state: &mut TracesState, only: Option<TracePlot>) {
@@ -48,7 +67,7 @@ pub fn force_traces_ui(ui: &mut Ui, live: &mut LiveState, state: &mut TracesStat
     ui.add_space(2.0);
     let plots: Vec<TracePlot> = only.map_or_else(|| state.plots.plots().collect(), |one| vec![one]);
     if plots.is_empty() {
-        ui.add(Label::new(weak(text::traces::NO_PLOT.get())).wrap());
+        ui.add(Label::new(weak(text::traces::NO_PLOT)).wrap());
         return;
     }
     ui.spacing_mut().item_spacing.y = GAP;
@@ -83,7 +102,8 @@ fn plots_ui(ui: &mut Ui, live: &LiveState, state: &mut TracesState, plots: &[Tra
         let height = if is_last { height + time_axis_height(ui) } else { height };
         let response = plot_ui(ui, live, state, plot, [is_first, is_last], height, cursor_s);
         let name = text::traces::plot(plot.name().get(), side_word(state.side));
-        describe(ui, &response.response, &name, || summary(history, plot, shown_s));
+        let unit = PlotUnits::of(ui.ctx()).of_plot(plot);
+        describe(ui, &response.response, &name, || summary(history, plot, unit, shown_s));
         if is_last {
             let point_s = response.transform.dvalue_dpos()[0] / f64::from(ui.pixels_per_point());
             state.step_s = if point_s.is_finite() { point_s.max(live.min_step_s()) } else { 0.0 };
@@ -114,7 +134,7 @@ fn twist_ui(ui: &mut Ui, live: &LiveState, side: Side) {
     let ShaftTwist { jaws_nm, wrist_nm } = live.figures.twist[side.index()];
     if jaws_nm.is_some() || wrist_nm.is_some() {
         let words = text::traces::twist([jaws_nm, wrist_nm].map(|nm| nm.map(|nm| 1e3 * nm)));
-        ui.add(Label::new(small(&words)).truncate()).on_hover_text(text::traces::TWIST_HOVER.get());
+        ui.add(Label::new(small(&words)).truncate()).on_hover_text(text::traces::TWIST_HOVER);
     }
 }
 
@@ -132,7 +152,7 @@ fn header_ui(ui: &mut Ui, live: &mut LiveState, state: &mut TracesState, chooses
         let style = TextStyle::Heading.resolve(ui.style());
         let with_heading = needed + width_of(ui.painter(), heading, style) + 36.0;
         if ui.available_width() > with_heading.max(HEADING_FROM) {
-            ui.label(RichText::new(heading).text_style(TextStyle::Heading)).on_hover_text(text::traces::HOVER.get());
+            ui.label(RichText::new(heading).text_style(TextStyle::Heading)).on_hover_text(text::traces::HOVER);
             ui.add_space(12.0);
         }
         if ui.available_width() < needed {
@@ -189,14 +209,14 @@ fn needed_width(ui: &Ui, live: &LiveState, state: &TracesState, chooses: bool) -
 fn switches_ui(ui: &mut Ui, live: &mut LiveState, state: &mut TracesState, chooses: bool) {
     let size = vec2(60.0, 26.0);
     if chooses {
-        let button = Button::new(text::traces::SIGNALS.get()).min_size(size);
+        let button = Button::new(text::traces::SIGNALS).min_size(size);
         let close =
             egui::containers::menu::MenuConfig::new().close_behavior(egui::PopupCloseBehavior::CloseOnClickOutside);
         let (signals, _) = MenuButton::from_button(button).config(close).ui(ui, |ui| signals_ui(ui, state));
-        signals.on_hover_text(text::traces::SIGNALS_HOVER.get());
+        signals.on_hover_text(text::traces::SIGNALS_HOVER);
     }
-    let reset = ui.add(Button::new(text::traces::LAST_TEN_SECONDS.get()).min_size(size));
-    if reset.on_hover_text(text::traces::LAST_TEN_SECONDS_HOVER.get()).clicked() {
+    let reset = ui.add(Button::new(text::traces::LAST_TEN_SECONDS).min_size(size));
+    if reset.on_hover_text(text::traces::LAST_TEN_SECONDS_HOVER).clicked() {
         state.show_last_ten();
     }
     if live.is_bimanual() {
@@ -209,8 +229,8 @@ fn switches_ui(ui: &mut Ui, live: &mut LiveState, state: &mut TracesState, choos
             }
         }
     }
-    let mark = ui.add_enabled(!live.is_shown_only(), Button::new(text::traces::MARK.get()).min_size(size));
-    if mark.on_hover_text(text::traces::MARK_HOVER.get()).clicked() {
+    let mark = ui.add_enabled(!live.is_shown_only(), Button::new(text::traces::MARK).min_size(size));
+    if mark.on_hover_text(text::traces::MARK_HOVER).clicked() {
         live.mark();
     }
     let paused = state.is_paused();

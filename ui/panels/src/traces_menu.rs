@@ -6,6 +6,7 @@ use nima_screen::{
     history::SignalHistory,
     live::LiveState,
     signals::{TraceLine, TracePlot},
+    units::{ForceUnit, LengthUnit, PlotUnits},
 };
 use nima_words::{
     language::{self, Language},
@@ -14,13 +15,34 @@ use nima_words::{
 
 use super::{traces_plot::with_unit, traces_state::TracesState};
 
-/// Draws a switch for each plot.
+/// Draws a switch for each plot, and the choice of units.
 pub(super) fn signals_ui(ui: &mut Ui, state: &mut TracesState) {
+    let units = PlotUnits::of(ui.ctx());
     for plot in TracePlot::ALL {
         let mut shown = state.plots.contains(plot);
-        if ui.checkbox(&mut shown, text::traces::plot_entry(plot.name().get(), plot.unit())).changed() {
+        if ui.checkbox(&mut shown, text::traces::plot_entry(plot.name().get(), units.of_plot(plot).name)).changed() {
             state.plots = state.plots.toggled(plot);
         }
+    }
+    ui.separator();
+    units_ui(ui);
+}
+
+fn units_ui(ui: &mut Ui) {
+    let before = PlotUnits::of(ui.ctx());
+    let mut units = before;
+    ui.label(text::traces::UNITS).on_hover_text(text::traces::UNITS_HOVER);
+    ui.horizontal(|ui| {
+        for force in ForceUnit::ALL {
+            ui.selectable_value(&mut units.force, force, force.name());
+        }
+        ui.separator();
+        for length in LengthUnit::ALL {
+            ui.selectable_value(&mut units.length, length, length.name());
+        }
+    });
+    if units != before {
+        units.choose(ui.ctx());
     }
 }
 
@@ -39,7 +61,7 @@ pub(super) fn menu_ui(ui: &mut Ui, live: &LiveState, state: &mut TracesState, pl
         }
     }
     if entry(ui, text::traces::COPY.get()) {
-        ui.ctx().copy_text(values(live, state, plots));
+        ui.ctx().copy_text(values(live, state, plots, PlotUnits::of(ui.ctx())));
     }
     if entry(ui, text::traces::SAVE_CSV.get()) {
         let table = language::with(Language::English, || table(state.history(live), state, plots, max));
@@ -60,7 +82,7 @@ fn lines_of(state: &TracesState, plots: &[TracePlot]) -> Vec<(TracePlot, &'stati
 
 /// Returns the values of the visible lines at the cursors, or where the menu was opened: a line of text for each, columns
 /// separated by tabs.
-fn values(live: &LiveState, state: &TracesState, plots: &[TracePlot]) -> String {
+fn values(live: &LiveState, state: &TracesState, plots: &[TracePlot], units: PlotUnits) -> String {
     let history = state.history(live);
     let cursors_s: Vec<f64> = state.cursors_s.into_iter().flatten().collect();
     let times_s = if cursors_s.is_empty() { vec![state.menu_s] } else { cursors_s };
@@ -69,7 +91,7 @@ fn values(live: &LiveState, state: &TracesState, plots: &[TracePlot]) -> String 
         std::iter::once(name).chain(cells).collect::<Vec<_>>().join("\t") + "\n"
     };
     let lines = lines_of(state, plots).into_iter().map(|(plot, line)| {
-        let value = |t_s| with_unit(history.value_at(line.channel, t_s), plot);
+        let value = |t_s| with_unit(history.value_at(line.channel, t_s), units.of_plot(plot));
         row(format!("{} {}", plot.symbol(), line.name.get()), &value)
     });
     let head = row(text::traces::TIME.get().to_owned(), &|t_s| format!("{t_s:.3} s"));
@@ -128,7 +150,10 @@ mod tests {
         state.toggle(&[5]);
         assert!(rows(&state, &[TracePlot::ForceZ]).starts_with("time_s,z_measured_N_min,z_measured_N_max\n"));
         state.cursors_s = [Some(10.0), Some(11.0)];
-        let copied = values(&live, &state, &[TracePlot::ForceZ]);
-        assert_eq!(copied, "time\t10.000 s\t11.000 s\nz measured\t+10001.50 N\t+11001.50 N\n");
+        let copied = |units| values(&live, &state, &[TracePlot::ForceZ], units);
+        let plain = PlotUnits::default();
+        assert_eq!(copied(plain), "time\t10.000 s\t11.000 s\nz measured\t+10001.50 N\t+11001.50 N\n");
+        let small = PlotUnits { force: ForceUnit::Millinewton, ..plain };
+        assert_eq!(copied(small), "time\t10.000 s\t11.000 s\nz measured\t+10001500 mN\t+11001500 mN\n");
     }
 }

@@ -10,6 +10,7 @@ use nima_screen::{
     live::LiveState,
     signals::{TraceInk, TracePlot},
     theme,
+    units::{DisplayUnit, PlotUnits},
     widgets::{small, still},
 };
 use nima_words::{
@@ -38,18 +39,24 @@ const fn colour(ink: TraceInk) -> fn() -> Color32 {
 }
 
 /// Returns a value with sign and unit, or the sign for an unknown one.
-pub(super) fn with_unit(value: Option<f64>, plot: TracePlot) -> String {
-    value.map_or_else(|| UNKNOWN.to_owned(), |value| format!("{} {}", signed(value), plot.unit()).trim_end().to_owned())
+pub(super) fn with_unit(value: Option<f64>, DisplayUnit { name, factor, decimals }: DisplayUnit) -> String {
+    let words = |value| format!("{} {name}", signed(factor * value, decimals)).trim_end().to_owned();
+    value.map_or_else(|| UNKNOWN.to_owned(), words)
 }
 
 /// Returns the values of all lines at the end of this interval, and their maxima in it.
-pub(super) fn summary(history: &SignalHistory, plot: TracePlot, (from_s, to_s): (f64, f64)) -> String {
+pub(super) fn summary(
+    history: &SignalHistory,
+    plot: TracePlot,
+    unit: DisplayUnit,
+    (from_s, to_s): (f64, f64),
+) -> String {
     let lines = plot.lines().iter().rev().map(|line| {
         let now = history.value_at(line.channel, to_s.min(history.latest_s()));
         let max = history.extent(&[line.channel], (from_s, to_s)).map(|(low, high)| high.max(-low));
         let read = |value: Option<f64>| {
             let unknown = || word("unknown", "unbekannt").to_owned();
-            value.map_or_else(unknown, |_| with_unit(value, plot))
+            value.map_or_else(unknown, |_| with_unit(value, unit))
         };
         text::traces::summary(line.name.get(), [now, max].map(read), to_s - from_s)
     });
@@ -58,12 +65,13 @@ pub(super) fn summary(history: &SignalHistory, plot: TracePlot, (from_s, to_s): 
 
 /// Draws the values at the cursor of another plot, in the corner of this one.
 pub(super) fn read_at(ui: &Ui, history: &SignalHistory, plot: TracePlot, at_s: f64, rect: Rect) {
+    let unit = PlotUnits::of(ui.ctx()).of_plot(plot);
     let values: Vec<_> = plot.lines().iter().map(|line| (line, history.value_at(line.channel, at_s))).collect();
     if values.iter().all(|(_, value)| value.is_none()) {
         return;
     }
     let corner = rect.right_top() + vec2(-8.0, 4.0);
-    let words = values.iter().rev().map(|(line, value)| format!("{} {}", line.name.get(), with_unit(*value, plot)));
+    let words = values.iter().rev().map(|(line, value)| format!("{} {}", line.name.get(), with_unit(*value, unit)));
     let report = text::traces::at_cursor(plot.symbol(), &words.collect::<Vec<_>>().join(", "));
     label(
         ui,
@@ -74,7 +82,7 @@ pub(super) fn read_at(ui: &Ui, history: &SignalHistory, plot: TracePlot, at_s: f
     let mut right = corner.x;
     for (line, value) in values {
         let place = pos2(right, corner.y);
-        let words = with_unit(value, plot);
+        let words = with_unit(value, unit);
         let drawn = ui.painter().text(place, Align2::RIGHT_TOP, words, theme::strong(13.0), colour(line.ink)());
         right = drawn.left() - 10.0;
     }
@@ -99,11 +107,12 @@ pub(super) fn plot_ui(
     let now_s = state.now_s(state.history(live));
     let history = state.history(live);
     let (low, high) = state.range(plot);
-    let response = frame(ui, plot, last)
+    let unit = PlotUnits::of(ui.ctx()).of_plot(plot);
+    let response = frame(ui, plot, unit, last)
         .height(height)
         .label_formatter(move |hover| {
             let (HoverPosition::NearDataPoint { position, .. } | HoverPosition::Elsewhere { position }) = hover;
-            readout(history, plot, now_s, position.x)
+            readout(history, plot, unit, now_s, position.x)
         })
         .show(ui, |ui| {
             ui.set_plot_bounds(PlotBounds::from_min_max([state.view_s.0, low], [state.view_s.1, high]));
@@ -129,20 +138,18 @@ pub(super) fn plot_ui(
 }
 
 /// Returns the empty plot with its axes.
-fn frame<'a>(ui: &Ui, plot: TracePlot, last: bool) -> Plot<'a> {
+fn frame<'a>(ui: &Ui, plot: TracePlot, DisplayUnit { name, factor, decimals }: DisplayUnit, last: bool) -> Plot<'a> {
     let seconds = AxisHints::new_x()
         .label(if last { text::traces::TIME_AXIS.get() } else { "" })
         // By default the axis is as high as its labels in the last frame, so an axis with new labels would draw its
         // title over the numbers.
         .min_thickness(time_axis_height(ui))
-        .formatter(|mark, _| plain(mark.value));
-    let title =
-        if plot.unit().is_empty() { plot.symbol().to_owned() } else { format!("{} ({})", plot.symbol(), plot.unit()) };
-    let values = AxisHints::new_y()
-        .label(title)
-        .min_thickness(56.0)
-        .label_spacing(12.0..=20.0)
-        .formatter(|mark, shown| if near_end(mark.value, shown) { String::new() } else { plain(mark.value) });
+        .formatter(|mark, _| plain(mark.value, 2));
+    let title = if name.is_empty() { plot.symbol().to_owned() } else { format!("{} ({name})", plot.symbol()) };
+    let values =
+        AxisHints::new_y().label(title).min_thickness(56.0).label_spacing(12.0..=20.0).formatter(move |mark, shown| {
+            if near_end(mark.value, shown) { String::new() } else { plain(factor * mark.value, decimals) }
+        });
     still(Plot::new(("trace", plot.index())))
         .custom_x_axes(if last { vec![seconds] } else { vec![] })
         .custom_y_axes(vec![values])
@@ -179,11 +186,12 @@ fn upright(ui: &mut PlotUi<'_>, at_s: f64, top: f64, words: Option<String>, styl
 fn difference_ui(ui: &Ui, live: &LiveState, state: &TracesState, plot: TracePlot, first: bool, corner: egui::Pos2) {
     let [Some(one_s), Some(two_s)] = state.cursors_s else { return };
     let history = state.history(live);
+    let unit = PlotUnits::of(ui.ctx()).of_plot(plot);
     let mut words = if first { vec![text::traces::between(two_s - one_s)] } else { Vec::new() };
     for line in plot.lines().iter().rev().filter(|line| !state.is_hidden(line.channel)) {
         let [one, two] = [one_s, two_s].map(|at_s| history.value_at(line.channel, at_s));
         let difference = one.zip(two).map(|(one, two)| two - one);
-        words.push(format!("{} {}", line.name.get(), with_unit(difference, plot)));
+        words.push(format!("{} {}", line.name.get(), with_unit(difference, unit)));
     }
     let words = words.join("   ");
     let font = theme::strong(12.5);
@@ -206,18 +214,18 @@ fn legend_ui(ui: &mut Ui, state: &mut TracesState, plot: TracePlot, rect: Rect) 
         let response = corner.add(button.frame_when_inactive(false).small().wrap_mode(egui::TextWrapMode::Extend));
         response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, !is_hidden, line.name.get()));
         left = response.rect.right() + 4.0;
-        if response.on_hover_text(text::traces::LEGEND_HOVER.get()).clicked() {
+        if response.on_hover_text(text::traces::LEGEND_HOVER).clicked() {
             state.toggle(&[line.channel]);
         }
     }
 }
 
-fn readout(history: &SignalHistory, plot: TracePlot, now_s: f64, at_s: f64) -> Option<String> {
+fn readout(history: &SignalHistory, plot: TracePlot, unit: DisplayUnit, now_s: f64, at_s: f64) -> Option<String> {
     let values = plot.lines().iter().rev().map(|line| (line, history.value_at(line.channel, now_s + at_s)));
     let values: Vec<_> = values.collect();
     let is_known = values.iter().any(|(_, value)| value.is_some());
     let axis = if TracePlot::FORCES.contains(&plot) { format!(" {}", plot.symbol()) } else { String::new() };
-    let lines = values.iter().map(|(line, value)| format!("{}{axis} {}", line.name.get(), with_unit(*value, plot)));
+    let lines = values.iter().map(|(line, value)| format!("{}{axis} {}", line.name.get(), with_unit(*value, unit)));
     is_known.then(|| text::traces::before_now(-at_s, &lines.collect::<Vec<_>>().join("\n")))
 }
 

@@ -43,13 +43,13 @@ pub fn head_ui(ui: &mut Ui, past: &Playback) -> bool {
     Panel::top("past").exact_size(HEAD).resizable(false).frame(frame).show(ui, |ui| {
         let ink = colours.background;
         ui.horizontal_centered(|ui| {
-            let word = RichText::new(text::playback::PAST.get()).font(theme::strong(20.0)).color(ink);
-            ui.label(word).on_hover_text(text::playback::PAST_HOVER.get());
+            let word = RichText::new(text::playback::PAST).font(theme::strong(20.0)).color(ink);
+            ui.label(word).on_hover_text(text::playback::PAST_HOVER);
             ui.add_space(8.0);
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                let words = RichText::new(text::playback::LIVE_AGAIN.get()).font(theme::strong(16.0));
+                let words = RichText::new(text::playback::LIVE_AGAIN).font(theme::strong(16.0));
                 let button = Button::new(words).min_size(vec2(150.0, 40.0)).corner_radius(theme::CORNER);
-                live_again = ui.add(button).on_hover_text(text::playback::LIVE_AGAIN_HOVER.get()).clicked();
+                live_again = ui.add(button).on_hover_text(text::playback::LIVE_AGAIN_HOVER).clicked();
                 ui.add_space(12.0);
                 machine_ui(ui, ink);
                 ui.with_layout(Layout::left_to_right(Align::Center), |ui| words_ui(ui, past, ink));
@@ -61,8 +61,8 @@ pub fn head_ui(ui: &mut Ui, past: &Playback) -> bool {
 
 /// Draws the part of the screen that is not recorded.
 fn machine_ui(ui: &mut Ui, ink: Color32) {
-    let words = RichText::new(text::playback::MACHINE.get()).font(theme::strong(13.0)).color(ink);
-    ui.label(words).on_hover_text(text::playback::PAST_HOVER.get());
+    let words = RichText::new(text::playback::MACHINE).font(theme::strong(13.0)).color(ink);
+    ui.label(words).on_hover_text(text::playback::PAST_HOVER);
     let (rect, _) = ui.allocate_exact_size(vec2(14.0, 14.0), Sense::hover());
     let points = [vec2(0.0, -6.0), vec2(6.0, 4.0), vec2(-6.0, 4.0)].map(|point| rect.center() + point);
     ui.painter().add(egui::Shape::convex_polygon(points.to_vec(), ink, Stroke::NONE));
@@ -115,7 +115,7 @@ fn buttons_ui(ui: &mut Ui, past: &mut Playback) {
     let ctx = ui.ctx().clone();
     let name = if past.play.runs { text::playback::PAUSE.get() } else { text::playback::PLAY.get() };
     let play = Button::new(RichText::new(name).font(theme::strong(14.0))).min_size(vec2(70.0, BUTTON));
-    if ui.add_enabled(past.live.is_some(), play).on_hover_text(text::playback::PLAY_HOVER.get()).clicked() {
+    if ui.add_enabled(past.live.is_some(), play).on_hover_text(text::playback::PLAY_HOVER).clicked() {
         past.toggle();
     }
     ui.scope(|ui| {
@@ -123,7 +123,7 @@ fn buttons_ui(ui: &mut Ui, past: &mut Playback) {
         for speed in SPEEDS {
             let chosen = (past.play.speed - speed).abs() < 1e-9;
             let button = Button::selectable(chosen, text::playback::speed(speed)).frame_when_inactive(true);
-            if ui.add(button.min_size(vec2(40.0, BUTTON))).on_hover_text(text::playback::SPEED_HOVER.get()).clicked() {
+            if ui.add(button.min_size(vec2(40.0, BUTTON))).on_hover_text(text::playback::SPEED_HOVER).clicked() {
                 past.play.speed = speed;
             }
         }
@@ -143,18 +143,18 @@ fn buttons_ui(ui: &mut Ui, past: &mut Playback) {
         }
     }
     let free = past.job.is_none();
-    let save = Button::new(text::playback::SAVE.get()).min_size(vec2(112.0, BUTTON));
-    let save = ui.add_enabled(free && past.stretch_s().is_some(), save).on_hover_text(text::playback::SAVE_HOVER.get());
-    if save.on_disabled_hover_text(text::playback::SAVE_DISABLED_HOVER.get()).clicked() {
+    let save = Button::new(text::playback::SAVE).min_size(vec2(112.0, BUTTON));
+    let save = ui.add_enabled(free && past.stretch_s().is_some(), save).on_hover_text(text::playback::SAVE_HOVER);
+    if save.on_disabled_hover_text(text::playback::SAVE_DISABLED_HOVER).clicked() {
         past.save(&ctx);
     }
-    let report = Button::new(text::playback::REPORT.get()).min_size(vec2(64.0, BUTTON));
-    if ui.add_enabled(free, report).on_hover_text(text::playback::REPORT_HOVER.get()).clicked() {
+    let report = Button::new(text::playback::REPORT).min_size(vec2(64.0, BUTTON));
+    if ui.add_enabled(free, report).on_hover_text(text::playback::REPORT_HOVER).clicked() {
         past.report(&ctx);
     }
     let other = past.beside.is_some();
-    let compare = Button::selectable(other, text::playback::COMPARE.get()).frame_when_inactive(true);
-    let compare = ui.add(compare.min_size(vec2(80.0, BUTTON))).on_hover_text(text::playback::COMPARE_HOVER.get());
+    let compare = Button::selectable(other, text::playback::COMPARE).frame_when_inactive(true);
+    let compare = ui.add(compare.min_size(vec2(80.0, BUTTON))).on_hover_text(text::playback::COMPARE_HOVER);
     if compare.clicked() {
         past.wants_beside = !other;
         past.beside = None;

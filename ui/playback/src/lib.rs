@@ -21,7 +21,7 @@ use std::path::{Path, PathBuf};
 
 use egui::Context;
 use nima_machine::rig::{DeviceName, Side};
-use nima_panels::roles::Panels;
+use nima_panels::{roles::Panels, tiles::PanelTiles};
 use nima_screen::{live::LiveState, outbox::Outbox, scene3d::SceneView};
 use nima_wizards::active_calibrations::ActiveCalibrations;
 use nima_words::{report_text::side_word, text};
@@ -109,7 +109,7 @@ impl Playback {
             worker,
             about: None,
             live: None,
-            panels: Panels { scene, ..Panels::default() },
+            panels: Panels { scene, desk: PanelTiles::with_windows(), ..Panels::default() },
             active: ActiveCalibrations::of_past(Vec::new()),
             outbox: Outbox::default(),
             overview: Overview::default(),

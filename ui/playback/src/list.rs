@@ -121,14 +121,14 @@ impl SessionList {
         let frame = Frame::new().inner_margin(Margin::symmetric(18, 14));
         CentralPanel::default().frame(frame).show(ui, |ui| {
             ui.horizontal(|ui| {
-                let back = Button::new(text::playback::BACK.get()).min_size(vec2(150.0, 36.0));
+                let back = Button::new(text::playback::BACK).min_size(vec2(150.0, 36.0));
                 if ui.add(back).clicked() {
                     self.is_open = false;
                 }
-                let elsewhere = Button::new(text::playback::ELSEWHERE.get()).min_size(vec2(150.0, 36.0));
+                let elsewhere = Button::new(text::playback::ELSEWHERE).min_size(vec2(150.0, 36.0));
                 if ui
                     .add_enabled(self.picking.is_none(), elsewhere)
-                    .on_hover_text(text::playback::ELSEWHERE_HOVER.get())
+                    .on_hover_text(text::playback::ELSEWHERE_HOVER)
                     .clicked()
                 {
                     let kind = [text::playback::SESSIONS.get(), "mcap"];
@@ -164,9 +164,9 @@ impl SessionList {
             let field = ui.add(TextEdit::singleline(&mut self.search).hint_text(hint).desired_width(300.0));
             field.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, hint));
             let folder = self.folder.clone().filter(|folder| folder.exists());
-            let open = Button::new(text::playback::OPEN_FOLDER.get()).min_size(vec2(130.0, 28.0));
+            let open = Button::new(text::playback::OPEN_FOLDER).min_size(vec2(130.0, 28.0));
             let open = ui.add_enabled(folder.is_some(), open);
-            let pressed = open.on_disabled_hover_text(text::playback::EMPTY.get()).clicked();
+            let pressed = open.on_disabled_hover_text(text::playback::EMPTY).clicked();
             if let (true, Some(folder)) = (pressed, folder) {
                 // The program may run for long. If no thread can be created, nothing opens.
                 thread::Builder::new().name("folder".to_owned()).spawn(move || opener::open(&folder)).ok();
@@ -188,14 +188,14 @@ impl SessionList {
         let mut shown: Vec<&mut SessionListRow> = self.rows.iter_mut().filter(|row| row.has(&self.search)).collect();
         self.sort.sort(&mut shown);
         if shown.is_empty() {
-            ui.label(weak(text::playback::NOT_FOUND.get()));
+            ui.label(weak(text::playback::NOT_FOUND));
         }
         ScrollArea::both().auto_shrink(false).show(ui, |ui| {
-            Grid::new("sessions").spacing(vec2(16.0, 6.0)).striped(true).show(ui, |ui| {
+            Grid::new("sessions").spacing(vec2(8.0, 6.0)).striped(true).show(ui, |ui| {
                 for by in SortBy::ALL {
                     let words = RichText::new(by.name()).text_style(egui::TextStyle::Small);
                     let heading = Button::selectable(self.sort == by, words);
-                    let heading = ui.add(heading).on_hover_text(text::playback::SORT_HOVER.get());
+                    let heading = ui.add(heading).on_hover_text(text::playback::SORT_HOVER);
                     let name = text::playback::sort_by(by.name());
                     let chosen = self.sort == by;
                     heading.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, chosen, &name));

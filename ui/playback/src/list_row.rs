@@ -12,7 +12,7 @@ use nima_session::{
     session_store::{MAX_BYTES, SessionStore, StoredSession, note_of},
 };
 use nima_words::{
-    report_text::{chain, quoted},
+    report_text::{chain, mode_name, quoted},
     text,
 };
 
@@ -92,8 +92,13 @@ impl SessionListRow {
         self.info().and_then(|info| info.scene.as_deref()).unwrap_or_default()
     }
 
+    /// Returns the mode by its name on the screen, or by that in the file if this version has no such mode.
     fn mode(&self) -> &str {
-        self.info().and_then(|info| info.mode.as_deref()).unwrap_or_default()
+        let written = self.info().and_then(|info| info.mode.as_deref()).unwrap_or_default();
+        match written.parse() {
+            Ok(mode) => mode_name(mode),
+            Err(_) => written,
+        }
     }
 
     fn length_s(&self) -> f64 {
@@ -209,6 +214,6 @@ fn note_ui(ui: &mut Ui, row: &mut SessionListRow) -> Option<SessionRequest> {
     let field = ui.add(TextEdit::singleline(&mut row.note).char_limit(200).desired_width(NOTE));
     field.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, &name));
     let is_done = field.lost_focus();
-    field.on_hover_text(text::playback::NOTE_HOVER.get());
+    field.on_hover_text(text::playback::NOTE_HOVER);
     is_done.then(|| SessionRequest::Note(row.shelved.path.clone(), row.note.trim().to_owned()))
 }

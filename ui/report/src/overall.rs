@@ -11,6 +11,8 @@ use super::{
     name,
 };
 
+/// Maximum number of stalls that are listed one by one.
+const STALLS: usize = 20;
 /// Maximum number of rows in the list of events.
 const MARKS: usize = 1000;
 const ABOUT: [(&str, &str); 13] = [
@@ -50,6 +52,7 @@ pub(super) fn summary(session: &SessionFigures) -> Markup {
     }
     rows.push(["end".to_owned(), end(session).to_owned()]);
     rows.push(["gaps in the journal".to_owned(), holes(session)]);
+    rows.push(["stalls of the computer".to_owned(), stalls(session)]);
     if let Some(images) = &session.images {
         rows.push(["endoscope images".to_owned(), of_images(images)]);
     }
@@ -87,6 +90,22 @@ fn holes(session: &SessionFigures) -> String {
     let report = session.holes.iter().map(|hole| format!("{} entries before {}", hole.lost, time(hole.until_s)));
     let report: Vec<_> = report.collect();
     if report.is_empty() { "none".to_owned() } else { report.join("; ") }
+}
+
+fn stalls(session: &SessionFigures) -> String {
+    let Some(longest) = session.stalls.iter().max_by(|a, b| a.length_s.total_cmp(&b.length_s)) else {
+        return "none".to_owned();
+    };
+    let each = session
+        .stalls
+        .iter()
+        .take(STALLS)
+        .map(|stall| format!("{:.0} ms at {}", 1e3 * stall.length_s, time(stall.from_s)));
+    let listed = each.collect::<Vec<_>>().join("; ");
+    let more = session.stalls.len().saturating_sub(STALLS);
+    let rest =
+        if more > 0 { format!("; {more} more, the longest {:.0} ms", 1e3 * longest.length_s) } else { String::new() };
+    listed + &rest
 }
 
 fn of_images(images: &ImageReport) -> String {

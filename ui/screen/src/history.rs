@@ -107,6 +107,7 @@ impl HistoryLevel {
     fn push(&mut self, t_s: f64, values: &[f32; CHANNELS]) {
         let number = self.number(t_s);
         let end = self.first + self.buckets.len() as u64;
+        // After such a pause no stored bucket would remain.
         if self.buckets.is_empty() || number >= end + CAPACITY as u64 {
             self.buckets.clear();
             self.first = number;
@@ -226,6 +227,7 @@ impl SignalHistory {
     /// Returns the lowest and highest value of the channels between two times.
     pub fn extent(&self, channels: &[usize], (from_s, to_s): (f64, f64)) -> Option<(f64, f64)> {
         let mut extent: Option<(f32, f32)> = None;
+        // Coarse buckets have the same lowest and highest values.
         for (_, bucket) in self.level(from_s, to_s, 1000).between(from_s, to_s) {
             for (low, high) in channels.iter().filter_map(|&channel| bucket.ends(channel)) {
                 extent = Some(extent.map_or((low, high), |(l, h)| (l.min(low), h.max(high))));
@@ -236,6 +238,10 @@ impl SignalHistory {
 
     /// Returns the value of a channel at a time: the middle of its bucket on the finest level that has it.
     pub fn value_at(&self, channel: usize, t_s: f64) -> Option<f64> {
+        // A time before zero has no bucket, and would be read from the first one.
+        if t_s < self.oldest_s() {
+            return None;
+        }
         let level = self.levels.iter().find(|level| level.reaches_back_to(t_s))?;
         let (_, bucket) = level.between(t_s, t_s).next()?;
         bucket.ends(channel).map(|(low, high)| f64::midpoint(f64::from(low), f64::from(high)))
@@ -258,6 +264,12 @@ mod tests {
     fn one_run(trace: &PlotTrace) -> TraceRun<'_> {
         assert_eq!(trace.breaks, [0; 0]);
         trace.runs().next().unwrap()
+    }
+
+    #[test]
+    fn nothing_is_read_before_the_first_sample() {
+        let history = filled(2.0, 1000.0, |_| 1.0);
+        assert_eq!([-3.0, -0.001, 1.0].map(|t_s| history.value_at(0, t_s)), [None, None, Some(1.0)]);
     }
 
     #[test]

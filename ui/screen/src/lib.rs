@@ -34,4 +34,5 @@ pub mod stderr;
 pub mod steady_button;
 pub mod stiffness;
 pub mod theme;
+pub mod units;
 pub mod widgets;

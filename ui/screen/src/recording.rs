@@ -64,7 +64,7 @@ fn about(plan: &SimulationPlan, clock: Option<VirtualClock>) -> RecordingInfo {
     let session = session.into_iter().chain(late.into_iter().flatten());
     let session = session.map(|(key, value)| (key.to_owned(), value)).collect();
     // The active settings, including changes from the command line.
-    let texts = [(RIG, toml::to_string(rig)), (SCENE, toml::to_string(scene))];
+    let texts = [(RIG, toml::to_string(&rig.clone().without_secrets())), (SCENE, toml::to_string(scene))];
     let file = |(name, text): (&str, Result<String, _>)| Some(toml_file(name, text.ok()?));
     RecordingInfo {
         program: PROGRAM.to_owned(),

@@ -2,7 +2,7 @@
 
 use egui::{
     Align, Button, Color32, FontId, Label, Layout, Painter, Pos2, Rect, Response, RichText, Sense, Stroke, TextStyle,
-    Ui, Vec2, Vec2b, pos2,
+    Ui, Vec2, Vec2b, WidgetText, pos2,
     text::{LayoutJob, TextFormat},
     vec2,
 };
@@ -26,7 +26,12 @@ pub fn still(plot: Plot<'_>) -> Plot<'_> {
 }
 
 /// Draws a card with a heading; `meaning` is its hover text.
-pub fn card<R>(ui: &mut Ui, title: &str, meaning: &str, content: impl FnOnce(&mut Ui) -> R) -> R {
+pub fn card<R>(
+    ui: &mut Ui,
+    title: impl Into<String>,
+    meaning: impl Into<WidgetText>,
+    content: impl FnOnce(&mut Ui) -> R,
+) -> R {
     let inner = theme::card().show(ui, |ui| {
         ui.set_width(ui.available_width());
         ui.spacing_mut().item_spacing.y = 4.0;
@@ -82,18 +87,25 @@ pub fn fitting_style(ui: &Ui, words: &str, style: &TextStyle, width: f32) -> Fon
 }
 
 /// Draws a name on the left and its value on the right; `meaning` is their hover text. A long name takes several lines.
-pub fn figure(ui: &mut Ui, name: &str, value: impl Into<String>, meaning: &str) -> Response {
+pub fn figure(
+    ui: &mut Ui,
+    name: impl Into<String>,
+    value: impl Into<String>,
+    meaning: impl Into<WidgetText>,
+) -> Response {
     ui.spacing_mut().interact_size.y = 18.0;
+    let name = name.into();
     let value = value.into();
+    let meaning = meaning.into();
     let row = ui.horizontal(|ui| {
         let room = ui.available_width() - width_of(ui.painter(), &value, theme::strong(14.0)) - 12.0;
-        if width_of(ui.painter(), name, TextStyle::Body.resolve(ui.style())) > room {
+        if width_of(ui.painter(), &name, TextStyle::Body.resolve(ui.style())) > room {
             ui.scope(|ui| {
                 ui.set_max_width(room.max(40.0));
-                ui.add(Label::new(weak(name)).wrap()).on_hover_text(meaning);
+                ui.add(Label::new(weak(name)).wrap()).on_hover_text(meaning.clone());
             });
         } else {
-            ui.label(weak(name)).on_hover_text(meaning);
+            ui.label(weak(name)).on_hover_text(meaning.clone());
         }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             ui.label(RichText::new(value).font(theme::strong(14.0))).on_hover_text(meaning);

@@ -7,12 +7,12 @@ use std::{
 
 use anyhow::Context as _;
 use clap::Args;
+use nima_calibrations::{WizardKind, active_calibrations::ActiveCalibrations};
 use nima_machine::config::SchedulingClass;
 use nima_panels::roles::Role;
 use nima_report::output;
 use nima_screen::{link::Reopen, stderr::print_line};
 use nima_simulation::SimulationPlan;
-use nima_wizards::{WizardKind, active_calibrations::ActiveCalibrations};
 use nima_words::language::Language;
 
 use super::{remote_follower::ToFollower, rig_args::Setup};

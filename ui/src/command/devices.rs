@@ -17,7 +17,7 @@ use serde::Serialize;
 #[derive(Debug, Args)]
 pub(super) struct DevicesArguments {
     /// Test this device; may be repeated: `spacemouse`, `pedal`, `force-dimension`, `haply`, `kinova`, `ndi`, `dynamixel`,
-    /// `bota-gen0`, `bota-gen-a`, `bota-socket`, `external-handle`, `external-arm`, `external-sensor`, each with `=PLACE`;
+    /// `bota-gen0`, `bota-gen-a`, `bota-socket`, `ati`, `external-handle`, `external-arm`, `external-sensor`, each with `=PLACE`;
     /// `serial=PORT@BAUD[,HEADER][,quiet]`, `tcp=HOST:PORT`
     #[arg(long, value_name = "KIND[=PLACE]")]
     probe: Vec<String>,
@@ -166,6 +166,7 @@ fn device_text(found: &FoundDevice) -> String {
     if found.readings > 0 || found.lost + found.damaged > 0 {
         words.push(format!("{} readings, {} lost, {} damaged", found.readings, found.lost, found.damaged));
     }
+    words.extend(found.note.map(str::to_owned));
     words.extend(found.latency_s.map(|latency_s| format!("answers in {:.1} ms", latency_s * 1e3)));
     words.join(", ")
 }

@@ -16,10 +16,7 @@ use nima_machine::{
 };
 use nima_recording::session::SessionReader;
 use nima_report::output;
-use nima_screen::{
-    recording::{PROGRAM, RIG, SCENE, WORDS, toml_file},
-    stderr::print_line,
-};
+use nima_screen::recording::{PROGRAM, RIG, SCENE, WORDS, toml_file};
 use nima_session::{
     anonymous::{self, SessionFacts},
     layouts,
@@ -29,7 +26,7 @@ use nima_session::{
 };
 use nima_simulation::scene::Scene;
 
-use super::{rig_args::side, time_range::TimeRange};
+use super::{missing::report_missing, rig_args::side, time_range::TimeRange};
 use crate::shutdown::Leave;
 
 const HEADER: &str = "t_s,time_ns,x_m,y_m,z_m,fx_n,fy_n,fz_n,leader_x_m,leader_y_m,leader_z_m,\
@@ -79,9 +76,7 @@ pub(super) fn run(arguments: &ExportArguments) -> anyhow::Result<()> {
     }
     output::check(out, &[session])?;
     let reader = SessionReader::open(session)?;
-    for note in reader.notes() {
-        print_line(format_args!("nima: {note}"));
-    }
+    report_missing(session, &reader);
     if let Some(name) = layout {
         return laid_out(&reader, session, name, out);
     }

@@ -9,6 +9,7 @@ pub(crate) mod department;
 mod devices;
 mod evaluate;
 mod export;
+pub(crate) mod missing;
 mod remote_follower;
 mod replay;
 mod report;
@@ -123,6 +124,8 @@ pub fn main() -> ExitCode {
         Err(error) => error.exit(),
     };
     logging::begin(given.get_one("log").copied());
+    #[cfg(unix)]
+    nima_devices::os::survive_file_size_limit();
     extras::begin();
     let result = extras::part(|extra| extra.run(&given)).unwrap_or_else(|| run_own(&given));
     match result {

@@ -3,9 +3,12 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use nima_recording::session::SessionReader;
 use nima_report as report;
 use nima_report::output;
 use nima_screen::stderr::print_line;
+
+use super::missing::report_missing;
 
 #[derive(Debug, Args)]
 pub(super) struct ReportArguments {
@@ -23,6 +26,12 @@ pub(super) struct ReportArguments {
 
 pub(super) fn run(arguments: &ReportArguments) -> anyhow::Result<()> {
     let ReportArguments { sessions, out, json } = arguments;
+    for session in sessions {
+        // A file that cannot be opened is reported below.
+        if let Ok(reader) = SessionReader::open(session) {
+            report_missing(session, &reader);
+        }
+    }
     if let (Some(out), false) = (out, json) {
         let page = report::write(sessions, out)?;
         return output::line(&format!("written: {}", page.display()));

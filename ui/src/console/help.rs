@@ -40,7 +40,7 @@ impl Help {
         let Some(step) = self.tour.filter(|_| on_view) else { return false };
         let (heading, words) = TOUR[step];
         let window = Window::new(TOUR_WINDOW.get()).title_bar(false).resizable(false).movable(false).constrain_to(room);
-        let window = window.anchor(Align2::CENTER_TOP, vec2(0.0, room.top() + 12.0)).fixed_size(vec2(440.0, 0.0));
+        let window = window.anchor(Align2::CENTER_TOP, vec2(0.0, 12.0)).fixed_size(vec2(440.0, 0.0));
         window.show(ctx, |ui| {
             ui.label(RichText::new(heading.get()).font(theme::strong(18.0)));
             ui.label(RichText::new(words.get()).font(theme::regular(15.0)));
@@ -48,7 +48,7 @@ impl Help {
             ui.horizontal(|ui| {
                 ui.label(nima_screen::widgets::small(step_of(step + 1, TOUR.len())));
                 let size = vec2(96.0, 32.0);
-                if ui.add_enabled(step > 0, Button::new(STEP_BACK.get()).min_size(size)).clicked() {
+                if ui.add_enabled(step > 0, Button::new(STEP_BACK).min_size(size)).clicked() {
                     self.tour = Some(step - 1);
                 }
                 let last = step + 1 == TOUR.len();
@@ -56,7 +56,7 @@ impl Help {
                 if ui.add(next.min_size(size)).clicked() {
                     self.tour = if last { None } else { Some(step + 1) };
                 }
-                if !last && ui.add(Button::new(SKIP_THE_TOUR.get()).min_size(size)).clicked() {
+                if !last && ui.add(Button::new(SKIP_THE_TOUR).min_size(size)).clicked() {
                     self.tour = None;
                 }
             });
@@ -69,7 +69,7 @@ impl Help {
         let height = (room.height() - 90.0).min(560.0);
         window.default_pos(room.center_top() + vec2(-230.0, 16.0)).fixed_size(vec2(460.0, height)).show(ctx, |ui| {
             ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-                ui.label(RichText::new(KEYS_HEADING.get()).font(theme::strong(16.0)));
+                ui.label(RichText::new(KEYS_HEADING).font(theme::strong(16.0)));
                 for entry in table().iter().filter(|entry| !entry.keys.is_empty()) {
                     key_ui(ui, &entry.keys_text(), &key_meaning(&entry.title, entry.does));
                 }
@@ -77,7 +77,7 @@ impl Help {
                     key_ui(ui, key.get(), meaning.get());
                 }
                 ui.add_space(8.0);
-                ui.label(RichText::new(WORDS_HEADING.get()).font(theme::strong(16.0)));
+                ui.label(RichText::new(WORDS_HEADING).font(theme::strong(16.0)));
                 for (word, meaning) in terms() {
                     ui.label(RichText::new(word).font(theme::strong(14.0)));
                     ui.label(nima_screen::widgets::weak(meaning));

@@ -1,14 +1,15 @@
 //! The View menu: appearance of the console, saved between sessions.
 
 use egui::{
-    Button, Context, DragValue, Id, PopupCloseBehavior, ScrollArea, Slider, TextEdit, TextStyle, Ui, WidgetInfo,
+    Button, Context, DragValue, Id, PopupCloseBehavior, RichText, ScrollArea, Slider, TextEdit, TextStyle, Ui,
+    WidgetInfo,
     containers::menu::{MenuButton, MenuConfig},
     vec2,
 };
 use nima_panels::{
     roles::Role,
     settings::{CROP_MAX_PERCENT, ConsoleSettings, ImageSettings},
-    tiles::{Arrangement, Panel, PanelLayout},
+    tiles::{Arrangement, PanelId, PanelLayout},
 };
 use nima_screen::{alarms::strip::Alarms, widgets::with_icon};
 use nima_words::{
@@ -40,10 +41,11 @@ pub(super) fn menu_ui(
     // A click into the name of a layout must not close the menu; a command closes it.
     let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
     let menu = MenuButton::from_button(button).config(config);
-    // A small window has no room for the whole menu.
-    let height = ui.ctx().content_rect().height() - 32.0;
+    // A small window has no room for the whole menu, which must leave the bar free.
+    let height = ui.ctx().content_rect().height() - 80.0;
     let (response, _) = menu.ui(ui, |ui| {
-        ScrollArea::vertical().max_height(height).show(ui, |ui| {
+        // Without a minimum, a menu shows less than the window has room for.
+        ScrollArea::vertical().max_height(height).min_scrolled_height(height).show(ui, |ui| {
             wanted = content_ui(ui, settings, alarms, can_undo);
         });
         if wanted.is_some() {
@@ -51,7 +53,7 @@ pub(super) fn menu_ui(
         }
     });
     response.widget_info(|| WidgetInfo::labeled(egui::Role::Button, true, text::menu::VIEW.get()));
-    response.on_hover_text(text::menu::VIEW_HOVER.get());
+    response.on_hover_text(text::menu::VIEW_HOVER);
     wanted
 }
 
@@ -59,7 +61,7 @@ fn content_ui(ui: &mut Ui, settings: &mut ConsoleSettings, alarms: &mut Alarms, 
     let mut wanted = None;
     ui.set_width(300.0);
     ui.horizontal(|ui| {
-        ui.label(text::menu::PALETTE.get());
+        ui.label(text::menu::PALETTE);
         for (name, light) in [(text::menu::DARK.get(), false), (text::menu::LIGHT.get(), true)] {
             let button = Button::selectable(settings.light == light, name).frame_when_inactive(true);
             if ui.add(button.min_size(CHOICE)).clicked() {
@@ -70,7 +72,7 @@ fn content_ui(ui: &mut Ui, settings: &mut ConsoleSettings, alarms: &mut Alarms, 
     wanted = wanted.or(switch_ui(ui, settings.colour_blind, Action::ColourBlind));
     wanted = wanted.or(languages_ui(ui, settings.language));
     ui.add_space(4.0);
-    ui.label(text::menu::SIZE.get());
+    ui.label(text::menu::SIZE);
     ui.horizontal(|ui| {
         for percent in SIZES_PERCENT {
             let chosen = settings.scale_percent == percent;
@@ -117,7 +119,7 @@ fn entry_ui(ui: &mut Ui, action: Action, width: f32) -> Option<Action> {
 fn languages_ui(ui: &mut Ui, now: Language) -> Option<Action> {
     let mut wanted = None;
     ui.horizontal(|ui| {
-        ui.label(text::menu::LANGUAGE.get()).on_hover_text(text::commands::LANGUAGE_DOES.get());
+        ui.label(text::menu::LANGUAGE).on_hover_text(text::commands::LANGUAGE_DOES);
         for language in Language::CHOICES {
             let button = Button::selectable(now == language, language.name()).frame_when_inactive(true);
             if ui.add(button.min_size(CHOICE)).clicked() {
@@ -145,7 +147,7 @@ fn sound_ui(ui: &mut Ui, on: bool, alarms: &mut Alarms) -> Option<Action> {
 
 /// Draws the display settings of the endoscope image, and whether it is recorded.
 fn image_ui(ui: &mut Ui, settings: &mut ConsoleSettings) -> Option<Action> {
-    ui.label(text::menu::IMAGE.get());
+    ui.label(text::menu::IMAGE);
     let image = &mut settings.image;
     ui.add(Slider::new(&mut image.brightness_percent, -50..=50).text(text::menu::BRIGHTNESS.get()).suffix(" %"));
     ui.add(
@@ -158,7 +160,7 @@ fn image_ui(ui: &mut Ui, settings: &mut ConsoleSettings) -> Option<Action> {
         Slider::new(&mut image.gamma_percent, 25..=400).logarithmic(true).text(text::menu::GAMMA.get()).suffix(" %"),
     );
     ui.horizontal(|ui| {
-        ui.label(text::menu::CROP.get()).on_hover_text(text::menu::CROP_HOVER.get());
+        ui.label(text::menu::CROP).on_hover_text(text::menu::CROP_HOVER);
         for (percent, edge) in image.crop_percent.iter_mut().zip(text::menu::EDGES.map(Text::get)) {
             let value = DragValue::new(percent).range(0..=CROP_MAX_PERCENT).suffix(" %");
             let response = ui.add(value).on_hover_text(edge);
@@ -175,7 +177,7 @@ fn image_ui(ui: &mut Ui, settings: &mut ConsoleSettings) -> Option<Action> {
 /// Draws the built-in layouts and the user's own ones; returns the command of the pressed one.
 fn layouts_ui(ui: &mut Ui, settings: &mut ConsoleSettings) -> Option<Action> {
     let mut wanted = None;
-    ui.label(text::menu::LAYOUT.get()).on_hover_text(text::menu::LAYOUT_HOVER.get());
+    ui.label(text::menu::LAYOUT).on_hover_text(text::menu::LAYOUT_HOVER);
     ui.horizontal(|ui| {
         for one in Arrangement::ALL {
             let chosen = settings.layout.looks_like(&PanelLayout::built_in(one));
@@ -226,9 +228,9 @@ fn save_layout_ui(ui: &mut Ui, settings: &mut ConsoleSettings) {
         let field = ui.add(TextEdit::singleline(&mut name).hint_text(hint).char_limit(40).desired_width(196.0));
         field.widget_info(|| WidgetInfo::labeled(egui::Role::TextInput, true, hint));
         let named = !name.trim().is_empty();
-        let save = ui.add_enabled(named, Button::new(text::menu::SAVE_LAYOUT.get()).min_size(vec2(76.0, 26.0)));
-        let save = save.on_hover_text(text::menu::SAVE_LAYOUT_HOVER.get());
-        if save.on_disabled_hover_text(text::menu::NAME_LAYOUT_FIRST.get()).clicked() {
+        let save = ui.add_enabled(named, Button::new(text::menu::SAVE_LAYOUT).min_size(vec2(76.0, 26.0)));
+        let save = save.on_hover_text(text::menu::SAVE_LAYOUT_HOVER);
+        if save.on_disabled_hover_text(text::menu::NAME_LAYOUT_FIRST).clicked() {
             settings.save_layout(name.trim());
             name.clear();
         }
@@ -239,22 +241,34 @@ fn save_layout_ui(ui: &mut Ui, settings: &mut ConsoleSettings) {
 /// Switches for the panels.
 fn panels_ui(ui: &mut Ui, layout: &PanelLayout) -> Option<Action> {
     let mut wanted = None;
-    ui.label(text::menu::PANELS.get()).on_hover_text(text::menu::PANELS_HOVER.get());
-    for pair in Panel::built().collect::<Vec<_>>().chunks(2) {
+    ui.label(text::menu::PANELS).on_hover_text(text::menu::PANELS_HOVER);
+    for pair in PanelId::built().collect::<Vec<_>>().chunks(2) {
         ui.horizontal(|ui| {
             for panel in pair {
-                let open = layout.is_open(*panel);
-                let button = Button::selectable(open, panel.title()).frame_when_inactive(true);
-                let response = ui.add(button.min_size(vec2(146.0, 26.0)));
-                let meaning =
-                    if open { text::menu::PANEL_OPEN_HOVER.get() } else { text::menu::PANEL_CLOSED_HOVER.get() };
-                if response.on_hover_text(format!("{}\n{meaning}", panel.meaning())).clicked() {
-                    wanted = Some(Action::Panel(*panel));
-                }
+                wanted = wanted.or(panel_ui(ui, layout, *panel));
             }
         });
     }
     wanted.or(entry_ui(ui, Action::ResetLayout, 300.0))
+}
+
+/// Draws the switches of a panel: whether it is open, and whether it is in a separate window.
+fn panel_ui(ui: &mut Ui, layout: &PanelLayout, panel: PanelId) -> Option<Action> {
+    ui.spacing_mut().item_spacing.x = 3.0;
+    let open = layout.is_open(panel);
+    let button = Button::selectable(open, panel.title()).frame_when_inactive(true).truncate();
+    let response = ui.add_sized(vec2(118.0, 26.0), button);
+    let meaning = if open { text::menu::PANEL_OPEN_HOVER.get() } else { text::menu::PANEL_CLOSED_HOVER.get() };
+    if response.on_hover_text(format!("{}\n{meaning}", panel.meaning())).clicked() {
+        return Some(Action::Panel(panel));
+    }
+    let in_window = layout.is_window(panel);
+    let icon = RichText::new(icons::ICON_OPEN_IN_NEW.codepoint).font(nima_screen::theme::icons(16.0));
+    let window = ui.add(Button::selectable(in_window, icon).frame_when_inactive(true).min_size(vec2(26.0, 26.0)));
+    let name = text::commands::window(panel.title());
+    window.widget_info(|| WidgetInfo::selected(egui::Role::Button, true, in_window, name.as_str()));
+    let meaning = format!("{name}\n{}", text::tiles::OPEN_WINDOW_HOVER.get());
+    window.on_hover_text(meaning).clicked().then_some(Action::Window(panel))
 }
 
 /// Applies the settings; call at the start of a frame.

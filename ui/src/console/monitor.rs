@@ -169,8 +169,8 @@ impl Monitor {
         Panel::top("watching").exact_size(HEAD).resizable(false).frame(frame).show(ui, |ui| {
             ui.horizontal_centered(|ui| {
                 let word =
-                    RichText::new(text::monitor::WATCHING.get()).font(theme::strong(26.0)).color(theme::now().watching);
-                ui.label(word).on_hover_text(text::monitor::WATCHING_HOVER.get());
+                    RichText::new(text::monitor::WATCHING).font(theme::strong(26.0)).color(theme::now().watching);
+                ui.label(word).on_hover_text(text::monitor::WATCHING_HOVER);
                 ui.add_space(10.0);
                 let scene = self.live.as_ref().map(|live| live.scene.name.clone()).unwrap_or_default();
                 let words = text::monitor::rig_and_scene(&self.rig, &scene);
@@ -184,7 +184,8 @@ impl Monitor {
                 ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                     // Laid out from right to left.
                     ui.allocate_ui_with_layout(SWITCH, Layout::left_to_right(Align::Center), |ui| {
-                        switch_ui(ui, &ROLES, &mut self.settings.role, true);
+                        let pressed = switch_ui(ui, &ROLES, self.settings.role, true);
+                        self.settings.role = pressed.unwrap_or(self.settings.role);
                     });
                     ui.with_layout(Layout::left_to_right(Align::Center), |ui| self.words_ui(ui, stale));
                 });

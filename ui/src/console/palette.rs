@@ -63,7 +63,7 @@ impl CommandPalette {
         let window = window.anchor(Align2::CENTER_TOP, vec2(0.0, 8.0));
         let mut wanted = None;
         let shown = window.show(ctx, |ui| {
-            let edit = TextEdit::singleline(&mut search.words).id(field).hint_text(SEARCH.get());
+            let edit = TextEdit::singleline(&mut search.words).id(field).hint_text(SEARCH);
             let edit = ui.add(edit.desired_width(f32::INFINITY).font(theme::regular(16.0)));
             ctx.accesskit_node_builder(edit.id, |node| node.set_label(SEARCH.get()));
             if edit.changed() {
@@ -74,7 +74,7 @@ impl CommandPalette {
             let found = found(&search.words, rows);
             search.step(&keys, &found);
             wanted = search.list_ui(ui, &found, &keys, room.height() - 150.0);
-            ui.label(small(FOOT.get()));
+            ui.label(small(FOOT));
         });
         let inside = shown.is_some_and(|shown| {
             let pressed =
@@ -136,7 +136,7 @@ impl Search {
         list.show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = 2.0;
             if found.is_empty() {
-                ui.label(weak(NONE_FOUND.get()));
+                ui.label(weak(NONE_FOUND));
             }
             for (i, (entry, reach)) in found.iter().enumerate() {
                 let is_at = self.at == Some(i);
@@ -148,7 +148,7 @@ impl Search {
                     response.scroll_to_me(Some(Align::Center));
                 }
                 if self.asked == Some(entry.action) {
-                    ui.label(RichText::new(ONCE_MORE.get()).font(theme::strong(14.0)));
+                    ui.label(RichText::new(ONCE_MORE).font(theme::strong(14.0)));
                 }
             }
         });

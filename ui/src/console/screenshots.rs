@@ -13,7 +13,7 @@ use nima_machine::messages::{LoopState, Tick};
 use nima_panels::{
     roles::Role,
     settings::ConsoleSettings,
-    tiles::{Panel, PanelLayout},
+    tiles::{PanelId, PanelLayout},
 };
 use nima_screen::{live::LiveState, screenshot, stderr::print_line};
 
@@ -31,12 +31,12 @@ const GIVE_UP: Duration = Duration::from_secs(10);
 const LAST: Duration = Duration::from_millis(700);
 
 /// File name, role, panel to bring to the front, light palette.
-const SHOTS: [(&str, Role, Option<Panel>, bool); 8] = [
+const SHOTS: [(&str, Role, Option<PanelId>, bool); 8] = [
     ("console", Role::Technician, None, false),
-    ("safety", Role::Technician, Some(Panel::Safety), false),
-    ("devices", Role::Technician, Some(Panel::Devices), false),
-    ("tradeoff", Role::Technician, Some(Panel::Tradeoff), false),
-    ("link", Role::Technician, Some(Panel::Link), false),
+    ("safety", Role::Technician, Some(PanelId::Safety), false),
+    ("devices", Role::Technician, Some(PanelId::Devices), false),
+    ("tradeoff", Role::Technician, Some(PanelId::Tradeoff), false),
+    ("link", Role::Technician, Some(PanelId::Link), false),
     ("light", Role::Technician, None, true),
     ("surgeon", Role::Surgeon, None, false),
     ("demo", Role::Demo, None, false),

@@ -106,7 +106,8 @@ pub(crate) fn top_bar_ui(
             state.leads_to_engage &= matches!(now, LoopState::Idle | LoopState::Disconnected);
             let next = state.asked == Some(PersonRequest::Release) || state.leads_to_engage && closed.is_none();
             let ready = since_s >= STEP_WAITS_S;
-            step_ui(ui, now, TopBarStep { ready, next, wanted: wants_step, closed }, outbox);
+            let short_stall = matches!(now, LoopState::Faulted(fault) if fault.is_short_stall(live.rig.rate_hz));
+            step_ui(ui, now, TopBarStep { ready, next, wanted: wants_step, closed, short_stall }, outbox);
             // Drawn after the step button to its left, so that keyboard focus follows the reading order.
             stop_ui(ui, place, now, state.asked == Some(PersonRequest::PressStop), outbox);
             ui.add_space(6.0);
@@ -127,7 +128,7 @@ fn identity_ui(
         ui.label(RichText::new(participant).font(theme::strong(17.0)));
         return;
     }
-    switch_ui(ui, &Role::ALL, &mut settings.role, !calibrating);
+    let view = switch_ui(ui, &Role::ALL, settings.role, !calibrating);
     let font = TextStyle::Button.resolve(ui.style());
     let words = with_icon(ui, icons::ICON_PRECISION_MANUFACTURING, text::start::OPEN.get(), font.clone());
     let start = Button::new(words).min_size(vec2(44.0, 30.0));
@@ -135,16 +136,17 @@ fn identity_ui(
     let free = !calibrating && !state.past;
     let start = ui.add_enabled(free, start);
     start.widget_info(|| WidgetInfo::labeled(egui::Role::Button, free, text::start::OPEN.get()));
-    let start = start.on_hover_text(text::start::OPEN_HOVER.get());
+    let start = start.on_hover_text(text::start::OPEN_HOVER);
     let wants_start = start.on_disabled_hover_text(why).clicked();
     let of_menu = menu_ui(ui, settings, &mut state.alarms, state.can_undo);
     let words = with_icon(ui, icons::ICON_VIDEO_LIBRARY, text::playback::SESSIONS.get(), font);
     let sessions = ui.add_enabled(free, Button::new(words).min_size(vec2(72.0, 30.0)));
     sessions.widget_info(|| WidgetInfo::labeled(egui::Role::Button, free, text::playback::SESSIONS.get()));
-    let sessions = sessions.on_hover_text(text::playback::SESSIONS_HOVER.get());
+    let sessions = sessions.on_hover_text(text::playback::SESSIONS_HOVER);
     let wants_sessions = sessions.on_disabled_hover_text(why).clicked();
     let keeps = recorded_ui(ui, state);
     state.wanted = of_menu
+        .or(view.map(Action::View))
         .or(wants_start.then_some(Action::Rig))
         .or(wants_sessions.then_some(Action::Sessions))
         .or(keeps.then_some(Action::Keep));
@@ -213,6 +215,16 @@ fn state_lines(live: &LiveState, state: LoopState) -> Vec<String> {
 
 /// Always in the same place, above every window, menu and tooltip, and always enabled: pressing it twice does no harm.
 fn stop_ui(ui: &Ui, place: Rect, state: LoopState, next: bool, outbox: &mut Outbox) {
+    let area = Area::new(Id::unique("stop")).order(Order::TOP).fixed_pos(place.min).default_size(place.size());
+    let pressed =
+        area.movable(false).constrain(false).fade_in(false).show(ui.ctx(), |ui| stop_button_ui(ui, state, next)).inner;
+    if pressed {
+        outbox.push(Command::Stop);
+    }
+}
+
+/// Draws the stop button, highlighted as the `next` one; returns true when pressed.
+pub(in crate::console) fn stop_button_ui(ui: &mut Ui, state: LoopState, next: bool) -> bool {
     let latched = matches!(state, LoopState::Stopped | LoopState::Faulted(_));
     let (fill, ink) = if latched {
         (theme::now().control, theme::now().text_weak)
@@ -223,18 +235,9 @@ fn stop_ui(ui: &Ui, place: Rect, state: LoopState, next: bool, outbox: &mut Outb
     if next {
         button = button.stroke(Stroke::new(6.0, theme::now().primary));
     }
-    let area = Area::new(Id::unique("stop")).order(Order::TOP).fixed_pos(place.min).default_size(place.size());
-    let response =
-        area.movable(false).constrain(false).fade_in(false).show(ui.ctx(), |ui| stop_button(ui, button, ink)).inner;
-    if response.clicked() {
-        outbox.push(Command::Stop);
-    }
-}
-
-fn stop_button(ui: &mut Ui, button: Button<'_>, ink: egui::Color32) -> egui::Response {
     let response = ui.add(button);
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, text::top_bar::STOP.get()));
-    let response = response.on_hover_text(text::top_bar::STOP_HOVER.get());
+    let response = response.on_hover_text(text::top_bar::STOP_HOVER);
     let middle = response.rect.center();
     sign(ui.painter(), Sign::Octagon, middle - vec2(34.0, 0.0), 11.0, ink);
     ui.painter().text(
@@ -244,7 +247,7 @@ fn stop_button(ui: &mut Ui, button: Button<'_>, ink: egui::Color32) -> egui::Res
         theme::strong(21.0),
         ink,
     );
-    response
+    response.clicked()
 }
 
 /// State of the next step.
@@ -258,11 +261,17 @@ struct TopBarStep {
     wanted: Option<Action>,
     /// Reason why the button cannot be pressed.
     closed: Option<&'static str>,
+    /// The fault is left by engaging directly.
+    short_stall: bool,
 }
 
 /// Draws the button for the next step, next to the stop button and never below it.
-fn step_ui(ui: &mut Ui, state: LoopState, TopBarStep { ready, next, wanted, closed }: TopBarStep, outbox: &mut Outbox) {
+fn step_ui(ui: &mut Ui, state: LoopState, step: TopBarStep, outbox: &mut Outbox) {
+    let TopBarStep { ready, next, wanted, closed, short_stall } = step;
     let (action, command, meaning) = match state {
+        LoopState::Faulted(_) if short_stall => {
+            (Action::Engage, Command::Engage, text::top_bar::ENGAGE_AFTER_STALL_HOVER.get())
+        }
         LoopState::Idle | LoopState::Disconnected => {
             (Action::Engage, Command::Engage, text::top_bar::ENGAGE_HOVER.get())
         }

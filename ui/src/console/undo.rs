@@ -123,7 +123,7 @@ impl LookHistory {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use nima_panels::{TracesState, tiles::Panel};
+    use nima_panels::{TracesState, tiles::PanelId};
 
     fn plain() -> ScreenLook {
         ScreenLook {
@@ -178,7 +178,7 @@ mod tests {
         let mut history = LookHistory::default();
         history.watch(plain(), 0.0, false);
         let front =
-            ScreenLook { layout: PanelLayout { front: vec![Panel::Link], ..PanelLayout::default() }, ..plain() };
+            ScreenLook { layout: PanelLayout { front: vec![PanelId::Link], ..PanelLayout::default() }, ..plain() };
         history.watch(front.clone(), 1.0, false);
         assert!(!history.can_undo());
         history.watch(ScreenLook { look: Look { light: true, ..Look::default() }, ..front.clone() }, 2.0, false);

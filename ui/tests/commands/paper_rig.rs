@@ -51,7 +51,7 @@ fn every_device_that_is_not_there_has_its_cause_and_its_cure() {
         );
     }
     let cause = |device: &str| lines.iter().find(|line| line.trim_start().starts_with(device)).unwrap();
-    assert!(cause("right arm").contains("192.168.1.10:10000 cannot be reached"), "{report}");
+    assert!(cause("right arm").contains("192.0.2.10:10000 is only an example"), "{report}");
     assert!(cause("tracker").contains("tools[0] = right-instrument.rom: the file cannot be read"), "{report}");
 }
 

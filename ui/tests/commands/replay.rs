@@ -1,6 +1,7 @@
 //! `nima run --record` and `nima replay`, as a user would type them.
-use std::path::Path;
+use std::{path::Path, process::Command};
 
+use nima_recording::session::SessionReader;
 use serde_json::Value;
 
 use crate::every_command::{json, nima};
@@ -117,7 +118,7 @@ fn what_cannot_be_replayed_is_told_in_one_line() {
 fn on_a_small_disk(folder: &Path, script: &str) -> Option<std::process::Output> {
     std::fs::create_dir_all(folder.join("disk")).unwrap();
     let script = format!("cd {} && mount -t tmpfs -o size=9000k none disk || exit 99; {script}", folder.display());
-    let output = std::process::Command::new("unshare")
+    let output = Command::new("unshare")
         .args(["-rm", "bash", "-c", &script, env!("CARGO_BIN_EXE_nima")])
         .env("NIMA_DATA_DIR", "/dev/null/no/such/folder")
         .output()
@@ -145,4 +146,22 @@ fn a_disk_that_is_full_or_read_only_is_told_in_one_line_with_what_to_do() {
         let report = String::from_utf8(output.stderr).unwrap();
         assert!(!output.status.success() && report.contains(words) && report.contains("a.mcap"), "{report}");
     }
+}
+
+#[cfg(unix)]
+#[test]
+fn a_limit_of_file_sizes_ends_the_recording_and_not_the_program() {
+    let folder = tempfile::tempdir().unwrap();
+    let session = folder.path().join("limited.mcap");
+    let script = format!(
+        "ulimit -f 400; exec {} run --virtual --seconds 20 --record {}",
+        env!("CARGO_BIN_EXE_nima"),
+        session.display()
+    );
+    let output = Command::new("sh").args(["-c", &script]).env("NIMA_DATA_DIR", folder.path()).output().unwrap();
+    let report = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{}: {report}", output.status);
+    assert!(report.contains("limited.mcap"), "{report}");
+    let reader = SessionReader::open(&session).unwrap();
+    assert!(reader.times_ns().is_some_and(|(first_ns, last_ns)| last_ns > first_ns), "what was written can be read");
 }

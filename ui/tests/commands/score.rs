@@ -1,9 +1,20 @@
 //! Tests: from recorded sessions to a table of trials, and from such a table to the answer.
-use std::{fmt::Write as _, path::Path};
+use std::{
+    collections::BTreeMap,
+    fmt::Write as _,
+    path::Path,
+    process::{Command, Stdio},
+    thread::sleep,
+    time::{Duration, Instant},
+};
 
+use nima_recording::session::{SessionReader, SessionWriter};
 use serde_json::Value;
 
-use crate::every_command::{json, nima};
+use crate::{
+    every_command::{json, nima},
+    export::record,
+};
 
 fn refused(arguments: &[&str]) -> String {
     let output = nima(arguments);
@@ -38,7 +49,7 @@ fn sessions_are_scored_and_become_a_table_of_trials() {
     assert!(report.status.success(), "{}", String::from_utf8_lossy(&report.stderr));
     let table = std::fs::read_to_string(&out).unwrap();
     let lines: Vec<&str> = table.lines().collect();
-    assert!(lines[0].starts_with("participant,condition,trial,session,") && lines.len() == 3, "{table}");
+    assert!(lines[0].starts_with("participant,condition,trial,session,complete,") && lines.len() == 3, "{table}");
     assert!(lines[1].starts_with("p1,best 50 ms,1,") && lines[2].starts_with("p1,dfr 50 ms,2,"), "{table}");
     assert!(nima(&["study", "trials", &out]).status.success(), "the table is one of trials");
 
@@ -100,4 +111,84 @@ fn a_run_of_a_training_scene_is_scored_and_its_seed_can_be_given() {
     assert_ne!(other["score"]["path_length_m_right"], run("wire", "2", &[])["score"]["path_length_m_right"]);
     let output = nima(&["run", "--virtual", "--scene", "wire", "--seed", "many"]);
     assert!(!output.status.success() && String::from_utf8_lossy(&output.stderr).contains("--seed"));
+}
+
+/// Copies a session with a further message, dated 30 years after its end.
+fn with_a_late_message(from: &str, to: &str) {
+    let reader = SessionReader::open(Path::new(from)).unwrap();
+    let mut writer = SessionWriter::create(Path::new(to), reader.library()).unwrap();
+    let mut channels = BTreeMap::new();
+    let mut last = None;
+    for message in reader.messages(&[], 0..u64::MAX) {
+        let message = message.unwrap();
+        let of = reader.channels().iter().find(|channel| channel.id == message.channel()).unwrap();
+        let channel = *channels
+            .entry(of.topic.clone())
+            .or_insert_with(|| writer.channel(&of.topic, of.encoding.clone()).unwrap());
+        writer.message(channel, message.log_time_ns(), message.data()).unwrap();
+        if of.topic == "right/forces" {
+            last = Some((channel, message.log_time_ns(), message.data().to_vec()));
+        }
+    }
+    let (channel, time_ns, data) = last.unwrap();
+    writer.message(channel, time_ns + 1_000_000_000_000_000_000, &data).unwrap();
+    writer.flush().unwrap();
+}
+
+/// Returns what `nima score` reports; panics if it takes more than a minute.
+fn scored(session: &str, out: &str) -> (String, String) {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_nima"))
+        .args(["score", session, "--out", out])
+        .env("NIMA_DATA_DIR", "/dev/null/no/such/folder")
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let began = Instant::now();
+    while child.try_wait().unwrap().is_none() {
+        if began.elapsed() > Duration::from_mins(1) {
+            child.kill().unwrap();
+            panic!("{session} takes too long");
+        }
+        sleep(Duration::from_millis(20));
+    }
+    let output = child.wait_with_output().unwrap();
+    let report = String::from_utf8(output.stderr).unwrap();
+    assert!(output.status.success(), "{report}");
+    (report, std::fs::read_to_string(out).unwrap().lines().nth(1).unwrap().to_owned())
+}
+
+#[test]
+fn a_session_that_is_not_whole_is_reported_and_marked_in_the_table() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name).display().to_string();
+    record(&at("whole.mcap"), "bimanual", "4");
+    let (report, row) = scored(&at("whole.mcap"), &at("whole.csv"));
+    assert!(report.is_empty() && row.contains(".mcap,yes,"), "{report}{row}");
+
+    let whole = std::fs::read(at("whole.mcap")).unwrap();
+    std::fs::write(at("cut.mcap"), &whole[..whole.len() * 6 / 10]).unwrap();
+    let mut damaged = whole.clone();
+    damaged[whole.len() / 2] ^= 0xff;
+    std::fs::write(at("damaged.mcap"), damaged).unwrap();
+    with_a_late_message(&at("whole.mcap"), &at("late.mcap"));
+    for (name, words) in
+        [("cut", "the recording was not closed"), ("late", "it has no ticks from 3.999 s to 1000000003.")]
+    {
+        let (report, row) = scored(&at(&format!("{name}.mcap")), &at(&format!("{name}.csv")));
+        assert!(report.contains(words) && row.contains(".mcap,no,"), "{name}: {report}{row}");
+        for command in [&["export", "--out", "x.csv", "--arm", "right"][..], &["replay"], &["report", "--json"]] {
+            let rest = command[1..]
+                .iter()
+                .map(|word| if *word == "x.csv" { at(&format!("{name}-x.csv")) } else { (*word).to_owned() });
+            let all: Vec<String> =
+                [command[0].to_owned(), at(&format!("{name}.mcap"))].into_iter().chain(rest).collect();
+            let output = nima(&all.iter().map(String::as_str).collect::<Vec<_>>());
+            let told = String::from_utf8_lossy(&output.stderr).into_owned();
+            assert!(told.contains(words), "{all:?}: {told}");
+        }
+    }
+    let report = nima(&["score", &at("damaged.mcap")]);
+    let told = String::from_utf8_lossy(&report.stderr).into_owned();
+    assert!(told.contains("damaged.mcap: ") && told.contains("chunk"), "{told}");
 }

@@ -35,25 +35,29 @@ fn report(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
-/// Returns the code that a pairing shows.
-fn code(lines: &mut impl Iterator<Item = std::io::Result<String>>) -> String {
-    let line = lines.map(Result::unwrap).find(|line| line.starts_with("code to enter on the other machine"));
-    line.unwrap().rsplit(": ").next().unwrap().to_owned()
+/// Returns the code that an offer shows.
+fn code(offer: &mut Child) -> String {
+    let mut lines = BufReader::new(offer.stdout.take().unwrap()).lines().map(Result::unwrap);
+    let line = lines.find(|line| line.starts_with("code to enter on the console's machine")).unwrap();
+    let code = line.rsplit(": ").next().unwrap();
+    assert_eq!(code.chars().filter(char::is_ascii_digit).count(), 9, "{code}");
+    code.to_owned()
 }
 
-/// Pairs the machines at this address; `enter` converts the displayed code to the one entered at the console's machine.
-fn pair(follower: &Path, console: &Path, address: &str, enter: fn(&str) -> String) -> [Output; 2] {
-    let mut there = at(follower, &["pair", "--offer", "--listen", address, "--wait", "20"]);
+/// Enters a code at the console's machine.
+fn entered(console: &Path, address: &str, code: &str) -> Output {
     let mut here = at(console, &["pair", address, "--wait", "20"]);
-    let mut of_there = BufReader::new(there.stdout.take().unwrap()).lines();
-    let mut of_here = BufReader::new(here.stdout.take().unwrap()).lines();
-    let shown_there = code(&mut of_there);
-    let shown_here = code(&mut of_here);
-    assert_ne!(shown_there, shown_here, "the code of the same screen is refused");
-    assert_eq!(shown_here.chars().filter(char::is_ascii_digit).count(), 6, "{shown_here}");
-    writeln!(here.stdin.take().unwrap(), "{}", enter(&shown_there)).unwrap();
-    writeln!(there.stdin.take().unwrap(), "{shown_here}").unwrap();
-    [there.wait_with_output().unwrap(), here.wait_with_output().unwrap()]
+    // A console that refuses does not read it.
+    writeln!(here.stdin.take().unwrap(), "{code}").ok();
+    here.wait_with_output().unwrap()
+}
+
+/// Pairs the machines at this address.
+fn pair(follower: &Path, console: &Path, address: &str) -> [Output; 2] {
+    let mut there = at(follower, &["pair", "--offer", "--listen", address, "--wait", "20"]);
+    let code = code(&mut there);
+    let here = entered(console, address, &code);
+    [there.wait_with_output().unwrap(), here]
 }
 
 #[test]
@@ -61,10 +65,23 @@ fn a_machine_that_is_not_paired_or_paired_with_a_wrong_code_is_refused() {
     let follower = tempfile::tempdir().unwrap();
     let console = tempfile::tempdir().unwrap();
     let address = free();
-    let [there, here] = pair(follower.path(), console.path(), &address, |_| "000000".to_owned());
-    assert!(there.status.success(), "{}", report(&there));
-    assert!(!here.status.success(), "a wrong code was taken");
+    let mut there = at(follower.path(), &["pair", "--offer", "--listen", &address, "--wait", "60"]);
+    let code = code(&mut there);
+    let wrong = if code.starts_with('1') { "2" } else { "1" }.to_owned() + &code[1..];
+    for attempt in 0..3 {
+        let here = entered(console.path(), &address, &wrong);
+        assert!(!here.status.success() && report(&here).contains("not the code"), "{attempt}: {}", report(&here));
+    }
+    for code in [&wrong, &code] {
+        let here = entered(console.path(), &address, code);
+        assert!(report(&here).contains("too many wrong codes; wait "), "{}", report(&here));
+    }
     assert!(!console.path().join("network/network.peers").exists());
+    // The wrong codes of one console do not end the offer for others.
+    let other = tempfile::tempdir().unwrap();
+    let here = entered(other.path(), &address, &code);
+    assert!(here.status.success(), "{}", report(&here));
+    assert!(there.wait().unwrap().success());
     let stranger = at(console.path(), &["run", "--follower", "no-such-host.invalid", "--seconds", "1"]);
     let stranger = stranger.wait_with_output().unwrap();
     assert!(!stranger.status.success());
@@ -77,7 +94,7 @@ fn the_handle_is_at_one_machine_and_the_arm_at_the_other() {
     let follower = tempfile::tempdir().unwrap();
     let console = tempfile::tempdir().unwrap();
     let address = free();
-    for output in pair(follower.path(), console.path(), &address, str::to_owned) {
+    for output in pair(follower.path(), console.path(), &address) {
         assert!(output.status.success(), "{}", report(&output));
     }
     judged(|| {

@@ -7,7 +7,7 @@ use nima_console::console::ConsoleOptions;
 use nima_machine::messages::LoopState;
 use nima_panels::{
     roles::Role,
-    tiles::{Panel, PanelLayout},
+    tiles::{PanelId, PanelLayout},
 };
 use nima_wizards::WizardKind;
 
@@ -199,16 +199,16 @@ fn the_keyboard_goes_through_the_top_bar_and_every_panel_as_they_are_read() {
     let strip = Rect::from_min_max(egui::pos2(0.0, 824.0), SIZE.into());
     let mut wrong = Vec::new();
     let mut count = 0;
-    for panel in Panel::ALL {
+    for panel in PanelId::ALL {
         // Show it alone, so that everything below the bar belongs to this panel.
-        let closed = Panel::ALL.into_iter().filter(|other| *other != panel).collect();
+        let closed = PanelId::ALL.into_iter().filter(|other| *other != panel).collect();
         console.state_mut().settings_mut().layout = PanelLayout { closed, ..PanelLayout::default() };
         console.run_steps(4);
         let stops = stops(&mut console);
         assert!(stops.iter().any(|(name, _)| *name == format!("Close {}", panel.title())), "{panel:?}: {stops:?}");
         count += stops.len();
         wrong.extend(disorder(&stops, page).into_iter().map(|pair| format!("{panel:?}: {pair}")));
-        if panel == Panel::Field {
+        if panel == PanelId::Field {
             assert!(stops.iter().any(|(name, _)| name == "Release stop"), "{stops:?}");
             wrong.extend(disorder(&stops, bar).into_iter().map(|pair| format!("top bar: {pair}")));
         }

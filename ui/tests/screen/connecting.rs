@@ -14,7 +14,7 @@ use nima_machine::{
     messages::LoopState,
     rig::{RigSettings, Side},
 };
-use nima_panels::tiles::{Panel, PanelLayout};
+use nima_panels::tiles::{PanelId, PanelLayout};
 use nima_simulation::start_simulated;
 use nima_testing::real_time::{alone, judged, too_busy};
 use nima_tests::{
@@ -37,7 +37,7 @@ fn console(folder: &Path) -> Harness<'static, ConsoleApp> {
     // The loop of an emulated rig runs in real time, like its devices.
     let mut harness = Harness::builder().with_size(SIZE).with_step_dt(1.0 / 30.0).build_eframe(move |cc| {
         let mut kept = toured(&folder);
-        kept.now.layout = PanelLayout { front: vec![Panel::Devices], ..PanelLayout::default() };
+        kept.now.layout = PanelLayout { front: vec![PanelId::Devices], ..PanelLayout::default() };
         let app = ConsoleApp::new(cc, handle, plan.rig, plan.scene);
         app.with_settings(kept).with_store(&folder).with_program(Path::new(NIMA))
     });

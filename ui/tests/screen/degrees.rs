@@ -4,7 +4,7 @@ use egui::accesskit::{Role, Toggled};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use nima_core::impedance::Mode;
 use nima_machine::messages::Tick;
-use nima_panels::tiles::Panel;
+use nima_panels::tiles::PanelId;
 
 use crate::bench::{Console, console_of, press, read, shows, texts, toured, until, wait};
 
@@ -18,7 +18,7 @@ fn compares(console: &Console) -> bool {
 }
 
 fn toggle(console: &mut Console) {
-    console.state_mut().settings_mut().layout.toggle(Panel::Degrees);
+    console.state_mut().settings_mut().layout.toggle(PanelId::Degrees);
     console.run_steps(3);
 }
 

@@ -13,7 +13,7 @@ use nima_machine::{
     config::{EndoscopeConfig, StereoView},
     messages::LoopState,
 };
-use nima_panels::tiles::{Panel, PanelLayout};
+use nima_panels::tiles::{PanelId, PanelLayout};
 use nima_simulation::{
     SimulationPlan,
     camera::{camera_of, usual},
@@ -219,7 +219,7 @@ fn a_camera_that_is_not_there_is_told_with_a_cure_there_and_among_the_devices() 
     let mut harness = surgeon(endoscope("http://127.0.0.1:1/"), [1280.0, 720.0]);
     report(&mut harness, "Image is lost: no response from 127.0.0.1:1");
     assert!(is_painted(&harness, "Correct the port in the rig file"));
-    harness.state_mut().settings_mut().layout = PanelLayout { front: vec![Panel::Devices], ..PanelLayout::default() };
+    harness.state_mut().settings_mut().layout = PanelLayout { front: vec![PanelId::Devices], ..PanelLayout::default() };
     press(&mut harness, "Technician");
     assert!(comes(&mut harness, TIMEOUT, |harness| is_painted(harness, "no response from 127.0.0.1:1")));
     for (url, words) in [

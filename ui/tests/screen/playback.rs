@@ -154,6 +154,9 @@ fn the_past_looks_like_the_past_and_one_key_leaves_it() {
             harness.query_by_label("PLAYBACK").is_some() && harness.query_by_label("Time of the session").is_some()
         );
     }
+    harness.state_mut().settings_mut().role = Role::Technician;
+    harness.run_steps(3);
+    assert!(shows(&harness, "Not during playback"), "the Feedback panel says why it is off");
     harness.state_mut().show_past(2.5);
     harness.step();
     until_whole(&mut harness);
@@ -241,7 +244,7 @@ fn sessions_are_listed_kept_deleted_and_opened() {
     std::fs::write(&bad, "no session").unwrap();
     let mut harness = listed(folder.path());
     until_listed(&mut harness, "1.mcap");
-    assert!(shows(&harness, "Six points on soft tissue") && shows(&harness, "best"), "scene and mode");
+    assert!(shows(&harness, "Six points on soft tissue") && shows(&harness, "Best of both"), "scene and mode");
     write_into(&mut harness, "Note of 1.mcap", "third try");
     harness.key_press(Key::Enter);
     harness.run_steps(2);

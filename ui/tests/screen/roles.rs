@@ -6,7 +6,7 @@ use nima_console::console::ConsoleOptions;
 use nima_machine::messages::LoopState;
 use nima_panels::{roles::Role, settings::SettingsStore};
 
-use crate::bench::{console_of, press, until};
+use crate::bench::{console_of, press, shows, until};
 
 const SIZE: [f32; 2] = [1280.0, 720.0];
 
@@ -29,6 +29,15 @@ fn one_click_or_one_key_changes_the_role_and_the_stop_stays_where_it_is() {
         assert_eq!(now, stop, "a hand that reaches for the stop must find it");
     }
     assert_eq!(harness.state().tick().unwrap().state, LoopState::Engaged);
+}
+
+#[test]
+fn the_button_of_the_present_view_leads_back_to_it() {
+    let mut harness = console_of("peg_transfer", SIZE, |app| app);
+    press(&mut harness, "Rig");
+    harness.get_by_label_contains("Choose a scene");
+    press(&mut harness, "Technician");
+    assert!(!shows(&harness, "Choose a scene"));
 }
 
 #[test]

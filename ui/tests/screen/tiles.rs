@@ -13,9 +13,10 @@ use egui_kittest::{
     kittest::{NodeT as _, Queryable as _},
 };
 use nima_console::console::ConsoleApp;
+use nima_machine::messages::LoopState;
 use nima_panels::{
     settings::SettingsStore,
-    tiles::{Arrangement, LayoutNode, Panel, PanelLayout},
+    tiles::{Arrangement, LayoutNode, PanelId, PanelLayout},
 };
 
 use crate::bench::{console_of, pick, press, toured, until, write_into};
@@ -30,7 +31,7 @@ fn console(folder: &Path) -> Harness<'static, ConsoleApp> {
     harness
 }
 
-fn tab(harness: &Harness<'_, ConsoleApp>, panel: Panel) -> Rect {
+fn tab(harness: &Harness<'_, ConsoleApp>, panel: PanelId) -> Rect {
     harness.get_by_role_and_label(Role::Button, panel.title()).rect()
 }
 
@@ -50,11 +51,11 @@ fn layout_of(harness: &mut Harness<'_, ConsoleApp>) -> PanelLayout {
 }
 
 /// Returns the panels in the same group of tabs as this one.
-fn beside(node: &LayoutNode, panel: Panel) -> Option<Vec<Panel>> {
+fn beside(node: &LayoutNode, panel: PanelId) -> Option<Vec<PanelId>> {
     match node {
         LayoutNode::Panel(_) => None,
         LayoutNode::Tabs(of) => {
-            let panels: Vec<Panel> = of
+            let panels: Vec<PanelId> = of
                 .iter()
                 .filter_map(|node| if let LayoutNode::Panel(panel) = node { Some(*panel) } else { None })
                 .collect();
@@ -68,17 +69,17 @@ fn beside(node: &LayoutNode, panel: Panel) -> Option<Vec<Panel>> {
 fn a_dragged_title_joins_other_tabs_and_stays_there_the_next_day() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = console(folder.path());
-    let from = tab(&harness, Panel::Timing);
-    let to = tab(&harness, Panel::Degrees);
+    let from = tab(&harness, PanelId::Timing);
+    let to = tab(&harness, PanelId::Degrees);
     drag(&mut harness, from.center(), to.center() + vec2(0.6 * to.width(), 0.0));
     let places = layout_of(&mut harness).places.unwrap();
-    assert!(beside(&places, Panel::Timing).unwrap().contains(&Panel::Degrees), "{places:?}");
+    assert!(beside(&places, PanelId::Timing).unwrap().contains(&PanelId::Degrees), "{places:?}");
     assert!(harness.query_by_label_contains("Wake-up histogram: ").is_some(), "what was dragged is in front");
     drop(harness);
     let mut again = console(folder.path());
     assert_eq!(layout_of(&mut again).places, Some(places));
-    let timing = tab(&again, Panel::Timing);
-    let degrees = tab(&again, Panel::Degrees);
+    let timing = tab(&again, PanelId::Timing);
+    let degrees = tab(&again, PanelId::Degrees);
     assert!((timing.center().y - degrees.center().y).abs() < 1.0);
 }
 
@@ -116,12 +117,12 @@ fn a_panel_is_closed_and_opened_from_the_menu_and_its_neighbours_take_the_room()
     harness.run_steps(2);
     let mut layout = layout_of(&mut harness);
     layout.closed.sort_unstable();
-    assert_eq!((layout.places, layout.closed), (None, vec![Panel::ForceSpace, Panel::Safety]));
+    assert_eq!((layout.places, layout.closed), (None, vec![PanelId::ForceSpace, PanelId::Safety]));
     drop(harness);
     let mut again = console(folder.path());
     assert!(again.query_by_role_and_label(Role::Button, "Close Traces").is_some());
     assert!(again.query_by_role_and_label(Role::Button, "Close Force space").is_none());
-    for panel in Panel::ALL {
+    for panel in PanelId::ALL {
         let layout = &mut again.state_mut().settings_mut().layout;
         if layout.is_open(panel) {
             layout.toggle(panel);
@@ -137,20 +138,57 @@ fn a_panel_is_closed_and_opened_from_the_menu_and_its_neighbours_take_the_room()
 fn a_tab_is_brought_to_the_front_by_the_keyboard_and_the_default_still_goes_by_the_window() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = console(folder.path());
-    harness.get_by_role_and_label(Role::Button, Panel::Safety.title()).focus();
+    harness.get_by_role_and_label(Role::Button, PanelId::Safety.title()).focus();
     harness.step();
     harness.key_press(egui::Key::Enter);
     harness.run_steps(3);
     harness.get_by_role_and_label(Role::Button, "Close Safety");
     let layout = layout_of(&mut harness);
-    assert!(layout.front.contains(&Panel::Safety) && layout.places.is_none());
+    assert!(layout.front.contains(&PanelId::Safety) && layout.places.is_none());
     harness.set_size(vec2(1280.0, 720.0));
     harness.run_steps(4);
     harness.get_by_role_and_label(Role::Button, "Close Safety");
-    harness.get_by_role_and_label(Role::Button, Panel::ForceSpace.title());
-    let safety = tab(&harness, Panel::Safety);
-    let space = tab(&harness, Panel::ForceSpace);
+    harness.get_by_role_and_label(Role::Button, PanelId::ForceSpace.title());
+    let safety = tab(&harness, PanelId::Safety);
+    let space = tab(&harness, PanelId::ForceSpace);
     assert!((safety.center().y - space.center().y).abs() < 1.0, "no room next to the traces: a tab");
+}
+
+#[test]
+fn a_panel_has_a_window_of_its_own_with_stop_and_returns_to_its_place() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = console(folder.path());
+    press(&mut harness, "View");
+    press(&mut harness, "Timing in its own window");
+    harness.run_steps(3);
+    assert!(harness.query_by_role_and_label(Role::Button, "Close Timing").is_none(), "it left the main window");
+    harness.get_by_label_contains("Wake-up histogram: ");
+    let stops = harness.query_all_by_role_and_label(Role::Button, "Stop").count();
+    assert_eq!(stops, 2, "the window has its own");
+    drop(harness);
+    let mut again = console(folder.path());
+    again.run_steps(3);
+    let back = again.get_by_role_and_label(Role::Button, "Back to the main window").rect();
+    let of_window = again.query_all_by_role_and_label(Role::Button, "Stop").map(|stop| stop.rect());
+    let of_window = of_window.min_by(|a, b| (a.top() - back.top()).abs().total_cmp(&(b.top() - back.top()).abs()));
+    again.drag_at(of_window.unwrap().center());
+    again.drop_at(of_window.unwrap().center());
+    until(&mut again, "stopped", |tick| tick.state == LoopState::Stopped);
+    press(&mut again, "Back to the main window");
+    again.run_steps(3);
+    assert_eq!(layout_of(&mut again).windows().count(), 0);
+    again.get_by_role_and_label(Role::Button, "Close Timing");
+}
+
+#[test]
+fn the_menu_of_a_title_opens_a_window() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = console(folder.path());
+    harness.get_by_role_and_label(Role::Button, PanelId::Traces.title()).click_secondary();
+    harness.run_steps(2);
+    press(&mut harness, "Open in its own window");
+    harness.run_steps(2);
+    assert_eq!(layout_of(&mut harness).windows().collect::<Vec<_>>(), [PanelId::Traces]);
 }
 
 #[test]
@@ -170,12 +208,12 @@ fn a_newcomer_sees_few_panels_and_reaches_every_other_by_one_click() {
         for label in ["Gain", "Link delay", "Operating field"] {
             assert!(harness.query_all_by_label(label).next().is_some(), "{label} {size:?}");
         }
-        for panel in Panel::ALL {
+        for panel in PanelId::ALL {
             let tab = tab(&harness, panel);
             assert!(tab.right() <= size.x && tab.width() > 20.0, "{panel:?} {size:?} {tab:?}");
         }
     }
-    harness.get_by_role_and_label(Role::Button, Panel::Degrees.title()).click();
+    harness.get_by_role_and_label(Role::Button, PanelId::Degrees.title()).click();
     harness.run_steps(3);
     assert!(harness.query_by_role_and_label(Role::Button, "Close Degrees").is_some());
 }

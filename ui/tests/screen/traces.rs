@@ -4,7 +4,7 @@ use std::path::Path;
 
 use egui::{Modifiers, PointerButton, Pos2, accesskit::Role, vec2};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use nima_panels::tiles::{LayoutNode, LayoutPart, Panel, PanelLayout};
+use nima_panels::tiles::{LayoutNode, LayoutPart, PanelId, PanelLayout};
 
 use crate::bench::{Console, console_of, press, read, shows, toured, until};
 
@@ -53,6 +53,24 @@ fn two_cursors_are_read_with_their_difference_until_the_view_is_reset() {
 }
 
 #[test]
+fn units_are_chosen_for_every_plot_and_remembered() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut console = console(folder.path());
+    press(&mut console, "Signals");
+    press(&mut console, "mN");
+    press(&mut console, "m, m/s");
+    console.get_by_label("Force along x (mN)");
+    console.get_by_label("Speed of the tip (m/s)");
+    let z =
+        console.get_by_label_contains("Force along z, right hand").accesskit_node().description().unwrap_or_default();
+    assert!(z.contains(" mN") && !z.contains(" N"), "{z}");
+    drop(console);
+    let mut again = self::console(folder.path());
+    press(&mut again, "Signals");
+    again.get_by_label("Force along x (mN)");
+}
+
+#[test]
 fn signals_are_chosen_hidden_and_saved_as_shown() {
     let folder = tempfile::tempdir().unwrap();
     let mut console = console(folder.path());
@@ -87,11 +105,11 @@ fn signals_are_chosen_hidden_and_saved_as_shown() {
 fn a_narrow_panel_shows_the_newest_second() {
     let folder = tempfile::tempdir().unwrap();
     let mut console = console(folder.path());
-    let tabs = |panels: &[Panel]| LayoutNode::Tabs(panels.iter().map(|panel| LayoutNode::Panel(*panel)).collect());
-    let others: Vec<Panel> = Panel::ALL.into_iter().filter(|panel| *panel != Panel::Traces).collect();
+    let tabs = |panels: &[PanelId]| LayoutNode::Tabs(panels.iter().map(|panel| LayoutNode::Panel(*panel)).collect());
+    let others: Vec<PanelId> = PanelId::ALL.into_iter().filter(|panel| *panel != PanelId::Traces).collect();
     let parts = vec![
         LayoutPart { fraction: 8000, of: tabs(&others) },
-        LayoutPart { fraction: 2000, of: tabs(&[Panel::Traces]) },
+        LayoutPart { fraction: 2000, of: tabs(&[PanelId::Traces]) },
     ];
     console.state_mut().settings_mut().layout =
         PanelLayout { places: Some(LayoutNode::Row(parts)), ..PanelLayout::default() };

@@ -9,7 +9,7 @@ use std::{
 use egui::accesskit::Role;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use nima_machine::messages::LoopState;
-use nima_panels::tiles::Panel;
+use nima_panels::tiles::PanelId;
 use nima_tests::plan;
 use serde_json::Value;
 
@@ -116,7 +116,7 @@ fn console() -> Console {
     until(&mut harness, "engaged", |tick| tick.state == LoopState::Engaged);
     harness.run_steps(3);
     // Its tile is behind others.
-    pick(&mut harness, Panel::Tradeoff.title());
+    pick(&mut harness, PanelId::Tradeoff.title());
     harness
 }
 

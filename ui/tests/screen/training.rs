@@ -33,6 +33,9 @@ fn lumps_are_marked_by_a_key_while_the_instrument_is_led_and_told_at_the_end() {
     read(&mut harness, "Places marked: 1");
     harness.key_press(Key::D);
     read(&mut harness, "of 5, false marks: ");
+    press(&mut harness, "Stop driving (M)");
+    harness.key_press(Key::N);
+    read(&mut harness, "Places marked: 0");
 }
 
 #[test]

@@ -14,7 +14,7 @@ use nima_machine::messages::LoopState;
 use nima_panels::{
     roles::Role,
     settings::SettingsStore,
-    tiles::{Panel, PanelLayout},
+    tiles::{PanelId, PanelLayout},
 };
 use nima_wizards::WizardKind;
 
@@ -27,12 +27,12 @@ use crate::{
 /// Points: the smallest window, the sizes of common screens, and with them those screens at a scale of 150 or 200 %.
 const SIZES: [[f32; 2]; 4] = [[1100.0, 680.0], [1280.0, 720.0], [1920.0, 1080.0], [3840.0, 2160.0]];
 /// A role, and the panels that are brought to the front: every panel is seen once.
-pub(crate) const VIEWS: [(Role, &[Panel]); 6] = [
+pub(crate) const VIEWS: [(Role, &[PanelId]); 6] = [
     (Role::Surgeon, &[]),
     (Role::Technician, &[]),
-    (Role::Technician, &[Panel::Safety, Panel::Calibrations, Panel::Timing]),
-    (Role::Technician, &[Panel::ForceSpace, Panel::Devices, Panel::Tradeoff]),
-    (Role::Technician, &[Panel::Link, Panel::Degrees]),
+    (Role::Technician, &[PanelId::Safety, PanelId::Calibrations, PanelId::Timing]),
+    (Role::Technician, &[PanelId::ForceSpace, PanelId::Devices, PanelId::Tradeoff]),
+    (Role::Technician, &[PanelId::Link, PanelId::Degrees]),
     (Role::Demo, &[]),
 ];
 

@@ -47,6 +47,6 @@ fn line_ui(ui: &mut Ui, what: Sign, colour: egui::Color32, words: &str) {
 pub fn switch_ui(ui: &mut Ui, free: bool, on: bool, name: &str, meaning: &str) -> Option<bool> {
     let mut wanted = on;
     let switch = ui.add_enabled(free, Checkbox::new(&mut wanted, name));
-    let switch = switch.on_hover_text(meaning).on_disabled_hover_text(text::wizards::SWITCH_DISABLED_HOVER.get());
+    let switch = switch.on_hover_text(meaning).on_disabled_hover_text(text::wizards::SWITCH_DISABLED_HOVER);
     switch.changed().then_some(wanted)
 }

@@ -2,7 +2,8 @@
 //! coverage.
 
 use egui::{
-    Align2, Color32, Painter, Pos2, Rect, Sense, Shape, Stroke, Ui, WidgetInfo, epaint::TextShape, lerp, pos2, vec2,
+    Align, Align2, Color32, Painter, Pos2, Rect, Sense, Shape, Stroke, Ui, WidgetInfo, epaint::TextShape, lerp, pos2,
+    text::LayoutJob, vec2,
 };
 use nalgebra::{UnitQuaternion, Vector3};
 use nima_core::tip_force::{CoverageMap, MAP};
@@ -49,8 +50,11 @@ pub(super) fn pose_image(ui: &mut Ui, target: Option<&UnitQuaternion<f64>>, held
 
 fn caption_below(painter: &Painter, rect: Rect, words: &str) {
     let place = rect.center_bottom() - vec2(0.0, 8.0);
-    let font = fitting(painter, words, theme::regular(12.5), rect.width() - 8.0);
-    painter.text(place, Align2::CENTER_BOTTOM, words, font, theme::now().text_weak);
+    let ink = theme::now().text_weak;
+    let mut job = LayoutJob::simple(words.to_owned(), theme::regular(12.5), ink, rect.width() - 8.0);
+    job.halign = Align::Center;
+    let galley = painter.layout_job(job);
+    painter.galley(place - vec2(0.0, galley.size().y), galley, ink);
 }
 
 /// Draws a square on the floor and a vertical line, to show the orientation.

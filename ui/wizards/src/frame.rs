@@ -161,6 +161,7 @@ pub(super) fn wizard_ui(wizard: &mut dyn Wizard, ui: &mut Ui, binding: &Binding)
         if save_card(ui, of_sensor, proof.as_deref(), wizard.frame_mut()) {
             saving = wizard.made(binding);
         }
+        // Without a proof, the file names the person who accepts the result.
         if let (None, Some(judgement)) = (proof, saving.as_mut().and_then(SaveRequest::judgement_mut)) {
             wizard.frame_mut().override_in(judgement);
         }
@@ -208,8 +209,8 @@ fn steps_ui(ui: &mut Ui, steps: &[WizardStep], now: usize, going_on: &GoingOn) -
     ui.label(small(text::wizards::step_of(now + 1, steps.len(), steps[now].meaning.get())));
     ui.horizontal_wrapped(|ui| {
         let size = vec2(96.0, 34.0);
-        let back = ui.add_enabled(now > 0, Button::new(text::wizards::BACK.get()).min_size(size));
-        if back.on_disabled_hover_text(text::wizards::FIRST_STEP.get()).clicked() {
+        let back = ui.add_enabled(now > 0, Button::new(text::wizards::BACK).min_size(size));
+        if back.on_disabled_hover_text(text::wizards::FIRST_STEP).clicked() {
             wish = Some(WizardRequest::GoTo(now - 1));
         }
         let last = now + 1 == steps.len();
@@ -230,12 +231,12 @@ fn steps_ui(ui: &mut Ui, steps: &[WizardStep], now: usize, going_on: &GoingOn) -
             ui.label(small(reason));
         }
         ui.add_space(24.0);
-        if ui.button(text::wizards::START_OVER.get()).on_hover_text(text::wizards::START_OVER_HOVER.get()).clicked() {
+        if ui.button(text::wizards::START_OVER).on_hover_text(text::wizards::START_OVER_HOVER).clicked() {
             wish = Some(WizardRequest::StartOver);
         }
         // At the end of the row, so that nothing moves when it comes.
         if !last && !going_on.is_done && going_on.may.is_ok() {
-            let anyway = ui.button(text::wizards::ANYWAY.get()).on_hover_text(text::wizards::ANYWAY_HOVER.get());
+            let anyway = ui.button(text::wizards::ANYWAY).on_hover_text(text::wizards::ANYWAY_HOVER);
             if anyway.clicked() {
                 wish = Some(WizardRequest::GoTo(now + 1));
             }
@@ -249,10 +250,10 @@ fn steps_ui(ui: &mut Ui, steps: &[WizardStep], now: usize, going_on: &GoingOn) -
 fn save_card(ui: &mut Ui, binding: Option<&Binding>, proof: Option<&str>, frame: &mut WizardFrame) -> bool {
     let meaning =
         if binding.is_some() { text::wizards::SAVE_HOVER.get() } else { text::wizards::STEP_SAVE_IN_RIG_HOVER.get() };
-    card(ui, text::wizards::STEP_SAVE.get(), meaning, |ui| {
+    card(ui, text::wizards::STEP_SAVE, meaning, |ui| {
         if let Some(binding) = binding {
-            figure(ui, text::wizards::SENSOR.get(), &binding.sensor, text::wizards::SENSOR_HOVER.get());
-            figure(ui, text::wizards::TOOL.get(), &binding.tool, text::wizards::TOOL_HOVER.get());
+            figure(ui, text::wizards::SENSOR, &binding.sensor, text::wizards::SENSOR_HOVER);
+            figure(ui, text::wizards::TOOL, &binding.tool, text::wizards::TOOL_HOVER);
         }
         let wanted = if let Some(proof) = proof {
             judged_line(ui, true, proof);
@@ -267,7 +268,7 @@ fn save_card(ui: &mut Ui, binding: Option<&Binding>, proof: Option<&str>, frame:
             }
             wanted
         } else {
-            ui.label(weak(text::wizards::NOT_PROVEN.get()));
+            ui.label(weak(text::wizards::NOT_PROVEN));
             override_ui(ui, [&mut frame.name, &mut frame.why])
         };
         if let Some(Ok(report) | Err(report)) = &frame.saved {
@@ -287,8 +288,8 @@ fn override_ui(ui: &mut Ui, by: [&mut String; 2]) -> bool {
         });
         named &= !text.trim().is_empty();
     }
-    ui.add_enabled(named, Button::new(text::wizards::SAVE_ANYWAY.get()).min_size(vec2(220.0, 36.0)))
-        .on_disabled_hover_text(text::wizards::SAVE_ANYWAY_DISABLED_HOVER.get())
+    ui.add_enabled(named, Button::new(text::wizards::SAVE_ANYWAY).min_size(vec2(220.0, 36.0)))
+        .on_disabled_hover_text(text::wizards::SAVE_ANYWAY_DISABLED_HOVER)
         .clicked()
 }
 

@@ -54,7 +54,7 @@ pub(super) fn result_ui<R>(
     match report {
         Some(Ok(report)) => show(ui, report),
         Some(Err(error)) => {
-            card(ui, text::wizards::NO_RESULT.get(), no_result_hover, |ui| ui.label(error));
+            card(ui, text::wizards::NO_RESULT, no_result_hover, |ui| ui.label(error));
         }
         None => {
             ui.label(too_few);

@@ -105,6 +105,26 @@ impl fmt::Display for Text {
     }
 }
 
+impl From<Text> for String {
+    fn from(text: Text) -> Self {
+        text.get().to_owned()
+    }
+}
+
+#[cfg(feature = "egui")]
+impl From<Text> for egui::WidgetText {
+    fn from(text: Text) -> Self {
+        text.get().into()
+    }
+}
+
+#[cfg(feature = "egui")]
+impl From<Text> for egui::RichText {
+    fn from(text: Text) -> Self {
+        text.get().into()
+    }
+}
+
 /// Returns a text that is used in one place, in the language of this thread.
 pub fn word(english: &'static str, german: &'static str) -> &'static str {
     Text::of(english, german).get()

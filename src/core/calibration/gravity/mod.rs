@@ -16,6 +16,7 @@ mod drift;
 mod fit;
 mod model;
 mod pass;
+mod plausible;
 mod pose;
 mod precheck;
 mod record;

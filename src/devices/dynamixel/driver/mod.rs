@@ -14,7 +14,9 @@ use std::time::{Duration, Instant};
 use super::{
     clock::DeviceClock,
     codec::{IncomingPackets, OVERHEAD, OutgoingPackets},
-    opening::{DynamixelSession, DynamixelTimeouts, REST_READS, Reboots, ServoProperties, SystemClock, WaitClock},
+    opening::{ANSWER_S, DynamixelSession, REST_READS, ServoProperties, SystemClock, WaitClock},
+    protocol_1,
+    reboots::Reboots,
     settings::DynamixelSettings,
     table::{BAUDS, EEPROM_BYTES, HardwareError, TEMPERATURE, ticks_from_rad},
 };
@@ -154,35 +156,37 @@ pub fn open(settings: &DynamixelSettings) -> Result<DynamixelDriver, DeviceError
 /// # Errors
 /// The errors of [`open`].
 pub fn open_with(settings: &DynamixelSettings, reboots: &Reboots) -> Result<DynamixelDriver, DeviceError> {
-    open_within(settings, reboots, DynamixelTimeouts::USUAL)
+    settings.check()?;
+    let mut line = Serial::open(&SerialSettings { port: settings.port.clone(), baud: settings.baud })?;
+    let mut pace = SystemClock(Instant::now());
+    let mut session = DynamixelSession::new(&mut line, &mut pace, &settings.port);
+    match session.configure(settings, reboots) {
+        Ok(opened) => return Ok(DynamixelDriver::new(line, settings, opened, reboots.clone())),
+        Err(DeviceError::Silent { .. }) => {}
+        Err(other) => return Err(other),
+    }
+    let received = session.received_anything();
+    Err(why_silent(&mut line, &mut pace, &settings.port, settings.baud, received)?)
 }
 
-/// Opens for a diagnosis: a servo that does not answer is reported within a second.
-///
-/// # Errors
-/// The errors of [`open`].
-pub fn try_open(settings: &DynamixelSettings) -> Result<DynamixelDriver, DeviceError> {
-    open_within(settings, &Reboots::default(), DynamixelTimeouts::SHORT)
-}
-
-/// Returns ids and models of the servos that answer on a line; writes nothing.
+/// Returns ids and model numbers of the servos that answer on a line; writes nothing.
 ///
 /// # Errors
 /// [`DeviceError`] if the port cannot be opened or closes during the search.
-pub fn who_is_there(port: &str, baud: u32) -> Result<Vec<(u8, &'static str)>, DeviceError> {
+pub fn who_is_there(port: &str, baud: u32) -> Result<Vec<(u8, u16)>, DeviceError> {
     if !BAUDS.contains(&baud) {
         let allowed = format!("one of {BAUDS:?}");
         return Err(DeviceError::Setting { key: "baud".to_owned(), value: baud.to_string(), allowed });
     }
     let mut line = Serial::open(&SerialSettings { port: port.to_owned(), baud })?;
     let mut pace = SystemClock(Instant::now());
-    let mut session = DynamixelSession::new(&mut line, &mut pace, port, DynamixelTimeouts::SHORT);
+    let mut session = DynamixelSession::new(&mut line, &mut pace, port);
     let servos = session.everybody()?;
     if !servos.is_empty() {
         return Ok(servos);
     }
     let received = session.received_anything();
-    Err(why_silent(&mut line, &mut pace, port, baud, received, DynamixelTimeouts::SHORT)?)
+    Err(why_silent(&mut line, &mut pace, port, baud, received)?)
 }
 
 /// Determines whether servos that do not answer use another line speed or are missing.
@@ -192,37 +196,27 @@ fn why_silent(
     port: &str,
     baud: u32,
     received: bool,
-    timeouts: DynamixelTimeouts,
 ) -> Result<DeviceError, DeviceError> {
     let wrong = DeviceError::WrongBaud { place: port.to_owned(), baud };
+    if let Some(found) = protocol_1::anybody(line, pace, port, ANSWER_S)? {
+        return Ok(found);
+    }
     if received {
         return Ok(wrong);
     }
     for other in BAUDS.into_iter().filter(|other| *other != baud) {
         // The servos cannot use a speed that the adapter does not support.
-        if line.set_baud(other).is_ok() && DynamixelSession::new(line, pace, port, timeouts).anybody()? {
+        if line.set_baud(other).is_err() {
+            continue;
+        }
+        if DynamixelSession::new(line, pace, port).anybody()? {
             return Ok(wrong);
+        }
+        if let Some(found) = protocol_1::anybody(line, pace, port, ANSWER_S)? {
+            return Ok(found);
         }
     }
     Ok(DeviceError::Silent { place: port.to_owned() })
-}
-
-fn open_within(
-    settings: &DynamixelSettings,
-    reboots: &Reboots,
-    timeouts: DynamixelTimeouts,
-) -> Result<DynamixelDriver, DeviceError> {
-    settings.check()?;
-    let mut line = Serial::open(&SerialSettings { port: settings.port.clone(), baud: settings.baud })?;
-    let mut pace = SystemClock(Instant::now());
-    let mut session = DynamixelSession::new(&mut line, &mut pace, &settings.port, timeouts);
-    match session.configure(settings, reboots) {
-        Ok(opened) => return Ok(DynamixelDriver::new(line, settings, opened, reboots.clone())),
-        Err(DeviceError::Silent { .. }) => {}
-        Err(other) => return Err(other),
-    }
-    let received = session.received_anything();
-    Err(why_silent(&mut line, &mut pace, &settings.port, settings.baud, received, timeouts)?)
 }
 
 /// Opens over an existing line with the caller's clock: runs emulated servos in simulated time.
@@ -236,8 +230,7 @@ pub fn open_over<T: ByteStream>(
     reboots: &Reboots,
 ) -> Result<DynamixelDriver<T>, DeviceError> {
     settings.check()?;
-    let opened = DynamixelSession::new(&mut line, pace, &settings.port, DynamixelTimeouts::USUAL)
-        .configure(settings, reboots)?;
+    let opened = DynamixelSession::new(&mut line, pace, &settings.port).configure(settings, reboots)?;
     Ok(DynamixelDriver::new(line, settings, opened, reboots.clone()))
 }
 

@@ -1,4 +1,5 @@
 //! The protocol with known frames and arbitrary bytes.
 
 mod messages;
+mod opening;
 mod packets;

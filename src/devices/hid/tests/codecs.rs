@@ -10,6 +10,8 @@ use crate::{
     },
 };
 
+const BITS: PedalLayout =
+    PedalLayout::Bits { places: [Some([1, 0]), Some([0, 4]), Some([7, 7]), None, None, None, None, None] };
 const KEYBOARD: PedalLayout = PedalLayout::Keyboard { keys: [5, 4, 6, 0, 0, 0, 0, 0] };
 
 fn near(got: f64, expected: f64) -> bool {
@@ -168,7 +170,7 @@ proptest! {
 
     #[test]
     fn every_pedal_report_comes_back(pressed in 0_u32..8) {
-        for layout in [KEYBOARD, PedalLayout::Switches] {
+        for layout in [KEYBOARD, PedalLayout::Switches, BITS] {
             let mut buffer = [0; pedal_codec::LENGTH_MAX];
             let length = layout.encode(pressed, &mut buffer);
             prop_assert_eq!(layout.decode(&buffer[..length]), Ok(pressed));
@@ -214,7 +216,7 @@ fn fuzz(rounds: u64, seed: u64) {
             event.apply(&mut state, now_s);
             taken += 1;
         }
-        for layout in [KEYBOARD, PedalLayout::Switches] {
+        for layout in [KEYBOARD, PedalLayout::Switches, BITS] {
             if let Ok(pressed) = layout.decode(bytes) {
                 assert!(pressed < 8);
                 taken += 1;
@@ -236,4 +238,11 @@ fn noise_of_a_hundred_thousand_reports_is_survived() {
 #[ignore = "`./dev fuzz` runs it for as long as told"]
 fn fuzz_reports() {
     nima_testing::fuzz::rounds(|seed| fuzz(1_000_000, seed));
+}
+
+#[test]
+fn a_pedal_with_other_reports_is_read_at_the_places_in_the_rig_file() {
+    assert_eq!(BITS.decode(&[0x10, 0, 0, 0, 0, 0, 0, 0]), Ok(0b010));
+    assert_eq!(BITS.decode(&[0xEF, 0xFF, 0, 0, 0, 0, 0, 0x80, 9]), Ok(0b101));
+    assert_eq!(BITS.decode(&[0x10, 0, 0]), Err(BadReport::Shape));
 }

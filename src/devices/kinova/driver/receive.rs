@@ -25,6 +25,7 @@ const READS: usize = 4;
 /// Maximum plausible speed of a joint, rad/s; with [`JUMP_RAD`] it bounds the change between two readings. About seven
 /// times the fastest joint of a Gen3 (1.4 rad/s).
 const JUMP_RAD_S: f64 = 10.0;
+// Noise and a lost reading at a moderate speed stay below it.
 const JUMP_RAD: f64 = 0.2;
 
 impl KinovaDriver {

@@ -290,6 +290,12 @@ impl Content {
         }
     }
 
+    /// Returns the kind of data that a request of this type starts or stops: a client waits for its answer.
+    pub(super) fn answered_kind(name: &str) -> Option<ContentKind> {
+        let rest = name.strip_prefix(Verb::Start.name()).or_else(|| name.strip_prefix(Verb::Stop.name()))?;
+        ContentKind::ALL.into_iter().find(|kind| kind.short() == rest)
+    }
+
     fn request(verb: Verb, kind: ContentKind, content: &[u8]) -> Result<Self, IgtlFormatError> {
         let has_rate = verb == Verb::Start && matches!(kind, ContentKind::Tracking | ContentKind::Turned);
         if !has_rate || content.is_empty() {

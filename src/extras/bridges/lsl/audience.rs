@@ -82,6 +82,13 @@ impl Audience for SessionMarks {
         self.started_ns = started_ns;
     }
 
+    fn clock(&mut self, started_ns: u64) {
+        // The times of the messages refer to the first one.
+        if self.last_s.is_none() {
+            self.started_ns = started_ns;
+        }
+    }
+
     fn channel(&mut self, topic: &str, _encoding: &Encoding) {
         self.channels.push(match topic {
             HAPPENINGS => AudienceTopic::Happenings,

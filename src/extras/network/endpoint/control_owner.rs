@@ -1,7 +1,10 @@
 //! Control of a follower: one console at a time, and another console only with its consent.
 
 use super::{Endpoint, SESSIONS};
-use crate::control::{ControlState, FromFollower};
+use crate::{
+    control::{ControlState, FromFollower},
+    keys::PublicKey,
+};
 
 /// A console requests control from the controlling one.
 #[derive(Clone, Copy, Debug)]
@@ -66,19 +69,40 @@ impl Endpoint {
         }
     }
 
-    /// Called when a console has confirmed its session. It replaces an older session of the same console.
-    fn welcome(&mut self, at: usize, peer: &crate::keys::PublicKey) {
+    /// Called when a console has confirmed its session. It replaces an older session of the same console, unless that
+    /// session has control and is alive: then two consoles have the same key, and the second one waits like any other.
+    fn welcome(&mut self, at: usize, peer: &PublicKey) {
         let mut holds = self.active.is_none();
         for old in 0..SESSIONS {
             let is_same = self.sessions[old].as_ref().is_some_and(|s| s.is_confirmed && s.peer == *peer);
-            if old != at && is_same {
-                holds |= self.active == Some(old);
-                self.end(old);
+            if old == at || !is_same || self.active == Some(old) && !self.is_silent(old) {
+                continue;
             }
+            holds |= self.active == Some(old);
+            self.end(old);
         }
         if holds {
             self.give_to(at);
         }
+    }
+
+    /// Gives control to the newest session of the same console once the controlling one is silent: the console has
+    /// sought a new session because nothing arrived from this machine, and has left the old one.
+    pub(super) fn replace_silent(&mut self) {
+        let Some(old) = self.active.filter(|&old| self.is_silent(old)) else { return };
+        let Some(peer) = self.sessions[old].as_ref().map(|session| session.peer) else { return };
+        let newer = (0..SESSIONS).filter(|&at| at != old && !self.is_silent(at));
+        let same = newer.filter(|&at| self.sessions[at].as_ref().is_some_and(|s| s.is_confirmed && s.peer == peer));
+        let opened_s = |at: &usize| self.sessions[*at].as_ref().map_or(f64::MIN, |session| session.opened_s);
+        if let Some(newest) = same.max_by(|a, b| opened_s(a).total_cmp(&opened_s(b))) {
+            self.end(old);
+            self.give_to(newest);
+        }
+    }
+
+    /// Returns whether a session has been silent for so long that the arm is stopped.
+    fn is_silent(&self, at: usize) -> bool {
+        self.sessions[at].as_ref().is_none_or(|session| self.now_s - session.received_s > self.silent_after_s)
     }
 
     fn give_to(&mut self, at: usize) {

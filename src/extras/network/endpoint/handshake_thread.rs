@@ -1,7 +1,7 @@
 //! A thread that performs handshakes, because key agreements and allocations take too long for the loop's thread.
 //!
 //! The loop passes it the datagrams of handshakes and receives sessions; ended sessions go back to the thread to be
-//! freed. Neither side ever waits for the other.
+//! freed. Neither side ever waits for the other: the queues between them are wait-free.
 
 use std::{
     io,
@@ -13,7 +13,7 @@ use std::{
     time::Duration,
 };
 
-use crossbeam_channel::{Receiver, Sender, bounded};
+use rtrb::{Consumer, Producer, PushError, RingBuffer};
 
 use super::session::NetworkSession;
 use crate::{
@@ -74,18 +74,18 @@ pub(super) enum Handshake {
 /// The loop's end.
 #[derive(Debug)]
 pub(super) struct HandshakeThread {
-    letters: Sender<Letter>,
-    news: Receiver<HandshakeEvent>,
-    ended: Sender<Box<NetworkSession>>,
+    letters: Producer<Letter>,
+    news: Consumer<HandshakeEvent>,
+    ended: Producer<Box<NetworkSession>>,
     pub(super) shared: Arc<ClerkShared>,
     _thread: NetworkWorker,
 }
 
 impl HandshakeThread {
     pub(super) fn start(handshake: Handshake, socket: Socket, settings: StreamSettings) -> io::Result<Self> {
-        let (letters, inbox) = bounded(LETTERS);
-        let (outbox, news) = bounded(SESSIONS);
-        let (ended, rest) = bounded(SESSIONS);
+        let (letters, inbox) = RingBuffer::new(LETTERS);
+        let (outbox, news) = RingBuffer::new(SESSIONS);
+        let (ended, rest) = RingBuffer::new(SESSIONS);
         let shared = Arc::new(ClerkShared::default());
         let mut desk = HandshakeState {
             handshake,
@@ -103,20 +103,20 @@ impl HandshakeThread {
     }
 
     /// Passes on a datagram; `false` if too many wait.
-    pub(super) fn give(&self, datagram: &[u8], from: SocketAddr) -> bool {
+    pub(super) fn give(&mut self, datagram: &[u8], from: SocketAddr) -> bool {
         let mut letter = Letter { from, len: datagram.len(), bytes: [0; HANDSHAKE_MAX] };
         let Some(room) = letter.bytes.get_mut(..letter.len) else { return false };
         room.copy_from_slice(datagram);
-        self.letters.try_send(letter).is_ok()
+        self.letters.push(letter).is_ok()
     }
 
-    pub(super) fn news(&self) -> Option<HandshakeEvent> {
-        self.news.try_recv().ok()
+    pub(super) fn news(&mut self) -> Option<HandshakeEvent> {
+        self.news.pop().ok()
     }
 
     /// Takes a session that has ended, to free it; returns the session if too many are waiting.
-    pub(super) fn free(&self, session: Box<NetworkSession>) -> Option<Box<NetworkSession>> {
-        self.ended.try_send(session).err().map(crossbeam_channel::TrySendError::into_inner)
+    pub(super) fn free(&mut self, session: Box<NetworkSession>) -> Option<Box<NetworkSession>> {
+        self.ended.push(session).err().map(|PushError::Full(session)| session)
     }
 }
 
@@ -125,9 +125,9 @@ struct HandshakeState {
     handshake: Handshake,
     socket: Socket,
     settings: StreamSettings,
-    inbox: Receiver<Letter>,
-    outbox: Sender<HandshakeEvent>,
-    ended: Receiver<Box<NetworkSession>>,
+    inbox: Consumer<Letter>,
+    outbox: Producer<HandshakeEvent>,
+    ended: Consumer<Box<NetworkSession>>,
     shared: Arc<ClerkShared>,
     /// When the last datagram arrived.
     busy_s: f64,
@@ -137,11 +137,11 @@ struct HandshakeState {
 impl HandshakeState {
     fn turn(&mut self, now_s: f64) -> Duration {
         for _ in 0..LETTERS {
-            let Ok(letter) = self.inbox.try_recv() else { break };
+            let Ok(letter) = self.inbox.pop() else { break };
             self.busy_s = now_s;
             self.answer(&letter, now_s);
         }
-        while self.ended.try_recv().is_ok() {}
+        while self.ended.pop().is_ok() {}
         let is_wanted = self.shared.is_wanted.load(Relaxed);
         if let Handshake::Console(approach, to) = &mut self.handshake
             && is_wanted
@@ -172,13 +172,13 @@ impl HandshakeState {
         if let Some(agreed) = agreed {
             // Pass the session on before the other side is notified of it.
             let session = Box::new(NetworkSession::new(*agreed, letter.from, &self.settings));
-            self.outbox.try_send(HandshakeEvent::Opened(session)).ok();
+            self.outbox.push(HandshakeEvent::Opened(session)).ok();
         }
         self.send(answer, letter.from);
         let counter = match trouble {
             None => return,
             Some(HandshakeError::TheyRefuse(refusal)) => {
-                self.outbox.try_send(HandshakeEvent::Refused(refusal)).ok();
+                self.outbox.push(HandshakeEvent::Refused(refusal)).ok();
                 return;
             }
             Some(HandshakeError::Malformed) => &self.shared.malformed,

@@ -82,6 +82,8 @@ pub struct Endpoint {
     looked: Duration,
     /// Last reception in the active session, s; kept after the session has ended.
     received_s: Option<f64>,
+    /// Measurements of the last session whose payloads counted.
+    last_figures: SessionMeasurements,
     is_closed: bool,
     jumped: Option<(f64, f64)>,
     refused: Option<(f64, SessionRefusal)>,
@@ -127,6 +129,7 @@ impl Endpoint {
             now_s: 0.0,
             looked: Duration::ZERO,
             received_s: None,
+            last_figures: SessionMeasurements::default(),
             is_closed: false,
             jumped: None,
             refused: None,
@@ -211,9 +214,9 @@ impl Endpoint {
         }
     }
 
-    /// Returns the measurements of the session whose payloads count; all zero without one.
+    /// Returns the measurements of the session whose payloads count, or of the last one; all zero before the first.
     pub fn figures(&self) -> SessionMeasurements {
-        self.session().map_or_else(SessionMeasurements::default, |session| session.stream.figures(self.now_s))
+        self.session().map_or(self.last_figures, |session| session.stream.figures(self.now_s))
     }
 
     /// Returns the number of datagrams that were dropped since the endpoint was opened.

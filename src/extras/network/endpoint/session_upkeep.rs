@@ -62,6 +62,7 @@ impl Endpoint {
     /// Ends a session; its memory is returned to the thread.
     pub(super) fn end(&mut self, at: usize) {
         if self.active == Some(at) {
+            self.last_figures = self.figures();
             self.active = None;
         }
         self.holding.forget(at);
@@ -86,6 +87,7 @@ impl Endpoint {
             }
         }
         if self.is_follower {
+            self.replace_silent();
             self.hand_over();
             let connected = self.sessions.iter().flatten().filter(|session| session.is_confirmed).count();
             self.clerk.shared.is_full.store(connected >= CONSOLES_MAX, Relaxed);

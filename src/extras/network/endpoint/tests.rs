@@ -390,13 +390,5 @@ fn a_relay_makes_the_line_bad_and_repeated_datagrams_are_dropped() {
     });
 }
 
-#[test]
-fn a_follower_listens_on_loopback_unless_told_otherwise() {
-    let _alone = alone();
-    let role = EndpointRole::Follower { at: None, consoles: Peers::default() };
-    let Ok(endpoint) = Endpoint::open(EndpointConfig::new(role.clone(), keys())) else { return };
-    assert_eq!(endpoint.address().unwrap(), (Ipv4Addr::LOCALHOST, PORT).into());
-    let taken = Endpoint::open(EndpointConfig::new(role, keys())).unwrap_err();
-    assert!(taken.to_string().contains("127.0.0.1:47150"), "{taken}");
-    assert_eq!(endpoint.state(), LinkState::Waiting);
-}
+#[path = "same_key_tests.rs"]
+mod same_key_tests;

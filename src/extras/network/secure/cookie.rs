@@ -10,7 +10,7 @@ use blake2::{
 use crate::keys::KeyError;
 
 /// Bytes.
-pub(super) const COOKIE_LEN: usize = 16;
+pub(crate) const COOKIE_LEN: usize = 16;
 /// A secret is replaced after this, s; the previous one remains valid.
 const SECRET_S: f64 = 60.0;
 

@@ -13,6 +13,7 @@ mod handshake;
 
 use std::net::Ipv4Addr;
 
+pub(crate) use cookie::COOKIE_LEN;
 pub use cookie::Cookies;
 pub(crate) use handshake::AgreedKeys;
 pub use handshake::{Approach, HandshakeError, HandshakeResult, NOISE, Reception};

@@ -158,10 +158,17 @@ pub fn score(
         for happening in objects::happenings(reader, stretch_ns.clone())? {
             trial.happening(&happening);
         }
-        for sample in samples(reader, path, stretch_ns.clone(), &arms)? {
+        let samples = samples(reader, path, stretch_ns.clone(), &arms)?;
+        // Messages may be years apart in a file of another program.
+        let next = samples.is_empty().then(|| reader.messages(&[], stretch_ns.end..end_ns).next());
+        for sample in samples {
             trial.sample(&sample);
         }
-        from_ns = stretch_ns.end;
+        from_ns = match next.map(Option::transpose).transpose()?.map(|next| next.map(|next| next.log_time_ns())) {
+            None => stretch_ns.end,
+            Some(Some(time_ns)) => time_ns.max(stretch_ns.end),
+            Some(None) => end_ns,
+        };
     }
     Ok(trial.end(!objects::are_reported(reader)))
 }

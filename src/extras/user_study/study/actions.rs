@@ -6,8 +6,9 @@ use std::{
 };
 
 use nima_score::Score;
+use serde::Serialize;
 
-use super::{MEASURES, UserStudy};
+use super::{MEASURES, REASON, UserStudy, purpose};
 use crate::{
     Condition, Label, Participant, QuestionnaireAnswers, StudyError, StudyEvent, StudyStep, TrialEnding, TrialId,
     TrialMeasures, entry::measures, unblinding_risk,
@@ -86,27 +87,51 @@ impl UserStudy {
         let is_reported = self.state.is_open(&self.plan);
         let (telling, report): (TrialMeasures, TrialMeasures) =
             measures(score).into_iter().partition(|(key, _)| !is_reported && unblinding_risk::tells(key));
-        let withheld = (!telling.is_empty()).then(|| {
-            let text = serde_json::to_vec(&telling).map_err(io::Error::from)?;
-            self.key.seal(MEASURES, &text)
-        });
-        let withheld = withheld.transpose().map_err(StudyError::io(&self.folder))?;
+        let withheld = self.withheld(MEASURES, &running.participant, running.trial, &telling)?;
         let session = running.session.as_deref().filter(|path| path.is_file());
         let session = session.map(|path| self.put_away(path)).transpose()?;
         let RunningTrial { participant, trial, .. } = running;
         self.write(at, StudyEvent::TrialEnded { participant, trial, ending, measures: report, withheld, session })
     }
 
-    /// Gives up a trial; the rule of the study determines the next step.
+    /// Gives up a trial; the rule of the study determines the next step. `details` may reveal the condition: in a blind
+    /// study they are encrypted, otherwise they are a part of the reason.
     ///
     /// # Errors
     /// I/O errors.
-    pub fn abort_trial(&mut self, running: RunningTrial, why: &str, at: &str) -> Result<(), StudyError> {
+    pub fn abort_trial(
+        &mut self,
+        running: RunningTrial,
+        why: &str,
+        details: Option<&str>,
+        at: &str,
+    ) -> Result<(), StudyError> {
         if let Some(path) = running.session.as_deref().filter(|path| path.is_file()) {
             self.put_away(path)?;
         }
         let RunningTrial { participant, trial, .. } = running;
-        self.write(at, StudyEvent::TrialAborted { participant, trial, why: why.to_owned() })
+        let withheld = self.withheld(REASON, &participant, trial, &details.unwrap_or_default())?;
+        let shown = details.filter(|_| withheld.is_none());
+        let why = shown.map_or_else(|| why.to_owned(), |details| format!("{why}: {details}"));
+        self.write(at, StudyEvent::TrialAborted { participant, trial, why, withheld })
+    }
+
+    /// Encrypts a value for its trial; `None` if the conditions may be shown. There is always a text, of always the same
+    /// length, because otherwise both would reveal the condition.
+    fn withheld(
+        &self,
+        what: &str,
+        participant: &str,
+        trial: TrialId,
+        value: &impl Serialize,
+    ) -> Result<Option<String>, StudyError> {
+        if self.state.is_open(&self.plan) {
+            return Ok(None);
+        }
+        let purpose = purpose(&self.plan, what, participant, trial);
+        let text = serde_json::to_vec(value).map_err(io::Error::from);
+        let sealed = text.and_then(|text| self.key.seal_padded(&purpose, &text));
+        sealed.map(Some).map_err(StudyError::io(&self.folder))
     }
 
     /// Records a break, even one that was not due.

@@ -11,6 +11,7 @@ use crate::{
     Assignment, StudyError, StudyEvent, StudyFile, StudyPlan,
     journal::StudyJournal,
     seal::{self, Key},
+    secret::RuleHashes,
 };
 
 impl UserStudy {
@@ -47,10 +48,13 @@ impl UserStudy {
 /// Writes the files of a new study; returns the commitment.
 fn fill(folder: &Path, file: &StudyFile, scene: &str) -> io::Result<String> {
     let key = Key::new()?;
-    let secret = serde_json::to_string_pretty(&Assignment::draw(file)?)? + "\n";
+    let mut plan = StudyPlan::draw(file, String::new())?;
+    let text = |plan: &StudyPlan| toml::to_string(plan).map_err(io::Error::other);
+    let rules = RuleHashes { study: StudyPlan::hash_of(&text(&plan)?), scene: seal::hash(scene.as_bytes()) };
+    let secret = serde_json::to_string_pretty(&Assignment::draw(file)?.with_rules(rules))? + "\n";
     let commitment = seal::hash(secret.as_bytes());
-    let plan = StudyPlan::draw(file, commitment.clone())?;
-    let plan = toml::to_string(&plan).map_err(io::Error::other)?;
+    plan.commitment.clone_from(&commitment);
+    let plan = text(&plan)?;
     for (name, text) in
         [(PLAN, &plan), (SCENE, &scene.to_owned()), (SEALED, &(key.seal(CONDITIONS, secret.as_bytes())? + "\n"))]
     {

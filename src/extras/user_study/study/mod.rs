@@ -10,11 +10,13 @@ use std::{
 };
 
 use crate::{
-    Assignment, Exclusion, LearningModel, StudyError, StudyEvent, StudyPlan, StudyState, StudyStep, StudyTable,
+    Assignment, CountedTrial, Exclusion, LearningModel, StudyError, StudyEvent, StudyPlan, StudyState, StudyStep,
+    StudyTable, TrialId, TrialPhase,
     exclusion::exclusions,
-    journal::{self, StudyJournal},
+    journal::{self, Chain, StudyJournal},
     learning::learning,
     seal::{self, Key},
+    secret::RuleHashes,
     table,
 };
 
@@ -30,6 +32,13 @@ const KEY: &str = "study.key";
 /// Purpose of the encryption.
 const CONDITIONS: &str = "conditions";
 const MEASURES: &str = "measures";
+const REASON: &str = "reason";
+
+/// Returns the purpose of an encryption that is valid for one trial only.
+fn purpose(plan: &StudyPlan, what: &str, participant: &str, trial: TrialId) -> String {
+    let TrialId { phase, number, attempt } = trial;
+    if plan.is_bound() { format!("{what} {participant} {phase:?} {number} {attempt}") } else { what.to_owned() }
+}
 
 /// An open study. Its `Debug` does not reveal the conditions.
 pub struct UserStudy {
@@ -42,6 +51,8 @@ pub struct UserStudy {
     secret: Assignment,
     /// `None` if the study was opened for reading only.
     journal: Option<StudyJournal>,
+    /// The hash of the journal, as it was read.
+    chain: Chain,
     state: StudyState,
 }
 
@@ -65,7 +76,7 @@ impl UserStudy {
     pub fn open(folder: &Path, at: &str) -> Result<Self, StudyError> {
         let mut study = Self::load(folder)?;
         let path = folder.join(JOURNAL);
-        let (journal, entries) = StudyJournal::open(&path, at)?;
+        let (journal, entries) = StudyJournal::open(&path, study.begin(), at)?;
         study.journal = Some(journal);
         study.follow(&path, &entries)?;
         let open = |(name, progress): (&str, &crate::ParticipantProgress)| Some((name.to_owned(), progress.open()?));
@@ -84,8 +95,9 @@ impl UserStudy {
     pub fn read(folder: &Path) -> Result<Self, StudyError> {
         let mut study = Self::load(folder)?;
         let path = folder.join(JOURNAL);
-        let contents = journal::read(&path)?;
+        let contents = journal::read(&path, study.begin())?;
         study.follow(&path, &contents.entries)?;
+        study.chain = contents.chain;
         // Another program may be writing this line now; opening the study for writing truncates it.
         if contents.torn > 0 {
             study.state.torn.push(contents.torn);
@@ -99,7 +111,8 @@ impl UserStudy {
             nima_files::read_text(&path, nima_files::CONFIG_MAX).map_err(StudyError::io(path))
         };
         let damaged = |name: &str, why: String| StudyError::Damaged { path: folder.join(name), why };
-        let plan = StudyPlan::parse(&text(PLAN)?).map_err(|why| damaged(PLAN, why))?;
+        let rules = text(PLAN)?;
+        let plan = StudyPlan::parse(&rules).map_err(|why| damaged(PLAN, why))?;
         let key = Key::from_hex(&text(KEY)?).ok_or_else(|| damaged(KEY, "it is not a study key".to_owned()))?;
         let plain = key.open(CONDITIONS, &text(SEALED)?).map_err(|error| damaged(SEALED, error.to_string()))?;
         if seal::hash(&plain) != plan.commitment {
@@ -110,8 +123,20 @@ impl UserStudy {
         let secret: Assignment = serde_json::from_slice(&plain).map_err(|_| unreadable())?;
         let secret_text = String::from_utf8(plain).map_err(|_| unreadable())?;
         let scene = text(SCENE)?;
+        let now = RuleHashes { study: StudyPlan::hash_of(&rules), scene: seal::hash(scene.as_bytes()) };
+        if let (true, Some(RuleHashes { study, scene })) = (plan.is_bound(), secret.rules().or(Some(&RuleHashes::NONE)))
+        {
+            for (name, committed, now) in [(PLAN, study, &now.study), (SCENE, scene, &now.scene)] {
+                if committed != now {
+                    let why =
+                        "it was changed after the study was created: the commitment covers it; restore it from a copy";
+                    return Err(damaged(name, why.to_owned()));
+                }
+            }
+        }
         let state = StudyState::new(&plan);
-        Ok(Self { folder: folder.to_owned(), plan, scene, key, secret_text, secret, journal: None, state })
+        let chain = Chain::NONE;
+        Ok(Self { folder: folder.to_owned(), plan, scene, key, secret_text, secret, journal: None, chain, state })
     }
 
     fn follow(&mut self, path: &Path, entries: &[crate::JournalEntry]) -> Result<(), StudyError> {
@@ -121,7 +146,31 @@ impl UserStudy {
         }
         let wrong = |(line, why): (u64, String)| StudyError::Journal { path: path.to_owned(), line, why };
         self.state = StudyState::of(&self.plan, entries).map_err(wrong)?;
+        for entry in entries {
+            self.check_sealed(&entry.event).map_err(|why| wrong((entry.n, why)))?;
+        }
         Ok(())
+    }
+
+    /// Refuses sealed texts that were changed, or that belong to another trial.
+    pub(crate) fn check_sealed(&self, event: &StudyEvent) -> Result<(), String> {
+        let (what, participant, trial, withheld) = match event {
+            StudyEvent::TrialEnded { participant, trial, withheld, .. } => (MEASURES, participant, trial, withheld),
+            StudyEvent::TrialAborted { participant, trial, withheld, .. } => (REASON, participant, trial, withheld),
+            _ => return Ok(()),
+        };
+        let Some(sealed) = withheld else { return Ok(()) };
+        let opened = self.key.open(&purpose(&self.plan, what, participant, *trial), sealed);
+        opened.map(drop).map_err(|error| format!("its sealed text is not of this trial: {error}"))
+    }
+
+    fn begin(&self) -> Chain {
+        if self.plan.is_bound() { Chain::BEGIN } else { Chain::NONE }
+    }
+
+    /// Returns the hash of the whole journal; `None` in a study of an older version.
+    pub fn journal_hash(&self) -> Option<&str> {
+        self.journal.as_ref().map_or(&self.chain, StudyJournal::chain).hash()
     }
 
     pub fn folder(&self) -> &Path {
@@ -158,7 +207,11 @@ impl UserStudy {
 
     /// Returns the table of trials for `nima study trials`.
     pub fn trials(&self) -> StudyTable {
-        let withheld = |sealed: &str| serde_json::from_slice(&self.key.open(MEASURES, sealed).ok()?).ok();
+        let withheld = |participant: &str, made: &CountedTrial| {
+            let trial = TrialId { phase: TrialPhase::Trial, number: made.number, attempt: made.attempt };
+            let purpose = purpose(&self.plan, MEASURES, participant, trial);
+            serde_json::from_slice(&self.key.open(&purpose, made.withheld.as_deref()?).ok()?).ok()
+        };
         table::trials(&self.plan, &self.state, self.opened(), withheld)
     }
 

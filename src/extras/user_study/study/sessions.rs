@@ -2,7 +2,7 @@
 
 use std::{
     fs::{self, File},
-    io::{self, BufReader, BufWriter},
+    io::{self, BufReader, BufWriter, Read},
     path::{Path, PathBuf},
 };
 
@@ -14,6 +14,8 @@ const SESSIONS: &str = "sessions";
 const SEALED_END: &str = "sealed";
 /// Purpose of the encryption.
 const SESSION: &str = "session";
+/// Minimum length of an encrypted session, bytes.
+const SEALED_MIN: u64 = 1 << 20;
 
 impl UserStudy {
     /// Returns the path of a recording.
@@ -30,11 +32,42 @@ impl UserStudy {
             plain.to_owned()
         } else {
             let sealed = with_end(plain);
-            self.pass(plain, &sealed, |from, to| self.key.seal_stream(SESSION, from, to))?;
+            let length = fs::metadata(plain).map_err(StudyError::io(plain))?.len();
+            let size = self.sealed_size(length);
+            self.pass(plain, &sealed, |from, to| {
+                // Forces compress in another way than no forces, so the length would show the condition.
+                let padding = io::repeat(0).take(size.saturating_sub(length));
+                let head = length.to_le_bytes();
+                let padded = head.as_slice().chain(from).chain(padding);
+                self.key.seal_stream(&self.purpose_of_session(plain), padded, to)
+            })?;
             sealed
         };
         let name = kept.file_name().unwrap_or_default().to_string_lossy();
         Ok(format!("{SESSIONS}/{name}"))
+    }
+
+    /// Returns the length to which sessions are padded: a power of two, the same for all sessions from the first one that
+    /// needed it.
+    fn sealed_size(&self, length: u64) -> u64 {
+        let entries = fs::read_dir(self.folder.join(SESSIONS)).into_iter().flatten().flatten();
+        let sealed = entries.filter(|entry| entry.path().extension().is_some_and(|end| end == SEALED_END));
+        let sizes = sealed.filter_map(|entry| Some(entry.metadata().ok()?.len().checked_next_power_of_two()? / 2));
+        sizes.fold(length.next_power_of_two().max(SEALED_MIN), u64::max)
+    }
+
+    /// Returns the purpose of the encryption, which names the trial.
+    fn purpose_of_session(&self, plain: &Path) -> String {
+        let name = plain.file_name().unwrap_or_default().to_string_lossy();
+        if self.plan.is_bound() { format!("{SESSION} {name}") } else { SESSION.to_owned() }
+    }
+
+    fn open_session(&self, plain: &Path, from: impl Read, to: &mut dyn io::Write) -> io::Result<()> {
+        let purpose = self.purpose_of_session(plain);
+        if !self.plan.is_bound() {
+            return self.key.open_stream(&purpose, from, to);
+        }
+        self.key.open_stream(&purpose, from, &mut Unpadded { to, length: Vec::new(), rest: 0 })
     }
 
     /// Writes `to` from `from`, whole and on the disk, and removes `from`.
@@ -65,12 +98,42 @@ impl UserStudy {
         for path in sessions.filter_map(|entry| Some(entry.ok()?.path())) {
             let end = path.extension().unwrap_or_default();
             if is_open && end == SEALED_END {
-                self.pass(&path, &path.with_extension(""), |from, to| self.key.open_stream(SESSION, from, to))?;
+                let plain = path.with_extension("");
+                self.pass(&path, &plain, |from, to| self.open_session(&plain, from, to))?;
             } else if !is_open && end == "mcap" {
                 self.put_away(&path)?;
             }
         }
         Ok(())
+    }
+}
+
+/// Passes on a session without the length before it and the padding after it.
+struct Unpadded<'a> {
+    to: &'a mut dyn io::Write,
+    /// The bytes of the length that have arrived.
+    length: Vec<u8>,
+    rest: u64,
+}
+
+impl io::Write for Unpadded<'_> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        if let Some(missing) = size_of::<u64>().checked_sub(self.length.len() + 1) {
+            let (length, _) = bytes.split_at(bytes.len().min(missing + 1));
+            self.length.extend_from_slice(length);
+            if let Ok(length) = self.length.as_slice().try_into() {
+                self.rest = u64::from_le_bytes(length);
+            }
+            return Ok(length.len());
+        }
+        let kept = usize::try_from(self.rest).unwrap_or(usize::MAX).min(bytes.len());
+        self.to.write_all(&bytes[..kept])?;
+        self.rest -= kept as u64;
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.to.flush()
     }
 }
 

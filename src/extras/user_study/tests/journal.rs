@@ -86,10 +86,11 @@ fn a_journal_that_was_changed_is_refused_with_its_line() {
         (whole.replace("trial_ended", "trial_won"), "line 4: it is not a journal entry"),
         (
             whole.replace("\"number\":1,\"attempt\":1,\"label\"", "\"number\":2,\"attempt\":1,\"label\""),
-            "line 3: P01 began trial 2",
+            "line 3: it, or a line before it, was changed",
         ),
-        (whole.replace("P01", "P09"), "no participant \"P09\""),
-        (whole.replacen("\"commitment\":\"", "\"commitment\":\"0", 1), "line 1: the commitment"),
+        (whole.replace("P01", "P09"), "line 2: it, or a line before it, was changed"),
+        (whole.replacen("\"completion_time_s\":20", "\"completion_time_s\":19", 1), "line 4: it, or a line"),
+        (whole.replacen("\"commitment\":\"", "\"commitment\":\"0", 1), "line 1: it, or a line"),
         (String::new(), "restore it"),
         ("\n".to_owned(), "line 1"),
     ] {
@@ -109,7 +110,7 @@ fn one_program_at_a_time_writes_and_others_may_look() {
     let mut looking = UserStudy::read(&folder.path().join("study")).unwrap();
     assert!(next(&looking, "P01").contains("has begun"));
     assert!(matches!(looking.note(None, "x", AT), Err(StudyError::ReadOnly)));
-    study.abort_trial(running, "a visitor came in", AT).unwrap();
+    study.abort_trial(running, "a visitor came in", None, AT).unwrap();
     assert_eq!(due(&study, "P01"), (1, 2));
 }
 

@@ -51,13 +51,18 @@ pub(super) fn again(folder: &Path) -> UserStudy {
 
 /// Returns a score of a trial with this duration and a force in the hand.
 pub(super) fn score(seconds: u32) -> Score {
+    score_with(seconds, 1.625)
+}
+
+/// Returns the same with this force in the hand, N.
+pub(super) fn score_with(seconds: u32, force_n: f64) -> Score {
     let mut scorer = Scorer::new(&TaskFile::from_toml("name = 'x'\nkind = 'peg_transfer'").unwrap());
     scorer.happening(&TimedTaskEvent { t_s: 0.0, event: TaskEvent::Begun });
     for tick in 0..=seconds * 10 {
         let t_s = f64::from(tick) * 0.1;
         let right = HandSample {
             tip_m: vector([0.01 * t_s, 0.0, 0.0]),
-            rendered_n: vector([1.625, 0.0, 0.0]),
+            rendered_n: vector([force_n, 0.0, 0.0]),
             engaged: true,
             ..HandSample::default()
         };

@@ -3,7 +3,7 @@ use crate::{EndReason, Label, QuestionnaireAnswers, StudyStep, UserStudy};
 
 fn abort(study: &mut UserStudy, participant: &str) {
     let running = study.begin_trial(participant, true, AT).unwrap();
-    study.abort_trial(running, "the sensor came off", AT).unwrap();
+    study.abort_trial(running, "the sensor came off", None, AT).unwrap();
 }
 
 /// Begins a trial and ends the program, as in a power failure.

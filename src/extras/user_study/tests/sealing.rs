@@ -1,6 +1,6 @@
 use std::{fs, path::Path};
 
-use super::{AT, TWO, again, file, made, score, trial};
+use super::{AT, TWO, again, file, made, score, score_with, trial};
 use crate::{StudyError, TrialEnding, UserStudy, order, seal};
 
 /// Returns all names and bytes under a folder.
@@ -183,4 +183,118 @@ fn a_recording_that_a_power_cut_left_open_is_sealed_when_the_study_is_opened_aga
     assert!(!session.exists() && found(folder.path()).is_empty(), "{:?}", found(folder.path()));
     study.unblind("A", "end", AT).unwrap();
     assert_eq!(fs::read_to_string(session).unwrap(), "mode = anchored, delay 137.5");
+}
+
+/// Returns everything about the trials that does not need the key: the lines of the journal without digits, which stand
+/// for times, numbers and hashes, and the lengths of lines and files.
+fn readable(folder: &Path) -> Vec<(String, usize)> {
+    let journal = fs::read_to_string(folder.join("study/journal.jsonl")).unwrap();
+    let letters = |line: &str| line.chars().filter(|one| !one.is_ascii_hexdigit()).collect::<String>();
+    let ends = journal.lines().filter(|line| line.contains("trial_ended") || line.contains("trial_aborted"));
+    let mut all: Vec<_> = ends.map(|line| (letters(line), line.len())).collect();
+    let mut sessions: Vec<_> = fs::read_dir(folder.join("study/sessions"))
+        .unwrap()
+        .map(|entry| entry.unwrap())
+        .map(|entry| (letters(&entry.file_name().to_string_lossy()), entry.metadata().unwrap().len() as usize))
+        .collect();
+    sessions.sort();
+    all.extend(sessions);
+    all
+}
+
+#[test]
+fn a_trial_with_force_reads_like_one_without() {
+    let run = |force_n: f64, session: usize, details: &str| {
+        let folder = tempfile::tempdir().unwrap();
+        let mut study = made(folder.path(), &format!("record = true\n{TWO}"));
+        for number in 0..6 {
+            let running = study.begin_trial("P01", true, AT).unwrap();
+            // As much as is left of one after compression.
+            fs::write(running.session().unwrap(), vec![7; session + number]).unwrap();
+            if number == 5 {
+                study.abort_trial(running, "the loop ended in a fault", Some(details), AT).unwrap();
+            } else {
+                study.end_trial(running, TrialEnding::Completed, &score_with(20, force_n), AT).unwrap();
+            }
+        }
+        (readable(folder.path()), folder, study)
+    };
+    let (with, folder, mut study) = run(1.625, 3_150_000, "the energy gate has closed for 2 s");
+    let (without, ..) = run(0.0, 2_950_000, "the arm reported a fault");
+    assert_eq!(with.len(), 12);
+    assert_eq!(with, without, "a classifier has nothing to go by");
+    study.unblind("A", "end", AT).unwrap();
+    let sessions = fs::read_dir(folder.path().join("study/sessions")).unwrap();
+    let mut sizes: Vec<_> = sessions.map(|entry| entry.unwrap().metadata().unwrap().len()).collect();
+    sizes.sort_unstable();
+    assert_eq!(sizes, [0, 1, 2, 3, 4, 5].map(|more| 3_150_000 + more), "without the padding");
+}
+
+#[test]
+fn a_shorter_recording_is_padded_like_the_longest_before_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut study = made(folder.path(), &format!("record = true\n{TWO}"));
+    let mut sizes = Vec::new();
+    for session in [5_000_000, 100_000, 3_000_000] {
+        let running = study.begin_trial("P01", true, AT).unwrap();
+        let plain = running.session().unwrap().to_owned();
+        fs::write(&plain, vec![7; session]).unwrap();
+        study.end_trial(running, TrialEnding::Completed, &score(20), AT).unwrap();
+        sizes.push(fs::metadata(format!("{}.sealed", plain.display())).unwrap().len());
+    }
+    assert!(sizes[0] > 8 << 20 && sizes.iter().all(|size| *size == sizes[0]), "{sizes:?}");
+}
+
+#[test]
+fn a_sealed_text_is_valid_for_its_own_trial_only() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut study = made(folder.path(), &format!("record = true\n{TWO}"));
+    let mut plain = Vec::new();
+    for _ in 0..2 {
+        let running = study.begin_trial("P01", true, AT).unwrap();
+        plain.push(running.session().unwrap().to_owned());
+        fs::write(&plain[plain.len() - 1], "a session").unwrap();
+        study.end_trial(running, TrialEnding::Completed, &score(20), AT).unwrap();
+    }
+    let sealed = |number: u32, attempt: u32| {
+        let trial = crate::TrialId { phase: crate::TrialPhase::Trial, number, attempt };
+        (trial, study.state().progress("P01").unwrap().trials[number as usize - 1].withheld.clone())
+    };
+    let [(first, of_first), (second, of_second)] = [sealed(1, 1), sealed(2, 1)];
+    let ended = |trial, withheld| crate::StudyEvent::TrialEnded {
+        participant: "P01".to_owned(),
+        trial,
+        ending: TrialEnding::Completed,
+        measures: crate::TrialMeasures::new(),
+        withheld,
+        session: None,
+    };
+    study.check_sealed(&ended(first, of_first.clone())).unwrap();
+    study.check_sealed(&ended(second, of_second)).unwrap();
+    assert!(study.check_sealed(&ended(second, of_first)).unwrap_err().contains("not of this trial"));
+    let names = plain.iter().map(|path| format!("{}.sealed", path.display())).collect::<Vec<_>>();
+    fs::rename(&names[0], folder.path().join("swap")).unwrap();
+    fs::rename(&names[1], &names[0]).unwrap();
+    fs::rename(folder.path().join("swap"), &names[1]).unwrap();
+    assert!(study.unblind("A", "end", AT).unwrap_err().to_string().contains("changed"));
+}
+
+#[test]
+fn the_commitment_covers_the_rules_of_the_study() {
+    let folder = tempfile::tempdir().unwrap();
+    let place = |name: &str| folder.path().join("study").join(name);
+    drop(made(folder.path(), TWO));
+    for (name, from, to) in [
+        ("study.toml", "primary = \"completion_time_s\"", "primary = \"trial_time_s\""),
+        ("study.toml", "attempts = 3", "attempts = 4"),
+        ("scene.toml", "scene", "arena"),
+    ] {
+        let whole = fs::read_to_string(place(name)).unwrap();
+        assert!(whole.contains(from), "{whole}");
+        fs::write(place(name), whole.replacen(from, to, 1)).unwrap();
+        let refused = UserStudy::read(&folder.path().join("study")).unwrap_err().to_string();
+        assert!(refused.contains(name) && refused.contains("was changed after the study was created"), "{refused}");
+        fs::write(place(name), whole).unwrap();
+    }
+    UserStudy::read(&folder.path().join("study")).unwrap();
 }

@@ -206,17 +206,19 @@ fn tracker(
     served(name, emulator)
 }
 
-/// Creates a tool definition if the rig names a missing file; the emulated unit accepts any definition.
+/// Creates a tool definition if the rig names a missing file, or replaces an unusable one of an older program.
 fn define(path: &Path) -> std::io::Result<()> {
-    if path.exists() {
+    const OLDER: &[u8] = b"NDI\0emulated instrument";
+    let is_older = || nima_files::read(path, ndi::DEFINITION as u64).is_ok_and(|bytes| bytes.starts_with(OLDER));
+    if path.exists() && !is_older() {
         return Ok(());
     }
     if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty()) {
         nima_devices::own_folder::prepare(folder)?;
     }
-    let mut definition = b"NDI\0emulated instrument".to_vec();
-    definition.resize(ndi::DEFINITION, 0);
-    nima_files::write_atomically(path, |file| file.write_all(&definition))
+    // Each tool has its own definition, as on a real rig.
+    let definition = ndi::NdiDefinition::emulated(&path.to_string_lossy());
+    nima_files::write_atomically(path, |file| file.write_all(definition.bytes()))
 }
 
 #[cfg(target_os = "linux")]

@@ -7,6 +7,7 @@
 //! bits, numbers) by the emulator itself.
 
 mod addresses;
+pub mod ati;
 pub mod bota;
 pub mod dynamixel;
 pub mod endoscope;
@@ -23,6 +24,8 @@ mod wires;
 
 #[cfg(test)]
 mod discovery_tests;
+#[cfg(test)]
+mod probe_sweep_tests;
 
 use std::io;
 
@@ -38,6 +41,7 @@ type StandaloneMaker = fn(&EmulatorSettings) -> io::Result<Box<dyn Emulator>>;
 
 /// All emulators that run alone, by name.
 pub const ALONE: &[(&str, StandaloneMaker)] = &[
+    ("ati", ati::standalone::sensor),
     ("bota-gen0", |settings| bota::standalone::sensor(Transport::Gen0, settings)),
     ("bota-gen-a", |settings| bota::standalone::sensor(Transport::GenA, settings)),
     ("bota-socket", |settings| bota::standalone::sensor(Transport::Socket, settings)),

@@ -1,13 +1,19 @@
 //! Settings of an emulator that runs alone (`nima emulate`): without a rig, fed by a simple substitute for the world.
 
 use std::{
+    cell::RefCell,
     io::{Error, ErrorKind, Result},
     str::FromStr,
 };
 
-/// Settings `KEY=VALUE`; devices ignore keys that they do not have.
+/// Settings `KEY=VALUE`. A device ignores the keys of other devices, but a key that no device has asked for is an error
+/// ([`check`](Self::check)).
 #[derive(Debug, Default)]
-pub struct EmulatorSettings(Vec<(String, String)>);
+pub struct EmulatorSettings {
+    given: Vec<(String, String)>,
+    /// Keys that the devices have, in the order in which they were asked for.
+    known: RefCell<Vec<String>>,
+}
 
 impl EmulatorSettings {
     /// Parses texts `KEY=VALUE`.
@@ -19,12 +25,38 @@ impl EmulatorSettings {
             Some((key, value)) => Ok((key.to_owned(), value.to_owned())),
             None => Err(Error::new(ErrorKind::InvalidInput, format!("--set {text} is not KEY=VALUE"))),
         };
-        texts.iter().map(pair).collect::<Result<_>>().map(Self)
+        let given = texts.iter().map(pair).collect::<Result<Vec<_>>>()?;
+        for (k, (key, _)) in given.iter().enumerate() {
+            if given[..k].iter().any(|(other, _)| other == key) {
+                return Err(Error::new(ErrorKind::InvalidInput, format!("--set {key} is given twice: omit one")));
+            }
+        }
+        Ok(Self { given, known: RefCell::default() })
+    }
+
+    /// Refuses a key that no device has; call it once all devices have been made.
+    ///
+    /// # Errors
+    /// The first unknown key, with the keys of these devices.
+    pub fn check(&self) -> Result<()> {
+        let known = self.known.borrow();
+        match self.given.iter().find(|(key, _)| !known.contains(key)) {
+            None => Ok(()),
+            Some((key, value)) => {
+                let mut keys = known.clone();
+                keys.sort();
+                keys.dedup();
+                let known = if keys.is_empty() { "none".to_owned() } else { keys.join(", ") };
+                let words = format!("--set {key}={value}: unknown setting; known for these devices: {known}");
+                Err(Error::new(ErrorKind::InvalidInput, words))
+            }
+        }
     }
 
     /// Returns the value of `key`, if given; a value that cannot be parsed is an error.
     pub(super) fn get<T: FromStr>(&self, key: &str) -> Result<Option<T>> {
-        let Some((_, value)) = self.0.iter().find(|(known, _)| known == key) else { return Ok(None) };
+        self.known.borrow_mut().push(key.to_owned());
+        let Some((_, value)) = self.given.iter().find(|(known, _)| known == key) else { return Ok(None) };
         value.parse().map(Some).map_err(|_| unusable(key, value, "this value cannot be used"))
     }
 
@@ -45,4 +77,28 @@ impl EmulatorSettings {
 
 pub(super) fn unusable(key: &str, value: impl std::fmt::Display, why: &str) -> Error {
     Error::new(ErrorKind::InvalidInput, format!("--set {key}={value}: {why}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::ALONE;
+    use super::*;
+
+    #[test]
+    fn a_mistyped_key_is_refused_with_the_keys_of_the_device() {
+        let make = |name: &str, set: &[&str]| {
+            let (_, maker) = ALONE.iter().find(|(known, _)| *known == name).unwrap();
+            let texts: Vec<String> = set.iter().map(|text| (*text).to_owned()).collect();
+            let settings = EmulatorSettings::new(&texts)?;
+            maker(&settings)?;
+            settings.check()
+        };
+        assert!(make("bota-gen0", &["boot_s=0.8"]).is_ok());
+        let mistyped = make("bota-gen0", &["boots=0.8"]).unwrap_err().to_string();
+        assert!(mistyped.contains("boots=0.8") && mistyped.contains("boot_s"), "{mistyped}");
+        for (name, _) in ALONE {
+            assert!(make(name, &["no_such_key=1"]).is_err(), "{name}");
+        }
+        assert!(make("kinova", &["tcp_port=1", "tcp_port=2"]).is_err());
+    }
 }

@@ -7,6 +7,7 @@ use std::{
 };
 
 use nima_files::{open_table, quoted};
+use nima_recording::csv::{Comments, CsvDialect, recognise};
 
 /// Columns that are not measures.
 const NO_MEASURES: [&str; 3] = [PARTICIPANT, CONDITION, TRIAL];
@@ -54,8 +55,10 @@ impl TrialTable {
     }
 
     fn of(input: impl io::Read, wanted: &[String]) -> Result<Self, String> {
-        let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(input);
-        let names: Vec<String> = reader.headers().map_err(|error| plain(&error))?.iter().map(str::to_owned).collect();
+        // A participant may be called `#1`.
+        let (dialect, text) = recognise(input, Comments::Kept)?;
+        let (mut reader, header) = dialect.reader(text)?;
+        let names: Vec<String> = header.iter().map(str::to_owned).collect();
         if names.len() > COLUMNS_MAX {
             return Err(format!("{} columns exceed the limit of {COLUMNS_MAX}", names.len()));
         }
@@ -73,12 +76,12 @@ impl TrialTable {
         let mut rows: Vec<(u64, csv::StringRecord)> = Vec::new();
         for record in reader.records() {
             let record = record.map_err(|error| plain(&error))?;
-            rows.push((record.position().map_or(0, csv::Position::line), record));
+            rows.push((dialect.line(record.position().map_or(0, csv::Position::line)), record));
             if rows.len() > TRIALS_MAX {
                 return Err(format!("there are more than {TRIALS_MAX} trials"));
             }
         }
-        let is_number = |at: usize| rows.iter().all(|(_, row)| value(&row[at]).is_ok());
+        let is_number = |at: usize| rows.iter().all(|(_, row)| value(&dialect, &row[at]).is_ok());
         let measures: Vec<usize> = if wanted.is_empty() {
             (0..names.len()).filter(|at| !NO_MEASURES.contains(&names[*at].as_str()) && is_number(*at)).collect()
         } else {
@@ -88,7 +91,7 @@ impl TrialTable {
             return Err("no column except participant, condition and trial contains only numbers".to_owned());
         }
         let cell = |line: u64, row: &csv::StringRecord, at: usize| {
-            value(&row[at])
+            value(&dialect, &row[at])
                 .map_err(|text| format!("line {line}: \"{}\" in column {} is not a number", quoted(&text), names[at]))
         };
         let word = |line: u64, row: &csv::StringRecord, at: usize| match &row[at] {
@@ -107,6 +110,7 @@ impl TrialTable {
         if trials.is_empty() {
             return Err("it has no trials".to_owned());
         }
+        check_keys(&rows, &trials)?;
         Ok(Self { measures: measures.into_iter().map(|at| names[at].clone()).collect(), trials })
     }
 
@@ -139,15 +143,28 @@ impl TrialTable {
     }
 }
 
+/// Refuses two rows with the same participant, condition and trial: one of them would count twice.
+fn check_keys(rows: &[(u64, csv::StringRecord)], trials: &[TableTrial]) -> Result<(), String> {
+    let mut seen: BTreeMap<(&str, &str, u64), u64> = BTreeMap::new();
+    for ((line, _), trial) in rows.iter().zip(trials) {
+        let TableTrial { participant, condition, number: Some(number), .. } = trial else { continue };
+        if let Some(first) = seen.insert((participant, condition, number.to_bits()), *line) {
+            return Err(format!(
+                "line {line} repeats line {first}: participant {}, condition {}, trial {number}; remove one of them, or correct the number",
+                quoted(participant),
+                quoted(condition)
+            ));
+        }
+    }
+    Ok(())
+}
+
 /// Parses a cell: a finite number, or nothing.
-fn value(cell: &str) -> Result<Option<f64>, String> {
+fn value(dialect: &CsvDialect, cell: &str) -> Result<Option<f64>, String> {
     if cell.is_empty() || cell == "NA" {
         return Ok(None);
     }
-    match cell.parse::<f64>() {
-        Ok(value) if value.is_finite() => Ok(Some(value)),
-        _ => Err(cell.to_owned()),
-    }
+    dialect.number(cell).filter(|value| value.is_finite()).map(Some).ok_or_else(|| cell.to_owned())
 }
 
 /// Returns a short text for an error of the reader.
@@ -184,6 +201,13 @@ mod tests {
     }
 
     #[test]
+    fn a_spreadsheet_with_decimal_commas_is_read_and_a_number_sign_is_no_comment() {
+        let table = of("participant;condition;trial;time_s\n#1;x;1;10,5\n#2;x;1;9,25\n", &[]).unwrap();
+        assert_eq!(table.trials.iter().map(|trial| trial.values[0]).collect::<Vec<_>>(), [Some(10.5), Some(9.25)]);
+        assert_eq!(table.trials[0].participant, "#1");
+    }
+
+    #[test]
     fn what_is_wrong_is_told_with_its_line() {
         for (text, wanted, words) in [
             ("a,b\n1,2\n", &[][..], "no column \"participant\""),
@@ -194,6 +218,8 @@ mod tests {
             ("participant,condition,t\na,x\n", &[], "line 2 has 2 values"),
             ("participant,condition,t,t\na,x,1,2\n", &[], "\"t\" occurs twice"),
             ("participant,condition,t\n", &[], "no trials"),
+            ("participant,condition,trial,t\na,x,1,1\na,x,2,1\na,x,1,3\n", &[], "line 4 repeats line 2"),
+            ("participant;condition,t\na;x,1\n", &[], "by commas or by semicolons"),
             ("participant,condition,t\na,x,1\n", &["u"], "no column \"u\""),
         ] {
             let report = of(text, wanted).unwrap_err();

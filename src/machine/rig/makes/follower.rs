@@ -1,5 +1,3 @@
-use std::net::SocketAddr;
-
 use nima_core::kinematics::{ArmModel, JointLimits};
 use nima_devices::{
     ClearFaults, DeviceError, Follower,
@@ -9,6 +7,7 @@ use nima_devices::{
 use serde::{Deserialize, Serialize, Serializer};
 
 use super::Opener;
+use crate::rig::places::{NamedPlace, Place};
 
 /// The arm of a rig file.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -78,11 +77,15 @@ impl FollowerSettings {
         matches!(self, Self::Simulated(_))
     }
 
-    /// Returns the local address for an external arm.
-    pub(in crate::rig) const fn listens_at(&self) -> Option<SocketAddr> {
+    /// Returns the places at which the arm is reached.
+    pub(in crate::rig) fn places(&self) -> Vec<NamedPlace> {
         match self {
-            Self::Kinova(_) | Self::Simulated(_) => None,
-            Self::External(settings) => Some(settings.listen),
+            Self::Kinova(settings) => vec![
+                ("host", Place::tcp(&settings.host, settings.tcp_port)),
+                ("udp_port", Place::udp(&settings.host, settings.udp_port)),
+            ],
+            Self::Simulated(_) => Vec::new(),
+            Self::External(settings) => vec![("listen", Place::listens(settings.listen))],
         }
     }
 

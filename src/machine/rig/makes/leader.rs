@@ -1,5 +1,3 @@
-use std::net::SocketAddr;
-
 use nima_devices::{
     DeviceError, DeviceSlot, Leader, Lever,
     discovery::{Probe, probes},
@@ -8,7 +6,10 @@ use nima_devices::{
 use serde::{Deserialize, Serialize, Serializer};
 
 use super::Opener;
-use crate::rig::{DeviceRole, RigError, RigPart, RosterEntry, Side};
+use crate::rig::{
+    DeviceRole, RigError, RigPart, RosterEntry, Side,
+    places::{NamedPlace, Place},
+};
 
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -94,15 +95,8 @@ impl LeaderSettings {
 
     /// Checks that the settings distinguish the two handles.
     pub(in crate::rig) fn check_beside(&self, other: &Self) -> Result<(), DeviceError> {
-        let (one, other) = match (self, other) {
-            (Self::ForceDimension(one), Self::ForceDimension(other)) => (one, other),
-            (Self::Haply(one), Self::Haply(other)) if one.port == other.port => {
-                let allowed = "a different port than the left handle's".to_owned();
-                return Err(DeviceError::Setting { key: "port".to_owned(), value: one.port.clone(), allowed });
-            }
-            // External handles have separate addresses, which are checked together with the addresses of all parts.
-            _ => return Ok(()),
-        };
+        // Ports and addresses are checked together with those of all parts.
+        let (Self::ForceDimension(one), Self::ForceDimension(other)) = (self, other) else { return Ok(()) };
         if one.serial.is_some() && one.serial != other.serial {
             return Ok(());
         }
@@ -111,11 +105,15 @@ impl LeaderSettings {
         Err(DeviceError::Setting { key: "serial".to_owned(), value, allowed })
     }
 
-    /// Returns the local address for an external handle.
-    pub(in crate::rig) const fn listens_at(&self) -> Option<SocketAddr> {
+    /// Returns the places at which the handle is reached.
+    pub(in crate::rig) fn places(&self) -> Vec<NamedPlace> {
         match self {
-            Self::ForceDimension(_) | Self::Haply(_) => None,
-            Self::External(settings) => Some(settings.listen),
+            Self::ForceDimension(settings) => {
+                let emulator = settings.emulator.map(|at| Place::tcp(&at.ip().to_string(), at.port()));
+                emulator.into_iter().map(|place| ("emulator", place)).collect()
+            }
+            Self::Haply(settings) => vec![("port", Place::file(&settings.port))],
+            Self::External(settings) => vec![("listen", Place::listens(settings.listen))],
         }
     }
 

@@ -12,7 +12,8 @@ use crate::{
 impl<L: Link> Pair<L> {
     /// Returns the current objection to engaging; the interlock checks the state.
     pub(super) fn may_engage(&self) -> Result<(), Refusal> {
-        if self.state() != LoopState::Idle {
+        // Neither idle nor after a short stall: the interlock itself refuses, with the state as its reason.
+        if self.state() != LoopState::Idle && !self.has_short_stall() {
             return Ok(());
         }
         if self.checked == Some(false) {
@@ -25,6 +26,7 @@ impl<L: Link> Pair<L> {
         if let Some(what) = self.plausibility.doubt() {
             return Err(Refusal::Implausible(what));
         }
+        // A stop at the other machine would end the engagement in its first tick.
         if let Some(fault) = self.far_fault() {
             return Err(Refusal::StillPresent(fault));
         }
@@ -32,6 +34,11 @@ impl<L: Link> Pair<L> {
             Some(obstacle) => Err(Refusal::Obstacle(obstacle)),
             None => Ok(()),
         }
+    }
+
+    /// Returns whether the only fault is a stall that was so short that a person may engage directly.
+    pub(super) fn has_short_stall(&self) -> bool {
+        matches!(self.state(), LoopState::Faulted(fault) if fault.is_short_stall(self.settings.rate_hz))
     }
 
     /// Returns the local fault that follows from the other machine's stop.
@@ -46,9 +53,11 @@ impl<L: Link> Pair<L> {
 
     /// Refuses the release of a stop or a fault while a cause of a fault is present.
     pub(super) fn may_release(&self, t_s: f64) -> Result<(), Refusal> {
+        // Nothing to release is not an error: the command goes to both arms.
         if !self.state().is_latched() {
             return Ok(());
         }
+        // A fault that is still present would return at once, so the release is refused with its name.
         if self.samples.are_silent(t_s) {
             return Err(Refusal::StillPresent(Fault::SourceSilent));
         }
@@ -57,6 +66,7 @@ impl<L: Link> Pair<L> {
 
     /// Returns the condition for which an engagement in progress is waiting.
     pub(super) fn waits_for(&self, seen: InterlockInput, inputs: Option<&Inputs>) -> Refusal {
+        // The order of the checks in `step_interlock`, so that the operator hears the first one that is missing.
         if !seen.powered {
             Refusal::DrivesOff
         } else if inputs.is_none_or(|inputs| inputs.view == ViewOrientation::Unseen) {

@@ -31,6 +31,7 @@ pub(super) fn read(source: &ReaderSource, at: u64, length: u64) -> io::Result<Re
         return Ok(Err("it is not a complete chunk".into()));
     };
     Ok(decompress(&head, compressed).and_then(|records| {
+        // A checksum of 0 stands for none (MCAP specification).
         if head.crc == 0 || crc32fast::hash(&records) == head.crc {
             Ok(ReaderChunk { records, times_ns: head.times_ns })
         } else {
@@ -58,6 +59,7 @@ fn decompress(head: &parse::ChunkHead, compressed: &[u8]) -> Result<Vec<u8>, Str
         records.extend_from_slice(compressed);
     } else {
         let mut decoder = FrameDecoder::new(compressed);
+        // One byte more than stated, so that longer data are noticed.
         let read = decoder.by_ref().take(head.uncompressed + 1).read_to_end(&mut records);
         read.map_err(|error| format!("it cannot be decompressed: {error}"))?;
     }

@@ -19,9 +19,12 @@ use super::TipForceError;
 
 mod stored_model;
 
-/// Format name in the file.
-const FORMAT: &str = "nima tip force 2";
+/// Format names in the file: the current one, and the one before checksums.
+const FORMAT: &str = "nima tip force 3";
+const FORMAT_UNCHECKED: &str = "nima tip force 2";
 const KEY: &str = "nima";
+/// CRC-32 of everything else, in hexadecimal digits.
+const CHECKSUM: &str = "nima checksum";
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -69,8 +72,25 @@ pub fn model_to_bytes(model: &ForceModel) -> Result<Vec<u8>, String> {
         origin: model.origin.clone(),
     };
     let text = serde_json::to_string(&header).map_err(|error| error.to_string())?;
-    let metadata = [(KEY.to_owned(), text)].into_iter().collect();
+    let parts = tensors.iter().map(|(name, shape, data)| (name.as_str(), shape.as_slice(), data.as_slice()));
+    let checksum = checksum(&text, parts.collect());
+    let metadata = [(KEY.to_owned(), text), (CHECKSUM.to_owned(), checksum)].into_iter().collect();
     safetensors::serialize(views, Some(metadata)).map_err(|error| error.to_string())
+}
+
+/// Computes the checksum of the header and of the tensors, in the order of their names.
+fn checksum(header: &str, mut tensors: Vec<(&str, &[usize], &[u8])>) -> String {
+    tensors.sort_unstable();
+    let mut hash = crc32fast::Hasher::new();
+    hash.update(header.as_bytes());
+    for (name, shape, data) in tensors {
+        hash.update(name.as_bytes());
+        for size in shape {
+            hash.update(&(*size as u64).to_le_bytes());
+        }
+        hash.update(data);
+    }
+    format!("{:08x}", hash.finalize())
 }
 
 fn tensors_of(model: &ForceModel) -> Vec<(String, Vec<usize>, Vec<f32>)> {
@@ -128,7 +148,7 @@ pub fn model_from_bytes(file: &[u8]) -> Result<ForceModel, String> {
         metadata.metadata().as_ref().and_then(|texts| texts.get(KEY)).ok_or("it has no metadata of this program")?;
     let header: ModelHeader =
         serde_json::from_str(text).map_err(|error| format!("its metadata are invalid ({error})"))?;
-    if header.format != FORMAT {
+    if header.format != FORMAT && header.format != FORMAT_UNCHECKED {
         return Err(format!("its format is \"{}\", but this version reads \"{FORMAT}\"", header.format));
     }
     let read = |name: &str| values(&tensors, name);
@@ -146,6 +166,14 @@ pub fn model_from_bytes(file: &[u8]) -> Result<ForceModel, String> {
         return Err("its baselines do not match its columns".into());
     }
     let doubt = doubt(&tensors, expansion.measured(), header.limits)?;
+    // Last, because the other checks give a more specific reason.
+    let all = tensors.tensors();
+    let parts = all.iter().map(|(name, view)| (name.as_str(), view.shape(), view.data()));
+    match metadata.metadata().as_ref().and_then(|texts| texts.get(CHECKSUM)) {
+        None if header.format == FORMAT_UNCHECKED => {}
+        Some(stated) if *stated == checksum(text, parts.collect()) => {}
+        _ => return Err("its content does not match its checksum: the file was changed or damaged".into()),
+    }
     let ModelHeader { inputs, outputs, baselines, origin, .. } = header;
     Ok(ForceModel { inputs, outputs, expansion, features, scale, network, doubt, baselines, origin })
 }

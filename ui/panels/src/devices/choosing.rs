@@ -38,7 +38,7 @@ pub(super) fn chooser_ui(
     ui.indent(part.key(), |ui| {
         chosen = others_ui(ui, live, part, refused);
         if live.rig.devices.as_ref().is_some_and(|devices| devices.emulated) {
-            ui.add(Label::new(small(text::devices::EMULATED.get())).wrap());
+            ui.add(Label::new(small(text::devices::EMULATED)).wrap());
             return;
         }
         look_ui(ui, live, chooser);
@@ -57,7 +57,7 @@ pub(super) fn chooser_ui(
             }
         }
         if chooser.sought.found().is_some_and(Vec::is_empty) {
-            ui.label(small(text::devices::NOTHING_FOUND.get()));
+            ui.label(small(text::devices::NOTHING_FOUND));
         }
     });
     chosen.map(|chosen| RigEdit::Choose(part, chosen))
@@ -77,14 +77,14 @@ fn others_ui(ui: &mut Ui, live: &LiveState, part: RigPart, refused: Option<&str>
         }
     }
     if !any {
-        ui.label(small(text::devices::NO_OTHER.get()));
+        ui.label(small(text::devices::NO_OTHER));
     }
     chosen
 }
 
 fn candidate_ui(ui: &mut Ui, words: &str, refused: Option<&str>) -> bool {
     let button = Button::new(words).wrap().min_size(vec2(ui.available_width(), 26.0));
-    let button = ui.add_enabled(refused.is_none(), button).on_hover_text(text::devices::EXCHANGE_HOVER.get());
+    let button = ui.add_enabled(refused.is_none(), button).on_hover_text(text::devices::EXCHANGE_HOVER);
     button.on_disabled_hover_text(refused.unwrap_or_default()).clicked()
 }
 
@@ -98,11 +98,10 @@ fn look_ui(ui: &mut Ui, live: &LiveState, chooser: &mut Chooser) {
         let looking = sought.is_running();
         let words = if looking { text::devices::LOOKING.get() } else { text::devices::LOOK.get() };
         let button = ui.add_enabled(!looking, Button::new(small(words)).min_size(vec2(110.0, 24.0)));
-        let field =
-            TextEdit::singleline(place).hint_text(text::devices::PLACE.get()).desired_width(ui.available_width());
-        let field = ui.add(field).on_hover_text(text::devices::PLACE_HOVER.get());
+        let field = TextEdit::singleline(place).hint_text(text::devices::PLACE).desired_width(ui.available_width());
+        let field = ui.add(field).on_hover_text(text::devices::PLACE_HOVER);
         field.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, text::devices::PLACE.get()));
-        if button.on_hover_text(text::devices::LOOK_HOVER.get()).clicked()
+        if button.on_hover_text(text::devices::LOOK_HOVER).clicked()
             && let Some(devices) = live.rig.devices.clone()
         {
             let part = *part;

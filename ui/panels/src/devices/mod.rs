@@ -10,7 +10,7 @@ mod row;
 
 use std::time::Instant;
 
-use egui::{Button, Label, RichText, Ui, vec2};
+use egui::{Button, Frame, Label, Margin, RichText, Ui, vec2};
 use nima_devices::Health;
 use nima_machine::{
     config::ChosenDevice,
@@ -21,14 +21,17 @@ use nima_machine::{
     },
 };
 use nima_screen::{
-    live::LiveState,
+    live::{LiveState, ScreenSource},
     theme,
     widgets::{small, weak},
 };
 use nima_words::{
+    language::Text,
     report_text::{obstacle_text, side_word},
     text,
 };
+
+use crate::panel::{Panel, PanelContext, PanelSize};
 
 use choosing::Chooser;
 use rates::RateHistory;
@@ -164,13 +167,50 @@ pub fn wrap_to_visible(ui: &mut Ui) {
 
 /// Draws the panel; for a rig without devices it says that everything is simulated. Returns a requested change of the
 /// rig.
+#[derive(Debug, Default)]
+pub struct DevicesPanel;
+
+impl Panel for DevicesPanel {
+    const NAME: Text = text::devices::NAME;
+    const MEANING: Text = text::devices::MEANING;
+    const SIZE: PanelSize = PanelSize::list(590.0);
+
+    fn ui(&mut self, ui: &mut Ui, at: &mut PanelContext<'_>) {
+        if at.live.is_shown_only() {
+            devices_then_ui(ui, at.live);
+        } else {
+            ui.add_enabled_ui(!at.is_locked, |ui| at.wishes.devices = devices_ui(ui, at.live, &mut at.panels.devices));
+        }
+    }
+}
+
+/// Draws the devices of a recorded session or of another machine, and a note on data that are missing here.
+fn devices_then_ui(ui: &mut Ui, live: &LiveState) {
+    let elsewhere = live.of == ScreenSource::Elsewhere;
+    Frame::new().inner_margin(Margin::same(8)).show(ui, |ui| {
+        wrap_to_visible(ui);
+        if live.devices_then.is_empty() {
+            ui.label(if elsewhere { text::monitor::SIMULATED.get() } else { text::playback::SIMULATED.get() });
+        }
+        for (name, standing) in &live.devices_then {
+            ui.label(text::playback::device(*name, *standing));
+        }
+        ui.add_space(6.0);
+        ui.label(weak(if elsewhere {
+            text::monitor::NOT_OF_DEVICES.get()
+        } else {
+            text::playback::NOT_OF_DEVICES.get()
+        }));
+    });
+}
+
 pub fn devices_ui(ui: &mut Ui, live: &LiveState, state: &mut DevicesState) -> Option<RigEdit> {
     state.is_seen = true;
     if live.roster.is_empty() {
         ui.scope(|ui| {
             wrap_to_visible(ui);
-            ui.label(weak(text::devices::NONE.get()));
-            ui.add(Label::new(small(text::devices::NONE_TO_CONNECT.get())).wrap());
+            ui.label(weak(text::devices::NONE));
+            ui.add(Label::new(small(text::devices::NONE_TO_CONNECT)).wrap());
         });
         image_ui(ui, state);
         return None;
@@ -201,7 +241,7 @@ pub fn devices_ui(ui: &mut Ui, live: &LiveState, state: &mut DevicesState) -> Op
 fn image_ui(ui: &mut Ui, state: &DevicesState) {
     let Some([report, cure]) = &state.image else { return };
     ui.add_space(6.0);
-    ui.label(small(text::endoscope_view::ENDOSCOPE.get()));
+    ui.label(small(text::endoscope_view::ENDOSCOPE));
     ui.add(Label::new(RichText::new(report)).wrap());
     if !cure.is_empty() {
         ui.add(Label::new(weak(cure)).wrap());
@@ -210,7 +250,7 @@ fn image_ui(ui: &mut Ui, state: &DevicesState) {
 
 /// Draws what is above the devices: explanation of the lights, the test of all devices, the swaps.
 fn head_ui(ui: &mut Ui, live: &LiveState, state: &mut DevicesState, refused: Option<&str>) -> Option<RigEdit> {
-    ui.add(Label::new(weak(text::devices::WHICH.get())).wrap());
+    ui.add(Label::new(weak(text::devices::WHICH)).wrap());
     let mut change = None;
     let both = |kind: PartKind| {
         let has = |side| live.roster.iter().any(|entry| entry.part.is_some() && entry.part == kind.of(side));
@@ -219,14 +259,14 @@ fn head_ui(ui: &mut Ui, live: &LiveState, state: &mut DevicesState, refused: Opt
     let kinds: Vec<_> = PartKind::OF_A_SIDE.into_iter().filter(|kind| both(*kind)).collect();
     ui.horizontal_wrapped(|ui| {
         let parts: Vec<_> = (0..live.roster.len()).filter(|place| live.roster[*place].part.is_some()).collect();
-        let button = Button::new(RichText::new(text::devices::TEST_ALL.get())).min_size(vec2(84.0, 26.0));
+        let button = Button::new(RichText::new(text::devices::TEST_ALL)).min_size(vec2(84.0, 26.0));
         let button = ui.add_enabled(!state.is_testing() && !parts.is_empty(), button);
-        if button.on_hover_text(text::devices::TEST_HOVER.get()).clicked() {
+        if button.on_hover_text(text::devices::TEST_HOVER).clicked() {
             state.begin_test(parts, live);
         }
         if !kinds.is_empty() {
             ui.add_space(8.0);
-            ui.label(small(text::devices::EXCHANGE.get()));
+            ui.label(small(text::devices::EXCHANGE));
         }
         for kind in kinds {
             let button = Button::new(small(text::devices::kind(kind))).min_size(vec2(58.0, 26.0));
@@ -234,7 +274,7 @@ fn head_ui(ui: &mut Ui, live: &LiveState, state: &mut DevicesState, refused: Opt
             button.widget_info(|| {
                 egui::WidgetInfo::labeled(egui::Role::Button, refused.is_none(), text::devices::exchange(kind))
             });
-            let button = button.on_hover_text(text::devices::EXCHANGE_HOVER.get());
+            let button = button.on_hover_text(text::devices::EXCHANGE_HOVER);
             if button.on_disabled_hover_text(refused.unwrap_or_default()).clicked() {
                 change = Some(RigEdit::ExchangeSides(kind));
             }

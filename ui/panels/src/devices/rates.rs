@@ -49,7 +49,7 @@ impl RateHistory {
 /// Draws a rate over the last minute, from zero; a gap where the device was not connected.
 pub(super) fn rates_ui(ui: &mut Ui, size: Vec2, rates: Option<&VecDeque<Option<f32>>>) {
     let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
-    response.on_hover_text(text::devices::RATES_HOVER.get());
+    response.on_hover_text(text::devices::RATES_HOVER);
     let palette = theme::now();
     ui.painter().rect_filled(rect, 2.0, palette.groove);
     let Some(rates) = rates else { return };

@@ -128,7 +128,7 @@ fn light_ui(ui: &mut Ui, live: &LiveState, entry: &RosterEntry, place: usize) ->
     let motion = live.activity.lit(place).map(|channel| text::devices::motion(part.kind(), channel));
     let name = text::devices::light(&role_name(entry.role), motion.as_deref());
     light.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, &name));
-    light.on_hover_text(text::devices::LIGHT_HOVER.get());
+    light.on_hover_text(text::devices::LIGHT_HOVER);
     let palette = theme::now();
     if motion.is_some() {
         ui.painter().circle_filled(rect.center(), 9.0, palette.text.gamma_multiply(0.25));
@@ -169,11 +169,11 @@ fn trouble_ui(ui: &mut Ui, entry: &RosterEntry, trouble: &DeviceError) {
     ui.add(Label::new(quoted(trouble)).wrap());
     ui.add(Label::new(small(trouble.cure())).wrap());
     if let (DeviceError::DeviceFault { .. }, Some(clear)) = (trouble, &entry.clear_faults) {
-        let button = ui.add(Button::new(small(text::devices::CLEAR_FAULTS.get())).min_size(vec2(84.0, 22.0)));
+        let button = ui.add(Button::new(small(text::devices::CLEAR_FAULTS)).min_size(vec2(84.0, 22.0)));
         button.widget_info(|| {
             egui::WidgetInfo::labeled(egui::Role::Button, true, text::devices::clear_faults_of(&role_name(entry.role)))
         });
-        if button.on_hover_text(text::devices::CLEAR_FAULTS_HOVER.get()).clicked() {
+        if button.on_hover_text(text::devices::CLEAR_FAULTS_HOVER).clicked() {
             clear.command();
         }
     }
@@ -186,7 +186,7 @@ fn button_ui(ui: &mut Ui, entry: &RosterEntry, width: f32, [words, hover]: [&str
     button.widget_info(|| {
         egui::WidgetInfo::labeled(egui::Role::Button, enabled, text::devices::of(words, &role_name(entry.role)))
     });
-    button.on_hover_text(hover).on_disabled_hover_text(text::devices::TEST_RUNS.get()).clicked()
+    button.on_hover_text(hover).on_disabled_hover_text(text::devices::TEST_RUNS).clicked()
 }
 
 fn buttons_ui(ui: &mut Ui, live: &LiveState, state: &mut DevicesState, place: usize) {

@@ -24,8 +24,12 @@ pub use demo::DemoState;
 
 use crate::PanelExtras;
 use crate::{
-    CalibrationWish, DegreesState, DevicesState, FeedbackState, ForceSpaceState, SafetyState, Tile, TimingState,
-    TracesState, devices::RigEdit, endoscope_view::EndoscopeView, settings::ConsoleSettings, tiles::PanelTiles,
+    CalibrationWish, DegreesState, DevicesState, FeedbackState, ForceSpaceState, Tile, TracesState,
+    devices::RigEdit,
+    endoscope_view::EndoscopeView,
+    panel::{PanelContext, PanelSet},
+    settings::ConsoleSettings,
+    tiles::PanelTiles,
 };
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
@@ -87,10 +91,10 @@ pub struct Panels {
     pub tradeoff: Option<Box<dyn Tile>>,
     pub scene: SceneView,
     pub eyes: EndoscopeView,
-    pub safety: SafetyState,
     pub devices: DevicesState,
     pub degrees: DegreesState,
-    pub timing: TimingState,
+    /// The panels, with the state that only they use.
+    pub all: PanelSet,
     pub desk: PanelTiles,
     pub demo: DemoState,
 }
@@ -104,10 +108,9 @@ impl Default for Panels {
             space: ForceSpaceState::default(),
             scene: SceneView::default(),
             eyes: EndoscopeView::default(),
-            safety: SafetyState::default(),
             devices: DevicesState::default(),
             degrees: DegreesState::default(),
-            timing: TimingState::default(),
+            all: PanelSet::default(),
             desk: PanelTiles::default(),
             demo: DemoState::default(),
         }
@@ -142,7 +145,12 @@ pub fn role_ui(
             surgeon::surgeon_ui(ui, live, panels, outbox);
             Wishes::default()
         }
-        Role::Technician => technician::technician_ui(ui, &mut settings.layout, live, panels, active, outbox),
+        Role::Technician => {
+            let mut wishes = Wishes::default();
+            let mut at = PanelContext { live, panels, active, outbox, wishes: &mut wishes, is_locked: false };
+            technician::technician_ui(ui, &mut settings.layout, &mut at);
+            wishes
+        }
         Role::Demo => {
             demo::demo_ui(ui, live, panels, outbox);
             Wishes::default()
@@ -155,18 +163,21 @@ fn acts<R>(ui: &mut Ui, past: bool, controls: impl FnOnce(&mut Ui) -> R) -> R {
     ui.add_enabled_ui(!past, controls).inner
 }
 
-/// Draws one button for each of these roles.
-pub fn switch_ui(ui: &mut Ui, roles: &[Role], now: &mut Role, allowed: bool) {
+/// Draws one button for each of these roles; returns the pressed one, also if it is the present one: it then leads back to
+/// its view.
+pub fn switch_ui(ui: &mut Ui, roles: &[Role], now: Role, allowed: bool) -> Option<Role> {
+    let mut pressed = None;
     ui.spacing_mut().item_spacing.x = 4.0;
     for &role in roles {
         let words = with_icon(ui, role.icon(), role.name(), TextStyle::Button.resolve(ui.style()));
-        let button = Button::selectable(*now == role, words).frame_when_inactive(true).min_size(vec2(62.0, 30.0));
+        let button = Button::selectable(now == role, words).frame_when_inactive(true).min_size(vec2(62.0, 30.0));
         let response = ui.add_enabled(allowed, button);
-        let chosen = *now == role;
+        let chosen = now == role;
         response.widget_info(|| WidgetInfo::selected(egui::Role::Button, allowed, chosen, role.name()));
         let response = response.on_hover_text(text::roles::meaning_and_key(role.meaning(), role.key().name()));
-        if response.on_disabled_hover_text(text::roles::SWITCH_DISABLED_HOVER.get()).clicked() {
-            *now = role;
+        if response.on_disabled_hover_text(text::roles::SWITCH_DISABLED_HOVER).clicked() {
+            pressed = Some(role);
         }
     }
+    pressed
 }

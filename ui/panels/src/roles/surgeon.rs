@@ -1,7 +1,9 @@
 //! The Surgeon view: the endoscope image, or a drawing of the field for a rig without endoscope; below it both forces with
 //! the ceiling for each hand, and the gain in between. At most six numbers: two forces of each hand, the gain, the ceiling.
 
-use egui::{Align2, Button, CentralPanel, Frame, Margin, Panel, Rect, RichText, Sense, TextStyle, Ui, pos2, vec2};
+use egui::{
+    Align2, Button, CentralPanel, FontId, Frame, Margin, Panel, Rect, RichText, Sense, TextStyle, Ui, pos2, vec2,
+};
 use nima_core::impedance::Mode;
 use nima_machine::{messages::Command, rig::Side};
 use nima_screen::{
@@ -9,7 +11,7 @@ use nima_screen::{
     outbox::Outbox,
     scene3d::{scene_ui, side_name},
     theme,
-    widgets::{bar, fitting, fitting_style, force_sign, small},
+    widgets::{bar, fitting, force_sign, small, width_of},
 };
 use nima_words::{
     report_text::{mode_meaning, mode_name, newtons, newtons_read},
@@ -63,11 +65,20 @@ const MODES: [Mode; 3] = [Mode::Best, Mode::Matched, Mode::Anchored];
 
 fn modes_ui(ui: &mut Ui, live: &LiveState, outbox: &mut Outbox) {
     ui.spacing_mut().item_spacing.x = 6.0;
-    let width = (ui.available_width() - 6.0 * (MODES.len() - 1) as f32) / MODES.len() as f32;
+    let count = MODES.len() as f32;
+    let padding = 2.0 * ui.spacing().button_padding.x;
+    let room = ui.available_width() - 6.0 * (count - 1.0) - count * padding;
+    let font = TextStyle::Button.resolve(ui.style());
+    let widths = MODES.map(|mode| width_of(ui.painter(), mode_name(mode), font.clone()));
+    // A long name takes the room of the short ones before any of them gets smaller.
+    let are_equal = widths.iter().all(|width| *width <= room / count);
+    let needed: f32 = widths.iter().sum();
+    let font = FontId { size: font.size * (0.98 * room / needed).min(1.0), ..font };
     ui.horizontal(|ui| {
-        for mode in MODES {
+        for (mode, needs) in MODES.into_iter().zip(widths) {
+            let width = if are_equal { room / count } else { room * needs / needed } + padding;
             let name = mode_name(mode);
-            let font = fitting_style(ui, name, &TextStyle::Button, width - 2.0 * ui.spacing().button_padding.x);
+            let font = font.clone();
             let button = Button::selectable(live.mode() == mode, RichText::new(name).font(font));
             let button = ui.add(button.frame_when_inactive(true).min_size(vec2(width, 28.0)));
             if button.on_hover_text(mode_meaning(mode)).clicked() {
@@ -115,7 +126,7 @@ fn hand_ui(ui: &mut Ui, live: &LiveState, side: Side, place: Rect) {
     let name = text::common::hand(side_name(side));
     let words = text::roles::hand(&name, &newtons_read(measured_n, 1), rendered_n, ceiling_n);
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, &words));
-    response.on_hover_text(text::roles::BARS_HOVER.get());
+    response.on_hover_text(text::roles::BARS_HOVER);
     let painter = ui.painter_at(place);
     painter.rect_filled(place, theme::CORNER, theme::now().card);
     let inner = place.shrink2(vec2(16.0, 12.0));

@@ -4,7 +4,7 @@ use egui::Vec2;
 use nima_words::text::tiles as text;
 use serde::{Deserialize, Serialize};
 
-use super::{LayoutNode, LayoutPart, Panel, layout::WHOLE};
+use super::{LayoutNode, LayoutPart, PanelId, layout::WHOLE};
 
 /// Width of the column of settings and of the column of figures.
 const KNOBS: f32 = 316.0;
@@ -19,8 +19,8 @@ const TRACES: f32 = 560.0;
 const TALL_FROM: f32 = 860.0;
 /// Heights of panels that should not need scrolling.
 const FEEDBACK: f32 = 494.0;
-const HORIZON: f32 = 288.0;
-const DEGREES: f32 = 360.0;
+const HORIZON: f32 = 240.0;
+const DEGREES: f32 = 424.0;
 
 /// A built-in layout. In each, every panel is at most one click away: those that are not shown are tabs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -69,11 +69,17 @@ fn simple(size: Vec2) -> LayoutNode {
     let width = size.x.max(KNOBS + TRACES);
     let height = size.y.max(200.0);
     let traces = (0.42 * height).clamp(250.0, 420.0);
-    let above = tabs(&[Panel::Field, Panel::Devices, Panel::Safety, Panel::Link]);
-    let under =
-        tabs(&[Panel::Traces, Panel::ForceSpace, Panel::Horizon, Panel::Degrees, Panel::Timing, Panel::Tradeoff]);
+    let above = tabs(&[PanelId::Field, PanelId::Devices, PanelId::Safety, PanelId::Link]);
+    let under = tabs(&[
+        PanelId::Traces,
+        PanelId::ForceSpace,
+        PanelId::Horizon,
+        PanelId::Degrees,
+        PanelId::Timing,
+        PanelId::Tradeoff,
+    ]);
     let right = column(vec![(height - traces, above), (traces, under)]);
-    row(vec![(KNOBS, tabs(&[Panel::Feedback, Panel::Calibrations])), (width - KNOBS, right)])
+    row(vec![(KNOBS, tabs(&[PanelId::Feedback, PanelId::Calibrations])), (width - KNOBS, right)])
 }
 
 /// Returns the calibrations on the left, the devices above the traces, and the 3-D view behind the devices.
@@ -81,11 +87,17 @@ fn calibration(size: Vec2) -> LayoutNode {
     let width = size.x.max(KNOBS + TRACES);
     let height = size.y.max(200.0);
     let traces = (0.42 * height).clamp(250.0, 420.0);
-    let above = tabs(&[Panel::Devices, Panel::Field, Panel::Safety, Panel::Link]);
-    let under =
-        tabs(&[Panel::Traces, Panel::ForceSpace, Panel::Horizon, Panel::Degrees, Panel::Timing, Panel::Tradeoff]);
+    let above = tabs(&[PanelId::Devices, PanelId::Field, PanelId::Safety, PanelId::Link]);
+    let under = tabs(&[
+        PanelId::Traces,
+        PanelId::ForceSpace,
+        PanelId::Horizon,
+        PanelId::Degrees,
+        PanelId::Timing,
+        PanelId::Tradeoff,
+    ]);
     let right = column(vec![(height - traces, above), (traces, under)]);
-    row(vec![(KNOBS, tabs(&[Panel::Calibrations, Panel::Feedback])), (width - KNOBS, right)])
+    row(vec![(KNOBS, tabs(&[PanelId::Calibrations, PanelId::Feedback])), (width - KNOBS, right)])
 }
 
 /// Returns the settings on the left, figures on the right, the 3-D view above the traces in between; panels that do not
@@ -100,13 +112,13 @@ fn research(size: Vec2) -> LayoutNode {
     let [left, right] = if height >= TALL_FROM { tall_sides(height) } else { short_sides(height) };
     let under = if middle > FORCE_SPACE_FROM {
         row(vec![
-            (middle - FORCE_SPACE, tabs(&[Panel::Traces])),
-            (FORCE_SPACE, tabs(&[Panel::ForceSpace, Panel::Safety])),
+            (middle - FORCE_SPACE, tabs(&[PanelId::Traces])),
+            (FORCE_SPACE, tabs(&[PanelId::ForceSpace, PanelId::Safety])),
         ])
     } else {
-        tabs(&[Panel::Traces, Panel::ForceSpace, Panel::Safety])
+        tabs(&[PanelId::Traces, PanelId::ForceSpace, PanelId::Safety])
     };
-    let between = column(vec![(height - traces, tabs(&[Panel::Field, Panel::Devices])), (traces, under)]);
+    let between = column(vec![(height - traces, tabs(&[PanelId::Field, PanelId::Devices])), (traces, under)]);
     row(vec![(KNOBS, left), (middle, between), (FIGURES, right)])
 }
 
@@ -114,20 +126,20 @@ fn research(size: Vec2) -> LayoutNode {
 fn narrow(width: f32, height: f32, traces: f32) -> LayoutNode {
     let [left, _] = short_sides(height);
     let above = row(vec![
-        (width - KNOBS - FIGURES, tabs(&[Panel::Field, Panel::Devices])),
-        (FIGURES, tabs(&[Panel::Horizon, Panel::Degrees, Panel::Timing, Panel::Tradeoff])),
+        (width - KNOBS - FIGURES, tabs(&[PanelId::Field, PanelId::Devices])),
+        (FIGURES, tabs(&[PanelId::Horizon, PanelId::Degrees, PanelId::Timing, PanelId::Tradeoff])),
     ]);
-    let under = tabs(&[Panel::Traces, Panel::ForceSpace, Panel::Safety, Panel::Link]);
+    let under = tabs(&[PanelId::Traces, PanelId::ForceSpace, PanelId::Safety, PanelId::Link]);
     row(vec![(KNOBS, left), (width - KNOBS, column(vec![(height - traces, above), (traces, under)]))])
 }
 
 fn tall_sides(height: f32) -> [LayoutNode; 2] {
     [
-        column(vec![(FEEDBACK, tabs(&[Panel::Feedback])), (height - FEEDBACK, tabs(&[Panel::Calibrations]))]),
+        column(vec![(FEEDBACK, tabs(&[PanelId::Feedback])), (height - FEEDBACK, tabs(&[PanelId::Calibrations]))]),
         column(vec![
-            (HORIZON, tabs(&[Panel::Horizon])),
-            (DEGREES, tabs(&[Panel::Degrees, Panel::Tradeoff])),
-            (height - HORIZON - DEGREES, tabs(&[Panel::Timing, Panel::Link])),
+            (HORIZON, tabs(&[PanelId::Horizon])),
+            (DEGREES, tabs(&[PanelId::Degrees, PanelId::Tradeoff])),
+            (height - HORIZON - DEGREES, tabs(&[PanelId::Timing, PanelId::Link])),
         ]),
     ]
 }
@@ -135,15 +147,15 @@ fn tall_sides(height: f32) -> [LayoutNode; 2] {
 fn short_sides(height: f32) -> [LayoutNode; 2] {
     let horizon = (height - 150.0).min(HORIZON);
     [
-        tabs(&[Panel::Feedback, Panel::Calibrations]),
+        tabs(&[PanelId::Feedback, PanelId::Calibrations]),
         column(vec![
-            (horizon, tabs(&[Panel::Horizon])),
-            (height - horizon, tabs(&[Panel::Degrees, Panel::Timing, Panel::Link, Panel::Tradeoff])),
+            (horizon, tabs(&[PanelId::Horizon])),
+            (height - horizon, tabs(&[PanelId::Degrees, PanelId::Timing, PanelId::Link, PanelId::Tradeoff])),
         ]),
     ]
 }
 
-fn tabs(panels: &[Panel]) -> LayoutNode {
+fn tabs(panels: &[PanelId]) -> LayoutNode {
     LayoutNode::Tabs(panels.iter().map(|panel| LayoutNode::Panel(*panel)).collect())
 }
 

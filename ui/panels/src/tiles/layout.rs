@@ -8,7 +8,7 @@ use egui::{Id, Vec2};
 use egui_tiles::{Container, Linear, LinearDir, Tile, TileId, Tiles, Tree};
 use serde::{Deserialize, Serialize};
 
-use super::{Arrangement, Panel};
+use super::{Arrangement, PanelId};
 
 /// Sum of the parts of a row or column, see [`LayoutPart`].
 pub(super) const WHOLE: f32 = 10_000.0;
@@ -23,16 +23,18 @@ pub struct PanelLayout {
     /// Rows, columns and tabs; `None` is the built-in layout, which depends on the size of the window.
     pub places: Option<LayoutNode>,
     /// Closed panels; they keep their places.
-    pub closed: Vec<Panel>,
+    pub closed: Vec<PanelId>,
+    /// Panels in windows of their own; they keep their places.
+    pub windows: Vec<PanelId>,
     /// Selected tabs, the latest first.
-    pub front: Vec<Panel>,
+    pub front: Vec<PanelId>,
 }
 
 /// A panel, or a group of panels.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum LayoutNode {
-    Panel(Panel),
+    Panel(PanelId),
     Tabs(Vec<LayoutNode>),
     /// Side by side.
     Row(Vec<LayoutPart>),
@@ -56,15 +58,16 @@ impl PanelLayout {
 
     /// Returns whether panels are open and placed as in the other layout, whichever tabs are in front.
     pub fn looks_like(&self, other: &Self) -> bool {
-        (self.arrangement, &self.places, &self.closed) == (other.arrangement, &other.places, &other.closed)
+        let look = |of: &Self| (of.arrangement, of.places.clone(), of.closed.clone(), of.windows.clone());
+        look(self) == look(other)
     }
 
-    pub fn is_open(&self, panel: Panel) -> bool {
+    pub fn is_open(&self, panel: PanelId) -> bool {
         !self.closed.contains(&panel)
     }
 
     /// Closes the panel, or reopens it at its former place in front.
-    pub fn toggle(&mut self, panel: Panel) {
+    pub fn toggle(&mut self, panel: PanelId) {
         if self.is_open(panel) {
             self.closed.push(panel);
             self.closed.sort_unstable();
@@ -73,21 +76,41 @@ impl PanelLayout {
         }
     }
 
-    /// Opens the panel, in front.
-    pub fn show(&mut self, panel: Panel) {
+    pub fn is_window(&self, panel: PanelId) -> bool {
+        self.windows.contains(&panel) && self.is_open(panel)
+    }
+
+    /// Returns the open panels in windows of their own.
+    pub fn windows(&self) -> impl Iterator<Item = PanelId> {
+        PanelId::built().filter(|panel| self.is_window(*panel))
+    }
+
+    /// Opens the panel in a window of its own, or returns it to its place in front.
+    pub fn toggle_window(&mut self, panel: PanelId) {
+        let is_window = self.is_window(panel);
+        self.show(panel);
+        if !is_window {
+            self.windows.push(panel);
+            self.windows.sort_unstable();
+        }
+    }
+
+    /// Opens the panel in this window, in front.
+    pub fn show(&mut self, panel: PanelId) {
         self.closed.retain(|&closed| closed != panel);
+        self.windows.retain(|&window| window != panel);
         self.front.retain(|&front| front != panel);
         self.front.insert(0, panel);
     }
 
     /// Returns the tiles of this layout for a desk of this size.
-    pub(super) fn tree(&self, size: Vec2) -> Tree<Panel> {
+    pub(super) fn tree(&self, size: Vec2) -> Tree<PanelId> {
         let mut tiles = Tiles::default();
         let mut placed = Vec::new();
         let fallback = self.places.is_none().then(|| self.arrangement.places(size));
         let root = self.places.as_ref().or(fallback.as_ref()).and_then(|node| insert(&mut tiles, node, &mut placed));
         let missing: Vec<TileId> =
-            Panel::built().filter(|panel| !placed.contains(panel)).map(|panel| tiles.insert_pane(panel)).collect();
+            PanelId::built().filter(|panel| !placed.contains(panel)).map(|panel| tiles.insert_pane(panel)).collect();
         let root = match root {
             _ if missing.is_empty() => root,
             Some(root) => Some(add_as_tabs(&mut tiles, root, missing)),
@@ -96,7 +119,7 @@ impl PanelLayout {
         let id = Id::unique("desk");
         let mut tree = root.map_or_else(|| Tree::empty(id), |root| Tree::new(id, root, Tiles::default()));
         tree.tiles = tiles;
-        for panel in &self.closed {
+        for panel in self.closed.iter().chain(&self.windows) {
             if let Some(tile) = tree.tiles.find_pane(panel) {
                 tree.set_visible(tile, false);
             }
@@ -110,25 +133,25 @@ impl PanelLayout {
 
     /// Creates the layout of these tiles; `seen` are the panels that were in front before. The default layout stays the
     /// default unless tiles were `moved`.
-    pub(super) fn of(tree: &Tree<Panel>, moved: bool, seen: &[Panel], before: &Self) -> Self {
+    pub(super) fn of(tree: &Tree<PanelId>, moved: bool, seen: &[PanelId], before: &Self) -> Self {
         let places = if moved { tree.root.and_then(|root| node(&tree.tiles, root)) } else { before.places.clone() };
         let mut front = in_front(tree);
         front.retain(|panel| !seen.contains(panel));
         front.extend(before.front.iter().filter(|panel| !front.contains(panel)).copied().collect::<Vec<_>>());
-        Self { arrangement: before.arrangement, places, closed: before.closed.clone(), front }
+        Self { places, front, ..before.clone() }
     }
 }
 
 /// Returns the panels that are visible on the desk.
-pub(super) fn in_front(tree: &Tree<Panel>) -> Vec<Panel> {
-    let mut panels: Vec<Panel> =
+pub(super) fn in_front(tree: &Tree<PanelId>) -> Vec<PanelId> {
+    let mut panels: Vec<PanelId> =
         tree.active_tiles().into_iter().filter_map(|id| tree.tiles.get_pane(&id).copied()).collect();
     panels.sort_unstable();
     panels
 }
 
 /// Inserts a node; `None` if all its panels have been placed already.
-fn insert(tiles: &mut Tiles<Panel>, node: &LayoutNode, placed: &mut Vec<Panel>) -> Option<TileId> {
+fn insert(tiles: &mut Tiles<PanelId>, node: &LayoutNode, placed: &mut Vec<PanelId>) -> Option<TileId> {
     match node {
         LayoutNode::Panel(panel) if placed.contains(panel) || !panel.is_built() => None,
         LayoutNode::Panel(panel) => {
@@ -145,10 +168,10 @@ fn insert(tiles: &mut Tiles<Panel>, node: &LayoutNode, placed: &mut Vec<Panel>) 
 }
 
 fn insert_parts(
-    tiles: &mut Tiles<Panel>,
+    tiles: &mut Tiles<PanelId>,
     dir: LinearDir,
     parts: &[LayoutPart],
-    placed: &mut Vec<Panel>,
+    placed: &mut Vec<PanelId>,
 ) -> Option<TileId> {
     let whole: f32 = parts.iter().map(|part| f32::from(part.fraction)).sum::<f32>().max(1.0);
     let children: Vec<(TileId, f32)> = parts
@@ -169,7 +192,7 @@ fn insert_parts(
 }
 
 /// Adds tiles as tabs to the first group of tabs; returns the root, which is new if there was no group.
-fn add_as_tabs(tiles: &mut Tiles<Panel>, root: TileId, missing: Vec<TileId>) -> TileId {
+fn add_as_tabs(tiles: &mut Tiles<PanelId>, root: TileId, missing: Vec<TileId>) -> TileId {
     let first = tiles
         .iter()
         .filter(|(_, tile)| matches!(tile, Tile::Container(Container::Tabs(_))))
@@ -185,7 +208,7 @@ fn add_as_tabs(tiles: &mut Tiles<Panel>, root: TileId, missing: Vec<TileId>) -> 
 }
 
 /// This tile in the format of the file.
-fn node(tiles: &Tiles<Panel>, id: TileId) -> Option<LayoutNode> {
+fn node(tiles: &Tiles<PanelId>, id: TileId) -> Option<LayoutNode> {
     let parts = |linear: &Linear| -> Vec<LayoutPart> {
         let whole: f32 = linear.children.iter().map(|child| linear.shares[*child]).sum::<f32>().max(f32::EPSILON);
         linear
@@ -219,8 +242,8 @@ mod tests {
     const SIZES: [[f32; 2]; 5] =
         [[1100.0, 608.0], [1280.0, 648.0], [1600.0, 928.0], [1920.0, 1008.0], [3840.0, 2088.0]];
 
-    fn panels_of(tree: &Tree<Panel>) -> Vec<Panel> {
-        fn walk(tree: &Tree<Panel>, id: TileId, panels: &mut Vec<Panel>) {
+    fn panels_of(tree: &Tree<PanelId>) -> Vec<PanelId> {
+        fn walk(tree: &Tree<PanelId>, id: TileId, panels: &mut Vec<PanelId>) {
             match tree.tiles.get(id) {
                 Some(Tile::Pane(panel)) => panels.push(*panel),
                 Some(Tile::Container(container)) => {
@@ -235,9 +258,9 @@ mod tests {
         panels
     }
 
-    fn all() -> Vec<Panel> {
-        // Without extras, which the program offers, fewer than `Panel::ALL`.
-        let mut all: Vec<Panel> = Panel::built().collect();
+    fn all() -> Vec<PanelId> {
+        // Without extras, which the program offers, fewer than `PanelId::ALL`.
+        let mut all: Vec<PanelId> = PanelId::built().collect();
         all.sort_unstable();
         all
     }
@@ -282,13 +305,13 @@ mod tests {
     fn a_closed_panel_keeps_its_place_and_comes_back_in_front() {
         let size = vec2(1280.0, 648.0);
         let mut layout = PanelLayout::default();
-        layout.toggle(Panel::Safety);
+        layout.toggle(PanelId::Safety);
         let tree = layout.tree(size);
-        let safety = tree.tiles.find_pane(&Panel::Safety).unwrap();
-        assert!(!tree.is_visible(safety) && !layout.is_open(Panel::Safety));
-        layout.toggle(Panel::Safety);
+        let safety = tree.tiles.find_pane(&PanelId::Safety).unwrap();
+        assert!(!tree.is_visible(safety) && !layout.is_open(PanelId::Safety));
+        layout.toggle(PanelId::Safety);
         let tree = layout.tree(size);
-        let safety = tree.tiles.find_pane(&Panel::Safety).unwrap();
+        let safety = tree.tiles.find_pane(&PanelId::Safety).unwrap();
         assert!(tree.active_tiles().contains(&safety));
         assert!(layout.places.is_none(), "opening and closing moves nothing");
     }

@@ -6,7 +6,7 @@
 
 mod arrangement;
 mod layout;
-mod panel;
+mod window;
 
 use egui::{
     Align, Button, Color32, Context, Frame, Layout as Flow, Margin, Rect, Response, RichText, ScrollArea, Stroke, Ui,
@@ -20,7 +20,10 @@ use nima_words::text;
 
 pub use arrangement::Arrangement;
 pub use layout::{LayoutNode, LayoutPart, PanelLayout};
-pub use panel::Panel;
+
+pub use window::window_ui;
+
+pub use crate::panel::PanelId;
 
 const TAB_BAR: f32 = 28.0;
 const GAP: f32 = 6.0;
@@ -33,17 +36,24 @@ const CLOSE: Vec2 = vec2(30.0, 26.0);
 #[derive(Debug, Default)]
 pub struct PanelTiles {
     /// The tiles, and their source: the layout, and the available size if the layout depends on it.
-    shown: Option<(Tree<Panel>, PanelLayout, Option<Vec2>)>,
+    shown: Option<(Tree<PanelId>, PanelLayout, Option<Vec2>)>,
     /// Tiles were moved or resized, or tabs selected, since the layout was last saved.
     moved: bool,
     turned: bool,
     /// Panels that were in front when the layout was last saved.
-    seen: Vec<Panel>,
+    seen: Vec<PanelId>,
+    /// Whether the window draws the panels that have windows of their own.
+    opens_windows: bool,
 }
 
 impl PanelTiles {
+    /// Creates the tiles of a window that draws the panels in windows of their own.
+    pub fn with_windows() -> Self {
+        Self { opens_windows: true, ..Self::default() }
+    }
+
     /// Shows the layout with these contents, and updates it when the operator changes it.
-    pub fn ui(&mut self, ui: &mut Ui, layout: &mut PanelLayout, contents: &mut dyn FnMut(&mut Ui, Panel)) {
+    pub fn ui(&mut self, ui: &mut Ui, layout: &mut PanelLayout, contents: &mut dyn FnMut(&mut Ui, PanelId)) {
         let size = layout.places.is_none().then(|| ui.available_size());
         if !self.shown.as_ref().is_some_and(|(_, shown, at)| shown == layout && *at == size) {
             let tree = layout.tree(ui.available_size());
@@ -52,19 +62,26 @@ impl PanelTiles {
         }
         let Some((tree, shown, at)) = &mut self.shown else { return };
         if tree.active_tiles().is_empty() {
-            ui.centered_and_justified(|ui| ui.label(weak(text::tiles::ALL_CLOSED.get())));
+            ui.centered_and_justified(|ui| ui.label(weak(text::tiles::ALL_CLOSED)));
             return;
         }
         let mut tiles = DeskContents {
             draw: contents,
+            opens_windows: self.opens_windows,
             closed: None,
+            opened: None,
             button: None,
             moved: &mut self.moved,
             turned: &mut self.turned,
         };
         tree.ui(&mut tiles, ui);
-        if let Some(panel) = tiles.closed {
+        let DeskContents { closed, opened, .. } = tiles;
+        if let Some(panel) = closed {
             layout.toggle(panel);
+            return;
+        }
+        if let Some(panel) = opened {
+            layout.toggle_window(panel);
             return;
         }
         // While a mouse button is down, the tiles are still being moved.
@@ -82,56 +99,40 @@ impl PanelTiles {
 }
 
 struct DeskContents<'a> {
-    draw: &'a mut dyn FnMut(&mut Ui, Panel),
-    closed: Option<Panel>,
+    draw: &'a mut dyn FnMut(&mut Ui, PanelId),
+    opens_windows: bool,
+    closed: Option<PanelId>,
+    /// The panel to open in a window of its own.
+    opened: Option<PanelId>,
     /// Place of the close button, which is drawn after the panel's title so that the keyboard reaches it.
-    button: Option<(Rect, Panel)>,
+    button: Option<(Rect, PanelId)>,
     moved: &'a mut bool,
     turned: &'a mut bool,
 }
 
-impl Behavior<Panel> for DeskContents<'_> {
-    fn pane_ui(&mut self, ui: &mut Ui, _tile: TileId, panel: &mut Panel) -> UiResponse {
+impl Behavior<PanelId> for DeskContents<'_> {
+    fn pane_ui(&mut self, ui: &mut Ui, _tile: TileId, panel: &mut PanelId) -> UiResponse {
         if let Some((place, _)) = self.button.take_if(|(_, of)| *of == *panel) {
             self.close_ui(ui, place, *panel);
         }
-        let rect = ui.available_rect_before_wrap();
-        let min = panel.min_size();
-        if panel.fills() {
-            let roomy = rect.width() >= min.x && rect.height() >= min.y;
-            if roomy {
-                (self.draw)(ui, *panel);
-            } else {
-                scrolled(ui, rect.size().max(min), |ui| (self.draw)(ui, *panel));
-            }
-        } else {
-            ui.painter().rect_filled(rect, 0.0, theme::now().card);
-            let frame = Frame::new().inner_margin(Margin::same(PADDING));
-            let width = (rect.width() - 2.0 * f32::from(PADDING)).max(min.x);
-            ScrollArea::both().id_salt(*panel).auto_shrink(false).show(ui, |ui| {
-                frame.show(ui, |ui| {
-                    ui.set_width(width);
-                    ui.spacing_mut().item_spacing.y = 4.0;
-                    (self.draw)(ui, *panel);
-                });
-            });
-        }
+        content_ui(ui, *panel, &mut |ui| (self.draw)(ui, *panel));
         UiResponse::None
     }
 
-    fn tab_title_for_pane(&mut self, panel: &Panel) -> WidgetText {
+    fn tab_title_for_pane(&mut self, panel: &PanelId) -> WidgetText {
         RichText::new(panel.title()).font(theme::strong(TITLE)).into()
     }
 
-    fn on_tab_button(&mut self, tiles: &mut Tiles<Panel>, tile: TileId, tab: Response) -> Response {
+    fn on_tab_button(&mut self, tiles: &mut Tiles<PanelId>, tile: TileId, tab: Response) -> Response {
         if tab.has_focus() {
             focus_ring(&tab.ctx, &tab);
         }
         let Some(panel) = tiles.get_pane(&tile) else { return tab };
+        tab.context_menu(|ui| self.menu_ui(ui, *panel));
         tab.on_hover_text(format!("{}\n{}", panel.meaning(), text::tiles::DRAG_HOVER.get()))
     }
 
-    fn top_bar_right_ui(&mut self, tiles: &Tiles<Panel>, ui: &mut Ui, _tile: TileId, tabs: &Tabs, _scroll: &mut f32) {
+    fn top_bar_right_ui(&mut self, tiles: &Tiles<PanelId>, ui: &mut Ui, _tile: TileId, tabs: &Tabs, _scroll: &mut f32) {
         let Some(panel) = tabs.active.and_then(|active| tiles.get_pane(&active)) else { return };
         let (place, _) = ui.allocate_exact_size(CLOSE, egui::Sense::hover());
         self.button = Some((place, *panel));
@@ -161,21 +162,21 @@ impl Behavior<Panel> for DeskContents<'_> {
         theme::now().panel
     }
 
-    fn tab_bg_color(&self, _visuals: &Visuals, _tiles: &Tiles<Panel>, _tile: TileId, state: &TabState) -> Color32 {
+    fn tab_bg_color(&self, _visuals: &Visuals, _tiles: &Tiles<PanelId>, _tile: TileId, state: &TabState) -> Color32 {
         if state.active { theme::now().card } else { Color32::TRANSPARENT }
     }
 
     fn tab_outline_stroke(
         &self,
         _visuals: &Visuals,
-        _tiles: &Tiles<Panel>,
+        _tiles: &Tiles<PanelId>,
         _tile: TileId,
         _state: &TabState,
     ) -> Stroke {
         Stroke::NONE
     }
 
-    fn tab_text_color(&self, _visuals: &Visuals, _tiles: &Tiles<Panel>, _tile: TileId, state: &TabState) -> Color32 {
+    fn tab_text_color(&self, _visuals: &Visuals, _tiles: &Tiles<PanelId>, _tile: TileId, state: &TabState) -> Color32 {
         if state.active { theme::now().text } else { theme::now().text_weak }
     }
 
@@ -201,8 +202,19 @@ impl Behavior<Panel> for DeskContents<'_> {
 }
 
 impl DeskContents<'_> {
+    /// Draws the menu of a tab.
+    fn menu_ui(&mut self, ui: &mut Ui, panel: PanelId) {
+        let entry = |ui: &mut Ui, name: &str| ui.add(Button::new(name).min_size(vec2(200.0, 26.0))).clicked();
+        if self.opens_windows && entry(ui, text::tiles::OPEN_WINDOW.get()) {
+            self.opened = Some(panel);
+        }
+        if entry(ui, &text::tiles::close(panel.title())) {
+            self.closed = Some(panel);
+        }
+    }
+
     /// Draws the close button of a panel, in the tab bar.
-    fn close_ui(&mut self, ui: &mut Ui, place: Rect, panel: Panel) {
+    fn close_ui(&mut self, ui: &mut Ui, place: Rect, panel: PanelId) {
         let mut bar = ui.new_child(UiBuilder::new().max_rect(place).id_salt("close"));
         bar.set_clip_rect(place);
         let button = Button::new(RichText::new("\u{d7}").font(theme::regular(16.0))).frame_when_inactive(false);
@@ -213,6 +225,33 @@ impl DeskContents<'_> {
             self.closed = Some(panel);
         }
     }
+}
+
+/// Draws a panel over the available space, with scroll bars if it is larger.
+pub fn content_ui(ui: &mut Ui, panel: PanelId, draw: &mut dyn FnMut(&mut Ui)) {
+    let rect = ui.available_rect_before_wrap();
+    let min = panel.min_size();
+    if panel.fills() {
+        if rect.width() >= min.x && rect.height() >= min.y {
+            draw(ui);
+        } else {
+            scrolled(ui, rect.size().max(min), draw);
+        }
+        return;
+    }
+    ui.painter().rect_filled(rect, 0.0, theme::now().card);
+    // The scroll bar floats over the panel.
+    let scroll = ui.spacing().scroll;
+    let bar = f32::from(PADDING).max(scroll.bar_width + scroll.bar_inner_margin);
+    let frame = Frame::new().inner_margin(Margin { right: bar as i8, ..Margin::same(PADDING) });
+    let width = (rect.width() - f32::from(PADDING) - bar).max(min.x);
+    ScrollArea::both().id_salt(panel).auto_shrink(false).show(ui, |ui| {
+        frame.show(ui, |ui| {
+            ui.set_width(width);
+            ui.spacing_mut().item_spacing.y = 4.0;
+            draw(ui);
+        });
+    });
 }
 
 /// Shows a panel that is larger than its tile with scroll bars.

@@ -72,12 +72,12 @@ impl Alarms {
                     ui.scope_builder(of_alarm, |ui| {
                         let seen = ui.add_enabled(unseen, button(ui, text::alarms::ACKNOWLEDGE.get()));
                         let seen = seen
-                            .on_hover_text(text::alarms::ACKNOWLEDGE_HOVER.get())
-                            .on_disabled_hover_text(text::alarms::ACKNOWLEDGED_HOVER.get());
+                            .on_hover_text(text::alarms::ACKNOWLEDGE_HOVER)
+                            .on_disabled_hover_text(text::alarms::ACKNOWLEDGED_HOVER);
                         acknowledged = seen.clicked();
                     });
                     let all = ui.add(button(ui, text::alarms::SHOW_ALL.get()));
-                    opened |= all.on_hover_text(text::alarms::SHOW_ALL_HOVER.get()).clicked();
+                    opened |= all.on_hover_text(text::alarms::SHOW_ALL_HOVER).clicked();
                 });
             });
         });
@@ -93,17 +93,17 @@ impl Alarms {
             Window::new(text::alarms::LIST_TITLE.get()).open(&mut self.list).constrain_to(room).collapsible(false);
         let size = vec2(560.0, (room.height() - 90.0).min(460.0));
         window.default_pos(room.center_top() + vec2(-280.0, 16.0)).fixed_size(size).show(ctx, |ui| {
-            ui.label(small(text::alarms::LIST_NOTE.get()));
+            ui.label(small(text::alarms::LIST_NOTE));
             let any = self.log.newest_first().next().is_some();
-            let copy = ui.add_enabled(any, Button::new(text::alarms::COPY.get()));
-            let copy = copy.on_hover_text(text::alarms::COPY_HOVER.get());
-            if copy.on_disabled_hover_text(text::alarms::LIST_EMPTY.get()).clicked() {
+            let copy = ui.add_enabled(any, Button::new(text::alarms::COPY));
+            let copy = copy.on_hover_text(text::alarms::COPY_HOVER);
+            if copy.on_disabled_hover_text(text::alarms::LIST_EMPTY).clicked() {
                 ui.copy_text(self.log.active_first().map(entry_text).collect());
             }
             ui.add_space(4.0);
             ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
                 if self.log.newest_first().next().is_none() {
-                    ui.label(weak(text::alarms::LIST_EMPTY.get()));
+                    ui.label(weak(text::alarms::LIST_EMPTY));
                 }
                 for entry in self.log.active_first() {
                     entry_ui(ui, entry);
@@ -129,8 +129,8 @@ fn quiet_ui(ui: &mut Ui, next: &str) {
         ui.spacing_mut().item_spacing.y = 0.0;
         ui.spacing_mut().interact_size.y = 0.0;
         ui.horizontal(|ui| {
-            ui.label(RichText::new(text::top_bar::NIMA_CONSOLE.get()).font(theme::strong(15.0)));
-            ui.label(small(text::top_bar::RESEARCH_ONLY.get()));
+            ui.label(RichText::new(text::top_bar::NIMA_CONSOLE).font(theme::strong(15.0)));
+            ui.label(small(text::top_bar::RESEARCH_ONLY));
         });
         let font = fitting(ui.painter(), next, theme::regular(13.0), room);
         ui.add(Label::new(RichText::new(next).font(font).color(theme::now().text_weak)).truncate());

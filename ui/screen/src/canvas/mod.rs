@@ -11,7 +11,7 @@ mod surface;
 
 use std::{collections::HashMap, sync::Arc};
 
-use egui::{Color32, Context, FullOutput, Rect, Shape, epaint::ClippedShape, pos2};
+use egui::{Color32, Context, FullOutput, Rect, Shape, Ui, ViewportId, epaint::ClippedShape, pos2};
 
 pub use surface::{Surface, renderer_of};
 
@@ -23,9 +23,18 @@ const RECTANGLES_MAX: usize = 24;
 /// The whole window is drawn once in this many frames, so that the display never depends on comparisons alone.
 const WHOLE_EVERY: u64 = 150;
 
-/// Compares each frame with the previous one.
+/// Compares each frame with the previous one, for each window.
 #[derive(Debug)]
 pub struct Canvas {
+    surface: Arc<Surface>,
+    windows: HashMap<ViewportId, WindowCanvas>,
+    /// The window whose frame ends, and its rectangle: the output names neither.
+    ends: (ViewportId, Rect),
+    background: fn() -> Color32,
+}
+
+#[derive(Debug)]
+struct WindowCanvas {
     surface: Arc<Surface>,
     /// The shapes on the surface. Kept alive, so that no address that is part of a hash is reused.
     before: Vec<ClippedShape>,
@@ -33,7 +42,6 @@ pub struct Canvas {
     ground: CanvasGround,
     /// Number of the frame that `before` belongs to.
     frame: u64,
-    background: fn() -> Color32,
 }
 
 /// Properties of the window as a whole.
@@ -45,10 +53,24 @@ struct CanvasGround {
 }
 
 impl Canvas {
-    /// Keeps the image on this surface, over this background.
+    /// Keeps the image of the main window on this surface, over this background.
     pub fn new(surface: Arc<Surface>, background: fn() -> Color32) -> Self {
+        Self { surface, windows: HashMap::new(), ends: (ViewportId::ROOT, Rect::NOTHING), background }
+    }
+
+    /// Returns the image in the window whose frame ends.
+    fn window(&mut self) -> &mut WindowCanvas {
+        let (id, _) = self.ends;
+        let main = &self.surface;
+        let surface = || if id == ViewportId::ROOT { Arc::clone(main) } else { main.of_another_window() };
+        self.windows.entry(id).or_insert_with(|| WindowCanvas::new(surface()))
+    }
+}
+
+impl WindowCanvas {
+    fn new(surface: Arc<Surface>) -> Self {
         let ground = CanvasGround { rect: Rect::NOTHING, pixels_per_point: 0.0, background: Color32::TRANSPARENT };
-        Self { surface, before: Vec::new(), prints: Vec::new(), ground, frame: 0, background }
+        Self { surface, before: Vec::new(), prints: Vec::new(), ground, frame: 0 }
     }
 
     /// Returns the parts of the window that these shapes change, in points.
@@ -79,38 +101,49 @@ impl egui::Plugin for Canvas {
         "canvas"
     }
 
+    fn on_end_pass(&mut self, ui: &mut Ui) {
+        self.ends = (ui.ctx().viewport_id(), ui.ctx().viewport_rect());
+    }
+
     fn output_hook(&mut self, ctx: &Context, output: &mut FullOutput) {
-        if self.surface.is_refused() {
-            return;
-        }
-        let ground = CanvasGround {
-            rect: ctx.viewport_rect(),
-            pixels_per_point: output.pixels_per_point,
-            background: (self.background)(),
-        };
+        let (_, rect) = self.ends;
+        let ground = CanvasGround { rect, pixels_per_point: output.pixels_per_point, background: (self.background)() };
         let shapes = std::mem::take(&mut output.shapes);
-        let prints: Vec<u64> = shapes.iter().map(print::of).collect();
-        let rects = self.changed(&shapes, &prints, ground);
-        let area: f32 = rects.iter().map(Rect::area).sum();
-        self.frame += 1;
+        output.shapes = self.window().frame(ctx, shapes, ground);
+    }
+}
+
+impl WindowCanvas {
+    /// Returns the shapes that change the image in the window to these.
+    fn frame(&mut self, ctx: &Context, shapes: Vec<ClippedShape>, ground: CanvasGround) -> Vec<ClippedShape> {
         let callback = |work| {
             let shape = Shape::Callback(egui::PaintCallback { rect: ground.rect, callback: Arc::new(work) });
             ClippedShape::new(ground.rect, shape)
         };
-        let fraction = f64::from(area / ground.rect.area().max(1.0));
         let size = ground.rect.size() * ground.pixels_per_point;
+        if self.surface.is_refused() {
+            // Another window may have left its own framebuffer bound, so the clearing of eframe may have missed this one.
+            let begin = self.surface.begin(size, true, &[ground.rect], ground.background);
+            return std::iter::once(callback(begin)).chain(shapes).collect();
+        }
+        let prints: Vec<u64> = shapes.iter().map(print::of).collect();
+        let rects = self.changed(&shapes, &prints, ground);
+        let area: f32 = rects.iter().map(Rect::area).sum();
+        self.frame += 1;
+        let fraction = f64::from(area / ground.rect.area().max(1.0));
         let begin = self.surface.begin(size, rects == [ground.rect], &rects, ground.background);
-        output.shapes.push(callback(begin));
+        let mut drawn = vec![callback(begin)];
         for rect in rects {
             let touching = shapes.iter().filter(|shape| bounds(shape).intersects(rect));
-            output.shapes.extend(
+            drawn.extend(
                 touching.map(|shape| ClippedShape { clip_rect: shape.clip_rect.intersect(rect), ..shape.clone() }),
             );
         }
-        output.shapes.push(callback(self.surface.end(ctx, self.frame, fraction, ground.background)));
+        drawn.push(callback(self.surface.end(ctx, self.frame, fraction, ground.background)));
         self.before = shapes;
         self.prints = prints;
         self.ground = ground;
+        drawn
     }
 }
 
@@ -194,6 +227,23 @@ mod tests {
     fn found(before: &[ClippedShape], now: &[ClippedShape]) -> Option<Vec<Rect>> {
         let prints = |shapes: &[ClippedShape]| shapes.iter().map(print::of).collect::<Vec<_>>();
         differences((before, &prints(before)), (now, &prints(now)))
+    }
+
+    #[test]
+    fn a_window_is_not_compared_with_another_one() {
+        let rect = Rect::from_min_size(pos2(0.0, 0.0), vec2(1000.0, 1000.0));
+        let ground = CanvasGround { rect, pixels_per_point: 1.0, background: Color32::BLACK };
+        let mut canvas = Canvas::new(Arc::default(), || Color32::BLACK);
+        let [main, other] = [ViewportId::ROOT, ViewportId::from_hash_of("other")];
+        for (id, colour) in [(main, Color32::RED), (other, Color32::BLUE), (main, Color32::RED)] {
+            canvas.ends = (id, rect);
+            drop(canvas.window().frame(&Context::default(), vec![square(0.0, 0.0, colour)], ground));
+        }
+        let prints = |id| canvas.windows[&id].prints.clone();
+        assert_eq!(prints(main), [print::of(&square(0.0, 0.0, Color32::RED))]);
+        assert_eq!(prints(other), [print::of(&square(0.0, 0.0, Color32::BLUE))]);
+        assert_eq!([main, other].map(|id| canvas.windows[&id].frame), [2, 1]);
+        assert!(!Arc::ptr_eq(&canvas.windows[&main].surface, &canvas.windows[&other].surface));
     }
 
     #[test]

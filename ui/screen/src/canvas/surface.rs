@@ -1,4 +1,4 @@
-//! Keeps the window's image from frame to frame.
+//! Keeps the image of a window from frame to frame.
 //!
 //! Mesa's software renderer copies the image to the screen and keeps it, so the next frame needs to change only parts
 //! of it. OpenGL does not guarantee that, so each frame marks one pixel (blue changed by 1/255) and the next one checks
@@ -32,6 +32,8 @@ pub struct Surface {
     /// Fraction of the window that was redrawn in the last frame, in millionths.
     fraction: AtomicU64,
     refused: AtomicBool,
+    /// The other windows of this context.
+    others: Mutex<Vec<Arc<Self>>>,
 }
 
 #[derive(Debug, Default)]
@@ -63,6 +65,13 @@ impl Surface {
     pub fn where_it_pays(gl: &glow::Context) -> Option<Arc<Self>> {
         let name = renderer_of(gl).to_lowercase();
         SOFTWARE.iter().any(|word| name.contains(word)).then(Arc::default)
+    }
+
+    /// Returns the surface of another window of the same context, released with this one.
+    pub(super) fn of_another_window(&self) -> Arc<Self> {
+        let other = Arc::<Self>::default();
+        self.others.lock().unwrap_or_else(PoisonError::into_inner).push(Arc::clone(&other));
+        other
     }
 
     /// Returns whether partial drawing was given up.
@@ -137,6 +146,9 @@ impl Surface {
 
     /// Releases all objects on the GPU.
     pub fn destroy(&self, gl: &glow::Context) {
+        for other in self.others.lock().unwrap_or_else(PoisonError::into_inner).drain(..) {
+            other.destroy(gl);
+        }
         let mut inner = self.inner.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(sink) = inner.sink.take() {
             // SAFETY: the objects were created in this context and are not used again.

@@ -116,7 +116,7 @@ impl Extras {
         let place = Rect::from_min_size(rect.right_bottom() - vec2(330.0, 46.0), vec2(72.0, 34.0)).intersect(rect);
         ui.scope_builder(UiBuilder::new().max_rect(place), |ui| {
             let on = *self != Self::default();
-            let button = Button::selectable(on, SHOW.get()).frame_when_inactive(true).min_size(place.size());
+            let button = Button::selectable(on, SHOW).frame_when_inactive(true).min_size(place.size());
             // Stays open until a click elsewhere, because users often need several switches.
             let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
             let menu = MenuButton::from_button(button).config(config);
@@ -126,7 +126,7 @@ impl Extras {
                     ui.checkbox(self.of(switch), switch.name()).on_hover_text(switch.meaning());
                 }
             });
-            response.on_hover_text(SHOW_MEANING.get());
+            response.on_hover_text(SHOW_MEANING);
         });
     }
 

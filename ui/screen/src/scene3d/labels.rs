@@ -3,7 +3,10 @@
 use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Vec2, pos2, vec2};
 use nalgebra::Vector3;
 use nima_machine::{messages::Tick, rig::Side};
-use nima_words::{report_text::newtons, text};
+use nima_words::{
+    report_text::{newtons, side_name},
+    text,
+};
 
 use super::{CameraLook, SceneCamera, SceneView, stage, stage::StageArm, training};
 use crate::{
@@ -33,7 +36,9 @@ pub(super) fn labels(
     let at = |point_m: Vector3<f32>| camera.project(&point_m, rect);
     let StageArm { trocar_m, pose, side, .. } = arm;
     // Keep clear of the readings at the top left.
-    let free = |place: &Pos2| !figures || place.y > rect.top() + 116.0 || place.x > rect.left() + readings_width(live);
+    let free = |place: &Pos2| {
+        !figures || place.y > rect.top() + READINGS_HEIGHT || place.x > rect.left() + readings_width(live)
+    };
     let along = (trocar_m - pose.tip_m).try_normalize(1e-4).unwrap_or_else(Vector3::z);
     let (align, shift) = match side {
         Side::Right => (Align2::LEFT_CENTER, vec2(20.0, 0.0)),
@@ -88,14 +93,6 @@ pub(super) fn labels(
     }
 }
 
-/// Returns the name of a hand.
-pub fn side_name(side: Side) -> &'static str {
-    match side {
-        Side::Right => text::common::RIGHT.get(),
-        Side::Left => text::common::LEFT.get(),
-    }
-}
-
 /// Draws text with a dark outline, readable on any background.
 pub(super) fn label(painter: &Painter, place: Pos2, align: Align2, text: &str, font: FontId, colour: Color32) {
     for shift in [vec2(1.0, 1.0), vec2(-1.0, 1.0), vec2(0.0, -1.0)] {
@@ -107,6 +104,9 @@ pub(super) fn label(painter: &Painter, place: Pos2, align: Align2, text: &str, f
 /// Positions of the columns of the readings, from the left of the view, points.
 const COLUMN: f32 = 226.0;
 const COLUMNS_APART: f32 = 112.0;
+
+/// Height of the large figures at the upper left.
+const READINGS_HEIGHT: f32 = 116.0;
 
 /// Returns the width of the readings with their distance from the left of the view, points.
 pub(super) fn readings_width(live: &LiveState) -> f32 {
@@ -232,6 +232,15 @@ pub(super) fn axes(painter: &Painter, rect: Rect, camera: &SceneCamera) {
 /// Width of the buttons at the lower right, with the margins of the hint.
 const BUTTONS: f32 = 360.0;
 
+/// Returns what mouse and keys do in this view while no instrument is driven: the endoscope's camera does not turn.
+fn controls(live: &LiveState, view: &SceneView) -> String {
+    let camera = match view.look {
+        CameraLook::Endoscope => text::field::RESET_VIEW.get(),
+        CameraLook::Free => text::field::VIEW_HOVER.get(),
+    };
+    if view.lead.restarts(live) { text::field::with_restart(camera) } else { camera.to_owned() }
+}
+
 /// Draws the hint at the bottom: possible actions, or the reason why nothing is drawn.
 pub(super) fn hint(painter: &Painter, rect: Rect, live: &LiveState, view: &SceneView) {
     let (words, colour) = match &view.problem {
@@ -241,15 +250,20 @@ pub(super) fn hint(painter: &Painter, rect: Rect, live: &LiveState, view: &Scene
         }
         // Not during a study trial, where it would reveal the mode.
         None if view.arrows && training::needs_another_mode(live) => {
-            (format!("{}\n{}", text::training::CHOOSE_MATCHED.get(), text::field::VIEW_HOVER.get()), theme::DARK.text)
+            (format!("{}\n{}", text::training::CHOOSE_MATCHED.get(), controls(live, view)), theme::DARK.text)
         }
-        None if view.look == CameraLook::Endoscope => (text::field::RESET_VIEW.get().to_owned(), theme::DARK.text_weak),
-        None => (text::field::VIEW_HOVER.get().to_owned(), theme::DARK.text_weak),
+        None => (controls(live, view), theme::DARK.text_weak),
     };
     let font = theme::regular(12.5);
     // A hint that would reach the buttons is drawn above them.
     let reaches = width_of(painter, &words, font.clone()) > rect.width() - BUTTONS;
     let up = if reaches { 54.0 } else { 12.0 };
     let font = fitting(painter, &words, font, rect.width() - 32.0);
+    // In a low view, the figures need the room more than a hint that only helps.
+    let lines = words.lines().count() as f32;
+    let is_weak = colour == theme::DARK.text_weak;
+    if is_weak && view.figures && rect.height() < READINGS_HEIGHT + up + lines * 1.3 * font.size {
+        return;
+    }
     label(painter, rect.left_bottom() + vec2(16.0, -up), Align2::LEFT_BOTTOM, &words, font, colour);
 }

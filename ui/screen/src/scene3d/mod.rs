@@ -27,7 +27,8 @@ use nima_machine::rig::{SIDES, Side};
 use nima_simulation::{Worlds, scene::Scene};
 use nima_words::text;
 
-pub use self::{camera::SceneCamera, labels::side_name};
+pub use self::camera::SceneCamera;
+pub use nima_words::report_text::side_name;
 
 pub use self::labels::tip_bars;
 
@@ -43,6 +44,9 @@ use self::{
     training::TrialClock,
 };
 use crate::{live::LiveState, outbox::Outbox, theme};
+
+/// Height of a view from which its axes are drawn: in a lower one they would cover the gauges.
+const AXES_FROM: f32 = 200.0;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum CameraLook {
@@ -180,6 +184,7 @@ pub fn scene_ui(ui: &mut Ui, live: &LiveState, view: &mut SceneView, outbox: &mu
     if view.figures {
         view.extras.ui(ui, rect);
     }
+    view.lead.restart_by_key(ui, live, outbox);
     let leading = offered && view.lead.ui(ui, rect, &response, live, &camera, outbox);
     if view.look == CameraLook::Free {
         turn(ui, live, view, &response, leading);
@@ -218,7 +223,7 @@ pub fn scene_ui(ui: &mut Ui, live: &LiveState, view: &mut SceneView, outbox: &mu
     if view.figures {
         readings(&painter, rect, live);
     }
-    if view.look == CameraLook::Free {
+    if view.look == CameraLook::Free && rect.height() > AXES_FROM {
         axes(&painter, rect, &camera);
     }
     hint(&painter, rect, live, view);

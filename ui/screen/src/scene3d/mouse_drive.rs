@@ -142,6 +142,7 @@ impl MouseDrive {
     ) -> bool {
         let runs = matches!(live.state(), LoopState::Idle | LoopState::Engaged) && !live.is_shown_only();
         if self.is_on() && !runs {
+            // A loop that has stopped guides no hand, so there is nothing to send.
             self.forget();
         }
         let place = Rect::from_min_size(rect.right_bottom() - vec2(250.0, 46.0), vec2(150.0, 34.0));
@@ -174,6 +175,25 @@ impl MouseDrive {
         self.is_on()
     }
 
+    /// Restarts the trial by its key, whoever drives the instruments; a participant of a study cannot.
+    pub(super) fn restart_by_key(&mut self, ui: &Ui, live: &LiveState, outbox: &mut Outbox) {
+        let runs = matches!(live.state(), LoopState::Idle | LoopState::Engaged);
+        if !self.restarts(live) || !runs || ui.ctx().text_edit_focused() {
+            return;
+        }
+        if ui.input(|input| input.modifiers.is_none() && input.key_pressed(Key::N)) {
+            self.begins = true;
+            outbox.push(Command::Task(self.side, TaskAction::Begin));
+        }
+    }
+
+    /// Returns whether the scene has a trial that the operator can restart.
+    pub(super) fn restarts(self, live: &LiveState) -> bool {
+        let scene = &live.scene;
+        let has_trial = scene.is_searched() || scene.wire.is_some() || scene.objects.is_some();
+        has_trial && !self.is_held && !live.is_shown_only()
+    }
+
     /// Applies mouse and keys in their order: at a low frame rate many of them arrive at once.
     fn steer(
         &mut self,
@@ -186,6 +206,7 @@ impl MouseDrive {
     ) {
         let before_m = self.position_m;
         let takes = view.contains_pointer() || view.is_pointer_button_down_on();
+        // While a person writes, the keys belong to the text.
         let writes = ui.ctx().text_edit_focused();
         for event in ui.input(|input| input.events.clone()) {
             match event {
@@ -215,7 +236,6 @@ impl MouseDrive {
 
     fn key(&mut self, key: Key, repeat: bool, live: &LiveState, camera: &SceneCamera, outbox: &mut Outbox) {
         let is_searched = live.scene.is_searched();
-        let on_wire = live.scene.wire.is_some();
         match key {
             Key::ArrowLeft => self.step(-camera.right() * STEP_M),
             Key::ArrowRight => self.step(camera.right() * STEP_M),
@@ -223,15 +243,12 @@ impl MouseDrive {
             Key::ArrowDown => self.step(-camera.away() * STEP_M),
             Key::PageUp => self.step(Vector3::z() * STEP_M),
             Key::PageDown => self.step(-Vector3::z() * STEP_M),
+            // A key that is held repeats movements only.
             _ if repeat => {}
             Key::H => self.change_side(),
             Key::G if live.scene.objects.is_some() => self.jaws(live, outbox),
             Key::X if is_searched => outbox.push(Command::Task(self.side, TaskAction::Mark)),
             Key::D if is_searched => outbox.push(Command::Task(self.side, TaskAction::End)),
-            Key::N if (is_searched || on_wire || live.scene.objects.is_some()) && !self.is_held => {
-                self.begins = true;
-                outbox.push(Command::Task(self.side, TaskAction::Begin));
-            }
             _ => {}
         }
     }

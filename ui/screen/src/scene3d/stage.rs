@@ -91,6 +91,7 @@ impl Dents {
 
     /// Returns the upward normal of the deformed surface.
     fn normal(&self, x: f32, y: f32) -> Vector3<f32> {
+        // Small compared to the width of a dent, m.
         const STEP: f32 = 2e-4;
         let slope = |dx, dy| (self.lift_m(x + dx, y + dy) - self.lift_m(x - dx, y - dy)) / (2.0 * STEP);
         Vector3::new(-slope(STEP, 0.0), -slope(0.0, STEP), 1.0).normalize()

@@ -251,19 +251,10 @@ mod tests {
         let counted = "12 to go, passed 3, placed 2, dropped 1";
         assert_eq!(report(&training, None, None), format!("Rings: {counted}"));
         let left = |reach| report(&training, Some(Side::Left), reach);
-        assert_eq!(left(None), format!("Left instrument. Rings: {counted} (N restarts)"));
-        assert_eq!(
-            left(Some(JawReach::Held(4))),
-            format!("Left instrument holds a ring. Rings: {counted} (N restarts)")
-        );
-        assert_eq!(
-            left(Some(JawReach::Above(4))),
-            format!("Left instrument above a ring. Rings: {counted} (N restarts)")
-        );
-        assert_eq!(
-            left(Some(JawReach::Between(4))),
-            format!("Left instrument around a ring. Rings: {counted} (N restarts)")
-        );
+        assert_eq!(left(None), format!("Left instrument. Rings: {counted}"));
+        assert_eq!(left(Some(JawReach::Held(4))), format!("Left instrument holds a ring. Rings: {counted}"));
+        assert_eq!(left(Some(JawReach::Above(4))), format!("Left instrument above a ring. Rings: {counted}"));
+        assert_eq!(left(Some(JawReach::Between(4))), format!("Left instrument around a ring. Rings: {counted}"));
         let done = Training { passed: 12, placed: 12, ended: true, ..Training::default() };
         assert_eq!(report(&done, None, None), "Task done. Rings: passed 12, placed 12, dropped 0");
     }

@@ -243,7 +243,10 @@ mod tests {
         let ctx = egui::Context::default();
         apply(&ctx);
         ctx.run_ui(egui::RawInput::default(), |_| {}).textures_delta.clear();
-        for font in [regular(12.5), regular(13.0), regular(14.0), strong(13.0), strong(14.0), strong(15.0)] {
+        // The sizes of the window.
+        let light = [11.0, 11.5, 12.0, 12.5, 13.0, 14.0, 15.0, 16.0].map(regular);
+        let heavy = [12.0, 12.5, 13.0, 13.5, 14.0, 15.0, 16.0, 17.0, 18.0, 19.0].map(strong);
+        for font in light.into_iter().chain(heavy) {
             let darkest = ctx.fonts_mut(|fonts| {
                 let galley = fonts.layout_no_wrap("i".to_owned(), font.clone(), Color32::WHITE);
                 let place = galley.rows[0].glyphs[0].uv_rect;

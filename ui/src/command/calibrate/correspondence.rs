@@ -9,7 +9,7 @@ use nima_core::calibration::{
     correspondence::{CorrespondenceOptions, CorrespondenceRecord, CorrespondenceReport, CorrespondenceSolution, fit},
 };
 use nima_recording::{
-    csv::read_pairs,
+    csv::{ColumnMapping, PAIRS, read_mapped_pairs},
     store::{self, utc_now},
 };
 use nima_report::output;
@@ -20,6 +20,10 @@ pub(in crate::command) struct CorrespondenceArguments {
     /// CSV file with `f1x_n, f1y_n, f1z_n` (wrist, gravity-free), `f2x_n, f2y_n, f2z_n` (tissue) and, if the wrist turned
     /// between the pushes, `qw, qx, qy, qz` (`s1_from_c`)
     pairs: PathBuf,
+    /// Column of a quantity: `f1xyz=A,B,C`, `f2xyz=A,B,C`, `rpy=A,B,C` (roll, pitch, yaw, degrees), `rxyz=A,B,C` (rotation vector, rad),
+    /// each with `*SCALE`; an unknown name lists all; may be repeated
+    #[arg(long, value_name = "NAME=COLUMN[*SCALE]")]
+    map: Vec<String>,
     /// Write the calibration to this file and keep the previous one as F.toml.previous (replaces an existing file and keeps
     /// its permissions; follows a link; rejects the input file, a device or a pipe)
     #[arg(long, value_name = "F.toml")]
@@ -51,7 +55,8 @@ pub(super) fn run(arguments: &CorrespondenceArguments) -> anyhow::Result<()> {
     if let Some(out) = &arguments.out {
         super::check(out, &arguments.pairs)?;
     }
-    let pairs = read_pairs(&arguments.pairs)?;
+    let mapping = ColumnMapping::parse_for(&PAIRS, &arguments.map)?;
+    let pairs = read_mapped_pairs(&arguments.pairs, &mapping)?;
     let options = CorrespondenceOptions { flip_s2: arguments.flip_s2, ..CorrespondenceOptions::default() };
     let report = fit(&pairs, &options).with_context(|| format!("cannot use {}", arguments.pairs.display()))?;
     if arguments.json { output::json(&report) } else { output::line(&as_text(&report)) }?;

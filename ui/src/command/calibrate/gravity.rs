@@ -8,7 +8,10 @@ use nima_core::calibration::{
     Residuals, Verdict,
     gravity::{GravityReport, GravitySettings, ModelKind, fit},
 };
-use nima_recording::{csv::read_poses, store};
+use nima_recording::{
+    csv::{ColumnMapping, POSES, read_mapped_poses},
+    store,
+};
 use nima_report::output;
 use nima_words::report_text::ShortText as _;
 
@@ -23,6 +26,10 @@ enum GravityModelChoice {
 pub(in crate::command) struct GravityArguments {
     /// CSV file, one still pose per row: `fx_n,fy_n,fz_n[,tx_nm,ty_nm,tz_nm]` with `ax,ay,az` (m/s^2) or `qw,qx,qy,qz` (base from sensor)
     poses: PathBuf,
+    /// Column of a quantity: `fxyz=A,B,C`, `rpy=A,B,C` (roll, pitch, yaw, degrees), `rxyz=A,B,C` (rotation vector, rad), `qwxyz=A,B,C,D`,
+    /// each with `*SCALE`; an unknown name lists all; may be repeated
+    #[arg(long, value_name = "NAME=COLUMN[*SCALE]")]
+    map: Vec<String>,
     /// Write an accepted calibration to this TOML file and keep the previous one as F.toml.previous (replaces an existing
     /// file and keeps its permissions; follows a link; rejects the input file, a device or a pipe)
     #[arg(long, value_name = "F.toml")]
@@ -33,6 +40,9 @@ pub(in crate::command) struct GravityArguments {
     /// Name of the tool on the sensor
     #[arg(long, default_value = "unknown")]
     tool: String,
+    /// Mass of the tool as weighed, kg; the fitted mass must agree with it, which reveals forces in other units
+    #[arg(long, value_name = "KG")]
+    mass_kg: Option<f64>,
     /// The accelerometer's vector points down at rest, not up
     #[arg(long)]
     flip_imu: bool,
@@ -54,14 +64,18 @@ pub(in crate::command) fn run(arguments: &GravityArguments) -> anyhow::Result<()
     if let Some(out) = &arguments.out {
         super::check(out, &arguments.poses)?;
     }
-    let poses = read_poses(&arguments.poses)?;
+    let mapping = ColumnMapping::parse_for(&POSES, &arguments.map)?;
+    let poses = read_mapped_poses(&arguments.poses, &mapping)?;
     let model = arguments.model.map(|model| match model {
         GravityModelChoice::Physical => ModelKind::Physical,
         GravityModelChoice::Gain => ModelKind::Gain,
         GravityModelChoice::Paper => ModelKind::Paper,
     });
-    let settings =
-        GravitySettings { model, imu_sign: if arguments.flip_imu { -1 } else { 1 }, ..GravitySettings::default() };
+    if let Some(mass_kg) = arguments.mass_kg.filter(|mass_kg| !(*mass_kg > 0.0 && *mass_kg <= 10.0)) {
+        bail!("--mass-kg {mass_kg} is outside its range: enter the mass in kg, above 0 and at most 10");
+    }
+    let imu_sign = if arguments.flip_imu { -1 } else { 1 };
+    let settings = GravitySettings { model, imu_sign, weighed_kg: arguments.mass_kg, ..GravitySettings::default() };
     let report = fit(&poses, &settings).with_context(|| format!("poses {}", arguments.poses.display()))?;
     let accepted = report.verdict == Verdict::Accepted;
     if accepted || arguments.override_by.is_some() {

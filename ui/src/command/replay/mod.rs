@@ -15,14 +15,14 @@ use nima_core::{
     limits::{DELAY_S, GAIN, Limits},
 };
 use nima_report::output;
-use nima_screen::{recording::PROGRAM, stderr::print_line};
+use nima_screen::recording::PROGRAM;
 use nima_session::{
     file::RecordedFile,
     replay::{Differs, Journal, JournalGap, ReplayError, ReplayOutcome, StepsMessages, WhatIfChange, verify},
 };
 use serde::Serialize;
 
-use super::time_range::TimeRange;
+use super::{missing::report_missing, time_range::TimeRange};
 
 #[derive(Debug, Args)]
 pub(super) struct ReplayArguments {
@@ -66,9 +66,7 @@ pub(super) fn run(arguments: &ReplayArguments) -> anyhow::Result<()> {
         bail!("--out requires a change: add --mode, --delay-ms or --gain");
     }
     let file = RecordedFile::open(session)?;
-    for note in file.reader().notes() {
-        print_line(format_args!("nima: {note}"));
-    }
+    report_missing(session, file.reader());
     let stretch_s = stretch.of(session, file.reader())?;
     let journal = || file.journal();
     if change.is_any() {

@@ -13,6 +13,7 @@ use std::{
 
 use anyhow::{Context as _, bail};
 use clap::Args;
+use nima_calibrations::active_calibrations::ActiveCalibrations;
 use nima_core::{calibration::gravity::GravityDrift, impedance::Mode};
 use nima_endoscope::FrameQueue;
 use nima_machine::{
@@ -30,7 +31,6 @@ use nima_screen::{
 };
 use nima_session::sinks::Destination;
 use nima_simulation::{ObjectFeed, SimulationPlan, scene::Scene};
-use nima_wizards::active_calibrations::ActiveCalibrations;
 use nima_words::report_text::{Remedy as _, drift as drift_text};
 use serde::Serialize;
 use serde_json::Value;
@@ -115,10 +115,14 @@ impl RunArguments {
     }
 }
 
-/// Returns a finite number of seconds above zero.
+/// Longest run, s: almost four months.
+const SECONDS_MAX: f64 = 1e7;
+
+/// Returns a number of seconds above zero.
 pub(crate) fn positive_seconds(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
-        Ok(seconds) if seconds > 0.0 && seconds <= 1e7 => Ok(seconds),
+        Ok(seconds) if seconds > 0.0 && seconds <= SECONDS_MAX => Ok(seconds),
+        Ok(seconds) if seconds > SECONDS_MAX => Err(format!("enter at most {SECONDS_MAX} seconds")),
         _ => Err("enter a number of seconds above 0".to_owned()),
     }
 }
@@ -224,9 +228,16 @@ pub(crate) fn run_with(
         output::line(&(as_text(&plan, &summary, is_measured) + &tip_error + &bias + &link + &kept))?;
     }
     recorded?;
-    // Without its calibrations, an emulated rig runs as far as it can; the missing parts have already been reported.
-    let was_to_engage = by_itself && start.active.uncalibrated().is_none();
-    start.reasons.of(&summary, was_to_engage).map_or(Ok(()), |why| Err(anyhow::anyhow!(why)))
+    // Without its calibrations, an emulated rig runs as far as it can, which is not what the command was to do.
+    if let Some(wrist) = start.active.uncalibrated().filter(|_| by_itself) {
+        let rig = arguments.setup.rig();
+        bail!(
+            "no arm was engaged: wrist sensor {} with tool \"{}\" has no gravity calibration; calibrate with `nima calibrate rig --rig {rig}`",
+            wrist.serial_number,
+            wrist.tool
+        );
+    }
+    start.reasons.of(&summary, by_itself).map_or(Ok(()), |why| Err(anyhow::anyhow!(why)))
 }
 
 /// Results of a run; ground truth only from emulated rigs.
@@ -304,9 +315,10 @@ impl RunStart {
             None => "the force contains the trocar's friction",
         };
         let report = format!("not calibrated ({effect}): {words}; calibrate with `nima calibrate rig --rig {rig}`");
-        // Also report a sensor or tool that is in another sensor's place.
-        let report = std::iter::once(report).chain(self.active.report()).collect::<Vec<_>>().join(". ");
-        let is_new = !words.is_empty() && self.lacking.as_ref() != Some(&report);
+        let report = Some(report).filter(|_| !words.is_empty());
+        // Also report a file that cannot be used, and a sensor or tool that is in another sensor's place.
+        let report = report.into_iter().chain(self.active.report()).collect::<Vec<_>>().join(". ");
+        let is_new = !report.is_empty() && self.lacking.as_ref() != Some(&report);
         is_new.then(|| self.lacking.insert(report).clone())
     }
 }

@@ -4,7 +4,7 @@ use nima_machine::messages::LoopState;
 use nima_panels::{
     roles::{Panels, Role},
     settings::ImageSettings,
-    tiles::Panel,
+    tiles::PanelId,
 };
 use nima_wizards::WizardKind;
 use nima_words::text;
@@ -82,7 +82,7 @@ impl ConsoleApp {
             Action::PlainPicture => {
                 Availability::unless(self.shows_image_plain().then_some(text::commands::IS_PLAIN.get()))
             }
-            Action::Panel(_) | Action::Arrange(_) | Action::ResetLayout => {
+            Action::Panel(_) | Action::Window(_) | Action::Arrange(_) | Action::ResetLayout => {
                 Availability::Can.only_if(self.role() == Role::Technician)
             }
             Action::Check | Action::Calibrations | Action::Calibrate(_) | Action::CloseWizard => {
@@ -102,9 +102,10 @@ impl ConsoleApp {
     fn may_step(&self, action: Action) -> Availability {
         let state = self.live.state();
         let latched = state.is_latched();
+        let short_stall = matches!(state, LoopState::Faulted(fault) if fault.is_short_stall(self.live.rig.rate_hz));
         let why = match (action, state) {
             (Action::Release, _) if !latched => Some(text::commands::NOT_STOPPED.get()),
-            (Action::Engage, _) if latched => Some(text::commands::RELEASE_FIRST.get()),
+            (Action::Engage, _) if latched && !short_stall => Some(text::commands::RELEASE_FIRST.get()),
             (Action::Engage, LoopState::Disconnected) => text::calibrations::closed(state),
             (Action::Engage, LoopState::Engaged | LoopState::Ready | LoopState::Clutched) => {
                 Some(text::commands::IS_ENGAGED.get())
@@ -172,7 +173,7 @@ impl ConsoleApp {
                 let seen = self.panels_in_view().is_some_and(|panels| panels.scene.is_seen);
                 (!seen).then_some(text::commands::FIELD_IS_HIDDEN.get())
             }
-            _ if of_technician && !self.settings.now.layout.is_open(Panel::Traces) => {
+            _ if of_technician && !self.settings.now.layout.is_open(PanelId::Traces) => {
                 Some(text::commands::PANEL_IS_CLOSED.get())
             }
             _ => None,
@@ -204,7 +205,8 @@ impl ConsoleApp {
         } else if !runs {
             Some(text::commands::NOT_NOW.get())
         } else {
-            (action != Action::Drive && !view.is_led()).then_some(text::commands::DRIVE_FIRST.get())
+            (!matches!(action, Action::Drive | Action::BeginTrial) && !view.is_led())
+                .then_some(text::commands::DRIVE_FIRST.get())
         };
         let is_here = match self.page() {
             ActivePage::Trial => true,

@@ -6,7 +6,7 @@ use nima_machine::{
     messages::{Command, LoopState},
     rig::{Prompt, Roster, Side},
 };
-use nima_panels::{CalibrationPage, CalibrationWish, calibrations_ui, tiles::Panel as Tile};
+use nima_panels::{CalibrationPage, CalibrationWish, calibrations_ui, tiles::PanelId};
 use nima_screen::{theme, widgets::card};
 use nima_simulation::{scene::Scene, screen::Screen};
 use nima_wizards::{
@@ -179,7 +179,7 @@ impl ConsoleApp {
         let side = Frame::new().fill(theme::now().panel).inner_margin(Margin::same(8));
         let mut wish = None;
         Panel::left("calibrations").exact_size(316.0).resizable(false).frame(side).show(ui, |ui| {
-            let panel = Tile::Calibrations;
+            let panel = PanelId::Calibrations;
             wish = card(ui, panel.title(), panel.meaning(), |ui| {
                 let open = self.wizards.open.map(CalibrationPage::Wizard);
                 calibrations_ui(ui, &self.live, &self.active, open, self.listing.way_back())

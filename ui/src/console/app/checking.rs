@@ -8,7 +8,7 @@ use nima_machine::{
     ready::{PersonRequest, ReadyEntry, ReadyPoint, ReadyState},
     rig::Roster,
 };
-use nima_panels::{CalibrationPage, CalibrationWish, calibrations_ui, tiles::Panel as Tile};
+use nima_panels::{CalibrationPage, CalibrationWish, calibrations_ui, tiles::PanelId};
 use nima_screen::{theme, widgets::card};
 use nima_simulation::scene::Scene;
 use nima_wizards::ready::{ReadyRequest, ReadyRun, devices_of, ready_ui, record, subject};
@@ -165,7 +165,7 @@ impl ConsoleApp {
         let side = Frame::new().fill(theme::now().panel).inner_margin(Margin::same(8));
         let mut wish = None;
         Panel::left("calibrations").exact_size(316.0).resizable(false).frame(side).show(ui, |ui| {
-            let panel = Tile::Calibrations;
+            let panel = PanelId::Calibrations;
             wish = card(ui, panel.title(), panel.meaning(), |ui| {
                 calibrations_ui(ui, &self.live, &self.active, Some(CalibrationPage::Check), self.listing.way_back())
             });

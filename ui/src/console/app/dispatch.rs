@@ -124,6 +124,7 @@ impl ConsoleApp {
             }
             Action::RecordsPicture => settings.records_image ^= true,
             Action::Panel(panel) => settings.layout.toggle(panel),
+            Action::Window(panel) => settings.layout.toggle_window(panel),
             Action::Arrange(arrangement) => settings.layout = PanelLayout::built_in(arrangement),
             Action::ResetLayout => settings.layout = PanelLayout::built_in(settings.layout.arrangement),
             action => self.act_on_view(action),

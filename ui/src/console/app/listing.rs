@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use egui::{CentralPanel, Frame, Margin, Panel, ScrollArea, Ui};
-use nima_panels::{CalibrationPage, CalibrationWish, calibrations_ui, tiles::Panel as Tile};
+use nima_panels::{CalibrationPage, CalibrationWish, calibrations_ui, tiles::PanelId};
 use nima_recording::store::ReadyRecord;
 use nima_screen::{theme, widgets::card};
 use nima_wizards::overview::{ArmOverview, SetupStep, overview, overview_ui};
@@ -72,7 +72,7 @@ impl ConsoleApp {
         let side = Frame::new().fill(theme::now().panel).inner_margin(Margin::same(8));
         let mut wish = None;
         Panel::left("calibrations").exact_size(316.0).resizable(false).frame(side).show(ui, |ui| {
-            let panel = Tile::Calibrations;
+            let panel = PanelId::Calibrations;
             wish = card(ui, panel.title(), panel.meaning(), |ui| {
                 let back = text::calibrations::CLOSE_WIZARD;
                 calibrations_ui(ui, &self.live, &self.active, Some(CalibrationPage::All), back)
@@ -96,7 +96,7 @@ impl ConsoleApp {
         match step {
             SetupStep::Devices => {
                 self.obey_calibrations(Some(CalibrationWish::Close));
-                self.settings.now.layout.show(Tile::Devices);
+                self.settings.now.layout.show(PanelId::Devices);
                 return;
             }
             SetupStep::Calibrate(wanted) => self.open_wanted(wanted),

@@ -14,6 +14,7 @@ mod playback_mode;
 mod starting;
 mod views;
 mod visible_state;
+mod windows;
 
 use std::{
     path::PathBuf,
@@ -24,7 +25,7 @@ use std::{
 use eframe::glow;
 use egui::{Frame, Id, Margin, Panel, Ui, UiBuilder};
 use nima_machine::{config::RigConfig, messages::Command, rig::Side, runtime::LoopHandle};
-use nima_panels::{rig_choice::RigChoice, roles::Panels, settings::SettingsStore};
+use nima_panels::{rig_choice::RigChoice, roles::Panels, settings::SettingsStore, tiles::PanelTiles};
 use nima_playback::{Playback, list::SessionList};
 use nima_screen::{
     alarms::judge,
@@ -38,6 +39,7 @@ use nima_screen::{
     run_log::RunLog,
     scene3d::SceneView,
     theme,
+    units::PlotUnits,
 };
 use nima_simulation::{ObjectFeed, scene::Scene, screen::Screen};
 use nima_wizards::{Wizards, active_calibrations::ActiveCalibrations};
@@ -79,6 +81,8 @@ const WARM_UP: Duration = Duration::from_secs(4);
 #[derive(Debug)]
 pub struct ConsoleApp {
     door: Option<LoopConnection>,
+    /// Only in tests: the window shows the same state in every frame.
+    frozen: bool,
     /// The emulators of an emulated rig; they end after the loop.
     emulators: Option<Emulators>,
     /// The emulators' technician, who follows the wizards' instructions.
@@ -152,6 +156,7 @@ impl ConsoleApp {
             renderer: cc.gl.as_deref().map(renderer_of).unwrap_or_default(),
             meter: None,
             door: Some(door_of(handle, &cc.egui_ctx)),
+            frozen: false,
             emulators: None,
             reader: None,
             running: RigChoice::default(),
@@ -177,7 +182,11 @@ impl ConsoleApp {
             surface,
             outbox: Outbox::default(),
             top_bar: TopBarState::default(),
-            panels: Panels { scene: SceneView::new(cc.gl.as_deref()), ..Panels::default() },
+            panels: Panels {
+                scene: SceneView::new(cc.gl.as_deref()),
+                desk: PanelTiles::with_windows(),
+                ..Panels::default()
+            },
             settings: SettingsStore::default(),
             help: Help::default(),
             palette: CommandPalette::default(),
@@ -195,6 +204,9 @@ impl ConsoleApp {
 
     /// Reads all data that the loop has sent.
     fn take_in(&mut self) {
+        if self.frozen {
+            return;
+        }
         if let Some(moment) = self.objects.as_ref().and_then(ObjectFeed::newest) {
             let scene = &self.live.scene;
             let has_jaws = Side::ALL.map(|side| scene.objects.is_some() && scene.has(&self.live.rig, side));
@@ -239,7 +251,6 @@ impl ConsoleApp {
         let bar = Frame::new().fill(theme::now().panel).inner_margin(Margin::symmetric(14, 0));
         Panel::top("top_bar").exact_size(56.0).resizable(false).frame(bar).show(ui, |ui| {
             let calibrating = self.is_calibrating();
-            let before = self.role();
             self.live.engage_closed = match self.may(Action::Engage) {
                 Availability::Cannot(why) => Some(why),
                 Availability::Can | Availability::Absent => None,
@@ -254,8 +265,7 @@ impl ConsoleApp {
             let bar = &mut self.top_bar;
             let settings = &mut self.settings.now;
             top_bar_ui(ui, live, bar, &mut self.outbox, settings, calibrating);
-            let chosen = (self.role() != before).then_some(Action::View(self.role()));
-            if let Some(action) = self.top_bar.wanted.take().or(chosen) {
+            if let Some(action) = self.top_bar.wanted.take() {
                 self.act(action, ui.ctx());
             }
         });
@@ -316,10 +326,12 @@ impl eframe::App for ConsoleApp {
         // Use the elapsed time: `stable_dt` is 1/60 s in every window that waits between frames.
         self.go_on_in_past(f64::from(ui.input(|input| input.unstable_dt)));
         self.layout(ui);
+        self.windows_layout(&ctx);
         if !self.start.is_open {
             self.start.rest();
         }
         self.remember_look(&ctx);
+        self.settings.now.units = PlotUnits::of(&ctx);
         self.settings.save();
         self.compute_shown();
         if self.past.is_some() {

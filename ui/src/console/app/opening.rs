@@ -73,6 +73,7 @@ impl ConsoleApp {
         }
         self.start.set_folder(settings.folder());
         exports::set_folder(&self.ctx, settings.folder());
+        settings.now.units.choose(&self.ctx);
         self.settings = settings;
         self.running.remember(&mut self.settings.now.recent);
         self

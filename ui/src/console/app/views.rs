@@ -39,8 +39,12 @@ impl ConsoleApp {
         self.panels.devices.is_seen = false;
         self.panels.devices.is_starting = self.starting.is_some();
         self.panels.devices.sample(&self.live);
-        let Wishes { restart, calibration, devices } =
+        let wishes =
             role_ui(ui, &mut self.settings.now, &mut self.live, &mut self.panels, &self.active, &mut self.outbox);
+        self.obey_wishes(wishes);
+    }
+
+    pub(super) fn obey_wishes(&mut self, Wishes { restart, calibration, devices }: Wishes) {
         // At the end of the frame, when everything has been drawn with the old loop. A stop requested in the same frame
         // takes precedence.
         if self.outbox.holds_stop() {

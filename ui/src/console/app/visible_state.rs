@@ -14,6 +14,11 @@ impl ConsoleApp {
         &mut self.settings.now
     }
 
+    /// Shows the same state until it is called again, for tests: a layout is judged on one state, not on a running loop.
+    pub const fn freeze(&mut self, frozen: bool) {
+        self.frozen = frozen;
+    }
+
     pub const fn role(&self) -> Role {
         self.settings.now.role
     }

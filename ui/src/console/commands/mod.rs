@@ -8,7 +8,7 @@ mod table;
 
 use nima_panels::{
     roles::Role,
-    tiles::{Arrangement, Panel},
+    tiles::{Arrangement, PanelId},
 };
 use nima_screen::scene3d::extras::MenuSwitch;
 use nima_wizards::WizardKind;
@@ -71,7 +71,9 @@ pub enum Action {
     /// Switches the recording of the image.
     RecordsPicture,
     /// Opens or closes a panel.
-    Panel(Panel),
+    Panel(PanelId),
+    /// Opens a panel in a separate window, or closes that window.
+    Window(PanelId),
     /// Chooses a built-in layout.
     Arrange(Arrangement),
     ResetLayout,

@@ -3,7 +3,7 @@ use std::sync::LazyLock;
 use egui::Key;
 use nima_panels::{
     roles::Role,
-    tiles::{Arrangement, Panel},
+    tiles::{Arrangement, PanelId},
 };
 use nima_screen::scene3d::extras::MenuSwitch;
 use nima_wizards::WizardKind;
@@ -112,8 +112,12 @@ fn screen() -> Vec<CommandEntry> {
     );
     entries.extend(languages);
     entries.extend(
-        Panel::built()
+        PanelId::built()
             .map(|panel| named(Action::Panel(panel), names::panel(panel.title()), panel.meaning(), &[], menu)),
+    );
+    let in_window = text::tiles::OPEN_WINDOW_HOVER.get();
+    entries.extend(
+        PanelId::built().map(|panel| named(Action::Window(panel), names::window(panel.title()), in_window, &[], menu)),
     );
     entries.extend(
         Arrangement::ALL.map(|one| named(Action::Arrange(one), names::layout(one.name()), one.meaning(), &[], menu)),

@@ -69,7 +69,7 @@ impl EndoscopeCard {
     /// when the address is to be written.
     pub(super) fn ui(&mut self, ui: &mut Ui, running: Option<(&str, &[String; 2])>) -> bool {
         let width = ui.available_width();
-        let field = TextEdit::singleline(&mut self.typed).hint_text(text::start::ENDOSCOPE_HINT.get());
+        let field = TextEdit::singleline(&mut self.typed).hint_text(text::start::ENDOSCOPE_HINT);
         let field = ui.add_sized(vec2(width, 28.0), field);
         field.widget_info(|| {
             egui::WidgetInfo::labeled(egui::Role::TextInput, true, text::start::ENDOSCOPE_ADDRESS.get())
@@ -87,7 +87,7 @@ impl EndoscopeCard {
             }
             None if address.is_empty() => {
                 self.close();
-                ui.add(Label::new(small(text::start::NO_ENDOSCOPE.get())).wrap());
+                ui.add(Label::new(small(text::start::NO_ENDOSCOPE)).wrap());
             }
             None => {
                 self.try_it(ui.ctx(), &address);
@@ -98,7 +98,7 @@ impl EndoscopeCard {
         let words =
             if address.is_empty() { text::start::ENDOSCOPE_REMOVE.get() } else { text::start::ENDOSCOPE_USE.get() };
         let button = ui.add_enabled(address != before, Button::new(words).min_size(vec2(width, 32.0)));
-        button.on_hover_text(text::start::ENDOSCOPE_USE_HOVER.get()).clicked()
+        button.on_hover_text(text::start::ENDOSCOPE_USE_HOVER).clicked()
     }
 
     /// Tries the typed address after the last key press.
@@ -125,14 +125,14 @@ impl EndoscopeCard {
 
     fn tried_ui(&mut self, ui: &mut Ui, width: f32) {
         let look = match &self.tried {
-            None => return drop(ui.label(small(text::start::ENDOSCOPE_TYPING.get()))),
+            None => return drop(ui.label(small(text::start::ENDOSCOPE_TYPING))),
             Some(AddressResult::Refused(why)) => {
                 return outcome_ui(ui, &text::endoscope_view::refused(why), text::start::ENDOSCOPE_FORMS.get());
             }
             Some(AddressResult::Feed(feed)) => feed.look(Instant::now()),
         };
         match &look.standing {
-            FrameHealth::Opening => drop(ui.label(small(text::start::ENDOSCOPE_OPENING.get()))),
+            FrameHealth::Opening => drop(ui.label(small(text::start::ENDOSCOPE_OPENING))),
             FrameHealth::Live | FrameHealth::Still => {
                 let size_px = look.image.as_ref().map_or([0; 2], |(_, image)| image.size_px);
                 let rate_hz = (look.standing == FrameHealth::Live).then_some(look.rate_hz);

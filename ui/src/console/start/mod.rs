@@ -1,5 +1,6 @@
 //! The start page: choose or create a rig, choose a scene, see connected and missing devices.
 
+mod addresses;
 mod choices;
 mod endoscope;
 mod looking;
@@ -20,6 +21,7 @@ use nima_screen::{
 };
 use nima_words::text;
 
+use addresses::ExampleAddresses;
 pub(crate) use choices::drawn_anew;
 use choices::{ChoiceEntry, Lists};
 use endoscope::EndoscopeCard;
@@ -46,6 +48,7 @@ pub struct StartPage {
     report: Option<String>,
     plugged: PluggedIn,
     answers: DeviceAnswers,
+    addresses: ExampleAddresses,
     endoscope: EndoscopeCard,
     /// The chosen rig's file may have changed.
     is_stale: bool,
@@ -80,6 +83,7 @@ impl StartPage {
             report: None,
             plugged: PluggedIn::default(),
             answers: DeviceAnswers::default(),
+            addresses: ExampleAddresses::default(),
             endoscope: EndoscopeCard::default(),
             is_stale: true,
             picking: None,
@@ -153,9 +157,9 @@ impl StartPage {
             let page = ui.add_enabled_ui(!now.is_starting, |ui| ui.put(place, page)).inner;
             self.wants_page |= page.on_hover_text(meaning).clicked();
         }
-        let button = Button::new(text::start::ELSEWHERE.get());
+        let button = Button::new(text::start::ELSEWHERE);
         let button = ui.add_enabled_ui(self.picking.is_none(), |ui| ui.put(place, button)).inner;
-        if button.on_hover_text(text::start::ELSEWHERE_HOVER.get()).clicked() {
+        if button.on_hover_text(text::start::ELSEWHERE_HOVER).clicked() {
             let kind = [text::start::RIG_FILES.get(), "toml"];
             let folder = self.folder.as_deref();
             self.picking = Some(Picking::open(ui.ctx(), text::start::ELSEWHERE.get(), kind, folder));
@@ -164,10 +168,10 @@ impl StartPage {
 
     fn rigs_ui(&mut self, ui: &mut Ui, now: &StartInputs<'_>) {
         let mut chosen = None;
-        card(ui, text::start::RIGS.get(), text::start::RIGS_HOVER.get(), |ui| {
+        card(ui, text::start::RIGS, text::start::RIGS_HOVER, |ui| {
             let others: Vec<_> = now.recent.iter().filter(|choice| *choice != now.running).collect();
             if !others.is_empty() {
-                ui.label(small(text::start::RECENT.get()));
+                ui.label(small(text::start::RECENT));
             }
             for choice in others {
                 let words = self.words_of(choice);
@@ -195,12 +199,12 @@ impl StartPage {
         if let Some(chosen) = chosen {
             self.choose(chosen);
         }
-        card(ui, text::start::NEW_NAME.get(), text::start::MAKE_HOVER.get(), |ui| {
+        card(ui, text::start::NEW_NAME, text::start::MAKE_HOVER, |ui| {
             let width = ui.available_width();
             let field = ui.add_sized(vec2(width, 28.0), TextEdit::singleline(&mut self.new_name));
             field.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, text::start::NEW_NAME.get()));
-            let make = ui.add(Button::new(text::start::MAKE.get()).min_size(vec2(width, 32.0)));
-            if make.on_hover_text(text::start::MAKE_HOVER.get()).clicked() {
+            let make = ui.add(Button::new(text::start::MAKE).min_size(vec2(width, 32.0)));
+            if make.on_hover_text(text::start::MAKE_HOVER).clicked() {
                 self.make(now);
             }
         });
@@ -232,9 +236,9 @@ impl StartPage {
     }
 
     fn scenes_ui(&mut self, ui: &mut Ui) {
-        card(ui, text::start::SCENES.get(), text::start::SCENES_HOVER.get(), |ui| {
+        card(ui, text::start::SCENES, text::start::SCENES_HOVER, |ui| {
             if self.has_real_arm(&self.chosen) {
-                ui.add(Label::new(text::start::NO_SCENE.get()).wrap());
+                ui.add(Label::new(text::start::NO_SCENE).wrap());
                 return;
             }
             for entry in &self.lists.scenes {
@@ -246,9 +250,9 @@ impl StartPage {
     }
 
     fn devices_ui(&mut self, ui: &mut Ui, now: &StartInputs<'_>) {
-        card(ui, text::start::MISSING.get(), text::start::MISSING_HOVER.get(), |ui| self.missing_ui(ui, now));
-        card(ui, text::start::ENDOSCOPE.get(), text::start::ENDOSCOPE_HOVER.get(), |ui| self.endoscope_ui(ui, now));
-        card(ui, text::start::PLUGGED.get(), text::start::PLUGGED_HOVER.get(), |ui| {
+        card(ui, text::start::MISSING, text::start::MISSING_HOVER, |ui| self.missing_ui(ui, now));
+        card(ui, text::start::ENDOSCOPE, text::start::ENDOSCOPE_HOVER, |ui| self.endoscope_ui(ui, now));
+        card(ui, text::start::PLUGGED, text::start::PLUGGED_HOVER, |ui| {
             let ctx = ui.ctx().clone();
             if let Some(plugged) = self.plugged.now(&ctx) {
                 plugged_ui(ui, plugged);
@@ -282,7 +286,7 @@ impl StartPage {
     /// briefly.
     fn missing_ui(&mut self, ui: &mut Ui, now: &StartInputs<'_>) {
         let Some(rig) = self.rig.as_ref().filter(|rig| rig.devices.is_some() || rig.has_real_hand()) else {
-            ui.label(text::start::SIMULATED.get());
+            ui.label(text::start::SIMULATED);
             return;
         };
         if self.chosen.rig == now.running.rig {
@@ -296,13 +300,17 @@ impl StartPage {
             return;
         }
         if rig.is_harmless() {
-            ui.label(text::start::EMULATED.get());
+            ui.label(text::start::EMULATED);
             return;
+        }
+        if self.addresses.ui(ui, &self.chosen.rig, rig) {
+            self.is_stale = true;
+            return self.choose(self.chosen.clone());
         }
         let checking = self.answers.is_running();
         let button = Button::new(if checking { text::start::CHECKING.get() } else { text::start::CHECK.get() });
         let button = ui.add_enabled(!checking, button.min_size(vec2(ui.available_width(), 32.0)));
-        if button.on_hover_text(text::start::CHECK_HOVER.get()).clicked() {
+        if button.on_hover_text(text::start::CHECK_HOVER).clicked() {
             let ctx = ui.ctx().clone();
             looking::check(&mut self.answers, &ctx, rig);
         }
@@ -327,21 +335,17 @@ impl StartPage {
             let name = RichText::new(words).font(theme::strong(17.0));
             let button = next_button(name, !same).min_size(theme::STOP_SIZE);
             let button = ui.add_enabled(ready && !held && !now.is_starting, button);
-            if button
-                .on_hover_text(text::start::START_HOVER.get())
-                .on_disabled_hover_text(text::start::ENGAGED.get())
-                .clicked()
-            {
+            if button.on_hover_text(text::start::START_HOVER).on_disabled_hover_text(text::start::ENGAGED).clicked() {
                 start = Some(self.chosen.clone());
             }
-            let back = Button::new(text::start::BACK.get()).min_size(theme::STOP_SIZE);
-            if ui.add_enabled(!now.is_starting, back).on_hover_text(text::start::BACK_HOVER.get()).clicked() {
+            let back = Button::new(text::start::BACK).min_size(theme::STOP_SIZE);
+            if ui.add_enabled(!now.is_starting, back).on_hover_text(text::start::BACK_HOVER).clicked() {
                 self.is_open = false;
             }
             ui.vertical(|ui| {
                 ui.label(RichText::new(self.words_of(&self.chosen)).font(theme::strong(15.0)));
                 if now.is_starting {
-                    ui.label(weak(text::start::STARTING.get()));
+                    ui.label(weak(text::start::STARTING));
                 }
                 if let Some(report) = &self.report {
                     ui.add(Label::new(report).wrap());
@@ -403,7 +407,7 @@ fn trouble_ui(ui: &mut Ui, name: &str, cause: &str, cure: &str) {
 fn plugged_ui(ui: &mut Ui, plugged: &PluggedDevices) {
     let lines = plugged.lines();
     if lines.is_empty() {
-        ui.label(weak(text::start::NOTHING_PLUGGED.get()));
+        ui.label(weak(text::start::NOTHING_PLUGGED));
     }
     for [place, used, ids] in lines {
         ui.label(RichText::new(used).font(theme::strong(14.0)));

@@ -44,9 +44,9 @@ impl Welcome {
         let window = Window::new(words::WELCOME_WINDOW.get()).title_bar(false).resizable(false).movable(false);
         let window = window.constrain_to(room).anchor(Align2::CENTER_TOP, vec2(0.0, room.top() + 12.0));
         window.fixed_size(vec2(460.0, 0.0)).show(ctx, |ui| {
-            ui.label(RichText::new(words::WELCOME.get()).font(theme::strong(18.0)));
-            ui.add(Label::new(RichText::new(words::WELCOME_WHAT.get()).font(theme::regular(15.0))).wrap());
-            ui.add(Label::new(RichText::new(words::WELCOME_NOT.get()).font(theme::strong(15.0))).wrap());
+            ui.label(RichText::new(words::WELCOME).font(theme::strong(18.0)));
+            ui.add(Label::new(RichText::new(words::WELCOME_WHAT).font(theme::regular(15.0))).wrap());
+            ui.add(Label::new(RichText::new(words::WELCOME_NOT).font(theme::strong(15.0))).wrap());
             ui.add_space(6.0);
             for (way, name, about) in [
                 (WelcomeChoice::Simulated, words::WELCOME_SIMULATED.get(), words::WELCOME_SIMULATED_ABOUT.get()),

@@ -132,7 +132,7 @@ mod tests {
     use nima_simulation::{SimulationPlan, run_virtual, scene::Scene};
 
     use super::*;
-    use nima_wizards::active_calibrations::ActiveCalibrations;
+    use nima_calibrations::active_calibrations::ActiveCalibrations;
 
     /// Returns the ticks of an engaged run on the simulated rig.
     fn ticks() -> Vec<Tick> {

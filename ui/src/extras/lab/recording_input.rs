@@ -4,8 +4,13 @@ use std::{fs::File, io::Read as _, path::Path};
 
 use anyhow::bail;
 use nima_machine::rig::Side;
-use nima_recording::csv::{ColumnMapping, CsvRecording};
+use nima_recording::{
+    csv::{ColumnMapping, CsvRecording},
+    session::SessionReader,
+};
 use nima_session::plot_channels;
+
+use crate::command::missing::report_missing;
 
 /// First bytes of a session.
 const MAGIC: [u8; 5] = *b"\x89MCAP";
@@ -31,6 +36,7 @@ pub(super) fn read_with_leader(path: &Path, map: &[String], arm: Option<Side>) -
     if !map.is_empty() {
         bail!("--map applies only to tables, and {} is a session: omit it", path.display());
     }
+    report_missing(path, &SessionReader::open(path)?);
     Ok(plot_channels::recording(path, arm)?)
 }
 

@@ -8,7 +8,7 @@ use std::{
 
 use anyhow::{Context as _, bail};
 use clap::Args;
-use nima_files::{csv_cell, write_atomically};
+use nima_files::{csv_cell, quoted, write_atomically};
 use nima_recording::session::SessionReader;
 use nima_report::output;
 use nima_score::{MEASURES, Measure, Score, TaskFile, trial_score};
@@ -17,7 +17,7 @@ use nima_session::{objects, plot_channels};
 use nima_simulation::scene::Scene;
 use serde::Serialize;
 
-use crate::command::time_range::TimeRange;
+use crate::command::{missing::report_missing, time_range::TimeRange};
 
 /// The task of a session without recorded objects.
 const FREE: &str = "name = 'Free'\nkind = 'free'\ntime_limit_s = 1200.0";
@@ -52,6 +52,8 @@ struct ScoredSession {
     session: String,
     condition: String,
     task: String,
+    /// What the file lacks; empty for a whole session.
+    missing: Vec<String>,
     #[serde(flatten)]
     score: Score,
 }
@@ -103,6 +105,7 @@ fn scored(
     condition: Option<&str>,
 ) -> anyhow::Result<ScoredSession> {
     let reader = SessionReader::open(session)?;
+    let missing = report_missing(session, &reader);
     let task = task.map_or_else(|| recorded_task(session, &reader), |task| Ok(task.clone()))?;
     let begin_ns = plot_channels::beginning_ns(&reader)?;
     let times_s = stretch.of(session, &reader)?;
@@ -111,17 +114,19 @@ fn scored(
     let score =
         score.with_context(|| format!("session {}: no arm was engaged, so it contains no trial", session.display()))?;
     let tables: BTreeMap<_, _> = reader.metadata()?.into_iter().collect();
-    let word = |key: &str| tables.get("session").and_then(|table| table.get(key)).cloned().unwrap_or_default();
+    // A file of another program may contain anything.
+    let word =
+        |key: &str| tables.get("session").and_then(|table| table.get(key)).map(|word| quoted(word)).unwrap_or_default();
     let delay_ms =
         word("delay_s").parse::<f64>().map_or_else(|_| String::new(), |delay_s| format!(" {:.0} ms", 1e3 * delay_s));
     let condition = condition.map_or_else(|| word("mode") + &delay_ms, str::to_owned);
-    Ok(ScoredSession { session: session.display().to_string(), condition, task: task.name, score })
+    Ok(ScoredSession { session: session.display().to_string(), condition, task: task.name, missing, score })
 }
 
 impl ScoredSession {
     fn as_text(&self) -> String {
-        let Self { session, condition, task, score } = self;
-        let mut text = format!("{session}, {condition}, task: {task}\n");
+        let Self { session, condition, task, missing: _, score } = self;
+        let mut text = format!("{session}, {condition}, task: {}\n", quoted(task));
         for definition in MEASURES {
             let known: Vec<Measure> = score.measures().filter(|one| one.definition.id == definition.id).collect();
             let values = known.iter().filter_map(|one| {
@@ -150,14 +155,16 @@ fn table(scored: &[ScoredSession], participant: &str) -> String {
     let names: Vec<String> =
         scored.first().map(|one| one.score.measures().map(|m| m.key()).collect()).unwrap_or_default();
     let columns: Vec<usize> = (0..names.len()).filter(has).collect();
-    let mut text = "participant,condition,trial,session".to_owned();
+    let mut text = "participant,condition,trial,session,complete".to_owned();
     for place in &columns {
         write!(text, ",{}", names[*place]).ok();
     }
     text.push('\n');
     for (number, one) in scored.iter().enumerate() {
-        let ScoredSession { session, condition, score, .. } = one;
-        write!(text, "{},{},{},{}", csv_cell(participant), csv_cell(condition), number + 1, csv_cell(session)).ok();
+        let ScoredSession { session, condition, missing, score, .. } = one;
+        let complete = if missing.is_empty() { "yes" } else { "no" };
+        let [participant, condition, session] = [participant, condition, session].map(csv_cell);
+        write!(text, "{participant},{condition},{},{session},{complete}", number + 1).ok();
         let values: Vec<Option<f64>> = score.measures().map(|measure| measure.value).collect();
         for place in &columns {
             let value = values[*place].map_or_else(String::new, |value| value.to_string());

@@ -1,8 +1,8 @@
 //! The link to the other machine as the loop uses it, and its reports.
 
-use crossbeam_channel::{Receiver, Sender, bounded};
 use egui::Ui;
 use nima_machine::{
+    hand_over::{FromLoop, ToLoop, from_loop, to_loop},
     remote::{RemoteWire, joined},
     rig::RigEnds,
     runtime::Assembly,
@@ -12,6 +12,7 @@ use nima_network::{
     figures::{DroppedCounts, SessionMeasurements},
 };
 use nima_screen::link::{LineConnection, RemoteLine};
+use rtrb::{Consumer, Producer};
 use serde::Serialize;
 
 use super::{
@@ -30,8 +31,8 @@ const WAITING: usize = 4;
 pub(super) struct NetworkLine {
     endpoint: Endpoint,
     here: RigEnds,
-    reported: Sender<LineReport>,
-    wishes: Receiver<LineWish>,
+    reported: Producer<LineReport>,
+    wishes: Consumer<LineWish>,
     door: Channels,
     next_s: f64,
 }
@@ -39,8 +40,8 @@ pub(super) struct NetworkLine {
 /// The channel ends for another thread.
 #[derive(Clone, Debug)]
 struct Channels {
-    reports: Receiver<LineReport>,
-    wishes: Sender<LineWish>,
+    reports: FromLoop<LineReport>,
+    wishes: ToLoop<LineWish>,
 }
 
 /// Handle of a link for other threads.
@@ -126,8 +127,8 @@ pub(super) struct LineReport {
 impl NetworkLine {
     /// Creates a line over this endpoint, with these devices at this end.
     pub(super) fn new(endpoint: Endpoint, here: RigEnds) -> Self {
-        let (reported, reports) = bounded(WAITING);
-        let (wish, wishes) = bounded(WAITING);
+        let (reported, reports) = from_loop(WAITING);
+        let (wish, wishes) = to_loop(WAITING);
         Self { endpoint, here, reported, wishes, door: Channels { reports, wishes: wish }, next_s: 0.0 }
     }
 
@@ -137,7 +138,7 @@ impl NetworkLine {
 
     /// Handles one waiting request per tick.
     fn obey(&mut self) {
-        match self.wishes.try_recv() {
+        match self.wishes.pop() {
             Ok(LineWish::Control) => self.endpoint.ask_for_control(),
             Ok(LineWish::Nothing) => self.endpoint.withdraw(),
             Ok(LineWish::Answer { consents }) => self.endpoint.answer(consents),
@@ -158,7 +159,7 @@ impl NetworkLine {
             dropped: endpoint.dropped(),
         };
         // If the reports are not read, the queue is full after four, and further reports are dropped.
-        reported.try_send(report).ok();
+        reported.push(report).ok();
     }
 }
 

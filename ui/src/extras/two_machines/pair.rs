@@ -1,4 +1,4 @@
-//! `nima pair`: two machines exchange keys, and two people compare a code to rule out an interceptor.
+//! `nima pair`: two machines exchange keys, protected by a code that is shown at one and entered at the other.
 
 use std::{
     io::BufRead as _,
@@ -9,7 +9,7 @@ use std::{
 
 use anyhow::Context as _;
 use clap::Args;
-use nima_network::pairing::{Attempts, Pairing};
+use nima_network::pairing::{Attempts, Code, Pairing};
 use nima_report::output;
 
 use super::network;
@@ -41,21 +41,25 @@ pub(super) fn run(arguments: &PairArguments) -> anyhow::Result<()> {
     let leave = Leave::on_signals()?;
     let off = Arc::clone(&called_off);
     leave.at_once(move || off.store(true, Relaxed));
-    let mut attempts = Attempts::default();
     let wait = Duration::from_secs_f64(arguments.wait);
-    let pairing = Pairing { keys: &keys, attempts: &mut attempts, wait, called_off: &called_off };
-    let (name, pending) = if let Some(host) = &arguments.host {
-        (network::name_of(host), pairing.ask(network::address(host)?)?)
+    let pairing = Pairing { keys: &keys, wait, called_off: &called_off };
+    let (name, key) = if let Some(host) = &arguments.host {
+        let follower = network::address(host)?;
+        let mut attempts = Attempts::open(&folder)?;
+        attempts.may_begin()?;
+        output::line("Enter the code that the follower's screen shows:")?;
+        let mut entered = String::new();
+        std::io::stdin().lock().read_line(&mut entered).context("cannot read the code")?;
+        (network::name_of(host), pairing.ask(follower, Code::parse(&entered)?, &mut attempts)?)
     } else {
         let at = network::listening(arguments.listen.as_deref())?;
         output::line(&format!("waiting at {at} for `nima pair HOST` on the console's machine"))?;
-        (arguments.name.as_str(), pairing.offer(at)?)
+        let show = |code| {
+            // If the output is closed, nobody can read the code, and the offer ends when its time is over.
+            output::line(&format!("code to enter on the console's machine: {code}")).ok();
+        };
+        (arguments.name.as_str(), pairing.offer(at, show)?)
     };
-    output::line(&format!("code to enter on the other machine: {}", pending.code()))?;
-    output::line("Enter the code that the other screen shows:")?;
-    let mut entered = String::new();
-    std::io::stdin().lock().read_line(&mut entered).context("cannot read the code")?;
-    let key = pending.confirm(entered.trim(), &mut attempts)?;
     peers.add(name, key)?;
     peers.save(&folder)?;
     output::line(&format!("paired with {name}"))?;

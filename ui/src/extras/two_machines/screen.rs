@@ -17,7 +17,7 @@ use super::{
 /// Draws the state of a link. It sends requests to the link; control of a follower does not concern the loop.
 pub(super) fn link_ui(ui: &mut Ui, door: &NetworkDoor, drives: bool) {
     let Some(report) = door.newest() else {
-        ui.label(text::NOTHING_YET.get());
+        ui.label(text::NOTHING_YET);
         return;
     };
     if let Some([cause, cure]) = link_trouble(report.state) {
@@ -42,12 +42,12 @@ fn control_ui(ui: &mut Ui, report: &LineReport, drives: bool, door: &NetworkDoor
         ControlRole::Asks => text::ASKS.get(),
         ControlRole::Denied => text::DENIED.get(),
     };
-    ui.label(words).on_hover_text(text::CONTROL_HOVER.get());
+    ui.label(words).on_hover_text(text::CONTROL_HOVER);
     let size = vec2(ui.available_width(), 28.0);
     let button = |ui: &mut Ui, enabled: bool, words: &str, meaning: &str| {
         ui.add_enabled(enabled, Button::new(words).min_size(size))
             .on_hover_text(meaning)
-            .on_disabled_hover_text(text::GIVE_AT_REST.get())
+            .on_disabled_hover_text(text::GIVE_AT_REST)
             .clicked()
     };
     match report.control {
@@ -57,7 +57,7 @@ fn control_ui(ui: &mut Ui, report: &LineReport, drives: bool, door: &NetworkDoor
                 door.wish(LineWish::Answer { consents: true });
             }
             if drives {
-                ui.label(small(text::GIVE_AT_REST.get()));
+                ui.label(small(text::GIVE_AT_REST));
             }
             if button(ui, true, text::KEEP.get(), text::KEEP_HOVER.get()) {
                 door.wish(LineWish::Answer { consents: false });

@@ -36,8 +36,27 @@ pub(super) const STOPPED: &str = "stopped by the operator";
 pub(super) const LOOP_ENDED: &str = "the loop ended";
 pub(super) const CLOSED: &str = "the console was closed";
 pub(super) const NOT_STARTED: &str = "the loop did not start";
+const FAULT: &str = "the loop ended in a fault";
 /// Timeout of the engagement, s.
 const ENGAGES_S: f64 = 5.0;
+
+/// Reason for the abort of a trial.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct TrialBreak {
+    why: String,
+    /// The kind of fault. Some occur only with force, so a blind study hides it.
+    details: Option<String>,
+}
+
+impl TrialBreak {
+    pub(super) fn of(why: &str) -> Self {
+        Self { why: why.to_owned(), details: None }
+    }
+
+    pub(super) fn by(fault: Fault) -> Self {
+        Self { why: FAULT.to_owned(), details: Some(fault.cause().to_owned()) }
+    }
+}
 
 /// Result of a trial.
 pub(super) struct TrialRun {
@@ -152,7 +171,7 @@ pub(super) fn scene_for(study: &UserStudy, rig: &RigConfig, hand: &SimulatedHand
 pub(super) fn close(
     study: &mut UserStudy,
     running: RunningTrial,
-    why: Option<String>,
+    why: Option<TrialBreak>,
     scoring: Option<LiveScorer>,
 ) -> Result<TrialRun, StudyError> {
     let trial = running.trial();
@@ -165,16 +184,11 @@ pub(super) fn close(
             Ok(TrialRun { trial, ending: Some(ending), completion_time_s, why: None })
         }
         (why, _) => {
-            let why = why.unwrap_or_else(|| "the loop was never engaged".to_owned());
-            study.abort_trial(running, &why, &utc_now())?;
+            let TrialBreak { why, details } = why.unwrap_or_else(|| TrialBreak::of("the loop was never engaged"));
+            study.abort_trial(running, &why, details.as_deref(), &utc_now())?;
             Ok(TrialRun { trial, ending: None, completion_time_s: None, why: Some(why) })
         }
     }
-}
-
-/// Returns the journal entry for a trial aborted by a fault.
-pub(super) fn ended_by(fault: Fault) -> String {
-    format!("the loop ended in a fault: {}", fault.cause())
 }
 
 /// Runs the next trial on the simulated rig with a simulated hand, on the virtual clock. Returns its number, but not its
@@ -221,8 +235,8 @@ pub(super) fn run_virtual(
         recorder.finish().map(drop)
     })?;
     let why = match (fault, leave.is_asked()) {
-        (_, true) => Some(GIVEN_UP.to_owned()),
-        (Some(fault), _) => Some(ended_by(fault)),
+        (_, true) => Some(TrialBreak::of(GIVEN_UP)),
+        (Some(fault), _) => Some(TrialBreak::by(fault)),
         _ => None,
     };
     Ok(close(study, running, why, Some(scoring))?)

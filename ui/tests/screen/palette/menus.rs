@@ -6,7 +6,7 @@ use nima_console::console::commands::{Action, SIZES_PERCENT};
 use nima_panels::{
     roles::Role,
     settings::{ConsoleSettings, ImageSettings},
-    tiles::{Arrangement, Panel, PanelLayout},
+    tiles::{Arrangement, PanelId, PanelLayout},
 };
 use nima_screen::scene3d::extras::{Extras, MenuSwitch, SHOW};
 use nima_words::language::Language;
@@ -72,11 +72,16 @@ fn what_the_view_menu_and_the_keys_of_the_screen_do() {
         let other = of_menu(Kind::Button, &name);
         done.push(alike(&mut console, Action::Size(percent), reset, other, settings));
     }
-    for panel in Panel::ALL {
+    for panel in PanelId::ALL {
         let reset = set(|settings| settings.layout.toggle(panel));
         let other = of_menu(Kind::Button, panel.title());
         let seen = |console: &mut Console| format!("{:?}", console.state_mut().settings_mut().layout.closed);
         done.push(alike(&mut console, Action::Panel(panel), reset, other, seen));
+    }
+    for panel in PanelId::ALL {
+        let other = of_menu(Kind::Button, &entry(Action::Window(panel)).title);
+        let seen = |console: &mut Console| format!("{:?}", console.state_mut().settings_mut().layout.windows);
+        done.push(alike(&mut console, Action::Window(panel), set(|_| {}), other, seen));
     }
     for arrangement in Arrangement::ALL {
         let before = if arrangement == Arrangement::Simple { Arrangement::Research } else { Arrangement::Simple };
@@ -84,7 +89,7 @@ fn what_the_view_menu_and_the_keys_of_the_screen_do() {
         let other = of_menu(Kind::Button, &entry(Action::Arrange(arrangement)).title);
         done.push(alike(&mut console, Action::Arrange(arrangement), reset, other, settings));
     }
-    let reset = set(|settings| settings.layout = PanelLayout { closed: vec![Panel::Link], ..PanelLayout::default() });
+    let reset = set(|settings| settings.layout = PanelLayout { closed: vec![PanelId::Link], ..PanelLayout::default() });
     done.push(alike(&mut console, Action::ResetLayout, reset, of_menu(Kind::Button, "Reset layout"), settings));
     for action in [Action::ColourBlind, Action::Touch, Action::Sound, Action::ForcesOfNow, Action::RecordsPicture] {
         done.push(alike(&mut console, action, set(|_| {}), of_menu(Kind::CheckBox, &entry(action).title), settings));

@@ -133,6 +133,7 @@ const fn tried_in(action: Action) -> &'static str {
         | Action::Smaller
         | Action::Size(_)
         | Action::Panel(_)
+        | Action::Window(_)
         | Action::Arrange(_)
         | Action::ResetLayout
         | Action::Sound

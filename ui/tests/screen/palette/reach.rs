@@ -25,7 +25,12 @@ fn every_role_finds_what_it_can_reach_and_nothing_else() {
     let of_technician = |entry: &CommandEntry| {
         matches!(
             entry.action,
-            Action::Panel(_) | Action::Arrange(_) | Action::ResetLayout | Action::Check | Action::Calibrations
+            Action::Panel(_)
+                | Action::Window(_)
+                | Action::Arrange(_)
+                | Action::ResetLayout
+                | Action::Check
+                | Action::Calibrations
         ) || matches!(entry.action, Action::Calibrate(which) if which.scene().is_some())
     };
     let with_traces =

@@ -4,7 +4,7 @@ use egui::accesskit::Role as Kind;
 use egui_kittest::kittest::Queryable as _;
 use nima_console::console::{ConsoleApp, commands::Action};
 use nima_machine::messages::LoopState;
-use nima_panels::tiles::Panel;
+use nima_panels::tiles::PanelId;
 use nima_screen::scene3d::extras::MenuSwitch;
 use nima_tests::plan;
 
@@ -26,7 +26,7 @@ fn nothing_that_went_to_the_machine_is_undone() {
         egui_kittest::Harness::builder().with_size(SIZE).with_step_dt(1.0 / 30.0).build_eframe(move |cc| {
             let mut console = ConsoleApp::new(cc, handle, plan.rig, plan.scene).with_simulated_time(1.0);
             // The panel sends its own command, which makes the loop compute all modes.
-            console.settings_mut().layout.toggle(Panel::Degrees);
+            console.settings_mut().layout.toggle(PanelId::Degrees);
             console
         });
     until(&mut console, "engaged", |tick| tick.state == LoopState::Engaged);

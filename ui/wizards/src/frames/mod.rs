@@ -2,17 +2,19 @@
 //! when going back and when closing.
 
 mod effect;
-mod job;
-mod kind;
-mod numbers;
 mod result_ui;
 mod steps_ui;
-mod subject;
 #[cfg(test)]
 mod tests;
 
 use egui::Ui;
 use nalgebra::{UnitQuaternion, Vector3};
+use nima_calibrations::frames::{
+    FrameKind, FrameSaving, FrameSubject,
+    job::{FrameJob, Outcome, last_changes},
+    kind::Texts,
+    numbers::{self, FrameNumber},
+};
 use nima_core::calibration::{
     RecordHead, Verdict,
     frames::{CalibrationSource, FramePhase, FrameSample, RigChange},
@@ -25,17 +27,7 @@ use nima_machine::{
 use nima_screen::widgets::card;
 use nima_words::text::{self, frames as texts};
 
-pub use job::{FrameCalibration, StoredFrame, frame_kept};
-pub use kind::FrameKind;
-pub use result_ui::sizes_text;
-pub use subject::FrameSubject;
-
-use self::{
-    job::{FrameJob, Outcome, last_changes},
-    kind::Texts,
-    numbers::FrameNumber,
-    result_ui::outcome_ui,
-};
+use self::result_ui::outcome_ui;
 use super::{
     Binding, SaveRequest,
     frame::{Wizard, WizardFrame, WizardRequest, WizardStep},
@@ -48,6 +40,7 @@ const STEPS: [WizardStep; 4] = [
     WizardStep { name: text::wizards::STEP_RESULT, meaning: texts::STEP_RESULT_HOVER },
     WizardStep { name: text::wizards::STEP_SAVE, meaning: texts::STEP_SAVE_HOVER },
 ];
+// Positions in `STEPS`.
 const CHECK: usize = 0;
 const RECORD: usize = 1;
 const RESULT: usize = 2;
@@ -58,15 +51,6 @@ const EVERY_S: f64 = 0.004;
 const PASSED_S: f64 = 8.0;
 /// A gravity direction this close to one of the list replaces it, rad.
 const NEAR_RAD: f64 = 0.3;
-
-/// A result to save: its record, and the resulting values of the rig file, as TOML text.
-#[derive(Clone, Debug)]
-pub struct FrameSaving {
-    /// The record, without its changes to the rig file.
-    pub record: FrameCalibration,
-    /// Keys with dots and their new values.
-    pub numbers: Vec<(String, String)>,
-}
 
 /// The wizard of one frame calibration.
 #[derive(Debug)]
@@ -334,9 +318,7 @@ impl Wizard for FrameWizard {
         if self.undoable.is_empty() {
             return None;
         }
-        let wanted = card(ui, texts::UNDO_TITLE.get(), texts::UNDO_CARD_HOVER.get(), |ui| {
-            ui.button(texts::UNDO.get()).clicked()
-        });
+        let wanted = card(ui, texts::UNDO_TITLE, texts::UNDO_CARD_HOVER, |ui| ui.button(texts::UNDO).clicked());
         wanted.then(|| SaveRequest::Undo(self.undoable.iter().cloned().map(RigChange::undone).collect()))
     }
 

@@ -2,19 +2,21 @@
 
 use egui::{Grid, Ui, vec2};
 use nalgebra::UnitQuaternion;
-use nima_core::calibration::frames::{SignedAxes, Sizes};
+use nima_core::calibration::frames::SignedAxes;
 use nima_screen::widgets::{card, figure, small};
 use nima_words::{
     report_text::{self, sentence},
     text::frames as texts,
 };
 
-use super::{
+use nima_calibrations::frames::{
     FrameSubject,
-    effect::effect_image,
     job::{Outcome, Quality},
     numbers::{self, FrameNumber, NumberUnit},
+    sizes_text,
 };
+
+use super::effect::effect_image;
 use crate::report::verdict_card;
 
 /// Draws the result; `units` is the name of the recorded items.
@@ -37,31 +39,31 @@ pub(super) fn outcome_ui(
             if let Some(axes) = found.axes.filter(|axes| *axes != SignedAxes::SAME) {
                 ui.label(texts::mount_axes(&report_text::axes_text(axes)));
             }
-            figure(ui, texts::TOOL_MASS.get(), format!("{:.3} kg", found.mass_kg), texts::TOOL_MASS_HOVER.get());
+            figure(ui, texts::TOOL_MASS, format!("{:.3} kg", found.mass_kg), texts::TOOL_MASS_HOVER);
         }
     });
     let Some((numbers, effect)) = numbers::of(outcome, subject, seen_view) else { return };
-    card(ui, texts::CHANGE_TITLE.get(), texts::CHANGE_HOVER.get(), |ui| {
+    card(ui, texts::CHANGE_TITLE, texts::CHANGE_HOVER, |ui| {
         effect_image(ui, &effect);
         ui.add_space(6.0);
         if numbers.is_empty() {
-            ui.label(texts::NO_CHANGE.get());
+            ui.label(texts::NO_CHANGE);
         } else {
             numbers_ui(ui, &numbers);
         }
         let were_given = !numbers.is_empty() && numbers.iter().all(|number| number.before.is_some());
         if were_given && effect.is_within(quality.uncertainty) {
             ui.add_space(4.0);
-            ui.label(texts::WITHIN_UNCERTAINTY.get());
+            ui.label(texts::WITHIN_UNCERTAINTY);
         }
     });
 }
 
 fn figures_ui(ui: &mut Ui, quality: &Quality, outliers: &[usize], units: &str) {
-    figure(ui, &sentence(units), quality.poses.to_string(), texts::RECORDED_HOVER.get());
+    figure(ui, sentence(units), quality.poses.to_string(), texts::RECORDED_HOVER);
     if !outliers.is_empty() {
         let list = outliers.iter().map(|i| (i + 1).to_string()).collect::<Vec<_>>().join(", ");
-        figure(ui, texts::LEFT_OUT.get(), list, texts::LEFT_OUT_HOVER.get());
+        figure(ui, texts::LEFT_OUT, list, texts::LEFT_OUT_HOVER);
     }
     let rows = [
         (texts::HELD_OUT.get(), quality.held_out, texts::HELD_OUT_HOVER.get()),
@@ -74,13 +76,6 @@ fn figures_ui(ui: &mut Ui, quality: &Quality, outliers: &[usize], units: &str) {
             figure(ui, name, words, meaning);
         }
     }
-}
-
-pub fn sizes_text(sizes: Sizes) -> Option<String> {
-    let place = sizes.place_m.map(|m| format!("{:.2} mm", m * 1e3));
-    let angle = sizes.angle_deg.map(|deg| format!("{deg:.2} deg"));
-    let words: Vec<_> = place.into_iter().chain(angle).collect();
-    (!words.is_empty()).then(|| words.join(", "))
 }
 
 fn numbers_ui(ui: &mut Ui, numbers: &[FrameNumber]) {

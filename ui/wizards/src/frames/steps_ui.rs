@@ -13,7 +13,9 @@ use nima_words::{
     text::{self, frames as texts},
 };
 
-use super::{FrameKind, FrameWizard, kind::Texts};
+use nima_calibrations::frames::{FrameKind, kind::Texts};
+
+use super::FrameWizard;
 use crate::{
     checks::{check_line, switch_ui},
     drawings::progress,
@@ -23,9 +25,9 @@ use crate::{
 
 impl FrameWizard {
     pub(super) fn check_ui(&mut self, ui: &mut Ui) {
-        card(ui, texts::CHECKS_TITLE.get(), texts::CHECKS_HOVER.get(), |ui| {
+        card(ui, texts::CHECKS_TITLE, texts::CHECKS_HOVER, |ui| {
             let Some(job) = &self.job else {
-                ui.label(texts::NO_ARM.get());
+                ui.label(texts::NO_ARM);
                 return;
             };
             let drawn = self.drawn();
@@ -33,7 +35,7 @@ impl FrameWizard {
             beside(ui, &drawn, None, |ui| self.needs_ui(ui, &needs));
         });
         let (Some([name, meaning]), Some(subject)) = (self.texts().other_way, self.subject.clone()) else { return };
-        card(ui, texts::OPTIONS_TITLE.get(), texts::OPTIONS_HOVER.get(), |ui| {
+        card(ui, texts::OPTIONS_TITLE, texts::OPTIONS_HOVER, |ui| {
             let needs = self.kind.other_way_needs(&subject);
             let free = needs.is_ok() && self.taken() == 0;
             if let Some(other_way) = switch_ui(ui, free, self.other_way, name, meaning) {
@@ -77,7 +79,7 @@ impl FrameWizard {
         let Texts { task, units, .. } = self.texts();
         let Some(coverage) = self.job.as_ref().map(|job| job.coverage()) else { return };
         let complete = coverage.fraction >= 1.0;
-        card(ui, texts::RECORD_TITLE.get(), texts::RECORD_HOVER.get(), |ui| {
+        card(ui, texts::RECORD_TITLE, texts::RECORD_HOVER, |ui| {
             let asked = if complete {
                 texts::ALL_RECORDED.get().to_owned()
             } else {
@@ -100,12 +102,12 @@ impl FrameWizard {
             ui.add_space(6.0);
             ui.horizontal(|ui| {
                 let pause = if self.paused { texts::GO_ON.get() } else { texts::PAUSE.get() };
-                let pause = ui.add_enabled(!complete, Button::new(pause)).on_hover_text(texts::PAUSE_HOVER.get());
-                if pause.on_disabled_hover_text(texts::ALL_RECORDED.get()).clicked() {
+                let pause = ui.add_enabled(!complete, Button::new(pause)).on_hover_text(texts::PAUSE_HOVER);
+                if pause.on_disabled_hover_text(texts::ALL_RECORDED).clicked() {
                     self.paused = !self.paused;
                 }
-                let remove = ui.add_enabled(self.taken() > 0, Button::new(texts::REMOVE_LAST.get()));
-                if remove.on_disabled_hover_text(text::wizards::NOTHING_RECORDED.get()).clicked() {
+                let remove = ui.add_enabled(self.taken() > 0, Button::new(texts::REMOVE_LAST));
+                if remove.on_disabled_hover_text(text::wizards::NOTHING_RECORDED).clicked() {
                     self.job.iter_mut().for_each(|job| job.undo());
                     self.report = None;
                     self.frame.saved = None;

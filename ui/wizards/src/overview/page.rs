@@ -1,4 +1,4 @@
-//! The set-up page: tiles per arm, each with its state and reason, from which every wizard starts.
+//! The set-up page: tiles per arm with their state and its reason. Every wizard starts from a tile.
 
 use egui::{
     Align, Button, Color32, Id, Label, Layout, Rect, Response, RichText, Stroke, Ui, UiBuilder, WidgetInfo, vec2,
@@ -34,11 +34,11 @@ pub fn overview_ui(
     check: Option<&ReadyRecord>,
     closed: &dyn Fn(Side) -> Option<&'static str>,
 ) -> Option<SetupStep> {
-    ui.label(RichText::new(text::overview::TITLE.get()).font(theme::strong(theme::TITLE)));
-    ui.label(small(text::overview::MEANING.get()));
+    ui.label(RichText::new(text::overview::TITLE).font(theme::strong(theme::TITLE)));
+    ui.label(small(text::overview::MEANING));
     ui.add_space(theme::GAP);
     if arms.is_empty() {
-        ui.label(text::calibrations::NOT_NEEDED.get());
+        ui.label(text::calibrations::NOT_NEEDED);
     }
     let mut wish = following_ui(ui, arms, closed);
     for arm in arms {

@@ -6,8 +6,10 @@ use nima_recording::store::{CalibrationAge, ReadyRecord};
 use nima_screen::live::LiveState;
 use nima_words::text;
 
-use super::{ArmOverview, CalibrationEntry, OverviewLine, day, made_text, verdict_text};
-use crate::CalibrationTarget;
+use nima_calibrations::{
+    CalibrationTarget,
+    overview::{ArmOverview, CalibrationEntry, OverviewLine, day, made_text, verdict_text},
+};
 
 /// State of a step of the set-up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -59,7 +61,7 @@ fn devices(side: Side, live: &LiveState) -> SetupTile {
         (None, 0) => (StepState::Done, text::overview::SIMULATED.get().to_owned()),
         (None, count) => (StepState::Done, text::overview::all_connected(count)),
     };
-    SetupTile { name: text::tiles::DEVICES.get(), state, why, step: SetupStep::Devices }
+    SetupTile { name: text::devices::NAME.get(), state, why, step: SetupStep::Devices }
 }
 
 fn calibration(line: &OverviewLine) -> SetupTile {

@@ -33,21 +33,21 @@ pub fn ready_ui(
     saved: Option<&str>,
     roster: &Roster,
 ) -> Option<ReadyRequest> {
-    ui.label(RichText::new(text::ready::TITLE.get()).font(theme::strong(22.0)));
-    ui.label(small(text::ready::MEANING.get()));
+    ui.label(RichText::new(text::ready::TITLE).font(theme::strong(22.0)));
+    ui.label(small(text::ready::MEANING));
     ui.add_space(theme::GAP);
     ui.horizontal(|ui| {
-        let label = ui.label(text::ready::BY.get()).on_hover_text(text::ready::BY_HOVER.get());
+        let label = ui.label(text::ready::BY).on_hover_text(text::ready::BY_HOVER);
         ui.add(TextEdit::singleline(by).desired_width(280.0).char_limit(120)).labelled_by(label.id);
     });
     ui.add_space(theme::GAP);
     let Some(run) = run else {
-        ui.label(text::ready::WAITS.get());
+        ui.label(text::ready::WAITS);
         return None;
     };
     let session = &run.session;
     let mut wish = None;
-    card(ui, text::ready::NOW.get(), text::ready::MEANING.get(), |ui| {
+    card(ui, text::ready::NOW, text::ready::MEANING, |ui| {
         if session.is_finished() {
             wish = end_ui(ui, run, saved);
         } else {

@@ -31,7 +31,7 @@ impl TipForceWizard {
     /// Draws the step; returns the request to go back and record more.
     pub(super) fn check_ui(&mut self, ui: &mut Ui, binding: &Binding) -> Option<WizardRequest> {
         let mut wish = None;
-        card(ui, text::tip_force::CHECK_TITLE.get(), text::tip_force::CHECK_HOVER.get(), |ui| {
+        card(ui, text::tip_force::CHECK_TITLE, text::tip_force::CHECK_HOVER, |ui| {
             let work_s = CHECK_WORK as f64 * ROW_EVERY_S;
             let free_s = (CHECK_ROWS - CHECK_WORK) as f64 * ROW_EVERY_S;
             let drawn = if self.checked.is_some() { Prompt::Rest } else { drawn(self.proof.as_ref()) };
@@ -44,8 +44,8 @@ impl TipForceWizard {
             ui.horizontal(|ui| {
                 self.check_button_ui(ui, binding);
                 if ui
-                    .add(Button::new(text::tip_force::RECORD_MORE.get()).min_size(vec2(130.0, 40.0)))
-                    .on_hover_text(text::tip_force::RECORD_MORE_HOVER.get())
+                    .add(Button::new(text::tip_force::RECORD_MORE).min_size(vec2(130.0, 40.0)))
+                    .on_hover_text(text::tip_force::RECORD_MORE_HOVER)
                     .clicked()
                 {
                     wish = Some(WizardRequest::GoTo(RECORD));
@@ -116,10 +116,10 @@ fn verdict_ui(ui: &mut Ui, checked: &CheckResult) {
         let words = text::tip_force::verdict(&check.judgement.reason);
         ui.label(RichText::new(words).font(theme::strong(14.0)));
         if check.judgement.verdict != Verdict::Accepted {
-            ui.label(small(text::tip_force::VERDICT_OVERRIDE.get()));
+            ui.label(small(text::tip_force::VERDICT_OVERRIDE));
         }
         let doubt = text::tip_force::doubt(100.0 * check.doubt_fraction, check.rows);
-        figure(ui, text::tip_force::DOUBT.get(), doubt, text::tip_force::DOUBT_HOVER.get());
+        figure(ui, text::tip_force::DOUBT, doubt, text::tip_force::DOUBT_HOVER);
     });
 }
 
@@ -135,7 +135,7 @@ const HEAD: f32 = 100.0;
 
 fn figures_ui(ui: &mut Ui, checked: &CheckResult) {
     let meaning = text::tip_force::ERRORS_HOVER.get();
-    card(ui, text::tip_force::ERRORS_TITLE.get(), meaning, |ui| {
+    card(ui, text::tip_force::ERRORS_TITLE, meaning, |ui| {
         let check = &checked.check;
         Grid::new("tip_force_check").num_columns(9).spacing(vec2(14.0, 5.0)).show(ui, |ui| {
             let heads = [
@@ -173,10 +173,10 @@ fn figures_ui(ui: &mut Ui, checked: &CheckResult) {
 
 fn plots_ui(ui: &mut Ui, checked: &CheckResult) {
     ui.columns(2, |columns| {
-        card(&mut columns[0], text::tip_force::REGRESSION_TITLE.get(), text::tip_force::REGRESSION_HOVER.get(), |ui| {
+        card(&mut columns[0], text::tip_force::REGRESSION_TITLE, text::tip_force::REGRESSION_HOVER, |ui| {
             regression_ui(ui, checked);
         });
-        card(&mut columns[1], text::tip_force::NO_CONTACT_TITLE.get(), text::tip_force::NO_CONTACT_HOVER.get(), |ui| {
+        card(&mut columns[1], text::tip_force::NO_CONTACT_TITLE, text::tip_force::NO_CONTACT_HOVER, |ui| {
             free_ui(ui, checked);
         });
     });
@@ -195,6 +195,7 @@ fn plot<'a>(name: &str, x: &str, y: &str) -> Plot<'a> {
 
 fn regression_ui(ui: &mut Ui, checked: &CheckResult) {
     let all = || checked.points.iter().flatten().flatten();
+    // At least from -1 to 1 N, so that noise does not fill the plot.
     let (low, high) = all().fold((-1.0_f64, 1.0_f64), |(low, high), value| (low.min(*value), high.max(*value)));
     let response =
         plot("tip_force_regression", text::tip_force::MEASURED_AXIS.get(), text::tip_force::PREDICTED_AXIS.get()).show(

@@ -51,8 +51,8 @@ impl TipForceWizard {
     }
 
     pub(super) fn ready_ui(&self, ui: &mut Ui, binding: &Binding) {
-        card(ui, text::tip_force::CHECKS_TITLE.get(), text::tip_force::CHECKS_HOVER.get(), |ui| {
-            ui.label(text::tip_force::CHECKS_TASK.get());
+        card(ui, text::tip_force::CHECKS_TITLE, text::tip_force::CHECKS_HOVER, |ui| {
+            ui.label(text::tip_force::CHECKS_TASK);
             ui.add_space(6.0);
             let known = binding.correspondence.is_some();
             let correspondence = (text::tip_force::SOURCE_CORRESPONDENCE, text::tip_force::SOURCE_NO_CORRESPONDENCE);

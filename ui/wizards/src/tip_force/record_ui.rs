@@ -35,7 +35,7 @@ impl TipForceWizard {
         let rows = self.rows();
         let mut wish = None;
         let meaning = text::tip_force::RECORD_HOVER.get();
-        card(ui, text::tip_force::RECORD_TITLE.get(), meaning, |ui| {
+        card(ui, text::tip_force::RECORD_TITLE, meaning, |ui| {
             beside(ui, &drawn(self.recording.as_ref()), None, |ui| self.now_ui(ui));
             ui.add_space(4.0);
             ui.horizontal(|ui| {
@@ -44,12 +44,10 @@ impl TipForceWizard {
                 }
                 ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                     let enough = rows >= MIN_ROWS && self.lacking().is_some();
-                    let anyway = ui.add_enabled(
-                        enough,
-                        Button::new(text::tip_force::TRAIN_ANYWAY.get()).min_size(vec2(130.0, 34.0)),
-                    );
-                    let anyway = anyway.on_hover_text(text::tip_force::TRAIN_ANYWAY_HOVER.get());
-                    if anyway.on_disabled_hover_text(text::tip_force::TRAIN_ANYWAY_DISABLED_HOVER.get()).clicked() {
+                    let anyway =
+                        ui.add_enabled(enough, Button::new(text::tip_force::TRAIN_ANYWAY).min_size(vec2(130.0, 34.0)));
+                    let anyway = anyway.on_hover_text(text::tip_force::TRAIN_ANYWAY_HOVER);
+                    if anyway.on_disabled_hover_text(text::tip_force::TRAIN_ANYWAY_DISABLED_HOVER).clicked() {
                         wish = Some(WizardRequest::GoTo(TRAIN));
                     }
                 });
@@ -69,7 +67,7 @@ impl TipForceWizard {
     fn now_ui(&self, ui: &mut Ui) {
         let Some(take) = &self.recording else {
             ui.label(RichText::new(words(self.prompt())).font(theme::strong(19.0)));
-            ui.label(text::tip_force::RECORD_FIRST_STEP.get());
+            ui.label(text::tip_force::RECORD_FIRST_STEP);
             return;
         };
         let task = match self.lacking() {
@@ -120,7 +118,7 @@ impl TipForceWizard {
 }
 
 fn goals_ui(ui: &mut Ui, coverage: &TipForceCoverage) {
-    card(ui, text::tip_force::GOALS_TITLE.get(), text::tip_force::GOALS_HOVER.get(), |ui| {
+    card(ui, text::tip_force::GOALS_TITLE, text::tip_force::GOALS_HOVER, |ui| {
         ui.columns(2, |columns| {
             let goals = coverage.goals();
             for (i, goal) in goals.iter().enumerate() {
@@ -145,7 +143,7 @@ fn maps_ui(ui: &mut Ui, coverage: &TipForceCoverage) {
     let travel: [AxisText; 2] =
         [["0 mm", text::tip_force::TRAVEL_DEPTH.get(), "300 mm"], ["-160", text::tip_force::TRAVEL_SPEED.get(), "160"]];
     let meaning = text::tip_force::COVERAGE_HOVER.get();
-    card(ui, text::tip_force::COVERAGE_TITLE.get(), meaning, |ui| {
+    card(ui, text::tip_force::COVERAGE_TITLE, meaning, |ui| {
         let width = ((ui.available_width() - 2.0 * 10.0) / 3.0).min(238.0);
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = 10.0;

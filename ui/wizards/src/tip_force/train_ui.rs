@@ -22,15 +22,15 @@ const HEIGHT: f32 = 330.0;
 
 impl TipForceWizard {
     pub(super) fn train_ui(&mut self, ui: &mut Ui, binding: &Binding) {
-        card(ui, text::tip_force::STEP_TRAIN.get(), text::tip_force::TRAIN_HOVER.get(), |ui| {
+        card(ui, text::tip_force::STEP_TRAIN, text::tip_force::TRAIN_HOVER, |ui| {
             self.size_ui(ui);
             let rows = self.rows();
             let report = text::tip_force::rows_and_time(rows, rows as f64 * ROW_EVERY_S);
-            figure(ui, text::tip_force::TRAIN_DATA.get(), report, text::tip_force::TRAIN_DATA_HOVER.get());
+            figure(ui, text::tip_force::TRAIN_DATA, report, text::tip_force::TRAIN_DATA_HOVER);
             let (fraction, elapsed_s) = self.progress();
             ui.horizontal(|ui| {
                 if self.is_training() {
-                    if ui.add(Button::new(text::tip_force::TRAIN_CANCEL.get()).min_size(vec2(180.0, 40.0))).clicked() {
+                    if ui.add(Button::new(text::tip_force::TRAIN_CANCEL).min_size(vec2(180.0, 40.0))).clicked() {
                         self.cancel_training();
                     }
                     return;
@@ -42,7 +42,7 @@ impl TipForceWizard {
                 };
                 let button =
                     ui.add_enabled(rows > 0, next_button(text, self.trained.is_none()).min_size(vec2(180.0, 40.0)));
-                if button.on_disabled_hover_text(text::tip_force::TRAIN_DISABLED_HOVER.get()).clicked() {
+                if button.on_disabled_hover_text(text::tip_force::TRAIN_DISABLED_HOVER).clicked() {
                     self.start_training(binding);
                 }
             });
@@ -50,7 +50,7 @@ impl TipForceWizard {
         });
         self.outcome_ui(ui);
         let meaning = text::tip_force::LOSS_HOVER.get();
-        card(ui, text::tip_force::LOSS_TITLE.get(), meaning, |ui| curves_ui(ui, &look(&self.curves)));
+        card(ui, text::tip_force::LOSS_TITLE, meaning, |ui| curves_ui(ui, &look(&self.curves)));
     }
 
     fn cancel_training(&self) {
@@ -62,7 +62,7 @@ impl TipForceWizard {
     fn size_ui(&mut self, ui: &mut Ui) {
         let training = self.is_training();
         ui.horizontal(|ui| {
-            ui.label(text::tip_force::SIZE.get());
+            ui.label(text::tip_force::SIZE);
             for size in Size::ALL {
                 let hidden = size.settings().hidden.iter().map(usize::to_string).collect::<Vec<_>>().join("-");
                 let chosen = self.size == size;
@@ -91,24 +91,19 @@ impl TipForceWizard {
 
     fn outcome_ui(&self, ui: &mut Ui) {
         let Some(trained) = &self.trained else { return };
-        card(ui, text::tip_force::TRAINED_TITLE.get(), text::tip_force::TRAINED_HOVER.get(), |ui| {
+        card(ui, text::tip_force::TRAINED_TITLE, text::tip_force::TRAINED_HOVER, |ui| {
             let origin = &trained.model.origin;
             let losses = origin.figures.iter().map(|member| member.validation_loss);
             let mean = losses.sum::<f64>() / origin.figures.len().max(1) as f64;
             let report = text::tip_force::networks_on_rows(origin.figures.len(), origin.rows);
-            figure(ui, text::tip_force::ENSEMBLE.get(), report, text::tip_force::ENSEMBLE_HOVER.get());
-            figure(
-                ui,
-                text::tip_force::HELD_OUT_LOSS.get(),
-                format!("{mean:.4}"),
-                text::tip_force::HELD_OUT_LOSS_HOVER.get(),
-            );
+            figure(ui, text::tip_force::ENSEMBLE, report, text::tip_force::ENSEMBLE_HOVER);
+            figure(ui, text::tip_force::HELD_OUT_LOSS, format!("{mean:.4}"), text::tip_force::HELD_OUT_LOSS_HOVER);
             if let Some(goal) = trained.narrow {
                 let [goal, _] = goal_text(goal);
                 ui.label(text::tip_force::not_complete(&within(goal)));
             }
             if origin.rows < self.rows() {
-                ui.label(small(text::tip_force::TRAINED_STALE.get()));
+                ui.label(small(text::tip_force::TRAINED_STALE));
             }
         });
     }
@@ -118,10 +113,10 @@ fn curves_ui(ui: &mut Ui, curves: &Curves) {
     let decades = |mark: GridMark| power_of_ten(mark.value);
     let plot = Plot::new("losses")
         .height(HEIGHT)
-        .custom_x_axes(vec![AxisHints::new_x().label(text::tip_force::EPOCH_AXIS.get())])
+        .custom_x_axes(vec![AxisHints::new_x().label(text::tip_force::EPOCH_AXIS)])
         .custom_y_axes(vec![
             AxisHints::new_y()
-                .label(text::tip_force::LOSS_AXIS.get())
+                .label(text::tip_force::LOSS_AXIS)
                 .min_thickness(52.0)
                 .formatter(move |mark, _| decades(mark)),
         ])

@@ -102,8 +102,8 @@ impl Remedy for Fault {
                 "Kraftsensor und Handgerät prüfen, dann Halt lösen und neu koppeln",
             ),
             Self::LoopStalled { .. } => word(
-                "Close other programs or grant real-time priority, then release the stop and engage again",
-                "Andere Programme schließen oder Echtzeitpriorität gewähren, dann Halt lösen und neu koppeln",
+                "Close other programs or grant real-time priority, then engage again",
+                "Andere Programme schließen oder Echtzeitpriorität gewähren, dann neu koppeln",
             ),
             Self::ForceUnknown { source: ForceSource::Uncalibrated | ForceSource::Poisoned } => word(
                 "Calibrate gravity (Calibration panel, F2), then release the stop and engage again",

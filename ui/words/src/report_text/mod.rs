@@ -35,7 +35,7 @@ pub use gates::gate_text;
 pub use modes::{COMPARED, EVERYDAY, OF_RESEARCH, mode_line, mode_meaning, mode_name};
 pub use names::{
     device_name, exchange_text, goal_text, lack_text, loss_text, obstacle_text, part_name, role_name, scheduling_text,
-    side_word, state_name, within,
+    side_name, side_word, state_name, within,
 };
 pub use numbers::{UNKNOWN, newtons, newtons_in_three, newtons_read, three_digits};
 pub use ready::{ask_text, check_name, figure_text, lacks_text, unit};

@@ -7,7 +7,18 @@ use nima_machine::{
     rig::{AwaitedDevice, DeviceName, DeviceRole, EngageBlocker, RigPart, Side, SideSwap},
 };
 
-use crate::language::{Language, current, text_format, word};
+use crate::{
+    language::{Language, current, text_format, word},
+    text::common,
+};
+
+/// Returns the side as a name, for example of a hand.
+pub fn side_name(side: Side) -> &'static str {
+    match side {
+        Side::Right => common::RIGHT.get(),
+        Side::Left => common::LEFT.get(),
+    }
+}
 
 /// Returns the side within a sentence: before the noun in English, after it in German.
 pub fn side_word(side: Side) -> &'static str {
@@ -110,6 +121,21 @@ pub fn obstacle_text(obstacle: &EngageBlocker) -> String {
         )
         .to_owned(),
         EngageBlocker::Exchanged(exchange) => exchange_text(*exchange).to_owned(),
+        EngageBlocker::OneHandle => word(
+            "the right and left handles are one device: both report the same serial number",
+            "rechtes und linkes Handgerät sind ein Gerät: beide melden dieselbe Seriennummer",
+        )
+        .to_owned(),
+        EngageBlocker::OneArm => word(
+            "the right and left arms are one device: both report the same serial number",
+            "rechter und linker Arm sind ein Gerät: beide melden dieselbe Seriennummer",
+        )
+        .to_owned(),
+        EngageBlocker::OneSensor => word(
+            "two of the sensors are one device: both report the same serial number",
+            "zwei der Sensoren sind ein Gerät: beide melden dieselbe Seriennummer",
+        )
+        .to_owned(),
         EngageBlocker::FarEnd => word(
             "the follower's machine refuses to engage; its screen shows the reason",
             "der Rechner des Folgearms lehnt das Koppeln ab; sein Bildschirm zeigt den Grund",
@@ -170,6 +196,22 @@ pub fn lack_text(lack: SchedulingLack) -> [&'static str; 2] {
                  realtime and log in again",
                 "Zeile \"@realtime - memlock unlimited\" in /etc/security/limits.d/realtime.conf eintragen, der Gruppe \
                  realtime beitreten und neu anmelden",
+            ),
+        ],
+        SchedulingLack::PriorityInContainer => [
+            word("no real-time priority in this container", "keine Echtzeitpriorität in diesem Container"),
+            word(
+                "start it with --cap-add=sys_nice --ulimit rtprio=95; if its control group has no real-time budget, \
+                 also with --cpu-rt-runtime=950000",
+                "ihn mit --cap-add=sys_nice --ulimit rtprio=95 starten; hat seine Kontrollgruppe kein Echtzeitbudget, \
+                 auch mit --cpu-rt-runtime=950000",
+            ),
+        ],
+        SchedulingLack::MemoryInContainer => [
+            word("memory is not locked in this container", "Speicher ist in diesem Container nicht gesperrt"),
+            word(
+                "start it with --cap-add=ipc_lock --ulimit memlock=-1",
+                "ihn mit --cap-add=ipc_lock --ulimit memlock=-1 starten",
             ),
         ],
         SchedulingLack::NotLinux => [
@@ -233,7 +275,8 @@ mod tests {
         let exchanges = [SideSwap::Handles, SideSwap::Arms, SideSwap::Sensors, SideSwap::Servos, SideSwap::Markers];
         let obstacles = exchanges.map(EngageBlocker::Exchanged).into_iter();
         let obstacles = obstacles.chain([AwaitedDevice::Servos, AwaitedDevice::Markers].map(EngageBlocker::Waiting));
-        for obstacle in obstacles.chain([EngageBlocker::Exchanged(SideSwap::Trocars), EngageBlocker::FarEnd]) {
+        let others = [EngageBlocker::OneHandle, EngageBlocker::OneArm, EngageBlocker::OneSensor, EngageBlocker::FarEnd];
+        for obstacle in obstacles.chain([EngageBlocker::Exchanged(SideSwap::Trocars)]).chain(others) {
             assert_eq!(obstacle_text(&obstacle), obstacle.to_string());
         }
         for (fifo, memory_locked) in [(false, false), (true, false), (true, true)] {

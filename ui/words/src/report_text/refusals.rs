@@ -28,7 +28,12 @@ pub fn refused_because(why: Refusal) -> String {
             )
         }
         Refusal::Obstacle(waiting @ EngageBlocker::Waiting(_)) => obstacle_text(&waiting),
-        Refusal::Obstacle(obstacle @ EngageBlocker::FarEnd) => obstacle_text(&obstacle),
+        Refusal::Obstacle(
+            obstacle @ (EngageBlocker::FarEnd
+            | EngageBlocker::OneHandle
+            | EngageBlocker::OneArm
+            | EngageBlocker::OneSensor),
+        ) => obstacle_text(&obstacle),
         Refusal::Obstacle(EngageBlocker::Exchanged(exchange)) => exchange_text(exchange).to_owned(),
         Refusal::Obstacle(obstacle) => text_format!(
             "the arm cannot start from its current position: {}",
@@ -92,6 +97,10 @@ pub fn cure_of_refusal(why: Refusal) -> &'static str {
             "undo the swap, on the rig or in the rig file; the ready check shows which parts are swapped",
             "Vertauschtes zurücktauschen, am Aufbau oder in der Aufbaudatei; die Startprüfung zeigt, was \
              vertauscht ist",
+        ),
+        Refusal::Obstacle(EngageBlocker::OneHandle | EngageBlocker::OneArm | EngageBlocker::OneSensor) => word(
+            "correct the address or port of one of the two in the rig file; both lead to one device",
+            "Adresse oder Anschluss eines der beiden in der Aufbaudatei berichtigen; beide führen zu einem Gerät",
         ),
         Refusal::Obstacle(EngageBlocker::Waiting(_)) => word(
             "wait a moment, clear the tracker's view, then engage again",

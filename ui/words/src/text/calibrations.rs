@@ -5,6 +5,12 @@ use nima_recording::store::WristId;
 
 use crate::language::{Text, text_format, word};
 
+pub const NAME: Text = Text::of("Calibration", "Kalibrierung");
+pub const MEANING: Text = Text::of(
+    "Shows how the force at the tip is obtained, and opens the calibrations that it needs",
+    "Zeigt, wie die Kraft an der Spitze bestimmt wird, und öffnet die nötigen Kalibrierungen",
+);
+
 pub const NOT_OF_A_SENSOR: Text =
     Text::of("these values belong in the rig file", "diese Werte gehören in die Aufbaudatei");
 pub const SETS_IDLE: Text = Text::of(

@@ -254,6 +254,10 @@ pub fn panel(name: &str) -> String {
     text_format!("Panel: {name}", "Panel: {name}")
 }
 
+pub fn window(name: &str) -> String {
+    text_format!("{name} in its own window", "{name} in eigenem Fenster")
+}
+
 pub fn layout(name: &str) -> String {
     text_format!("Layout: {name}", "Layout: {name}")
 }

@@ -2,6 +2,12 @@
 
 use crate::language::{Text, text_format};
 
+pub const NAME: Text = Text::of("Degrees", "Grade");
+pub const MEANING: Text = Text::of(
+    "Degree N of the polynomial f = M X between motion and force, chosen every tick from the last 300 ms",
+    "Grad N des Polynoms f = M X zwischen Bewegung und Kraft, in jedem Takt aus den letzten 300 ms gewählt",
+);
+
 pub const KEY_OURS: Text = Text::of("this console", "diese Konsole");
 pub const KEY_OURS_HOVER: Text = Text::of(
     "The highest power of the position in the model with the smallest recent prediction error; 0 means no correction",

@@ -7,6 +7,12 @@ use crate::report_text::{channel_name, marker};
 use crate::language::{Text, text_format, word};
 use crate::report_text::{part_name, within};
 
+pub const NAME: Text = Text::of("Devices", "Geräte");
+pub const MEANING: Text = Text::of(
+    "The devices of this rig. A connected device is not yet engaged.",
+    "Die Geräte dieses Aufbaus. Ein verbundenes Gerät ist noch nicht gekoppelt.",
+);
+
 pub const NONE: Text =
     Text::of("This rig is simulated: it has no devices", "Dieser Aufbau ist simuliert: er hat keine Geräte");
 pub const NONE_TO_CONNECT: Text = Text::of(

@@ -4,6 +4,12 @@ use nima_core::limits::{self, GAIN_ABOVE_ONE, Limits, SLIDER_DEAD_BAND_M_S, SLID
 
 use crate::language::{Text, text_format};
 
+pub const NAME: Text = Text::of("Feedback", "Rückkopplung");
+pub const MEANING: Text = Text::of(
+    "Sets how the force measured at the instrument becomes the force in the hand",
+    "Stellt ein, wie aus der am Instrument gemessenen Kraft die Kraft in der Hand wird",
+);
+
 /// Returns the hover text of the gain, with its maximum rate of change, 1/s.
 pub fn gain_hover(rate_per_s: f64) -> String {
     let Limits { min, max, .. } = limits::GAIN;

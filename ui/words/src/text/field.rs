@@ -2,6 +2,10 @@
 
 use crate::language::{Text, text_format, word};
 
+pub const NAME: Text = Text::of("Field", "Feld");
+pub const MEANING: Text =
+    Text::of("The operating field in 3-D, with the forces drawn as arrows", "Das OP-Feld in 3-D, Kräfte als Pfeile");
+
 pub const OPERATING_FIELD: Text = Text::of("Operating field", "OP-Feld");
 pub const SHOW: Text = Text::of("Show", "Zeigen");
 pub const SHOW_HOVER: Text = Text::of("Choose what else is drawn in the view", "Wählen, was außerdem gezeichnet wird");
@@ -44,7 +48,7 @@ pub const ENDOSCOPE: Text = Text::of("Endoscope", "Endoskop");
 pub const TROCAR: Text = Text::of("Trocar", "Trokar");
 pub const TIP: Text = Text::of("Tip", "Spitze");
 pub const LEAD: Text = Text::of("Drive by mouse (M)", "Maussteuerung (M)");
-pub const LEAD_END: Text = Text::of("Stop driving (M)", "Steuerung beenden (M)");
+pub const LEAD_END: Text = Text::of("Stop driving (M)", "Maus aus (M)");
 pub const ARROW_MEASURED: Text = Text::of("Measured force", "Gemessene Kraft");
 pub const ARROW_RENDERED: Text = Text::of("Rendered force", "Dargestellte Kraft");
 pub const RESET_VIEW: Text = Text::of("Endoscope view", "Endoskopsicht");
@@ -60,10 +64,16 @@ pub fn lead_hover(has_jaws: bool, is_bimanual: bool) -> String {
         (true, true) => word(". H: the other instrument", ". H: anderes Instrument"),
         (true, false) => word("\nH: the other instrument", "\nH: anderes Instrument"),
     };
+    let again = if has_jaws { word(". N: start again", ". N: neu starten") } else { "" };
     text_format!(
-        "Drag: move the instrument. Wheel, Page Up, Page Down: height. Arrow keys: small steps{jaws}{other}",
-        "Ziehen: Instrument bewegen. Mausrad, Bild auf, Bild ab: Höhe. Pfeiltasten: kleine Schritte{jaws}{other}"
+        "Drag: move the instrument. Wheel, Page Up, Page Down: height. Arrow keys: small steps{jaws}{other}{again}",
+        "Ziehen: Instrument bewegen. Mausrad, Bild auf, Bild ab: Höhe. Pfeiltasten: kleine Schritte{jaws}{other}{again}"
     )
+}
+
+/// Returns the hint of a view with a trial, after its hint about the camera.
+pub fn with_restart(camera: &str) -> String {
+    text_format!("{camera}. N: start the trial again", "{camera}. N: Versuch neu starten")
 }
 
 pub fn led(side: &str) -> String {

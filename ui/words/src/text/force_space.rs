@@ -2,6 +2,12 @@
 
 use crate::language::{Text, text_format};
 
+pub const NAME: Text = Text::of("Force space", "Kraftraum");
+pub const MEANING: Text = Text::of(
+    "Measured and rendered force of the last seconds, drawn in 3-D",
+    "Gemessene und dargestellte Kraft der letzten Sekunden in 3-D",
+);
+
 pub const HOVER: Text = Text::of(
     "Measured and rendered force of the last six seconds in force space (N, world axes), one line each. The dot \
      is the force now, or at the time under the pointer in a trace. The three rings are an ellipsoid around the \

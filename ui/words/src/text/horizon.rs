@@ -2,6 +2,16 @@
 
 use crate::language::{Text, text_format};
 
+pub const NAME: Text = Text::of("Prediction error", "Vorhersagefehler");
+pub const MEANING: Text = Text::of(
+    "Difference between the force that each mode would render now, before the gates, and the force measured now \
+     (N, 3-D distance, mean of the last four seconds). Each mode receives only data as old as the link's delay. \
+     All modes are always computed.",
+    "Differenz zwischen der Kraft, die jeder Modus jetzt vor den Sperren darstellen würde, und der jetzt \
+     gemessenen (N, 3-D-Abstand, Mittel der letzten vier Sekunden). Jeder Modus erhält nur Daten, die so alt \
+     sind wie die Verzögerung der Verbindung. Alle Modi werden ständig berechnet.",
+);
+
 pub const LAST_3_MIN: Text = Text::of("last 3 min", "letzte 3 min");
 pub const REFERENCE: Text = Text::of("reference", "Referenz");
 pub const COMPARE: Text = Text::of("Compare all modes", "Alle Modi vergleichen");

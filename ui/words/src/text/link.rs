@@ -2,6 +2,14 @@
 
 use crate::language::Text;
 
+pub const NAME: Text = Text::of("Link", "Verbindung");
+pub const MEANING: Text = Text::of(
+    "The network between this machine and the machine with the arm: delay, loss, clock, and which console \
+     controls the follower",
+    "Netzwerk zwischen diesem Rechner und dem des Arms: Verzögerung, Verlust, Uhr, und welche Konsole den \
+     Folgearm steuert",
+);
+
 pub const LINK: Text = Text::of(
     "link to the follower's machine",
     "Verbindung zum Rechner des \

@@ -42,5 +42,6 @@ pub mod timing;
 pub mod tip_force;
 pub mod top_bar;
 pub mod traces;
+pub mod tradeoff;
 pub mod training;
 pub mod wizards;

@@ -21,10 +21,10 @@ pub const SWITCH_DISABLED_HOVER: Text =
     Text::of("Close the wizard or the study first", "Erst den Assistenten oder die Studie schließen");
 pub const DEMO_START: Text = Text::of("What you see", "Was zu sehen ist");
 pub const DEMO_START_CAPTION: Text = Text::of(
-    "A hand moves an instrument from peg to peg and presses it into soft tissue. The ivory arrow is the force \
+    "A hand moves an instrument from point to point and presses it into soft tissue. The ivory arrow is the force \
      measured at the instrument; the blue arrow is the force that the hand feels. The link delays all data by 50 \
      ms.",
-    "Eine Hand führt ein Instrument von Stift zu Stift und drückt es in weiches Gewebe. Der elfenbeinfarbene Pfeil ist \
+    "Eine Hand führt ein Instrument von Punkt zu Punkt und drückt es in weiches Gewebe. Der elfenbeinfarbene Pfeil ist \
      die am Instrument gemessene Kraft, der blaue die Kraft, die die Hand spürt. Die Verbindung verzögert alle Daten \
      um 50 ms.",
 );

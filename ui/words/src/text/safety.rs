@@ -2,6 +2,14 @@
 
 use crate::language::{Text, text_format};
 
+pub const NAME: Text = Text::of("Safety", "Sicherheit");
+pub const MEANING: Text = Text::of(
+    "Why there is no force: a force passes these gates in this order; a closed gate stops it, a limiting gate reduces \
+     it. Below: the states of the interlock",
+    "Warum keine Kraft da ist: eine Kraft durchläuft diese Sperren der Reihe nach; eine geschlossene hält sie auf, eine \
+     begrenzende verringert sie. Darunter: die Zustände der Verriegelung",
+);
+
 pub const IDLE: Text = Text::of("Idle", "Leerlauf");
 pub const READY: Text = Text::of("Ready", "Bereit");
 pub const ENGAGED: Text = Text::of("Engaged", "Gekoppelt");

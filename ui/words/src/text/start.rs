@@ -50,6 +50,18 @@ pub const MAKE_HOVER: Text = Text::of(
     "Writes a commented rig file into your rigs folder; the chosen rig stays unchanged",
     "Schreibt eine kommentierte Aufbaudatei in Ihren Ordner der Aufbauten; der gewählte bleibt unverändert",
 );
+pub const ADDRESSES: Text = Text::of(
+    "These addresses are examples. Enter those of your devices:",
+    "Diese Adressen sind Beispiele. Die der eigenen Geräte eintragen:",
+);
+pub const COPY_FIRST: Text = Text::of(
+    "The addresses of this rig are examples: copy the rig, then enter those of your devices",
+    "Die Adressen dieses Aufbaus sind Beispiele: den Aufbau kopieren, dann die der eigenen Geräte eintragen",
+);
+pub const ENTER: Text = Text::of("Enter", "Eintragen");
+pub const ENTER_HOVER: Text =
+    Text::of("Writes the address into the rig file", "Schreibt die Adresse in die Aufbaudatei");
+pub const ADDRESS_FIRST: Text = Text::of("Type an address first", "Erst eine Adresse eingeben");
 pub const START: Text = Text::of("Start", "Starten");
 pub const START_AGAIN: Text = Text::of("Restart", "Neu starten");
 pub const START_HOVER: Text =

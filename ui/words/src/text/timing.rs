@@ -2,6 +2,13 @@
 
 use crate::language::{Text, text_format};
 
+pub const NAME: Text = Text::of("Timing", "Timing");
+pub const MEANING: Text = Text::of(
+    "How late the control loop wakes up in each period, and how long it computes, since the console was opened \
+     (µs)",
+    "Wie spät die Regelung in jedem Takt aufwacht und wie lange sie rechnet, seit Öffnen der Konsole (µs)",
+);
+
 pub const WAKE_UP: Text = Text::of("Wake-up", "Aufwachen");
 pub const WAKE_UP_HOVER: Text = Text::of(
     "How late the loop wakes up after the start of its period (µs)",

@@ -47,6 +47,10 @@ pub const ENGAGE_HOVER: Text = Text::of(
     "Second of two steps: starts motion and force feedback",
     "Zweiter von zwei Schritten: startet Bewegung und Kraftrückkopplung",
 );
+pub const ENGAGE_AFTER_STALL_HOVER: Text = Text::of(
+    "One step after a stall of less than a second: starts motion and force feedback",
+    "Ein Schritt nach einer Stockung unter einer Sekunde: startet Bewegung und Kraftrückkopplung",
+);
 pub const RELEASE_STOP_HOVER: Text = Text::of(
     "First of two steps: returns to idle, still without force",
     "Erster von zwei Schritten: zurück in den Leerlauf, noch ohne Kraft",

@@ -4,6 +4,12 @@ use std::{fmt::Display, io};
 
 use crate::language::{Text, text_format, word};
 
+pub const NAME: Text = Text::of("Traces", "Verläufe");
+pub const MEANING: Text = Text::of(
+    "Measured and rendered force over time, along x, y and z",
+    "Gemessene und dargestellte Kraft über der Zeit, längs x, y und z",
+);
+
 pub const HOVER: Text = Text::of(
     "Force in N along the world axes x, y and z as drawn in the view, z up. Measured: at the instrument, now. Rendered: \
      to the hand, after all gates. The band spans the lowest and the highest sample of each column. Drag to pan, wheel to \
@@ -16,6 +22,11 @@ pub const HOVER: Text = Text::of(
 );
 pub const SIGNALS: Text = Text::of("Signals", "Signale");
 pub const SIGNALS_HOVER: Text = Text::of("Chooses the plots", "Wählt die Kurven aus");
+pub const UNITS: Text = Text::of("Units", "Einheiten");
+pub const UNITS_HOVER: Text = Text::of(
+    "Units of the plots; saved files keep N, mm and mm/s",
+    "Einheiten der Kurven; gespeicherte Dateien behalten N, mm und mm/s",
+);
 pub const NO_PLOT: Text =
     Text::of("No signal is chosen: choose some under Signals", "Kein Signal gewählt: unter Signale auswählen");
 pub const LEGEND_HOVER: Text = Text::of("Click to hide or show", "Klick blendet aus oder ein");

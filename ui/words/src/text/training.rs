@@ -43,17 +43,16 @@ pub fn jaws(side: &str, with_ring: Option<&str>) -> String {
 /// Peg transfer; `led` from [`jaws`]. Ways that rings still have to go (there and back), and counts of rings passed in
 /// mid-air, placed on pegs and dropped.
 pub fn rings(led: Option<&str>, [left, passed, placed, dropped]: [u32; 4], ended: bool) -> String {
-    let keys = if led.is_some() { word(" (N restarts)", " (N startet neu)") } else { "" };
     let led = led.map(|words| format!("{words}. ")).unwrap_or_default();
     if ended {
         return text_format!(
-            "Task done. {led}Rings: passed {passed}, placed {placed}, dropped {dropped}{keys}",
-            "Fertig. {led}Ringe: übergeben {passed}, gesetzt {placed}, gefallen {dropped}{keys}"
+            "Task done. {led}Rings: passed {passed}, placed {placed}, dropped {dropped}",
+            "Fertig. {led}Ringe: übergeben {passed}, gesetzt {placed}, gefallen {dropped}"
         );
     }
     text_format!(
-        "{led}Rings: {left} to go, passed {passed}, placed {placed}, dropped {dropped}{keys}",
-        "{led}Ringe: noch {left}, übergeben {passed}, gesetzt {placed}, gefallen {dropped}{keys}"
+        "{led}Rings: {left} to go, passed {passed}, placed {placed}, dropped {dropped}",
+        "{led}Ringe: noch {left}, übergeben {passed}, gesetzt {placed}, gefallen {dropped}"
     )
 }
 

@@ -42,6 +42,10 @@ impl Audience for LoopWatcher {
         self.report(HubMessage::Begins(started_ns, self.outline));
     }
 
+    fn clock(&mut self, started_ns: u64) {
+        self.report(HubMessage::Clock(started_ns));
+    }
+
     fn channel(&mut self, _topic: &str, _encoding: &Encoding) {}
 
     fn message(&mut self, _channel: usize, _log_time_ns: u64, _data: &[u8]) {}

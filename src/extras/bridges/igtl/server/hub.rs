@@ -47,6 +47,7 @@ impl Hub {
                     self.newest = None;
                     self.shared.hurry();
                 }
+                Ok(HubMessage::Clock(started_ns)) => self.started_ns = started_ns,
                 Ok(HubMessage::Moment(moment)) => self.moment(moment),
                 Ok(HubMessage::Ends) => {
                     self.newest = None;

@@ -25,6 +25,8 @@ struct QueuedMail {
     /// Number of batches and images replaced by newer ones, and of dropped answers.
     replaced: u64,
     ends: bool,
+    /// No more entries are taken in, and the end comes after those that wait.
+    is_last: bool,
 }
 
 impl Mailbox {
@@ -35,6 +37,9 @@ impl Mailbox {
     /// Adds an answer or a state.
     pub(super) fn report(&self, bytes: Vec<u8>) {
         let mut mail = self.mail();
+        if mail.is_last {
+            return;
+        }
         if mail.report.len() >= MAX_MESSAGES {
             mail.report.pop_front();
             mail.replaced += 1;
@@ -46,6 +51,9 @@ impl Mailbox {
     /// Sets the newest bundle.
     pub(super) fn bundle(&self, bytes: Vec<u8>) {
         let mut mail = self.mail();
+        if mail.is_last {
+            return;
+        }
         mail.replaced += u64::from(mail.bundle.replace(bytes).is_some());
         self.comes.notify_one();
     }
@@ -53,6 +61,9 @@ impl Mailbox {
     /// Sets the newest image.
     pub(super) fn image(&self, bytes: Vec<u8>) {
         let mut mail = self.mail();
+        if mail.is_last {
+            return;
+        }
         mail.replaced += u64::from(mail.image.replace(bytes).is_some());
         self.comes.notify_one();
     }
@@ -74,6 +85,16 @@ impl Mailbox {
         self.comes.notify_one();
     }
 
+    /// Closes the mailbox after this last answer; whatever else is waiting is dropped.
+    pub(super) fn end_with(&self, bytes: Vec<u8>) {
+        let mut mail = self.mail();
+        mail.report.push_back(bytes);
+        mail.bundle = None;
+        mail.image = None;
+        mail.is_last = true;
+        self.comes.notify_one();
+    }
+
     /// Waits for the next entry. `None` at the end.
     pub(super) fn next(&self) -> Option<Vec<u8>> {
         let mut mail = self.mail();
@@ -82,7 +103,7 @@ impl Mailbox {
                 return None;
             }
             let next = mail.report.pop_front().or_else(|| mail.bundle.take()).or_else(|| mail.image.take());
-            if next.is_some() {
+            if next.is_some() || mail.is_last {
                 return next;
             }
             mail = self.comes.wait(mail).unwrap_or_else(PoisonError::into_inner);
@@ -107,6 +128,17 @@ mod tests {
         assert_eq!(taken, [50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 9, 109]);
         mailbox.end();
         assert_eq!(mailbox.next(), None);
+    }
+
+    #[test]
+    fn the_last_answer_comes_last() {
+        let mailbox = Mailbox::default();
+        mailbox.report(vec![1]);
+        mailbox.bundle(vec![2]);
+        mailbox.end_with(vec![3]);
+        mailbox.bundle(vec![4]);
+        mailbox.report(vec![5]);
+        assert_eq!([mailbox.next(), mailbox.next(), mailbox.next()], [Some(vec![1]), Some(vec![3]), None]);
     }
 
     #[test]

@@ -21,6 +21,8 @@ use super::{
 pub(super) enum HubMessage {
     /// A loop starts; its clock started at this time (ns since 1970).
     Begins(u64, LoopOutline),
+    /// Its clock started at this time, as its clock and UTC relate now.
+    Clock(u64),
     /// State of the loop.
     Moment(LoopMoment),
     /// The loop has ended.

@@ -126,6 +126,10 @@ pub(super) fn pointer_of(model: &ServoModel, address: u16) -> Option<u16> {
 
 /// Returns the rule of the register that begins at `address`.
 pub(super) fn rule_at(model: &ServoModel, address: u16) -> Option<Rule> {
+    let of_current = [table::CURRENT_LIMIT.address, table::GOAL_CURRENT.address];
+    if !model.measures_current() && of_current.contains(&address) {
+        return None;
+    }
     if let Some(known) = RULES.iter().chain([&BACKUP_READY]).find(|rule| rule.register.address == address) {
         return Some(of_model(*known, model));
     }

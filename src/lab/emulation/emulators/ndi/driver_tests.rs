@@ -27,12 +27,8 @@ use crate::emulators::{
 pub(super) fn definitions(count: usize) -> (tempfile::TempDir, Vec<PathBuf>) {
     let folder = tempfile::tempdir().unwrap();
     let paths = (0..count).map(|k| {
-        let mut bytes = vec![0_u8; 752];
-        bytes[..4].copy_from_slice(b"NDI\0");
-        bytes[592..597].copy_from_slice(b"TOOL_");
-        bytes[597] = b'0' + k as u8;
         let path = folder.path().join(format!("tool{k}.rom"));
-        std::fs::write(&path, bytes).unwrap();
+        std::fs::write(&path, NdiDefinition::emulated(&format!("TOOL_{k}")).bytes()).unwrap();
         path
     });
     let paths = paths.collect();
@@ -381,6 +377,13 @@ fn impossible_settings_are_told() {
     let strange = folder.path().join("strange.rom");
     std::fs::write(&strange, "a text").unwrap();
     assert_eq!(key_of(&NdiSettings { tools: vec![strange], ..good.clone() }), "tools[0]");
+    let copy = folder.path().join("copy.rom");
+    std::fs::copy(&tools[0], &copy).unwrap();
+    assert_eq!(
+        key_of(&NdiSettings { tools: vec![tools[0].clone(), tools[1].clone(), copy], ..good.clone() }),
+        "tools[2]"
+    );
+    assert_eq!(key_of(&NdiSettings { tools: vec![tools[0].clone(), tools[0].clone()], ..good.clone() }), "tools[1]");
     let line = NdiSettings { address: None, port: Some("/dev/not-there".to_owned()), ..good };
     assert!(matches!(NdiDriver::open(&line), Err(DeviceError::Absent { .. })));
     assert_eq!(TRACKED_TOOLS, 4);

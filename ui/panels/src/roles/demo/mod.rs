@@ -54,7 +54,7 @@ pub(super) fn demo_ui(ui: &mut Ui, live: &mut LiveState, panels: &mut Panels, ou
     Panel::right("figures").exact_size(348.0).resizable(false).frame(side).show(ui, |ui| {
         theme::card().show(ui, |ui| figures_ui(ui, live));
         ui.add_space(theme::GAP);
-        let panel = tiles::Panel::Horizon;
+        let panel = tiles::PanelId::Horizon;
         card(ui, panel.title(), panel.meaning(), |ui| horizon_ui(ui, live, outbox, true));
         let Panels { forces, space, .. } = panels;
         let room = vec2(ui.available_width(), ui.available_height().min(380.0));
@@ -84,7 +84,7 @@ fn figures_ui(ui: &mut Ui, live: &LiveState) {
     let identified = live.first_tick().filter(|_| is_known).map(|tick| tick.identification.degree.to_string());
     let degree = identified.unwrap_or_else(|| "–".to_owned());
     let name = text::roles::gain_and_degree(live.gain());
-    figure(ui, &name, degree, text::roles::FIGURES_HOVER.get());
+    figure(ui, &name, degree, text::roles::FIGURES_HOVER);
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), DEGREES_HEIGHT), Sense::hover());
     let percents: Vec<String> = fractions.iter().skip(1).map(|fraction| format!("{:.0} %", 100.0 * fraction)).collect();
     let words = text::roles::degrees(&percents.join(", "));
@@ -129,6 +129,6 @@ fn caption_ui(ui: &mut Ui, live: &LiveState, demo: &mut DemoState) {
         bar(ui.painter(), rect, demo.progress(), theme::now().reference);
     }
     if !plays {
-        ui.label(small(text::roles::NOTE_CHOOSE_SIMULATED.get()));
+        ui.label(small(text::roles::NOTE_CHOOSE_SIMULATED));
     }
 }

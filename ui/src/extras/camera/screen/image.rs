@@ -76,7 +76,7 @@ pub(super) fn coverage_ui(ui: &mut Ui, coverage: &CameraCoverage, size_px: [usiz
     let (rect, response) = ui.allocate_exact_size(vec2(MAP_WIDTH, height + 20.0), Sense::hover());
     let words = texts::covered(coverage.fraction());
     response.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, words.clone()));
-    response.on_hover_text(texts::COVERAGE_HOVER.get());
+    response.on_hover_text(texts::COVERAGE_HOVER);
     let painter = ui.painter_at(rect);
     let map = Rect::from_min_size(rect.min, vec2(MAP_WIDTH, height));
     painter.rect_filled(map, 2.0, theme::now().groove);

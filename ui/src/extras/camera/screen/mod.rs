@@ -371,7 +371,7 @@ impl Wizard for CameraWizard {
 
     fn before_saving(&self, ui: &mut Ui) -> bool {
         if self.lens().is_none() {
-            ui.label(texts::NEEDS_LENS.get());
+            ui.label(texts::NEEDS_LENS);
         }
         self.lens().is_some()
     }
@@ -380,8 +380,8 @@ impl Wizard for CameraWizard {
         if self.undoable.is_empty() {
             return None;
         }
-        let wanted = card(ui, text::frames::UNDO_TITLE.get(), text::frames::UNDO_CARD_HOVER.get(), |ui| {
-            ui.button(text::frames::UNDO.get()).clicked()
+        let wanted = card(ui, text::frames::UNDO_TITLE, text::frames::UNDO_CARD_HOVER, |ui| {
+            ui.button(text::frames::UNDO).clicked()
         });
         wanted.then(|| SaveRequest::Undo(undone(&self.undoable)))
     }

@@ -30,7 +30,7 @@ pub(super) struct EmulateArguments {
     /// Devices to emulate; `rig` for all devices of a rig, `link` for a bad network between two machines
     #[arg(required = true, value_name = "DEVICE")]
     devices: Vec<String>,
-    /// Setting of the emulated devices; a device without the setting ignores it
+    /// Setting of the emulated devices; an unknown key lists those of the devices
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
     /// With `rig`: the rig, built-in name or TOML file
@@ -73,13 +73,17 @@ pub(super) fn run(arguments: &EmulateArguments) -> anyhow::Result<()> {
     let settings = EmulatorSettings::new(&arguments.set)?;
     let fault = arguments.fault.as_deref().map(fault_named).transpose().map_err(anyhow::Error::msg)?;
     let mut emulated = Vec::new();
+    let mut made = Vec::new();
     for name in &arguments.devices {
-        let Some((known, emulator)) = ALONE.iter().find(|(known, _)| known == name) else {
+        let Some((known, maker)) = ALONE.iter().find(|(known, _)| known == name) else {
             let known: Vec<_> = ALONE.iter().map(|(known, _)| *known).collect();
             bail!("unknown emulator \"{name}\"; known: {}", known.join(", "));
         };
-        let serving = emulator(&settings).and_then(<dyn nima_emulation::emulators::Emulator>::serve);
-        emulated.push((*known, serving.with_context(|| format!("cannot emulate {name}"))?));
+        made.push((*known, maker(&settings).with_context(|| format!("cannot emulate {name}"))?));
+    }
+    settings.check()?;
+    for (name, emulator) in made {
+        emulated.push((name, emulator.serve().with_context(|| format!("cannot emulate {name}"))?));
     }
     for (_, serving) in &emulated {
         serving.faults.set(fault.unwrap_or_default());

@@ -22,11 +22,11 @@ pub(in crate::extras::lab) fn stable_gain_ui(ui: &mut Ui, live: &LiveState, rail
 fn strip_ui(ui: &mut Ui, live: &LiveState, rail: Rect, limit: f64) {
     let Some(map) = StabilityMap::committed() else { return };
     if !StabilityMap::has(live.mode()) {
-        ui.label(small(text::STABLE_GAIN_UNMEASURED.get())).on_hover_text(text::STABLE_GAIN_HOVER.get());
+        ui.label(small(text::STABLE_GAIN_UNMEASURED)).on_hover_text(text::STABLE_GAIN_HOVER);
         return;
     }
     let Some(n_m) = live.stiffness_n_m() else {
-        ui.label(small(text::STABLE_GAIN_UNKNOWN.get())).on_hover_text(text::STABLE_GAIN_HOVER.get());
+        ui.label(small(text::STABLE_GAIN_UNKNOWN)).on_hover_text(text::STABLE_GAIN_HOVER);
         return;
     };
     let mode = live.mode();
@@ -57,6 +57,6 @@ fn strip_ui(ui: &mut Ui, live: &LiveState, rail: Rect, limit: f64) {
     let greatest = map.greatest_stable_gain(mode, delay_s, n_m);
     let now = map.at(mode, live.gain(), delay_s, n_m);
     let words = text::stable_up_to(now, greatest, n_m);
-    response.on_hover_text(text::STABLE_GAIN_HOVER.get());
-    ui.label(small(words)).on_hover_text(text::STABLE_GAIN_HOVER.get());
+    response.on_hover_text(text::STABLE_GAIN_HOVER);
+    ui.label(small(words)).on_hover_text(text::STABLE_GAIN_HOVER);
 }

@@ -142,7 +142,7 @@ fn tradeoff_ui(ui: &mut Ui, live: &LiveState, state: &mut TradeoffPanel, outbox:
         ui.label(small(state.message.clone()));
     }
     let Some(figures) = &state.measured else {
-        ui.label(small(text::NOT_MEASURED.get()));
+        ui.label(small(text::NOT_MEASURED));
         return None;
     };
     if let Some(clicked) = plot_ui(ui, figures, state.selected) {
@@ -156,7 +156,7 @@ fn tradeoff_ui(ui: &mut Ui, live: &LiveState, state: &mut TradeoffPanel, outbox:
 fn measure_ui(ui: &mut Ui, live: &LiveState, state: &mut TradeoffPanel) {
     let Some(job) = &state.job else {
         let meaning = text::MEASURE_HOVER.get();
-        let button = Button::new(text::MEASURE.get()).min_size(vec2(ui.available_width(), 30.0));
+        let button = Button::new(text::MEASURE).min_size(vec2(ui.available_width(), 30.0));
         if ui.add(button).on_hover_text(meaning).clicked() {
             match SweepJob::start(live) {
                 Ok(job) => state.job = Some(job),
@@ -173,8 +173,8 @@ fn measure_ui(ui: &mut Ui, live: &LiveState, state: &mut TradeoffPanel) {
             let words = text::measured(100.0 * fraction);
             egui::WidgetInfo::labeled(egui::Role::ProgressIndicator, true, words)
         });
-        let cancel = ui.add(Button::new(text::CANCEL.get()).min_size(BUTTON));
-        if cancel.on_hover_text(text::CANCEL_HOVER.get()).clicked() {
+        let cancel = ui.add(Button::new(text::CANCEL).min_size(BUTTON));
+        if cancel.on_hover_text(text::CANCEL_HOVER).clicked() {
             job.cancel.store(true, Ordering::Relaxed);
         }
     });
@@ -182,7 +182,7 @@ fn measure_ui(ui: &mut Ui, live: &LiveState, state: &mut TradeoffPanel) {
 
 /// Draws the points of the Pareto front, fastest first, each a button.
 fn front_ui(ui: &mut Ui, figures: &SourceFigures, selected: &mut Option<usize>) {
-    ui.label(small(text::FRONT.get())).on_hover_text(text::FRONT_HOVER.get());
+    ui.label(small(text::FRONT)).on_hover_text(text::FRONT_HOVER);
     for index in front(figures) {
         let point = &figures.points[index];
         let row = Button::selectable(*selected == Some(index), format!("{}: {}", name(point), figures_of(point)));
@@ -205,7 +205,7 @@ fn apply_ui(
     // After a restart the loop is idle, so a restart must not be a way out of a stop or a fault.
     let closed = calibrations::closed(live.state()).filter(|_| restart);
     let size = vec2(ui.available_width(), 30.0);
-    let button = ui.add_enabled(closed.is_none(), Button::new(text::APPLY.get()).min_size(size));
+    let button = ui.add_enabled(closed.is_none(), Button::new(text::APPLY).min_size(size));
     let note = if restart { text::APPLY_BY_RESTART.get() } else { text::APPLY_AT_ONCE.get() };
     ui.label(small(format!("{}. {note}", name(point))));
     let clicked = button

@@ -24,7 +24,7 @@ pub(super) fn plot_ui(ui: &mut Ui, figures: &SourceFigures, selected: Option<usi
     let near = |at: PlotPoint| nearest(points, &shown, &range, at);
     let plot = still(Plot::new("trade-off"))
         .height(HEIGHT)
-        .custom_x_axes(vec![AxisHints::new_x().label(text::TIME_AXIS.get()).formatter(|mark, _| plain(mark.value))])
+        .custom_x_axes(vec![AxisHints::new_x().label(text::TIME_AXIS).formatter(|mark, _| plain(mark.value))])
         .custom_y_axes(vec![
             AxisHints::new_y()
                 .label(text::error_axis(&figures.unit))

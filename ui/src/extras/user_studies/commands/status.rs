@@ -36,6 +36,8 @@ struct StudyStatus<'a> {
     unblinded: Option<&'a nima_user_study::Unblinding>,
     simulated: bool,
     commitment: &'a str,
+    /// Hash of the whole journal.
+    journal: Option<&'a str>,
     trials_of_each: u32,
     participants: Vec<ParticipantStatus<'a>>,
     excluded: Vec<nima_user_study::Exclusion>,
@@ -75,6 +77,7 @@ impl<'a> StudyStatus<'a> {
             unblinded: state.unblinding.as_ref(),
             simulated: state.is_simulated(),
             commitment: &plan.commitment,
+            journal: study.journal_hash(),
             trials_of_each: plan.trials_of_each(),
             participants: plan.participants.iter().map(standing).collect::<anyhow::Result<_>>()?,
             excluded: study.exclusions(),
@@ -90,6 +93,9 @@ impl<'a> StudyStatus<'a> {
             (true, Some(by)) => format!("unblinded by {} at {} ({})", by.who, by.at, by.why),
         };
         let mut text = format!("{}: {sealed}\ncommitment {}\n", self.name, self.commitment);
+        if let Some(hash) = self.journal {
+            writeln!(text, "journal {hash}").ok();
+        }
         if self.simulated {
             text.push_str("SIMULATED: contains trials or answers of simulated people\n");
         }

@@ -39,7 +39,7 @@ impl BreakPage {
         ui.ctx().request_repaint_after(AGAIN);
         ui.add_space(0.25 * ui.available_height());
         ui.with_layout(Layout::top_down(Align::Center), |ui| {
-            ui.label(RichText::new(text::studies::BREAK.get()).font(theme::strong(34.0)));
+            ui.label(RichText::new(text::studies::BREAK).font(theme::strong(34.0)));
             let words = if left_s > 0.0 {
                 text::studies::clock(left_s.ceil())
             } else {
@@ -49,16 +49,16 @@ impl BreakPage {
             let min = text::studies::break_min(self.min_s);
             ui.label(weak(if left_s > 0.0 { min.as_str() } else { text::studies::BREAK_MAY_END.get() }));
             ui.add_space(24.0);
-            let end = RichText::new(text::studies::BREAK_END.get()).font(theme::strong(17.0));
+            let end = RichText::new(text::studies::BREAK_END).font(theme::strong(17.0));
             let button = next_button(end, left_s <= 0.0).min_size(vec2(220.0, 48.0));
             if ui.add_enabled(left_s <= 0.0, button).clicked() {
                 done = Some(BreakChoice::Over(seconds));
             }
             ui.add_space(8.0);
-            if ui.add(Button::new(text::studies::BACK.get()).min_size(vec2(220.0, 36.0))).clicked() {
+            if ui.add(Button::new(text::studies::BACK).min_size(vec2(220.0, 36.0))).clicked() {
                 done = Some(BreakChoice::Back);
             }
-            ui.label(small(text::studies::BREAK_BACK.get()));
+            ui.label(small(text::studies::BREAK_BACK));
         });
         done
     }

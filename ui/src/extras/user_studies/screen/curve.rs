@@ -14,7 +14,7 @@ const HEIGHT: f32 = 190.0;
 
 pub(super) fn curve_ui(ui: &mut Ui, learning: Option<&LearningModel>) {
     let Some(learning) = learning.filter(|learning| learning.times_s.iter().any(Option::is_some)) else {
-        ui.label(weak(text::studies::NO_TIMES.get()));
+        ui.label(weak(text::studies::NO_TIMES));
         return;
     };
     let places = |wanted: bool| -> Vec<[f64; 2]> {
@@ -32,8 +32,8 @@ pub(super) fn curve_ui(ui: &mut Ui, learning: Option<&LearningModel>) {
     });
     let plot = still(Plot::new("learning"))
         .height(HEIGHT)
-        .custom_x_axes(vec![AxisHints::new_x().label(text::studies::TRIAL_AXIS.get())])
-        .custom_y_axes(vec![AxisHints::new_y().label(text::studies::TIME_AXIS.get()).min_thickness(48.0)]);
+        .custom_x_axes(vec![AxisHints::new_x().label(text::studies::TRIAL_AXIS)])
+        .custom_y_axes(vec![AxisHints::new_y().label(text::studies::TIME_AXIS).min_thickness(48.0)]);
     let response = plot.show(ui, |plot| {
         plot.set_plot_bounds(PlotBounds::from_min_max([0.0, 0.0], [count + 1.0, 1.15 * max_s]));
         if let Some(curve) = curve {

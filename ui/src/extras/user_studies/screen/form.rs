@@ -77,16 +77,16 @@ impl StudyForm {
     fn foot_ui(&mut self, ui: &mut Ui, data: Option<&Path>) -> Option<FormChoice> {
         let mut done = None;
         ui.horizontal(|ui| {
-            let name = RichText::new(text::study_form::MAKE.get()).font(theme::strong(17.0));
+            let name = RichText::new(text::study_form::MAKE).font(theme::strong(17.0));
             let make =
                 ui.add_enabled(data.is_some(), next_button(name, true).min_size(vec2(160.0, theme::STOP_SIZE.y)));
-            let make = make.on_hover_text(text::study_form::MAKE_HOVER.get());
-            if make.on_disabled_hover_text(text::studies::NO_FOLDER.get()).clicked()
+            let make = make.on_hover_text(text::study_form::MAKE_HOVER);
+            if make.on_disabled_hover_text(text::studies::NO_FOLDER).clicked()
                 && let Some(data) = data
             {
                 done = self.make(data);
             }
-            if ui.add(Button::new(text::studies::BACK.get()).min_size(theme::STOP_SIZE)).clicked() {
+            if ui.add(Button::new(text::studies::BACK).min_size(theme::STOP_SIZE)).clicked() {
                 done = Some(FormChoice::Back);
             }
             ScrollArea::vertical().id_salt("mistakes").max_height(FOOT - 12.0).auto_shrink(false).show(ui, |ui| {
@@ -122,7 +122,7 @@ impl StudyForm {
 }
 
 fn ready_ui(ui: &mut Ui, draft: &mut Draft) {
-    card(ui, text::study_form::READY.get(), text::study_form::READY_HOVER.get(), |ui| {
+    card(ui, text::study_form::READY, text::study_form::READY_HOVER, |ui| {
         for ready in READY {
             let [name, about] = text::study_form::ready(ready);
             let button = Button::selectable(draft.ready == ready, name).frame_when_inactive(true);
@@ -137,7 +137,7 @@ fn ready_ui(ui: &mut Ui, draft: &mut Draft) {
 
 fn what_ui(ui: &mut Ui, draft: &mut Draft) {
     let file = &mut draft.file;
-    card(ui, text::study_form::WHAT.get(), text::study_form::WHAT_HOVER.get(), |ui| {
+    card(ui, text::study_form::WHAT, text::study_form::WHAT_HOVER, |ui| {
         field_ui(ui, text::study_form::NAME.get(), &mut file.name);
         field_ui(ui, text::study_form::RIG.get(), &mut file.rig);
         Grid::new("figures").num_columns(2).spacing(vec2(12.0, 4.0)).show(ui, |ui| {
@@ -148,7 +148,7 @@ fn what_ui(ui: &mut Ui, draft: &mut Draft) {
         let rows = order::williams(file.conditions.len()).len();
         ui.label(small(text::study_form::balance(file.participants as usize, rows)));
         ui.horizontal_wrapped(|ui| {
-            ui.label(text::study_form::INTERRUPTED.get());
+            ui.label(text::study_form::INTERRUPTED);
             either_ui(
                 ui,
                 &mut file.interrupted,
@@ -158,15 +158,15 @@ fn what_ui(ui: &mut Ui, draft: &mut Draft) {
                 ],
             );
         });
-        ui.checkbox(&mut file.blind, text::study_form::BLIND.get());
-        ui.checkbox(&mut file.record, text::study_form::RECORD.get());
+        ui.checkbox(&mut file.blind, text::study_form::BLIND);
+        ui.checkbox(&mut file.record, text::study_form::RECORD);
     });
 }
 
 fn practice_ui(ui: &mut Ui, draft: &mut Draft) {
     let names: Vec<String> = draft.file.conditions.iter().map(|condition| condition.name.clone()).collect();
-    card(ui, text::study_form::PRACTICE.get(), text::study_form::PRACTICE_HOVER.get(), |ui| {
-        ui.checkbox(&mut draft.practises, text::study_form::PRACTISES.get());
+    card(ui, text::study_form::PRACTICE, text::study_form::PRACTICE_HOVER, |ui| {
+        ui.checkbox(&mut draft.practises, text::study_form::PRACTISES);
         let criterion = &mut draft.practice.criterion;
         ui.add_enabled_ui(draft.practises, |ui| {
             Grid::new("practice").num_columns(2).spacing(vec2(12.0, 4.0)).show(ui, |ui| {
@@ -178,7 +178,7 @@ fn practice_ui(ui: &mut Ui, draft: &mut Draft) {
                 choice_ui(ui, text::study_form::UNDER.get(), &mut draft.under, &names, text::study_form::IN_TURN.get());
             });
             ui.horizontal_wrapped(|ui| {
-                ui.label(text::study_form::NOT_REACHED.get());
+                ui.label(text::study_form::NOT_REACHED);
                 either_ui(
                     ui,
                     &mut draft.practice.not_reached,
@@ -194,7 +194,7 @@ fn practice_ui(ui: &mut Ui, draft: &mut Draft) {
 
 fn conditions_ui(ui: &mut Ui, draft: &mut Draft) {
     let mut gone = None;
-    card(ui, text::study_form::CONDITIONS.get(), text::study_form::CONDITIONS_HOVER.get(), |ui| {
+    card(ui, text::study_form::CONDITIONS, text::study_form::CONDITIONS_HOVER, |ui| {
         let few = draft.file.conditions.len() <= 2;
         Grid::new("conditions-table").num_columns(5).spacing(vec2(8.0, 4.0)).show(ui, |ui| {
             for head in [
@@ -208,7 +208,7 @@ fn conditions_ui(ui: &mut Ui, draft: &mut Draft) {
             ui.end_row();
             for (condition, number) in draft.file.conditions.iter_mut().zip(1..) {
                 condition_ui(ui, condition, number);
-                let remove = ui.add_enabled(!few, Button::new(text::study_form::REMOVE.get()));
+                let remove = ui.add_enabled(!few, Button::new(text::study_form::REMOVE));
                 let name = text::study_form::of_condition(text::study_form::REMOVE.get(), number);
                 remove.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, !few, &name));
                 if remove.clicked() {
@@ -219,7 +219,7 @@ fn conditions_ui(ui: &mut Ui, draft: &mut Draft) {
         });
         let names: Vec<String> = draft.file.conditions.iter().map(|condition| condition.name.clone()).collect();
         ui.horizontal(|ui| {
-            if ui.add(Button::new(text::study_form::ADD.get()).min_size(vec2(140.0, 28.0))).clicked() {
+            if ui.add(Button::new(text::study_form::ADD).min_size(vec2(140.0, 28.0))).clicked() {
                 draft.add();
             }
             choice_ui(
@@ -248,14 +248,14 @@ fn condition_ui(ui: &mut Ui, condition: &mut Condition, number: usize) {
                 with_mode(condition, mode);
             }
         }
-        if ui.selectable_label(condition.no_force, text::study_form::NO_FORCE.get()).clicked() {
+        if ui.selectable_label(condition.no_force, text::study_form::NO_FORCE).clicked() {
             without_force(condition);
         }
     });
     let of = named(text::study_form::FEEDBACK.get());
     combo.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, &of));
     if condition.no_force {
-        ui.label(weak(text::study_form::NO_GAIN.get()));
+        ui.label(weak(text::study_form::NO_GAIN));
     } else {
         let mut gain = condition.gain.unwrap_or(1.0);
         let drag = ui.add(DragValue::new(&mut gain).range(0.01..=GAIN.max).speed(0.01).fixed_decimals(2));
@@ -276,8 +276,8 @@ fn condition_ui(ui: &mut Ui, condition: &mut Condition, number: usize) {
 }
 
 fn breaks_ui(ui: &mut Ui, draft: &mut Draft) {
-    card(ui, text::study_form::BREAKS.get(), text::study_form::BREAKS_HOVER.get(), |ui| {
-        ui.checkbox(&mut draft.rests, text::study_form::RESTS.get());
+    card(ui, text::study_form::BREAKS, text::study_form::BREAKS_HOVER, |ui| {
+        ui.checkbox(&mut draft.rests, text::study_form::RESTS);
         ui.add_enabled_ui(draft.rests, |ui| {
             Grid::new("breaks").num_columns(2).spacing(vec2(12.0, 4.0)).show(ui, |ui| {
                 whole_ui(ui, text::study_form::EVERY.get(), &mut draft.breaks.after_trials, 0..=BREAK_AFTER_MAX);
@@ -289,11 +289,11 @@ fn breaks_ui(ui: &mut Ui, draft: &mut Draft) {
 
 fn questionnaires_ui(ui: &mut Ui, draft: &mut Draft) {
     let asked = &mut draft.file.questionnaires;
-    card(ui, text::study_form::QUESTIONNAIRES.get(), text::study_form::QUESTIONNAIRES_HOVER.get(), |ui| {
+    card(ui, text::study_form::QUESTIONNAIRES, text::study_form::QUESTIONNAIRES_HOVER, |ui| {
         Grid::new("questionnaires").num_columns(3).spacing(vec2(16.0, 4.0)).show(ui, |ui| {
             ui.label("");
-            ui.label(small(text::study_form::AFTER_EACH.get()));
-            ui.label(small(text::study_form::AT_END.get()));
+            ui.label(small(text::study_form::AFTER_EACH));
+            ui.label(small(text::study_form::AT_END));
             ui.end_row();
             for which in Questionnaire::ALL {
                 let name = text::questionnaires::questionnaire(which);

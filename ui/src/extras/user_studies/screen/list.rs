@@ -75,10 +75,10 @@ impl StudyList {
         let mut done = None;
         let mut wanted = None;
         ui.horizontal(|ui| {
-            if ui.add(Button::new(text::studies::BACK.get()).min_size(BUTTON)).clicked() {
+            if ui.add(Button::new(text::studies::BACK).min_size(BUTTON)).clicked() {
                 done = Some(StudyListChoice::Back);
             }
-            ui.label(RichText::new(text::studies::OPEN.get()).font(theme::strong(19.0)));
+            ui.label(RichText::new(text::studies::OPEN).font(theme::strong(19.0)));
         });
         // A separate line, so that the content below never moves.
         ui.add(Label::new(weak(self.report.clone().unwrap_or_default())).wrap());
@@ -88,9 +88,9 @@ impl StudyList {
         ui.horizontal_top(|ui| {
             ui.spacing_mut().item_spacing.x = gap;
             column(ui, "studies", vec2(0.62 * room.x - gap, room.y), |ui| {
-                card(ui, text::studies::YOURS.get(), text::studies::YOURS_HOVER.get(), |ui| {
+                card(ui, text::studies::YOURS, text::studies::YOURS_HOVER, |ui| {
                     if self.rows.is_empty() {
-                        ui.label(weak(text::studies::NONE.get()));
+                        ui.label(weak(text::studies::NONE));
                     }
                     for row in &self.rows {
                         if row.ui(ui) {
@@ -100,17 +100,16 @@ impl StudyList {
                 });
             });
             column(ui, "new", vec2(0.38 * room.x, room.y), |ui| {
-                let name = RichText::new(text::studies::NEW.get()).font(theme::strong(17.0));
+                let name = RichText::new(text::studies::NEW).font(theme::strong(17.0));
                 let button = next_button(name, self.rows.is_empty()).min_size(vec2(ui.available_width(), 44.0));
-                if ui.add(button).on_hover_text(text::study_form::READY_HOVER.get()).clicked() {
+                if ui.add(button).on_hover_text(text::study_form::READY_HOVER).clicked() {
                     done = Some(StudyListChoice::New);
                 }
                 ui.add_space(theme::GAP);
-                card(ui, text::studies::OTHER.get(), text::studies::YOURS_HOVER.get(), |ui| {
+                card(ui, text::studies::OTHER, text::studies::YOURS_HOVER, |ui| {
                     field_ui(ui, text::studies::OTHER_FOLDER.get(), &mut self.other);
                     let written = !self.other.trim().is_empty();
-                    let button =
-                        Button::new(text::studies::OTHER_OPEN.get()).min_size(vec2(ui.available_width(), 32.0));
+                    let button = Button::new(text::studies::OTHER_OPEN).min_size(vec2(ui.available_width(), 32.0));
                     if ui.add_enabled(written, button).clicked() {
                         wanted = Some(PathBuf::from(self.other.trim()));
                     }
@@ -135,7 +134,7 @@ impl StudyListRow {
         ui.add(Label::new(RichText::new(&self.name).font(theme::strong(15.0))).wrap());
         let mut clicked = false;
         ui.horizontal(|ui| {
-            let button = Button::new(text::studies::OPEN_THIS.get()).min_size(vec2(74.0, 28.0));
+            let button = Button::new(text::studies::OPEN_THIS).min_size(vec2(74.0, 28.0));
             let response = ui.add_enabled(self.about.is_ok(), button);
             let name = text::studies::open_named(&self.name);
             response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, self.about.is_ok(), &name));

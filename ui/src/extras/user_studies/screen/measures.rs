@@ -15,12 +15,12 @@ use crate::extras::user_studies::text;
 const LIST: f32 = 460.0;
 
 pub(super) fn task_ui(ui: &mut Ui, draft: &mut Draft) {
-    card(ui, text::study_form::TASK.get(), text::study_form::TASK_HOVER.get(), |ui| {
+    card(ui, text::study_form::TASK, text::study_form::TASK_HOVER, |ui| {
         let mut chosen = None;
         let rings = draft.place_of_scene().map_or(0, |place| place.rings);
         let place = draft.place_of_scene();
         let [name, about] = place.map_or([&draft.file.scene, ""], |place| [place.name.as_str(), &place.about]);
-        let label = ui.label(weak(text::study_form::SCENE.get()));
+        let label = ui.label(weak(text::study_form::SCENE));
         let combo = ComboBox::from_id_salt("scene").width(220.0).selected_text(name).show_ui(ui, |ui| {
             for (at, place) in draft.scenes.iter().enumerate() {
                 if ui.selectable_label(place.of == draft.file.scene, &place.name).on_hover_text(&place.about).clicked()
@@ -40,7 +40,7 @@ pub(super) fn task_ui(ui: &mut Ui, draft: &mut Draft) {
                 }
             }
             if rings > 0 {
-                ui.checkbox(&mut draft.takes_few, text::study_form::FEW_RINGS.get());
+                ui.checkbox(&mut draft.takes_few, text::study_form::FEW_RINGS);
                 ui.end_row();
                 if draft.takes_few {
                     whole_ui(ui, text::study_form::RINGS.get(), &mut draft.rings, 0..=rings);
@@ -56,8 +56,8 @@ pub(super) fn task_ui(ui: &mut Ui, draft: &mut Draft) {
 /// Draws the primary measure, and the others of the report.
 pub(super) fn measures_ui(ui: &mut Ui, draft: &mut Draft) {
     let Draft { file, measures, .. } = draft;
-    card(ui, text::study_form::MEASURES.get(), text::study_form::MEASURES_HOVER.get(), |ui| {
-        let label = ui.label(weak(text::study_form::PRIMARY.get()));
+    card(ui, text::study_form::MEASURES, text::study_form::MEASURES_HOVER, |ui| {
+        let label = ui.label(weak(text::study_form::PRIMARY));
         let mut chosen = None;
         measure_ui(ui, ("primary", 0), &file.primary, measures, &mut chosen).labelled_by(label.id);
         if let Some(key) = chosen.take() {
@@ -65,7 +65,7 @@ pub(super) fn measures_ui(ui: &mut Ui, draft: &mut Draft) {
         }
         ui.label(small(meaning(measures, &file.primary)));
         ui.add_space(4.0);
-        ui.label(weak(text::study_form::SECONDARY.get()));
+        ui.label(weak(text::study_form::SECONDARY));
         let mut gone = None;
         ui.horizontal_wrapped(|ui| {
             // A wider row above must not push these out of the window.
@@ -93,16 +93,16 @@ const SECONDARY_WIDTH: f32 = 300.0;
 /// Rules that exclude trials and participants.
 pub(super) fn exclusion_ui(ui: &mut Ui, draft: &mut Draft) {
     let mut gone = None;
-    card(ui, text::study_form::EXCLUSION.get(), text::study_form::EXCLUSION_HOVER.get(), |ui| {
+    card(ui, text::study_form::EXCLUSION, text::study_form::EXCLUSION_HOVER, |ui| {
         let Draft { file, measures, .. } = draft;
         if file.exclusion.is_empty() {
-            ui.label(small(text::study_form::NO_RULES.get()));
+            ui.label(small(text::study_form::NO_RULES));
         }
         Grid::new("exclusion").num_columns(6).spacing(vec2(8.0, 4.0)).show(ui, |ui| {
             for (rule, number) in file.exclusion.iter_mut().zip(1..) {
                 rule_ui(ui, rule, number, measures);
                 let name = text::study_form::of_rule(text::study_form::REMOVE.get(), number);
-                let remove = ui.add(Button::new(text::study_form::REMOVE.get()));
+                let remove = ui.add(Button::new(text::study_form::REMOVE));
                 remove.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
                 if remove.clicked() {
                     gone = Some(number - 1);
@@ -110,7 +110,7 @@ pub(super) fn exclusion_ui(ui: &mut Ui, draft: &mut Draft) {
                 ui.end_row();
             }
         });
-        if ui.add(Button::new(text::study_form::ADD_RULE.get()).min_size(vec2(140.0, 28.0))).clicked() {
+        if ui.add(Button::new(text::study_form::ADD_RULE).min_size(vec2(140.0, 28.0))).clicked() {
             draft.add_rule();
         }
     });

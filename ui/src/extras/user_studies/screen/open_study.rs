@@ -166,8 +166,8 @@ impl OpenStudy {
                 self.leave_out_ui(ui);
             });
             column(ui, "study", vec2(ASIDE, room.y), |ui| {
-                let close = Button::new(text::studies::CLOSE.get()).min_size(vec2(ui.available_width(), 36.0));
-                if ui.add_enabled(!starting, close).on_hover_text(text::studies::CLOSE_HOVER.get()).clicked() {
+                let close = Button::new(text::studies::CLOSE).min_size(vec2(ui.available_width(), 36.0));
+                if ui.add_enabled(!starting, close).on_hover_text(text::studies::CLOSE_HOVER).clicked() {
                     wish = Some(Leaves::Closed);
                 }
                 ui.add_space(theme::GAP);
@@ -181,7 +181,7 @@ impl OpenStudy {
     fn who_ui(&mut self, ui: &mut Ui) {
         let trials = self.study.plan().trials_of_each();
         let mut chosen = None;
-        card(ui, text::studies::WHO.get(), text::studies::WHO_HOVER.get(), |ui| {
+        card(ui, text::studies::WHO, text::studies::WHO_HOVER, |ui| {
             for one in &self.study.plan().participants {
                 let button = Button::selectable(self.chosen == one.name, &one.name).frame_when_inactive(true);
                 if ui.add(button.min_size(vec2(ui.available_width(), 26.0))).clicked() {
@@ -202,7 +202,7 @@ impl OpenStudy {
         let participant = self.study.plan().participant(&self.chosen).ok()?.clone();
         let step = self.study.next(&self.chosen).ok()?;
         let mut begun = false;
-        card(ui, text::studies::NEXT_STEP.get(), text::studies::NEXT_STEP_HOVER.get(), |ui| {
+        card(ui, text::studies::NEXT_STEP, text::studies::NEXT_STEP_HOVER, |ui| {
             ui.horizontal(|ui| {
                 ui.label(RichText::new(&self.chosen).font(theme::strong(22.0)));
                 ui.label(small(text::studies::order(&participant.order)));
@@ -251,7 +251,7 @@ impl OpenStudy {
 
     fn hand_ui(&mut self, ui: &mut Ui) {
         ui.horizontal(|ui| {
-            ui.label(weak(text::studies::HAND.get()));
+            ui.label(weak(text::studies::HAND));
             match self.hand {
                 HandSource::Mouse | HandSource::Simulated => {
                     for (hand, name, hover) in [
@@ -271,10 +271,10 @@ impl OpenStudy {
                     }
                 }
                 HandSource::OfRig => {
-                    ui.label(text::studies::BY_RIG.get());
+                    ui.label(text::studies::BY_RIG);
                 }
                 HandSource::Emulated => {
-                    ui.label(text::studies::BY_SIMULATED.get()).on_hover_text(text::studies::BY_SIMULATED_HOVER.get());
+                    ui.label(text::studies::BY_SIMULATED).on_hover_text(text::studies::BY_SIMULATED_HOVER);
                 }
             }
         });
@@ -283,14 +283,14 @@ impl OpenStudy {
     fn learning_ui(&self, ui: &mut Ui) {
         let all = self.study.learning();
         let learning = all.iter().find(|learning| learning.participant == self.chosen);
-        card(ui, text::studies::LEARNING.get(), text::studies::LEARNING_HOVER.get(), |ui| curve_ui(ui, learning));
+        card(ui, text::studies::LEARNING, text::studies::LEARNING_HOVER, |ui| curve_ui(ui, learning));
     }
 
     fn note_ui(&mut self, ui: &mut Ui) {
         let mut kept = false;
-        card(ui, text::studies::NOTE.get(), text::studies::NOTE_HOVER.get(), |ui| {
+        card(ui, text::studies::NOTE, text::studies::NOTE_HOVER, |ui| {
             field_ui(ui, text::studies::NOTE_FIELD.get(), &mut self.note);
-            let button = Button::new(text::studies::NOTE_KEEP.get()).min_size(vec2(140.0, 30.0));
+            let button = Button::new(text::studies::NOTE_KEEP).min_size(vec2(140.0, 30.0));
             kept = ui.add_enabled(!self.note.trim().is_empty(), button).clicked();
         });
         if kept {
@@ -309,7 +309,7 @@ impl OpenStudy {
             .progress(&self.chosen)
             .map_or_else(Vec::new, |progress| progress.trials.iter().map(|made| made.number).collect());
         let mut pressed = false;
-        card(ui, text::studies::LEAVE_OUT.get(), text::studies::LEAVE_OUT_HOVER.get(), |ui| {
+        card(ui, text::studies::LEAVE_OUT, text::studies::LEAVE_OUT_HOVER, |ui| {
             ui.horizontal_wrapped(|ui| {
                 let choices = std::iter::once(None).chain(made.into_iter().map(Some));
                 for choice in choices {
@@ -322,7 +322,7 @@ impl OpenStudy {
                 }
             });
             field_ui(ui, text::studies::REASON.get(), &mut self.reason);
-            let button = Button::new(text::studies::LEAVE_OUT_NOW.get()).min_size(vec2(140.0, 30.0));
+            let button = Button::new(text::studies::LEAVE_OUT_NOW).min_size(vec2(140.0, 30.0));
             pressed = ui.add_enabled(!self.reason.trim().is_empty(), button).clicked();
         });
         if pressed {

@@ -124,10 +124,10 @@ impl QuestionnairePage {
         ui.add_space(6.0);
         ui.horizontal(|ui| {
             let answers = self.answers();
-            let name = RichText::new(text::questionnaires::SUBMIT.get()).font(theme::strong(17.0));
+            let name = RichText::new(text::questionnaires::SUBMIT).font(theme::strong(17.0));
             let button = next_button(name, answers.is_ok()).min_size(theme::STOP_SIZE);
             let clicked = ui.add_enabled(answers.is_ok(), button).clicked();
-            if ui.add(Button::new(text::studies::BACK.get()).min_size(theme::STOP_SIZE)).clicked() {
+            if ui.add(Button::new(text::studies::BACK).min_size(theme::STOP_SIZE)).clicked() {
                 done = Some(QuestionChoice::Back);
             }
             match answers {
@@ -142,7 +142,7 @@ impl QuestionnairePage {
     }
 
     fn ratings_ui(&mut self, ui: &mut Ui) {
-        ui.label(small(text::questionnaires::RATE.get()));
+        ui.label(small(text::questionnaires::RATE));
         for ((_, name, question), rating) in TLX_SCALES.iter().zip(&mut self.ratings) {
             ui.add_space(4.0);
             let label = ui.add(Label::new(RichText::new(sentence(name)).font(theme::strong(15.0))));
@@ -177,7 +177,7 @@ impl QuestionnairePage {
 
     fn pairs_ui(&mut self, ui: &mut Ui) {
         ui.add_space(10.0);
-        ui.label(RichText::new(text::questionnaires::PAIRS.get()).font(theme::strong(15.0)));
+        ui.label(RichText::new(text::questionnaires::PAIRS).font(theme::strong(15.0)));
         ui.columns(2, |columns| {
             for (at, ((one, other), chosen)) in PAIRS.iter().zip(&mut self.chosen).enumerate() {
                 columns[at / PAIRS.len().div_ceil(2)].horizontal(|ui| {
@@ -212,8 +212,8 @@ impl QuestionnairePage {
     }
 
     fn text_ui(&mut self, ui: &mut Ui) {
-        let label = ui.label(RichText::new(text::questionnaires::FREE_TEXT.get()).font(theme::strong(15.0)));
-        ui.label(small(text::questionnaires::FREE_TEXT_HINT.get()));
+        let label = ui.label(RichText::new(text::questionnaires::FREE_TEXT).font(theme::strong(15.0)));
+        ui.label(small(text::questionnaires::FREE_TEXT_HINT));
         let field = TextEdit::multiline(&mut self.text).desired_rows(8).desired_width(f32::INFINITY).char_limit(4000);
         ui.add(field).labelled_by(label.id);
     }

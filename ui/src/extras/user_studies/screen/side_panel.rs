@@ -39,7 +39,7 @@ impl SidePanel {
 
     /// A separate thread writes the report from the folder: the statistics take some seconds.
     fn report_ui(&mut self, ui: &mut Ui, study: &UserStudy) {
-        card(ui, text::studies::REPORT.get(), text::studies::REPORT_HOVER.get(), |ui| {
+        card(ui, text::studies::REPORT, text::studies::REPORT_HOVER, |ui| {
             let running = self.report.is_running();
             let words = if running { text::studies::REPORT_WRITING.get() } else { text::studies::REPORT_WRITE.get() };
             let button = Button::new(words).min_size(vec2(ui.available_width(), 32.0));
@@ -68,19 +68,19 @@ impl SidePanel {
     /// Opens the page in the user's program for it.
     fn open_ui(&mut self, ui: &mut Ui, page: PathBuf) {
         let running = self.opened.is_running();
-        let button = Button::new(text::studies::REPORT_OPEN.get()).min_size(vec2(ui.available_width(), 28.0));
+        let button = Button::new(text::studies::REPORT_OPEN).min_size(vec2(ui.available_width(), 28.0));
         if ui.add_enabled(!running, button).on_hover_text(page.display().to_string()).clicked() {
             self.opened.forget();
             self.opened.begin(ui.ctx(), move || opener::open(&page));
         }
         if self.opened.found() == Some(&false) {
-            ui.add(Label::new(small(text::studies::REPORT_NOT_OPENED.get())).wrap());
+            ui.add(Label::new(small(text::studies::REPORT_NOT_OPENED)).wrap());
         }
     }
 
     fn unblinding_ui(&mut self, ui: &mut Ui, study: &mut UserStudy) {
         let mut pressed = false;
-        card(ui, text::studies::UNBLINDING.get(), text::studies::UNBLINDING_HOVER.get(), |ui| {
+        card(ui, text::studies::UNBLINDING, text::studies::UNBLINDING_HOVER, |ui| {
             if let Some(opened) = study.opened() {
                 let message = study.state().unblinding.as_ref();
                 let message = message.map(|by| text::studies::unblinded(&by.who, &by.at, &by.why));
@@ -97,10 +97,10 @@ impl SidePanel {
             field_ui(ui, text::studies::UNBLIND_NAME.get(), &mut self.name);
             field_ui(ui, text::studies::UNBLIND_WHY.get(), &mut self.why);
             if finished(study) < study.plan().participants.len() {
-                ui.add(Label::new(small(text::studies::UNBLIND_EARLY.get())).wrap());
+                ui.add(Label::new(small(text::studies::UNBLIND_EARLY)).wrap());
             }
             let complete = !self.name.trim().is_empty() && !self.why.trim().is_empty();
-            let button = Button::new(text::studies::UNBLIND.get()).min_size(vec2(ui.available_width(), 32.0));
+            let button = Button::new(text::studies::UNBLIND).min_size(vec2(ui.available_width(), 32.0));
             pressed = ui.add_enabled(complete, button).clicked();
             if let Some(message) = &self.message {
                 ui.add(Label::new(message).wrap());
@@ -121,22 +121,22 @@ fn written_before(study: &UserStudy) -> Option<PathBuf> {
 fn about_ui(ui: &mut Ui, study: &UserStudy) {
     let plan = study.plan();
     let state = study.state();
-    card(ui, text::studies::ABOUT.get(), text::studies::ABOUT_HOVER.get(), |ui| {
+    card(ui, text::studies::ABOUT, text::studies::ABOUT_HOVER, |ui| {
         ui.add(Label::new(RichText::new(&plan.name).font(theme::strong(15.0))).wrap());
         let count = plan.participants.len();
         let blind = blindness(study);
         let facts = text::studies::facts(&plan.rig, finished(study), count, state.results(), blind);
         ui.add(Label::new(facts).wrap());
         if state.is_simulated() {
-            ui.add(Label::new(small(text::studies::SIMULATED.get())).wrap());
+            ui.add(Label::new(small(text::studies::SIMULATED)).wrap());
         }
         ui.add(Label::new(small(study.folder().display().to_string())).wrap());
         ui.add_space(4.0);
-        ui.label(small(text::studies::COMMITMENT.get())).on_hover_text(text::studies::COMMITMENT_HOVER.get());
+        ui.label(small(text::studies::COMMITMENT)).on_hover_text(text::studies::COMMITMENT_HOVER);
         ui.add(Label::new(RichText::new(&plan.commitment).monospace().size(11.0)).wrap())
-            .on_hover_text(text::studies::COMMITMENT_HOVER.get());
-        let copy = Button::new(text::studies::COPY.get()).min_size(vec2(ui.available_width(), 28.0));
-        if ui.add(copy).on_hover_text(text::studies::COMMITMENT_HOVER.get()).clicked() {
+            .on_hover_text(text::studies::COMMITMENT_HOVER);
+        let copy = Button::new(text::studies::COPY).min_size(vec2(ui.available_width(), 28.0));
+        if ui.add(copy).on_hover_text(text::studies::COMMITMENT_HOVER).clicked() {
             ui.ctx().copy_text(plan.commitment.clone());
         }
     });

@@ -36,7 +36,10 @@ use crate::{
     },
     extras::{
         tasks::scoring::LiveScorer,
-        user_studies::{study, text},
+        user_studies::{
+            study::{self, TrialBreak},
+            text,
+        },
     },
 };
 
@@ -67,7 +70,7 @@ enum TrialEnd {
     /// The task is done, or the time limit is reached.
     Done,
     /// Aborted, for this reason.
-    Broken(String),
+    Broken(TrialBreak),
 }
 
 impl TrialScreen {
@@ -89,7 +92,7 @@ impl TrialScreen {
 
     /// Aborts the trial, if it is not over yet.
     fn break_off_because(&mut self, why: &str) {
-        self.over.get_or_insert_with(|| TrialEnd::Broken(why.to_owned()));
+        self.over.get_or_insert_with(|| TrialEnd::Broken(TrialBreak::of(why)));
     }
 
     pub(super) const fn is_over(&self) -> bool {
@@ -114,7 +117,7 @@ impl TrialScreen {
         let why = match over {
             Some(TrialEnd::Done) => None,
             Some(TrialEnd::Broken(why)) => Some(why),
-            None => Some(study::CLOSED.to_owned()),
+            None => Some(TrialBreak::of(study::CLOSED)),
         };
         let closed = study::close(study, running, why, scoring);
         let shows = study.state().progress(&participant).is_none_or(ParticipantProgress::shows_result);
@@ -138,7 +141,7 @@ impl TrialScreen {
                 let words = if self.is_asked { text::studies::GIVE_UP_NOW.get() } else { text::studies::GIVE_UP.get() };
                 let button = Button::selectable(self.is_asked, words).frame_when_inactive(true);
                 let button = ui.add_enabled(self.over.is_none(), button.min_size(vec2(150.0, 36.0)));
-                if button.on_hover_text(text::studies::GIVE_UP_HOVER.get()).clicked() {
+                if button.on_hover_text(text::studies::GIVE_UP_HOVER).clicked() {
                     if self.is_asked {
                         self.break_off_because(study::GIVEN_UP);
                     }
@@ -199,8 +202,8 @@ impl PageRun for TrialScreen {
         self.lost += before.map_or(0, |before| tick.index.saturating_sub(before + 1));
         scoring.tick(tick);
         self.over = match tick.state {
-            LoopState::Faulted(fault) => Some(TrialEnd::Broken(study::ended_by(fault))),
-            LoopState::Stopped => Some(TrialEnd::Broken(study::STOPPED.to_owned())),
+            LoopState::Faulted(fault) => Some(TrialEnd::Broken(TrialBreak::by(fault))),
+            LoopState::Stopped => Some(TrialEnd::Broken(TrialBreak::of(study::STOPPED))),
             _ => scoring.trial.is_over().then_some(TrialEnd::Done),
         };
     }

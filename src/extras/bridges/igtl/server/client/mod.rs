@@ -90,9 +90,13 @@ impl IgtlClient {
         while !self.is_gone() {
             match (&self.stream).read(&mut chunk) {
                 Ok(count) if count > 0 => {
-                    let received = requests.take(&chunk[..count], |message| self.receive(message, &hurry, desk));
-                    if received.is_err() {
-                        break;
+                    let received =
+                        requests.take(&chunk[..count], |kind, message| self.receive(kind, message, &hurry, desk));
+                    if let Err(error) = received {
+                        // The writer closes the connection once the client has the reason.
+                        let reason = refusal(StatusCode::ILLEGAL, &error.to_string());
+                        self.mailbox.end_with(IgtlMessage::new(BUNDLE, now_ns(), reason).encode());
+                        return;
                     }
                     sleep(READ_EVERY);
                 }
@@ -103,7 +107,7 @@ impl IgtlClient {
         self.leave();
     }
 
-    fn receive(&self, message: Result<IgtlMessage, IgtlFormatError>, hurry: &impl Fn(), desk: &ImageSlot) {
+    fn receive(&self, name: &str, message: Result<IgtlMessage, IgtlFormatError>, hurry: &impl Fn(), desk: &ImageSlot) {
         match message {
             Ok(IgtlMessage { content: Content::Request(verb, kind, stream), .. }) => match verb {
                 Verb::Get => self.once(kind, hurry, desk),
@@ -125,7 +129,13 @@ impl IgtlClient {
             },
             // Messages other than requests are ignored.
             Ok(_) => {}
-            Err(error) => self.answer(refusal(StatusCode::ILLEGAL, &error.to_string())),
+            Err(error) => {
+                // A client waits for the answer to its request, whatever is wrong with it.
+                if let Some(kind) = Content::answered_kind(name) {
+                    self.answer(Content::Answer(kind, 1));
+                }
+                self.answer(refusal(StatusCode::ILLEGAL, &error.to_string()));
+            }
         }
     }
 

@@ -15,14 +15,14 @@ pub(super) struct Requests {
 }
 
 impl Requests {
-    /// Processes the next bytes and passes the messages that they complete to `receive`.
+    /// Processes the next bytes and passes the messages that they complete to `receive`, with the name of their type.
     ///
     /// # Errors
     /// [`IgtlFormatError`] if a header is invalid: the position of the next message is then unknown.
     pub(super) fn take(
         &mut self,
         mut bytes: &[u8],
-        mut receive: impl FnMut(Result<IgtlMessage, IgtlFormatError>),
+        mut receive: impl FnMut(&str, Result<IgtlMessage, IgtlFormatError>),
     ) -> Result<(), IgtlFormatError> {
         loop {
             let skipped = bytes.len().min(usize::try_from(self.passed_over).unwrap_or(usize::MAX));
@@ -40,7 +40,7 @@ impl Requests {
             if !self.fill(&mut bytes, IgtlHeader::BYTES + header.body_bytes as usize) {
                 return Ok(());
             }
-            receive(IgtlMessage::read(&header, &self.buffer[IgtlHeader::BYTES..]));
+            receive(&header.kind, IgtlMessage::read(&header, &self.buffer[IgtlHeader::BYTES..]));
             self.buffer.clear();
         }
     }
@@ -75,7 +75,7 @@ mod tests {
             let mut requests = Requests::default();
             let mut received = Vec::new();
             for chunk in all.chunks(size) {
-                requests.take(chunk, |message| received.push(message)).unwrap();
+                requests.take(chunk, |_, message| received.push(message)).unwrap();
                 assert!(requests.buffer.len() < IgtlHeader::BYTES + LONGEST as usize);
             }
             assert_eq!(received, vec![Ok(request()); 3], "in pieces of {size}");
@@ -85,13 +85,13 @@ mod tests {
     #[test]
     fn bytes_that_are_no_header_end_the_conversation_and_a_body_that_is_wrong_does_not() {
         let mut requests = Requests::default();
-        assert_eq!(requests.take(&[b'G'; 58], |_| panic!()), Err(IgtlFormatError::Version(0x4747)));
+        assert_eq!(requests.take(&[b'G'; 58], |_, _| panic!()), Err(IgtlFormatError::Version(0x4747)));
         let mut damaged = request().encode();
         damaged[IgtlHeader::BYTES] ^= 1;
         let mut requests = Requests::default();
         let mut received = Vec::new();
         let bytes = [damaged, request().encode()].concat();
-        requests.take(&bytes, |message| received.push(message)).unwrap();
+        requests.take(&bytes, |_, message| received.push(message)).unwrap();
         assert_eq!(received, [Err(IgtlFormatError::Checksum), Ok(request())]);
     }
 
@@ -100,9 +100,9 @@ mod tests {
         let mut head = request().encode()[..IgtlHeader::BYTES].to_vec();
         head[IgtlHeader::BYTES - 16..IgtlHeader::BYTES - 8].fill(0xFF);
         let mut requests = Requests::default();
-        requests.take(&head, |_| panic!()).unwrap();
+        requests.take(&head, |_, _| panic!()).unwrap();
         for _ in 0..100 {
-            requests.take(&[0; 4096], |_| panic!()).unwrap();
+            requests.take(&[0; 4096], |_, _| panic!()).unwrap();
         }
         assert!(requests.buffer.capacity() < 1000);
     }

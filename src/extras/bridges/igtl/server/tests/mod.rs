@@ -381,6 +381,29 @@ fn what_is_damaged_is_answered_and_what_is_no_message_ends_the_connection() {
 }
 
 #[test]
+fn a_newer_header_is_told_before_the_connection_ends_and_a_short_request_is_answered() {
+    let server = server();
+    let mut peer = Peer::of(&server);
+    let mut short = IgtlMessage::new("", 0, Content::Request(Verb::Start, ContentKind::Tracking, None)).encode();
+    let body = [0, 0, 0, 20, 0];
+    let head = IgtlHeader::BYTES;
+    short[head - 16..head - 8].copy_from_slice(&(body.len() as u64).to_be_bytes());
+    short[head - 8..head].copy_from_slice(&crate::igtl::message::CRC.checksum(&body).to_be_bytes());
+    short.extend(body);
+    peer.0.write_all(&short).unwrap();
+    assert_eq!(peer.answer(ContentKind::Tracking), 1, "refused, but answered");
+    let mut newer = IgtlMessage::new("", 0, Content::Text(TextContent::of("hello"))).encode();
+    newer[1] = 3;
+    peer.0.write_all(&newer).unwrap();
+    let words = peer.find(|message| match &message.content {
+        Content::Status(status) if status.text.contains("version is 3") => Some(status.text.clone()),
+        _ => None,
+    });
+    assert!(words.contains("only 1 and 2"), "{words}");
+    until("it is gone", || server.clients() == 0);
+}
+
+#[test]
 fn an_address_in_use_is_told_in_one_line_and_is_free_when_the_server_has_ended() {
     let server = server();
     let address = server.address();

@@ -18,6 +18,9 @@ const CATCH_UP_STEPS: usize = 200;
 /// An impossible reading, for the corresponding fault.
 const IMPOSSIBLE_TICKS: i64 = 0x7FFF_FFFF;
 
+/// Full drive, units of PWM (ROBOTIS e-manual, X series).
+const FULL_PWM: f64 = 885.0;
+
 impl EmulatedServo {
     /// Returns the sign and offset between the shaft's ticks and the register's.
     fn frame(&self) -> (f64, f64) {
@@ -81,15 +84,17 @@ impl EmulatedServo {
         let (sign, homing) = self.frame();
         let number = |register| self.get(register) as f64;
         let goal = number(table::GOAL_POSITION) - homing - table::TICKS_AT_ZERO;
+        let has_current = self.model.measures_current();
+        let unit_a = self.model.current_unit_a;
         MotorDrive {
             torque_on: self.torque_on(),
             mode: self.get(table::OPERATING_MODE) as u8,
             goal_ticks: table::TICKS_AT_ZERO + sign * goal,
             goal_velocity: sign * number(table::GOAL_VELOCITY),
-            goal_current_a: sign * number(table::GOAL_CURRENT) * self.model.current_unit_a,
+            goal_current_a: if has_current { sign * number(table::GOAL_CURRENT) * unit_a } else { 0.0 },
             goal_pwm: sign * number(table::GOAL_PWM),
             pwm_limit: number(table::PWM_LIMIT),
-            current_limit_a: number(table::CURRENT_LIMIT) * self.model.current_unit_a,
+            current_limit_a: if has_current { number(table::CURRENT_LIMIT) * unit_a } else { f64::INFINITY },
             profile_velocity: number(table::PROFILE_VELOCITY),
             profile_acceleration: number(table::PROFILE_ACCELERATION),
             position_pid: [table::POSITION_P, table::POSITION_I, table::POSITION_D].map(number),
@@ -133,12 +138,19 @@ impl EmulatedServo {
         let profile = motor.wanted_rad_s != 0.0;
         let status = i64::from(off < 20) | i64::from(profile) << 1 | i64::from(self.torque_on() && off > 200) << 3;
         let since_boot_s = if self.booted_s.is_finite() { now_s - self.booted_s } else { now_s };
+        // A model without current reports the load in the same place, in 0.1 % of the full drive.
+        let load = if self.model.measures_current() {
+            sign * motor.current_a / self.model.current_unit_a
+        } else {
+            sign * motor.pwm / FULL_PWM * 1000.0
+        };
+        let load = load.round() as i64;
         let values = [
             (table::TICK, (since_boot_s * 1e3) as i64 % i64::from(TICK_WRAP)),
             (table::MOVING, (velocity.abs() > self.get(table::MOVING_THRESHOLD)).into()),
             (table::MOVING_STATUS, status),
             (table::PRESENT_PWM, (sign * motor.pwm).round() as i64),
-            (table::PRESENT_CURRENT, (sign * motor.current_a / self.model.current_unit_a).round() as i64),
+            (table::PRESENT_CURRENT, load),
             (table::PRESENT_VELOCITY, velocity),
             (table::PRESENT_POSITION, position),
             (table::VELOCITY_TRAJECTORY, register(motor.wanted_rad_s)),

@@ -191,3 +191,25 @@ fn a_servo_that_does_not_keep_what_is_written_is_told() {
     assert_eq!((place.as_str(), command.as_str()), ("servo 1 on test", "0 in register 64"));
     assert_eq!(answer, "it remains 1");
 }
+
+#[test]
+fn servos_without_current_hold_the_jaws_and_report_no_current() {
+    let bus = || Bus::new(&EmulatedDynamixel { model: 1060, ..emulated() }, None).unwrap();
+    let mut wanted = settings();
+    let refused = Fixture::new(bus(), wanted.clone()).open().unwrap_err().to_string();
+    assert!(refused.contains("current_limit_a") && refused.contains("XL430-W250 does not measure"), "{refused}");
+    wanted.servos.iter_mut().for_each(|servo| servo.current_limit_a = 0.0);
+    let mut bench = Fixture::new(bus(), wanted.clone());
+    let mut driver = bench.open().unwrap();
+    assert!(driver.identity().product.starts_with("XL430-W250"));
+    let reading = (0..200).find_map(|_| {
+        bench.world.borrow_mut().pass(1e-3);
+        let now_s = bench.world.borrow().now_s;
+        driver.poll(now_s)
+    });
+    let reading = reading.expect("a reading").value;
+    assert!(reading.current_a.iter().all(|current_a| current_a.is_nan()), "{reading:?}");
+    assert!(reading.position_rad.iter().all(|angle| angle.abs() < 1.0), "{reading:?}");
+    let unlimited = Fixture::new(Bus::new(&emulated(), None).unwrap(), wanted).open().unwrap_err().to_string();
+    assert!(unlimited.contains("measures its current and needs a limit"), "{unlimited}");
+}

@@ -17,17 +17,17 @@ pub struct FrameSubject {
     pub teleoperation: Teleoperation,
     /// The marker on the endoscope, if there is one.
     pub endoscope: Option<EndoscopeSettings>,
-    pub(super) arm: Geometry,
+    pub arm: Geometry,
     /// Serial numbers of the measuring devices.
     pub serials: Serials,
 }
 
 /// Poses of base and sensor, and the length of the shaft, as in the rig file.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Geometry {
-    pub(super) world_from_base: Isometry3<f64>,
-    pub(super) flange_from_s1: Isometry3<f64>,
-    pub(super) shaft_m: f64,
+pub struct Geometry {
+    pub world_from_base: Isometry3<f64>,
+    pub flange_from_s1: Isometry3<f64>,
+    pub shaft_m: f64,
 }
 
 fn pose(isometry: &IsometryMatrix3<f64>) -> Isometry3<f64> {
@@ -58,42 +58,42 @@ impl FrameSubject {
     }
 
     /// Returns whether the values are equal, whatever device measures them.
-    pub(super) fn is_same_place(&self, other: &Self) -> bool {
+    pub fn is_same_place(&self, other: &Self) -> bool {
         Self { serials: Serials::default(), ..self.clone() } == Self { serials: Serials::default(), ..other.clone() }
     }
 
     /// Returns the arm for the kinematics.
-    pub(super) fn arm(&self) -> Option<Arm> {
+    pub fn arm(&self) -> Option<Arm> {
         self.set.kinematics().ok()
     }
 
     /// Returns the tip in the flange's frame, m.
-    pub(super) fn tip_in_flange_m(&self) -> Vector3<f64> {
+    pub fn tip_in_flange_m(&self) -> Vector3<f64> {
         (self.arm.flange_from_s1 * Point3::new(0.0, 0.0, self.arm.shaft_m)).coords
     }
 
     /// Returns the direction upwards in the frame of the base.
-    pub(super) fn up_in_base(&self) -> Vector3<f64> {
+    pub fn up_in_base(&self) -> Vector3<f64> {
         self.arm.world_from_base.rotation.inverse() * Vector3::z()
     }
 
     /// Returns the marker in the wrist sensor's frame, if known.
-    pub(super) fn s1_from_m(&self) -> Option<Isometry3<f64>> {
+    pub fn s1_from_m(&self) -> Option<Isometry3<f64>> {
         from(self.set.s1_from_m_m?, self.set.s1_from_m_deg?)
     }
 
     /// Returns the tracker's camera in the frame of the base, if it is known.
-    pub(super) fn base_from_c(&self) -> Option<Isometry3<f64>> {
+    pub fn base_from_c(&self) -> Option<Isometry3<f64>> {
         from(self.set.base_from_c_m?, self.set.base_from_c_deg?)
     }
 
     /// Returns the result of the hand-eye calibration: marker on the flange, and camera relative to the base.
-    pub(super) fn hand_eye(&self) -> Option<[Isometry3<f64>; 2]> {
+    pub fn hand_eye(&self) -> Option<[Isometry3<f64>; 2]> {
         Some([self.arm.flange_from_s1 * self.s1_from_m()?, self.base_from_c()?])
     }
 
     /// Returns the key of a value of this arm pair in the rig file.
-    pub(super) fn key(&self, name: &str) -> String {
+    pub fn key(&self, name: &str) -> String {
         format!("devices.{}.{name}", self.side.word())
     }
 }

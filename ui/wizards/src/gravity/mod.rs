@@ -1,14 +1,16 @@
 //! The gravity wizard: check, twelve poses, result, free motion, save. Recorded data are kept when going back and when
 //! closing.
 
-use egui::{Button, Grid, RichText, Ui, vec2};
+mod result_ui;
+
+use egui::{Button, RichText, Ui};
 use nalgebra::{UnitQuaternion, Vector3};
 use nima_core::{
     calibration::{
         Verdict,
         gravity::{
             CheckPass, Compensator, DEFAULT_TIME_CONSTANT_S, GravityPhase, GravityReport, GravitySession,
-            GravitySessionSettings, ModelFit, PassResult, Precheck, TARGETS,
+            GravitySessionSettings, PassResult, Precheck, TARGETS,
         },
     },
     frames::WristSample,
@@ -18,15 +20,16 @@ use nima_screen::{
     theme,
     widgets::{card, figure, small},
 };
-use nima_words::{report_text::three_digits, text};
+use nima_words::text;
 
+use self::result_ui::{models_ui, report_figures, verdict_ui};
 use super::{
     Binding, SaveRequest,
     checks::{check_ui, switch_ui},
     drawings::{pose_image, progress, sphere_image},
     frame::{Wizard, WizardFrame, WizardRequest, WizardStep},
     guide::beside,
-    report::{WizardReport, judged_line, result_ui, verdict_card, verdict_line},
+    report::{WizardReport, judged_line, result_ui},
 };
 
 /// Limit of the 95th percentile of the force in free motion, N; includes the noise of a sample.
@@ -42,6 +45,7 @@ const STEPS: [WizardStep; 5] = [
     WizardStep { name: text::gravity::STEP_FREE_MOTION, meaning: text::gravity::STEP_FREE_MOTION_HOVER },
     WizardStep { name: text::wizards::STEP_SAVE, meaning: text::wizards::STEP_SAVE_HOVER },
 ];
+// Positions in `STEPS`.
 const CHECK: usize = 0;
 const POSES: usize = 1;
 const RESULT: usize = 2;
@@ -96,6 +100,7 @@ impl GravityWizard {
     fn fit(&mut self) {
         self.report = (self.session.poses().len() >= POSES_MIN)
             .then(|| self.session.report().map_err(|error| nima_words::report_text::quoted(&error)));
+        // Check and file belong to the previous model.
         self.pass = None;
         self.frame.saved = None;
     }
@@ -109,18 +114,19 @@ impl GravityWizard {
     }
 
     fn check_ui(&mut self, ui: &mut Ui) {
-        card(ui, text::gravity::CHECKS_TITLE.get(), text::gravity::CHECKS_HOVER.get(), |ui| {
-            ui.label(text::gravity::CHECKS_TASK.get());
+        card(ui, text::gravity::CHECKS_TITLE, text::gravity::CHECKS_HOVER, |ui| {
+            ui.label(text::gravity::CHECKS_TASK);
             ui.add_space(6.0);
             for check in self.precheck.checks(self.rate_hz) {
                 check_ui(ui, &check);
             }
         });
-        card(ui, text::wizards::OPTIONS_TITLE.get(), text::wizards::OPTIONS_HOVER.get(), |ui| {
+        card(ui, text::wizards::OPTIONS_TITLE, text::wizards::OPTIONS_HOVER, |ui| {
             let GravitySessionSettings { use_arm, fit, .. } = *self.session.settings();
             let none_taken = self.session.poses().is_empty();
             let by_arm = text::gravity::OPTION_BY_ARM.get();
             let meaning = text::gravity::OPTION_BY_ARM_HOVER.get();
+            // Only before the first pose, because poses with and without the arm's orientation do not mix.
             if let Some(use_arm) = switch_ui(ui, none_taken, use_arm, by_arm, meaning) {
                 *self = Self::of(GravitySessionSettings { use_arm, ..*self.session.settings() });
             }
@@ -138,7 +144,7 @@ impl GravityWizard {
         let count = self.session.poses().len();
         let met = self.session.targets_met();
         let target = self.session.target();
-        card(ui, text::gravity::POSE_TITLE.get(), text::gravity::POSE_HOVER.get(), |ui| {
+        card(ui, text::gravity::POSE_TITLE, text::gravity::POSE_HOVER, |ui| {
             let name = target.map_or(text::gravity::POSES_COMPLETE.get(), |target| target.name);
             ui.label(RichText::new(nima_words::report_text::sentence(name)).font(theme::strong(19.0)));
             let (fraction, words) = phase_text(&self.phase);
@@ -158,16 +164,16 @@ impl GravityWizard {
                 &text::gravity::recorded_of(met, TARGETS.len()),
             );
         });
-        card(ui, text::wizards::SO_FAR.get(), text::gravity::SO_FAR_HOVER.get(), |ui| {
-            figure(ui, text::gravity::STEP_POSES.get(), count.to_string(), text::gravity::POSES_HOVER.get());
+        card(ui, text::wizards::SO_FAR, text::gravity::SO_FAR_HOVER, |ui| {
+            figure(ui, text::gravity::STEP_POSES, count.to_string(), text::gravity::POSES_HOVER);
             if let Some(report) = self.good_report() {
                 report_figures(ui, report);
             } else {
-                ui.label(small(text::gravity::SO_FAR_EMPTY.get()));
+                ui.label(small(text::gravity::SO_FAR_EMPTY));
             }
             self.touched_ui(ui);
-            let remove = ui.add_enabled(count > 0, Button::new(text::gravity::REMOVE_LAST.get()));
-            if remove.on_disabled_hover_text(text::wizards::NOTHING_RECORDED.get()).clicked() {
+            let remove = ui.add_enabled(count > 0, Button::new(text::gravity::REMOVE_LAST));
+            if remove.on_disabled_hover_text(text::wizards::NOTHING_RECORDED).clicked() {
                 self.session.undo();
                 self.fit();
             }
@@ -179,7 +185,7 @@ impl GravityWizard {
         let touched_s = self.session.touched_s();
         let is_bad = self.good_report().is_some_and(|report| report.verdict != Verdict::Accepted);
         if touched_s >= TOUCHED_S || is_bad && touched_s > 0.0 {
-            ui.label(text::gravity::was_touched(touched_s)).on_hover_text(text::gravity::WAS_TOUCHED_HOVER.get());
+            ui.label(text::gravity::was_touched(touched_s)).on_hover_text(text::gravity::WAS_TOUCHED_HOVER);
         }
     }
 
@@ -193,31 +199,31 @@ impl GravityWizard {
     }
 
     fn free_motion_ui(&mut self, ui: &mut Ui) {
-        card(ui, text::gravity::FREE_MOTION_TITLE.get(), text::gravity::FREE_MOTION_HOVER.get(), |ui| {
+        card(ui, text::gravity::FREE_MOTION_TITLE, text::gravity::FREE_MOTION_HOVER, |ui| {
             beside(ui, &Prompt::Wave, None, |ui| {
-                ui.label(RichText::new(text::gravity::FREE_MOTION_TASK.get()).font(theme::strong(19.0)));
+                ui.label(RichText::new(text::gravity::FREE_MOTION_TASK).font(theme::strong(19.0)));
                 ui.add_space(4.0);
                 let left =
                     self.left_n.map_or(text::gravity::NO_READING.get().to_owned(), |left_n| format!("{left_n:.2} N"));
                 ui.label(RichText::new(left).font(theme::strong(34.0)));
             });
             let Some(result) = self.pass_result() else { return };
-            figure(ui, text::gravity::MEAN.get(), format!("{:.3} N", result.mean_n), text::gravity::MEAN_HOVER.get());
+            figure(ui, text::gravity::MEAN, format!("{:.3} N", result.mean_n), text::gravity::MEAN_HOVER);
             figure(
                 ui,
-                text::gravity::P95.get(),
+                text::gravity::P95,
                 text::gravity::of_allowed(result.p95_n, FREE_MOTION_LIMIT_N),
-                text::gravity::P95_HOVER.get(),
+                text::gravity::P95_HOVER,
             );
             figure(
                 ui,
-                text::gravity::TILT.get(),
+                text::gravity::TILT,
                 format!("{:.0} deg", result.tilt_rad.to_degrees()),
-                text::gravity::TILT_HOVER.get(),
+                text::gravity::TILT_HOVER,
             );
             let words = if result.passed { text::gravity::PASSED.get() } else { text::gravity::NOT_PASSED.get() };
             judged_line(ui, result.passed, &format!("{words}: {}", result.reason));
-            if ui.button(text::gravity::MEASURE_AGAIN.get()).clicked() {
+            if ui.button(text::gravity::MEASURE_AGAIN).clicked() {
                 self.pass = None;
                 self.go_to(FREE_MOTION);
             }
@@ -314,6 +320,7 @@ impl Wizard for GravityWizard {
     fn go_to(&mut self, step: usize) {
         self.frame.step = step;
         if step == RESULT && self.report.is_none() {
+            // With too few poses this is the error, which the page shows.
             self.report = Some(self.session.report().map_err(|error| nima_words::report_text::quoted(&error)));
         }
         if step == FREE_MOTION && self.pass.is_none() {
@@ -342,82 +349,4 @@ fn phase_text(phase: &GravityPhase) -> (f64, String) {
         GravityPhase::Recorded { index } => (1.0, text::gravity::pose_taken(index + 1)),
         GravityPhase::Touched { by_n } => (0.0, text::gravity::touched(*by_n)),
     }
-}
-
-fn report_figures(ui: &mut Ui, report: &GravityReport) {
-    verdict_line(ui, report.verdict, &report.reason);
-    figure(ui, text::gravity::COVERAGE.get(), format!("{:.2}", report.coverage), text::gravity::COVERAGE_HOVER.get());
-    if let Some(mass_kg) = report.mass_kg {
-        figure(ui, text::gravity::MASS.get(), format!("{mass_kg:.3} kg"), text::gravity::MASS_HOVER.get());
-    }
-}
-
-fn verdict_ui(ui: &mut Ui, report: &GravityReport) {
-    verdict_card(ui, report.verdict, text::gravity::VERDICT_HOVER.get(), |ui| {
-        ui.label(&report.reason);
-        ui.add_space(4.0);
-        figure(ui, text::gravity::STEP_POSES.get(), report.poses.to_string(), text::gravity::POSES_USED_HOVER.get());
-        figure(
-            ui,
-            text::gravity::COVERAGE.get(),
-            format!("{:.2}", report.coverage),
-            text::gravity::COVERAGE_HOVER.get(),
-        );
-        let condition = report.condition.map_or(text::gravity::UNDETERMINED.get().to_owned(), three_digits);
-        figure(ui, text::gravity::CONDITION.get(), condition, text::gravity::CONDITION_HOVER.get());
-        if let (Some(mass_kg), Some(com_m)) = (report.mass_kg, report.com_m) {
-            figure(ui, text::gravity::MASS.get(), format!("{mass_kg:.3} kg"), text::gravity::MASS_HOVER.get());
-            let [x, y, z] = com_m.map(|m| m * 1e3);
-            figure(
-                ui,
-                text::gravity::CENTRE_OF_MASS.get(),
-                format!("{x:.1}, {y:.1}, {z:.1} mm"),
-                text::gravity::CENTRE_OF_MASS_HOVER.get(),
-            );
-        }
-        if !report.outliers.is_empty() {
-            let list = report.outliers.iter().map(|i| (i + 1).to_string()).collect::<Vec<_>>().join(", ");
-            figure(
-                ui,
-                text::gravity::LEFT_OUT.get(),
-                text::gravity::left_out(&list),
-                text::gravity::LEFT_OUT_HOVER.get(),
-            );
-        }
-    });
-}
-
-/// Draws the table of the models' errors on the poses of the fit and on held-out ones.
-fn models_ui(ui: &mut Ui, report: &GravityReport) {
-    card(ui, text::gravity::MODELS_TITLE.get(), text::gravity::MODELS_HOVER.get(), |ui| {
-        Grid::new("gravity_models").num_columns(5).spacing(vec2(22.0, 6.0)).show(ui, |ui| {
-            for head in [
-                text::gravity::MODEL.get(),
-                text::gravity::FITTED_MEAN.get(),
-                text::gravity::LARGEST.get(),
-                text::gravity::HELD_OUT_MEAN.get(),
-                text::gravity::LARGEST.get(),
-            ] {
-                ui.label(small(head));
-            }
-            ui.end_row();
-            for fit in &report.fits {
-                model_row(ui, fit, report.chosen == Some(fit.kind));
-            }
-        });
-    });
-}
-
-fn model_row(ui: &mut Ui, fit: &ModelFit, chosen: bool) {
-    let name = nima_words::report_text::sentence(fit.kind.name());
-    ui.label(if chosen {
-        RichText::new(text::gravity::chosen(&name)).font(theme::strong(14.0))
-    } else {
-        RichText::new(name)
-    });
-    for stats in [&fit.force_n.fitted, &fit.force_n.held_out] {
-        ui.label(format!("{:.3}", stats.mean_mae()));
-        ui.label(format!("{:.3}", stats.largest()));
-    }
-    ui.end_row();
 }

@@ -31,15 +31,15 @@ pub enum FrameKind {
 }
 
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Texts {
+pub struct Texts {
     /// Instruction before the recording, which starts with the next step.
-    pub(super) before: &'static str,
+    pub before: &'static str,
     /// Instruction during the recording.
-    pub(super) task: &'static str,
+    pub task: &'static str,
     /// Name of the recorded items.
-    pub(super) units: &'static str,
+    pub units: &'static str,
     /// Alternative method, and its meaning.
-    pub(super) other_way: Option<[&'static str; 2]>,
+    pub other_way: Option<[&'static str; 2]>,
 }
 
 impl FrameKind {
@@ -68,7 +68,7 @@ impl FrameKind {
         }
     }
 
-    pub(super) fn texts(self, other_way: bool) -> Texts {
+    pub fn texts(self, other_way: bool) -> Texts {
         let by_tracker = Some([texts::BY_TRACKER.get(), texts::BY_TRACKER_HOVER.get()]);
         let by_handle = Some([texts::BY_HANDLE.get(), texts::BY_HANDLE_HOVER.get()]);
         let (before, task, units, other) = match self {
@@ -86,7 +86,7 @@ impl FrameKind {
     }
 
     /// Whether the alternative method is available on this rig; otherwise the reason.
-    pub(super) fn other_way_needs(self, subject: &FrameSubject) -> Result<(), &'static str> {
+    pub fn other_way_needs(self, subject: &FrameSubject) -> Result<(), &'static str> {
         match self {
             Self::Tip | Self::Trocar if subject.hand_eye().is_none() => Err(texts::NEEDS_HAND_EYE.get()),
             _ => Ok(()),
@@ -94,7 +94,7 @@ impl FrameKind {
     }
 
     /// Returns a session without poses; `other_way`: by the tracker, or with the handle.
-    pub(super) fn job(self, subject: &FrameSubject, other_way: bool) -> Option<Box<dyn FrameJob>> {
+    pub fn job(self, subject: &FrameSubject, other_way: bool) -> Option<Box<dyn FrameJob>> {
         let tip_m = subject.tip_in_flange_m();
         Some(match self {
             Self::Tip if other_way => Box::new(FrameSession::new(TipSettings::by_tracker())),
@@ -116,7 +116,7 @@ impl FrameKind {
     }
 
     /// Returns the sample as this calibration uses it.
-    pub(super) fn seen(self, sample: &FrameSample, subject: &FrameSubject) -> FrameSample {
+    pub fn seen(self, sample: &FrameSample, subject: &FrameSubject) -> FrameSample {
         match (self, sample.leader_from_handle, sample.base_from_flange) {
             // A hand never holds a handle without rotation; only the handle's position counts.
             (Self::View, Some(handle), _) => {
@@ -136,7 +136,7 @@ impl FrameKind {
     }
 
     /// Returns the instruction after `taken` records; `target` is the next pose of the list.
-    pub(super) fn prompt(self, other_way: bool, taken: usize, target: impl Fn() -> PoseTarget) -> Prompt {
+    pub fn prompt(self, other_way: bool, taken: usize, target: impl Fn() -> PoseTarget) -> Prompt {
         let asked = ViewSettings::by_arm(Vector3::zeros()).asked(taken);
         match self {
             Self::Mount => Prompt::Hold { world_from_s1: target().world_from_s1() },
@@ -150,7 +150,7 @@ impl FrameKind {
     }
 
     /// Returns the text of the current instruction to the person at the arm.
-    pub(super) fn asks(prompt: &Prompt, target: &str) -> String {
+    pub fn asks(prompt: &Prompt, target: &str) -> String {
         match prompt {
             Prompt::Hold { .. } => texts::hold(target),
             Prompt::PivotInDimple => texts::PIVOT.get().to_owned(),

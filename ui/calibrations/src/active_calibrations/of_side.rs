@@ -180,8 +180,9 @@ impl SideCalibrations {
         let elsewhere = |sensor: &&str| across.is_none_or(|across| across.serial_number != *sensor);
         let others: Vec<_> = self.others.iter().map(String::as_str).filter(elsewhere).collect();
         let swapped = self.without_gravity().filter(|_| !others.is_empty());
-        let unusable = self.unusable.last().map(|(what, why)| text::calibrations::not_active(what.name(), why));
-        unusable.or_else(|| {
+        let unusable = self.unusable.iter().map(|(what, why)| text::calibrations::not_active(what.name(), why));
+        let unusable = unusable.collect::<Vec<_>>();
+        Some(unusable.join(". ")).filter(|words| !words.is_empty()).or_else(|| {
             swapped.map(|wrist| {
                 text::calibrations::other_sensors_are_calibrated(&wrist.serial_number, &wrist.tool, &others.join(", "))
             })

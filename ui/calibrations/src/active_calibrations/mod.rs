@@ -23,12 +23,18 @@ use nima_machine::{
     teleop::Calibrations,
 };
 use nima_recording::store::{ReadyRecord, Store, WristId, utc_now};
-use nima_screen::scene3d::side_name;
 use nima_simulation::scene::Scene;
-use nima_words::{report_text::chain, text};
+use nima_words::{
+    report_text::{chain, side_name},
+    text,
+};
 use of_side::{SideBinding, SideCalibrations};
 
-use crate::{Binding, FrameSaving, FrameSubject, SaveRequest, overview::OverviewLine};
+use crate::{
+    Binding, SaveRequest,
+    frames::{FrameSaving, FrameSubject},
+    overview::OverviewLine,
+};
 
 /// The active calibrations, and problems with them.
 #[derive(Debug)]

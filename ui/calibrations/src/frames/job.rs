@@ -16,7 +16,7 @@ use nima_words::language::{self, Language};
 use super::kind::FrameKind;
 
 /// A session of any frame calibration.
-pub(super) trait FrameJob: Debug {
+pub trait FrameJob: Debug {
     fn needs(&self) -> Vec<CalibrationSource>;
     fn step(&mut self, sample: &FrameSample, t_s: f64) -> FramePhase;
     fn coverage(&self) -> FrameCoverage;
@@ -88,7 +88,7 @@ macro_rules! each {
 
 of_each!(
     /// The result of a frame calibration.
-    pub(super) Outcome(FrameReport): Tip(TipResult), HandEye(HandEyeResult), Trocar(TrocarResult), Table(TableResult), View(ViewResult),
+    pub Outcome(FrameReport): Tip(TipResult), HandEye(HandEyeResult), Trocar(TrocarResult), Table(TableResult), View(ViewResult),
     Mount(SensorMountResult)
 );
 
@@ -100,18 +100,18 @@ of_each!(
 
 /// Common parts of all results.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Quality {
-    pub(super) verdict: Verdict,
-    pub(super) cause: FrameCause,
-    pub(super) poses: usize,
-    pub(super) fitted: Sizes,
-    pub(super) held_out: Sizes,
-    pub(super) held_out_max: Sizes,
-    pub(super) uncertainty: Sizes,
+pub struct Quality {
+    pub verdict: Verdict,
+    pub cause: FrameCause,
+    pub poses: usize,
+    pub fitted: Sizes,
+    pub held_out: Sizes,
+    pub held_out_max: Sizes,
+    pub uncertainty: Sizes,
 }
 
 impl Outcome {
-    pub(super) fn quality(&self) -> Quality {
+    pub fn quality(&self) -> Quality {
         each!(self, report => Quality {
             verdict: report.verdict,
             cause: report.cause,
@@ -124,17 +124,17 @@ impl Outcome {
     }
 
     /// Returns the indices of the poses that were left out.
-    pub(super) fn outliers(&self) -> &[usize] {
+    pub fn outliers(&self) -> &[usize] {
         each!(self, report => &report.outliers)
     }
 
     /// Returns whether there is a result.
-    pub(super) fn is_found(&self) -> bool {
+    pub fn is_found(&self) -> bool {
         each!(self, report => report.found.is_some())
     }
 
     /// `None` without a result.
-    pub(super) fn record(&self, head: RecordHead, serials: Serials) -> Option<FrameCalibration> {
+    pub fn record(&self, head: RecordHead, serials: Serials) -> Option<FrameCalibration> {
         let reason = language::with(Language::English, || nima_words::report_text::cause(&self.quality().cause));
         each!(self, report => report.record(head, serials, &reason).map(Into::into))
     }
@@ -227,6 +227,6 @@ pub fn frame_kept(
 
 /// Returns the changes of the last saved calibration of this kind to the rig file; empty if there is none for this
 /// sensor and tool.
-pub(super) fn last_changes(store: &Store, kind: FrameKind, handle: bool, wrist: [&str; 2]) -> Vec<RigChange> {
+pub fn last_changes(store: &Store, kind: FrameKind, handle: bool, wrist: [&str; 2]) -> Vec<RigChange> {
     frame_kept(store, kind, handle, wrist).ok().flatten().map(|kept| kept.rig).unwrap_or_default()
 }

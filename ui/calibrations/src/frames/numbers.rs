@@ -15,7 +15,7 @@ const DIGITS_M: usize = 5;
 const DIGITS_DEG: usize = 3;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum NumberUnit {
+pub enum NumberUnit {
     Metres,
     Degrees,
     /// Part of a direction.
@@ -24,12 +24,12 @@ pub(super) enum NumberUnit {
 
 /// A value of the rig file: one number or three.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct FrameNumber {
-    pub(super) key: String,
-    pub(super) unit: NumberUnit,
+pub struct FrameNumber {
+    pub key: String,
+    pub unit: NumberUnit,
     /// Value in the rig file; `None` if the file has none.
-    pub(super) before: Option<Vec<f64>>,
-    pub(super) after: Vec<f64>,
+    pub before: Option<Vec<f64>>,
+    pub after: Vec<f64>,
 }
 
 impl FrameNumber {
@@ -42,12 +42,12 @@ impl FrameNumber {
     }
 
     /// Returns whether the value in the file changes.
-    pub(super) fn changes(&self) -> bool {
+    pub fn changes(&self) -> bool {
         let before = self.before.as_ref().map(|before| Self { after: before.clone(), ..self.clone() }.toml());
         before.is_none_or(|before| before != self.toml())
     }
 
-    pub(super) fn toml(&self) -> String {
+    pub fn toml(&self) -> String {
         let digits = if self.unit == NumberUnit::Degrees { DIGITS_DEG } else { DIGITS_M };
         let number = |x: &f64| {
             let words = format!("{x:.digits$}");
@@ -63,9 +63,9 @@ impl FrameNumber {
 
 /// Effect of the result on a point or a frame, for a drawing: before, if known, and after, in the same frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct FrameEffect {
-    pub(super) before: Option<Isometry3<f64>>,
-    pub(super) after: Isometry3<f64>,
+pub struct FrameEffect {
+    pub before: Option<Isometry3<f64>>,
+    pub after: Isometry3<f64>,
 }
 
 impl FrameEffect {
@@ -80,20 +80,20 @@ impl FrameEffect {
     }
 
     /// Returns the distance (m) and angle (degrees) between before and after.
-    pub(super) fn change(&self) -> Option<[f64; 2]> {
+    pub fn change(&self) -> Option<[f64; 2]> {
         let by = self.before?.inverse() * self.after;
         Some([by.translation.vector.norm(), by.rotation.angle().to_degrees()])
     }
 
     /// Returns whether the change is smaller than the uncertainty of the result.
-    pub(super) fn is_within(&self, known_to: Sizes) -> bool {
+    pub fn is_within(&self, known_to: Sizes) -> bool {
         let within = |by: f64, max: Option<f64>| max.map_or(by <= 1e-9, |max| by <= max);
         self.change().is_some_and(|[m, deg]| within(m, known_to.place_m) && within(deg, known_to.angle_deg))
     }
 }
 
 /// Returns the values that the result changes, and its effect; `None` without a result.
-pub(super) fn of(
+pub fn of(
     outcome: &Outcome,
     subject: &FrameSubject,
     seen_view: Option<UnitQuaternion<f64>>,

@@ -8,7 +8,7 @@ use nima_tests::gravity::gravity;
 use nima_words::report_text::check_name;
 
 use super::{ActiveCalibrations, ArmOverview, OverviewLine, following, found_since, made_text, overview, verdict_text};
-use crate::{CalibrationTarget, FrameKind, WizardKind};
+use crate::{CalibrationTarget, WizardKind, frames::FrameKind};
 
 fn listed(store: &Store) -> Vec<super::ArmOverview> {
     let rig = RigConfig::load("simulated").unwrap();

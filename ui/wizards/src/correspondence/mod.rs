@@ -1,13 +1,14 @@
 //! The correspondence wizard: check, pushes, result, save. Recorded pushes are kept when going back and when closing.
 
-use egui::{Button, Grid, RichText, Ui, vec2};
+mod result_ui;
+
+use egui::{Button, RichText, Ui};
 use nalgebra::UnitVector3;
 use nima_core::calibration::{
     Verdict,
     correspondence::{
         CorrespondencePhase, CorrespondenceRecord, CorrespondenceReport, CorrespondenceSession,
-        CorrespondenceSessionSettings, CorrespondenceSolution, MissingInput, OffsetFrame, PushAgreement, PushTarget,
-        TARGETS,
+        CorrespondenceSessionSettings, CorrespondenceSolution, MissingInput, PushTarget, TARGETS,
     },
 };
 use nima_machine::{messages::Tick, rig::Prompt};
@@ -16,17 +17,18 @@ use nima_screen::{
     widgets::{card, figure, small},
 };
 use nima_words::{
-    report_text::{self, ShortText as _, sentence, three_digits},
+    report_text::{self, ShortText as _, sentence},
     text,
 };
 
+use self::result_ui::{agreement_ui, verdict_ui};
 use super::{
     Binding, SaveRequest,
     checks::{check_line, switch_ui, waiting_line},
     drawings::{progress, sphere_image},
     frame::{Wizard, WizardFrame, WizardRequest, WizardStep},
     guide::beside,
-    report::{WizardReport, result_ui, verdict_card, verdict_line},
+    report::{WizardReport, result_ui, verdict_line},
 };
 
 /// Minimum number of pushes for a fit.
@@ -39,6 +41,7 @@ const STEPS: [WizardStep; 4] = [
     WizardStep { name: text::wizards::STEP_RESULT, meaning: text::correspondence::STEP_RESULT_HOVER },
     WizardStep { name: text::wizards::STEP_SAVE, meaning: text::wizards::STEP_SAVE_HOVER },
 ];
+// Positions in `STEPS`.
 const CHECK: usize = 0;
 const PUSHES: usize = 1;
 const RESULT: usize = 2;
@@ -119,8 +122,8 @@ impl CorrespondenceWizard {
     }
 
     fn check_ui(&mut self, ui: &mut Ui) {
-        card(ui, text::correspondence::CHECKS_TITLE.get(), text::correspondence::CHECKS_HOVER.get(), |ui| {
-            ui.label(text::correspondence::CHECKS_TASK.get());
+        card(ui, text::correspondence::CHECKS_TITLE, text::correspondence::CHECKS_HOVER, |ui| {
+            ui.label(text::correspondence::CHECKS_TASK);
             ui.add_space(6.0);
             let tracker = if self.session.settings().chain {
                 text::correspondence::CHECK_TRACKER.get()
@@ -144,7 +147,7 @@ impl CorrespondenceWizard {
             check_line(ui, names[1], chain || !self.session.settings().chain, MissingInput::Chain.words());
             check_line(ui, names[2], rests, &words);
         });
-        card(ui, text::wizards::OPTIONS_TITLE.get(), text::wizards::OPTIONS_HOVER.get(), |ui| {
+        card(ui, text::wizards::OPTIONS_TITLE, text::wizards::OPTIONS_HOVER, |ui| {
             let CorrespondenceSessionSettings { chain, options, .. } = *self.session.settings();
             let flip = text::correspondence::OPTION_FLIP.get();
             let meaning = text::correspondence::OPTION_FLIP_HOVER.get();
@@ -163,7 +166,7 @@ impl CorrespondenceWizard {
     fn pushes_ui(&mut self, ui: &mut Ui) {
         let count = self.session.pushes();
         let wanted = self.wanted();
-        card(ui, text::correspondence::PUSH_TITLE.get(), text::correspondence::PUSH_HOVER.get(), |ui| {
+        card(ui, text::correspondence::PUSH_TITLE, text::correspondence::PUSH_HOVER, |ui| {
             beside(ui, &self.push(), None, |ui| {
                 ui.label(RichText::new(sentence(wanted.name)).font(theme::strong(19.0)));
                 let (fraction, words) = if self.sources.is_some() {
@@ -191,12 +194,12 @@ impl CorrespondenceWizard {
                 &text::correspondence::taken_of(count, PUSHES_ASKED),
             );
         });
-        card(ui, text::wizards::SO_FAR.get(), text::correspondence::SO_FAR_HOVER.get(), |ui| {
+        card(ui, text::wizards::SO_FAR, text::correspondence::SO_FAR_HOVER, |ui| {
             figure(
                 ui,
-                text::correspondence::RECORDED.get(),
+                text::correspondence::RECORDED,
                 text::correspondence::pushes(count),
-                text::correspondence::RECORDED_HOVER.get(),
+                text::correspondence::RECORDED_HOVER,
             );
             match &self.report {
                 Some(Ok(report)) => verdict_line(ui, report.verdict, &report.reason),
@@ -204,11 +207,11 @@ impl CorrespondenceWizard {
                     ui.label(error);
                 }
                 None => {
-                    ui.label(small(text::correspondence::SO_FAR_EMPTY.get()));
+                    ui.label(small(text::correspondence::SO_FAR_EMPTY));
                 }
             }
-            let remove = ui.add_enabled(count > 0, Button::new(text::correspondence::REMOVE_LAST.get()));
-            if remove.on_disabled_hover_text(text::wizards::NOTHING_RECORDED.get()).clicked() {
+            let remove = ui.add_enabled(count > 0, Button::new(text::correspondence::REMOVE_LAST));
+            if remove.on_disabled_hover_text(text::wizards::NOTHING_RECORDED).clicked() {
                 self.session.undo();
                 self.fit();
             }
@@ -260,6 +263,7 @@ impl Wizard for CorrespondenceWizard {
         if self.session.pushes() == before {
             return;
         }
+        // Pushes count only on their page.
         if self.frame.step == PUSHES {
             self.fit();
         } else {
@@ -328,90 +332,4 @@ fn phase_text(phase: &CorrespondencePhase) -> (f64, String) {
         CorrespondencePhase::Recorded(index) => (1.0, text::correspondence::push_taken(index + 1)),
         CorrespondencePhase::Refused(refusal) => (0.0, text::correspondence::not_taken(&report_text::refusal(refusal))),
     }
-}
-
-fn verdict_ui(ui: &mut Ui, report: &CorrespondenceReport) {
-    verdict_card(ui, report.verdict, text::correspondence::VERDICT_HOVER.get(), |ui| {
-        ui.label(&report.reason);
-        ui.add_space(4.0);
-        let left_out = report.outliers.len();
-        let weak = report.weak.len();
-        let pushes = text::correspondence::used(report.pairs, left_out, weak);
-        figure(ui, text::correspondence::STEP_PUSHES.get(), pushes, text::correspondence::PUSHES_HOVER.get());
-        let spread = format!("{:.2}, {:.2}", report.excitation.second, report.excitation.third);
-        figure(ui, text::correspondence::SPREAD.get(), spread, text::correspondence::SPREAD_HOVER.get());
-        let Some(solution) = &report.solution else { return };
-        let [roll, pitch, yaw] = solution.roll_pitch_yaw_deg;
-        let name = text::correspondence::rotation(solution.target.name());
-        figure(ui, &name, format!("{roll:.2}, {pitch:.2}, {yaw:.2} deg"), text::correspondence::ROTATION_HOVER.get());
-        figure(
-            ui,
-            text::correspondence::UNCERTAINTY.get(),
-            format!("{:.2} deg", solution.uncertainty_deg),
-            text::correspondence::UNCERTAINTY_HOVER.get(),
-        );
-        let check = format!("{:.3} deg", solution.cross_check_deg);
-        figure(ui, text::correspondence::CROSS_CHECK.get(), check, text::correspondence::CROSS_CHECK_HOVER.get());
-        if let Some(diagnosis) = &solution.diagnosis {
-            let gain = format!("{:.3} ± {:.3}", diagnosis.gain, diagnosis.gain_se);
-            figure(ui, text::correspondence::GAIN.get(), gain, text::correspondence::GAIN_HOVER.get());
-            let offset = format!("{:.3} ± {:.3} N", diagnosis.offset_norm_n(), diagnosis.offset_se_n);
-            figure(
-                ui,
-                text::correspondence::OFFSET.get(),
-                format!("{offset} ({})", frame_text(diagnosis.offset_frame)),
-                text::correspondence::OFFSET_HOVER.get(),
-            );
-        }
-    });
-}
-
-fn frame_text(frame: OffsetFrame) -> &'static str {
-    match frame {
-        OffsetFrame::S1 => text::correspondence::OFFSET_OF_WRIST.get(),
-        OffsetFrame::S2 => text::correspondence::OFFSET_OF_TISSUE.get(),
-        OffsetFrame::Unknown => text::correspondence::OFFSET_OF_EITHER.get(),
-    }
-}
-
-/// Draws the paper's Validation I: agreement of the rotated force under the tissue with that at the wrist.
-fn agreement_ui(ui: &mut Ui, agreement: &PushAgreement) {
-    let meaning = text::correspondence::AGREEMENT_HOVER.get();
-    card(ui, text::correspondence::AGREEMENT_TITLE.get(), meaning, |ui| {
-        Grid::new("agreement").num_columns(7).spacing(vec2(22.0, 6.0)).show(ui, |ui| {
-            for head in [
-                text::correspondence::AXIS.get(),
-                text::correspondence::FITTED_MAE.get(),
-                "SD",
-                "R2",
-                text::correspondence::HELD_OUT_MAE.get(),
-                "SD",
-                "R2",
-            ] {
-                ui.label(small(head));
-            }
-            ui.end_row();
-            let sides = [
-                (&agreement.residuals.fitted, &agreement.r2_fitted),
-                (&agreement.residuals.held_out, &agreement.r2_held_out),
-            ];
-            for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
-                ui.label(name);
-                for (stats, r2) in sides {
-                    for value in [stats.mae[axis], stats.sd[axis], r2[axis]] {
-                        ui.label(three_digits(value));
-                    }
-                }
-                ui.end_row();
-            }
-        });
-        let fitted = agreement.r2_fitted_overall;
-        let held_out = agreement.r2_held_out_overall;
-        figure(
-            ui,
-            text::correspondence::R2_OVERALL.get(),
-            text::correspondence::agreement(fitted, held_out),
-            text::correspondence::R2_OVERALL_HOVER.get(),
-        );
-    });
 }

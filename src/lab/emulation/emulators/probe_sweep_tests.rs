@@ -1,0 +1,109 @@
+//! Every kind of device, its emulator at default and at slow settings: a probe (`nima devices --probe`) and the driver
+//! that a rig opens must come to the same verdict.
+#![cfg(target_os = "linux")]
+
+use std::time::{Duration, Instant};
+
+use nima_devices::{
+    Device, DeviceError,
+    ati::{AtiDriver, AtiSettings},
+    bota::{BotaDriver, BotaSettings, Transport},
+    discovery::{TIMEOUT, TestOutcome, diagnose, probe_named},
+    haply::{HaplyDriver, HaplySettings},
+    hid::{CapDriver, CapSettings, PedalDriver, PedalSettings},
+    kinova::{self, KinovaSettings},
+    ndi::{NdiDriver, NdiSettings},
+};
+use nima_testing::real_time::judged;
+
+use super::{ALONE, EmulatedFault, EmulatorSettings};
+
+/// Time in which a rig's device must deliver, once it is open.
+const DELIVERS: Duration = Duration::from_secs(1);
+
+/// Returns whether the device can be used as a rig would use it: it opens, and delivers or answers.
+fn works<D: Device>(opened: Result<D, DeviceError>, must_deliver: bool) -> bool {
+    let Ok(mut device) = opened else { return false };
+    let begin = Instant::now();
+    while begin.elapsed() < DELIVERS {
+        if device.poll(begin.elapsed().as_secs_f64()).is_some() {
+            return true;
+        }
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    let lost = matches!(device.health().standing, nima_devices::ConnectionState::Lost(_));
+    !must_deliver && !lost
+}
+
+fn bota(transport: Transport, place: &str) -> bool {
+    works(BotaDriver::open(&BotaSettings::new(transport, place)), true)
+}
+
+fn ndi(settings: NdiSettings) -> bool {
+    works(NdiDriver::open(&NdiSettings { wired: true, ..settings }), false)
+}
+
+/// Name of the emulator, name of the probe, and what a rig makes of the device at a place.
+type Kind = (&'static str, &'static str, fn(&str) -> bool);
+
+const KINDS: [Kind; 10] = [
+    ("ati", "ati", |place| works(AtiDriver::open(&AtiSettings::at(place).unwrap()), true)),
+    ("bota-gen0", "bota-gen0", |place| bota(Transport::Gen0, place)),
+    ("bota-gen-a", "bota-gen-a", |place| bota(Transport::GenA, place)),
+    ("bota-socket", "bota-socket", |place| bota(Transport::Socket, place)),
+    ("haply", "haply", |place| works(HaplyDriver::open(&HaplySettings::at(place)), true)),
+    ("kinova", "kinova", |place| works(kinova::open(&KinovaSettings::at(place).unwrap()), true)),
+    ("ndi", "ndi", |place| ndi(NdiSettings { address: Some(place.to_owned()), ..NdiSettings::default() })),
+    ("ndi-serial", "ndi", |place| ndi(NdiSettings { port: Some(place.to_owned()), ..NdiSettings::default() })),
+    ("pedal", "pedal", |place| {
+        works(PedalDriver::open(&PedalSettings { source: place.to_owned(), ..PedalSettings::default() }), false)
+    }),
+    ("spacemouse", "spacemouse", |place| {
+        works(CapDriver::open(&CapSettings { source: place.to_owned(), ..CapSettings::default() }), false)
+    }),
+];
+
+/// Settings and fault of an emulator.
+const CASES: [(&[&str], EmulatedFault); 5] = [
+    (&[], EmulatedFault::None),
+    // The time that a sensor of the first generation takes to start.
+    (&["boot_s=0.8"], EmulatedFault::None),
+    (&["boot_s=2.5"], EmulatedFault::None),
+    (&[], EmulatedFault::Delay),
+    (&[], EmulatedFault::Silence),
+];
+
+fn same_verdict((emulator, probe, rig): Kind, set: &[&str], fault: EmulatedFault) {
+    let texts: Vec<String> = set.iter().map(|text| (*text).to_owned()).collect();
+    let (_, make) = ALONE.iter().find(|(name, _)| *name == emulator).unwrap();
+    let serving = make(&EmulatorSettings::new(&texts).unwrap()).unwrap().serve().unwrap();
+    serving.faults.set(fault);
+    let by_probe = diagnose(vec![probe_named(&format!("{probe}={}", serving.endpoint)).unwrap()], TIMEOUT).remove(0);
+    let by_rig = rig(&serving.endpoint);
+    let works = matches!(by_probe.outcome, TestOutcome::Connected(_));
+    println!("| {emulator} | {} | {} | {works} | {by_rig} |", set.join(" "), fault.name());
+    assert_eq!(works, by_rig, "{emulator} {set:?} {}: {:?}", fault.name(), by_probe.outcome);
+    if fault == EmulatedFault::None {
+        assert!(works, "{emulator} {set:?}: {:?}", by_probe.outcome);
+    }
+}
+
+#[test]
+#[ignore = "real devices' times, half a minute: `./dev test` runs it alone"]
+fn a_probe_and_a_rig_come_to_the_same_verdict() {
+    judged(|| {
+        println!("| device | settings | fault | probe | rig |\n|---|---|---|---|---|");
+        std::thread::scope(|scope| {
+            for kind in KINDS {
+                scope.spawn(move || {
+                    for (set, fault) in CASES {
+                        // Only this generation has a start that takes time.
+                        if set.is_empty() || kind.0 == "bota-gen0" {
+                            same_verdict(kind, set, fault);
+                        }
+                    }
+                });
+            }
+        });
+    });
+}

@@ -39,7 +39,7 @@ pub(super) fn started(arm: EmulatedKinova) -> (EmulatorThread, KinovaSettings) {
     started_with(arm, StandIn::at(HOME_RAD))
 }
 
-fn started_with(arm: EmulatedKinova, body: impl KinovaBody + 'static) -> (EmulatorThread, KinovaSettings) {
+pub(super) fn started_with(arm: EmulatedKinova, body: impl KinovaBody + 'static) -> (EmulatorThread, KinovaSettings) {
     let serving = arm.with(body).serve().unwrap();
     let settings = KinovaSettings::at(&serving.endpoint).unwrap();
     (serving, KinovaSettings { speed_fraction: 1.0, lead_rad: 0.2, ..settings })

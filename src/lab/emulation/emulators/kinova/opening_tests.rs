@@ -7,14 +7,17 @@ use std::{
 
 use nima_core::kinematics::ArmModel;
 use nima_devices::{
-    DeviceError,
+    ARM_JOINTS, DeviceError,
     kinova::{FaultClearing, KinovaSettings, open, open_clearing},
 };
 use nima_machine::config::urdf::{ChainEnds, chain_of};
 use nima_testing::real_time::judged;
 
-use super::driver_tests::{Ticking, patient, started};
-use crate::emulators::{EmulatedFault, kinova::EmulatedKinova};
+use super::driver_tests::{Ticking, patient, started, started_with};
+use crate::emulators::{
+    EmulatedFault,
+    kinova::{EmulatedKinova, StandIn},
+};
 
 #[test]
 fn every_trouble_while_opening_has_its_cause() {
@@ -85,7 +88,8 @@ fn a_gen3_with_six_joints_is_led_by_its_description_and_no_other_arm_is() {
         let (_serving, settings) = started(patient());
         let other = open_clearing(&settings, &model, &FaultClearing::default()).unwrap_err();
         assert!(matches!(other, DeviceError::WrongProduct { found, .. } if found == "arm with 7 joints"));
-        let (_serving, settings) = started(EmulatedKinova { joints: 6, ..patient() });
+        let body = StandIn::at([0.3; ARM_JOINTS]);
+        let (_serving, settings) = started_with(EmulatedKinova { joints: 6, ..patient() }, body);
         let driver = open_clearing(&settings, &model, &FaultClearing::default()).unwrap();
         let mut ticking = Ticking { driver, now_s: 0.0, reading: None };
         ticking.enter_low_level();

@@ -12,10 +12,7 @@
 
 use nalgebra::{Matrix2, SMatrix, SymmetricEigen, Vector2, Vector3};
 
-use super::{
-    gen3::{JOINTS, Joints},
-    instrument::InstrumentPose,
-};
+use super::{arm_model::JOINTS, instrument::InstrumentPose, joint_chain::Joints};
 
 type Rows2 = SMatrix<f64, 2, JOINTS>;
 type Rows3 = SMatrix<f64, 3, JOINTS>;

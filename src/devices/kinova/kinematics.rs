@@ -4,12 +4,12 @@
 //! Angles in rad, lengths in m, in the arm's base frame.
 
 use nalgebra::{Isometry3, IsometryMatrix3, Matrix6, SMatrix, UnitQuaternion, Vector6};
-use nima_core::kinematics::{JointChain, Joints};
+use nima_core::kinematics::{ArmModel, JointChain, Joints};
 
 use crate::ARM_JOINTS;
 
 fn chain(joint_rad: &[f64; ARM_JOINTS]) -> JointChain {
-    JointChain::new(&IsometryMatrix3::identity(), &Joints::from(*joint_rad))
+    JointChain::new(&ArmModel::GEN3, &IsometryMatrix3::identity(), &Joints::from(*joint_rad))
 }
 
 /// Returns position and orientation of the tool in the base frame.

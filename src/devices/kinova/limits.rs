@@ -102,7 +102,7 @@ impl Guard {
             let at = target_rad[j];
             let speed_rad_s = self.limits.speed_rad_s[j];
             // An arm that was pushed out of its range may stay there or move back.
-            if at < GEN3[j].low_rad.min(last_rad[j]) || at > GEN3[j].high_rad.max(last_rad[j]) {
+            if at < self.limits.low_rad[j].min(last_rad[j]) || at > self.limits.high_rad[j].max(last_rad[j]) {
                 return Err((j + 1, ExceededLimit::Range));
             }
             if (at - measured_rad[j]).abs() > speed_rad_s.mul_add(braking_s, self.limits.lead_rad) {
@@ -158,8 +158,8 @@ impl Guard {
             let fraction = if left_s > step_s { 1.0 - step_s / left_s } else { 0.0 };
             for j in 0..ARM_JOINTS {
                 self.speed_rad_s[j] *= fraction;
-                let low_rad = GEN3[j].low_rad;
-                let high_rad = GEN3[j].high_rad;
+                let low_rad = self.limits.low_rad[j];
+                let high_rad = self.limits.high_rad[j];
                 let at = self.command_rad[j];
                 // An arm that was pushed beyond its range may stop there.
                 self.command_rad[j] = (at + self.speed_rad_s[j] * step_s).clamp(low_rad.min(at), high_rad.max(at));
@@ -172,6 +172,8 @@ impl Guard {
 #[cfg(test)]
 #[expect(clippy::float_cmp, reason = "the guard passes commands on unchanged, to the last bit")]
 mod tests {
+    use nima_core::kinematics::ArmModel;
+
     use super::*;
 
     const TICK_S: f64 = 1e-3;
@@ -188,7 +190,7 @@ mod tests {
     }
 
     fn resting(fraction: f64) -> Guard {
-        let mut guard = Guard::new(JointLimits::of_arm(fraction, 0.05));
+        let mut guard = Guard::new(JointLimits::of_arm(&ArmModel::GEN3, fraction, 0.05));
         guard.seed(&[0.0; ARM_JOINTS]);
         guard
     }
@@ -252,7 +254,7 @@ mod tests {
 
     #[test]
     fn braking_slows_all_joints_down_by_one_factor_and_within_their_accelerations() {
-        let limits = JointLimits::of_arm(1.0, 0.05);
+        let limits = JointLimits::of_arm(&ArmModel::GEN3, 1.0, 0.05);
         let mut guard = resting(1.0);
         let speed: [f64; ARM_JOINTS] = std::array::from_fn(|j| GEN3[j].speed_rad_s * (0.3 + 0.1 * j as f64));
         let mut target = [0.0; ARM_JOINTS];

@@ -1,4 +1,4 @@
-use nima_core::kinematics::JointLimits;
+use nima_core::kinematics::{ArmModel, JointLimits};
 use serde::{Deserialize, Serialize};
 
 use super::limits::TWIST_MAX;
@@ -75,8 +75,8 @@ impl KinovaSettings {
     }
 
     /// Returns the limits of position, speed and acceleration: the planner keeps to them, the driver checks them.
-    pub fn joint_limits(&self) -> JointLimits {
-        JointLimits::of_arm(self.speed_fraction, self.lead_rad)
+    pub fn joint_limits(&self, model: &ArmModel) -> JointLimits {
+        JointLimits::of_arm(model, self.speed_fraction, self.lead_rad)
     }
 
     /// Checks every value.

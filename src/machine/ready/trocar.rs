@@ -41,7 +41,7 @@ impl ReadyTrocar {
     pub(super) fn of(side: Side, subject: &CheckSubject) -> Self {
         let arm = subject.rig.devices.as_ref().and_then(|devices| {
             let set = devices.arm(side)?;
-            let arm = kinematics::Arm::new(&set.mount).ok()?;
+            let arm = set.kinematics().ok()?;
             let base = arm.world_from_base();
             let turn = UnitQuaternion::from_rotation_matrix(&base.rotation);
             let world_from_base = Isometry3::from_parts(base.translation, turn);

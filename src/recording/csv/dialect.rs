@@ -71,6 +71,21 @@ impl CsvDialect {
         counted + self.removed
     }
 
+    /// Rewrites a row with decimal points, and with its line number in the file.
+    pub fn normalise(&self, row: &mut StringRecord) {
+        if !self.has_decimal_comma && self.removed == 0 {
+            return;
+        }
+        let mut position = row.position().cloned();
+        if let Some(position) = &mut position {
+            position.set_line(self.line(position.line()));
+        }
+        if self.has_decimal_comma {
+            *row = row.iter().map(|field| field.replace(',', ".")).collect();
+        }
+        row.set_position(position);
+    }
+
     /// Parses a number as this dialect writes it.
     pub fn number(&self, field: &str) -> Option<f64> {
         if self.has_decimal_comma {

@@ -41,8 +41,9 @@ impl KinovaDriver {
                     break;
                 }
             };
+            let joints = self.command.actuators.len();
             let report = KinovaFrame::decode(&self.lines.datagram[..count]).map(|frame| {
-                let feedback = KinovaFeedback::decode(frame.payload).ok().filter(|report| report.count == ARM_JOINTS);
+                let feedback = KinovaFeedback::decode(frame.payload).ok().filter(|report| report.count == joints);
                 (frame.header, feedback)
             });
             let good = match report {

@@ -57,11 +57,12 @@ impl SideReadings {
     /// [`RigError`] if mount or trocar are invalid.
     pub fn new(side: Side, set: &ArmSet, period_s: f64, at_wrist: bool) -> Result<Self, RigError> {
         let word = side.word();
+        let mount = set.kinematics().map_err(|source| RigError::Mount { side: word, source })?;
         Ok(Self {
-            mount: Arm::new(&set.mount).map_err(|source| RigError::Mount { side: word, source })?,
+            mount,
             rcm: Rcm::new(&set.rcm).map_err(|source| RigError::Rcm { side: word, source })?,
             hand_eye: set.hand_eye().map(|[s1_from_m, base_from_c]| ExpectedMarker { s1_from_m, base_from_c }),
-            limits: set.arm.joint_limits(),
+            limits: set.arm.joint_limits(mount.model()),
             period_s,
             s1_from_m: set.s1_from_m_deg.as_ref().map(from_roll_pitch_yaw_deg),
             at_wrist,

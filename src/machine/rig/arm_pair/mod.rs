@@ -86,7 +86,9 @@ impl ArmPair {
         });
         let handle = handle.transpose()?;
         let follower = ends.have_follower().then(|| {
-            let arm = start(RigPart::Arm(side), set.arm.opener(), known, roster, move |arm| arm.attach(&of_arm))?;
+            let arm = start(RigPart::Arm(side), set.arm.opener(measured.mount.model()), known, roster, move |arm| {
+                arm.attach(&of_arm);
+            })?;
             let sensor = start(RigPart::Sensor(side), set.sensor.opener(), known, roster, |_| ())?;
             Ok::<_, std::io::Error>(FollowerSlots { arm, sensor })
         });
